@@ -1,0 +1,25 @@
+//! Forward kinematics.
+
+use super::Workspace;
+use crate::joint::JointLaw;
+use crate::model::Model;
+use crate::{Scalar, with_pose};
+
+/// Placements of all frames (links of the file) in the base frame.
+///
+/// q: [nq] rad|m|quaternion; out: [12 · frames], for each frame the rotation row by row, then the position in m.
+/// One outward sweep. Lynch & Park 2017, §4.1; Featherstone 2008, §4.4.
+///
+/// # Panics
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+pub fn placements<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
+    for i in model.outward() {
+        let body = &model.bodies[i];
+        // T_i = T_λ · T_λj · T_j(q)
+        let x_wj = ws.placements[body.parent].compose(&body.placement);
+        ws.placements[i] = with_pose!(body.joint.pose(&body.coordinates, q), p => p.compose(x_wj));
+    }
+    for (frame, out) in model.frames.iter().zip(out.chunks_exact_mut(12)) {
+        out.copy_from_slice(&ws.placements[frame.body].compose(&frame.placement).to_array());
+    }
+}

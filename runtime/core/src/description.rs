@@ -1,0 +1,149 @@
+//! A robot as its file describes it: plain numbers in the file's own frames, before any computation.
+//!
+//! A [`Description`] is what a reader (URDF today) hands over and what [`crate::model::Model`] is built from. Frames follow
+//! the URDF: a joint's frame is placed in its parent link's frame by `origin`, and the child link's frame coincides with
+//! the joint's frame at zero. A moving joint's `axis` is expressed in the joint's frame.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+
+/// A tree of links and joints. Indices into `links` and `joints` follow the order of the file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Description {
+    /// The robot's name.
+    pub name: String,
+    /// Links in the order of the file.
+    pub links: Vec<Link>,
+    /// Joints in the order of the file.
+    pub joints: Vec<Joint>,
+}
+
+/// A rigid body of the file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Link {
+    /// The link's name, unique among links.
+    pub name: String,
+    /// Mass properties; `None` is a link without mass.
+    pub inertial: Option<Inertial>,
+}
+
+/// Mass, centre of mass and rotational inertia of a link.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inertial {
+    /// The inertial frame in the link's frame; its origin is the centre of mass.
+    pub origin: Origin,
+    /// Mass, kg.
+    pub mass: f64,
+    /// Rotational inertia about the centre of mass in axes of the inertial frame: xx, xy, xz, yy, yz, zz, kg·m².
+    pub inertia: [f64; 6],
+}
+
+/// The placement of a frame: a translation, and a rotation by fixed-axis roll, pitch and yaw,
+/// R = Rz(yaw)·Ry(pitch)·Rx(roll).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Origin {
+    /// Translation, m.
+    pub xyz: [f64; 3],
+    /// Roll, pitch, yaw, rad.
+    pub rpy: [f64; 3],
+}
+
+/// What a joint of the file lets move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointKind {
+    /// A turn about the axis, within limits.
+    Revolute,
+    /// A turn about the axis without limits; its coordinate is the plain angle.
+    Continuous,
+    /// A translation along the axis.
+    Prismatic,
+    /// No motion.
+    Fixed,
+    /// Six degrees of freedom.
+    Floating,
+    /// Two translations in the plane normal to the axis and a turn about it.
+    Planar,
+}
+
+/// A joint of the file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// The joint's name, unique among joints.
+    pub name: String,
+    /// What it lets move.
+    pub kind: JointKind,
+    /// Index of the parent link.
+    pub parent: usize,
+    /// Index of the child link.
+    pub child: usize,
+    /// The joint's frame in the parent link's frame.
+    pub origin: Origin,
+    /// The axis in the joint's frame, as written: not necessarily of unit length, never zero for a joint that has one.
+    pub axis: [f64; 3],
+    /// The joint that this one follows.
+    pub mimic: Option<Mimic>,
+    /// Limits, where the file gives them.
+    pub limit: Option<Limit>,
+    /// Damping and friction, where the file gives them.
+    pub dynamics: Option<JointDynamics>,
+}
+
+/// q = multiplier · q_leader + offset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mimic {
+    /// Index of the joint that is followed.
+    pub joint: usize,
+    /// Dimensionless, or m/rad, or rad/m.
+    pub multiplier: f64,
+    /// rad or m.
+    pub offset: f64,
+}
+
+/// Bounds of a joint's motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limit {
+    /// Lower bound of the coordinate, rad or m.
+    pub lower: f64,
+    /// Upper bound of the coordinate, rad or m.
+    pub upper: f64,
+    /// Largest torque or force, N·m or N.
+    pub effort: f64,
+    /// Largest rate, rad/s or m/s.
+    pub velocity: f64,
+}
+
+/// The `<dynamics>` tag.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointDynamics {
+    /// Viscous damping, N·m·s/rad or N·s/m.
+    pub damping: f64,
+    /// Coulomb friction, N·m or N.
+    pub friction: f64,
+}
+
+/// Whether the root link is the base or moves freely in it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Base {
+    /// The root link does not move; its frame is the base frame.
+    #[default]
+    Fixed,
+    /// The root link has six degrees of freedom in the base frame.
+    Floating,
+}
+
+impl Description {
+    /// Index of the root link: the first that is no joint's child. `None` where there is none.
+    pub fn root(&self) -> Option<usize> {
+        (0..self.links.len()).find(|&l| self.joints.iter().all(|j| j.child != l))
+    }
+
+    /// Index of the link called `name`.
+    pub fn link(&self, name: &str) -> Option<usize> {
+        self.links.iter().position(|l| l.name == name)
+    }
+
+    /// Index of the joint called `name`.
+    pub fn joint(&self, name: &str) -> Option<usize> {
+        self.joints.iter().position(|j| j.name == name)
+    }
+}

@@ -1,0 +1,71 @@
+//! Free motion.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::{Coordinates, JointLaw};
+use crate::Scalar;
+use crate::spatial::{Motion, Placement, Twist, Wrench, from_quaternion, rotate, rotate_back};
+
+/// q = (position; unit quaternion x, y, z, w) of the child in the joint frame; v = body twist [ω; v] in the child's frame;
+/// a = the time derivative of the six numbers in v; S = 1.
+///
+/// The quaternion's norm is taken to be one ([`from_quaternion`]).
+#[derive(Clone, Copy, Debug)]
+pub struct Floating<S> {
+    rotation: Matrix3<S>,
+    position: Vector3<S>,
+}
+
+#[inline(always)]
+fn six<S: Scalar>(x: &[S], at: usize) -> Twist<S> {
+    Twist { angular: Vector3::new(x[at], x[at + 1], x[at + 2]), linear: Vector3::new(x[at + 3], x[at + 4], x[at + 5]) }
+}
+
+impl<S: Scalar> JointLaw<S> for Floating<S> {
+    #[inline(always)]
+    fn at(at: &Coordinates<S>, q: &[S]) -> Self {
+        let q = &q[at.q..at.q + 7];
+        Self { position: Vector3::new(q[0], q[1], q[2]), rotation: from_quaternion([q[3], q[4], q[5], q[6]]) }
+    }
+
+    #[inline(always)]
+    fn to_child(&self, v: Vector3<S>) -> Vector3<S> {
+        rotate_back(&self.rotation, v)
+    }
+
+    #[inline(always)]
+    fn to_joint(&self, v: Vector3<S>) -> Vector3<S> {
+        rotate(&self.rotation, v)
+    }
+
+    #[inline(always)]
+    fn origin(&self, x_pj: &Placement<S>) -> Vector3<S> {
+        x_pj.transform(self.position)
+    }
+
+    #[inline(always)]
+    fn compose(&self, x_wj: Placement<S>) -> Placement<S> {
+        x_wj.compose(&Placement { rotation: self.rotation, position: self.position })
+    }
+
+    #[inline(always)]
+    fn motion(&self, carried: Motion<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
+        let (rate, derivative) = (six(v, at.v), six(a, at.v));
+        let omega = self.to_child(carried.omega);
+        let total = omega + rate.angular;
+        // ω̇ = Rᵀ ω̇_λ + Rᵀ ω_λ × ω_J + ω̇_J
+        let alpha = self.to_child(carried.alpha) + omega.cross(&rate.angular) + derivative.angular;
+        // r̈ = Rᵀ r̈_carried + 2 Rᵀ ω_λ × v_J + ω_J × v_J + v̇_J
+        let coriolis = (omega + total).cross(&rate.linear);
+        let acceleration = self.to_child(carried.acceleration) + coriolis + derivative.linear;
+        Motion { omega: total, alpha, acceleration }
+    }
+
+    #[inline(always)]
+    fn add_torque(&self, wrench: &Wrench<S>, at: &Coordinates<S>, tau: &mut [S]) {
+        for k in 0..3 {
+            tau[at.v + k] += wrench.moment[k];
+            tau[at.v + 3 + k] += wrench.force[k];
+        }
+    }
+}

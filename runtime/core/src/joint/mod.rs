@@ -1,0 +1,160 @@
+//! Joints, one file each: pose, motion and torque of one kind.
+//!
+//! In a [`crate::model::Model`] a revolute or prismatic joint turns about or slides along the z-axis of its frame; the model's builder chose the
+//! frames so. Adding a joint: a file with a type that implements [`JointLaw`], and its row in [`Joint`], [`Pose`] and `with_pose!`.
+
+mod floating;
+mod prismatic;
+mod revolute;
+
+pub use floating::Floating;
+pub use prismatic::Prismatic;
+pub use revolute::Revolute;
+
+use nalgebra::Vector3;
+
+use crate::Scalar;
+use crate::spatial::{Motion, Placement, Wrench};
+
+/// The kinds of moving joints of a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Joint {
+    /// Turns about z; revolute and continuous joints.
+    Revolute,
+    /// Slides along z.
+    Prismatic,
+    /// Moves freely: position and unit quaternion (x, y, z, w); rates are the body twist.
+    Floating,
+}
+
+impl Joint {
+    /// Number of coordinates.
+    pub fn nq(self) -> usize {
+        match self {
+            Joint::Revolute | Joint::Prismatic => 1,
+            Joint::Floating => 7,
+        }
+    }
+
+    /// Number of degrees of freedom.
+    pub fn nv(self) -> usize {
+        match self {
+            Joint::Revolute | Joint::Prismatic => 1,
+            Joint::Floating => 6,
+        }
+    }
+
+    /// The joint's pose at its coordinates in `q`.
+    #[inline(always)]
+    pub fn pose<S: Scalar>(self, at: &Coordinates<S>, q: &[S]) -> Pose<S> {
+        match self {
+            Joint::Revolute => Pose::Revolute(Revolute::at(at, q)),
+            Joint::Prismatic => Pose::Prismatic(Prismatic::at(at, q)),
+            Joint::Floating => Pose::Floating(Floating::at(at, q)),
+        }
+    }
+}
+
+/// Where a joint's numbers are in the vectors q and v, and how it follows another joint if it does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Coordinates<S> {
+    /// First index in q.
+    pub q: usize,
+    /// First index in v, a and τ.
+    pub v: usize,
+    /// For a joint that follows: own coordinate = multiplier · leader's + offset.
+    pub mimic: Option<Follow<S>>,
+}
+
+/// The law by which a joint follows another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Follow<S> {
+    /// d(own)/d(leader's).
+    pub multiplier: S,
+    /// Own coordinate where the leader's is zero, rad or m.
+    pub offset: S,
+}
+
+impl<S: Scalar> Coordinates<S> {
+    /// The joint's own single coordinate.
+    #[inline(always)]
+    pub fn coordinate(&self, q: &[S]) -> S {
+        match &self.mimic {
+            None => q[self.q],
+            Some(f) => q[self.q] * f.multiplier + f.offset,
+        }
+    }
+
+    /// The joint's own single rate, or acceleration.
+    #[inline(always)]
+    pub fn rate(&self, v: &[S]) -> S {
+        match &self.mimic {
+            None => v[self.v],
+            Some(f) => v[self.v] * f.multiplier,
+        }
+    }
+
+    /// Adds the joint's own single torque to that of the coordinate it moves with: power is the same, so τ_leader += multiplier · τ.
+    #[inline(always)]
+    pub fn add_torque(&self, torque: S, tau: &mut [S]) {
+        tau[self.v] += match &self.mimic {
+            None => torque,
+            Some(f) => torque * f.multiplier,
+        };
+    }
+
+    /// The same in another scalar.
+    #[cfg(feature = "alloc")]
+    pub(crate) fn map<T: Scalar>(&self, f: impl Fn(S) -> T) -> Coordinates<T> {
+        let mimic = self.mimic.as_ref().map(|m| Follow { multiplier: f(m.multiplier), offset: f(m.offset) });
+        Coordinates { q: self.q, v: self.v, mimic }
+    }
+}
+
+/// What an algorithm asks of a joint, at one pose. "Joint frame" is the frame fixed in the parent, "child" the one that moves.
+pub trait JointLaw<S: Scalar>: Copy {
+    /// The pose at the joint's coordinates in `q`.
+    fn at(at: &Coordinates<S>, q: &[S]) -> Self;
+
+    /// A vector from axes of the joint frame to axes of the child: Rᵀ v.
+    fn to_child(&self, v: Vector3<S>) -> Vector3<S>;
+
+    /// A vector from axes of the child to axes of the joint frame: R v.
+    fn to_joint(&self, v: Vector3<S>) -> Vector3<S>;
+
+    /// The child's origin in the parent, where `x_pj` places the joint frame in the parent, m.
+    fn origin(&self, x_pj: &Placement<S>) -> Vector3<S>;
+
+    /// The child's placement, from that of the joint frame in the same frame.
+    fn compose(&self, x_wj: Placement<S>) -> Placement<S>;
+
+    /// The child's motion in its axes, from `carried`, the motion that the point of the parent now at the child's origin has, in axes
+    /// of the joint frame, and from the joint's rates in `v` and their derivatives in `a`.
+    fn motion(&self, carried: Motion<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S>;
+
+    /// τ = Sᵀ F: adds to `tau` the joint's torques for the wrench F on the child, in the child's frame.
+    fn add_torque(&self, wrench: &Wrench<S>, at: &Coordinates<S>, tau: &mut [S]);
+}
+
+/// A pose of any kind of joint, to be kept between sweeps.
+#[derive(Clone, Copy, Debug)]
+pub enum Pose<S> {
+    /// See [`Revolute`].
+    Revolute(Revolute<S>),
+    /// See [`Prismatic`].
+    Prismatic(Prismatic<S>),
+    /// See [`Floating`].
+    Floating(Floating<S>),
+}
+
+/// Runs one expression with the pose of the kind that it is: one branch for a whole step of an algorithm.
+#[macro_export]
+macro_rules! with_pose {
+    ($pose:expr, $p:ident => $body:expr) => {
+        match $pose {
+            $crate::joint::Pose::Revolute($p) => $body,
+            $crate::joint::Pose::Prismatic($p) => $body,
+            $crate::joint::Pose::Floating($p) => $body,
+        }
+    };
+}

@@ -1,0 +1,56 @@
+//! A slide along z.
+
+use nalgebra::Vector3;
+
+use super::{Coordinates, JointLaw};
+use crate::Scalar;
+use crate::spatial::{Motion, Placement, Wrench};
+
+/// R = 1, p = e_z q, S = [0; e_z].
+#[derive(Clone, Copy, Debug)]
+pub struct Prismatic<S> {
+    shift: S,
+}
+
+impl<S: Scalar> JointLaw<S> for Prismatic<S> {
+    #[inline(always)]
+    fn at(at: &Coordinates<S>, q: &[S]) -> Self {
+        Self { shift: at.coordinate(q) }
+    }
+
+    #[inline(always)]
+    fn to_child(&self, v: Vector3<S>) -> Vector3<S> {
+        v
+    }
+
+    #[inline(always)]
+    fn to_joint(&self, v: Vector3<S>) -> Vector3<S> {
+        v
+    }
+
+    #[inline(always)]
+    fn origin(&self, x_pj: &Placement<S>) -> Vector3<S> {
+        x_pj.position + x_pj.rotation.column(2) * self.shift
+    }
+
+    #[inline(always)]
+    fn compose(&self, x_wj: Placement<S>) -> Placement<S> {
+        Placement { rotation: x_wj.rotation, position: self.origin(&x_wj) }
+    }
+
+    #[inline(always)]
+    fn motion(&self, carried: Motion<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
+        let (rate, mut acceleration) = (at.rate(v), carried.acceleration);
+        let twice = rate + rate;
+        // r̈ = r̈_carried + 2 ω × e_z q̇ + e_z q̈
+        acceleration.x += carried.omega.y * twice;
+        acceleration.y -= carried.omega.x * twice;
+        acceleration.z += at.rate(a);
+        Motion { acceleration, ..carried }
+    }
+
+    #[inline(always)]
+    fn add_torque(&self, wrench: &Wrench<S>, at: &Coordinates<S>, tau: &mut [S]) {
+        at.add_torque(wrench.force.z, tau);
+    }
+}

@@ -1,0 +1,65 @@
+//! A turn about z.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::{Coordinates, JointLaw};
+use crate::Scalar;
+use crate::spatial::{Motion, Placement, Wrench};
+
+/// R = Rz(q), S = [e_z; 0].
+#[derive(Clone, Copy, Debug)]
+pub struct Revolute<S> {
+    sin: S,
+    cos: S,
+}
+
+impl<S: Scalar> JointLaw<S> for Revolute<S> {
+    #[inline(always)]
+    fn at(at: &Coordinates<S>, q: &[S]) -> Self {
+        let (sin, cos) = at.coordinate(q).sin_cos();
+        Self { sin, cos }
+    }
+
+    #[inline(always)]
+    fn to_child(&self, v: Vector3<S>) -> Vector3<S> {
+        let (s, c) = (self.sin, self.cos);
+        Vector3::new(c * v.x + s * v.y, c * v.y - s * v.x, v.z)
+    }
+
+    #[inline(always)]
+    fn to_joint(&self, v: Vector3<S>) -> Vector3<S> {
+        let (s, c) = (self.sin, self.cos);
+        Vector3::new(c * v.x - s * v.y, s * v.x + c * v.y, v.z)
+    }
+
+    #[inline(always)]
+    fn origin(&self, x_pj: &Placement<S>) -> Vector3<S> {
+        x_pj.position
+    }
+
+    #[inline(always)]
+    fn compose(&self, x_wj: Placement<S>) -> Placement<S> {
+        let (s, c) = (self.sin, self.cos);
+        let (x, y, z) = (x_wj.rotation.column(0), x_wj.rotation.column(1), x_wj.rotation.column(2));
+        let rotation = Matrix3::from_columns(&[x * c + y * s, y * c - x * s, z.into_owned()]);
+        Placement { rotation, position: x_wj.position }
+    }
+
+    #[inline(always)]
+    fn motion(&self, carried: Motion<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
+        let (rate, acceleration) = (at.rate(v), at.rate(a));
+        let mut omega = self.to_child(carried.omega);
+        let mut alpha = self.to_child(carried.alpha);
+        // ω̇ = Rᵀ ω̇_λ + Rᵀ ω_λ × e_z q̇ + e_z q̈;  ω = Rᵀ ω_λ + e_z q̇
+        alpha.x += omega.y * rate;
+        alpha.y -= omega.x * rate;
+        alpha.z += acceleration;
+        omega.z += rate;
+        Motion { omega, alpha, acceleration: self.to_child(carried.acceleration) }
+    }
+
+    #[inline(always)]
+    fn add_torque(&self, wrench: &Wrench<S>, at: &Coordinates<S>, tau: &mut [S]) {
+        at.add_torque(wrench.moment.z, tau);
+    }
+}

@@ -1,0 +1,144 @@
+//! A robot made ready for the algorithms: bodies joined by moving joints, in depth-first order.
+
+mod build;
+mod massless;
+pub mod pass;
+
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use nalgebra::Vector3;
+
+pub use build::ModelError;
+
+use crate::Scalar;
+use crate::description::{JointKind, Limit};
+use crate::joint::{Coordinates, Joint};
+use crate::spatial::{Placement, SpatialInertia};
+
+/// The name under which the joint of a floating base is listed.
+pub const FLOATING_BASE: &str = "__floating_base__";
+
+/// Standard gravity in the base frame, m/s².
+pub const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
+
+/// A tree of bodies. Body 0 is the base; every other body hangs on its parent by one moving joint, parents before children.
+///
+/// Links behind fixed joints are part of the body they are fixed to; each link of the file remains as a frame.
+/// Build one with [`Model::new`].
+#[derive(Clone, Debug)]
+pub struct Model<S = f64> {
+    /// The robot's name.
+    pub name: String,
+    /// Gravity in the base frame, m/s².
+    pub gravity: Vector3<S>,
+    /// Bodies; the first is the base and has no joint of its own.
+    pub bodies: Vec<Body<S>>,
+    /// One frame for each link of the file, in the order of the file.
+    pub frames: Vec<Frame<S>>,
+    /// The joints that are coordinates, in the order of their coordinates. Joints that follow others are not among them.
+    pub joints: Vec<JointInfo>,
+    /// Number of coordinates.
+    pub nq: usize,
+    /// Number of degrees of freedom.
+    pub nv: usize,
+}
+
+/// A body and the joint that carries it.
+#[derive(Clone, Debug)]
+pub struct Body<S> {
+    /// Name of the joint (of the root link for the base).
+    pub name: String,
+    /// Index of the body that it hangs on; 0 for the base itself.
+    pub parent: usize,
+    /// The joint's frame in the parent's frame.
+    pub placement: Placement<S>,
+    /// The kind of joint.
+    pub joint: Joint,
+    /// Its place in the vectors.
+    pub coordinates: Coordinates<S>,
+    /// Mass properties in the body's frame, everything that is fixed to the body included.
+    pub inertia: SpatialInertia<S>,
+}
+
+/// A named frame fixed in a body: a link of the file.
+#[derive(Clone, Debug)]
+pub struct Frame<S> {
+    /// Name of the link.
+    pub name: String,
+    /// Index of the body.
+    pub body: usize,
+    /// The frame in the body's frame.
+    pub placement: Placement<S>,
+}
+
+/// What a coordinate's joint is called and may do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointInfo {
+    /// Name of the joint; [`FLOATING_BASE`] for that of a floating base.
+    pub name: String,
+    /// Its kind in the file.
+    pub kind: JointKind,
+    /// First index and number of its coordinates in q.
+    pub q: (usize, usize),
+    /// First index and number of its rates in v.
+    pub v: (usize, usize),
+    /// Limits, where the file gives them; none for a continuous joint.
+    pub limit: Option<Limit>,
+}
+
+impl<S: Scalar> Model<S> {
+    /// Indices of the moving bodies, from the base outward.
+    #[inline(always)]
+    pub fn outward(&self) -> core::ops::Range<usize> {
+        1..self.bodies.len()
+    }
+
+    /// Indices of the moving bodies, from the tips inward.
+    #[inline(always)]
+    pub fn inward(&self) -> core::iter::Rev<core::ops::Range<usize>> {
+        self.outward().rev()
+    }
+
+    /// The same robot under another gravity, given in the base frame, m/s².
+    #[must_use]
+    pub fn with_gravity(mut self, gravity: [f64; 3]) -> Self {
+        self.gravity = Vector3::from(gravity).map(S::from_f64);
+        self
+    }
+}
+
+impl Model<f64> {
+    /// The same model with its constants in another scalar.
+    pub fn cast<T: Scalar>(&self) -> Model<T> {
+        let to = T::from_f64;
+        Model {
+            name: self.name.clone(),
+            gravity: self.gravity.map(to),
+            bodies: self.bodies.iter().map(|b| b.map(to)).collect(),
+            frames: self.frames.iter().map(|f| f.map(to)).collect(),
+            joints: self.joints.clone(),
+            nq: self.nq,
+            nv: self.nv,
+        }
+    }
+}
+
+impl<S: Scalar> Body<S> {
+    fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> Body<T> {
+        Body {
+            name: self.name.clone(),
+            parent: self.parent,
+            placement: self.placement.map(f),
+            joint: self.joint,
+            coordinates: self.coordinates.map(f),
+            inertia: self.inertia.map(f),
+        }
+    }
+}
+
+impl<S: Scalar> Frame<S> {
+    fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> Frame<T> {
+        Frame { name: self.name.clone(), body: self.body, placement: self.placement.map(f) }
+    }
+}

@@ -1,0 +1,46 @@
+//! Base parameters: what a joint cannot feel goes to its parent.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::joint::Joint;
+use crate::model::{Body, Model};
+use crate::spatial::SpatialInertia;
+
+/// Moves inertial parameters along the joints that cannot feel them, from the tips inward.
+///
+/// Mass on the axis of a revolute joint moves with the parent whatever the angle: m, h_z and Σ_zz go there, and what is left has Σ_zz = 0 and no
+/// mass. A prismatic joint does not turn its body: Σ goes to the parent. Exact for all joint torques and for the mass
+/// matrix (Khalil & Dombre, *Modeling, Identification and Control of Robots*, 2002, §9.4); placements do not change.
+pub fn regroup(mut model: Model<f64>) -> Model<f64> {
+    for i in model.inward() {
+        let Some((given, kept)) = split(&model.bodies[i]) else { continue };
+        let moved = given.moved(&model.bodies[i].placement);
+        let parent = model.bodies[i].parent;
+        model.bodies[i].inertia = kept;
+        model.bodies[parent].inertia += moved;
+    }
+    model.bodies[0].inertia = SpatialInertia::zero();
+    model
+}
+
+/// (what the parent gets, in the joint's frame; what the body keeps).
+fn split(body: &Body<f64>) -> Option<(SpatialInertia<f64>, SpatialInertia<f64>)> {
+    let own = body.inertia;
+    match body.joint {
+        Joint::Floating => None,
+        Joint::Revolute => {
+            let first = Vector3::new(0.0, 0.0, own.first.z);
+            let second = Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, own.second.m33));
+            let given = SpatialInertia { mass: own.mass, first, second };
+            Some((given, subtract(own, given)))
+        }
+        Joint::Prismatic => {
+            let given = SpatialInertia { mass: 0.0, first: Vector3::zeros(), second: own.second };
+            Some((given, subtract(own, given)))
+        }
+    }
+}
+
+fn subtract(a: SpatialInertia<f64>, b: SpatialInertia<f64>) -> SpatialInertia<f64> {
+    SpatialInertia { mass: a.mass - b.mass, first: a.first - b.first, second: a.second - b.second }
+}

@@ -1,0 +1,97 @@
+//! The number that an algorithm runs on.
+
+use nalgebra::{ClosedAddAssign, ClosedMulAssign, ClosedSubAssign};
+use num_traits::{One, Zero};
+
+/// A real number, or something that stands for one: `f32`, `f64`, a symbol, a big float, a dual number.
+///
+/// There is no ordering on purpose: a program that is traced cannot branch on a value, so a choice between two values is written
+/// `S::select(x.positive(), a, b)`, which every scalar can do.
+pub trait Scalar:
+    nalgebra::Scalar
+    + Copy
+    + Zero
+    + One
+    + ClosedAddAssign
+    + ClosedSubAssign
+    + ClosedMulAssign
+    + core::ops::Div<Output = Self>
+    + core::ops::Neg<Output = Self>
+{
+    /// The outcome of a comparison: `bool`, or what stands for one.
+    type Mask: Copy;
+
+    /// The scalar nearest to `x`.
+    fn from_f64(x: f64) -> Self;
+
+    /// (sin self, cos self); self in rad.
+    fn sin_cos(self) -> (Self, Self);
+
+    /// √self.
+    fn sqrt(self) -> Self;
+
+    /// self > 0.
+    fn positive(self) -> Self::Mask;
+
+    /// `a` where the mask holds, else `b`. Both are evaluated.
+    fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
+
+    /// |self|.
+    fn abs(self) -> Self {
+        Self::select(self.positive(), self, -self)
+    }
+}
+
+macro_rules! impl_float {
+    ($t:ty, $sincos:path, $sqrt:path) => {
+        impl Scalar for $t {
+            type Mask = bool;
+
+            #[inline(always)]
+            fn from_f64(x: f64) -> Self {
+                x as $t
+            }
+
+            #[inline(always)]
+            fn sin_cos(self) -> (Self, Self) {
+                #[cfg(feature = "std")]
+                return <$t>::sin_cos(self);
+                #[cfg(not(feature = "std"))]
+                $sincos(self)
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                #[cfg(feature = "std")]
+                return <$t>::sqrt(self);
+                #[cfg(not(feature = "std"))]
+                $sqrt(self)
+            }
+
+            #[inline(always)]
+            fn positive(self) -> bool {
+                self > 0.0
+            }
+
+            #[inline(always)]
+            fn select(mask: bool, a: Self, b: Self) -> Self {
+                if mask { a } else { b }
+            }
+        }
+    };
+}
+
+impl_float!(f32, libm::sincosf, libm::sqrtf);
+impl_float!(f64, libm::sincos, libm::sqrt);
+
+#[cfg(test)]
+mod tests {
+    use super::Scalar;
+
+    #[test]
+    fn select_takes_the_side_the_mask_says() {
+        assert_eq!(f64::select(2.0.positive(), 1.0, -1.0), 1.0);
+        assert_eq!(f64::select(0.0.positive(), 1.0, -1.0), -1.0);
+        assert_eq!(Scalar::abs(-3.5_f32), 3.5);
+    }
+}

@@ -1,0 +1,113 @@
+//! Spatial inertia by moments of mass.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::{Placement, Wrench, rotate};
+use crate::Scalar;
+
+/// The mass properties of a body as the moments of its mass about the origin of its frame, in axes of that frame:
+/// m = ∫dm, h = ∫r dm = m·c and Σ = ∫r rᵀ dm.
+///
+/// The rotational inertia about the origin is tr(Σ)·1 − Σ. In these ten numbers all of dynamics is linear, bodies add up by adding them,
+/// and a shift of the origin never subtracts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpatialInertia<S> {
+    /// m, kg.
+    pub mass: S,
+    /// h = m·c, kg·m.
+    pub first: Vector3<S>,
+    /// Σ, kg·m², symmetric.
+    pub second: Matrix3<S>,
+}
+
+impl<S: Scalar> SpatialInertia<S> {
+    /// Nothing.
+    pub fn zero() -> Self {
+        Self { mass: S::zero(), first: Vector3::zeros(), second: Matrix3::zeros() }
+    }
+
+    /// From the mass, the rotational inertia about the centre of mass, and the frame that inertia is given in (its origin is the centre).
+    pub fn from_central(mass: S, inertia: Matrix3<S>, frame: &Placement<S>) -> Self {
+        let half = S::from_f64(0.5) * inertia.trace();
+        // Σ_c = ½ tr(I_c)·1 − I_c
+        let second = Matrix3::from_diagonal_element(half) - inertia;
+        Self { mass, first: Vector3::zeros(), second }.moved(frame)
+    }
+
+    /// The same body seen from the frame a, where `x_ab` places the frame b that the moments are given in.
+    ///
+    /// m' = m, h' = R h + m p, Σ' = R Σ Rᵀ + (R h) pᵀ + p (R h)ᵀ + m p pᵀ.
+    pub fn moved(&self, x_ab: &Placement<S>) -> Self {
+        let (r, p) = (&x_ab.rotation, x_ab.position);
+        let h = rotate(r, self.first);
+        let first = h + p * self.mass;
+        let second = symmetric(r * self.second * r.transpose() + h * p.transpose() + p * first.transpose());
+        Self { mass: self.mass, first, second }
+    }
+
+    /// The wrench that moves the body, about its origin: f = m a + U h, n = h × a + ∫ r × (U r) dm.
+    ///
+    /// `acceleration`: of the origin, gravity subtracted, m/s²; `u`: the rate matrix. All in body axes.
+    #[inline(always)]
+    pub fn wrench(&self, acceleration: Vector3<S>, u: &Matrix3<S>) -> Wrench<S> {
+        let (s, h) = (&self.second, self.first);
+        let us = |i: usize, j: usize| u[(i, 0)] * s[(0, j)] + u[(i, 1)] * s[(1, j)] + u[(i, 2)] * s[(2, j)];
+        // ∫ r × (U r) dm has the components (UΣ)_zy − (UΣ)_yz and so on round.
+        let spin = Vector3::new(us(2, 1) - us(1, 2), us(0, 2) - us(2, 0), us(1, 0) - us(0, 1));
+        Wrench { moment: h.cross(&acceleration) + spin, force: acceleration * self.mass + rotate(u, h) }
+    }
+
+    /// Rotational inertia about the origin, tr(Σ)·1 − Σ, kg·m².
+    pub fn rotational(&self) -> Matrix3<S> {
+        Matrix3::from_diagonal_element(self.second.trace()) - self.second
+    }
+
+    /// The same inertia in another scalar.
+    pub(crate) fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> SpatialInertia<T> {
+        SpatialInertia { mass: f(self.mass), first: self.first.map(f), second: self.second.map(f) }
+    }
+}
+
+impl<S: Scalar> core::ops::AddAssign for SpatialInertia<S> {
+    fn add_assign(&mut self, other: Self) {
+        self.mass += other.mass;
+        self.first += other.first;
+        self.second += other.second;
+    }
+}
+
+/// The upper triangle, mirrored: rounding must not make a symmetric matrix lopsided.
+fn symmetric<S: Scalar>(m: Matrix3<S>) -> Matrix3<S> {
+    Matrix3::new(m.m11, m.m12, m.m13, m.m12, m.m22, m.m23, m.m13, m.m23, m.m33)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spatial::{from_rpy, rate_matrix};
+
+    fn body() -> (f64, Matrix3<f64>, Placement<f64>) {
+        let i = Matrix3::new(0.03, 0.001, -0.002, 0.001, 0.05, 0.0005, -0.002, 0.0005, 0.055);
+        (2.0, i, Placement { rotation: from_rpy([0.4, -1.1, 2.0]), position: Vector3::new(0.15, 0.02, -0.01) })
+    }
+
+    #[test]
+    fn rotational_inertia_obeys_the_parallel_axis_theorem() {
+        let (m, i, x) = body();
+        let c = x.position;
+        let expected = x.rotation * i * x.rotation.transpose() + (Matrix3::identity() * c.dot(&c) - c * c.transpose()) * m;
+        assert!((SpatialInertia::from_central(m, i, &x).rotational() - expected).amax() < 1e-15);
+    }
+
+    #[test]
+    fn wrench_is_that_of_newton_and_euler() {
+        let (m, i, x) = body();
+        let g = SpatialInertia::from_central(m, i, &x);
+        let (w, d, a) = (Vector3::new(0.3, -1.2, 0.7), Vector3::new(2.0, 0.5, -0.9), Vector3::new(-3.0, 0.2, 9.0));
+        let (c, i) = (x.position, x.rotation * i * x.rotation.transpose());
+        let f = (a + d.cross(&c) + w.cross(&w.cross(&c))) * m;
+        let n = i * d + w.cross(&(i * w)) + c.cross(&f);
+        let got = g.wrench(a, &rate_matrix(w, d));
+        assert!((got.force - f).amax() < 1e-14 && (got.moment - n).amax() < 1e-14);
+    }
+}

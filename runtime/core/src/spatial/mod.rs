@@ -1,0 +1,19 @@
+//! Spatial algebra: 6-vectors are (angular; linear).
+//!
+//! Sources: Lynch & Park, *Modern Robotics*, 2017, ch. 3 and 8; Featherstone, *Rigid Body Dynamics Algorithms*, 2008, ch. 2.
+
+mod inertia;
+mod motion;
+mod placement;
+mod rotation;
+mod twist;
+mod wrench;
+
+pub use inertia::SpatialInertia;
+pub use motion::{Motion, rate_matrix};
+pub use placement::Placement;
+pub use rotation::{from_quaternion, from_rpy, rotate, rotate_back, sin_cos_of_written_angle, to_z_axis};
+pub use twist::Twist;
+pub use wrench::Wrench;
+
+pub use nalgebra::{Matrix3, Vector3};

@@ -1,0 +1,36 @@
+//! Wrenches.
+
+use nalgebra::Vector3;
+
+use super::Twist;
+use crate::Scalar;
+
+/// A force [m; f] on a body: moment about the frame's origin, N·m, and force, N, in axes of that frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wrench<S> {
+    /// m, N·m.
+    pub moment: Vector3<S>,
+    /// f, N.
+    pub force: Vector3<S>,
+}
+
+impl<S: Scalar> Wrench<S> {
+    /// [0; 0].
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Self { moment: Vector3::zeros(), force: Vector3::zeros() }
+    }
+
+    /// The power ω·m + v·f that the wrench gives to a body moving with `twist`, W. Both in the same frame.
+    pub fn power(&self, twist: &Twist<S>) -> S {
+        twist.angular.dot(&self.moment) + twist.linear.dot(&self.force)
+    }
+}
+
+impl<S: Scalar> core::ops::AddAssign for Wrench<S> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        self.moment += other.moment;
+        self.force += other.force;
+    }
+}
