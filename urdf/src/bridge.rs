@@ -1,0 +1,131 @@
+//! From `urdf-rs`'s robot to a [`Description`], and a comparison with what this crate found itself.
+
+use articulated_core::description::{Description, Inertial, Joint, JointDynamics, JointKind, Limit, Link, Mimic, Origin};
+use urdf_rs::{JointType, Pose, Robot};
+
+use crate::draft::Draft;
+use crate::log::{Log, Place};
+use crate::plain;
+use crate::problem::Kind;
+use crate::tree::Tree;
+
+/// The robot as `urdf-rs` reads it from the plain document. An internal error, if it differs from the draft.
+pub(crate) fn describe(draft: &Draft, tree: &Tree, leaders: &[Option<usize>], log: &mut Log) -> Option<Description> {
+    let expected = described(draft, tree, leaders)?;
+    let robot = match urdf_rs::read_from_string(&plain::document(draft, tree, leaders)) {
+        Ok(robot) => robot,
+        Err(error) => return internal(format!("an error of urdf-rs: {error}"), log),
+    };
+    match read_back(&robot, draft) {
+        Some(description) if description == expected => Some(description),
+        Some(_) => internal("another robot read by urdf-rs".to_owned(), log),
+        None => internal("a robot of another shape read by urdf-rs".to_owned(), log),
+    }
+}
+
+fn internal(found: String, log: &mut Log) -> Option<Description> {
+    let expected = "two readers that agree; this is a mistake of articulated-urdf: please report it";
+    log.error(&Place::DOCUMENT, Kind::Internal, found, expected);
+    None
+}
+
+/// The description that the draft amounts to.
+fn described(draft: &Draft, tree: &Tree, leaders: &[Option<usize>]) -> Option<Description> {
+    let links = draft.links.iter().map(|link| Some(Link { name: link.name.clone()?, inertial: link.inertial }));
+    let joints = draft.joints.iter().enumerate().map(|(i, joint)| {
+        let mimic = joint.mimic.as_ref().zip(leaders[i]).map(|(mimic, leader)| Mimic {
+            joint: leader,
+            multiplier: mimic.multiplier.unwrap_or(1.0),
+            offset: mimic.offset.unwrap_or(0.0),
+        });
+        Some(Joint {
+            name: joint.name.clone()?,
+            kind: joint.kind?,
+            parent: tree.parent[i],
+            child: tree.child[i],
+            origin: joint.origin,
+            axis: joint.axis,
+            mimic,
+            limit: joint.limit,
+            dynamics: joint.dynamics,
+        })
+    });
+    Some(Description { name: draft.name.clone(), links: links.collect::<Option<_>>()?, joints: joints.collect::<Option<_>>()? })
+}
+
+/// The names are the draft's: the plain document has indices in their place.
+fn read_back(robot: &Robot, draft: &Draft) -> Option<Description> {
+    if robot.links.len() != draft.links.len() || robot.joints.len() != draft.joints.len() {
+        return None;
+    }
+    let mut description = Description { name: draft.name.clone(), ..Description::default() };
+    for (i, link) in robot.links.iter().enumerate() {
+        description.links.push(read_link(link, i, draft)?);
+    }
+    for (i, joint) in robot.joints.iter().enumerate() {
+        description.joints.push(read_joint(joint, i, draft)?);
+    }
+    Some(description)
+}
+
+fn read_link(link: &urdf_rs::Link, index: usize, draft: &Draft) -> Option<Link> {
+    let found = draft.links.get(read_index(&link.name)?)?;
+    let name = found.name.clone()?;
+    // urdf-rs does not tell a missing inertial from zeros.
+    let inertial = found.inertial.is_some().then(|| read_inertial(&link.inertial));
+    (read_index(&link.name)? == index).then_some(Link { name, inertial })
+}
+
+fn read_joint(joint: &urdf_rs::Joint, index: usize, draft: &Draft) -> Option<Joint> {
+    let found = draft.joints.get(read_index(&joint.name)?)?;
+    let name = found.name.clone()?;
+    let mimic = match &joint.mimic {
+        Some(mimic) => Some(read_mimic(mimic)?),
+        None => None,
+    };
+    (read_index(&joint.name)? == index).then_some(Joint {
+        name,
+        kind: read_kind(&joint.joint_type)?,
+        parent: read_index(&joint.parent.link)?,
+        child: read_index(&joint.child.link)?,
+        origin: read_origin(&joint.origin),
+        axis: *joint.axis.xyz,
+        mimic,
+        // Nor a missing limit from zeros.
+        limit: found.limit.is_some().then(|| read_limit(&joint.limit)),
+        dynamics: joint.dynamics.as_ref().map(|d| JointDynamics { damping: d.damping, friction: d.friction }),
+    })
+}
+
+fn read_index(name: &str) -> Option<usize> {
+    name.parse().ok()
+}
+
+fn read_kind(kind: &JointType) -> Option<JointKind> {
+    match kind {
+        JointType::Revolute => Some(JointKind::Revolute),
+        JointType::Continuous => Some(JointKind::Continuous),
+        JointType::Prismatic => Some(JointKind::Prismatic),
+        JointType::Fixed => Some(JointKind::Fixed),
+        JointType::Floating => Some(JointKind::Floating),
+        JointType::Planar => Some(JointKind::Planar),
+        JointType::Spherical => None,
+    }
+}
+
+fn read_origin(pose: &Pose) -> Origin {
+    Origin { xyz: *pose.xyz, rpy: *pose.rpy }
+}
+
+fn read_inertial(inertial: &urdf_rs::Inertial) -> Inertial {
+    let i = &inertial.inertia;
+    Inertial { origin: read_origin(&inertial.origin), mass: inertial.mass.value, inertia: [i.ixx, i.ixy, i.ixz, i.iyy, i.iyz, i.izz] }
+}
+
+fn read_limit(limit: &urdf_rs::JointLimit) -> Limit {
+    Limit { lower: limit.lower, upper: limit.upper, effort: limit.effort, velocity: limit.velocity }
+}
+
+fn read_mimic(mimic: &urdf_rs::Mimic) -> Option<Mimic> {
+    Some(Mimic { joint: read_index(&mimic.joint)?, multiplier: mimic.multiplier.unwrap_or(1.0), offset: mimic.offset.unwrap_or(0.0) })
+}

@@ -1,0 +1,75 @@
+//! From bytes to an XML document whose root is `<robot>`.
+
+use roxmltree::{Document, Error};
+
+use crate::element::Tag;
+use crate::lines::{Lines, line_of};
+use crate::log::{Log, Place};
+use crate::markup;
+use crate::problem::{Kind, Subject, quote};
+
+/// Larger files are refused: a robot of 100 000 links stays well below.
+const MOST_BYTES: usize = 64 << 20;
+
+/// The text of the file, prepared for a strict XML reader; see [`markup::prepare`]. Lines are where they were.
+pub(crate) fn text(bytes: &[u8], log: &mut Log) -> Option<String> {
+    if bytes.len() > MOST_BYTES {
+        let found = format!("{} bytes", bytes.len());
+        log.error(&Place::DOCUMENT, Kind::TooLarge, found, format!("at most {MOST_BYTES} bytes"));
+        return None;
+    }
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let text = utf8(bytes, log)?;
+    match markup::prepare(text) {
+        Ok(text) => Some(text),
+        Err(fault) => {
+            let place = Place { line: Some(line_of(bytes, fault.position)), ..Place::DOCUMENT };
+            log.error(&place, fault.kind, fault.found, fault.expected);
+            None
+        }
+    }
+}
+
+fn utf8<'a>(bytes: &'a [u8], log: &mut Log) -> Option<&'a str> {
+    let fault = match std::str::from_utf8(bytes) {
+        Ok(text) => return Some(text),
+        Err(fault) => fault.valid_up_to(),
+    };
+    let found = match bytes {
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "the byte order mark of UTF-16".to_owned(),
+        _ => format!("byte 0x{:02x}, which is not UTF-8", bytes.get(fault).copied().unwrap_or_default()),
+    };
+    let place = Place { line: Some(line_of(bytes, fault)), ..Place::DOCUMENT };
+    log.error(&place, Kind::NotUtf8, found, "a file in the encoding UTF-8");
+    None
+}
+
+/// The XML document.
+pub(crate) fn parse<'a>(text: &'a str, lines: &Lines, log: &mut Log) -> Option<Document<'a>> {
+    let fault = match Document::parse(text) {
+        Ok(document) => return Some(document),
+        Err(fault) => fault,
+    };
+    let place = Place { line: Some(line_of_fault(&fault, lines)), field: "XML", ..Place::DOCUMENT };
+    log.error(&place, Kind::Xml, markup::as_written(&fault.to_string()), "a well-formed XML document");
+    None
+}
+
+fn line_of_fault(fault: &Error, lines: &Lines) -> u32 {
+    match fault {
+        Error::UnclosedRootNode | Error::UnexpectedEndOfStream | Error::NoRootNode => lines.last(),
+        _ => fault.pos().row,
+    }
+}
+
+/// The root element, if it is `<robot>`.
+pub(crate) fn robot<'a>(document: &'a Document<'a>, lines: &'a Lines, log: &mut Log) -> Option<Tag<'a>> {
+    let root = Tag::new(document.root_element(), lines, &Subject::Document);
+    if root.is("robot") {
+        return Some(root);
+    }
+    let place = root.place("");
+    let found = format!("the root element {}", quote(&root.name()));
+    log.error(&place, Kind::NotARobot, found, "the root element <robot>");
+    None
+}

@@ -1,0 +1,116 @@
+//! A tag of the document with its line and what it belongs to.
+
+use roxmltree::{Attribute, Node};
+
+use crate::lines::Lines;
+use crate::log::{Log, Place};
+use crate::markup;
+use crate::problem::{Kind, Subject};
+
+#[derive(Clone, Copy)]
+pub(crate) struct Tag<'a> {
+    node: Node<'a, 'a>,
+    lines: &'a Lines,
+    subject: &'a Subject,
+}
+
+impl<'a> Tag<'a> {
+    pub(crate) fn new(node: Node<'a, 'a>, lines: &'a Lines, subject: &'a Subject) -> Self {
+        Self { node, lines, subject }
+    }
+
+    /// The same tag as part of a link or joint.
+    pub(crate) fn of<'b>(&self, subject: &'b Subject) -> Tag<'b>
+    where
+        'a: 'b,
+    {
+        Tag { node: self.node, lines: self.lines, subject }
+    }
+
+    pub(crate) fn subject(&self) -> &'a Subject {
+        self.subject
+    }
+
+    pub(crate) fn is(&self, name: &str) -> bool {
+        self.node.tag_name().name() == name
+    }
+
+    /// The tag's name as the file writes it.
+    pub(crate) fn name(&self) -> String {
+        markup::as_written(self.node.tag_name().name())
+    }
+
+    pub(crate) fn line(&self) -> u32 {
+        self.lines.at(self.node.range().start)
+    }
+
+    pub(crate) fn children(&self) -> impl Iterator<Item = Tag<'a>> + use<'a> {
+        let Tag { lines, subject, node } = *self;
+        node.children().filter(Node::is_element).map(move |node| Tag { node, lines, subject })
+    }
+
+    /// This tag and all inside it.
+    pub(crate) fn descendants(&self) -> impl Iterator<Item = Tag<'a>> + use<'a> {
+        let Tag { lines, subject, node } = *self;
+        node.descendants().filter(Node::is_element).map(move |node| Tag { node, lines, subject })
+    }
+
+    pub(crate) fn attributes(&self) -> impl Iterator<Item = Attribute<'a, 'a>> + use<'a> {
+        self.node.attributes()
+    }
+
+    /// An attribute's value and line.
+    pub(crate) fn attribute(&self, name: &str) -> Option<(&'a str, u32)> {
+        let attribute = self.attributes().find(|a| a.name() == name)?;
+        Some((attribute.value(), self.lines.at(attribute.range().start)))
+    }
+
+    pub(crate) fn place<'b>(&self, field: &'b str) -> Place<'b>
+    where
+        'a: 'b,
+    {
+        Place { line: Some(self.line()), subject: self.subject, field }
+    }
+
+    /// The one tag of this name, if there is one.
+    pub(crate) fn only(&self, name: &str, log: &mut Log) -> Option<Tag<'a>> {
+        let mut all = self.children().filter(|tag| tag.is(name));
+        let first = all.next()?;
+        for again in all {
+            let found = format!("a second <{name}> (the first is in line {})", first.line());
+            log.error(&again.place(name), Kind::DuplicateTag, found, format!("one <{name}> inside <{}>", self.name()));
+        }
+        Some(first)
+    }
+
+    /// The one tag of this name, which has to be there.
+    pub(crate) fn required(&self, name: &str, log: &mut Log) -> Option<Tag<'a>> {
+        let tag = self.only(name, log);
+        if tag.is_none() {
+            let expected = format!("<{name}> inside <{}>", self.name());
+            log.error(&self.place(name), Kind::MissingTag, "none", expected);
+        }
+        tag
+    }
+
+    /// An attribute that has to be there.
+    pub(crate) fn required_attribute(&self, name: &str, log: &mut Log) -> Option<(&'a str, u32)> {
+        let value = self.attribute(name);
+        if value.is_none() {
+            let expected = format!("the attribute {name} in <{}>", self.name());
+            log.error(&self.place(name), Kind::MissingAttribute, "none", expected);
+        }
+        value
+    }
+
+    /// An attribute that names something: there, and not empty.
+    pub(crate) fn required_name(&self, attribute: &str, log: &mut Log) -> Option<String> {
+        let (name, line) = self.required_attribute(attribute, log)?;
+        if name.trim().is_empty() {
+            let place = Place { line: Some(line), ..self.place(attribute) };
+            log.error(&place, Kind::EmptyName, "an empty name", "a name");
+            return None;
+        }
+        Some(name.to_owned())
+    }
+}

@@ -1,0 +1,69 @@
+//! The tag `<origin>`.
+
+use std::f64::consts::FRAC_PI_2;
+
+use articulated_core::description::Origin;
+
+use crate::element::Tag;
+use crate::log::Log;
+use crate::number::attribute_list;
+use crate::problem::{Kind, quote};
+use crate::unused;
+
+/// The `<origin>` inside a tag; no tag or attribute stands for zero.
+pub(crate) fn origin(parent: &Tag<'_>, snap: Option<f64>, log: &mut Log) -> Origin {
+    let Some(tag) = parent.only("origin", log) else {
+        return Origin::default();
+    };
+    refuse_quaternion(&tag, log);
+    unused::rest(&tag, &[], &["xyz", "rpy", "quat_xyzw"], log);
+    let xyz = attribute_list(&tag, "xyz", log).unwrap_or_default();
+    let rpy = attribute_list(&tag, "rpy", log).unwrap_or_default();
+    Origin { xyz, rpy: snapped(rpy, snap, &tag, log) }
+}
+
+/// Left out, it would be another robot.
+fn refuse_quaternion(tag: &Tag<'_>, log: &mut Log) {
+    if let Some((value, _)) = tag.attribute("quat_xyzw") {
+        let place = tag.place("origin quat_xyzw");
+        log.error(&place, Kind::Unsupported, format!("a quaternion, {}", quote(value)), "the rotation as rpy");
+    }
+}
+
+fn snapped(rpy: [f64; 3], snap: Option<f64>, tag: &Tag<'_>, log: &mut Log) -> [f64; 3] {
+    let Some(tolerance) = snap else {
+        return rpy;
+    };
+    rpy.map(|angle| match right_angle(angle, tolerance) {
+        Some((quarters, exact)) => {
+            log.snapped(&tag.place("origin rpy"), angle, &format!("{quarters}·π/2"));
+            exact
+        }
+        None => angle,
+    })
+}
+
+/// The multiple of π/2 (and its double) that is within `tolerance` of `angle` and is not `angle` itself.
+fn right_angle(angle: f64, tolerance: f64) -> Option<(f64, f64)> {
+    let quarters = (angle / FRAC_PI_2).round();
+    let exact = quarters * FRAC_PI_2;
+    let near = (angle - exact).abs() <= tolerance && quarters.abs() <= 1e3;
+    (near && exact != angle).then_some((quarters, exact))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_is_within_the_tolerance_snaps() {
+        assert_eq!(right_angle(1.5708, 1e-5), Some((1.0, FRAC_PI_2)));
+        assert_eq!(right_angle(-3.1416, 1e-5), Some((-2.0, -2.0 * FRAC_PI_2)));
+        assert_eq!(right_angle(1e-7, 1e-5), Some((0.0, 0.0)));
+        assert_eq!(right_angle(1.5708, 1e-6), None);
+        assert_eq!(right_angle(FRAC_PI_2, 1e-5), None);
+        assert_eq!(right_angle(0.0, 1e-5), None);
+        assert_eq!(right_angle(1.5708, f64::NAN), None);
+        assert_eq!(right_angle(1e300, 1.0), None);
+    }
+}

@@ -1,0 +1,116 @@
+//! A strict URDF reader: the bytes of a file become a [`Description`], or every mistake of the file at once.
+//!
+//! ```
+//! use articulated_urdf::{Options, read};
+//!
+//! let bytes = br#"<robot name="door">
+//!   <link name="frame"/>
+//!   <link name="leaf"><inertial><mass value="8"/>
+//!     <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="0.2"/></inertial></link>
+//!   <joint name="hinge" type="continuous"><parent link="frame"/><child link="leaf"/><axis xyz="0 0 1"/></joint>
+//! </robot>"#;
+//! let reading = read(bytes, &Options::default()).unwrap();
+//! assert_eq!(reading.description.joints[0].axis, [0.0, 0.0, 1.0]);
+//!
+//! let problems = read(b"<robot name='nothing'/>", &Options::default()).unwrap_err();
+//! assert!(problems.to_string().contains("link"));
+//! ```
+//!
+//! The way of a file: document (bytes → XML) → links and joints (checked numbers, with their lines) → tree
+//! (names, rings, roots, mimics) → bridge (a plain document that `urdf-rs` reads, compared with what was found here) →
+//! [`Description`]. Other files are never opened, and no input makes the reader panic, hang or overflow its stack.
+
+mod base;
+mod bridge;
+mod document;
+mod draft;
+mod eigen;
+mod element;
+mod frame;
+mod inertia;
+mod joints;
+mod limits;
+mod lines;
+mod links;
+mod log;
+mod markup;
+mod mimic;
+mod number;
+mod plain;
+mod problem;
+mod robot;
+mod suggest;
+mod tree;
+mod unused;
+mod xacro;
+
+use articulated_core::description::{Base, Description};
+
+use log::Log;
+pub use problem::{Kind, Problem, Problems, Subject};
+pub use unused::Unused;
+
+/// How to read.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// The name of the file in messages. It is not opened.
+    pub file: String,
+    /// Whether the root link is the base or moves freely; decides only what is reported as unused.
+    pub base: Base,
+    /// Makes an inertia that is not positive semi-definite a warning instead of an error.
+    pub allow_unphysical_inertia: bool,
+    /// Replaces an angle of an `<origin>` that is within this many rad of a multiple of π/2 by that multiple.
+    /// `None` leaves every number as written.
+    pub snap_angles: Option<f64>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { file: "<urdf>".into(), base: Base::Fixed, allow_unphysical_inertia: false, snap_angles: None }
+    }
+}
+
+/// What was read, and what there is to say about it.
+#[derive(Clone, Debug)]
+pub struct Reading {
+    /// The robot. A bound that a `<limit>` leaves open is infinite: `lower` and `upper` of a continuous joint, `effort`
+    /// and `velocity` that are not given. `axis` is (1, 0, 0) and `limit` and `dynamics` are `None` for joints that have no use for them.
+    pub description: Description,
+    /// What looks wrong; the values were used as written.
+    pub warnings: Vec<Problem>,
+    /// What the file says and the description leaves out, or what only some scenes use.
+    pub unused: Vec<Unused>,
+    /// Every angle that was replaced because of [`Options::snap_angles`].
+    pub snapped: Vec<Problem>,
+}
+
+/// Description of the robot in `bytes`. Lengths in m, masses in kg, angles in rad, as URDF has them. Exact: every number
+/// is the double nearest to its spelling. Errors: all of the file's at once, at most 1000.
+pub fn read(bytes: &[u8], options: &Options) -> Result<Reading, Problems> {
+    let mut log = Log::new(options.file.clone());
+    match read_into(bytes, options, &mut log) {
+        Some(description) if log.errors.is_empty() => Ok(log.reading(description)),
+        _ => Err(log.problems()),
+    }
+}
+
+fn read_into(bytes: &[u8], options: &Options, log: &mut Log) -> Option<Description> {
+    let text = document::text(bytes, log)?;
+    let lines = lines::Lines::of(&text);
+    let document = document::parse(&text, &lines, log)?;
+    let robot = document::robot(&document, &lines, log)?;
+    if xacro::is_left_over(&robot, log) {
+        return None;
+    }
+    let draft = robot::draft(&robot, options, log);
+    let tree = tree::connect(&draft, log);
+    let leaders = mimic::leaders(&draft.joints, log);
+    if !log.errors.is_empty() {
+        return None;
+    }
+    let tree = tree?;
+    if options.base == Base::Fixed {
+        base::report(&draft, &tree, log);
+    }
+    bridge::describe(&draft, &tree, &leaders, log)
+}

@@ -1,0 +1,97 @@
+//! The tags `<limit>` and `<dynamics>` of a joint with one coordinate.
+
+use articulated_core::description::{JointDynamics, JointKind, Limit};
+
+use crate::element::Tag;
+use crate::log::Log;
+use crate::number::attribute;
+use crate::problem::Kind;
+use crate::unused;
+
+const BOUNDS: [&str; 2] = ["lower", "upper"];
+
+/// What the joint's `<limit>` says. `open`: bounds that are left out are infinite (URDF 1.2), not zero.
+pub(crate) fn limit(joint: &Tag<'_>, kind: JointKind, open: bool, log: &mut Log) -> Option<Limit> {
+    let Some(tag) = joint.only("limit", log) else {
+        report_missing(joint, kind, log);
+        return None;
+    };
+    unused::rest(&tag, &[], &["lower", "upper", "effort", "velocity"], log);
+    let (lower, upper) = match kind {
+        JointKind::Continuous => without_bounds(&tag, log),
+        _ => bounds(&tag, open, log),
+    };
+    let effort = positive(&tag, "effort", open, log);
+    let velocity = positive(&tag, "velocity", open, log);
+    Some(Limit { lower, upper, effort, velocity })
+}
+
+fn report_missing(joint: &Tag<'_>, kind: JointKind, log: &mut Log) {
+    if kind != JointKind::Continuous {
+        let expected = "<limit> for a revolute or prismatic joint; taken as without limits";
+        log.warning(&joint.place("limit"), Kind::LimitMissing, "none", expected);
+    }
+}
+
+fn without_bounds(tag: &Tag<'_>, log: &mut Log) -> (f64, f64) {
+    for name in BOUNDS.into_iter().filter(|name| tag.attribute(name).is_some()) {
+        log.unused(tag, format!("limit {name}"), "a continuous joint has no bounds");
+    }
+    (f64::NEG_INFINITY, f64::INFINITY)
+}
+
+fn bounds(tag: &Tag<'_>, open: bool, log: &mut Log) -> (f64, f64) {
+    let [lower, upper] = BOUNDS.map(|name| attribute(tag, name, log));
+    let absent = BOUNDS.map(|name| tag.attribute(name).is_none());
+    if absent == [true, true] && !open {
+        let expected = "lower and upper; taken as zero, as the format has it";
+        log.warning(&tag.place("limit"), Kind::LimitIncomplete, "no bounds", expected);
+    }
+    let (lowest, highest) = if open { (f64::NEG_INFINITY, f64::INFINITY) } else { (0.0, 0.0) };
+    let (lower, upper) = (lower.unwrap_or(lowest), upper.unwrap_or(highest));
+    if lower > upper {
+        let found = format!("lower {lower} above upper {upper}");
+        log.warning(&tag.place("limit"), Kind::LimitOrder, found, "lower below upper; used as written");
+    }
+    (lower, upper)
+}
+
+fn positive(tag: &Tag<'_>, name: &str, open: bool, log: &mut Log) -> f64 {
+    let field = format!("limit {name}");
+    match attribute(tag, name, log) {
+        Some(value) => {
+            report_negative(tag, &field, value, log);
+            value
+        }
+        None if tag.attribute(name).is_none() && !open => {
+            log.warning(&tag.place(&field), Kind::LimitIncomplete, "none", "a value; taken as without limit");
+            f64::INFINITY
+        }
+        None => f64::INFINITY,
+    }
+}
+
+fn report_negative(tag: &Tag<'_>, field: &str, value: f64, log: &mut Log) {
+    if value < 0.0 {
+        let expected = "zero or more; used as written";
+        log.warning(&tag.place(field), Kind::Negative, format!("a negative value, {value}"), expected);
+    }
+}
+
+/// What the joint's `<dynamics>` says; what is left out is zero.
+pub(crate) fn dynamics(joint: &Tag<'_>, log: &mut Log) -> Option<JointDynamics> {
+    let tag = joint.only("dynamics", log)?;
+    unused::rest(&tag, &[], &["damping", "friction"], log);
+    let [damping, friction] = ["damping", "friction"].map(|name| coefficient(&tag, name, log));
+    Some(JointDynamics { damping, friction })
+}
+
+fn coefficient(tag: &Tag<'_>, name: &str, log: &mut Log) -> f64 {
+    let field = format!("dynamics {name}");
+    if tag.attribute(name).is_some() {
+        log.unused(tag, field.clone(), "kept for scenes that turn on damping or friction; no part of the rigid-body dynamics");
+    }
+    let value = attribute(tag, name, log).unwrap_or(0.0);
+    report_negative(tag, &field, value, log);
+    value
+}

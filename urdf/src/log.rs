@@ -1,0 +1,106 @@
+//! Where everything that is said about a file is gathered.
+
+use articulated_core::description::Description;
+
+use crate::element::Tag;
+use crate::problem::{Kind, Problem, Problems, Subject};
+use crate::{Reading, Unused};
+
+/// More than these of one sort are counted, not listed.
+const MOST: usize = 1000;
+
+/// Where in the file something stands.
+#[derive(Clone, Copy)]
+pub(crate) struct Place<'a> {
+    pub(crate) line: Option<u32>,
+    pub(crate) subject: &'a Subject,
+    pub(crate) field: &'a str,
+}
+
+impl Place<'_> {
+    /// The whole document.
+    pub(crate) const DOCUMENT: Place<'static> = Place { line: None, subject: &Subject::Document, field: "" };
+}
+
+pub(crate) struct Log {
+    file: String,
+    pub(crate) errors: Vec<Problem>,
+    warnings: Vec<Problem>,
+    unused: Vec<Unused>,
+    snapped: Vec<Problem>,
+    more_errors: usize,
+    more_warnings: usize,
+}
+
+impl Log {
+    pub(crate) fn new(file: String) -> Self {
+        Self { file, errors: Vec::new(), warnings: Vec::new(), unused: Vec::new(), snapped: Vec::new(), more_errors: 0, more_warnings: 0 }
+    }
+
+    fn problem(&self, place: &Place<'_>, kind: Kind, found: String, expected: String) -> Problem {
+        Problem {
+            file: self.file.clone(),
+            line: place.line,
+            subject: place.subject.clone(),
+            kind,
+            field: place.field.to_owned(),
+            found,
+            expected,
+        }
+    }
+
+    pub(crate) fn error(&mut self, place: &Place<'_>, kind: Kind, found: impl Into<String>, expected: impl Into<String>) {
+        if self.errors.len() < MOST {
+            self.errors.push(self.problem(place, kind, found.into(), expected.into()));
+        } else {
+            self.more_errors += 1;
+        }
+    }
+
+    pub(crate) fn warning(&mut self, place: &Place<'_>, kind: Kind, found: impl Into<String>, expected: impl Into<String>) {
+        if self.warnings.len() < MOST {
+            self.warnings.push(self.problem(place, kind, found.into(), expected.into()));
+        } else {
+            self.more_warnings += 1;
+        }
+    }
+
+    pub(crate) fn snapped(&mut self, place: &Place<'_>, found: f64, replaced_by: &str) {
+        let problem = self.problem(place, Kind::Snapped, format!("{found}"), format!("{replaced_by}, which was used"));
+        self.snapped.push(problem);
+    }
+
+    pub(crate) fn unused(&mut self, tag: &Tag<'_>, what: String, why: impl Into<String>) {
+        self.unused_at(Some(tag.line()), tag.subject(), what, why);
+    }
+
+    pub(crate) fn unused_at(&mut self, line: Option<u32>, subject: &Subject, tag: String, why: impl Into<String>) {
+        self.unused.push(Unused { line, subject: subject.clone(), tag, why: why.into() });
+    }
+
+    fn count_the_rest(&mut self) {
+        for (list, more) in [(&mut self.errors, self.more_errors), (&mut self.warnings, self.more_warnings)] {
+            if more > 0 {
+                list.push(Problem {
+                    file: self.file.clone(),
+                    line: None,
+                    subject: Subject::Document,
+                    kind: Kind::More,
+                    field: String::new(),
+                    found: format!("{more} more that are not listed"),
+                    expected: String::new(),
+                });
+            }
+        }
+    }
+
+    pub(crate) fn reading(mut self, description: Description) -> Reading {
+        self.count_the_rest();
+        Reading { description, warnings: self.warnings, unused: self.unused, snapped: self.snapped }
+    }
+
+    pub(crate) fn problems(mut self) -> Problems {
+        self.count_the_rest();
+        Problems { errors: self.errors, warnings: self.warnings }
+    }
+}

@@ -1,0 +1,95 @@
+//! Which joint follows which.
+
+use std::collections::HashMap;
+
+use crate::draft::{DraftJoint, DraftMimic, has_one_coordinate};
+use crate::log::{Log, Place};
+use crate::problem::{Kind, quote};
+use crate::suggest::Suggester;
+use crate::tree::List;
+
+/// For each joint, the joint that it follows.
+pub(crate) fn leaders(joints: &[DraftJoint], log: &mut Log) -> Vec<Option<usize>> {
+    let mut index = HashMap::new();
+    for (i, joint) in joints.iter().enumerate() {
+        joint.name.as_deref().into_iter().for_each(|name| *index.entry(name).or_insert(i) = i);
+    }
+    let mut suggester = Suggester::new();
+    let mut leaders = Vec::with_capacity(joints.len());
+    for follower in joints {
+        let leader = follower.mimic.as_ref().and_then(|mimic| {
+            report_follower(follower, mimic, log);
+            let leader = index.get(mimic.leader.name.as_str()).copied();
+            match leader {
+                Some(leader) => report_leader(follower, mimic, &joints[leader], log),
+                None => report_unknown(follower, mimic, joints, &mut suggester, log),
+            }
+            leader
+        });
+        leaders.push(leader);
+    }
+    report_rings(joints, &leaders, log);
+    leaders
+}
+
+fn error(follower: &DraftJoint, mimic: &DraftMimic, kind: Kind, found: String, expected: &str, log: &mut Log) {
+    let subject = follower.subject();
+    let place = Place { line: Some(mimic.leader.line), subject: &subject, field: "mimic" };
+    log.error(&place, kind, found, expected);
+}
+
+fn report_follower(follower: &DraftJoint, mimic: &DraftMimic, log: &mut Log) {
+    if follower.kind.is_some_and(|kind| !has_one_coordinate(kind)) {
+        let found = "a follower that has not exactly one coordinate".to_owned();
+        let expected = "a revolute, continuous or prismatic joint";
+        error(follower, mimic, Kind::FollowerCannotFollow, found, expected, log);
+    }
+}
+
+fn report_leader(follower: &DraftJoint, mimic: &DraftMimic, leader: &DraftJoint, log: &mut Log) {
+    if leader.kind.is_some_and(|kind| !has_one_coordinate(kind)) {
+        let found = format!("{}, which has not exactly one coordinate", quote(&mimic.leader.name));
+        let expected = "a revolute, continuous or prismatic joint to follow";
+        error(follower, mimic, Kind::LeaderCannotLead, found, expected, log);
+    }
+}
+
+fn report_unknown(follower: &DraftJoint, mimic: &DraftMimic, joints: &[DraftJoint], suggester: &mut Suggester, log: &mut Log) {
+    let name = &mimic.leader.name;
+    let hint = suggester.hint(name, joints.iter().filter_map(|j| j.name.as_deref()));
+    let found = format!("{}, which is not a joint of this file", quote(name));
+    error(follower, mimic, Kind::UnknownLeader, found, &format!("the name of a joint{hint}"), log);
+}
+
+/// Walks from follower to leader; a walk that meets itself is a ring.
+fn report_rings(joints: &[DraftJoint], leaders: &[Option<usize>], log: &mut Log) {
+    let mut walk_of = vec![usize::MAX; joints.len()];
+    for start in 0..joints.len() {
+        let mut next = Some(start);
+        while let Some(here) = next.filter(|here| walk_of[*here] == usize::MAX) {
+            walk_of[here] = start;
+            next = leaders[here];
+        }
+        if let Some(here) = next.filter(|here| walk_of[*here] == start) {
+            report_ring(joints, leaders, here, log);
+        }
+    }
+}
+
+fn report_ring(joints: &[DraftJoint], leaders: &[Option<usize>], start: usize, log: &mut Log) {
+    let Some(mimic) = &joints[start].mimic else { return };
+    let mut names = List::default();
+    let mut here = start;
+    while let Some(leader) = leaders[here] {
+        names.push(&joints[here].subject());
+        here = leader;
+        if here == start {
+            break;
+        }
+    }
+    let found = match leaders[start] == Some(start) {
+        true => "a joint that mimics itself".to_owned(),
+        false => format!("a cycle of joints that mimic each other: {}", names.text()),
+    };
+    error(&joints[start], mimic, Kind::MimicRing, found, "a joint to follow that moves on its own", log);
+}

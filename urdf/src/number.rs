@@ -1,0 +1,154 @@
+//! Decimal numbers, and nothing else.
+//!
+//! `[+-] digits [. digits] [e [+-] digits]`, with digits before or after the point. No `nan`, `inf`, hexadecimal digits,
+//! decimal commas or letters behind; the value is the double nearest to the spelling.
+
+use crate::element::Tag;
+use crate::log::{Log, Place};
+use crate::problem::{Kind, quote};
+
+/// Why a word is not a number that can be used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Fault {
+    NotANumber,
+    NotFinite,
+    Vanishes,
+}
+
+/// The number that a word without blanks spells.
+pub(crate) fn parse(word: &str) -> Result<f64, Fault> {
+    if !is_decimal(word) {
+        return Err(if names_infinity(word) { Fault::NotFinite } else { Fault::NotANumber });
+    }
+    let value: f64 = word.parse().map_err(|_| Fault::NotANumber)?;
+    match value {
+        v if !v.is_finite() => Err(Fault::NotFinite),
+        v if v == 0.0 && !spells_zero(word) => Err(Fault::Vanishes),
+        v => Ok(v),
+    }
+}
+
+fn is_decimal(word: &str) -> bool {
+    let word = word.strip_prefix(['+', '-']).unwrap_or(word);
+    let (mantissa, exponent) = match word.split_once(['e', 'E']) {
+        Some((mantissa, exponent)) => (mantissa, Some(exponent)),
+        None => (word, None),
+    };
+    let (whole, part) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    are_digits(whole) && are_digits(part) && !(whole.is_empty() && part.is_empty()) && exponent.is_none_or(is_integer)
+}
+
+fn are_digits(word: &str) -> bool {
+    word.bytes().all(|b| b.is_ascii_digit())
+}
+
+fn is_integer(word: &str) -> bool {
+    let digits = word.strip_prefix(['+', '-']).unwrap_or(word);
+    !digits.is_empty() && are_digits(digits)
+}
+
+fn names_infinity(word: &str) -> bool {
+    let word = word.strip_prefix(['+', '-']).unwrap_or(word);
+    ["nan", "inf", "infinity"].iter().any(|name| word.eq_ignore_ascii_case(name))
+}
+
+fn spells_zero(word: &str) -> bool {
+    let mantissa = word.split(['e', 'E']).next().unwrap_or_default();
+    !mantissa.bytes().any(|b| (b'1'..=b'9').contains(&b))
+}
+
+/// The number in an attribute, if the attribute is there and right.
+pub(crate) fn attribute(tag: &Tag<'_>, name: &str, log: &mut Log) -> Option<f64> {
+    attribute_list::<1>(tag, name, log).map(|[number]| number)
+}
+
+/// The `N` numbers in an attribute, if it is there and right.
+pub(crate) fn attribute_list<const N: usize>(tag: &Tag<'_>, name: &str, log: &mut Log) -> Option<[f64; N]> {
+    let (value, line) = tag.attribute(name)?;
+    let field = format!("{} {name}", tag.name());
+    let place = Place { line: Some(line), ..tag.place(&field) };
+    list(value, &place, log)
+}
+
+/// The number in an attribute that has to be there.
+pub(crate) fn required(tag: &Tag<'_>, name: &str, log: &mut Log) -> Option<f64> {
+    tag.required_attribute(name, log)?;
+    attribute(tag, name, log)
+}
+
+fn list<const N: usize>(value: &str, place: &Place<'_>, log: &mut Log) -> Option<[f64; N]> {
+    let mut numbers = [0.0; N];
+    let mut count = 0;
+    let mut good = true;
+    for word in value.split([' ', '\t', '\n', '\r']).filter(|w| !w.is_empty()) {
+        match parse(word) {
+            Ok(number) => numbers.get_mut(count).into_iter().for_each(|n| *n = number),
+            Err(fault) if good => {
+                complain(fault, word, value, place, log);
+                good = false;
+            }
+            Err(_) => {}
+        }
+        count += 1;
+    }
+    if good && count != N {
+        log.error(place, Kind::WrongCount, format!("{count} numbers in {}", quote(value)), expected_count(N));
+    }
+    (good && count == N).then_some(numbers)
+}
+
+fn expected_count(n: usize) -> String {
+    match n {
+        1 => "one number".to_owned(),
+        3 => "three numbers".to_owned(),
+        n => format!("{n} numbers"),
+    }
+}
+
+fn complain(fault: Fault, word: &str, value: &str, place: &Place<'_>, log: &mut Log) {
+    let found = match word == value {
+        true => quote(word),
+        false => format!("{} in {}", quote(word), quote(value)),
+    };
+    let (kind, expected) = match fault {
+        Fault::NotANumber => (Kind::NotANumber, "a decimal number"),
+        Fault::NotFinite => (Kind::NotFinite, "a finite number"),
+        Fault::Vanishes => (Kind::NotFinite, "a number that is not too small for double precision"),
+    };
+    log.error(place, kind, found, expected);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn legal_spellings_are_read_exactly() {
+        let spellings = [
+            ("0", 0.0),
+            ("-0", -0.0),
+            ("+.5", 0.5),
+            ("2.", 2.0),
+            ("1E-2", 0.01),
+            ("1e+02", 100.0),
+            ("-.002", -0.002),
+            ("0e-999", 0.0),
+            ("4.9e-324", 4.9e-324),
+            ("0.1000000000000000055511151231257827", 0.1),
+        ];
+        for (word, value) in spellings {
+            assert_eq!(parse(word).map(f64::to_bits), Ok(f64::to_bits(value)), "{word}");
+        }
+    }
+
+    #[test]
+    fn nothing_else_is_a_number() {
+        for word in ["", "+", ".", "e5", "1e", "1e+", "0x10", "0x1p3", "1,5", "1.2.3", "--1", "+-1", "1f", "１", "1_0", "1d3"] {
+            assert_eq!(parse(word), Err(Fault::NotANumber), "{word}");
+        }
+        for word in ["nan", "-NaN", "inf", "+Infinity", "1e999", "-1e400"] {
+            assert_eq!(parse(word), Err(Fault::NotFinite), "{word}");
+        }
+        assert_eq!(parse("1e-400"), Err(Fault::Vanishes));
+    }
+}

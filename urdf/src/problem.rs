@@ -1,0 +1,186 @@
+//! What is wrong: data first, then a sentence.
+
+use std::fmt;
+
+/// All that is wrong with a file.
+#[derive(Clone, Debug)]
+pub struct Problems {
+    /// Why the file was refused; never empty.
+    pub errors: Vec<Problem>,
+    /// What else looks wrong.
+    pub warnings: Vec<Problem>,
+}
+
+/// One thing that is wrong or looks wrong.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Problem {
+    /// The name of the file, as given in the options.
+    pub file: String,
+    /// The line, from 1, where one can be told.
+    pub line: Option<u32>,
+    /// Which link or joint.
+    pub subject: Subject,
+    /// What sort of mistake.
+    pub kind: Kind,
+    /// Which tag or attribute.
+    pub field: String,
+    /// What stands there.
+    pub found: String,
+    /// What would be right.
+    pub expected: String,
+}
+
+/// What a [`Problem`] is about.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Subject {
+    /// The document as a whole.
+    Document,
+    /// The link of this name.
+    Link(String),
+    /// The joint of this name.
+    Joint(String),
+}
+
+/// The sorts of mistakes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Kind {
+    /// The bytes are not UTF-8.
+    NotUtf8,
+    /// The document is larger, deeper or wider than any robot.
+    TooLarge,
+    /// Not well-formed XML.
+    Xml,
+    /// A document type declaration, where entities are defined.
+    Doctype,
+    /// Xacro has not been run.
+    Xacro,
+    /// The root element is not `<robot>`.
+    NotARobot,
+    /// A robot without links.
+    NoLinks,
+    /// A version of the format that is not known.
+    Version,
+    /// A tag that has to be there is missing.
+    MissingTag,
+    /// An attribute that has to be there is missing.
+    MissingAttribute,
+    /// A tag that may stand once stands twice.
+    DuplicateTag,
+    /// A tag or attribute that changes the robot and cannot be read.
+    Unsupported,
+    /// A name is empty.
+    EmptyName,
+    /// Two links, or two joints, of one name.
+    DuplicateName,
+    /// Not a decimal number.
+    NotANumber,
+    /// A number that is infinite, not a number, or beyond double precision.
+    NotFinite,
+    /// Too few or too many numbers.
+    WrongCount,
+    /// A type of joint that the format does not have.
+    UnknownJointType,
+    /// A joint names a link that does not exist.
+    UnknownLink,
+    /// A link is the child of several joints.
+    TwoParents,
+    /// Links that hang on each other in a ring.
+    Ring,
+    /// Several links hang on nothing.
+    SeveralRoots,
+    /// An axis without a direction.
+    ZeroAxis,
+    /// A mass below zero.
+    NegativeMass,
+    /// A principal moment of inertia below zero.
+    InertiaNotPositive,
+    /// One principal moment is greater than the other two together.
+    InertiaTriangle,
+    /// Rotational inertia without mass.
+    InertiaWithoutMass,
+    /// A joint mimics one that does not exist.
+    UnknownLeader,
+    /// A joint mimics itself, directly or by way of others.
+    MimicRing,
+    /// The joint that is followed has not exactly one coordinate.
+    LeaderCannotLead,
+    /// The joint that follows has not exactly one coordinate.
+    FollowerCannotFollow,
+    /// A revolute or prismatic joint without `<limit>`.
+    LimitMissing,
+    /// A `<limit>` without an attribute that the format asks for.
+    LimitIncomplete,
+    /// A lower bound above the upper one.
+    LimitOrder,
+    /// A bound or a coefficient below zero that has no such meaning.
+    Negative,
+    /// A tag or attribute that nobody knows, but nearly one that matters.
+    Misspelt,
+    /// Mass on what a fixed base holds.
+    UnusedInertia,
+    /// An angle was replaced by a multiple of π/2, as asked for.
+    Snapped,
+    /// More problems than are listed.
+    More,
+    /// The two readers of this crate disagree: a mistake of the crate, not of the file.
+    Internal,
+}
+
+impl fmt::Display for Problems {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let errors = self.errors.iter().map(|p| ("error", p));
+        let warnings = self.warnings.iter().map(|p| ("warning", p));
+        for (i, (level, problem)) in errors.chain(warnings).enumerate() {
+            let end = if i == 0 { "" } else { "\n" };
+            write!(f, "{end}{level}: {problem}")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Problems {}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:", self.file)?;
+        if let Some(line) = self.line {
+            write!(f, "{line}:")?;
+        }
+        if self.subject != Subject::Document {
+            write!(f, " {}:", self.subject)?;
+        }
+        if !self.field.is_empty() {
+            write!(f, " {}:", self.field)?;
+        }
+        write!(f, " found {}", self.found)?;
+        match self.expected.as_str() {
+            "" => Ok(()),
+            expected => write!(f, ", expected {expected}"),
+        }
+    }
+}
+
+impl fmt::Display for Subject {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Document => f.write_str("document"),
+            Self::Link(name) => write!(f, "link {}", quote(name)),
+            Self::Joint(name) => write!(f, "joint {}", quote(name)),
+        }
+    }
+}
+
+/// `text` in quotation marks, on one line, cut where it gets long.
+pub(crate) fn quote(text: &str) -> String {
+    const MOST: usize = 80;
+    let mut out = String::from('"');
+    for c in text.chars().take(MOST) {
+        match c {
+            c if c.is_control() => out.extend(c.escape_default()),
+            c => out.push(c),
+        }
+    }
+    out.push_str(if text.chars().nth(MOST).is_some() { "…\"" } else { "\"" });
+    out
+}

@@ -1,0 +1,193 @@
+//! Names become indices, and joints a tree. Nothing here recurses: chains may be as long as they like.
+
+use std::collections::HashMap;
+
+use crate::draft::{Draft, DraftJoint, Reference};
+use crate::log::{Log, Place};
+use crate::problem::{Kind, Subject, quote};
+use crate::suggest::Suggester;
+
+/// More names than these are counted, not listed.
+const MOST_NAMES: usize = 8;
+
+/// Which links each joint connects.
+pub(crate) struct Tree {
+    pub(crate) parent: Vec<usize>,
+    pub(crate) child: Vec<usize>,
+    pub(crate) root: usize,
+}
+
+/// The tree, if it is one; every reason why it is not, otherwise.
+pub(crate) fn connect(draft: &Draft, log: &mut Log) -> Option<Tree> {
+    let links = unique_names(draft.links.iter().map(|l| (l.name.as_deref(), l.line)), Subject::Link, log);
+    unique_names(draft.joints.iter().map(|j| (j.name.as_deref(), j.line)), Subject::Joint, log);
+    let mut ends = Ends::of(draft, &links, log);
+    ends.complete &= links.len() == draft.links.len();
+    let above = joints_above(draft, &ends, log);
+    let rings = report_rings(draft, &ends, &above, log);
+    let root = root(draft, &ends, &above, rings, log);
+    Some(Tree { parent: all(&ends.parent)?, child: all(&ends.child)?, root: root? })
+}
+
+fn all(ends: &[Option<usize>]) -> Option<Vec<usize>> {
+    ends.iter().copied().collect()
+}
+
+/// Index of each name; the first, where there are several.
+pub(crate) type Names<'a> = HashMap<&'a str, usize>;
+
+fn unique_names<'a>(names: impl Iterator<Item = (Option<&'a str>, u32)>, subject: fn(String) -> Subject, log: &mut Log) -> Names<'a> {
+    let mut index = Names::new();
+    let mut lines = Vec::new();
+    for (i, (name, line)) in names.enumerate() {
+        lines.push(line);
+        let Some(name) = name else { continue };
+        let first = *index.entry(name).or_insert(i);
+        if first != i {
+            let subject = subject(name.to_owned());
+            let place = Place { line: Some(line), subject: &subject, field: "name" };
+            let found = format!("a duplicate: line {} already has the name {}", lines[first], quote(name));
+            log.error(&place, Kind::DuplicateName, found, "a name of its own");
+        }
+    }
+    index
+}
+
+/// The links of each joint, where they exist.
+struct Ends {
+    parent: Vec<Option<usize>>,
+    child: Vec<Option<usize>>,
+    /// Whether every name stands for one link.
+    complete: bool,
+}
+
+impl Ends {
+    fn of(draft: &Draft, links: &Names<'_>, log: &mut Log) -> Self {
+        let mut look = LookUp { draft, links, suggester: Suggester::new() };
+        let mut ends = Self { parent: Vec::new(), child: Vec::new(), complete: true };
+        for joint in &draft.joints {
+            ends.parent.push(look.up(joint, joint.parent.as_ref(), "parent", log));
+            ends.child.push(look.up(joint, joint.child.as_ref(), "child", log));
+        }
+        ends.complete = ends.parent.iter().chain(&ends.child).all(Option::is_some);
+        ends
+    }
+}
+
+struct LookUp<'a> {
+    draft: &'a Draft,
+    links: &'a Names<'a>,
+    suggester: Suggester,
+}
+
+impl LookUp<'_> {
+    fn up(&mut self, joint: &DraftJoint, end: Option<&Reference>, field: &str, log: &mut Log) -> Option<usize> {
+        let Reference { name, line } = end?;
+        let index = self.links.get(name.as_str()).copied();
+        if index.is_none() {
+            let names = self.draft.links.iter().filter_map(|l| l.name.as_deref());
+            let hint = self.suggester.hint(name, names);
+            let subject = joint.subject();
+            let place = Place { line: Some(*line), subject: &subject, field };
+            let found = format!("{}, which is not a link of this file", quote(name));
+            log.error(&place, Kind::UnknownLink, found, format!("the name of a link{hint}"));
+        }
+        index
+    }
+}
+
+/// For each link, the joint that it hangs on; the first, where there are several.
+fn joints_above(draft: &Draft, ends: &Ends, log: &mut Log) -> Vec<Option<usize>> {
+    let mut above: Vec<Option<usize>> = vec![None; draft.links.len()];
+    for (joint, child) in ends.child.iter().enumerate() {
+        let Some(child) = *child else { continue };
+        match above[child] {
+            None => above[child] = Some(joint),
+            Some(first) => report_two_parents(draft, child, first, joint, log),
+        }
+    }
+    above
+}
+
+fn report_two_parents(draft: &Draft, link: usize, first: usize, second: usize, log: &mut Log) {
+    let subject = draft.links[link].subject();
+    let place = Place { line: Some(draft.joints[second].line), subject: &subject, field: "parent" };
+    let [first, second] = [first, second].map(|joint| draft.joints[joint].subject());
+    let found = format!("a second parent: it is the child of {first} and of {second}");
+    log.error(&place, Kind::TwoParents, found, "a link that hangs on one joint");
+}
+
+/// Walks up from every link; a walk that meets itself is a ring. Returns how many there are.
+fn report_rings(draft: &Draft, ends: &Ends, above: &[Option<usize>], log: &mut Log) -> usize {
+    let mut walk_of = vec![usize::MAX; draft.links.len()];
+    let mut rings = 0;
+    for start in 0..draft.links.len() {
+        let mut link = Some(start);
+        while let Some(here) = link {
+            if walk_of[here] != usize::MAX {
+                break;
+            }
+            walk_of[here] = start;
+            link = above[here].and_then(|joint| ends.parent[joint]);
+        }
+        if let Some(here) = link.filter(|here| walk_of[*here] == start) {
+            rings += 1;
+            report_ring(draft, ends, above, here, log);
+        }
+    }
+    rings
+}
+
+fn report_ring(draft: &Draft, ends: &Ends, above: &[Option<usize>], link: usize, log: &mut Log) {
+    let mut names = List::default();
+    let mut here = link;
+    while let Some(joint) = above[here] {
+        names.push(&draft.joints[joint].subject());
+        here = ends.parent[joint].unwrap_or(link);
+        if here == link {
+            break;
+        }
+    }
+    let subject = draft.links[link].subject();
+    let place = Place { line: Some(draft.links[link].line), subject: &subject, field: "parent" };
+    let found = format!("a ring (loop) of {}", names.text());
+    log.error(&place, Kind::Ring, found, "a tree with one root");
+}
+
+fn root(draft: &Draft, ends: &Ends, above: &[Option<usize>], rings: usize, log: &mut Log) -> Option<usize> {
+    let roots: Vec<usize> = (0..above.len()).filter(|link| above[*link].is_none()).collect();
+    // A name that is not known, or not unique, leaves a link without a parent: that has been said.
+    if roots.len() > 1 && ends.complete && rings == 0 {
+        let mut names = List::default();
+        roots.iter().for_each(|root| names.push(&draft.links[*root].subject()));
+        let subject = draft.links[roots[1]].subject();
+        let place = Place { line: Some(draft.links[roots[1]].line), subject: &subject, field: "parent" };
+        let found = format!("{} roots (links without a parent): {}", roots.len(), names.text());
+        log.error(&place, Kind::SeveralRoots, found, "one root");
+    }
+    roots.first().copied()
+}
+
+/// The first few of many names.
+#[derive(Default)]
+pub(crate) struct List {
+    names: Vec<String>,
+    count: usize,
+}
+
+impl List {
+    pub(crate) fn push(&mut self, subject: &Subject) {
+        self.count += 1;
+        if self.names.len() < MOST_NAMES {
+            self.names.push(subject.to_string());
+        }
+    }
+
+    pub(crate) fn text(&self) -> String {
+        let names = self.names.join(", ");
+        match self.count - self.names.len() {
+            0 => names,
+            more => format!("{names} and {more} more"),
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! What the file says and the description leaves out.
+
+use std::fmt;
+
+use crate::element::Tag;
+use crate::log::{Log, Place};
+use crate::markup;
+use crate::problem::{Kind, Subject};
+use crate::suggest::nearest;
+
+/// Content of the file that is not used.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unused {
+    /// The line, from 1, where one can be told.
+    pub line: Option<u32>,
+    /// Which link or joint it belongs to.
+    pub subject: Subject,
+    /// Which tag, or which tag and attribute.
+    pub tag: String,
+    /// Why it is not used.
+    pub why: String,
+}
+
+impl fmt::Display for Unused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(line) = self.line {
+            write!(f, "line {line}: ")?;
+        }
+        if self.subject != Subject::Document {
+            write!(f, "{}: ", self.subject)?;
+        }
+        write!(f, "{}: {}", self.tag, self.why)
+    }
+}
+
+const APPEARANCE: &str = "appearance plays no part in the dynamics";
+
+/// Tags that are known, by what they stand in, and why they are not used.
+const KNOWN: &[(&str, &str, &str)] = &[
+    ("robot", "material", APPEARANCE),
+    ("robot", "transmission", "rotor inertia and gear ratios are given by the scene"),
+    ("robot", "gazebo", "settings of a simulator"),
+    ("robot", "ros2_control", "settings of a controller"),
+    ("robot", "sensor", "sensors play no part in the dynamics"),
+    ("robot", "frame", "an extension that is not used"),
+    ("link", "visual", APPEARANCE),
+    ("link", "collision", "contact geometry is given by the scene"),
+    ("link", "contact", "contact parameters are given by the scene"),
+    ("link", "self_collision_checking", "collisions are not looked for"),
+    ("joint", "safety_controller", "settings of a controller"),
+    ("joint", "calibration", "settings of a controller"),
+    ("limit", "acceleration", "acceleration is not limited"),
+    ("limit", "deceleration", "acceleration is not limited"),
+    ("limit", "jerk", "jerk is not limited"),
+];
+
+/// Reports the tags and attributes inside `tag` other than those that are used.
+pub(crate) fn rest(tag: &Tag<'_>, tags: &[&str], attributes: &[&str], log: &mut Log) {
+    rest_of_attributes(tag, attributes, log);
+    for child in tag.children().filter(|child| !tags.iter().any(|name| child.is(name))) {
+        let name = child.name();
+        let parent = tag.name();
+        let why = KNOWN.iter().find(|(within, known, _)| *within == parent && *known == name);
+        match why {
+            Some((_, _, why)) => log.unused(&child, name, *why),
+            None => unknown(&child.place(&format!("<{name}>")), name.clone(), &name, tags, log),
+        }
+    }
+}
+
+fn rest_of_attributes(tag: &Tag<'_>, used: &[&str], log: &mut Log) {
+    for attribute in tag.attributes().filter(|a| !used.contains(&a.name())) {
+        let name = markup::as_written(attribute.name());
+        // Declarations of prefixes say nothing about the robot.
+        if name.starts_with("xmlns") {
+            continue;
+        }
+        let what = format!("{} {name}", tag.name());
+        match KNOWN.iter().find(|(within, known, _)| tag.is(within) && *known == name) {
+            Some((_, _, why)) => log.unused(tag, what, *why),
+            None => unknown(&tag.place(&what), what.clone(), &name, used, log),
+        }
+    }
+}
+
+fn unknown(place: &Place<'_>, what: String, name: &str, used: &[&str], log: &mut Log) {
+    log.unused_at(place.line, place.subject, what, "not known");
+    if let Some(near) = nearest(name, used.iter().copied()) {
+        log.warning(place, Kind::Misspelt, "what is not known and not used", format!("{near}, perhaps"));
+    }
+}
