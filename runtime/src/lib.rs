@@ -1,1 +1,20 @@
-//! runtime
+//! Robot dynamics, spelled out.
+//!
+//! `articulated` reads one robot's URDF when your crate is built and writes that robot's dynamics out as straight-line Rust
+//! ([`robot!`], or a build script with the crate `articulated-codegen`). The same algorithms run here generically, on any robot loaded at run time
+//! ([`load`]). Both sides implement the trait [`Dynamics`].
+#![cfg_attr(not(feature = "std"), no_std)]
+
+pub use articulated_core::algorithm::{self, FunctionError, Shape, Workspace, check_length, exactly};
+pub use articulated_core::description::Base;
+pub use articulated_core::dynamics::Dynamics;
+pub use articulated_core::model::{Model, ModelError};
+pub use articulated_core::{Scalar, spatial};
+
+#[cfg(feature = "macros")]
+pub use articulated_macros::robot;
+
+#[cfg(feature = "urdf")]
+mod load;
+#[cfg(feature = "urdf")]
+pub use load::{LoadError, load, load_bytes};

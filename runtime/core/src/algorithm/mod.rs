@@ -7,7 +7,7 @@ pub mod textbook;
 mod workspace;
 
 pub use kinematics::placements;
-pub(crate) use registry::check as check_length;
 pub use registry::{Argument, Function, FunctionError, ResultKind, Shape, function, functions};
+pub use registry::{check_length, exactly};
 pub use rnea::{bias_forces, gravity_torque, inverse_dynamics};
 pub use workspace::Workspace;

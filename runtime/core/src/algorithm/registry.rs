@@ -105,7 +105,6 @@ pub struct Function<S: 'static> {
     pub takes: &'static [Argument],
     /// What it gives.
     pub gives: ResultKind,
-    /// Whether its value depends on wrenches between bodies or on placements alone, so that regrouped inertial parameters may be used.
     run: fn(&Model<S>, &mut Workspace<S>, &[&[S]], &mut [S]),
 }
 
@@ -143,18 +142,24 @@ impl<S: Scalar> Function<S> {
     /// Evaluates the function; `arguments` in the order of `takes`, `out` as `gives` says.
     pub fn call(&self, model: &Model<S>, ws: &mut Workspace<S>, arguments: &[&[S]], out: &mut [S]) -> Result<(), FunctionError> {
         let shape = model.shape();
-        check("arguments", arguments.len(), self.takes.len())?;
+        check_length("arguments", arguments.len(), self.takes.len())?;
         for (argument, given) in self.takes.iter().zip(arguments) {
-            check(argument.name(), given.len(), argument.len(shape))?;
+            check_length(argument.name(), given.len(), argument.len(shape))?;
         }
-        check("out", out.len(), self.gives.len(shape))?;
+        check_length("out", out.len(), self.gives.len(shape))?;
         (self.run)(model, ws, arguments, out);
         Ok(())
     }
 }
 
-pub(crate) fn check(argument: &'static str, found: usize, expected: usize) -> Result<(), FunctionError> {
+/// The length of an argument, or the error that names it.
+pub fn check_length(argument: &'static str, found: usize, expected: usize) -> Result<(), FunctionError> {
     if found == expected { Ok(()) } else { Err(FunctionError::Length { argument, found, expected }) }
+}
+
+/// A slice as an array of exactly `N` numbers, or the error that names it.
+pub fn exactly<'a, const N: usize, S>(argument: &'static str, slice: &'a [S]) -> Result<&'a [S; N], FunctionError> {
+    slice.try_into().map_err(|_| FunctionError::Length { argument, found: slice.len(), expected: N })
 }
 
 struct Table<S>(PhantomData<S>);

@@ -149,7 +149,7 @@ impl<S: Scalar> Textbook<S> {
     }
 
     fn check(&self, lengths: &[(&'static str, usize, usize)]) -> Result<(), FunctionError> {
-        lengths.iter().try_for_each(|&(name, found, expected)| super::registry::check(name, found, expected))
+        lengths.iter().try_for_each(|&(name, found, expected)| super::check_length(name, found, expected))
     }
 
     /// T_λi(q).

@@ -1,0 +1,19 @@
+//! Numbers in source.
+
+/// The shortest literal that is read back as exactly `x`; finite numbers only come here.
+pub(super) fn literal(x: f64) -> String {
+    format!("{x:?}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::literal;
+
+    #[test]
+    fn literals_are_read_back_to_the_bit() {
+        for x in [0.1, 1.0, -2.5e-300, f64::MIN_POSITIVE / 4.0, f64::MAX, 1.0 / 3.0, 1e22, 123_456_789.123_456_78] {
+            assert_eq!(literal(x).parse::<f64>().map(f64::to_bits), Ok(x.to_bits()));
+            assert!(literal(x).contains(['.', 'e']), "{} would be an integer", literal(x));
+        }
+    }
+}

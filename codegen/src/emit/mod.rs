@@ -1,0 +1,11 @@
+//! From graphs to Rust.
+
+mod function;
+mod literal;
+mod module;
+mod names;
+
+pub use names::identifier;
+
+pub(crate) use module::module;
+pub(crate) use names::Names;

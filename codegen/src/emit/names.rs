@@ -1,0 +1,111 @@
+//! Names of the URDF as names in Rust.
+
+use std::collections::BTreeMap;
+
+use articulated_core::model::Model;
+
+use crate::{Error, Request};
+
+/// The constant's name for a name of the URDF: letters in upper case, everything that cannot be in an identifier as `_`, `_` in front of a
+/// digit. `shoulder pan-joint` is `SHOULDER_PAN_JOINT`, `1st-link` is `_1ST_LINK`.
+pub fn identifier(name: &str) -> String {
+    let upper: String = name.trim_matches('_').chars().flat_map(char::to_uppercase).collect();
+    let mut ident: String = upper.chars().map(|c| if c == '_' || c.is_alphanumeric() { c } else { '_' }).collect();
+    if !ident.starts_with(|c: char| c.is_alphabetic()) {
+        ident.insert(0, '_');
+    }
+    // An underscore alone is no name, and neither is what the compiler does not take for one.
+    if ident.chars().all(|c| c == '_') || !is_identifier(&ident) { ascii(name) } else { ident }
+}
+
+/// A name of code points, where letters will not do.
+fn ascii(name: &str) -> String {
+    name.chars().fold(String::from("_"), |mut ident, c| {
+        if c.is_ascii_alphanumeric() {
+            ident.push(c.to_ascii_uppercase());
+        } else {
+            ident += &format!("U{:X}_", u32::from(c));
+        }
+        ident
+    })
+}
+
+/// Whether Rust takes `ident` for one plain identifier.
+fn is_identifier(ident: &str) -> bool {
+    let tokens = ident.parse::<proc_macro2::TokenStream>().map(|t| t.into_iter().collect::<Vec<_>>());
+    matches!(tokens.as_deref(), Ok([proc_macro2::TokenTree::Ident(i)]) if i == ident)
+}
+
+/// The Rust names of a robot's joints and links.
+#[derive(Clone, Debug)]
+pub(crate) struct Names {
+    /// One for each joint that is a coordinate.
+    pub(crate) joints: Vec<String>,
+    /// One for each frame.
+    pub(crate) frames: Vec<String>,
+}
+
+impl Names {
+    /// Names for everything, or the first clash.
+    pub(crate) fn new(model: &Model<f64>, request: &Request) -> Result<Self, Error> {
+        check_renames(model, request)?;
+        let joints = model.joints.iter().map(|j| j.name.as_str());
+        let frames = model.frames.iter().map(|f| f.name.as_str());
+        Ok(Self { joints: unique("joint", joints, request)?, frames: unique("link", frames, request)? })
+    }
+}
+
+fn unique<'a>(kind: &'static str, names: impl Iterator<Item = &'a str>, request: &Request) -> Result<Vec<String>, Error> {
+    let mut seen: BTreeMap<String, &str> = BTreeMap::new();
+    let mut idents = Vec::new();
+    for name in names {
+        let renamed = request.options.rename.iter().find(|(from, _)| from == name);
+        let ident = renamed.map_or_else(|| identifier(name), |(_, to)| to.clone());
+        if let Some(first) = seen.insert(ident.clone(), name) {
+            let (first, second) = (first.to_owned(), name.to_owned());
+            return Err(Error::NameClash { file: request.file.clone(), kind, first, second, ident });
+        }
+        idents.push(ident);
+    }
+    Ok(idents)
+}
+
+fn check_renames(model: &Model<f64>, request: &Request) -> Result<(), Error> {
+    let known = |name: &str| model.joints.iter().any(|j| j.name == name) || model.frames.iter().any(|f| f.name == name);
+    let wrong = request.options.rename.iter().find_map(|(from, to)| {
+        if !known(from) {
+            Some((from, to, "the robot has no joint and no link of this name"))
+        } else if !is_identifier(to) {
+            Some((from, to, "this is not an identifier of Rust"))
+        } else {
+            None
+        }
+    });
+    match wrong {
+        Some((from, to, reason)) => Err(Error::Rename { file: request.file.clone(), from: from.clone(), to: to.clone(), reason }),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_become_constants() {
+        let cases = [
+            ("shoulder pan-joint", "SHOULDER_PAN_JOINT"),
+            ("1st-link", "_1ST_LINK"),
+            ("type", "TYPE"),
+            ("__floating_base__", "FLOATING_BASE"),
+            ("локоть", "ЛОКОТЬ"),
+            ("🤚", "_U1F91A_"),
+            ("_", "_U5F_"),
+            ("hand/tool0", "HAND_TOOL0"),
+        ];
+        for (name, ident) in cases {
+            assert_eq!(identifier(name), ident);
+            assert!(is_identifier(ident), "{ident}");
+        }
+    }
+}

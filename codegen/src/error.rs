@@ -1,0 +1,82 @@
+//! Why nothing was generated.
+
+use articulated_core::model::ModelError;
+use articulated_urdf::Problems;
+use thiserror::Error;
+
+/// Everything that can be wrong with a request, as data first and a sentence second.
+#[derive(Clone, Debug, Error)]
+pub enum Error {
+    /// The document is not a usable URDF.
+    #[error("{0}")]
+    Urdf(#[from] Problems),
+    /// The robot is not one that the algorithms know.
+    #[error("{file}: {error}")]
+    Model {
+        /// The file.
+        file: String,
+        /// What is wrong.
+        error: ModelError,
+    },
+    /// A function that does not exist.
+    #[error("unknown function `{found}`{}; there are: {}", nearest.as_ref().map(|n| format!(", did you mean `{n}`?")).unwrap_or_default(), known.join(", "))]
+    UnknownFunction {
+        /// The name found.
+        found: String,
+        /// The known name most like it.
+        nearest: Option<String>,
+        /// All names.
+        known: Vec<String>,
+    },
+    /// A function that is not defined for this robot.
+    #[error("{file}: {function} is not defined: joint {} moves no mass and no inertia, so the mass matrix is singular in every configuration; give a link behind it a mass, or leave {function} out", joints.join(", joint "))]
+    Singular {
+        /// The file.
+        file: String,
+        /// The function.
+        function: String,
+        /// The joints that carry nothing.
+        joints: Vec<String>,
+    },
+    /// Two names of the URDF that are the same in Rust.
+    #[error("{file}: {kind}s {first:?} and {second:?} are both `{ident}` in Rust; give one another name with `rename`")]
+    NameClash {
+        /// The file.
+        file: String,
+        /// `joint` or `link`.
+        kind: &'static str,
+        /// The first name.
+        first: String,
+        /// The second name.
+        second: String,
+        /// The name that both become.
+        ident: String,
+    },
+    /// A name in `rename` that the robot does not have, or a Rust name that is none.
+    #[error("{file}: rename {from:?} to `{to}`: {reason}")]
+    Rename {
+        /// The file.
+        file: String,
+        /// The name in the URDF.
+        from: String,
+        /// The name asked for.
+        to: String,
+        /// What is wrong.
+        reason: &'static str,
+    },
+    /// A file that could not be read or written.
+    #[error("{file}: {reason}")]
+    File {
+        /// The file.
+        file: String,
+        /// What the system said.
+        reason: String,
+    },
+}
+
+/// The known name most like `found`, if one is like it at all.
+pub fn nearest<'a>(found: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    let score = |name: &str| strsim::jaro_winkler(found, name);
+    let best = known.into_iter().map(|n| (score(n), n)).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (best.0 > 0.75).then(|| best.1.to_owned())
+}

@@ -1,0 +1,236 @@
+//! Folding where nodes are born: a URDF's zeros and ones never become nodes.
+//!
+//! Each rule is exact in real arithmetic for finite values; those that are not exact in floating point only leave out a rounding.
+
+use super::{Graph, NodeId, Op};
+
+/// The node for `op` on `x`, made as simple as its operands allow.
+pub(super) fn fold(g: &mut Graph, op: Op, x: &[NodeId]) -> NodeId {
+    if let Some(value) = constant_value(g, op, x) {
+        return g.constant(value);
+    }
+    match op {
+        Op::Add => add(g, x[0], x[1]),
+        Op::Sub => sub(g, x[0], x[1]),
+        Op::Mul => mul(g, x[0], x[1]),
+        Op::Div => div(g, x[0], x[1]),
+        Op::Neg => neg(g, x[0]),
+        Op::Sin => sin(g, x[0]),
+        Op::Cos => cos(g, x[0]),
+        Op::Select => select(g, x),
+        _ => g.exactly(op, x),
+    }
+}
+
+fn constant_value(g: &Graph, op: Op, x: &[NodeId]) -> Option<f64> {
+    let mut values = [0.0; 3];
+    for (value, id) in values.iter_mut().zip(x) {
+        *value = g.node(*id).constant()?;
+    }
+    let value = (op.row().value)(values[0], values[1], values[2]);
+    value.is_finite().then_some(value)
+}
+
+fn is(g: &Graph, x: NodeId, value: f64) -> bool {
+    g.node(x).constant() == Some(value)
+}
+
+/// y where x is −y: of a negation its operand, of a negative constant its magnitude.
+fn negated(g: &mut Graph, x: NodeId) -> Option<NodeId> {
+    let node = g.node(x);
+    match node.op {
+        Op::Neg => Some(NodeId(node.args[0])),
+        Op::Constant => node.constant().filter(|c| *c < 0.0).map(|c| g.constant(-c)),
+        _ => None,
+    }
+}
+
+fn add(g: &mut Graph, a: NodeId, b: NodeId) -> NodeId {
+    if is(g, a, 0.0) {
+        return b;
+    }
+    if is(g, b, 0.0) {
+        return a;
+    }
+    // a + (−b) = a − b;  (−a) + b = b − a
+    if let Some(b) = negated(g, b) {
+        return sub(g, a, b);
+    }
+    if let Some(a) = negated(g, a) {
+        return sub(g, b, a);
+    }
+    g.exactly(Op::Add, &[a, b])
+}
+
+fn sub(g: &mut Graph, a: NodeId, b: NodeId) -> NodeId {
+    if a == b {
+        return g.constant(0.0);
+    }
+    if is(g, b, 0.0) {
+        return a;
+    }
+    if is(g, a, 0.0) {
+        return neg(g, b);
+    }
+    // a − (−b) = a + b;  (−a) − b = −(a + b)
+    if let Some(b) = negated(g, b) {
+        return add(g, a, b);
+    }
+    if let Some(a) = negated(g, a) {
+        let sum = add(g, a, b);
+        return neg(g, sum);
+    }
+    // One subtraction serves for both signs.
+    if let Some(other) = g.find(Op::Sub, b, a) {
+        return g.exactly(Op::Neg, &[other]);
+    }
+    g.exactly(Op::Sub, &[a, b])
+}
+
+fn mul(g: &mut Graph, a: NodeId, b: NodeId) -> NodeId {
+    // A constant stands first.
+    let (a, b) = if g.node(b).op == Op::Constant { (b, a) } else { (a, b) };
+    if is(g, a, 0.0) {
+        return a;
+    }
+    if is(g, a, 1.0) {
+        return b;
+    }
+    // Signs go outward, so that products are shared whatever their sign.
+    let (minus_a, minus_b) = (negated(g, a), negated(g, b));
+    if minus_a.is_some() || minus_b.is_some() {
+        let product = mul(g, minus_a.unwrap_or(a), minus_b.unwrap_or(b));
+        return if minus_a.is_some() == minus_b.is_some() { product } else { neg(g, product) };
+    }
+    // c · (d · x) = (c d) · x
+    if let (Some(c), node) = (g.node(a).constant(), g.node(b))
+        && node.op == Op::Mul
+        && let Some(d) = g.node(NodeId(node.args[0])).constant().or_else(|| g.node(NodeId(node.args[1])).constant())
+        && (c * d).is_normal()
+    {
+        let x = if g.node(NodeId(node.args[0])).op == Op::Constant { node.args[1] } else { node.args[0] };
+        let cd = g.constant(c * d);
+        return mul(g, cd, NodeId(x));
+    }
+    g.exactly(Op::Mul, &[a, b])
+}
+
+fn div(g: &mut Graph, a: NodeId, b: NodeId) -> NodeId {
+    if is(g, b, 1.0) || is(g, a, 0.0) {
+        return a;
+    }
+    g.exactly(Op::Div, &[a, b])
+}
+
+fn neg(g: &mut Graph, a: NodeId) -> NodeId {
+    let node = g.node(a);
+    match node.op {
+        Op::Neg => NodeId(node.args[0]),
+        Op::Constant => {
+            let c = node.constant().unwrap_or_default();
+            g.constant(-c)
+        }
+        // −(a − b) = b − a
+        Op::Sub => match g.find(Op::Sub, NodeId(node.args[1]), NodeId(node.args[0])) {
+            Some(other) => other,
+            None => g.exactly(Op::Neg, &[a]),
+        },
+        _ => g.exactly(Op::Neg, &[a]),
+    }
+}
+
+fn sin(g: &mut Graph, a: NodeId) -> NodeId {
+    match negated(g, a) {
+        Some(x) => {
+            let s = g.exactly(Op::Sin, &[x]);
+            neg(g, s)
+        }
+        None => g.exactly(Op::Sin, &[a]),
+    }
+}
+
+fn cos(g: &mut Graph, a: NodeId) -> NodeId {
+    let x = negated(g, a).unwrap_or(a);
+    g.exactly(Op::Cos, &[x])
+}
+
+fn select(g: &mut Graph, x: &[NodeId]) -> NodeId {
+    if x[1] == x[2] {
+        return x[1];
+    }
+    match g.node(x[0]).constant() {
+        Some(1.0) => x[1],
+        Some(_) => x[2],
+        None => g.exactly(Op::Select, x),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn xy() -> (Graph, NodeId, NodeId) {
+        let mut g = Graph::default();
+        let (x, y) = (g.input(0, 0), g.input(0, 1));
+        (g, x, y)
+    }
+
+    #[test]
+    fn zeros_and_ones_never_become_nodes() {
+        let (mut g, x, _) = xy();
+        let (zero, one, minus) = (g.constant(0.0), g.constant(1.0), g.constant(-1.0));
+        let before = g.nodes().len();
+        assert_eq!(g.apply(Op::Add, &[x, zero]), x);
+        assert_eq!(g.apply(Op::Sub, &[x, zero]), x);
+        assert_eq!(g.apply(Op::Mul, &[one, x]), x);
+        assert_eq!(g.apply(Op::Mul, &[x, zero]), zero);
+        assert_eq!(g.apply(Op::Sub, &[x, x]), zero);
+        assert_eq!(g.nodes().len(), before);
+        let negative = g.apply(Op::Mul, &[x, minus]);
+        assert_eq!(g.node(negative).op, Op::Neg);
+        assert_eq!(g.apply(Op::Neg, &[negative]), x);
+    }
+
+    #[test]
+    fn every_rule_keeps_the_value() {
+        let ops = [Op::Add, Op::Sub, Op::Mul, Op::Div];
+        let unary = [Op::Neg, Op::Sin, Op::Cos];
+        let (mut g, x, y) = xy();
+        let values = [0.7, -1.3];
+        let at = |_: usize, k: usize| values[k];
+        let mut pool = vec![x, y];
+        pool.extend([0.0, 1.0, -1.0, 2.5, -0.5].map(|c| g.constant(c)));
+        pool.extend(pool.clone().iter().flat_map(|&a| unary.map(|op| g.apply(op, &[a]))).collect::<Vec<_>>());
+        let value = |g: &mut Graph, id| {
+            g.outputs = vec![id];
+            g.evaluate(at)[0]
+        };
+        for &a in &pool {
+            for &b in &pool {
+                for op in ops {
+                    let (va, vb) = (value(&mut g, a), value(&mut g, b));
+                    if op == Op::Div && vb == 0.0 {
+                        continue;
+                    }
+                    let id = g.apply(op, &[a, b]);
+                    let (got, expected) = (value(&mut g, id), (op.row().value)(va, vb, 0.0));
+                    assert!((got - expected).abs() <= 4e-16 * expected.abs().max(1e-16), "{op:?} {va} {vb}: {got} {expected}");
+                }
+            }
+        }
+        g.verify().unwrap();
+    }
+
+    #[test]
+    fn an_expression_and_its_negative_share_their_operation() {
+        let (mut g, x, y) = xy();
+        let d = g.apply(Op::Sub, &[x, y]);
+        let e = g.apply(Op::Sub, &[y, x]);
+        assert_eq!(g.apply(Op::Neg, &[d]), e);
+        assert_eq!(g.counts().of(Op::Sub), 1);
+        let minus_x = g.apply(Op::Neg, &[x]);
+        let p = g.apply(Op::Mul, &[minus_x, y]);
+        let q = g.apply(Op::Mul, &[x, y]);
+        assert_eq!(g.apply(Op::Neg, &[q]), p);
+    }
+}

@@ -1,0 +1,169 @@
+//! The expression graph: a hash-consed arena in which an operand always stands before its use.
+
+mod counts;
+mod fold;
+mod hash;
+mod op;
+
+use std::collections::HashMap;
+
+pub use counts::Counts;
+pub use op::{OPS, Op, Row};
+
+/// A node's number in its graph.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct NodeId(pub u32);
+
+impl NodeId {
+    /// As an index.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// An operation with its operands. A constant holds its bits in `args`, an input the number of the argument and the index in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Node {
+    /// The operation.
+    pub op: Op,
+    /// Operands; unused ones are 0.
+    pub args: [u32; 3],
+}
+
+impl Node {
+    /// The operands.
+    pub fn operands(&self) -> impl Iterator<Item = NodeId> + '_ {
+        self.args[..self.op.row().arity].iter().map(|&a| NodeId(a))
+    }
+
+    /// The value of a constant.
+    pub fn constant(&self) -> Option<f64> {
+        (self.op == Op::Constant).then(|| f64::from_bits(u64::from(self.args[0]) << 32 | u64::from(self.args[1])))
+    }
+
+    fn of_constant(x: f64) -> Self {
+        // −0 is 0: no formula here tells them apart, and one node serves for both.
+        let bits = (x + 0.0).to_bits();
+        Self { op: Op::Constant, args: [(bits >> 32) as u32, bits as u32, 0] }
+    }
+}
+
+/// A program: nodes, each after its operands, and the nodes that are its outputs.
+#[derive(Clone, Debug, Default)]
+pub struct Graph {
+    nodes: Vec<Node>,
+    /// The results, in order.
+    pub outputs: Vec<NodeId>,
+    ids: HashMap<Node, NodeId, hash::BuildNodeHasher>,
+    asked: Counts,
+}
+
+impl Graph {
+    /// The nodes in order.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// A node.
+    pub fn node(&self, id: NodeId) -> Node {
+        self.nodes[id.index()]
+    }
+
+    /// The operations that were asked for while the graph was built, before folding and sharing.
+    pub fn asked(&self) -> &Counts {
+        &self.asked
+    }
+
+    /// The node for a number.
+    pub fn constant(&mut self, x: f64) -> NodeId {
+        self.intern(Node::of_constant(x))
+    }
+
+    /// The node for element `index` of argument number `argument`.
+    pub fn input(&mut self, argument: usize, index: usize) -> NodeId {
+        self.intern(Node { op: Op::Input, args: [argument as u32, index as u32, 0] })
+    }
+
+    /// The node for an operation on nodes, folded: it may be a simpler one, or one that is there already.
+    pub fn apply(&mut self, op: Op, operands: &[NodeId]) -> NodeId {
+        self.asked.add(op, 1);
+        fold::fold(self, op, operands)
+    }
+
+    /// The node for exactly this operation on these operands, shared if it is there already. No folding.
+    pub fn exactly(&mut self, op: Op, operands: &[NodeId]) -> NodeId {
+        let mut args = [0; 3];
+        for (slot, id) in args.iter_mut().zip(operands) {
+            *slot = id.0;
+        }
+        if op.row().commutes && args[0] > args[1] {
+            args.swap(0, 1);
+        }
+        self.intern(Node { op, args })
+    }
+
+    /// Whether exactly this node is there already.
+    fn find(&self, op: Op, a: NodeId, b: NodeId) -> Option<NodeId> {
+        self.ids.get(&Node { op, args: [a.0, b.0, 0] }).copied()
+    }
+
+    fn intern(&mut self, node: Node) -> NodeId {
+        let next = NodeId(self.nodes.len() as u32);
+        let id = *self.ids.entry(node).or_insert(next);
+        if id == next {
+            self.nodes.push(node);
+        }
+        id
+    }
+
+    /// Copies a leaf (constant or input) of another graph.
+    pub fn leaf(&mut self, node: Node) -> NodeId {
+        debug_assert_eq!(node.op.row().arity, 0);
+        self.intern(node)
+    }
+
+    /// How often each node is used, by other nodes or as an output.
+    pub fn uses(&self) -> Vec<u32> {
+        let mut uses = vec![0; self.nodes.len()];
+        let operands = self.nodes.iter().flat_map(Node::operands);
+        for id in operands.chain(self.outputs.iter().copied()) {
+            uses[id.index()] += 1;
+        }
+        uses
+    }
+
+    /// The operations of the graph.
+    pub fn counts(&self) -> Counts {
+        let mut counts = Counts::default();
+        self.nodes.iter().for_each(|n| counts.add(n.op, 1));
+        counts
+    }
+
+    /// Evaluates the graph; `input(argument, index)` gives the inputs.
+    pub fn evaluate(&self, input: impl Fn(usize, usize) -> f64) -> Vec<f64> {
+        let mut values: Vec<f64> = Vec::with_capacity(self.nodes.len());
+        for node in &self.nodes {
+            let at = |k: usize| values.get(node.args[k] as usize).copied().unwrap_or(f64::NAN);
+            let value = match node.op {
+                Op::Constant => node.constant().unwrap_or(f64::NAN),
+                Op::Input => input(node.args[0] as usize, node.args[1] as usize),
+                op => (op.row().value)(at(0), at(1), at(2)),
+            };
+            values.push(value);
+        }
+        self.outputs.iter().map(|id| values[id.index()]).collect()
+    }
+
+    /// Checks what every pass must keep: operands stand before their uses, and outputs exist.
+    pub fn verify(&self) -> Result<(), String> {
+        for (k, node) in self.nodes.iter().enumerate() {
+            if let Some(late) = node.operands().find(|a| a.index() >= k) {
+                return Err(format!("node {k} ({:?}) uses node {}", node.op, late.0));
+            }
+        }
+        match self.outputs.iter().find(|o| o.index() >= self.nodes.len()) {
+            Some(o) => Err(format!("output {} does not exist", o.0)),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! The operations of the graph: one row each.
+
+/// An operation. `MulAdd` and its kin round once where the processor has the instruction, twice where it has not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[repr(u8)]
+pub enum Op {
+    /// A number.
+    Constant,
+    /// An element of an argument.
+    Input,
+    /// a + b
+    Add,
+    /// a − b
+    Sub,
+    /// a · b
+    Mul,
+    /// a / b
+    Div,
+    /// −a
+    Neg,
+    /// √a
+    Sqrt,
+    /// sin a
+    Sin,
+    /// cos a
+    Cos,
+    /// a > 0, as 1 or 0
+    Positive,
+    /// b where a is 1, c where a is 0
+    Select,
+    /// a · b + c
+    MulAdd,
+    /// a · b − c
+    MulSub,
+    /// c − a · b
+    NegMulAdd,
+    /// −(a · b) − c
+    NegMulSub,
+}
+
+/// What the generator knows of an operation.
+pub struct Row {
+    /// The operation; its place in [`OPS`] is its number.
+    pub op: Op,
+    /// Its column in tables of counts.
+    pub name: &'static str,
+    /// How many operands.
+    pub arity: usize,
+    /// Whether a and b may be exchanged.
+    pub commutes: bool,
+    /// Its value.
+    pub value: fn(f64, f64, f64) -> f64,
+    /// What it costs, in floating-point instructions.
+    pub cost: u32,
+    /// How it is written in Rust, with {a}, {b}, {c} for the operands.
+    pub rust: &'static str,
+}
+
+const fn row(op: Op, name: &'static str, arity: usize, value: fn(f64, f64, f64) -> f64, cost: u32, rust: &'static str) -> Row {
+    Row { op, name, arity, commutes: false, value, cost, rust }
+}
+
+const fn commuting(row: Row) -> Row {
+    Row { commutes: true, ..row }
+}
+
+/// All operations, in the order of [`Op`].
+pub const OPS: [Row; 16] = [
+    row(Op::Constant, "constants", 0, |_, _, _| f64::NAN, 0, ""),
+    row(Op::Input, "inputs", 0, |_, _, _| f64::NAN, 0, ""),
+    commuting(row(Op::Add, "add", 2, |a, b, _| a + b, 1, "{a} + {b}")),
+    row(Op::Sub, "sub", 2, |a, b, _| a - b, 1, "{a} - {b}"),
+    commuting(row(Op::Mul, "mul", 2, |a, b, _| a * b, 1, "{a} * {b}")),
+    row(Op::Div, "div", 2, |a, b, _| a / b, 4, "{a} / {b}"),
+    row(Op::Neg, "neg", 1, |a, _, _| -a, 1, "-{a}"),
+    row(Op::Sqrt, "sqrt", 1, |a, _, _| a.sqrt(), 4, "{a}.sqrt()"),
+    row(Op::Sin, "sin", 1, |a, _, _| a.sin(), 10, "{a}.sin()"),
+    row(Op::Cos, "cos", 1, |a, _, _| a.cos(), 10, "{a}.cos()"),
+    row(Op::Positive, "compare", 1, |a, _, _| if a > 0.0 { 1.0 } else { 0.0 }, 1, "{a} > 0.0"),
+    row(Op::Select, "select", 3, |a, b, c| if a == 1.0 { b } else { c }, 1, "if {a} { {b} } else { {c} }"),
+    commuting(row(Op::MulAdd, "fma", 3, |a, b, c| a * b + c, 1, "fma({a}, {b}, {c})")),
+    commuting(row(Op::MulSub, "fma", 3, |a, b, c| a * b - c, 1, "fma({a}, {b}, -{c})")),
+    commuting(row(Op::NegMulAdd, "fma", 3, |a, b, c| c - a * b, 1, "fma(-{a}, {b}, {c})")),
+    commuting(row(Op::NegMulSub, "fma", 3, |a, b, c| -(a * b) - c, 1, "fma(-{a}, {b}, -{c})")),
+];
+
+impl Op {
+    /// The operation's row.
+    pub fn row(self) -> &'static Row {
+        &OPS[self as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::OPS;
+
+    #[test]
+    fn rows_stand_in_the_order_of_the_operations() {
+        for (k, row) in OPS.iter().enumerate() {
+            assert_eq!(row.op as usize, k);
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! What each generated function costs, stage by stage.
+
+use crate::graph::{Counts, Graph};
+
+/// The costs of all functions of one robot.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Ledger {
+    /// One entry a function, in the order asked for.
+    pub functions: Vec<Entry>,
+}
+
+/// The costs of one function.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// Name of the function.
+    pub function: String,
+    /// Counts after each stage: `asked` (what the algorithm asked for), `trace` (folded and shared), then each pass.
+    pub stages: Vec<(&'static str, Counts)>,
+    /// Longest chain of operations from an input to an output.
+    pub depth: u32,
+}
+
+impl Entry {
+    /// The counts of what is emitted.
+    pub fn emitted(&self) -> &Counts {
+        &self.stages[self.stages.len() - 1].1
+    }
+}
+
+/// Longest chain of operations.
+pub fn depth(graph: &Graph) -> u32 {
+    let mut depths: Vec<u32> = Vec::with_capacity(graph.nodes().len());
+    for node in graph.nodes() {
+        let below = node.operands().map(|a| depths[a.index()]).max();
+        depths.push(below.map_or(0, |d| d + 1));
+    }
+    graph.outputs.iter().map(|o| depths[o.index()]).max().unwrap_or(0)
+}

@@ -1,0 +1,71 @@
+//! Graph passes: `Graph → Graph`, keeping the algebra. One file each, in the order of [`GRAPH_PASSES`].
+
+mod fuse;
+mod live;
+
+pub use fuse::fuse;
+pub use live::live;
+
+use crate::graph::{Graph, Node, NodeId, Op};
+
+/// A pass over graphs.
+pub type GraphPass = fn(&Graph) -> Graph;
+
+/// The passes in order; each row: name, pass, and what holds after it.
+pub const GRAPH_PASSES: &[(&str, GraphPass, &str)] = &[
+    ("live", live, "every node is needed by an output"),
+    ("fuse", fuse, "no product is used by one addition only: it is part of a multiply-add"),
+];
+
+/// Rebuilds a graph node by node: `rewrite(new, node, operands)` gives the new node for each old one that `keep` lets through.
+pub(crate) fn rebuild(old: &Graph, keep: impl Fn(usize) -> bool, mut rewrite: impl FnMut(&mut Graph, Node, &[NodeId]) -> NodeId) -> Graph {
+    let mut new = Graph::default();
+    let mut ids = vec![NodeId(u32::MAX); old.nodes().len()];
+    for (k, node) in old.nodes().iter().enumerate().filter(|(k, _)| keep(*k)) {
+        ids[k] = if node.op.row().arity == 0 {
+            new.leaf(*node)
+        } else {
+            let mut operands = [NodeId(0); 3];
+            operands.iter_mut().zip(node.operands()).for_each(|(slot, id)| *slot = ids[id.index()]);
+            rewrite(&mut new, *node, &operands[..node.op.row().arity])
+        };
+    }
+    new.outputs = old.outputs.iter().map(|o| ids[o.index()]).collect();
+    new
+}
+
+/// Copies a node as it is.
+pub(crate) fn copy(new: &mut Graph, node: Node, operands: &[NodeId]) -> NodeId {
+    new.exactly(node.op, operands)
+}
+
+/// Runs a pass; in debug builds checks the result's form, its value on pseudo-random input, and that the cost has not risen.
+pub fn run(name: &str, pass: GraphPass, graph: &Graph) -> Graph {
+    let new = pass(graph);
+    if cfg!(debug_assertions) {
+        new.verify().unwrap_or_else(|e| panic!("pass {name}: {e}"));
+        assert!(cost(&new) <= cost(graph), "pass {name} raised the cost");
+        let values = |g: &Graph| g.evaluate(probe);
+        for (k, (a, b)) in values(graph).into_iter().zip(values(&new)).enumerate() {
+            let close = (a - b).abs() <= 1e-9 * (1.0 + a.abs()) || (a.is_nan() && b.is_nan());
+            assert!(close, "pass {name} changed output {k}: {a} became {b}");
+        }
+    }
+    new
+}
+
+/// What all nodes of a graph cost together.
+fn cost(graph: &Graph) -> u32 {
+    graph.nodes().iter().map(|n| n.op.row().cost).sum()
+}
+
+/// A fixed irregular number in (−1, 1) for each input.
+fn probe(argument: usize, index: usize) -> f64 {
+    let x = ((argument * 7919 + index * 104_729 + 13) as f64 * 0.754_877_666_246_692_7).fract();
+    2.0 * x - 1.0
+}
+
+/// Whether a node is a product.
+fn is_product(node: Node) -> bool {
+    node.op == Op::Mul
+}

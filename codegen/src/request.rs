@@ -1,0 +1,55 @@
+//! What to generate.
+
+use articulated_core::description::Base;
+use articulated_core::model::GRAVITY;
+
+/// A robot's document and what to make of it. Macro, build script and command line all fill one of these.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// The URDF's bytes.
+    pub urdf: Vec<u8>,
+    /// The file's name, for messages and for the header of the generated file; not opened.
+    pub file: String,
+    /// What to make.
+    pub options: Options,
+}
+
+/// The choices that a scene, the macro's keys, or the command line's flags make.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Whether the root link is fixed.
+    pub base: Base,
+    /// Gravity in the base frame, m/s².
+    pub gravity: [f64; 3],
+    /// Names of the functions wanted, see [`articulated_core::algorithm::functions`].
+    pub functions: Vec<String>,
+    /// Accept inertias that no body can have.
+    pub allow_unphysical_inertia: bool,
+    /// Take angles this near (rad) to a multiple of π/2 as that multiple; every one is reported. `None`: never.
+    pub snap_angles: Option<f64>,
+    /// Rust names to use instead of those made from the URDF's names: (name in the URDF, name in Rust).
+    pub rename: Vec<(String, String)>,
+    /// Path of the runtime crate, to implement its trait `Dynamics`; `None`: the code depends on nothing but `core` and `std`.
+    pub runtime: Option<String>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            base: Base::Fixed,
+            gravity: GRAVITY,
+            functions: vec!["placements".into(), "inverse_dynamics".into()],
+            allow_unphysical_inertia: false,
+            snap_angles: None,
+            rename: Vec::new(),
+            runtime: None,
+        }
+    }
+}
+
+impl Request {
+    /// A request with default options: fixed base, standard gravity, `placements` and `inverse_dynamics`.
+    pub fn new(file: impl Into<String>, urdf: impl Into<Vec<u8>>) -> Self {
+        Self { urdf: urdf.into(), file: file.into(), options: Options::default() }
+    }
+}
