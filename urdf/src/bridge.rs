@@ -5,21 +5,26 @@ use urdf_rs::{JointType, Pose, Robot};
 
 use crate::draft::Draft;
 use crate::log::{Log, Place};
-use crate::plain;
+use crate::plain::{self, Piece};
 use crate::problem::Kind;
 use crate::tree::Tree;
 
-/// The robot as `urdf-rs` reads it from the plain document. An internal error, if it differs from the draft.
+/// The robot as `urdf-rs` reads it from the plain documents. An internal error, if it differs from the draft.
 pub(crate) fn describe(draft: &Draft, tree: &Tree, leaders: &[Option<usize>], log: &mut Log) -> Option<Description> {
     let expected = described(draft, tree, leaders)?;
-    let robot = match urdf_rs::read_from_string(&plain::document(draft, tree, leaders)) {
-        Ok(robot) => robot,
-        Err(error) => return internal(format!("an error of urdf-rs: {error}"), log),
-    };
-    match read_back(&robot, draft) {
-        Some(description) if description == expected => Some(description),
-        Some(_) => internal("another robot read by urdf-rs".to_owned(), log),
-        None => internal("a robot of another shape read by urdf-rs".to_owned(), log),
+    let mut description = Description { name: draft.name.clone(), ..Description::default() };
+    for piece in plain::pieces(draft, tree, leaders) {
+        let robot = match urdf_rs::read_from_string(&piece.text) {
+            Ok(robot) => robot,
+            Err(error) => return internal(format!("an error of urdf-rs: {error}"), log),
+        };
+        if read_back(&robot, &piece, draft, &mut description).is_none() {
+            return internal("a robot of another shape read by urdf-rs".to_owned(), log);
+        }
+    }
+    match description == expected {
+        true => Some(description),
+        false => internal("another robot read by urdf-rs".to_owned(), log),
     }
 }
 
@@ -53,19 +58,18 @@ fn described(draft: &Draft, tree: &Tree, leaders: &[Option<usize>]) -> Option<De
     Some(Description { name: draft.name.clone(), links: links.collect::<Option<_>>()?, joints: joints.collect::<Option<_>>()? })
 }
 
-/// The names are the draft's: the plain document has indices in their place.
-fn read_back(robot: &Robot, draft: &Draft) -> Option<Description> {
-    if robot.links.len() != draft.links.len() || robot.joints.len() != draft.joints.len() {
+/// Adds what `urdf-rs` read from a piece. The names are the draft's: the piece has indices in their place.
+fn read_back(robot: &Robot, piece: &Piece, draft: &Draft, into: &mut Description) -> Option<()> {
+    if robot.links.len() != piece.links || robot.joints.len() != piece.joints {
         return None;
     }
-    let mut description = Description { name: draft.name.clone(), ..Description::default() };
-    for (i, link) in robot.links.iter().enumerate() {
-        description.links.push(read_link(link, i, draft)?);
+    for link in &robot.links {
+        into.links.push(read_link(link, into.links.len(), draft)?);
     }
-    for (i, joint) in robot.joints.iter().enumerate() {
-        description.joints.push(read_joint(joint, i, draft)?);
+    for joint in &robot.joints {
+        into.joints.push(read_joint(joint, into.joints.len(), draft)?);
     }
-    Some(description)
+    Some(())
 }
 
 fn read_link(link: &urdf_rs::Link, index: usize, draft: &Draft) -> Option<Link> {

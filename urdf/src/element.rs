@@ -61,7 +61,7 @@ impl<'a> Tag<'a> {
 
     /// An attribute's value and line.
     pub(crate) fn attribute(&self, name: &str) -> Option<(&'a str, u32)> {
-        let attribute = self.attributes().find(|a| a.name() == name)?;
+        let attribute = self.node.attribute_node(name)?;
         Some((attribute.value(), self.lines.at(attribute.range().start)))
     }
 

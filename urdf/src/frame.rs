@@ -53,17 +53,19 @@ fn right_angle(angle: f64, tolerance: f64) -> Option<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
 
     #[test]
     fn only_what_is_within_the_tolerance_snaps() {
-        assert_eq!(right_angle(1.5708, 1e-5), Some((1.0, FRAC_PI_2)));
-        assert_eq!(right_angle(-3.1416, 1e-5), Some((-2.0, -2.0 * FRAC_PI_2)));
+        assert_eq!(right_angle(FRAC_PI_2 + 4e-6, 1e-5), Some((1.0, FRAC_PI_2)));
+        assert_eq!(right_angle(4e-6 - PI, 1e-5), Some((-2.0, -PI)));
         assert_eq!(right_angle(1e-7, 1e-5), Some((0.0, 0.0)));
-        assert_eq!(right_angle(1.5708, 1e-6), None);
+        assert_eq!(right_angle(FRAC_PI_2 + 4e-6, 1e-6), None);
         assert_eq!(right_angle(FRAC_PI_2, 1e-5), None);
         assert_eq!(right_angle(0.0, 1e-5), None);
-        assert_eq!(right_angle(1.5708, f64::NAN), None);
+        assert_eq!(right_angle(FRAC_PI_2 + 4e-6, f64::NAN), None);
         assert_eq!(right_angle(1e300, 1.0), None);
     }
 }

@@ -95,6 +95,17 @@ pub fn read(bytes: &[u8], options: &Options) -> Result<Reading, Problems> {
 }
 
 fn read_into(bytes: &[u8], options: &Options, log: &mut Log) -> Option<Description> {
+    let draft = draft(bytes, options, log)?;
+    let tree = tree::connect(&draft, log);
+    let leaders = mimic::leaders(&draft.joints, log);
+    let tree = tree.filter(|_| log.errors.is_empty())?;
+    if options.base == Base::Fixed {
+        base::report(&draft, &tree, log);
+    }
+    bridge::describe(&draft, &tree, &leaders, log)
+}
+
+fn draft(bytes: &[u8], options: &Options, log: &mut Log) -> Option<draft::Draft> {
     let text = document::text(bytes, log)?;
     let lines = lines::Lines::of(&text);
     let document = document::parse(&text, &lines, log)?;
@@ -102,15 +113,5 @@ fn read_into(bytes: &[u8], options: &Options, log: &mut Log) -> Option<Descripti
     if xacro::is_left_over(&robot, log) {
         return None;
     }
-    let draft = robot::draft(&robot, options, log);
-    let tree = tree::connect(&draft, log);
-    let leaders = mimic::leaders(&draft.joints, log);
-    if !log.errors.is_empty() {
-        return None;
-    }
-    let tree = tree?;
-    if options.base == Base::Fixed {
-        base::report(&draft, &tree, log);
-    }
-    bridge::describe(&draft, &tree, &leaders, log)
+    Some(robot::draft(&robot, options, log))
 }

@@ -7,8 +7,7 @@ pub(crate) struct Lines {
 
 impl Lines {
     pub(crate) fn of(text: &str) -> Self {
-        let ends = text.bytes().enumerate().filter(|(_, b)| *b == b'\n');
-        Self { ends: ends.map(|(i, _)| i).collect() }
+        Self { ends: text.match_indices('\n').map(|(i, _)| i).collect() }
     }
 
     /// The line of a byte, from 1.

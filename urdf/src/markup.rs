@@ -30,8 +30,8 @@ pub(crate) struct Fault {
 /// is: the XML reader says it better.
 pub(crate) fn prepare(text: &str) -> Result<String, Fault> {
     let mut look = Look { text, at: 0, out: String::with_capacity(text.len()), depth: 0, tags: 0 };
-    look.bound(b'=', MOST_EQUAL_SIGNS)?;
-    look.bound(b'<', MOST_TAGS * 2)?;
+    look.bound('=', MOST_EQUAL_SIGNS)?;
+    look.bound('<', MOST_TAGS * 2)?;
     while look.at < text.len() {
         look.step()?;
     }
@@ -52,9 +52,9 @@ impl<'a> Look<'a> {
         &self.text[self.at..]
     }
 
-    fn bound(&self, byte: u8, most: usize) -> Result<(), Fault> {
-        match self.text.bytes().filter(|b| *b == byte).count() {
-            n if n > most => Err(self.too_large(format!("{n} times '{}'", byte as char), most)),
+    fn bound(&self, sign: char, most: usize) -> Result<(), Fault> {
+        match self.text.matches(sign).count() {
+            n if n > most => Err(self.too_large(format!("{n} times '{sign}'"), most)),
             _ => Ok(()),
         }
     }
@@ -146,7 +146,7 @@ impl<'a> Look<'a> {
         loop {
             let rest = self.rest();
             let skip = usize::from(rest.starts_with('<'));
-            let Some(end) = rest[skip..].find(['"', '\'', '>', '<']).map(|end| end + skip) else {
+            let Some(end) = rest.bytes().skip(skip).position(|b| matches!(b, b'"' | b'\'' | b'>' | b'<')).map(|end| end + skip) else {
                 self.names(rest.len());
                 return Ok(());
             };

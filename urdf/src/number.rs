@@ -17,34 +17,16 @@ pub(crate) enum Fault {
 
 /// The number that a word without blanks spells.
 pub(crate) fn parse(word: &str) -> Result<f64, Fault> {
-    if !is_decimal(word) {
+    // With these signs alone, Rust's own grammar is the one above.
+    let plain = word.bytes().all(|b| matches!(b, b'0'..=b'9' | b'+' | b'-' | b'.' | b'e' | b'E'));
+    if !plain {
         return Err(if names_infinity(word) { Fault::NotFinite } else { Fault::NotANumber });
     }
-    let value: f64 = word.parse().map_err(|_| Fault::NotANumber)?;
-    match value {
-        v if !v.is_finite() => Err(Fault::NotFinite),
+    match word.parse().map_err(|_| Fault::NotANumber)? {
+        v if !f64::is_finite(v) => Err(Fault::NotFinite),
         v if v == 0.0 && !spells_zero(word) => Err(Fault::Vanishes),
         v => Ok(v),
     }
-}
-
-fn is_decimal(word: &str) -> bool {
-    let word = word.strip_prefix(['+', '-']).unwrap_or(word);
-    let (mantissa, exponent) = match word.split_once(['e', 'E']) {
-        Some((mantissa, exponent)) => (mantissa, Some(exponent)),
-        None => (word, None),
-    };
-    let (whole, part) = mantissa.split_once('.').unwrap_or((mantissa, ""));
-    are_digits(whole) && are_digits(part) && !(whole.is_empty() && part.is_empty()) && exponent.is_none_or(is_integer)
-}
-
-fn are_digits(word: &str) -> bool {
-    word.bytes().all(|b| b.is_ascii_digit())
-}
-
-fn is_integer(word: &str) -> bool {
-    let digits = word.strip_prefix(['+', '-']).unwrap_or(word);
-    !digits.is_empty() && are_digits(digits)
 }
 
 fn names_infinity(word: &str) -> bool {
@@ -65,36 +47,46 @@ pub(crate) fn attribute(tag: &Tag<'_>, name: &str, log: &mut Log) -> Option<f64>
 /// The `N` numbers in an attribute, if it is there and right.
 pub(crate) fn attribute_list<const N: usize>(tag: &Tag<'_>, name: &str, log: &mut Log) -> Option<[f64; N]> {
     let (value, line) = tag.attribute(name)?;
-    let field = format!("{} {name}", tag.name());
-    let place = Place { line: Some(line), ..tag.place(&field) };
-    list(value, &place, log)
+    checked(value, line, tag, name, log)
 }
 
 /// The number in an attribute that has to be there.
 pub(crate) fn required(tag: &Tag<'_>, name: &str, log: &mut Log) -> Option<f64> {
-    tag.required_attribute(name, log)?;
-    attribute(tag, name, log)
+    let (value, line) = tag.required_attribute(name, log)?;
+    checked(value, line, tag, name, log).map(|[number]| number)
 }
 
-fn list<const N: usize>(value: &str, place: &Place<'_>, log: &mut Log) -> Option<[f64; N]> {
+fn checked<const N: usize>(value: &str, line: u32, tag: &Tag<'_>, name: &str, log: &mut Log) -> Option<[f64; N]> {
+    let wrong = match list(value) {
+        Ok(numbers) => return Some(numbers),
+        Err(wrong) => wrong,
+    };
+    let field = format!("{} {name}", tag.name());
+    let place = Place { line: Some(line), ..tag.place(&field) };
+    match wrong {
+        Wrong::Word(word, fault) => complain(fault, word, value, &place, log),
+        Wrong::Count(count) => {
+            log.error(&place, Kind::WrongCount, format!("{count} numbers in {}", quote(value)), expected_count(N));
+        }
+    }
+    None
+}
+
+/// What is wrong with a list of numbers: its first bad word, or else how many there are.
+enum Wrong<'a> {
+    Word(&'a str, Fault),
+    Count(usize),
+}
+
+fn list<const N: usize>(value: &str) -> Result<[f64; N], Wrong<'_>> {
     let mut numbers = [0.0; N];
     let mut count = 0;
-    let mut good = true;
-    for word in value.split([' ', '\t', '\n', '\r']).filter(|w| !w.is_empty()) {
-        match parse(word) {
-            Ok(number) => numbers.get_mut(count).into_iter().for_each(|n| *n = number),
-            Err(fault) if good => {
-                complain(fault, word, value, place, log);
-                good = false;
-            }
-            Err(_) => {}
-        }
+    for word in value.split_ascii_whitespace() {
+        let number = parse(word).map_err(|fault| Wrong::Word(word, fault))?;
+        numbers.get_mut(count).into_iter().for_each(|n| *n = number);
         count += 1;
     }
-    if good && count != N {
-        log.error(place, Kind::WrongCount, format!("{count} numbers in {}", quote(value)), expected_count(N));
-    }
-    (good && count == N).then_some(numbers)
+    if count == N { Ok(numbers) } else { Err(Wrong::Count(count)) }
 }
 
 fn expected_count(n: usize) -> String {

@@ -1,0 +1,244 @@
+//! What is quietly right, what is right with a warning, and what is reported as unused.
+
+mod corpus;
+
+use std::f64::consts::FRAC_PI_2;
+
+use articulated_core::description::{Base, Joint, JointDynamics, JointKind, Limit, Mimic, Origin};
+use articulated_urdf::{Kind, Options, Subject, read};
+use corpus::{CRANE, accepted, crane, described, options};
+
+fn joint(text: &str, name: &str) -> Joint {
+    let description = described(text);
+    description.joints[description.joint(name).unwrap()].clone()
+}
+
+#[test]
+fn the_description_says_what_the_file_says() {
+    let crane = described(CRANE);
+    assert_eq!(crane.name, "crane");
+    let names: Vec<&str> = crane.links.iter().map(|l| l.name.as_str()).collect();
+    assert_eq!(names, ["tower", "boom", "trolley", "hook", "lamp"]);
+    let boom = crane.links[1].inertial.unwrap();
+    assert_eq!(boom.origin, Origin { xyz: [1.5, 0.0, 0.1], rpy: [0.0, 0.1, 0.0] });
+    assert_eq!((boom.mass, boom.inertia), (40.0, [2.0, 0.1, 0.0, 30.0, 0.0, 31.0]));
+    assert!(crane.links[0].inertial.is_none());
+    let swing = &crane.joints[2];
+    assert_eq!((swing.kind, swing.parent, swing.child, swing.axis), (JointKind::Revolute, 2, 3, [0.0, 1.0, 0.0]));
+    assert_eq!(swing.limit, Some(Limit { lower: -1.0, upper: 1.0, effort: 10.0, velocity: 2.0 }));
+    assert_eq!(swing.dynamics, Some(JointDynamics { damping: 0.5, friction: 0.1 }));
+    assert_eq!((crane.joints[0].limit, crane.joints[0].mimic), (None, None));
+    assert_eq!(crane.joints[0].origin.xyz, [0.0, 0.0, 12.0]);
+    assert_eq!(crane.joints[3].kind, JointKind::Fixed);
+}
+
+#[test]
+fn other_spellings_of_the_same_document_are_the_same_robot() {
+    let same = [
+        format!("\u{feff}{CRANE}"),
+        CRANE.replace('\n', "\r\n"),
+        format!("\n \n{CRANE}"),
+        CRANE.replace("<?xml version=\"1.0\"?>\n", ""),
+        CRANE.replace('"', "'"),
+        crane("<robot ", "<!-- a -- comment --><robot xmlns=\"http://example.org/urdf\" "),
+        crane("\"0 0 12\"", "\"\n 0\t+0.\r\n1.2E+1 \""),
+        crane("value=\"40\"", "value=\" 4e1 \""),
+        crane("ixy=\"0.1\"", "ixy=\"+.1\""),
+        crane("<link name=\"lamp\"/>", "<link name=\"&#108;amp\"/>"),
+    ];
+    for text in same {
+        assert_eq!(described(&text), described(CRANE), "{text}");
+    }
+}
+
+#[test]
+fn numbers_are_read_to_the_last_bit() {
+    let spellings = ["0.1", "1e-20", "123456789.123456789", "4.9e-324", "1.7976931348623157e308", "-2.2250738585072014e-308", "3e22"];
+    for word in spellings {
+        let origin = joint(&crane("0 0 12", &format!("{word} 0 -0")), "slew").origin.xyz;
+        assert_eq!(origin[0].to_bits(), word.parse::<f64>().unwrap().to_bits(), "{word}");
+        assert_eq!(origin[2].to_bits(), (-0.0_f64).to_bits());
+    }
+}
+
+#[test]
+fn joints_and_links_stand_in_any_order() {
+    let start = CRANE.find("  <link name=\"tower\"").unwrap();
+    let middle = CRANE.find("  <joint name=\"slew\"").unwrap();
+    let end = CRANE.find("</robot>").unwrap();
+    let text = [&CRANE[..start], &CRANE[middle..end], &CRANE[start..middle], &CRANE[end..]].concat();
+    assert_eq!(described(&text), described(CRANE));
+}
+
+#[test]
+fn names_may_be_anything_and_links_and_joints_may_share_them() {
+    for name in ["left arm", " a ", "a/b:c[0]", "π-Gelenk", "🦾", "&lt;&amp;&quot;", "fn", "1", "a&#10;b"] {
+        let text = CRANE.replace("\"boom\"", &format!("\"{name}\"")).replace("\"slew\"", &format!("\"{name}\""));
+        let description = described(&text);
+        assert_eq!(description.links[1].name, description.joints[0].name);
+        assert_eq!(description.joints[1].parent, 1);
+    }
+}
+
+#[test]
+fn axes_stay_as_written_and_default_to_x() {
+    assert_eq!(joint(&crane("0 1 0", "0 2 -2e-3"), "swing").axis, [0.0, 2.0, -2e-3]);
+    assert_eq!(joint(&crane("<axis xyz=\"0 0 1\"/>", ""), "slew").axis, [1.0, 0.0, 0.0]);
+}
+
+#[test]
+fn what_a_joint_has_no_use_for_is_reported_and_not_read() {
+    let text = crane("<child link=\"lamp\"/>", "<child link=\"lamp\"/><axis xyz=\"0 0 0\"/><limit/><dynamics/>");
+    let reading = accepted(&text);
+    let mount = &reading.description.joints[3];
+    assert_eq!((mount.axis, mount.limit, mount.dynamics), ([1.0, 0.0, 0.0], None, None));
+    let tags: Vec<&str> = reading.unused.iter().filter(|u| u.subject == Subject::Joint("mount".into())).map(|u| u.tag.as_str()).collect();
+    assert_eq!(tags, ["axis", "limit", "dynamics"]);
+}
+
+#[test]
+fn floating_and_planar_joints_are_described() {
+    for (name, kind) in [("floating", JointKind::Floating), ("planar", JointKind::Planar)] {
+        let slew = joint(&CRANE.replace("\"continuous\"", &format!("\"{name}\"")), "slew");
+        assert_eq!(slew.kind, kind);
+        let axis = if kind == JointKind::Planar { [0.0, 0.0, 1.0] } else { [1.0, 0.0, 0.0] };
+        assert_eq!(slew.axis, axis);
+    }
+}
+
+#[test]
+fn limits_that_are_left_open_are_infinite() {
+    let text = crane("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 1\"/><limit lower=\"-1\" effort=\"9\" velocity=\"2\"/>");
+    let reading = accepted(&text);
+    let limit = reading.description.joints[0].limit.unwrap();
+    assert_eq!(limit, Limit { lower: f64::NEG_INFINITY, upper: f64::INFINITY, effort: 9.0, velocity: 2.0 });
+    assert!(reading.unused.iter().any(|u| u.tag == "limit lower" && u.line == Some(23)));
+    assert!(reading.warnings.is_empty());
+    let open = CRANE.replace("<robot ", "<robot version=\"1.2\" ").replace("lower=\"0\" upper=\"3\" effort=\"100\"", "");
+    let travel = joint(&open, "travel").limit.unwrap();
+    assert_eq!((travel.lower, travel.upper, travel.effort), (f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY));
+}
+
+#[test]
+fn mimics_have_defaults_and_chains() {
+    let text = crane("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"travel\"/>")
+        .replace("<axis xyz=\"1 0 0\"/>", "<axis xyz=\"1 0 0\"/><mimic joint=\"slew\" multiplier=\"-2\" offset=\".5\"/>");
+    let crane = described(&text);
+    assert_eq!(crane.joints[2].mimic, Some(Mimic { joint: 1, multiplier: 1.0, offset: 0.0 }));
+    assert_eq!(crane.joints[1].mimic, Some(Mimic { joint: 0, multiplier: -2.0, offset: 0.5 }));
+}
+
+#[test]
+fn angles_snap_only_where_that_is_asked_for() {
+    let text = crane("rpy=\"0 0 0\"", "rpy=\"1.5708 0 -3.1416\"");
+    let plain = accepted(&text);
+    assert!(plain.snapped.is_empty());
+    assert_eq!(plain.description.joints[0].origin.rpy[0].to_string(), "1.5708");
+    let snapping = Options { snap_angles: Some(1e-5), ..options() };
+    let reading = read(text.as_bytes(), &snapping).unwrap();
+    assert_eq!(reading.description.joints[0].origin.rpy, [FRAC_PI_2, 0.0, -2.0 * FRAC_PI_2]);
+    assert_eq!(reading.snapped.len(), 2);
+    assert!(reading.snapped[0].to_string().contains("\"slew\": origin rpy: found 1.5708"), "{}", reading.snapped[0]);
+    let fine = Options { snap_angles: Some(1e-6), ..options() };
+    assert!(read(text.as_bytes(), &fine).unwrap().snapped.is_empty());
+}
+
+#[test]
+fn the_size_of_units_does_not_matter() {
+    let nano = crane("ixx=\"2\" ixy=\"0.1\"", "ixx=\"2e-20\" ixy=\"1e-21\"")
+        .replace("iyy=\"30\"", "iyy=\"3e-19\"")
+        .replace("\"31\"", "\"3.1e-19\"");
+    assert!(accepted(&nano).warnings.is_empty());
+    // A thin rod, and a plate whose moments were rounded.
+    for (xx, yy, zz) in [("0", "1e-3", "1e-3"), ("1e-3", "2e-3", "3.0000001e-3"), ("-1e-13", "1e-3", "1e-3"), ("0", "0", "0")] {
+        let text = crane("ixx=\"2\" ixy=\"0.1\"", &format!("ixx=\"{xx}\" ixy=\"0\"")).replace("\"30\"", &format!("\"{yy}\""));
+        assert!(accepted(&text.replace("\"31\"", &format!("\"{zz}\""))).warnings.is_empty(), "{xx} {yy} {zz}");
+    }
+}
+
+#[test]
+fn what_looks_wrong_is_a_warning_and_used_as_written() {
+    let cases = [
+        ("izz=\"31\"", "izz=\"33\"", Kind::InertiaTriangle, "boom", 5),
+        ("value=\"40\"", "value=\"0\"", Kind::InertiaWithoutMass, "boom", 5),
+        ("lower=\"0\"", "lower=\"4\"", Kind::LimitOrder, "travel", 29),
+        ("effort=\"100\"", "effort=\"-1\"", Kind::Negative, "travel", 29),
+        ("effort=\"100\"", "", Kind::LimitIncomplete, "travel", 29),
+        ("lower=\"0\" upper=\"3\"", "", Kind::LimitIncomplete, "travel", 29),
+        ("<limit lower=\"-1\" upper=\"1\" effort=\"10\" velocity=\"2\"/>", "", Kind::LimitMissing, "swing", 31),
+        ("damping=\"0.5\"", "damping=\"-0.5\"", Kind::Negative, "swing", 36),
+        ("<link name=\"hook\"/>", "<link name=\"hook\"><inertal/></link>", Kind::Misspelt, "hook", 17),
+        ("effort=\"100\"", "effort=\"100\" efort=\"1\"", Kind::Misspelt, "travel", 29),
+        ("<robot ", "<robot version=\"7\" ", Kind::Version, "", 2),
+    ];
+    for (from, to, kind, name, line) in cases {
+        let warnings = accepted(&crane(from, to)).warnings;
+        let found: Vec<_> = warnings.iter().map(|w| (w.kind, w.line)).collect();
+        assert_eq!(found, [(kind, Some(line))], "{to}");
+        assert!(warnings[0].to_string().contains(name));
+    }
+    let travel = joint(&crane("lower=\"0\"", "lower=\"4\""), "travel").limit.unwrap();
+    assert_eq!((travel.lower, travel.upper), (4.0, 3.0));
+}
+
+#[test]
+fn mass_on_a_fixed_base_is_one_warning_that_names_the_links() {
+    let mass = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>";
+    let text = crane("<link name=\"tower\"/>", &format!("<link name=\"tower\">{mass}"))
+        .replace("<link name=\"lamp\"/>", &format!("<link name=\"lamp\">{mass}"));
+    let reading = accepted(&text);
+    assert_eq!(reading.warnings.len(), 1);
+    assert_eq!(reading.warnings[0].kind, Kind::UnusedInertia);
+    let message = reading.warnings[0].to_string();
+    assert!(message.contains("\"tower\"") && message.contains("\"lamp\"") && !message.contains("\"boom\""), "{message}");
+    assert_eq!(reading.unused.iter().filter(|u| u.tag == "inertial").count(), 2);
+    assert_eq!(reading.description.links[0].inertial.unwrap().mass, 1.0);
+    let floating = read(text.as_bytes(), &Options { base: Base::Floating, ..options() }).unwrap();
+    assert!(floating.warnings.is_empty() && floating.unused.iter().all(|u| u.tag != "inertial"));
+}
+
+const EXTENSIONS: &str = r#"
+  <transmission name="t"><joint name="slew"><x/></joint><actuator name="${motor}"/></transmission>
+  <gazebo reference="boom"><link name="ghost"/><sensor:x y:z="1"/></gazebo>
+  <ros2_control name="c" type="system"><joint name="slew"/></ros2_control>
+  <drake:joint name="d"/>
+  <material name="red"><color rgba="1 0 0 1"/></material>
+</robot>"#;
+
+#[test]
+fn extensions_are_no_part_of_the_tree_and_are_reported() {
+    let reading = accepted(&crane("</robot>", EXTENSIONS));
+    assert_eq!(reading.description, described(CRANE));
+    assert!(reading.warnings.is_empty());
+    let tags: Vec<(&str, Option<u32>)> =
+        reading.unused.iter().filter(|u| u.subject == Subject::Document).map(|u| (u.tag.as_str(), u.line)).collect();
+    let lines = [43, 44, 45, 46, 47].map(Some);
+    let names = ["transmission", "gazebo", "ros2_control", "drake:joint", "material"];
+    assert_eq!(tags, names.into_iter().zip(lines).collect::<Vec<_>>());
+}
+
+#[test]
+fn content_of_links_and_joints_that_is_not_used_is_reported() {
+    let text = crane(
+        "<link name=\"hook\"/>",
+        "<link name=\"hook\" type=\"steel\"><visual><geometry><mesh filename=\"/no/such/file.stl\"/></geometry></visual>
+         <collision/><odd/></link>",
+    )
+    .replace("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 1\" frame=\"child\"/><calibration rising=\"x\"/><safety_controller/>");
+    let reading = accepted(&text);
+    let tags: Vec<String> = reading.unused.iter().map(|u| format!("{} {}", u.subject, u.tag)).collect();
+    for expected in [
+        "link \"hook\" link type",
+        "link \"hook\" visual",
+        "link \"hook\" collision",
+        "link \"hook\" <odd>",
+        "joint \"slew\" axis frame",
+        "joint \"slew\" calibration",
+        "joint \"slew\" safety_controller",
+        "joint \"swing\" dynamics damping",
+        "joint \"swing\" dynamics friction",
+    ] {
+        let expected = expected.replace(['<', '>'], "");
+        assert!(tags.contains(&expected), "{expected} in {tags:#?}");
+    }
+}

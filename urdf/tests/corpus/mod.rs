@@ -1,0 +1,44 @@
+//! A sound robot, and ways to spoil it.
+#![allow(dead_code, reason = "each test file uses a part")]
+
+use articulated_core::description::Description;
+use articulated_urdf::{Options, Problem, Problems, Reading, read};
+
+/// A crane: five links, joints of four types, no warnings.
+pub(crate) const CRANE: &str = include_str!("crane.urdf");
+
+/// The crane with one change, which has to apply exactly once.
+pub(crate) fn crane(from: &str, to: &str) -> String {
+    assert_eq!(CRANE.matches(from).count(), 1, "{from}");
+    CRANE.replace(from, to)
+}
+
+pub(crate) fn options() -> Options {
+    Options { file: "crane.urdf".to_owned(), ..Options::default() }
+}
+
+pub(crate) fn accepted(text: &str) -> Reading {
+    read(text.as_bytes(), &options()).unwrap_or_else(|problems| panic!("{problems}\n{text}"))
+}
+
+pub(crate) fn described(text: &str) -> Description {
+    accepted(text).description
+}
+
+pub(crate) fn refused(text: &str) -> Problems {
+    refused_bytes(text.as_bytes())
+}
+
+pub(crate) fn refused_bytes(bytes: &[u8]) -> Problems {
+    match read(bytes, &options()) {
+        Ok(_) => panic!("accepted: {}", String::from_utf8_lossy(bytes)),
+        Err(problems) => problems,
+    }
+}
+
+/// The only error of a text.
+pub(crate) fn only_error(text: &str) -> Problem {
+    let problems = refused(text);
+    assert_eq!(problems.errors.len(), 1, "{problems}\n{text}");
+    problems.errors[0].clone()
+}

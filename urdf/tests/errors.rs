@@ -1,0 +1,218 @@
+//! Each mistake alone: its kind, its line, whom it names; and all mistakes of a file together.
+
+mod corpus;
+
+use articulated_urdf::{Kind, Options, Subject, read};
+use corpus::{CRANE, crane, only_error, options, refused, refused_bytes};
+
+/// One mistake: what is replaced by what; the kind and line of the error; words of the message.
+type Mistake = (&'static str, &'static str, Kind, u32, &'static [&'static str]);
+
+const MISTAKES: &[Mistake] = &[
+    // Names.
+    ("<robot name=\"crane\">", "<robot>", Kind::MissingAttribute, 2, &["name"]),
+    ("<robot name=\"crane\">", "<robot name=\" \">", Kind::EmptyName, 2, &["name", "empty"]),
+    ("<link name=\"hook\"/>", "<link name=\"hook\"/><link/>", Kind::MissingAttribute, 17, &["name"]),
+    ("<link name=\"hook\"/>", "<link name=\"hook\"/><link name=\"\"/>", Kind::EmptyName, 17, &["empty"]),
+    ("<link name=\"lamp\"/>", "<link name=\"lamp\"/><link name=\"boom\"/>", Kind::DuplicateName, 18, &["boom", "already", "line 4"]),
+    ("name=\"travel\"", "name=\"slew\"", Kind::DuplicateName, 25, &["slew", "duplicate", "line 19"]),
+    ("name=\"travel\"", "", Kind::MissingAttribute, 25, &["name"]),
+    // Numbers.
+    ("value=\"40\"", "value=\"nan\"", Kind::NotFinite, 7, &["boom", "mass value", "nan", "finite"]),
+    ("value=\"40\"", "value=\"1e999\"", Kind::NotFinite, 7, &["boom", "1e999"]),
+    ("value=\"40\"", "value=\"1e-999\"", Kind::NotFinite, 7, &["boom", "too small"]),
+    ("value=\"40\"", "value=\"0x1p3\"", Kind::NotANumber, 7, &["boom", "0x1p3", "number"]),
+    ("value=\"40\"", "value=\"40 kg\"", Kind::NotANumber, 7, &["boom", "kg"]),
+    ("value=\"40\"", "value=\"\"", Kind::WrongCount, 7, &["boom", "one number"]),
+    ("value=\"40\"", "value=\"4 0\"", Kind::WrongCount, 7, &["boom", "2 numbers"]),
+    ("ixx=\"2\"", "ixx=\"2,5\"", Kind::NotANumber, 8, &["boom", "inertia ixx", "2,5"]),
+    ("0 0 12", "0 0 12abc", Kind::NotANumber, 22, &["slew", "12abc"]),
+    ("0 0 12", "0 12", Kind::WrongCount, 22, &["slew", "three numbers"]),
+    ("0 0 12", "0 0 12 0", Kind::WrongCount, 22, &["slew", "4 numbers"]),
+    ("0 1 0", "0 inf 0", Kind::NotFinite, 34, &["swing", "axis xyz"]),
+    ("upper=\"3\"", "upper=\"three\"", Kind::NotANumber, 29, &["travel", "limit upper"]),
+    ("damping=\"0.5\"", "damping=\"-\"", Kind::NotANumber, 36, &["swing", "dynamics damping"]),
+    ("\"0 0.1 0\"", "\"0 0.1 0\" quat_xyzw=\"0 0 0 1\"", Kind::Unsupported, 6, &["boom", "rpy"]),
+    // Mass.
+    ("value=\"40\"", "value=\"-40\"", Kind::NegativeMass, 5, &["boom", "negative", "mass"]),
+    ("<mass value=\"40\"/>", "", Kind::MissingTag, 5, &["boom", "<mass>"]),
+    ("<mass value=\"40\"/>", "<mass>40</mass>", Kind::MissingAttribute, 7, &["boom", "value"]),
+    ("izz=\"31\"", "", Kind::MissingAttribute, 8, &["boom", "izz"]),
+    ("izz=\"31\"", "izz=\"-31\"", Kind::InertiaNotPositive, 5, &["boom", "inertia", "positive"]),
+    ("ixy=\"0.1\"", "ixy=\"20\"", Kind::InertiaNotPositive, 5, &["boom", "inertia", "positive"]),
+    ("<mass value=\"40\"/>", "<mass value=\"40\"/><mass value=\"4\"/>", Kind::DuplicateTag, 7, &["boom", "second <mass>"]),
+    ("<mass value=\"5\"/>", "<mass value=\"5\"/><origin/><origin/>", Kind::DuplicateTag, 13, &["trolley", "second <origin>"]),
+    ("izz=\"0.1\"/>\n    </inertial>", "izz=\"0.1\"/></inertial>\n<inertial/>", Kind::DuplicateTag, 15, &["trolley", "second <inertial>"]),
+    // Joints.
+    ("type=\"continuous\"", "", Kind::MissingAttribute, 19, &["slew", "type"]),
+    ("type=\"continuous\"", "type=\"continous\"", Kind::UnknownJointType, 19, &["slew", "type", "continous", "mean \"continuous\""]),
+    ("type=\"continuous\"", "type=\"Continuous\"", Kind::UnknownJointType, 19, &["slew", "type"]),
+    ("type=\"continuous\"", "type=\"spherical\"", Kind::UnknownJointType, 19, &["slew", "spherical"]),
+    ("0 0 1\"", "0 -0 0.0\"", Kind::ZeroAxis, 23, &["slew", "axis", "zero"]),
+    ("0 0 1\"", "0 1e-200 0\"", Kind::ZeroAxis, 23, &["slew", "axis"]),
+    ("<axis xyz=\"0 0 1\"/>", "<axis/>", Kind::MissingAttribute, 23, &["slew", "xyz"]),
+    ("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 1\"/><axis xyz=\"0 0 1\"/>", Kind::DuplicateTag, 23, &["slew", "<axis>"]),
+    ("<child link=\"lamp\"/>", "<child/>", Kind::MissingAttribute, 40, &["mount", "link"]),
+    ("<child link=\"lamp\"/>", "<child link=\"\"/>", Kind::EmptyName, 40, &["mount", "empty"]),
+    ("<child link=\"lamp\"/>", "", Kind::MissingTag, 38, &["mount", "<child>"]),
+    ("<child link=\"lamp\"/>", "<child link=\"lamp\"/><child link=\"hook\"/>", Kind::DuplicateTag, 40, &["mount", "<child>"]),
+    // The tree.
+    ("<parent link=\"boom\"/>", "<parent link=\"bom\"/>", Kind::UnknownLink, 26, &["travel", "\"bom\"", "mean \"boom\""]),
+    ("<child link=\"hook\"/>", "<child link=\"crook\"/>", Kind::UnknownLink, 33, &["swing", "\"crook\"", "not"]),
+    ("<child link=\"lamp\"/>", "<child link=\"mast\"/>", Kind::UnknownLink, 40, &["mount", "\"mast\"", "not"]),
+    ("<link name=\"lamp\"/>", "<link name=\"lamp\"/><link name=\"stray\"/>", Kind::SeveralRoots, 18, &["stray", "tower", "root"]),
+    // Mimics.
+    ("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"swing\"/>", Kind::MimicRing, 34, &["swing", "mimic", "itself"]),
+    (
+        "<axis xyz=\"0 1 0\"/>",
+        "<axis xyz=\"0 1 0\"/><mimic joint=\"slow\"/>",
+        Kind::UnknownLeader,
+        34,
+        &["swing", "\"slow\"", "mean \"slew\""],
+    ),
+    ("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"mount\"/>", Kind::LeaderCannotLead, 34, &["swing", "\"mount\""]),
+    ("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic/>", Kind::MissingAttribute, 34, &["swing", "joint"]),
+    ("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"slew\" offset=\"x\"/>", Kind::NotANumber, 34, &["swing", "offset"]),
+    ("<child link=\"lamp\"/>", "<child link=\"lamp\"/><mimic joint=\"slew\"/>", Kind::FollowerCannotFollow, 40, &["mount", "mimic"]),
+    // The document.
+    ("<robot name=\"crane\">", "<!DOCTYPE robot [<!ENTITY a \"b\">]><robot name=\"&a;\">", Kind::Doctype, 2, &["DOCTYPE"]),
+    ("name=\"crane\"", "name=\"&crane;\"", Kind::Xml, 2, &["XML"]),
+    ("</robot>", "", Kind::Xml, 43, &["XML"]),
+    ("<child link=\"lamp\"/>", "<child link=\"lamp\">", Kind::Xml, 41, &["XML", "child"]),
+    ("value=\"40\"", "value=\"40\" value=\"41\"", Kind::Xml, 7, &["XML", "value"]),
+    ("value=\"40\"", "value=\"${mass}\"", Kind::Xacro, 7, &["xacro", "${mass}"]),
+    ("value=\"40\"", "value=\"$(arg mass)\"", Kind::Xacro, 7, &["xacro"]),
+    ("<link name=\"lamp\"/>", "<xacro:lamp/>", Kind::Xacro, 18, &["xacro:lamp", "run xacro first"]),
+];
+
+#[test]
+fn each_mistake_is_one_error_with_its_line_and_names() {
+    for (from, to, kind, line, words) in MISTAKES {
+        let error = only_error(&crane(from, to));
+        let message = error.to_string();
+        assert_eq!((error.kind, error.line), (*kind, Some(*line)), "{message}");
+        assert!(message.starts_with(&format!("crane.urdf:{line}: ")), "{message}");
+        assert!(words.iter().all(|word| message.contains(word)), "{message}\n{words:?}");
+        assert!(!message.contains('\n'), "{message}");
+    }
+}
+
+#[test]
+fn all_mistakes_of_a_file_are_reported_at_once() {
+    let text = crane("value=\"40\"", "value=\"-40\"")
+        .replace("0 0 12", "0 0 x")
+        .replace("<parent link=\"boom\"/>", "<parent link=\"bom\"/>")
+        .replace("xyz=\"0 1 0\"", "xyz=\"0 0 0\"");
+    let problems = refused(&text);
+    let kinds: Vec<Kind> = problems.errors.iter().map(|e| e.kind).collect();
+    assert_eq!(kinds, [Kind::NegativeMass, Kind::NotANumber, Kind::ZeroAxis, Kind::UnknownLink]);
+    assert_eq!(problems.to_string().lines().count(), 4);
+}
+
+#[test]
+fn a_ring_beside_the_tree_is_named() {
+    let text = crane("<link name=\"lamp\"/>", "<link name=\"lamp\"/><link name=\"a\"/><link name=\"b\"/>").replace(
+        "</robot>",
+        "<joint name='ab' type='fixed'><parent link='a'/><child link='b'/></joint>
+         <joint name='ba' type='fixed'><parent link='b'/><child link='a'/></joint></robot>",
+    );
+    let error = only_error(&text);
+    assert_eq!(error.kind, Kind::Ring);
+    assert!(error.found.contains("\"ab\"") && error.found.contains("\"ba\""), "{error}");
+}
+
+#[test]
+fn a_robot_that_is_a_ring_has_no_root() {
+    let error =
+        only_error("<robot name='r'><link name='a'/><joint name='aa' type='fixed'><parent link='a'/><child link='a'/></joint></robot>");
+    assert_eq!((error.kind, error.subject), (Kind::Ring, Subject::Link("a".to_owned())));
+}
+
+#[test]
+fn a_link_with_two_parents_is_named_with_both_joints() {
+    let joint = "<joint name='again' type='fixed'><parent link='tower'/><child link='hook'/></joint></robot>";
+    let error = only_error(&crane("</robot>", joint));
+    assert_eq!(error.kind, Kind::TwoParents);
+    let message = error.to_string();
+    assert!(["\"hook\"", "\"swing\"", "\"again\""].iter().all(|name| message.contains(name)), "{message}");
+}
+
+#[test]
+fn a_ring_of_mimics_is_one_error() {
+    let text = crane("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"travel\"/>")
+        .replace("<axis xyz=\"1 0 0\"/>", "<axis xyz=\"1 0 0\"/><mimic joint=\"swing\"/>");
+    let error = only_error(&text);
+    assert_eq!(error.kind, Kind::MimicRing);
+    assert!(error.found.contains("travel") && error.found.contains("swing"), "{error}");
+}
+
+#[test]
+fn leaders_with_several_coordinates_are_refused() {
+    for kind in ["floating", "planar"] {
+        let text = crane("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"slew\"/>");
+        let error = only_error(&text.replace("\"continuous\"", &format!("\"{kind}\"")));
+        assert_eq!(error.kind, Kind::LeaderCannotLead, "{kind}");
+    }
+}
+
+#[test]
+fn documents_that_are_no_robots_are_refused() {
+    let cases: &[(&[u8], Kind)] = &[
+        (b"", Kind::Xml),
+        (b"   \n", Kind::Xml),
+        (b"robot", Kind::Xml),
+        (b"<robot name='r'/>", Kind::NoLinks),
+        (b"<robot name='r'></robot>", Kind::NoLinks),
+        (b"<sdf><link name='l'/></sdf>", Kind::NotARobot),
+        (b"<Robot name='r'><link name='l'/></Robot>", Kind::NotARobot),
+        (b"<robot name='r'><link name='\xe9'/></robot>", Kind::NotUtf8),
+        (b"\xff\xfe<\0r\0/\0>\0", Kind::NotUtf8),
+        (b"<robot name='r'><link name='l'/></robot><robot/>", Kind::Xml),
+        (b"<robot name='r'><gazebo><link name='l'/></gazebo></robot>", Kind::NoLinks),
+        (b"<robot name='r'><!-- <link name='l'/> --></robot>", Kind::NoLinks),
+        (b"<!DOCTYPE robot SYSTEM 'other.dtd'><robot name='r'><link name='l'/></robot>", Kind::Doctype),
+    ];
+    for (bytes, kind) in cases {
+        let problems = refused_bytes(bytes);
+        assert_eq!(problems.errors.iter().map(|e| e.kind).collect::<Vec<_>>(), [*kind], "{problems}");
+        assert!(problems.errors[0].line.is_some(), "{problems}");
+    }
+}
+
+#[test]
+fn an_inertia_may_be_unphysical_where_that_is_asked_for() {
+    let text = crane("izz=\"31\"", "izz=\"-31\"");
+    let options = Options { allow_unphysical_inertia: true, ..options() };
+    let reading = read(text.as_bytes(), &options).unwrap();
+    assert_eq!(reading.warnings.len(), 1);
+    assert_eq!(reading.warnings[0].kind, Kind::InertiaNotPositive);
+    assert_eq!(reading.description.links[1].inertial.unwrap().inertia[5], -31.0);
+}
+
+#[test]
+fn warnings_come_with_the_errors() {
+    let text = crane("value=\"5\"", "value=\"0\"").replace("0 0 12", "0 0 x");
+    let problems = refused(&text);
+    assert_eq!((problems.errors.len(), problems.warnings.len()), (1, 1));
+    assert!(problems.to_string().lines().nth(1).unwrap().starts_with("warning: crane.urdf:12: link \"trolley\""));
+}
+
+#[test]
+fn a_message_stays_on_one_line_and_short() {
+    let long = format!("<link name=\"boom&#10;{}\">", "x".repeat(10_000));
+    let message = refused(&crane("<link name=\"boom\">", &long).replace("value=\"40\"", "value=\"-40\"")).errors[0].to_string();
+    assert!(message.len() < 500 && !message.contains('\n'), "{message}");
+}
+
+#[test]
+fn very_many_errors_are_counted() {
+    let joints = "<joint name='j' type='?'><parent link='x'/><child link='y'/></joint>".repeat(2000);
+    let problems = refused(&crane("</robot>", &format!("{joints}</robot>")));
+    assert_eq!(problems.errors.len(), 1001);
+    assert_eq!(problems.errors[1000].kind, Kind::More);
+}
+
+#[test]
+fn the_sound_robot_is_sound() {
+    assert!(corpus::accepted(CRANE).warnings.is_empty());
+}
