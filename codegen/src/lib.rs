@@ -71,7 +71,7 @@ pub fn generate(request: &Request) -> Result<Generated, Error> {
         programs.push((function, program));
         ledger.functions.push(entry);
     }
-    let source = emit::module(request, &model, &names, &programs, &ledger);
+    let source = emit::module(request, &model, &names, &programs, &ledger) + &emit::warnings(&warnings);
     Ok(Generated { source, model, ledger, warnings, unused, snapped })
 }
 
@@ -98,10 +98,9 @@ fn reader_options(request: &Request) -> articulated_urdf::Options {
 
 /// The functions that the request names, each once.
 fn wanted(request: &Request, _model: &Model<f64>) -> Result<Vec<&'static Function<Sym>>, Error> {
-    let all = functions::<Sym>();
     let mut wanted: Vec<&Function<Sym>> = Vec::new();
     for name in &request.options.functions {
-        let function = all.iter().find(|f| f.name == name).ok_or_else(|| unknown(name))?;
+        let function = function(name)?;
         if !wanted.iter().any(|f| f.name == function.name) {
             wanted.push(function);
         }
@@ -109,7 +108,10 @@ fn wanted(request: &Request, _model: &Model<f64>) -> Result<Vec<&'static Functio
     Ok(wanted)
 }
 
-fn unknown(name: &str) -> Error {
-    let known: Vec<String> = functions::<Sym>().iter().map(|f| f.name.to_owned()).collect();
-    Error::UnknownFunction { found: name.into(), nearest: nearest(name, known.iter().map(String::as_str)), known }
+/// The function called `name`, or the error that names the nearest.
+pub fn function(name: &str) -> Result<&'static Function<Sym>, Error> {
+    articulated_core::algorithm::function(name).ok_or_else(|| {
+        let known: Vec<String> = functions::<Sym>().iter().map(|f| f.name.to_owned()).collect();
+        Error::UnknownFunction { found: name.into(), nearest: nearest(name, known.iter().map(String::as_str)), known }
+    })
 }

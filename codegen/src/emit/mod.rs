@@ -4,8 +4,10 @@ mod function;
 mod literal;
 mod module;
 mod names;
+mod warnings;
 
 pub use names::identifier;
 
 pub(crate) use module::module;
 pub(crate) use names::Names;
+pub(crate) use warnings::warnings;
