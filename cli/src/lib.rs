@@ -1,1 +1,2 @@
-//! cli
+//! The command `articulated`, as a library: what it does, and what the tests of the workspace share with it.
+pub mod precise;

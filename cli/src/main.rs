@@ -1,0 +1,2 @@
+//! The command `articulated`.
+fn main() {}
