@@ -1,7 +1,42 @@
 //! The macro `robot!`: a thin shell around `articulated-codegen`.
+//!
+//! ```text
+//! invocation (tokens → settings) → expand (read the file, generate) → place (errors → spans)
+//! ```
 
-/// Not yet.
+mod errors;
+mod expand;
+mod invocation;
+mod keys;
+mod place;
+mod settings;
+
+/// A module with the dynamics of one robot, written out from its URDF when the crate is built.
+///
+/// ```ignore
+/// articulated::robot! {
+///     /// Attributes, documentation and visibility are the module's.
+///     pub mod panda {
+///         urdf = "robots/panda.urdf",                    // from the folder of Cargo.toml; the only key that must be there
+///         base = fixed,                                  // or floating
+///         gravity = [0.0, 0.0, -9.81],                   // m/s², in the base frame
+///         functions = [placements, inverse_dynamics],    // what to generate
+///         rename = { "a-b" = A_MINUS_B },                // names in Rust for names of the URDF
+///         allow_unphysical_inertia = false,
+///         snap_angles = 1e-9,                            // rad: angles this near to a multiple of π/2 are taken as that; absent: none
+///         crate = ::articulated,                         // the path of this crate, if it has another name
+///         standalone = false,                            // true: no implementation of `Dynamics`, no dependence on this crate
+///     }
+/// }
+/// ```
+///
+/// The values above are the defaults, but for `urdf`, `rename` and `snap_angles`. The module has one function for each name in `functions`,
+/// constants for sizes, names and limits, modules of indices (`joint`, `q_index`, `v_index`, `frame`), and `Robot`, a value that
+/// implements `articulated::Dynamics`. What looks odd in the URDF is listed in its constant `WARNINGS`. It is compiled
+/// again when the URDF changes. A build script (`articulated_codegen::Build`) gives the same code, to read and to step through.
+///
+/// Errors: all that is wrong with the invocation and with the URDF at once, each at the word that it is about.
 #[proc_macro]
-pub fn robot(_input: proc_macro::TokenStream) -> proc_macro::TokenStream {
-    proc_macro::TokenStream::new()
+pub fn robot(input: proc_macro::TokenStream) -> proc_macro::TokenStream {
+    expand::expand(input.into()).into()
 }

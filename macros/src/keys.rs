@@ -1,0 +1,125 @@
+//! The keys of an invocation: one row each.
+
+use articulated_codegen::core::description::Base;
+use syn::ext::IdentExt;
+use syn::parse::{Parse, ParseStream};
+use syn::punctuated::Punctuated;
+use syn::{Error, Ident, Lit, LitBool, Path, Result, Token, braced, bracketed};
+
+use crate::settings::{Renaming, Settings};
+
+/// One key.
+pub(crate) struct Key {
+    /// Its name.
+    pub(crate) name: &'static str,
+    /// What its value has to be.
+    pub(crate) expected: &'static str,
+    /// Reads the value into the settings. Only that it fails matters, not how: the message is `expected`.
+    pub(crate) read: fn(&mut Settings, ParseStream) -> Result<()>,
+}
+
+/// All keys, in the order in which they are listed to people.
+pub(crate) const KEYS: &[Key] = &[
+    Key {
+        name: "urdf",
+        expected: "the path of a URDF from the folder of Cargo.toml, as \"robots/arm.urdf\"",
+        read: |s, value| value.parse().map(|path| s.urdf = Some(path)),
+    },
+    Key { name: "base", expected: "`fixed` or `floating`", read: |s, value| base(value).map(|base| s.base = Some(base)) },
+    Key {
+        name: "gravity",
+        expected: "three finite numbers in m/s², as [0.0, 0.0, -9.81]",
+        read: |s, value| gravity(value).map(|g| s.gravity = Some(g)),
+    },
+    Key {
+        name: "functions",
+        expected: "a list of functions, as [placements, inverse_dynamics]",
+        read: |s, value| functions(value).map(|names| s.functions = Some(names)),
+    },
+    Key {
+        name: "rename",
+        expected: "names of the URDF with names in Rust, as { \"a-b\" = A_MINUS_B }",
+        read: |s, value| rename(value).map(|renamings| s.rename = renamings),
+    },
+    Key {
+        name: "allow_unphysical_inertia",
+        expected: "`true` or `false`",
+        read: |s, value| value.parse::<LitBool>().map(|b| s.allow_unphysical_inertia = b.value),
+    },
+    Key {
+        name: "snap_angles",
+        expected: "a positive number of radians, as 1e-9",
+        read: |s, value| angle(value).map(|angle| s.snap_angles = Some(angle)),
+    },
+    Key {
+        name: "crate",
+        expected: "the absolute path of the crate `articulated`, as ::articulated or crate::path",
+        read: |s, value| absolute(value).map(|path| s.runtime = Some(path)),
+    },
+    Key { name: "standalone", expected: "`true` or `false`", read: |s, value| value.parse::<LitBool>().map(|b| s.standalone = b.value) },
+];
+
+fn base(value: ParseStream) -> Result<Base> {
+    let name: Ident = value.parse()?;
+    match name.to_string().as_str() {
+        "fixed" => Ok(Base::Fixed),
+        "floating" => Ok(Base::Floating),
+        _ => Err(value.error("no such base")),
+    }
+}
+
+fn gravity(value: ParseStream) -> Result<[f64; 3]> {
+    let numbers;
+    bracketed!(numbers in value);
+    let numbers = Punctuated::<Number, Token![,]>::parse_terminated(&numbers)?;
+    let numbers: Vec<f64> = numbers.into_iter().map(|n| n.0).collect();
+    numbers.try_into().map_err(|_| value.error("not three"))
+}
+
+fn functions(value: ParseStream) -> Result<Vec<Ident>> {
+    let names;
+    bracketed!(names in value);
+    Ok(Punctuated::<Ident, Token![,]>::parse_terminated(&names)?.into_iter().collect())
+}
+
+fn rename(value: ParseStream) -> Result<Vec<Renaming>> {
+    let renamings;
+    braced!(renamings in value);
+    Ok(Punctuated::<Renaming, Token![,]>::parse_terminated(&renamings)?.into_iter().collect())
+}
+
+fn angle(value: ParseStream) -> Result<f64> {
+    let Number(angle) = value.parse()?;
+    if angle > 0.0 { Ok(angle) } else { Err(value.error("not positive")) }
+}
+
+/// A path that means the same inside the generated module as outside of it.
+fn absolute(value: ParseStream) -> Result<Path> {
+    let path = Path::parse_mod_style(value)?;
+    let absolute = path.leading_colon.is_some() || path.segments.first().is_some_and(|s| s.ident == "crate");
+    if absolute { Ok(path) } else { Err(value.error("not absolute")) }
+}
+
+/// A finite number with or without a sign, a point, an exponent.
+struct Number(f64);
+
+impl Parse for Number {
+    fn parse(input: ParseStream) -> Result<Self> {
+        let sign = if input.parse::<Option<Token![-]>>()?.is_some() { -1.0 } else { 1.0 };
+        let literal: Lit = input.parse()?;
+        let number: f64 = match &literal {
+            Lit::Float(x) => x.base10_parse()?,
+            Lit::Int(x) => x.base10_parse()?,
+            _ => return Err(Error::new(literal.span(), "not a number")),
+        };
+        if number.is_finite() { Ok(Self(sign * number)) } else { Err(Error::new(literal.span(), "not finite")) }
+    }
+}
+
+impl Parse for Renaming {
+    fn parse(input: ParseStream) -> Result<Self> {
+        let from = input.parse()?;
+        input.parse::<Token![=]>()?;
+        Ok(Self { from, to: Ident::parse_any(input)? })
+    }
+}

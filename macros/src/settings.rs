@@ -1,0 +1,69 @@
+//! What the keys say.
+
+use articulated_codegen::core::description::Base;
+use articulated_codegen::{Options, function};
+use syn::{Error, Ident, LitStr, Path};
+
+use crate::errors::Errors;
+
+/// The values of the keys; `None` where a key is absent.
+#[derive(Default)]
+pub(crate) struct Settings {
+    pub(crate) urdf: Option<LitStr>,
+    pub(crate) base: Option<Base>,
+    pub(crate) gravity: Option<[f64; 3]>,
+    pub(crate) functions: Option<Vec<Ident>>,
+    pub(crate) allow_unphysical_inertia: bool,
+    pub(crate) snap_angles: Option<f64>,
+    pub(crate) rename: Vec<Renaming>,
+    pub(crate) runtime: Option<Path>,
+    pub(crate) standalone: bool,
+}
+
+/// `"name in the URDF" = NAME_IN_RUST`.
+pub(crate) struct Renaming {
+    pub(crate) from: LitStr,
+    pub(crate) to: Ident,
+}
+
+impl Settings {
+    /// What is wrong with the values, as far as can be told without the robot. Functions that do not exist are taken out.
+    pub(crate) fn check(&mut self, errors: &mut Errors) {
+        if let Some(functions) = &mut self.functions {
+            functions.retain(|name| errors.take(known(name)).is_some());
+        }
+        for (k, renaming) in self.rename.iter().enumerate() {
+            if self.rename[..k].iter().any(|r| r.from.value() == renaming.from.value()) {
+                errors.push(Error::new(renaming.from.span(), format!("{:?} is renamed twice", renaming.from.value())));
+            }
+        }
+        if let (true, Some(path)) = (self.standalone, &self.runtime) {
+            errors.push(Error::new_spanned(path, "standalone code uses no crate: leave out `crate` or `standalone`"));
+        }
+    }
+
+    /// The request's options: what is said, and defaults for the rest.
+    pub(crate) fn options(&self) -> Options {
+        let default = Options::default();
+        Options {
+            base: self.base.unwrap_or(default.base),
+            gravity: self.gravity.unwrap_or(default.gravity),
+            functions: self.functions.as_ref().map_or(default.functions, |names| names.iter().map(Ident::to_string).collect()),
+            allow_unphysical_inertia: self.allow_unphysical_inertia,
+            snap_angles: self.snap_angles,
+            rename: self.rename.iter().map(|r| (r.from.value(), r.to.to_string())).collect(),
+            runtime: (!self.standalone).then(|| self.runtime.as_ref().map_or("::articulated".into(), spelled)),
+        }
+    }
+}
+
+fn known(name: &Ident) -> syn::Result<()> {
+    function(&name.to_string()).map(|_| ()).map_err(|error| Error::new(name.span(), error))
+}
+
+/// A path without spaces: `::articulated`.
+fn spelled(path: &Path) -> String {
+    let segments: Vec<String> = path.segments.iter().map(|s| s.ident.to_string()).collect();
+    let colons = if path.leading_colon.is_some() { "::" } else { "" };
+    format!("{colons}{}", segments.join("::"))
+}
