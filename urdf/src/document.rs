@@ -51,7 +51,9 @@ pub(crate) fn parse<'a>(text: &'a str, lines: &Lines, log: &mut Log) -> Option<D
         Err(fault) => fault,
     };
     let place = Place { line: Some(line_of_fault(&fault, lines)), field: "XML", ..Place::DOCUMENT };
-    log.error(&place, Kind::Xml, markup::as_written(&fault.to_string()), "a well-formed XML document");
+    // The column is that of the prepared text: left out.
+    let found = fault.to_string().replace(&format!(" at {}", fault.pos()), "");
+    log.error(&place, Kind::Xml, markup::as_written(&found), "a well-formed XML document");
     None
 }
 

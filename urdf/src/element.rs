@@ -7,6 +7,9 @@ use crate::log::{Log, Place};
 use crate::markup;
 use crate::problem::{Kind, Subject};
 
+/// Longer names are refused: each message about a link or joint carries its name.
+const MOST_NAME: usize = 1024;
+
 #[derive(Clone, Copy)]
 pub(crate) struct Tag<'a> {
     node: Node<'a, 'a>,
@@ -111,6 +114,18 @@ impl<'a> Tag<'a> {
             log.error(&place, Kind::EmptyName, "an empty name", "a name");
             return None;
         }
+        if name.len() > MOST_NAME {
+            let place = Place { line: Some(line), ..self.place(attribute) };
+            let found = format!("a name of {} bytes", name.len());
+            log.error(&place, Kind::TooLarge, found, format!("at most {MOST_NAME}"));
+            return None;
+        }
         Some(name.to_owned())
+    }
+
+    /// The tag's name for messages: as much of it as there is, and as is sensible.
+    pub(crate) fn name_for_messages(&self) -> String {
+        let name = self.attribute("name").map_or("", |(name, _)| name);
+        name.chars().take(MOST_NAME / 4).collect()
     }
 }

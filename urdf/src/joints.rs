@@ -28,7 +28,7 @@ const AXIS: std::ops::RangeInclusive<f64> = 1e-150..=1e150;
 
 /// A joint as it stands in the file. `open`: see [`limits::limit`].
 pub(crate) fn joint(tag: &Tag<'_>, open: bool, options: &Options, log: &mut Log) -> DraftJoint {
-    let subject = Subject::Joint(tag.attribute("name").map(|(name, _)| name.to_owned()).unwrap_or_default());
+    let subject = Subject::Joint(tag.name_for_messages());
     let tag = tag.of(&subject);
     let name = tag.required_name("name", log);
     unused::rest(&tag, &TAGS, &["name", "type"], log);

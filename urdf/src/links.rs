@@ -10,7 +10,7 @@ use crate::{Options, frame, inertia, number, unused};
 
 /// A link with its mass properties.
 pub(crate) fn link(tag: &Tag<'_>, options: &Options, log: &mut Log) -> DraftLink {
-    let subject = Subject::Link(tag.attribute("name").map(|(name, _)| name.to_owned()).unwrap_or_default());
+    let subject = Subject::Link(tag.name_for_messages());
     let tag = tag.of(&subject);
     let name = tag.required_name("name", log);
     unused::rest(&tag, &["inertial"], &["name"], log);

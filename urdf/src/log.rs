@@ -8,6 +8,8 @@ use crate::{Reading, Unused};
 
 /// More than these of one sort are counted, not listed.
 const MOST: usize = 1000;
+/// The same, for what is not used.
+const MOST_UNUSED: usize = 100_000;
 
 /// Where in the file something stands.
 #[derive(Clone, Copy)]
@@ -30,11 +32,21 @@ pub(crate) struct Log {
     snapped: Vec<Problem>,
     more_errors: usize,
     more_warnings: usize,
+    more_unused: usize,
 }
 
 impl Log {
     pub(crate) fn new(file: String) -> Self {
-        Self { file, errors: Vec::new(), warnings: Vec::new(), unused: Vec::new(), snapped: Vec::new(), more_errors: 0, more_warnings: 0 }
+        Self {
+            file,
+            errors: Vec::new(),
+            warnings: Vec::new(),
+            unused: Vec::new(),
+            snapped: Vec::new(),
+            more_errors: 0,
+            more_warnings: 0,
+            more_unused: 0,
+        }
     }
 
     fn problem(&self, place: &Place<'_>, kind: Kind, found: String, expected: String) -> Problem {
@@ -75,7 +87,11 @@ impl Log {
     }
 
     pub(crate) fn unused_at(&mut self, line: Option<u32>, subject: &Subject, tag: String, why: impl Into<String>) {
-        self.unused.push(Unused { line, subject: subject.clone(), tag, why: why.into() });
+        if self.unused.len() < MOST_UNUSED {
+            self.unused.push(Unused { line, subject: subject.clone(), tag, why: why.into() });
+        } else {
+            self.more_unused += 1;
+        }
     }
 
     fn count_the_rest(&mut self) {
@@ -96,6 +112,10 @@ impl Log {
 
     pub(crate) fn reading(mut self, description: Description) -> Reading {
         self.count_the_rest();
+        if self.more_unused > 0 {
+            let tag = format!("{} more", self.more_unused);
+            self.unused.push(Unused { line: None, subject: Subject::Document, tag, why: "not listed".to_owned() });
+        }
         Reading { description, warnings: self.warnings, unused: self.unused, snapped: self.snapped }
     }
 

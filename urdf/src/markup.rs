@@ -160,7 +160,7 @@ impl<'a> Look<'a> {
             }
             values += 1;
             if values > MOST_ATTRIBUTES {
-                return Err(self.too_large("a tag with more attributes".to_owned(), MOST_ATTRIBUTES));
+                return Err(self.too_large("a tag with very many attributes".to_owned(), MOST_ATTRIBUTES));
             }
         }
     }
@@ -170,7 +170,7 @@ impl<'a> Look<'a> {
         self.names(end + 1);
         self.depth += usize::from(!empty);
         match self.depth > MOST_DEPTH {
-            true => Err(self.too_large("tags nested more deeply".to_owned(), MOST_DEPTH)),
+            true => Err(self.too_large("tags nested very deeply".to_owned(), MOST_DEPTH)),
             false => Ok(()),
         }
     }

@@ -2,8 +2,9 @@
 
 /// Longer names are not compared.
 const LONGEST: usize = 64;
-/// Comparisons per file; beyond, no suggestions are made, so that a file full of unknown names is still read quickly.
-const MOST_COMPARISONS: usize = 50_000;
+/// Pairs of letters compared per file; beyond, no suggestions are made, so that a file full of unknown names is still
+/// read quickly.
+const MOST_PAIRS: usize = 3_000_000;
 
 /// Finds the nearest of some names, with a bound on the work.
 pub(crate) struct Suggester {
@@ -12,35 +13,36 @@ pub(crate) struct Suggester {
 
 impl Suggester {
     pub(crate) fn new() -> Self {
-        Self { left: MOST_COMPARISONS }
+        Self { left: MOST_PAIRS }
     }
 
     /// ` (did you mean "upper"?)`, or nothing.
     pub(crate) fn hint<'a>(&mut self, wrong: &str, names: impl Iterator<Item = &'a str>) -> String {
-        match nearest(wrong, names.take(self.take_all())) {
+        match nearest_within(wrong, names, &mut self.left) {
             Some(name) => format!(" (did you mean {}?)", crate::problem::quote(name)),
             None => String::new(),
         }
-    }
-
-    /// A file has few unknown names or none: each takes a tenth of what is left.
-    fn take_all(&mut self) -> usize {
-        let most = self.left.div_ceil(10);
-        self.left -= most;
-        most
     }
 }
 
 /// The name that differs least from `wrong`, if it differs by little: by a third of its letters at most.
 pub(crate) fn nearest<'a>(wrong: &str, names: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    if wrong.len() > LONGEST {
+    nearest_within(wrong, names, &mut MOST_PAIRS.clone())
+}
+
+fn nearest_within<'a>(wrong: &str, names: impl Iterator<Item = &'a str>, left: &mut usize) -> Option<&'a str> {
+    if wrong.len() > LONGEST || *left == 0 {
         return None;
     }
     let most = (wrong.chars().count() / 3).max(1);
     let lower = wrong.to_lowercase();
     names
         .filter(|name| name.len().abs_diff(wrong.len()) <= 4 * most && name.len() <= LONGEST)
-        .map(|name| (strsim::damerau_levenshtein(&lower, &name.to_lowercase()), name))
+        .take_while(|name| {
+            *left = left.saturating_sub(name.len() * wrong.len());
+            *left > 0
+        })
+        .map(|name| (strsim::osa_distance(&lower, &name.to_lowercase()), name))
         .filter(|(distance, _)| *distance <= most)
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, name)| name)
