@@ -1,0 +1,104 @@
+//! Generated source, compiled and loaded: what a user's program would run.
+
+mod rustc;
+mod symbols;
+mod wrapper;
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use articulated_codegen::Generated;
+use articulated_core::algorithm::{FunctionError, Shape, check_length, function};
+
+use crate::native::{Kernel, Native};
+pub use rustc::{CompileError, Rustc};
+
+/// The functions of one [`Generated`], compiled by `rustc` as a library and loaded.
+#[derive(Debug)]
+pub struct Compiled {
+    functions: Vec<Loaded>,
+    shape: Shape,
+    /// How long `rustc` took, start and linking included.
+    pub time: Duration,
+    // Last, so that the library is closed before its file is removed.
+    _folder: tempfile::TempDir,
+}
+
+#[derive(Debug)]
+struct Loaded {
+    name: String,
+    kernel: Kernel,
+    bytes: Option<u64>,
+}
+
+impl Compiled {
+    /// Compiles and loads. The source has to be generated without a runtime (`options.runtime` is `None`).
+    pub fn build(rustc: &Rustc, generated: &Generated) -> Result<Self, CompileError> {
+        let names: Vec<&str> = generated.ledger.functions.iter().map(|f| f.function.as_str()).collect();
+        let folder = tempfile::Builder::new().prefix("articulated").tempdir().map_err(CompileError::Folder)?;
+        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).map_err(CompileError::Folder);
+        write("robot.rs", &generated.source)?;
+        write("lib.rs", &wrapper::source(&names))?;
+        let library: PathBuf = folder.path().join(format!("{}generated{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX));
+        let time = rustc.compile(&folder.path().join("lib.rs"), &library)?;
+        let native = Native::open(&library).map_err(CompileError::Load)?;
+        let sizes = symbols::Sizes::of(&library);
+        let shape = generated.model.shape();
+        let functions = names.iter().map(|name| load(&native, &sizes, name, shape)).collect::<Result<_, _>>()?;
+        Ok(Self { functions, shape, time, _folder: folder })
+    }
+
+    /// Calls a function by its name; arguments in the registry's order.
+    pub fn call(&self, name: &str, arguments: &[&[f64]], out: &mut [f64]) -> Result<(), FunctionError> {
+        let row = function::<f64>(name).ok_or(FunctionError::NotGenerated { function: "of this name" })?;
+        let kernel = self.kernel(name).ok_or(FunctionError::NotGenerated { function: row.name })?;
+        check_length("arguments", arguments.len(), row.takes.len())?;
+        for (argument, given) in row.takes.iter().zip(arguments) {
+            check_length(argument.name(), given.len(), argument.len(self.shape))?;
+        }
+        check_length("out", out.len(), row.gives.len(self.shape))?;
+        kernel.call(arguments, out);
+        Ok(())
+    }
+
+    /// Bytes of machine code of a function with everything that belongs to it alone, where the library says so. Sines and cosines of the
+    /// mathematics library are not in it.
+    pub fn code_bytes(&self, name: &str) -> Option<u64> {
+        self.functions.iter().find(|f| f.name == name)?.bytes
+    }
+
+    pub(crate) fn kernel(&self, name: &str) -> Option<&Kernel> {
+        self.functions.iter().find(|f| f.name == name).map(|f| &f.kernel)
+    }
+}
+
+fn load(native: &Native, sizes: &symbols::Sizes, name: &str, shape: Shape) -> Result<Loaded, CompileError> {
+    let missing = || CompileError::Load(format!("{name} is not in the library that was compiled"));
+    let row = function::<f64>(name).ok_or_else(missing)?;
+    let lengths: Vec<usize> = row.takes.iter().map(|a| a.len(shape)).collect();
+    let kernel = native.kernel(&wrapper::symbol(name), &lengths, row.gives.len(shape)).ok_or_else(missing)?;
+    Ok(Loaded { name: name.to_owned(), kernel, bytes: sizes.function(name, &wrapper::symbol(name)) })
+}
+
+#[cfg(test)]
+mod tests {
+    use articulated_codegen::{Request, generate};
+
+    use super::*;
+
+    #[test]
+    fn a_compiled_pendulum_needs_m_g_l_to_stand_still() {
+        let robot = articulated_models::robot("simple_pendulum").unwrap();
+        let mut request = Request::new("simple_pendulum.urdf", robot.urdf);
+        request.options.functions = vec!["inverse_dynamics".into(), "placements".into()];
+        let generated = generate(&request).unwrap();
+        let compiled = Compiled::build(&Rustc::find().unwrap(), &generated).unwrap();
+        let mut tau = [0.0];
+        compiled.call("inverse_dynamics", &[&[std::f64::consts::FRAC_PI_2], &[0.0], &[0.0]], &mut tau).unwrap();
+        assert!(tau[0].abs() > 1.0);
+        assert!(compiled.call("inverse_dynamics", &[&[0.0], &[0.0]], &mut tau).is_err());
+        assert!(compiled.call("inverse_dynamics", &[&[0.0], &[0.0], &[]], &mut tau).is_err());
+        assert!(compiled.call("bias_forces", &[&[0.0], &[0.0]], &mut tau).is_err());
+        assert!(compiled.code_bytes("inverse_dynamics").is_none_or(|n| (8..2000).contains(&n)));
+    }
+}

@@ -1,0 +1,45 @@
+//! How much machine code a function is.
+
+use std::path::Path;
+
+use object::{Object, ObjectSymbol, SymbolKind};
+
+/// The text symbols of a library and their sizes, bytes.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Sizes(Vec<(String, u64)>);
+
+impl Sizes {
+    /// Those of the file; none where it cannot be read.
+    pub(super) fn of(library: &Path) -> Self {
+        let Ok(bytes) = std::fs::read(library) else { return Self::default() };
+        let Ok(file) = object::File::parse(&*bytes) else { return Self::default() };
+        let text = file.symbols().filter(|s| s.kind() == SymbolKind::Text && s.size() > 0);
+        Self(text.filter_map(|s| Some((s.name().ok()?.to_owned(), s.size()))).collect())
+    }
+
+    /// The bytes of the symbol and of everything that the compiler left outside it of the generated function of this name.
+    pub(super) fn function(&self, name: &str, symbol: &str) -> Option<u64> {
+        let own = self.0.iter().find(|(n, _)| n == symbol)?.1;
+        // A mangled path holds each name with its length in front.
+        let path = format!("5robot{}{name}", name.len());
+        let outside = self.0.iter().filter(|(n, _)| n.contains(&path));
+        Some(own + outside.map(|(_, bytes)| bytes).sum::<u64>())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Sizes;
+
+    #[test]
+    fn parts_of_a_function_count_with_it_and_others_do_not() {
+        let symbol = |name: &str, bytes| (name.to_owned(), bytes);
+        let sizes = Sizes(vec![
+            symbol("articulated_placements", 100),
+            symbol("_RNvNvNtCs1_9generated5robot10placements6part_0", 20),
+            symbol("_RNvNtCs1_9generated5robot16inverse_dynamics", 3),
+        ]);
+        assert_eq!(sizes.function("placements", "articulated_placements"), Some(120));
+        assert_eq!(sizes.function("bias_forces", "articulated_bias_forces"), None);
+    }
+}

@@ -1,0 +1,156 @@
+//! The scale against which a rounding error is measured.
+
+use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+use articulated_core::Scalar;
+use num_traits::{One, Zero};
+
+/// A value together with the sum of the magnitudes of the terms that it was summed from.
+///
+/// |x| where nothing cancels; more where terms cancel, by as much as rounding errors of the terms count more there. An
+/// evaluation in floating point is off by about unit roundoff times this, whatever the order of its operations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Magnitude {
+    /// The value, in double precision.
+    pub value: f64,
+    /// The sum of the magnitudes of its terms; never less than |value|, rounding apart.
+    pub magnitude: f64,
+    /// Whether the value was given and not computed.
+    given: bool,
+}
+
+impl Magnitude {
+    fn computed(value: f64, magnitude: f64) -> Self {
+        Self { value, magnitude, given: false }
+    }
+}
+
+impl Zero for Magnitude {
+    fn zero() -> Self {
+        Self::from_f64(0.0)
+    }
+
+    fn is_zero(&self) -> bool {
+        self.value == 0.0 && self.magnitude == 0.0
+    }
+}
+
+impl One for Magnitude {
+    fn one() -> Self {
+        Self::from_f64(1.0)
+    }
+}
+
+impl Add for Magnitude {
+    type Output = Self;
+
+    // ‖a + b‖ = ‖a‖ + ‖b‖
+    fn add(self, other: Self) -> Self {
+        Self::computed(self.value + other.value, self.magnitude + other.magnitude)
+    }
+}
+
+impl Sub for Magnitude {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Magnitude {
+    type Output = Self;
+
+    // ‖a b‖ = ‖a‖ ‖b‖
+    fn mul(self, other: Self) -> Self {
+        Self::computed(self.value * other.value, self.magnitude * other.magnitude)
+    }
+}
+
+impl Div for Magnitude {
+    type Output = Self;
+
+    // ‖a / b‖ = ‖a‖ ‖b‖ / b²
+    fn div(self, other: Self) -> Self {
+        Self::computed(self.value / other.value, self.magnitude / other.value.abs() * (other.magnitude / other.value.abs()))
+    }
+}
+
+impl Neg for Magnitude {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { value: -self.value, ..self }
+    }
+}
+
+impl AddAssign for Magnitude {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl SubAssign for Magnitude {
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl MulAssign for Magnitude {
+    fn mul_assign(&mut self, other: Self) {
+        *self = *self * other;
+    }
+}
+
+impl Scalar for Magnitude {
+    type Mask = bool;
+
+    fn from_f64(x: f64) -> Self {
+        Self { value: x, magnitude: x.abs(), given: true }
+    }
+
+    // ‖sin x‖ = |sin x| + |cos x| ‖x‖ for a computed angle x, |sin x| for a given one
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = self.value.sin_cos();
+        let angle = if self.given { 0.0 } else { self.magnitude };
+        (Self::computed(sin, sin.abs() + cos.abs() * angle), Self::computed(cos, cos.abs() + sin.abs() * angle))
+    }
+
+    // ‖√x‖ = ‖x‖ / √x
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        Self::computed(root, if self.magnitude == 0.0 { 0.0 } else { self.magnitude / root })
+    }
+
+    fn positive(self) -> bool {
+        self.value > 0.0
+    }
+
+    fn select(mask: bool, a: Self, b: Self) -> Self {
+        if mask { a } else { b }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(x: f64) -> Magnitude {
+        Magnitude::from_f64(x)
+    }
+
+    #[test]
+    fn cancellation_lowers_the_value_and_not_the_scale() {
+        let x = of(3.0) * of(-2.0) + of(6.0);
+        assert_eq!((x.value, x.magnitude), (0.0, 12.0));
+        let y = of(1.0) / (of(3.0) - of(2.0));
+        assert_eq!((y.value, y.magnitude), (1.0, 5.0));
+    }
+
+    #[test]
+    fn the_sine_of_a_computed_angle_carries_the_error_of_the_angle() {
+        assert_eq!(of(1000.0).sin_cos().1.magnitude, 1000.0_f64.cos().abs());
+        assert!((of(500.0) + of(500.0)).sin_cos().1.magnitude > 800.0);
+        assert_eq!((of(4.0).sqrt().value, of(4.0).sqrt().magnitude), (2.0, 2.0));
+    }
+}

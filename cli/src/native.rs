@@ -1,0 +1,174 @@
+//! Functions of libraries that are opened at run time: the one module of the workspace that needs `unsafe`.
+//!
+//! A library runs whatever is in it. Two kinds are opened here: one that the command has just compiled from its own
+//! source, and peers that the user names. The signatures below are what both promise; nothing can check them.
+#![allow(unsafe_code)]
+// Why: calling across a C interface has no safe form. What can be checked, the lengths of arrays, is checked before every call.
+
+use std::ffi::{CStr, CString, c_char, c_double, c_int, c_void};
+use std::path::Path;
+use std::sync::Arc;
+
+/// An open library.
+#[derive(Clone, Debug)]
+pub(crate) struct Native {
+    library: Arc<libloading::Library>,
+}
+
+/// A function on arrays of doubles, with the lengths it was promised to have. Keeps its library open.
+#[derive(Clone, Debug)]
+pub(crate) struct Kernel {
+    entry: Entry,
+    arguments: Vec<usize>,
+    out: usize,
+    /// A peer's robot, handed over first.
+    robot: Option<Arc<Opened>>,
+    _library: Native,
+}
+
+type P = *const c_double;
+type O = *mut c_double;
+type H = *mut c_void;
+
+#[derive(Clone, Copy, Debug)]
+enum Entry {
+    One(unsafe extern "C" fn(P, O)),
+    Two(unsafe extern "C" fn(P, P, O)),
+    Three(unsafe extern "C" fn(P, P, P, O)),
+    Four(unsafe extern "C" fn(P, P, P, P, O)),
+    PeerQuiet(unsafe extern "C" fn(H, P)),
+    PeerOne(unsafe extern "C" fn(H, P, O)),
+    PeerTwo(unsafe extern "C" fn(H, P, P, O)),
+    PeerThree(unsafe extern "C" fn(H, P, P, P, O)),
+}
+
+impl Native {
+    /// Opens the library at `path`.
+    pub(crate) fn open(path: &Path) -> Result<Self, String> {
+        // Sound if the library's initialisers are: ours has none, and a peer is a library that the user asked to be run.
+        let library = unsafe { libloading::Library::new(path) }.map_err(|e| format!("{}: {e}", path.display()))?;
+        Ok(Self { library: Arc::new(library) })
+    }
+
+    fn symbol<T: Copy>(&self, name: &str) -> Option<T> {
+        // Sound if T is the type that the library gives the symbol; each caller names the interface that says so.
+        unsafe { self.library.get::<T>(name.as_bytes()) }.ok().map(|s| *s)
+    }
+
+    /// The function `name`, which takes arrays of these lengths and writes `out` numbers: the interface of [`crate::compiled`].
+    pub(crate) fn kernel(&self, name: &str, arguments: &[usize], out: usize) -> Option<Kernel> {
+        let entry = match arguments.len() {
+            1 => Entry::One(self.symbol(name)?),
+            2 => Entry::Two(self.symbol(name)?),
+            3 => Entry::Three(self.symbol(name)?),
+            4 => Entry::Four(self.symbol(name)?),
+            _ => return None,
+        };
+        Some(Kernel { entry, arguments: arguments.to_vec(), out, robot: None, _library: self.clone() })
+    }
+
+    /// A peer's name for itself.
+    pub(crate) fn peer_name(&self) -> Option<String> {
+        let name: extern "C" fn() -> *const c_char = self.symbol("peer_name")?;
+        text(name())
+    }
+}
+
+/// A C string's text.
+fn text(pointer: *const c_char) -> Option<String> {
+    // Sound: the interface promises a string that lives as long as its library or robot, and it is copied here and now.
+    (!pointer.is_null()).then(|| unsafe { CStr::from_ptr(pointer) }.to_string_lossy().into_owned())
+}
+
+impl Kernel {
+    /// Calls the function.
+    ///
+    /// # Panics
+    /// If a length is not the one promised.
+    #[inline]
+    pub(crate) fn call(&self, arguments: &[&[f64]], out: &mut [f64]) {
+        assert!(out.len() == self.out && arguments.len() == self.arguments.len());
+        assert!(arguments.iter().zip(&self.arguments).all(|(a, n)| a.len() == *n));
+        let (x, out) = (arguments, out.as_mut_ptr());
+        let robot = self.robot.as_ref().map_or(std::ptr::null_mut(), |r| r.handle);
+        // Sound: the arrays have the lengths that the library reads and writes, and library and robot are open as long as the kernel lives.
+        unsafe {
+            match self.entry {
+                Entry::One(f) => f(x[0].as_ptr(), out),
+                Entry::Two(f) => f(x[0].as_ptr(), x[1].as_ptr(), out),
+                Entry::Three(f) => f(x[0].as_ptr(), x[1].as_ptr(), x[2].as_ptr(), out),
+                Entry::Four(f) => f(x[0].as_ptr(), x[1].as_ptr(), x[2].as_ptr(), x[3].as_ptr(), out),
+                Entry::PeerQuiet(f) => f(robot, x[0].as_ptr()),
+                Entry::PeerOne(f) => f(robot, x[0].as_ptr(), out),
+                Entry::PeerTwo(f) => f(robot, x[0].as_ptr(), x[1].as_ptr(), out),
+                Entry::PeerThree(f) => f(robot, x[0].as_ptr(), x[1].as_ptr(), x[2].as_ptr(), out),
+            }
+        }
+    }
+}
+
+/// A robot open in a peer library.
+#[derive(Clone, Debug)]
+pub(crate) struct NativePeer(Arc<Opened>);
+
+#[derive(Debug)]
+struct Opened {
+    native: Native,
+    handle: H,
+}
+
+impl NativePeer {
+    /// Has the peer read a URDF. Gravity in m/s².
+    pub(crate) fn open(native: &Native, urdf: &Path, floating: bool, gravity: [f64; 3]) -> Result<Self, String> {
+        type Open = extern "C" fn(*const c_char, c_int, c_double, c_double, c_double) -> H;
+        let open: Open = native.symbol("peer_open").ok_or("it has no function peer_open")?;
+        let path = CString::new(urdf.to_string_lossy().as_bytes()).map_err(|e| e.to_string())?;
+        let [x, y, z] = gravity;
+        let handle = open(path.as_ptr(), c_int::from(floating), x, y, z);
+        if handle.is_null() {
+            Err("it does not read this robot".into())
+        } else {
+            Ok(Self(Arc::new(Opened { native: native.clone(), handle })))
+        }
+    }
+
+    /// A number that the peer says of its robot: `nq`, `nv`, `joint_count`.
+    pub(crate) fn number(&self, what: &str) -> Option<usize> {
+        let ask: extern "C" fn(H) -> c_int = self.0.native.symbol(&format!("peer_{what}"))?;
+        usize::try_from(ask(self.0.handle)).ok()
+    }
+
+    /// A number that the peer says of a joint: `iq`, `iv`, `nq`, `nv`.
+    pub(crate) fn joint_number(&self, what: &str, joint: usize) -> Option<usize> {
+        let ask: extern "C" fn(H, c_int) -> c_int = self.0.native.symbol(&format!("peer_joint_{what}"))?;
+        usize::try_from(ask(self.0.handle, c_int::try_from(joint).ok()?)).ok()
+    }
+
+    /// A joint's name.
+    pub(crate) fn joint_name(&self, joint: usize) -> Option<String> {
+        let ask: extern "C" fn(H, c_int) -> *const c_char = self.0.native.symbol("peer_joint_name")?;
+        text(ask(self.0.handle, c_int::try_from(joint).ok()?))
+    }
+
+    /// The peer's function, which takes arrays of these lengths and writes `out` numbers; none if it keeps its results to itself.
+    pub(crate) fn kernel(&self, function: &str, arguments: &[usize], out: usize) -> Option<Kernel> {
+        let native = &self.0.native;
+        let name = format!("peer_{function}");
+        let entry = match (arguments.len(), out) {
+            (1, 0) => Entry::PeerQuiet(native.symbol(&name)?),
+            (1, _) => Entry::PeerOne(native.symbol(&name)?),
+            (2, _) => Entry::PeerTwo(native.symbol(&name)?),
+            (3, _) => Entry::PeerThree(native.symbol(&name)?),
+            _ => return None,
+        };
+        Some(Kernel { entry, arguments: arguments.to_vec(), out, robot: Some(self.0.clone()), _library: native.clone() })
+    }
+}
+
+impl Drop for Opened {
+    fn drop(&mut self) {
+        if let Some(close) = self.native.symbol::<extern "C" fn(H)>("peer_close") {
+            close(self.handle);
+        }
+    }
+}
