@@ -24,6 +24,8 @@ impl Place<'_> {
     pub(crate) const DOCUMENT: Place<'static> = Place { line: None, subject: &Subject::Document, field: "" };
 }
 
+/// All that was found out about a file so far.
+#[derive(Default)]
 pub(crate) struct Log {
     file: String,
     pub(crate) errors: Vec<Problem>,
@@ -37,16 +39,7 @@ pub(crate) struct Log {
 
 impl Log {
     pub(crate) fn new(file: String) -> Self {
-        Self {
-            file,
-            errors: Vec::new(),
-            warnings: Vec::new(),
-            unused: Vec::new(),
-            snapped: Vec::new(),
-            more_errors: 0,
-            more_warnings: 0,
-            more_unused: 0,
-        }
+        Self { file, ..Self::default() }
     }
 
     fn problem(&self, place: &Place<'_>, kind: Kind, found: String, expected: String) -> Problem {

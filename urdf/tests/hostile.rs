@@ -135,6 +135,7 @@ fn deep_wide_and_explosive_documents_are_refused() {
         (format!("<robot name='r'{attributes}/>"), Kind::TooLarge),
         ("=".repeat(10_000_000), Kind::TooLarge),
         (" ".repeat(65 << 20), Kind::TooLarge),
+        (format!("<robot name='r'><link name='{}'>{}</link></robot>", "x".repeat(1 << 20), "<a/>".repeat(10_000)), Kind::TooLarge),
     ];
     for (text, kind) in cases {
         let problems = read(text.as_bytes(), &Options::default()).unwrap_err();
@@ -188,6 +189,14 @@ fn mimics_of_mimics_are_followed_without_recursion() {
     let problems = read(out.as_bytes(), &Options::default()).unwrap_err();
     assert_eq!(problems.errors.len(), 1, "{problems}");
     assert_eq!(problems.errors[0].kind, Kind::MimicRing);
+}
+
+#[test]
+fn what_is_not_used_is_counted_where_there_is_very_much() {
+    let text = format!("<robot name='r'><link name='l'/>{}</robot>", "<a/>".repeat(100_010));
+    let reading = read(text.as_bytes(), &Options::default()).unwrap();
+    assert_eq!(reading.unused.len(), 100_001);
+    assert_eq!(reading.unused[100_000].tag, "10 more");
 }
 
 #[test]
