@@ -5,6 +5,7 @@ use std::fmt::Write;
 use articulated_core::algorithm::{Function, ResultKind};
 
 use super::literal::literal;
+use super::order::{Angle, Step, order};
 use crate::Sym;
 use crate::graph::{Graph, Node, NodeId, Op};
 use crate::ledger::Entry;
@@ -53,6 +54,12 @@ fn document(out: &mut String, function: &Function<Sym>, entry: &Entry) {
     );
 }
 
+/// Lanes of the vector registers that `trig::sin_cos` is padded for.
+const LANES: usize = 4;
+
+/// From this many angles on a batch is faster than one after the other.
+pub(super) const BATCH_FROM: usize = 3;
+
 struct Body<'a> {
     out: &'a mut String,
     graph: &'a Graph,
@@ -61,8 +68,12 @@ struct Body<'a> {
 
 impl Body<'_> {
     fn write(&mut self) {
-        for (k, node) in self.graph.nodes().iter().enumerate() {
-            self.statement(k, node);
+        for step in order(self.graph) {
+            match step {
+                Step::Node(k) => self.statement(k, &self.graph.nodes()[k]),
+                Step::Batch(angles) if angles.len() < BATCH_FROM => angles.iter().for_each(|a| self.single(a)),
+                Step::Batch(angles) => self.batch(&angles),
+            }
         }
         self.result();
     }
@@ -76,6 +87,27 @@ impl Body<'_> {
                 writeln!(self.out, "    let x{k} = {expression};")
             }
         };
+    }
+
+    fn single(&mut self, a: &Angle) {
+        let name = |k: Option<usize>| k.map_or_else(|| "_".to_owned(), |k| format!("x{k}"));
+        let _ = writeln!(self.out, "    let ({}, {}) = f64::sin_cos({});", name(a.sin), name(a.cos), self.operand(a.angle));
+    }
+
+    /// Padded to a multiple of the lanes, so that no angle is left over.
+    fn batch(&mut self, angles: &[Angle]) {
+        let padded = angles.len().next_multiple_of(LANES);
+        let mut list: Vec<String> = angles.iter().map(|a| self.operand(a.angle)).collect();
+        list.resize(padded, "0.0".into());
+        let _ = writeln!(self.out, "    let (mut sin, mut cos) = ([0.0; {padded}], [0.0; {padded}]);");
+        let _ = writeln!(self.out, "    trig::sin_cos(&[{}], &mut sin, &mut cos);", list.join(", "));
+        for (i, angle) in angles.iter().enumerate() {
+            for (name, k) in [("sin", angle.sin), ("cos", angle.cos)] {
+                if let Some(k) = k {
+                    let _ = writeln!(self.out, "    let x{k} = {name}[{i}];");
+                }
+            }
+        }
     }
 
     fn expression(&self, op: Op, node: &Node) -> String {

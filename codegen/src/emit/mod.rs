@@ -4,6 +4,7 @@ mod function;
 mod literal;
 mod module;
 mod names;
+mod order;
 mod warnings;
 
 pub use names::identifier;

@@ -6,9 +6,10 @@ use articulated_core::algorithm::Function;
 use articulated_core::description::{Base, JointKind};
 use articulated_core::model::{JointInfo, Model};
 
-use super::function::function;
+use super::function::{BATCH_FROM, function};
 use super::literal::literal;
 use super::names::Names;
+use super::order::{Step, order};
 use crate::graph::Graph;
 use crate::{Ledger, Request, Sym};
 
@@ -30,8 +31,15 @@ pub(crate) fn module(
     if programs.iter().any(|(_, g)| g.counts().fused() > 0) {
         out += FMA;
     }
+    if programs.iter().any(|(_, g)| has_batch(g)) {
+        let _ = writeln!(out, "#[allow(clippy::all, clippy::pedantic)]\nmod trig {{\n{}}}\n", articulated_core::trig::SOURCE);
+    }
     robot(&mut out, request, programs);
     out
+}
+
+fn has_batch(graph: &Graph) -> bool {
+    order(graph).iter().any(|s| matches!(s, Step::Batch(angles) if angles.len() >= BATCH_FROM))
 }
 
 const FMA: &str = "\
@@ -59,7 +67,7 @@ fn header(out: &mut String, request: &Request, model: &Model<f64>) {
     let _ = writeln!(out, "// Functions: {}.", o.functions.join(", "));
     let _ = writeln!(
         out,
-        "// Contract: SI units and radians; no allocation, no branch on data, no panic; finite input gives what the formulas give.\n"
+        "// Contract: SI units and radians; no allocation, no panic; no branch on data but one: if an angle\n// is beyond 10⁵ rad or not finite, all sines come from the standard library. Finite input gives what the formulas give.\n"
     );
 }
 
@@ -141,7 +149,7 @@ fn robot(out: &mut String, request: &Request, programs: &[(&'static Function<Sym
     let Some(path) = &request.options.runtime else { return };
     let _ = writeln!(
         out,
-        "/// The robot as a value, for code over the trait `Dynamics`.\n#[derive(Clone, Copy, Debug, Default)]\npub struct Robot;\n"
+        "/// The robot as a value, for code over the trait `Dynamics`.\n#[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::default::Default)]\npub struct Robot;\n"
     );
     let _ = writeln!(out, "#[allow(clippy::all, clippy::pedantic)]\nimpl {path}::Dynamics<f64> for Robot {{");
     let _ = writeln!(out, "    type Workspace = ();\n    fn workspace(&self) {{}}");

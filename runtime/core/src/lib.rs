@@ -24,6 +24,8 @@ pub mod dynamics;
 pub mod joint;
 #[cfg(feature = "alloc")]
 pub mod model;
+#[cfg(feature = "std")]
+pub mod trig;
 
 pub use nalgebra;
 pub use scalar::Scalar;
