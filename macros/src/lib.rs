@@ -10,6 +10,8 @@ mod invocation;
 mod keys;
 mod place;
 mod settings;
+#[cfg(test)]
+mod tests;
 
 /// A module with the dynamics of one robot, written out from its URDF when the crate is built.
 ///

@@ -1,5 +1,7 @@
 //! What the keys say.
 
+use std::collections::BTreeSet;
+
 use articulated_codegen::core::description::Base;
 use articulated_codegen::{Options, function};
 use syn::{Error, Ident, LitStr, Path};
@@ -27,16 +29,13 @@ pub(crate) struct Renaming {
 }
 
 impl Settings {
-    /// What is wrong with the values, as far as can be told without the robot. Functions that do not exist are taken out.
+    /// What is wrong with the values, as far as can be told without the robot. What is wrong in a list is taken out.
     pub(crate) fn check(&mut self, errors: &mut Errors) {
         if let Some(functions) = &mut self.functions {
             functions.retain(|name| errors.take(known(name)).is_some());
         }
-        for (k, renaming) in self.rename.iter().enumerate() {
-            if self.rename[..k].iter().any(|r| r.from.value() == renaming.from.value()) {
-                errors.push(Error::new(renaming.from.span(), format!("{:?} is renamed twice", renaming.from.value())));
-            }
-        }
+        let mut seen = BTreeSet::new();
+        self.rename.retain(|renaming| errors.take(once(renaming, &mut seen)).is_some());
         if let (true, Some(path)) = (self.standalone, &self.runtime) {
             errors.push(Error::new_spanned(path, "standalone code uses no crate: leave out `crate` or `standalone`"));
         }
@@ -59,6 +58,12 @@ impl Settings {
 
 fn known(name: &Ident) -> syn::Result<()> {
     function(&name.to_string()).map(|_| ()).map_err(|error| Error::new(name.span(), error))
+}
+
+fn once(renaming: &Renaming, seen: &mut BTreeSet<String>) -> syn::Result<()> {
+    let name = renaming.from.value();
+    let twice = Error::new(renaming.from.span(), format!("{name:?} is renamed twice"));
+    if seen.insert(name) { Ok(()) } else { Err(twice) }
 }
 
 /// A path without spaces: `::articulated`.

@@ -1,0 +1,83 @@
+//! The macro against the other ways to the same code. What it says of mistakes is in the workspace's `tests/ui`.
+
+use articulated_codegen::core::description::Base;
+use articulated_codegen::{Build, Request, generate};
+use proc_macro2::TokenStream;
+use quote::{ToTokens, quote};
+use syn::{Item, ItemMod, parse_quote};
+
+use crate::expand::expand;
+
+const URDF: &str = "../tests/ui/urdf/clash.urdf";
+
+fn module(input: TokenStream) -> ItemMod {
+    syn::parse2(expand(input)).expect("one module")
+}
+
+fn items(module: ItemMod) -> Vec<Item> {
+    module.content.expect("a module with a body").1
+}
+
+#[test]
+fn macro_build_script_and_library_give_the_same_tokens() {
+    let rename = [("a-b", "A_MINUS_B"), ("j-1", "J_MINUS_1")].map(|(from, to)| (from.to_owned(), to.to_owned()));
+    let build = Build::new(URDF).floating().gravity([0.0, 1.5, -9.0]).functions(["gravity_torque", "placements"]).options(|o| {
+        o.rename = rename.to_vec();
+        o.snap_angles = Some(1e-9);
+    });
+    let build = build.generate().unwrap();
+
+    let mut request = Request::new(URDF, std::fs::read(URDF).unwrap());
+    request.options.base = Base::Floating;
+    request.options.gravity = [0.0, 1.5, -9.0];
+    request.options.functions = vec!["gravity_torque".into(), "placements".into()];
+    request.options.rename = rename.to_vec();
+    request.options.snap_angles = Some(1e-9);
+    request.options.runtime = Some("::articulated".into());
+    assert_eq!(generate(&request).unwrap().source, build.source);
+
+    let mut items = items(module(quote! {
+        mod clash {
+            urdf = #URDF,
+            base = floating,
+            gravity = [0, 1.5, -9.0],
+            functions = [gravity_torque, placements],
+            rename = { "a-b" = A_MINUS_B, "j-1" = J_MINUS_1 },
+            snap_angles = 1e-9,
+        }
+    }));
+    items.pop();
+    assert_eq!(quote!(#(#items)*).to_string(), syn::parse2::<syn::File>(build.tokens()).unwrap().to_token_stream().to_string());
+}
+
+#[test]
+fn defaults_are_those_of_the_build_script() {
+    let urdf = "../tests/ui/urdf/arm.urdf";
+    let mut items = items(module(quote!(mod arm { urdf = #urdf })));
+    items.pop();
+    let build = Build::new(urdf).generate().unwrap().tokens();
+    assert_eq!(quote!(#(#items)*).to_string(), syn::parse2::<syn::File>(build).unwrap().to_token_stream().to_string());
+}
+
+#[test]
+fn standalone_code_names_no_crate() {
+    let urdf = "../tests/ui/urdf/arm.urdf";
+    let module = module(quote!(mod arm { urdf = #urdf, standalone = true }));
+    assert!(!module.to_token_stream().to_string().contains("articulated"));
+}
+
+#[test]
+fn attributes_and_visibility_are_the_modules() {
+    let urdf = "../tests/ui/urdf/arm.urdf";
+    let module = module(quote!(#[doc = "An arm."] #[cfg(all())] pub(crate) mod arm { urdf = #urdf }));
+    assert_eq!(module.attrs, [parse_quote!(#[doc = "An arm."]), parse_quote!(#[cfg(all())])]);
+    assert_eq!(module.vis, parse_quote!(pub(crate)));
+}
+
+#[test]
+fn the_compiler_is_told_of_the_urdf_even_if_it_is_broken() {
+    let urdf = "../tests/ui/urdf/broken.urdf";
+    let items = items(module(quote!(mod broken { urdf = #urdf })));
+    let text = items.last().to_token_stream().to_string();
+    assert!(text.contains("include_bytes") && text.contains("broken.urdf"), "{text}");
+}

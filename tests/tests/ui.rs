@@ -1,0 +1,25 @@
+//! What the macro `robot!` accepts, and what it says about what it does not.
+//!
+//! The expected messages are in `ui/fail/*.stderr`; `TRYBUILD=overwrite cargo test --test ui` writes them anew.
+
+use std::fs;
+use std::path::Path;
+
+#[test]
+fn every_mistake_is_named_at_its_word() {
+    copy_urdfs();
+    let cases = trybuild::TestCases::new();
+    cases.pass("ui/pass/*.rs");
+    cases.compile_fail("ui/fail/*.rs");
+}
+
+/// The cases are compiled as a package of their own below the target folder, and paths in `robot!` start at the package's folder.
+fn copy_urdfs() {
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap();
+    let package = target.join("tests/trybuild").join(env!("CARGO_PKG_NAME"));
+    fs::create_dir_all(package.join("ui/urdf")).unwrap();
+    for entry in fs::read_dir("ui/urdf").unwrap() {
+        let file = entry.unwrap();
+        fs::copy(file.path(), package.join("ui/urdf").join(file.file_name())).unwrap();
+    }
+}

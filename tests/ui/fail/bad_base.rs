@@ -1,0 +1,10 @@
+//! A base that is neither fixed nor floating: at the base.
+
+articulated::robot! {
+    pub mod arm {
+        urdf = "ui/urdf/arm.urdf",
+        base = flying,
+    }
+}
+
+fn main() {}

@@ -1,0 +1,9 @@
+//! A URDF with several mistakes: all of them, at the path.
+
+articulated::robot! {
+    pub mod broken {
+        urdf = "ui/urdf/broken.urdf",
+    }
+}
+
+fn main() {}

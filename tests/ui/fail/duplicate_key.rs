@@ -1,0 +1,11 @@
+//! A key that is given twice: at the second.
+
+articulated::robot! {
+    pub mod arm {
+        urdf = "ui/urdf/arm.urdf",
+        base = fixed,
+        base = floating,
+    }
+}
+
+fn main() {}

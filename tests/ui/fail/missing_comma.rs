@@ -1,0 +1,10 @@
+//! A comma left out: at what follows.
+
+articulated::robot! {
+    pub mod arm {
+        urdf = "ui/urdf/arm.urdf"
+        base = floating
+    }
+}
+
+fn main() {}

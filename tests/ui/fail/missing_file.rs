@@ -1,0 +1,9 @@
+//! A file that is not there: at the path.
+
+articulated::robot! {
+    pub mod arm {
+        urdf = "ui/urdf/amr.urdf",
+    }
+}
+
+fn main() {}

@@ -1,0 +1,10 @@
+//! A new name for what the robot does not have: at the old name.
+
+articulated::robot! {
+    pub mod arm {
+        urdf = "ui/urdf/arm.urdf",
+        rename = { "wrist" = WRIST },
+    }
+}
+
+fn main() {}

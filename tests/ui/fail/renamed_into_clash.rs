@@ -1,0 +1,10 @@
+//! A new name that is taken: at the new name.
+
+articulated::robot! {
+    pub mod arm {
+        urdf = "ui/urdf/arm.urdf",
+        rename = { "elbow" = SHOULDER },
+    }
+}
+
+fn main() {}

@@ -1,0 +1,10 @@
+//! A value of another type: at the value.
+
+articulated::robot! {
+    pub mod arm {
+        urdf = "ui/urdf/arm.urdf",
+        gravity = [0.0, -9.81],
+    }
+}
+
+fn main() {}

@@ -1,0 +1,33 @@
+//! A crate without the prelude, that has other things under the names that generated code needs.
+#![no_implicit_prelude]
+#![deny(warnings, missing_docs, unreachable_pub, unused)]
+
+mod core {}
+mod std {}
+mod articulated {}
+
+::articulated::robot! {
+    /// The arm.
+    pub mod arm {
+        urdf = "ui/urdf/arm.urdf",
+        base = floating,
+        functions = [placements, inverse_dynamics, bias_forces, gravity_torque],
+    }
+}
+
+::articulated::robot! {
+    mod alone {
+        urdf = "ui/urdf/arm.urdf",
+        standalone = true,
+    }
+}
+
+fn main() {
+    use ::articulated::Dynamics;
+    let mut frames = [[0.0; 12]; arm::FRAMES];
+    let mut q = [0.0; arm::NQ];
+    q[6] = 1.0;
+    ::std::assert!(arm::Robot.placements(&mut (), &q, &mut frames).is_ok());
+    ::std::assert_eq!(frames, arm::placements(&q));
+    let _ = alone::placements(&[0.0; alone::NQ]);
+}
