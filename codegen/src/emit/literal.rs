@@ -1,8 +1,12 @@
 //! Numbers in source.
 
-/// The shortest literal that is read back as exactly `x`; finite numbers only come here.
+/// The shortest literal that is read back as exactly `x`; infinities by their names.
 pub(super) fn literal(x: f64) -> String {
-    format!("{x:?}")
+    match x {
+        f64::INFINITY => "f64::INFINITY".into(),
+        f64::NEG_INFINITY => "f64::NEG_INFINITY".into(),
+        x => format!("{x:?}"),
+    }
 }
 
 #[cfg(test)]

@@ -106,9 +106,8 @@ fn constants(out: &mut String, model: &Model<f64>) {
     );
 }
 
-fn limits(out: &mut String, name: &str, doc: &str, model: &Model<f64>, limit: impl Fn(&JointInfo) -> Option<f64>, none: &str) {
-    let none = format!("f64::{none}");
-    let values: Vec<String> = model.joints.iter().flat_map(|j| vec![limit(j).map_or_else(|| none.clone(), literal); j.q.1]).collect();
+fn limits(out: &mut String, name: &str, doc: &str, model: &Model<f64>, limit: impl Fn(&JointInfo) -> Option<f64>, none: f64) {
+    let values: Vec<String> = model.joints.iter().flat_map(|j| vec![literal(limit(j).unwrap_or(none)); j.q.1]).collect();
     let _ = writeln!(out, "/// {doc}\npub const {name}: [f64; NQ] = [{}];", values.join(", "));
 }
 
