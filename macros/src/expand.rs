@@ -30,7 +30,9 @@ fn module(invocation: Invocation) -> TokenStream {
     let Invocation { attributes, visibility, module, name, settings, mut errors } = invocation;
     let contents = contents(&settings, &mut errors);
     let errors = errors.into_items();
-    quote! { #(#attributes)* #visibility #module #name { #errors #contents } }
+    // Lints about style are for code that somebody writes. First, so that the user's attributes have the last word.
+    let allow = quote! { #[allow(clippy::all, clippy::pedantic, clippy::nursery, clippy::restriction)] };
+    quote! { #allow #(#attributes)* #visibility #module #name { #errors #contents } }
 }
 
 /// The generated source and a mention of the URDF, by which the compiler knows that the module depends on it.
