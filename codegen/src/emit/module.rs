@@ -94,7 +94,7 @@ fn constants(out: &mut String, model: &Model<f64>) {
         "Lower bounds of the coordinates, rad or m; −∞ where there is none.",
         model,
         |j| j.limit.map(|l| l.lower),
-        "NEG_INFINITY",
+        f64::NEG_INFINITY,
     );
     limits(
         out,
@@ -102,7 +102,7 @@ fn constants(out: &mut String, model: &Model<f64>) {
         "Upper bounds of the coordinates, rad or m; ∞ where there is none.",
         model,
         |j| j.limit.map(|l| l.upper),
-        "INFINITY",
+        f64::INFINITY,
     );
 }
 

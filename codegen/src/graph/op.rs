@@ -52,12 +52,22 @@ pub struct Row {
     pub value: fn(f64, f64, f64) -> f64,
     /// What it costs, in floating-point instructions.
     pub cost: u32,
+    /// After how many cycles its value is known, on a current processor.
+    pub latency: u32,
     /// How it is written in Rust, with {a}, {b}, {c} for the operands.
     pub rust: &'static str,
 }
 
-const fn row(op: Op, name: &'static str, arity: usize, value: fn(f64, f64, f64) -> f64, cost: u32, rust: &'static str) -> Row {
-    Row { op, name, arity, commutes: false, value, cost, rust }
+const fn row(
+    op: Op,
+    name: &'static str,
+    arity: usize,
+    value: fn(f64, f64, f64) -> f64,
+    cost: u32,
+    latency: u32,
+    rust: &'static str,
+) -> Row {
+    Row { op, name, arity, commutes: false, value, cost, latency, rust }
 }
 
 const fn commuting(row: Row) -> Row {
@@ -66,22 +76,22 @@ const fn commuting(row: Row) -> Row {
 
 /// All operations, in the order of [`Op`].
 pub const OPS: [Row; 16] = [
-    row(Op::Constant, "constants", 0, |_, _, _| f64::NAN, 0, ""),
-    row(Op::Input, "inputs", 0, |_, _, _| f64::NAN, 0, ""),
-    commuting(row(Op::Add, "add", 2, |a, b, _| a + b, 1, "{a} + {b}")),
-    row(Op::Sub, "sub", 2, |a, b, _| a - b, 1, "{a} - {b}"),
-    commuting(row(Op::Mul, "mul", 2, |a, b, _| a * b, 1, "{a} * {b}")),
-    row(Op::Div, "div", 2, |a, b, _| a / b, 4, "{a} / {b}"),
-    row(Op::Neg, "neg", 1, |a, _, _| -a, 1, "-{a}"),
-    row(Op::Sqrt, "sqrt", 1, |a, _, _| a.sqrt(), 4, "{a}.sqrt()"),
-    row(Op::Sin, "sin", 1, |a, _, _| a.sin(), 10, "{a}.sin()"),
-    row(Op::Cos, "cos", 1, |a, _, _| a.cos(), 10, "{a}.cos()"),
-    row(Op::Positive, "compare", 1, |a, _, _| if a > 0.0 { 1.0 } else { 0.0 }, 1, "{a} > 0.0"),
-    row(Op::Select, "select", 3, |a, b, c| if a == 1.0 { b } else { c }, 1, "if {a} { {b} } else { {c} }"),
-    commuting(row(Op::MulAdd, "fma", 3, |a, b, c| a * b + c, 1, "fma({a}, {b}, {c})")),
-    commuting(row(Op::MulSub, "fma", 3, |a, b, c| a * b - c, 1, "fma({a}, {b}, -{c})")),
-    commuting(row(Op::NegMulAdd, "fma", 3, |a, b, c| c - a * b, 1, "fma(-{a}, {b}, {c})")),
-    commuting(row(Op::NegMulSub, "fma", 3, |a, b, c| -(a * b) - c, 1, "fma(-{a}, {b}, -{c})")),
+    row(Op::Constant, "constants", 0, |_, _, _| f64::NAN, 0, 0, ""),
+    row(Op::Input, "inputs", 0, |_, _, _| f64::NAN, 0, 0, ""),
+    commuting(row(Op::Add, "add", 2, |a, b, _| a + b, 1, 4, "{a} + {b}")),
+    row(Op::Sub, "sub", 2, |a, b, _| a - b, 1, 4, "{a} - {b}"),
+    commuting(row(Op::Mul, "mul", 2, |a, b, _| a * b, 1, 4, "{a} * {b}")),
+    row(Op::Div, "div", 2, |a, b, _| a / b, 4, 13, "{a} / {b}"),
+    row(Op::Neg, "neg", 1, |a, _, _| -a, 1, 1, "-{a}"),
+    row(Op::Sqrt, "sqrt", 1, |a, _, _| a.sqrt(), 4, 18, "{a}.sqrt()"),
+    row(Op::Sin, "sin", 1, |a, _, _| a.sin(), 10, 60, "{a}.sin()"),
+    row(Op::Cos, "cos", 1, |a, _, _| a.cos(), 10, 60, "{a}.cos()"),
+    row(Op::Positive, "compare", 1, |a, _, _| if a > 0.0 { 1.0 } else { 0.0 }, 1, 3, "{a} > 0.0"),
+    row(Op::Select, "select", 3, |a, b, c| if a == 1.0 { b } else { c }, 1, 2, "if {a} { {b} } else { {c} }"),
+    commuting(row(Op::MulAdd, "fma", 3, |a, b, c| a * b + c, 1, 4, "fma({a}, {b}, {c})")),
+    commuting(row(Op::MulSub, "fma", 3, |a, b, c| a * b - c, 1, 4, "fma({a}, {b}, -{c})")),
+    commuting(row(Op::NegMulAdd, "fma", 3, |a, b, c| c - a * b, 1, 4, "fma(-{a}, {b}, {c})")),
+    commuting(row(Op::NegMulSub, "fma", 3, |a, b, c| -(a * b) - c, 1, 4, "fma(-{a}, {b}, -{c})")),
 ];
 
 impl Op {

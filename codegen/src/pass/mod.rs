@@ -1,12 +1,12 @@
 //! Graph passes: `Graph → Graph`, keeping the algebra. One file each, in the order of [`GRAPH_PASSES`].
 
-mod fuse;
+mod contract;
 mod live;
 
-pub use fuse::fuse;
+pub use contract::contract;
 pub use live::live;
 
-use crate::graph::{Graph, Node, NodeId, Op};
+use crate::graph::{Graph, Node, NodeId};
 
 /// A pass over graphs.
 pub type GraphPass = fn(&Graph) -> Graph;
@@ -14,7 +14,11 @@ pub type GraphPass = fn(&Graph) -> Graph;
 /// The passes in order; each row: name, pass, and what holds after it.
 pub const GRAPH_PASSES: &[(&str, GraphPass, &str)] = &[
     ("live", live, "every node is needed by an output"),
-    ("fuse", fuse, "no product is used by one addition only: it is part of a multiply-add"),
+    (
+        "contract",
+        contract,
+        "no sum is a term of one other sum; a product that only sums use is part of multiply-adds, but for one a sum at most",
+    ),
 ];
 
 /// Rebuilds a graph node by node: `rewrite(new, node, operands)` gives the new node for each old one that `keep` lets through.
@@ -63,9 +67,4 @@ fn cost(graph: &Graph) -> u32 {
 fn probe(argument: usize, index: usize) -> f64 {
     let x = ((argument * 7919 + index * 104_729 + 13) as f64 * 0.754_877_666_246_692_7).fract();
     2.0 * x - 1.0
-}
-
-/// Whether a node is a product.
-fn is_product(node: Node) -> bool {
-    node.op == Op::Mul
 }

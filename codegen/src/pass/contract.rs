@@ -1,0 +1,249 @@
+//! Sums as chains of multiply-adds.
+
+use crate::graph::{Graph, Node, NodeId, Op};
+
+/// Flattens nested sums and rebuilds each as one chain, in which every product that only sums use is part of a multiply-add.
+///
+/// A chain takes its terms in the order in which they become known, so that the last one waits for nothing but itself. A sum of
+/// products alone needs one that is computed on its own to start from; those are chosen so that as few as possible are.
+/// Re-association changes results by roundings only.
+pub fn contract(graph: &Graph) -> Graph {
+    let sums = Sums::of(graph);
+    let mut builder = Builder { graph, new: Graph::default(), ids: vec![NodeId(u32::MAX); graph.nodes().len()], arrival: Vec::new() };
+    for (k, node) in graph.nodes().iter().enumerate() {
+        if !sums.inner[k] && !sums.fused(k) {
+            builder.ids[k] = match &sums.terms[k] {
+                Some(terms) => builder.chain(terms, &sums),
+                None => builder.copy(node),
+            };
+        }
+    }
+    builder.new.outputs = graph.outputs.iter().map(|o| builder.ids[o.index()]).collect();
+    builder.new
+}
+
+/// A term of a sum.
+#[derive(Clone, Copy, Debug)]
+struct Term {
+    negative: bool,
+    node: usize,
+}
+
+/// The sums of a graph.
+struct Sums {
+    /// Nodes that are part of a larger sum and nothing else.
+    inner: Vec<bool>,
+    /// The terms of each sum that is not inner.
+    terms: Vec<Option<Vec<Term>>>,
+    /// Products that nothing but sums use.
+    fusible: Vec<bool>,
+    /// Of those, the ones that are computed on their own all the same, because a sum starts from them.
+    seed: Vec<bool>,
+}
+
+fn is_sum(node: &Node) -> bool {
+    matches!(node.op, Op::Add | Op::Sub | Op::Neg)
+}
+
+impl Sums {
+    fn of(graph: &Graph) -> Self {
+        let nodes = graph.nodes();
+        let uses = graph.uses();
+        let mut in_sums = vec![0; nodes.len()];
+        nodes.iter().filter(|n| is_sum(n)).flat_map(Node::operands).for_each(|a| in_sums[a.index()] += 1);
+        let only_in_sums = |k: usize| uses[k] > 0 && uses[k] == in_sums[k];
+        let inner: Vec<bool> = nodes.iter().enumerate().map(|(k, n)| is_sum(n) && uses[k] == 1 && only_in_sums(k)).collect();
+        let fusible = nodes.iter().enumerate().map(|(k, n)| n.op == Op::Mul && only_in_sums(k)).collect();
+        let terms = (0..nodes.len()).map(|k| (is_sum(&nodes[k]) && !inner[k]).then(|| flatten(graph, &inner, k))).collect();
+        let mut sums = Self { inner, terms, fusible, seed: vec![false; nodes.len()] };
+        sums.choose_seeds(&uses);
+        sums
+    }
+
+    /// Whether a node is a product that is part of multiply-adds only.
+    fn fused(&self, k: usize) -> bool {
+        self.fusible[k] && !self.seed[k]
+    }
+
+    /// A sum all of whose terms would be fused starts from one of them: the one that most sums use, as it may serve them all.
+    fn choose_seeds(&mut self, uses: &[u32]) {
+        for terms in self.terms.iter().flatten() {
+            if terms.iter().all(|t| self.fusible[t.node] && !self.seed[t.node])
+                && let Some(seed) = terms.iter().max_by_key(|t| (uses[t.node], usize::MAX - t.node))
+            {
+                self.seed[seed.node] = true;
+            }
+        }
+    }
+}
+
+/// The terms of the sum at `root`, inner sums opened.
+fn flatten(graph: &Graph, inner: &[bool], root: usize) -> Vec<Term> {
+    let mut terms = Vec::new();
+    let mut stack = vec![Term { negative: false, node: root }];
+    while let Some(Term { negative, node }) = stack.pop() {
+        if node != root && !inner[node] {
+            terms.push(Term { negative, node });
+            continue;
+        }
+        let Node { op, args } = graph.nodes()[node];
+        let at = |k: usize, flip: bool| Term { negative: negative != flip, node: args[k] as usize };
+        match op {
+            Op::Add => stack.extend([at(1, false), at(0, false)]),
+            Op::Sub => stack.extend([at(1, true), at(0, false)]),
+            _ => stack.push(at(0, true)),
+        }
+    }
+    terms
+}
+
+struct Builder<'a> {
+    graph: &'a Graph,
+    new: Graph,
+    /// The new node of each old one that has one.
+    ids: Vec<NodeId>,
+    /// When each new node's value is known, in cycles.
+    arrival: Vec<u32>,
+}
+
+impl Builder<'_> {
+    fn push(&mut self, op: Op, operands: &[NodeId]) -> NodeId {
+        let id = self.new.exactly(op, operands);
+        self.note(id)
+    }
+
+    fn copy(&mut self, node: &Node) -> NodeId {
+        if node.op.row().arity == 0 {
+            let id = self.new.leaf(*node);
+            return self.note(id);
+        }
+        let operands: Vec<NodeId> = node.operands().map(|a| self.ids[a.index()]).collect();
+        self.push(node.op, &operands)
+    }
+
+    fn note(&mut self, id: NodeId) -> NodeId {
+        if id.index() == self.arrival.len() {
+            let node = self.new.node(id);
+            let start = node.operands().map(|a| self.arrival[a.index()]).max().unwrap_or(0);
+            self.arrival.push(start + node.op.row().latency);
+        }
+        id
+    }
+
+    /// When a term could be added: for a fused product, when its factors are known.
+    fn known(&self, term: Term, sums: &Sums) -> u32 {
+        let at = |id: NodeId| self.arrival[id.index()];
+        if sums.fused(term.node) { self.factors(term.node).into_iter().map(at).max().unwrap_or(0) } else { at(self.ids[term.node]) }
+    }
+
+    fn factors(&self, product: usize) -> [NodeId; 2] {
+        let [a, b, _] = self.graph.nodes()[product].args;
+        [self.ids[a as usize], self.ids[b as usize]]
+    }
+
+    fn chain(&mut self, terms: &[Term], sums: &Sums) -> NodeId {
+        let mut terms = terms.to_vec();
+        terms.sort_by_key(|t| self.known(*t, sums));
+        let first = terms.iter().position(|t| !sums.fused(t.node)).unwrap_or(0);
+        let start = terms.remove(first);
+        let (mut negative, mut sum) = (start.negative, self.ids[start.node]);
+        for term in terms {
+            if sums.fused(term.node) {
+                let [a, b] = self.factors(term.node);
+                // ±sum ± a·b; two minuses stay outside, in the hope of a plus to come.
+                let (op, sign) = match (term.negative, negative) {
+                    (false, false) => (Op::MulAdd, false),
+                    (true, false) => (Op::NegMulAdd, false),
+                    (false, true) => (Op::MulSub, false),
+                    (true, true) => (Op::MulAdd, true),
+                };
+                (sum, negative) = (self.push(op, &[a, b, sum]), sign);
+            } else {
+                let other = self.ids[term.node];
+                let (op, x, y, sign) = match (term.negative, negative) {
+                    (false, false) => (Op::Add, sum, other, false),
+                    (true, false) => (Op::Sub, sum, other, false),
+                    (false, true) => (Op::Sub, other, sum, false),
+                    (true, true) => (Op::Add, sum, other, true),
+                };
+                (sum, negative) = (self.push(op, &[x, y]), sign);
+            }
+        }
+        if negative { self.negate(sum) } else { sum }
+    }
+
+    /// −x; of a multiply-add that was just made, with its signs turned.
+    fn negate(&mut self, x: NodeId) -> NodeId {
+        let node = self.new.node(x);
+        match node.op {
+            Op::MulAdd => self.push(Op::NegMulSub, &node.args.map(NodeId)),
+            _ => self.push(Op::Neg, &[x]),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pass::live;
+
+    fn at(_: usize, k: usize) -> f64 {
+        [0.3, -0.8, 1.7, 2.9, -0.45, 0.62][k]
+    }
+
+    fn check(g: &Graph, instructions: u64) {
+        let new = live(&contract(g));
+        new.verify().unwrap();
+        assert_eq!(new.counts().instructions(), instructions);
+        for (a, b) in new.evaluate(at).into_iter().zip(g.evaluate(at)) {
+            assert!((a - b).abs() < 1e-15, "{a} {b}");
+        }
+    }
+
+    #[test]
+    fn a_rotation_is_one_product_and_one_multiply_add_a_component() {
+        let mut g = Graph::default();
+        let [c, s, x, y] = [0, 1, 2, 3].map(|k| g.input(0, k));
+        let [cx, sy, sx, cy] = [[c, x], [s, y], [s, x], [c, y]].map(|f| g.apply(Op::Mul, &f));
+        let sum = g.apply(Op::Add, &[cx, sy]);
+        let difference = g.apply(Op::Sub, &[sx, cy]);
+        let negative = g.apply(Op::Neg, &[difference]);
+        g.outputs = vec![sum, negative];
+        check(&g, 4);
+    }
+
+    #[test]
+    fn nested_sums_are_one_chain() {
+        let mut g = Graph::default();
+        let [a, b, c, d, e, f] = [0, 1, 2, 3, 4, 5].map(|k| g.input(0, k));
+        let [ab, cd, ef] = [[a, b], [c, d], [e, f]].map(|f| g.apply(Op::Mul, &f));
+        let left = g.apply(Op::Sub, &[ab, cd]);
+        let right = g.apply(Op::Sub, &[ef, a]);
+        g.outputs = vec![g.clone().apply(Op::Sub, &[left, right])];
+        let all = g.apply(Op::Sub, &[left, right]);
+        g.outputs = vec![all];
+        check(&g, 3);
+    }
+
+    #[test]
+    fn a_product_that_only_sums_use_vanishes_into_all_of_them() {
+        let mut g = Graph::default();
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| g.input(0, k));
+        let ab = g.apply(Op::Mul, &[a, b]);
+        g.outputs = vec![];
+        let (x, y) = (g.apply(Op::Add, &[ab, c]), g.apply(Op::Sub, &[ab, d]));
+        g.outputs = vec![x, y];
+        check(&g, 2);
+    }
+
+    #[test]
+    fn minus_everything_needs_no_sign_of_its_own() {
+        let mut g = Graph::default();
+        let [a, b, c] = [0, 1, 2].map(|k| g.input(0, k));
+        let ab = g.apply(Op::Mul, &[a, b]);
+        let sum = g.apply(Op::Add, &[ab, c]);
+        let minus = g.apply(Op::Neg, &[sum]);
+        g.outputs = vec![minus];
+        check(&g, 1);
+    }
+}
