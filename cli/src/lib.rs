@@ -1,5 +1,59 @@
 //! The command `articulated`, as a library: what it does, and what the tests of the workspace share with it.
+//!
+//! For tests: [`precise::Big`], a scalar of 96 digits; [`magnitude::Magnitude`], the scale of rounding errors; [`states`], states at random and
+//! from files; [`compiled::Compiled`], generated source as functions that can be called.
+
+mod arguments;
+mod check;
 pub mod compiled;
+mod console;
+pub mod failure;
+mod eval;
+mod generate;
+mod ledger;
 pub mod magnitude;
 mod native;
 pub mod precise;
+mod robot;
+pub mod states;
+mod table;
+
+use std::ffi::OsString;
+
+use clap::Parser;
+
+use arguments::{Arguments, Command};
+use failure::{Failure, OK, USAGE};
+
+/// Runs the command with these words, the program's own name first. The exit status: see [`failure`].
+pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
+    let arguments = match Arguments::try_parse_from(words) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            let _ = error.print();
+            return u8::try_from(error.exit_code()).unwrap_or(USAGE);
+        }
+    };
+    match dispatch(&arguments) {
+        Ok(status) => status,
+        Err(failure) => {
+            failure.lines.iter().for_each(|line| console::error(line));
+            failure.status
+        }
+    }
+}
+
+fn dispatch(arguments: &Arguments) -> Result<u8, Failure> {
+    let format = arguments.format;
+    match &arguments.command {
+        Command::Check(a) => check::run(a, format),
+        Command::Generate(a) => generate::run(a, format).map(|()| OK),
+        Command::Eval(a) => eval::run(a, format),
+        Command::Compare(_) => Ok(OK),
+    }
+}
+
+/// A report as JSON, indented, with a line's end.
+fn json(report: &impl serde::Serialize) -> String {
+    serde_json::to_string_pretty(report).map_or_else(|e| format!("{{\"error\": {:?}}}\n", e.to_string()), |text| text + "\n")
+}

@@ -3,6 +3,8 @@
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use articulated_core::Scalar;
+use articulated_core::algorithm::{FunctionError, Workspace, function};
+use articulated_core::model::Model;
 use num_traits::{One, Zero};
 
 /// A value together with the sum of the magnitudes of the terms that it was summed from.
@@ -129,6 +131,21 @@ impl Scalar for Magnitude {
     fn select(mask: bool, a: Self, b: Self) -> Self {
         if mask { a } else { b }
     }
+}
+
+/// Unit roundoff of double precision, 2⁻⁵³.
+pub const ROUNDOFF: f64 = f64::EPSILON / 2.0;
+
+/// The scale of each number that a function gives: the algorithm of the registry, run with [`Magnitude`] on `model`, which has
+/// to be as it was read, before model passes.
+pub fn scales(model: &Model<f64>, name: &str, arguments: &[&[f64]]) -> Result<Vec<f64>, FunctionError> {
+    let row = function::<Magnitude>(name).ok_or(FunctionError::NotGenerated { function: "of this name" })?;
+    let model: Model<Magnitude> = model.cast();
+    let arguments: Vec<Vec<Magnitude>> = arguments.iter().map(|x| x.iter().map(|x| Magnitude::from_f64(*x)).collect()).collect();
+    let arguments: Vec<&[Magnitude]> = arguments.iter().map(Vec::as_slice).collect();
+    let mut out = vec![Magnitude::zero(); row.gives.len(model.shape())];
+    row.call(&model, &mut Workspace::new(&model), &arguments, &mut out)?;
+    Ok(out.into_iter().map(|x| x.magnitude).collect())
 }
 
 #[cfg(test)]

@@ -1,2 +1,7 @@
 //! The command `articulated`.
-fn main() {}
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    articulated_cli::run(std::env::args_os()).into()
+}

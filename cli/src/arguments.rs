@@ -1,0 +1,233 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use articulated_codegen::nearest;
+use articulated_core::algorithm::{function, functions};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::failure::STATUSES;
+
+/// Robot dynamics, spelled out: checks a URDF, generates its straight-line code, evaluates it, and compares it.
+#[derive(Debug, Parser)]
+#[command(name = "articulated", version, after_help = overview())]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    /// How to print results
+    #[arg(long, global = true, value_enum, default_value_t = Format::Text)]
+    pub(crate) format: Format,
+}
+
+/// How to print.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// For people
+    Text,
+    /// For programs
+    Json,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Says all that is wrong with a robot, and what it is made of
+    #[command(after_help = examples(&[
+        "articulated check arm.urdf",
+        "articulated check --floating walker.urdf",
+        "articulated check arm.urdf --function inverse_dynamics",
+        "articulated check panda_like --format json",
+    ]))]
+    Check(CheckArguments),
+    /// Writes a robot's dynamics out as Rust
+    #[command(after_help = examples(&[
+        "articulated generate panda_like",
+        "articulated generate arm.urdf --functions placements,inverse_dynamics -o src/arm.rs",
+        "articulated generate arm.urdf --runtime ::articulated -o src/arm.rs",
+    ]))]
+    Generate(GenerateArguments),
+    /// Evaluates functions on a file of states, by generic and by generated code
+    #[command(after_help = examples(&[
+        "articulated eval simple_pendulum --function inverse_dynamics --states states.json",
+        "articulated eval arm.urdf --function gravity_torque,placements --states states.csv --generic --format json",
+        "",
+        "states.json:  {\"states\": [{\"q\": [0.1], \"v\": {\"hinge\": 0.2}, \"a\": [0]}]}",
+        "states.csv:   q.hinge,v.hinge,a.hinge      (q.base[0],q.base[1],… where a joint has several numbers)",
+        "              0.1,0.2,0",
+    ]))]
+    Eval(EvalArguments),
+    /// Measures generated code against generic code: operations, size, time, error
+    #[command(after_help = examples(&[
+        "articulated compare panda_like",
+        "articulated compare humanoid --functions inverse_dynamics --repetitions 101",
+        "articulated compare arm.urdf --peer libpeer.so --format json",
+        "articulated compare quadruped --peers-manifest target/peers/peers.json",
+    ]))]
+    Compare(CompareArguments),
+}
+
+/// Which robot, and how to read it.
+#[derive(Args, Debug)]
+pub(crate) struct RobotArguments {
+    /// A bundled robot's name, the path of a URDF, or - for the standard input
+    #[arg(value_name = "ROBOT")]
+    pub(crate) robot: String,
+    /// The root link moves freely (bundled robots know their own base)
+    #[arg(long, conflicts_with = "fixed")]
+    pub(crate) floating: bool,
+    /// The root link is fixed
+    #[arg(long)]
+    pub(crate) fixed: bool,
+    /// Gravity in the base frame, m/s² [default: 0,0,-9.81]
+    #[arg(long, value_name = "X,Y,Z", value_parser = gravity, allow_hyphen_values = true)]
+    pub(crate) gravity: Option<Gravity>,
+    /// Take inertias that no body can have, with a warning
+    #[arg(long)]
+    pub(crate) allow_unphysical_inertia: bool,
+    /// Take an angle of the file within TOL rad of a multiple of π/2 as that multiple
+    #[arg(long, value_name = "TOL", value_parser = tolerance)]
+    pub(crate) snap_angles: Option<f64>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct CheckArguments {
+    #[command(flatten)]
+    pub(crate) robot: RobotArguments,
+    /// Check too that these functions can be generated
+    #[arg(long, alias = "functions", value_name = "NAME", value_delimiter = ',', value_parser = known_function)]
+    pub(crate) function: Vec<String>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct GenerateArguments {
+    #[command(flatten)]
+    pub(crate) robot: RobotArguments,
+    /// The functions wanted [default: placements,inverse_dynamics]
+    #[arg(long, alias = "function", value_name = "NAMES", value_delimiter = ',', value_parser = known_function)]
+    pub(crate) functions: Vec<String>,
+    /// The file to write instead of the standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Code that depends on nothing but core and std (this is the default)
+    #[arg(long, conflicts_with = "runtime")]
+    pub(crate) standalone: bool,
+    /// The path of the runtime crate, to implement its trait `Dynamics`
+    #[arg(long, value_name = "PATH", value_parser = rust_path)]
+    pub(crate) runtime: Option<String>,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct EvalArguments {
+    #[command(flatten)]
+    pub(crate) robot: RobotArguments,
+    /// The functions to evaluate
+    #[arg(long, alias = "functions", value_name = "NAMES", value_delimiter = ',', required = true, value_parser = known_function)]
+    pub(crate) function: Vec<String>,
+    /// A file of states in JSON or CSV; - is the standard input
+    #[arg(long, value_name = "FILE")]
+    pub(crate) states: String,
+    /// By generated code only, compiled by rustc
+    #[arg(long, conflicts_with = "generic")]
+    pub(crate) generated: bool,
+    /// By generic code only
+    #[arg(long)]
+    pub(crate) generic: bool,
+}
+
+#[derive(Args, Debug)]
+pub(crate) struct CompareArguments {
+    #[command(flatten)]
+    pub(crate) robot: RobotArguments,
+    /// The functions to compare [default: all that are defined for the robot]
+    #[arg(long, alias = "function", value_name = "NAMES", value_delimiter = ',', value_parser = known_function)]
+    pub(crate) functions: Vec<String>,
+    /// A peer library to time beside them; may be given several times. It is run: name only libraries that you trust
+    #[arg(long, value_name = "LIBRARY")]
+    pub(crate) peer: Vec<PathBuf>,
+    /// A list of peer libraries, as the peers' build script writes it
+    #[arg(long, value_name = "FILE")]
+    pub(crate) peers_manifest: Option<PathBuf>,
+    /// How often each is timed
+    #[arg(long, value_name = "N", default_value_t = 61, value_parser = clap::value_parser!(u32).range(31..=100_000))]
+    pub(crate) repetitions: u32,
+    /// How many random states they are timed and judged on
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) states: u32,
+    /// Seed of the random states
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// The largest error that is right, in units of 2⁻⁵³ of the sum of the magnitudes of the terms
+    #[arg(long, value_name = "UNITS", default_value_t = 64.0)]
+    pub(crate) bound: f64,
+}
+
+/// Three numbers in m/s².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Gravity(pub(crate) [f64; 3]);
+
+fn gravity(text: &str) -> Result<Gravity, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|x| x.trim().parse::<f64>()).collect();
+    let numbers = numbers.map_err(|e| e.to_string())?;
+    let three: [f64; 3] = numbers.try_into().map_err(|n: Vec<f64>| format!("found {} numbers, expected three", n.len()))?;
+    if three.iter().all(|x| x.is_finite()) { Ok(Gravity(three)) } else { Err("expected finite numbers".into()) }
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    let x: f64 = text.parse().map_err(|_| "expected a number of rad".to_owned())?;
+    if (0.0..=0.5).contains(&x) { Ok(x) } else { Err("expected 0 to 0.5 rad".into()) }
+}
+
+fn known_function(name: &str) -> Result<String, String> {
+    if function::<f64>(name).is_some() {
+        return Ok(name.to_owned());
+    }
+    let all = names();
+    let near = nearest(name, all.iter().copied()).map(|n| format!("did you mean {n}? ")).unwrap_or_default();
+    Err(format!("{near}there are: {}", all.join(", ")))
+}
+
+/// A path as it stands in Rust: `::articulated`, `crate::dynamics`.
+fn rust_path(text: &str) -> Result<String, String> {
+    let word = |w: &str| !w.is_empty() && w.chars().all(|c| c.is_alphanumeric() || c == '_') && !w.starts_with(char::is_numeric);
+    let path = text.strip_prefix("::").unwrap_or(text);
+    if path.split("::").all(word) { Ok(text.to_owned()) } else { Err("expected a path of Rust such as ::articulated".into()) }
+}
+
+/// All functions, in the registry's order.
+pub(crate) fn names() -> Vec<&'static str> {
+    functions::<f64>().iter().map(|f| f.name).collect()
+}
+
+fn examples(lines: &[&str]) -> String {
+    let lines: String = lines.iter().map(|l| format!("  {l}\n")).collect();
+    format!("Examples:\n{lines}\n{STATUSES}")
+}
+
+fn overview() -> String {
+    let robots: String = articulated_models::ROBOTS.iter().map(|r| format!("  {:16} {}\n", r.name, r.summary)).collect();
+    let functions: String = functions::<f64>().iter().map(|f| format!("  {:16} {}\n", f.name, f.summary)).collect();
+    format!("Bundled robots:\n{robots}\nFunctions:\n{functions}\n{STATUSES}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        use clap::CommandFactory;
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn gravity_is_three_finite_numbers() {
+        assert_eq!(gravity("0, -9.81,1e0"), Ok(Gravity([0.0, -9.81, 1.0])));
+        assert!(gravity("1,2").is_err() && gravity("1,2,nan").is_err() && gravity("").is_err());
+    }
+
+    #[test]
+    fn a_misspelt_function_is_guessed() {
+        assert!(known_function("inverse_dynamic").unwrap_err().contains("did you mean inverse_dynamics?"));
+        assert!(rust_path("::a::b_1").is_ok() && rust_path("crate::x").is_ok());
+        assert!(rust_path("a; fn").is_err() && rust_path("::").is_err() && rust_path("1a").is_err());
+    }
+}

@@ -1,0 +1,58 @@
+//! `articulated check`.
+
+mod inertia;
+mod report;
+mod text;
+
+use articulated_urdf::Reading;
+
+use crate::arguments::{CheckArguments, Format};
+use crate::console;
+use crate::failure::Failure;
+use crate::robot::Robot;
+use report::{Diagnostic, Report};
+
+/// Prints all that there is to say; an error of the input is part of that and goes where the rest goes.
+pub(crate) fn run(arguments: &CheckArguments, format: Format) -> Result<u8, Failure> {
+    let robot = Robot::find(&arguments.robot)?;
+    let report = examine(&robot, &arguments.function);
+    console::print(&match format {
+        Format::Text => text::text(&report),
+        Format::Json => crate::json(&report),
+    });
+    Ok(if report.usable { crate::failure::OK } else { crate::failure::INPUT })
+}
+
+fn examine(robot: &Robot, functions: &[String]) -> Report {
+    let mut report = Report::new(robot);
+    match robot.read() {
+        Err(problems) => {
+            report.errors.extend(problems.errors.iter().map(Diagnostic::of));
+            report.warnings.extend(problems.warnings.iter().map(Diagnostic::of));
+        }
+        Ok(reading) => {
+            report.warnings.extend(reading.warnings.iter().chain(&reading.snapped).map(Diagnostic::of));
+            report.unused.extend(reading.unused.iter().map(ToString::to_string));
+            describe(robot, &reading, &mut report);
+        }
+    }
+    if report.errors.is_empty() {
+        functions.iter().for_each(|f| check_function(robot, f, &mut report));
+    }
+    report.usable = report.errors.is_empty();
+    report
+}
+
+fn describe(robot: &Robot, reading: &Reading, report: &mut Report) {
+    match robot.model(reading) {
+        Ok(model) => report.describe(&reading.description, &model),
+        Err(failure) => report.errors.extend(failure.lines.into_iter().map(Diagnostic::plain)),
+    }
+}
+
+fn check_function(robot: &Robot, function: &str, report: &mut Report) {
+    match robot.generate(&[function.to_owned()]) {
+        Ok(_) => report.functions.push(function.to_owned()),
+        Err(error) => report.errors.extend(Failure::from(error).lines.into_iter().map(Diagnostic::plain)),
+    }
+}

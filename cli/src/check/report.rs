@@ -1,0 +1,229 @@
+//! What there is to say of a robot, as data.
+
+use articulated_core::description::{Description, JointKind, Link};
+use articulated_core::model::{FLOATING_BASE, Model};
+use articulated_urdf::Problem;
+use serde::Serialize;
+
+use super::inertia::principal_moments;
+use crate::robot::Robot;
+
+/// Beyond this many bodies some questions are left unasked: no robot, and quadratic work.
+const MANY: usize = 5000;
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Report {
+    pub(super) file: String,
+    pub(super) usable: bool,
+    pub(super) robot: Option<String>,
+    pub(super) base: &'static str,
+    pub(super) gravity: [f64; 3],
+    pub(super) errors: Vec<Diagnostic>,
+    pub(super) warnings: Vec<Diagnostic>,
+    pub(super) unused: Vec<String>,
+    pub(super) totals: Totals,
+    pub(super) links: Vec<LinkRow>,
+    pub(super) joints: Vec<JointRow>,
+    /// Functions that can be generated, of those asked for.
+    pub(super) functions: Vec<String>,
+}
+
+/// An error or a warning.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Diagnostic {
+    pub(super) line: Option<u32>,
+    pub(super) subject: Option<String>,
+    pub(super) field: Option<String>,
+    pub(super) message: String,
+}
+
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub(super) struct Totals {
+    pub(super) links: usize,
+    /// Joints of the file, fixed ones too.
+    pub(super) joints: usize,
+    pub(super) coordinates: usize,
+    pub(super) degrees_of_freedom: usize,
+    /// kg, of all links.
+    pub(super) mass: f64,
+    /// kg, of what moves.
+    pub(super) moving_mass: f64,
+}
+
+/// A link, which is also a frame.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct LinkRow {
+    pub(super) link: String,
+    /// The joint that it moves with; none for what stands with the base.
+    pub(super) moves_with: Option<String>,
+    /// kg.
+    pub(super) mass: f64,
+    /// m, in the link's frame.
+    pub(super) centre_of_mass: Option<[f64; 3]>,
+    /// kg·m², about the centre of mass.
+    pub(super) principal_moments: Option<[f64; 3]>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct JointRow {
+    pub(super) joint: String,
+    pub(super) kind: &'static str,
+    pub(super) parent: Option<String>,
+    pub(super) child: Option<String>,
+    /// First index and number in q, and in v.
+    pub(super) q: Option<(usize, usize)>,
+    pub(super) v: Option<(usize, usize)>,
+    pub(super) lower: Option<f64>,
+    pub(super) upper: Option<f64>,
+    pub(super) velocity: Option<f64>,
+    pub(super) effort: Option<f64>,
+    pub(super) mimic: Option<MimicRow>,
+    /// kg that the joint moves: everything behind it.
+    pub(super) carries: f64,
+}
+
+/// own = multiplier · leader's + offset.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct MimicRow {
+    pub(super) joint: String,
+    pub(super) multiplier: f64,
+    pub(super) offset: f64,
+}
+
+impl Diagnostic {
+    pub(super) fn of(problem: &Problem) -> Self {
+        use articulated_urdf::Subject::Document;
+        Self {
+            line: problem.line,
+            subject: (problem.subject != Document).then(|| problem.subject.to_string()),
+            field: (!problem.field.is_empty()).then(|| problem.field.clone()),
+            message: problem.to_string(),
+        }
+    }
+
+    pub(super) fn plain(message: String) -> Self {
+        Self { line: None, subject: None, field: None, message }
+    }
+}
+
+impl Report {
+    pub(super) fn new(robot: &Robot) -> Self {
+        Self {
+            file: robot.file.clone(),
+            usable: false,
+            robot: None,
+            base: robot.base(),
+            gravity: robot.options.gravity,
+            errors: Vec::new(),
+            warnings: Vec::new(),
+            unused: Vec::new(),
+            totals: Totals::default(),
+            links: Vec::new(),
+            joints: Vec::new(),
+            functions: Vec::new(),
+        }
+    }
+
+    /// Fills in what the robot is made of, and warns of joints that move nothing.
+    pub(super) fn describe(&mut self, description: &Description, model: &Model<f64>) {
+        self.robot = Some(description.name.clone());
+        self.links = description.links.iter().enumerate().map(|(k, link)| link_row(k, link, model)).collect();
+        self.joints = joint_rows(description, model);
+        self.totals = Totals {
+            links: description.links.len(),
+            joints: description.joints.len(),
+            coordinates: model.nq,
+            degrees_of_freedom: model.nv,
+            mass: self.links.iter().map(|l| l.mass).sum(),
+            moving_mass: model.bodies.iter().skip(1).map(|b| b.inertia.mass).sum(),
+        };
+        self.warn_of_massless_joints(model);
+    }
+
+    fn warn_of_massless_joints(&mut self, model: &Model<f64>) {
+        if model.bodies.len() > MANY {
+            return self.warnings.push(Diagnostic::plain(format!("more than {MANY} bodies: whether every joint moves mass was not looked at")));
+        }
+        for body in model.massless_joints() {
+            let name = &model.bodies[body].name;
+            let message = format!("joint {name:?} moves no mass: the mass matrix is singular, and forward dynamics is undefined for this robot");
+            let subject = Some(format!("joint {name:?}"));
+            self.warnings.push(Diagnostic { line: None, subject, field: None, message });
+        }
+    }
+}
+
+fn link_row(k: usize, link: &Link, model: &Model<f64>) -> LinkRow {
+    let body = model.frames[k].body;
+    LinkRow {
+        link: link.name.clone(),
+        moves_with: (body != 0).then(|| model.bodies[body].name.clone()),
+        mass: link.inertial.map_or(0.0, |i| i.mass),
+        centre_of_mass: link.inertial.map(|i| i.origin.xyz),
+        principal_moments: link.inertial.map(|i| principal_moments(i.inertia)),
+    }
+}
+
+/// The floating base first, then the joints of the file in its order.
+fn joint_rows(description: &Description, model: &Model<f64>) -> Vec<JointRow> {
+    let carried = carried(model);
+    let base = model.joints.iter().find(|j| j.name == FLOATING_BASE).map(|j| JointRow {
+        joint: j.name.clone(),
+        kind: kind(JointKind::Floating),
+        parent: None,
+        child: description.root().map(|r| description.links[r].name.clone()),
+        q: Some(j.q),
+        v: Some(j.v),
+        lower: None,
+        upper: None,
+        velocity: None,
+        effort: None,
+        mimic: None,
+        carries: carried[0],
+    });
+    let places: std::collections::BTreeMap<&str, _> = model.joints.iter().map(|j| (j.name.as_str(), (j.q, j.v))).collect();
+    let rows = description.joints.iter().map(|joint| {
+        let name = |link: usize| Some(description.links[link].name.clone());
+        let place = places.get(joint.name.as_str()).filter(|_| joint.name != FLOATING_BASE);
+        let body = model.frames[joint.child].body;
+        let limit = joint.limit;
+        JointRow {
+            joint: joint.name.clone(),
+            kind: kind(joint.kind),
+            parent: name(joint.parent),
+            child: name(joint.child),
+            q: place.map(|p| p.0),
+            v: place.map(|p| p.1),
+            lower: limit.map(|l| l.lower).filter(|x| x.is_finite()),
+            upper: limit.map(|l| l.upper).filter(|x| x.is_finite()),
+            velocity: limit.map(|l| l.velocity).filter(|x| x.is_finite()),
+            effort: limit.map(|l| l.effort).filter(|x| x.is_finite()),
+            mimic: joint.mimic.map(|m| {
+                let leader = description.joints[m.joint].name.clone();
+                MimicRow { joint: leader, multiplier: m.multiplier, offset: m.offset }
+            }),
+            carries: if joint.kind == JointKind::Fixed { 0.0 } else { carried[body] },
+        }
+    });
+    base.into_iter().chain(rows).collect()
+}
+
+/// kg of each body with everything that hangs on it.
+fn carried(model: &Model<f64>) -> Vec<f64> {
+    let mut mass: Vec<f64> = model.bodies.iter().map(|b| b.inertia.mass).collect();
+    for i in model.inward() {
+        mass[model.bodies[i].parent] += mass[i];
+    }
+    mass
+}
+
+fn kind(kind: JointKind) -> &'static str {
+    match kind {
+        JointKind::Revolute => "revolute",
+        JointKind::Continuous => "continuous",
+        JointKind::Prismatic => "prismatic",
+        JointKind::Fixed => "fixed",
+        JointKind::Floating => "floating",
+        JointKind::Planar => "planar",
+    }
+}

@@ -1,0 +1,123 @@
+//! The report for people.
+
+use std::fmt::Write;
+
+use super::report::{JointRow, LinkRow, Report};
+use crate::table::{Table, number, plain};
+
+pub(super) fn text(report: &Report) -> String {
+    let mut out = String::new();
+    for (level, list) in [("error", &report.errors), ("warning", &report.warnings)] {
+        for diagnostic in list {
+            let _ = writeln!(out, "{level}: {}", plain(&diagnostic.message));
+        }
+    }
+    if report.robot.is_some() {
+        if !out.is_empty() {
+            out.push('\n');
+        }
+        body(&mut out, report);
+    }
+    if !report.usable {
+        let _ = writeln!(out, "{}: not usable", plain(&report.file));
+    }
+    out
+}
+
+fn body(out: &mut String, report: &Report) {
+    let t = report.totals;
+    let name = plain(report.robot.as_deref().unwrap_or_default());
+    let _ = writeln!(out, "{name}, {} base: {} links, {} joints, {} degrees of freedom", report.base, t.links, t.joints, t.degrees_of_freedom);
+    let _ = writeln!(out, "{} coordinates in q; mass {} kg, of which {} kg move\n", t.coordinates, number(t.mass), number(t.moving_mass));
+    *out += &links(&report.links).text();
+    out.push('\n');
+    let joints = joints(&report.joints);
+    if !joints.is_empty() {
+        *out += &joints.text();
+        out.push('\n');
+    }
+    if !report.unused.is_empty() {
+        *out += "Understood and not used:\n";
+        for line in &report.unused {
+            let _ = writeln!(out, "  {}", plain(line));
+        }
+        out.push('\n');
+    }
+    for function in &report.functions {
+        let _ = writeln!(out, "{function} can be generated.");
+    }
+    if report.usable {
+        let _ = writeln!(out, "{}: usable", plain(&report.file));
+    }
+}
+
+fn links(rows: &[LinkRow]) -> Table {
+    let mut table = Table::new([
+        ("link (frame)", ""),
+        ("moves with", "joint"),
+        ("mass", "kg"),
+        ("centre x", "m"),
+        ("y", "m"),
+        ("z", "m"),
+        ("moment 1", "kg·m²"),
+        ("2", "kg·m²"),
+        ("3", "kg·m²"),
+    ])
+    .left(2);
+    for row in rows {
+        let three = |x: Option<[f64; 3]>| x.map_or([const { String::new() }; 3], |x| x.map(number));
+        let mut cells = vec![row.link.clone(), row.moves_with.clone().unwrap_or_else(|| "– (base)".into())];
+        cells.push(if row.mass == 0.0 { "0".into() } else { number(row.mass) });
+        cells.extend(three(row.centre_of_mass));
+        cells.extend(three(row.principal_moments));
+        table.row(cells);
+    }
+    table
+}
+
+fn joints(rows: &[JointRow]) -> Table {
+    let mut table = Table::new([
+        ("joint", ""),
+        ("type", ""),
+        ("parent", ""),
+        ("child", ""),
+        ("follows", ""),
+        ("q", "index"),
+        ("v", "index"),
+        ("lower", "rad|m"),
+        ("upper", "rad|m"),
+        ("velocity", "rad/s|m/s"),
+        ("effort", "N·m|N"),
+        ("carries", "kg"),
+    ])
+    .left(5);
+    for row in rows {
+        let text = |x: &Option<String>| x.clone().unwrap_or_else(|| "–".into());
+        let limit = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), number);
+        let follows = row.mimic.as_ref().map(|m| format!("{} · {} + {}", number(m.multiplier), m.joint, number(m.offset)));
+        table.row([
+            row.joint.clone(),
+            row.kind.to_owned(),
+            text(&row.parent),
+            text(&row.child),
+            text(&follows),
+            range(row.q),
+            range(row.v),
+            limit(row.lower),
+            limit(row.upper),
+            limit(row.velocity),
+            limit(row.effort),
+            if row.kind == "fixed" { "–".into() } else { number(row.carries) },
+        ]);
+    }
+    table
+}
+
+/// `3`, `0..7`, or a dash.
+fn range(place: Option<(usize, usize)>) -> String {
+    match place {
+        None => "–".into(),
+        Some((at, 1)) => at.to_string(),
+        Some((at, n)) => format!("{at}..{}", at + n),
+    }
+}

@@ -1,0 +1,60 @@
+//! What people see: lines on the two streams, and progress where somebody watches.
+
+use std::io::{IsTerminal, Write};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// Writes to the standard output. A reader that has gone away is not an error.
+pub(crate) fn print(text: &str) {
+    let mut out = std::io::stdout().lock();
+    let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+}
+
+/// A line `warning: …` on the standard error stream.
+pub(crate) fn warn(text: &str) {
+    say("warning", "33", text);
+}
+
+/// A line `error: …` on the standard error stream.
+pub(crate) fn error(text: &str) {
+    say("error", "31", text);
+}
+
+fn say(level: &str, colour: &str, text: &str) {
+    let mut stream = std::io::stderr().lock();
+    let coloured = stream.is_terminal() && std::env::var_os("NO_COLOR").is_none();
+    let level = if coloured { format!("\x1b[1;{colour}m{level}\x1b[0m") } else { level.to_owned() };
+    let _ = writeln!(stream, "{level}: {text}");
+}
+
+/// A bar on the standard error stream, if that is a terminal; it goes away when dropped.
+pub(crate) struct Progress(ProgressBar);
+
+impl Progress {
+    /// For this many steps.
+    pub(crate) fn new(steps: usize) -> Self {
+        let bar = ProgressBar::new(steps as u64);
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} {wide_bar} {pos}/{len}") {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(Duration::from_millis(200));
+        Self(bar)
+    }
+
+    /// What is being done now.
+    pub(crate) fn doing(&self, what: String) {
+        self.0.set_message(what);
+    }
+
+    /// One more step is done.
+    pub(crate) fn step(&self) {
+        self.0.inc(1);
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}

@@ -1,0 +1,118 @@
+//! `articulated eval`.
+
+mod layout;
+mod report;
+mod text;
+
+use articulated_core::algorithm::{Function, Workspace, function};
+use articulated_core::model::Model;
+
+use crate::arguments::{EvalArguments, Format};
+use crate::compiled::{CompileError, Compiled, Rustc};
+use crate::console;
+use crate::failure::{Failure, OK, TOOL};
+use crate::magnitude::scales;
+use crate::robot::{Robot, read_bytes};
+use crate::states::{self, State};
+use report::{Difference, FunctionReport, Outcome, Report};
+
+/// Generic and generated results may differ by this many units of roundoff of the sum of the magnitudes of their terms.
+const BOUND: f64 = 128.0;
+
+/// Prints the results of every function on every state.
+pub(crate) fn run(arguments: &EvalArguments, format: Format) -> Result<u8, Failure> {
+    let robot = Robot::find(&arguments.robot)?;
+    let reading = robot.read().map_err(articulated_codegen::Error::from)?;
+    reading.warnings.iter().chain(&reading.snapped).for_each(|w| console::warn(&w.to_string()));
+    let model = robot.model(&reading)?;
+    let functions = functions(&arguments.function);
+    let states = read_states(&arguments.states, &model, &functions)?;
+    let mut report = Report::new(&robot, states.warnings);
+    report.warnings.iter().for_each(|w| console::warn(w));
+    let compiled = if arguments.generic { None } else { compile(&robot, arguments, &mut report)? };
+    for f in &functions {
+        report.functions.push(evaluate(f, &model, &states.states, compiled.as_ref(), arguments.generated));
+    }
+    console::print(&match format {
+        Format::Text => text::text(&report, &model),
+        Format::Json => crate::json(&report.json(&model)),
+    });
+    match report.functions.iter().find(|f| f.exceeded()) {
+        None => Ok(OK),
+        Some(f) => Err(Failure::bound(format!("{}: generic and generated results differ by more than {BOUND} units", f.function.name))),
+    }
+}
+
+fn functions(names: &[String]) -> Vec<&'static Function<f64>> {
+    let mut wanted: Vec<&'static Function<f64>> = Vec::new();
+    for f in names.iter().filter_map(|name| function::<f64>(name)) {
+        if wanted.iter().all(|w| w.name != f.name) {
+            wanted.push(f);
+        }
+    }
+    wanted
+}
+
+/// The states of the file; all functions must find their arguments in all of them.
+fn read_states(file: &str, model: &Model<f64>, functions: &[&'static Function<f64>]) -> Result<states::States, Failure> {
+    let bytes = read_bytes(file).map_err(|e| Failure::input([format!("{file}: {e}")]))?;
+    let states = states::read(&bytes, model).map_err(|lines| Failure::input(lines.into_iter().map(|l| format!("{file}: {l}"))))?;
+    let mut missing = Vec::new();
+    for (k, state) in states.states.iter().enumerate() {
+        for f in functions {
+            if let Err(argument) = state.arguments(f) {
+                let name = argument.name();
+                missing.push(format!("{file}: states[{k}]: {name}: found nothing, expected {} numbers: {} takes {name}", argument.len(model.shape()), f.name));
+            }
+        }
+    }
+    missing.truncate(100);
+    if missing.is_empty() { Ok(states) } else { Err(Failure::input(missing)) }
+}
+
+/// Compiled code, or none with a note of the reason if generic results will do.
+fn compile(robot: &Robot, arguments: &EvalArguments, report: &mut Report) -> Result<Option<Compiled>, Failure> {
+    let generated = robot.generate(&arguments.function)?;
+    let progress = console::Progress::new(1);
+    progress.doing("rustc".into());
+    let built = Rustc::find().and_then(|rustc| Ok((Compiled::build(&rustc, &generated)?, rustc)));
+    match built {
+        Ok((compiled, rustc)) => {
+            report.compiler = Some(format!("{} {}", rustc.version, Rustc::flags().join(" ")));
+            Ok(Some(compiled))
+        }
+        Err(error @ CompileError::NotFound { .. }) if !arguments.generated => {
+            let note = format!("{error}; generic results only");
+            drop(progress);
+            console::warn(&note);
+            report.warnings.push(note);
+            Ok(None)
+        }
+        Err(error) => Err(Failure { status: TOOL, lines: vec![error.to_string()] }),
+    }
+}
+
+fn evaluate(
+    function: &'static Function<f64>,
+    model: &Model<f64>,
+    states: &[State],
+    compiled: Option<&Compiled>,
+    generated_only: bool,
+) -> FunctionReport {
+    let mut workspace = Workspace::new(model);
+    let mut outcomes = Vec::with_capacity(states.len());
+    let mut largest: Option<Difference> = None;
+    for (k, state) in states.iter().enumerate() {
+        let arguments = state.arguments(function).unwrap_or_default();
+        let mut out = vec![0.0; function.gives.len(model.shape())];
+        let generated = compiled.and_then(|c| c.call(function.name, &arguments, &mut out).ok().map(|()| out.clone()));
+        let generic = function.call(model, &mut workspace, &arguments, &mut out).ok().map(|()| out);
+        if let (Some(a), Some(b)) = (&generic, &generated) {
+            let scale = scales(model, function.name, &arguments).unwrap_or_default();
+            let difference = Difference::largest(k, a, b, &scale);
+            largest = Difference::larger(largest, difference);
+        }
+        outcomes.push(Outcome { generic: generic.filter(|_| !generated_only), generated });
+    }
+    FunctionReport { function, outcomes, largest }
+}

@@ -1,0 +1,146 @@
+//! Results as data.
+
+use articulated_core::algorithm::Function;
+use articulated_core::model::Model;
+use serde_json::{Value, json};
+
+use super::BOUND;
+use super::layout::Layout;
+use crate::magnitude::ROUNDOFF;
+use crate::robot::Robot;
+
+/// All results.
+pub(super) struct Report {
+    pub(super) robot: String,
+    pub(super) base: &'static str,
+    pub(super) gravity: [f64; 3],
+    pub(super) compiler: Option<String>,
+    pub(super) warnings: Vec<String>,
+    pub(super) functions: Vec<FunctionReport>,
+}
+
+/// One function on all states.
+pub(super) struct FunctionReport {
+    pub(super) function: &'static Function<f64>,
+    pub(super) outcomes: Vec<Outcome>,
+    pub(super) largest: Option<Difference>,
+}
+
+/// One state's results.
+pub(super) struct Outcome {
+    pub(super) generic: Option<Vec<f64>>,
+    pub(super) generated: Option<Vec<f64>>,
+}
+
+/// How far generic and generated results are apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Difference {
+    pub(super) state: usize,
+    /// In the result's unit.
+    pub(super) absolute: f64,
+    /// In units of roundoff of the sum of the magnitudes of the terms.
+    pub(super) units: f64,
+}
+
+impl Difference {
+    /// The largest difference of two results in one state.
+    pub(super) fn largest(state: usize, a: &[f64], b: &[f64], scale: &[f64]) -> Self {
+        let mut worst = Self { state, absolute: 0.0, units: 0.0 };
+        for (k, (a, b)) in a.iter().zip(b).enumerate() {
+            let absolute = (a - b).abs();
+            let units = if absolute == 0.0 { 0.0 } else { absolute / (ROUNDOFF * scale.get(k).copied().unwrap_or(0.0)) };
+            worst.absolute = worse(worst.absolute, absolute);
+            worst.units = worse(worst.units, units);
+        }
+        worst
+    }
+
+    /// The larger of what was found and what is new.
+    pub(super) fn larger(old: Option<Self>, new: Self) -> Option<Self> {
+        Some(match old {
+            Some(old) if worse(old.units, new.units).to_bits() == old.units.to_bits() => {
+                Self { absolute: worse(old.absolute, new.absolute), ..old }
+            }
+            Some(old) => Self { absolute: worse(old.absolute, new.absolute), ..new },
+            None => new,
+        })
+    }
+}
+
+/// The larger, and not a number if either is not.
+fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a >= b { a } else { b }
+}
+
+impl FunctionReport {
+    /// Whether the results are further apart than rounding explains.
+    pub(super) fn exceeded(&self) -> bool {
+        self.largest.is_some_and(|d| d.units.is_nan() || d.units > BOUND)
+    }
+
+    fn json(&self, model: &Model<f64>) -> Value {
+        let layout = Layout::of(self.function, model);
+        let labelled = |out: &Option<Vec<f64>>| out.as_ref().map(|x| layout.json(x, model));
+        let states: Vec<Value> = self
+            .outcomes
+            .iter()
+            .map(|o| {
+                let both = [("generic", labelled(&o.generic)), ("generated", labelled(&o.generated))];
+                Value::Object(both.into_iter().filter_map(|(k, v)| Some((k.to_owned(), v?))).collect())
+            })
+            .collect();
+        let largest = self.largest.map(|d| {
+            json!({"state": d.state, "absolute": d.absolute, "in_units_of_roundoff": d.units, "bound": BOUND})
+        });
+        json!({
+            "function": self.function.name,
+            "summary": self.function.summary,
+            "gives": self.function.gives.doc(),
+            "states": states,
+            "largest_difference": largest,
+        })
+    }
+}
+
+impl Report {
+    pub(super) fn new(robot: &Robot, warnings: Vec<String>) -> Self {
+        Self {
+            robot: robot.file.clone(),
+            base: robot.base(),
+            gravity: robot.options.gravity,
+            compiler: None,
+            warnings,
+            functions: Vec::new(),
+        }
+    }
+
+    /// With the names of joints and links.
+    pub(super) fn json(&self, model: &Model<f64>) -> Value {
+        json!({
+            "robot": self.robot,
+            "base": self.base,
+            "gravity": self.gravity,
+            "compiler": self.compiler,
+            "warnings": self.warnings,
+            "functions": self.functions.iter().map(|f| f.json(model)).collect::<Vec<_>>(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Difference;
+    use crate::magnitude::ROUNDOFF;
+
+    #[test]
+    fn what_is_no_number_is_the_largest_difference() {
+        let scale = [1.0, 2.0];
+        let small = Difference::largest(0, &[1.0, 2.0], &[1.0, 2.0 + 8.0 * ROUNDOFF], &scale);
+        assert_eq!((small.units, small.absolute), (4.0, 8.0 * ROUNDOFF));
+        let broken = Difference::largest(1, &[f64::NAN, 1.0], &[1.0, 1.0], &scale);
+        assert!(broken.units.is_nan());
+        assert_eq!(Difference::larger(Some(small), broken).unwrap().state, 1);
+        assert!(Difference::larger(Some(broken), small).unwrap().units.is_nan());
+        assert_eq!(Difference::largest(0, &[0.0], &[0.0], &[0.0]).units, 0.0);
+    }
+}

@@ -1,0 +1,55 @@
+//! Why a command ended without doing what was asked, and the status it ends with.
+
+/// Everything went well.
+pub const OK: u8 = 0;
+/// The input was found wrong or unusable.
+pub const INPUT: u8 = 1;
+/// The command line is wrong.
+pub const USAGE: u8 = 2;
+/// A tool failed, or was not found.
+pub const TOOL: u8 = 3;
+/// A comparison exceeded its bound.
+pub const BOUND: u8 = 4;
+
+/// What each status means, for people.
+pub const STATUSES: &str = "\
+Exit status:
+  0  all is well
+  1  the input was found wrong or unusable
+  2  the command line is wrong
+  3  a tool (rustc) failed or was not found
+  4  a comparison exceeded its bound";
+
+/// A status and what to say, a line for each thing that is wrong.
+#[derive(Clone, Debug)]
+pub(crate) struct Failure {
+    pub(crate) status: u8,
+    pub(crate) lines: Vec<String>,
+}
+
+impl Failure {
+    /// The input is wrong.
+    pub(crate) fn input(lines: impl IntoIterator<Item = String>) -> Self {
+        Self { status: INPUT, lines: lines.into_iter().collect() }
+    }
+
+    /// A tool failed.
+    pub(crate) fn tool(error: &impl ToString) -> Self {
+        Self { status: TOOL, lines: vec![error.to_string()] }
+    }
+
+    /// A comparison exceeded its bound.
+    pub(crate) fn bound(line: String) -> Self {
+        Self { status: BOUND, lines: vec![line] }
+    }
+}
+
+impl From<articulated_codegen::Error> for Failure {
+    fn from(error: articulated_codegen::Error) -> Self {
+        match error {
+            articulated_codegen::Error::Urdf(problems) => Self::input(problems.errors.iter().map(ToString::to_string)),
+            articulated_codegen::Error::UnknownFunction { .. } => Self { status: USAGE, lines: vec![error.to_string()] },
+            other => Self::input([other.to_string()]),
+        }
+    }
+}

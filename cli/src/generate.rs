@@ -1,0 +1,59 @@
+//! `articulated generate`.
+
+use articulated_codegen::{Generated, generate};
+use serde::Serialize;
+
+use crate::arguments::{Format, GenerateArguments};
+use crate::console;
+use crate::failure::Failure;
+use crate::ledger::{Stage, stages};
+use crate::robot::Robot;
+
+#[derive(Serialize)]
+struct Report {
+    source: String,
+    warnings: Vec<String>,
+    snapped: Vec<String>,
+    unused: Vec<String>,
+    functions: Vec<Function>,
+}
+
+#[derive(Serialize)]
+struct Function {
+    function: String,
+    stages: Vec<Stage>,
+    depth: u32,
+}
+
+/// Writes the source to where it is wanted.
+pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), Failure> {
+    let robot = Robot::find(&arguments.robot)?;
+    let mut request = robot.request(&arguments.functions);
+    if arguments.functions.is_empty() {
+        request.options.functions = articulated_codegen::Options::default().functions;
+    }
+    request.options.runtime = arguments.runtime.clone().filter(|_| !arguments.standalone);
+    let generated = generate(&request)?;
+    generated.warnings.iter().chain(&generated.snapped).for_each(|w| console::warn(&w.to_string()));
+    let text = match format {
+        Format::Text => generated.source.clone(),
+        Format::Json => json(&generated),
+    };
+    match &arguments.output {
+        None => console::print(&text),
+        Some(path) => std::fs::write(path, text).map_err(|e| Failure::input([format!("{}: {e}", path.display())]))?,
+    }
+    Ok(())
+}
+
+fn json(generated: &Generated) -> String {
+    let lines = |problems: &[articulated_urdf::Problem]| problems.iter().map(ToString::to_string).collect();
+    let function = |e: &articulated_codegen::ledger::Entry| Function { function: e.function.clone(), stages: stages(e), depth: e.depth };
+    crate::json(&Report {
+        source: generated.source.clone(),
+        warnings: lines(&generated.warnings),
+        snapped: lines(&generated.snapped),
+        unused: generated.unused.iter().map(ToString::to_string).collect(),
+        functions: generated.ledger.functions.iter().map(function).collect(),
+    })
+}

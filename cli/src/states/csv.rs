@@ -1,0 +1,145 @@
+//! A row for each state under the columns `q.<joint>`, `v.<joint>`, …; `q.<joint>[0]`, `q.<joint>[1]`, … where a joint has several numbers.
+
+use articulated_core::algorithm::Argument;
+use csv::{ReaderBuilder, StringRecord, Trim};
+
+use super::read::{Found, Gathering};
+use super::{State, slot};
+
+/// What a column holds.
+struct Column {
+    argument: Argument,
+    joint: usize,
+    number: usize,
+    title: String,
+}
+
+pub(super) fn read(text: &str, found: &mut Found<'_>) {
+    let mut reader = ReaderBuilder::new().trim(Trim::All).from_reader(text.as_bytes());
+    let header = match reader.headers() {
+        Ok(header) => header.clone(),
+        Err(error) => return found.errors.push(format!("not CSV: {error}")),
+    };
+    let columns: Vec<Option<Column>> = header.iter().map(|title| column(title, found)).collect();
+    repeated(&columns, found);
+    if !found.errors.is_empty() {
+        return;
+    }
+    for record in reader.records() {
+        match record {
+            Ok(record) => row(&record, &columns, found),
+            Err(error) => found.errors.push(format!("not CSV: {error}")),
+        }
+    }
+}
+
+fn column(title: &str, found: &mut Found<'_>) -> Option<Column> {
+    let place = format!("column {title:?}");
+    let Some((argument, rest)) = title.split_once('.') else {
+        found.error(&place, "expected `q.<joint>`, `v.<joint>` or the like");
+        return None;
+    };
+    let argument = found.argument(&place, argument)?;
+    let (joint, number) = joint(&place, rest, found)?;
+    let wanted = slot(argument, &found.model.joints[joint], found.model).map_or(0, |(_, n)| n);
+    if number.is_none() && wanted != 1 || number.is_some_and(|n| n >= wanted) {
+        found.error(&place, format!("this joint has {wanted} numbers here, expected `{}.{}[0]` and so on", argument.name(), found.model.joints[joint].name));
+        return None;
+    }
+    Some(Column { argument, joint, number: number.unwrap_or(0), title: title.to_owned() })
+}
+
+/// `name` or `name[k]`; a joint whose own name ends so comes first.
+fn joint(place: &str, text: &str, found: &mut Found<'_>) -> Option<(usize, Option<usize>)> {
+    if let Some(joint) = found.model.joints.iter().position(|j| j.name == text) {
+        return Some((joint, None));
+    }
+    let split = text.strip_suffix(']').and_then(|t| t.rsplit_once('['));
+    let (name, number) = match split.and_then(|(name, k)| Some((name, k.parse::<usize>().ok()?))) {
+        Some((name, k)) => (name, Some(k)),
+        None => (text, None),
+    };
+    found.joint(place, name).map(|joint| (joint, number))
+}
+
+fn repeated(columns: &[Option<Column>], found: &mut Found<'_>) {
+    let known: Vec<&Column> = columns.iter().flatten().collect();
+    for (k, column) in known.iter().enumerate() {
+        let same = |c: &&&Column| (c.argument, c.joint, c.number) == (column.argument, column.joint, column.number);
+        if known[..k].iter().any(|c| same(&c)) {
+            found.error(&format!("column {:?}", column.title), "stands there twice");
+        }
+    }
+}
+
+fn row(record: &StringRecord, columns: &[Option<Column>], found: &mut Found<'_>) {
+    let line = record.position().map_or(0, csv::Position::line);
+    let mut gatherings: Vec<Gathering> = Vec::new();
+    let before = found.errors.len();
+    for (column, text) in columns.iter().flatten().zip(record) {
+        let Ok(x) = text.parse::<f64>() else {
+            found.error(&format!("line {line}: {}", column.title), format!("found {text:?}, expected a number"));
+            continue;
+        };
+        let at = gatherings.iter().position(|g| g.argument() == column.argument).unwrap_or_else(|| {
+            gatherings.push(Gathering::new(column.argument, found));
+            gatherings.len() - 1
+        });
+        gatherings[at].set(found, column.joint, column.number, x);
+    }
+    let mut state = State::default();
+    if found.errors.len() == before {
+        for gathering in gatherings {
+            let place = format!("line {line}: {}", gathering.argument().name());
+            gathering.finish(&mut state, &place, found);
+        }
+    }
+    found.push(state);
+}
+
+#[cfg(test)]
+mod tests {
+    use articulated_core::algorithm::Argument;
+
+    use crate::robot::bundled_model;
+    use crate::states::read;
+
+    #[test]
+    fn columns_may_stand_in_any_order() {
+        let model = bundled_model("cart_pole");
+        let [a, b] = [&model.joints[0].name, &model.joints[1].name];
+        let text = format!("v.{b}, q.{b},q.{a}, v.{a}\n4,2,1,3\n8, 6, 5, 7\n");
+        let states = read(text.as_bytes(), &model).unwrap().states;
+        assert_eq!(states.len(), 2);
+        assert_eq!(states[1].get(Argument::Q), Some(&[5.0, 6.0][..]));
+        assert_eq!(states[1].get(Argument::V), Some(&[7.0, 8.0][..]));
+    }
+
+    #[test]
+    fn a_floating_base_has_numbered_columns() {
+        let model = bundled_model("quadruped");
+        let titles: Vec<String> = model.joints.iter().flat_map(|j| match j.q.1 {
+            1 => vec![format!("q.{}", j.name)],
+            n => (0..n).map(|k| format!("q.{}[{k}]", j.name)).collect(),
+        }).collect();
+        let mut numbers = vec!["0"; 19];
+        numbers[6] = "1";
+        let text = format!("{}\n{}\n", titles.join(","), numbers.join(","));
+        assert_eq!(read(text.as_bytes(), &model).unwrap().states[0].get(Argument::Q).unwrap()[6], 1.0);
+    }
+
+    #[test]
+    fn mistakes_are_named_with_line_and_column() {
+        let model = bundled_model("cart_pole");
+        let [a, b] = [&model.joints[0].name, &model.joints[1].name];
+        let said = |text: String| read(text.as_bytes(), &model).unwrap_err().join("\n");
+        assert!(said(format!("q.{a},q.{b}\n1,nan\n")).contains("line 2: q: joint"));
+        assert!(said(format!("q.{a},q.{b}\n1,x\n")).contains("found \"x\""));
+        assert!(said(format!("q.{a}\n1\n")).contains("found nothing"));
+        assert!(said(format!("q.{a},q.{a}\n1,1\n")).contains("twice"));
+        assert!(said(format!("q.{a}x,q.{b}\n1,1\n")).contains("did you mean"));
+        assert!(said(format!("q.{a},q.{b}\n1\n")).contains("not CSV"));
+        assert!(said(format!("p.{a}\n1\n")).contains("expected one of q"));
+        assert!(said(String::new()).contains("no state"));
+    }
+}

@@ -1,0 +1,145 @@
+//! `{"states": [{"q": [...], "v": {"joint": 0.1, ...}}, ...]}`, or the list alone.
+
+use articulated_core::algorithm::Argument;
+use serde_json::{Map, Value};
+
+use super::read::{Found, Gathering};
+use super::{State, slot};
+
+pub(super) fn read(text: &str, found: &mut Found<'_>) {
+    let value: Value = match serde_json::from_str(text) {
+        Ok(value) => value,
+        Err(error) => return found.errors.push(format!("not JSON: {error}")),
+    };
+    let list = match &value {
+        Value::Array(list) => Some(list),
+        Value::Object(object) => object.get("states").and_then(Value::as_array),
+        _ => None,
+    };
+    let Some(list) = list else {
+        return found.errors.push("found an object without a list, expected {\"states\": [...]} or a list of states".into());
+    };
+    for (k, entry) in list.iter().enumerate() {
+        let place = format!("states[{k}]");
+        match entry {
+            Value::Object(object) => state(&place, object, found),
+            other => found.error(&place, format!("found {}, expected an object", kind(other))),
+        }
+    }
+}
+
+fn state(place: &str, object: &Map<String, Value>, found: &mut Found<'_>) {
+    let mut state = State::default();
+    for (key, value) in object {
+        let Some(argument) = found.argument(place, key) else { continue };
+        let place = format!("{place}: {key}");
+        match value {
+            Value::Array(list) => {
+                if let Some(numbers) = numbers(&place, list, found) {
+                    found.take(&mut state, argument, &place, numbers);
+                }
+            }
+            Value::Object(joints) => by_joint(&place, argument, joints, &mut state, found),
+            other => found.error(&place, format!("found {}, expected a list or an object", kind(other))),
+        }
+    }
+    found.push(state);
+}
+
+fn by_joint(place: &str, argument: Argument, joints: &Map<String, Value>, state: &mut State, found: &mut Found<'_>) {
+    let before = found.errors.len();
+    let mut gathering = Gathering::new(argument, found);
+    for (name, value) in joints {
+        let Some(joint) = found.joint(place, name) else { continue };
+        let place = format!("{place}: joint {name:?}");
+        let Some((_, wanted)) = slot(argument, &found.model.joints[joint], found.model) else {
+            found.error(&place, "expected a list: this vector is not by joint");
+            continue;
+        };
+        let given = match value {
+            Value::Array(list) => numbers(&place, list, found),
+            single => numbers(&place, std::slice::from_ref(single), found),
+        };
+        let Some(given) = given else { continue };
+        if given.len() != wanted {
+            found.error(&place, format!("found {} numbers, expected {wanted}", given.len()));
+            continue;
+        }
+        given.into_iter().enumerate().for_each(|(k, x)| gathering.set(found, joint, k, x));
+    }
+    // One mistake is one message: what is missing is said only where nothing else was wrong.
+    if found.errors.len() == before {
+        gathering.finish(state, place, found);
+    }
+}
+
+fn numbers(place: &str, list: &[Value], found: &mut Found<'_>) -> Option<Vec<f64>> {
+    let wrong: Vec<String> = list.iter().filter(|x| x.as_f64().is_none()).map(kind).collect();
+    if let Some(first) = wrong.first() {
+        found.error(place, format!("found {first}, expected a number"));
+        return None;
+    }
+    Some(list.iter().filter_map(Value::as_f64).collect())
+}
+
+fn kind(value: &Value) -> String {
+    match value {
+        Value::Null => "null".into(),
+        Value::Bool(b) => b.to_string(),
+        Value::Number(n) => n.to_string(),
+        Value::String(s) => format!("{:?}", s.chars().take(40).collect::<String>()),
+        Value::Array(_) => "a list".into(),
+        Value::Object(_) => "an object".into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use articulated_core::algorithm::Argument;
+
+    use crate::robot::bundled_model;
+    use crate::states::read;
+
+    fn errors(robot: &str, text: &str) -> String {
+        read(text.as_bytes(), &bundled_model(robot)).unwrap_err().join("\n")
+    }
+
+    #[test]
+    fn lists_and_names_say_the_same() {
+        let model = bundled_model("cart_pole");
+        let [a, b] = [&model.joints[0].name, &model.joints[1].name];
+        let list = read(br#"[{"q": [1, 2], "v": [3, 4]}]"#, &model).unwrap().states;
+        let text = format!(r#"{{"states": [{{"q": {{"{b}": 2, "{a}": [1]}}, "v": {{"{a}": 3, "{b}": 4}}}}]}}"#);
+        assert_eq!(list, read(text.as_bytes(), &model).unwrap().states);
+        assert_eq!(list[0].get(Argument::Q), Some(&[1.0, 2.0][..]));
+        assert_eq!(list[0].get(Argument::A), None);
+    }
+
+    #[test]
+    fn every_mistake_is_named_with_its_state() {
+        let text = r#"[{"q": [1]}, {"q": [1, null]}, {"w": [1, 2]}, 3, {"q": {"cart_jiont": 1}}]"#;
+        let said = errors("cart_pole", text);
+        for part in ["states[0]: q: found 1 numbers, expected 2", "states[1]: q: found null", "states[2]: found \"w\"", "states[3]: found 3"] {
+            assert!(said.contains(part), "{said}");
+        }
+        assert!(said.contains("states[4]: q: found joint \"cart_jiont\""), "{said}");
+        for broken in ["{", "[]", "{\"states\": 1}", "[{\"q\": [1e999, 0]}]"] {
+            assert!(!errors("cart_pole", broken).is_empty());
+        }
+    }
+
+    #[test]
+    fn a_quaternion_is_a_unit() {
+        let state = |w: f64| {
+            let mut q = vec![0.0; 19];
+            q[6] = w;
+            serde_json::json!([{"q": q}]).to_string()
+        };
+        let model = bundled_model("quadruped");
+        assert!(errors("quadruped", &state(1.1)).contains("norm 1.1"));
+        let mended = read(state(1.0 + 1e-8).as_bytes(), &model).unwrap();
+        assert_eq!(mended.warnings.len(), 1);
+        assert_eq!(mended.states[0].get(Argument::Q).unwrap()[6], 1.0);
+        assert!(read(state(1.0).as_bytes(), &model).unwrap().warnings.is_empty());
+    }
+}

@@ -1,0 +1,115 @@
+//! States at random, the same for the same seed.
+
+use articulated_core::algorithm::Argument;
+use articulated_core::model::{JointInfo, Model};
+
+use super::{State, all_arguments, quaternions};
+
+/// Rates, accelerations and other vectors over the degrees of freedom lie in ± this.
+const RATE: f64 = 2.0;
+
+/// A small generator of pseudo-random numbers (Steele, Lea & Flood 2014).
+#[derive(Clone, Debug)]
+pub struct SplitMix64(u64);
+
+impl SplitMix64 {
+    /// From a seed.
+    pub fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// 64 bits.
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut x = self.0;
+        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        x ^ (x >> 31)
+    }
+
+    /// Uniform in [lower, upper).
+    pub fn uniform(&mut self, lower: f64, upper: f64) -> f64 {
+        // 53 bits: every multiple of 2⁻⁵³ in [0, 1)
+        let unit = (self.bits() >> 11) as f64 / (1_u64 << 53) as f64;
+        lower + (upper - lower) * unit
+    }
+}
+
+/// `count` states within the limits of the joints; ±π where there is none, positions of floating joints in ±1 m, all other arguments in ±2.
+pub fn random(model: &Model<f64>, count: usize, seed: u64) -> Vec<State> {
+    let mut numbers = SplitMix64::new(seed);
+    (0..count).map(|_| one(model, &mut numbers)).collect()
+}
+
+fn one(model: &Model<f64>, numbers: &mut SplitMix64) -> State {
+    let mut state = State::default();
+    for argument in all_arguments() {
+        let vector = match argument {
+            Argument::Q => coordinates(model, numbers),
+            other => (0..other.len(model.shape())).map(|_| numbers.uniform(-RATE, RATE)).collect(),
+        };
+        state.set(argument, vector);
+    }
+    state
+}
+
+fn coordinates(model: &Model<f64>, numbers: &mut SplitMix64) -> Vec<f64> {
+    let mut q: Vec<f64> = Vec::with_capacity(model.nq);
+    for joint in &model.joints {
+        let (lower, upper) = if joint.q.1 == 1 { range(joint) } else { (-1.0, 1.0) };
+        q.extend((0..joint.q.1).map(|_| numbers.uniform(lower, upper)));
+    }
+    for (_, at) in quaternions(model) {
+        normalise(&mut q[at..at + 4]);
+    }
+    q
+}
+
+/// The range to draw from: never empty, never infinite.
+fn range(joint: &JointInfo) -> (f64, f64) {
+    let turn = std::f64::consts::TAU;
+    let (lower, upper) = joint.limit.map_or((-turn / 2.0, turn / 2.0), |l| (l.lower, l.upper));
+    match (lower.is_finite(), upper.is_finite()) {
+        (true, true) => (lower, upper),
+        (true, false) => (lower, lower + turn),
+        (false, true) => (upper - turn, upper),
+        (false, false) => (-turn / 2.0, turn / 2.0),
+    }
+}
+
+/// Divides by the norm; zero becomes (…, 1).
+pub(super) fn normalise(quaternion: &mut [f64]) {
+    let norm = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
+    match norm {
+        0.0 => quaternion[3] = 1.0,
+        _ => quaternion.iter_mut().for_each(|x| *x /= norm),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::bundled_model;
+
+    #[test]
+    fn the_generator_gives_its_published_numbers() {
+        let mut numbers = SplitMix64::new(1_234_567);
+        assert_eq!([numbers.bits(), numbers.bits()], [6_457_827_717_110_365_317, 3_203_168_211_198_807_973]);
+    }
+
+    #[test]
+    fn states_keep_to_the_limits_and_to_the_seed() {
+        let model = bundled_model("humanoid");
+        let states = random(&model, 20, 7);
+        assert_eq!(states, random(&model, 20, 7));
+        assert_ne!(states, random(&model, 20, 8));
+        for state in &states {
+            let q = state.get(Argument::Q).unwrap();
+            assert!((q[3..7].iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-15);
+            for joint in model.joints.iter().filter(|j| j.q.1 == 1) {
+                let limit = joint.limit.unwrap();
+                assert!((limit.lower..=limit.upper).contains(&q[joint.q.0]), "{}", joint.name);
+            }
+        }
+    }
+}

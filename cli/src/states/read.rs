@@ -1,0 +1,175 @@
+//! States from a file: either format, then the same checks.
+
+use articulated_codegen::nearest;
+use articulated_core::algorithm::Argument;
+use articulated_core::model::Model;
+
+use super::random::normalise;
+use super::{State, all_arguments, csv, json, quaternions, slot};
+
+/// A quaternion may be off the unit norm by this much; it is then normalised.
+const NORM: f64 = 1e-6;
+/// Below this nothing is said about it: the rounding of the four numbers.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// At most this many errors are listed.
+const MOST: usize = 100;
+
+/// States that were read, and what there is to say about them.
+#[derive(Clone, Debug, Default)]
+pub struct States {
+    /// The states in the order of the file.
+    pub states: Vec<State>,
+    /// What was mended, a line each.
+    pub warnings: Vec<String>,
+}
+
+/// Reads states in JSON or CSV. Errors: all of the file's, a line each, with the state and the joint.
+pub fn read(bytes: &[u8], model: &Model<f64>) -> Result<States, Vec<String>> {
+    let text = std::str::from_utf8(bytes).map_err(|e| vec![format!("byte {}: found no UTF-8, expected JSON or CSV", e.valid_up_to())])?;
+    let text = text.trim_start_matches('\u{feff}');
+    let mut found = Found { model, errors: Vec::new(), warnings: Vec::new(), states: Vec::new() };
+    if text.trim_start().starts_with(['{', '[']) {
+        json::read(text, &mut found);
+    } else {
+        csv::read(text, &mut found);
+    }
+    found.finish()
+}
+
+/// What has been read so far.
+pub(super) struct Found<'a> {
+    pub(super) model: &'a Model<f64>,
+    pub(super) errors: Vec<String>,
+    warnings: Vec<String>,
+    states: Vec<State>,
+}
+
+impl Found<'_> {
+    pub(super) fn error(&mut self, place: &str, what: impl std::fmt::Display) {
+        self.errors.push(format!("{place}: {what}"));
+    }
+
+    /// Takes one argument of one state after checking length, numbers and quaternions.
+    pub(super) fn take(&mut self, state: &mut State, argument: Argument, place: &str, mut numbers: Vec<f64>) {
+        let expected = argument.len(self.model.shape());
+        if numbers.len() != expected {
+            return self.error(place, format!("found {} numbers, expected {expected}", numbers.len()));
+        }
+        let bad: Vec<usize> = (0..expected).filter(|&k| !numbers[k].is_finite()).collect();
+        for &k in &bad {
+            let name = self.number_name(argument, k);
+            self.error(place, format!("{name}: found {}, expected a finite number", numbers[k]));
+        }
+        if argument == Argument::Q && bad.is_empty() {
+            self.check_quaternions(place, &mut numbers);
+        }
+        state.set(argument, numbers);
+    }
+
+    pub(super) fn push(&mut self, state: State) {
+        self.states.push(state);
+    }
+
+    fn check_quaternions(&mut self, place: &str, q: &mut [f64]) {
+        let model = self.model;
+        for (joint, at) in quaternions(model) {
+            let norm = q[at..at + 4].iter().map(|x| x * x).sum::<f64>().sqrt();
+            let off = (norm - 1.0).abs();
+            if off.is_nan() || off > NORM {
+                self.error(place, format!("joint {:?}: found a quaternion of norm {norm}, expected 1 within {NORM:e}", joint.name));
+            } else if off > ROUNDING {
+                normalise(&mut q[at..at + 4]);
+                self.warnings.push(format!("{place}: joint {:?}: quaternion of norm {norm} was normalised", joint.name));
+            }
+        }
+    }
+
+    /// The joint that number `k` belongs to.
+    fn number_name(&self, argument: Argument, k: usize) -> String {
+        for joint in &self.model.joints {
+            match slot(argument, joint, self.model) {
+                Some((at, 1)) if at == k => return format!("joint {:?}", joint.name),
+                Some((at, n)) if (at..at + n).contains(&k) => return format!("joint {:?}[{}]", joint.name, k - at),
+                _ => {}
+            }
+        }
+        format!("[{k}]")
+    }
+
+    /// The joint of this name, or an error that names the nearest.
+    pub(super) fn joint(&mut self, place: &str, name: &str) -> Option<usize> {
+        let found = self.model.joints.iter().position(|j| j.name == name);
+        if found.is_none() {
+            let near = nearest(name, self.model.joints.iter().map(|j| j.name.as_str()));
+            self.error(place, format!("found joint {name:?}, which is not a coordinate of this robot{}", hint(near)));
+        }
+        found
+    }
+
+    /// The argument of this name, or an error that names the nearest.
+    pub(super) fn argument(&mut self, place: &str, name: &str) -> Option<Argument> {
+        let all = all_arguments();
+        let found = all.iter().copied().find(|a| a.name() == name);
+        if found.is_none() {
+            let names: Vec<&str> = all.iter().map(|a| a.name()).collect();
+            let near = nearest(name, names.iter().copied());
+            self.error(place, format!("found {name:?}, expected one of {}{}", names.join(", "), hint(near)));
+        }
+        found
+    }
+
+    fn finish(mut self) -> Result<States, Vec<String>> {
+        if self.errors.is_empty() && self.states.is_empty() {
+            self.errors.push("found no state, expected at least one".into());
+        }
+        if self.errors.is_empty() {
+            return Ok(States { states: self.states, warnings: self.warnings });
+        }
+        let more = self.errors.len().saturating_sub(MOST);
+        self.errors.truncate(MOST);
+        if more > 0 {
+            self.errors.push(format!("and {more} more"));
+        }
+        Err(self.errors)
+    }
+}
+
+fn hint(near: Option<String>) -> String {
+    near.map_or_else(String::new, |n| format!("; did you mean {n:?}?"))
+}
+
+/// Numbers by joint, gathered until all are there.
+pub(super) struct Gathering {
+    argument: Argument,
+    numbers: Vec<Option<f64>>,
+}
+
+impl Gathering {
+    pub(super) fn new(argument: Argument, found: &Found<'_>) -> Self {
+        Self { argument, numbers: vec![None; argument.len(found.model.shape())] }
+    }
+
+    pub(super) fn argument(&self) -> Argument {
+        self.argument
+    }
+
+    /// Sets number `k` of a joint.
+    pub(super) fn set(&mut self, found: &Found<'_>, joint: usize, k: usize, x: f64) {
+        let at = slot(self.argument, &found.model.joints[joint], found.model).map(|(at, _)| at + k);
+        if let Some(number) = at.and_then(|at| self.numbers.get_mut(at)) {
+            *number = Some(x);
+        }
+    }
+
+    /// All numbers, or errors that name the joints without.
+    pub(super) fn finish(self, state: &mut State, place: &str, found: &mut Found<'_>) {
+        let missing: Vec<usize> = (0..self.numbers.len()).filter(|&k| self.numbers[k].is_none()).collect();
+        for &k in &missing {
+            let name = found.number_name(self.argument, k);
+            found.error(place, format!("{name}: found nothing, expected a number"));
+        }
+        if missing.is_empty() {
+            found.take(state, self.argument, place, self.numbers.into_iter().flatten().collect());
+        }
+    }
+}
