@@ -1,19 +1,20 @@
 //! Sums as chains of multiply-adds.
 
+use super::chains::{Known, plan};
 use crate::graph::{Graph, Node, NodeId, Op};
 
-/// Flattens nested sums and rebuilds each as one chain, in which every product that only sums use is part of a multiply-add.
+/// Flattens nested sums and rebuilds each as a chain, in which every product that only sums use is part of a multiply-add.
 ///
-/// A chain takes its terms in the order in which they become known, so that the last one waits for nothing but itself. A sum of
-/// products alone needs one that is computed on its own to start from; those are chosen so that as few as possible are.
-/// Re-association changes results by roundings only.
+/// A chain takes its terms in the order in which they become known, so that the last one waits for nothing but itself; where one chain
+/// would make the result late, it is cut into two or three. A sum of products alone needs one that is computed on its own to start from;
+/// those are chosen so that as few as possible are. Re-association changes results by roundings only.
 pub fn contract(graph: &Graph) -> Graph {
     let sums = Sums::of(graph);
     let mut builder = Builder { graph, new: Graph::default(), ids: vec![NodeId(u32::MAX); graph.nodes().len()], arrival: Vec::new() };
     for (k, node) in graph.nodes().iter().enumerate() {
         if !sums.inner[k] && !sums.fused(k) {
             builder.ids[k] = match &sums.terms[k] {
-                Some(terms) => builder.chain(terms, &sums),
+                Some(terms) => builder.sum(terms, &sums),
                 None => builder.copy(node),
             };
         }
@@ -97,6 +98,13 @@ fn flatten(graph: &Graph, inner: &[bool], root: usize) -> Vec<Term> {
     terms
 }
 
+/// A node with a sign in front.
+#[derive(Clone, Copy, Debug)]
+struct Signed {
+    negative: bool,
+    node: NodeId,
+}
+
 struct Builder<'a> {
     graph: &'a Graph,
     new: Graph,
@@ -141,35 +149,56 @@ impl Builder<'_> {
         [self.ids[a as usize], self.ids[b as usize]]
     }
 
-    fn chain(&mut self, terms: &[Term], sums: &Sums) -> NodeId {
-        let mut terms = terms.to_vec();
-        terms.sort_by_key(|t| self.known(*t, sums));
-        let first = terms.iter().position(|t| !sums.fused(t.node)).unwrap_or(0);
-        let start = terms.remove(first);
-        let (mut negative, mut sum) = (start.negative, self.ids[start.node]);
-        for term in terms {
-            if sums.fused(term.node) {
-                let [a, b] = self.factors(term.node);
-                // ±sum ± a·b; two minuses stay outside, in the hope of a plus to come.
-                let (op, sign) = match (term.negative, negative) {
-                    (false, false) => (Op::MulAdd, false),
-                    (true, false) => (Op::NegMulAdd, false),
-                    (false, true) => (Op::MulSub, false),
-                    (true, true) => (Op::MulAdd, true),
-                };
-                (sum, negative) = (self.push(op, &[a, b, sum]), sign);
-            } else {
-                let other = self.ids[term.node];
-                let (op, x, y, sign) = match (term.negative, negative) {
-                    (false, false) => (Op::Add, sum, other, false),
-                    (true, false) => (Op::Sub, sum, other, false),
-                    (false, true) => (Op::Sub, other, sum, false),
-                    (true, true) => (Op::Add, sum, other, true),
-                };
-                (sum, negative) = (self.push(op, &[x, y]), sign);
-            }
+    /// Builds a sum by the plan that is done first.
+    fn sum(&mut self, terms: &[Term], sums: &Sums) -> NodeId {
+        let mut terms: Vec<(Term, Known)> =
+            terms.iter().map(|t| (*t, Known { at: self.known(*t, sums), fused: sums.fused(t.node) })).collect();
+        terms.sort_by_key(|(_, known)| known.at);
+        let known: Vec<Known> = terms.iter().map(|(_, known)| *known).collect();
+        let mut total: Option<Signed> = None;
+        for chain in plan(&known) {
+            let part = chain.into_iter().fold(None, |sum, k| Some(self.add(sum, terms[k].0, sums)));
+            total = match (total, part) {
+                (Some(total), Some(part)) => Some(self.add_nodes(total, part)),
+                (total, part) => total.or(part),
+            };
         }
-        if negative { self.negate(sum) } else { sum }
+        match total {
+            Some(Signed { negative: false, node }) => node,
+            Some(Signed { negative: true, node }) => self.negate(node),
+            None => self.new.constant(0.0),
+        }
+    }
+
+    /// sum + term; a first term that is a product is computed on its own.
+    fn add(&mut self, sum: Option<Signed>, term: Term, sums: &Sums) -> Signed {
+        let fused = sums.fused(term.node);
+        let Some(sum) = sum else {
+            let node = if fused { self.push(Op::Mul, &self.factors(term.node)) } else { self.ids[term.node] };
+            return Signed { negative: term.negative, node };
+        };
+        if !fused {
+            return self.add_nodes(sum, Signed { negative: term.negative, node: self.ids[term.node] });
+        }
+        let [a, b] = self.factors(term.node);
+        // ±sum ± a·b; two minuses stay outside, in the hope of a plus to come.
+        let (op, negative) = match (term.negative, sum.negative) {
+            (false, false) => (Op::MulAdd, false),
+            (true, false) => (Op::NegMulAdd, false),
+            (false, true) => (Op::MulSub, false),
+            (true, true) => (Op::MulAdd, true),
+        };
+        Signed { negative, node: self.push(op, &[a, b, sum.node]) }
+    }
+
+    fn add_nodes(&mut self, a: Signed, b: Signed) -> Signed {
+        let (op, x, y, negative) = match (a.negative, b.negative) {
+            (false, false) => (Op::Add, a, b, false),
+            (false, true) => (Op::Sub, a, b, false),
+            (true, false) => (Op::Sub, b, a, false),
+            (true, true) => (Op::Add, a, b, true),
+        };
+        Signed { negative, node: self.push(op, &[x.node, y.node]) }
     }
 
     /// −x; of a multiply-add that was just made, with its signs turned.

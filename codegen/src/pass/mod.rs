@@ -1,5 +1,6 @@
 //! Graph passes: `Graph → Graph`, keeping the algebra. One file each, in the order of [`GRAPH_PASSES`].
 
+mod chains;
 mod contract;
 mod live;
 
