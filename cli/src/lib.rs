@@ -5,6 +5,7 @@
 
 mod arguments;
 mod check;
+mod compare;
 pub mod compiled;
 mod console;
 pub mod failure;
@@ -49,7 +50,7 @@ fn dispatch(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Check(a) => check::run(a, format),
         Command::Generate(a) => generate::run(a, format).map(|()| OK),
         Command::Eval(a) => eval::run(a, format),
-        Command::Compare(_) => Ok(OK),
+        Command::Compare(a) => compare::run(a, format),
     }
 }
 

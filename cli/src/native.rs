@@ -7,6 +7,7 @@
 
 use std::ffi::{CStr, CString, c_char, c_double, c_int, c_void};
 use std::path::Path;
+use std::rc::Rc;
 use std::sync::Arc;
 
 /// An open library.
@@ -21,9 +22,16 @@ pub(crate) struct Kernel {
     entry: Entry,
     arguments: Vec<usize>,
     out: usize,
-    /// A peer's robot, handed over first.
-    robot: Option<Arc<Opened>>,
     _library: Native,
+}
+
+/// A peer's function of its robot, in the same way.
+#[derive(Clone, Debug)]
+pub(crate) struct PeerKernel {
+    entry: PeerEntry,
+    arguments: Vec<usize>,
+    out: usize,
+    robot: Rc<Opened>,
 }
 
 type P = *const c_double;
@@ -36,10 +44,15 @@ enum Entry {
     Two(unsafe extern "C" fn(P, P, O)),
     Three(unsafe extern "C" fn(P, P, P, O)),
     Four(unsafe extern "C" fn(P, P, P, P, O)),
-    PeerQuiet(unsafe extern "C" fn(H, P)),
-    PeerOne(unsafe extern "C" fn(H, P, O)),
-    PeerTwo(unsafe extern "C" fn(H, P, P, O)),
-    PeerThree(unsafe extern "C" fn(H, P, P, P, O)),
+}
+
+#[derive(Clone, Copy, Debug)]
+enum PeerEntry {
+    /// Keeps its results to itself.
+    Quiet(unsafe extern "C" fn(H, P)),
+    One(unsafe extern "C" fn(H, P, O)),
+    Two(unsafe extern "C" fn(H, P, P, O)),
+    Three(unsafe extern "C" fn(H, P, P, P, O)),
 }
 
 impl Native {
@@ -64,7 +77,7 @@ impl Native {
             4 => Entry::Four(self.symbol(name)?),
             _ => return None,
         };
-        Some(Kernel { entry, arguments: arguments.to_vec(), out, robot: None, _library: self.clone() })
+        Some(Kernel { entry, arguments: arguments.to_vec(), out, _library: self.clone() })
     }
 
     /// A peer's name for itself.
@@ -80,28 +93,51 @@ fn text(pointer: *const c_char) -> Option<String> {
     (!pointer.is_null()).then(|| unsafe { CStr::from_ptr(pointer) }.to_string_lossy().into_owned())
 }
 
+/// # Panics
+/// If a length is not the one promised.
+#[inline]
+fn check(given: &[&[f64]], promised: &[usize], out: usize, promised_out: usize) {
+    assert!(out == promised_out && given.len() == promised.len());
+    assert!(given.iter().zip(promised).all(|(x, n)| x.len() == *n));
+}
+
 impl Kernel {
     /// Calls the function.
     ///
     /// # Panics
     /// If a length is not the one promised.
     #[inline]
-    pub(crate) fn call(&self, arguments: &[&[f64]], out: &mut [f64]) {
-        assert!(out.len() == self.out && arguments.len() == self.arguments.len());
-        assert!(arguments.iter().zip(&self.arguments).all(|(a, n)| a.len() == *n));
-        let (x, out) = (arguments, out.as_mut_ptr());
-        let robot = self.robot.as_ref().map_or(std::ptr::null_mut(), |r| r.handle);
-        // Sound: the arrays have the lengths that the library reads and writes, and library and robot are open as long as the kernel lives.
+    pub(crate) fn call(&self, x: &[&[f64]], out: &mut [f64]) {
+        check(x, &self.arguments, out.len(), self.out);
+        let out = out.as_mut_ptr();
+        // Sound: the arrays have the lengths that the library reads and writes, and it is open as long as the kernel lives.
         unsafe {
             match self.entry {
                 Entry::One(f) => f(x[0].as_ptr(), out),
                 Entry::Two(f) => f(x[0].as_ptr(), x[1].as_ptr(), out),
                 Entry::Three(f) => f(x[0].as_ptr(), x[1].as_ptr(), x[2].as_ptr(), out),
                 Entry::Four(f) => f(x[0].as_ptr(), x[1].as_ptr(), x[2].as_ptr(), x[3].as_ptr(), out),
-                Entry::PeerQuiet(f) => f(robot, x[0].as_ptr()),
-                Entry::PeerOne(f) => f(robot, x[0].as_ptr(), out),
-                Entry::PeerTwo(f) => f(robot, x[0].as_ptr(), x[1].as_ptr(), out),
-                Entry::PeerThree(f) => f(robot, x[0].as_ptr(), x[1].as_ptr(), x[2].as_ptr(), out),
+            }
+        }
+    }
+}
+
+impl PeerKernel {
+    /// Calls the function.
+    ///
+    /// # Panics
+    /// If a length is not the one promised.
+    #[inline]
+    pub(crate) fn call(&self, x: &[&[f64]], out: &mut [f64]) {
+        check(x, &self.arguments, out.len(), self.out);
+        let (robot, out) = (self.robot.handle, out.as_mut_ptr());
+        // Sound: as above, and the robot is open as long as the kernel lives; it is used by one thread only.
+        unsafe {
+            match self.entry {
+                PeerEntry::Quiet(f) => f(robot, x[0].as_ptr()),
+                PeerEntry::One(f) => f(robot, x[0].as_ptr(), out),
+                PeerEntry::Two(f) => f(robot, x[0].as_ptr(), x[1].as_ptr(), out),
+                PeerEntry::Three(f) => f(robot, x[0].as_ptr(), x[1].as_ptr(), x[2].as_ptr(), out),
             }
         }
     }
@@ -109,7 +145,7 @@ impl Kernel {
 
 /// A robot open in a peer library.
 #[derive(Clone, Debug)]
-pub(crate) struct NativePeer(Arc<Opened>);
+pub(crate) struct NativePeer(Rc<Opened>);
 
 #[derive(Debug)]
 struct Opened {
@@ -128,7 +164,7 @@ impl NativePeer {
         if handle.is_null() {
             Err("it does not read this robot".into())
         } else {
-            Ok(Self(Arc::new(Opened { native: native.clone(), handle })))
+            Ok(Self(Rc::new(Opened { native: native.clone(), handle })))
         }
     }
 
@@ -151,17 +187,17 @@ impl NativePeer {
     }
 
     /// The peer's function, which takes arrays of these lengths and writes `out` numbers; none if it keeps its results to itself.
-    pub(crate) fn kernel(&self, function: &str, arguments: &[usize], out: usize) -> Option<Kernel> {
+    pub(crate) fn kernel(&self, function: &str, arguments: &[usize], out: usize) -> Option<PeerKernel> {
         let native = &self.0.native;
         let name = format!("peer_{function}");
         let entry = match (arguments.len(), out) {
-            (1, 0) => Entry::PeerQuiet(native.symbol(&name)?),
-            (1, _) => Entry::PeerOne(native.symbol(&name)?),
-            (2, _) => Entry::PeerTwo(native.symbol(&name)?),
-            (3, _) => Entry::PeerThree(native.symbol(&name)?),
+            (1, 0) => PeerEntry::Quiet(native.symbol(&name)?),
+            (1, _) => PeerEntry::One(native.symbol(&name)?),
+            (2, _) => PeerEntry::Two(native.symbol(&name)?),
+            (3, _) => PeerEntry::Three(native.symbol(&name)?),
             _ => return None,
         };
-        Some(Kernel { entry, arguments: arguments.to_vec(), out, robot: Some(self.0.clone()), _library: native.clone() })
+        Some(PeerKernel { entry, arguments: arguments.to_vec(), out, robot: self.0.clone() })
     }
 }
 

@@ -86,12 +86,6 @@ impl Robot {
         if self.floating() { "floating" } else { "fixed" }
     }
 
-    /// Gravity as text, m/s².
-    pub(crate) fn gravity(&self) -> String {
-        let [x, y, z] = self.options.gravity;
-        format!("({x}, {y}, {z})")
-    }
-
     /// A file with the document, for those who read files: the robot's own, or one in `folder`.
     pub(crate) fn file_in(&self, folder: &Path) -> std::io::Result<PathBuf> {
         match &self.path {

@@ -67,6 +67,11 @@ impl Compiled {
         self.functions.iter().find(|f| f.name == name)?.bytes
     }
 
+    /// Numbers of coordinates, degrees of freedom and frames.
+    pub fn shape(&self) -> Shape {
+        self.shape
+    }
+
     pub(crate) fn kernel(&self, name: &str) -> Option<&Kernel> {
         self.functions.iter().find(|f| f.name == name).map(|f| &f.kernel)
     }

@@ -1,0 +1,82 @@
+//! Who is measured: something that computes a function of a robot.
+
+use std::cell::RefCell;
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use articulated_core::algorithm::{Function, Workspace};
+use articulated_core::model::Model;
+
+use super::timing::Run;
+use crate::compiled::Compiled;
+use crate::native::{Kernel, PeerKernel};
+
+/// One way to compute a function.
+pub(super) struct Contender<'a> {
+    way: Way<'a>,
+    out: usize,
+}
+
+enum Way<'a> {
+    Generated(Kernel),
+    Peer(PeerKernel),
+    Generic { function: &'static Function<f64>, model: &'a Model<f64>, workspace: RefCell<Workspace<f64>> },
+}
+
+impl<'a> Contender<'a> {
+    /// Code of another library; `out` is 0 where it keeps its results to itself.
+    pub(super) fn peer(kernel: PeerKernel, out: usize) -> Self {
+        Self { way: Way::Peer(kernel), out }
+    }
+
+    /// The compiled function.
+    pub(super) fn generated(compiled: &Compiled, function: &Function<f64>) -> Self {
+        let kernel = compiled.kernel(function.name).expect("every function of a ledger was loaded");
+        Self { way: Way::Generated(kernel.clone()), out: function.gives.len(compiled.shape()) }
+    }
+
+    /// The same algorithm at run time.
+    pub(super) fn generic(model: &'a Model<f64>, function: &'static Function<f64>) -> Self {
+        let workspace = RefCell::new(Workspace::new(model));
+        Self { way: Way::Generic { function, model, workspace }, out: function.gives.len(model.shape()) }
+    }
+
+    /// The result in one state.
+    pub(super) fn call(&self, arguments: &[&[f64]]) -> Vec<f64> {
+        let mut out = vec![0.0; self.out];
+        match &self.way {
+            Way::Generated(kernel) => kernel.call(arguments, &mut out),
+            Way::Peer(kernel) => kernel.call(arguments, &mut out),
+            Way::Generic { function, model, workspace } => {
+                let called = function.call(model, &mut workspace.borrow_mut(), arguments, &mut out);
+                debug_assert!(called.is_ok(), "arguments were made to measure");
+            }
+        }
+        out
+    }
+
+    /// What the clock is held to: so many rounds through all states.
+    pub(super) fn run<'b>(&'b self, states: &'b [Vec<&'b [f64]>]) -> Run<'b> {
+        let mut out = vec![0.0; self.out];
+        match &self.way {
+            Way::Generated(kernel) => Box::new(move |rounds| clock(rounds, states, |x| kernel.call(x, black_box(&mut out)))),
+            Way::Peer(kernel) => Box::new(move |rounds| clock(rounds, states, |x| kernel.call(x, black_box(&mut out)))),
+            Way::Generic { function, model, workspace } => Box::new(move |rounds| {
+                let workspace = &mut workspace.borrow_mut();
+                clock(rounds, states, |x| {
+                    let _ = black_box(function.call(model, workspace, x, black_box(&mut out)));
+                })
+            }),
+        }
+    }
+}
+
+fn clock(rounds: usize, states: &[Vec<&[f64]>], mut call: impl FnMut(&[&[f64]])) -> Duration {
+    let start = Instant::now();
+    for _ in 0..rounds {
+        for state in states {
+            call(black_box(state));
+        }
+    }
+    start.elapsed()
+}
