@@ -51,9 +51,12 @@ impl<S: Scalar> SpatialInertia<S> {
     #[inline(always)]
     pub fn wrench(&self, acceleration: Vector3<S>, u: &Matrix3<S>) -> Wrench<S> {
         let (s, h) = (&self.second, self.first);
-        let us = |i: usize, j: usize| u[(i, 0)] * s[(0, j)] + u[(i, 1)] * s[(1, j)] + u[(i, 2)] * s[(2, j)];
-        // ∫ r × (U r) dm has the components (UΣ)_zy − (UΣ)_yz and so on round.
-        let spin = Vector3::new(us(2, 1) - us(1, 2), us(0, 2) - us(2, 0), us(1, 0) - us(0, 1));
+        // ∫ r × (U r) dm has the components (UΣ)_zy − (UΣ)_yz and so on round, with what Σ's off-diagonals multiply taken together.
+        let spin = Vector3::new(
+            u.m31 * s.m12 - u.m21 * s.m13 + (u.m33 - u.m22) * s.m23 + u.m32 * s.m22 - u.m23 * s.m33,
+            u.m12 * s.m23 - u.m32 * s.m12 + (u.m11 - u.m33) * s.m13 + u.m13 * s.m33 - u.m31 * s.m11,
+            u.m23 * s.m13 - u.m13 * s.m23 + (u.m22 - u.m11) * s.m12 + u.m21 * s.m11 - u.m12 * s.m22,
+        );
         Wrench { moment: h.cross(&acceleration) + spin, force: acceleration * self.mass + rotate(u, h) }
     }
 

@@ -2,7 +2,7 @@
 // vector registers. This file is compiled in the runtime and copied into generated code; it needs nothing but `std`.
 
 #[allow(unused_imports)]
-use ::core::iter::Iterator;
+use ::core::iter::{IntoIterator, Iterator};
 
 /// Up to this |x|, rad, the loop is used; if one angle is beyond it, or NaN, all go to the standard library.
 const LIMIT: f64 = 1e5;
@@ -33,17 +33,21 @@ const C: [f64; 6] = [
 
 
 /// sin[i] = sin x[i], cos[i] = cos x[i]; x in rad, any. Error at most 1 ulp where the target has fused multiply-add, the standard
-/// library's where it has not. The three slices have one length, best a multiple of 4.
+/// library's where it has not. N is best a multiple of 4.
 ///
-/// Not inlined, and over slices: so it stays a loop, and a loop is what the compiler vectorises reliably.
+/// Not inlined, so that it stays a loop of its own: a loop is what the compiler vectorises reliably.
 #[inline(never)]
-pub fn sin_cos(x: &[f64], sin: &mut [f64], cos: &mut [f64]) {
-    let within = x.iter().fold(true, |within, x| within & (x.abs() <= LIMIT));
-    if !FMA || !within {
+pub fn sin_cos<const N: usize>(x: &[f64; N], sin: &mut [f64; N], cos: &mut [f64; N]) {
+    if !FMA {
         return one_by_one(x, sin, cos);
     }
-    for ((&x, sin), cos) in x.iter().zip(sin).zip(cos) {
+    let mut within = true;
+    for ((&x, sin), cos) in x.iter().zip(sin.iter_mut()).zip(cos.iter_mut()) {
+        within &= x.abs() <= LIMIT;
         (*sin, *cos) = lane(x);
+    }
+    if !within {
+        one_by_one(x, sin, cos);
     }
 }
 
