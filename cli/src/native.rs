@@ -6,6 +6,7 @@
 // Why: calling across a C interface has no safe form. What can be checked, the lengths of arrays, is checked before every call.
 
 use std::ffi::{CStr, CString, c_char, c_double, c_int, c_void};
+use std::hint::black_box;
 use std::path::Path;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -120,6 +121,34 @@ impl Kernel {
             }
         }
     }
+
+    /// Calls the function on all states, so many rounds: lengths are checked once, and then only called.
+    ///
+    /// # Panics
+    /// If a length is not the one promised.
+    pub(crate) fn repeat(&self, rounds: usize, states: &[Vec<&[f64]>], out: &mut [f64]) {
+        states.iter().for_each(|x| check(x, &self.arguments, out.len(), self.out));
+        let out = out.as_mut_ptr();
+        // Sound: as in `call`.
+        unsafe {
+            match self.entry {
+                Entry::One(f) => repeat(rounds, states, |x| f(x[0].as_ptr(), out)),
+                Entry::Two(f) => repeat(rounds, states, |x| f(x[0].as_ptr(), x[1].as_ptr(), out)),
+                Entry::Three(f) => repeat(rounds, states, |x| f(x[0].as_ptr(), x[1].as_ptr(), x[2].as_ptr(), out)),
+                Entry::Four(f) => repeat(rounds, states, |x| f(x[0].as_ptr(), x[1].as_ptr(), x[2].as_ptr(), x[3].as_ptr(), out)),
+            }
+        }
+    }
+}
+
+/// So many rounds through all states, with nothing around the calls that the clock would see.
+#[inline(always)]
+fn repeat(rounds: usize, states: &[Vec<&[f64]>], mut call: impl FnMut(&[&[f64]])) {
+    for _ in 0..rounds {
+        for state in states {
+            call(black_box(state));
+        }
+    }
 }
 
 impl PeerKernel {
@@ -138,6 +167,24 @@ impl PeerKernel {
                 PeerEntry::One(f) => f(robot, x[0].as_ptr(), out),
                 PeerEntry::Two(f) => f(robot, x[0].as_ptr(), x[1].as_ptr(), out),
                 PeerEntry::Three(f) => f(robot, x[0].as_ptr(), x[1].as_ptr(), x[2].as_ptr(), out),
+            }
+        }
+    }
+
+    /// Calls the function on all states, so many rounds: lengths are checked once, and then only called.
+    ///
+    /// # Panics
+    /// If a length is not the one promised.
+    pub(crate) fn repeat(&self, rounds: usize, states: &[Vec<&[f64]>], out: &mut [f64]) {
+        states.iter().for_each(|x| check(x, &self.arguments, out.len(), self.out));
+        let (robot, out) = (self.robot.handle, out.as_mut_ptr());
+        // Sound: as in `call`.
+        unsafe {
+            match self.entry {
+                PeerEntry::Quiet(f) => repeat(rounds, states, |x| f(robot, x[0].as_ptr())),
+                PeerEntry::One(f) => repeat(rounds, states, |x| f(robot, x[0].as_ptr(), out)),
+                PeerEntry::Two(f) => repeat(rounds, states, |x| f(robot, x[0].as_ptr(), x[1].as_ptr(), out)),
+                PeerEntry::Three(f) => repeat(rounds, states, |x| f(robot, x[0].as_ptr(), x[1].as_ptr(), x[2].as_ptr(), out)),
             }
         }
     }

@@ -31,6 +31,7 @@ impl Robot {
         let bundled = articulated_models::robot(name);
         let (file, urdf, base, path) = match bundled {
             Some(b) => (format!("{name}.urdf"), b.urdf.as_bytes().to_vec(), b.base, None),
+            None if name == "-" => ("<stdin>".to_owned(), read_file(name)?, Base::Fixed, None),
             None => (name.to_owned(), read_file(name)?, Base::Fixed, Some(PathBuf::from(name))),
         };
         let base = match (arguments.floating, arguments.fixed) {

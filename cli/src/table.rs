@@ -64,7 +64,13 @@ pub(crate) fn number(x: f64) -> String {
     if x == 0.0 {
         "0".into()
     } else if !x.is_finite() {
-        if x.is_nan() { "not a number".into() } else if x > 0.0 { "∞".into() } else { "-∞".into() }
+        if x.is_nan() {
+            "not a number".into()
+        } else if x > 0.0 {
+            "∞".into()
+        } else {
+            "-∞".into()
+        }
     } else if (1e-4..1e6).contains(&size) {
         let places = (5.0 - size.log10().floor()).clamp(0.0, 9.0) as usize;
         let text = format!("{x:.places$}");
@@ -89,7 +95,8 @@ mod tests {
 
     #[test]
     fn numbers_keep_six_digits() {
-        let cases = [(0.0, "0"), (1.5, "1.5"), (123_456.7, "123457"), (0.001_234_567, "0.00123457"), (-1e-9, "-1.000e-9"), (f64::INFINITY, "∞")];
+        let cases =
+            [(0.0, "0"), (1.5, "1.5"), (123_456.7, "123457"), (0.001_234_567, "0.00123457"), (-1e-9, "-1.000e-9"), (f64::INFINITY, "∞")];
         cases.iter().for_each(|(x, text)| assert_eq!(number(*x), *text));
     }
 }

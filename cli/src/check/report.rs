@@ -142,11 +142,14 @@ impl Report {
 
     fn warn_of_massless_joints(&mut self, model: &Model<f64>) {
         if model.bodies.len() > MANY {
-            return self.warnings.push(Diagnostic::plain(format!("more than {MANY} bodies: whether every joint moves mass was not looked at")));
+            return self
+                .warnings
+                .push(Diagnostic::plain(format!("more than {MANY} bodies: whether every joint moves mass was not looked at")));
         }
         for body in model.massless_joints() {
             let name = &model.bodies[body].name;
-            let message = format!("joint {name:?} moves no mass: the mass matrix is singular, and forward dynamics is undefined for this robot");
+            let message =
+                format!("joint {name:?} moves no mass: the mass matrix is singular, and forward dynamics is undefined for this robot");
             let subject = Some(format!("joint {name:?}"));
             self.warnings.push(Diagnostic { line: None, subject, field: None, message });
         }

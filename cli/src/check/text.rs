@@ -27,7 +27,8 @@ pub(super) fn text(report: &Report) -> String {
 fn body(out: &mut String, report: &Report) {
     let t = report.totals;
     let name = plain(report.robot.as_deref().unwrap_or_default());
-    let _ = writeln!(out, "{name}, {} base: {} links, {} joints, {} degrees of freedom", report.base, t.links, t.joints, t.degrees_of_freedom);
+    let _ =
+        writeln!(out, "{name}, {} base: {} links, {} joints, {} degrees of freedom", report.base, t.links, t.joints, t.degrees_of_freedom);
     let _ = writeln!(out, "{} coordinates in q; mass {} kg, of which {} kg move\n", t.coordinates, number(t.mass), number(t.moving_mass));
     *out += &links(&report.links).text();
     out.push('\n');

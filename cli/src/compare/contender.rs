@@ -59,24 +59,22 @@ impl<'a> Contender<'a> {
     pub(super) fn run<'b>(&'b self, states: &'b [Vec<&'b [f64]>]) -> Run<'b> {
         let mut out = vec![0.0; self.out];
         match &self.way {
-            Way::Generated(kernel) => Box::new(move |rounds| clock(rounds, states, |x| kernel.call(x, black_box(&mut out)))),
-            Way::Peer(kernel) => Box::new(move |rounds| clock(rounds, states, |x| kernel.call(x, black_box(&mut out)))),
+            Way::Generated(kernel) => Box::new(move |rounds| clock(|| kernel.repeat(rounds, states, black_box(&mut out)))),
+            Way::Peer(kernel) => Box::new(move |rounds| clock(|| kernel.repeat(rounds, states, black_box(&mut out)))),
             Way::Generic { function, model, workspace } => Box::new(move |rounds| {
                 let workspace = &mut workspace.borrow_mut();
-                clock(rounds, states, |x| {
-                    let _ = black_box(function.call(model, workspace, x, black_box(&mut out)));
+                clock(|| {
+                    for state in std::iter::repeat_n(states, rounds).flatten() {
+                        let _ = black_box(function.call(model, workspace, black_box(state), black_box(&mut out)));
+                    }
                 })
             }),
         }
     }
 }
 
-fn clock(rounds: usize, states: &[Vec<&[f64]>], mut call: impl FnMut(&[&[f64]])) -> Duration {
+fn clock(batch: impl FnOnce()) -> Duration {
     let start = Instant::now();
-    for _ in 0..rounds {
-        for state in states {
-            call(black_box(state));
-        }
-    }
+    batch();
     start.elapsed()
 }

@@ -98,7 +98,9 @@ fn orders(peer: &NativePeer, model: &Model<f64>) -> Result<(Vec<usize>, Vec<usiz
     let (nq, nv, joints) = (nq.ok_or(incomplete)?, nv.ok_or(incomplete)?, joints.ok_or(incomplete)?);
     if (nq, nv, joints) != (model.nq, model.nv, model.joints.len()) {
         let ours = format!("{} with {} coordinates", model.joints.len(), model.nq);
-        return Err(format!("it has {joints} joints with {nq} coordinates, and here there are {ours} (peers take joints that follow others as free)"));
+        return Err(format!(
+            "it has {joints} joints with {nq} coordinates, and here there are {ours} (peers take joints that follow others as free)"
+        ));
     }
     let (mut q, mut v) = (vec![usize::MAX; nq], vec![usize::MAX; nv]);
     for k in 0..joints {

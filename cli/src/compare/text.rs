@@ -10,12 +10,18 @@ use crate::table::{Table, plain};
 pub(super) fn text(report: &Report) -> String {
     let mut out = head(report);
     for (title, table) in [
-        ("Multiplications and additions after each stage of the generator (asked: what the algorithm asks for; the last: what is emitted)", operations(report)),
+        (
+            "Multiplications and additions after each stage of the generator (asked: what the algorithm asks for; the last: what is emitted)",
+            operations(report),
+        ),
         ("Instructions after each stage: a multiply-add counts once; sines and cosines apart", instructions(report)),
         ("Size of the generated code, and what it costs to make it", sizes(report)),
         ("Time of a call: median, and quartiles' distance (IQR)", times(report)),
         ("Time of a call in other libraries, and the time of ours relative to theirs", peers(report)),
-        ("Largest error in units of 2⁻⁵³ of the sum of the magnitudes of the terms, against an independent evaluation in big floats", errors(report)),
+        (
+            "Largest error in units of 2⁻⁵³ of the sum of the magnitudes of the terms, against an independent evaluation in big floats",
+            errors(report),
+        ),
     ] {
         if !table.is_empty() {
             let _ = write!(out, "\n{title}\n{}", indent(&table.text()));
@@ -28,7 +34,15 @@ fn head(report: &Report) -> String {
     let [x, y, z] = report.gravity;
     let mut out = format!(
         "{}, {} base: {} joints, {} degrees of freedom; gravity ({x}, {y}, {z}) m/s²\n{} random states (seed {}), {} interleaved repetitions; {} {}\n",
-        plain(&report.robot), report.base, report.joints, report.degrees_of_freedom, report.states, report.seed, report.repetitions, report.compiler, report.flags,
+        plain(&report.robot),
+        report.base,
+        report.joints,
+        report.degrees_of_freedom,
+        report.states,
+        report.seed,
+        report.repetitions,
+        report.compiler,
+        report.flags,
     );
     if !report.optimised {
         out += "This command was built without optimisation: times of generic code and of the generation mean little.\n";
@@ -103,7 +117,7 @@ fn peers(report: &Report) -> Table {
     let mut table = Table::new([
         ("function", ""),
         ("peer", ""),
-        ("peer", "ns"),
+        ("time", "ns"),
         ("IQR", "ns"),
         ("generic/peer", "ratio"),
         ("generated/peer", "ratio"),
@@ -126,8 +140,13 @@ fn peers(report: &Report) -> Table {
 
 fn errors(report: &Report) -> Table {
     let bits = format!("{} bits", report.reference_bits);
-    let mut table =
-        Table::new([("function", String::new()), ("generated", "units".into()), ("generic", "units".into()), ("bound", "units".into()), ("reference", bits)]);
+    let mut table = Table::new([
+        ("function", String::new()),
+        ("generated", "units".into()),
+        ("generic", "units".into()),
+        ("bound", "units".into()),
+        ("reference", bits),
+    ]);
     for f in &report.functions {
         let row = match f.errors {
             Some(e) => [format!("{:.2}", e.generated), format!("{:.2}", e.generic), format!("{}", report.bound), "textbook".into()],
@@ -140,19 +159,31 @@ fn errors(report: &Report) -> Table {
 
 /// Two sentences that say what was seen.
 fn newcomer(report: &Report) -> String {
-    let slowest = |f: &&FunctionReport| f.generic_over_generated.median;
-    let Some(best) = report.functions.iter().max_by(|a, b| slowest(a).total_cmp(&slowest(b))) else { return String::new() };
-    let least = report.functions.iter().map(|f| slowest(&f)).fold(f64::INFINITY, f64::min);
-    let worst = report.functions.iter().filter_map(|f| f.errors).map(|e| e.generated).fold(0.0, f64::max);
-    let gain = match (times_of(least), times_of(slowest(&best))) {
-        (a, b) if a == b => format!("{a} times as long"),
-        (a, b) => format!("{a} to {b} times as long ({b}: {})", best.function),
+    let ratio = |f: &FunctionReport| f.generic_over_generated.median;
+    let Some(best) = report.functions.iter().max_by(|a, b| ratio(a).total_cmp(&ratio(b))) else { return String::new() };
+    let least = times_of(report.functions.iter().map(ratio).fold(f64::INFINITY, f64::min));
+    let most = times_of(ratio(best));
+    let gain = if least == most { format!("{most} times") } else { format!("{least} times to {most} times ({})", best.function) };
+    format!(
+        "The generator wrote this one robot's equations out with everything known beforehand folded in, and the library's generic code, which serves\n\
+         any robot and computes the same numbers, takes {gain} as long for a call on this machine.\n{}",
+        accuracy(report)
+    )
+}
+
+fn accuracy(report: &Report) -> String {
+    let errors: Vec<f64> = report.functions.iter().filter_map(|f| f.errors).map(|e| e.generated).collect();
+    let worst = errors.iter().copied().fold(0.0, |a: f64, b| if b.is_nan() || b > a { b } else { a });
+    let verdict = if errors.is_empty() {
+        return "For none of these functions is there a reference yet by which the accuracy of either could be judged.\n".into();
+    } else if worst <= report.bound {
+        "so the time is not saved at the cost of accuracy"
+    } else {
+        "which is more than rounding explains"
     };
     format!(
-        "The generator wrote this one robot's equations out with everything known beforehand folded in, and the library's generic code, which serves any\n\
-         robot and computes the same numbers, takes {gain} for a call on this machine.\n\
-         Both are rounded answers: the generated one was off by at most {worst:.1} times the rounding of a single operation (2⁻⁵³, some 1.1e-16) on numbers as\n\
-         large as those that were added up, so that what it gains in time is not paid for with accuracy.\n"
+        "Both round their results: the generated code was off by at most {worst:.1} times the rounding of one operation (2⁻⁵³, some 1.1e-16), measured against\n\
+         the size of the terms that were added up, {verdict}.\n"
     )
 }
 

@@ -80,7 +80,8 @@ mod tests {
 
     #[test]
     fn everybody_is_timed_in_every_repetition() {
-        let mut runs: Vec<Run<'_>> = vec![Box::new(|n| Duration::from_micros(10) * n as u32), Box::new(|n| Duration::from_micros(30) * n as u32)];
+        let mut runs: Vec<Run<'_>> =
+            vec![Box::new(|n| Duration::from_micros(10) * n as u32), Box::new(|n| Duration::from_micros(30) * n as u32)];
         let times = interleaved(&mut runs, 5, 10);
         assert_eq!(times.iter().map(Vec::len).collect::<Vec<_>>(), [5, 5]);
         assert!((summary(&ratio_list(&times)).median - 3.0).abs() < 1e-9);

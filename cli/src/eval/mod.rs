@@ -62,7 +62,11 @@ fn read_states(file: &str, model: &Model<f64>, functions: &[&'static Function<f6
         for f in functions {
             if let Err(argument) = state.arguments(f) {
                 let name = argument.name();
-                missing.push(format!("{file}: states[{k}]: {name}: found nothing, expected {} numbers: {} takes {name}", argument.len(model.shape()), f.name));
+                missing.push(format!(
+                    "{file}: states[{k}]: {name}: found nothing, expected {} numbers: {} takes {name}",
+                    argument.len(model.shape()),
+                    f.name
+                ));
             }
         }
     }

@@ -89,9 +89,8 @@ impl FunctionReport {
                 Value::Object(both.into_iter().filter_map(|(k, v)| Some((k.to_owned(), v?))).collect())
             })
             .collect();
-        let largest = self.largest.map(|d| {
-            json!({"state": d.state, "absolute": d.absolute, "in_units_of_roundoff": d.units, "bound": BOUND})
-        });
+        let largest =
+            self.largest.map(|d| json!({"state": d.state, "absolute": d.absolute, "in_units_of_roundoff": d.units, "bound": BOUND}));
         json!({
             "function": self.function.name,
             "summary": self.function.summary,

@@ -43,7 +43,10 @@ fn column(title: &str, found: &mut Found<'_>) -> Option<Column> {
     let (joint, number) = joint(&place, rest, found)?;
     let wanted = slot(argument, &found.model.joints[joint], found.model).map_or(0, |(_, n)| n);
     if number.is_none() && wanted != 1 || number.is_some_and(|n| n >= wanted) {
-        found.error(&place, format!("this joint has {wanted} numbers here, expected `{}.{}[0]` and so on", argument.name(), found.model.joints[joint].name));
+        found.error(
+            &place,
+            format!("this joint has {wanted} numbers here, expected `{}.{}[0]` and so on", argument.name(), found.model.joints[joint].name),
+        );
         return None;
     }
     Some(Column { argument, joint, number: number.unwrap_or(0), title: title.to_owned() })
@@ -118,10 +121,14 @@ mod tests {
     #[test]
     fn a_floating_base_has_numbered_columns() {
         let model = bundled_model("quadruped");
-        let titles: Vec<String> = model.joints.iter().flat_map(|j| match j.q.1 {
-            1 => vec![format!("q.{}", j.name)],
-            n => (0..n).map(|k| format!("q.{}[{k}]", j.name)).collect(),
-        }).collect();
+        let titles: Vec<String> = model
+            .joints
+            .iter()
+            .flat_map(|j| match j.q.1 {
+                1 => vec![format!("q.{}", j.name)],
+                n => (0..n).map(|k| format!("q.{}[{k}]", j.name)).collect(),
+            })
+            .collect();
         let mut numbers = vec!["0"; 19];
         numbers[6] = "1";
         let text = format!("{}\n{}\n", titles.join(","), numbers.join(","));

@@ -119,7 +119,9 @@ mod tests {
     fn every_mistake_is_named_with_its_state() {
         let text = r#"[{"q": [1]}, {"q": [1, null]}, {"w": [1, 2]}, 3, {"q": {"cart_jiont": 1}}]"#;
         let said = errors("cart_pole", text);
-        for part in ["states[0]: q: found 1 numbers, expected 2", "states[1]: q: found null", "states[2]: found \"w\"", "states[3]: found 3"] {
+        for part in
+            ["states[0]: q: found 1 numbers, expected 2", "states[1]: q: found null", "states[2]: found \"w\"", "states[3]: found 3"]
+        {
             assert!(said.contains(part), "{said}");
         }
         assert!(said.contains("states[4]: q: found joint \"cart_jiont\""), "{said}");

@@ -1,0 +1,111 @@
+use super::{File, run, run_with};
+
+const MASSLESS: &str = r#"<robot name="r"><link name="a"/><link name="b"/>
+<joint name="idle" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint></robot>"#;
+
+#[test]
+fn every_bundled_robot_is_usable() {
+    for robot in articulated_models::ROBOTS {
+        let text = run(&["check", robot.name]);
+        assert_eq!(text.status, 0, "{}", text.out);
+        assert!(text.out.contains("degrees of freedom") && text.lines_with("error") == 0);
+        let json = run(&["check", robot.name, "--format", "json"]).json();
+        assert_eq!(json["usable"], true);
+        assert_eq!(json["warnings"].as_array().unwrap().len(), text.lines_with("warning"), "{}", text.out);
+    }
+}
+
+#[test]
+fn the_mass_table_adds_up() {
+    let golfer = run(&["check", "golfer", "--format", "json"]).json();
+    assert!((golfer["totals"]["mass"].as_f64().unwrap() - 73.26).abs() < 0.01);
+    assert_eq!(golfer["totals"]["degrees_of_freedom"], 15);
+    let sum: f64 = golfer["links"].as_array().unwrap().iter().map(|l| l["mass"].as_f64().unwrap()).sum();
+    assert!((sum - golfer["totals"]["mass"].as_f64().unwrap()).abs() < 1e-9);
+    let gripper = run(&["check", "gripper_arm", "--format", "json"]).json();
+    let follows = |name: &str| {
+        let joint = gripper["joints"].as_array().unwrap().iter().find(|j| j["joint"] == name).unwrap();
+        joint["mimic"]["multiplier"].as_f64()
+    };
+    assert_eq!((follows("pinion"), follows("yaw")), (Some(80.0), None));
+    assert!(!gripper["unused"].as_array().unwrap().is_empty());
+}
+
+#[test]
+fn the_base_can_be_chosen() {
+    let freedoms = |words: &[&str]| run(&[&["check", "--format", "json"], words].concat()).json()["totals"]["degrees_of_freedom"].clone();
+    assert_eq!(freedoms(&["quadruped"]), 18);
+    assert_eq!(freedoms(&["quadruped", "--fixed"]), 12);
+    assert_eq!(freedoms(&["panda_like", "--floating"]), 13);
+}
+
+#[test]
+fn every_error_has_its_own_line() {
+    let urdf = r#"<robot name="r"><link name="a"><inertial><mass value="-1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+        <link name="b"/><joint name="j" type="hinge"><parent link="a"/><child link="c"/></joint></robot>"#;
+    let file = File::new("bad.urdf", urdf.as_bytes());
+    let text = run(&["check", file.name()]);
+    let json = run(&["check", file.name(), "--format", "json"]);
+    let errors = json.json()["errors"].as_array().unwrap().len();
+    assert_eq!((text.status, json.status), (1, 1));
+    assert!(errors >= 3, "{}", text.out);
+    assert_eq!(text.lines_with("error"), errors, "{}", text.out);
+}
+
+#[test]
+fn a_joint_that_moves_no_mass_is_a_warning() {
+    let file = File::new("idle.urdf", MASSLESS.as_bytes());
+    let text = run(&["check", file.name(), "--function", "inverse_dynamics"]);
+    assert_eq!(text.status, 0);
+    assert_eq!(text.lines_with("warning"), 1, "{}", text.out);
+    assert!(text.out.contains("forward dynamics is undefined") && text.out.contains("inverse_dynamics can be generated"), "{}", text.out);
+}
+
+#[test]
+fn an_unphysical_inertia_is_an_error_unless_allowed() {
+    let urdf = r#"<robot name="r"><link name="a"/><link name="b"><inertial><mass value="1"/>
+        <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="-2"/></inertial></link>
+        <joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint></robot>"#;
+    let file = File::new("odd.urdf", urdf.as_bytes());
+    assert_eq!(run(&["check", file.name()]).status, 1);
+    let allowed = run(&["check", file.name(), "--allow-unphysical-inertia"]);
+    assert_eq!(allowed.status, 0);
+    assert!(allowed.lines_with("warning") >= 1);
+}
+
+#[test]
+fn a_snapped_angle_is_told() {
+    let urdf = MASSLESS.replace("<parent", "<origin rpy=\"1.5708 0 0\"/><parent");
+    let file = File::new("almost.urdf", urdf.as_bytes());
+    let snapped = run(&["check", file.name(), "--snap-angles", "1e-4"]);
+    assert_eq!((snapped.status, snapped.lines_with("warning")), (0, 2), "{}", snapped.out);
+}
+
+#[test]
+fn an_unknown_name_is_guessed() {
+    let wrong = run(&["check", "panda_lik"]);
+    assert_eq!(wrong.status, 1);
+    assert!(wrong.err.contains("error") && wrong.err.contains("did you mean \"panda_like\"?"), "{}", wrong.err);
+}
+
+#[test]
+fn any_bytes_are_refused_with_an_error() {
+    let mut numbers = articulated_cli::states::SplitMix64::new(3);
+    let pendulum = articulated_models::robot("simple_pendulum").unwrap().urdf.as_bytes();
+    for round in 0..40 {
+        let bytes: Vec<u8> = match round % 4 {
+            0 => (0..round * 50).map(|_| numbers.bits() as u8).collect(),
+            1 => pendulum[..numbers.bits() as usize % pendulum.len()].to_vec(),
+            2 => b"<robot name='\0\x1b[31m'>".repeat(round),
+            _ => {
+                let mut bytes = pendulum.to_vec();
+                let at = numbers.bits() as usize % bytes.len();
+                bytes[at] = numbers.bits() as u8;
+                bytes
+            }
+        };
+        let ended = run_with(&["check", "-"], &bytes);
+        assert!(ended.status <= 1, "{} {}", ended.status, ended.err);
+        assert!(ended.status == 0 || ended.lines_with("error") > 0);
+    }
+}

@@ -1,0 +1,112 @@
+use std::process::Command;
+
+use super::{File, articulated, end, run};
+
+const SMALL: [&str; 4] = ["--states", "5", "--repetitions", "31"];
+
+#[test]
+fn a_report_has_everything() {
+    let ended =
+        run(&[&["compare", "double_pendulum", "--functions", "inverse_dynamics,placements", "--format", "json"], &SMALL[..]].concat());
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let json = ended.json();
+    assert_eq!(json["functions"].as_array().unwrap().len(), 2);
+    for f in json["functions"].as_array().unwrap() {
+        let number = |path: &str| f.pointer(path).and_then(serde_json::Value::as_f64).unwrap_or_else(|| panic!("{path}: {f}"));
+        assert!(number("/generated/median") > 0.0 && number("/generic/lower_quartile") > 0.0);
+        assert!(number("/generation_seconds") > 0.0 && number("/compilation_seconds") > 0.0 && number("/depth") > 0.0);
+        assert!((0.0..64.0).contains(&number("/errors/generated")) && (0.0..64.0).contains(&number("/errors/generic")));
+        assert_eq!(f["stages"][0]["stage"], "asked");
+        assert!(cfg!(not(target_os = "linux")) || number("/code_bytes") > 16.0);
+    }
+}
+
+#[test]
+fn the_text_lines_up_and_ends_with_two_sentences() {
+    let ended = run(&[&["compare", "gripper_arm", "--functions", "gravity_torque"], &SMALL[..]].concat());
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let last = ended.out.rsplit("\n\n").next().unwrap();
+    assert_eq!(last.matches(". ").count() + last.matches(".\n").count(), 2, "{last}");
+    for part in ["asked", "depth", "bytes", "rustc", "ns", "ratio", "units"] {
+        assert!(ended.out.contains(part), "{part}: {}", ended.out);
+    }
+}
+
+#[test]
+fn an_error_beyond_the_bound_is_status_4() {
+    let ended = run(&[&["compare", "double_pendulum", "--functions", "inverse_dynamics", "--bound", "0"], &SMALL[..]].concat());
+    assert_eq!(ended.status, 4);
+    assert!(ended.err.contains("error: inverse_dynamics"), "{}", ended.err);
+    assert!(ended.out.contains("units"));
+}
+
+#[test]
+fn without_a_compiler_it_is_status_3() {
+    let mut command = articulated(&["compare", "simple_pendulum"]);
+    command.env("RUSTC", "/no/such/compiler");
+    assert_eq!(end(command, b"").status, 3);
+}
+
+/// A peer that knows one pendulum, of 1 kg at 1 m, by heart; it is wrong by the summand WRONG.
+const PEER: &str = r#"
+use std::ffi::{c_char, c_int, c_void};
+#[unsafe(no_mangle)] pub extern "C" fn peer_name() -> *const c_char { c"by heart".as_ptr() }
+#[unsafe(no_mangle)] pub extern "C" fn peer_open(_: *const c_char, floating: c_int, _: f64, _: f64, gz: f64) -> *mut c_void {
+    if floating != 0 { std::ptr::null_mut() } else { Box::into_raw(Box::new(-gz)).cast() }
+}
+#[unsafe(no_mangle)] pub unsafe extern "C" fn peer_close(h: *mut c_void) { drop(unsafe { Box::from_raw(h.cast::<f64>()) }) }
+#[unsafe(no_mangle)] pub extern "C" fn peer_nq(_: *mut c_void) -> c_int { 1 }
+#[unsafe(no_mangle)] pub extern "C" fn peer_nv(_: *mut c_void) -> c_int { 1 }
+#[unsafe(no_mangle)] pub extern "C" fn peer_joint_count(_: *mut c_void) -> c_int { 1 }
+#[unsafe(no_mangle)] pub extern "C" fn peer_joint_name(_: *mut c_void, _: c_int) -> *const c_char { c"swing".as_ptr() }
+#[unsafe(no_mangle)] pub extern "C" fn peer_joint_iq(_: *mut c_void, _: c_int) -> c_int { 0 }
+#[unsafe(no_mangle)] pub extern "C" fn peer_joint_iv(_: *mut c_void, _: c_int) -> c_int { 0 }
+#[unsafe(no_mangle)] pub extern "C" fn peer_joint_nq(_: *mut c_void, _: c_int) -> c_int { 1 }
+#[unsafe(no_mangle)] pub extern "C" fn peer_joint_nv(_: *mut c_void, _: c_int) -> c_int { 1 }
+#[unsafe(no_mangle)] pub unsafe extern "C" fn peer_gravity_torque(h: *mut c_void, q: *const f64, tau: *mut f64) {
+    unsafe { *tau = *h.cast::<f64>() * (*q).sin() + WRONG }
+}
+"#;
+
+fn peer(wrong: &str) -> File {
+    let source = File::new("peer.rs", PEER.replace("WRONG", wrong).as_bytes());
+    let library = File::new("libpeer.so", b"");
+    let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+    let words = ["--edition", "2024", "--crate-type", "cdylib", "-o", library.name(), source.name()];
+    assert!(Command::new(rustc).args(words).status().unwrap().success());
+    library
+}
+
+#[test]
+fn a_peer_is_timed_and_must_agree() {
+    let right = peer("0.0");
+    let words =
+        ["compare", "simple_pendulum", "--format", "json", "--functions", "gravity_torque,inverse_dynamics", "--peer", right.name()];
+    let ended = run(&[&words[..], &SMALL[..]].concat());
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let json = ended.json();
+    let peers = |f: usize| json["functions"][f]["peers"].as_array().unwrap();
+    assert_eq!((peers(0).len(), peers(1).len()), (1, 0));
+    assert_eq!(peers(0)[0]["peer"], "by heart");
+    assert!(peers(0)[0]["largest_difference"].as_f64().unwrap() < 1e-12);
+    assert!(peers(0)[0]["generated_over_peer"]["median"].as_f64().unwrap() > 0.0);
+    let wrong = peer("1e-6");
+    let words = ["compare", "simple_pendulum", "--functions", "gravity_torque", "--peer", wrong.name()];
+    let ended = run(&[&words[..], &SMALL[..]].concat());
+    assert_eq!(ended.status, 4, "{}", ended.err);
+    assert!(ended.err.contains("by heart"), "{}", ended.err);
+}
+
+#[test]
+fn a_peer_with_other_joints_is_left_out_with_a_note() {
+    let library = peer("0.0");
+    let manifest = serde_json::json!([{"name": "one", "path": library.name()}, {"name": "two", "path": "/no/such/library.so"}]);
+    let manifest = File::new("peers.json", manifest.to_string().as_bytes());
+    let words = ["compare", "double_pendulum", "--functions", "gravity_torque", "--peers-manifest", manifest.name()];
+    let ended = run(&[&words[..], &SMALL[..]].concat());
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    assert!(ended.out.contains("note: peer one is left out: it has 1 joints"), "{}", ended.out);
+    assert!(ended.out.contains("note: peer two is left out"), "{}", ended.out);
+    let broken = File::new("peers.json", b"{");
+    assert_eq!(run(&["compare", "double_pendulum", "--peers-manifest", broken.name()]).status, 1);
+}

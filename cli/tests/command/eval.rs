@@ -1,0 +1,92 @@
+use super::{File, articulated, end, run, run_with};
+
+const STATES: &str = r#"{"states": [{"q": [0.3], "v": [0.7], "a": {"swing": -1}}, {"q": {"swing": 2}, "v": [0], "a": [0]}]}"#;
+
+#[test]
+fn the_pendulum_is_its_closed_form_in_both_ways() {
+    let file = File::new("states.json", STATES.as_bytes());
+    let words = ["eval", "simple_pendulum", "--function", "inverse_dynamics,gravity_torque", "--states", file.name(), "--format", "json"];
+    let ended = run(&words);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let json = ended.json();
+    let inverse = &json["functions"][0];
+    let tau = |state: usize, side: &str| inverse["states"][state][side]["swing"].as_f64().unwrap();
+    for (state, q, a) in [(0, 0.3_f64, -1.0), (1, 2.0, 0.0)] {
+        // m = 1 kg, l = 1 m, inertia 0.001 kg·m²: see the file
+        let expected = 9.81 * q.sin() + a * inertia();
+        assert!((tau(state, "generic") - expected).abs() < 1e-12, "{} {expected}", tau(state, "generic"));
+        assert!((tau(state, "generated") - expected).abs() < 1e-12);
+    }
+    assert!(inverse["largest_difference"]["in_units_of_roundoff"].as_f64().unwrap() < 4.0);
+    assert_eq!(json["functions"][1]["function"], "gravity_torque");
+}
+
+/// About the joint's axis: what a unit of acceleration costs at rest.
+fn inertia() -> f64 {
+    let torque = |a: f64| {
+        let states = format!(r#"[{{"q": [0], "v": [0], "a": [{a}]}}]"#);
+        let words = ["eval", "simple_pendulum", "--function", "inverse_dynamics", "--states", "-", "--generic", "--format", "json"];
+        run_with(&words, states.as_bytes()).json()["functions"][0]["states"][0]["generic"]["swing"].as_f64().unwrap()
+    };
+    torque(1.0) - torque(0.0)
+}
+
+#[test]
+fn a_table_and_a_tree_of_states_give_the_same() {
+    let functions = ["--function", "bias_forces,placements", "--generic", "--format", "json"];
+    let json = br#"[{"q": {"cart": 0.1, "pole": 0.2}, "v": {"cart": 0.3, "pole": 0.4}}]"#;
+    let names = joint_names("cart_pole");
+    let json = String::from_utf8(json.to_vec()).unwrap().replace("cart", &names[0]).replace("pole", &names[1]);
+    let csv = format!("v.{1},v.{0},q.{0},q.{1}\n0.4,0.3,0.1,0.2\n", names[0], names[1]);
+    let result = |text: &str| run_with(&[&["eval", "cart_pole", "--states", "-"], &functions[..]].concat(), text.as_bytes()).json();
+    assert_eq!(result(&json)["functions"], result(&csv)["functions"]);
+    assert!(result(&json)["functions"][1]["states"][0]["generic"].as_object().unwrap().len() >= 3);
+}
+
+fn joint_names(robot: &str) -> Vec<String> {
+    let json = run(&["check", robot, "--format", "json"]).json();
+    json["joints"].as_array().unwrap().iter().map(|j| j["joint"].as_str().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn mistakes_name_the_state_and_the_joint() {
+    let cases = [
+        (r#"[{"q": [0.1]}]"#, "states[0]: v: found nothing"),
+        (r#"[{"q": [0.1], "v": [1], "a": [1]}, {"q": [0.1, 0.2], "v": [1], "a": [1]}]"#, "states[1]: q: found 2 numbers, expected 1"),
+        (r#"[{"q": {"swimg": 1}, "v": [1], "a": [1]}]"#, "did you mean \"swing\"?"),
+        ("q.swing,v.swing,a.swing\n0,inf,0\n", "line 2: v: joint \"swing\": found inf"),
+        ("", "no state"),
+    ];
+    for (text, message) in cases {
+        let ended = run_with(&["eval", "simple_pendulum", "--function", "inverse_dynamics", "--states", "-"], text.as_bytes());
+        assert_eq!(ended.status, 1);
+        assert!(ended.err.contains(message) && ended.err.lines().all(|l| l.starts_with("error")), "{}", ended.err);
+    }
+    assert_eq!(run(&["eval", "simple_pendulum", "--function", "inverse_dynamics", "--states", "/no/such/file"]).status, 1);
+}
+
+#[test]
+fn without_a_compiler_there_are_generic_results() {
+    let words = ["eval", "simple_pendulum", "--function", "gravity_torque", "--states", "-"];
+    let without = |words: &[&str]| {
+        let mut command = articulated(words);
+        command.env("RUSTC", "/no/such/compiler");
+        end(command, br#"[{"q": [1]}]"#)
+    };
+    let ended = without(&words);
+    assert_eq!(ended.status, 0);
+    assert!(ended.err.contains("warning: no Rust compiler") && ended.out.contains("swing"), "{}", ended.err);
+    assert_eq!(without(&[&words[..], &["--generated"]].concat()).status, 3);
+    assert_eq!(without(&[&words[..], &["--generic"]].concat()).err, "");
+}
+
+#[test]
+fn a_floating_base_has_named_parts() {
+    let mut q = vec![0.1; 19];
+    q[3..7].copy_from_slice(&[0.0, 0.6, 0.0, 0.800_000_01]);
+    let states = serde_json::json!([{"q": q, "v": vec![0.5; 18], "a": vec![-0.5; 18]}]).to_string();
+    let ended = run_with(&["eval", "quadruped", "--function", "inverse_dynamics", "--states", "-"], states.as_bytes());
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    assert!(ended.err.contains("warning") && ended.err.contains("normalised"), "{}", ended.err);
+    assert!(ended.out.contains("__floating_base__[5]") && ended.out.contains("largest difference"));
+}

@@ -1,0 +1,46 @@
+use articulated_codegen::{Request, generate};
+
+use super::{File, run};
+
+#[test]
+fn the_source_is_that_of_the_library() {
+    for name in ["cart_pole", "gripper_arm", "quadruped"] {
+        let robot = articulated_models::robot(name).unwrap();
+        let mut request = Request::new(format!("{name}.urdf"), robot.urdf);
+        request.options.base = robot.base;
+        let made = run(&["generate", name]);
+        assert_eq!(made.status, 0);
+        assert!(made.out == generate(&request).unwrap().source, "{name}");
+    }
+}
+
+#[test]
+fn flags_arrive_in_the_request() {
+    let robot = articulated_models::robot("cart_pole").unwrap();
+    let mut request = Request::new("cart_pole.urdf", robot.urdf);
+    request.options.functions = vec!["gravity_torque".into(), "bias_forces".into()];
+    request.options.gravity = [0.0, -1.5, 2.0];
+    request.options.runtime = Some("::articulated".into());
+    let source = generate(&request).unwrap().source;
+    let words =
+        ["generate", "cart_pole", "--functions", "gravity_torque,bias_forces", "--gravity", "0,-1.5,2", "--runtime", "::articulated"];
+    assert!(run(&words).out == source);
+    let file = File::new("out.rs", b"");
+    let written = run(&[&words[..], &["-o", file.name()]].concat());
+    assert_eq!((written.status, written.out.as_str()), (0, ""));
+    assert!(std::fs::read_to_string(&file.path).unwrap() == source);
+    let json = run(&[&words[..], &["--format", "json"]].concat()).json();
+    assert_eq!(json["source"], source);
+    assert_eq!(json["functions"][0]["stages"][0]["stage"], "asked");
+}
+
+#[test]
+fn warnings_are_on_the_other_stream_and_errors_are_status_1() {
+    let made = run(&["generate", "gripper_arm", "--standalone"]);
+    assert!(made.err.lines().all(|l| l.contains("warning")) && !made.err.is_empty(), "{}", made.err);
+    let file = File::new("bad.urdf", b"<robot name='r'/>");
+    let refused = run(&["generate", file.name()]);
+    assert_eq!((refused.status, refused.out.as_str()), (1, ""));
+    assert!(refused.lines_with("error") >= 1);
+    assert_eq!(run(&["generate", "cart_pole", "-o", "/no/such/folder/x.rs"]).status, 1);
+}

@@ -1,0 +1,100 @@
+//! The command as its users run it.
+
+mod check;
+mod compare;
+mod eval;
+mod generate;
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use serde_json::Value;
+
+/// How a command ended.
+struct Ended {
+    status: i32,
+    out: String,
+    err: String,
+}
+
+impl Ended {
+    fn json(&self) -> Value {
+        serde_json::from_str(&self.out).unwrap_or_else(|e| panic!("{e}: {}\n{}", self.out, self.err))
+    }
+
+    /// Lines of either stream that contain the word.
+    fn lines_with(&self, word: &str) -> usize {
+        self.out.lines().chain(self.err.lines()).filter(|l| l.contains(word)).count()
+    }
+}
+
+/// The command with these words.
+fn articulated(words: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_articulated"));
+    command.args(words);
+    command
+}
+
+fn run(words: &[&str]) -> Ended {
+    end(articulated(words), b"")
+}
+
+/// With this on the standard input.
+fn run_with(words: &[&str], input: &[u8]) -> Ended {
+    end(articulated(words), input)
+}
+
+fn end(mut command: Command, input: &[u8]) -> Ended {
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    // A command that does not read has closed its end.
+    let _ = child.stdin.take().unwrap().write_all(input);
+    let output = child.wait_with_output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    Ended { status: output.status.code().expect("no signal ends the command"), out: text(output.stdout), err: text(output.stderr) }
+}
+
+/// A file with this content, in a folder of its own.
+struct File {
+    path: PathBuf,
+    _folder: tempfile::TempDir,
+}
+
+impl File {
+    fn new(name: &str, content: &[u8]) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        std::fs::write(&path, content).unwrap();
+        Self { path, _folder: folder }
+    }
+
+    fn name(&self) -> &str {
+        self.path.to_str().unwrap()
+    }
+}
+
+#[test]
+fn help_tells_examples_and_statuses() {
+    for command in ["check", "generate", "eval", "compare"] {
+        let help = run(&[command, "--help"]);
+        assert_eq!(help.status, 0);
+        assert!(help.out.contains(&format!("articulated {command} ")) && help.out.contains("Exit status"), "{}", help.out);
+    }
+    assert!(run(&["--help"]).out.contains("humanoid"));
+}
+
+#[test]
+fn a_wrong_command_line_is_status_2() {
+    let wrong: [&[&str]; 6] = [
+        &[],
+        &["chek"],
+        &["check"],
+        &["check", "panda_like", "--fixed", "--floating"],
+        &["generate", "panda_like", "--functions", "inverse_dynamic"],
+        &["compare", "panda_like", "--repetitions", "3"],
+    ];
+    for words in wrong {
+        assert_eq!(run(words).status, 2, "{words:?}");
+    }
+    assert!(run(wrong[4]).err.contains("did you mean inverse_dynamics?"));
+}
