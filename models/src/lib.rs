@@ -1,5 +1,8 @@
 //! The bundled robots: nine URDF files, written for this project from published figures. Their sources, and what each
 //! of them exercises, stand in the crate's README.
+//!
+//! Two of them are here as generated code too, one in each of the two ways: [`quadruped`] by the macro, [`panda_like`] by the build
+//! script. Any of them can be had by a user's own crate in the same few lines.
 
 use articulated_core::description::Base;
 
@@ -45,9 +48,25 @@ pub fn robot(name: &str) -> Option<&'static Bundled> {
     ROBOTS.iter().find(|r| r.name == name)
 }
 
+/// The seven-axis arm, fixed base, written out by this crate's build script.
+pub mod panda_like {
+    include!(concat!(env!("OUT_DIR"), "/panda_like.rs"));
+}
+
+articulated::robot! {
+    /// The quadruped, floating base, written out by the macro.
+    pub mod quadruped {
+        urdf = "urdf/quadruped.urdf",
+        base = floating,
+        functions = [placements, inverse_dynamics, bias_forces, gravity_torque],
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{ROBOTS, robot};
+    use articulated::Dynamics;
+
+    use super::{ROBOTS, panda_like, quadruped, robot};
 
     #[test]
     fn every_name_finds_its_own_file() {
@@ -57,5 +76,34 @@ mod tests {
             assert!(r.urdf.contains(&format!("<robot name=\"{}\"", r.name)), "{}", r.name);
         }
         assert!(robot("Humanoid").is_none());
+    }
+
+    /// Written once for generated and generic robots: torque that holds the robot where it is, by a function that knows only the trait.
+    fn holding<R: Dynamics>(robot: &R, q: &[f64]) -> Vec<f64> {
+        let (mut ws, n) = (robot.workspace(), robot.shape().nv);
+        let (mut tau, zero) = (vec![0.0; n], vec![0.0; n]);
+        robot.inverse_dynamics(&mut ws, q, &zero, &zero, &mut tau).unwrap();
+        tau
+    }
+
+    #[test]
+    fn both_ways_give_what_the_generic_model_gives() {
+        let model = |name: &str| {
+            let r = robot(name).unwrap();
+            articulated::load_bytes(name, r.urdf.as_bytes(), r.base).unwrap()
+        };
+        let q = [0.1, -0.4, 0.7, -1.9, 0.3, 1.2, -0.5];
+        for (a, b) in holding(&panda_like::Robot, &q).iter().zip(holding(&model("panda_like"), &q)) {
+            assert!((a - b).abs() < 1e-12, "{a} {b}");
+        }
+        let mut q = [0.2; quadruped::NQ];
+        q[3..7].copy_from_slice(&[0.5, -0.5, 0.5, 0.5]);
+        let still = holding(&quadruped::Robot, &q);
+        for (a, b) in still.iter().zip(holding(&model("quadruped"), &q)) {
+            assert!((a - b).abs() < 1e-11, "{a} {b}");
+        }
+        // The base carries the whole weight.
+        let weight = still[3..6].iter().map(|f| f * f).sum::<f64>().sqrt();
+        assert!((weight - 90.0 * 9.81).abs() < 1e-9, "{weight}");
     }
 }
