@@ -1,4 +1,7 @@
 //! Errors against a reference of 96 digits that shares no formula with what it judges.
+//!
+//! A function that the textbook form has is compared with it. The solution of the equations of motion is judged by its backward error
+//! instead: how far the torques that it needs are from those that were given.
 
 use articulated_codegen::Options;
 use articulated_core::Scalar;
@@ -15,6 +18,8 @@ use crate::precise::Big;
 /// The largest error of each, in units of 2⁻⁵³ of the sum of the magnitudes of the terms.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub(super) struct Errors {
+    /// `forward`: of the result; `backward`: of the torques that the result needs.
+    pub(super) kind: &'static str,
     pub(super) generated: f64,
     pub(super) generic: f64,
 }
@@ -32,6 +37,9 @@ impl Reference {
     }
 }
 
+/// The function whose result is judged by its backward error.
+const SOLVE: &str = "forward_dynamics";
+
 /// `None` where the textbook form does not have the function.
 pub(super) fn errors(
     reference: &Reference,
@@ -43,18 +51,37 @@ pub(super) fn errors(
     let generic = Contender::generic(model, function);
     Big::scope(|| {
         let textbook = Textbook::<Big>::new(&reference.description, reference.options.base, reference.options.gravity).ok()?;
-        let mut worst = Errors { generated: 0.0, generic: 0.0 };
+        let kind = if function.name == SOLVE { "backward" } else { "forward" };
+        let mut worst = Errors { kind, generated: 0.0, generic: 0.0 };
         for state in states {
-            let scale = scales(model, function.name, state).ok()?;
             let sides = [generated.call(state), generic.call(state)];
-            let [a, b] = Big::scope(|| {
-                let exact = exact(&textbook, function.name, state)?;
-                Some(sides.map(|found| largest(&exact, &found, &scale)))
-            })?;
-            worst = Errors { generated: worse(worst.generated, a), generic: worse(worst.generic, b) };
+            let judge = |found: &Vec<f64>| match kind {
+                "backward" => backward(&textbook, model, state, found),
+                _ => forward(&textbook, model, function.name, state, found),
+            };
+            let [a, b] = Big::scope(|| sides.each_ref().map(judge));
+            worst = Errors { kind, generated: worse(worst.generated, a?), generic: worse(worst.generic, b?) };
         }
         Some(worst)
     })
+}
+
+/// |found − exact| over the scale of the result.
+fn forward(textbook: &Textbook<Big>, model: &Model<f64>, name: &str, state: &[&[f64]], found: &[f64]) -> Option<f64> {
+    let scale = scales(model, name, state).ok()?;
+    Some(largest(&exact(textbook, name, state)?, found, &scale))
+}
+
+/// η = maxᵢ |ID_exact(q, v, a) − τ|ᵢ / (scale of ID + |τ|)ᵢ, for the state (q, v, τ) and the acceleration that was found.
+fn backward(textbook: &Textbook<Big>, model: &Model<f64>, state: &[&[f64]], a: &[f64]) -> Option<f64> {
+    let &[q, v, tau] = state else { return None };
+    if a.iter().any(|x| !x.is_finite()) {
+        return Some(f64::NAN);
+    }
+    let needed = exact(textbook, "inverse_dynamics", &[q, v, a])?;
+    let scale = scales(model, "inverse_dynamics", &[q, v, a]).ok()?;
+    let scale: Vec<f64> = scale.iter().zip(tau).map(|(s, t)| s + t.abs()).collect();
+    Some(largest(&needed, tau, &scale))
 }
 
 fn exact(textbook: &Textbook<Big>, name: &str, state: &[&[f64]]) -> Option<Vec<Big>> {
@@ -71,4 +98,24 @@ fn largest(exact: &[Big], found: &[f64], scale: &[f64]) -> f64 {
 /// The larger, and not a number if either is not.
 fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || a >= b { a } else { b }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_acceleration_is_judged_by_the_torques_it_needs() {
+        let robot = articulated_models::robot("simple_pendulum").unwrap();
+        let description = articulated_urdf::read(robot.urdf.as_bytes(), &articulated_urdf::Options::default()).unwrap().description;
+        let model = Model::new(&description, robot.base).unwrap();
+        let textbook = Textbook::<Big>::new(&description, robot.base, [0.0, 0.0, -9.81]).unwrap();
+        // 1.001 kg·m² · a + 9.81 N·m · sin q = τ
+        let (q, tau) = (0.5_f64, 3.0);
+        let a = (tau - 9.81 * q.sin()) / 1.001;
+        let error = |a: f64| backward(&textbook, &model, &[&[q], &[0.0], &[tau]], &[a]).unwrap();
+        assert!(error(a) < 4.0, "{}", error(a));
+        assert!(error(a * (1.0 + 1e-10)) > 1e4);
+        assert!(error(f64::NAN).is_nan());
+    }
 }

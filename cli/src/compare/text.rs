@@ -145,11 +145,11 @@ fn errors(report: &Report) -> Table {
         ("generated", "units".into()),
         ("generic", "units".into()),
         ("bound", "units".into()),
-        ("reference", bits),
+        ("against", bits),
     ]);
     for f in &report.functions {
         let row = match f.errors {
-            Some(e) => [format!("{:.2}", e.generated), format!("{:.2}", e.generic), format!("{}", report.bound), "textbook".into()],
+            Some(e) => [format!("{:.2}", e.generated), format!("{:.2}", e.generic), format!("{}", report.bound), e.kind.into()],
             None => ["–".into(), "–".into(), "–".into(), "none yet".into()],
         };
         table.row(std::iter::once(f.function.clone()).chain(row));
