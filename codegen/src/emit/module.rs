@@ -32,7 +32,8 @@ pub(crate) fn module(
         out += FMA;
     }
     if programs.iter().any(|(_, g)| has_batch(g)) {
-        let _ = writeln!(out, "#[allow(unreachable_pub, clippy::all, clippy::pedantic)]\nmod trig {{\n{}}}\n", articulated_core::trig::SOURCE);
+        let _ =
+            writeln!(out, "#[allow(unreachable_pub, clippy::all, clippy::pedantic)]\nmod trig {{\n{}}}\n", articulated_core::trig::SOURCE);
     }
     robot(&mut out, request, programs);
     out

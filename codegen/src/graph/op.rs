@@ -39,6 +39,7 @@ pub enum Op {
 }
 
 /// What the generator knows of an operation.
+#[derive(Clone, Copy, Debug)]
 pub struct Row {
     /// The operation; its place in [`OPS`] is its number.
     pub op: Op,

@@ -93,6 +93,9 @@ impl ResultKind {
     }
 }
 
+/// An algorithm as the table holds it: arguments in the order of `takes`, lengths checked.
+type Run<S> = fn(&Model<S>, &mut Workspace<S>, &[&[S]], &mut [S]);
+
 /// One row: a function that any robot can have.
 pub struct Function<S: 'static> {
     /// Its name everywhere: in Rust, in scenes, on the command line.
@@ -105,7 +108,7 @@ pub struct Function<S: 'static> {
     pub takes: &'static [Argument],
     /// What it gives.
     pub gives: ResultKind,
-    run: fn(&Model<S>, &mut Workspace<S>, &[&[S]], &mut [S]),
+    run: Run<S>,
 }
 
 /// Why a function could not be called.

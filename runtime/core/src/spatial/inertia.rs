@@ -66,6 +66,7 @@ impl<S: Scalar> SpatialInertia<S> {
     }
 
     /// The same inertia in another scalar.
+    #[cfg(feature = "alloc")]
     pub(crate) fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> SpatialInertia<T> {
         SpatialInertia { mass: f(self.mass), first: self.first.map(f), second: self.second.map(f) }
     }

@@ -40,6 +40,7 @@ impl<S: Scalar> Placement<S> {
     }
 
     /// The same placement in another scalar.
+    #[cfg(feature = "alloc")]
     pub(crate) fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> Placement<T> {
         Placement { rotation: self.rotation.map(f), position: self.position.map(f) }
     }

@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# Everything that has to hold before a change lands: formatting, lints, tests, documentation, fixtures made anew by the oracles, and the
+# README's main command. Needs git, a Rust toolchain and Python 3; whatever else it needs it installs into .venv and target.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+step() {
+    local start=$SECONDS
+    printf '\n== %s\n' "$*"
+    "$@"
+    printf '== ok, %d s\n' $((SECONDS - start))
+}
+
+ensure() { # a component of the toolchain that a minimal installation may lack
+    cargo "$1" --version >/dev/null 2>&1 || rustup component add "$2"
+}
+
+no_std() { # core on its own: without std, and without allocation
+    cargo check --quiet -p articulated-core --no-default-features
+    cargo check --quiet -p articulated-core --no-default-features --features alloc
+}
+
+documentation() {
+    RUSTDOCFLAGS="-D warnings" cargo doc --quiet --workspace --no-deps
+}
+
+readme_command() {
+    cargo run --quiet --release -p articulated-cli -- compare panda_like --repetitions 31
+}
+
+ensure fmt rustfmt
+ensure clippy clippy
+
+step cargo fmt --all --check
+step cargo clippy --quiet --workspace --all-targets -- -D warnings
+step no_std
+step cargo test --workspace
+step documentation
+step python3 models/urdf/generate.py --check
+step python3 tests/oracles/make.py --check
+step readme_command
+printf '\nall checks passed in %d s\n' $SECONDS
