@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
         Format::Json => json(&generated),
     };
     match &arguments.output {
-        None => console::print(&text),
+        None => console::print(&text)?,
         Some(path) => std::fs::write(path, text).map_err(|e| Failure::input([format!("{}: {e}", path.display())]))?,
     }
     Ok(())

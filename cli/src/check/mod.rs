@@ -19,7 +19,7 @@ pub(crate) fn run(arguments: &CheckArguments, format: Format) -> Result<u8, Fail
     console::print(&match format {
         Format::Text => text::text(&report),
         Format::Json => crate::json(&report),
-    });
+    })?;
     Ok(if report.usable { crate::failure::OK } else { crate::failure::INPUT })
 }
 

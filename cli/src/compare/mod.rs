@@ -65,7 +65,7 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
     console::print(&match format {
         Format::Text => text::text(&report),
         Format::Json => crate::json(&report),
-    });
+    })?;
     match report.exceeded(arguments.bound, PEER_BOUND) {
         None => Ok(OK),
         Some(line) => Err(Failure::bound(line)),

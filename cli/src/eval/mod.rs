@@ -36,7 +36,7 @@ pub(crate) fn run(arguments: &EvalArguments, format: Format) -> Result<u8, Failu
     console::print(&match format {
         Format::Text => text::text(&report, &model),
         Format::Json => crate::json(&report.json(&model)),
-    });
+    })?;
     match report.functions.iter().find(|f| f.exceeded()) {
         None => Ok(OK),
         Some(f) => Err(Failure::bound(format!("{}: generic and generated results differ by more than {BOUND} units", f.function.name))),

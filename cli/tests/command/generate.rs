@@ -44,3 +44,11 @@ fn warnings_are_on_the_other_stream_and_errors_are_status_1() {
     assert!(refused.lines_with("error") >= 1);
     assert_eq!(run(&["generate", "cart_pole", "-o", "/no/such/folder/x.rs"]).status, 1);
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn output_that_cannot_be_written_is_not_success() {
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let status = super::articulated(&["generate", "cart_pole"]).stdout(full).stderr(std::process::Stdio::null()).status().unwrap();
+    assert_eq!(status.code(), Some(1));
+}
