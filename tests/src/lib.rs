@@ -1,1 +1,17 @@
-//! tests
+//! What the tests of the workspace share.
+//!
+//! Laws need three things: robots that nobody thought of ([`random_tree`]), a right answer that shares no formula with what is
+//! tested ([`virtual_power`], and the textbook form in big floats), and a yardstick for rounding errors ([`measure`]). Generated code is
+//! compiled and run as a user's program would be ([`program`]). The laws themselves are in `tests/`.
+
+pub mod case;
+pub mod fixture;
+pub mod golden;
+pub mod jet;
+pub mod measure;
+pub mod program;
+pub mod random;
+pub mod random_tree;
+pub mod rigid;
+pub mod urdf_text;
+pub mod virtual_power;

@@ -1,0 +1,181 @@
+//! A robot under test, its states, and loops over many of them.
+
+use articulated_core::algorithm::{Argument, Function, Workspace, function};
+use articulated_core::description::{Base, Description};
+use articulated_core::joint::Joint;
+use articulated_core::model::{GRAVITY, Model};
+use articulated_core::{Scalar, algorithm::textbook::Textbook};
+
+use crate::random::Random;
+use crate::random_tree::{Flavour, random_tree};
+use crate::virtual_power::Motions;
+
+/// A robot with its base and gravity.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// What it is called in messages.
+    pub name: String,
+    /// As the file has it.
+    pub description: Description,
+    /// Fixed or floating.
+    pub base: Base,
+    /// Gravity in the base frame, m/s².
+    pub gravity: [f64; 3],
+    /// The generic model, before model passes.
+    pub model: Model<f64>,
+}
+
+/// One motion.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// [nq].
+    pub q: Vec<f64>,
+    /// [nv].
+    pub v: Vec<f64>,
+    /// [nv].
+    pub a: Vec<f64>,
+}
+
+impl State {
+    /// The vector of an argument; for one that this type does not know, a vector as long.
+    pub fn argument<'a>(&'a self, argument: &Argument, other: &'a [f64]) -> &'a [f64] {
+        match argument.name() {
+            "q" => &self.q,
+            "v" => &self.v,
+            "a" => &self.a,
+            _ => other,
+        }
+    }
+
+    /// q, v, a in another scalar.
+    pub fn cast<S: Scalar>(&self) -> [Vec<S>; 3] {
+        [&self.q, &self.v, &self.a].map(|x| cast(x))
+    }
+}
+
+/// Numbers in another scalar.
+pub fn cast<S: Scalar>(x: &[f64]) -> Vec<S> {
+    x.iter().map(|&c| S::from_f64(c)).collect()
+}
+
+impl Case {
+    /// Of a description that is a model, with standard gravity.
+    pub fn new(name: impl Into<String>, description: Description, base: Base) -> Self {
+        let model = Model::new(&description, base).expect("a tree of known joints");
+        Self { name: name.into(), description, base, gravity: GRAVITY, model }
+    }
+
+    /// Under another gravity, m/s².
+    #[must_use]
+    pub fn with_gravity(mut self, gravity: [f64; 3]) -> Self {
+        self.model = self.model.with_gravity(gravity);
+        Self { gravity, ..self }
+    }
+
+    /// A bundled robot, with the base it is meant to have.
+    pub fn bundled(robot: &articulated_models::Bundled) -> Self {
+        Self::new(robot.name, read(robot.urdf), robot.base)
+    }
+
+    /// The textbook form in any scalar.
+    pub fn textbook<S: Scalar>(&self) -> Textbook<S> {
+        Textbook::new(&self.description, self.base, self.gravity).expect("it is a model")
+    }
+
+    /// The robot as placements in motion.
+    pub fn motions(&self) -> Motions<'_> {
+        Motions::new(&self.description, self.base, self.gravity)
+    }
+
+    /// A state at random: angles in ±π, lengths in ±1 m, rates and accelerations in ±2.
+    pub fn state(&self, random: &mut Random) -> State {
+        let mut q = random.vector(self.model.nq, -std::f64::consts::PI, std::f64::consts::PI);
+        for body in self.model.bodies.iter().skip(1).filter(|b| b.coordinates.mimic.is_none()) {
+            let at = body.coordinates.q;
+            match body.joint {
+                Joint::Revolute => {}
+                Joint::Prismatic => q[at] /= std::f64::consts::PI,
+                Joint::Floating => q[at + 3..at + 7].copy_from_slice(&random.unit::<4>()),
+            }
+        }
+        let v = random.vector(self.model.nv, -2.0, 2.0);
+        let a = random.vector(self.model.nv, -2.0, 2.0);
+        State { q, v, a }
+    }
+
+    /// τ of the generic library.
+    pub fn inverse_dynamics(&self, state: &State) -> Vec<f64> {
+        inverse_dynamics(&self.model, &state.q, &state.v, &state.a)
+    }
+
+    /// A function of the registry on the generic library.
+    pub fn call<S: Scalar>(&self, name: &str, arguments: &[&[S]]) -> Vec<S> {
+        let model = self.model.cast::<S>();
+        let row: &Function<S> = function(name).expect("a function of the registry");
+        let mut out = vec![S::zero(); row.gives.len(model.shape())];
+        row.call(&model, &mut Workspace::new(&model), arguments, &mut out).expect("arguments of the right lengths");
+        out
+    }
+}
+
+/// τ of the generic library, for any model.
+pub fn inverse_dynamics<S: Scalar>(model: &Model<S>, q: &[S], v: &[S], a: &[S]) -> Vec<S> {
+    let mut tau = vec![S::zero(); model.nv];
+    articulated_core::algorithm::inverse_dynamics(model, &mut Workspace::new(model), q, v, a, &mut tau);
+    tau
+}
+
+/// Placements of the generic library, for any model.
+pub fn placements<S: Scalar>(model: &Model<S>, q: &[S]) -> Vec<S> {
+    let mut out = vec![S::zero(); 12 * model.frames.len()];
+    articulated_core::algorithm::placements(model, &mut Workspace::new(model), q, &mut out);
+    out
+}
+
+/// The mass matrix, column by column from inverse dynamics without gravity and rates.
+pub fn mass_matrix(model: &Model<f64>, q: &[f64]) -> nalgebra::DMatrix<f64> {
+    let still = model.clone().with_gravity([0.0; 3]);
+    let zero = vec![0.0; model.nv];
+    let column = |k: usize| {
+        let mut unit = zero.clone();
+        unit[k] = 1.0;
+        nalgebra::DVector::from_vec(inverse_dynamics(&still, q, &zero, &unit))
+    };
+    let columns: Vec<_> = (0..model.nv).map(column).collect();
+    if columns.is_empty() { nalgebra::DMatrix::zeros(0, 0) } else { nalgebra::DMatrix::from_columns(&columns) }
+}
+
+/// The description in a URDF that is known to be right.
+pub fn read(urdf: &str) -> Description {
+    articulated_urdf::read(urdf.as_bytes(), &articulated_urdf::Options::default()).expect("a sound URDF").description
+}
+
+/// Says which tree it was when the test fails.
+struct Announce<'a>(&'a str);
+
+impl Drop for Announce<'_> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            eprintln!("on {}", self.0);
+        }
+    }
+}
+
+/// Runs a law on trees at random, each on a fixed and on a floating base. If it fails, the seed is printed.
+pub fn for_each_tree(count: u64, flavour: Flavour, law: impl Fn(&Case, &mut Random)) {
+    for seed in 0..count {
+        for base in [Base::Fixed, Base::Floating] {
+            let name = format!("random_tree({seed}, {flavour:?}), base {base:?}");
+            let _announce = Announce(&name);
+            law(&Case::new(name.clone(), random_tree(seed, flavour), base), &mut Random::new(seed));
+        }
+    }
+}
+
+/// Runs a law on all bundled robots.
+pub fn for_each_bundled(law: impl Fn(&Case, &mut Random)) {
+    for robot in articulated_models::ROBOTS {
+        let _announce = Announce(robot.name);
+        law(&Case::bundled(robot), &mut Random::new(1));
+    }
+}

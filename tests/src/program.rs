@@ -1,0 +1,117 @@
+//! Generated modules as a program: compiled by the user's compiler, fed with states, and asked for results.
+
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use articulated_codegen::Generated;
+use articulated_core::algorithm::function;
+
+/// Several robots' generated modules, compiled as one program.
+#[derive(Debug)]
+pub struct Program {
+    file: PathBuf,
+    /// How long the compiler took.
+    pub time: Duration,
+    _folder: tempfile::TempDir,
+}
+
+impl Program {
+    /// Compiles; `flags` go to the compiler, and a warning is an error. The modules must be generated without a runtime crate and their names must be identifiers.
+    ///
+    /// # Panics
+    /// If the compiler refuses the program: its message is printed.
+    pub fn build(robots: &[(&str, &Generated)], flags: &[&str]) -> Self {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("a folder that can be written");
+        for (name, generated) in robots {
+            write(&format!("{name}.rs"), &generated.source);
+        }
+        write("main.rs", &main(robots));
+        let file = folder.path().join(format!("program{}", std::env::consts::EXE_SUFFIX));
+        let start = Instant::now();
+        let compiler = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
+        let mut command = Command::new(compiler);
+        command.args(["--edition", "2024", "--crate-name", "program"]).args(flags);
+        let answer = command.arg("-o").arg(&file).arg(folder.path().join("main.rs")).output().expect("a Rust compiler");
+        assert!(answer.status.success(), "refused: {}", String::from_utf8_lossy(&answer.stderr));
+        Self { file, time: start.elapsed(), _folder: folder }
+    }
+
+    /// Results of one function for many states: each a list of arguments in the registry's order.
+    ///
+    /// # Panics
+    /// If the program fails, as it would on a panic in generated code.
+    pub fn run(&self, robot: &str, function: &str, states: &[Vec<&[f64]>]) -> Vec<Vec<f64>> {
+        let mut child = Command::new(&self.file)
+            .args([robot, function, &states.len().to_string()])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("the program that was compiled");
+        let input: Vec<u8> = states.iter().flatten().copied().flatten().flat_map(|x| x.to_le_bytes()).collect();
+        // The program reads all before it writes anything.
+        child.stdin.take().expect("a pipe").write_all(&input).expect("a program that reads");
+        let output = child.wait_with_output().expect("a program that ends");
+        assert!(output.status.success(), "{robot}::{function} failed");
+        let number = |bytes: &[u8]| f64::from_le_bytes(bytes.try_into().expect("eight bytes"));
+        let numbers: Vec<f64> = output.stdout.chunks_exact(8).map(number).collect();
+        let each = numbers.len() / states.len();
+        (0..states.len()).map(|k| numbers[k * each..(k + 1) * each].to_vec()).collect()
+    }
+}
+
+const HEAD: &str = "\
+#![allow(dead_code)]
+#![deny(warnings)]
+use std::io::{Read, Write};
+
+fn take<const N: usize>(x: &mut &[f64]) -> [f64; N] {
+    let (head, rest) = x.split_at(N);
+    *x = rest;
+    head.try_into().unwrap()
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().collect();
+    let mut bytes = Vec::new();
+    std::io::stdin().read_to_end(&mut bytes).unwrap();
+    let numbers: Vec<f64> = bytes.chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap())).collect();
+    let mut x = &numbers[..];
+    let mut out: Vec<f64> = Vec::new();
+    for _ in 0..arguments[3].parse::<usize>().unwrap() {
+        match (arguments[1].as_str(), arguments[2].as_str()) {
+";
+
+const TAIL: &str = "\
+            _ => panic!(\"no such function\"),
+        }
+    }
+    let bytes: Vec<u8> = out.iter().flat_map(|y| y.to_le_bytes()).collect();
+    std::io::stdout().write_all(&bytes).unwrap();
+}
+";
+
+fn main(robots: &[(&str, &Generated)]) -> String {
+    let mut out = HEAD.to_owned();
+    for (robot, generated) in robots {
+        for name in generated.ledger.functions.iter().map(|e| &e.function) {
+            let row = function::<f64>(name).expect("a function of the registry");
+            let arguments = vec!["&take(&mut x)"; row.takes.len()].join(", ");
+            let flat = if generated_rows(name) { ".as_flattened()" } else { "" };
+            let _ = writeln!(out, "            ({robot:?}, {name:?}) => out.extend({robot}::{name}({arguments}){flat}),");
+        }
+    }
+    out += TAIL;
+    for (robot, _) in robots {
+        let _ = writeln!(out, "mod {robot};");
+    }
+    out
+}
+
+/// Whether the function gives an array of arrays.
+fn generated_rows(name: &str) -> bool {
+    name == "placements"
+}

@@ -1,0 +1,181 @@
+//! Robots at random: trees that nobody thought of, of everything that a description can say.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use articulated_core::description::{Description, Inertial, Joint, JointKind, Limit, Link, Mimic, Origin};
+
+use crate::random::Random;
+
+/// What may occur in a tree.
+#[derive(Clone, Copy, Debug)]
+pub struct Flavour {
+    /// Links without mass, and point masses: the mass matrix may be singular.
+    pub massless: bool,
+    /// Joints that follow others.
+    pub mimic: bool,
+    /// Floating joints inside the tree.
+    pub floating: bool,
+    /// Fixed joints.
+    pub fixed: bool,
+    /// Greatest number of links.
+    pub links: usize,
+}
+
+impl Flavour {
+    /// Everything.
+    pub const ANY: Self = Self { massless: true, mimic: true, floating: true, fixed: true, links: 12 };
+    /// Every link has a body's inertia, so that the mass matrix is positive definite.
+    pub const REGULAR: Self = Self { massless: false, ..Self::ANY };
+}
+
+/// The tree of a seed. Its joints and links are listed in an order of their own, children before parents too.
+pub fn random_tree(seed: u64, flavour: Flavour) -> Description {
+    let random = &mut Random::new(seed);
+    let links = 1 + random.below(flavour.links);
+    let chain = random.chance(0.3);
+    let mut description = Description { name: format!("tree_{seed}"), ..Description::default() };
+    description.links = (0..links).map(|k| Link { name: format!("link_{k}"), inertial: inertial(random, flavour) }).collect();
+    description.joints = (1..links)
+        .map(|child| {
+            let parent = if chain { child - 1 } else { child - 1 - random.below(child.min(3)) };
+            joint(random, flavour, parent, child)
+        })
+        .collect();
+    if flavour.mimic {
+        follow(random, &mut description.joints);
+    }
+    shuffled(random, &description)
+}
+
+fn joint(random: &mut Random, flavour: Flavour, parent: usize, child: usize) -> Joint {
+    use JointKind::{Continuous, Fixed, Floating, Prismatic, Revolute};
+    let mut kinds = vec![Revolute, Revolute, Continuous, Prismatic];
+    kinds.extend(flavour.fixed.then_some(Fixed));
+    kinds.extend((flavour.floating && random.chance(0.4)).then_some(Floating));
+    let kind = *random.choose(&kinds);
+    Joint {
+        name: format!("joint_{child}"),
+        kind,
+        parent,
+        child,
+        origin: origin(random, 0.6),
+        axis: if matches!(kind, Fixed | Floating) { [1.0, 0.0, 0.0] } else { axis(random) },
+        mimic: None,
+        limit: matches!(kind, Revolute | Prismatic).then_some(Limit { lower: -2.5, upper: 2.5, effort: 100.0, velocity: 10.0 }),
+        dynamics: None,
+    }
+}
+
+/// Coordinate axes of both signs, tilted ones, and any length.
+fn axis(random: &mut Random) -> [f64; 3] {
+    let length = *random.choose(&[1.0, 1.0, 1.0, 2.0, 0.37, 1e-3]);
+    let direction = if random.chance(0.6) {
+        let mut e = [0.0; 3];
+        e[random.below(3)] = if random.chance(0.5) { 1.0 } else { -1.0 };
+        e
+    } else if random.chance(0.3) {
+        let h = std::f64::consts::FRAC_1_SQRT_2;
+        *random.choose(&[[h, h, 0.0], [0.0, -h, h], [-h, 0.0, h]])
+    } else {
+        random.unit()
+    };
+    direction.map(|x| x * length + 0.0)
+}
+
+/// Sparse or dense; angles right, nearly right, or any.
+fn origin(random: &mut Random, reach: f64) -> Origin {
+    let sparse = random.chance(0.5);
+    let xyz = random.three(reach).map(|x| if sparse && random.chance(0.6) { 0.0 } else { x });
+    Origin { xyz, rpy: rpy(random) }
+}
+
+/// Right angles as people write them, and none.
+#[allow(clippy::approx_constant)]
+// Why: the approximation is the point.
+const NEARLY_RIGHT: [f64; 6] = [0.0, 0.0, 1.5708, -1.5708, 3.14159, 1.57079632679];
+
+fn rpy(random: &mut Random) -> [f64; 3] {
+    match random.below(6) {
+        0 | 1 => [0.0; 3],
+        2 => [(); 3].map(|()| FRAC_PI_2 * f64::from(*random.choose(&[-2, -1, 0, 0, 1, 2]))),
+        3 => [(); 3].map(|()| *random.choose(&NEARLY_RIGHT)),
+        4 => [0.0, 0.0, random.within(-PI, PI)],
+        _ => random.three(PI),
+    }
+}
+
+fn inertial(random: &mut Random, flavour: Flavour) -> Option<Inertial> {
+    if flavour.massless && random.chance(0.25) {
+        return None;
+    }
+    let mass = 10.0_f64.powf(random.within(-1.0, 1.0));
+    let inertia = if flavour.massless && random.chance(0.15) { [0.0; 6] } else { inertia(random, mass) };
+    let mut origin = origin(random, 0.3);
+    if random.chance(0.2) {
+        origin.xyz = [0.0; 3];
+    }
+    Some(Inertial { origin, mass, inertia })
+}
+
+/// Of a body that could be: moments of mass along three axes, at right angles or turned.
+fn inertia(random: &mut Random, mass: f64) -> [f64; 6] {
+    let [x, y, z] = [(); 3].map(|()| mass * random.within(0.02, 0.3).powi(2));
+    let (x, y) = if random.chance(0.3) { (x, x) } else { (x, y) };
+    let principal = [y + z, x + z, x + y];
+    if random.chance(0.5) {
+        return [principal[0], 0.0, 0.0, principal[1], 0.0, principal[2]];
+    }
+    // The axes: two directions and what is at right angles to both.
+    let [a, b] = [random.unit::<3>(), random.unit::<3>()];
+    let c = unit(cross(a, b));
+    let axes = [a, cross(c, a), c];
+    let entry = |i: usize, j: usize| (0..3).map(|k| axes[k][i] * principal[k] * axes[k][j]).sum::<f64>();
+    [entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)]
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn unit(a: [f64; 3]) -> [f64; 3] {
+    let norm = a.iter().map(|x| x * x).sum::<f64>().sqrt();
+    a.map(|x| x / norm)
+}
+
+/// Lets some joints follow others; those may follow further ones, but nobody follows himself.
+fn follow(random: &mut Random, joints: &mut [Joint]) {
+    let mut able: Vec<usize> = (0..joints.len()).filter(|&j| !matches!(joints[j].kind, JointKind::Fixed | JointKind::Floating)).collect();
+    random.shuffle(&mut able);
+    // Everyone follows only somebody further on in the shuffled list.
+    for place in 0..able.len().saturating_sub(1) {
+        if random.chance(0.3) {
+            let leader = able[place + 1 + random.below(able.len() - place - 1)];
+            let multiplier = *random.choose(&[-1.0, 1.0, 0.5, -1.7]);
+            let offset = *random.choose(&[0.0, 0.0, 0.3, -1.1]);
+            joints[able[place]].mimic = Some(Mimic { joint: leader, multiplier, offset });
+        }
+    }
+}
+
+/// The same tree with links and joints in another order.
+fn shuffled(random: &mut Random, tree: &Description) -> Description {
+    let mut links: Vec<usize> = (0..tree.links.len()).collect();
+    let mut joints: Vec<usize> = (0..tree.joints.len()).collect();
+    if random.chance(0.5) {
+        random.shuffle(&mut links);
+        random.shuffle(&mut joints);
+    }
+    let new = |order: &[usize], old: usize| order.iter().position(|&o| o == old).expect("a permutation");
+    let moved = |old: &usize| {
+        let mut joint = tree.joints[*old].clone();
+        joint.parent = new(&links, joint.parent);
+        joint.child = new(&links, joint.child);
+        joint.mimic = joint.mimic.map(|m| Mimic { joint: new(&joints, m.joint), ..m });
+        joint
+    };
+    Description {
+        name: tree.name.clone(),
+        links: links.iter().map(|&l| tree.links[l].clone()).collect(),
+        joints: joints.iter().map(moved).collect(),
+    }
+}

@@ -1,0 +1,175 @@
+//! The interface: wrong input is an error, and nothing panics.
+
+use articulated::{Dynamics, FunctionError};
+use articulated_core::algorithm::{Workspace, functions};
+use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, Mimic, Origin};
+use articulated_core::model::{Model, ModelError};
+use articulated_tests::case::{Case, for_each_tree, inverse_dynamics, placements};
+use articulated_tests::measure::arguments;
+use articulated_tests::random_tree::Flavour;
+
+articulated::robot! {
+    /// A robot with one function only.
+    pub(crate) mod pendulum {
+        urdf = "../models/urdf/double_pendulum.urdf",
+        functions = [inverse_dynamics],
+    }
+}
+
+/// Every function of the trait on slices of these lengths: what each says.
+fn answers<D: Dynamics>(robot: &D, nq: usize, nv: usize, frames: usize) -> Vec<Result<(), FunctionError>> {
+    let ws = &mut robot.workspace();
+    let (q, v, mut out, mut rows) = (vec![0.5; nq], vec![0.5; nv], vec![0.0; nv], vec![[0.0; 12]; frames]);
+    vec![
+        robot.inverse_dynamics(ws, &q, &v, &v, &mut out),
+        robot.placements(ws, &q, &mut rows),
+        robot.bias_forces(ws, &q, &v, &mut out),
+        robot.gravity_torque(ws, &q, &mut out),
+    ]
+}
+
+#[test]
+fn a_wrong_length_is_an_error_that_names_the_argument() {
+    let case = Case::bundled(articulated_models::robot("quadruped").unwrap());
+    let shape = case.model.shape();
+    assert!(answers(&case.model, shape.nq, shape.nv, shape.frames).iter().all(Result::is_ok));
+    for wrong in [0, 1, shape.nq - 1, shape.nq + 1] {
+        for answer in answers(&case.model, wrong, shape.nv, shape.frames) {
+            assert_eq!(answer, Err(FunctionError::Length { argument: "q", found: wrong, expected: shape.nq }));
+        }
+    }
+    for wrong in [0, shape.nv - 1, shape.nv + 1] {
+        let said = answers(&case.model, shape.nq, wrong, wrong);
+        assert!(said.iter().all(|a| matches!(a, Err(FunctionError::Length { found, .. }) if *found == wrong)), "{said:?}");
+    }
+}
+
+#[test]
+fn a_generated_robot_says_the_same_and_what_it_lacks() {
+    let good = answers(&pendulum::Robot, 2, 2, 3);
+    assert_eq!(good[0], Ok(()));
+    for (answer, name) in good[1..].iter().zip(["placements", "bias_forces", "gravity_torque"]) {
+        assert_eq!(*answer, Err(FunctionError::NotGenerated { function: name }));
+    }
+    assert_eq!(answers(&pendulum::Robot, 3, 2, 3)[0], Err(FunctionError::Length { argument: "q", found: 3, expected: 2 }));
+    assert_eq!(answers(&pendulum::Robot, 2, 1, 3)[0], Err(FunctionError::Length { argument: "v", found: 1, expected: 2 }));
+    let mut short = [0.0];
+    let answer = pendulum::Robot.inverse_dynamics(&mut (), &[0.0; 2], &[0.0; 2], &[0.0; 2], &mut short);
+    assert_eq!(answer, Err(FunctionError::Length { argument: "tau", found: 1, expected: 2 }));
+}
+
+/// One program over the trait, on a generated robot and on its model.
+#[test]
+fn generated_and_generic_robots_are_the_same_to_code_over_the_trait() {
+    let case = Case::bundled(articulated_models::robot("double_pendulum").unwrap());
+    assert_eq!(Dynamics::shape(&case.model), pendulum::Robot.shape());
+    assert_eq!(Dynamics::name(&case.model), pendulum::Robot.name());
+    let (q, v, a) = ([0.3, -1.2], [0.4, 2.0], [-1.0, 0.1]);
+    let mut generated = [0.0; 2];
+    pendulum::Robot.inverse_dynamics(&mut (), &q, &v, &a, &mut generated).unwrap();
+    for (g, m) in generated.iter().zip(inverse_dynamics(&case.model, &q, &v, &a)) {
+        assert!((g - m).abs() < 1e-14, "{generated:?}");
+    }
+}
+
+#[test]
+fn a_wrong_number_of_arguments_is_an_error() {
+    for_each_tree(5, Flavour::ANY, |case, random| {
+        let state = case.state(random);
+        let ws = &mut Workspace::new(&case.model);
+        for row in functions::<f64>() {
+            let (given, mut out) = (arguments(row.name, &state), vec![0.0; row.gives.len(case.model.shape())]);
+            assert_eq!(row.call(&case.model, ws, &given, &mut out), Ok(()));
+            assert!(row.call(&case.model, ws, &given[1..], &mut out).is_err());
+            assert!(row.call(&case.model, ws, &given, &mut [out, vec![0.0]].concat()).is_err());
+        }
+    });
+}
+
+/// Neither values that are no numbers nor huge ones stop the generic library.
+#[test]
+fn no_value_makes_an_algorithm_panic() {
+    for_each_tree(10, Flavour::ANY, |case, _| {
+        for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e308, -1e-308, 5e-324, -0.0] {
+            let (q, v) = (vec![x; case.model.nq], vec![x; case.model.nv]);
+            inverse_dynamics(&case.model, &q, &v, &v);
+            placements(&case.model, &q);
+        }
+    });
+}
+
+fn link(name: &str) -> Link {
+    Link { name: name.into(), inertial: None }
+}
+
+fn joint(name: &str, kind: JointKind, parent: usize, child: usize) -> Joint {
+    let (origin, axis) = (Origin::default(), [1.0, 0.0, 0.0]);
+    Joint { name: name.into(), kind, parent, child, origin, axis, mimic: None, limit: None, dynamics: None }
+}
+
+fn tree(links: usize, joints: Vec<Joint>) -> Description {
+    Description { name: "odd".into(), links: (0..links).map(|k| link(&format!("l{k}"))).collect(), joints }
+}
+
+#[test]
+fn what_is_not_a_tree_is_an_error() {
+    use JointKind::{Continuous, Planar};
+    let not_a_tree = |d: &Description| matches!(Model::new(d, Base::Fixed), Err(ModelError::NotATree { .. }));
+    assert!(not_a_tree(&tree(0, vec![])), "no link");
+    assert!(not_a_tree(&tree(2, vec![])), "two roots");
+    assert!(not_a_tree(&tree(2, vec![joint("a", Continuous, 0, 1), joint("b", Continuous, 1, 0)])), "a ring");
+    assert!(not_a_tree(&tree(3, vec![joint("a", Continuous, 1, 2), joint("b", Continuous, 2, 1)])), "a ring beside a root");
+    assert!(not_a_tree(&tree(2, vec![joint("a", Continuous, 0, 1), joint("b", Continuous, 0, 1)])), "two ways");
+    assert!(not_a_tree(&tree(1, vec![joint("a", Continuous, 0, 0)])), "a link on itself");
+    assert!(not_a_tree(&tree(1, vec![joint("a", Continuous, 0, 9)])), "a link that is not there");
+    let planar = Model::new(&tree(2, vec![joint("a", Planar, 0, 1)]), Base::Fixed);
+    assert!(matches!(planar, Err(ModelError::UnsupportedJoint { joint, kind: Planar }) if joint == "a"));
+}
+
+#[test]
+fn who_follows_nobody_with_one_coordinate_is_an_error() {
+    use JointKind::{Continuous, Fixed, Floating};
+    let following = |leader: usize, other: Joint| {
+        let mut first = joint("a", Continuous, 0, 1);
+        first.mimic = Some(Mimic { joint: leader, multiplier: 1.0, offset: 0.0 });
+        Model::new(&tree(3, vec![first, other]), Base::Fixed)
+    };
+    let bad = |m: Result<Model, ModelError>| matches!(m, Err(ModelError::BadMimic { joint }) if joint == "a");
+    assert!(bad(following(0, joint("b", Continuous, 1, 2))), "itself");
+    assert!(bad(following(1, joint("b", Fixed, 1, 2))), "a fixed joint");
+    assert!(bad(following(1, joint("b", Floating, 1, 2))), "a floating joint");
+    assert!(bad(following(7, joint("b", Continuous, 1, 2))), "nobody");
+    let mut ring = joint("b", Continuous, 1, 2);
+    ring.mimic = Some(Mimic { joint: 0, multiplier: 1.0, offset: 0.0 });
+    assert!(matches!(following(1, ring), Err(ModelError::BadMimic { .. })), "each other");
+    assert!(following(1, joint("b", Continuous, 1, 2)).is_ok());
+}
+
+/// A link alone has no coordinates on a fixed base, and six on a floating one.
+#[test]
+fn a_single_link_goes_through_everything() {
+    let body = Inertial { origin: Origin::default(), mass: 2.0, inertia: [0.1, 0.0, 0.0, 0.1, 0.0, 0.1] };
+    let one = Description { name: "stone".into(), links: vec![Link { name: "stone".into(), inertial: Some(body) }], joints: vec![] };
+    let fixed = Case::new("stone", one.clone(), Base::Fixed);
+    assert_eq!((fixed.model.nq, fixed.model.nv, fixed.model.frames.len()), (0, 0, 1));
+    assert_eq!(inverse_dynamics(&fixed.model, &[], &[], &[]), Vec::<f64>::new());
+    assert_eq!(placements(&fixed.model, &[]), [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
+    let floating = Case::new("stone", one, Base::Floating);
+    let q = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    assert_eq!(inverse_dynamics(&floating.model, &q, &[0.0; 6], &[0.0; 6]), [0.0, 0.0, 0.0, 0.0, 0.0, 2.0 * 9.81]);
+}
+
+/// Depth costs no stack: a chain of 1000 joints is a model.
+#[test]
+fn a_chain_may_be_long() {
+    let n = 1000;
+    let body = Inertial { origin: Origin::default(), mass: 0.1, inertia: [1e-3, 0.0, 0.0, 1e-3, 0.0, 1e-3] };
+    let mut chain = tree(n + 1, (0..n).map(|k| joint(&format!("j{k}"), JointKind::Continuous, k, k + 1)).collect());
+    chain.links.iter_mut().for_each(|l| l.inertial = Some(body));
+    chain.joints.iter_mut().for_each(|j| j.origin.xyz = [0.0, 0.0, -0.01]);
+    let model = Model::new(&chain, Base::Fixed).unwrap();
+    let zero = vec![0.0; n];
+    assert!(inverse_dynamics(&model, &zero, &zero, &zero).iter().all(|t| t.abs() < 1e-12), "it hangs straight down");
+    assert!((placements(&model, &zero)[12 * n + 11] + 10.0).abs() < 1e-12);
+    assert_eq!(model.massless_joints(), Vec::<usize>::new());
+}

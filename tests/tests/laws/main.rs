@@ -1,0 +1,11 @@
+//! Laws of dynamics, held against the generic library on random trees. Each file is one family of laws.
+
+mod closed_forms;
+mod energy;
+mod equivalence;
+mod interface;
+mod mimic;
+mod random_trees;
+mod reference;
+mod structure;
+mod traps;

@@ -1,0 +1,125 @@
+//! The algorithms against two others that they share no formula with.
+
+use articulated_cli::precise::Big;
+use articulated_core::Scalar;
+use articulated_core::algorithm::textbook::Textbook;
+use articulated_tests::case::{Case, State, cast, for_each_bundled, for_each_tree, placements};
+use articulated_tests::measure::{arguments, distance, distance_from, scale, torque_scale};
+use articulated_tests::random::Random;
+use articulated_tests::random_tree::Flavour;
+
+/// Errors allowed, in units of u times the magnitude of the terms. Seen: 8 on 60 random trees.
+const FEW: f64 = 16.0;
+
+fn textbook_holds(case: &Case, random: &mut Random) {
+    let state = case.state(random);
+    for name in ["placements", "inverse_dynamics", "bias_forces", "gravity_torque"] {
+        let given = arguments(name, &state);
+        let found = case.call::<f64>(name, &given);
+        let far = Big::scope(|| {
+            let precise: Vec<Vec<Big>> = given.iter().map(|x| cast(x)).collect();
+            let precise: Vec<&[Big]> = precise.iter().map(Vec::as_slice).collect();
+            let expected = case.textbook::<Big>().call(name, &precise).unwrap().unwrap();
+            distance_from(&found, &expected, &scale(case, name, &state))
+        });
+        assert!(far <= FEW, "{name}: {far} units of roundoff");
+    }
+}
+
+#[test]
+fn recursion_is_the_textbook_in_many_digits() {
+    for_each_tree(60, Flavour::ANY, textbook_holds);
+    for_each_bundled(textbook_holds);
+}
+
+#[test]
+fn the_textbook_in_double_precision_is_the_textbook_in_many_digits() {
+    for_each_tree(20, Flavour::ANY, |case, random| {
+        let state = case.state(random);
+        let found = case.textbook::<f64>().inverse_dynamics(&state.q, &state.v, &state.a).unwrap();
+        let far = Big::scope(|| {
+            let [q, v, a] = state.cast::<Big>();
+            let expected = case.textbook::<Big>().inverse_dynamics(&q, &v, &a).unwrap();
+            // It forms linear velocities, which cancel only in the end: every torque is as good as the largest.
+            let largest = torque_scale(case, &state).into_iter().fold(0.0, f64::max);
+            distance_from(&found, &expected, &vec![largest; found.len()])
+        });
+        assert!(far <= FEW, "{far} units of roundoff");
+    });
+}
+
+fn virtual_power_holds(case: &Case, random: &mut Random) {
+    let state = case.state(random);
+    let motions = case.motions();
+    assert_eq!(motions.size, (case.model.nq, case.model.nv));
+    let scale = torque_scale(case, &state);
+    let expected = motions.inverse_dynamics(&state.q, &state.v, &state.a);
+    let far = distance(&case.inverse_dynamics(&state), &expected, &scale);
+    assert!(far <= 2.0 * FEW, "torques: {far} units of roundoff");
+    let far = distance(
+        &placements(&case.model, &state.q),
+        &motions.placements(&state.q),
+        &articulated_tests::measure::scale(case, "placements", &state),
+    );
+    assert!(far <= 2.0 * FEW, "placements: {far} units of roundoff");
+}
+
+#[test]
+fn torques_are_those_of_virtual_power() {
+    for_each_tree(200, Flavour::ANY, virtual_power_holds);
+    for_each_bundled(virtual_power_holds);
+}
+
+/// Two derivations with nothing in common, to 60 digits: no tolerance is left to hide in.
+#[test]
+fn textbook_and_virtual_power_agree_to_sixty_digits() {
+    for_each_tree(12, Flavour { links: 6, ..Flavour::ANY }, |case, random| {
+        let state = case.state(random);
+        Big::scope(|| {
+            let [mut q, v, a] = state.cast::<Big>();
+            normalise(case, &mut q);
+            let textbook: Textbook<Big> = case.textbook();
+            let expected = textbook.inverse_dynamics(&q, &v, &a).unwrap();
+            let found = case.motions().inverse_dynamics(&q, &v, &a);
+            for (k, (e, f)) in expected.iter().zip(&found).enumerate() {
+                let error = (*e - *f).to_f64().abs();
+                assert!(error <= 1e-60 * torque_scale(case, &state)[k], "torque {k}: {error:e}");
+            }
+        });
+    });
+}
+
+/// A double's quaternion has a norm of one to 16 digits only, and the two forms differ in what they make of the rest.
+fn normalise(case: &Case, q: &mut [Big]) {
+    for joint in case.model.joints.iter().filter(|j| j.q.1 == 7) {
+        let x = &mut q[joint.q.0 + 3..joint.q.0 + 7];
+        let square = x.iter().fold(Big::from_f64(0.0), |s, c| s + *c * *c);
+        let norm = square.sqrt();
+        x.iter_mut().for_each(|c| *c = *c / norm);
+    }
+}
+
+#[test]
+fn bias_forces_and_gravity_torque_are_inverse_dynamics_at_rest() {
+    for_each_tree(30, Flavour::ANY, |case, random| {
+        let State { q, v, .. } = case.state(random);
+        let zero = vec![0.0; v.len()];
+        assert_eq!(case.call::<f64>("bias_forces", &[&q, &v]), case.call::<f64>("inverse_dynamics", &[&q, &v, &zero]));
+        assert_eq!(case.call::<f64>("gravity_torque", &[&q]), case.call::<f64>("inverse_dynamics", &[&q, &zero, &zero]));
+    });
+}
+
+/// A workspace carries nothing from one call to the next.
+#[test]
+fn a_result_does_not_depend_on_the_calls_before() {
+    use articulated_core::algorithm::{Workspace, functions};
+    for_each_tree(10, Flavour::ANY, |case, random| {
+        let mut shared = Workspace::new(&case.model);
+        for row in functions::<f64>().iter().chain(functions::<f64>()) {
+            let state = case.state(random);
+            let mut out = vec![f64::NAN; row.gives.len(case.model.shape())];
+            row.call(&case.model, &mut shared, &arguments(row.name, &state), &mut out).unwrap();
+            assert_eq!(out, case.call::<f64>(row.name, &arguments(row.name, &state)), "{}", row.name);
+        }
+    });
+}

@@ -1,0 +1,133 @@
+//! What every equation of motion M(q)·a + h(q, v) = τ is made of.
+
+use articulated_core::description::Base;
+use articulated_core::model::pass::MODEL_PASSES;
+use articulated_tests::case::{Case, State, for_each_bundled, for_each_tree, inverse_dynamics, mass_matrix, placements};
+use articulated_tests::measure::{distance, plus, torque_scale};
+use articulated_tests::random::Random;
+use articulated_tests::random_tree::Flavour;
+
+/// Errors allowed, in units of u times the magnitude of the terms.
+const FEW: f64 = 16.0;
+
+/// a·x + b·y.
+fn sum(a: f64, x: &[f64], b: f64, y: &[f64]) -> Vec<f64> {
+    x.iter().zip(y).map(|(x, y)| a * x + b * y).collect()
+}
+
+#[test]
+fn torque_is_linear_in_acceleration() {
+    for_each_tree(60, Flavour::ANY, |case, random| {
+        let State { q, v, a } = case.state(random);
+        let b = case.state(random).a;
+        let zero = vec![0.0; a.len()];
+        let tau = |a: &[f64]| inverse_dynamics(&case.model, &q, &v, a);
+        let scale = |a: &[f64]| torque_scale(case, &State { q: q.clone(), v: v.clone(), a: a.to_vec() });
+        // τ(a + b) + h = τ(a) + τ(b)
+        let left = sum(1.0, &tau(&sum(1.0, &a, 1.0, &b)), 1.0, &tau(&zero));
+        let right = sum(1.0, &tau(&a), 1.0, &tau(&b));
+        let far = distance(&left, &right, &plus(&scale(&a), &scale(&b)));
+        assert!(far <= FEW, "{far} units of roundoff");
+    });
+}
+
+#[test]
+fn velocity_forces_grow_with_the_square_of_the_rates() {
+    for_each_tree(60, Flavour::ANY, |case, random| {
+        let State { q, v, a } = case.state(random);
+        let zero = vec![0.0; a.len()];
+        let bias = |factor: f64| inverse_dynamics(&case.model, &q, &sum(factor, &v, 0.0, &v), &zero);
+        // h(3v) − g = 9 (h(v) − g)
+        let left = sum(1.0, &bias(3.0), 8.0, &bias(0.0));
+        let right = sum(9.0, &bias(1.0), 0.0, &zero);
+        let scale = torque_scale(case, &State { q: q.clone(), v: sum(3.0, &v, 0.0, &v), a: zero.clone() });
+        let far = distance(&left, &right, &sum(2.0, &scale, 8.0, &scale));
+        assert!(far <= FEW, "{far} units of roundoff");
+    });
+}
+
+fn positive_definite(case: &Case, random: &mut Random) {
+    let m = mass_matrix(&case.model, &case.state(random).q);
+    let size = m.amax();
+    assert!((&m - m.transpose()).amax() <= 1e-13 * size, "not symmetric: {m}");
+    assert!(m.is_empty() || m.clone().cholesky().is_some(), "not positive definite: {m}");
+}
+
+#[test]
+fn mass_matrix_is_symmetric_and_positive_definite() {
+    for_each_tree(100, Flavour::REGULAR, positive_definite);
+    for_each_bundled(positive_definite);
+}
+
+#[test]
+fn joints_that_move_no_mass_are_found() {
+    for_each_tree(150, Flavour::ANY, |case, random| {
+        let found = case.model.massless_joints();
+        let m = mass_matrix(&case.model, &case.state(random).q);
+        for &body in &found {
+            let at = case.model.bodies[body].coordinates.v;
+            let rows = case.model.bodies[body].joint.nv();
+            let row = m.rows(at, rows).amax();
+            assert!(row <= 1e-14 * m.amax(), "joint {} does move mass: {row}", case.model.bodies[body].name);
+        }
+        for k in 0..case.model.nv {
+            let alone = case.model.joints.iter().find(|j| j.v == (k, 1));
+            if let Some(joint) = alone.filter(|_| m.row(k).amax() == 0.0) {
+                let names: Vec<&str> = found.iter().map(|&b| case.model.bodies[b].name.as_str()).collect();
+                assert!(names.contains(&joint.name.as_str()), "{} moves nothing and is not among {names:?}", joint.name);
+            }
+        }
+    });
+}
+
+fn passes_keep_the_physics(case: &Case, random: &mut Random) {
+    let state = case.state(random);
+    let scale = torque_scale(case, &state);
+    for (name, pass, _) in MODEL_PASSES {
+        let passed = Case { model: pass(case.model.clone()), ..case.clone() };
+        let far = distance(&passed.inverse_dynamics(&state), &case.inverse_dynamics(&state), &scale);
+        assert!(far <= FEW, "{name}: {far} units of roundoff");
+        assert_eq!(placements(&passed.model, &state.q), placements(&case.model, &state.q), "{name}");
+    }
+}
+
+#[test]
+fn model_passes_leave_torques_and_placements_as_they_are() {
+    for_each_tree(150, Flavour::ANY, passes_keep_the_physics);
+    for_each_bundled(passes_keep_the_physics);
+}
+
+/// Base parameters: what a joint cannot feel is zero.
+#[test]
+fn regrouped_bodies_keep_only_what_their_joint_feels() {
+    use articulated_core::joint::Joint;
+    for_each_tree(40, Flavour::ANY, |case, _| {
+        let passed = MODEL_PASSES.iter().fold(case.model.clone(), |m, (_, pass, _)| pass(m));
+        for body in passed.bodies.iter().skip(1) {
+            let i = &body.inertia;
+            match body.joint {
+                Joint::Revolute => assert_eq!([i.mass, i.first.z, i.second.m33], [0.0; 3], "{}", body.name),
+                Joint::Prismatic => assert_eq!(i.second.amax(), 0.0, "{}", body.name),
+                Joint::Floating => {}
+            }
+        }
+    });
+}
+
+#[test]
+fn joints_are_ordered_depth_first_as_the_file_lists_them() {
+    for_each_tree(100, Flavour::ANY, |case, _| {
+        let names: Vec<&str> = case.model.joints.iter().map(|j| j.name.as_str()).collect();
+        let floating = usize::from(case.base == Base::Floating);
+        assert_eq!(names[floating..], case.motions().joint_names());
+        let (mut q, mut v) = (0, 0);
+        for joint in &case.model.joints {
+            assert_eq!((joint.q.0, joint.v.0), (q, v), "{}", joint.name);
+            (q, v) = (q + joint.q.1, v + joint.v.1);
+        }
+        assert_eq!((q, v), (case.model.nq, case.model.nv));
+        let links: Vec<&str> = case.description.links.iter().map(|l| l.name.as_str()).collect();
+        let frames: Vec<&str> = case.model.frames.iter().map(|f| f.name.as_str()).collect();
+        assert_eq!(frames, links);
+    });
+}
