@@ -1,11 +1,15 @@
 //! The algorithms, each written once over the scalar, and the table of the functions that they give.
 
+mod crba;
+mod forward_dynamics;
 mod kinematics;
 mod registry;
 mod rnea;
 pub mod textbook;
 mod workspace;
 
+pub use crba::mass_matrix;
+pub use forward_dynamics::forward_dynamics;
 pub use kinematics::placements;
 pub use registry::{Argument, Function, FunctionError, ResultKind, Shape, function, functions};
 pub use registry::{check_length, exactly};

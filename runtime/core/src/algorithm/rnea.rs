@@ -8,7 +8,7 @@
 use super::Workspace;
 use crate::joint::{JointLaw, Pose};
 use crate::model::{Body, Model};
-use crate::spatial::{Motion, rate_matrix, rotate, rotate_back};
+use crate::spatial::{Motion, Vector3, Wrench, rate_matrix, rotate, rotate_back};
 use crate::{Scalar, with_pose};
 
 /// τ = M(q)·a + h(q, v), gravity included.
@@ -91,11 +91,14 @@ fn inward<S: Scalar, P: JointLaw<S>>(body: &Body<S>, i: usize, p: &P, ws: &mut W
     if body.parent == 0 {
         return;
     }
-    // F_λ += [R n + p × R f;  R f]
+    ws.bodies[body.parent].wrench += to_parent(body, p, origin, &wrench);
+}
+
+/// A wrench from the body's frame to its parent's: [R n + p × R f; R f].
+#[inline(always)]
+pub(super) fn to_parent<S: Scalar, P: JointLaw<S>>(body: &Body<S>, p: &P, origin: Vector3<S>, wrench: &Wrench<S>) -> Wrench<S> {
     let turn = &body.placement.rotation;
     let force = rotate(turn, p.to_joint(wrench.force));
     let moment = rotate(turn, p.to_joint(wrench.moment));
-    let below = &mut ws.bodies[body.parent].wrench;
-    below.force += force;
-    below.moment += moment + origin.cross(&force);
+    Wrench { moment: moment + origin.cross(&force), force }
 }

@@ -8,7 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 use crate::Scalar;
 use crate::joint::Pose;
 use crate::model::Model;
-use crate::spatial::{Motion, Placement, Wrench};
+use crate::spatial::{Motion, Placement, SpatialInertia, Wrench};
 
 /// Room for one evaluation of any algorithm on one model: made once, used by every call, so that no call allocates.
 #[derive(Clone, Debug)]
@@ -16,6 +16,12 @@ pub struct Workspace<S> {
     pub(super) bodies: Vec<BodyState<S>>,
     pub(super) placements: Vec<Placement<S>>,
     pub(super) zeros: Vec<S>,
+    /// Inertia of each body and all that it carries, in its frame.
+    pub(super) composite: Vec<SpatialInertia<S>>,
+    /// One row of a matrix, [nv].
+    pub(super) row: Vec<S>,
+    /// [nv · nv].
+    pub(super) matrix: Vec<S>,
 }
 
 /// One body's quantities of the current evaluation, in its own axes.
@@ -43,7 +49,14 @@ impl<S: Scalar> Workspace<S> {
             u: Matrix3::zeros(),
             wrench: Wrench::zero(),
         };
-        let n = model.bodies.len();
-        Self { bodies: vec![state; n], placements: vec![Placement::identity(); n], zeros: vec![S::zero(); model.nv] }
+        let (n, nv) = (model.bodies.len(), model.nv);
+        Self {
+            bodies: vec![state; n],
+            placements: vec![Placement::identity(); n],
+            zeros: vec![S::zero(); nv],
+            composite: vec![SpatialInertia::zero(); n],
+            row: vec![S::zero(); nv],
+            matrix: vec![S::zero(); nv * nv],
+        }
     }
 }

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{Coordinates, JointLaw};
 use crate::Scalar;
-use crate::spatial::{Motion, Placement, Twist, Wrench, from_quaternion, rotate, rotate_back};
+use crate::spatial::{Motion, Placement, SpatialInertia, Twist, Wrench, from_quaternion, rotate, rotate_back};
 
 /// q = (position; unit quaternion x, y, z, w) of the child in the joint frame; v = body twist [ω; v] in the child's frame;
 /// a = the time derivative of the six numbers in v; S = 1.
@@ -59,6 +59,23 @@ impl<S: Scalar> JointLaw<S> for Floating<S> {
         let coriolis = (omega + total).cross(&rate.linear);
         let acceleration = self.to_child(carried.acceleration) + coriolis + derivative.linear;
         Motion { omega: total, alpha, acceleration }
+    }
+
+    #[inline(always)]
+    fn inertia_to_joint(&self, inertia: &SpatialInertia<S>) -> SpatialInertia<S> {
+        inertia.moved(&Placement { rotation: self.rotation, position: self.position })
+    }
+
+    #[inline(always)]
+    fn column(&self, i: &SpatialInertia<S>, k: usize) -> Wrench<S> {
+        let mut e = Vector3::zeros();
+        e[k % 3] = S::one();
+        match k {
+            // n = (tr(Σ)·1 − Σ) e, f = e × h
+            0..3 => Wrench { moment: i.rotational().column(k).into_owned(), force: e.cross(&i.first) },
+            // n = h × e, f = m e
+            _ => Wrench { moment: i.first.cross(&e), force: e * i.mass },
+        }
     }
 
     #[inline(always)]

@@ -14,7 +14,7 @@ pub use revolute::Revolute;
 use nalgebra::Vector3;
 
 use crate::Scalar;
-use crate::spatial::{Motion, Placement, Wrench};
+use crate::spatial::{Motion, Placement, SpatialInertia, Wrench};
 
 /// The kinds of moving joints of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,6 +94,12 @@ impl<S: Scalar> Coordinates<S> {
         }
     }
 
+    /// Own rate over the leader's; `None` for a joint that follows nobody.
+    #[inline(always)]
+    pub fn rate_of_one(&self) -> Option<S> {
+        self.mimic.as_ref().map(|f| f.multiplier)
+    }
+
     /// Adds the joint's own single torque to that of the coordinate it moves with: power is the same, so τ_leader += multiplier · τ.
     #[inline(always)]
     pub fn add_torque(&self, torque: S, tau: &mut [S]) {
@@ -131,6 +137,12 @@ pub trait JointLaw<S: Scalar>: Copy {
     /// The child's motion in its axes, from `carried`, the motion that the point of the parent now at the child's origin has, in axes
     /// of the joint frame, and from the joint's rates in `v` and their derivatives in `a`.
     fn motion(&self, carried: Motion<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S>;
+
+    /// The child's mass as seen from the joint frame.
+    fn inertia_to_joint(&self, inertia: &SpatialInertia<S>) -> SpatialInertia<S>;
+
+    /// I·S_k: the wrench, in the child's frame, that gives a body of this inertia at rest the unit acceleration in the joint's own degree of freedom k.
+    fn column(&self, inertia: &SpatialInertia<S>, k: usize) -> Wrench<S>;
 
     /// τ = Sᵀ F: adds to `tau` the joint's torques for the wrench F on the child, in the child's frame.
     fn add_torque(&self, wrench: &Wrench<S>, at: &Coordinates<S>, tau: &mut [S]);

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::{Coordinates, JointLaw};
 use crate::Scalar;
-use crate::spatial::{Motion, Placement, Wrench};
+use crate::spatial::{Motion, Placement, SpatialInertia, Wrench};
 
 /// R = 1, p = e_z q, S = [0; e_z].
 #[derive(Clone, Copy, Debug)]
@@ -47,6 +47,26 @@ impl<S: Scalar> JointLaw<S> for Prismatic<S> {
         acceleration.y -= carried.omega.x * twice;
         acceleration.z += at.rate(a);
         Motion { acceleration, ..carried }
+    }
+
+    #[inline(always)]
+    fn inertia_to_joint(&self, i: &SpatialInertia<S>) -> SpatialInertia<S> {
+        // A shift by d = q along z: h' = h + m d, Σ' = Σ + (h e_zᵀ + e_z hᵀ) d + m d² e_z e_zᵀ
+        let (d, h, mut second) = (self.shift, i.first, i.second);
+        let md = i.mass * d;
+        for (k, hk) in [(0, h.x), (1, h.y)] {
+            second[(k, 2)] += hk * d;
+            second[(2, k)] = second[(k, 2)];
+        }
+        second.m33 += (h.z + h.z + md) * d;
+        SpatialInertia { mass: i.mass, first: Vector3::new(h.x, h.y, h.z + md), second }
+    }
+
+    #[inline(always)]
+    fn column(&self, i: &SpatialInertia<S>, _: usize) -> Wrench<S> {
+        // f = m e_z, n = h × e_z
+        let o = S::zero();
+        Wrench { moment: Vector3::new(i.first.y, -i.first.x, o), force: Vector3::new(o, o, i.mass) }
     }
 
     #[inline(always)]

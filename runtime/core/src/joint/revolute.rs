@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{Coordinates, JointLaw};
 use crate::Scalar;
-use crate::spatial::{Motion, Placement, Wrench};
+use crate::spatial::{Motion, Placement, SpatialInertia, Wrench};
 
 /// R = Rz(q), S = [e_z; 0].
 #[derive(Clone, Copy, Debug)]
@@ -56,6 +56,27 @@ impl<S: Scalar> JointLaw<S> for Revolute<S> {
         alpha.z += acceleration;
         omega.z += rate;
         Motion { omega, alpha, acceleration: self.to_child(carried.acceleration) }
+    }
+
+    #[inline(always)]
+    fn inertia_to_joint(&self, i: &SpatialInertia<S>) -> SpatialInertia<S> {
+        // Σ' = Rz Σ Rzᵀ, element by element.
+        let (s, c, m) = (self.sin, self.cos, &i.second);
+        let (ss, cc, sc) = (s * s, c * c, s * c);
+        let twice = sc * (m.m12 + m.m12);
+        let xx = cc * m.m11 - twice + ss * m.m22;
+        let yy = ss * m.m11 + twice + cc * m.m22;
+        let xy = sc * (m.m11 - m.m22) + (cc - ss) * m.m12;
+        let (xz, yz) = (c * m.m13 - s * m.m23, s * m.m13 + c * m.m23);
+        let second = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, m.m33);
+        SpatialInertia { mass: i.mass, first: self.to_joint(i.first), second }
+    }
+
+    #[inline(always)]
+    fn column(&self, i: &SpatialInertia<S>, _: usize) -> Wrench<S> {
+        // n = (tr(Σ)·1 − Σ) e_z, f = e_z × h
+        let (h, m) = (i.first, &i.second);
+        Wrench { moment: Vector3::new(-m.m13, -m.m23, m.m11 + m.m22), force: Vector3::new(-h.y, h.x, S::zero()) }
     }
 
     #[inline(always)]

@@ -143,7 +143,7 @@ mod tests {
     fn a_written_right_angle_is_exact_and_an_approximate_one_is_not() {
         assert_eq!(sin_cos_of_written_angle::<f64>(FRAC_PI_2), (1.0, 0.0));
         assert_eq!(sin_cos_of_written_angle::<f64>(-core::f64::consts::PI), (0.0, -1.0));
-        assert_eq!(sin_cos_of_written_angle::<f64>(1.5708).1, (1.5708_f64).cos());
+        assert_eq!(sin_cos_of_written_angle::<f64>(1.571).1, (1.571_f64).cos());
     }
 
     #[test]

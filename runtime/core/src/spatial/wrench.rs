@@ -21,6 +21,16 @@ impl<S: Scalar> Wrench<S> {
         Self { moment: Vector3::zeros(), force: Vector3::zeros() }
     }
 
+    /// The wrench times a number, if there is one.
+    #[cfg(feature = "alloc")]
+    pub(crate) fn scaled(mut self, factor: Option<S>) -> Self {
+        if let Some(factor) = factor {
+            self.moment *= factor;
+            self.force *= factor;
+        }
+        self
+    }
+
     /// The power ω·m + v·f that the wrench gives to a body moving with `twist`, W. Both in the same frame.
     pub fn power(&self, twist: &Twist<S>) -> S {
         twist.angular.dot(&self.moment) + twist.linear.dot(&self.force)

@@ -1,0 +1,60 @@
+//! Composite rigid body algorithm.
+
+use super::Workspace;
+use super::rnea::to_parent;
+use crate::joint::JointLaw;
+use crate::model::Model;
+use crate::{Scalar, with_pose};
+
+/// M(q), the mass matrix.
+///
+/// q: [nq] rad|m|quaternion; out: [nv · nv], row by row, both triangles; kg·m²|kg·m|kg. O(n · depth). Featherstone 2008, Table 6.2.
+///
+/// # Panics
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+pub fn mass_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
+    for i in model.outward() {
+        let body = &model.bodies[i];
+        let pose = body.joint.pose(&body.coordinates, q);
+        ws.bodies[i].origin = with_pose!(pose, p => p.origin(&body.placement));
+        ws.bodies[i].pose = Some(pose);
+        ws.composite[i] = body.inertia;
+    }
+    out.fill(S::zero());
+    for i in model.inward() {
+        let body = &model.bodies[i];
+        let Some(pose) = ws.bodies[i].pose else { continue };
+        for k in 0..body.joint.nv() {
+            column(model, ws, i, k, out);
+        }
+        if body.parent != 0 {
+            // I_λ += X_λi I_i
+            let joint = with_pose!(pose, p => p.inertia_to_joint(&ws.composite[i]));
+            ws.composite[body.parent] += joint.moved(&body.placement);
+        }
+    }
+}
+
+/// The wrench that accelerates everything from body `i` on in its degree of freedom `k`, and what it asks of the joints on the way to the base.
+fn column<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, k: usize, out: &mut [S]) {
+    let (n, at) = (model.nv, &model.bodies[i].coordinates);
+    let Some(pose) = ws.bodies[i].pose else { return };
+    // F = I_i S_i,k;  M_ik,i = S_iᵀ F
+    let mut wrench = with_pose!(pose, p => p.column(&ws.composite[i], k)).scaled(at.rate_of_one());
+    let row = at.v + k;
+    with_pose!(pose, p => p.add_torque(&wrench, at, &mut out[row * n..][..n]));
+    let mut j = i;
+    while model.bodies[j].parent != 0 {
+        let Some(pose) = ws.bodies[j].pose else { return };
+        // F in the parent's frame;  M_ik,j = M_j,ik = S_jᵀ F
+        wrench = with_pose!(pose, p => to_parent(&model.bodies[j], &p, ws.bodies[j].origin, &wrench));
+        j = model.bodies[j].parent;
+        let (Some(pose), at) = (ws.bodies[j].pose, &model.bodies[j].coordinates) else { return };
+        ws.row.fill(S::zero());
+        with_pose!(pose, p => p.add_torque(&wrench, at, &mut ws.row));
+        for l in at.v..at.v + model.bodies[j].joint.nv() {
+            out[row * n + l] += ws.row[l];
+            out[l * n + row] += ws.row[l];
+        }
+    }
+}

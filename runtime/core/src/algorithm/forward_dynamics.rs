@@ -1,0 +1,61 @@
+//! Forward dynamics through the mass matrix.
+
+use super::Workspace;
+use super::crba::mass_matrix;
+use super::rnea::bias_forces;
+use crate::Scalar;
+use crate::model::Model;
+
+/// a = M(q)⁻¹·(τ − h(q, v)).
+///
+/// q: [nq]; v: [nv]; tau: [nv] N·m|N; out: [nv] rad/s²|m/s². By M = Lᵀ D L, which keeps the zeros that branches leave in M; Featherstone
+/// 2008, §6.5. Where M is singular the result is not finite; a model with [`Model::massless_joints`] is singular everywhere.
+///
+/// # Panics
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+pub fn forward_dynamics<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], tau: &[S], out: &mut [S]) {
+    let mut matrix = core::mem::take(&mut ws.matrix);
+    bias_forces(model, ws, q, v, out);
+    // b = τ − h
+    out.iter_mut().zip(tau).for_each(|(b, tau)| *b = *tau - *b);
+    mass_matrix(model, ws, q, &mut matrix);
+    factor(&mut matrix, model.nv);
+    solve(&matrix, model.nv, out);
+    ws.matrix = matrix;
+}
+
+/// M = Lᵀ D L in place: L below the diagonal with ones on it, D⁻¹ on the diagonal. From the last row up, so that zeros stay.
+fn factor<S: Scalar>(m: &mut [S], n: usize) {
+    for k in (0..n).rev() {
+        let inverse = S::one() / m[k * n + k];
+        for i in (0..k).rev() {
+            let l = m[k * n + i] * inverse;
+            // M_ij −= L_ki M_kj
+            for j in 0..=i {
+                let product = l * m[k * n + j];
+                m[i * n + j] -= product;
+            }
+        }
+        for i in 0..k {
+            m[k * n + i] *= inverse;
+        }
+        m[k * n + k] = inverse;
+    }
+}
+
+/// x = L⁻¹ D⁻¹ L⁻ᵀ b, in place.
+fn solve<S: Scalar>(l: &[S], n: usize, x: &mut [S]) {
+    for k in (0..n).rev() {
+        for i in 0..k {
+            let product = l[k * n + i] * x[k];
+            x[i] -= product;
+        }
+    }
+    for k in 0..n {
+        x[k] *= l[k * n + k];
+        for i in 0..k {
+            let product = l[k * n + i] * x[i];
+            x[k] -= product;
+        }
+    }
+}
