@@ -74,6 +74,7 @@ fn take<const N: usize>(x: &mut &[f64]) -> [f64; N] {
     head.try_into().unwrap()
 }
 
+#[allow(unused)]
 fn main() {
     let arguments: Vec<String> = std::env::args().collect();
     let mut bytes = Vec::new();

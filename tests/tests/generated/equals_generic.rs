@@ -1,0 +1,77 @@
+//! Generated = generic, function by function.
+
+use articulated_core::algorithm::functions;
+use articulated_tests::case::State;
+use articulated_tests::measure::{arguments, distance, scale};
+use articulated_tests::program::Program;
+use articulated_tests::random::Random;
+
+use crate::robots::{NATIVE, PORTABLE, ROBOTS, Robot};
+
+/// Difference allowed, in units of u times the yardstick.
+const FEW: f64 = 16.0;
+
+const STATES: usize = 32;
+
+/// The largest difference of any function of a robot from the generic library.
+fn compare(program: &Program, robot: &Robot) -> f64 {
+    let mut random = Random::new(17);
+    let states: Vec<State> = (0..STATES).map(|_| robot.case.state(&mut random)).collect();
+    let mut worst: f64 = 0.0;
+    for row in functions::<f64>() {
+        let given: Vec<Vec<&[f64]>> = states.iter().map(|s| arguments(row.name, s)).collect();
+        let found = program.run(&robot.name, row.name, &given);
+        for ((state, given), found) in states.iter().zip(&given).zip(&found) {
+            let expected = robot.case.call::<f64>(row.name, given);
+            let far = distance(found, &expected, &scale(&robot.case, row.name, state));
+            assert!(far <= FEW, "{}::{}: {far} units of roundoff in {state:?}", robot.name, row.name);
+            worst = worst.max(far);
+        }
+    }
+    worst
+}
+
+#[test]
+fn generated_code_gives_what_the_generic_library_gives() {
+    for robot in ROBOTS.iter() {
+        println!("{}: {:.1} units of roundoff", robot.name, compare(&NATIVE, robot));
+    }
+}
+
+#[test]
+fn so_does_code_for_any_machine_without_fused_multiply_add() {
+    for robot in ROBOTS.iter().filter(|r| ["panda_like", "gripper_arm", "tree_1", "stone"].contains(&r.name.as_str())) {
+        println!("{}: {:.1} units of roundoff", robot.name, compare(&PORTABLE, robot));
+    }
+}
+
+/// Not even with numbers that are none; the checks of the compiler are on.
+#[test]
+fn no_value_makes_generated_code_panic() {
+    for robot in ROBOTS.iter().filter(|r| ["panda_like", "gripper_arm", "tree_1"].contains(&r.name.as_str())) {
+        for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, 1e300, -1e6, 5e-324, -0.0] {
+            let state = State { q: vec![x; robot.case.model.nq], v: vec![x; robot.case.model.nv], a: vec![x; robot.case.model.nv] };
+            for row in functions::<f64>() {
+                let found = PORTABLE.run(&robot.name, row.name, &[arguments(row.name, &state)]);
+                assert_eq!(found[0].len(), row.gives.len(robot.case.model.shape()));
+                let finite = x.is_finite() && x.abs() < 1e7;
+                assert!(!finite || found[0].iter().all(|y| y.is_finite()), "{}::{} of {x}", robot.name, row.name);
+            }
+        }
+    }
+}
+
+/// Angles beyond the fast reduction are turned over to the standard library: the result is as good.
+#[test]
+fn angles_of_many_turns_are_as_good_as_any() {
+    for robot in ROBOTS.iter().filter(|r| ["panda_like", "ur5_like"].contains(&r.name.as_str())) {
+        let mut state = robot.case.state(&mut Random::new(23));
+        for turns in [1e3, 1e5, 1e8, 1e15] {
+            state.q.iter_mut().for_each(|q| *q += turns);
+            let given = arguments("inverse_dynamics", &state);
+            let found = NATIVE.run(&robot.name, "inverse_dynamics", &[given]);
+            let far = distance(&found[0], &robot.case.inverse_dynamics(&state), &scale(&robot.case, "inverse_dynamics", &state));
+            assert!(far <= FEW, "{} after {turns} rad: {far} units of roundoff", robot.name);
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! Robots at the edge: what generates, and what is refused.
+
+use std::time::Instant;
+
+use articulated_codegen::{Error, Request, generate};
+use articulated_core::algorithm::functions;
+use articulated_core::description::Base;
+use articulated_tests::program::Program;
+
+use crate::robots::{NATIVE, ROBOTS};
+
+/// No coordinate: arrays without numbers, and placements that are constants.
+#[test]
+fn a_robot_that_cannot_move_is_generated_and_compiles() {
+    let stone = ROBOTS.iter().find(|r| r.name == "stone").unwrap();
+    assert_eq!((stone.generated.model.nq, stone.generated.model.nv), (0, 0));
+    let found = NATIVE.run("stone", "inverse_dynamics", &[vec![&[], &[], &[]]]);
+    assert_eq!(found, [Vec::<f64>::new()]);
+    let found = NATIVE.run("stone", "placements", &[vec![&[]]]);
+    assert_eq!(found, [[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]]);
+}
+
+#[test]
+fn a_chain_of_a_thousand_joints_is_generated() {
+    use std::fmt::Write;
+    let n = 1000;
+    let mut urdf = String::from("<robot name='chain'><link name='l0'/>");
+    for k in 1..=n {
+        let axis = ["1 0 0", "0 1 0", "0 0 1"][k % 3];
+        let _ = write!(
+            urdf,
+            "<link name='l{k}'><inertial><mass value='0.1'/><inertia ixx='1e-3' ixy='0' ixz='0' iyy='1e-3' iyz='0' izz='1e-3'/></inertial></link>\
+             <joint name='j{k}' type='continuous'><origin xyz='0 0 0.01'/><parent link='l{}'/><child link='l{k}'/><axis xyz='{axis}'/></joint>",
+            k - 1
+        );
+    }
+    let mut request = Request::new("chain.urdf", urdf + "</robot>");
+    request.options.functions = vec!["inverse_dynamics".into()];
+    let start = Instant::now();
+    let generated = generate(&request).unwrap();
+    let operations = generated.ledger.functions[0].emitted().instructions();
+    println!("1000 joints: {operations} instructions generated in {:.1?}, unoptimised", start.elapsed());
+    assert_eq!(generated.model.nv, n);
+    // Linear in the joints: no more a joint than some three hundred instructions.
+    assert!(operations < 300_000, "{operations}");
+}
+
+/// No function asked for: a module of constants.
+#[test]
+fn a_robot_without_functions_compiles() {
+    let mut request = Request::new("arm.urdf", articulated_models::robot("panda_like").unwrap().urdf);
+    request.options.functions.clear();
+    Program::build(&[("arm", &generate(&request).unwrap())], &["-C", "opt-level=0"]);
+}
+
+#[test]
+fn an_unknown_function_is_refused_with_the_nearest_and_all() {
+    let mut request = Request::new("arm.urdf", articulated_models::robot("panda_like").unwrap().urdf);
+    request.options.functions = vec!["inverse_dynamic".into()];
+    let Err(Error::UnknownFunction { found, nearest, known }) = generate(&request) else { panic!("it was accepted") };
+    assert_eq!((found.as_str(), nearest.as_deref()), ("inverse_dynamic", Some("inverse_dynamics")));
+    assert_eq!(known.len(), functions::<f64>().len());
+}
+
+#[test]
+fn gravity_and_base_are_the_requests() {
+    let urdf = articulated_models::robot("double_pendulum").unwrap().urdf;
+    let mut request = Request::new("double_pendulum.urdf", urdf);
+    request.options.functions = vec!["gravity_torque".into()];
+    let standing = generate(&request).unwrap();
+    request.options.gravity = [0.0; 3];
+    let weightless = generate(&request).unwrap();
+    assert_eq!(weightless.ledger.functions[0].emitted().instructions(), 0, "no gravity, no operation");
+    request.options.base = Base::Floating;
+    let floating = generate(&request).unwrap();
+    assert_eq!((standing.model.nv, floating.model.nv), (2, 8));
+    let program = Program::build(&[("weightless", &weightless), ("standing", &standing)], &["-C", "opt-level=0"]);
+    assert_eq!(program.run("weightless", "gravity_torque", &[vec![&[0.3, 0.4]]]), [[0.0, 0.0]]);
+    assert_ne!(program.run("standing", "gravity_torque", &[vec![&[0.3, 0.4]]]), [[0.0, 0.0]]);
+}

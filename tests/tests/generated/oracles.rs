@@ -1,0 +1,118 @@
+//! Against another program's answers, which were derived another way: energies, differentiated (see `tests/oracles/README.md`).
+
+use std::collections::BTreeSet;
+
+use articulated_core::description::Base;
+use articulated_models::ROBOTS as BUNDLED;
+use articulated_tests::case::{Case, State, placements};
+use articulated_tests::fixture::{Fixture, Reference, fixture};
+
+use crate::robots::{NATIVE, ROBOTS};
+
+/// Error allowed relative to the fixture's own scale, and, of placements, to a metre. The fixtures are good to the last bit.
+const TOLERANCE: f64 = 4e-15;
+
+fn each(law: impl Fn(&Case, &Fixture)) {
+    for robot in BUNDLED {
+        let (case, reference) = (Case::bundled(robot), fixture(robot.name));
+        law(&case.with_gravity(reference.gravity), &reference);
+    }
+}
+
+fn state(reference: &Reference) -> State {
+    State { q: reference.q.clone(), v: reference.v.clone(), a: reference.a.clone() }
+}
+
+fn torques_hold(name: &str, found: &[f64], reference: &Reference) {
+    for (k, (f, e)) in found.iter().zip(&reference.inverse_dynamics).enumerate() {
+        let scale = reference.torque_scale[k];
+        assert!((f - e).abs() <= TOLERANCE * scale, "{name}, torque {k}: {f} instead of {e}, scale {scale}");
+    }
+    assert_eq!(found.len(), reference.inverse_dynamics.len());
+}
+
+/// The fixture lists links in an order of its own, so they are found by name.
+fn placements_hold(case: &Case, links: &[String], found: &[f64], reference: &Reference) {
+    let Some(expected) = &reference.placements else { return };
+    for (link, expected) in links.iter().zip(expected) {
+        let frame = case.model.frames.iter().position(|f| f.name == *link).unwrap();
+        for (f, e) in found[12 * frame..].iter().zip(expected) {
+            assert!((f - e).abs() <= TOLERANCE, "{}, {link}: {f} instead of {e}", case.name);
+        }
+    }
+    assert_eq!((found.len(), links.len()), (12 * expected.len(), expected.len()));
+}
+
+#[test]
+fn every_bundled_robot_has_a_reference_of_its_own() {
+    each(|case, reference| {
+        assert_eq!(reference.robot, case.name);
+        assert_eq!(reference.base, if case.base == Base::Fixed { "fixed" } else { "floating" });
+        assert_eq!((reference.nq, reference.nv), (case.model.nq, case.model.nv));
+        let joints: Vec<&String> = case.model.joints.iter().map(|j| &j.name).collect();
+        assert_eq!(reference.joints.iter().collect::<Vec<_>>(), joints);
+        let links = |of: &mut dyn Iterator<Item = &String>| of.cloned().collect::<BTreeSet<String>>();
+        assert_eq!(links(&mut reference.links.iter()), links(&mut case.model.frames.iter().map(|f| &f.name)));
+        assert!(reference.states.len() >= 4 && reference.states.iter().any(|s| s.placements.is_some()));
+    });
+}
+
+#[test]
+fn generic_torques_and_placements_are_the_oracles() {
+    each(|case, reference| {
+        for s in &reference.states {
+            torques_hold(&case.name, &case.inverse_dynamics(&state(s)), s);
+            placements_hold(case, &reference.links, &placements(&case.model, &s.q), s);
+        }
+    });
+}
+
+#[test]
+fn generated_torques_and_placements_are_the_oracles() {
+    each(|case, reference| {
+        let torques: Vec<Vec<&[f64]>> = reference.states.iter().map(|s| vec![&s.q[..], &s.v, &s.a]).collect();
+        let poses: Vec<Vec<&[f64]>> = reference.states.iter().map(|s| vec![&s.q[..]]).collect();
+        let found = NATIVE.run(&case.name, "inverse_dynamics", &torques).into_iter().zip(NATIVE.run(&case.name, "placements", &poses));
+        for (s, (tau, placed)) in reference.states.iter().zip(found) {
+            torques_hold(&case.name, &tau, s);
+            placements_hold(case, &reference.links, &placed, s);
+        }
+        // The robot that was generated is the one of the fixture.
+        assert_eq!(reference.gravity, ROBOTS.iter().find(|r| r.name == case.name).unwrap().case.gravity);
+    });
+}
+
+/// The tests' own form of energy, which other laws lean on, is the oracle's too.
+#[test]
+fn energies_are_the_oracles() {
+    each(|case, reference| {
+        // What cannot move does not count in the oracle's energies.
+        let still = held(case).energy(&reference.states[0]);
+        for s in &reference.states {
+            let energy = case.motions().energy(&s.q, &s.v, &s.a);
+            let size = 1.0 + s.kinetic_energy.abs() + s.potential_energy.abs() + still.abs();
+            assert!((energy.kinetic - s.kinetic_energy).abs() <= 1e-13 * size, "{}: T = {}", case.name, energy.kinetic);
+            let moving = energy.potential - still;
+            assert!((moving - s.potential_energy).abs() <= 1e-13 * size, "{}: U = {moving}", case.name);
+        }
+    });
+}
+
+/// The links that are fixed to a fixed base.
+struct Held(Case);
+
+fn held(case: &Case) -> Held {
+    let mut case = case.clone();
+    for (link, frame) in case.description.links.iter_mut().zip(&case.model.frames) {
+        if frame.body != 0 {
+            link.inertial = None;
+        }
+    }
+    Held(case)
+}
+
+impl Held {
+    fn energy(&self, at: &Reference) -> f64 {
+        self.0.motions().energy(&at.q, &at.v, &at.a).potential
+    }
+}

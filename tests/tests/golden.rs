@@ -1,0 +1,103 @@
+//! Generation is reproducible, and what it costs is written down.
+//!
+//! `UPDATE_GOLDEN=1 cargo test -p articulated-tests --test golden` writes `tests/golden` anew.
+
+use std::fmt::Write;
+
+use articulated_codegen::{Build, Generated, Request, generate};
+use articulated_core::algorithm::functions;
+use articulated_core::description::Base;
+use articulated_models::ROBOTS;
+use articulated_tests::golden;
+
+fn request(name: &str) -> Request {
+    let robot = articulated_models::robot(name).unwrap();
+    let mut request = Request::new(format!("../models/urdf/{name}.urdf"), robot.urdf);
+    request.options.base = robot.base;
+    request.options.functions = functions::<f64>().iter().map(|f| f.name.into()).collect();
+    request
+}
+
+fn generated(name: &str) -> Generated {
+    generate(&request(name)).unwrap()
+}
+
+#[test]
+fn the_module_of_a_pendulum() {
+    golden::check("simple_pendulum.rs", &generated("simple_pendulum").source);
+}
+
+/// Operations of every function of every bundled robot. A rise needs a reason, in the message of the commit that renews the file.
+#[test]
+fn the_ledger_of_operations() {
+    let mut out = String::from(
+        "# Operations of the generated functions. mul, add: multiplications and additions; ins: instructions, multiply-adds counted\n\
+         # once; trig: sines and cosines; depth: longest chain of operations. A rise needs a reason.\n",
+    );
+    let _ = writeln!(out, "{:<18}{:<18}{:>6}{:>6}{:>6}{:>6}{:>6}", "robot", "function", "mul", "add", "ins", "trig", "depth");
+    for robot in ROBOTS {
+        for entry in &generated(robot.name).ledger.functions {
+            let c = entry.emitted();
+            let _ = writeln!(
+                out,
+                "{:<18}{:<18}{:>6}{:>6}{:>6}{:>6}{:>6}",
+                robot.name,
+                entry.function,
+                c.multiplications(),
+                c.additions(),
+                c.instructions(),
+                c.trigonometric(),
+                entry.depth
+            );
+        }
+    }
+    golden::check("ledger.txt", &out);
+}
+
+#[test]
+fn the_same_request_gives_the_same_bytes() {
+    for name in ["panda_like", "gripper_arm", "quadruped"] {
+        assert_eq!(generated(name).source, generated(name).source, "{name}");
+    }
+}
+
+/// A build script's interface, on the file, gives what the library gives on its bytes.
+#[test]
+fn a_build_script_gives_the_same_source() {
+    for name in ["simple_pendulum", "quadruped"] {
+        let mut request = request(name);
+        request.options.runtime = Some("::articulated".into());
+        let mut build = Build::new(format!("../models/urdf/{name}.urdf")).functions(request.options.functions.clone());
+        if request.options.base == Base::Floating {
+            build = build.floating();
+        }
+        assert_eq!(build.generate().unwrap().source, generate(&request).unwrap().source, "{name}");
+        request.options.runtime = None;
+        assert_eq!(build.standalone().generate().unwrap().source, generate(&request).unwrap().source, "{name}");
+    }
+}
+
+#[test]
+fn source_is_a_file_of_rust_and_the_same_as_its_tokens() {
+    for robot in ROBOTS {
+        let generated = generated(robot.name);
+        let file = syn::parse_file(&generated.source).unwrap_or_else(|e| panic!("{}: {e}", robot.name));
+        let names: Vec<String> =
+            file.items.iter().filter_map(|i| if let syn::Item::Fn(f) = i { Some(f.sig.ident.to_string()) } else { None }).collect();
+        for function in functions::<f64>() {
+            assert!(names.iter().any(|n| n == function.name), "{}: {}", robot.name, function.name);
+        }
+        syn::parse2::<syn::File>(generated.tokens()).unwrap_or_else(|e| panic!("{}: {e}", robot.name));
+    }
+}
+
+/// A pass never raises the cost, and each stage is in the ledger.
+#[test]
+fn no_stage_of_the_ledger_costs_more_than_the_one_before() {
+    for robot in ROBOTS {
+        for entry in generated(robot.name).ledger.functions {
+            let costs: Vec<(&str, u64)> = entry.stages.iter().map(|(stage, c)| (*stage, c.instructions())).collect();
+            assert!(costs.windows(2).all(|w| w[1].1 <= w[0].1), "{} {}: {costs:?}", robot.name, entry.function);
+        }
+    }
+}
