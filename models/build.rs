@@ -2,6 +2,6 @@
 
 fn main() {
     articulated_codegen::Build::new("urdf/panda_like.urdf")
-        .functions(["placements", "inverse_dynamics", "bias_forces", "gravity_torque"])
+        .functions(["placements", "inverse_dynamics", "bias_forces", "gravity_torque", "mass_matrix", "forward_dynamics"])
         .write("panda_like");
 }

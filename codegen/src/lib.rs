@@ -97,10 +97,15 @@ fn reader_options(request: &Request) -> articulated_urdf::Options {
 }
 
 /// The functions that the request names, each once.
-fn wanted(request: &Request, _model: &Model<f64>) -> Result<Vec<&'static Function<Sym>>, Error> {
+fn wanted(request: &Request, model: &Model<f64>) -> Result<Vec<&'static Function<Sym>>, Error> {
+    let massless = model.massless_joints();
     let mut wanted: Vec<&Function<Sym>> = Vec::new();
     for name in &request.options.functions {
         let function = function(name)?;
+        if function.inverts_mass_matrix() && !massless.is_empty() {
+            let joints = massless.iter().map(|&i| model.bodies[i].name.clone()).collect();
+            return Err(Error::Singular { file: request.file.clone(), function: name.clone(), joints });
+        }
         if !wanted.iter().any(|f| f.name == function.name) {
             wanted.push(function);
         }

@@ -58,7 +58,7 @@ articulated::robot! {
     pub mod quadruped {
         urdf = "urdf/quadruped.urdf",
         base = floating,
-        functions = [placements, inverse_dynamics, bias_forces, gravity_torque],
+        functions = [placements, inverse_dynamics, bias_forces, gravity_torque, mass_matrix, forward_dynamics],
     }
 }
 

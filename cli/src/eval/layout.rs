@@ -13,23 +13,15 @@ pub(super) enum Layout {
     Frames,
     /// A row and a column for each degree of freedom.
     Square,
-    /// Numbers.
-    Plain,
 }
 
 impl Layout {
     /// That of a function's result.
-    pub(super) fn of(function: &Function<f64>, model: &Model<f64>) -> Self {
-        let n = function.gives.len(model.shape());
+    pub(super) fn of(function: &Function<f64>) -> Self {
         match function.gives {
             ResultKind::Placements => Self::Frames,
-            ResultKind::Torque => Self::Joints,
-            #[allow(unreachable_patterns)] // so that a new kind of result is printed before somebody names its parts
-            _ if n == model.nv && model.nv != 1 => Self::Joints,
-            #[allow(unreachable_patterns)]
-            _ if n == model.nv * model.nv => Self::Square,
-            #[allow(unreachable_patterns)]
-            _ => Self::Plain,
+            ResultKind::Torque | ResultKind::Acceleration => Self::Joints,
+            ResultKind::MassMatrix => Self::Square,
         }
     }
 
@@ -39,7 +31,6 @@ impl Layout {
             Self::Joints => by_joint(out, model),
             Self::Frames => by_frame(out, model),
             Self::Square => Value::Array(out.chunks(model.nv.max(1)).map(|row| by_joint(row, model)).collect()),
-            Self::Plain => json!(out),
         }
     }
 }

@@ -79,7 +79,7 @@ impl FunctionReport {
     }
 
     fn json(&self, model: &Model<f64>) -> Value {
-        let layout = Layout::of(self.function, model);
+        let layout = Layout::of(self.function);
         let labelled = |out: &Option<Vec<f64>>| out.as_ref().map(|x| layout.json(x, model));
         let states: Vec<Value> = self
             .outcomes

@@ -23,14 +23,13 @@ pub(super) fn text(report: &Report, model: &Model<f64>) -> String {
 
 fn function(out: &mut String, f: &FunctionReport, model: &Model<f64>) {
     let _ = writeln!(out, "\n{}: {}\n  {}", f.function.name, f.function.summary, f.function.gives.doc());
-    let layout = Layout::of(f.function, model);
+    let layout = Layout::of(f.function);
     for (k, outcome) in f.outcomes.iter().enumerate() {
         let _ = writeln!(out, "\nstates[{k}]");
         match layout {
             Layout::Joints => *out += &joints(outcome, model).text(),
             Layout::Frames => frames(out, outcome, model),
             Layout::Square => blocks(out, outcome, model.nv, &freedom_names(model)),
-            Layout::Plain => blocks(out, outcome, 12, &[]),
         }
     }
     if let Some(d) = f.largest {

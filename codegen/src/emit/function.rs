@@ -2,37 +2,27 @@
 
 use std::fmt::Write;
 
-use articulated_core::algorithm::{Function, ResultKind};
+use articulated_core::algorithm::{Function, Shape as Sizes};
 
 use super::literal::literal;
 use super::order::{Angle, Step, order};
+use super::shape::{Shape, length, shape};
 use crate::Sym;
 use crate::graph::{Graph, Node, NodeId, Op};
 use crate::ledger::Entry;
 
 /// The function's source, with its documentation.
-pub(super) fn function(out: &mut String, function: &Function<Sym>, graph: &Graph, entry: &Entry) {
+pub(super) fn function(out: &mut String, function: &Function<Sym>, graph: &Graph, entry: &Entry, sizes: Sizes) {
     document(out, function, entry);
-    let arguments: Vec<String> = function.takes.iter().map(|a| format!("{}: &[f64; {}]", a.name(), size(*a))).collect();
-    let result = result_type(function.gives);
+    let arguments: Vec<String> = function.takes.iter().map(|a| format!("{}: &[f64; {}]", a.name(), length(*a))).collect();
+    let Shape { array, row, .. } = shape(function.gives, sizes);
     let _ = writeln!(out, "#[allow(clippy::all, clippy::pedantic)]");
-    let _ = writeln!(out, "pub fn {}({}) -> {result} {{", function.name, arguments.join(", "));
+    let _ = writeln!(out, "pub fn {}({}) -> {array} {{", function.name, arguments.join(", "));
     for argument in function.takes {
         let _ = writeln!(out, "    let _ = {};", argument.name());
     }
-    Body { out, graph, function }.write();
+    Body { out, graph, function, row }.write();
     let _ = writeln!(out, "}}\n");
-}
-
-fn size(argument: articulated_core::algorithm::Argument) -> &'static str {
-    if argument.name() == "q" { "NQ" } else { "NV" }
-}
-
-fn result_type(gives: ResultKind) -> &'static str {
-    match gives {
-        ResultKind::Torque => "[f64; NV]",
-        ResultKind::Placements => "[[f64; 12]; FRAMES]",
-    }
 }
 
 fn document(out: &mut String, function: &Function<Sym>, entry: &Entry) {
@@ -64,6 +54,7 @@ struct Body<'a> {
     out: &'a mut String,
     graph: &'a Graph,
     function: &'a Function<Sym>,
+    row: Option<usize>,
 }
 
 impl Body<'_> {
@@ -129,9 +120,9 @@ impl Body<'_> {
 
     fn result(&mut self) {
         let values: Vec<String> = self.graph.outputs.iter().map(|&o| self.operand(o)).collect();
-        let rows: Vec<String> = match self.function.gives {
-            ResultKind::Torque => vec![values.join(", ")],
-            ResultKind::Placements => values.chunks(12).map(|row| format!("[{}]", row.join(", "))).collect(),
+        let rows: Vec<String> = match self.row {
+            None => vec![values.join(", ")],
+            Some(width) => values.chunks(width.max(1)).map(|row| format!("[{}]", row.join(", "))).collect(),
         };
         let _ = writeln!(self.out, "    [{}]", rows.join(",\n     "));
     }

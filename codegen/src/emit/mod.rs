@@ -5,6 +5,7 @@ mod literal;
 mod module;
 mod names;
 mod order;
+mod shape;
 mod warnings;
 
 pub use names::identifier;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use articulated_core::algorithm::Function;
+use articulated_core::algorithm::{Function, Shape as Sizes};
 use articulated_core::description::{Base, JointKind};
 use articulated_core::model::{JointInfo, Model};
 
@@ -10,6 +10,7 @@ use super::function::{BATCH_FROM, function};
 use super::literal::literal;
 use super::names::Names;
 use super::order::{Step, order};
+use super::shape::{Shape, length, shape};
 use crate::graph::Graph;
 use crate::{Ledger, Request, Sym};
 
@@ -26,7 +27,7 @@ pub(crate) fn module(
     constants(&mut out, model);
     indices(&mut out, model, names);
     for ((f, graph), entry) in programs.iter().zip(&ledger.functions) {
-        function(&mut out, f, graph, entry);
+        function(&mut out, f, graph, entry, model.shape());
     }
     if programs.iter().any(|(_, g)| g.counts().fused() > 0) {
         out += FMA;
@@ -35,7 +36,7 @@ pub(crate) fn module(
         let _ =
             writeln!(out, "#[allow(unreachable_pub, clippy::all, clippy::pedantic)]\nmod trig {{\n{}}}\n", articulated_core::trig::SOURCE);
     }
-    robot(&mut out, request, programs);
+    robot(&mut out, request, model.shape(), programs);
     out
 }
 
@@ -145,7 +146,7 @@ fn list(out: &mut String, module: &str, doc: &str, rows: &[(String, String, usiz
 }
 
 /// The type that stands for the robot where code is written over the trait `Dynamics`.
-fn robot(out: &mut String, request: &Request, programs: &[(&'static Function<Sym>, Graph)]) {
+fn robot(out: &mut String, request: &Request, sizes: Sizes, programs: &[(&'static Function<Sym>, Graph)]) {
     let Some(path) = &request.options.runtime else { return };
     let _ = writeln!(
         out,
@@ -156,30 +157,25 @@ fn robot(out: &mut String, request: &Request, programs: &[(&'static Function<Sym
     let _ = writeln!(out, "    fn shape(&self) -> {path}::Shape {{ {path}::Shape {{ nq: NQ, nv: NV, frames: FRAMES }} }}");
     let _ = writeln!(out, "    fn name(&self) -> &str {{ NAME }}");
     for (f, _) in programs {
-        method(out, path, f);
+        method(out, path, f, sizes);
     }
     let _ = writeln!(out, "}}");
 }
 
-fn method(out: &mut String, path: &str, f: &Function<Sym>) {
-    use articulated_core::algorithm::ResultKind;
-    let (slot, result) = match f.gives {
-        ResultKind::Torque => ("NV", "[f64]"),
-        ResultKind::Placements => ("FRAMES", "[[f64; 12]]"),
-    };
-    let result_name = if f.name == "inverse_dynamics" { "tau" } else { "out" };
+fn method(out: &mut String, path: &str, f: &Function<Sym>, sizes: Sizes) {
+    let Shape { slice: (element, slots), as_slice, .. } = shape(f.gives, sizes);
+    let result = if f.name == "inverse_dynamics" { "tau" } else { "out" };
     let arguments: String = f.takes.iter().map(|a| format!(", {}: &[f64]", a.name())).collect();
     let _ = writeln!(
         out,
-        "    fn {}(&self, _: &mut (){arguments}, {result_name}: &mut {result}) -> ::core::result::Result<(), {path}::FunctionError> {{",
+        "    fn {}(&self, _: &mut (){arguments}, {result}: &mut [{element}]) -> ::core::result::Result<(), {path}::FunctionError> {{",
         f.name
     );
     for a in f.takes {
-        let n = if a.name() == "q" { "NQ" } else { "NV" };
-        let _ = writeln!(out, "        let {0} = {path}::exactly::<{n}, f64>({0:?}, {0})?;", a.name());
+        let _ = writeln!(out, "        let {0} = {path}::exactly::<{1}, f64>({0:?}, {0})?;", a.name(), length(*a));
     }
-    let _ = writeln!(out, "        {path}::check_length({result_name:?}, {result_name}.len(), {slot})?;");
+    let _ = writeln!(out, "        {path}::check_length({result:?}, {result}.len(), {slots})?;");
     let names: Vec<&str> = f.takes.iter().map(|a| a.name()).collect();
-    let _ = writeln!(out, "        {result_name}.copy_from_slice(&self::{}({}));", f.name, names.join(", "));
+    let _ = writeln!(out, "        {result}.copy_from_slice(&self::{}({}){as_slice});", f.name, names.join(", "));
     let _ = writeln!(out, "        ::core::result::Result::Ok(())\n    }}");
 }

@@ -40,6 +40,16 @@ pub trait Dynamics<S: Scalar = f64> {
     fn gravity_torque(&self, _ws: &mut Self::Workspace, _q: &[S], _out: &mut [S]) -> Result<(), FunctionError> {
         Err(FunctionError::NotGenerated { function: "gravity_torque" })
     }
+
+    /// M(q). q: [nq]; out: [nv · nv], row by row.
+    fn mass_matrix(&self, _ws: &mut Self::Workspace, _q: &[S], _out: &mut [S]) -> Result<(), FunctionError> {
+        Err(FunctionError::NotGenerated { function: "mass_matrix" })
+    }
+
+    /// a = M(q)⁻¹·(τ − h(q, v)). q: [nq]; v, tau, out: [nv].
+    fn forward_dynamics(&self, _ws: &mut Self::Workspace, _q: &[S], _v: &[S], _tau: &[S], _out: &mut [S]) -> Result<(), FunctionError> {
+        Err(FunctionError::NotGenerated { function: "forward_dynamics" })
+    }
 }
 
 impl<S: Scalar> Dynamics<S> for Model<S> {
@@ -78,6 +88,18 @@ impl<S: Scalar> Dynamics<S> for Model<S> {
     fn gravity_torque(&self, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) -> Result<(), FunctionError> {
         check(&[("q", q.len(), self.nq), ("out", out.len(), self.nv)])?;
         algorithm::gravity_torque(self, ws, q, out);
+        Ok(())
+    }
+
+    fn mass_matrix(&self, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) -> Result<(), FunctionError> {
+        check(&[("q", q.len(), self.nq), ("out", out.len(), self.nv * self.nv)])?;
+        algorithm::mass_matrix(self, ws, q, out);
+        Ok(())
+    }
+
+    fn forward_dynamics(&self, ws: &mut Workspace<S>, q: &[S], v: &[S], tau: &[S], out: &mut [S]) -> Result<(), FunctionError> {
+        check(&[("q", q.len(), self.nq), ("v", v.len(), self.nv), ("tau", tau.len(), self.nv), ("out", out.len(), self.nv)])?;
+        algorithm::forward_dynamics(self, ws, q, v, tau, out);
         Ok(())
     }
 }

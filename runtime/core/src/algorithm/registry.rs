@@ -5,7 +5,7 @@
 use core::fmt;
 use core::marker::PhantomData;
 
-use super::{Workspace, bias_forces, gravity_torque, inverse_dynamics, placements};
+use super::{Workspace, bias_forces, forward_dynamics, gravity_torque, inverse_dynamics, mass_matrix, placements};
 use crate::Scalar;
 use crate::model::Model;
 
@@ -36,6 +36,8 @@ pub enum Argument {
     V,
     /// a = dv/dt, [nv].
     A,
+    /// τ, [nv]: N·m or N.
+    Tau,
 }
 
 impl Argument {
@@ -45,6 +47,7 @@ impl Argument {
             Self::Q => "q",
             Self::V => "v",
             Self::A => "a",
+            Self::Tau => "tau",
         }
     }
 
@@ -52,7 +55,7 @@ impl Argument {
     pub fn len(self, shape: Shape) -> usize {
         match self {
             Self::Q => shape.nq,
-            Self::V | Self::A => shape.nv,
+            Self::V | Self::A | Self::Tau => shape.nv,
         }
     }
 
@@ -62,6 +65,7 @@ impl Argument {
             Self::Q => "[NQ] rad|m|unit quaternion",
             Self::V => "[NV] rad/s|m/s",
             Self::A => "[NV] rad/s²|m/s²",
+            Self::Tau => "[NV] N·m|N",
         }
     }
 }
@@ -73,14 +77,19 @@ pub enum ResultKind {
     Torque,
     /// For each frame, rotation row by row and position: [frames][12].
     Placements,
+    /// Generalised accelerations, [nv].
+    Acceleration,
+    /// The mass matrix, [nv][nv].
+    MassMatrix,
 }
 
 impl ResultKind {
     /// How many numbers.
     pub fn len(self, shape: Shape) -> usize {
         match self {
-            Self::Torque => shape.nv,
+            Self::Torque | Self::Acceleration => shape.nv,
             Self::Placements => 12 * shape.frames,
+            Self::MassMatrix => shape.nv * shape.nv,
         }
     }
 
@@ -89,6 +98,8 @@ impl ResultKind {
         match self {
             Self::Torque => "[NV] N·m|N",
             Self::Placements => "[FRAMES][12]: rotation row by row, then position in m, in the base frame",
+            Self::Acceleration => "[NV] rad/s²|m/s²",
+            Self::MassMatrix => "[NV][NV] kg·m²|kg·m|kg, symmetric",
         }
     }
 }
@@ -142,6 +153,11 @@ impl fmt::Display for FunctionError {
 impl core::error::Error for FunctionError {}
 
 impl<S: Scalar> Function<S> {
+    /// Whether the function divides by the mass matrix, so that a joint that moves no mass makes it undefined.
+    pub fn inverts_mass_matrix(&self) -> bool {
+        self.gives == ResultKind::Acceleration
+    }
+
     /// Evaluates the function; `arguments` in the order of `takes`, `out` as `gives` says.
     pub fn call(&self, model: &Model<S>, ws: &mut Workspace<S>, arguments: &[&[S]], out: &mut [S]) -> Result<(), FunctionError> {
         let shape = model.shape();
@@ -200,6 +216,22 @@ impl<S: Scalar> Table<S> {
             takes: &[Argument::Q],
             gives: ResultKind::Torque,
             run: |m, ws, x, out| gravity_torque(m, ws, x[0], out),
+        },
+        Function {
+            name: "mass_matrix",
+            summary: "M(q)",
+            source: "CRBA; Featherstone 2008, Table 6.2",
+            takes: &[Argument::Q],
+            gives: ResultKind::MassMatrix,
+            run: |m, ws, x, out| mass_matrix(m, ws, x[0], out),
+        },
+        Function {
+            name: "forward_dynamics",
+            summary: "a = M(q)⁻¹·(τ − h(q, v))",
+            source: "RNEA, CRBA and M = Lᵀ D L; Featherstone 2008, §6.5",
+            takes: &[Argument::Q, Argument::V, Argument::Tau],
+            gives: ResultKind::Acceleration,
+            run: |m, ws, x, out| forward_dynamics(m, ws, x[0], x[1], x[2], out),
         },
     ];
 }

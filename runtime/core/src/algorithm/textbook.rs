@@ -125,6 +125,21 @@ impl<S: Scalar> Textbook<S> {
         Ok(tau)
     }
 
+    /// M(q), column by column: the torques of a unit acceleration of one joint, at rest and without gravity. [nv · nv], row by row.
+    pub fn mass_matrix(&self, q: &[S]) -> Result<Vec<S>, FunctionError> {
+        let n = self.shape.nv;
+        let weightless = Self { gravity: Vector3::zeros(), ..self.clone() };
+        let zeros = vec![S::zero(); n];
+        let mut m = vec![S::zero(); n * n];
+        for j in 0..n {
+            let mut unit = zeros.clone();
+            unit[j] = S::one();
+            let column = weightless.inverse_dynamics(q, &zeros, &unit)?;
+            column.into_iter().enumerate().for_each(|(i, x)| m[i * n + j] = x);
+        }
+        Ok(m)
+    }
+
     /// Placements of all links in the base frame; shapes and units as [`super::placements`].
     pub fn placements(&self, q: &[S]) -> Result<Vec<S>, FunctionError> {
         self.check(&[("q", q.len(), self.shape.nq)])?;
@@ -143,6 +158,7 @@ impl<S: Scalar> Textbook<S> {
             ("placements", [q]) => self.placements(q),
             ("inverse_dynamics", [q, v, a]) => self.inverse_dynamics(q, v, a),
             ("bias_forces", [q, v]) => self.inverse_dynamics(q, v, &zeros),
+            ("mass_matrix", [q]) => self.mass_matrix(q),
             ("gravity_torque", [q]) => self.inverse_dynamics(q, &zeros, &zeros),
             _ => return None,
         })
