@@ -1,0 +1,9 @@
+// A joint that moves no mass has inverse but no forward dynamics.
+articulated::robot! {
+    mod arm {
+        urdf = "ui/urdf/massless.urdf",
+        functions = [inverse_dynamics, forward_dynamics],
+    }
+}
+
+fn main() {}
