@@ -34,16 +34,24 @@ pub struct State {
     pub v: Vec<f64>,
     /// [nv].
     pub a: Vec<f64>,
+    /// Torques, [nv]; not those of q, v and a.
+    pub tau: Vec<f64>,
 }
 
 impl State {
-    /// The vector of an argument; for one that this type does not know, a vector as long.
-    pub fn argument<'a>(&'a self, argument: &Argument, other: &'a [f64]) -> &'a [f64] {
-        match argument.name() {
-            "q" => &self.q,
-            "v" => &self.v,
-            "a" => &self.a,
-            _ => other,
+    /// A motion, with torques of zero.
+    pub fn new(q: Vec<f64>, v: Vec<f64>, a: Vec<f64>) -> Self {
+        let tau = vec![0.0; v.len()];
+        Self { q, v, a, tau }
+    }
+
+    /// The vector of an argument.
+    pub fn argument(&self, argument: Argument) -> &[f64] {
+        match argument {
+            Argument::Q => &self.q,
+            Argument::V => &self.v,
+            Argument::A => &self.a,
+            Argument::Tau => &self.tau,
         }
     }
 
@@ -87,7 +95,7 @@ impl Case {
         Motions::new(&self.description, self.base, self.gravity)
     }
 
-    /// A state at random: angles in ±π, lengths in ±1 m, rates and accelerations in ±2.
+    /// A state at random: angles in ±π, lengths in ±1 m, rates and accelerations in ±2, torques in ±20.
     pub fn state(&self, random: &mut Random) -> State {
         let mut q = random.vector(self.model.nq, -std::f64::consts::PI, std::f64::consts::PI);
         for body in self.model.bodies.iter().skip(1).filter(|b| b.coordinates.mimic.is_none()) {
@@ -100,7 +108,8 @@ impl Case {
         }
         let v = random.vector(self.model.nv, -2.0, 2.0);
         let a = random.vector(self.model.nv, -2.0, 2.0);
-        State { q, v, a }
+        let tau = random.vector(self.model.nv, -20.0, 20.0);
+        State { q, v, a, tau }
     }
 
     /// τ of the generic library.
@@ -136,11 +145,7 @@ pub fn placements<S: Scalar>(model: &Model<S>, q: &[S]) -> Vec<S> {
 pub fn mass_matrix(model: &Model<f64>, q: &[f64]) -> nalgebra::DMatrix<f64> {
     let still = model.clone().with_gravity([0.0; 3]);
     let zero = vec![0.0; model.nv];
-    let column = |k: usize| {
-        let mut unit = zero.clone();
-        unit[k] = 1.0;
-        nalgebra::DVector::from_vec(inverse_dynamics(&still, q, &zero, &unit))
-    };
+    let column = |k: usize| nalgebra::DVector::from_vec(inverse_dynamics(&still, q, &zero, &crate::measure::unit(model.nv, k)));
     let columns: Vec<_> = (0..model.nv).map(column).collect();
     if columns.is_empty() { nalgebra::DMatrix::zeros(0, 0) } else { nalgebra::DMatrix::from_columns(&columns) }
 }

@@ -1,5 +1,6 @@
 //! Golden files: results that only change on purpose.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
@@ -26,17 +27,11 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("golden")
 }
 
-/// Lines that are in one and not in the same place of the other, the first twenty.
+/// Lines that are in one and not in the other, the first twenty of each.
 fn difference(old: &str, new: &str) -> String {
-    let (mut before, mut after) = (old.lines(), new.lines());
-    let mut out = Vec::new();
-    loop {
-        match (before.next(), after.next()) {
-            (None, None) => break,
-            (a, b) if a == b => {}
-            (a, b) => out.push(format!("- {}\n+ {}", a.unwrap_or("(end)"), b.unwrap_or("(end)"))),
-        }
-    }
-    out.truncate(20);
-    out.join("\n")
+    let only = |sign: &str, here: &str, there: &str| {
+        let there: BTreeSet<&str> = there.lines().collect();
+        here.lines().filter(|l| !there.contains(l)).take(20).map(|l| format!("{sign} {l}\n")).collect::<String>()
+    };
+    only("-", old, new) + &only("+", new, old)
 }

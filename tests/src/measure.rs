@@ -4,13 +4,14 @@ use articulated_cli::precise::Big;
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Argument, ResultKind, function};
 
-use crate::case::{Case, State};
+use crate::case::{Case, State, inverse_dynamics};
+use crate::virtual_power::Motions;
 
 /// Unit roundoff of double precision.
 pub const U: f64 = f64::EPSILON / 2.0;
 
-/// What an error of each result of a function is measured against: see [`crate::virtual_power::Motions::torque_scale`] and
-/// [`crate::virtual_power::Motions::placement_scale`].
+/// What an error of each result of a function is measured against: see [`Motions::torque_scale`] and [`Motions::placement_scale`].
+/// Entries of the mass matrix are torques for a unit of one acceleration.
 pub fn scale(case: &Case, name: &str, state: &State) -> Vec<f64> {
     let row = function::<f64>(name).expect("a function of the registry");
     let zero = vec![0.0; case.model.nv];
@@ -18,7 +19,39 @@ pub fn scale(case: &Case, name: &str, state: &State) -> Vec<f64> {
     match row.gives {
         ResultKind::Placements => case.motions().placement_scale(&state.q),
         ResultKind::Torque => case.motions().torque_scale(&state.q, or_rest(Argument::V, &state.v), or_rest(Argument::A, &state.a)),
+        ResultKind::MassMatrix => matrix_scale(case, &state.q),
+        ResultKind::Acceleration => panic!("{name} is judged by its backward error"),
     }
+}
+
+/// Row by row.
+fn matrix_scale(case: &Case, q: &[f64]) -> Vec<f64> {
+    let n = case.model.nv;
+    let weightless = Motions::new(&case.description, case.base, [0.0; 3]);
+    let column = |k: usize| weightless.torque_scale(q, &vec![0.0; n], &unit(n, k));
+    let columns: Vec<Vec<f64>> = (0..n).map(column).collect();
+    (0..n * n).map(|k| columns[k % n][k / n].max(columns[k / n][k % n])).collect()
+}
+
+/// The k-th of n.
+pub fn unit(n: usize, k: usize) -> Vec<f64> {
+    (0..n).map(|i| if i == k { 1.0 } else { 0.0 }).collect()
+}
+
+/// How far `found`, the result of a function in a state, is from what the generic library gives, in units of u times [`scale`]. For accelerations, the
+/// backward error: how far the torques that they need are from those that were given, in units of u times |M||a| + |h| + |τ|.
+pub fn error(case: &Case, name: &str, state: &State, found: &[f64]) -> f64 {
+    let row = function::<f64>(name).expect("a function of the registry");
+    if row.gives != ResultKind::Acceleration {
+        return distance(found, &case.call(name, &arguments(name, state)), &scale(case, name, state));
+    }
+    let State { q, v, tau, .. } = state;
+    let n = tau.len();
+    let m: Vec<f64> = case.call("mass_matrix", &[q]);
+    let bias = case.motions().torque_scale(q, v, &vec![0.0; n]);
+    let terms = |i: usize| (0..n).map(|k| (m[i * n + k] * found[k]).abs()).sum::<f64>() + bias[i] + tau[i].abs();
+    let scale: Vec<f64> = (0..n).map(terms).collect();
+    distance(&inverse_dynamics(&case.model, q, v, found), tau, &scale)
 }
 
 /// As [`scale`], for τ = M(q)·a + h(q, v).
@@ -29,7 +62,7 @@ pub fn torque_scale(case: &Case, state: &State) -> Vec<f64> {
 /// The arguments of a function of the registry in a state.
 pub fn arguments<'a>(name: &str, state: &'a State) -> Vec<&'a [f64]> {
     let row = function::<f64>(name).expect("a function of the registry");
-    row.takes.iter().map(|a| state.argument(a, &state.a)).collect()
+    row.takes.iter().map(|a| state.argument(*a)).collect()
 }
 
 /// Largest |found − expected| in units of u times the scale. NaN counts as infinite, and so does any difference where the scale is 0.

@@ -74,6 +74,22 @@ fn take<const N: usize>(x: &mut &[f64]) -> [f64; N] {
     head.try_into().unwrap()
 }
 
+trait Numbers {
+    fn add_to(&self, out: &mut Vec<f64>);
+}
+
+impl<const N: usize> Numbers for [f64; N] {
+    fn add_to(&self, out: &mut Vec<f64>) {
+        out.extend(self);
+    }
+}
+
+impl<const N: usize, const M: usize> Numbers for [[f64; N]; M] {
+    fn add_to(&self, out: &mut Vec<f64>) {
+        out.extend(self.as_flattened());
+    }
+}
+
 #[allow(unused)]
 fn main() {
     let arguments: Vec<String> = std::env::args().collect();
@@ -101,8 +117,7 @@ fn main(robots: &[(&str, &Generated)]) -> String {
         for name in generated.ledger.functions.iter().map(|e| &e.function) {
             let row = function::<f64>(name).expect("a function of the registry");
             let arguments = vec!["&take(&mut x)"; row.takes.len()].join(", ");
-            let flat = if generated_rows(name) { ".as_flattened()" } else { "" };
-            let _ = writeln!(out, "            ({robot:?}, {name:?}) => out.extend({robot}::{name}({arguments}){flat}),");
+            let _ = writeln!(out, "            ({robot:?}, {name:?}) => {robot}::{name}({arguments}).add_to(&mut out),");
         }
     }
     out += TAIL;
@@ -110,9 +125,4 @@ fn main(robots: &[(&str, &Generated)]) -> String {
         let _ = writeln!(out, "mod {robot};");
     }
     out
-}
-
-/// Whether the function gives an array of arrays.
-fn generated_rows(name: &str) -> bool {
-    name == "placements"
 }

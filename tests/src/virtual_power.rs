@@ -7,9 +7,10 @@
 //!
 //! It starts from the numbers of the file and shares nothing with the crates that it judges but the scalar.
 
+use std::f64::consts::FRAC_PI_2;
+
 use articulated_core::Scalar;
 use articulated_core::description::{Base, Description, JointKind, Origin};
-use articulated_core::spatial::sin_cos_of_written_angle;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::jet::Jet;
@@ -316,11 +317,20 @@ fn compose<S: Scalar>(a: &Pose<S>, b: &Pose<S>) -> Pose<S> {
 fn place<S: Scalar>(origin: &Origin) -> Pose<S> {
     let e = [Vector3::x(), Vector3::y(), Vector3::z()];
     let about = |k: usize| {
-        // A written right angle is a right angle: that is the reader's convention and no matter of dynamics.
-        let (s, c) = sin_cos_of_written_angle::<S>(origin.rpy[k]);
+        let (s, c) = written(origin.rpy[k]);
         from_axis(e[k], Jet::still(s), Jet::still(c))
     };
     (about(2) * about(1) * about(0), Vector3::from(origin.xyz).map(Jet::from_f64))
+}
+
+/// (sin, cos); the double nearest to a right angle is a right angle: that is a convention and no matter of dynamics.
+fn written<S: Scalar>(angle: f64) -> (S, S) {
+    let turns = (angle / FRAC_PI_2).round();
+    if turns * FRAC_PI_2 != angle || turns.abs() > 4.0 {
+        return S::from_f64(angle).sin_cos();
+    }
+    let exact = |x: f64| S::from_f64(x.round());
+    (exact(angle.sin()), exact(angle.cos()))
 }
 
 fn turn<S: Scalar>(axis: Vector3<Jet<S>>, angle: Jet<S>) -> Matrix3<Jet<S>> {

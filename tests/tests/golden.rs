@@ -24,7 +24,9 @@ fn generated(name: &str) -> Generated {
 
 #[test]
 fn the_module_of_a_pendulum() {
-    golden::check("simple_pendulum.rs", &generated("simple_pendulum").source);
+    let mut request = Request::new("simple_pendulum.urdf", articulated_models::robot("simple_pendulum").unwrap().urdf);
+    request.options.runtime = Some("::articulated".into());
+    golden::check("simple_pendulum.rs", &generate(&request).unwrap().source);
 }
 
 /// Operations of every function of every bundled robot. A rise needs a reason, in the message of the commit that renews the file.

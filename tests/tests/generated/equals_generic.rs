@@ -1,15 +1,18 @@
 //! Generated = generic, function by function.
 
-use articulated_core::algorithm::functions;
+use articulated_core::algorithm::function;
 use articulated_tests::case::State;
-use articulated_tests::measure::{arguments, distance, scale};
+use articulated_tests::measure::{arguments, error};
 use articulated_tests::program::Program;
 use articulated_tests::random::Random;
 
 use crate::robots::{NATIVE, PORTABLE, ROBOTS, Robot};
 
-/// Difference allowed, in units of u times the yardstick.
-const FEW: f64 = 16.0;
+/// Error allowed, in units of u times the yardstick.
+fn allowed(function: &str) -> f64 {
+    // A solution is judged by its backward error, which has its own bound; all else by its difference. Seen: 7.
+    if function == "forward_dynamics" { 64.0 } else { 16.0 }
+}
 
 const STATES: usize = 32;
 
@@ -18,13 +21,11 @@ fn compare(program: &Program, robot: &Robot) -> f64 {
     let mut random = Random::new(17);
     let states: Vec<State> = (0..STATES).map(|_| robot.case.state(&mut random)).collect();
     let mut worst: f64 = 0.0;
-    for row in functions::<f64>() {
-        let given: Vec<Vec<&[f64]>> = states.iter().map(|s| arguments(row.name, s)).collect();
-        let found = program.run(&robot.name, row.name, &given);
-        for ((state, given), found) in states.iter().zip(&given).zip(&found) {
-            let expected = robot.case.call::<f64>(row.name, given);
-            let far = distance(found, &expected, &scale(&robot.case, row.name, state));
-            assert!(far <= FEW, "{}::{}: {far} units of roundoff in {state:?}", robot.name, row.name);
+    for name in robot.functions() {
+        let given: Vec<Vec<&[f64]>> = states.iter().map(|s| arguments(name, s)).collect();
+        for (state, found) in states.iter().zip(program.run(&robot.name, name, &given)) {
+            let far = error(&robot.case, name, state, &found);
+            assert!(far <= allowed(name), "{}::{name}: {far} units of roundoff in {state:?}", robot.name);
             worst = worst.max(far);
         }
     }
@@ -49,11 +50,12 @@ fn so_does_code_for_any_machine_without_fused_multiply_add() {
 #[test]
 fn no_value_makes_generated_code_panic() {
     for robot in ROBOTS.iter().filter(|r| ["panda_like", "gripper_arm", "tree_1"].contains(&r.name.as_str())) {
+        let shape = robot.case.model.shape();
         for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, 1e300, -1e6, 5e-324, -0.0] {
-            let state = State { q: vec![x; robot.case.model.nq], v: vec![x; robot.case.model.nv], a: vec![x; robot.case.model.nv] };
-            for row in functions::<f64>() {
+            let state = State { q: vec![x; shape.nq], v: vec![x; shape.nv], a: vec![x; shape.nv], tau: vec![x; shape.nv] };
+            for row in robot.functions().map(|name| function::<f64>(name).unwrap()) {
                 let found = PORTABLE.run(&robot.name, row.name, &[arguments(row.name, &state)]);
-                assert_eq!(found[0].len(), row.gives.len(robot.case.model.shape()));
+                assert_eq!(found[0].len(), row.gives.len(shape));
                 let finite = x.is_finite() && x.abs() < 1e7;
                 assert!(!finite || found[0].iter().all(|y| y.is_finite()), "{}::{} of {x}", robot.name, row.name);
             }
@@ -70,8 +72,8 @@ fn angles_of_many_turns_are_as_good_as_any() {
             state.q.iter_mut().for_each(|q| *q += turns);
             let given = arguments("inverse_dynamics", &state);
             let found = NATIVE.run(&robot.name, "inverse_dynamics", &[given]);
-            let far = distance(&found[0], &robot.case.inverse_dynamics(&state), &scale(&robot.case, "inverse_dynamics", &state));
-            assert!(far <= FEW, "{} after {turns} rad: {far} units of roundoff", robot.name);
+            let far = error(&robot.case, "inverse_dynamics", &state, &found[0]);
+            assert!(far <= allowed("inverse_dynamics"), "{} after {turns} rad: {far} units of roundoff", robot.name);
         }
     }
 }

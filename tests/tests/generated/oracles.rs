@@ -20,7 +20,7 @@ fn each(law: impl Fn(&Case, &Fixture)) {
 }
 
 fn state(reference: &Reference) -> State {
-    State { q: reference.q.clone(), v: reference.v.clone(), a: reference.a.clone() }
+    State::new(reference.q.clone(), reference.v.clone(), reference.a.clone())
 }
 
 fn torques_hold(name: &str, found: &[f64], reference: &Reference) {

@@ -17,25 +17,35 @@ pub(crate) struct Robot {
     pub(crate) generated: Generated,
 }
 
+impl Robot {
+    /// Names of the functions that it was generated with.
+    pub(crate) fn functions(&self) -> impl Iterator<Item = &str> {
+        self.generated.ledger.functions.iter().map(|f| f.function.as_str())
+    }
+}
+
 /// How many random trees.
 const TREES: u64 = 10;
 
 /// All bundled robots, random trees on both bases, and a link alone.
 pub(crate) static ROBOTS: LazyLock<Vec<Robot>> = LazyLock::new(|| {
-    let bundled = articulated_models::ROBOTS.iter().map(|r| robot(r.name.into(), r.urdf, r.base));
+    let bundled = articulated_models::ROBOTS.iter().map(|r| robot(r.name.into(), r.urdf, r.base, false));
     let trees = (0..TREES).map(|seed| {
         let base = if seed % 2 == 0 { Base::Fixed } else { Base::Floating };
-        // Offset: among the first trees are some of a single link.
-        robot(format!("tree_{seed}"), &urdf_text(&random_tree(100 + seed, Flavour::ANY)), base)
+        // Forward dynamics needs a mass matrix that is regular.
+        let flavour = if seed % 4 < 2 { Flavour::ANY } else { Flavour::REGULAR };
+        robot(format!("tree_{seed}"), &urdf_text(&random_tree(100 + seed, flavour)), base, flavour.massless)
     });
     let stone = "<robot name='stone'><link name='stone'/></robot>";
-    bundled.chain(trees).chain([robot("stone".into(), stone, Base::Fixed)]).collect()
+    bundled.chain(trees).chain([robot("stone".into(), stone, Base::Fixed, false)]).collect()
 });
 
-fn robot(name: String, urdf: &str, base: Base) -> Robot {
+/// With every function, save those that need a regular mass matrix where it may be singular.
+fn robot(name: String, urdf: &str, base: Base, singular: bool) -> Robot {
     let mut request = Request::new(format!("{name}.urdf"), urdf);
     request.options.base = base;
-    request.options.functions = functions::<f64>().iter().map(|f| f.name.into()).collect();
+    request.options.functions =
+        functions::<f64>().iter().filter(|f| !singular || !f.inverts_mass_matrix()).map(|f| f.name.into()).collect();
     let generated = generate(&request).unwrap_or_else(|e| panic!("{name}: {e}"));
     Robot { case: Case::new(name.clone(), read(urdf), base), generated, name }
 }

@@ -49,7 +49,7 @@ fn gravity_torque_is_the_slope_of_potential_energy() {
         let slow: Vec<f64> = v.iter().map(|x| x * 1e-9).collect();
         let gained = case.motions().energy(&q, &slow, &zero).power * 1e9;
         let given: f64 = torque.iter().zip(&v).map(|(t, v)| t * v).sum();
-        let scale: f64 = torque_scale(case, &State { q, v: zero.clone(), a: zero }).iter().zip(&v).map(|(t, v)| t * v.abs()).sum();
+        let scale: f64 = torque_scale(case, &State::new(q, zero.clone(), zero)).iter().zip(&v).map(|(t, v)| t * v.abs()).sum();
         assert!((given - gained).abs() <= 1e-13 * scale + 1e-14, "{given} {gained} {scale}");
     });
 }

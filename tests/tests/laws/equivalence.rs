@@ -98,7 +98,7 @@ fn a_reversed_axis_reverses_coordinate_rate_and_torque() {
         let single =
             |k: usize, of: fn(&articulated_core::model::JointInfo) -> (usize, usize)| case.model.joints.iter().any(|j| of(j) == (k, 1));
         let flip = |x: &[f64], of| x.iter().enumerate().map(|(k, x)| if single(k, of) { -x } else { *x }).collect::<Vec<f64>>();
-        let other = State { q: flip(&state.q, |j| j.q), v: flip(&state.v, |j| j.v), a: flip(&state.a, |j| j.v) };
+        let other = State::new(flip(&state.q, |j| j.q), flip(&state.v, |j| j.v), flip(&state.a, |j| j.v));
         let found = Case::new("", reversed, case.base).inverse_dynamics(&other);
         let far = distance(&flip(&found, |j| j.v), &case.inverse_dynamics(&state), &torque_scale(case, &state));
         assert!(far <= FEW, "{far} units of roundoff");
@@ -135,8 +135,7 @@ fn a_floating_base_at_rest_is_a_fixed_base() {
         let state = fixed.state(&mut Random::new(seed));
         let before = |head: &[f64], x: &[f64]| [head, x].concat();
         let rest = [0.0; 6];
-        let held =
-            State { q: before(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], &state.q), v: before(&rest, &state.v), a: before(&rest, &state.a) };
+        let held = State::new(before(&[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], &state.q), before(&rest, &state.v), before(&rest, &state.a));
         let far = distance(&floating.inverse_dynamics(&held)[6..], &fixed.inverse_dynamics(&state), &torque_scale(&fixed, &state));
         assert!(far <= FEW, "seed {seed}: {far} units of roundoff");
     }

@@ -1,6 +1,6 @@
 //! The interface: wrong input is an error, and nothing panics.
 
-use articulated::{Dynamics, FunctionError};
+use articulated::{Dynamics, FunctionError, Shape};
 use articulated_core::algorithm::{Workspace, functions};
 use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, Mimic, Origin};
 use articulated_core::model::{Model, ModelError};
@@ -16,46 +16,96 @@ articulated::robot! {
     }
 }
 
-/// Every function of the trait on slices of these lengths: what each says.
-fn answers<D: Dynamics>(robot: &D, nq: usize, nv: usize, frames: usize) -> Vec<Result<(), FunctionError>> {
+/// Lengths of the arguments and results of the trait's functions.
+#[derive(Clone, Copy)]
+struct Lengths {
+    q: usize,
+    /// Of v, a and τ as arguments: v, then the other.
+    given: [usize; 2],
+    /// Of results: torques or accelerations, frames, entries of the mass matrix.
+    results: [usize; 3],
+}
+
+impl Lengths {
+    fn of(shape: Shape) -> Self {
+        let Shape { nq, nv, frames } = shape;
+        Self { q: nq, given: [nv; 2], results: [nv, frames, nv * nv] }
+    }
+}
+
+/// The names of the trait's functions, and what they say to these lengths.
+fn answers<D: Dynamics>(robot: &D, n: Lengths) -> [(&'static str, Result<(), FunctionError>); 6] {
     let ws = &mut robot.workspace();
-    let (q, v, mut out, mut rows) = (vec![0.5; nq], vec![0.5; nv], vec![0.0; nv], vec![[0.0; 12]; frames]);
-    vec![
-        robot.inverse_dynamics(ws, &q, &v, &v, &mut out),
-        robot.placements(ws, &q, &mut rows),
-        robot.bias_forces(ws, &q, &v, &mut out),
-        robot.gravity_torque(ws, &q, &mut out),
+    let zeros = |n: usize| vec![0.0; n];
+    let (q, v, a) = (zeros(n.q), zeros(n.given[0]), zeros(n.given[1]));
+    let [mut out, mut matrix] = [zeros(n.results[0]), zeros(n.results[2])];
+    let mut frames = vec![[0.0; 12]; n.results[1]];
+    [
+        ("inverse_dynamics", robot.inverse_dynamics(ws, &q, &v, &a, &mut out)),
+        ("placements", robot.placements(ws, &q, &mut frames)),
+        ("bias_forces", robot.bias_forces(ws, &q, &v, &mut out)),
+        ("gravity_torque", robot.gravity_torque(ws, &q, &mut out)),
+        ("mass_matrix", robot.mass_matrix(ws, &q, &mut matrix)),
+        ("forward_dynamics", robot.forward_dynamics(ws, &q, &v, &a, &mut out)),
     ]
 }
 
-#[test]
-fn a_wrong_length_is_an_error_that_names_the_argument() {
-    let case = Case::bundled(articulated_models::robot("quadruped").unwrap());
-    let shape = case.model.shape();
-    assert!(answers(&case.model, shape.nq, shape.nv, shape.frames).iter().all(Result::is_ok));
-    for wrong in [0, 1, shape.nq - 1, shape.nq + 1] {
-        for answer in answers(&case.model, wrong, shape.nv, shape.frames) {
-            assert_eq!(answer, Err(FunctionError::Length { argument: "q", found: wrong, expected: shape.nq }));
+/// Each function says the length that is wrong, if it has that argument, and is content otherwise.
+fn one_wrong<D: Dynamics>(robot: &D, lengths: Lengths, wrong: usize, takes: &[&str]) {
+    for (name, answer) in answers(robot, lengths) {
+        match answer {
+            Err(FunctionError::Length { found, .. }) if takes.contains(&name) => assert_eq!(found, wrong, "{name}"),
+            other => assert!(other.is_ok() && !takes.contains(&name), "{name}: {other:?}"),
         }
     }
-    for wrong in [0, shape.nv - 1, shape.nv + 1] {
-        let said = answers(&case.model, shape.nq, wrong, wrong);
-        assert!(said.iter().all(|a| matches!(a, Err(FunctionError::Length { found, .. }) if *found == wrong)), "{said:?}");
+}
+
+#[test]
+fn each_wrong_length_is_an_error_that_names_it() {
+    let model = Case::bundled(articulated_models::robot("panda_like").unwrap()).model;
+    let right = Lengths::of(model.shape());
+    one_wrong(&model, right, 0, &[]);
+    let all: Vec<&str> = answers(&model, right).iter().map(|(name, _)| *name).collect();
+    let known: Vec<&str> = functions::<f64>().iter().map(|f| f.name).collect();
+    assert!(known.iter().all(|f| all.contains(f)), "the trait lacks one of {known:?}");
+    for off in [-1_isize, 1, 30] {
+        let wrong = |n: usize| n.checked_add_signed(off).unwrap();
+        let but = |change: &dyn Fn(&mut Lengths)| {
+            let mut lengths = right;
+            change(&mut lengths);
+            lengths
+        };
+        let with_v = ["inverse_dynamics", "bias_forces", "forward_dynamics"];
+        one_wrong(&model, but(&|n| n.q = wrong(right.q)), wrong(right.q), &all);
+        one_wrong(&model, but(&|n| n.given[0] = wrong(7)), wrong(7), &with_v);
+        one_wrong(&model, but(&|n| n.given[1] = wrong(7)), wrong(7), &["inverse_dynamics", "forward_dynamics"]);
+        one_wrong(
+            &model,
+            but(&|n| n.results[0] = wrong(7)),
+            wrong(7),
+            &["inverse_dynamics", "bias_forces", "gravity_torque", "forward_dynamics"],
+        );
+        one_wrong(&model, but(&|n| n.results[1] = wrong(right.results[1])), wrong(right.results[1]), &["placements"]);
+        one_wrong(&model, but(&|n| n.results[2] = wrong(49)), wrong(49), &["mass_matrix"]);
     }
+    let no_q = answers(&model, Lengths { q: 0, ..right });
+    assert_eq!(no_q[0].1, Err(FunctionError::Length { argument: "q", found: 0, expected: 7 }));
 }
 
 #[test]
 fn a_generated_robot_says_the_same_and_what_it_lacks() {
-    let good = answers(&pendulum::Robot, 2, 2, 3);
-    assert_eq!(good[0], Ok(()));
-    for (answer, name) in good[1..].iter().zip(["placements", "bias_forces", "gravity_torque"]) {
+    let right = Lengths::of(pendulum::Robot.shape());
+    let good = answers(&pendulum::Robot, right);
+    assert_eq!(good[0], ("inverse_dynamics", Ok(())));
+    for (name, answer) in &good[1..] {
         assert_eq!(*answer, Err(FunctionError::NotGenerated { function: name }));
     }
-    assert_eq!(answers(&pendulum::Robot, 3, 2, 3)[0], Err(FunctionError::Length { argument: "q", found: 3, expected: 2 }));
-    assert_eq!(answers(&pendulum::Robot, 2, 1, 3)[0], Err(FunctionError::Length { argument: "v", found: 1, expected: 2 }));
-    let mut short = [0.0];
-    let answer = pendulum::Robot.inverse_dynamics(&mut (), &[0.0; 2], &[0.0; 2], &[0.0; 2], &mut short);
-    assert_eq!(answer, Err(FunctionError::Length { argument: "tau", found: 1, expected: 2 }));
+    let said = |lengths: Lengths| answers(&pendulum::Robot, lengths)[0].1;
+    let wrong = |argument, found| Err(FunctionError::Length { argument, found, expected: 2 });
+    assert_eq!(said(Lengths { q: 3, ..right }), wrong("q", 3));
+    assert_eq!(said(Lengths { given: [1, 2], ..right }), wrong("v", 1));
+    assert_eq!(said(Lengths { given: [2, 0], ..right }), wrong("a", 0));
+    assert_eq!(said(Lengths { results: [5, 3, 4], ..right }), wrong("tau", 5));
 }
 
 /// One program over the trait, on a generated robot and on its model.

@@ -72,7 +72,7 @@ fn a_follower_that_turns_back_keeps_the_tip_level() {
         .replace("<child link=\"lower_rod\"/>", "<child link=\"lower_rod\"/><mimic joint=\"shoulder\" multiplier=\"-1\" offset=\"0\"/>");
     let case = Case::new("parallel", articulated_tests::case::read(&urdf), robot.base);
     assert_eq!(case.model.nv, 1);
-    let state = State { q: vec![0.7], v: vec![1.1], a: vec![-0.4] };
+    let state = State::new(vec![0.7], vec![1.1], vec![-0.4]);
     // The lower rod swings on a circle without turning: τ = (I1 + m1 l1²/4 + m2 l1²) a + (m1 l1/2 + m2 l1) g sin q
     let expected = (0.083_433_333_333_3 + 0.25 + 0.5) * -0.4 + 9.81 * (0.5 + 0.5) * 0.7_f64.sin();
     assert!((case.inverse_dynamics(&state)[0] - expected).abs() < 1e-14);

@@ -3,6 +3,7 @@
 use articulated_cli::precise::Big;
 use articulated_core::Scalar;
 use articulated_core::algorithm::textbook::Textbook;
+use articulated_core::algorithm::{Workspace, functions};
 use articulated_tests::case::{Case, State, cast, for_each_bundled, for_each_tree, placements};
 use articulated_tests::measure::{arguments, distance, distance_from, scale, torque_scale};
 use articulated_tests::random::Random;
@@ -11,18 +12,18 @@ use articulated_tests::random_tree::Flavour;
 /// Errors allowed, in units of u times the magnitude of the terms. Seen: 8 on 60 random trees.
 const FEW: f64 = 16.0;
 
+/// Every function that the textbook form has.
 fn textbook_holds(case: &Case, random: &mut Random) {
     let state = case.state(random);
-    for name in ["placements", "inverse_dynamics", "bias_forces", "gravity_torque"] {
+    for name in functions::<f64>().iter().map(|f| f.name) {
         let given = arguments(name, &state);
-        let found = case.call::<f64>(name, &given);
         let far = Big::scope(|| {
             let precise: Vec<Vec<Big>> = given.iter().map(|x| cast(x)).collect();
             let precise: Vec<&[Big]> = precise.iter().map(Vec::as_slice).collect();
-            let expected = case.textbook::<Big>().call(name, &precise).unwrap().unwrap();
-            distance_from(&found, &expected, &scale(case, name, &state))
+            let expected = case.textbook::<Big>().call(name, &precise)?.unwrap();
+            Some(distance_from(&case.call::<f64>(name, &given), &expected, &scale(case, name, &state)))
         });
-        assert!(far <= FEW, "{name}: {far} units of roundoff");
+        assert!(far.is_none_or(|far| far <= FEW), "{name}: {far:?} units of roundoff");
     }
 }
 
@@ -112,8 +113,7 @@ fn bias_forces_and_gravity_torque_are_inverse_dynamics_at_rest() {
 /// A workspace carries nothing from one call to the next.
 #[test]
 fn a_result_does_not_depend_on_the_calls_before() {
-    use articulated_core::algorithm::{Workspace, functions};
-    for_each_tree(10, Flavour::ANY, |case, random| {
+    for_each_tree(10, Flavour::REGULAR, |case, random| {
         let mut shared = Workspace::new(&case.model);
         for row in functions::<f64>().iter().chain(functions::<f64>()) {
             let state = case.state(random);

@@ -3,7 +3,7 @@
 use articulated_core::description::Base;
 use articulated_core::model::pass::MODEL_PASSES;
 use articulated_tests::case::{Case, State, for_each_bundled, for_each_tree, inverse_dynamics, mass_matrix, placements};
-use articulated_tests::measure::{distance, plus, torque_scale};
+use articulated_tests::measure::{distance, error, plus, scale, torque_scale};
 use articulated_tests::random::Random;
 use articulated_tests::random_tree::Flavour;
 
@@ -18,11 +18,11 @@ fn sum(a: f64, x: &[f64], b: f64, y: &[f64]) -> Vec<f64> {
 #[test]
 fn torque_is_linear_in_acceleration() {
     for_each_tree(60, Flavour::ANY, |case, random| {
-        let State { q, v, a } = case.state(random);
+        let State { q, v, a, .. } = case.state(random);
         let b = case.state(random).a;
         let zero = vec![0.0; a.len()];
         let tau = |a: &[f64]| inverse_dynamics(&case.model, &q, &v, a);
-        let scale = |a: &[f64]| torque_scale(case, &State { q: q.clone(), v: v.clone(), a: a.to_vec() });
+        let scale = |a: &[f64]| torque_scale(case, &State::new(q.clone(), v.clone(), a.to_vec()));
         // τ(a + b) + h = τ(a) + τ(b)
         let left = sum(1.0, &tau(&sum(1.0, &a, 1.0, &b)), 1.0, &tau(&zero));
         let right = sum(1.0, &tau(&a), 1.0, &tau(&b));
@@ -34,13 +34,13 @@ fn torque_is_linear_in_acceleration() {
 #[test]
 fn velocity_forces_grow_with_the_square_of_the_rates() {
     for_each_tree(60, Flavour::ANY, |case, random| {
-        let State { q, v, a } = case.state(random);
+        let State { q, v, a, .. } = case.state(random);
         let zero = vec![0.0; a.len()];
         let bias = |factor: f64| inverse_dynamics(&case.model, &q, &sum(factor, &v, 0.0, &v), &zero);
         // h(3v) − g = 9 (h(v) − g)
         let left = sum(1.0, &bias(3.0), 8.0, &bias(0.0));
         let right = sum(9.0, &bias(1.0), 0.0, &zero);
-        let scale = torque_scale(case, &State { q: q.clone(), v: sum(3.0, &v, 0.0, &v), a: zero.clone() });
+        let scale = torque_scale(case, &State::new(q.clone(), sum(3.0, &v, 0.0, &v), zero.clone()));
         let far = distance(&left, &right, &sum(2.0, &scale, 8.0, &scale));
         assert!(far <= FEW, "{far} units of roundoff");
     });
@@ -57,6 +57,36 @@ fn positive_definite(case: &Case, random: &mut Random) {
 fn mass_matrix_is_symmetric_and_positive_definite() {
     for_each_tree(100, Flavour::REGULAR, positive_definite);
     for_each_bundled(positive_definite);
+}
+
+fn composite_bodies(case: &Case, random: &mut Random) {
+    let (state, n) = (case.state(random), case.model.nv);
+    let found = case.call::<f64>("mass_matrix", &[&state.q]);
+    let columns = mass_matrix(&case.model, &state.q);
+    let expected: Vec<f64> = (0..n * n).map(|k| columns[(k / n, k % n)]).collect();
+    let far = distance(&found, &expected, &scale(case, "mass_matrix", &state));
+    assert!(far <= FEW, "{far} units of roundoff");
+    assert!((0..n * n).all(|k| found[k] == found[k % n * n + k / n]), "not symmetric to the bit");
+}
+
+#[test]
+fn composite_bodies_give_the_matrix_of_n_recursions() {
+    for_each_tree(100, Flavour::ANY, composite_bodies);
+    for_each_bundled(composite_bodies);
+}
+
+/// Backward error: the accelerations belong to torques that are off by less than 64 roundings.
+fn forward_inverts_inverse(case: &Case, random: &mut Random) {
+    let state = case.state(random);
+    let found = case.call::<f64>("forward_dynamics", &[&state.q, &state.v, &state.tau]);
+    let far = error(case, "forward_dynamics", &state, &found);
+    assert!(far <= 64.0, "{far} units of roundoff");
+}
+
+#[test]
+fn forward_dynamics_inverts_inverse_dynamics() {
+    for_each_tree(100, Flavour::REGULAR, forward_inverts_inverse);
+    for_each_bundled(forward_inverts_inverse);
 }
 
 #[test]
