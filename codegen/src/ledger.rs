@@ -14,7 +14,8 @@ pub struct Ledger {
 pub struct Entry {
     /// Name of the function.
     pub function: String,
-    /// Counts after each stage: `asked` (what the algorithm asked for), `trace` (folded and shared), then each pass.
+    /// Counts after each stage: `asked` (what the algorithm asks for), `trace` (folded and shared), the same after each model
+    /// pass, then after each graph pass.
     pub stages: Vec<(&'static str, Counts)>,
     /// Longest chain of operations from an input to an output.
     pub depth: u32,

@@ -63,11 +63,14 @@ pub fn generate(request: &Request) -> Result<Generated, Error> {
     let model = model.with_gravity(options.gravity);
     let wanted = wanted(request, &model)?;
     let names = emit::Names::new(&model, request)?;
-    let passed = MODEL_PASSES.iter().fold(model.clone(), |m, (_, pass, _)| pass(m));
+    let mut models = vec![("trace", model.clone())];
+    for (name, pass, _) in MODEL_PASSES {
+        models.push((name, pass(models[models.len() - 1].1.clone())));
+    }
     let mut ledger = Ledger::default();
     let mut programs = Vec::new();
     for function in wanted {
-        let (program, entry) = program(function, &passed);
+        let (program, entry) = program(function, &models);
         programs.push((function, program));
         ledger.functions.push(entry);
     }
@@ -75,10 +78,17 @@ pub fn generate(request: &Request) -> Result<Generated, Error> {
     Ok(Generated { source, model, ledger, warnings, unused, snapped })
 }
 
-/// One function, traced and taken through the passes.
-fn program(function: &'static Function<Sym>, model: &Model<f64>) -> (graph::Graph, ledger::Entry) {
-    let mut graph = trace::trace(function, model);
-    let mut stages = vec![("asked", graph.asked().clone()), ("trace", graph.counts())];
+/// One function, traced on the model as it was read and after each model pass, and taken through the graph passes.
+fn program(function: &'static Function<Sym>, models: &[(&'static str, Model<f64>)]) -> (graph::Graph, ledger::Entry) {
+    let mut graph = graph::Graph::default();
+    let mut stages = Vec::new();
+    for (name, model) in models {
+        graph = trace::trace(function, model);
+        if stages.is_empty() {
+            stages.push(("asked", graph.asked().clone()));
+        }
+        stages.push((*name, graph.counts()));
+    }
     for (name, pass, _) in pass::GRAPH_PASSES {
         graph = pass::run(name, *pass, &graph);
         stages.push((name, graph.counts()));

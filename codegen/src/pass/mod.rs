@@ -20,7 +20,7 @@ pub const GRAPH_PASSES: &[(&str, GraphPass, &str)] = &[
         contract,
         "no sum is a term of one other sum; a product that only sums use is part of multiply-adds, but for one a sum at most",
     ),
-    ("live", live, "every node is needed by an output again"),
+    ("swept", live, "every node is needed by an output again"),
 ];
 
 /// Rebuilds a graph node by node: `rewrite(new, node, operands)` gives the new node for each old one that `keep` lets through.
