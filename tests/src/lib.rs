@@ -15,3 +15,8 @@ pub mod random_tree;
 pub mod rigid;
 pub mod urdf_text;
 pub mod virtual_power;
+
+/// The README's examples, compiled and run as documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub struct Readme;
