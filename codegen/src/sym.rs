@@ -13,7 +13,7 @@ thread_local! {
     static GRAPH: RefCell<Graph> = RefCell::default();
 }
 
-/// A symbol. Its arithmetic adds nodes to the graph of the [`trace`] that is running.
+/// A symbol. Its arithmetic adds nodes to the graph that is being traced on this thread.
 #[derive(Clone, Copy, PartialEq)]
 pub struct Sym(NodeId);
 

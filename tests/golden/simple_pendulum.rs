@@ -24,7 +24,7 @@ pub const FRAME_NAMES: [&str; FRAMES] = ["support", "bob"];
 pub const Q_LOWER: [f64; NQ] = [-6.283185307179586];
 /// Upper bounds of the coordinates, rad or m; ∞ where there is none.
 pub const Q_UPPER: [f64; NQ] = [6.283185307179586];
-/// Indices into [`super::JOINT_NAMES`].
+/// Indices into [`JOINT_NAMES`].
 pub mod joint {
     /// The revolute joint "swing".
     pub const SWING: usize = 0;
@@ -42,7 +42,7 @@ pub mod v_index {
     pub const SWING: usize = 0;
 }
 
-/// Indices into [`super::FRAME_NAMES`].
+/// Indices into [`FRAME_NAMES`].
 pub mod frame {
     /// The link "support".
     pub const SUPPORT: usize = 0;
@@ -52,8 +52,8 @@ pub mod frame {
 
 /// placements of all links in the base frame.
 ///
-/// q: [NQ] rad|m|unit quaternion.
-/// Returns [FRAMES][12]: rotation row by row, then position in m, in the base frame.
+/// q: `[NQ]` rad|m|unit quaternion.
+/// Returns `[FRAMES][12]`: rotation row by row, then position in m, in the base frame.
 ///
 /// forward kinematics; Featherstone 2008, §4.4.
 /// 0 multiplications + 0 additions in 1 instructions (multiply-adds counted once), 2 sines and cosines, depth 2.
@@ -69,10 +69,10 @@ pub fn placements(q: &[f64; NQ]) -> [[f64; 12]; FRAMES] {
 
 /// τ = M(q)·a + h(q, v), gravity included.
 ///
-/// q: [NQ] rad|m|unit quaternion.
-/// v: [NV] rad/s|m/s.
-/// a: [NV] rad/s²|m/s².
-/// Returns [NV] N·m|N.
+/// q: `[NQ]` rad|m|unit quaternion.
+/// v: `[NV]` rad/s|m/s.
+/// a: `[NV]` rad/s²|m/s².
+/// Returns `[NV]` N·m|N.
 ///
 /// RNEA; Featherstone 2008, Table 5.1.
 /// 3 multiplications + 2 additions in 4 instructions (multiply-adds counted once), 1 sines and cosines, depth 3.

@@ -28,13 +28,13 @@ pub struct Case {
 /// One motion.
 #[derive(Clone, Debug)]
 pub struct State {
-    /// [nq].
+    /// `[nq]`.
     pub q: Vec<f64>,
-    /// [nv].
+    /// `[nv]`.
     pub v: Vec<f64>,
-    /// [nv].
+    /// `[nv]`.
     pub a: Vec<f64>,
-    /// Torques, [nv]; not those of q, v and a.
+    /// Torques, `[nv]`; not those of q, v and a.
     pub tau: Vec<f64>,
 }
 

@@ -29,15 +29,15 @@ pub struct Fixture {
 /// One state and what is right in it.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Reference {
-    /// [nq].
+    /// `[nq]`.
     pub q: Vec<f64>,
-    /// [nv].
+    /// `[nv]`.
     pub v: Vec<f64>,
-    /// [nv].
+    /// `[nv]`.
     pub a: Vec<f64>,
-    /// τ, [nv].
+    /// τ, `[nv]`.
     pub inverse_dynamics: Vec<f64>,
-    /// What an error in τ is compared with, [nv].
+    /// What an error in τ is compared with, `[nv]`.
     pub torque_scale: Vec<f64>,
     /// T, J.
     pub kinetic_energy: f64,

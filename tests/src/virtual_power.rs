@@ -150,7 +150,7 @@ impl<'a> Motions<'a> {
             .collect()
     }
 
-    /// τ; q: [nq], v and a: [nv].
+    /// τ; q: `[nq]`, v and a: `[nv]`.
     pub fn inverse_dynamics<S: Scalar>(&self, q: &[S], v: &[S], a: &[S]) -> Vec<S> {
         let bodies = self.bodies(q, v, a);
         let (g, rest) = (Vector3::from(self.gravity).map(S::from_f64), vec![S::zero(); self.size.1]);

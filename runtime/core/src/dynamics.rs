@@ -21,32 +21,32 @@ pub trait Dynamics<S: Scalar = f64> {
     /// The robot's name.
     fn name(&self) -> &str;
 
-    /// Placements of all frames in the base frame. q: [nq]; out: [frames] of (rotation row by row, position in m).
+    /// Placements of all frames in the base frame. q: `[nq]`; out: `[frames]` of (rotation row by row, position in m).
     fn placements(&self, _ws: &mut Self::Workspace, _q: &[S], _out: &mut [[S; 12]]) -> Result<(), FunctionError> {
         Err(FunctionError::NotGenerated { function: "placements" })
     }
 
-    /// τ = M(q)·a + h(q, v). q: [nq]; v, a, tau: [nv].
+    /// τ = M(q)·a + h(q, v). q: `[nq]`; v, a, tau: `[nv]`.
     fn inverse_dynamics(&self, _ws: &mut Self::Workspace, _q: &[S], _v: &[S], _a: &[S], _tau: &mut [S]) -> Result<(), FunctionError> {
         Err(FunctionError::NotGenerated { function: "inverse_dynamics" })
     }
 
-    /// h(q, v). q: [nq]; v, out: [nv].
+    /// h(q, v). q: `[nq]`; v, out: `[nv]`.
     fn bias_forces(&self, _ws: &mut Self::Workspace, _q: &[S], _v: &[S], _out: &mut [S]) -> Result<(), FunctionError> {
         Err(FunctionError::NotGenerated { function: "bias_forces" })
     }
 
-    /// g(q). q: [nq]; out: [nv].
+    /// g(q). q: `[nq]`; out: `[nv]`.
     fn gravity_torque(&self, _ws: &mut Self::Workspace, _q: &[S], _out: &mut [S]) -> Result<(), FunctionError> {
         Err(FunctionError::NotGenerated { function: "gravity_torque" })
     }
 
-    /// M(q). q: [nq]; out: [nv · nv], row by row.
+    /// M(q). q: `[nq]`; out: `[nv · nv]`, row by row.
     fn mass_matrix(&self, _ws: &mut Self::Workspace, _q: &[S], _out: &mut [S]) -> Result<(), FunctionError> {
         Err(FunctionError::NotGenerated { function: "mass_matrix" })
     }
 
-    /// a = M(q)⁻¹·(τ − h(q, v)). q: [nq]; v, tau, out: [nv].
+    /// a = M(q)⁻¹·(τ − h(q, v)). q: `[nq]`; v, tau, out: `[nv]`.
     fn forward_dynamics(&self, _ws: &mut Self::Workspace, _q: &[S], _v: &[S], _tau: &[S], _out: &mut [S]) -> Result<(), FunctionError> {
         Err(FunctionError::NotGenerated { function: "forward_dynamics" })
     }

@@ -8,7 +8,7 @@ use crate::{Scalar, with_pose};
 
 /// M(q), the mass matrix.
 ///
-/// q: [nq] rad|m|quaternion; out: [nv · nv], row by row, both triangles; kg·m²|kg·m|kg. O(n · depth). Featherstone 2008, Table 6.2.
+/// q: `[nq]` rad|m|quaternion; out: `[nv · nv]`, row by row, both triangles; kg·m²|kg·m|kg. O(n · depth). Featherstone 2008, Table 6.2.
 ///
 /// # Panics
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.

@@ -8,7 +8,7 @@ use crate::model::Model;
 
 /// a = M(q)⁻¹·(τ − h(q, v)).
 ///
-/// q: [nq]; v: [nv]; tau: [nv] N·m|N; out: [nv] rad/s²|m/s². By M = Lᵀ D L, which keeps the zeros that branches leave in M; Featherstone
+/// q: `[nq]`; v: `[nv]`; tau: `[nv]` N·m|N; out: `[nv]` rad/s²|m/s². By M = Lᵀ D L, which keeps the zeros that branches leave in M; Featherstone
 /// 2008, §6.5. Where M is singular the result is not finite; a model with [`Model::massless_joints`] is singular everywhere.
 ///
 /// # Panics

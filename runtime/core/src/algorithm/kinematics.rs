@@ -7,7 +7,7 @@ use crate::{Scalar, with_pose};
 
 /// Placements of all frames (links of the file) in the base frame.
 ///
-/// q: [nq] rad|m|quaternion; out: [12 · frames], for each frame the rotation row by row, then the position in m.
+/// q: `[nq]` rad|m|quaternion; out: `[12 · frames]`, for each frame the rotation row by row, then the position in m.
 /// One outward sweep. Lynch & Park 2017, §4.1; Featherstone 2008, §4.4.
 ///
 /// # Panics

@@ -30,13 +30,13 @@ impl<S> Model<S> {
 /// What a function takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Argument {
-    /// q, [nq]: rad, m, or position and unit quaternion.
+    /// q, `[nq]`: rad, m, or position and unit quaternion.
     Q,
-    /// v, [nv]: rad/s, m/s, or body twist [ω; v].
+    /// v, `[nv]`: rad/s, m/s, or body twist [ω; v].
     V,
-    /// a = dv/dt, [nv].
+    /// a = dv/dt, `[nv]`.
     A,
-    /// τ, [nv]: N·m or N.
+    /// τ, `[nv]`: N·m or N.
     Tau,
 }
 
@@ -62,10 +62,10 @@ impl Argument {
     /// Its shape and units, for documentation.
     pub fn doc(self) -> &'static str {
         match self {
-            Self::Q => "[NQ] rad|m|unit quaternion",
-            Self::V => "[NV] rad/s|m/s",
-            Self::A => "[NV] rad/s²|m/s²",
-            Self::Tau => "[NV] N·m|N",
+            Self::Q => "`[NQ]` rad|m|unit quaternion",
+            Self::V => "`[NV]` rad/s|m/s",
+            Self::A => "`[NV]` rad/s²|m/s²",
+            Self::Tau => "`[NV]` N·m|N",
         }
     }
 }
@@ -73,13 +73,13 @@ impl Argument {
 /// What a function gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ResultKind {
-    /// Generalised forces, [nv].
+    /// Generalised forces, `[nv]`.
     Torque,
-    /// For each frame, rotation row by row and position: [frames][12].
+    /// For each frame, rotation row by row and position: `[frames][12]`.
     Placements,
-    /// Generalised accelerations, [nv].
+    /// Generalised accelerations, `[nv]`.
     Acceleration,
-    /// The mass matrix, [nv][nv].
+    /// The mass matrix, `[nv][nv]`.
     MassMatrix,
 }
 
@@ -96,10 +96,10 @@ impl ResultKind {
     /// Its shape and units, for documentation.
     pub fn doc(self) -> &'static str {
         match self {
-            Self::Torque => "[NV] N·m|N",
-            Self::Placements => "[FRAMES][12]: rotation row by row, then position in m, in the base frame",
-            Self::Acceleration => "[NV] rad/s²|m/s²",
-            Self::MassMatrix => "[NV][NV] kg·m²|kg·m|kg, symmetric",
+            Self::Torque => "`[NV]` N·m|N",
+            Self::Placements => "`[FRAMES][12]`: rotation row by row, then position in m, in the base frame",
+            Self::Acceleration => "`[NV]` rad/s²|m/s²",
+            Self::MassMatrix => "`[NV][NV]` kg·m²|kg·m|kg, symmetric",
         }
     }
 }

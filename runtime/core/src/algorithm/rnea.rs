@@ -13,7 +13,7 @@ use crate::{Scalar, with_pose};
 
 /// τ = M(q)·a + h(q, v), gravity included.
 ///
-/// q: [nq] rad|m|quaternion; v, a: [nv] rad/s|m/s and their derivatives; tau: [nv] N·m|N. Featherstone 2008, Table 5.1.
+/// q: `[nq]` rad|m|quaternion; v, a: `[nv]` rad/s|m/s and their derivatives; tau: `[nv]` N·m|N. Featherstone 2008, Table 5.1.
 ///
 /// # Panics
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
@@ -36,7 +36,7 @@ pub fn inverse_dynamics<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &
 
 /// h(q, v) = τ at a = 0: Coriolis, centrifugal and gravity forces.
 ///
-/// q: [nq]; v: [nv]; out: [nv] N·m|N.
+/// q: `[nq]`; v: `[nv]`; out: `[nv]` N·m|N.
 ///
 /// # Panics
 /// As [`inverse_dynamics`].
@@ -48,7 +48,7 @@ pub fn bias_forces<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], 
 
 /// g(q) = τ at v = a = 0: what holds the robot still against gravity.
 ///
-/// q: [nq]; out: [nv] N·m|N.
+/// q: `[nq]`; out: `[nv]` N·m|N.
 ///
 /// # Panics
 /// As [`inverse_dynamics`].

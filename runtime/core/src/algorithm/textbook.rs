@@ -125,7 +125,7 @@ impl<S: Scalar> Textbook<S> {
         Ok(tau)
     }
 
-    /// M(q), column by column: the torques of a unit acceleration of one joint, at rest and without gravity. [nv · nv], row by row.
+    /// M(q), column by column: the torques of a unit acceleration of one joint, at rest and without gravity. `[nv · nv]`, row by row.
     pub fn mass_matrix(&self, q: &[S]) -> Result<Vec<S>, FunctionError> {
         let n = self.shape.nv;
         let weightless = Self { gravity: Vector3::zeros(), ..self.clone() };

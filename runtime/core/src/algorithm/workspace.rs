@@ -18,9 +18,9 @@ pub struct Workspace<S> {
     pub(super) zeros: Vec<S>,
     /// Inertia of each body and all that it carries, in its frame.
     pub(super) composite: Vec<SpatialInertia<S>>,
-    /// One row of a matrix, [nv].
+    /// One row of a matrix, `[nv]`.
     pub(super) row: Vec<S>,
-    /// [nv · nv].
+    /// `[nv · nv]`.
     pub(super) matrix: Vec<S>,
 }
 

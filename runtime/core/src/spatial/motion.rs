@@ -18,7 +18,7 @@ pub struct Motion<S> {
     pub acceleration: Vector3<S>,
 }
 
-/// U = [ω̇]× + [ω]×[ω]×: a point at r from the origin accelerates by U·r more than the origin does.
+/// `U = [ω̇]× + [ω]×[ω]×`: a point at r from the origin accelerates by U·r more than the origin does.
 #[inline(always)]
 pub fn rate_matrix<S: Scalar>(omega: Vector3<S>, alpha: Vector3<S>) -> Matrix3<S> {
     let (xx, yy, zz) = (omega.x * omega.x, omega.y * omega.y, omega.z * omega.z);

@@ -32,7 +32,7 @@ const C: [f64; 6] = [
 ];
 
 
-/// sin[i] = sin x[i], cos[i] = cos x[i]; x in rad, any. Error at most 1 ulp where the target has fused multiply-add, the standard
+/// `sin[i]` = sin `x[i]`, `cos[i]` = cos `x[i]`; x in rad, any. Error at most 1 ulp where the target has fused multiply-add, the standard
 /// library's where it has not. N is best a multiple of 4.
 ///
 /// Not inlined, so that it stays a loop of its own: a loop is what the compiler vectorises reliably.
