@@ -138,7 +138,7 @@ fn kind(kind: JointKind) -> &'static str {
 }
 
 fn list(out: &mut String, module: &str, doc: &str, rows: &[(String, String, usize)]) {
-    let _ = writeln!(out, "/// {}\npub mod {module} {{", doc);
+    let _ = writeln!(out, "/// {doc}\npub mod {module} {{");
     for (ident, doc, value) in rows {
         let _ = writeln!(out, "    /// The {doc}.\n    pub const {ident}: usize = {value};");
     }
