@@ -110,6 +110,9 @@ pub(crate) struct GenerateArguments {
     /// Code that depends on nothing but core and std (this is the default)
     #[arg(long, conflicts_with = "runtime")]
     pub(crate) standalone: bool,
+    /// No `unsafe` in the generated code: sines take a little longer on x86-64
+    #[arg(long)]
+    pub(crate) forbid_unsafe: bool,
     /// The path of the runtime crate, to implement its trait `Dynamics`
     #[arg(long, value_name = "PATH", value_parser = rust_path)]
     pub(crate) runtime: Option<String>,

@@ -58,6 +58,13 @@ impl Build {
         self
     }
 
+    /// No `unsafe` in the generated code, for crates that forbid it.
+    #[must_use]
+    pub fn forbid_unsafe(mut self) -> Self {
+        self.request.options.forbid_unsafe = true;
+        self
+    }
+
     /// Any other choice.
     #[must_use]
     pub fn options(mut self, change: impl FnOnce(&mut crate::Options)) -> Self {

@@ -52,6 +52,11 @@ pub(crate) const KEYS: &[Key] = &[
         read: |s, value| angle(value).map(|angle| s.snap_angles = Some(angle)),
     },
     Key {
+        name: "forbid_unsafe",
+        expected: "`true` or `false`",
+        read: |s, value| value.parse::<LitBool>().map(|b| s.forbid_unsafe = b.value),
+    },
+    Key {
         name: "crate",
         expected: "the absolute path of the crate `articulated`, as ::articulated or crate::path",
         read: |s, value| absolute(value).map(|path| s.runtime = Some(path)),

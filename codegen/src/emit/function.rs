@@ -44,7 +44,7 @@ fn document(out: &mut String, function: &Function<Sym>, entry: &Entry) {
     );
 }
 
-/// Lanes of the vector registers that `trig::sin_cos` is padded for.
+/// How many angles `trig::four` takes.
 const LANES: usize = 4;
 
 /// From this many angles on a batch is faster than one after the other.
@@ -85,19 +85,18 @@ impl Body<'_> {
         let _ = writeln!(self.out, "    let ({}, {}) = f64::sin_cos({});", name(a.sin), name(a.cos), self.operand(a.angle));
     }
 
-    /// Padded to a multiple of the lanes, so that no angle is left over.
+    /// Four at a time, the last four padded.
     fn batch(&mut self, angles: &[Angle]) {
-        let padded = angles.len().next_multiple_of(LANES);
-        let mut list: Vec<String> = angles.iter().map(|a| self.operand(a.angle)).collect();
-        list.resize(padded, "0.0".into());
-        let _ = writeln!(self.out, "    let (mut sin, mut cos) = ([0.0; {padded}], [0.0; {padded}]);");
-        let _ = writeln!(self.out, "    trig::sin_cos(&[{}], &mut sin, &mut cos);", list.join(", "));
-        for (i, angle) in angles.iter().enumerate() {
-            for (name, k) in [("sin", angle.sin), ("cos", angle.cos)] {
-                if let Some(k) = k {
-                    let _ = writeln!(self.out, "    let x{k} = {name}[{i}];");
-                }
-            }
+        let name = |k: Option<usize>| k.map_or_else(|| "_".to_owned(), |k| format!("x{k}"));
+        let padded = |mut list: Vec<String>, pad: &str| {
+            list.resize(LANES, pad.into());
+            list.join(", ")
+        };
+        for four in angles.chunks(LANES) {
+            let sines = padded(four.iter().map(|a| name(a.sin)).collect(), "_");
+            let cosines = padded(four.iter().map(|a| name(a.cos)).collect(), "_");
+            let angles = padded(four.iter().map(|a| self.operand(a.angle)).collect(), "0.0");
+            let _ = writeln!(self.out, "    let [[{sines}], [{cosines}]] = trig::four({angles});");
         }
     }
 

@@ -33,11 +33,17 @@ pub(crate) fn module(
         out += FMA;
     }
     if programs.iter().any(|(_, g)| has_batch(g)) {
-        let _ =
-            writeln!(out, "#[allow(unreachable_pub, clippy::all, clippy::pedantic)]\nmod trig {{\n{}}}\n", articulated_core::trig::SOURCE);
+        sines(&mut out, request.options.forbid_unsafe);
     }
     robot(&mut out, request, model.shape(), programs);
     out
+}
+
+/// The module of sines and cosines.
+fn sines(out: &mut String, forbid_unsafe: bool) {
+    use articulated_core::trig::{PORTABLE_SOURCE, SOURCE};
+    let (source, lint) = if forbid_unsafe { (PORTABLE_SOURCE, "") } else { (SOURCE, "unsafe_code, ") };
+    let _ = writeln!(out, "#[allow({lint}dead_code, unreachable_pub, clippy::all, clippy::pedantic)]\nmod trig {{\n{source}}}\n");
 }
 
 fn has_batch(graph: &Graph) -> bool {

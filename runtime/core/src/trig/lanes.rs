@@ -1,10 +1,10 @@
-// Sines and cosines of many angles in one loop without a branch in it, so that the compiler puts angles side by side into the lanes of
-// vector registers. This file is compiled in the runtime and copied into generated code; it needs nothing but `std`.
+// Sines and cosines of four angles. This file and one of `vector.rs` and `portable.rs` are compiled in the runtime and copied into generated
+// code; they need nothing but `std`.
 
-#[allow(unused_imports)]
-use ::core::iter::{IntoIterator, Iterator};
+/// Four numbers.
+type Lanes = [f64; 4];
 
-/// Up to this |x|, rad, the loop is used; if one angle is beyond it, or NaN, all go to the standard library.
+/// Up to this |x|, rad, the polynomials are used; if one of four angles is beyond it, or NaN, they go to the standard library.
 const LIMIT: f64 = 1e5;
 
 /// π/2 in parts of 33, 33 and 53 bits: k times one of the first two is exact for |k| < 2²⁰, and 2⁻¹²² is left over.
@@ -32,30 +32,22 @@ const C: [f64; 6] = [
 ];
 
 
-/// `sin[i]` = sin `x[i]`, `cos[i]` = cos `x[i]`; x in rad, any. Error at most 1 ulp where the target has fused multiply-add, the standard
-/// library's where it has not. N is best a multiple of 4.
-///
-/// Not inlined, so that it stays a loop of its own: a loop is what the compiler vectorises reliably.
+#[cold]
 #[inline(never)]
-pub fn sin_cos<const N: usize>(x: &[f64; N], sin: &mut [f64; N], cos: &mut [f64; N]) {
-    if !FMA {
-        return one_by_one(x, sin, cos);
-    }
-    let mut within = true;
-    for ((&x, sin), cos) in x.iter().zip(sin.iter_mut()).zip(cos.iter_mut()) {
-        within &= x.abs() <= LIMIT;
-        (*sin, *cos) = lane(x);
-    }
-    if !within {
-        one_by_one(x, sin, cos);
-    }
+fn one_by_one([a, b, c, d]: Lanes) -> [Lanes; 2] {
+    [[a.sin(), b.sin(), c.sin(), d.sin()], [a.cos(), b.cos(), c.cos(), d.cos()]]
 }
 
-#[inline(never)]
-fn one_by_one(x: &[f64], sin: &mut [f64], cos: &mut [f64]) {
-    for ((&x, sin), cos) in x.iter().zip(sin).zip(cos) {
-        (*sin, *cos) = x.sin_cos();
+/// [sin x, cos x]: for processors whose vector instructions are not written out.
+#[inline(always)]
+fn portable(x: Lanes) -> [Lanes; 2] {
+    let [a, b, c, d] = x;
+    let within = (a.abs() <= LIMIT) & (b.abs() <= LIMIT) & (c.abs() <= LIMIT) & (d.abs() <= LIMIT);
+    if !FMA || !within {
+        return one_by_one(x);
     }
+    let [(a, e), (b, f), (c, g), (d, h)] = [lane(a), lane(b), lane(c), lane(d)];
+    [[a, b, c, d], [e, f, g, h]]
 }
 
 /// Whether a·b + c is one instruction with one rounding.

@@ -1,24 +1,40 @@
-//! Sines and cosines of many angles at once, and the source of the same for generated code.
+//! Sines and cosines of four angles at once, and the source of the same for generated code.
+//!
+//! On x86-64 with AVX2 and FMA the vector instructions are written out (`vector.rs`), which takes two lines of `unsafe`; the same polynomials
+//! without them are in `portable.rs`, for generated code that must do without.
 
-#[allow(clippy::all, clippy::pedantic)]
-mod lanes {
+#[allow(dead_code, unreachable_pub, unsafe_code, clippy::all, clippy::pedantic)]
+mod vector {
     include!("lanes.rs");
+    include!("vector.rs");
 }
 
-pub use lanes::sin_cos;
+#[cfg(test)]
+#[allow(dead_code, unreachable_pub, clippy::all, clippy::pedantic)]
+mod portable {
+    include!("lanes.rs");
+    include!("portable.rs");
+}
 
-/// The source of [`sin_cos`]: the contents of a module that needs nothing but `std`. sin(−0) is 0, not −0.
-pub const SOURCE: &str = include_str!("lanes.rs");
+pub use vector::four;
+
+/// The source of [`four`]: the contents of a module that needs nothing but `std`. sin(−0) is 0, not −0.
+pub const SOURCE: &str = concat!(include_str!("lanes.rs"), include_str!("vector.rs"));
+
+/// The same without `unsafe`.
+pub const PORTABLE_SOURCE: &str = concat!(include_str!("lanes.rs"), include_str!("portable.rs"));
 
 #[cfg(test)]
 mod tests {
-    use super::sin_cos;
+    use super::{four, portable};
 
     fn both(x: f64) -> (f64, f64) {
-        let (mut s, mut c) = ([0.0; 4], [0.0; 4]);
-        sin_cos(&[x, 0.0, 1.0, 2.0], &mut s, &mut c);
-        assert_eq!((s[1], c[1]), (0.0, 1.0));
-        (s[0], c[0])
+        let by = [four(x, 0.0, 1.0, 2.0), portable::four(x, 0.0, 1.0, 2.0)];
+        for [s, c] in by {
+            assert_eq!((s[1], c[1]), (0.0, 1.0));
+            assert_eq!((s[0].to_bits(), c[0].to_bits()), (by[0][0][0].to_bits(), by[0][1][0].to_bits()), "{x:e}");
+        }
+        (by[0][0][0], by[0][1][0])
     }
 
     fn ulps(a: f64, b: f64) -> u64 {
@@ -46,8 +62,7 @@ mod tests {
     #[test]
     fn what_has_no_sine_gives_nan() {
         for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            let (mut s, mut c) = ([0.0; 4], [0.0; 4]);
-            sin_cos(&[x, 0.5, 1.0, 2.0], &mut s, &mut c);
+            let [s, c] = four(x, 0.5, 1.0, 2.0);
             assert!(s[0].is_nan() && c[0].is_nan());
             assert_eq!(s[1], 0.5_f64.sin());
         }
