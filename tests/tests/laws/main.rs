@@ -7,5 +7,6 @@ mod interface;
 mod mimic;
 mod random_trees;
 mod reference;
+mod sines;
 mod structure;
 mod traps;
