@@ -74,7 +74,7 @@ pub fn generate(request: &Request) -> Result<Generated, Error> {
         programs.push((function, program));
         ledger.functions.push(entry);
     }
-    let source = emit::module(request, &model, &names, &programs, &ledger) + &emit::warnings(&warnings);
+    let source = emit::module(request, &model, &names, &programs, &ledger, &unused) + &emit::warnings(&warnings);
     Ok(Generated { source, model, ledger, warnings, unused, snapped })
 }
 

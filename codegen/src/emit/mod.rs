@@ -1,6 +1,7 @@
 //! From graphs to Rust.
 
 mod function;
+mod header;
 mod literal;
 mod module;
 mod names;
