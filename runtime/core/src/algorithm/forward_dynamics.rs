@@ -19,24 +19,33 @@ pub fn forward_dynamics<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &
     // b = τ − h
     out.iter_mut().zip(tau).for_each(|(b, tau)| *b = *tau - *b);
     mass_matrix(model, ws, q, &mut matrix);
-    factor(&mut matrix, model.nv);
-    solve(&matrix, model.nv, out);
+    factor(&mut matrix, &ws.below);
+    solve(&matrix, &ws.below, out);
     ws.matrix = matrix;
 }
 
-/// M = Lᵀ D L in place: L below the diagonal with ones on it, D⁻¹ on the diagonal. From the last row up, so that zeros stay.
-fn factor<S: Scalar>(m: &mut [S], n: usize) {
+/// The degrees of freedom on the way from `k` to the base, `k` not among them.
+fn way(below: &[usize], k: usize) -> impl Iterator<Item = usize> {
+    let next = |k: usize| below[k].checked_sub(1);
+    core::iter::successors(next(k), move |&i| next(i))
+}
+
+/// M = Lᵀ D L in place: L below the diagonal with ones on it, D⁻¹ on the diagonal. From the last row up, so that the zeros between branches stay.
+fn factor<S: Scalar>(m: &mut [S], below: &[usize]) {
+    let n = below.len();
     for k in (0..n).rev() {
         let inverse = S::one() / m[k * n + k];
-        for i in (0..k).rev() {
+        for i in way(below, k) {
             let l = m[k * n + i] * inverse;
             // M_ij −= L_ki M_kj
-            for j in 0..=i {
+            let product = l * m[k * n + i];
+            m[i * n + i] -= product;
+            for j in way(below, i) {
                 let product = l * m[k * n + j];
                 m[i * n + j] -= product;
             }
         }
-        for i in 0..k {
+        for i in way(below, k) {
             m[k * n + i] *= inverse;
         }
         m[k * n + k] = inverse;
@@ -44,16 +53,17 @@ fn factor<S: Scalar>(m: &mut [S], n: usize) {
 }
 
 /// x = L⁻¹ D⁻¹ L⁻ᵀ b, in place.
-fn solve<S: Scalar>(l: &[S], n: usize, x: &mut [S]) {
+fn solve<S: Scalar>(l: &[S], below: &[usize], x: &mut [S]) {
+    let n = below.len();
     for k in (0..n).rev() {
-        for i in 0..k {
+        for i in way(below, k) {
             let product = l[k * n + i] * x[k];
             x[i] -= product;
         }
     }
     for k in 0..n {
         x[k] *= l[k * n + k];
-        for i in 0..k {
+        for i in way(below, k) {
             let product = l[k * n + i] * x[i];
             x[k] -= product;
         }

@@ -20,6 +20,8 @@ pub struct Workspace<S> {
     pub(super) composite: Vec<SpatialInertia<S>>,
     /// One row of a matrix, `[nv]`.
     pub(super) row: Vec<S>,
+    /// For each degree of freedom the next one on the way to the base, as [`below`] gives them.
+    pub(super) below: Vec<usize>,
     /// `[nv · nv]`.
     pub(super) matrix: Vec<S>,
 }
@@ -56,7 +58,20 @@ impl<S: Scalar> Workspace<S> {
             zeros: vec![S::zero(); nv],
             composite: vec![SpatialInertia::zero(); n],
             row: vec![S::zero(); nv],
+            below: below(model),
             matrix: vec![S::zero(); nv * nv],
         }
     }
+}
+
+/// For each degree of freedom the number of the next one on the way to the base plus one; 0 where the base is next. The mass matrix is zero
+/// between degrees of freedom neither of which is on the other's way (Featherstone 2008, §6.5). Joints that follow others tie branches together: then all are one chain.
+fn below<S: Scalar>(model: &Model<S>) -> Vec<usize> {
+    let tied = model.bodies.iter().any(|b| b.coordinates.mimic.is_some());
+    let mut below: Vec<usize> = (0..model.nv).collect();
+    for i in model.outward().filter(|_| !tied) {
+        let (body, parent) = (&model.bodies[i], &model.bodies[model.bodies[i].parent]);
+        below[body.coordinates.v] = if body.parent == 0 { 0 } else { parent.coordinates.v + parent.joint.nv() };
+    }
+    below
 }
