@@ -143,6 +143,9 @@ pub(crate) struct CompareArguments {
     /// The functions to compare [default: all that are defined for the robot]
     #[arg(long, alias = "function", value_name = "NAMES", value_delimiter = ',', value_parser = known_function)]
     pub(crate) functions: Vec<String>,
+    /// No `unsafe` in the generated code: shows what the vector instructions of the sines bring
+    #[arg(long)]
+    pub(crate) forbid_unsafe: bool,
     /// A peer library to time beside them; may be given several times. It is run: name only libraries that you trust
     #[arg(long, value_name = "LIBRARY")]
     pub(crate) peer: Vec<PathBuf>,

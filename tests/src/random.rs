@@ -1,30 +1,26 @@
 //! Pseudo-random numbers: the same for the same seed, on every machine.
 
-/// A small generator (Steele, Lea & Flood, "Fast splittable pseudorandom number generators", 2014).
+use articulated_cli::states::SplitMix64;
+
+/// The command's generator, with what random trees need besides.
 #[derive(Clone, Debug)]
-pub struct Random(u64);
+pub struct Random(SplitMix64);
 
 impl Random {
     /// From a seed.
     pub fn new(seed: u64) -> Self {
         // Neighbouring seeds must not give neighbouring numbers.
-        let mut random = Self(seed);
-        random.0 ^= random.bits();
-        random
+        Self(SplitMix64::new(SplitMix64::new(seed).bits()))
     }
 
     /// 64 bits.
     pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut x = self.0;
-        x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        x ^ (x >> 31)
+        self.0.bits()
     }
 
     /// Uniform in [lower, upper).
     pub fn within(&mut self, lower: f64, upper: f64) -> f64 {
-        lower + (upper - lower) * ((self.bits() >> 11) as f64 / (1_u64 << 53) as f64)
+        self.0.uniform(lower, upper)
     }
 
     /// Below `n`.

@@ -39,7 +39,7 @@ fn triple([x, y, z]: [f64; 3]) -> String {
 
 fn joint(out: &mut String, description: &Description, j: &Joint) {
     let link = |l: usize| &description.links[l].name;
-    let _ = writeln!(out, "  <joint name=\"{}\" type=\"{}\">", j.name, kind(j.kind));
+    let _ = writeln!(out, "  <joint name=\"{}\" type=\"{}\">", j.name, j.kind.name());
     let _ = writeln!(out, "    <parent link=\"{}\"/>\n    <child link=\"{}\"/>\n    {}", link(j.parent), link(j.child), origin(&j.origin));
     if !matches!(j.kind, JointKind::Fixed | JointKind::Floating) {
         let _ = writeln!(out, "    <axis xyz=\"{}\"/>", triple(j.axis));
@@ -56,15 +56,4 @@ fn joint(out: &mut String, description: &Description, j: &Joint) {
         let _ = writeln!(out, "    <mimic joint=\"{leader}\" multiplier=\"{:?}\" offset=\"{:?}\"/>", m.multiplier, m.offset);
     }
     *out += "  </joint>\n";
-}
-
-fn kind(kind: JointKind) -> &'static str {
-    match kind {
-        JointKind::Revolute => "revolute",
-        JointKind::Continuous => "continuous",
-        JointKind::Prismatic => "prismatic",
-        JointKind::Fixed => "fixed",
-        JointKind::Floating => "floating",
-        JointKind::Planar => "planar",
-    }
 }

@@ -172,7 +172,7 @@ fn joint_rows(description: &Description, model: &Model<f64>) -> Vec<JointRow> {
     let carried = carried(model);
     let base = model.joints.iter().find(|j| j.name == FLOATING_BASE).map(|j| JointRow {
         joint: j.name.clone(),
-        kind: kind(JointKind::Floating),
+        kind: JointKind::Floating.name(),
         parent: None,
         child: description.root().map(|r| description.links[r].name.clone()),
         q: Some(j.q),
@@ -192,7 +192,7 @@ fn joint_rows(description: &Description, model: &Model<f64>) -> Vec<JointRow> {
         let limit = joint.limit;
         JointRow {
             joint: joint.name.clone(),
-            kind: kind(joint.kind),
+            kind: joint.kind.name(),
             parent: name(joint.parent),
             child: name(joint.child),
             q: place.map(|p| p.0),
@@ -218,15 +218,4 @@ fn carried(model: &Model<f64>) -> Vec<f64> {
         mass[model.bodies[i].parent] += mass[i];
     }
     mass
-}
-
-fn kind(kind: JointKind) -> &'static str {
-    match kind {
-        JointKind::Revolute => "revolute",
-        JointKind::Continuous => "continuous",
-        JointKind::Prismatic => "prismatic",
-        JointKind::Fixed => "fixed",
-        JointKind::Floating => "floating",
-        JointKind::Planar => "planar",
-    }
 }

@@ -41,7 +41,8 @@ struct Bench<'a> {
 
 /// Measures and prints.
 pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Failure> {
-    let robot = Robot::find(&arguments.robot)?;
+    let mut robot = Robot::find(&arguments.robot)?;
+    robot.options.forbid_unsafe = arguments.forbid_unsafe;
     let reading = robot.read().map_err(articulated_codegen::Error::from)?;
     reading.warnings.iter().chain(&reading.snapped).for_each(|w| console::warn(&w.to_string()));
     if cfg!(debug_assertions) {

@@ -3,7 +3,6 @@
 use std::fmt::Write;
 
 use articulated_core::algorithm::{Function, Shape as Sizes};
-use articulated_core::description::JointKind;
 use articulated_core::model::{JointInfo, Model};
 use articulated_urdf::Unused;
 
@@ -101,7 +100,7 @@ fn limits(out: &mut String, name: &str, doc: &str, model: &Model<f64>, limit: im
 fn indices(out: &mut String, model: &Model<f64>, names: &Names) {
     let joint = |value: fn(usize, &JointInfo) -> usize| {
         let rows = names.joints.iter().zip(&model.joints).enumerate();
-        rows.map(|(k, (ident, j))| (ident.clone(), format!("{} {:?}", kind(j.kind), j.name), value(k, j))).collect::<Vec<_>>()
+        rows.map(|(k, (ident, j))| (ident.clone(), format!("{} joint {:?}", j.kind.name(), j.name), value(k, j))).collect::<Vec<_>>()
     };
     list(out, "joint", "Indices into [`JOINT_NAMES`].", &joint(|k, _| k));
     list(out, "q_index", "Index in q of each joint's first coordinate.", &joint(|_, j| j.q.0));
@@ -109,17 +108,6 @@ fn indices(out: &mut String, model: &Model<f64>, names: &Names) {
     let frames = names.frames.iter().zip(&model.frames).enumerate();
     let frames: Vec<_> = frames.map(|(k, (ident, f))| (ident.clone(), format!("link {:?}", f.name), k)).collect();
     list(out, "frame", "Indices into [`FRAME_NAMES`].", &frames);
-}
-
-fn kind(kind: JointKind) -> &'static str {
-    match kind {
-        JointKind::Revolute => "revolute joint",
-        JointKind::Continuous => "continuous joint",
-        JointKind::Prismatic => "prismatic joint",
-        JointKind::Fixed => "fixed joint",
-        JointKind::Floating => "floating joint",
-        JointKind::Planar => "planar joint",
-    }
 }
 
 fn list(out: &mut String, module: &str, doc: &str, rows: &[(String, String, usize)]) {

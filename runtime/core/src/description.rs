@@ -65,6 +65,20 @@ pub enum JointKind {
     Planar,
 }
 
+impl JointKind {
+    /// Its name in a URDF.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Revolute => "revolute",
+            Self::Continuous => "continuous",
+            Self::Prismatic => "prismatic",
+            Self::Fixed => "fixed",
+            Self::Floating => "floating",
+            Self::Planar => "planar",
+        }
+    }
+}
+
 /// A joint of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Joint {

@@ -173,6 +173,8 @@ fn what_is_not_a_tree_is_an_error() {
     assert!(not_a_tree(&tree(1, vec![joint("a", Continuous, 0, 0)])), "a link on itself");
     assert!(not_a_tree(&tree(1, vec![joint("a", Continuous, 0, 9)])), "a link that is not there");
     let planar = Model::new(&tree(2, vec![joint("a", Planar, 0, 1)]), Base::Fixed);
+    let message = planar.as_ref().map_or_else(ToString::to_string, |_| String::new());
+    assert!(message.contains("\"a\"") && message.contains("planar"), "{message}");
     assert!(matches!(planar, Err(ModelError::UnsupportedJoint { joint, kind: Planar }) if joint == "a"));
 }
 

@@ -38,7 +38,8 @@ impl fmt::Display for ModelError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::UnsupportedJoint { joint, kind } => {
-                write!(f, "joint {joint:?}: type: found {kind:?}, expected one of revolute, continuous, prismatic, fixed, floating")
+                let kind = kind.name();
+                write!(f, "joint {joint:?}: type: found {kind}, expected one of revolute, continuous, prismatic, fixed, floating")
             }
             Self::NotATree { unreached } => {
                 write!(f, "links and joints are not one tree: not reached from a root: {}", unreached.join(", "))
