@@ -63,6 +63,7 @@ fn joint(random: &mut Random, flavour: Flavour, parent: usize, child: usize) -> 
         mimic: None,
         limit: matches!(kind, Revolute | Prismatic).then_some(Limit { lower: -2.5, upper: 2.5, effort: 100.0, velocity: 10.0 }),
         dynamics: None,
+        ..Joint::default()
     }
 }
 

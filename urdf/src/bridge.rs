@@ -53,6 +53,7 @@ fn described(draft: &Draft, tree: &Tree, leaders: &[Option<usize>]) -> Option<De
             mimic,
             limit: joint.limit,
             dynamics: joint.dynamics,
+            ..Joint::default()
         })
     });
     Some(Description { name: draft.name.clone(), links: links.collect::<Option<_>>()?, joints: joints.collect::<Option<_>>()? })
@@ -98,6 +99,7 @@ fn read_joint(joint: &urdf_rs::Joint, index: usize, draft: &Draft) -> Option<Joi
         // Nor a missing limit from zeros.
         limit: found.limit.is_some().then(|| read_limit(&joint.limit)),
         dynamics: joint.dynamics.as_ref().map(|d| JointDynamics { damping: d.damping, friction: d.friction }),
+        ..Joint::default()
     })
 }
 
@@ -113,7 +115,7 @@ fn read_kind(kind: &JointType) -> Option<JointKind> {
         JointType::Fixed => Some(JointKind::Fixed),
         JointType::Floating => Some(JointKind::Floating),
         JointType::Planar => Some(JointKind::Planar),
-        JointType::Spherical => None,
+        JointType::Spherical => Some(JointKind::Spherical),
     }
 }
 

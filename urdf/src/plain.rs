@@ -49,7 +49,8 @@ fn name(kind: Option<JointKind>) -> &'static str {
         Some(JointKind::Prismatic) => "prismatic",
         Some(JointKind::Floating) => "floating",
         Some(JointKind::Planar) => "planar",
-        Some(JointKind::Fixed) | None => "fixed",
+        Some(JointKind::Spherical) => "spherical",
+        Some(JointKind::Helical | JointKind::Universal | JointKind::Fixed) | None => "fixed",
     }
 }
 

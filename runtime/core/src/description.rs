@@ -49,7 +49,7 @@ pub struct Origin {
 }
 
 /// What a joint of the file lets move.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum JointKind {
     /// A turn about the axis, within limits.
     Revolute,
@@ -58,11 +58,20 @@ pub enum JointKind {
     /// A translation along the axis.
     Prismatic,
     /// No motion.
+    #[default]
     Fixed,
     /// Six degrees of freedom.
     Floating,
-    /// Two translations in the plane normal to the axis and a turn about it.
+    /// Two translations in the plane normal to the axis and a turn about it: (x, y, θ), rates along the axes of the joint frame. For the axis z
+    /// the plane has the frame's x and y, for x its y and z, for y its z and x; for any other, the first two columns of
+    /// [`crate::spatial::to_z_axis`].
     Planar,
+    /// Any turn about the joint's origin: a unit quaternion (x, y, z, w) and the angular velocity in axes of the child.
+    Spherical,
+    /// A turn about the axis, within limits, that slides along it: `pitch` metres a turn. The coordinate is the angle.
+    Helical,
+    /// A turn about `axis`, then one about `second_axis`, which the first has turned: Cardan's joint.
+    Universal,
 }
 
 impl JointKind {
@@ -75,12 +84,32 @@ impl JointKind {
             Self::Fixed => "fixed",
             Self::Floating => "floating",
             Self::Planar => "planar",
+            Self::Spherical => "spherical",
+            Self::Helical => "helical",
+            Self::Universal => "universal",
         }
+    }
+
+    /// Number of coordinates and number of degrees of freedom.
+    pub fn sizes(self) -> (usize, usize) {
+        match self {
+            Self::Fixed => (0, 0),
+            Self::Revolute | Self::Continuous | Self::Prismatic | Self::Helical => (1, 1),
+            Self::Universal => (2, 2),
+            Self::Planar => (3, 3),
+            Self::Spherical => (4, 3),
+            Self::Floating => (7, 6),
+        }
+    }
+
+    /// Whether it moves along or about an axis.
+    pub fn has_axis(self) -> bool {
+        !matches!(self, Self::Fixed | Self::Floating | Self::Spherical)
     }
 }
 
 /// A joint of the file.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Joint {
     /// The joint's name, unique among joints.
     pub name: String,
@@ -94,6 +123,12 @@ pub struct Joint {
     pub origin: Origin,
     /// The axis in the joint's frame, as written: not necessarily of unit length, never zero for a joint that has one.
     pub axis: [f64; 3],
+    /// The second axis of a universal joint, in the joint's frame at zero, not along the first; not used otherwise.
+    pub second_axis: [f64; 3],
+    /// How far a helical joint slides in one turn, m; not used otherwise.
+    pub pitch: f64,
+    /// Coordinates at which the joint is locked, as many as its kind has; `None`: it moves.
+    pub locked: Option<Vec<f64>>,
     /// The joint that this one follows.
     pub mimic: Option<Mimic>,
     /// Limits, where the file gives them.

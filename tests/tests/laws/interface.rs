@@ -154,7 +154,7 @@ fn link(name: &str) -> Link {
 
 fn joint(name: &str, kind: JointKind, parent: usize, child: usize) -> Joint {
     let (origin, axis) = (Origin::default(), [1.0, 0.0, 0.0]);
-    Joint { name: name.into(), kind, parent, child, origin, axis, mimic: None, limit: None, dynamics: None }
+    Joint { name: name.into(), kind, parent, child, origin, axis, mimic: None, ..Joint::default() }
 }
 
 fn tree(links: usize, joints: Vec<Joint>) -> Description {

@@ -180,7 +180,7 @@ impl<S: Scalar> Textbook<S> {
                 let q = &q[body.q..];
                 Placement { rotation: from_quaternion([q[3], q[4], q[5], q[6]]), position: Vector3::new(q[0], q[1], q[2]) }
             }
-            JointKind::Fixed | JointKind::Planar => Placement::identity(),
+            _ => Placement::identity(),
         };
         body.placement.compose(&joint)
     }
@@ -194,7 +194,7 @@ impl<S: Scalar> Link<S> {
             JointKind::Revolute | JointKind::Continuous => stack(self.axis * rate(), Vector3::zeros()),
             JointKind::Prismatic => stack(Vector3::zeros(), self.axis * rate()),
             JointKind::Floating => Vector6::from_fn(|k, _| rates[self.v + k]),
-            JointKind::Fixed | JointKind::Planar => Vector6::zeros(),
+            _ => Vector6::zeros(),
         }
     }
 
@@ -205,7 +205,7 @@ impl<S: Scalar> Link<S> {
             JointKind::Revolute | JointKind::Continuous => tau[self.v] += self.axis.dot(&moment) * self.multiplier,
             JointKind::Prismatic => tau[self.v] += self.axis.dot(&force) * self.multiplier,
             JointKind::Floating => (0..6).for_each(|k| tau[self.v + k] += f[k]),
-            JointKind::Fixed | JointKind::Planar => {}
+            _ => {}
         }
     }
 }

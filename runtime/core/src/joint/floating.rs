@@ -49,6 +49,12 @@ impl<S: Scalar> JointLaw<S> for Floating<S> {
     }
 
     #[inline(always)]
+    fn subspace(&self, turn: &Matrix3<S>, k: usize) -> Twist<S> {
+        let (e, zero) = (turn.column(k % 3).into_owned(), Vector3::zeros());
+        if k < 3 { Twist { angular: e, linear: zero } } else { Twist { angular: zero, linear: e } }
+    }
+
+    #[inline(always)]
     fn motion(&self, carried: Motion<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
         let (rate, derivative) = (six(v, at.v), six(a, at.v));
         let omega = self.to_child(carried.omega);

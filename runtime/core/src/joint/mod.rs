@@ -1,20 +1,24 @@
 //! Joints, one file each: pose, motion and torque of one kind.
 //!
-//! In a [`crate::model::Model`] a revolute or prismatic joint turns about or slides along the z-axis of its frame; the model's builder chose the
-//! frames so. Adding a joint: a file with a type that implements [`JointLaw`], and its row in [`Joint`], [`Pose`] and `with_pose!`.
+//! In a [`crate::model::Model`] a joint with an axis turns about or slides along the z-axis of its frame; the model's builder chose the
+//! frames so, and composes planar and universal joints of these. Adding a joint: a file with a type that implements [`JointLaw`], and its row in [`Joint`], [`Pose`] and `with_pose!`.
 
 mod floating;
+mod helical;
 mod prismatic;
 mod revolute;
+mod spherical;
 
 pub use floating::Floating;
+pub use helical::Helical;
 pub use prismatic::Prismatic;
 pub use revolute::Revolute;
+pub use spherical::Spherical;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::Scalar;
-use crate::spatial::{Motion, Placement, SpatialInertia, Wrench};
+use crate::spatial::{Motion, Placement, SpatialInertia, Twist, Wrench};
 
 /// The kinds of moving joints of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +27,10 @@ pub enum Joint {
     Revolute,
     /// Slides along z.
     Prismatic,
+    /// Turns about z and slides along it.
+    Helical,
+    /// Turns freely about a point: unit quaternion (x, y, z, w); rates are ω in axes of the child.
+    Spherical,
     /// Moves freely: position and unit quaternion (x, y, z, w); rates are the body twist.
     Floating,
 }
@@ -31,7 +39,8 @@ impl Joint {
     /// Number of coordinates.
     pub fn nq(self) -> usize {
         match self {
-            Joint::Revolute | Joint::Prismatic => 1,
+            Joint::Revolute | Joint::Prismatic | Joint::Helical => 1,
+            Joint::Spherical => 4,
             Joint::Floating => 7,
         }
     }
@@ -39,7 +48,8 @@ impl Joint {
     /// Number of degrees of freedom.
     pub fn nv(self) -> usize {
         match self {
-            Joint::Revolute | Joint::Prismatic => 1,
+            Joint::Revolute | Joint::Prismatic | Joint::Helical => 1,
+            Joint::Spherical => 3,
             Joint::Floating => 6,
         }
     }
@@ -50,6 +60,8 @@ impl Joint {
         match self {
             Joint::Revolute => Pose::Revolute(Revolute::at(at, q)),
             Joint::Prismatic => Pose::Prismatic(Prismatic::at(at, q)),
+            Joint::Helical => Pose::Helical(Helical::at(at, q)),
+            Joint::Spherical => Pose::Spherical(Spherical::at(at, q)),
             Joint::Floating => Pose::Floating(Floating::at(at, q)),
         }
     }
@@ -64,6 +76,8 @@ pub struct Coordinates<S> {
     pub v: usize,
     /// For a joint that follows: own coordinate = multiplier · leader's + offset.
     pub mimic: Option<Follow<S>>,
+    /// How far a helical joint slides, m/rad; zero for every other.
+    pub pitch: S,
 }
 
 /// The law by which a joint follows another.
@@ -113,7 +127,7 @@ impl<S: Scalar> Coordinates<S> {
     #[cfg(feature = "alloc")]
     pub(crate) fn map<T: Scalar>(&self, f: impl Fn(S) -> T) -> Coordinates<T> {
         let mimic = self.mimic.as_ref().map(|m| Follow { multiplier: f(m.multiplier), offset: f(m.offset) });
-        Coordinates { q: self.q, v: self.v, mimic }
+        Coordinates { q: self.q, v: self.v, mimic, pitch: f(self.pitch) }
     }
 }
 
@@ -133,6 +147,9 @@ pub trait JointLaw<S: Scalar>: Copy {
 
     /// The child's placement, from that of the joint frame in the same frame.
     fn compose(&self, x_wj: Placement<S>) -> Placement<S>;
+
+    /// Column k of S, the twist of the child about its origin at the unit rate k of the joint, in the axes that `turn` takes the child's to.
+    fn subspace(&self, turn: &Matrix3<S>, k: usize) -> Twist<S>;
 
     /// The child's motion in its axes, from `carried`, the motion that the point of the parent now at the child's origin has, in axes
     /// of the joint frame, and from the joint's rates in `v` and their derivatives in `a`.
@@ -155,6 +172,10 @@ pub enum Pose<S> {
     Revolute(Revolute<S>),
     /// See [`Prismatic`].
     Prismatic(Prismatic<S>),
+    /// See [`Helical`].
+    Helical(Helical<S>),
+    /// See [`Spherical`].
+    Spherical(Spherical<S>),
     /// See [`Floating`].
     Floating(Floating<S>),
 }
@@ -166,6 +187,8 @@ macro_rules! with_pose {
         match $pose {
             $crate::joint::Pose::Revolute($p) => $body,
             $crate::joint::Pose::Prismatic($p) => $body,
+            $crate::joint::Pose::Helical($p) => $body,
+            $crate::joint::Pose::Spherical($p) => $body,
             $crate::joint::Pose::Floating($p) => $body,
         }
     };

@@ -4,12 +4,30 @@ use nalgebra::Vector3;
 
 use super::{Coordinates, JointLaw};
 use crate::Scalar;
-use crate::spatial::{Motion, Placement, SpatialInertia, Wrench};
+use crate::spatial::{Matrix3, Motion, Placement, SpatialInertia, Twist, Wrench};
 
 /// R = 1, p = e_z q, S = [0; e_z].
 #[derive(Clone, Copy, Debug)]
 pub struct Prismatic<S> {
     shift: S,
+}
+
+impl<S: Scalar> Prismatic<S> {
+    /// Slid by so many metres.
+    pub(super) fn by(shift: S) -> Self {
+        Self { shift }
+    }
+
+    /// What a slide at `rate` and its derivative add to the motion of the point that carries it.
+    #[inline(always)]
+    pub(super) fn slide(carried: Motion<S>, rate: S, derivative: S) -> Motion<S> {
+        let (mut acceleration, twice) = (carried.acceleration, rate + rate);
+        // r̈ = r̈_carried + 2 ω × e_z q̇ + e_z q̈
+        acceleration.x += carried.omega.y * twice;
+        acceleration.y -= carried.omega.x * twice;
+        acceleration.z += derivative;
+        Motion { acceleration, ..carried }
+    }
 }
 
 impl<S: Scalar> JointLaw<S> for Prismatic<S> {
@@ -39,14 +57,13 @@ impl<S: Scalar> JointLaw<S> for Prismatic<S> {
     }
 
     #[inline(always)]
+    fn subspace(&self, turn: &Matrix3<S>, _: usize) -> Twist<S> {
+        Twist { angular: Vector3::zeros(), linear: turn.column(2).into_owned() }
+    }
+
+    #[inline(always)]
     fn motion(&self, carried: Motion<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
-        let (rate, mut acceleration) = (at.rate(v), carried.acceleration);
-        let twice = rate + rate;
-        // r̈ = r̈_carried + 2 ω × e_z q̇ + e_z q̈
-        acceleration.x += carried.omega.y * twice;
-        acceleration.y -= carried.omega.x * twice;
-        acceleration.z += at.rate(a);
-        Motion { acceleration, ..carried }
+        Self::slide(carried, at.rate(v), at.rate(a))
     }
 
     #[inline(always)]

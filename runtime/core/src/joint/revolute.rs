@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{Coordinates, JointLaw};
 use crate::Scalar;
-use crate::spatial::{Motion, Placement, SpatialInertia, Wrench};
+use crate::spatial::{Motion, Placement, SpatialInertia, Twist, Wrench};
 
 /// R = Rz(q), S = [e_z; 0].
 #[derive(Clone, Copy, Debug)]
@@ -43,6 +43,11 @@ impl<S: Scalar> JointLaw<S> for Revolute<S> {
         let (x, y, z) = (x_wj.rotation.column(0), x_wj.rotation.column(1), x_wj.rotation.column(2));
         let rotation = Matrix3::from_columns(&[x * c + y * s, y * c - x * s, z.into_owned()]);
         Placement { rotation, position: x_wj.position }
+    }
+
+    #[inline(always)]
+    fn subspace(&self, turn: &Matrix3<S>, _: usize) -> Twist<S> {
+        Twist { angular: turn.column(2).into_owned(), linear: Vector3::zeros() }
     }
 
     #[inline(always)]

@@ -9,18 +9,21 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{Body, FLOATING_BASE, Frame, GRAVITY, JointInfo, Model};
 use crate::description::{self, Base, Description, Inertial, JointKind, Mimic, Origin};
-use crate::joint::{Coordinates, Follow, Joint};
-use crate::spatial::{Placement, SpatialInertia, from_rpy, to_z_axis};
+use crate::joint::{Coordinates, Follow, Joint, JointLaw};
+use crate::spatial::{Placement, Reference, SpatialInertia, from_rpy, to_z_axis};
+use crate::with_pose;
 
-/// Why a description is not a model. A description that the URDF reader accepted gives only `UnsupportedJoint`.
+/// Why a description is not a model. A description that the URDF reader accepted gives none of these.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ModelError {
-    /// A joint of a kind that the algorithms do not know yet.
-    UnsupportedJoint {
+    /// A joint locked at coordinates of another number than it has, or at one that is not finite.
+    BadLock {
         /// Name of the joint.
         joint: String,
         /// Its kind.
         kind: JointKind,
+        /// How many coordinates were given.
+        found: usize,
     },
     /// The links and joints are not one tree: there is no root, or some links cannot be reached from it.
     NotATree {
@@ -37,9 +40,9 @@ pub enum ModelError {
 impl fmt::Display for ModelError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::UnsupportedJoint { joint, kind } => {
-                let kind = kind.name();
-                write!(f, "joint {joint:?}: type: found {kind}, expected one of revolute, continuous, prismatic, fixed, floating")
+            Self::BadLock { joint, kind, found } => {
+                let (name, nq) = (kind.name(), kind.sizes().0);
+                write!(f, "joint {joint:?}: locked at: found {found} coordinates, expected {nq} finite ones for a {name} joint")
             }
             Self::NotATree { unreached } => {
                 write!(f, "links and joints are not one tree: not reached from a root: {}", unreached.join(", "))
@@ -91,6 +94,7 @@ impl<'a> Builder<'a> {
         let model = Model {
             name: description.name.clone(),
             gravity: Vector3::from(GRAVITY),
+            wrench_reference: Reference::Body,
             bodies: Vec::new(),
             frames: Vec::new(),
             joints: Vec::new(),
@@ -103,12 +107,14 @@ impl<'a> Builder<'a> {
 
     fn add_root(&mut self, root: usize, base: Base) {
         let name = self.description.links[root].name.clone();
-        self.push_body(name, 0, Placement::identity(), Joint::Floating, Coordinates { q: 0, v: 0, mimic: None });
+        self.push_body(name, 0, Placement::identity(), Joint::Floating, AT_ZERO);
         let body = match base {
             Base::Fixed => 0,
             Base::Floating => {
-                let coordinates = self.push_joint(FLOATING_BASE, JointKind::Floating, Joint::Floating, None);
-                self.push_body(FLOATING_BASE.to_string(), 0, Placement::identity(), Joint::Floating, coordinates)
+                let coordinates = self.push_joint(FLOATING_BASE, JointKind::Floating, None);
+                let body = self.push_body(FLOATING_BASE.to_string(), 0, Placement::identity(), Joint::Floating, coordinates);
+                self.model.bodies[body].link = Some(Matrix3::identity());
+                body
             }
         };
         self.seat(root, body, Placement::identity());
@@ -129,40 +135,68 @@ impl<'a> Builder<'a> {
     }
 
     fn add_joint(&mut self, index: usize, joint: &description::Joint) -> Result<(), ModelError> {
-        let (parent, x_parent) = self.seats[joint.parent].expect("a parent is seated before its children");
-        let x_joint = x_parent.compose(&placement(&joint.origin));
-        let Some(kind) = moving(joint)? else {
+        let (mut parent, x_parent) = self.seats[joint.parent].expect("a parent is seated before its children");
+        let mut x_joint = x_parent.compose(&placement(&joint.origin));
+        let stages = stages(joint);
+        if let Some(coordinates) = self.locked_at(index)? {
+            let x = stages.iter().fold(x_joint, |x, stage| stage.locked(x, &coordinates, joint));
+            self.seat(joint.child, parent, x);
+            return Ok(());
+        }
+        let Some(last) = stages.last() else {
             self.seat(joint.child, parent, x_joint);
             return Ok(());
         };
-        // Turn the frames so that the axis is z; the link's frame stays where it was.
-        let turn = match kind {
-            Joint::Floating => Matrix3::identity(),
-            _ => to_z_axis(joint.axis),
+        let first = match joint.mimic {
+            Some(_) => AT_ZERO,
+            None => self.push_joint(&joint.name, joint.kind, joint.limit),
         };
-        let turned = x_joint.compose(&Placement { rotation: turn, position: Vector3::zeros() });
-        let coordinates = match joint.mimic {
-            Some(_) => Coordinates { q: 0, v: 0, mimic: None },
-            None => self.push_joint(&joint.name, joint.kind, kind, joint.limit),
-        };
-        let body = self.push_body(joint.name.clone(), parent, turned, kind, coordinates);
-        self.body_of[index] = Some(body);
-        self.seat(joint.child, body, Placement { rotation: turn.transpose(), position: Vector3::zeros() });
+        for stage in &stages {
+            // Turn the frames so that the axis is z; the link's frame stays where it was.
+            let turned = x_joint.compose(&turned(stage.turn));
+            let coordinates = Coordinates { q: first.q + stage.at, v: first.v + stage.at, pitch: per_radian(joint), mimic: None };
+            parent = self.push_body(joint.name.clone(), parent, turned, stage.joint, coordinates);
+            x_joint = turned_back(stage.turn);
+        }
+        self.model.bodies[parent].link = Some(last.turn.transpose());
+        self.body_of[index] = Some(parent);
+        self.seat(joint.child, parent, x_joint);
         Ok(())
     }
 
-    fn push_joint(&mut self, name: &str, kind: JointKind, joint: Joint, limit: Option<description::Limit>) -> Coordinates<f64> {
+    /// The coordinates at which a joint is locked, because it is or because one that it follows is.
+    fn locked_at(&self, index: usize) -> Result<Option<Vec<f64>>, ModelError> {
+        let joints = &self.description.joints;
+        let (mut at, mut multiplier, mut offset) = (index, 1.0, 0.0);
+        for _ in 0..=joints.len() {
+            let Some(joint) = joints.get(at) else { break };
+            if let Some(coordinates) = &joint.locked {
+                let (found, kind) = (coordinates.len(), joint.kind);
+                if found != kind.sizes().0 || coordinates.iter().any(|x| !x.is_finite()) {
+                    return Err(ModelError::BadLock { joint: joint.name.clone(), kind, found });
+                }
+                let own = at == index;
+                return Ok(Some(coordinates.iter().map(|x| if own { *x } else { multiplier * x + offset }).collect()));
+            }
+            let Some(mimic) = &joint.mimic else { break };
+            (at, multiplier, offset) = (mimic.joint, multiplier * mimic.multiplier, multiplier * mimic.offset + offset);
+        }
+        Ok(None)
+    }
+
+    fn push_joint(&mut self, name: &str, kind: JointKind, limit: Option<description::Limit>) -> Coordinates<f64> {
         let model = &mut self.model;
-        let coordinates = Coordinates { q: model.nq, v: model.nv, mimic: None };
+        let coordinates = Coordinates { q: model.nq, v: model.nv, ..AT_ZERO };
         let limit = limit.filter(|_| kind != JointKind::Continuous);
-        model.joints.push(JointInfo { name: name.to_string(), kind, q: (model.nq, joint.nq()), v: (model.nv, joint.nv()), limit });
-        model.nq += joint.nq();
-        model.nv += joint.nv();
+        let (nq, nv) = kind.sizes();
+        model.joints.push(JointInfo { name: name.to_string(), kind, q: (model.nq, nq), v: (model.nv, nv), limit });
+        model.nq += nq;
+        model.nv += nv;
         coordinates
     }
 
     fn push_body(&mut self, name: String, parent: usize, placement: Placement<f64>, joint: Joint, coordinates: Coordinates<f64>) -> usize {
-        self.model.bodies.push(Body { name, parent, placement, joint, coordinates, inertia: SpatialInertia::zero() });
+        self.model.bodies.push(Body { name, parent, placement, joint, coordinates, inertia: SpatialInertia::zero(), link: None });
         self.model.bodies.len() - 1
     }
 
@@ -200,9 +234,10 @@ impl<'a> Builder<'a> {
             let joint = joints.get(leader).filter(|_| leader != follower)?;
             let body = &self.model.bodies[self.body_of[leader]?];
             match &joint.mimic {
-                None if body.joint.nv() == 1 => {
+                None if joint.kind.sizes() == (1, 1) => {
                     let Coordinates { q, v, .. } = body.coordinates;
-                    return Some(Coordinates { q, v, mimic: Some(Follow { multiplier, offset }) });
+                    let pitch = per_radian(&joints[follower]);
+                    return Some(Coordinates { q, v, mimic: Some(Follow { multiplier, offset }), pitch });
                 }
                 None => return None,
                 // multiplier · (m q + o) + offset
@@ -220,14 +255,57 @@ impl<'a> Builder<'a> {
     }
 }
 
-fn moving(joint: &description::Joint) -> Result<Option<Joint>, ModelError> {
-    match joint.kind {
-        JointKind::Fixed => Ok(None),
-        JointKind::Revolute | JointKind::Continuous => Ok(Some(Joint::Revolute)),
-        JointKind::Prismatic => Ok(Some(Joint::Prismatic)),
-        JointKind::Floating => Ok(Some(Joint::Floating)),
-        kind @ JointKind::Planar => Err(ModelError::UnsupportedJoint { joint: joint.name.clone(), kind }),
+const AT_ZERO: Coordinates<f64> = Coordinates { q: 0, v: 0, mimic: None, pitch: 0.0 };
+
+/// An elementary joint as part of a joint of the file.
+struct Stage {
+    joint: Joint,
+    /// Axes of its frame, z along its axis, in axes of the file's joint frame.
+    turn: Matrix3<f64>,
+    /// Its first coordinate among those of the file's joint.
+    at: usize,
+}
+
+impl Stage {
+    /// The frame x after the stage, which is locked at its part of the coordinates.
+    fn locked(&self, x: Placement<f64>, coordinates: &[f64], joint: &description::Joint) -> Placement<f64> {
+        let at = Coordinates { q: self.at, pitch: per_radian(joint), ..AT_ZERO };
+        let x = x.compose(&turned(self.turn));
+        with_pose!(self.joint.pose(&at, coordinates), p => p.compose(x)).compose(&turned_back(self.turn))
     }
+}
+
+/// A joint of the file as a chain of elementary ones; none for a fixed joint.
+fn stages(joint: &description::Joint) -> Vec<Stage> {
+    let stage = |at: usize, elementary: Joint, axis: [f64; 3]| Stage { joint: elementary, turn: to_z_axis(axis), at };
+    let free = |elementary: Joint| Stage { joint: elementary, turn: Matrix3::identity(), at: 0 };
+    match joint.kind {
+        JointKind::Fixed => vec![],
+        JointKind::Revolute | JointKind::Continuous => vec![stage(0, Joint::Revolute, joint.axis)],
+        JointKind::Prismatic => vec![stage(0, Joint::Prismatic, joint.axis)],
+        JointKind::Helical => vec![stage(0, Joint::Helical, joint.axis)],
+        JointKind::Universal => vec![stage(0, Joint::Revolute, joint.axis), stage(1, Joint::Revolute, joint.second_axis)],
+        JointKind::Planar => {
+            let plane = to_z_axis(joint.axis);
+            let axis = |k: usize| plane.column(k).into_owned().into();
+            vec![stage(0, Joint::Prismatic, axis(0)), stage(1, Joint::Prismatic, axis(1)), stage(2, Joint::Revolute, joint.axis)]
+        }
+        JointKind::Spherical => vec![free(Joint::Spherical)],
+        JointKind::Floating => vec![free(Joint::Floating)],
+    }
+}
+
+/// m/rad of a helical joint; zero for others.
+fn per_radian(joint: &description::Joint) -> f64 {
+    if joint.kind == JointKind::Helical { joint.pitch / core::f64::consts::TAU } else { 0.0 }
+}
+
+fn turned(turn: Matrix3<f64>) -> Placement<f64> {
+    Placement { rotation: turn, position: Vector3::zeros() }
+}
+
+fn turned_back(turn: Matrix3<f64>) -> Placement<f64> {
+    turned(turn.transpose())
 }
 
 fn placement(origin: &Origin) -> Placement<f64> {

@@ -33,6 +33,8 @@ impl Model<f64> {
                 // I_zz = Σ_xx + Σ_yy
                 Joint::Revolute => own.second.m11 + own.second.m22 != 0.0,
                 Joint::Prismatic => own.mass != 0.0,
+                Joint::Helical => own.mass != 0.0 || own.second.m11 + own.second.m22 != 0.0,
+                Joint::Spherical => (0..3).all(|k| own.rotational()[(k, k)] != 0.0),
                 Joint::Floating => *own != SpatialInertia::zero(),
             };
             moves.push((i, felt || outside));

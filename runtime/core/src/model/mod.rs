@@ -4,17 +4,17 @@ mod build;
 mod massless;
 pub mod pass;
 
-use alloc::string::String;
+use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 pub use build::ModelError;
 
 use crate::Scalar;
 use crate::description::{JointKind, Limit};
 use crate::joint::{Coordinates, Joint};
-use crate::spatial::{Placement, SpatialInertia};
+use crate::spatial::{Placement, Reference, SpatialInertia};
 
 /// The name under which the joint of a floating base is listed.
 pub const FLOATING_BASE: &str = "__floating_base__";
@@ -32,9 +32,11 @@ pub struct Model<S = f64> {
     pub name: String,
     /// Gravity in the base frame, m/s².
     pub gravity: Vector3<S>,
+    /// What the wrenches that functions take refer to.
+    pub wrench_reference: Reference,
     /// Bodies; the first is the base and has no joint of its own.
     pub bodies: Vec<Body<S>>,
-    /// One frame for each link of the file, in the order of the file.
+    /// One frame for each link of the file, in the order of the file, or those chosen of them.
     pub frames: Vec<Frame<S>>,
     /// The joints that are coordinates, in the order of their coordinates. Joints that follow others are not among them.
     pub joints: Vec<JointInfo>,
@@ -59,6 +61,9 @@ pub struct Body<S> {
     pub coordinates: Coordinates<S>,
     /// Mass properties in the body's frame, everything that is fixed to the body included.
     pub inertia: SpatialInertia<S>,
+    /// For the body of a joint's child link, the axes of that link in the body's, as a rotation; the origins are the same. `None` for the
+    /// base, and for the bodies without mass inside a planar or universal joint.
+    pub link: Option<Matrix3<S>>,
 }
 
 /// A named frame fixed in a body: a link of the file.
@@ -100,6 +105,25 @@ impl<S: Scalar> Model<S> {
         self.outward().rev()
     }
 
+    /// Indices of the bodies that are moving links of the file: one for each joint that moves, followers included.
+    pub fn links(&self) -> impl Iterator<Item = usize> + '_ {
+        self.outward().filter(|&i| self.bodies[i].link.is_some())
+    }
+
+    /// The same robot with only the named frames, in this order, or the first name that no link has.
+    pub fn with_frames<N: AsRef<str>>(mut self, names: &[N]) -> Result<Self, String> {
+        let find = |name: &N| self.frames.iter().find(|f| f.name == name.as_ref()).cloned().ok_or_else(|| name.as_ref().to_string());
+        self.frames = names.iter().map(find).collect::<Result<_, _>>()?;
+        Ok(self)
+    }
+
+    /// The same robot, with wrenches given in another reference.
+    #[must_use]
+    pub fn with_wrenches_in(mut self, reference: Reference) -> Self {
+        self.wrench_reference = reference;
+        self
+    }
+
     /// The same robot under another gravity, given in the base frame, m/s².
     #[must_use]
     pub fn with_gravity(mut self, gravity: [f64; 3]) -> Self {
@@ -115,6 +139,7 @@ impl Model<f64> {
         Model {
             name: self.name.clone(),
             gravity: self.gravity.map(to),
+            wrench_reference: self.wrench_reference,
             bodies: self.bodies.iter().map(|b| b.map(to)).collect(),
             frames: self.frames.iter().map(|f| f.map(to)).collect(),
             joints: self.joints.clone(),
@@ -133,6 +158,7 @@ impl<S: Scalar> Body<S> {
             joint: self.joint,
             coordinates: self.coordinates.map(f),
             inertia: self.inertia.map(f),
+            link: self.link.map(|r| r.map(f)),
         }
     }
 }

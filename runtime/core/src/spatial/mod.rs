@@ -5,6 +5,7 @@
 mod inertia;
 mod motion;
 mod placement;
+mod reference;
 mod rotation;
 mod twist;
 mod wrench;
@@ -12,6 +13,7 @@ mod wrench;
 pub use inertia::SpatialInertia;
 pub use motion::{Motion, rate_matrix};
 pub use placement::Placement;
+pub use reference::Reference;
 pub use rotation::{from_quaternion, from_rpy, rotate, rotate_back, sin_cos_of_written_angle, to_z_axis};
 pub use twist::Twist;
 pub use wrench::Wrench;

@@ -13,5 +13,5 @@ pub type ModelPass = fn(Model<f64>) -> Model<f64>;
 pub const MODEL_PASSES: &[(&str, ModelPass, &str)] = &[(
     "regroup",
     regroup,
-    "no revolute body has m, h_z or Σ_zz, no prismatic body has Σ: its parent has them; joint torques are the same, wrenches between bodies are not",
+    "no revolute body has m, h_z or Σ_zz, no prismatic body has Σ, no spherical body has m: its parent has them; joint torques are the same, wrenches between bodies are not",
 )];

@@ -9,7 +9,7 @@ use crate::spatial::SpatialInertia;
 /// Moves inertial parameters along the joints that cannot feel them, from the tips inward.
 ///
 /// Mass on the axis of a revolute joint moves with the parent whatever the angle: m, h_z and Σ_zz go there, and what is left has Σ_zz = 0 and no
-/// mass. A prismatic joint does not turn its body: Σ goes to the parent. Exact for all joint torques and for the mass
+/// mass. A prismatic joint does not turn its body: Σ goes to the parent. A spherical joint's centre moves with the parent: m goes there. Exact for all joint torques and for the mass
 /// matrix (Khalil & Dombre, *Modeling, Identification and Control of Robots*, 2002, §9.4); placements do not change.
 pub fn regroup(mut model: Model<f64>) -> Model<f64> {
     for i in model.inward() {
@@ -27,7 +27,11 @@ pub fn regroup(mut model: Model<f64>) -> Model<f64> {
 fn split(body: &Body<f64>) -> Option<(SpatialInertia<f64>, SpatialInertia<f64>)> {
     let own = body.inertia;
     match body.joint {
-        Joint::Floating => None,
+        Joint::Floating | Joint::Helical => None,
+        Joint::Spherical => {
+            let given = SpatialInertia { mass: own.mass, first: Vector3::zeros(), second: Matrix3::zeros() };
+            Some((given, subtract(own, given)))
+        }
         Joint::Revolute => {
             let first = Vector3::new(0.0, 0.0, own.first.z);
             let second = Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, own.second.m33));

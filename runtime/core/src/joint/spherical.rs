@@ -1,0 +1,82 @@
+//! Any turn about a point.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::{Coordinates, JointLaw};
+use crate::Scalar;
+use crate::spatial::{Motion, Placement, SpatialInertia, Twist, Wrench, from_quaternion, rotate, rotate_back};
+
+/// q = unit quaternion (x, y, z, w) of the child in the joint frame; v = ω in axes of the child; S = [1; 0].
+///
+/// The quaternion's norm is taken to be one ([`from_quaternion`]).
+#[derive(Clone, Copy, Debug)]
+pub struct Spherical<S> {
+    rotation: Matrix3<S>,
+}
+
+#[inline(always)]
+fn three<S: Scalar>(x: &[S], at: usize) -> Vector3<S> {
+    Vector3::new(x[at], x[at + 1], x[at + 2])
+}
+
+impl<S: Scalar> JointLaw<S> for Spherical<S> {
+    #[inline(always)]
+    fn at(at: &Coordinates<S>, q: &[S]) -> Self {
+        let q = &q[at.q..at.q + 4];
+        Self { rotation: from_quaternion([q[0], q[1], q[2], q[3]]) }
+    }
+
+    #[inline(always)]
+    fn to_child(&self, v: Vector3<S>) -> Vector3<S> {
+        rotate_back(&self.rotation, v)
+    }
+
+    #[inline(always)]
+    fn to_joint(&self, v: Vector3<S>) -> Vector3<S> {
+        rotate(&self.rotation, v)
+    }
+
+    #[inline(always)]
+    fn origin(&self, x_pj: &Placement<S>) -> Vector3<S> {
+        x_pj.position
+    }
+
+    #[inline(always)]
+    fn compose(&self, x_wj: Placement<S>) -> Placement<S> {
+        x_wj.compose(&Placement { rotation: self.rotation, position: Vector3::zeros() })
+    }
+
+    #[inline(always)]
+    fn subspace(&self, turn: &Matrix3<S>, k: usize) -> Twist<S> {
+        Twist { angular: turn.column(k).into_owned(), linear: Vector3::zeros() }
+    }
+
+    #[inline(always)]
+    fn motion(&self, carried: Motion<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
+        let (rate, derivative) = (three(v, at.v), three(a, at.v));
+        let omega = self.to_child(carried.omega);
+        // ω̇ = Rᵀ ω̇_λ + Rᵀ ω_λ × ω_J + ω̇_J;  ω = Rᵀ ω_λ + ω_J
+        let alpha = self.to_child(carried.alpha) + omega.cross(&rate) + derivative;
+        Motion { omega: omega + rate, alpha, acceleration: self.to_child(carried.acceleration) }
+    }
+
+    #[inline(always)]
+    fn inertia_to_joint(&self, inertia: &SpatialInertia<S>) -> SpatialInertia<S> {
+        inertia.moved(&Placement { rotation: self.rotation, position: Vector3::zeros() })
+    }
+
+    #[inline(always)]
+    fn column(&self, i: &SpatialInertia<S>, k: usize) -> Wrench<S> {
+        // n = (tr(Σ)·1 − Σ) e, f = e × h
+        let mut e = Vector3::zeros();
+        e[k] = S::one();
+        Wrench { moment: i.rotational().column(k).into_owned(), force: e.cross(&i.first) }
+    }
+
+    #[inline(always)]
+    fn add_torque(&self, wrench: &Wrench<S>, at: &Coordinates<S>, tau: &mut [S]) {
+        for k in 0..3 {
+            tau[at.v + k] += wrench.moment[k];
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! What the six numbers of a frame's twist or wrench refer to.
+
+/// A choice of axes and of the point that linear velocities and moments are taken at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Reference {
+    /// Axes of the frame, about its origin.
+    #[default]
+    Body,
+    /// Axes of the base frame, about the base frame's origin; also called spatial.
+    World,
+    /// Axes of the base frame, about the frame's origin: [ω; ṗ].
+    WorldAligned,
+}
+
+impl Reference {
+    /// Its name in settings.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Body => "body",
+            Self::World => "world",
+            Self::WorldAligned => "world_aligned",
+        }
+    }
+}
