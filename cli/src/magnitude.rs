@@ -125,6 +125,13 @@ impl Scalar for Magnitude {
         Self::computed(root, if self.magnitude == 0.0 { 0.0 } else { self.magnitude / root })
     }
 
+    // ‖atan2(y, x)‖ = |atan2(y, x)| + (|x| ‖y‖ + |y| ‖x‖) / (x² + y²)
+    fn atan2(self, x: Self) -> Self {
+        let (angle, r) = (self.value.atan2(x.value), self.value.hypot(x.value));
+        let share = |along: f64, across: f64| if across == 0.0 { 0.0 } else { along.abs() / r * (across / r) };
+        Self::computed(angle, angle.abs() + share(x.value, self.magnitude) + share(self.value, x.magnitude))
+    }
+
     fn positive(self) -> bool {
         self.value > 0.0
     }
@@ -209,5 +216,15 @@ mod tests {
         assert_eq!(of(1000.0).sin_cos().1.magnitude, 1000.0_f64.cos().abs());
         assert!((of(500.0) + of(500.0)).sin_cos().1.magnitude > 800.0);
         assert_eq!((of(4.0).sqrt().value, of(4.0).sqrt().magnitude), (2.0, 2.0));
+    }
+
+    #[test]
+    fn the_angle_of_a_point_carries_the_error_of_the_point() {
+        let angle = of(1.0).atan2(of(1.0));
+        assert!((angle.magnitude - (angle.value + 1.0)).abs() < 1e-15);
+        // (1000 − 999, 0): the zero cannot tell, the one is off by 1999.
+        assert!((of(0.0).atan2(of(1000.0) - of(999.0))).magnitude < 1e-15);
+        assert!(((of(1000.0) - of(999.0)).atan2(of(1e3))).magnitude > 1.99);
+        assert_eq!(of(0.0).atan2(of(0.0)).magnitude, 0.0);
     }
 }

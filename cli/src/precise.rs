@@ -132,6 +132,11 @@ fn scaled(mut x: f64, mut e: i32) -> f64 {
     x
 }
 
+/// π.
+fn half_turn() -> Big {
+    ZERO.with_constants(|_, c| c.pi(BITS, ROUNDING))
+}
+
 impl PartialEq for Big {
     fn eq(&self, other: &Self) -> bool {
         with(|arena| arena.numbers[self.0 as usize].cmp(&arena.numbers[other.0 as usize]) == Some(0))
@@ -241,6 +246,17 @@ impl Scalar for Big {
         self.one_of(|x| x.sqrt(BITS, ROUNDING))
     }
 
+    // atan y/x for x > 0, half a turn further for x < 0; no zero here has a sign.
+    fn atan2(self, x: Self) -> Self {
+        let minus = |mask: bool, a: Self| if mask { -a } else { a };
+        let below = (-self).positive();
+        if x.is_zero() {
+            return if self.is_zero() { ZERO } else { minus(below, half_turn() / Self::from_f64(2.0)) };
+        }
+        let within = if self.is_zero() { ZERO } else { (self / x).with_constants(|t, c| t.atan(BITS, ROUNDING, c)) };
+        if x.positive() { within } else { within + minus(below, half_turn()) }
+    }
+
     fn positive(self) -> bool {
         with(|arena| {
             let x = &arena.numbers[self.0 as usize];
@@ -278,6 +294,27 @@ mod tests {
         close(Big::one().sin_cos().0, "0.841470984807896506652502321630298999622563060798371065672752", 1e-59);
         close(Big::from_f64(2.0).sqrt(), "1.41421356237309504880168872420969807856967187537694807317667974", 1e-60);
         close(Big::from_f64(1e22).sin_cos().0, "-0.852200849767188801772705893753029368261762150410043656256509", 1e-59);
+    }
+
+    #[test]
+    fn an_arctangent_gives_the_angle_back_in_every_quadrant() {
+        for k in -31..=31 {
+            Big::scope(|| {
+                let angle = Big::from_f64(f64::from(k)) / Big::from_f64(10.0);
+                let (s, c) = angle.sin_cos();
+                let far = Big::from_f64(1e30);
+                assert!((s.atan2(c) - angle).to_f64().abs() < 1e-94, "{k}");
+                assert!(((s * far).atan2(c * far) - angle).to_f64().abs() < 1e-94, "{k}");
+            });
+        }
+        let pi = "3.14159265358979323846264338327950288419716939937510582097494459230781640628620899862803482534211706798";
+        let of = |y: f64, x: f64| Big::from_f64(y).atan2(Big::from_f64(x));
+        close(of(0.0, -3.0), pi, 1e-95);
+        close(of(2.0, 0.0) + of(2.0, 0.0), pi, 1e-95);
+        close(-of(-1e-40, -1.0) + of(1e-40, 1.0), pi, 1e-95);
+        close(of(-1e-30, 1.0), "-9.99999999999999999999999999999999999999999999999999999999999666e-31", 1e-16);
+        assert!(of(0.0, 0.0).is_zero() && of(0.0, 7.0).is_zero());
+        assert_eq!(of(-5.0, 0.0).to_f64(), -std::f64::consts::FRAC_PI_2);
     }
 
     #[test]

@@ -115,6 +115,10 @@ impl Scalar for Sym {
         apply(Op::Sqrt, &[self])
     }
 
+    fn atan2(self, x: Self) -> Self {
+        apply(Op::Atan2, &[self, x])
+    }
+
     fn positive(self) -> Sym {
         apply(Op::Positive, &[self])
     }
@@ -133,11 +137,11 @@ mod tests {
         let program = || {
             let (x, y) = (Sym::input(0, 0), Sym::input(1, 0));
             let (s, c) = x.sin_cos();
-            vec![s * s + c * c, Scalar::abs(y), (x / y).sqrt()]
+            vec![s * s + c * c, Scalar::abs(y), (x / y).sqrt(), y.atan2(x), Sym::one().atan2(Sym::zero())]
         };
         let graph = trace(program);
         let out = graph.evaluate(|argument, _| if argument == 0 { -0.5 } else { -2.0 });
         assert!((out[0] - 1.0).abs() < 1e-15);
-        assert_eq!(&out[1..], [2.0, 0.5]);
+        assert_eq!(&out[1..], [2.0, 0.5, f64::atan2(-2.0, -0.5), std::f64::consts::FRAC_PI_2]);
     }
 }

@@ -119,6 +119,15 @@ impl<S: Scalar> Scalar for Jet<S> {
         Self(value, first, (self.2 - (square + square)) / twice)
     }
 
+    // r² θ˙ = x ẏ − y ẋ, differentiated once more.
+    fn atan2(self, x: Self) -> Self {
+        let square = x.0 * x.0 + self.0 * self.0;
+        let half_rate = x.0 * x.1 + self.0 * self.1;
+        let first = (x.0 * self.1 - self.0 * x.1) / square;
+        let second = (x.0 * self.2 - self.0 * x.2 - (half_rate + half_rate) * first) / square;
+        Self(self.0.atan2(x.0), first, second)
+    }
+
     fn positive(self) -> S::Mask {
         self.0.positive()
     }
@@ -148,5 +157,6 @@ mod tests {
         near(|t| t.sin_cos().0 / (t + Jet::one()));
         near(|t| (t * t).sin_cos().1 * t.sqrt());
         near(|t| Scalar::abs(-t));
+        near(|t| (t * t).atan2(-t.sin_cos().1));
     }
 }

@@ -33,9 +33,10 @@ fn document(out: &mut String, function: &Function<Sym>, entry: &Entry) {
     }
     let _ = writeln!(out, "/// Returns {}.\n///", function.gives.doc());
     let _ = writeln!(out, "/// {}.", function.source);
+    let arctangents = if c.arctangents() == 0 { String::new() } else { format!(", {} arctangents", c.arctangents()) };
     let _ = writeln!(
         out,
-        "/// {} multiplications + {} additions in {} instructions (multiply-adds counted once), {} sines and cosines, depth {}.",
+        "/// {} multiplications + {} additions in {} instructions (multiply-adds counted once), {} sines and cosines{arctangents}, depth {}.",
         c.multiplications(),
         c.additions(),
         c.instructions(),

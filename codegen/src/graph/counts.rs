@@ -42,11 +42,16 @@ impl Counts {
         self.of(Op::Sin) + self.of(Op::Cos)
     }
 
-    /// Floating-point instructions without sines and cosines: additions, multiplications, multiply-adds (one each), divisions, roots, signs,
+    /// Arctangents.
+    pub fn arctangents(&self) -> u64 {
+        self.of(Op::Atan2)
+    }
+
+    /// Floating-point instructions without sines, cosines and arctangents: additions, multiplications, multiply-adds (one each), divisions, roots, signs,
     /// comparisons and selections.
     pub fn instructions(&self) -> u64 {
         let all = self.0.iter().enumerate().filter(|(k, _)| OPS[*k].arity > 0);
-        all.map(|(_, n)| n).sum::<u64>() - self.trigonometric()
+        all.map(|(_, n)| n).sum::<u64>() - self.trigonometric() - self.arctangents()
     }
 
     /// Additions, multiplications and divisions: what papers count.

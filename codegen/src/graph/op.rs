@@ -24,6 +24,8 @@ pub enum Op {
     Sin,
     /// cos a
     Cos,
+    /// the angle of the point (b, a)
+    Atan2,
     /// a > 0, as 1 or 0
     Positive,
     /// b where a is 1, c where a is 0
@@ -76,7 +78,7 @@ const fn commuting(row: Row) -> Row {
 }
 
 /// All operations, in the order of [`Op`].
-pub const OPS: [Row; 16] = [
+pub const OPS: [Row; 17] = [
     row(Op::Constant, "constants", 0, |_, _, _| f64::NAN, 0, 0, ""),
     row(Op::Input, "inputs", 0, |_, _, _| f64::NAN, 0, 0, ""),
     commuting(row(Op::Add, "add", 2, |a, b, _| a + b, 1, 4, "{a} + {b}")),
@@ -87,6 +89,7 @@ pub const OPS: [Row; 16] = [
     row(Op::Sqrt, "sqrt", 1, |a, _, _| a.sqrt(), 4, 18, "{a}.sqrt()"),
     row(Op::Sin, "sin", 1, |a, _, _| a.sin(), 10, 60, "{a}.sin()"),
     row(Op::Cos, "cos", 1, |a, _, _| a.cos(), 10, 60, "{a}.cos()"),
+    row(Op::Atan2, "atan2", 2, |a, b, _| a.atan2(b), 20, 80, "f64::atan2({a}, {b})"),
     row(Op::Positive, "compare", 1, |a, _, _| if a > 0.0 { 1.0 } else { 0.0 }, 1, 3, "{a} > 0.0"),
     row(Op::Select, "select", 3, |a, b, c| if a == 1.0 { b } else { c }, 1, 2, "if {a} { {b} } else { {c} }"),
     commuting(row(Op::MulAdd, "fma", 3, |a, b, c| a * b + c, 1, 4, "fma({a}, {b}, {c})")),

@@ -30,6 +30,9 @@ pub trait Scalar:
     /// √self.
     fn sqrt(self) -> Self;
 
+    /// The angle of the point (x, self), rad, in (−π, π]; 0 at the origin. The sign of a zero counts where the scalar has one.
+    fn atan2(self, x: Self) -> Self;
+
     /// self > 0.
     fn positive(self) -> Self::Mask;
 
@@ -43,7 +46,7 @@ pub trait Scalar:
 }
 
 macro_rules! impl_float {
-    ($t:ty, $sincos:path, $sqrt:path) => {
+    ($t:ty, $sincos:path, $sqrt:path, $atan2:path) => {
         impl Scalar for $t {
             type Mask = bool;
 
@@ -69,6 +72,14 @@ macro_rules! impl_float {
             }
 
             #[inline(always)]
+            fn atan2(self, x: Self) -> Self {
+                #[cfg(feature = "std")]
+                return <$t>::atan2(self, x);
+                #[cfg(not(feature = "std"))]
+                $atan2(self, x)
+            }
+
+            #[inline(always)]
             fn positive(self) -> bool {
                 self > 0.0
             }
@@ -81,8 +92,8 @@ macro_rules! impl_float {
     };
 }
 
-impl_float!(f32, libm::sincosf, libm::sqrtf);
-impl_float!(f64, libm::sincos, libm::sqrt);
+impl_float!(f32, libm::sincosf, libm::sqrtf, libm::atan2f);
+impl_float!(f64, libm::sincos, libm::sqrt, libm::atan2);
 
 #[cfg(test)]
 mod tests {
