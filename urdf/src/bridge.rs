@@ -50,10 +50,12 @@ fn described(draft: &Draft, tree: &Tree, leaders: &[Option<usize>]) -> Option<De
             child: tree.child[i],
             origin: joint.origin,
             axis: joint.axis,
+            second_axis: joint.second_axis,
+            pitch: joint.pitch,
+            locked: None,
             mimic,
             limit: joint.limit,
             dynamics: joint.dynamics,
-            ..Joint::default()
         })
     });
     Some(Description { name: draft.name.clone(), links: links.collect::<Option<_>>()?, joints: joints.collect::<Option<_>>()? })
@@ -90,16 +92,19 @@ fn read_joint(joint: &urdf_rs::Joint, index: usize, draft: &Draft) -> Option<Joi
     };
     (read_index(&joint.name)? == index).then_some(Joint {
         name,
-        kind: read_kind(&joint.joint_type)?,
+        kind: read_kind(&joint.joint_type, found.kind?),
         parent: read_index(&joint.parent.link)?,
         child: read_index(&joint.child.link)?,
         origin: read_origin(&joint.origin),
         axis: *joint.axis.xyz,
+        // What urdf-rs does not know has nobody to agree with.
+        second_axis: found.second_axis,
+        pitch: found.pitch,
+        locked: None,
         mimic,
         // Nor a missing limit from zeros.
         limit: found.limit.is_some().then(|| read_limit(&joint.limit)),
         dynamics: joint.dynamics.as_ref().map(|d| JointDynamics { damping: d.damping, friction: d.friction }),
-        ..Joint::default()
     })
 }
 
@@ -107,15 +112,17 @@ fn read_index(name: &str) -> Option<usize> {
     name.parse().ok()
 }
 
-fn read_kind(kind: &JointType) -> Option<JointKind> {
+/// The kind that was read; `drafted`, if that is one that only this crate knows and [`plain`] wrote its stand-in.
+fn read_kind(kind: &JointType, drafted: JointKind) -> JointKind {
     match kind {
-        JointType::Revolute => Some(JointKind::Revolute),
-        JointType::Continuous => Some(JointKind::Continuous),
-        JointType::Prismatic => Some(JointKind::Prismatic),
-        JointType::Fixed => Some(JointKind::Fixed),
-        JointType::Floating => Some(JointKind::Floating),
-        JointType::Planar => Some(JointKind::Planar),
-        JointType::Spherical => Some(JointKind::Spherical),
+        JointType::Fixed if plain::is_unknown_to_urdf_rs(drafted) => drafted,
+        JointType::Fixed => JointKind::Fixed,
+        JointType::Revolute => JointKind::Revolute,
+        JointType::Continuous => JointKind::Continuous,
+        JointType::Prismatic => JointKind::Prismatic,
+        JointType::Floating => JointKind::Floating,
+        JointType::Planar => JointKind::Planar,
+        JointType::Spherical => JointKind::Spherical,
     }
 }
 

@@ -28,6 +28,10 @@ pub(crate) struct DraftJoint {
     pub(crate) child: Option<Reference>,
     pub(crate) origin: Origin,
     pub(crate) axis: [f64; 3],
+    /// Of a universal joint; zero otherwise.
+    pub(crate) second_axis: [f64; 3],
+    /// Of a helical joint, m a turn; zero otherwise.
+    pub(crate) pitch: f64,
     pub(crate) mimic: Option<DraftMimic>,
     pub(crate) limit: Option<Limit>,
     pub(crate) dynamics: Option<JointDynamics>,
@@ -59,5 +63,5 @@ impl DraftJoint {
 
 /// Whether a joint has exactly one coordinate.
 pub(crate) fn has_one_coordinate(kind: JointKind) -> bool {
-    matches!(kind, JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic)
+    kind.sizes().0 == 1
 }

@@ -5,20 +5,24 @@ use articulated_core::description::JointKind;
 use crate::draft::{DraftJoint, DraftMimic, Reference, has_one_coordinate};
 use crate::element::Tag;
 use crate::log::{Log, Place};
-use crate::number::{attribute, attribute_list};
+use crate::number::{self, attribute, attribute_list};
 use crate::problem::{Kind, Subject, quote};
 use crate::{Options, frame, limits, suggest, unused};
 
-const KINDS: [(&str, JointKind); 6] = [
-    ("revolute", JointKind::Revolute),
-    ("continuous", JointKind::Continuous),
-    ("prismatic", JointKind::Prismatic),
-    ("fixed", JointKind::Fixed),
-    ("floating", JointKind::Floating),
-    ("planar", JointKind::Planar),
+/// The format's six, and three of this crate's own.
+const KINDS: [JointKind; 9] = [
+    JointKind::Revolute,
+    JointKind::Continuous,
+    JointKind::Prismatic,
+    JointKind::Fixed,
+    JointKind::Floating,
+    JointKind::Planar,
+    JointKind::Spherical,
+    JointKind::Helical,
+    JointKind::Universal,
 ];
 
-const TAGS: [&str; 7] = ["origin", "parent", "child", "axis", "limit", "dynamics", "mimic"];
+const TAGS: [&str; 9] = ["origin", "parent", "child", "axis", "axis2", "thread", "limit", "dynamics", "mimic"];
 
 /// The axis of a joint that does not give one.
 const DEFAULT_AXIS: [f64; 3] = [1.0, 0.0, 0.0];
@@ -41,6 +45,8 @@ pub(crate) fn joint(tag: &Tag<'_>, open: bool, options: &Options, log: &mut Log)
         child: reference(&tag, "child", log),
         origin: frame::origin(&tag, options.snap_angles, log),
         axis: DEFAULT_AXIS,
+        second_axis: [0.0; 3],
+        pitch: 0.0,
         mimic: mimic(&tag, log),
         limit: None,
         dynamics: None,
@@ -53,10 +59,12 @@ pub(crate) fn joint(tag: &Tag<'_>, open: bool, options: &Options, log: &mut Log)
 
 fn kind(tag: &Tag<'_>, log: &mut Log) -> Option<JointKind> {
     let (name, line) = tag.required_attribute("type", log)?;
-    let kind = KINDS.iter().find(|(known, _)| *known == name).map(|(_, kind)| *kind);
+    let kind = KINDS.into_iter().find(|kind| kind.name() == name);
     if kind.is_none() {
-        let hint = suggest::Suggester::new().hint(name, KINDS.iter().map(|(known, _)| *known));
-        let expected = format!("revolute, continuous, prismatic, fixed, floating or planar{hint}");
+        let names = KINDS.map(JointKind::name);
+        let hint = suggest::Suggester::new().hint(name, names.into_iter());
+        let [before @ .., last] = names;
+        let expected = format!("{} or {last}{hint}", before.join(", "));
         let place = Place { line: Some(line), ..tag.place("type") };
         log.error(&place, Kind::UnknownJointType, format!("the type {}", quote(name)), expected);
     }
@@ -70,43 +78,92 @@ fn reference(joint: &Tag<'_>, which: &str, log: &mut Log) -> Option<Reference> {
 }
 
 fn motion(tag: &Tag<'_>, kind: JointKind, open: bool, joint: &mut DraftJoint, log: &mut Log) {
-    if matches!(kind, JointKind::Fixed | JointKind::Floating) {
-        report_useless(tag, &["axis"], log);
-    } else {
-        joint.axis = axis(tag, log);
+    match kind {
+        JointKind::Universal => (joint.axis, joint.second_axis) = cross(tag, log),
+        kind if kind.has_axis() => joint.axis = tag.only("axis", log).and_then(|tag| axis(&tag, log)).unwrap_or(DEFAULT_AXIS),
+        _ => report_useless(tag, "axis", log),
+    }
+    if kind == JointKind::Helical {
+        joint.pitch = pitch(tag, log).unwrap_or_default();
     }
     if has_one_coordinate(kind) {
         joint.limit = limits::limit(tag, kind, open, log);
         joint.dynamics = limits::dynamics(tag, log);
-    } else {
-        report_useless(tag, &["limit", "dynamics"], log);
     }
+    let useless = [
+        ("axis2", kind != JointKind::Universal),
+        ("thread", kind != JointKind::Helical),
+        ("limit", !has_one_coordinate(kind)),
+        ("dynamics", !has_one_coordinate(kind)),
+    ];
+    useless.iter().filter(|(_, useless)| *useless).for_each(|(name, _)| report_useless(tag, name, log));
 }
 
-fn report_useless(joint: &Tag<'_>, names: &[&str], log: &mut Log) {
-    for tag in names.iter().filter_map(|name| joint.only(name, log)).collect::<Vec<_>>() {
+fn report_useless(joint: &Tag<'_>, name: &str, log: &mut Log) {
+    if let Some(tag) = joint.only(name, log) {
         log.unused(&tag, tag.name(), "a joint of this type has no use for it");
     }
 }
 
-fn axis(joint: &Tag<'_>, log: &mut Log) -> [f64; 3] {
-    let Some(tag) = joint.only("axis", log) else {
-        return DEFAULT_AXIS;
-    };
-    unused::rest(&tag, &[], &["xyz"], log);
-    tag.required_attribute("xyz", log);
-    let axis = attribute_list(&tag, "xyz", log).unwrap_or(DEFAULT_AXIS);
+/// The direction that `<axis>` or `<axis2>` gives, if it is right.
+fn axis(tag: &Tag<'_>, log: &mut Log) -> Option<[f64; 3]> {
+    unused::rest(tag, &[], &["xyz"], log);
+    tag.required_attribute("xyz", log)?;
+    let axis = attribute_list(tag, "xyz", log)?;
     let size = axis.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-    if !AXIS.contains(&size) {
-        let [x, y, z] = axis;
-        let expected = match size > 1.0 {
-            true => "a vector of a length that can be squared",
-            false => "a vector that is not zero",
-        };
-        log.error(&tag.place("axis"), Kind::ZeroAxis, format!("({x:?} {y:?} {z:?})"), expected);
-        return DEFAULT_AXIS;
+    if AXIS.contains(&size) {
+        return Some(axis);
     }
-    axis
+    let expected = match size > 1.0 {
+        true => "a vector of a length that can be squared",
+        false => "a vector that is not zero",
+    };
+    log.error(&tag.place(&tag.name()), Kind::ZeroAxis, shown(axis), expected);
+    None
+}
+
+fn shown([x, y, z]: [f64; 3]) -> String {
+    format!("({x:?} {y:?} {z:?})")
+}
+
+/// The two axes of a universal joint. None has a default: nobody would guess it.
+fn cross(joint: &Tag<'_>, log: &mut Log) -> ([f64; 3], [f64; 3]) {
+    let [first, second] = ["axis", "axis2"].map(|name| joint.required(name, log).and_then(|tag| axis(&tag, log)));
+    let (Some(first), Some(second)) = (first, second) else {
+        return (DEFAULT_AXIS, DEFAULT_AXIS);
+    };
+    if sine(first, second) < PARALLEL {
+        let found = format!("{}, along the first axis {}", shown(second), shown(first));
+        let expected = "a second axis across the first; about one axis, the joint is revolute";
+        log.error(&joint.place("axis2"), Kind::ParallelAxes, found, expected);
+    }
+    (first, second)
+}
+
+/// Axes of a smaller sine of the angle between them count as parallel.
+const PARALLEL: f64 = 1e-6;
+
+/// |a × b| / (|a| |b|) of vectors that are not zero.
+fn sine(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let [[a, b, c], [x, y, z]] = [a, b].map(|v| {
+        let size = v.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let v = v.map(|x| x / size);
+        let norm = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        v.map(|x| x / norm)
+    });
+    [b * z - c * y, c * x - a * z, a * y - b * x].iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// How far a helical joint slides in one turn, m: with a right-handed thread it is positive. Zero is odd, but means something.
+fn pitch(joint: &Tag<'_>, log: &mut Log) -> Option<f64> {
+    let tag = joint.required("thread", log)?;
+    unused::rest(&tag, &[], &["pitch"], log);
+    let pitch = number::required(&tag, "pitch", log)?;
+    if pitch == 0.0 {
+        let expected = "metres a turn; without, the joint is revolute; used as written";
+        log.warning(&tag.place("thread pitch"), Kind::ZeroPitch, "zero", expected);
+    }
+    Some(pitch)
 }
 
 fn mimic(joint: &Tag<'_>, log: &mut Log) -> Option<DraftMimic> {

@@ -19,6 +19,18 @@
 //! The way of a file: document (bytes → XML) → links and joints (checked numbers, with their lines) → tree
 //! (names, rings, roots, mimics) → bridge (a plain document that `urdf-rs` reads, compared with what was found here) →
 //! [`Description`]. Other files are never opened, and no input makes the reader panic, hang or overflow its stack.
+//!
+//! # Beyond the format
+//!
+//! Three types of joints are extensions, which other readers refuse or do not know:
+//!
+//! * `spherical`: any turn about the joint's origin. It has no axis.
+//! * `helical`: a screw. It turns about `<axis>`, within the bounds of `<limit>` in rad, and slides along it by
+//!   `<thread pitch="0.005"/>` metres a turn; negative for a left-handed thread, which has to be given. Zero is accepted with a warning.
+//! * `universal`: Cardan's joint. It turns about `<axis xyz="1 0 0"/>`, then about `<axis2 xyz="0 1 0"/>`, which the first has turned; both have to be
+//!   given, in the joint's frame, and not parallel.
+//!
+//! A joint mimics and is mimicked if it has one coordinate: `helical` does, the other two do not.
 
 mod base;
 mod bridge;

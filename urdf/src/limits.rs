@@ -28,7 +28,7 @@ pub(crate) fn limit(joint: &Tag<'_>, kind: JointKind, open: bool, log: &mut Log)
 
 fn report_missing(joint: &Tag<'_>, kind: JointKind, log: &mut Log) {
     if kind != JointKind::Continuous {
-        let expected = "<limit> for a revolute or prismatic joint; taken as without limits";
+        let expected = "<limit> for a revolute, helical or prismatic joint; taken as without limits";
         log.warning(&joint.place("limit"), Kind::LimitMissing, "none", expected);
     }
 }

@@ -41,17 +41,14 @@ fn within<T>(all: &[T], from: usize) -> &[T] {
 
 struct Out(String);
 
-/// `urdf-rs`'s name of a kind.
+/// Whether a kind is this crate's own.
+pub(crate) fn is_unknown_to_urdf_rs(kind: JointKind) -> bool {
+    matches!(kind, JointKind::Helical | JointKind::Universal)
+}
+
+/// `urdf-rs`'s name of a kind; that of a fixed joint stands in for those that it does not know.
 fn name(kind: Option<JointKind>) -> &'static str {
-    match kind {
-        Some(JointKind::Revolute) => "revolute",
-        Some(JointKind::Continuous) => "continuous",
-        Some(JointKind::Prismatic) => "prismatic",
-        Some(JointKind::Floating) => "floating",
-        Some(JointKind::Planar) => "planar",
-        Some(JointKind::Spherical) => "spherical",
-        Some(JointKind::Helical | JointKind::Universal | JointKind::Fixed) | None => "fixed",
-    }
+    kind.filter(|kind| !is_unknown_to_urdf_rs(*kind)).unwrap_or(JointKind::Fixed).name()
 }
 
 impl Out {

@@ -91,6 +91,10 @@ pub enum Kind {
     SeveralRoots,
     /// An axis without a direction.
     ZeroAxis,
+    /// The two axes of a universal joint have one direction.
+    ParallelAxes,
+    /// A helical joint that does not slide.
+    ZeroPitch,
     /// A mass below zero.
     NegativeMass,
     /// A principal moment of inertia below zero.
@@ -107,7 +111,7 @@ pub enum Kind {
     LeaderCannotLead,
     /// The joint that follows has not exactly one coordinate.
     FollowerCannotFollow,
-    /// A revolute or prismatic joint without `<limit>`.
+    /// A revolute, helical or prismatic joint without `<limit>`.
     LimitMissing,
     /// A `<limit>` without an attribute that the format asks for.
     LimitIncomplete,

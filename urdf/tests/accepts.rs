@@ -106,6 +106,48 @@ fn floating_and_planar_joints_are_described() {
     }
 }
 
+/// The crane with a slew of another type and other tags in place of its axis.
+fn slew(kind: &str, tags: &str) -> String {
+    crane("<axis xyz=\"0 0 1\"/>", tags).replace("\"continuous\"", &format!("\"{kind}\""))
+}
+
+#[test]
+fn the_extensions_are_read_and_agree_with_the_second_reader() {
+    let spherical = joint(&slew("spherical", ""), "slew");
+    assert_eq!((spherical.kind, spherical.limit), (JointKind::Spherical, None));
+    let helical =
+        joint(&slew("helical", "<axis xyz='0 2 0'/><thread pitch='-5e-3'/><limit lower='-9' upper='9' effort='1' velocity='2'/>"), "slew");
+    assert_eq!((helical.kind, helical.axis, helical.pitch), (JointKind::Helical, [0.0, 2.0, 0.0], -0.005));
+    assert_eq!(helical.limit, Some(Limit { lower: -9.0, upper: 9.0, effort: 1.0, velocity: 2.0 }));
+    let universal = joint(&slew("universal", "<axis xyz='0 0 3'/><axis2 xyz='1 0 1'/>"), "slew");
+    assert_eq!((universal.kind, universal.axis, universal.second_axis), (JointKind::Universal, [0.0, 0.0, 3.0], [1.0, 0.0, 1.0]));
+    assert_eq!((universal.pitch, helical.second_axis), (0.0, [0.0; 3]));
+}
+
+#[test]
+fn a_helical_joint_leads_and_follows() {
+    let text = slew("helical", "<thread pitch='0.01'/><limit effort='1' velocity='1' lower='-1' upper='1'/><mimic joint='travel'/>")
+        .replace("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"slew\"/>");
+    let crane = described(&text);
+    assert_eq!([0, 2].map(|i| crane.joints[i].mimic.unwrap().joint), [1, 0]);
+}
+
+#[test]
+fn what_only_an_extension_uses_is_reported_elsewhere() {
+    let reading = accepted(&slew("revolute", "<axis2 xyz='x'/><thread pitch='x'/><limit effort='1' velocity='1' lower='0' upper='1'/>"));
+    let tags: Vec<&str> = reading.unused.iter().filter(|u| u.subject == Subject::Joint("slew".into())).map(|u| u.tag.as_str()).collect();
+    assert_eq!(tags, ["axis2", "thread"]);
+    let reading = accepted(&slew("spherical", "<axis xyz='0 0 1'/><limit/>"));
+    let tags: Vec<&str> = reading.unused.iter().filter(|u| u.subject == Subject::Joint("slew".into())).map(|u| u.tag.as_str()).collect();
+    assert_eq!(tags, ["axis", "limit"]);
+}
+
+#[test]
+fn a_pitch_of_zero_is_a_warning_and_no_limit_too() {
+    let kinds: Vec<Kind> = accepted(&slew("helical", "<thread pitch='0'/>")).warnings.iter().map(|w| w.kind).collect();
+    assert_eq!(kinds, [Kind::ZeroPitch, Kind::LimitMissing]);
+}
+
 #[test]
 fn limits_that_are_left_open_are_infinite() {
     let text = crane("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 1\"/><limit lower=\"-1\" effort=\"9\" velocity=\"2\"/>");

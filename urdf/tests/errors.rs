@@ -47,7 +47,11 @@ const MISTAKES: &[Mistake] = &[
     ("type=\"continuous\"", "", Kind::MissingAttribute, 19, &["slew", "type"]),
     ("type=\"continuous\"", "type=\"continous\"", Kind::UnknownJointType, 19, &["slew", "type", "continous", "mean \"continuous\""]),
     ("type=\"continuous\"", "type=\"Continuous\"", Kind::UnknownJointType, 19, &["slew", "type"]),
-    ("type=\"continuous\"", "type=\"spherical\"", Kind::UnknownJointType, 19, &["slew", "spherical"]),
+    ("type=\"continuous\"", "type=\"ball\"", Kind::UnknownJointType, 19, &["slew", "ball", "spherical, helical or universal"]),
+    ("type=\"continuous\"", "type=\"sperical\"", Kind::UnknownJointType, 19, &["slew", "sperical", "mean \"spherical\""]),
+    ("type=\"continuous\"", "type=\"helicall\"", Kind::UnknownJointType, 19, &["slew", "mean \"helical\""]),
+    // Extensions.
+    ("type=\"continuous\"", "type=\"universal\"", Kind::MissingTag, 19, &["slew", "<axis2>"]),
     ("0 0 1\"", "0 -0 0.0\"", Kind::ZeroAxis, 23, &["slew", "axis", "zero"]),
     ("0 0 1\"", "0 1e-200 0\"", Kind::ZeroAxis, 23, &["slew", "axis"]),
     ("<axis xyz=\"0 0 1\"/>", "<axis/>", Kind::MissingAttribute, 23, &["slew", "xyz"]),
@@ -148,10 +152,47 @@ fn a_ring_of_mimics_is_one_error() {
 
 #[test]
 fn leaders_with_several_coordinates_are_refused() {
-    for kind in ["floating", "planar"] {
+    for kind in ["floating", "planar", "spherical"] {
         let text = crane("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"slew\"/>");
         let error = only_error(&text.replace("\"continuous\"", &format!("\"{kind}\"")));
         assert_eq!(error.kind, Kind::LeaderCannotLead, "{kind}");
+    }
+}
+
+/// The crane with a universal or helical slew: what stands in place of its axis; the kind and line of the error; words of the message.
+type Special = (&'static str, &'static str, Kind, u32, &'static [&'static str]);
+
+const SPECIALS: &[Special] = &[
+    ("universal", "<axis2 xyz='0 1 0'/>", Kind::MissingTag, 19, &["slew", "<axis>"]),
+    ("universal", "<axis xyz='1 0 0'/><axis2 xyz='0 0 0'/>", Kind::ZeroAxis, 23, &["slew", "axis2", "not zero"]),
+    ("universal", "<axis xyz='1 0 0'/><axis2/>", Kind::MissingAttribute, 23, &["slew", "xyz", "<axis2>"]),
+    ("universal", "<axis xyz='1 0 0'/><axis2 xyz='0 1'/>", Kind::WrongCount, 23, &["slew", "axis2 xyz", "three"]),
+    ("universal", "<axis xyz='1 2 0'/><axis2 xyz='-3 -6 0'/>", Kind::ParallelAxes, 19, &["slew", "axis2", "(-3.0 -6.0 0.0)", "across"]),
+    ("universal", "<axis xyz='1e-120 0 0'/><axis2 xyz='1e120 1e110 0'/>", Kind::ParallelAxes, 19, &["slew", "axis2"]),
+    ("universal", "<axis xyz='1 0 0'/><axis2 xyz='0 1 0'/><axis2 xyz='0 1 0'/>", Kind::DuplicateTag, 23, &["slew", "second <axis2>"]),
+    ("helical", "<axis xyz='0 0 1'/>", Kind::MissingTag, 19, &["slew", "<thread>"]),
+    ("helical", "<thread/>", Kind::MissingAttribute, 23, &["slew", "pitch", "<thread>"]),
+    ("helical", "<thread pitch='inf'/>", Kind::NotFinite, 23, &["slew", "thread pitch", "inf"]),
+    ("helical", "<thread pitch='5 mm'/>", Kind::NotANumber, 23, &["slew", "thread pitch", "mm"]),
+];
+
+#[test]
+fn each_mistake_in_an_extension_is_one_error() {
+    for (name, axes, kind, line, words) in SPECIALS {
+        let text = crane("<axis xyz=\"0 0 1\"/>", axes).replace("\"continuous\"", &format!("\"{name}\""));
+        let error = only_error(&text);
+        let message = error.to_string();
+        assert_eq!((error.kind, error.line), (*kind, Some(*line)), "{message}");
+        assert!(words.iter().all(|word| message.contains(word)), "{message}\n{words:?}");
+    }
+}
+
+#[test]
+fn a_joint_with_several_coordinates_follows_none() {
+    for (name, axes) in [("spherical", ""), ("planar", ""), ("universal", "<axis xyz='1 0 0'/><axis2 xyz='0 1 0'/>")] {
+        let text = crane("<axis xyz=\"0 0 1\"/>", &format!("{axes}<mimic joint='swing'/>"));
+        let error = only_error(&text.replace("\"continuous\"", &format!("\"{name}\"")));
+        assert_eq!(error.kind, Kind::FollowerCannotFollow, "{name}");
     }
 }
 
