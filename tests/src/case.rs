@@ -101,8 +101,9 @@ impl Case {
         for body in self.model.bodies.iter().skip(1).filter(|b| b.coordinates.mimic.is_none()) {
             let at = body.coordinates.q;
             match body.joint {
-                Joint::Revolute => {}
+                Joint::Revolute | Joint::Helical => {}
                 Joint::Prismatic => q[at] /= std::f64::consts::PI,
+                Joint::Spherical => q[at..at + 4].copy_from_slice(&random.unit::<4>()),
                 Joint::Floating => q[at + 3..at + 7].copy_from_slice(&random.unit::<4>()),
             }
         }

@@ -17,13 +17,19 @@ pub struct Flavour {
     pub floating: bool,
     /// Fixed joints.
     pub fixed: bool,
+    /// Planar joints.
+    pub planar: bool,
+    /// What a URDF has no word for: helical and universal joints, spherical ones, and locked ones.
+    pub unwritten: bool,
     /// Greatest number of links.
     pub links: usize,
 }
 
 impl Flavour {
     /// Everything.
-    pub const ANY: Self = Self { massless: true, mimic: true, floating: true, fixed: true, links: 12 };
+    pub const ANY: Self = Self { massless: true, mimic: true, floating: true, fixed: true, planar: true, unwritten: true, links: 12 };
+    /// Everything that a URDF can say.
+    pub const WRITTEN: Self = Self { unwritten: false, ..Self::ANY };
     /// Every link has a body's inertia, so that the mass matrix is positive definite.
     pub const REGULAR: Self = Self { massless: false, ..Self::ANY };
 }
@@ -48,22 +54,49 @@ pub fn random_tree(seed: u64, flavour: Flavour) -> Description {
 }
 
 fn joint(random: &mut Random, flavour: Flavour, parent: usize, child: usize) -> Joint {
-    use JointKind::{Continuous, Fixed, Floating, Prismatic, Revolute};
+    use JointKind::{Continuous, Fixed, Floating, Helical, Planar, Prismatic, Revolute, Spherical, Universal};
     let mut kinds = vec![Revolute, Revolute, Continuous, Prismatic];
     kinds.extend(flavour.fixed.then_some(Fixed));
     kinds.extend((flavour.floating && random.chance(0.4)).then_some(Floating));
+    kinds.extend((flavour.planar && random.chance(0.5)).then_some(Planar));
+    if flavour.unwritten && random.chance(0.5) {
+        kinds.extend([Helical, Universal, Spherical]);
+    }
     let kind = *random.choose(&kinds);
+    let axis = if kind.has_axis() { axis(random) } else { [1.0, 0.0, 0.0] };
     Joint {
         name: format!("joint_{child}"),
         kind,
         parent,
         child,
         origin: origin(random, 0.6),
-        axis: if matches!(kind, Fixed | Floating) { [1.0, 0.0, 0.0] } else { axis(random) },
+        axis,
+        second_axis: if kind == Universal { second_axis(random, axis) } else { [0.0; 3] },
+        pitch: if kind == Helical { *random.choose(&[0.2, -0.05, 1.5]) } else { 0.0 },
+        locked: (flavour.unwritten && kind != Fixed && random.chance(0.12)).then(|| locked(random, kind)),
         mimic: None,
-        limit: matches!(kind, Revolute | Prismatic).then_some(Limit { lower: -2.5, upper: 2.5, effort: 100.0, velocity: 10.0 }),
+        limit: matches!(kind, Revolute | Prismatic | Helical).then_some(Limit { lower: -2.5, upper: 2.5, effort: 100.0, velocity: 10.0 }),
         dynamics: None,
-        ..Joint::default()
+    }
+}
+
+/// Not along the first.
+fn second_axis(random: &mut Random, first: [f64; 3]) -> [f64; 3] {
+    let norm = |a: [f64; 3]| a.iter().map(|x| x * x).sum::<f64>().sqrt();
+    loop {
+        let second = axis(random);
+        if norm(cross(first, second)) > 0.3 * norm(first) * norm(second) {
+            return second;
+        }
+    }
+}
+
+/// Coordinates, of turns and slides, or a quaternion.
+fn locked(random: &mut Random, kind: JointKind) -> Vec<f64> {
+    match kind {
+        JointKind::Spherical => random.unit::<4>().to_vec(),
+        JointKind::Floating => [random.three(1.0).as_slice(), &random.unit::<4>()].concat(),
+        _ => random.vector(kind.sizes().0, -1.5, 1.5),
     }
 }
 
@@ -145,7 +178,7 @@ fn unit(a: [f64; 3]) -> [f64; 3] {
 
 /// Lets some joints follow others; those may follow further ones, but nobody follows himself.
 fn follow(random: &mut Random, joints: &mut [Joint]) {
-    let mut able: Vec<usize> = (0..joints.len()).filter(|&j| !matches!(joints[j].kind, JointKind::Fixed | JointKind::Floating)).collect();
+    let mut able: Vec<usize> = (0..joints.len()).filter(|&j| joints[j].kind.sizes() == (1, 1)).collect();
     random.shuffle(&mut able);
     // Everyone follows only somebody further on in the shuffled list.
     for place in 0..able.len().saturating_sub(1) {

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use articulated_core::description::{Description, Inertial, Joint, JointKind, Origin};
+use articulated_core::description::{Description, Inertial, Joint, Origin};
 
-/// The URDF. Every number is printed so that reading gives the same double.
+/// The URDF; of what [`Flavour::WRITTEN`](crate::random_tree::Flavour::WRITTEN) allows. Every number is printed so that reading gives the same double.
 pub fn urdf_text(description: &Description) -> String {
     let mut out = format!("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", description.name);
     for link in &description.links {
@@ -41,7 +41,7 @@ fn joint(out: &mut String, description: &Description, j: &Joint) {
     let link = |l: usize| &description.links[l].name;
     let _ = writeln!(out, "  <joint name=\"{}\" type=\"{}\">", j.name, j.kind.name());
     let _ = writeln!(out, "    <parent link=\"{}\"/>\n    <child link=\"{}\"/>\n    {}", link(j.parent), link(j.child), origin(&j.origin));
-    if !matches!(j.kind, JointKind::Fixed | JointKind::Floating) {
+    if j.kind.has_axis() {
         let _ = writeln!(out, "    <axis xyz=\"{}\"/>", triple(j.axis));
     }
     if let Some(l) = &j.limit {

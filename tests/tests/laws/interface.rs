@@ -163,7 +163,7 @@ fn tree(links: usize, joints: Vec<Joint>) -> Description {
 
 #[test]
 fn what_is_not_a_tree_is_an_error() {
-    use JointKind::{Continuous, Planar};
+    use JointKind::Continuous;
     let not_a_tree = |d: &Description| matches!(Model::new(d, Base::Fixed), Err(ModelError::NotATree { .. }));
     assert!(not_a_tree(&tree(0, vec![])), "no link");
     assert!(not_a_tree(&tree(2, vec![])), "two roots");
@@ -172,10 +172,22 @@ fn what_is_not_a_tree_is_an_error() {
     assert!(not_a_tree(&tree(2, vec![joint("a", Continuous, 0, 1), joint("b", Continuous, 0, 1)])), "two ways");
     assert!(not_a_tree(&tree(1, vec![joint("a", Continuous, 0, 0)])), "a link on itself");
     assert!(not_a_tree(&tree(1, vec![joint("a", Continuous, 0, 9)])), "a link that is not there");
-    let planar = Model::new(&tree(2, vec![joint("a", Planar, 0, 1)]), Base::Fixed);
-    let message = planar.as_ref().map_or_else(ToString::to_string, |_| String::new());
-    assert!(message.contains("\"a\"") && message.contains("planar"), "{message}");
-    assert!(matches!(planar, Err(ModelError::UnsupportedJoint { joint, kind: Planar }) if joint == "a"));
+}
+
+#[test]
+fn a_lock_has_as_many_coordinates_as_the_joint_all_finite() {
+    use JointKind::{Fixed, Planar, Revolute, Spherical};
+    let locked = |kind: JointKind, at: &[f64]| {
+        let joint = Joint { locked: Some(at.to_vec()), ..joint("a", kind, 0, 1) };
+        Model::new(&tree(2, vec![joint]), Base::Fixed)
+    };
+    for (kind, at) in [(Revolute, &[0.0, 0.0][..]), (Revolute, &[]), (Planar, &[0.1]), (Spherical, &[0.0; 3]), (Revolute, &[f64::NAN])] {
+        let found = locked(kind, at);
+        let message = found.as_ref().map_or_else(ToString::to_string, |_| String::new());
+        assert!(message.contains("\"a\"") && message.contains(kind.name()), "{message}");
+        assert!(matches!(found, Err(ModelError::BadLock { joint, .. }) if joint == "a"));
+    }
+    assert!(locked(Fixed, &[]).is_ok() && locked(Revolute, &[0.3]).is_ok());
 }
 
 #[test]

@@ -1,0 +1,138 @@
+//! The yardsticks of rounding errors: what a torque or a placement is the sum of.
+
+use std::f64::consts::TAU;
+
+use articulated_core::description::{Base, Joint, JointKind};
+use nalgebra::Vector3;
+
+use super::pose::Pose;
+use super::{Motions, second_moments};
+
+/// What a link's quantities are sums of, along the way from the base: the yardsticks of rounding errors.
+#[derive(Clone, Copy, Debug, Default)]
+struct Way {
+    /// Length of the way through the origins of the links, m.
+    length: f64,
+    /// Largest acceleration of an origin, m/s².
+    acceleration: f64,
+    /// Largest ‖R̈‖, 1/s².
+    spin: f64,
+}
+
+/// How much of the moment and of the force beyond a joint one of its rates feels.
+type Share = (f64, f64);
+
+const TURN: Share = (1.0, 0.0);
+const SLIDE: Share = (0.0, 1.0);
+const FREE: [Share; 6] = [TURN, TURN, TURN, SLIDE, SLIDE, SLIDE];
+
+/// For each rate.
+fn shares(joint: &Joint) -> Vec<Share> {
+    match joint.kind {
+        JointKind::Fixed => vec![],
+        JointKind::Revolute | JointKind::Continuous => vec![TURN],
+        JointKind::Prismatic => vec![SLIDE],
+        JointKind::Helical => vec![(1.0, (joint.pitch / TAU).abs())],
+        JointKind::Universal => vec![TURN; 2],
+        JointKind::Planar => vec![SLIDE, SLIDE, TURN],
+        JointKind::Spherical => vec![TURN; 3],
+        JointKind::Floating => FREE.to_vec(),
+    }
+}
+
+/// How many turns and slides along an axis a joint is made of, at least one.
+fn elementary(kind: JointKind) -> f64 {
+    match kind {
+        JointKind::Helical | JointKind::Universal => 2.0,
+        JointKind::Planar => 3.0,
+        _ => 1.0,
+    }
+}
+
+impl Motions<'_> {
+    /// The way to each link.
+    fn ways(&self, poses: &[Option<Pose<f64>>]) -> Vec<Way> {
+        let mut ways = vec![Way::default(); poses.len()];
+        for link in self.outward() {
+            let parent = self.description.joints.iter().find(|j| j.child == link).map(|j| j.parent);
+            let before = parent.map_or_else(Way::default, |p| ways[p]);
+            let (Some((r, p)), from) = (poses[link], parent.and_then(|p| poses[p])) else { continue };
+            let step = p.map(|c| c.0) - from.map_or_else(Vector3::zeros, |(_, p)| p.map(|c| c.0));
+            ways[link] = Way {
+                length: before.length + step.norm(),
+                acceleration: before.acceleration.max(p.map(|c| c.2).norm()),
+                spin: before.spin.max(r.map(|c| c.2).norm()),
+            };
+        }
+        ways
+    }
+
+    /// Links, parents first.
+    fn outward(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = self.description.root().into_iter().collect();
+        let mut next = 0;
+        while let Some(&link) = order.get(next) {
+            order.extend(self.description.joints.iter().filter(|j| j.parent == link).map(|j| j.child));
+            next += 1;
+        }
+        order
+    }
+
+    /// For each torque, the sum of what it would be if nothing cancelled: forces m (|r̈| + |g|) times the way from the joint to the mass, and
+    /// ‖Σ_c‖ ‖R̈‖; for a slide, the forces alone. |r̈| and ‖R̈‖ are the largest on the way. No choice of axes changes it much.
+    pub fn torque_scale(&self, q: &[f64], v: &[f64], a: &[f64]) -> Vec<f64> {
+        let poses = self.poses(q, v, a);
+        let (ways, g) = (self.ways(&poses), Vector3::from(self.gravity).norm());
+        let mut scale = vec![0.0; self.size.1];
+        let root = self.description.root();
+        if let (Base::Floating, Some(root)) = (self.base, root) {
+            self.add_scale(root, &ways, g, &FREE, (0, ways[root].length), &mut scale);
+        }
+        for (index, joint) in self.description.joints.iter().enumerate() {
+            let Some((end, multiplier)) = self.leader(index) else { continue };
+            let own: Vec<Share> = shares(joint).iter().map(|s| (s.0 * multiplier.abs(), s.1 * multiplier.abs())).collect();
+            let from = ways[joint.child].length;
+            self.add_scale(joint.child, &ways, g, &own, (self.seat(end).1, from), &mut scale);
+        }
+        scale
+    }
+
+    /// Adds the moment and the force, each with its share of every rate from `at` on, for everything that `top` carries.
+    fn add_scale(&self, top: usize, ways: &[Way], g: f64, shares: &[Share], (at, from): (usize, f64), scale: &mut [f64]) {
+        let mut waiting = vec![top];
+        while let Some(link) = waiting.pop() {
+            waiting.extend(self.description.joints.iter().filter(|j| j.parent == link).map(|j| j.child));
+            let Some(body) = self.description.links[link].inertial else { continue };
+            let (way, arm) = (ways[link], Vector3::from(body.origin.xyz).norm());
+            let force = body.mass * (way.acceleration + way.spin * arm + g);
+            let moment = force * (way.length - from + arm) + second_moments::<f64>(body.inertia).norm() * way.spin;
+            for (k, share) in shares.iter().enumerate() {
+                scale[at + k] += share.0 * moment + share.1 * force;
+            }
+        }
+    }
+
+    /// The joint at the end of a chain of followers, and how far it moves this one. `None` where either is locked, or does not move.
+    fn leader(&self, joint: usize) -> Option<(usize, f64)> {
+        let it = &self.description.joints[joint];
+        match &it.mimic {
+            _ if it.locked.is_some() || it.kind == JointKind::Fixed => None,
+            None => Some((joint, 1.0)),
+            Some(m) => self.leader(m.joint).map(|(end, multiplier)| (end, m.multiplier * multiplier)),
+        }
+    }
+
+    /// For each number of a placement: 1 in a rotation, in a position the length of the way from the base, both times the number of joints on it.
+    pub fn placement_scale(&self, q: &[f64]) -> Vec<f64> {
+        let rest = vec![0.0; self.size.1];
+        let ways = self.ways(&self.poses(q, &rest, &rest));
+        let mut depth = vec![1.0; ways.len()];
+        for link in self.outward() {
+            for joint in self.description.joints.iter().filter(|j| j.parent == link) {
+                depth[joint.child] = depth[link] + elementary(joint.kind);
+            }
+        }
+        let one = |(way, depth): (&Way, &f64)| [[*depth; 9].as_slice(), &[depth * way.length; 3]].concat();
+        ways.iter().zip(&depth).flat_map(one).collect()
+    }
+}
