@@ -17,19 +17,19 @@ pub struct Flavour {
     pub floating: bool,
     /// Fixed joints.
     pub fixed: bool,
-    /// Planar joints.
-    pub planar: bool,
-    /// What a URDF has no word for: helical and universal joints, spherical ones, and locked ones.
-    pub unwritten: bool,
+    /// Planar, spherical, helical and universal joints.
+    pub every_kind: bool,
+    /// Joints locked at a value, which a URDF has no word for.
+    pub locked: bool,
     /// Greatest number of links.
     pub links: usize,
 }
 
 impl Flavour {
     /// Everything.
-    pub const ANY: Self = Self { massless: true, mimic: true, floating: true, fixed: true, planar: true, unwritten: true, links: 12 };
+    pub const ANY: Self = Self { massless: true, mimic: true, floating: true, fixed: true, every_kind: true, locked: true, links: 12 };
     /// Everything that a URDF can say.
-    pub const WRITTEN: Self = Self { unwritten: false, ..Self::ANY };
+    pub const WRITTEN: Self = Self { locked: false, ..Self::ANY };
     /// Every link has a body's inertia, so that the mass matrix is positive definite.
     pub const REGULAR: Self = Self { massless: false, ..Self::ANY };
 }
@@ -58,9 +58,8 @@ fn joint(random: &mut Random, flavour: Flavour, parent: usize, child: usize) -> 
     let mut kinds = vec![Revolute, Revolute, Continuous, Prismatic];
     kinds.extend(flavour.fixed.then_some(Fixed));
     kinds.extend((flavour.floating && random.chance(0.4)).then_some(Floating));
-    kinds.extend((flavour.planar && random.chance(0.5)).then_some(Planar));
-    if flavour.unwritten && random.chance(0.5) {
-        kinds.extend([Helical, Universal, Spherical]);
+    if flavour.every_kind && random.chance(0.6) {
+        kinds.extend([Helical, Universal, Spherical, Planar]);
     }
     let kind = *random.choose(&kinds);
     let axis = if kind.has_axis() { axis(random) } else { [1.0, 0.0, 0.0] };
@@ -73,7 +72,7 @@ fn joint(random: &mut Random, flavour: Flavour, parent: usize, child: usize) -> 
         axis,
         second_axis: if kind == Universal { second_axis(random, axis) } else { [0.0; 3] },
         pitch: if kind == Helical { *random.choose(&[0.2, -0.05, 1.5]) } else { 0.0 },
-        locked: (flavour.unwritten && kind != Fixed && random.chance(0.12)).then(|| locked(random, kind)),
+        locked: (flavour.locked && kind != Fixed && random.chance(0.12)).then(|| locked(random, kind)),
         mimic: None,
         limit: matches!(kind, Revolute | Prismatic | Helical).then_some(Limit { lower: -2.5, upper: 2.5, effort: 100.0, velocity: 10.0 }),
         dynamics: None,

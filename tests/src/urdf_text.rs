@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use articulated_core::description::{Description, Inertial, Joint, Origin};
+use articulated_core::description::{Description, Inertial, Joint, JointKind, Origin};
 
 /// The URDF; of what [`Flavour::WRITTEN`](crate::random_tree::Flavour::WRITTEN) allows. Every number is printed so that reading gives the same double.
 pub fn urdf_text(description: &Description) -> String {
@@ -43,6 +43,11 @@ fn joint(out: &mut String, description: &Description, j: &Joint) {
     let _ = writeln!(out, "    <parent link=\"{}\"/>\n    <child link=\"{}\"/>\n    {}", link(j.parent), link(j.child), origin(&j.origin));
     if j.kind.has_axis() {
         let _ = writeln!(out, "    <axis xyz=\"{}\"/>", triple(j.axis));
+    }
+    match j.kind {
+        JointKind::Universal => drop(writeln!(out, "    <axis2 xyz=\"{}\"/>", triple(j.second_axis))),
+        JointKind::Helical => drop(writeln!(out, "    <thread pitch=\"{:?}\"/>", j.pitch)),
+        _ => {}
     }
     if let Some(l) = &j.limit {
         let _ = writeln!(
