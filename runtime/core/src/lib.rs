@@ -12,6 +12,7 @@
 #[cfg(feature = "alloc")]
 extern crate alloc;
 
+pub mod dual;
 pub mod scalar;
 pub mod spatial;
 

@@ -1,0 +1,171 @@
+//! Numbers with one derivative.
+
+use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+use num_traits::{One, Zero};
+
+use crate::Scalar;
+
+/// x + ε x', with ε² = 0: what is computed with it has its exact derivative (Clifford, *Proc. London Math. Soc.* 4, 1871). Nested, it has the
+/// second derivative too.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dual<S> {
+    /// x.
+    pub value: S,
+    /// x'.
+    pub slope: S,
+}
+
+impl<S: Scalar> Dual<S> {
+    /// x + ε x'.
+    pub fn new(value: S, slope: S) -> Self {
+        Self { value, slope }
+    }
+
+    /// A constant.
+    pub fn constant(value: S) -> Self {
+        Self { value, slope: S::zero() }
+    }
+
+    /// x + ε: the variable itself.
+    pub fn variable(value: S) -> Self {
+        Self { value, slope: S::one() }
+    }
+}
+
+impl<S: Scalar> Zero for Dual<S> {
+    fn zero() -> Self {
+        Self::constant(S::zero())
+    }
+
+    fn is_zero(&self) -> bool {
+        self.value.is_zero() && self.slope.is_zero()
+    }
+}
+
+impl<S: Scalar> One for Dual<S> {
+    fn one() -> Self {
+        Self::constant(S::one())
+    }
+}
+
+impl<S: Scalar> Add for Dual<S> {
+    type Output = Self;
+
+    fn add(self, b: Self) -> Self {
+        Self { value: self.value + b.value, slope: self.slope + b.slope }
+    }
+}
+
+impl<S: Scalar> Sub for Dual<S> {
+    type Output = Self;
+
+    fn sub(self, b: Self) -> Self {
+        Self { value: self.value - b.value, slope: self.slope - b.slope }
+    }
+}
+
+impl<S: Scalar> Neg for Dual<S> {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { value: -self.value, slope: -self.slope }
+    }
+}
+
+impl<S: Scalar> Mul for Dual<S> {
+    type Output = Self;
+
+    // (ab)' = a'b + ab'
+    fn mul(self, b: Self) -> Self {
+        Self { value: self.value * b.value, slope: self.slope * b.value + self.value * b.slope }
+    }
+}
+
+impl<S: Scalar> Div for Dual<S> {
+    type Output = Self;
+
+    // From a = c·b: c' = (a' − c b') / b
+    fn div(self, b: Self) -> Self {
+        let value = self.value / b.value;
+        Self { value, slope: (self.slope - value * b.slope) / b.value }
+    }
+}
+
+impl<S: Scalar> AddAssign for Dual<S> {
+    fn add_assign(&mut self, b: Self) {
+        *self = *self + b;
+    }
+}
+
+impl<S: Scalar> SubAssign for Dual<S> {
+    fn sub_assign(&mut self, b: Self) {
+        *self = *self - b;
+    }
+}
+
+impl<S: Scalar> MulAssign for Dual<S> {
+    fn mul_assign(&mut self, b: Self) {
+        *self = *self * b;
+    }
+}
+
+impl<S: Scalar> Scalar for Dual<S> {
+    type Mask = S::Mask;
+
+    fn from_f64(x: f64) -> Self {
+        Self::constant(S::from_f64(x))
+    }
+
+    // s' = c x', c' = −s x'
+    fn sin_cos(self) -> (Self, Self) {
+        let (s, c) = self.value.sin_cos();
+        (Self { value: s, slope: c * self.slope }, Self { value: c, slope: -(s * self.slope) })
+    }
+
+    // r' = x' / 2r
+    fn sqrt(self) -> Self {
+        let value = self.value.sqrt();
+        Self { value, slope: self.slope / (value + value) }
+    }
+
+    // θ' = (x y' − y x') / (x² + y²)
+    fn atan2(self, x: Self) -> Self {
+        let square = x.value * x.value + self.value * self.value;
+        Self { value: self.value.atan2(x.value), slope: (x.value * self.slope - self.value * x.slope) / square }
+    }
+
+    fn positive(self) -> S::Mask {
+        self.value.positive()
+    }
+
+    fn select(mask: S::Mask, a: Self, b: Self) -> Self {
+        Self { value: S::select(mask, a.value, b.value), slope: S::select(mask, a.slope, b.slope) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// f(t) with its first derivative by differences of fourth order, and nested with its second.
+    fn near(f: impl Fn(Dual<Dual<f64>>) -> Dual<Dual<f64>>) {
+        let (t, h) = (0.7, 1e-3);
+        let at = |k: f64| f(Dual::constant(Dual::constant(t + k * h))).value.value;
+        let first = (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * h);
+        let second = (16.0 * (at(1.0) + at(-1.0)) - (at(2.0) + at(-2.0)) - 30.0 * at(0.0)) / (12.0 * h * h);
+        let exact = f(Dual::new(Dual::variable(t), Dual::one()));
+        assert!((exact.value.slope - first).abs() < 1e-10 && (exact.slope.value - first).abs() < 1e-10, "{exact:?} {first}");
+        assert!((exact.slope.slope - second).abs() < 1e-8, "{exact:?} {second}");
+    }
+
+    #[test]
+    fn slopes_are_those_of_differences() {
+        near(|t| t * t * t - t);
+        near(|t| t.sin_cos().0 / (t + Dual::one()));
+        near(|t| (t * t).sin_cos().1 * t.sqrt());
+        near(|t| Scalar::abs(-t));
+        near(|t| (t * t).atan2(-t.sin_cos().1));
+        near(|t| t.atan2(Dual::one() - t * t));
+    }
+}
