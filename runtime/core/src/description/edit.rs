@@ -1,0 +1,198 @@
+//! Edits of a robot before a model is made of it: joints locked, payloads attached, another robot appended.
+//!
+//! An edit that is refused leaves the description as it was.
+
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+use super::{Description, EditError, Inertial, Joint, JointKind, Link, Mimic, Origin, nearest};
+use crate::model::FLOATING_BASE;
+use crate::scalar::Scalar;
+
+/// A rigid load on a link.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Payload {
+    /// The link that carries it.
+    pub link: String,
+    /// Name of the link that stands for it, and of the fixed joint between; `None`: `<link>_payload`, with a number if that is taken.
+    pub name: Option<String>,
+    /// kg, not negative.
+    pub mass: f64,
+    /// Centre of mass in the carrying link's frame, m.
+    pub center_of_mass: [f64; 3],
+    /// Rotational inertia about the centre of mass in axes of the carrying link: xx, xy, xz, yy, yz, zz, kg·m². Zeros: a point mass.
+    pub inertia: [f64; 6],
+}
+
+/// A quaternion's norm may be off by so much: four written digits. It is normalised.
+const NORM: f64 = 1e-3;
+
+/// A moment may be below zero by this part of the largest: rounding of written numbers.
+const NEGATIVE: f64 = 1e-6;
+
+impl Description {
+    /// Locks the joint called `joint` at these coordinates, as many as its kind has (rad or m; a quaternion as x, y, z, w). Joints that follow
+    /// it stop where it puts them. A locked joint has no place in q and v, and its links belong to the body that they are locked to.
+    ///
+    /// Refused: what does not exist, does not move or moves already no more; a follower (lock what it follows); the base (say that it is fixed); a
+    /// wrong number of coordinates; a quaternion whose norm is not one within 10⁻³.
+    pub fn lock(&mut self, joint: &str, at: &[f64]) -> Result<(), EditError> {
+        let Some(index) = self.joint(joint) else {
+            return Err(match joint {
+                FLOATING_BASE => EditError::LockedBase,
+                _ => EditError::UnknownJoint { name: joint.into(), nearest: nearest(joint, self.joints.iter().map(|j| j.name.as_str())) },
+            });
+        };
+        let found = &self.joints[index];
+        let name = || joint.to_string();
+        if found.kind == JointKind::Fixed {
+            return Err(EditError::LockedFixed { joint: name() });
+        }
+        if let Some(leader) = found.mimic.and_then(|mimic| self.joints.get(mimic.joint)) {
+            return Err(EditError::LockedFollower { joint: name(), leader: leader.name.clone() });
+        }
+        if found.locked.is_some() {
+            return Err(EditError::LockedTwice { joint: name() });
+        }
+        if at.len() != found.kind.sizes().0 || !at.iter().all(|x| x.is_finite()) {
+            return Err(EditError::Coordinates { joint: name(), kind: found.kind, found: at.to_vec() });
+        }
+        let at = normalised(found.kind, at).map_err(|norm| EditError::Quaternion { joint: name(), norm })?;
+        self.joints[index].locked = Some(at);
+        Ok(())
+    }
+
+    /// Attaches a payload: a link of its own, whose frame has its origin at the payload's centre of mass and the axes of the carrying link, behind a fixed
+    /// joint of the same name. Gives the name.
+    ///
+    /// Refused: a link that does not exist, a name that does, a mass or inertia that no body has.
+    pub fn attach(&mut self, payload: &Payload) -> Result<String, EditError> {
+        let parent = self.link_or_nearest(&payload.link)?;
+        check_mass(payload)?;
+        let name = match &payload.name {
+            Some(name) if self.has(name) => return Err(EditError::NamesTaken { names: [name.clone()].into() }),
+            Some(name) => name.clone(),
+            None => self.free_name(&format!("{}_payload", payload.link)),
+        };
+        let inertial = Inertial { origin: Origin::default(), mass: payload.mass, inertia: payload.inertia };
+        self.links.push(Link { name: name.clone(), inertial: Some(inertial) });
+        self.join(name.clone(), parent, self.links.len() - 1, Origin { xyz: payload.center_of_mass, ..Origin::default() });
+        Ok(name)
+    }
+
+    /// Appends another robot: its links and joints with `prefix` before their names, and a fixed joint that places its root in the frame of `at_link`, called
+    /// `<prefix><root>_mount`, with a number if that is taken.
+    ///
+    /// Refused: a link that does not exist, a name that does, a robot without a root.
+    pub fn append(&mut self, at_link: &str, other: &Self, prefix: &str, origin: Origin) -> Result<(), EditError> {
+        let parent = self.link_or_nearest(at_link)?;
+        let root = other.root().ok_or_else(|| EditError::NoRoot { robot: other.name.clone() })?;
+        let named = |name: &String| format!("{prefix}{name}");
+        let links = other.links.iter().map(|l| named(&l.name)).filter(|name| self.link(name).is_some());
+        let joints = other.joints.iter().map(|j| named(&j.name)).filter(|name| self.joint(name).is_some());
+        let names: Vec<String> = links.chain(joints).collect();
+        if !names.is_empty() {
+            return Err(EditError::NamesTaken { names });
+        }
+        let (first_link, first_joint) = (self.links.len(), self.joints.len());
+        self.links.extend(other.links.iter().map(|l| Link { name: named(&l.name), ..l.clone() }));
+        self.joints.extend(other.joints.iter().map(|j| Joint {
+            name: named(&j.name),
+            parent: j.parent + first_link,
+            child: j.child + first_link,
+            mimic: j.mimic.map(|m| Mimic { joint: m.joint + first_joint, ..m }),
+            ..j.clone()
+        }));
+        let root = first_link + root;
+        let name = self.free_name(&format!("{}_mount", self.links[root].name));
+        self.join(name, parent, root, origin);
+        Ok(())
+    }
+
+    fn join(&mut self, name: String, parent: usize, child: usize, origin: Origin) {
+        self.joints.push(Joint { name, parent, child, origin, axis: [1.0, 0.0, 0.0], ..Joint::default() });
+    }
+
+    fn link_or_nearest(&self, name: &str) -> Result<usize, EditError> {
+        let unknown = || EditError::UnknownLink { name: name.into(), nearest: nearest(name, self.links.iter().map(|l| l.name.as_str())) };
+        self.link(name).ok_or_else(unknown)
+    }
+
+    fn has(&self, name: &str) -> bool {
+        self.link(name).is_some() || self.joint(name).is_some()
+    }
+
+    /// `name`, or with the first number from 2 on that no link and no joint has.
+    fn free_name(&self, name: &str) -> String {
+        let mut free = name.to_string();
+        let mut number = 2;
+        while self.has(&free) {
+            free = format!("{name}_{number}");
+            number += 1;
+        }
+        free
+    }
+}
+
+/// The coordinates, a quaternion among them with norm one. Otherwise its norm.
+fn normalised(kind: JointKind, at: &[f64]) -> Result<Vec<f64>, f64> {
+    let mut at = at.to_vec();
+    let first = match kind {
+        JointKind::Spherical => 0,
+        JointKind::Floating => 3,
+        _ => return Ok(at),
+    };
+    let quaternion = &mut at[first..];
+    let norm = Scalar::sqrt(quaternion.iter().map(|x| x * x).sum::<f64>());
+    if Scalar::abs(norm - 1.0) > NORM {
+        return Err(norm);
+    }
+    quaternion.iter_mut().for_each(|x| *x /= norm);
+    Ok(at)
+}
+
+fn check_mass(payload: &Payload) -> Result<(), EditError> {
+    let link = || payload.link.clone();
+    if !(payload.mass.is_finite() && payload.mass >= 0.0) {
+        return Err(EditError::Mass { link: link(), found: payload.mass });
+    }
+    if !payload.center_of_mass.iter().all(|x| x.is_finite()) {
+        return Err(EditError::Center { link: link(), found: payload.center_of_mass });
+    }
+    if !is_inertia(payload.inertia) || (payload.mass == 0.0 && payload.inertia != [0.0; 6]) {
+        return Err(EditError::Inertia { link: link(), found: payload.inertia });
+    }
+    Ok(())
+}
+
+/// Whether a body can have this inertia about its centre of mass: Σ = ½ tr(I)·1 − I, the second moments of its mass, is positive semi-definite, which no
+/// moment above the sum of the other two allows. Wensing, Kim & Slotine, 2018. By the principal minors.
+fn is_inertia(inertia: [f64; 6]) -> bool {
+    let [xx, xy, xz, yy, yz, zz] = inertia;
+    let size = inertia.iter().fold(0.0, |most: f64, x| if Scalar::abs(*x) > most { Scalar::abs(*x) } else { most });
+    if size == 0.0 || !inertia.iter().all(|x| x.is_finite()) {
+        return inertia == [0.0; 6];
+    }
+    let half = (xx / size + yy / size + zz / size) / 2.0;
+    let [a, b, c] = [xx, yy, zz].map(|x| half - x / size);
+    let [d, e, f] = [xy, xz, yz].map(|x| -x / size);
+    let minors = [a, b, c, a * b - d * d, a * c - e * e, b * c - f * f, a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e)];
+    minors.iter().all(|minor| *minor >= -NEGATIVE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inertias_that_no_body_has_are_told_whatever_the_scale() {
+        for scale in [1.0, 1e-20, 1e200] {
+            let is = |i: [f64; 6]| is_inertia(i.map(|x| x * scale));
+            assert!(is([1.0, 0.0, 0.0, 1.0, 0.0, 1.0]) && is([0.0, 0.0, 0.0, 1.0, 0.0, 1.0]) && is([1.0, 0.0, 0.0, 2.0, 0.0, 3.0]));
+            assert!(!is([1.0, 0.0, 0.0, 1.0, 0.0, 2.1]) && !is([-1.0, 0.0, 0.0, 1.0, 0.0, 1.0]) && !is([1.0, 0.6, 0.0, 1.0, 0.0, 1.0]));
+            assert!(is([1.0, 0.4, 0.0, 1.0, 0.0, 1.0]));
+        }
+        assert!(is_inertia([0.0; 6]) && !is_inertia([f64::NAN, 0.0, 0.0, 1.0, 0.0, 1.0]) && !is_inertia([0.0, 0.1, 0.0, 0.0, 0.0, 0.0]));
+    }
+}

@@ -1,0 +1,209 @@
+//! Why an edit was refused.
+
+use alloc::string::String;
+use alloc::vec;
+use alloc::vec::Vec;
+use core::fmt;
+
+use super::JointKind;
+
+/// Why a [`Description`](super::Description) was not edited.
+#[derive(Clone, Debug, PartialEq)]
+pub enum EditError {
+    /// There is no such link.
+    UnknownLink {
+        /// The name found.
+        name: String,
+        /// The link's name most like it.
+        nearest: Option<String>,
+    },
+    /// There is no such joint.
+    UnknownJoint {
+        /// The name found.
+        name: String,
+        /// The joint's name most like it.
+        nearest: Option<String>,
+    },
+    /// Names that the edit would add and that links or joints have already.
+    NamesTaken {
+        /// All of them.
+        names: Vec<String>,
+    },
+    /// The joint of a floating base was to be locked.
+    LockedBase,
+    /// A fixed joint was to be locked.
+    LockedFixed {
+        /// Its name.
+        joint: String,
+    },
+    /// A joint that follows another was to be locked.
+    LockedFollower {
+        /// Its name.
+        joint: String,
+        /// The name of the joint that it follows.
+        leader: String,
+    },
+    /// A locked joint was to be locked.
+    LockedTwice {
+        /// Its name.
+        joint: String,
+    },
+    /// Coordinates of a wrong number, or not finite ones.
+    Coordinates {
+        /// The joint to be locked.
+        joint: String,
+        /// Its kind.
+        kind: JointKind,
+        /// What was given.
+        found: Vec<f64>,
+    },
+    /// A quaternion that is not of norm one.
+    Quaternion {
+        /// The joint to be locked.
+        joint: String,
+        /// The quaternion's norm.
+        norm: f64,
+    },
+    /// A payload's mass is negative or not finite.
+    Mass {
+        /// The link that was to carry it.
+        link: String,
+        /// kg.
+        found: f64,
+    },
+    /// A payload's centre of mass is not finite.
+    Center {
+        /// The link that was to carry it.
+        link: String,
+        /// m.
+        found: [f64; 3],
+    },
+    /// A payload's inertia is one that no body has, or one without mass.
+    Inertia {
+        /// The link that was to carry it.
+        link: String,
+        /// xx, xy, xz, yy, yz, zz, kg·m².
+        found: [f64; 6],
+    },
+    /// The robot to be appended has no root.
+    NoRoot {
+        /// Its name.
+        robot: String,
+    },
+}
+
+impl fmt::Display for EditError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::UnknownLink { name, nearest } => unknown(f, "link", name, nearest.as_deref()),
+            Self::UnknownJoint { name, nearest } => unknown(f, "joint", name, nearest.as_deref()),
+            Self::NamesTaken { names } => taken(f, names),
+            Self::LockedBase => f.write_str("the floating base cannot be locked: say that the base is fixed"),
+            Self::LockedFixed { joint } => write!(f, "joint {joint:?} is fixed: there is nothing to lock"),
+            Self::LockedFollower { joint, leader } => write!(f, "joint {joint:?} follows {leader:?}: lock that one"),
+            Self::LockedTwice { joint } => write!(f, "joint {joint:?} is locked already"),
+            Self::Coordinates { joint, kind, found } => {
+                let (name, n) = (kind.name(), kind.sizes().0);
+                let numbers = if n == 1 { "one finite number" } else { "finite numbers" };
+                write!(f, "joint {joint:?}: locked at {found:?}, expected {}{numbers} for a {name} joint", Count(n))
+            }
+            Self::Quaternion { joint, norm } => {
+                write!(f, "joint {joint:?}: locked at a quaternion of norm {norm:.4}, expected one, with the order x, y, z, w")
+            }
+            Self::Mass { link, found } => {
+                write!(f, "payload on link {link:?}: mass: found {found} kg, expected a finite number, not negative")
+            }
+            Self::Center { link, found } => {
+                write!(f, "payload on link {link:?}: centre of mass: found {found:?} m, expected finite numbers")
+            }
+            Self::Inertia { link, found } => write!(
+                f,
+                "payload on link {link:?}: inertia: found {found:?} kg·m², expected xx, xy, xz, yy, yz, zz of a body with mass: no principal \
+                 moment negative or greater than the other two together"
+            ),
+            Self::NoRoot { robot } => write!(f, "robot {robot:?}: found no root link, expected a tree"),
+        }
+    }
+}
+
+impl core::error::Error for EditError {}
+
+/// A number before a noun; nothing for one.
+struct Count(usize);
+
+impl fmt::Display for Count {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0 == 1 { Ok(()) } else { write!(f, "{} ", self.0) }
+    }
+}
+
+fn unknown(f: &mut fmt::Formatter<'_>, what: &str, name: &str, nearest: Option<&str>) -> fmt::Result {
+    write!(f, "the robot has no {what} {name:?}")?;
+    nearest.map_or(Ok(()), |near| write!(f, ", did you mean {near:?}?"))
+}
+
+/// More names than these are counted, not listed.
+const MOST_NAMES: usize = 8;
+
+fn taken(f: &mut fmt::Formatter<'_>, names: &[String]) -> fmt::Result {
+    let plural = if names.len() == 1 { "name is" } else { "names are" };
+    write!(f, "{plural} taken: ")?;
+    for (i, name) in names.iter().take(MOST_NAMES).enumerate() {
+        write!(f, "{}{name:?}", if i == 0 { "" } else { ", " })?;
+    }
+    match names.len().saturating_sub(MOST_NAMES) {
+        0 => f.write_str("; give another name or prefix"),
+        more => write!(f, " and {more} more; give another prefix"),
+    }
+}
+
+/// Longer names are not compared.
+const LONGEST: usize = 64;
+
+/// The name that differs least from `wrong`, if by a third of its letters at most.
+pub(super) fn nearest<'a>(wrong: &str, names: impl Iterator<Item = &'a str>) -> Option<String> {
+    let letters: Vec<char> = wrong.chars().take(LONGEST).collect();
+    let most = (letters.len() / 3).max(1);
+    let near = names.map(|name| (distance(&letters, name), name)).filter(|(d, _)| *d <= most);
+    near.min_by_key(|(d, _)| *d).map(|(_, name)| name.into())
+}
+
+/// How many letters to insert, take out or change (Levenshtein), whatever their case.
+fn distance(a: &[char], b: &str) -> usize {
+    let same = |a: char, b: char| a.to_lowercase().eq(b.to_lowercase());
+    let mut row: Vec<usize> = (0..=a.len()).collect();
+    for (i, y) in b.chars().take(LONGEST + 1).enumerate() {
+        let mut next = vec![i + 1];
+        for (j, x) in a.iter().enumerate() {
+            let changed = row[j] + usize::from(!same(*x, y));
+            next.push(changed.min(row[j + 1] + 1).min(next[j] + 1));
+        }
+        row = next;
+    }
+    row[a.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn near_names_are_found_and_far_ones_are_not() {
+        let near = |wrong| nearest(wrong, ["shoulder", "elbow", "wrist_1"].into_iter());
+        assert_eq!(near("elbo").as_deref(), Some("elbow"));
+        assert_eq!(near("Wrist1").as_deref(), Some("wrist_1"));
+        assert_eq!(near("hip"), None);
+        assert_eq!(nearest("x", core::iter::empty()), None);
+    }
+
+    #[test]
+    fn a_message_names_the_joint_and_what_would_be_right() {
+        use alloc::string::ToString;
+        let at = |kind, found: &[f64]| EditError::Coordinates { joint: "j".into(), kind, found: found.to_vec() }.to_string();
+        assert_eq!(
+            at(JointKind::Revolute, &[1.0, 2.0]),
+            "joint \"j\": locked at [1.0, 2.0], expected one finite number for a revolute joint"
+        );
+        assert_eq!(at(JointKind::Spherical, &[1.0]), "joint \"j\": locked at [1.0], expected 4 finite numbers for a spherical joint");
+    }
+}
