@@ -1,6 +1,7 @@
 //! Laws of dynamics, held against the generic library on random trees. Each file is one family of laws.
 
 mod closed_forms;
+mod edits;
 mod energy;
 mod equivalence;
 mod interface;
