@@ -113,6 +113,8 @@ impl<S: Scalar> MulAssign for Dual<S> {
 impl<S: Scalar> Scalar for Dual<S> {
     type Mask = S::Mask;
 
+    const BITS: u32 = S::BITS;
+
     fn from_f64(x: f64) -> Self {
         Self::constant(S::from_f64(x))
     }

@@ -21,6 +21,9 @@ pub trait Scalar:
     /// The outcome of a comparison: `bool`, or what stands for one.
     type Mask: Copy;
 
+    /// Bits of its significand: how far a power series has to go.
+    const BITS: u32 = f64::MANTISSA_DIGITS;
+
     /// The scalar nearest to `x`.
     fn from_f64(x: f64) -> Self;
 
@@ -49,6 +52,8 @@ macro_rules! impl_float {
     ($t:ty, $sincos:path, $sqrt:path, $atan2:path) => {
         impl Scalar for $t {
             type Mask = bool;
+
+            const BITS: u32 = <$t>::MANTISSA_DIGITS;
 
             #[inline(always)]
             fn from_f64(x: f64) -> Self {

@@ -1,6 +1,7 @@
 //! Composite rigid body algorithm.
 
 use super::Workspace;
+use super::common::{Axes, inertias, positions};
 use super::rnea::to_parent;
 use crate::joint::JointLaw;
 use crate::model::Model;
@@ -55,6 +56,40 @@ fn column<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, k: usize
         for l in at.v..at.v + model.bodies[j].joint.nv() {
             out[row * n + l] += ws.row[l];
             out[l * n + row] += ws.row[l];
+        }
+    }
+}
+
+/// As [`mass_matrix`], in common axes: turns each inertia once, and carries wrenches without turning them.
+///
+/// # Panics
+/// As [`mass_matrix`].
+pub fn mass_matrix_in_common_axes<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
+    let n = model.nv;
+    positions(model, ws, Axes::Tree, q);
+    inertias(model, ws);
+    out.fill(S::zero());
+    for i in model.inward() {
+        let state = ws.common[i];
+        for k in ws.columns_of(i) {
+            // F = I_i S_k
+            let (at, mut wrench, mut j) = (ws.columns[k].at, state.inertia.apply(&ws.columns[k].axis), i);
+            while j != 0 {
+                for l in ws.columns_of(j) {
+                    // M_kl = M_lk = S_lᵀ F
+                    let (other, inertia) = (ws.columns[l].at, wrench.power(&ws.columns[l].axis));
+                    out[at * n + other] += inertia;
+                    if j != i {
+                        out[other * n + at] += inertia;
+                    }
+                }
+                wrench = ws.common[j].to_parent(&wrench);
+                j = model.bodies[j].parent;
+            }
+        }
+        let parent = model.bodies[i].parent;
+        if parent != 0 {
+            ws.common[parent].inertia += state.inertia.shifted(state.shift);
         }
     }
 }

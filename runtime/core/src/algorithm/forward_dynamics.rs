@@ -1,71 +1,87 @@
-//! Forward dynamics through the mass matrix.
+//! Forward dynamics and other solutions with the mass matrix.
 
 use super::Workspace;
 use super::crba::mass_matrix;
-use super::rnea::bias_forces;
+use super::ltdl::{factor, solve};
+use super::rnea::inverse_dynamics_with_wrenches;
 use crate::Scalar;
 use crate::model::Model;
 
 /// a = M(q)⁻¹·(τ − h(q, v)).
 ///
-/// q: `[nq]`; v: `[nv]`; tau: `[nv]` N·m|N; out: `[nv]` rad/s²|m/s². By M = Lᵀ D L, which keeps the zeros that branches leave in M; Featherstone
-/// 2008, §6.5. Where M is singular the result is not finite; a model with [`Model::massless_joints`] is singular everywhere.
+/// q: `[nq]`; v: `[nv]`; tau: `[nv]` N·m|N; out: `[nv]` rad/s²|m/s². By M = Lᵀ D L; Featherstone 2008, §6.5. Where M is singular the result is not
+/// finite; a model with [`Model::massless_joints`] is singular everywhere.
 ///
 /// # Panics
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
 pub fn forward_dynamics<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], tau: &[S], out: &mut [S]) {
-    let mut matrix = core::mem::take(&mut ws.matrix);
-    bias_forces(model, ws, q, v, out);
+    forward_dynamics_with_wrenches(model, ws, q, v, tau, &[], out);
+}
+
+/// a = M(q)⁻¹·(τ + Σ Jᵀw − h(q, v)), with external wrenches w on the frames.
+///
+/// As [`forward_dynamics`]; wrenches: `[frames][6]` N·m and N, as [`Model::wrench_reference`] says, or empty.
+///
+/// # Panics
+/// As [`forward_dynamics`].
+pub fn forward_dynamics_with_wrenches<S: Scalar>(
+    model: &Model<S>,
+    ws: &mut Workspace<S>,
+    q: &[S],
+    v: &[S],
+    tau: &[S],
+    wrenches: &[S],
+    out: &mut [S],
+) {
+    let zeros = core::mem::take(&mut ws.zeros);
+    inverse_dynamics_with_wrenches(model, ws, q, v, &zeros, wrenches, out);
+    ws.zeros = zeros;
     // b = τ − h
     out.iter_mut().zip(tau).for_each(|(b, tau)| *b = *tau - *b);
-    mass_matrix(model, ws, q, &mut matrix);
-    factor(&mut matrix, &ws.below);
+    let matrix = factored(model, ws, q);
     solve(&matrix, &ws.below, out);
     ws.matrix = matrix;
 }
 
-/// The degrees of freedom on the way from `k` to the base, `k` not among them.
-fn way(below: &[usize], k: usize) -> impl Iterator<Item = usize> {
-    let next = |k: usize| below[k].checked_sub(1);
-    core::iter::successors(next(k), move |&i| next(i))
+/// M(q)⁻¹·τ, without M⁻¹.
+///
+/// q: `[nq]`; tau: `[nv]`; out: `[nv]`.
+///
+/// # Panics
+/// As [`forward_dynamics`].
+pub fn solve_mass_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], tau: &[S], out: &mut [S]) {
+    let matrix = factored(model, ws, q);
+    out.copy_from_slice(tau);
+    solve(&matrix, &ws.below, out);
+    ws.matrix = matrix;
 }
 
-/// M = Lᵀ D L in place: L below the diagonal with ones on it, D⁻¹ on the diagonal. From the last row up, so that the zeros between branches stay.
-fn factor<S: Scalar>(m: &mut [S], below: &[usize]) {
-    let n = below.len();
-    for k in (0..n).rev() {
-        let inverse = S::one() / m[k * n + k];
-        for i in way(below, k) {
-            let l = m[k * n + i] * inverse;
-            // M_ij −= L_ki M_kj
-            let product = l * m[k * n + i];
-            m[i * n + i] -= product;
-            for j in way(below, i) {
-                let product = l * m[k * n + j];
-                m[i * n + j] -= product;
-            }
+/// M(q)⁻¹, column by column from M = Lᵀ D L.
+///
+/// q: `[nq]`; out: `[nv · nv]`, symmetric.
+///
+/// # Panics
+/// As [`forward_dynamics`].
+pub fn mass_matrix_inverse<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
+    let matrix = factored(model, ws, q);
+    let n = model.nv;
+    for j in 0..n {
+        ws.row.fill(S::zero());
+        ws.row[j] = S::one();
+        solve(&matrix, &ws.below, &mut ws.row);
+        // Of what is the same twice, once.
+        for i in 0..=j {
+            out[i * n + j] = ws.row[i];
+            out[j * n + i] = ws.row[i];
         }
-        for i in way(below, k) {
-            m[k * n + i] *= inverse;
-        }
-        m[k * n + k] = inverse;
     }
+    ws.matrix = matrix;
 }
 
-/// x = L⁻¹ D⁻¹ L⁻ᵀ b, in place.
-fn solve<S: Scalar>(l: &[S], below: &[usize], x: &mut [S]) {
-    let n = below.len();
-    for k in (0..n).rev() {
-        for i in way(below, k) {
-            let product = l[k * n + i] * x[k];
-            x[i] -= product;
-        }
-    }
-    for k in 0..n {
-        x[k] *= l[k * n + k];
-        for i in way(below, k) {
-            let product = l[k * n + i] * x[i];
-            x[k] -= product;
-        }
-    }
+/// M(q) as `factor` leaves it. The matrix is the workspace's, to be given back.
+pub(super) fn factored<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S]) -> alloc::vec::Vec<S> {
+    let mut matrix = core::mem::take(&mut ws.matrix);
+    mass_matrix(model, ws, q, &mut matrix);
+    factor(&mut matrix, &ws.below);
+    matrix
 }

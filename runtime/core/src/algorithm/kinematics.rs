@@ -1,9 +1,9 @@
 //! Forward kinematics.
 
 use super::Workspace;
-use crate::joint::JointLaw;
+use super::wrenches::place_bodies;
+use crate::Scalar;
 use crate::model::Model;
-use crate::{Scalar, with_pose};
 
 /// Placements of all frames (links of the file) in the base frame.
 ///
@@ -13,12 +13,7 @@ use crate::{Scalar, with_pose};
 /// # Panics
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
 pub fn placements<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
-    for i in model.outward() {
-        let body = &model.bodies[i];
-        // T_i = T_λ · T_λj · T_j(q)
-        let x_wj = ws.placements[body.parent].compose(&body.placement);
-        ws.placements[i] = with_pose!(body.joint.pose(&body.coordinates, q), p => p.compose(x_wj));
-    }
+    place_bodies(model, ws, q);
     for (frame, out) in model.frames.iter().zip(out.chunks_exact_mut(12)) {
         out.copy_from_slice(&ws.placements[frame.body].compose(&frame.placement).to_array());
     }

@@ -1,17 +1,47 @@
 //! The algorithms, each written once over the scalar, and the table of the functions that they give.
 
+mod aba;
+mod common;
+mod coriolis;
 mod crba;
+mod derivatives;
+mod energy;
 mod forward_dynamics;
+mod frames;
 mod kinematics;
+mod ltdl;
+mod momentum;
+mod operational_space;
 mod registry;
+mod regressor;
 mod rnea;
+pub(crate) mod table;
 pub mod textbook;
 mod workspace;
+mod wrenches;
 
-pub use crba::mass_matrix;
-pub use forward_dynamics::forward_dynamics;
+pub use aba::{articulated_body, articulated_body_with_wrenches, solve_by_articulated_body};
+pub use coriolis::coriolis_matrix;
+pub use crba::{mass_matrix, mass_matrix_in_common_axes};
+pub use derivatives::{
+    forward_dynamics_derivatives, forward_dynamics_derivatives_with_wrenches, inverse_dynamics_derivatives,
+    inverse_dynamics_derivatives_with_wrenches, static_torque_derivative,
+};
+pub use energy::{kinetic_energy, potential_energy};
+pub use forward_dynamics::{forward_dynamics, forward_dynamics_with_wrenches, mass_matrix_inverse, solve_mass_matrix};
+pub use frames::{
+    accelerations_body, accelerations_world, accelerations_world_aligned, bias_accelerations_body, bias_accelerations_world,
+    bias_accelerations_world_aligned, jacobian_rates_body, jacobian_rates_world, jacobian_rates_world_aligned, jacobians_body,
+    jacobians_world, jacobians_world_aligned, placement_derivatives, twists_body, twists_world, twists_world_aligned,
+};
 pub use kinematics::placements;
-pub use registry::{Argument, Function, FunctionError, ResultKind, Shape, function, functions};
-pub use registry::{check_length, exactly};
-pub use rnea::{bias_forces, gravity_torque, inverse_dynamics};
+pub use momentum::{
+    center_of_mass, center_of_mass_acceleration, center_of_mass_jacobian, center_of_mass_velocity, centroidal_momentum,
+    centroidal_momentum_matrix, centroidal_momentum_rate,
+};
+pub use operational_space::{operational_space_inertia, operational_space_inertia_inverse};
+pub use registry::{Argument, Dim, Function, FunctionError, Needs, Shape, Way, check_length, exactly};
+pub use regressor::{PARAMETERS, kinetic_energy_regressor, potential_energy_regressor, torque_regressor};
+pub use rnea::{bias_forces, gravity_torque, inverse_dynamics, inverse_dynamics_with_wrenches, joint_wrenches, static_torque};
+pub use table::{FunctionId, function, functions};
 pub use workspace::Workspace;

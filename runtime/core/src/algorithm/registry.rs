@@ -1,11 +1,8 @@
-//! The one table of functions, from which the generator, the command line, the tests and the documentation all read.
-//!
-//! Adding a function: its algorithm in a file, its row here.
+//! What a function of the table is: what it takes, what it gives, what it needs.
 
 use core::fmt;
-use core::marker::PhantomData;
 
-use super::{Workspace, bias_forces, forward_dynamics, gravity_torque, inverse_dynamics, mass_matrix, placements};
+use super::{FunctionId, Workspace};
 use crate::Scalar;
 use crate::model::Model;
 
@@ -18,17 +15,65 @@ pub struct Shape {
     pub nv: usize,
     /// Number of frames.
     pub frames: usize,
+    /// Number of moving links, one for each joint that moves.
+    pub links: usize,
 }
 
-impl<S> Model<S> {
+impl<S: Scalar> Model<S> {
     /// The model's sizes.
     pub fn shape(&self) -> Shape {
-        Shape { nq: self.nq, nv: self.nv, frames: self.frames.len() }
+        Shape { nq: self.nq, nv: self.nv, frames: self.frames.len(), links: self.links().count() }
     }
 }
 
-/// What a function takes.
+/// One dimension of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dim {
+    /// One for each coordinate.
+    Nq,
+    /// One for each degree of freedom.
+    Nv,
+    /// One for each frame.
+    Frames,
+    /// One for each moving link.
+    Links,
+    /// So many.
+    Of(usize),
+}
+
+impl Dim {
+    /// How many.
+    pub fn len(self, shape: Shape) -> usize {
+        match self {
+            Self::Nq => shape.nq,
+            Self::Nv => shape.nv,
+            Self::Frames => shape.frames,
+            Self::Links => shape.links,
+            Self::Of(n) => n,
+        }
+    }
+}
+
+impl fmt::Display for Dim {
+    /// The constant of generated code that is its length.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Nq => f.write_str("NQ"),
+            Self::Nv => f.write_str("NV"),
+            Self::Frames => f.write_str("FRAMES"),
+            Self::Links => f.write_str("LINKS"),
+            Self::Of(n) => write!(f, "{n}"),
+        }
+    }
+}
+
+/// How many numbers an array of these dimensions has.
+fn size(dims: &[Dim], shape: Shape) -> usize {
+    dims.iter().map(|d| d.len(shape)).product()
+}
+
+/// What a function takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Argument {
     /// q, `[nq]`: rad, m, or position and unit quaternion.
     Q,
@@ -38,9 +83,20 @@ pub enum Argument {
     A,
     /// τ, `[nv]`: N·m or N.
     Tau,
+    /// Wrenches [m; f] on the frames, `[frames][6]`, N·m and N, as [`Model::wrench_reference`] says.
+    Wrenches,
+    /// A step in the tangent space, `[nv]`: rad, m, or twist times time.
+    Step,
+    /// A second configuration, `[nq]`.
+    Target,
+    /// Numbers in [0, 1), `[nq]`.
+    Uniform,
 }
 
 impl Argument {
+    /// All of them.
+    pub const ALL: [Self; 8] = [Self::Q, Self::V, Self::A, Self::Tau, Self::Wrenches, Self::Step, Self::Target, Self::Uniform];
+
     /// Its name in signatures and files.
     pub fn name(self) -> &'static str {
         match self {
@@ -48,67 +104,69 @@ impl Argument {
             Self::V => "v",
             Self::A => "a",
             Self::Tau => "tau",
+            Self::Wrenches => "wrenches",
+            Self::Step => "step",
+            Self::Target => "target",
+            Self::Uniform => "uniform",
+        }
+    }
+
+    /// Its dimensions.
+    pub fn dims(self) -> &'static [Dim] {
+        match self {
+            Self::Q | Self::Target | Self::Uniform => &[Dim::Nq],
+            Self::V | Self::A | Self::Tau | Self::Step => &[Dim::Nv],
+            Self::Wrenches => &[Dim::Frames, Dim::Of(6)],
         }
     }
 
     /// How many numbers.
     pub fn len(self, shape: Shape) -> usize {
-        match self {
-            Self::Q => shape.nq,
-            Self::V | Self::A | Self::Tau => shape.nv,
-        }
+        size(self.dims(), shape)
     }
 
-    /// Its shape and units, for documentation.
-    pub fn doc(self) -> &'static str {
+    /// Its units, for documentation.
+    pub fn unit(self) -> &'static str {
         match self {
-            Self::Q => "`[NQ]` rad|m|unit quaternion",
-            Self::V => "`[NV]` rad/s|m/s",
-            Self::A => "`[NV]` rad/s²|m/s²",
-            Self::Tau => "`[NV]` N·m|N",
+            Self::Q => "rad|m|unit quaternion",
+            Self::V => "rad/s|m/s",
+            Self::A => "rad/s²|m/s²",
+            Self::Tau => "N·m|N",
+            Self::Wrenches => "[m; f] on each frame, N·m and N",
+            Self::Step => "rad|m, a small motion in the tangent space",
+            Self::Target => "rad|m|unit quaternion",
+            Self::Uniform => "each uniform in 0 to 1",
         }
     }
 }
 
-/// What a function gives.
+/// What must hold of a robot for a function to be defined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ResultKind {
-    /// Generalised forces, `[nv]`.
-    Torque,
-    /// For each frame, rotation row by row and position: `[frames][12]`.
-    Placements,
-    /// Generalised accelerations, `[nv]`.
-    Acceleration,
-    /// The mass matrix, `[nv][nv]`.
+pub enum Needs {
+    /// Nothing.
+    Nothing,
+    /// The mass matrix can be inverted: every joint moves something that has mass.
     MassMatrix,
-}
-
-impl ResultKind {
-    /// How many numbers.
-    pub fn len(self, shape: Shape) -> usize {
-        match self {
-            Self::Torque | Self::Acceleration => shape.nv,
-            Self::Placements => 12 * shape.frames,
-            Self::MassMatrix => shape.nv * shape.nv,
-        }
-    }
-
-    /// Its shape and units, for documentation.
-    pub fn doc(self) -> &'static str {
-        match self {
-            Self::Torque => "`[NV]` N·m|N",
-            Self::Placements => "`[FRAMES][12]`: rotation row by row, then position in m, in the base frame",
-            Self::Acceleration => "`[NV]` rad/s²|m/s²",
-            Self::MassMatrix => "`[NV][NV]` kg·m²|kg·m|kg, symmetric",
-        }
-    }
+    /// That, and every frame is carried by at least six degrees of freedom.
+    FreeFrames,
 }
 
 /// An algorithm as the table holds it: arguments in the order of `takes`, lengths checked.
-type Run<S> = fn(&Model<S>, &mut Workspace<S>, &[&[S]], &mut [S]);
+pub(super) type Run<S> = fn(&Model<S>, &mut Workspace<S>, &[&[S]], &mut [S]);
+
+/// One way to compute a function.
+pub struct Way<S: 'static> {
+    /// Its name in the ledger.
+    pub name: &'static str,
+    /// Whether it can be had for a model.
+    pub applies: fn(&Model<S>) -> bool,
+    pub(super) run: Run<S>,
+}
 
 /// One row: a function that any robot can have.
 pub struct Function<S: 'static> {
+    /// Its number.
+    pub id: FunctionId,
     /// Its name everywhere: in Rust, in scenes, on the command line.
     pub name: &'static str,
     /// The equation and what it means.
@@ -117,9 +175,17 @@ pub struct Function<S: 'static> {
     pub source: &'static str,
     /// What it takes, in order.
     pub takes: &'static [Argument],
-    /// What it gives.
-    pub gives: ResultKind,
-    run: Run<S>,
+    /// The dimensions of what it gives; none for a single number.
+    pub gives: &'static [Dim],
+    /// The units of what it gives, and what the dimensions stand for.
+    pub unit: &'static str,
+    /// What the robot must be like.
+    pub needs: Needs,
+    /// Whether it asks for nothing but joint torques, so that mass may be moved along joints that cannot feel it
+    /// ([`crate::model::pass`]).
+    pub regrouped: bool,
+    /// Ways to compute it, from which the generator takes the cheapest; the first is what [`Function::call`] runs where it applies.
+    pub ways: &'static [Way<S>],
 }
 
 /// Why a function could not be called.
@@ -155,18 +221,37 @@ impl core::error::Error for FunctionError {}
 impl<S: Scalar> Function<S> {
     /// Whether the function divides by the mass matrix, so that a joint that moves no mass makes it undefined.
     pub fn inverts_mass_matrix(&self) -> bool {
-        self.gives == ResultKind::Acceleration
+        self.needs != Needs::Nothing
     }
 
-    /// Evaluates the function; `arguments` in the order of `takes`, `out` as `gives` says.
+    /// How many numbers it gives.
+    pub fn len(&self, shape: Shape) -> usize {
+        size(self.gives, shape)
+    }
+
+    /// Evaluates the function; `arguments` in the order of `takes`, `out` as `gives` says, row by row.
     pub fn call(&self, model: &Model<S>, ws: &mut Workspace<S>, arguments: &[&[S]], out: &mut [S]) -> Result<(), FunctionError> {
-        let shape = model.shape();
+        let way = self.ways.iter().find(|w| (w.applies)(model));
+        way.map_or(Ok(()), |way| self.call_by(way, model, ws, arguments, out))
+    }
+
+    /// Evaluates the function in one of its ways.
+    pub fn call_by(
+        &self,
+        way: &Way<S>,
+        model: &Model<S>,
+        ws: &mut Workspace<S>,
+        arguments: &[&[S]],
+        out: &mut [S],
+    ) -> Result<(), FunctionError> {
+        let shape = ws.shape;
+        check_length("workspace", ws.bodies.len(), model.bodies.len())?;
         check_length("arguments", arguments.len(), self.takes.len())?;
         for (argument, given) in self.takes.iter().zip(arguments) {
             check_length(argument.name(), given.len(), argument.len(shape))?;
         }
-        check_length("out", out.len(), self.gives.len(shape))?;
-        (self.run)(model, ws, arguments, out);
+        check_length("out", out.len(), self.len(shape))?;
+        (way.run)(model, ws, arguments, out);
         Ok(())
     }
 }
@@ -179,69 +264,4 @@ pub fn check_length(argument: &'static str, found: usize, expected: usize) -> Re
 /// A slice as an array of exactly `N` numbers, or the error that names it.
 pub fn exactly<'a, const N: usize, S>(argument: &'static str, slice: &'a [S]) -> Result<&'a [S; N], FunctionError> {
     slice.try_into().map_err(|_| FunctionError::Length { argument, found: slice.len(), expected: N })
-}
-
-struct Table<S>(PhantomData<S>);
-
-impl<S: Scalar> Table<S> {
-    const ROWS: &'static [Function<S>] = &[
-        Function {
-            name: "placements",
-            summary: "placements of all links in the base frame",
-            source: "forward kinematics; Featherstone 2008, §4.4",
-            takes: &[Argument::Q],
-            gives: ResultKind::Placements,
-            run: |m, ws, x, out| placements(m, ws, x[0], out),
-        },
-        Function {
-            name: "inverse_dynamics",
-            summary: "τ = M(q)·a + h(q, v), gravity included",
-            source: "RNEA; Featherstone 2008, Table 5.1",
-            takes: &[Argument::Q, Argument::V, Argument::A],
-            gives: ResultKind::Torque,
-            run: |m, ws, x, out| inverse_dynamics(m, ws, x[0], x[1], x[2], out),
-        },
-        Function {
-            name: "bias_forces",
-            summary: "h(q, v) = τ at a = 0: Coriolis, centrifugal and gravity forces",
-            source: "RNEA; Featherstone 2008, Table 5.1",
-            takes: &[Argument::Q, Argument::V],
-            gives: ResultKind::Torque,
-            run: |m, ws, x, out| bias_forces(m, ws, x[0], x[1], out),
-        },
-        Function {
-            name: "gravity_torque",
-            summary: "g(q) = τ at v = a = 0: what holds the robot still",
-            source: "RNEA; Featherstone 2008, Table 5.1",
-            takes: &[Argument::Q],
-            gives: ResultKind::Torque,
-            run: |m, ws, x, out| gravity_torque(m, ws, x[0], out),
-        },
-        Function {
-            name: "mass_matrix",
-            summary: "M(q)",
-            source: "CRBA; Featherstone 2008, Table 6.2",
-            takes: &[Argument::Q],
-            gives: ResultKind::MassMatrix,
-            run: |m, ws, x, out| mass_matrix(m, ws, x[0], out),
-        },
-        Function {
-            name: "forward_dynamics",
-            summary: "a = M(q)⁻¹·(τ − h(q, v))",
-            source: "RNEA, CRBA and M = Lᵀ D L; Featherstone 2008, §6.5",
-            takes: &[Argument::Q, Argument::V, Argument::Tau],
-            gives: ResultKind::Acceleration,
-            run: |m, ws, x, out| forward_dynamics(m, ws, x[0], x[1], x[2], out),
-        },
-    ];
-}
-
-/// All functions, in the order in which they are listed to people.
-pub fn functions<S: Scalar>() -> &'static [Function<S>] {
-    Table::<S>::ROWS
-}
-
-/// The function called `name`.
-pub fn function<S: Scalar>(name: &str) -> Option<&'static Function<S>> {
-    functions::<S>().iter().find(|f| f.name == name)
 }

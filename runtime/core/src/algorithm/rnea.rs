@@ -5,7 +5,7 @@
 //! Control* 102, 1980, 69–76; the rate matrix after Balafoutis & Patel, *Dynamic Analysis of Robot Manipulators*, 1991, ch. 4).
 //! The plain matrix form is [`super::textbook`].
 
-use super::Workspace;
+use super::{Workspace, wrenches};
 use crate::joint::{JointLaw, Pose};
 use crate::model::{Body, Model};
 use crate::spatial::{Motion, Vector3, Wrench, rate_matrix, rotate, rotate_back};
@@ -18,6 +18,25 @@ use crate::{Scalar, with_pose};
 /// # Panics
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
 pub fn inverse_dynamics<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S], tau: &mut [S]) {
+    inverse_dynamics_with_wrenches(model, ws, q, v, a, &[], tau);
+}
+
+/// τ = M(q)·a + h(q, v) − Σ Jᵀw, with external wrenches w on the frames.
+///
+/// As [`inverse_dynamics`]; wrenches: `[frames][6]` N·m and N, as [`Model::wrench_reference`] says, or empty.
+///
+/// # Panics
+/// As [`inverse_dynamics`].
+#[inline]
+pub fn inverse_dynamics_with_wrenches<S: Scalar>(
+    model: &Model<S>,
+    ws: &mut Workspace<S>,
+    q: &[S],
+    v: &[S],
+    a: &[S],
+    wrenches: &[S],
+    tau: &mut [S],
+) {
     // V̇_0 = [0; −g]
     ws.bodies[0].motion.acceleration = -model.gravity;
     for i in model.outward() {
@@ -25,6 +44,8 @@ pub fn inverse_dynamics<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &
         let pose = body.joint.pose(&body.coordinates, q);
         with_pose!(pose, p => outward(&model.bodies[i], i, p, pose, ws, v, a));
     }
+    // F_i −= w
+    wrenches::each(model, ws, q, wrenches, |ws, i, w| ws.bodies[i].wrench = ws.bodies[i].wrench - *w);
     tau.fill(S::zero());
     for i in model.inward() {
         let body = &model.bodies[i];
@@ -32,6 +53,38 @@ pub fn inverse_dynamics<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &
             with_pose!(pose, p => inward(body, i, &p, ws, tau));
         }
     }
+}
+
+/// The wrench that each joint passes to its child link, gravity included: the torque is what of it the joint feels.
+///
+/// q: `[nq]`; v, a: `[nv]`; out: `[links][6]`, N·m and N, in axes of the link about its origin. The model must be as it was read: a pass that moves mass
+/// between bodies changes these wrenches.
+///
+/// # Panics
+/// As [`inverse_dynamics`].
+pub fn joint_wrenches<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S], out: &mut [S]) {
+    let mut tau = core::mem::take(&mut ws.row);
+    inverse_dynamics(model, ws, q, v, a, &mut tau);
+    ws.row = tau;
+    for (i, out) in model.links().zip(out.chunks_exact_mut(6)) {
+        if let Some(link) = &model.bodies[i].link {
+            let wrench = &ws.bodies[i].wrench;
+            let in_link = Wrench { moment: rotate_back(link, wrench.moment), force: rotate_back(link, wrench.force) };
+            out.copy_from_slice(&in_link.to_array());
+        }
+    }
+}
+
+/// g(q) − Σ Jᵀw: what holds the robot still under external wrenches w on the frames.
+///
+/// q: `[nq]`; wrenches: `[frames][6]` N·m and N, as [`Model::wrench_reference`] says; out: `[nv]` N·m|N.
+///
+/// # Panics
+/// As [`inverse_dynamics`].
+pub fn static_torque<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], wrenches: &[S], out: &mut [S]) {
+    let zeros = core::mem::take(&mut ws.zeros);
+    inverse_dynamics_with_wrenches(model, ws, q, &zeros, &zeros, wrenches, out);
+    ws.zeros = zeros;
 }
 
 /// h(q, v) = τ at a = 0: Coriolis, centrifugal and gravity forces.

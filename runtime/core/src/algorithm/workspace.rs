@@ -2,28 +2,44 @@
 
 use alloc::vec;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::Shape;
 use crate::Scalar;
 use crate::joint::Pose;
 use crate::model::Model;
-use crate::spatial::{Motion, Placement, SpatialInertia, Wrench};
+use crate::spatial::{ArticulatedInertia, CoriolisInertia, Motion, Placement, SpatialInertia, Twist, Wrench};
 
 /// Room for one evaluation of any algorithm on one model: made once, used by every call, so that no call allocates.
 #[derive(Clone, Debug)]
 pub struct Workspace<S> {
+    /// The sizes of the model it was made for.
+    pub(super) shape: Shape,
     pub(super) bodies: Vec<BodyState<S>>,
     pub(super) placements: Vec<Placement<S>>,
     pub(super) zeros: Vec<S>,
     /// Inertia of each body and all that it carries, in its frame.
     pub(super) composite: Vec<SpatialInertia<S>>,
+    /// Articulated inertia of each body, in its frame.
+    pub(super) articulated: Vec<ArticulatedInertia<S>>,
+    /// Each body in common axes.
+    pub(super) common: Vec<CommonState<S>>,
+    /// The columns of all joint subspaces, followers' too; [`Workspace::columns_of`] says which are a body's.
+    pub(super) columns: Vec<Column<S>>,
+    /// First column of each body, and the number of all.
+    first: Vec<usize>,
     /// One row of a matrix, `[nv]`.
     pub(super) row: Vec<S>,
     /// For each degree of freedom the next one on the way to the base, as [`below`] gives them.
     pub(super) below: Vec<usize>,
     /// `[nv · nv]`.
     pub(super) matrix: Vec<S>,
+    /// `[6 · nv]`.
+    pub(super) six_rows: Vec<S>,
+    /// Accelerations that were solved for, `[nv]`.
+    pub(super) solution: Vec<S>,
 }
 
 /// One body's quantities of the current evaluation, in its own axes.
@@ -40,27 +56,110 @@ pub(super) struct BodyState<S> {
     pub(super) wrench: Wrench<S>,
 }
 
+/// One body's quantities of the current evaluation, in common axes, about its own origin; see [`super::common`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CommonState<S> {
+    /// The body's axes.
+    pub(super) rotation: Matrix3<S>,
+    /// Its origin from its parent's.
+    pub(super) shift: Vector3<S>,
+    /// Its origin from that of the common axes.
+    pub(super) position: Vector3<S>,
+    /// V_λ and V̇_λ, of the parent, at the body's origin.
+    pub(super) carried_twist: Twist<S>,
+    pub(super) carried_acceleration: Twist<S>,
+    pub(super) twist: Twist<S>,
+    /// Spatial acceleration, gravity subtracted where it was asked for.
+    pub(super) acceleration: Twist<S>,
+    pub(super) inertia: SpatialInertia<S>,
+    pub(super) coriolis: CoriolisInertia<S>,
+    pub(super) force: Wrench<S>,
+}
+
+/// One degree of freedom of a body's joint: its motion subspace in common axes, about the body's origin, per unit of the coordinate that moves it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Column<S> {
+    /// Index in v.
+    pub(super) at: usize,
+    /// S.
+    pub(super) axis: Twist<S>,
+    /// ψ̇ = V_λ × S.
+    pub(super) drift: Twist<S>,
+    /// Ṡ = V_i × S.
+    pub(super) rate: Twist<S>,
+    /// ψ̈ = V̇_λ × S + V_λ × ψ̇.
+    pub(super) curl: Twist<S>,
+    /// Of the articulated-body sweep: I^A S, 1 / Sᵀ I^A S, and τ − Sᵀ p^A.
+    pub(super) held: Wrench<S>,
+    pub(super) inverse: S,
+    pub(super) residue: S,
+}
+
 impl<S: Scalar> Workspace<S> {
     /// A workspace for `model`.
     pub fn new(model: &Model<S>) -> Self {
-        let zero = Vector3::zeros();
-        let state = BodyState {
-            pose: None,
-            origin: zero,
-            motion: Motion { omega: zero, alpha: zero, acceleration: zero },
-            u: Matrix3::zeros(),
-            wrench: Wrench::zero(),
-        };
         let (n, nv) = (model.bodies.len(), model.nv);
+        let mut first = vec![0];
+        let mut columns = Vec::new();
+        for body in model.bodies.iter().skip(1) {
+            first.push(columns.len());
+            columns.extend((0..body.joint.nv()).map(|k| Column::zero(body.coordinates.v + k)));
+        }
+        first.push(columns.len());
         Self {
-            bodies: vec![state; n],
+            shape: model.shape(),
+            bodies: vec![BodyState::zero(); n],
             placements: vec![Placement::identity(); n],
             zeros: vec![S::zero(); nv],
             composite: vec![SpatialInertia::zero(); n],
+            articulated: vec![ArticulatedInertia::zero(); n],
+            common: vec![CommonState::zero(); n],
+            columns,
+            first,
             row: vec![S::zero(); nv],
             below: below(model),
             matrix: vec![S::zero(); nv * nv],
+            six_rows: vec![S::zero(); 6 * nv],
+            solution: vec![S::zero(); nv],
         }
+    }
+
+    /// The columns of the joint of body `i`, which is not the base.
+    #[inline(always)]
+    pub(super) fn columns_of(&self, i: usize) -> Range<usize> {
+        self.first[i]..self.first[i + 1]
+    }
+}
+
+impl<S: Scalar> BodyState<S> {
+    fn zero() -> Self {
+        let zero = Vector3::zeros();
+        let motion = Motion { omega: zero, alpha: zero, acceleration: zero };
+        Self { pose: None, origin: zero, motion, u: Matrix3::zeros(), wrench: Wrench::zero() }
+    }
+}
+
+impl<S: Scalar> CommonState<S> {
+    fn zero() -> Self {
+        Self {
+            rotation: Matrix3::identity(),
+            shift: Vector3::zeros(),
+            position: Vector3::zeros(),
+            carried_twist: Twist::zero(),
+            carried_acceleration: Twist::zero(),
+            twist: Twist::zero(),
+            acceleration: Twist::zero(),
+            inertia: SpatialInertia::zero(),
+            coriolis: CoriolisInertia::zero(),
+            force: Wrench::zero(),
+        }
+    }
+}
+
+impl<S: Scalar> Column<S> {
+    fn zero(at: usize) -> Self {
+        let o = Twist::zero();
+        Self { at, axis: o, drift: o, rate: o, curl: o, held: Wrench::zero(), inverse: S::zero(), residue: S::zero() }
     }
 }
 

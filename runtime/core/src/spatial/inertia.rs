@@ -60,6 +60,31 @@ impl<S: Scalar> SpatialInertia<S> {
         Wrench { moment: h.cross(&acceleration) + spin, force: acceleration * self.mass + rotate(u, h) }
     }
 
+    /// G V = [I ω + h × v; m v − h × ω]: the momentum of the body with twist V, or the wrench for an acceleration of it at rest.
+    #[inline(always)]
+    pub fn apply(&self, v: &super::Twist<S>) -> Wrench<S> {
+        let h = self.first;
+        // (tr(Σ)·1 − Σ) ω
+        let spin = v.angular * self.second.trace() - rotate(&self.second, v.angular);
+        Wrench { moment: spin + h.cross(&v.linear), force: v.linear * self.mass + v.angular.cross(&h) }
+    }
+
+    /// The same body about the origin that lies at −`d`: h' = h + m d, Σ' = Σ + h dᵀ + d h'ᵀ.
+    #[inline(always)]
+    #[must_use]
+    pub fn shifted(&self, d: Vector3<S>) -> Self {
+        let first = self.first + d * self.mass;
+        let second = symmetric(self.second + self.first * d.transpose() + d * first.transpose());
+        Self { mass: self.mass, first, second }
+    }
+
+    /// The same body in other axes, to which `turn` takes vectors: h' = R h, Σ' = R Σ Rᵀ.
+    #[inline(always)]
+    #[must_use]
+    pub fn turned(&self, turn: &Matrix3<S>) -> Self {
+        Self { mass: self.mass, first: rotate(turn, self.first), second: symmetric(turn * self.second * turn.transpose()) }
+    }
+
     /// Rotational inertia about the origin, tr(Σ)·1 − Σ, kg·m².
     pub fn rotational(&self) -> Matrix3<S> {
         Matrix3::from_diagonal_element(self.second.trace()) - self.second

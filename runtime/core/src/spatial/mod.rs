@@ -2,6 +2,8 @@
 //!
 //! Sources: Lynch & Park, *Modern Robotics*, 2017, ch. 3 and 8; Featherstone, *Rigid Body Dynamics Algorithms*, 2008, ch. 2.
 
+mod articulated;
+mod coriolis;
 mod inertia;
 mod motion;
 mod placement;
@@ -10,6 +12,8 @@ mod rotation;
 mod twist;
 mod wrench;
 
+pub use articulated::ArticulatedInertia;
+pub use coriolis::CoriolisInertia;
 pub use inertia::SpatialInertia;
 pub use motion::{Motion, rate_matrix};
 pub use placement::Placement;

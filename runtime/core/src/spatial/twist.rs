@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use super::Wrench;
 use crate::Scalar;
 
 /// A velocity [ω; v] of a body: angular velocity, rad/s, and velocity of the frame's origin, m/s, in axes of that frame.
@@ -17,5 +18,65 @@ impl<S: Scalar> Twist<S> {
     /// [0; 0].
     pub fn zero() -> Self {
         Self { angular: Vector3::zeros(), linear: Vector3::zeros() }
+    }
+
+    /// The same motion, with the velocity of the point at `d` from the origin: [ω; v + ω × d].
+    #[inline(always)]
+    #[must_use]
+    pub fn at(&self, d: Vector3<S>) -> Self {
+        Self { angular: self.angular, linear: self.linear + self.angular.cross(&d) }
+    }
+
+    /// V × W = ad(V) W = [ω×w; ω×u + v×w].
+    #[inline(always)]
+    #[must_use]
+    pub fn cross(&self, other: &Self) -> Self {
+        Self {
+            angular: self.angular.cross(&other.angular),
+            linear: self.angular.cross(&other.linear) + self.linear.cross(&other.angular),
+        }
+    }
+
+    /// V ×* F = −ad(V)ᵀ F = [ω×m + v×f; ω×f].
+    #[inline(always)]
+    pub fn cross_wrench(&self, f: &Wrench<S>) -> Wrench<S> {
+        Wrench { moment: self.angular.cross(&f.moment) + self.linear.cross(&f.force), force: self.angular.cross(&f.force) }
+    }
+
+    /// The twist times a number.
+    #[inline(always)]
+    #[must_use]
+    pub fn times(&self, x: S) -> Self {
+        Self { angular: self.angular * x, linear: self.linear * x }
+    }
+
+    /// ω·w + v·u.
+    #[inline(always)]
+    pub fn dot(&self, other: &Self) -> S {
+        self.angular.dot(&other.angular) + self.linear.dot(&other.linear)
+    }
+
+    /// The six numbers.
+    pub fn to_array(&self) -> [S; 6] {
+        let (w, v) = (&self.angular, &self.linear);
+        [w.x, w.y, w.z, v.x, v.y, v.z]
+    }
+}
+
+impl<S: Scalar> core::ops::Add for Twist<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { angular: self.angular + other.angular, linear: self.linear + other.linear }
+    }
+}
+
+impl<S: Scalar> core::ops::Sub for Twist<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self { angular: self.angular - other.angular, linear: self.linear - other.linear }
     }
 }

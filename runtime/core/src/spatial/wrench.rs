@@ -31,6 +31,26 @@ impl<S: Scalar> Wrench<S> {
         self
     }
 
+    /// The same force, with the moment about the point at −`d` from the origin: [m + d × f; f].
+    #[inline(always)]
+    #[must_use]
+    pub fn shifted(&self, d: Vector3<S>) -> Self {
+        Self { moment: self.moment + d.cross(&self.force), force: self.force }
+    }
+
+    /// The wrench times a number.
+    #[inline(always)]
+    #[must_use]
+    pub fn times(&self, x: S) -> Self {
+        Self { moment: self.moment * x, force: self.force * x }
+    }
+
+    /// The six numbers.
+    pub fn to_array(&self) -> [S; 6] {
+        let (m, f) = (&self.moment, &self.force);
+        [m.x, m.y, m.z, f.x, f.y, f.z]
+    }
+
     /// The power ω·m + v·f that the wrench gives to a body moving with `twist`, W. Both in the same frame.
     pub fn power(&self, twist: &Twist<S>) -> S {
         twist.angular.dot(&self.moment) + twist.linear.dot(&self.force)
@@ -42,5 +62,24 @@ impl<S: Scalar> core::ops::AddAssign for Wrench<S> {
     fn add_assign(&mut self, other: Self) {
         self.moment += other.moment;
         self.force += other.force;
+    }
+}
+
+impl<S: Scalar> core::ops::Add for Wrench<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(mut self, other: Self) -> Self {
+        self += other;
+        self
+    }
+}
+
+impl<S: Scalar> core::ops::Sub for Wrench<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self { moment: self.moment - other.moment, force: self.force - other.force }
     }
 }

@@ -1,0 +1,277 @@
+//! First derivatives of inverse and forward dynamics.
+//!
+//! Singh, Russell & Wensing, *IEEE Robot. Autom. Lett.* 7, 2022, 1824–1831 (joints with several degrees of freedom included), with 2B of their Coriolis
+//! operator as [`crate::spatial::CoriolisInertia`] and everything in common axes about each body's own origin ([`super::common`]):
+//!
+//! ```text
+//! ψ̇ = V_λ × S     ψ̈ = V̇_λ × S + V_λ × ψ̇     Ṡ = V_i × S          (l on the way from k to the base)
+//! ∂τ_k/∂q_l = S_kᵀ [2B^C ψ̇_l + I^C ψ̈_l]        ∂τ_l/∂q_k = S_lᵀ [2B^C ψ̇_k + I^C ψ̈_k + S_k ×* F^C]
+//! ∂τ_k/∂v_l = S_kᵀ [2B^C S_l + I^C (ψ̇_l + Ṡ_l)]  ∂τ_l/∂v_k = S_lᵀ [2B^C S_k + I^C (ψ̇_k + Ṡ_k)]
+//! ```
+//!
+//! with the composites of k's body. Forward dynamics: Carpentier & Mansard, *RSS* 2018: ∂a = −M⁻¹ ∂(inverse dynamics at a).
+
+use super::Workspace;
+use super::common::{Axes, accelerations, coriolis, forces, inertias, positions, twists};
+use super::forward_dynamics::forward_dynamics_with_wrenches;
+use super::ltdl::{factor, solve};
+use super::wrenches;
+use crate::Scalar;
+use crate::model::Model;
+use crate::spatial::{Reference, Twist, Vector3, Wrench, rotate};
+
+/// ∂τ/∂q, ∂τ/∂v and ∂τ/∂a = M of τ = inverse dynamics.
+///
+/// q: `[nq]`; v, a: `[nv]`; out: `[3][nv][nv]`, entry (i, j) of each is ∂τ_i/∂x_j. q in the tangent space: a quaternion joint's child moves by a small motion in
+/// its own axes.
+///
+/// # Panics
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+pub fn inverse_dynamics_derivatives<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S], out: &mut [S]) {
+    inverse_dynamics_derivatives_with_wrenches(model, ws, q, v, a, &[], out);
+}
+
+/// As [`inverse_dynamics_derivatives`], with external wrenches that stay as they are in their reference.
+///
+/// wrenches: `[frames][6]`, as [`Model::wrench_reference`] says, or empty.
+///
+/// # Panics
+/// As [`inverse_dynamics_derivatives`].
+pub fn inverse_dynamics_derivatives_with_wrenches<S: Scalar>(
+    model: &Model<S>,
+    ws: &mut Workspace<S>,
+    q: &[S],
+    v: &[S],
+    a: &[S],
+    wrenches: &[S],
+    out: &mut [S],
+) {
+    positions(model, ws, Axes::Tree, q);
+    twists(model, ws, Axes::Tree, v);
+    accelerations(model, ws, Axes::Tree, v, a, -model.gravity);
+    inertias(model, ws);
+    coriolis(model, ws);
+    forces(model, ws);
+    curls(model, ws);
+    let n = model.nv * model.nv;
+    let (by_q, rest) = out.split_at_mut(n);
+    let (by_v, by_a) = rest.split_at_mut(n);
+    let mut matrices = Matrices { by_q, by_v, by_a };
+    matrices.clear();
+    external(model, ws, q, wrenches, matrices.by_q);
+    for i in model.inward() {
+        for k in ws.columns_of(i) {
+            matrices.row_and_column(model, ws, i, k);
+        }
+        collect(model, ws, i);
+    }
+}
+
+/// ∂(static_torque)/∂q.
+///
+/// q: `[nq]`; wrenches: `[frames][6]`; out: `[nv · nv]`, row by row.
+///
+/// # Panics
+/// As [`inverse_dynamics_derivatives`].
+pub fn static_torque_derivative<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], wrenches: &[S], out: &mut [S]) {
+    positions(model, ws, Axes::Tree, q);
+    inertias(model, ws);
+    let zeros = core::mem::take(&mut ws.zeros);
+    still(model, ws);
+    accelerations(model, ws, Axes::Tree, &zeros, &zeros, -model.gravity);
+    ws.zeros = zeros;
+    for i in model.outward() {
+        let state = &mut ws.common[i];
+        state.force = state.inertia.apply(&state.acceleration);
+        for k in ws.columns_of(i) {
+            ws.columns[k].curl = ws.common[i].carried_acceleration.cross(&ws.columns[k].axis);
+        }
+    }
+    out.fill(S::zero());
+    external(model, ws, q, wrenches, out);
+    for i in model.inward() {
+        for k in ws.columns_of(i) {
+            let (state, column) = (&ws.common[i], &ws.columns[k]);
+            let held = state.inertia.apply(&column.axis);
+            let drive = state.inertia.apply(&column.curl) + column.axis.cross_wrench(&state.force);
+            pairs(model, ws, i, [held, drive], |own, [held, drive], other| {
+                out[column.at * model.nv + other.at] += held.power(&other.curl);
+                if !own {
+                    out[other.at * model.nv + column.at] += drive.power(&other.axis);
+                }
+            });
+        }
+        collect(model, ws, i);
+    }
+}
+
+/// ∂a/∂q, ∂a/∂v and ∂a/∂τ = M⁻¹ of a = forward dynamics.
+///
+/// q: `[nq]`; v, tau: `[nv]`; out: `[3][nv][nv]`, entry (i, j) of each is ∂a_i/∂x_j. q in the tangent space.
+///
+/// # Panics
+/// As [`inverse_dynamics_derivatives`].
+pub fn forward_dynamics_derivatives<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], tau: &[S], out: &mut [S]) {
+    forward_dynamics_derivatives_with_wrenches(model, ws, q, v, tau, &[], out);
+}
+
+/// As [`forward_dynamics_derivatives`], with external wrenches that stay as they are in their reference.
+///
+/// wrenches: `[frames][6]`, as [`Model::wrench_reference`] says, or empty.
+///
+/// # Panics
+/// As [`inverse_dynamics_derivatives`].
+pub fn forward_dynamics_derivatives_with_wrenches<S: Scalar>(
+    model: &Model<S>,
+    ws: &mut Workspace<S>,
+    q: &[S],
+    v: &[S],
+    tau: &[S],
+    wrenches: &[S],
+    out: &mut [S],
+) {
+    let n = model.nv;
+    let mut a = core::mem::take(&mut ws.solution);
+    forward_dynamics_with_wrenches(model, ws, q, v, tau, wrenches, &mut a);
+    inverse_dynamics_derivatives_with_wrenches(model, ws, q, v, &a, wrenches, out);
+    ws.solution = a;
+    let mut matrix = core::mem::take(&mut ws.matrix);
+    matrix.copy_from_slice(&out[2 * n * n..]);
+    factor(&mut matrix, &ws.below);
+    let mut column = core::mem::take(&mut ws.row);
+    for (which, block) in out.chunks_exact_mut((n * n).max(1)).enumerate() {
+        for j in 0..n {
+            // ∂a = −M⁻¹ ∂τ; ∂a/∂τ = M⁻¹ 1
+            (0..n).for_each(|i| column[i] = if which < 2 { -block[i * n + j] } else { S::zero() });
+            if which == 2 {
+                column[j] = S::one();
+            }
+            solve(&matrix, &ws.below, &mut column);
+            (0..n).for_each(|i| block[i * n + j] = column[i]);
+        }
+    }
+    (ws.matrix, ws.row) = (matrix, column);
+}
+
+/// At rest.
+fn still<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
+    for i in model.outward() {
+        for k in ws.columns_of(i) {
+            ws.columns[k].rate = Twist::zero();
+        }
+    }
+}
+
+/// ψ̈ of every column.
+fn curls<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
+    for i in model.outward() {
+        let (twist, acceleration) = (ws.common[i].carried_twist, ws.common[i].carried_acceleration);
+        for k in ws.columns_of(i) {
+            let column = &mut ws.columns[k];
+            column.curl = acceleration.cross(&column.axis) + twist.cross(&column.drift);
+        }
+    }
+}
+
+/// Hands what a body and all beyond it have together to its parent.
+fn collect<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize) {
+    let (parent, state) = (model.bodies[i].parent, ws.common[i]);
+    if parent != 0 {
+        let to = &mut ws.common[parent];
+        to.inertia += state.inertia.shifted(state.shift);
+        to.coriolis += state.coriolis.shifted(state.shift);
+        to.force += state.to_parent(&state.force);
+    }
+}
+
+/// Visits the columns of body `i` and of those on the way to the base, with wrenches on `i` carried along: (whether it is of body `i`, wrenches, column).
+fn pairs<S: Scalar, const N: usize>(
+    model: &Model<S>,
+    ws: &Workspace<S>,
+    i: usize,
+    mut wrenches: [Wrench<S>; N],
+    mut visit: impl FnMut(bool, &[Wrench<S>; N], &super::workspace::Column<S>),
+) {
+    let mut j = i;
+    while j != 0 {
+        for l in ws.columns_of(j) {
+            visit(j == i, &wrenches, &ws.columns[l]);
+        }
+        for w in &mut wrenches {
+            *w = ws.common[j].to_parent(w);
+        }
+        j = model.bodies[j].parent;
+    }
+}
+
+struct Matrices<'a, S> {
+    by_q: &'a mut [S],
+    by_v: &'a mut [S],
+    by_a: &'a mut [S],
+}
+
+impl<S: Scalar> Matrices<'_, S> {
+    fn clear(&mut self) {
+        for m in [&mut *self.by_q, &mut *self.by_v, &mut *self.by_a] {
+            m.fill(S::zero());
+        }
+    }
+
+    /// What column `k` of body `i` has with itself and those on the way to the base.
+    fn row_and_column(&mut self, model: &Model<S>, ws: &Workspace<S>, i: usize, k: usize) {
+        let (n, state, column) = (model.nv, &ws.common[i], &ws.columns[k]);
+        let two = S::from_f64(2.0);
+        let twice_b = |omega: Vector3<S>| state.coriolis.wrench(omega * two);
+        let held = state.inertia.apply(&column.axis);
+        let turning = state.coriolis.transposed(&column.axis) * two;
+        let by_q = twice_b(column.drift.angular) + state.inertia.apply(&column.curl) + column.axis.cross_wrench(&state.force);
+        let by_v = twice_b(column.axis.angular) + state.inertia.apply(&(column.drift + column.rate));
+        pairs(model, ws, i, [held, by_q, by_v], |own, [held, by_q, by_v], other| {
+            let (row, transposed) = (column.at * n + other.at, other.at * n + column.at);
+            let inertia = held.power(&other.axis);
+            self.by_a[row] += inertia;
+            self.by_q[row] += turning.dot(&other.drift.angular) + held.power(&other.curl);
+            self.by_v[row] += turning.dot(&other.axis.angular) + held.power(&(other.drift + other.rate));
+            if !own {
+                self.by_a[transposed] += inertia;
+                self.by_q[transposed] += by_q.power(&other.axis);
+                self.by_v[transposed] += by_v.power(&other.axis);
+            }
+        });
+    }
+}
+
+/// Subtracts external wrenches from the forces of bodies. Those that do not turn with their body, as the sweep will take all forces to do, are put right in ∂τ/∂q.
+fn external<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], wrenches: &[S], by_q: &mut [S]) {
+    let reference = model.wrench_reference;
+    let mut frame = model.frames.iter().filter(|f| f.body != 0);
+    wrenches::each(model, ws, q, wrenches, |ws, body, w| {
+        let turn = ws.common[body].rotation;
+        let w = Wrench { moment: rotate(&turn, w.moment), force: rotate(&turn, w.force) };
+        ws.common[body].force = ws.common[body].force - w;
+        let offset = frame.next().map_or_else(Vector3::zeros, |f| rotate(&turn, f.placement.position));
+        if reference != Reference::Body {
+            put_right(model, ws, body, &w, (reference == Reference::WorldAligned).then_some(offset), by_q);
+        }
+    });
+}
+
+/// For each pair (l, k) of columns on the way from `body` to the base, ∂τ_l/∂q_k −= S_lᵀ δ_k, with δ_k what a unit step of k does to the wrench, less what it
+/// would do if the wrench turned with the body, S_k ×* w. In space the wrench stays as it is, but for its moment if it moves along with the point at `offset`.
+fn put_right<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, body: usize, w: &Wrench<S>, offset: Option<Vector3<S>>, by_q: &mut [S]) {
+    let on_the_way = |mut visit: &mut dyn FnMut(usize, Twist<S>)| {
+        let (mut j, mut d) = (body, Vector3::zeros());
+        while j != 0 {
+            ws.columns_of(j).for_each(|c| (&mut visit)(ws.columns[c].at, ws.columns[c].axis.at(d)));
+            d += ws.common[j].shift;
+            j = model.bodies[j].parent;
+        }
+    };
+    on_the_way(&mut |k, axis| {
+        let mut change = Wrench::zero() - axis.cross_wrench(w);
+        if let Some(offset) = offset {
+            change.moment += axis.at(offset).linear.cross(&w.force);
+        }
+        on_the_way(&mut |l, other| by_q[l * model.nv + k] -= change.power(&other));
+    });
+}

@@ -1,0 +1,37 @@
+//! Energies of the moving links.
+
+use super::Workspace;
+use super::common::{Axes, inertias, positions, twists};
+use crate::Scalar;
+use crate::model::Model;
+use crate::spatial::rotate;
+
+/// T = ½ Σ Vᵀ G V.
+///
+/// q: `[nq]`; v: `[nv]`; out: one number, J. Featherstone 2008, §2.12.
+///
+/// # Panics
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+pub fn kinetic_energy<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
+    positions(model, ws, Axes::Base, q);
+    twists(model, ws, Axes::Base, v);
+    inertias(model, ws);
+    let twice = |i: usize| ws.common[i].inertia.apply(&ws.common[i].twist).power(&ws.common[i].twist);
+    out[0] = model.outward().fold(S::zero(), |sum, i| sum + twice(i)) * S::from_f64(0.5);
+}
+
+/// U = −Σ m gᵀc = −gᵀ Σ (m p + R h), zero at the base frame's origin.
+///
+/// q: `[nq]`; out: one number, J. Links fixed to the base do not count.
+///
+/// # Panics
+/// As [`kinetic_energy`].
+pub fn potential_energy<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
+    positions(model, ws, Axes::Base, q);
+    let mut energy = S::zero();
+    for i in model.outward() {
+        let (state, inertia) = (&ws.common[i], &model.bodies[i].inertia);
+        energy -= model.gravity.dot(&(state.position * inertia.mass + rotate(&state.rotation, inertia.first)));
+    }
+    out[0] = energy;
+}

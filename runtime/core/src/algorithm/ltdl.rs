@@ -1,0 +1,49 @@
+//! M = Lᵀ D L, which keeps the zeros that branches leave in M. Featherstone 2008, §6.5.
+
+use crate::Scalar;
+
+/// The degrees of freedom on the way from `k` to the base, `k` not among them.
+fn way(below: &[usize], k: usize) -> impl Iterator<Item = usize> {
+    let next = |k: usize| below[k].checked_sub(1);
+    core::iter::successors(next(k), move |&i| next(i))
+}
+
+/// M = Lᵀ D L in place: L below the diagonal with ones on it, D⁻¹ on the diagonal. From the last row up, so that the zeros between branches stay.
+pub(super) fn factor<S: Scalar>(m: &mut [S], below: &[usize]) {
+    let n = below.len();
+    for k in (0..n).rev() {
+        let inverse = S::one() / m[k * n + k];
+        for i in way(below, k) {
+            let l = m[k * n + i] * inverse;
+            // M_ij −= L_ki M_kj
+            let product = l * m[k * n + i];
+            m[i * n + i] -= product;
+            for j in way(below, i) {
+                let product = l * m[k * n + j];
+                m[i * n + j] -= product;
+            }
+        }
+        for i in way(below, k) {
+            m[k * n + i] *= inverse;
+        }
+        m[k * n + k] = inverse;
+    }
+}
+
+/// x = L⁻¹ D⁻¹ L⁻ᵀ b, in place.
+pub(super) fn solve<S: Scalar>(l: &[S], below: &[usize], x: &mut [S]) {
+    let n = below.len();
+    for k in (0..n).rev() {
+        for i in way(below, k) {
+            let product = l[k * n + i] * x[k];
+            x[i] -= product;
+        }
+    }
+    for k in 0..n {
+        x[k] *= l[k * n + k];
+        for i in way(below, k) {
+            let product = l[k * n + i] * x[i];
+            x[k] -= product;
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! Centre of mass and centroidal momentum of the moving links.
+//!
+//! Orin, Goswami & Lee, *Auton. Robots* 35, 2013, 161–176, in base axes, each body about its own origin ([`super::common`]).
+
+use super::Workspace;
+use super::common::{Axes, accelerations, coriolis, forces, inertias, positions, twists};
+use crate::Scalar;
+use crate::model::Model;
+use crate::spatial::{Vector3, Wrench};
+
+/// Centre of mass of the moving links, base axes.
+///
+/// q: `[nq]`; out: `[3]` m. Links fixed to the base do not count. Without any mass the result is not finite.
+///
+/// # Panics
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+pub fn center_of_mass<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
+    positions(model, ws, Axes::Base, q);
+    inertias(model, ws);
+    let (_, center) = center(model, ws);
+    out.copy_from_slice(center.as_slice());
+}
+
+/// Velocity of the centre of mass, base axes.
+///
+/// q: `[nq]`; v: `[nv]`; out: `[3]` m/s.
+///
+/// # Panics
+/// As [`center_of_mass`].
+pub fn center_of_mass_velocity<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
+    positions(model, ws, Axes::Base, q);
+    twists(model, ws, Axes::Base, v);
+    inertias(model, ws);
+    let (inverse, _) = center(model, ws);
+    // ċ = l / m
+    let momentum = momentum(model, ws, Vector3::zeros());
+    out.copy_from_slice((momentum.force * inverse).as_slice());
+}
+
+/// Acceleration of the centre of mass, base axes, gravity not added.
+///
+/// q: `[nq]`; v, a: `[nv]`; out: `[3]` m/s².
+///
+/// # Panics
+/// As [`center_of_mass`].
+pub fn center_of_mass_acceleration<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S], out: &mut [S]) {
+    let (inverse, rate) = rate(model, ws, q, v, a);
+    // c̈ = l̇ / m
+    out.copy_from_slice((rate.force * inverse).as_slice());
+}
+
+/// J with ċ = J v, base axes.
+///
+/// q: `[nq]`; out: `[3][nv]`. The column of a degree of freedom is the momentum of all that it carries, over the whole mass.
+///
+/// # Panics
+/// As [`center_of_mass`].
+pub fn center_of_mass_jacobian<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
+    positions(model, ws, Axes::Base, q);
+    inertias(model, ws);
+    let (inverse, _) = center(model, ws);
+    out.fill(S::zero());
+    composites(model, ws, |at, wrench, _| add(out, model.nv, at, &(wrench.force * inverse)));
+}
+
+/// Momentum [k; l] of the moving links about their centre of mass, base axes.
+///
+/// q: `[nq]`; v: `[nv]`; out: `[6]` N·m·s and N·s.
+///
+/// # Panics
+/// As [`center_of_mass`].
+pub fn centroidal_momentum<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
+    positions(model, ws, Axes::Base, q);
+    twists(model, ws, Axes::Base, v);
+    inertias(model, ws);
+    let (_, center) = center(model, ws);
+    out.copy_from_slice(&momentum(model, ws, center).to_array());
+}
+
+/// A with [k; l] = A v, base axes.
+///
+/// q: `[nq]`; out: `[6][nv]`.
+///
+/// # Panics
+/// As [`center_of_mass`].
+pub fn centroidal_momentum_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
+    positions(model, ws, Axes::Base, q);
+    inertias(model, ws);
+    let (_, center) = center(model, ws);
+    out.fill(S::zero());
+    let (angular, linear) = out.split_at_mut(3 * model.nv);
+    composites(model, ws, |at, wrench, position| {
+        add(angular, model.nv, at, &wrench.shifted(position - center).moment);
+        add(linear, model.nv, at, &wrench.force);
+    });
+}
+
+/// d/dt [k; l], base axes: the wrench about the centre of mass that gravity, the base and the surroundings must exert together.
+///
+/// q: `[nq]`; v, a: `[nv]`; out: `[6]` N·m and N.
+///
+/// # Panics
+/// As [`center_of_mass`].
+pub fn centroidal_momentum_rate<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S], out: &mut [S]) {
+    let (_, rate) = rate(model, ws, q, v, a);
+    out.copy_from_slice(&rate.to_array());
+}
+
+/// (1 / mass, centre of mass) of the moving links.
+fn center<S: Scalar>(model: &Model<S>, ws: &Workspace<S>) -> (S, Vector3<S>) {
+    let (mut mass, mut first) = (S::zero(), Vector3::zeros());
+    for i in model.outward() {
+        let state = &ws.common[i];
+        mass += state.inertia.mass;
+        first += state.inertia.first + state.position * state.inertia.mass;
+    }
+    let inverse = S::one() / mass;
+    (inverse, first * inverse)
+}
+
+/// Σ G V, with the moment about `point`.
+fn momentum<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, point: Vector3<S>) -> Wrench<S> {
+    let one = |i: usize| ws.common[i].inertia.apply(&ws.common[i].twist).shifted(ws.common[i].position - point);
+    model.outward().fold(Wrench::zero(), |sum, i| sum + one(i))
+}
+
+/// (1 / mass, Σ F about the centre of mass).
+fn rate<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S]) -> (S, Wrench<S>) {
+    positions(model, ws, Axes::Base, q);
+    twists(model, ws, Axes::Base, v);
+    accelerations(model, ws, Axes::Base, v, a, Vector3::zeros());
+    inertias(model, ws);
+    coriolis(model, ws);
+    forces(model, ws);
+    let (inverse, center) = center(model, ws);
+    let one = |i: usize| ws.common[i].force.shifted(ws.common[i].position - center);
+    (inverse, model.outward().fold(Wrench::zero(), |sum, i| sum + one(i)))
+}
+
+/// For each degree of freedom (its index in v, I^C S, the origin that is about), with I^C the inertia of all that it carries.
+fn composites<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, mut visit: impl FnMut(usize, &Wrench<S>, Vector3<S>)) {
+    for i in model.inward() {
+        let state = ws.common[i];
+        for c in ws.columns_of(i) {
+            visit(ws.columns[c].at, &state.inertia.apply(&ws.columns[c].axis), state.position);
+        }
+        let parent = model.bodies[i].parent;
+        if parent != 0 {
+            ws.common[parent].inertia += state.inertia.shifted(state.shift);
+        }
+    }
+}
+
+fn add<S: Scalar>(out: &mut [S], nv: usize, at: usize, x: &Vector3<S>) {
+    (0..3).for_each(|row| out[row * nv + at] += x[row]);
+}

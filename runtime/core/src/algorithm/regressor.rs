@@ -1,0 +1,130 @@
+//! Regressors: dynamics are linear in the ten inertial parameters of each link.
+//!
+//! The parameters are π = (m, h_x, h_y, h_z, I_xx, I_xy, I_xz, I_yy, I_yz, I_zz) with h = m c and I about the origin of the link's frame, in its axes;
+//! a link is a moving link with everything that is fixed to it. Atkeson, An & Hollerbach, *Int. J. Robot. Res.* 5, 1986, 101–119; energies: Gautier & Khalil,
+//! *IEEE ICRA* 1988, 1026–1031.
+
+use super::Workspace;
+use super::common::{Axes, accelerations, positions, twists};
+use crate::Scalar;
+use crate::model::Model;
+use crate::spatial::{Matrix3, SpatialInertia, Twist, Vector3, rate_matrix, rotate, rotate_back};
+
+/// Inertial parameters of a link.
+pub const PARAMETERS: usize = 10;
+
+/// Y with τ = Y π.
+///
+/// q: `[nq]`; v, a: `[nv]`; out: `[nv][links][10]`. By virtual power: τ_l = Σ ∫ (s_l(r))·(r̈ − g) dm, with s_l(r) the velocity of the point at unit rate l.
+///
+/// # Panics
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+pub fn torque_regressor<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S], out: &mut [S]) {
+    positions(model, ws, Axes::Tree, q);
+    twists(model, ws, Axes::Tree, v);
+    accelerations(model, ws, Axes::Tree, v, a, -model.gravity);
+    out.fill(S::zero());
+    let width = PARAMETERS * ws.shape.links;
+    for (link, i) in model.links().enumerate() {
+        let (turn, state) = (turn(model, ws, i), &ws.common[i]);
+        let back = |x: Vector3<S>| rotate_back(&turn, x);
+        let u = rate_matrix(back(state.twist.angular), back(state.acceleration.angular));
+        // The true acceleration of the origin: spatial acceleration + ω × v.
+        let acceleration = back(state.acceleration.linear + state.twist.angular.cross(&state.twist.linear));
+        let (mut j, mut d) = (i, Vector3::zeros());
+        while j != 0 {
+            for l in ws.columns_of(j) {
+                let axis = ws.columns[l].axis.at(d);
+                let axis = Twist { angular: back(axis.angular), linear: back(axis.linear) };
+                let entries = entries(&axis, &acceleration, &u);
+                let at = ws.columns[l].at * width + link * PARAMETERS;
+                out[at..at + PARAMETERS].iter_mut().zip(entries).for_each(|(out, x)| *out += x);
+            }
+            d += ws.common[j].shift;
+            j = model.bodies[j].parent;
+        }
+    }
+}
+
+/// What a motion (s; t) does on a body whose points at r accelerate by a + U r: per unit of each parameter.
+fn entries<S: Scalar>(axis: &Twist<S>, a: &Vector3<S>, u: &Matrix3<S>) -> [S; PARAMETERS] {
+    let (s, t) = (axis.angular, axis.linear);
+    // m: t·a;  h: t·(U h) + s·(h × a) = h·(Uᵀt + a × s)
+    let first = rotate_back(u, t) + a.cross(&s);
+    // Σ: ∫ (s × r)·(U r) = Σ_ab G_ab Σ_ab with G_b = U_b × s
+    let column = |k: usize| u.column(k).into_owned().cross(&s);
+    let g = Matrix3::from_columns(&[column(0), column(1), column(2)]);
+    // Σ = ½ tr(I)·1 − I
+    let half = g.trace() * S::from_f64(0.5);
+    let off = |i: usize, j: usize| -(g[(i, j)] + g[(j, i)]);
+    let on = |i: usize| half - g[(i, i)];
+    [t.dot(a), first.x, first.y, first.z, on(0), off(0, 1), off(0, 2), on(1), off(1, 2), on(2)]
+}
+
+/// y with kinetic energy T = yᵀπ.
+///
+/// q: `[nq]`; v: `[nv]`; out: `[links][10]`.
+///
+/// # Panics
+/// As [`torque_regressor`].
+pub fn kinetic_energy_regressor<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
+    positions(model, ws, Axes::Base, q);
+    twists(model, ws, Axes::Base, v);
+    let half = S::from_f64(0.5);
+    for (i, out) in model.links().zip(out.chunks_exact_mut(PARAMETERS)) {
+        let turn = turn(model, ws, i);
+        let (w, v) = (rotate_back(&turn, ws.common[i].twist.angular), rotate_back(&turn, ws.common[i].twist.linear));
+        // T = ½ m v² + v·(ω × h) + ½ ωᵀ I ω
+        let first = v.cross(&w);
+        out.copy_from_slice(&[
+            half * v.dot(&v),
+            first.x,
+            first.y,
+            first.z,
+            half * w.x * w.x,
+            w.x * w.y,
+            w.x * w.z,
+            half * w.y * w.y,
+            w.y * w.z,
+            half * w.z * w.z,
+        ]);
+    }
+}
+
+/// y with potential energy U = yᵀπ.
+///
+/// q: `[nq]`; out: `[links][10]`.
+///
+/// # Panics
+/// As [`torque_regressor`].
+pub fn potential_energy_regressor<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
+    positions(model, ws, Axes::Base, q);
+    out.fill(S::zero());
+    for (i, out) in model.links().zip(out.chunks_exact_mut(PARAMETERS)) {
+        // U = −gᵀ (m p + R h)
+        out[0] = -model.gravity.dot(&ws.common[i].position);
+        let first = -rotate_back(&turn(model, ws, i), model.gravity);
+        out[1..4].copy_from_slice(first.as_slice());
+    }
+}
+
+/// Axes of the link of body `i` in common axes.
+fn turn<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize) -> Matrix3<S> {
+    let rotation = ws.common[i].rotation;
+    model.bodies[i].link.map_or(rotation, |link| rotation * link)
+}
+
+impl<S: Scalar> Model<S> {
+    /// π of every moving link, `[links][10]`: m, h = m c, and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz about the origin of the link's frame, in its axes; kg, kg·m,
+    /// kg·m².
+    pub fn inertial_parameters(&self) -> alloc::vec::Vec<[S; PARAMETERS]> {
+        let one = |i: usize| parameters(&self.bodies[i].inertia, self.bodies[i].link.as_ref());
+        self.links().map(one).collect()
+    }
+}
+
+fn parameters<S: Scalar>(inertia: &SpatialInertia<S>, link: Option<&Matrix3<S>>) -> [S; PARAMETERS] {
+    let back = link.map_or_else(Matrix3::identity, Matrix3::transpose);
+    let (h, i) = (rotate(&back, inertia.first), inertia.turned(&back).rotational());
+    [inertia.mass, h.x, h.y, h.z, i.m11, i.m12, i.m13, i.m22, i.m23, i.m33]
+}

@@ -1,0 +1,260 @@
+//! The one table of functions, from which the generator, the command line, the tests and the documentation all read.
+//!
+//! Adding a function: its algorithm in a file, its row here. A row is
+//!
+//! ```text
+//! name(arguments) -> [dimensions] "units", needs, regrouped?, "what it is", "algorithm and source";
+//! ```
+//!
+//! with `by` and a list of ways where there is more than one.
+
+use core::marker::PhantomData;
+
+#[allow(clippy::wildcard_imports)]
+// Why: the rows name every algorithm there is.
+use super::*;
+use crate::Scalar;
+use crate::model::Model;
+
+/// Hands all rows to the macro `$then`.
+macro_rules! for_each_function {
+    ($then:ident) => {
+        $then! {
+            placements(q) -> [Frames, Of(12)] "rotation row by row, then position in m, in the base frame", Nothing, true,
+                "placements of all frames in the base frame", "forward kinematics; Featherstone 2008, §4.4";
+            twists_body(q, v) -> [Frames, Of(6)] "[ω; v], rad/s and m/s", Nothing, true,
+                "twists of all frames, in their own axes about their own origins", "outward sweep; Lynch & Park 2017, §8.3";
+            twists_world(q, v) -> [Frames, Of(6)] "[ω; v], rad/s and m/s", Nothing, true,
+                "twists of all frames, in base axes about the base frame's origin", "outward sweep; Lynch & Park 2017, §8.3";
+            twists_world_aligned(q, v) -> [Frames, Of(6)] "[ω; ṗ], rad/s and m/s", Nothing, true,
+                "twists of all frames, in base axes about their own origins", "outward sweep; Lynch & Park 2017, §8.3";
+            accelerations_body(q, v, a) -> [Frames, Of(6)] "rad/s² and m/s²", Nothing, true,
+                "time derivatives of twists_body: spatial accelerations in body axes, gravity not added",
+                "outward sweep; Featherstone 2008, §2.11";
+            accelerations_world(q, v, a) -> [Frames, Of(6)] "rad/s² and m/s²", Nothing, true,
+                "time derivatives of twists_world: spatial accelerations in base axes, gravity not added",
+                "outward sweep; Featherstone 2008, §2.11";
+            accelerations_world_aligned(q, v, a) -> [Frames, Of(6)] "[ω̇; p̈], rad/s² and m/s²", Nothing, true,
+                "time derivatives of twists_world_aligned: the true accelerations of the origins, gravity not added",
+                "outward sweep; Featherstone 2008, §2.11";
+            jacobians_body(q) -> [Frames, Of(6), Nv] "rows [ω; v]", Nothing, true,
+                "Jacobians of all frames: twists_body = J v", "columns Ad S; Lynch & Park 2017, §5.1";
+            jacobians_world(q) -> [Frames, Of(6), Nv] "rows [ω; v]", Nothing, true,
+                "Jacobians of all frames: twists_world = J v", "columns Ad S; Lynch & Park 2017, §5.1";
+            jacobians_world_aligned(q) -> [Frames, Of(6), Nv] "rows [ω; ṗ]", Nothing, true,
+                "Jacobians of all frames: twists_world_aligned = J v", "columns Ad S; Lynch & Park 2017, §5.1";
+            jacobian_rates_body(q, v) -> [Frames, Of(6), Nv] "1/s and m/s", Nothing, true,
+                "dJ/dt of jacobians_body", "columns ad V S; Featherstone 2008, §2.9";
+            jacobian_rates_world(q, v) -> [Frames, Of(6), Nv] "1/s and m/s", Nothing, true,
+                "dJ/dt of jacobians_world", "columns ad V S; Featherstone 2008, §2.9";
+            jacobian_rates_world_aligned(q, v) -> [Frames, Of(6), Nv] "1/s and m/s", Nothing, true,
+                "dJ/dt of jacobians_world_aligned", "columns ad V S; Featherstone 2008, §2.9";
+            bias_accelerations_body(q, v) -> [Frames, Of(6)] "rad/s² and m/s²", Nothing, true,
+                "dJ/dt·v of jacobians_body: accelerations at a = 0", "outward sweep; Featherstone 2008, §2.11";
+            bias_accelerations_world(q, v) -> [Frames, Of(6)] "rad/s² and m/s²", Nothing, true,
+                "dJ/dt·v of jacobians_world: accelerations at a = 0", "outward sweep; Featherstone 2008, §2.11";
+            bias_accelerations_world_aligned(q, v) -> [Frames, Of(6)] "rad/s² and m/s²", Nothing, true,
+                "dJ/dt·v of jacobians_world_aligned: accelerations at a = 0", "outward sweep; Featherstone 2008, §2.11";
+            placement_derivatives(q) -> [Frames, Of(12), Nv] "of rotation row by row, then position; 1 and m a unit step", Nothing, true,
+                "∂(placements)/∂q in the tangent space", "columns [s]×R and s × p; Lynch & Park 2017, §5.1";
+            inverse_dynamics(q, v, a) -> [Nv] "N·m|N", Nothing, true,
+                "τ = M(q)·a + h(q, v), gravity included", "RNEA; Featherstone 2008, Table 5.1";
+            inverse_dynamics_with_wrenches(q, v, a, wrenches) -> [Nv] "N·m|N", Nothing, true,
+                "τ = M(q)·a + h(q, v) − Σ Jᵀw, with external wrenches w on the frames", "RNEA; Featherstone 2008, Table 5.1";
+            joint_wrenches(q, v, a) -> [Links, Of(6)] "[m; f], N·m and N, in axes of the link about its origin", Nothing, false,
+                "the wrench that each joint passes to its child link", "RNEA; Featherstone 2008, Table 5.1";
+            bias_forces(q, v) -> [Nv] "N·m|N", Nothing, true,
+                "h(q, v) = τ at a = 0: Coriolis, centrifugal and gravity forces", "RNEA; Featherstone 2008, Table 5.1";
+            gravity_torque(q) -> [Nv] "N·m|N", Nothing, true,
+                "g(q) = τ at v = a = 0: what holds the robot still", "RNEA; Featherstone 2008, Table 5.1";
+            static_torque(q, wrenches) -> [Nv] "N·m|N", Nothing, true,
+                "g(q) − Σ Jᵀw: what holds the robot still under external wrenches w on the frames", "RNEA; Featherstone 2008, Table 5.1";
+            mass_matrix(q) -> [Nv, Nv] "kg·m²|kg·m|kg, symmetric", Nothing, true,
+                "M(q)", "CRBA; Featherstone 2008, Table 6.2",
+                by ["CRBA in body axes", always, mass_matrix; "CRBA in common axes", always, mass_matrix_in_common_axes];
+            coriolis_matrix(q, v) -> [Nv, Nv] "N·m·s|N·s", Nothing, true,
+                "C(q, v) with C v + g = h, and Ṁ − 2C skew: that of the Christoffel symbols",
+                "Echeandia & Wensing, J. Comput. Nonlinear Dyn. 16, 2021";
+            forward_dynamics(q, v, tau) -> [Nv] "rad/s²|m/s²", MassMatrix, true,
+                "a = M(q)⁻¹·(τ − h(q, v))", "ABA, or RNEA, CRBA and M = Lᵀ D L; Featherstone 2008, Table 7.1 and §6.5",
+                by ["ABA", untied, articulated_body; "LTDL", always, forward_dynamics];
+            forward_dynamics_with_wrenches(q, v, tau, wrenches) -> [Nv] "rad/s²|m/s²", MassMatrix, true,
+                "a = M(q)⁻¹·(τ + Σ Jᵀw − h(q, v)), with external wrenches w on the frames",
+                "ABA, or RNEA, CRBA and M = Lᵀ D L; Featherstone 2008, Table 7.1 and §6.5",
+                by ["ABA", untied, articulated_body_with_wrenches; "LTDL", always, forward_dynamics_with_wrenches];
+            mass_matrix_inverse(q) -> [Nv, Nv] "1/(kg·m²)|…, symmetric", MassMatrix, true,
+                "M(q)⁻¹", "M = Lᵀ D L; Featherstone 2008, §6.5";
+            solve_mass_matrix(q, tau) -> [Nv] "rad/s²|m/s²", MassMatrix, true,
+                "M(q)⁻¹·τ, without M⁻¹", "ABA at rest, or M = Lᵀ D L; Featherstone 2008, Table 7.1 and §6.5",
+                by ["ABA", untied, solve_by_articulated_body; "LTDL", always, solve_mass_matrix];
+            kinetic_energy(q, v) -> [] "J", Nothing, true,
+                "T = ½ Σ Vᵀ G V of the moving links", "outward sweep; Featherstone 2008, §2.12";
+            potential_energy(q) -> [] "J, zero at the base frame's origin", Nothing, false,
+                "U = −Σ m gᵀc of the moving links", "outward sweep; Featherstone 2008, §2.12";
+            center_of_mass(q) -> [Of(3)] "m, base axes", Nothing, false,
+                "centre of mass of the moving links", "outward sweep";
+            center_of_mass_velocity(q, v) -> [Of(3)] "m/s, base axes", Nothing, false,
+                "velocity of the centre of mass of the moving links", "outward sweep";
+            center_of_mass_acceleration(q, v, a) -> [Of(3)] "m/s², base axes", Nothing, false,
+                "acceleration of the centre of mass of the moving links, gravity not added", "outward sweep";
+            center_of_mass_jacobian(q) -> [Of(3), Nv] "m|1, base axes", Nothing, false,
+                "J with center_of_mass_velocity = J v", "composite masses; Orin, Goswami & Lee, Auton. Robots 35, 2013";
+            centroidal_momentum(q, v) -> [Of(6)] "[k; l], N·m·s and N·s, base axes", Nothing, false,
+                "momentum of the moving links about their centre of mass", "Orin, Goswami & Lee, Auton. Robots 35, 2013";
+            centroidal_momentum_matrix(q) -> [Of(6), Nv] "base axes", Nothing, false,
+                "A with centroidal_momentum = A v", "composite inertias; Orin, Goswami & Lee, Auton. Robots 35, 2013";
+            centroidal_momentum_rate(q, v, a) -> [Of(6)] "[k̇; l̇], N·m and N, base axes", Nothing, false,
+                "d/dt of centroidal_momentum = A a + Ȧ v", "Newton and Euler; Orin, Goswami & Lee, Auton. Robots 35, 2013";
+            inverse_dynamics_derivatives(q, v, a) -> [Of(3), Nv, Nv] "∂τ/∂q, ∂τ/∂v, ∂τ/∂a = M; rows τ", Nothing, true,
+                "first derivatives of inverse_dynamics; q in the tangent space",
+                "Singh, Russell & Wensing, IEEE RA-L 7, 2022; Carpentier & Mansard, RSS 2018";
+            inverse_dynamics_derivatives_with_wrenches(q, v, a, wrenches) -> [Of(3), Nv, Nv]
+                "∂τ/∂q, ∂τ/∂v, ∂τ/∂a = M; rows τ", Nothing, true,
+                "first derivatives of inverse_dynamics_with_wrenches; q in the tangent space, wrenches constant in their reference",
+                "Singh, Russell & Wensing, IEEE RA-L 7, 2022";
+            forward_dynamics_derivatives(q, v, tau) -> [Of(3), Nv, Nv] "∂a/∂q, ∂a/∂v, ∂a/∂τ = M⁻¹; rows a", MassMatrix, true,
+                "first derivatives of forward_dynamics; q in the tangent space",
+                "−M⁻¹ ∂(inverse dynamics); Carpentier & Mansard, RSS 2018";
+            forward_dynamics_derivatives_with_wrenches(q, v, tau, wrenches) -> [Of(3), Nv, Nv]
+                "∂a/∂q, ∂a/∂v, ∂a/∂τ = M⁻¹; rows a", MassMatrix, true,
+                "first derivatives of forward_dynamics_with_wrenches; q in the tangent space, wrenches constant in their reference",
+                "−M⁻¹ ∂(inverse dynamics); Carpentier & Mansard, RSS 2018";
+            static_torque_derivative(q, wrenches) -> [Nv, Nv] "N·m|N a unit step, rows τ", Nothing, true,
+                "∂(static_torque)/∂q in the tangent space, wrenches constant in their reference",
+                "Singh, Russell & Wensing, IEEE RA-L 7, 2022";
+            torque_regressor(q, v, a) -> [Nv, Links, Of(10)] "per m, m c, I_xx I_xy I_xz I_yy I_yz I_zz about the link's origin",
+                Nothing, true,
+                "Y with inverse_dynamics = Y π, π the inertial parameters of the moving links in their axes",
+                "virtual power; Atkeson, An & Hollerbach, Int. J. Robot. Res. 5, 1986";
+            kinetic_energy_regressor(q, v) -> [Links, Of(10)] "per m, m c, I_xx I_xy I_xz I_yy I_yz I_zz about the link's origin",
+                Nothing, true,
+                "y with kinetic_energy = yᵀπ", "Gautier & Khalil, IEEE ICRA 1988";
+            potential_energy_regressor(q) -> [Links, Of(10)] "per m, m c, I_xx I_xy I_xz I_yy I_yz I_zz about the link's origin",
+                Nothing, true,
+                "y with potential_energy = yᵀπ", "Gautier & Khalil, IEEE ICRA 1988";
+            operational_space_inertia(q) -> [Frames, Of(6), Of(6)] "kg·m²|kg·m|kg, symmetric", FreeFrames, true,
+                "Λ = (J M⁻¹ Jᵀ)⁻¹ of each frame by itself, J that of jacobians_world_aligned",
+                "M = Lᵀ D L; Khatib, IEEE J. Robot. Autom. 3, 1987";
+            operational_space_inertia_inverse(q) -> [Frames, Of(6), Of(6)] "1/(kg·m²)|…, symmetric", MassMatrix, true,
+                "Λ⁻¹ = J M⁻¹ Jᵀ of each frame by itself, J that of jacobians_world_aligned",
+                "M = Lᵀ D L; Khatib, IEEE J. Robot. Autom. 3, 1987";
+        }
+    };
+}
+
+pub(crate) use for_each_function;
+
+macro_rules! argument {
+    (q) => {
+        Argument::Q
+    };
+    (v) => {
+        Argument::V
+    };
+    (a) => {
+        Argument::A
+    };
+    (tau) => {
+        Argument::Tau
+    };
+    (wrenches) => {
+        Argument::Wrenches
+    };
+    (step) => {
+        Argument::Step
+    };
+    (target) => {
+        Argument::Target
+    };
+    (uniform) => {
+        Argument::Uniform
+    };
+}
+
+macro_rules! ways {
+    ($name:ident, $arguments:tt) => {
+        &[ways!(one "", always, $name, $arguments)]
+    };
+    ($name:ident, $arguments:tt, [$($way:literal, $applies:ident, $run:ident);+]) => {
+        &[$(ways!(one $way, $applies, $run, $arguments)),+]
+    };
+    (one $way:literal, $applies:ident, $run:ident, ($($argument:ident),*)) => {
+        Way {
+            name: $way,
+            applies: $applies,
+            run: |model, ws, arguments, out| {
+                if let &[$($argument),*] = arguments {
+                    $run(model, ws, $($argument,)* out);
+                }
+            },
+        }
+    };
+}
+
+macro_rules! rows {
+    ($($name:ident($($argument:ident),*) -> [$($dim:ident $(($n:literal))?),*] $unit:literal, $needs:ident, $regrouped:literal,
+        $summary:literal, $source:literal $(, by $ways:tt)?;)*) => {
+        /// The functions by number: each variant is called as its function is.
+        #[allow(non_camel_case_types)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum FunctionId {
+            $(#[doc = $summary] $name,)*
+        }
+
+        impl FunctionId {
+            /// The function's name.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$name => stringify!($name),)*
+                }
+            }
+        }
+
+        impl<S: Scalar> Table<S> {
+            const ROWS: &'static [Function<S>] = &[$(
+                Function {
+                    id: FunctionId::$name,
+                    name: stringify!($name),
+                    summary: $summary,
+                    source: $source,
+                    takes: &[$(argument!($argument)),*],
+                    gives: &[$(Dim::$dim $(($n))?),*],
+                    unit: $unit,
+                    needs: Needs::$needs,
+                    regrouped: $regrouped,
+                    ways: ways!($name, ($($argument),*) $(, $ways)?),
+                },
+            )*];
+        }
+    };
+}
+
+struct Table<S>(PhantomData<S>);
+
+for_each_function!(rows);
+
+fn always<S>(_: &Model<S>) -> bool {
+    true
+}
+
+/// Whether no joint follows another: a follower ties branches together, and no recursion along one branch can invert M.
+fn untied<S: Scalar>(model: &Model<S>) -> bool {
+    model.bodies.iter().all(|b| b.coordinates.mimic.is_none())
+}
+
+/// All functions, in the order in which they are listed to people.
+pub fn functions<S: Scalar>() -> &'static [Function<S>] {
+    Table::<S>::ROWS
+}
+
+/// The function called `name`.
+pub fn function<S: Scalar>(name: &str) -> Option<&'static Function<S>> {
+    functions::<S>().iter().find(|f| f.name == name)
+}
+
+impl FunctionId {
+    /// Its row.
+    pub fn row<S: Scalar>(self) -> &'static Function<S> {
+        &Table::<S>::ROWS[self as usize]
+    }
+}

@@ -1,0 +1,109 @@
+//! Articulated-body inertia.
+
+use nalgebra::Matrix3;
+
+use super::{Placement, SpatialInertia, Twist, Wrench, rotate, rotate_back};
+use crate::Scalar;
+
+/// The inertia that a body shows while joints beyond it give way: the symmetric matrix [A B; Bᵀ C] on [ω̇; a] (Featherstone 2008, §7.1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArticulatedInertia<S> {
+    /// A, kg·m², symmetric.
+    pub angular: Matrix3<S>,
+    /// B, kg·m.
+    pub coupling: Matrix3<S>,
+    /// C, kg, symmetric.
+    pub linear: Matrix3<S>,
+}
+
+impl<S: Scalar> ArticulatedInertia<S> {
+    /// Nothing.
+    pub fn zero() -> Self {
+        Self { angular: Matrix3::zeros(), coupling: Matrix3::zeros(), linear: Matrix3::zeros() }
+    }
+
+    /// Of a rigid body: A = tr(Σ)·1 − Σ, B = [h]×, C = m·1.
+    #[inline(always)]
+    pub fn rigid(inertia: &SpatialInertia<S>) -> Self {
+        Self {
+            angular: inertia.rotational(),
+            coupling: crossed(inertia.first, &Matrix3::identity()),
+            linear: Matrix3::from_diagonal_element(inertia.mass),
+        }
+    }
+
+    /// The wrench that goes with an acceleration.
+    #[inline(always)]
+    pub fn apply(&self, a: &Twist<S>) -> Wrench<S> {
+        Wrench {
+            moment: rotate(&self.angular, a.angular) + rotate(&self.coupling, a.linear),
+            force: rotate_back(&self.coupling, a.angular) + rotate(&self.linear, a.linear),
+        }
+    }
+
+    /// What is left where one degree of freedom gives way: I − U Uᵀ / D, with U = I S and 1 / D = 1 / Sᵀ I S.
+    #[inline(always)]
+    #[must_use]
+    pub fn giving_way(&self, u: &Wrench<S>, inverse: S) -> Self {
+        let (m, f) = (u.moment * inverse, u.force * inverse);
+        Self {
+            angular: upper(self.angular - m * u.moment.transpose()),
+            coupling: self.coupling - m * u.force.transpose(),
+            linear: upper(self.linear - f * u.force.transpose()),
+        }
+    }
+
+    /// The same seen from the frame a, where `x_ab` places the frame b that it is given in.
+    ///
+    /// Turned, then C' = C, B' = B + [p]× C, A' = A + [p]× Bᵀ − B'[p]×.
+    #[inline(always)]
+    #[must_use]
+    pub fn moved(&self, x_ab: &Placement<S>) -> Self {
+        let (r, p) = (&x_ab.rotation, x_ab.position);
+        let turned = |m: &Matrix3<S>| r * m * r.transpose();
+        let (angular, before, linear) = (turned(&self.angular), turned(&self.coupling), upper(turned(&self.linear)));
+        let coupling = before + crossed(p, &linear);
+        // −B'[p]× = ([p]× B'ᵀ)ᵀ
+        let angular = upper(angular + crossed(p, &before.transpose()) + crossed(p, &coupling.transpose()).transpose());
+        Self { angular, coupling, linear }
+    }
+}
+
+impl<S: Scalar> core::ops::AddAssign for ArticulatedInertia<S> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        self.angular += other.angular;
+        self.coupling += other.coupling;
+        self.linear += other.linear;
+    }
+}
+
+/// [p]× M, column by column.
+#[inline(always)]
+fn crossed<S: Scalar>(p: nalgebra::Vector3<S>, m: &Matrix3<S>) -> Matrix3<S> {
+    let column = |k: usize| p.cross(&m.column(k).into_owned());
+    Matrix3::from_columns(&[column(0), column(1), column(2)])
+}
+
+/// The upper triangle, mirrored.
+#[inline(always)]
+fn upper<S: Scalar>(m: Matrix3<S>) -> Matrix3<S> {
+    Matrix3::new(m.m11, m.m12, m.m13, m.m12, m.m22, m.m23, m.m13, m.m23, m.m33)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spatial::{Vector3, from_rpy};
+
+    #[test]
+    fn a_rigid_body_moves_as_its_moments_do() {
+        let i = Matrix3::new(0.03, 0.001, -0.002, 0.001, 0.05, 0.0005, -0.002, 0.0005, 0.055);
+        let x = Placement { rotation: from_rpy([0.4, -1.1, 2.0]), position: Vector3::new(0.15, 0.02, -0.01) };
+        let y = Placement { rotation: from_rpy([-0.7, 0.2, 0.9]), position: Vector3::new(-0.4, 0.3, 0.8) };
+        let g = SpatialInertia::from_central(2.0, i, &x);
+        let (a, b) = (ArticulatedInertia::rigid(&g.moved(&y)), ArticulatedInertia::rigid(&g).moved(&y));
+        assert!((a.angular - b.angular).amax() < 1e-14);
+        assert!((a.coupling - b.coupling).amax() < 1e-14 && (a.linear - b.linear).amax() < 1e-14);
+    }
+}

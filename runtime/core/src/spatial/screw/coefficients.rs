@@ -1,0 +1,129 @@
+//! The functions of the angle that exponentials, logarithms and their derivatives consist of.
+//!
+//! All are analytic in x = θ², and are functions of x here: √x has no derivative at 0. With h = θ/2 and the spherical Bessel functions j_n,
+//! B_n = j_n(h)/hⁿ, for which dB_n/d(h²) = −½ B_{n+1}, most of them are products without any difference:
+//!
+//! | | | at 0 |
+//! |---|---|--:|
+//! | sin θ/θ | B_0 cos h | 1 |
+//! | β = (1 − cos θ)/θ² | ½ B_0² | 1/2 |
+//! | β' = dβ/dx | −⅛ B_0 B_1 | −1/24 |
+//! | γ = (θ − sin θ)/θ³ | | 1/6 |
+//! | γ' = dγ/dx | | −1/120 |
+//! | ε = 1/θ² − cot(θ/2)/(2θ) | B_1/(4 B_0) | 1/12 |
+//! | ε' = dε/dx | (B_1² − B_0 B_2)/(32 B_0²) | 1/720 |
+//!
+//! ε has a pole at θ = 2π, where the logarithm ends: there its relative error is that of 1/(2π − θ).
+
+use super::series::{Series, beyond};
+use crate::Scalar;
+
+/// HalfAngle of an angle θ, from x = θ²: one root, one sine, one cosine for everything below.
+#[derive(Clone, Copy, Debug)]
+pub struct HalfAngle<S> {
+    /// x = θ².
+    x: S,
+    /// y = h² = x/4.
+    y: S,
+    /// h, but 1/2 where h is less.
+    h: S,
+    /// sin h and cos h.
+    sin: S,
+    cos: S,
+}
+
+impl<S: Scalar> HalfAngle<S> {
+    /// Of θ = √x, rad; x ≥ 0.
+    #[inline(always)]
+    pub fn new(x: S) -> Self {
+        let y = x * S::from_f64(0.25);
+        let h = beyond(y, 0.25).sqrt();
+        let (sin, cos) = h.sin_cos();
+        Self { x, y, h, sin, cos }
+    }
+
+    /// cos h.
+    #[inline(always)]
+    pub fn cosine(&self) -> S {
+        Series::Cosine.or(self.y, self.cos)
+    }
+
+    /// B_0 = sin h/h.
+    #[inline(always)]
+    pub fn sinc(&self) -> S {
+        Series::Sinc.or(self.y, self.sin / self.h)
+    }
+
+    /// B_1 = (sin h − h cos h)/h³.
+    #[inline(always)]
+    fn first(&self) -> S {
+        let Self { h, sin, cos, .. } = *self;
+        Series::First.or(self.y, (sin - h * cos) / (h * h * h))
+    }
+
+    /// B_2 = (3 sin h − 3h cos h − h² sin h)/h⁵.
+    #[inline(always)]
+    fn second(&self) -> S {
+        let Self { h, sin, cos, .. } = *self;
+        let (square, three) = (h * h, S::from_f64(3.0));
+        Series::Second.or(self.y, (three * (sin - h * cos) - square * sin) / (square * square * h))
+    }
+
+    /// β = (1 − cos θ)/θ².
+    #[inline(always)]
+    pub fn versine(&self) -> S {
+        let sinc = self.sinc();
+        S::from_f64(0.5) * (sinc * sinc)
+    }
+
+    /// β'.
+    #[inline(always)]
+    pub fn versine_rate(&self) -> S {
+        -(S::from_f64(0.125) * (self.sinc() * self.first()))
+    }
+
+    /// γ = (θ − sin θ)/θ³ = (h − sin h cos h)/(4h³).
+    #[inline(always)]
+    pub fn excess(&self) -> S {
+        let Self { h, sin, cos, .. } = *self;
+        Series::Excess.or(self.x, (h - sin * cos) / (S::from_f64(4.0) * (h * h * h)))
+    }
+
+    /// γ' = (3 sin θ − 2θ − θ cos θ)/(2θ⁵) = (3 sin h cos h − h − 2h cos² h)/(32h⁵).
+    #[inline(always)]
+    pub fn excess_rate(&self) -> S {
+        let Self { h, sin, cos, .. } = *self;
+        let (square, three) = (h * h, S::from_f64(3.0));
+        let numerator = cos * (three * sin - (h + h) * cos) - h;
+        Series::ExcessRate.or(self.x, numerator / (S::from_f64(32.0) * (square * square * h)))
+    }
+
+    /// ε = 1/θ² − cot(θ/2)/(2θ).
+    #[inline(always)]
+    pub fn inverse(&self) -> S {
+        self.first() / (S::from_f64(4.0) * self.sinc())
+    }
+
+    /// ε'.
+    #[inline(always)]
+    pub fn inverse_rate(&self) -> S {
+        let (zeroth, first, second) = (self.sinc(), self.first(), self.second());
+        (first * first - zeroth * second) / (S::from_f64(32.0) * (zeroth * zeroth))
+    }
+}
+
+/// 2·atan(s/w)/s from s² and w ≥ 0, not both zero: what takes the vector of a quaternion (s times the axis, w) to the rotation vector.
+/// It does not matter whether s² + w² is one.
+#[inline(always)]
+pub(super) fn rotation_over_vector<S: Scalar>(square: S, w: S) -> S {
+    let one = S::one();
+    let limit = Series::Arctangent.limit();
+    // Where s² is not beyond w²·limit the quotient is small, and w is not zero.
+    let far = (square - w * w * S::from_f64(limit)).positive();
+    let safe = S::select(far, one, w);
+    let tangent = S::select(far, S::zero(), square) / (safe * safe);
+    let near = Series::Arctangent.sum(tangent) / safe;
+    let sine = S::select(far, square, one).sqrt();
+    let ratio = S::select(far, sine.atan2(w) / sine, near);
+    ratio + ratio
+}
