@@ -4,6 +4,7 @@
 //! tested ([`virtual_power`], and the textbook form in big floats), and a yardstick for rounding errors ([`measure`]). Generated code is
 //! compiled and run as a user's program would be ([`program`]). The laws themselves are in `tests/`.
 
+pub mod answers;
 pub mod case;
 pub mod fixture;
 pub mod golden;

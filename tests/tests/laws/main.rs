@@ -4,6 +4,7 @@ mod closed_forms;
 mod edits;
 mod energy;
 mod equivalence;
+mod fixtures;
 mod interface;
 mod mimic;
 mod random_trees;
