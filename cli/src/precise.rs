@@ -228,6 +228,8 @@ impl MulAssign for Big {
 impl Scalar for Big {
     type Mask = bool;
 
+    const BITS: u32 = BITS as u32;
+
     fn from_f64(x: f64) -> Self {
         match x {
             1.0 => ONE,

@@ -99,6 +99,8 @@ impl<S: Scalar> MulAssign for Jet<S> {
 impl<S: Scalar> Scalar for Jet<S> {
     type Mask = S::Mask;
 
+    const BITS: u32 = S::BITS;
+
     fn from_f64(x: f64) -> Self {
         Self::still(S::from_f64(x))
     }

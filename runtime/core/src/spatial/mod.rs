@@ -9,6 +9,7 @@ mod motion;
 mod placement;
 mod reference;
 mod rotation;
+pub mod screw;
 mod twist;
 mod wrench;
 

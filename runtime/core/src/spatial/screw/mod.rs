@@ -18,4 +18,6 @@ mod series;
 pub use axis::{Screw, product_of_exponentials_in_body, product_of_exponentials_in_space};
 pub use coefficients::HalfAngle;
 pub use quaternion::Quaternion;
-pub use rotation::{cross_matrix, exp_rotation, left_jacobian, left_jacobian_inverse, log_rotation, right_jacobian, right_jacobian_inverse};
+pub use rotation::{
+    cross_matrix, exp_rotation, left_jacobian, left_jacobian_inverse, log_rotation, right_jacobian, right_jacobian_inverse,
+};
