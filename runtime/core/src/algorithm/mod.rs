@@ -10,6 +10,7 @@ mod forward_dynamics;
 mod frames;
 mod kinematics;
 mod ltdl;
+mod manifold;
 mod momentum;
 mod operational_space;
 mod registry;
@@ -35,6 +36,7 @@ pub use frames::{
     jacobians_world, jacobians_world_aligned, placement_derivatives, twists_body, twists_world, twists_world_aligned,
 };
 pub use kinematics::placements;
+pub use manifold::{difference, integrate, neutral, random_configuration};
 pub use momentum::{
     center_of_mass, center_of_mass_acceleration, center_of_mass_jacobian, center_of_mass_velocity, centroidal_momentum,
     centroidal_momentum_matrix, centroidal_momentum_rate,

@@ -1,0 +1,164 @@
+//! Configurations as points of a manifold: steps, differences, points at random.
+//!
+//! A floating joint's coordinates are a placement, a spherical one's a rotation: they have seven and four numbers for six and three degrees of
+//! freedom. A step δ of the tangent space moves the child along its own body twist: q ⊕ δ = T·exp(δ), R·exp(δ), and q + δ for all other joints. Joints that
+//! follow others have no coordinates, so no step. Barfoot 2017, §7.1.6; Lynch & Park 2017, §3.3.3.
+
+use core::f64::consts::{PI, TAU};
+
+use super::Workspace;
+use crate::Scalar;
+use crate::description::{JointKind, Limit};
+use crate::model::{JointInfo, Model};
+use crate::spatial::screw::Quaternion;
+use crate::spatial::{Twist, Vector3, rotate, rotate_back};
+
+/// q ⊕ step: where a motion with constant rates gets to in a unit of time; rates are body twists where a joint has more than it can add up.
+///
+/// q: `[nq]` rad|m|quaternion; step: `[nv]` rad|m|twist times time; out: `[nq]`, quaternions of norm one to 2u. Absolute error some
+/// (4 + |ω|)·u of a quaternion, or times |position| + |v|; one rounding of a sum.
+///
+/// # Panics
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+pub fn integrate<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, q: &[S], step: &[S], out: &mut [S]) {
+    for joint in &model.joints {
+        let (q, step, out) = (&q[range(joint.q)], &step[range(joint.v)], &mut out[range(joint.q)]);
+        match joint.kind {
+            JointKind::Floating => {
+                let (position, rotation) = placement(q);
+                let (turn, shift) = Twist { angular: three(step), linear: three(&step[3..]) }.exp_parts();
+                // p + R J_l(ω) v, R exp ω
+                put(out, &(position + rotate(&rotation.to_rotation(), shift)));
+                put_quaternion(&mut out[3..], &rotation.product(&turn));
+            }
+            JointKind::Spherical => put_quaternion(out, &quaternion(q).product(&Quaternion::exp(three(step)))),
+            _ => plain(out, q, step, |q, step| q + step),
+        }
+    }
+}
+
+/// target ⊖ q: the step that takes q to the target, with no rotation beyond half a turn.
+///
+/// q, target: `[nq]` rad|m|quaternion; out: `[nv]` rad|m|twist times time. Absolute error some 8u of a rotation, that times the distance of a
+/// translation, up to half a turn; there the step is one of two, see [`Quaternion::log`]. Angles are subtracted as they are, not taken modulo a turn.
+///
+/// # Panics
+/// As [`integrate`].
+pub fn difference<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, q: &[S], target: &[S], out: &mut [S]) {
+    for joint in &model.joints {
+        let (q, target, out) = (&q[range(joint.q)], &target[range(joint.q)], &mut out[range(joint.v)]);
+        match joint.kind {
+            JointKind::Floating => {
+                let ((from, rotation), (to, other)) = (placement(q), placement(target));
+                // log of T⁻¹ T_target
+                let way = rotate_back(&rotation.to_rotation(), to - from);
+                let step = Twist::log_of_parts(&rotation.conjugate().product(&other), way);
+                put(out, &step.angular);
+                put(&mut out[3..], &step.linear);
+            }
+            JointKind::Spherical => put(out, &quaternion(q).conjugate().product(&quaternion(target)).log()),
+            _ => plain(out, q, target, |q, target| target - q),
+        }
+    }
+}
+
+/// A configuration from numbers in [0, 1): uniform if they are.
+///
+/// uniform: `[nq]`, of the last of each quaternion's four no use is made; out: `[nq]` rad|m|quaternion. Within limits where there are some; a bound
+/// that is open is 2π or 2 m from the other; ±π and ±1 m where both are. Rotations uniform: Shoemake, *Uniform random rotations*, Graphics Gems III, 1992.
+///
+/// # Panics
+/// As [`integrate`].
+pub fn random_configuration<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, uniform: &[S], out: &mut [S]) {
+    for joint in &model.joints {
+        let (uniform, out) = (&uniform[range(joint.q)], &mut out[range(joint.q)]);
+        match joint.kind {
+            JointKind::Floating => {
+                out.iter_mut().zip(&uniform[..3]).for_each(|(out, u)| *out = between(-1.0, 1.0, *u));
+                put_quaternion(&mut out[3..], &rotation_from(&uniform[3..]));
+            }
+            JointKind::Spherical => put_quaternion(out, &rotation_from(uniform)),
+            kind => {
+                for (k, (out, u)) in out.iter_mut().zip(uniform).enumerate() {
+                    let (lower, upper) = bounds(joint.limit, if is_length(kind, k) { 1.0 } else { PI });
+                    *out = between(lower, upper, *u);
+                }
+            }
+        }
+    }
+}
+
+/// The configuration of zeros, with quaternions that turn nothing: `[nq]` rad|m|quaternion.
+///
+/// # Panics
+/// If `out` is shorter than that.
+pub fn neutral<S: Scalar>(model: &Model<S>, out: &mut [S]) {
+    for JointInfo { kind, q, .. } in &model.joints {
+        let out = &mut out[range(*q)];
+        out.fill(S::zero());
+        if let (JointKind::Floating | JointKind::Spherical, Some(w)) = (kind, out.last_mut()) {
+            *w = S::one();
+        }
+    }
+}
+
+fn range((first, n): (usize, usize)) -> core::ops::Range<usize> {
+    first..first + n
+}
+
+fn plain<S: Scalar>(out: &mut [S], a: &[S], b: &[S], f: impl Fn(S, S) -> S) {
+    out.iter_mut().zip(a).zip(b).for_each(|((out, a), b)| *out = f(*a, *b));
+}
+
+fn three<S: Scalar>(x: &[S]) -> Vector3<S> {
+    Vector3::new(x[0], x[1], x[2])
+}
+
+fn quaternion<S: Scalar>(x: &[S]) -> Quaternion<S> {
+    Quaternion::from_array([x[0], x[1], x[2], x[3]])
+}
+
+/// Position and rotation of a floating joint.
+fn placement<S: Scalar>(q: &[S]) -> (Vector3<S>, Quaternion<S>) {
+    (three(q), quaternion(&q[3..]))
+}
+
+fn put<S: Scalar>(out: &mut [S], x: &Vector3<S>) {
+    out[..3].copy_from_slice(x.as_slice());
+}
+
+fn put_quaternion<S: Scalar>(out: &mut [S], q: &Quaternion<S>) {
+    out[..4].copy_from_slice(&q.normalised().to_array());
+}
+
+/// Whether coordinate k of a joint is in metres.
+fn is_length(kind: JointKind, k: usize) -> bool {
+    kind == JointKind::Prismatic || kind == JointKind::Planar && k < 2
+}
+
+fn bounds(limit: Option<Limit>, most: f64) -> (f64, f64) {
+    let (lower, upper) = limit.map_or((f64::NEG_INFINITY, f64::INFINITY), |l| (l.lower, l.upper));
+    match (lower.is_finite(), upper.is_finite()) {
+        (true, true) => (lower.min(upper), lower.max(upper)),
+        (true, false) => (lower, lower + 2.0 * most),
+        (false, true) => (upper - 2.0 * most, upper),
+        (false, false) => (-most, most),
+    }
+}
+
+/// lower + u·(upper − lower), which rounding must not take beyond the upper bound.
+fn between<S: Scalar>(lower: f64, upper: f64, u: S) -> S {
+    let [lower, upper] = [lower, upper].map(S::from_f64);
+    let x = lower + u * (upper - lower);
+    S::select((x - upper).positive(), upper, x)
+}
+
+/// (√(1 − u_0)·(sin 2πu_1, cos 2πu_1), √u_0·(sin 2πu_2, cos 2πu_2)).
+fn rotation_from<S: Scalar>(u: &[S]) -> Quaternion<S> {
+    let circle = |square: S, u: S| {
+        let (radius, (sin, cos)) = (square.sqrt(), (u * S::from_f64(TAU)).sin_cos());
+        (radius * sin, radius * cos)
+    };
+    let ((x, y), (z, w)) = (circle(S::one() - u[0], u[1]), circle(u[0], u[2]));
+    Quaternion::from_array([x, y, z, w])
+}
