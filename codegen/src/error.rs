@@ -64,6 +64,38 @@ pub enum Error {
         /// What is wrong.
         reason: &'static str,
     },
+    /// An entry of the list of functions that cannot be read, or does not fit the robot.
+    #[error("functions: `{found}`: {reason}")]
+    Wanted {
+        /// The entry.
+        found: String,
+        /// What is wrong.
+        reason: String,
+    },
+    /// An entry of the list of parameters that cannot be read, or does not fit the robot.
+    #[error("parameters: `{found}`: {reason}")]
+    Parameter {
+        /// The entry.
+        found: String,
+        /// What is wrong.
+        reason: String,
+    },
+    /// Two functions of the same name.
+    #[error("functions: two are called `{name}`; give one another name, as in other = {name}")]
+    SameName {
+        /// The name.
+        name: String,
+    },
+    /// A function that needs frames which can move in all directions, on a robot where some cannot.
+    #[error("{file}: {function} is not defined: fewer than six degrees of freedom carry {}; choose others with `frames`", frames.join(", "))]
+    BoundFrames {
+        /// The file.
+        file: String,
+        /// The function.
+        function: String,
+        /// The frames, each with how many carry it.
+        frames: Vec<String>,
+    },
     /// A file that could not be read or written.
     #[error("{file}: {reason}")]
     File {

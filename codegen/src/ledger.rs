@@ -14,6 +14,8 @@ pub struct Ledger {
 pub struct Entry {
     /// Name of the function.
     pub function: String,
+    /// The ways chosen by count, where the function can be computed in several.
+    pub ways: Vec<&'static str>,
     /// Counts after each stage: `asked` (what the algorithm asks for), `trace` (folded and shared), the same after each model
     /// pass, then after each graph pass.
     pub stages: Vec<(&'static str, Counts)>,

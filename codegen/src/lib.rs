@@ -12,14 +12,16 @@ mod emit;
 mod error;
 pub mod graph;
 pub mod ledger;
+mod parameters;
 pub mod pass;
+mod program;
 mod request;
 mod sym;
 mod trace;
+mod wanted;
 
-use articulated_core::algorithm::{Function, functions};
+use articulated_core::algorithm::{Function, Needs, functions};
 use articulated_core::model::Model;
-use articulated_core::model::pass::MODEL_PASSES;
 use articulated_urdf::{Problem, Reading, Unused};
 
 pub use articulated_core as core;
@@ -28,8 +30,10 @@ pub use build::Build;
 pub use emit::identifier;
 pub use error::{Error, nearest};
 pub use ledger::Ledger;
+pub use parameters::Parameter;
 pub use request::{Options, Request};
 pub use sym::Sym;
+pub use wanted::{Constant, Part, Wanted};
 
 /// What was generated, and what there is to say about it.
 #[derive(Clone, Debug)]
@@ -38,6 +42,8 @@ pub struct Generated {
     pub source: String,
     /// The model as it was read, before model passes.
     pub model: Model<f64>,
+    /// Constants of the model that stayed inputs.
+    pub parameters: Vec<Parameter>,
     /// Costs.
     pub ledger: Ledger,
     /// Things in the document that are odd but used as written.
@@ -58,43 +64,26 @@ impl Generated {
 /// Generates the code that `request` asks for. Pure: nothing is read or written.
 pub fn generate(request: &Request) -> Result<Generated, Error> {
     let options = &request.options;
-    let Reading { description, warnings, unused, snapped } = articulated_urdf::read(&request.urdf, &reader_options(request))?;
-    let model = Model::new(&description, options.base).map_err(|error| Error::Model { file: request.file.clone(), error })?;
-    let model = model.with_gravity(options.gravity);
+    let Reading { mut description, warnings, unused, snapped } = articulated_urdf::read(&request.urdf, &reader_options(request))?;
+    let whole = model_of(request, &description)?;
+    let parameters = parameters::parse(&options.parameters, &mut description, &whole)?;
+    let model = if parameters.is_empty() { whole } else { model_of(request, &description)? };
     let wanted = wanted(request, &model)?;
     let names = emit::Names::new(&model, request)?;
-    let mut models = vec![("trace", model.clone())];
-    for (name, pass, _) in MODEL_PASSES {
-        models.push((name, pass(models[models.len() - 1].1.clone())));
-    }
     let mut ledger = Ledger::default();
     let mut programs = Vec::new();
     for function in wanted {
-        let (program, entry) = program(function, &models);
+        let (program, entry) = program::program(&function, &model, &parameters);
         programs.push((function, program));
         ledger.functions.push(entry);
     }
-    let source = emit::module(request, &model, &names, &programs, &ledger, &unused) + &emit::warnings(&warnings);
-    Ok(Generated { source, model, ledger, warnings, unused, snapped })
+    let source = emit::module(request, &model, &names, &programs, &parameters, &ledger, &unused) + &emit::warnings(&warnings);
+    Ok(Generated { source, model, parameters, ledger, warnings, unused, snapped })
 }
 
-/// One function, traced on the model as it was read and after each model pass, and taken through the graph passes.
-fn program(function: &'static Function<Sym>, models: &[(&'static str, Model<f64>)]) -> (graph::Graph, ledger::Entry) {
-    let mut graph = graph::Graph::default();
-    let mut stages = Vec::new();
-    for (name, model) in models {
-        graph = trace::trace(function, model);
-        if stages.is_empty() {
-            stages.push(("asked", graph.asked().clone()));
-        }
-        stages.push((*name, graph.counts()));
-    }
-    for (name, pass, _) in pass::GRAPH_PASSES {
-        graph = pass::run(name, *pass, &graph);
-        stages.push((name, graph.counts()));
-    }
-    let depth = ledger::depth(&graph);
-    (graph, ledger::Entry { function: function.name.into(), stages, depth })
+fn model_of(request: &Request, description: &articulated_core::description::Description) -> Result<Model<f64>, Error> {
+    let model = Model::new(description, request.options.base).map_err(|error| Error::Model { file: request.file.clone(), error })?;
+    Ok(model.with_gravity(request.options.gravity))
 }
 
 fn reader_options(request: &Request) -> articulated_urdf::Options {
@@ -107,20 +96,42 @@ fn reader_options(request: &Request) -> articulated_urdf::Options {
 }
 
 /// The functions that the request names, each once.
-fn wanted(request: &Request, model: &Model<f64>) -> Result<Vec<&'static Function<Sym>>, Error> {
-    let massless = model.massless_joints();
-    let mut wanted: Vec<&Function<Sym>> = Vec::new();
-    for name in &request.options.functions {
-        let function = function(name)?;
-        if function.inverts_mass_matrix() && !massless.is_empty() {
-            let joints = massless.iter().map(|&i| model.bodies[i].name.clone()).collect();
-            return Err(Error::Singular { file: request.file.clone(), function: name.clone(), joints });
+fn wanted(request: &Request, model: &Model<f64>) -> Result<Vec<Wanted>, Error> {
+    let mut wanted: Vec<Wanted> = Vec::new();
+    let mut seen: Vec<&str> = Vec::new();
+    for text in &request.options.functions {
+        if seen.contains(&text.as_str()) {
+            continue;
         }
-        if !wanted.iter().any(|f| f.name == function.name) {
-            wanted.push(function);
+        seen.push(text);
+        let function = Wanted::parse(text)?;
+        function.check(model.shape())?;
+        function.parts.iter().try_for_each(|part| defined(request, model, part.function))?;
+        if wanted.iter().any(|f| f.name == function.name) {
+            return Err(Error::SameName { name: function.name });
         }
+        wanted.push(function);
     }
     Ok(wanted)
+}
+
+/// Whether the robot has what the function needs.
+fn defined(request: &Request, model: &Model<f64>, function: &Function<Sym>) -> Result<(), Error> {
+    let (file, name) = (request.file.clone(), function.name.to_owned());
+    let massless = if function.needs == Needs::Nothing { Vec::new() } else { model.massless_joints() };
+    if !massless.is_empty() {
+        let joints = massless.iter().map(|&i| model.bodies[i].name.clone()).collect();
+        return Err(Error::Singular { file, function: name, joints });
+    }
+    let bound = |f: &articulated_core::model::Frame<f64>| {
+        let n = model.freedoms_of(f.body).len();
+        (n < 6).then(|| format!("link {:?} ({n})", f.name))
+    };
+    let frames: Vec<String> = model.frames.iter().filter_map(bound).collect();
+    if function.needs == Needs::FreeFrames && !frames.is_empty() {
+        return Err(Error::BoundFrames { file, function: name, frames });
+    }
+    Ok(())
 }
 
 /// The function called `name`, or the error that names the nearest.

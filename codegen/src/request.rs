@@ -21,8 +21,11 @@ pub struct Options {
     pub base: Base,
     /// Gravity in the base frame, m/s².
     pub gravity: [f64; 3],
-    /// Names of the functions wanted, see [`articulated_core::algorithm::functions`].
+    /// The functions wanted, each as [`crate::Wanted::parse`] reads it: a name of [`articulated_core::algorithm::functions`], or
+    /// `name = first + second(a = 0)`.
     pub functions: Vec<String>,
+    /// Constants of the model that stay inputs: `payload(link)`, `inertia(link)`, `origin(joint)`.
+    pub parameters: Vec<String>,
     /// Accept inertias that no body can have.
     pub allow_unphysical_inertia: bool,
     /// Take angles this near (rad) to a multiple of π/2 as that multiple; every one is reported. `None`: never.
@@ -41,6 +44,7 @@ impl Default for Options {
             base: Base::Fixed,
             gravity: GRAVITY,
             functions: vec!["placements".into(), "inverse_dynamics".into()],
+            parameters: Vec::new(),
             allow_unphysical_inertia: false,
             snap_angles: None,
             rename: Vec::new(),

@@ -5,7 +5,7 @@
 //! ([`load`]). Both sides implement the trait [`Dynamics`].
 #![cfg_attr(not(feature = "std"), no_std)]
 
-pub use articulated_core::algorithm::{self, FunctionError, Shape, Workspace, check_length, exactly};
+pub use articulated_core::algorithm::{self, FunctionError, FunctionId, Shape, Workspace, check_length, exactly, exactly_rows};
 pub use articulated_core::description::Base;
 pub use articulated_core::dynamics::Dynamics;
 pub use articulated_core::model::{Model, ModelError};

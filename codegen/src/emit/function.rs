@@ -2,47 +2,109 @@
 
 use std::fmt::Write;
 
-use articulated_core::algorithm::{Function, Shape as Sizes};
+use articulated_core::algorithm::{Dim, Shape as Sizes};
 
 use super::literal::literal;
 use super::order::{Angle, Step, order};
-use super::shape::{Shape, length, shape};
-use crate::Sym;
 use crate::graph::{Graph, Node, NodeId, Op};
 use crate::ledger::Entry;
+use crate::wanted::{Wanted, array};
 
-/// The function's source, with its documentation.
-pub(super) fn function(out: &mut String, function: &Function<Sym>, graph: &Graph, entry: &Entry, sizes: Sizes) {
-    document(out, function, entry);
-    let arguments: Vec<String> = function.takes.iter().map(|a| format!("{}: &[f64; {}]", a.name(), length(*a))).collect();
-    let Shape { array, row, .. } = shape(function.gives, sizes);
-    let _ = writeln!(out, "#[allow(clippy::all, clippy::pedantic)]");
-    let _ = writeln!(out, "pub fn {}({}) -> {array} {{", function.name, arguments.join(", "));
-    for argument in function.takes {
-        let _ = writeln!(out, "    let _ = {};", argument.name());
+/// The function's source, with its documentation and, where it gives several results, the type that holds them.
+pub(super) fn function(out: &mut String, wanted: &Wanted, graph: &Graph, entry: &Entry, sizes: Sizes, parameters: bool) {
+    let group = group(wanted);
+    if let Some(name) = &group {
+        results(out, wanted, name);
     }
-    Body { out, graph, function, row }.write();
+    document(out, wanted, entry, parameters);
+    let mut inputs: Vec<Input> = wanted.arguments().iter().map(|a| Input { name: a.name(), dims: a.dims().to_vec() }).collect();
+    if parameters {
+        inputs.push(Input { name: "parameters", dims: Vec::new() });
+    }
+    let arguments: Vec<String> = inputs.iter().map(Input::declared).collect();
+    let gives = group.clone().unwrap_or_else(|| array(wanted.parts[0].function.gives));
+    let _ = writeln!(out, "#[allow(clippy::all, clippy::pedantic)]");
+    let _ = writeln!(out, "pub fn {}({}) -> {gives} {{", wanted.name, arguments.join(", "));
+    for input in &inputs {
+        let _ = writeln!(out, "    let _ = {};", input.name);
+    }
+    Body { out, graph, inputs, wanted, sizes, group }.write();
     let _ = writeln!(out, "}}\n");
 }
 
-fn document(out: &mut String, function: &Function<Sym>, entry: &Entry) {
-    let c = entry.emitted();
-    let _ = writeln!(out, "/// {}.\n///", function.summary);
-    for argument in function.takes {
-        let _ = writeln!(out, "/// {}: {}.", argument.name(), argument.doc());
+/// What is handed in.
+struct Input {
+    name: &'static str,
+    /// None for the parameters.
+    dims: Vec<Dim>,
+}
+
+impl Input {
+    fn declared(&self) -> String {
+        let ty = if self.dims.is_empty() { "[f64; PARAMETERS.len()]".into() } else { array(&self.dims) };
+        format!("{}: &{ty}", self.name)
     }
-    let _ = writeln!(out, "/// Returns {}.\n///", function.gives.doc());
-    let _ = writeln!(out, "/// {}.", function.source);
-    let arctangents = if c.arctangents() == 0 { String::new() } else { format!(", {} arctangents", c.arctangents()) };
+
+    /// Number `k` of it.
+    fn at(&self, k: usize) -> String {
+        match self.dims.as_slice() {
+            [_, Dim::Of(width)] => format!("{}[{}][{}]", self.name, k / width, k % width),
+            _ => format!("{}[{k}]", self.name),
+        }
+    }
+}
+
+/// The type of a group's results: its name in capitals at the start of each word.
+fn group(wanted: &Wanted) -> Option<String> {
+    let word = |w: &str| w[..1].to_uppercase() + &w[1..];
+    (wanted.parts.len() > 1).then(|| wanted.name.split('_').filter(|w| !w.is_empty()).map(word).collect())
+}
+
+fn results(out: &mut String, wanted: &Wanted, name: &str) {
+    let _ = writeln!(out, "/// What [`{}`] gives.", wanted.name);
+    let _ = writeln!(out, "#[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq)]");
+    let _ = writeln!(out, "pub struct {name} {{");
+    for part in &wanted.parts {
+        let f = part.function;
+        let _ = writeln!(out, "    /// {}: `{}`, {}.\n    pub {}: {},", f.summary, array(f.gives), f.unit, f.name, array(f.gives));
+    }
+    let _ = writeln!(out, "}}\n");
+}
+
+fn document(out: &mut String, wanted: &Wanted, entry: &Entry, parameters: bool) {
+    for part in &wanted.parts {
+        let constants: Vec<String> = part.constants.iter().map(|(a, c)| format!("{} = {}", a.name(), shown(c))).collect();
+        let at = if constants.is_empty() { String::new() } else { format!(", at {}", constants.join(", ")) };
+        let _ = writeln!(out, "/// {}{at}.\n///", part.function.summary);
+    }
+    for argument in wanted.arguments() {
+        let _ = writeln!(out, "/// {}: `{}` {}.", argument.name(), array(argument.dims()), argument.unit());
+    }
+    if parameters {
+        let _ = writeln!(out, "/// parameters: as [`PARAMETERS`].");
+    }
+    if let [part] = wanted.parts.as_slice() {
+        let _ = writeln!(out, "/// Returns `{}` {}.\n///", array(part.function.gives), part.function.unit);
+        let _ = writeln!(out, "/// {}.", part.function.source);
+    }
+    let by = if entry.ways.is_empty() { String::new() } else { format!("By {}, the cheapest for this robot; ", entry.ways.join(", ")) };
+    let c = entry.emitted();
     let _ = writeln!(
         out,
-        "/// {} multiplications + {} additions in {} instructions (multiply-adds counted once), {} sines and cosines{arctangents}, depth {}.",
+        "/// {by}{} multiplications + {} additions in {} instructions (multiply-adds counted once), {} sines and cosines, depth {}.",
         c.multiplications(),
         c.additions(),
         c.instructions(),
         c.trigonometric(),
         entry.depth
     );
+}
+
+fn shown(constant: &crate::Constant) -> String {
+    match constant {
+        crate::Constant::All(x) => format!("{x}"),
+        crate::Constant::Each(numbers) => format!("{numbers:?}"),
+    }
 }
 
 /// How many angles `trig::four` takes.
@@ -54,8 +116,11 @@ pub(super) const BATCH_FROM: usize = 3;
 struct Body<'a> {
     out: &'a mut String,
     graph: &'a Graph,
-    function: &'a Function<Sym>,
-    row: Option<usize>,
+    inputs: Vec<Input>,
+    wanted: &'a Wanted,
+    sizes: Sizes,
+    /// The type of the result, if there are several.
+    group: Option<String>,
 }
 
 impl Body<'_> {
@@ -73,7 +138,7 @@ impl Body<'_> {
     fn statement(&mut self, k: usize, node: &Node) {
         let _ = match node.op {
             Op::Constant => Ok(()),
-            Op::Input => writeln!(self.out, "    let x{k} = {}[{}];", self.function.takes[node.args[0] as usize].name(), node.args[1]),
+            Op::Input => writeln!(self.out, "    let x{k} = {};", self.inputs[node.args[0] as usize].at(node.args[1] as usize)),
             op => {
                 let expression = self.expression(op, node);
                 writeln!(self.out, "    let x{k} = {expression};")
@@ -120,10 +185,33 @@ impl Body<'_> {
 
     fn result(&mut self) {
         let values: Vec<String> = self.graph.outputs.iter().map(|&o| self.operand(o)).collect();
-        let rows: Vec<String> = match self.row {
-            None => vec![values.join(", ")],
-            Some(width) => values.chunks(width.max(1)).map(|row| format!("[{}]", row.join(", "))).collect(),
+        let mut rest = values.as_slice();
+        let mut results = Vec::new();
+        for part in &self.wanted.parts {
+            let (own, others) = rest.split_at(part.function.len(self.sizes));
+            let lengths: Vec<usize> = part.function.gives.iter().map(|d| d.len(self.sizes)).collect();
+            results.push((part.function.name, nested(own, &lengths)));
+            rest = others;
+        }
+        let _ = match &self.group {
+            None => results.iter().try_for_each(|(_, value)| writeln!(self.out, "    {value}")),
+            Some(name) => {
+                let fields: Vec<String> = results.iter().map(|(field, value)| format!("        {field}: {value},\n")).collect();
+                writeln!(self.out, "    {name} {{\n{}    }}", fields.concat())
+            }
         };
-        let _ = writeln!(self.out, "    [{}]", rows.join(",\n     "));
+    }
+}
+
+/// Values as an array of these lengths.
+fn nested(values: &[String], lengths: &[usize]) -> String {
+    match lengths {
+        [] => values.first().cloned().unwrap_or_default(),
+        [_] => format!("[{}]", values.join(", ")),
+        [n, inner @ ..] => {
+            let width: usize = inner.iter().product();
+            let rows: Vec<String> = (0..*n).map(|k| nested(&values[k * width..][..width], inner)).collect();
+            format!("[{}]", rows.join(",\n     "))
+        }
     }
 }

@@ -6,7 +6,6 @@ mod literal;
 mod module;
 mod names;
 mod order;
-mod shape;
 mod warnings;
 
 pub use names::identifier;

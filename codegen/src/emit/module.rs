@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use articulated_core::algorithm::{Function, Shape as Sizes};
+use articulated_core::algorithm::Dim;
 use articulated_core::model::{JointInfo, Model};
 use articulated_urdf::Unused;
 
@@ -11,16 +11,17 @@ use super::header::header;
 use super::literal::literal;
 use super::names::Names;
 use super::order::{Step, order};
-use super::shape::{Shape, length, shape};
 use crate::graph::Graph;
-use crate::{Ledger, Request, Sym};
+use crate::wanted::{Wanted, array};
+use crate::{Ledger, Parameter, Request};
 
 /// The contents of the module.
 pub(crate) fn module(
     request: &Request,
     model: &Model<f64>,
     names: &Names,
-    programs: &[(&'static Function<Sym>, Graph)],
+    programs: &[(Wanted, Graph)],
+    parameters: &[Parameter],
     ledger: &Ledger,
     unused: &[Unused],
 ) -> String {
@@ -28,8 +29,9 @@ pub(crate) fn module(
     header(&mut out, request, model, unused);
     constants(&mut out, model);
     indices(&mut out, model, names);
+    inputs(&mut out, parameters);
     for ((f, graph), entry) in programs.iter().zip(&ledger.functions) {
-        function(&mut out, f, graph, entry, model.shape());
+        function(&mut out, f, graph, entry, model.shape(), !parameters.is_empty());
     }
     if programs.iter().any(|(_, g)| g.counts().fused() > 0) {
         out += FMA;
@@ -37,7 +39,7 @@ pub(crate) fn module(
     if programs.iter().any(|(_, g)| has_batch(g)) {
         sines(&mut out, request.options.forbid_unsafe);
     }
-    robot(&mut out, request, model.shape(), programs);
+    robot(&mut out, request, programs, !parameters.is_empty());
     out
 }
 
@@ -70,10 +72,13 @@ fn constants(out: &mut String, model: &Model<f64>) {
     let _ = writeln!(out, "/// Number of degrees of freedom: the length of v, a and τ.\npub const NV: usize = {};", model.nv);
     let _ = writeln!(out, "/// Number of degrees of freedom.\npub const DOF: usize = NV;");
     let _ = writeln!(out, "/// Number of joints that are coordinates.\npub const JOINTS: usize = {};", joints.len());
-    let _ = writeln!(out, "/// Number of links, each a frame.\npub const FRAMES: usize = {};", frames.len());
+    let links: Vec<&str> = model.links().map(|i| model.bodies[i].name.as_str()).collect();
+    let _ = writeln!(out, "/// Number of frames: links of the file, or those chosen.\npub const FRAMES: usize = {};", frames.len());
+    let _ = writeln!(out, "/// Number of moving links, one for each joint that moves.\npub const LINKS: usize = {};", links.len());
     let _ =
         writeln!(out, "/// Names of the joints, in the order of their coordinates.\npub const JOINT_NAMES: [&str; JOINTS] = {joints:?};");
-    let _ = writeln!(out, "/// Names of the links, in the order of the file.\npub const FRAME_NAMES: [&str; FRAMES] = {frames:?};");
+    let _ = writeln!(out, "/// Names of the frames.\npub const FRAME_NAMES: [&str; FRAMES] = {frames:?};");
+    let _ = writeln!(out, "/// For each moving link, the joint that carries it.\npub const LINK_JOINTS: [&str; LINKS] = {links:?};");
     limits(
         out,
         "Q_LOWER",
@@ -118,37 +123,76 @@ fn list(out: &mut String, module: &str, doc: &str, rows: &[(String, String, usiz
     let _ = writeln!(out, "}}\n");
 }
 
-/// The type that stands for the robot where code is written over the trait `Dynamics`.
-fn robot(out: &mut String, request: &Request, sizes: Sizes, programs: &[(&'static Function<Sym>, Graph)]) {
-    let Some(path) = &request.options.runtime else { return };
-    let _ = writeln!(
-        out,
-        "/// The robot as a value, for code over the trait `Dynamics`.\n#[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::default::Default)]\npub struct Robot;\n"
-    );
-    let _ = writeln!(out, "#[allow(clippy::all, clippy::pedantic)]\nimpl {path}::Dynamics<f64> for Robot {{");
-    let _ = writeln!(out, "    type Workspace = ();\n    fn workspace(&self) {{}}");
-    let _ = writeln!(out, "    fn shape(&self) -> {path}::Shape {{ {path}::Shape {{ nq: NQ, nv: NV, frames: FRAMES }} }}");
-    let _ = writeln!(out, "    fn name(&self) -> &str {{ NAME }}");
-    for (f, _) in programs {
-        method(out, path, f, sizes);
+/// What of the model stayed an input.
+fn inputs(out: &mut String, parameters: &[Parameter]) {
+    if parameters.is_empty() {
+        return;
     }
-    let _ = writeln!(out, "}}");
+    let values: Vec<String> = parameters.iter().flat_map(|p| &p.nominal).map(|x| literal(*x)).collect();
+    let _ = writeln!(out, "/// The parameters as the URDF has them; [`parameter`] says where each begins.");
+    let _ = writeln!(out, "pub const PARAMETERS: [f64; {}] = [{}];", values.len(), values.join(", "));
+    let rows: Vec<_> = parameters.iter().map(|p| (super::identifier(&p.name), p.what.clone(), p.at)).collect();
+    list(out, "parameter", "Index in [`PARAMETERS`] of the first number of each.", &rows);
 }
 
-fn method(out: &mut String, path: &str, f: &Function<Sym>, sizes: Sizes) {
-    let Shape { slice: (element, slots), as_slice, .. } = shape(f.gives, sizes);
-    let result = if f.name == "inverse_dynamics" { "tau" } else { "out" };
-    let arguments: String = f.takes.iter().map(|a| format!(", {}: &[f64]", a.name())).collect();
+/// The type that stands for the robot where code is written over the trait `Dynamics`.
+fn robot(out: &mut String, request: &Request, programs: &[(Wanted, Graph)], parameters: bool) {
+    let Some(path) = &request.options.runtime else { return };
+    let default = if parameters { "" } else { ", ::core::default::Default" };
+    let _ = writeln!(out, "/// The robot as a value, for code over the trait `Dynamics`.");
+    let _ = writeln!(out, "#[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug{default})]");
+    if parameters {
+        let _ = writeln!(out, "pub struct Robot {{\n    /// As [`PARAMETERS`].\n    pub parameters: [f64; PARAMETERS.len()],\n}}\n");
+        let _ = writeln!(out, "impl ::core::default::Default for Robot {{");
+        let _ = writeln!(out, "    fn default() -> Self {{ Self {{ parameters: PARAMETERS }} }}\n}}\n");
+    } else {
+        let _ = writeln!(out, "pub struct Robot;\n");
+    }
+    let _ = writeln!(out, "#[allow(clippy::all, clippy::pedantic)]\nimpl {path}::Dynamics<f64> for Robot {{");
+    let _ = writeln!(out, "    type Workspace = ();\n    fn workspace(&self) {{}}");
+    let _ = writeln!(out, "    fn shape(&self) -> {path}::Shape {{ {path}::Shape {{ nq: NQ, nv: NV, frames: FRAMES, links: LINKS }} }}");
+    let _ = writeln!(out, "    fn name(&self) -> &str {{ NAME }}");
+    let _ = writeln!(out, "    #[inline]");
     let _ = writeln!(
         out,
-        "    fn {}(&self, _: &mut (){arguments}, {result}: &mut [{element}]) -> ::core::result::Result<(), {path}::FunctionError> {{",
-        f.name
+        "    fn call(&self, function: {path}::FunctionId, _: &mut (), arguments: &[&[f64]], out: &mut [f64]) -> ::core::result::Result<(), {path}::FunctionError> {{"
     );
-    for a in f.takes {
-        let _ = writeln!(out, "        let {0} = {path}::exactly::<{1}, f64>({0:?}, {0})?;", a.name(), length(*a));
+    let _ = writeln!(out, "        match (function, arguments) {{");
+    for function in programs.iter().filter_map(|(wanted, _)| wanted.as_function()) {
+        arm(out, path, function.name, &function.takes.iter().map(|a| (a.name(), a.dims())).collect::<Vec<_>>(), function.gives, parameters);
     }
-    let _ = writeln!(out, "        {path}::check_length({result:?}, {result}.len(), {slots})?;");
-    let names: Vec<&str> = f.takes.iter().map(|a| a.name()).collect();
-    let _ = writeln!(out, "        {result}.copy_from_slice(&self::{}({}){as_slice});", f.name, names.join(", "));
-    let _ = writeln!(out, "        ::core::result::Result::Ok(())\n    }}");
+    let _ =
+        writeln!(out, "            _ => ::core::result::Result::Err({path}::FunctionError::NotGenerated {{ function: function.name() }}),");
+    let _ = writeln!(out, "        }}\n    }}\n}}");
+}
+
+/// How one function is called through slices.
+fn arm(out: &mut String, path: &str, name: &str, takes: &[(&str, &[Dim])], gives: &[Dim], parameters: bool) {
+    let mut names: Vec<String> = takes.iter().map(|(name, _)| (*name).to_owned()).collect();
+    let _ = writeln!(out, "            ({path}::FunctionId::{name}, &[{}]) => {{", names.join(", "));
+    for (name, dims) in takes {
+        let _ = match dims {
+            [length, Dim::Of(width)] => {
+                writeln!(out, "                let {name} = {path}::exactly_rows::<{length}, {width}, f64>({name:?}, {name})?;")
+            }
+            [length, ..] => writeln!(out, "                let {name} = {path}::exactly::<{length}, f64>({name:?}, {name})?;"),
+            [] => Ok(()),
+        };
+    }
+    let lengths: Vec<String> = gives.iter().map(Dim::to_string).collect();
+    let length = if lengths.is_empty() { "1".to_owned() } else { lengths.join(" * ") };
+    let _ = writeln!(out, "                {path}::check_length(\"out\", out.len(), {length})?;");
+    if parameters {
+        names.push("&self.parameters".into());
+    }
+    let call = format!("self::{name}({})", names.join(", "));
+    let _ = match gives.len() {
+        0 => writeln!(out, "                out[0] = {call};"),
+        n => {
+            let flat = format!("result.as_slice(){}", ".as_flattened()".repeat(n - 1));
+            let _ = writeln!(out, "                let result: {} = {call};", array(gives));
+            writeln!(out, "                out.copy_from_slice({flat});")
+        }
+    };
+    let _ = writeln!(out, "                ::core::result::Result::Ok(())\n            }}");
 }

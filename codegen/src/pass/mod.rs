@@ -61,7 +61,7 @@ pub fn run(name: &str, pass: GraphPass, graph: &Graph) -> Graph {
 }
 
 /// What all nodes of a graph cost together.
-fn cost(graph: &Graph) -> u32 {
+pub(crate) fn cost(graph: &Graph) -> u32 {
     graph.nodes().iter().map(|n| n.op.row().cost).sum()
 }
 

@@ -3,8 +3,8 @@
 //! All read the outward sweep in base axes ([`super::common`]): a column of a Jacobian is the motion subspace of one degree of freedom on the way from the frame to
 //! the base, taken at another point and turned. Lynch & Park 2017, §5.1; Featherstone 2008, §2.9 and §2.11.
 
-use super::common::{Axes, accelerations, positions, twists};
 use super::Workspace;
+use super::common::{Axes, accelerations, positions, twists};
 use crate::Scalar;
 use crate::model::{Frame, Model};
 use crate::spatial::{Placement, Reference, Twist, Vector3, rotate_back};
@@ -112,15 +112,7 @@ fn frame_bias<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, reference: Ref
     ws.zeros = zeros;
 }
 
-fn frame_accelerations<S: Scalar>(
-    model: &Model<S>,
-    ws: &mut Workspace<S>,
-    reference: Reference,
-    q: &[S],
-    v: &[S],
-    a: &[S],
-    out: &mut [S],
-) {
+fn frame_accelerations<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, reference: Reference, q: &[S], v: &[S], a: &[S], out: &mut [S]) {
     positions(model, ws, Axes::Base, q);
     twists(model, ws, Axes::Base, v);
     accelerations(model, ws, Axes::Base, v, a, Vector3::zeros());
@@ -174,13 +166,7 @@ fn frame_jacobian_rates<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, refe
 }
 
 /// Fills `[6][nv]` with `column(c, d)` for every column c on the way from `body` to the base, d being the origin of `body` from that of the column's body.
-fn columns<S: Scalar>(
-    model: &Model<S>,
-    ws: &Workspace<S>,
-    body: usize,
-    out: &mut [S],
-    column: impl Fn(usize, Vector3<S>) -> Twist<S>,
-) {
+fn columns<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, body: usize, out: &mut [S], column: impl Fn(usize, Vector3<S>) -> Twist<S>) {
     out.fill(S::zero());
     let (mut j, mut d) = (body, Vector3::zeros());
     while j != 0 {

@@ -265,3 +265,13 @@ pub fn check_length(argument: &'static str, found: usize, expected: usize) -> Re
 pub fn exactly<'a, const N: usize, S>(argument: &'static str, slice: &'a [S]) -> Result<&'a [S; N], FunctionError> {
     slice.try_into().map_err(|_| FunctionError::Length { argument, found: slice.len(), expected: N })
 }
+
+/// A slice as exactly `N` rows of `M` numbers, or the error that names it.
+pub fn exactly_rows<'a, const N: usize, const M: usize, S>(
+    argument: &'static str,
+    slice: &'a [S],
+) -> Result<&'a [[S; M]; N], FunctionError> {
+    let (rows, rest) = slice.as_chunks::<M>();
+    let rows = if rest.is_empty() { rows.try_into().ok() } else { None };
+    rows.ok_or(FunctionError::Length { argument, found: slice.len(), expected: N * M })
+}

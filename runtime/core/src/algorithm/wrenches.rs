@@ -1,10 +1,10 @@
 //! External wrenches on frames.
 
 use super::Workspace;
+use crate::joint::JointLaw;
 use crate::model::Model;
 use crate::spatial::{Reference, Vector3, Wrench, rotate, rotate_back};
 use crate::{Scalar, with_pose};
-use crate::joint::JointLaw;
 
 /// The wrenches of `[frames][6]` one by one, as (body, wrench on it in its axes about its origin), added up by `add`; none for an empty slice. Wrenches on the base are
 /// left out: nothing feels them.

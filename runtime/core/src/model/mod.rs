@@ -110,6 +110,19 @@ impl<S: Scalar> Model<S> {
         self.outward().filter(|&i| self.bodies[i].link.is_some())
     }
 
+    /// Indices in v of the degrees of freedom that move body `i`, each once.
+    pub fn freedoms_of(&self, mut i: usize) -> Vec<usize> {
+        let mut freedoms = Vec::new();
+        while i != 0 {
+            let body = &self.bodies[i];
+            freedoms.extend(body.coordinates.v..body.coordinates.v + body.joint.nv());
+            i = body.parent;
+        }
+        freedoms.sort_unstable();
+        freedoms.dedup();
+        freedoms
+    }
+
     /// The same robot with only the named frames, in this order, or the first name that no link has.
     pub fn with_frames<N: AsRef<str>>(mut self, names: &[N]) -> Result<Self, String> {
         let find = |name: &N| self.frames.iter().find(|f| f.name == name.as_ref()).cloned().ok_or_else(|| name.as_ref().to_string());

@@ -31,10 +31,7 @@ impl<S: Scalar> Twist<S> {
     #[inline(always)]
     #[must_use]
     pub fn cross(&self, other: &Self) -> Self {
-        Self {
-            angular: self.angular.cross(&other.angular),
-            linear: self.angular.cross(&other.linear) + self.linear.cross(&other.angular),
-        }
+        Self { angular: self.angular.cross(&other.angular), linear: self.angular.cross(&other.linear) + self.linear.cross(&other.angular) }
     }
 
     /// V ×* F = −ad(V)ᵀ F = [ω×m + v×f; ω×f].

@@ -2,16 +2,28 @@
 
 mod regroup;
 
+use core::marker::PhantomData;
+
 pub use regroup::regroup;
 
 use super::Model;
+use crate::Scalar;
 
 /// A pass over models.
-pub type ModelPass = fn(Model<f64>) -> Model<f64>;
+pub type ModelPass<S> = fn(Model<S>) -> Model<S>;
 
-/// The passes in order; each row: name, pass, and what holds after it.
-pub const MODEL_PASSES: &[(&str, ModelPass, &str)] = &[(
-    "regroup",
-    regroup,
-    "no revolute body has m, h_z or Σ_zz, no prismatic body has Σ, no spherical body has m: its parent has them; joint torques are the same, wrenches between bodies are not",
-)];
+struct Table<S>(PhantomData<S>);
+
+impl<S: Scalar> Table<S> {
+    const ROWS: &'static [(&'static str, ModelPass<S>, &'static str)] = &[(
+        "regroup",
+        regroup,
+        "no revolute body has m, h_z or Σ_zz, no prismatic body has Σ, no spherical body has m: its parent has them; joint torques are the same, wrenches between bodies are not",
+    )];
+}
+
+/// The passes in order; each row: name, pass, and what holds after it. They keep joint torques and no more: functions of the table that need more are not
+/// [`crate::algorithm::Function::regrouped`].
+pub fn model_passes<S: Scalar>() -> &'static [(&'static str, ModelPass<S>, &'static str)] {
+    Table::<S>::ROWS
+}

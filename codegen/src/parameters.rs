@@ -1,0 +1,142 @@
+//! Constants of the model that stay inputs of the generated functions.
+//!
+//! ```text
+//! payload(link)      ten numbers, added to what the link has; nothing at first
+//! inertia(link)      ten numbers in the place of the link's own; the URDF's at first
+//! origin(joint)      three numbers in the place of the joint's origin xyz, m; the URDF's at first
+//! ```
+//!
+//! The ten are the inertial parameters m, m·c, and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz about the origin of the link's frame, in its axes: all of dynamics is linear
+//! in them.
+
+use articulated_core::Scalar;
+use articulated_core::algorithm::PARAMETERS;
+use articulated_core::description::{Description, Link};
+use articulated_core::model::Model;
+use articulated_core::spatial::{Matrix3, Placement, SpatialInertia, Vector3};
+
+use crate::{Error, Sym, nearest};
+
+/// What stays an input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Payload,
+    Inertia,
+    Origin,
+}
+
+const KINDS: [(&str, Kind); 3] = [("payload", Kind::Payload), ("inertia", Kind::Inertia), ("origin", Kind::Origin)];
+
+/// One parameter of a robot.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    /// What it is, in words.
+    pub what: String,
+    /// Its name: of the link or joint, and its kind.
+    pub name: String,
+    /// First index among all numbers.
+    pub at: usize,
+    /// What the URDF says.
+    pub nominal: Vec<f64>,
+    kind: Kind,
+    /// The body that it changes, and the frame that it is given in, in that body or, for an origin, in the parent's.
+    body: usize,
+    frame: Placement<f64>,
+}
+
+/// Reads the list, and takes out of the description what will be an input.
+pub(crate) fn parse(list: &[String], description: &mut Description, model: &Model<f64>) -> Result<Vec<Parameter>, Error> {
+    let mut parameters: Vec<Parameter> = Vec::new();
+    for text in list {
+        let at = parameters.last().map_or(0, |p| p.at + p.nominal.len());
+        let parameter = one(text, at, description, model)?;
+        if parameters.iter().any(|p| p.name == parameter.name) {
+            return Err(Error::Parameter { found: text.clone(), reason: "is given twice".into() });
+        }
+        parameters.push(parameter);
+    }
+    Ok(parameters)
+}
+
+fn one(text: &str, at: usize, description: &mut Description, model: &Model<f64>) -> Result<Parameter, Error> {
+    let wrong = |reason: String| Error::Parameter { found: text.trim().into(), reason };
+    let expected = || wrong("expected payload(link), inertia(link) or origin(joint)".into());
+    let (kind, rest) = text.split_once('(').ok_or_else(expected)?;
+    let name = rest.trim_end().strip_suffix(')').ok_or_else(expected)?.trim();
+    let name = name.strip_prefix('"').and_then(|n| n.strip_suffix('"')).unwrap_or(name);
+    let kind = KINDS.iter().find(|(k, _)| *k == kind.trim()).ok_or_else(expected)?.1;
+    if kind == Kind::Origin {
+        return origin(name, at, description, model).map_err(wrong);
+    }
+    let Some(link) = description.links.iter_mut().find(|l| l.name == name) else {
+        let near = nearest(name, model.frames.iter().map(|f| f.name.as_str())).map(|n| format!(", did you mean {n:?}?"));
+        return Err(wrong(format!("there is no link {name:?}{}", near.unwrap_or_default())));
+    };
+    let frame = model.frames.iter().find(|f| f.name == name).ok_or_else(|| wrong("the link is no frame".into()))?;
+    let nominal = if kind == Kind::Inertia { own(link) } else { [0.0; PARAMETERS] };
+    let what = match kind {
+        Kind::Inertia => format!("inertial parameters of link {name:?}"),
+        _ => format!("inertial parameters of a payload on link {name:?}"),
+    };
+    let name = format!("{name}_{}", if kind == Kind::Inertia { "inertia" } else { "payload" });
+    Ok(Parameter { what, name, at, nominal: nominal.to_vec(), kind, body: frame.body, frame: frame.placement })
+}
+
+fn origin(name: &str, at: usize, description: &Description, model: &Model<f64>) -> Result<Parameter, String> {
+    let Some(joint) = description.joints.iter().find(|j| j.name == name) else {
+        let near = nearest(name, description.joints.iter().map(|j| j.name.as_str())).map(|n| format!(", did you mean {n:?}?"));
+        return Err(format!("there is no joint {name:?}{}", near.unwrap_or_default()));
+    };
+    // The first body of the joint: a planar or universal joint has several.
+    let body = model.bodies.iter().skip(1).position(|b| b.name == name).map(|k| k + 1);
+    let body = body.ok_or_else(|| format!("joint {name:?} does not move; only the origin of a moving joint can stay an input"))?;
+    let parent = &description.links[joint.parent].name;
+    let frame = model.frames.iter().find(|f| f.name == *parent).ok_or_else(|| format!("link {parent:?} is no frame"))?;
+    let (what, nominal) = (format!("origin of joint {name:?} in its parent link, m"), joint.origin.xyz.to_vec());
+    Ok(Parameter { what, name: format!("{name}_origin"), at, nominal, kind: Kind::Origin, body, frame: frame.placement })
+}
+
+/// The parameters of the link itself, which is left without.
+fn own(link: &mut Link) -> [f64; PARAMETERS] {
+    let alone = Description {
+        links: vec![Link { name: "base".into(), inertial: None }, Link { name: "link".into(), inertial: link.inertial.take() }],
+        joints: vec![articulated_core::description::Joint {
+            kind: articulated_core::description::JointKind::Floating,
+            parent: 0,
+            child: 1,
+            ..Default::default()
+        }],
+        ..Description::default()
+    };
+    let model = Model::new(&alone, articulated_core::description::Base::Fixed);
+    model.ok().and_then(|m| m.inertial_parameters().first().copied()).unwrap_or([0.0; PARAMETERS])
+}
+
+impl Parameter {
+    /// Puts the numbers that `input` gives into the model.
+    pub(crate) fn put(&self, model: &mut Model<Sym>, input: impl Fn(usize) -> Sym) {
+        let number = |k: usize| input(self.at + k);
+        let frame = cast(&self.frame);
+        let body = &mut model.bodies[self.body];
+        match self.kind {
+            Kind::Origin => body.placement.position = frame.transform(Vector3::new(number(0), number(1), number(2))),
+            Kind::Payload | Kind::Inertia => body.inertia += inertia(number).moved(&frame),
+        }
+    }
+}
+
+fn cast(x: &Placement<f64>) -> Placement<Sym> {
+    Placement { rotation: x.rotation.map(Sym::from_f64), position: x.position.map(Sym::from_f64) }
+}
+
+/// Moments of mass from the ten parameters: Σ = ½ tr(I)·1 − I.
+fn inertia(p: impl Fn(usize) -> Sym) -> SpatialInertia<Sym> {
+    let [xx, xy, xz, yy, yz, zz] = [4, 5, 6, 7, 8, 9].map(p_at(&p));
+    let half = (xx + yy + zz) * Sym::from_f64(0.5);
+    let second = Matrix3::new(half - xx, -xy, -xz, -xy, half - yy, -yz, -xz, -yz, half - zz);
+    SpatialInertia { mass: p(0), first: Vector3::new(p(1), p(2), p(3)), second }
+}
+
+fn p_at(p: &impl Fn(usize) -> Sym) -> impl Fn(usize) -> Sym + '_ {
+    move |k| p(k)
+}

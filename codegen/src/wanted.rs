@@ -1,0 +1,244 @@
+//! What functions a request wants: which, with what given up as a constant, and which together.
+//!
+//! ```text
+//! inverse_dynamics                                       a function of the table
+//! bias = inverse_dynamics(a = 0)                         under another name, with an argument that is a constant
+//! step = forward_dynamics + jacobians_body               several in one, which share their work and take what any of them takes
+//! ```
+
+use articulated_core::algorithm::{Argument, Dim, Function, Shape};
+
+use crate::{Error, Sym, function};
+
+/// One function to generate.
+#[derive(Clone)]
+pub struct Wanted {
+    /// Its name in Rust.
+    pub name: String,
+    /// The functions of the table that it consists of; a function of several gives a struct with a field for each.
+    pub parts: Vec<Part>,
+}
+
+/// A function of the table, with arguments that are constants.
+#[derive(Clone)]
+pub struct Part {
+    /// The function.
+    pub function: &'static Function<Sym>,
+    /// What is given up.
+    pub constants: Vec<(Argument, Constant)>,
+}
+
+/// The value of an argument that is a constant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Constant {
+    /// Every number of it is this.
+    All(f64),
+    /// Its numbers, row by row.
+    Each(Vec<f64>),
+}
+
+impl Wanted {
+    /// The function of the table by itself.
+    pub fn plain(function: &'static Function<Sym>) -> Self {
+        Self { name: function.name.into(), parts: vec![Part { function, constants: Vec::new() }] }
+    }
+
+    /// Reads one entry of a list of functions.
+    pub fn parse(text: &str) -> Result<Self, Error> {
+        let wrong = |reason: String| Error::Wanted { found: text.trim().into(), reason };
+        let (name, rest) = match split_outside(text, '=') {
+            Some((name, rest)) => (Some(name.trim()), rest),
+            None => (None, text),
+        };
+        let mut parts = Vec::new();
+        for part in all_outside(rest, '+') {
+            parts.push(Part::parse(part.trim(), &wrong)?);
+        }
+        let name = match (name, parts.as_slice()) {
+            (Some(name), _) => name,
+            (None, [one]) => one.function.name,
+            (None, _) => return Err(wrong("several functions in one need a name: write name = first + second".into())),
+        };
+        if !is_function_name(name) {
+            return Err(wrong(format!("`{name}` is no name of a function in Rust: expected lower case letters, digits and _")));
+        }
+        let twice = (1..parts.len()).find(|&k| parts[..k].iter().any(|p| p.function.id == parts[k].function.id));
+        if let Some(k) = twice {
+            return Err(wrong(format!("`{}` is in it twice", parts[k].function.name)));
+        }
+        Ok(Self { name: name.into(), parts })
+    }
+
+    /// What it takes: everything that a part takes and that is no constant there, in the order of the table.
+    pub fn arguments(&self) -> Vec<Argument> {
+        let taken = |a: &Argument| self.parts.iter().any(|p| p.function.takes.contains(a) && p.constant(*a).is_none());
+        Argument::ALL.into_iter().filter(taken).collect()
+    }
+
+    /// The function of the table that it is, if it is one as it stands.
+    pub fn as_function(&self) -> Option<&'static Function<Sym>> {
+        match self.parts.as_slice() {
+            [part] if part.constants.is_empty() && part.function.name == self.name => Some(part.function),
+            _ => None,
+        }
+    }
+
+    /// Whether the lengths of constants are right for a robot.
+    pub fn check(&self, shape: Shape) -> Result<(), Error> {
+        let wrong = |reason: String| Err(Error::Wanted { found: self.name.clone(), reason });
+        for (argument, constant) in self.parts.iter().flat_map(|p| &p.constants) {
+            if let Constant::Each(numbers) = constant
+                && numbers.len() != argument.len(shape)
+            {
+                let (name, found, expected) = (argument.name(), numbers.len(), argument.len(shape));
+                return wrong(format!("constant {name}: found {found} numbers, expected {expected}"));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Part {
+    fn parse(text: &str, wrong: &dyn Fn(String) -> Error) -> Result<Self, Error> {
+        let (name, arguments) = match text.split_once('(') {
+            None => (text, None),
+            Some((name, rest)) => {
+                let inner = rest.trim_end().strip_suffix(')').ok_or_else(|| wrong("expected `)` at the end".into()))?;
+                (name.trim(), Some(inner))
+            }
+        };
+        if name.is_empty() {
+            return Err(wrong("expected a function, as in name = first + second(a = 0)".into()));
+        }
+        let function = function(name)?;
+        let mut constants = Vec::new();
+        for entry in arguments.into_iter().flat_map(|a| all_outside(a, ',')).filter(|e| !e.trim().is_empty()) {
+            let (argument, value) = constant(entry, function, wrong)?;
+            if constants.iter().any(|(a, _)| *a == argument) {
+                return Err(wrong(format!("constant {} is given twice", argument.name())));
+            }
+            constants.push((argument, value));
+        }
+        Ok(Self { function, constants })
+    }
+
+    /// The constant in the place of an argument.
+    pub fn constant(&self, argument: Argument) -> Option<&Constant> {
+        self.constants.iter().find(|(a, _)| *a == argument).map(|(_, c)| c)
+    }
+}
+
+impl Constant {
+    /// Its number `k`.
+    pub fn at(&self, k: usize) -> f64 {
+        match self {
+            Self::All(x) => *x,
+            Self::Each(numbers) => numbers[k],
+        }
+    }
+}
+
+fn constant(text: &str, function: &Function<Sym>, wrong: &dyn Fn(String) -> Error) -> Result<(Argument, Constant), Error> {
+    let takes: Vec<&str> = function.takes.iter().map(|a| a.name()).collect();
+    let expected =
+        || format!("`{}`: expected a constant as in {}(a = 0) or (a = [0, 0]); {0} takes {}", text.trim(), function.name, takes.join(", "));
+    let (name, value) = text.split_once('=').ok_or_else(|| wrong(expected()))?;
+    let argument = function.takes.iter().find(|a| a.name() == name.trim()).ok_or_else(|| wrong(expected()))?;
+    let number = |x: &str| {
+        let digits: String = x.split_whitespace().collect();
+        digits.parse::<f64>().ok().filter(|x| x.is_finite()).ok_or_else(|| wrong(expected()))
+    };
+    let value = value.trim();
+    let constant = match value.strip_prefix('[').and_then(|v| v.strip_suffix(']')) {
+        None => Constant::All(number(value)?),
+        Some(list) => Constant::Each(list.split(',').filter(|x| !x.trim().is_empty()).map(number).collect::<Result<_, _>>()?),
+    };
+    Ok((*argument, constant))
+}
+
+/// The text before and after the first `mark` that is in no brackets.
+fn split_outside(text: &str, mark: char) -> Option<(&str, &str)> {
+    let mut depth = 0;
+    for (at, c) in text.char_indices() {
+        match c {
+            '(' | '[' => depth += 1,
+            ')' | ']' => depth -= 1,
+            c if c == mark && depth == 0 => return Some((&text[..at], &text[at + mark.len_utf8()..])),
+            _ => {}
+        }
+    }
+    None
+}
+
+/// The pieces between the marks that are in no brackets.
+pub(crate) fn all_outside(mut text: &str, mark: char) -> Vec<&str> {
+    let mut pieces = Vec::new();
+    while let Some((piece, rest)) = split_outside(text, mark) {
+        pieces.push(piece);
+        text = rest;
+    }
+    pieces.push(text);
+    pieces
+}
+
+fn is_function_name(name: &str) -> bool {
+    let plain = name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
+    plain && name.starts_with(|c: char| c.is_ascii_lowercase()) && is_free(name)
+}
+
+/// Whether Rust does not keep the word for itself.
+fn is_free(name: &str) -> bool {
+    const KEYWORDS: &str = "as async await break const continue crate dyn else enum extern false fn for gen if impl in let loop match mod move mut pub \
+                            ref return self static struct super trait true try type unsafe use where while abstract become box do final macro \
+                            override priv typeof unsized virtual yield fma trig joint frame link q_index v_index parameter";
+    !KEYWORDS.split_whitespace().any(|k| k == name)
+}
+
+/// The type of an array of these dimensions in generated code.
+pub(crate) fn array(dims: &[Dim]) -> String {
+    dims.iter().rev().fold("f64".to_owned(), |inner, dim| format!("[{inner}; {dim}]"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_alone_is_the_function() {
+        let wanted = Wanted::parse("inverse_dynamics").unwrap();
+        assert_eq!(wanted.as_function().map(|f| f.name), Some("inverse_dynamics"));
+        assert_eq!(wanted.arguments(), [Argument::Q, Argument::V, Argument::A]);
+    }
+
+    #[test]
+    fn constants_are_no_arguments() {
+        let wanted = Wanted::parse("slow = inverse_dynamics(v = 0, a = [0, -1.5 , 2])").unwrap();
+        assert_eq!((wanted.name.as_str(), wanted.arguments()), ("slow", vec![Argument::Q]));
+        assert_eq!(wanted.parts[0].constant(Argument::A), Some(&Constant::Each(vec![0.0, -1.5, 2.0])));
+        assert!(wanted.as_function().is_none());
+    }
+
+    #[test]
+    fn a_group_takes_what_any_part_takes() {
+        let wanted = Wanted::parse("all = mass_matrix + inverse_dynamics(a = 0)").unwrap();
+        assert_eq!(wanted.arguments(), [Argument::Q, Argument::V]);
+    }
+
+    #[test]
+    fn what_is_wrong_is_said() {
+        for (text, part) in [
+            ("mass_matrix + placements", "need a name"),
+            ("x = mass_matrix + mass_matrix", "twice"),
+            ("mass_matrx", "did you mean `mass_matrix`?"),
+            ("bias_forces(a = 0)", "takes q, v"),
+            ("bias_forces(v = x)", "expected a constant"),
+            ("bias_forces(v = 0", "expected `)`"),
+            ("Big = mass_matrix", "no name"),
+            ("fn = mass_matrix", "no name"),
+            ("x = ", "expected a function"),
+        ] {
+            let error = Wanted::parse(text).err().map(|e| e.to_string()).unwrap_or_default();
+            assert!(error.contains(part), "{text}: {error}");
+        }
+    }
+}
