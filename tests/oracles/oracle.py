@@ -103,7 +103,8 @@ class Oracle:
         links = [robot.links[name] for name in robot.link_order()]
         placement = placements_in_base(robot, constants, q)
         base = homogeneous(rotation_of_quaternion(state[3:7]), state[:3]) if floating else SX.eye(4)
-        twist, small = (v[:6] if floating else SX(6, 1)), SX.sym("xi", 6)
+        twist, small, drift = (v[:6] if floating else SX(6, 1)), SX.sym("xi", 6), SX.sym("drift", 6)
+        base = base @ (SX.eye(4) + hat(drift))  # derivatives with respect to the pose of a free base; 0 otherwise
 
         # dH_i/dt in the axes of the base: hat(twist) H_i + (dH_i/dq) q'
         stacked = casadi.horzcat(*[placement[link.name] for link in links])
@@ -128,6 +129,10 @@ class Oracle:
         def at_rest(expression):
             """The value at xi = 0."""
             return substitute(expression, small, SX.zeros(6))
+
+        def settled(expression):
+            """The value at drift = 0."""
+            return substitute(expression, drift, SX.zeros(6))
 
         def in_time(expression):
             """d/dt of something that depends on q and v, along q' and a."""
@@ -162,11 +167,18 @@ class Oracle:
         known = vertcat(*constants.symbols) if constants.symbols else SX(0, 1)
         inputs = [known, state, v, a, gravity]
         self.constants = constants.values
-        poses = [base @ placement[link.name] for link in links]
-        self._dynamics = casadi.Function("dynamics", inputs, [tau, kinetic, at_rest(potential), imbalance], {"cse": True})
+        poses = [settled(base @ placement[link.name]) for link in links]
+        outputs = [settled(x) for x in (tau, kinetic, at_rest(potential), imbalance)]
+        self._dynamics = casadi.Function("dynamics", inputs, outputs, {"cse": True})
         self._kinematics = casadi.Function("kinematics", inputs[:2], [casadi.horzcat(*poses)], {"cse": True})
         self._scale = casadi.Function("torque_scale", inputs, [scale], {"cse": True})
         self._exact = {}
+        turn = base[:3, :3]
+        self._parts = {
+            "inputs": inputs, "tau": tau, "settled": settled, "in_time": in_time, "omega": twist[:3], "turn": turn, "origin": base[:3, 3],
+            "tangent": (drift, q), "masses": [(mass, (placement[name] @ com)[:3], velocity, placement[name][:3, :3] @ inertia @ omega)
+                                              for name, (com, mass, inertia, velocity, omega) in motions.items()],
+        }
 
     def inverse_dynamics(self, q, v, a, gravity=GRAVITY):
         """(tau, T, U, power imbalance) in double precision."""
@@ -195,7 +207,8 @@ class Oracle:
     def _exactly(self, function, *inputs):
         if function.name() not in self._exact:
             self._exact[function.name()] = digits.Program(function)
-        decimals = [[Decimal(float(number)) for number in numbers] for numbers in inputs]
+        exact = lambda number: number if isinstance(number, Decimal) else Decimal(float(number))
+        decimals = [[exact(number) for number in numbers] for numbers in inputs]
         return self._exact[function.name()](self.constants, *decimals)
 
 
