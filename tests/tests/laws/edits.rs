@@ -186,9 +186,9 @@ fn a_quaternion_is_normalised_if_it_nearly_is_one() {
     robot.joints[0].kind = JointKind::Spherical;
     let error = refused(&mut robot, |r| r.lock("elbow", &[0.0, 0.0, 1.0, 1.0]));
     assert!(matches!(error, EditError::Quaternion { norm, .. } if (norm - 2.0_f64.sqrt()).abs() < 1e-15));
-    robot.lock("elbow", &[0.0, 0.0, 0.7071, 0.7071]).unwrap();
+    robot.lock("elbow", &[0.0, 0.0, 0.6, 0.8001]).unwrap();
     let [_, _, z, w] = robot.joints[0].locked.as_deref().unwrap() else { panic!("four numbers") };
-    assert!((z - 0.5_f64.sqrt()).abs() < 1e-15 && (w - 0.5_f64.sqrt()).abs() < 1e-15);
+    assert!((z.hypot(*w) - 1.0).abs() < 1e-15 && (z / w - 0.6 / 0.8001).abs() < 1e-15);
 }
 
 #[test]
