@@ -3,9 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use articulated_core::description::Base;
-
-use crate::{Error, Generated, Request, generate};
+use crate::{Appended, Base, Error, Generated, Origin, Payload, Reference, Request, generate};
 
 /// Generates a robot's code from a build script.
 ///
@@ -18,16 +16,17 @@ use crate::{Error, Generated, Request, generate};
 pub struct Build {
     path: PathBuf,
     request: Request,
+    /// Paths of the robots to append, and the rest of what there is to say of each.
+    append: Vec<(PathBuf, Appended)>,
 }
 
 impl Build {
     /// For the URDF at `path`, relative to the crate's folder.
     pub fn new(path: impl AsRef<Path>) -> Self {
         let path = path.as_ref();
-        let root = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
         let mut request = Request::new(path.display().to_string(), []);
         request.options.runtime = Some("::articulated".into());
-        Self { path: root.join(path), request }
+        Self { path: from_root(path), request, append: Vec::new() }
     }
 
     /// A floating base.
@@ -48,6 +47,43 @@ impl Build {
     #[must_use]
     pub fn functions<N: Into<String>>(mut self, names: impl IntoIterator<Item = N>) -> Self {
         self.request.options.functions = names.into_iter().map(Into::into).collect();
+        self
+    }
+
+    /// The links whose frames the functions of frames give.
+    #[must_use]
+    pub fn frames<N: Into<String>>(mut self, names: impl IntoIterator<Item = N>) -> Self {
+        self.request.options.frames = Some(names.into_iter().map(Into::into).collect());
+        self
+    }
+
+    /// What the wrenches that functions take refer to.
+    #[must_use]
+    pub fn wrenches_in(mut self, reference: Reference) -> Self {
+        self.request.options.wrench_reference = reference;
+        self
+    }
+
+    /// Locks a joint at these coordinates, as many as it has: rad or m, a quaternion as x, y, z, w. Joints that follow it stop with it.
+    #[must_use]
+    pub fn lock(mut self, joint: impl Into<String>, at: impl Into<Vec<f64>>) -> Self {
+        self.request.options.lock.push((joint.into(), at.into()));
+        self
+    }
+
+    /// Attaches a load to a link.
+    #[must_use]
+    pub fn payload(mut self, payload: Payload) -> Self {
+        self.request.options.payloads.push(payload);
+        self
+    }
+
+    /// Appends the robot of the URDF at `path`, relative to the crate's folder: its root at `origin` in the frame of the link `at`, `prefix` before its names.
+    #[must_use]
+    pub fn append(mut self, path: impl AsRef<Path>, at: impl Into<String>, prefix: impl Into<String>, origin: Origin) -> Self {
+        let path = path.as_ref();
+        let file = path.display().to_string();
+        self.append.push((from_root(path), Appended { urdf: Vec::new(), file, at: at.into(), prefix: prefix.into(), origin }));
         self
     }
 
@@ -72,17 +108,21 @@ impl Build {
         self
     }
 
-    /// Reads the URDF and generates. Nothing is written or printed.
+    /// Reads the URDF, and those to append, and generates. Nothing is written or printed.
     pub fn generate(&self) -> Result<Generated, Error> {
-        let file = |e: std::io::Error| Error::File { file: self.path.display().to_string(), reason: e.to_string() };
         let mut request = self.request.clone();
-        request.urdf = fs::read(&self.path).map_err(file)?;
+        request.urdf = read(&self.path)?;
+        for (path, other) in &self.append {
+            request.options.append.push(Appended { urdf: read(path)?, ..other.clone() });
+        }
         generate(&request)
     }
 
     /// Generates and writes `$OUT_DIR/<name>.rs`, and tells cargo what the result depends on. For build scripts.
     pub fn try_write(&self, name: &str) -> Result<Generated, Error> {
-        println!("cargo::rerun-if-changed={}", self.path.display());
+        for path in [&self.path].into_iter().chain(self.append.iter().map(|(path, _)| path)) {
+            println!("cargo::rerun-if-changed={}", path.display());
+        }
         let generated = self.generate()?;
         for warning in &generated.warnings {
             println!("cargo::warning={warning}");
@@ -107,4 +147,13 @@ impl Build {
             std::process::exit(1);
         }
     }
+}
+
+/// A path as seen from the crate's folder.
+fn from_root(path: &Path) -> PathBuf {
+    std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default().join(path)
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, Error> {
+    fs::read(path).map_err(|e| Error::File { file: path.display().to_string(), reason: e.to_string() })
 }

@@ -4,6 +4,8 @@ use articulated_core::model::ModelError;
 use articulated_urdf::Problems;
 use thiserror::Error;
 
+use crate::edit::Refusal;
+
 /// Everything that can be wrong with a request, as data first and a sentence second.
 #[derive(Clone, Debug, Error)]
 pub enum Error {
@@ -17,6 +19,12 @@ pub enum Error {
         file: String,
         /// What is wrong.
         error: ModelError,
+    },
+    /// Edits of the robot that cannot be made; all of them.
+    #[error("{}", refusals.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    Edits {
+        /// One for each edit.
+        refusals: Vec<Refusal>,
     },
     /// A function that does not exist.
     #[error("unknown function `{found}`{}; there are: {}", nearest.as_ref().map(|n| format!(", did you mean `{n}`?")).unwrap_or_default(), known.join(", "))]

@@ -8,6 +8,7 @@
 //! same source. There is no physics here: the algorithms are those of `articulated-core`, run on symbols.
 
 mod build;
+mod edit;
 mod emit;
 mod error;
 pub mod graph;
@@ -25,13 +26,16 @@ use articulated_core::model::Model;
 use articulated_urdf::{Problem, Reading, Unused};
 
 pub use articulated_core as core;
+pub use articulated_core::description::{Base, Origin, Payload};
+pub use articulated_core::spatial::Reference;
 pub use articulated_urdf as urdf;
 pub use build::Build;
+pub use edit::{Edit, Reason, Refusal, choose_frames, model, read};
 pub use emit::identifier;
 pub use error::{Error, nearest};
 pub use ledger::Ledger;
 pub use parameters::Parameter;
-pub use request::{Options, Request};
+pub use request::{Appended, Options, Request};
 pub use sym::Sym;
 pub use wanted::{Constant, Part, Wanted};
 
@@ -64,10 +68,10 @@ impl Generated {
 /// Generates the code that `request` asks for. Pure: nothing is read or written.
 pub fn generate(request: &Request) -> Result<Generated, Error> {
     let options = &request.options;
-    let Reading { mut description, warnings, unused, snapped } = articulated_urdf::read(&request.urdf, &reader_options(request))?;
-    let whole = model_of(request, &description)?;
+    let Reading { mut description, warnings, unused, snapped } = read(request)?;
+    let whole = model(request, &description)?;
     let parameters = parameters::parse(&options.parameters, &mut description, &whole)?;
-    let model = if parameters.is_empty() { whole } else { model_of(request, &description)? };
+    let model = choose_frames(request, if parameters.is_empty() { whole } else { model(request, &description)? })?;
     let wanted = wanted(request, &model)?;
     let names = emit::Names::new(&model, request)?;
     let mut ledger = Ledger::default();
@@ -79,20 +83,6 @@ pub fn generate(request: &Request) -> Result<Generated, Error> {
     }
     let source = emit::module(request, &model, &names, &programs, &parameters, &ledger, &unused) + &emit::warnings(&warnings);
     Ok(Generated { source, model, parameters, ledger, warnings, unused, snapped })
-}
-
-fn model_of(request: &Request, description: &articulated_core::description::Description) -> Result<Model<f64>, Error> {
-    let model = Model::new(description, request.options.base).map_err(|error| Error::Model { file: request.file.clone(), error })?;
-    Ok(model.with_gravity(request.options.gravity))
-}
-
-fn reader_options(request: &Request) -> articulated_urdf::Options {
-    articulated_urdf::Options {
-        file: request.file.clone(),
-        base: request.options.base,
-        allow_unphysical_inertia: request.options.allow_unphysical_inertia,
-        snap_angles: request.options.snap_angles,
-    }
 }
 
 /// The functions that the request names, each once.

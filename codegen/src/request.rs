@@ -1,7 +1,8 @@
 //! What to generate.
 
-use articulated_core::description::Base;
+use articulated_core::description::{Base, Origin, Payload};
 use articulated_core::model::GRAVITY;
+use articulated_core::spatial::Reference;
 
 /// A robot's document and what to make of it. Macro, build script and command line all fill one of these.
 #[derive(Clone, Debug)]
@@ -26,6 +27,16 @@ pub struct Options {
     pub functions: Vec<String>,
     /// Constants of the model that stay inputs: `payload(link)`, `inertia(link)`, `origin(joint)`.
     pub parameters: Vec<String>,
+    /// Names of the links whose frames the functions of frames give, in this order; `None`: all of them, in the order of the file.
+    pub frames: Option<Vec<String>>,
+    /// What the wrenches that functions take refer to.
+    pub wrench_reference: Reference,
+    /// Robots to append, one after the other.
+    pub append: Vec<Appended>,
+    /// Loads to attach; to links of appended robots too.
+    pub payloads: Vec<Payload>,
+    /// Joints to lock and their coordinates, see [`lock`](articulated_core::description::Description::lock); joints of appended robots too.
+    pub lock: Vec<(String, Vec<f64>)>,
     /// Accept inertias that no body can have.
     pub allow_unphysical_inertia: bool,
     /// Take angles this near (rad) to a multiple of π/2 as that multiple; every one is reported. `None`: never.
@@ -38,6 +49,21 @@ pub struct Options {
     pub runtime: Option<String>,
 }
 
+/// Another robot, a gripper say, to be fixed to a link. Its links and joints get a prefix before their names.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Appended {
+    /// The URDF's bytes.
+    pub urdf: Vec<u8>,
+    /// The file's name, for messages and for the header of the generated file; not opened.
+    pub file: String,
+    /// The link that carries it.
+    pub at: String,
+    /// What stands before its names.
+    pub prefix: String,
+    /// Its root in the frame of that link.
+    pub origin: Origin,
+}
+
 impl Default for Options {
     fn default() -> Self {
         Self {
@@ -45,6 +71,11 @@ impl Default for Options {
             gravity: GRAVITY,
             functions: vec!["placements".into(), "inverse_dynamics".into()],
             parameters: Vec::new(),
+            frames: None,
+            wrench_reference: Reference::Body,
+            append: Vec::new(),
+            payloads: Vec::new(),
+            lock: Vec::new(),
             allow_unphysical_inertia: false,
             snap_angles: None,
             rename: Vec::new(),

@@ -35,13 +35,19 @@ fn module(invocation: Invocation) -> TokenStream {
     quote! { #allow #(#attributes)* #visibility #module #name { #errors #contents } }
 }
 
-/// The generated source and a mention of the URDF, by which the compiler knows that the module depends on it.
+/// The generated source and a mention of every URDF, by which the compiler knows that the module depends on them.
 fn contents(settings: &Settings, errors: &mut Errors) -> TokenStream {
     let Some(urdf) = &settings.urdf else { return TokenStream::new() };
-    let Some(file) = errors.take(File::read(urdf)) else { return TokenStream::new() };
-    let path = file.path;
-    let source = source(Request { urdf: file.bytes, file: urdf.value(), options: settings.options() }, settings, urdf, errors);
-    quote! { #source const _: &[u8] = ::core::include_bytes!(#path); }
+    let names = [urdf].into_iter().chain(settings.append.iter().filter_map(|other| other.urdf.as_ref()));
+    let files: Vec<Option<File>> = names.map(|name| errors.take(File::read(name))).collect();
+    let paths: Vec<String> = files.iter().flatten().map(|file| file.path.clone()).collect();
+    let source = files.into_iter().collect::<Option<Vec<_>>>().map(|files| {
+        let mut bytes = files.into_iter().map(|file| file.bytes);
+        let mut request = Request { urdf: bytes.next().unwrap_or_default(), file: urdf.value(), options: settings.options() };
+        request.options.append.iter_mut().zip(bytes).for_each(|(other, bytes)| other.urdf = bytes);
+        source(request, settings, urdf, errors)
+    });
+    quote! { #source #(const _: &[u8] = ::core::include_bytes!(#paths);)* }
 }
 
 /// The generated source. What is wrong is reported and left out, and the rest tried again: so every error shows, and only those.

@@ -1,67 +1,102 @@
 //! The keys of an invocation: one row each.
 
-use articulated_codegen::core::description::Base;
+use articulated_codegen::{Base, Reference};
 use syn::ext::IdentExt;
 use syn::parse::{Parse, ParseStream};
 use syn::punctuated::Punctuated;
 use syn::{Error, Ident, Lit, LitBool, Path, Result, Token, braced, bracketed};
 
+use crate::edits::{self, LOAD, OTHER};
 use crate::settings::{Renaming, Settings};
-
-/// One key.
-pub(crate) struct Key {
-    /// Its name.
-    pub(crate) name: &'static str,
-    /// What its value has to be.
-    pub(crate) expected: &'static str,
-    /// Reads the value into the settings. Only that it fails matters, not how: the message is `expected`.
-    pub(crate) read: fn(&mut Settings, ParseStream) -> Result<()>,
-}
+use crate::table::{Key, tables};
 
 /// All keys, in the order in which they are listed to people.
-pub(crate) const KEYS: &[Key] = &[
+pub(crate) const KEYS: &[Key<Settings>] = &[
     Key {
         name: "urdf",
+        required: true,
         expected: "the path of a URDF from the folder of Cargo.toml, as \"robots/arm.urdf\"",
         read: |s, value| value.parse().map(|path| s.urdf = Some(path)),
     },
-    Key { name: "base", expected: "`fixed` or `floating`", read: |s, value| base(value).map(|base| s.base = Some(base)) },
+    Key { name: "base", required: false, expected: "`fixed` or `floating`", read: |s, value| base(value).map(|base| s.base = Some(base)) },
     Key {
         name: "gravity",
+        required: false,
         expected: "three finite numbers in m/s², as [0.0, 0.0, -9.81]",
-        read: |s, value| gravity(value).map(|g| s.gravity = Some(g)),
+        read: |s, value| numbers(value).map(|g| s.gravity = Some(g)),
     },
     Key {
         name: "functions",
+        required: false,
         expected: "a list of functions, as [placements, inverse_dynamics]",
         read: |s, value| functions(value).map(|names| s.functions = Some(names)),
     },
     Key {
+        name: "frames",
+        required: false,
+        expected: "a list of links, as [tool, \"left foot\"]",
+        read: |s, value| edits::names(value).map(|names| s.frames = Some(names)),
+    },
+    Key {
+        name: "wrenches_in",
+        required: false,
+        expected: "`body`, `world` or `world_aligned`",
+        read: |s, value| reference(value).map(|reference| s.wrench_reference = reference),
+    },
+    Key {
+        name: "lock",
+        required: false,
+        expected: "joints with their coordinates in rad or m, as { elbow = 0.5, ball = [0.0, 0.0, 0.0, 1.0] }",
+        read: |s, value| edits::locks(value).map(|locks| s.lock = locks),
+    },
+    Key {
+        name: "payload",
+        required: false,
+        expected: "a load on a link, as { link = tool, mass = 1.2, center_of_mass = [0.0, 0.0, 0.1] }, or a list of such",
+        read: |s, value| tables(value, LOAD, &mut s.faults).map(|loads| s.payloads = loads),
+    },
+    Key {
+        name: "append",
+        required: false,
+        expected: "another robot on a link, as { urdf = \"gripper.urdf\", at = tool, prefix = \"left_\" }, or a list of such",
+        read: |s, value| tables(value, OTHER, &mut s.faults).map(|others| s.append = others),
+    },
+    Key {
         name: "rename",
+        required: false,
         expected: "names of the URDF with names in Rust, as { \"a-b\" = A_MINUS_B }",
         read: |s, value| rename(value).map(|renamings| s.rename = renamings),
     },
     Key {
         name: "allow_unphysical_inertia",
+        required: false,
         expected: "`true` or `false`",
         read: |s, value| value.parse::<LitBool>().map(|b| s.allow_unphysical_inertia = b.value),
     },
     Key {
         name: "snap_angles",
+        required: false,
         expected: "a positive number of radians, as 1e-9",
         read: |s, value| angle(value).map(|angle| s.snap_angles = Some(angle)),
     },
     Key {
         name: "forbid_unsafe",
+        required: false,
         expected: "`true` or `false`",
         read: |s, value| value.parse::<LitBool>().map(|b| s.forbid_unsafe = b.value),
     },
     Key {
         name: "crate",
+        required: false,
         expected: "the absolute path of the crate `articulated`, as ::articulated or crate::path",
         read: |s, value| absolute(value).map(|path| s.runtime = Some(path)),
     },
-    Key { name: "standalone", expected: "`true` or `false`", read: |s, value| value.parse::<LitBool>().map(|b| s.standalone = b.value) },
+    Key {
+        name: "standalone",
+        required: false,
+        expected: "`true` or `false`",
+        read: |s, value| value.parse::<LitBool>().map(|b| s.standalone = b.value),
+    },
 ];
 
 fn base(value: ParseStream) -> Result<Base> {
@@ -73,12 +108,19 @@ fn base(value: ParseStream) -> Result<Base> {
     }
 }
 
-fn gravity(value: ParseStream) -> Result<[f64; 3]> {
+/// `[x, …]`, N of them.
+pub(crate) fn numbers<const N: usize>(value: ParseStream) -> Result<[f64; N]> {
     let numbers;
     bracketed!(numbers in value);
     let numbers = Punctuated::<Number, Token![,]>::parse_terminated(&numbers)?;
     let numbers: Vec<f64> = numbers.into_iter().map(|n| n.0).collect();
-    numbers.try_into().map_err(|_| value.error("not three"))
+    numbers.try_into().map_err(|_| value.error("too few or too many"))
+}
+
+fn reference(value: ParseStream) -> Result<Reference> {
+    let name: Ident = value.parse()?;
+    let all = [Reference::Body, Reference::World, Reference::WorldAligned];
+    all.into_iter().find(|reference| name == reference.name()).ok_or_else(|| value.error("no such reference"))
 }
 
 fn functions(value: ParseStream) -> Result<Vec<Ident>> {
@@ -106,7 +148,7 @@ fn absolute(value: ParseStream) -> Result<Path> {
 }
 
 /// A finite number with or without a sign, a point, an exponent.
-struct Number(f64);
+pub(crate) struct Number(pub(crate) f64);
 
 impl Parse for Number {
     fn parse(input: ParseStream) -> Result<Self> {

@@ -4,12 +4,14 @@
 //! invocation (tokens → settings) → expand (read the file, generate) → place (errors → spans)
 //! ```
 
+mod edits;
 mod errors;
 mod expand;
 mod invocation;
 mod keys;
 mod place;
 mod settings;
+mod table;
 #[cfg(test)]
 mod tests;
 
@@ -23,6 +25,11 @@ mod tests;
 ///         base = fixed,                                  // or floating
 ///         gravity = [0.0, 0.0, -9.81],                   // m/s², in the base frame
 ///         functions = [placements, inverse_dynamics],    // what to generate
+///         frames = [tool, "left foot"],                  // the links whose frames functions give; absent: all
+///         wrenches_in = body,                            // or world, or world_aligned: what the wrenches that functions take refer to
+///         lock = { elbow = 0.5, ball = [0.0, 0.0, 0.0, 1.0] }, // joints held where they are: rad or m; a quaternion as x, y, z, w
+///         payload = { link = tool, mass = 1.2, center_of_mass = [0.0, 0.0, 0.1] }, // or a list of them; also `inertia` (six numbers), `name`
+///         append = { urdf = "gripper.urdf", at = tool, prefix = "left_" }, // another robot; or a list of them; also `xyz`, `rpy`
 ///         rename = { "a-b" = A_MINUS_B },                // names in Rust for names of the URDF
 ///         allow_unphysical_inertia = false,
 ///         snap_angles = 1e-9,                            // rad: angles this near to a multiple of π/2 are taken as that; absent: none
@@ -33,10 +40,11 @@ mod tests;
 /// }
 /// ```
 ///
-/// The values above are the defaults, but for `urdf`, `rename` and `snap_angles`. The module has one function for each name in `functions`,
+/// The values above are the defaults, but for `urdf`, `rename`, `snap_angles`, and those from `frames` to `append`. Names of links and joints
+/// are words or stand in quotation marks. Robots are appended first, then payloads attached, then joints locked. The module has one function for each name in `functions`,
 /// constants for sizes, names and limits, modules of indices (`joint`, `q_index`, `v_index`, `frame`), and `Robot`, a value that
 /// implements `articulated::Dynamics`. What looks odd in the URDF is listed in its constant `WARNINGS`. It is compiled
-/// again when the URDF changes. A build script (`articulated_codegen::Build`) gives the same code, to read and to step through.
+/// again when a URDF changes. A build script (`articulated_codegen::Build`) gives the same code, to read and to step through.
 ///
 /// Errors: all that is wrong with the invocation and with the URDF at once, each at the word that it is about.
 #[proc_macro]

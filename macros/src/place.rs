@@ -1,6 +1,7 @@
 //! Errors of the generator: where they show, and how to go on.
 
-use articulated_codegen::{Error, Options};
+use articulated_codegen::core::description::EditError;
+use articulated_codegen::{Edit, Error, Options, Reason, Refusal};
 use proc_macro2::Span;
 use syn::LitStr;
 
@@ -12,6 +13,7 @@ pub(crate) fn at_its_word(error: &Error, settings: &Settings, urdf: &LitStr) -> 
     let renamed = |name: &String| settings.rename.iter().find(|r| r.from.value() == *name);
     let span = match error {
         Error::Urdf(problems) => return each(problems, urdf.span()),
+        Error::Edits { refusals } => return all(refusals.iter().map(|refusal| refused(refusal, settings, urdf)), error, urdf.span()),
         Error::UnknownFunction { found: function, .. } | Error::Singular { function, .. } => function_span(function, settings),
         Error::Rename { from, .. } => renamed(from).map(|r| r.from.span()),
         Error::NameClash { first, second, .. } => renamed(second).or_else(|| renamed(first)).map(|r| r.to.span()),
@@ -26,11 +28,32 @@ fn function_span(function: &str, settings: &Settings) -> Option<Span> {
 
 /// One error for each mistake in the document.
 fn each(problems: &articulated_codegen::urdf::Problems, span: Span) -> syn::Error {
-    let mut errors = Errors::default();
-    for problem in &problems.errors {
-        errors.push(syn::Error::new(span, problem));
+    all(problems.errors.iter().map(|problem| syn::Error::new(span, problem)), problems, span)
+}
+
+/// Several errors as one; there is one at least.
+fn all(errors: impl Iterator<Item = syn::Error>, whole: impl std::fmt::Display, span: Span) -> syn::Error {
+    let mut together = Errors::default();
+    errors.for_each(|error| together.push(error));
+    together.into_error().unwrap_or_else(|| syn::Error::new(span, whole))
+}
+
+/// An edit that cannot be made, at its name or file.
+fn refused(refusal: &Refusal, settings: &Settings, urdf: &LitStr) -> syn::Error {
+    let span = match refusal.edit {
+        Edit::Append(i) => settings.append.get(i).and_then(|other| match refusal.reason {
+            Reason::Edit(EditError::UnknownLink { .. }) => other.at.as_ref().map(|name| name.span),
+            _ => other.urdf.as_ref().map(LitStr::span),
+        }),
+        Edit::Payload(i) => settings.payloads.get(i).and_then(|load| load.link.as_ref()).map(|name| name.span),
+        Edit::Lock(i) => settings.lock.get(i).map(|lock| lock.joint.span),
+        Edit::Frame(i) => settings.frames.as_ref().and_then(|names| names.get(i)).map(|name| name.span),
+    };
+    let span = span.unwrap_or_else(|| urdf.span());
+    match &refusal.reason {
+        Reason::Urdf(problems) => each(problems, span),
+        _ => syn::Error::new(span, refusal),
     }
-    errors.into_error().unwrap_or_else(|| syn::Error::new(span, problems))
 }
 
 /// Takes out of the options what `error` is about, or names it otherwise; whether there was such a thing.
@@ -44,7 +67,24 @@ pub(crate) fn leave_out(error: &Error, options: &mut Options) -> bool {
             options.rename.retain(|(from, _)| from != second);
             options.rename.push((second.clone(), format!("{ident}__{count}")));
         }
+        Error::Edits { refusals } => leave_out_edits(refusals, options),
         _ => {}
     }
     *options != before
+}
+
+/// All those that were refused. Without a robot that was to be appended there is no going on: others may name what it has.
+fn leave_out_edits(refusals: &[Refusal], options: &mut Options) {
+    let refused = |edit: Edit| refusals.iter().any(|refusal| refusal.edit == edit);
+    if refusals.iter().any(|refusal| matches!(refusal.edit, Edit::Append(_))) {
+        return;
+    }
+    retain(&mut options.payloads, |i| !refused(Edit::Payload(i)));
+    retain(&mut options.lock, |i| !refused(Edit::Lock(i)));
+    options.frames.iter_mut().for_each(|frames| retain(frames, |i| !refused(Edit::Frame(i))));
+}
+
+fn retain<T>(list: &mut Vec<T>, keep: impl Fn(usize) -> bool) {
+    let mut index = 0..;
+    list.retain(|_| index.next().is_some_and(&keep));
 }

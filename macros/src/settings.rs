@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use articulated_codegen::core::description::Base;
-use articulated_codegen::{Options, function};
+use articulated_codegen::{Base, Options, Reference, function};
 use syn::{Error, Ident, LitStr, Path};
 
+use crate::edits::{Load, Lock, Name, Other};
 use crate::errors::Errors;
 
 /// The values of the keys; `None` where a key is absent.
@@ -15,12 +15,19 @@ pub(crate) struct Settings {
     pub(crate) base: Option<Base>,
     pub(crate) gravity: Option<[f64; 3]>,
     pub(crate) functions: Option<Vec<Ident>>,
+    pub(crate) frames: Option<Vec<Name>>,
+    pub(crate) wrench_reference: Reference,
+    pub(crate) lock: Vec<Lock>,
+    pub(crate) payloads: Vec<Load>,
+    pub(crate) append: Vec<Other>,
     pub(crate) allow_unphysical_inertia: bool,
     pub(crate) snap_angles: Option<f64>,
     pub(crate) rename: Vec<Renaming>,
     pub(crate) forbid_unsafe: bool,
     pub(crate) runtime: Option<Path>,
     pub(crate) standalone: bool,
+    /// What is wrong inside the tables.
+    pub(crate) faults: Errors,
 }
 
 /// `"name in the URDF" = NAME_IN_RUST`.
@@ -32,6 +39,9 @@ pub(crate) struct Renaming {
 impl Settings {
     /// What is wrong with the values, as far as can be told without the robot. What is wrong in a list is taken out.
     pub(crate) fn check(&mut self, errors: &mut Errors) {
+        std::mem::take(&mut self.faults).into_error().into_iter().for_each(|fault| errors.push(fault));
+        self.payloads.retain(|load| load.payload().is_some());
+        self.append.retain(|other| other.appended().is_some());
         if let Some(functions) = &mut self.functions {
             functions.retain(|name| errors.take(known(name)).is_some());
         }
@@ -42,18 +52,24 @@ impl Settings {
         }
     }
 
-    /// The request's options: what is said, and defaults for the rest.
+    /// The request's options: what is said, and defaults for the rest. Robots to append have no bytes yet.
     pub(crate) fn options(&self) -> Options {
         let default = Options::default();
         Options {
             base: self.base.unwrap_or(default.base),
             gravity: self.gravity.unwrap_or(default.gravity),
             functions: self.functions.as_ref().map_or(default.functions, |names| names.iter().map(Ident::to_string).collect()),
+            frames: self.frames.as_ref().map(|names| names.iter().map(|name| name.text.clone()).collect()),
+            wrench_reference: self.wrench_reference,
+            append: self.append.iter().filter_map(Other::appended).collect(),
+            payloads: self.payloads.iter().filter_map(Load::payload).collect(),
+            lock: self.lock.iter().map(|lock| (lock.joint.text.clone(), lock.at.clone())).collect(),
             allow_unphysical_inertia: self.allow_unphysical_inertia,
             snap_angles: self.snap_angles,
             rename: self.rename.iter().map(|r| (r.from.value(), r.to.to_string())).collect(),
             forbid_unsafe: self.forbid_unsafe,
             runtime: (!self.standalone).then(|| self.runtime.as_ref().map_or("::articulated".into(), spelled)),
+            ..default
         }
     }
 }

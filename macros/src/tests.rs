@@ -1,7 +1,6 @@
 //! The macro against the other ways to the same code. What it says of mistakes is in the workspace's `tests/ui`.
 
-use articulated_codegen::core::description::Base;
-use articulated_codegen::{Build, Request, generate};
+use articulated_codegen::{Base, Build, Origin, Payload, Reference, Request, generate};
 use proc_macro2::TokenStream;
 use quote::{ToTokens, quote};
 use syn::{Item, ItemMod, parse_quote};
@@ -57,6 +56,43 @@ fn defaults_are_those_of_the_build_script() {
     items.pop();
     let build = Build::new(urdf).generate().unwrap().tokens();
     assert_eq!(quote!(#(#items)*).to_string(), syn::parse2::<syn::File>(build).unwrap().to_token_stream().to_string());
+}
+
+#[test]
+fn edits_are_those_of_the_build_script_and_every_file_is_mentioned() {
+    let (urdf, gripper) = ("../tests/ui/urdf/three.urdf", "../tests/ui/urdf/gripper.urdf");
+    let origin = Origin { xyz: [0.0, 0.0, 0.1], rpy: [0.0, 0.5, 0.0] };
+    let payload = Payload { link: "grip_palm".into(), mass: 0.5, inertia: [1e-3, 0.0, 0.0, 1e-3, 0.0, 1e-3], ..Payload::default() };
+    let build = Build::new(urdf)
+        .append(gripper, "tool", "grip_", origin)
+        .payload(payload)
+        .lock("elbow", [-0.5])
+        .lock("grip_close", [0.02])
+        .frames(["grip_left thumb", "tool"])
+        .wrenches_in(Reference::World);
+    let build = build.generate().unwrap();
+    for words in [
+        "Appended: ../tests/ui/urdf/gripper.urdf",
+        "Payload: 0.5 kg",
+        "joint \"elbow\" at [-0.5]",
+        "Frames: grip_left",
+        "Wrenches in: world",
+    ] {
+        assert!(build.source.contains(words), "{words}");
+    }
+    let mut items = items(module(quote! {
+        mod arm {
+            urdf = #urdf,
+            append = { urdf = #gripper, at = tool, prefix = "grip_", xyz = [0, 0, 0.1], rpy = [0, 0.5, 0] },
+            payload = { link = grip_palm, mass = 0.5, inertia = [1e-3, 0, 0, 1e-3, 0, 1e-3] },
+            lock = { elbow = -0.5, "grip_close" = [0.02] },
+            frames = ["grip_left thumb", tool],
+            wrenches_in = world,
+        }
+    }));
+    let mentioned: Vec<String> = items.split_off(items.len() - 2).iter().map(|item| item.to_token_stream().to_string()).collect();
+    assert!(mentioned[0].contains("three.urdf") && mentioned[1].contains("gripper.urdf"), "{mentioned:?}");
+    assert_eq!(quote!(#(#items)*).to_string(), syn::parse2::<syn::File>(build.tokens()).unwrap().to_token_stream().to_string());
 }
 
 #[test]

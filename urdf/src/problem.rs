@@ -117,6 +117,8 @@ pub enum Kind {
     LimitIncomplete,
     /// A lower bound above the upper one.
     LimitOrder,
+    /// A joint's coordinate, as asked for, that is beyond its limits.
+    BeyondLimit,
     /// A bound or a coefficient below zero that has no such meaning.
     Negative,
     /// A tag or attribute that nobody knows, but nearly one that matters.

@@ -114,7 +114,8 @@ impl Description {
         self.joints.push(Joint { name, parent, child, origin, axis: [1.0, 0.0, 0.0], ..Joint::default() });
     }
 
-    fn link_or_nearest(&self, name: &str) -> Result<usize, EditError> {
+    /// Index of the link called `name`, or the refusal that names the nearest.
+    pub fn link_or_nearest(&self, name: &str) -> Result<usize, EditError> {
         let unknown = || EditError::UnknownLink { name: name.into(), nearest: nearest(name, self.links.iter().map(|l| l.name.as_str())) };
         self.link(name).ok_or_else(unknown)
     }

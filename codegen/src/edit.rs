@@ -1,0 +1,182 @@
+//! The robot that a request asks for: read, other robots appended, payloads attached, joints locked, frames chosen; in this order, so that a payload may hang on an appended
+//! robot, and a lock may hold its joints.
+
+use std::fmt;
+
+use articulated_core::description::{Base, Description, EditError};
+use articulated_core::model::Model;
+use articulated_urdf::{Kind, Problem, Problems, Reading, Subject, Unused};
+
+use crate::request::Appended;
+use crate::{Error, Request};
+
+/// One edit of a request.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edit {
+    /// An index into [`append`](crate::Options::append).
+    Append(usize),
+    /// An index into [`payloads`](crate::Options::payloads).
+    Payload(usize),
+    /// An index into [`lock`](crate::Options::lock).
+    Lock(usize),
+    /// An index into [`frames`](crate::Options::frames).
+    Frame(usize),
+}
+
+/// Why an edit cannot be made.
+#[derive(Clone, Debug)]
+pub enum Reason {
+    /// The document of the robot to be appended is not a usable URDF.
+    Urdf(Problems),
+    /// What it names or asks for is not there, or not possible.
+    Edit(EditError),
+    /// A frame listed twice.
+    FrameTwice(String),
+}
+
+/// An edit that cannot be made.
+#[derive(Clone, Debug)]
+pub struct Refusal {
+    /// The file of the robot that was to be edited.
+    pub file: String,
+    /// Which edit.
+    pub edit: Edit,
+    /// Why not.
+    pub reason: Reason,
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let what = match self.edit {
+            Edit::Append(_) => "append",
+            Edit::Payload(_) => "payload",
+            Edit::Lock(_) => "lock",
+            Edit::Frame(_) => "frames",
+        };
+        match &self.reason {
+            Reason::Urdf(problems) => problems.fmt(f),
+            Reason::Edit(error) => write!(f, "{}: {what}: {error}", self.file),
+            Reason::FrameTwice(name) => write!(f, "{}: {what}: {name:?} is listed twice", self.file),
+        }
+    }
+}
+
+/// Reads the request's robot and edits it. Everything that is wrong with the document, or else everything that is wrong with the edits.
+pub fn read(request: &Request) -> Result<Reading, Error> {
+    let mut editing = Editing { request, reading: articulated_urdf::read(&request.urdf, &reader_options(request))?, refusals: Vec::new() };
+    let options = &request.options;
+    options.append.iter().enumerate().for_each(|(i, other)| editing.append(i, other));
+    let appended = editing.refusals.is_empty();
+    for (i, payload) in options.payloads.iter().enumerate() {
+        let result = editing.reading.description.attach(payload).map(|_| ());
+        editing.take(Edit::Payload(i), result.map_err(Reason::Edit));
+    }
+    for (i, (joint, at)) in options.lock.iter().enumerate() {
+        let result = editing.reading.description.lock(joint, at);
+        editing.take(Edit::Lock(i), result.map_err(Reason::Edit));
+    }
+    editing.check_frames();
+    if !appended {
+        // What an appended robot would have had is not unknown.
+        let unknown = |r: &Refusal| matches!(r.reason, Reason::Edit(EditError::UnknownLink { .. } | EditError::UnknownJoint { .. }));
+        editing.refusals.retain(|r| matches!(r.edit, Edit::Append(_)) || !unknown(r));
+    }
+    editing.warn_of_limits();
+    if editing.refusals.is_empty() { Ok(editing.reading) } else { Err(Error::Edits { refusals: editing.refusals }) }
+}
+
+/// The model of what was [read](read()), under the gravity and with the reference of wrenches that the request asks for, and with a frame for every link.
+pub fn model(request: &Request, description: &Description) -> Result<Model<f64>, Error> {
+    let options = &request.options;
+    let model = Model::new(description, options.base).map_err(|error| Error::Model { file: request.file.clone(), error })?;
+    Ok(model.with_gravity(options.gravity).with_wrenches_in(options.wrench_reference))
+}
+
+/// The model with the frames that the request asks for.
+pub fn choose_frames(request: &Request, model: Model<f64>) -> Result<Model<f64>, Error> {
+    let Some(names) = &request.options.frames else { return Ok(model) };
+    model.with_frames(names).map_err(|name| {
+        let reason = Reason::Edit(EditError::UnknownLink { name, nearest: None });
+        Error::Edits { refusals: vec![Refusal { file: request.file.clone(), edit: Edit::Frame(0), reason }] }
+    })
+}
+
+fn reader_options(request: &Request) -> articulated_urdf::Options {
+    articulated_urdf::Options {
+        file: request.file.clone(),
+        base: request.options.base,
+        allow_unphysical_inertia: request.options.allow_unphysical_inertia,
+        snap_angles: request.options.snap_angles,
+    }
+}
+
+struct Editing<'a> {
+    request: &'a Request,
+    reading: Reading,
+    refusals: Vec<Refusal>,
+}
+
+impl Editing<'_> {
+    fn take(&mut self, edit: Edit, result: Result<(), Reason>) {
+        if let Err(reason) = result {
+            self.refusals.push(Refusal { file: self.request.file.clone(), edit, reason });
+        }
+    }
+
+    fn append(&mut self, index: usize, other: &Appended) {
+        // Its root moves with the link that carries it.
+        let options = articulated_urdf::Options { file: other.file.clone(), base: Base::Floating, ..reader_options(self.request) };
+        let result = match articulated_urdf::read(&other.urdf, &options) {
+            Err(problems) => Err(Reason::Urdf(problems)),
+            Ok(reading) => {
+                let result = self.reading.description.append(&other.at, &reading.description, &other.prefix, other.origin);
+                self.reading.warnings.extend(reading.warnings);
+                self.reading.snapped.extend(reading.snapped);
+                self.reading.unused.extend(reading.unused.into_iter().map(|u| renamed(u, &other.prefix)));
+                result.map_err(Reason::Edit)
+            }
+        };
+        self.take(Edit::Append(index), result);
+    }
+
+    fn check_frames(&mut self) {
+        let Some(frames) = &self.request.options.frames else { return };
+        for (i, name) in frames.iter().enumerate() {
+            let result = match self.reading.description.link_or_nearest(name) {
+                Err(error) => Err(Reason::Edit(error)),
+                Ok(_) if frames[..i].contains(name) => Err(Reason::FrameTwice(name.clone())),
+                Ok(_) => Ok(()),
+            };
+            self.take(Edit::Frame(i), result);
+        }
+    }
+
+    /// A lock beyond the joint's limits is odd, and used.
+    fn warn_of_limits(&mut self) {
+        let joints = self.request.options.lock.iter().filter_map(|(name, at)| {
+            let joint = self.reading.description.joints.iter().find(|j| j.name == *name)?;
+            let limit = joint.limit.filter(|_| joint.locked.is_some())?;
+            let &[at] = at.as_slice() else { return None };
+            (at < limit.lower || limit.upper < at).then(|| Problem {
+                file: self.request.file.clone(),
+                line: None,
+                subject: Subject::Joint(name.clone()),
+                kind: Kind::BeyondLimit,
+                field: "lock".into(),
+                found: format!("{at}, beyond its limits"),
+                expected: format!("{} to {}; used as asked for", limit.lower, limit.upper),
+            })
+        });
+        self.reading.warnings.extend(joints.collect::<Vec<_>>());
+    }
+}
+
+/// What is not used of an appended robot, under its new names.
+fn renamed(unused: Unused, prefix: &str) -> Unused {
+    let subject = match unused.subject {
+        Subject::Document => Subject::Document,
+        Subject::Link(name) => Subject::Link(format!("{prefix}{name}")),
+        Subject::Joint(name) => Subject::Joint(format!("{prefix}{name}")),
+    };
+    Unused { subject, ..unused }
+}
