@@ -70,9 +70,11 @@ pub fn generate(request: &Request) -> Result<Generated, Error> {
     let options = &request.options;
     let Reading { mut description, warnings, unused, snapped } = read(request)?;
     let whole = model(request, &description)?;
+    // Mass that stays an input is mass all the same.
+    let massless: Vec<String> = whole.massless_joints().into_iter().map(|i| whole.bodies[i].name.clone()).collect();
     let parameters = parameters::parse(&options.parameters, &mut description, &whole)?;
     let model = choose_frames(request, if parameters.is_empty() { whole } else { model(request, &description)? })?;
-    let wanted = wanted(request, &model)?;
+    let wanted = wanted(request, &model, &massless)?;
     let names = emit::Names::new(&model, request)?;
     let mut ledger = Ledger::default();
     let mut programs = Vec::new();
@@ -86,7 +88,7 @@ pub fn generate(request: &Request) -> Result<Generated, Error> {
 }
 
 /// The functions that the request names, each once.
-fn wanted(request: &Request, model: &Model<f64>) -> Result<Vec<Wanted>, Error> {
+fn wanted(request: &Request, model: &Model<f64>, massless: &[String]) -> Result<Vec<Wanted>, Error> {
     let mut wanted: Vec<Wanted> = Vec::new();
     let mut seen: Vec<&str> = Vec::new();
     for text in &request.options.functions {
@@ -96,7 +98,7 @@ fn wanted(request: &Request, model: &Model<f64>) -> Result<Vec<Wanted>, Error> {
         seen.push(text);
         let function = Wanted::parse(text)?;
         function.check(model.shape())?;
-        function.parts.iter().try_for_each(|part| defined(request, model, part.function))?;
+        function.parts.iter().try_for_each(|part| defined(request, model, massless, part.function))?;
         if wanted.iter().any(|f| f.name == function.name) {
             return Err(Error::SameName { name: function.name });
         }
@@ -106,12 +108,10 @@ fn wanted(request: &Request, model: &Model<f64>) -> Result<Vec<Wanted>, Error> {
 }
 
 /// Whether the robot has what the function needs.
-fn defined(request: &Request, model: &Model<f64>, function: &Function<Sym>) -> Result<(), Error> {
+fn defined(request: &Request, model: &Model<f64>, massless: &[String], function: &Function<Sym>) -> Result<(), Error> {
     let (file, name) = (request.file.clone(), function.name.to_owned());
-    let massless = if function.needs == Needs::Nothing { Vec::new() } else { model.massless_joints() };
-    if !massless.is_empty() {
-        let joints = massless.iter().map(|&i| model.bodies[i].name.clone()).collect();
-        return Err(Error::Singular { file, function: name, joints });
+    if function.needs != Needs::Nothing && !massless.is_empty() {
+        return Err(Error::Singular { file, function: name, joints: massless.to_vec() });
     }
     let bound = |f: &articulated_core::model::Frame<f64>| {
         let n = model.freedoms_of(f.body).len();

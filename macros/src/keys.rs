@@ -1,13 +1,14 @@
 //! The keys of an invocation: one row each.
 
 use articulated_codegen::{Base, Reference};
+use proc_macro2::{TokenStream, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{Parse, ParseStream};
 use syn::punctuated::Punctuated;
 use syn::{Error, Ident, Lit, LitBool, Path, Result, Token, braced, bracketed};
 
 use crate::edits::{self, LOAD, OTHER};
-use crate::settings::{Renaming, Settings};
+use crate::settings::{Entry, Renaming, Settings};
 use crate::table::{Key, tables};
 
 /// All keys, in the order in which they are listed to people.
@@ -28,8 +29,14 @@ pub(crate) const KEYS: &[Key<Settings>] = &[
     Key {
         name: "functions",
         required: false,
-        expected: "a list of functions, as [placements, inverse_dynamics]",
-        read: |s, value| functions(value).map(|names| s.functions = Some(names)),
+        expected: "a list of functions, as [placements, bias = inverse_dynamics(a = 0), both = inverse_dynamics + mass_matrix]",
+        read: |s, value| entries(value).map(|entries| s.functions = Some(entries)),
+    },
+    Key {
+        name: "parameters",
+        required: false,
+        expected: "a list of what stays an input, as [payload(tool), inertia(forearm), origin(elbow)]",
+        read: |s, value| entries(value).map(|entries| s.parameters = entries),
     },
     Key {
         name: "frames",
@@ -123,10 +130,22 @@ fn reference(value: ParseStream) -> Result<Reference> {
     all.into_iter().find(|reference| name == reference.name()).ok_or_else(|| value.error("no such reference"))
 }
 
-fn functions(value: ParseStream) -> Result<Vec<Ident>> {
-    let names;
-    bracketed!(names in value);
-    Ok(Punctuated::<Ident, Token![,]>::parse_terminated(&names)?.into_iter().collect())
+/// Entries between commas, each as it stands: the generator reads them.
+fn entries(value: ParseStream) -> Result<Vec<Entry>> {
+    let entries;
+    bracketed!(entries in value);
+    Ok(Punctuated::<Entry, Token![,]>::parse_terminated(&entries)?.into_iter().collect())
+}
+
+impl Parse for Entry {
+    fn parse(input: ParseStream) -> Result<Self> {
+        let span = input.span();
+        let mut tokens = TokenStream::new();
+        while !input.is_empty() && !input.peek(Token![,]) {
+            tokens.extend(input.parse::<TokenTree>());
+        }
+        if tokens.is_empty() { Err(input.error("nothing before the comma")) } else { Ok(Self { text: tokens.to_string(), span }) }
+    }
 }
 
 fn rename(value: ParseStream) -> Result<Vec<Renaming>> {

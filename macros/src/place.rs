@@ -14,7 +14,12 @@ pub(crate) fn at_its_word(error: &Error, settings: &Settings, urdf: &LitStr) -> 
     let span = match error {
         Error::Urdf(problems) => return each(problems, urdf.span()),
         Error::Edits { refusals } => return all(refusals.iter().map(|refusal| refused(refusal, settings, urdf)), error, urdf.span()),
-        Error::UnknownFunction { found: function, .. } | Error::Singular { function, .. } => function_span(function, settings),
+        Error::UnknownFunction { found: function, .. }
+        | Error::Singular { function, .. }
+        | Error::BoundFrames { function, .. }
+        | Error::Wanted { found: function, .. }
+        | Error::SameName { name: function } => settings.functions.iter().flatten().rfind(|e| names(&e.text, function)).map(|e| e.span),
+        Error::Parameter { found, .. } => settings.parameters.iter().rfind(|e| e.text.trim() == *found).map(|e| e.span),
         Error::Rename { from, .. } => renamed(from).map(|r| r.from.span()),
         Error::NameClash { first, second, .. } => renamed(second).or_else(|| renamed(first)).map(|r| r.to.span()),
         _ => None,
@@ -22,8 +27,9 @@ pub(crate) fn at_its_word(error: &Error, settings: &Settings, urdf: &LitStr) -> 
     syn::Error::new(span.unwrap_or_else(|| urdf.span()), error)
 }
 
-fn function_span(function: &str, settings: &Settings) -> Option<Span> {
-    settings.functions.iter().flatten().find(|name| *name == function).map(syn::Ident::span)
+/// Whether an entry is the function, or has it in it.
+fn names(entry: &str, function: &str) -> bool {
+    entry.trim() == function || entry.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == function)
 }
 
 /// One error for each mistake in the document.
@@ -60,7 +66,16 @@ fn refused(refusal: &Refusal, settings: &Settings, urdf: &LitStr) -> syn::Error 
 pub(crate) fn leave_out(error: &Error, options: &mut Options) -> bool {
     let before = options.clone();
     match error {
-        Error::UnknownFunction { found: function, .. } | Error::Singular { function, .. } => options.functions.retain(|f| f != function),
+        Error::UnknownFunction { found: function, .. }
+        | Error::Singular { function, .. }
+        | Error::BoundFrames { function, .. }
+        | Error::Wanted { found: function, .. }
+        | Error::SameName { name: function } => {
+            if let Some(at) = options.functions.iter().rposition(|f| names(f, function)) {
+                options.functions.remove(at);
+            }
+        }
+        Error::Parameter { found, .. } => options.parameters.retain(|p| p.trim() != found),
         Error::Rename { from, to, .. } => options.rename.retain(|(f, t)| (f, t) != (from, to)),
         Error::NameClash { second, ident, .. } => {
             let count = options.rename.len();

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use articulated_codegen::{Base, Options, Reference, function};
+use articulated_codegen::{Base, Options, Reference, Wanted};
+use proc_macro2::Span;
 use syn::{Error, Ident, LitStr, Path};
 
 use crate::edits::{Load, Lock, Name, Other};
@@ -14,7 +15,8 @@ pub(crate) struct Settings {
     pub(crate) urdf: Option<LitStr>,
     pub(crate) base: Option<Base>,
     pub(crate) gravity: Option<[f64; 3]>,
-    pub(crate) functions: Option<Vec<Ident>>,
+    pub(crate) functions: Option<Vec<Entry>>,
+    pub(crate) parameters: Vec<Entry>,
     pub(crate) frames: Option<Vec<Name>>,
     pub(crate) wrench_reference: Reference,
     pub(crate) lock: Vec<Lock>,
@@ -30,6 +32,12 @@ pub(crate) struct Settings {
     pub(crate) faults: Errors,
 }
 
+/// An entry of a list that the generator reads.
+pub(crate) struct Entry {
+    pub(crate) text: String,
+    pub(crate) span: Span,
+}
+
 /// `"name in the URDF" = NAME_IN_RUST`.
 pub(crate) struct Renaming {
     pub(crate) from: LitStr,
@@ -43,7 +51,7 @@ impl Settings {
         self.payloads.retain(|load| load.payload().is_some());
         self.append.retain(|other| other.appended().is_some());
         if let Some(functions) = &mut self.functions {
-            functions.retain(|name| errors.take(known(name)).is_some());
+            functions.retain(|entry| errors.take(known(entry)).is_some());
         }
         let mut seen = BTreeSet::new();
         self.rename.retain(|renaming| errors.take(once(renaming, &mut seen)).is_some());
@@ -58,7 +66,8 @@ impl Settings {
         Options {
             base: self.base.unwrap_or(default.base),
             gravity: self.gravity.unwrap_or(default.gravity),
-            functions: self.functions.as_ref().map_or(default.functions, |names| names.iter().map(Ident::to_string).collect()),
+            functions: self.functions.as_ref().map_or(default.functions, |entries| texts(entries)),
+            parameters: texts(&self.parameters),
             frames: self.frames.as_ref().map(|names| names.iter().map(|name| name.text.clone()).collect()),
             wrench_reference: self.wrench_reference,
             append: self.append.iter().filter_map(Other::appended).collect(),
@@ -69,13 +78,16 @@ impl Settings {
             rename: self.rename.iter().map(|r| (r.from.value(), r.to.to_string())).collect(),
             forbid_unsafe: self.forbid_unsafe,
             runtime: (!self.standalone).then(|| self.runtime.as_ref().map_or("::articulated".into(), spelled)),
-            ..default
         }
     }
 }
 
-fn known(name: &Ident) -> syn::Result<()> {
-    function(&name.to_string()).map(|_| ()).map_err(|error| Error::new(name.span(), error))
+fn known(entry: &Entry) -> syn::Result<()> {
+    Wanted::parse(&entry.text).map(|_| ()).map_err(|error| Error::new(entry.span, error))
+}
+
+fn texts(entries: &[Entry]) -> Vec<String> {
+    entries.iter().map(|e| e.text.clone()).collect()
 }
 
 fn once(renaming: &Renaming, seen: &mut BTreeSet<String>) -> syn::Result<()> {

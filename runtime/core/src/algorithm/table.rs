@@ -138,6 +138,13 @@ macro_rules! for_each_function {
             operational_space_inertia_inverse(q) -> [Frames, Of(6), Of(6)] "1/(kg·m²)|…, symmetric", MassMatrix, true,
                 "Λ⁻¹ = J M⁻¹ Jᵀ of each frame by itself, J that of jacobians_world_aligned",
                 "M = Lᵀ D L; Khatib, IEEE J. Robot. Autom. 3, 1987";
+            integrate(q, step) -> [Nq] "rad|m|unit quaternion", Nothing, true,
+                "q ⊕ step: along the step for a unit of time, on the manifold", "exponential of SE(3); Lynch & Park 2017, §3.3";
+            difference(q, target) -> [Nv] "rad|m", Nothing, true,
+                "target ⊖ q: the step with q ⊕ step = target", "logarithm of SE(3); Lynch & Park 2017, §3.3";
+            random_configuration(uniform) -> [Nq] "rad|m|unit quaternion", Nothing, true,
+                "a configuration at random within limits, ±π rad and ±1 m where there are none, rotations uniform",
+                "Shoemake, Graphics Gems III, 1992";
         }
     };
 }
