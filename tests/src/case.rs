@@ -36,13 +36,21 @@ pub struct State {
     pub a: Vec<f64>,
     /// Torques, `[nv]`; not those of q, v and a.
     pub tau: Vec<f64>,
+    /// Wrenches on the frames, `[frames][6]`.
+    pub wrenches: Vec<f64>,
+    /// A step from q, `[nv]`.
+    pub step: Vec<f64>,
+    /// Another configuration, `[nq]`.
+    pub target: Vec<f64>,
+    /// Numbers in 0 to 1, `[nq]`.
+    pub uniform: Vec<f64>,
 }
 
 impl State {
-    /// A motion, with torques of zero.
+    /// A motion, with torques of zero, no step, and wrenches for no frame.
     pub fn new(q: Vec<f64>, v: Vec<f64>, a: Vec<f64>) -> Self {
-        let tau = vec![0.0; v.len()];
-        Self { q, v, a, tau }
+        let (zero, target, uniform) = (vec![0.0; v.len()], q.clone(), vec![0.5; q.len()]);
+        Self { q, v, a, tau: zero.clone(), wrenches: vec![], step: zero, target, uniform }
     }
 
     /// The vector of an argument.
@@ -52,6 +60,10 @@ impl State {
             Argument::V => &self.v,
             Argument::A => &self.a,
             Argument::Tau => &self.tau,
+            Argument::Wrenches => &self.wrenches,
+            Argument::Step => &self.step,
+            Argument::Target => &self.target,
+            Argument::Uniform => &self.uniform,
         }
     }
 
@@ -95,8 +107,17 @@ impl Case {
         Motions::new(&self.description, self.base, self.gravity)
     }
 
-    /// A state at random: angles in ±π, lengths in ±1 m, rates and accelerations in ±2, torques in ±20.
+    /// A state at random: angles in ±π, lengths in ±1 m, rates and accelerations in ±2, torques and wrenches in ±20, steps in ±1.
     pub fn state(&self, random: &mut Random) -> State {
+        let (nq, nv) = (self.model.nq, self.model.nv);
+        let (q, v, a) = (self.configuration(random), random.vector(nv, -2.0, 2.0), random.vector(nv, -2.0, 2.0));
+        let tau = random.vector(nv, -20.0, 20.0);
+        let wrenches = random.vector(6 * self.model.frames.len(), -20.0, 20.0);
+        let (step, target) = (random.vector(nv, -1.0, 1.0), self.configuration(random));
+        State { q, v, a, tau, wrenches, step, target, uniform: random.vector(nq, 0.0, 1.0) }
+    }
+
+    fn configuration(&self, random: &mut Random) -> Vec<f64> {
         let mut q = random.vector(self.model.nq, -std::f64::consts::PI, std::f64::consts::PI);
         for body in self.model.bodies.iter().skip(1).filter(|b| b.coordinates.mimic.is_none()) {
             let at = body.coordinates.q;
@@ -107,10 +128,7 @@ impl Case {
                 Joint::Floating => q[at + 3..at + 7].copy_from_slice(&random.unit::<4>()),
             }
         }
-        let v = random.vector(self.model.nv, -2.0, 2.0);
-        let a = random.vector(self.model.nv, -2.0, 2.0);
-        let tau = random.vector(self.model.nv, -20.0, 20.0);
-        State { q, v, a, tau }
+        q
     }
 
     /// τ of the generic library.
@@ -122,7 +140,7 @@ impl Case {
     pub fn call<S: Scalar>(&self, name: &str, arguments: &[&[S]]) -> Vec<S> {
         let model = self.model.cast::<S>();
         let row: &Function<S> = function(name).expect("a function of the registry");
-        let mut out = vec![S::zero(); row.gives.len(model.shape())];
+        let mut out = vec![S::zero(); row.len(model.shape())];
         row.call(&model, &mut Workspace::new(&model), arguments, &mut out).expect("arguments of the right lengths");
         out
     }

@@ -1,0 +1,127 @@
+//! The reference: every function of the table by its definition, in plain matrices, in the frames of the file.
+//!
+//! What moves is differentiated ([`Dual`]) and not derived; what is linear is applied to unit vectors; what is a sum over links is that sum. Inverse dynamics
+//! is the plain matrix form with 6×6 Adjoint and inertia matrices and one set of screw axes a joint (Lynch & Park, *Modern Robotics*, 2017,
+//! §8.3.2). It shares no formula with the algorithms beside it, and is what they are measured against, in big floats where it matters. It is not meant to be fast.
+
+mod build;
+mod call;
+mod coriolis;
+mod derivatives;
+mod dynamics;
+mod energy;
+mod joint;
+mod kinematics;
+mod manifold;
+mod matrix;
+mod momentum;
+mod regressor;
+mod solve;
+
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+
+use nalgebra::{Matrix6, Vector3};
+
+use crate::Scalar;
+use crate::dual::Dual;
+use crate::model::JointInfo;
+use crate::spatial::{Placement, Reference};
+use joint::Joint;
+
+/// A described robot with every link a body and every joint a joint, fixed ones too. Constants are computed in the scalar `S`
+/// from the numbers of the file.
+#[derive(Clone, Debug)]
+pub struct Textbook<S> {
+    bodies: Vec<Link<S>>,
+    /// Name and body of each link of the file.
+    links: Vec<(String, usize)>,
+    /// Bodies of the frames.
+    frames: Vec<usize>,
+    gravity: Vector3<S>,
+    wrench_reference: Reference,
+    /// The joints that are coordinates.
+    joints: Vec<JointInfo>,
+    nq: usize,
+    nv: usize,
+}
+
+#[derive(Clone, Debug)]
+struct Link<S> {
+    parent: Option<usize>,
+    /// The joint's frame in the parent link's.
+    placement: Placement<S>,
+    joint: Joint<S>,
+    /// G, 6×6, about the link's origin.
+    inertia: Matrix6<S>,
+    /// Whether any joint on the way from the base moves it.
+    carried: bool,
+}
+
+impl<S: Scalar> Textbook<S> {
+    /// The same robot with only the named frames, in this order, or the first name that no link has.
+    pub fn with_frames<N: AsRef<str>>(mut self, names: &[N]) -> Result<Self, String> {
+        let find = |name: &N| self.links.iter().find(|(link, _)| link == name.as_ref()).map(|(_, body)| *body);
+        self.frames = names.iter().map(|n| find(n).ok_or_else(|| n.as_ref().to_string())).collect::<Result<_, _>>()?;
+        Ok(self)
+    }
+
+    /// The same robot, with wrenches given in another reference.
+    #[must_use]
+    pub fn with_wrenches_in(mut self, reference: Reference) -> Self {
+        self.wrench_reference = reference;
+        self
+    }
+
+    /// The links that move, by the bodies that are the child links of joints that move, parents first: everything fixed to one belongs to it.
+    fn moving_links(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.bodies.len()).filter(|&i| self.bodies[i].joint.moves())
+    }
+
+    /// The same robot with constants that do not vary.
+    fn lift(&self) -> Textbook<Dual<S>> {
+        let constant = Dual::constant;
+        let link = |b: &Link<S>| Link {
+            parent: b.parent,
+            placement: b.placement.map(constant),
+            joint: b.joint.lift(),
+            inertia: b.inertia.map(constant),
+            carried: b.carried,
+        };
+        Textbook {
+            bodies: self.bodies.iter().map(link).collect(),
+            links: self.links.clone(),
+            frames: self.frames.clone(),
+            gravity: self.gravity.map(constant),
+            wrench_reference: self.wrench_reference,
+            joints: self.joints.clone(),
+            nq: self.nq,
+            nv: self.nv,
+        }
+    }
+
+    /// The k-th unit vector of the tangent space.
+    fn unit(&self, k: usize) -> Vec<S> {
+        (0..self.nv).map(|i| if i == k { S::one() } else { S::zero() }).collect()
+    }
+
+    /// The rates of rest.
+    fn rest(&self) -> Vec<S> {
+        alloc::vec![S::zero(); self.nv]
+    }
+}
+
+/// Numbers that do not vary.
+fn constant<S: Scalar>(x: &[S]) -> Vec<Dual<S>> {
+    x.iter().map(|&x| Dual::constant(x)).collect()
+}
+
+/// x + ε x'.
+fn varied<S: Scalar>(x: &[S], slope: &[S]) -> Vec<Dual<S>> {
+    x.iter().zip(slope).map(|(&x, &d)| Dual::new(x, d)).collect()
+}
+
+/// The derivatives.
+fn slopes<S: Scalar>(x: &[Dual<S>]) -> Vec<S> {
+    x.iter().map(|x| x.slope).collect()
+}
