@@ -30,6 +30,8 @@ pub(crate) struct Kernel {
 #[derive(Clone, Debug)]
 pub(crate) struct PeerKernel {
     entry: PeerEntry,
+    /// The function's name, where it keeps its result until it is asked for.
+    kept: Option<CString>,
     arguments: Vec<usize>,
     out: usize,
     robot: Rc<Opened>,
@@ -47,13 +49,39 @@ enum Entry {
     Four(unsafe extern "C" fn(P, P, P, P, O)),
 }
 
+/// With an array for the result, and without one.
 #[derive(Clone, Copy, Debug)]
 enum PeerEntry {
-    /// Keeps its results to itself.
-    Quiet(unsafe extern "C" fn(H, P)),
     One(unsafe extern "C" fn(H, P, O)),
     Two(unsafe extern "C" fn(H, P, P, O)),
     Three(unsafe extern "C" fn(H, P, P, P, O)),
+    Four(unsafe extern "C" fn(H, P, P, P, P, O)),
+    QuietOne(unsafe extern "C" fn(H, P)),
+    QuietTwo(unsafe extern "C" fn(H, P, P)),
+    QuietThree(unsafe extern "C" fn(H, P, P, P)),
+    QuietFour(unsafe extern "C" fn(H, P, P, P, P)),
+}
+
+impl PeerEntry {
+    /// # Safety
+    /// The robot is open, `x` has as many arrays as the function takes, each as long as it reads, and `out` is as long as it writes.
+    #[inline(always)]
+    unsafe fn run(self, robot: H, x: &[&[f64]], out: O) {
+        let x = |k: usize| x[k].as_ptr();
+        // Sound: what this function asks for is what they ask for.
+        unsafe {
+            match self {
+                Self::One(f) => f(robot, x(0), out),
+                Self::Two(f) => f(robot, x(0), x(1), out),
+                Self::Three(f) => f(robot, x(0), x(1), x(2), out),
+                Self::Four(f) => f(robot, x(0), x(1), x(2), x(3), out),
+                Self::QuietOne(f) => f(robot, x(0)),
+                Self::QuietTwo(f) => f(robot, x(0), x(1)),
+                Self::QuietThree(f) => f(robot, x(0), x(1), x(2)),
+                Self::QuietFour(f) => f(robot, x(0), x(1), x(2), x(3)),
+            }
+        }
+    }
 }
 
 impl Native {
@@ -152,23 +180,20 @@ fn repeat(rounds: usize, states: &[Vec<&[f64]>], mut call: impl FnMut(&[&[f64]])
 }
 
 impl PeerKernel {
-    /// Calls the function.
+    /// Calls the function, and asks for its result if it is kept. Whether there is a result.
     ///
     /// # Panics
     /// If a length is not the one promised.
-    #[inline]
-    pub(crate) fn call(&self, x: &[&[f64]], out: &mut [f64]) {
+    pub(crate) fn call(&self, x: &[&[f64]], out: &mut [f64]) -> bool {
         check(x, &self.arguments, out.len(), self.out);
         let (robot, out) = (self.robot.handle, out.as_mut_ptr());
         // Sound: as above, and the robot is open as long as the kernel lives; it is used by one thread only.
-        unsafe {
-            match self.entry {
-                PeerEntry::Quiet(f) => f(robot, x[0].as_ptr()),
-                PeerEntry::One(f) => f(robot, x[0].as_ptr(), out),
-                PeerEntry::Two(f) => f(robot, x[0].as_ptr(), x[1].as_ptr(), out),
-                PeerEntry::Three(f) => f(robot, x[0].as_ptr(), x[1].as_ptr(), x[2].as_ptr(), out),
-            }
-        }
+        unsafe { self.entry.run(robot, x, out) };
+        let Some(name) = &self.kept else { return true };
+        type Read = unsafe extern "C" fn(H, *const c_char, O) -> c_int;
+        let read: Option<Read> = self.robot.native.symbol("peer_read");
+        // Sound: it writes the result of the function, whose length was checked.
+        read.is_some_and(|read| unsafe { read(robot, name.as_ptr(), out) } != 0)
     }
 
     /// Calls the function on all states, so many rounds: lengths are checked once, and then only called.
@@ -178,13 +203,13 @@ impl PeerKernel {
     pub(crate) fn repeat(&self, rounds: usize, states: &[Vec<&[f64]>], out: &mut [f64]) {
         states.iter().for_each(|x| check(x, &self.arguments, out.len(), self.out));
         let (robot, out) = (self.robot.handle, out.as_mut_ptr());
-        // Sound: as in `call`.
+        // One loop for each number of arguments, so that nothing is chosen inside. Sound: as in `call`.
         unsafe {
             match self.entry {
-                PeerEntry::Quiet(f) => repeat(rounds, states, |x| f(robot, x[0].as_ptr())),
                 PeerEntry::One(f) => repeat(rounds, states, |x| f(robot, x[0].as_ptr(), out)),
                 PeerEntry::Two(f) => repeat(rounds, states, |x| f(robot, x[0].as_ptr(), x[1].as_ptr(), out)),
                 PeerEntry::Three(f) => repeat(rounds, states, |x| f(robot, x[0].as_ptr(), x[1].as_ptr(), x[2].as_ptr(), out)),
+                other => repeat(rounds, states, |x| other.run(robot, x, out)),
             }
         }
     }
@@ -233,18 +258,29 @@ impl NativePeer {
         text(ask(self.0.handle, c_int::try_from(joint).ok()?))
     }
 
-    /// The peer's function, which takes arrays of these lengths and writes `out` numbers; none if it keeps its results to itself.
-    pub(crate) fn kernel(&self, function: &str, arguments: &[usize], out: usize) -> Option<PeerKernel> {
+    /// Names of the frames that the peer has, in its order; none if it does not tell.
+    pub(crate) fn frames(&self) -> Vec<String> {
+        let Some(ask) = self.0.native.symbol::<extern "C" fn(H, c_int) -> *const c_char>("peer_frame_name") else { return Vec::new() };
+        (0..self.number("frame_count").unwrap_or(0)).filter_map(|k| text(ask(self.0.handle, c_int::try_from(k).ok()?))).collect()
+    }
+
+    /// The peer's function, which takes arrays of these lengths and gives `out` numbers: into an array, or, if `kept`, when asked for them.
+    pub(crate) fn kernel(&self, function: &str, arguments: &[usize], out: usize, kept: bool) -> Option<PeerKernel> {
         let native = &self.0.native;
         let name = format!("peer_{function}");
-        let entry = match (arguments.len(), out) {
-            (1, 0) => PeerEntry::Quiet(native.symbol(&name)?),
-            (1, _) => PeerEntry::One(native.symbol(&name)?),
-            (2, _) => PeerEntry::Two(native.symbol(&name)?),
-            (3, _) => PeerEntry::Three(native.symbol(&name)?),
+        let entry = match (arguments.len(), kept) {
+            (1, false) => PeerEntry::One(native.symbol(&name)?),
+            (2, false) => PeerEntry::Two(native.symbol(&name)?),
+            (3, false) => PeerEntry::Three(native.symbol(&name)?),
+            (4, false) => PeerEntry::Four(native.symbol(&name)?),
+            (1, true) => PeerEntry::QuietOne(native.symbol(&name)?),
+            (2, true) => PeerEntry::QuietTwo(native.symbol(&name)?),
+            (3, true) => PeerEntry::QuietThree(native.symbol(&name)?),
+            (4, true) => PeerEntry::QuietFour(native.symbol(&name)?),
             _ => return None,
         };
-        Some(PeerKernel { entry, arguments: arguments.to_vec(), out, robot: self.0.clone() })
+        let kept = if kept { Some(CString::new(function).ok()?) } else { None };
+        Some(PeerKernel { entry, kept, arguments: arguments.to_vec(), out, robot: self.0.clone() })
     }
 }
 

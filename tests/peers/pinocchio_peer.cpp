@@ -7,25 +7,26 @@
 #error "the algorithms would come from the wheel's library, compiled for any machine"
 #endif
 
+#include <pinocchio/algorithm/aba-derivatives.hpp>
 #include <pinocchio/algorithm/aba.hpp>
+#include <pinocchio/algorithm/center-of-mass.hpp>
+#include <pinocchio/algorithm/centroidal.hpp>
+#include <pinocchio/algorithm/cholesky.hpp>
 #include <pinocchio/algorithm/crba.hpp>
+#include <pinocchio/algorithm/energy.hpp>
 #include <pinocchio/algorithm/frames.hpp>
+#include <pinocchio/algorithm/jacobian.hpp>
+#include <pinocchio/algorithm/joint-configuration.hpp>
 #include <pinocchio/algorithm/kinematics.hpp>
+#include <pinocchio/algorithm/regressor.hpp>
+#include <pinocchio/algorithm/rnea-derivatives.hpp>
 #include <pinocchio/algorithm/rnea.hpp>
-#include <pinocchio/multibody.hpp>
 
-#include <boost/property_tree/ptree.hpp>
-#include <boost/property_tree/xml_parser.hpp>
+#include "pinocchio_model.hpp"
 
 #include <exception>
+#include <functional>
 #include <iostream>
-#include <limits>
-#include <locale>
-#include <map>
-#include <sstream>
-#include <stdexcept>
-#include <string>
-#include <vector>
 
 #ifndef PEER_NAME
 #define PEER_NAME "pinocchio " PINOCCHIO_VERSION
@@ -33,168 +34,59 @@
 
 #define PEER_API extern "C" __attribute__((visibility("default")))
 
-namespace pin = pinocchio;
-using boost::property_tree::ptree;
-using Vector = Eigen::VectorXd;
-using Input = Eigen::Map<const Vector>;
-
 namespace
 {
 
-const char * const FLOATING_BASE = "__floating_base__";
+using Vector = Eigen::VectorXd;
+using Matrix = Eigen::MatrixXd;
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using Six = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Matrix6x = pin::Data::Matrix6x;
+using Input = Eigen::Map<const Vector>;
+
+constexpr pin::ReferenceFrame body = pin::LOCAL, world = pin::WORLD, world_aligned = pin::LOCAL_WORLD_ALIGNED;
 
 struct Peer
 {
   pin::Model model;
   pin::Data data;
+  std::vector<pin::FrameIndex> frames; // in the order of the file
+  PINOCCHIO_ALIGNED_STD_VECTOR(pin::Force) forces; // on each joint
+  PINOCCHIO_ALIGNED_STD_VECTOR(pin::Motion) motions; // of each frame
+  std::vector<Matrix6x> jacobians; // of each frame
+  std::vector<Matrix6> inertias; // of each frame
+  Vector zero;
 
-  explicit Peer(const pin::Model & m)
+  Peer(const pin::Model & m, const std::vector<pin::FrameIndex> & f)
   : model(m)
   , data(model)
+  , frames(f)
+  , forces(model.njoints, pin::Force::Zero())
+  , motions(f.size(), pin::Motion::Zero())
+  , jacobians(f.size(), Matrix6x::Zero(6, model.nv))
+  , inertias(f.size(), Matrix6::Zero())
+  , zero(Vector::Zero(model.nv))
   {
   }
 
   Input q(const double * x) const { return Input(x, model.nq); }
   Input v(const double * x) const { return Input(x, model.nv); }
-};
 
-// ---- URDF, as Pinocchio's own reader takes it, save that a continuous joint is one angle and that the order is the file's
-
-std::string attribute(const ptree & element, const char * child, const char * key, const std::string & otherwise)
-{
-  const auto found = element.get_child_optional(child);
-  return found ? found->get("<xmlattr>." + std::string(key), otherwise) : otherwise;
-}
-
-std::vector<double> numbers(const std::string & text)
-{
-  std::istringstream stream(text);
-  stream.imbue(std::locale::classic());
-  std::vector<double> result;
-  for (double x; stream >> x;)
-    result.push_back(x);
-  return result;
-}
-
-Eigen::Vector3d three(const std::string & text)
-{
-  const std::vector<double> x = numbers(text);
-  if (x.size() != 3)
-    throw std::runtime_error("three numbers wanted, got \"" + text + "\"");
-  return Eigen::Vector3d(x[0], x[1], x[2]);
-}
-
-double one(const ptree & element, const char * child, const char * key)
-{
-  const std::vector<double> x = numbers(attribute(element, child, key, "0"));
-  return x.empty() ? 0.0 : x[0];
-}
-
-// R = Rz(yaw) Ry(pitch) Rx(roll)
-pin::SE3 origin(const ptree & element)
-{
-  using Turn = Eigen::AngleAxisd;
-  const Eigen::Vector3d xyz = three(attribute(element, "origin", "xyz", "0 0 0"));
-  const Eigen::Vector3d rpy = three(attribute(element, "origin", "rpy", "0 0 0"));
-  const Eigen::Matrix3d turn = Turn(rpy[2], Eigen::Vector3d::UnitZ()).toRotationMatrix()
-                               * Turn(rpy[1], Eigen::Vector3d::UnitY()).toRotationMatrix()
-                               * Turn(rpy[0], Eigen::Vector3d::UnitX()).toRotationMatrix();
-  return pin::SE3(turn, xyz);
-}
-
-pin::Inertia inertia(const ptree & link)
-{
-  const auto found = link.get_child_optional("inertial");
-  if (!found)
-    return pin::Inertia::Zero();
-  const auto i = [&](const char * key) { return one(*found, "inertia", key); };
-  Eigen::Matrix3d tensor;
-  tensor << i("ixx"), i("ixy"), i("ixz"), i("ixy"), i("iyy"), i("iyz"), i("ixz"), i("iyz"), i("izz");
-  const pin::SE3 place = origin(*found);
-  const Eigen::Matrix3d turned = place.rotation() * tensor * place.rotation().transpose();
-  return pin::Inertia(one(*found, "mass", "value"), place.translation(), turned);
-}
-
-pin::JointModel joint_model(const std::string & type, const Eigen::Vector3d & axis)
-{
-  const bool x = axis == Eigen::Vector3d::UnitX(), y = axis == Eigen::Vector3d::UnitY(), z = axis == Eigen::Vector3d::UnitZ();
-  if (type == "revolute" || type == "continuous")
+  // wrenches on the frames, in their axes: what Pinocchio wants to know of each joint
+  const PINOCCHIO_ALIGNED_STD_VECTOR(pin::Force) & carried(const double * wrenches)
   {
-    if (x) return pin::JointModelRX();
-    if (y) return pin::JointModelRY();
-    if (z) return pin::JointModelRZ();
-    return pin::JointModelRevoluteUnaligned(axis);
-  }
-  if (type == "prismatic")
-  {
-    if (x) return pin::JointModelPX();
-    if (y) return pin::JointModelPY();
-    if (z) return pin::JointModelPZ();
-    return pin::JointModelPrismaticUnaligned(axis);
-  }
-  throw std::runtime_error("joint type " + type + " is not known here");
-}
-
-struct Reader
-{
-  pin::Model model;
-  std::map<std::string, const ptree *> links;
-  std::vector<const ptree *> joints;
-
-  // `link` stands still in the frame of `joint`, at `place`
-  void attach(const std::string & link, pin::JointIndex joint, const pin::SE3 & place)
-  {
-    const auto found = links.find(link);
-    if (found == links.end())
-      throw std::runtime_error("link " + link + " is missing");
-    model.appendBodyToJoint(joint, inertia(*found->second), place);
-    model.addBodyFrame(link, joint, place, 0);
-    for (const ptree * element : joints)
+    for (pin::Force & force : forces)
+      force.setZero();
+    for (std::size_t k = 0; k < frames.size(); ++k)
     {
-      if (attribute(*element, "parent", "link", "") != link)
-        continue;
-      const std::string type = element->get<std::string>("<xmlattr>.type");
-      const std::string child = attribute(*element, "child", "link", "");
-      const pin::SE3 there = place * origin(*element);
-      if (type == "fixed")
-      {
-        attach(child, joint, there);
-        continue;
-      }
-      const Eigen::Vector3d axis = three(attribute(*element, "axis", "xyz", "1 0 0")).normalized();
-      const std::string name = element->get<std::string>("<xmlattr>.name");
-      attach(child, model.addJoint(joint, joint_model(type, axis), there, name), pin::SE3::Identity());
+      const Eigen::Map<const Six> w(wrenches + 6 * k);
+      const pin::Frame & frame = model.frames[frames[k]];
+      forces[frame.parentJoint] += frame.placement.act(pin::Force(w.tail<3>(), w.head<3>()));
     }
+    return forces;
   }
 };
-
-pin::Model read(const char * path, bool floating)
-{
-  ptree tree;
-  boost::property_tree::read_xml(path, tree, boost::property_tree::xml_parser::no_comments);
-  const ptree & robot = tree.get_child("robot");
-  Reader reader;
-  std::map<std::string, bool> is_child;
-  for (const auto & entry : robot)
-  {
-    if (entry.first == "link")
-      reader.links[entry.second.get<std::string>("<xmlattr>.name")] = &entry.second;
-    if (entry.first == "joint")
-    {
-      reader.joints.push_back(&entry.second);
-      is_child[attribute(entry.second, "child", "link", "")] = true;
-    }
-  }
-  std::string root;
-  for (const auto & link : reader.links)
-    if (!is_child.count(link.first))
-      root = link.first;
-  pin::JointIndex base = 0;
-  if (floating)
-    base = reader.model.addJoint(0, pin::JointModelFreeFlyer(), pin::SE3::Identity(), FLOATING_BASE);
-  reader.attach(root, base, pin::SE3::Identity());
-  return reader.model;
-}
 
 Peer & peer(void * handle)
 {
@@ -217,9 +109,9 @@ PEER_API const char * peer_name(void)
 PEER_API void * peer_open(const char * urdf_path, int floating, double gx, double gy, double gz)
 try
 {
-  pin::Model model = read(urdf_path, floating != 0);
+  auto [model, frames] = read(urdf_path, floating != 0);
   model.gravity.linear() = Eigen::Vector3d(gx, gy, gz);
-  return new Peer(model);
+  return new Peer(model, frames);
 }
 catch (const std::exception & error)
 {
@@ -272,29 +164,16 @@ PEER_API int peer_joint_nv(void * handle, int i)
   return peer(handle).model.nvs[index(i)];
 }
 
-PEER_API void peer_inverse_dynamics(void * handle, const double * q, const double * v, const double * a, double * tau)
+PEER_API int peer_frame_count(void * handle)
 {
-  Peer & p = peer(handle);
-  Eigen::Map<Vector>(tau, p.model.nv) = pin::rnea(p.model, p.data, p.q(q), p.v(v), p.v(a));
+  return static_cast<int>(peer(handle).frames.size());
 }
 
-PEER_API void peer_placements(void * handle, const double * q)
+PEER_API const char * peer_frame_name(void * handle, int i)
 {
   Peer & p = peer(handle);
-  pin::forwardKinematics(p.model, p.data, p.q(q));
-  pin::updateFramePlacements(p.model, p.data);
+  return p.model.frames[p.frames[i]].name.c_str();
 }
 
-PEER_API void peer_mass_matrix(void * handle, const double * q, double * M)
-{
-  Peer & p = peer(handle);
-  pin::crba(p.model, p.data, p.q(q));
-  Eigen::Map<Eigen::MatrixXd> full(M, p.model.nv, p.model.nv);
-  full = p.data.M.selfadjointView<Eigen::Upper>(); // only the upper triangle is computed
-}
-
-PEER_API void peer_forward_dynamics(void * handle, const double * q, const double * v, const double * tau, double * a)
-{
-  Peer & p = peer(handle);
-  Eigen::Map<Vector>(a, p.model.nv) = pin::aba(p.model, p.data, p.q(q), p.v(v), p.v(tau));
-}
+#include "pinocchio_functions.hpp"
+#include "pinocchio_read.hpp"

@@ -24,7 +24,7 @@ enum Way<'a> {
 }
 
 impl<'a> Contender<'a> {
-    /// Code of another library; `out` is 0 where it keeps its results to itself.
+    /// Code of another library.
     pub(super) fn peer(kernel: PeerKernel, out: usize) -> Self {
         Self { way: Way::Peer(kernel), out }
     }
@@ -32,21 +32,25 @@ impl<'a> Contender<'a> {
     /// The compiled function.
     pub(super) fn generated(compiled: &Compiled, function: &Function<f64>) -> Self {
         let kernel = compiled.kernel(function.name).expect("every function of a ledger was loaded");
-        Self { way: Way::Generated(kernel.clone()), out: function.gives.len(compiled.shape()) }
+        Self { way: Way::Generated(kernel.clone()), out: function.len(compiled.shape()) }
     }
 
     /// The same algorithm at run time.
     pub(super) fn generic(model: &'a Model<f64>, function: &'static Function<f64>) -> Self {
         let workspace = RefCell::new(Workspace::new(model));
-        Self { way: Way::Generic { function, model, workspace }, out: function.gives.len(model.shape()) }
+        Self { way: Way::Generic { function, model, workspace }, out: function.len(model.shape()) }
     }
 
-    /// The result in one state.
+    /// The result in one state; empty where a peer keeps it to itself.
     pub(super) fn call(&self, arguments: &[&[f64]]) -> Vec<f64> {
         let mut out = vec![0.0; self.out];
         match &self.way {
             Way::Generated(kernel) => kernel.call(arguments, &mut out),
-            Way::Peer(kernel) => kernel.call(arguments, &mut out),
+            Way::Peer(kernel) => {
+                if !kernel.call(arguments, &mut out) {
+                    out.clear();
+                }
+            }
             Way::Generic { function, model, workspace } => {
                 let called = function.call(model, &mut workspace.borrow_mut(), arguments, &mut out);
                 debug_assert!(called.is_ok(), "arguments were made to measure");

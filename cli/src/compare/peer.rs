@@ -2,8 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use articulated_core::algorithm::{Argument, Function, ResultKind};
+use articulated_core::algorithm::{Argument, Dim, Function, Shape};
 use articulated_core::model::{JointInfo, Model};
+use articulated_core::spatial::Reference;
 use serde_json::Value;
 
 use super::contender::Contender;
@@ -19,6 +20,10 @@ pub(super) struct Peer {
     q: Vec<usize>,
     /// Our index of each number of the peer's v, a and τ.
     v: Vec<usize>,
+    /// Whether its frames are ours, in our order.
+    frames: bool,
+    /// Whether its joints are in the order of our links.
+    links: bool,
 }
 
 impl Peer {
@@ -28,27 +33,28 @@ impl Peer {
         let name = name.or_else(|| library.peer_name()).ok_or("it has no function peer_name")?;
         let native = NativePeer::open(&library, urdf, robot.floating(), robot.options.gravity)?;
         let (q, v) = orders(&native, model)?;
-        Ok(Self { name, native, q, v })
+        let frames = native.frames().iter().eq(model.frames.iter().map(|f| &f.name));
+        let links = model.links().enumerate().all(|(k, i)| native.joint_name(k).is_some_and(|name| name == model.bodies[i].name));
+        Ok(Self { name, native, q, v, frames, links })
     }
 
-    /// The peer's own function of this name, if it has it and its result can be told apart.
+    /// The peer's own function of this name, if it has it and means the same by it.
     pub(super) fn contender(&self, function: &Function<f64>, model: &Model<f64>) -> Option<Contender<'static>> {
-        let shape = model.shape();
-        let lengths: Vec<usize> = function.takes.iter().map(|a| a.len(shape)).collect();
-        if lengths.iter().zip(function.takes).any(|(n, a)| *n != self.order(*a).len()) {
+        let takes = || function.takes.iter().flat_map(|a| a.dims()).chain(function.gives);
+        let wrenches = !function.takes.contains(&Argument::Wrenches) || model.wrench_reference == Reference::Body;
+        let told = takes().all(|d| (*d != Dim::Frames || self.frames) && (*d != Dim::Links || self.links));
+        if !wrenches || !told {
             return None;
         }
-        let out = match function.gives {
-            ResultKind::Placements => 0,
-            other if [model.nv, model.nv * model.nv].contains(&other.len(shape)) => other.len(shape),
-            _ => return None,
-        };
-        Some(Contender::peer(self.native.kernel(function.name, &lengths, out)?, out))
+        let lengths: Vec<usize> = function.takes.iter().map(|a| a.len(model.shape())).collect();
+        let out = function.len(model.shape());
+        Some(Contender::peer(self.native.kernel(function.name, &lengths, out, is_kept(function.gives))?, out))
     }
 
     /// Our arguments in the peer's order.
-    pub(super) fn arguments(&self, function: &Function<f64>, ours: &[&[f64]]) -> Vec<Vec<f64>> {
-        let reorder = |(argument, x): (&Argument, &&[f64])| self.order(*argument).iter().map(|&k| x[k]).collect();
+    pub(super) fn arguments(&self, function: &Function<f64>, model: &Model<f64>, ours: &[&[f64]]) -> Vec<Vec<f64>> {
+        let reorder =
+            |(argument, x): (&Argument, &&[f64])| (0..x.len()).map(|k| x[self.place(k, argument.dims(), model.shape())]).collect();
         function.takes.iter().zip(ours).map(reorder).collect()
     }
 
@@ -71,7 +77,7 @@ impl Peer {
             }
             let scale = scales(model, function.name, x).ok()?;
             for (k, b) in b.iter().enumerate() {
-                let at = self.place(k, a.len());
+                let at = self.place(k, function.gives, model.shape());
                 let difference = (a[at] - b).abs();
                 let relative = if difference == 0.0 { 0.0 } else { difference / scale[at] };
                 worst = if worst.is_nan() || worst >= relative { worst } else { relative };
@@ -80,15 +86,25 @@ impl Peer {
         Some(worst)
     }
 
-    /// Our index of number `k` of the peer's result, a vector or a square matrix.
-    fn place(&self, k: usize, length: usize) -> usize {
-        let n = self.v.len();
-        if length == n { self.v[k] } else { self.v[k / n] * n + self.v[k % n] }
+    /// Our index of number `k` of the peer's array of these dimensions.
+    fn place(&self, k: usize, dims: &[Dim], shape: Shape) -> usize {
+        let (mut rest, mut stride, mut at) = (k, 1, 0);
+        for dim in dims.iter().rev() {
+            let (n, index) = (dim.len(shape), rest % dim.len(shape));
+            let ours = match dim {
+                Dim::Nq => self.q[index],
+                Dim::Nv => self.v[index],
+                Dim::Frames | Dim::Links | Dim::Of(_) => index,
+            };
+            (rest, stride, at) = (rest / n, stride * n, at + stride * ours);
+        }
+        at
     }
+}
 
-    fn order(&self, argument: Argument) -> &[usize] {
-        if argument == Argument::Q { &self.q } else { &self.v }
-    }
+/// Whether a peer gives a result of these dimensions only when asked: all but rows of numbers and square matrices, which it writes out each time.
+fn is_kept(gives: &[Dim]) -> bool {
+    !(gives.len() < 2 && !gives.contains(&Dim::Frames) && !gives.contains(&Dim::Links) || gives == [Dim::Nv, Dim::Nv])
 }
 
 /// Our indices of the peer's coordinates and rates.
