@@ -6,6 +6,7 @@ use articulated_codegen::nearest;
 use articulated_core::algorithm::{function, functions};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::edits::{Edits, FrameArguments};
 use crate::failure::STATUSES;
 
 /// Robot dynamics, spelled out: checks a URDF, generates its straight-line code, evaluates it, and compares it.
@@ -35,6 +36,7 @@ pub(crate) enum Command {
         "articulated check arm.urdf",
         "articulated check --floating walker.urdf",
         "articulated check arm.urdf --function inverse_dynamics",
+        "articulated check arm.urdf --append gripper.urdf@tool:left_ --payload left_palm=0.5@0,0,0.1 --lock elbow=0.5",
         "articulated check panda_like --format json",
     ]))]
     Check(CheckArguments),
@@ -43,6 +45,8 @@ pub(crate) enum Command {
         "articulated generate panda_like",
         "articulated generate arm.urdf --functions placements,inverse_dynamics -o src/arm.rs",
         "articulated generate arm.urdf --runtime ::articulated -o src/arm.rs",
+        "articulated generate arm.urdf --frames tool,camera --lock wrist=0 --payload tool=1.2@0,0,0.1:1e-3,0,0,1e-3,0,1e-3",
+        "articulated generate arm.urdf --append gripper.urdf@tool --append gripper.urdf@tool:second_:0,0,0.2,0,0,1.5",
     ]))]
     Generate(GenerateArguments),
     /// Evaluates functions on a file of states, by generic and by generated code
@@ -86,12 +90,16 @@ pub(crate) struct RobotArguments {
     /// Take an angle of the file within TOL rad of a multiple of π/2 as that multiple
     #[arg(long, value_name = "TOL", value_parser = tolerance)]
     pub(crate) snap_angles: Option<f64>,
+    #[command(flatten)]
+    pub(crate) edits: Edits,
 }
 
 #[derive(Args, Debug)]
 pub(crate) struct CheckArguments {
     #[command(flatten)]
     pub(crate) robot: RobotArguments,
+    #[command(flatten)]
+    pub(crate) frames: FrameArguments,
     /// Check too that these functions can be generated
     #[arg(long, alias = "functions", value_name = "NAME", value_delimiter = ',', value_parser = known_function)]
     pub(crate) function: Vec<String>,
@@ -101,6 +109,8 @@ pub(crate) struct CheckArguments {
 pub(crate) struct GenerateArguments {
     #[command(flatten)]
     pub(crate) robot: RobotArguments,
+    #[command(flatten)]
+    pub(crate) frames: FrameArguments,
     /// The functions wanted [default: placements,inverse_dynamics]
     #[arg(long, alias = "function", value_name = "NAMES", value_delimiter = ',', value_parser = known_function)]
     pub(crate) functions: Vec<String>,
@@ -122,6 +132,8 @@ pub(crate) struct GenerateArguments {
 pub(crate) struct EvalArguments {
     #[command(flatten)]
     pub(crate) robot: RobotArguments,
+    #[command(flatten)]
+    pub(crate) frames: FrameArguments,
     /// The functions to evaluate
     #[arg(long, alias = "functions", value_name = "NAMES", value_delimiter = ',', required = true, value_parser = known_function)]
     pub(crate) function: Vec<String>,

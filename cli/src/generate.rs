@@ -27,7 +27,7 @@ struct Function {
 
 /// Writes the source to where it is wanted.
 pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), Failure> {
-    let robot = Robot::find(&arguments.robot)?;
+    let robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
     let mut request = robot.request(&arguments.functions);
     if arguments.functions.is_empty() {
         request.options.functions = articulated_codegen::Options::default().functions;

@@ -8,6 +8,7 @@ mod check;
 mod compare;
 pub mod compiled;
 mod console;
+mod edits;
 mod eval;
 pub mod failure;
 mod generate;

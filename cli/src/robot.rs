@@ -3,12 +3,13 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use articulated_codegen::{Generated, Options, Request, generate, nearest};
+use articulated_codegen::{Appended, Error, Generated, Options, Request, choose_frames, generate, nearest};
 use articulated_core::description::Base;
 use articulated_core::model::Model;
-use articulated_urdf::{Problems, Reading};
+use articulated_urdf::Reading;
 
 use crate::arguments::RobotArguments;
+use crate::edits::{Edits, FrameArguments};
 use crate::failure::Failure;
 
 /// A little more than the reader accepts, so that it is the reader who refuses.
@@ -28,12 +29,10 @@ impl Robot {
     /// The robot that the arguments name.
     pub(crate) fn find(arguments: &RobotArguments) -> Result<Self, Failure> {
         let name = arguments.robot.as_str();
+        let (file, urdf) = document(name)?;
         let bundled = articulated_models::robot(name);
-        let (file, urdf, base, path) = match bundled {
-            Some(b) => (format!("{name}.urdf"), b.urdf.as_bytes().to_vec(), b.base, None),
-            None if name == "-" => ("<stdin>".to_owned(), read_file(name)?, Base::Fixed, None),
-            None => (name.to_owned(), read_file(name)?, Base::Fixed, Some(PathBuf::from(name))),
-        };
+        let base = bundled.map_or(Base::Fixed, |b| b.base);
+        let path = (bundled.is_none() && name != "-").then(|| PathBuf::from(name));
         let base = match (arguments.floating, arguments.fixed) {
             (true, _) => Base::Floating,
             (_, true) => Base::Fixed,
@@ -43,25 +42,30 @@ impl Robot {
         options.gravity = arguments.gravity.map_or(options.gravity, |g| g.0);
         options.allow_unphysical_inertia = arguments.allow_unphysical_inertia;
         options.snap_angles = arguments.snap_angles;
+        edit(&mut options, &arguments.edits)?;
         Ok(Self { file, urdf, options, path })
     }
 
-    /// What the reader finds in the document.
-    pub(crate) fn read(&self) -> Result<Reading, Problems> {
-        let options = articulated_urdf::Options {
-            file: self.file.clone(),
-            base: self.options.base,
-            allow_unphysical_inertia: self.options.allow_unphysical_inertia,
-            snap_angles: self.options.snap_angles,
-        };
-        articulated_urdf::read(&self.urdf, &options)
+    /// The robot with these frames.
+    pub(crate) fn with(mut self, arguments: &FrameArguments) -> Self {
+        self.options.frames = (!arguments.frames.is_empty()).then(|| arguments.frames.clone());
+        self.options.wrench_reference = arguments.wrenches_in.unwrap_or_default();
+        self
     }
 
-    /// The model of what was read, under the gravity asked for.
+    /// What the reader finds in the document, edited as asked for.
+    pub(crate) fn read(&self) -> Result<Reading, Error> {
+        articulated_codegen::read(&self.request(&[]))
+    }
+
+    /// The model of what was read, under the gravity asked for, with the frames asked for.
     pub(crate) fn model(&self, reading: &Reading) -> Result<Model<f64>, Failure> {
-        let error = |error| articulated_codegen::Error::Model { file: self.file.clone(), error };
-        let model = Model::new(&reading.description, self.options.base).map_err(error)?;
-        Ok(model.with_gravity(self.options.gravity))
+        Ok(choose_frames(&self.request(&[]), self.whole_model(reading)?)?)
+    }
+
+    /// As [`Robot::model`], with a frame for every link.
+    pub(crate) fn whole_model(&self, reading: &Reading) -> Result<Model<f64>, Failure> {
+        Ok(articulated_codegen::model(&self.request(&[]), &reading.description)?)
     }
 
     /// The request for these functions, without a runtime.
@@ -73,7 +77,7 @@ impl Robot {
     }
 
     /// The code of these functions, without a runtime.
-    pub(crate) fn generate(&self, functions: &[String]) -> Result<Generated, articulated_codegen::Error> {
+    pub(crate) fn generate(&self, functions: &[String]) -> Result<Generated, Error> {
         generate(&self.request(functions))
     }
 
@@ -87,8 +91,14 @@ impl Robot {
         if self.floating() { "floating" } else { "fixed" }
     }
 
-    /// A file with the document, for those who read files: the robot's own, or one in `folder`.
+    /// A file with the document, for those who read files: the robot's own, or one in `folder`. There is none of an edited robot.
     pub(crate) fn file_in(&self, folder: &Path) -> std::io::Result<PathBuf> {
+        let o = &self.options;
+        if !(o.append.is_empty() && o.payloads.is_empty() && o.lock.is_empty()) {
+            return Err(std::io::Error::other(
+                "peers read the file, which knows nothing of --append, --payload and --lock: leave out one or the other",
+            ));
+        }
         match &self.path {
             Some(path) if path.is_file() => Ok(path.clone()),
             _ => {
@@ -97,6 +107,26 @@ impl Robot {
                 Ok(path)
             }
         }
+    }
+}
+
+/// The edits, with the documents of the robots to append.
+fn edit(options: &mut Options, edits: &Edits) -> Result<(), Failure> {
+    for other in &edits.append {
+        let (file, urdf) = document(&other.file)?;
+        options.append.push(Appended { urdf, file, at: other.at.clone(), prefix: other.prefix.clone(), origin: other.origin });
+    }
+    options.payloads.clone_from(&edits.payload);
+    options.lock = edits.lock.iter().map(|lock| (lock.joint.clone(), lock.at.clone())).collect();
+    Ok(())
+}
+
+/// A file's name for messages, and its bytes: of a bundled robot by its name, the standard input, or a file.
+fn document(name: &str) -> Result<(String, Vec<u8>), Failure> {
+    match articulated_models::robot(name) {
+        Some(bundled) => Ok((format!("{name}.urdf"), bundled.urdf.as_bytes().to_vec())),
+        None if name == "-" => Ok(("<stdin>".to_owned(), read_file(name)?)),
+        None => Ok((name.to_owned(), read_file(name)?)),
     }
 }
 

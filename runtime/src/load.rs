@@ -1,9 +1,9 @@
-//! Robots loaded at run time.
+//! Robots loaded at run time: as models at once, or as descriptions to be edited first.
 
 use std::fmt;
 use std::path::Path;
 
-use articulated_core::description::Base;
+use articulated_core::description::{Base, Description};
 use articulated_core::model::{Model, ModelError};
 use articulated_urdf::{Options, Problems, read};
 
@@ -32,14 +32,37 @@ impl std::error::Error for LoadError {}
 
 /// The generic model of the URDF at `path`, with standard gravity.
 pub fn load(path: impl AsRef<Path>, base: Base) -> Result<Model<f64>, LoadError> {
-    let path = path.as_ref();
-    let bytes = std::fs::read(path).map_err(LoadError::Io)?;
-    load_bytes(&path.display().to_string(), &bytes, base)
+    Model::new(&describe(path, base)?, base).map_err(LoadError::Model)
 }
 
 /// The generic model of a URDF in memory; `file` is its name in messages.
 pub fn load_bytes(file: &str, bytes: &[u8], base: Base) -> Result<Model<f64>, LoadError> {
+    Model::new(&describe_bytes(file, bytes, base)?, base).map_err(LoadError::Model)
+}
+
+/// What the URDF at `path` says, to be edited and made a model of:
+///
+/// ```
+/// # fn arm() -> Result<(), Box<dyn std::error::Error>> {
+/// use articulated::{Base, Model, Origin, Payload, describe};
+///
+/// let mut arm = describe("arm.urdf", Base::Fixed)?;
+/// arm.append("tool", &describe("gripper.urdf", Base::Floating)?, "left_", Origin::default())?;
+/// arm.attach(&Payload { link: "left_palm".into(), mass: 0.5, ..Payload::default() })?;
+/// arm.lock("elbow", &[0.5])?;
+/// let arm = Model::new(&arm, Base::Fixed)?.with_frames(&["left_palm"])?;
+/// # Ok(()) }
+/// ```
+///
+/// `base` decides no more than what would be reported as unused.
+pub fn describe(path: impl AsRef<Path>, base: Base) -> Result<Description, LoadError> {
+    let path = path.as_ref();
+    let bytes = std::fs::read(path).map_err(LoadError::Io)?;
+    describe_bytes(&path.display().to_string(), &bytes, base)
+}
+
+/// As [`describe`], of a URDF in memory; `file` is its name in messages.
+pub fn describe_bytes(file: &str, bytes: &[u8], base: Base) -> Result<Description, LoadError> {
     let options = Options { file: file.into(), base, ..Options::default() };
-    let reading = read(bytes, &options).map_err(LoadError::Urdf)?;
-    Model::new(&reading.description, base).map_err(LoadError::Model)
+    Ok(read(bytes, &options).map_err(LoadError::Urdf)?.description)
 }

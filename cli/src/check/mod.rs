@@ -4,6 +4,7 @@ mod inertia;
 mod report;
 mod text;
 
+use articulated_codegen::Error;
 use articulated_urdf::Reading;
 
 use crate::arguments::{CheckArguments, Format};
@@ -14,7 +15,7 @@ use report::{Diagnostic, Report};
 
 /// Prints all that there is to say; an error of the input is part of that and goes where the rest goes.
 pub(crate) fn run(arguments: &CheckArguments, format: Format) -> Result<u8, Failure> {
-    let robot = Robot::find(&arguments.robot)?;
+    let robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
     let report = examine(&robot, &arguments.function);
     console::print(&match format {
         Format::Text => text::text(&report),
@@ -26,10 +27,11 @@ pub(crate) fn run(arguments: &CheckArguments, format: Format) -> Result<u8, Fail
 fn examine(robot: &Robot, functions: &[String]) -> Report {
     let mut report = Report::new(robot);
     match robot.read() {
-        Err(problems) => {
+        Err(Error::Urdf(problems)) => {
             report.errors.extend(problems.errors.iter().map(Diagnostic::of));
             report.warnings.extend(problems.warnings.iter().map(Diagnostic::of));
         }
+        Err(error) => report.errors.extend(Failure::from(error).lines.into_iter().map(Diagnostic::plain)),
         Ok(reading) => {
             report.warnings.extend(reading.warnings.iter().chain(&reading.snapped).map(Diagnostic::of));
             report.unused.extend(reading.unused.iter().map(ToString::to_string));
@@ -44,7 +46,7 @@ fn examine(robot: &Robot, functions: &[String]) -> Report {
 }
 
 fn describe(robot: &Robot, reading: &Reading, report: &mut Report) {
-    match robot.model(reading) {
+    match robot.whole_model(reading) {
         Ok(model) => report.describe(&reading.description, &model),
         Err(failure) => report.errors.extend(failure.lines.into_iter().map(Diagnostic::plain)),
     }

@@ -78,7 +78,9 @@ pub(super) struct JointRow {
     pub(super) velocity: Option<f64>,
     pub(super) effort: Option<f64>,
     pub(super) mimic: Option<MimicRow>,
-    /// kg that the joint moves: everything behind it.
+    /// The coordinates at which it is locked.
+    pub(super) locked: Option<Vec<f64>>,
+    /// kg that the joint moves: everything behind it; none if it is fixed or locked.
     pub(super) carries: f64,
 }
 
@@ -182,6 +184,7 @@ fn joint_rows(description: &Description, model: &Model<f64>) -> Vec<JointRow> {
         velocity: None,
         effort: None,
         mimic: None,
+        locked: None,
         carries: carried[0],
     });
     let places: std::collections::BTreeMap<&str, _> = model.joints.iter().map(|j| (j.name.as_str(), (j.q, j.v))).collect();
@@ -205,7 +208,8 @@ fn joint_rows(description: &Description, model: &Model<f64>) -> Vec<JointRow> {
                 let leader = description.joints[m.joint].name.clone();
                 MimicRow { joint: leader, multiplier: m.multiplier, offset: m.offset }
             }),
-            carries: if joint.kind == JointKind::Fixed { 0.0 } else { carried[body] },
+            locked: joint.locked.clone(),
+            carries: if body == model.frames[joint.parent].body { 0.0 } else { carried[body] },
         }
     });
     base.into_iter().chain(rows).collect()

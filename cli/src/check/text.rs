@@ -95,20 +95,21 @@ fn joints(rows: &[JointRow]) -> Table {
     for row in rows {
         let text = |x: &Option<String>| x.clone().unwrap_or_else(|| "–".into());
         let limit = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), number);
+        let locked = row.locked.as_ref().map(|at| format!("locked at {}", at.iter().map(|x| number(*x)).collect::<Vec<_>>().join(", ")));
         let follows = row.mimic.as_ref().map(|m| format!("{} · {} + {}", number(m.multiplier), m.joint, number(m.offset)));
         table.row([
             row.joint.clone(),
             row.kind.to_owned(),
             text(&row.parent),
             text(&row.child),
-            text(&follows),
+            text(&locked.or(follows)),
             range(row.q),
             range(row.v),
             limit(row.lower),
             limit(row.upper),
             limit(row.velocity),
             limit(row.effort),
-            if row.kind == "fixed" { "–".into() } else { number(row.carries) },
+            if row.kind == "fixed" || row.locked.is_some() { "–".into() } else { number(row.carries) },
         ]);
     }
     table

@@ -43,7 +43,7 @@ struct Bench<'a> {
 pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Failure> {
     let mut robot = Robot::find(&arguments.robot)?;
     robot.options.forbid_unsafe = arguments.forbid_unsafe;
-    let reading = robot.read().map_err(articulated_codegen::Error::from)?;
+    let reading = robot.read()?;
     reading.warnings.iter().chain(&reading.snapped).for_each(|w| console::warn(&w.to_string()));
     if cfg!(debug_assertions) {
         console::warn("this command was built without optimisation: times of generic code, and of the generation, mean little");

@@ -21,8 +21,8 @@ const BOUND: f64 = 128.0;
 
 /// Prints the results of every function on every state.
 pub(crate) fn run(arguments: &EvalArguments, format: Format) -> Result<u8, Failure> {
-    let robot = Robot::find(&arguments.robot)?;
-    let reading = robot.read().map_err(articulated_codegen::Error::from)?;
+    let robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
+    let reading = robot.read()?;
     reading.warnings.iter().chain(&reading.snapped).for_each(|w| console::warn(&w.to_string()));
     let model = robot.model(&reading)?;
     let functions = functions(&arguments.function);

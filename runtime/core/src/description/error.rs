@@ -168,17 +168,20 @@ pub(super) fn nearest<'a>(wrong: &str, names: impl Iterator<Item = &'a str>) -> 
     near.min_by_key(|(d, _)| *d).map(|(_, name)| name.into())
 }
 
-/// How many letters to insert, take out or change (Levenshtein), whatever their case.
+/// How many letters to insert, take out, change, or swap with the next, whatever their case (optimal string alignment).
 fn distance(a: &[char], b: &str) -> usize {
     let same = |a: char, b: char| a.to_lowercase().eq(b.to_lowercase());
-    let mut row: Vec<usize> = (0..=a.len()).collect();
-    for (i, y) in b.chars().take(LONGEST + 1).enumerate() {
+    let b: Vec<char> = b.chars().take(LONGEST + 1).collect();
+    let (mut before, mut row): (Vec<usize>, Vec<usize>) = (Vec::new(), (0..=a.len()).collect());
+    for i in 0..b.len() {
         let mut next = vec![i + 1];
-        for (j, x) in a.iter().enumerate() {
-            let changed = row[j] + usize::from(!same(*x, y));
-            next.push(changed.min(row[j + 1] + 1).min(next[j] + 1));
+        for j in 0..a.len() {
+            let changed = row[j] + usize::from(!same(a[j], b[i]));
+            let swapped = i > 0 && j > 0 && same(a[j], b[i - 1]) && same(a[j - 1], b[i]);
+            let swapped = if swapped { before[j - 1] + 1 } else { changed };
+            next.push(changed.min(swapped).min(row[j + 1] + 1).min(next[j] + 1));
         }
-        row = next;
+        (before, row) = (row, next);
     }
     row[a.len()]
 }
@@ -192,6 +195,7 @@ mod tests {
         let near = |wrong| nearest(wrong, ["shoulder", "elbow", "wrist_1"].into_iter());
         assert_eq!(near("elbo").as_deref(), Some("elbow"));
         assert_eq!(near("Wrist1").as_deref(), Some("wrist_1"));
+        assert_eq!(nearest("plam", ["arm", "palm"].into_iter()).as_deref(), Some("palm"));
         assert_eq!(near("hip"), None);
         assert_eq!(nearest("x", core::iter::empty()), None);
     }

@@ -1,0 +1,77 @@
+use super::{File, run};
+
+const GRIPPER: &str = r#"<robot name="gripper"><link name="palm"/>
+<link name="finger"><inertial><mass value="0.25"/><inertia ixx="1e-4" ixy="0" ixz="0" iyy="1e-4" iyz="0" izz="1e-4"/></inertial></link>
+<joint name="close" type="prismatic"><parent link="palm"/><child link="finger"/><axis xyz="0 1 0"/>
+<limit lower="0" upper="0.1" effort="1" velocity="1"/></joint></robot>"#;
+
+#[test]
+fn check_tells_what_an_edited_robot_is_made_of() {
+    let gripper = File::new("gripper.urdf", GRIPPER.as_bytes());
+    let plain = run(&["check", "double_pendulum", "--format", "json"]).json();
+    let link = plain["links"][2]["link"].as_str().unwrap();
+    let joint = plain["joints"][0]["joint"].as_str().unwrap();
+    let append = format!("{}@{link}:left_:0,0,0.1", gripper.name());
+    let (payload, lock) = ("left_palm=1.5@0,0,0.1".to_owned(), format!("{joint}=0.5"));
+    let words = ["check", "double_pendulum", "--append", &append, "--payload", &payload, "--lock", &lock];
+    let json = run(&[&words[..], &["--format", "json"]].concat()).json();
+    assert_eq!(json["totals"]["degrees_of_freedom"], plain["totals"]["degrees_of_freedom"]);
+    let mass = |report: &serde_json::Value| report["totals"]["mass"].as_f64().unwrap();
+    assert!((mass(&json) - mass(&plain) - 1.75).abs() < 1e-12);
+    assert_eq!((json["joints"][0]["locked"][0].as_f64(), json["joints"][0]["q"].is_null()), (Some(0.5), true));
+    let text = run(&words);
+    assert!(text.status == 0 && text.lines_with("locked at 0.5") == 1 && text.lines_with("left_close") >= 1, "{}", text.out);
+}
+
+#[test]
+fn a_lock_beyond_the_limits_is_a_warning() {
+    let gripper = File::new("gripper.urdf", GRIPPER.as_bytes());
+    let text = run(&["check", gripper.name(), "--lock", "close=0.2"]);
+    assert!(text.status == 0 && text.lines_with("found 0.2, beyond its limits, expected 0 to 0.1") == 1, "{}", text.out);
+}
+
+#[test]
+fn edits_that_cannot_be_made_are_told_all_at_once() {
+    let gripper = File::new("gripper.urdf", GRIPPER.as_bytes());
+    let wrong = ["--lock", "clos=0", "--lock", "close=0,1", "--payload", "plam=1", "--frames", "finger,thumb"];
+    for command in ["check", "generate"] {
+        let ended = run(&[&[command, gripper.name()][..], &wrong].concat());
+        assert_eq!(ended.status, 1);
+        for words in ["joint \"clos\", did you mean \"close\"?", "locked at [0.0, 1.0]", "did you mean \"palm\"?", "no link \"thumb\""] {
+            assert_eq!(ended.lines_with(words), 1, "{words}: {}{}", ended.out, ended.err);
+        }
+    }
+    assert_eq!(run(&["check", gripper.name(), "--lock", "close"]).status, 2);
+    assert_eq!(run(&["check", gripper.name(), "--append", "nothing.urdf@palm"]).status, 1);
+}
+
+#[test]
+fn generated_code_says_how_the_robot_was_edited() {
+    let gripper = File::new("gripper.urdf", GRIPPER.as_bytes());
+    let append = format!("{}@finger:second_", gripper.name());
+    let words =
+        ["generate", gripper.name(), "--append", &append, "--payload", "palm=2", "--lock", "close=0.05", "--frames", "second_finger"];
+    let ended = run(&[&words[..], &["--wrenches-in", "world_aligned"]].concat());
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    for words in [
+        "// Appended: ",
+        "// Payload: 2.0 kg on link \"palm\"",
+        "// Locked: joint \"close\" at [0.05].",
+        "// Frames: second_finger.",
+        "// Wrenches in: world_aligned.",
+    ] {
+        assert_eq!(ended.lines_with(words), 1, "{words}: {}", ended.out);
+    }
+    assert!(ended.out.contains("JOINT_NAMES: [&str; JOINTS] = [\"second_close\"]"));
+    assert!(ended.out.contains("FRAME_NAMES: [&str; FRAMES] = [\"second_finger\"]"));
+}
+
+#[test]
+fn a_locked_joint_is_missing_in_states() {
+    let states = File::new("states.json", br#"{"states": [{"q": [0.3], "v": [0.0], "a": [0.0]}]}"#);
+    let plain = run(&["check", "double_pendulum", "--format", "json"]).json();
+    let lock = format!("{}=0.0", plain["joints"][1]["joint"].as_str().unwrap());
+    let words = ["eval", "double_pendulum", "--function", "gravity_torque", "--states", states.name(), "--generic", "--lock", &lock];
+    let ended = run(&words);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+}
