@@ -7,7 +7,7 @@ use super::workspace::Column;
 use super::{Workspace, wrenches};
 use crate::joint::JointLaw;
 use crate::model::Model;
-use crate::spatial::{ArticulatedInertia, Matrix3, Motion, Placement, Twist, Vector3, rate_matrix, rotate, rotate_back};
+use crate::spatial::{ArticulatedInertia, Matrix3, Motion, Twist, Vector3, rate_matrix, rotate, rotate_back};
 use crate::{Scalar, with_pose};
 
 /// a = M(q)⁻¹·(τ − h(q, v)), in a time that grows with the number of joints.
@@ -44,9 +44,10 @@ pub fn articulated_body_with_wrenches<S: Scalar>(
 /// # Panics
 /// As [`articulated_body`].
 pub fn solve_by_articulated_body<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], tau: &[S], out: &mut [S]) {
-    let zeros = core::mem::take(&mut ws.zeros);
-    solve(model, ws, q, &zeros, tau, &[], Vector3::zeros(), out);
-    ws.zeros = zeros;
+    let mut rest = core::mem::take(&mut ws.row);
+    rest.fill(S::zero());
+    solve(model, ws, q, &rest, tau, &[], Vector3::zeros(), out);
+    ws.row = rest;
 }
 
 #[allow(clippy::too_many_arguments)]
@@ -88,7 +89,7 @@ fn velocity<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, q: &[S
         let centripetal = rotate_back(turn, omega.cross(&omega.cross(&x_pi.position)));
         let carried = Motion { omega: rotate_back(turn, omega), alpha: zero, acceleration: centripetal };
         ws.bodies[i].motion = p.motion(carried, &body.coordinates, v, &zeros);
-        ws.placements[i] = x_pi;
+        ws.relative[i] = x_pi;
         for (k, c) in ws.columns_of(i).enumerate() {
             ws.columns[c].axis = p.subspace(&Matrix3::identity(), k);
         }
@@ -118,7 +119,7 @@ fn give_way<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, tau: &
     // p += I c
     let motion = &ws.bodies[i].motion;
     bias += inertia.apply(&Twist { angular: motion.alpha, linear: motion.acceleration });
-    let x_pi = ws.placements[i];
+    let x_pi = ws.relative[i];
     ws.articulated[parent] += inertia.moved(&x_pi);
     let (moment, force) = (rotate(&x_pi.rotation, bias.moment), rotate(&x_pi.rotation, bias.force));
     ws.bodies[parent].wrench += crate::spatial::Wrench { moment, force }.shifted(x_pi.position);
@@ -126,7 +127,7 @@ fn give_way<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, tau: &
 
 /// a of the joint of body `i`, and the acceleration of the body.
 fn accelerate<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, out: &mut [S]) {
-    let x_pi: Placement<S> = ws.placements[i];
+    let x_pi = ws.relative[i];
     let motion = &ws.bodies[i].motion;
     let carried = ws.common[model.bodies[i].parent].acceleration.at(x_pi.position);
     // a' = X a_λ + c
