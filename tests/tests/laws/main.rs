@@ -9,6 +9,7 @@ mod interface;
 mod mimic;
 mod random_trees;
 mod reference;
+mod screws;
 mod sines;
 mod structure;
 mod traps;

@@ -23,7 +23,7 @@ use crate::spatial::{Placement, Twist, rotate_back};
 impl<S: Scalar> Twist<S> {
     /// exp ξ: where a body that moves with this twist for a unit of time gets to, from the identity.
     ///
-    /// Absolute error of the rotation at most (4 + 2|ω|)·u, of the position (4 + 2|ω|)·u·|v|.
+    /// Absolute error of the rotation at most (4 + 1.5|ω|)·u, of the position (3 + |ω|)·u·|v|.
     pub fn exp(&self) -> Placement<S> {
         let (rotation, position) = self.exp_parts();
         Placement { rotation: rotation.to_rotation(), position }

@@ -18,7 +18,7 @@ use super::coefficients::HalfAngle;
 use crate::Scalar;
 use crate::spatial::rate_matrix;
 
-/// The rotation about ω by |ω| rad. Absolute error of an entry at most (4 + 2|ω|)·u: ω counts as exact only to a relative u.
+/// The rotation about ω by |ω| rad. Absolute error of an entry at most (4 + 1.5|ω|)·u: ω counts as exact only to a relative u.
 pub fn exp_rotation<S: Scalar>(omega: Vector3<S>) -> Matrix3<S> {
     Quaternion::exp(omega).to_rotation()
 }
