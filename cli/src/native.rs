@@ -264,10 +264,24 @@ impl NativePeer {
         (0..self.number("frame_count").unwrap_or(0)).filter_map(|k| text(ask(self.0.handle, c_int::try_from(k).ok()?))).collect()
     }
 
+    /// Has the peer give the functions of frames for these links only, in this order; `false` if it cannot.
+    pub(crate) fn choose_frames(&self, names: &[&str]) -> bool {
+        type Choose = extern "C" fn(H, c_int, *const *const c_char) -> c_int;
+        let Some(choose) = self.0.native.symbol::<Choose>("peer_choose_frames") else { return false };
+        let Ok(names) = names.iter().map(|n| CString::new(*n)).collect::<Result<Vec<_>, _>>() else { return false };
+        let pointers: Vec<*const c_char> = names.iter().map(|n| n.as_ptr()).collect();
+        c_int::try_from(pointers.len()).is_ok_and(|n| choose(self.0.handle, n, pointers.as_ptr()) != 0)
+    }
+
     /// The peer's function, which takes arrays of these lengths and gives `out` numbers: into an array, or, if `kept`, when asked for them.
     pub(crate) fn kernel(&self, function: &str, arguments: &[usize], out: usize, kept: bool) -> Option<PeerKernel> {
         let native = &self.0.native;
         let name = format!("peer_{function}");
+        let told = CString::new(function).ok()?;
+        let has: Option<extern "C" fn(H, *const c_char) -> c_int> = native.symbol("peer_has");
+        if has.is_some_and(|has| has(self.0.handle, told.as_ptr()) == 0) {
+            return None;
+        }
         let entry = match (arguments.len(), kept) {
             (1, false) => PeerEntry::One(native.symbol(&name)?),
             (2, false) => PeerEntry::Two(native.symbol(&name)?),
@@ -279,8 +293,7 @@ impl NativePeer {
             (4, true) => PeerEntry::QuietFour(native.symbol(&name)?),
             _ => return None,
         };
-        let kept = if kept { Some(CString::new(function).ok()?) } else { None };
-        Some(PeerKernel { entry, kept, arguments: arguments.to_vec(), out, robot: self.0.clone() })
+        Some(PeerKernel { entry, kept: kept.then_some(told), arguments: arguments.to_vec(), out, robot: self.0.clone() })
     }
 }
 

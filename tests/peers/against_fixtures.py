@@ -1,0 +1,113 @@
+"""Peers against tests/fixtures: every function that both have, in robots whose joints follow no other."""
+
+import ctypes
+import json
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+FIXTURES = HERE.parent / "fixtures"
+MODELS = HERE.parent.parent / "models" / "urdf"
+FRAMES = ("placements", "twists", "accelerations", "jacobian", "bias_accelerations", "operational")
+TAKES = {  # in the registry's order; all else takes q alone
+    "v": ("twists", "accelerations", "jacobian_rates", "bias", "inverse_dynamics", "joint_wrenches", "coriolis", "forward_dynamics", "kinetic",
+          "center_of_mass_velocity", "center_of_mass_acceleration", "torque_regressor"),
+    "a": ("accelerations", "inverse_dynamics", "joint_wrenches", "center_of_mass_acceleration", "centroidal_momentum_rate", "torque_regressor"),
+    "tau": ("forward_dynamics", "solve"),
+}
+
+
+def takes(name):
+    """Names of the arguments."""
+    arguments = ["q"]
+    starts = lambda key: name.startswith(TAKES[key]) or key == "v" and name in ("centroidal_momentum", "centroidal_momentum_rate")
+    arguments += [key for key in ("v", "a", "tau") if starts(key)]
+    arguments += ["wrenches"] if "with_wrenches" in name or name.startswith("static") else []
+    return arguments + {"integrate": ["step"], "difference": ["target"]}.get(name, [])
+
+
+VECTORS = ("inverse_dynamics", "inverse_dynamics_with_wrenches", "bias_forces", "gravity_torque", "static_torque", "forward_dynamics",
+           "forward_dynamics_with_wrenches", "solve_mass_matrix", "difference")
+SQUARES = ("mass_matrix", "mass_matrix_inverse", "coriolis_matrix", "static_torque_derivative")
+PLAIN = ("kinetic_energy", "potential_energy", "center_of_mass", "center_of_mass_velocity", "center_of_mass_acceleration", "centroidal_momentum",
+         "centroidal_momentum_rate", "integrate")
+
+
+def is_kept(name):
+    return name not in VECTORS + SQUARES + PLAIN
+
+
+def velocities(name):
+    """Which dimensions of the result, counted from the last, are degrees of freedom."""
+    if name in SQUARES or "dynamics_derivatives" in name:
+        return (1, 2)
+    if name in VECTORS or "jacobian" in name or name == "centroidal_momentum_matrix":
+        return (1,)
+    return (2,) if name == "torque_regressor" else ()
+
+
+def orders(peer, fixture):
+    """Our index of each number of the peer's v: a free joint moves by [linear; angular] there. Joints are in our order."""
+    assert [name for name, *_ in peer.joints()] == fixture["joints"]
+    v = []
+    for _, _, start, _, count in peer.joints():
+        v += [start + (k + 3) % 6 if count == 6 else start + k for k in range(count)]
+    return v
+
+
+def vector(key, state, v, frames):
+    if key == "wrenches":  # on the frames of the state only
+        values = [0.0] * (6 * len(frames))
+        for k, frame in enumerate(state["frames"]):
+            at = 6 * frames.index(frame)
+            values[at : at + 6] = state["wrenches"][6 * k : 6 * k + 6]
+        return values
+    return state[key] if key in ("q", "target") else [state[key][k] for k in v]
+
+
+def in_our_order(name, found, v):
+    """Rows and columns that are degrees of freedom, put in our order."""
+    where, n, which = {theirs: ours for ours, theirs in enumerate(v)}, len(v), velocities(name)
+    wide = len(found) // n if which == (2,) else n  # numbers in a row
+    for dimension in which:
+        stride = 1 if dimension == 1 else wide
+        # number k of the result stands at (k // stride) % n in this dimension
+        found = [found[k + (where[k // stride % n] - k // stride % n) * stride] for k in range(len(found))]
+    return found
+
+
+def errors(open_peer):
+    """function -> largest error relative to the largest entry or 1. `open_peer(urdf, floating, gravity)`."""
+    worst = {}
+    for path in sorted(FIXTURES.glob("*.json")):
+        fixture = json.loads(path.read_text())
+        urdf = MODELS / f"{fixture['robot']}.urdf"
+        if "description" in fixture or "<mimic" in urdf.read_text():
+            continue
+        try:
+            peer = open_peer(urdf, fixture["base"] == "floating", fixture["gravity"])
+        except ValueError:
+            continue
+        v = orders(peer, fixture)
+        frames = peer.frames()
+        for state in fixture["states"]:
+            for name, expected in state["results"].items():
+                needs_frames = name.startswith(FRAMES) or "wrenches" in takes(name)
+                if not peer.has(name) or needs_frames and not frames:
+                    continue
+                if "wrenches" in takes(name) and state["wrench_reference"] != "body":
+                    continue
+                arguments = [vector(key, state, v, frames) for key in takes(name)]
+                if name.startswith(FRAMES):
+                    one = len(expected) // len(state["frames"])
+                    found = peer.kept(name, one * len(frames), *arguments)
+                    at = [one * frames.index(frame) for frame in state["frames"]]
+                    found = [x for k in at for x in found[k : k + one]]
+                elif is_kept(name):
+                    found = peer.kept(name, len(expected), *arguments)
+                else:
+                    found = peer.call(name, len(expected), *arguments)
+                found = in_our_order(name, found, v)
+                size = max(1.0, *map(abs, expected))
+                worst[name] = max(worst.get(name, 0.0), *(abs(x - y) / size for x, y in zip(found, expected, strict=True)))
+        peer.close()
+    return worst
