@@ -17,6 +17,7 @@ pub mod magnitude;
 mod native;
 pub mod precise;
 mod robot;
+mod shape;
 pub mod states;
 mod table;
 

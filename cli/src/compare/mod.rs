@@ -154,7 +154,8 @@ impl Bench<'_> {
     /// Times of generated code, generic code and each peer, in this order; and what is to be said of the peers.
     fn times(&self, f: &'static Function<f64>, arguments: &[Vec<&[f64]>], generated: &Contender) -> (Vec<Vec<f64>>, Vec<PeerReport>) {
         let known: Vec<(&Peer, Contender)> = self.peers.iter().filter_map(|p| Some((p, p.contender(f, &self.model)?))).collect();
-        let theirs: Vec<Vec<Vec<Vec<f64>>>> = known.iter().map(|(p, _)| arguments.iter().map(|x| p.arguments(f, &self.model, x)).collect()).collect();
+        let theirs: Vec<Vec<Vec<Vec<f64>>>> =
+            known.iter().map(|(p, _)| arguments.iter().map(|x| p.arguments(f, &self.model, x)).collect()).collect();
         let theirs: Vec<Vec<Vec<&[f64]>>> =
             theirs.iter().map(|states| states.iter().map(|x| x.iter().map(Vec::as_slice).collect()).collect()).collect();
         let generic = Contender::generic(&self.model, f);

@@ -56,7 +56,7 @@ impl Compiled {
         for (argument, given) in row.takes.iter().zip(arguments) {
             check_length(argument.name(), given.len(), argument.len(self.shape))?;
         }
-        check_length("out", out.len(), row.gives.len(self.shape))?;
+        check_length("out", out.len(), row.len(self.shape))?;
         kernel.call(arguments, out);
         Ok(())
     }
@@ -81,7 +81,7 @@ fn load(native: &Native, sizes: &symbols::Sizes, name: &str, shape: Shape) -> Re
     let missing = || CompileError::Load(format!("{name} is not in the library that was compiled"));
     let row = function::<f64>(name).ok_or_else(missing)?;
     let lengths: Vec<usize> = row.takes.iter().map(|a| a.len(shape)).collect();
-    let kernel = native.kernel(&wrapper::symbol(name), &lengths, row.gives.len(shape)).ok_or_else(missing)?;
+    let kernel = native.kernel(&wrapper::symbol(name), &lengths, row.len(shape)).ok_or_else(missing)?;
     Ok(Loaded { name: name.to_owned(), kernel, bytes: sizes.function(name, &wrapper::symbol(name)) })
 }
 

@@ -1,55 +1,83 @@
 //! What the numbers of a result belong to.
 
-use articulated_core::algorithm::{Function, ResultKind};
-use articulated_core::model::Model;
+use articulated_core::algorithm::{Dim, Function};
+use articulated_core::model::{JointInfo, Model};
 use serde_json::{Map, Value, json};
 
-/// How a result is laid out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Layout {
-    /// One number for each degree of freedom.
-    Joints,
-    /// Rotation and position of each frame.
-    Frames,
-    /// A row and a column for each degree of freedom.
-    Square,
+/// The names along one dimension.
+struct Names {
+    /// (name, how many indices it stands for); without a name: an index is only a number.
+    parts: Option<Vec<(String, usize)>>,
+    length: usize,
 }
 
-impl Layout {
-    /// That of a function's result.
-    pub(super) fn of(function: &Function<f64>) -> Self {
-        match function.gives {
-            ResultKind::Placements => Self::Frames,
-            ResultKind::Torque | ResultKind::Acceleration => Self::Joints,
-            ResultKind::MassMatrix => Self::Square,
-        }
+impl Names {
+    fn of(dim: Dim, model: &Model<f64>) -> Self {
+        let joints = |count: fn(&JointInfo) -> usize| model.joints.iter().map(|j| (j.name.clone(), count(j))).collect();
+        let parts = match dim {
+            Dim::Nq => Some(joints(|j| j.q.1)),
+            Dim::Nv => Some(joints(|j| j.v.1)),
+            Dim::Frames => Some(model.frames.iter().map(|f| (f.name.clone(), 1)).collect()),
+            // A moving link goes by the joint that carries it.
+            Dim::Links => Some(model.links().map(|i| (model.bodies[i].name.clone(), 1)).collect()),
+            Dim::Of(_) => None,
+        };
+        Self { parts, length: dim.len(model.shape()) }
     }
 
-    /// The result with its names.
-    pub(super) fn json(self, out: &[f64], model: &Model<f64>) -> Value {
-        match self {
-            Self::Joints => by_joint(out, model),
-            Self::Frames => by_frame(out, model),
-            Self::Square => Value::Array(out.chunks(model.nv.max(1)).map(|row| by_joint(row, model)).collect()),
-        }
+    /// One for each index.
+    fn each(&self) -> Vec<String> {
+        let part = |(name, n): &(String, usize)| match n {
+            1 => vec![name.clone()],
+            n => (0..*n).map(|k| format!("{name}[{k}]")).collect(),
+        };
+        self.parts.as_ref().map_or_else(|| (0..self.length).map(|k| format!("[{k}]")).collect(), |p| p.iter().flat_map(part).collect())
     }
 }
 
-fn by_joint(out: &[f64], model: &Model<f64>) -> Value {
-    let one = |(at, n): (usize, usize)| if n == 1 { json!(out[at]) } else { json!(out[at..at + n]) };
-    Value::Object(model.joints.iter().map(|j| (j.name.clone(), one(j.v))).collect::<Map<_, _>>())
+/// A result with its names: objects by joint or link, a list where a joint has several numbers or where a dimension has no names.
+pub(super) fn labelled(function: &Function<f64>, out: &[f64], model: &Model<f64>) -> Value {
+    let names: Vec<Names> = function.gives.iter().map(|d| Names::of(*d, model)).collect();
+    nested(&names, out)
 }
 
-fn by_frame(out: &[f64], model: &Model<f64>) -> Value {
-    let frame = |x: &[f64]| json!({"rotation": [x[0..3], x[3..6], x[6..9]], "position": x[9..12]});
-    Value::Object(model.frames.iter().zip(out.chunks_exact(12)).map(|(f, x)| (f.name.clone(), frame(x))).collect::<Map<_, _>>())
+fn nested(names: &[Names], out: &[f64]) -> Value {
+    let [first, rest @ ..] = names else { return out.first().map_or(Value::Null, |x| json!(x)) };
+    let width = rest.iter().map(|n| n.length).product::<usize>();
+    let at = |k: usize| nested(rest, &out[k * width..][..width]);
+    let Some(parts) = &first.parts else { return (0..first.length).map(at).collect() };
+    let mut object = Map::new();
+    let mut next = 0;
+    for (name, count) in parts {
+        let value = if *count == 1 { at(next) } else { (next..next + count).map(at).collect() };
+        object.insert(name.clone(), value);
+        next += count;
+    }
+    Value::Object(object)
 }
 
-/// The name of each degree of freedom: the joint's, with a number where it has several.
-pub(super) fn freedom_names(model: &Model<f64>) -> Vec<String> {
-    let names = |j: &articulated_core::model::JointInfo| match j.v.1 {
-        1 => vec![j.name.clone()],
-        n => (0..n).map(|k| format!("{}[{k}]", j.name)).collect(),
-    };
-    model.joints.iter().flat_map(names).collect()
+/// A result as a table: names of the rows, all dimensions but the last put together, and of the columns.
+pub(super) struct Grid {
+    pub(super) rows: Vec<String>,
+    pub(super) columns: Vec<String>,
+}
+
+/// Rotation row by row, then position.
+const PLACEMENT: [&str; 12] = ["r11", "r12", "r13", "r21", "r22", "r23", "r31", "r32", "r33", "x", "y", "z"];
+
+impl Grid {
+    /// That of a function's result; one column without a name for one dimension or none.
+    pub(super) fn of(function: &Function<f64>, model: &Model<f64>) -> Self {
+        let each = |d: &Dim| Names::of(*d, model).each();
+        let (rows, columns) = match function.gives {
+            [] => return Self { rows: vec![function.name.to_owned()], columns: vec![String::new()] },
+            [one] => return Self { rows: each(one), columns: vec![String::new()] },
+            [rows @ .., Dim::Of(12)] => (rows, PLACEMENT.map(str::to_owned).to_vec()),
+            [rows @ .., last] => (rows, each(last)),
+        };
+        let joined = |rows: Vec<String>, d: &Dim| {
+            rows.iter().flat_map(|r| each(d).into_iter().map(move |n| format!("{r} {n}").trim_start().to_owned())).collect()
+        };
+        Self { rows: rows.iter().fold(vec![String::new()], joined), columns }
+    }
 }

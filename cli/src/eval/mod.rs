@@ -108,7 +108,7 @@ fn evaluate(
     let mut largest: Option<Difference> = None;
     for (k, state) in states.iter().enumerate() {
         let arguments = state.arguments(function).unwrap_or_default();
-        let mut out = vec![0.0; function.gives.len(model.shape())];
+        let mut out = vec![0.0; function.len(model.shape())];
         let generated = compiled.and_then(|c| c.call(function.name, &arguments, &mut out).ok().map(|()| out.clone()));
         let generic = function.call(model, &mut workspace, &arguments, &mut out).ok().map(|()| out);
         if let (Some(a), Some(b)) = (&generic, &generated) {

@@ -5,7 +5,7 @@ use articulated_core::model::Model;
 use serde_json::{Value, json};
 
 use super::BOUND;
-use super::layout::Layout;
+use super::layout::labelled;
 use crate::magnitude::ROUNDOFF;
 use crate::robot::Robot;
 
@@ -79,8 +79,7 @@ impl FunctionReport {
     }
 
     fn json(&self, model: &Model<f64>) -> Value {
-        let layout = Layout::of(self.function);
-        let labelled = |out: &Option<Vec<f64>>| out.as_ref().map(|x| layout.json(x, model));
+        let labelled = |out: &Option<Vec<f64>>| out.as_ref().map(|x| labelled(self.function, x, model));
         let states: Vec<Value> = self
             .outcomes
             .iter()
@@ -94,7 +93,8 @@ impl FunctionReport {
         json!({
             "function": self.function.name,
             "summary": self.function.summary,
-            "gives": self.function.gives.doc(),
+            "gives": crate::shape::dims(self.function.gives),
+            "unit": self.function.unit,
             "states": states,
             "largest_difference": largest,
         })

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use articulated_core::model::Model;
 
 use super::BOUND;
-use super::layout::{Layout, freedom_names};
+use super::layout::Grid;
 use super::report::{FunctionReport, Outcome, Report};
 use crate::table::{Table, plain};
 
@@ -22,14 +22,13 @@ pub(super) fn text(report: &Report, model: &Model<f64>) -> String {
 }
 
 fn function(out: &mut String, f: &FunctionReport, model: &Model<f64>) {
-    let _ = writeln!(out, "\n{}: {}\n  {}", f.function.name, f.function.summary, f.function.gives.doc());
-    let layout = Layout::of(f.function);
+    let _ = writeln!(out, "\n{}: {}\n  {}", f.function.name, f.function.summary, crate::shape::given(f.function));
+    let grid = Grid::of(f.function, model);
     for (k, outcome) in f.outcomes.iter().enumerate() {
         let _ = writeln!(out, "\nstates[{k}]");
-        match layout {
-            Layout::Joints => *out += &joints(outcome, model).text(),
-            Layout::Frames => frames(out, outcome, model),
-            Layout::Square => blocks(out, outcome, model.nv, &freedom_names(model)),
+        match grid.columns.len() {
+            1 => *out += &side_by_side(outcome, &grid).text(),
+            _ => blocks(out, outcome, &grid),
         }
     }
     if let Some(d) = f.largest {
@@ -41,14 +40,14 @@ fn function(out: &mut String, f: &FunctionReport, model: &Model<f64>) {
     }
 }
 
-/// A row for each degree of freedom.
-fn joints(outcome: &Outcome, model: &Model<f64>) -> Table {
+/// A row for each number.
+fn side_by_side(outcome: &Outcome, grid: &Grid) -> Table {
     let sides: Vec<(&str, &Vec<f64>)> = sides(outcome);
     let difference = sides.len() == 2;
     let titles = sides.iter().map(|s| s.0).chain(difference.then_some("difference"));
-    let mut table = Table::new(std::iter::once("joint").chain(titles).map(|t| (t, "")));
-    for (k, name) in freedom_names(model).into_iter().enumerate() {
-        let mut row = vec![name];
+    let mut table = Table::new(std::iter::once("").chain(titles).map(|t| (t, "")));
+    for (k, name) in grid.rows.iter().enumerate() {
+        let mut row = vec![name.clone()];
         row.extend(sides.iter().map(|s| digits(s.1[k])));
         row.extend(difference.then(|| format!("{:.1e}", (sides[0].1[k] - sides[1].1[k]).abs())));
         table.row(row);
@@ -56,27 +55,12 @@ fn joints(outcome: &Outcome, model: &Model<f64>) -> Table {
     table
 }
 
-/// A row for each frame, once for each side.
-fn frames(out: &mut String, outcome: &Outcome, model: &Model<f64>) {
-    let titles = ["r11", "r12", "r13", "r21", "r22", "r23", "r31", "r32", "r33", "x (m)", "y (m)", "z (m)"];
+/// Rows and columns, once for each side.
+fn blocks(out: &mut String, outcome: &Outcome, grid: &Grid) {
     for (side, numbers) in sides(outcome) {
-        let mut table = Table::new(std::iter::once(format!("{side}: frame")).chain(titles.map(str::to_owned)).map(|t| (t, "")));
-        for (frame, x) in model.frames.iter().zip(numbers.chunks_exact(12)) {
-            table.row(std::iter::once(frame.name.clone()).chain(x.iter().map(|x| digits(*x))));
-        }
-        *out += &table.text();
-    }
-}
-
-/// Rows of `width` numbers, once for each side.
-fn blocks(out: &mut String, outcome: &Outcome, width: usize, names: &[String]) {
-    for (side, numbers) in sides(outcome) {
-        let width = width.max(1);
-        let titles = (0..width).map(|k| names.get(k).cloned().unwrap_or_default());
-        let mut table = Table::new(std::iter::once(side.to_owned()).chain(titles).map(|t| (t, "")));
-        for (k, row) in numbers.chunks(width).enumerate() {
-            let name = names.get(k).cloned().unwrap_or_default();
-            table.row(std::iter::once(name).chain(row.iter().map(|x| digits(*x))));
+        let mut table = Table::new(std::iter::once(side.to_owned()).chain(grid.columns.iter().cloned()).map(|t| (t, "")));
+        for (name, row) in grid.rows.iter().zip(numbers.chunks(grid.columns.len().max(1))) {
+            table.row(std::iter::once(name.clone()).chain(row.iter().map(|x| digits(*x))));
         }
         *out += &table.text();
     }

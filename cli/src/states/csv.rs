@@ -1,16 +1,17 @@
-//! A row for each state under the columns `q.<joint>`, `v.<joint>`, …; `q.<joint>[0]`, `q.<joint>[1]`, … where a joint has several numbers.
+//! A row for each state under the columns `q.<joint>`, `v.<joint>`, …, `wrenches.<link>[0]`, …; `q.<joint>[0]`, `q.<joint>[1]`, … where a joint has
+//! several numbers.
 
 use articulated_core::algorithm::Argument;
 use csv::{ReaderBuilder, StringRecord, Trim};
 
 use super::read::{Found, Gathering};
-use super::{State, slot};
+use super::{State, owner, slots};
 
 /// What a column holds.
 struct Column {
     argument: Argument,
-    joint: usize,
-    number: usize,
+    /// Index in it.
+    at: usize,
     title: String,
 }
 
@@ -40,35 +41,34 @@ fn column(title: &str, found: &mut Found<'_>) -> Option<Column> {
         return None;
     };
     let argument = found.argument(&place, argument)?;
-    let (joint, number) = joint(&place, rest, found)?;
-    let wanted = slot(argument, &found.model.joints[joint], found.model).map_or(0, |(_, n)| n);
-    if number.is_none() && wanted != 1 || number.is_some_and(|n| n >= wanted) {
-        found.error(
-            &place,
-            format!("this joint has {wanted} numbers here, expected `{}.{}[0]` and so on", argument.name(), found.model.joints[joint].name),
-        );
+    let slots = slots(argument, found.model);
+    let (slot, number) = part(&place, argument, rest, found)?;
+    let slot = &slots[slot];
+    if number.is_none() && slot.count != 1 || number.is_some_and(|n| n >= slot.count) {
+        let (what, name) = (owner(argument), format!("{}.{}", argument.name(), slot.name));
+        found.error(&place, format!("this {what} has {} numbers here, expected `{name}[0]` and so on", slot.count));
         return None;
     }
-    Some(Column { argument, joint, number: number.unwrap_or(0), title: title.to_owned() })
+    Some(Column { argument, at: slot.at + number.unwrap_or(0), title: title.to_owned() })
 }
 
-/// `name` or `name[k]`; a joint whose own name ends so comes first.
-fn joint(place: &str, text: &str, found: &mut Found<'_>) -> Option<(usize, Option<usize>)> {
-    if let Some(joint) = found.model.joints.iter().position(|j| j.name == text) {
-        return Some((joint, None));
+/// `name` or `name[k]`; a joint or link whose own name ends so comes first.
+fn part(place: &str, argument: Argument, text: &str, found: &mut Found<'_>) -> Option<(usize, Option<usize>)> {
+    if let Some(slot) = slots(argument, found.model).iter().position(|s| s.name == text) {
+        return Some((slot, None));
     }
     let split = text.strip_suffix(']').and_then(|t| t.rsplit_once('['));
     let (name, number) = match split.and_then(|(name, k)| Some((name, k.parse::<usize>().ok()?))) {
         Some((name, k)) => (name, Some(k)),
         None => (text, None),
     };
-    found.joint(place, name).map(|joint| (joint, number))
+    found.slot(place, argument, name).map(|slot| (slot, number))
 }
 
 fn repeated(columns: &[Option<Column>], found: &mut Found<'_>) {
     let known: Vec<&Column> = columns.iter().flatten().collect();
     for (k, column) in known.iter().enumerate() {
-        let same = |c: &&&Column| (c.argument, c.joint, c.number) == (column.argument, column.joint, column.number);
+        let same = |c: &&&Column| (c.argument, c.at) == (column.argument, column.at);
         if known[..k].iter().any(|c| same(&c)) {
             found.error(&format!("column {:?}", column.title), "stands there twice");
         }
@@ -88,7 +88,7 @@ fn row(record: &StringRecord, columns: &[Option<Column>], found: &mut Found<'_>)
             gatherings.push(Gathering::new(column.argument, found));
             gatherings.len() - 1
         });
-        gatherings[at].set(found, column.joint, column.number, x);
+        gatherings[at].set(column.at, x);
     }
     let mut state = State::default();
     if found.errors.len() == before {
@@ -133,6 +133,17 @@ mod tests {
         numbers[6] = "1";
         let text = format!("{}\n{}\n", titles.join(","), numbers.join(","));
         assert_eq!(read(text.as_bytes(), &model).unwrap().states[0].get(Argument::Q).unwrap()[6], 1.0);
+    }
+
+    #[test]
+    fn a_wrench_has_six_columns_and_other_links_carry_none() {
+        let model = bundled_model("cart_pole");
+        let at = model.frames.iter().position(|f| f.name == "pole_rod").unwrap();
+        let titles: Vec<String> = (0..6).map(|k| format!("wrenches.pole_rod[{k}]")).collect();
+        let states = read(format!("{}\n1,2,3,4,5,6\n", titles.join(",")).as_bytes(), &model).unwrap().states;
+        let wrenches = states[0].get(Argument::Wrenches).unwrap();
+        assert_eq!(wrenches[6 * at..][..6], [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        assert_eq!(wrenches.iter().sum::<f64>(), 21.0);
     }
 
     #[test]

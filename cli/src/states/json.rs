@@ -1,10 +1,10 @@
-//! `{"states": [{"q": [...], "v": {"joint": 0.1, ...}}, ...]}`, or the list alone.
+//! `{"states": [{"q": [...], "v": {"joint": 0.1, ...}, "wrenches": {"link": [...]}}, ...]}`, or the list alone.
 
 use articulated_core::algorithm::Argument;
 use serde_json::{Map, Value};
 
 use super::read::{Found, Gathering};
-use super::{State, slot};
+use super::{State, owner, slots};
 
 pub(super) fn read(text: &str, found: &mut Found<'_>) {
     let value: Value = match serde_json::from_str(text) {
@@ -35,37 +35,52 @@ fn state(place: &str, object: &Map<String, Value>, found: &mut Found<'_>) {
         let place = format!("{place}: {key}");
         match value {
             Value::Array(list) => {
-                if let Some(numbers) = numbers(&place, list, found) {
+                if let Some(numbers) = rows(&place, argument, list, found) {
                     found.take(&mut state, argument, &place, numbers);
                 }
             }
-            Value::Object(joints) => by_joint(&place, argument, joints, &mut state, found),
+            Value::Object(parts) => by_name(&place, argument, parts, &mut state, found),
             other => found.error(&place, format!("found {}, expected a list or an object", kind(other))),
         }
     }
     found.push(state);
 }
 
-fn by_joint(place: &str, argument: Argument, joints: &Map<String, Value>, state: &mut State, found: &mut Found<'_>) {
-    let before = found.errors.len();
-    let mut gathering = Gathering::new(argument, found);
-    for (name, value) in joints {
-        let Some(joint) = found.joint(place, name) else { continue };
-        let place = format!("{place}: joint {name:?}");
-        let Some((_, wanted)) = slot(argument, &found.model.joints[joint], found.model) else {
-            found.error(&place, "expected a list: this vector is not by joint");
-            continue;
+/// The numbers of a list, or of a list of lists for an argument of two dimensions.
+fn rows(place: &str, argument: Argument, list: &[Value], found: &mut Found<'_>) -> Option<Vec<f64>> {
+    if argument.dims().len() < 2 || !list.iter().any(Value::is_array) {
+        return numbers(place, list, found);
+    }
+    let width = argument.dims()[1].len(found.model.shape());
+    let mut all = Vec::new();
+    for (k, row) in list.iter().enumerate() {
+        let row = row.as_array().filter(|r| r.len() == width);
+        let Some(row) = row else {
+            found.error(&format!("{place}[{k}]"), format!("expected a list of {width} numbers"));
+            return None;
         };
+        all.extend(numbers(&format!("{place}[{k}]"), row, found)?);
+    }
+    Some(all)
+}
+
+fn by_name(place: &str, argument: Argument, parts: &Map<String, Value>, state: &mut State, found: &mut Found<'_>) {
+    let before = found.errors.len();
+    let slots = slots(argument, found.model);
+    let mut gathering = Gathering::new(argument, found);
+    for (name, value) in parts {
+        let Some(slot) = found.slot(place, argument, name).map(|k| &slots[k]) else { continue };
+        let place = format!("{place}: {} {name:?}", owner(argument));
         let given = match value {
             Value::Array(list) => numbers(&place, list, found),
             single => numbers(&place, std::slice::from_ref(single), found),
         };
         let Some(given) = given else { continue };
-        if given.len() != wanted {
-            found.error(&place, format!("found {} numbers, expected {wanted}", given.len()));
+        if given.len() != slot.count {
+            found.error(&place, format!("found {} numbers, expected {}", given.len(), slot.count));
             continue;
         }
-        given.into_iter().enumerate().for_each(|(k, x)| gathering.set(found, joint, k, x));
+        given.into_iter().enumerate().for_each(|(k, x)| gathering.set(slot.at + k, x));
     }
     // One mistake is one message: what is missing is said only where nothing else was wrong.
     if found.errors.len() == before {
@@ -113,6 +128,28 @@ mod tests {
         assert_eq!(list, read(text.as_bytes(), &model).unwrap().states);
         assert_eq!(list[0].get(Argument::Q), Some(&[1.0, 2.0][..]));
         assert_eq!(list[0].get(Argument::A), None);
+    }
+
+    #[test]
+    fn wrenches_are_by_link_or_row_by_row() {
+        let model = bundled_model("cart_pole").with_frames(&["cart", "pole_rod"]).unwrap();
+        let [a, b] = [[1.0, 2.0, 3.0, 4.0, 5.0, 6.0], [0.0; 6]];
+        let flat = serde_json::json!([{"wrenches": ([a, b].concat())}, {"wrenches": [a, b]}, {"wrenches": {"cart": a}}]);
+        let states = read(flat.to_string().as_bytes(), &model).unwrap().states;
+        assert!(states.iter().all(|s| s.get(Argument::Wrenches) == Some(&[a, b].concat()[..])), "{states:?}");
+        let said = |wrenches: serde_json::Value| {
+            read(serde_json::json!([{"wrenches": wrenches}]).to_string().as_bytes(), &model).unwrap_err().join("\n")
+        };
+        assert!(said(serde_json::json!({"cartt": a})).contains("did you mean \"cart\"?"));
+        assert!(said(serde_json::json!({"cart": [1, 2]})).contains("link \"cart\": found 2 numbers, expected 6"));
+        assert!(said(serde_json::json!([a, [1]])).contains("wrenches[1]: expected a list of 6"));
+        assert!(said(serde_json::json!([1, 2])).contains("found 2 numbers, expected 12"));
+    }
+
+    #[test]
+    fn uniform_numbers_are_less_than_one() {
+        let said = errors("cart_pole", r#"[{"uniform": [1, -0.5]}]"#);
+        assert!(said.contains("found 1, expected 0 or more") && said.contains("found -0.5"), "{said}");
     }
 
     #[test]

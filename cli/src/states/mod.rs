@@ -5,7 +5,8 @@ mod json;
 mod random;
 mod read;
 
-use articulated_core::algorithm::{Argument, Function, functions};
+use articulated_core::algorithm::{Argument, Dim, Function};
+use articulated_core::description::JointKind;
 use articulated_core::model::{JointInfo, Model};
 
 pub use random::{SplitMix64, random};
@@ -35,26 +36,40 @@ impl State {
     }
 }
 
-/// Every argument that any function takes, each once.
-pub fn all_arguments() -> Vec<Argument> {
-    let mut all: Vec<Argument> = Vec::new();
-    for argument in functions::<f64>().iter().flat_map(|f| f.takes) {
-        if !all.contains(argument) {
-            all.push(*argument);
-        }
-    }
-    all
+/// Numbers of an argument that have a name: a joint's, or a frame's.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Slot<'a> {
+    pub(crate) name: &'a str,
+    /// First index.
+    pub(crate) at: usize,
+    pub(crate) count: usize,
 }
 
-/// Where the numbers of a joint are in an argument: first index and how many. `None` for an argument that is not by joint.
-pub(crate) fn slot(argument: Argument, joint: &JointInfo, model: &Model<f64>) -> Option<(usize, usize)> {
-    match argument {
-        Argument::Q => Some(joint.q),
-        other => (other.len(model.shape()) == model.nv).then_some(joint.v),
+/// The named parts of an argument, in its order.
+pub(crate) fn slots(argument: Argument, model: &Model<f64>) -> Vec<Slot<'_>> {
+    let by_joint = |part: fn(&JointInfo) -> (usize, usize)| {
+        model.joints.iter().map(|j| Slot { name: &j.name, at: part(j).0, count: part(j).1 }).collect()
+    };
+    match argument.dims() {
+        [Dim::Frames, rest @ ..] => {
+            let count = rest.iter().map(|d| d.len(model.shape())).product();
+            model.frames.iter().enumerate().map(|(k, f)| Slot { name: &f.name, at: k * count, count }).collect()
+        }
+        [Dim::Nq] => by_joint(|j| j.q),
+        _ => by_joint(|j| j.v),
     }
+}
+
+/// What the parts of an argument are.
+pub(crate) fn owner(argument: Argument) -> &'static str {
+    if argument == Argument::Wrenches { "link" } else { "joint" }
 }
 
 /// First indices in q of the unit quaternions, with the joints that have them.
 pub(crate) fn quaternions(model: &Model<f64>) -> impl Iterator<Item = (&JointInfo, usize)> {
-    model.joints.iter().filter(|j| j.q.1 == 7).map(|j| (j, j.q.0 + 3))
+    model.joints.iter().filter_map(|j| match j.kind {
+        JointKind::Floating => Some((j, j.q.0 + 3)),
+        JointKind::Spherical => Some((j, j.q.0)),
+        _ => None,
+    })
 }

@@ -1,11 +1,11 @@
 //! States at random, the same for the same seed.
 
-use articulated_core::algorithm::Argument;
-use articulated_core::model::{JointInfo, Model};
+use articulated_core::algorithm::{Argument, Workspace, random_configuration};
+use articulated_core::model::Model;
 
-use super::{State, all_arguments, quaternions};
+use super::State;
 
-/// Rates, accelerations and other vectors over the degrees of freedom lie in ± this.
+/// Rates, accelerations, torques, wrenches and steps lie in ± this.
 const RATE: f64 = 2.0;
 
 /// A small generator of pseudo-random numbers (Steele, Lea & Flood 2014).
@@ -35,7 +35,7 @@ impl SplitMix64 {
     }
 }
 
-/// `count` states within the limits of the joints; ±π where there is none, positions of floating joints in ±1 m, all other arguments in ±2.
+/// `count` states: configurations as [`random_configuration`] makes them, numbers in [0, 1) where that is asked for, all else in ±2.
 pub fn random(model: &Model<f64>, count: usize, seed: u64) -> Vec<State> {
     let mut numbers = SplitMix64::new(seed);
     (0..count).map(|_| one(model, &mut numbers)).collect()
@@ -43,38 +43,23 @@ pub fn random(model: &Model<f64>, count: usize, seed: u64) -> Vec<State> {
 
 fn one(model: &Model<f64>, numbers: &mut SplitMix64) -> State {
     let mut state = State::default();
-    for argument in all_arguments() {
+    for argument in Argument::ALL {
+        let length = argument.len(model.shape());
+        let mut draw = |lower, upper| (0..length).map(|_| numbers.uniform(lower, upper)).collect::<Vec<_>>();
         let vector = match argument {
-            Argument::Q => coordinates(model, numbers),
-            other => (0..other.len(model.shape())).map(|_| numbers.uniform(-RATE, RATE)).collect(),
+            Argument::Q | Argument::Target => configuration(model, &draw(0.0, 1.0)),
+            Argument::Uniform => draw(0.0, 1.0),
+            _ => draw(-RATE, RATE),
         };
         state.set(argument, vector);
     }
     state
 }
 
-fn coordinates(model: &Model<f64>, numbers: &mut SplitMix64) -> Vec<f64> {
-    let mut q: Vec<f64> = Vec::with_capacity(model.nq);
-    for joint in &model.joints {
-        let (lower, upper) = if joint.q.1 == 1 { range(joint) } else { (-1.0, 1.0) };
-        q.extend((0..joint.q.1).map(|_| numbers.uniform(lower, upper)));
-    }
-    for (_, at) in quaternions(model) {
-        normalise(&mut q[at..at + 4]);
-    }
+fn configuration(model: &Model<f64>, uniform: &[f64]) -> Vec<f64> {
+    let mut q = vec![0.0; model.nq];
+    random_configuration(model, &mut Workspace::new(model), uniform, &mut q);
     q
-}
-
-/// The range to draw from: never empty, never infinite.
-fn range(joint: &JointInfo) -> (f64, f64) {
-    let turn = std::f64::consts::TAU;
-    let (lower, upper) = joint.limit.map_or((-turn / 2.0, turn / 2.0), |l| (l.lower, l.upper));
-    match (lower.is_finite(), upper.is_finite()) {
-        (true, true) => (lower, upper),
-        (true, false) => (lower, lower + turn),
-        (false, true) => (upper - turn, upper),
-        (false, false) => (-turn / 2.0, turn / 2.0),
-    }
 }
 
 /// Divides by the norm; zero becomes (…, 1).
@@ -106,6 +91,9 @@ mod tests {
         for state in &states {
             let q = state.get(Argument::Q).unwrap();
             assert!((q[3..7].iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-15);
+            assert!(state.get(Argument::Uniform).unwrap().iter().all(|x| (0.0..1.0).contains(x)));
+            assert_eq!(state.get(Argument::Wrenches).map(<[f64]>::len), Some(6 * model.frames.len()));
+            assert_ne!(state.get(Argument::Target), Some(q));
             for joint in model.joints.iter().filter(|j| j.q.1 == 1) {
                 let limit = joint.limit.unwrap();
                 assert!((limit.lower..=limit.upper).contains(&q[joint.q.0]), "{}", joint.name);

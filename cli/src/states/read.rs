@@ -5,7 +5,7 @@ use articulated_core::algorithm::Argument;
 use articulated_core::model::Model;
 
 use super::random::normalise;
-use super::{State, all_arguments, csv, json, quaternions, slot};
+use super::{State, csv, json, owner, quaternions, slots};
 
 /// A quaternion may be off the unit norm by this much; it is then normalised.
 const NORM: f64 = 1e-6;
@@ -60,8 +60,10 @@ impl Found<'_> {
             let name = self.number_name(argument, k);
             self.error(place, format!("{name}: found {}, expected a finite number", numbers[k]));
         }
-        if argument == Argument::Q && bad.is_empty() {
-            self.check_quaternions(place, &mut numbers);
+        match argument {
+            Argument::Q | Argument::Target if bad.is_empty() => self.check_quaternions(place, &mut numbers),
+            Argument::Uniform => self.check_uniform(place, &numbers),
+            _ => {}
         }
         state.set(argument, numbers);
     }
@@ -84,34 +86,43 @@ impl Found<'_> {
         }
     }
 
-    /// The joint that number `k` belongs to.
-    fn number_name(&self, argument: Argument, k: usize) -> String {
-        for joint in &self.model.joints {
-            match slot(argument, joint, self.model) {
-                Some((at, 1)) if at == k => return format!("joint {:?}", joint.name),
-                Some((at, n)) if (at..at + n).contains(&k) => return format!("joint {:?}[{}]", joint.name, k - at),
-                _ => {}
-            }
+    fn check_uniform(&mut self, place: &str, numbers: &[f64]) {
+        for (k, x) in numbers.iter().enumerate().filter(|(_, x)| x.is_finite() && !(0.0..1.0).contains(*x)) {
+            let name = self.number_name(Argument::Uniform, k);
+            self.error(place, format!("{name}: found {x}, expected 0 or more and less than 1"));
         }
-        format!("[{k}]")
     }
 
-    /// The joint of this name, or an error that names the nearest.
-    pub(super) fn joint(&mut self, place: &str, name: &str) -> Option<usize> {
-        let found = self.model.joints.iter().position(|j| j.name == name);
+    /// The joint or link that number `k` belongs to.
+    fn number_name(&self, argument: Argument, k: usize) -> String {
+        let slots = slots(argument, self.model);
+        let Some(slot) = slots.iter().find(|s| (s.at..s.at + s.count).contains(&k)) else { return format!("[{k}]") };
+        let name = format!("{} {:?}", owner(argument), slot.name);
+        if slot.count == 1 { name } else { format!("{name}[{}]", k - slot.at) }
+    }
+
+    /// The part of this name, or an error that names the nearest.
+    pub(super) fn slot(&mut self, place: &str, argument: Argument, name: &str) -> Option<usize> {
+        let slots = slots(argument, self.model);
+        let found = slots.iter().position(|s| s.name == name);
         if found.is_none() {
-            let near = nearest(name, self.model.joints.iter().map(|j| j.name.as_str()));
-            self.error(place, format!("found joint {name:?}, which is not a coordinate of this robot{}", hint(near)));
+            let near = hint(nearest(name, slots.iter().map(|s| s.name)));
+            self.error(
+                place,
+                match argument {
+                    Argument::Wrenches => format!("found link {name:?}, which is not a frame here{near}"),
+                    _ => format!("found joint {name:?}, which is not a coordinate of this robot{near}"),
+                },
+            );
         }
         found
     }
 
     /// The argument of this name, or an error that names the nearest.
     pub(super) fn argument(&mut self, place: &str, name: &str) -> Option<Argument> {
-        let all = all_arguments();
-        let found = all.iter().copied().find(|a| a.name() == name);
+        let found = Argument::ALL.into_iter().find(|a| a.name() == name);
         if found.is_none() {
-            let names: Vec<&str> = all.iter().map(|a| a.name()).collect();
+            let names = Argument::ALL.map(Argument::name);
             let near = nearest(name, names.iter().copied());
             self.error(place, format!("found {name:?}, expected one of {}{}", names.join(", "), hint(near)));
         }
@@ -138,7 +149,7 @@ fn hint(near: Option<String>) -> String {
     near.map_or_else(String::new, |n| format!("; did you mean {n:?}?"))
 }
 
-/// Numbers by joint, gathered until all are there.
+/// Numbers by name, gathered until all are there. Links that are not named carry no wrench.
 pub(super) struct Gathering {
     argument: Argument,
     numbers: Vec<Option<f64>>,
@@ -146,17 +157,17 @@ pub(super) struct Gathering {
 
 impl Gathering {
     pub(super) fn new(argument: Argument, found: &Found<'_>) -> Self {
-        Self { argument, numbers: vec![None; argument.len(found.model.shape())] }
+        let absent = (argument == Argument::Wrenches).then_some(0.0);
+        Self { argument, numbers: vec![absent; argument.len(found.model.shape())] }
     }
 
     pub(super) fn argument(&self) -> Argument {
         self.argument
     }
 
-    /// Sets number `k` of a joint.
-    pub(super) fn set(&mut self, found: &Found<'_>, joint: usize, k: usize, x: f64) {
-        let at = slot(self.argument, &found.model.joints[joint], found.model).map(|(at, _)| at + k);
-        if let Some(number) = at.and_then(|at| self.numbers.get_mut(at)) {
+    /// Sets a number.
+    pub(super) fn set(&mut self, at: usize, x: f64) {
+        if let Some(number) = self.numbers.get_mut(at) {
             *number = Some(x);
         }
     }

@@ -1,0 +1,203 @@
+//! The scale of what is solved for with the mass matrix.
+//!
+//! A backward stable solution X of M X = R solves (M + δM) X = R + δR, with |δM| ≤ u ‖M‖ and |δR| ≤ u ‖R‖, u a few roundings and ‖·‖ the sums of
+//! magnitudes of M's and R's terms. So, to first order,
+//!
+//! ```text
+//! |δX| ≤ u |M⁻¹| (‖R‖ + ‖M‖ |X|)        Higham, Accuracy and Stability of Numerical Algorithms, 2002, §7.2
+//! ```
+//!
+//! No magnitude goes through a division: the scale is as large as the conditioning of M makes the error of a good solution, and no larger.
+
+use articulated_core::algorithm::{Argument, Function, FunctionError, FunctionId, Workspace};
+use articulated_core::model::Model;
+
+use super::Magnitude;
+use super::scales::{UNKNOWN, given, magnitudes};
+
+pub(super) fn scales(model: &Model<f64>, row: &Function<f64>, arguments: &[&[f64]]) -> Result<Vec<f64>, FunctionError> {
+    let q = arguments.first().ok_or(FunctionError::Length { argument: "arguments", found: 0, expected: row.takes.len() })?;
+    let state = State { model, mass: Mass::at(model, q)?, arguments };
+    match row.id {
+        FunctionId::forward_dynamics | FunctionId::forward_dynamics_with_wrenches => state.forward_dynamics(row),
+        FunctionId::forward_dynamics_derivatives => state.forward_slopes(row, FunctionId::forward_dynamics),
+        FunctionId::forward_dynamics_derivatives_with_wrenches => state.forward_slopes(row, FunctionId::forward_dynamics_with_wrenches),
+        FunctionId::solve_mass_matrix => Ok(state.mass.solution(&absolute(arguments[1]), &state.value(row)?)),
+        FunctionId::mass_matrix_inverse => Ok(state.mass.inverse_scale()),
+        FunctionId::operational_space_inertia_inverse => state.mobility(),
+        FunctionId::operational_space_inertia => state.inertia(row),
+        // A function that inverts M and is none of these has no scale yet.
+        _ => Err(UNKNOWN),
+    }
+}
+
+/// ‖M‖, M⁻¹ and |M⁻¹| in one configuration, `[n][n]`.
+struct Mass {
+    n: usize,
+    terms: Vec<f64>,
+    inverse: Vec<f64>,
+    modulus: Vec<f64>,
+}
+
+impl Mass {
+    fn at(model: &Model<f64>, q: &[f64]) -> Result<Self, FunctionError> {
+        let terms = magnitudes(model, "mass_matrix", &given(&[q]))?.iter().map(|x| x.magnitude).collect();
+        let inverse = value(model, FunctionId::mass_matrix_inverse.row(), &[q])?;
+        Ok(Self { n: model.nv, terms, modulus: absolute(&inverse), inverse })
+    }
+
+    /// |M⁻¹| (‖R‖ + ‖M‖ |X|), for any number of columns.
+    fn solution(&self, right: &[f64], x: &[f64]) -> Vec<f64> {
+        let mut sum = product(&self.terms, &absolute(x), self.n);
+        sum.iter_mut().zip(right).for_each(|(s, r)| *s += r);
+        product(&self.modulus, &sum, self.n)
+    }
+
+    /// That of M⁻¹, the solution for R = 1.
+    fn inverse_scale(&self) -> Vec<f64> {
+        let one: Vec<f64> = (0..self.n * self.n).map(|k| f64::from(u8::from(k % (self.n + 1) == 0))).collect();
+        self.solution(&one, &self.inverse)
+    }
+}
+
+struct State<'a> {
+    model: &'a Model<f64>,
+    mass: Mass,
+    arguments: &'a [&'a [f64]],
+}
+
+impl State<'_> {
+    fn value(&self, row: &Function<f64>) -> Result<Vec<f64>, FunctionError> {
+        value(self.model, row, self.arguments)
+    }
+
+    /// M a = τ − h.
+    fn forward_dynamics(&self, row: &Function<f64>) -> Result<Vec<f64>, FunctionError> {
+        let still = vec![0.0; self.model.nv];
+        let needed =
+            magnitudes(self.model, inverse_of(row, "inverse_dynamics", "inverse_dynamics_with_wrenches"), &given(&self.with(&still)))?;
+        let right: Vec<f64> = needed.iter().zip(self.arguments[2]).map(|(h, tau)| h.magnitude + tau.abs()).collect();
+        Ok(self.mass.solution(&right, &self.value(row)?))
+    }
+
+    /// M ∂a/∂x = −∂τ/∂x at a, which is itself off by its own scale; and M ∂a/∂τ = 1.
+    fn forward_slopes(&self, row: &Function<f64>, solved: FunctionId) -> Result<Vec<f64>, FunctionError> {
+        let a = self.value(solved.row())?;
+        let known: Vec<Magnitude> =
+            a.iter().zip(self.forward_dynamics(solved.row())?).map(|(a, scale)| Magnitude::computed(*a, scale.max(a.abs()))).collect();
+        let mut arguments = given(&self.with(&a));
+        arguments[2] = known;
+        let name = inverse_of(row, "inverse_dynamics_derivatives", "inverse_dynamics_derivatives_with_wrenches");
+        let right: Vec<f64> = magnitudes(self.model, name, &arguments)?.iter().map(|x| x.magnitude).collect();
+        let (size, slopes) = (self.mass.n * self.mass.n, self.value(row)?);
+        let block = |k: usize| self.mass.solution(&right[k * size..][..size], &slopes[k * size..][..size]);
+        Ok([block(0), block(1), self.mass.inverse_scale()].concat())
+    }
+
+    /// The arguments with a in the place of τ.
+    fn with<'b>(&'b self, a: &'b [f64]) -> Vec<&'b [f64]> {
+        let mut arguments = self.arguments.to_vec();
+        arguments[2] = a;
+        arguments
+    }
+
+    /// Λ⁻¹ = J X with M X = Jᵀ, of each frame: ‖J‖ times the scale of X.
+    fn mobility(&self) -> Result<Vec<f64>, FunctionError> {
+        let (n, mut scale) = (self.mass.n, Vec::new());
+        let jacobians = magnitudes(self.model, "jacobians_world_aligned", &given(&self.arguments[..1]))?;
+        for jacobian in jacobians.chunks_exact((6 * n).max(1)) {
+            let transposed: Vec<Magnitude> = (0..6 * n).map(|k| jacobian[k % 6 * n + k / 6]).collect();
+            let [terms, values] =
+                [|x: &Magnitude| x.magnitude, |x: &Magnitude| x.value].map(|f| transposed.iter().map(f).collect::<Vec<_>>());
+            let x = self.mass.solution(&terms, &product(&self.mass.inverse, &values, n));
+            let one_way: Vec<f64> = (0..36).map(|k| (0..n).map(|i| terms[6 * i + k / 6] * x[6 * i + k % 6]).sum()).collect();
+            // Half of it is computed, and which half is nobody's business.
+            scale.extend((0..36).map(|k| one_way[k].max(one_way[k % 6 * 6 + k / 6])));
+        }
+        Ok(scale)
+    }
+
+    /// Λ, the inverse of Λ⁻¹: |Λ| ‖Λ⁻¹‖ |Λ|.
+    fn inertia(&self, row: &Function<f64>) -> Result<Vec<f64>, FunctionError> {
+        let (inertia, scale) = (absolute(&self.value(row)?), self.mobility()?);
+        let one = |(x, s): (&[f64], &[f64])| product(&product(x, s, 6), x, 6);
+        Ok(inertia.chunks_exact(36).zip(scale.chunks_exact(36)).flat_map(one).collect())
+    }
+}
+
+/// The function that the row solves with.
+fn inverse_of(row: &Function<f64>, plain: &'static str, with_wrenches: &'static str) -> &'static str {
+    if row.takes.contains(&Argument::Wrenches) { with_wrenches } else { plain }
+}
+
+fn value(model: &Model<f64>, row: &Function<f64>, arguments: &[&[f64]]) -> Result<Vec<f64>, FunctionError> {
+    let mut out = vec![0.0; row.len(model.shape())];
+    row.call(model, &mut Workspace::new(model), arguments, &mut out)?;
+    Ok(out)
+}
+
+fn absolute(x: &[f64]) -> Vec<f64> {
+    x.iter().map(|x| x.abs()).collect()
+}
+
+/// A·B of an `[n][n]` and an `[n][any]` matrix.
+fn product(a: &[f64], b: &[f64], n: usize) -> Vec<f64> {
+    let width = b.len() / n.max(1);
+    (0..n * width).map(|k| (0..n).map(|i| a[k / width * n + i] * b[i * width + k % width]).sum()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use articulated_core::algorithm::{FunctionId, functions};
+
+    use crate::magnitude::{ROUNDOFF, scales};
+    use crate::robot::bundled_model;
+    use crate::states::random;
+
+    #[test]
+    fn a_solution_is_measured_by_the_inverse_of_the_mass_matrix() {
+        let model = bundled_model("simple_pendulum");
+        // a = (τ − 9.81 sin q) / 1.001 with τ = 3: the terms are τ, g and M a
+        let (q, tau) = (0.5_f64, 3.0_f64);
+        let gravity = 9.81 * q.sin();
+        let least = (tau + (tau - gravity).abs() + gravity) / 1.001;
+        let scale = scales(&model, "forward_dynamics", &[&[q], &[0.0], &[tau]]).unwrap()[0];
+        assert!(scale >= least * 0.999 && scale < 4.0 * least, "{scale} {least}");
+    }
+
+    /// Every solving function has a scale, at least its own size, and none so large that a wrong digit in the eighth place would pass.
+    #[test]
+    fn no_scale_lets_everything_pass() {
+        for name in ["panda_like", "quadruped"] {
+            let model = bundled_model(name);
+            let tip = [model.frames[model.frames.len() - 1].name.clone()];
+            let model = model.with_frames(&tip).unwrap();
+            for f in functions::<f64>().iter().filter(|f| f.inverts_mass_matrix()) {
+                for state in random(&model, 8, 5) {
+                    let arguments = state.arguments(f).unwrap();
+                    let (found, scale) = (super::value(&model, f, &arguments).unwrap(), scales(&model, f.name, &arguments).unwrap());
+                    assert_eq!(found.len(), scale.len());
+                    let largest = found.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+                    for (x, s) in found.iter().zip(&scale) {
+                        assert!(x.abs() <= s * (1.0 + 1e-12), "{name} {}: {x} {s}", f.name);
+                        assert!(64.0 * ROUNDOFF * s < 1e-8 * largest, "{name} {}: {x} {s} {largest}", f.name);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_scale_of_an_inverse_is_that_of_its_columns() {
+        let model = bundled_model("panda_like");
+        let q = [0.1, -0.4, 0.7, -1.9, 0.3, 1.2, -0.5];
+        let all = scales(&model, FunctionId::mass_matrix_inverse.name(), &[&q]).unwrap();
+        for j in 0..7 {
+            let unit: Vec<f64> = (0..7).map(|i| f64::from(u8::from(i == j))).collect();
+            let column = scales(&model, "solve_mass_matrix", &[&q, &unit]).unwrap();
+            for (i, s) in column.iter().enumerate() {
+                assert!((s - all[7 * i + j]).abs() < 1e-12 * s, "{i} {j}");
+            }
+        }
+    }
+}
