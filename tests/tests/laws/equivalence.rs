@@ -91,7 +91,8 @@ fn only_the_direction_of_an_axis_counts() {
 
 #[test]
 fn a_reversed_axis_reverses_coordinate_rate_and_torque() {
-    for_each_tree(60, Flavour { mimic: false, ..Flavour::ANY }, |case, random| {
+    // A locked joint's coordinate is in the description, and a plane's directions have a rule of their own.
+    for_each_tree(60, Flavour { mimic: false, every_kind: false, locked: false, ..Flavour::ANY }, |case, random| {
         let state = case.state(random);
         let mut reversed = case.description.clone();
         reversed.joints.iter_mut().for_each(|j| j.axis = j.axis.map(|x| 0.0 - x));

@@ -128,7 +128,7 @@ fn a_wrong_number_of_arguments_is_an_error() {
         let state = case.state(random);
         let ws = &mut Workspace::new(&case.model);
         for row in functions::<f64>() {
-            let (given, mut out) = (arguments(row.name, &state), vec![0.0; row.gives.len(case.model.shape())]);
+            let (given, mut out) = (arguments(row.name, &state), vec![0.0; row.len(case.model.shape())]);
             assert_eq!(row.call(&case.model, ws, &given, &mut out), Ok(()));
             assert!(row.call(&case.model, ws, &given[1..], &mut out).is_err());
             assert!(row.call(&case.model, ws, &given, &mut [out, vec![0.0]].concat()).is_err());

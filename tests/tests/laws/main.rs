@@ -12,4 +12,5 @@ mod reference;
 mod screws;
 mod sines;
 mod structure;
+mod textbook;
 mod traps;

@@ -36,7 +36,8 @@ fn rows(reduced: &Case, free: &Case) -> Vec<(JointInfo, JointInfo, f64, f64)> {
 #[test]
 fn torque_on_a_leader_is_that_of_equal_power() {
     let mut met = std::cell::Cell::new(0);
-    for_each_tree(150, Flavour::ANY, |case, random| {
+    // Who follows a locked joint would be free without.
+    for_each_tree(150, Flavour { locked: false, ..Flavour::ANY }, |case, random| {
         let mut tree = case.description.clone();
         tree.joints.iter_mut().for_each(|j| j.mimic = None);
         met.set(met.get() + usize::from(tree != case.description));

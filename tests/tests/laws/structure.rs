@@ -1,7 +1,7 @@
 //! What every equation of motion M(q)·a + h(q, v) = τ is made of.
 
 use articulated_core::description::Base;
-use articulated_core::model::pass::MODEL_PASSES;
+use articulated_core::model::pass::model_passes;
 use articulated_tests::case::{Case, State, for_each_bundled, for_each_tree, inverse_dynamics, mass_matrix, placements};
 use articulated_tests::measure::{distance, error, plus, scale, torque_scale};
 use articulated_tests::random::Random;
@@ -113,7 +113,7 @@ fn joints_that_move_no_mass_are_found() {
 fn passes_keep_the_physics(case: &Case, random: &mut Random) {
     let state = case.state(random);
     let scale = torque_scale(case, &state);
-    for (name, pass, _) in MODEL_PASSES {
+    for (name, pass, _) in model_passes::<f64>() {
         let passed = Case { model: pass(case.model.clone()), ..case.clone() };
         let far = distance(&passed.inverse_dynamics(&state), &case.inverse_dynamics(&state), &scale);
         assert!(far <= FEW, "{name}: {far} units of roundoff");
@@ -132,7 +132,7 @@ fn model_passes_leave_torques_and_placements_as_they_are() {
 fn regrouped_bodies_keep_only_what_their_joint_feels() {
     use articulated_core::joint::Joint;
     for_each_tree(40, Flavour::ANY, |case, _| {
-        let passed = MODEL_PASSES.iter().fold(case.model.clone(), |m, (_, pass, _)| pass(m));
+        let passed = model_passes::<f64>().iter().fold(case.model.clone(), |m, (_, pass, _)| pass(m));
         for body in passed.bodies.iter().skip(1) {
             let i = &body.inertia;
             match body.joint {

@@ -11,7 +11,7 @@ use crate::spatial::Reference;
 
 impl<S: Scalar> Textbook<S> {
     /// Σ m and Σ m c in the base frame, of the links that move.
-    fn masses(&self, q: &[S]) -> (S, Vector3<S>) {
+    pub(super) fn masses(&self, q: &[S]) -> (S, Vector3<S>) {
         let poses = self.poses(q);
         let carried = self.bodies.iter().zip(&poses).filter(|(body, _)| body.carried);
         carried.fold((S::zero(), Vector3::zeros()), |(mass, moment), (body, x)| {

@@ -21,8 +21,9 @@ impl<S: Scalar> Textbook<S> {
             k += rotation * angular + position.cross(&linear);
             l += linear;
         }
-        // k_c = k_0 − c × l
-        let centre = Vector3::from_iterator(self.center_of_mass(q));
+        // k_c = k_0 − c × l; where nothing that moves has mass there is no centre, and no momentum about any point.
+        let (heavy, centre) = (self.masses(q).0.positive(), Vector3::from_iterator(self.center_of_mass(q)));
+        let centre = centre.map(|c| S::select(heavy, c, S::zero()));
         stack(k - centre.cross(&l), l).iter().copied().collect()
     }
 
