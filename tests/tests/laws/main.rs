@@ -6,6 +6,7 @@ mod energy;
 mod equivalence;
 mod fixtures;
 mod interface;
+mod manifold;
 mod mimic;
 mod random_trees;
 mod reference;

@@ -1,0 +1,222 @@
+//! Steps, differences and random points of the configurations' manifold.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use articulated_cli::precise::Big;
+use articulated_core::Scalar;
+use articulated_core::algorithm::neutral;
+use articulated_core::description::JointKind;
+use articulated_core::dual::Dual;
+use articulated_core::model::{JointInfo, Model};
+use articulated_core::spatial::screw::Quaternion;
+use articulated_core::spatial::{Vector3, rotate};
+use articulated_tests::case::{Case, cast, for_each_bundled, for_each_tree};
+use articulated_tests::measure::U;
+use articulated_tests::random::Random;
+use articulated_tests::random_tree::Flavour;
+
+/// Where a joint's quaternion is in q, and its angular rates in v.
+fn quaternion_of(joint: &JointInfo) -> Option<(usize, usize)> {
+    match joint.kind {
+        JointKind::Spherical => Some((joint.q.0, joint.v.0)),
+        JointKind::Floating => Some((joint.q.0 + 3, joint.v.0)),
+        _ => None,
+    }
+}
+
+fn quaternions(model: &Model<f64>) -> impl Iterator<Item = (usize, usize)> {
+    model.joints.iter().filter_map(quaternion_of)
+}
+
+fn read<S: Scalar>(q: &[S], at: usize) -> Quaternion<S> {
+    Quaternion::from_array(std::array::from_fn(|k| q[at + k]))
+}
+
+fn scaled(x: &[f64], by: f64) -> Vec<f64> {
+    x.iter().map(|x| x * by).collect()
+}
+
+/// Largest difference of two configurations, quaternions up to their signs, in units of u.
+fn apart(model: &Model<f64>, a: &[f64], b: &[f64]) -> f64 {
+    let mut b = b.to_vec();
+    for (at, _) in quaternions(model) {
+        let same = (0..4).map(|k| a[at + k] * b[at + k]).sum::<f64>();
+        b[at..at + 4].iter_mut().for_each(|x| *x *= same.signum());
+    }
+    largest(a, &b)
+}
+
+/// Largest difference, in units of u; NaN counts as infinite.
+fn largest(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let difference = |(a, b): (&f64, &f64)| if (a - b).is_nan() { f64::INFINITY } else { (a - b).abs() / U };
+    a.iter().zip(b).map(difference).fold(0.0, f64::max)
+}
+
+fn for_each(law: impl Fn(&Case, &mut Random)) {
+    for_each_tree(40, Flavour::ANY, &law);
+    for_each_bundled(law);
+}
+
+/// The target with its rotations at so many radians from those of q.
+fn turned_away(case: &Case, random: &mut Random, q: &[f64], target: &[f64], angle: f64) -> Vec<f64> {
+    let mut target = target.to_vec();
+    for (at, _) in quaternions(&case.model) {
+        let axis = *random.choose(&[random.clone().unit::<3>(), [1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, 1.0]]);
+        // A right angle is a right angle here: (axis, 0) exactly.
+        let (s, c) = if angle == PI { (1.0, 0.0) } else { (angle / 2.0).sin_cos() };
+        let turn = Quaternion { vector: Vector3::from(axis) * s, scalar: c };
+        target[at..at + 4].copy_from_slice(&read(q, at).product(&turn).normalised().to_array());
+    }
+    target
+}
+
+#[test]
+fn the_difference_to_a_target_leads_there_from_no_turn_to_half_a_turn() {
+    for_each(|case, random| {
+        let state = case.state(random);
+        let near = [0.0, 1e-300, 1e-9, 1e-5, 1.0, 3.0, PI - 1e-6, PI - 1e-9, PI, PI + 1e-9].map(Some);
+        for angle in near.into_iter().chain([None]) {
+            let target = angle.map_or(state.target.clone(), |angle| turned_away(case, random, &state.q, &state.target, angle));
+            let step = case.call("difference", &[&state.q, &target]);
+            let found = case.call("integrate", &[&state.q, &step]);
+            assert!(apart(&case.model, &target, &found) <= 32.0, "{angle:?}: {} u", apart(&case.model, &target, &found));
+            for (_, at) in quaternions(&case.model) {
+                let turn = step[at..at + 3].iter().map(|x| x * x).sum::<f64>().sqrt();
+                assert!(turn <= PI * (1.0 + 3.0 * U), "{turn}");
+                assert!(angle.is_none_or(|a| (turn - a.min(TAU - a)).abs() <= 12.0 * U), "{turn}");
+            }
+        }
+    });
+}
+
+#[test]
+fn a_step_is_the_difference_that_it_makes() {
+    for_each(|case, random| {
+        let state = case.state(random);
+        for size in [1.0, 1.5, 1e-3, 1e-9, 1e-15, 1e-200, 0.0] {
+            let step = scaled(&state.step, size);
+            let there = case.call("integrate", &[&state.q, &step]);
+            let found = case.call("difference", &[&state.q, &there]);
+            assert!(largest(&found, &step) <= 16.0, "{size:e}: {} u", largest(&found, &step));
+            for (at, _) in quaternions(&case.model) {
+                assert!((read(&there, at).norm_squared() - 1.0).abs() <= 4.0 * U);
+            }
+        }
+    });
+}
+
+/// ṗ = R v and q̇ = ½ q ⊗ ω, with rates that do not change on the way.
+#[test]
+fn a_step_along_time_is_a_motion_with_constant_rates() {
+    for_each(|case, random| {
+        let state = case.state(random);
+        for time in [0.0, 1e-12, 0.7] {
+            let step: Vec<Dual<f64>> = state.v.iter().map(|v| Dual::new(v * time, *v)).collect();
+            let moving = case.call("integrate", &[&cast(&state.q), &step]);
+            for joint in &case.model.joints {
+                let Some((at, v)) = quaternion_of(joint) else {
+                    (0..joint.q.1).for_each(|k| assert_eq!(moving[joint.q.0 + k].slope, state.v[joint.v.0 + k]));
+                    continue;
+                };
+                let q = read(&moving, at);
+                let (vector, scalar) = (q.vector.map(|d| d.value), q.scalar.value);
+                let here = Quaternion { vector, scalar };
+                let rate = Quaternion { vector: Vector3::new(state.v[v], state.v[v + 1], state.v[v + 2]) * 0.5, scalar: 0.0 };
+                let slope = q.to_array().map(|d| d.slope);
+                assert!(largest(&slope, &here.product(&rate).to_array()) <= 8.0, "{time}");
+                if joint.kind == JointKind::Floating {
+                    let linear = Vector3::new(state.v[v + 3], state.v[v + 4], state.v[v + 5]);
+                    let slope: Vec<f64> = (0..3).map(|k| moving[joint.q.0 + k].slope).collect();
+                    assert!(largest(&slope, rotate(&here.to_rotation(), linear).as_slice()) <= 16.0, "{time}");
+                }
+            }
+        }
+    });
+}
+
+#[test]
+fn steps_along_one_direction_add_up() {
+    for_each(|case, random| {
+        let state = case.state(random);
+        let (first, second) = (random.within(-2.0, 2.0), random.within(-2.0, 2.0));
+        let at = |q: &[f64], size: f64| case.call("integrate", &[q, &scaled(&state.step, size)]);
+        let found = at(&at(&state.q, first), second);
+        let far = apart(&case.model, &at(&state.q, first + second), &found);
+        assert!(far <= 16.0, "{far} u");
+    });
+}
+
+#[test]
+fn steps_and_differences_in_double_precision_are_those_in_many_digits() {
+    for_each_tree(25, Flavour::ANY, |case, random| {
+        let state = case.state(random);
+        for (name, other) in [("integrate", &state.step), ("difference", &state.target)] {
+            Big::scope(|| {
+                let found = case.call::<f64>(name, &[&state.q, other]);
+                let expected = case.call::<Big>(name, &[&cast(&state.q), &cast(other)]);
+                let far = found.iter().zip(&expected).map(|(f, e)| e.error_of(*f, U)).fold(0.0, f64::max);
+                assert!(far <= 16.0, "{name}: {far} u");
+            });
+        }
+    });
+}
+
+#[test]
+fn random_configurations_keep_to_the_limits_and_are_rotations() {
+    let greatest = 1.0 - U;
+    for_each(|case, random| {
+        let n = case.model.nq;
+        for uniform in [vec![0.0; n], vec![greatest; n], vec![0.5; n], random.vector(n, 0.0, 1.0)] {
+            let q = case.call("random_configuration", &[&uniform]);
+            for joint in &case.model.joints {
+                let own = &q[joint.q.0..joint.q.0 + joint.q.1];
+                match (joint.kind, joint.limit) {
+                    (JointKind::Floating, _) => assert!(own[..3].iter().all(|x| x.abs() <= 1.0)),
+                    (JointKind::Spherical, _) => {}
+                    (_, Some(limit)) => assert!((limit.lower..=limit.upper).contains(&own[0]), "{joint:?} {own:?}"),
+                    (JointKind::Prismatic, None) => assert!(own[0].abs() <= 1.0),
+                    (JointKind::Planar, None) => assert!(own[0].abs() <= 1.0 && own[1].abs() <= 1.0 && own[2].abs() <= PI),
+                    (_, None) => assert!(own.iter().all(|x| x.abs() <= PI)),
+                }
+            }
+            for (at, _) in quaternions(&case.model) {
+                assert!((read(&q, at).norm_squared() - 1.0).abs() <= 4.0 * U);
+            }
+        }
+    });
+}
+
+/// Of uniform rotations, the angle is below π/2 with probability (π/2 − 1)/π, and all axes are alike.
+#[test]
+fn random_rotations_are_uniform() {
+    let robot = articulated_models::robot("quadruped").expect("bundled");
+    let case = Case::bundled(robot);
+    let (at, _) = quaternions(&case.model).next().expect("it floats");
+    let random = &mut Random::new(3);
+    let (count, mut small, mut sum, mut squares) = (20_000, 0.0, [0.0; 4], [0.0; 4]);
+    for _ in 0..count {
+        let q = case.call("random_configuration", &[&random.vector(case.model.nq, 0.0, 1.0)]);
+        let q: [f64; 4] = read(&q, at).to_array();
+        small += f64::from(u8::from(2.0 * q[3].abs().acos() < FRAC_PI_2)) / f64::from(count);
+        for k in 0..4 {
+            sum[k] += q[k] / f64::from(count);
+            squares[k] += q[k] * q[k] / f64::from(count);
+        }
+    }
+    // Four standard deviations.
+    assert!((small - (FRAC_PI_2 - 1.0) / PI).abs() < 0.011, "{small}");
+    assert!(sum.iter().all(|x| x.abs() < 0.0142), "{sum:?}");
+    assert!(squares.iter().all(|x| (x - 0.25).abs() < 0.0063), "{squares:?}");
+}
+
+#[test]
+fn the_neutral_configuration_turns_nothing() {
+    for_each(|case, _| {
+        let mut q = vec![f64::NAN; case.model.nq];
+        neutral(&case.model, &mut q);
+        assert_eq!(q.iter().sum::<f64>(), quaternions(&case.model).count() as f64);
+        assert!(quaternions(&case.model).all(|(at, _)| q[at + 3] == 1.0));
+        assert_eq!(case.call("difference", &[&q, &q]), vec![0.0; case.model.nv]);
+    });
+}
