@@ -13,8 +13,10 @@
 
 use super::Workspace;
 use super::common::{Axes, accelerations, coriolis, forces, inertias, positions, twists};
-use super::forward_dynamics::forward_dynamics_with_wrenches;
-use super::ltdl::{factor, solve};
+use super::crba::mass_matrix_in_common_axes;
+use super::forward_dynamics::inverse;
+use super::ltdl::{factor, solve, solve_rows};
+use super::rnea::inverse_dynamics_with_wrenches;
 use super::wrenches;
 use crate::Scalar;
 use crate::model::Model;
@@ -130,27 +132,23 @@ pub fn forward_dynamics_derivatives_with_wrenches<S: Scalar>(
     wrenches: &[S],
     out: &mut [S],
 ) {
-    let n = model.nv;
-    let mut a = core::mem::take(&mut ws.solution);
-    forward_dynamics_with_wrenches(model, ws, q, v, tau, wrenches, &mut a);
-    inverse_dynamics_derivatives_with_wrenches(model, ws, q, v, &a, wrenches, out);
-    ws.solution = a;
-    let mut matrix = core::mem::take(&mut ws.matrix);
-    matrix.copy_from_slice(&out[2 * n * n..]);
+    let n = model.nv * model.nv;
+    let (mut matrix, mut a) = (core::mem::take(&mut ws.matrix), core::mem::take(&mut ws.solution));
+    let zeros = core::mem::take(&mut ws.zeros);
+    inverse_dynamics_with_wrenches(model, ws, q, v, &zeros, wrenches, &mut a);
+    ws.zeros = zeros;
+    a.iter_mut().zip(tau).for_each(|(b, tau)| *b = *tau - *b);
+    mass_matrix_in_common_axes(model, ws, q, &mut matrix);
     factor(&mut matrix, &ws.below);
-    let mut column = core::mem::take(&mut ws.row);
-    for (which, block) in out.chunks_exact_mut((n * n).max(1)).enumerate() {
-        for j in 0..n {
-            // ∂a = −M⁻¹ ∂τ; ∂a/∂τ = M⁻¹ 1
-            (0..n).for_each(|i| column[i] = if which < 2 { -block[i * n + j] } else { S::zero() });
-            if which == 2 {
-                column[j] = S::one();
-            }
-            solve(&matrix, &ws.below, &mut column);
-            (0..n).for_each(|i| block[i * n + j] = column[i]);
-        }
+    solve(&matrix, &ws.below, &mut a);
+    inverse_dynamics_derivatives_with_wrenches(model, ws, q, v, &a, wrenches, out);
+    // ∂a = −M⁻¹ ∂τ;  ∂a/∂τ = M⁻¹
+    for block in out.chunks_exact_mut(n.max(1)).take(2) {
+        block.iter_mut().for_each(|x| *x = -*x);
+        solve_rows(&matrix, &ws.below, block, model.nv);
     }
-    (ws.matrix, ws.row) = (matrix, column);
+    inverse(&matrix, &ws.below, &mut out[2 * n..]);
+    (ws.matrix, ws.solution) = (matrix, a);
 }
 
 /// At rest.

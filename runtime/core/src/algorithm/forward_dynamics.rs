@@ -2,7 +2,7 @@
 
 use super::Workspace;
 use super::crba::mass_matrix;
-use super::ltdl::{factor, solve};
+use super::ltdl::{factor, solve, solve_rows};
 use super::rnea::inverse_dynamics_with_wrenches;
 use crate::Scalar;
 use crate::model::Model;
@@ -56,7 +56,7 @@ pub fn solve_mass_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: 
     ws.matrix = matrix;
 }
 
-/// M(q)⁻¹, column by column from M = Lᵀ D L.
+/// M(q)⁻¹, from M = Lᵀ D L.
 ///
 /// q: `[nq]`; out: `[nv · nv]`, symmetric.
 ///
@@ -64,18 +64,20 @@ pub fn solve_mass_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: 
 /// As [`forward_dynamics`].
 pub fn mass_matrix_inverse<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
     let matrix = factored(model, ws, q);
-    let n = model.nv;
-    for j in 0..n {
-        ws.row.fill(S::zero());
-        ws.row[j] = S::one();
-        solve(&matrix, &ws.below, &mut ws.row);
-        // Of what is the same twice, once.
-        for i in 0..=j {
-            out[i * n + j] = ws.row[i];
-            out[j * n + i] = ws.row[i];
-        }
-    }
+    inverse(&matrix, &ws.below, out);
     ws.matrix = matrix;
+}
+
+/// M⁻¹ from what `factor` left of M.
+pub(super) fn inverse<S: Scalar>(matrix: &[S], below: &[usize], out: &mut [S]) {
+    let n = below.len();
+    out.fill(S::zero());
+    (0..n).for_each(|k| out[k * n + k] = S::one());
+    solve_rows(matrix, below, out, n);
+    // What is the same twice, once.
+    for j in 0..n {
+        (0..j).for_each(|i| out[j * n + i] = out[i * n + j]);
+    }
 }
 
 /// M(q) as `factor` leaves it. The matrix is the workspace's, to be given back.

@@ -47,3 +47,27 @@ pub(super) fn solve<S: Scalar>(l: &[S], below: &[usize], x: &mut [S]) {
         }
     }
 }
+
+/// X = M⁻¹ B in place, for a matrix B of rows of this width: all its columns at once.
+pub(super) fn solve_rows<S: Scalar>(l: &[S], below: &[usize], x: &mut [S], width: usize) {
+    let n = below.len();
+    for k in (0..n).rev() {
+        for i in way(below, k) {
+            subtract(x, width, i, k, l[k * n + i]);
+        }
+    }
+    for k in 0..n {
+        x[k * width..][..width].iter_mut().for_each(|x| *x *= l[k * n + k]);
+        for i in way(below, k) {
+            subtract(x, width, k, i, l[k * n + i]);
+        }
+    }
+}
+
+/// Row i −= factor · row k.
+fn subtract<S: Scalar>(x: &mut [S], width: usize, i: usize, k: usize, factor: S) {
+    let (low, high) = x.split_at_mut(i.max(k) * width);
+    let (first, second) = (&mut low[i.min(k) * width..][..width], &mut high[..width]);
+    let (to, from) = if i < k { (first, second) } else { (second, first) };
+    to.iter_mut().zip(from.iter()).for_each(|(to, from)| *to -= factor * *from);
+}
