@@ -111,14 +111,14 @@ impl fmt::Display for EditError {
                 write!(f, "joint {joint:?}: locked at a quaternion of norm {norm:.4}, expected one, with the order x, y, z, w")
             }
             Self::Mass { link, found } => {
-                write!(f, "payload on link {link:?}: mass: found {found} kg, expected a finite number, not negative")
+                write!(f, "load on link {link:?}: mass: found {found} kg, expected a finite number, not negative")
             }
             Self::Center { link, found } => {
-                write!(f, "payload on link {link:?}: centre of mass: found {found:?} m, expected finite numbers")
+                write!(f, "load on link {link:?}: centre of mass: found {found:?} m, expected finite numbers")
             }
             Self::Inertia { link, found } => write!(
                 f,
-                "payload on link {link:?}: inertia: found {found:?} kg·m², expected xx, xy, xz, yy, yz, zz of a body with mass: no principal \
+                "load on link {link:?}: inertia: found {found:?} kg·m², expected xx, xy, xz, yy, yz, zz of a body with mass: no principal \
                  moment negative or greater than the other two together"
             ),
             Self::NoRoot { robot } => write!(f, "robot {robot:?}: found no root link, expected a tree"),
