@@ -60,7 +60,7 @@ impl<S: Scalar> JointLaw<S> for Helical<S> {
     #[inline(always)]
     fn column(&self, inertia: &SpatialInertia<S>, k: usize) -> Wrench<S> {
         // I [e_z; h e_z]
-        let mut wrench = self.slide.column(inertia, k).scaled(Some(self.pitch));
+        let mut wrench = self.slide.column(inertia, k).times(self.pitch);
         wrench += self.turn.column(inertia, k);
         wrench
     }

@@ -11,12 +11,12 @@ use crate::Scalar;
 use crate::spatial::{Placement, Twist, Wrench, rotate, rotate_back};
 
 impl<S: Scalar> Placement<S> {
-    /// Ad(T) = [R 0; [p]×R R], on twists (angular; linear).
+    /// `Ad(T) = [R 0; [p]×R R]`, on twists (angular; linear).
     pub fn adjoint(&self) -> Matrix6<S> {
         lower(&self.rotation, &(cross_matrix(self.position) * self.rotation))
     }
 
-    /// Ad(T⁻¹)ᵀ = [R [p]×R; 0 R], on wrenches (moment; force).
+    /// `Ad(T⁻¹)ᵀ = [R [p]×R; 0 R]`, on wrenches (moment; force).
     pub fn coadjoint(&self) -> Matrix6<S> {
         swapped(&self.adjoint())
     }
@@ -51,12 +51,12 @@ impl<S: Scalar> Placement<S> {
 }
 
 impl<S: Scalar> Twist<S> {
-    /// ad(V) = [[ω]× 0; [v]× [ω]×], on twists (angular; linear).
+    /// `ad(V) = [[ω]× 0; [v]× [ω]×]`, on twists (angular; linear).
     pub fn ad(&self) -> Matrix6<S> {
         lower(&cross_matrix(self.angular), &cross_matrix(self.linear))
     }
 
-    /// coad(V) = −ad(V)ᵀ = [[ω]× [v]×; 0 [ω]×], on wrenches (moment; force).
+    /// `coad(V) = −ad(V)ᵀ = [[ω]× [v]×; 0 [ω]×]`, on wrenches (moment; force).
     pub fn coad(&self) -> Matrix6<S> {
         swapped(&self.ad())
     }

@@ -80,7 +80,7 @@ impl<S: Scalar> Twist<S> {
         self.blocks([first, half.inverse()], [S::zero(), half.inverse_rate()])
     }
 
-    /// [P 0; P' P] with P = 1 + a [ω]× + b [ω]×² and P' its derivative in the direction v.
+    /// `[P 0; P' P]` with `P = 1 + a [ω]× + b [ω]×²` and P' its derivative in the direction v.
     fn blocks(&self, [a, b]: [S; 2], [a_rate, b_rate]: [S; 2]) -> Matrix6<S> {
         let (w, v) = (self.angular, self.linear);
         let (wx, vx) = (cross_matrix(w), cross_matrix(v));

@@ -52,12 +52,12 @@ pub fn right_jacobian_inverse<S: Scalar>(omega: Vector3<S>) -> Matrix3<S> {
     left_jacobian_inverse(-omega)
 }
 
-/// 1 + a [ω]× + b [ω]×².
+/// `1 + a [ω]× + b [ω]×²`.
 fn one_and<S: Scalar>(omega: Vector3<S>, a: S, b: S) -> Matrix3<S> {
     Matrix3::identity() + polynomial(omega, a, b)
 }
 
-/// a [ω]× + b [ω]×².
+/// `a [ω]× + b [ω]×²`.
 pub(super) fn polynomial<S: Scalar>(omega: Vector3<S>, a: S, b: S) -> Matrix3<S> {
     cross_matrix(omega) * a + rate_matrix(omega, Vector3::zeros()) * b
 }
