@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
-use articulated_codegen::nearest;
-use articulated_core::algorithm::{function, functions};
+use articulated_core::algorithm::function;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::edits::{Edits, FrameArguments};
 use crate::failure::STATUSES;
+use crate::groups::Group;
+use crate::names::{Names, known, wanted};
 
 /// Robot dynamics, spelled out: checks a URDF, generates its straight-line code, evaluates it, and compares it.
 #[derive(Debug, Parser)]
@@ -45,6 +46,7 @@ pub(crate) enum Command {
         "articulated generate panda_like",
         "articulated generate arm.urdf --functions placements,inverse_dynamics -o src/arm.rs",
         "articulated generate arm.urdf --runtime ::articulated -o src/arm.rs",
+        "articulated generate arm.urdf --functions 'hold = gravity_torque + jacobians_body, bias = inverse_dynamics(a = 0)'",
         "articulated generate arm.urdf --frames tool,camera --lock wrist=0 --payload tool=1.2@0,0,0.1:1e-3,0,0,1e-3,0,1e-3",
         "articulated generate arm.urdf --append gripper.urdf@tool --append gripper.urdf@tool:second_:0,0,0.2,0,0,1.5",
     ]))]
@@ -54,7 +56,7 @@ pub(crate) enum Command {
         "articulated eval simple_pendulum --function inverse_dynamics --states states.json",
         "articulated eval arm.urdf --function gravity_torque,placements --states states.csv --generic --format json",
         "",
-        "states.json:  {\"states\": [{\"q\": [0.1], \"v\": {\"hinge\": 0.2}, \"a\": [0]}]}",
+        "states.json:  {\"states\": [{\"q\": [0.1], \"v\": {\"hinge\": 0.2}, \"a\": [0], \"wrenches\": {\"tip\": [0, 0, 0, 0, 0, -5]}}]}",
         "states.csv:   q.hinge,v.hinge,a.hinge      (q.base[0],q.base[1],… where a joint has several numbers)",
         "              0.1,0.2,0",
     ]))]
@@ -63,10 +65,18 @@ pub(crate) enum Command {
     #[command(after_help = examples(&[
         "articulated compare panda_like",
         "articulated compare humanoid --functions inverse_dynamics --repetitions 101",
+        "articulated compare ur5_like --functions kinematics,derivatives --frames tool0",
         "articulated compare arm.urdf --peer libpeer.so --format json",
         "articulated compare quadruped --peers-manifest target/peers/peers.json",
     ]))]
     Compare(CompareArguments),
+    /// Lists all functions, and what they cost on some robots, on the frames of their tips
+    #[command(after_help = examples(&[
+        "articulated functions",
+        "articulated functions panda_like arm.urdf --format json",
+        "articulated functions --markdown > docs/functions.md",
+    ]))]
+    Functions(FunctionsArguments),
 }
 
 /// Which robot, and how to read it.
@@ -94,6 +104,14 @@ pub(crate) struct RobotArguments {
     pub(crate) edits: Edits,
 }
 
+impl RobotArguments {
+    /// A robot as it is.
+    pub(crate) fn plain(robot: &str, floating: bool) -> Self {
+        let (robot, edits) = (robot.to_owned(), Edits::default());
+        Self { robot, floating, fixed: false, gravity: None, allow_unphysical_inertia: false, snap_angles: None, edits }
+    }
+}
+
 #[derive(Args, Debug)]
 pub(crate) struct CheckArguments {
     #[command(flatten)]
@@ -101,8 +119,8 @@ pub(crate) struct CheckArguments {
     #[command(flatten)]
     pub(crate) frames: FrameArguments,
     /// Check too that these functions can be generated
-    #[arg(long, alias = "functions", value_name = "NAME", value_delimiter = ',', value_parser = known_function)]
-    pub(crate) function: Vec<String>,
+    #[arg(long, alias = "functions", value_name = "NAMES", value_parser = wanted)]
+    pub(crate) function: Vec<Names>,
 }
 
 #[derive(Args, Debug)]
@@ -111,9 +129,9 @@ pub(crate) struct GenerateArguments {
     pub(crate) robot: RobotArguments,
     #[command(flatten)]
     pub(crate) frames: FrameArguments,
-    /// The functions wanted [default: placements,inverse_dynamics]
-    #[arg(long, alias = "function", value_name = "NAMES", value_delimiter = ',', value_parser = known_function)]
-    pub(crate) functions: Vec<String>,
+    /// The functions wanted, groups of them, or name = first + second(a = 0) [default: placements,inverse_dynamics]
+    #[arg(long, alias = "function", value_name = "NAMES", value_parser = wanted)]
+    pub(crate) functions: Vec<Names>,
     /// The file to write instead of the standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
@@ -134,9 +152,9 @@ pub(crate) struct EvalArguments {
     pub(crate) robot: RobotArguments,
     #[command(flatten)]
     pub(crate) frames: FrameArguments,
-    /// The functions to evaluate
-    #[arg(long, alias = "functions", value_name = "NAMES", value_delimiter = ',', required = true, value_parser = known_function)]
-    pub(crate) function: Vec<String>,
+    /// The functions to evaluate, or groups of them
+    #[arg(long, alias = "functions", value_name = "NAMES", required = true, value_parser = known)]
+    pub(crate) function: Vec<Names>,
     /// A file of states in JSON or CSV; - is the standard input
     #[arg(long, value_name = "FILE")]
     pub(crate) states: String,
@@ -152,9 +170,11 @@ pub(crate) struct EvalArguments {
 pub(crate) struct CompareArguments {
     #[command(flatten)]
     pub(crate) robot: RobotArguments,
-    /// The functions to compare [default: all that are defined for the robot]
-    #[arg(long, alias = "function", value_name = "NAMES", value_delimiter = ',', value_parser = known_function)]
-    pub(crate) functions: Vec<String>,
+    #[command(flatten)]
+    pub(crate) frames: FrameArguments,
+    /// The functions to compare, or groups of them [default: all that are defined for the robot, on the frames of its tips]
+    #[arg(long, alias = "function", value_name = "NAMES", value_parser = known)]
+    pub(crate) functions: Vec<Names>,
     /// No `unsafe` in the generated code: shows what the vector instructions of the sines bring
     #[arg(long)]
     pub(crate) forbid_unsafe: bool,
@@ -178,6 +198,19 @@ pub(crate) struct CompareArguments {
     pub(crate) bound: f64,
 }
 
+#[derive(Args, Debug)]
+pub(crate) struct FunctionsArguments {
+    /// Bundled robots' names, or paths of URDF files [default: ur5_like panda_like quadruped humanoid]
+    #[arg(value_name = "ROBOT")]
+    pub(crate) robots: Vec<String>,
+    /// The root links of robots that are files move freely
+    #[arg(long)]
+    pub(crate) floating: bool,
+    /// As tables in Markdown, with a head and the meaning of each function
+    #[arg(long)]
+    pub(crate) markdown: bool,
+}
+
 /// Three numbers in m/s².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Gravity(pub(crate) [f64; 3]);
@@ -194,25 +227,11 @@ fn tolerance(text: &str) -> Result<f64, String> {
     if (0.0..=0.5).contains(&x) { Ok(x) } else { Err("expected 0 to 0.5 rad".into()) }
 }
 
-fn known_function(name: &str) -> Result<String, String> {
-    if function::<f64>(name).is_some() {
-        return Ok(name.to_owned());
-    }
-    let all = names();
-    let near = nearest(name, all.iter().copied()).map(|n| format!("did you mean {n}? ")).unwrap_or_default();
-    Err(format!("{near}there are: {}", all.join(", ")))
-}
-
 /// A path as it stands in Rust: `::articulated`, `crate::dynamics`.
 fn rust_path(text: &str) -> Result<String, String> {
     let word = |w: &str| !w.is_empty() && w.chars().all(|c| c.is_alphanumeric() || c == '_') && !w.starts_with(char::is_numeric);
     let path = text.strip_prefix("::").unwrap_or(text);
     if path.split("::").all(word) { Ok(text.to_owned()) } else { Err("expected a path of Rust such as ::articulated".into()) }
-}
-
-/// All functions, in the registry's order.
-pub(crate) fn names() -> Vec<&'static str> {
-    functions::<f64>().iter().map(|f| f.name).collect()
 }
 
 fn examples(lines: &[&str]) -> String {
@@ -222,8 +241,10 @@ fn examples(lines: &[&str]) -> String {
 
 fn overview() -> String {
     let robots: String = articulated_models::ROBOTS.iter().map(|r| format!("  {:16} {}\n", r.name, r.summary)).collect();
-    let functions: String = functions::<f64>().iter().map(|f| format!("  {:16} {}\n", f.name, f.summary)).collect();
-    format!("Bundled robots:\n{robots}\nFunctions:\n{functions}\n{STATUSES}")
+    let group = |g: Group| format!("  {}: {}\n", g.name(), g.title());
+    let one = |name: &'static str| function::<f64>(name).map(|f| format!("    {name:42} {}\n", f.summary)).unwrap_or_default();
+    let functions: String = Group::ALL.into_iter().map(|g| group(g) + &g.functions().map(one).collect::<String>()).collect();
+    format!("Bundled robots:\n{robots}\nFunctions, in groups whose names stand for all of them:\n{functions}\n{STATUSES}")
 }
 
 #[cfg(test)]
@@ -243,8 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn a_misspelt_function_is_guessed() {
-        assert!(known_function("inverse_dynamic").unwrap_err().contains("did you mean inverse_dynamics?"));
+    fn a_path_is_one_of_rust() {
         assert!(rust_path("::a::b_1").is_ok() && rust_path("crate::x").is_ok());
         assert!(rust_path("a; fn").is_err() && rust_path("::").is_err() && rust_path("1a").is_err());
     }

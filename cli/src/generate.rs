@@ -28,7 +28,7 @@ struct Function {
 /// Writes the source to where it is wanted.
 pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), Failure> {
     let robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
-    let mut request = robot.request(&arguments.functions);
+    let mut request = robot.request(&crate::names::flat(&arguments.functions));
     if arguments.functions.is_empty() {
         request.options.functions = articulated_codegen::Options::default().functions;
     }

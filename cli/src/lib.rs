@@ -11,15 +11,20 @@ mod console;
 mod edits;
 mod eval;
 pub mod failure;
+mod functions;
 mod generate;
+mod groups;
 mod ledger;
 pub mod magnitude;
+mod names;
 mod native;
+mod parallel;
 pub mod precise;
 mod robot;
 mod shape;
 pub mod states;
 mod table;
+mod tips;
 
 use std::ffi::OsString;
 
@@ -53,6 +58,7 @@ fn dispatch(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Generate(a) => generate::run(a, format).map(|()| OK),
         Command::Eval(a) => eval::run(a, format),
         Command::Compare(a) => compare::run(a, format),
+        Command::Functions(a) => functions::run(a, format).map(|()| OK),
     }
 }
 

@@ -53,6 +53,12 @@ impl Robot {
         self
     }
 
+    /// The robot with the frames of these links.
+    pub(crate) fn on(mut self, frames: &[String]) -> Self {
+        self.options.frames = Some(frames.to_vec());
+        self
+    }
+
     /// What the reader finds in the document, edited as asked for.
     pub(crate) fn read(&self) -> Result<Reading, Error> {
         articulated_codegen::read(&self.request(&[]))

@@ -26,6 +26,11 @@ impl Table {
         self.rows.push(cells.into_iter().map(|c| plain(&c.into())).collect());
     }
 
+    /// Appends a line of text across all columns.
+    pub(crate) fn heading(&mut self, text: &str) {
+        self.rows.push(vec![plain(text)]);
+    }
+
     /// Whether there are no rows.
     pub(crate) fn is_empty(&self) -> bool {
         self.rows.is_empty()
@@ -36,14 +41,16 @@ impl Table {
         let units = self.head[1].iter().any(|u| !u.is_empty());
         let head = self.head.iter().take(if units { 2 } else { 1 });
         let lines: Vec<&Vec<String>> = head.chain(&self.rows).collect();
-        let width = |k: usize| lines.iter().filter_map(|l| l.get(k)).map(|c| c.chars().count()).max().unwrap_or(0);
+        // Headings are as wide as they are.
+        let cells = || lines.iter().filter(|l| l.len() > 1 || self.head[0].len() == 1);
+        let width = |k: usize| cells().filter_map(|l| l.get(k)).map(|c| c.chars().count()).max().unwrap_or(0);
         let widths: Vec<usize> = (0..self.head[0].len()).map(width).collect();
         lines.iter().fold(String::new(), |text, line| text + self.line(line, &widths).trim_end() + "\n")
     }
 
     fn line(&self, cells: &[String], widths: &[usize]) -> String {
         let cell = |(k, (text, width)): (usize, (&String, &usize))| {
-            let fill = " ".repeat(width - text.chars().count());
+            let fill = " ".repeat(width.saturating_sub(text.chars().count()));
             if k < self.left { format!("{text}{fill}") } else { format!("{fill}{text}") }
         };
         cells.iter().zip(widths).enumerate().map(cell).collect::<Vec<_>>().join("  ")

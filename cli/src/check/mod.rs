@@ -16,7 +16,7 @@ use report::{Diagnostic, Report};
 /// Prints all that there is to say; an error of the input is part of that and goes where the rest goes.
 pub(crate) fn run(arguments: &CheckArguments, format: Format) -> Result<u8, Failure> {
     let robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
-    let report = examine(&robot, &arguments.function);
+    let report = examine(&robot, &crate::names::flat(&arguments.function));
     console::print(&match format {
         Format::Text => text::text(&report),
         Format::Json => crate::json(&report),

@@ -1,12 +1,12 @@
 //! Errors against a reference of 96 digits that shares no formula with what it judges.
 //!
-//! A function that the textbook form has is compared with it. The solution of the equations of motion is judged by its backward error
-//! instead: how far the torques that it needs are from those that were given.
+//! A result is compared with the textbook form's. The accelerations of forward dynamics are judged by their backward error
+//! instead: how far the torques that they need are from those that were given.
 
 use articulated_codegen::Options;
 use articulated_core::Scalar;
-use articulated_core::algorithm::Function;
 use articulated_core::algorithm::textbook::Textbook;
+use articulated_core::algorithm::{Function, FunctionId};
 use articulated_core::description::Description;
 use articulated_core::model::Model;
 use serde::Serialize;
@@ -20,6 +20,8 @@ use crate::precise::Big;
 pub(super) struct Errors {
     /// `forward`: of the result; `backward`: of the torques that the result needs.
     pub(super) kind: &'static str,
+    /// On how many states.
+    pub(super) states: usize,
     pub(super) generated: f64,
     pub(super) generic: f64,
 }
@@ -35,12 +37,28 @@ impl Reference {
     pub(super) fn new(description: &Description, options: &Options) -> Self {
         Self { description: description.clone(), options: options.clone() }
     }
+
+    /// With the frames of the model.
+    fn textbook(&self, model: &Model<f64>) -> Option<Textbook<Big>> {
+        let textbook = Textbook::<Big>::new(&self.description, self.options.base, self.options.gravity).ok()?;
+        let names: Vec<&str> = model.frames.iter().map(|f| f.name.as_str()).collect();
+        Some(textbook.with_frames(&names).ok()?.with_wrenches_in(self.options.wrench_reference))
+    }
 }
 
-/// The function whose result is judged by its backward error.
-const SOLVE: &str = "forward_dynamics";
+/// On how many of the states errors are looked at: a derivative in 96 digits takes its time.
+const JUDGED: usize = 16;
 
-/// `None` where the textbook form does not have the function.
+/// The function that says what torques the result of a function needs, where it is judged by those.
+fn inverse_of(function: &Function<f64>) -> Option<&'static str> {
+    match function.id {
+        FunctionId::forward_dynamics => Some("inverse_dynamics"),
+        FunctionId::forward_dynamics_with_wrenches => Some("inverse_dynamics_with_wrenches"),
+        _ => None,
+    }
+}
+
+/// The largest errors over some of the states; `None` where the textbook form does not have the function.
 pub(super) fn errors(
     reference: &Reference,
     model: &Model<f64>,
@@ -49,42 +67,48 @@ pub(super) fn errors(
     generated: &Contender<'_>,
 ) -> Option<Errors> {
     let generic = Contender::generic(model, function);
+    let inverse = inverse_of(function);
     Big::scope(|| {
-        let textbook = Textbook::<Big>::new(&reference.description, reference.options.base, reference.options.gravity).ok()?;
-        let kind = if function.name == SOLVE { "backward" } else { "forward" };
-        let mut worst = Errors { kind, generated: 0.0, generic: 0.0 };
-        for state in states {
+        let textbook = reference.textbook(model)?;
+        let kind = if inverse.is_some() { "backward" } else { "forward" };
+        let mut worst = Errors { kind, states: states.len().min(JUDGED), generated: 0.0, generic: 0.0 };
+        for state in states.iter().take(JUDGED) {
             let sides = [generated.call(state), generic.call(state)];
-            let judge = |found: &Vec<f64>| match kind {
-                "backward" => backward(&textbook, model, state, found),
-                _ => forward(&textbook, model, function.name, state, found),
-            };
-            let [a, b] = Big::scope(|| sides.each_ref().map(judge));
-            worst = Errors { kind, generated: worse(worst.generated, a?), generic: worse(worst.generic, b?) };
+            let [a, b] = Big::scope(|| match inverse {
+                Some(inverse) => backward(&textbook, model, inverse, state, &sides),
+                None => forward(&textbook, model, function.name, state, &sides),
+            })?;
+            worst = Errors { generated: worse(worst.generated, a), generic: worse(worst.generic, b), ..worst };
         }
         Some(worst)
     })
 }
 
-/// |found − exact| over the scale of the result.
-fn forward(textbook: &Textbook<Big>, model: &Model<f64>, name: &str, state: &[&[f64]], found: &[f64]) -> Option<f64> {
+/// |found − exact| over the scale of the result, of each that was found.
+fn forward(textbook: &Textbook<Big>, model: &Model<f64>, name: &str, state: &[&[f64]], found: &[Vec<f64>; 2]) -> Option<[f64; 2]> {
     let mut scale = scales(model, name, state).ok()?;
     // Where the model knows that a result is zero, the reference may be left with the roundings of its 96 digits.
     let floor = scale.iter().copied().fold(0.0, f64::max) * 1e-60;
     scale.iter_mut().for_each(|s| *s = s.max(floor));
-    Some(largest(&exact(textbook, name, state)?, found, &scale))
+    let exact = exact(textbook, name, state)?;
+    Some(found.each_ref().map(|found| largest(&exact, found, &scale)))
 }
 
-/// η = maxᵢ |ID_exact(q, v, a) − τ|ᵢ / (scale of ID + |τ|)ᵢ, for the state (q, v, τ) and the acceleration that was found.
-fn backward(textbook: &Textbook<Big>, model: &Model<f64>, state: &[&[f64]], a: &[f64]) -> Option<f64> {
-    let &[q, v, tau] = state else { return None };
-    if a.iter().any(|x| !x.is_finite()) {
-        return Some(f64::NAN);
-    }
-    let needed = exact(textbook, "inverse_dynamics", &[q, v, a])?;
-    let scale = scales(model, "inverse_dynamics", &[q, v, a]).ok()?;
-    let scale: Vec<f64> = scale.iter().zip(tau).map(|(s, t)| s + t.abs()).collect();
-    Some(largest(&needed, tau, &scale))
+/// η = maxᵢ |ID_exact(q, v, a) − τ|ᵢ / (scale of ID + |τ|)ᵢ, for the state (q, v, τ, …) and each acceleration that was found.
+fn backward(textbook: &Textbook<Big>, model: &Model<f64>, inverse: &str, state: &[&[f64]], found: &[Vec<f64>; 2]) -> Option<[f64; 2]> {
+    let tau = *state.get(2)?;
+    let one = |a: &Vec<f64>| {
+        if a.iter().any(|x| !x.is_finite()) {
+            return Some(f64::NAN);
+        }
+        let mut state = state.to_vec();
+        state[2] = a;
+        let scale = scales(model, inverse, &state).ok()?;
+        let scale: Vec<f64> = scale.iter().zip(tau).map(|(s, t)| s + t.abs()).collect();
+        Some(largest(&exact(textbook, inverse, &state)?, tau, &scale))
+    };
+    let [a, b] = found.each_ref().map(one);
+    Some([a?, b?])
 }
 
 fn exact(textbook: &Textbook<Big>, name: &str, state: &[&[f64]]) -> Option<Vec<Big>> {
@@ -116,7 +140,7 @@ mod tests {
         // 1.001 kg·m² · a + 9.81 N·m · sin q = τ
         let (q, tau) = (0.5_f64, 3.0);
         let a = (tau - 9.81 * q.sin()) / 1.001;
-        let error = |a: f64| backward(&textbook, &model, &[&[q], &[0.0], &[tau]], &[a]).unwrap();
+        let error = |a: f64| backward(&textbook, &model, "inverse_dynamics", &[&[q], &[0.0], &[tau]], &[vec![a], vec![a]]).unwrap()[0];
         assert!(error(a) < 4.0, "{}", error(a));
         assert!(error(a * (1.0 + 1e-10)) > 1e4);
         assert!(error(f64::NAN).is_nan());

@@ -3,66 +3,57 @@
 mod accuracy;
 mod contender;
 mod peer;
+mod prepare;
 mod report;
 mod text;
 mod timing;
 
-use std::path::PathBuf;
-use std::time::Instant;
+use std::path::{Path, PathBuf};
 
 use articulated_core::algorithm::{Function, function};
 use articulated_core::model::Model;
 
-use crate::arguments::{CompareArguments, Format, names};
-use crate::compiled::{Compiled, Rustc};
+use crate::arguments::{CompareArguments, Format};
+use crate::compiled::Rustc;
 use crate::console::{self, Progress};
 use crate::failure::{Failure, OK};
-use crate::ledger::stages;
 use crate::robot::Robot;
-use crate::states::{self, State};
+use crate::tips::Tips;
+use crate::{groups, names, parallel};
 use accuracy::Reference;
 use contender::Contender;
 use peer::Peer;
+use prepare::{Plan, Prepared, Unready};
 use report::{FunctionReport, PeerReport, Report};
 
 /// A peer's result may differ from ours by this much of the sum of the magnitudes of the terms.
 const PEER_BOUND: f64 = 1e-9;
 
-/// What all functions are measured on.
-struct Bench<'a> {
-    robot: &'a Robot,
-    model: Model<f64>,
-    reference: Reference,
-    states: Vec<State>,
-    peers: Vec<Peer>,
-    rustc: Rustc,
-    repetitions: usize,
-}
-
 /// Measures and prints.
 pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Failure> {
-    let mut robot = Robot::find(&arguments.robot)?;
+    let mut robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
     robot.options.forbid_unsafe = arguments.forbid_unsafe;
     let reading = robot.read()?;
     reading.warnings.iter().chain(&reading.snapped).for_each(|w| console::warn(&w.to_string()));
     if cfg!(debug_assertions) {
         console::warn("this command was built without optimisation: times of generic code, and of the generation, mean little");
     }
-    let model = robot.model(&reading)?;
+    let whole = robot.whole_model(&reading)?;
+    let tips = robot.options.frames.is_none().then(|| Tips::of(&reading.description, &whole));
     let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
-    let mut report = Report::new(&robot, &model, arguments, &rustc);
+    let mut report = Report::new(&robot, &whole, tips.as_ref(), arguments, &rustc);
     let folder = tempfile::tempdir().map_err(|e| Failure::tool(&e))?;
-    let peers = open_peers(arguments, &robot, &model, folder.path(), &mut report)?;
-    let bench = Bench {
+    let peers = open_peers(arguments, &robot, &whole, folder.path(), &mut report)?;
+    let plan = Plan {
         reference: Reference::new(&reading.description, &robot.options),
-        states: states::random(&model, arguments.states as usize, arguments.seed),
-        robot: &robot,
-        model,
-        peers,
+        robot,
+        tips,
         rustc,
-        repetitions: arguments.repetitions as usize,
+        states: arguments.states as usize,
+        seed: arguments.seed,
     };
-    bench.measure_all(arguments, &mut report)?;
+    let prepared = prepare_all(&plan, arguments, &mut report)?;
+    measure_all(&prepared, &peers, arguments.repetitions as usize, &mut report);
     console::print(&match format {
         Format::Text => text::text(&report),
         Format::Json => crate::json(&report),
@@ -78,7 +69,7 @@ fn open_peers(
     arguments: &CompareArguments,
     robot: &Robot,
     model: &Model<f64>,
-    folder: &std::path::Path,
+    folder: &Path,
     report: &mut Report,
 ) -> Result<Vec<Peer>, Failure> {
     let mut libraries: Vec<(Option<String>, PathBuf)> = arguments.peer.iter().map(|p| (None, p.clone())).collect();
@@ -100,98 +91,58 @@ fn open_peers(
     Ok(peers)
 }
 
-impl Bench<'_> {
-    fn measure_all(&self, arguments: &CompareArguments, report: &mut Report) -> Result<(), Failure> {
-        let chosen = !arguments.functions.is_empty();
-        let all: Vec<&str> = if chosen { arguments.functions.iter().map(String::as_str).collect() } else { names() };
-        let progress = Progress::new(all.len());
-        for f in all.into_iter().filter_map(function::<f64>) {
-            if report.functions.iter().any(|r| r.function == f.name) {
-                continue;
-            }
-            match self.measure(f, &progress) {
-                Ok(measured) => report.functions.push(measured),
-                Err(Measure::Undefined(why)) if !chosen => report.notes.push(format!("{} is left out: {why}", f.name)),
-                Err(Measure::Undefined(why)) => return Err(Failure::input([why])),
-                Err(Measure::Failed(failure)) => return Err(failure),
-            }
-            progress.step();
+/// All functions that were asked for, or all that the robot has.
+fn prepare_all(plan: &Plan, arguments: &CompareArguments, report: &mut Report) -> Result<Vec<Prepared>, Failure> {
+    let chosen = names::flat(&arguments.functions);
+    let mut names = if chosen.is_empty() { groups::all() } else { chosen.clone() };
+    let mut seen: Vec<String> = Vec::new();
+    names.retain(|name| {
+        !seen.contains(name) && {
+            seen.push(name.clone());
+            true
         }
-        Ok(())
-    }
-
-    /// Everything about one function.
-    fn measure(&self, f: &'static Function<f64>, progress: &Progress) -> Result<FunctionReport, Measure> {
-        progress.doing(format!("{}: generation", f.name));
-        let start = Instant::now();
-        let generated = self.robot.generate(&[f.name.to_owned()])?;
-        let generation = start.elapsed();
-        progress.doing(format!("{}: rustc", f.name));
-        let compiled = Compiled::build(&self.rustc, &generated).map_err(|e| Failure::tool(&e))?;
-        let arguments: Vec<Vec<&[f64]>> = self.states.iter().map(|s| s.arguments(f).unwrap_or_default()).collect();
-        progress.doing(format!("{}: errors", f.name));
-        let ours = Contender::generated(&compiled, f);
-        let errors = accuracy::errors(&self.reference, &self.model, f, &arguments, &ours);
-        progress.doing(format!("{}: times", f.name));
-        let (times, peers) = self.times(f, &arguments, &ours);
-        let entry = &generated.ledger.functions[0];
-        Ok(FunctionReport {
-            function: f.name.to_owned(),
-            stages: stages(entry),
-            depth: entry.depth,
-            code_bytes: compiled.code_bytes(f.name),
-            source_bytes: generated.source.len(),
-            generation_seconds: generation.as_secs_f64(),
-            compilation_seconds: compiled.time.as_secs_f64(),
-            generated: timing::summary(&times[0]),
-            generic: timing::summary(&times[1]),
-            generic_over_generated: timing::ratio(&times[1], &times[0]),
-            peers,
-            errors,
-        })
-    }
-
-    /// Times of generated code, generic code and each peer, in this order; and what is to be said of the peers.
-    fn times(&self, f: &'static Function<f64>, arguments: &[Vec<&[f64]>], generated: &Contender) -> (Vec<Vec<f64>>, Vec<PeerReport>) {
-        let known: Vec<(&Peer, Contender)> = self.peers.iter().filter_map(|p| Some((p, p.contender(f, &self.model)?))).collect();
-        let theirs: Vec<Vec<Vec<Vec<f64>>>> =
-            known.iter().map(|(p, _)| arguments.iter().map(|x| p.arguments(f, &self.model, x)).collect()).collect();
-        let theirs: Vec<Vec<Vec<&[f64]>>> =
-            theirs.iter().map(|states| states.iter().map(|x| x.iter().map(Vec::as_slice).collect()).collect()).collect();
-        let generic = Contender::generic(&self.model, f);
-        let mut runs: Vec<timing::Run<'_>> = vec![generated.run(arguments), generic.run(arguments)];
-        runs.extend(known.iter().zip(&theirs).map(|((_, c), x)| c.run(x)));
-        let times = timing::interleaved(&mut runs, self.repetitions, arguments.len());
-        let reports = known.iter().zip(&theirs).enumerate().map(|(k, ((peer, contender), x))| PeerReport {
-            peer: peer.name.clone(),
-            time: timing::summary(&times[2 + k]),
-            generic_over_peer: timing::ratio(&times[1], &times[2 + k]),
-            generated_over_peer: timing::ratio(&times[0], &times[2 + k]),
-            largest_difference: peer.difference(f, &self.model, arguments, x, contender, &generic),
-        });
-        let reports = reports.collect();
-        (times, reports)
-    }
-}
-
-/// Why a function was not measured.
-enum Measure {
-    /// It does not exist for this robot.
-    Undefined(String),
-    Failed(Failure),
-}
-
-impl From<articulated_codegen::Error> for Measure {
-    fn from(error: articulated_codegen::Error) -> Self {
-        match error {
-            articulated_codegen::Error::Singular { .. } => Self::Undefined(error.to_string()),
-            other => Self::Failed(other.into()),
+    });
+    let rows: Vec<&'static Function<f64>> = names.iter().filter_map(|name| function::<f64>(name)).collect();
+    let progress = Progress::new(rows.len());
+    let mut prepared = Vec::new();
+    for (result, f) in parallel::map(&rows, |f| plan.prepare(f, &progress)).into_iter().zip(rows) {
+        match result {
+            Ok(ready) => prepared.push(ready),
+            Err(Unready::Undefined(why)) if chosen.is_empty() => report.notes.push(format!("{} is left out: {why}", f.name)),
+            Err(Unready::Undefined(why)) => return Err(Failure::input([format!("{}: {why}", f.name)])),
+            Err(Unready::Failed(failure)) => return Err(failure),
         }
     }
+    Ok(prepared)
 }
 
-impl From<Failure> for Measure {
-    fn from(failure: Failure) -> Self {
-        Self::Failed(failure)
+fn measure_all(prepared: &[Prepared], peers: &[Peer], repetitions: usize, report: &mut Report) {
+    let progress = Progress::new(prepared.len());
+    for ready in prepared {
+        progress.doing(format!("{}: times", ready.function.name));
+        report.functions.push(measure(ready, peers, repetitions));
+        progress.step();
     }
+}
+
+/// Times of one function: of generated code, generic code and each peer.
+fn measure(ready: &Prepared, peers: &[Peer], repetitions: usize) -> FunctionReport {
+    let (f, model) = (ready.function, &ready.model);
+    let arguments = prepare::arguments(&ready.states, f);
+    let (generated, generic) = (Contender::generated(&ready.compiled, f), Contender::generic(model, f));
+    let known: Vec<(&Peer, Contender)> = peers.iter().filter_map(|p| Some((p, p.contender(f, model)?))).collect();
+    let theirs: Vec<Vec<Vec<Vec<f64>>>> = known.iter().map(|(p, _)| arguments.iter().map(|x| p.arguments(f, model, x)).collect()).collect();
+    let theirs: Vec<Vec<Vec<&[f64]>>> =
+        theirs.iter().map(|states| states.iter().map(|x| x.iter().map(Vec::as_slice).collect()).collect()).collect();
+    let mut runs: Vec<timing::Run<'_>> = vec![generated.run(&arguments), generic.run(&arguments)];
+    runs.extend(known.iter().zip(&theirs).map(|((_, c), x)| c.run(x)));
+    let times = timing::interleaved(&mut runs, repetitions, arguments.len());
+    let peers = known.iter().zip(&theirs).enumerate().map(|(k, ((peer, contender), x))| PeerReport {
+        peer: peer.name.clone(),
+        time: timing::summary(&times[2 + k]),
+        generic_over_peer: timing::ratio(&times[1], &times[2 + k]),
+        generated_over_peer: timing::ratio(&times[0], &times[2 + k]),
+        largest_difference: peer.difference(f, model, &arguments, x, contender, &generic),
+    });
+    FunctionReport::new(ready, &times, peers.collect())
 }

@@ -12,6 +12,9 @@ use crate::magnitude::scales;
 use crate::native::{Native, NativePeer};
 use crate::robot::Robot;
 
+/// The least scale of a difference, as a part of the largest in the same result.
+const FLOOR: f64 = 1e-3;
+
 /// A robot open in a peer library.
 pub(super) struct Peer {
     pub(super) name: String,
@@ -20,8 +23,6 @@ pub(super) struct Peer {
     q: Vec<usize>,
     /// Our index of each number of the peer's v, a and τ.
     v: Vec<usize>,
-    /// Whether its frames are ours, in our order.
-    frames: bool,
     /// Whether its joints are in the order of our links.
     links: bool,
 }
@@ -33,22 +34,27 @@ impl Peer {
         let name = name.or_else(|| library.peer_name()).ok_or("it has no function peer_name")?;
         let native = NativePeer::open(&library, urdf, robot.floating(), robot.options.gravity)?;
         let (q, v) = orders(&native, model)?;
-        let frames = native.frames().iter().eq(model.frames.iter().map(|f| &f.name));
         let links = model.links().enumerate().all(|(k, i)| native.joint_name(k).is_some_and(|name| name == model.bodies[i].name));
-        Ok(Self { name, native, q, v, frames, links })
+        Ok(Self { name, native, q, v, links })
     }
 
     /// The peer's own function of this name, if it has it and means the same by it.
     pub(super) fn contender(&self, function: &Function<f64>, model: &Model<f64>) -> Option<Contender<'static>> {
-        let takes = || function.takes.iter().flat_map(|a| a.dims()).chain(function.gives);
+        let has = |dim: Dim| function.takes.iter().flat_map(|a| a.dims()).chain(function.gives).any(|d| *d == dim);
         let wrenches = !function.takes.contains(&Argument::Wrenches) || model.wrench_reference == Reference::Body;
-        let told = takes().all(|d| (*d != Dim::Frames || self.frames) && (*d != Dim::Links || self.links));
+        let told = (!has(Dim::Frames) || self.has_frames(model)) && (!has(Dim::Links) || self.links);
         if !wrenches || !told {
             return None;
         }
         let lengths: Vec<usize> = function.takes.iter().map(|a| a.len(model.shape())).collect();
         let out = function.len(model.shape());
         Some(Contender::peer(self.native.kernel(function.name, &lengths, out, is_kept(function.gives))?, out))
+    }
+
+    /// Whether the peer's frames are the model's, in its order; they are made so if the peer lets them be chosen.
+    fn has_frames(&self, model: &Model<f64>) -> bool {
+        let names: Vec<&str> = model.frames.iter().map(|f| f.name.as_str()).collect();
+        self.native.choose_frames(&names) || self.native.frames() == names
     }
 
     /// Our arguments in the peer's order.
@@ -76,10 +82,12 @@ impl Peer {
                 return None;
             }
             let scale = scales(model, function.name, x).ok()?;
+            // A zero of ours that is a rounding of theirs is no difference.
+            let floor = scale.iter().copied().fold(0.0, f64::max) * FLOOR;
             for (k, b) in b.iter().enumerate() {
                 let at = self.place(k, function.gives, model.shape());
                 let difference = (a[at] - b).abs();
-                let relative = if difference == 0.0 { 0.0 } else { difference / scale[at] };
+                let relative = if difference == 0.0 { 0.0 } else { difference / scale[at].max(floor) };
                 worst = if worst.is_nan() || worst >= relative { worst } else { relative };
             }
         }

@@ -1,15 +1,19 @@
 //! What was measured, as data.
 
+use articulated_core::algorithm::Dim;
 use articulated_core::model::Model;
 use serde::Serialize;
 
 use super::accuracy::Errors;
-use super::timing::Summary;
+use super::prepare::Prepared;
+use super::timing::{self, Summary};
 use crate::arguments::CompareArguments;
 use crate::compiled::Rustc;
-use crate::ledger::Stage;
+use crate::groups::Group;
+use crate::ledger::{Stage, stages};
 use crate::precise::BITS;
 use crate::robot::Robot;
+use crate::tips::Tips;
 
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Report {
@@ -18,6 +22,9 @@ pub(super) struct Report {
     pub(super) gravity: [f64; 3],
     pub(super) joints: usize,
     pub(super) degrees_of_freedom: usize,
+    /// The frames of functions of frames, and whether the user chose them or they are the robot's tips.
+    pub(super) frames: Vec<String>,
+    pub(super) frames_chosen: bool,
     pub(super) states: u32,
     pub(super) seed: u64,
     pub(super) repetitions: u32,
@@ -35,7 +42,12 @@ pub(super) struct Report {
 
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct FunctionReport {
-    pub(super) function: String,
+    pub(super) function: &'static str,
+    pub(super) group: &'static str,
+    /// The ways that the generator chose by count, where it had a choice.
+    pub(super) ways: Vec<&'static str>,
+    /// The frames that it was evaluated on, if it is a function of frames.
+    pub(super) frames: Option<Vec<String>>,
     pub(super) stages: Vec<Stage>,
     pub(super) depth: u32,
     /// Machine code, without sines and cosines.
@@ -65,9 +77,43 @@ pub(super) struct PeerReport {
     pub(super) largest_difference: Option<f64>,
 }
 
-impl Report {
-    pub(super) fn new(robot: &Robot, model: &Model<f64>, arguments: &CompareArguments, rustc: &Rustc) -> Self {
+impl FunctionReport {
+    /// `times`: ns a call of generated code, generic code and each peer.
+    pub(super) fn new(ready: &Prepared, times: &[Vec<f64>], peers: Vec<PeerReport>) -> Self {
+        let (f, entry) = (ready.function, &ready.entry);
+        let dims = f.takes.iter().flat_map(|a| a.dims()).chain(f.gives);
+        let framed = dims.into_iter().any(|d| *d == Dim::Frames);
         Self {
+            function: f.name,
+            group: Group::of(f.id).name(),
+            ways: entry.ways.clone(),
+            frames: framed.then(|| ready.model.frames.iter().map(|f| f.name.clone()).collect()),
+            stages: stages(entry),
+            depth: entry.depth,
+            code_bytes: ready.compiled.code_bytes(f.name),
+            source_bytes: ready.source_bytes,
+            generation_seconds: ready.generation.as_secs_f64(),
+            compilation_seconds: ready.compiled.time.as_secs_f64(),
+            generated: timing::summary(&times[0]),
+            generic: timing::summary(&times[1]),
+            generic_over_generated: timing::ratio(&times[1], &times[0]),
+            peers,
+            errors: ready.errors,
+        }
+    }
+
+    /// The peer that was fastest.
+    pub(super) fn fastest(&self) -> Option<&PeerReport> {
+        self.peers.iter().min_by(|a, b| a.time.median.total_cmp(&b.time.median))
+    }
+}
+
+impl Report {
+    pub(super) fn new(robot: &Robot, model: &Model<f64>, tips: Option<&Tips>, arguments: &CompareArguments, rustc: &Rustc) -> Self {
+        let chosen = robot.options.frames.clone();
+        Self {
+            frames_chosen: chosen.is_some(),
+            frames: chosen.unwrap_or_else(|| tips.map_or_else(Vec::new, |t| t.all().to_vec())),
             robot: robot.file.clone(),
             base: robot.base(),
             gravity: robot.options.gravity,

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::report::{FunctionReport, Report};
+use super::report::{FunctionReport, PeerReport, Report};
 use super::timing::Summary;
 use crate::ledger::Stage;
 use crate::table::{Table, plain};
@@ -10,17 +10,22 @@ use crate::table::{Table, plain};
 pub(super) fn text(report: &Report) -> String {
     let mut out = head(report);
     for (title, table) in [
+        ("Time of a call: median, and quartiles' distance (IQR)".to_owned(), times(report)),
+        (format!("Time of a call in other libraries, ns{}", letters(report)), peers(report)),
         (
-            "Multiplications and additions after each stage of the generator (asked: what the algorithm asks for; the last: what is emitted)",
+            "Largest error in units of 2⁻⁵³ of the sum of the magnitudes of the terms, against an independent evaluation in big floats".to_owned(),
+            errors(report),
+        ),
+        (
+            "Multiplications and additions after each stage of the generator (asked: what the algorithm asks for; the last: what is emitted)".to_owned(),
             operations(report),
         ),
-        ("Instructions after each stage: a multiply-add counts once; sines and cosines apart", instructions(report)),
-        ("Size of the generated code, and what it costs to make it", sizes(report)),
-        ("Time of a call: median, and quartiles' distance (IQR)", times(report)),
-        ("Time of a call in other libraries, and the time of ours relative to theirs", peers(report)),
         (
-            "Largest error in units of 2⁻⁵³ of the sum of the magnitudes of the terms, against an independent evaluation in big floats",
-            errors(report),
+            format!(
+                "What is emitted (a multiply-add is one instruction; sines and cosines apart), and what it costs to make it, {} at a time",
+                crate::parallel::threads()
+            ),
+            sizes(report),
         ),
     ] {
         if !table.is_empty() {
@@ -28,6 +33,21 @@ pub(super) fn text(report: &Report) -> String {
         }
     }
     out + "\n" + &newcomer(report)
+}
+
+/// A row for each function, under the name of its group where there are several.
+fn by_function(report: &Report, table: &mut Table, cells: impl Fn(&FunctionReport) -> Option<Vec<String>>) {
+    let several = report.functions.iter().any(|f| f.group != report.functions[0].group);
+    let mut group = "";
+    for f in &report.functions {
+        let Some(cells) = cells(f) else { continue };
+        if several && group != f.group {
+            group = f.group;
+            table.heading(group);
+        }
+        let name = if several { format!("  {}", f.function) } else { f.function.to_owned() };
+        table.row(std::iter::once(name).chain(cells));
+    }
 }
 
 fn head(report: &Report) -> String {
@@ -44,6 +64,15 @@ fn head(report: &Report) -> String {
         report.compiler,
         report.flags,
     );
+    if report.functions.iter().any(|f| f.frames.is_some()) {
+        let how = if report.frames_chosen { "as chosen" } else { "the tips of the robot; --frames chooses others" };
+        let _ = writeln!(out, "functions of frames: {} ({how})", plain(&report.frames.join(", ")));
+        for f in &report.functions {
+            if let Some(frames) = f.frames.as_ref().filter(|frames| **frames != report.frames) {
+                let _ = writeln!(out, "{}: {} (those with six degrees of freedom)", f.function, plain(&frames.join(", ")));
+            }
+        }
+    }
     if !report.optimised {
         out += "This command was built without optimisation: times of generic code and of the generation mean little.\n";
     }
@@ -53,50 +82,47 @@ fn head(report: &Report) -> String {
     out
 }
 
-fn stage_table(report: &Report, cell: impl Fn(&Stage) -> String) -> Table {
+fn operations(report: &Report) -> Table {
+    // Every function goes through the same stages.
     let stages = report.functions.first().map_or(&[][..], |f| &f.stages);
     let titles = stages.iter().map(|s| s.stage.clone());
     let mut table = Table::new(std::iter::once("function".to_owned()).chain(titles).map(|t| (t, "")));
-    for f in &report.functions {
-        table.row(std::iter::once(f.function.clone()).chain(f.stages.iter().map(&cell)));
-    }
+    let cell = |s: &Stage| format!("{}+{}", s.multiplications, s.additions);
+    by_function(report, &mut table, |f| Some(f.stages.iter().map(cell).collect()));
     table
-}
-
-fn operations(report: &Report) -> Table {
-    stage_table(report, |s| format!("{}+{}", s.multiplications, s.additions))
-}
-
-fn instructions(report: &Report) -> Table {
-    stage_table(report, |s| s.instructions.to_string())
 }
 
 fn sizes(report: &Report) -> Table {
     let mut table = Table::new([
         ("function", ""),
+        ("instructions", ""),
         ("sin, cos", ""),
         ("depth", "operations"),
         ("machine code", "bytes"),
         ("source", "bytes"),
         ("generation", "ms"),
         ("rustc", "ms"),
+        ("way chosen", ""),
     ]);
-    for f in &report.functions {
-        table.row([
-            f.function.clone(),
-            f.stages.last().map_or(0, |s| s.sines_and_cosines).to_string(),
+    by_function(report, &mut table, |f| {
+        let emitted = |what: fn(&Stage) -> u64| f.stages.last().map_or(0, what).to_string();
+        Some(vec![
+            emitted(|s| s.instructions),
+            emitted(|s| s.sines_and_cosines),
             f.depth.to_string(),
             f.code_bytes.map_or_else(|| "–".into(), |n| n.to_string()),
             f.source_bytes.to_string(),
             format!("{:.1}", f.generation_seconds * 1e3),
             format!("{:.0}", f.compilation_seconds * 1e3),
-        ]);
-    }
+            f.ways.join(", "),
+        ])
+    });
     table
 }
 
 fn times(report: &Report) -> Table {
-    let mut table = Table::new([
+    let peers = report.functions.iter().any(|f| !f.peers.is_empty());
+    let mut columns = vec![
         ("function", ""),
         ("generated", "ns"),
         ("IQR", "ns"),
@@ -104,38 +130,61 @@ fn times(report: &Report) -> Table {
         ("IQR", "ns"),
         ("generic/generated", "ratio"),
         ("IQR", "ratio"),
-    ]);
-    for f in &report.functions {
-        let [a, b] = [&f.generated, &f.generic].map(|s| [nanoseconds(s.median), nanoseconds(spread(s))]);
+    ];
+    columns.extend(peers.then_some([("fastest peer", "ns"), ("peer/generated", "ratio")]).into_iter().flatten());
+    let mut table = Table::new(columns);
+    by_function(report, &mut table, |f| {
+        let [a, b] = [&f.generated, &f.generic].map(|s| vec![nanoseconds(s.median), nanoseconds(spread(s))]);
         let ratio = &f.generic_over_generated;
-        table.row([vec![f.function.clone()], a.to_vec(), b.to_vec(), vec![times_of(ratio.median), times_of(spread(ratio))]].concat());
-    }
+        let mut cells = [a, b, vec![times_of(ratio.median), times_of(spread(ratio))]].concat();
+        let fastest = |p: &PeerReport| [nanoseconds(p.time.median), times_of(1.0 / p.generated_over_peer.median)];
+        cells.extend(peers.then(|| f.fastest().map_or_else(|| ["–".to_owned(), "–".to_owned()], fastest)).into_iter().flatten());
+        Some(cells)
+    });
     table
 }
 
-fn peers(report: &Report) -> Table {
-    let mut table = Table::new([
-        ("function", ""),
-        ("peer", ""),
-        ("time", "ns"),
-        ("IQR", "ns"),
-        ("generic/peer", "ratio"),
-        ("generated/peer", "ratio"),
-        ("largest difference", "of magnitude"),
-    ])
-    .left(2);
-    for (f, p) in report.functions.iter().flat_map(|f| f.peers.iter().map(move |p| (f, p))) {
-        table.row([
-            f.function.clone(),
-            p.peer.clone(),
-            nanoseconds(p.time.median),
-            nanoseconds(spread(&p.time)),
-            times_of(p.generic_over_peer.median),
-            times_of(p.generated_over_peer.median),
-            p.largest_difference.map_or_else(|| "–".into(), |d| format!("{d:.1e}")),
-        ]);
+/// Names of all peers, in the order in which they are met.
+fn peer_names(report: &Report) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for peer in report.functions.iter().flat_map(|f| &f.peers) {
+        if !names.contains(&peer.peer.as_str()) {
+            names.push(&peer.peer);
+        }
     }
+    names
+}
+
+/// A letter for each peer.
+fn letters(report: &Report) -> String {
+    let line = |(k, name): (usize, &str)| format!("\n  {}: {}", letter(k), plain(name));
+    peer_names(report).into_iter().enumerate().map(line).collect()
+}
+
+fn letter(k: usize) -> String {
+    u8::try_from(k).ok().filter(|k| *k < 26).map_or_else(|| format!("#{k}"), |k| char::from(b'A' + k).to_string())
+}
+
+fn peers(report: &Report) -> Table {
+    let names = peer_names(report);
+    let titles = (0..names.len()).map(letter).chain(["fastest/generated".into(), "largest difference".into()]);
+    let units = std::iter::repeat_n("ns", names.len()).chain(["ratio", "of magnitude"]);
+    let mut table = Table::new(std::iter::once(("function".to_owned(), "")).chain(titles.zip(units)));
+    by_function(report, &mut table, |f| {
+        let fastest = f.fastest()?;
+        let own = |name: &str| f.peers.iter().find(|p| p.peer == name).map_or_else(|| "–".into(), |p| nanoseconds(p.time.median));
+        let mut cells: Vec<String> = names.iter().map(|name| own(name)).collect();
+        cells.push(times_of(1.0 / fastest.generated_over_peer.median));
+        cells.push(difference(f).map_or_else(|| "not compared".into(), |d| format!("{d:.1e}")));
+        Some(cells)
+    });
     table
+}
+
+/// The largest difference of any peer.
+fn difference(f: &FunctionReport) -> Option<f64> {
+    let known = f.peers.iter().filter_map(|p| p.largest_difference);
+    known.reduce(|a, b| if a.is_nan() || a >= b { a } else { b })
 }
 
 fn errors(report: &Report) -> Table {
@@ -145,15 +194,21 @@ fn errors(report: &Report) -> Table {
         ("generated", "units".into()),
         ("generic", "units".into()),
         ("bound", "units".into()),
+        ("states", String::new()),
         ("against", bits),
     ]);
-    for f in &report.functions {
-        let row = match f.errors {
-            Some(e) => [format!("{:.2}", e.generated), format!("{:.2}", e.generic), format!("{}", report.bound), e.kind.into()],
-            None => ["–".into(), "–".into(), "–".into(), "none yet".into()],
-        };
-        table.row(std::iter::once(f.function.clone()).chain(row));
-    }
+    by_function(report, &mut table, |f| {
+        Some(match f.errors {
+            Some(e) => vec![
+                format!("{:.2}", e.generated),
+                format!("{:.2}", e.generic),
+                format!("{}", report.bound),
+                e.states.to_string(),
+                e.kind.into(),
+            ],
+            None => ["–", "–", "–", "–", "no independent reference"].map(str::to_owned).to_vec(),
+        })
+    });
     table
 }
 

@@ -12,6 +12,7 @@ use crate::compiled::{CompileError, Compiled, Rustc};
 use crate::console;
 use crate::failure::{Failure, OK, TOOL};
 use crate::magnitude::scales;
+use crate::names;
 use crate::robot::{Robot, read_bytes};
 use crate::states::{self, State};
 use report::{Difference, FunctionReport, Outcome, Report};
@@ -25,11 +26,12 @@ pub(crate) fn run(arguments: &EvalArguments, format: Format) -> Result<u8, Failu
     let reading = robot.read()?;
     reading.warnings.iter().chain(&reading.snapped).for_each(|w| console::warn(&w.to_string()));
     let model = robot.model(&reading)?;
-    let functions = functions(&arguments.function);
+    let names = names::flat(&arguments.function);
+    let functions = functions(&names);
     let states = read_states(&arguments.states, &model, &functions)?;
     let mut report = Report::new(&robot, states.warnings);
     report.warnings.iter().for_each(|w| console::warn(w));
-    let compiled = if arguments.generic { None } else { compile(&robot, arguments, &mut report)? };
+    let compiled = if arguments.generic { None } else { compile(&robot, &names, arguments.generated, &mut report)? };
     for f in &functions {
         report.functions.push(evaluate(f, &model, &states.states, compiled.as_ref(), arguments.generated));
     }
@@ -75,8 +77,8 @@ fn read_states(file: &str, model: &Model<f64>, functions: &[&'static Function<f6
 }
 
 /// Compiled code, or none with a note of the reason if generic results will do.
-fn compile(robot: &Robot, arguments: &EvalArguments, report: &mut Report) -> Result<Option<Compiled>, Failure> {
-    let generated = robot.generate(&arguments.function)?;
+fn compile(robot: &Robot, names: &[String], needed: bool, report: &mut Report) -> Result<Option<Compiled>, Failure> {
+    let generated = robot.generate(names)?;
     let progress = console::Progress::new(1);
     progress.doing("rustc".into());
     let built = Rustc::find().and_then(|rustc| Ok((Compiled::build(&rustc, &generated)?, rustc)));
@@ -85,7 +87,7 @@ fn compile(robot: &Robot, arguments: &EvalArguments, report: &mut Report) -> Res
             report.compiler = Some(format!("{} {}", rustc.version, Rustc::flags().join(" ")));
             Ok(Some(compiled))
         }
-        Err(error @ CompileError::NotFound { .. }) if !arguments.generated => {
+        Err(error @ CompileError::NotFound { .. }) if !needed => {
             let note = format!("{error}; generic results only");
             drop(progress);
             console::warn(&note);

@@ -1,0 +1,96 @@
+//! All about a function but its time: generated, compiled, judged. Functions are prepared several at once; the clock runs when all are done.
+
+use std::time::{Duration, Instant};
+
+use articulated_codegen::ledger::Entry;
+use articulated_core::algorithm::Function;
+use articulated_core::model::Model;
+
+use super::accuracy::{self, Errors, Reference};
+use super::contender::Contender;
+use crate::compiled::{Compiled, Rustc};
+use crate::console::Progress;
+use crate::failure::Failure;
+use crate::robot::Robot;
+use crate::states::{self, State};
+use crate::tips::Tips;
+
+/// What functions are prepared from.
+pub(super) struct Plan {
+    pub(super) robot: Robot,
+    /// The frames of each function, unless the user chose them.
+    pub(super) tips: Option<Tips>,
+    pub(super) reference: Reference,
+    pub(super) rustc: Rustc,
+    pub(super) states: usize,
+    pub(super) seed: u64,
+}
+
+/// A function that is ready to run.
+pub(super) struct Prepared {
+    pub(super) function: &'static Function<f64>,
+    /// With the function's frames.
+    pub(super) model: Model<f64>,
+    pub(super) states: Vec<State>,
+    pub(super) compiled: Compiled,
+    pub(super) entry: Entry,
+    pub(super) source_bytes: usize,
+    pub(super) generation: Duration,
+    pub(super) errors: Option<Errors>,
+}
+
+/// Why a function is not.
+pub(super) enum Unready {
+    /// It does not exist for this robot.
+    Undefined(String),
+    Failed(Failure),
+}
+
+impl Plan {
+    pub(super) fn prepare(&self, function: &'static Function<f64>, progress: &Progress) -> Result<Prepared, Unready> {
+        progress.doing(format!("{}: generation", function.name));
+        let robot = self.robot_for(function)?;
+        let start = Instant::now();
+        let generated = robot.generate(&[function.name.to_owned()])?;
+        let generation = start.elapsed();
+        progress.doing(format!("{}: rustc", function.name));
+        let compiled = Compiled::build(&self.rustc, &generated).map_err(|e| Failure::tool(&e))?;
+        let (model, source_bytes, entry) = (generated.model, generated.source.len(), generated.ledger.functions.into_iter().next());
+        let entry = entry.ok_or_else(|| Failure::tool(&"the generator kept no account"))?;
+        let states = states::random(&model, self.states, self.seed);
+        progress.doing(format!("{}: errors", function.name));
+        let ours = Contender::generated(&compiled, function);
+        let errors = accuracy::errors(&self.reference, &model, function, &arguments(&states, function), &ours);
+        progress.step();
+        Ok(Prepared { function, model, states, compiled, entry, source_bytes, generation, errors })
+    }
+
+    /// The robot with the frames that the function is compared on.
+    fn robot_for(&self, function: &Function<f64>) -> Result<Robot, Unready> {
+        let Some(tips) = &self.tips else { return Ok(self.robot.clone()) };
+        let few = || Unready::Undefined("fewer than six degrees of freedom carry each tip".into());
+        let frames = tips.of_function(function).ok_or_else(few)?;
+        Ok(self.robot.clone().on(frames))
+    }
+}
+
+/// The arguments of a function in each state.
+pub(super) fn arguments<'a>(states: &'a [State], function: &Function<f64>) -> Vec<Vec<&'a [f64]>> {
+    states.iter().map(|s| s.arguments(function).unwrap_or_default()).collect()
+}
+
+impl From<articulated_codegen::Error> for Unready {
+    fn from(error: articulated_codegen::Error) -> Self {
+        use articulated_codegen::Error::{BoundFrames, Singular};
+        match error {
+            Singular { .. } | BoundFrames { .. } => Self::Undefined(error.to_string()),
+            other => Self::Failed(other.into()),
+        }
+    }
+}
+
+impl From<Failure> for Unready {
+    fn from(failure: Failure) -> Self {
+        Self::Failed(failure)
+    }
+}

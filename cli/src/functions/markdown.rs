@@ -1,0 +1,43 @@
+//! The table of functions as a document.
+
+use std::fmt::Write;
+
+use super::report::{Footnotes, Report};
+use crate::groups::Group;
+
+const HEAD: &str = "\
+# All functions
+
+Made by `articulated functions --markdown`; `articulated functions ROBOT…` makes it for robots of yours.
+
+The last columns are what generated code does in one call: multiplications+additions, and instructions, where a multiply-add counts once. Sines and
+cosines of the joints come on top. Functions of frames are generated for the tips of each robot: the links that move and that nothing hangs on.
+
+";
+
+pub(super) fn markdown(report: &Report) -> String {
+    let mut out = HEAD.to_owned();
+    for r in &report.robots {
+        let frames: Vec<String> = r.frames.iter().map(|f| format!("`{f}`")).collect();
+        let _ = writeln!(out, "* {}: {} base, {} degrees of freedom; tips {}", r.robot, r.base, r.degrees_of_freedom, frames.join(", "));
+    }
+    let mut footnotes = Footnotes::default();
+    for group in Group::ALL {
+        let names: String = report.robots.iter().map(|r| format!(" {} |", r.robot)).collect();
+        let lines = "--:|".repeat(report.robots.len());
+        let _ = writeln!(out, "\n## {}\n\n| function | gives | what it is | algorithm |{names}\n|---|---|---|---|{lines}", group.title());
+        for f in report.functions.iter().filter(|f| f.group == group) {
+            let gives = if f.gives.is_empty() { "a number".into() } else { format!("`{}`", f.gives) };
+            let costs: String = f.costs.iter().map(|c| format!(" {} |", footnotes.cell(c))).collect();
+            let (summary, unit, algorithm) = (cell(f.summary), cell(f.unit), cell(f.algorithm));
+            let _ = writeln!(out, "| `{}({})` | {gives} {unit} | {summary} | {algorithm} |{costs}", f.function, f.takes.join(", "));
+        }
+    }
+    footnotes.lines().for_each(|line| out += &format!("\n{line}\n"));
+    out
+}
+
+/// Text that ends no cell.
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|")
+}

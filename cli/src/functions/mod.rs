@@ -1,0 +1,87 @@
+//! `articulated functions`.
+
+mod markdown;
+mod report;
+mod text;
+
+use articulated_core::algorithm::{Function, function};
+
+use crate::arguments::{Format, FunctionsArguments, RobotArguments};
+use crate::console::{self, Progress};
+use crate::failure::Failure;
+use crate::robot::Robot;
+use crate::tips::Tips;
+use crate::{groups, parallel};
+use report::{Cell, Cost, FunctionRow, Report, RobotRow};
+
+/// What the table is about where nobody says: a small arm, an arm, and two that walk.
+const ROBOTS: [&str; 4] = ["ur5_like", "panda_like", "quadruped", "humanoid"];
+
+/// A robot, and the frames that functions of frames are generated for.
+struct Subject {
+    robot: Robot,
+    tips: Tips,
+}
+
+/// Prints what there is and what it costs.
+pub(crate) fn run(arguments: &FunctionsArguments, format: Format) -> Result<(), Failure> {
+    let default: Vec<String> = ROBOTS.map(str::to_owned).to_vec();
+    let names = if arguments.robots.is_empty() { &default } else { &arguments.robots };
+    let mut report = Report::default();
+    let mut subjects = Vec::new();
+    for name in names {
+        let (subject, row) = subject(name, arguments.floating)?;
+        subjects.push(subject);
+        report.robots.push(row);
+    }
+    let rows: Vec<&'static Function<f64>> = groups::all().iter().filter_map(|name| function::<f64>(name)).collect();
+    let pairs: Vec<(&Function<f64>, &Subject)> = rows.iter().flat_map(|f| subjects.iter().map(move |s| (*f, s))).collect();
+    let progress = Progress::new(pairs.len());
+    let cells = parallel::map(&pairs, |(f, s)| {
+        progress.doing(format!("{}: {}", s.robot.file, f.name));
+        let cell = cell(f, s);
+        progress.step();
+        cell
+    });
+    drop(progress);
+    let mut cells = cells.into_iter();
+    for f in rows {
+        let costs = cells.by_ref().take(subjects.len()).collect::<Result<_, _>>()?;
+        report.functions.push(FunctionRow::new(f, costs));
+    }
+    console::print(&match format {
+        Format::Json => crate::json(&report),
+        Format::Text if arguments.markdown => markdown::markdown(&report),
+        Format::Text => text::text(&report),
+    })
+}
+
+fn subject(name: &str, floating: bool) -> Result<(Subject, RobotRow), Failure> {
+    let bundled = articulated_models::robot(name).is_some();
+    let robot = Robot::find(&RobotArguments::plain(name, floating && !bundled))?;
+    let reading = robot.read()?;
+    reading.warnings.iter().filter(|_| !bundled).for_each(|w| console::warn(&w.to_string()));
+    let model = robot.whole_model(&reading)?;
+    let tips = Tips::of(&reading.description, &model);
+    let row = RobotRow {
+        robot: if bundled { name.to_owned() } else { model.name.clone() },
+        base: robot.base(),
+        joints: model.joints.len(),
+        degrees_of_freedom: model.nv,
+        frames: tips.all().to_vec(),
+    };
+    Ok((Subject { robot, tips }, row))
+}
+
+/// What a function costs on a robot, or why it is not defined there.
+fn cell(f: &Function<f64>, subject: &Subject) -> Result<Cell, Failure> {
+    use articulated_codegen::Error::{BoundFrames, Singular};
+    const FEW: &str = "fewer than six degrees of freedom carry each tip";
+    let Some(frames) = subject.tips.of_function(f) else { return Ok(Cell::Undefined(FEW.into())) };
+    match subject.robot.clone().on(frames).generate(&[f.name.to_owned()]) {
+        Ok(generated) => Ok(Cell::Cost(Cost::of(&generated.ledger.functions[0]))),
+        Err(Singular { joints, .. }) => Ok(Cell::Undefined(format!("no mass behind joint {}", joints.join(", joint ")))),
+        Err(BoundFrames { .. }) => Ok(Cell::Undefined(FEW.into())),
+        Err(other) => Err(other.into()),
+    }
+}

@@ -1,0 +1,118 @@
+//! The table of functions as data.
+
+use articulated_codegen::ledger::Entry;
+use articulated_core::algorithm::{Argument, Function};
+use serde::Serialize;
+
+use crate::groups::Group;
+use crate::shape;
+
+#[derive(Clone, Debug, Default, Serialize)]
+pub(super) struct Report {
+    pub(super) robots: Vec<RobotRow>,
+    pub(super) functions: Vec<FunctionRow>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct RobotRow {
+    pub(super) robot: String,
+    pub(super) base: &'static str,
+    pub(super) joints: usize,
+    pub(super) degrees_of_freedom: usize,
+    /// The frames that functions of frames are generated for.
+    pub(super) frames: Vec<String>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct FunctionRow {
+    pub(super) function: &'static str,
+    #[serde(serialize_with = "name_of")]
+    pub(super) group: Group,
+    pub(super) takes: Vec<&'static str>,
+    pub(super) gives: String,
+    pub(super) unit: &'static str,
+    pub(super) summary: &'static str,
+    pub(super) algorithm: &'static str,
+    /// One for each robot.
+    pub(super) costs: Vec<Cell>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Cell {
+    Cost(Cost),
+    /// Why the robot does not have the function.
+    Undefined(String),
+}
+
+/// What is emitted.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Cost {
+    pub(super) multiplications: u64,
+    pub(super) additions: u64,
+    /// A multiply-add counted once; no sines and cosines.
+    pub(super) instructions: u64,
+    pub(super) sines_and_cosines: u64,
+    pub(super) depth: u32,
+    /// The ways chosen by count, where there is a choice.
+    pub(super) ways: Vec<&'static str>,
+}
+
+fn name_of<S: serde::Serializer>(group: &Group, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(group.name())
+}
+
+impl FunctionRow {
+    pub(super) fn new(f: &Function<f64>, costs: Vec<Cell>) -> Self {
+        Self {
+            function: f.name,
+            group: Group::of(f.id),
+            takes: f.takes.iter().copied().map(Argument::name).collect(),
+            gives: shape::dims(f.gives),
+            unit: f.unit,
+            summary: f.summary,
+            algorithm: f.source,
+            costs,
+        }
+    }
+}
+
+impl Cost {
+    pub(super) fn of(entry: &Entry) -> Self {
+        let c = entry.emitted();
+        Self {
+            multiplications: c.multiplications(),
+            additions: c.additions(),
+            instructions: c.instructions(),
+            sines_and_cosines: c.trigonometric(),
+            depth: entry.depth,
+            ways: entry.ways.clone(),
+        }
+    }
+}
+
+/// Reasons why a function is not defined, numbered from 1 as they are met.
+#[derive(Debug, Default)]
+pub(super) struct Footnotes(Vec<String>);
+
+impl Footnotes {
+    /// The cell's text: counts, or a dash with the number of the reason.
+    pub(super) fn cell(&mut self, cell: &Cell) -> String {
+        match cell {
+            Cell::Cost(c) => format!("{}+{}, {}", c.multiplications, c.additions, c.instructions),
+            Cell::Undefined(why) => {
+                let known = self.0.iter().position(|w| w == why);
+                let k = known.unwrap_or_else(|| {
+                    self.0.push(why.clone());
+                    self.0.len() - 1
+                });
+                format!("– ({})", k + 1)
+            }
+        }
+    }
+
+    /// A line for each reason.
+    pub(super) fn lines(&self) -> impl Iterator<Item = String> + '_ {
+        self.0.iter().enumerate().map(|(k, why)| format!("({}) not defined: {why}", k + 1))
+    }
+}

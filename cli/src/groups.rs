@@ -1,0 +1,128 @@
+//! The functions of the table in groups, for lists that people read and for the command line.
+
+use articulated_core::algorithm::{FunctionId, functions};
+
+/// A group of functions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Group {
+    Kinematics,
+    Dynamics,
+    Derivatives,
+    Momentum,
+    Regressors,
+    OperationalSpace,
+    Configurations,
+}
+
+impl Group {
+    /// All of them, in the order in which they are listed.
+    pub(crate) const ALL: [Self; 7] = [
+        Self::Kinematics,
+        Self::Dynamics,
+        Self::Derivatives,
+        Self::Momentum,
+        Self::Regressors,
+        Self::OperationalSpace,
+        Self::Configurations,
+    ];
+
+    /// Its name on the command line.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Kinematics => "kinematics",
+            Self::Dynamics => "dynamics",
+            Self::Derivatives => "derivatives",
+            Self::Momentum => "momentum",
+            Self::Regressors => "regressors",
+            Self::OperationalSpace => "operational_space",
+            Self::Configurations => "configurations",
+        }
+    }
+
+    /// What is in it.
+    pub(crate) fn title(self) -> &'static str {
+        match self {
+            Self::Kinematics => "Kinematics of frames",
+            Self::Dynamics => "Dynamics",
+            Self::Derivatives => "Derivatives",
+            Self::Momentum => "Energy, centre of mass and momentum",
+            Self::Regressors => "Regressors",
+            Self::OperationalSpace => "Operational space",
+            Self::Configurations => "Configurations",
+        }
+    }
+
+    /// The group of a function. A new function needs its row here.
+    pub(crate) fn of(function: FunctionId) -> Self {
+        use FunctionId as F;
+        match function {
+            F::placements
+            | F::twists_body
+            | F::twists_world
+            | F::twists_world_aligned
+            | F::accelerations_body
+            | F::accelerations_world
+            | F::accelerations_world_aligned
+            | F::jacobians_body
+            | F::jacobians_world
+            | F::jacobians_world_aligned
+            | F::jacobian_rates_body
+            | F::jacobian_rates_world
+            | F::jacobian_rates_world_aligned
+            | F::bias_accelerations_body
+            | F::bias_accelerations_world
+            | F::bias_accelerations_world_aligned => Self::Kinematics,
+            F::inverse_dynamics
+            | F::inverse_dynamics_with_wrenches
+            | F::joint_wrenches
+            | F::bias_forces
+            | F::gravity_torque
+            | F::static_torque
+            | F::mass_matrix
+            | F::coriolis_matrix
+            | F::forward_dynamics
+            | F::forward_dynamics_with_wrenches
+            | F::mass_matrix_inverse
+            | F::solve_mass_matrix => Self::Dynamics,
+            F::placement_derivatives
+            | F::inverse_dynamics_derivatives
+            | F::inverse_dynamics_derivatives_with_wrenches
+            | F::forward_dynamics_derivatives
+            | F::forward_dynamics_derivatives_with_wrenches
+            | F::static_torque_derivative => Self::Derivatives,
+            F::kinetic_energy
+            | F::potential_energy
+            | F::center_of_mass
+            | F::center_of_mass_velocity
+            | F::center_of_mass_acceleration
+            | F::center_of_mass_jacobian
+            | F::centroidal_momentum
+            | F::centroidal_momentum_matrix
+            | F::centroidal_momentum_rate => Self::Momentum,
+            F::torque_regressor | F::kinetic_energy_regressor | F::potential_energy_regressor => Self::Regressors,
+            F::operational_space_inertia | F::operational_space_inertia_inverse => Self::OperationalSpace,
+            F::integrate | F::difference | F::random_configuration => Self::Configurations,
+        }
+    }
+
+    /// Names of its functions, in the table's order.
+    pub(crate) fn functions(self) -> impl Iterator<Item = &'static str> {
+        functions::<f64>().iter().filter(move |f| Self::of(f.id) == self).map(|f| f.name)
+    }
+}
+
+/// All functions, group by group.
+pub(crate) fn all() -> Vec<String> {
+    Group::ALL.into_iter().flat_map(Group::functions).map(str::to_owned).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_function_is_in_one_group_and_no_group_is_called_like_a_function() {
+        assert_eq!(all().len(), functions::<f64>().len());
+        assert!(Group::ALL.into_iter().all(|g| g.functions().next().is_some() && !all().contains(&g.name().to_owned())));
+    }
+}
