@@ -1,6 +1,5 @@
 """Peers against tests/fixtures: every function that both have, in robots whose joints follow no other."""
 
-import ctypes
 import json
 from pathlib import Path
 
@@ -75,6 +74,23 @@ def in_our_order(name, found, v):
     return found
 
 
+def result(peer, name, state, expected, v, frames):
+    """The peer's result in the state, in our order; of the state's frames, if it is one of frames. `frames`: those that the peer has now."""
+    arguments = [vector(key, state, v, frames) for key in takes(name)]
+    if not name.startswith(FRAMES):
+        found = (peer.kept if is_kept(name) else peer.call)(name, len(expected), *arguments)
+        return in_our_order(name, found, v)
+    one = len(expected) // len(state["frames"])
+    found = peer.kept(name, one * len(frames), *arguments)
+    at = [one * frames.index(frame) for frame in state["frames"]]
+    return in_our_order(name, [x for k in at for x in found[k : k + one]], v)
+
+
+def can(peer, name, state, frames):
+    acted = "wrenches" in takes(name)
+    return peer.has(name) and (frames or not acted and not name.startswith(FRAMES)) and (not acted or state["wrench_reference"] == "body")
+
+
 def errors(open_peer):
     """function -> largest error relative to the largest entry or 1. `open_peer(urdf, floating, gravity)`."""
     worst = {}
@@ -87,27 +103,14 @@ def errors(open_peer):
             peer = open_peer(urdf, fixture["base"] == "floating", fixture["gravity"])
         except ValueError:
             continue
-        v = orders(peer, fixture)
-        frames = peer.frames()
+        v, links = orders(peer, fixture), peer.frames()
         for state in fixture["states"]:
-            for name, expected in state["results"].items():
-                needs_frames = name.startswith(FRAMES) or "wrenches" in takes(name)
-                if not peer.has(name) or needs_frames and not frames:
+            for frames in (links, state["frames"]):
+                if links and frames and not peer.choose(frames):
                     continue
-                if "wrenches" in takes(name) and state["wrench_reference"] != "body":
-                    continue
-                arguments = [vector(key, state, v, frames) for key in takes(name)]
-                if name.startswith(FRAMES):
-                    one = len(expected) // len(state["frames"])
-                    found = peer.kept(name, one * len(frames), *arguments)
-                    at = [one * frames.index(frame) for frame in state["frames"]]
-                    found = [x for k in at for x in found[k : k + one]]
-                elif is_kept(name):
-                    found = peer.kept(name, len(expected), *arguments)
-                else:
-                    found = peer.call(name, len(expected), *arguments)
-                found = in_our_order(name, found, v)
-                size = max(1.0, *map(abs, expected))
-                worst[name] = max(worst.get(name, 0.0), *(abs(x - y) / size for x, y in zip(found, expected, strict=True)))
+                for name, expected in state["results"].items():
+                    if can(peer, name, state, frames if links else []):
+                        found, size = result(peer, name, state, expected, v, frames), max(1.0, *map(abs, expected))
+                        worst[name] = max(worst.get(name, 0.0), *(abs(x - y) / size for x, y in zip(found, expected, strict=True)))
         peer.close()
     return worst

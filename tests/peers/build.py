@@ -188,6 +188,13 @@ class Peer:
         self.library.peer_frame_name.restype = ctypes.c_char_p
         return [self.library.peer_frame_name(self.handle, i).decode() for i in range(self.number("frame_count"))]
 
+    def choose(self, frames):
+        """Has functions of frames give these links only."""
+        if not hasattr(self.library, "peer_choose_frames"):
+            return False
+        names = (ctypes.c_char_p * len(frames))(*[name.encode() for name in frames])
+        return bool(self.library.peer_choose_frames(self.handle, len(frames), names))
+
     def kept(self, function, size, *vectors):
         """A result that the peer keeps until it is asked for it."""
         arrays = [(ctypes.c_double * len(vector))(*vector) for vector in vectors]

@@ -5,11 +5,22 @@ using In = const double *;
 
 // ---- kinematics of frames
 
+namespace
+{
+
+void place(Peer & p)
+{
+  for (const pin::FrameIndex frame : p.frames)
+    pin::updateFramePlacement(p.model, p.data, frame);
+}
+
+} // namespace
+
 PEER_API void peer_placements(void * handle, In q)
 {
   Peer & p = peer(handle);
   pin::forwardKinematics(p.model, p.data, p.q(q));
-  pin::updateFramePlacements(p.model, p.data);
+  place(p);
 }
 
 namespace
@@ -19,7 +30,7 @@ void twists(Peer & p, In q, In v, pin::ReferenceFrame reference)
 {
   pin::forwardKinematics(p.model, p.data, p.q(q), p.v(v));
   if (reference != body)
-    pin::updateFramePlacements(p.model, p.data);
+    place(p);
   for (std::size_t k = 0; k < p.frames.size(); ++k)
     p.motions[k] = pin::getFrameVelocity(p.model, p.data, p.frames[k], reference);
 }
@@ -29,7 +40,7 @@ void accelerations(Peer & p, In q, In v, const A & a, pin::ReferenceFrame refere
 {
   pin::forwardKinematics(p.model, p.data, p.q(q), p.v(v), a);
   if (reference != body)
-    pin::updateFramePlacements(p.model, p.data);
+    place(p);
   for (std::size_t k = 0; k < p.frames.size(); ++k)
     p.motions[k] = reference == world_aligned ? pin::getFrameClassicalAcceleration(p.model, p.data, p.frames[k], reference)
                                               : pin::getFrameAcceleration(p.model, p.data, p.frames[k], reference);
@@ -38,8 +49,13 @@ void accelerations(Peer & p, In q, In v, const A & a, pin::ReferenceFrame refere
 // entries that are zero for every q are not written and stay zero
 void jacobians(Peer & p, In q, pin::ReferenceFrame reference)
 {
+  if (p.frames.size() == 1) // the joints that carry it are enough
+  {
+    pin::computeFrameJacobian(p.model, p.data, p.q(q), p.frames[0], reference, p.jacobians[0]);
+    return;
+  }
   pin::computeJointJacobians(p.model, p.data, p.q(q));
-  pin::updateFramePlacements(p.model, p.data);
+  place(p);
   for (std::size_t k = 0; k < p.frames.size(); ++k)
     pin::getFrameJacobian(p.model, p.data, p.frames[k], reference, p.jacobians[k]);
 }
@@ -47,7 +63,7 @@ void jacobians(Peer & p, In q, pin::ReferenceFrame reference)
 void jacobian_rates(Peer & p, In q, In v, pin::ReferenceFrame reference)
 {
   pin::computeJointJacobiansTimeVariation(p.model, p.data, p.q(q), p.v(v));
-  pin::updateFramePlacements(p.model, p.data);
+  place(p);
   for (std::size_t k = 0; k < p.frames.size(); ++k)
     pin::getFrameJacobianTimeVariation(p.model, p.data, p.frames[k], reference, p.jacobians[k]);
 }
@@ -285,7 +301,7 @@ PEER_API void peer_operational_space_inertia_inverse(void * handle, In q)
   pin::computeMinverse(p.model, p.data, p.q(q));
   p.data.Minv.triangularView<Eigen::StrictlyLower>() = p.data.Minv.transpose().triangularView<Eigen::StrictlyLower>();
   pin::computeJointJacobians(p.model, p.data);
-  pin::updateFramePlacements(p.model, p.data);
+  place(p);
   for (std::size_t k = 0; k < p.frames.size(); ++k)
   {
     Matrix6x & J = p.jacobians[k];

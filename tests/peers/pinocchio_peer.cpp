@@ -51,7 +51,7 @@ struct Peer
 {
   pin::Model model;
   pin::Data data;
-  std::vector<pin::FrameIndex> frames; // in the order of the file
+  std::vector<pin::FrameIndex> frames; // all, in the order of the file, or those that were chosen
   PINOCCHIO_ALIGNED_STD_VECTOR(pin::Force) forces; // on each joint
   PINOCCHIO_ALIGNED_STD_VECTOR(pin::Motion) motions; // of each frame
   std::vector<Matrix6x> jacobians; // of each frame
@@ -61,13 +61,18 @@ struct Peer
   Peer(const pin::Model & m, const std::vector<pin::FrameIndex> & f)
   : model(m)
   , data(model)
-  , frames(f)
   , forces(model.njoints, pin::Force::Zero())
-  , motions(f.size(), pin::Motion::Zero())
-  , jacobians(f.size(), Matrix6x::Zero(6, model.nv))
-  , inertias(f.size(), Matrix6::Zero())
   , zero(Vector::Zero(model.nv))
   {
+    choose(f);
+  }
+
+  void choose(const std::vector<pin::FrameIndex> & f)
+  {
+    frames = f;
+    motions.assign(f.size(), pin::Motion::Zero());
+    jacobians.assign(f.size(), Matrix6x::Zero(6, model.nv));
+    inertias.assign(f.size(), Matrix6::Zero());
   }
 
   Input q(const double * x) const { return Input(x, model.nq); }
@@ -173,6 +178,20 @@ PEER_API const char * peer_frame_name(void * handle, int i)
 {
   Peer & p = peer(handle);
   return p.model.frames[p.frames[i]].name.c_str();
+}
+
+PEER_API int peer_choose_frames(void * handle, int count, const char * const * names)
+{
+  Peer & p = peer(handle);
+  std::vector<pin::FrameIndex> frames;
+  for (int i = 0; i < count; ++i)
+  {
+    if (!p.model.existFrame(names[i], pin::BODY))
+      return 0;
+    frames.push_back(p.model.getFrameId(names[i], pin::BODY));
+  }
+  p.choose(frames);
+  return 1;
 }
 
 #include "pinocchio_functions.hpp"
