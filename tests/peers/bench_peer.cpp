@@ -68,7 +68,7 @@ int main(int count, char ** words)
   const bool floating = !std::strcmp(words[3], "floating");
   void * peer = symbol<void *(const char *, int, double, double, double)>("peer_open")(words[2], floating, 0, 0, -9.81);
   if (!peer)
-    return 1;
+    return 3;
   const int nq = symbol<int(void *)>("peer_nq")(peer), nv = symbol<int(void *)>("peer_nv")(peer);
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -91,12 +91,25 @@ int main(int count, char ** words)
   auto * id = symbol<void(void *, const double *, const double *, const double *, double *)>("peer_inverse_dynamics");
   auto * fd = symbol<void(void *, const double *, const double *, const double *, double *)>("peer_forward_dynamics");
   auto * mass = symbol<void(void *, const double *, double *)>("peer_mass_matrix");
-  auto * placements = symbol<void(void *, const double *)>("peer_placements");
+  using Kept = void(void *, const double *, const double *, const double *);
+  auto * has = reinterpret_cast<int (*)(void *, const char *)>(dlsym(library, "peer_has"));
+  const auto there = [&](const char * name) { return dlsym(library, (std::string("peer_") + name).c_str()) && (!has || has(peer, name)); };
   std::printf("%s\n", symbol<const char *(void)>("peer_name")());
   std::printf("  nv %d: inverse dynamics %.0f", nv, nanoseconds([&](int i) { id(peer, q[i].data(), v[i].data(), a[i].data(), out.data()); }));
   std::printf(", forward dynamics %.0f", nanoseconds([&](int i) { fd(peer, q[i].data(), v[i].data(), a[i].data(), out.data()); }));
   std::printf(", mass matrix %.0f", nanoseconds([&](int i) { mass(peer, q[i].data(), out.data()); }));
-  std::printf(", placements %.0f ns\n", nanoseconds([&](int i) { placements(peer, q[i].data()); }));
+  if (there("placements"))
+  {
+    auto * placements = symbol<void(void *, const double *)>("peer_placements");
+    std::printf(", placements %.0f", nanoseconds([&](int i) { placements(peer, q[i].data()); }));
+  }
+  for (const std::string name : {"inverse_dynamics_derivatives", "forward_dynamics_derivatives"})
+    if (there(name.c_str()))
+    {
+      auto * slopes = symbol<Kept>(("peer_" + name).c_str());
+      std::printf(", %s %.0f", name.c_str(), nanoseconds([&](int i) { slopes(peer, q[i].data(), v[i].data(), a[i].data()); }));
+    }
+  std::printf(" ns\n");
   symbol<void(void *)>("peer_close")(peer);
   // denormals are numbers: a library that switches them off would change everybody else's results and times
   if ((_mm_getcsr() & 0x8040) != (before & 0x8040))
