@@ -31,6 +31,8 @@ use joint::Joint;
 
 /// A described robot with every link a body and every joint a joint, fixed ones too. Constants are computed in the scalar `S`
 /// from the numbers of the file.
+///
+/// [`Textbook::call`] has every function by its name and checks lengths; the functions themselves take slices as long as stated, and panic at shorter ones.
 #[derive(Clone, Debug)]
 pub struct Textbook<S> {
     bodies: Vec<Link<S>>,
