@@ -49,7 +49,33 @@ fn logarithm_of_a_quaternion_is_good_to_a_few_ulps_from_nothing_to_half_a_turn()
     }
 }
 
-/// The reference of the test before, itself: log q is what exp takes back to q.
+/// By dual numbers of dual numbers: what cancels in a closed form cancels more in each derivative of it.
+#[test]
+fn second_derivatives_of_the_logarithm_hold_at_small_angles_too() {
+    let random = &mut Random::new(21);
+    for sine in [0.0, 1e-160, 1e-12, 1e-6, 1e-4, 1e-2, 0.1, 0.12, 0.13, 0.5, 1.0] {
+        let (v, along) = (turned(random, sine), turned(random, 1.0));
+        let found = curved(v, along);
+        Big::scope(|| {
+            let expected = curved(vector::<Big>(v), vector(along));
+            for k in 0..3 {
+                let (f, e) = (found[k], expected[k]);
+                let (slope, bend) = (e.slope.value.error_of(f.slope.value, U), e.slope.slope.error_of(f.slope.slope, U));
+                assert!(slope <= 12.0 && bend <= 100.0, "{sine:e}: {slope} {bend} u");
+            }
+        });
+    }
+}
+
+/// log of (v + t·along, √(1 − v²)) with its first two derivatives at t = 0; w does not move, since only directions count.
+fn curved<S: Scalar>(v: Vector3<S>, along: Vector3<S>) -> Vector3<Dual<Dual<S>>> {
+    let time = Dual::variable(Dual::variable(S::zero()));
+    let still = |x: S| Dual::constant(Dual::constant(x));
+    let cosine = S::select((S::one() - v.dot(&v)).positive(), S::one() - v.dot(&v), S::one()).sqrt();
+    Quaternion { vector: v.map(still) + along.map(still) * time, scalar: still(cosine) }.log()
+}
+
+/// The reference of the tests before, itself: log q is what exp takes back to q.
 #[test]
 fn logarithm_undoes_the_exponential_in_many_digits() {
     let random = &mut Random::new(12);
