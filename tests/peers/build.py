@@ -131,7 +131,7 @@ def build(peer):
     if library.exists() and stamp.exists() and stamp.read_text() == made_of.hexdigest():
         print(f"{peer['name']}: up to date")
         return
-    print(f"{peer['name']}: compiling, two minutes or three", flush=True)
+    print(f"{peer['name']}: compiling, some minutes", flush=True)
     include, compiler, object_file = headers(), peer["compiler"], library.with_suffix(".o")
     title = f"Pinocchio {peer['pinocchio']}, {compiler} {peer['version']}, {peer['flags']}"
     subprocess.check_call([

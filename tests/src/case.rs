@@ -1,6 +1,6 @@
 //! A robot under test, its states, and loops over many of them.
 
-use articulated_core::algorithm::{Argument, Function, Workspace, function};
+use articulated_core::algorithm::{Argument, Function, Shape, Workspace, function};
 use articulated_core::description::{Base, Description};
 use articulated_core::joint::Joint;
 use articulated_core::model::{GRAVITY, Model};
@@ -51,6 +51,21 @@ impl State {
     pub fn new(q: Vec<f64>, v: Vec<f64>, a: Vec<f64>) -> Self {
         let (zero, target, uniform) = (vec![0.0; v.len()], q.clone(), vec![0.5; q.len()]);
         Self { q, v, a, tau: zero.clone(), wrenches: vec![], step: zero, target, uniform }
+    }
+
+    /// Every argument as `value(argument, length)` gives it.
+    pub fn of(shape: Shape, value: impl Fn(Argument, usize) -> Vec<f64>) -> Self {
+        let of = |argument: Argument| value(argument, argument.len(shape));
+        Self {
+            q: of(Argument::Q),
+            v: of(Argument::V),
+            a: of(Argument::A),
+            tau: of(Argument::Tau),
+            wrenches: of(Argument::Wrenches),
+            step: of(Argument::Step),
+            target: of(Argument::Target),
+            uniform: of(Argument::Uniform),
+        }
     }
 
     /// The vector of an argument.

@@ -1,8 +1,9 @@
 //! Yardsticks for rounding errors.
 
+use articulated_cli::magnitude::scales;
 use articulated_cli::precise::Big;
 use articulated_core::Scalar;
-use articulated_core::algorithm::{Argument, ResultKind, function};
+use articulated_core::algorithm::function;
 
 use crate::case::{Case, State, inverse_dynamics};
 use crate::virtual_power::Motions;
@@ -10,17 +11,19 @@ use crate::virtual_power::Motions;
 /// Unit roundoff of double precision.
 pub const U: f64 = f64::EPSILON / 2.0;
 
-/// What an error of each result of a function is measured against: see [`Motions::torque_scale`] and [`Motions::placement_scale`].
-/// Entries of the mass matrix are torques for a unit of one acceleration.
+/// What an error of each result of a function is measured against. For torques and placements [`Motions::torque_scale`] and
+/// [`Motions::placement_scale`], which share nothing with the library (entries of the mass matrix are torques for a unit of one acceleration); for
+/// all else the sum of the magnitudes of the terms, by the command's [`scales`].
 pub fn scale(case: &Case, name: &str, state: &State) -> Vec<f64> {
-    let row = function::<f64>(name).expect("a function of the registry");
     let zero = vec![0.0; case.model.nv];
-    let or_rest = |argument: Argument, given| if row.takes.contains(&argument) { given } else { &zero[..] };
-    match row.gives {
-        ResultKind::Placements => case.motions().placement_scale(&state.q),
-        ResultKind::Torque => case.motions().torque_scale(&state.q, or_rest(Argument::V, &state.v), or_rest(Argument::A, &state.a)),
-        ResultKind::MassMatrix => matrix_scale(case, &state.q),
-        ResultKind::Acceleration => panic!("{name} is judged by its backward error"),
+    let torque = |v: &[f64], a: &[f64]| case.motions().torque_scale(&state.q, v, a);
+    match name {
+        "placements" if case.model.frames.len() == case.description.links.len() => case.motions().placement_scale(&state.q),
+        "inverse_dynamics" => torque(&state.v, &state.a),
+        "bias_forces" => torque(&state.v, &zero),
+        "gravity_torque" => torque(&zero, &zero),
+        "mass_matrix" => matrix_scale(case, &state.q),
+        _ => scales(&case.model, name, &arguments(name, state)).expect("arguments of the right lengths"),
     }
 }
 
@@ -38,11 +41,10 @@ pub fn unit(n: usize, k: usize) -> Vec<f64> {
     (0..n).map(|i| if i == k { 1.0 } else { 0.0 }).collect()
 }
 
-/// How far `found`, the result of a function in a state, is from what the generic library gives, in units of u times [`scale`]. For accelerations, the
+/// How far `found`, the result of a function in a state, is from what the generic library gives, in units of u times [`scale`]. For forward dynamics, the
 /// backward error: how far the torques that they need are from those that were given, in units of u times |M||a| + |h| + |τ|.
 pub fn error(case: &Case, name: &str, state: &State, found: &[f64]) -> f64 {
-    let row = function::<f64>(name).expect("a function of the registry");
-    if row.gives != ResultKind::Acceleration {
+    if name != "forward_dynamics" {
         return distance(found, &case.call(name, &arguments(name, state)), &scale(case, name, state));
     }
     let State { q, v, tau, .. } = state;

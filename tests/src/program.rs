@@ -68,25 +68,30 @@ const HEAD: &str = "\
 #![deny(warnings)]
 use std::io::{Read, Write};
 
-fn take<const N: usize>(x: &mut &[f64]) -> [f64; N] {
-    let (head, rest) = x.split_at(N);
-    *x = rest;
-    head.try_into().unwrap()
-}
-
 trait Numbers {
+    fn take(x: &mut &[f64]) -> Self;
     fn add_to(&self, out: &mut Vec<f64>);
 }
 
-impl<const N: usize> Numbers for [f64; N] {
+impl Numbers for f64 {
+    fn take(x: &mut &[f64]) -> f64 {
+        let (first, rest) = x.split_first().unwrap();
+        *x = rest;
+        *first
+    }
+
     fn add_to(&self, out: &mut Vec<f64>) {
-        out.extend(self);
+        out.push(*self);
     }
 }
 
-impl<const N: usize, const M: usize> Numbers for [[f64; N]; M] {
+impl<T: Numbers, const N: usize> Numbers for [T; N] {
+    fn take(x: &mut &[f64]) -> Self {
+        std::array::from_fn(|_| T::take(x))
+    }
+
     fn add_to(&self, out: &mut Vec<f64>) {
-        out.extend(self.as_flattened());
+        self.iter().for_each(|t| t.add_to(out));
     }
 }
 
@@ -116,7 +121,7 @@ fn main(robots: &[(&str, &Generated)]) -> String {
     for (robot, generated) in robots {
         for name in generated.ledger.functions.iter().map(|e| &e.function) {
             let row = function::<f64>(name).expect("a function of the registry");
-            let arguments = vec!["&take(&mut x)"; row.takes.len()].join(", ");
+            let arguments = vec!["&Numbers::take(&mut x)"; row.takes.len()].join(", ");
             let _ = writeln!(out, "            ({robot:?}, {name:?}) => {robot}::{name}({arguments}).add_to(&mut out),");
         }
     }

@@ -52,10 +52,10 @@ fn no_value_makes_generated_code_panic() {
     for robot in ROBOTS.iter().filter(|r| ["panda_like", "gripper_arm", "tree_1"].contains(&r.name.as_str())) {
         let shape = robot.case.model.shape();
         for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, 1e300, -1e6, 5e-324, -0.0] {
-            let state = State { q: vec![x; shape.nq], v: vec![x; shape.nv], a: vec![x; shape.nv], tau: vec![x; shape.nv] };
+            let state = State::of(shape, |_, n| vec![x; n]);
             for row in robot.functions().map(|name| function::<f64>(name).unwrap()) {
                 let found = PORTABLE.run(&robot.name, row.name, &[arguments(row.name, &state)]);
-                assert_eq!(found[0].len(), row.gives.len(shape));
+                assert_eq!(found[0].len(), row.len(shape));
                 let finite = x.is_finite() && x.abs() < 1e7;
                 assert!(!finite || found[0].iter().all(|y| y.is_finite()), "{}::{} of {x}", robot.name, row.name);
             }

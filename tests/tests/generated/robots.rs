@@ -2,9 +2,10 @@
 
 use std::sync::LazyLock;
 
-use articulated_codegen::{Generated, Request, generate};
-use articulated_core::algorithm::functions;
+use articulated_codegen::{Generated, Options, Request, generate};
+use articulated_core::algorithm::{Function, Needs, functions};
 use articulated_core::description::Base;
+use articulated_core::model::{Frame, Model};
 use articulated_tests::case::{Case, read};
 use articulated_tests::program::Program;
 use articulated_tests::random_tree::{Flavour, random_tree};
@@ -40,20 +41,45 @@ pub(crate) static ROBOTS: LazyLock<Vec<Robot>> = LazyLock::new(|| {
     bundled.chain(trees).chain([robot("stone".into(), stone, Base::Fixed, false)]).collect()
 });
 
-/// With every function, save those that need a regular mass matrix where it may be singular.
+/// With every function, save those that need what the robot does not have, on one or two frames.
 fn robot(name: String, urdf: &str, base: Base, singular: bool) -> Robot {
+    let mut case = Case::new(name.clone(), read(urdf), base);
+    let frames = frames(&case.model);
     let mut request = Request::new(format!("{name}.urdf"), urdf);
     request.options.base = base;
     request.options.functions =
-        functions::<f64>().iter().filter(|f| !singular || !f.inverts_mass_matrix()).map(|f| f.name.into()).collect();
-    let generated = generate(&request).unwrap_or_else(|e| panic!("{name}: {e}"));
-    Robot { case: Case::new(name.clone(), read(urdf), base), generated, name }
+        functions::<f64>().iter().filter(|f| has(&case.model, &frames, f, singular)).map(|f| f.name.into()).collect();
+    let generated = generate(&Request { options: Options { frames: Some(frames.clone()), ..request.options }, ..request });
+    let generated = generated.unwrap_or_else(|e| panic!("{name}: {e}"));
+    case.model = case.model.with_frames(&frames).expect("its own frames");
+    Robot { case, generated, name }
+}
+
+/// The last frame, and the one in the middle.
+fn frames(model: &Model<f64>) -> Vec<String> {
+    let n = model.frames.len();
+    let mut chosen = vec![model.frames[n - 1].name.clone(), model.frames[n / 2].name.clone()];
+    chosen.dedup();
+    chosen
+}
+
+/// What a compiler needs long for on the largest robot is generated there for wrenches only: without them it is the same with fewer terms.
+const LONG: [&str; 2] = ["inverse_dynamics_derivatives", "forward_dynamics_derivatives"];
+
+fn has(model: &Model<f64>, frames: &[String], function: &Function<f64>, singular: bool) -> bool {
+    let freedoms = |f: &Frame<f64>| model.freedoms_of(f.body).len();
+    let free = model.frames.iter().filter(|f| frames.contains(&f.name)).all(|f| freedoms(f) >= 6);
+    match function.needs {
+        Needs::Nothing => model.nv < 30 || !LONG.contains(&function.name),
+        Needs::MassMatrix => !singular && (model.nv < 30 || !LONG.contains(&function.name)),
+        Needs::FreeFrames => !singular && free,
+    }
 }
 
 /// All of them for this machine.
 pub(crate) static NATIVE: LazyLock<Program> = LazyLock::new(|| {
     let all: Vec<(&str, &Generated)> = ROBOTS.iter().map(|r| (r.name.as_str(), &r.generated)).collect();
-    let program = Program::build(&all, &["-C", "opt-level=3", "-C", "target-cpu=native"]);
+    let program = Program::build(&all, &["-C", "opt-level=1", "-C", "target-cpu=native"]);
     println!("compiled {} robots in {:.1?}", all.len(), program.time);
     program
 });

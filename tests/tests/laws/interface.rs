@@ -1,7 +1,7 @@
 //! The interface: wrong input is an error, and nothing panics.
 
-use articulated::{Dynamics, FunctionError, Shape};
-use articulated_core::algorithm::{Workspace, functions};
+use articulated::{Dynamics, FunctionError};
+use articulated_core::algorithm::{Function, Workspace, functions};
 use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, Mimic, Origin};
 use articulated_core::model::{Model, ModelError};
 use articulated_tests::case::{Case, for_each_tree, inverse_dynamics, placements};
@@ -16,96 +16,56 @@ articulated::robot! {
     }
 }
 
-/// Lengths of the arguments and results of the trait's functions.
-#[derive(Clone, Copy)]
-struct Lengths {
-    q: usize,
-    /// Of v, a and τ as arguments: v, then the other.
-    given: [usize; 2],
-    /// Of results: torques or accelerations, frames, entries of the mass matrix.
-    results: [usize; 3],
+/// What a function of the trait says to arguments and a result that are so much longer than they should be.
+fn answer<D: Dynamics>(robot: &D, row: &Function<f64>, longer: &[isize]) -> Result<(), FunctionError> {
+    let shape = robot.shape();
+    let lengths = row.takes.iter().map(|a| a.len(shape)).chain([row.len(shape)]);
+    let mut vectors: Vec<Vec<f64>> = lengths.zip(longer).map(|(n, more)| vec![0.0; n.saturating_add_signed(*more)]).collect();
+    let mut out = vectors.pop().expect("the result");
+    let given: Vec<&[f64]> = vectors.iter().map(Vec::as_slice).collect();
+    robot.call(row.id, &mut robot.workspace(), &given, &mut out)
 }
 
-impl Lengths {
-    fn of(shape: Shape) -> Self {
-        let Shape { nq, nv, frames } = shape;
-        Self { q: nq, given: [nv; 2], results: [nv, frames, nv * nv] }
-    }
-}
-
-/// The names of the trait's functions, and what they say to these lengths.
-fn answers<D: Dynamics>(robot: &D, n: Lengths) -> [(&'static str, Result<(), FunctionError>); 6] {
-    let ws = &mut robot.workspace();
-    let zeros = |n: usize| vec![0.0; n];
-    let (q, v, a) = (zeros(n.q), zeros(n.given[0]), zeros(n.given[1]));
-    let [mut out, mut matrix] = [zeros(n.results[0]), zeros(n.results[2])];
-    let mut frames = vec![[0.0; 12]; n.results[1]];
-    [
-        ("inverse_dynamics", robot.inverse_dynamics(ws, &q, &v, &a, &mut out)),
-        ("placements", robot.placements(ws, &q, &mut frames)),
-        ("bias_forces", robot.bias_forces(ws, &q, &v, &mut out)),
-        ("gravity_torque", robot.gravity_torque(ws, &q, &mut out)),
-        ("mass_matrix", robot.mass_matrix(ws, &q, &mut matrix)),
-        ("forward_dynamics", robot.forward_dynamics(ws, &q, &v, &a, &mut out)),
-    ]
-}
-
-/// Each function says the length that is wrong, if it has that argument, and is content otherwise.
-fn one_wrong<D: Dynamics>(robot: &D, lengths: Lengths, wrong: usize, takes: &[&str]) {
-    for (name, answer) in answers(robot, lengths) {
-        match answer {
-            Err(FunctionError::Length { found, .. }) if takes.contains(&name) => assert_eq!(found, wrong, "{name}"),
-            other => assert!(other.is_ok() && !takes.contains(&name), "{name}: {other:?}"),
-        }
+/// Each argument of a wrong length is an error that names it, and so is the result.
+fn each_length_counts<D: Dynamics>(robot: &D, row: &Function<f64>) {
+    let n = row.takes.len() + 1;
+    assert_eq!(answer(robot, row, &vec![0; n]), Ok(()), "{}", row.name);
+    for (k, more) in (0..n).flat_map(|k| [-1, 1, 30].map(|more| (k, more))) {
+        let mut longer = vec![0; n];
+        longer[k] = more;
+        let (name, expected) = match row.takes.get(k) {
+            Some(argument) => (argument.name(), argument.len(robot.shape())),
+            None => ("out", row.len(robot.shape())),
+        };
+        let error = FunctionError::Length { argument: name, found: expected.saturating_add_signed(more), expected };
+        assert_eq!(answer(robot, row, &longer), Err(error), "{}", row.name);
     }
 }
 
 #[test]
 fn each_wrong_length_is_an_error_that_names_it() {
     let model = Case::bundled(articulated_models::robot("panda_like").unwrap()).model;
-    let right = Lengths::of(model.shape());
-    one_wrong(&model, right, 0, &[]);
-    let all: Vec<&str> = answers(&model, right).iter().map(|(name, _)| *name).collect();
-    let known: Vec<&str> = functions::<f64>().iter().map(|f| f.name).collect();
-    assert!(known.iter().all(|f| all.contains(f)), "the trait lacks one of {known:?}");
-    for off in [-1_isize, 1, 30] {
-        let wrong = |n: usize| n.checked_add_signed(off).unwrap();
-        let but = |change: &dyn Fn(&mut Lengths)| {
-            let mut lengths = right;
-            change(&mut lengths);
-            lengths
-        };
-        let with_v = ["inverse_dynamics", "bias_forces", "forward_dynamics"];
-        one_wrong(&model, but(&|n| n.q = wrong(right.q)), wrong(right.q), &all);
-        one_wrong(&model, but(&|n| n.given[0] = wrong(7)), wrong(7), &with_v);
-        one_wrong(&model, but(&|n| n.given[1] = wrong(7)), wrong(7), &["inverse_dynamics", "forward_dynamics"]);
-        one_wrong(
-            &model,
-            but(&|n| n.results[0] = wrong(7)),
-            wrong(7),
-            &["inverse_dynamics", "bias_forces", "gravity_torque", "forward_dynamics"],
-        );
-        one_wrong(&model, but(&|n| n.results[1] = wrong(right.results[1])), wrong(right.results[1]), &["placements"]);
-        one_wrong(&model, but(&|n| n.results[2] = wrong(49)), wrong(49), &["mass_matrix"]);
-    }
-    let no_q = answers(&model, Lengths { q: 0, ..right });
-    assert_eq!(no_q[0].1, Err(FunctionError::Length { argument: "q", found: 0, expected: 7 }));
+    functions::<f64>().iter().for_each(|row| each_length_counts(&model, row));
 }
 
 #[test]
 fn a_generated_robot_says_the_same_and_what_it_lacks() {
-    let right = Lengths::of(pendulum::Robot.shape());
-    let good = answers(&pendulum::Robot, right);
-    assert_eq!(good[0], ("inverse_dynamics", Ok(())));
-    for (name, answer) in &good[1..] {
-        assert_eq!(*answer, Err(FunctionError::NotGenerated { function: name }));
+    for row in functions::<f64>() {
+        if row.name == "inverse_dynamics" {
+            each_length_counts(&pendulum::Robot, row);
+        } else {
+            let lacks = Err(FunctionError::NotGenerated { function: row.name });
+            assert_eq!(answer(&pendulum::Robot, row, &vec![0; row.takes.len() + 1]), lacks);
+        }
     }
-    let said = |lengths: Lengths| answers(&pendulum::Robot, lengths)[0].1;
-    let wrong = |argument, found| Err(FunctionError::Length { argument, found, expected: 2 });
-    assert_eq!(said(Lengths { q: 3, ..right }), wrong("q", 3));
-    assert_eq!(said(Lengths { given: [1, 2], ..right }), wrong("v", 1));
-    assert_eq!(said(Lengths { given: [2, 0], ..right }), wrong("a", 0));
-    assert_eq!(said(Lengths { results: [5, 3, 4], ..right }), wrong("tau", 5));
+}
+
+#[test]
+fn a_workspace_of_another_robot_is_an_error() {
+    let model = |name| Case::bundled(articulated_models::robot(name).unwrap()).model;
+    let (arm, pendulum) = (model("panda_like"), model("double_pendulum"));
+    let mut out = [0.0; 7];
+    assert!(arm.gravity_torque(&mut pendulum.workspace(), &[0.0; 7], &mut out).is_err());
 }
 
 /// One program over the trait, on a generated robot and on its model.

@@ -13,5 +13,6 @@ mod reference;
 mod screws;
 mod sines;
 mod structure;
+mod table;
 mod textbook;
 mod traps;

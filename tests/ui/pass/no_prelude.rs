@@ -24,10 +24,10 @@ mod articulated {}
 
 fn main() {
     use ::articulated::Dynamics;
-    let mut frames = [[0.0; 12]; arm::FRAMES];
+    let mut frames = [0.0; 12 * arm::FRAMES];
     let mut q = [0.0; arm::NQ];
     q[6] = 1.0;
     ::std::assert!(arm::Robot.placements(&mut (), &q, &mut frames).is_ok());
-    ::std::assert_eq!(frames, arm::placements(&q));
+    ::std::assert_eq!(frames[12..24], arm::placements(&q)[1]);
     let _ = alone::placements(&[0.0; alone::NQ]);
 }

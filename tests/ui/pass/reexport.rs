@@ -2,7 +2,7 @@
 
 mod parts {
     pub mod dynamics {
-        pub use articulated::{Dynamics, FunctionError, Shape, check_length, exactly};
+        pub use articulated::{Dynamics, FunctionError, FunctionId, Shape, check_length, exactly, exactly_rows};
     }
 }
 
@@ -15,5 +15,5 @@ articulated::robot! {
 
 fn main() {
     use parts::dynamics::{Dynamics, Shape};
-    assert_eq!(arm::Robot.shape(), Shape { nq: 2, nv: 2, frames: 3 });
+    assert_eq!(arm::Robot.shape(), Shape { nq: 2, nv: 2, frames: 3, links: 2 });
 }
