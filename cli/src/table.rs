@@ -43,18 +43,23 @@ impl Table {
         let lines: Vec<&Vec<String>> = head.chain(&self.rows).collect();
         // Headings are as wide as they are.
         let cells = || lines.iter().filter(|l| l.len() > 1 || self.head[0].len() == 1);
-        let width = |k: usize| cells().filter_map(|l| l.get(k)).map(|c| c.chars().count()).max().unwrap_or(0);
+        let width = |k: usize| cells().filter_map(|l| l.get(k)).map(|c| columns(c)).max().unwrap_or(0);
         let widths: Vec<usize> = (0..self.head[0].len()).map(width).collect();
         lines.iter().fold(String::new(), |text, line| text + self.line(line, &widths).trim_end() + "\n")
     }
 
     fn line(&self, cells: &[String], widths: &[usize]) -> String {
         let cell = |(k, (text, width)): (usize, (&String, &usize))| {
-            let fill = " ".repeat(width.saturating_sub(text.chars().count()));
+            let fill = " ".repeat(width.saturating_sub(columns(text)));
             if k < self.left { format!("{text}{fill}") } else { format!("{fill}{text}") }
         };
         cells.iter().zip(widths).enumerate().map(cell).collect::<Vec<_>>().join("  ")
     }
+}
+
+/// How many columns of a terminal a text takes: marks on the letter before take none.
+fn columns(text: &str) -> usize {
+    text.chars().filter(|c| !('\u{300}'..='\u{36f}').contains(c)).count()
 }
 
 /// Text on one line, whatever a name contains.
@@ -98,6 +103,14 @@ mod tests {
         table.row(["локоть", "10"]);
         table.row(["new\nline", "1"]);
         assert_eq!(table.text(), "name       mass\n             kg\na           1.5\nлокоть       10\nnew\\nline     1\n");
+    }
+
+    #[test]
+    fn headings_and_marks_move_nothing() {
+        let mut table = Table::new([("", ""), ("n", "")]);
+        table.heading("a heading that is longer than the table");
+        table.row(["q̈", "1"]);
+        assert_eq!(table.text(), "   n\na heading that is longer than the table\nq̈  1\n");
     }
 
     #[test]

@@ -51,8 +51,8 @@ mod tests {
     }
 
     #[test]
-    fn a_quadruped_has_four_feet_and_a_cart_no_free_tip() {
-        assert_eq!((tips("quadruped").all.len(), tips("quadruped").free.len()), (4, 4));
+    fn a_quadruped_has_four_feet_and_a_sensor_and_a_cart_no_free_tip() {
+        assert_eq!((tips("quadruped").all.len(), tips("quadruped").free.len()), (5, 5));
         assert_eq!((tips("cart_pole").all.len(), tips("cart_pole").free.len()), (1, 0));
     }
 }

@@ -27,12 +27,18 @@ pub(super) fn given(arguments: &[&[f64]]) -> Vec<Vec<Magnitude>> {
     arguments.iter().map(|x| x.iter().map(|x| Magnitude::from_f64(*x)).collect()).collect()
 }
 
-/// What a function gives with these arguments.
+/// What a function gives with these arguments; the least magnitude, where there are several ways to compute it: one that turns everything into common axes adds
+/// up terms that no other has.
 pub(super) fn magnitudes(model: &Model<f64>, name: &str, arguments: &[Vec<Magnitude>]) -> Result<Vec<Magnitude>, FunctionError> {
     let row = function::<Magnitude>(name).ok_or(UNKNOWN)?;
     let model: Model<Magnitude> = model.cast();
     let arguments: Vec<&[Magnitude]> = arguments.iter().map(Vec::as_slice).collect();
-    let mut out = vec![Magnitude::zero(); row.len(model.shape())];
-    row.call(&model, &mut Workspace::new(&model), &arguments, &mut out)?;
-    Ok(out)
+    let mut least: Option<Vec<Magnitude>> = None;
+    for way in row.ways.iter().filter(|w| (w.applies)(&model)) {
+        let mut out = vec![Magnitude::zero(); row.len(model.shape())];
+        row.call_by(way, &model, &mut Workspace::new(&model), &arguments, &mut out)?;
+        let smaller = |(a, b): (&Magnitude, &Magnitude)| if a.magnitude <= b.magnitude { *a } else { *b };
+        least = Some(least.map_or_else(|| out.clone(), |least| least.iter().zip(&out).map(smaller).collect()));
+    }
+    least.ok_or(UNKNOWN)
 }

@@ -24,8 +24,8 @@ pub(super) fn scales(model: &Model<f64>, row: &Function<f64>, arguments: &[&[f64
         FunctionId::forward_dynamics_derivatives_with_wrenches => state.forward_slopes(row, FunctionId::forward_dynamics_with_wrenches),
         FunctionId::solve_mass_matrix => Ok(state.mass.solution(&absolute(arguments[1]), &state.value(row)?)),
         FunctionId::mass_matrix_inverse => Ok(state.mass.inverse_scale()),
-        FunctionId::operational_space_inertia_inverse => state.mobility(),
-        FunctionId::operational_space_inertia => state.inertia(row),
+        FunctionId::operational_space_inertia_inverse => state.operational_space(None),
+        FunctionId::operational_space_inertia => state.operational_space(Some(&state.value(row)?)),
         // A function that inverts M and is none of these has no scale yet.
         _ => Err(UNKNOWN),
     }
@@ -48,9 +48,9 @@ impl Mass {
 
     /// |M⁻¹| (‖R‖ + ‖M‖ |X|), for any number of columns.
     fn solution(&self, right: &[f64], x: &[f64]) -> Vec<f64> {
-        let mut sum = product(&self.terms, &absolute(x), self.n);
+        let mut sum = product(&self.terms, &absolute(x), self.n, self.n);
         sum.iter_mut().zip(right).for_each(|(s, r)| *s += r);
-        product(&self.modulus, &sum, self.n)
+        product(&self.modulus, &sum, self.n, self.n)
     }
 
     /// That of M⁻¹, the solution for R = 1.
@@ -101,27 +101,35 @@ impl State<'_> {
         arguments
     }
 
-    /// Λ⁻¹ = J X with M X = Jᵀ, of each frame: ‖J‖ times the scale of X.
-    fn mobility(&self) -> Result<Vec<f64>, FunctionError> {
+    /// Λ⁻¹ = J X with M X = Jᵀ, and Λ, of each frame. What δM and δJ do to them, and the rounding ε of J X, is, with Y = X Λ,
+    ///
+    /// ```text
+    /// δΛ⁻¹ = −Xᵀ δM X + δJ X + Xᵀ δJᵀ + ε        δΛ = Yᵀ δM Y − Λ δJ Y − Yᵀ δJᵀ Λ − Λ ε Λ        |ε| ≤ u ‖J‖ |X|
+    /// ```
+    fn operational_space(&self, inertia: Option<&[f64]>) -> Result<Vec<f64>, FunctionError> {
         let (n, mut scale) = (self.mass.n, Vec::new());
         let jacobians = magnitudes(self.model, "jacobians_world_aligned", &given(&self.arguments[..1]))?;
-        for jacobian in jacobians.chunks_exact((6 * n).max(1)) {
-            let transposed: Vec<Magnitude> = (0..6 * n).map(|k| jacobian[k % 6 * n + k / 6]).collect();
-            let [terms, values] =
-                [|x: &Magnitude| x.magnitude, |x: &Magnitude| x.value].map(|f| transposed.iter().map(f).collect::<Vec<_>>());
-            let x = self.mass.solution(&terms, &product(&self.mass.inverse, &values, n));
-            let one_way: Vec<f64> = (0..36).map(|k| (0..n).map(|i| terms[6 * i + k / 6] * x[6 * i + k % 6]).sum()).collect();
+        for (k, jacobian) in jacobians.chunks_exact((6 * n).max(1)).enumerate() {
+            let terms: Vec<f64> = jacobian.iter().map(|x| x.magnitude).collect();
+            let values: Vec<f64> = jacobian.iter().map(|x| x.value).collect();
+            let x = product(&self.mass.inverse, &transposed(&values, n), n, n);
+            // ‖J‖ |X|
+            let rounding = product(&terms, &absolute(&x), 6, n);
+            let (held, by_jacobian, rounding) = match inertia.map(|all| &all[36 * k..][..36]) {
+                None => (absolute(&x), rounding.clone(), rounding),
+                Some(inertia) => {
+                    let (y, inertia) = (absolute(&product(&x, inertia, n, 6)), absolute(inertia));
+                    let through = |m: &[f64]| product(&inertia, m, 6, 6);
+                    let (by_jacobian, twice) = (through(&product(&terms, &y, 6, n)), product(&through(&rounding), &inertia, 6, 6));
+                    (y, by_jacobian, twice)
+                }
+            };
+            let by_mass = product(&transposed(&held, 6), &product(&self.mass.terms, &held, n, n), 6, n);
             // Half of it is computed, and which half is nobody's business.
-            scale.extend((0..36).map(|k| one_way[k].max(one_way[k % 6 * 6 + k / 6])));
+            let both = |m: &[f64], k: usize| m[k] + m[k % 6 * 6 + k / 6];
+            scale.extend((0..36).map(|k| by_mass[k] + both(&by_jacobian, k) + both(&rounding, k) / 2.0));
         }
         Ok(scale)
-    }
-
-    /// Λ, the inverse of Λ⁻¹: |Λ| ‖Λ⁻¹‖ |Λ|.
-    fn inertia(&self, row: &Function<f64>) -> Result<Vec<f64>, FunctionError> {
-        let (inertia, scale) = (absolute(&self.value(row)?), self.mobility()?);
-        let one = |(x, s): (&[f64], &[f64])| product(&product(x, s, 6), x, 6);
-        Ok(inertia.chunks_exact(36).zip(scale.chunks_exact(36)).flat_map(one).collect())
     }
 }
 
@@ -140,10 +148,16 @@ fn absolute(x: &[f64]) -> Vec<f64> {
     x.iter().map(|x| x.abs()).collect()
 }
 
-/// A·B of an `[n][n]` and an `[n][any]` matrix.
-fn product(a: &[f64], b: &[f64], n: usize) -> Vec<f64> {
-    let width = b.len() / n.max(1);
-    (0..n * width).map(|k| (0..n).map(|i| a[k / width * n + i] * b[i * width + k % width]).sum()).collect()
+/// A·B of an `[rows][inner]` and an `[inner][any]` matrix.
+fn product(a: &[f64], b: &[f64], rows: usize, inner: usize) -> Vec<f64> {
+    let width = b.len() / inner.max(1);
+    (0..rows * width).map(|k| (0..inner).map(|i| a[k / width * inner + i] * b[i * width + k % width]).sum()).collect()
+}
+
+/// Of a matrix with rows of this width.
+fn transposed(a: &[f64], width: usize) -> Vec<f64> {
+    let rows = a.len() / width.max(1);
+    (0..a.len()).map(|k| a[k % rows * width + k / rows]).collect()
 }
 
 #[cfg(test)]

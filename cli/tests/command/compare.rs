@@ -33,6 +33,37 @@ fn the_text_lines_up_and_ends_with_two_sentences() {
 }
 
 #[test]
+fn every_function_is_compared_and_judged_by_a_reference() {
+    let ended = run(&[&["compare", "cart_pole", "--format", "json"], &SMALL[..]].concat());
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let json = ended.json();
+    let functions = json["functions"].as_array().unwrap();
+    assert_eq!(functions.len(), articulated_core::algorithm::functions::<f64>().len() - 1);
+    for f in functions {
+        assert!(f["errors"]["generated"].as_f64().is_some_and(|e| e <= 64.0), "{f}");
+    }
+    let notes = json["notes"].as_array().unwrap();
+    let left_out = "operational_space_inertia is left out: fewer than six degrees of freedom carry each tip";
+    assert!(notes.len() == 1 && notes[0] == left_out, "{notes:?}");
+    assert_eq!((json["frames"].clone(), json["frames_chosen"].clone()), (serde_json::json!(["pole_rod"]), false.into()));
+}
+
+#[test]
+fn groups_have_headings_and_frames_can_be_chosen() {
+    let words = ["compare", "cart_pole", "--functions", "configurations,twists_body", "--frames", "cart,pole_rod"];
+    let ended = run(&[&words[..], &SMALL[..]].concat());
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    for part in
+        ["\n  configurations\n    integrate ", "\n  kinematics\n    twists_body ", "functions of frames: cart, pole_rod (as chosen)"]
+    {
+        assert!(ended.out.contains(part), "{part}: {}", ended.out);
+    }
+    let bound = run(&["compare", "cart_pole", "--functions", "operational_space_inertia"]);
+    assert!(bound.status == 1 && bound.err.contains("fewer than six"), "{}", bound.err);
+    assert_eq!(run(&["compare", "cart_pole", "--functions", "twists_body", "--frames", "wheel"]).status, 1);
+}
+
+#[test]
 fn an_error_beyond_the_bound_is_status_4() {
     let ended = run(&[&["compare", "double_pendulum", "--functions", "inverse_dynamics", "--bound", "0"], &SMALL[..]].concat());
     assert_eq!(ended.status, 4);

@@ -80,6 +80,58 @@ fn without_a_compiler_there_are_generic_results() {
     assert_eq!(without(&[&words[..], &["--generic"]].concat()).err, "");
 }
 
+/// A state with every argument there is: [nq], [nv], and a wrench on each frame.
+fn whole_state(nq: usize, nv: usize, frames: usize) -> String {
+    let [q, v] = [nq, nv].map(|n| (0..n).map(|k| 0.1 + 0.07 * k as f64).collect::<Vec<_>>());
+    serde_json::json!([{"q": q, "v": v, "a": v, "tau": v, "step": v, "target": q, "uniform": q, "wrenches": vec![[0.5; 6]; frames]}])
+        .to_string()
+}
+
+#[test]
+fn every_function_has_a_result_by_name() {
+    let groups = "kinematics,dynamics,derivatives,momentum,regressors,operational_space_inertia_inverse,configurations";
+    let words = ["eval", "cart_pole", "--function", groups, "--states", "-", "--frames", "cart,pole_rod"];
+    let state = whole_state(2, 2, 2);
+    let ended = run_with(&[&words[..], &["--format", "json"]].concat(), state.as_bytes());
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let json = ended.json();
+    let all = json["functions"].as_array().unwrap();
+    assert_eq!(all.len(), articulated_core::algorithm::functions::<f64>().len() - 1);
+    let of = |name: &str| &all.iter().find(|f| f["function"] == name).unwrap()["states"][0];
+    let [cart, pole] = [0, 1].map(|k| joint_names("cart_pole")[k].clone());
+    for side in ["generic", "generated"] {
+        assert!(of("kinetic_energy")[side].is_number());
+        assert_eq!(of("center_of_mass")[side].as_array().unwrap().len(), 3);
+        assert_eq!(of("twists_world")[side]["pole_rod"].as_array().unwrap().len(), 6);
+        assert_eq!(of("jacobians_world")[side]["cart"][3][&cart], 1.0);
+        assert_eq!(of("jacobians_world")[side]["cart"][3][&pole], 0.0);
+        assert_eq!(of("mass_matrix")[side][&cart][&pole], of("mass_matrix")[side][&pole][&cart]);
+        assert_eq!(of("joint_wrenches")[side][&pole].as_array().unwrap().len(), 6);
+        assert_eq!(of("torque_regressor")[side][&cart][&pole].as_array().unwrap().len(), 10);
+        assert_eq!(of("inverse_dynamics_derivatives")[side][2][&cart][&pole], of("mass_matrix")[side][&cart][&pole]);
+        assert!((of("integrate")[side][&pole].as_f64().unwrap() - 0.34).abs() < 1e-15);
+    }
+    let text = run_with(&words, state.as_bytes());
+    assert_eq!(text.status, 0, "{}", text.err);
+    assert!(text.lines_with("largest difference") == all.len() && text.lines_with(&format!("[1] {cart}")) >= 1, "{}", text.out);
+}
+
+#[test]
+fn a_moment_on_the_rod_is_a_torque_less() {
+    let torque = |wrenches: serde_json::Value| {
+        let states = serde_json::json!([{"q": [0.4], "v": [0], "a": [0], "wrenches": wrenches}]).to_string();
+        let words = ["eval", "simple_pendulum", "--function", "inverse_dynamics_with_wrenches", "--states", "-", "--format", "json"];
+        let ended = run_with(&[&words[..], &["--generic"]].concat(), states.as_bytes());
+        assert_eq!(ended.status, 0, "{}", ended.err);
+        ended.json()["functions"][0]["states"][0]["generic"]["swing"].as_f64().unwrap()
+    };
+    let links = run(&["check", "simple_pendulum", "--format", "json"]).json()["links"].clone();
+    let rod = links[1]["link"].as_str().unwrap();
+    let free = torque(serde_json::json!({}));
+    let loaded = torque(serde_json::json!({rod: [0.25, 0.25, 0.25, 0, 0, 0]}));
+    assert!((free - loaded - 0.25).abs() < 1e-14, "{free} {loaded}");
+}
+
 #[test]
 fn a_floating_base_has_named_parts() {
     let mut q = vec![0.1; 19];

@@ -35,6 +35,23 @@ fn flags_arrive_in_the_request() {
 }
 
 #[test]
+fn functions_may_be_put_together_and_have_constants() {
+    let words = [
+        "generate",
+        "cart_pole",
+        "--functions",
+        "still = inverse_dynamics(v = 0, a = [0, 0]), both = gravity_torque + jacobians_body, regressors",
+    ];
+    let made = run(&[&words[..], &["--frames", "pole_rod"]].concat());
+    assert_eq!(made.status, 0, "{}", made.err);
+    for part in ["pub fn still(q: &[f64; NQ]) -> [f64; NV]", "pub fn both(", "pub struct Both", "pub fn kinetic_energy_regressor("] {
+        assert!(made.out.contains(part), "{part}");
+    }
+    let wrong = run(&["generate", "cart_pole", "--functions", "gravity_torque + placements"]);
+    assert!(wrong.status == 2 && wrong.err.contains("need a name"), "{}", wrong.err);
+}
+
+#[test]
 fn warnings_are_on_the_other_stream_and_errors_are_status_1() {
     let made = run(&["generate", "gripper_arm", "--standalone"]);
     assert!(made.err.lines().all(|l| l.contains("warning")) && !made.err.is_empty(), "{}", made.err);

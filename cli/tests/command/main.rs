@@ -4,6 +4,7 @@ mod check;
 mod compare;
 mod edits;
 mod eval;
+mod functions;
 mod generate;
 
 use std::io::Write;
@@ -76,12 +77,13 @@ impl File {
 
 #[test]
 fn help_tells_examples_and_statuses() {
-    for command in ["check", "generate", "eval", "compare"] {
+    for command in ["check", "generate", "eval", "compare", "functions"] {
         let help = run(&[command, "--help"]);
         assert_eq!(help.status, 0);
         assert!(help.out.contains(&format!("articulated {command} ")) && help.out.contains("Exit status"), "{}", help.out);
     }
-    assert!(run(&["--help"]).out.contains("humanoid"));
+    let help = run(&["--help"]).out;
+    assert!(["humanoid", "kinematics:", "twists_world_aligned"].iter().all(|part| help.contains(part)), "{help}");
 }
 
 #[test]

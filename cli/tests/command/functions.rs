@@ -1,0 +1,53 @@
+use std::path::Path;
+
+use super::{File, run};
+
+/// A joint that moves nothing, and a link that nothing moves.
+const IDLE: &str = r#"<robot name="idle"><link name="a"/><link name="b"/><link name="c"/>
+<joint name="turn" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint>
+<joint name="weld" type="fixed"><parent link="a"/><child link="c"/></joint></robot>"#;
+
+#[test]
+fn every_function_has_its_cost_or_the_reason_why_not() {
+    let file = File::new("idle.urdf", IDLE.as_bytes());
+    let words = ["functions", "double_pendulum", file.name()];
+    let json = run(&[&words[..], &["--format", "json"]].concat()).json();
+    let functions = json["functions"].as_array().unwrap();
+    assert_eq!(functions.len(), articulated_core::algorithm::functions::<f64>().len());
+    assert_eq!(json["robots"][1]["frames"], serde_json::json!(["b"]));
+    let of = |name: &str| functions.iter().find(|f| f["function"] == name).unwrap();
+    assert_eq!(of("jacobians_body")["gives"], "[frames][6][nv]");
+    assert!(of("forward_dynamics")["costs"][0]["cost"]["instructions"].as_u64().unwrap() > 10);
+    assert_eq!(of("forward_dynamics")["costs"][1]["undefined"], "no mass behind joint turn");
+    let few = "fewer than six degrees of freedom carry each tip";
+    assert!((0..2).all(|k| of("operational_space_inertia")["costs"][k]["undefined"] == few));
+    assert!(of("inverse_dynamics")["costs"][1]["cost"].is_object());
+    let text = run(&words);
+    assert_eq!(text.status, 0, "{}", text.err);
+    for part in ["(1) not defined: no mass behind joint turn", "(2) not defined: fewer than six", "– (2)"] {
+        assert!(text.out.contains(part), "{part}: {}", text.out);
+    }
+}
+
+#[test]
+fn a_file_may_float() {
+    let robot = articulated_models::robot("double_pendulum").unwrap();
+    let file = File::new("arm.urdf", robot.urdf.as_bytes());
+    let json = run(&["functions", file.name(), "panda_like", "--floating", "--format", "json"]).json();
+    assert_eq!((json["robots"][0]["base"].as_str(), json["robots"][1]["base"].as_str()), (Some("floating"), Some("fixed")));
+    assert_eq!(run(&["functions", "no_such_robot"]).status, 1);
+}
+
+/// `UPDATE_GOLDEN=1` writes it anew.
+#[test]
+fn the_document_of_all_functions_is_up_to_date() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/functions.md");
+    let made = run(&["functions", "--markdown"]);
+    assert_eq!(made.status, 0, "{}", made.err);
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        std::fs::write(&path, &made.out).unwrap();
+    }
+    let kept = std::fs::read_to_string(&path).unwrap_or_default();
+    let changed = made.out.lines().zip(kept.lines()).find(|(a, b)| a != b);
+    assert!(made.out == kept, "docs/functions.md: {changed:?}; run with UPDATE_GOLDEN=1");
+}
