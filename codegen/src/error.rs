@@ -94,6 +94,14 @@ pub enum Error {
         /// The name.
         name: String,
     },
+    /// A function of the centre of mass, on a robot of which nothing that moves has mass.
+    #[error("{file}: {function} is not defined: nothing that moves has mass")]
+    NoMass {
+        /// The file.
+        file: String,
+        /// The function.
+        function: String,
+    },
     /// A function that needs frames which can move in all directions, on a robot where some cannot.
     #[error("{file}: {function} is not defined: fewer than six degrees of freedom carry {}; choose others with `frames`", frames.join(", "))]
     BoundFrames {

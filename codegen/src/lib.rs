@@ -110,7 +110,10 @@ fn wanted(request: &Request, model: &Model<f64>, massless: &[String]) -> Result<
 /// Whether the robot has what the function needs.
 fn defined(request: &Request, model: &Model<f64>, massless: &[String], function: &Function<Sym>) -> Result<(), Error> {
     let (file, name) = (request.file.clone(), function.name.to_owned());
-    if function.needs != Needs::Nothing && !massless.is_empty() {
+    if function.needs == Needs::Mass && model.moving_mass() == 0.0 {
+        return Err(Error::NoMass { file, function: name });
+    }
+    if function.inverts_mass_matrix() && !massless.is_empty() {
         return Err(Error::Singular { file, function: name, joints: massless.to_vec() });
     }
     let bound = |f: &articulated_core::model::Frame<f64>| {

@@ -17,6 +17,7 @@ pub(crate) fn at_its_word(error: &Error, settings: &Settings, urdf: &LitStr) -> 
         Error::UnknownFunction { found: function, .. }
         | Error::Singular { function, .. }
         | Error::BoundFrames { function, .. }
+        | Error::NoMass { function, .. }
         | Error::Wanted { found: function, .. }
         | Error::SameName { name: function } => settings.functions.iter().flatten().rfind(|e| names(&e.text, function)).map(|e| e.span),
         Error::Parameter { found, .. } => settings.parameters.iter().rfind(|e| e.text.trim() == *found).map(|e| e.span),
@@ -69,6 +70,7 @@ pub(crate) fn leave_out(error: &Error, options: &mut Options) -> bool {
         Error::UnknownFunction { found: function, .. }
         | Error::Singular { function, .. }
         | Error::BoundFrames { function, .. }
+        | Error::NoMass { function, .. }
         | Error::Wanted { found: function, .. }
         | Error::SameName { name: function } => {
             if let Some(at) = options.functions.iter().rposition(|f| names(f, function)) {

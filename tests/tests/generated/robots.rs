@@ -70,6 +70,7 @@ fn has(model: &Model<f64>, frames: &[String], function: &Function<f64>, singular
     let freedoms = |f: &Frame<f64>| model.freedoms_of(f.body).len();
     let free = model.frames.iter().filter(|f| frames.contains(&f.name)).all(|f| freedoms(f) >= 6);
     match function.needs {
+        Needs::Mass => model.moving_mass() > 0.0,
         Needs::Nothing => model.nv < 30 || !LONG.contains(&function.name),
         Needs::MassMatrix => !singular && (model.nv < 30 || !LONG.contains(&function.name)),
         Needs::FreeFrames => !singular && free,

@@ -75,11 +75,12 @@ pub fn mass_matrix_in_common_axes<S: Scalar>(model: &Model<S>, ws: &mut Workspac
             // F = I_i S_k
             let (at, mut wrench, mut j) = (ws.columns[k].at, state.inertia.apply(&ws.columns[k].axis), i);
             while j != 0 {
-                for l in ws.columns_of(j) {
+                // Of two columns of one joint, once.
+                for l in ws.columns_of(j).filter(|&l| l <= k) {
                     // M_kl = M_lk = S_lᵀ F
                     let (other, inertia) = (ws.columns[l].at, wrench.power(&ws.columns[l].axis));
                     out[at * n + other] += inertia;
-                    if j != i {
+                    if l != k {
                         out[other * n + at] += inertia;
                     }
                 }

@@ -145,6 +145,8 @@ impl Argument {
 pub enum Needs {
     /// Nothing.
     Nothing,
+    /// Something that moves has mass.
+    Mass,
     /// The mass matrix can be inverted: every joint moves something that has mass.
     MassMatrix,
     /// That, and every frame is carried by at least six degrees of freedom.
@@ -221,7 +223,7 @@ impl core::error::Error for FunctionError {}
 impl<S: Scalar> Function<S> {
     /// Whether the function divides by the mass matrix, so that a joint that moves no mass makes it undefined.
     pub fn inverts_mass_matrix(&self) -> bool {
-        self.needs != Needs::Nothing
+        matches!(self.needs, Needs::MassMatrix | Needs::FreeFrames)
     }
 
     /// How many numbers it gives.

@@ -91,19 +91,19 @@ macro_rules! for_each_function {
                 "T = ½ Σ Vᵀ G V of the moving links", "outward sweep; Featherstone 2008, §2.12";
             potential_energy(q) -> [] "J, zero at the base frame's origin", Nothing, false,
                 "U = −Σ m gᵀc of the moving links", "outward sweep; Featherstone 2008, §2.12";
-            center_of_mass(q) -> [Of(3)] "m, base axes", Nothing, false,
+            center_of_mass(q) -> [Of(3)] "m, base axes", Mass, false,
                 "centre of mass of the moving links", "outward sweep";
-            center_of_mass_velocity(q, v) -> [Of(3)] "m/s, base axes", Nothing, false,
+            center_of_mass_velocity(q, v) -> [Of(3)] "m/s, base axes", Mass, false,
                 "velocity of the centre of mass of the moving links", "outward sweep";
-            center_of_mass_acceleration(q, v, a) -> [Of(3)] "m/s², base axes", Nothing, false,
+            center_of_mass_acceleration(q, v, a) -> [Of(3)] "m/s², base axes", Mass, false,
                 "acceleration of the centre of mass of the moving links, gravity not added", "outward sweep";
-            center_of_mass_jacobian(q) -> [Of(3), Nv] "m|1, base axes", Nothing, false,
+            center_of_mass_jacobian(q) -> [Of(3), Nv] "m|1, base axes", Mass, false,
                 "J with center_of_mass_velocity = J v", "composite masses; Orin, Goswami & Lee, Auton. Robots 35, 2013";
-            centroidal_momentum(q, v) -> [Of(6)] "[k; l], N·m·s and N·s, base axes", Nothing, false,
+            centroidal_momentum(q, v) -> [Of(6)] "[k; l], N·m·s and N·s, base axes", Mass, false,
                 "momentum of the moving links about their centre of mass", "Orin, Goswami & Lee, Auton. Robots 35, 2013";
-            centroidal_momentum_matrix(q) -> [Of(6), Nv] "base axes", Nothing, false,
+            centroidal_momentum_matrix(q) -> [Of(6), Nv] "base axes", Mass, false,
                 "A with centroidal_momentum = A v", "composite inertias; Orin, Goswami & Lee, Auton. Robots 35, 2013";
-            centroidal_momentum_rate(q, v, a) -> [Of(6)] "[k̇; l̇], N·m and N, base axes", Nothing, false,
+            centroidal_momentum_rate(q, v, a) -> [Of(6)] "[k̇; l̇], N·m and N, base axes", Mass, false,
                 "d/dt of centroidal_momentum = A a + Ȧ v", "Newton and Euler; Orin, Goswami & Lee, Auton. Robots 35, 2013";
             inverse_dynamics_derivatives(q, v, a) -> [Of(3), Nv, Nv] "∂τ/∂q, ∂τ/∂v, ∂τ/∂a = M; rows τ", Nothing, true,
                 "first derivatives of inverse_dynamics; q in the tangent space",

@@ -110,6 +110,11 @@ impl<S: Scalar> Model<S> {
         self.outward().filter(|&i| self.bodies[i].link.is_some())
     }
 
+    /// Mass of the moving links, kg.
+    pub fn moving_mass(&self) -> S {
+        self.outward().fold(S::zero(), |sum, i| sum + self.bodies[i].inertia.mass)
+    }
+
     /// Indices in v of the degrees of freedom that move body `i`, each once.
     pub fn freedoms_of(&self, mut i: usize) -> Vec<usize> {
         let mut freedoms = Vec::new();
