@@ -31,7 +31,7 @@ pub(super) fn given(arguments: &[&[f64]]) -> Vec<Vec<Magnitude>> {
 /// up terms that no other has.
 pub(super) fn magnitudes(model: &Model<f64>, name: &str, arguments: &[Vec<Magnitude>]) -> Result<Vec<Magnitude>, FunctionError> {
     let row = function::<Magnitude>(name).ok_or(UNKNOWN)?;
-    let model: Model<Magnitude> = model.cast();
+    let model = constants(model);
     let arguments: Vec<&[Magnitude]> = arguments.iter().map(Vec::as_slice).collect();
     let mut least: Option<Vec<Magnitude>> = None;
     for way in row.ways.iter().filter(|w| (w.applies)(&model)) {
@@ -41,4 +41,28 @@ pub(super) fn magnitudes(model: &Model<f64>, name: &str, arguments: &[Vec<Magnit
         least = Some(least.map_or_else(|| out.clone(), |least| least.iter().zip(&out).map(smaller).collect()));
     }
     least.ok_or(UNKNOWN)
+}
+
+/// The model's constants. Each was computed from numbers of the file, so that what is small may be the rest of larger terms: its
+/// error is that of its neighbours. Nothing is exactly nothing, but for a rotation that is about none of the axes: there it may be a rest too.
+fn constants(model: &Model<f64>) -> Model<Magnitude> {
+    let mut cast: Model<Magnitude> = model.cast();
+    for body in &mut cast.bodies {
+        neighbours(body.inertia.first.as_mut_slice(), false);
+        neighbours(body.inertia.second.as_mut_slice(), false);
+    }
+    let frames = cast.frames.iter_mut().map(|f| &mut f.placement);
+    for placement in cast.bodies.iter_mut().map(|b| &mut b.placement).chain(frames) {
+        let about_an_axis = placement.rotation.iter().any(|x| x.value.abs() == 1.0);
+        neighbours(placement.rotation.as_mut_slice(), !about_an_axis);
+        neighbours(placement.position.as_mut_slice(), false);
+    }
+    cast
+}
+
+fn neighbours(numbers: &mut [Magnitude], all: bool) {
+    let largest = numbers.iter().map(|x| x.magnitude).fold(0.0, f64::max);
+    for x in numbers.iter_mut().filter(|x| all || x.value != 0.0 && x.value.abs() != 1.0) {
+        x.magnitude = largest;
+    }
 }
