@@ -55,6 +55,17 @@ impl From<articulated_codegen::Error> for Failure {
     }
 }
 
+/// Why a robot does not have a function, in a few words; the error itself if it is another.
+pub(crate) fn undefined(error: articulated_codegen::Error) -> Result<String, articulated_codegen::Error> {
+    use articulated_codegen::Error::{BoundFrames, NoMass, Singular};
+    match error {
+        Singular { joints, .. } => Ok(format!("no mass behind joint {}", joints.join(", joint "))),
+        NoMass { .. } => Ok("nothing that moves has mass".into()),
+        BoundFrames { frames, .. } => Ok(format!("fewer than six degrees of freedom carry {}", frames.join(", "))),
+        other => Err(other),
+    }
+}
+
 fn lines(text: &str) -> Vec<String> {
     text.lines().map(str::to_owned).collect()
 }

@@ -6,6 +6,9 @@ use articulated_core::algorithm::{Function, Needs};
 use articulated_core::description::Description;
 use articulated_core::model::Model;
 
+/// Why a function is not defined on any tip.
+pub(crate) const FEW: &str = "fewer than six degrees of freedom carry each tip";
+
 /// Names of the links at the tips.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Tips {

@@ -6,7 +6,7 @@
 use articulated_codegen::Options;
 use articulated_core::Scalar;
 use articulated_core::algorithm::textbook::Textbook;
-use articulated_core::algorithm::{Function, FunctionId};
+use articulated_core::algorithm::{Argument, Function, FunctionId};
 use articulated_core::description::Description;
 use articulated_core::model::Model;
 use serde::Serialize;
@@ -14,6 +14,7 @@ use serde::Serialize;
 use super::contender::Contender;
 use crate::magnitude::{ROUNDOFF, scales};
 use crate::precise::Big;
+use crate::states::quaternions;
 
 /// The largest error of each, in units of 2⁻⁵³ of the sum of the magnitudes of the terms.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -90,7 +91,7 @@ fn forward(textbook: &Textbook<Big>, model: &Model<f64>, name: &str, state: &[&[
     // Where the model knows that a result is zero, the reference may be left with the roundings of its 96 digits.
     let floor = scale.iter().copied().fold(0.0, f64::max) * 1e-60;
     scale.iter_mut().for_each(|s| *s = s.max(floor));
-    let exact = exact(textbook, name, state)?;
+    let exact = exact(textbook, model, name, state)?;
     Some(found.each_ref().map(|found| largest(&exact, found, &scale)))
 }
 
@@ -105,16 +106,30 @@ fn backward(textbook: &Textbook<Big>, model: &Model<f64>, inverse: &str, state: 
         state[2] = a;
         let scale = scales(model, inverse, &state).ok()?;
         let scale: Vec<f64> = scale.iter().zip(tau).map(|(s, t)| s + t.abs()).collect();
-        Some(largest(&exact(textbook, inverse, &state)?, tau, &scale))
+        Some(largest(&exact(textbook, model, inverse, &state)?, tau, &scale))
     };
     let [a, b] = found.each_ref().map(one);
     Some([a?, b?])
 }
 
-fn exact(textbook: &Textbook<Big>, name: &str, state: &[&[f64]]) -> Option<Vec<Big>> {
-    let arguments: Vec<Vec<Big>> = state.iter().map(|x| x.iter().map(|x| Big::from_f64(*x)).collect()).collect();
+/// What the textbook gives. A double's quaternion has a norm of one to 16 digits only, and what the rest does is nobody's error: it is of norm one here.
+fn exact(textbook: &Textbook<Big>, model: &Model<f64>, function: &str, state: &[&[f64]]) -> Option<Vec<Big>> {
+    let takes = articulated_core::algorithm::function::<f64>(function)?.takes;
+    let precise = |(argument, x): (&Argument, &&[f64])| {
+        let mut x: Vec<Big> = x.iter().map(|x| Big::from_f64(*x)).collect();
+        if matches!(argument, Argument::Q | Argument::Target) {
+            quaternions(model).for_each(|(_, at)| normalise(&mut x[at..at + 4]));
+        }
+        x
+    };
+    let arguments: Vec<Vec<Big>> = takes.iter().zip(state).map(precise).collect();
     let arguments: Vec<&[Big]> = arguments.iter().map(Vec::as_slice).collect();
-    textbook.call(name, &arguments)?.ok()
+    textbook.call(function, &arguments)?.ok()
+}
+
+fn normalise(quaternion: &mut [Big]) {
+    let norm = quaternion.iter().fold(Big::from_f64(0.0), |sum, x| sum + *x * *x).sqrt();
+    quaternion.iter_mut().for_each(|x| *x = *x / norm);
 }
 
 fn largest(exact: &[Big], found: &[f64], scale: &[f64]) -> f64 {

@@ -51,6 +51,7 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
         rustc,
         states: arguments.states as usize,
         seed: arguments.seed,
+        named: !arguments.functions.is_empty(),
     };
     let prepared = prepare_all(&plan, arguments, &mut report)?;
     measure_all(&prepared, &peers, arguments.repetitions as usize, &mut report);

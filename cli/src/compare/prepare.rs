@@ -10,10 +10,10 @@ use super::accuracy::{self, Errors, Reference};
 use super::contender::Contender;
 use crate::compiled::{Compiled, Rustc};
 use crate::console::Progress;
-use crate::failure::Failure;
+use crate::failure::{Failure, undefined};
 use crate::robot::Robot;
 use crate::states::{self, State};
-use crate::tips::Tips;
+use crate::tips::{FEW, Tips};
 
 /// What functions are prepared from.
 pub(super) struct Plan {
@@ -24,7 +24,12 @@ pub(super) struct Plan {
     pub(super) rustc: Rustc,
     pub(super) states: usize,
     pub(super) seed: u64,
+    /// Whether the user named the functions: otherwise those that rustc needs minutes for are left out.
+    pub(super) named: bool,
 }
+
+/// With more instructions than this a function is compared only if it is named: rustc takes longer than all others together.
+const MOST: u64 = 20_000;
 
 /// A function that is ready to run.
 pub(super) struct Prepared {
@@ -53,6 +58,11 @@ impl Plan {
         let start = Instant::now();
         let generated = robot.generate(&[function.name.to_owned()])?;
         let generation = start.elapsed();
+        let instructions = generated.ledger.functions[0].emitted().instructions();
+        if instructions > MOST && !self.named {
+            let why = format!("{instructions} instructions take rustc minutes; name it in --functions to have it compared");
+            return Err(Unready::Undefined(why));
+        }
         progress.doing(format!("{}: rustc", function.name));
         let compiled = Compiled::build(&self.rustc, &generated).map_err(|e| Failure::tool(&e))?;
         let (model, source_bytes, entry) = (generated.model, generated.source.len(), generated.ledger.functions.into_iter().next());
@@ -68,8 +78,7 @@ impl Plan {
     /// The robot with the frames that the function is compared on.
     fn robot_for(&self, function: &Function<f64>) -> Result<Robot, Unready> {
         let Some(tips) = &self.tips else { return Ok(self.robot.clone()) };
-        let few = || Unready::Undefined("fewer than six degrees of freedom carry each tip".into());
-        let frames = tips.of_function(function).ok_or_else(few)?;
+        let frames = tips.of_function(function).ok_or_else(|| Unready::Undefined(FEW.into()))?;
         Ok(self.robot.clone().on(frames))
     }
 }
@@ -81,10 +90,9 @@ pub(super) fn arguments<'a>(states: &'a [State], function: &Function<f64>) -> Ve
 
 impl From<articulated_codegen::Error> for Unready {
     fn from(error: articulated_codegen::Error) -> Self {
-        use articulated_codegen::Error::{BoundFrames, Singular};
-        match error {
-            Singular { .. } | BoundFrames { .. } => Self::Undefined(error.to_string()),
-            other => Self::Failed(other.into()),
+        match undefined(error) {
+            Ok(why) => Self::Undefined(why),
+            Err(other) => Self::Failed(other.into()),
         }
     }
 }

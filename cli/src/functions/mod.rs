@@ -8,9 +8,9 @@ use articulated_core::algorithm::{Function, function};
 
 use crate::arguments::{Format, FunctionsArguments, RobotArguments};
 use crate::console::{self, Progress};
-use crate::failure::Failure;
+use crate::failure::{Failure, undefined};
 use crate::robot::Robot;
-use crate::tips::Tips;
+use crate::tips::{FEW, Tips};
 use crate::{groups, parallel};
 use report::{Cell, Cost, FunctionRow, Report, RobotRow};
 
@@ -75,13 +75,9 @@ fn subject(name: &str, floating: bool) -> Result<(Subject, RobotRow), Failure> {
 
 /// What a function costs on a robot, or why it is not defined there.
 fn cell(f: &Function<f64>, subject: &Subject) -> Result<Cell, Failure> {
-    use articulated_codegen::Error::{BoundFrames, Singular};
-    const FEW: &str = "fewer than six degrees of freedom carry each tip";
     let Some(frames) = subject.tips.of_function(f) else { return Ok(Cell::Undefined(FEW.into())) };
     match subject.robot.clone().on(frames).generate(&[f.name.to_owned()]) {
         Ok(generated) => Ok(Cell::Cost(Cost::of(&generated.ledger.functions[0]))),
-        Err(Singular { joints, .. }) => Ok(Cell::Undefined(format!("no mass behind joint {}", joints.join(", joint ")))),
-        Err(BoundFrames { .. }) => Ok(Cell::Undefined(FEW.into())),
-        Err(other) => Err(other.into()),
+        Err(error) => Ok(Cell::Undefined(undefined(error)?)),
     }
 }
