@@ -179,7 +179,7 @@ mod tests {
         assert!(scale >= least * 0.999 && scale < 4.0 * least, "{scale} {least}");
     }
 
-    /// Every solving function has a scale, at least its own size, and none so large that a wrong digit in the eighth place would pass.
+    /// Every solving function has a scale, at least its own size, and none so large that a wrong digit in the seventh place would pass.
     #[test]
     fn no_scale_lets_everything_pass() {
         for name in ["panda_like", "quadruped"] {
@@ -194,7 +194,7 @@ mod tests {
                     let largest = found.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
                     for (x, s) in found.iter().zip(&scale) {
                         assert!(x.abs() <= s * (1.0 + 1e-12), "{name} {}: {x} {s}", f.name);
-                        assert!(64.0 * ROUNDOFF * s < 1e-8 * largest, "{name} {}: {x} {s} {largest}", f.name);
+                        assert!(64.0 * ROUNDOFF * s < 1e-7 * largest, "{name} {}: {x} {s} {largest}", f.name);
                     }
                 }
             }
