@@ -169,7 +169,12 @@ impl Body<'_> {
     fn expression(&self, op: Op, node: &Node) -> String {
         let mut text = op.row().rust.to_owned();
         for (hole, operand) in ["{a}", "{b}", "{c}"].iter().zip(node.operands()) {
-            text = text.replace(hole, &self.operand(operand));
+            let mut operand = self.operand(operand);
+            if op == Op::Select {
+                // In a block of its own a negative number stands without brackets.
+                operand = operand.trim_matches(['(', ')']).to_owned();
+            }
+            text = text.replace(hole, &operand);
         }
         text
     }

@@ -60,11 +60,12 @@ fn column<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, k: usize
     }
 }
 
-/// As [`mass_matrix`], in common axes: turns each inertia once, and carries wrenches without turning them.
+/// As [`mass_matrix`], in common axes, to go with other matrices that are: turns each inertia once, and carries wrenches without turning them. That is faster
+/// without symbols, but a thin body's moment about its axis is then as good as its largest moment, no better.
 ///
 /// # Panics
 /// As [`mass_matrix`].
-pub fn mass_matrix_in_common_axes<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
+pub(super) fn mass_matrix_in_common_axes<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
     let n = model.nv;
     positions(model, ws, Axes::Tree, q);
     inertias(model, ws);

@@ -23,7 +23,7 @@ mod wrenches;
 
 pub use aba::{articulated_body, articulated_body_with_wrenches, solve_by_articulated_body};
 pub use coriolis::coriolis_matrix;
-pub use crba::{mass_matrix, mass_matrix_in_common_axes};
+pub use crba::mass_matrix;
 pub use derivatives::{
     forward_dynamics_derivatives, forward_dynamics_derivatives_with_wrenches, inverse_dynamics_derivatives,
     inverse_dynamics_derivatives_with_wrenches, static_torque_derivative,

@@ -70,8 +70,7 @@ macro_rules! for_each_function {
             static_torque(q, wrenches) -> [Nv] "N·m|N", Nothing, true,
                 "g(q) − Σ Jᵀw: what holds the robot still under external wrenches w on the frames", "RNEA; Featherstone 2008, Table 5.1";
             mass_matrix(q) -> [Nv, Nv] "kg·m²|kg·m|kg, symmetric", Nothing, true,
-                "M(q)", "CRBA; Featherstone 2008, Table 6.2",
-                by ["CRBA in common axes", always, mass_matrix_in_common_axes; "CRBA in body axes", always, mass_matrix];
+                "M(q)", "CRBA; Featherstone 2008, Table 6.2";
             coriolis_matrix(q, v) -> [Nv, Nv] "N·m·s|N·s", Nothing, true,
                 "C(q, v) with C v + g = h, and Ṁ − 2C skew: that of the Christoffel symbols",
                 "Echeandia & Wensing, J. Comput. Nonlinear Dyn. 16, 2021";
