@@ -20,7 +20,7 @@ pub(super) struct Contender<'a> {
 enum Way<'a> {
     Generated(Kernel),
     Peer(PeerKernel),
-    Generic { function: &'static Function<f64>, model: &'a Model<f64>, workspace: RefCell<Workspace<f64>> },
+    Generic { function: &'static Function<f64>, model: &'a Model<f64>, workspace: Box<RefCell<Workspace<f64>>> },
 }
 
 impl<'a> Contender<'a> {
@@ -37,7 +37,7 @@ impl<'a> Contender<'a> {
 
     /// The same algorithm at run time.
     pub(super) fn generic(model: &'a Model<f64>, function: &'static Function<f64>) -> Self {
-        let workspace = RefCell::new(Workspace::new(model));
+        let workspace = Box::new(RefCell::new(Workspace::new(model)));
         Self { way: Way::Generic { function, model, workspace }, out: function.len(model.shape()) }
     }
 

@@ -11,6 +11,7 @@ use super::contender::Contender;
 use crate::magnitude::scales;
 use crate::native::{Native, NativePeer};
 use crate::robot::Robot;
+use crate::states::quaternions;
 
 /// The least scale of a difference, as a part of the largest in the same result.
 const FLOOR: f64 = 1e-3;
@@ -84,14 +85,28 @@ impl Peer {
             let scale = scales(model, function.name, x).ok()?;
             // A zero of ours that is a rounding of theirs is no difference.
             let floor = scale.iter().copied().fold(0.0, f64::max) * FLOOR;
-            for (k, b) in b.iter().enumerate() {
-                let at = self.place(k, function.gives, model.shape());
-                let difference = (a[at] - b).abs();
-                let relative = if difference == 0.0 { 0.0 } else { difference / scale[at].max(floor) };
+            for (k, (a, b)) in a.iter().zip(self.in_our_order(&b, &a, function, model)).enumerate() {
+                let difference = (a - b).abs();
+                let relative = if difference == 0.0 { 0.0 } else { difference / scale[k].max(floor) };
                 worst = if worst.is_nan() || worst >= relative { worst } else { relative };
             }
         }
         Some(worst)
+    }
+
+    /// The peer's result as ours is laid out. Of a configuration's quaternions, which are rotations with either sign, with the signs of ours.
+    fn in_our_order(&self, theirs: &[f64], ours: &[f64], function: &Function<f64>, model: &Model<f64>) -> Vec<f64> {
+        let mut result = vec![f64::NAN; ours.len()];
+        for (k, x) in theirs.iter().enumerate() {
+            result[self.place(k, function.gives, model.shape())] = *x;
+        }
+        if function.gives == [Dim::Nq] {
+            for (_, at) in quaternions(model) {
+                let along: f64 = (at..at + 4).map(|k| ours[k] * result[k]).sum();
+                result[at..at + 4].iter_mut().for_each(|x| *x = if along < 0.0 { -*x } else { *x });
+            }
+        }
+        result
     }
 
     /// Our index of number `k` of the peer's array of these dimensions.
@@ -112,7 +127,8 @@ impl Peer {
 
 /// Whether a peer gives a result of these dimensions only when asked: all but rows of numbers and square matrices, which it writes out each time.
 fn is_kept(gives: &[Dim]) -> bool {
-    !(gives.len() < 2 && !gives.contains(&Dim::Frames) && !gives.contains(&Dim::Links) || gives == [Dim::Nv, Dim::Nv])
+    let row = gives.len() < 2 && !gives.contains(&Dim::Frames) && !gives.contains(&Dim::Links);
+    !row && gives != [Dim::Nv, Dim::Nv]
 }
 
 /// Our indices of the peer's coordinates and rates.

@@ -108,8 +108,11 @@ impl State<'_> {
     /// ```
     fn operational_space(&self, inertia: Option<&[f64]>) -> Result<Vec<f64>, FunctionError> {
         let (n, mut scale) = (self.mass.n, Vec::new());
+        if n == 0 {
+            return Ok(vec![0.0; 36 * self.model.frames.len()]);
+        }
         let jacobians = magnitudes(self.model, "jacobians_world_aligned", &given(&self.arguments[..1]))?;
-        for (k, jacobian) in jacobians.chunks_exact((6 * n).max(1)).enumerate() {
+        for (k, jacobian) in jacobians.chunks_exact(6 * n).enumerate() {
             let terms: Vec<f64> = jacobian.iter().map(|x| x.magnitude).collect();
             let values: Vec<f64> = jacobian.iter().map(|x| x.value).collect();
             let x = product(&self.mass.inverse, &transposed(&values, n), n, n);
