@@ -69,7 +69,7 @@ pub fn arguments<'a>(name: &str, state: &'a State) -> Vec<&'a [f64]> {
 
 /// Largest |found − expected| in units of u times the scale. NaN counts as infinite, and so does any difference where the scale is 0.
 pub fn distance(found: &[f64], expected: &[f64], scale: &[f64]) -> f64 {
-    assert!(found.len() == expected.len() && found.len() == scale.len(), "as many numbers");
+    assert_eq!([found.len(), scale.len()], [expected.len(); 2], "as many numbers");
     let one = |((f, e), s): ((&f64, &f64), &f64)| {
         let error = (f - e).abs();
         if error == 0.0 { 0.0 } else { error / (U * s) }
@@ -79,7 +79,7 @@ pub fn distance(found: &[f64], expected: &[f64], scale: &[f64]) -> f64 {
 
 /// As [`distance`], from a reference of many digits.
 pub fn distance_from(found: &[f64], expected: &[Big], scale: &[f64]) -> f64 {
-    assert!(found.len() == expected.len() && found.len() == scale.len(), "as many numbers");
+    assert_eq!([found.len(), scale.len()], [expected.len(); 2], "as many numbers");
     let one = |((e, &f), &s): ((&Big, &f64), &f64)| {
         let error = (Big::from_f64(f) - *e).to_f64().abs();
         // The reference has rounding errors of its own, far below.

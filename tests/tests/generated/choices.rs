@@ -1,0 +1,201 @@
+//! What a request may choose besides names of functions: several in one, arguments that are constants, model parameters that stay inputs, ways by count.
+
+use articulated::{Dynamics, Model};
+use articulated_codegen::{Error, Request, generate};
+use articulated_core::algorithm::{FunctionId, Workspace};
+use articulated_core::description::{Base, Description, Payload};
+use articulated_tests::case::read;
+
+articulated::robot! {
+    /// Functions by themselves, with constants, and together.
+    mod arm {
+        urdf = "robots/arm.urdf",
+        frames = [tool],
+        functions = [
+            inverse_dynamics,
+            mass_matrix,
+            jacobians_world_aligned,
+            static_torque,
+            bias = inverse_dynamics(a = 0),
+            hold = inverse_dynamics(v = 0, a = [0, 0, 0]),
+            push = static_torque(wrenches = [0, 0, 0, -1.5, 0, 2e1]),
+            step = inverse_dynamics + mass_matrix + jacobians_world_aligned,
+        ],
+    }
+}
+
+articulated::robot! {
+    /// Parameters that are known only when it runs.
+    mod tuned {
+        urdf = "robots/arm.urdf",
+        functions = [inverse_dynamics, forward_dynamics, mass_matrix, potential_energy, placements],
+        parameters = [payload(tool), inertia("fore"), origin(wrist)],
+    }
+}
+
+const URDF: &str = include_str!("../../robots/arm.urdf");
+const Q: [f64; 3] = [0.4, -0.9, 1.3];
+const V: [f64; 3] = [1.1, 0.3, -0.8];
+const A: [f64; 3] = [-0.7, 2.0, 0.6];
+
+/// Equal but for some last digits: the same terms in another order.
+fn same(found: &[f64], expected: &[f64]) {
+    assert_eq!(found.len(), expected.len());
+    let size = expected.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
+    assert!(found.iter().zip(expected).all(|(f, e)| (f - e).abs() <= 1e-14 * size), "{found:?} instead of {expected:?}");
+}
+
+#[test]
+fn several_functions_in_one_give_what_each_gives() {
+    let arm::Step { inverse_dynamics, mass_matrix, jacobians_world_aligned } = arm::step(&Q, &V, &A);
+    same(&inverse_dynamics, &arm::inverse_dynamics(&Q, &V, &A));
+    same(mass_matrix.as_flattened(), arm::mass_matrix(&Q).as_flattened());
+    same(jacobians_world_aligned[0].as_flattened(), arm::jacobians_world_aligned(&Q)[0].as_flattened());
+}
+
+#[test]
+fn constants_are_what_the_argument_would_have_been() {
+    same(&arm::bias(&Q, &V), &arm::inverse_dynamics(&Q, &V, &[0.0; 3]));
+    same(&arm::hold(&Q), &arm::inverse_dynamics(&Q, &[0.0; 3], &[0.0; 3]));
+    same(&arm::push(&Q), &arm::static_torque(&Q, &[[0.0, 0.0, 0.0, -1.5, 0.0, 20.0]]));
+}
+
+/// Instructions and sines of the functions of a request.
+fn costs(robot: &str, functions: &[&str]) -> Vec<(u64, u64)> {
+    let robot = articulated_models::robot(robot).unwrap();
+    let mut request = Request::new(robot.name, robot.urdf);
+    request.options.base = robot.base;
+    request.options.functions = functions.iter().map(|f| (*f).to_owned()).collect();
+    let ledger = generate(&request).unwrap().ledger;
+    ledger.functions.iter().map(|e| (e.emitted().instructions(), e.emitted().trigonometric())).collect()
+}
+
+#[test]
+fn several_functions_in_one_share_their_work() {
+    let of = |functions: &[&str]| costs("panda_like", functions);
+    let dynamics = of(&["inverse_dynamics", "mass_matrix", "both = inverse_dynamics + mass_matrix"]);
+    assert_eq!([dynamics[0].1, dynamics[1].1, dynamics[2].1], [12, 12, 12], "one set of sines");
+    assert!(dynamics[2].0 <= dynamics[0].0 + dynamics[1].0, "{dynamics:?}");
+    let kinematics = of(&["placements", "jacobians_body", "both = placements + jacobians_body"]);
+    assert!(kinematics[2].0 + kinematics[0].0 / 2 < kinematics[0].0 + kinematics[1].0, "{kinematics:?}");
+}
+
+#[test]
+fn of_what_is_constant_no_dead_term_remains() {
+    let costs = costs("humanoid", &["bias_forces", "h = inverse_dynamics(a = 0)", "gravity_torque", "g = inverse_dynamics(v = 0, a = 0)"]);
+    assert_eq!((costs[0], costs[2]), (costs[1], costs[3]));
+}
+
+#[test]
+fn forward_dynamics_goes_the_way_that_costs_least() {
+    let ways = |robot: &str| {
+        let robot = articulated_models::robot(robot).unwrap();
+        let mut request = Request::new(robot.name, robot.urdf);
+        (request.options.base, request.options.functions) = (robot.base, vec!["forward_dynamics".into()]);
+        generate(&request).unwrap().ledger.functions[0].ways.clone()
+    };
+    // A short arm, a tree, and a robot with a joint that follows: there one way is all there is.
+    assert_eq!([ways("panda_like"), ways("humanoid"), ways("gripper_arm")], [["LTDL"], ["ABA"], ["LTDL"]]);
+}
+
+/// Numbers that differ from the URDF's: payload, inertia of the forearm, origin of the wrist.
+fn changed() -> ([f64; tuned::PARAMETERS.len()], Description) {
+    let mut description = read(URDF);
+    let payload = Payload {
+        link: "tool".into(),
+        name: None,
+        mass: 0.8,
+        center_of_mass: [0.02, -0.01, 0.09],
+        inertia: [0.003, 0.0001, -0.0002, 0.002, 0.0003, 0.0015],
+    };
+    description.attach(&payload).unwrap();
+    let fore = description.link("fore").unwrap();
+    let inertial = description.links[fore].inertial.as_mut().unwrap();
+    (inertial.mass, inertial.origin.xyz) = (1.9, [0.01, 0.0, 0.2]);
+    let wrist = description.joint("wrist").unwrap();
+    description.joints[wrist].origin.xyz = [0.03, -0.02, 0.4];
+    let mut parameters = tuned::PARAMETERS;
+    let added = about_origin(payload.mass, payload.center_of_mass, payload.inertia);
+    parameters[tuned::parameter::TOOL_PAYLOAD..][..10].copy_from_slice(&added);
+    let fore = about_origin(1.9, [0.01, 0.0, 0.2], [0.0159, 0.0, 0.0, 0.0159, 0.0, 0.0012]);
+    parameters[tuned::parameter::FORE_INERTIA..][..10].copy_from_slice(&fore);
+    parameters[tuned::parameter::WRIST_ORIGIN..][..3].copy_from_slice(&[0.03, -0.02, 0.4]);
+    (parameters, description)
+}
+
+/// m, m c and I_c + m (cᵀc·1 − c cᵀ).
+fn about_origin(m: f64, c: [f64; 3], i: [f64; 6]) -> [f64; 10] {
+    let [x, y, z] = c;
+    let steiner = [y * y + z * z, -x * y, -x * z, x * x + z * z, -y * z, x * x + y * y];
+    let about: Vec<f64> = i.iter().zip(steiner).map(|(i, s)| i + m * s).collect();
+    [vec![m, m * x, m * y, m * z], about].concat().try_into().unwrap()
+}
+
+fn holds(parameters: &[f64; tuned::PARAMETERS.len()], description: &Description) {
+    let model = Model::new(description, Base::Fixed).unwrap();
+    let links = model.frames.iter().take(tuned::FRAMES).map(|f| f.name.clone()).collect::<Vec<_>>();
+    let model = model.with_frames(&links).unwrap();
+    let generic = |id: FunctionId, arguments: &[&[f64]]| {
+        let mut out = vec![0.0; id.row::<f64>().len(model.shape())];
+        id.row().call(&model, &mut Workspace::new(&model), arguments, &mut out).unwrap();
+        out
+    };
+    same(&tuned::inverse_dynamics(&Q, &V, &A, parameters), &generic(FunctionId::inverse_dynamics, &[&Q, &V, &A]));
+    same(tuned::mass_matrix(&Q, parameters).as_flattened(), &generic(FunctionId::mass_matrix, &[&Q]));
+    same(&[tuned::potential_energy(&Q, parameters)], &generic(FunctionId::potential_energy, &[&Q]));
+    same(tuned::placements(&Q, parameters).as_flattened(), &generic(FunctionId::placements, &[&Q]));
+    let torques = [1.0, -2.0, 0.5];
+    let accelerations = generic(FunctionId::forward_dynamics, &[&Q, &V, &torques]);
+    let found = tuned::forward_dynamics(&Q, &V, &torques, parameters);
+    let size = accelerations.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
+    assert!(found.iter().zip(&accelerations).all(|(f, e)| (f - e).abs() <= 1e-12 * size), "{found:?} {accelerations:?}");
+}
+
+#[test]
+fn parameters_that_are_the_urdfs_give_the_robot_of_the_urdf() {
+    holds(&tuned::PARAMETERS, &read(URDF));
+}
+
+#[test]
+fn other_parameters_give_another_robot() {
+    let (parameters, description) = changed();
+    holds(&parameters, &description);
+}
+
+#[test]
+fn a_robot_over_the_trait_has_its_parameters_with_it() {
+    let (parameters, _) = changed();
+    let mut out = [0.0; 3];
+    for robot in [tuned::Robot::default(), tuned::Robot { parameters }] {
+        robot.inverse_dynamics(&mut (), &Q, &V, &A, &mut out).unwrap();
+        assert_eq!(out, tuned::inverse_dynamics(&Q, &V, &A, &robot.parameters));
+    }
+}
+
+#[test]
+fn what_a_robot_cannot_have_is_said_when_it_is_built() {
+    let refusal = |urdf: &str, change: &dyn Fn(&mut Request)| {
+        let mut request = Request::new("arm.urdf", urdf);
+        change(&mut request);
+        generate(&request).map(|_| ()).unwrap_err()
+    };
+    let asks = |functions: &[&str]| {
+        let functions: Vec<String> = functions.iter().map(|f| (*f).to_owned()).collect();
+        move |r: &mut Request| r.options.functions.clone_from(&functions)
+    };
+    let error = refusal(URDF, &asks(&["operational_space_inertia"]));
+    assert!(matches!(&error, Error::BoundFrames { frames, .. } if frames.len() == 4), "{error}");
+    assert!(error.to_string().contains("link \"tool\" (3)"), "{error}");
+    let error = refusal("<robot name='stone'><link name='stone'/></robot>", &asks(&["center_of_mass"]));
+    assert!(matches!(error, Error::NoMass { .. }), "{error}");
+    let error = refusal(URDF, &asks(&["mass_matrix", "mass_matrix = gravity_torque"]));
+    assert!(matches!(error, Error::SameName { .. }), "{error}");
+    let error = refusal(URDF, &asks(&["x = bias_forces(v = [0, 0])"]));
+    assert!(error.to_string().contains("found 2 numbers, expected 3"), "{error}");
+    for (parameter, part) in
+        [("payload(tol)", "did you mean \"tool\"?"), ("mass(tool)", "expected payload(link)"), ("origin(elbo)", "\"elbow\"")]
+    {
+        let error = refusal(URDF, &|r| r.options.parameters = vec![parameter.into()]);
+        assert!(error.to_string().contains(part), "{error}");
+    }
+}
