@@ -21,7 +21,7 @@ use crate::states::quaternions;
 pub(super) struct Errors {
     /// `forward`: of the result; `backward`: of the torques that the result needs.
     pub(super) kind: &'static str,
-    /// On how many states.
+    /// On how many states; those in which the function is singular are not counted.
     pub(super) states: usize,
     pub(super) generated: f64,
     pub(super) generic: f64,
@@ -72,27 +72,41 @@ pub(super) fn errors(
     Big::scope(|| {
         let textbook = reference.textbook(model)?;
         let kind = if inverse.is_some() { "backward" } else { "forward" };
-        let mut worst = Errors { kind, states: states.len().min(JUDGED), generated: 0.0, generic: 0.0 };
+        let mut worst = Errors { kind, states: 0, generated: 0.0, generic: 0.0 };
         for state in states.iter().take(JUDGED) {
             let sides = [generated.call(state), generic.call(state)];
-            let [a, b] = Big::scope(|| match inverse {
-                Some(inverse) => backward(&textbook, model, inverse, state, &sides),
-                None => forward(&textbook, model, function.name, state, &sides),
+            let judged = Big::scope(|| {
+                let exact = exact(&textbook, model, function.name, state)?;
+                if singular(&exact) {
+                    return Some(None);
+                }
+                let errors = match inverse {
+                    Some(inverse) => backward(&textbook, model, inverse, state, &sides),
+                    None => forward(&exact, model, function.name, state, &sides),
+                };
+                errors.map(Some)
             })?;
-            worst = Errors { generated: worse(worst.generated, a), generic: worse(worst.generic, b), ..worst };
+            if let Some([a, b]) = judged {
+                let states = worst.states + 1;
+                worst = Errors { states, generated: worse(worst.generated, a), generic: worse(worst.generic, b), ..worst };
+            }
         }
         Some(worst)
     })
 }
 
+/// Whether the reference divided by nothing, or by what its 96 digits left of nothing: no answer is right there.
+fn singular(exact: &[Big]) -> bool {
+    exact.iter().map(|x| x.to_f64()).any(|x| x.is_nan() || x.abs() >= 1e40)
+}
+
 /// |found − exact| over the scale of the result, of each that was found.
-fn forward(textbook: &Textbook<Big>, model: &Model<f64>, name: &str, state: &[&[f64]], found: &[Vec<f64>; 2]) -> Option<[f64; 2]> {
+fn forward(exact: &[Big], model: &Model<f64>, name: &str, state: &[&[f64]], found: &[Vec<f64>; 2]) -> Option<[f64; 2]> {
     let mut scale = scales(model, name, state).ok()?;
     // Where the model knows that a result is zero, the reference may be left with the roundings of its 96 digits.
     let floor = scale.iter().copied().fold(0.0, f64::max) * 1e-60;
     scale.iter_mut().for_each(|s| *s = s.max(floor));
-    let exact = exact(textbook, model, name, state)?;
-    Some(found.each_ref().map(|found| largest(&exact, found, &scale)))
+    Some(found.each_ref().map(|found| largest(exact, found, &scale)))
 }
 
 /// η = maxᵢ |ID_exact(q, v, a) − τ|ᵢ / (scale of ID + |τ|)ᵢ, for the state (q, v, τ, …) and each acceleration that was found.
@@ -145,6 +159,13 @@ fn worse(a: f64, b: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_divided_by_nothing_is_singular() {
+        let [one, zero] = [1.0, 0.0].map(Big::from_f64);
+        assert!(singular(&[one, one / zero]) && singular(&[zero / zero]) && singular(&[one / Big::from_f64(1e-90)]));
+        assert!(!singular(&[one, zero, Big::from_f64(-1e20)]));
+    }
 
     #[test]
     fn an_acceleration_is_judged_by_the_torques_it_needs() {

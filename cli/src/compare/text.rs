@@ -199,6 +199,7 @@ fn errors(report: &Report) -> Table {
     ]);
     by_function(report, &mut table, |f| {
         Some(match f.errors {
+            Some(e) if e.states == 0 => ["–", "–", "–", "0", "singular in every state"].map(str::to_owned).to_vec(),
             Some(e) => vec![
                 format!("{:.2}", e.generated),
                 format!("{:.2}", e.generic),

@@ -63,6 +63,20 @@ fn groups_have_headings_and_frames_can_be_chosen() {
     assert_eq!(run(&["compare", "cart_pole", "--functions", "twists_body", "--frames", "wheel"]).status, 1);
 }
 
+/// A base without mass, free to do what the joint on it does: no mass matrix of it has an inverse.
+const TWICE: &str = r#"<robot name="twice"><link name="a"/><link name="b"><inertial><mass value="1"/>
+<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+<joint name="turn" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint></robot>"#;
+
+#[test]
+fn what_is_singular_is_said_and_not_judged() {
+    let file = File::new("twice.urdf", TWICE.as_bytes());
+    let words = ["compare", file.name(), "--floating", "--functions", "mass_matrix_inverse,mass_matrix"];
+    let ended = run(&[&words[..], &SMALL[..]].concat());
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    assert_eq!(ended.lines_with("singular in every state"), 1, "{}", ended.out);
+}
+
 #[test]
 fn an_error_beyond_the_bound_is_status_4() {
     let ended = run(&[&["compare", "double_pendulum", "--functions", "inverse_dynamics", "--bound", "0"], &SMALL[..]].concat());
