@@ -195,7 +195,8 @@ impl Body<'_> {
         for part in &self.wanted.parts {
             let (own, others) = rest.split_at(part.function.len(self.sizes));
             let lengths: Vec<usize> = part.function.gives.iter().map(|d| d.len(self.sizes)).collect();
-            results.push((part.function.name, nested(own, &lengths)));
+            let value = if is_sparse(own) { self.sparse(part.function.name, own, &lengths) } else { nested(own, &lengths) };
+            results.push((part.function.name, value));
             rest = others;
         }
         let _ = match &self.group {
@@ -206,6 +207,32 @@ impl Body<'_> {
             }
         };
     }
+
+    /// An array of zeros, and what is not zero put in one by one: for the compiler far less than to write every zero out. Returns its name.
+    fn sparse(&mut self, name: &str, values: &[String], lengths: &[usize]) -> String {
+        let zeros = lengths.iter().rev().fold(ZERO.to_owned(), |inner, n| format!("[{inner}; {n}]"));
+        let _ = writeln!(self.out, "    let mut {name} = {zeros};");
+        for (k, value) in values.iter().enumerate().filter(|(_, value)| *value != ZERO) {
+            let _ = writeln!(self.out, "    {name}{} = {value};", index(k, lengths));
+        }
+        name.to_owned()
+    }
+}
+
+const ZERO: &str = "0.0";
+
+/// Whether most of many values are nothing.
+fn is_sparse(values: &[String]) -> bool {
+    values.len() >= 64 && values.iter().filter(|value| *value == ZERO).count() * 2 > values.len()
+}
+
+/// The indices of value `k` in an array of these lengths.
+fn index(mut k: usize, lengths: &[usize]) -> String {
+    lengths.iter().rev().fold(String::new(), |inner, n| {
+        let own = format!("[{}]{inner}", k % n);
+        k /= n;
+        own
+    })
 }
 
 /// Values as an array of these lengths.

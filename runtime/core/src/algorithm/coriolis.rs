@@ -47,7 +47,7 @@ fn row_and_column<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, k: u
                 out[other.at * n + column.at] += drive.power(&other.axis);
             }
         }
-        (held, drive) = (ws.common[j].to_parent(&held), ws.common[j].to_parent(&drive));
+        (held, drive) = (ws.common[j].hand_on(&held), ws.common[j].hand_on(&drive));
         j = model.bodies[j].parent;
     }
 }

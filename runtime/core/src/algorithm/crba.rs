@@ -85,7 +85,7 @@ pub(super) fn mass_matrix_in_common_axes<S: Scalar>(model: &Model<S>, ws: &mut W
                         out[other * n + at] += inertia;
                     }
                 }
-                wrench = ws.common[j].to_parent(&wrench);
+                wrench = ws.common[j].hand_on(&wrench);
                 j = model.bodies[j].parent;
             }
         }

@@ -50,7 +50,7 @@ pub fn inverse_dynamics_derivatives_with_wrenches<S: Scalar>(
 ) {
     positions(model, ws, Axes::Tree, q);
     twists(model, ws, Axes::Tree, v);
-    accelerations(model, ws, Axes::Tree, v, a, -model.gravity);
+    accelerations(model, ws, v, a, -model.gravity);
     inertias(model, ws);
     coriolis(model, ws);
     forces(model, ws);
@@ -80,7 +80,7 @@ pub fn static_torque_derivative<S: Scalar>(model: &Model<S>, ws: &mut Workspace<
     inertias(model, ws);
     let zeros = core::mem::take(&mut ws.zeros);
     still(model, ws);
-    accelerations(model, ws, Axes::Tree, &zeros, &zeros, -model.gravity);
+    accelerations(model, ws, &zeros, &zeros, -model.gravity);
     ws.zeros = zeros;
     for i in model.outward() {
         let state = &mut ws.common[i];
@@ -178,7 +178,7 @@ fn collect<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize) {
         let to = &mut ws.common[parent];
         to.inertia += state.inertia.shifted(state.shift);
         to.coriolis += state.coriolis.shifted(state.shift);
-        to.force += state.to_parent(&state.force);
+        to.force += state.hand_on(&state.force);
     }
 }
 
@@ -196,7 +196,7 @@ fn pairs<S: Scalar, const N: usize>(
             visit(j == i, &wrenches, &ws.columns[l]);
         }
         for w in &mut wrenches {
-            *w = ws.common[j].to_parent(w);
+            *w = ws.common[j].hand_on(w);
         }
         j = model.bodies[j].parent;
     }
@@ -257,10 +257,10 @@ fn external<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], wrenche
 /// For each pair (l, k) of columns on the way from `body` to the base, ∂τ_l/∂q_k −= S_lᵀ δ_k, with δ_k what a unit step of k does to the wrench, less what it
 /// would do if the wrench turned with the body, S_k ×* w. In space the wrench stays as it is, but for its moment if it moves along with the point at `offset`.
 fn put_right<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, body: usize, w: &Wrench<S>, offset: Option<Vector3<S>>, by_q: &mut [S]) {
-    let on_the_way = |mut visit: &mut dyn FnMut(usize, Twist<S>)| {
+    let on_the_way = |visit: &mut dyn FnMut(usize, Twist<S>)| {
         let (mut j, mut d) = (body, Vector3::zeros());
         while j != 0 {
-            ws.columns_of(j).for_each(|c| (&mut visit)(ws.columns[c].at, ws.columns[c].axis.at(d)));
+            ws.columns_of(j).for_each(|c| visit(ws.columns[c].at, ws.columns[c].axis.at(d)));
             d += ws.common[j].shift;
             j = model.bodies[j].parent;
         }

@@ -1,23 +1,23 @@
 //! Energies of the moving links.
 
 use super::Workspace;
-use super::common::{Axes, inertias, positions, twists};
+use super::common::{Axes, positions};
+use super::rnea::momentum;
 use crate::Scalar;
 use crate::model::Model;
 use crate::spatial::rotate;
 
-/// T = ½ Σ Vᵀ G V.
+/// T = ½ Σ Vᵀ G V = ½ vᵀ M v.
 ///
 /// q: `[nq]`; v: `[nv]`; out: one number, J. Featherstone 2008, §2.12.
 ///
 /// # Panics
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
 pub fn kinetic_energy<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
-    positions(model, ws, Axes::Base, q);
-    twists(model, ws, Axes::Base, v);
-    inertias(model, ws);
-    let twice = |i: usize| ws.common[i].inertia.apply(&ws.common[i].twist).power(&ws.common[i].twist);
-    out[0] = model.outward().fold(S::zero(), |sum, i| sum + twice(i)) * S::from_f64(0.5);
+    let mut row = core::mem::take(&mut ws.row);
+    momentum(model, ws, q, v, &mut row);
+    out[0] = row.iter().zip(v).fold(S::zero(), |sum, (p, v)| sum + *p * *v) * S::from_f64(0.5);
+    ws.row = row;
 }
 
 /// U = −Σ m gᵀc = −gᵀ Σ (m p + R h), zero at the base frame's origin.

@@ -115,7 +115,7 @@ fn frame_bias<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, reference: Ref
 fn frame_accelerations<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, reference: Reference, q: &[S], v: &[S], a: &[S], out: &mut [S]) {
     positions(model, ws, Axes::Base, q);
     twists(model, ws, Axes::Base, v);
-    accelerations(model, ws, Axes::Base, v, a, Vector3::zeros());
+    accelerations(model, ws, v, a, Vector3::zeros());
     for (frame, out) in model.frames.iter().zip(out.chunks_exact_mut(6)) {
         if frame.body == 0 {
             out.fill(S::zero());
@@ -183,7 +183,7 @@ fn columns<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, body: usize, out: &mu
 
 /// ∂(placements)/∂q in the tangent space: for each of the twelve numbers of a frame a row.
 ///
-/// q: `[nq]`; out: `[frames][12][nv]`. Columns of R turn with s_ω: ∂R = [s_ω]× R; the origin moves with the frame's Jacobian.
+/// q: `[nq]`; out: `[frames][12][nv]`. Columns of R turn with s_ω: `∂R = [s_ω]× R`; the origin moves with the frame's Jacobian.
 ///
 /// # Panics
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.

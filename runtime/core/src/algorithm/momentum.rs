@@ -1,12 +1,14 @@
 //! Centre of mass and centroidal momentum of the moving links.
 //!
-//! Orin, Goswami & Lee, *Auton. Robots* 35, 2013, 161–176, in base axes, each body about its own origin ([`super::common`]).
+//! Momentum and its rate are what the base passes on in the recursion of inverse dynamics without gravity, at rest for the momentum itself; the matrix has for its
+//! columns the momenta of composite bodies. Orin, Goswami & Lee, *Auton. Robots* 35, 2013, 161–176.
 
 use super::Workspace;
-use super::common::{Axes, accelerations, coriolis, forces, inertias, positions, twists};
+use super::common::{Axes, inertias, positions};
+use super::rnea::{momentum, recursion};
 use crate::Scalar;
 use crate::model::Model;
-use crate::spatial::{Vector3, Wrench};
+use crate::spatial::{Vector3, Wrench, rotate};
 
 /// Centre of mass of the moving links, base axes.
 ///
@@ -16,7 +18,6 @@ use crate::spatial::{Vector3, Wrench};
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
 pub fn center_of_mass<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
     positions(model, ws, Axes::Base, q);
-    inertias(model, ws);
     let (_, center) = center(model, ws);
     out.copy_from_slice(center.as_slice());
 }
@@ -29,12 +30,10 @@ pub fn center_of_mass<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S
 /// As [`center_of_mass`].
 pub fn center_of_mass_velocity<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
     positions(model, ws, Axes::Base, q);
-    twists(model, ws, Axes::Base, v);
-    inertias(model, ws);
-    let (inverse, _) = center(model, ws);
+    generalised(model, ws, q, v);
     // ċ = l / m
-    let momentum = momentum(model, ws, Vector3::zeros());
-    out.copy_from_slice((momentum.force * inverse).as_slice());
+    let (inverse, center) = center(model, ws);
+    out.copy_from_slice((at_the_roots(model, ws, center).force * inverse).as_slice());
 }
 
 /// Acceleration of the centre of mass, base axes, gravity not added.
@@ -71,10 +70,9 @@ pub fn center_of_mass_jacobian<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S
 /// As [`center_of_mass`].
 pub fn centroidal_momentum<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
     positions(model, ws, Axes::Base, q);
-    twists(model, ws, Axes::Base, v);
-    inertias(model, ws);
+    generalised(model, ws, q, v);
     let (_, center) = center(model, ws);
-    out.copy_from_slice(&momentum(model, ws, center).to_array());
+    out.copy_from_slice(&at_the_roots(model, ws, center).to_array());
 }
 
 /// A with [k; l] = A v, base axes.
@@ -110,31 +108,39 @@ pub fn centroidal_momentum_rate<S: Scalar>(model: &Model<S>, ws: &mut Workspace<
 fn center<S: Scalar>(model: &Model<S>, ws: &Workspace<S>) -> (S, Vector3<S>) {
     let (mut mass, mut first) = (S::zero(), Vector3::zeros());
     for i in model.outward() {
-        let state = &ws.common[i];
-        mass += state.inertia.mass;
-        first += state.inertia.first + state.position * state.inertia.mass;
+        let (state, inertia) = (&ws.common[i], &model.bodies[i].inertia);
+        mass += inertia.mass;
+        first += rotate(&state.rotation, inertia.first) + state.position * inertia.mass;
     }
     let inverse = S::one() / mass;
     (inverse, first * inverse)
 }
 
-/// Σ G V, with the moment about `point`.
-fn momentum<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, point: Vector3<S>) -> Wrench<S> {
-    let one = |i: usize| ws.common[i].inertia.apply(&ws.common[i].twist).shifted(ws.common[i].position - point);
-    model.outward().fold(Wrench::zero(), |sum, i| sum + one(i))
+/// Leaves in each body the momentum of all that it carries, as the wrench that would bring it about in a unit of time.
+fn generalised<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S]) {
+    let mut row = core::mem::take(&mut ws.row);
+    momentum(model, ws, q, v, &mut row);
+    ws.row = row;
+}
+
+/// The wrenches that the base passes to the bodies that hang on it, together, about `point` in base axes.
+fn at_the_roots<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, point: Vector3<S>) -> Wrench<S> {
+    let one = |i: usize| {
+        let (wrench, state) = (&ws.bodies[i].wrench, &ws.common[i]);
+        let turned = Wrench { moment: rotate(&state.rotation, wrench.moment), force: rotate(&state.rotation, wrench.force) };
+        turned.shifted(state.position - point)
+    };
+    model.outward().filter(|&i| model.bodies[i].parent == 0).fold(Wrench::zero(), |sum, i| sum + one(i))
 }
 
 /// (1 / mass, Σ F about the centre of mass).
 fn rate<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S]) -> (S, Wrench<S>) {
     positions(model, ws, Axes::Base, q);
-    twists(model, ws, Axes::Base, v);
-    accelerations(model, ws, Axes::Base, v, a, Vector3::zeros());
-    inertias(model, ws);
-    coriolis(model, ws);
-    forces(model, ws);
+    let mut row = core::mem::take(&mut ws.row);
+    recursion(model, ws, q, v, a, &[], Vector3::zeros(), &mut row);
+    ws.row = row;
     let (inverse, center) = center(model, ws);
-    let one = |i: usize| ws.common[i].force.shifted(ws.common[i].position - center);
-    (inverse, model.outward().fold(Wrench::zero(), |sum, i| sum + one(i)))
+    (inverse, at_the_roots(model, ws, center))
 }
 
 /// For each degree of freedom (its index in v, I^C S, the origin that is about), with I^C the inertia of all that it carries.

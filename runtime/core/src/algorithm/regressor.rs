@@ -22,7 +22,7 @@ pub const PARAMETERS: usize = 10;
 pub fn torque_regressor<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S], out: &mut [S]) {
     positions(model, ws, Axes::Tree, q);
     twists(model, ws, Axes::Tree, v);
-    accelerations(model, ws, Axes::Tree, v, a, -model.gravity);
+    accelerations(model, ws, v, a, -model.gravity);
     out.fill(S::zero());
     let width = PARAMETERS * ws.shape.links;
     for (link, i) in model.links().enumerate() {

@@ -37,8 +37,31 @@ pub fn inverse_dynamics_with_wrenches<S: Scalar>(
     wrenches: &[S],
     tau: &mut [S],
 ) {
+    recursion(model, ws, q, v, a, wrenches, model.gravity, tau);
+}
+
+/// M(q)·v, the generalised momentum: inverse dynamics of the acceleration v at rest and without gravity.
+pub(super) fn momentum<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
+    let zeros = core::mem::take(&mut ws.zeros);
+    recursion(model, ws, q, &zeros, v, &[], Vector3::zeros(), out);
+    ws.zeros = zeros;
+}
+
+#[allow(clippy::too_many_arguments)]
+// Why: all that inverse dynamics depends on.
+#[inline(always)]
+pub(super) fn recursion<S: Scalar>(
+    model: &Model<S>,
+    ws: &mut Workspace<S>,
+    q: &[S],
+    v: &[S],
+    a: &[S],
+    wrenches: &[S],
+    gravity: Vector3<S>,
+    tau: &mut [S],
+) {
     // V̇_0 = [0; −g]
-    ws.bodies[0].motion.acceleration = -model.gravity;
+    ws.bodies[0].motion.acceleration = -gravity;
     for i in model.outward() {
         let body = &model.bodies[i];
         let pose = body.joint.pose(&body.coordinates, q);

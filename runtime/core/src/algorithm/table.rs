@@ -87,7 +87,7 @@ macro_rules! for_each_function {
                 "M(q)⁻¹·τ, without M⁻¹", "ABA at rest, or M = Lᵀ D L; Featherstone 2008, Table 7.1 and §6.5",
                 by ["ABA", untied, solve_by_articulated_body; "LTDL", always, solve_mass_matrix];
             kinetic_energy(q, v) -> [] "J", Nothing, true,
-                "T = ½ Σ Vᵀ G V of the moving links", "outward sweep; Featherstone 2008, §2.12";
+                "T = ½ Σ Vᵀ G V = ½ vᵀ M v of the moving links", "RNEA at rest; Featherstone 2008, §2.12 and Table 5.1";
             potential_energy(q) -> [] "J, zero at the base frame's origin", Nothing, false,
                 "U = −Σ m gᵀc of the moving links", "outward sweep; Featherstone 2008, §2.12";
             center_of_mass(q) -> [Of(3)] "m, base axes", Mass, false,

@@ -32,6 +32,10 @@ pub struct Workspace<S> {
     pub(super) columns: Vec<Column<S>>,
     /// First column of each body, and the number of all.
     first: Vec<usize>,
+    /// The body in the middle of each tree that hangs on the base.
+    pub(super) middles: Vec<usize>,
+    /// Whether a body is in the middle of its tree or between that and the base.
+    pub(super) inside: Vec<bool>,
     /// One row of a matrix, `[nv]`.
     pub(super) row: Vec<S>,
     /// For each degree of freedom the next one on the way to the base, as [`below`] gives them.
@@ -63,6 +67,8 @@ pub(super) struct BodyState<S> {
 pub(super) struct CommonState<S> {
     /// The body's axes.
     pub(super) rotation: Matrix3<S>,
+    /// For a body that hangs on the base, the base's axes.
+    pub(super) base: Matrix3<S>,
     /// Its origin from its parent's.
     pub(super) shift: Vector3<S>,
     /// Its origin from that of the common axes.
@@ -108,8 +114,11 @@ impl<S: Scalar> Workspace<S> {
             columns.extend((0..body.joint.nv()).map(|k| Column::zero(body.coordinates.v + k)));
         }
         first.push(columns.len());
+        let middles = middles(model);
         Self {
             shape: model.shape(),
+            inside: inside(model, &middles),
+            middles,
             bodies: vec![BodyState::zero(); n],
             placements: vec![Placement::identity(); n],
             relative: vec![Placement::identity(); n],
@@ -146,6 +155,7 @@ impl<S: Scalar> CommonState<S> {
     fn zero() -> Self {
         Self {
             rotation: Matrix3::identity(),
+            base: Matrix3::identity(),
             shift: Vector3::zeros(),
             position: Vector3::zeros(),
             carried_twist: Twist::zero(),
@@ -164,6 +174,33 @@ impl<S: Scalar> Column<S> {
         let o = Twist::zero();
         Self { at, axis: o, drift: o, rate: o, curl: o, held: Wrench::zero(), inverse: S::zero(), residue: S::zero() }
     }
+}
+
+/// For each body that hangs on the base, the body beyond and before which no branch has more than half of the degrees of freedom of its tree.
+fn middles<S: Scalar>(model: &Model<S>) -> Vec<usize> {
+    let mut weight: Vec<usize> = model.bodies.iter().map(|b| b.joint.nv()).collect();
+    for i in model.inward() {
+        let parent = model.bodies[i].parent;
+        weight[parent] += if parent == 0 { 0 } else { weight[i] };
+    }
+    let middle = |root: usize| {
+        let heavy = |i: &usize| weight[*i] * 2 > weight[root];
+        let next = |i: &usize| model.outward().find(|k| model.bodies[*k].parent == *i && heavy(k));
+        core::iter::successors(Some(root), next).last().unwrap_or(root)
+    };
+    model.outward().filter(|&i| model.bodies[i].parent == 0).map(middle).collect()
+}
+
+fn inside<S: Scalar>(model: &Model<S>, middles: &[usize]) -> Vec<bool> {
+    let mut inside = vec![false; model.bodies.len()];
+    for &middle in middles {
+        let mut i = middle;
+        while i != 0 {
+            inside[i] = true;
+            i = model.bodies[i].parent;
+        }
+    }
+    inside
 }
 
 /// For each degree of freedom the number of the next one on the way to the base plus one; 0 where the base is next. The mass matrix is zero

@@ -22,7 +22,7 @@ impl<S: Scalar> ArticulatedInertia<S> {
         Self { angular: Matrix3::zeros(), coupling: Matrix3::zeros(), linear: Matrix3::zeros() }
     }
 
-    /// Of a rigid body: A = tr(Σ)·1 − Σ, B = [h]×, C = m·1.
+    /// Of a rigid body: `A = tr(Σ)·1 − Σ, B = [h]×, C = m·1`.
     #[inline(always)]
     pub fn rigid(inertia: &SpatialInertia<S>) -> Self {
         Self {
@@ -55,7 +55,7 @@ impl<S: Scalar> ArticulatedInertia<S> {
 
     /// The same seen from the frame a, where `x_ab` places the frame b that it is given in.
     ///
-    /// Turned, then C' = C, B' = B + [p]× C, A' = A + [p]× Bᵀ − B'[p]×.
+    /// Turned, then `C' = C, B' = B + [p]× C, A' = A + [p]× Bᵀ − B'[p]×`.
     #[inline(always)]
     #[must_use]
     pub fn moved(&self, x_ab: &Placement<S>) -> Self {

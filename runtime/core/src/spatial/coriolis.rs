@@ -23,7 +23,7 @@ impl<S: Scalar> CoriolisInertia<S> {
         Self { momentum: Vector3::zeros(), second: Matrix3::zeros() }
     }
 
-    /// Of a body of this inertia that moves with this twist, both in the same frame: p = m v + ω × h, K = v hᵀ + [ω]× Σ.
+    /// Of a body of this inertia that moves with this twist, both in the same frame: `p = m v + ω × h, K = v hᵀ + [ω]× Σ`.
     #[inline(always)]
     pub fn new(inertia: &SpatialInertia<S>, twist: &Twist<S>) -> Self {
         let (w, v, h) = (twist.angular, twist.linear, inertia.first);
