@@ -14,12 +14,16 @@ pub const NV: usize = 1;
 pub const DOF: usize = NV;
 /// Number of joints that are coordinates.
 pub const JOINTS: usize = 1;
-/// Number of links, each a frame.
+/// Number of frames: links of the file, or those chosen.
 pub const FRAMES: usize = 2;
+/// Number of moving links, one for each joint that moves.
+pub const LINKS: usize = 1;
 /// Names of the joints, in the order of their coordinates.
 pub const JOINT_NAMES: [&str; JOINTS] = ["swing"];
-/// Names of the links, in the order of the file.
+/// Names of the frames.
 pub const FRAME_NAMES: [&str; FRAMES] = ["support", "bob"];
+/// For each moving link, the joint that carries it.
+pub const LINK_JOINTS: [&str; LINKS] = ["swing"];
 /// Lower bounds of the coordinates, rad or m; −∞ where there is none.
 pub const Q_LOWER: [f64; NQ] = [-6.283185307179586];
 /// Upper bounds of the coordinates, rad or m; ∞ where there is none.
@@ -50,10 +54,10 @@ pub mod frame {
     pub const BOB: usize = 1;
 }
 
-/// placements of all links in the base frame.
+/// placements of all frames in the base frame.
 ///
-/// q: `[NQ]` rad|m|unit quaternion.
-/// Returns `[FRAMES][12]`: rotation row by row, then position in m, in the base frame.
+/// q: `[f64; NQ]` rad|m|unit quaternion.
+/// Returns `[[f64; 12]; FRAMES]` rotation row by row, then position in m, in the base frame.
 ///
 /// forward kinematics; Featherstone 2008, §4.4.
 /// 0 multiplications + 0 additions in 1 instructions (multiply-adds counted once), 2 sines and cosines, depth 2.
@@ -69,10 +73,10 @@ pub fn placements(q: &[f64; NQ]) -> [[f64; 12]; FRAMES] {
 
 /// τ = M(q)·a + h(q, v), gravity included.
 ///
-/// q: `[NQ]` rad|m|unit quaternion.
-/// v: `[NV]` rad/s|m/s.
-/// a: `[NV]` rad/s²|m/s².
-/// Returns `[NV]` N·m|N.
+/// q: `[f64; NQ]` rad|m|unit quaternion.
+/// v: `[f64; NV]` rad/s|m/s.
+/// a: `[f64; NV]` rad/s²|m/s².
+/// Returns `[f64; NV]` N·m|N.
 ///
 /// RNEA; Featherstone 2008, Table 5.1.
 /// 3 multiplications + 2 additions in 4 instructions (multiply-adds counted once), 1 sines and cosines, depth 3.
@@ -106,21 +110,29 @@ pub struct Robot;
 impl ::articulated::Dynamics<f64> for Robot {
     type Workspace = ();
     fn workspace(&self) {}
-    fn shape(&self) -> ::articulated::Shape { ::articulated::Shape { nq: NQ, nv: NV, frames: FRAMES } }
+    fn shape(&self) -> ::articulated::Shape { ::articulated::Shape { nq: NQ, nv: NV, frames: FRAMES, links: LINKS } }
     fn name(&self) -> &str { NAME }
-    fn placements(&self, _: &mut (), q: &[f64], out: &mut [[f64; 12]]) -> ::core::result::Result<(), ::articulated::FunctionError> {
-        let q = ::articulated::exactly::<NQ, f64>("q", q)?;
-        ::articulated::check_length("out", out.len(), FRAMES)?;
-        out.copy_from_slice(&self::placements(q));
-        ::core::result::Result::Ok(())
-    }
-    fn inverse_dynamics(&self, _: &mut (), q: &[f64], v: &[f64], a: &[f64], tau: &mut [f64]) -> ::core::result::Result<(), ::articulated::FunctionError> {
-        let q = ::articulated::exactly::<NQ, f64>("q", q)?;
-        let v = ::articulated::exactly::<NV, f64>("v", v)?;
-        let a = ::articulated::exactly::<NV, f64>("a", a)?;
-        ::articulated::check_length("tau", tau.len(), NV)?;
-        tau.copy_from_slice(&self::inverse_dynamics(q, v, a));
-        ::core::result::Result::Ok(())
+    #[inline]
+    fn call(&self, function: ::articulated::FunctionId, _: &mut (), arguments: &[&[f64]], out: &mut [f64]) -> ::core::result::Result<(), ::articulated::FunctionError> {
+        match (function, arguments) {
+            (::articulated::FunctionId::placements, &[q]) => {
+                let q = ::articulated::exactly::<NQ, f64>("q", q)?;
+                ::articulated::check_length("out", out.len(), FRAMES * 12)?;
+                let result: [[f64; 12]; FRAMES] = self::placements(q);
+                out.copy_from_slice(result.as_slice().as_flattened());
+                ::core::result::Result::Ok(())
+            }
+            (::articulated::FunctionId::inverse_dynamics, &[q, v, a]) => {
+                let q = ::articulated::exactly::<NQ, f64>("q", q)?;
+                let v = ::articulated::exactly::<NV, f64>("v", v)?;
+                let a = ::articulated::exactly::<NV, f64>("a", a)?;
+                ::articulated::check_length("out", out.len(), NV)?;
+                let result: [f64; NV] = self::inverse_dynamics(q, v, a);
+                out.copy_from_slice(result.as_slice());
+                ::core::result::Result::Ok(())
+            }
+            _ => ::core::result::Result::Err(::articulated::FunctionError::NotGenerated { function: function.name() }),
+        }
     }
 }
 
