@@ -169,12 +169,8 @@ impl Body<'_> {
     fn expression(&self, op: Op, node: &Node) -> String {
         let mut text = op.row().rust.to_owned();
         for (hole, operand) in ["{a}", "{b}", "{c}"].iter().zip(node.operands()) {
-            let mut operand = self.operand(operand);
-            if op == Op::Select {
-                // In a block of its own a negative number stands without brackets.
-                operand = operand.trim_matches(['(', ')']).to_owned();
-            }
-            text = text.replace(hole, &operand);
+            let operand = self.operand(operand);
+            text = text.replace(hole, if op == Op::Select { bare(&operand) } else { &operand });
         }
         text
     }
@@ -213,13 +209,18 @@ impl Body<'_> {
         let zeros = lengths.iter().rev().fold(ZERO.to_owned(), |inner, n| format!("[{inner}; {n}]"));
         let _ = writeln!(self.out, "    let mut {name} = {zeros};");
         for (k, value) in values.iter().enumerate().filter(|(_, value)| *value != ZERO) {
-            let _ = writeln!(self.out, "    {name}{} = {value};", index(k, lengths));
+            let _ = writeln!(self.out, "    {name}{} = {};", index(k, lengths), bare(value));
         }
         name.to_owned()
     }
 }
 
 const ZERO: &str = "0.0";
+
+/// An operand that stands by itself: a negative number without its brackets.
+fn bare(operand: &str) -> &str {
+    operand.trim_matches(['(', ')'])
+}
 
 /// Whether most of many values are nothing.
 fn is_sparse(values: &[String]) -> bool {
