@@ -140,8 +140,10 @@ impl Constant {
 
 fn constant(text: &str, function: &Function<Sym>, wrong: &dyn Fn(String) -> Error) -> Result<(Argument, Constant), Error> {
     let takes: Vec<&str> = function.takes.iter().map(|a| a.name()).collect();
-    let expected =
-        || format!("`{}`: expected a constant as in {}(a = 0) or (a = [0, 0]); {0} takes {}", text.trim(), function.name, takes.join(", "));
+    let expected = || {
+        let (found, name, takes) = (text.trim(), function.name, takes.join(", "));
+        format!("`{found}`: expected a constant as in {name}(q = 0) or {name}(q = [0, 0]); {name} takes {takes}")
+    };
     let (name, value) = text.split_once('=').ok_or_else(|| wrong(expected()))?;
     let argument = function.takes.iter().find(|a| a.name() == name.trim()).ok_or_else(|| wrong(expected()))?;
     let number = |x: &str| {
