@@ -47,6 +47,7 @@ pub(crate) enum Command {
         "articulated generate arm.urdf --functions placements,inverse_dynamics -o src/arm.rs",
         "articulated generate arm.urdf --runtime ::articulated -o src/arm.rs",
         "articulated generate arm.urdf --functions 'hold = gravity_torque + jacobians_body, bias = inverse_dynamics(a = 0)'",
+        "articulated generate arm.urdf --functions 'still=inverse_dynamics(v=0,a=0)' --parameters 'payload(tool)'",
         "articulated generate arm.urdf --frames tool,camera --lock wrist=0 --payload tool=1.2@0,0,0.1:1e-3,0,0,1e-3,0,1e-3",
         "articulated generate arm.urdf --append gripper.urdf@tool --append gripper.urdf@tool:second_:0,0,0.2,0,0,1.5",
     ]))]
@@ -132,6 +133,9 @@ pub(crate) struct GenerateArguments {
     /// The functions wanted, groups of them, or name = first + second(a = 0) [default: placements,inverse_dynamics]
     #[arg(long, alias = "function", value_name = "NAMES", value_parser = wanted)]
     pub(crate) functions: Vec<Names>,
+    /// Constants of the model that stay inputs: payload(LINK), inertia(LINK), origin(JOINT)
+    #[arg(long, value_name = "ENTRIES", value_delimiter = ',')]
+    pub(crate) parameters: Vec<String>,
     /// The file to write instead of the standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,

@@ -32,6 +32,7 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
     if arguments.functions.is_empty() {
         request.options.functions = articulated_codegen::Options::default().functions;
     }
+    request.options.parameters.clone_from(&arguments.parameters);
     request.options.forbid_unsafe = arguments.forbid_unsafe;
     request.options.runtime = arguments.runtime.clone().filter(|_| !arguments.standalone);
     let generated = generate(&request)?;

@@ -50,6 +50,13 @@ impl Build {
         self
     }
 
+    /// Constants of the model that stay inputs: `payload(link)`, `inertia(link)`, `origin(joint)`.
+    #[must_use]
+    pub fn parameters<N: Into<String>>(mut self, entries: impl IntoIterator<Item = N>) -> Self {
+        self.request.options.parameters = entries.into_iter().map(Into::into).collect();
+        self
+    }
+
     /// The links whose frames the functions of frames give.
     #[must_use]
     pub fn frames<N: Into<String>>(mut self, names: impl IntoIterator<Item = N>) -> Self {

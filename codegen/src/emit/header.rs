@@ -49,6 +49,7 @@ fn edits(request: &Request) -> Vec<String> {
     for (joint, at) in &o.lock {
         lines.push(format!("Locked: joint {joint:?} at {at:?}."));
     }
+    lines.extend((!o.parameters.is_empty()).then(|| format!("Inputs of the model: {}.", o.parameters.join(", "))));
     lines.extend(o.frames.as_ref().map(|frames| format!("Frames: {}.", frames.join(", "))));
     lines.extend((o.wrench_reference != Reference::Body).then(|| format!("Wrenches in: {}.", o.wrench_reference.name())));
     lines
