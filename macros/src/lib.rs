@@ -24,7 +24,13 @@ mod tests;
 ///         urdf = "robots/panda.urdf",                    // from the folder of Cargo.toml; the only key that must be there
 ///         base = fixed,                                  // or floating
 ///         gravity = [0.0, 0.0, -9.81],                   // m/s², in the base frame
-///         functions = [placements, inverse_dynamics],    // what to generate
+///         functions = [                                  // what to generate: names of `articulated::algorithm`, and
+///             placements,
+///             inverse_dynamics,
+///             hold = inverse_dynamics(v = 0, a = [0, 0]), // one with arguments that are constants,
+///             step = forward_dynamics + jacobians_body,  // several in one, which gives a struct with a field for each
+///         ],
+///         parameters = [payload(tool), inertia(fore), origin(wrist)], // numbers of the model that stay inputs, see below
 ///         frames = [tool, "left foot"],                  // the links whose frames functions give; absent: all
 ///         wrenches_in = body,                            // or world, or world_aligned: what the wrenches that functions take refer to
 ///         lock = { elbow = 0.5, ball = [0.0, 0.0, 0.0, 1.0] }, // joints held where they are: rad or m; a quaternion as x, y, z, w
@@ -40,11 +46,13 @@ mod tests;
 /// }
 /// ```
 ///
-/// The values above are the defaults, but for `urdf`, `rename`, `snap_angles`, and those from `frames` to `append`. Names of links and joints
+/// The values above are the defaults, but for `urdf`, `rename`, `snap_angles`, the last two functions, and those from `parameters` to `append`. Names of links and joints
 /// are words or stand in quotation marks. Robots are appended first, then payloads attached, then joints locked. The module has one function for each name in `functions`,
 /// constants for sizes, names and limits, modules of indices (`joint`, `q_index`, `v_index`, `frame`), and `Robot`, a value that
 /// implements `articulated::Dynamics`. What looks odd in the URDF is listed in its constant `WARNINGS`. It is compiled
-/// again when a URDF changes. A build script (`articulated_codegen::Build`) gives the same code, to read and to step through.
+/// again when a URDF changes. With `parameters` every function takes their numbers as its last argument; the constant `PARAMETERS` has those of the URDF, the
+/// module `parameter` where each begins, and `Robot` holds its own. `payload(link)` and `inertia(link)` are ten: m, m·c and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz
+/// about the origin of the link's frame in its axes, added to what the link has or in its place; `origin(joint)` is the joint's xyz in its parent link, m. A build script (`articulated_codegen::Build`) gives the same code, to read and to step through.
 ///
 /// Errors: all that is wrong with the invocation and with the URDF at once, each at the word that it is about.
 #[proc_macro]
