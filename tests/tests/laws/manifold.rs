@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use articulated_cli::precise::Big;
 use articulated_core::Scalar;
 use articulated_core::algorithm::neutral;
-use articulated_core::description::JointKind;
+use articulated_core::description::{JointKind, Limit};
 use articulated_core::dual::Dual;
 use articulated_core::model::{JointInfo, Model};
 use articulated_core::spatial::screw::Quaternion;
@@ -168,6 +168,20 @@ fn steps_and_differences_in_double_precision_are_those_in_many_digits() {
             });
         }
     });
+}
+
+/// A turn or two metres from the bound that there is.
+#[test]
+fn a_limit_that_is_open_on_one_side_is_kept_on_the_other() {
+    let mut case = Case::bundled(articulated_models::robot("cart_pole").unwrap());
+    for (lower, upper, expected) in [(0.5, f64::INFINITY, [0.5, 2.5]), (f64::NEG_INFINITY, -0.5, [-2.5, -0.5])] {
+        let rail = case.model.joints.iter_mut().find(|j| j.kind == JointKind::Prismatic).unwrap();
+        rail.limit = Some(Limit { lower, upper, effort: 1.0, velocity: 1.0 });
+        let at = rail.q.0;
+        let drawn = |u: f64| case.call("random_configuration", &[&vec![u; case.model.nq]])[at];
+        assert_eq!(drawn(0.0), expected[0]);
+        assert!((drawn(1.0 - U) - expected[1]).abs() <= 4.0 * U);
+    }
 }
 
 #[test]

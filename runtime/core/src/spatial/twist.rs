@@ -47,12 +47,6 @@ impl<S: Scalar> Twist<S> {
         Self { angular: self.angular * x, linear: self.linear * x }
     }
 
-    /// ω·w + v·u.
-    #[inline(always)]
-    pub fn dot(&self, other: &Self) -> S {
-        self.angular.dot(&other.angular) + self.linear.dot(&other.linear)
-    }
-
     /// The six numbers.
     pub fn to_array(&self) -> [S; 6] {
         let (w, v) = (&self.angular, &self.linear);
