@@ -99,7 +99,8 @@ fn wanted(request: &Request, model: &Model<f64>, massless: &[String]) -> Result<
         let function = Wanted::parse(text)?;
         function.check(model.shape())?;
         function.parts.iter().try_for_each(|part| defined(request, model, massless, part.function))?;
-        if wanted.iter().any(|f| f.name == function.name) {
+        let same_type = |f: &Wanted| f.group().is_some() && f.group() == function.group();
+        if wanted.iter().any(|f| f.name == function.name || same_type(f)) {
             return Err(Error::SameName { name: function.name });
         }
         wanted.push(function);

@@ -11,11 +11,11 @@
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::PARAMETERS;
-use articulated_core::description::{Description, Link};
+use articulated_core::description::Description;
 use articulated_core::model::Model;
-use articulated_core::spatial::{Matrix3, Placement, SpatialInertia, Vector3};
+use articulated_core::spatial::{Placement, SpatialInertia, Vector3};
 
-use crate::{Error, Sym, nearest};
+use crate::{Error, Sym, identifier, nearest};
 
 /// What stays an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,8 +50,9 @@ pub(crate) fn parse(list: &[String], description: &mut Description, model: &Mode
     for text in list {
         let at = parameters.last().map_or(0, |p| p.at + p.nominal.len());
         let parameter = one(text, at, description, model)?;
-        if parameters.iter().any(|p| p.name == parameter.name) {
-            return Err(Error::Parameter { found: text.clone(), reason: "is given twice".into() });
+        if let Some(other) = parameters.iter().find(|p| identifier(&p.name) == identifier(&parameter.name)) {
+            let reason = format!("is {} in Rust, as the {} is", identifier(&other.name), other.what);
+            return Err(Error::Parameter { found: text.trim().into(), reason });
         }
         parameters.push(parameter);
     }
@@ -73,7 +74,9 @@ fn one(text: &str, at: usize, description: &mut Description, model: &Model<f64>)
         return Err(wrong(format!("there is no link {name:?}{}", near.unwrap_or_default())));
     };
     let frame = model.frames.iter().find(|f| f.name == name).ok_or_else(|| wrong("the link is no frame".into()))?;
-    let nominal = if kind == Kind::Inertia { own(link) } else { [0.0; PARAMETERS] };
+    // The link itself is left without what becomes an input.
+    let own = if kind == Kind::Inertia { link.inertial.take() } else { None };
+    let nominal = own.map_or([0.0; PARAMETERS], |own| own.spatial_inertia().parameters());
     let what = match kind {
         Kind::Inertia => format!("inertial parameters of link {name:?}"),
         _ => format!("inertial parameters of a payload on link {name:?}"),
@@ -96,22 +99,6 @@ fn origin(name: &str, at: usize, description: &Description, model: &Model<f64>) 
     Ok(Parameter { what, name: format!("{name}_origin"), at, nominal, kind: Kind::Origin, body, frame: frame.placement })
 }
 
-/// The parameters of the link itself, which is left without.
-fn own(link: &mut Link) -> [f64; PARAMETERS] {
-    let alone = Description {
-        links: vec![Link { name: "base".into(), inertial: None }, Link { name: "link".into(), inertial: link.inertial.take() }],
-        joints: vec![articulated_core::description::Joint {
-            kind: articulated_core::description::JointKind::Floating,
-            parent: 0,
-            child: 1,
-            ..Default::default()
-        }],
-        ..Description::default()
-    };
-    let model = Model::new(&alone, articulated_core::description::Base::Fixed);
-    model.ok().and_then(|m| m.inertial_parameters().first().copied()).unwrap_or([0.0; PARAMETERS])
-}
-
 impl Parameter {
     /// Puts the numbers that `input` gives into the model.
     pub(crate) fn put(&self, model: &mut Model<Sym>, input: impl Fn(usize) -> Sym) {
@@ -120,23 +107,11 @@ impl Parameter {
         let body = &mut model.bodies[self.body];
         match self.kind {
             Kind::Origin => body.placement.position = frame.transform(Vector3::new(number(0), number(1), number(2))),
-            Kind::Payload | Kind::Inertia => body.inertia += inertia(number).moved(&frame),
+            Kind::Payload | Kind::Inertia => body.inertia += SpatialInertia::from_parameters(std::array::from_fn(number)).moved(&frame),
         }
     }
 }
 
 fn cast(x: &Placement<f64>) -> Placement<Sym> {
     Placement { rotation: x.rotation.map(Sym::from_f64), position: x.position.map(Sym::from_f64) }
-}
-
-/// Moments of mass from the ten parameters: Σ = ½ tr(I)·1 − I.
-fn inertia(p: impl Fn(usize) -> Sym) -> SpatialInertia<Sym> {
-    let [xx, xy, xz, yy, yz, zz] = [4, 5, 6, 7, 8, 9].map(p_at(&p));
-    let half = (xx + yy + zz) * Sym::from_f64(0.5);
-    let second = Matrix3::new(half - xx, -xy, -xz, -xy, half - yy, -yz, -xz, -yz, half - zz);
-    SpatialInertia { mass: p(0), first: Vector3::new(p(1), p(2), p(3)), second }
-}
-
-fn p_at(p: &impl Fn(usize) -> Sym) -> impl Fn(usize) -> Sym + '_ {
-    move |k| p(k)
 }

@@ -75,6 +75,12 @@ impl Wanted {
         Argument::ALL.into_iter().filter(taken).collect()
     }
 
+    /// The type that holds the results of several parts: the name with each word's first letter in capitals. `None` for one part.
+    pub(crate) fn group(&self) -> Option<String> {
+        let word = |w: &str| w[..1].to_uppercase() + &w[1..];
+        (self.parts.len() > 1).then(|| self.name.split('_').filter(|w| !w.is_empty()).map(word).collect())
+    }
+
     /// The function of the table that it is, if it is one as it stands.
     pub fn as_function(&self) -> Option<&'static Function<Sym>> {
         match self.parts.as_slice() {
@@ -192,7 +198,7 @@ fn is_function_name(name: &str) -> bool {
 fn is_free(name: &str) -> bool {
     const KEYWORDS: &str = "as async await break const continue crate dyn else enum extern false fn for gen if impl in let loop match mod move mut pub \
                             ref return self static struct super trait true try type unsafe use where while abstract become box do final macro \
-                            override priv typeof unsized virtual yield fma trig joint frame link q_index v_index parameter";
+                            override priv typeof unsized virtual yield fma trig joint frame link q_index v_index parameter robot";
     !KEYWORDS.split_whitespace().any(|k| k == name)
 }
 

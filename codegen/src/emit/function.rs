@@ -12,7 +12,7 @@ use crate::wanted::{Wanted, array};
 
 /// The function's source, with its documentation and, where it gives several results, the type that holds them.
 pub(super) fn function(out: &mut String, wanted: &Wanted, graph: &Graph, entry: &Entry, sizes: Sizes, parameters: bool) {
-    let group = group(wanted);
+    let group = wanted.group();
     if let Some(name) = &group {
         results(out, wanted, name);
     }
@@ -52,12 +52,6 @@ impl Input {
             _ => format!("{}[{k}]", self.name),
         }
     }
-}
-
-/// The type of a group's results: its name in capitals at the start of each word.
-fn group(wanted: &Wanted) -> Option<String> {
-    let word = |w: &str| w[..1].to_uppercase() + &w[1..];
-    (wanted.parts.len() > 1).then(|| wanted.name.split('_').filter(|w| !w.is_empty()).map(word).collect())
 }
 
 fn results(out: &mut String, wanted: &Wanted, name: &str) {
@@ -207,7 +201,8 @@ impl Body<'_> {
     /// An array of zeros, and what is not zero put in one by one: for the compiler far less than to write every zero out. Returns its name.
     fn sparse(&mut self, name: &str, values: &[String], lengths: &[usize]) -> String {
         let zeros = lengths.iter().rev().fold(ZERO.to_owned(), |inner, n| format!("[{inner}; {n}]"));
-        let _ = writeln!(self.out, "    let mut {name} = {zeros};");
+        let mutable = if values.iter().any(|value| value != ZERO) { "mut " } else { "" };
+        let _ = writeln!(self.out, "    let {mutable}{name} = {zeros};");
         for (k, value) in values.iter().enumerate().filter(|(_, value)| *value != ZERO) {
             let _ = writeln!(self.out, "    {name}{} = {};", index(k, lengths), bare(value));
         }

@@ -190,6 +190,12 @@ fn what_a_robot_cannot_have_is_said_when_it_is_built() {
     assert!(matches!(error, Error::NoMass { .. }), "{error}");
     let error = refusal(URDF, &asks(&["mass_matrix", "mass_matrix = gravity_torque"]));
     assert!(matches!(error, Error::SameName { .. }), "{error}");
+    let error = refusal(URDF, &asks(&["a_1 = mass_matrix + placements", "a1 = mass_matrix + gravity_torque"]));
+    assert!(matches!(error, Error::SameName { .. }), "{error}");
+    let error = refusal(&URDF.replace("\"fore\"", "\"to-ol\"").replace("\"tool\"", "\"to_ol\""), &|r| {
+        r.options.parameters = vec!["payload(to-ol)".into(), "payload(to_ol)".into()];
+    });
+    assert!(matches!(&error, Error::Parameter { reason, .. } if reason.contains("TO_OL_PAYLOAD")), "{error}");
     let error = refusal(URDF, &asks(&["x = bias_forces(v = [0, 0])"]));
     assert!(error.to_string().contains("found 2 numbers, expected 3"), "{error}");
     for (parameter, part) in

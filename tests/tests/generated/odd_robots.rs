@@ -45,6 +45,26 @@ fn a_chain_of_a_thousand_joints_is_generated() {
     assert!(operations < 300_000, "{operations}");
 }
 
+/// Slides alone: no Coriolis force, and a large matrix of nothing, which compiles without a warning.
+#[test]
+fn a_result_of_zeros_compiles() {
+    use std::fmt::Write;
+    let mut urdf = String::from("<robot name='gantry'><link name='l0'/>");
+    for k in 1..=9 {
+        let _ = write!(
+            urdf,
+            "<link name='l{k}'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>\
+             <joint name='j{k}' type='prismatic'><parent link='l{}'/><child link='l{k}'/><axis xyz='0 0 1'/>\
+             <limit lower='-1' upper='1' effort='1' velocity='1'/></joint>",
+            k - 1
+        );
+    }
+    let mut request = Request::new("gantry.urdf", urdf + "</robot>");
+    request.options.functions = vec!["coriolis_matrix".into()];
+    let program = Program::build(&[("gantry", &generate(&request).unwrap())], &["-C", "opt-level=0"]);
+    assert_eq!(program.run("gantry", "coriolis_matrix", &[vec![&[0.5; 9], &[1.0; 9]]]), [vec![0.0; 81]]);
+}
+
 /// No function asked for: a module of constants.
 #[test]
 fn a_robot_without_functions_compiles() {

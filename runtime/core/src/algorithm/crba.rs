@@ -60,8 +60,8 @@ fn column<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, k: usize
     }
 }
 
-/// As [`mass_matrix`], in common axes, to go with other matrices that are: turns each inertia once, and carries wrenches without turning them. That is faster
-/// without symbols, but a thin body's moment about its axis is then as good as its largest moment, no better.
+/// As [`mass_matrix`], in common axes, to go with other matrices that are: turns each inertia once, and carries wrenches without turning them. A thin body's
+/// moment about its axis is then as good as its largest moment, no better.
 ///
 /// # Panics
 /// As [`mass_matrix`].

@@ -8,7 +8,7 @@ use super::Workspace;
 use super::common::{Axes, accelerations, positions, twists};
 use crate::Scalar;
 use crate::model::Model;
-use crate::spatial::{Matrix3, SpatialInertia, Twist, Vector3, rate_matrix, rotate, rotate_back};
+use crate::spatial::{Matrix3, Twist, Vector3, rate_matrix, rotate_back};
 
 /// Inertial parameters of a link.
 pub const PARAMETERS: usize = 10;
@@ -118,13 +118,10 @@ impl<S: Scalar> Model<S> {
     /// π of every moving link, `[links][10]`: m, h = m c, and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz about the origin of the link's frame, in its axes; kg, kg·m,
     /// kg·m².
     pub fn inertial_parameters(&self) -> alloc::vec::Vec<[S; PARAMETERS]> {
-        let one = |i: usize| parameters(&self.bodies[i].inertia, self.bodies[i].link.as_ref());
+        let one = |i: usize| {
+            let (inertia, link) = (&self.bodies[i].inertia, &self.bodies[i].link);
+            link.map_or(*inertia, |link| inertia.turned(&link.transpose())).parameters()
+        };
         self.links().map(one).collect()
     }
-}
-
-fn parameters<S: Scalar>(inertia: &SpatialInertia<S>, link: Option<&Matrix3<S>>) -> [S; PARAMETERS] {
-    let back = link.map_or_else(Matrix3::identity, Matrix3::transpose);
-    let (h, i) = (rotate(&back, inertia.first), inertia.turned(&back).rotational());
-    [inertia.mass, h.x, h.y, h.z, i.m11, i.m12, i.m13, i.m22, i.m23, i.m33]
 }

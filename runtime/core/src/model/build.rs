@@ -204,7 +204,7 @@ impl<'a> Builder<'a> {
     fn seat(&mut self, link: usize, body: usize, placement: Placement<f64>) {
         self.seats[link] = Some((body, placement));
         if let Some(inertial) = &self.description.links[link].inertial {
-            self.model.bodies[body].inertia += inertia(inertial).moved(&placement);
+            self.model.bodies[body].inertia += inertial.spatial_inertia().moved(&placement);
         }
     }
 
@@ -312,8 +312,11 @@ fn placement(origin: &Origin) -> Placement<f64> {
     Placement { rotation: from_rpy(origin.rpy), position: Vector3::from(origin.xyz) }
 }
 
-fn inertia(i: &Inertial) -> SpatialInertia<f64> {
-    let [xx, xy, xz, yy, yz, zz] = i.inertia;
-    let central = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-    SpatialInertia::from_central(i.mass, central, &placement(&i.origin))
+impl Inertial {
+    /// About the origin of the link's frame, in its axes.
+    pub fn spatial_inertia(&self) -> SpatialInertia<f64> {
+        let [xx, xy, xz, yy, yz, zz] = self.inertia;
+        let central = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+        SpatialInertia::from_central(self.mass, central, &placement(&self.origin))
+    }
 }

@@ -90,6 +90,20 @@ impl<S: Scalar> SpatialInertia<S> {
         Matrix3::from_diagonal_element(self.second.trace()) - self.second
     }
 
+    /// From the ten inertial parameters m, m·c and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz, I about the origin; kg, kg·m, kg·m². Σ = ½ tr(I)·1 − I.
+    pub fn from_parameters(p: [S; 10]) -> Self {
+        let [mass, hx, hy, hz, xx, xy, xz, yy, yz, zz] = p;
+        let half = S::from_f64(0.5) * (xx + yy + zz);
+        let second = Matrix3::new(half - xx, -xy, -xz, -xy, half - yy, -yz, -xz, -yz, half - zz);
+        Self { mass, first: Vector3::new(hx, hy, hz), second }
+    }
+
+    /// The ten inertial parameters, as [`SpatialInertia::from_parameters`] takes them.
+    pub fn parameters(&self) -> [S; 10] {
+        let (h, i) = (self.first, self.rotational());
+        [self.mass, h.x, h.y, h.z, i.m11, i.m12, i.m13, i.m22, i.m23, i.m33]
+    }
+
     /// The same inertia in another scalar.
     #[cfg(feature = "alloc")]
     pub(crate) fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> SpatialInertia<T> {
@@ -126,6 +140,14 @@ mod tests {
         let c = x.position;
         let expected = x.rotation * i * x.rotation.transpose() + (Matrix3::identity() * c.dot(&c) - c * c.transpose()) * m;
         assert!((SpatialInertia::from_central(m, i, &x).rotational() - expected).amax() < 1e-15);
+    }
+
+    #[test]
+    fn parameters_and_moments_are_each_others() {
+        let (m, i, x) = body();
+        let g = SpatialInertia::from_central(m, i, &x);
+        let back = SpatialInertia::from_parameters(g.parameters());
+        assert!((back.second - g.second).amax() < 1e-15 && (back.mass, back.first) == (g.mass, g.first));
     }
 
     #[test]
