@@ -2,10 +2,8 @@
 
 mod counts;
 mod fold;
-mod hash;
 mod op;
-
-use std::collections::HashMap;
+mod table;
 
 pub use counts::Counts;
 pub use op::{OPS, Op, Row};
@@ -54,7 +52,7 @@ pub struct Graph {
     nodes: Vec<Node>,
     /// The results, in order.
     pub outputs: Vec<NodeId>,
-    ids: HashMap<Node, NodeId, hash::BuildNodeHasher>,
+    places: table::Places,
     asked: Counts,
 }
 
@@ -104,16 +102,16 @@ impl Graph {
 
     /// Whether exactly this node is there already.
     fn find(&self, op: Op, a: NodeId, b: NodeId) -> Option<NodeId> {
-        self.ids.get(&Node { op, args: [a.0, b.0, 0] }).copied()
+        self.places.find(&self.nodes, &Node { op, args: [a.0, b.0, 0] }).map(NodeId)
     }
 
     fn intern(&mut self, node: Node) -> NodeId {
-        let next = NodeId(self.nodes.len() as u32);
-        let id = *self.ids.entry(node).or_insert(next);
+        let next = self.nodes.len() as u32;
+        let id = self.places.find_or_insert(&self.nodes, &node, next);
         if id == next {
             self.nodes.push(node);
         }
-        id
+        NodeId(id)
     }
 
     /// Copies a leaf (constant or input) of another graph.
