@@ -24,6 +24,8 @@ pub mod description;
 pub mod dynamics;
 pub mod joint;
 #[cfg(feature = "alloc")]
+pub mod lanes;
+#[cfg(feature = "alloc")]
 pub mod model;
 #[cfg(feature = "std")]
 pub mod trig;

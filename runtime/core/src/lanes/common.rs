@@ -1,0 +1,48 @@
+
+functions! {
+    pub(super) fn load(from: &[Real; LANES]) -> V {
+        lanes(*from)
+    }
+
+    pub(super) fn store(x: V, to: &mut [Real; LANES]) {
+        *to = array(x);
+    }
+
+    pub(super) fn lane<const K: usize>(x: V) -> Real {
+        array(x)[K]
+    }
+
+    pub(super) fn atan2(y: V, x: V) -> V {
+        let (mut angles, x) = (array(y), array(x));
+        atan2_each(&mut angles, &x);
+        lanes(angles)
+    }
+
+    // By the standard library where |x| is beyond the limit, or x is not a number.
+    pub(super) fn sin_cos(x: V) -> (V, V) {
+        let (sin, cos) = polynomials(x);
+        if within(x, k(LIMIT)) {
+            return (sin, cos);
+        }
+        let (mut sin, mut cos) = (array(sin), array(cos));
+        sin_cos_beyond(&array(x), &mut sin, &mut cos);
+        (lanes(sin), lanes(cos))
+    }
+}
+
+#[inline(never)]
+fn atan2_each(y: &mut [Real; LANES], x: &[Real; LANES]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y = y.atan2(*x);
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn sin_cos_beyond(x: &[Real; LANES], sin: &mut [Real; LANES], cos: &mut [Real; LANES]) {
+    for ((x, sin), cos) in x.iter().zip(sin).zip(cos) {
+        if !(f64::from(x.abs()) <= LIMIT) {
+            (*sin, *cos) = x.sin_cos();
+        }
+    }
+}

@@ -1,0 +1,97 @@
+pub(super) type V = [Real; LANES];
+pub(super) type M = [bool; LANES];
+
+macro_rules! functions {
+    ($($item:item)*) => { $(#[inline(always)] $item)* };
+}
+
+/// Whether a·b + c is one instruction with one rounding.
+const FMA: bool = ::core::cfg!(any(target_feature = "fma", target_arch = "aarch64"));
+
+#[inline(always)]
+fn fma(a: Real, b: Real, c: Real) -> Real {
+    if FMA { a.mul_add(b, c) } else { a * b + c }
+}
+
+functions! {
+    pub(super) fn k(x: f64) -> V {
+        [x as Real; LANES]
+    }
+
+    pub(super) fn add(a: V, b: V) -> V {
+        each!(i => a[i] + b[i])
+    }
+
+    pub(super) fn sub(a: V, b: V) -> V {
+        each!(i => a[i] - b[i])
+    }
+
+    pub(super) fn mul(a: V, b: V) -> V {
+        each!(i => a[i] * b[i])
+    }
+
+    pub(super) fn div(a: V, b: V) -> V {
+        each!(i => a[i] / b[i])
+    }
+
+    pub(super) fn neg(x: V) -> V {
+        each!(i => -x[i])
+    }
+
+    pub(super) fn fmadd(a: V, b: V, c: V) -> V {
+        each!(i => fma(a[i], b[i], c[i]))
+    }
+
+    pub(super) fn fmsub(a: V, b: V, c: V) -> V {
+        each!(i => fma(a[i], b[i], -c[i]))
+    }
+
+    pub(super) fn fnmadd(a: V, b: V, c: V) -> V {
+        each!(i => fma(-a[i], b[i], c[i]))
+    }
+
+    pub(super) fn fnmsub(a: V, b: V, c: V) -> V {
+        each!(i => fma(-a[i], b[i], -c[i]))
+    }
+
+    pub(super) fn sqrt(x: V) -> V {
+        each!(i => x[i].sqrt())
+    }
+
+    pub(super) fn positive(x: V) -> M {
+        each!(i => x[i] > 0.0)
+    }
+
+    pub(super) fn select(m: M, a: V, b: V) -> V {
+        each!(i => if m[i] { a[i] } else { b[i] })
+    }
+
+    pub(super) fn across(x: V) -> V {
+        let (mut sum, mut step) = (x, 1);
+        while step < LANES {
+            sum = each!(i => sum[i] + sum[i ^ step]);
+            step *= 2;
+        }
+        sum
+    }
+
+    pub(super) fn lanes(x: [Real; LANES]) -> V {
+        x
+    }
+
+    pub(super) fn array(x: V) -> [Real; LANES] {
+        x
+    }
+
+    fn within(x: V, limit: V) -> bool {
+        let within: M = each!(i => x[i].abs() <= limit[i]);
+        !within.contains(&false)
+    }
+
+    fn turn(quadrant: V, sin: V, cos: V) -> (V, V) {
+        let odd: M = each!(i => quadrant[i].to_bits() & 1 != 0);
+        let sign: [Bits; LANES] = each!(i => (quadrant[i].to_bits() >> 1) << (Bits::BITS - 1));
+        let (s, c) = (select(odd, cos, sin), select(odd, neg(sin), cos));
+        (each!(i => Real::from_bits(s[i].to_bits() ^ sign[i])), each!(i => Real::from_bits(c[i].to_bits() ^ sign[i])))
+    }
+}

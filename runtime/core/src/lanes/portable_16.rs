@@ -1,0 +1,12 @@
+pub(super) const LANES: usize = 16;
+
+macro_rules! each {
+    ($i:ident => $value:expr) => {
+        [
+            { let $i = 0; $value }, { let $i = 1; $value }, { let $i = 2; $value }, { let $i = 3; $value },
+            { let $i = 4; $value }, { let $i = 5; $value }, { let $i = 6; $value }, { let $i = 7; $value },
+            { let $i = 8; $value }, { let $i = 9; $value }, { let $i = 10; $value }, { let $i = 11; $value },
+            { let $i = 12; $value }, { let $i = 13; $value }, { let $i = 14; $value }, { let $i = 15; $value },
+        ]
+    };
+}
