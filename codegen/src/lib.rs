@@ -13,6 +13,7 @@ mod emit;
 mod error;
 pub mod graph;
 pub mod ledger;
+mod limbs;
 mod parameters;
 pub mod pass;
 mod program;

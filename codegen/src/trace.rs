@@ -7,7 +7,9 @@ use articulated_core::model::pass::model_passes;
 use num_traits::Zero;
 
 use crate::graph::Graph;
+use crate::limbs::{Alike, Constants, pack};
 use crate::parameters::Parameter;
+use crate::pass::live;
 use crate::sym::{self, Sym};
 use crate::wanted::{Part, Wanted};
 
@@ -27,13 +29,32 @@ pub(crate) fn trace(wanted: &Wanted, choices: &[Choice], model: &Model<f64>, par
         for p in parameters {
             p.put(&mut symbolic, |k| Sym::input(arguments.len(), k));
         }
-        wanted.parts.iter().zip(choices).flat_map(|(part, choice)| run(part, choice, &symbolic, &arguments)).collect()
+        let run = |(part, choice): (&Part, &Choice)| run(part, choice.way, &passed(part, choice, &symbolic), &arguments);
+        wanted.parts.iter().zip(choices).flat_map(run).collect()
     })
 }
 
-fn run(part: &Part, choice: &Choice, model: &Model<Sym>, arguments: &[Argument]) -> Vec<Sym> {
-    let passes = model_passes::<Sym>().iter().take(if part.function.regrouped { choice.passes } else { 0 });
-    let model = passes.fold(model.clone(), |model, (_, pass, _)| pass(model));
+/// The same with branches that are alike in lanes.
+pub(crate) fn trace_in_lanes(wanted: &Wanted, choices: &[Choice], model: &Model<f64>, alike: &Alike) -> Graph {
+    let arguments = wanted.arguments();
+    let mut constants = Constants::new(arguments.len());
+    let graph = sym::trace(|| {
+        let mut run = |(part, choice): (&Part, &Choice)| {
+            let symbolic = alike.symbolic(&passed(part, choice, model), &mut constants);
+            run(part, choice.way, &symbolic, &arguments)
+        };
+        wanted.parts.iter().zip(choices).flat_map(&mut run).collect()
+    });
+    pack(&live(&graph), &arguments, alike, &constants)
+}
+
+/// The model after the passes that are chosen.
+fn passed<S: Scalar>(part: &Part, choice: &Choice, model: &Model<S>) -> Model<S> {
+    let passes = model_passes::<S>().iter().take(if part.function.regrouped { choice.passes } else { 0 });
+    passes.fold(model.clone(), |model, (_, pass, _)| pass(model))
+}
+
+fn run(part: &Part, way: &Way<Sym>, model: &Model<Sym>, arguments: &[Argument]) -> Vec<Sym> {
     let shape = model.shape();
     let vector = |argument: &Argument| -> Vec<Sym> {
         let place = arguments.iter().position(|a| a == argument);
@@ -47,7 +68,7 @@ fn run(part: &Part, choice: &Choice, model: &Model<Sym>, arguments: &[Argument])
     let vectors: Vec<Vec<Sym>> = part.function.takes.iter().map(vector).collect();
     let slices: Vec<&[Sym]> = vectors.iter().map(Vec::as_slice).collect();
     let mut out = vec![Sym::zero(); part.function.len(shape)];
-    let called = part.function.call_by(choice.way, &model, &mut Workspace::new(&model), &slices, &mut out);
+    let called = part.function.call_by(way, model, &mut Workspace::new(model), &slices, &mut out);
     debug_assert!(called.is_ok(), "arguments were made to measure");
     out
 }

@@ -2,12 +2,12 @@
 //!
 //! Each rule is exact in real arithmetic for finite values; those that are not exact in floating point only leave out a rounding.
 
-use super::{Graph, NodeId, Op};
+use super::{Graph, MOST, NodeId, Op, Value, apply};
 
 /// The node for `op` on `x`, made as simple as its operands allow.
 pub(super) fn fold(g: &mut Graph, op: Op, x: &[NodeId]) -> NodeId {
     if let Some(value) = constant_value(g, op, x) {
-        return g.constant(value);
+        return g.lane_constant(value);
     }
     match op {
         Op::Add => add(g, x[0], x[1]),
@@ -22,13 +22,16 @@ pub(super) fn fold(g: &mut Graph, op: Op, x: &[NodeId]) -> NodeId {
     }
 }
 
-fn constant_value(g: &Graph, op: Op, x: &[NodeId]) -> Option<f64> {
-    let mut values = [0.0; 3];
-    for (value, id) in values.iter_mut().zip(x) {
-        *value = g.node(*id).constant()?;
+fn constant_value(g: &Graph, op: Op, x: &[NodeId]) -> Option<Value> {
+    if matches!(op, Op::Spread | Op::Across) {
+        return None;
     }
-    let value = (op.row().value)(values[0], values[1], values[2]);
-    value.is_finite().then_some(value)
+    let mut values = [[0.0; MOST]; 3];
+    for (value, id) in values.iter_mut().zip(x) {
+        *value = g.constant_value(*id)?;
+    }
+    let value = apply(op, values);
+    value.iter().all(|y| y.is_finite()).then_some(value)
 }
 
 fn is(g: &Graph, x: NodeId, value: f64) -> bool {

@@ -2,10 +2,12 @@
 
 mod counts;
 mod fold;
+mod lanes;
 mod op;
 mod table;
 
 pub use counts::Counts;
+pub use lanes::{Lanes, MOST, Value};
 pub use op::{OPS, Op, Row};
 
 /// A node's number in its graph.
@@ -19,7 +21,8 @@ impl NodeId {
     }
 }
 
-/// An operation with its operands. A constant holds its bits in `args`, an input the number of the argument and the index in it.
+/// An operation with its operands. A constant holds its bits in `args`, an input the number of the argument and the index in it; a lane constant its number in
+/// [`Lanes`], a lane input the number of the argument and its number there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Node {
     /// The operation.
@@ -46,6 +49,11 @@ impl Node {
     }
 }
 
+/// An operation, lane by lane.
+fn apply(op: Op, x: [Value; 3]) -> Value {
+    std::array::from_fn(|k| (op.row().value)(x[0][k], x[1][k], x[2][k]))
+}
+
 /// A program: nodes, each after its operands, and the nodes that are its outputs.
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
@@ -54,9 +62,26 @@ pub struct Graph {
     pub outputs: Vec<NodeId>,
     places: table::Places,
     asked: Counts,
+    lanes: Lanes,
 }
 
 impl Graph {
+    /// An empty graph whose values have this many lanes.
+    pub fn in_lanes(width: usize) -> Self {
+        Self { lanes: Lanes::new(width), ..Self::default() }
+    }
+
+    /// An empty graph that leaves of this one can be copied to.
+    #[must_use]
+    pub fn emptied(&self) -> Self {
+        Self { lanes: self.lanes.clone(), ..Self::default() }
+    }
+
+    /// The tables of lane constants and lane inputs.
+    pub fn lanes(&self) -> &Lanes {
+        &self.lanes
+    }
+
     /// The nodes in order.
     pub fn nodes(&self) -> &[Node] {
         &self.nodes
@@ -80,6 +105,31 @@ impl Graph {
     /// The node for element `index` of argument number `argument`.
     pub fn input(&mut self, argument: usize, index: usize) -> NodeId {
         self.intern(Node { op: Op::Input, args: [argument as u32, index as u32, 0] })
+    }
+
+    /// The node for numbers, one a lane.
+    pub fn lane_constant(&mut self, x: Value) -> NodeId {
+        if x.iter().take(self.lanes.width).all(|y| *y == x[0]) {
+            return self.constant(x[0]);
+        }
+        // As for constants: −0 is 0.
+        let number = self.lanes.add_constant(x.map(|y| y + 0.0));
+        self.intern(Node { op: Op::LaneConstant, args: [number, 0, 0] })
+    }
+
+    /// The node for elements of an argument, one a lane.
+    pub fn lane_input(&mut self, argument: usize, indices: &[usize]) -> NodeId {
+        let number = self.lanes.add_input(indices);
+        self.intern(Node { op: Op::LaneInput, args: [argument as u32, number, 0] })
+    }
+
+    /// The value of a node that is a constant in each lane.
+    pub fn constant_value(&self, id: NodeId) -> Option<Value> {
+        let node = self.node(id);
+        match node.op {
+            Op::LaneConstant => Some(self.lanes.constant(node.args[0])),
+            _ => node.constant().map(|x| [x; MOST]),
+        }
     }
 
     /// The node for an operation on nodes, folded: it may be a simpler one, or one that is there already.
@@ -137,19 +187,27 @@ impl Graph {
         counts
     }
 
-    /// Evaluates the graph; `input(argument, index)` gives the inputs.
+    /// Evaluates the graph; `input(argument, index)` gives the inputs. Of results with several lanes, the first.
     pub fn evaluate(&self, input: impl Fn(usize, usize) -> f64) -> Vec<f64> {
-        let mut values: Vec<f64> = Vec::with_capacity(self.nodes.len());
+        let mut values: Vec<Value> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
-            let at = |k: usize| values.get(node.args[k] as usize).copied().unwrap_or(f64::NAN);
+            let at = |k: usize| values.get(node.args[k] as usize).copied().unwrap_or([f64::NAN; MOST]);
+            let width = self.lanes.width;
             let value = match node.op {
-                Op::Constant => node.constant().unwrap_or(f64::NAN),
-                Op::Input => input(node.args[0] as usize, node.args[1] as usize),
-                op => (op.row().value)(at(0), at(1), at(2)),
+                Op::Constant => [node.constant().unwrap_or(f64::NAN); MOST],
+                Op::Input => [input(node.args[0] as usize, node.args[1] as usize); MOST],
+                Op::LaneConstant => self.lanes.constant(node.args[0]),
+                Op::LaneInput => {
+                    let indices = self.lanes.input(node.args[1]);
+                    std::array::from_fn(|k| input(node.args[0] as usize, indices[k % width] as usize))
+                }
+                Op::Spread => [at(0)[at(1)[0] as usize]; MOST],
+                Op::Across => [at(0)[..width].iter().sum(); MOST],
+                op => apply(op, [at(0), at(1), at(2)]),
             };
             values.push(value);
         }
-        self.outputs.iter().map(|id| values[id.index()]).collect()
+        self.outputs.iter().map(|id| values[id.index()][0]).collect()
     }
 
     /// Checks what every pass must keep: operands stand before their uses, and outputs exist.

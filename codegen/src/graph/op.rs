@@ -38,6 +38,14 @@ pub enum Op {
     NegMulAdd,
     /// −(a · b) − c
     NegMulSub,
+    /// Numbers, one a lane
+    LaneConstant,
+    /// Elements of an argument, one a lane
+    LaneInput,
+    /// lane number b of a, in every lane
+    Spread,
+    /// the sum of a's lanes, in every lane
+    Across,
 }
 
 /// What the generator knows of an operation.
@@ -59,8 +67,12 @@ pub struct Row {
     pub latency: u32,
     /// How it is written in Rust, with {a}, {b}, {c} for the operands.
     pub rust: &'static str,
+    /// The function that does it in all lanes of a vector, see [`articulated_core::lanes`].
+    pub lanes: &'static str,
 }
 
+#[allow(clippy::too_many_arguments)]
+// Why: a row of a table.
 const fn row(
     op: Op,
     name: &'static str,
@@ -69,8 +81,9 @@ const fn row(
     cost: u32,
     latency: u32,
     rust: &'static str,
+    lanes: &'static str,
 ) -> Row {
-    Row { op, name, arity, commutes: false, value, cost, latency, rust }
+    Row { op, name, arity, commutes: false, value, cost, latency, rust, lanes }
 }
 
 const fn commuting(row: Row) -> Row {
@@ -78,24 +91,28 @@ const fn commuting(row: Row) -> Row {
 }
 
 /// All operations, in the order of [`Op`].
-pub const OPS: [Row; 17] = [
-    row(Op::Constant, "constants", 0, |_, _, _| f64::NAN, 0, 0, ""),
-    row(Op::Input, "inputs", 0, |_, _, _| f64::NAN, 0, 0, ""),
-    commuting(row(Op::Add, "add", 2, |a, b, _| a + b, 1, 4, "{a} + {b}")),
-    row(Op::Sub, "sub", 2, |a, b, _| a - b, 1, 4, "{a} - {b}"),
-    commuting(row(Op::Mul, "mul", 2, |a, b, _| a * b, 1, 4, "{a} * {b}")),
-    row(Op::Div, "div", 2, |a, b, _| a / b, 4, 13, "{a} / {b}"),
-    row(Op::Neg, "neg", 1, |a, _, _| -a, 1, 1, "-{a}"),
-    row(Op::Sqrt, "sqrt", 1, |a, _, _| a.sqrt(), 4, 18, "{a}.sqrt()"),
-    row(Op::Sin, "sin", 1, |a, _, _| a.sin(), 10, 60, "{a}.sin()"),
-    row(Op::Cos, "cos", 1, |a, _, _| a.cos(), 10, 60, "{a}.cos()"),
-    row(Op::Atan2, "atan2", 2, |a, b, _| a.atan2(b), 20, 80, "f64::atan2({a}, {b})"),
-    row(Op::Positive, "compare", 1, |a, _, _| if a > 0.0 { 1.0 } else { 0.0 }, 1, 3, "{a} > 0.0"),
-    row(Op::Select, "select", 3, |a, b, c| if a == 1.0 { b } else { c }, 1, 2, "if {a} { {b} } else { {c} }"),
-    commuting(row(Op::MulAdd, "fma", 3, |a, b, c| a * b + c, 1, 4, "fma({a}, {b}, {c})")),
-    commuting(row(Op::MulSub, "fma", 3, |a, b, c| a * b - c, 1, 4, "fma({a}, {b}, -{c})")),
-    commuting(row(Op::NegMulAdd, "fma", 3, |a, b, c| c - a * b, 1, 4, "fma(-{a}, {b}, {c})")),
-    commuting(row(Op::NegMulSub, "fma", 3, |a, b, c| -(a * b) - c, 1, 4, "fma(-{a}, {b}, -{c})")),
+pub const OPS: [Row; 21] = [
+    row(Op::Constant, "constants", 0, |_, _, _| f64::NAN, 0, 0, "", ""),
+    row(Op::Input, "inputs", 0, |_, _, _| f64::NAN, 0, 0, "", ""),
+    commuting(row(Op::Add, "add", 2, |a, b, _| a + b, 1, 4, "{a} + {b}", "add")),
+    row(Op::Sub, "sub", 2, |a, b, _| a - b, 1, 4, "{a} - {b}", "sub"),
+    commuting(row(Op::Mul, "mul", 2, |a, b, _| a * b, 1, 4, "{a} * {b}", "mul")),
+    row(Op::Div, "div", 2, |a, b, _| a / b, 4, 13, "{a} / {b}", "div"),
+    row(Op::Neg, "neg", 1, |a, _, _| -a, 1, 1, "-{a}", "neg"),
+    row(Op::Sqrt, "sqrt", 1, |a, _, _| a.sqrt(), 4, 18, "{a}.sqrt()", "sqrt"),
+    row(Op::Sin, "sin", 1, |a, _, _| a.sin(), 10, 60, "{a}.sin()", ""),
+    row(Op::Cos, "cos", 1, |a, _, _| a.cos(), 10, 60, "{a}.cos()", ""),
+    row(Op::Atan2, "atan2", 2, |a, b, _| a.atan2(b), 20, 80, "f64::atan2({a}, {b})", "atan2"),
+    row(Op::Positive, "compare", 1, |a, _, _| if a > 0.0 { 1.0 } else { 0.0 }, 1, 3, "{a} > 0.0", "positive"),
+    row(Op::Select, "select", 3, |a, b, c| if a == 1.0 { b } else { c }, 1, 2, "if {a} { {b} } else { {c} }", "select"),
+    commuting(row(Op::MulAdd, "fma", 3, |a, b, c| a * b + c, 1, 4, "fma({a}, {b}, {c})", "fmadd")),
+    commuting(row(Op::MulSub, "fma", 3, |a, b, c| a * b - c, 1, 4, "fma({a}, {b}, -{c})", "fmsub")),
+    commuting(row(Op::NegMulAdd, "fma", 3, |a, b, c| c - a * b, 1, 4, "fma(-{a}, {b}, {c})", "fnmadd")),
+    commuting(row(Op::NegMulSub, "fma", 3, |a, b, c| -(a * b) - c, 1, 4, "fma(-{a}, {b}, -{c})", "fnmsub")),
+    row(Op::LaneConstant, "lane constants", 0, |_, _, _| f64::NAN, 0, 0, "", ""),
+    row(Op::LaneInput, "lane inputs", 0, |_, _, _| f64::NAN, 0, 0, "", ""),
+    row(Op::Spread, "spread", 2, |a, _, _| a, 1, 3, "", "spread"),
+    row(Op::Across, "across", 1, |a, _, _| a, 4, 14, "", "across"),
 ];
 
 impl Op {

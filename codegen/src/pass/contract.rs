@@ -10,7 +10,7 @@ use crate::graph::{Graph, Node, NodeId, Op};
 /// those are chosen so that as few as possible are. Re-association changes results by roundings only.
 pub fn contract(graph: &Graph) -> Graph {
     let sums = Sums::of(graph);
-    let mut builder = Builder { graph, new: Graph::default(), ids: vec![NodeId(u32::MAX); graph.nodes().len()], arrival: Vec::new() };
+    let mut builder = Builder { graph, new: graph.emptied(), ids: vec![NodeId(u32::MAX); graph.nodes().len()], arrival: Vec::new() };
     for (k, node) in graph.nodes().iter().enumerate() {
         if !sums.inner[k] && !sums.fused(k) {
             builder.ids[k] = match &sums.terms[k] {

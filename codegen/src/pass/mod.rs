@@ -25,7 +25,7 @@ pub const GRAPH_PASSES: &[(&str, GraphPass, &str)] = &[
 
 /// Rebuilds a graph node by node: `rewrite(new, node, operands)` gives the new node for each old one that `keep` lets through.
 pub(crate) fn rebuild(old: &Graph, keep: impl Fn(usize) -> bool, mut rewrite: impl FnMut(&mut Graph, Node, &[NodeId]) -> NodeId) -> Graph {
-    let mut new = Graph::default();
+    let mut new = old.emptied();
     let mut ids = vec![NodeId(u32::MAX); old.nodes().len()];
     for (k, node) in old.nodes().iter().enumerate().filter(|(k, _)| keep(*k)) {
         ids[k] = if node.op.row().arity == 0 {

@@ -1,6 +1,7 @@
 //! A robot made ready for the algorithms: bodies joined by moving joints, in depth-first order.
 
 mod build;
+mod limbs;
 mod massless;
 pub mod pass;
 
@@ -10,6 +11,7 @@ use alloc::vec::Vec;
 use nalgebra::{Matrix3, Vector3};
 
 pub use build::ModelError;
+pub use limbs::Limbs;
 
 use crate::Scalar;
 use crate::description::{JointKind, Limit};
@@ -168,7 +170,8 @@ impl Model<f64> {
 }
 
 impl<S: Scalar> Body<S> {
-    fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> Body<T> {
+    /// The same body with `f` of each constant, always in the same order.
+    pub fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> Body<T> {
         Body {
             name: self.name.clone(),
             parent: self.parent,
@@ -182,7 +185,8 @@ impl<S: Scalar> Body<S> {
 }
 
 impl<S: Scalar> Frame<S> {
-    fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> Frame<T> {
+    /// The same frame with `f` of each constant, always in the same order.
+    pub fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> Frame<T> {
         Frame { name: self.name.clone(), body: self.body, placement: self.placement.map(f) }
     }
 }

@@ -1,0 +1,151 @@
+//! What of a robot is alike: its indices, and its constants as symbols.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+
+use articulated_core::Scalar;
+use articulated_core::algorithm::{Argument, Dim};
+use articulated_core::model::{Limbs, Model};
+
+use crate::graph::{MOST, Value};
+use crate::sym::Sym;
+
+/// The branches of a robot that go into lanes.
+pub(crate) struct Alike {
+    pub(crate) width: usize,
+    limbs: Vec<Limbs>,
+    q: Indices,
+    v: Indices,
+    frames: Indices,
+}
+
+/// For each index of a vector that belongs to a limb, the indices that go with it, one a lane.
+type Indices = HashMap<usize, Vec<usize>>;
+
+impl Alike {
+    /// The branches in so many lanes; `None` where there are none.
+    pub(crate) fn of(model: &Model<f64>, width: usize) -> Option<Self> {
+        let limbs = model.limbs(width);
+        if limbs.is_empty() {
+            return None;
+        }
+        let mut alike = Self { width, limbs, q: Indices::new(), v: Indices::new(), frames: Indices::new() };
+        for bodies in alike.bodies() {
+            let first = &model.bodies[bodies[0]].joint;
+            let start = |at: fn(&Model<f64>, usize) -> usize| bodies.iter().map(|&i| at(model, i)).collect::<Vec<_>>();
+            align(&mut alike.q, &start(|m, i| m.bodies[i].coordinates.q), first.nq());
+            align(&mut alike.v, &start(|m, i| m.bodies[i].coordinates.v), first.nv());
+            let frames: Vec<Vec<usize>> = bodies.iter().map(|&i| frames_of(model, i)).collect();
+            for k in 0..frames[0].len() {
+                align(&mut alike.frames, &frames.iter().map(|f| f[k]).collect::<Vec<_>>(), 1);
+            }
+        }
+        Some(alike)
+    }
+
+    /// The bodies that go together.
+    fn bodies(&self) -> Vec<Vec<usize>> {
+        self.limbs.iter().flat_map(|l| (0..l.bodies).map(|k| l.aligned(k))).collect()
+    }
+
+    /// The indices that go with index `k` of an argument, and its own lane; `None` for what belongs to no limb.
+    pub(crate) fn lanes(&self, argument: Argument, k: usize) -> Option<(Vec<usize>, usize)> {
+        let (indices, width) = match argument.dims() {
+            [Dim::Nq] => (&self.q, 1),
+            [Dim::Nv] => (&self.v, 1),
+            [Dim::Frames, Dim::Of(width)] => (&self.frames, *width),
+            _ => return None,
+        };
+        let together = indices.get(&(k / width))?;
+        let lane = together.iter().position(|i| *i == k / width)?;
+        Some((together.iter().map(|i| i * width + k % width).collect(), lane))
+    }
+
+    /// The model with a symbol for each constant that differs from limb to limb.
+    pub(crate) fn symbolic(&self, model: &Model<f64>, constants: &mut Constants) -> Model<Sym> {
+        let mut symbolic: Model<Sym> = model.cast();
+        for bodies in self.bodies() {
+            let numbers: Vec<Vec<f64>> = bodies.iter().map(|&i| recorded(|f| drop(model.bodies[i].map(f)))).collect();
+            for (lane, &i) in bodies.iter().enumerate() {
+                let symbols = constants.symbols(&numbers, lane);
+                symbolic.bodies[i] = model.bodies[i].map(|_| next(&symbols));
+            }
+            let frames: Vec<Vec<usize>> = bodies.iter().map(|&i| frames_of(model, i)).collect();
+            for k in 0..frames[0].len() {
+                let numbers: Vec<Vec<f64>> = frames.iter().map(|f| recorded(|g| drop(model.frames[f[k]].map(g)))).collect();
+                for (lane, f) in frames.iter().enumerate() {
+                    let symbols = constants.symbols(&numbers, lane);
+                    symbolic.frames[f[k]] = model.frames[f[k]].map(|_| next(&symbols));
+                }
+            }
+        }
+        symbolic
+    }
+}
+
+fn frames_of(model: &Model<f64>, body: usize) -> Vec<usize> {
+    (0..model.frames.len()).filter(|&k| model.frames[k].body == body).collect()
+}
+
+fn align(indices: &mut Indices, starts: &[usize], n: usize) {
+    for k in 0..n {
+        let together: Vec<usize> = starts.iter().map(|s| s + k).collect();
+        together.iter().for_each(|&i| drop(indices.insert(i, together.clone())));
+    }
+}
+
+/// The numbers that `map` hands to the function it is given.
+fn recorded(map: impl FnOnce(&dyn Fn(f64) -> f64)) -> Vec<f64> {
+    let numbers = RefCell::new(Vec::new());
+    map(&|x| {
+        numbers.borrow_mut().push(x);
+        x
+    });
+    numbers.into_inner()
+}
+
+fn next(symbols: &RefCell<std::vec::IntoIter<Sym>>) -> Sym {
+    symbols.borrow_mut().next().unwrap_or_else(|| Sym::from_f64(f64::NAN))
+}
+
+/// The constants that differ from limb to limb, each set of numbers once.
+#[derive(Debug, Default)]
+pub(crate) struct Constants {
+    /// Number of the argument that stands for them while tracing.
+    pub(crate) argument: usize,
+    numbers: Vec<Value>,
+    places: HashMap<[u64; MOST], usize>,
+}
+
+impl Constants {
+    pub(crate) fn new(argument: usize) -> Self {
+        Self { argument, ..Self::default() }
+    }
+
+    /// The numbers and the lane behind element `index` of the argument.
+    pub(crate) fn behind(&self, index: usize) -> (Value, usize) {
+        (self.numbers[index / MOST], index % MOST)
+    }
+
+    /// Symbols for the numbers of one lane, `numbers[lane]` all of them.
+    fn symbols(&mut self, numbers: &[Vec<f64>], lane: usize) -> RefCell<std::vec::IntoIter<Sym>> {
+        let symbol = |k: usize| self.symbol(std::array::from_fn(|l| numbers[if l < numbers.len() { l } else { 0 }][k]), lane, numbers.len());
+        RefCell::new((0..numbers[lane].len()).map(symbol).collect::<Vec<_>>().into_iter())
+    }
+
+    /// The same number in all lanes is a number; opposite sets are one set and its negative.
+    fn symbol(&mut self, x: Value, lane: usize, width: usize) -> Sym {
+        if x[..width].iter().all(|y| *y == x[0]) {
+            return Sym::from_f64(x[0]);
+        }
+        if x[..width].iter().find(|y| **y != 0.0).is_some_and(|y| *y < 0.0) {
+            return -self.symbol(x.map(|y| -y), lane, width);
+        }
+        let next = self.numbers.len();
+        let place = *self.places.entry(x.map(|y| (y + 0.0).to_bits())).or_insert(next);
+        if place == next {
+            self.numbers.push(x);
+        }
+        Sym::input(self.argument, place * MOST + lane)
+    }
+}
