@@ -122,11 +122,11 @@ fn defined(request: &Request, model: &Model<f64>, massless: &[String], function:
         let n = model.freedoms_of(f.body).len();
         (n < 6).then(|| format!("link {:?} ({n})", f.name))
     };
-    let frames: Vec<String> = model.frames.iter().filter_map(bound).collect();
-    if function.needs == Needs::FreeFrames && !frames.is_empty() {
-        return Err(Error::BoundFrames { file, function: name, frames });
-    }
-    Ok(())
+    let frames: Vec<String> = match function.needs {
+        Needs::FreeFrames => model.frames.iter().filter_map(bound).collect(),
+        _ => Vec::new(),
+    };
+    if frames.is_empty() { Ok(()) } else { Err(Error::BoundFrames { file, function: name, frames }) }
 }
 
 /// The function called `name`, or the error that names the nearest.

@@ -36,17 +36,26 @@ pub(crate) fn program(wanted: &Wanted, model: &Model<f64>, parameters: &[Paramet
 
 /// The way that costs least once the graph passes are done. With parameters, model passes may cost more than they save: then they are not taken.
 fn cheapest(part: &Part, model: &Model<f64>, parameters: &[Parameter], all: usize) -> Choice {
-    let ways = ways(part, model);
     let few = if parameters.is_empty() { all..=all } else { 0..=all };
-    let candidates: Vec<Choice> = ways.iter().flat_map(|way| few.clone().map(move |passes| Choice { way, passes })).collect();
-    match candidates.as_slice() {
-        [one] => *one,
-        many => {
-            let alone = Wanted { name: String::new(), parts: vec![part.clone()] };
-            let price = |c: &&Choice| cost(&alone, **c, model, parameters);
-            many.iter().min_by_key(price).copied().unwrap_or(Choice { way: &part.function.ways[0], passes: all })
+    let ways = ways(part, model);
+    let candidates: Vec<(Choice, u64)> =
+        ways.iter().flat_map(|(way, least)| few.clone().map(move |passes| (Choice { way, passes }, *least))).collect();
+    if let [(one, _)] = candidates.as_slice() {
+        return *one;
+    }
+    let alone = Wanted { name: String::new(), parts: vec![part.clone()] };
+    let mut best: Option<(Choice, u32)> = None;
+    for (choice, least) in candidates {
+        // A way whose least is more than another's cost is not tried: the factorisation of a long chain grows with the cube of its length.
+        if best.is_some_and(|(_, cost)| least > u64::from(cost)) {
+            continue;
+        }
+        let cost = cost(&alone, choice, model, parameters);
+        if best.is_none_or(|(_, other)| cost < other) {
+            best = Some((choice, cost));
         }
     }
+    best.map_or(Choice { way: &part.function.ways[0], passes: all }, |(choice, _)| choice)
 }
 
 fn cost(wanted: &Wanted, choice: Choice, model: &Model<f64>, parameters: &[Parameter]) -> u32 {

@@ -73,13 +73,18 @@ fn run(part: &Part, way: &Way<Sym>, model: &Model<Sym>, arguments: &[Argument]) 
     out
 }
 
-/// The ways of a function that can be had for the model.
-pub(crate) fn ways(part: &Part, model: &Model<f64>) -> Vec<&'static Way<Sym>> {
-    let mut ways: Vec<&'static Way<Sym>> = Vec::new();
+/// The ways of a function that can be had for the model, and what each costs at least; the least first.
+pub(crate) fn ways(part: &Part, model: &Model<f64>) -> Vec<(&'static Way<Sym>, u64)> {
+    if let [one] = part.function.ways {
+        return vec![(one, 0)];
+    }
+    let mut ways: Vec<(&'static Way<Sym>, u64)> = Vec::new();
     let _ = sym::trace(|| {
         let symbolic = model.cast();
-        ways = part.function.ways.iter().filter(|w| (w.applies)(&symbolic)).collect();
+        let applies = part.function.ways.iter().filter(|w| (w.applies)(&symbolic));
+        ways = applies.map(|w| (w, (w.least)(&symbolic))).collect();
         Vec::new()
     });
+    ways.sort_by_key(|(_, least)| *least);
     ways
 }

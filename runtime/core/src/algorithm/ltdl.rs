@@ -1,11 +1,23 @@
 //! M = Lᵀ D L, which keeps the zeros that branches leave in M. Featherstone 2008, §6.5.
 
+use alloc::vec::Vec;
+
 use crate::Scalar;
 
 /// The degrees of freedom on the way from `k` to the base, `k` not among them.
 fn way(below: &[usize], k: usize) -> impl Iterator<Item = usize> {
     let next = |k: usize| below[k].checked_sub(1);
     core::iter::successors(next(k), move |&i| next(i))
+}
+
+/// How many multiplications [`factor`] takes where no element on the way between two joints is zero.
+pub(super) fn multiplications(below: &[usize]) -> u64 {
+    // Joints between each and the base: a joint stands after those.
+    let mut depths: Vec<u64> = Vec::with_capacity(below.len());
+    for &next in below {
+        depths.push(next.checked_sub(1).map_or(0, |i| depths[i] + 1));
+    }
+    depths.iter().map(|d| d * (d + 5) / 2).sum()
 }
 
 /// M = Lᵀ D L in place: L below the diagonal with ones on it, D⁻¹ on the diagonal. From the last row up, so that the zeros between branches stay.

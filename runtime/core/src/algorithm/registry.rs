@@ -162,6 +162,8 @@ pub struct Way<S: 'static> {
     pub name: &'static str,
     /// Whether it can be had for a model.
     pub applies: fn(&Model<S>) -> bool,
+    /// It takes at least so many multiplications where all joints feel each other; zero where that says nothing. What cannot be the cheapest way need not be tried.
+    pub least: fn(&Model<S>) -> u64,
     pub(super) run: Run<S>,
 }
 

@@ -76,16 +76,16 @@ macro_rules! for_each_function {
                 "Echeandia & Wensing, J. Comput. Nonlinear Dyn. 16, 2021";
             forward_dynamics(q, v, tau) -> [Nv] "rad/s²|m/s²", MassMatrix, true,
                 "a = M(q)⁻¹·(τ − h(q, v))", "ABA, or RNEA, CRBA and M = Lᵀ D L; Featherstone 2008, Table 7.1 and §6.5",
-                by ["ABA", untied, articulated_body; "LTDL", always, forward_dynamics];
+                by ["ABA", untied, nothing, articulated_body; "LTDL", always, factorization, forward_dynamics];
             forward_dynamics_with_wrenches(q, v, tau, wrenches) -> [Nv] "rad/s²|m/s²", MassMatrix, true,
                 "a = M(q)⁻¹·(τ + Σ Jᵀw − h(q, v)), with external wrenches w on the frames",
                 "ABA, or RNEA, CRBA and M = Lᵀ D L; Featherstone 2008, Table 7.1 and §6.5",
-                by ["ABA", untied, articulated_body_with_wrenches; "LTDL", always, forward_dynamics_with_wrenches];
+                by ["ABA", untied, nothing, articulated_body_with_wrenches; "LTDL", always, factorization, forward_dynamics_with_wrenches];
             mass_matrix_inverse(q) -> [Nv, Nv] "1/(kg·m²)|…, symmetric", MassMatrix, true,
                 "M(q)⁻¹", "M = Lᵀ D L; Featherstone 2008, §6.5";
             solve_mass_matrix(q, tau) -> [Nv] "rad/s²|m/s²", MassMatrix, true,
                 "M(q)⁻¹·τ, without M⁻¹", "ABA at rest, or M = Lᵀ D L; Featherstone 2008, Table 7.1 and §6.5",
-                by ["ABA", untied, solve_by_articulated_body; "LTDL", always, solve_mass_matrix];
+                by ["ABA", untied, nothing, solve_by_articulated_body; "LTDL", always, factorization, solve_mass_matrix];
             kinetic_energy(q, v) -> [] "J", Nothing, true,
                 "T = ½ Σ Vᵀ G V = ½ vᵀ M v of the moving links", "RNEA at rest; Featherstone 2008, §2.12 and Table 5.1";
             potential_energy(q) -> [] "J, zero at the base frame's origin", Nothing, false,
@@ -179,15 +179,16 @@ macro_rules! argument {
 
 macro_rules! ways {
     ($name:ident, $arguments:tt) => {
-        &[ways!(one "", always, $name, $arguments)]
+        &[ways!(one "", always, nothing, $name, $arguments)]
     };
-    ($name:ident, $arguments:tt, [$($way:literal, $applies:ident, $run:ident);+]) => {
-        &[$(ways!(one $way, $applies, $run, $arguments)),+]
+    ($name:ident, $arguments:tt, [$($way:literal, $applies:ident, $least:ident, $run:ident);+]) => {
+        &[$(ways!(one $way, $applies, $least, $run, $arguments)),+]
     };
-    (one $way:literal, $applies:ident, $run:ident, ($($argument:ident),*)) => {
+    (one $way:literal, $applies:ident, $least:ident, $run:ident, ($($argument:ident),*)) => {
         Way {
             name: $way,
             applies: $applies,
+            least: $least,
             run: |model, ws, arguments, out| {
                 if let &[$($argument),*] = arguments {
                     $run(model, ws, $($argument,)* out);
@@ -241,6 +242,15 @@ for_each_function!(rows);
 
 fn always<S>(_: &Model<S>) -> bool {
     true
+}
+
+fn nothing<S>(_: &Model<S>) -> u64 {
+    0
+}
+
+/// Multiplications of M = Lᵀ D L.
+fn factorization<S: Scalar>(model: &Model<S>) -> u64 {
+    super::ltdl::multiplications(&super::workspace::below(model))
 }
 
 /// Whether no joint follows another: a follower ties branches together, and no recursion along one branch can invert M.

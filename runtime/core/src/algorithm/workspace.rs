@@ -185,7 +185,8 @@ fn middles<S: Scalar>(model: &Model<S>) -> Vec<usize> {
     }
     let middle = |root: usize| {
         let heavy = |i: &usize| weight[*i] * 2 > weight[root];
-        let next = |i: &usize| model.outward().find(|k| model.bodies[*k].parent == *i && heavy(k));
+        // Children stand after their parents.
+        let next = |i: &usize| (i + 1..model.bodies.len()).find(|k| model.bodies[*k].parent == *i && heavy(k));
         core::iter::successors(Some(root), next).last().unwrap_or(root)
     };
     model.outward().filter(|&i| model.bodies[i].parent == 0).map(middle).collect()
@@ -205,7 +206,7 @@ fn inside<S: Scalar>(model: &Model<S>, middles: &[usize]) -> Vec<bool> {
 
 /// For each degree of freedom the number of the next one on the way to the base plus one; 0 where the base is next. The mass matrix is zero
 /// between degrees of freedom neither of which is on the other's way (Featherstone 2008, §6.5). Joints that follow others tie branches together: then all are one chain.
-fn below<S: Scalar>(model: &Model<S>) -> Vec<usize> {
+pub(super) fn below<S: Scalar>(model: &Model<S>) -> Vec<usize> {
     let tied = model.bodies.iter().any(|b| b.coordinates.mimic.is_some());
     let mut below: Vec<usize> = (0..model.nv).collect();
     for i in model.outward().filter(|_| !tied) {

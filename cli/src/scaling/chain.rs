@@ -1,0 +1,70 @@
+//! Serial arms of any length.
+
+use std::fmt::Write;
+
+/// The axes of the joints, one after the other.
+const AXES: [&str; 4] = ["0 0 1", "0 1 0", "1 0 0", "0 -1 0"];
+
+/// Every joint of this number stands askew, as at a wrist.
+const ASKEW: usize = 5;
+
+/// The URDF of a serial arm of `joints` revolute joints: axes that change from joint to joint, every fifth joint askew by angles that are no multiples of π/2, and links
+/// with a centre of mass off every axis and a full inertia. The same number always gives the same arm; a shorter one is the beginning of a longer one.
+pub fn chain(joints: usize) -> String {
+    let mut out = format!("<robot name=\"chain_{joints}\">\n");
+    link(&mut out, 0);
+    for k in 1..=joints {
+        joint(&mut out, k);
+        link(&mut out, k);
+    }
+    out + "</robot>\n"
+}
+
+fn link(out: &mut String, k: usize) {
+    let mass = 0.5 + vary(k, 1);
+    let [x, y, z] = [2, 3, 4].map(|n| 0.1 * vary(k, n) - 0.05);
+    // Second moments about the centre of mass, and from them what a body of those can have.
+    let [a, b, c] = [5, 6, 7].map(|n| mass * (1e-3 + 2e-3 * vary(k, n)));
+    let [xy, xz, yz] = [8, 9, 10].map(|n| mass * (4e-4 * vary(k, n) - 2e-4));
+    let (xx, yy, zz) = (b + c, a + c, a + b);
+    let _ = writeln!(
+        out,
+        "  <link name=\"link_{k}\"><inertial><origin xyz=\"{x:.4} {y:.4} {z:.4}\"/><mass value=\"{mass:.4}\"/>\
+         <inertia ixx=\"{xx:.6}\" ixy=\"{xy:.6}\" ixz=\"{xz:.6}\" iyy=\"{yy:.6}\" iyz=\"{yz:.6}\" izz=\"{zz:.6}\"/></inertial></link>"
+    );
+}
+
+fn joint(out: &mut String, k: usize) {
+    let (parent, axis) = (k - 1, AXES[k % AXES.len()]);
+    let length = 0.1 + 0.2 * vary(k, 11);
+    // Along x and z in turn; every third joint is off the line of the link.
+    let offset = if k % 3 == 0 { 0.05 * vary(k, 12) } else { 0.0 };
+    let (x, z) = if k % 2 == 0 { (length, 0.0) } else { (0.0, length) };
+    let [roll, pitch, yaw] = if k % ASKEW == 0 { [13, 14, 15].map(|n| vary(k, n) - 0.5) } else { [0.0; 3] };
+    let _ = writeln!(
+        out,
+        "  <joint name=\"joint_{k}\" type=\"revolute\"><parent link=\"link_{parent}\"/><child link=\"link_{k}\"/>\
+         <origin xyz=\"{x:.4} {offset:.4} {z:.4}\" rpy=\"{roll:.4} {pitch:.4} {yaw:.4}\"/><axis xyz=\"{axis}\"/>\
+         <limit lower=\"-3\" upper=\"3\" effort=\"100\" velocity=\"3\"/></joint>"
+    );
+}
+
+/// A fixed irregular number in 0…1 for each property of each link.
+fn vary(k: usize, property: usize) -> f64 {
+    ((k * 16 + property) as f64 * 0.618_033_988_749_894_8).fract()
+}
+
+#[cfg(test)]
+mod tests {
+    use articulated_codegen::Request;
+
+    use super::chain;
+
+    #[test]
+    fn a_chain_is_a_robot_without_oddities() {
+        for n in [0, 1, 7, 100] {
+            let reading = articulated_codegen::read(&Request::new("chain.urdf", chain(n))).unwrap();
+            assert_eq!((reading.description.joints.len(), reading.warnings.len(), reading.unused.len()), (n, 0, 0), "{:?}", reading.unused);
+        }
+    }
+}
