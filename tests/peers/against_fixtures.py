@@ -45,22 +45,28 @@ def velocities(name):
 
 
 def orders(peer, fixture):
-    """Our index of each number of the peer's v: a free joint moves by [linear; angular] there. Joints are in our order."""
-    assert [name for name, *_ in peer.joints()] == fixture["joints"]
-    v = []
-    for _, _, start, _, count in peer.joints():
-        v += [start + (k + 3) % 6 if count == 6 else start + k for k in range(count)]
-    return v
+    """Our index of each number of the peer's q and v: a free joint moves by [linear; angular] there."""
+    sizes = {name: (nq, nv) for name, _, _, nq, nv in peer.joints()}
+    iq, iv, starts = 0, 0, {}
+    for name in fixture["joints"]:
+        starts[name] = (iq, iv)
+        iq, iv = iq + sizes[name][0], iv + sizes[name][1]
+    q, v = [0] * iq, [0] * iv
+    for name, q0, v0, nq, nv in peer.joints():
+        ours = starts[name]
+        q[q0 : q0 + nq] = range(ours[0], ours[0] + nq)
+        v[v0 : v0 + nv] = [ours[1] + (k + 3) % 6 if nv == 6 else ours[1] + k for k in range(nv)]
+    return q, v
 
 
-def vector(key, state, v, frames):
+def vector(key, state, q, v, frames):
     if key == "wrenches":  # on the frames of the state only
         values = [0.0] * (6 * len(frames))
         for k, frame in enumerate(state["frames"]):
             at = 6 * frames.index(frame)
             values[at : at + 6] = state["wrenches"][6 * k : 6 * k + 6]
         return values
-    return state[key] if key in ("q", "target") else [state[key][k] for k in v]
+    return [state[key][k] for k in (q if key in ("q", "target") else v)]
 
 
 def in_our_order(name, found, v):
@@ -74,9 +80,9 @@ def in_our_order(name, found, v):
     return found
 
 
-def result(peer, name, state, expected, v, frames):
+def result(peer, name, state, expected, q, v, frames):
     """The peer's result in the state, in our order; of the state's frames, if it is one of frames. `frames`: those that the peer has now."""
-    arguments = [vector(key, state, v, frames) for key in takes(name)]
+    arguments = [vector(key, state, q, v, frames) for key in takes(name)]
     if not name.startswith(FRAMES):
         found = (peer.kept if is_kept(name) else peer.call)(name, len(expected), *arguments)
         return in_our_order(name, found, v)
@@ -103,14 +109,14 @@ def errors(open_peer):
             peer = open_peer(urdf, fixture["base"] == "floating", fixture["gravity"])
         except ValueError:
             continue
-        v, links = orders(peer, fixture), peer.frames()
+        (q, v), links = orders(peer, fixture), peer.frames()
         for state in fixture["states"]:
             for frames in (links, state["frames"]):
                 if links and frames and not peer.choose(frames):
                     continue
                 for name, expected in state["results"].items():
                     if can(peer, name, state, frames if links else []):
-                        found, size = result(peer, name, state, expected, v, frames), max(1.0, *map(abs, expected))
+                        found, size = result(peer, name, state, expected, q, v, frames), max(1.0, *map(abs, expected))
                         worst[name] = max(worst.get(name, 0.0), *(abs(x - y) / size for x, y in zip(found, expected, strict=True)))
         peer.close()
     return worst

@@ -1,84 +1,127 @@
-"""Generates C with CasADi for some robots and builds a peer of it."""
+"""Generates C with CasADi for some robots, one file a function, and builds peers of it."""
 
-import hashlib
 import json
-import subprocess
+import time
 from importlib import metadata
-from pathlib import Path
 
-HERE = Path(__file__).resolve().parent
-MODELS = HERE.parent.parent / "models" / "urdf"
+import library
+from environment import FAST, HERE, NATIVE, REPOSITORY, c_compiler, machine
+
+MODELS = REPOSITORY / "models" / "urdf"
 # robot, floating base, whether its derivatives are generated too (those of a humanoid are 290 000 operations)
 ROBOTS = [("ur5_like", False, True), ("panda_like", False, True), ("quadruped", True, True), ("humanoid", True, False)]
-FLAGS = ["-O3", "-march=native", "-DNDEBUG"]
 
 
 def fnv(data):
+    """FNV-1a of 64 bits."""
     value = 0xCBF29CE484222325
     for byte in data:
         value = (value ^ byte) * 0x100000001B3 & (1 << 64) - 1
     return value
 
 
+def sources():
+    files = [HERE / name for name in ("casadi_peer.cpp", "casadi_code.py", "casadi_build.py", "library.py")]
+    files += [HERE.parent / "oracles" / "engines" / "tree.py", *(MODELS / f"{name}.urdf" for name, *_ in ROBOTS)]
+    return [file.read_text() for file in files]
+
+
 def generate(folder):
-    """A C file for each robot, and the table of them."""
+    """A C file for each function, the table of robots for casadi_peer.cpp, and what each took; kept until a source changes."""
+    shared = {"name": "casadi_code", "path": str(folder / "robots.json"), "casadi": metadata.version("casadi")}
+    current, stamp = library.is_current(shared, [*sources(), json.dumps(shared)])
+    if not current:
+        print("casadi_code: generating", flush=True)
+        made = [generate_robot(folder, *robot) for robot in ROBOTS]
+        write_table(folder, made)
+        (folder / "robots.json").write_text(json.dumps(made))
+        (folder / "robots.stamp").write_text(stamp)
+    return json.loads((folder / "robots.json").read_text())
+
+
+def generate_robot(folder, name, floating, derivatives):
     import casadi
     from casadi_code import Robot
 
-    declarations, table = [], []
-    for name, floating, derivatives in ROBOTS:
-        robot, file = Robot(MODELS / f"{name}.urdf", floating), casadi.CodeGenerator(f"{name}_casadi.c")
-        entries = []
-        for function, (arguments, outputs) in robot.functions().items():
-            if function.endswith("derivatives") and not derivatives:
-                continue
-            code = casadi.Function(f"{name}_{function}", arguments, [casadi.densify(x) for x in outputs], {"cse": True})
-            file.add(code)
-            declarations.append(f'extern "C" int {name}_{function}(const double **, double **, long long *, double *, int);')
-            entries.append(f'{{"{function}", {{{name}_{function}, {code.sz_w()}}}}}')
+    start = time.perf_counter()
+    robot, functions = Robot(MODELS / f"{name}.urdf", floating), {}
+    for function, (arguments, outputs) in robot.functions().items():
+        if function.endswith("derivatives") and not derivatives:
+            continue
+        symbol = f"{name}_{function}"
+        code = casadi.Function(symbol, arguments, [casadi.densify(x) for x in outputs()], {"cse": True})
+        file = casadi.CodeGenerator(f"{symbol}_code.c")
+        file.add(code)
         file.generate(f"{folder}/")
-        joints = ", ".join(f'{{"{joint}", {iq}, {iv}, {nq}, {nv}}}' for joint, iq, iv, nq, nv in robot.joints)
-        hash = fnv((MODELS / f"{name}.urdf").read_bytes())
-        numbers = f"{hash:#x}u, {str(floating).lower()}, {robot.nq}, {robot.nv}"
+        # The first function pays for reading the robot, and each for what it is the first to need.
+        now = time.perf_counter()
+        functions[function] = {"work": code.sz_w(), "operations": operations(code), "generation_seconds": now - start}
+        start = now
+    hash = f"{fnv((MODELS / f'{name}.urdf').read_bytes()):#x}"
+    return {"robot": name, "floating": floating, "hash": hash, "nq": robot.nq, "nv": robot.nv, "joints": robot.joints, "functions": functions}
+
+
+def operations(code):
+    """How many there are, without reading arguments, writing results and constants."""
+    import casadi
+
+    plain = {casadi.OP_INPUT, casadi.OP_OUTPUT, casadi.OP_CONST}
+    return sum(code.instruction_id(k) not in plain for k in range(code.n_instructions()))
+
+
+def write_table(folder, robots):
+    declarations, table = [], []
+    for robot in robots:
+        name, entries = robot["robot"], []
+        for function, what in robot["functions"].items():
+            declarations.append(f'extern "C" int {name}_{function}(const double **, double **, long long *, double *, int);')
+            entries.append(f'{{"{function}", {{{name}_{function}, {what["work"]}}}}}')
+        joints = ", ".join(f'{{"{joint}", {iq}, {iv}, {nq}, {nv}}}' for joint, iq, iv, nq, nv in robot["joints"])
+        numbers = f"{robot['hash']}u, {str(robot['floating']).lower()}, {robot['nq']}, {robot['nv']}"
         table.append(f"    {{{numbers}, {{{joints}}}, {{{', '.join(entries)}}}}},")
     lines = [*declarations, "", "namespace", "{", "const std::vector<Robot> & robots()", "{",
              "  static const std::vector<Robot> all = {", *table, "  };", "  return all;", "}", "}", ""]
     (folder / "casadi_robots.inc").write_text("\n".join(lines))
 
 
-def plan(compilers, out):
-    """`compilers`: (command of C++, version, short name). The C code is compiled as C."""
-    c_of = lambda command: command.replace("clang++", "clang").replace("g++", "gcc")
-    return [{
-        "name": f"casadi_{short}_O3_native", "path": str(out / f"libcasadi_{short}_O3_native.so"), "compiler": command, "c_compiler": c_of(command),
-        "version": version, "flags": " ".join(FLAGS), "casadi": metadata.version("casadi"),
-    } for command, version, short in compilers]
+def plan(found, out):
+    """`found`: (command of C++, version, short name). The C code is compiled as C."""
+    return [entry(command, version, f"{short}_O3_native{suffix}", flags, out)
+            for command, version, short in found for suffix, flags in [("", NATIVE), ("_fastmath", FAST)]]
 
 
-def build(peer, out, machine):
-    library, made_of = Path(peer["path"]), hashlib.sha256()
-    sources = [HERE / name for name in ("casadi_peer.cpp", "casadi_code.py", "casadi_build.py")]
-    sources += [HERE.parent / "oracles" / "engines" / "tree.py", *(MODELS / f"{name}.urdf" for name, *_ in ROBOTS)]
-    for part in (*[source.read_text() for source in sources], json.dumps(peer), machine):
-        made_of.update(part.encode())
-    stamp = library.with_suffix(".stamp")
-    if library.exists() and stamp.exists() and stamp.read_text() == made_of.hexdigest():
-        print(f"{peer['name']}: up to date")
-        return
-    print(f"{peer['name']}: generating and compiling, some minutes", flush=True)
-    folder = out / f"{peer['name']}_code"
-    folder.mkdir(exist_ok=True)
-    generate(folder)
-    objects = []
-    for name, *_ in ROBOTS:
-        objects.append(folder / f"{name}.o")
-        source = folder / f"{name}_casadi.c"
-        subprocess.check_call([peer["c_compiler"], "-w", "-fPIC", "-fvisibility=hidden", *FLAGS, "-c", source, "-o", objects[-1]])
+def entry(command, version, suffix, flags, out):
+    name = f"casadi_{suffix}"
+    return {
+        "name": name, "path": str(out / f"lib{name}.so"), "compiler": command, "c_compiler": c_compiler(command), "version": version,
+        "flags": " ".join(flags), "casadi": metadata.version("casadi"),
+    }
+
+
+def build(peer, out):
+    parts = [*sources(), json.dumps(peer), machine()]
+    return library.build(peer, parts, lambda file: make(peer, out, file), f"CasADi {peer['casadi']}")
+
+
+def make(peer, out, file):
+    """The library, and of each function the seconds and the bytes of machine code."""
+    code, objects = out / "casadi_code", out / f"{peer['name']}_objects"
+    for folder in (code, objects):
+        folder.mkdir(exist_ok=True)
+    robots = generate(code)
+    compiled = []
+    for robot in robots:
+        for function, what in robot["functions"].items():
+            symbol = f"{robot['robot']}_{function}"
+            compiled.append(objects / f"{symbol}.o")
+            what["compilation_seconds"] = library.run(
+                peer["c_compiler"], "-w", "-fPIC", "-fvisibility=hidden", *peer["flags"].split(), "-c", code / f"{symbol}_code.c", "-o", compiled[-1])
+            what["code_bytes"] = library.text_bytes(compiled[-1])
+            del what["work"]
     title = f"CasADi {peer['casadi']}, {peer['compiler']} {peer['version']}, {peer['flags']}"
-    exports = out / "exports.map"
-    exports.write_text("{ global: peer_*; local: *; };\n")
-    subprocess.check_call([
-        peer["compiler"], "-std=c++17", "-shared", "-fPIC", "-fvisibility=hidden", *FLAGS, f'-DPEER_NAME="{title}"', f"-I{folder}",
-        HERE / "casadi_peer.cpp", *objects, "-o", library, f"-Wl,--version-script={exports}",
-    ])
-    stamp.write_text(made_of.hexdigest())
+    # Linked without -ffast-math, which would switch off denormals in the whole process.
+    library.run(
+        peer["compiler"], "-std=c++17", "-shared", "-fPIC", "-fvisibility=hidden", "-O3", "-DNDEBUG", f'-DPEER_NAME="{title}"', f"-I{code}",
+        HERE / "casadi_peer.cpp", *compiled, "-o", file, library.exports(out))
+    keys = ("robot", "floating", "hash", "functions")
+    return {"robots": [{key: robot[key] for key in keys} for robot in robots]}

@@ -5,6 +5,7 @@ v of a free base is [linear; angular], as the interface of peers has it. One-dof
 """
 
 import sys
+from functools import cached_property
 from pathlib import Path
 
 import casadi
@@ -180,22 +181,41 @@ class Robot:
             return jacobian(expression, self.q)
         return horzcat(jacobian(expression, self.drift), jacobian(expression, self.q[7:]))
 
-    def functions(self):
-        """name -> (arguments, outputs), all dense."""
-        settled = lambda x: casadi.substitute(x, self.drift, SX.zeros(6))
-        M, torque = self.mass_matrix(), self.inverse_dynamics(self.v, self.a)
-        bias = self.inverse_dynamics(self.v, SX.zeros(self.nv))
-        solved = ldl_solve(M, self.tau - bias)
+    @cached_property
+    def _mass(self):
+        return self.mass_matrix()
+
+    @cached_property
+    def _torque(self):
+        return self.inverse_dynamics(self.v, self.a)
+
+    @cached_property
+    def _forward(self):
+        solved = ldl_solve(self._mass, self.tau - self.inverse_dynamics(self.v, SX.zeros(self.nv)))
         recursive = self.articulated_body() if not self.floating else solved
-        forward = fewest([settled(solved)], [settled(recursive)])[0]
-        slopes = [settled(self.tangent(torque)), settled(jacobian(torque, self.v)), settled(M)]
-        inverse = settled(ldl_solve(M, SX.eye(self.nv)))
-        there = [casadi.substitute(x, self.a, forward) for x in slopes[:2]]
-        straight = [*[-(inverse @ x) for x in there], inverse]
+        return fewest([self._settled(solved)], [self._settled(recursive)])[0]
+
+    @cached_property
+    def _slopes(self):
+        return [self._settled(self.tangent(self._torque)), self._settled(jacobian(self._torque, self.v)), self._settled(self._mass)]
+
+    def _forward_slopes(self):
+        inverse = self._settled(ldl_solve(self._mass, SX.eye(self.nv)))
+        there = [casadi.substitute(x, self.a, self._forward) for x in self._slopes[:2]]
+        return [*[-(inverse @ x) for x in there], inverse]
+
+    def _settled(self, x):
+        return casadi.substitute(x, self.drift, SX.zeros(6))
+
+    def functions(self):
+        """name -> (arguments, what makes the outputs, all dense); what several need is made once, for the first."""
         q, v, a, tau = self.q, self.v, self.a, self.tau
         return {
-            "inverse_dynamics": ([q, v, a], [settled(torque)]), "mass_matrix": ([q], [settled(M)]), "forward_dynamics": ([q, v, tau], [forward]),
-            "inverse_dynamics_derivatives": ([q, v, a], slopes), "forward_dynamics_derivatives": ([q, v, tau], straight),
+            "inverse_dynamics": ([q, v, a], lambda: [self._settled(self._torque)]),
+            "mass_matrix": ([q], lambda: [self._settled(self._mass)]),
+            "forward_dynamics": ([q, v, tau], lambda: [self._forward]),
+            "inverse_dynamics_derivatives": ([q, v, a], lambda: self._slopes),
+            "forward_dynamics_derivatives": ([q, v, tau], self._forward_slopes),
         }
 
 
