@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::cache::Cache;
 use crate::{Appended, Base, Error, Generated, Origin, Payload, Reference, Request, generate};
 
 /// Generates a robot's code from a build script.
@@ -18,6 +19,17 @@ pub struct Build {
     request: Request,
     /// Paths of the robots to append, and the rest of what there is to say of each.
     append: Vec<(PathBuf, Appended)>,
+}
+
+/// What a build script wrote.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// The file.
+    pub path: PathBuf,
+    /// Things in the document that are odd but used as written.
+    pub warnings: Vec<String>,
+    /// Whether it was generated now; otherwise it stands from the last run, which had the same request.
+    pub generated: bool,
 }
 
 impl Build {
@@ -117,32 +129,51 @@ impl Build {
 
     /// Reads the URDF, and those to append, and generates. Nothing is written or printed.
     pub fn generate(&self) -> Result<Generated, Error> {
+        generate(&self.request()?)
+    }
+
+    /// Generates and writes `$OUT_DIR/<name>.rs`, and tells cargo what the result depends on. For build scripts.
+    ///
+    /// If the last run wrote the file for the same request, and the build script is the same program, nothing is generated and nothing written: the file keeps its date.
+    pub fn try_write(&self, name: &str) -> Result<Written, Error> {
+        for path in [&self.path].into_iter().chain(self.append.iter().map(|(path, _)| path)) {
+            println!("cargo::rerun-if-changed={}", path.display());
+        }
+        let folder = std::env::var_os("OUT_DIR").map(PathBuf::from).unwrap_or_default();
+        let written = self.write_in(&folder, name)?;
+        for warning in &written.warnings {
+            println!("cargo::warning={warning}");
+        }
+        Ok(written)
+    }
+
+    fn write_in(&self, folder: &Path, name: &str) -> Result<Written, Error> {
+        let request = self.request()?;
+        let path = folder.join(name).with_extension("rs");
+        let cache = Cache::new(&path, &request);
+        if let Some(warnings) = cache.as_ref().and_then(Cache::warnings) {
+            return Ok(Written { path, warnings, generated: false });
+        }
+        let generated = generate(&request)?;
+        let warnings: Vec<String> = generated.warnings.iter().map(ToString::to_string).collect();
+        cache.iter().for_each(Cache::forget);
+        // An unchanged file keeps its date, so that nothing is compiled again.
+        if !fs::read_to_string(&path).is_ok_and(|old| old == generated.source) {
+            let failed = |e: std::io::Error| Error::File { file: path.display().to_string(), reason: e.to_string() };
+            fs::write(&path, &generated.source).map_err(failed)?;
+        }
+        cache.iter().for_each(|cache| cache.remember(&warnings));
+        Ok(Written { path, warnings, generated: true })
+    }
+
+    /// The request, with the files read.
+    fn request(&self) -> Result<Request, Error> {
         let mut request = self.request.clone();
         request.urdf = read(&self.path)?;
         for (path, other) in &self.append {
             request.options.append.push(Appended { urdf: read(path)?, ..other.clone() });
         }
-        generate(&request)
-    }
-
-    /// Generates and writes `$OUT_DIR/<name>.rs`, and tells cargo what the result depends on. For build scripts.
-    pub fn try_write(&self, name: &str) -> Result<Generated, Error> {
-        for path in [&self.path].into_iter().chain(self.append.iter().map(|(path, _)| path)) {
-            println!("cargo::rerun-if-changed={}", path.display());
-        }
-        let generated = self.generate()?;
-        for warning in &generated.warnings {
-            println!("cargo::warning={warning}");
-        }
-        let folder = std::env::var_os("OUT_DIR").map(PathBuf::from).unwrap_or_default();
-        let target = folder.join(name).with_extension("rs");
-        let file = |e: std::io::Error| Error::File { file: target.display().to_string(), reason: e.to_string() };
-        // An unchanged file keeps its date, so that nothing is compiled again.
-        if fs::read_to_string(&target).is_ok_and(|old| old == generated.source) {
-            return Ok(generated);
-        }
-        fs::write(&target, &generated.source).map_err(file)?;
-        Ok(generated)
+        Ok(request)
     }
 
     /// As [`Build::try_write`]; on an error prints it for cargo and ends the build script with status 1.
@@ -163,4 +194,48 @@ fn from_root(path: &Path) -> PathBuf {
 
 fn read(path: &Path) -> Result<Vec<u8>, Error> {
     fs::read(path).map_err(|e| Error::File { file: path.display().to_string(), reason: e.to_string() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ARM: &str = r#"<robot name="arm"><link name="base"/><link name="tip"><inertial><mass value="1"/>
+        <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+        <joint name="hinge" type="revolute"><parent link="base"/><child link="tip"/><axis xyz="0 0 2"/><limit effort="1" velocity="1"/></joint></robot>"#;
+
+    /// A folder of its own under the target folder, with a robot in it.
+    fn folder(name: &str) -> PathBuf {
+        let folder = std::env::temp_dir().join(format!("articulated-{name}-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        fs::write(folder.join("arm.urdf"), ARM).unwrap();
+        folder
+    }
+
+    #[test]
+    fn an_unchanged_request_generates_nothing_and_warns_all_the_same() {
+        let folder = folder("cache");
+        let build = Build::new(folder.join("arm.urdf")).functions(["gravity_torque"]);
+        let again = |build: &Build| build.write_in(&folder, "arm").unwrap();
+        let first = again(&build);
+        assert!(first.generated && !first.warnings.is_empty());
+        let date = || fs::metadata(folder.join("arm.rs")).unwrap().modified().unwrap();
+        let written = date();
+        assert_eq!(again(&build), Written { generated: false, ..first.clone() });
+        assert_eq!(date(), written);
+        // Another request, a file that somebody wrote to, a file that is gone, a robot that changed.
+        assert!(again(&build.clone().gravity([0.0; 3])).generated);
+        assert!(again(&build).generated);
+        fs::write(folder.join("arm.rs"), "").unwrap();
+        assert!(again(&build).generated);
+        fs::remove_file(folder.join("arm.rs")).unwrap();
+        assert!(again(&build).generated && !again(&build).generated);
+        fs::write(folder.join("arm.urdf"), ARM.replace("mass value=\"1\"", "mass value=\"2\"")).unwrap();
+        assert!(again(&build).generated && !again(&build).generated);
+        assert_eq!(fs::read_to_string(&first.path).unwrap(), build.generate().unwrap().source);
+        // A request that fails leaves the memory of what stands, and is not remembered.
+        assert!(build.clone().functions(["no_function"]).write_in(&folder, "arm").is_err());
+        assert!(!again(&build).generated);
+        fs::remove_dir_all(folder).unwrap();
+    }
 }

@@ -8,6 +8,7 @@
 //! same source. There is no physics here: the algorithms are those of `articulated-core`, run on symbols.
 
 mod build;
+mod cache;
 mod edit;
 mod emit;
 mod error;
@@ -30,7 +31,7 @@ pub use articulated_core as core;
 pub use articulated_core::description::{Base, Origin, Payload};
 pub use articulated_core::spatial::Reference;
 pub use articulated_urdf as urdf;
-pub use build::Build;
+pub use build::{Build, Written};
 pub use edit::{Edit, Reason, Refusal, choose_frames, model, read};
 pub use emit::identifier;
 pub use error::{Error, nearest};

@@ -1,0 +1,114 @@
+//! What a build script wrote the last time, so that the same request generates nothing.
+//!
+//! Beside the output stands a file that holds, byte for byte, everything that the output follows from: which generator, all options, every URDF. There is no
+//! hash that could collide. The generator is known by the program that it is part of, the build script: its length and the instant when it was linked, which is
+//! new whenever the generator or anything that it leans on was compiled again.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::UNIX_EPOCH;
+
+use crate::Request;
+
+/// The memory of one output.
+pub(crate) struct Cache {
+    output: PathBuf,
+    file: PathBuf,
+    key: Vec<u8>,
+}
+
+impl Cache {
+    /// That of `output`, if it is to follow from `request` and is made by this program; none where the system does not tell what is running.
+    pub(crate) fn new(output: &Path, request: &Request) -> Option<Self> {
+        Some(Self::of(output, request, &stamp(&std::env::current_exe().ok()?)?))
+    }
+
+    fn of(output: &Path, request: &Request, generator: &str) -> Self {
+        Self { output: output.into(), file: output.with_extension("key"), key: key(request, generator) }
+    }
+
+    /// The warnings that came with the output, if it stands as it was written, and was written for the same request by the same generator.
+    pub(crate) fn warnings(&self) -> Option<Vec<String>> {
+        let stored = fs::read(&self.file).ok()?;
+        let rest = std::str::from_utf8(stored.strip_prefix(self.key.as_slice())?).ok()?;
+        let mut lines = rest.lines();
+        let unchanged = lines.next() == stamp(&self.output).as_deref();
+        unchanged.then(|| lines.map(str::to_owned).collect())
+    }
+
+    /// To be called before the output is written: a build that is broken off leaves no memory of it.
+    pub(crate) fn forget(&self) {
+        let _ = fs::remove_file(&self.file);
+    }
+
+    /// To be called after. Without a memory the next run generates again, and that is all.
+    pub(crate) fn remember(&self, warnings: &[String]) {
+        let Some(stamp) = stamp(&self.output) else { return };
+        let lines: String = std::iter::once(&stamp).chain(warnings).map(|line| format!("{line}\n")).collect();
+        if fs::write(&self.file, [self.key.as_slice(), lines.as_bytes()].concat()).is_err() {
+            self.forget();
+        }
+    }
+}
+
+/// Everything that the output follows from. Lengths stand before what they are the lengths of, so that no key is the beginning of another.
+fn key(request: &Request, generator: &str) -> Vec<u8> {
+    let (mut options, mut urdfs) = (request.options.clone(), vec![request.urdf.clone()]);
+    urdfs.extend(options.append.iter_mut().map(|other| std::mem::take(&mut other.urdf)));
+    let lengths: Vec<usize> = urdfs.iter().map(Vec::len).collect();
+    let mut head = format!("articulated {}, {generator}\n", env!("CARGO_PKG_VERSION"));
+    let _ = writeln!(head, "{:?} {options:?} {lengths:?}", request.file);
+    let mut key = head.into_bytes();
+    urdfs.iter().for_each(|urdf| key.extend(urdf));
+    key.push(b'\n');
+    key
+}
+
+/// How long a file is and when it was written last.
+fn stamp(file: &Path) -> Option<String> {
+    let data = fs::metadata(file).ok()?;
+    let since = data.modified().ok()?.duration_since(UNIX_EPOCH).ok()?;
+    Some(format!("{} bytes of {}", data.len(), since.as_nanos()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Appended, Base, Payload};
+
+    fn request() -> Request {
+        let mut request = Request::new("arm.urdf", "<robot/>");
+        request.options.append.push(Appended { urdf: "<robot>ab</robot>".into(), ..Appended::default() });
+        request.options.append.push(Appended { urdf: "c".into(), ..Appended::default() });
+        request
+    }
+
+    #[test]
+    fn whatever_changes_the_output_changes_the_key() {
+        let changes: [fn(&mut Request); 9] = [
+            |r| r.urdf.push(b' '),
+            |r| r.file.push('2'),
+            |r| r.options.base = Base::Floating,
+            |r| r.options.gravity[0] = -0.0,
+            |r| r.options.functions.push("mass_matrix".into()),
+            |r| r.options.payloads.push(Payload { link: "tool".into(), mass: 1.0, ..Payload::default() }),
+            |r| r.options.lock.push(("elbow".into(), vec![0.1])),
+            |r| r.options.append[1].urdf.push(b'd'),
+            |r| {
+                // The same bytes, divided in another way.
+                let moved = r.options.append[0].urdf.pop().unwrap();
+                r.options.append[1].urdf.insert(0, moved);
+            },
+        ];
+        let plain = key(&request(), "g");
+        assert_eq!(plain, key(&request(), "g"));
+        assert_ne!(plain, key(&request(), "h"));
+        for (k, change) in changes.iter().enumerate() {
+            let mut other = request();
+            change(&mut other);
+            let other = key(&other, "g");
+            assert!(!other.starts_with(&plain) && !plain.starts_with(&other), "change {k}");
+        }
+    }
+}
