@@ -10,15 +10,11 @@ pub(super) struct Known {
 /// Cycles that an addition, a multiplication or a multiply-add takes.
 const STEP: u32 = 4;
 
-/// Cycles that one more instruction must save.
-const PRICE: u32 = 3;
-
-/// Chains to add up one after the other and then together, as indices of terms, so that the sum is known early and few instructions are
-/// spent. `terms` are sorted by the time they are known.
-pub(super) fn plan(terms: &[Known]) -> Vec<Vec<usize>> {
-    let plain_first = first_plain(terms);
-    let candidates = [vec![plain_first], split(terms, 1), split(terms, 2), split(terms, 3)];
-    let price = |chains: &Vec<Vec<usize>>| finish(terms, chains) + PRICE * instructions(terms, chains);
+/// Chains to add up one after the other and then together, as indices of terms: of those by which the sum is known when it is `due`, in cycles, the
+/// ones that take fewest instructions; where none is in time, the earliest. `terms` are sorted by the time they are known.
+pub(super) fn plan(terms: &[Known], due: u32) -> Vec<Vec<usize>> {
+    let candidates = [vec![first_plain(terms)], split(terms, 1), split(terms, 2), split(terms, 3)];
+    let price = |chains: &Vec<Vec<usize>>| (finish(terms, chains).max(due), instructions(terms, chains));
     candidates.into_iter().min_by_key(price).unwrap_or_default()
 }
 
@@ -80,21 +76,28 @@ mod tests {
     #[test]
     fn a_late_plain_term_comes_last() {
         let terms = [product(0), product(0), product(0), product(0), plain(100)];
-        let chains = plan(&terms);
+        let chains = plan(&terms, 0);
         assert_eq!(finish(&terms, &chains), 104);
         assert_eq!(instructions(&terms, &chains), 5);
     }
 
     #[test]
+    fn a_sum_that_has_time_is_one_chain() {
+        let terms = [product(0), product(0), product(0), product(0), plain(100)];
+        assert_eq!(plan(&terms, 120), [[4, 0, 1, 2, 3]]);
+        assert_eq!(finish(&terms, &plan(&terms, 120)), 116);
+    }
+
+    #[test]
     fn a_plain_term_in_time_is_where_the_chain_starts() {
         let terms = [product(0), plain(0), product(8), product(12)];
-        assert_eq!(plan(&terms), [[1, 0, 2, 3]]);
+        assert_eq!(plan(&terms, 0), [[1, 0, 2, 3]]);
     }
 
     #[test]
     fn many_terms_at_once_are_added_in_parallel() {
         let terms = [product(0); 12];
-        let chains = plan(&terms);
+        let chains = plan(&terms, 0);
         assert!(chains.len() > 1);
         assert!(finish(&terms, &chains) <= 32);
         let mut all: Vec<usize> = chains.into_iter().flatten().collect();

@@ -3,24 +3,33 @@
 use super::chains::{Known, plan};
 use crate::graph::{Graph, Node, NodeId, Op};
 
+/// Multiplications or multiply-adds that a processor begins in a cycle.
+const A_CYCLE: u32 = 2;
+
 /// Flattens nested sums and rebuilds each as a chain, in which every product that only sums use is part of a multiply-add.
 ///
-/// A chain takes its terms in the order in which they become known, so that the last one waits for nothing but itself; where one chain
-/// would make the result late, it is cut into two or three. A sum of products alone needs one that is computed on its own to start from;
+/// A chain takes its terms in the order in which they become known, so that the last one waits for nothing but itself. Each sum is due when the last
+/// result still is in time; where one chain would be late, it is cut into two or three, which takes more instructions. A sum of products alone needs one that is computed on its own to start from;
 /// those are chosen so that as few as possible are. Re-association changes results by roundings only.
 pub fn contract(graph: &Graph) -> Graph {
     let sums = Sums::of(graph);
+    let due = build(graph, &sums, &vec![0; graph.nodes().len()]).due();
+    build(graph, &sums, &due).new
+}
+
+/// Rebuilds the graph with each sum by the time that `due` gives for its node.
+fn build<'a>(graph: &'a Graph, sums: &Sums, due: &[u32]) -> Builder<'a> {
     let mut builder = Builder { graph, new: graph.emptied(), ids: vec![NodeId(u32::MAX); graph.nodes().len()], arrival: Vec::new() };
     for (k, node) in graph.nodes().iter().enumerate() {
         if !sums.inner[k] && !sums.fused(k) {
             builder.ids[k] = match &sums.terms[k] {
-                Some(terms) => builder.sum(terms, &sums),
+                Some(terms) => builder.sum(terms, sums, due[k]),
                 None => builder.copy(node),
             };
         }
     }
     builder.new.outputs = graph.outputs.iter().map(|o| builder.ids[o.index()]).collect();
-    builder.new
+    builder
 }
 
 /// A term of a sum.
@@ -138,6 +147,19 @@ impl Builder<'_> {
         id
     }
 
+    /// When the value of each old node is due, in cycles: the last result is known no later than it is here, or than the instructions take.
+    fn due(&self) -> Vec<u32> {
+        let nodes = self.new.nodes();
+        let last = self.new.outputs.iter().map(|o| self.arrival[o.index()]).max().unwrap_or(0);
+        let last = last.max(self.new.counts().instructions() as u32 / A_CYCLE);
+        let mut due = vec![last; nodes.len()];
+        for (k, node) in nodes.iter().enumerate().rev() {
+            let start = due[k].saturating_sub(node.op.row().latency);
+            node.operands().for_each(|a| due[a.index()] = due[a.index()].min(start));
+        }
+        self.ids.iter().map(|id| due.get(id.index()).copied().unwrap_or(last)).collect()
+    }
+
     /// When a term could be added: for a fused product, when its factors are known.
     fn known(&self, term: Term, sums: &Sums) -> u32 {
         let at = |id: NodeId| self.arrival[id.index()];
@@ -149,14 +171,14 @@ impl Builder<'_> {
         [self.ids[a as usize], self.ids[b as usize]]
     }
 
-    /// Builds a sum by the plan that is done first.
-    fn sum(&mut self, terms: &[Term], sums: &Sums) -> NodeId {
+    /// Builds a sum by the plan that takes fewest instructions of those that are done when it is due.
+    fn sum(&mut self, terms: &[Term], sums: &Sums, due: u32) -> NodeId {
         let mut terms: Vec<(Term, Known)> =
             terms.iter().map(|t| (*t, Known { at: self.known(*t, sums), fused: sums.fused(t.node) })).collect();
         terms.sort_by_key(|(_, known)| known.at);
         let known: Vec<Known> = terms.iter().map(|(_, known)| *known).collect();
         let mut total: Option<Signed> = None;
-        for chain in plan(&known) {
+        for chain in plan(&known, due) {
             let part = chain.into_iter().fold(None, |sum, k| Some(self.add(sum, terms[k].0, sums)));
             total = match (total, part) {
                 (Some(total), Some(part)) => Some(self.add_nodes(total, part)),
