@@ -68,32 +68,47 @@ impl Set {
 
 /// Contents of a module; `None` if the set has no such width.
 pub fn source(set: Set, real: Real, lanes: usize) -> Option<String> {
-    let text = match (set, real, lanes) {
-        (Set::Portable, Real::F64, 2) => portable_f64x2::TEXT,
-        (Set::Portable, Real::F64, 4) => portable_f64x4::TEXT,
-        (Set::Portable, Real::F64, 8) => portable_f64x8::TEXT,
-        (Set::Avx2, Real::F64, 2) => avx2_f64x2::TEXT,
-        (Set::Avx2, Real::F64, 4) => avx2_f64x4::TEXT,
-        (Set::Avx512, Real::F64, 8) => avx512_f64x8::TEXT,
-        _ => return None,
-    };
-    Some(text.to_string())
+    MODULES.iter().find(|module| (module.0, module.1, module.2) == (set, real, lanes)).map(|module| module.3.to_string())
 }
 
-/// A module's text, which tests compile.
-macro_rules! module {
-    ($name:ident, $arch:meta, $($file:literal)+) => {
-        #[allow(dead_code, unreachable_pub, unsafe_code, unused_imports, clippy::all, clippy::pedantic)]
-        mod $name {
-            pub(super) const TEXT: &str = concat!($(include_str!($file)),+);
-            $(#[cfg(all(test, $arch))] include!($file);)+
-        }
+/// Modules' texts, which tests compile: common files in the order in which macros are needed.
+macro_rules! modules {
+    (@texts $($file:literal)+ $(, half $($half:literal)+)?) => {
+        concat!($(include_str!(concat!("text/", $file, ".rs"))),+ $(, "\nmod half {\n", $(include_str!(concat!("text/", $half, ".rs"))),+, "}\n")?)
+    };
+    ($($name:ident, $set:ident, $real:ident, $lanes:literal, $arch:meta: [$($file:literal)+] $([$($half:literal)+])?;)+) => {
+        const MODULES: &[(Set, Real, usize, &str)] =
+            &[$((Set::$set, Real::$real, $lanes, modules!(@texts $($file)+ $(, half $($half)+)?))),+];
+        $(
+            #[cfg(all(test, $arch))]
+            #[allow(dead_code, non_upper_case_globals, unreachable_pub, unsafe_code, unused_imports, clippy::all, clippy::pedantic)]
+            mod $name {
+                $(include!(concat!("text/", $file, ".rs"));)+
+                $(mod half {
+                    $(include!(concat!("text/", $half, ".rs"));)+
+                })?
+            }
+        )+
     };
 }
 
-module!(portable_f64x2, all(), "portable_f64.rs" "portable_2.rs" "portable.rs" "common.rs" "sin_cos_f64.rs");
-module!(portable_f64x4, all(), "portable_f64.rs" "portable_4.rs" "portable.rs" "common.rs" "sin_cos_f64.rs");
-module!(portable_f64x8, all(), "portable_f64.rs" "portable_8.rs" "portable.rs" "common.rs" "sin_cos_f64.rs");
-module!(avx2_f64x2, target_arch = "x86_64", "avx2_f64x2.rs" "register.rs" "common.rs" "sin_cos_f64.rs");
-module!(avx2_f64x4, target_arch = "x86_64", "avx2_f64x4.rs" "register.rs" "common.rs" "sin_cos_f64.rs");
-module!(avx512_f64x8, target_arch = "x86_64", "avx512_f64x8.rs" "register.rs" "common.rs" "sin_cos_f64.rs");
+modules! {
+    portable_f64x2, Portable, F64, 2, all(): ["portable_f64" "portable_2" "portable" "common" "f64" "f64_fused" "f64_split"];
+    portable_f64x4, Portable, F64, 4, all(): ["portable_f64" "portable_4" "portable" "common" "f64" "f64_fused" "f64_split"];
+    portable_f64x8, Portable, F64, 8, all(): ["portable_f64" "portable_8" "portable" "common" "f64" "f64_fused" "f64_split"];
+    portable_f32x8, Portable, F32, 8, all():
+        ["portable_f32" "portable_8" "portable" "portable_f32_reduce" "common" "f32" "f32_fused" "f32_split"];
+    portable_f32x16, Portable, F32, 16, all():
+        ["portable_f32" "portable_16" "portable" "portable_f32_reduce" "common" "f32" "f32_fused" "f32_split"];
+    sse2_f64x2, Sse2, F64, 2, target_arch = "x86_64": ["sse2_f64x2" "sse2" "register" "common" "f64" "f64_split"];
+    sse2_f64x4, Sse2, F64, 4, target_arch = "x86_64": ["pair_sse2" "pair"] ["sse2_f64x2" "sse2" "register" "common" "f64" "f64_split"];
+    sse2_f32x4, Sse2, F32, 4, target_arch = "x86_64": ["sse2_f32x4" "sse2" "register" "common" "f32" "f32_split"];
+    avx2_f64x2, Avx2, F64, 2, target_arch = "x86_64": ["avx2_f64x2" "avx2" "register" "common" "f64" "f64_fused"];
+    avx2_f64x4, Avx2, F64, 4, target_arch = "x86_64": ["avx2_f64x4" "avx2" "register" "common" "f64" "f64_fused"];
+    avx2_f32x8, Avx2, F32, 8, target_arch = "x86_64": ["avx2_f32x8" "avx2" "register" "common" "f32" "f32_fused"];
+    avx512_f64x8, Avx512, F64, 8, target_arch = "x86_64": ["avx512_f64x8" "avx512" "register" "common" "f64" "f64_fused"];
+    avx512_f32x16, Avx512, F32, 16, target_arch = "x86_64": ["avx512_f32x16" "avx512" "register" "common" "f32" "f32_fused"];
+    neon_f64x2, Neon, F64, 2, target_arch = "aarch64": ["neon_f64x2" "neon" "register" "common" "f64" "f64_fused"];
+    neon_f64x4, Neon, F64, 4, target_arch = "aarch64": ["pair_neon" "pair"] ["neon_f64x2" "neon" "register" "common" "f64" "f64_fused"];
+    neon_f32x4, Neon, F32, 4, target_arch = "aarch64": ["neon_f32x4" "neon" "register" "common" "f32" "f32_fused"];
+}

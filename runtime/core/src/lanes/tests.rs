@@ -1,10 +1,13 @@
 //! Every lane of every function of every set that this processor has, against scalars.
 
-use super::{Real, Set, source};
+mod sines;
+mod source;
+
+use super::Set;
 
 /// A module's functions on whole slices, if this processor has them.
 macro_rules! suite {
-    ($module:ident, $real:ident, $fused:expr, $available:expr, $(#[$attribute:meta])*) => {
+    ($module:ident, $real:ident, $fused:expr, $set:ident $(, #[$attribute:meta])?) => {
         #[allow(unsafe_code, unused_unsafe)]
         mod $module {
             use super::super::$module as set;
@@ -12,7 +15,7 @@ macro_rules! suite {
             const L: usize = set::LANES;
 
             fn available() -> bool {
-                let available = $available;
+                let available = super::available(super::Set::$set);
                 if !available {
                     println!("{} is not tried: this processor does not have it", stringify!($module));
                 }
@@ -40,7 +43,7 @@ macro_rules! suite {
                 if $fused { a.mul_add(b, c) } else { a * b + c }
             }
 
-            $(#[$attribute])*
+            $(#[$attribute])?
             fn arithmetic() {
                 use core::array::from_fn;
                 let values = super::$real::values();
@@ -77,7 +80,7 @@ macro_rules! suite {
                 available().then(|| unsafe { blocks(x) })
             }
 
-            $(#[$attribute])*
+            $(#[$attribute])?
             fn blocks(x: &[$real]) -> Vec<[$real; 2]> {
                 let mut out = Vec::with_capacity(x.len() + L);
                 for block in x.chunks(L) {
@@ -93,25 +96,40 @@ macro_rules! suite {
     };
 }
 
-/// The sum over the lanes.
+/// Whether this processor has the set.
+fn available(set: Set) -> bool {
+    match set {
+        Set::Portable => true,
+        #[cfg(target_arch = "x86_64")]
+        Set::Sse2 => is_x86_feature_detected!("sse2"),
+        #[cfg(target_arch = "x86_64")]
+        Set::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma"),
+        #[cfg(target_arch = "x86_64")]
+        Set::Avx512 => available(Set::Avx2) && is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq"),
+        #[cfg(target_arch = "aarch64")]
+        Set::Neon => true,
+        _ => false,
+    }
+}
+
+/// The sum over the lanes of a module of 2 or 4 f64.
 macro_rules! sum {
-    ($module:ident, $available:expr, $(#[$attribute:meta])*) => {{
+    ($module:ident, $set:ident $(, #[$attribute:meta])?) => {
         #[allow(unsafe_code, unused_unsafe)]
-        fn test() {
+        {
             use super::$module as set;
-            $(#[$attribute])*
+            $(#[$attribute])?
             fn sums() {
                 let x: [f64; set::LANES] = core::array::from_fn(|i| 0.1 + 1e15 * i as f64);
                 let want = x.chunks(2).map(|x| x[0] + x[1]).sum::<f64>();
                 assert_eq!(set::array(set::across(set::lanes(x))), [want; set::LANES]);
             }
-            if $available {
+            if available(Set::$set) {
                 // SAFETY: the processor has the features, as the line above found.
                 unsafe { sums() }
             }
         }
-        test();
-    }};
+    };
 }
 
 mod f64 {
@@ -122,75 +140,60 @@ mod f64 {
     }
 }
 
+mod f32 {
+    pub(super) fn values() -> Vec<f32> {
+        let mut values = vec![f32::MIN_POSITIVE, 1e-45, f32::MAX];
+        values.extend(super::f64::values().into_iter().map(|x| x as f32));
+        values
+    }
+}
+
 /// Whether the portable modules fuse.
 const FMA: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
 
-suite!(portable_f64x2, f64, super::FMA, true,);
-suite!(portable_f64x4, f64, super::FMA, true,);
-suite!(portable_f64x8, f64, super::FMA, true,);
+suite!(portable_f64x2, f64, super::FMA, Portable);
+suite!(portable_f64x4, f64, super::FMA, Portable);
+suite!(portable_f64x8, f64, super::FMA, Portable);
+suite!(portable_f32x8, f32, super::FMA, Portable);
+suite!(portable_f32x16, f32, super::FMA, Portable);
+
 #[cfg(target_arch = "x86_64")]
-mod x86 {
-    pub(super) fn avx2() -> bool {
-        is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma")
-    }
-    pub(super) fn avx512() -> bool {
-        avx2() && is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq")
-    }
-}
+suite!(sse2_f64x2, f64, false, Sse2, #[target_feature(enable = "sse2")]);
 #[cfg(target_arch = "x86_64")]
-suite!(avx2_f64x2, f64, true, super::x86::avx2(), #[target_feature(enable = "avx2,fma")]);
+suite!(sse2_f64x4, f64, false, Sse2, #[target_feature(enable = "sse2")]);
 #[cfg(target_arch = "x86_64")]
-suite!(avx2_f64x4, f64, true, super::x86::avx2(), #[target_feature(enable = "avx2,fma")]);
+suite!(sse2_f32x4, f32, false, Sse2, #[target_feature(enable = "sse2")]);
 #[cfg(target_arch = "x86_64")]
-suite!(avx512_f64x8, f64, true, super::x86::avx512(), #[target_feature(enable = "avx512f,avx512dq,avx2,fma")]);
+suite!(avx2_f64x2, f64, true, Avx2, #[target_feature(enable = "avx2,fma")]);
+#[cfg(target_arch = "x86_64")]
+suite!(avx2_f64x4, f64, true, Avx2, #[target_feature(enable = "avx2,fma")]);
+#[cfg(target_arch = "x86_64")]
+suite!(avx2_f32x8, f32, true, Avx2, #[target_feature(enable = "avx2,fma")]);
+#[cfg(target_arch = "x86_64")]
+suite!(avx512_f64x8, f64, true, Avx512, #[target_feature(enable = "avx512f,avx512dq,avx2,fma")]);
+#[cfg(target_arch = "x86_64")]
+suite!(avx512_f32x16, f32, true, Avx512, #[target_feature(enable = "avx512f,avx512dq,avx2,fma")]);
+#[cfg(target_arch = "aarch64")]
+suite!(neon_f64x2, f64, true, Neon, #[target_feature(enable = "neon")]);
+#[cfg(target_arch = "aarch64")]
+suite!(neon_f64x4, f64, true, Neon, #[target_feature(enable = "neon")]);
+#[cfg(target_arch = "aarch64")]
+suite!(neon_f32x4, f32, true, Neon, #[target_feature(enable = "neon")]);
 
 #[test]
 fn sums_over_the_lanes() {
-    sum!(portable_f64x2, true,);
-    sum!(portable_f64x4, true,);
+    sum!(portable_f64x2, Portable);
+    sum!(portable_f64x4, Portable);
     #[cfg(target_arch = "x86_64")]
     {
-        sum!(avx2_f64x2, x86::avx2(), #[target_feature(enable = "avx2,fma")]);
-        sum!(avx2_f64x4, x86::avx2(), #[target_feature(enable = "avx2,fma")]);
+        sum!(sse2_f64x2, Sse2, #[target_feature(enable = "sse2")]);
+        sum!(sse2_f64x4, Sse2, #[target_feature(enable = "sse2")]);
+        sum!(avx2_f64x2, Avx2, #[target_feature(enable = "avx2,fma")]);
+        sum!(avx2_f64x4, Avx2, #[target_feature(enable = "avx2,fma")]);
     }
-}
-
-#[test]
-fn portable_sources_have_no_unsafe() {
-    for lanes in [2, 4, 8] {
-        assert!(!source(Set::Portable, Real::F64, lanes).unwrap().contains("unsafe"));
-    }
-}
-
-/// The doubles below 10⁵ that lie nearest to a multiple of π/2, found by trying every multiple in 200-bit arithmetic.
-const NEAREST: [f64; 6] = [45.553093477052, 91.106186954104, 182.212373908208, 364.424747816416, 728.849495632832, 1457.698991265664];
-
-fn angles() -> Vec<f64> {
-    let mut x = 1e-300;
-    let mut points: Vec<f64> = NEAREST.to_vec();
-    points.extend([0.0, f64::NAN, f64::INFINITY, 1e5, 1e5_f64.next_up()]);
-    while x < 1e300 {
-        points.push(x);
-        x *= 1.0 + 0.37 * ((points.len() % 7) as f64 / 7.0 + 0.01);
-    }
-    points.extend((1..100_000).map(|k| k as f64 * 0.999_983));
-    points.into_iter().flat_map(|x| [x, -x]).collect()
-}
-
-fn ulps(a: f64, b: f64) -> u64 {
-    if a == b || (a.is_nan() && b.is_nan()) { 0 } else { a.to_bits().abs_diff(b.to_bits()) }
-}
-
-#[test]
-fn sines_agree_with_the_standard_library_to_an_ulp() {
-    let x = angles();
-    let mut sets = vec![portable_f64x2::sines(&x), portable_f64x4::sines(&x), portable_f64x8::sines(&x)];
-    #[cfg(target_arch = "x86_64")]
-    sets.extend([avx2_f64x2::sines(&x), avx2_f64x4::sines(&x), avx512_f64x8::sines(&x)]);
-    for (set, sines) in sets.iter().flatten().enumerate() {
-        for (x, [s, c]) in x.iter().zip(sines) {
-            let (s0, c0) = x.sin_cos();
-            assert!(ulps(*s, s0) <= 1 && ulps(*c, c0) <= 1, "{set}, {x:e}: {s:e} {s0:e} {c:e} {c0:e}");
-        }
+    #[cfg(target_arch = "aarch64")]
+    {
+        sum!(neon_f64x2, Neon, #[target_feature(enable = "neon")]);
+        sum!(neon_f64x4, Neon, #[target_feature(enable = "neon")]);
     }
 }

@@ -1,5 +1,5 @@
 
-functions! {
+lane_functions! {
     pub(super) fn lanes(x: [Real; LANES]) -> V {
         // SAFETY: as many bytes on both sides, and any of them are numbers.
         unsafe { ::core::mem::transmute::<[Real; LANES], V>(x) }

@@ -1,5 +1,5 @@
 
-functions! {
+lane_functions! {
     pub(super) fn load(from: &[Real; LANES]) -> V {
         lanes(*from)
     }

@@ -1,6 +1,6 @@
 pub(super) const LANES: usize = 16;
 
-macro_rules! each {
+macro_rules! each_lane {
     ($i:ident => $value:expr) => {
         [
             { let $i = 0; $value }, { let $i = 1; $value }, { let $i = 2; $value }, { let $i = 3; $value },

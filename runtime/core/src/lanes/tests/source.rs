@@ -1,0 +1,40 @@
+//! The texts that generated code copies. What they compute is tested where they are compiled.
+
+use crate::lanes::{Real, Set, source};
+
+const SETS: [(Set, Real, &[usize]); 10] = [
+    (Set::Portable, Real::F64, &[2, 4, 8]),
+    (Set::Portable, Real::F32, &[8, 16]),
+    (Set::Sse2, Real::F64, &[2, 4]),
+    (Set::Sse2, Real::F32, &[4]),
+    (Set::Avx2, Real::F64, &[2, 4]),
+    (Set::Avx2, Real::F32, &[8]),
+    (Set::Avx512, Real::F64, &[8]),
+    (Set::Avx512, Real::F32, &[16]),
+    (Set::Neon, Real::F64, &[2, 4]),
+    (Set::Neon, Real::F32, &[4]),
+];
+
+#[test]
+fn sources_are_for_the_features_of_their_set() {
+    for (set, real, widths) in SETS {
+        for lanes in 1..=32 {
+            let text = source(set, real, lanes);
+            assert_eq!(text.is_some(), widths.contains(&lanes), "{set:?} {real:?} {lanes}");
+            let Some(text) = text else { continue };
+            let features = text.matches("target_feature(enable").count();
+            assert_eq!(features, text.matches(&format!("#[target_feature(enable = \"{}\")]", set.features())).count());
+            assert_eq!(features == 0, set == Set::Portable);
+            assert!(set == Set::Portable || text.contains(&format!("::core::arch::{}::", set.arch())));
+        }
+    }
+}
+
+#[test]
+fn portable_sources_have_no_unsafe() {
+    for (set, real, widths) in SETS {
+        for lanes in widths {
+            assert_eq!(source(set, real, *lanes).unwrap().contains("unsafe"), set != Set::Portable);
+        }
+    }
+}

@@ -1,0 +1,4 @@
+macro_rules! pair_functions {
+    ($($item:item)*) => { $(#[inline] #[target_feature(enable = "neon")] $item)* };
+}
+
