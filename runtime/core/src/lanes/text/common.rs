@@ -17,17 +17,6 @@ lane_functions! {
         atan2_each(&mut angles, &x);
         lanes(angles)
     }
-
-    // By the standard library where |x| is beyond the limit, or x is not a number.
-    pub(super) fn sin_cos(x: V) -> (V, V) {
-        let (sin, cos) = polynomials(x);
-        if within(x, k(LIMIT)) {
-            return (sin, cos);
-        }
-        let (mut sin, mut cos) = (array(sin), array(cos));
-        sin_cos_beyond(&array(x), &mut sin, &mut cos);
-        (lanes(sin), lanes(cos))
-    }
 }
 
 #[inline(never)]

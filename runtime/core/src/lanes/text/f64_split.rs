@@ -12,16 +12,15 @@ lane_functions! {
         let hi = fnmadd(n, k(SPLIT[1]), r);
         let lo = fnmadd(n, k(SPLIT[2]), fnmadd(n, k(SPLIT[1]), sub(r, hi)));
         let z = mul(hi, hi);
+        let zz = mul(z, z);
         let half = mul(k(0.5), z);
         let w = sub(k(1.0), half);
-        // sin(hi + lo) = hi + (hi³·p + lo·(1 − z/2))
-        let p = fmadd(z, k(S[5]), k(S[4]));
-        let p = fmadd(z, fmadd(z, fmadd(z, fmadd(z, p, k(S[3])), k(S[2])), k(S[1])), k(S[0]));
-        let sin = add(hi, fmadd(mul(hi, z), p, mul(lo, w)));
+        // sin(hi + lo) = hi + (hi³·(S₀ + z·p) + lo·(1 − z/2))
+        let p = fmadd(zz, fmadd(zz, k(S[5]), fmadd(z, k(S[4]), k(S[3]))), fmadd(z, k(S[2]), k(S[1])));
+        let sin = add(hi, fmadd(mul(hi, z), fmadd(z, p, k(S[0])), mul(lo, w)));
         // cos(hi + lo) = w + ((1 − w − z/2) + (z²·p − hi·lo)), w = 1 − z/2
-        let p = fmadd(z, k(C[5]), k(C[4]));
-        let p = fmadd(z, fmadd(z, fmadd(z, fmadd(z, p, k(C[3])), k(C[2])), k(C[1])), k(C[0]));
-        let cos = add(w, fmadd(mul(z, z), p, sub(sub(sub(k(1.0), w), half), mul(hi, lo))));
+        let p = fmadd(zz, fmadd(zz, fmadd(z, k(C[5]), k(C[4])), fmadd(z, k(C[3]), k(C[2]))), fmadd(z, k(C[1]), k(C[0])));
+        let cos = add(w, fmadd(zz, p, sub(sub(sub(k(1.0), w), half), mul(hi, lo))));
         // The quadrant is in the two lowest bits of `rounded`: exchange for an odd one, and signs.
         turn(rounded, sin, cos)
     }

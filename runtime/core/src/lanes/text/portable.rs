@@ -99,3 +99,13 @@ lane_functions! {
         if FMA { fused(x) } else { split(x) }
     }
 }
+
+// As that of registers; one function of its own, since it is long.
+#[inline(never)]
+pub(super) fn sin_cos(x: V) -> (V, V) {
+    let (mut sin, mut cos) = polynomials(x);
+    if !within(x, k(LIMIT)) {
+        sin_cos_beyond(&x, &mut sin, &mut cos);
+    }
+    (sin, cos)
+}
