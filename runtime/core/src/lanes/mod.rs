@@ -13,7 +13,8 @@
 //! These are free functions of raw registers since methods and operators that are inlined into functions of other features take the compiler
 //! eight times as long.
 //!
-//! A lane's sine depends on no other lane. Its error is at most 1 ulp.
+//! A lane's sine depends on no other lane. Its error is below 1 ulp up to 10⁵ rad for f64 (0.9 seen) and 10⁴ rad for f32 (0.97 over all
+//! of them), and the standard library's beyond. All sets that fuse agree to the bit, and so do all that do not. sin(−0) is 0, not −0.
 
 use alloc::string::{String, ToString};
 
