@@ -113,7 +113,14 @@ impl Build {
         self
     }
 
-    /// No `unsafe` in the generated code, for crates that forbid it.
+    /// Each limb for itself, also where branches that are alike would be cheaper at once, one a lane of a vector.
+    #[must_use]
+    pub fn each_limb_alone(mut self) -> Self {
+        self.request.options.limbs = false;
+        self
+    }
+
+    /// No `unsafe` in the generated code, for crates that forbid it: no limbs in lanes, and no choice of instructions when it runs.
     #[must_use]
     pub fn forbid_unsafe(mut self) -> Self {
         self.request.options.forbid_unsafe = true;

@@ -21,6 +21,8 @@ pub struct Entry {
     pub stages: Vec<(&'static str, Counts)>,
     /// Longest chain of operations from an input to an output.
     pub depth: u32,
+    /// How many limbs that are alike are computed at once; 1 where each is computed for itself.
+    pub lanes: usize,
 }
 
 impl Entry {

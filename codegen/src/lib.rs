@@ -81,11 +81,11 @@ pub fn generate(request: &Request) -> Result<Generated, Error> {
     let mut ledger = Ledger::default();
     let mut programs = Vec::new();
     for function in wanted {
-        let (program, entry) = program::program(&function, &model, &parameters);
-        programs.push((function, program));
-        ledger.functions.push(entry);
+        let program = program::program(function, &model, &parameters, options);
+        ledger.functions.push(program.entry.clone());
+        programs.push(program);
     }
-    let source = emit::module(request, &model, &names, &programs, &parameters, &ledger, &unused) + &emit::warnings(&warnings);
+    let source = emit::module(request, &model, &names, &programs, &parameters, &unused) + &emit::warnings(&warnings);
     Ok(Generated { source, model, parameters, ledger, warnings, unused, snapped })
 }
 

@@ -3,23 +3,61 @@
 use articulated_core::model::Model;
 use articulated_core::model::pass::model_passes;
 
-use crate::graph::{Counts, Graph};
+use crate::Options;
+use crate::graph::{Counts, Graph, Op};
 use crate::ledger::{Entry, depth};
+use crate::limbs::Alike;
 use crate::parameters::Parameter;
 use crate::pass::{self, GRAPH_PASSES};
 use crate::sym::Sym;
-use crate::trace::{Choice, trace, ways};
+use crate::trace::{Choice, trace, trace_in_lanes, ways};
 use crate::wanted::{Part, Wanted};
 
+/// A function and what it became.
+pub(crate) struct Program {
+    pub(crate) wanted: Wanted,
+    pub(crate) graph: Graph,
+    pub(crate) entry: Entry,
+}
+
+/// What a function is traced on.
+struct Subject<'a> {
+    model: &'a Model<f64>,
+    parameters: &'a [Parameter],
+    /// Limbs to lay on one another.
+    alike: Option<Alike>,
+}
+
+/// A function by the cheapest of its ways, limbs that are alike in lanes if that is cheaper.
+pub(crate) fn program(wanted: Wanted, model: &Model<f64>, parameters: &[Parameter], options: &Options) -> Program {
+    let plain = Subject { model, parameters, alike: None };
+    let mut best = made(&wanted, &plain);
+    // Limbs need the vector instructions; constants that stay inputs differ from limb to limb.
+    if options.limbs && !options.forbid_unsafe && parameters.is_empty() {
+        for width in [4, 2] {
+            let Some(alike) = Alike::of(model, width) else { continue };
+            let other = made(&wanted, &Subject { model, parameters, alike: Some(alike) });
+            if price(&other.0) * WORTH < price(&best.0) {
+                best = other;
+            }
+        }
+    }
+    let (graph, entry) = best;
+    Program { wanted, graph, entry }
+}
+
+/// Lanes cost what no count shows (values that come and go one by one): they must be cheaper by this.
+const WORTH: f64 = 1.15;
+
 /// The graph of a function, traced on the model as it was read and after each model pass, and taken through the graph passes.
-pub(crate) fn program(wanted: &Wanted, model: &Model<f64>, parameters: &[Parameter]) -> (Graph, Entry) {
+fn made(wanted: &Wanted, subject: &Subject) -> (Graph, Entry) {
     let all = model_passes::<Sym>().len();
-    let choices: Vec<Choice> = wanted.parts.iter().map(|part| cheapest(part, model, parameters, all)).collect();
+    let choices: Vec<Choice> = wanted.parts.iter().map(|part| cheapest(part, subject, all)).collect();
     let mut graph = Graph::default();
     let mut stages: Vec<(&'static str, Counts)> = Vec::new();
     for passes in 0..=all {
         let limited: Vec<Choice> = choices.iter().map(|c| Choice { passes: c.passes.min(passes), ..*c }).collect();
-        graph = trace(wanted, &limited, model, parameters);
+        graph = subject.trace(wanted, &limited);
         if passes == 0 {
             stages.push(("asked", graph.asked().clone()));
         }
@@ -30,14 +68,23 @@ pub(crate) fn program(wanted: &Wanted, model: &Model<f64>, parameters: &[Paramet
         stages.push((name, graph.counts()));
     }
     let ways = choices.iter().map(|c| c.way.name).filter(|name| !name.is_empty()).collect();
-    let entry = Entry { function: wanted.name.clone(), ways, stages, depth: depth(&graph) };
+    let entry = Entry { function: wanted.name.clone(), ways, stages, depth: depth(&graph), lanes: graph.lanes().width };
     (graph, entry)
 }
 
+impl Subject<'_> {
+    fn trace(&self, wanted: &Wanted, choices: &[Choice]) -> Graph {
+        match &self.alike {
+            None => trace(wanted, choices, self.model, self.parameters),
+            Some(alike) => trace_in_lanes(wanted, choices, self.model, alike),
+        }
+    }
+}
+
 /// The way that costs least once the graph passes are done. With parameters, model passes may cost more than they save: then they are not taken.
-fn cheapest(part: &Part, model: &Model<f64>, parameters: &[Parameter], all: usize) -> Choice {
-    let few = if parameters.is_empty() { all..=all } else { 0..=all };
-    let ways = ways(part, model);
+fn cheapest(part: &Part, subject: &Subject, all: usize) -> Choice {
+    let few = if subject.parameters.is_empty() { all..=all } else { 0..=all };
+    let ways = ways(part, subject.model);
     let candidates: Vec<(Choice, u64)> =
         ways.iter().flat_map(|(way, least)| few.clone().map(move |passes| (Choice { way, passes }, *least))).collect();
     if let [(one, _)] = candidates.as_slice() {
@@ -50,7 +97,7 @@ fn cheapest(part: &Part, model: &Model<f64>, parameters: &[Parameter], all: usiz
         if best.is_some_and(|(_, cost)| least > u64::from(cost)) {
             continue;
         }
-        let cost = cost(&alone, choice, model, parameters);
+        let cost = cost(&alone, choice, subject);
         if best.is_none_or(|(_, other)| cost < other) {
             best = Some((choice, cost));
         }
@@ -58,7 +105,21 @@ fn cheapest(part: &Part, model: &Model<f64>, parameters: &[Parameter], all: usiz
     best.map_or(Choice { way: &part.function.ways[0], passes: all }, |(choice, _)| choice)
 }
 
-fn cost(wanted: &Wanted, choice: Choice, model: &Model<f64>, parameters: &[Parameter]) -> u32 {
-    let graph = trace(wanted, &[choice], model, parameters);
-    pass::cost(&GRAPH_PASSES.iter().fold(graph, |graph, (_, pass, _)| pass(&graph)))
+fn cost(wanted: &Wanted, choice: Choice, subject: &Subject) -> u32 {
+    pass::cost(&GRAPH_PASSES.iter().fold(subject.trace(wanted, &[choice]), |graph, (_, pass, _)| pass(&graph)))
+}
+
+/// Instructions of sines and cosines of as many angles as there are lanes.
+const SINES: f64 = 28.0;
+
+/// What a program costs, in instructions, plain or in lanes: sines go four angles at a time, or the angles of all lanes; inputs of lanes come one by one.
+fn price(graph: &Graph) -> f64 {
+    let counts = graph.counts();
+    let rows = f64::from(pass::cost(graph)) - 10.0 * counts.trigonometric() as f64;
+    let mut angles: Vec<u32> = graph.nodes().iter().filter(|n| matches!(n.op, Op::Sin | Op::Cos)).map(|n| n.args[0]).collect();
+    angles.sort_unstable();
+    angles.dedup();
+    let width = graph.lanes().width;
+    let calls = (angles.len() * width).div_ceil(4);
+    rows + SINES * calls as f64 + (counts.of(Op::LaneInput) as usize * width) as f64
 }

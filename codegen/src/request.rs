@@ -43,6 +43,8 @@ pub struct Options {
     pub snap_angles: Option<f64>,
     /// Rust names to use instead of those made from the URDF's names: (name in the URDF, name in Rust).
     pub rename: Vec<(String, String)>,
+    /// Compute limbs that are alike at once, one a lane of a vector, where that is cheaper.
+    pub limbs: bool,
     /// No `unsafe` in the generated code, for crates that forbid it: sines and cosines take a little longer on x86-64.
     pub forbid_unsafe: bool,
     /// Path of the runtime crate, to implement its trait `Dynamics`; `None`: the code depends on nothing but `core` and `std`.
@@ -79,6 +81,7 @@ impl Default for Options {
             allow_unphysical_inertia: false,
             snap_angles: None,
             rename: Vec::new(),
+            limbs: true,
             forbid_unsafe: false,
             runtime: None,
         }

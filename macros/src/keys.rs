@@ -87,6 +87,12 @@ pub(crate) const KEYS: &[Key<Settings>] = &[
         read: |s, value| angle(value).map(|angle| s.snap_angles = Some(angle)),
     },
     Key {
+        name: "limbs",
+        required: false,
+        expected: "`true` or `false`",
+        read: |s, value| value.parse::<LitBool>().map(|b| s.limbs = Some(b.value)),
+    },
+    Key {
         name: "forbid_unsafe",
         required: false,
         expected: "`true` or `false`",

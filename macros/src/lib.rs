@@ -39,7 +39,8 @@ mod tests;
 ///         rename = { "a-b" = A_MINUS_B },                // names in Rust for names of the URDF
 ///         allow_unphysical_inertia = false,
 ///         snap_angles = 1e-9,                            // rad: angles this near to a multiple of π/2 are taken as that; absent: none
-///         forbid_unsafe = false,                         // true: no `unsafe` in the module; sines take a little longer on x86-64
+///         limbs = true,                                  // branches that are alike at once, one a lane of a vector, where that is cheaper
+///         forbid_unsafe = false,                         // true: no `unsafe` in the module; slower on x86-64: no limbs in lanes, no choice of instructions
 ///         crate = ::articulated,                         // the path of this crate, if it has another name
 ///         standalone = false,                            // true: no implementation of `Dynamics`, no dependence on this crate
 ///     }

@@ -25,6 +25,7 @@ pub(crate) struct Settings {
     pub(crate) allow_unphysical_inertia: bool,
     pub(crate) snap_angles: Option<f64>,
     pub(crate) rename: Vec<Renaming>,
+    pub(crate) limbs: Option<bool>,
     pub(crate) forbid_unsafe: bool,
     pub(crate) runtime: Option<Path>,
     pub(crate) standalone: bool,
@@ -76,6 +77,7 @@ impl Settings {
             allow_unphysical_inertia: self.allow_unphysical_inertia,
             snap_angles: self.snap_angles,
             rename: self.rename.iter().map(|r| (r.from.value(), r.to.to_string())).collect(),
+            limbs: self.limbs.unwrap_or(default.limbs),
             forbid_unsafe: self.forbid_unsafe,
             runtime: (!self.standalone).then(|| self.runtime.as_ref().map_or("::articulated".into(), spelled)),
         }

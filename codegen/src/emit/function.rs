@@ -1,68 +1,110 @@
-//! One graph as one straight-line function.
+//! One graph as one function.
 
 use std::fmt::Write;
 
-use articulated_core::algorithm::{Dim, Shape as Sizes};
+use articulated_core::algorithm::Shape;
 
-use super::literal::literal;
-use super::order::{Angle, Step, order};
-use crate::graph::{Graph, Node, NodeId, Op};
+use super::signature::Signature;
+use super::{plain, sets, vector};
+use crate::graph::Graph;
 use crate::ledger::Entry;
+use crate::program::Program;
 use crate::wanted::{Wanted, array};
 
+/// What the emitter must know besides the programs.
+#[derive(Clone, Copy)]
+pub(super) struct Context {
+    pub(super) sizes: Shape,
+    pub(super) parameters: bool,
+    pub(super) forbid_unsafe: bool,
+}
+
 /// The function's source, with its documentation and, where it gives several results, the type that holds them.
-pub(super) fn function(out: &mut String, wanted: &Wanted, graph: &Graph, entry: &Entry, sizes: Sizes, parameters: bool) {
-    let group = wanted.group();
-    if let Some(name) = &group {
-        results(out, wanted, name);
+pub(super) fn function(out: &mut String, program: &Program, context: Context) {
+    let Program { wanted, graph, entry } = program;
+    let signature = Signature::of(wanted, context.sizes, context.parameters);
+    signature.results_type(out);
+    if in_lanes(graph) {
+        lanes_macro(out, graph, &signature);
     }
-    document(out, wanted, entry, parameters);
-    let mut inputs: Vec<Input> = wanted.arguments().iter().map(|a| Input { name: a.name(), dims: a.dims().to_vec() }).collect();
-    if parameters {
-        inputs.push(Input { name: "parameters", dims: Vec::new() });
-    }
-    let arguments: Vec<String> = inputs.iter().map(Input::declared).collect();
-    let gives = group.clone().unwrap_or_else(|| array(wanted.parts[0].function.gives));
-    let _ = writeln!(out, "#[allow(clippy::all, clippy::pedantic)]");
-    let _ = writeln!(out, "pub fn {}({}) -> {gives} {{", wanted.name, arguments.join(", "));
-    for input in &inputs {
+    document(out, wanted, entry, context.parameters);
+    let _ =
+        writeln!(out, "#[allow({}clippy::all, clippy::pedantic)]", if context.forbid_unsafe { "" } else { "unsafe_code, unused_unsafe, " });
+    let _ = writeln!(out, "pub fn {}({}) -> {} {{", wanted.name, signature.arguments(), signature.gives());
+    for input in &signature.inputs {
         let _ = writeln!(out, "    let _ = {};", input.name);
     }
-    Body { out, graph, inputs, wanted, sizes, group }.write();
-    let _ = writeln!(out, "}}\n");
-}
-
-/// What is handed in.
-struct Input {
-    name: &'static str,
-    /// None for the parameters.
-    dims: Vec<Dim>,
-}
-
-impl Input {
-    fn declared(&self) -> String {
-        let ty = if self.dims.is_empty() { "[f64; PARAMETERS.len()]".into() } else { array(&self.dims) };
-        format!("{}: &{ty}", self.name)
-    }
-
-    /// Number `k` of it.
-    fn at(&self, k: usize) -> String {
-        match self.dims.as_slice() {
-            [_, Dim::Of(width)] => format!("{}[{}][{}]", self.name, k / width, k % width),
-            _ => format!("{}[{k}]", self.name),
-        }
-    }
-}
-
-fn results(out: &mut String, wanted: &Wanted, name: &str) {
-    let _ = writeln!(out, "/// What [`{}`] gives.", wanted.name);
-    let _ = writeln!(out, "#[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq)]");
-    let _ = writeln!(out, "pub struct {name} {{");
-    for part in &wanted.parts {
-        let f = part.function;
-        let _ = writeln!(out, "    /// {}: `{}`, {}.\n    pub {}: {},", f.summary, array(f.gives), f.unit, f.name, array(f.gives));
+    if in_lanes(graph) {
+        lanes_calls(out, graph, &signature);
+    } else if needs_choice(graph) && !context.forbid_unsafe {
+        chosen(out, graph, &signature);
+    } else {
+        plain::body(out, graph, &signature);
     }
     let _ = writeln!(out, "}}\n");
+}
+
+/// Whether the values are vectors.
+pub(super) fn in_lanes(graph: &Graph) -> bool {
+    graph.lanes().width > 1
+}
+
+/// Whether the function profits from an instruction set that not every processor has.
+pub(super) fn needs_choice(graph: &Graph) -> bool {
+    !in_lanes(graph) && (graph.counts().fused() > 0 || plain::has_batch(graph))
+}
+
+/// Plain arithmetic, with fused multiply-add where the processor has it: compiled for it, or found to be so.
+fn chosen(out: &mut String, graph: &Graph, signature: &Signature) {
+    let (arguments, names, gives) = (signature.arguments(), signature.names(), signature.gives());
+    let _ = writeln!(out, "    #[inline(always)]\n    fn body<const FUSED: bool>({arguments}) -> {gives} {{");
+    for input in &signature.inputs {
+        let _ = writeln!(out, "    let _ = {};", input.name);
+    }
+    plain::body(out, graph, signature);
+    let _ = writeln!(out, "    }}\n    {}", sets::NOT_COMPILED_FOR_AVX2);
+    let _ = writeln!(out, "    if {} {{", sets::HAS_AVX2);
+    let _ = writeln!(
+        out,
+        "        #[target_feature(enable = \"avx2,fma\")]\n        fn fused({arguments}) -> {gives} {{\n            body::<true>({names})\n        }}"
+    );
+    let _ = writeln!(out, "        // SAFETY: the processor was just asked for both.\n        return unsafe {{ fused({names}) }};\n    }}");
+    let _ = writeln!(out, "    body::<FUSED>({names})");
+}
+
+/// The body as a macro: it is compiled for several instruction sets.
+fn lanes_macro(out: &mut String, graph: &Graph, signature: &Signature) {
+    let (arguments, gives, name) = (signature.arguments(), signature.gives(), &signature.wanted.name);
+    let _ = writeln!(out, "macro_rules! {name}_in_lanes {{\n    ($(#[$features:meta])?) => {{");
+    let _ = writeln!(out, "    $(#[$features])?\n    #[inline]\n    fn in_lanes({arguments}) -> {gives} {{");
+    for input in &signature.inputs {
+        let _ = writeln!(out, "    let _ = {};", input.name);
+    }
+    vector::body(out, graph, signature);
+    let _ = writeln!(out, "    }}\n    }};\n}}\n");
+}
+
+/// The call of the body for the best instruction set there is.
+fn lanes_calls(out: &mut String, graph: &Graph, signature: &Signature) {
+    let (names, name, width) = (signature.names(), &signature.wanted.name, graph.lanes().width);
+    let mut block = |cfg: &str, set: &str, features: &str, calls: &str| {
+        let two = if width == 2 { format!("\n        use self::two::{set}::sin_cos_of_two;") } else { String::new() };
+        let _ = writeln!(
+            out,
+            "    {cfg}\n    {{\n        use self::{set}_f64x{width}::*;{two}\n        {name}_in_lanes!({features});\n{calls}    }}"
+        );
+    };
+    let calls = format!(
+        "        {}\n        if {} {{\n            // SAFETY: the processor was just asked for both.\n            return unsafe {{ in_lanes({names}) }};\n        }}\n        \
+         {}\n        // SAFETY: this is compiled for processors with both.\n        return unsafe {{ in_lanes({names}) }};\n",
+        sets::NOT_COMPILED_FOR_AVX2,
+        sets::HAS_AVX2,
+        sets::COMPILED_FOR_AVX2,
+    );
+    block("#[cfg(target_arch = \"x86_64\")]", "avx2", "#[target_feature(enable = \"avx2,fma\")]", &calls);
+    let calls = format!("        // SAFETY: every 64-bit Arm processor has it.\n        return unsafe {{ in_lanes({names}) }};\n");
+    block("#[cfg(target_arch = \"aarch64\")]", "neon", "#[target_feature(enable = \"neon\")]", &calls);
+    block(sets::NEITHER, "portable", "", &format!("        in_lanes({names})\n"));
 }
 
 fn document(out: &mut String, wanted: &Wanted, entry: &Entry, parameters: bool) {
@@ -83,9 +125,10 @@ fn document(out: &mut String, wanted: &Wanted, entry: &Entry, parameters: bool) 
     }
     let by = if entry.ways.is_empty() { String::new() } else { format!("By {}, the cheapest for this robot; ", entry.ways.join(", ")) };
     let c = entry.emitted();
+    let lanes = if entry.lanes > 1 { format!("; limbs that are alike in {} lanes", entry.lanes) } else { String::new() };
     let _ = writeln!(
         out,
-        "/// {by}{} multiplications + {} additions in {} instructions (multiply-adds counted once), {} sines and cosines, depth {}.",
+        "/// {by}{} multiplications + {} additions in {} instructions (multiply-adds counted once), {} sines and cosines, depth {}{lanes}.",
         c.multiplications(),
         c.additions(),
         c.instructions(),
@@ -98,148 +141,5 @@ fn shown(constant: &crate::Constant) -> String {
     match constant {
         crate::Constant::All(x) => format!("{x}"),
         crate::Constant::Each(numbers) => format!("{numbers:?}"),
-    }
-}
-
-/// How many angles `trig::four` takes.
-const LANES: usize = 4;
-
-/// From this many angles on a batch is faster than one after the other.
-pub(super) const BATCH_FROM: usize = 3;
-
-struct Body<'a> {
-    out: &'a mut String,
-    graph: &'a Graph,
-    inputs: Vec<Input>,
-    wanted: &'a Wanted,
-    sizes: Sizes,
-    /// The type of the result, if there are several.
-    group: Option<String>,
-}
-
-impl Body<'_> {
-    fn write(&mut self) {
-        for step in order(self.graph) {
-            match step {
-                Step::Node(k) => self.statement(k, &self.graph.nodes()[k]),
-                Step::Batch(angles) if angles.len() < BATCH_FROM => angles.iter().for_each(|a| self.single(a)),
-                Step::Batch(angles) => self.batch(&angles),
-            }
-        }
-        self.result();
-    }
-
-    fn statement(&mut self, k: usize, node: &Node) {
-        let _ = match node.op {
-            Op::Constant => Ok(()),
-            Op::Input => writeln!(self.out, "    let x{k} = {};", self.inputs[node.args[0] as usize].at(node.args[1] as usize)),
-            op => {
-                let expression = self.expression(op, node);
-                writeln!(self.out, "    let x{k} = {expression};")
-            }
-        };
-    }
-
-    fn single(&mut self, a: &Angle) {
-        let name = |k: Option<usize>| k.map_or_else(|| "_".to_owned(), |k| format!("x{k}"));
-        let _ = writeln!(self.out, "    let ({}, {}) = f64::sin_cos({});", name(a.sin), name(a.cos), self.operand(a.angle));
-    }
-
-    /// Four at a time, the last four padded.
-    fn batch(&mut self, angles: &[Angle]) {
-        let name = |k: Option<usize>| k.map_or_else(|| "_".to_owned(), |k| format!("x{k}"));
-        let padded = |mut list: Vec<String>, pad: &str| {
-            list.resize(LANES, pad.into());
-            list.join(", ")
-        };
-        for four in angles.chunks(LANES) {
-            let sines = padded(four.iter().map(|a| name(a.sin)).collect(), "_");
-            let cosines = padded(four.iter().map(|a| name(a.cos)).collect(), "_");
-            let angles = padded(four.iter().map(|a| self.operand(a.angle)).collect(), "0.0");
-            let _ = writeln!(self.out, "    let [[{sines}], [{cosines}]] = trig::four({angles});");
-        }
-    }
-
-    fn expression(&self, op: Op, node: &Node) -> String {
-        let mut text = op.row().rust.to_owned();
-        for (hole, operand) in ["{a}", "{b}", "{c}"].iter().zip(node.operands()) {
-            let operand = self.operand(operand);
-            text = text.replace(hole, if op == Op::Select { bare(&operand) } else { &operand });
-        }
-        text
-    }
-
-    /// A name, or the literal of a constant.
-    fn operand(&self, id: NodeId) -> String {
-        match self.graph.node(id).constant() {
-            Some(c) if c < 0.0 => format!("({})", literal(c)),
-            Some(c) => literal(c),
-            None => format!("x{}", id.0),
-        }
-    }
-
-    fn result(&mut self) {
-        let values: Vec<String> = self.graph.outputs.iter().map(|&o| self.operand(o)).collect();
-        let mut rest = values.as_slice();
-        let mut results = Vec::new();
-        for part in &self.wanted.parts {
-            let (own, others) = rest.split_at(part.function.len(self.sizes));
-            let lengths: Vec<usize> = part.function.gives.iter().map(|d| d.len(self.sizes)).collect();
-            let value = if is_sparse(own) { self.sparse(part.function.name, own, &lengths) } else { nested(own, &lengths) };
-            results.push((part.function.name, value));
-            rest = others;
-        }
-        let _ = match &self.group {
-            None => results.iter().try_for_each(|(_, value)| writeln!(self.out, "    {value}")),
-            Some(name) => {
-                let fields: Vec<String> = results.iter().map(|(field, value)| format!("        {field}: {value},\n")).collect();
-                writeln!(self.out, "    {name} {{\n{}    }}", fields.concat())
-            }
-        };
-    }
-
-    /// An array of zeros, and what is not zero put in one by one: for the compiler far less than to write every zero out. Returns its name.
-    fn sparse(&mut self, name: &str, values: &[String], lengths: &[usize]) -> String {
-        let zeros = lengths.iter().rev().fold(ZERO.to_owned(), |inner, n| format!("[{inner}; {n}]"));
-        let mutable = if values.iter().any(|value| value != ZERO) { "mut " } else { "" };
-        let _ = writeln!(self.out, "    let {mutable}{name} = {zeros};");
-        for (k, value) in values.iter().enumerate().filter(|(_, value)| *value != ZERO) {
-            let _ = writeln!(self.out, "    {name}{} = {};", index(k, lengths), bare(value));
-        }
-        name.to_owned()
-    }
-}
-
-const ZERO: &str = "0.0";
-
-/// An operand that stands by itself: a negative number without its brackets.
-fn bare(operand: &str) -> &str {
-    operand.trim_matches(['(', ')'])
-}
-
-/// Whether most of many values are nothing.
-fn is_sparse(values: &[String]) -> bool {
-    values.len() >= 64 && values.iter().filter(|value| *value == ZERO).count() * 2 > values.len()
-}
-
-/// The indices of value `k` in an array of these lengths.
-fn index(mut k: usize, lengths: &[usize]) -> String {
-    lengths.iter().rev().fold(String::new(), |inner, n| {
-        let own = format!("[{}]{inner}", k % n);
-        k /= n;
-        own
-    })
-}
-
-/// Values as an array of these lengths.
-fn nested(values: &[String], lengths: &[usize]) -> String {
-    match lengths {
-        [] => values.first().cloned().unwrap_or_default(),
-        [_] => format!("[{}]", values.join(", ")),
-        [n, inner @ ..] => {
-            let width: usize = inner.iter().product();
-            let rows: Vec<String> = (0..*n).map(|k| nested(&values[k * width..][..width], inner)).collect();
-            format!("[{}]", rows.join(",\n     "))
-        }
     }
 }

@@ -9,6 +9,19 @@ pub(super) fn literal(x: f64) -> String {
     }
 }
 
+/// The literal as an operand.
+pub(super) fn operand(x: f64) -> String {
+    if x < 0.0 { format!("({})", literal(x)) } else { literal(x) }
+}
+
+/// An operand that stands by itself: a negative number without its brackets.
+pub(super) fn bare(operand: &str) -> &str {
+    match operand.strip_prefix('(') {
+        Some(rest) => rest.strip_suffix(')').unwrap_or(operand),
+        None => operand,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::literal;

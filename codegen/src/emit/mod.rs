@@ -6,6 +6,11 @@ mod literal;
 mod module;
 mod names;
 mod order;
+mod plain;
+mod results;
+mod sets;
+mod signature;
+mod vector;
 mod warnings;
 
 pub use names::identifier;

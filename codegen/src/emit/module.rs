@@ -6,23 +6,22 @@ use articulated_core::algorithm::Dim;
 use articulated_core::model::{JointInfo, Model};
 use articulated_urdf::Unused;
 
-use super::function::{BATCH_FROM, function};
+use super::function::{Context, function};
 use super::header::header;
 use super::literal::literal;
 use super::names::Names;
-use super::order::{Step, order};
-use crate::graph::Graph;
-use crate::wanted::{Wanted, array};
-use crate::{Ledger, Parameter, Request};
+use super::sets::support;
+use crate::program::Program;
+use crate::wanted::array;
+use crate::{Parameter, Request};
 
 /// The contents of the module.
 pub(crate) fn module(
     request: &Request,
     model: &Model<f64>,
     names: &Names,
-    programs: &[(Wanted, Graph)],
+    programs: &[Program],
     parameters: &[Parameter],
-    ledger: &Ledger,
     unused: &[Unused],
 ) -> String {
     let mut out = String::new();
@@ -30,39 +29,12 @@ pub(crate) fn module(
     constants(&mut out, model);
     indices(&mut out, model, names);
     inputs(&mut out, parameters);
-    for ((f, graph), entry) in programs.iter().zip(&ledger.functions) {
-        function(&mut out, f, graph, entry, model.shape(), !parameters.is_empty());
-    }
-    if programs.iter().any(|(_, g)| g.counts().fused() > 0) {
-        out += FMA;
-    }
-    if programs.iter().any(|(_, g)| has_batch(g)) {
-        sines(&mut out, request.options.forbid_unsafe);
-    }
+    let context = Context { sizes: model.shape(), parameters: !parameters.is_empty(), forbid_unsafe: request.options.forbid_unsafe };
+    programs.iter().for_each(|p| function(&mut out, p, context));
+    support(&mut out, programs, request.options.forbid_unsafe);
     robot(&mut out, request, programs, !parameters.is_empty());
     out
 }
-
-/// The module of sines and cosines.
-fn sines(out: &mut String, forbid_unsafe: bool) {
-    use articulated_core::trig::{PORTABLE_SOURCE, SOURCE};
-    let (source, lint) = if forbid_unsafe { (PORTABLE_SOURCE, "") } else { (SOURCE, "unsafe_code, ") };
-    let _ = writeln!(out, "#[allow({lint}dead_code, unreachable_pub, clippy::all, clippy::pedantic)]\nmod trig {{\n{source}}}\n");
-}
-
-fn has_batch(graph: &Graph) -> bool {
-    order(graph).iter().any(|s| matches!(s, Step::Batch(angles) if angles.len() >= BATCH_FROM))
-}
-
-const FMA: &str = "\
-/// a·b + c: one instruction, and one rounding, where the target has it.
-#[inline(always)]
-#[allow(clippy::all, clippy::pedantic)]
-fn fma(a: f64, b: f64, c: f64) -> f64 {
-    if ::core::cfg!(any(target_feature = \"fma\", target_arch = \"aarch64\")) { a.mul_add(b, c) } else { a * b + c }
-}
-
-";
 
 fn constants(out: &mut String, model: &Model<f64>) {
     let joints: Vec<&str> = model.joints.iter().map(|j| j.name.as_str()).collect();
@@ -136,7 +108,7 @@ fn inputs(out: &mut String, parameters: &[Parameter]) {
 }
 
 /// The type that stands for the robot where code is written over the trait `Dynamics`.
-fn robot(out: &mut String, request: &Request, programs: &[(Wanted, Graph)], parameters: bool) {
+fn robot(out: &mut String, request: &Request, programs: &[Program], parameters: bool) {
     let Some(path) = &request.options.runtime else { return };
     let default = if parameters { "" } else { ", ::core::default::Default" };
     let _ = writeln!(out, "/// The robot as a value, for code over the trait `Dynamics`.");
@@ -158,7 +130,7 @@ fn robot(out: &mut String, request: &Request, programs: &[(Wanted, Graph)], para
         "    fn call(&self, function: {path}::FunctionId, _: &mut (), arguments: &[&[f64]], out: &mut [f64]) -> ::core::result::Result<(), {path}::FunctionError> {{"
     );
     let _ = writeln!(out, "        match (function, arguments) {{");
-    for function in programs.iter().filter_map(|(wanted, _)| wanted.as_function()) {
+    for function in programs.iter().filter_map(|p| p.wanted.as_function()) {
         arm(out, path, function.name, &function.takes.iter().map(|a| (a.name(), a.dims())).collect::<Vec<_>>(), function.gives, parameters);
     }
     let _ =

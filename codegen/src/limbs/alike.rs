@@ -129,7 +129,8 @@ impl Constants {
 
     /// Symbols for the numbers of one lane, `numbers[lane]` all of them.
     fn symbols(&mut self, numbers: &[Vec<f64>], lane: usize) -> RefCell<std::vec::IntoIter<Sym>> {
-        let symbol = |k: usize| self.symbol(std::array::from_fn(|l| numbers[if l < numbers.len() { l } else { 0 }][k]), lane, numbers.len());
+        let symbol =
+            |k: usize| self.symbol(std::array::from_fn(|l| numbers[if l < numbers.len() { l } else { 0 }][k]), lane, numbers.len());
         RefCell::new((0..numbers[lane].len()).map(symbol).collect::<Vec<_>>().into_iter())
     }
 

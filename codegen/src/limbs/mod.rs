@@ -34,11 +34,17 @@ mod tests {
             let model = crate::model(&request, &crate::read(&request).unwrap().description).unwrap();
             let alike = Alike::of(&model, width).unwrap();
             for f in functions::<Sym>() {
-                if name == "humanoid" && f.name.contains("forward_dynamics_deriv") { continue }
+                if name == "humanoid" && f.name.contains("forward_dynamics_deriv") {
+                    continue;
+                }
                 let wanted = Wanted::parse(f.name).unwrap();
-                for way in ways(&wanted.parts[0], &model) {
+                for (way, _) in ways(&wanted.parts[0], &model) {
                     let choice = [Choice { way, passes: 1 }];
-                    let run = |g: Graph| GRAPH_PASSES.iter().fold(g, |g, (n, _pass, _)| if *n == "live" { crate::pass::live(&g) } else { crate::pass::contract(&g) });
+                    let run = |g: Graph| {
+                        GRAPH_PASSES
+                            .iter()
+                            .fold(g, |g, (n, _pass, _)| if *n == "live" { crate::pass::live(&g) } else { crate::pass::contract(&g) })
+                    };
                     let scalar = run(trace(&wanted, &choice, &model, &[]));
                     let packed = run(trace_in_lanes(&wanted, &choice, &model, &alike));
                     packed.verify().unwrap();
@@ -47,7 +53,17 @@ mod tests {
                     let worst = x.iter().zip(&y).map(|(a, b)| (a - b).abs() / (1.0 + a.abs())).fold(0.0, f64::max);
                     let c = |c: Counts| c.instructions();
                     let p = packed.counts();
-                    println!("{name} {width} {:40} {:10} {:6} -> {:6} spread {:5} across {:4} sin {:3} in {:3} worst {worst:.1e}", f.name, way.name, c(scalar.counts()), c(p.clone()), p.of(Op::Spread), p.of(Op::Across), p.of(Op::Sin), p.of(Op::LaneInput));
+                    println!(
+                        "{name} {width} {:40} {:10} {:6} -> {:6} spread {:5} across {:4} sin {:3} in {:3} worst {worst:.1e}",
+                        f.name,
+                        way.name,
+                        c(scalar.counts()),
+                        c(p.clone()),
+                        p.of(Op::Spread),
+                        p.of(Op::Across),
+                        p.of(Op::Sin),
+                        p.of(Op::LaneInput)
+                    );
                 }
             }
         }

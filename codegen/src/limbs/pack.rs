@@ -38,7 +38,7 @@ struct Term {
 /// over all lanes become one sum of vectors, added across at the end. The outputs are in lane 0.
 pub(crate) fn pack(graph: &Graph, arguments: &[Argument], alike: &Alike, constants: &Constants) -> Graph {
     let mut packer = Packer { graph, new: Graph::in_lanes(alike.width), at: Vec::with_capacity(graph.nodes().len()) };
-    for (k, node) in graph.nodes().iter().enumerate() {
+    for node in graph.nodes() {
         let at = match node.op {
             Op::Input if node.args[0] as usize == constants.argument => {
                 let (numbers, lane) = constants.behind(node.args[1] as usize);

@@ -1,0 +1,36 @@
+//! Numbers as arrays, as text.
+
+/// As the emitter writes zero.
+pub(super) const ZERO: &str = "0.0";
+
+/// An array of zeros of these lengths.
+pub(super) fn zeros(lengths: &[usize]) -> String {
+    lengths.iter().rev().fold(ZERO.to_owned(), |inner, n| format!("[{inner}; {n}]"))
+}
+
+/// Whether most of many values are nothing.
+pub(super) fn is_sparse(values: &[String]) -> bool {
+    values.len() >= 64 && values.iter().filter(|value| *value == ZERO).count() * 2 > values.len()
+}
+
+/// The indices of value `k` in an array of these lengths.
+pub(super) fn index(mut k: usize, lengths: &[usize]) -> String {
+    lengths.iter().rev().fold(String::new(), |inner, n| {
+        let own = format!("[{}]{inner}", k % n);
+        k /= n;
+        own
+    })
+}
+
+/// Values as an array of these lengths.
+pub(super) fn nested(values: &[String], lengths: &[usize]) -> String {
+    match lengths {
+        [] => values.first().cloned().unwrap_or_default(),
+        [_] => format!("[{}]", values.join(", ")),
+        [n, inner @ ..] => {
+            let width: usize = inner.iter().product();
+            let rows: Vec<String> = (0..*n).map(|k| nested(&values[k * width..][..width], inner)).collect();
+            format!("[{}]", rows.join(",\n     "))
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! Instruction sets in generated code: which modules of lanes it needs, and how it asks for the processor.
+
+use std::fmt::Write;
+
+use articulated_core::lanes::{Real, Set, source};
+
+use super::function::{in_lanes, needs_choice};
+use super::plain;
+use crate::program::Program;
+
+/// Whether the processor has AVX2 and FMA.
+pub(super) const HAS_AVX2: &str = "::std::is_x86_feature_detected!(\"avx2\") && ::std::is_x86_feature_detected!(\"fma\")";
+
+/// Stands before what is for x86-64 alone, and there for builds that may run without AVX2.
+pub(super) const NOT_COMPILED_FOR_AVX2: &str =
+    "#[cfg(all(target_arch = \"x86_64\", not(all(target_feature = \"avx2\", target_feature = \"fma\"))))]";
+
+/// Stands before what is for builds that run with AVX2 and FMA alone.
+pub(super) const COMPILED_FOR_AVX2: &str = "#[cfg(all(target_feature = \"avx2\", target_feature = \"fma\"))]";
+
+/// Stands before what is for processors that have neither AVX2 nor NEON.
+pub(super) const NEITHER: &str =
+    "#[cfg(not(any(target_arch = \"aarch64\", all(target_arch = \"x86_64\", target_feature = \"avx2\", target_feature = \"fma\"))))]";
+
+/// What the functions call: multiply-adds, sines, lanes.
+pub(super) fn support(out: &mut String, programs: &[Program], forbid_unsafe: bool) {
+    let plain = || programs.iter().filter(|p| !in_lanes(&p.graph));
+    if plain().any(|p| needs_choice(&p.graph)) {
+        *out += FUSED;
+    }
+    if plain().any(|p| p.graph.counts().fused() > 0) {
+        *out += FMA;
+    }
+    let sines = plain().any(|p| plain::has_batch(&p.graph));
+    if sines {
+        *out += if forbid_unsafe { PORTABLE_SINES } else { SINES };
+    }
+    let mut widths: Vec<usize> = programs.iter().map(|p| p.graph.lanes().width).filter(|w| *w > 1).collect();
+    if widths.contains(&2) {
+        *out += TWO;
+    }
+    widths.extend((sines || widths.contains(&2)).then_some(4));
+    widths.sort_unstable();
+    widths.dedup();
+    if !widths.is_empty() {
+        lanes(out, &widths, forbid_unsafe);
+    }
+}
+
+/// The modules of lanes in these widths.
+fn lanes(out: &mut String, widths: &[usize], forbid_unsafe: bool) {
+    let sets: &[(Set, &str, &str)] = if forbid_unsafe { &SETS[..1] } else { &SETS };
+    let lint = if forbid_unsafe { "" } else { "unsafe_code, " };
+    for width in widths {
+        for (set, name, cfg) in sets {
+            let Some(text) = source(*set, Real::F64, *width) else { continue };
+            let _ = writeln!(out, "/// Arithmetic and sines of {width} numbers at once.");
+            let _ = writeln!(
+                out,
+                "{cfg}#[allow({lint}dead_code, unused_imports, unused_macros, unreachable_pub, clippy::all, clippy::pedantic)]"
+            );
+            let _ = writeln!(out, "mod {name}_f64x{width} {{\n{text}}}\n");
+        }
+    }
+}
+
+/// The instruction sets of limbs and sines.
+const SETS: [(Set, &str, &str); 3] = [
+    (Set::Portable, "portable", ""),
+    (Set::Avx2, "avx2", "#[cfg(target_arch = \"x86_64\")]\n"),
+    (Set::Neon, "neon", "#[cfg(target_arch = \"aarch64\")]\n"),
+];
+
+const FUSED: &str = "\
+/// Whether this is compiled for a processor on which a·b + c is one instruction.
+const FUSED: bool = ::core::cfg!(any(all(target_arch = \"x86_64\", target_feature = \"avx2\", target_feature = \"fma\"), target_arch = \"aarch64\"));
+
+";
+
+const FMA: &str = "\
+/// a·b + c: one instruction, and one rounding, where the processor has it.
+#[inline(always)]
+#[allow(clippy::all, clippy::pedantic)]
+fn fma<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
+    if FUSED { a.mul_add(b, c) } else { a * b + c }
+}
+
+";
+
+const SINES: &str = "\
+#[allow(unsafe_code, clippy::all, clippy::pedantic)]
+mod trig {
+    /// [sin x, cos x] of four angles, rad. Error at most 1 ulp.
+    #[inline(always)]
+    pub(super) fn four<const FUSED: bool>(a: f64, b: f64, c: f64, d: f64) -> [[f64; 4]; 2] {
+        #[cfg(target_arch = \"x86_64\")]
+        if FUSED {
+            use super::avx2_f64x4::{array, lanes, sin_cos};
+            #[inline]
+            #[target_feature(enable = \"avx2,fma\")]
+            fn four(angles: [f64; 4]) -> [[f64; 4]; 2] {
+                let (sin, cos) = sin_cos(lanes(angles));
+                [array(sin), array(cos)]
+            }
+            // SAFETY: what is fused runs on processors with AVX2 and FMA alone.
+            return unsafe { four([a, b, c, d]) };
+        }
+        let (sin, cos) = super::portable_f64x4::sin_cos([a, b, c, d]);
+        [sin, cos]
+    }
+}
+
+";
+
+const PORTABLE_SINES: &str = "\
+#[allow(clippy::all, clippy::pedantic)]
+mod trig {
+    /// [sin x, cos x] of four angles, rad. Error at most 1 ulp.
+    #[inline(always)]
+    pub(super) fn four<const FUSED: bool>(a: f64, b: f64, c: f64, d: f64) -> [[f64; 4]; 2] {
+        let (sin, cos) = super::portable_f64x4::sin_cos([a, b, c, d]);
+        [sin, cos]
+    }
+}
+
+";
+
+const TWO: &str = "\
+/// Sines and cosines of two vectors of two: as one of four where there are such.
+#[allow(unsafe_code, dead_code, unused_imports, unreachable_pub, clippy::all, clippy::pedantic)]
+mod two {
+    #[cfg(target_arch = \"x86_64\")]
+    pub(super) mod avx2 {
+        use super::super::avx2_f64x2::V;
+        use ::core::arch::x86_64::*;
+
+        #[inline]
+        #[target_feature(enable = \"avx2,fma\")]
+        pub(in super::super) fn sin_cos_of_two(a: V, b: V) -> [[V; 2]; 2] {
+            let (sin, cos) = super::super::avx2_f64x4::sin_cos(_mm256_set_m128d(b, a));
+            [
+                [_mm256_castpd256_pd128(sin), _mm256_extractf128_pd::<1>(sin)],
+                [_mm256_castpd256_pd128(cos), _mm256_extractf128_pd::<1>(cos)],
+            ]
+        }
+    }
+    #[cfg(target_arch = \"aarch64\")]
+    pub(super) mod neon {
+        use super::super::neon_f64x2::{V, sin_cos};
+
+        #[inline]
+        #[target_feature(enable = \"neon\")]
+        pub(in super::super) fn sin_cos_of_two(a: V, b: V) -> [[V; 2]; 2] {
+            let ((s, c), (t, d)) = (sin_cos(a), sin_cos(b));
+            [[s, t], [c, d]]
+        }
+    }
+    pub(super) mod portable {
+        use super::super::portable_f64x2::{V, sin_cos};
+
+        #[inline(always)]
+        pub(in super::super) fn sin_cos_of_two(a: V, b: V) -> [[V; 2]; 2] {
+            let ((s, c), (t, d)) = (sin_cos(a), sin_cos(b));
+            [[s, t], [c, d]]
+        }
+    }
+}
+
+";

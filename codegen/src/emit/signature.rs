@@ -1,0 +1,141 @@
+//! What a generated function takes and gives, as text.
+
+use std::fmt::Write;
+
+use articulated_core::algorithm::{Dim, Shape};
+
+use super::results::{ZERO, is_sparse, nested, zeros};
+use crate::wanted::{Wanted, array};
+
+/// What is handed in.
+pub(super) struct Input {
+    pub(super) name: &'static str,
+    /// None for the parameters.
+    dims: Vec<Dim>,
+}
+
+impl Input {
+    fn declared(&self) -> String {
+        let ty = if self.dims.is_empty() { "[f64; PARAMETERS.len()]".into() } else { array(&self.dims) };
+        format!("{}: &{ty}", self.name)
+    }
+
+    /// Number `k` of it.
+    pub(super) fn at(&self, k: usize) -> String {
+        match self.dims.as_slice() {
+            [_, Dim::Of(width)] => format!("{}[{}][{}]", self.name, k / width, k % width),
+            _ => format!("{}[{k}]", self.name),
+        }
+    }
+}
+
+/// A function's arguments and results.
+pub(super) struct Signature<'a> {
+    pub(super) wanted: &'a Wanted,
+    pub(super) inputs: Vec<Input>,
+    sizes: Shape,
+    /// The type of the result, if there are several.
+    group: Option<String>,
+}
+
+impl<'a> Signature<'a> {
+    pub(super) fn of(wanted: &'a Wanted, sizes: Shape, parameters: bool) -> Self {
+        let mut inputs: Vec<Input> = wanted.arguments().iter().map(|a| Input { name: a.name(), dims: a.dims().to_vec() }).collect();
+        if parameters {
+            inputs.push(Input { name: "parameters", dims: Vec::new() });
+        }
+        Self { wanted, inputs, sizes, group: wanted.group() }
+    }
+
+    /// `q: &[f64; NQ], v: &[f64; NV]`
+    pub(super) fn arguments(&self) -> String {
+        self.inputs.iter().map(Input::declared).collect::<Vec<_>>().join(", ")
+    }
+
+    /// `q, v`
+    pub(super) fn names(&self) -> String {
+        self.inputs.iter().map(|i| i.name).collect::<Vec<_>>().join(", ")
+    }
+
+    /// The type of the result.
+    pub(super) fn gives(&self) -> String {
+        self.group.clone().unwrap_or_else(|| array(self.wanted.parts[0].function.gives))
+    }
+
+    /// Writes the type that holds the results of a group.
+    pub(super) fn results_type(&self, out: &mut String) {
+        let Some(name) = &self.group else { return };
+        let _ = writeln!(out, "/// What [`{}`] gives.", self.wanted.name);
+        let _ = writeln!(out, "#[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq)]");
+        let _ = writeln!(out, "pub struct {name} {{");
+        for part in &self.wanted.parts {
+            let f = part.function;
+            let _ = writeln!(out, "    /// {}: `{}`, {}.\n    pub {}: {},", f.summary, array(f.gives), f.unit, f.name, array(f.gives));
+        }
+        let _ = writeln!(out, "}}\n");
+    }
+
+    /// The values of each part, with its name and the lengths of its array.
+    fn parts<'v>(&self, mut values: &'v [String]) -> Vec<(&'static str, &'v [String], Vec<usize>)> {
+        let mut parts = Vec::new();
+        for part in &self.wanted.parts {
+            let (own, others) = values.split_at(part.function.len(self.sizes));
+            parts.push((part.function.name, own, part.function.gives.iter().map(|d| d.len(self.sizes)).collect()));
+            values = others;
+        }
+        parts
+    }
+
+    /// Writes the last expression of a function: the result made of these values.
+    pub(super) fn result(&self, out: &mut String, values: &[String]) {
+        let mut results = Vec::new();
+        for (name, own, lengths) in self.parts(values) {
+            let value = if is_sparse(own) { sparse(out, name, own, &lengths) } else { nested(own, &lengths) };
+            results.push((name, value));
+        }
+        let _ = match &self.group {
+            None => results.iter().try_for_each(|(_, value)| writeln!(out, "    {value}")),
+            Some(name) => {
+                let fields: Vec<String> = results.iter().map(|(field, value)| format!("        {field}: {value},\n")).collect();
+                writeln!(out, "    {name} {{\n{}    }}", fields.concat())
+            }
+        };
+    }
+
+    #[allow(dead_code)]
+    /// A result of zeros.
+    pub(super) fn nothing(&self) -> String {
+        let part = |gives: &[Dim]| zeros(&gives.iter().map(|d| d.len(self.sizes)).collect::<Vec<_>>());
+        match &self.group {
+            None => part(self.wanted.parts[0].function.gives),
+            Some(name) => {
+                let fields: Vec<String> =
+                    self.wanted.parts.iter().map(|p| format!("{}: {}", p.function.name, part(p.function.gives))).collect();
+                format!("{name} {{ {} }}", fields.join(", "))
+            }
+        }
+    }
+
+    #[allow(dead_code)]
+    /// Where each number of the result stands in `out: &mut` result.
+    pub(super) fn places(&self) -> Vec<String> {
+        let mut places = Vec::new();
+        for part in &self.wanted.parts {
+            let lengths: Vec<usize> = part.function.gives.iter().map(|d| d.len(self.sizes)).collect();
+            let of = if self.group.is_some() { format!("out.{}", part.function.name) } else { "out".to_owned() };
+            let star = if self.group.is_none() && lengths.is_empty() { "*" } else { "" };
+            places.extend((0..part.function.len(self.sizes)).map(|k| format!("{star}{of}{}", super::results::index(k, &lengths))));
+        }
+        places
+    }
+}
+
+/// An array of zeros, and what is not zero put in one by one: for the compiler far less than to write every zero out. Returns its name.
+fn sparse(out: &mut String, name: &str, values: &[String], lengths: &[usize]) -> String {
+    let mutable = if values.iter().any(|value| value != ZERO) { "mut " } else { "" };
+    let _ = writeln!(out, "    let {mutable}{name} = {};", zeros(lengths));
+    for (k, value) in values.iter().enumerate().filter(|(_, value)| *value != ZERO) {
+        let _ = writeln!(out, "    {name}{} = {};", super::results::index(k, lengths), super::literal::bare(value));
+    }
+    name.to_owned()
+}
