@@ -78,6 +78,13 @@ pub(crate) enum Command {
         "articulated functions --markdown > docs/functions.md",
     ]))]
     Functions(FunctionsArguments),
+    /// Measures how costs grow with the robot: chains of up to 1000 joints, generated against generic code, hot and cold caches
+    #[command(after_help = examples(&[
+        "articulated scaling",
+        "articulated scaling --joints 7,30,100 --functions inverse_dynamics --chart scaling.svg",
+        "articulated scaling --all --markdown --chart docs/scaling.svg > docs/scaling.md",
+    ]))]
+    Scaling(ScalingArguments),
 }
 
 /// Which robot, and how to read it.
@@ -215,6 +222,28 @@ pub(crate) struct FunctionsArguments {
     pub(crate) markdown: bool,
 }
 
+#[derive(Args, Debug)]
+pub(crate) struct ScalingArguments {
+    /// Numbers of joints [default: 7,14,30,60,125; with --all up to 1000]
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', value_parser = joints)]
+    pub(crate) joints: Vec<usize>,
+    /// The functions to measure, or groups of them [default: inverse_dynamics,mass_matrix,forward_dynamics]
+    #[arg(long, alias = "function", value_name = "NAMES", value_parser = known)]
+    pub(crate) functions: Vec<Names>,
+    /// All lengths: takes some minutes and some GB of memory, most of it for rustc
+    #[arg(long, conflicts_with = "joints")]
+    pub(crate) all: bool,
+    /// The file to draw the times to, as SVG
+    #[arg(long, value_name = "FILE")]
+    pub(crate) chart: Option<PathBuf>,
+    /// As a document in Markdown
+    #[arg(long)]
+    pub(crate) markdown: bool,
+    /// How often each is timed
+    #[arg(long, value_name = "N", default_value_t = 31, value_parser = clap::value_parser!(u32).range(5..=100_000))]
+    pub(crate) repetitions: u32,
+}
+
 /// Three numbers in m/s².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Gravity(pub(crate) [f64; 3]);
@@ -224,6 +253,10 @@ fn gravity(text: &str) -> Result<Gravity, String> {
     let numbers = numbers.map_err(|e| e.to_string())?;
     let three: [f64; 3] = numbers.try_into().map_err(|n: Vec<f64>| format!("found {} numbers, expected three", n.len()))?;
     if three.iter().all(|x| x.is_finite()) { Ok(Gravity(three)) } else { Err("expected finite numbers".into()) }
+}
+
+fn joints(text: &str) -> Result<usize, String> {
+    text.trim().parse().ok().filter(|n| (1..=2000).contains(n)).ok_or_else(|| "expected 1 to 2000 joints".into())
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

@@ -1,7 +1,7 @@
 //! The command `articulated`, as a library: what it does, and what the tests of the workspace share with it.
 //!
 //! For tests: [`precise::Big`], a scalar of 96 digits; [`magnitude::Magnitude`], the scale of rounding errors; [`states`], states at random and
-//! from files; [`compiled::Compiled`], generated source as functions that can be called.
+//! from files; [`compiled::Compiled`], generated source as functions that can be called; [`scaling::chain::chain`], robots of any length.
 
 mod arguments;
 mod check;
@@ -21,6 +21,7 @@ mod native;
 mod parallel;
 pub mod precise;
 mod robot;
+pub mod scaling;
 mod shape;
 pub mod states;
 mod table;
@@ -59,6 +60,7 @@ fn dispatch(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Eval(a) => eval::run(a, format),
         Command::Compare(a) => compare::run(a, format),
         Command::Functions(a) => functions::run(a, format).map(|()| OK),
+        Command::Scaling(a) => scaling::run(a, format).map(|()| OK),
     }
 }
 

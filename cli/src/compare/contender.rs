@@ -12,7 +12,7 @@ use crate::compiled::Compiled;
 use crate::native::{Kernel, PeerKernel};
 
 /// One way to compute a function.
-pub(super) struct Contender<'a> {
+pub(crate) struct Contender<'a> {
     way: Way<'a>,
     out: usize,
 }
@@ -25,24 +25,24 @@ enum Way<'a> {
 
 impl<'a> Contender<'a> {
     /// Code of another library.
-    pub(super) fn peer(kernel: PeerKernel, out: usize) -> Self {
+    pub(crate) fn peer(kernel: PeerKernel, out: usize) -> Self {
         Self { way: Way::Peer(kernel), out }
     }
 
     /// The compiled function.
-    pub(super) fn generated(compiled: &Compiled, function: &Function<f64>) -> Self {
+    pub(crate) fn generated(compiled: &Compiled, function: &Function<f64>) -> Self {
         let kernel = compiled.kernel(function.name).expect("every function of a ledger was loaded");
         Self { way: Way::Generated(kernel.clone()), out: function.len(compiled.shape()) }
     }
 
     /// The same algorithm at run time.
-    pub(super) fn generic(model: &'a Model<f64>, function: &'static Function<f64>) -> Self {
+    pub(crate) fn generic(model: &'a Model<f64>, function: &'static Function<f64>) -> Self {
         let workspace = Box::new(RefCell::new(Workspace::new(model)));
         Self { way: Way::Generic { function, model, workspace }, out: function.len(model.shape()) }
     }
 
     /// The result in one state; empty where a peer keeps it to itself.
-    pub(super) fn call(&self, arguments: &[&[f64]]) -> Vec<f64> {
+    pub(crate) fn call(&self, arguments: &[&[f64]]) -> Vec<f64> {
         let mut out = vec![0.0; self.out];
         match &self.way {
             Way::Generated(kernel) => kernel.call(arguments, &mut out),
@@ -60,7 +60,7 @@ impl<'a> Contender<'a> {
     }
 
     /// What the clock is held to: so many rounds through all states.
-    pub(super) fn run<'b>(&'b self, states: &'b [Vec<&'b [f64]>]) -> Run<'b> {
+    pub(crate) fn run<'b>(&'b self, states: &'b [Vec<&'b [f64]>]) -> Run<'b> {
         let mut out = vec![0.0; self.out];
         match &self.way {
             Way::Generated(kernel) => Box::new(move |rounds| clock(|| kernel.repeat(rounds, states, black_box(&mut out)))),

@@ -1,12 +1,12 @@
 //! `articulated compare`.
 
 mod accuracy;
-mod contender;
+pub(crate) mod contender;
 mod peer;
 mod prepare;
 mod report;
 mod text;
-mod timing;
+pub(crate) mod timing;
 
 use std::path::{Path, PathBuf};
 

@@ -5,21 +5,21 @@ use std::time::Duration;
 use serde::Serialize;
 
 /// Runs so many rounds through all states and says how long it took.
-pub(super) type Run<'a> = Box<dyn FnMut(usize) -> Duration + 'a>;
+pub(crate) type Run<'a> = Box<dyn FnMut(usize) -> Duration + 'a>;
 
 /// One batch of one contender takes about this long.
 const BATCH: Duration = Duration::from_micros(400);
 
 /// The middle of some numbers and the quartiles around it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub(super) struct Summary {
-    pub(super) median: f64,
-    pub(super) lower_quartile: f64,
-    pub(super) upper_quartile: f64,
+pub(crate) struct Summary {
+    pub(crate) median: f64,
+    pub(crate) lower_quartile: f64,
+    pub(crate) upper_quartile: f64,
 }
 
 /// ns per call of each run in each repetition.
-pub(super) fn interleaved(runs: &mut [Run<'_>], repetitions: usize, states: usize) -> Vec<Vec<f64>> {
+pub(crate) fn interleaved(runs: &mut [Run<'_>], repetitions: usize, states: usize) -> Vec<Vec<f64>> {
     let rounds: Vec<usize> = runs.iter_mut().map(rounds_of_a_batch).collect();
     let mut times = vec![Vec::with_capacity(repetitions); runs.len()];
     for repetition in 0..repetitions {
@@ -47,7 +47,7 @@ fn rounds_of_a_batch(run: &mut Run<'_>) -> usize {
 }
 
 /// Median and quartiles.
-pub(super) fn summary(numbers: &[f64]) -> Summary {
+pub(crate) fn summary(numbers: &[f64]) -> Summary {
     let mut sorted = numbers.to_vec();
     sorted.sort_by(f64::total_cmp);
     let at = |part: f64| {
@@ -60,7 +60,7 @@ pub(super) fn summary(numbers: &[f64]) -> Summary {
 }
 
 /// The ratios of two contenders' times, repetition by repetition.
-pub(super) fn ratio(a: &[f64], b: &[f64]) -> Summary {
+pub(crate) fn ratio(a: &[f64], b: &[f64]) -> Summary {
     let ratios: Vec<f64> = a.iter().zip(b).map(|(a, b)| a / b).collect();
     summary(&ratios)
 }

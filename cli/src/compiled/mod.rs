@@ -1,5 +1,6 @@
 //! Generated source, compiled and loaded: what a user's program would run.
 
+mod filler;
 mod rustc;
 mod symbols;
 mod wrapper;
@@ -11,6 +12,7 @@ use articulated_codegen::Generated;
 use articulated_core::algorithm::{FunctionError, Shape, check_length, function};
 
 use crate::native::{Kernel, Native};
+pub(crate) use filler::{Filler, INSTRUCTIONS as FILLER_INSTRUCTIONS};
 pub use rustc::{CompileError, Rustc};
 
 /// The functions of one [`Generated`], compiled by `rustc` as a library and loaded.

@@ -6,6 +6,7 @@ mod edits;
 mod eval;
 mod functions;
 mod generate;
+mod scaling;
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -77,7 +78,7 @@ impl File {
 
 #[test]
 fn help_tells_examples_and_statuses() {
-    for command in ["check", "generate", "eval", "compare", "functions"] {
+    for command in ["check", "generate", "eval", "compare", "functions", "scaling"] {
         let help = run(&[command, "--help"]);
         assert_eq!(help.status, 0);
         assert!(help.out.contains(&format!("articulated {command} ")) && help.out.contains("Exit status"), "{}", help.out);

@@ -1,0 +1,89 @@
+//! The measurements for people.
+
+use std::fmt::Write;
+
+use super::report::{Crossover, Growth, Point, Report};
+use crate::compare::timing::Summary;
+use crate::table::{Table, number};
+
+pub(super) fn text(report: &Report) -> String {
+    let mut out = format!(
+        "serial arms of revolute joints; {} {}\n{} random states, {} repetitions; before an evaluation with cold caches {} MiB are written to and {} instructions run\n",
+        report.compiler,
+        report.flags,
+        report.states,
+        report.repetitions,
+        report.buffer_bytes >> 20,
+        report.filler_instructions
+    );
+    report.notes.iter().for_each(|note| out += &format!("note: {note}\n"));
+    for (function, points) in report.functions() {
+        let _ = write!(out, "\n{function}\n{}", table(&points).text());
+    }
+    let crossovers: String = report.crossovers.iter().map(|c| crossover(c) + "\n").collect();
+    let growth: String = report.growth.iter().map(|g| self::growth(g) + "\n").collect();
+    out + "\n" + &crossovers + &growth
+}
+
+/// Titles and units of what is said of a chain; the last row is [`cells`].
+pub(super) const COLUMNS: [(&str, &str); 12] = [
+    ("joints", ""),
+    ("generated, hot", "µs"),
+    ("generic, hot", "µs"),
+    ("generated, cold", "µs"),
+    ("generic, cold", "µs"),
+    ("generated, hot", "ns a joint"),
+    ("generated, cold", "ns a joint"),
+    ("instructions", "a joint"),
+    ("code", "bytes a joint"),
+    ("generation", "ms"),
+    ("rustc", "s"),
+    ("rustc", "ms a joint"),
+];
+
+/// One row, as many as [`COLUMNS`].
+pub(super) fn cells(p: &Point) -> Vec<String> {
+    let n = p.joints as f64;
+    let us = |s: &Summary| three(s.median * 1e-3);
+    let joints = if p.ways.is_empty() { p.joints.to_string() } else { format!("{} {}", p.joints, p.ways.join(", ")) };
+    vec![
+        joints,
+        us(&p.generated_hot),
+        us(&p.generic_hot),
+        us(&p.generated_cold),
+        us(&p.generic_cold),
+        three(p.generated_hot.median / n),
+        three(p.generated_cold.median / n),
+        three(p.instructions as f64 / n),
+        p.code_bytes.map_or_else(|| "–".into(), |bytes| three(bytes as f64 / n)),
+        three(p.generation_seconds * 1e3),
+        three(p.compilation_seconds),
+        three(p.compilation_seconds * 1e3 / n),
+    ]
+}
+
+fn table(points: &[&Point]) -> Table {
+    let mut table = Table::new(COLUMNS);
+    points.iter().for_each(|p| table.row(cells(p)));
+    table
+}
+
+/// Three digits, or all before the point.
+fn three(x: f64) -> String {
+    let places = (2.0 - x.abs().max(1e-9).log10().floor()).clamp(0.0, 6.0) as usize;
+    number(format!("{x:.places$}").parse().unwrap_or(x))
+}
+
+/// From which length on generic code is faster, as a sentence.
+pub(super) fn crossover(c: &Crossover) -> String {
+    let at = |n: Option<f64>| n.map_or_else(|| format!("at no length up to {}", c.up_to), |n| format!("from {n:.0} joints on"));
+    format!("{}: generic code is faster {} with hot caches, {} with cold ones", c.function, at(c.hot), at(c.cold))
+}
+
+/// By how much a joint's costs grow, as a sentence.
+pub(super) fn growth(g: &Growth) -> String {
+    format!(
+        "{}: from {} to {} joints a joint costs {:.1} times the time with hot caches, {:.1} times the generation, {:.1} times the compilation",
+        g.function, g.from, g.to, g.time, g.generation, g.compilation
+    )
+}

@@ -1,0 +1,32 @@
+use crate::run;
+
+#[test]
+fn chains_are_measured_and_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let chart = folder.path().join("chart.svg");
+    let name = chart.to_str().unwrap();
+    let words = ["scaling", "--joints", "4,2", "--functions", "inverse_dynamics,mass_matrix", "--repetitions", "5"];
+    let ended = run(&[&words[..], &["--chart", name, "--format", "json"]].concat());
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let report = ended.json();
+    let points = report["points"].as_array().unwrap();
+    let joints: Vec<u64> = points.iter().map(|p| p["joints"].as_u64().unwrap()).collect();
+    assert_eq!(joints, [2, 4, 2, 4]);
+    for point in points {
+        for time in ["generated_hot", "generic_hot", "generated_cold", "generic_cold"] {
+            assert!(point[time]["median"].as_f64().unwrap() > 0.0, "{point}");
+        }
+    }
+    assert_eq!(report["crossovers"].as_array().unwrap().len(), 2);
+    assert_eq!(report["growth"][1]["to"], 4);
+    let drawn = std::fs::read_to_string(chart).unwrap();
+    assert_eq!(drawn.matches("<polyline").count(), 8);
+    assert!(drawn.starts_with("<svg ") && drawn.ends_with("</svg>\n"));
+}
+
+#[test]
+fn lengths_are_joints() {
+    for words in [["scaling", "--joints", "0"], ["scaling", "--joints", "7,x"], ["scaling", "--functions", "inverse"]] {
+        assert_eq!(run(&words).status, 2, "{words:?}");
+    }
+}
