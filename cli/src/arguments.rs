@@ -68,7 +68,7 @@ pub(crate) enum Command {
         "articulated compare humanoid --functions inverse_dynamics --repetitions 101",
         "articulated compare ur5_like --functions kinematics,derivatives --frames tool0",
         "articulated compare arm.urdf --peer libpeer.so --format json",
-        "articulated compare quadruped --peers-manifest target/peers/peers.json",
+        "articulated compare quadruped --peers-manifest target/peers/peers.json --chart quadruped.svg",
     ]))]
     Compare(CompareArguments),
     /// Lists all functions, and what they cost on some robots, on the frames of their tips
@@ -195,6 +195,9 @@ pub(crate) struct CompareArguments {
     /// A list of peer libraries, as the peers' build script writes it
     #[arg(long, value_name = "FILE")]
     pub(crate) peers_manifest: Option<PathBuf>,
+    /// Draw the medians as bars into this file, in SVG: of ours, and of the fastest build of each engine among the peers
+    #[arg(long, value_name = "FILE")]
+    pub(crate) chart: Option<PathBuf>,
     /// How often each is timed
     #[arg(long, value_name = "N", default_value_t = 61, value_parser = clap::value_parser!(u32).range(31..=100_000))]
     pub(crate) repetitions: u32,

@@ -11,7 +11,7 @@ use super::timing::Run;
 use crate::compiled::Compiled;
 use crate::native::{Kernel, PeerKernel};
 
-/// One way to compute a function.
+/// One way to compute a function. What is timed is a run through all states, so that those that take several at once have their time a state too.
 pub(crate) struct Contender<'a> {
     way: Way<'a>,
     out: usize,

@@ -1,14 +1,17 @@
 //! `articulated compare`.
 
 mod accuracy;
+mod chart;
 pub(crate) mod contender;
+mod making;
+mod manifest;
 mod peer;
 mod prepare;
 mod report;
 mod text;
 pub(crate) mod timing;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use articulated_core::algorithm::{Function, function};
 use articulated_core::model::Model;
@@ -22,12 +25,17 @@ use crate::tips::Tips;
 use crate::{groups, names, parallel};
 use accuracy::Reference;
 use contender::Contender;
+use making::Making;
+use manifest::Library;
 use peer::Peer;
 use prepare::{Plan, Prepared, Unready};
-use report::{FunctionReport, PeerReport, Report};
+use report::{FunctionReport, PeerLibrary, PeerReport, Report, VariantReport};
 
-/// A peer's result may differ from ours by this much of the sum of the magnitudes of the terms.
-const PEER_BOUND: f64 = 1e-9;
+/// Other code of ours may differ from generic code by this much of the sum of the magnitudes of the terms.
+const VARIANT_BOUND: f64 = 1e-9;
+
+/// The name of code that is compiled without being told the machine.
+const DEFAULT_BUILD: &str = "any processor";
 
 /// Measures and prints.
 pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Failure> {
@@ -55,11 +63,15 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
     };
     let prepared = prepare_all(&plan, arguments, &mut report)?;
     measure_all(&prepared, &peers, arguments.repetitions as usize, &mut report);
+    report.making = Making::of(&plan, &prepared, &peers)?;
+    if let Some(file) = &arguments.chart {
+        std::fs::write(file, chart::svg(&report)).map_err(|e| Failure::input([format!("{}: {e}", file.display())]))?;
+    }
     console::print(&match format {
         Format::Text => text::text(&report),
         Format::Json => crate::json(&report),
     })?;
-    match report.exceeded(arguments.bound, PEER_BOUND) {
+    match report.exceeded(arguments.bound, VARIANT_BOUND) {
         None => Ok(OK),
         Some(line) => Err(Failure::bound(line)),
     }
@@ -73,22 +85,24 @@ fn open_peers(
     folder: &Path,
     report: &mut Report,
 ) -> Result<Vec<Peer>, Failure> {
-    let mut libraries: Vec<(Option<String>, PathBuf)> = arguments.peer.iter().map(|p| (None, p.clone())).collect();
-    if let Some(manifest) = &arguments.peers_manifest {
-        libraries.extend(peer::manifest(manifest).map_err(|line| Failure::input([line]))?);
+    let mut libraries: Vec<Library> = arguments.peer.iter().map(|path| Library::at(path)).collect();
+    if let Some(file) = &arguments.peers_manifest {
+        libraries.extend(manifest::read(file).map_err(|line| Failure::input([line]))?);
     }
     let mut peers: Vec<Peer> = Vec::new();
     if libraries.is_empty() {
         return Ok(peers);
     }
     let urdf = robot.file_in(folder).map_err(|e| Failure::input([format!("{}: {e}", robot.file)]))?;
-    for (name, library) in libraries {
-        let label = name.clone().unwrap_or_else(|| library.display().to_string());
-        match Peer::open(name, &library, &urdf, robot, model) {
+    for library in libraries {
+        let label = library.name.clone().unwrap_or_else(|| library.path.display().to_string());
+        match Peer::open(library, &urdf, robot, model) {
             Ok(peer) => peers.push(peer),
             Err(reason) => report.notes.push(format!("peer {label} is left out: {reason}")),
         }
     }
+    let told = |p: &Peer| PeerLibrary { peer: p.name.clone(), library: Library { robots: Vec::new(), ..p.library.clone() } };
+    report.peers = peers.iter().map(told).collect();
     Ok(peers)
 }
 
@@ -126,26 +140,39 @@ fn measure_all(prepared: &[Prepared], peers: &[Peer], repetitions: usize, report
     }
 }
 
-/// Times of one function: of generated code, generic code and each peer.
+/// Times of one function: of generated code, generic code, other code of ours, and each peer.
 fn measure(ready: &Prepared, peers: &[Peer], repetitions: usize) -> FunctionReport {
     let (f, model) = (ready.function, &ready.model);
     let arguments = prepare::arguments(&ready.states, f);
     let (generated, generic) = (Contender::generated(&ready.compiled, f), Contender::generic(model, f));
+    let variants: Vec<Contender> = ready.anywhere.iter().map(|compiled| Contender::generated(compiled, f)).collect();
     let known: Vec<(&Peer, Contender)> = peers.iter().filter_map(|p| Some((p, p.contender(f, model)?))).collect();
     let theirs: Vec<Vec<Vec<Vec<f64>>>> = known.iter().map(|(p, _)| arguments.iter().map(|x| p.arguments(f, model, x)).collect()).collect();
     let theirs: Vec<Vec<Vec<&[f64]>>> =
         theirs.iter().map(|states| states.iter().map(|x| x.iter().map(Vec::as_slice).collect()).collect()).collect();
-    let mut runs: Vec<timing::Run<'_>> = vec![generated.run(&arguments), generic.run(&arguments)];
+    let ours = [&generated, &generic].into_iter().chain(&variants);
+    let mut runs: Vec<timing::Run<'_>> = ours.map(|c| c.run(&arguments)).collect();
     runs.extend(known.iter().zip(&theirs).map(|((_, c), x)| c.run(x)));
     let times = timing::interleaved(&mut runs, repetitions, arguments.len());
+    drop(runs);
     // Where the robot is singular nobody's result is right.
     let regular = ready.errors.is_none_or(|e| e.states > 0);
-    let peers = known.iter().zip(&theirs).enumerate().map(|(k, ((peer, contender), x))| PeerReport {
-        peer: peer.name.clone(),
-        time: timing::summary(&times[2 + k]),
-        generic_over_peer: timing::ratio(&times[1], &times[2 + k]),
-        generated_over_peer: timing::ratio(&times[0], &times[2 + k]),
-        largest_difference: regular.then(|| peer.difference(f, model, &arguments, x, contender, &generic)).flatten(),
+    let (own, rest) = times.split_at(2);
+    let (other, peer_times) = rest.split_at(variants.len());
+    let variants = ready.anywhere.iter().zip(&variants).zip(other).map(|((compiled, contender), time)| {
+        let difference = || peer::difference(f, model, &arguments, &generic, |k, _| Some(contender.call(&arguments[k])));
+        VariantReport {
+            variant: DEFAULT_BUILD,
+            time: timing::summary(time),
+            over_generated: timing::ratio(time, &own[0]),
+            code_bytes: compiled.code_bytes(f.name),
+            compilation_seconds: compiled.time.as_secs_f64(),
+            largest_difference: regular.then(difference).flatten(),
+        }
     });
-    FunctionReport::new(ready, &times, peers.collect())
+    let peers = known.iter().zip(&theirs).zip(peer_times).map(|(((peer, contender), x), time)| {
+        let difference = || peer.difference(f, model, &arguments, x, contender, &generic);
+        PeerReport::new(peer, f.name, [time, &own[0], &own[1]], regular.then(difference).flatten())
+    });
+    FunctionReport::new(ready, [&own[0], &own[1]], variants.collect(), peers.collect())
 }

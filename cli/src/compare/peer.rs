@@ -1,13 +1,13 @@
 //! Other libraries, behind the C interface of a peer, with their order of joints and of numbers.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use articulated_core::algorithm::{Argument, Dim, Function, Shape};
 use articulated_core::model::{JointInfo, Model};
 use articulated_core::spatial::Reference;
-use serde_json::Value;
 
 use super::contender::Contender;
+use super::manifest::{Code, Cost, Library};
 use crate::magnitude::scales;
 use crate::native::{Native, NativePeer};
 use crate::robot::Robot;
@@ -19,6 +19,10 @@ const FLOOR: f64 = 1e-3;
 /// A robot open in a peer library.
 pub(super) struct Peer {
     pub(super) name: String,
+    /// What the manifest says of the library.
+    pub(super) library: Library,
+    /// Its code for this robot, if it is a generator's.
+    code: Option<Code>,
     native: NativePeer,
     /// Our index of each number of the peer's q.
     q: Vec<usize>,
@@ -30,13 +34,19 @@ pub(super) struct Peer {
 
 impl Peer {
     /// Opens the robot in the library; the reason if their joints are not ours.
-    pub(super) fn open(name: Option<String>, library: &Path, urdf: &Path, robot: &Robot, model: &Model<f64>) -> Result<Self, String> {
-        let library = Native::open(library)?;
-        let name = name.or_else(|| library.peer_name()).ok_or("it has no function peer_name")?;
-        let native = NativePeer::open(&library, urdf, robot.floating(), robot.options.gravity)?;
+    pub(super) fn open(library: Library, urdf: &Path, robot: &Robot, model: &Model<f64>) -> Result<Self, String> {
+        let opened = Native::open(&library.path)?;
+        let name = library.name.clone().or_else(|| opened.peer_name()).ok_or("it has no function peer_name")?;
+        let native = NativePeer::open(&opened, urdf, robot.floating(), robot.options.gravity)?;
         let (q, v) = orders(&native, model)?;
         let links = model.links().enumerate().all(|(k, i)| native.joint_name(k).is_some_and(|name| name == model.bodies[i].name));
-        Ok(Self { name, native, q, v, links })
+        let code = library.code(&robot.urdf, robot.floating()).cloned();
+        Ok(Self { name, library, code, native, q, v, links })
+    }
+
+    /// What the function's code cost to make, if it was generated.
+    pub(super) fn cost(&self, function: &str) -> Option<&Cost> {
+        self.code.as_ref()?.functions.get(function)
     }
 
     /// The peer's own function of this name, if it has it and means the same by it.
@@ -76,22 +86,11 @@ impl Peer {
         peer: &Contender<'_>,
         generic: &Contender<'_>,
     ) -> Option<f64> {
-        let mut worst = 0.0_f64;
-        for (x, y) in ours.iter().zip(theirs) {
-            let (a, b) = (generic.call(x), peer.call(y));
-            if b.is_empty() && !a.is_empty() {
-                return None;
-            }
-            let scale = scales(model, function.name, x).ok()?;
-            // A zero of ours that is a rounding of theirs is no difference.
-            let floor = scale.iter().copied().fold(0.0, f64::max) * FLOOR;
-            for (k, (a, b)) in a.iter().zip(self.in_our_order(&b, &a, function, model)).enumerate() {
-                let difference = (a - b).abs();
-                let relative = if difference == 0.0 { 0.0 } else { difference / scale[k].max(floor) };
-                worst = if worst.is_nan() || worst >= relative { worst } else { relative };
-            }
-        }
-        Some(worst)
+        let told = |k: usize, a: &[f64]| {
+            let b = peer.call(&theirs[k]);
+            (a.is_empty() || !b.is_empty()).then(|| self.in_our_order(&b, a, function, model))
+        };
+        difference(function, model, ours, generic, told)
     }
 
     /// The peer's result as ours is laid out. Of a configuration's quaternions, which are rotations with either sign, with the signs of ours.
@@ -123,6 +122,31 @@ impl Peer {
         }
         at
     }
+}
+
+/// The largest difference between what generic code and others give in these states, relative to the sum of the magnitudes of the terms. `other`
+/// gets the number of the state and the generic result; `None` where it does not tell.
+pub(super) fn difference(
+    function: &'static Function<f64>,
+    model: &Model<f64>,
+    states: &[Vec<&[f64]>],
+    generic: &Contender<'_>,
+    other: impl Fn(usize, &[f64]) -> Option<Vec<f64>>,
+) -> Option<f64> {
+    let mut worst = 0.0_f64;
+    for (k, x) in states.iter().enumerate() {
+        let a = generic.call(x);
+        let b = other(k, &a)?;
+        let scale = scales(model, function.name, x).ok()?;
+        // A zero of ours that is a rounding of theirs is no difference.
+        let floor = scale.iter().copied().fold(0.0, f64::max) * FLOOR;
+        for (scale, (a, b)) in scale.iter().zip(a.iter().zip(b)) {
+            let difference = (a - b).abs();
+            let relative = if difference == 0.0 { 0.0 } else { difference / scale.max(floor) };
+            worst = if worst.is_nan() || worst >= relative { worst } else { relative };
+        }
+    }
+    Some(worst)
 }
 
 /// Whether a peer gives a result of these dimensions only when asked: all but rows of numbers and square matrices, which it writes out each time.
@@ -160,17 +184,4 @@ fn orders(peer: &NativePeer, model: &Model<f64>) -> Result<(Vec<usize>, Vec<usiz
 /// A peer's free joint moves by [linear; angular], ours by [angular; linear].
 fn rate(joint: &JointInfo, k: usize) -> usize {
     if joint.v.1 == 6 { (k + 3) % 6 } else { k }
-}
-
-/// (name, path) of the libraries in a manifest: a list of objects with `name` and `path`.
-pub(super) fn manifest(file: &Path) -> Result<Vec<(Option<String>, PathBuf)>, String> {
-    let text = std::fs::read_to_string(file).map_err(|e| format!("{}: {e}", file.display()))?;
-    let value: Value = serde_json::from_str(&text).map_err(|e| format!("{}: {e}", file.display()))?;
-    let list = value.as_array().or_else(|| value.get("peers")?.as_array());
-    let list = list.ok_or_else(|| format!("{}: found no list of peers", file.display()))?;
-    let one = |entry: &Value| {
-        let text = |key: &str| entry.get(key)?.as_str().map(str::to_owned);
-        text("path").map(|path| (text("name"), PathBuf::from(path)))
-    };
-    list.iter().map(|e| one(e).ok_or_else(|| format!("{}: found a peer without a path", file.display()))).collect()
 }

@@ -8,7 +8,7 @@ use articulated_core::model::Model;
 
 use super::accuracy::{self, Errors, Reference};
 use super::contender::Contender;
-use crate::compiled::{Compiled, Rustc};
+use crate::compiled::{Compiled, Rustc, Target};
 use crate::console::Progress;
 use crate::failure::{Failure, undefined};
 use crate::robot::Robot;
@@ -38,6 +38,8 @@ pub(super) struct Prepared {
     pub(super) model: Model<f64>,
     pub(super) states: Vec<State>,
     pub(super) compiled: Compiled,
+    /// The same source compiled for any processor, where that is something else.
+    pub(super) anywhere: Option<Compiled>,
     pub(super) entry: Entry,
     pub(super) source_bytes: usize,
     pub(super) generation: Duration,
@@ -64,7 +66,9 @@ impl Plan {
             return Err(Unready::Undefined(why));
         }
         progress.doing(format!("{}: rustc", function.name));
-        let compiled = Compiled::build(&self.rustc, &generated).map_err(|e| Failure::tool(&e))?;
+        let build = |target| Compiled::build_for(target, &self.rustc, &generated).map_err(|e| Failure::tool(&e));
+        let compiled = build(Target::Own)?;
+        let anywhere = Target::differ().then(|| build(Target::Any)).transpose()?;
         let (model, source_bytes, entry) = (generated.model, generated.source.len(), generated.ledger.functions.into_iter().next());
         let entry = entry.ok_or_else(|| Failure::tool(&"the generator kept no account"))?;
         let states = states::random(&model, self.states, self.seed);
@@ -72,7 +76,7 @@ impl Plan {
         let ours = Contender::generated(&compiled, function);
         let errors = accuracy::errors(&self.reference, &model, function, &arguments(&states, function), &ours);
         progress.step();
-        Ok(Prepared { function, model, states, compiled, entry, source_bytes, generation, errors })
+        Ok(Prepared { function, model, states, compiled, anywhere, entry, source_bytes, generation, errors })
     }
 
     /// The robot with the frames that the function is compared on.

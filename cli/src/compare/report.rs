@@ -5,10 +5,13 @@ use articulated_core::model::Model;
 use serde::Serialize;
 
 use super::accuracy::Errors;
+use super::making::Making;
+use super::manifest::{Cost, Library};
+use super::peer::Peer;
 use super::prepare::Prepared;
 use super::timing::{self, Summary};
 use crate::arguments::CompareArguments;
-use crate::compiled::Rustc;
+use crate::compiled::{Rustc, Target};
 use crate::groups::Group;
 use crate::ledger::{Stage, stages};
 use crate::precise::BITS;
@@ -36,8 +39,20 @@ pub(super) struct Report {
     pub(super) bound: f64,
     /// Whether the command itself is optimised; generic code and generation are as fast as it is.
     pub(super) optimised: bool,
+    /// Bytes of machine code, operations and seconds of peers are of each build; what a generator made of this robot is with the functions.
+    pub(super) peers: Vec<PeerLibrary>,
     pub(super) notes: Vec<String>,
     pub(super) functions: Vec<FunctionReport>,
+    /// What it took to make the functions of which generators among the peers have code, all together.
+    pub(super) making: Option<Making>,
+}
+
+/// A library that was opened, under its name.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct PeerLibrary {
+    pub(super) peer: String,
+    #[serde(flatten)]
+    pub(super) library: Library,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -61,25 +76,62 @@ pub(super) struct FunctionReport {
     /// ns per call.
     pub(super) generic: Summary,
     pub(super) generic_over_generated: Summary,
+    /// Other code of ours.
+    pub(super) variants: Vec<VariantReport>,
     pub(super) peers: Vec<PeerReport>,
     /// In units of 2⁻⁵³ of the magnitude; `None` where there is no reference for the function.
     pub(super) errors: Option<Errors>,
 }
 
+/// The generated function in another form.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct VariantReport {
+    pub(super) variant: &'static str,
+    /// ns per state.
+    pub(super) time: Summary,
+    pub(super) over_generated: Summary,
+    pub(super) code_bytes: Option<u64>,
+    pub(super) compilation_seconds: f64,
+    /// From generic code, relative to the magnitude.
+    pub(super) largest_difference: Option<f64>,
+}
+
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct PeerReport {
     pub(super) peer: String,
+    /// Builds of one engine have this in common.
+    pub(super) engine: String,
     /// ns per call.
     pub(super) time: Summary,
     pub(super) generic_over_peer: Summary,
     pub(super) generated_over_peer: Summary,
     /// Relative to the magnitude; `None` where the peer keeps its results to itself.
     pub(super) largest_difference: Option<f64>,
+    /// The largest that is right.
+    pub(super) bound: f64,
+    /// Of generated code.
+    pub(super) cost: Option<Cost>,
+}
+
+impl PeerReport {
+    /// `times`: ns a call of the peer, of generated code and of generic code.
+    pub(super) fn new(peer: &Peer, function: &str, [own, generated, generic]: [&[f64]; 3], largest_difference: Option<f64>) -> Self {
+        Self {
+            peer: peer.name.clone(),
+            engine: peer.library.engine.clone().unwrap_or_else(|| peer.name.clone()),
+            time: timing::summary(own),
+            generic_over_peer: timing::ratio(generic, own),
+            generated_over_peer: timing::ratio(generated, own),
+            largest_difference,
+            bound: peer.library.bound(),
+            cost: peer.cost(function).cloned(),
+        }
+    }
 }
 
 impl FunctionReport {
-    /// `times`: ns a call of generated code, generic code and each peer.
-    pub(super) fn new(ready: &Prepared, times: &[Vec<f64>], peers: Vec<PeerReport>) -> Self {
+    /// `times`: ns a call of generated code and of generic code.
+    pub(super) fn new(ready: &Prepared, times: [&[f64]; 2], variants: Vec<VariantReport>, peers: Vec<PeerReport>) -> Self {
         let (f, entry) = (ready.function, &ready.entry);
         let dims = f.takes.iter().flat_map(|a| a.dims()).chain(f.gives);
         let framed = dims.into_iter().any(|d| *d == Dim::Frames);
@@ -94,9 +146,10 @@ impl FunctionReport {
             source_bytes: ready.source_bytes,
             generation_seconds: ready.generation.as_secs_f64(),
             compilation_seconds: ready.compiled.time.as_secs_f64(),
-            generated: timing::summary(&times[0]),
-            generic: timing::summary(&times[1]),
-            generic_over_generated: timing::ratio(&times[1], &times[0]),
+            generated: timing::summary(times[0]),
+            generic: timing::summary(times[1]),
+            generic_over_generated: timing::ratio(times[1], times[0]),
+            variants,
             peers,
             errors: ready.errors,
         }
@@ -104,8 +157,17 @@ impl FunctionReport {
 
     /// The peer that was fastest.
     pub(super) fn fastest(&self) -> Option<&PeerReport> {
-        self.peers.iter().min_by(|a, b| a.time.median.total_cmp(&b.time.median))
+        fastest(self.peers.iter())
     }
+
+    /// The fastest build of an engine.
+    pub(super) fn fastest_of(&self, engine: &str) -> Option<&PeerReport> {
+        fastest(self.peers.iter().filter(|p| p.engine == engine))
+    }
+}
+
+fn fastest<'a>(peers: impl Iterator<Item = &'a PeerReport>) -> Option<&'a PeerReport> {
+    peers.min_by(|a, b| a.time.median.total_cmp(&b.time.median))
 }
 
 impl Report {
@@ -123,28 +185,39 @@ impl Report {
             seed: arguments.seed,
             repetitions: arguments.repetitions,
             compiler: rustc.version.clone(),
-            flags: Rustc::flags().join(" "),
+            flags: Rustc::flags(Target::Own).join(" "),
             reference_bits: BITS,
             bound: arguments.bound,
             optimised: !cfg!(debug_assertions),
+            peers: Vec::new(),
             notes: Vec::new(),
             functions: Vec::new(),
+            making: None,
         }
     }
 
-    /// The first error or difference beyond its bound, as a sentence.
-    pub(super) fn exceeded(&self, bound: f64, peer_bound: f64) -> Option<String> {
+    /// Engines of the peers, in the order in which they are met.
+    pub(super) fn engines(&self) -> Vec<&str> {
+        let mut engines: Vec<&str> = Vec::new();
+        for peer in self.functions.iter().flat_map(|f| &f.peers) {
+            if !engines.contains(&peer.engine.as_str()) {
+                engines.push(&peer.engine);
+            }
+        }
+        engines
+    }
+
+    /// The first error or difference beyond its bound, as a sentence. `bound`: of errors, `other_bound`: of the differences of other code of ours.
+    pub(super) fn exceeded(&self, bound: f64, other_bound: f64) -> Option<String> {
         let beyond = |x: f64, bound: f64| x.is_nan() || x > bound;
         self.functions.iter().find_map(|f| {
             let sides = f.errors.map(|e| [("generated", e.generated), ("generic", e.generic)]).into_iter().flatten();
             let wrong = sides.into_iter().find(|(_, e)| beyond(*e, bound));
             let ours = wrong.map(|(side, e)| format!("{}: the error of {side} code is {e:.1} units, more than {bound}", f.function));
-            let far = f.peers.iter().find(|p| p.largest_difference.is_some_and(|d| beyond(d, peer_bound)));
-            let theirs = far.map(|p| {
-                let d = p.largest_difference.unwrap_or(f64::NAN);
-                format!("{}: peer {} differs by {d:.1e} of the magnitude, more than {peer_bound:e}", f.function, p.peer)
-            });
-            ours.or(theirs)
+            let variants = f.variants.iter().map(|v| (format!("code for {}", v.variant), v.largest_difference, other_bound));
+            let peers = f.peers.iter().map(|p| (format!("peer {}", p.peer), p.largest_difference, p.bound));
+            let far = variants.chain(peers).filter_map(|(who, d, bound)| Some((who, d?, bound))).find(|(_, d, bound)| beyond(*d, *bound));
+            ours.or(far.map(|(who, d, bound)| format!("{}: {who} differs by {d:.1e} of the magnitude, more than {bound:e}", f.function)))
         })
     }
 }

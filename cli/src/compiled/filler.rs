@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::rustc::{CompileError, Rustc};
+use super::rustc::{CompileError, Rustc, Target};
 use crate::native::{Kernel, Native};
 
 /// Instructions of the filler. One each is a byte on x86-64 and four elsewhere.
@@ -23,7 +23,7 @@ impl Filler {
         let source = folder.path().join("filler.rs");
         std::fs::write(&source, text()).map_err(CompileError::Folder)?;
         let library: PathBuf = folder.path().join(format!("{}filler{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX));
-        rustc.compile(&source, &library)?;
+        rustc.compile(&source, &library, Target::Own)?;
         let kernel = Native::open(&library).map_err(CompileError::Load)?.kernel("articulated_filler", &[0], 0);
         let kernel = kernel.ok_or_else(|| CompileError::Load("the filler is not in the library that was compiled".into()))?;
         Ok(Self { kernel, _folder: folder })

@@ -13,7 +13,7 @@ use articulated_core::algorithm::{FunctionError, Shape, check_length, function};
 
 use crate::native::{Kernel, Native};
 pub(crate) use filler::{Filler, INSTRUCTIONS as FILLER_INSTRUCTIONS};
-pub use rustc::{CompileError, Rustc};
+pub use rustc::{CompileError, Rustc, Target};
 
 /// The functions of one [`Generated`], compiled by `rustc` as a library and loaded.
 #[derive(Debug)]
@@ -36,13 +36,18 @@ struct Loaded {
 impl Compiled {
     /// Compiles and loads. The source has to be generated without a runtime (`options.runtime` is `None`).
     pub fn build(rustc: &Rustc, generated: &Generated) -> Result<Self, CompileError> {
+        Self::build_for(Target::Own, rustc, generated)
+    }
+
+    /// As [`Compiled::build`], for certain processors.
+    pub fn build_for(target: Target, rustc: &Rustc, generated: &Generated) -> Result<Self, CompileError> {
         let names: Vec<&str> = generated.ledger.functions.iter().map(|f| f.function.as_str()).collect();
         let folder = tempfile::Builder::new().prefix("articulated").tempdir().map_err(CompileError::Folder)?;
         let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).map_err(CompileError::Folder);
         write("robot.rs", &generated.source)?;
         write("lib.rs", &wrapper::source(&names))?;
         let library: PathBuf = folder.path().join(format!("{}generated{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX));
-        let time = rustc.compile(&folder.path().join("lib.rs"), &library)?;
+        let time = rustc.compile(&folder.path().join("lib.rs"), &library, target)?;
         let native = Native::open(&library).map_err(CompileError::Load)?;
         let sizes = symbols::Sizes::of(&library);
         let shape = generated.model.shape();

@@ -13,6 +13,22 @@ pub struct Rustc {
     pub version: String,
 }
 
+/// The processors that code is compiled for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// Those of the command itself, so that generated and generic code are compared alike.
+    Own,
+    /// Any of this kind: what `rustc` compiles for unless it is told.
+    Any,
+}
+
+impl Target {
+    /// Whether the two differ.
+    pub fn differ() -> bool {
+        Rustc::flags(Self::Own) != Rustc::flags(Self::Any)
+    }
+}
+
 /// Why generated source could not be run.
 #[derive(Debug)]
 pub enum CompileError {
@@ -60,20 +76,20 @@ impl Rustc {
         Ok(Self { program, version })
     }
 
-    /// The flags that decide how fast the code is: those of the command itself, so that generated and generic code are compared alike.
-    pub fn flags() -> Vec<&'static str> {
+    /// The flags that decide how fast the code is.
+    pub fn flags(target: Target) -> Vec<&'static str> {
         let mut flags = vec!["-C", "opt-level=3", "-C", "codegen-units=1"];
-        if cfg!(all(target_arch = "x86_64", target_feature = "fma")) {
+        if target == Target::Own && cfg!(all(target_arch = "x86_64", target_feature = "fma")) {
             flags.extend(["-C", "target-cpu=native"]);
         }
         flags
     }
 
     /// Compiles one source file as a library with a C interface. Wall-clock time.
-    pub(super) fn compile(&self, source: &Path, library: &Path) -> Result<Duration, CompileError> {
+    pub(super) fn compile(&self, source: &Path, library: &Path, target: Target) -> Result<Duration, CompileError> {
         let start = Instant::now();
         let mut command = Command::new(&self.program);
-        command.args(["--edition", "2024", "--crate-type", "cdylib", "--crate-name", "generated"]).args(Self::flags());
+        command.args(["--edition", "2024", "--crate-type", "cdylib", "--crate-name", "generated"]).args(Self::flags(target));
         let answer = command.arg("-o").arg(library).arg(source).output();
         let answer = answer.map_err(|e| CompileError::NotFound { program: self.program.clone(), reason: e.to_string() })?;
         let time = start.elapsed();

@@ -8,7 +8,7 @@ use articulated_core::algorithm::{Function, Workspace, function};
 use articulated_core::model::Model;
 
 use crate::arguments::{EvalArguments, Format};
-use crate::compiled::{CompileError, Compiled, Rustc};
+use crate::compiled::{CompileError, Compiled, Rustc, Target};
 use crate::console;
 use crate::failure::{Failure, OK, TOOL};
 use crate::magnitude::scales;
@@ -84,7 +84,7 @@ fn compile(robot: &Robot, names: &[String], needed: bool, report: &mut Report) -
     let built = Rustc::find().and_then(|rustc| Ok((Compiled::build(&rustc, &generated)?, rustc)));
     match built {
         Ok((compiled, rustc)) => {
-            report.compiler = Some(format!("{} {}", rustc.version, Rustc::flags().join(" ")));
+            report.compiler = Some(format!("{} {}", rustc.version, Rustc::flags(Target::Own).join(" ")));
             Ok(Some(compiled))
         }
         Err(error @ CompileError::NotFound { .. }) if !needed => {

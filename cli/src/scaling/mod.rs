@@ -11,7 +11,7 @@ mod text;
 use articulated_core::algorithm::{Function, Shape, function};
 
 use crate::arguments::{Format, ScalingArguments};
-use crate::compiled::{FILLER_INSTRUCTIONS, Rustc};
+use crate::compiled::{FILLER_INSTRUCTIONS, Rustc, Target};
 use crate::console::{self, Progress};
 use crate::failure::Failure;
 use crate::names;
@@ -39,7 +39,7 @@ pub(crate) fn run(arguments: &ScalingArguments, format: Format) -> Result<(), Fa
     let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
     let mut report = Report {
         compiler: rustc.version.clone(),
-        flags: Rustc::flags().join(" "),
+        flags: Rustc::flags(Target::Own).join(" "),
         optimised: !cfg!(debug_assertions),
         states: measure::STATES,
         repetitions: arguments.repetitions,

@@ -18,6 +18,11 @@ fn a_report_has_everything() {
         assert!((0.0..64.0).contains(&number("/errors/generated")) && (0.0..64.0).contains(&number("/errors/generic")));
         assert_eq!(f["stages"][0]["stage"], "asked");
         assert!(cfg!(not(target_os = "linux")) || number("/code_bytes") > 16.0);
+        // Code for any processor is something else only where the command itself is built for this machine.
+        if cfg!(all(target_arch = "x86_64", target_feature = "fma")) {
+            assert_eq!(f["variants"][0]["variant"], "any processor");
+            assert!(number("/variants/0/time/median") > 0.0 && number("/variants/0/largest_difference") < 1e-12);
+        }
     }
 }
 
@@ -140,6 +145,37 @@ fn a_peer_is_timed_and_must_agree() {
     let ended = run(&[&words[..], &SMALL[..]].concat());
     assert_eq!(ended.status, 4, "{}", ended.err);
     assert!(ended.err.contains("by heart"), "{}", ended.err);
+}
+
+/// FNV-1a, by which a manifest knows a document.
+fn hash(text: &str) -> String {
+    let hash = text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
+    format!("{hash:#x}")
+}
+
+#[test]
+fn what_a_generator_took_is_told_and_drawn() {
+    let library = peer("0.0");
+    let cost = serde_json::json!({"operations": 3, "code_bytes": 40, "generation_seconds": 5.0, "compilation_seconds": 7.0});
+    let urdf = articulated_models::robot("simple_pendulum").unwrap().urdf;
+    let code = serde_json::json!({"robot": "any name", "floating": false, "hash": hash(urdf), "functions": {"gravity_torque": cost}});
+    let entry = serde_json::json!({"name": "one", "path": library.name(), "engine": "by <heart>", "compiler": "g++", "flags": "-ffast-math",
+        "robots": [code]});
+    let manifest = File::new("peers.json", serde_json::json!([entry]).to_string().as_bytes());
+    let chart = File::new("chart.svg", b"");
+    let words = ["compare", "simple_pendulum", "--functions", "gravity_torque,mass_matrix", "--peers-manifest", manifest.name()];
+    let more = ["--chart", chart.name()];
+    let json = run(&[&words[..], &more, &SMALL, &["--format", "json"]].concat()).json();
+    assert_eq!((&json["peers"][0]["flags"], &json["functions"][0]["peers"][0]["cost"]), (&"-ffast-math".into(), &cost));
+    let making = &json["making"];
+    assert_eq!(making["functions"], serde_json::json!(["gravity_torque"]));
+    let ours = making["generation_seconds"].as_f64().unwrap() + making["compilation_seconds"].as_f64().unwrap();
+    assert!((making["peers"][0]["peer_over_ours"].as_f64().unwrap() * ours / 12.0 - 1.0).abs() < 1e-9, "{making}");
+    let drawn = std::fs::read_to_string(&chart.path).unwrap();
+    assert_eq!(drawn.matches("by &lt;heart&gt; (g++, fast-math)").count(), 1, "{drawn}");
+    assert!(drawn.starts_with("<svg ") && drawn.trim_end().ends_with("</svg>") && drawn.matches("mass_matrix").count() == 1);
+    let text = run(&[&words[..], &SMALL].concat()).out;
+    assert!(text.contains("gravity_torque, all together") && text.contains("  one "), "{text}");
 }
 
 #[test]

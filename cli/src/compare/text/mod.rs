@@ -1,8 +1,10 @@
 //! The measurements for people.
 
+mod peers;
+
 use std::fmt::Write;
 
-use super::report::{FunctionReport, PeerReport, Report};
+use super::report::{FunctionReport, Report, VariantReport};
 use super::timing::Summary;
 use crate::ledger::Stage;
 use crate::table::{Table, plain};
@@ -11,7 +13,8 @@ pub(super) fn text(report: &Report) -> String {
     let mut out = head(report);
     for (title, table) in [
         ("Time of a call: median, and quartiles' distance (IQR)".to_owned(), times(report)),
-        (format!("Time of a call in other libraries, ns{}", letters(report)), peers(report)),
+        ("The fastest build of each engine, by the letter of its build, and how many times our time it takes".to_owned(), peers::engines(report)),
+        (format!("Time of a call in each build of other libraries{}", peers::letters(report)), peers::builds(report)),
         (
             "Largest error in units of 2⁻⁵³ of the sum of the magnitudes of the terms, against an independent evaluation in big floats".to_owned(),
             errors(report),
@@ -26,6 +29,11 @@ pub(super) fn text(report: &Report) -> String {
                 crate::parallel::threads()
             ),
             sizes(report),
+        ),
+        ("The same of the fastest build of code that others generate (operations as they count them)".to_owned(), peers::costs(report)),
+        (
+            format!("Generation and compilation of {}, all together, with nothing else going on", peers::made(report)),
+            peers::making(report),
         ),
     ] {
         if !table.is_empty() {
@@ -121,70 +129,23 @@ fn sizes(report: &Report) -> Table {
 }
 
 fn times(report: &Report) -> Table {
-    let peers = report.functions.iter().any(|f| !f.peers.is_empty());
-    let mut columns = vec![
-        ("function", ""),
-        ("generated", "ns"),
-        ("IQR", "ns"),
-        ("generic", "ns"),
-        ("IQR", "ns"),
-        ("generic/generated", "ratio"),
-        ("IQR", "ratio"),
-    ];
-    columns.extend(peers.then_some([("fastest peer", "ns"), ("peer/generated", "ratio")]).into_iter().flatten());
+    let variants: &[VariantReport] = report.functions.first().map_or(&[], |f| &f.variants);
+    let mut columns: Vec<(String, &str)> =
+        [("function", ""), ("generated", "ns"), ("IQR", "ns")].into_iter().map(|(t, u)| (t.to_owned(), u)).collect();
+    columns.extend(variants.iter().flat_map(|v| [(v.variant.to_owned(), "ns"), ("/generated".to_owned(), "ratio")]));
+    let generic = [("generic", "ns"), ("IQR", "ns"), ("generic/generated", "ratio"), ("IQR", "ratio")];
+    columns.extend(generic.into_iter().map(|(t, u)| (t.to_owned(), u)));
     let mut table = Table::new(columns);
     by_function(report, &mut table, |f| {
-        let [a, b] = [&f.generated, &f.generic].map(|s| vec![nanoseconds(s.median), nanoseconds(spread(s))]);
+        let own = |s: &Summary| [nanoseconds(s.median), nanoseconds(spread(s))];
+        let mut cells = own(&f.generated).to_vec();
+        cells.extend(f.variants.iter().flat_map(|v| [nanoseconds(v.time.median), times_of(v.over_generated.median)]));
+        cells.extend(own(&f.generic));
         let ratio = &f.generic_over_generated;
-        let mut cells = [a, b, vec![times_of(ratio.median), times_of(spread(ratio))]].concat();
-        let fastest = |p: &PeerReport| [nanoseconds(p.time.median), times_of(1.0 / p.generated_over_peer.median)];
-        cells.extend(peers.then(|| f.fastest().map_or_else(|| ["–".to_owned(), "–".to_owned()], fastest)).into_iter().flatten());
+        cells.extend([times_of(ratio.median), times_of(spread(ratio))]);
         Some(cells)
     });
     table
-}
-
-/// Names of all peers, in the order in which they are met.
-fn peer_names(report: &Report) -> Vec<&str> {
-    let mut names: Vec<&str> = Vec::new();
-    for peer in report.functions.iter().flat_map(|f| &f.peers) {
-        if !names.contains(&peer.peer.as_str()) {
-            names.push(&peer.peer);
-        }
-    }
-    names
-}
-
-/// A letter for each peer.
-fn letters(report: &Report) -> String {
-    let line = |(k, name): (usize, &str)| format!("\n  {}: {}", letter(k), plain(name));
-    peer_names(report).into_iter().enumerate().map(line).collect()
-}
-
-fn letter(k: usize) -> String {
-    u8::try_from(k).ok().filter(|k| *k < 26).map_or_else(|| format!("#{k}"), |k| char::from(b'A' + k).to_string())
-}
-
-fn peers(report: &Report) -> Table {
-    let names = peer_names(report);
-    let titles = (0..names.len()).map(letter).chain(["fastest/generated".into(), "largest difference".into()]);
-    let units = std::iter::repeat_n("ns", names.len()).chain(["ratio", "of magnitude"]);
-    let mut table = Table::new(std::iter::once(("function".to_owned(), "")).chain(titles.zip(units)));
-    by_function(report, &mut table, |f| {
-        let fastest = f.fastest()?;
-        let own = |name: &str| f.peers.iter().find(|p| p.peer == name).map_or_else(|| "–".into(), |p| nanoseconds(p.time.median));
-        let mut cells: Vec<String> = names.iter().map(|name| own(name)).collect();
-        cells.push(times_of(1.0 / fastest.generated_over_peer.median));
-        cells.push(difference(f).map_or_else(|| "not compared".into(), |d| format!("{d:.1e}")));
-        Some(cells)
-    });
-    table
-}
-
-/// The largest difference of any peer.
-fn difference(f: &FunctionReport) -> Option<f64> {
-    let known = f.peers.iter().filter_map(|p| p.largest_difference);
-    known.reduce(|a, b| if a.is_nan() || a >= b { a } else { b })
 }
 
 fn errors(report: &Report) -> Table {

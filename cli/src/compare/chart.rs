@@ -1,0 +1,185 @@
+//! The medians as bars, in SVG: a panel for each function, a bar for each contender, on a logarithmic axis.
+
+use std::fmt::Write;
+
+use super::report::{FunctionReport, Report};
+
+/// A bar: whose time, ns, how many times that of generated code it is, and the colour.
+struct Bar {
+    label: String,
+    time: f64,
+    ratio: Option<f64>,
+    colour: &'static str,
+}
+
+const WIDTH: f64 = 860.0;
+/// From the left edge to the axis.
+const LABELS: f64 = 250.0;
+/// From the end of the axis to the right edge, for the numbers at the bars.
+const NUMBERS: f64 = 110.0;
+const ROW: f64 = 19.0;
+const BAR: f64 = 14.0;
+/// Above the bars of a function, its name.
+const TITLE: f64 = 26.0;
+const HEAD: f64 = 62.0;
+const FOOT: f64 = 44.0;
+
+const GENERATED: &str = "#1b6ca8";
+const VARIANT: &str = "#7fb2d6";
+const GENERIC: &str = "#8a8a8a";
+/// Of engines, in turn.
+const ENGINES: [&str; 6] = ["#d9822b", "#7a5195", "#3f8f5b", "#c2453f", "#b59f00", "#4a4a8a"];
+
+/// The chart of all functions that were measured.
+pub(super) fn svg(report: &Report) -> String {
+    let panels: Vec<(&str, Vec<Bar>)> = report.functions.iter().map(|f| (f.function, bars(report, f))).collect();
+    let times = || panels.iter().flat_map(|(_, bars)| bars).map(|b| b.time).filter(|t| t.is_finite() && *t > 0.0);
+    let axis = Axis::over(times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max));
+    let rows: usize = panels.iter().map(|(_, bars)| bars.len()).sum();
+    let bottom = HEAD + panels.len() as f64 * TITLE + rows as f64 * ROW;
+    let mut out = head(report, bottom + FOOT);
+    axis.draw(&mut out, bottom);
+    let mut y = HEAD;
+    for (function, bars) in &panels {
+        text(&mut out, 12.0, y + TITLE - 8.0, "font-weight=\"bold\"", function);
+        y += TITLE;
+        for bar in bars {
+            draw(&mut out, &axis, bar, y);
+            y += ROW;
+        }
+    }
+    out + "</svg>\n"
+}
+
+/// Ours, and the fastest build of each engine.
+fn bars(report: &Report, f: &FunctionReport) -> Vec<Bar> {
+    let mut bars = vec![Bar { label: "generated".into(), time: f.generated.median, ratio: None, colour: GENERATED }];
+    let bar = |label: String, time: f64, ratio: f64, colour| Bar { label, time, ratio: Some(ratio), colour };
+    bars.extend(f.variants.iter().map(|v| bar(format!("generated, {}", v.variant), v.time.median, v.over_generated.median, VARIANT)));
+    bars.push(bar("generic".into(), f.generic.median, f.generic_over_generated.median, GENERIC));
+    for (engine, colour) in report.engines().into_iter().zip(ENGINES.into_iter().cycle()) {
+        let Some(peer) = f.fastest_of(engine) else { continue };
+        let library = report.peers.iter().find(|p| p.peer == peer.peer).map(|p| &p.library);
+        let fast = library.is_some_and(|l| l.flags.as_ref().is_some_and(|f| f.contains("-ffast-math")));
+        let single = library.is_some_and(|l| l.element.as_deref() == Some("f32"));
+        let compiler = library.and_then(|l| l.compiler.as_ref()).filter(|c| c.starts_with("g++") || c.starts_with("clang"));
+        let notes: Vec<String> =
+            compiler.cloned().into_iter().chain(fast.then(|| "fast-math".into())).chain(single.then(|| "f32".into())).collect();
+        let label = if notes.is_empty() { engine.to_owned() } else { format!("{engine} ({})", notes.join(", ")) };
+        bars.push(bar(label, peer.time.median, 1.0 / peer.generated_over_peer.median, colour));
+    }
+    bars
+}
+
+/// A logarithmic axis of ns, between powers of ten or halves of them.
+struct Axis {
+    low: f64,
+    high: f64,
+}
+
+impl Axis {
+    fn over(least: f64, most: f64) -> Self {
+        let (least, most) = if least <= most { (least, most) } else { (1.0, 10.0) };
+        // Ends are 1, 2 or 5 times a power of ten, the lower one well below the shortest bar.
+        let low = ticks().rev().find(|t| *t <= least / 1.5).unwrap_or(1e-3);
+        let high = ticks().find(|t| *t >= most).unwrap_or(1e12);
+        Self { low, high }
+    }
+
+    /// Where a time stands, from the left edge.
+    fn x(&self, time: f64) -> f64 {
+        let part = (time / self.low).log10() / (self.high / self.low).log10();
+        LABELS + (WIDTH - LABELS - NUMBERS) * part.clamp(0.0, 1.0)
+    }
+
+    fn draw(&self, out: &mut String, bottom: f64) {
+        let wide = self.high / self.low > 3e3;
+        for tick in ticks().filter(|t| (self.low..=self.high).contains(t)) {
+            let (x, top) = (self.x(tick), HEAD + 4.0);
+            let _ = writeln!(out, "<path d=\"M{x:.1} {top:.1}V{bottom:.1}\" stroke=\"#dddddd\"/>");
+            let power = (tick.log10() - tick.log10().round()).abs() < 1e-9;
+            if power || !wide {
+                text(out, x, bottom + 16.0, "text-anchor=\"middle\" fill=\"#555555\"", &number(tick));
+            }
+        }
+        let middle = (LABELS + WIDTH - NUMBERS) / 2.0;
+        text(out, middle, bottom + 34.0, "text-anchor=\"middle\" fill=\"#555555\"", "ns a call, median; logarithmic");
+    }
+}
+
+/// 1, 2 and 5 times the powers of ten.
+fn ticks() -> impl DoubleEndedIterator<Item = f64> {
+    (-3..=12).flat_map(|k| [1.0, 2.0, 5.0].map(|x| x * 10f64.powi(k)))
+}
+
+fn head(report: &Report, height: f64) -> String {
+    let mut out = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{height:.0}\" viewBox=\"0 0 {WIDTH} {height:.0}\" \
+         font-family=\"DejaVu Sans, Verdana, Arial, sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
+    );
+    let title = format!("{}, {} base, {} degrees of freedom", report.robot, report.base, report.degrees_of_freedom);
+    text(&mut out, 12.0, 22.0, "font-size=\"15\" font-weight=\"bold\"", &title);
+    let engines = if report.engines().is_empty() { "" } else { "; of each engine its fastest build" };
+    let how = format!(
+        "{} interleaved repetitions on {} random states, one core{engines}; {}",
+        report.repetitions, report.states, report.compiler
+    );
+    text(&mut out, 12.0, 42.0, "fill=\"#555555\" font-size=\"11\"", &how);
+    out
+}
+
+/// A bar with its name before it and its numbers behind it.
+fn draw(out: &mut String, axis: &Axis, bar: &Bar, y: f64) {
+    let (left, right, middle) = (axis.x(axis.low), axis.x(bar.time), y + BAR / 2.0 + 4.0);
+    text(out, LABELS - 8.0, middle, "text-anchor=\"end\"", &bar.label);
+    let width = (right - left).max(1.0);
+    let _ = writeln!(out, "<rect x=\"{left:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{BAR}\" fill=\"{}\"/>", bar.colour);
+    let times = bar.ratio.map_or_else(String::new, |ratio| format!(" ({}×)", digits(ratio)));
+    text(out, right + 5.0, middle, "", &format!("{} ns{times}", digits(bar.time)));
+}
+
+fn text(out: &mut String, x: f64, y: f64, attributes: &str, text: &str) {
+    let space = if attributes.is_empty() { "" } else { " " };
+    let _ = writeln!(out, "<text x=\"{x:.1}\" y=\"{y:.1}\"{space}{attributes}>{}</text>", escaped(text));
+}
+
+fn escaped(text: &str) -> String {
+    text.chars().fold(String::new(), |out, c| match c {
+        '&' => out + "&amp;",
+        '<' => out + "&lt;",
+        '>' => out + "&gt;",
+        c if c.is_control() => out + " ",
+        c => out + c.encode_utf8(&mut [0; 4]),
+    })
+}
+
+/// Three digits.
+fn digits(x: f64) -> String {
+    match x {
+        x if x < 10.0 => format!("{x:.2}"),
+        x if x < 100.0 => format!("{x:.1}"),
+        x => format!("{x:.0}"),
+    }
+}
+
+fn number(x: f64) -> String {
+    if x >= 1.0 { format!("{x:.0}") } else { format!("{x}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_between_two_ends_stands_at_its_logarithm() {
+        let axis = Axis::over(20.0, 900.0);
+        assert_eq!((axis.low, axis.high), (10.0, 1000.0));
+        let [a, b, c] = [10.0, 100.0, 1000.0].map(|t| axis.x(t));
+        assert!((b - (a + c) / 2.0).abs() < 1e-9 && a == LABELS && c == WIDTH - NUMBERS);
+    }
+
+    #[test]
+    fn a_name_cannot_end_its_element() {
+        assert_eq!(escaped("</text>&\n"), "&lt;/text&gt;&amp; ");
+    }
+}

@@ -1,0 +1,99 @@
+//! The list of peer libraries that their build script writes.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// A library, with what is known of its making. Only the path has to be there.
+#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+pub(super) struct Library {
+    pub(super) name: Option<String>,
+    pub(super) path: PathBuf,
+    /// Whose code it is, and its version: builds of the same engine are told apart by the rest.
+    pub(super) engine: Option<String>,
+    pub(super) compiler: Option<String>,
+    pub(super) version: Option<String>,
+    pub(super) flags: Option<String>,
+    /// `f32` if it computes in single precision.
+    pub(super) element: Option<String>,
+    /// Machine code of all of it.
+    pub(super) text_bytes: Option<u64>,
+    /// Of all of it.
+    pub(super) compilation_seconds: Option<f64>,
+    /// Of a generator: the robots that it has code for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub(super) robots: Vec<Code>,
+}
+
+/// The generated code of one robot.
+#[derive(Clone, Debug, Deserialize, Serialize)]
+pub(super) struct Code {
+    pub(super) robot: String,
+    pub(super) floating: bool,
+    /// FNV-1a of the URDF, 64 bits, hexadecimal with `0x`.
+    pub(super) hash: String,
+    pub(super) functions: BTreeMap<String, Cost>,
+}
+
+/// What a generated function cost to make, and how long it became.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub(super) struct Cost {
+    /// Arithmetic in the code that was generated, sines and moves included.
+    pub(super) operations: Option<u64>,
+    pub(super) code_bytes: Option<u64>,
+    pub(super) generation_seconds: f64,
+    pub(super) compilation_seconds: f64,
+}
+
+impl Library {
+    /// A library of which only the path is known.
+    pub(super) fn at(path: &Path) -> Self {
+        Self { path: path.to_owned(), ..Self::default() }
+    }
+
+    /// Its code for the robot of this document.
+    pub(super) fn code(&self, urdf: &[u8], floating: bool) -> Option<&Code> {
+        let hash = format!("{:#x}", fnv(urdf));
+        self.robots.iter().find(|r| r.hash == hash && r.floating == floating)
+    }
+
+    /// How far its results may be from ours, relative to the magnitude.
+    pub(super) fn bound(&self) -> f64 {
+        if self.element.as_deref() == Some("f32") { SINGLE_BOUND } else { BOUND }
+    }
+}
+
+/// Of double precision.
+const BOUND: f64 = 1e-9;
+/// Of single precision.
+const SINGLE_BOUND: f64 = 1e-3;
+
+/// FNV-1a of 64 bits.
+fn fnv(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, b| (hash ^ u64::from(*b)).wrapping_mul(0x0100_0000_01b3))
+}
+
+/// The libraries of a manifest: a list of objects with `path`, or an object with such a list as `peers`.
+pub(super) fn read(file: &Path) -> Result<Vec<Library>, String> {
+    let wrong = |e: &dyn std::fmt::Display| format!("{}: {e}", file.display());
+    let text = std::fs::read_to_string(file).map_err(|e| wrong(&e))?;
+    let value: Value = serde_json::from_str(&text).map_err(|e| wrong(&e))?;
+    let list = value.as_array().or_else(|| value.get("peers")?.as_array()).ok_or_else(|| wrong(&"found no list of peers"))?;
+    list.iter().map(|entry| Library::deserialize(entry).map_err(|e| wrong(&format!("found a peer that is none: {e}")))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_document_is_known_by_its_hash() {
+        assert_eq!(fnv(b"foobar"), 0x85944171f73967e8); // of the reference's test vectors
+        let code = Code { robot: "r".into(), floating: true, hash: format!("{:#x}", fnv(b"<robot/>")), functions: BTreeMap::new() };
+        let library = Library { robots: vec![code], ..Library::default() };
+        assert!(library.code(b"<robot/>", true).is_some());
+        assert!(library.code(b"<robot/>", false).is_none() && library.code(b"<robot />", true).is_none());
+    }
+}
