@@ -1,5 +1,6 @@
 // Times the functions of one peer library:  bench_peer LIBRARY URDF fixed|floating
 // 64 random states in turn, 41 batches of about a millisecond; prints the median batch in nanoseconds a call.
+// Or only calls one function once in each state:  bench_peer LIBRARY URDF fixed|floating FUNCTION
 
 #include <algorithm>
 #include <chrono>
@@ -53,9 +54,9 @@ double nanoseconds(Call call)
 
 int main(int count, char ** words)
 {
-  if (count != 4)
+  if (count != 4 && count != 5)
   {
-    std::fprintf(stderr, "bench_peer LIBRARY URDF fixed|floating\n");
+    std::fprintf(stderr, "bench_peer LIBRARY URDF fixed|floating [FUNCTION]\n");
     return 2;
   }
   const unsigned before = _mm_getcsr();
@@ -88,12 +89,27 @@ int main(int count, char ** words)
     }
   }
   std::vector<double> out(nv * nv);
+  auto * has = reinterpret_cast<int (*)(void *, const char *)>(dlsym(library, "peer_has"));
+  const auto there = [&](const char * name) { return dlsym(library, (std::string("peer_") + name).c_str()) && (!has || has(peer, name)); };
+  if (count == 5)
+  {
+    if (!there(words[4]))
+      return 3;
+    // Functions that take less, or keep their results, leave the rest of the arguments alone.
+    auto * function = symbol<void(void *, const double *, ...)>((std::string("peer_") + words[4]).c_str());
+    auto * one = reinterpret_cast<void (*)(void *, const double *, double *)>(function);
+    auto * three = reinterpret_cast<void (*)(void *, const double *, const double *, const double *, double *)>(function);
+    for (int i = 0; i < STATES; ++i)
+      if (!std::strcmp(words[4], "mass_matrix"))
+        one(peer, q[i].data(), out.data());
+      else
+        three(peer, q[i].data(), v[i].data(), a[i].data(), out.data());
+    return 0;
+  }
   auto * id = symbol<void(void *, const double *, const double *, const double *, double *)>("peer_inverse_dynamics");
   auto * fd = symbol<void(void *, const double *, const double *, const double *, double *)>("peer_forward_dynamics");
   auto * mass = symbol<void(void *, const double *, double *)>("peer_mass_matrix");
   using Kept = void(void *, const double *, const double *, const double *);
-  auto * has = reinterpret_cast<int (*)(void *, const char *)>(dlsym(library, "peer_has"));
-  const auto there = [&](const char * name) { return dlsym(library, (std::string("peer_") + name).c_str()) && (!has || has(peer, name)); };
   std::printf("%s\n", symbol<const char *(void)>("peer_name")());
   std::printf("  nv %d: inverse dynamics %.0f", nv, nanoseconds([&](int i) { id(peer, q[i].data(), v[i].data(), a[i].data(), out.data()); }));
   std::printf(", forward dynamics %.0f", nanoseconds([&](int i) { fd(peer, q[i].data(), v[i].data(), a[i].data(), out.data()); }));

@@ -16,12 +16,12 @@ def wheel():
     return folder / "include", shared
 
 
-def plan(found, out):
+def plan(found, out, flags=NATIVE):
     """The wheel is compiled; one compiler does for what is around it."""
     command, version, _ = found[0]
     return [{
-        "name": "mujoco_wheel", "path": str(out / "libmujoco_wheel.so"), "compiler": "its makers'", "version": "of the wheel", "flags": "of the wheel",
-        "mujoco": metadata.version("mujoco"), "around": f"{command} {version} {' '.join(NATIVE)}",
+        "name": "mujoco_wheel", "path": str(out / "libmujoco_wheel.so"), "flags": "as its makers compiled the wheel",
+        "mujoco": metadata.version("mujoco"), "around": f"{command} {version} {' '.join(flags)}",
     }]
 
 
@@ -36,4 +36,4 @@ def make(peer, out, file):
         compiler, "-std=c++17", *flags, "-shared", "-fPIC", "-fvisibility=hidden", f'-DPEER_NAME="MuJoCo {peer["mujoco"]}, as in its wheel"',
         "-isystem", include, HERE / "mujoco_peer.cpp", shared, f"-Wl,-rpath,{shared.parent}", "-o", file, library.exports(out), "-Wl,--no-undefined",
     )
-    return {}
+    return {"text_bytes": library.text_bytes(wheel()[1])}

@@ -11,7 +11,6 @@ import library
 from environment import HERE, machine
 
 CRATES = {"dynibo": {}, "featherstone": {"element": "f32"}}
-FLAGS = "-C target-cpu=native"
 FOLDER = HERE / "rust"
 
 
@@ -20,14 +19,14 @@ def version(crate):
     return re.search(rf'name = "{crate}"\nversion = "([^"]+)"', (FOLDER / "Cargo.lock").read_text()).group(1)
 
 
-def plan(out):
+def plan(out, cpu="native"):
     if not shutil.which("cargo"):
         print("cargo is not on the PATH: crates of Rust are left out")
         return []
     rustc = subprocess.run(["rustc", "--version"], capture_output=True, text=True, check=True).stdout.split()[1]
     return [{
-        "name": f"{crate}_rustc_O3_native", "path": str(out / f"lib{crate}_rustc_O3_native.so"), "compiler": "rustc", "version": rustc,
-        "flags": f"-O3 {FLAGS}, fat lto", crate: version(crate), **more,
+        "name": f"{crate}_rustc_O3_{cpu}", "path": str(out / f"lib{crate}_rustc_O3_{cpu}.so"), "compiler": "rustc", "version": rustc,
+        "flags": f"-O3 -C target-cpu={cpu}, fat lto", crate: version(crate), **more,
     } for crate, more in CRATES.items()]
 
 
@@ -35,12 +34,12 @@ def build(peer, out):
     (crate,) = [crate for crate in CRATES if crate in peer]
     sources = [*(FOLDER / "interface").rglob("*.rs"), *(FOLDER / crate).rglob("*.rs"), FOLDER / "Cargo.toml", FOLDER / "Cargo.lock"]
     parts = [*(file.read_text() for file in sources), json.dumps(peer), machine()]
-    return library.build(peer, parts, lambda file: make(crate, out, file), f"{crate} {peer[crate]}")
+    return library.build(peer, parts, lambda file: make(crate, peer, out, file), f"{crate} {peer[crate]}")
 
 
-def make(crate, out, file):
+def make(crate, peer, out, file):
     target = out / "rust"
-    environment = {**os.environ, "RUSTFLAGS": FLAGS, "CARGO_TARGET_DIR": str(target)}
+    environment = {**os.environ, "RUSTFLAGS": re.search(r"-C target-cpu=[^,]+", peer["flags"]).group(), "CARGO_TARGET_DIR": str(target)}
     start = time.perf_counter()
     subprocess.check_call(["cargo", "build", "--quiet", "--release", "--locked", "-p", f"peer-{crate}"], cwd=FOLDER, env=environment)
     took = time.perf_counter() - start
