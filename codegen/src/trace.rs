@@ -25,11 +25,16 @@ pub(crate) struct Choice {
 pub(crate) fn trace(wanted: &Wanted, choices: &[Choice], model: &Model<f64>, parameters: &[Parameter]) -> Graph {
     sym::trace(|| {
         let arguments = wanted.arguments();
-        let mut symbolic: Model<Sym> = model.cast();
-        for p in parameters {
-            p.put(&mut symbolic, |k| Sym::input(arguments.len(), k));
-        }
-        let run = |(part, choice): (&Part, &Choice)| run(part, choice.way, &passed(part, choice, &symbolic), &arguments);
+        let with_inputs = (!parameters.is_empty()).then(|| {
+            let mut symbolic: Model<Sym> = model.cast();
+            parameters.iter().for_each(|p| p.put(&mut symbolic, |k| Sym::input(arguments.len(), k)));
+            symbolic
+        });
+        let run = |(part, choice): (&Part, &Choice)| {
+            // Where all is numbers, passes go over numbers, which is sooner done.
+            let symbolic = with_inputs.as_ref().map_or_else(|| passed(part, choice, model).cast(), |m| passed(part, choice, m));
+            run(part, choice.way, &symbolic, &arguments)
+        };
         wanted.parts.iter().zip(choices).flat_map(run).collect()
     })
 }

@@ -189,6 +189,24 @@ impl Graph {
 
     /// Evaluates the graph; `input(argument, index)` gives the inputs. Of results with several lanes, the first.
     pub fn evaluate(&self, input: impl Fn(usize, usize) -> f64) -> Vec<f64> {
+        if self.lanes.width == 1 { self.evaluate_one(input) } else { self.evaluate_lanes(input) }
+    }
+
+    fn evaluate_one(&self, input: impl Fn(usize, usize) -> f64) -> Vec<f64> {
+        let mut values: Vec<f64> = Vec::with_capacity(self.nodes.len());
+        for node in &self.nodes {
+            let at = |k: usize| values.get(node.args[k] as usize).copied().unwrap_or(f64::NAN);
+            let value = match node.op {
+                Op::Constant => node.constant().unwrap_or(f64::NAN),
+                Op::Input => input(node.args[0] as usize, node.args[1] as usize),
+                op => (op.row().value)(at(0), at(1), at(2)),
+            };
+            values.push(value);
+        }
+        self.outputs.iter().map(|id| values[id.index()]).collect()
+    }
+
+    fn evaluate_lanes(&self, input: impl Fn(usize, usize) -> f64) -> Vec<f64> {
         let mut values: Vec<Value> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
             let at = |k: usize| values.get(node.args[k] as usize).copied().unwrap_or([f64::NAN; MOST]);

@@ -13,7 +13,12 @@ const STEP: u32 = 4;
 /// Chains to add up one after the other and then together, as indices of terms: of those by which the sum is known when it is `due`, in cycles, the
 /// ones that take fewest instructions; where none is in time, the earliest. `terms` are sorted by the time they are known.
 pub(super) fn plan(terms: &[Known], due: u32) -> Vec<Vec<usize>> {
-    let candidates = [vec![first_plain(terms)], split(terms, 1), split(terms, 2), split(terms, 3)];
+    let single = vec![first_plain(terms)];
+    // Nothing takes fewer instructions.
+    if finish(terms, &single) <= due {
+        return single;
+    }
+    let candidates = [single, split(terms, 1), split(terms, 2), split(terms, 3)];
     let price = |chains: &Vec<Vec<usize>>| (finish(terms, chains).max(due), instructions(terms, chains));
     candidates.into_iter().min_by_key(price).unwrap_or_default()
 }
