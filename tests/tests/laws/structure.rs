@@ -112,12 +112,13 @@ fn joints_that_move_no_mass_are_found() {
 
 fn passes_keep_the_physics(case: &Case, random: &mut Random) {
     let state = case.state(random);
-    let scale = torque_scale(case, &state);
+    let torques = torque_scale(case, &state);
     for (name, pass, _) in model_passes::<f64>() {
         let passed = Case { model: pass(case.model.clone()), ..case.clone() };
-        let far = distance(&passed.inverse_dynamics(&state), &case.inverse_dynamics(&state), &scale);
+        let far = distance(&passed.inverse_dynamics(&state), &case.inverse_dynamics(&state), &torques);
         assert!(far <= FEW, "{name}: {far} units of roundoff");
-        assert_eq!(placements(&passed.model, &state.q), placements(&case.model, &state.q), "{name}");
+        let far = distance(&placements(&passed.model, &state.q), &placements(&case.model, &state.q), &scale(case, "placements", &state));
+        assert!(far <= FEW, "{name}: placements: {far} units of roundoff");
     }
 }
 
@@ -160,4 +161,14 @@ fn joints_are_ordered_depth_first_as_the_file_lists_them() {
         let frames: Vec<&str> = case.model.frames.iter().map(|f| f.name.as_str()).collect();
         assert_eq!(frames, links);
     });
+}
+
+/// The axes of a shoulder of three joints meet: slid there, its joints have no offsets, and no force has to be handed on.
+#[test]
+fn frames_slide_to_where_axes_meet() {
+    let case = Case::bundled(articulated_models::robot("panda_like").expect("it is bundled"));
+    let slid = model_passes::<f64>().iter().fold(case.model.clone(), |m, (_, pass, _)| pass(m));
+    let offset = |model: &articulated_core::model::Model, i: usize| model.bodies[i].placement.position.amax();
+    assert_eq!([2, 3].map(|i| offset(&slid, i)), [0.0; 2]);
+    assert!(offset(&case.model, 3) > 0.3);
 }

@@ -185,8 +185,8 @@ pub struct Function<S: 'static> {
     pub unit: &'static str,
     /// What the robot must be like.
     pub needs: Needs,
-    /// Whether it asks for nothing but joint torques, so that mass may be moved along joints that cannot feel it
-    /// ([`crate::model::pass`]).
+    /// Whether it asks for nothing but joint torques and what follows from them, so that mass may be moved along joints that cannot feel it, and
+    /// frames along their axes ([`crate::model::pass`]).
     pub regrouped: bool,
     /// Ways to compute it, from which the generator takes the cheapest; the first is what [`Function::call`] runs where it applies.
     pub ways: &'static [Way<S>],

@@ -20,42 +20,42 @@ use crate::model::Model;
 macro_rules! for_each_function {
     ($then:ident) => {
         $then! {
-            placements(q) -> [Frames, Of(12)] "rotation row by row, then position in m, in the base frame", Nothing, true,
+            placements(q) -> [Frames, Of(12)] "rotation row by row, then position in m, in the base frame", Nothing, false,
                 "placements of all frames in the base frame", "forward kinematics; Featherstone 2008, §4.4";
-            twists_body(q, v) -> [Frames, Of(6)] "[ω; v], rad/s and m/s", Nothing, true,
+            twists_body(q, v) -> [Frames, Of(6)] "[ω; v], rad/s and m/s", Nothing, false,
                 "twists of all frames, in their own axes about their own origins", "outward sweep; Lynch & Park 2017, §8.3";
-            twists_world(q, v) -> [Frames, Of(6)] "[ω; v], rad/s and m/s", Nothing, true,
+            twists_world(q, v) -> [Frames, Of(6)] "[ω; v], rad/s and m/s", Nothing, false,
                 "twists of all frames, in base axes about the base frame's origin", "outward sweep; Lynch & Park 2017, §8.3";
-            twists_world_aligned(q, v) -> [Frames, Of(6)] "[ω; ṗ], rad/s and m/s", Nothing, true,
+            twists_world_aligned(q, v) -> [Frames, Of(6)] "[ω; ṗ], rad/s and m/s", Nothing, false,
                 "twists of all frames, in base axes about their own origins", "outward sweep; Lynch & Park 2017, §8.3";
-            accelerations_body(q, v, a) -> [Frames, Of(6)] "rad/s² and m/s²", Nothing, true,
+            accelerations_body(q, v, a) -> [Frames, Of(6)] "rad/s² and m/s²", Nothing, false,
                 "time derivatives of twists_body: spatial accelerations in body axes, gravity not added",
                 "outward sweep; Featherstone 2008, §2.11";
-            accelerations_world(q, v, a) -> [Frames, Of(6)] "rad/s² and m/s²", Nothing, true,
+            accelerations_world(q, v, a) -> [Frames, Of(6)] "rad/s² and m/s²", Nothing, false,
                 "time derivatives of twists_world: spatial accelerations in base axes, gravity not added",
                 "outward sweep; Featherstone 2008, §2.11";
-            accelerations_world_aligned(q, v, a) -> [Frames, Of(6)] "[ω̇; p̈], rad/s² and m/s²", Nothing, true,
+            accelerations_world_aligned(q, v, a) -> [Frames, Of(6)] "[ω̇; p̈], rad/s² and m/s²", Nothing, false,
                 "time derivatives of twists_world_aligned: the true accelerations of the origins, gravity not added",
                 "outward sweep; Featherstone 2008, §2.11";
-            jacobians_body(q) -> [Frames, Of(6), Nv] "rows [ω; v]", Nothing, true,
+            jacobians_body(q) -> [Frames, Of(6), Nv] "rows [ω; v]", Nothing, false,
                 "Jacobians of all frames: twists_body = J v", "columns Ad S; Lynch & Park 2017, §5.1";
-            jacobians_world(q) -> [Frames, Of(6), Nv] "rows [ω; v]", Nothing, true,
+            jacobians_world(q) -> [Frames, Of(6), Nv] "rows [ω; v]", Nothing, false,
                 "Jacobians of all frames: twists_world = J v", "columns Ad S; Lynch & Park 2017, §5.1";
-            jacobians_world_aligned(q) -> [Frames, Of(6), Nv] "rows [ω; ṗ]", Nothing, true,
+            jacobians_world_aligned(q) -> [Frames, Of(6), Nv] "rows [ω; ṗ]", Nothing, false,
                 "Jacobians of all frames: twists_world_aligned = J v", "columns Ad S; Lynch & Park 2017, §5.1";
-            jacobian_rates_body(q, v) -> [Frames, Of(6), Nv] "1/s and m/s", Nothing, true,
+            jacobian_rates_body(q, v) -> [Frames, Of(6), Nv] "1/s and m/s", Nothing, false,
                 "dJ/dt of jacobians_body", "columns ad V S; Featherstone 2008, §2.9";
-            jacobian_rates_world(q, v) -> [Frames, Of(6), Nv] "1/s and m/s", Nothing, true,
+            jacobian_rates_world(q, v) -> [Frames, Of(6), Nv] "1/s and m/s", Nothing, false,
                 "dJ/dt of jacobians_world", "columns ad V S; Featherstone 2008, §2.9";
-            jacobian_rates_world_aligned(q, v) -> [Frames, Of(6), Nv] "1/s and m/s", Nothing, true,
+            jacobian_rates_world_aligned(q, v) -> [Frames, Of(6), Nv] "1/s and m/s", Nothing, false,
                 "dJ/dt of jacobians_world_aligned", "columns ad V S; Featherstone 2008, §2.9";
-            bias_accelerations_body(q, v) -> [Frames, Of(6)] "rad/s² and m/s²", Nothing, true,
+            bias_accelerations_body(q, v) -> [Frames, Of(6)] "rad/s² and m/s²", Nothing, false,
                 "dJ/dt·v of jacobians_body: accelerations at a = 0", "outward sweep; Featherstone 2008, §2.11";
-            bias_accelerations_world(q, v) -> [Frames, Of(6)] "rad/s² and m/s²", Nothing, true,
+            bias_accelerations_world(q, v) -> [Frames, Of(6)] "rad/s² and m/s²", Nothing, false,
                 "dJ/dt·v of jacobians_world: accelerations at a = 0", "outward sweep; Featherstone 2008, §2.11";
-            bias_accelerations_world_aligned(q, v) -> [Frames, Of(6)] "rad/s² and m/s²", Nothing, true,
+            bias_accelerations_world_aligned(q, v) -> [Frames, Of(6)] "rad/s² and m/s²", Nothing, false,
                 "dJ/dt·v of jacobians_world_aligned: accelerations at a = 0", "outward sweep; Featherstone 2008, §2.11";
-            placement_derivatives(q) -> [Frames, Of(12), Nv] "of rotation row by row, then position; 1 and m a unit step", Nothing, true,
+            placement_derivatives(q) -> [Frames, Of(12), Nv] "of rotation row by row, then position; 1 and m a unit step", Nothing, false,
                 "∂(placements)/∂q in the tangent space", "columns [s]×R and s × p; Lynch & Park 2017, §5.1";
             inverse_dynamics(q, v, a) -> [Nv] "N·m|N", Nothing, true,
                 "τ = M(q)·a + h(q, v), gravity included", "RNEA; Featherstone 2008, Table 5.1";
@@ -122,14 +122,14 @@ macro_rules! for_each_function {
                 "∂(static_torque)/∂q in the tangent space, wrenches constant in their reference",
                 "Singh, Russell & Wensing, IEEE RA-L 7, 2022";
             torque_regressor(q, v, a) -> [Nv, Links, Of(10)] "per m, m c, I_xx I_xy I_xz I_yy I_yz I_zz about the link's origin",
-                Nothing, true,
+                Nothing, false,
                 "Y with inverse_dynamics = Y π, π the inertial parameters of the moving links in their axes",
                 "virtual power; Atkeson, An & Hollerbach, Int. J. Robot. Res. 5, 1986";
             kinetic_energy_regressor(q, v) -> [Links, Of(10)] "per m, m c, I_xx I_xy I_xz I_yy I_yz I_zz about the link's origin",
-                Nothing, true,
+                Nothing, false,
                 "y with kinetic_energy = yᵀπ", "Gautier & Khalil, IEEE ICRA 1988";
             potential_energy_regressor(q) -> [Links, Of(10)] "per m, m c, I_xx I_xy I_xz I_yy I_yz I_zz about the link's origin",
-                Nothing, true,
+                Nothing, false,
                 "y with potential_energy = yᵀπ", "Gautier & Khalil, IEEE ICRA 1988";
             operational_space_inertia(q) -> [Frames, Of(6), Of(6)] "kg·m²|kg·m|kg, symmetric", FreeFrames, true,
                 "Λ = (J M⁻¹ Jᵀ)⁻¹ of each frame by itself, J that of jacobians_world_aligned",
@@ -137,11 +137,11 @@ macro_rules! for_each_function {
             operational_space_inertia_inverse(q) -> [Frames, Of(6), Of(6)] "1/(kg·m²)|…, symmetric", MassMatrix, true,
                 "Λ⁻¹ = J M⁻¹ Jᵀ of each frame by itself, J that of jacobians_world_aligned",
                 "M = Lᵀ D L; Khatib, IEEE J. Robot. Autom. 3, 1987";
-            integrate(q, step) -> [Nq] "rad|m|unit quaternion", Nothing, true,
+            integrate(q, step) -> [Nq] "rad|m|unit quaternion", Nothing, false,
                 "q ⊕ step: along the step for a unit of time, on the manifold", "exponential of SE(3); Lynch & Park 2017, §3.3";
-            difference(q, target) -> [Nv] "rad|m", Nothing, true,
+            difference(q, target) -> [Nv] "rad|m", Nothing, false,
                 "target ⊖ q: the step with q ⊕ step = target", "logarithm of SE(3); Lynch & Park 2017, §3.3";
-            random_configuration(uniform) -> [Nq] "rad|m|unit quaternion", Nothing, true,
+            random_configuration(uniform) -> [Nq] "rad|m|unit quaternion", Nothing, false,
                 "a configuration at random within limits, ±π rad and ±1 m where there are none, rotations uniform",
                 "Shoemake, Graphics Gems III, 1992";
         }

@@ -1,10 +1,14 @@
 //! Model passes: `Model → Model`, keeping the physics.
 
+mod places;
 mod regroup;
+mod slide;
+mod zeros;
 
 use core::marker::PhantomData;
 
 pub use regroup::regroup;
+pub use slide::slide;
 
 use super::Model;
 use crate::Scalar;
@@ -15,14 +19,21 @@ pub type ModelPass<S> = fn(Model<S>) -> Model<S>;
 struct Table<S>(PhantomData<S>);
 
 impl<S: Scalar> Table<S> {
-    const ROWS: &'static [(&'static str, ModelPass<S>, &'static str)] = &[(
-        "regroup",
-        regroup,
-        "no revolute body has m, h_z or Σ_zz, no prismatic body has Σ, no spherical body has m: its parent has them; joint torques are the same, wrenches between bodies are not",
-    )];
+    const ROWS: &'static [(&'static str, ModelPass<S>, &'static str)] = &[
+        (
+            "regroup",
+            regroup,
+            "no revolute body has m, h_z or Σ_zz, no prismatic body has Σ, no spherical body has m: its parent has them; joint torques are the same, wrenches between bodies are not",
+        ),
+        (
+            "slide",
+            slide,
+            "frames of revolute and prismatic bodies are where offsets and moments are fewest, along their axes; frames of links are where they were, bodies' own origins are not those of their links",
+        ),
+    ];
 }
 
-/// The passes in order; each row: name, pass, and what holds after it. They keep joint torques and no more: functions of the table that need more are not
+/// The passes in order; each row: name, pass, and what holds after it. They keep joint torques, and where the frames of links are: functions of the table that need more are not
 /// [`crate::algorithm::Function::regrouped`].
 pub fn model_passes<S: Scalar>() -> &'static [(&'static str, ModelPass<S>, &'static str)] {
     Table::<S>::ROWS

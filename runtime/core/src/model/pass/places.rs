@@ -1,0 +1,114 @@
+//! Places on the axes of joints where something vanishes.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use nalgebra::Vector3;
+
+use super::zeros::{or_zero, within};
+use crate::Scalar;
+use crate::joint::Joint;
+use crate::model::{Body, Model};
+use crate::spatial::{SpatialInertia, rotate, rotate_back};
+
+/// Most places of one body.
+const MOST: usize = 6;
+
+/// For each body shifts of its frame, in its axes, m; none the first.
+pub(super) struct Places<S> {
+    pub(super) all: Vec<Vec<Vector3<S>>>,
+    /// How far a frame may be shifted: as far as the offsets there reach.
+    reach: Vec<S>,
+}
+
+impl<S: Scalar> Places<S> {
+    /// Where the body has a moment less, where it is level with a child, and where its offset has a number less.
+    pub(super) fn of(model: &Model<S>) -> Self {
+        let length = |body: &Body<S>| body.placement.position.fold(S::zero(), |sum, x| sum + x.abs());
+        let mut reach: Vec<S> = model.bodies.iter().map(length).collect();
+        for i in model.inward() {
+            reach[model.bodies[i].parent] += length(&model.bodies[i]);
+        }
+        let mut places = Self { all: vec![vec![Vector3::zeros()]; model.bodies.len()], reach };
+        for i in model.outward() {
+            places.without_moments(model, i);
+        }
+        for i in model.inward() {
+            places.level_with_child(model, i);
+        }
+        for i in model.outward() {
+            places.without_offset(model, i);
+        }
+        places
+    }
+
+    fn without_moments(&mut self, model: &Model<S>, i: usize) {
+        let (o, inertia) = (S::zero(), &model.bodies[i].inertia);
+        match model.bodies[i].joint {
+            // Σ_xz − h_x d = 0, Σ_yz − h_y d = 0
+            Joint::Revolute => {
+                for k in (0..2).filter(|&k| inertia.first[k] != o) {
+                    self.add(model, i, Vector3::new(o, o, inertia.second[(k, 2)] / inertia.first[k]));
+                }
+            }
+            // h − m d = 0
+            Joint::Prismatic if inertia.mass != o => self.add(model, i, inertia.first.map(|h| h / inertia.mass)),
+            _ => {}
+        }
+    }
+
+    /// Shifts of the parent of body `i` to where that lies in the parent's xy-plane.
+    fn level_with_child(&mut self, model: &Model<S>, i: usize) {
+        let x = &model.bodies[i].placement;
+        for k in 0..self.all[i].len() {
+            let at = x.position + rotate(&x.rotation, self.all[i][k]);
+            self.add(model, model.bodies[i].parent, at);
+        }
+    }
+
+    fn without_offset(&mut self, model: &Model<S>, i: usize) {
+        let (o, x, parent) = (S::zero(), &model.bodies[i].placement, model.bodies[i].parent);
+        let z = x.rotation.column(2);
+        for k in 0..self.all[parent].len() {
+            let from = x.position - self.all[parent][k];
+            match model.bodies[i].joint {
+                Joint::Prismatic => self.add(model, i, -rotate_back(&x.rotation, from)),
+                _ => (0..3).filter(|&c| z[c] != o).for_each(|c| self.add(model, i, Vector3::new(o, o, -from[c] / z[c]))),
+            }
+        }
+    }
+
+    /// Adds a shift, or what of it the joint allows, if it is new and within reach.
+    fn add(&mut self, model: &Model<S>, i: usize, shift: Vector3<S>) {
+        let o = S::zero();
+        let shift = match model.bodies[i].joint {
+            Joint::Revolute if i != 0 => Vector3::new(o, o, shift.z),
+            Joint::Prismatic => shift,
+            _ => return,
+        };
+        let all = &mut self.all[i];
+        let new = |other: &Vector3<S>| (0..3).any(|k| or_zero(shift[k] - other[k], shift[k].abs() + other[k].abs()) != o);
+        if all.len() < MOST && within(shift.fold(o, |sum, x| sum + x.abs()), self.reach[i]) && all.iter().all(new) {
+            all.push(shift);
+        }
+    }
+}
+
+/// The origin of a body in its parent when both frames are shifted, in axes of the parent.
+pub(super) fn offset<S: Scalar>(body: &Body<S>, own: Vector3<S>, parent: Vector3<S>) -> Vector3<S> {
+    let (position, along) = (body.placement.position, rotate(&body.placement.rotation, own));
+    Vector3::from_fn(|k, _| or_zero(position[k] + along[k] - parent[k], position[k].abs() + along[k].abs() + parent[k].abs()))
+}
+
+/// The inertia of a body about its origin when its frame is shifted.
+pub(super) fn shifted<S: Scalar>(inertia: &SpatialInertia<S>, shift: Vector3<S>) -> SpatialInertia<S> {
+    let mut moved = inertia.shifted(-shift);
+    for k in 0..3 {
+        moved.first[k] = or_zero(moved.first[k], inertia.first[k].abs() + (inertia.mass * shift[k]).abs());
+    }
+    for k in 0..2 {
+        let xz = or_zero(moved.second[(k, 2)], inertia.second[(k, 2)].abs() + (inertia.first[k] * shift.z).abs());
+        (moved.second[(k, 2)], moved.second[(2, k)]) = (xz, xz);
+    }
+    moved
+}

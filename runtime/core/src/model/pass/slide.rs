@@ -1,0 +1,123 @@
+//! Frames slid along the axes of their joints, to where offsets and moments vanish.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use nalgebra::Vector3;
+
+use super::places::{Places, offset, shifted};
+use super::regroup;
+use crate::Scalar;
+use crate::joint::Joint;
+use crate::model::Model;
+
+/// Slides the frame of each revolute body along its axis, and shifts that of each prismatic body, so that the recursion of inverse dynamics has least
+/// to do.
+///
+/// A frame may lie anywhere on the axis of its joint, and that of a slide anywhere at all: the joint does the same. Instructions go into every number of
+/// a body's offset from its parent that is not zero, into Σ_xz and Σ_yz, and into a force that has to be handed on because there is an offset
+/// somewhere on its way to the base. Of the places where something vanishes the cheapest are taken, for all bodies together, from the tips inward. Exact for all joint
+/// torques; frames of links stay where they are in space. For a model that is regrouped, as it is then again.
+pub fn slide<S: Scalar>(mut model: Model<S>) -> Model<S> {
+    let shifts = Plan::of(&model).shifts();
+    if shifts.iter().all(|s| *s == Vector3::zeros()) {
+        return model;
+    }
+    for i in model.outward() {
+        let position = offset(&model.bodies[i], shifts[i], shifts[model.bodies[i].parent]);
+        let body = &mut model.bodies[i];
+        body.placement.position = position;
+        body.inertia = shifted(&body.inertia, shifts[i]);
+    }
+    for frame in &mut model.frames {
+        frame.placement.position -= shifts[frame.body];
+    }
+    // A prismatic body that was shifted has Σ again.
+    regroup(model)
+}
+
+/// Instructions for a number of an offset, for one of Σ_xz and Σ_yz, for one of h of a prismatic body, and for a force that is handed on.
+const OFFSET: u32 = 5;
+const MOMENT: u32 = 4;
+const FIRST: u32 = 5;
+const FORCE: u32 = 10;
+
+/// Costs by whether the force has to be handed on.
+type ByForce<T> = [T; 2];
+
+/// The cheapest place of each body, from the tips inward.
+struct Plan<'a, S> {
+    model: &'a Model<S>,
+    places: Places<S>,
+    /// For each body and each place of its parent: the place and whether the force is handed on from there.
+    best: Vec<Vec<ByForce<(usize, bool)>>>,
+}
+
+impl<'a, S: Scalar> Plan<'a, S> {
+    fn of(model: &'a Model<S>) -> Self {
+        let places = Places::of(model);
+        let mut best = vec![Vec::new(); model.bodies.len()];
+        // What a body costs with all that it carries, by its place.
+        let mut costs: Vec<Vec<ByForce<u32>>> = places.all.iter().map(|p| vec![[0; 2]; p.len()]).collect();
+        for i in model.inward() {
+            let parent = model.bodies[i].parent;
+            for (cost, shift) in costs[i].iter_mut().zip(&places.all[i]) {
+                let own = standing(model, i, *shift);
+                cost.iter_mut().for_each(|c| *c += own);
+            }
+            for at in 0..places.all[parent].len() {
+                let numbers: Vec<u32> = places.all[i].iter().map(|shift| offsets(model, i, *shift, places.all[parent][at])).collect();
+                let cheapest =
+                    [false, true].map(|needed| cheapest(&costs[i], &numbers, needed || model.bodies[i].joint != Joint::Revolute));
+                costs[parent][at].iter_mut().zip(&cheapest).for_each(|(sum, (_, cost))| *sum += cost);
+                best[i].push(cheapest.map(|(choice, _)| choice));
+            }
+        }
+        Self { model, places, best }
+    }
+
+    /// The shift of each body's frame, in its axes, m.
+    fn shifts(&self) -> Vec<Vector3<S>> {
+        let mut chosen = vec![(0, false); self.model.bodies.len()];
+        for i in self.model.outward() {
+            let (at, needed) = chosen[self.model.bodies[i].parent];
+            chosen[i] = self.best[i][at][usize::from(needed)];
+        }
+        chosen.iter().zip(&self.places.all).map(|((k, _), shifts)| shifts[*k]).collect()
+    }
+}
+
+/// The place at which a body costs least, whether its force is handed on from there, and the cost, from what it costs at each place and the
+/// numbers of its offsets; `needed`: whether the force is handed on whatever the offset.
+fn cheapest(costs: &[ByForce<u32>], numbers: &[u32], needed: bool) -> ((usize, bool), u32) {
+    let at = |(k, (cost, numbers)): (usize, (&ByForce<u32>, &u32))| {
+        let handed_on = needed || *numbers > 0;
+        let force = if handed_on { FORCE } else { 0 };
+        ((k, handed_on), cost[usize::from(handed_on)] + OFFSET * numbers + force)
+    };
+    costs.iter().zip(numbers).enumerate().map(at).min_by_key(|(_, cost)| *cost).unwrap_or_default()
+}
+
+/// What the moments of body `i` cost at a place.
+fn standing<S: Scalar>(model: &Model<S>, i: usize, shift: Vector3<S>) -> u32 {
+    let inertia = shifted(&model.bodies[i].inertia, shift);
+    match model.bodies[i].joint {
+        _ if model.bodies[i].parent == 0 => 0,
+        Joint::Revolute => MOMENT * count(&[inertia.second.m13, inertia.second.m23]),
+        Joint::Prismatic => FIRST * count(inertia.first.as_slice()),
+        _ => 0,
+    }
+}
+
+/// How many numbers of the offset of body `i` count. On the base, which stands still, none does, and on a body that only turns about z none along z.
+fn offsets<S: Scalar>(model: &Model<S>, i: usize, shift: Vector3<S>, parent: Vector3<S>) -> u32 {
+    let body = &model.bodies[i];
+    let below = &model.bodies[body.parent];
+    let steady = below.parent == 0 && below.joint == Joint::Revolute;
+    let counted = if body.parent == 0 { 0 } else { 3 - usize::from(steady) };
+    count(&offset(body, shift, parent).as_slice()[..counted])
+}
+
+fn count<S: Scalar>(x: &[S]) -> u32 {
+    x.iter().filter(|x| **x != S::zero()).count() as u32
+}
