@@ -62,6 +62,9 @@ fn add(g: &mut Graph, a: NodeId, b: NodeId) -> NodeId {
     if let Some(a) = negated(g, a) {
         return sub(g, b, a);
     }
+    if let Some(rest) = without_common(g, a, b, false) {
+        return rest;
+    }
     g.exactly(Op::Add, &[a, b])
 }
 
@@ -83,11 +86,45 @@ fn sub(g: &mut Graph, a: NodeId, b: NodeId) -> NodeId {
         let sum = add(g, a, b);
         return neg(g, sum);
     }
+    if let Some(rest) = without_common(g, a, b, true) {
+        return rest;
+    }
     // One subtraction serves for both signs.
     if let Some(other) = g.find(Op::Sub, b, a) {
         return g.exactly(Op::Neg, &[other]);
     }
     g.exactly(Op::Sub, &[a, b])
+}
+
+/// A node with a sign, true for minus.
+type Signed = (bool, NodeId);
+
+/// a ± b where a and b are sums of two terms, or one, and a term of one is that of the other with the opposite sign: what is left of the two.
+fn without_common(g: &mut Graph, a: NodeId, b: NodeId, minus: bool) -> Option<NodeId> {
+    let (left, right) = (terms(g, false, a), terms(g, minus, b));
+    let opposite = |x: &Signed, y: &Signed| x.0 != y.0 && x.1 == y.1;
+    let (i, j) =
+        (0..2).flat_map(|i| (0..2).map(move |j| (i, j))).find(|&(i, j)| left[i].zip(right[j]).is_some_and(|(x, y)| opposite(&x, &y)))?;
+    let rest = match (left[1 - i], right[1 - j]) {
+        (None, None) => return Some(g.constant(0.0)),
+        (Some(x), None) | (None, Some(x)) => x,
+        // What comes first is what is added.
+        (Some(x), Some(y)) if x.0 && !y.0 => return Some(sub(g, y.1, x.1)),
+        (Some(x), Some(y)) if x.0 == y.0 => (x.0, add(g, x.1, y.1)),
+        (Some(x), Some(y)) => return Some(sub(g, x.1, y.1)),
+    };
+    Some(if rest.0 { neg(g, rest.1) } else { rest.1 })
+}
+
+/// The terms of a sum of two, or the node itself, with a sign in front.
+fn terms(g: &Graph, minus: bool, x: NodeId) -> [Option<Signed>; 2] {
+    let node = g.node(x);
+    let term = |k: usize, other: bool| Some((minus != other, NodeId(node.args[k])));
+    match node.op {
+        Op::Add => [term(0, false), term(1, false)],
+        Op::Sub => [term(0, false), term(1, true)],
+        _ => [Some((minus, x)), None],
+    }
 }
 
 fn mul(g: &mut Graph, a: NodeId, b: NodeId) -> NodeId {
@@ -222,6 +259,21 @@ mod tests {
             }
         }
         g.verify().unwrap();
+    }
+
+    #[test]
+    fn what_two_sums_have_in_common_is_not_subtracted() {
+        let (mut g, x, y) = xy();
+        let z = g.input(0, 2);
+        let (xy, xz) = (g.apply(Op::Add, &[x, y]), g.apply(Op::Add, &[x, z]));
+        let (y_z, x_y) = (g.apply(Op::Sub, &[y, z]), g.apply(Op::Sub, &[x, y]));
+        assert_eq!(g.apply(Op::Sub, &[xy, xz]), y_z);
+        assert_eq!(g.apply(Op::Sub, &[xy, y]), x);
+        assert_eq!(g.apply(Op::Add, &[x_y, y]), x);
+        assert_eq!(g.apply(Op::Sub, &[y, xy]), g.apply(Op::Neg, &[x]));
+        let minus = g.apply(Op::Sub, &[x_y, xz]);
+        let sum = g.apply(Op::Add, &[y, z]);
+        assert_eq!(minus, g.apply(Op::Neg, &[sum]));
     }
 
     #[test]
