@@ -113,6 +113,13 @@ impl Build {
         self
     }
 
+    /// Functions of many states at once too, in numbers of these types: the modules `batch_f64` and `batch_f32`.
+    #[must_use]
+    pub fn batch(mut self, reals: impl IntoIterator<Item = crate::Real>) -> Self {
+        self.request.options.batch = reals.into_iter().collect();
+        self
+    }
+
     /// Each limb for itself, also where branches that are alike would be cheaper at once, one a lane of a vector.
     #[must_use]
     pub fn each_limb_alone(mut self) -> Self {

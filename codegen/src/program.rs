@@ -17,6 +17,8 @@ use crate::wanted::{Part, Wanted};
 pub(crate) struct Program {
     pub(crate) wanted: Wanted,
     pub(crate) graph: Graph,
+    /// The graph with each limb for itself: what a batch runs, a state a lane.
+    pub(crate) plain: Graph,
     pub(crate) entry: Entry,
 }
 
@@ -30,8 +32,9 @@ struct Subject<'a> {
 
 /// A function by the cheapest of its ways, limbs that are alike in lanes if that is cheaper.
 pub(crate) fn program(wanted: Wanted, model: &Model<f64>, parameters: &[Parameter], options: &Options) -> Program {
-    let plain = Subject { model, parameters, alike: None };
-    let mut best = made(&wanted, &plain);
+    let subject = Subject { model, parameters, alike: None };
+    let mut best = made(&wanted, &subject);
+    let plain = best.0.clone();
     // Limbs need the vector instructions; constants that stay inputs differ from limb to limb.
     if options.limbs && !options.forbid_unsafe && parameters.is_empty() {
         for width in [4, 2] {
@@ -43,7 +46,7 @@ pub(crate) fn program(wanted: Wanted, model: &Model<f64>, parameters: &[Paramete
         }
     }
     let (graph, entry) = best;
-    Program { wanted, graph, entry }
+    Program { wanted, graph, plain, entry }
 }
 
 /// Lanes cost what no count shows (values that come and go one by one): they must be cheaper by this.

@@ -1,6 +1,7 @@
 //! What to generate.
 
 use articulated_core::description::{Base, Origin, Payload};
+use articulated_core::lanes::Real;
 use articulated_core::model::GRAVITY;
 use articulated_core::spatial::Reference;
 
@@ -45,6 +46,8 @@ pub struct Options {
     pub rename: Vec<(String, String)>,
     /// Compute limbs that are alike at once, one a lane of a vector, where that is cheaper.
     pub limbs: bool,
+    /// The types of numbers for which there are functions of many states at once too.
+    pub batch: Vec<Real>,
     /// No `unsafe` in the generated code, for crates that forbid it: sines and cosines take a little longer on x86-64.
     pub forbid_unsafe: bool,
     /// Path of the runtime crate, to implement its trait `Dynamics`; `None`: the code depends on nothing but `core` and `std`.
@@ -82,6 +85,7 @@ impl Default for Options {
             snap_angles: None,
             rename: Vec::new(),
             limbs: true,
+            batch: Vec::new(),
             forbid_unsafe: false,
             runtime: None,
         }

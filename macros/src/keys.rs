@@ -1,6 +1,6 @@
 //! The keys of an invocation: one row each.
 
-use articulated_codegen::{Base, Reference};
+use articulated_codegen::{Base, Real, Reference};
 use proc_macro2::{TokenStream, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{Parse, ParseStream};
@@ -93,6 +93,12 @@ pub(crate) const KEYS: &[Key<Settings>] = &[
         read: |s, value| value.parse::<LitBool>().map(|b| s.limbs = Some(b.value)),
     },
     Key {
+        name: "batch",
+        required: false,
+        expected: "types of numbers, as [f64, f32]",
+        read: |s, value| reals(value).map(|reals| s.batch = reals),
+    },
+    Key {
         name: "forbid_unsafe",
         required: false,
         expected: "`true` or `false`",
@@ -134,6 +140,25 @@ fn reference(value: ParseStream) -> Result<Reference> {
     let name: Ident = value.parse()?;
     let all = [Reference::Body, Reference::World, Reference::WorldAligned];
     all.into_iter().find(|reference| name == reference.name()).ok_or_else(|| value.error("no such reference"))
+}
+
+/// `[f64, f32]`, each once.
+fn reals(value: ParseStream) -> Result<Vec<Real>> {
+    let names;
+    bracketed!(names in value);
+    let mut reals = Vec::new();
+    for name in Punctuated::<Ident, Token![,]>::parse_terminated(&names)? {
+        let real = match name.to_string().as_str() {
+            "f64" => Real::F64,
+            "f32" => Real::F32,
+            other => return Err(Error::new(name.span(), format!("found `{other}`, expected `f64` or `f32`"))),
+        };
+        if reals.contains(&real) {
+            return Err(Error::new(name.span(), format!("`{name}` is there twice")));
+        }
+        reals.push(real);
+    }
+    Ok(reals)
 }
 
 /// Entries between commas, each as it stands: the generator reads them.

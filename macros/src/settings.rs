@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use articulated_codegen::{Base, Options, Reference, Wanted};
+use articulated_codegen::{Base, Options, Real, Reference, Wanted};
 use proc_macro2::Span;
 use syn::{Error, Ident, LitStr, Path};
 
@@ -26,6 +26,7 @@ pub(crate) struct Settings {
     pub(crate) snap_angles: Option<f64>,
     pub(crate) rename: Vec<Renaming>,
     pub(crate) limbs: Option<bool>,
+    pub(crate) batch: Vec<Real>,
     pub(crate) forbid_unsafe: bool,
     pub(crate) runtime: Option<Path>,
     pub(crate) standalone: bool,
@@ -78,6 +79,7 @@ impl Settings {
             snap_angles: self.snap_angles,
             rename: self.rename.iter().map(|r| (r.from.value(), r.to.to_string())).collect(),
             limbs: self.limbs.unwrap_or(default.limbs),
+            batch: self.batch.clone(),
             forbid_unsafe: self.forbid_unsafe,
             runtime: (!self.standalone).then(|| self.runtime.as_ref().map_or("::articulated".into(), spelled)),
         }

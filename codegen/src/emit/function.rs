@@ -21,7 +21,7 @@ pub(super) struct Context {
 
 /// The function's source, with its documentation and, where it gives several results, the type that holds them.
 pub(super) fn function(out: &mut String, program: &Program, context: Context) {
-    let Program { wanted, graph, entry } = program;
+    let Program { wanted, graph, entry, .. } = program;
     let signature = Signature::of(wanted, context.sizes, context.parameters);
     signature.results_type(out);
     if in_lanes(graph) {

@@ -1,5 +1,6 @@
 //! From graphs to Rust.
 
+mod batch;
 mod function;
 mod header;
 mod literal;

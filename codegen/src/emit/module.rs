@@ -6,6 +6,7 @@ use articulated_core::algorithm::Dim;
 use articulated_core::model::{JointInfo, Model};
 use articulated_urdf::Unused;
 
+use super::batch::{Batch, batches};
 use super::function::{Context, function};
 use super::header::header;
 use super::literal::literal;
@@ -32,6 +33,8 @@ pub(crate) fn module(
     let context = Context { sizes: model.shape(), parameters: !parameters.is_empty(), forbid_unsafe: request.options.forbid_unsafe };
     programs.iter().for_each(|p| function(&mut out, p, context));
     support(&mut out, programs, request.options.forbid_unsafe);
+    let of_many: Vec<Batch> = programs.iter().map(|p| Batch::of(p, context)).collect();
+    batches(&mut out, &of_many, &request.options.batch, request.options.forbid_unsafe);
     robot(&mut out, request, programs, !parameters.is_empty());
     out
 }

@@ -20,6 +20,16 @@ impl Input {
         format!("{}: &{ty}", self.name)
     }
 
+    /// Whether it is the parameters.
+    pub(super) fn is_parameters(&self) -> bool {
+        self.dims.is_empty()
+    }
+
+    /// Number `k` of it where it is one array of numbers.
+    pub(super) fn flat(&self, k: usize) -> String {
+        format!("{}[{k}]", self.name)
+    }
+
     /// Number `k` of it.
     pub(super) fn at(&self, k: usize) -> String {
         match self.dims.as_slice() {
@@ -73,6 +83,11 @@ impl<'a> Signature<'a> {
             let _ = writeln!(out, "    /// {}: `{}`, {}.\n    pub {}: {},", f.summary, array(f.gives), f.unit, f.name, array(f.gives));
         }
         let _ = writeln!(out, "}}\n");
+    }
+
+    /// How many numbers each part gives.
+    pub(super) fn lengths(&self) -> Vec<usize> {
+        self.wanted.parts.iter().map(|p| p.function.len(self.sizes)).collect()
     }
 
     /// The values of each part, with its name and the lengths of its array.

@@ -10,18 +10,20 @@ use crate::graph::{Graph, Node, NodeId, Op};
 
 /// The statements, the result last.
 pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
-    let mut body = Body { out, graph, signature };
-    let inner = inner(graph);
-    for step in order(graph) {
-        match step {
-            Step::Node(k) if inner[k] => body.statement(k, &graph.nodes()[k]),
-            Step::Node(_) => {}
-            Step::Batch(angles) if graph.lanes().width == 2 => angles.chunks(2).for_each(|two| body.sines_of_two(two)),
-            Step::Batch(angles) => angles.iter().for_each(|a| body.sines(a)),
-        }
-    }
+    let mut body = Body { out, graph, signature, block: false };
+    body.statements(&inner(graph));
     let values: Vec<String> = graph.outputs.iter().map(|&o| body.number(o)).collect();
     signature.result(out, &values);
+}
+
+/// The statements for a part of a block of states, each result put where `places` says.
+pub(super) fn block(out: &mut String, graph: &Graph, signature: &Signature, places: &[String]) {
+    let mut body = Body { out, graph, signature, block: true };
+    body.statements(&inner(graph));
+    for (output, place) in graph.outputs.iter().zip(places) {
+        let value = body.operand(*output);
+        let _ = writeln!(body.out, "    put(&mut {place}, part, {value});");
+    }
 }
 
 /// What other nodes use, and so needs a name.
@@ -38,12 +40,28 @@ struct Body<'a> {
     out: &'a mut String,
     graph: &'a Graph,
     signature: &'a Signature<'a>,
+    /// Whether each number of the inputs is a block of states.
+    block: bool,
 }
 
 impl Body<'_> {
+    fn statements(&mut self, inner: &[bool]) {
+        for step in order(self.graph) {
+            match step {
+                Step::Node(k) if inner[k] => self.statement(k, &self.graph.nodes()[k]),
+                Step::Node(_) => {}
+                Step::Batch(angles) if self.graph.lanes().width == 2 => angles.chunks(2).for_each(|two| self.sines_of_two(two)),
+                Step::Batch(angles) => angles.iter().for_each(|a| self.sines(a)),
+            }
+        }
+    }
+
     fn statement(&mut self, k: usize, node: &Node) {
         let value = match node.op {
             Op::Constant | Op::LaneConstant => return,
+            Op::Input if self.block && !self.signature.inputs[node.args[0] as usize].is_parameters() => {
+                format!("at(&{}, part)", self.signature.inputs[node.args[0] as usize].flat(node.args[1] as usize))
+            }
             Op::Input => format!("k({})", self.signature.inputs[node.args[0] as usize].at(node.args[1] as usize)),
             Op::LaneInput => {
                 let input = &self.signature.inputs[node.args[0] as usize];
