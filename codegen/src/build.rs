@@ -162,7 +162,8 @@ impl Build {
     }
 
     fn write_in(&self, folder: &Path, name: &str) -> Result<Written, Error> {
-        let request = self.request()?;
+        let mut request = self.request()?;
+        request.options.stages = false;
         let path = folder.join(name).with_extension("rs");
         let cache = Cache::new(&path, &request);
         if let Some(warnings) = cache.as_ref().and_then(Cache::warnings) {

@@ -17,7 +17,7 @@ pub struct Entry {
     /// The ways chosen by count, where the function can be computed in several.
     pub ways: Vec<&'static str>,
     /// Counts after each stage: `asked` (what the algorithm asks for), `trace` (folded and shared), the same after each model
-    /// pass, then after each graph pass.
+    /// pass, then after each graph pass. Without [`stages`](crate::Options::stages) only the last of the model passes.
     pub stages: Vec<(&'static str, Counts)>,
     /// Longest chain of operations from an input to an output.
     pub depth: u32,

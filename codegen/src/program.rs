@@ -26,20 +26,22 @@ pub(crate) struct Program {
 struct Subject<'a> {
     model: &'a Model<f64>,
     parameters: &'a [Parameter],
+    /// Whether to trace after each model pass, for the ledger.
+    stages: bool,
     /// Limbs to lay on one another.
     alike: Option<Alike>,
 }
 
 /// A function by the cheapest of its ways, limbs that are alike in lanes if that is cheaper.
 pub(crate) fn program(wanted: Wanted, model: &Model<f64>, parameters: &[Parameter], options: &Options) -> Program {
-    let subject = Subject { model, parameters, alike: None };
+    let subject = Subject { model, parameters, stages: options.stages, alike: None };
     let mut best = made(&wanted, &subject);
     let plain = best.0.clone();
     // Limbs need the vector instructions; constants that stay inputs differ from limb to limb.
     if options.limbs && !options.forbid_unsafe && parameters.is_empty() {
         for width in [4, 2] {
             let Some(alike) = Alike::of(model, width) else { continue };
-            let other = made(&wanted, &Subject { model, parameters, alike: Some(alike) });
+            let other = made(&wanted, &Subject { alike: Some(alike), ..subject });
             if price(&other.0) * WORTH < price(&best.0) {
                 best = other;
             }
@@ -58,10 +60,10 @@ fn made(wanted: &Wanted, subject: &Subject) -> (Graph, Entry) {
     let choices: Vec<Choice> = wanted.parts.iter().map(|part| cheapest(part, subject, all)).collect();
     let mut graph = Graph::default();
     let mut stages: Vec<(&'static str, Counts)> = Vec::new();
-    for passes in 0..=all {
+    for passes in if subject.stages { 0 } else { all }..=all {
         let limited: Vec<Choice> = choices.iter().map(|c| Choice { passes: c.passes.min(passes), ..*c }).collect();
         graph = subject.trace(wanted, &limited);
-        if passes == 0 {
+        if stages.is_empty() {
             stages.push(("asked", graph.asked().clone()));
         }
         stages.push((if passes == 0 { "trace" } else { model_passes::<Sym>()[passes - 1].0 }, graph.counts()));

@@ -52,6 +52,8 @@ pub struct Options {
     pub forbid_unsafe: bool,
     /// Path of the runtime crate, to implement its trait `Dynamics`; `None`: the code depends on nothing but `core` and `std`.
     pub runtime: Option<String>,
+    /// Whether the ledger has counts after each model pass: for each of them the functions are traced once more. The code is the same. Build scripts and the macro do without.
+    pub stages: bool,
 }
 
 /// Another robot, a gripper say, to be fixed to a link. Its links and joints get a prefix before their names.
@@ -88,6 +90,7 @@ impl Default for Options {
             batch: Vec::new(),
             forbid_unsafe: false,
             runtime: None,
+            stages: true,
         }
     }
 }

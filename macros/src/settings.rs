@@ -81,6 +81,7 @@ impl Settings {
             limbs: self.limbs.unwrap_or(default.limbs),
             batch: self.batch.clone(),
             forbid_unsafe: self.forbid_unsafe,
+            stages: false,
             runtime: (!self.standalone).then(|| self.runtime.as_ref().map_or("::articulated".into(), spelled)),
         }
     }

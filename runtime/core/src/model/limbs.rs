@@ -49,8 +49,10 @@ impl<S: Scalar> Model<S> {
         let sizes = self.branch_sizes();
         let mut found = Vec::new();
         let mut open = vec![0];
+        let mut children = vec![Vec::new(); self.bodies.len()];
+        self.outward().for_each(|i| children[self.bodies[i].parent].push(i));
         while let Some(body) = open.pop() {
-            let mut branches: Vec<Branch> = self.outward().filter(|&i| self.bodies[i].parent == body).map(|i| (i, None)).collect();
+            let mut branches: Vec<Branch> = children[body].iter().map(|&i| (i, None)).collect();
             if branches.len() >= width {
                 branches.iter_mut().for_each(|(i, kinds)| *kinds = self.kinds(*i, sizes[*i]));
             }
