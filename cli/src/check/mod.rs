@@ -1,5 +1,6 @@
 //! `articulated check`.
 
+mod base;
 mod inertia;
 mod report;
 mod text;

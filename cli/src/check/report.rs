@@ -5,6 +5,7 @@ use articulated_core::model::{FLOATING_BASE, Model};
 use articulated_urdf::Problem;
 use serde::Serialize;
 
+use super::base::Base;
 use super::inertia::principal_moments;
 use crate::robot::Robot;
 
@@ -24,6 +25,8 @@ pub(super) struct Report {
     pub(super) totals: Totals,
     pub(super) links: Vec<LinkRow>,
     pub(super) joints: Vec<JointRow>,
+    /// What joints can feel of the inertial parameters; none for a robot of very many bodies.
+    pub(super) base_parameters: Option<Base>,
     /// Functions that can be generated, of those asked for.
     pub(super) functions: Vec<String>,
 }
@@ -122,6 +125,7 @@ impl Report {
             totals: Totals::default(),
             links: Vec::new(),
             joints: Vec::new(),
+            base_parameters: None,
             functions: Vec::new(),
         }
     }
@@ -139,6 +143,7 @@ impl Report {
             mass: self.links.iter().map(|l| l.mass).sum(),
             moving_mass: model.bodies.iter().skip(1).map(|b| b.inertia.mass).sum(),
         };
+        self.base_parameters = Base::of(model).map(|base| Base { merged_joints: merged(description, model), ..base });
         self.warn_of_massless_joints(model);
     }
 
@@ -213,6 +218,11 @@ fn joint_rows(description: &Description, model: &Model<f64>) -> Vec<JointRow> {
         }
     });
     base.into_iter().chain(rows).collect()
+}
+
+/// Joints that join links of one body.
+fn merged(description: &Description, model: &Model<f64>) -> usize {
+    description.joints.iter().filter(|j| model.frames[j.child].body == model.frames[j.parent].body).count()
 }
 
 /// kg of each body with everything that hangs on it.

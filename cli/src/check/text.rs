@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::base::{Base, BaseRow, Felt};
 use super::report::{JointRow, LinkRow, Report};
 use crate::table::{Table, number, plain};
 
@@ -35,6 +36,10 @@ fn body(out: &mut String, report: &Report) {
     let joints = joints(&report.joints);
     if !joints.is_empty() {
         *out += &joints.text();
+        out.push('\n');
+    }
+    if let Some(base) = report.base_parameters.as_ref().filter(|b| !b.joints.is_empty()) {
+        *out += &base_parameters(base);
         out.push('\n');
     }
     if !report.unused.is_empty() {
@@ -113,6 +118,43 @@ fn joints(rows: &[JointRow]) -> Table {
         ]);
     }
     table
+}
+
+fn base_parameters(base: &Base) -> String {
+    let Base { parameters, regrouped, identifiable, merged_joints, joints } = base;
+    let merged = match merged_joints {
+        0 => String::new(),
+        1 => "1 fixed joint merged; ".into(),
+        n => format!("{n} fixed joints merged; "),
+    };
+    let head = format!(
+        "{merged}of {parameters} inertial parameters regrouping leaves {regrouped}, and torques determine {identifiable}: from the tips inward, in (brackets) what only\n\
+         combinations with those before show, left out what no torque shows; about the joint's frame where it was slid to, in its axes; SI units"
+    );
+    let mut table = Table::new([("joint", ""), ("slid by", ""), ("parameters", "")]).left(3);
+    for row in joints {
+        table.row([row.joint.clone(), slid(row), felt(row)]);
+    }
+    format!("{head}\n\n{}", table.text())
+}
+
+/// Along the joint; all three numbers if it was shifted another way.
+fn slid(row: &BaseRow) -> String {
+    match row.slid {
+        [0.0, 0.0, 0.0] => "–".into(),
+        [0.0, 0.0, z] => number(z),
+        all => all.map(number).join(" "),
+    }
+}
+
+fn felt(row: &BaseRow) -> String {
+    let one = |p: &super::base::Parameter| match p.felt {
+        Felt::Never => None,
+        Felt::Alone => Some(format!("{} {}", p.name, number(p.value))),
+        Felt::WithOthers => Some(format!("({} {})", p.name, number(p.value))),
+    };
+    let all: Vec<String> = row.parameters.iter().filter_map(one).collect();
+    if all.is_empty() { "–".into() } else { all.join("  ") }
 }
 
 /// `3`, `0..7`, or a dash.

@@ -109,3 +109,14 @@ fn any_bytes_are_refused_with_an_error() {
         assert!(ended.status == 0 || ended.lines_with("error") > 0);
     }
 }
+
+/// Published: 43 (Gaz et al., IEEE RA-L 4, 2019).
+#[test]
+fn base_parameters_are_counted_and_listed() {
+    let json = run(&["check", "panda_like", "--format", "json"]).json();
+    let base = &json["base_parameters"];
+    assert_eq!((base["parameters"].as_u64(), base["identifiable"].as_u64()), (Some(70), Some(43)));
+    assert_eq!(base["joints"][0]["joint"], "joint_7");
+    let text = run(&["check", "panda_like"]);
+    assert!(text.out.contains("torques determine 43"), "{}", text.out);
+}

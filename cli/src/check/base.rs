@@ -1,0 +1,232 @@
+//! Base parameters: what joints can feel of the inertial parameters, and what model passes made of them.
+
+use articulated_core::algorithm::{Argument, Workspace, inverse_dynamics};
+use articulated_core::joint::Joint;
+use articulated_core::model::Model;
+use articulated_core::model::pass::model_passes;
+use articulated_core::spatial::SpatialInertia;
+use serde::Serialize;
+
+use crate::states::{State, random};
+
+/// Beyond this many bodies nobody reads the list, and finding what can be identified takes the cube of them.
+const MANY: usize = 60;
+
+/// A column that others leave less than this of depends on them.
+const DEPENDS: f64 = 1e-7;
+
+/// The inertial parameters of the moving bodies after regrouping.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(super) struct Base {
+    /// Ten for each moving body.
+    pub(super) parameters: usize,
+    /// How many are not zero by regrouping, and how many of those joint torques determine.
+    pub(super) regrouped: usize,
+    pub(super) identifiable: usize,
+    /// Fixed and locked joints, whose links are part of the body they are fixed to.
+    pub(super) merged_joints: usize,
+    /// From the tips inward: each is determined by torques when those before it are known.
+    pub(super) joints: Vec<BaseRow>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct BaseRow {
+    pub(super) joint: String,
+    /// m, by which the frame of the joint was slid, in its axes (z along the joint).
+    pub(super) slid: [f64; 3],
+    /// What is left to the body; the rest is its parent's.
+    pub(super) parameters: Vec<Parameter>,
+}
+
+/// A parameter about the slid frame, in axes of the joint.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Parameter {
+    pub(super) name: &'static str,
+    /// kg, kg·m or kg·m².
+    pub(super) value: f64,
+    pub(super) felt: Felt,
+}
+
+/// What torques tell of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Felt {
+    Alone,
+    /// Only a combination with parameters that come before it.
+    WithOthers,
+    Never,
+}
+
+/// m, h, and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz, as [`SpatialInertia::parameters`] has them.
+type Ten = [f64; 10];
+
+/// A name and what one unit of it is in the ten; a revolute body has Σ_zz = 0, which ties I_xx and I_yy to I_zz.
+type Unit = (&'static str, Ten);
+
+const fn unit(k: usize) -> Ten {
+    let mut ten = [0.0; 10];
+    ten[k] = 1.0;
+    ten
+}
+
+const REVOLUTE: &[Unit] = &[
+    ("h_x", unit(1)),
+    ("h_y", unit(2)),
+    ("I_xx−I_yy", [0.0, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, -0.5, 0.0, 0.0]),
+    ("I_xy", unit(5)),
+    ("I_xz", unit(6)),
+    ("I_yz", unit(8)),
+    ("I_zz", [0.0, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.5, 0.0, 1.0]),
+];
+const ALL: &[Unit] = &[
+    ("m", unit(0)),
+    ("h_x", unit(1)),
+    ("h_y", unit(2)),
+    ("h_z", unit(3)),
+    ("I_xx", unit(4)),
+    ("I_xy", unit(5)),
+    ("I_xz", unit(6)),
+    ("I_yy", unit(7)),
+    ("I_yz", unit(8)),
+    ("I_zz", unit(9)),
+];
+
+/// What regrouping leaves to a body.
+fn units(joint: Joint) -> &'static [Unit] {
+    match joint {
+        Joint::Revolute => REVOLUTE,
+        Joint::Prismatic => &ALL[..4],
+        Joint::Spherical => &ALL[1..],
+        Joint::Helical | Joint::Floating => ALL,
+    }
+}
+
+impl Base {
+    /// Of a model as it was read; nothing for a model of very many bodies.
+    pub(super) fn of(read: &Model<f64>) -> Option<Self> {
+        if read.bodies.len() > MANY {
+            return None;
+        }
+        let passed = model_passes::<f64>().iter().fold(read.clone(), |model, (_, pass, _)| pass(model));
+        let mut joints: Vec<BaseRow> = passed.inward().map(|i| row(i, read, &passed)).collect();
+        let columns = columns(&passed);
+        let felt = felt(&columns);
+        joints.iter_mut().flat_map(|j| &mut j.parameters).zip(&felt).for_each(|(p, felt)| p.felt = *felt);
+        Some(Self {
+            parameters: 10 * joints.len(),
+            regrouped: felt.len(),
+            identifiable: felt.iter().filter(|f| **f == Felt::Alone).count(),
+            merged_joints: 0,
+            joints,
+        })
+    }
+}
+
+fn row(i: usize, read: &Model<f64>, passed: &Model<f64>) -> BaseRow {
+    let body = &passed.bodies[i];
+    let ten = body.inertia.parameters();
+    let value = |(name, _): &Unit| match *name {
+        "I_xx−I_yy" => ten[4] - ten[7],
+        name => ALL.iter().position(|(other, _)| *other == name).map_or(0.0, |k| ten[k]),
+    };
+    let parameters = units(body.joint).iter().map(|u| Parameter { name: u.0, value: value(u), felt: Felt::Never }).collect();
+    let frame = read.frames.iter().position(|f| f.body == i);
+    let slid = frame.map_or([0.0; 3], |k| (read.frames[k].placement.position - passed.frames[k].placement.position).into());
+    BaseRow { joint: body.name.clone(), slid, parameters }
+}
+
+/// For each parameter the torques of one unit of it alone, over a number of states.
+fn columns(model: &Model<f64>) -> Vec<Vec<f64>> {
+    let mut weightless = model.clone();
+    weightless.bodies.iter_mut().for_each(|b| b.inertia = SpatialInertia::zero());
+    let count: usize = model.outward().map(|i| units(model.bodies[i].joint).len()).sum();
+    let states = random(model, 2 * count / model.nv.max(1) + 2, 1);
+    let mut ws = Workspace::new(model);
+    let mut columns = Vec::with_capacity(count);
+    for i in model.inward() {
+        for (_, unit) in units(model.bodies[i].joint) {
+            weightless.bodies[i].inertia = SpatialInertia::from_parameters(*unit);
+            columns.push(states.iter().flat_map(|state| torques(&weightless, &mut ws, state)).collect());
+        }
+        weightless.bodies[i].inertia = SpatialInertia::zero();
+    }
+    columns
+}
+
+fn torques(model: &Model<f64>, ws: &mut Workspace<f64>, state: &State) -> Vec<f64> {
+    let [q, v, a] = [Argument::Q, Argument::V, Argument::A].map(|x| state.get(x).unwrap_or_default());
+    let mut tau = vec![0.0; model.nv];
+    inverse_dynamics(model, ws, q, v, a, &mut tau);
+    tau
+}
+
+/// Which columns are independent of those before them (modified Gram–Schmidt, each column of unit length).
+fn felt(columns: &[Vec<f64>]) -> Vec<Felt> {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let largest = columns.iter().map(|c| dot(c, c).sqrt()).fold(0.0, f64::max);
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    let mut one = |column: &Vec<f64>| {
+        let length = dot(column, column).sqrt();
+        if length <= f64::EPSILON * largest {
+            return Felt::Never;
+        }
+        let mut rest: Vec<f64> = column.iter().map(|x| x / length).collect();
+        for b in &basis {
+            let along = dot(&rest, b);
+            rest.iter_mut().zip(b).for_each(|(x, b)| *x -= along * b);
+        }
+        let left = dot(&rest, &rest).sqrt();
+        if left <= DEPENDS {
+            return Felt::WithOthers;
+        }
+        rest.iter_mut().for_each(|x| *x /= left);
+        basis.push(rest);
+        Felt::Alone
+    };
+    columns.iter().map(&mut one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::bundled_model;
+
+    fn base(robot: &str) -> Base {
+        Base::of(&bundled_model(robot)).unwrap()
+    }
+
+    /// 43: Gaz, Cognetti, Oliva, Robuffo Giordano & De Luca, IEEE RA-L 4, 2019. Of the first link only I_zz.
+    #[test]
+    fn of_the_panda_43_parameters_are_identifiable() {
+        let panda = base("panda_like");
+        assert_eq!([panda.parameters, panda.regrouped, panda.identifiable], [70, 49, 43]);
+        let first = panda.joints.last().unwrap();
+        let alone: Vec<&str> = first.parameters.iter().filter(|p| p.felt == Felt::Alone).map(|p| p.name).collect();
+        assert_eq!((first.joint.as_str(), alone.as_slice()), ("joint_1", ["I_zz"].as_slice()));
+        assert!(panda.joints.iter().any(|j| j.slid != [0.0; 3]));
+    }
+
+    /// A floating base feels everything that regrouping leaves.
+    #[test]
+    fn a_floating_base_leaves_nothing_in_the_dark() {
+        let quadruped = base("quadruped");
+        assert_eq!([quadruped.parameters, quadruped.regrouped, quadruped.identifiable], [130, 10 + 12 * 7, 10 + 12 * 7]);
+    }
+
+    /// The regrouped values are those that torques show: what the passes left gives the same torques as what was read.
+    #[test]
+    fn torques_are_linear_in_the_values_that_are_listed() {
+        let read = bundled_model("ur5_like");
+        let passed = model_passes::<f64>().iter().fold(read.clone(), |model, (_, pass, _)| pass(model));
+        let values: Vec<f64> = Base::of(&read).unwrap().joints.iter().flat_map(|j| &j.parameters).map(|p| p.value).collect();
+        let columns = columns(&passed);
+        let states = random(&passed, 2, 1);
+        for (s, state) in states.iter().enumerate() {
+            let expected = torques(&read, &mut Workspace::new(&read), state);
+            for (l, tau) in expected.iter().enumerate() {
+                let sum: f64 = columns.iter().zip(&values).map(|(c, x)| c[s * read.nv + l] * x).sum();
+                assert!((sum - tau).abs() < 1e-12 * (1.0 + tau.abs()), "{sum} {tau}");
+            }
+        }
+    }
+}
