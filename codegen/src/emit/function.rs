@@ -4,7 +4,10 @@ use std::fmt::Write;
 
 use articulated_core::algorithm::Shape;
 
+use super::chunks::{is_long, pieces};
+use super::plain::Plain;
 use super::signature::Signature;
+use super::vector::Vector;
 use super::{plain, sets, vector};
 use crate::graph::Graph;
 use crate::ledger::Entry;
@@ -24,8 +27,8 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
     let Program { wanted, graph, entry, .. } = program;
     let signature = Signature::of(wanted, context.sizes, context.parameters);
     signature.results_type(out);
-    if in_lanes(graph) {
-        lanes_macro(out, graph, &signature);
+    if in_lanes(graph) || is_long(graph) {
+        body_macro(out, graph, &signature);
     }
     document(out, wanted, entry, context.parameters);
     let _ =
@@ -36,6 +39,8 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
     }
     if in_lanes(graph) {
         lanes_calls(out, graph, &signature);
+    } else if is_long(graph) {
+        long_calls(out, &signature, context.forbid_unsafe);
     } else if needs_choice(graph) && !context.forbid_unsafe {
         chosen(out, graph, &signature);
     } else {
@@ -73,15 +78,33 @@ fn chosen(out: &mut String, graph: &Graph, signature: &Signature) {
 }
 
 /// The body as a macro: it is compiled for several instruction sets.
-fn lanes_macro(out: &mut String, graph: &Graph, signature: &Signature) {
+fn body_macro(out: &mut String, graph: &Graph, signature: &Signature) {
     let (arguments, gives, name) = (signature.arguments(), signature.gives(), &signature.wanted.name);
-    let _ = writeln!(out, "macro_rules! {name}_in_lanes {{\n    ($(#[$features:meta])?) => {{");
-    let _ = writeln!(out, "    $(#[$features])?\n    #[inline]\n    fn in_lanes({arguments}) -> {gives} {{");
-    for input in &signature.inputs {
-        let _ = writeln!(out, "    let _ = {};", input.name);
+    let _ = writeln!(out, "macro_rules! {name}_body {{\n    ($(#[$features:meta])?) => {{");
+    if is_long(graph) {
+        let (plain, vector) = (Plain { graph, signature }, Vector { graph, signature, block: false });
+        pieces(out, graph, signature, if in_lanes(graph) { &vector } else { &plain });
+    } else {
+        let _ = writeln!(out, "    $(#[$features])?\n    #[inline]\n    fn whole({arguments}) -> {gives} {{");
+        for input in &signature.inputs {
+            let _ = writeln!(out, "    let _ = {};", input.name);
+        }
+        vector::body(out, graph, signature);
+        let _ = writeln!(out, "    }}");
     }
-    vector::body(out, graph, signature);
-    let _ = writeln!(out, "    }}\n    }};\n}}\n");
+    let _ = writeln!(out, "    }};\n}}\n");
+}
+
+/// The call of a long body of plain arithmetic.
+fn long_calls(out: &mut String, signature: &Signature, forbid_unsafe: bool) {
+    let (names, name) = (signature.names(), &signature.wanted.name);
+    if !forbid_unsafe {
+        let _ = writeln!(out, "    {}\n    if {} {{", sets::NOT_COMPILED_FOR_AVX2, sets::HAS_AVX2);
+        let _ = writeln!(out, "        const FUSED: bool = true;\n        {name}_body!(#[target_feature(enable = \"avx2,fma\")]);");
+        let _ =
+            writeln!(out, "        // SAFETY: the processor was just asked for both.\n        return unsafe {{ whole({names}) }};\n    }}");
+    }
+    let _ = writeln!(out, "    {name}_body!();\n    whole({names})");
 }
 
 /// The call of the body for the best instruction set there is.
@@ -91,20 +114,20 @@ fn lanes_calls(out: &mut String, graph: &Graph, signature: &Signature) {
         let two = if width == 2 { format!("\n        use self::two::{set}::sin_cos_of_two;") } else { String::new() };
         let _ = writeln!(
             out,
-            "    {cfg}\n    {{\n        use self::{set}_f64x{width}::*;{two}\n        {name}_in_lanes!({features});\n{calls}    }}"
+            "    {cfg}\n    {{\n        use self::{set}_f64x{width}::*;{two}\n        {name}_body!({features});\n{calls}    }}"
         );
     };
     let calls = format!(
-        "        {}\n        if {} {{\n            // SAFETY: the processor was just asked for both.\n            return unsafe {{ in_lanes({names}) }};\n        }}\n        \
-         {}\n        // SAFETY: this is compiled for processors with both.\n        return unsafe {{ in_lanes({names}) }};\n",
+        "        {}\n        if {} {{\n            // SAFETY: the processor was just asked for both.\n            return unsafe {{ whole({names}) }};\n        }}\n        \
+         {}\n        // SAFETY: this is compiled for processors with both.\n        return unsafe {{ whole({names}) }};\n",
         sets::NOT_COMPILED_FOR_AVX2,
         sets::HAS_AVX2,
         sets::COMPILED_FOR_AVX2,
     );
     block("#[cfg(target_arch = \"x86_64\")]", "avx2", "#[target_feature(enable = \"avx2,fma\")]", &calls);
-    let calls = format!("        // SAFETY: every 64-bit Arm processor has it.\n        return unsafe {{ in_lanes({names}) }};\n");
+    let calls = format!("        // SAFETY: every 64-bit Arm processor has it.\n        return unsafe {{ whole({names}) }};\n");
     block("#[cfg(target_arch = \"aarch64\")]", "neon", "#[target_feature(enable = \"neon\")]", &calls);
-    block(sets::NEITHER, "portable", "", &format!("        in_lanes({names})\n"));
+    block(sets::NEITHER, "portable", "", &format!("        whole({names})\n"));
 }
 
 fn document(out: &mut String, wanted: &Wanted, entry: &Entry, parameters: bool) {

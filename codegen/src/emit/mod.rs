@@ -1,6 +1,8 @@
 //! From graphs to Rust.
 
 mod batch;
+mod chunks;
+mod dialect;
 mod function;
 mod header;
 mod literal;

@@ -2,13 +2,14 @@
 
 use std::fmt::Write;
 
+use super::dialect::{Dialect, statements};
 use super::literal::{bare, operand};
 use super::order::{Angle, Step, order};
 use super::signature::Signature;
 use crate::graph::{Graph, Node, NodeId, Op};
 
 /// How many angles `trig::four` takes.
-const LANES: usize = 4;
+const FOUR: usize = 4;
 
 /// From this many angles on a batch is faster than one after the other.
 const BATCH_FROM: usize = 3;
@@ -20,54 +21,61 @@ pub(super) fn has_batch(graph: &Graph) -> bool {
 
 /// The statements, the result last.
 pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
-    let mut body = Body { out, graph, signature };
-    for step in order(graph) {
-        match step {
-            Step::Node(k) => body.statement(k, &graph.nodes()[k]),
-            Step::Batch(angles) if angles.len() < BATCH_FROM => angles.iter().for_each(|a| body.single(a)),
-            Step::Batch(angles) => body.batch(&angles),
-        }
-    }
-    let values: Vec<String> = graph.outputs.iter().map(|&o| body.operand(o)).collect();
+    let plain = Plain { graph, signature };
+    statements(out, graph, &plain);
+    let values: Vec<String> = graph.outputs.iter().map(|&o| plain.operand(o)).collect();
     signature.result(out, &values);
 }
 
-struct Body<'a> {
-    out: &'a mut String,
-    graph: &'a Graph,
-    signature: &'a Signature<'a>,
+/// Operators on numbers.
+pub(super) struct Plain<'a> {
+    pub(super) graph: &'a Graph,
+    pub(super) signature: &'a Signature<'a>,
 }
 
-impl Body<'_> {
-    fn statement(&mut self, k: usize, node: &Node) {
-        let _ = match node.op {
-            Op::Constant => Ok(()),
-            Op::Input => writeln!(self.out, "    let x{k} = {};", self.signature.inputs[node.args[0] as usize].at(node.args[1] as usize)),
-            op => {
-                let expression = self.expression(op, node);
-                writeln!(self.out, "    let x{k} = {expression};")
-            }
-        };
-    }
-
-    fn single(&mut self, a: &Angle) {
-        let _ = writeln!(self.out, "    let ({}, {}) = f64::sin_cos({});", name(a.sin), name(a.cos), self.operand(a.angle));
-    }
-
-    /// Four at a time, the last four padded.
-    fn batch(&mut self, angles: &[Angle]) {
-        let padded = |mut list: Vec<String>, pad: &str| {
-            list.resize(LANES, pad.into());
-            list.join(", ")
-        };
-        for four in angles.chunks(LANES) {
-            let sines = padded(four.iter().map(|a| name(a.sin)).collect(), "_");
-            let cosines = padded(four.iter().map(|a| name(a.cos)).collect(), "_");
-            let angles = padded(four.iter().map(|a| self.operand(a.angle)).collect(), "0.0");
-            let _ = writeln!(self.out, "    let [[{sines}], [{cosines}]] = trig::four::<FUSED>({angles});");
+impl Dialect for Plain<'_> {
+    fn statement(&self, k: usize, node: &Node) -> Option<String> {
+        match node.op {
+            Op::Constant => None,
+            Op::Input => Some(format!("    let x{k} = {};\n", self.signature.inputs[node.args[0] as usize].at(node.args[1] as usize))),
+            op => Some(format!("    let x{k} = {};\n", self.expression(op, node))),
         }
     }
 
+    /// Four at a time, the last four padded; one by one if there are few.
+    fn sines(&self, group: &[Angle], of: usize) -> String {
+        let mut out = String::new();
+        if of < BATCH_FROM {
+            for a in group {
+                let _ = writeln!(out, "    let ({}, {}) = f64::sin_cos({});", name(a.sin), name(a.cos), self.operand(a.angle));
+            }
+            return out;
+        }
+        let padded = |mut list: Vec<String>, pad: &str| {
+            list.resize(FOUR, pad.into());
+            list.join(", ")
+        };
+        let sines = padded(group.iter().map(|a| name(a.sin)).collect(), "_");
+        let cosines = padded(group.iter().map(|a| name(a.cos)).collect(), "_");
+        let angles = padded(group.iter().map(|a| self.operand(a.angle)).collect(), "0.0");
+        let _ = writeln!(out, "    let [[{sines}], [{cosines}]] = trig::four::<FUSED>({angles});");
+        out
+    }
+
+    fn group(&self) -> usize {
+        FOUR
+    }
+
+    fn number(&self, id: NodeId) -> String {
+        self.operand(id)
+    }
+
+    fn value(&self) -> (&'static str, &'static str) {
+        ("f64", "0.0")
+    }
+}
+
+impl Plain<'_> {
     fn expression(&self, op: Op, node: &Node) -> String {
         let mut text = op.row().rust.to_owned();
         for (hole, operand) in ["{a}", "{b}", "{c}"].iter().zip(node.operands()) {

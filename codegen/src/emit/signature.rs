@@ -117,7 +117,6 @@ impl<'a> Signature<'a> {
         };
     }
 
-    #[allow(dead_code)]
     /// A result of zeros.
     pub(super) fn nothing(&self) -> String {
         let part = |gives: &[Dim]| zeros(&gives.iter().map(|d| d.len(self.sizes)).collect::<Vec<_>>());
@@ -131,7 +130,6 @@ impl<'a> Signature<'a> {
         }
     }
 
-    #[allow(dead_code)]
     /// Where each number of the result stands in `out: &mut` result.
     pub(super) fn places(&self) -> Vec<String> {
         let mut places = Vec::new();

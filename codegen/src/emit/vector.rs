@@ -2,63 +2,42 @@
 
 use std::fmt::Write;
 
+use super::dialect::{Dialect, statements};
 use super::literal::{literal, operand};
-use super::order::{Angle, Step, order};
+use super::order::Angle;
 use super::plain::name;
 use super::signature::Signature;
 use crate::graph::{Graph, Node, NodeId, Op};
 
 /// The statements, the result last.
 pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
-    let mut body = Body { out, graph, signature, block: false };
-    body.statements(&inner(graph));
-    let values: Vec<String> = graph.outputs.iter().map(|&o| body.number(o)).collect();
+    let vector = Vector { graph, signature, block: false };
+    statements(out, graph, &vector);
+    let values: Vec<String> = graph.outputs.iter().map(|&o| vector.number(o)).collect();
     signature.result(out, &values);
 }
 
 /// The statements for a part of a block of states, each result put where `places` says.
 pub(super) fn block(out: &mut String, graph: &Graph, signature: &Signature, places: &[String]) {
-    let mut body = Body { out, graph, signature, block: true };
-    body.statements(&inner(graph));
+    let vector = Vector { graph, signature, block: true };
+    statements(out, graph, &vector);
     for (output, place) in graph.outputs.iter().zip(places) {
-        let value = body.operand(*output);
-        let _ = writeln!(body.out, "    put(&mut {place}, part, {value});");
+        let _ = writeln!(out, "    put(&mut {place}, part, {});", vector.operand(*output));
     }
 }
 
-/// What other nodes use, and so needs a name.
-fn inner(graph: &Graph) -> Vec<bool> {
-    let mut inner = vec![false; graph.nodes().len()];
-    graph.nodes().iter().flat_map(Node::operands).for_each(|o| inner[o.index()] = true);
-    for o in &graph.outputs {
-        inner[o.index()] |= graph.node(*o).op != Op::Spread;
-    }
-    inner
-}
-
-struct Body<'a> {
-    out: &'a mut String,
-    graph: &'a Graph,
-    signature: &'a Signature<'a>,
+/// Functions on vectors.
+pub(super) struct Vector<'a> {
+    pub(super) graph: &'a Graph,
+    pub(super) signature: &'a Signature<'a>,
     /// Whether each number of the inputs is a block of states.
-    block: bool,
+    pub(super) block: bool,
 }
 
-impl Body<'_> {
-    fn statements(&mut self, inner: &[bool]) {
-        for step in order(self.graph) {
-            match step {
-                Step::Node(k) if inner[k] => self.statement(k, &self.graph.nodes()[k]),
-                Step::Node(_) => {}
-                Step::Batch(angles) if self.graph.lanes().width == 2 => angles.chunks(2).for_each(|two| self.sines_of_two(two)),
-                Step::Batch(angles) => angles.iter().for_each(|a| self.sines(a)),
-            }
-        }
-    }
-
-    fn statement(&mut self, k: usize, node: &Node) {
+impl Dialect for Vector<'_> {
+    fn statement(&self, k: usize, node: &Node) -> Option<String> {
         let value = match node.op {
-            Op::Constant | Op::LaneConstant => return,
+            Op::Constant | Op::LaneConstant => return None,
             Op::Input if self.block && !self.signature.inputs[node.args[0] as usize].is_parameters() => {
                 format!("at(&{}, part)", self.signature.inputs[node.args[0] as usize].flat(node.args[1] as usize))
             }
@@ -74,28 +53,26 @@ impl Body<'_> {
                 format!("{}({})", op.row().lanes, operands.join(", "))
             }
         };
-        let _ = writeln!(self.out, "    let x{k} = {value};");
+        Some(format!("    let x{k} = {value};\n"))
     }
 
-    fn sines(&mut self, a: &Angle) {
-        let _ = writeln!(self.out, "    let ({}, {}) = sin_cos({});", name(a.sin), name(a.cos), self.operand(a.angle));
+    fn sines(&self, group: &[Angle], _: usize) -> String {
+        let one = |a: &Angle| format!("    let ({}, {}) = sin_cos({});\n", name(a.sin), name(a.cos), self.operand(a.angle));
+        match group {
+            // Two vectors of two fill one of four.
+            [a, b] => {
+                let (x, y) = (self.operand(a.angle), self.operand(b.angle));
+                let (sines, cosines) = ([name(a.sin), name(b.sin)].join(", "), [name(a.cos), name(b.cos)].join(", "));
+                format!("    let [[{sines}], [{cosines}]] = sin_cos_of_two({x}, {y});\n")
+            }
+            group => group.iter().map(one).collect(),
+        }
     }
 
-    /// Two vectors of two fill one of four.
-    fn sines_of_two(&mut self, two: &[Angle]) {
-        let [a, b] = two else { return two.iter().for_each(|a| self.sines(a)) };
-        let (x, y) = (self.operand(a.angle), self.operand(b.angle));
-        let (sines, cosines) = ([name(a.sin), name(b.sin)].join(", "), [name(a.cos), name(b.cos)].join(", "));
-        let _ = writeln!(self.out, "    let [[{sines}], [{cosines}]] = sin_cos_of_two({x}, {y});");
+    fn group(&self) -> usize {
+        if self.graph.lanes().width == 2 { 2 } else { 1 }
     }
 
-    /// A lane of a node.
-    fn lane(&self, spread: &Node) -> String {
-        let lane = self.graph.node(NodeId(spread.args[1])).constant().unwrap_or_default();
-        format!("lane::<{lane}>({})", self.operand(NodeId(spread.args[0])))
-    }
-
-    /// A result.
     fn number(&self, id: NodeId) -> String {
         let node = self.graph.node(id);
         match (node.op, node.constant()) {
@@ -103,6 +80,18 @@ impl Body<'_> {
             (Op::Spread, _) => self.lane(&node),
             _ => format!("lane::<0>({})", self.operand(id)),
         }
+    }
+
+    fn value(&self) -> (&'static str, &'static str) {
+        ("V", "k(0.0)")
+    }
+}
+
+impl Vector<'_> {
+    /// A lane of a node.
+    fn lane(&self, spread: &Node) -> String {
+        let lane = self.graph.node(NodeId(spread.args[1])).constant().unwrap_or_default();
+        format!("lane::<{lane}>({})", self.operand(NodeId(spread.args[0])))
     }
 
     /// A name, or a constant.

@@ -1,0 +1,207 @@
+//! A long function as several short ones, one after the other: compilers take time that grows faster than a function's length, and spill more.
+//!
+//! What one piece makes and a later one needs goes through an array `m`, in which a place is used again once its value is not needed any more.
+//! Inputs are read where they are needed, results are written where they are made.
+
+use std::fmt::Write;
+
+use super::dialect::{Dialect, Unit, units};
+use super::results::ZERO;
+use super::signature::Signature;
+use crate::graph::{Graph, NodeId, Op};
+
+/// Statements of a piece.
+const LENGTH: usize = 300;
+
+/// From this many nodes on a function is cut: below, one piece is faster to run and as fast to compile.
+const CUT_FROM: usize = 4500;
+
+/// Whether a function is long.
+pub(super) fn is_long(graph: &Graph) -> bool {
+    graph.nodes().len() >= CUT_FROM
+}
+
+/// The pieces as functions `piece_0`, …, each for the features that the macro around it is given, and `whole`, which calls them.
+pub(super) fn pieces(out: &mut String, graph: &Graph, signature: &Signature, dialect: &dyn Dialect) {
+    let units: Vec<Unit> = units(graph, dialect.group()).into_iter().filter(|u| !is_light(graph, u)).collect();
+    let plan = Plan::of(graph, units.chunks(LENGTH).collect());
+    let (arguments, names, gives) = (signature.arguments(), signature.names(), signature.gives());
+    let (ty, zero) = dialect.value();
+    for c in 0..plan.pieces.len() {
+        let _ = writeln!(out, "    $(#[$features])?\n    #[inline(never)]");
+        let _ = writeln!(out, "    fn piece_{c}({arguments}, m: &mut [{ty}; {}], out: &mut {gives}) {{", plan.slots);
+        for input in &signature.inputs {
+            let _ = writeln!(out, "    let _ = {};", input.name);
+        }
+        Piece { plan: &plan, graph, dialect, c, named: vec![false; graph.nodes().len()] }.write(out, &signature.places());
+        let _ = writeln!(out, "    }}");
+    }
+    let _ = writeln!(out, "    $(#[$features])?\n    fn whole({arguments}) -> {gives} {{");
+    let _ = writeln!(out, "    let mut m = [{zero}; {}];\n    let mut out = {};", plan.slots, signature.nothing());
+    for c in 0..plan.pieces.len() {
+        let _ = writeln!(out, "    piece_{c}({names}, &mut m, &mut out);");
+    }
+    let _ = writeln!(out, "    out\n    }}");
+}
+
+/// Whether a unit is made again wherever it is needed: inputs, and comparisons, whose values are no numbers.
+fn is_light(graph: &Graph, unit: &Unit) -> bool {
+    matches!(unit, Unit::Node(k) if light(graph, *k))
+}
+
+fn light(graph: &Graph, k: usize) -> bool {
+    let op = graph.nodes()[k].op;
+    op.row().arity == 0 || op == Op::Positive
+}
+
+/// What goes where.
+struct Plan<'a> {
+    pieces: Vec<&'a [Unit]>,
+    /// The piece that makes each node.
+    made: Vec<usize>,
+    /// The place of each node that a later piece needs.
+    slot: Vec<Option<usize>>,
+    slots: usize,
+}
+
+const NOWHERE: usize = usize::MAX;
+
+impl<'a> Plan<'a> {
+    fn of(graph: &Graph, pieces: Vec<&'a [Unit]>) -> Self {
+        let n = graph.nodes().len();
+        let (mut made, mut last) = (vec![NOWHERE; n], vec![0; n]);
+        for (c, piece) in pieces.iter().enumerate() {
+            for unit in *piece {
+                unit.makes().into_iter().for_each(|k| made[k] = c);
+                heavy_needs(graph, unit.needs(graph)).into_iter().for_each(|k| last[k] = c);
+            }
+        }
+        let mut plan = Self { pieces, made, slot: vec![None; n], slots: 1 };
+        plan.place(&last);
+        plan
+    }
+
+    /// A place for each value that outlives its piece; places become free when the last piece that needs them is done.
+    fn place(&mut self, last: &[usize]) {
+        let mut free: Vec<usize> = Vec::new();
+        let mut ends: Vec<Vec<usize>> = vec![Vec::new(); self.pieces.len()];
+        let mut next = 0;
+        for c in 0..self.pieces.len() {
+            for k in self.pieces[c].iter().flat_map(Unit::makes).filter(|&k| last[k] > c) {
+                let slot = free.pop().unwrap_or_else(|| {
+                    next += 1;
+                    next - 1
+                });
+                self.slot[k] = Some(slot);
+                ends[last[k]].push(slot);
+            }
+            free.append(&mut ends[c]);
+        }
+        self.slots = next.max(1);
+    }
+}
+
+/// What must be kept for these nodes: for light ones, what they are made of.
+fn heavy_needs(graph: &Graph, nodes: Vec<usize>) -> Vec<usize> {
+    let mut needs = Vec::new();
+    let mut open = nodes;
+    while let Some(k) = open.pop() {
+        if light(graph, k) { open.extend(graph.nodes()[k].operands().map(NodeId::index)) } else { needs.push(k) }
+    }
+    needs
+}
+
+/// The writer of one piece.
+struct Piece<'a> {
+    plan: &'a Plan<'a>,
+    graph: &'a Graph,
+    dialect: &'a dyn Dialect,
+    c: usize,
+    /// What has a name already.
+    named: Vec<bool>,
+}
+
+impl Piece<'_> {
+    fn write(&mut self, out: &mut String, places: &[String]) {
+        for unit in self.plan.pieces[self.c] {
+            unit.needs(self.graph).into_iter().for_each(|k| self.name(out, k));
+            *out += &unit.written(self.graph, self.dialect).unwrap_or_default();
+            for k in unit.makes() {
+                self.named[k] = true;
+                if let Some(slot) = self.plan.slot[k] {
+                    let _ = writeln!(out, "    m[{slot}] = x{k};");
+                }
+            }
+        }
+        for (id, place) in self.graph.outputs.iter().zip(places) {
+            let source = self.source(*id);
+            // What is made nowhere, inputs and constants, is given by the first piece.
+            let here = if self.plan.made[source] == NOWHERE { 0 } else { self.plan.made[source] };
+            let value = self.dialect.number(*id);
+            if here == self.c && value != ZERO {
+                self.name(out, source);
+                let _ = writeln!(out, "    {place} = {};", super::literal::bare(&value));
+            }
+        }
+    }
+
+    /// The node whose value a result is, or has a lane of.
+    fn source(&self, id: NodeId) -> usize {
+        let node = self.graph.node(id);
+        if node.op == Op::Spread && self.plan.made[id.index()] == NOWHERE { node.args[0] as usize } else { id.index() }
+    }
+
+    /// Gives a name to a value that was made before, or can be made again.
+    fn name(&mut self, out: &mut String, k: usize) {
+        if self.named[k] {
+            return;
+        }
+        self.named[k] = true;
+        if light(self.graph, k) {
+            self.graph.nodes()[k].operands().for_each(|o| self.name(out, o.index()));
+            *out += &Unit::Node(k).written(self.graph, self.dialect).unwrap_or_default();
+        } else if let Some(slot) = self.plan.slot[k] {
+            let _ = writeln!(out, "    let x{k} = m[{slot}];");
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A graph in which values are needed soon, late and never again.
+    fn graph() -> Graph {
+        let mut g = Graph::default();
+        let mut values = vec![g.input(0, 0), g.input(0, 1), g.input(0, 2)];
+        for k in 0..200_usize {
+            let (a, b) = (values[(k * 7919) % values.len()], values[values.len() - 1 - k % 3]);
+            let op = [Op::Mul, Op::Add, Op::Sub][k % 3];
+            values.push(g.apply(op, &[a, b]));
+        }
+        let positive = g.apply(Op::Positive, &[values[20]]);
+        let late = g.apply(Op::Select, &[positive, values[5], values[202]]);
+        g.outputs = vec![values[202], late, values[30]];
+        g
+    }
+
+    #[test]
+    fn a_place_holds_what_a_later_piece_takes_from_it() {
+        let graph = graph();
+        let units: Vec<Unit> = units(&graph, 4).into_iter().filter(|u| !is_light(&graph, u)).collect();
+        let plan = Plan::of(&graph, units.chunks(10).collect());
+        let mut held: Vec<Option<usize>> = vec![None; plan.slots];
+        let mut taken = 0;
+        for (c, piece) in plan.pieces.iter().enumerate() {
+            for unit in *piece {
+                for k in heavy_needs(&graph, unit.needs(&graph)).into_iter().filter(|&k| plan.made[k] != c) {
+                    let slot = plan.slot[k].unwrap_or_else(|| panic!("node {k} has no place"));
+                    assert_eq!(held[slot], Some(k), "place {slot} in piece {c}");
+                    taken += 1;
+                }
+                unit.makes().into_iter().filter_map(|k| Some((k, plan.slot[k]?))).for_each(|(k, slot)| held[slot] = Some(k));
+            }
+        }
+        assert!(taken > 50 && plan.slots < taken, "{taken} taken from {} places", plan.slots);
+    }
+}

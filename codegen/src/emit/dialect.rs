@@ -1,0 +1,87 @@
+//! How nodes are written: in plain arithmetic or in lanes. What is common to both.
+
+use super::order::{Angle, Step, order};
+use crate::graph::{Graph, Node, NodeId, Op};
+
+/// A way to write statements.
+pub(super) trait Dialect {
+    /// `let x7 = …;`, nothing for what has no name.
+    fn statement(&self, k: usize, node: &Node) -> Option<String>;
+
+    /// The sines and cosines of a group of angles, of so many in all that are known at once.
+    fn sines(&self, group: &[Angle], of: usize) -> String;
+
+    /// How many angles go together.
+    fn group(&self) -> usize;
+
+    /// A result, as a number.
+    fn number(&self, id: NodeId) -> String;
+
+    /// The type of a value, and a value of it.
+    fn value(&self) -> (&'static str, &'static str);
+}
+
+/// A step that is written as a whole.
+#[derive(Clone, Debug)]
+pub(super) enum Unit {
+    Node(usize),
+    /// Angles, and of how many.
+    Sines(Vec<Angle>, usize),
+}
+
+impl Unit {
+    /// The nodes that it makes.
+    pub(super) fn makes(&self) -> Vec<usize> {
+        match self {
+            Unit::Node(k) => vec![*k],
+            Unit::Sines(angles, _) => angles.iter().flat_map(|a| [a.sin, a.cos]).flatten().collect(),
+        }
+    }
+
+    /// The nodes that it needs.
+    pub(super) fn needs(&self, graph: &Graph) -> Vec<usize> {
+        match self {
+            Unit::Node(k) => graph.nodes()[*k].operands().map(NodeId::index).collect(),
+            Unit::Sines(angles, _) => angles.iter().map(|a| a.angle.index()).collect(),
+        }
+    }
+
+    /// As text.
+    pub(super) fn written(&self, graph: &Graph, dialect: &dyn Dialect) -> Option<String> {
+        match self {
+            Unit::Node(k) => dialect.statement(*k, &graph.nodes()[*k]),
+            Unit::Sines(angles, of) => Some(dialect.sines(angles, *of)),
+        }
+    }
+}
+
+/// The graph's nodes that need a name, in the order in which they are written.
+pub(super) fn units(graph: &Graph, group: usize) -> Vec<Unit> {
+    let inner = inner(graph);
+    let mut units = Vec::with_capacity(graph.nodes().len());
+    for step in order(graph) {
+        match step {
+            Step::Node(k) if inner[k] => units.push(Unit::Node(k)),
+            Step::Node(_) => {}
+            Step::Batch(angles) => units.extend(angles.chunks(group).map(|some| Unit::Sines(some.to_vec(), angles.len()))),
+        }
+    }
+    units
+}
+
+/// What other nodes use, and so needs a name. A lane of a vector does not where it is a result.
+fn inner(graph: &Graph) -> Vec<bool> {
+    let mut inner = vec![false; graph.nodes().len()];
+    graph.nodes().iter().flat_map(Node::operands).for_each(|o| inner[o.index()] = true);
+    for o in &graph.outputs {
+        inner[o.index()] |= graph.node(*o).op != Op::Spread;
+    }
+    inner
+}
+
+/// All statements.
+pub(super) fn statements(out: &mut String, graph: &Graph, dialect: &dyn Dialect) {
+    for line in units(graph, dialect.group()).iter().filter_map(|unit| unit.written(graph, dialect)) {
+        *out += &line;
+    }
+}
