@@ -27,13 +27,16 @@ pub(super) fn pieces(out: &mut String, graph: &Graph, signature: &Signature, dia
     let plan = Plan::of(graph, units.chunks(LENGTH).collect());
     let (arguments, names, gives) = (signature.arguments(), signature.names(), signature.gives());
     let (ty, zero) = dialect.value();
+    let places = signature.places();
+    let mut piece = Piece { plan: &plan, graph, dialect, c: 0, named: vec![NOWHERE; graph.nodes().len()] };
     for c in 0..plan.pieces.len() {
         let _ = writeln!(out, "    $(#[$features])?\n    #[inline(never)]");
         let _ = writeln!(out, "    fn piece_{c}({arguments}, m: &mut [{ty}; {}], out: &mut {gives}) {{", plan.slots);
         for input in &signature.inputs {
             let _ = writeln!(out, "    let _ = {};", input.name);
         }
-        Piece { plan: &plan, graph, dialect, c, named: vec![false; graph.nodes().len()] }.write(out, &signature.places());
+        piece.c = c;
+        piece.write(out, &places);
         let _ = writeln!(out, "    }}");
     }
     let _ = writeln!(out, "    $(#[$features])?\n    fn whole({arguments}) -> {gives} {{");
@@ -62,6 +65,8 @@ struct Plan<'a> {
     /// The place of each node that a later piece needs.
     slot: Vec<Option<usize>>,
     slots: usize,
+    /// The results that each piece gives. What is made nowhere, inputs and constants, is given by the first.
+    results: Vec<Vec<usize>>,
 }
 
 const NOWHERE: usize = usize::MAX;
@@ -76,9 +81,20 @@ impl<'a> Plan<'a> {
                 heavy_needs(graph, unit.needs(graph)).into_iter().for_each(|k| last[k] = c);
             }
         }
-        let mut plan = Self { pieces, made, slot: vec![None; n], slots: 1 };
+        let results = vec![Vec::new(); pieces.len()];
+        let mut plan = Self { pieces, made, slot: vec![None; n], slots: 1, results };
+        for (k, id) in graph.outputs.iter().enumerate() {
+            let made = plan.made[plan.source(graph, *id)];
+            plan.results[if made == NOWHERE { 0 } else { made }].push(k);
+        }
         plan.place(&last);
         plan
+    }
+
+    /// The node whose value a result is, or has a lane of.
+    fn source(&self, graph: &Graph, id: NodeId) -> usize {
+        let node = graph.node(id);
+        if node.op == Op::Spread && self.made[id.index()] == NOWHERE { node.args[0] as usize } else { id.index() }
     }
 
     /// A place for each value that outlives its piece; places become free when the last piece that needs them is done.
@@ -117,8 +133,8 @@ struct Piece<'a> {
     graph: &'a Graph,
     dialect: &'a dyn Dialect,
     c: usize,
-    /// What has a name already.
-    named: Vec<bool>,
+    /// The piece in which each node was given a name last.
+    named: Vec<usize>,
 }
 
 impl Piece<'_> {
@@ -127,36 +143,28 @@ impl Piece<'_> {
             unit.needs(self.graph).into_iter().for_each(|k| self.name(out, k));
             *out += &unit.written(self.graph, self.dialect).unwrap_or_default();
             for k in unit.makes() {
-                self.named[k] = true;
+                self.named[k] = self.c;
                 if let Some(slot) = self.plan.slot[k] {
                     let _ = writeln!(out, "    m[{slot}] = x{k};");
                 }
             }
         }
-        for (id, place) in self.graph.outputs.iter().zip(places) {
-            let source = self.source(*id);
-            // What is made nowhere, inputs and constants, is given by the first piece.
-            let here = if self.plan.made[source] == NOWHERE { 0 } else { self.plan.made[source] };
-            let value = self.dialect.number(*id);
-            if here == self.c && value != ZERO {
-                self.name(out, source);
-                let _ = writeln!(out, "    {place} = {};", super::literal::bare(&value));
+        for &k in &self.plan.results[self.c] {
+            let id = self.graph.outputs[k];
+            let value = self.dialect.number(id);
+            if value != ZERO {
+                self.name(out, self.plan.source(self.graph, id));
+                let _ = writeln!(out, "    {} = {};", places[k], super::literal::bare(&value));
             }
         }
     }
 
-    /// The node whose value a result is, or has a lane of.
-    fn source(&self, id: NodeId) -> usize {
-        let node = self.graph.node(id);
-        if node.op == Op::Spread && self.plan.made[id.index()] == NOWHERE { node.args[0] as usize } else { id.index() }
-    }
-
     /// Gives a name to a value that was made before, or can be made again.
     fn name(&mut self, out: &mut String, k: usize) {
-        if self.named[k] {
+        if self.named[k] == self.c {
             return;
         }
-        self.named[k] = true;
+        self.named[k] = self.c;
         if light(self.graph, k) {
             self.graph.nodes()[k].operands().for_each(|o| self.name(out, o.index()));
             *out += &Unit::Node(k).written(self.graph, self.dialect).unwrap_or_default();
