@@ -6,10 +6,10 @@ use articulated_core::model::Model;
 use articulated_core::model::pass::model_passes;
 use num_traits::Zero;
 
-use crate::graph::Graph;
+use crate::graph::{Graph, Op};
 use crate::limbs::{Alike, Constants, pack};
 use crate::parameters::Parameter;
-use crate::pass::live;
+use crate::pass::{copy, live, rebuild};
 use crate::sym::{self, Sym};
 use crate::wanted::{Part, Wanted};
 
@@ -23,8 +23,8 @@ pub(crate) struct Choice {
 
 /// The graph of a function on `model`: its argument k is argument k of the graph, parameters come after the last; the results of the parts one after the other.
 pub(crate) fn trace(wanted: &Wanted, choices: &[Choice], model: &Model<f64>, parameters: &[Parameter]) -> Graph {
-    sym::trace(|| {
-        let arguments = wanted.arguments();
+    let arguments = wanted.arguments();
+    let graph = sym::trace(|| {
         let with_inputs = (!parameters.is_empty()).then(|| {
             let mut symbolic: Model<Sym> = model.cast();
             parameters.iter().for_each(|p| p.put(&mut symbolic, |k| Sym::input(arguments.len(), k)));
@@ -36,7 +36,28 @@ pub(crate) fn trace(wanted: &Wanted, choices: &[Choice], model: &Model<f64>, par
             run(part, choice.way, &symbolic, &arguments)
         };
         wanted.parts.iter().zip(choices).flat_map(run).collect()
-    })
+    });
+    sines_given(graph, &arguments)
+}
+
+/// Takes the sines and cosines of q from their argument, if there is one.
+fn sines_given(graph: Graph, arguments: &[Argument]) -> Graph {
+    let place = |argument| arguments.iter().position(|a| *a == argument);
+    let (Some(q), Some(sines)) = (place(Argument::Q), place(Argument::SinCos)) else { return graph };
+    let given = rebuild(
+        &graph,
+        |_| true,
+        |new, node, operands| {
+            let angle = new.node(operands[0]);
+            let is_coordinate = angle.op == Op::Input && angle.args[0] as usize == q;
+            match node.op {
+                Op::Sin if is_coordinate => new.input(sines, 2 * angle.args[1] as usize),
+                Op::Cos if is_coordinate => new.input(sines, 2 * angle.args[1] as usize + 1),
+                _ => copy(new, node, operands),
+            }
+        },
+    );
+    given.asked_as(&graph)
 }
 
 /// The same with branches that are alike in lanes.
@@ -50,7 +71,8 @@ pub(crate) fn trace_in_lanes(wanted: &Wanted, choices: &[Choice], model: &Model<
         };
         wanted.parts.iter().zip(choices).flat_map(&mut run).collect()
     });
-    pack(&live(&graph), &arguments, alike, &constants)
+    let graph = sines_given(graph, &arguments);
+    pack(&live(&graph), &arguments, alike, &constants).asked_as(&graph)
 }
 
 /// The model after the passes that are chosen.

@@ -4,6 +4,7 @@
 //! inverse_dynamics                                       a function of the table
 //! bias = inverse_dynamics(a = 0)                         under another name, with an argument that is a constant
 //! step = forward_dynamics + jacobians_body               several in one, which share their work and take what any of them takes
+//! fast = inverse_dynamics(q = sin_cos)                   sines and cosines of q are an argument too, for callers that have them
 //! ```
 
 use articulated_core::algorithm::{Argument, Dim, Function, Shape};
@@ -26,6 +27,8 @@ pub struct Part {
     pub function: &'static Function<Sym>,
     /// What is given up.
     pub constants: Vec<(Argument, Constant)>,
+    /// Whether the caller gives the sines and cosines of q.
+    pub sines: bool,
 }
 
 /// The value of an argument that is a constant.
@@ -40,7 +43,7 @@ pub enum Constant {
 impl Wanted {
     /// The function of the table by itself.
     pub fn plain(function: &'static Function<Sym>) -> Self {
-        Self { name: function.name.into(), parts: vec![Part { function, constants: Vec::new() }] }
+        Self { name: function.name.into(), parts: vec![Part { function, constants: Vec::new(), sines: false }] }
     }
 
     /// Reads one entry of a list of functions.
@@ -69,10 +72,11 @@ impl Wanted {
         Ok(Self { name: name.into(), parts })
     }
 
-    /// What it takes: everything that a part takes and that is no constant there, in the order of the table.
+    /// What it takes: everything that a part takes and that is no constant there, in the order of the table; sines last.
     pub fn arguments(&self) -> Vec<Argument> {
         let taken = |a: &Argument| self.parts.iter().any(|p| p.function.takes.contains(a) && p.constant(*a).is_none());
-        Argument::ALL.into_iter().filter(taken).collect()
+        let sines = self.parts.iter().any(|p| p.sines).then_some(Argument::SinCos);
+        Argument::ALL.into_iter().filter(taken).chain(sines).collect()
     }
 
     /// The type that holds the results of several parts: the name with each word's first letter in capitals. `None` for one part.
@@ -84,7 +88,7 @@ impl Wanted {
     /// The function of the table that it is, if it is one as it stands.
     pub fn as_function(&self) -> Option<&'static Function<Sym>> {
         match self.parts.as_slice() {
-            [part] if part.constants.is_empty() && part.function.name == self.name => Some(part.function),
+            [part] if part.constants.is_empty() && !part.sines && part.function.name == self.name => Some(part.function),
             _ => None,
         }
     }
@@ -118,14 +122,22 @@ impl Part {
         }
         let function = function(name)?;
         let mut constants = Vec::new();
+        let mut sines = false;
         for entry in arguments.into_iter().flat_map(|a| all_outside(a, ',')).filter(|e| !e.trim().is_empty()) {
+            if is_sines(entry) && function.takes.contains(&Argument::Q) {
+                sines = true;
+                continue;
+            }
             let (argument, value) = constant(entry, function, wrong)?;
             if constants.iter().any(|(a, _)| *a == argument) {
                 return Err(wrong(format!("constant {} is given twice", argument.name())));
             }
             constants.push((argument, value));
         }
-        Ok(Self { function, constants })
+        if let (true, Some(_)) = (sines, constants.iter().find(|(a, _)| *a == Argument::Q)) {
+            return Err(wrong("q is a constant, and its sines are an argument".into()));
+        }
+        Ok(Self { function, constants, sines })
     }
 
     /// The constant in the place of an argument.
@@ -142,6 +154,11 @@ impl Constant {
             Self::Each(numbers) => numbers[k],
         }
     }
+}
+
+/// `q = sin_cos`
+fn is_sines(entry: &str) -> bool {
+    entry.split_once('=').is_some_and(|(name, value)| (name.trim(), value.trim()) == ("q", "sin_cos"))
 }
 
 fn constant(text: &str, function: &Function<Sym>, wrong: &dyn Fn(String) -> Error) -> Result<(Argument, Constant), Error> {
@@ -227,6 +244,13 @@ mod tests {
     }
 
     #[test]
+    fn sines_are_one_argument_more() {
+        let wanted = Wanted::parse("fast = inverse_dynamics(q = sin_cos, a = 0)").unwrap();
+        assert_eq!(wanted.arguments(), [Argument::Q, Argument::V, Argument::SinCos]);
+        assert!(Wanted::parse("inverse_dynamics(q = sin_cos)").unwrap().as_function().is_none());
+    }
+
+    #[test]
     fn a_group_takes_what_any_part_takes() {
         let wanted = Wanted::parse("all = mass_matrix + inverse_dynamics(a = 0)").unwrap();
         assert_eq!(wanted.arguments(), [Argument::Q, Argument::V]);
@@ -241,6 +265,7 @@ mod tests {
             ("bias_forces(a = 0)", "takes q, v"),
             ("bias_forces(v = x)", "expected a constant"),
             ("bias_forces(v = 0", "expected `)`"),
+            ("mass_matrix(q = sin_cos, q = 0)", "its sines are an argument"),
             ("Big = mass_matrix", "no name"),
             ("fn = mass_matrix", "no name"),
             ("x = ", "expected a function"),

@@ -97,6 +97,13 @@ impl Graph {
         &self.asked
     }
 
+    /// The same graph, said to be asked for as `other` was: that of which it is another form.
+    #[must_use]
+    pub fn asked_as(mut self, other: &Self) -> Self {
+        self.asked = other.asked.clone();
+        self
+    }
+
     /// The node for a number.
     pub fn constant(&mut self, x: f64) -> NodeId {
         self.intern(Node::of_constant(x))

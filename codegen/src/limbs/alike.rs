@@ -52,6 +52,7 @@ impl Alike {
     pub(crate) fn lanes(&self, argument: Argument, k: usize) -> Option<(Vec<usize>, usize)> {
         let (indices, width) = match argument.dims() {
             [Dim::Nq] => (&self.q, 1),
+            [Dim::Nq, Dim::Of(width)] => (&self.q, *width),
             [Dim::Nv] => (&self.v, 1),
             [Dim::Frames, Dim::Of(width)] => (&self.frames, *width),
             _ => return None,

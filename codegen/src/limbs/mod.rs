@@ -15,57 +15,103 @@ pub(crate) use pack::pack;
 
 #[cfg(test)]
 mod tests {
-    use articulated_core::algorithm::functions;
+    use std::fmt::Write;
+
+    use articulated_core::algorithm::{Needs, functions};
     use articulated_core::description::Base;
+    use articulated_core::model::Model;
 
     use super::*;
-    use crate::graph::{Counts, Graph, Op};
+    use crate::graph::{Counts, Graph};
     use crate::pass::GRAPH_PASSES;
     use crate::trace::{Choice, trace, trace_in_lanes, ways};
     use crate::{Request, Sym, Wanted};
 
-    #[test]
-    fn probe() {
-        for (name, width) in [("quadruped", 4), ("quadruped", 2), ("humanoid", 2)] {
-            let urdf = std::fs::read(format!("../models/urdf/{name}.urdf")).unwrap();
-            let mut request = Request::new(name, urdf);
-            request.options.base = Base::Floating;
-            request.options.allow_unphysical_inertia = true;
-            let model = crate::model(&request, &crate::read(&request).unwrap().description).unwrap();
-            let alike = Alike::of(&model, width).unwrap();
-            for f in functions::<Sym>() {
-                if name == "humanoid" && f.name.contains("forward_dynamics_deriv") {
-                    continue;
+    /// A number that looks random, in (−1, 1).
+    fn number(seed: &mut u64) -> f64 {
+        *seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    fn numbers(seed: &mut u64) -> String {
+        [number(seed), number(seed), number(seed)].map(|x| x.to_string()).join(" ")
+    }
+
+    fn link(urdf: &mut String, name: &str, seed: &mut u64) {
+        let com = numbers(seed);
+        let _ = writeln!(
+            urdf,
+            "<link name='{name}'><inertial><origin xyz='{com}'/><mass value='{}'/>\
+             <inertia ixx='0.31' ixy='{}' ixz='0.02' iyy='0.42' iyz='-0.01' izz='0.53'/></inertial></link>",
+            1.5 + number(seed),
+            0.05 * number(seed)
+        );
+    }
+
+    fn joint(urdf: &mut String, name: &str, kind: &str, parent: &str, seed: &mut u64) {
+        let (xyz, rpy, axis) = (numbers(seed), numbers(seed), numbers(seed));
+        let _ = writeln!(
+            urdf,
+            "<joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{name}'/><origin xyz='{xyz}' rpy='{rpy}'/>\
+             <axis xyz='{axis}'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>"
+        );
+        link(urdf, name, seed);
+    }
+
+    /// A trunk with this many legs, each with a knee and a slide, one finger, and an arm that is like no leg.
+    fn walker(legs: usize, seed: &mut u64) -> Model<f64> {
+        let mut urdf = String::from("<robot name='walker'>\n");
+        link(&mut urdf, "trunk", seed);
+        for k in 0..legs {
+            joint(&mut urdf, &format!("hip_{k}"), "revolute", "trunk", seed);
+            joint(&mut urdf, &format!("knee_{k}"), "continuous", &format!("hip_{k}"), seed);
+            joint(&mut urdf, &format!("slide_{k}"), "prismatic", &format!("knee_{k}"), seed);
+            joint(&mut urdf, &format!("toe_{k}"), "revolute", &format!("hip_{k}"), seed);
+        }
+        joint(&mut urdf, "arm", "revolute", "trunk", seed);
+        joint(&mut urdf, "hand", "revolute", "arm", seed);
+        urdf += "</robot>";
+        let mut request = Request::new("walker", urdf);
+        request.options.base = if legs == 2 { Base::Fixed } else { Base::Floating };
+        crate::model(&request, &crate::read(&request).unwrap().description).unwrap()
+    }
+
+    fn passed(graph: Graph) -> Graph {
+        GRAPH_PASSES.iter().fold(graph, |graph, (_, pass, _)| pass(&graph))
+    }
+
+    fn input(argument: usize, k: usize) -> f64 {
+        ((argument * 7919 + k * 104_729 + 13) as f64 * 0.754_877_666_246_692_7).fract() - 0.4
+    }
+
+    /// Every function that any robot has, in every way: (name, counts of the plain graph, counts in lanes); values must agree.
+    fn all(model: &Model<f64>, width: usize) -> Vec<(&'static str, Counts, Counts)> {
+        let alike = Alike::of(model, width).unwrap();
+        let mut counts = Vec::new();
+        for f in functions::<Sym>().iter().filter(|f| f.needs != Needs::FreeFrames) {
+            let wanted = Wanted::parse(f.name).unwrap();
+            for (way, _) in ways(&wanted.parts[0], model) {
+                let choice = [Choice { way, passes: usize::MAX }];
+                let plain = passed(trace(&wanted, &choice, model, &[]));
+                let lanes = passed(trace_in_lanes(&wanted, &choice, model, &alike));
+                lanes.verify().unwrap();
+                for (k, (a, b)) in plain.evaluate(input).into_iter().zip(lanes.evaluate(input)).enumerate() {
+                    // Solves amplify roundings; a wrong lane or sign is off by far more.
+                    assert!((a - b).abs() <= 1e-8 * (1.0 + a.abs()), "{} {}, output {k}: {a} {b}", f.name, way.name);
                 }
-                let wanted = Wanted::parse(f.name).unwrap();
-                for (way, _) in ways(&wanted.parts[0], &model) {
-                    let choice = [Choice { way, passes: 1 }];
-                    let run = |g: Graph| {
-                        GRAPH_PASSES
-                            .iter()
-                            .fold(g, |g, (n, _pass, _)| if *n == "live" { crate::pass::live(&g) } else { crate::pass::contract(&g) })
-                    };
-                    let scalar = run(trace(&wanted, &choice, &model, &[]));
-                    let packed = run(trace_in_lanes(&wanted, &choice, &model, &alike));
-                    packed.verify().unwrap();
-                    let input = |a: usize, k: usize| ((a * 7919 + k * 104_729 + 13) as f64 * 0.754_877_666_246_692_7).fract() - 0.4;
-                    let (x, y) = (scalar.evaluate(input), packed.evaluate(input));
-                    let worst = x.iter().zip(&y).map(|(a, b)| (a - b).abs() / (1.0 + a.abs())).fold(0.0, f64::max);
-                    let c = |c: Counts| c.instructions();
-                    let p = packed.counts();
-                    println!(
-                        "{name} {width} {:40} {:10} {:6} -> {:6} spread {:5} across {:4} sin {:3} in {:3} worst {worst:.1e}",
-                        f.name,
-                        way.name,
-                        c(scalar.counts()),
-                        c(p.clone()),
-                        p.of(Op::Spread),
-                        p.of(Op::Across),
-                        p.of(Op::Sin),
-                        p.of(Op::LaneInput)
-                    );
-                }
+                counts.push((f.name, plain.counts(), lanes.counts()));
             }
         }
+        counts
+    }
+
+    #[test]
+    fn lanes_compute_what_each_limb_for_itself_does() {
+        let mut seed = 7;
+        let four = all(&walker(4, &mut seed), 4);
+        for (name, plain, lanes) in four.iter().filter(|(name, ..)| matches!(*name, "inverse_dynamics" | "inverse_dynamics_derivatives")) {
+            assert!(lanes.instructions() * 2 < plain.instructions(), "{name}: {} {}", lanes.instructions(), plain.instructions());
+        }
+        all(&walker(5, &mut seed), 2);
     }
 }

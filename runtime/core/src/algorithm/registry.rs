@@ -91,10 +91,12 @@ pub enum Argument {
     Target,
     /// Numbers in [0, 1), `[nq]`.
     Uniform,
+    /// sin q and cos q of each coordinate, `[nq][2]`, for callers that have them: generated functions take it where they are asked to.
+    SinCos,
 }
 
 impl Argument {
-    /// All of them.
+    /// All that functions of the table take.
     pub const ALL: [Self; 8] = [Self::Q, Self::V, Self::A, Self::Tau, Self::Wrenches, Self::Step, Self::Target, Self::Uniform];
 
     /// Its name in signatures and files.
@@ -108,6 +110,7 @@ impl Argument {
             Self::Step => "step",
             Self::Target => "target",
             Self::Uniform => "uniform",
+            Self::SinCos => "sines",
         }
     }
 
@@ -117,6 +120,7 @@ impl Argument {
             Self::Q | Self::Target | Self::Uniform => &[Dim::Nq],
             Self::V | Self::A | Self::Tau | Self::Step => &[Dim::Nv],
             Self::Wrenches => &[Dim::Frames, Dim::Of(6)],
+            Self::SinCos => &[Dim::Nq, Dim::Of(2)],
         }
     }
 
@@ -136,6 +140,7 @@ impl Argument {
             Self::Step => "rad|m, a small motion in the tangent space",
             Self::Target => "rad|m|unit quaternion",
             Self::Uniform => "each uniform in 0 to 1",
+            Self::SinCos => "[sin q, cos q] of each coordinate that is an angle; the others are not read",
         }
     }
 }

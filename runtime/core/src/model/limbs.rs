@@ -106,3 +106,72 @@ impl<S: Scalar> Model<S> {
         branch.clone().map(kind).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use alloc::format;
+    use alloc::string::String;
+    use alloc::vec;
+    use alloc::vec::Vec;
+
+    use crate::joint::{Coordinates, Joint};
+    use crate::model::{Body, Model};
+    use crate::spatial::{Placement, Reference, SpatialInertia};
+    use nalgebra::{Matrix3, Vector3};
+
+    /// A tree of revolute joints: the parent of each body.
+    fn tree(parents: &[usize]) -> Model<f64> {
+        let body = |i: usize, parent: usize| Body {
+            name: format!("{i}"),
+            parent,
+            placement: Placement { rotation: Matrix3::identity(), position: Vector3::new(i as f64, 0.0, 0.0) },
+            joint: Joint::Revolute,
+            coordinates: Coordinates { q: i.saturating_sub(1), v: i.saturating_sub(1), mimic: None, pitch: 0.0 },
+            inertia: SpatialInertia::zero(),
+            link: None,
+        };
+        let mut bodies = vec![body(0, 0)];
+        bodies.extend(parents.iter().enumerate().map(|(k, &parent)| body(k + 1, parent)));
+        let n = parents.len();
+        Model {
+            name: String::new(),
+            gravity: Vector3::zeros(),
+            wrench_reference: Reference::Body,
+            bodies,
+            frames: Vec::new(),
+            joints: Vec::new(),
+            nq: n,
+            nv: n,
+        }
+    }
+
+    fn roots(model: &Model<f64>, width: usize) -> Vec<(Vec<usize>, usize)> {
+        model.limbs(width).into_iter().map(|l| (l.roots, l.bodies)).collect()
+    }
+
+    #[test]
+    fn branches_of_the_same_structure_are_alike_whatever_their_numbers() {
+        // A trunk with two legs of two and two arms of one.
+        let model = tree(&[0, 1, 2, 1, 4, 1, 1]);
+        assert_eq!(roots(&model, 2), [(vec![2, 4], 2), (vec![6, 7], 1)]);
+        assert_eq!(roots(&model, 4), []);
+    }
+
+    #[test]
+    fn another_joint_or_a_follower_from_outside_makes_a_branch_stand_alone() {
+        let mut model = tree(&[0, 1, 2, 1, 4]);
+        assert_eq!(roots(&model, 2), [(vec![2, 4], 2)]);
+        model.bodies[5].joint = Joint::Prismatic;
+        assert_eq!(roots(&model, 2), []);
+        let mut model = tree(&[0, 1, 2, 1, 4]);
+        model.bodies[5].coordinates.v = model.bodies[3].coordinates.v;
+        assert_eq!(roots(&model, 2), []);
+    }
+
+    #[test]
+    fn what_is_left_over_is_looked_through() {
+        // Three legs of one, and an arm with two fingers.
+        let model = tree(&[0, 1, 1, 1, 1, 5, 5]);
+        assert_eq!(roots(&model, 2), [(vec![2, 3], 1), (vec![6, 7], 1)]);
+    }
+}
