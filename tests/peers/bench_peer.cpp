@@ -1,11 +1,12 @@
 // Times the functions of one peer library:  bench_peer LIBRARY URDF fixed|floating
 // 64 random states in turn, 41 batches of about a millisecond; prints the median batch in nanoseconds a call.
-// Or only calls one function once in each state:  bench_peer LIBRARY URDF fixed|floating FUNCTION
+// Or only calls one function, so many times in each state:  bench_peer LIBRARY URDF fixed|floating FUNCTION ROUNDS
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <dlfcn.h>
 #include <random>
@@ -54,9 +55,9 @@ double nanoseconds(Call call)
 
 int main(int count, char ** words)
 {
-  if (count != 4 && count != 5)
+  if (count != 4 && count != 6)
   {
-    std::fprintf(stderr, "bench_peer LIBRARY URDF fixed|floating [FUNCTION]\n");
+    std::fprintf(stderr, "bench_peer LIBRARY URDF fixed|floating [FUNCTION ROUNDS]\n");
     return 2;
   }
   const unsigned before = _mm_getcsr();
@@ -91,16 +92,18 @@ int main(int count, char ** words)
   std::vector<double> out(nv * nv);
   auto * has = reinterpret_cast<int (*)(void *, const char *)>(dlsym(library, "peer_has"));
   const auto there = [&](const char * name) { return dlsym(library, (std::string("peer_") + name).c_str()) && (!has || has(peer, name)); };
-  if (count == 5)
+  if (count == 6)
   {
     if (!there(words[4]))
       return 3;
-    // Functions that take less, or keep their results, leave the rest of the arguments alone.
-    auto * function = symbol<void(void *, const double *, ...)>((std::string("peer_") + words[4]).c_str());
-    auto * one = reinterpret_cast<void (*)(void *, const double *, double *)>(function);
-    auto * three = reinterpret_cast<void (*)(void *, const double *, const double *, const double *, double *)>(function);
-    for (int i = 0; i < STATES; ++i)
-      if (!std::strcmp(words[4], "mass_matrix"))
+    // Functions that keep their results leave the last argument alone.
+    const std::string name = std::string("peer_") + words[4];
+    auto * one = symbol<void(void *, const double *, double *)>(name.c_str());
+    auto * three = symbol<void(void *, const double *, const double *, const double *, double *)>(name.c_str());
+    const int calls = std::atoi(words[5]) * STATES;
+    const bool lone = name == "peer_mass_matrix";
+    for (int k = 0; k < calls; ++k)
+      if (const int i = k % STATES; lone)
         one(peer, q[i].data(), out.data());
       else
         three(peer, q[i].data(), v[i].data(), a[i].data(), out.data());

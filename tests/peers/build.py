@@ -5,6 +5,7 @@
     python3 tests/peers/build.py                     build what is missing or out of date, write target/peers/peers.json
     python3 tests/peers/build.py --install-clang     the same, after apt-get install of the newest clang (Debian, as root)
     python3 tests/peers/build.py --only WORD...      the same, of the peers whose names contain one of these words
+    python3 tests/peers/build.py --again             build what is up to date too, for its times: on an idle machine
     python3 tests/peers/build.py --check [FILE...]   compare every function of every peer with tests/fixtures, and with *.ref.json files
     python3 tests/peers/build.py --bench FILE[:floating]...   nanoseconds per call for the robots of these URDFs
     python3 tests/peers/build.py --callgrind FILE[:floating]...   instructions per call, ours too, of builds without AVX-512
@@ -32,17 +33,21 @@ MANIFEST = OUT / "peers.json"
 REFUSED = 3  # bench_peer's status where the peer does not read the robot
 
 
-def build(words):
+def build(words, again):
     """Every peer, or those whose names contain one of the words; what else was built before stays in the manifest."""
+    wanted = lambda peer: not words or any(word in peer["name"] for word in words)
     found = list(environment.compilers())
     if not found:
         raise SystemExit("neither g++ nor clang++ is on the PATH")
     plans = [(module, peer) for module in (pinocchio_build, casadi_build, mujoco_build) for peer in module.plan(found, OUT)]
     plans += [(rust_build, peer) for peer in rust_build.plan(OUT)]
+    if again:
+        for stamp in (OUT / "casadi_code" / "robots.stamp", *(Path(peer["path"]).with_suffix(".stamp") for _, peer in plans if wanted(peer))):
+            stamp.unlink(missing_ok=True)
     before = {entry["name"]: entry for entry in json.loads(MANIFEST.read_text())} if MANIFEST.exists() else {}
     peers = []
     for module, peer in plans:
-        if not words or any(word in peer["name"] for word in words):
+        if wanted(peer):
             peers.append(module.build(peer, OUT))
         elif peer["name"] in before:
             peers.append(before[peer["name"]])
@@ -68,6 +73,7 @@ def main():
     parser.add_argument("--all", action="store_true", help="install compilers too where this is root, build all, and check")
     parser.add_argument("--install-clang", action="store_true", help="apt-get install the newest clang first")
     parser.add_argument("--only", nargs="+", metavar="WORD", help="peers whose names contain one of these")
+    parser.add_argument("--again", action="store_true", help="build what is up to date too")
     parser.add_argument("--check", nargs="*", metavar="FILE", help="*.ref.json files besides tests/fixtures; mimic joints must be free in them")
     parser.add_argument("--bench", nargs="+", metavar="URDF[:floating]")
     parser.add_argument("--callgrind", nargs="+", metavar="URDF[:floating]")
@@ -83,7 +89,7 @@ def main():
 
         callgrind.table(arguments.callgrind, OUT)
         return 0
-    peers = build(arguments.only)
+    peers = build(arguments.only, arguments.again)
     if (arguments.all or arguments.check is not None) and not peers_module.check(peers, arguments.check or []):
         return 1
     if arguments.bench:
