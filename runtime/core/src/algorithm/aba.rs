@@ -3,11 +3,12 @@
 //! Featherstone 2008, Table 7.1, in body axes with classical accelerations, as [`super::rnea`] has them: the bias acceleration of a joint and the bias wrench of
 //! a body then need no linear velocity. A joint with several degrees of freedom gives way in one after the other.
 
+use super::rnea::to_parent;
 use super::workspace::Column;
 use super::{Workspace, wrenches};
 use crate::joint::JointLaw;
 use crate::model::Model;
-use crate::spatial::{ArticulatedInertia, Matrix3, Motion, Twist, Vector3, rate_matrix, rotate, rotate_back};
+use crate::spatial::{ArticulatedInertia, Matrix3, Motion, Placement, Twist, Vector3, rate_matrix, rotate, rotate_back};
 use crate::{Scalar, with_pose};
 
 /// a = M(q)⁻¹·(τ − h(q, v)), in a time that grows with the number of joints.
@@ -84,25 +85,28 @@ fn velocity<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, q: &[S
     let (zeros, zero) = (core::mem::take(&mut ws.zeros), Vector3::zeros());
     let turn = &body.placement.rotation;
     with_pose!(pose, p => {
-        let x_pi = p.compose(body.placement);
-        // The point of the parent accelerates by ω × (ω × p) more than the parent's origin does.
-        let centripetal = rotate_back(turn, omega.cross(&omega.cross(&x_pi.position)));
+        let origin = p.origin(&body.placement);
+        // The point of the parent accelerates by U_λ p = ω × (ω × p) more than the parent's origin does.
+        let centripetal = rotate_back(turn, rotate(&ws.bodies[body.parent].u, origin));
         let carried = Motion { omega: rotate_back(turn, omega), alpha: zero, acceleration: centripetal };
         ws.bodies[i].motion = p.motion(carried, &body.coordinates, v, &zeros);
-        ws.relative[i] = x_pi;
+        ws.bodies[i].origin = origin;
         for (k, c) in ws.columns_of(i).enumerate() {
             ws.columns[c].axis = p.subspace(&Matrix3::identity(), k);
         }
     });
     ws.zeros = zeros;
-    ws.bodies[i].wrench = body.inertia.wrench(zero, &rate_matrix(ws.bodies[i].motion.omega, zero));
+    ws.bodies[i].pose = Some(pose);
+    ws.bodies[i].u = rate_matrix(ws.bodies[i].motion.omega, zero);
+    ws.bodies[i].wrench = body.inertia.wrench(zero, &ws.bodies[i].u);
     ws.articulated[i] = ArticulatedInertia::rigid(&body.inertia);
 }
 
 /// Lets the joint of body `i` give way, and hands what is left to the parent.
 fn give_way<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, tau: &[S]) {
+    let Some(pose) = ws.bodies[i].pose else { return };
     let (mut inertia, mut bias) = (ws.articulated[i], ws.bodies[i].wrench);
-    for c in ws.columns_of(i) {
+    for (k, c) in ws.columns_of(i).enumerate() {
         let column = &mut ws.columns[c];
         // U = I S;  D = SᵀU;  u = τ − Sᵀp
         column.held = inertia.apply(&column.axis);
@@ -111,6 +115,11 @@ fn give_way<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, tau: &
         // I −= U Uᵀ / D;  p += U u / D
         inertia = inertia.giving_way(&column.held, column.inverse);
         bias += column.held.times(column.residue * column.inverse);
+        if let Some(k) = pose.freedom(k) {
+            // I S = 0;  Sᵀp = τ
+            inertia = inertia.without(k);
+            *bias.number(k) = tau[column.at];
+        }
     }
     let parent = model.bodies[i].parent;
     if parent == 0 {
@@ -119,22 +128,23 @@ fn give_way<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, tau: &
     // p += I c
     let motion = &ws.bodies[i].motion;
     bias += inertia.apply(&Twist { angular: motion.alpha, linear: motion.acceleration });
-    let x_pi = ws.relative[i];
-    ws.articulated[parent] += inertia.moved(&x_pi);
-    let (moment, force) = (rotate(&x_pi.rotation, bias.moment), rotate(&x_pi.rotation, bias.force));
-    ws.bodies[parent].wrench += crate::spatial::Wrench { moment, force }.shifted(x_pi.position);
+    let (body, origin) = (&model.bodies[i], ws.bodies[i].origin);
+    let x = Placement { rotation: body.placement.rotation, position: origin };
+    with_pose!(pose, p => {
+        ws.articulated[parent] += p.articulated_to_joint(&inertia).moved(&x);
+        ws.bodies[parent].wrench += to_parent(body, &p, origin, &bias);
+    });
 }
 
 /// a of the joint of body `i`, and the acceleration of the body.
 fn accelerate<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, out: &mut [S]) {
-    let x_pi = ws.relative[i];
-    let motion = &ws.bodies[i].motion;
-    let carried = ws.common[model.bodies[i].parent].acceleration.at(x_pi.position);
+    let Some(pose) = ws.bodies[i].pose else { return };
+    let (turn, motion) = (&model.bodies[i].placement.rotation, &ws.bodies[i].motion);
+    let carried = ws.common[model.bodies[i].parent].acceleration.at(ws.bodies[i].origin);
+    let to_child = |x: Vector3<S>| with_pose!(pose, p => p.to_child(rotate_back(turn, x)));
     // a' = X a_λ + c
-    let mut acceleration = Twist {
-        angular: rotate_back(&x_pi.rotation, carried.angular) + motion.alpha,
-        linear: rotate_back(&x_pi.rotation, carried.linear) + motion.acceleration,
-    };
+    let mut acceleration =
+        Twist { angular: to_child(carried.angular) + motion.alpha, linear: to_child(carried.linear) + motion.acceleration };
     for c in ws.columns_of(i).rev() {
         let Column { at, axis, held, inverse, residue, .. } = ws.columns[c];
         // q̈ = (u − Uᵀ a') / D;  a = a' + S q̈

@@ -19,8 +19,6 @@ pub struct Workspace<S> {
     pub(super) shape: Shape,
     pub(super) bodies: Vec<BodyState<S>>,
     pub(super) placements: Vec<Placement<S>>,
-    /// Each body in its parent's frame.
-    pub(super) relative: Vec<Placement<S>>,
     pub(super) zeros: Vec<S>,
     /// Inertia of each body and all that it carries, in its frame.
     pub(super) composite: Vec<SpatialInertia<S>>,
@@ -121,7 +119,6 @@ impl<S: Scalar> Workspace<S> {
             middles,
             bodies: vec![BodyState::zero(); n],
             placements: vec![Placement::identity(); n],
-            relative: vec![Placement::identity(); n],
             zeros: vec![S::zero(); nv],
             composite: vec![SpatialInertia::zero(); n],
             articulated: vec![ArticulatedInertia::zero(); n],

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{Coordinates, JointLaw};
 use crate::Scalar;
-use crate::spatial::{Motion, Placement, SpatialInertia, Twist, Wrench, from_quaternion, rotate, rotate_back};
+use crate::spatial::{ArticulatedInertia, Motion, Placement, SpatialInertia, Twist, Wrench, from_quaternion, rotate, rotate_back};
 
 /// q = (position; unit quaternion x, y, z, w) of the child in the joint frame; v = body twist [ω; v] in the child's frame;
 /// a = the time derivative of the six numbers in v; S = 1.
@@ -70,6 +70,16 @@ impl<S: Scalar> JointLaw<S> for Floating<S> {
     #[inline(always)]
     fn inertia_to_joint(&self, inertia: &SpatialInertia<S>) -> SpatialInertia<S> {
         inertia.moved(&Placement { rotation: self.rotation, position: self.position })
+    }
+
+    #[inline(always)]
+    fn articulated_to_joint(&self, inertia: &ArticulatedInertia<S>) -> ArticulatedInertia<S> {
+        inertia.turned(&self.rotation)
+    }
+
+    #[inline(always)]
+    fn freedom(k: usize) -> Option<usize> {
+        Some(k)
     }
 
     #[inline(always)]

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::{Coordinates, JointLaw, Prismatic, Revolute};
 use crate::Scalar;
-use crate::spatial::{Matrix3, Motion, Placement, SpatialInertia, Twist, Wrench};
+use crate::spatial::{ArticulatedInertia, Matrix3, Motion, Placement, SpatialInertia, Twist, Wrench};
 
 /// R = Rz(q), p = e_z h q, S = [e_z; h e_z], with h in m/rad.
 #[derive(Clone, Copy, Debug)]
@@ -55,6 +55,16 @@ impl<S: Scalar> JointLaw<S> for Helical<S> {
     #[inline(always)]
     fn inertia_to_joint(&self, inertia: &SpatialInertia<S>) -> SpatialInertia<S> {
         self.slide.inertia_to_joint(&self.turn.inertia_to_joint(inertia))
+    }
+
+    #[inline(always)]
+    fn articulated_to_joint(&self, inertia: &ArticulatedInertia<S>) -> ArticulatedInertia<S> {
+        self.turn.articulated_to_joint(inertia)
+    }
+
+    #[inline(always)]
+    fn freedom(_: usize) -> Option<usize> {
+        None
     }
 
     #[inline(always)]

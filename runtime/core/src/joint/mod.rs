@@ -18,7 +18,7 @@ pub use spherical::Spherical;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::Scalar;
-use crate::spatial::{Motion, Placement, SpatialInertia, Twist, Wrench};
+use crate::spatial::{ArticulatedInertia, Motion, Placement, SpatialInertia, Twist, Wrench};
 
 /// The kinds of moving joints of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -158,6 +158,12 @@ pub trait JointLaw<S: Scalar>: Copy {
     /// The child's mass as seen from the joint frame.
     fn inertia_to_joint(&self, inertia: &SpatialInertia<S>) -> SpatialInertia<S>;
 
+    /// An articulated inertia from axes of the child to axes of the joint frame, about the same point.
+    fn articulated_to_joint(&self, inertia: &ArticulatedInertia<S>) -> ArticulatedInertia<S>;
+
+    /// Which of the six numbers of a twist [ω; v] of the child about its origin the joint's degree of freedom k is; `None` if it is no single one.
+    fn freedom(k: usize) -> Option<usize>;
+
     /// I·S_k: the wrench, in the child's frame, that gives a body of this inertia at rest the unit acceleration in the joint's own degree of freedom k.
     fn column(&self, inertia: &SpatialInertia<S>, k: usize) -> Wrench<S>;
 
@@ -178,6 +184,20 @@ pub enum Pose<S> {
     Spherical(Spherical<S>),
     /// See [`Floating`].
     Floating(Floating<S>),
+}
+
+impl<S: Scalar> Pose<S> {
+    /// As [`JointLaw::freedom`].
+    #[inline(always)]
+    pub fn freedom(&self, k: usize) -> Option<usize> {
+        match self {
+            Self::Revolute(_) => Revolute::<S>::freedom(k),
+            Self::Prismatic(_) => Prismatic::<S>::freedom(k),
+            Self::Helical(_) => Helical::<S>::freedom(k),
+            Self::Spherical(_) => Spherical::<S>::freedom(k),
+            Self::Floating(_) => Floating::<S>::freedom(k),
+        }
+    }
 }
 
 /// Runs one expression with the pose of the kind that it is: one branch for a whole step of an algorithm.

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::{Coordinates, JointLaw};
 use crate::Scalar;
-use crate::spatial::{Matrix3, Motion, Placement, SpatialInertia, Twist, Wrench};
+use crate::spatial::{ArticulatedInertia, Matrix3, Motion, Placement, SpatialInertia, Twist, Wrench};
 
 /// R = 1, p = e_z q, S = [0; e_z].
 #[derive(Clone, Copy, Debug)]
@@ -77,6 +77,16 @@ impl<S: Scalar> JointLaw<S> for Prismatic<S> {
         }
         second.m33 += (h.z + h.z + md) * d;
         SpatialInertia { mass: i.mass, first: Vector3::new(h.x, h.y, h.z + md), second }
+    }
+
+    #[inline(always)]
+    fn articulated_to_joint(&self, inertia: &ArticulatedInertia<S>) -> ArticulatedInertia<S> {
+        *inertia
+    }
+
+    #[inline(always)]
+    fn freedom(_: usize) -> Option<usize> {
+        Some(5)
     }
 
     #[inline(always)]

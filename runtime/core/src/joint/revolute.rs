@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{Coordinates, JointLaw};
 use crate::Scalar;
-use crate::spatial::{Motion, Placement, SpatialInertia, Twist, Wrench};
+use crate::spatial::{ArticulatedInertia, Motion, Placement, SpatialInertia, Twist, Wrench, turned_about_z};
 
 /// R = Rz(q), S = [e_z; 0].
 #[derive(Clone, Copy, Debug)]
@@ -65,16 +65,18 @@ impl<S: Scalar> JointLaw<S> for Revolute<S> {
 
     #[inline(always)]
     fn inertia_to_joint(&self, i: &SpatialInertia<S>) -> SpatialInertia<S> {
-        // Σ' = Rz Σ Rzᵀ, element by element.
-        let (s, c, m) = (self.sin, self.cos, &i.second);
-        let (ss, cc, sc) = (s * s, c * c, s * c);
-        let twice = sc * (m.m12 + m.m12);
-        let xx = cc * m.m11 - twice + ss * m.m22;
-        let yy = ss * m.m11 + twice + cc * m.m22;
-        let xy = sc * (m.m11 - m.m22) + (cc - ss) * m.m12;
-        let (xz, yz) = (c * m.m13 - s * m.m23, s * m.m13 + c * m.m23);
-        let second = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, m.m33);
-        SpatialInertia { mass: i.mass, first: self.to_joint(i.first), second }
+        // Σ' = Rz Σ Rzᵀ
+        SpatialInertia { mass: i.mass, first: self.to_joint(i.first), second: turned_about_z(&i.second, self.sin, self.cos) }
+    }
+
+    #[inline(always)]
+    fn articulated_to_joint(&self, i: &ArticulatedInertia<S>) -> ArticulatedInertia<S> {
+        i.turned_about_z(self.sin, self.cos)
+    }
+
+    #[inline(always)]
+    fn freedom(_: usize) -> Option<usize> {
+        Some(2)
     }
 
     #[inline(always)]

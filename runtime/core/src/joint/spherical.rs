@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{Coordinates, JointLaw};
 use crate::Scalar;
-use crate::spatial::{Motion, Placement, SpatialInertia, Twist, Wrench, from_quaternion, rotate, rotate_back};
+use crate::spatial::{ArticulatedInertia, Motion, Placement, SpatialInertia, Twist, Wrench, from_quaternion, rotate, rotate_back};
 
 /// q = unit quaternion (x, y, z, w) of the child in the joint frame; v = ω in axes of the child; S = [1; 0].
 ///
@@ -63,6 +63,16 @@ impl<S: Scalar> JointLaw<S> for Spherical<S> {
     #[inline(always)]
     fn inertia_to_joint(&self, inertia: &SpatialInertia<S>) -> SpatialInertia<S> {
         inertia.moved(&Placement { rotation: self.rotation, position: Vector3::zeros() })
+    }
+
+    #[inline(always)]
+    fn articulated_to_joint(&self, inertia: &ArticulatedInertia<S>) -> ArticulatedInertia<S> {
+        inertia.turned(&self.rotation)
+    }
+
+    #[inline(always)]
+    fn freedom(k: usize) -> Option<usize> {
+        Some(k)
     }
 
     #[inline(always)]

@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix3;
 
-use super::{Placement, SpatialInertia, Twist, Wrench, rotate, rotate_back};
+use super::{Placement, SpatialInertia, Twist, Wrench, rotate, rotate_back, turned_about_z};
 use crate::Scalar;
 
 /// The inertia that a body shows while joints beyond it give way: the symmetric matrix [A B; Bᵀ C] on [ω̇; a] (Featherstone 2008, §7.1).
@@ -53,15 +53,43 @@ impl<S: Scalar> ArticulatedInertia<S> {
         }
     }
 
+    /// The same where degree of freedom `k` of the six has given way: nothing is left along it.
+    #[inline(always)]
+    #[must_use]
+    pub fn without(mut self, k: usize) -> Self {
+        let (matrix, j) = if k < 3 { (&mut self.angular, k) } else { (&mut self.linear, k - 3) };
+        for i in 0..3 {
+            (matrix[(i, j)], matrix[(j, i)]) = (S::zero(), S::zero());
+            let place = if k < 3 { (j, i) } else { (i, j) };
+            self.coupling[place] = S::zero();
+        }
+        self
+    }
+
+    /// The same in other axes, to which `turn` takes vectors.
+    #[inline(always)]
+    #[must_use]
+    pub fn turned(&self, turn: &Matrix3<S>) -> Self {
+        let turned = |m: &Matrix3<S>| turn * m * turn.transpose();
+        Self { angular: upper(turned(&self.angular)), coupling: turned(&self.coupling), linear: upper(turned(&self.linear)) }
+    }
+
+    /// The same in the axes that are turned back by an angle about z, given its sine and cosine.
+    #[inline(always)]
+    #[must_use]
+    pub fn turned_about_z(&self, sin: S, cos: S) -> Self {
+        let turned = |m: &Matrix3<S>| turned_about_z(m, sin, cos);
+        Self { angular: turned(&self.angular), coupling: turned(&self.coupling), linear: turned(&self.linear) }
+    }
+
     /// The same seen from the frame a, where `x_ab` places the frame b that it is given in.
     ///
     /// Turned, then `C' = C, B' = B + [p]× C, A' = A + [p]× Bᵀ − B'[p]×`.
     #[inline(always)]
     #[must_use]
     pub fn moved(&self, x_ab: &Placement<S>) -> Self {
-        let (r, p) = (&x_ab.rotation, x_ab.position);
-        let turned = |m: &Matrix3<S>| r * m * r.transpose();
-        let (angular, before, linear) = (turned(&self.angular), turned(&self.coupling), upper(turned(&self.linear)));
+        let p = x_ab.position;
+        let Self { angular, coupling: before, linear } = self.turned(&x_ab.rotation);
         let coupling = before + crossed(p, &linear);
         // −B'[p]× = ([p]× B'ᵀ)ᵀ
         let angular = upper(angular + crossed(p, &before.transpose()) + crossed(p, &coupling.transpose()).transpose());

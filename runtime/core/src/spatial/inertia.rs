@@ -40,9 +40,7 @@ impl<S: Scalar> SpatialInertia<S> {
     pub fn moved(&self, x_ab: &Placement<S>) -> Self {
         let (r, p) = (&x_ab.rotation, x_ab.position);
         let h = rotate(r, self.first);
-        let first = h + p * self.mass;
-        let second = symmetric(r * self.second * r.transpose() + h * p.transpose() + p * first.transpose());
-        Self { mass: self.mass, first, second }
+        Self { mass: self.mass, first: h, second: r * self.second * r.transpose() }.shifted(p)
     }
 
     /// The wrench that moves the body, about its origin: f = m a + U h, n = h × a + ∫ r × (U r) dm.
@@ -69,13 +67,15 @@ impl<S: Scalar> SpatialInertia<S> {
         Wrench { moment: spin + h.cross(&v.linear), force: v.linear * self.mass + v.angular.cross(&h) }
     }
 
-    /// The same body about the origin that lies at −`d`: h' = h + m d, Σ' = Σ + h dᵀ + d h'ᵀ.
+    /// The same body about the origin that lies at −`d`: h' = h + m d, Σ' = Σ + x dᵀ + d xᵀ with x = h + ½ m d.
     #[inline(always)]
     #[must_use]
     pub fn shifted(&self, d: Vector3<S>) -> Self {
-        let first = self.first + d * self.mass;
-        let second = symmetric(self.second + self.first * d.transpose() + d * first.transpose());
-        Self { mass: self.mass, first, second }
+        let (h, s) = (self.first, &self.second);
+        let (x, twice) = (h + d * (self.mass * S::from_f64(0.5)), d + d);
+        let (xy, xz, yz) = (s.m12 + x.x * d.y + x.y * d.x, s.m13 + x.x * d.z + x.z * d.x, s.m23 + x.y * d.z + x.z * d.y);
+        let (xx, yy, zz) = (s.m11 + twice.x * x.x, s.m22 + twice.y * x.y, s.m33 + twice.z * x.z);
+        Self { mass: self.mass, first: h + d * self.mass, second: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) }
     }
 
     /// The same body in other axes, to which `turn` takes vectors: h' = R h, Σ' = R Σ Rᵀ.

@@ -18,6 +18,26 @@ pub fn rotate_back<S: Scalar>(r: &Matrix3<S>, v: Vector3<S>) -> Vector3<S> {
     Vector3::new(r.m11 * v.x + r.m21 * v.y + r.m31 * v.z, r.m12 * v.x + r.m22 * v.y + r.m32 * v.z, r.m13 * v.x + r.m23 * v.y + r.m33 * v.z)
 }
 
+/// R M Rᵀ with R = Rz of the angle of this sine and cosine: 20 operations instead of 90.
+///
+/// With w = s (M_xx − M_yy) + c (M_xy + M_yx) the diagonal changes by s·w. As good as the largest number of M, no better.
+#[inline(always)]
+pub fn turned_about_z<S: Scalar>(m: &Matrix3<S>, sin: S, cos: S) -> Matrix3<S> {
+    let (s, c) = (sin, cos);
+    let w = s * (m.m11 - m.m22) + c * (m.m12 + m.m21);
+    Matrix3::new(
+        m.m11 - s * w,
+        c * w - m.m21,
+        c * m.m13 - s * m.m23, //
+        c * w - m.m12,
+        m.m22 + s * w,
+        s * m.m13 + c * m.m23, //
+        c * m.m31 - s * m.m32,
+        s * m.m31 + c * m.m32,
+        m.m33,
+    )
+}
+
 /// Rotation matrix of the unit quaternion (x, y, z, w).
 ///
 /// The norm is taken to be one and is not checked: with a norm 1 + ε the matrix is off by about 2ε.
@@ -130,6 +150,14 @@ mod tests {
             let v = Vector3::from(axis) / Vector3::from(axis).amax();
             assert!((r.column(2) * v.norm() - v).amax() < 1e-15, "{axis:?}");
         }
+    }
+
+    #[test]
+    fn a_matrix_turns_about_z_as_by_two_products() {
+        let m = Matrix3::new(0.3, -1.2, 0.7, 2.0, 0.5, -0.9, 0.4, 0.1, -0.6);
+        let (s, c) = 0.7_f64.sin_cos();
+        let r: Matrix3<f64> = from_rpy([0.0, 0.0, 0.7]);
+        assert!((turned_about_z(&m, s, c) - r * m * r.transpose()).amax() < 1e-15);
     }
 
     #[test]

@@ -45,6 +45,12 @@ impl<S: Scalar> Wrench<S> {
         Self { moment: self.moment * x, force: self.force * x }
     }
 
+    /// Number k of the six.
+    #[inline(always)]
+    pub fn number(&mut self, k: usize) -> &mut S {
+        if k < 3 { &mut self.moment[k] } else { &mut self.force[k - 3] }
+    }
+
     /// The six numbers.
     pub fn to_array(&self) -> [S; 6] {
         let (m, f) = (&self.moment, &self.force);
