@@ -1,6 +1,6 @@
 // Times the functions of one peer library:  bench_peer LIBRARY URDF fixed|floating
 // 64 random states in turn, 41 batches of about a millisecond; prints the median batch in nanoseconds a call.
-// Or only calls one function, so many times in each state:  bench_peer LIBRARY URDF fixed|floating FUNCTION ROUNDS
+// Or, under callgrind, counts the instructions of each function that is there:  bench_peer LIBRARY URDF fixed|floating FUNCTION...
 
 #include <algorithm>
 #include <chrono>
@@ -13,6 +13,14 @@
 #include <string>
 #include <vector>
 #include <xmmintrin.h>
+
+#if __has_include(<valgrind/callgrind.h>)
+#include <valgrind/callgrind.h>
+#else
+#define CALLGRIND_START_INSTRUMENTATION
+#define CALLGRIND_ZERO_STATS
+#define CALLGRIND_DUMP_STATS_AT(name)
+#endif
 
 namespace
 {
@@ -55,9 +63,9 @@ double nanoseconds(Call call)
 
 int main(int count, char ** words)
 {
-  if (count != 4 && count != 6)
+  if (count < 4)
   {
-    std::fprintf(stderr, "bench_peer LIBRARY URDF fixed|floating [FUNCTION ROUNDS]\n");
+    std::fprintf(stderr, "bench_peer LIBRARY URDF fixed|floating [FUNCTION...]\n");
     return 2;
   }
   const unsigned before = _mm_getcsr();
@@ -92,21 +100,27 @@ int main(int count, char ** words)
   std::vector<double> out(nv * nv);
   auto * has = reinterpret_cast<int (*)(void *, const char *)>(dlsym(library, "peer_has"));
   const auto there = [&](const char * name) { return dlsym(library, (std::string("peer_") + name).c_str()) && (!has || has(peer, name)); };
-  if (count == 6)
+  if (count > 4)
   {
-    if (!there(words[4]))
-      return 3;
-    // Functions that keep their results leave the last argument alone.
-    const std::string name = std::string("peer_") + words[4];
-    auto * one = symbol<void(void *, const double *, double *)>(name.c_str());
-    auto * three = symbol<void(void *, const double *, const double *, const double *, double *)>(name.c_str());
-    const int calls = std::atoi(words[5]) * STATES;
-    const bool lone = name == "peer_mass_matrix";
-    for (int k = 0; k < calls; ++k)
-      if (const int i = k % STATES; lone)
-        one(peer, q[i].data(), out.data());
-      else
-        three(peer, q[i].data(), v[i].data(), a[i].data(), out.data());
+    for (int word = 4; word < count; ++word)
+    {
+      if (!there(words[word]))
+        continue;
+      // Functions that keep their results leave the last argument alone.
+      const std::string name = std::string("peer_") + words[word];
+      auto * one = symbol<void(void *, const double *, double *)>(name.c_str());
+      auto * three = symbol<void(void *, const double *, const double *, const double *, double *)>(name.c_str());
+      const bool lone = name == "peer_mass_matrix";
+      const auto all = [&] {
+        for (int i = 0; i < STATES; ++i)
+          lone ? one(peer, q[i].data(), out.data()) : three(peer, q[i].data(), v[i].data(), a[i].data(), out.data());
+      };
+      all(); // what is done at the first call only is not counted
+      CALLGRIND_START_INSTRUMENTATION; // for the first function, and for good
+      CALLGRIND_ZERO_STATS;
+      all();
+      CALLGRIND_DUMP_STATS_AT(words[word]);
+    }
     return 0;
   }
   auto * id = symbol<void(void *, const double *, const double *, const double *, double *)>("peer_inverse_dynamics");

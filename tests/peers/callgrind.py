@@ -20,8 +20,7 @@ from environment import HERE, REPOSITORY
 
 CPU = "x86-64-v3"
 FLAGS = ["-O3", f"-march={CPU}", "-DNDEBUG"]
-STATES, ROUNDS = 64, 4  # states are bench_peer's
-REFUSED = 3  # its status where the peer does not have the function
+STATES = 64  # bench_peer's
 FUNCTIONS = ("inverse_dynamics", "mass_matrix", "forward_dynamics", "inverse_dynamics_derivatives", "forward_dynamics_derivatives")
 ARGUMENTS = {"mass_matrix": ("q",), "inverse_dynamics": ("q", "v", "a"), "inverse_dynamics_derivatives": ("q", "v", "a")}
 KEPT = ("inverse_dynamics_derivatives", "forward_dynamics_derivatives")
@@ -81,22 +80,24 @@ def theirs(out):
     return [(module.build(peer, out)["name"], peer["path"]) for module, peer in entries]
 
 
-def count(program, library, urdf, base, function, folder):
-    """Instructions per call, with some ten of the loop around it: "–" where the peer does not have it, "?" where valgrind fails."""
-
-    def collected(rounds):
-        words = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={folder / 'callgrind.out'}", program, library, urdf, base, function, rounds]
-        ended = subprocess.run([str(word) for word in words], capture_output=True, text=True)
-        found = re.search(r"Collected\s*:\s*(\d+)", ended.stderr)
-        return ended.returncode, int(found.group(1)) if found else 0
-
-    (status, few), (_, many) = collected(ROUNDS), collected(2 * ROUNDS)
-    return str(round((many - few) / (ROUNDS * STATES))) if status == 0 else "–" if status == REFUSED else "?"
+def count(program, library, urdf, base, folder):
+    """Instructions per call of each function, with some ten of the loop around it: "–" where the peer does not have it, "?" where valgrind fails."""
+    for old in folder.glob("count.out*"):
+        old.unlink()
+    words = ["valgrind", "--tool=callgrind", "--instr-atstart=no", f"--callgrind-out-file={folder / 'count.out'}", program, library, urdf, base]
+    ended = subprocess.run([str(word) for word in (*words, *FUNCTIONS)], capture_output=True, text=True)
+    counts = {}
+    for dump in folder.glob("count.out.*"):
+        text = dump.read_text()
+        name, total = re.search(r"^desc: Trigger: Client Request: (\w+)", text, re.MULTILINE), re.search(r"^(?:summary|totals): (\d+)", text, re.MULTILINE)
+        if name and total:
+            counts[name.group(1)] = str(round(int(total.group(1)) / STATES))
+    return [counts.get(function, "?" if ended.returncode else "–") for function in FUNCTIONS]
 
 
 def table(robots, out):
     if not shutil.which("valgrind"):
-        raise SystemExit("valgrind is not on the PATH: apt-get install valgrind")
+        raise SystemExit("valgrind is not on the PATH: apt-get install valgrind (Debian's has the headers that bench_peer needs to count)")
     folder = out / "callgrind"
     folder.mkdir(parents=True, exist_ok=True)
     program = folder / "bench_peer"
@@ -108,5 +109,5 @@ def table(robots, out):
         print(f"\n{Path(urdf).stem}, {base} base: instructions per call, all built for {CPU}")
         print(f"{'':34}" + "".join(f"{function.replace('dynamics', 'dyn.').replace('derivatives', 'der.'):>24}" for function in FUNCTIONS))
         for name, library in [*ours(urdf, base, folder), *peers]:
-            counts = [count(program, library, urdf, base, function, folder) for function in FUNCTIONS]
+            counts = count(program, library, urdf, base, folder)
             print(f"{name:34}" + "".join(f"{n:>24}" for n in counts), flush=True)
