@@ -35,6 +35,7 @@ pub(super) fn pieces(out: &mut String, graph: &Graph, signature: &Signature, dia
         for input in &signature.inputs {
             let _ = writeln!(out, "    let _ = {};", input.name);
         }
+        let _ = writeln!(out, "    let _ = (&m, &out);");
         piece.c = c;
         piece.write(out, &places);
         let _ = writeln!(out, "    }}");

@@ -38,7 +38,8 @@ pub(crate) static ROBOTS: LazyLock<Vec<Robot>> = LazyLock::new(|| {
         robot(format!("tree_{seed}"), &urdf_text(&random_tree(100 + seed, flavour)), base, flavour.massless)
     });
     let stone = "<robot name='stone'><link name='stone'/></robot>";
-    bundled.chain(trees).chain([robot("stone".into(), stone, Base::Fixed, false)]).collect()
+    let walker = robot("walker".into(), include_str!("../../robots/walker.urdf"), Base::Floating, false);
+    bundled.chain(trees).chain([walker, robot("stone".into(), stone, Base::Fixed, false)]).collect()
 });
 
 /// With every function, save those that need what the robot does not have, on one or two frames.
@@ -85,14 +86,25 @@ pub(crate) static NATIVE: LazyLock<Program> = LazyLock::new(|| {
     program
 });
 
-/// Some of them as `cargo build` compiles for anybody: no fused multiply-add; and with every check that the compiler knows.
+/// Some of them as `cargo build` compiles for anybody, with every check that the compiler knows: vector instructions and multiply-adds are chosen when it runs.
+pub(crate) static CHOSEN: LazyLock<Program> = LazyLock::new(|| anybodys("with the instructions that there are", |source| source));
+
+/// The same on a processor that has neither AVX2 nor fused multiply-add: that is what the programs are told.
 pub(crate) static PORTABLE: LazyLock<Program> = LazyLock::new(|| {
-    let some: Vec<(&str, &Generated)> = ["panda_like", "gripper_arm", "tree_1", "stone"]
-        .iter()
-        .map(|name| ROBOTS.iter().find(|r| r.name == *name).expect("one of them"))
-        .map(|r| (r.name.as_str(), &r.generated))
-        .collect();
-    let program = Program::build(&some, &["-O", "-C", "debug-assertions=on"]);
-    println!("compiled {} robots without multiply-add in {:.1?}", some.len(), program.time);
-    program
+    let asked = "::std::is_x86_feature_detected!(\"avx2\")";
+    anybodys("without multiply-add", |source| source.replace(asked, "false"))
 });
+
+/// The robots of both.
+pub(crate) const ANYBODYS: [&str; 5] = ["panda_like", "gripper_arm", "tree_1", "stone", "walker"];
+
+fn anybodys(how: &str, change: impl Fn(String) -> String) -> Program {
+    let find = |name: &&str| ROBOTS.iter().find(|r| r.name == *name).expect("one of them");
+    let some: Vec<&Robot> = ANYBODYS.iter().map(find).collect();
+    let changed: Vec<Generated> =
+        some.iter().map(|r| Generated { source: change(r.generated.source.clone()), ..r.generated.clone() }).collect();
+    let named: Vec<(&str, &Generated)> = some.iter().map(|r| r.name.as_str()).zip(&changed).collect();
+    let program = Program::build(&named, &["-O", "-C", "debug-assertions=on"]);
+    println!("compiled {} robots {how} in {:.1?}", named.len(), program.time);
+    program
+}
