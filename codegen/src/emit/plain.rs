@@ -77,12 +77,16 @@ impl Dialect for Plain<'_> {
 
 impl Plain<'_> {
     fn expression(&self, op: Op, node: &Node) -> String {
-        let mut text = op.row().rust.to_owned();
+        let (mut text, mut rest) = (String::new(), op.row().rust);
         for (hole, operand) in ["{a}", "{b}", "{c}"].iter().zip(node.operands()) {
+            // The holes of a row stand in this order.
+            let Some((before, behind)) = rest.split_once(hole) else { continue };
             let operand = self.operand(operand);
-            text = text.replace(hole, if op == Op::Select { bare(&operand) } else { &operand });
+            text += before;
+            text += if op == Op::Select { bare(&operand) } else { &operand };
+            rest = behind;
         }
-        text
+        text + rest
     }
 
     /// A name, or the literal of a constant.
