@@ -66,14 +66,15 @@ mod tests {
         generate(&request).unwrap()
     }
 
-    /// Operations asked for while tracing, instructions emitted, and bytes of source, for each joint added between 30 and 60, and between 60 and 120.
+    /// Operations asked for while tracing, instructions emitted, and bytes of source, for each joint added between 80 and 120, and between 120 and 200:
+    /// long enough that all of it is written in pieces.
     fn per_joint(function: &str) -> [[f64; 2]; 3] {
-        let work = [30, 60, 120].map(|n| {
+        let work = [80, 120, 200].map(|n| {
             let generated = generated(function, n);
             let entry = &generated.ledger.functions[0];
             [entry.stages[0].1.operations(), entry.emitted().instructions(), generated.source.len() as u64].map(|x| x as f64)
         });
-        [0, 1, 2].map(|k| [(work[1][k] - work[0][k]) / 30.0, (work[2][k] - work[1][k]) / 60.0])
+        [0, 1, 2].map(|k| [(work[1][k] - work[0][k]) / 40.0, (work[2][k] - work[1][k]) / 80.0])
     }
 
     #[test]
