@@ -48,6 +48,24 @@ pub(super) fn pieces(out: &mut String, graph: &Graph, signature: &Signature, dia
     let _ = writeln!(out, "    out\n    }}");
 }
 
+/// From this many results and nodes on each result is written as soon as it is made: kept until the end, they would fill the registers. Of a small
+/// function the compiler makes more where they come together.
+const WRITE_FROM: (usize, usize) = (32, 700);
+
+/// Whether there are so many results that they are written as soon as they are made.
+pub(super) fn gives_much(graph: &Graph) -> bool {
+    graph.outputs.len() >= WRITE_FROM.0 && graph.nodes().len() >= WRITE_FROM.1
+}
+
+/// The statements of a function in one piece that gives much.
+pub(super) fn one_piece(out: &mut String, graph: &Graph, signature: &Signature, dialect: &dyn Dialect) {
+    let units: Vec<Unit> = units(graph, dialect.group()).into_iter().filter(|u| !is_light(graph, u)).collect();
+    let plan = Plan::of(graph, vec![units.as_slice()]);
+    let _ = writeln!(out, "    #[allow(unused_mut)]\n    let mut out = {};", signature.nothing());
+    Piece { plan: &plan, graph, dialect, c: 0, named: vec![NOWHERE; graph.nodes().len()] }.write(out, &signature.places());
+    let _ = writeln!(out, "    out");
+}
+
 /// Whether a unit is made again wherever it is needed: inputs, and comparisons, whose values are no numbers.
 fn is_light(graph: &Graph, unit: &Unit) -> bool {
     matches!(unit, Unit::Node(k) if light(graph, *k))
@@ -66,7 +84,7 @@ struct Plan<'a> {
     /// The place of each node that a later piece needs.
     slot: Vec<Option<usize>>,
     slots: usize,
-    /// The results that each piece gives. What is made nowhere, inputs and constants, is given by the first.
+    /// The results that each node gives.
     results: Vec<Vec<usize>>,
 }
 
@@ -82,11 +100,10 @@ impl<'a> Plan<'a> {
                 heavy_needs(graph, unit.needs(graph)).into_iter().for_each(|k| last[k] = c);
             }
         }
-        let results = vec![Vec::new(); pieces.len()];
-        let mut plan = Self { pieces, made, slot: vec![None; n], slots: 1, results };
+        let mut plan = Self { pieces, made, slot: vec![None; n], slots: 1, results: vec![Vec::new(); n] };
         for (k, id) in graph.outputs.iter().enumerate() {
-            let made = plan.made[plan.source(graph, *id)];
-            plan.results[if made == NOWHERE { 0 } else { made }].push(k);
+            let source = plan.source(graph, *id);
+            plan.results[source].push(k);
         }
         plan.place(&last);
         plan
@@ -140,6 +157,10 @@ struct Piece<'a> {
 
 impl Piece<'_> {
     fn write(&mut self, out: &mut String, places: &[String]) {
+        // What is made nowhere, inputs and constants, is given by the first piece.
+        if self.c == 0 {
+            (0..self.plan.made.len()).filter(|&k| self.plan.made[k] == NOWHERE).for_each(|k| self.give(out, k, places));
+        }
         for unit in self.plan.pieces[self.c] {
             unit.needs(self.graph).into_iter().for_each(|k| self.name(out, k));
             *out += &unit.written(self.graph, self.dialect).unwrap_or_default();
@@ -148,13 +169,17 @@ impl Piece<'_> {
                 if let Some(slot) = self.plan.slot[k] {
                     let _ = writeln!(out, "    m[{slot}] = x{k};");
                 }
+                self.give(out, k, places);
             }
         }
-        for &k in &self.plan.results[self.c] {
-            let id = self.graph.outputs[k];
-            let value = self.dialect.number(id);
+    }
+
+    /// Writes the results that a node gives.
+    fn give(&mut self, out: &mut String, node: usize, places: &[String]) {
+        for &k in &self.plan.results[node] {
+            let value = self.dialect.number(self.graph.outputs[k]);
             if value != ZERO {
-                self.name(out, self.plan.source(self.graph, id));
+                self.name(out, node);
                 let _ = writeln!(out, "    {} = {};", places[k], super::literal::bare(&value));
             }
         }

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::chunks::{gives_much, one_piece};
 use super::dialect::{Dialect, statements};
 use super::literal::{bare, operand};
 use super::order::{Angle, Step, order};
@@ -22,6 +23,9 @@ pub(super) fn has_batch(graph: &Graph) -> bool {
 /// The statements, the result last.
 pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
     let plain = Plain { graph, signature };
+    if gives_much(graph) {
+        return one_piece(out, graph, signature, &plain);
+    }
     statements(out, graph, &plain);
     let values: Vec<String> = graph.outputs.iter().map(|&o| plain.operand(o)).collect();
     signature.result(out, &values);

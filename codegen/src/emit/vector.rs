@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::chunks::{gives_much, one_piece};
 use super::dialect::{Dialect, statements};
 use super::literal::{literal, operand};
 use super::order::Angle;
@@ -12,6 +13,9 @@ use crate::graph::{Graph, Node, NodeId, Op};
 /// The statements, the result last.
 pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
     let vector = Vector { graph, signature, block: false };
+    if gives_much(graph) {
+        return one_piece(out, graph, signature, &vector);
+    }
     statements(out, graph, &vector);
     let values: Vec<String> = graph.outputs.iter().map(|&o| vector.number(o)).collect();
     signature.result(out, &values);
