@@ -85,11 +85,6 @@ impl<'a> Signature<'a> {
         let _ = writeln!(out, "}}\n");
     }
 
-    /// How many numbers each part gives.
-    pub(super) fn lengths(&self) -> Vec<usize> {
-        self.wanted.parts.iter().map(|p| p.function.len(self.sizes)).collect()
-    }
-
     /// The values of each part, with its name and the lengths of its array.
     fn parts<'v>(&self, mut values: &'v [String]) -> Vec<(&'static str, &'v [String], Vec<usize>)> {
         let mut parts = Vec::new();

@@ -10,6 +10,9 @@
 //! * `positive(x) -> M`, x > 0; `select(m, a, b)`, a where m; `across(x)`, the sum of the lanes in every lane (f64 of 2 and 4);
 //! * `sin_cos(x) -> (V, V)`, x in rad, any, and `atan2(y, x)`, lane by lane by the standard library.
 //!
+//! What [`tiles`] adds turns states that stand one after the other, `[[Real; N]; LANES]`, into vectors with a state a lane: `TILE` numbers of each at a time,
+//! `columns(&states, at) -> [V; TILE]` and `rows([V; TILE], &mut states, at)`, with `at` + `TILE` ≤ N, or 0 where N is less.
+//!
 //! These are free functions of raw registers since methods and operators that are inlined into functions of other features take the compiler
 //! eight times as long.
 //!
@@ -72,19 +75,28 @@ pub fn source(set: Set, real: Real, lanes: usize) -> Option<String> {
     MODULES.iter().find(|module| (module.0, module.1, module.2) == (set, real, lanes)).map(|module| module.3.to_string())
 }
 
+/// What to add to such a module for states one after the other; `None` if the set has no such width, or that is not what batches use.
+pub fn tiles(set: Set, real: Real, lanes: usize) -> Option<String> {
+    let module = MODULES.iter().find(|module| (module.0, module.1, module.2) == (set, real, lanes))?;
+    (!module.4.is_empty()).then(|| module.4.to_string())
+}
+
 /// Modules' texts, which tests compile: common files in the order in which macros are needed.
 macro_rules! modules {
     (@texts $($file:literal)+ $(, half $($half:literal)+)?) => {
         concat!($(include_str!(concat!("text/", $file, ".rs"))),+ $(, "\nmod half {\n", $(include_str!(concat!("text/", $half, ".rs"))),+, "}\n")?)
     };
-    ($($name:ident, $set:ident, $real:ident, $lanes:literal, $arch:meta: [$($file:literal)+] $([$($half:literal)+])?;)+) => {
-        const MODULES: &[(Set, Real, usize, &str)] =
-            &[$((Set::$set, Real::$real, $lanes, modules!(@texts $($file)+ $(, half $($half)+)?))),+];
+    ($($name:ident, $set:ident, $real:ident, $lanes:literal, $arch:meta:
+        [$($file:literal)+] $(half [$($half:literal)+])? $(tiles [$($tiles:literal)+])?;)+) => {
+        const MODULES: &[(Set, Real, usize, &str, &str)] = &[$((
+            Set::$set, Real::$real, $lanes, modules!(@texts $($file)+ $(, half $($half)+)?), concat!($($(include_str!(concat!("text/", $tiles, ".rs"))),+)?),
+        )),+];
         $(
             #[cfg(all(test, $arch))]
             #[allow(dead_code, non_upper_case_globals, unreachable_pub, unsafe_code, unused_imports, clippy::all, clippy::pedantic)]
             mod $name {
                 $(include!(concat!("text/", $file, ".rs"));)+
+                $($(include!(concat!("text/", $tiles, ".rs"));)+)?
                 $(mod half {
                     $(include!(concat!("text/", $half, ".rs"));)+
                 })?
@@ -96,20 +108,30 @@ macro_rules! modules {
 modules! {
     portable_f64x2, Portable, F64, 2, all(): ["portable_f64" "portable_2" "portable" "common" "f64" "f64_fused" "f64_split"];
     portable_f64x4, Portable, F64, 4, all(): ["portable_f64" "portable_4" "portable" "common" "f64" "f64_fused" "f64_split"];
-    portable_f64x8, Portable, F64, 8, all(): ["portable_f64" "portable_8" "portable" "common" "f64" "f64_fused" "f64_split"];
+    portable_f64x8, Portable, F64, 8, all(): ["portable_f64" "portable_8" "portable" "common" "f64" "f64_fused" "f64_split"]
+        tiles ["tiles_portable"];
     portable_f32x8, Portable, F32, 8, all():
         ["portable_f32" "portable_8" "portable" "portable_f32_reduce" "common" "f32" "f32_fused" "f32_split"];
     portable_f32x16, Portable, F32, 16, all():
-        ["portable_f32" "portable_16" "portable" "portable_f32_reduce" "common" "f32" "f32_fused" "f32_split"];
-    sse2_f64x2, Sse2, F64, 2, target_arch = "x86_64": ["sse2_f64x2" "sse2" "register" "common" "f64" "f64_split"];
-    sse2_f64x4, Sse2, F64, 4, target_arch = "x86_64": ["pair_sse2" "pair"] ["sse2_f64x2" "sse2" "register" "common" "f64" "f64_split"];
-    sse2_f32x4, Sse2, F32, 4, target_arch = "x86_64": ["sse2_f32x4" "sse2" "register" "common" "f32" "f32_split"];
+        ["portable_f32" "portable_16" "portable" "portable_f32_reduce" "common" "f32" "f32_fused" "f32_split"]
+        tiles ["tiles_portable"];
+    sse2_f64x2, Sse2, F64, 2, target_arch = "x86_64": ["sse2_f64x2" "sse2" "register" "common" "f64" "f64_split"]
+        tiles ["tiles" "tiles_16_bytes" "tiles_register" "tiles_f64" "tiles_sse2_f64"];
+    sse2_f64x4, Sse2, F64, 4, target_arch = "x86_64": ["pair_sse2" "pair"] half ["sse2_f64x2" "sse2" "register" "common" "f64" "f64_split"];
+    sse2_f32x4, Sse2, F32, 4, target_arch = "x86_64": ["sse2_f32x4" "sse2" "register" "common" "f32" "f32_split"]
+        tiles ["tiles" "tiles_16_bytes" "tiles_register" "tiles_f32" "tiles_sse2_f32"];
     avx2_f64x2, Avx2, F64, 2, target_arch = "x86_64": ["avx2_f64x2" "avx2" "register" "common" "f64" "f64_fused"];
-    avx2_f64x4, Avx2, F64, 4, target_arch = "x86_64": ["avx2_f64x4" "avx2" "register" "common" "f64" "f64_fused"];
-    avx2_f32x8, Avx2, F32, 8, target_arch = "x86_64": ["avx2_f32x8" "avx2" "register" "common" "f32" "f32_fused"];
-    avx512_f64x8, Avx512, F64, 8, target_arch = "x86_64": ["avx512_f64x8" "avx512" "register" "common" "f64" "f64_fused"];
-    avx512_f32x16, Avx512, F32, 16, target_arch = "x86_64": ["avx512_f32x16" "avx512" "register" "common" "f32" "f32_fused"];
-    neon_f64x2, Neon, F64, 2, target_arch = "aarch64": ["neon_f64x2" "neon" "register" "common" "f64" "f64_fused"];
-    neon_f64x4, Neon, F64, 4, target_arch = "aarch64": ["pair_neon" "pair"] ["neon_f64x2" "neon" "register" "common" "f64" "f64_fused"];
-    neon_f32x4, Neon, F32, 4, target_arch = "aarch64": ["neon_f32x4" "neon" "register" "common" "f32" "f32_fused"];
+    avx2_f64x4, Avx2, F64, 4, target_arch = "x86_64": ["avx2_f64x4" "avx2" "register" "common" "f64" "f64_fused"]
+        tiles ["tiles" "tiles_32_bytes" "tiles_register" "tiles_f64" "tiles_avx2_f64"];
+    avx2_f32x8, Avx2, F32, 8, target_arch = "x86_64": ["avx2_f32x8" "avx2" "register" "common" "f32" "f32_fused"]
+        tiles ["tiles" "tiles_32_bytes" "tiles_register" "tiles_f32" "tiles_avx2_f32"];
+    avx512_f64x8, Avx512, F64, 8, target_arch = "x86_64": ["avx512_f64x8" "avx512" "register" "common" "f64" "f64_fused"]
+        tiles ["tiles" "tiles_32_bytes" "tiles_register" "tiles_f64" "tiles_avx2_f64"];
+    avx512_f32x16, Avx512, F32, 16, target_arch = "x86_64": ["avx512_f32x16" "avx512" "register" "common" "f32" "f32_fused"]
+        tiles ["tiles" "tiles_32_bytes" "tiles_register" "tiles_f32" "tiles_avx2_f32"];
+    neon_f64x2, Neon, F64, 2, target_arch = "aarch64": ["neon_f64x2" "neon" "register" "common" "f64" "f64_fused"]
+        tiles ["tiles" "tiles_16_bytes" "tiles_register" "tiles_f64" "tiles_neon_f64"];
+    neon_f64x4, Neon, F64, 4, target_arch = "aarch64": ["pair_neon" "pair"] half ["neon_f64x2" "neon" "register" "common" "f64" "f64_fused"];
+    neon_f32x4, Neon, F32, 4, target_arch = "aarch64": ["neon_f32x4" "neon" "register" "common" "f32" "f32_fused"]
+        tiles ["tiles" "tiles_16_bytes" "tiles_register" "tiles_f32" "tiles_neon_f32"];
 }

@@ -2,6 +2,7 @@
 
 mod sines;
 mod source;
+mod tiles;
 
 use super::Set;
 

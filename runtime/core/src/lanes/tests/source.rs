@@ -1,6 +1,6 @@
 //! The texts that generated code copies. What they compute is tested where they are compiled.
 
-use crate::lanes::{Real, Set, source};
+use crate::lanes::{Real, Set, source, tiles};
 
 const SETS: [(Set, Real, &[usize]); 10] = [
     (Set::Portable, Real::F64, &[2, 4, 8]),
@@ -21,7 +21,7 @@ fn sources_are_for_the_features_of_their_set() {
         for lanes in 1..=32 {
             let text = source(set, real, lanes);
             assert_eq!(text.is_some(), widths.contains(&lanes), "{set:?} {real:?} {lanes}");
-            let Some(text) = text else { continue };
+            let Some(text) = text.map(|text| text + &tiles(set, real, lanes).unwrap_or_default()) else { continue };
             let features = text.matches("target_feature(enable").count();
             assert_eq!(features, text.matches(&format!("#[target_feature(enable = \"{}\")]", set.features())).count());
             assert_eq!(features == 0, set == Set::Portable);
@@ -34,7 +34,9 @@ fn sources_are_for_the_features_of_their_set() {
 fn portable_sources_have_no_unsafe() {
     for (set, real, widths) in SETS {
         for lanes in widths {
+            let tiles = tiles(set, real, *lanes).unwrap_or_default();
             assert_eq!(source(set, real, *lanes).unwrap().contains("unsafe"), set != Set::Portable);
+            assert_eq!(tiles.contains("unsafe"), set != Set::Portable && !tiles.is_empty());
         }
     }
 }

@@ -1,0 +1,171 @@
+//! Functions of many states at once: a state a lane, in the widest instruction set that the processor has.
+//!
+//! ```text
+//! pub mod batch_f64
+//!     inverse_dynamics           states one after the other
+//!     inverse_dynamics_blocks    blocks of states, each number of a block in one cache line
+//!     mod avx512, avx2, …        the same body in each instruction set
+//! ```
+
+mod arrays;
+mod public;
+mod text;
+mod ways;
+
+use std::fmt::Write;
+
+use articulated_core::algorithm::Shape;
+use articulated_core::lanes::{Real, source, tiles};
+
+use self::arrays::{Array, each, inputs, results};
+use self::text::{PUBLIC, SUPPORT};
+use self::ways::{SAFE, WAYS, Way};
+use super::function::Context;
+use super::signature::Signature;
+use super::vector;
+use crate::graph::Graph;
+use crate::program::Program;
+
+/// A function as batches have it.
+pub(super) struct Batch<'a> {
+    signature: Signature<'a>,
+    sizes: Shape,
+    /// Of plain numbers.
+    graph: &'a Graph,
+}
+
+/// How many states a block has, whatever the instruction set: a cache line of each number.
+fn states_of_block(real: Real) -> usize {
+    64 / bytes(real)
+}
+
+fn bytes(real: Real) -> usize {
+    if real == Real::F32 { 4 } else { 8 }
+}
+
+/// The name of the type in Rust.
+fn name(real: Real) -> &'static str {
+    if real == Real::F32 { "f32" } else { "f64" }
+}
+
+/// The modules of batches.
+pub(super) fn batches(out: &mut String, functions: &[Batch], reals: &[Real], forbid_unsafe: bool) {
+    if reals.is_empty() {
+        return;
+    }
+    functions.iter().for_each(|f| f.body(out));
+    *out += SUPPORT;
+    for real in reals {
+        module(out, functions, *real, if forbid_unsafe { &SAFE } else { &WAYS });
+    }
+}
+
+fn module(out: &mut String, functions: &[Batch], real: Real, ways: &[Way]) {
+    let (real_name, n) = (name(real), states_of_block(real));
+    let lint = if ways.len() == 1 { "" } else { "unsafe_code, unused_unsafe, " };
+    let _ = writeln!(
+        out,
+        "/// The functions for many states at once, in `{real_name}`: a state a lane, in the widest instruction set that the processor has.\n///\n\
+         /// States stand one after the other, or in blocks of {n} with each number of all states of a block together ([`Lanes`]), which is faster.\n\
+         /// Sines and cosines are off by at most 1 ulp.\n\
+         #[allow({lint}unused_imports, unused_macros, dead_code, unreachable_pub, clippy::all, clippy::pedantic)]\n\
+         pub mod batch_{real_name} {{\n    use super::*;\n"
+    );
+    *out += &PUBLIC.replace("REAL", real_name).replace("BLOCK", &n.to_string());
+    for way in ways {
+        way.module(out, functions, real);
+    }
+    functions.iter().for_each(|f| f.public(out, real_name, ways));
+    let _ = writeln!(out, "}}\n");
+}
+
+impl Way {
+    fn module(&self, out: &mut String, functions: &[Batch], real: Real) {
+        let (features, width) = (self.set.features(), self.bytes / bytes(real));
+        let attribute = if features.is_empty() { String::new() } else { format!("#[target_feature(enable = \"{features}\")]") };
+        let text: String = [source, tiles].iter().filter_map(|text| text(self.set, real, width)).collect();
+        let _ = writeln!(out, "#[cfg({})]\nmod {} {{\n    mod lanes {{\n{text}}}\n", self.cfg, self.module);
+        // Functions of the robot could bear names of the lanes': its constants alone are let in.
+        let parameters = if functions.iter().any(|f| !f.parameters().0.is_empty()) { ", PARAMETERS" } else { "" };
+        let _ = writeln!(out, "    use self::lanes::*;\n    use super::{{Lanes, super::{{FRAMES, LINKS, NQ, NV{parameters}}}}};");
+        let _ = writeln!(out, "    batch_support!({attribute});");
+        for f in functions.iter().filter(|f| f.is_any()) {
+            let _ = writeln!(out, "    {}_in_batch!({attribute});", f.name());
+        }
+        let _ = writeln!(out, "}}\n");
+    }
+}
+
+impl<'a> Batch<'a> {
+    pub(super) fn of(program: &'a Program, context: Context) -> Self {
+        Self { signature: Signature::of(&program.wanted, context.sizes, context.parameters), sizes: context.sizes, graph: &program.plain }
+    }
+
+    fn name(&self) -> &str {
+        &self.signature.wanted.name
+    }
+
+    /// Arguments that have numbers.
+    fn inputs(&self) -> Vec<Array> {
+        inputs(&self.signature, self.sizes).into_iter().filter(|a| a.numbers > 0).collect()
+    }
+
+    /// Results that have numbers.
+    fn results(&self) -> Vec<Array> {
+        results(&self.signature, self.sizes).into_iter().filter(|a| a.numbers > 0).collect()
+    }
+
+    /// Whether there is anything to compute.
+    fn is_any(&self) -> bool {
+        !self.results().is_empty()
+    }
+
+    /// `parameters: &[f64; PARAMETERS.len()], ` and `parameters, ` where there are any: the same for all states.
+    fn parameters(&self) -> (&'static str, &'static str) {
+        let any = self.signature.inputs.iter().any(|i| i.is_parameters());
+        if any { ("parameters: &[f64; PARAMETERS.len()], ", "parameters, ") } else { ("", "") }
+    }
+
+    /// The body, and what calls it for blocks and for states one after the other.
+    fn body(&self, out: &mut String) {
+        if !self.is_any() {
+            return;
+        }
+        let (inputs, results, name) = (self.inputs(), self.results(), self.name());
+        let declared = |of: &str| {
+            let parameters = self.parameters().0;
+            each(&inputs, &format!("NAME: &{of}, ")) + parameters + &each(&results, &format!("NAME: &mut {of}, "))
+        };
+        let given = |input: &str, result: &str| each(&inputs, input) + self.parameters().1 + &each(&results, result);
+        let _ = writeln!(out, "macro_rules! {name}_in_batch {{\n    ($(#[$features:meta])?) => {{");
+        let _ = writeln!(out, "    $(#[$features])?\n    #[inline(never)]\n    fn {name}_block({}) {{", declared("[Lanes; { LEN }]"));
+        let _ = writeln!(out, "    for part in 0..PARTS {{");
+        vector::block(out, self.graph, &self.signature, &self.places());
+        let _ = writeln!(out, "    }}\n    }}\n");
+
+        let first = &results[0].name;
+        let _ = writeln!(out, "    $(#[$features])?\n    pub(super) fn {name}_blocks({}) {{", declared("[[Lanes; { LEN }]]"));
+        let _ = writeln!(out, "        for k in 0..{first}.len() {{\n            {name}_block({});", given("&NAME[k], ", "&mut NAME[k], "));
+        let _ = writeln!(out, "        }}\n    }}\n");
+
+        let _ = writeln!(out, "    $(#[$features])?\n    pub(super) fn {name}_states({}) {{", declared("[[Real; { LEN }]]"));
+        let _ = writeln!(out, "        let whole = {first}.len() / Lanes::LEN;\n        let first = whole * Lanes::LEN;");
+        *out += &each(&inputs, "        let mut NAME_block = [Lanes::ZERO; { LEN }];\n");
+        *out += &each(&results, "        let mut NAME_block = [Lanes::ZERO; { LEN }];\n");
+        let call = format!("            {name}_block({});\n", given("&NAME_block, ", "&mut NAME_block, "));
+        *out += "        for k in 0..whole {\n";
+        *out += &each(&inputs, "            gather(&NAME.as_chunks().0[k], &mut NAME_block);\n");
+        *out += &call;
+        *out += &each(&results, "            scatter(&NAME_block, &mut NAME.as_chunks_mut().0[k]);\n");
+        let _ = writeln!(out, "        }}\n        if first < {first}.len() {{");
+        *out += &each(&inputs, "            gather(&filled(&NAME[first..]), &mut NAME_block);\n");
+        *out += &call;
+        *out += &each(&results, "            scatter_some(&NAME_block, &mut NAME[first..]);\n");
+        *out += "        }\n    }\n    };\n}\n\n";
+    }
+
+    /// Where each number of the results is put.
+    fn places(&self) -> Vec<String> {
+        self.results().iter().flat_map(|a| (0..a.numbers).map(|k| format!("{}[{k}]", a.name)).collect::<Vec<_>>()).collect()
+    }
+}

@@ -1,0 +1,65 @@
+//! The functions that a module of batches shows.
+
+use std::fmt::Write;
+
+use articulated_core::lanes::Set;
+
+use super::Batch;
+use super::arrays::{Array, inputs, results};
+use super::ways::Way;
+
+impl Batch<'_> {
+    /// The function for states one after the other, and the one for blocks.
+    pub(super) fn public(&self, out: &mut String, real: &str, ways: &[Way]) {
+        let name = self.name();
+        for (suffix, inner, of, what) in [("", "states", real, "states"), ("_blocks", "blocks", "Lanes", "blocks")] {
+            self.document(out, what);
+            let _ = writeln!(out, "pub fn {name}{suffix}({}) -> ::core::result::Result<(), LengthError> {{", self.declared(of));
+            self.lengths(out);
+            if self.is_any() {
+                self.calls(out, &format!("{name}_{inner}"), ways);
+            }
+            let _ = writeln!(out, "    #[allow(unreachable_code)]\n    ::core::result::Result::Ok(())\n}}\n");
+        }
+    }
+
+    fn document(&self, out: &mut String, what: &str) {
+        let parts: Vec<&str> = self.signature.wanted.parts.iter().map(|p| p.function.summary).collect();
+        let _ = writeln!(out, "/// {}; for as many {what} as the first argument has.\n///", parts.join("; "));
+        let _ = writeln!(out, "/// # Errors\n/// If another slice has another length: nothing is computed.");
+    }
+
+    /// Arguments and results with their types.
+    fn declared(&self, of: &str) -> String {
+        let one = |a: &Array, r: &str| format!("{}: {r}[{}]", a.name, a.nested(of));
+        let inputs: String = inputs(&self.signature, self.sizes).iter().map(|a| one(a, "&") + ", ").collect();
+        let results: Vec<String> = results(&self.signature, self.sizes).iter().map(|a| one(a, "&mut ")).collect();
+        inputs + self.parameters().0 + &results.join(", ")
+    }
+
+    /// All slices have as many states as the first.
+    fn lengths(&self, out: &mut String) {
+        let arrays: Vec<Array> = inputs(&self.signature, self.sizes).into_iter().chain(results(&self.signature, self.sizes)).collect();
+        for other in &arrays[1..] {
+            let _ = writeln!(out, "    LengthError::unless(\"{0}\", {0}.len(), {1}.len())?;", other.name, arrays[0].name);
+        }
+    }
+
+    /// The call in the first instruction set that there is.
+    fn calls(&self, out: &mut String, inner: &str, ways: &[Way]) {
+        let inputs: String = self.inputs().iter().map(|a| a.flat(false) + ", ").collect();
+        let results: Vec<String> = self.results().iter().map(|a| a.flat(true)).collect();
+        let call = format!("{inner}({inputs}{}{})", self.parameters().1, results.join(", "));
+        for Way { module, cfg, asked, set, .. } in ways {
+            let call = if *set == Set::Portable {
+                format!("{module}::{call};")
+            } else {
+                format!("// SAFETY: the processor has these instructions.\n        unsafe {{ {module}::{call} }};")
+            };
+            let _ = writeln!(
+                out,
+                "    #[cfg({cfg})]\n    if {asked} {{\n        {call}\n        return ::core::result::Result::Ok(());\n    }}"
+            );
+        }
+    }
+}

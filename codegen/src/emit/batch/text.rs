@@ -1,0 +1,152 @@
+//! What generated batches have besides bodies.
+
+/// What bodies need besides the arithmetic.
+pub(super) const SUPPORT: &str = "\
+macro_rules! batch_support {
+    ($(#[$features:meta])?) => {
+        /// How many vectors a block has of each number.
+        const PARTS: usize = Lanes::LEN / LANES;
+
+        $(#[$features])?
+        #[inline]
+        fn at(from: &Lanes, part: usize) -> V {
+            load(&from.0.as_chunks::<LANES>().0[part])
+        }
+
+        $(#[$features])?
+        #[inline]
+        fn put(to: &mut Lanes, part: usize, x: V) {
+            store(x, &mut to.0.as_chunks_mut::<LANES>().0[part]);
+        }
+
+        /// States one after the other as a block.
+        $(#[$features])?
+        #[inline]
+        fn gather<const N: usize>(states: &[[Real; N]; Lanes::LEN], block: &mut [Lanes; N]) {
+            if N == 1 {
+                return block[0].0.copy_from_slice(states.as_flattened());
+            }
+            for part in 0..Lanes::LEN / STATES {
+                let states = &states.as_chunks::<STATES>().0[part];
+                let mut done = 0;
+                while WIDE > TILE && N >= WIDE && done + TILE < N {
+                    // The last tile is full too: some numbers are in two.
+                    let first = done.min(N - WIDE);
+                    take(&wide_columns(states, first), block, first, part);
+                    done = first + WIDE;
+                }
+                while done < N {
+                    let first = done.min(N.saturating_sub(TILE));
+                    take(&columns(states, first), block, first, part);
+                    done = first + TILE;
+                }
+            }
+        }
+
+        /// The way back.
+        $(#[$features])?
+        #[inline]
+        fn scatter<const N: usize>(block: &[Lanes; N], states: &mut [[Real; N]; Lanes::LEN]) {
+            if N == 1 {
+                return states.as_flattened_mut().copy_from_slice(&block[0].0);
+            }
+            for part in 0..Lanes::LEN / STATES {
+                let states = &mut states.as_chunks_mut::<STATES>().0[part];
+                let mut done = 0;
+                while WIDE > TILE && N >= WIDE && done + TILE < N {
+                    let first = done.min(N - WIDE);
+                    wide_rows(&tile(block, first, part), states, first);
+                    done = first + WIDE;
+                }
+                while done < N {
+                    let first = done.min(N.saturating_sub(TILE));
+                    rows(&tile(block, first, part), states, first);
+                    done = first + TILE;
+                }
+            }
+        }
+
+        /// Puts numbers `first` and on of some states into their block.
+        $(#[$features])?
+        #[inline]
+        fn take<const N: usize, const T: usize>(tile: &[[Real; STATES]; T], block: &mut [Lanes; N], first: usize, part: usize) {
+            for (column, lanes) in tile.iter().zip(&mut block[first..]) {
+                lanes.0.as_chunks_mut::<STATES>().0[part] = *column;
+            }
+        }
+
+        /// The way back.
+        $(#[$features])?
+        #[inline]
+        fn tile<const N: usize, const T: usize>(block: &[Lanes; N], first: usize, part: usize) -> [[Real; STATES]; T] {
+            let mut tile = [[0.0; STATES]; T];
+            for (column, lanes) in tile.iter_mut().zip(&block[first..]) {
+                *column = lanes.0.as_chunks::<STATES>().0[part];
+            }
+            tile
+        }
+
+        /// The last states, and the very last again until there are enough.
+        #[inline(never)]
+        fn filled<const N: usize>(states: &[[Real; N]]) -> [[Real; N]; Lanes::LEN] {
+            let mut filled = [[0.0; N]; Lanes::LEN];
+            for (lane, state) in filled.iter_mut().enumerate() {
+                *state = states[lane.min(states.len() - 1)];
+            }
+            filled
+        }
+
+        /// The states of a block that are wanted.
+        #[inline(never)]
+        fn scatter_some<const N: usize>(block: &[Lanes; N], states: &mut [[Real; N]]) {
+            for (lane, state) in states.iter_mut().enumerate() {
+                for k in 0..N {
+                    state[k] = block[k].0[lane];
+                }
+            }
+        }
+    };
+}
+
+";
+
+/// What the module shows besides the functions.
+pub(super) const PUBLIC: &str = "\
+    /// One number of each state of a block.
+    #[repr(align(64))]
+    #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq)]
+    pub struct Lanes(pub [REAL; BLOCK]);
+
+    impl Lanes {
+        /// How many states a block has.
+        pub const LEN: usize = BLOCK;
+        /// Zero in every state.
+        pub const ZERO: Self = Self([0.0; BLOCK]);
+    }
+
+    /// Slices of different lengths.
+    #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq, ::core::cmp::Eq)]
+    pub struct LengthError {
+        /// Which argument.
+        pub argument: &'static str,
+        /// How long it is.
+        pub found: usize,
+        /// How long the first one is.
+        pub expected: usize,
+    }
+
+    impl LengthError {
+        fn unless(argument: &'static str, found: usize, expected: usize) -> ::core::result::Result<(), Self> {
+            if found == expected { ::core::result::Result::Ok(()) } else { ::core::result::Result::Err(Self { argument, found, expected }) }
+        }
+    }
+
+    impl ::core::fmt::Display for LengthError {
+        fn fmt(&self, f: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
+            ::core::write!(f, \"argument {}: found {} states, expected {} as in the first argument\", self.argument, self.found, self.expected)
+        }
+    }
+
+    impl ::core::error::Error for LengthError {}
+
+";
