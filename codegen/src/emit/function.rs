@@ -10,9 +10,8 @@ use super::signature::Signature;
 use super::vector::Vector;
 use super::{plain, sets, vector};
 use crate::graph::Graph;
-use crate::ledger::Entry;
 use crate::program::Program;
-use crate::wanted::{Wanted, array};
+use crate::wanted::array;
 
 /// What the emitter must know besides the programs.
 #[derive(Clone, Copy)]
@@ -24,13 +23,13 @@ pub(super) struct Context {
 
 /// The function's source, with its documentation and, where it gives several results, the type that holds them.
 pub(super) fn function(out: &mut String, program: &Program, context: Context) {
-    let Program { wanted, graph, entry, .. } = program;
+    let Program { wanted, graph, .. } = program;
     let signature = Signature::of(wanted, context.sizes, context.parameters);
     signature.results_type(out);
     if in_lanes(graph) || is_long(graph) {
         body_macro(out, graph, &signature);
     }
-    document(out, wanted, entry, context.parameters);
+    document(out, program, context.parameters);
     let _ =
         writeln!(out, "#[allow({}clippy::all, clippy::pedantic)]", if context.forbid_unsafe { "" } else { "unsafe_code, unused_unsafe, " });
     let _ = writeln!(out, "pub fn {}({}) -> {} {{", wanted.name, signature.arguments(), signature.gives());
@@ -130,7 +129,8 @@ fn lanes_calls(out: &mut String, graph: &Graph, signature: &Signature) {
     block(sets::NEITHER, "portable", "", &format!("        whole({names})\n"));
 }
 
-fn document(out: &mut String, wanted: &Wanted, entry: &Entry, parameters: bool) {
+fn document(out: &mut String, program: &Program, parameters: bool) {
+    let Program { wanted, graph, entry, .. } = program;
     for part in &wanted.parts {
         let constants: Vec<String> = part.constants.iter().map(|(a, c)| format!("{} = {}", a.name(), shown(c))).collect();
         let at = if constants.is_empty() { String::new() } else { format!(", at {}", constants.join(", ")) };
@@ -148,10 +148,11 @@ fn document(out: &mut String, wanted: &Wanted, entry: &Entry, parameters: bool) 
     }
     let by = if entry.ways.is_empty() { String::new() } else { format!("By {}, the cheapest for this robot; ", entry.ways.join(", ")) };
     let c = entry.emitted();
-    let lanes = if entry.lanes > 1 { format!("; limbs that are alike in {} lanes", entry.lanes) } else { String::new() };
+    let mut form = if entry.lanes > 1 { format!("; limbs that are alike in {} lanes", entry.lanes) } else { String::new() };
+    form += if is_long(graph) { "; in pieces, so that it is compiled in less time" } else { "" };
     let _ = writeln!(
         out,
-        "/// {by}{} multiplications + {} additions in {} instructions (multiply-adds counted once), {} sines and cosines, depth {}{lanes}.",
+        "/// {by}{} multiplications + {} additions in {} instructions (multiply-adds counted once), {} sines and cosines, depth {}{form}.",
         c.multiplications(),
         c.additions(),
         c.instructions(),

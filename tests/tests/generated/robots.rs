@@ -64,7 +64,7 @@ fn frames(model: &Model<f64>) -> Vec<String> {
     chosen
 }
 
-/// What a compiler needs long for on the largest robot is generated there for wrenches only: without them it is the same with fewer terms.
+/// What a compiler needs long for on large robots is generated there for wrenches only: without them it is the same with fewer terms.
 const LONG: [&str; 2] = ["inverse_dynamics_derivatives", "forward_dynamics_derivatives"];
 
 fn has(model: &Model<f64>, frames: &[String], function: &Function<f64>, singular: bool) -> bool {
@@ -72,8 +72,8 @@ fn has(model: &Model<f64>, frames: &[String], function: &Function<f64>, singular
     let free = model.frames.iter().filter(|f| frames.contains(&f.name)).all(|f| freedoms(f) >= 6);
     match function.needs {
         Needs::Mass => model.moving_mass() > 0.0,
-        Needs::Nothing => model.nv < 30 || !LONG.contains(&function.name),
-        Needs::MassMatrix => !singular && (model.nv < 30 || !LONG.contains(&function.name)),
+        Needs::Nothing => model.nv < 18 || !LONG.contains(&function.name),
+        Needs::MassMatrix => !singular && (model.nv < 18 || !LONG.contains(&function.name)),
         Needs::FreeFrames => !singular && free,
     }
 }
