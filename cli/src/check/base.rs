@@ -4,7 +4,7 @@ use articulated_core::algorithm::{Argument, Workspace, inverse_dynamics};
 use articulated_core::joint::Joint;
 use articulated_core::model::Model;
 use articulated_core::model::pass::model_passes;
-use articulated_core::spatial::SpatialInertia;
+use articulated_core::spatial::{Placement, SpatialInertia};
 use serde::Serialize;
 
 use crate::states::{State, random};
@@ -34,6 +34,8 @@ pub(super) struct BaseRow {
     pub(super) joint: String,
     /// m, by which the frame of the joint was slid, in its axes (z along the joint).
     pub(super) slid: [f64; 3],
+    /// rad, by which it was turned about the joint.
+    pub(super) turned: f64,
     /// What is left to the body; the rest is its parent's.
     pub(super) parameters: Vec<Parameter>,
 }
@@ -131,8 +133,19 @@ fn row(i: usize, read: &Model<f64>, passed: &Model<f64>) -> BaseRow {
     };
     let parameters = units(body.joint).iter().map(|u| Parameter { name: u.0, value: value(u), felt: Felt::Never }).collect();
     let frame = read.frames.iter().position(|f| f.body == i);
-    let slid = frame.map_or([0.0; 3], |k| (read.frames[k].placement.position - passed.frames[k].placement.position).into());
-    BaseRow { joint: body.name.clone(), slid, parameters }
+    // x_read,passed of the body's frame, from where it has a link.
+    let moved = frame.map_or_else(Placement::identity, |k| {
+        let (before, after) = (&read.frames[k].placement, &passed.frames[k].placement);
+        let rotation = before.rotation * after.rotation.transpose();
+        Placement { rotation, position: before.position - rotation * after.position }
+    });
+    let turned = moved.rotation.m21.atan2(moved.rotation.m11);
+    BaseRow { joint: body.name.clone(), slid: tidy(moved.position.into()), turned: tidy([turned])[0], parameters }
+}
+
+/// Without rounding errors where frames stayed.
+fn tidy<const N: usize>(x: [f64; N]) -> [f64; N] {
+    x.map(|x| if x.abs() < 1e-14 { 0.0 } else { x })
 }
 
 /// For each parameter the torques of one unit of it alone, over a number of states.

@@ -129,22 +129,23 @@ fn base_parameters(base: &Base) -> String {
     };
     let head = format!(
         "{merged}of {parameters} inertial parameters regrouping leaves {regrouped}, and torques determine {identifiable}: from the tips inward, in (brackets) what only\n\
-         combinations with those before show, left out what no torque shows; about the joint's frame where it was slid to, in its axes; SI units"
+         combinations with those before show, left out what no torque shows; about the joint's frame where it was moved to, in its axes; SI units"
     );
-    let mut table = Table::new([("joint", ""), ("slid by", ""), ("parameters", "")]).left(3);
+    let mut table = Table::new([("joint", ""), ("frame slid by", "m"), ("parameters", "")]).left(3);
     for row in joints {
-        table.row([row.joint.clone(), slid(row), felt(row)]);
+        table.row([row.joint.clone(), moved(row), felt(row)]);
     }
     format!("{head}\n\n{}", table.text())
 }
 
-/// Along the joint; all three numbers if it was shifted another way.
-fn slid(row: &BaseRow) -> String {
-    match row.slid {
+/// Along the joint; all three numbers if it was shifted another way; and how far it was turned about it.
+fn moved(row: &BaseRow) -> String {
+    let slid = match row.slid {
         [0.0, 0.0, 0.0] => "–".into(),
         [0.0, 0.0, z] => number(z),
         all => all.map(number).join(" "),
-    }
+    };
+    if row.turned == 0.0 { slid } else { format!("{slid}, turned {} rad", number(row.turned)) }
 }
 
 fn felt(row: &BaseRow) -> String {

@@ -78,6 +78,41 @@ pub struct Coordinates<S> {
     pub mimic: Option<Follow<S>>,
     /// How far a helical joint slides, m/rad; zero for every other.
     pub pitch: S,
+    /// Where the angle of a revolute joint is counted from: its frame is turned by q and this.
+    pub from: Angle<S>,
+}
+
+/// A constant angle, by its sine and cosine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Angle<S> {
+    /// Its sine.
+    pub sin: S,
+    /// Its cosine.
+    pub cos: S,
+}
+
+impl<S: Scalar> Angle<S> {
+    /// No angle.
+    pub fn zero() -> Self {
+        Self { sin: S::zero(), cos: S::one() }
+    }
+
+    /// Whether it is none.
+    pub fn is_zero(&self) -> bool {
+        *self == Self::zero()
+    }
+
+    /// Rz of the angle.
+    pub fn rotation(&self) -> Matrix3<S> {
+        let (o, Self { sin, cos }) = (S::zero(), *self);
+        Matrix3::new(cos, -sin, o, sin, cos, o, o, o, S::one())
+    }
+
+    /// The sum with the angle of this sine and cosine.
+    #[inline(always)]
+    pub fn plus(&self, (sin, cos): (S, S)) -> (S, S) {
+        (sin * self.cos + cos * self.sin, cos * self.cos - sin * self.sin)
+    }
 }
 
 /// The law by which a joint follows another.
@@ -127,7 +162,8 @@ impl<S: Scalar> Coordinates<S> {
     #[cfg(feature = "alloc")]
     pub(crate) fn map<T: Scalar>(&self, f: impl Fn(S) -> T) -> Coordinates<T> {
         let mimic = self.mimic.as_ref().map(|m| Follow { multiplier: f(m.multiplier), offset: f(m.offset) });
-        Coordinates { q: self.q, v: self.v, mimic, pitch: f(self.pitch) }
+        let from = Angle { sin: f(self.from.sin), cos: f(self.from.cos) };
+        Coordinates { q: self.q, v: self.v, mimic, pitch: f(self.pitch), from }
     }
 }
 

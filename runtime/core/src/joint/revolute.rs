@@ -16,7 +16,8 @@ pub struct Revolute<S> {
 impl<S: Scalar> JointLaw<S> for Revolute<S> {
     #[inline(always)]
     fn at(at: &Coordinates<S>, q: &[S]) -> Self {
-        let (sin, cos) = at.coordinate(q).sin_cos();
+        let turned = at.coordinate(q).sin_cos();
+        let (sin, cos) = if at.from.is_zero() { turned } else { at.from.plus(turned) };
         Self { sin, cos }
     }
 

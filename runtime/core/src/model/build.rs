@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{Body, FLOATING_BASE, Frame, GRAVITY, JointInfo, Model};
 use crate::description::{self, Base, Description, Inertial, JointKind, Mimic, Origin};
-use crate::joint::{Coordinates, Follow, Joint, JointLaw};
+use crate::joint::{Angle, Coordinates, Follow, Joint, JointLaw};
 use crate::spatial::{Placement, Reference, SpatialInertia, from_rpy, to_z_axis};
 use crate::with_pose;
 
@@ -154,7 +154,7 @@ impl<'a> Builder<'a> {
         for stage in &stages {
             // Turn the frames so that the axis is z; the link's frame stays where it was.
             let turned = x_joint.compose(&turned(stage.turn));
-            let coordinates = Coordinates { q: first.q + stage.at, v: first.v + stage.at, pitch: per_radian(joint), mimic: None };
+            let coordinates = Coordinates { q: first.q + stage.at, v: first.v + stage.at, pitch: per_radian(joint), ..AT_ZERO };
             parent = self.push_body(joint.name.clone(), parent, turned, stage.joint, coordinates);
             x_joint = turned_back(stage.turn);
         }
@@ -237,7 +237,7 @@ impl<'a> Builder<'a> {
                 None if joint.kind.sizes() == (1, 1) => {
                     let Coordinates { q, v, .. } = body.coordinates;
                     let pitch = per_radian(&joints[follower]);
-                    return Some(Coordinates { q, v, mimic: Some(Follow { multiplier, offset }), pitch });
+                    return Some(Coordinates { q, v, mimic: Some(Follow { multiplier, offset }), pitch, ..AT_ZERO });
                 }
                 None => return None,
                 // multiplier · (m q + o) + offset
@@ -255,7 +255,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-const AT_ZERO: Coordinates<f64> = Coordinates { q: 0, v: 0, mimic: None, pitch: 0.0 };
+const AT_ZERO: Coordinates<f64> = Coordinates { q: 0, v: 0, mimic: None, pitch: 0.0, from: Angle { sin: 0.0, cos: 1.0 } };
 
 /// An elementary joint as part of a joint of the file.
 struct Stage {

@@ -114,7 +114,7 @@ mod tests {
     use alloc::vec;
     use alloc::vec::Vec;
 
-    use crate::joint::{Coordinates, Joint};
+    use crate::joint::{Angle, Coordinates, Joint};
     use crate::model::{Body, Model};
     use crate::spatial::{Placement, Reference, SpatialInertia};
     use nalgebra::{Matrix3, Vector3};
@@ -126,7 +126,7 @@ mod tests {
             parent,
             placement: Placement { rotation: Matrix3::identity(), position: Vector3::new(i as f64, 0.0, 0.0) },
             joint: Joint::Revolute,
-            coordinates: Coordinates { q: i.saturating_sub(1), v: i.saturating_sub(1), mimic: None, pitch: 0.0 },
+            coordinates: Coordinates { q: i.saturating_sub(1), v: i.saturating_sub(1), mimic: None, pitch: 0.0, from: Angle::zero() },
             inertia: SpatialInertia::zero(),
             link: None,
         };

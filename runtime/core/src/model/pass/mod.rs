@@ -3,12 +3,14 @@
 mod places;
 mod regroup;
 mod slide;
+mod turn;
 mod zeros;
 
 use core::marker::PhantomData;
 
 pub use regroup::regroup;
 pub use slide::slide;
+pub use turn::turn;
 
 use super::Model;
 use crate::Scalar;
@@ -20,6 +22,11 @@ struct Table<S>(PhantomData<S>);
 
 impl<S: Scalar> Table<S> {
     const ROWS: &'static [(&'static str, ModelPass<S>, &'static str)] = &[
+        (
+            "turn",
+            turn,
+            "frames of revolute bodies are turned about their axes to where rotations have zeros, and angles counted from there; frames of links are where they were",
+        ),
         (
             "regroup",
             regroup,

@@ -1,0 +1,158 @@
+//! Frames turned about the axes of their joints, to where rotations have zeros.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::zeros::{or_zero, within};
+use crate::Scalar;
+use crate::joint::{Angle, Joint};
+use crate::model::Model;
+use crate::spatial::{Placement, rotate_back};
+
+/// Turns the frame of each revolute body about its axis, so that the fixed rotations between joints have fewer numbers.
+///
+/// A frame may point anywhere around the axis of its joint if the joint's angle is counted from there: a fixed rotation R followed by Rz(q) is R'
+/// followed by Rz(q + o), with R = R' Rz(o). So of a rotation given by three angles one is left, or none where the axis is a coordinate axis of its
+/// parent, and the constant o goes into the sine and cosine of q. A body is turned for its children too where that costs less. Exact for all joint
+/// torques; frames of links stay where they are in space.
+pub fn turn<S: Scalar>(mut model: Model<S>) -> Model<S> {
+    let mut hanging = vec![Hanging::default(); model.bodies.len()];
+    model.outward().for_each(|i| hanging[model.bodies[i].parent].bodies.push(i));
+    model.frames.iter().enumerate().for_each(|(k, frame)| hanging[frame.body].frames.push(k));
+    for i in model.outward() {
+        if model.bodies[i].joint != Joint::Revolute || !known(&model.bodies[i].placement.rotation) {
+            continue;
+        }
+        let angle = best(&model, i, &hanging[i].bodies);
+        if !angle.is_zero() {
+            turn_body(&mut model, i, &angle, &hanging[i]);
+        }
+        // On the base only gravity is turned, and that once and for all.
+        if model.bodies[i].parent != 0 {
+            count_from_there(&mut model, i);
+        }
+    }
+    model
+}
+
+/// What hangs on a body: other bodies, and frames of links.
+#[derive(Clone, Default)]
+struct Hanging {
+    bodies: Vec<usize>,
+    frames: Vec<usize>,
+}
+
+/// Instructions for a number of a rotation (of angular velocity and acceleration, acceleration, moment and force), of an offset, of h and of Σ off the diagonal, and for
+/// an angle counted from elsewhere.
+const ROTATION: u32 = 5;
+const OFFSET: u32 = 5;
+const FIRST: u32 = 5;
+const SECOND: u32 = 4;
+const ANGLE: u32 = 4;
+
+/// How far body `i` is best turned for its children, of no turn and those that bring the axis of a child into a coordinate plane.
+fn best<S: Scalar>(model: &Model<S>, i: usize, children: &[usize]) -> Angle<S> {
+    let mut best: Option<(u32, Angle<S>)> = None;
+    for child in children.iter().map(|&k| &model.bodies[k]).filter(|b| known(&b.placement.rotation)) {
+        let z = child.placement.rotation.column(2);
+        if z.x == S::zero() || z.y == S::zero() {
+            continue;
+        }
+        let length = (z.x * z.x + z.y * z.y).sqrt();
+        let (x, y) = (z.x / length, z.y / length);
+        // The new x-axis, or the new y-axis, below the child's axis.
+        for angle in [Angle { sin: y, cos: x }, Angle { sin: -x, cos: y }] {
+            let none = || (cost(model, i, &Angle::zero(), children), Angle::zero());
+            let cost = cost(model, i, &angle, children);
+            let before = *best.get_or_insert_with(none);
+            if cost < before.0 {
+                best = Some((cost, angle));
+            }
+        }
+    }
+    best.map_or_else(Angle::zero, |(_, angle)| angle)
+}
+
+/// What body `i` and the rotations and offsets of its children cost when it is turned.
+fn cost<S: Scalar>(model: &Model<S>, i: usize, angle: &Angle<S>, children: &[usize]) -> u32 {
+    let inertia = model.bodies[i].inertia.turned(&angle.rotation().transpose());
+    let (h, s) = (inertia.first, inertia.second);
+    let own = FIRST * count(&[h.x, h.y]) + SECOND * count(&[s.m12, s.m13, s.m23]) + if is_quarter(angle) { 0 } else { ANGLE };
+    children.iter().map(|&k| &model.bodies[k]).fold(own, |sum, child| {
+        let (rotation, position) = (turned(&child.placement.rotation, angle), back(angle, child.placement.position));
+        let from_there = (child.joint == Joint::Revolute).then(|| plain(&rotation)).flatten();
+        let (rotation, angle) = from_there.unwrap_or((rotation, Angle::zero()));
+        let numbers = rotation.iter().filter(|x| **x != S::zero() && **x != S::one() && **x != -S::one()).count() as u32;
+        sum + ROTATION * numbers + OFFSET * count(position.as_slice()) + if is_quarter(&angle) { 0 } else { ANGLE }
+    })
+}
+
+/// Whether sine and cosine of q change places at most.
+fn is_quarter<S: Scalar>(angle: &Angle<S>) -> bool {
+    angle.sin == S::zero() || angle.cos == S::zero()
+}
+
+/// Turns the frame of body `i` about its axis, with the joint's frame.
+fn turn_body<S: Scalar>(model: &mut Model<S>, i: usize, angle: &Angle<S>, hanging: &Hanging) {
+    let rotation = angle.rotation();
+    let body = &mut model.bodies[i];
+    body.placement.rotation = (body.placement.rotation * rotation).map(tidy);
+    body.inertia = body.inertia.turned(&rotation.transpose());
+    body.link = body.link.map(|link| rotation.transpose() * link);
+    let turn = |x: &mut Placement<S>| *x = Placement { rotation: turned(&x.rotation, angle), position: back(angle, x.position) };
+    hanging.bodies.iter().for_each(|&k| turn(&mut model.bodies[k].placement));
+    hanging.frames.iter().for_each(|&k| turn(&mut model.frames[k].placement));
+}
+
+/// Replaces the fixed rotation of body `i` by the plain one about the same axis, and counts the joint's angle from there.
+fn count_from_there<S: Scalar>(model: &mut Model<S>, i: usize) {
+    let body = &mut model.bodies[i];
+    body.placement.rotation = body.placement.rotation.map(tidy);
+    if let Some((rotation, angle)) = plain(&body.placement.rotation) {
+        body.placement.rotation = rotation;
+        body.coordinates.from = angle;
+    }
+}
+
+/// R' and o with R = R' Rz(o), R' the same for all R with this third column, as the model's builder would have it. `None` where no coordinate axis is at right angles to
+/// that.
+fn plain<S: Scalar>(r: &Matrix3<S>) -> Option<(Matrix3<S>, Angle<S>)> {
+    let (o, x, z) = (S::zero(), r.column(0), r.column(2).into_owned());
+    let k = match [z.x == o, z.y == o, z.z == o] {
+        [true, false, true] if within(o, z.y) => 2,
+        [false, true, true] => 1,
+        zeros => zeros.iter().position(|zero| *zero)?,
+    };
+    let new_x = Vector3::from_fn(|j, _| if j == k { S::one() } else { o });
+    let new_y = z.cross(&new_x);
+    let angle = Angle { sin: tidy(new_y.dot(&x)), cos: tidy(new_x.dot(&x)) };
+    Some((Matrix3::from_columns(&[new_x, new_y, z]), angle))
+}
+
+/// A rotation or a direction of the parent's, when the parent is turned.
+fn turned<S: Scalar>(r: &Matrix3<S>, angle: &Angle<S>) -> Matrix3<S> {
+    (angle.rotation().transpose() * r).map(tidy)
+}
+
+fn back<S: Scalar>(angle: &Angle<S>, x: Vector3<S>) -> Vector3<S> {
+    let size = x.fold(S::zero(), |sum, x| sum + x.abs());
+    rotate_back(&angle.rotation(), x).map(|x| or_zero(x, size))
+}
+
+/// A number of a rotation: 0, 1 or −1 where it is that but for rounding.
+fn tidy<S: Scalar>(x: S) -> S {
+    let one = S::one();
+    let near = |value: S| or_zero(x - value, one) == S::zero();
+    [S::zero(), one, -one].into_iter().find(|value| near(*value)).unwrap_or(x)
+}
+
+fn count<S: Scalar>(x: &[S]) -> u32 {
+    x.iter().filter(|x| **x != S::zero()).count() as u32
+}
+
+/// Whether the numbers are known, and not symbols.
+fn known<S: Scalar>(r: &Matrix3<S>) -> bool {
+    r.iter().all(|x| within(x.abs(), S::one() + S::one()))
+}
