@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::inertia::complement;
 use super::{SpatialInertia, Twist, Wrench, rotate, rotate_back};
 use crate::Scalar;
 
@@ -41,14 +42,13 @@ impl<S: Scalar> CoriolisInertia<S> {
     /// B ω = [(tr(K)·1 − K) ω; ω × p].
     #[inline(always)]
     pub fn wrench(&self, omega: Vector3<S>) -> Wrench<S> {
-        let moment = omega * self.second.trace() - rotate(&self.second, omega);
-        Wrench { moment, force: omega.cross(&self.momentum) }
+        Wrench { moment: rotate(&complement(&self.second), omega), force: omega.cross(&self.momentum) }
     }
 
     /// Bᵀ V: what the wrench B ω does to the twist V is ω·(Bᵀ V).
     #[inline(always)]
     pub fn transposed(&self, twist: &Twist<S>) -> Vector3<S> {
-        twist.angular * self.second.trace() - rotate_back(&self.second, twist.angular) + self.momentum.cross(&twist.linear)
+        rotate_back(&complement(&self.second), twist.angular) + self.momentum.cross(&twist.linear)
     }
 }
 

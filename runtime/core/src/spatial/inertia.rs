@@ -63,8 +63,7 @@ impl<S: Scalar> SpatialInertia<S> {
     pub fn apply(&self, v: &super::Twist<S>) -> Wrench<S> {
         let h = self.first;
         // (tr(Σ)·1 − Σ) ω
-        let spin = v.angular * self.second.trace() - rotate(&self.second, v.angular);
-        Wrench { moment: spin + h.cross(&v.linear), force: v.linear * self.mass + v.angular.cross(&h) }
+        Wrench { moment: rotate(&self.rotational(), v.angular) + h.cross(&v.linear), force: v.linear * self.mass + v.angular.cross(&h) }
     }
 
     /// The same body about the origin that lies at −`d`: h' = h + m d, Σ' = Σ + x dᵀ + d xᵀ with x = h + ½ m d.
@@ -86,8 +85,9 @@ impl<S: Scalar> SpatialInertia<S> {
     }
 
     /// Rotational inertia about the origin, tr(Σ)·1 − Σ, kg·m².
+    #[inline(always)]
     pub fn rotational(&self) -> Matrix3<S> {
-        Matrix3::from_diagonal_element(self.second.trace()) - self.second
+        complement(&self.second)
     }
 
     /// From the ten inertial parameters m, m·c and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz, I about the origin; kg, kg·m, kg·m². Σ = ½ tr(I)·1 − I.
@@ -117,6 +117,12 @@ impl<S: Scalar> core::ops::AddAssign for SpatialInertia<S> {
         self.first += other.first;
         self.second += other.second;
     }
+}
+
+/// tr(M)·1 − M, with a sum of two in each place of the diagonal.
+#[inline(always)]
+pub(super) fn complement<S: Scalar>(m: &Matrix3<S>) -> Matrix3<S> {
+    Matrix3::new(m.m22 + m.m33, -m.m12, -m.m13, -m.m21, m.m11 + m.m33, -m.m23, -m.m31, -m.m32, m.m11 + m.m22)
 }
 
 /// The upper triangle, mirrored: rounding must not make a symmetric matrix lopsided.
