@@ -6,6 +6,12 @@ use crate::graph::{Graph, Node, NodeId, Op};
 /// Multiplications or multiply-adds that a processor begins in a cycle.
 const A_CYCLE: u32 = 2;
 
+/// The part of its time by which the last result may be late: fewer instructions are worth that, and no more, as a processor looks only so far ahead.
+const GRACE: u32 = 16;
+
+/// Instructions from which on a program nearly fills the cache for instructions: then nothing is worth more of them.
+const LONG: u32 = 1800;
+
 /// Flattens nested sums and rebuilds each as a chain, in which every product that only sums use is part of a multiply-add.
 ///
 /// A chain takes its terms in the order in which they become known, so that the last one waits for nothing but itself. Each sum is due when the last
@@ -147,11 +153,18 @@ impl Builder<'_> {
         id
     }
 
-    /// When the value of each old node is due, in cycles: the last result is known no later than it is here, or than the instructions take.
+    /// When the value of each old node is due, in cycles, for the last result to be known in time: a little later than it is here, if the instructions take longer anyway,
+    /// and of a long program when these are done.
     fn due(&self) -> Vec<u32> {
         let nodes = self.new.nodes();
-        let last = self.new.outputs.iter().map(|o| self.arrival[o.index()]).max().unwrap_or(0);
-        let last = last.max(self.new.counts().instructions() as u32 / A_CYCLE);
+        let earliest = self.new.outputs.iter().map(|o| self.arrival[o.index()]).max().unwrap_or(0);
+        let instructions = self.new.counts().instructions() as u32;
+        let busy = instructions / A_CYCLE;
+        let last = match busy > earliest {
+            true if instructions > LONG => busy,
+            true => earliest + earliest / GRACE,
+            false => earliest,
+        };
         let mut due = vec![last; nodes.len()];
         for (k, node) in nodes.iter().enumerate().rev() {
             let start = due[k].saturating_sub(node.op.row().latency);
