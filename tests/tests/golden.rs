@@ -39,22 +39,24 @@ fn the_module_of_a_pendulum() {
 fn the_ledger_of_operations() {
     let mut out = String::from(
         "# Operations of the generated functions. mul, add: multiplications and additions; ins: instructions, multiply-adds counted\n\
-         # once; trig: sines and cosines; depth: longest chain of operations. A rise needs a reason.\n",
+         # once; trig: sines and cosines; depth: longest chain of operations; lanes: limbs that are computed at once, an operation being one on vectors of so\n\
+         # many numbers. A rise needs a reason.\n",
     );
-    let _ = writeln!(out, "{:<18}{:<44}{:>6}{:>6}{:>6}{:>6}{:>6}", "robot", "function", "mul", "add", "ins", "trig", "depth");
+    let _ = writeln!(out, "{:<18}{:<44}{:>6}{:>6}{:>6}{:>6}{:>6}{:>6}", "robot", "function", "mul", "add", "ins", "trig", "depth", "lanes");
     for robot in ROBOTS {
         for entry in &generated(robot.name).ledger.functions {
             let c = entry.emitted();
             let _ = writeln!(
                 out,
-                "{:<18}{:<44}{:>6}{:>6}{:>6}{:>6}{:>6}",
+                "{:<18}{:<44}{:>6}{:>6}{:>6}{:>6}{:>6}{:>6}",
                 robot.name,
                 entry.function,
                 c.multiplications(),
                 c.additions(),
                 c.instructions(),
                 c.trigonometric(),
-                entry.depth
+                entry.depth,
+                entry.lanes
             );
         }
     }

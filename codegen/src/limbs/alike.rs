@@ -35,7 +35,7 @@ impl Alike {
             let start = |at: fn(&Model<f64>, usize) -> usize| bodies.iter().map(|&i| at(model, i)).collect::<Vec<_>>();
             align(&mut alike.q, &start(|m, i| m.bodies[i].coordinates.q), first.nq());
             align(&mut alike.v, &start(|m, i| m.bodies[i].coordinates.v), first.nv());
-            let frames: Vec<Vec<usize>> = bodies.iter().map(|&i| frames_of(model, i)).collect();
+            let frames = frames_of(model, &bodies);
             for k in 0..frames[0].len() {
                 align(&mut alike.frames, &frames.iter().map(|f| f[k]).collect::<Vec<_>>(), 1);
             }
@@ -71,7 +71,7 @@ impl Alike {
                 let symbols = constants.symbols(&numbers, lane);
                 symbolic.bodies[i] = model.bodies[i].map(|_| next(&symbols));
             }
-            let frames: Vec<Vec<usize>> = bodies.iter().map(|&i| frames_of(model, i)).collect();
+            let frames = frames_of(model, &bodies);
             for k in 0..frames[0].len() {
                 let numbers: Vec<Vec<f64>> = frames.iter().map(|f| recorded(|g| drop(model.frames[f[k]].map(g)))).collect();
                 for (lane, f) in frames.iter().enumerate() {
@@ -84,8 +84,12 @@ impl Alike {
     }
 }
 
-fn frames_of(model: &Model<f64>, body: usize) -> Vec<usize> {
-    (0..model.frames.len()).filter(|&k| model.frames[k].body == body).collect()
+/// The frames of each of these bodies; none if some carry more than others: then they stand for themselves.
+fn frames_of(model: &Model<f64>, bodies: &[usize]) -> Vec<Vec<usize>> {
+    let of = |&body: &usize| (0..model.frames.len()).filter(|&k| model.frames[k].body == body).collect::<Vec<_>>();
+    let frames: Vec<Vec<usize>> = bodies.iter().map(of).collect();
+    let alike = frames.iter().all(|f| f.len() == frames[0].len());
+    if alike { frames } else { vec![Vec::new(); bodies.len()] }
 }
 
 fn align(indices: &mut Indices, starts: &[usize], n: usize) {

@@ -33,14 +33,13 @@ struct Kind {
     at: (usize, usize),
     follows: bool,
     is_link: bool,
-    frames: usize,
 }
 
 /// First body of a branch and the kinds of its bodies, if it stands for itself.
 type Branch = (usize, Option<Vec<Kind>>);
 
 impl<S: Scalar> Model<S> {
-    /// The sets of `width` branches that are alike, from the base outward: the same joints in the same order with as many frames on each body.
+    /// The sets of `width` branches that are alike, from the base outward: the same joints in the same order, whatever frames they carry.
     /// Constants may differ, so that mirrored limbs are alike. Where more are alike than `width`, the first go together, then the next; what is left over
     /// stands for itself.
     ///
@@ -100,7 +99,6 @@ impl<S: Scalar> Model<S> {
                 at,
                 follows: body.coordinates.mimic.is_some(),
                 is_link: body.link.is_some(),
-                frames: self.frames.iter().filter(|f| f.body == i).count(),
             })
         };
         branch.clone().map(kind).collect()
