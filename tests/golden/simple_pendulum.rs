@@ -61,7 +61,7 @@ pub mod frame {
 ///
 /// forward kinematics; Featherstone 2008, §4.4.
 /// 0 multiplications + 0 additions in 1 instructions (multiply-adds counted once), 2 sines and cosines, depth 2.
-#[allow(clippy::all, clippy::pedantic)]
+#[allow(unsafe_code, unused_unsafe, clippy::all, clippy::pedantic)]
 pub fn placements(q: &[f64; NQ]) -> [[f64; 12]; FRAMES] {
     let _ = q;
     let x2 = q[0];
@@ -80,8 +80,13 @@ pub fn placements(q: &[f64; NQ]) -> [[f64; 12]; FRAMES] {
 ///
 /// RNEA; Featherstone 2008, Table 5.1.
 /// 3 multiplications + 2 additions in 4 instructions (multiply-adds counted once), 1 sines and cosines, depth 3.
-#[allow(clippy::all, clippy::pedantic)]
+#[allow(unsafe_code, unused_unsafe, clippy::all, clippy::pedantic)]
 pub fn inverse_dynamics(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV]) -> [f64; NV] {
+    let _ = q;
+    let _ = v;
+    let _ = a;
+    #[inline(always)]
+    fn body<const FUSED: bool>(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV]) -> [f64; NV] {
     let _ = q;
     let _ = v;
     let _ = a;
@@ -90,16 +95,30 @@ pub fn inverse_dynamics(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV]) -> [f64; NV
     let x3 = a[0];
     let x6 = 9.81 * x5;
     let x7 = 1.0005 * x3;
-    let x8 = fma(0.0005, x3, x7);
+    let x8 = fma::<FUSED>(0.0005, x3, x7);
     let x9 = x6 + x8;
     [x9]
+    }
+    #[cfg(all(target_arch = "x86_64", not(all(target_feature = "avx2", target_feature = "fma"))))]
+    if ::std::is_x86_feature_detected!("avx2") && ::std::is_x86_feature_detected!("fma") {
+        #[target_feature(enable = "avx2,fma")]
+        fn fused(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV]) -> [f64; NV] {
+            body::<true>(q, v, a)
+        }
+        // SAFETY: the processor was just asked for both.
+        return unsafe { fused(q, v, a) };
+    }
+    body::<FUSED>(q, v, a)
 }
 
-/// a·b + c: one instruction, and one rounding, where the target has it.
+/// Whether this is compiled for a processor on which a·b + c is one instruction.
+const FUSED: bool = ::core::cfg!(any(all(target_arch = "x86_64", target_feature = "avx2", target_feature = "fma"), target_arch = "aarch64"));
+
+/// a·b + c: one instruction, and one rounding, where the processor has it.
 #[inline(always)]
 #[allow(clippy::all, clippy::pedantic)]
-fn fma(a: f64, b: f64, c: f64) -> f64 {
-    if ::core::cfg!(any(target_feature = "fma", target_arch = "aarch64")) { a.mul_add(b, c) } else { a * b + c }
+fn fma<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
+    if FUSED { a.mul_add(b, c) } else { a * b + c }
 }
 
 /// The robot as a value, for code over the trait `Dynamics`.
