@@ -53,6 +53,16 @@ articulated::robot! {
     }
 }
 
+articulated::robot! {
+    /// Many states at once: vectors, matrices, and several results in one.
+    mod many {
+        urdf = "robots/arm.urdf",
+        frames = [tool],
+        functions = [inverse_dynamics, mass_matrix, kinetic_energy, static_torque, both = bias_forces + mass_matrix],
+        batch = [f64, f32],
+    }
+}
+
 const URDF: &str = include_str!("../../robots/arm.urdf");
 const Q: [f64; 3] = [0.4, -0.9, 1.3];
 const V: [f64; 3] = [1.1, 0.3, -0.8];
@@ -89,10 +99,84 @@ fn sines_that_are_given_are_taken() {
     same(&arm::quick(&Q, &V, &A, &sines(&other)), &arm::inverse_dynamics(&other, &V, &A));
 }
 
+/// A number that looks random, in [−1, 1).
+fn number(k: usize) -> f64 {
+    (k as f64 * 0.754_877_666_246_692_7).fract() * 2.0 - 1.0
+}
+
+fn states(n: usize, salt: usize) -> Vec<[f64; 3]> {
+    (0..n).map(|i| std::array::from_fn(|k| number(3 * i + k + salt))).collect()
+}
+
+#[test]
+fn a_batch_gives_what_each_state_gives() {
+    // Every remainder of a block, and more than one.
+    for n in 0..=35 {
+        let [q, v, a] = [1, 101, 211].map(|salt| states(n, salt));
+        let wrenches: Vec<[[f64; 6]; 1]> = (0..n).map(|i| [std::array::from_fn(|k| number(6 * i + k + 307))]).collect();
+        let mut tau = vec![[f64::NAN; 3]; n];
+        many::batch_f64::inverse_dynamics(&q, &v, &a, &mut tau).unwrap();
+        let mut pushed = tau.clone();
+        many::batch_f64::static_torque(&q, &wrenches, &mut pushed).unwrap();
+        let (mut energy, mut mass, mut bias) = (vec![f64::NAN; n], vec![[[f64::NAN; 3]; 3]; n], tau.clone());
+        many::batch_f64::kinetic_energy(&q, &v, &mut energy).unwrap();
+        many::batch_f64::both(&q, &v, &mut bias, &mut mass).unwrap();
+        for i in 0..n {
+            same(&tau[i], &many::inverse_dynamics(&q[i], &v[i], &a[i]));
+            same(&pushed[i], &many::static_torque(&q[i], &wrenches[i]));
+            same(&[energy[i]], &[many::kinetic_energy(&q[i], &v[i])]);
+            same(&bias[i], &many::both(&q[i], &v[i]).bias_forces);
+            same(mass[i].as_flattened(), many::mass_matrix(&q[i]).as_flattened());
+        }
+    }
+}
+
+#[test]
+fn a_batch_in_f32_is_as_good_as_f32_is() {
+    let single = |x: Vec<[f64; 3]>| x.into_iter().map(|y| y.map(|z| z as f32)).collect::<Vec<[f32; 3]>>();
+    let [q, v, a] = [1, 101, 211].map(|salt| single(states(37, salt)));
+    let mut tau = vec![[f32::NAN; 3]; 37];
+    many::batch_f32::inverse_dynamics(&q, &v, &a, &mut tau).unwrap();
+    for i in 0..37 {
+        let [q, v, a] = [q[i], v[i], a[i]].map(|x| x.map(f64::from));
+        let expected = many::inverse_dynamics(&q, &v, &a);
+        let size = expected.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
+        assert!(
+            (0..3).all(|k| (f64::from(tau[i][k]) - expected[k]).abs() <= 16.0 * f64::from(f32::EPSILON) * size),
+            "{i}: {:?} {expected:?}",
+            tau[i]
+        );
+    }
+}
+
+#[test]
+fn blocks_of_states_are_states() {
+    use many::batch_f64::Lanes;
+    let [q, v, a] = [1, 101, 211].map(|salt| states(3 * Lanes::LEN, salt));
+    let blocks = |x: &[[f64; 3]]| -> Vec<[Lanes; 3]> {
+        x.chunks(Lanes::LEN).map(|c| std::array::from_fn(|k| Lanes(std::array::from_fn(|lane| c[lane][k])))).collect()
+    };
+    let mut tau = vec![[Lanes::ZERO; 3]; 3];
+    many::batch_f64::inverse_dynamics_blocks(&blocks(&q), &blocks(&v), &blocks(&a), &mut tau).unwrap();
+    for i in 0..q.len() {
+        let found: [f64; 3] = std::array::from_fn(|k| tau[i / Lanes::LEN][k].0[i % Lanes::LEN]);
+        same(&found, &many::inverse_dynamics(&q[i], &v[i], &a[i]));
+    }
+}
+
+#[test]
+fn slices_of_different_lengths_are_an_error_and_nothing_is_written() {
+    let (q, v) = (states(5, 1), states(4, 2));
+    let mut out = vec![[7.0; 3]; 5];
+    let error = many::batch_f64::inverse_dynamics(&q, &v, &q, &mut out).unwrap_err();
+    assert_eq!((error.argument, error.found, error.expected), ("v", 4, 5));
+    assert_eq!(many::batch_f64::inverse_dynamics(&q, &q, &q, &mut out[..3]).unwrap_err().argument, "out");
+    assert_eq!(out, [[7.0; 3]; 5]);
+}
+
 #[test]
 fn limbs_in_lanes_give_what_each_gives_for_itself() {
     const NQ: usize = in_lanes::NQ;
-    let number = |k: usize| (k as f64 * 0.754_877_666_246_692_7).fract() * 2.0 - 1.0;
     for state in 0..20 {
         let mut q: [f64; NQ] = std::array::from_fn(|k| number(k + 31 * state));
         let size = q[3..7].iter().map(|x| x * x).sum::<f64>().sqrt();
