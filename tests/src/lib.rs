@@ -5,6 +5,7 @@
 //! compiled and run as a user's program would be ([`program`]). The laws themselves are in `tests/`.
 
 pub mod answers;
+pub mod batch_program;
 pub mod case;
 pub mod fixture;
 pub mod golden;

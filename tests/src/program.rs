@@ -24,12 +24,17 @@ impl Program {
     /// # Panics
     /// If the compiler refuses the program: its message is printed.
     pub fn build(robots: &[(&str, &Generated)], flags: &[&str]) -> Self {
+        Self::of(robots, &main(robots), flags)
+    }
+
+    /// The same with another `main`, which has to keep to what [`Program::run`] sends and reads.
+    pub(crate) fn of(robots: &[(&str, &Generated)], main: &str, flags: &[&str]) -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("a folder that can be written");
         for (name, generated) in robots {
             write(&format!("{name}.rs"), &generated.source);
         }
-        write("main.rs", &main(robots));
+        write("main.rs", main);
         let file = folder.path().join(format!("program{}", std::env::consts::EXE_SUFFIX));
         let start = Instant::now();
         let compiler = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());

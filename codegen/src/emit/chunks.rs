@@ -6,7 +6,6 @@
 use std::fmt::Write;
 
 use super::dialect::{Dialect, Unit, units};
-use super::results::ZERO;
 use super::signature::Signature;
 use crate::graph::{Graph, NodeId, Op};
 
@@ -21,28 +20,37 @@ pub(super) fn is_long(graph: &Graph) -> bool {
     graph.nodes().len() >= CUT_FROM
 }
 
+/// The statements of each piece of `length`, each result put where `places` says, and how many places of `m` they use.
+pub(super) fn cut(graph: &Graph, dialect: &dyn Dialect, places: &[String], length: usize) -> (Vec<String>, usize) {
+    let units: Vec<Unit> = units(graph, dialect.group()).into_iter().filter(|u| !is_light(graph, u)).collect();
+    let pieces = if units.is_empty() { vec![units.as_slice()] } else { units.chunks(length).collect() };
+    let plan = Plan::of(graph, pieces);
+    let mut piece = Piece { plan: &plan, graph, dialect, c: 0, named: vec![NOWHERE; graph.nodes().len()] };
+    let write = |c: usize| {
+        let mut out = String::new();
+        piece.c = c;
+        piece.write(&mut out, places);
+        out
+    };
+    ((0..plan.pieces.len()).map(write).collect(), plan.slots)
+}
+
 /// The pieces as functions `piece_0`, …, each for the features that the macro around it is given, and `whole`, which calls them.
 pub(super) fn pieces(out: &mut String, graph: &Graph, signature: &Signature, dialect: &dyn Dialect) {
-    let units: Vec<Unit> = units(graph, dialect.group()).into_iter().filter(|u| !is_light(graph, u)).collect();
-    let plan = Plan::of(graph, units.chunks(LENGTH).collect());
+    let (pieces, slots) = cut(graph, dialect, &signature.places(), LENGTH);
     let (arguments, names, gives) = (signature.arguments(), signature.names(), signature.gives());
     let (ty, zero) = dialect.value();
-    let places = signature.places();
-    let mut piece = Piece { plan: &plan, graph, dialect, c: 0, named: vec![NOWHERE; graph.nodes().len()] };
-    for c in 0..plan.pieces.len() {
+    for (c, piece) in pieces.iter().enumerate() {
         let _ = writeln!(out, "    $(#[$features])?\n    #[inline(never)]");
-        let _ = writeln!(out, "    fn piece_{c}({arguments}, m: &mut [{ty}; {}], out: &mut {gives}) {{", plan.slots);
+        let _ = writeln!(out, "    fn piece_{c}({arguments}, m: &mut [{ty}; {slots}], out: &mut {gives}) {{");
         for input in &signature.inputs {
             let _ = writeln!(out, "    let _ = {};", input.name);
         }
-        let _ = writeln!(out, "    let _ = (&m, &out);");
-        piece.c = c;
-        piece.write(out, &places);
-        let _ = writeln!(out, "    }}");
+        let _ = writeln!(out, "    let _ = (&m, &out);\n{piece}    }}");
     }
     let _ = writeln!(out, "    $(#[$features])?\n    fn whole({arguments}) -> {gives} {{");
-    let _ = writeln!(out, "    let mut m = [{zero}; {}];\n    let mut out = {};", plan.slots, signature.nothing());
-    for c in 0..plan.pieces.len() {
+    let _ = writeln!(out, "    let mut m = [{zero}; {slots}];\n    let mut out = {};", signature.nothing());
+    for c in 0..pieces.len() {
         let _ = writeln!(out, "    piece_{c}({names}, &mut m, &mut out);");
     }
     let _ = writeln!(out, "    out\n    }}");
@@ -59,10 +67,8 @@ pub(super) fn gives_much(graph: &Graph) -> bool {
 
 /// The statements of a function in one piece that gives much.
 pub(super) fn one_piece(out: &mut String, graph: &Graph, signature: &Signature, dialect: &dyn Dialect) {
-    let units: Vec<Unit> = units(graph, dialect.group()).into_iter().filter(|u| !is_light(graph, u)).collect();
-    let plan = Plan::of(graph, vec![units.as_slice()]);
     let _ = writeln!(out, "    #[allow(unused_mut)]\n    let mut out = {};", signature.nothing());
-    Piece { plan: &plan, graph, dialect, c: 0, named: vec![NOWHERE; graph.nodes().len()] }.write(out, &signature.places());
+    cut(graph, dialect, &signature.places(), usize::MAX).0.iter().for_each(|piece| *out += piece);
     let _ = writeln!(out, "    out");
 }
 
@@ -177,10 +183,9 @@ impl Piece<'_> {
     /// Writes the results that a node gives.
     fn give(&mut self, out: &mut String, node: usize, places: &[String]) {
         for &k in &self.plan.results[node] {
-            let value = self.dialect.number(self.graph.outputs[k]);
-            if value != ZERO {
+            if let Some(statement) = self.dialect.give(&places[k], self.graph.outputs[k]) {
                 self.name(out, node);
-                let _ = writeln!(out, "    {} = {};", places[k], super::literal::bare(&value));
+                *out += &statement;
             }
         }
     }

@@ -1,6 +1,8 @@
 //! How nodes are written: in plain arithmetic or in lanes. What is common to both.
 
+use super::literal::bare;
 use super::order::{Angle, Step, order};
+use super::results::ZERO;
 use crate::graph::{Graph, Node, NodeId, Op};
 
 /// A way to write statements.
@@ -16,6 +18,12 @@ pub(super) trait Dialect {
 
     /// A result, as a number.
     fn number(&self, id: NodeId) -> String;
+
+    /// The statement that puts a result in its place; nothing for a zero, which is there from the start.
+    fn give(&self, place: &str, id: NodeId) -> Option<String> {
+        let value = self.number(id);
+        (value != ZERO).then(|| format!("    {place} = {};\n", bare(&value)))
+    }
 
     /// The type of a value, and a value of it.
     fn value(&self) -> (&'static str, &'static str);

@@ -81,7 +81,7 @@ fn body_macro(out: &mut String, graph: &Graph, signature: &Signature) {
     let (arguments, gives, name) = (signature.arguments(), signature.gives(), &signature.wanted.name);
     let _ = writeln!(out, "macro_rules! {name}_body {{\n    ($(#[$features:meta])?) => {{");
     if is_long(graph) {
-        let (plain, vector) = (Plain { graph, signature }, Vector { graph, signature, block: false });
+        let (plain, vector) = (Plain { graph, signature }, Vector { graph, signature });
         pieces(out, graph, signature, if in_lanes(graph) { &vector } else { &plain });
     } else {
         let _ = writeln!(out, "    $(#[$features])?\n    #[inline]\n    fn whole({arguments}) -> {gives} {{");

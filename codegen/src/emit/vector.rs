@@ -1,7 +1,5 @@
 //! A graph as statements of the functions of [`articulated_core::lanes`], for whichever instruction set they stand in.
 
-use std::fmt::Write;
-
 use super::chunks::{gives_much, one_piece};
 use super::dialect::{Dialect, statements};
 use super::literal::{literal, operand};
@@ -12,7 +10,7 @@ use crate::graph::{Graph, Node, NodeId, Op};
 
 /// The statements, the result last.
 pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
-    let vector = Vector { graph, signature, block: false };
+    let vector = Vector { graph, signature };
     if gives_much(graph) {
         return one_piece(out, graph, signature, &vector);
     }
@@ -21,30 +19,16 @@ pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
     signature.result(out, &values);
 }
 
-/// The statements for a part of a block of states, each result put where `places` says.
-pub(super) fn block(out: &mut String, graph: &Graph, signature: &Signature, places: &[String]) {
-    let vector = Vector { graph, signature, block: true };
-    statements(out, graph, &vector);
-    for (output, place) in graph.outputs.iter().zip(places) {
-        let _ = writeln!(out, "    put(&mut {place}, part, {});", vector.operand(*output));
-    }
-}
-
 /// Functions on vectors.
 pub(super) struct Vector<'a> {
     pub(super) graph: &'a Graph,
     pub(super) signature: &'a Signature<'a>,
-    /// Whether each number of the inputs is a block of states.
-    pub(super) block: bool,
 }
 
 impl Dialect for Vector<'_> {
     fn statement(&self, k: usize, node: &Node) -> Option<String> {
         let value = match node.op {
             Op::Constant | Op::LaneConstant => return None,
-            Op::Input if self.block && !self.signature.inputs[node.args[0] as usize].is_parameters() => {
-                format!("at(&{}, part)", self.signature.inputs[node.args[0] as usize].flat(node.args[1] as usize))
-            }
             Op::Input => format!("k({})", self.signature.inputs[node.args[0] as usize].at(node.args[1] as usize)),
             Op::LaneInput => {
                 let input = &self.signature.inputs[node.args[0] as usize];
@@ -99,7 +83,7 @@ impl Vector<'_> {
     }
 
     /// A name, or a constant.
-    fn operand(&self, id: NodeId) -> String {
+    pub(super) fn operand(&self, id: NodeId) -> String {
         let node = self.graph.node(id);
         match (node.op, node.constant()) {
             (_, Some(x)) => format!("k({})", literal(x)),

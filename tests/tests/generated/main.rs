@@ -1,5 +1,6 @@
 //! Generated code, compiled and run as a user's would be: against the generic library, against an independent program, and on odd input.
 
+mod batches;
 mod choices;
 mod equals_generic;
 mod odd_robots;

@@ -44,12 +44,17 @@ pub(crate) static ROBOTS: LazyLock<Vec<Robot>> = LazyLock::new(|| {
 
 /// With every function, save those that need what the robot does not have, on one or two frames.
 fn robot(name: String, urdf: &str, base: Base, singular: bool) -> Robot {
+    with(name, urdf, base, singular, Options::default(), |_| true)
+}
+
+/// The same with further choices, and of the functions those that are `wanted`.
+pub(crate) fn with(name: String, urdf: &str, base: Base, singular: bool, options: Options, wanted: impl Fn(&str) -> bool) -> Robot {
     let mut case = Case::new(name.clone(), read(urdf), base);
     let frames = frames(&case.model);
     let mut request = Request::new(format!("{name}.urdf"), urdf);
-    request.options.base = base;
+    request.options = Options { base, ..options };
     request.options.functions =
-        functions::<f64>().iter().filter(|f| has(&case.model, &frames, f, singular)).map(|f| f.name.into()).collect();
+        functions::<f64>().iter().filter(|f| wanted(f.name) && has(&case.model, &frames, f, singular)).map(|f| f.name.into()).collect();
     let generated = generate(&Request { options: Options { frames: Some(frames.clone()), ..request.options }, ..request });
     let generated = generated.unwrap_or_else(|e| panic!("{name}: {e}"));
     case.model = case.model.with_frames(&frames).expect("its own frames");

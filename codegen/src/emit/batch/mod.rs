@@ -8,6 +8,7 @@
 //! ```
 
 mod arrays;
+mod block;
 mod public;
 mod text;
 mod ways;
@@ -18,11 +19,14 @@ use articulated_core::algorithm::Shape;
 use articulated_core::lanes::{Real, source, tiles};
 
 use self::arrays::{Array, each, inputs, results};
+use self::block::Block;
 use self::text::{PUBLIC, SUPPORT};
 use self::ways::{SAFE, WAYS, Way};
+use super::chunks::cut;
+use super::dialect::Dialect;
 use super::function::Context;
 use super::signature::Signature;
-use super::vector;
+use super::vector::Vector;
 use crate::graph::Graph;
 use crate::program::Program;
 
@@ -34,18 +38,16 @@ pub(super) struct Batch<'a> {
     graph: &'a Graph,
 }
 
+/// Statements of a piece of a long body.
+const LENGTH: usize = 300;
+
+/// From this many nodes on a body is cut: below, compilers take no less for pieces, and what goes from piece to piece costs time. Vectors fill memory sooner than numbers do, so
+/// that is later than for one state.
+const CUT_FROM: usize = 20_000;
+
 /// How many states a block has, whatever the instruction set: a cache line of each number.
 fn states_of_block(real: Real) -> usize {
-    64 / bytes(real)
-}
-
-fn bytes(real: Real) -> usize {
-    if real == Real::F32 { 4 } else { 8 }
-}
-
-/// The name of the type in Rust.
-fn name(real: Real) -> &'static str {
-    if real == Real::F32 { "f32" } else { "f64" }
+    64 / real.bytes()
 }
 
 /// The modules of batches.
@@ -61,14 +63,14 @@ pub(super) fn batches(out: &mut String, functions: &[Batch], reals: &[Real], for
 }
 
 fn module(out: &mut String, functions: &[Batch], real: Real, ways: &[Way]) {
-    let (real_name, n) = (name(real), states_of_block(real));
+    let (real_name, n) = (real.name(), states_of_block(real));
     let lint = if ways.len() == 1 { "" } else { "unsafe_code, unused_unsafe, " };
     let _ = writeln!(
         out,
         "/// The functions for many states at once, in `{real_name}`: a state a lane, in the widest instruction set that the processor has.\n///\n\
          /// States stand one after the other, or in blocks of {n} with each number of all states of a block together ([`Lanes`]), which is faster.\n\
          /// Sines and cosines are off by at most 1 ulp.\n\
-         #[allow({lint}unused_imports, unused_macros, dead_code, unreachable_pub, clippy::all, clippy::pedantic)]\n\
+         #[allow({lint}unused_imports, unused_macros, unused_variables, dead_code, unreachable_pub, clippy::all, clippy::pedantic)]\n\
          pub mod batch_{real_name} {{\n    use super::*;\n"
     );
     *out += &PUBLIC.replace("REAL", real_name).replace("BLOCK", &n.to_string());
@@ -81,7 +83,7 @@ fn module(out: &mut String, functions: &[Batch], real: Real, ways: &[Way]) {
 
 impl Way {
     fn module(&self, out: &mut String, functions: &[Batch], real: Real) {
-        let (features, width) = (self.set.features(), self.bytes / bytes(real));
+        let (features, width) = (self.set.features(), self.bytes / real.bytes());
         let attribute = if features.is_empty() { String::new() } else { format!("#[target_feature(enable = \"{features}\")]") };
         let text: String = [source, tiles].iter().filter_map(|text| text(self.set, real, width)).collect();
         let _ = writeln!(out, "#[cfg({})]\nmod {} {{\n    mod lanes {{\n{text}}}\n", self.cfg, self.module);
@@ -138,10 +140,7 @@ impl<'a> Batch<'a> {
         };
         let given = |input: &str, result: &str| each(&inputs, input) + self.parameters().1 + &each(&results, result);
         let _ = writeln!(out, "macro_rules! {name}_in_batch {{\n    ($(#[$features:meta])?) => {{");
-        let _ = writeln!(out, "    $(#[$features])?\n    #[inline(never)]\n    fn {name}_block({}) {{", declared("[Lanes; { LEN }]"));
-        let _ = writeln!(out, "    for part in 0..PARTS {{");
-        vector::block(out, self.graph, &self.signature, &self.places());
-        let _ = writeln!(out, "    }}\n    }}\n");
+        self.block(out, &declared("[Lanes; { LEN }]"), &given("NAME, ", "NAME, "));
 
         let first = &results[0].name;
         let _ = writeln!(out, "    $(#[$features])?\n    pub(super) fn {name}_blocks({}) {{", declared("[[Lanes; { LEN }]]"));
@@ -162,6 +161,23 @@ impl<'a> Batch<'a> {
         *out += &call;
         *out += &each(&results, "            scatter_some(&NAME_block, &mut NAME[first..]);\n");
         *out += "        }\n    }\n    };\n}\n\n";
+    }
+
+    /// What is computed for one block, in pieces where it is long.
+    fn block(&self, out: &mut String, declared: &str, names: &str) {
+        let name = self.name();
+        let block = Block(Vector { graph: self.graph, signature: &self.signature });
+        let length = if self.graph.nodes().len() < CUT_FROM { usize::MAX } else { LENGTH };
+        let (pieces, slots) = cut(self.graph, &block, &self.places(), length);
+        let (ty, zero) = block.value();
+        let mut calls = String::new();
+        for (c, piece) in pieces.iter().enumerate() {
+            let _ = writeln!(out, "    $(#[$features])?\n    #[inline(never)]");
+            let _ = writeln!(out, "    fn {name}_piece_{c}({declared}part: usize, m: &mut [{ty}; {slots}]) {{\n{piece}    }}\n");
+            let _ = writeln!(calls, "        {name}_piece_{c}({names}part, &mut m);");
+        }
+        let _ = writeln!(out, "    $(#[$features])?\n    #[inline(never)]\n    fn {name}_block({declared}) {{");
+        let _ = writeln!(out, "        let mut m = [{zero}; {slots}];\n        for part in 0..PARTS {{\n{calls}        }}\n    }}\n");
     }
 
     /// Where each number of the results is put.

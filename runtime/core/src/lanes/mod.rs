@@ -70,6 +70,24 @@ impl Set {
     }
 }
 
+impl Real {
+    /// The type's name in Rust.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
+
+    /// How many bytes one takes.
+    pub fn bytes(self) -> usize {
+        match self {
+            Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+}
+
 /// Contents of a module; `None` if the set has no such width.
 pub fn source(set: Set, real: Real, lanes: usize) -> Option<String> {
     MODULES.iter().find(|module| (module.0, module.1, module.2) == (set, real, lanes)).map(|module| module.3.to_string())

@@ -1,0 +1,185 @@
+//! Functions of many states at once, in each instruction set that this processor has.
+
+use std::sync::LazyLock;
+
+use articulated_codegen::{Generated, Options, Real};
+use articulated_core::description::Base;
+use articulated_tests::batch_program::{BatchProgram, STATES};
+use articulated_tests::case::State;
+use articulated_tests::measure::{arguments, error};
+use articulated_tests::random::Random;
+use articulated_tests::random_tree::{Flavour, random_tree};
+use articulated_tests::urdf_text::urdf_text;
+
+use crate::robots::{Robot, with};
+
+/// Functions of every kind of argument and result.
+const FUNCTIONS: [&str; 13] = [
+    "placements",
+    "twists_body",
+    "jacobians_world_aligned",
+    "inverse_dynamics",
+    "inverse_dynamics_with_wrenches",
+    "joint_wrenches",
+    "mass_matrix",
+    "forward_dynamics",
+    "kinetic_energy",
+    "center_of_mass",
+    "torque_regressor",
+    "integrate",
+    "difference",
+];
+
+/// An arm, every kind of joint on a floating base, joints that follow others, and nothing at all: small ones, since they are compiled for each
+/// instruction set. What is computed is what single evaluation computes, which is tested on many robots.
+fn robots(forbid_unsafe: bool) -> Vec<Robot> {
+    let robot = |name: &str, urdf: &str, base: Base, functions: &[&str]| {
+        let options = Options { batch: vec![Real::F64, Real::F32], forbid_unsafe, ..Options::default() };
+        with(name.into(), urdf, base, false, options, |name| functions.contains(&name))
+    };
+    let gripper = articulated_models::robot("gripper_arm").expect("a bundled robot").urdf;
+    let tree = urdf_text(&random_tree(102, Flavour { massless: false, ..Flavour::WRITTEN }));
+    vec![
+        robot("arm", include_str!("../../robots/arm.urdf"), Base::Fixed, &FUNCTIONS),
+        robot("tree", &tree, Base::Floating, &["placements", "inverse_dynamics_with_wrenches", "difference"]),
+        robot("gripper_arm", gripper, Base::Fixed, &["inverse_dynamics", "mass_matrix"]),
+        robot("stone", "<robot name='stone'><link name='stone'/></robot>", Base::Fixed, &FUNCTIONS),
+    ]
+}
+
+/// The robots, with what may be unsafe and without.
+static ROBOTS: LazyLock<[Vec<Robot>; 2]> = LazyLock::new(|| [robots(false), robots(true)]);
+
+/// A program of one instruction set, if this processor has that.
+struct Way {
+    set: &'static str,
+    /// Whether a·b + c has one rounding.
+    fused: bool,
+    robots: &'static [Robot],
+    program: BatchProgram,
+}
+
+static WAYS: LazyLock<Vec<Way>> = LazyLock::new(|| {
+    #[cfg(target_arch = "x86_64")]
+    let (avx2, avx512) = {
+        let avx2 = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
+        (avx2, avx2 && is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq"))
+    };
+    #[cfg(not(target_arch = "x86_64"))]
+    let (avx2, avx512) = (false, false);
+    let sets = [
+        ("avx512", avx512, true),
+        ("avx2", avx2, true),
+        ("sse2", cfg!(target_arch = "x86_64"), false),
+        ("neon", cfg!(target_arch = "aarch64"), true),
+        ("portable", true, cfg!(target_arch = "aarch64")),
+    ];
+    let way = |(set, has, fused): (&'static str, bool, bool)| {
+        if !has {
+            println!("{set} is not tried: this processor does not have it");
+            return None;
+        }
+        let robots = &ROBOTS[usize::from(set == "portable")];
+        let named: Vec<(&str, &Generated)> = robots.iter().map(|r| (r.name.as_str(), &r.generated)).collect();
+        // As for any machine of this kind.
+        let program = BatchProgram::build(&named, set, &["-C", "opt-level=0", "-C", "debug-assertions=on"]);
+        println!("compiled {} robots in {set} in {:.1?}", named.len(), program.time());
+        Some(Way { set, fused, robots, program })
+    };
+    sets.into_iter().filter_map(way).collect()
+});
+
+/// States whose numbers are numbers of 32 bits.
+fn states(robot: &Robot) -> Vec<State> {
+    let mut random = Random::new(29);
+    let short = |x: &mut Vec<f64>| x.iter_mut().for_each(|x| *x = f64::from(*x as f32));
+    let one = |_| {
+        let mut s = robot.case.state(&mut random);
+        [&mut s.q, &mut s.v, &mut s.a, &mut s.tau, &mut s.wrenches, &mut s.step, &mut s.target, &mut s.uniform].into_iter().for_each(short);
+        s
+    };
+    (0..STATES).map(one).collect()
+}
+
+/// What a program says.
+fn run(way: &Way, robot: &Robot, name: &str, real: Real, states: &[State]) -> Vec<Vec<f64>> {
+    let given: Vec<Vec<&[f64]>> = states.iter().map(|s| arguments(name, s)).collect();
+    way.program.run(&robot.name, name, real, &given)
+}
+
+/// Unit roundoffs of a type in those of `f64`.
+fn unit(real: Real) -> f64 {
+    if real == Real::F32 { f64::from(f32::EPSILON) / f64::EPSILON } else { 1.0 }
+}
+
+/// The largest error that is allowed, in unit roundoffs of the type. Seen: 3.4.
+const ALLOWED: f64 = 8.0;
+
+/// And each program holds its functions to the laws of batches: blocks give what states one after the other give, to the bit; so does every number of states; slices of
+/// different lengths are refused and nothing is written.
+#[test]
+fn batches_give_what_the_generic_library_gives() {
+    for way in WAYS.iter() {
+        for (robot, real) in way.robots.iter().flat_map(|r| [(r, Real::F64), (r, Real::F32)]) {
+            let states = states(robot);
+            let mut worst = (0.0, "");
+            for name in robot.functions() {
+                for (state, found) in states.iter().zip(run(way, robot, name, real, &states)) {
+                    let far = error(&robot.case, name, state, &found) / unit(real);
+                    worst = if far > worst.0 { (far, name) } else { worst };
+                }
+            }
+            println!("{} {real:?} {}: {:.1} units of roundoff in {}", way.set, robot.name, worst.0, worst.1);
+            assert!(worst.0 <= ALLOWED, "{} of {} {real:?} in {}: {} units of roundoff", worst.1, robot.name, way.set, worst.0);
+        }
+    }
+}
+
+#[test]
+fn instruction_sets_that_round_alike_agree_to_the_bit() {
+    let [fused, split]: [Vec<&Way>; 2] = [true, false].map(|fused| WAYS.iter().filter(|w| w.fused == fused).collect());
+    for pair in fused.windows(2).chain(split.windows(2)) {
+        for (robot, real) in pair[0].robots.iter().flat_map(|r| [(r, Real::F64), (r, Real::F32)]) {
+            let states = states(robot);
+            for name in robot.functions() {
+                let [a, b] = [pair[0], pair[1]].map(|way| bits(&run(way, robot, name, real, &states)));
+                assert!(a == b, "{name} of {} {real:?}: {} is not {}", robot.name, pair[0].set, pair[1].set);
+            }
+        }
+    }
+}
+
+fn bits(numbers: &[Vec<f64>]) -> Vec<u64> {
+    numbers.iter().flatten().map(|x| x.to_bits()).collect()
+}
+
+/// Angles beyond the fast reduction, and numbers that are none, are one lane's matter.
+#[test]
+fn a_state_takes_no_notice_of_its_neighbours() {
+    for way in WAYS.iter() {
+        let robot = &way.robots[0];
+        let good = states(robot);
+        for real in [Real::F64, Real::F32] {
+            let mut mixed = good.clone();
+            for (state, x) in mixed.iter_mut().step_by(3).zip([f64::NAN, f64::INFINITY, 1e15, -3e5].into_iter().cycle()) {
+                state.q[1] = x;
+            }
+            let [expected, found] = [&good, &mixed].map(|states| run(way, robot, "inverse_dynamics", real, states));
+            for (k, (expected, found)) in expected.iter().zip(&found).enumerate() {
+                let state = &mixed[k];
+                if k % 3 != 0 {
+                    assert_eq!(expected, found, "state {k} in {}", way.set);
+                } else if state.q[1].is_finite() {
+                    let state = State {
+                        q: state.q.iter().map(|q| if real == Real::F32 { f64::from(*q as f32) } else { *q }).collect(),
+                        ..state.clone()
+                    };
+                    let far = error(&robot.case, "inverse_dynamics", &state, found) / unit(real);
+                    assert!(far <= ALLOWED, "{} {real:?} at {} rad: {far} units of roundoff", way.set, state.q[1]);
+                } else {
+                    assert!(found[0].is_nan() || found[1].is_nan(), "{} at {}", way.set, state.q[1]);
+                }
+            }
+        }
+    }
+}
