@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use articulated_core::algorithm::function;
+use articulated_core::lanes::Real;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::edits::{Edits, FrameArguments};
@@ -46,6 +47,7 @@ pub(crate) enum Command {
         "articulated generate panda_like",
         "articulated generate arm.urdf --functions placements,inverse_dynamics -o src/arm.rs",
         "articulated generate arm.urdf --runtime ::articulated -o src/arm.rs",
+        "articulated generate arm.urdf --functions inverse_dynamics,forward_dynamics --batch f64,f32 -o src/arm.rs",
         "articulated generate arm.urdf --functions 'hold = gravity_torque + jacobians_body, bias = inverse_dynamics(a = 0)'",
         "articulated generate arm.urdf --functions 'still=inverse_dynamics(v=0,a=0)' --parameters 'payload(tool)'",
         "articulated generate arm.urdf --frames tool,camera --lock wrist=0 --payload tool=1.2@0,0,0.1:1e-3,0,0,1e-3,0,1e-3",
@@ -143,6 +145,9 @@ pub(crate) struct GenerateArguments {
     /// Constants of the model that stay inputs: payload(LINK), inertia(LINK), origin(JOINT)
     #[arg(long, value_name = "ENTRIES", value_delimiter = ',')]
     pub(crate) parameters: Vec<String>,
+    /// The functions for many states at once too, in numbers of these types: f64, f32
+    #[arg(long, value_name = "TYPES", value_delimiter = ',', value_parser = real)]
+    pub(crate) batch: Vec<Real>,
     /// The file to write instead of the standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
@@ -256,6 +261,11 @@ fn gravity(text: &str) -> Result<Gravity, String> {
     let numbers = numbers.map_err(|e| e.to_string())?;
     let three: [f64; 3] = numbers.try_into().map_err(|n: Vec<f64>| format!("found {} numbers, expected three", n.len()))?;
     if three.iter().all(|x| x.is_finite()) { Ok(Gravity(three)) } else { Err("expected finite numbers".into()) }
+}
+
+fn real(text: &str) -> Result<Real, String> {
+    let all = [Real::F64, Real::F32];
+    all.into_iter().find(|r| r.name() == text.trim()).ok_or_else(|| "expected f64 or f32".into())
 }
 
 fn joints(text: &str) -> Result<usize, String> {

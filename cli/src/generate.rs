@@ -33,6 +33,7 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
         request.options.functions = articulated_codegen::Options::default().functions;
     }
     request.options.parameters.clone_from(&arguments.parameters);
+    request.options.batch.clone_from(&arguments.batch);
     request.options.forbid_unsafe = arguments.forbid_unsafe;
     request.options.runtime = arguments.runtime.clone().filter(|_| !arguments.standalone);
     let generated = generate(&request)?;

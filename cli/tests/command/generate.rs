@@ -35,6 +35,19 @@ fn flags_arrive_in_the_request() {
 }
 
 #[test]
+fn functions_of_many_states_are_those_of_the_types_asked_for() {
+    let of = |types: &str| run(&["generate", "cart_pole", "--functions", "gravity_torque", "--batch", types]);
+    for (types, [double, single]) in [("f64", [true, false]), ("f32", [false, true]), ("f64,f32", [true, true])] {
+        let made = of(types);
+        assert_eq!(made.status, 0, "{}", made.err);
+        assert_eq!(["pub mod batch_f64", "pub mod batch_f32"].map(|m| made.out.contains(m)), [double, single], "{types}");
+        assert!(made.out.contains("pub fn gravity_torque_blocks("));
+    }
+    let wrong = of("f16");
+    assert!(wrong.status == 2 && wrong.err.contains("expected f64 or f32"), "{}", wrong.err);
+}
+
+#[test]
 fn functions_may_be_put_together_and_have_constants() {
     let words = [
         "generate",
