@@ -27,8 +27,6 @@ pub mod joint;
 pub mod lanes;
 #[cfg(feature = "alloc")]
 pub mod model;
-#[cfg(feature = "std")]
-pub mod trig;
 
 pub use nalgebra;
 pub use scalar::Scalar;

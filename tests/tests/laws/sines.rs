@@ -2,8 +2,40 @@
 
 use articulated_cli::precise::Big;
 use articulated_core::Scalar;
-use articulated_core::trig::four;
 use articulated_tests::random::Random;
+
+/// Modules of lanes, as generated code has them.
+macro_rules! lanes {
+    ($name:ident: $($file:literal)+) => {
+        #[allow(dead_code, non_upper_case_globals, unreachable_pub, unsafe_code, unused_imports, unused_macros, clippy::all, clippy::pedantic)]
+        mod $name {
+            $(include!(concat!("../../../runtime/core/src/lanes/text/", $file, ".rs"));)+
+        }
+    };
+}
+
+lanes!(portable: "portable_f64" "portable_4" "portable" "common" "f64" "f64_fused" "f64_split");
+#[cfg(target_arch = "x86_64")]
+lanes!(avx2: "avx2_f64x4" "avx2" "register" "common" "f64" "f64_fused");
+
+/// Sines and cosines by each way that this processor has. Other instruction sets agree with one of these to the bit.
+fn ways(x: [f64; 4]) -> Vec<[[f64; 4]; 2]> {
+    let (sin, cos) = portable::sin_cos(x);
+    #[allow(unused_mut)]
+    let mut ways = vec![[sin, cos]];
+    #[cfg(target_arch = "x86_64")]
+    if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+        #[target_feature(enable = "avx2,fma")]
+        fn fused(x: [f64; 4]) -> [[f64; 4]; 2] {
+            let (sin, cos) = avx2::sin_cos(avx2::lanes(x));
+            [avx2::array(sin), avx2::array(cos)]
+        }
+        // SAFETY: the processor was just asked for both.
+        #[allow(unsafe_code)]
+        ways.push(unsafe { fused(x) });
+    }
+    ways
+}
 
 /// The spacing of doubles at |x|.
 fn ulp(x: f64) -> f64 {
@@ -23,11 +55,12 @@ fn worst(points: &[f64]) -> (f64, f64) {
     let mut worst = (0.0, 0.0);
     for x in points.chunks(4) {
         let at = |k: usize| x.get(k).copied().unwrap_or(0.0);
-        let [sin, cos] = four(at(0), at(1), at(2), at(3));
-        for (k, &x) in x.iter().enumerate() {
-            let e = error(x, sin[k], cos[k]);
-            if e > worst.0 {
-                worst = (e, x);
+        for [sin, cos] in ways([at(0), at(1), at(2), at(3)]) {
+            for (k, &x) in x.iter().enumerate() {
+                let e = error(x, sin[k], cos[k]);
+                if e > worst.0 {
+                    worst = (e, x);
+                }
             }
         }
     }
