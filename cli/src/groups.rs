@@ -11,18 +11,20 @@ pub(crate) enum Group {
     Momentum,
     Regressors,
     OperationalSpace,
+    Effects,
     Configurations,
 }
 
 impl Group {
     /// All of them, in the order in which they are listed.
-    pub(crate) const ALL: [Self; 7] = [
+    pub(crate) const ALL: [Self; 8] = [
         Self::Kinematics,
         Self::Dynamics,
         Self::Derivatives,
         Self::Momentum,
         Self::Regressors,
         Self::OperationalSpace,
+        Self::Effects,
         Self::Configurations,
     ];
 
@@ -35,6 +37,7 @@ impl Group {
             Self::Momentum => "momentum",
             Self::Regressors => "regressors",
             Self::OperationalSpace => "operational_space",
+            Self::Effects => "effects",
             Self::Configurations => "configurations",
         }
     }
@@ -48,6 +51,7 @@ impl Group {
             Self::Momentum => "Energy, centre of mass and momentum",
             Self::Regressors => "Regressors",
             Self::OperationalSpace => "Operational space",
+            Self::Effects => "Effects of a scene",
             Self::Configurations => "Configurations",
         }
     }
@@ -101,6 +105,7 @@ impl Group {
             | F::centroidal_momentum_rate => Self::Momentum,
             F::torque_regressor | F::kinetic_energy_regressor | F::potential_energy_regressor => Self::Regressors,
             F::operational_space_inertia | F::operational_space_inertia_inverse => Self::OperationalSpace,
+            F::effect_forces | F::dissipation | F::motor_torques => Self::Effects,
             F::integrate | F::difference | F::random_configuration => Self::Configurations,
         }
     }

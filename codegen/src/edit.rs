@@ -85,11 +85,12 @@ pub fn read(request: &Request) -> Result<Reading, Error> {
     if editing.refusals.is_empty() { Ok(editing.reading) } else { Err(Error::Edits { refusals: editing.refusals }) }
 }
 
-/// The model of what was [read](read()), under the gravity and with the reference of wrenches that the request asks for, and with a frame for every link.
+/// The model of what was [read](read()), under the gravity, with the effects and with the reference of wrenches that the request asks for, and with a frame for every link.
 pub fn model(request: &Request, description: &Description) -> Result<Model<f64>, Error> {
     let options = &request.options;
     let model = Model::new(description, options.base).map_err(|error| Error::Model { file: request.file.clone(), error })?;
-    Ok(model.with_gravity(options.gravity).with_wrenches_in(options.wrench_reference))
+    let model = model.with_gravity(options.gravity).with_wrenches_in(options.wrench_reference);
+    model.with_effects(&options.effects).map_err(|errors| Error::Effects { file: request.file.clone(), errors })
 }
 
 /// The model with the frames that the request asks for.

@@ -1,5 +1,6 @@
 //! Why nothing was generated.
 
+use articulated_core::effect::EffectError;
 use articulated_core::model::ModelError;
 use articulated_urdf::Problems;
 use thiserror::Error;
@@ -19,6 +20,14 @@ pub enum Error {
         file: String,
         /// What is wrong.
         error: ModelError,
+    },
+    /// Effects that cannot be had; all of them.
+    #[error("{}", errors.iter().map(|e| format!("{file}: {e}")).collect::<Vec<_>>().join("\n"))]
+    Effects {
+        /// The file of the robot.
+        file: String,
+        /// One for each effect.
+        errors: Vec<EffectError>,
     },
     /// Edits of the robot that cannot be made; all of them.
     #[error("{}", refusals.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]

@@ -29,6 +29,7 @@ use articulated_urdf::{Problem, Reading, Unused};
 
 pub use articulated_core as core;
 pub use articulated_core::description::{Base, Origin, Payload};
+pub use articulated_core::effect::Applied;
 pub use articulated_core::lanes::Real;
 pub use articulated_core::spatial::Reference;
 pub use articulated_urdf as urdf;

@@ -1,6 +1,7 @@
 //! What to generate.
 
 use articulated_core::description::{Base, Origin, Payload};
+use articulated_core::effect::Applied;
 use articulated_core::lanes::Real;
 use articulated_core::model::GRAVITY;
 use articulated_core::spatial::Reference;
@@ -38,6 +39,8 @@ pub struct Options {
     pub payloads: Vec<Payload>,
     /// Joints to lock and their coordinates, see [`lock`](articulated_core::description::Description::lock); joints of appended robots too.
     pub lock: Vec<(String, Vec<f64>)>,
+    /// What the robot is subject to besides gravity; on joints and links of appended robots too.
+    pub effects: Vec<Applied>,
     /// Accept inertias that no body can have.
     pub allow_unphysical_inertia: bool,
     /// Take angles this near (rad) to a multiple of π/2 as that multiple; every one is reported. `None`: never.
@@ -83,6 +86,7 @@ impl Default for Options {
             append: Vec::new(),
             payloads: Vec::new(),
             lock: Vec::new(),
+            effects: Vec::new(),
             allow_unphysical_inertia: false,
             snap_angles: None,
             rename: Vec::new(),

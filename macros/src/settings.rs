@@ -73,6 +73,7 @@ impl Settings {
             frames: self.frames.as_ref().map(|names| names.iter().map(|name| name.text.clone()).collect()),
             wrench_reference: self.wrench_reference,
             append: self.append.iter().filter_map(Other::appended).collect(),
+            effects: Vec::new(),
             payloads: self.payloads.iter().filter_map(Load::payload).collect(),
             lock: self.lock.iter().map(|lock| (lock.joint.text.clone(), lock.at.clone())).collect(),
             allow_unphysical_inertia: self.allow_unphysical_inertia,

@@ -13,6 +13,7 @@ pub mod jet;
 pub mod measure;
 pub mod program;
 pub mod random;
+pub mod random_effects;
 pub mod random_tree;
 pub mod rigid;
 pub mod urdf_text;

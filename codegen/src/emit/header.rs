@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use articulated_core::description::{Base, Origin};
+use articulated_core::effect::{Applied, Field};
 use articulated_core::model::Model;
 use articulated_core::spatial::Reference;
 use articulated_urdf::Unused;
@@ -49,10 +50,27 @@ fn edits(request: &Request) -> Vec<String> {
     for (joint, at) in &o.lock {
         lines.push(format!("Locked: joint {joint:?} at {at:?}."));
     }
+    for e in &o.effects {
+        let Origin { xyz, rpy } = e.at;
+        let at = if e.at == Origin::default() { String::new() } else { format!(" at xyz {xyz:?} m, rpy {rpy:?} rad") };
+        lines.push(format!("Effect: {} on {:?}{at}: {}.", e.effect.name(), e.on, numbers(e)));
+    }
     lines.extend((!o.parameters.is_empty()).then(|| format!("Inputs of the model: {}.", o.parameters.join(", "))));
     lines.extend(o.frames.as_ref().map(|frames| format!("Frames: {}.", frames.join(", "))));
     lines.extend((o.wrench_reference != Reference::Body).then(|| format!("Wrenches in: {}.", o.wrench_reference.name())));
     lines
+}
+
+/// The parameters of an effect by name.
+fn numbers(applied: &Applied) -> String {
+    let mut rest = applied.parameters.as_slice();
+    let field = |f: &Field| {
+        let (own, others) = rest.split_at(f.len.min(rest.len()));
+        rest = others;
+        let unit = if f.unit == "1" { String::new() } else { format!(" {}", f.unit) };
+        if let [x] = own { format!("{} {x:?}{unit}", f.name) } else { format!("{} {own:?}{unit}", f.name) }
+    };
+    applied.effect.row().fields.iter().map(field).collect::<Vec<_>>().join(", ")
 }
 
 /// How much of the unused content a header lists.

@@ -22,6 +22,8 @@ pub mod algorithm;
 pub mod description;
 #[cfg(feature = "alloc")]
 pub mod dynamics;
+#[cfg(feature = "alloc")]
+pub mod effect;
 pub mod joint;
 #[cfg(feature = "alloc")]
 pub mod lanes;

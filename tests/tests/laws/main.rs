@@ -2,6 +2,7 @@
 
 mod closed_forms;
 mod edits;
+mod effects;
 mod energy;
 mod equivalence;
 mod fixtures;

@@ -1,8 +1,9 @@
 //! Articulated-body algorithm.
 //!
 //! Featherstone 2008, Table 7.1, in body axes with classical accelerations, as [`super::rnea`] has them: the bias acceleration of a joint and the bias wrench of
-//! a body then need no linear velocity. A joint with several degrees of freedom gives way in one after the other.
+//! a body then need no linear velocity. Effects are in [`super::effects`]: forces of those on joints count as torques, a rotor's inertia stands in the pivot. A joint with several degrees of freedom gives way in one after the other.
 
+use super::effects::{self, World};
 use super::rnea::to_parent;
 use super::workspace::Column;
 use super::{Workspace, wrenches};
@@ -19,7 +20,7 @@ use crate::{Scalar, with_pose};
 /// # Panics
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
 pub fn articulated_body<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], tau: &[S], out: &mut [S]) {
-    solve(model, ws, q, v, tau, &[], model.gravity, out);
+    solve(model, ws, q, v, tau, &[], &World::of(model), out);
 }
 
 /// As [`articulated_body`], with external wrenches on the frames.
@@ -37,7 +38,7 @@ pub fn articulated_body_with_wrenches<S: Scalar>(
     wrenches: &[S],
     out: &mut [S],
 ) {
-    solve(model, ws, q, v, tau, wrenches, model.gravity, out);
+    solve(model, ws, q, v, tau, wrenches, &World::of(model), out);
 }
 
 /// M(q)⁻¹·τ: forward dynamics at rest and without gravity.
@@ -47,31 +48,25 @@ pub fn articulated_body_with_wrenches<S: Scalar>(
 pub fn solve_by_articulated_body<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], tau: &[S], out: &mut [S]) {
     let mut rest = core::mem::take(&mut ws.row);
     rest.fill(S::zero());
-    solve(model, ws, q, &rest, tau, &[], Vector3::zeros(), out);
+    solve(model, ws, q, &rest, tau, &[], &World::empty(), out);
     ws.row = rest;
 }
 
 #[allow(clippy::too_many_arguments)]
 // Why: all that forward dynamics depends on.
-fn solve<S: Scalar>(
-    model: &Model<S>,
-    ws: &mut Workspace<S>,
-    q: &[S],
-    v: &[S],
-    tau: &[S],
-    wrenches: &[S],
-    gravity: Vector3<S>,
-    out: &mut [S],
-) {
+fn solve<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], tau: &[S], wrenches: &[S], world: &World<S>, out: &mut [S]) {
     for i in model.outward() {
         velocity(model, ws, i, q, v);
     }
     // p_i −= w
     wrenches::each(model, ws, q, wrenches, |ws, i, w| ws.bodies[i].wrench = ws.bodies[i].wrench - *w);
+    effects::give_way(model, ws, q, v, world);
+    let mut tau = effects::given(model, ws, q, v, tau, world);
     for i in model.inward() {
-        give_way(model, ws, i, tau);
+        give_way(model, ws, i, &tau);
     }
-    ws.common[0].acceleration = Twist { angular: Vector3::zeros(), linear: -gravity };
+    core::mem::swap(&mut ws.driven, &mut tau);
+    ws.common[0].acceleration = Twist { angular: Vector3::zeros(), linear: -world.gravity };
     for i in model.outward() {
         accelerate(model, ws, i, out);
     }
@@ -110,12 +105,14 @@ fn give_way<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, tau: &
         let column = &mut ws.columns[c];
         // U = I S;  D = SᵀU;  u = τ − Sᵀp
         column.held = inertia.apply(&column.axis);
-        column.inverse = S::one() / column.held.power(&column.axis);
+        let rotor = effects::rotor(model, i, k);
+        let pivot = column.held.power(&column.axis);
+        column.inverse = S::one() / rotor.map_or(pivot, |rotor| pivot + rotor);
         column.residue = tau[column.at] - bias.power(&column.axis);
         // I −= U Uᵀ / D;  p += U u / D
         inertia = inertia.giving_way(&column.held, column.inverse);
         bias += column.held.times(column.residue * column.inverse);
-        if let Some(k) = pose.freedom(k) {
+        if let (Some(k), None) = (pose.freedom(k), rotor) {
             // I S = 0;  Sᵀp = τ
             inertia = inertia.without(k);
             *bias.number(k) = tau[column.at];

@@ -2,6 +2,7 @@
 
 use super::Workspace;
 use super::common::{Axes, inertias, positions};
+use super::effects;
 use super::rnea::to_parent;
 use crate::joint::JointLaw;
 use crate::model::Model;
@@ -34,6 +35,8 @@ pub fn mass_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], 
             ws.composite[body.parent] += joint.moved(&body.placement);
         }
     }
+    effects::armature_matrix(model, out);
+    effects::add_inertia(model, ws, q, out);
 }
 
 /// The wrench that accelerates everything from body `i` on in its degree of freedom `k`, and what it asks of the joints on the way to the base.
@@ -94,4 +97,6 @@ pub(super) fn mass_matrix_in_common_axes<S: Scalar>(model: &Model<S>, ws: &mut W
             ws.common[parent].inertia += state.inertia.shifted(state.shift);
         }
     }
+    effects::armature_matrix(model, out);
+    effects::add_inertia(model, ws, q, out);
 }

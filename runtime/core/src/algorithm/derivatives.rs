@@ -14,6 +14,7 @@
 use super::Workspace;
 use super::common::{Axes, accelerations, coriolis, forces, inertias, positions, twists};
 use super::crba::mass_matrix_in_common_axes;
+use super::effects;
 use super::forward_dynamics::inverse;
 use super::ltdl::{factor, solve, solve_rows};
 use super::rnea::inverse_dynamics_with_wrenches;
@@ -48,8 +49,9 @@ pub fn inverse_dynamics_derivatives_with_wrenches<S: Scalar>(
     wrenches: &[S],
     out: &mut [S],
 ) {
-    positions(model, ws, Axes::Tree, q);
-    twists(model, ws, Axes::Tree, v);
+    let axes = axes(model);
+    positions(model, ws, axes, q);
+    twists(model, ws, axes, v);
     accelerations(model, ws, v, a, -model.gravity);
     inertias(model, ws);
     coriolis(model, ws);
@@ -61,6 +63,8 @@ pub fn inverse_dynamics_derivatives_with_wrenches<S: Scalar>(
     let mut matrices = Matrices { by_q, by_v, by_a };
     matrices.clear();
     external(model, ws, q, wrenches, matrices.by_q);
+    effects::body_slopes(model, ws, matrices.by_q, Some((&mut *matrices.by_v, &mut *matrices.by_a)));
+    effects::joint_slopes(model, q, v, matrices.by_q, Some((&mut *matrices.by_v, &mut *matrices.by_a)));
     for i in model.inward() {
         for k in ws.columns_of(i) {
             matrices.row_and_column(model, ws, i, k);
@@ -76,11 +80,13 @@ pub fn inverse_dynamics_derivatives_with_wrenches<S: Scalar>(
 /// # Panics
 /// As [`inverse_dynamics_derivatives`].
 pub fn static_torque_derivative<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], wrenches: &[S], out: &mut [S]) {
-    positions(model, ws, Axes::Tree, q);
+    out.fill(S::zero());
+    positions(model, ws, axes(model), q);
     inertias(model, ws);
     let zeros = core::mem::take(&mut ws.zeros);
     still(model, ws);
     accelerations(model, ws, &zeros, &zeros, -model.gravity);
+    effects::joint_slopes(model, q, &zeros, out, None);
     ws.zeros = zeros;
     for i in model.outward() {
         let state = &mut ws.common[i];
@@ -89,8 +95,8 @@ pub fn static_torque_derivative<S: Scalar>(model: &Model<S>, ws: &mut Workspace<
             ws.columns[k].curl = ws.common[i].carried_acceleration.cross(&ws.columns[k].axis);
         }
     }
-    out.fill(S::zero());
     external(model, ws, q, wrenches, out);
+    effects::body_slopes(model, ws, out, None);
     for i in model.inward() {
         for k in ws.columns_of(i) {
             let (state, column) = (&ws.common[i], &ws.columns[k]);
@@ -137,25 +143,39 @@ pub fn forward_dynamics_derivatives_with_wrenches<S: Scalar>(
     let zeros = core::mem::take(&mut ws.zeros);
     inverse_dynamics_with_wrenches(model, ws, q, v, &zeros, wrenches, &mut a);
     ws.zeros = zeros;
-    a.iter_mut().zip(tau).for_each(|(b, tau)| *b = *tau - *b);
+    let mut driven = core::mem::take(&mut ws.driven);
+    effects::drive(model, v, tau, &mut driven);
+    a.iter_mut().zip(&driven).for_each(|(b, tau)| *b = *tau - *b);
+    ws.driven = driven;
     mass_matrix_in_common_axes(model, ws, q, &mut matrix);
     factor(&mut matrix, &ws.below);
     solve(&matrix, &ws.below, &mut a);
     inverse_dynamics_derivatives_with_wrenches(model, ws, q, v, &a, wrenches, out);
     // ∂a = −M⁻¹ ∂τ;  ∂a/∂τ = M⁻¹
-    for block in out.chunks_exact_mut(n.max(1)).take(2) {
-        block.iter_mut().for_each(|x| *x = -*x);
-        solve_rows(&matrix, &ws.below, block, model.nv);
+    for (block, out) in out.chunks_exact_mut(n.max(1)).take(2).enumerate() {
+        out.iter_mut().for_each(|x| *x = -*x);
+        if block == 1 {
+            effects::driven_slopes(model, v, tau, |i, by_v, _| out[i * model.nv + i] += by_v);
+        }
+        solve_rows(&matrix, &ws.below, out, model.nv);
     }
-    inverse(&matrix, &ws.below, &mut out[2 * n..]);
+    let by_tau = &mut out[2 * n..];
+    inverse(&matrix, &ws.below, by_tau);
+    effects::driven_slopes(model, v, tau, |i, _, slope| by_tau.iter_mut().skip(i).step_by(model.nv).for_each(|x| *x *= slope));
     (ws.matrix, ws.solution) = (matrix, a);
+}
+
+/// Common axes: those in the middle of each tree, where nothing asks how bodies stand in the base.
+fn axes<S: Scalar>(model: &Model<S>) -> Axes {
+    if effects::any_on_bodies(model) { Axes::Base } else { Axes::Tree }
 }
 
 /// At rest.
 fn still<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
     for i in model.outward() {
+        ws.common[i].twist = Twist::zero();
         for k in ws.columns_of(i) {
-            ws.columns[k].rate = Twist::zero();
+            (ws.columns[k].rate, ws.columns[k].drift) = (Twist::zero(), Twist::zero());
         }
     }
 }

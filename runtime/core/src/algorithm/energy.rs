@@ -2,12 +2,13 @@
 
 use super::Workspace;
 use super::common::{Axes, positions};
+use super::effects;
 use super::rnea::momentum;
 use crate::Scalar;
 use crate::model::Model;
 use crate::spatial::rotate;
 
-/// T = ½ Σ Vᵀ G V = ½ vᵀ M v.
+/// T = ½ Σ Vᵀ G V = ½ vᵀ M v, rotors and added mass included.
 ///
 /// q: `[nq]`; v: `[nv]`; out: one number, J. Featherstone 2008, §2.12.
 ///
@@ -15,12 +16,12 @@ use crate::spatial::rotate;
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
 pub fn kinetic_energy<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
     let mut row = core::mem::take(&mut ws.row);
-    momentum(model, ws, q, v, &mut row);
+    momentum(model, ws, q, v, &effects::World::empty(), &mut row);
     out[0] = row.iter().zip(v).fold(S::zero(), |sum, (p, v)| sum + *p * *v) * S::from_f64(0.5);
     ws.row = row;
 }
 
-/// U = −Σ m gᵀc = −gᵀ Σ (m p + R h), zero at the base frame's origin.
+/// U = −Σ m gᵀc = −gᵀ Σ (m p + R h), zero at the base frame's origin, and what springs, stops, buoyancy and contacts store.
 ///
 /// q: `[nq]`; out: one number, J. Links fixed to the base do not count.
 ///
@@ -33,5 +34,5 @@ pub fn potential_energy<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &
         let (state, inertia) = (&ws.common[i], &model.bodies[i].inertia);
         energy -= model.gravity.dot(&(state.position * inertia.mass + rotate(&state.rotation, inertia.first)));
     }
-    out[0] = energy;
+    out[0] = energy + effects::energy(model, ws, q);
 }

@@ -2,6 +2,7 @@
 
 use super::Workspace;
 use super::crba::mass_matrix;
+use super::effects;
 use super::ltdl::{factor, solve, solve_rows};
 use super::rnea::inverse_dynamics_with_wrenches;
 use crate::Scalar;
@@ -37,7 +38,10 @@ pub fn forward_dynamics_with_wrenches<S: Scalar>(
     inverse_dynamics_with_wrenches(model, ws, q, v, &zeros, wrenches, out);
     ws.zeros = zeros;
     // b = τ − h
-    out.iter_mut().zip(tau).for_each(|(b, tau)| *b = *tau - *b);
+    let mut driven = core::mem::take(&mut ws.driven);
+    effects::drive(model, v, tau, &mut driven);
+    out.iter_mut().zip(&driven).for_each(|(b, tau)| *b = *tau - *b);
+    ws.driven = driven;
     let matrix = factored(model, ws, q);
     solve(&matrix, &ws.below, out);
     ws.matrix = matrix;

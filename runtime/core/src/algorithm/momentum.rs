@@ -5,6 +5,7 @@
 
 use super::Workspace;
 use super::common::{Axes, inertias, positions};
+use super::effects::World;
 use super::rnea::{momentum, recursion};
 use crate::Scalar;
 use crate::model::Model;
@@ -119,7 +120,7 @@ fn center<S: Scalar>(model: &Model<S>, ws: &Workspace<S>) -> (S, Vector3<S>) {
 /// Leaves in each body the momentum of all that it carries, as the wrench that would bring it about in a unit of time.
 fn generalised<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S]) {
     let mut row = core::mem::take(&mut ws.row);
-    momentum(model, ws, q, v, &mut row);
+    momentum(model, ws, q, v, &World::bare(), &mut row);
     ws.row = row;
 }
 
@@ -137,7 +138,7 @@ fn at_the_roots<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, point: Vector3<S
 fn rate<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S]) -> (S, Wrench<S>) {
     positions(model, ws, Axes::Base, q);
     let mut row = core::mem::take(&mut ws.row);
-    recursion(model, ws, q, v, a, &[], Vector3::zeros(), &mut row);
+    recursion(model, ws, q, v, a, &[], &World::bare(), &mut row);
     ws.row = row;
     let (inverse, center) = center(model, ws);
     (inverse, at_the_roots(model, ws, center))

@@ -5,6 +5,7 @@
 //! Control* 102, 1980, 69–76; the rate matrix after Balafoutis & Patel, *Dynamic Analysis of Robot Manipulators*, 1991, ch. 4).
 //! The plain matrix form is [`super::textbook`].
 
+use super::effects::{self, World};
 use super::{Workspace, wrenches};
 use crate::joint::{JointLaw, Pose};
 use crate::model::{Body, Model};
@@ -37,13 +38,13 @@ pub fn inverse_dynamics_with_wrenches<S: Scalar>(
     wrenches: &[S],
     tau: &mut [S],
 ) {
-    recursion(model, ws, q, v, a, wrenches, model.gravity, tau);
+    recursion(model, ws, q, v, a, wrenches, &World::of(model), tau);
 }
 
-/// M(q)·v, the generalised momentum: inverse dynamics of the acceleration v at rest and without gravity.
-pub(super) fn momentum<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
+/// M(q)·v, the generalised momentum: inverse dynamics of the acceleration v at rest and in an empty world.
+pub(super) fn momentum<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], world: &World<S>, out: &mut [S]) {
     let zeros = core::mem::take(&mut ws.zeros);
-    recursion(model, ws, q, &zeros, v, &[], Vector3::zeros(), out);
+    recursion(model, ws, q, &zeros, v, &[], world, out);
     ws.zeros = zeros;
 }
 
@@ -57,11 +58,11 @@ pub(super) fn recursion<S: Scalar>(
     v: &[S],
     a: &[S],
     wrenches: &[S],
-    gravity: Vector3<S>,
+    world: &World<S>,
     tau: &mut [S],
 ) {
     // V̇_0 = [0; −g]
-    ws.bodies[0].motion.acceleration = -gravity;
+    ws.bodies[0].motion.acceleration = -world.gravity;
     for i in model.outward() {
         let body = &model.bodies[i];
         let pose = body.joint.pose(&body.coordinates, q);
@@ -69,12 +70,19 @@ pub(super) fn recursion<S: Scalar>(
     }
     // F_i −= w
     wrenches::each(model, ws, q, wrenches, |ws, i, w| ws.bodies[i].wrench = ws.bodies[i].wrench - *w);
+    effects::push(model, ws, q, v, world);
     tau.fill(S::zero());
     for i in model.inward() {
         let body = &model.bodies[i];
         if let Some(pose) = ws.bodies[i].pose {
             with_pose!(pose, p => inward(body, i, &p, ws, tau));
         }
+    }
+    if world.inertia {
+        effects::armature(model, a, tau);
+    }
+    if world.forces {
+        effects::resist(model, q, v, tau);
     }
 }
 

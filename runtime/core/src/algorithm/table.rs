@@ -137,6 +137,13 @@ macro_rules! for_each_function {
             operational_space_inertia_inverse(q) -> [Frames, Of(6), Of(6)] "1/(kg·m²)|…, symmetric", MassMatrix, true,
                 "Λ⁻¹ = J M⁻¹ Jᵀ of each frame by itself, J that of jacobians_world_aligned",
                 "M = Lᵀ D L; Khatib, IEEE J. Robot. Autom. 3, 1987";
+            effect_forces(q, v) -> [Nv] "N·m|N", Nothing, false,
+                "generalised forces of all effects but gravity, inertia and motors; zero without a scene",
+                "each effect's law";
+            dissipation(q, v) -> [] "W", Nothing, false,
+                "power of the effects that are not conservative: d(T + U)/dt = vᵀτ + this", "each effect's law";
+            motor_torques(v, tau) -> [Nv] "N·m|N", Nothing, false,
+                "what motors make of the torques that they are asked for; forward dynamics takes tau so", "each motor's law";
             integrate(q, step) -> [Nq] "rad|m|unit quaternion", Nothing, false,
                 "q ⊕ step: along the step for a unit of time, on the manifold", "exponential of SE(3); Lynch & Park 2017, §3.3";
             difference(q, target) -> [Nv] "rad|m", Nothing, false,

@@ -42,6 +42,8 @@ pub struct Workspace<S> {
     pub(super) matrix: Vec<S>,
     /// `[6 · nv]`.
     pub(super) six_rows: Vec<S>,
+    /// Torques that motors give, `[nv]`.
+    pub(super) driven: Vec<S>,
     /// Accelerations that were solved for, `[nv]`.
     pub(super) solution: Vec<S>,
 }
@@ -129,6 +131,7 @@ impl<S: Scalar> Workspace<S> {
             below: below(model),
             matrix: vec![S::zero(); nv * nv],
             six_rows: vec![S::zero(); 6 * nv],
+            driven: vec![S::zero(); nv],
             solution: vec![S::zero(); nv],
         }
     }

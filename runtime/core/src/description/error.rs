@@ -161,7 +161,7 @@ fn taken(f: &mut fmt::Formatter<'_>, names: &[String]) -> fmt::Result {
 const LONGEST: usize = 64;
 
 /// The name that differs least from `wrong`, if by a third of its letters at most.
-pub(super) fn nearest<'a>(wrong: &str, names: impl Iterator<Item = &'a str>) -> Option<String> {
+pub(crate) fn nearest<'a>(wrong: &str, names: impl Iterator<Item = &'a str>) -> Option<String> {
     let letters: Vec<char> = wrong.chars().take(LONGEST).collect();
     let most = (letters.len() / 3).max(1);
     let near = names.map(|name| (distance(&letters, name), name)).filter(|(d, _)| *d <= most);

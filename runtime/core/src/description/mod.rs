@@ -13,7 +13,7 @@ use alloc::vec::Vec;
 
 pub use edit::Payload;
 pub use error::EditError;
-use error::nearest;
+pub(crate) use error::nearest;
 
 /// A tree of links and joints. Indices into `links` and `joints` follow the order of the file.
 #[derive(Clone, Debug, Default, PartialEq)]

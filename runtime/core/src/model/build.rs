@@ -9,6 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::{Body, FLOATING_BASE, Frame, GRAVITY, JointInfo, Model};
 use crate::description::{self, Base, Description, Inertial, JointKind, Mimic, Origin};
+use crate::effect::Effects;
 use crate::joint::{Angle, Coordinates, Follow, Joint, JointLaw};
 use crate::spatial::{Placement, Reference, SpatialInertia, from_rpy, to_z_axis};
 use crate::with_pose;
@@ -196,7 +197,8 @@ impl<'a> Builder<'a> {
     }
 
     fn push_body(&mut self, name: String, parent: usize, placement: Placement<f64>, joint: Joint, coordinates: Coordinates<f64>) -> usize {
-        self.model.bodies.push(Body { name, parent, placement, joint, coordinates, inertia: SpatialInertia::zero(), link: None });
+        let inertia = SpatialInertia::zero();
+        self.model.bodies.push(Body { name, parent, placement, joint, coordinates, inertia, link: None, effects: Effects::none() });
         self.model.bodies.len() - 1
     }
 

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 
 use super::Model;
 use crate::Scalar;
+use crate::effect::EffectId;
 use crate::joint::Joint;
 
 /// A set of branches of the same structure on the same body.
@@ -33,13 +34,14 @@ struct Kind {
     at: (usize, usize),
     follows: bool,
     is_link: bool,
+    effects: Vec<(EffectId, usize)>,
 }
 
 /// First body of a branch and the kinds of its bodies, if it stands for itself.
 type Branch = (usize, Option<Vec<Kind>>);
 
 impl<S: Scalar> Model<S> {
-    /// The sets of `width` branches that are alike, from the base outward: the same joints in the same order, whatever frames they carry.
+    /// The sets of `width` branches that are alike, from the base outward: the same joints and effects in the same order, whatever frames they carry.
     /// Constants may differ, so that mirrored limbs are alike. Where more are alike than `width`, the first go together, then the next; what is left over
     /// stands for itself.
     ///
@@ -99,6 +101,7 @@ impl<S: Scalar> Model<S> {
                 at,
                 follows: body.coordinates.mimic.is_some(),
                 is_link: body.link.is_some(),
+                effects: body.effects.kinds(),
             })
         };
         branch.clone().map(kind).collect()
@@ -112,6 +115,7 @@ mod tests {
     use alloc::vec;
     use alloc::vec::Vec;
 
+    use crate::effect::Effects;
     use crate::joint::{Angle, Coordinates, Joint};
     use crate::model::{Body, Model};
     use crate::spatial::{Placement, Reference, SpatialInertia};
@@ -127,6 +131,7 @@ mod tests {
             coordinates: Coordinates { q: i.saturating_sub(1), v: i.saturating_sub(1), mimic: None, pitch: 0.0, from: Angle::zero() },
             inertia: SpatialInertia::zero(),
             link: None,
+            effects: Effects::none(),
         };
         let mut bodies = vec![body(0, 0)];
         bodies.extend(parents.iter().enumerate().map(|(k, &parent)| body(k + 1, parent)));

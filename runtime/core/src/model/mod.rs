@@ -15,6 +15,7 @@ pub use limbs::Limbs;
 
 use crate::Scalar;
 use crate::description::{JointKind, Limit};
+use crate::effect::Effects;
 use crate::joint::{Coordinates, Joint};
 use crate::spatial::{Placement, Reference, SpatialInertia};
 
@@ -66,6 +67,8 @@ pub struct Body<S> {
     /// For the body of a joint's child link, the axes of that link in the body's, as a rotation; the origins are the same, until a pass slides the
     /// body's. `None` for the base, and for the bodies without mass inside a planar or universal joint.
     pub link: Option<Matrix3<S>>,
+    /// What acts on it and on its joint besides.
+    pub effects: Effects<S>,
 }
 
 /// A named frame fixed in a body: a link of the file.
@@ -180,6 +183,7 @@ impl<S: Scalar> Body<S> {
             coordinates: self.coordinates.map(f),
             inertia: self.inertia.map(f),
             link: self.link.map(|r| r.map(f)),
+            effects: self.effects.map(f),
         }
     }
 }

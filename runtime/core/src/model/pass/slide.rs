@@ -28,6 +28,7 @@ pub fn slide<S: Scalar>(mut model: Model<S>) -> Model<S> {
         let body = &mut model.bodies[i];
         body.placement.position = position;
         body.inertia = shifted(&body.inertia, shifts[i]);
+        body.effects.body.iter_mut().for_each(|e| e.placement.position -= shifts[i]);
     }
     for frame in &mut model.frames {
         frame.placement.position -= shifts[frame.body];

@@ -104,6 +104,7 @@ fn turn_body<S: Scalar>(model: &mut Model<S>, i: usize, angle: &Angle<S>, hangin
     let turn = |x: &mut Placement<S>| *x = Placement { rotation: turned(&x.rotation, angle), position: back(angle, x.position) };
     hanging.bodies.iter().for_each(|&k| turn(&mut model.bodies[k].placement));
     hanging.frames.iter().for_each(|&k| turn(&mut model.frames[k].placement));
+    model.bodies[i].effects.body.iter_mut().for_each(|e| turn(&mut e.placement));
 }
 
 /// Replaces the fixed rotation of body `i` by the plain one about the same axis, and counts the joint's angle from there.

@@ -1,0 +1,149 @@
+//! Effects on frames of bodies.
+
+use super::{World, any_on_bodies, on_body, station};
+use crate::algorithm::Workspace;
+use crate::algorithm::common::{Axes, positions};
+use crate::algorithm::wrenches::place_bodies;
+use crate::effect::Law;
+use crate::joint::JointLaw;
+use crate::model::Model;
+use crate::spatial::{ArticulatedInertia, Matrix3, Twist, Vector3, Wrench, rotate, rotate_back};
+use crate::{Scalar, with_pose};
+
+/// Twists of all bodies in their own axes, into the common states; poses, origins and angular velocities are known.
+fn body_twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, v: &[S]) {
+    ws.common[0].twist = Twist::zero();
+    for i in model.outward() {
+        let (body, Some(pose)) = (&model.bodies[i], ws.bodies[i].pose) else { continue };
+        let carried = ws.common[body.parent].twist.at(ws.bodies[i].origin).linear;
+        let at = &body.coordinates;
+        // v_i = Rᵀ (v_λ + ω_λ × p) + S q̇
+        let linear = with_pose!(pose, p => {
+            let mut linear = p.to_child(rotate_back(&body.placement.rotation, carried));
+            for k in 0..body.joint.nv() {
+                let rate = at.rate_of_one().map_or(v[at.v + k], |m| v[at.v + k] * m);
+                linear += p.subspace(&Matrix3::identity(), k).linear * rate;
+            }
+            linear
+        });
+        ws.common[i].twist = Twist { angular: ws.bodies[i].motion.omega, linear };
+    }
+}
+
+/// F −= w of every effect, and F += G V̇ + V ×* G V of added mass, for the body's motion as it is (RNEA).
+pub(in crate::algorithm) fn push<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], world: &World<S>) {
+    if !any_on_bodies(model) {
+        return;
+    }
+    wrenches(model, ws, q, v, world);
+    if !world.inertia {
+        return;
+    }
+    added(model, ws, |ws, i, inertia| {
+        let (motion, twist) = (&ws.bodies[i].motion, &ws.common[i].twist);
+        let bias = bias_acceleration(ws, i, world.gravity);
+        let acceleration = Twist { angular: motion.alpha, linear: motion.acceleration + bias };
+        inertia.apply(&acceleration) + twist.cross_wrench(&momentum(inertia, twist))
+    });
+}
+
+/// p −= w of every effect, and added mass in I and p (ABA).
+pub(in crate::algorithm) fn give_way<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], world: &World<S>) {
+    if !any_on_bodies(model) {
+        return;
+    }
+    wrenches(model, ws, q, v, world);
+    added(model, ws, |ws, i, inertia| {
+        ws.articulated[i] += *inertia;
+        let bias = Twist { angular: Vector3::zeros(), linear: bias_acceleration(ws, i, world.gravity) };
+        let twist = &ws.common[i].twist;
+        inertia.apply(&bias) + twist.cross_wrench(&momentum(inertia, twist))
+    });
+}
+
+/// What makes a spatial acceleration that fluid at rest feels of a classical one with gravity subtracted: g − ω × v, in the body's axes.
+fn bias_acceleration<S: Scalar>(ws: &Workspace<S>, i: usize, gravity: Vector3<S>) -> Vector3<S> {
+    let twist = &ws.common[i].twist;
+    rotate_back(&ws.placements[i].rotation, gravity) - twist.angular.cross(&twist.linear)
+}
+
+/// G V.
+fn momentum<S: Scalar>(inertia: &ArticulatedInertia<S>, twist: &Twist<S>) -> Wrench<S> {
+    inertia.apply(twist)
+}
+
+/// Where bodies are and how they move, and what pushes them.
+fn wrenches<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], world: &World<S>) {
+    place_bodies(model, ws, q);
+    body_twists(model, ws, v);
+    for i in model.outward().filter(|_| world.forces) {
+        for effect in &model.bodies[i].effects.body {
+            if let Law::Wrench { wrench, .. } = effect.effect.law::<S>() {
+                let at = station(effect, &ws.placements[i], &ws.common[i].twist, model.gravity);
+                let w = on_body(effect, &wrench(&effect.parameters, &at));
+                ws.bodies[i].wrench = ws.bodies[i].wrench - w;
+            }
+        }
+    }
+}
+
+/// Adds to the wrench of each body with added mass what `wrench` says.
+fn added<S: Scalar>(
+    model: &Model<S>,
+    ws: &mut Workspace<S>,
+    wrench: impl Fn(&mut Workspace<S>, usize, &ArticulatedInertia<S>) -> Wrench<S>,
+) {
+    for i in model.outward() {
+        for effect in &model.bodies[i].effects.body {
+            if let Law::Added(inertia) = effect.effect.law::<S>() {
+                let inertia = inertia(&effect.parameters).moved(&effect.placement);
+                let w = wrench(ws, i, &inertia);
+                ws.bodies[i].wrench += w;
+            }
+        }
+    }
+}
+
+/// M += Σ Jᵀ G J of added mass.
+pub(in crate::algorithm) fn add_inertia<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
+    let is_added = |e: &crate::effect::BodyEffect<S>| matches!(e.effect.law::<S>(), Law::Added(_));
+    if !model.bodies.iter().any(|b| b.effects.body.iter().any(is_added)) {
+        return;
+    }
+    positions(model, ws, Axes::Base, q);
+    let n = model.nv;
+    for i in model.outward() {
+        for effect in &model.bodies[i].effects.body {
+            let Law::Added(inertia) = effect.effect.law::<S>() else { continue };
+            let inertia = inertia(&effect.parameters).moved(&effect.placement);
+            columns(model, ws, i, |k, own| {
+                let w = inertia.apply(&own);
+                columns(model, ws, i, |l, other| out[l * n + k] += w.power(&other));
+            });
+        }
+    }
+}
+
+/// The columns of body `i`'s Jacobian that are not zero, in its axes about its origin, each with its place in v.
+fn columns<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, mut visit: impl FnMut(usize, Twist<S>)) {
+    let turn = &ws.common[i].rotation;
+    let (mut j, mut d) = (i, Vector3::zeros());
+    while j != 0 {
+        for c in ws.columns_of(j) {
+            let axis = ws.columns[c].axis.at(d);
+            visit(ws.columns[c].at, Twist { angular: rotate_back(turn, axis.angular), linear: rotate_back(turn, axis.linear) });
+        }
+        d += ws.common[j].shift;
+        j = model.bodies[j].parent;
+    }
+}
+
+/// An inertia in axes of the body, in those that the body's are turned to by `turn`.
+pub(super) fn in_common_axes<S: Scalar>(inertia: &ArticulatedInertia<S>, turn: &Matrix3<S>) -> ArticulatedInertia<S> {
+    inertia.turned(turn)
+}
+
+/// A wrench in axes of the body, likewise.
+pub(super) fn turned<S: Scalar>(w: &Wrench<S>, turn: &Matrix3<S>) -> Wrench<S> {
+    Wrench { moment: rotate(turn, w.moment), force: rotate(turn, w.force) }
+}

@@ -1,0 +1,164 @@
+//! Effects on joints.
+
+use alloc::vec::Vec;
+
+use super::{World, duals};
+use crate::Scalar;
+use crate::algorithm::Workspace;
+use crate::dual::Dual;
+use crate::effect::{JointEffect, Law};
+use crate::joint::Coordinates;
+use crate::model::{Body, Model};
+
+/// One effect on one degree of freedom: what it is, at which place in v, its own coordinate and rate, and its own rate over that of the coordinate that it moves with.
+pub(super) struct Acting<'a, S> {
+    pub(super) effect: &'a JointEffect<S>,
+    pub(super) at: usize,
+    pub(super) ratio: Option<S>,
+    body: &'a Body<S>,
+}
+
+impl<S: Scalar> Acting<'_, S> {
+    /// Its own coordinate; of no meaning where the joint has none for each degree of freedom.
+    pub(super) fn coordinate(&self, q: &[S]) -> S {
+        if self.body.joint.nq() == 1 { self.body.coordinates.coordinate(q) } else { S::zero() }
+    }
+
+    /// Its own rate, or acceleration.
+    pub(super) fn rate(&self, v: &[S]) -> S {
+        scaled(v[self.at], self.ratio)
+    }
+
+    /// As a torque of the coordinate that it moves with.
+    pub(super) fn torque(&self, own: S) -> S {
+        scaled(own, self.ratio)
+    }
+}
+
+fn scaled<S: Scalar>(x: S, ratio: Option<S>) -> S {
+    ratio.map_or(x, |r| x * r)
+}
+
+/// All effects on joints.
+pub(super) fn all<S: Scalar>(model: &Model<S>) -> impl Iterator<Item = Acting<'_, S>> {
+    let of = |body: &'_ Body<S>| -> (usize, Option<S>) {
+        let at: &Coordinates<S> = &body.coordinates;
+        (at.v, at.rate_of_one())
+    };
+    model.outward().flat_map(move |i| {
+        let body = &model.bodies[i];
+        let (at, ratio) = of(body);
+        body.effects.joint.iter().map(move |effect| Acting { effect, at: at + effect.freedom, ratio, body })
+    })
+}
+
+/// τ −= the forces of effects on joints: what actuators have to do against them.
+#[inline(always)]
+pub(in crate::algorithm) fn resist<S: Scalar>(model: &Model<S>, q: &[S], v: &[S], tau: &mut [S]) {
+    for one in all(model) {
+        if let Law::Force { force, .. } = one.effect.effect.law::<S>() {
+            tau[one.at] -= one.torque(force(&one.effect.parameters, one.coordinate(q), one.rate(v)));
+        }
+    }
+}
+
+/// τ += I a of rotors.
+#[inline(always)]
+pub(in crate::algorithm) fn armature<S: Scalar>(model: &Model<S>, a: &[S], tau: &mut [S]) {
+    for one in all(model) {
+        if let Law::Inertia(inertia) = one.effect.effect.law::<S>() {
+            tau[one.at] += one.torque(inertia(&one.effect.parameters) * one.rate(a));
+        }
+    }
+}
+
+/// M_ii += I of rotors.
+#[inline(always)]
+pub(in crate::algorithm) fn armature_matrix<S: Scalar>(model: &Model<S>, out: &mut [S]) {
+    for one in all(model) {
+        if let Law::Inertia(inertia) = one.effect.effect.law::<S>() {
+            out[one.at * model.nv + one.at] += one.torque(one.torque(inertia(&one.effect.parameters)));
+        }
+    }
+}
+
+/// The torques that motors give.
+#[inline(always)]
+pub(in crate::algorithm) fn drive<S: Scalar>(model: &Model<S>, v: &[S], tau: &[S], out: &mut [S]) {
+    out.copy_from_slice(tau);
+    for one in all(model) {
+        if let (Law::Drive { torque, .. }, None) = (one.effect.effect.law::<S>(), one.ratio) {
+            out[one.at] = torque(&one.effect.parameters, tau[one.at], v[one.at]);
+        }
+    }
+}
+
+/// The torques that joints feel: what motors give, and the forces of effects on joints. The vector is the workspace's, to be given back.
+pub(in crate::algorithm) fn given<S: Scalar>(
+    model: &Model<S>,
+    ws: &mut Workspace<S>,
+    q: &[S],
+    v: &[S],
+    tau: &[S],
+    world: &World<S>,
+) -> Vec<S> {
+    let mut driven = core::mem::take(&mut ws.driven);
+    if !world.forces {
+        driven.copy_from_slice(tau);
+        return driven;
+    }
+    drive(model, v, tau, &mut driven);
+    for one in all(model) {
+        if let Law::Force { force, .. } = one.effect.effect.law::<S>() {
+            driven[one.at] += one.torque(force(&one.effect.parameters, one.coordinate(q), one.rate(v)));
+        }
+    }
+    driven
+}
+
+/// Inertia of the rotor on degree of freedom `k` of body `i`, if there is one.
+pub(in crate::algorithm) fn rotor<S: Scalar>(model: &Model<S>, i: usize, k: usize) -> Option<S> {
+    let of = |e: &JointEffect<S>| match e.effect.law::<S>() {
+        Law::Inertia(inertia) if e.freedom == k => Some(inertia(&e.parameters)),
+        _ => None,
+    };
+    model.bodies[i].effects.joint.iter().find_map(of)
+}
+
+/// For each motor its place in v, ∂/∂v and ∂/∂τ of the torque that it gives.
+pub(in crate::algorithm) fn driven_slopes<S: Scalar>(model: &Model<S>, v: &[S], tau: &[S], mut visit: impl FnMut(usize, S, S)) {
+    for one in all(model) {
+        if let (Law::Drive { slope, .. }, None) = (one.effect.effect.law::<S>(), one.ratio) {
+            let p = &duals(&one.effect.parameters)[..one.effect.parameters.len()];
+            let (tau, v) = (tau[one.at], v[one.at]);
+            let by_v = slope(p, Dual::constant(tau), Dual::variable(v)).slope;
+            let by_tau = slope(p, Dual::variable(tau), Dual::constant(v)).slope;
+            visit(one.at, by_v, by_tau);
+        }
+    }
+}
+
+/// The power of what is not conservative, W.
+pub(super) fn dissipation<S: Scalar>(model: &Model<S>, q: &[S], v: &[S]) -> S {
+    let mut sum = S::zero();
+    for one in all(model).filter(|one| !one.effect.effect.is_conservative()) {
+        if let Law::Force { force, rise, .. } = one.effect.effect.law::<S>() {
+            let (q, v) = (one.coordinate(q), one.rate(v));
+            let p = &duals(&one.effect.parameters)[..one.effect.parameters.len()];
+            // f v + dE/dt
+            sum += force(&one.effect.parameters, q, v) * v + rise(p, Dual::new(q, v)).slope;
+        }
+    }
+    sum
+}
+
+/// The energy that effects on joints store, J.
+pub(super) fn energy<S: Scalar>(model: &Model<S>, q: &[S]) -> S {
+    let mut sum = S::zero();
+    for one in all(model) {
+        if let Law::Force { energy, .. } = one.effect.effect.law::<S>() {
+            sum += energy(&one.effect.parameters, one.coordinate(q));
+        }
+    }
+    sum
+}

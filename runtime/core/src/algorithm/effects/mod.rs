@@ -1,0 +1,167 @@
+//! Effects in the equations of motion: forces on joints and bodies, inertia besides that of links, motors; and their derivatives.
+
+mod bodies;
+mod joints;
+mod slopes;
+
+use super::Workspace;
+use super::common::{Axes, positions, twists};
+use crate::Scalar;
+use crate::dual::Dual;
+use crate::effect::{BodyEffect, Law, Station};
+use crate::model::Model;
+use crate::spatial::{Placement, Twist, Vector3, Wrench, rotate, rotate_back};
+
+pub(super) use bodies::{add_inertia, give_way, push};
+pub(super) use joints::{armature, armature_matrix, drive, driven_slopes, given, resist, rotor};
+pub(super) use slopes::{on_bodies as body_slopes, on_joints as joint_slopes};
+
+/// What acts on the robot from outside while a recursion runs.
+#[derive(Clone, Copy)]
+pub(super) struct World<S> {
+    /// In the base frame, m/s².
+    pub(super) gravity: Vector3<S>,
+    /// Whether effects push and pull.
+    pub(super) forces: bool,
+    /// Whether rotors and added mass count.
+    pub(super) inertia: bool,
+}
+
+impl<S: Scalar> World<S> {
+    /// The robot's own.
+    pub(super) fn of(model: &Model<S>) -> Self {
+        Self { gravity: model.gravity, forces: true, inertia: true }
+    }
+
+    /// Neither gravity nor forces.
+    pub(super) fn empty() -> Self {
+        Self { gravity: Vector3::zeros(), forces: false, inertia: true }
+    }
+
+    /// Nothing but the links.
+    pub(super) fn bare() -> Self {
+        Self { inertia: false, ..Self::empty() }
+    }
+}
+
+/// Whether an effect acts on a body.
+pub(super) fn any_on_bodies<S: Scalar>(model: &Model<S>) -> bool {
+    model.bodies.iter().any(|b| !b.effects.body.is_empty())
+}
+
+/// More parameters than any effect has.
+const MOST: usize = 24;
+
+/// Parameters as constants with no derivative: the first `p.len()` of them.
+fn duals<S: Scalar>(p: &[S]) -> [Dual<S>; MOST] {
+    core::array::from_fn(|k| Dual::constant(p.get(k).copied().unwrap_or_else(S::zero)))
+}
+
+/// The frame of an effect on a body that stands at `x_wb` and moves with `twist`, in the body's axes.
+fn station<S: Scalar>(effect: &BodyEffect<S>, x_wb: &Placement<S>, twist: &Twist<S>, gravity: Vector3<S>) -> Station<S> {
+    let Placement { rotation, position } = &effect.placement;
+    let there = twist.at(*position);
+    let twist = Twist { angular: rotate_back(rotation, there.angular), linear: rotate_back(rotation, there.linear) };
+    Station { placement: x_wb.compose(&effect.placement), twist, gravity }
+}
+
+/// A wrench in the frame of an effect, in that of the body.
+fn on_body<S: Scalar>(effect: &BodyEffect<S>, w: &Wrench<S>) -> Wrench<S> {
+    let turn = &effect.placement.rotation;
+    Wrench { moment: rotate(turn, w.moment), force: rotate(turn, w.force) }.shifted(effect.placement.position)
+}
+
+/// The station of an effect on body `i`, after sweeps in the base's axes.
+fn station_in_base<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, effect: &BodyEffect<S>) -> Station<S> {
+    let state = &ws.common[i];
+    let x_wb = Placement { rotation: state.rotation, position: state.position };
+    let back = |x: Vector3<S>| rotate_back(&state.rotation, x);
+    let twist = Twist { angular: back(state.twist.angular), linear: back(state.twist.linear) };
+    station(effect, &x_wb, &twist, model.gravity)
+}
+
+/// Placements and twists of all bodies in the base's axes.
+fn places<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S]) {
+    positions(model, ws, Axes::Base, q);
+    twists(model, ws, Axes::Base, v);
+}
+
+/// The generalised forces of all effects but gravity, inertia and motors: M a + (Coriolis, centrifugal and gravity forces) = τ + these.
+///
+/// q: `[nq]`; v: `[nv]`; out: `[nv]` N·m|N.
+///
+/// # Panics
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
+pub fn effect_forces<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
+    out.fill(S::zero());
+    resist(model, q, v, out);
+    out.iter_mut().for_each(|x| *x = -*x);
+    if !any_on_bodies(model) {
+        return;
+    }
+    places(model, ws, q, v);
+    for i in model.outward() {
+        let mut total = Wrench::zero();
+        for effect in &model.bodies[i].effects.body {
+            if let Law::Wrench { wrench, .. } = effect.effect.law::<S>() {
+                total += on_body(effect, &wrench(&effect.parameters, &station_in_base(model, ws, i, effect)));
+            }
+        }
+        let turn = ws.common[i].rotation;
+        let mut w = Wrench { moment: rotate(&turn, total.moment), force: rotate(&turn, total.force) };
+        // τ = Jᵀ w
+        let mut j = if model.bodies[i].effects.body.is_empty() { 0 } else { i };
+        while j != 0 {
+            ws.columns_of(j).for_each(|c| out[ws.columns[c].at] += w.power(&ws.columns[c].axis));
+            w = ws.common[j].hand_on(&w);
+            j = model.bodies[j].parent;
+        }
+    }
+}
+
+/// The power of the effects that are not conservative, W: negative where they take energy.
+///
+/// q: `[nq]`; v: `[nv]`; out: one number. d(T + U)/dt = vᵀτ + this, with τ what motors give and U the [`super::potential_energy`].
+///
+/// # Panics
+/// As [`effect_forces`].
+pub fn dissipation<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
+    out[0] = joints::dissipation(model, q, v);
+    if !any_on_bodies(model) {
+        return;
+    }
+    places(model, ws, q, v);
+    for i in model.outward() {
+        for effect in model.bodies[i].effects.body.iter().filter(|e| !e.effect.is_conservative()) {
+            let Law::Wrench { wrench, rise, .. } = effect.effect.law::<S>() else { continue };
+            let at = station_in_base(model, ws, i, effect);
+            // ẇ = wᵀV + dE/dt
+            let stored = rise(&duals(&effect.parameters)[..effect.parameters.len()], &at.moved(&at.twist, &Twist::zero()));
+            out[0] += wrench(&effect.parameters, &at).power(&at.twist) + stored.slope;
+        }
+    }
+}
+
+/// The energy that effects store, J; after [`positions`] in the base's axes.
+pub(super) fn energy<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S]) -> S {
+    let mut sum = joints::energy(model, q);
+    for i in model.outward() {
+        ws.common[i].twist = Twist::zero();
+        for effect in &model.bodies[i].effects.body {
+            if let Law::Wrench { energy, .. } = effect.effect.law::<S>() {
+                sum += energy(&effect.parameters, &station_in_base(model, ws, i, effect));
+            }
+        }
+    }
+    sum
+}
+
+/// What motors make of the torques that they are asked for.
+///
+/// v: `[nv]`; tau: `[nv]` N·m|N, at the joints; out: `[nv]`. Joints without a motor get what is asked for.
+///
+/// # Panics
+/// As [`effect_forces`].
+pub fn motor_torques<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, v: &[S], tau: &[S], out: &mut [S]) {
+    drive(model, v, tau, out);
+}

@@ -1,0 +1,145 @@
+//! First derivatives of what effects do, by dual numbers: each law is evaluated once more with the derivative of its arguments.
+//!
+//! For a small motion of a joint k on the way from body i to the base, in axes of the body (Singh, Russell & Wensing, *IEEE Robot. Autom. Lett.* 7, 2022):
+//! ∂V/∂q_k = ψ̇_k, ∂V̇/∂q_k = ψ̈_k − V × ψ̇_k, ∂V/∂v_k = S_k, ∂V̇/∂v_k = ψ̇_k + Ṡ_k − V × S_k.
+
+use super::bodies::{in_common_axes, turned};
+use super::{duals, joints, on_body, station_in_base};
+use crate::Scalar;
+use crate::algorithm::Workspace;
+use crate::algorithm::workspace::Column;
+use crate::dual::Dual;
+use crate::effect::{BodyEffect, Law};
+use crate::model::Model;
+use crate::spatial::{ArticulatedInertia, Twist, Vector3, Wrench, rotate, rotate_back};
+
+/// ∂τ/∂q, ∂τ/∂v and ∂τ/∂a of effects on joints; of `by_v` and `by_a` only where they are given.
+pub(in crate::algorithm) fn on_joints<S: Scalar>(
+    model: &Model<S>,
+    q: &[S],
+    v: &[S],
+    by_q: &mut [S],
+    mut others: Option<(&mut [S], &mut [S])>,
+) {
+    for one in joints::all(model) {
+        let (diagonal, p) = (one.at * model.nv + one.at, &one.effect.parameters);
+        // Twice: the rate of the coordinate, and the torque on it.
+        let twice = |x: S| one.torque(one.torque(x));
+        match (one.effect.effect.law::<S>(), &mut others) {
+            (Law::Force { slope, .. }, others) => {
+                let (p, q, v) = (&duals(p)[..p.len()], one.coordinate(q), one.rate(v));
+                by_q[diagonal] -= twice(slope(p, Dual::variable(q), Dual::constant(v)).slope);
+                if let Some((by_v, _)) = others {
+                    by_v[diagonal] -= twice(slope(p, Dual::constant(q), Dual::variable(v)).slope);
+                }
+            }
+            (Law::Inertia(inertia), Some((_, by_a))) => by_a[diagonal] += twice(inertia(p)),
+            _ => {}
+        }
+    }
+}
+
+/// The same of effects on bodies, after all sweeps in the base's axes; adds their wrenches to the bodies' forces.
+pub(in crate::algorithm) fn on_bodies<S: Scalar>(
+    model: &Model<S>,
+    ws: &mut Workspace<S>,
+    by_q: &mut [S],
+    mut others: Option<(&mut [S], &mut [S])>,
+) {
+    for i in model.outward() {
+        for effect in &model.bodies[i].effects.body {
+            match effect.effect.law::<S>() {
+                Law::Wrench { .. } => pushed(model, ws, i, effect, by_q, others.as_mut().map(|(by_v, _)| &mut **by_v)),
+                Law::Added(inertia) => {
+                    let own = inertia(&effect.parameters).moved(&effect.placement);
+                    let inertia = in_common_axes(&own, &ws.common[i].rotation);
+                    carried_along(model, ws, i, &inertia, by_q, others.as_mut().map(|(v, a)| (&mut **v, &mut **a)));
+                }
+                _ => {}
+            }
+        }
+    }
+}
+
+/// A law's wrench on body `i`.
+fn pushed<S: Scalar>(
+    model: &Model<S>,
+    ws: &mut Workspace<S>,
+    i: usize,
+    effect: &BodyEffect<S>,
+    by_q: &mut [S],
+    mut by_v: Option<&mut [S]>,
+) {
+    let Law::Wrench { wrench, slope, .. } = effect.effect.law::<S>() else { return };
+    let turn = ws.common[i].rotation;
+    let at = station_in_base(model, ws, i, effect);
+    let w = turned(&on_body(effect, &wrench(&effect.parameters, &at)), &turn);
+    ws.common[i].force = ws.common[i].force - w;
+    let p = &duals(&effect.parameters)[..effect.parameters.len()];
+    let axes = turn * effect.placement.rotation;
+    let offset = rotate(&turn, effect.placement.position);
+    // A twist about the body's origin, in the effect's frame.
+    let there = |x: &Twist<S>| {
+        let x = x.at(offset);
+        Twist { angular: rotate_back(&axes, x.angular), linear: rotate_back(&axes, x.linear) }
+    };
+    let change = |step: &Twist<S>, of_twist: &Twist<S>| {
+        let w = slope(p, &at.moved(&there(step), &there(of_twist)));
+        let slope = |x: Vector3<Dual<S>>| x.map(|x| x.slope);
+        turned(&on_body(effect, &Wrench { moment: slope(w.moment), force: slope(w.force) }), &turn)
+    };
+    on_the_way(model, ws, i, |k, d| {
+        let (axis, drift) = (k.axis.at(d), k.drift.at(d));
+        subtract(model, ws, i, &change(&axis, &drift), k.at, by_q);
+        if let Some(by_v) = &mut by_v {
+            subtract(model, ws, i, &change(&Twist::zero(), &axis), k.at, by_v);
+        }
+    });
+}
+
+/// Added mass of body `i`, in common axes about its origin.
+fn carried_along<S: Scalar>(
+    model: &Model<S>,
+    ws: &mut Workspace<S>,
+    i: usize,
+    inertia: &ArticulatedInertia<S>,
+    by_q: &mut [S],
+    mut others: Option<(&mut [S], &mut [S])>,
+) {
+    let twist = ws.common[i].twist;
+    // The fluid at rest does not fall.
+    let gravity = Twist { angular: Vector3::zeros(), linear: model.gravity };
+    let momentum = inertia.apply(&twist);
+    let force = inertia.apply(&(ws.common[i].acceleration + gravity)) + twist.cross_wrench(&momentum);
+    ws.common[i].force += force;
+    // −δ(G V̇ + V ×* G V)
+    let change = |of_twist: &Twist<S>, of_acceleration: &Twist<S>| {
+        let turned = of_twist.cross_wrench(&momentum) + twist.cross_wrench(&inertia.apply(of_twist));
+        Wrench::zero() - (inertia.apply(of_acceleration) + turned)
+    };
+    on_the_way(model, ws, i, |k, d| {
+        let (axis, drift) = (k.axis.at(d), k.drift.at(d));
+        let curl = (k.curl + gravity.cross(&k.axis)).at(d);
+        subtract(model, ws, i, &change(&drift, &(curl - twist.cross(&drift))), k.at, by_q);
+        if let Some((by_v, by_a)) = &mut others {
+            let rate = drift + k.rate.at(d) - twist.cross(&axis);
+            subtract(model, ws, i, &change(&axis, &rate), k.at, by_v);
+            subtract(model, ws, i, &change(&Twist::zero(), &axis), k.at, by_a);
+        }
+    });
+}
+
+/// Visits the columns on the way from body `i` to the base, each with how far body `i`'s origin is from the one that it is about.
+fn on_the_way<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, mut visit: impl FnMut(&Column<S>, Vector3<S>)) {
+    let (mut j, mut d) = (i, Vector3::zeros());
+    while j != 0 {
+        ws.columns_of(j).for_each(|c| visit(&ws.columns[c], d));
+        d += ws.common[j].shift;
+        j = model.bodies[j].parent;
+    }
+}
+
+/// Subtracts S_lᵀ w from element (l, k) for each column l on the way.
+fn subtract<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, w: &Wrench<S>, k: usize, matrix: &mut [S]) {
+    on_the_way(model, ws, i, |l, d| matrix[l.at * model.nv + k] -= w.power(&l.axis.at(d)));
+}

@@ -1,0 +1,19 @@
+//! Added mass: the fluid that a link moves along.
+
+use nalgebra::Matrix3;
+
+use super::Field;
+use crate::Scalar;
+use crate::spatial::ArticulatedInertia;
+
+pub(super) const FIELDS: &[Field] = &[
+    Field::number("angular", "kg·m²", "moments about the axes: xx, xy, xz, yy, yz, zz").of(6),
+    Field::number("linear", "kg", "masses along the axes: xx, xy, xz, yy, yz, zz").of(6),
+    Field::number("coupling", "kg·m", "row by row: moment about an axis at the unit acceleration along another").or(&[0.0; 9]).of(9),
+];
+
+/// The 6×6 matrix on [ω̇; a] in the effect's frame.
+pub(super) fn inertia<S: Scalar>(p: &[S]) -> ArticulatedInertia<S> {
+    let symmetric = |x: &[S]| Matrix3::new(x[0], x[1], x[2], x[1], x[3], x[4], x[2], x[4], x[5]);
+    ArticulatedInertia { angular: symmetric(&p[..6]), linear: symmetric(&p[6..12]), coupling: Matrix3::from_row_slice(&p[12..21]) }
+}

@@ -1,0 +1,204 @@
+//! Effects put on the bodies of a model.
+
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+use core::fmt;
+
+use nalgebra::{Matrix6, Vector3};
+
+use super::{Applied, BodyEffect, Effect, EffectId, Field, JointEffect, On};
+use crate::description::nearest;
+use crate::joint::Joint;
+use crate::model::Model;
+use crate::spatial::{Placement, from_rpy};
+
+/// Why an effect cannot be had. The first that is found of each effect that was asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EffectError {
+    /// Its place in the list.
+    pub index: usize,
+    /// Which.
+    pub effect: EffectId,
+    /// The joint or link.
+    pub on: String,
+    /// What is wrong.
+    pub fault: Fault,
+}
+
+/// What is wrong with an effect.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Fault {
+    /// No moving joint, or no link, of this name.
+    Unknown {
+        /// What it acts on.
+        on: On,
+        /// The name most like it.
+        nearest: Option<String>,
+    },
+    /// The same effect is on this joint already.
+    Twice,
+    /// The link is fixed to the base: nothing feels it.
+    Still,
+    /// The joint has no single coordinate for the law.
+    NoCoordinate,
+    /// A wrong number of parameters.
+    Length {
+        /// How many there are.
+        found: usize,
+        /// How many there must be.
+        expected: usize,
+    },
+    /// A number that is not finite, or less than it may be.
+    Number {
+        /// The parameter's name.
+        field: &'static str,
+        /// The number.
+        found: f64,
+        /// What it must be.
+        expected: String,
+    },
+}
+
+impl fmt::Display for EffectError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (effect, on) = (self.effect.row(), &self.on);
+        let kind = if effect.on == On::Joint { "joint" } else { "link" };
+        write!(f, "{} on {kind} {on:?}: ", effect.name)?;
+        match &self.fault {
+            Fault::Unknown { on, nearest } => {
+                write!(f, "there is no {}", if *on == On::Joint { "joint of this name that moves" } else { "link of this name" })?;
+                nearest.iter().try_for_each(|n| write!(f, "; the nearest is {n:?}"))
+            }
+            Fault::Twice => write!(f, "given twice: expected one for a joint"),
+            Fault::Still => write!(f, "the link is fixed to the base, nothing would feel it: expected a link that moves"),
+            Fault::NoCoordinate => write!(f, "the law needs a coordinate for each degree of freedom, which a ball or a free joint has not"),
+            Fault::Length { found, expected } => write!(f, "found {found} parameters, expected {expected}"),
+            Fault::Number { field, found, expected } => write!(f, "{field}: found {found}, expected {expected}"),
+        }
+    }
+}
+
+impl core::error::Error for EffectError {}
+
+impl Model<f64> {
+    /// The same robot with these effects besides those that it has. Several on one link add up. All that is wrong is told at once.
+    pub fn with_effects(mut self, applied: &[Applied]) -> Result<Self, Vec<EffectError>> {
+        let mut errors = Vec::new();
+        for (index, one) in applied.iter().enumerate() {
+            let put = check(one).and_then(|()| match one.effect.row().on {
+                On::Joint => self.put_on_joint(one),
+                On::Link => self.put_on_link(one),
+            });
+            if let Err(fault) = put {
+                errors.push(EffectError { index, effect: one.effect, on: one.on.clone(), fault });
+            }
+        }
+        if errors.is_empty() { Ok(self) } else { Err(errors) }
+    }
+
+    fn put_on_joint(&mut self, one: &Applied) -> Result<(), Fault> {
+        let bodies: Vec<usize> = self.outward().filter(|&i| self.bodies[i].name == one.on).collect();
+        if bodies.is_empty() {
+            return Err(Fault::Unknown { on: On::Joint, nearest: nearest(&one.on, self.bodies.iter().skip(1).map(|b| b.name.as_str())) });
+        }
+        for i in bodies {
+            let body = &mut self.bodies[i];
+            if body.effects.joint.iter().any(|e| e.effect == one.effect) {
+                return Err(Fault::Twice);
+            }
+            if matches!(body.joint, Joint::Spherical | Joint::Floating) && needs_coordinate(one.effect) {
+                return Err(Fault::NoCoordinate);
+            }
+            let on = |freedom| JointEffect { effect: one.effect, freedom, parameters: one.parameters.clone() };
+            body.effects.joint.extend((0..body.joint.nv()).map(on));
+        }
+        Ok(())
+    }
+
+    fn put_on_link(&mut self, one: &Applied) -> Result<(), Fault> {
+        let Some(frame) = self.frames.iter().find(|f| f.name == one.on) else {
+            return Err(Fault::Unknown { on: On::Link, nearest: nearest(&one.on, self.frames.iter().map(|f| f.name.as_str())) });
+        };
+        if frame.body == 0 {
+            return Err(Fault::Still);
+        }
+        let at = Placement { rotation: from_rpy(one.at.rpy), position: Vector3::from(one.at.xyz) };
+        let (body, placement) = (frame.body, frame.placement.compose(&at));
+        let parameters = normalised(one.effect, &one.parameters);
+        self.bodies[body].effects.body.push(BodyEffect { effect: one.effect, placement, parameters });
+        Ok(())
+    }
+}
+
+fn needs_coordinate(effect: EffectId) -> bool {
+    matches!(effect, EffectId::spring | EffectId::limit)
+}
+
+/// The normal of a plane to length 1.
+fn normalised(effect: EffectId, parameters: &[f64]) -> Vec<f64> {
+    let mut parameters = parameters.to_vec();
+    if effect == EffectId::contact {
+        let at = start(effect.row(), "normal");
+        let normal = &mut parameters[at..at + 3];
+        let largest = normal.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let length = largest * libm::sqrt(normal.iter().map(|x| x / largest * (x / largest)).sum());
+        normal.iter_mut().for_each(|x| *x /= length);
+    }
+    parameters
+}
+
+/// Place of the first number of a field.
+fn start(effect: &Effect, name: &str) -> usize {
+    effect.fields.iter().take_while(|f| f.name != name).map(|f| f.len).sum()
+}
+
+/// Whether the numbers are what the fields want, and what they must be together.
+fn check(one: &Applied) -> Result<(), Fault> {
+    let (row, p) = (one.effect.row(), &one.parameters);
+    if p.len() != row.len() {
+        return Err(Fault::Length { found: p.len(), expected: row.len() });
+    }
+    let mut rest = p.as_slice();
+    for field in row.fields {
+        let (own, others) = rest.split_at(field.len);
+        own.iter().try_for_each(|x| within(field, *x))?;
+        rest = others;
+    }
+    let wrong = |field: &'static str, found: f64, expected: &str| Err(Fault::Number { field, found, expected: expected.to_string() });
+    let all = one.at.xyz.iter().chain(&one.at.rpy);
+    if let Some(x) = all.copied().find(|x| !x.is_finite()) {
+        return wrong("xyz or rpy", x, "finite numbers");
+    }
+    match one.effect {
+        EffectId::limit if p[0] >= p[1] => wrong("upper", p[1], &alloc::format!("a number above the lower bound, {}", p[0])),
+        EffectId::motor if p[3] > 1.0 => wrong("efficiency", p[3], "at most 1"),
+        EffectId::contact if p[start(row, "normal")..][..3] == [0.0; 3] => wrong("normal", 0.0, "a direction"),
+        EffectId::added_mass if !semidefinite(p) => wrong("angular, linear and coupling", p[0], "a positive semidefinite matrix"),
+        _ => Ok(()),
+    }
+}
+
+fn within(field: &Field, x: f64) -> Result<(), Fault> {
+    let least = field.at_least;
+    if x.is_finite() && (x > least || (x == least && !field.strictly)) {
+        return Ok(());
+    }
+    let expected = match (least == f64::NEG_INFINITY, field.strictly) {
+        (true, _) => "a finite number".to_string(),
+        (_, true) => alloc::format!("a finite number above {least}"),
+        _ => alloc::format!("a finite number, at least {least}"),
+    };
+    Err(Fault::Number { field: field.name, found: x, expected })
+}
+
+/// Whether no motion has less than no energy, but for rounding of written numbers.
+fn semidefinite(p: &[f64]) -> bool {
+    let inertia = super::added_mass::inertia(p);
+    let mut matrix = Matrix6::zeros();
+    matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&inertia.angular);
+    matrix.fixed_view_mut::<3, 3>(0, 3).copy_from(&inertia.coupling);
+    matrix.fixed_view_mut::<3, 3>(3, 0).copy_from(&inertia.coupling.transpose());
+    matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&inertia.linear);
+    let values = matrix.symmetric_eigenvalues();
+    values.iter().all(|x| *x >= -1e-9 * values.amax())
+}

@@ -1,0 +1,23 @@
+//! Drag along and about the axes of a frame.
+
+use super::{Field, FrameForce, Station};
+use crate::Scalar;
+use crate::spatial::{Vector3, Wrench};
+
+pub(super) const FIELDS: &[Field] = &[
+    Field::number("linear", "N·s²/m²", "force along each axis at the unit speed, quadratic").at_least_zero().of(3),
+    Field::number("angular", "N·m·s²", "moment about each axis at the unit rate, quadratic").at_least_zero().of(3),
+    Field::number("viscous_linear", "N·s/m", "force at the unit speed, linear").at_least_zero().or(&[0.0]),
+    Field::number("viscous_angular", "N·m·s", "moment at the unit rate, linear").at_least_zero().or(&[0.0]),
+];
+
+pub(super) struct Law;
+
+impl FrameForce for Law {
+    // f_i = −c_i |v_i| v_i − b v_i;  m_i = −C_i |ω_i| ω_i − B ω_i
+    #[inline(always)]
+    fn wrench<S: Scalar>(p: &[S], at: &Station<S>) -> Wrench<S> {
+        let against = |x: Vector3<S>, c: &[S], b: S| Vector3::from_fn(|i, _| -((c[i] * x[i].abs() + b) * x[i]));
+        Wrench { moment: against(at.twist.angular, &p[3..6], p[7]), force: against(at.twist.linear, &p[..3], p[6]) }
+    }
+}

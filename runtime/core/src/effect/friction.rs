@@ -1,0 +1,19 @@
+//! Coulomb friction.
+
+use super::{Field, Force, smooth_sign};
+use crate::Scalar;
+
+pub(super) const FIELDS: &[Field] = &[
+    Field::number("friction", "N·m|N", "torque of sliding").at_least_zero(),
+    Field::number("speed", "rad/s|m/s", "rate below which the law is smooth").positive().or(&[1e-3]),
+];
+
+pub(super) struct Law;
+
+impl Force for Law {
+    // −μ v/√(v² + s²)
+    #[inline(always)]
+    fn force<S: Scalar>(p: &[S], _q: S, v: S) -> S {
+        -(p[0] * smooth_sign(v, p[1]))
+    }
+}

@@ -1,0 +1,29 @@
+//! A joint's limits: a stop at each bound.
+
+use super::{Field, Force, ramp};
+use crate::Scalar;
+
+pub(super) const FIELDS: &[Field] = &[
+    Field::number("lower", "rad|m", "lower bound"),
+    Field::number("upper", "rad|m", "upper bound, above the lower"),
+    Field::number("stiffness", "N·m/rad|N/m", "torque a unit of depth").at_least_zero(),
+    Field::number("damping", "s/rad|s/m", "what a unit rate into the stop adds to the torque, in parts of it").at_least_zero().or(&[0.0]),
+];
+
+pub(super) struct Law;
+
+impl Force for Law {
+    // x = max(0, l − q): k x max(0, 1 − c v);  x = max(0, q − u): −k x max(0, 1 + c v)
+    #[inline(always)]
+    fn force<S: Scalar>(p: &[S], q: S, v: S) -> S {
+        let (k, c) = (p[2], p[3] * v);
+        let (below, above) = (ramp(p[0] - q), ramp(q - p[1]));
+        k * below * ramp(S::one() - c) - k * above * ramp(S::one() + c)
+    }
+
+    // ½ k x²
+    fn energy<S: Scalar>(p: &[S], q: S) -> S {
+        let (below, above) = (ramp(p[0] - q), ramp(q - p[1]));
+        S::from_f64(0.5) * p[2] * (below * below + above * above)
+    }
+}

@@ -1,0 +1,334 @@
+//! Effects beyond rigid bodies in a gravity field: what joints, links and the world around them do.
+//!
+//! One effect, one file: its law, generic over the scalar, with its source; and one row in the table below. What a robot is subject to is kept with
+//! its bodies ([`Effects`]); [`crate::model::Model::with_effects`] puts it there. An effect that is not there costs nothing.
+//!
+//! Forces are those on the robot: −d v for damping. Inverse dynamics gives what the actuators do against them.
+
+mod added_mass;
+mod apply;
+mod armature;
+mod box_drag;
+mod buoyancy;
+mod contact;
+mod damping;
+mod drag;
+mod friction;
+mod limit;
+mod motor;
+mod spring;
+mod station;
+
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::marker::PhantomData;
+
+pub use apply::{EffectError, Fault};
+pub use station::Station;
+
+use crate::Scalar;
+use crate::description::Origin;
+use crate::dual::Dual;
+use crate::spatial::{ArticulatedInertia, Placement, Wrench};
+
+/// What an effect acts on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum On {
+    /// Each degree of freedom of a joint.
+    Joint,
+    /// A frame in a link.
+    Link,
+}
+
+/// A parameter of an effect: one number or several.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Field {
+    /// Its key in scenes.
+    pub name: &'static str,
+    /// How many numbers.
+    pub len: usize,
+    /// Its unit.
+    pub unit: &'static str,
+    /// What it is where a scene does not say, as many numbers as it has; `None`: a scene must say.
+    pub default: Option<&'static [f64]>,
+    /// No number may be less.
+    pub at_least: f64,
+    /// Nor be equal to that.
+    pub strictly: bool,
+    /// What it means.
+    pub what: &'static str,
+}
+
+impl Field {
+    /// Any number, to be given.
+    const fn number(name: &'static str, unit: &'static str, what: &'static str) -> Self {
+        Self { name, len: 1, unit, default: None, at_least: f64::NEG_INFINITY, strictly: false, what }
+    }
+
+    /// Not negative.
+    const fn at_least_zero(self) -> Self {
+        Self { at_least: 0.0, ..self }
+    }
+
+    const fn positive(self) -> Self {
+        Self { at_least: 0.0, strictly: true, ..self }
+    }
+
+    const fn or(self, default: &'static [f64]) -> Self {
+        Self { default: Some(default), ..self }
+    }
+
+    const fn of(self, len: usize) -> Self {
+        Self { len, ..self }
+    }
+}
+
+/// One row: an effect that a scene may call for.
+#[derive(Clone, Copy, Debug)]
+pub struct Effect {
+    /// Its number.
+    pub id: EffectId,
+    /// Its name in scenes.
+    pub name: &'static str,
+    /// What it acts on.
+    pub on: On,
+    /// The law.
+    pub what: &'static str,
+    /// Where the law is from.
+    pub source: &'static str,
+    /// Its parameters, in order.
+    pub fields: &'static [Field],
+}
+
+impl Effect {
+    /// How many numbers its parameters are.
+    pub fn len(&self) -> usize {
+        self.fields.iter().map(|f| f.len).sum()
+    }
+
+    /// Whether it has none.
+    pub fn is_empty(&self) -> bool {
+        self.fields.is_empty()
+    }
+}
+
+/// An effect as a scene asks for it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Applied {
+    /// Which.
+    pub effect: EffectId,
+    /// Name of the joint or the link.
+    pub on: String,
+    /// The effect's frame in the link's frame; of no meaning for joints.
+    pub at: Origin,
+    /// All its fields' numbers, one after the other.
+    pub parameters: Vec<f64>,
+}
+
+/// A law on a degree of freedom: the force at the coordinate q, rad|m, and the rate v.
+trait Force {
+    fn force<S: Scalar>(p: &[S], q: S, v: S) -> S;
+
+    /// The energy that it stores, J.
+    fn energy<S: Scalar>(_p: &[S], _q: S) -> S {
+        S::zero()
+    }
+}
+
+/// A law on a frame of a link: the wrench about the frame's origin, in its axes.
+trait FrameForce {
+    fn wrench<S: Scalar>(p: &[S], at: &Station<S>) -> Wrench<S>;
+
+    /// The energy that it stores, J.
+    fn energy<S: Scalar>(_p: &[S], _at: &Station<S>) -> S {
+        S::zero()
+    }
+}
+
+/// How an effect enters the equations. Laws come with their duals, for derivatives.
+pub(crate) enum Law<S: 'static> {
+    /// Inertia on the diagonal of the mass matrix.
+    Inertia(fn(&[S]) -> S),
+    /// A force on a degree of freedom.
+    Force { force: OnFreedom<S>, slope: OnFreedom<Dual<S>>, energy: fn(&[S], S) -> S, rise: fn(&[Dual<S>], Dual<S>) -> Dual<S> },
+    /// What becomes of the torque that is asked for, by the rate.
+    Drive { torque: OnFreedom<S>, slope: OnFreedom<Dual<S>> },
+    /// A wrench on a frame.
+    Wrench {
+        wrench: AtStation<S, Wrench<S>>,
+        slope: AtStation<Dual<S>, Wrench<Dual<S>>>,
+        energy: AtStation<S, S>,
+        rise: AtStation<Dual<S>, Dual<S>>,
+    },
+    /// Inertia in a frame, of something that gravity does not act on.
+    Added(fn(&[S]) -> ArticulatedInertia<S>),
+}
+
+type OnFreedom<S> = fn(&[S], S, S) -> S;
+type AtStation<S, T> = fn(&[S], &Station<S>) -> T;
+
+macro_rules! law {
+    (inertia $file:ident) => {
+        Law::Inertia($file::inertia)
+    };
+    (force $file:ident) => {
+        Law::Force { force: $file::Law::force, slope: $file::Law::force, energy: $file::Law::energy, rise: $file::Law::energy }
+    };
+    (drive $file:ident) => {
+        Law::Drive { torque: $file::torque, slope: $file::torque }
+    };
+    (wrench $file:ident) => {
+        Law::Wrench { wrench: $file::Law::wrench, slope: $file::Law::wrench, energy: $file::Law::energy, rise: $file::Law::energy }
+    };
+    (added $file:ident) => {
+        Law::Added($file::inertia)
+    };
+}
+
+macro_rules! effects {
+    ($($on:ident $law:ident $file:ident $conservative:literal $what:literal $source:literal;)*) => {
+        /// The effects by number: each variant is called as scenes call it.
+        #[allow(non_camel_case_types)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum EffectId {
+            $(#[doc = $what] $file,)*
+        }
+
+        const ROWS: &[Effect] = &[$(
+            Effect { id: EffectId::$file, name: stringify!($file), on: On::$on, what: $what, source: $source, fields: $file::FIELDS },
+        )*];
+
+        impl EffectId {
+            /// Whether no energy is lost or won.
+            pub(crate) fn is_conservative(self) -> bool {
+                match self { $(Self::$file => $conservative,)* }
+            }
+        }
+
+        struct Table<S>(PhantomData<S>);
+
+        impl<S: Scalar> Table<S> {
+            const LAWS: &'static [Law<S>] = &[$(law!($law $file),)*];
+        }
+    };
+}
+
+effects! {
+    Joint inertia armature true "M_ii += I n²: a rotor of inertia I behind a gear n, that turns about the joint's axis alone" "Featherstone 2008, §9.6";
+    Joint force damping false "−d v" "Rayleigh 1873";
+    Joint force friction false "−μ v/√(v² + s²): Coulomb friction, smooth for rates below s" "Coulomb 1781; smoothed as in Hairer & Wanner 1996";
+    Joint force spring true "−k (q − q₀)" "Hooke 1678";
+    Joint force limit false "∓k x max(0, 1 + c ẋ) beyond a bound, x the depth: a stop that pushes and never pulls"
+        "Hunt & Crossley, J. Appl. Mech. 42, 1975";
+    Joint drive motor false "τ clipped to the torque–speed line of a motor behind a gear, less (1 − η) |τ| v/√(v² + s²)"
+        "Hughes & Drury, Electric Motors and Drives, 2013, ch. 3";
+    Link wrench drag false "−c |v| v at a point" "Newton 1687; Batchelor 1967, §5.11";
+    Link wrench box_drag false "for each axis −c_i |v_i| v_i − b_i v_i and −C_i |ω_i| ω_i − B_i ω_i" "Batchelor 1967, §5.11, §4.9";
+    Link wrench buoyancy true "−ρ V g at the centre of the displaced volume" "Archimedes; Fossen 2011, §4.1";
+    Link added added_mass true "[m; f] += G V̇ + V ×* G V: fluid that is at rest without the link, moved along" "Fossen 2011, §6.3; Lamb 1932, §124";
+    Link wrench contact false "a sphere on the plane nᵀx = h: k x max(0, 1 + c ẋ) along n, and −μ F v_t/√(v_t² + s²)"
+        "Hunt & Crossley, J. Appl. Mech. 42, 1975";
+}
+
+/// All effects, in the order in which they are listed to people.
+pub fn effects() -> &'static [Effect] {
+    ROWS
+}
+
+/// The effect called `name`.
+pub fn effect(name: &str) -> Option<&'static Effect> {
+    ROWS.iter().find(|e| e.name == name)
+}
+
+impl EffectId {
+    /// Its row.
+    pub fn row(self) -> &'static Effect {
+        &ROWS[self as usize]
+    }
+
+    /// Its name in scenes.
+    pub fn name(self) -> &'static str {
+        self.row().name
+    }
+
+    pub(crate) fn law<S: Scalar>(self) -> &'static Law<S> {
+        &Table::<S>::LAWS[self as usize]
+    }
+}
+
+/// What acts on a body and on its joint.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Effects<S> {
+    /// On the joint.
+    pub joint: Vec<JointEffect<S>>,
+    /// On frames of the body.
+    pub body: Vec<BodyEffect<S>>,
+}
+
+/// An effect on one degree of freedom of a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointEffect<S> {
+    /// Which.
+    pub effect: EffectId,
+    /// The degree of freedom, counted from the joint's first.
+    pub freedom: usize,
+    /// As the effect's fields say.
+    pub parameters: Vec<S>,
+}
+
+/// An effect on a frame of a body.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyEffect<S> {
+    /// Which.
+    pub effect: EffectId,
+    /// Its frame in the body's frame.
+    pub placement: Placement<S>,
+    /// As the effect's fields say.
+    pub parameters: Vec<S>,
+}
+
+impl<S: Scalar> Effects<S> {
+    /// None.
+    pub fn none() -> Self {
+        Self { joint: Vec::new(), body: Vec::new() }
+    }
+
+    /// The same with `f` of each constant, always in the same order.
+    pub fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> Effects<T> {
+        let all = |p: &[S]| p.iter().map(|x| f(*x)).collect();
+        let joint = |e: &JointEffect<S>| JointEffect { effect: e.effect, freedom: e.freedom, parameters: all(&e.parameters) };
+        let body = |e: &BodyEffect<S>| BodyEffect { effect: e.effect, placement: e.placement.map(f), parameters: all(&e.parameters) };
+        Effects { joint: self.joint.iter().map(joint).collect(), body: self.body.iter().map(body).collect() }
+    }
+
+    /// Which effects there are and where they act, numbers apart.
+    pub fn kinds(&self) -> Vec<(EffectId, usize)> {
+        let joint = self.joint.iter().map(|e| (e.effect, e.freedom));
+        joint.chain(self.body.iter().map(|e| (e.effect, 0))).collect()
+    }
+}
+
+/// v / √(v² + s²): the sign of v, smooth for |v| below s.
+#[inline(always)]
+fn smooth_sign<S: Scalar>(v: S, s: S) -> S {
+    v / (v * v + s * s).sqrt()
+}
+
+/// max(0, x).
+#[inline(always)]
+fn ramp<S: Scalar>(x: S) -> S {
+    S::select(x.positive(), x, S::zero())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_stand_in_the_order_of_their_numbers() {
+        for (k, row) in effects().iter().enumerate() {
+            assert_eq!(row.id as usize, k);
+            assert_eq!(effect(row.name).map(|e| e.id), Some(row.id));
+        }
+    }
+}

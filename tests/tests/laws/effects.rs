@@ -1,0 +1,223 @@
+//! Laws that hold whatever a robot is subject to: on random trees with random effects.
+
+use articulated_core::Scalar;
+use articulated_core::algorithm::{self as dynamics, Workspace, functions};
+use articulated_core::dual::Dual;
+use articulated_core::effect::{Applied, EffectId, effects};
+use articulated_core::model::Model;
+use articulated_core::model::pass::model_passes;
+use articulated_tests::case::{Case, State, cast, for_each_tree};
+use articulated_tests::random::Random;
+use articulated_tests::random_effects::random_effects;
+use articulated_tests::random_tree::Flavour;
+
+/// No followers: they have laws of their own, and the articulated-body algorithm does without.
+const FREE: Flavour = Flavour { mimic: false, ..Flavour::REGULAR };
+
+fn subject(case: &Case, random: &mut Random, wanted: impl Fn(EffectId) -> bool) -> (Model<f64>, State) {
+    let applied = random_effects(random, &case.model, wanted);
+    (case.model.clone().with_effects(&applied).expect("effects that can be had"), case.state(random))
+}
+
+fn not_a_motor(effect: EffectId) -> bool {
+    effect != EffectId::motor
+}
+
+/// One function of the table.
+fn call<S: Scalar>(model: &Model<S>, name: &str, arguments: &[&[S]]) -> Vec<S> {
+    let function = dynamics::function::<S>(name).expect("in the table");
+    let mut out = vec![S::zero(); function.len(model.shape())];
+    function.call(model, &mut Workspace::new(model), arguments, &mut out).expect("lengths as the table says");
+    out
+}
+
+fn assert_near(found: &[f64], expected: &[f64], tolerance: f64, what: &str) {
+    let scale = expected.iter().fold(1.0, |m: f64, x| m.max(x.abs()));
+    for (k, (a, b)) in found.iter().zip(expected).enumerate() {
+        assert!((a - b).abs() <= tolerance * scale, "{what}: element {k}: {a}, expected {b}");
+    }
+}
+
+#[test]
+fn forward_and_inverse_dynamics_are_each_others() {
+    for_each_tree(60, FREE, |case, random| {
+        let (model, State { q, v, a, .. }) = subject(case, random, not_a_motor);
+        let tau = call(&model, "inverse_dynamics", &[&q, &v, &a]);
+        for way in dynamics::function::<f64>("forward_dynamics").expect("in the table").ways {
+            let mut out = vec![0.0; model.nv];
+            let row = dynamics::function::<f64>("forward_dynamics").expect("in the table");
+            row.call_by(way, &model, &mut Workspace::new(&model), &[&q, &v, &tau], &mut out).expect("lengths");
+            assert_near(&out, &a, 1e-8, way.name);
+        }
+    });
+}
+
+#[test]
+fn inverse_dynamics_is_m_a_and_bias_forces_and_followers_too() {
+    for_each_tree(60, Flavour::ANY, |case, random| {
+        let (model, State { q, v, a, .. }) = subject(case, random, not_a_motor);
+        let (tau, bias) = (call(&model, "inverse_dynamics", &[&q, &v, &a]), call(&model, "bias_forces", &[&q, &v]));
+        let matrix = call(&model, "mass_matrix", &[&q]);
+        let n = model.nv;
+        let expected: Vec<f64> = (0..n).map(|i| bias[i] + (0..n).map(|j| matrix[i * n + j] * a[j]).sum::<f64>()).collect();
+        assert_near(&tau, &expected, 1e-12, &case.name);
+    });
+}
+
+/// d(T + U)/dt along the motion, by duals, is the power of torques and of what dissipates.
+#[test]
+fn what_torques_give_and_effects_take_is_the_change_of_energy() {
+    for_each_tree(60, Flavour::ANY, |case, random| {
+        let (model, State { q, v, a, .. }) = subject(case, random, not_a_motor);
+        let tau = call(&model, "inverse_dynamics", &[&q, &v, &a]);
+        let given: f64 = tau.iter().zip(&v).map(|(t, v)| t * v).sum();
+        let lost = call(&model, "dissipation", &[&q, &v])[0];
+        let moving: Model<Dual<f64>> = model.cast();
+        let along: Vec<Dual<f64>> = v.iter().map(|x| Dual::new(0.0, *x)).collect();
+        let q = call(&moving, "integrate", &[&cast::<Dual<f64>>(&q), &along]);
+        let v: Vec<Dual<f64>> = v.iter().zip(&a).map(|(v, a)| Dual::new(*v, *a)).collect();
+        let energy = call(&moving, "kinetic_energy", &[&q, &v])[0] + call(&moving, "potential_energy", &[&q])[0];
+        let scale = tau.iter().zip(&v).map(|(t, v)| (t * v.value).abs()).sum::<f64>() + energy.value.abs();
+        assert!((energy.slope - given - lost).abs() <= 1e-11 * (1.0 + scale), "{}: {} = {given} + {lost}", case.name, energy.slope);
+    });
+}
+
+#[test]
+fn effects_take_energy_and_never_give_any() {
+    let lossy = [EffectId::damping, EffectId::friction, EffectId::drag, EffectId::box_drag, EffectId::limit, EffectId::contact];
+    for effect in lossy {
+        let felt = std::cell::Cell::new(0);
+        for_each_tree(40, Flavour::ANY, |case, random| {
+            let (model, State { q, v, .. }) = subject(case, random, |e| e == effect);
+            let power = call(&model, "dissipation", &[&q, &v])[0];
+            assert!(power <= 0.0 || power < 1e-15, "{}: {power} W by {}", case.name, effect.name());
+            felt.set(felt.get() + usize::from(power < 0.0));
+        });
+        assert!(felt.get() > 5, "{}: felt {} times", effect.name(), felt.get());
+    }
+}
+
+#[test]
+fn effect_forces_are_what_inverse_dynamics_needs_less() {
+    for_each_tree(40, Flavour::ANY, |case, random| {
+        let inert = |e| matches!(e, EffectId::armature | EffectId::added_mass | EffectId::motor);
+        let (model, State { q, v, a, .. }) = subject(case, random, |e| !inert(e));
+        let [with, without] = [&model, &case.model].map(|m| call(m, "inverse_dynamics", &[&q, &v, &a]));
+        let expected: Vec<f64> = with.iter().zip(&without).map(|(x, y)| y - x).collect();
+        let scale = with.iter().chain(&without).fold(1.0, |m: f64, x| m.max(x.abs()));
+        assert_near(&call(&model, "effect_forces", &[&q, &v]), &expected, 1e-13 * scale, &case.name);
+    });
+}
+
+/// Columns of a function's derivative by duals: of each argument in its tangent space.
+fn by_duals(model: &Model<f64>, name: &str, state: [&[f64]; 3]) -> Vec<f64> {
+    let (moving, n): (Model<Dual<f64>>, usize) = (model.cast(), model.nv);
+    let mut out = vec![0.0; 3 * n * n];
+    for block in 0..3 {
+        for k in 0..n {
+            let unit: Vec<Dual<f64>> = (0..n).map(|i| Dual::new(0.0, f64::from(u8::from(i == k)))).collect();
+            let mut arguments = state.map(cast::<Dual<f64>>);
+            if block == 0 {
+                arguments[0] = call(&moving, "integrate", &[&arguments[0], &unit]);
+            } else {
+                arguments[block].iter_mut().zip(&unit).for_each(|(x, u)| *x += *u);
+            }
+            let column = call(&moving, name, &[&arguments[0], &arguments[1], &arguments[2]]);
+            (0..n).for_each(|i| out[block * n * n + i * n + k] = column[i].slope);
+        }
+    }
+    out
+}
+
+#[test]
+fn derivatives_are_those_of_duals() {
+    for_each_tree(40, FREE, |case, random| {
+        let (model, State { q, v, a, tau, .. }) = subject(case, random, |_| true);
+        let found = call(&model, "inverse_dynamics_derivatives", &[&q, &v, &a]);
+        assert_near(&found, &by_duals(&model, "inverse_dynamics", [&q, &v, &a]), 1e-11, &format!("{} ID", case.name));
+        let found = call(&model, "forward_dynamics_derivatives", &[&q, &v, &tau]);
+        assert_near(&found, &by_duals(&model, "forward_dynamics", [&q, &v, &tau]), 1e-8, &format!("{} FD", case.name));
+    });
+    for_each_tree(30, Flavour::ANY, |case, random| {
+        let (model, State { q, v, a, .. }) = subject(case, random, |_| true);
+        let found = call(&model, "inverse_dynamics_derivatives", &[&q, &v, &a]);
+        assert_near(&found, &by_duals(&model, "inverse_dynamics", [&q, &v, &a]), 1e-11, &case.name);
+        let (wrenches, zero) = (vec![0.0; 6 * model.frames.len()], vec![0.0; model.nv]);
+        let at_rest = by_duals(&model, "inverse_dynamics", [&q, &zero, &zero]);
+        let found = call(&model, "static_torque_derivative", &[&q, &wrenches]);
+        assert_near(&found, &at_rest[..found.len()], 1e-11, &format!("{} at rest", case.name));
+    });
+}
+
+#[test]
+fn passes_keep_what_joints_feel() {
+    for_each_tree(40, Flavour::REGULAR, |case, random| {
+        let (model, State { q, v, a, tau, .. }) = subject(case, random, |_| true);
+        let passed = model_passes::<f64>().iter().fold(model.clone(), |m, (_, pass, _)| pass(m));
+        for function in functions::<f64>().iter().filter(|f| f.regrouped) {
+            let arguments: &[&[f64]] = match function.name {
+                "inverse_dynamics" | "inverse_dynamics_derivatives" => &[&q, &v, &a],
+                "forward_dynamics" | "forward_dynamics_derivatives" => &[&q, &v, &tau],
+                "mass_matrix" | "gravity_torque" => &[&q],
+                "kinetic_energy" | "bias_forces" => &[&q, &v],
+                _ => continue,
+            };
+            assert_near(&call(&passed, function.name, arguments), &call(&model, function.name, arguments), 1e-9, function.name);
+        }
+    });
+}
+
+#[test]
+fn nothing_of_nothing_is_nothing() {
+    for_each_tree(20, Flavour::ANY, |case, random| {
+        let State { q, v, tau, .. } = case.state(random);
+        assert!(call(&case.model, "effect_forces", &[&q, &v]).iter().all(|x| *x == 0.0));
+        assert_eq!(call(&case.model, "dissipation", &[&q, &v]), [0.0]);
+        assert_eq!(call(&case.model, "motor_torques", &[&v, &tau]), tau);
+    });
+}
+
+/// All that is wrong is told, each with what would be right.
+#[test]
+fn effects_that_cannot_be_had_are_refused() {
+    let arm = Case::bundled(articulated_models::robot("ur5_like").expect("a bundled robot")).model;
+    let joint =
+        |effect, on: &str, parameters: &[f64]| Applied { effect, on: on.into(), at: Default::default(), parameters: parameters.to_vec() };
+    let first = arm.joints[0].name.clone();
+    let wrong = [
+        joint(EffectId::damping, "elbo_joint", &[1.0]),
+        joint(EffectId::damping, &first, &[-1.0]),
+        joint(EffectId::damping, &first, &[f64::NAN]),
+        joint(EffectId::damping, &first, &[]),
+        joint(EffectId::limit, &first, &[1.0, 1.0, 10.0, 0.0]),
+        joint(EffectId::motor, &first, &[1.0, 1.0, 1.0, 1.5, 1e-3]),
+        joint(EffectId::drag, "no such link at all", &[1.0]),
+        joint(EffectId::drag, &arm.frames[0].name, &[1.0]),
+        joint(EffectId::contact, &arm.frames[3].name, &[0.1, 1e4, 0.0, 0.5, 0.01, 0.0, 0.0, 0.0, 0.0]),
+        joint(EffectId::added_mass, &arm.frames[3].name, &[[1.0, 2.0, 0.0, 1.0, 0.0, 1.0].as_slice(), &[0.0; 15]].concat()),
+    ];
+    let errors = arm.clone().with_effects(&wrong).expect_err("all of them are wrong");
+    let found: Vec<String> = errors.iter().map(ToString::to_string).collect();
+    assert_eq!(errors.iter().map(|e| e.index).collect::<Vec<_>>(), (0..wrong.len()).collect::<Vec<_>>(), "{found:#?}");
+    for (text, part) in found.iter().zip([
+        "nearest",
+        "found -1, expected a finite number, at least 0",
+        "NaN",
+        "found 0 parameters, expected 1",
+        "above the lower bound",
+        "at most 1",
+        "no link of this name",
+        "fixed to the base",
+        "a direction",
+        "semidefinite",
+    ]) {
+        assert!(text.contains(part), "{text:?} does not say {part:?}");
+    }
+    let twice = [joint(EffectId::damping, &first, &[1.0]), joint(EffectId::damping, &first, &[2.0])];
+    assert!(arm.with_effects(&twice).expect_err("given twice")[0].to_string().contains("twice"));
+}
+
+#[test]
+fn every_effect_has_a_law_of_its_own() {
+    assert_eq!(effects().len(), 11);
+}
