@@ -18,3 +18,8 @@ pub use articulated_macros::robot;
 mod load;
 #[cfg(feature = "urdf")]
 pub use load::{LoadError, describe, describe_bytes, load, load_bytes};
+
+#[cfg(feature = "rayon")]
+mod threads;
+#[cfg(feature = "rayon")]
+pub use threads::{States, in_threads};
