@@ -1,0 +1,361 @@
+//! `[control]`: what drives the joints.
+
+use articulated_core::model::Model;
+
+use crate::error::{Kind, SceneErrors, quote};
+use crate::initial::{Coordinates, Side, counted, fill, neutral, no_joint, values};
+use crate::log::Log;
+use crate::scene::Scene;
+use crate::series::{Series, Source};
+use crate::simulation::set;
+use crate::table::{Row, Spot};
+use crate::tree::{At, Value};
+
+/// What drives the joints.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Control {
+    /// Which sort.
+    pub drive: Drive,
+    /// Torques are kept for so long, s; `None`: they follow the state at every instant.
+    pub period: Option<f64>,
+}
+
+/// The sorts of control.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Drive {
+    /// No torque.
+    #[default]
+    None,
+    /// The same torques all the time.
+    Torque(PerJoint),
+    /// Torques over time.
+    Table(Source),
+    /// τ = kp (target ⊖ q) + kd (target' − v) + torque.
+    Pd {
+        /// Where to.
+        target: Target,
+        /// Gain of the position, N·m/rad or N/m.
+        kp: PerJoint,
+        /// Gain of the rate, N·m·s/rad or N·s/m.
+        kd: PerJoint,
+        /// Torque besides, N·m or N.
+        torque: PerJoint,
+    },
+}
+
+/// What a controller aims at.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Target {
+    /// Coordinates that do not change.
+    Still(Coordinates),
+    /// Coordinates over time; their rates are those between the rows.
+    Moving(Source),
+}
+
+/// Numbers of degrees of freedom.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PerJoint {
+    /// The same for all.
+    Same(f64),
+    /// `*` for all that are not named, 0 where there is none; the others by name.
+    Named {
+        /// For those without a name here.
+        rest: f64,
+        /// The others, without `*`.
+        named: Coordinates,
+    },
+    /// All of them, in the order of the robot.
+    All(Coordinates),
+}
+
+impl Default for PerJoint {
+    fn default() -> Self {
+        Self::Same(0.0)
+    }
+}
+
+/// A control whose names are looked up and whose files are read: vectors in the order of the robot.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Controller {
+    /// No torque.
+    None,
+    /// The same torques all the time, `[nv]`.
+    Torque(Vec<f64>),
+    /// Torques over time, `[nv]` a row.
+    Table(Series),
+    /// τ = kp (target ⊖ q) + kd (target' − v) + torque.
+    Pd {
+        /// Where to.
+        target: Aim,
+        /// `[nv]`, N·m/rad or N/m.
+        kp: Vec<f64>,
+        /// `[nv]`, N·m·s/rad or N·s/m.
+        kd: Vec<f64>,
+        /// `[nv]`, N·m or N.
+        torque: Vec<f64>,
+    },
+}
+
+/// What a controller aims at.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Aim {
+    /// Coordinates that do not change, `[nq]`.
+    Still(Vec<f64>),
+    /// Coordinates over time, `[nq]` a row.
+    Moving(Series),
+}
+
+/// The keys as they are read.
+#[derive(Default)]
+pub(crate) struct Keys {
+    kind: Sort,
+    torque: PerJoint,
+    target: Option<Coordinates>,
+    kp: PerJoint,
+    kd: PerJoint,
+    source: Source,
+    period: Option<f64>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+enum Sort {
+    #[default]
+    None,
+    Torque,
+    Table,
+    Pd,
+}
+
+const SORTS: &[(&str, Sort)] = &[("none", Sort::None), ("torque", Sort::Torque), ("table", Sort::Table), ("pd", Sort::Pd)];
+
+/// Which keys each sort has beside `kind`.
+const OF_SORT: &[(Sort, &[&str])] = &[
+    (Sort::None, &[]),
+    (Sort::Torque, &["torque"]),
+    (Sort::Table, &["file", "columns", "rows", "interpolation", "period"]),
+    (Sort::Pd, &["target", "kp", "kd", "torque", "file", "columns", "rows", "interpolation", "period"]),
+];
+
+pub(crate) const KEYS: &[Row<Keys>] = &[
+    Row {
+        name: "kind",
+        required: true,
+        value: "`\"none\"`, `\"torque\"`, `\"table\"` or `\"pd\"`",
+        default: "",
+        what: "no torque; the same torques all the time; torques over time; τ = kp (target ⊖ q) + kd (target' − v) + torque",
+        read: |x, s, log| set(&mut x.kind, s.word(log, SORTS)),
+    },
+    Row {
+        name: "torque",
+        required: false,
+        value: "number, numbers, or table: joint = number; N·m, N",
+        default: "0",
+        what: "`torque`, `pd`: the torques",
+        read: |x, s, log| x.torque = per_joint(s, f64::NEG_INFINITY, log),
+    },
+    Row {
+        name: "target",
+        required: false,
+        value: "numbers, or table: joint = number or numbers; rad, m",
+        default: "0",
+        what: "`pd`: where to; or a table over time, by the keys below",
+        read: |x, s, log| x.target = Some(values(s, log)),
+    },
+    Row {
+        name: "kp",
+        required: false,
+        value: "number, numbers, or table: joint = number; N·m/rad, N/m",
+        default: "0",
+        what: "`pd`: gain of the position",
+        read: |x, s, log| x.kp = per_joint(s, 0.0, log),
+    },
+    Row {
+        name: "kd",
+        required: false,
+        value: "number, numbers, or table: joint = number; N·m·s/rad, N·s/m",
+        default: "0",
+        what: "`pd`: gain of the rate",
+        read: |x, s, log| x.kd = per_joint(s, 0.0, log),
+    },
+    Row {
+        name: "file",
+        required: false,
+        value: "text",
+        default: "none",
+        what: "`table`, `pd`: a CSV, seen from the scene's folder; its first line names the columns, the first of which is `t`, s; the others are joints (`joint[k]` for the k-th number of one that has several)",
+        read: |x, s, log| x.source.file = crate::edits::name(s, log, "the path of a CSV"),
+    },
+    Row {
+        name: "columns",
+        required: false,
+        value: "texts",
+        default: "none",
+        what: "`table`, `pd`: instead of a file: names of the columns after the time",
+        read: |x, s, log| {
+            x.source.columns = s.texts(log, "a list of joints").unwrap_or_default();
+            x.source.place = s.at;
+        },
+    },
+    Row {
+        name: "rows",
+        required: false,
+        value: "list of lists of numbers",
+        default: "none",
+        what: "`table`, `pd`: instead of a file: the time, s, and a number for each column",
+        read: |x, s, log| x.source.rows = rows(s, log),
+    },
+    Row {
+        name: "interpolation",
+        required: false,
+        value: "`\"linear\"` or `\"hold\"`",
+        default: "`\"linear\"`",
+        what: "`table`, `pd`: between rows; before the first and after the last the nearest row holds",
+        read: |x, s, log| set(&mut x.source.hold, s.word(log, &[("linear", false), ("hold", true)])),
+    },
+    Row {
+        name: "period",
+        required: false,
+        value: "number, s",
+        default: "none",
+        what: "`table`, `pd`: the torques are kept for so long, as by a digital controller",
+        read: |x, s, log| x.period = s.positive(log),
+    },
+];
+
+pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Control {
+    let mut keys = Keys::default();
+    let before = log.count();
+    spot.read(KEYS, &mut keys, log);
+    if log.count() > before {
+        return Control::default();
+    }
+    keys.source.place = spot.at;
+    let of_sort = OF_SORT.iter().find(|(sort, _)| *sort == keys.kind).map_or(&[][..], |(_, keys)| keys);
+    let word = SORTS.iter().find(|(_, sort)| *sort == keys.kind).map_or("", |(word, _)| word);
+    for row in KEYS.iter().filter(|row| row.name != "kind" && !of_sort.contains(&row.name)) {
+        if let Some(there) = spot.get(row.name) {
+            there.clash(log, format!("a key that control of kind {word:?} does not have"), listed(of_sort));
+        }
+    }
+    if keys.kind == Sort::Table || (keys.kind == Sort::Pd && keys.source != Source { place: spot.at, ..Source::default() }) {
+        check_source(&keys, spot, log);
+    }
+    let Keys { kind, torque, target, kp, kd, source, period } = keys;
+    let moving = source.file.is_some() || !source.rows.is_empty();
+    let drive = match kind {
+        Sort::None => Drive::None,
+        Sort::Torque => Drive::Torque(torque),
+        Sort::Table => Drive::Table(source),
+        Sort::Pd if moving => Drive::Pd { target: Target::Moving(source), kp, kd, torque },
+        Sort::Pd => Drive::Pd { target: Target::Still(target.unwrap_or_default()), kp, kd, torque },
+    };
+    Control { drive, period }
+}
+
+fn listed(keys: &[&str]) -> String {
+    if keys.is_empty() { "no other key".into() } else { format!("one of {}", keys.join(", ")) }
+}
+
+fn check_source(keys: &Keys, spot: &Spot<'_>, log: &mut Log) {
+    let source = &keys.source;
+    let inline = !source.rows.is_empty() || !source.columns.is_empty();
+    match (&source.file, inline) {
+        (Some(_), true) => spot.clash(log, "a file and rows", "one of them"),
+        (None, false) => spot.clash(log, "neither file nor rows", "one of them"),
+        (None, true) => source.check(&spot.key, log),
+        (Some(_), false) => {}
+    }
+    if keys.target.is_some() {
+        spot.clash(log, "a target and a table of targets", "one of them");
+    }
+}
+
+fn rows(spot: &Spot<'_>, log: &mut Log) -> Vec<Vec<f64>> {
+    match spot.list() {
+        Some(list) => list.iter().filter_map(|row| row.some_numbers(log, "a list of numbers: the time and one for each column")).collect(),
+        None => {
+            spot.wrong(log, "a list of rows, as [[0.0, 1.5], [0.2, 3.0]]");
+            Vec::new()
+        }
+    }
+}
+
+fn per_joint(spot: &Spot<'_>, least: f64, log: &mut Log) -> PerJoint {
+    match &spot.node.value {
+        Value::Number(_) => PerJoint::Same(spot.within(log, least, false).unwrap_or_default()),
+        Value::Table(_) => {
+            let rest = spot.get("*").map_or(Some(0.0), |all| all.within(log, least, false)).unwrap_or_default();
+            let Coordinates::Named(mut named) = values(spot, log) else { return PerJoint::default() };
+            named.retain(|one| one.joint != "*");
+            PerJoint::Named { rest, named: Coordinates::Named(named) }
+        }
+        Value::List(_) => PerJoint::All(values(spot, log)),
+        _ => {
+            spot.wrong(log, "a number, a list of numbers, or a table of joints, as { \"*\" = 10, elbow = 20 }");
+            PerJoint::default()
+        }
+    }
+}
+
+impl Scene {
+    /// The control with names looked up and files read by `read`, which gets their names as the scene has them. Errors: all that do not fit the robot.
+    pub fn controller(&self, model: &Model<f64>, read: &mut dyn FnMut(&str) -> Result<String, String>) -> Result<Controller, SceneErrors> {
+        let mut log = Log::new(&self.file);
+        let vector = |from: &PerJoint, key: &str, log: &mut Log| vector(from, key, model, log);
+        let controller = match &self.control.drive {
+            Drive::None => Controller::None,
+            Drive::Torque(torque) => Controller::Torque(vector(torque, "control.torque", &mut log)),
+            Drive::Table(source) => Controller::Table(source.series(model, Side::V, read, &mut log)),
+            Drive::Pd { target, kp, kd, torque } => Controller::Pd {
+                kp: vector(kp, "control.kp", &mut log),
+                kd: vector(kd, "control.kd", &mut log),
+                torque: vector(torque, "control.torque", &mut log),
+                target: match target {
+                    Target::Still(target) => {
+                        let mut q = neutral(model);
+                        fill(target, "control.target", model, Side::Q, &mut q, &mut log);
+                        Aim::Still(q)
+                    }
+                    Target::Moving(source) => Aim::Moving(source.series(model, Side::Q, read, &mut log)),
+                },
+            },
+        };
+        log.result(controller)
+    }
+}
+
+/// `[nv]`. A single number for a joint of several degrees of freedom is for all of them.
+fn vector(from: &PerJoint, key: &str, model: &Model<f64>, log: &mut Log) -> Vec<f64> {
+    let mut all = vec![0.0; model.nv];
+    match from {
+        PerJoint::Same(x) => all.fill(*x),
+        PerJoint::All(values) => fill(values, key, model, Side::V, &mut all, log),
+        PerJoint::Named { rest, named } => {
+            all.fill(*rest);
+            let Coordinates::Named(named) = named else { return all };
+            for one in named {
+                let key = format!("{key}.{}", crate::error::bare(&one.joint));
+                let Some(joint) = model.joints.iter().find(|j| j.name == one.joint) else {
+                    no_joint(log, one.place, &key, &one.joint, model);
+                    continue;
+                };
+                let (first, count) = joint.v;
+                match *one.values.as_slice() {
+                    [x] => all[first..first + count].fill(x),
+                    ref values if values.len() == count => all[first..first + count].copy_from_slice(values),
+                    ref values => wrong_count(log, one.place, &key, values.len(), count),
+                }
+            }
+        }
+    }
+    all
+}
+
+fn wrong_count(log: &mut Log, at: At, key: &str, found: usize, expected: usize) {
+    log.error(at, key, Kind::Number, counted(found), format!("one number, or {}", counted(expected)));
+}
+
+/// A file that cannot be read, in words.
+pub(crate) fn unreadable(name: &str, reason: &str) -> String {
+    format!("{}, which cannot be read ({reason})", quote(name))
+}

@@ -1,0 +1,80 @@
+//! TOML to a tree.
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::error::Kind;
+use crate::log::Log;
+use crate::tree::{At, Entry, Node, Value};
+
+/// No scene is larger, bytes: tables of torques included.
+const LARGEST: usize = 16 << 20;
+
+/// The file's table; nothing if it is not TOML.
+pub(crate) fn parse(text: &str, log: &mut Log) -> Option<Node> {
+    if text.len() > LARGEST {
+        log.error(At::Nowhere, "", Kind::Syntax, format!("{} bytes", text.len()), format!("a scene, of {LARGEST} bytes at most"));
+        return None;
+    }
+    let lines = Lines::of(text);
+    let (table, errors) = DeTable::parse_recoverable(text);
+    for error in &errors {
+        let at = error.span().map_or(At::Nowhere, |span| lines.at(span.start));
+        let message = error.message().lines().next().unwrap_or_default().to_owned();
+        log.error(at, "", Kind::Syntax, format!("what is not TOML ({message})"), "");
+    }
+    errors.is_empty().then(|| Node { at: At::Line(1), value: Value::Table(entries(table.get_ref(), &lines)) })
+}
+
+fn entries(table: &DeTable<'_>, lines: &Lines) -> Vec<Entry> {
+    let mut entries: Vec<(usize, Entry)> = table
+        .iter()
+        .map(|(name, value)| {
+            let at = lines.at(name.span().start);
+            (name.span().start, Entry { name: name.get_ref().to_string(), at, node: node(value, at, lines) })
+        })
+        .collect();
+    entries.sort_by_key(|(start, _)| *start);
+    entries.into_iter().map(|(_, entry)| entry).collect()
+}
+
+/// `at`: the place of the key; a value on another line has its own.
+fn node(value: &Spanned<DeValue<'_>>, at: At, lines: &Lines) -> Node {
+    let own = lines.at(value.span().start);
+    let value = match value.get_ref() {
+        DeValue::String(text) => Value::Text(text.to_string()),
+        DeValue::Integer(n) => Value::Number(integer(n.as_str(), n.radix())),
+        DeValue::Float(x) => Value::Number(x.as_str().replace('_', "").parse().unwrap_or(f64::NAN)),
+        DeValue::Boolean(b) => Value::Bool(*b),
+        DeValue::Datetime(date) => Value::Other(format!("the date {date}")),
+        DeValue::Array(list) => return Node { at: own, value: Value::List(list.iter().map(|item| node(item, own, lines)).collect()) },
+        // A table under a header begins where its header does, or at its first key.
+        DeValue::Table(table) => return Node { at, value: Value::Table(entries(table, lines)) },
+    };
+    Node { at: own, value }
+}
+
+/// The double nearest to an integer of any length.
+fn integer(digits: &str, radix: u32) -> f64 {
+    let digits = digits.replace('_', "");
+    match radix {
+        10 => digits.parse().unwrap_or(f64::NAN),
+        _ => i128::from_str_radix(&digits, radix).map_or(f64::NAN, |n| n as f64),
+    }
+}
+
+/// Where the lines of a text begin.
+struct Lines {
+    starts: Vec<usize>,
+}
+
+impl Lines {
+    fn of(text: &str) -> Self {
+        let breaks = text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i + 1);
+        Self { starts: std::iter::once(0).chain(breaks).collect() }
+    }
+
+    fn at(&self, offset: usize) -> At {
+        At::Line(u32::try_from(self.starts.partition_point(|start| *start <= offset)).unwrap_or(u32::MAX))
+    }
+}

@@ -1,0 +1,170 @@
+//! What a scene does to the robot before a model is made of it: joints locked, loads attached, robots appended, links renamed.
+
+use articulated_core::description::{Origin, Payload};
+
+use crate::error::Kind;
+use crate::log::Log;
+use crate::table::{Row, Spot};
+use crate::tree::{At, Value};
+
+/// A joint and where it is locked.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Lock {
+    /// The joint.
+    pub joint: String,
+    /// Its coordinates, rad or m; a quaternion as x, y, z, w.
+    pub at: Vec<f64>,
+    /// Where the scene says so.
+    pub place: At,
+}
+
+/// A load on a link.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Load {
+    /// The load.
+    pub payload: Payload,
+    /// Where the scene says so.
+    pub place: At,
+}
+
+/// Another robot on a link.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Append {
+    /// Its URDF, relative to the scene's folder.
+    pub urdf: String,
+    /// The link that carries it.
+    pub link: String,
+    /// What stands before its names.
+    pub prefix: String,
+    /// Its root in the frame of that link.
+    pub origin: Origin,
+    /// Where the scene says so.
+    pub place: At,
+}
+
+/// `{ joint = coordinates, … }`.
+pub(crate) fn locks(spot: &Spot<'_>, log: &mut Log) -> Vec<Lock> {
+    let entries = spot.entries(log, "a table of joints, as { elbow = 0.5 }");
+    let lock = |entry| {
+        let value = spot.of(entry);
+        Some(Lock { joint: entry.name.clone(), at: coordinates(&value, log)?, place: entry.at })
+    };
+    entries.iter().filter_map(lock).collect()
+}
+
+/// One number or several.
+pub(crate) fn coordinates(spot: &Spot<'_>, log: &mut Log) -> Option<Vec<f64>> {
+    match spot.node.value {
+        Value::List(_) => spot.some_numbers(log, "finite numbers"),
+        _ => spot.number(log).map(|x| vec![x]),
+    }
+}
+
+/// `{ "name" = "NAME", … }`.
+pub(crate) fn renamings(spot: &Spot<'_>, log: &mut Log) -> Vec<(String, String)> {
+    let entries = spot.entries(log, "a table of names, as { \"a-b\" = \"A_MINUS_B\" }");
+    entries.iter().filter_map(|e| Some((e.name.clone(), spot.of(e).text(log, "a name in Rust")?.to_owned()))).collect()
+}
+
+/// A name that is not empty.
+pub(crate) fn name(spot: &Spot<'_>, log: &mut Log, what: &str) -> Option<String> {
+    let name = spot.text(log, what)?;
+    if name.is_empty() {
+        log.error(spot.node.at, &spot.key, Kind::Word, "an empty text", what);
+    }
+    Some(name.to_owned())
+}
+
+/// Of a payload.
+pub(crate) const LOAD: &[Row<Load>] = &[
+    Row {
+        name: "link",
+        required: true,
+        value: "text",
+        default: "",
+        what: "the link that carries it",
+        read: |l, s, log| {
+            l.place = s.at;
+            l.payload.link = name(s, log, "the name of a link").unwrap_or_default();
+        },
+    },
+    Row {
+        name: "mass",
+        required: true,
+        value: "number, kg",
+        default: "",
+        what: "its mass",
+        read: |l, s, log| l.payload.mass = s.not_negative(log).unwrap_or_default(),
+    },
+    Row {
+        name: "center_of_mass",
+        required: false,
+        value: "3 numbers, m",
+        default: "[0, 0, 0]",
+        what: "in the link's frame",
+        read: |l, s, log| l.payload.center_of_mass = s.numbers(log).unwrap_or_default(),
+    },
+    Row {
+        name: "inertia",
+        required: false,
+        value: "6 numbers, kg·m²",
+        default: "a point's",
+        what: "xx, xy, xz, yy, yz, zz about the centre of mass, in axes of the link",
+        read: |l, s, log| l.payload.inertia = s.numbers(log).unwrap_or_default(),
+    },
+    Row {
+        name: "name",
+        required: false,
+        value: "text",
+        default: "`<link>_payload`",
+        what: "name of the link that stands for it",
+        read: |l, s, log| l.payload.name = name(s, log, "a name"),
+    },
+];
+
+/// Of a robot to append.
+pub(crate) const APPEND: &[Row<Append>] = &[
+    Row {
+        name: "urdf",
+        required: true,
+        value: "text",
+        default: "",
+        what: "its file, seen from the scene's folder",
+        read: |a, s, log| {
+            a.place = s.at;
+            a.urdf = name(s, log, "the path of a URDF").unwrap_or_default();
+        },
+    },
+    Row {
+        name: "at",
+        required: true,
+        value: "text",
+        default: "",
+        what: "the link that carries it",
+        read: |a, s, log| a.link = name(s, log, "the name of a link").unwrap_or_default(),
+    },
+    Row {
+        name: "prefix",
+        required: false,
+        value: "text",
+        default: "none",
+        what: "what stands before its names",
+        read: |a, s, log| a.prefix = s.text(log, "a text").unwrap_or_default().to_owned(),
+    },
+    Row {
+        name: "xyz",
+        required: false,
+        value: "3 numbers, m",
+        default: "[0, 0, 0]",
+        what: "its root in the link's frame",
+        read: |a, s, log| a.origin.xyz = s.numbers(log).unwrap_or_default(),
+    },
+    Row {
+        name: "rpy",
+        required: false,
+        value: "3 numbers, rad",
+        default: "[0, 0, 0]",
+        what: "roll, pitch, yaw of its root in the link's frame",
+        read: |a, s, log| a.origin.rpy = s.numbers(log).unwrap_or_default(),
+    },
+];

@@ -1,0 +1,252 @@
+//! `[effects]`: what acts beside rigid bodies and gravity, as a scene asks for it.
+//!
+//! ```toml
+//! [effects.damping]
+//! "*" = "urdf"                # every joint, by its <dynamics>
+//! elbow = 0.5                 # but this one
+//! [effects.contact.left_foot] # a frame in a link
+//! xyz = [0.0, 0.0, -0.02]
+//! radius = 0.02
+//! stiffness = 1e5
+//! ```
+
+mod resolve;
+mod still;
+mod urdf;
+
+use articulated_core::description::Origin;
+
+use crate::effect::{Effect, EffectId, Field, On, effect, effects};
+use crate::error::{Kind, quote};
+use crate::log::Log;
+use crate::scene::Scene;
+use crate::shaft;
+use crate::table::Spot;
+use crate::tree::{At, Value};
+
+pub use resolve::{Edited, Resolved};
+pub(crate) use urdf::{offers, tag};
+
+/// One line of effects.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Asked {
+    /// Which effect.
+    pub effect: EffectId,
+    /// On what.
+    pub on: Selector,
+    /// The numbers; `None`: it is off there.
+    pub says: Option<Numbers>,
+    /// The way to it.
+    pub key: String,
+    /// Where the scene says so.
+    pub place: At,
+}
+
+/// What an effect is asked for on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Selector {
+    /// `*`: all joints that move, or all links that move and have mass; but those that are named.
+    All,
+    /// The joint or link of this name.
+    Named(String),
+}
+
+/// Numbers of an effect, as far as they are given.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Numbers {
+    /// What is left out is taken from the URDF, where that has it.
+    pub from_urdf: bool,
+    /// The effect's frame in the link's frame.
+    pub at: Option<Origin>,
+    /// One for each of the effect's fields.
+    pub fields: Vec<Option<Vec<f64>>>,
+}
+
+/// The keys of an effect on a link that place its frame.
+const FRAME: [&str; 2] = ["xyz", "rpy"];
+/// The key that says where numbers come from.
+const FROM: &str = "from";
+/// For all that are not named.
+const ALL: &str = "*";
+
+/// Reads the table `effects` into the scene.
+pub(crate) fn read(scene: &mut Scene, spot: &Spot<'_>, log: &mut Log) {
+    for entry in spot.entries(log, "a table of effects") {
+        let value = spot.of(entry);
+        if entry.name == shaft::NAME {
+            scene.shafts = shaft::read(&value, log);
+        } else if let Some(row) = effect(&entry.name) {
+            scene.effects.extend(asked(row, &value, log));
+        } else {
+            value.unknown_key(log, effects().iter().map(|e| e.name).chain([shaft::NAME]));
+        }
+    }
+}
+
+/// All that is asked for of one effect.
+fn asked(row: &'static Effect, spot: &Spot<'_>, log: &mut Log) -> Vec<Asked> {
+    let Value::Table(entries) = &spot.node.value else { return on(row, &Selector::All, spot, log) };
+    // A table that says where its numbers come from is that of all joints.
+    if spot.get(FROM).is_some_and(|from| matches!(from.node.value, Value::Text(_))) {
+        return on(row, &Selector::All, spot, log);
+    }
+    let selector = |name: &str| if name == ALL { Selector::All } else { Selector::Named(name.to_owned()) };
+    entries.iter().flat_map(|entry| on(row, &selector(&entry.name), &spot.of(entry), log)).collect()
+}
+
+/// What is asked for on one joint or link: a number, a word, a table, or a list of tables for a link.
+fn on(row: &'static Effect, selector: &Selector, spot: &Spot<'_>, log: &mut Log) -> Vec<Asked> {
+    let asked = |says, spot: &Spot<'_>| Asked { effect: row.id, on: selector.clone(), says, key: spot.key.clone(), place: spot.at };
+    let before = log.count();
+    let says = match &spot.node.value {
+        Value::Text(word) if word == "off" => vec![asked(None, spot)],
+        Value::Text(word) if word == "urdf" && urdf::offers(row) => {
+            vec![asked(Some(Numbers { from_urdf: true, ..empty(row) }), spot)]
+        }
+        Value::Text(word) => {
+            wrong_word(row, word, spot, log);
+            Vec::new()
+        }
+        Value::Number(_) if shorthand(row) => {
+            let first = row.fields.first().and_then(|field| number(field, spot, log));
+            let mut numbers = empty(row);
+            numbers.fields[0] = first.map(|x| vec![x]);
+            vec![asked(Some(numbers), spot)]
+        }
+        Value::Table(_) => vec![asked(Some(table(row, spot, log)), spot)],
+        Value::List(items) if row.on == On::Link => {
+            let tables = spot.list().unwrap_or_default();
+            if items.is_empty() {
+                spot.wrong(log, "one table or several");
+            }
+            tables.iter().map(|item| asked(Some(table(row, item, log)), item)).collect()
+        }
+        _ => {
+            spot.wrong(log, expected(row));
+            Vec::new()
+        }
+    };
+    if log.count() > before { Vec::new() } else { says }
+}
+
+fn empty(row: &Effect) -> Numbers {
+    Numbers { from_urdf: false, at: None, fields: vec![None; row.fields.len()] }
+}
+
+/// Whether one number says it all: that of the first field.
+pub(crate) fn shorthand(row: &Effect) -> bool {
+    row.fields.first().is_some_and(|f| f.len == 1) && row.fields.iter().skip(1).all(|f| f.default.is_some())
+}
+
+/// What may stand in the place of an effect's numbers.
+fn expected(row: &Effect) -> String {
+    let mut ways: Vec<String> = Vec::new();
+    if shorthand(row) {
+        ways.push(format!("a number ({}, {})", row.fields[0].name, row.fields[0].unit));
+    }
+    let required: Vec<&str> = row.fields.iter().filter(|f| f.default.is_none()).map(|f| f.name).collect();
+    ways.push(format!("a table with {}", required.join(", ")));
+    if urdf::offers(row) {
+        ways.push("\"urdf\"".into());
+    }
+    format!("{} or \"off\"", ways.join(", "))
+}
+
+fn wrong_word(row: &Effect, word: &str, spot: &Spot<'_>, log: &mut Log) {
+    let words = ["off", "urdf"].into_iter().filter(|word| *word == "off" || urdf::offers(row));
+    let found = if word == "urdf" { "\"urdf\", which has no numbers for it".into() } else { quote(word) };
+    log.unknown((spot.node.at, &spot.key, Kind::Word), (found, word), expected(row), words);
+}
+
+/// The numbers of a table.
+fn table(row: &'static Effect, spot: &Spot<'_>, log: &mut Log) -> Numbers {
+    let mut numbers = empty(row);
+    let before = log.count();
+    for entry in spot.entries(log, &expected(row)) {
+        let value = spot.of(entry);
+        let field = row.fields.iter().position(|f| f.name == entry.name);
+        match (field, entry.name.as_str()) {
+            (Some(i), _) => numbers.fields[i] = field_of(&row.fields[i], &value, log),
+            (None, FROM) => numbers.from_urdf = from(row, &value, log),
+            (None, "xyz") if row.on == On::Link => numbers.at.get_or_insert_default().xyz = value.numbers(log).unwrap_or_default(),
+            (None, "rpy") if row.on == On::Link => numbers.at.get_or_insert_default().rpy = value.numbers(log).unwrap_or_default(),
+            _ => value.unknown_key(log, keys(row)),
+        }
+    }
+    if log.count() == before {
+        check(row.id, &numbers, spot, log);
+    }
+    numbers
+}
+
+/// The keys of an effect's table.
+fn keys(row: &'static Effect) -> impl Iterator<Item = &'static str> {
+    let own = row.fields.iter().map(|f| f.name);
+    let frame = FRAME.into_iter().filter(|_| row.on == On::Link);
+    own.chain(frame).chain(Some(FROM).filter(|_| urdf::offers(row)))
+}
+
+fn from(row: &Effect, spot: &Spot<'_>, log: &mut Log) -> bool {
+    match &spot.node.value {
+        Value::Text(word) if word == "urdf" && urdf::offers(row) => true,
+        Value::Text(word) => {
+            let found = if word == "urdf" { "\"urdf\", which has no numbers for it".into() } else { quote(word) };
+            log.error(spot.node.at, &spot.key, Kind::Word, found, if urdf::offers(row) { "\"urdf\"" } else { "numbers" });
+            false
+        }
+        _ => {
+            spot.wrong(log, "\"urdf\"");
+            false
+        }
+    }
+}
+
+fn field_of(field: &Field, spot: &Spot<'_>, log: &mut Log) -> Option<Vec<f64>> {
+    if field.len == 1 {
+        return number(field, spot, log).map(|x| vec![x]);
+    }
+    let expected = format!("{} finite numbers, {}", field.len, field.unit);
+    let Some(items) = spot.list().filter(|list| list.len() == field.len) else {
+        spot.wrong(log, expected);
+        return None;
+    };
+    items.iter().map(|item| number(field, item, log)).collect()
+}
+
+fn number(field: &Field, spot: &Spot<'_>, log: &mut Log) -> Option<f64> {
+    spot.within(log, field.at_least, field.strictly)
+}
+
+/// What numbers have to be together, as far as they are given.
+fn check(effect: EffectId, numbers: &Numbers, spot: &Spot<'_>, log: &mut Log) {
+    let first = |name: &str| {
+        let index = effect.row().fields.iter().position(|f| f.name == name)?;
+        numbers.fields[index].as_deref()
+    };
+    let one = |name: &str| first(name).and_then(|x| x.first().copied());
+    match effect {
+        EffectId::limit => {
+            if let (Some(lower), Some(upper)) = (one("lower"), one("upper"))
+                && lower >= upper
+            {
+                let found = format!("lower {lower:?} and upper {upper:?}");
+                spot.get("upper").unwrap_or(Spot { node: spot.node, key: spot.key.clone(), at: spot.at }).clash(
+                    log,
+                    found,
+                    "a lower bound below the upper one",
+                );
+            }
+        }
+        EffectId::motor => {
+            if let (Some(x), Some(spot)) = (one("efficiency").filter(|x| *x > 1.0), spot.get("efficiency")) {
+                spot.bad(log, format!("{x:?}"), "a number above 0, at most 1");
+            }
+        }
+        EffectId::contact => {
+            if let (Some([0.0, 0.0, 0.0]), Some(spot)) = (first("normal"), spot.get("normal")) {
+                spot.bad(log, "no direction", "three numbers that are not all 0");
+            }
+        }
+        _ => {}
+    }
+}

@@ -1,0 +1,299 @@
+//! Effects against a robot: names looked up, `*` spread over joints and links, numbers taken from the URDF, defaults filled in.
+
+use articulated_core::description::{Base, Description, JointKind, Origin};
+use articulated_urdf::{Subject, Unused};
+
+use super::still::{moves, still};
+use super::{Asked, Numbers, Selector, urdf};
+use crate::effect::{Applied, Effect, EffectId, On, effects};
+use crate::error::{Kind, SceneErrors};
+use crate::log::Log;
+use crate::report::{EffectOff, EffectOn, Number, Report, Why};
+use crate::scene::Scene;
+use crate::shaft;
+use crate::tree::At;
+
+/// A robot as the scene's edits left it.
+#[derive(Clone, Copy, Debug)]
+pub struct Edited<'a> {
+    /// The robot.
+    pub description: &'a Description,
+    /// Its base.
+    pub base: Base,
+    /// What the reader of the URDF could not use.
+    pub unused: &'a [Unused],
+    /// The springs and dampings of each of the scene's shafts.
+    pub shafts: &'a [Vec<Applied>],
+}
+
+/// Effects with all their numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Resolved {
+    /// In the order of the list of effects, then of the robot, whatever the order of the scene.
+    pub effects: Vec<Applied>,
+    /// Where the scene asks for each of them.
+    pub places: Vec<At>,
+    /// What is on, off and not used.
+    pub report: Report,
+}
+
+impl Scene {
+    /// The effects on `robot`. Errors: joints and links that there are not, or that do not move; numbers that are missing; all of them.
+    pub fn resolve(&self, robot: &Edited<'_>) -> Result<Resolved, SceneErrors> {
+        let mut log = Log::new(&self.file);
+        let mut at_work =
+            Resolving { scene: self, robot, still: still(robot.description, robot.base), resolved: Resolved::default(), used: Vec::new() };
+        at_work.known_impact(&mut log);
+        for row in effects() {
+            at_work.effect(row, &mut log);
+        }
+        at_work.ignored();
+        log.result(at_work.resolved)
+    }
+}
+
+struct Resolving<'a> {
+    scene: &'a Scene,
+    robot: &'a Edited<'a>,
+    /// Links fixed to the base.
+    still: Vec<bool>,
+    resolved: Resolved,
+    /// (joint, tag) of the URDF that is used.
+    used: Vec<(String, &'static str)>,
+}
+
+/// A field's numbers, and the tag of the URDF that they are from.
+type Filled = (Vec<f64>, Option<&'static str>);
+
+impl<'a> Resolving<'a> {
+    fn effect(&mut self, row: &'static Effect, log: &mut Log) {
+        let scene = self.scene;
+        let asked: Vec<&Asked> = scene.effects.iter().filter(|a| a.effect == row.id).collect();
+        let before = self.resolved.effects.len();
+        self.known_names(row, &asked, log);
+        match row.on {
+            On::Joint => self.on_joints(row, &asked, log),
+            On::Link => self.on_links(row, &asked, log),
+        }
+        if self.resolved.effects.len() == before {
+            self.resolved.report.off.push(EffectOff { effect: row.name, why: why(&asked) });
+        }
+    }
+
+    /// Whether everything that is named is there and moves.
+    fn known_names(&self, row: &Effect, asked: &[&Asked], log: &mut Log) {
+        let Description { joints, links, .. } = self.robot.description;
+        for one in asked {
+            let Selector::Named(name) = &one.on else { continue };
+            let place = |kind| (one.place, one.key.as_str(), kind);
+            match row.on {
+                On::Joint => match joints.iter().find(|j| j.name == *name) {
+                    None => {
+                        let names = joints.iter().filter(|j| moves(j)).map(|j| j.name.as_str());
+                        log.unknown(
+                            place(Kind::UnknownName),
+                            ("a joint that there is not".into(), name),
+                            "a joint of the robot that moves",
+                            names,
+                        );
+                    }
+                    Some(joint) if !moves(joint) && one.says.is_some() => {
+                        let found = if joint.locked.is_some() { "a joint that is locked" } else { "a fixed joint" };
+                        log.error(one.place, &one.key, Kind::Robot, found, "a joint that moves");
+                    }
+                    Some(joint) if one.says.is_some() && !has_room(row.id, joint.kind) => {
+                        let found = format!("a {} joint, which has no coordinate of its own for each degree of freedom", joint.kind.name());
+                        log.error(one.place, &one.key, Kind::Robot, found, "another joint");
+                    }
+                    Some(_) => {}
+                },
+                On::Link => match links.iter().position(|l| l.name == *name) {
+                    None => {
+                        let names = links.iter().map(|l| l.name.as_str());
+                        log.unknown(place(Kind::UnknownName), ("a link that there is not".into(), name), "a link of the robot", names);
+                    }
+                    Some(link) if self.still[link] && one.says.is_some() => {
+                        log.error(one.place, &one.key, Kind::Robot, "a link that is fixed to the base", "a link that moves");
+                    }
+                    Some(_) => {}
+                },
+            }
+        }
+    }
+
+    fn known_impact(&self, log: &mut Log) {
+        let Some(impact) = &self.scene.impact else { return };
+        let links = &self.robot.description.links;
+        match links.iter().position(|l| l.name == impact.link) {
+            None => {
+                let place = (impact.place, "impact.link", Kind::UnknownName);
+                let found = ("a link that there is not".into(), impact.link.as_str());
+                log.unknown(place, found, "a link of the robot", links.iter().map(|l| l.name.as_str()));
+            }
+            Some(link) if self.still[link] => {
+                log.error(impact.place, "impact.link", Kind::Robot, "a link that is fixed to the base", "a link that moves");
+            }
+            Some(_) => {}
+        }
+    }
+
+    fn on_joints(&mut self, row: &'static Effect, asked: &[&'a Asked], log: &mut Log) {
+        let all = asked.iter().find(|a| a.on == Selector::All).copied();
+        let description = self.robot.description;
+        for joint in description.joints.iter().filter(|j| moves(j) && has_room(row.id, j.kind)) {
+            if let Some((one, place)) = self.of_shaft(row.id, &joint.name) {
+                self.put(row, one, place, &vec![None; row.fields.len()]);
+            }
+            let named = asked.iter().find(|a| a.on == Selector::Named(joint.name.clone())).copied();
+            let spread = all.filter(|_| self.is_spread_over(row.id, joint));
+            let Some(one) = named.or(spread) else { continue };
+            let layers = [named, all].map(|asked| asked.and_then(|a| a.says.as_ref()));
+            let Some(layers) = one.says.as_ref().map(|_| layers) else { continue };
+            match fill(row, &layers, &|tag: &str| urdf::number(joint, tag)) {
+                Ok(filled) => self.put_filled(row, &joint.name, Origin::default(), one.place, &filled),
+                // Not every joint has what all are to have from the URDF.
+                Err(field) if named.is_none() && urdf::tag(row.id, field).is_some() => {}
+                Err(field) => missing(row, field, one, &format!("joint {:?}", joint.name), log),
+            }
+        }
+    }
+
+    fn on_links(&mut self, row: &'static Effect, asked: &[&'a Asked], log: &mut Log) {
+        let all = asked.iter().find(|a| a.on == Selector::All).copied();
+        let description = self.robot.description;
+        for (i, link) in description.links.iter().enumerate() {
+            if self.still[i] {
+                continue;
+            }
+            let mut ones: Vec<&Asked> = asked.iter().filter(|a| a.on == Selector::Named(link.name.clone())).copied().collect();
+            let named = !ones.is_empty();
+            let heavy = link.inertial.is_some_and(|inertial| inertial.mass > 0.0);
+            ones.extend(all.filter(|_| !named && heavy));
+            for one in ones {
+                let Some(says) = &one.says else { continue };
+                let rest = all.filter(|_| named).and_then(|a| a.says.as_ref());
+                let at = says.at.or(rest.and_then(|r| r.at)).unwrap_or_default();
+                match fill(row, &[Some(says), rest], &|_| None) {
+                    Ok(filled) => self.put_filled(row, &link.name, at, one.place, &filled),
+                    Err(field) => missing(row, field, one, &format!("link {:?}", link.name), log),
+                }
+            }
+        }
+    }
+
+    /// Whether what is asked for on all joints is meant for this one too.
+    fn is_spread_over(&self, effect: EffectId, joint: &articulated_core::description::Joint) -> bool {
+        let of_shaft = self.robot.shafts.iter().flatten().any(|a| a.on == joint.name);
+        // What a joint that follows another does is not asked of it.
+        let follows = effect == EffectId::motor && joint.mimic.is_some();
+        !of_shaft && !follows
+    }
+
+    /// What a shaft puts on one of its joints.
+    fn of_shaft(&self, effect: EffectId, joint: &str) -> Option<(Applied, At)> {
+        let shafts = self.scene.shafts.iter().zip(self.robot.shafts);
+        let mut own = shafts.flat_map(|(shaft, applied)| applied.iter().map(|a| (a, shaft.place)));
+        own.find(|(a, _)| a.effect == effect && a.on == joint).map(|(a, place)| (a.clone(), place))
+    }
+
+    fn put_filled(&mut self, row: &'static Effect, on: &str, at: Origin, place: At, filled: &[Filled]) {
+        let parameters: Vec<f64> = filled.iter().flat_map(|(numbers, _)| numbers.iter().copied()).collect();
+        let tags: Vec<Option<&'static str>> = filled.iter().map(|(_, tag)| *tag).collect();
+        self.used.extend(tags.iter().flatten().map(|tag| (on.to_owned(), *tag)));
+        if !is_nothing(row, filled) {
+            self.put(row, Applied { effect: row.id, on: on.to_owned(), at, parameters }, place, &tags);
+        }
+    }
+
+    fn put(&mut self, row: &'static Effect, one: Applied, place: At, tags: &[Option<&'static str>]) {
+        let mut rest = one.parameters.as_slice();
+        let mut number = |(field, from): (&crate::effect::Field, &Option<&'static str>)| {
+            let (own, others) = rest.split_at(field.len.min(rest.len()));
+            rest = others;
+            Number { name: field.name, values: own.to_vec(), unit: field.unit, from: *from }
+        };
+        let numbers = row.fields.iter().zip(tags).map(&mut number).collect();
+        self.resolved.report.on.push(EffectOn { effect: row.id, on: one.on.clone(), numbers, place });
+        self.resolved.effects.push(one);
+        self.resolved.places.push(place);
+    }
+
+    /// What of the URDF is not used: what the reader could not, less what effects do, and bounds that nothing keeps.
+    fn ignored(&mut self) {
+        if self.scene.shafts.is_empty() {
+            self.resolved.report.off.push(EffectOff { effect: shaft::NAME, why: Why::NotAsked });
+        }
+        let used = |joint: &str, tag: &str| self.used.iter().any(|(j, t)| j == joint && *t == tag);
+        let unused = self.robot.unused.iter().filter(|u| !matches!(&u.subject, Subject::Joint(name) if used(name, &u.tag)));
+        let mut ignored: Vec<Unused> = unused.cloned().collect();
+        for joint in self.robot.description.joints.iter().filter(|j| moves(j)) {
+            let bounds = [("limit lower", "limit"), ("limit upper", "limit"), ("limit effort", "motor"), ("limit velocity", "motor")];
+            for (tag, effect) in bounds {
+                if urdf::number(joint, tag).is_some() && !used(&joint.name, tag) {
+                    let why = format!("kept by nothing: the effect {effect} is off here or has numbers of its own");
+                    ignored.push(Unused { line: None, subject: Subject::Joint(joint.name.clone()), tag: tag.to_owned(), why });
+                }
+            }
+        }
+        self.resolved.report.ignored = ignored;
+    }
+}
+
+/// Whether a joint of this kind has what the effect acts on.
+fn has_room(effect: EffectId, kind: JointKind) -> bool {
+    let ball = matches!(kind, JointKind::Spherical | JointKind::Floating);
+    !(ball && matches!(effect, EffectId::spring | EffectId::limit))
+}
+
+/// All numbers: of the first layer that says or takes them from the URDF, otherwise the defaults. The name of a field for which there are none.
+fn fill(row: &'static Effect, layers: &[Option<&Numbers>], number: &dyn Fn(&str) -> Option<f64>) -> Result<Vec<Filled>, &'static str> {
+    let of = |i: usize, field: &'static crate::effect::Field| {
+        for layer in layers.iter().flatten() {
+            if let Some(numbers) = &layer.fields[i] {
+                return Ok((numbers.clone(), None));
+            }
+            let tag = urdf::tag(row.id, field.name).filter(|_| layer.from_urdf);
+            if let Some((tag, x)) = tag.and_then(|tag| Some((tag, number(tag)?))) {
+                return Ok((vec![x], Some(tag)));
+            }
+        }
+        field.default.map(|x| (x.to_vec(), None)).ok_or(field.name)
+    };
+    row.fields.iter().enumerate().map(|(i, field)| of(i, field)).collect()
+}
+
+fn missing(row: &Effect, field: &str, one: &Asked, on: &str, log: &mut Log) {
+    let unit = row.fields.iter().find(|f| f.name == field).map_or("", |f| f.unit);
+    let found = match urdf::tag(row.id, field).filter(|_| one.says.as_ref().is_some_and(|s| s.from_urdf)) {
+        Some(tag) => format!("no {field} for {on}, whose URDF has no <{tag}>"),
+        None => format!("no {field} for {on}"),
+    };
+    log.error(one.place, &one.key, Kind::MissingKey, found, format!("{field}, {unit}"));
+}
+
+/// Whether the numbers make nothing of the effect.
+fn is_nothing(row: &Effect, filled: &[Filled]) -> bool {
+    let zero = |name: &str| row.fields.iter().zip(filled).any(|(f, (x, _))| f.name == name && x.iter().all(|x| *x == 0.0));
+    match row.id {
+        EffectId::armature => zero("inertia") || zero("gear"),
+        EffectId::damping => zero("damping"),
+        EffectId::friction => zero("friction"),
+        EffectId::spring | EffectId::limit | EffectId::contact => zero("stiffness"),
+        EffectId::drag => zero("coefficient"),
+        EffectId::box_drag | EffectId::added_mass => filled.iter().all(|(x, _)| x.iter().all(|x| *x == 0.0)),
+        EffectId::buoyancy => zero("volume") || zero("density"),
+        EffectId::motor => false,
+    }
+}
+
+fn why(asked: &[&Asked]) -> Why {
+    let on: Vec<&Numbers> = asked.iter().filter_map(|a| a.says.as_ref()).collect();
+    let zeros = |n: &&Numbers| n.fields.iter().flatten().any(|x| x.iter().all(|x| *x == 0.0));
+    match on.is_empty() {
+        _ if asked.is_empty() => Why::NotAsked,
+        true => Why::SaidSo,
+        false if on.iter().any(|n| n.from_urdf) => Why::NotInUrdf,
+        false if on.iter().any(zeros) => Why::SaidSo,
+        false => Why::Nowhere,
+    }
+}

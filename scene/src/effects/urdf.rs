@@ -1,0 +1,37 @@
+//! What a URDF says of effects: `<dynamics>` and `<limit>`.
+
+use articulated_core::description::Joint;
+
+use crate::effect::{Effect, EffectId};
+
+/// Whether the format has numbers for this effect.
+pub(crate) fn offers(row: &Effect) -> bool {
+    matches!(row.id, EffectId::damping | EffectId::friction | EffectId::limit | EffectId::motor)
+}
+
+/// The tag and attribute that a field is taken from.
+pub(crate) fn tag(effect: EffectId, field: &str) -> Option<&'static str> {
+    match (effect, field) {
+        (EffectId::damping, "damping") => Some("dynamics damping"),
+        (EffectId::friction, "friction") => Some("dynamics friction"),
+        (EffectId::limit, "lower") => Some("limit lower"),
+        (EffectId::limit, "upper") => Some("limit upper"),
+        (EffectId::motor, "torque") => Some("limit effort"),
+        (EffectId::motor, "speed") => Some("limit velocity"),
+        _ => None,
+    }
+}
+
+/// The number that stands there for a joint; `None`, if there is none or it is infinite.
+pub(crate) fn number(joint: &Joint, tag: &str) -> Option<f64> {
+    let number = match tag {
+        "dynamics damping" => joint.dynamics?.damping,
+        "dynamics friction" => joint.dynamics?.friction,
+        "limit lower" => joint.limit?.lower,
+        "limit upper" => joint.limit?.upper,
+        "limit effort" => joint.limit?.effort,
+        "limit velocity" => joint.limit?.velocity,
+        _ => return None,
+    };
+    number.is_finite().then_some(number)
+}

@@ -1,0 +1,296 @@
+//! `[initial]`: the state that a simulation starts from.
+
+use articulated_core::description::{Base, JointKind};
+use articulated_core::model::{FLOATING_BASE, Model};
+
+use crate::edits::coordinates;
+use crate::error::{Kind, SceneErrors};
+use crate::log::Log;
+use crate::scene::Scene;
+use crate::table::{Row, Spot};
+use crate::tree::{At, Value};
+
+/// The state at the start.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Initial {
+    /// Coordinates, rad or m.
+    pub q: Coordinates,
+    /// Rates, rad/s or m/s.
+    pub v: Coordinates,
+    /// Where a floating base is, and how it moves.
+    pub base: Option<BaseState>,
+}
+
+/// Numbers of joints.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Coordinates {
+    /// 0; no turn for a quaternion.
+    #[default]
+    Neutral,
+    /// All of them, in the order of the robot.
+    All {
+        /// The numbers.
+        values: Vec<f64>,
+        /// Where the scene says so.
+        place: At,
+    },
+    /// Those of some joints; the others are neutral.
+    Named(Vec<Named>),
+}
+
+/// The numbers of one joint.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Named {
+    /// The joint.
+    pub joint: String,
+    /// As many as it has.
+    pub values: Vec<f64>,
+    /// Where the scene says so.
+    pub place: At,
+}
+
+/// Where a floating base is, and how it moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BaseState {
+    /// Its origin in the base frame, m.
+    pub xyz: [f64; 3],
+    /// Its turn, x, y, z, w, of norm one.
+    pub quaternion: [f64; 4],
+    /// Angular velocity in its own axes, rad/s.
+    pub angular: [f64; 3],
+    /// Velocity of its origin in its own axes, m/s.
+    pub linear: [f64; 3],
+    /// Where the scene says so.
+    pub place: At,
+}
+
+impl Default for BaseState {
+    fn default() -> Self {
+        Self { xyz: [0.0; 3], quaternion: [0.0, 0.0, 0.0, 1.0], angular: [0.0; 3], linear: [0.0; 3], place: At::Nowhere }
+    }
+}
+
+/// A quaternion's norm may be off by so much; it is normalised.
+const NORM: f64 = 1e-3;
+
+pub(crate) const KEYS: &[Row<Initial>] = &[
+    Row {
+        name: "q",
+        required: false,
+        value: "numbers, or table: joint = number or numbers; rad, m",
+        default: "0",
+        what: "coordinates: all in the robot's order (a floating base's position and quaternion x, y, z, w first), or by joint",
+        read: |x, s, log| x.q = values(s, log),
+    },
+    Row {
+        name: "v",
+        required: false,
+        value: "numbers, or table: joint = number or numbers; rad/s, m/s",
+        default: "0",
+        what: "rates: all in the robot's order (a floating base's ω and v in its own axes first), or by joint",
+        read: |x, s, log| x.v = values(s, log),
+    },
+    Row {
+        name: "base",
+        required: false,
+        value: "table",
+        default: "at the origin, at rest",
+        what: "a floating base, see below",
+        read: |x, s, log| {
+            let mut base = BaseState { place: s.at, ..BaseState::default() };
+            s.read(BASE, &mut base, log);
+            if let (Some(_), Some(spot)) = (s.get("rpy"), s.get("quaternion")) {
+                spot.clash(log, "rpy and quaternion", "one of them");
+            }
+            x.base = Some(base);
+        },
+    },
+];
+
+pub(crate) const BASE: &[Row<BaseState>] = &[
+    Row {
+        name: "xyz",
+        required: false,
+        value: "3 numbers, m",
+        default: "[0, 0, 0]",
+        what: "its origin in the base frame",
+        read: |b, s, log| b.xyz = s.numbers(log).unwrap_or_default(),
+    },
+    Row {
+        name: "rpy",
+        required: false,
+        value: "3 numbers, rad",
+        default: "[0, 0, 0]",
+        what: "roll, pitch, yaw about fixed axes",
+        read: |b, s, log| b.quaternion = s.numbers(log).map_or(b.quaternion, from_rpy),
+    },
+    Row {
+        name: "quaternion",
+        required: false,
+        value: "4 numbers, 1",
+        default: "[0, 0, 0, 1]",
+        what: "its turn, x, y, z, w, of norm one; instead of `rpy`",
+        read: |b, s, log| b.quaternion = unit(s, log).unwrap_or(b.quaternion),
+    },
+    Row {
+        name: "angular",
+        required: false,
+        value: "3 numbers, rad/s",
+        default: "[0, 0, 0]",
+        what: "angular velocity in its own axes",
+        read: |b, s, log| b.angular = s.numbers(log).unwrap_or_default(),
+    },
+    Row {
+        name: "linear",
+        required: false,
+        value: "3 numbers, m/s",
+        default: "[0, 0, 0]",
+        what: "velocity of its origin in its own axes",
+        read: |b, s, log| b.linear = s.numbers(log).unwrap_or_default(),
+    },
+];
+
+pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Initial {
+    let mut initial = Initial::default();
+    spot.read(KEYS, &mut initial, log);
+    initial
+}
+
+pub(crate) fn values(spot: &Spot<'_>, log: &mut Log) -> Coordinates {
+    match &spot.node.value {
+        Value::List(_) => {
+            spot.some_numbers(log, "numbers").map_or(Coordinates::Neutral, |values| Coordinates::All { values, place: spot.node.at })
+        }
+        Value::Table(entries) => Coordinates::Named(
+            entries
+                .iter()
+                .filter_map(|e| Some(Named { joint: e.name.clone(), values: coordinates(&spot.of(e), log)?, place: e.at }))
+                .collect(),
+        ),
+        _ => {
+            spot.wrong(log, "a list of numbers, or a table of joints, as { elbow = 0.5 }");
+            Coordinates::Neutral
+        }
+    }
+}
+
+/// R = Rz(yaw)·Ry(pitch)·Rx(roll).
+fn from_rpy(rpy: [f64; 3]) -> [f64; 4] {
+    let [(sr, cr), (sp, cp), (sy, cy)] = rpy.map(|x| (x / 2.0).sin_cos());
+    [sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy]
+}
+
+fn unit(spot: &Spot<'_>, log: &mut Log) -> Option<[f64; 4]> {
+    let quaternion: [f64; 4] = spot.numbers(log)?;
+    let norm = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if (norm - 1.0).abs() > NORM {
+        spot.bad(log, format!("a quaternion of norm {norm:.4}"), "norm one, in the order x, y, z, w");
+        return None;
+    }
+    Some(quaternion.map(|x| x / norm))
+}
+
+impl Scene {
+    /// The state at the start: q `[nq]`, v `[nv]`. Errors: joints that there are not, wrong numbers of coordinates, a base that does not float; all of them.
+    pub fn start(&self, model: &Model<f64>) -> Result<(Vec<f64>, Vec<f64>), SceneErrors> {
+        let mut log = Log::new(&self.file);
+        let mut q = neutral(model);
+        let mut v = vec![0.0; model.nv];
+        self.place_base(model, (&mut q, &mut v), &mut log);
+        fill(&self.initial.q, "initial.q", model, Side::Q, &mut q, &mut log);
+        fill(&self.initial.v, "initial.v", model, Side::V, &mut v, &mut log);
+        normalise(model, &mut q, &self.initial.q, &mut log);
+        log.result((q, v))
+    }
+
+    fn place_base(&self, model: &Model<f64>, (q, v): (&mut [f64], &mut [f64]), log: &mut Log) {
+        let Some(base) = &self.initial.base else { return };
+        if model.joints.first().is_none_or(|j| j.name != FLOATING_BASE) {
+            let fixed = if self.base == Some(Base::Floating) { "a robot without a floating base" } else { "a base that is fixed" };
+            log.error(base.place, "initial.base", Kind::Robot, fixed, "base = \"floating\", or no initial.base");
+            return;
+        }
+        q[..3].copy_from_slice(&base.xyz);
+        q[3..7].copy_from_slice(&base.quaternion);
+        v[..3].copy_from_slice(&base.angular);
+        v[3..6].copy_from_slice(&base.linear);
+    }
+}
+
+/// Coordinates or rates.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Side {
+    Q,
+    V,
+}
+
+/// q at which nothing is moved or turned, `[nq]`.
+pub(crate) fn neutral(model: &Model<f64>) -> Vec<f64> {
+    let mut q = vec![0.0; model.nq];
+    for joint in &model.joints {
+        if matches!(joint.kind, JointKind::Spherical | JointKind::Floating) {
+            q[joint.q.0 + joint.q.1 - 1] = 1.0;
+        }
+    }
+    q
+}
+
+/// Writes what the scene says into `into`, `[nq]` or `[nv]`.
+pub(crate) fn fill(from: &Coordinates, key: &str, model: &Model<f64>, side: Side, into: &mut [f64], log: &mut Log) {
+    match from {
+        Coordinates::Neutral => {}
+        Coordinates::All { values, .. } if values.len() == into.len() => into.copy_from_slice(values),
+        Coordinates::All { values, place } => {
+            log.error(*place, key, Kind::Number, counted(values.len()), format!("{} for this robot", counted(into.len())));
+        }
+        Coordinates::Named(named) => named.iter().for_each(|one| put(one, key, model, side, into, log)),
+    }
+}
+
+fn put(one: &Named, key: &str, model: &Model<f64>, side: Side, into: &mut [f64], log: &mut Log) {
+    let key = format!("{key}.{}", crate::error::bare(&one.joint));
+    let Some(joint) = model.joints.iter().find(|j| j.name == one.joint) else {
+        no_joint(log, one.place, &key, &one.joint, model);
+        return;
+    };
+    let (first, count) = if side == Side::Q { joint.q } else { joint.v };
+    match one.values.len() {
+        found if found == count => into[first..first + count].copy_from_slice(&one.values),
+        found => log.error(one.place, &key, Kind::Number, counted(found), format!("{} for a {} joint", counted(count), joint.kind.name())),
+    }
+}
+
+pub(crate) fn counted(n: usize) -> String {
+    if n == 1 { "one number".into() } else { format!("{n} numbers") }
+}
+
+/// There is no such joint that has coordinates.
+pub(crate) fn no_joint(log: &mut Log, at: At, key: &str, name: &str, model: &Model<f64>) {
+    let names = model.joints.iter().map(|j| j.name.as_str());
+    log.unknown(
+        (at, key, Kind::UnknownName),
+        ("a joint that is not there or has no coordinate of its own".into(), name),
+        "a joint that moves",
+        names,
+    );
+}
+
+/// Quaternions to norm one.
+fn normalise(model: &Model<f64>, q: &mut [f64], from: &Coordinates, log: &mut Log) {
+    for joint in model.joints.iter().filter(|j| matches!(j.kind, JointKind::Spherical | JointKind::Floating)) {
+        let end = joint.q.0 + joint.q.1;
+        let quaternion = &mut q[end - 4..end];
+        let norm = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if (norm - 1.0).abs() > NORM {
+            let place = match from {
+                Coordinates::All { place, .. } => *place,
+                Coordinates::Named(named) => named.iter().find(|n| n.joint == joint.name).map_or(At::Nowhere, |n| n.place),
+                Coordinates::Neutral => At::Nowhere,
+            };
+            let found = format!("a quaternion of norm {norm:.4} for joint {:?}", joint.name);
+            log.error(place, "initial.q", Kind::Number, found, "norm one, in the order x, y, z, w");
+        } else {
+            quaternion.iter_mut().for_each(|x| *x /= norm);
+        }
+    }
+}

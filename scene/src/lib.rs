@@ -1,0 +1,47 @@
+//! Scenes: a robot, its base, its gravity, the effects that matter, and a motion, read from TOML.
+//!
+//! ```
+//! use articulated_scene::Scene;
+//!
+//! let scene = Scene::read("arm.toml", "robot = \"panda_like\"\n[effects.damping]\n\"*\" = 0.1\n").unwrap();
+//! assert_eq!(scene.effects.len(), 1);
+//!
+//! let errors = Scene::read("arm.toml", "robot = \"panda_like\"\n[effects.dampign]\n\"*\" = 0.1\n").unwrap_err();
+//! assert!(errors.to_string().starts_with("arm.toml:2: effects.dampign: found a key that is not known"));
+//! ```
+//!
+//! The way of a scene: text → tree (tables and numbers with their lines) → [`Scene`] (checked, by tables of keys) → against a robot:
+//! [`Scene::resolve`] (effects with all their numbers), [`Scene::start`] and [`Scene::controller`] (vectors). No input makes the reader panic or
+//! hang. The keys are listed in `docs/scenes.md`.
+
+mod control;
+mod document;
+mod edits;
+mod effect;
+mod effects;
+mod error;
+mod impact;
+mod initial;
+mod log;
+pub mod manual;
+mod report;
+mod scene;
+mod series;
+mod shaft;
+mod simulation;
+mod suggest;
+mod table;
+mod tree;
+
+pub use control::{Aim, Control, Controller, Drive, PerJoint, Target};
+pub use edits::{Append, Load, Lock};
+pub use effects::{Asked, Edited, Numbers, Resolved, Selector};
+pub use error::{Kind, SceneError, SceneErrors};
+pub use impact::{Impact, When};
+pub use initial::{BaseState, Coordinates, Initial, Named};
+pub use report::{EffectOff, EffectOn, Number, Report, Why};
+pub use scene::{Code, Robot, Scene};
+pub use series::{Series, Source};
+pub use shaft::ShaftAsked;
+pub use simulation::{Integrator, Output, Simulation, Stiffness, Watched};
+pub use tree::{At, Entry, Node, Value};

@@ -1,0 +1,87 @@
+//! Where everything that is wrong with a scene is gathered.
+
+use crate::error::{Kind, SceneError, SceneErrors};
+use crate::suggest::Suggester;
+use crate::tree::At;
+
+/// More than these are counted, not listed.
+const MOST: usize = 1000;
+
+/// What was found out so far.
+#[derive(Debug)]
+pub(crate) struct Log {
+    file: String,
+    errors: Vec<SceneError>,
+    more: usize,
+    suggester: Suggester,
+}
+
+impl Log {
+    pub(crate) fn new(file: &str) -> Self {
+        Self { file: file.to_owned(), errors: Vec::new(), more: 0, suggester: Suggester::default() }
+    }
+
+    /// One error more.
+    pub(crate) fn error(&mut self, at: At, key: &str, kind: Kind, found: impl Into<String>, expected: impl Into<String>) {
+        self.push(SceneError {
+            file: self.file.clone(),
+            at,
+            key: key.to_owned(),
+            kind,
+            found: found.into(),
+            expected: expected.into(),
+            nearest: None,
+        });
+    }
+
+    /// A name that there is not, and what names there are.
+    pub(crate) fn unknown<'a>(
+        &mut self,
+        (at, key, kind): (At, &str, Kind),
+        (found, name): (String, &str),
+        expected: impl Into<String>,
+        names: impl IntoIterator<Item = &'a str>,
+    ) {
+        let nearest = self.suggester.nearest(name, names);
+        self.error(at, key, kind, found, expected);
+        if let Some(last) = self.errors.last_mut().filter(|_| self.more == 0) {
+            last.nearest = nearest;
+        }
+    }
+
+    pub(crate) fn push(&mut self, error: SceneError) {
+        if self.errors.len() < MOST {
+            self.errors.push(error);
+        } else {
+            self.more += 1;
+        }
+    }
+
+    /// How many errors there are.
+    pub(crate) fn count(&self) -> usize {
+        self.errors.len() + self.more
+    }
+
+    /// The value, or all errors.
+    pub(crate) fn result<T>(mut self, value: T) -> Result<T, SceneErrors> {
+        if self.errors.is_empty() {
+            return Ok(value);
+        }
+        // As they stand in the file; those of one line as they were found.
+        self.errors.sort_by_key(|e| e.at);
+        if self.more > 0 {
+            let (more, file) = (self.more, self.file.clone());
+            let found = format!("{more} errors more that are not listed");
+            self.errors.push(SceneError {
+                file,
+                at: At::Nowhere,
+                key: String::new(),
+                kind: Kind::More,
+                found,
+                expected: String::new(),
+                nearest: None,
+            });
+        }
+        Err(SceneErrors { errors: self.errors })
+    }
+}

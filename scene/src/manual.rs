@@ -1,0 +1,82 @@
+//! The tables of `docs/scenes.md`, made from the tables that scenes are read by.
+
+use std::fmt::Write;
+
+use crate::effect::{Effect, On, effects};
+use crate::table::Row;
+use crate::{control, edits, impact, initial, scene, shaft, simulation};
+
+/// All tables, each under its name: Markdown.
+pub fn tables() -> Vec<(&'static str, String)> {
+    let mut tables = vec![
+        ("top", keys(scene::KEYS)),
+        ("payload", keys(edits::LOAD)),
+        ("append", keys(edits::APPEND)),
+        ("effects", list()),
+        ("fields", fields()),
+        ("shaft", keys(shaft::KEYS)),
+        ("simulation", keys(simulation::KEYS)),
+        ("initial", keys(initial::KEYS)),
+        ("initial.base", keys(initial::BASE)),
+        ("control", keys(control::KEYS)),
+        ("impact", keys(impact::KEYS)),
+    ];
+    tables.iter_mut().for_each(|(_, text)| text.truncate(text.trim_end().len()));
+    tables
+}
+
+fn keys<T>(rows: &[Row<T>]) -> String {
+    let mut out = String::from("| key | value | default | |\n|---|---|---|---|\n");
+    for row in rows {
+        let default = if row.required { "has to be given" } else { row.default };
+        let _ = writeln!(out, "| `{}` | {} | {} | {} |", row.name, row.value, default, row.what);
+    }
+    out
+}
+
+/// One line an effect.
+fn list() -> String {
+    let mut out = String::from("| effect | on | law | source | by itself |\n|---|---|---|---|---|\n");
+    for effect in effects() {
+        let on = if effect.on == On::Joint { "joints" } else { "links" };
+        let _ = writeln!(out, "| `{}` | {on} | {} | {} | {} |", effect.name, effect.what.replace('|', "\\|"), effect.source, ways(effect));
+    }
+    out
+}
+
+/// What may stand in the place of a table.
+fn ways(effect: &Effect) -> String {
+    let mut ways = Vec::new();
+    if crate::effects::shorthand(effect) {
+        ways.push(format!("number: `{}`", effect.fields[0].name));
+    }
+    if crate::effects::offers(effect) {
+        ways.push("`\"urdf\"`".to_owned());
+    }
+    ways.push("`\"off\"`".to_owned());
+    ways.join(", ")
+}
+
+/// One line a field.
+fn fields() -> String {
+    let mut out = String::from("| effect | key | numbers | unit | default | |\n|---|---|--:|---|---|---|\n");
+    for effect in effects() {
+        for field in effect.fields {
+            let default = match field.default {
+                None => crate::effects::tag(effect.id, field.name)
+                    .map_or("has to be given".to_owned(), |tag| format!("has to be given; `\"urdf\"`: {tag}")),
+                Some([x]) => format!("{x:?}"),
+                Some(x) if x.iter().all(|x| *x == 0.0) => "zeros".to_owned(),
+                Some(x) => format!("{x:?}"),
+            };
+            let least = match (field.at_least == f64::NEG_INFINITY, field.strictly) {
+                (true, _) => String::new(),
+                (_, true) => format!(", above {}", field.at_least),
+                _ => format!(", at least {}", field.at_least),
+            };
+            let unit = field.unit.replace('|', " or ");
+            let _ = writeln!(out, "| {} | `{}` | {} | {unit} | {default} | {}{least} |", effect.name, field.name, field.len, field.what);
+        }
+    }
+    out
+}

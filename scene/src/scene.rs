@@ -1,0 +1,344 @@
+//! A scene, and the keys at its top.
+
+use articulated_core::description::Base;
+use articulated_core::lanes::Real;
+use articulated_core::spatial::Reference;
+
+use crate::control::{self, Control};
+use crate::document;
+use crate::edits::{self, APPEND, Append, LOAD, Load, Lock};
+use crate::effects::{self, Asked};
+use crate::error::{Kind, SceneErrors};
+use crate::impact::{self, Impact};
+use crate::initial::{self, Initial};
+use crate::log::Log;
+use crate::shaft::ShaftAsked;
+use crate::simulation::{self, Simulation};
+use crate::table::{Row, Spot};
+use crate::tree::Node;
+
+/// A scene as its file has it: names are not looked up yet, files not opened.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scene {
+    /// The file, as it was called when it was read.
+    pub file: String,
+    /// What it is, in a line.
+    pub summary: String,
+    /// The robot.
+    pub robot: Robot,
+    /// The base; `None`: that which a bundled robot is meant for, fixed for others.
+    pub base: Option<Base>,
+    /// Gravity in the base frame, m/s²; `None`: standard gravity.
+    pub gravity: Option<[f64; 3]>,
+    /// Edits of the robot, and what code to make of it.
+    pub code: Code,
+    /// Effects, as they are asked for.
+    pub effects: Vec<Asked>,
+    /// Shafts that bend.
+    pub shafts: Vec<ShaftAsked>,
+    /// How to simulate it; `None`: the scene does not say.
+    pub simulation: Option<Simulation>,
+    /// The state that a simulation starts from.
+    pub initial: Initial,
+    /// What drives the joints.
+    pub control: Control,
+    /// A ball to be hit.
+    pub impact: Option<Impact>,
+}
+
+/// Where the robot is to be had.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Robot {
+    /// Whoever uses the scene has it.
+    #[default]
+    Given,
+    /// A bundled robot, by its name.
+    Bundled(String),
+    /// A URDF, relative to the scene's folder.
+    Urdf(String),
+}
+
+/// Edits of the robot, and choices of the code that is generated for it. `None`: the default of the one who generates.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Code {
+    /// The functions wanted.
+    pub functions: Option<Vec<String>>,
+    /// Constants of the model that stay inputs.
+    pub parameters: Option<Vec<String>>,
+    /// Links whose frames the functions of frames give.
+    pub frames: Option<Vec<String>>,
+    /// What the wrenches that functions take refer to.
+    pub wrenches_in: Option<Reference>,
+    /// Joints to lock.
+    pub lock: Vec<Lock>,
+    /// Loads.
+    pub payload: Vec<Load>,
+    /// Robots to append.
+    pub append: Vec<Append>,
+    /// Rust names to use: (name in the URDF, name in Rust).
+    pub rename: Vec<(String, String)>,
+    /// Accept inertias that no body can have.
+    pub allow_unphysical_inertia: Option<bool>,
+    /// Take angles this near to a multiple of π/2 as that, rad.
+    pub snap_angles: Option<f64>,
+    /// Limbs that are alike at once.
+    pub limbs: Option<bool>,
+    /// Types of numbers for which there are functions of many states.
+    pub batch: Option<Vec<Real>>,
+    /// No `unsafe` in the generated code.
+    pub forbid_unsafe: Option<bool>,
+}
+
+impl Scene {
+    /// The scene in `text`; `file` is its name in messages and is not opened. Any text is a scene or an error; all errors at once.
+    pub fn read(file: &str, text: &str) -> Result<Self, SceneErrors> {
+        let mut log = Log::new(file);
+        let mut scene = Self { file: file.to_owned(), ..Self::default() };
+        if let Some(root) = document::parse(text, &mut log) {
+            scene.fill(&root, &mut log);
+        }
+        log.result(scene)
+    }
+
+    /// As [`Scene::read`], of bytes that may not even be text.
+    pub fn read_bytes(file: &str, bytes: &[u8]) -> Result<Self, SceneErrors> {
+        match std::str::from_utf8(bytes) {
+            Ok(text) => Self::read(file, text),
+            Err(error) => {
+                let lines = bytes[..error.valid_up_to()].iter().filter(|b| **b == b'\n').count();
+                let at = crate::tree::At::Line(u32::try_from(lines + 1).unwrap_or(u32::MAX));
+                let mut log = Log::new(file);
+                log.error(at, "", Kind::Syntax, "bytes that are not UTF-8", "a TOML file");
+                log.result(Self::default())
+            }
+        }
+    }
+
+    /// A scene of effects alone: those of the table `effects`, which did not come from a file. For the macro.
+    pub fn of_effects(file: &str, effects: &Node) -> Result<Self, SceneErrors> {
+        let mut log = Log::new(file);
+        let mut scene = Self { file: file.to_owned(), ..Self::default() };
+        let spot = Spot { node: effects, key: "effects".into(), at: effects.at };
+        effects::read(&mut scene, &spot, &mut log);
+        log.result(scene)
+    }
+
+    fn fill(&mut self, root: &Node, log: &mut Log) {
+        let spot = Spot::root(root);
+        spot.read(KEYS, self, log);
+        if let (Some(robot), Some(_)) = (spot.get("robot"), spot.get("urdf")) {
+            robot.clash(log, "robot and urdf", "one of them");
+        }
+    }
+}
+
+const BASES: &[(&str, Base)] = &[("fixed", Base::Fixed), ("floating", Base::Floating)];
+const REALS: &[(&str, Real)] = &[("f64", Real::F64), ("f32", Real::F32)];
+const REFERENCES: &[(&str, Reference)] =
+    &[("body", Reference::Body), ("world", Reference::World), ("world_aligned", Reference::WorldAligned)];
+
+/// All keys at the top of a scene, in the order in which they are listed to people.
+pub(crate) const KEYS: &[Row<Scene>] = &[
+    Row {
+        name: "summary",
+        required: false,
+        value: "text",
+        default: "none",
+        what: "what the scene is, in a line",
+        read: |s, spot, log| s.summary = spot.text(log, "a text").unwrap_or_default().to_owned(),
+    },
+    Row {
+        name: "robot",
+        required: false,
+        value: "text",
+        default: "given by who uses the scene",
+        what: "a bundled robot",
+        read: |s, spot, log| s.robot = edits::name(spot, log, "the name of a bundled robot").map_or(Robot::Given, Robot::Bundled),
+    },
+    Row {
+        name: "urdf",
+        required: false,
+        value: "text",
+        default: "given by who uses the scene",
+        what: "a URDF, seen from the scene's folder; instead of `robot`",
+        read: |s, spot, log| s.robot = edits::name(spot, log, "the path of a URDF").map_or(Robot::Given, Robot::Urdf),
+    },
+    Row {
+        name: "base",
+        required: false,
+        value: "`\"fixed\"` or `\"floating\"`",
+        default: "that of the bundled robot, `\"fixed\"` for others",
+        what: "whether the root link is the base or moves freely",
+        read: |s, spot, log| s.base = spot.word(log, BASES),
+    },
+    Row {
+        name: "gravity",
+        required: false,
+        value: "3 numbers, m/s²",
+        default: "[0, 0, -9.81]",
+        what: "in the base frame",
+        read: |s, spot, log| s.gravity = spot.numbers(log),
+    },
+    Row {
+        name: "functions",
+        required: false,
+        value: "texts",
+        default: "those of the macro",
+        what: "the functions to generate, as the macro's key has them",
+        read: |s, spot, log| {
+            s.code.functions = spot.texts(log, "a list of functions, as [\"placements\", \"bias = inverse_dynamics(a = 0)\"]");
+        },
+    },
+    Row {
+        name: "parameters",
+        required: false,
+        value: "texts",
+        default: "none",
+        what: "constants of the model that stay inputs, as `\"payload(tool)\"`",
+        read: |s, spot, log| s.code.parameters = spot.texts(log, "a list of what stays an input, as [\"payload(tool)\"]"),
+    },
+    Row {
+        name: "frames",
+        required: false,
+        value: "texts",
+        default: "all links",
+        what: "the links whose frames the functions of frames give",
+        read: |s, spot, log| s.code.frames = spot.texts(log, "a list of links, as [\"tool\"]"),
+    },
+    Row {
+        name: "wrenches_in",
+        required: false,
+        value: "`\"body\"`, `\"world\"` or `\"world_aligned\"`",
+        default: "`\"body\"`",
+        what: "what the wrenches that functions take refer to",
+        read: |s, spot, log| s.code.wrenches_in = spot.word(log, REFERENCES),
+    },
+    Row {
+        name: "lock",
+        required: false,
+        value: "table: joint = number or numbers, rad or m",
+        default: "none",
+        what: "joints that do not move, and where",
+        read: |s, spot, log| s.code.lock = edits::locks(spot, log),
+    },
+    Row {
+        name: "payload",
+        required: false,
+        value: "table or list of tables",
+        default: "none",
+        what: "rigid loads on links",
+        read: |s, spot, log| s.code.payload = spot.tables(LOAD, log),
+    },
+    Row {
+        name: "append",
+        required: false,
+        value: "table or list of tables",
+        default: "none",
+        what: "other robots on links",
+        read: |s, spot, log| s.code.append = spot.tables(APPEND, log),
+    },
+    Row {
+        name: "rename",
+        required: false,
+        value: "table: name in the URDF = text",
+        default: "none",
+        what: "names in Rust",
+        read: |s, spot, log| s.code.rename = edits::renamings(spot, log),
+    },
+    Row {
+        name: "allow_unphysical_inertia",
+        required: false,
+        value: "true or false",
+        default: "false",
+        what: "accept inertias that no body can have",
+        read: |s, spot, log| s.code.allow_unphysical_inertia = spot.boolean(log),
+    },
+    Row {
+        name: "snap_angles",
+        required: false,
+        value: "number, rad",
+        default: "never",
+        what: "take angles this near to a multiple of π/2 as that",
+        read: |s, spot, log| s.code.snap_angles = spot.positive(log),
+    },
+    Row {
+        name: "limbs",
+        required: false,
+        value: "true or false",
+        default: "true",
+        what: "compute limbs that are alike at once",
+        read: |s, spot, log| s.code.limbs = spot.boolean(log),
+    },
+    Row {
+        name: "batch",
+        required: false,
+        value: "list of `\"f64\"`, `\"f32\"`",
+        default: "none",
+        what: "functions of many states, in these numbers",
+        read: |s, spot, log| s.code.batch = batch(spot, log),
+    },
+    Row {
+        name: "forbid_unsafe",
+        required: false,
+        value: "true or false",
+        default: "false",
+        what: "no `unsafe` in generated code",
+        read: |s, spot, log| s.code.forbid_unsafe = spot.boolean(log),
+    },
+    Row {
+        name: "effects",
+        required: false,
+        value: "table: effect = …",
+        default: "none",
+        what: "what acts beside rigid bodies and gravity, see below",
+        read: effects::read,
+    },
+    Row {
+        name: "simulation",
+        required: false,
+        value: "table",
+        default: "none",
+        what: "how to simulate, see below",
+        read: |s, spot, log| s.simulation = simulation::read(spot, log),
+    },
+    Row {
+        name: "initial",
+        required: false,
+        value: "table",
+        default: "at rest at q = 0",
+        what: "the state at the start, see below",
+        read: |s, spot, log| s.initial = initial::read(spot, log),
+    },
+    Row {
+        name: "control",
+        required: false,
+        value: "table",
+        default: "none",
+        what: "what drives the joints, see below",
+        read: |s, spot, log| s.control = control::read(spot, log),
+    },
+    Row {
+        name: "impact",
+        required: false,
+        value: "table",
+        default: "none",
+        what: "a ball to be hit, see below",
+        read: |s, spot, log| s.impact = impact::read(spot, log),
+    },
+];
+
+/// Each type once.
+fn batch(spot: &Spot<'_>, log: &mut Log) -> Option<Vec<Real>> {
+    let Some(list) = spot.list() else {
+        spot.wrong(log, "a list of \"f64\", \"f32\"");
+        return None;
+    };
+    let mut reals: Vec<Real> = Vec::new();
+    for item in &list {
+        match item.word(log, REALS) {
+            Some(real) if reals.contains(&real) => item.clash(log, "a type that is there twice", "each once"),
+            real => reals.extend(real),
+        }
+    }
+    Some(reals)
+}

@@ -1,0 +1,99 @@
+//! `[effects.shaft]`: shafts that bend.
+
+use crate::log::Log;
+use crate::simulation::set;
+use crate::table::{Row, Spot};
+use crate::tree::At;
+
+/// Its name among the effects.
+pub(crate) const NAME: &str = "shaft";
+
+/// A fixed joint whose rigid offset bends.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ShaftAsked {
+    /// The fixed joint.
+    pub joint: String,
+    /// How many pieces bend.
+    pub segments: usize,
+    /// Flexural rigidity E·I, N·m².
+    pub stiffness: f64,
+    /// Bending moment in proportion to the rate of bending, s.
+    pub damping: f64,
+    /// Its mass, kg; `None`: that of the link which carries it, which is taken from there.
+    pub mass: Option<f64>,
+    /// Where it begins in the carrying link's frame, m; `None`: at that frame's origin.
+    pub start: Option<[f64; 3]>,
+    /// Where it ends, there too, m; `None`: at the joint's frame.
+    pub end: Option<[f64; 3]>,
+    /// Where the scene says so.
+    pub place: At,
+}
+
+/// More pieces are not worth their coordinates.
+const MOST_SEGMENTS: u64 = 100;
+
+pub(crate) const KEYS: &[Row<ShaftAsked>] = &[
+    Row {
+        name: "segments",
+        required: true,
+        value: "whole number, 1 to 100",
+        default: "",
+        what: "how many pieces bend: each is a universal joint with springs; the error of deflections falls with its square",
+        read: |x, s, log| set(&mut x.segments, s.whole(log, 1, MOST_SEGMENTS).and_then(|n| usize::try_from(n).ok())),
+    },
+    Row {
+        name: "stiffness",
+        required: true,
+        value: "number, N·m²",
+        default: "",
+        what: "flexural rigidity E·I, the same all along and in both directions",
+        read: |x, s, log| set(&mut x.stiffness, s.positive(log)),
+    },
+    Row {
+        name: "damping",
+        required: false,
+        value: "number, s",
+        default: "0",
+        what: "bending moment E·I·damping at the unit rate of curvature",
+        read: |x, s, log| set(&mut x.damping, s.not_negative(log)),
+    },
+    Row {
+        name: "mass",
+        required: false,
+        value: "number, kg",
+        default: "that of the link before the joint, which is taken from there",
+        what: "mass of the part that bends, the same all along",
+        read: |x, s, log| x.mass = s.not_negative(log),
+    },
+    Row {
+        name: "start",
+        required: false,
+        value: "3 numbers, m",
+        default: "[0, 0, 0]",
+        what: "where it begins, in the frame of the link before the joint",
+        read: |x, s, log| x.start = s.numbers(log),
+    },
+    Row {
+        name: "end",
+        required: false,
+        value: "3 numbers, m",
+        default: "the joint's place",
+        what: "where it ends, in the frame of the link before the joint; what is left to the joint is rigid",
+        read: |x, s, log| x.end = s.numbers(log),
+    },
+];
+
+/// The shafts, one for each fixed joint.
+pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Vec<ShaftAsked> {
+    let mut shafts = Vec::new();
+    for entry in spot.entries(log, "a table of fixed joints") {
+        let value = spot.of(entry);
+        if value.node.value == crate::tree::Value::Text("off".into()) {
+            continue;
+        }
+        let mut shaft = ShaftAsked { joint: entry.name.clone(), place: entry.at, ..ShaftAsked::default() };
+        value.read(KEYS, &mut shaft, log);
+        shafts.push(shaft);
+    }
+    shafts
+}

@@ -1,0 +1,321 @@
+//! `[simulation]`: from when to when, by which integrator, how exactly, and what is recorded.
+
+use crate::error::Kind;
+use crate::log::Log;
+use crate::table::{Row, Spot};
+use crate::tree::Value;
+
+/// How to simulate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Simulation {
+    /// Time at the start, s.
+    pub start: f64,
+    /// Time at the end, s.
+    pub end: f64,
+    /// The integrator.
+    pub integrator: Integrator,
+    /// Steps of this length, s; `None`: chosen by the integrator, if it can.
+    pub step: Option<f64>,
+    /// Error of a step, in parts of the state.
+    pub rtol: f64,
+    /// Error of a step beside that, in units of the state.
+    pub atol: f64,
+    /// No step is shorter, s, but the last; 0: what the clock can tell.
+    pub min_step: f64,
+    /// No step is longer, s; infinite where the scene does not say.
+    pub max_step: f64,
+    /// The first step, s; `None`: chosen.
+    pub first_step: Option<f64>,
+    /// So many steps at most.
+    pub max_steps: u64,
+    /// When the state is recorded.
+    pub output: Output,
+    /// How exactly events are found, s.
+    pub event_tolerance: f64,
+    /// What is looked for on the way.
+    pub events: Vec<Watched>,
+    /// What happens where an explicit integrator is outside its stable step.
+    pub stiffness: Stiffness,
+}
+
+/// When the state is recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Output {
+    /// At the start and every so many seconds.
+    Every(f64),
+    /// At these times, s, in order.
+    At(Vec<f64>),
+    /// After each step.
+    Steps,
+    /// At the start and the end.
+    Ends,
+}
+
+/// What is looked for on the way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Watched {
+    /// Joints that reach a bound.
+    Limits,
+    /// Contacts made and lost.
+    Contacts,
+    /// Joints with dry friction that come to rest or start.
+    StickSlip,
+}
+
+/// What happens where an explicit integrator is outside its stable step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Stiffness {
+    /// The simulation ends with an error that says so.
+    #[default]
+    Refuse,
+    /// It is noted.
+    Note,
+}
+
+/// The integrators.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Integrator {
+    /// Semi-implicit Euler, order 1.
+    SemiImplicitEuler,
+    /// The classical Runge–Kutta method, order 4.
+    Rk4,
+    /// Dormand and Prince's embedded pair of order 5(4).
+    #[default]
+    Dopri5,
+    /// Dormand and Prince's embedded pair of order 8.
+    Dop853,
+    /// A linearly implicit (Rosenbrock) method of order 4, for stiff scenes.
+    Rodas4,
+    /// The implicit midpoint rule on the group: keeps momentum, and energy over long times.
+    LieMidpoint,
+}
+
+const INTEGRATORS: &[(&str, Integrator)] = &[
+    ("semi_implicit_euler", Integrator::SemiImplicitEuler),
+    ("rk4", Integrator::Rk4),
+    ("dopri5", Integrator::Dopri5),
+    ("dop853", Integrator::Dop853),
+    ("rodas4", Integrator::Rodas4),
+    ("lie_midpoint", Integrator::LieMidpoint),
+];
+
+impl Integrator {
+    /// Its name in scenes.
+    pub fn name(self) -> &'static str {
+        INTEGRATORS.iter().find(|(_, i)| *i == self).map_or("", |(name, _)| name)
+    }
+
+    /// All of them.
+    pub fn all() -> impl Iterator<Item = Self> {
+        INTEGRATORS.iter().map(|(_, i)| *i)
+    }
+
+    /// Whether it chooses its steps by their errors where the scene gives none.
+    pub fn is_adaptive(self) -> bool {
+        matches!(self, Self::Dopri5 | Self::Dop853 | Self::Rodas4)
+    }
+}
+
+const WATCHED: &[(&str, Watched)] = &[("limits", Watched::Limits), ("contacts", Watched::Contacts), ("stick_slip", Watched::StickSlip)];
+const STIFFNESS: &[(&str, Stiffness)] = &[("refuse", Stiffness::Refuse), ("note", Stiffness::Note)];
+
+impl Default for Simulation {
+    fn default() -> Self {
+        Self {
+            start: 0.0,
+            end: 1.0,
+            integrator: Integrator::default(),
+            step: None,
+            rtol: 1e-6,
+            atol: 1e-9,
+            min_step: 0.0,
+            max_step: f64::INFINITY,
+            first_step: None,
+            max_steps: 10_000_000,
+            output: Output::Every(0.01),
+            event_tolerance: 1e-12,
+            events: Vec::new(),
+            stiffness: Stiffness::Refuse,
+        }
+    }
+}
+
+pub(crate) const KEYS: &[Row<Simulation>] = &[
+    Row {
+        name: "start",
+        required: false,
+        value: "number, s",
+        default: "0",
+        what: "time at the start",
+        read: |x, s, log| set(&mut x.start, s.number(log)),
+    },
+    Row {
+        name: "end",
+        required: true,
+        value: "number, s",
+        default: "",
+        what: "time at the end, after the start",
+        read: |x, s, log| set(&mut x.end, s.number(log)),
+    },
+    Row {
+        name: "integrator",
+        required: false,
+        value: "`\"semi_implicit_euler\"`, `\"rk4\"`, `\"dopri5\"`, `\"dop853\"`, `\"rodas4\"` or `\"lie_midpoint\"`",
+        default: "`\"dopri5\"`",
+        what: "the integrator",
+        read: |x, s, log| set(&mut x.integrator, s.word(log, INTEGRATORS)),
+    },
+    Row {
+        name: "step",
+        required: false,
+        value: "number, s",
+        default: "chosen by the errors; has to be given for `semi_implicit_euler`, `rk4` and `lie_midpoint`",
+        what: "length of all steps",
+        read: |x, s, log| x.step = s.positive(log),
+    },
+    Row {
+        name: "rtol",
+        required: false,
+        value: "number, 1",
+        default: "1e-6",
+        what: "error of a step, in parts of the state",
+        read: |x, s, log| set(&mut x.rtol, s.not_negative(log)),
+    },
+    Row {
+        name: "atol",
+        required: false,
+        value: "number, rad, m, rad/s, m/s",
+        default: "1e-9",
+        what: "error of a step beside that",
+        read: |x, s, log| set(&mut x.atol, s.not_negative(log)),
+    },
+    Row {
+        name: "min_step",
+        required: false,
+        value: "number, s",
+        default: "what the clock can tell",
+        what: "no step is shorter",
+        read: |x, s, log| set(&mut x.min_step, s.not_negative(log)),
+    },
+    Row {
+        name: "max_step",
+        required: false,
+        value: "number, s",
+        default: "no bound",
+        what: "no step is longer",
+        read: |x, s, log| set(&mut x.max_step, s.positive(log)),
+    },
+    Row {
+        name: "first_step",
+        required: false,
+        value: "number, s",
+        default: "chosen",
+        what: "the first step, where steps are chosen",
+        read: |x, s, log| x.first_step = s.positive(log),
+    },
+    Row {
+        name: "max_steps",
+        required: false,
+        value: "whole number",
+        default: "10000000",
+        what: "more are not made",
+        read: |x, s, log| set(&mut x.max_steps, s.whole(log, 1, 1 << 40)),
+    },
+    Row {
+        name: "output",
+        required: false,
+        value: "number, s; numbers, s; `\"steps\"` or `\"ends\"`",
+        default: "0.01",
+        what: "how often the state is recorded, or when: the times, after each step, at the ends",
+        read: |x, s, log| set(&mut x.output, output(s, log)),
+    },
+    Row {
+        name: "events",
+        required: false,
+        value: "list of `\"limits\"`, `\"contacts\"`, `\"stick_slip\"`",
+        default: "none",
+        what: "what is looked for on the way and recorded, for every effect of that sort",
+        read: |x, s, log| x.events = events(s, log),
+    },
+    Row {
+        name: "event_tolerance",
+        required: false,
+        value: "number, s",
+        default: "1e-12",
+        what: "how exactly events are found",
+        read: |x, s, log| set(&mut x.event_tolerance, s.positive(log)),
+    },
+    Row {
+        name: "stiffness",
+        required: false,
+        value: "`\"refuse\"` or `\"note\"`",
+        default: "`\"refuse\"`",
+        what: "what happens where an explicit integrator is outside its stable step",
+        read: |x, s, log| set(&mut x.stiffness, s.word(log, STIFFNESS)),
+    },
+];
+
+/// The value, if there is a right one.
+pub(crate) fn set<T>(into: &mut T, value: Option<T>) {
+    if let Some(value) = value {
+        *into = value;
+    }
+}
+
+pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Option<Simulation> {
+    let mut simulation = Simulation::default();
+    let before = log.count();
+    spot.read(KEYS, &mut simulation, log);
+    if log.count() == before {
+        check(&simulation, spot, log);
+    }
+    (log.count() == before).then_some(simulation)
+}
+
+/// What numbers have to be together.
+fn check(x: &Simulation, spot: &Spot<'_>, log: &mut Log) {
+    let key = |name: &str| spot.get(name);
+    let Simulation { start, end, .. } = x;
+    if end <= start
+        && let Some(spot) = key("end")
+    {
+        spot.clash(log, format!("{end:?}, not after the start, {start:?}"), format!("a time above {start:?} s"));
+    }
+    if x.step.is_none() && !x.integrator.is_adaptive() {
+        let (name, at) = (x.integrator.name(), key("integrator").map_or(spot.at, |s| s.at));
+        log.error(at, &spot.key, Kind::MissingKey, format!("no step for {name:?}"), "step: the length of its steps, s");
+    }
+    if x.rtol == 0.0 && x.atol == 0.0 {
+        spot.clash(log, "rtol and atol both 0", "one of them above 0");
+    }
+    if let (true, Some(spot)) = (x.max_step <= x.min_step, key("max_step")) {
+        spot.clash(log, format!("{:?}, not above min_step, {:?}", x.max_step, x.min_step), "a longer step");
+    }
+    if let (Output::At(times), Some(spot)) = (&x.output, key("output")) {
+        let outside = times.iter().find(|t| *t < start || *t > end);
+        let back = times.windows(2).find(|w| w[1] <= w[0]);
+        match (outside, back) {
+            (Some(t), _) => spot.clash(log, format!("{t:?}"), format!("times from {start:?} s to {end:?} s")),
+            (_, Some(w)) => spot.clash(log, format!("{:?} after {:?}", w[1], w[0]), "times in order"),
+            _ => {}
+        }
+    }
+}
+
+fn output(spot: &Spot<'_>, log: &mut Log) -> Option<Output> {
+    match &spot.node.value {
+        Value::Text(_) => spot.word(log, &[("steps", 0), ("ends", 1)]).map(|i| [Output::Steps, Output::Ends][i].clone()),
+        Value::List(_) => spot.some_numbers(log, "times, s").map(Output::At),
+        _ => spot.positive(log).map(Output::Every),
+    }
+}
+
+fn events(spot: &Spot<'_>, log: &mut Log) -> Vec<Watched> {
+    let Some(list) = spot.list() else {
+        spot.wrong(log, "a list of events, as [\"limits\"]");
+        return Vec::new();
+    };
+    let mut events: Vec<Watched> = list.iter().filter_map(|item| item.word(log, WATCHED)).collect();
+    events.dedup();
+    events
+}

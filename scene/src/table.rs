@@ -1,0 +1,259 @@
+//! Tables of keys, one row each, from which scenes are read and their documentation is made; and the types of values.
+
+use crate::error::{Kind, bare, quote};
+use crate::log::Log;
+use crate::tree::{At, Entry, Node, Value};
+
+/// One key of a table that is read into a `T`.
+pub(crate) struct Row<T> {
+    /// Its name.
+    pub(crate) name: &'static str,
+    /// Whether it has to be there.
+    pub(crate) required: bool,
+    /// The type of its value, and the unit.
+    pub(crate) value: &'static str,
+    /// What is taken where it is left out.
+    pub(crate) default: &'static str,
+    /// What it means.
+    pub(crate) what: &'static str,
+    /// Reads the value.
+    pub(crate) read: fn(&mut T, &Spot<'_>, &mut Log),
+}
+
+/// A value and the way to it.
+pub(crate) struct Spot<'a> {
+    pub(crate) node: &'a Node,
+    pub(crate) key: String,
+    /// The place of the key.
+    pub(crate) at: At,
+}
+
+impl<'a> Spot<'a> {
+    /// The whole scene.
+    pub(crate) fn root(node: &'a Node) -> Self {
+        Self { node, key: String::new(), at: node.at }
+    }
+
+    /// That of an entry.
+    pub(crate) fn of(&self, entry: &'a Entry) -> Self {
+        let name = bare(&entry.name);
+        let key = if self.key.is_empty() { name } else { format!("{}.{name}", self.key) };
+        Self { node: &entry.node, key, at: entry.at }
+    }
+
+    /// That of an item of a list.
+    pub(crate) fn item(&self, node: &'a Node, index: usize) -> Self {
+        Self { node, key: format!("{}[{index}]", self.key), at: node.at }
+    }
+
+    /// It is of another type.
+    pub(crate) fn wrong(&self, log: &mut Log, expected: impl Into<String>) {
+        log.error(self.node.at, &self.key, Kind::Type, self.node.value.described(), expected);
+    }
+
+    /// It is a number that may not stand here.
+    pub(crate) fn bad(&self, log: &mut Log, found: impl Into<String>, expected: impl Into<String>) {
+        log.error(self.node.at, &self.key, Kind::Number, found, expected);
+    }
+
+    /// It does not go with what else is there.
+    pub(crate) fn clash(&self, log: &mut Log, found: impl Into<String>, expected: impl Into<String>) {
+        log.error(self.at, &self.key, Kind::Together, found, expected);
+    }
+
+    /// The entries of a table.
+    pub(crate) fn entries(&self, log: &mut Log, expected: &str) -> &'a [Entry] {
+        match &self.node.value {
+            Value::Table(entries) => entries,
+            _ => {
+                self.wrong(log, expected);
+                &[]
+            }
+        }
+    }
+
+    /// The value of a key of a table, if it is there.
+    pub(crate) fn get(&self, name: &str) -> Option<Spot<'a>> {
+        match &self.node.value {
+            Value::Table(entries) => entries.iter().find(|e| e.name == name).map(|e| self.of(e)),
+            _ => None,
+        }
+    }
+
+    /// The items of a list.
+    pub(crate) fn list(&self) -> Option<Vec<Spot<'a>>> {
+        match &self.node.value {
+            Value::List(list) => Some(list.iter().enumerate().map(|(i, node)| self.item(node, i)).collect()),
+            _ => None,
+        }
+    }
+
+    /// A finite number.
+    pub(crate) fn number(&self, log: &mut Log) -> Option<f64> {
+        self.within(log, f64::NEG_INFINITY, false)
+    }
+
+    /// A finite number, at least zero.
+    pub(crate) fn not_negative(&self, log: &mut Log) -> Option<f64> {
+        self.within(log, 0.0, false)
+    }
+
+    /// A finite number above zero.
+    pub(crate) fn positive(&self, log: &mut Log) -> Option<f64> {
+        self.within(log, 0.0, true)
+    }
+
+    /// A finite number, at least `least`, or above it.
+    pub(crate) fn within(&self, log: &mut Log, least: f64, strictly: bool) -> Option<f64> {
+        let expected = || match (least == f64::NEG_INFINITY, strictly) {
+            (true, _) => "a finite number".to_owned(),
+            (_, true) => format!("a finite number above {least}"),
+            _ => format!("a finite number, at least {least}"),
+        };
+        match self.node.value {
+            Value::Number(x) if x.is_finite() && (x > least || (x == least && !strictly)) => Some(x),
+            Value::Number(x) => {
+                self.bad(log, format!("{x:?}"), expected());
+                None
+            }
+            _ => {
+                self.wrong(log, expected());
+                None
+            }
+        }
+    }
+
+    /// A whole number from `least` to `most`.
+    pub(crate) fn whole(&self, log: &mut Log, least: u64, most: u64) -> Option<u64> {
+        let expected = format!("a whole number from {least} to {most}");
+        match self.node.value {
+            Value::Number(x) if x.fract() == 0.0 && x >= least as f64 && x <= most as f64 => Some(x as u64),
+            Value::Number(x) => {
+                self.bad(log, format!("{x:?}"), expected);
+                None
+            }
+            _ => {
+                self.wrong(log, expected);
+                None
+            }
+        }
+    }
+
+    /// So many finite numbers.
+    pub(crate) fn numbers<const N: usize>(&self, log: &mut Log) -> Option<[f64; N]> {
+        match self.some_numbers(log, &format!("a list of {N} finite numbers"))?.try_into() {
+            Ok(numbers) => Some(numbers),
+            Err(_) => {
+                self.wrong(log, format!("a list of {N} finite numbers"));
+                None
+            }
+        }
+    }
+
+    /// A list of finite numbers.
+    pub(crate) fn some_numbers(&self, log: &mut Log, expected: &str) -> Option<Vec<f64>> {
+        let Some(list) = self.list() else {
+            self.wrong(log, expected);
+            return None;
+        };
+        let before = log.count();
+        let numbers = list.iter().filter_map(|item| item.number(log)).collect();
+        (log.count() == before).then_some(numbers)
+    }
+
+    /// A text.
+    pub(crate) fn text(&self, log: &mut Log, expected: &str) -> Option<&'a str> {
+        match &self.node.value {
+            Value::Text(text) => Some(text),
+            _ => {
+                self.wrong(log, expected);
+                None
+            }
+        }
+    }
+
+    /// A list of texts.
+    pub(crate) fn texts(&self, log: &mut Log, expected: &str) -> Option<Vec<String>> {
+        let Some(list) = self.list() else {
+            self.wrong(log, expected);
+            return None;
+        };
+        let before = log.count();
+        let texts = list.iter().filter_map(|item| item.text(log, "a text").map(str::to_owned)).collect();
+        (log.count() == before).then_some(texts)
+    }
+
+    /// `true` or `false`.
+    pub(crate) fn boolean(&self, log: &mut Log) -> Option<bool> {
+        match self.node.value {
+            Value::Bool(b) => Some(b),
+            _ => {
+                self.wrong(log, "true or false");
+                None
+            }
+        }
+    }
+
+    /// One of some words.
+    pub(crate) fn word<W: Copy>(&self, log: &mut Log, words: &[(&'static str, W)]) -> Option<W> {
+        let listed = words.iter().map(|(word, _)| format!("{word:?}")).collect::<Vec<_>>().join(", ");
+        let found = self.text(log, &format!("one of {listed}"))?;
+        if let Some((_, meant)) = words.iter().find(|(word, _)| *word == found) {
+            return Some(*meant);
+        }
+        let names = words.iter().map(|(word, _)| *word);
+        log.unknown((self.node.at, &self.key, Kind::Word), (quote(found), found), format!("one of {listed}"), names);
+        None
+    }
+
+    /// The table, by its rows.
+    pub(crate) fn read<T>(&self, rows: &[Row<T>], into: &mut T, log: &mut Log) {
+        let before = log.count();
+        let entries = self.entries(log, "a table");
+        if log.count() > before {
+            return;
+        }
+        for entry in entries {
+            let spot = self.of(entry);
+            match rows.iter().find(|row| row.name == entry.name) {
+                Some(row) => (row.read)(into, &spot, log),
+                None => spot.unknown_key(log, rows.iter().map(|row| row.name)),
+            }
+        }
+        for row in rows.iter().filter(|row| row.required && !entries.iter().any(|e| e.name == row.name)) {
+            log.error(
+                self.at,
+                &self.key,
+                Kind::MissingKey,
+                format!("no {}", row.name),
+                format!("{}: {}, {}", row.name, row.value, row.what),
+            );
+        }
+    }
+
+    /// There is no such key.
+    pub(crate) fn unknown_key<'n>(&self, log: &mut Log, names: impl IntoIterator<Item = &'n str>) {
+        let names: Vec<&str> = names.into_iter().collect();
+        let name = self.key.rsplit('.').next().unwrap_or_default();
+        log.unknown(
+            (self.at, &self.key, Kind::UnknownKey),
+            ("a key that is not known".into(), name),
+            format!("one of {}", names.join(", ")),
+            names,
+        );
+    }
+
+    /// One table, or a list of tables, each by the rows.
+    pub(crate) fn tables<T: Default>(&self, rows: &[Row<T>], log: &mut Log) -> Vec<T> {
+        let one = |spot: &Spot<'_>, log: &mut Log| {
+            let before = log.count();
+            let mut value = T::default();
+            spot.read(rows, &mut value, log);
+            (log.count() == before).then_some(value)
+        };
+        match self.list() {
+            Some(list) => list.iter().filter_map(|spot| one(spot, log)).collect(),
+            None => one(self, log).into_iter().collect(),
+        }
+    }
+}

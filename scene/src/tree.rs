@@ -1,0 +1,78 @@
+//! A scene before it is understood: tables, lists, numbers and words, each with its place. TOML and the macro's tokens both become this.
+
+/// Where something stands.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum At {
+    /// Nowhere that could be named.
+    #[default]
+    Nowhere,
+    /// In this line of a file, from 1.
+    Line(u32),
+    /// At a word of the macro: the number that the macro gave it.
+    Word(u32),
+}
+
+impl At {
+    /// The line, if it stands in one.
+    pub fn line(self) -> Option<u32> {
+        match self {
+            Self::Line(line) => Some(line),
+            _ => None,
+        }
+    }
+}
+
+/// A value and its place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node {
+    /// Its place.
+    pub at: At,
+    /// What it is.
+    pub value: Value,
+}
+
+/// What a value is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// `true` or `false`.
+    Bool(bool),
+    /// A number, perhaps not a finite one.
+    Number(f64),
+    /// A text.
+    Text(String),
+    /// `[a, b, …]`
+    List(Vec<Node>),
+    /// `{ name = value, … }`, in the order in which it is written.
+    Table(Vec<Entry>),
+    /// Something that no scene has, in words: a date.
+    Other(String),
+}
+
+/// `name = value`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// The name.
+    pub name: String,
+    /// Its place.
+    pub at: At,
+    /// The value.
+    pub node: Node,
+}
+
+impl Value {
+    /// What it is, for a message.
+    pub(crate) fn described(&self) -> String {
+        match self {
+            Self::Bool(b) => b.to_string(),
+            Self::Number(x) => format!("{x:?}"),
+            Self::Text(text) => format!("the text {}", crate::error::quote(text)),
+            Self::List(list) => match list.iter().all(|n| matches!(n.value, Self::Number(_))) {
+                true if list.len() == 1 => "a list of one number".into(),
+                true if !list.is_empty() => format!("a list of {} numbers", list.len()),
+                _ => "a list".into(),
+            },
+            Self::Table(_) => "a table".into(),
+            Self::Other(words) => words.clone(),
+        }
+    }
+}

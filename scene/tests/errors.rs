@@ -1,0 +1,213 @@
+//! What is said of scenes that are wrong: the key, the line, what was found, what would be right; all at once.
+
+use articulated_core::description::Base;
+use articulated_core::model::Model;
+use articulated_scene::{Edited, Kind, Scene};
+
+/// All messages.
+fn wrong(text: &str) -> Vec<String> {
+    Scene::read("s.toml", text).map(|_| ()).unwrap_err().errors.iter().map(ToString::to_string).collect()
+}
+
+fn one(text: &str) -> String {
+    let errors = wrong(text);
+    assert_eq!(errors.len(), 1, "{errors:#?}");
+    errors[0].clone()
+}
+
+#[test]
+fn an_unknown_key_is_told_with_the_nearest() {
+    let expected = "s.toml:1: gravty: found a key that is not known, expected one of summary, robot, urdf, base, gravity, functions, parameters, \
+                    frames, wrenches_in, lock, payload, append, rename, allow_unphysical_inertia, snap_angles, limbs, batch, forbid_unsafe, effects, \
+                    simulation, initial, control, impact; did you mean \"gravity\"?";
+    assert_eq!(one("gravty = [0, 0, -9.81]"), expected);
+    let expected = "s.toml:2: effects.dampign: found a key that is not known, expected one of armature, damping, friction, spring, limit, motor, \
+                    drag, box_drag, buoyancy, added_mass, contact, shaft; did you mean \"damping\"?";
+    assert_eq!(one("\n[effects.dampign]\nelbow = 1"), expected);
+    let expected = "s.toml:3: effects.spring.elbow.stifness: found a key that is not known, expected one of stiffness, rest; did you mean \"stiffness\"?";
+    assert_eq!(one("[effects.spring]\n\nelbow = { stifness = 1 }"), expected);
+    let expected = "s.toml:4: effects.contact.foot.frction: found a key that is not known, expected one of radius, stiffness, damping, friction, \
+                    speed, normal, height, xyz, rpy; did you mean \"friction\"?";
+    assert_eq!(one("[effects.contact.foot]\nradius = 0.1\nstiffness = 1\nfrction = 1\n"), expected);
+}
+
+#[test]
+fn a_value_of_another_type_is_told() {
+    assert_eq!(one("gravity = [0, 0]"), "s.toml:1: gravity: found a list of 2 numbers, expected a list of 3 finite numbers");
+    assert_eq!(one("gravity = 9.81"), "s.toml:1: gravity: found 9.81, expected a list of 3 finite numbers");
+    assert_eq!(one("base = true"), "s.toml:1: base: found true, expected one of \"fixed\", \"floating\"");
+    assert_eq!(
+        one("base = \"floatign\""),
+        "s.toml:1: base: found \"floatign\", expected one of \"fixed\", \"floating\"; did you mean \"floating\"?"
+    );
+    assert_eq!(
+        one("[effects.damping]\nelbow = true"),
+        "s.toml:2: effects.damping.elbow: found true, expected a number (damping, N·m·s/rad|N·s/m), a table with damping, \"urdf\" or \"off\""
+    );
+    assert_eq!(
+        one("[effects.spring]\nelbow = \"urdf\""),
+        "s.toml:2: effects.spring.elbow: found \"urdf\", which has no numbers for it, expected a number (stiffness, N·m/rad|N/m), a table with \
+         stiffness or \"off\""
+    );
+    assert_eq!(one("effects = 1979-05-27"), "s.toml:1: effects: found the date 1979-05-27, expected a table of effects");
+}
+
+#[test]
+fn numbers_that_mean_nothing_are_told() {
+    assert_eq!(
+        one("[effects.spring]\nelbow = { stiffness = -1.0 }"),
+        "s.toml:2: effects.spring.elbow.stiffness: found -1.0, expected a finite number, at least 0"
+    );
+    assert_eq!(one("[effects]\ndamping = nan"), "s.toml:2: effects.damping: found NaN, expected a finite number, at least 0");
+    assert_eq!(one("gravity = [0, 0, -inf]"), "s.toml:1: gravity[2]: found -inf, expected a finite number");
+    assert_eq!(one("gravity = [0, 0, -1e999]"), "s.toml:1: gravity[2]: found -inf, expected a finite number");
+    assert_eq!(
+        one("[effects.limit]\nelbow = { lower = 1, upper = 1, stiffness = 1e4 }"),
+        "s.toml:2: effects.limit.elbow.upper: found lower 1.0 and upper 1.0, expected a lower bound below the upper one"
+    );
+    assert_eq!(
+        one("[effects.friction]\nelbow = { friction = 1, speed = 0 }"),
+        "s.toml:2: effects.friction.elbow.speed: found 0.0, expected a finite number above 0"
+    );
+    assert_eq!(
+        one("[effects.motor.elbow]\ntorque = 1\nspeed = 1\nefficiency = 1.5"),
+        "s.toml:4: effects.motor.elbow.efficiency: found 1.5, expected a number above 0, at most 1"
+    );
+    assert_eq!(
+        one("[effects.shaft.hosel]\nsegments = 0\nstiffness = 1"),
+        "s.toml:2: effects.shaft.hosel.segments: found 0.0, expected a whole number from 1 to 100"
+    );
+}
+
+#[test]
+fn a_simulation_that_cannot_be_is_told() {
+    assert_eq!(
+        one("[simulation]\nstart = 2\nend = 1"),
+        "s.toml:3: simulation.end: found 1.0, not after the start, 2.0, expected a time above 2.0 s"
+    );
+    assert_eq!(one("[simulation]\nend = 1\nstep = 0"), "s.toml:3: simulation.step: found 0.0, expected a finite number above 0");
+    assert_eq!(
+        one("[simulation]\nend = 1\nintegrator = \"rk5\"\nstep = 0.1"),
+        "s.toml:3: simulation.integrator: found \"rk5\", expected one of \"semi_implicit_euler\", \"rk4\", \"dopri5\", \"dop853\", \"rodas4\", \
+         \"lie_midpoint\"; did you mean \"rk4\"?"
+    );
+    assert_eq!(
+        one("[simulation]\nend = 1\nintegrator = \"rk4\""),
+        "s.toml:3: simulation: found no step for \"rk4\", expected step: the length of its steps, s"
+    );
+    assert_eq!(
+        one("[simulation]\nrtol = 1e-3"),
+        "s.toml:1: simulation: found no end, expected end: number, s, time at the end, after the start"
+    );
+    assert_eq!(
+        one("[control]\nkind = \"torque\"\nkp = 1"),
+        "s.toml:3: control.kp: found a key that control of kind \"torque\" does not have, expected one of torque"
+    );
+    assert_eq!(
+        one("[control]\nkind = \"table\"\ncolumns = [\"a\"]\nrows = [[0, 1], [0, 2]]"),
+        "s.toml:1: control.rows[1]: found the time 0.0 after 0.0, expected times in order"
+    );
+    assert_eq!(
+        one("[initial]\nbase = { quaternion = [1, 1, 0, 0] }"),
+        "s.toml:2: initial.base.quaternion: found a quaternion of norm 1.4142, expected norm one, in the order x, y, z, w"
+    );
+    assert_eq!(
+        one("[impact]\nlink = \"head\"\nnormal = [0, 0, 0]\nmass = 1\nrestitution = 0.8\ntime = 1"),
+        "s.toml:3: impact.normal: found no direction, expected three numbers that are not all 0"
+    );
+}
+
+#[test]
+fn what_is_not_toml_is_told() {
+    assert_eq!(one("robot = \"a\"\nurdf = \"b\""), "s.toml:1: robot: found robot and urdf, expected one of them");
+    assert!(one("a = ").starts_with("s.toml:1: found what is not TOML ("));
+    assert!(wrong("a = 1\na = 2")[0].starts_with("s.toml:2: found what is not TOML ("));
+    let bytes = Scene::read_bytes("s.toml", b"a = 1\nb = \"\xff\"").unwrap_err().to_string();
+    assert_eq!(bytes, "s.toml:2: found bytes that are not UTF-8, expected a TOML file");
+}
+
+#[test]
+fn all_mistakes_of_a_scene_are_told_at_once_in_the_order_of_the_file() {
+    let errors = wrong("bse = 1\ngravity = 1\n[effects.damping]\na = -1\nb = nan\n[simulation]\nend = 0\nstep = -1\n[nothing]\n");
+    let lines: Vec<&str> = errors.iter().map(|e| e.split_whitespace().next().unwrap()).collect();
+    assert_eq!(lines, ["s.toml:1:", "s.toml:2:", "s.toml:4:", "s.toml:5:", "s.toml:8:", "s.toml:9:"]);
+    let many = wrong(&(0..3000).map(|i| format!("key_{i} = 1\n")).collect::<String>());
+    assert_eq!(many.len(), 1001);
+    assert_eq!(many[1000], "s.toml: found 2000 errors more that are not listed");
+}
+
+const ARM: &str = r#"<robot name="arm">
+  <link name="world"/><link name="upper"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <link name="lower"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link><link name="tip"/>
+  <joint name="shoulder" type="continuous"><parent link="world"/><child link="upper"/><axis xyz="0 1 0"/><dynamics damping="0.3"/></joint>
+  <joint name="elbow" type="revolute"><parent link="upper"/><child link="lower"/><axis xyz="0 1 0"/>
+    <limit lower="-1" upper="2" effort="5" velocity="3"/></joint>
+  <joint name="tool" type="fixed"><parent link="lower"/><child link="tip"/></joint></robot>"#;
+
+/// What is said of a scene that reads, against the arm.
+fn against_the_arm(text: &str) -> Vec<String> {
+    let scene = Scene::read("s.toml", text).unwrap();
+    let reading = articulated_urdf::read(ARM.as_bytes(), &articulated_urdf::Options::default()).unwrap();
+    let robot = Edited { description: &reading.description, base: Base::Fixed, unused: &reading.unused, shafts: &[] };
+    let model = Model::new(&reading.description, Base::Fixed).unwrap();
+    let mut errors: Vec<_> = scene.resolve(&robot).err().into_iter().flat_map(|e| e.errors).collect();
+    errors.extend(scene.start(&model).err().into_iter().flat_map(|e| e.errors));
+    errors.extend(scene.controller(&model, &mut |_| Err("there is no such file".into())).err().into_iter().flat_map(|e| e.errors));
+    errors.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn names_that_the_robot_does_not_have_are_told_with_the_nearest() {
+    let cases = [
+        (
+            "[effects.damping]\nelbwo = 1",
+            "s.toml:2: effects.damping.elbwo: found a joint that there is not, expected a joint of the robot that moves; did you mean \"elbow\"?",
+        ),
+        (
+            "[effects.drag]\nlowr = 1",
+            "s.toml:2: effects.drag.lowr: found a link that there is not, expected a link of the robot; did you mean \"lower\"?",
+        ),
+        ("[effects.drag]\nworld = 1", "s.toml:2: effects.drag.world: found a link that is fixed to the base, expected a link that moves"),
+        ("[effects.damping]\ntool = 1", "s.toml:2: effects.damping.tool: found a fixed joint, expected a joint that moves"),
+        (
+            "[effects.damping]\nelbow = \"urdf\"",
+            "s.toml:2: effects.damping.elbow: found no damping for joint \"elbow\", whose URDF has no <dynamics damping>, expected damping, N·m·s/rad|N·s/m",
+        ),
+        (
+            "[effects.limit.shoulder]\nlower = 1",
+            "s.toml:1: effects.limit.shoulder: found no upper for joint \"shoulder\", expected upper, rad|m",
+        ),
+        (
+            "[initial]\nq = { elbo = 1 }",
+            "s.toml:2: initial.q.elbo: found a joint that is not there or has no coordinate of its own, expected a joint that moves; did you mean \
+             \"elbow\"?",
+        ),
+        ("[initial]\nq = [1, 2, 3]", "s.toml:2: initial.q: found 3 numbers, expected 2 numbers for this robot"),
+        ("[initial]\nv = { elbow = [1, 2] }", "s.toml:2: initial.v.elbow: found 2 numbers, expected one number for a revolute joint"),
+        (
+            "[initial]\nbase = { xyz = [0, 0, 1] }",
+            "s.toml:2: initial.base: found a base that is fixed, expected base = \"floating\", or no initial.base",
+        ),
+        (
+            "[control]\nkind = \"table\"\nfile = \"t.csv\"",
+            "s.toml:1: control.file: found \"t.csv\", which cannot be read (there is no such file), expected a CSV with a first line that names its \
+             columns",
+        ),
+        (
+            "[impact]\nlink = \"tipp\"\nnormal = [1, 0, 0]\nmass = 1\nrestitution = 1\ntime = 0",
+            "s.toml:1: impact.link: found a link that there is not, expected a link of the robot; did you mean \"tip\"?",
+        ),
+    ];
+    for (text, expected) in cases {
+        assert_eq!(against_the_arm(text), [expected]);
+    }
+}
+
+#[test]
+fn sorts_of_mistakes_are_data() {
+    let kind = |text| Scene::read("s.toml", text).unwrap_err().errors[0].kind;
+    assert_eq!(
+        [kind("a=1"), kind("base=1"), kind("base='x'"), kind("gravity=[nan,0,0]"), kind("=")],
+        [Kind::UnknownKey, Kind::Type, Kind::Word, Kind::Number, Kind::Syntax]
+    );
+}
