@@ -17,7 +17,6 @@
 mod control;
 mod document;
 mod edits;
-mod effect;
 mod effects;
 mod error;
 mod impact;

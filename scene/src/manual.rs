@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use crate::effect::{Effect, On, effects};
 use crate::table::Row;
 use crate::{control, edits, impact, initial, scene, shaft, simulation};
+use articulated_core::effect::{Effect, On, effects};
 
 /// All tables, each under its name: Markdown.
 pub fn tables() -> Vec<(&'static str, String)> {

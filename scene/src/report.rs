@@ -4,8 +4,8 @@ use std::fmt;
 
 use articulated_urdf::Unused;
 
-use crate::effect::{EffectId, On};
 use crate::tree::At;
+use articulated_core::effect::{EffectId, On};
 
 /// What of a scene is on, what is off, and what of the URDF is not used.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -16,13 +16,13 @@ mod urdf;
 
 use articulated_core::description::Origin;
 
-use crate::effect::{Effect, EffectId, Field, On, effect, effects};
 use crate::error::{Kind, quote};
 use crate::log::Log;
 use crate::scene::Scene;
 use crate::shaft;
 use crate::table::Spot;
 use crate::tree::{At, Value};
+use articulated_core::effect::{Effect, EffectId, Field, On, effect, effects};
 
 pub use resolve::{Edited, Resolved};
 pub(crate) use urdf::{offers, tag};

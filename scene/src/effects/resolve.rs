@@ -5,13 +5,13 @@ use articulated_urdf::{Subject, Unused};
 
 use super::still::{moves, still};
 use super::{Asked, Numbers, Selector, urdf};
-use crate::effect::{Applied, Effect, EffectId, On, effects};
 use crate::error::{Kind, SceneErrors};
 use crate::log::Log;
 use crate::report::{EffectOff, EffectOn, Number, Report, Why};
 use crate::scene::Scene;
 use crate::shaft;
 use crate::tree::At;
+use articulated_core::effect::{Applied, Effect, EffectId, On, effects};
 
 /// A robot as the scene's edits left it.
 #[derive(Clone, Copy, Debug)]
@@ -207,7 +207,7 @@ impl<'a> Resolving<'a> {
 
     fn put(&mut self, row: &'static Effect, one: Applied, place: At, tags: &[Option<&'static str>]) {
         let mut rest = one.parameters.as_slice();
-        let mut number = |(field, from): (&crate::effect::Field, &Option<&'static str>)| {
+        let mut number = |(field, from): (&articulated_core::effect::Field, &Option<&'static str>)| {
             let (own, others) = rest.split_at(field.len.min(rest.len()));
             rest = others;
             Number { name: field.name, values: own.to_vec(), unit: field.unit, from: *from }
@@ -247,7 +247,7 @@ fn has_room(effect: EffectId, kind: JointKind) -> bool {
 
 /// All numbers: of the first layer that says or takes them from the URDF, otherwise the defaults. The name of a field for which there are none.
 fn fill(row: &'static Effect, layers: &[Option<&Numbers>], number: &dyn Fn(&str) -> Option<f64>) -> Result<Vec<Filled>, &'static str> {
-    let of = |i: usize, field: &'static crate::effect::Field| {
+    let of = |i: usize, field: &'static articulated_core::effect::Field| {
         for layer in layers.iter().flatten() {
             if let Some(numbers) = &layer.fields[i] {
                 return Ok((numbers.clone(), None));

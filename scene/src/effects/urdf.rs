@@ -2,7 +2,7 @@
 
 use articulated_core::description::Joint;
 
-use crate::effect::{Effect, EffectId};
+use articulated_core::effect::{Effect, EffectId};
 
 /// Whether the format has numbers for this effect.
 pub(crate) fn offers(row: &Effect) -> bool {
