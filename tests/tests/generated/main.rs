@@ -2,6 +2,7 @@
 
 mod batches;
 mod choices;
+mod effects;
 mod equals_generic;
 mod odd_robots;
 mod oracles;

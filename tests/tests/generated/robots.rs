@@ -51,6 +51,7 @@ fn robot(name: String, urdf: &str, base: Base, singular: bool) -> Robot {
 pub(crate) fn with(name: String, urdf: &str, base: Base, singular: bool, options: Options, wanted: impl Fn(&str) -> bool) -> Robot {
     let mut case = Case::new(name.clone(), read(urdf), base);
     let frames = frames(&case.model);
+    case.model = case.model.with_effects(&options.effects).expect("effects that can be had");
     let mut request = Request::new(format!("{name}.urdf"), urdf);
     request.options = Options { base, ..options };
     request.options.functions =

@@ -81,11 +81,13 @@ impl fmt::Display for EffectError {
 impl core::error::Error for EffectError {}
 
 impl Model<f64> {
-    /// The same robot with these effects besides those that it has. Several on one link add up. All that is wrong is told at once.
+    /// The same robot with these effects besides those that it has. Several on one link add up; one with all its coefficients zero is left out. All that is wrong is told at
+    /// once. The model must still have all its frames.
     pub fn with_effects(mut self, applied: &[Applied]) -> Result<Self, Vec<EffectError>> {
         let mut errors = Vec::new();
         for (index, one) in applied.iter().enumerate() {
             let put = check(one).and_then(|()| match one.effect.row().on {
+                _ if is_nothing(one) => self.has(one),
                 On::Joint => self.put_on_joint(one),
                 On::Link => self.put_on_link(one),
             });
@@ -94,6 +96,12 @@ impl Model<f64> {
             }
         }
         if errors.is_empty() { Ok(self) } else { Err(errors) }
+    }
+
+    /// Whether there is what an effect of nothing would be on.
+    fn has(&self, one: &Applied) -> Result<(), Fault> {
+        let mut other = self.clone();
+        if one.effect.row().on == On::Joint { other.put_on_joint(one) } else { other.put_on_link(one) }
     }
 
     fn put_on_joint(&mut self, one: &Applied) -> Result<(), Fault> {
@@ -128,6 +136,20 @@ impl Model<f64> {
         self.bodies[body].effects.body.push(BodyEffect { effect: one.effect, placement, parameters });
         Ok(())
     }
+}
+
+/// Whether all coefficients are zero: then there is no effect.
+fn is_nothing(one: &Applied) -> bool {
+    let mut rest = one.parameters.as_slice();
+    let coefficients = one.effect.row().fields.iter().flat_map(|f| {
+        let (own, others) = rest.split_at(f.len);
+        rest = others;
+        let is_one = one.effect == EffectId::added_mass || f.at_least == 0.0 && !f.strictly;
+        own.iter().filter(move |_| is_one)
+    });
+    let (mut some, mut none) = (false, true);
+    coefficients.for_each(|x| (some, none) = (true, none && *x == 0.0));
+    some && none
 }
 
 fn needs_coordinate(effect: EffectId) -> bool {

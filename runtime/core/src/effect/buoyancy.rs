@@ -6,7 +6,7 @@ use crate::spatial::{Vector3, Wrench, rotate_back};
 
 pub(super) const FIELDS: &[Field] = &[
     Field::number("volume", "m³", "displaced volume; its centre is the origin of the effect's frame").at_least_zero(),
-    Field::number("density", "kg/m³", "of the fluid").at_least_zero().or(&[1000.0]),
+    Field::number("density", "kg/m³", "of the fluid").positive().or(&[1000.0]),
 ];
 
 pub(super) struct Law;
