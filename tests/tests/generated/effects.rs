@@ -124,7 +124,9 @@ fn subset(k: usize) -> Robot {
 #[test]
 fn every_subset_of_effects_builds_and_costs_what_the_ledger_says() {
     let subsets: Vec<Robot> = (0..1 << ON_JOINTS.len()).map(subset).collect();
-    let mut out = String::from("# Operations of an arm with three joints subject to each subset of the effects on joints: mul+add of each function.\n");
+    let mut out = String::from(
+        "# Operations of an arm with three joints subject to each subset of the effects on joints: mul+add of each function.\n",
+    );
     let mut counts: BTreeMap<(usize, &str), (i64, i64)> = BTreeMap::new();
     for (k, robot) in subsets.iter().enumerate() {
         let names: Vec<&str> = ON_JOINTS.iter().enumerate().filter(|(bit, _)| k >> bit & 1 == 1).map(|(_, (e, _))| e.name()).collect();
