@@ -69,6 +69,7 @@ pub(crate) enum Command {
         "articulated compare panda_like",
         "articulated compare humanoid --functions inverse_dynamics --repetitions 101",
         "articulated compare ur5_like --functions kinematics,derivatives --frames tool0",
+        "articulated compare panda_like --functions inverse_dynamics --batch f64,f32",
         "articulated compare arm.urdf --peer libpeer.so --format json",
         "articulated compare quadruped --peers-manifest target/peers/peers.json --chart quadruped.svg",
     ]))]
@@ -194,6 +195,9 @@ pub(crate) struct CompareArguments {
     /// No `unsafe` in the generated code: shows what the vector instructions of the sines bring
     #[arg(long)]
     pub(crate) forbid_unsafe: bool,
+    /// Many states at once too, in numbers of these types: f64, f32
+    #[arg(long, value_name = "TYPES", value_delimiter = ',', value_parser = real)]
+    pub(crate) batch: Vec<Real>,
     /// A peer library to time beside them; may be given several times. It is run: name only libraries that you trust
     #[arg(long, value_name = "LIBRARY")]
     pub(crate) peer: Vec<PathBuf>,

@@ -5,11 +5,15 @@
 #![allow(unsafe_code)]
 // Why: calling across a C interface has no safe form. What can be checked, the lengths of arrays, is checked before every call.
 
+mod batch;
+
 use std::ffi::{CStr, CString, c_char, c_double, c_int, c_void};
 use std::hint::black_box;
 use std::path::Path;
 use std::rc::Rc;
 use std::sync::Arc;
+
+pub(crate) use batch::{BatchKernel, Numbers};
 
 /// An open library.
 #[derive(Clone, Debug)]

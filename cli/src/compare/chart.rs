@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::batch::BatchReport;
 use super::report::{FunctionReport, Report};
 
 /// A bar: whose time, ns, how many times that of generated code it is, and the colour.
@@ -56,6 +57,8 @@ fn bars(report: &Report, f: &FunctionReport) -> Vec<Bar> {
     let mut bars = vec![Bar { label: "generated".into(), time: f.generated.median, ratio: None, colour: GENERATED }];
     let bar = |label: String, time: f64, ratio: f64, colour| Bar { label, time, ratio: Some(ratio), colour };
     bars.extend(f.variants.iter().map(|v| bar(format!("generated, {}", v.variant), v.time.median, v.over_generated.median, VARIANT)));
+    let label = |b: &BatchReport| format!("{} {}, a state of many", b.numbers, b.layout);
+    bars.extend(f.batches.iter().map(|b| bar(label(b), b.time.median, 1.0 / b.generated_over_batch.median, VARIANT)));
     bars.push(bar("generic".into(), f.generic.median, f.generic_over_generated.median, GENERIC));
     for (engine, colour) in report.engines().into_iter().zip(ENGINES.into_iter().cycle()) {
         let Some(peer) = f.fastest_of(engine) else { continue };

@@ -77,7 +77,8 @@ impl<'a> Contender<'a> {
     }
 }
 
-fn clock(batch: impl FnOnce()) -> Duration {
+/// How long it takes.
+pub(super) fn clock(batch: impl FnOnce()) -> Duration {
     let start = Instant::now();
     batch();
     start.elapsed()

@@ -66,9 +66,9 @@ impl Library {
 }
 
 /// Of double precision.
-const BOUND: f64 = 1e-9;
+pub(super) const BOUND: f64 = 1e-9;
 /// Of single precision.
-const SINGLE_BOUND: f64 = 1e-3;
+pub(super) const SINGLE_BOUND: f64 = 1e-3;
 
 /// FNV-1a of 64 bits.
 fn fnv(bytes: &[u8]) -> u64 {

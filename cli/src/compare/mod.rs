@@ -1,6 +1,7 @@
 //! `articulated compare`.
 
 mod accuracy;
+mod batch;
 mod chart;
 pub(crate) mod contender;
 mod making;
@@ -24,6 +25,7 @@ use crate::robot::Robot;
 use crate::tips::Tips;
 use crate::{groups, names, parallel};
 use accuracy::Reference;
+use batch::{Beside, Many};
 use contender::Contender;
 use making::Making;
 use manifest::Library;
@@ -59,6 +61,7 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
         rustc,
         states: arguments.states as usize,
         seed: arguments.seed,
+        batch: arguments.batch.clone(),
         named: !arguments.functions.is_empty(),
     };
     let prepared = prepare_all(&plan, arguments, &mut report)?;
@@ -146,19 +149,33 @@ fn measure(ready: &Prepared, peers: &[Peer], repetitions: usize) -> FunctionRepo
     let arguments = prepare::arguments(&ready.states, f);
     let (generated, generic) = (Contender::generated(&ready.compiled, f), Contender::generic(model, f));
     let variants: Vec<Contender> = ready.anywhere.iter().map(|compiled| Contender::generated(compiled, f)).collect();
+    let out = f.len(model.shape());
+    let batches: Vec<Many> = ready.batches.as_ref().map_or_else(Vec::new, |compiled| Many::all(compiled, &arguments, out));
     let known: Vec<(&Peer, Contender)> = peers.iter().filter_map(|p| Some((p, p.contender(f, model)?))).collect();
     let theirs: Vec<Vec<Vec<Vec<f64>>>> = known.iter().map(|(p, _)| arguments.iter().map(|x| p.arguments(f, model, x)).collect()).collect();
     let theirs: Vec<Vec<Vec<&[f64]>>> =
         theirs.iter().map(|states| states.iter().map(|x| x.iter().map(Vec::as_slice).collect()).collect()).collect();
     let ours = [&generated, &generic].into_iter().chain(&variants);
     let mut runs: Vec<timing::Run<'_>> = ours.map(|c| c.run(&arguments)).collect();
+    runs.extend(batches.iter().map(Many::run));
     runs.extend(known.iter().zip(&theirs).map(|((_, c), x)| c.run(x)));
     let times = timing::interleaved(&mut runs, repetitions, arguments.len());
     drop(runs);
     // Where the robot is singular nobody's result is right.
     let regular = ready.errors.is_none_or(|e| e.states > 0);
     let (own, rest) = times.split_at(2);
-    let (other, peer_times) = rest.split_at(variants.len());
+    let (other, rest) = rest.split_at(variants.len());
+    let (of_many, peer_times) = rest.split_at(batches.len());
+    let beside = Beside {
+        function: f,
+        model,
+        states: &arguments,
+        generic: &generic,
+        generated: &own[0],
+        peers: known.iter().map(|(p, _)| *p).zip(peer_times.iter().map(Vec::as_slice)).collect(),
+        regular,
+    };
+    let batches = batches.iter().zip(of_many).map(|(many, time)| beside.report(many, time)).collect();
     let variants = ready.anywhere.iter().zip(&variants).zip(other).map(|((compiled, contender), time)| {
         let difference = || peer::difference(f, model, &arguments, &generic, |k, _| Some(contender.call(&arguments[k])));
         VariantReport {
@@ -174,5 +191,5 @@ fn measure(ready: &Prepared, peers: &[Peer], repetitions: usize) -> FunctionRepo
         let difference = || peer.difference(f, model, &arguments, x, contender, &generic);
         PeerReport::new(peer, f.name, [time, &own[0], &own[1]], regular.then(difference).flatten())
     });
-    FunctionReport::new(ready, [&own[0], &own[1]], variants.collect(), peers.collect())
+    FunctionReport::new(ready, [&own[0], &own[1]], variants.collect(), batches, peers.collect())
 }

@@ -44,6 +44,11 @@ impl Peer {
         Ok(Self { name, library, code, native, q, v, links })
     }
 
+    /// What its builds have in common.
+    pub(super) fn engine(&self) -> &str {
+        self.library.engine.as_deref().unwrap_or(&self.name)
+    }
+
     /// What the function's code cost to make, if it was generated.
     pub(super) fn cost(&self, function: &str) -> Option<&Cost> {
         self.code.as_ref()?.functions.get(function)

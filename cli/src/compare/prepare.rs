@@ -4,11 +4,12 @@ use std::time::{Duration, Instant};
 
 use articulated_codegen::ledger::Entry;
 use articulated_core::algorithm::Function;
+use articulated_core::lanes::Real;
 use articulated_core::model::Model;
 
 use super::accuracy::{self, Errors, Reference};
 use super::contender::Contender;
-use crate::compiled::{Compiled, Rustc, Target};
+use crate::compiled::{Compiled, CompiledBatches, Rustc, Target};
 use crate::console::Progress;
 use crate::failure::{Failure, undefined};
 use crate::robot::Robot;
@@ -24,6 +25,8 @@ pub(super) struct Plan {
     pub(super) rustc: Rustc,
     pub(super) states: usize,
     pub(super) seed: u64,
+    /// The types in which many states at once are compared too.
+    pub(super) batch: Vec<Real>,
     /// Whether the user named the functions: otherwise those that rustc needs minutes for are left out.
     pub(super) named: bool,
 }
@@ -40,6 +43,8 @@ pub(super) struct Prepared {
     pub(super) compiled: Compiled,
     /// The same source compiled for any processor, where that is something else.
     pub(super) anywhere: Option<Compiled>,
+    /// Of many states at once.
+    pub(super) batches: Option<CompiledBatches>,
     pub(super) entry: Entry,
     pub(super) source_bytes: usize,
     pub(super) generation: Duration,
@@ -69,6 +74,7 @@ impl Plan {
         let build = |target| Compiled::build_for(target, &self.rustc, &generated).map_err(|e| Failure::tool(&e));
         let compiled = build(Target::Own)?;
         let anywhere = Target::differ().then(|| build(Target::Any)).transpose()?;
+        let batches = (!self.batch.is_empty()).then(|| self.batches(&robot, function)).transpose()?;
         let (model, source_bytes, entry) = (generated.model, generated.source.len(), generated.ledger.functions.into_iter().next());
         let entry = entry.ok_or_else(|| Failure::tool(&"the generator kept no account"))?;
         let states = states::random(&model, self.states, self.seed);
@@ -76,7 +82,15 @@ impl Plan {
         let ours = Contender::generated(&compiled, function);
         let errors = accuracy::errors(&self.reference, &model, function, &arguments(&states, function), &ours);
         progress.step();
-        Ok(Prepared { function, model, states, compiled, anywhere, entry, source_bytes, generation, errors })
+        Ok(Prepared { function, model, states, compiled, anywhere, batches, entry, source_bytes, generation, errors })
+    }
+
+    /// The function of many states.
+    fn batches(&self, robot: &Robot, function: &Function<f64>) -> Result<CompiledBatches, Unready> {
+        let mut robot = robot.clone();
+        robot.options.batch.clone_from(&self.batch);
+        let generated = robot.generate(&[function.name.to_owned()])?;
+        Ok(CompiledBatches::build(&self.rustc, &generated, &self.batch).map_err(|e| Failure::tool(&e))?)
     }
 
     /// The robot with the frames that the function is compared on.

@@ -5,6 +5,7 @@ use articulated_core::model::Model;
 use serde::Serialize;
 
 use super::accuracy::Errors;
+use super::batch::BatchReport;
 use super::making::Making;
 use super::manifest::{Cost, Library};
 use super::peer::Peer;
@@ -78,6 +79,8 @@ pub(super) struct FunctionReport {
     pub(super) generic_over_generated: Summary,
     /// Other code of ours.
     pub(super) variants: Vec<VariantReport>,
+    /// Of many states at once, if that was asked for.
+    pub(super) batches: Vec<BatchReport>,
     pub(super) peers: Vec<PeerReport>,
     /// In units of 2⁻⁵³ of the magnitude; `None` where there is no reference for the function.
     pub(super) errors: Option<Errors>,
@@ -118,7 +121,7 @@ impl PeerReport {
     pub(super) fn new(peer: &Peer, function: &str, [own, generated, generic]: [&[f64]; 3], largest_difference: Option<f64>) -> Self {
         Self {
             peer: peer.name.clone(),
-            engine: peer.library.engine.clone().unwrap_or_else(|| peer.name.clone()),
+            engine: peer.engine().to_owned(),
             time: timing::summary(own),
             generic_over_peer: timing::ratio(generic, own),
             generated_over_peer: timing::ratio(generated, own),
@@ -131,7 +134,13 @@ impl PeerReport {
 
 impl FunctionReport {
     /// `times`: ns a call of generated code and of generic code.
-    pub(super) fn new(ready: &Prepared, times: [&[f64]; 2], variants: Vec<VariantReport>, peers: Vec<PeerReport>) -> Self {
+    pub(super) fn new(
+        ready: &Prepared,
+        times: [&[f64]; 2],
+        variants: Vec<VariantReport>,
+        batches: Vec<BatchReport>,
+        peers: Vec<PeerReport>,
+    ) -> Self {
         let (f, entry) = (ready.function, &ready.entry);
         let dims = f.takes.iter().flat_map(|a| a.dims()).chain(f.gives);
         let framed = dims.into_iter().any(|d| *d == Dim::Frames);
@@ -150,6 +159,7 @@ impl FunctionReport {
             generic: timing::summary(times[1]),
             generic_over_generated: timing::ratio(times[1], times[0]),
             variants,
+            batches,
             peers,
             errors: ready.errors,
         }
@@ -216,7 +226,12 @@ impl Report {
             let ours = wrong.map(|(side, e)| format!("{}: the error of {side} code is {e:.1} units, more than {bound}", f.function));
             let variants = f.variants.iter().map(|v| (format!("code for {}", v.variant), v.largest_difference, other_bound));
             let peers = f.peers.iter().map(|p| (format!("peer {}", p.peer), p.largest_difference, p.bound));
-            let far = variants.chain(peers).filter_map(|(who, d, bound)| Some((who, d?, bound))).find(|(_, d, bound)| beyond(*d, *bound));
+            let batches = f.batches.iter().map(|b| (format!("batch of {} in {}", b.numbers, b.layout), b.largest_difference, b.bound));
+            let far = variants
+                .chain(batches)
+                .chain(peers)
+                .filter_map(|(who, d, bound)| Some((who, d?, bound)))
+                .find(|(_, d, bound)| beyond(*d, *bound));
             ours.or(far.map(|(who, d, bound)| format!("{}: {who} differs by {d:.1e} of the magnitude, more than {bound:e}", f.function)))
         })
     }

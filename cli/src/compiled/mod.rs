@@ -1,5 +1,6 @@
 //! Generated source, compiled and loaded: what a user's program would run.
 
+mod batch;
 mod filler;
 mod rustc;
 mod symbols;
@@ -12,6 +13,7 @@ use articulated_codegen::Generated;
 use articulated_core::algorithm::{FunctionError, Shape, check_length, function};
 
 use crate::native::{Kernel, Native};
+pub(crate) use batch::{Batch, CompiledBatches};
 pub(crate) use filler::{Filler, INSTRUCTIONS as FILLER_INSTRUCTIONS};
 pub use rustc::{CompileError, Rustc, Target};
 
@@ -23,6 +25,16 @@ pub struct Compiled {
     /// How long `rustc` took, start and linking included.
     pub time: Duration,
     // Last, so that the library is closed before its file is removed.
+    _library: Library,
+}
+
+/// A library that was compiled for now.
+#[derive(Debug)]
+struct Library {
+    native: Native,
+    file: PathBuf,
+    time: Duration,
+    // Last, as above.
     _folder: tempfile::TempDir,
 }
 
@@ -42,17 +54,11 @@ impl Compiled {
     /// As [`Compiled::build`], for certain processors.
     pub fn build_for(target: Target, rustc: &Rustc, generated: &Generated) -> Result<Self, CompileError> {
         let names: Vec<&str> = generated.ledger.functions.iter().map(|f| f.function.as_str()).collect();
-        let folder = tempfile::Builder::new().prefix("articulated").tempdir().map_err(CompileError::Folder)?;
-        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).map_err(CompileError::Folder);
-        write("robot.rs", &generated.source)?;
-        write("lib.rs", &wrapper::source(&names))?;
-        let library: PathBuf = folder.path().join(format!("{}generated{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX));
-        let time = rustc.compile(&folder.path().join("lib.rs"), &library, target)?;
-        let native = Native::open(&library).map_err(CompileError::Load)?;
-        let sizes = symbols::Sizes::of(&library);
+        let library = Library::build(target, rustc, &generated.source, &wrapper::source(&names))?;
+        let sizes = symbols::Sizes::of(&library.file);
         let shape = generated.model.shape();
-        let functions = names.iter().map(|name| load(&native, &sizes, name, shape)).collect::<Result<_, _>>()?;
-        Ok(Self { functions, shape, time, _folder: folder })
+        let functions = names.iter().map(|name| load(&library.native, &sizes, name, shape)).collect::<Result<_, _>>()?;
+        Ok(Self { functions, shape, time: library.time, _library: library })
     }
 
     /// Calls a function by its name; arguments in the registry's order.
@@ -81,6 +87,20 @@ impl Compiled {
 
     pub(crate) fn kernel(&self, name: &str) -> Option<&Kernel> {
         self.functions.iter().find(|f| f.name == name).map(|f| &f.kernel)
+    }
+}
+
+impl Library {
+    /// A generated module and what wraps it.
+    fn build(target: Target, rustc: &Rustc, module: &str, wrapper: &str) -> Result<Self, CompileError> {
+        let folder = tempfile::Builder::new().prefix("articulated").tempdir().map_err(CompileError::Folder)?;
+        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).map_err(CompileError::Folder);
+        write("robot.rs", module)?;
+        write("lib.rs", wrapper)?;
+        let file: PathBuf = folder.path().join(format!("{}generated{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX));
+        let time = rustc.compile(&folder.path().join("lib.rs"), &file, target)?;
+        let native = Native::open(&file).map_err(CompileError::Load)?;
+        Ok(Self { native, file, time, _folder: folder })
     }
 }
 

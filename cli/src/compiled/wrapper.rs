@@ -1,6 +1,9 @@
 //! The C interface around a generated module: one function each, on plain pointers, in a symbol of its own.
 
 use articulated_core::algorithm::function;
+use articulated_core::lanes::Real;
+
+use super::batch::Layout;
 
 /// The symbol of a function.
 pub(super) fn symbol(function: &str) -> String {
@@ -22,6 +25,11 @@ unsafe fn write<T>(out: *mut f64, result: T) {
 }
 ";
 
+/// The symbol of a function of many states.
+pub(super) fn batch_symbol(function: &str, real: Real, layout: Layout) -> String {
+    format!("{}_{}{}", symbol(function), real.name(), layout.suffix())
+}
+
 /// The crate's source; the generated module is `robot.rs` beside it.
 pub(super) fn source(functions: &[&str]) -> String {
     functions.iter().fold(HEAD.to_owned(), |text, name| text + &one(name))
@@ -36,6 +44,36 @@ fn one(name: &str) -> String {
         "\n#[unsafe(no_mangle)]\npub unsafe extern \"C\" fn {symbol}({parameters}out: *mut f64) {{\n    \
          unsafe {{ write(out, robot::{name}({arguments})) }}\n}}\n"
     )
+}
+
+const BATCH_HEAD: &str = "\
+//! Generated functions of many states behind a C interface.
+#[allow(dead_code)]
+#[path = \"robot.rs\"]
+mod robot;
+
+unsafe fn read<'a, T>(x: *const u8, count: usize) -> &'a [T] {
+    unsafe { ::std::slice::from_raw_parts(x.cast(), count) }
+}
+
+unsafe fn write<'a, T>(x: *mut u8, count: usize) -> &'a mut [T] {
+    unsafe { ::std::slice::from_raw_parts_mut(x.cast(), count) }
+}
+";
+
+/// The crate's source with a function's batches.
+pub(super) fn batches(name: &str, reals: &[Real]) -> String {
+    let takes = function::<f64>(name).map_or(&[][..], |f| f.takes);
+    let parameters: String = takes.iter().map(|a| format!("{}: *const u8, ", a.name())).collect();
+    let arguments: String = takes.iter().map(|a| format!("read({}, count), ", a.name())).collect();
+    let all = reals.iter().flat_map(|real| Layout::ALL.map(|layout| (*real, layout)));
+    all.fold(BATCH_HEAD.to_owned(), |text, (real, layout)| {
+        let (symbol, called) = (batch_symbol(name, real, layout), format!("batch_{}::{name}{}", real.name(), layout.suffix()));
+        text + &format!(
+            "\n#[unsafe(no_mangle)]\npub unsafe extern \"C\" fn {symbol}({parameters}out: *mut u8, count: usize) {{\n    \
+             let _ = unsafe {{ robot::{called}({arguments}write(out, count)) }};\n}}\n"
+        )
+    })
 }
 
 #[cfg(test)]

@@ -179,6 +179,28 @@ fn what_a_generator_took_is_told_and_drawn() {
 }
 
 #[test]
+fn states_of_many_are_timed_beside_the_others_and_must_agree() {
+    let library = peer("0.0");
+    // Not a multiple of a block.
+    let words = ["compare", "simple_pendulum", "--functions", "gravity_torque", "--batch", "f64,f32", "--states", "13"];
+    let words = [&words[..], &["--repetitions", "31", "--peer", library.name()]].concat();
+    let ended = run(&[&words[..], &["--format", "json"]].concat());
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let json = ended.json();
+    let batches = json["functions"][0]["batches"].as_array().unwrap();
+    let kinds: Vec<[&str; 2]> = batches.iter().map(|b| ["numbers", "layout"].map(|k| b[k].as_str().unwrap())).collect();
+    assert_eq!(kinds, [["f64", "blocks"], ["f64", "states"], ["f32", "blocks"], ["f32", "states"]]);
+    for (b, unit) in batches.iter().zip([f64::EPSILON, f64::EPSILON, f32::EPSILON.into(), f32::EPSILON.into()]) {
+        let number = |path: &str| b.pointer(path).and_then(serde_json::Value::as_f64).unwrap_or_else(|| panic!("{path}: {b}"));
+        assert!(number("/time/median") > 0.0 && number("/generated_over_batch/median") > 0.0);
+        assert!(number("/largest_difference") < 4.0 * unit, "{b}");
+        assert!(b["peers"][0]["peer"] == "by heart" && number("/peers/0/peer_over_batch/median") > 0.0);
+    }
+    let text = run(&words).out;
+    assert!(text.contains("where many are computed at once") && text.contains("by heart/it"), "{text}");
+}
+
+#[test]
 fn a_peer_with_other_joints_is_left_out_with_a_note() {
     let library = peer("0.0");
     let manifest = serde_json::json!([{"name": "one", "path": library.name()}, {"name": "two", "path": "/no/such/library.so"}]);

@@ -1,5 +1,6 @@
 //! The measurements for people.
 
+mod batches;
 mod peers;
 
 use std::fmt::Write;
@@ -13,6 +14,11 @@ pub(super) fn text(report: &Report) -> String {
     let mut out = head(report);
     for (title, table) in [
         ("Time of a call: median, and quartiles' distance (IQR)".to_owned(), times(report)),
+        (
+            "Time of a state where many are computed at once, on one core, and how many times that of a call of others (of each engine its fastest build)"
+                .to_owned(),
+            batches::batches(report),
+        ),
         ("The fastest build of each engine, by the letter of its build, and how many times our time it takes".to_owned(), peers::engines(report)),
         (format!("Time of a call in each build of other libraries{}", peers::letters(report)), peers::builds(report)),
         (

@@ -1,0 +1,109 @@
+//! Functions of many states at once, and memory for their arguments.
+
+use std::ffi::c_void;
+use std::hint::black_box;
+
+use articulated_core::lanes::Real;
+
+use super::Native;
+
+/// Numbers of one type, at the start of a cache line.
+#[derive(Clone, Debug)]
+pub(crate) struct Numbers {
+    lines: Vec<Line>,
+    real: Real,
+    len: usize,
+}
+
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+struct Line([u8; LINE]);
+
+const LINE: usize = 64;
+
+impl Numbers {
+    /// Rounded to the type.
+    pub(crate) fn new(real: Real, numbers: impl ExactSizeIterator<Item = f64>) -> Self {
+        let len = numbers.len();
+        let mut lines = vec![Line([0; LINE]); (len * real.bytes()).div_ceil(LINE)];
+        for (k, x) in numbers.enumerate() {
+            let at = k * real.bytes();
+            let bytes = &mut lines[at / LINE].0[at % LINE..][..real.bytes()];
+            match real {
+                Real::F64 => bytes.copy_from_slice(&x.to_ne_bytes()),
+                Real::F32 => bytes.copy_from_slice(&(x as f32).to_ne_bytes()),
+            }
+        }
+        Self { lines, real, len }
+    }
+
+    /// Number `k`.
+    pub(crate) fn get(&self, k: usize) -> f64 {
+        let at = k * self.real.bytes();
+        let bytes = &self.lines[at / LINE].0[at % LINE..];
+        match self.real {
+            Real::F64 => bytes.first_chunk().map_or(f64::NAN, |b| f64::from_ne_bytes(*b)),
+            Real::F32 => bytes.first_chunk().map_or(f64::NAN, |b| f32::from_ne_bytes(*b).into()),
+        }
+    }
+}
+
+type P = *const c_void;
+type O = *mut c_void;
+
+/// A function on slices of so many states or blocks, with the numbers of each that it was promised to have. Keeps its library open.
+#[derive(Clone, Debug)]
+pub(crate) struct BatchKernel {
+    entry: Entry,
+    real: Real,
+    arguments: Vec<usize>,
+    out: usize,
+    _library: Native,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Entry {
+    One(unsafe extern "C" fn(P, O, usize)),
+    Two(unsafe extern "C" fn(P, P, O, usize)),
+    Three(unsafe extern "C" fn(P, P, P, O, usize)),
+    Four(unsafe extern "C" fn(P, P, P, P, O, usize)),
+}
+
+impl Native {
+    /// The function `name`, which takes so many numbers of each state, or block of states, and writes `out` of each.
+    pub(crate) fn batch_kernel(&self, name: &str, real: Real, arguments: &[usize], out: usize) -> Option<BatchKernel> {
+        let entry = match arguments.len() {
+            1 => Entry::One(self.symbol(name)?),
+            2 => Entry::Two(self.symbol(name)?),
+            3 => Entry::Three(self.symbol(name)?),
+            4 => Entry::Four(self.symbol(name)?),
+            _ => return None,
+        };
+        Some(BatchKernel { entry, real, arguments: arguments.to_vec(), out, _library: self.clone() })
+    }
+}
+
+impl BatchKernel {
+    /// Calls the function on all states, so many rounds.
+    ///
+    /// # Panics
+    /// If a length is not the one promised.
+    pub(crate) fn repeat(&self, rounds: usize, count: usize, x: &[Numbers], out: &mut Numbers) {
+        let is = |numbers: &Numbers, each: usize| numbers.real == self.real && numbers.len == count * each;
+        assert!(x.len() == self.arguments.len() && is(out, self.out));
+        assert!(x.iter().zip(&self.arguments).all(|(x, each)| is(x, *each)));
+        let p = |k: usize| x[k].lines.as_ptr().cast();
+        let out: O = out.lines.as_mut_ptr().cast();
+        for _ in 0..rounds {
+            // Sound: the arrays have the type and the lengths that the library reads and writes, and it is open as long as the kernel lives.
+            unsafe {
+                match black_box(self.entry) {
+                    Entry::One(f) => f(p(0), out, count),
+                    Entry::Two(f) => f(p(0), p(1), out, count),
+                    Entry::Three(f) => f(p(0), p(1), p(2), out, count),
+                    Entry::Four(f) => f(p(0), p(1), p(2), p(3), out, count),
+                }
+            }
+        }
+    }
+}
