@@ -23,6 +23,7 @@ pub mod precise;
 mod robot;
 pub mod scaling;
 mod shape;
+mod simulate;
 pub mod states;
 mod table;
 mod tips;

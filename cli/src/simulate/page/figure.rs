@@ -1,0 +1,209 @@
+//! A robot as it is drawn: lines between joints, and for each link the box of even density that has its mass and inertia.
+
+use articulated_core::description::{Base, Description, Inertial, JointKind, Origin};
+use articulated_core::model::{Frame, Model};
+use articulated_core::spatial::Placement;
+use nalgebra::{Matrix3, Rotation3, SymmetricEigen, Vector3};
+use serde::Serialize;
+
+/// The drawn robot. Bodies are numbered: 0 does not move, k + 1 is the k-th of [`Figure::frames`].
+#[derive(Clone, Debug, Default, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Figure {
+    /// One link of each body that moves: the body's placement is that of the link.
+    #[serde(skip)]
+    pub(super) frames: Vec<String>,
+    /// The body that is followed.
+    pub(super) root: usize,
+    pub(super) sticks: Vec<Stick>,
+    pub(super) joints: Vec<Mark>,
+    pub(super) boxes: Vec<Box>,
+    pub(super) balls: Vec<Ball>,
+}
+
+/// A line from a point of a body to one of another, or of the same.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Stick {
+    from: usize,
+    start: [f64; 3],
+    to: usize,
+    end: [f64; 3],
+}
+
+/// A joint that moves.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Mark {
+    body: usize,
+    place: [f64; 3],
+    name: String,
+}
+
+/// A link's box: its centre, its axes as columns of a rotation, and half its edges.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Box {
+    body: usize,
+    pub(super) center: [f64; 3],
+    axes: [[f64; 3]; 3],
+    pub(super) half: [f64; 3],
+    name: String,
+    mass: f64,
+    /// Which of the base's limbs it belongs to, for its colour.
+    limb: usize,
+}
+
+/// A sphere that touches the ground.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Ball {
+    pub(super) body: usize,
+    pub(super) center: [f64; 3],
+    pub(super) radius: f64,
+}
+
+impl Figure {
+    /// Of a robot; `model` has a frame for each link.
+    pub(super) fn of(description: &Description, model: &Model<f64>, base: Base) -> Self {
+        let mut figure = Self::default();
+        let links = figure.links(description, model);
+        figure.root = usize::from(base == Base::Floating && !figure.frames.is_empty());
+        for joint in &description.joints {
+            let (Some(parent), Some(child)) = (&links[joint.parent], &links[joint.child]) else { continue };
+            let (start, end) = (parent.place.position.into(), child.place.position.into());
+            if parent.body != child.body || start != end {
+                figure.sticks.push(Stick { from: parent.body, start, to: child.body, end });
+            }
+            if joint.kind != JointKind::Fixed && joint.locked.is_none() {
+                figure.joints.push(Mark { body: child.body, place: end, name: joint.name.clone() });
+            }
+        }
+        for (link, place) in description.links.iter().zip(&links) {
+            let (Some(place), Some(inertial)) = (place, &link.inertial) else { continue };
+            if inertial.mass > 0.0 {
+                figure.boxes.push(inertia_box(&link.name, inertial, place));
+            }
+        }
+        figure
+    }
+
+    /// How far the things of a body reach from its origin, m.
+    pub(super) fn extent(&self, body: usize) -> f64 {
+        let length = |x: [f64; 3]| Vector3::from(x).norm();
+        let boxes = self.boxes.iter().filter(|b| b.body == body).map(|b| length(b.center) + length(b.half));
+        let starts = self.sticks.iter().filter(|s| s.from == body).map(|s| length(s.start));
+        let ends = self.sticks.iter().filter(|s| s.to == body).map(|s| length(s.end));
+        let balls = self.balls.iter().filter(|b| b.body == body).map(|b| length(b.center) + b.radius);
+        boxes.chain(starts).chain(ends).chain(balls).fold(0.0, f64::max)
+    }
+
+    /// A sphere at a place of a link.
+    pub(super) fn ball(&mut self, description: &Description, model: &Model<f64>, link: &str, center: [f64; 3], radius: f64) {
+        let links = Self::default().links(description, model);
+        if let Some(Some(at)) = description.link(link).map(|k| &links[k]) {
+            let center = at.place.transform(Vector3::from(center)).into();
+            self.balls.push(Ball { body: at.body, center, radius });
+        }
+    }
+
+    /// Where each link is in its body; the first link of each body stands for it.
+    fn links(&mut self, description: &Description, model: &Model<f64>) -> Vec<Option<Linked>> {
+        let mut drawn: Vec<Option<(usize, Placement<f64>)>> = vec![None; model.bodies.len()];
+        drawn[0] = Some((0, Placement::identity()));
+        let mut place = |frame: &Frame<f64>| {
+            let (body, first) = drawn[frame.body].get_or_insert_with(|| {
+                self.frames.push(frame.name.clone());
+                (self.frames.len(), frame.placement)
+            });
+            Linked { body: *body, place: relative(first, &frame.placement), limb: limb(model, frame.body) }
+        };
+        description.links.iter().map(|link| model.frames.iter().find(|f| f.name == link.name).map(&mut place)).collect()
+    }
+}
+
+/// A link in its body.
+struct Linked {
+    body: usize,
+    place: Placement<f64>,
+    limb: usize,
+}
+
+/// The first body on the way to `body` that hangs on one that more than one hangs on.
+fn limb(model: &Model<f64>, mut body: usize) -> usize {
+    let children = |parent: usize| model.outward().filter(move |&i| model.bodies[i].parent == parent).count();
+    let mut limb = 0;
+    while body != 0 {
+        let parent = model.bodies[body].parent;
+        if children(parent) > 1 {
+            limb = 1 + model.outward().filter(|&i| i < body && children(model.bodies[i].parent) > 1).count();
+        }
+        body = parent;
+    }
+    limb
+}
+
+/// b in axes of a, both given in the same frame.
+fn relative(a: &Placement<f64>, b: &Placement<f64>) -> Placement<f64> {
+    let back = a.rotation.transpose();
+    Placement { rotation: back * b.rotation, position: back * (b.position - a.position) }
+}
+
+fn placement(origin: &Origin) -> Placement<f64> {
+    let [roll, pitch, yaw] = origin.rpy;
+    Placement { rotation: *Rotation3::from_euler_angles(roll, pitch, yaw).matrix(), position: Vector3::from(origin.xyz) }
+}
+
+fn inertia_box(name: &str, inertial: &Inertial, link: &Linked) -> Box {
+    let [xx, xy, xz, yy, yz, zz] = inertial.inertia;
+    let principal = SymmetricEigen::new(Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz));
+    let place = link.place.compose(&placement(&inertial.origin));
+    let axes = place.rotation * principal.eigenvectors;
+    let axis = |k: usize| axes.column(k).into_owned().into();
+    Box {
+        body: link.body,
+        center: place.position.into(),
+        axes: [axis(0), axis(1), axis(2)],
+        half: half_edges(principal.eigenvalues.into(), inertial.mass),
+        name: name.to_owned(),
+        mass: inertial.mass,
+        limb: link.limb,
+    }
+}
+
+/// I₁ = m (b² + c²)/3 for half edges a, b, c, and so on round: a² = 3 (I₂ + I₃ − I₁) / 2m.
+fn half_edges(i: [f64; 3], mass: f64) -> [f64; 3] {
+    let sum: f64 = i.iter().sum();
+    i.map(|own| (1.5 * (sum - 2.0 * own).max(0.0) / mass).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::bundled_model;
+
+    fn bundled(name: &str) -> (Description, Base) {
+        let robot = articulated_models::robot(name).unwrap();
+        let options = articulated_urdf::Options { base: robot.base, ..articulated_urdf::Options::default() };
+        (articulated_urdf::read(robot.urdf.as_bytes(), &options).unwrap().description, robot.base)
+    }
+
+    #[test]
+    fn a_box_has_the_moments_that_it_was_made_of() {
+        let (m, [a, b, c]) = (3.0, [0.1, 0.2, 0.5]);
+        let moments = [b * b + c * c, a * a + c * c, a * a + b * b].map(|s| m * s / 3.0);
+        for (found, edge) in half_edges(moments, m).iter().zip([a, b, c]) {
+            assert!((found - edge).abs() < 1e-12);
+        }
+        assert_eq!(half_edges([0.0; 3], 1.0), [0.0; 3]);
+    }
+
+    #[test]
+    fn every_joint_that_moves_is_marked_and_every_mass_has_its_box() {
+        for name in ["simple_pendulum", "gripper_arm", "quadruped", "humanoid"] {
+            let (description, base) = bundled(name);
+            let figure = Figure::of(&description, &bundled_model(name), base);
+            let moving = description.joints.iter().filter(|j| j.kind != JointKind::Fixed).count();
+            assert_eq!(figure.joints.len(), moving, "{name}");
+            assert_eq!(figure.frames.len(), moving + usize::from(base == Base::Floating), "{name}");
+            assert_eq!(figure.boxes.len(), description.links.iter().filter(|l| l.inertial.is_some()).count(), "{name}");
+            assert!(figure.sticks.iter().all(|s| s.from <= figure.frames.len() && s.to <= figure.frames.len()));
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! A motion as one page that plays it in three dimensions: everything is in the file, and nothing is fetched.
+
+mod figure;
+mod track;
+
+use articulated_core::algorithm::FunctionError;
+use articulated_core::description::{Base, Description};
+use articulated_core::dynamics::Dynamics;
+use articulated_core::model::Model;
+use articulated_core::spatial::Placement;
+use nalgebra::Vector3;
+use serde::Serialize;
+
+use super::plot::svg::escaped;
+use super::recording::{Happening, Recording};
+use figure::Figure;
+use track::{Track, base64};
+
+const PAGE: &str = include_str!("page.html");
+const STYLE: &str = include_str!("page.css");
+const PLAYER: &str = include_str!("player.js");
+
+/// What the page shows beside the motion.
+pub(super) struct Setting<'a> {
+    pub(super) title: &'a str,
+    /// Under the title.
+    pub(super) note: String,
+    pub(super) description: &'a Description,
+    /// With a frame for each link.
+    pub(super) model: &'a Model<f64>,
+    pub(super) base: Base,
+    /// Spheres of contacts: link, place in it, radius.
+    pub(super) balls: Vec<(String, [f64; 3], f64)>,
+    /// The plane that they touch: its normal, and its height along that.
+    pub(super) ground: Option<([f64; 3], f64)>,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "camelCase")]
+struct Motion<'a> {
+    note: &'a str,
+    up: [f64; 3],
+    /// Height of the grid along `up`, m.
+    ground: f64,
+    /// A sphere that holds the whole motion.
+    center: [f64; 3],
+    radius: f64,
+    /// The robot's own size, m.
+    size: f64,
+    #[serde(flatten)]
+    figure: &'a Figure,
+    /// Number of bodies that move.
+    moving: usize,
+    low: [f64; 3],
+    quantum: [f64; 3],
+    placements: String,
+    times: String,
+    energy_names: Vec<&'static str>,
+    energies: String,
+    events: &'a [Happening],
+}
+
+/// The page's text.
+pub(super) fn html(r: &Recording, setting: &Setting<'_>) -> Result<String, FunctionError> {
+    let mut figure = Figure::of(setting.description, setting.model, setting.base);
+    for (link, center, radius) in &setting.balls {
+        figure.ball(setting.description, setting.model, link, *center, *radius);
+    }
+    let chosen = track::chosen(&r.t, figure.frames.len());
+    let placements = placements(r, &chosen, setting.model, &figure.frames)?;
+    let track = Track::of(&placements);
+    let space = Space::of(&figure, &placements, setting);
+    let floats = |all: &mut dyn Iterator<Item = f64>| base64(&all.flat_map(|x| (x as f32).to_le_bytes()).collect::<Vec<u8>>());
+    let imbalance = r.imbalance();
+    let energies: [(&str, &[f64]); 5] = [
+        ("kinetic T", &r.kinetic),
+        ("potential U", &r.potential),
+        ("work", &r.work),
+        ("dissipated", &r.dissipated),
+        ("imbalance", &imbalance),
+    ];
+    let motion = Motion {
+        note: &setting.note,
+        up: space.up.into(),
+        ground: space.ground,
+        center: space.center.into(),
+        radius: space.radius,
+        size: space.size,
+        figure: &figure,
+        moving: figure.frames.len(),
+        low: track.low,
+        quantum: track.quantum,
+        placements: base64(&track.bytes),
+        times: floats(&mut chosen.iter().map(|&k| r.t[k])),
+        energy_names: energies.iter().map(|e| e.0).collect(),
+        energies: floats(&mut chosen.iter().flat_map(|&k| energies.map(|e| e.1.get(k).copied().unwrap_or(0.0)))),
+        events: &r.events,
+    };
+    // A name cannot end the script that it stands in.
+    let data = serde_json::to_string(&motion).unwrap_or_default().replace('<', "\\u003c");
+    let parts = [("title", escaped(setting.title)), ("style", STYLE.to_owned()), ("data", data), ("script", PLAYER.to_owned())];
+    Ok(filled(PAGE, &parts))
+}
+
+/// The template with its places filled, each text as it is.
+fn filled(template: &str, parts: &[(&str, String)]) -> String {
+    let mut pieces = template.split("{{");
+    let mut out = pieces.next().unwrap_or_default().to_owned();
+    for piece in pieces {
+        let (name, rest) = piece.split_once("}}").unwrap_or(("", piece));
+        out += parts.iter().find(|p| p.0 == name).map_or("", |p| &p.1);
+        out += rest;
+    }
+    out
+}
+
+/// Of all bodies that move in each frame.
+fn placements(r: &Recording, chosen: &[usize], model: &Model<f64>, frames: &[String]) -> Result<Vec<Placement<f64>>, FunctionError> {
+    let nq = r.q_names.len();
+    let Ok(model) = model.clone().with_frames(frames) else { return Ok(Vec::new()) };
+    let (mut ws, mut out) = (Dynamics::workspace(&model), vec![0.0; 12 * frames.len()]);
+    let mut all = Vec::with_capacity(chosen.len() * frames.len());
+    for &k in chosen {
+        model.placements(&mut ws, &r.q[k * nq..][..nq], &mut out)?;
+        all.extend(out.chunks_exact(12).map(track::placement));
+    }
+    Ok(all)
+}
+
+/// What the motion needs room for, and where up is.
+struct Space {
+    up: Vector3<f64>,
+    ground: f64,
+    center: Vector3<f64>,
+    radius: f64,
+    size: f64,
+}
+
+impl Space {
+    fn of(figure: &Figure, placements: &[Placement<f64>], setting: &Setting<'_>) -> Self {
+        let gravity = setting.model.gravity;
+        let up = match setting.ground {
+            Some((normal, _)) => Vector3::from(normal).normalize(),
+            None if gravity.norm() > 0.0 => -gravity.normalize(),
+            None => Vector3::z(),
+        };
+        let moving = figure.frames.len();
+        let reach = |k: usize| {
+            let own = figure.extent(k + 1);
+            placements.iter().skip(k).step_by(moving.max(1)).map(move |x| (x.position, own))
+        };
+        let mut low = Vector3::repeat(f64::INFINITY);
+        let mut high = -low;
+        let mut lowest = 0.0_f64;
+        let still = std::iter::once((Vector3::zeros(), figure.extent(0)));
+        for (p, r) in still.chain((0..moving).flat_map(reach)).filter(|(p, _)| p.iter().all(|x| x.is_finite())) {
+            low = low.inf(&p.add_scalar(-r));
+            high = high.sup(&p.add_scalar(r));
+            lowest = lowest.min(up.dot(&p) - r);
+        }
+        let first = &placements[..moving.min(placements.len())];
+        let spread = first.iter().map(|a| (a.position - first[0].position).norm()).fold(0.0, f64::max);
+        let radius = (0.5 * (high - low).norm()).max(1e-3);
+        let size = (spread + (0..=moving).map(|k| figure.extent(k)).fold(0.0, f64::max)).clamp(1e-3, radius * 2.0);
+        Self { up, ground: setting.ground.map_or(lowest, |g| g.1), center: 0.5 * (low + high), radius, size }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::recording::example;
+    use super::*;
+    use crate::robot::bundled_model;
+
+    pub(super) fn page(robot: &str, times: usize) -> String {
+        let bundled = articulated_models::robot(robot).unwrap();
+        let options = articulated_urdf::Options { base: bundled.base, ..articulated_urdf::Options::default() };
+        let description = articulated_urdf::read(bundled.urdf.as_bytes(), &options).unwrap().description;
+        let model = bundled_model(robot);
+        let setting = Setting {
+            title: "</script><b>",
+            note: "a note".into(),
+            description: &description,
+            model: &model,
+            base: bundled.base,
+            balls: Vec::new(),
+            ground: None,
+        };
+        html(&example(&model, times), &setting).unwrap()
+    }
+
+    #[test]
+    fn nothing_is_fetched_and_no_name_ends_the_page() {
+        let page = page("quadruped", 20);
+        assert!(!page.contains("http") && !page.contains("src=") && !page.contains("{{"));
+        assert_eq!(page.matches("</script>").count(), 2);
+        assert!(page.contains("<title>&lt;/script&gt;&lt;b&gt;</title>"));
+    }
+
+    #[test]
+    fn the_data_are_json_with_every_frame() {
+        let page = page("quadruped", 20);
+        let data = page.split("application/json\">").nth(1).unwrap().split("</script>").next().unwrap();
+        let motion: serde_json::Value = serde_json::from_str(data).unwrap();
+        assert_eq!(motion["moving"], 13);
+        // 0.2 s at 50 frames a second, since the recording's times are 10 ms apart
+        let frames = motion["times"].as_str().unwrap().len() * 3 / 4 / 4;
+        assert!((10..=11).contains(&frames), "{frames}");
+        assert_eq!(motion["placements"].as_str().unwrap().len(), (14 * 13 * frames).div_ceil(3) * 4);
+    }
+}
+#[cfg(test)]
+mod look {
+    #[test]
+    fn look() {
+        for robot in ["quadruped", "panda_like", "humanoid"] {
+            std::fs::write(format!("/tmp/play_scratch/{robot}.html"), super::tests::page(robot, 300)).unwrap();
+        }
+    }
+}

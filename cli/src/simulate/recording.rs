@@ -1,0 +1,190 @@
+//! A motion as its outputs need it: numbers at times, with the names and units of what they belong to.
+
+use articulated_core::description::JointKind;
+use articulated_core::model::{FLOATING_BASE, JointInfo, Model};
+use serde::Serialize;
+
+/// A coordinate or a rate: whose it is, and in what unit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Named {
+    /// The joint's name, with the number of the coordinate where the joint has several: `elbow`, `base[3]`.
+    pub(crate) name: String,
+    /// For people: `elbow`, `base y`.
+    pub(crate) label: String,
+    /// `rad`, `m`, … ; empty for a number without one.
+    pub(crate) unit: &'static str,
+    /// Whether it is of the floating base.
+    pub(crate) base: bool,
+}
+
+/// Something that happened, at its time.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Happening {
+    /// s.
+    pub(crate) time: f64,
+    /// What, in a few words.
+    pub(crate) what: String,
+}
+
+/// A motion at the times of its output. Vectors of vectors are one behind the other, one of each a time.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Recording {
+    /// The coordinates.
+    pub(crate) q_names: Vec<Named>,
+    /// The rates.
+    pub(crate) v_names: Vec<Named>,
+    /// The torques that act on the rates.
+    pub(crate) tau_names: Vec<Named>,
+    /// s.
+    pub(crate) t: Vec<f64>,
+    /// `[times][nq]`.
+    pub(crate) q: Vec<f64>,
+    /// `[times][nv]`.
+    pub(crate) v: Vec<f64>,
+    /// What the motors are told, `[times][nv]`.
+    pub(crate) tau: Vec<f64>,
+    /// J.
+    pub(crate) kinetic: Vec<f64>,
+    /// J.
+    pub(crate) potential: Vec<f64>,
+    /// Of motors and wrenches since the start, J.
+    pub(crate) work: Vec<f64>,
+    /// Of friction, damping, drag and impacts since the start, J: negative, since they take energy.
+    pub(crate) dissipated: Vec<f64>,
+    /// Angular momentum about the centre of mass, then linear momentum, in axes of the base frame: kg·m²/s, kg·m/s.
+    pub(crate) momentum: Vec<[f64; 6]>,
+    /// In the order of their times.
+    pub(crate) events: Vec<Happening>,
+}
+
+impl Recording {
+    /// Names and units for a robot, and no times yet.
+    pub(crate) fn of(model: &Model<f64>) -> Self {
+        let each = |parts: fn(JointKind) -> Parts, count: fn(&JointInfo) -> usize| {
+            model.joints.iter().flat_map(|j| named(&j.name, count(j), parts(j.kind))).collect()
+        };
+        Self {
+            q_names: each(coordinates, |j| j.q.1),
+            v_names: each(rates, |j| j.v.1),
+            tau_names: each(torques, |j| j.v.1),
+            ..Self::default()
+        }
+    }
+
+    /// Number of times.
+    pub(crate) fn len(&self) -> usize {
+        self.t.len()
+    }
+
+    /// T + U at each time, J.
+    pub(crate) fn energy(&self) -> Vec<f64> {
+        self.kinetic.iter().zip(&self.potential).map(|(t, u)| t + u).collect()
+    }
+
+    /// What the energy balance misses at each time, J: (T + U) − (T + U)₀ − work − dissipated.
+    pub(crate) fn imbalance(&self) -> Vec<f64> {
+        let energy = self.energy();
+        let start = energy.first().copied().unwrap_or(0.0);
+        (0..energy.len()).map(|k| energy[k] - start - self.work[k] - self.dissipated[k]).collect()
+    }
+
+    /// The k-th number of a row of `names` at each time.
+    pub(crate) fn series(&self, names: &[Named], rows: &[f64], k: usize) -> Vec<f64> {
+        rows.chunks_exact(names.len().max(1)).map(|row| row[k]).collect()
+    }
+}
+
+/// What the numbers of a joint are called where it has several, and their units.
+type Parts = &'static [(&'static str, &'static str)];
+
+fn named(joint: &str, count: usize, parts: Parts) -> Vec<Named> {
+    let name = |k: usize| if count == 1 { joint.to_owned() } else { format!("{joint}[{k}]") };
+    let base = joint == FLOATING_BASE;
+    let shown = if base { "base" } else { joint };
+    let label = |part: &str| if count == 1 { shown.to_owned() } else { format!("{shown} {part}") };
+    (0..count).zip(parts).map(|(k, (part, unit))| Named { name: name(k), label: label(part), unit, base }).collect()
+}
+
+fn coordinates(kind: JointKind) -> Parts {
+    match kind {
+        JointKind::Prismatic => &[("", "m")],
+        JointKind::Planar => &[("x", "m"), ("y", "m"), ("θ", "rad")],
+        JointKind::Spherical => &[("qx", ""), ("qy", ""), ("qz", ""), ("qw", "")],
+        JointKind::Floating => &[("x", "m"), ("y", "m"), ("z", "m"), ("qx", ""), ("qy", ""), ("qz", ""), ("qw", "")],
+        _ => &[("first", "rad"), ("second", "rad")],
+    }
+}
+
+fn rates(kind: JointKind) -> Parts {
+    match kind {
+        JointKind::Prismatic => &[("", "m/s")],
+        JointKind::Planar => &[("x", "m/s"), ("y", "m/s"), ("θ", "rad/s")],
+        JointKind::Spherical => &[("ωx", "rad/s"), ("ωy", "rad/s"), ("ωz", "rad/s")],
+        JointKind::Floating => &[("ωx", "rad/s"), ("ωy", "rad/s"), ("ωz", "rad/s"), ("vx", "m/s"), ("vy", "m/s"), ("vz", "m/s")],
+        _ => &[("first", "rad/s"), ("second", "rad/s")],
+    }
+}
+
+fn torques(kind: JointKind) -> Parts {
+    match kind {
+        JointKind::Prismatic => &[("", "N")],
+        JointKind::Planar => &[("x", "N"), ("y", "N"), ("θ", "N·m")],
+        JointKind::Spherical => &[("mx", "N·m"), ("my", "N·m"), ("mz", "N·m")],
+        JointKind::Floating => &[("mx", "N·m"), ("my", "N·m"), ("mz", "N·m"), ("fx", "N"), ("fy", "N"), ("fz", "N")],
+        _ => &[("first", "N·m"), ("second", "N·m")],
+    }
+}
+
+/// A motion to test outputs with: that of a quadruped that falls and turns, without its physics.
+#[cfg(test)]
+pub(crate) fn example(model: &Model<f64>, times: usize) -> Recording {
+    let mut r = Recording::of(model);
+    for k in 0..times {
+        let t = k as f64 * 0.01;
+        r.t.push(t);
+        for (i, name) in r.q_names.iter().enumerate() {
+            r.q.push(if name.unit.is_empty() { 0.5 } else { (t * (1.0 + i as f64)).sin() });
+        }
+        r.v.extend((0..r.v_names.len()).map(|i| (t * (1.0 + i as f64)).cos()));
+        r.tau.extend((0..r.v_names.len()).map(|i| 1e-3 * i as f64));
+        r.kinetic.push(t * t);
+        r.potential.push(10.0 - t * t);
+        r.work.push(t);
+        r.dissipated.push(-t + 1e-12 * (40.0 * t).sin());
+        r.momentum.push([t; 6]);
+    }
+    r.events = vec![Happening { time: 0.035, what: "left_foot touches the ground".into() }];
+    r
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::robot::bundled_model;
+
+    #[test]
+    fn coordinates_and_rates_have_names_and_units() {
+        let r = Recording::of(&bundled_model("quadruped"));
+        assert_eq!((r.q_names.len(), r.v_names.len(), r.tau_names.len()), (19, 18, 18));
+        let units = |names: &[Named]| names[..7].iter().map(|n| n.unit).collect::<Vec<_>>().join(" ");
+        assert_eq!(units(&r.q_names), "m m m    ");
+        assert_eq!(units(&r.v_names), "rad/s rad/s rad/s m/s m/s m/s rad/s");
+        assert_eq!(units(&r.tau_names), "N·m N·m N·m N N N N·m");
+        let cart = Recording::of(&bundled_model("cart_pole"));
+        assert_eq!(cart.q_names[0].unit, "m");
+        assert_eq!(cart.tau_names[0].unit, "N");
+        assert_eq!((r.v_names[1].label.as_str(), r.v_names[1].base), ("base ωy", true));
+    }
+
+    #[test]
+    fn the_imbalance_is_what_neither_work_nor_loss_explains() {
+        let r = Recording {
+            kinetic: vec![1.0, 4.0],
+            potential: vec![2.0, 1.0],
+            work: vec![0.0, 3.0],
+            dissipated: vec![0.0, -0.5],
+            ..Recording::default()
+        };
+        assert_eq!(r.imbalance(), [0.0, -0.5]);
+    }
+}
