@@ -277,6 +277,20 @@ impl NativePeer {
         c_int::try_from(pointers.len()).is_ok_and(|n| choose(self.0.handle, n, pointers.as_ptr()) != 0)
     }
 
+    /// Has the peer take so many steps from the state (q, v), which it replaces by the last one; `None` if it cannot or if it went astray.
+    pub(crate) fn simulate(&self, q: &mut [f64], v: &mut [f64], step: f64, steps: usize) -> Option<()> {
+        type Simulate = unsafe extern "C" fn(H, P, P, c_double, c_int, O, O) -> c_int;
+        let simulate: Simulate = self.0.native.symbol("peer_simulate")?;
+        if self.number("nq") != Some(q.len()) || self.number("nv") != Some(v.len()) {
+            return None;
+        }
+        let (from_q, from_v) = (q.to_vec(), v.to_vec());
+        let steps = c_int::try_from(steps).ok()?;
+        // Sound: the arrays are as long as the peer says that they are, and the robot is open.
+        let right = unsafe { simulate(self.0.handle, from_q.as_ptr(), from_v.as_ptr(), step, steps, q.as_mut_ptr(), v.as_mut_ptr()) };
+        (right != 0).then_some(())
+    }
+
     /// The peer's function, which takes arrays of these lengths and gives `out` numbers: into an array, or, if `kept`, when asked for them.
     pub(crate) fn kernel(&self, function: &str, arguments: &[usize], out: usize, kept: bool) -> Option<PeerKernel> {
         let native = &self.0.native;

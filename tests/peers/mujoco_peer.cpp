@@ -217,3 +217,29 @@ PEER_API void peer_forward_dynamics(void * handle, const double * q, const doubl
     mju_subFrom3(a, turned);
   }
 }
+
+// So many steps of the fourth-order Runge-Kutta method, all of them in MuJoCo's own loop: from (q, v) to (q_end, v_end), no torques.
+PEER_API int peer_simulate(void * handle, const double * q, const double * v, double step, int steps, double * q_end, double * v_end)
+{
+  Peer & p = peer(handle);
+  mjModel * m = p.model.get();
+  mjData * d = p.data.get();
+  const mjOption kept = m->opt;
+  m->opt.integrator = mjINT_RK4;
+  m->opt.timestep = step;
+  mj_resetData(m, d);
+  p.place(q);
+  p.to_world(d->qvel, v);
+  for (int i = 0; i < steps; ++i)
+    mj_step(m, d);
+  m->opt = kept;
+  mju_copy(q_end, d->qpos, p.nq);
+  if (p.floating) // w x y z to x y z w
+  {
+    mju_copy(q_end + 3, d->qpos + 4, 3);
+    q_end[6] = d->qpos[3];
+  }
+  mj_kinematics(m, d);
+  p.to_body(v_end, d->qvel);
+  return d->warning[mjWARN_BADQACC].number == 0 && d->warning[mjWARN_BADQPOS].number == 0;
+}

@@ -172,7 +172,7 @@ mod tests {
     use super::*;
     use crate::robot::bundled_model;
 
-    pub(super) fn page(robot: &str, times: usize) -> String {
+    fn page(robot: &str, times: usize) -> String {
         let bundled = articulated_models::robot(robot).unwrap();
         let options = articulated_urdf::Options { base: bundled.base, ..articulated_urdf::Options::default() };
         let description = articulated_urdf::read(bundled.urdf.as_bytes(), &options).unwrap().description;
@@ -207,14 +207,5 @@ mod tests {
         let frames = motion["times"].as_str().unwrap().len() * 3 / 4 / 4;
         assert!((10..=11).contains(&frames), "{frames}");
         assert_eq!(motion["placements"].as_str().unwrap().len(), (14 * 13 * frames).div_ceil(3) * 4);
-    }
-}
-#[cfg(test)]
-mod look {
-    #[test]
-    fn look() {
-        for robot in ["quadruped", "panda_like", "humanoid"] {
-            std::fs::write(format!("/tmp/play_scratch/{robot}.html"), super::tests::page(robot, 300)).unwrap();
-        }
     }
 }

@@ -97,7 +97,7 @@ mod tests {
     fn a_placement_is_kept_to_a_65000th_of_the_way() {
         let turn = |a: f64| *Rotation3::from_euler_angles(a, 2.0 * a, -a).matrix();
         let placements: Vec<Placement<f64>> =
-            (0..20).map(|k| f64::from(k)).map(|k| Placement { rotation: turn(k), position: Vector3::new(k, 0.5, -k * k) }).collect();
+            (0..20).map(f64::from).map(|k| Placement { rotation: turn(k), position: Vector3::new(k, 0.5, -k * k) }).collect();
         let track = Track::of(&placements);
         let u = |at: usize| f64::from(u16::from_le_bytes([track.bytes[at], track.bytes[at + 1]]));
         let i = |at: usize| f64::from(i16::from_le_bytes([track.bytes[at], track.bytes[at + 1]])) / 32767.0;

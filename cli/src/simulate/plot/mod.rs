@@ -130,20 +130,3 @@ mod tests {
         assert!(r.q_names.iter().filter(|n| n.label.len() < 16).all(|n| all[0].svg.contains(&format!(">{}<", n.label))));
     }
 }
-#[cfg(test)]
-mod look {
-    #[test]
-    fn look() {
-        for (robot, n) in [("quadruped", 800), ("humanoid", 300), ("panda_like", 1000)] {
-            let r = super::super::recording::example(&crate::robot::bundled_model(robot), n);
-            for p in super::pictures(&r, robot).unwrap() {
-                std::fs::write(format!("/tmp/play_scratch/{robot}_{}.png", p.name), &p.png).unwrap();
-                std::fs::write(format!("/tmp/play_scratch/{robot}_{}.svg", p.name), &p.svg).unwrap();
-            }
-        }
-        let r = super::super::recording::example(&crate::robot::bundled_model("quadruped"), 200);
-        let c = super::super::columns::columns(&r);
-        std::fs::write("/tmp/play_scratch/a.parquet", super::super::parquet::bytes(&c)).unwrap();
-        std::fs::write("/tmp/play_scratch/a.csv", super::super::csv::text(&c).unwrap()).unwrap();
-    }
-}
