@@ -3,6 +3,7 @@
 mod closed_forms;
 mod edits;
 mod effects;
+mod effects_closed;
 mod energy;
 mod equivalence;
 mod fixtures;

@@ -1,0 +1,254 @@
+//! Each effect against its formula on a body of which all is known, and against MuJoCo.
+
+use articulated_core::algorithm::{Workspace, function};
+use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, Origin};
+use articulated_core::effect::{Applied, EffectId, effect};
+use articulated_core::model::Model;
+use articulated_tests::case::Case;
+use serde::Deserialize;
+
+const MASS: f64 = 2.0;
+const INERTIA: f64 = 0.3;
+const G: f64 = 9.81;
+
+/// A slide along x of 2 kg.
+fn slide() -> Model<f64> {
+    let link = |name: &str, mass: Option<f64>| Link {
+        name: name.into(),
+        inertial: mass.map(|mass| Inertial { origin: Origin::default(), mass, inertia: [INERTIA, 0.0, 0.0, INERTIA, 0.0, INERTIA] }),
+    };
+    let joint = Joint { name: "slide".into(), kind: JointKind::Prismatic, parent: 0, child: 1, axis: [1.0, 0.0, 0.0], ..Joint::default() };
+    let description = Description { name: "slide".into(), links: vec![link("base", None), link("cart", Some(MASS))], joints: vec![joint] };
+    Model::new(&description, Base::Fixed).expect("a slide")
+}
+
+/// A ball of 2 kg that moves freely.
+fn ball() -> Model<f64> {
+    let inertial = Inertial { origin: Origin::default(), mass: MASS, inertia: [INERTIA, 0.0, 0.0, INERTIA, 0.0, INERTIA] };
+    let description =
+        Description { name: "ball".into(), links: vec![Link { name: "ball".into(), inertial: Some(inertial) }], joints: vec![] };
+    Model::new(&description, Base::Floating).expect("a ball")
+}
+
+fn on(effect: EffectId, on: &str, parameters: &[f64]) -> Applied {
+    Applied { effect, on: on.into(), at: Origin::default(), parameters: parameters.to_vec() }
+}
+
+fn call(model: &Model<f64>, name: &str, arguments: &[&[f64]]) -> Vec<f64> {
+    let function = function::<f64>(name).expect("in the table");
+    let mut out = vec![0.0; function.len(model.shape())];
+    function.call(model, &mut Workspace::new(model), arguments, &mut out).expect("lengths as the table says");
+    out
+}
+
+/// Acceleration of the slide with one effect.
+fn slides(effect: EffectId, parameters: &[f64], q: f64, v: f64, tau: f64) -> f64 {
+    let model = slide().with_effects(&[on(effect, "slide", parameters)]).expect("an effect on a slide");
+    call(&model, "forward_dynamics", &[&[q], &[v], &[tau]])[0]
+}
+
+fn assert_near(found: f64, expected: f64) {
+    assert!((found - expected).abs() <= 1e-13 * (1.0 + expected.abs()), "{found} instead of {expected}");
+}
+
+#[test]
+fn armature_is_mass_behind_a_gear() {
+    assert_near(slides(EffectId::armature, &[0.01, 20.0], 0.3, 0.7, 5.0), 5.0 / (MASS + 0.01 * 400.0));
+}
+
+#[test]
+fn damping_is_against_the_rate() {
+    assert_near(slides(EffectId::damping, &[3.0], 0.3, 0.7, 5.0), (5.0 - 3.0 * 0.7) / MASS);
+}
+
+#[test]
+fn friction_is_its_torque_where_it_slides_and_none_at_rest() {
+    assert_near(slides(EffectId::friction, &[3.0, 0.3], 0.0, 0.4, 5.0), (5.0 - 3.0 * 0.8) / MASS);
+    assert_near(slides(EffectId::friction, &[3.0, 0.3], 0.0, -0.4, 5.0), (5.0 + 3.0 * 0.8) / MASS);
+    assert_near(slides(EffectId::friction, &[3.0, 0.3], 0.0, 0.0, 5.0), 5.0 / MASS);
+    assert!((slides(EffectId::friction, &[3.0, 1e-3], 0.0, 1e3, 5.0) - 1.0).abs() < 1e-11);
+}
+
+#[test]
+fn a_spring_pulls_to_its_rest() {
+    assert_near(slides(EffectId::spring, &[40.0, 0.1], 0.3, 0.7, 5.0), (5.0 - 40.0 * 0.2) / MASS);
+}
+
+#[test]
+fn a_stop_pushes_beyond_its_bound_and_never_pulls() {
+    let stop = |q: f64, v: f64| slides(EffectId::limit, &[-1.0, 2.0, 100.0, 0.5], q, v, 0.0) * MASS;
+    assert_eq!(stop(1.9, 3.0), 0.0);
+    assert_eq!(stop(-0.9, -3.0), 0.0);
+    assert_near(stop(2.25, 0.4), -100.0 * 0.25 * 1.2);
+    assert_near(stop(-1.25, -0.4), 100.0 * 0.25 * 1.2);
+    assert_near(stop(2.25, -0.4), -100.0 * 0.25 * 0.8);
+    assert_eq!(stop(2.25, -3.0), 0.0);
+}
+
+#[test]
+fn a_motor_gives_what_its_line_allows_less_its_loss() {
+    // 2 N behind a gear of 10, 50 m/s: 20 N at a standstill, none at 5 m/s.
+    let motor = |v: f64, tau: f64, efficiency: f64| slides(EffectId::motor, &[2.0, 50.0, 10.0, efficiency, 1e-9], 0.0, v, tau) * MASS;
+    assert_near(motor(0.0, 7.0, 1.0), 7.0);
+    assert_near(motor(0.0, 70.0, 1.0), 20.0);
+    assert_near(motor(0.0, -70.0, 1.0), -20.0);
+    assert_near(motor(2.0, 70.0, 1.0), 20.0 * 0.6);
+    assert_near(motor(-2.0, 70.0, 1.0), 20.0);
+    assert_near(motor(2.0, -70.0, 1.0), -20.0);
+    assert_near(motor(9.0, 70.0, 1.0), 0.0);
+    assert_near(motor(2.0, 5.0, 0.9), 4.5);
+    assert_near(motor(-2.0, 5.0, 0.9), 5.5);
+    assert_near(motor(-2.0, -5.0, 0.9), -4.5);
+}
+
+/// Acceleration [ω̇; v̇] of the ball with its effects, in its frame, standing as the base does at height z and moving with the twist v.
+fn moves(effects: &[Applied], z: f64, v: [f64; 6]) -> Vec<f64> {
+    let model = ball().with_effects(effects).expect("effects on a ball");
+    call(&model, "forward_dynamics", &[&[0.0, 0.0, z, 0.0, 0.0, 0.0, 1.0], &v, &[0.0; 6]])
+}
+
+/// ω × v, which the rates of a free body have besides.
+fn turned(v: [f64; 6]) -> [f64; 3] {
+    let [a, b, c, x, y, z] = v;
+    [b * z - c * y, c * x - a * z, a * y - b * x]
+}
+
+fn assert_all_near(found: &[f64], expected: &[f64]) {
+    found.iter().zip(expected).for_each(|(f, e)| assert_near(*f, *e));
+}
+
+#[test]
+fn drag_is_the_square_of_the_speed() {
+    let v = [0.0, 0.0, 0.0, 3.0, 0.0, 4.0];
+    let found = moves(&[on(EffectId::drag, "ball", &[0.2])], 1.0, v);
+    assert_all_near(&found, &[0.0, 0.0, 0.0, -0.2 * 5.0 * 3.0 / MASS, 0.0, -0.2 * 5.0 * 4.0 / MASS - G]);
+}
+
+#[test]
+fn drag_of_a_box_is_along_its_axes() {
+    let v = [0.5, -2.0, 0.0, 3.0, 0.0, -4.0];
+    let found = moves(&[on(EffectId::box_drag, "ball", &[1.0, 2.0, 3.0, 0.1, 0.2, 0.3, 0.7, 0.05])], 1.0, v);
+    let w = turned(v);
+    let linear = |c: f64, v: f64| -(c * v.abs() + 0.7) * v / MASS;
+    let angular = |c: f64, v: f64| -(c * v.abs() + 0.05) * v / INERTIA;
+    let expected = [angular(0.1, 0.5), angular(0.2, -2.0), 0.0, linear(1.0, 3.0) - w[0], -w[1], linear(3.0, -4.0) - w[2] - G];
+    assert_all_near(&found, &expected);
+}
+
+#[test]
+fn a_body_as_dense_as_water_floats_and_rights_itself() {
+    let mut floats = on(EffectId::buoyancy, "ball", &[MASS / 1000.0, 1000.0]);
+    assert_all_near(&moves(&[floats.clone()], 1.0, [0.0; 6]), &[0.0; 6]);
+    // The centre of the displaced water aside: ρ V g pulls up there.
+    floats.at.xyz = [0.1, 0.0, 0.0];
+    assert_all_near(&moves(&[floats], 1.0, [0.0; 6]), &[0.0, -0.1 * MASS * G / INERTIA, 0.0, 0.0, 0.0, 0.0]);
+}
+
+#[test]
+fn a_sphere_in_water_falls_as_with_half_the_water_more() {
+    let (volume, density) = (0.0011, 1000.0);
+    let half = 0.5 * density * volume;
+    let added = [[0.0; 6].as_slice(), &[half, 0.0, 0.0, half, 0.0, half], &[0.0; 9]].concat();
+    let effects = [on(EffectId::buoyancy, "ball", &[volume, density]), on(EffectId::added_mass, "ball", &added)];
+    assert_all_near(&moves(&effects, 1.0, [0.0; 6]), &[0.0, 0.0, 0.0, 0.0, 0.0, -G * (MASS - density * volume) / (MASS + half)]);
+}
+
+/// Kirchhoff's equations: a long body in water turns broadside on (Munk's moment (m_x − m_z) u w).
+#[test]
+fn added_mass_turns_a_body_broadside_on() {
+    let (x, z) = (0.4, 1.7);
+    let added = [[0.0; 6].as_slice(), &[x, 0.0, 0.0, z, 0.0, z], &[0.0; 9]].concat();
+    let effects = [on(EffectId::added_mass, "ball", &added)];
+    let (u, w) = (1.5, -0.6);
+    let found = moves(&effects, 1.0, [0.0, 0.0, 0.0, u, 0.0, w]);
+    // I ω̇ = −p × v with p the momentum of the fluid: (v × p)_y = w (x u) − u (z w), and gravity on the ball alone.
+    assert_all_near(&found, &[0.0, -(w * x * u - u * z * w) / INERTIA, 0.0, 0.0, 0.0, -G * MASS / (MASS + z)]);
+}
+
+#[test]
+fn a_ball_on_the_ground_rests_where_its_weight_is_held() {
+    let (radius, stiffness) = (0.1, 5e3);
+    let ground = |friction: f64| on(EffectId::contact, "ball", &[radius, stiffness, 0.4, friction, 1e-9, 0.0, 0.0, 3.0, 0.5]);
+    let rest = 0.5 + radius - MASS * G / stiffness;
+    assert_all_near(&moves(&[ground(0.6)], rest, [0.0; 6]), &[0.0; 6]);
+    let in_the_air = moves(&[ground(0.6)], 0.7, [0.0; 6]);
+    assert_all_near(&in_the_air, &[0.0, 0.0, 0.0, 0.0, 0.0, -G]);
+    // Falling: k x (1 + c ẋ).
+    assert_all_near(&moves(&[ground(0.6)], rest, [0.0, 0.0, 0.0, 0.0, 0.0, -2.0]), &[0.0, 0.0, 0.0, 0.0, 0.0, G * 1.8 - G]);
+    // Leaving faster than it springs back: nothing holds it.
+    assert_all_near(&moves(&[ground(0.6)], rest, [0.0, 0.0, 0.0, 0.0, 0.0, 3.0]), &[0.0, 0.0, 0.0, 0.0, 0.0, -G]);
+    // Sliding: μ m g at the lowest point, which turns the ball.
+    let sliding = moves(&[ground(0.6)], rest, [0.0, 0.0, 0.0, 1.0, 0.0, 0.0]);
+    assert_all_near(&sliding, &[0.0, 0.6 * MASS * G * radius / INERTIA, 0.0, -0.6 * G, 0.0, 0.0]);
+    // Rolling: the lowest point stands still.
+    let v = [0.0, 2.0, 0.0, 2.0 * radius, 0.0, 0.0];
+    let w = turned(v);
+    assert_all_near(&moves(&[ground(0.6)], rest, v), &[0.0, 0.0, 0.0, -w[0], -w[1], -w[2]]);
+}
+
+/// Kinetic energy of a rotor counts: ½ I n² q̇².
+#[test]
+fn a_rotor_has_energy() {
+    let model = slide().with_effects(&[on(EffectId::armature, "slide", &[0.01, 20.0])]).expect("a rotor");
+    assert_near(call(&model, "kinetic_energy", &[&[0.0], &[3.0]])[0], 0.5 * (MASS + 4.0) * 9.0);
+}
+
+#[derive(Deserialize)]
+struct Answers {
+    engine: String,
+    cases: Vec<Answer>,
+}
+
+/// One robot subject to some effects.
+#[derive(Deserialize)]
+struct Answer {
+    robot: String,
+    case: String,
+    gravity: [f64; 3],
+    joints: Vec<String>,
+    effects: Vec<Written>,
+    states: Vec<State>,
+}
+
+#[derive(Deserialize)]
+struct Written {
+    effect: String,
+    on: String,
+    xyz: [f64; 3],
+    rpy: [f64; 3],
+    parameters: Vec<f64>,
+}
+
+#[derive(Deserialize)]
+struct State {
+    q: Vec<f64>,
+    v: Vec<f64>,
+    tau: Vec<f64>,
+    a: Vec<f64>,
+}
+
+/// `tests/oracles/effects_fixtures.py` wrote the answers.
+#[test]
+fn accelerations_are_mujocos() {
+    let answers: Answers = serde_json::from_str(include_str!("../../fixtures/effects/mujoco.json")).expect("the fixture");
+    assert_eq!(answers.cases.len(), 12, "{}", answers.engine);
+    for answer in &answers.cases {
+        let case = Case::bundled(articulated_models::robot(&answer.robot).expect("a bundled robot")).with_gravity(answer.gravity);
+        assert!(case.model.joints.iter().map(|j| &j.name).eq(&answer.joints), "{}", answer.robot);
+        let applied = |w: &Written| Applied {
+            effect: effect(&w.effect).expect("a known effect").id,
+            on: w.on.clone(),
+            at: Origin { xyz: w.xyz, rpy: w.rpy },
+            parameters: w.parameters.clone(),
+        };
+        let effects: Vec<Applied> = answer.effects.iter().map(applied).collect();
+        let model = case.model.with_effects(&effects).expect("effects that can be had");
+        for state in &answer.states {
+            let found = call(&model, "forward_dynamics", &[&state.q, &state.v, &state.tau]);
+            let scale = state.a.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
+            for (f, e) in found.iter().zip(&state.a) {
+                assert!((f - e).abs() <= 1e-10 * scale, "{} {}: {f} instead of {e}", answer.robot, answer.case);
+            }
+        }
+    }
+}
