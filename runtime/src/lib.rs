@@ -14,6 +14,9 @@ pub use articulated_core::{Scalar, spatial};
 #[cfg(feature = "macros")]
 pub use articulated_macros::robot;
 
+#[cfg(feature = "std")]
+pub mod simulate;
+
 #[cfg(feature = "urdf")]
 mod load;
 #[cfg(feature = "urdf")]

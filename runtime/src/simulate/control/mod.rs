@@ -1,0 +1,112 @@
+//! What moves the robot: torques as functions of time and state.
+
+mod pd;
+mod torque_table;
+
+pub use pd::Pd;
+pub use torque_table::{TableError, TorqueTable};
+
+/// What gives the torques, closed or open loop.
+///
+/// A closure `|t, q, v, tau| …` is a controller that acts continuously; it is asked for each evaluation of the dynamics, also in steps that are rejected later, and has to be a
+/// function of its arguments there. What remembers anything should be sampled: [`Hold`].
+pub trait Control {
+    /// The torques at time t, s, of the state q, v: tau `[nv]`, N·m|N, is zero when it comes.
+    fn torques(&mut self, t: f64, q: &[f64], v: &[f64], tau: &mut [f64]);
+
+    /// For a controller that is sampled, the time between its samples, s: at the start and every period from there it is asked once, the torques are held until the next
+    /// sample, and no step reaches over one.
+    fn period(&self) -> Option<f64> {
+        None
+    }
+
+    /// The next time after t at which the torques have a kink or a jump, s: a step ends there.
+    fn next_kink(&self, _t: f64) -> f64 {
+        f64::INFINITY
+    }
+
+    /// What the torques depend on. Linearly implicit steps take their derivatives, by differences.
+    fn depends_on(&self) -> Dependence {
+        Dependence { time: true, state: true }
+    }
+}
+
+/// What torques depend on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dependence {
+    /// On time.
+    pub time: bool,
+    /// On q and v.
+    pub state: bool,
+}
+
+impl Dependence {
+    pub(crate) const NOTHING: Self = Self { time: false, state: false };
+}
+
+impl<F: FnMut(f64, &[f64], &[f64], &mut [f64])> Control for F {
+    fn torques(&mut self, t: f64, q: &[f64], v: &[f64], tau: &mut [f64]) {
+        self(t, q, v, tau);
+    }
+}
+
+/// No torque.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct NoTorque;
+
+impl Control for NoTorque {
+    fn torques(&mut self, _: f64, _: &[f64], _: &[f64], _: &mut [f64]) {}
+
+    fn depends_on(&self) -> Dependence {
+        Dependence::NOTHING
+    }
+}
+
+/// Always the same torques.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Constant(Vec<f64>);
+
+impl Constant {
+    /// tau: `[nv]`, N·m|N.
+    pub fn new(tau: Vec<f64>) -> Self {
+        Self(tau)
+    }
+}
+
+impl Control for Constant {
+    fn torques(&mut self, _: f64, _: &[f64], _: &[f64], tau: &mut [f64]) {
+        tau.iter_mut().zip(&self.0).for_each(|(tau, given)| *tau = *given);
+    }
+
+    fn depends_on(&self) -> Dependence {
+        Dependence::NOTHING
+    }
+}
+
+/// A controller sampled with a period: zero-order hold.
+#[derive(Clone, Copy, Debug)]
+pub struct Hold<C> {
+    control: C,
+    period: f64,
+}
+
+impl<C: Control> Hold<C> {
+    /// Samples every `period` seconds; `None` if that is no length of time.
+    pub fn new(control: C, period: f64) -> Option<Self> {
+        (period > 0.0 && period.is_finite()).then_some(Self { control, period })
+    }
+}
+
+impl<C: Control> Control for Hold<C> {
+    fn torques(&mut self, t: f64, q: &[f64], v: &[f64], tau: &mut [f64]) {
+        self.control.torques(t, q, v, tau);
+    }
+
+    fn period(&self) -> Option<f64> {
+        Some(self.period)
+    }
+
+    fn depends_on(&self) -> Dependence {
+        Dependence::NOTHING
+    }
+}

@@ -1,0 +1,96 @@
+//! The blow between a point of the robot and a free ball: an instantaneous map.
+
+use articulated_core::dynamics::Dynamics;
+
+use super::{Action, Points};
+use crate::simulate::{SimulateError, StateError};
+
+/// A blow along a normal, without friction:
+///
+/// ```text
+/// p = (1 + e)·(v_n − v_b)/(nᵀ J M⁻¹ Jᵀ n + 1/m_b)      v += −M⁻¹ Jᵀ n p      v_b += p/m_b
+/// ```
+///
+/// with v_n = nᵀ J v, the velocity of the point along n, and J its translational Jacobian: Newton's law of restitution with the momentum of the whole robot,
+/// Brach, *Mechanical Impact Dynamics*, 1991, §3. A ball at rest leaves at (1 + e)·v_n·m_h/(m_h + m_b), where 1/m_h = nᵀ J M⁻¹ Jᵀ n. Energy lost:
+/// ½(1 − e²)(v_n − v_b)²·m_h m_b/(m_h + m_b).
+///
+/// The robot needs the functions `placements`, `jacobians_world_aligned` and `solve_mass_matrix`.
+pub struct Impact<'r, R: Dynamics<f64>> {
+    points: Points<'r, R>,
+    point: [f64; 3],
+    normal: [f64; 3],
+    mass: f64,
+    restitution: f64,
+    jacobians: Vec<f64>,
+    row: Vec<f64>,
+    response: Vec<f64>,
+}
+
+/// What a blow did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Struck {
+    /// The ball's speed along the normal after it, m/s.
+    pub ball_speed: f64,
+    /// Momentum handed over, N·s; zero if point and ball were not approaching.
+    pub impulse: f64,
+    /// m_h, kg: the mass that the ball feels.
+    pub effective_mass: f64,
+    /// Speed of the point towards the ball before it, m/s.
+    pub approach: f64,
+}
+
+impl<'r, R: Dynamics<f64>> Impact<'r, R> {
+    /// `frame`: number of the frame among the robot's; `point`: in the frame, m; `normal`: in base axes, from the point towards the ball; the ball's mass, kg;
+    /// the coefficient of restitution, from 0 to 1.
+    pub fn new(robot: &'r R, frame: usize, point: [f64; 3], normal: [f64; 3], mass: f64, restitution: f64) -> Result<Self, SimulateError> {
+        let (points, shape) = (Points::new(robot, frame)?, robot.shape());
+        let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
+        let all = [
+            ("normal", length, length > 0.0),
+            ("mass of the ball", mass, mass > 0.0),
+            ("restitution", restitution, (0.0..=1.0).contains(&restitution)),
+        ];
+        let wrong = all.into_iter().filter(|(_, x, right)| !right || !x.is_finite());
+        let wrong: Vec<_> = wrong.map(|(what, found, _)| StateError::Value { what, found }).collect();
+        if !wrong.is_empty() {
+            return Err(SimulateError::State(wrong));
+        }
+        let (nv, vectors) = (shape.nv, || vec![0.0; shape.nv]);
+        let jacobians = vec![0.0; 6 * nv * shape.frames];
+        let (row, response) = (vectors(), vectors());
+        let mut impact = Self { points, point, normal: normal.map(|n| n / length), mass, restitution, jacobians, row, response };
+        impact.strike(&vec![0.5; shape.nq], &mut vectors(), 0.0)?;
+        Ok(impact)
+    }
+
+    /// The state before becomes the state after: v `[nv]` is changed; `ball` is the ball's speed along the normal before, m/s.
+    pub fn strike(&mut self, q: &[f64], v: &mut [f64], ball: f64) -> Result<Struck, SimulateError> {
+        let nv = v.len();
+        self.points.point(q, self.point)?;
+        let [x, y, z] = self.points.turned(self.point);
+        let robot = self.points.robot;
+        robot.jacobians_world_aligned(&mut self.points.ws, q, &mut self.jacobians)?;
+        let j = &self.jacobians[6 * nv * self.points.frame..];
+        let n = self.normal;
+        // nᵀ(ṗ + ω × r) = nᵀ ṗ + ωᵀ(r × n)
+        let arm = [y * n[2] - z * n[1], z * n[0] - x * n[2], x * n[1] - y * n[0]];
+        for (i, row) in self.row.iter_mut().enumerate() {
+            *row = (0..3).map(|k| arm[k] * j[k * nv + i] + n[k] * j[(3 + k) * nv + i]).sum();
+        }
+        robot.solve_mass_matrix(&mut self.points.ws, q, &self.row, &mut self.response)?;
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let (inverse, approach) = (dot(&self.row, &self.response), dot(&self.row, v) - ball);
+        let impulse = (1.0 + self.restitution) * approach.max(0.0) / (inverse + 1.0 / self.mass);
+        v.iter_mut().zip(&self.response).for_each(|(v, r)| *v -= r * impulse);
+        Ok(Struck { ball_speed: ball + impulse / self.mass, impulse, effective_mass: 1.0 / inverse, approach })
+    }
+
+    /// The blow against a ball at rest, as what is done at an event; the ball's speed, m/s, is what the map gives.
+    pub fn action<'a>(mut self) -> Action<'a>
+    where
+        Self: 'a,
+    {
+        Action::Map(Box::new(move |_, q, v| Ok(Some(self.strike(q, v, 0.0)?.ball_speed))))
+    }
+}

@@ -1,0 +1,159 @@
+//! Events: what happens at times that nobody knows beforehand.
+
+mod impact;
+pub(crate) mod watch;
+
+use articulated_core::dynamics::Dynamics;
+
+pub use impact::{Impact, Struck};
+
+use super::{SimulateError, StateError};
+
+/// Which way an event's function goes through zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Direction {
+    /// From below to above.
+    Rising,
+    /// From above to below.
+    Falling,
+    /// Both.
+    #[default]
+    Either,
+}
+
+/// A function of time and state, g(t, q, v).
+type Function<'a> = dyn FnMut(f64, &[f64], &[f64]) -> f64 + 'a;
+
+/// A map of the state at time t: q `[nq]` and v `[nv]` may be changed; it may give a number to be recorded.
+pub type Map<'a> = dyn FnMut(f64, &mut [f64], &mut [f64]) -> Result<Option<f64>, SimulateError> + 'a;
+
+/// What is done at an event; it is recorded in any case.
+#[derive(Default)]
+pub enum Action<'a> {
+    /// Nothing more.
+    #[default]
+    Record,
+    /// The motion ends.
+    Stop,
+    /// The state is mapped, and the motion goes on from there.
+    Map(Box<Map<'a>>),
+}
+
+/// Something that happens where g(t, q, v) goes through zero.
+///
+/// g is looked at eleven times a step on the integrator's curve: at its ends, and between so closely that a zero between two of them is found where g changes its
+/// sign, and a pair of zeros where |g| has a least value among them. What is missed is a pair that comes and goes between two neighbours without |g| falling towards them:
+/// less than an eighth of a step, which `max_step` can bound.
+pub struct Event<'a> {
+    pub(crate) name: String,
+    pub(crate) direction: Direction,
+    pub(crate) action: Action<'a>,
+    pub(crate) function: Box<Function<'a>>,
+}
+
+impl<'a> Event<'a> {
+    /// An event where g(t, q, v) goes through zero, either way; it is recorded.
+    pub fn new(name: impl Into<String>, g: impl FnMut(f64, &[f64], &[f64]) -> f64 + 'a) -> Self {
+        Self { name: name.into(), direction: Direction::Either, action: Action::Record, function: Box::new(g) }
+    }
+
+    /// Only where g goes this way.
+    #[must_use]
+    pub fn direction(mut self, direction: Direction) -> Self {
+        self.direction = direction;
+        self
+    }
+
+    /// What is done.
+    #[must_use]
+    pub fn action(mut self, action: Action<'a>) -> Self {
+        self.action = action;
+        self
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Coordinate i of q leaves the limits: g = (q − lower)(upper − q)/(upper − lower), falling; with one bound infinite the distance from the other.
+    pub fn limit(name: impl Into<String>, i: usize, lower: f64, upper: f64) -> Self {
+        let g = move |_: f64, q: &[f64], _: &[f64]| match (lower.is_finite(), upper.is_finite()) {
+            (true, true) => (q[i] - lower) * (upper - q[i]) / (upper - lower),
+            (true, false) => q[i] - lower,
+            _ => upper - q[i],
+        };
+        Self::new(name, g).direction(Direction::Falling)
+    }
+
+    /// Rate i of v begins or ceases to slip: |v| passes the speed at which the friction law is smoothed. Rising: it slips; falling: it sticks.
+    pub fn stick_slip(name: impl Into<String>, i: usize, speed: f64) -> Self {
+        Self::new(name, move |_, _, v: &[f64]| v[i].abs() - speed)
+    }
+
+    /// A sphere about a point of a frame touches the plane nᵀx = height of the base frame: its distance falls through zero.
+    ///
+    /// `frame`: number of the frame among the robot's; `point`: in the frame, m; radius, m; `normal`: in base axes, of any length but zero. The robot needs the function
+    /// `placements`.
+    pub fn contact<R: Dynamics<f64>>(
+        name: impl Into<String>,
+        robot: &'a R,
+        frame: usize,
+        point: [f64; 3],
+        radius: f64,
+        normal: [f64; 3],
+        height: f64,
+    ) -> Result<Self, SimulateError>
+    where
+        R::Workspace: 'a,
+    {
+        let mut place = Points::new(robot, frame)?;
+        let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
+        if !(length > 0.0 && length.is_finite()) {
+            return Err(SimulateError::State(vec![StateError::Value { what: "length of the normal", found: length }]));
+        }
+        let g = move |_: f64, q: &[f64], _: &[f64]| match place.point(q, point) {
+            Ok(x) => x.iter().zip(normal).map(|(x, n)| x * n).sum::<f64>() / length - height - radius,
+            Err(_) => f64::NAN, // it was tried when this was made
+        };
+        Ok(Self::new(name, g).direction(Direction::Falling))
+    }
+}
+
+/// Where points of a frame are.
+struct Points<'r, R: Dynamics<f64>> {
+    robot: &'r R,
+    ws: R::Workspace,
+    placements: Vec<f64>,
+    frame: usize,
+}
+
+impl<'r, R: Dynamics<f64>> Points<'r, R> {
+    fn new(robot: &'r R, frame: usize) -> Result<Self, SimulateError> {
+        let shape = robot.shape();
+        if frame >= shape.frames {
+            return Err(SimulateError::State(vec![StateError::Length { vector: "frames", found: shape.frames, expected: frame + 1 }]));
+        }
+        let mut points = Self { robot, ws: robot.workspace(), placements: vec![0.0; 12 * shape.frames], frame };
+        points.point(&vec![0.5; shape.nq], [0.0; 3])?;
+        Ok(points)
+    }
+
+    /// The point in the base frame, m.
+    fn point(&mut self, q: &[f64], point: [f64; 3]) -> Result<[f64; 3], SimulateError> {
+        self.robot.placements(&mut self.ws, q, &mut self.placements)?;
+        let x = &self.placements[12 * self.frame..12 * (self.frame + 1)];
+        let turned = turn(x, point);
+        Ok([0, 1, 2].map(|k| x[9 + k] + turned[k]))
+    }
+
+    /// From axes of the frame to axes of the base, as of the last call of `point`.
+    fn turned(&self, vector: [f64; 3]) -> [f64; 3] {
+        turn(&self.placements[12 * self.frame..], vector)
+    }
+}
+
+/// R v, the rotation row by row.
+fn turn(r: &[f64], v: [f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|k| r[3 * k] * v[0] + r[3 * k + 1] * v[1] + r[3 * k + 2] * v[2])
+}

@@ -1,0 +1,62 @@
+//! The curve of third degree through both ends of a step, for methods that have none of their own.
+
+use articulated_core::dynamics::Dynamics;
+
+use super::Start;
+use crate::simulate::system::System;
+use crate::simulate::{Control, SimulateError};
+
+/// Slopes at both ends.
+#[derive(Clone, Debug)]
+pub(super) struct Hermite {
+    first: Vec<f64>,
+    last: Vec<f64>,
+    ready: bool,
+}
+
+impl Hermite {
+    pub(super) fn new(n: usize) -> Self {
+        Self { first: vec![0.0; n], last: vec![0.0; n], ready: false }
+    }
+
+    /// Another step was made.
+    pub(super) fn forget(&mut self) {
+        self.ready = false;
+    }
+
+    /// The slope at the end, if it is known.
+    pub(super) fn last(&self) -> Option<&[f64]> {
+        self.ready.then_some(&self.last)
+    }
+
+    /// One evaluation; two where the slope at the start is not known.
+    pub(super) fn prepare<R: Dynamics<f64>>(
+        &mut self,
+        system: &mut System<R>,
+        control: &mut dyn Control,
+        (start, h): (Start, f64),
+        end: &[f64],
+        known: bool,
+    ) -> Result<(), SimulateError> {
+        if self.ready {
+            return Ok(());
+        }
+        if known {
+            self.first.copy_from_slice(start.f);
+        } else {
+            system.rate(control, start.t, start.y, &mut self.first)?;
+        }
+        system.rate(control, start.t + h, end, &mut self.last)?;
+        self.ready = true;
+        Ok(())
+    }
+
+    /// Hairer, Nørsett & Wanner 1993, (II.6.7).
+    pub(super) fn between(&self, s: f64, start: &[f64], h: f64, end: &[f64], out: &mut [f64]) {
+        for (i, out) in out.iter_mut().enumerate() {
+            let (a, b) = (start[i], end[i]);
+            let bend = (1.0 - 2.0 * s) * (b - a) + (s - 1.0) * h * self.first[i] + s * h * self.last[i];
+            *out = (1.0 - s) * a + s * b + s * (s - 1.0) * bend;
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Integrators, one file each: one step in the chart of the manifold, an error, a curve between.
+
+mod dop853;
+mod dop853_coefficients;
+mod dopri5;
+mod hermite;
+mod lie_midpoint;
+mod lu;
+mod rk4;
+mod rodas4;
+mod semi_implicit_euler;
+mod stages;
+
+use articulated_core::dynamics::Dynamics;
+
+use super::manifold::Manifold;
+use super::step_control::{Controller, Error, Norm};
+use super::system::System;
+use super::{Control, IntegratorId, SimulateError};
+
+/// Where a step begins: time, y with u = 0, and dy/dt there (not of those that say they do not want it).
+#[derive(Clone, Copy)]
+pub(crate) struct Start<'a> {
+    pub(crate) t: f64,
+    pub(crate) y: &'a [f64],
+    pub(crate) f: &'a [f64],
+}
+
+/// What an integrator does. All vectors are as long as y.
+pub(crate) trait Method<R: Dynamics<f64>> {
+    /// Another motion begins.
+    fn reset(&mut self) {}
+
+    /// One step of length h from `start` to `end`; its error if `norm` is given and there is an estimate, else zero.
+    fn step(
+        &mut self,
+        system: &mut System<R>,
+        control: &mut dyn Control,
+        start: Start,
+        h: f64,
+        end: &mut [f64],
+        norm: &Norm,
+    ) -> Result<Error, SimulateError>;
+
+    /// dy/dt at the end of the last step, if it was computed, in the chart of that step.
+    fn last_rate(&self) -> Option<&[f64]> {
+        None
+    }
+
+    /// Whether a step needs dy/dt where it begins.
+    fn wants_rate(&self) -> bool {
+        true
+    }
+
+    /// What remains to be done of a step that is accepted.
+    fn finish(&mut self, _: &mut System<R>, _: &mut dyn Control, _: Start, _: f64, _: &mut [f64]) -> Result<(), SimulateError> {
+        Ok(())
+    }
+
+    /// Makes ready for [`Method::between`] on the last step.
+    fn prepare(
+        &mut self,
+        system: &mut System<R>,
+        control: &mut dyn Control,
+        start: Start,
+        h: f64,
+        end: &[f64],
+    ) -> Result<(), SimulateError>;
+
+    /// y at t + θ·h of the last step, θ from 0 to 1.
+    fn between(&self, theta: f64, start: Start, h: f64, end: &[f64], out: &mut [f64]);
+
+    /// How it chooses steps, if it can.
+    fn controller(&self) -> Option<Controller> {
+        None
+    }
+
+    /// Largest |factor| by which a step of length h multiplies a motion with the characteristic equation λ² = aλ + b; `None` for implicit methods.
+    fn amplification(&self, _a: f64, _b: f64, _h: f64) -> Option<f64> {
+        None
+    }
+
+    /// |hλ| of the fastest motion that the last step saw, and the most that is stable, where the method can say.
+    fn stiffness(&self, _h: f64, _end: &[f64]) -> Option<(f64, f64)> {
+        None
+    }
+}
+
+/// The integrator of this name, on this manifold.
+pub(crate) fn method<R: Dynamics<f64>>(id: IntegratorId, manifold: &Manifold) -> Box<dyn Method<R>> {
+    let nv = manifold.nv;
+    let n = 2 * nv + 2;
+    match id {
+        IntegratorId::semi_implicit_euler => Box::new(semi_implicit_euler::SemiImplicitEuler::new(n)),
+        IntegratorId::rk4 => Box::new(rk4::Rk4::new(n)),
+        IntegratorId::dopri5 => Box::new(dopri5::Dopri5::new(n)),
+        IntegratorId::dop853 => Box::new(dop853::Dop853::new(n)),
+        IntegratorId::rodas4 => Box::new(rodas4::Rodas4::new(manifold)),
+        IntegratorId::lie_midpoint => Box::new(lie_midpoint::LieMidpoint::new(nv)),
+    }
+}
+
+/// The roots of λ² = aλ + b as (re, im), (re, im).
+pub(crate) fn roots(a: f64, b: f64) -> [(f64, f64); 2] {
+    let (half, disc) = (0.5 * a, 0.25 * a * a + b);
+    if disc < 0.0 {
+        let im = (-disc).sqrt();
+        return [(half, im), (half, -im)];
+    }
+    let big = half + disc.sqrt().copysign(half);
+    [(big, 0.0), (if big == 0.0 { 0.0 } else { -b / big }, 0.0)]
+}
+
+/// Largest |P(hλ)| over the roots, P a polynomial by its coefficients from the constant up.
+pub(crate) fn largest_of_polynomial(coefficients: &[f64], a: f64, b: f64, h: f64) -> f64 {
+    let size = |(re, im): (f64, f64)| {
+        let (x, y) = (h * re, h * im);
+        let horner = |(p, q): (f64, f64), c: &f64| (p * x - q * y + c, p * y + q * x);
+        let (p, q) = coefficients.iter().rev().fold((0.0, 0.0), horner);
+        p.hypot(q)
+    };
+    roots(a, b).into_iter().map(size).fold(0.0, f64::max)
+}

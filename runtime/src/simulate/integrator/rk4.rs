@@ -1,0 +1,65 @@
+//! The classical Runge–Kutta method: four stages, order 4.
+
+use articulated_core::dynamics::Dynamics;
+
+use super::hermite::Hermite;
+use super::stages::Stages;
+use super::{Method, Start, largest_of_polynomial};
+use crate::simulate::step_control::{Error, Norm};
+use crate::simulate::system::System;
+use crate::simulate::{Control, SimulateError};
+
+pub(crate) struct Rk4 {
+    stages: Stages,
+    curve: Hermite,
+}
+
+impl Rk4 {
+    pub(super) fn new(n: usize) -> Self {
+        Self { stages: Stages::new(n, 4), curve: Hermite::new(n) }
+    }
+}
+
+impl<R: Dynamics<f64>> Method<R> for Rk4 {
+    fn step(
+        &mut self,
+        system: &mut System<R>,
+        control: &mut dyn Control,
+        start: Start,
+        h: f64,
+        end: &mut [f64],
+        _: &Norm,
+    ) -> Result<Error, SimulateError> {
+        self.curve.forget();
+        let k = &mut self.stages;
+        k.begin(start.f);
+        k.stage(system, control, (start, h), 1, 0.5, &[0.5])?;
+        k.stage(system, control, (start, h), 2, 0.5, &[0.0, 0.5])?;
+        k.stage(system, control, (start, h), 3, 1.0, &[0.0, 0.0, 1.0])?;
+        k.combine(start.y, h, &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0], end);
+        Ok(Error { size: 0.0, index: 0 })
+    }
+
+    fn last_rate(&self) -> Option<&[f64]> {
+        self.curve.last()
+    }
+
+    fn prepare(
+        &mut self,
+        system: &mut System<R>,
+        control: &mut dyn Control,
+        start: Start,
+        h: f64,
+        end: &[f64],
+    ) -> Result<(), SimulateError> {
+        self.curve.prepare(system, control, (start, h), end, true)
+    }
+
+    fn between(&self, theta: f64, start: Start, h: f64, end: &[f64], out: &mut [f64]) {
+        self.curve.between(theta, start.y, h, end, out);
+    }
+
+    fn amplification(&self, a: f64, b: f64, h: f64) -> Option<f64> {
+        Some(largest_of_polynomial(&[1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0], a, b, h))
+    }
+}

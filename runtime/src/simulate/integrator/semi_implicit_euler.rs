@@ -1,0 +1,63 @@
+//! v_1 = v_0 + h·a(t_0, q_0, v_0), q_1 = q_0 ⊕ h·v_1: order 1, symplectic where forces depend on q alone.
+
+use articulated_core::dynamics::Dynamics;
+
+use super::hermite::Hermite;
+use super::{Method, Start, roots};
+use crate::simulate::step_control::{Error, Norm};
+use crate::simulate::system::System;
+use crate::simulate::{Control, SimulateError};
+
+pub(crate) struct SemiImplicitEuler {
+    curve: Hermite,
+}
+
+impl SemiImplicitEuler {
+    pub(super) fn new(n: usize) -> Self {
+        Self { curve: Hermite::new(n) }
+    }
+}
+
+impl<R: Dynamics<f64>> Method<R> for SemiImplicitEuler {
+    fn step(
+        &mut self,
+        system: &mut System<R>,
+        _: &mut dyn Control,
+        start: Start,
+        h: f64,
+        end: &mut [f64],
+        _: &Norm,
+    ) -> Result<Error, SimulateError> {
+        self.curve.forget();
+        let nv = system.nv();
+        let (u, rest) = end.split_at_mut(nv);
+        rest.iter_mut().zip(&start.y[nv..]).zip(&start.f[nv..]).for_each(|((end, y), f)| *end = y + h * f);
+        u.iter_mut().zip(rest).for_each(|(u, v)| *u = h * *v);
+        Ok(Error { size: 0.0, index: 0 })
+    }
+
+    fn last_rate(&self) -> Option<&[f64]> {
+        self.curve.last()
+    }
+
+    fn prepare(
+        &mut self,
+        system: &mut System<R>,
+        control: &mut dyn Control,
+        start: Start,
+        h: f64,
+        end: &[f64],
+    ) -> Result<(), SimulateError> {
+        self.curve.prepare(system, control, (start, h), end, true)
+    }
+
+    fn between(&self, theta: f64, start: Start, h: f64, end: &[f64], out: &mut [f64]) {
+        self.curve.between(theta, start.y, h, end, out);
+    }
+
+    /// One step of ü = a u̇ + b u: the matrix [1 + h²b, h(1 + ha); hb, 1 + ha], μ² = (2 + ha + h²b) μ − (1 + ha).
+    fn amplification(&self, a: f64, b: f64, h: f64) -> Option<f64> {
+        let both = roots(2.0 + h * a + h * h * b, -(1.0 + h * a));
+        Some(both.into_iter().map(|(re, im)| re.hypot(im)).fold(0.0, f64::max))
+    }
+}

@@ -1,0 +1,230 @@
+//! Which coordinates are quaternions, and motion in a chart of step vectors.
+//!
+//! A step of an integrator is made in the step vector u of q = q_0 ⊕ u, where q_0 is the configuration at its start: plain numbers, in which any Runge–Kutta
+//! method keeps its order and no quaternion leaves its sphere. Joints that turn freely move as
+//!
+//! ```text
+//! q = q_0·exp(u)      u̇ = J_r(u)⁻¹ v = v + ½ [u, v] + …
+//! ```
+//!
+//! with the inverse of the right Jacobian of SO(3) or SE(3) in closed form (Munthe-Kaas, BIT 38, 1998; Hairer, Lubich & Wanner 2006, §IV.8); for every other u̇ = v.
+//! J_r is regular up to a turn by 2π in one step.
+
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+use articulated_core::algorithm::FunctionError;
+use articulated_core::dynamics::Dynamics;
+use articulated_core::nalgebra::Matrix6;
+use articulated_core::spatial::screw::{cross_matrix, right_jacobian_inverse};
+use articulated_core::spatial::{Twist, Vector3};
+
+use super::{SimulateError, StateError};
+
+/// A joint whose coordinates are more than its rates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Free {
+    /// First of its coordinates.
+    pub(crate) q: usize,
+    /// First of its rates: the three of the angular velocity.
+    pub(crate) v: usize,
+    /// Whether it moves too: seven coordinates and six rates instead of four and three.
+    pub(crate) moves: bool,
+}
+
+impl Free {
+    /// Where its quaternion is.
+    pub(crate) fn quaternion(&self) -> Range<usize> {
+        let first = self.q + if self.moves { 3 } else { 0 };
+        first..first + 4
+    }
+
+    /// Number of its rates.
+    pub(crate) fn rates(&self) -> usize {
+        if self.moves { 6 } else { 3 }
+    }
+}
+
+/// The manifold of a robot's configurations.
+#[derive(Clone, Debug)]
+pub(crate) struct Manifold {
+    pub(crate) nq: usize,
+    pub(crate) nv: usize,
+    /// Joints with a quaternion; all other coordinates are plain, in order.
+    pub(crate) free: Vec<Free>,
+}
+
+impl Manifold {
+    /// What the function `integrate` shows: q = (½, ½, …) is a configuration of any robot, and a small turn of a joint moves its quaternion alone.
+    pub(crate) fn of<R: Dynamics<f64>>(robot: &R) -> Result<Self, FunctionError> {
+        let shape = robot.shape();
+        let mut manifold = Self { nq: shape.nq, nv: shape.nv, free: Vec::new() };
+        let (mut q, mut v) = (0, 0);
+        while manifold.free.len() < shape.nq - shape.nv && v < shape.nv {
+            match moved(robot, v)? {
+                changed if changed.len() == 1 => (q, v) = (q + 1, v + 1),
+                changed => {
+                    let free = Free { q, v, moves: changed.start > q };
+                    (q, v) = (free.quaternion().end, v + free.rates());
+                    manifold.free.push(free);
+                }
+            }
+        }
+        Ok(manifold)
+    }
+
+    /// Whether every coordinate is plain.
+    pub(crate) fn is_flat(&self) -> bool {
+        self.free.is_empty()
+    }
+
+    /// q ⊕ u.
+    pub(crate) fn step<R: Dynamics<f64>>(
+        &self,
+        robot: &R,
+        ws: &mut R::Workspace,
+        q: &[f64],
+        u: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), FunctionError> {
+        if self.is_flat() {
+            out.iter_mut().zip(q).zip(u).for_each(|((out, q), u)| *out = q + u);
+            return Ok(());
+        }
+        robot.integrate(ws, q, u, out)
+    }
+
+    /// u̇ at the rates v; not a number beyond a turn by 2π.
+    pub(crate) fn rates(&self, u: &[f64], v: &[f64], out: &mut [f64]) {
+        out.copy_from_slice(v);
+        for free in &self.free {
+            let (omega, at) = (three(u, free.v), free.v);
+            if omega.norm_squared() >= TAU * TAU {
+                out[at..at + free.rates()].fill(f64::NAN);
+            } else if free.moves {
+                let rate = Twist { angular: omega, linear: three(u, at + 3) }.right_jacobian_inverse()
+                    * articulated_core::nalgebra::Vector6::from_column_slice(&v[at..at + 6]);
+                out[at..at + 6].copy_from_slice(rate.as_slice());
+            } else {
+                out[at..at + 3].copy_from_slice((right_jacobian_inverse(omega) * three(v, at)).as_slice());
+            }
+        }
+    }
+
+    /// ∂u̇/∂u at u = 0 for one joint: −½ ad(v), in the first 3 or 6 rows and columns.
+    pub(crate) fn rates_derivative(free: &Free, v: &[f64]) -> Matrix6<f64> {
+        let angular = three(v, free.v);
+        if free.moves {
+            return Twist { angular, linear: three(v, free.v + 3) }.ad() * -0.5;
+        }
+        let mut all = Matrix6::zeros();
+        all.fixed_view_mut::<3, 3>(0, 0).copy_from(&(cross_matrix(angular) * -0.5));
+        all
+    }
+
+    /// What errors of the steps of q are relative to: the coordinate, 1 for a turn, the distance from the origin for a position.
+    pub(crate) fn magnitudes(&self, q: &[f64], out: &mut [f64]) {
+        let (mut at, mut free) = ((0, 0), self.free.iter());
+        loop {
+            let next = free.next();
+            let (to_q, to_v) = next.map_or((self.nq, self.nv), |f| (f.q, f.v));
+            out[at.1..to_v].iter_mut().zip(&q[at.0..to_q]).for_each(|(out, q)| *out = q.abs());
+            let Some(f) = next else { return };
+            out[f.v..f.v + 3].fill(1.0);
+            if f.moves {
+                out[f.v + 3..f.v + 6].fill(three(q, f.q).norm());
+            }
+            at = (f.quaternion().end, f.v + f.rates());
+        }
+    }
+
+    /// The step vector that turns by 2 atan(½|w|) about w = step where exp turns by |w|: Cayley's map as an exponential. On SE(3) the same with dual numbers,
+    /// so that what it carries is (1 − ½ ad)⁻¹(1 + ½ ad). Plain coordinates stay as they are.
+    pub(crate) fn cayley(&self, step: &mut [f64]) {
+        for free in &self.free {
+            let (w, at) = (three(step, free.v), free.v);
+            let x = w.norm_squared();
+            let (f, rate) = arc(x);
+            if free.moves {
+                // f(x + 2ε w·s)·(w + ε s)
+                let s = three(step, at + 3);
+                let moved = s * f + w * (2.0 * rate * w.dot(&s));
+                step[at + 3..at + 6].copy_from_slice(moved.as_slice());
+            }
+            step[at..at + 3].copy_from_slice((w * f).as_slice());
+        }
+    }
+
+    /// What is wrong with a state to begin with.
+    pub(crate) fn check(&self, q: &[f64], v: &[f64]) -> Result<(), SimulateError> {
+        let mut wrong = Vec::new();
+        for (vector, x, expected) in [("q", q, self.nq), ("v", v, self.nv)] {
+            if x.len() != expected {
+                wrong.push(StateError::Length { vector, found: x.len(), expected });
+            }
+            let bad = x.iter().enumerate().filter(|(_, x)| !x.is_finite());
+            wrong.extend(bad.map(|(index, &found)| StateError::NotFinite { vector, index, found }));
+        }
+        for free in self.free.iter().filter(|_| q.len() == self.nq) {
+            let norm = q[free.quaternion()].iter().map(|x| x * x).sum::<f64>().sqrt();
+            if (norm - 1.0).abs() > 1e-6 {
+                wrong.push(StateError::Quaternion { index: free.quaternion().start, norm });
+            }
+        }
+        if wrong.is_empty() { Ok(()) } else { Err(SimulateError::State(wrong)) }
+    }
+}
+
+/// Which coordinates a turn or shift along rate `v` changes.
+fn moved<R: Dynamics<f64>>(robot: &R, v: usize) -> Result<Range<usize>, FunctionError> {
+    let (shape, mut ws) = (robot.shape(), robot.workspace());
+    let (half, mut range) = (vec![0.5; shape.nq], shape.nq..0);
+    let (mut step, mut out) = (vec![0.0; shape.nv], vec![0.0; shape.nq]);
+    for by in [0.25, -0.25] {
+        step[v] = by;
+        robot.integrate(&mut ws, &half, &step, &mut out)?;
+        for i in (0..shape.nq).filter(|&i| (out[i] - 0.5).abs() > 1e-9) {
+            range = range.start.min(i)..range.end.max(i + 1);
+        }
+    }
+    Ok(range)
+}
+
+fn three(x: &[f64], at: usize) -> Vector3<f64> {
+    Vector3::new(x[at], x[at + 1], x[at + 2])
+}
+
+/// f = 2 atan(½θ)/θ and df/dx of x = θ².
+fn arc(x: f64) -> (f64, f64) {
+    let y = 0.25 * x;
+    if y < 1e-2 {
+        // Σ (−y)ᵏ/(2k + 1), and its derivative
+        let (mut f, mut rate, mut power) = (0.0, 0.0, 1.0);
+        for k in 0..9 {
+            let k = f64::from(k);
+            f += power / (2.0 * k + 1.0);
+            rate -= (k + 1.0) * power / (2.0 * k + 3.0);
+            power *= -y;
+        }
+        return (f, 0.25 * rate);
+    }
+    let h = y.sqrt();
+    let f = h.atan() / h;
+    (f, 0.25 * (1.0 / (1.0 + y) - f) / (2.0 * y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::arc;
+
+    #[test]
+    fn series_and_closed_form_of_the_arc_meet() {
+        for y in [0.0099, 0.0101, 0.5, 4.0_f64] {
+            let (f, rate) = arc(4.0 * y);
+            let exact = y.sqrt().atan() / y.sqrt();
+            let slope = (1.0 / (1.0 + y) - exact) / (8.0 * y);
+            assert!((f - exact).abs() < 1e-15 && (rate - slope).abs() < 1e-14, "{y}: {f} {exact} {rate} {slope}");
+        }
+        assert_eq!(arc(0.0), (1.0, -1.0 / 12.0));
+    }
+}

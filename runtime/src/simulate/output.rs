@@ -1,0 +1,128 @@
+//! When something is recorded, and what.
+
+use articulated_core::algorithm::FunctionError;
+use articulated_core::dynamics::Dynamics;
+
+use super::curve::Point;
+use super::system::System;
+use super::{Control, Output, Recording, Settings, SimulateError};
+
+/// The times of output, one after the other.
+#[derive(Clone, Debug)]
+pub(crate) struct Times {
+    next: usize,
+}
+
+impl Times {
+    pub(crate) fn begin() -> Self {
+        Self { next: 0 }
+    }
+
+    /// The next time after the start at which something is recorded; infinite where each step is, or none.
+    pub(crate) fn next(&self, settings: &Settings) -> f64 {
+        match &settings.output {
+            Output::Every(s) => {
+                let t = settings.start + (self.next + 1) as f64 * s;
+                if t < settings.end - 1e-9 * s { t } else { settings.end }
+            }
+            Output::At(times) => times.get(self.next).copied().unwrap_or(f64::INFINITY),
+            Output::Steps => f64::INFINITY,
+            Output::Ends => settings.end,
+        }
+    }
+
+    pub(crate) fn advance(&mut self) {
+        self.next += 1;
+    }
+
+    /// How many there will be, as far as that is known.
+    pub(crate) fn count(settings: &Settings) -> usize {
+        match &settings.output {
+            Output::Every(s) => ((settings.end - settings.start) / s).ceil() as usize + 3,
+            Output::At(times) => times.len() + 2,
+            Output::Steps => 1024,
+            Output::Ends => 3,
+        }
+    }
+}
+
+/// What a robot can tell about its motion.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Known {
+    kinetic: bool,
+    potential: bool,
+    momentum: bool,
+    tau: Vec<f64>,
+}
+
+impl Known {
+    /// By asking.
+    pub(crate) fn of<R: Dynamics<f64>>(system: &mut System<R>) -> Self {
+        let (q, v) = (system.origin.clone(), vec![0.0; system.nv()]);
+        let (robot, ws) = (system.robot, &mut system.ws);
+        let has = |r: Result<(), FunctionError>| r.is_ok();
+        Self {
+            kinetic: has(robot.kinetic_energy(ws, &q, &v, &mut [0.0])),
+            potential: has(robot.potential_energy(ws, &q, &mut [0.0])),
+            momentum: has(robot.centroidal_momentum(ws, &q, &v, &mut [0.0; 6])),
+            tau: v,
+        }
+    }
+
+    /// Room for a motion.
+    pub(crate) fn recording<R: Dynamics<f64>>(&self, system: &System<R>, settings: &Settings) -> Recording {
+        let (n, nq, nv) = (Times::count(settings), system.manifold.nq, system.manifold.nv);
+        let room = |wanted: bool, each: usize| Vec::with_capacity(if wanted { n * each } else { 0 });
+        let names = [("kinetic_energy", self.kinetic), ("potential_energy", self.potential), ("centroidal_momentum", self.momentum)];
+        Recording {
+            nq,
+            nv,
+            t: room(true, 1),
+            q: room(true, nq),
+            v: room(true, nv),
+            tau: room(true, nv),
+            kinetic: room(self.kinetic, 1),
+            potential: room(self.potential, 1),
+            work: room(true, 1),
+            dissipated: room(true, 1),
+            momentum: room(self.momentum, 6),
+            missing: names.into_iter().filter(|(_, there)| !there).map(|(name, _)| name).collect(),
+            events: Vec::with_capacity(16),
+            ..Recording::default()
+        }
+    }
+
+    /// One more record.
+    pub(crate) fn record<R: Dynamics<f64>>(
+        &mut self,
+        system: &mut System<R>,
+        control: &mut dyn Control,
+        point: &Point,
+        to: &mut Recording,
+    ) -> Result<(), SimulateError> {
+        let nv = system.nv();
+        let (q, v) = (&point.q, &point.y[nv..2 * nv]);
+        system.command(control, point.t, q, v, &mut self.tau);
+        to.t.push(point.t);
+        to.q.extend_from_slice(q);
+        to.v.extend_from_slice(v);
+        to.tau.extend_from_slice(&self.tau);
+        to.work.push(point.y[2 * nv]);
+        to.dissipated.push(point.y[2 * nv + 1]);
+        let (robot, ws, mut number) = (system.robot, &mut system.ws, [0.0]);
+        if self.kinetic {
+            robot.kinetic_energy(ws, q, v, &mut number)?;
+            to.kinetic.push(number[0]);
+        }
+        if self.potential {
+            robot.potential_energy(ws, q, &mut number)?;
+            to.potential.push(number[0]);
+        }
+        if self.momentum {
+            let mut six = [0.0; 6];
+            robot.centroidal_momentum(ws, q, v, &mut six)?;
+            to.momentum.extend_from_slice(&six);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,172 @@
+//! What is kept of a motion.
+
+use super::Direction;
+
+/// What was done.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Counts {
+    /// Steps accepted.
+    pub steps: u64,
+    /// Steps rejected.
+    pub rejected: u64,
+    /// Evaluations of forward dynamics.
+    pub evaluations: u64,
+    /// Evaluations of its derivatives.
+    pub derivatives: u64,
+    /// Matrices factorised.
+    pub factorizations: u64,
+    /// Rounds of the solution of implicit steps.
+    pub iterations: u64,
+    /// Events that happened.
+    pub events: u64,
+    /// The longest step, s.
+    pub largest_step: f64,
+    /// The shortest step, s.
+    pub smallest_step: f64,
+    /// When an explicit integrator was first held back by stiffness, s.
+    pub stiff_at: Option<f64>,
+}
+
+impl Default for Counts {
+    fn default() -> Self {
+        Self {
+            steps: 0,
+            rejected: 0,
+            evaluations: 0,
+            derivatives: 0,
+            factorizations: 0,
+            iterations: 0,
+            events: 0,
+            largest_step: 0.0,
+            smallest_step: f64::INFINITY,
+            stiff_at: None,
+        }
+    }
+}
+
+/// An event that happened.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hit {
+    /// Which of the events.
+    pub event: usize,
+    /// Its name.
+    pub name: String,
+    /// When, s.
+    pub t: f64,
+    /// Which way its function went through zero.
+    pub direction: Direction,
+    /// What the map of the event gave.
+    pub value: Option<f64>,
+}
+
+/// Why a motion ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Ended {
+    /// It did not: an error came first.
+    #[default]
+    Not,
+    /// At the last time.
+    AtEnd,
+    /// By an event; its index.
+    ByEvent(usize),
+    /// Who watched said so.
+    ByWatcher,
+}
+
+/// A motion at the times of output, row by row.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Recording {
+    /// Number of coordinates.
+    pub nq: usize,
+    /// Number of degrees of freedom.
+    pub nv: usize,
+    /// Times, s.
+    pub t: Vec<f64>,
+    /// Configurations, `[n][nq]`.
+    pub q: Vec<f64>,
+    /// Velocities, `[n][nv]`.
+    pub v: Vec<f64>,
+    /// Commanded torques, `[n][nv]`.
+    pub tau: Vec<f64>,
+    /// Kinetic energy, J; empty for a robot without the function.
+    pub kinetic: Vec<f64>,
+    /// Potential energy, J; empty for a robot without the function.
+    pub potential: Vec<f64>,
+    /// Work of the torques since the start, J: of those that the motors give, where there are some.
+    pub work: Vec<f64>,
+    /// Energy of the effects that are not conservative since the start, J; negative where they took some.
+    pub dissipated: Vec<f64>,
+    /// Momentum about the centre of mass [k; l], `[n][6]`, N·m·s and N·s, base axes; empty for a robot without the function.
+    pub momentum: Vec<f64>,
+    /// Functions that the robot was generated without, so that there is nothing of them here.
+    pub missing: Vec<&'static str>,
+    /// Events, in order.
+    pub events: Vec<Hit>,
+    /// What was done.
+    pub counts: Counts,
+    /// Why it ended.
+    pub ended: Ended,
+}
+
+impl Recording {
+    /// Number of records.
+    pub fn len(&self) -> usize {
+        self.t.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.t.is_empty()
+    }
+
+    /// Configuration i, `[nq]`.
+    ///
+    /// # Panics
+    /// This and the following if there is no record i.
+    pub fn q_at(&self, i: usize) -> &[f64] {
+        &self.q[i * self.nq..(i + 1) * self.nq]
+    }
+
+    /// Velocity i, `[nv]`.
+    pub fn v_at(&self, i: usize) -> &[f64] {
+        &self.v[i * self.nv..(i + 1) * self.nv]
+    }
+
+    /// Torques i, `[nv]`.
+    pub fn tau_at(&self, i: usize) -> &[f64] {
+        &self.tau[i * self.nv..(i + 1) * self.nv]
+    }
+
+    /// Momentum i, `[6]`, if it is there.
+    pub fn momentum_at(&self, i: usize) -> Option<&[f64]> {
+        self.momentum.get(i * 6..(i + 1) * 6)
+    }
+
+    /// T + U of record i, J, if both are there.
+    pub fn energy(&self, i: usize) -> Option<f64> {
+        Some(self.kinetic.get(i)? + self.potential.get(i)?)
+    }
+
+    /// What the balance of energy lacks in record i, J: T + U − (T + U at the start) − work − dissipated.
+    pub fn imbalance(&self, i: usize) -> Option<f64> {
+        Some(self.energy(i)? - self.energy(0)? - self.work[i] - self.dissipated[i])
+    }
+
+    /// Nothing, but the room and the names.
+    pub(crate) fn clear(&mut self) {
+        let columns = [
+            &mut self.t,
+            &mut self.q,
+            &mut self.v,
+            &mut self.tau,
+            &mut self.kinetic,
+            &mut self.potential,
+            &mut self.work,
+            &mut self.dissipated,
+            &mut self.momentum,
+        ];
+        columns.into_iter().for_each(Vec::clear);
+        self.events.clear();
+        (self.counts, self.ended) = (Counts::default(), Ended::Not);
+    }
+}

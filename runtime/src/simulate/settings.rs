@@ -1,0 +1,204 @@
+//! What a simulation is asked for.
+
+use std::fmt;
+
+use articulated_core::algorithm::Shape;
+
+use super::IntegratorId;
+
+/// What a simulation is asked for; keys are called as in scenes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// How to integrate.
+    pub integrator: IntegratorId,
+    /// First time, s.
+    pub start: f64,
+    /// Last time, s; after `start`.
+    pub end: f64,
+    /// Fixed steps of this length, s, the last of a stretch shortened to end with it. `None`: steps are chosen by the tolerances, which only the integrators do that
+    /// are `adaptive` in [`super::integrators`].
+    pub step: Option<f64>,
+    /// Relative tolerance of a step's error, coordinate by coordinate.
+    pub rtol: f64,
+    /// Absolute tolerance of a step's error: rad, m, and those a second.
+    pub atol: f64,
+    /// Absolute tolerances one by one, `[2·nv]`: of the steps of q, then of v; empty: `atol` for all.
+    pub atol_each: Vec<f64>,
+    /// No step shorter than this, s, save the last of a stretch; 0: sixteen units of rounding of t.
+    pub min_step: f64,
+    /// No step longer than this, s.
+    pub max_step: f64,
+    /// The first step to try, s; `None`: estimated.
+    pub first_step: Option<f64>,
+    /// Steps, rejected ones included, after which to give up.
+    pub max_steps: u64,
+    /// When to record.
+    pub output: Output,
+    /// How sharply the time of an event is found, s; never sharper than four units of rounding of t.
+    pub event_tolerance: f64,
+    /// What to do where an explicit integrator meets a stiff motion.
+    pub stiffness: Stiffness,
+}
+
+/// When to record.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Output {
+    /// At the start, every so many seconds, and at the end.
+    Every(f64),
+    /// At these times, in order.
+    At(Vec<f64>),
+    /// At the start and after each step.
+    Steps,
+    /// At the start and at the end.
+    Ends,
+}
+
+/// What to do where an explicit integrator meets a stiff motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Stiffness {
+    /// End with [`super::SimulateError::Unstable`] or [`super::SimulateError::Stiff`].
+    #[default]
+    Refuse,
+    /// Note the time in [`super::Counts::stiff_at`] and go on.
+    Note,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            integrator: IntegratorId::dopri5,
+            start: 0.0,
+            end: 1.0,
+            step: None,
+            rtol: 1e-6,
+            atol: 1e-9,
+            atol_each: Vec::new(),
+            min_step: 0.0,
+            max_step: f64::INFINITY,
+            first_step: None,
+            max_steps: 10_000_000,
+            output: Output::Every(0.01),
+            event_tolerance: 1e-12,
+            stiffness: Stiffness::Refuse,
+        }
+    }
+}
+
+/// A setting that cannot be used.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SettingError {
+    /// Its key.
+    pub key: &'static str,
+    /// What it was.
+    pub found: String,
+    /// What would be right.
+    pub right: String,
+}
+
+impl fmt::Display for SettingError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} = {}: {}", self.key, self.found, self.right)
+    }
+}
+
+impl std::error::Error for SettingError {}
+
+/// Most records that `Output::Every` may ask for.
+const MOST_OUTPUTS: f64 = 1e9;
+
+impl Settings {
+    /// Everything that is wrong with them for a robot of this shape.
+    pub fn problems(&self, shape: Shape) -> Vec<SettingError> {
+        let mut found = Problems(Vec::new());
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        found.unless(self.start.is_finite(), "start", self.start, "a finite time, s");
+        found.unless(
+            self.end.is_finite() && self.end > self.start,
+            "end",
+            self.end,
+            &format!("a finite time after start = {}", self.start),
+        );
+        if let Some(step) = self.step {
+            found.unless(positive(step), "step", step, "a length of time greater than zero, s");
+        } else if !self.integrator.row().adaptive {
+            found.unless(false, "step", "nothing", &format!("{} has no error estimate, so it needs a step, s", self.integrator));
+        }
+        found.unless(self.rtol >= 0.0 && self.rtol < 1.0, "rtol", self.rtol, "at least 0 and less than 1");
+        found.unless(self.atol >= 0.0 && self.atol.is_finite(), "atol", self.atol, "at least 0");
+        found.unless(self.rtol + self.atol > 0.0, "rtol", self.rtol, "one of rtol and atol greater than 0");
+        found.unless(self.rtol == 0.0 || self.rtol >= 1e-15, "rtol", self.rtol, "0, or at least 1e-15: below that is rounding");
+        let each = &self.atol_each;
+        let lengths = [0, 2 * shape.nv].contains(&each.len());
+        found.unless(lengths, "atol_each", format!("{} numbers", each.len()), &format!("{} numbers, or none", 2 * shape.nv));
+        let bad = each.iter().find(|x| !(**x >= 0.0 && x.is_finite()));
+        found.unless(bad.is_none(), "atol_each", bad.copied().unwrap_or(0.0), "each at least 0");
+        found.unless(self.min_step >= 0.0 && self.min_step.is_finite(), "min_step", self.min_step, "at least 0 s");
+        let longest = self.max_step > 0.0 && self.max_step >= self.min_step;
+        found.unless(longest, "max_step", self.max_step, "greater than 0 s and at least min_step");
+        let first = self.first_step;
+        found.unless(first.is_none_or(positive), "first_step", first.unwrap_or(0.0), "a length of time greater than zero, s");
+        found.unless(self.max_steps > 0, "max_steps", self.max_steps, "at least 1");
+        found.unless(self.event_tolerance >= 0.0, "event_tolerance", self.event_tolerance, "at least 0 s");
+        self.check_output(&mut found);
+        found.0
+    }
+
+    fn check_output(&self, found: &mut Problems) {
+        match &self.output {
+            Output::Every(s) => {
+                let sensible = *s > 0.0 && (self.end - self.start) / s < MOST_OUTPUTS;
+                found.unless(sensible, "output", s, "a length of time greater than zero, s, and no more than 1e9 records");
+            }
+            Output::At(times) => {
+                let ordered = times.windows(2).all(|w| w[0] < w[1]) && times.iter().all(|t| *t >= self.start && *t <= self.end);
+                found.unless(
+                    ordered,
+                    "output",
+                    format!("{} times", times.len()),
+                    "times between start and end, each later than the one before",
+                );
+            }
+            Output::Steps | Output::Ends => {}
+        }
+    }
+}
+
+struct Problems(Vec<SettingError>);
+
+impl Problems {
+    fn unless(&mut self, right: bool, key: &'static str, found: impl fmt::Display, would_be: &str) {
+        if !right {
+            self.0.push(SettingError { key, found: found.to_string(), right: would_be.into() });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{IntegratorId, Output, Settings, Shape};
+
+    #[test]
+    fn every_bad_setting_is_named_at_once() {
+        let shape = Shape { nq: 1, nv: 1, frames: 1, links: 1 };
+        assert_eq!(Settings::default().problems(shape), []);
+        let bad = Settings {
+            start: f64::NAN,
+            end: -1.0,
+            step: Some(0.0),
+            rtol: -1.0,
+            atol: f64::INFINITY,
+            atol_each: vec![1.0],
+            max_step: 0.0,
+            first_step: Some(-1.0),
+            max_steps: 0,
+            output: Output::Every(0.0),
+            ..Settings::default()
+        };
+        let keys: Vec<_> = bad.problems(shape).iter().map(|p| p.key).collect();
+        for key in ["start", "end", "step", "rtol", "atol", "atol_each", "max_step", "first_step", "max_steps", "output"] {
+            assert!(keys.contains(&key), "{key} is not among {keys:?}");
+        }
+        let fixed = Settings { integrator: IntegratorId::rk4, ..Settings::default() };
+        assert_eq!(fixed.problems(shape)[0].to_string(), "step = nothing: rk4 has no error estimate, so it needs a step, s");
+    }
+}

@@ -1,0 +1,511 @@
+//! A simulation: steps, outputs and events one after the other.
+
+use articulated_core::algorithm::Shape;
+use articulated_core::dynamics::Dynamics;
+
+use super::curve::{Curve, Point};
+use super::event::watch::{Watch, Zero};
+use super::integrator::{Method, Start, method};
+use super::output::{Known, Times};
+use super::stability::Stability;
+use super::step_control::{Controller, Norm, first_step, rounding};
+use super::system::System;
+use super::{Action, Control, Counts, Ended, Event, Hit, Output, Recording, Settings, SimulateError, Stiffness};
+
+/// A robot and all the room that its simulation needs; a step allocates nothing.
+pub struct Simulation<'r, R: Dynamics<f64>> {
+    settings: Settings,
+    shape: Shape,
+    system: System<'r, R>,
+    method: Box<dyn Method<R> + 'r>,
+    norm: Norm,
+    stability: Stability,
+    watch: Watch,
+    known: Known,
+    /// State at the start of a step and its rate, in the step's chart; state at its end.
+    t: f64,
+    y: Vec<f64>,
+    f: Vec<f64>,
+    end: Vec<f64>,
+    point: Point,
+    v: Vec<f64>,
+}
+
+/// How far the run has got, beside the state.
+struct Run<'a, 'e> {
+    control: &'a mut dyn Control,
+    events: &'a mut [Event<'e>],
+    recording: &'a mut Recording,
+    times: Times,
+    controller: Option<Controller>,
+    /// The step to try next, s.
+    h: f64,
+    /// Where the present stretch began, and its steps so far.
+    stretch: (f64, u64),
+    samples: u64,
+    chatter: u32,
+    last_map: f64,
+    stiff: (u32, u32),
+}
+
+/// What a step has come to.
+enum Outcome {
+    GoOn,
+    Stopped(usize),
+    Mapped,
+}
+
+impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
+    /// Everything that is wrong with the settings, or the function that the robot lacks.
+    pub fn new(robot: &'r R, settings: Settings) -> Result<Self, SimulateError> {
+        let shape = robot.shape();
+        let wrong = settings.problems(shape);
+        if !wrong.is_empty() {
+            return Err(SimulateError::Settings(wrong));
+        }
+        let mut system = System::new(robot)?;
+        let (n, nv) = (system.len(), shape.nv);
+        let mut simulation = Self {
+            shape,
+            method: method(settings.integrator, &system.manifold),
+            norm: Norm::new(&settings, nv),
+            stability: Stability::new(n),
+            watch: Watch::default(),
+            known: Known::of(&mut system),
+            t: settings.start,
+            y: vec![0.0; n],
+            f: vec![0.0; n],
+            end: vec![0.0; n],
+            point: Point::new(shape.nq, n),
+            v: vec![0.0; nv],
+            system,
+            settings,
+        };
+        simulation.try_functions()?;
+        Ok(simulation)
+    }
+
+    /// Whether the robot has what the integrator needs.
+    fn try_functions(&mut self) -> Result<(), SimulateError> {
+        let nv = self.shape.nv;
+        let (q, zero, mut out) = (vec![0.5; self.shape.nq], vec![0.0; nv], vec![0.0; 3 * nv * nv]);
+        for function in self.settings.integrator.row().needs {
+            let length = if *function == articulated_core::algorithm::FunctionId::forward_dynamics { nv } else { 3 * nv * nv };
+            self.system.robot.call(*function, &mut self.system.ws, &[&q, &zero, &zero], &mut out[..length])?;
+        }
+        Ok(())
+    }
+
+    /// The settings.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Room for the records of one motion.
+    pub fn recording(&self) -> Recording {
+        self.known.recording(&self.system, &self.settings)
+    }
+
+    /// The motion from q `[nq]` and v `[nv]` at the start to the end, or to the first event that stops it.
+    pub fn run(&mut self, q: &[f64], v: &[f64], control: &mut dyn Control, events: &mut [Event]) -> Result<Recording, SimulateError> {
+        let mut recording = self.recording();
+        self.run_into(q, v, control, events, &mut recording, &mut |_, _| true)?;
+        Ok(recording)
+    }
+
+    /// As [`Simulation::run`], into a recording that was made before; it holds what was up to an error, too. `watch` is told the time and the counts after each step,
+    /// and may say false to end it.
+    pub fn run_into(
+        &mut self,
+        q: &[f64],
+        v: &[f64],
+        control: &mut dyn Control,
+        events: &mut [Event],
+        recording: &mut Recording,
+        watch: &mut dyn FnMut(f64, &Counts) -> bool,
+    ) -> Result<(), SimulateError> {
+        recording.clear();
+        self.begin(q, v)?;
+        let mut run = Run {
+            control,
+            events,
+            recording,
+            times: Times::begin(),
+            controller: if self.settings.step.is_none() { self.method.controller() } else { None },
+            h: 0.0,
+            stretch: (self.t, 0),
+            samples: 0,
+            chatter: 0,
+            last_map: f64::NEG_INFINITY,
+            stiff: (0, 0),
+        };
+        let result = self.steps(&mut run, watch);
+        run.recording.counts = self.system.counts;
+        run.recording.ended = result?;
+        Ok(())
+    }
+
+    fn begin(&mut self, q: &[f64], v: &[f64]) -> Result<(), SimulateError> {
+        self.system.manifold.check(q, v)?;
+        self.system.origin.copy_from_slice(q);
+        self.system.counts = Counts::default();
+        self.system.held = None;
+        self.method.reset();
+        self.stability.reset();
+        self.t = self.settings.start;
+        self.y.fill(0.0);
+        self.renormalise()?;
+        self.y[self.shape.nv..2 * self.shape.nv].copy_from_slice(v);
+        Ok(())
+    }
+
+    /// Quaternions of norm one: the step of length zero normalises.
+    fn renormalise(&mut self) -> Result<(), SimulateError> {
+        let nv = self.shape.nv;
+        self.y[..nv].fill(0.0);
+        if !self.system.manifold.is_flat() {
+            self.system.move_origin(&self.y[..nv])?;
+        }
+        Ok(())
+    }
+
+    fn steps(&mut self, run: &mut Run, watch: &mut dyn FnMut(f64, &Counts) -> bool) -> Result<Ended, SimulateError> {
+        let nv = self.shape.nv;
+        self.sample(run);
+        self.record_here(run)?;
+        self.watch.begin(run.events.len());
+        self.take_sides(run, None)?;
+        if self.method.wants_rate() {
+            self.rate_here(run)?;
+        }
+        run.h = self.first_step(run)?;
+        loop {
+            if self.system.counts.steps + self.system.counts.rejected >= self.settings.max_steps {
+                return Err(SimulateError::TooManySteps { t: self.t, steps: self.settings.max_steps });
+            }
+            self.norm.begin(&self.system, &self.y);
+            self.check_stability(run)?;
+            let t = self.step(run)?;
+            let (stop, outcome) = self.look(run, t)?;
+            let h = stop - self.t;
+            self.count_step(h);
+            self.check_stiffness(run, h)?;
+            let whole = matches!(outcome, Outcome::GoOn);
+            self.advance(run, stop, whole)?;
+            if self.settings.output == Output::Steps || matches!(outcome, Outcome::Stopped(_)) {
+                self.record_end(run)?;
+            }
+            match outcome {
+                Outcome::Stopped(event) => return Ok(Ended::ByEvent(event)),
+                _ if self.t >= self.settings.end => return Ok(Ended::AtEnd),
+                _ if !watch(self.t, &self.system.counts) => return Ok(Ended::ByWatcher),
+                _ => {}
+            }
+            debug_assert!(self.y[..nv].iter().all(|u| *u == 0.0));
+        }
+    }
+
+    /// The state is at the end of a stretch where a controller is sampled.
+    fn sample(&mut self, run: &mut Run) {
+        if run.control.period().is_none() {
+            return;
+        }
+        let nv = self.shape.nv;
+        let mut held = self.system.held.take().unwrap_or_else(|| vec![0.0; nv]);
+        held.fill(0.0);
+        run.control.torques(self.t, &self.system.origin, &self.y[nv..2 * nv], &mut held);
+        self.system.held = Some(held);
+        run.samples += 1;
+    }
+
+    /// When the next sample, kink or the end is, s.
+    fn stretch_end(&self, run: &Run) -> f64 {
+        let sample = run.control.period().map_or(f64::INFINITY, |p| self.settings.start + run.samples as f64 * p);
+        let kink = run.control.next_kink(self.t);
+        let next = sample.min(kink).min(self.settings.end);
+        // A stretch shorter than rounding is none.
+        if next - self.t <= rounding(self.t) { next.max(self.t + rounding(self.t)).min(self.settings.end) } else { next }
+    }
+
+    fn rate_here(&mut self, run: &mut Run) -> Result<(), SimulateError> {
+        self.system.rate(run.control, self.t, &self.y, &mut self.f)?;
+        self.check_rate()
+    }
+
+    fn check_rate(&self) -> Result<(), SimulateError> {
+        let nv = self.shape.nv;
+        match self.f[nv..2 * nv].iter().position(|a| !a.is_finite()) {
+            Some(index) => Err(SimulateError::NotFinite { t: self.t, what: "acceleration", index }),
+            None => Ok(()),
+        }
+    }
+
+    fn first_step(&mut self, run: &mut Run) -> Result<f64, SimulateError> {
+        if let Some(h) = self.settings.step.or(self.settings.first_step) {
+            return Ok(h);
+        }
+        self.norm.begin(&self.system, &self.y);
+        let order = f64::from(self.settings.integrator.row().order);
+        let room = [&mut self.end[..], &mut self.point.y[..]];
+        first_step(&mut self.system, run.control, &self.norm, (self.t, &self.y, &self.f), order, room)
+    }
+
+    /// Makes a step that is accepted, to `end`; gives the time where it ends, s.
+    fn step(&mut self, run: &mut Run) -> Result<f64, SimulateError> {
+        let until = self.stretch_end(run);
+        let Some(mut controller) = run.controller else { return self.fixed_step(run, until) };
+        loop {
+            let left = until - self.t;
+            let least = self.settings.min_step.max(rounding(self.t));
+            let free = run.h.clamp(least, self.settings.max_step);
+            // The last steps of a stretch are made alike.
+            let h = if free >= 0.999 * left {
+                left
+            } else if free > 0.5 * left {
+                0.5 * left
+            } else {
+                free
+            };
+            let start = Start { t: self.t, y: &self.y, f: &self.f };
+            let error = self.method.step(&mut self.system, run.control, start, h, &mut self.end, &self.norm)?;
+            if let Some(factor) = controller.accept(error.size) {
+                self.method.finish(&mut self.system, run.control, start, h, &mut self.end)?;
+                run.h = if h < free { free.max(h * factor) } else { h * factor };
+                run.controller = Some(controller);
+                return Ok(if h == left { until } else { self.t + h });
+            }
+            self.system.counts.rejected += 1;
+            run.h = h * controller.again(error.size);
+            if run.h < least {
+                return Err(self.too_small(error.size, run.h, error.index));
+            }
+            if self.system.counts.steps + self.system.counts.rejected >= self.settings.max_steps {
+                return Err(SimulateError::TooManySteps { t: self.t, steps: self.settings.max_steps });
+            }
+        }
+    }
+
+    fn too_small(&self, error: f64, step: f64, index: usize) -> SimulateError {
+        match self.end[..2 * self.shape.nv].iter().position(|x| !x.is_finite()) {
+            Some(i) if error.is_nan() => self.not_finite(i),
+            _ => SimulateError::StepTooSmall { t: self.t, step, index },
+        }
+    }
+
+    fn not_finite(&self, i: usize) -> SimulateError {
+        let nv = self.shape.nv;
+        let (what, index) = if i < nv { ("step of q", i) } else { ("v", i - nv) };
+        SimulateError::NotFinite { t: self.t, what, index }
+    }
+
+    /// The next of the equal steps of a stretch.
+    fn fixed_step(&mut self, run: &mut Run, until: f64) -> Result<f64, SimulateError> {
+        let (begin, made) = run.stretch;
+        let h = self.settings.step.unwrap_or(run.h);
+        let next = begin + (made + 1) as f64 * h;
+        let t = if next < until - 1e-9 * h { next } else { until };
+        let start = Start { t: self.t, y: &self.y, f: &self.f };
+        let h = t - self.t;
+        self.method.step(&mut self.system, run.control, start, h, &mut self.end, &self.norm)?;
+        self.method.finish(&mut self.system, run.control, start, h, &mut self.end)?;
+        if let Some(i) = self.end[..2 * self.shape.nv].iter().position(|x| !x.is_finite()) {
+            self.stability.reset();
+            self.check_stability(run)?;
+            return Err(self.not_finite(i));
+        }
+        run.stretch.1 += 1;
+        Ok(t)
+    }
+
+    /// Refuses a fixed step that an explicit integrator is not stable at.
+    fn check_stability(&mut self, run: &mut Run) -> Result<(), SimulateError> {
+        let (nv, counts) = (self.shape.nv, &self.system.counts);
+        let Some(h) = self.settings.step.filter(|_| !self.settings.integrator.row().implicit) else { return Ok(()) };
+        if counts.stiff_at.is_some() || !self.stability.due(counts.steps, &self.y[nv..2 * nv]) {
+            return Ok(());
+        }
+        let here = (self.t, &self.y[..], &self.f[..]);
+        let Some((admissible, rate)) = self.stability.exceeded(&mut self.system, run.control, &*self.method, here, h)? else {
+            return Ok(());
+        };
+        self.stiff(SimulateError::Unstable { integrator: self.settings.integrator, t: self.t, step: h, admissible, rate })
+    }
+
+    fn stiff(&mut self, error: SimulateError) -> Result<(), SimulateError> {
+        if self.settings.stiffness == Stiffness::Refuse {
+            return Err(error);
+        }
+        self.system.counts.stiff_at.get_or_insert(self.t);
+        Ok(())
+    }
+
+    /// Hairer & Wanner 1996, §IV.2: fifteen steps held back by stability, with no six between that are not; looked for every thousand steps.
+    fn check_stiffness(&mut self, run: &mut Run, h: f64) -> Result<(), SimulateError> {
+        let due = self.system.counts.steps.is_multiple_of(1000) || run.stiff.0 > 0;
+        if run.controller.is_none() || !due {
+            return Ok(());
+        }
+        let Some((found, most)) = self.method.stiffness(h, &self.end) else { return Ok(()) };
+        if found > most {
+            run.stiff = (run.stiff.0 + 1, 0);
+        } else {
+            run.stiff.1 += 1;
+            if run.stiff.1 >= 6 {
+                run.stiff = (0, 0);
+            }
+        }
+        if run.stiff.0 < 15 {
+            return Ok(());
+        }
+        run.stiff = (0, 0);
+        self.stiff(SimulateError::Stiff { integrator: self.settings.integrator, t: self.t, step: h })
+    }
+
+    fn count_step(&mut self, h: f64) {
+        let counts = &mut self.system.counts;
+        counts.steps += 1;
+        counts.largest_step = counts.largest_step.max(h);
+        counts.smallest_step = counts.smallest_step.min(h);
+    }
+
+    /// Outputs and events of the step to t, which is not yet the state; where it is cut short, `end` is there. The time up to which it counts, and what is next.
+    fn look(&mut self, run: &mut Run, t: f64) -> Result<(f64, Outcome), SimulateError> {
+        let nv = self.shape.nv;
+        let start = Start { t: self.t, y: &self.y, f: &self.f };
+        let h = t - self.t;
+        let mut curve = Curve { method: &mut *self.method, start, h, end: &self.end, point: &mut self.point };
+        let (mut cut, mut outcome) = (1.0, Outcome::GoOn);
+        if !run.events.is_empty() {
+            curve.prepare(&mut self.system, run.control)?;
+            let tolerance = self.settings.event_tolerance.max(rounding(t) / 4.0) / h;
+            self.watch.scan(run.events, &mut self.system, &mut curve, tolerance)?;
+            for zero in &self.watch.zeros {
+                let Zero { theta, event, direction } = *zero;
+                let at = self.t + theta * h;
+                let hit = Hit { event, name: run.events[event].name.clone(), t: at, direction, value: None };
+                run.recording.events.push(hit);
+                self.system.counts.events += 1;
+                match run.events[event].action {
+                    Action::Record => continue,
+                    Action::Stop => outcome = Outcome::Stopped(event),
+                    Action::Map(_) => outcome = Outcome::Mapped,
+                }
+                cut = theta;
+                break;
+            }
+        }
+        let stop = if cut < 1.0 { self.t + cut * h } else { t };
+        loop {
+            let next = run.times.next(&self.settings);
+            if next > stop + rounding(stop) {
+                break;
+            }
+            if next > self.settings.start {
+                let theta = if next >= t - rounding(t) { 1.0 } else { ((next - self.t) / h).min(cut) };
+                if theta < 1.0 {
+                    curve.prepare(&mut self.system, run.control)?;
+                }
+                curve.at(&mut self.system, theta)?;
+                curve.point.t = next;
+                self.known.record(&mut self.system, run.control, curve.point, run.recording)?;
+            }
+            run.times.advance();
+            if next >= self.settings.end {
+                break;
+            }
+        }
+        if cut < 1.0 {
+            curve.at(&mut self.system, cut)?;
+            self.end.copy_from_slice(&self.point.y);
+        }
+        debug_assert!(self.end.len() == 2 * nv + 2);
+        Ok((stop, outcome))
+    }
+
+    /// The end of the step becomes the state.
+    fn advance(&mut self, run: &mut Run, t: f64, whole: bool) -> Result<(), SimulateError> {
+        let nv = self.shape.nv;
+        let until = self.stretch_end(run);
+        self.system.move_origin(&self.end[..nv])?;
+        self.y.copy_from_slice(&self.end);
+        self.y[..nv].fill(0.0);
+        self.t = t;
+        let sampled = run.control.period().is_some() && t >= until && until < self.settings.end;
+        if sampled {
+            self.sample(run);
+        }
+        let mapped = if whole { false } else { self.map(run)? };
+        if t >= until || !whole {
+            run.stretch = (t, 0);
+        }
+        match self.method.last_rate() {
+            _ if !self.method.wants_rate() => {}
+            Some(rate) if whole && t < until => {
+                // The same accelerations; u̇ = v in the chart that begins here.
+                self.f.copy_from_slice(rate);
+                self.f[..nv].copy_from_slice(&self.y[nv..2 * nv]);
+                self.check_rate()?;
+            }
+            _ => self.rate_here(run)?,
+        }
+        if mapped {
+            self.take_sides(run, run.recording.events.last().map(|hit| hit.event))?;
+        }
+        Ok(())
+    }
+
+    /// Runs the map of the event that cut the step short, if it has one.
+    fn map(&mut self, run: &mut Run) -> Result<bool, SimulateError> {
+        let nv = self.shape.nv;
+        let Some(event) = run.recording.events.last().map(|hit| hit.event) else { return Ok(false) };
+        let Event { action: Action::Map(map), name, .. } = &mut run.events[event] else { return Ok(false) };
+        run.chatter = if self.t - run.last_map <= 4.0 * self.settings.event_tolerance.max(rounding(self.t)) { run.chatter + 1 } else { 0 };
+        run.last_map = self.t;
+        if run.chatter > 100 {
+            return Err(SimulateError::Chattering { t: self.t, event: name.clone() });
+        }
+        self.point.q.copy_from_slice(&self.system.origin);
+        self.v.copy_from_slice(&self.y[nv..2 * nv]);
+        let value = map(self.t, &mut self.point.q, &mut self.v)?;
+        self.system.manifold.check(&self.point.q, &self.v)?;
+        self.system.origin.copy_from_slice(&self.point.q);
+        self.y[nv..2 * nv].copy_from_slice(&self.v);
+        self.renormalise()?;
+        if let Some(hit) = run.recording.events.last_mut() {
+            hit.value = value;
+        }
+        Ok(true)
+    }
+
+    /// On which side of zero each event is from here on; of one that has just happened, where it is a moment later.
+    fn take_sides(&mut self, run: &mut Run, fired: Option<usize>) -> Result<(), SimulateError> {
+        const MOMENT: f64 = 1e-9;
+        let nv = self.shape.nv;
+        for e in 0..run.events.len() {
+            let here = (run.events[e].function)(self.t, &self.system.origin, &self.y[nv..2 * nv]);
+            let mut value = here;
+            if fired == Some(e) || here == 0.0 {
+                let step = self.point.y.as_mut_slice();
+                step[..nv].iter_mut().zip(&self.y[nv..2 * nv]).for_each(|(u, v)| *u = MOMENT * v);
+                self.system.configuration(&step[..nv], &mut self.point.q)?;
+                let rates = self.y[nv..2 * nv].iter().zip(&self.f[nv..2 * nv]);
+                self.v.iter_mut().zip(rates).for_each(|(out, (v, a))| *out = v + MOMENT * a);
+                value = (run.events[e].function)(self.t + MOMENT, &self.point.q, &self.v) - here;
+            }
+            self.watch.set_side(e, value);
+        }
+        Ok(())
+    }
+
+    fn record_here(&mut self, run: &mut Run) -> Result<(), SimulateError> {
+        self.point.t = self.t;
+        self.point.y.copy_from_slice(&self.y);
+        self.point.q.copy_from_slice(&self.system.origin);
+        self.known.record(&mut self.system, run.control, &self.point, run.recording)
+    }
+
+    /// As [`Self::record_here`], unless this time is recorded already.
+    fn record_end(&mut self, run: &mut Run) -> Result<(), SimulateError> {
+        if run.recording.t.last() == Some(&self.t) { Ok(()) } else { self.record_here(run) }
+    }
+}

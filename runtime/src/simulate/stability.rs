@@ -1,0 +1,159 @@
+//! Whether a fixed step of an explicit integrator is stable here: the fastest pair of eigenvalues of the motion's Jacobian, without the Jacobian.
+//!
+//! A vector z is driven by the Jacobian again and again, J z ≈ (f(y + εz) − f(y))/ε, until it lies in the plane of the fastest motions; the last two of z, Jz, J²z
+//! then give the λ² = aλ + b of that plane, real or complex (power iteration with a fit to a pair: Wilkinson, *The Algebraic Eigenvalue Problem*, 1965, §9.3). z is
+//! kept from one look to the next, so that later ones need two evaluations.
+
+use articulated_core::dynamics::Dynamics;
+
+use super::integrator::{Method, roots};
+use super::system::System;
+use super::{Control, SimulateError};
+
+/// Steps between two looks.
+const EVERY: u64 = 16;
+
+/// Rounds at most of a look that begins anew, and of one that confirms.
+const ROUNDS: usize = 40;
+
+#[derive(Clone, Debug)]
+pub(crate) struct Stability {
+    z: [Vec<f64>; 3],
+    at: Vec<f64>,
+    fresh: bool,
+    largest: f64,
+}
+
+/// What a look found: λ² = aλ + b, and |λ|.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pair {
+    a: f64,
+    b: f64,
+    pub(crate) rate: f64,
+}
+
+impl Stability {
+    pub(crate) fn new(n: usize) -> Self {
+        Self { z: std::array::from_fn(|_| vec![0.0; n]), at: vec![0.0; n], fresh: true, largest: 0.0 }
+    }
+
+    pub(crate) fn reset(&mut self) {
+        (self.fresh, self.largest) = (true, 0.0);
+    }
+
+    /// Whether it is time to look after this many steps, or the motion has jumped: the largest velocity is more than eight times what it ever was.
+    pub(crate) fn due(&mut self, steps: u64, v: &[f64]) -> bool {
+        let size = v.iter().fold(0.0, |most: f64, v| if v.is_finite() { most.max(v.abs()) } else { f64::INFINITY });
+        let jumped = size > 8.0 * self.largest && self.largest > 0.0;
+        if size.is_finite() {
+            self.largest = self.largest.max(size);
+        }
+        jumped || steps.is_multiple_of(EVERY)
+    }
+
+    /// The longest stable step up to h and the rate that bounds it, if h itself is not stable at (t, y), where dy/dt = f.
+    pub(crate) fn exceeded<R: Dynamics<f64>>(
+        &mut self,
+        system: &mut System<R>,
+        control: &mut dyn Control,
+        method: &dyn Method<R>,
+        (t, y, f): (f64, &[f64], &[f64]),
+        h: f64,
+    ) -> Result<Option<(f64, f64)>, SimulateError> {
+        let rounds = if self.fresh { ROUNDS } else { 1 };
+        let mut found = self.look(system, control, (t, y, f), rounds)?;
+        if !self.fresh && found.is_some_and(|pair| !stable(method, pair, h)) {
+            found = self.look(system, control, (t, y, f), ROUNDS)?;
+        }
+        self.fresh = false;
+        let Some(pair) = found.filter(|pair| !stable(method, *pair, h)) else { return Ok(None) };
+        // The first step beyond |hλ| = 1 that is not stable bounds those that are.
+        let mut admissible = (1.0 / pair.rate).min(h);
+        while admissible < h && stable(method, pair, 1.01 * admissible) {
+            admissible *= 1.01;
+        }
+        Ok(Some((admissible, pair.rate)))
+    }
+
+    fn look<R: Dynamics<f64>>(
+        &mut self,
+        system: &mut System<R>,
+        control: &mut dyn Control,
+        (t, y, f): (f64, &[f64], &[f64]),
+        rounds: usize,
+    ) -> Result<Option<Pair>, SimulateError> {
+        let n = 2 * system.nv();
+        if n == 0 {
+            return Ok(None);
+        }
+        if self.fresh {
+            // Numbers without a pattern.
+            self.z[0][..n].iter_mut().enumerate().for_each(|(i, z)| *z = 1.0 + (i as f64 * 2.399_963).sin());
+        }
+        let mut before: Option<Pair> = None;
+        for _ in 0..rounds {
+            let size = norm(&self.z[0][..n]);
+            if !(size > 0.0 && size.is_finite()) {
+                return Ok(before);
+            }
+            self.z[0][..n].iter_mut().for_each(|z| *z /= size);
+            for step in 0..2 {
+                let (from, to) = self.z.split_at_mut(step + 1);
+                let (from, to) = (&from[step], &mut to[0]);
+                let by = 1e-7 * (1.0 + norm(&y[..n])) / norm(&from[..n]).max(1e-300);
+                self.at.copy_from_slice(y);
+                self.at[..n].iter_mut().zip(from).for_each(|(y, z)| *y += by * z);
+                system.rate(control, t, &self.at, to)?;
+                to[..n].iter_mut().zip(f).for_each(|(rate, f)| *rate = (*rate - f) / by);
+            }
+            let Some(pair) = fit(&self.z[0][..n], &self.z[1][..n], &self.z[2][..n]) else { return Ok(before) };
+            let settled = before.is_some_and(|b| (b.rate - pair.rate).abs() <= 0.01 * pair.rate);
+            before = Some(pair);
+            // The next round begins with Jz: with J²z alone, pairs ±λ would never be told apart from where they began.
+            self.z.swap(0, 1);
+            if settled {
+                break;
+            }
+        }
+        Ok(before)
+    }
+}
+
+fn stable<R: Dynamics<f64>>(method: &dyn Method<R>, pair: Pair, h: f64) -> bool {
+    // Where |hλ| < 1 accuracy decides, and what grows by itself may grow.
+    let grows = roots(pair.a, pair.b).into_iter().map(|(re, _)| (h * re).exp()).fold(1.0, f64::max);
+    h * pair.rate <= 1.0 || method.amplification(pair.a, pair.b, h).is_none_or(|r| r <= 1.001 * grows)
+}
+
+fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+/// Least squares w_2 = a w_1 + b w_0, or w_1 = a w_0 where the three are on a line.
+fn fit(w0: &[f64], w1: &[f64], w2: &[f64]) -> Option<Pair> {
+    let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(x, y)| x * y).sum::<f64>();
+    let (p, q, r) = (dot(w0, w0), dot(w0, w1), dot(w1, w1));
+    let (s, t) = (dot(w0, w2), dot(w1, w2));
+    let determinant = p * r - q * q;
+    let (a, b) = if determinant > 1e-6 * p * r { ((p * t - q * s) / determinant, (r * s - q * t) / determinant) } else { (q / p, 0.0) };
+    let rate = roots(a, b).into_iter().map(|(re, im)| re.hypot(im)).fold(0.0, f64::max);
+    rate.is_finite().then_some(Pair { a, b, rate })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::fit;
+
+    #[test]
+    fn a_pair_is_found_real_or_complex() {
+        // ü = a u̇ + b u, as a first-order system.
+        for (a, b) in [(-3.0, -2.0), (-0.1, -9.0), (0.0, 4.0)] {
+            let drive = |z: [f64; 2]| [z[1], b * z[0] + a * z[1]];
+            let z = [0.3, -0.7];
+            let pair = fit(&z, &drive(z), &drive(drive(z))).unwrap();
+            assert!((pair.a - a).abs() < 1e-12 && (pair.b - b).abs() < 1e-12, "{pair:?}");
+        }
+        let line = fit(&[1.0, 0.0], &[-5.0, 0.0], &[25.0, 0.0]).unwrap();
+        assert_eq!((line.a, line.b, line.rate), (-5.0, 0.0, 5.0));
+    }
+}

@@ -1,0 +1,128 @@
+//! The equations of motion in the chart of a step: y = (u, v, work, dissipated) and its derivative.
+
+use articulated_core::algorithm::FunctionError;
+use articulated_core::dynamics::Dynamics;
+
+use super::manifold::Manifold;
+use super::{Control, Counts, SimulateError};
+
+/// A robot with all the room that an evaluation of its equations needs.
+///
+/// y: `[2·nv + 2]`: step vector from the chart's origin, velocities, work of the torques and energy of the effects that are not conservative, J.
+pub(crate) struct System<'r, R: Dynamics<f64>> {
+    pub(crate) robot: &'r R,
+    pub(crate) ws: R::Workspace,
+    pub(crate) manifold: Manifold,
+    /// Origin of the chart, `[nq]`.
+    pub(crate) origin: Vec<f64>,
+    /// The torques of a sampled controller, `[nv]`, where it is one.
+    pub(crate) held: Option<Vec<f64>>,
+    pub(crate) counts: Counts,
+    /// Configuration and torques of the last evaluation.
+    pub(crate) q: Vec<f64>,
+    pub(crate) tau: Vec<f64>,
+    applied: Vec<f64>,
+    has_motors: bool,
+    has_losses: bool,
+}
+
+impl<'r, R: Dynamics<f64>> System<'r, R> {
+    pub(crate) fn new(robot: &'r R) -> Result<Self, FunctionError> {
+        let (shape, manifold) = (robot.shape(), Manifold::of(robot)?);
+        let (nq, nv) = (shape.nq, shape.nv);
+        let mut system = Self {
+            robot,
+            ws: robot.workspace(),
+            manifold,
+            origin: vec![0.5; nq],
+            held: None,
+            counts: Counts::default(),
+            q: vec![0.5; nq],
+            tau: vec![0.0; nv],
+            applied: vec![0.0; nv],
+            has_motors: false,
+            has_losses: false,
+        };
+        let zero = vec![0.0; nv];
+        system.has_motors = super::effects::motor_torques(robot, &mut system.ws, &zero, &zero, &mut system.applied);
+        system.has_losses = super::effects::dissipation(robot, &mut system.ws, &system.origin, &zero).is_some();
+        Ok(system)
+    }
+
+    /// Number of degrees of freedom.
+    pub(crate) fn nv(&self) -> usize {
+        self.manifold.nv
+    }
+
+    /// Length of y.
+    pub(crate) fn len(&self) -> usize {
+        2 * self.manifold.nv + 2
+    }
+
+    /// q = origin ⊕ u.
+    pub(crate) fn configuration(&mut self, u: &[f64], q: &mut [f64]) -> Result<(), FunctionError> {
+        self.manifold.step(self.robot, &mut self.ws, &self.origin, u, q)
+    }
+
+    /// The commanded torques of a state, in `tau`.
+    pub(crate) fn command(&mut self, control: &mut dyn Control, t: f64, q: &[f64], v: &[f64], tau: &mut [f64]) {
+        if let Some(held) = &self.held {
+            tau.copy_from_slice(held);
+            return;
+        }
+        tau.fill(0.0);
+        control.torques(t, q, v, tau);
+    }
+
+    /// f = dy/dt.
+    pub(crate) fn rate(&mut self, control: &mut dyn Control, t: f64, y: &[f64], f: &mut [f64]) -> Result<(), SimulateError> {
+        let nv = self.nv();
+        let (u, v) = (&y[..nv], &y[nv..2 * nv]);
+        self.place(u)?;
+        let mut tau = std::mem::take(&mut self.tau);
+        let q = std::mem::take(&mut self.q);
+        self.command(control, t, &q, v, &mut tau);
+        (self.q, self.tau) = (q, tau);
+        self.manifold.rates(u, v, &mut f[..nv]);
+        self.robot.forward_dynamics(&mut self.ws, &self.q, v, &self.tau, &mut f[nv..2 * nv])?;
+        self.counts.evaluations += 1;
+        let powers = self.powers(v);
+        f[2 * nv..].copy_from_slice(&powers);
+        Ok(())
+    }
+
+    /// Power of the torques and of the effects that are not conservative, W, of a state without its acceleration.
+    pub(crate) fn power(&mut self, control: &mut dyn Control, t: f64, y: &[f64]) -> Result<[f64; 2], SimulateError> {
+        let nv = self.nv();
+        let (u, v) = (&y[..nv], &y[nv..2 * nv]);
+        self.place(u)?;
+        let mut tau = std::mem::take(&mut self.tau);
+        let q = std::mem::take(&mut self.q);
+        self.command(control, t, &q, v, &mut tau);
+        (self.q, self.tau) = (q, tau);
+        Ok(self.powers(v))
+    }
+
+    fn place(&mut self, u: &[f64]) -> Result<(), FunctionError> {
+        self.manifold.step(self.robot, &mut self.ws, &self.origin, u, &mut self.q)
+    }
+
+    /// vᵀτ of what the motors give, and the power of the effects, at the configuration and torques of the last evaluation.
+    fn powers(&mut self, v: &[f64]) -> [f64; 2] {
+        let work = |tau: &[f64]| tau.iter().zip(v).map(|(tau, v)| tau * v).sum();
+        let given = if self.has_motors && super::effects::motor_torques(self.robot, &mut self.ws, v, &self.tau, &mut self.applied) {
+            work(&self.applied)
+        } else {
+            work(&self.tau)
+        };
+        let lost = if self.has_losses { super::effects::dissipation(self.robot, &mut self.ws, &self.q, v).unwrap_or(0.0) } else { 0.0 };
+        [given, lost]
+    }
+
+    /// The next chart begins where this one has got to, `u`.
+    pub(crate) fn move_origin(&mut self, u: &[f64]) -> Result<(), FunctionError> {
+        self.place(u)?;
+        std::mem::swap(&mut self.origin, &mut self.q);
+        Ok(())
+    }
+}

@@ -1,0 +1,154 @@
+//! The one table of integrators, from which settings, scenes, documentation and tests read.
+//!
+//! Adding one: its file in `integrator`, its row here, its line in `integrator::method`.
+
+use std::fmt;
+
+use articulated_core::algorithm::FunctionId;
+
+/// The integrators by name: each variant is called as scenes call it.
+#[allow(non_camel_case_types)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum IntegratorId {
+    /// Velocities first, then configurations with the new velocities.
+    semi_implicit_euler,
+    /// The classical method of four stages.
+    rk4,
+    /// Dormand's and Prince's pair of orders 5 and 4.
+    dopri5,
+    /// Dormand's, Prince's and Hairer's method of order 8.
+    dop853,
+    /// Hairer's and Wanner's linearly implicit method of order 4.
+    rodas4,
+    /// The implicit midpoint rule on the manifold.
+    lie_midpoint,
+}
+
+/// One row: an integrator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Integrator {
+    /// Which one.
+    pub id: IntegratorId,
+    /// Its name everywhere: in scenes, on the command line.
+    pub name: &'static str,
+    /// The error of a motion of fixed length falls as this power of the step.
+    pub order: u32,
+    /// Whether it chooses its steps by tolerances where no step is given.
+    pub adaptive: bool,
+    /// Whether it solves equations in each step, so that stiffness does not bound the step.
+    pub implicit: bool,
+    /// When to take it.
+    pub what_for: &'static str,
+    /// Where it is from.
+    pub source: &'static str,
+    /// Functions that the robot has to have. One with a quaternion among its coordinates needs `integrate` as well, for all of them.
+    pub needs: &'static [FunctionId],
+}
+
+const EXPLICIT: &[FunctionId] = &[FunctionId::forward_dynamics];
+
+static ROWS: [Integrator; 6] = [
+    Integrator {
+        id: IntegratorId::semi_implicit_euler,
+        name: "semi_implicit_euler",
+        order: 1,
+        adaptive: false,
+        implicit: false,
+        what_for: "one evaluation a step, no drift of energy without damping: games, sketches, comparison",
+        source: "Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, (I.1.9)",
+        needs: EXPLICIT,
+    },
+    Integrator {
+        id: IntegratorId::rk4,
+        name: "rk4",
+        order: 4,
+        adaptive: false,
+        implicit: false,
+        what_for: "fixed steps: a controller's clock, a cost that is known beforehand",
+        source: "Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 1993, Table II.1.2",
+        needs: EXPLICIT,
+    },
+    Integrator {
+        id: IntegratorId::dopri5,
+        name: "dopri5",
+        order: 5,
+        adaptive: true,
+        implicit: false,
+        what_for: "the first to try: errors from 1e-3 to 1e-8, motions that are not stiff",
+        source: "Dormand & Prince, J. Comput. Appl. Math. 6, 1980; dense output Hairer, Nørsett & Wanner 1993, (II.6.12)",
+        needs: EXPLICIT,
+    },
+    Integrator {
+        id: IntegratorId::dop853,
+        name: "dop853",
+        order: 8,
+        adaptive: true,
+        implicit: false,
+        what_for: "errors below 1e-8, long smooth motions, references",
+        source: "Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 1993, §II.5 and §II.10",
+        needs: EXPLICIT,
+    },
+    Integrator {
+        id: IntegratorId::rodas4,
+        name: "rodas4",
+        order: 4,
+        adaptive: true,
+        implicit: true,
+        what_for: "stiff damping, springs, limits, contact: L-stable, and a decay never changes its sign, whatever the step",
+        source: "Hairer & Wanner, Solving Ordinary Differential Equations II, 1996, §IV.7 and §VI.4",
+        needs: &[FunctionId::forward_dynamics, FunctionId::forward_dynamics_derivatives],
+    },
+    Integrator {
+        id: IntegratorId::lie_midpoint,
+        name: "lie_midpoint",
+        order: 2,
+        adaptive: false,
+        implicit: true,
+        what_for: "long free motion: a body by itself keeps energy and momentum to rounding, other robots do not drift",
+        source: "Simo & Wong, Int. J. Numer. Methods Eng. 31, 1991; Hairer, Lubich & Wanner 2006, §IV.2",
+        needs: EXPLICIT,
+    },
+];
+
+/// All integrators, in the order in which they are listed to people.
+pub fn integrators() -> &'static [Integrator] {
+    &ROWS
+}
+
+/// The integrator called `name`.
+pub fn integrator(name: &str) -> Option<&'static Integrator> {
+    ROWS.iter().find(|row| row.name == name)
+}
+
+impl IntegratorId {
+    /// Its row.
+    pub fn row(self) -> &'static Integrator {
+        &ROWS[self as usize]
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        self.row().name
+    }
+}
+
+impl fmt::Display for IntegratorId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{integrator, integrators};
+
+    #[test]
+    fn every_name_finds_its_own_row() {
+        for row in integrators() {
+            assert_eq!(integrator(row.name), Some(row));
+            assert_eq!(row.id.row(), row);
+            assert_eq!(row.name, format!("{:?}", row.id));
+        }
+        assert_eq!(integrator("euler"), None);
+    }
+}

@@ -1,0 +1,4 @@
+//! Laws of motion, for every integrator.
+
+mod closed_forms;
+mod robots;
