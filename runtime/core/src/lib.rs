@@ -28,6 +28,8 @@ pub mod joint;
 #[cfg(feature = "alloc")]
 pub mod lanes;
 #[cfg(feature = "alloc")]
+pub mod level;
+#[cfg(feature = "alloc")]
 pub mod model;
 
 pub use nalgebra;
