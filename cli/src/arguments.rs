@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use articulated_codegen::Level;
 use articulated_core::algorithm::function;
 use articulated_core::lanes::Real;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -50,6 +51,7 @@ pub(crate) enum Command {
         "articulated generate arm.urdf --functions inverse_dynamics,forward_dynamics --batch f64,f32 -o src/arm.rs",
         "articulated generate arm.urdf --functions 'hold = gravity_torque + jacobians_body, bias = inverse_dynamics(a = 0)'",
         "articulated generate arm.urdf --functions 'still=inverse_dynamics(v=0,a=0)' --parameters 'payload(tool)'",
+        "articulated generate arm.urdf --level double_double -o src/arm_exact.rs",
         "articulated generate arm.urdf --frames tool,camera --lock wrist=0 --payload tool=1.2@0,0,0.1:1e-3,0,0,1e-3,0,1e-3",
         "articulated generate arm.urdf --append gripper.urdf@tool --append gripper.urdf@tool:second_:0,0,0.2,0,0,1.5",
     ]))]
@@ -158,6 +160,9 @@ pub(crate) struct GenerateArguments {
     /// No `unsafe` in the generated code: sines take a little longer on x86-64
     #[arg(long)]
     pub(crate) forbid_unsafe: bool,
+    /// How accurate: f64, f32, f32_f64, compensated, double_double, with +correct, +fast_7, +fast_10, +two, +no_fma
+    #[arg(long, value_name = "LEVEL", default_value_t = Level::default())]
+    pub(crate) level: Level,
     /// The path of the runtime crate, to implement its trait `Dynamics`
     #[arg(long, value_name = "PATH", value_parser = rust_path)]
     pub(crate) runtime: Option<String>,

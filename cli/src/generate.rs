@@ -35,6 +35,7 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
     request.options.parameters.clone_from(&arguments.parameters);
     request.options.batch.clone_from(&arguments.batch);
     request.options.forbid_unsafe = arguments.forbid_unsafe;
+    request.options.level = arguments.level;
     request.options.runtime = arguments.runtime.clone().filter(|_| !arguments.standalone);
     let generated = generate(&request)?;
     generated.warnings.iter().chain(&generated.snapped).for_each(|w| console::warn(&w.to_string()));

@@ -120,6 +120,13 @@ impl Build {
         self
     }
 
+    /// How accurate the functions are.
+    #[must_use]
+    pub fn level(mut self, level: crate::Level) -> Self {
+        self.request.options.level = level;
+        self
+    }
+
     /// Each limb for itself, also where branches that are alike would be cheaper at once, one a lane of a vector.
     #[must_use]
     pub fn each_limb_alone(mut self) -> Self {

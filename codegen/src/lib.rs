@@ -31,6 +31,7 @@ pub use articulated_core as core;
 pub use articulated_core::description::{Base, Origin, Payload};
 pub use articulated_core::effect::Applied;
 pub use articulated_core::lanes::Real;
+pub use articulated_core::level::{Arithmetic, Level, LevelError, Sines};
 pub use articulated_core::spatial::Reference;
 pub use articulated_urdf as urdf;
 pub use build::{Build, Written};

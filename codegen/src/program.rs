@@ -38,7 +38,7 @@ pub(crate) fn program(wanted: Wanted, model: &Model<f64>, parameters: &[Paramete
     let mut best = made(&wanted, &subject);
     let plain = best.0.clone();
     // Limbs need the vector instructions; constants that stay inputs differ from limb to limb.
-    if options.limbs && !options.forbid_unsafe && parameters.is_empty() {
+    if options.limbs && options.level.has_lanes() && !options.forbid_unsafe && parameters.is_empty() {
         for width in [4, 2] {
             let Some(alike) = Alike::of(model, width) else { continue };
             let other = made(&wanted, &Subject { alike: Some(alike), ..subject });

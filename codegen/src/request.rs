@@ -3,6 +3,7 @@
 use articulated_core::description::{Base, Origin, Payload};
 use articulated_core::effect::Applied;
 use articulated_core::lanes::Real;
+use articulated_core::level::Level;
 use articulated_core::model::GRAVITY;
 use articulated_core::spatial::Reference;
 
@@ -51,6 +52,8 @@ pub struct Options {
     pub limbs: bool,
     /// The types of numbers for which there are functions of many states at once too.
     pub batch: Vec<Real>,
+    /// How accurate the functions are. Functions of many states at once are what their type of numbers is.
+    pub level: Level,
     /// No `unsafe` in the generated code, for crates that forbid it: sines and cosines take a little longer on x86-64.
     pub forbid_unsafe: bool,
     /// Path of the runtime crate, to implement its trait `Dynamics`; `None`: the code depends on nothing but `core` and `std`.
@@ -92,6 +95,7 @@ impl Default for Options {
             rename: Vec::new(),
             limbs: true,
             batch: Vec::new(),
+            level: Level::default(),
             forbid_unsafe: false,
             runtime: None,
             stages: true,

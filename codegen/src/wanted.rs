@@ -219,9 +219,9 @@ fn is_free(name: &str) -> bool {
     !KEYWORDS.split_whitespace().any(|k| k == name)
 }
 
-/// The type of an array of these dimensions in generated code.
-pub(crate) fn array(dims: &[Dim]) -> String {
-    dims.iter().rev().fold("f64".to_owned(), |inner, dim| format!("[{inner}; {dim}]"))
+/// The type of an array of these dimensions in generated code, of numbers of this type.
+pub(crate) fn array_of(real: &str, dims: &[Dim]) -> String {
+    dims.iter().rev().fold(real.to_owned(), |inner, dim| format!("[{inner}; {dim}]"))
 }
 
 #[cfg(test)]

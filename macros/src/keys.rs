@@ -1,6 +1,6 @@
 //! The keys of an invocation: one row each.
 
-use articulated_codegen::{Base, Real, Reference};
+use articulated_codegen::{Base, Level, Real, Reference};
 use proc_macro2::{TokenStream, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{Parse, ParseStream};
@@ -99,6 +99,12 @@ pub(crate) const KEYS: &[Key<Settings>] = &[
         read: |s, value| reals(value).map(|reals| s.batch = reals),
     },
     Key {
+        name: "level",
+        required: false,
+        expected: "a level of accuracy, as f64, f32, f32_f64, compensated + two, double_double or f64 + fast_10 + no_fma",
+        read: |s, value| level(value).map(|level| s.level = level),
+    },
+    Key {
         name: "forbid_unsafe",
         required: false,
         expected: "`true` or `false`",
@@ -159,6 +165,13 @@ fn reals(value: ParseStream) -> Result<Vec<Real>> {
         reals.push(real);
     }
     Ok(reals)
+}
+
+/// `f64 + fast_10 + no_fma`
+fn level(value: ParseStream) -> Result<Level> {
+    let words = Punctuated::<Ident, Token![+]>::parse_separated_nonempty(value)?;
+    let words: Vec<String> = words.iter().map(Ident::to_string).collect();
+    words.join("+").parse().map_err(|error| value.error(error))
 }
 
 /// Entries between commas, each as it stands: the generator reads them.

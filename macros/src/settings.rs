@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use articulated_codegen::{Base, Options, Real, Reference, Wanted};
+use articulated_codegen::{Base, Level, Options, Real, Reference, Wanted};
 use proc_macro2::Span;
 use syn::{Error, Ident, LitStr, Path};
 
@@ -27,6 +27,7 @@ pub(crate) struct Settings {
     pub(crate) rename: Vec<Renaming>,
     pub(crate) limbs: Option<bool>,
     pub(crate) batch: Vec<Real>,
+    pub(crate) level: Level,
     pub(crate) forbid_unsafe: bool,
     pub(crate) runtime: Option<Path>,
     pub(crate) standalone: bool,
@@ -81,6 +82,7 @@ impl Settings {
             rename: self.rename.iter().map(|r| (r.from.value(), r.to.to_string())).collect(),
             limbs: self.limbs.unwrap_or(default.limbs),
             batch: self.batch.clone(),
+            level: self.level,
             forbid_unsafe: self.forbid_unsafe,
             stages: false,
             runtime: (!self.standalone).then(|| self.runtime.as_ref().map_or("::articulated".into(), spelled)),

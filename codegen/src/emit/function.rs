@@ -3,15 +3,15 @@
 use std::fmt::Write;
 
 use articulated_core::algorithm::Shape;
+use articulated_core::level::Level;
 
-use super::chunks::{is_long, pieces};
-use super::plain::Plain;
+use super::chunks::pieces;
+use super::levels::{self, real};
 use super::signature::Signature;
 use super::vector::Vector;
 use super::{plain, sets, vector};
 use crate::graph::Graph;
 use crate::program::Program;
-use crate::wanted::array;
 
 /// What the emitter must know besides the programs.
 #[derive(Clone, Copy)]
@@ -19,17 +19,25 @@ pub(super) struct Context {
     pub(super) sizes: Shape,
     pub(super) parameters: bool,
     pub(super) forbid_unsafe: bool,
+    pub(super) level: Level,
+}
+
+impl Context {
+    /// Whether instructions are chosen when it runs.
+    fn chooses(self) -> bool {
+        !self.forbid_unsafe && self.level.fused
+    }
 }
 
 /// The function's source, with its documentation and, where it gives several results, the type that holds them.
 pub(super) fn function(out: &mut String, program: &Program, context: Context) {
     let Program { wanted, graph, .. } = program;
-    let signature = Signature::of(wanted, context.sizes, context.parameters);
+    let signature = Signature::of(wanted, context.sizes, context.parameters).with(real(context.level));
     signature.results_type(out);
-    if in_lanes(graph) || is_long(graph) {
-        body_macro(out, graph, &signature);
+    if in_lanes(graph) || levels::is_long(graph, context.level) {
+        body_macro(out, graph, &signature, context.level);
     }
-    document(out, program, context.parameters);
+    document(out, program, &signature, context);
     let _ =
         writeln!(out, "#[allow({}clippy::all, clippy::pedantic)]", if context.forbid_unsafe { "" } else { "unsafe_code, unused_unsafe, " });
     let _ = writeln!(out, "pub fn {}({}) -> {} {{", wanted.name, signature.arguments(), signature.gives());
@@ -38,12 +46,12 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
     }
     if in_lanes(graph) {
         lanes_calls(out, graph, &signature);
-    } else if is_long(graph) {
-        long_calls(out, &signature, context.forbid_unsafe);
-    } else if needs_choice(graph) && !context.forbid_unsafe {
-        chosen(out, graph, &signature);
+    } else if levels::is_long(graph, context.level) {
+        long_calls(out, &signature, context);
+    } else if needs_choice(graph, context.level) && context.chooses() {
+        chosen(out, graph, &signature, context.level);
     } else {
-        plain::body(out, graph, &signature);
+        levels::body(out, graph, &signature, context.level);
     }
     let _ = writeln!(out, "}}\n");
 }
@@ -54,18 +62,18 @@ pub(super) fn in_lanes(graph: &Graph) -> bool {
 }
 
 /// Whether the function profits from an instruction set that not every processor has.
-pub(super) fn needs_choice(graph: &Graph) -> bool {
-    !in_lanes(graph) && (graph.counts().fused() > 0 || plain::has_batch(graph))
+pub(super) fn needs_choice(graph: &Graph, level: Level) -> bool {
+    !in_lanes(graph) && (graph.counts().fused() > 0 || plain::has_batch(graph, level) || level.of_two())
 }
 
 /// Plain arithmetic, with fused multiply-add where the processor has it: compiled for it, or found to be so.
-fn chosen(out: &mut String, graph: &Graph, signature: &Signature) {
+fn chosen(out: &mut String, graph: &Graph, signature: &Signature, level: Level) {
     let (arguments, names, gives) = (signature.arguments(), signature.names(), signature.gives());
     let _ = writeln!(out, "    #[inline(always)]\n    fn body<const FUSED: bool>({arguments}) -> {gives} {{");
     for input in &signature.inputs {
         let _ = writeln!(out, "    let _ = {};", input.name);
     }
-    plain::body(out, graph, signature);
+    levels::body(out, graph, signature, level);
     let _ = writeln!(out, "    }}\n    {}", sets::NOT_COMPILED_FOR_AVX2);
     let _ = writeln!(out, "    if {} {{", sets::HAS_AVX2);
     let _ = writeln!(
@@ -77,12 +85,12 @@ fn chosen(out: &mut String, graph: &Graph, signature: &Signature) {
 }
 
 /// The body as a macro: it is compiled for several instruction sets.
-fn body_macro(out: &mut String, graph: &Graph, signature: &Signature) {
+fn body_macro(out: &mut String, graph: &Graph, signature: &Signature, level: Level) {
     let (arguments, gives, name) = (signature.arguments(), signature.gives(), &signature.wanted.name);
     let _ = writeln!(out, "macro_rules! {name}_body {{\n    ($(#[$features:meta])?) => {{");
-    if is_long(graph) {
-        let (plain, vector) = (Plain { graph, signature }, Vector { graph, signature });
-        pieces(out, graph, signature, if in_lanes(graph) { &vector } else { &plain });
+    if levels::is_long(graph, level) {
+        let vector = Vector { graph, signature };
+        levels::with_dialect(graph, signature, level, |own| pieces(out, graph, signature, if in_lanes(graph) { &vector } else { own }));
     } else {
         let _ = writeln!(out, "    $(#[$features])?\n    #[inline]\n    fn whole({arguments}) -> {gives} {{");
         for input in &signature.inputs {
@@ -95,9 +103,10 @@ fn body_macro(out: &mut String, graph: &Graph, signature: &Signature) {
 }
 
 /// The call of a long body of plain arithmetic.
-fn long_calls(out: &mut String, signature: &Signature, forbid_unsafe: bool) {
+fn long_calls(out: &mut String, signature: &Signature, context: Context) {
     let (names, name) = (signature.names(), &signature.wanted.name);
-    if !forbid_unsafe {
+    levels::imports(out, context.level);
+    if context.chooses() {
         let _ = writeln!(out, "    {}\n    if {} {{", sets::NOT_COMPILED_FOR_AVX2, sets::HAS_AVX2);
         let _ = writeln!(out, "        const FUSED: bool = true;\n        {name}_body!(#[target_feature(enable = \"avx2,fma\")]);");
         let _ =
@@ -129,7 +138,7 @@ fn lanes_calls(out: &mut String, graph: &Graph, signature: &Signature) {
     block(sets::NEITHER, "portable", "", &format!("        whole({names})\n"));
 }
 
-fn document(out: &mut String, program: &Program, parameters: bool) {
+fn document(out: &mut String, program: &Program, signature: &Signature, context: Context) {
     let Program { wanted, graph, entry, .. } = program;
     for part in &wanted.parts {
         let constants: Vec<String> = part.constants.iter().map(|(a, c)| format!("{} = {}", a.name(), shown(c))).collect();
@@ -137,19 +146,19 @@ fn document(out: &mut String, program: &Program, parameters: bool) {
         let _ = writeln!(out, "/// {}{at}.\n///", part.function.summary);
     }
     for argument in wanted.arguments() {
-        let _ = writeln!(out, "/// {}: `{}` {}.", argument.name(), array(argument.dims()), argument.unit());
+        let _ = writeln!(out, "/// {}: `{}` {}.", argument.name(), signature.array(argument.dims()), argument.unit());
     }
-    if parameters {
+    if context.parameters {
         let _ = writeln!(out, "/// parameters: as [`PARAMETERS`].");
     }
     if let [part] = wanted.parts.as_slice() {
-        let _ = writeln!(out, "/// Returns `{}` {}.\n///", array(part.function.gives), part.function.unit);
+        let _ = writeln!(out, "/// Returns `{}` {}.\n///", signature.array(part.function.gives), part.function.unit);
         let _ = writeln!(out, "/// {}.", part.function.source);
     }
     let by = if entry.ways.is_empty() { String::new() } else { format!("By {}, the cheapest for this robot; ", entry.ways.join(", ")) };
     let c = entry.emitted();
     let mut form = if entry.lanes > 1 { format!("; limbs that are alike in {} lanes", entry.lanes) } else { String::new() };
-    form += if is_long(graph) { "; in pieces, so that it is compiled in less time" } else { "" };
+    form += if levels::is_long(graph, context.level) { "; in pieces, so that it is compiled in less time" } else { "" };
     let _ = writeln!(
         out,
         "/// {by}{} multiplications + {} additions in {} instructions (multiply-adds counted once), {} sines and cosines, depth {}{form}.",

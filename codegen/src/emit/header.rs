@@ -8,7 +8,7 @@ use articulated_core::model::Model;
 use articulated_core::spatial::Reference;
 use articulated_urdf::Unused;
 
-use crate::Request;
+use crate::{Level, Request};
 
 /// Origin, contract, and what of the URDF is not used, as comments.
 pub(super) fn header(out: &mut String, request: &Request, model: &Model<f64>, unused: &[Unused]) {
@@ -22,8 +22,15 @@ pub(super) fn header(out: &mut String, request: &Request, model: &Model<f64>, un
     line(&format!("Robot {:?}, {base} base, gravity ({x:?}, {y:?}, {z:?}) m/s² in the base frame.", model.name));
     edits(request).iter().for_each(|edit| line(edit));
     line(&format!("Functions: {}.", o.functions.join(", ")));
-    line("Contract: SI units and radians; no allocation, no panic; no branch on data but one: if one of four angles is beyond 10⁵ rad or");
-    line("not finite, their sines come from the standard library. Finite input gives what the formulas give.");
+    if o.level == Level::default() {
+        line(
+            "Contract: SI units and radians; no allocation, no panic; no branch on data but one: if one of four angles is beyond 10⁵ rad or",
+        );
+        line("not finite, their sines come from the standard library. Finite input gives what the formulas give.");
+    } else {
+        line(&format!("Level {}. Contract: SI units and radians; no allocation, no panic.", o.level));
+        o.level.contract().iter().for_each(|text| line(&format!("  {text}")));
+    }
     if !unused.is_empty() {
         line("Understood in the URDF and not used:");
         unused.iter().take(LISTED).for_each(|u| line(&format!("  {u}")));

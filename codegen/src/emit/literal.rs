@@ -14,6 +14,16 @@ pub(super) fn operand(x: f64) -> String {
     if x < 0.0 { format!("({})", literal(x)) } else { literal(x) }
 }
 
+/// The nearest `f32` as an operand.
+pub(super) fn single(x: f64) -> String {
+    match x as f32 {
+        f32::INFINITY => "f32::INFINITY".into(),
+        f32::NEG_INFINITY => "f32::NEG_INFINITY".into(),
+        x if x < 0.0 => format!("({x:?})"),
+        x => format!("{x:?}"),
+    }
+}
+
 /// An operand that stands by itself: a negative number without its brackets.
 pub(super) fn bare(operand: &str) -> &str {
     match operand.strip_prefix('(') {

@@ -9,11 +9,12 @@ use articulated_urdf::Unused;
 use super::batch::{Batch, batches};
 use super::function::{Context, function};
 use super::header::header;
+use super::levels::real;
 use super::literal::literal;
 use super::names::Names;
 use super::sets::support;
 use crate::program::Program;
-use crate::wanted::array;
+use crate::wanted::array_of;
 use crate::{Parameter, Request};
 
 /// The contents of the module.
@@ -30,11 +31,12 @@ pub(crate) fn module(
     constants(&mut out, model);
     indices(&mut out, model, names);
     inputs(&mut out, parameters);
-    let context = Context { sizes: model.shape(), parameters: !parameters.is_empty(), forbid_unsafe: request.options.forbid_unsafe };
+    let (forbid_unsafe, level) = (request.options.forbid_unsafe, request.options.level);
+    let context = Context { sizes: model.shape(), parameters: !parameters.is_empty(), forbid_unsafe, level };
     programs.iter().for_each(|p| function(&mut out, p, context));
-    support(&mut out, programs, request.options.forbid_unsafe);
+    support(&mut out, programs, forbid_unsafe, level);
     let of_many: Vec<Batch> = programs.iter().map(|p| Batch::of(p, context)).collect();
-    batches(&mut out, &of_many, &request.options.batch, request.options.forbid_unsafe);
+    batches(&mut out, &of_many, &request.options.batch, forbid_unsafe);
     robot(&mut out, request, programs, !parameters.is_empty());
     out
 }
@@ -113,6 +115,7 @@ fn inputs(out: &mut String, parameters: &[Parameter]) {
 /// The type that stands for the robot where code is written over the trait `Dynamics`.
 fn robot(out: &mut String, request: &Request, programs: &[Program], parameters: bool) {
     let Some(path) = &request.options.runtime else { return };
+    let real = real(request.options.level);
     let default = if parameters { "" } else { ", ::core::default::Default" };
     let _ = writeln!(out, "/// The robot as a value, for code over the trait `Dynamics`.");
     let _ = writeln!(out, "#[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug{default})]");
@@ -123,18 +126,25 @@ fn robot(out: &mut String, request: &Request, programs: &[Program], parameters: 
     } else {
         let _ = writeln!(out, "pub struct Robot;\n");
     }
-    let _ = writeln!(out, "#[allow(clippy::all, clippy::pedantic)]\nimpl {path}::Dynamics<f64> for Robot {{");
+    let _ = writeln!(out, "#[allow(clippy::all, clippy::pedantic)]\nimpl {path}::Dynamics<{real}> for Robot {{");
     let _ = writeln!(out, "    type Workspace = ();\n    fn workspace(&self) {{}}");
     let _ = writeln!(out, "    fn shape(&self) -> {path}::Shape {{ {path}::Shape {{ nq: NQ, nv: NV, frames: FRAMES, links: LINKS }} }}");
     let _ = writeln!(out, "    fn name(&self) -> &str {{ NAME }}");
     let _ = writeln!(out, "    #[inline]");
     let _ = writeln!(
         out,
-        "    fn call(&self, function: {path}::FunctionId, _: &mut (), arguments: &[&[f64]], out: &mut [f64]) -> ::core::result::Result<(), {path}::FunctionError> {{"
+        "    fn call(&self, function: {path}::FunctionId, _: &mut (), arguments: &[&[{real}]], out: &mut [{real}]) -> ::core::result::Result<(), {path}::FunctionError> {{"
     );
     let _ = writeln!(out, "        match (function, arguments) {{");
     for function in programs.iter().filter_map(|p| p.wanted.as_function()) {
-        arm(out, path, function.name, &function.takes.iter().map(|a| (a.name(), a.dims())).collect::<Vec<_>>(), function.gives, parameters);
+        arm(
+            out,
+            (path, real),
+            function.name,
+            &function.takes.iter().map(|a| (a.name(), a.dims())).collect::<Vec<_>>(),
+            function.gives,
+            parameters,
+        );
     }
     let _ =
         writeln!(out, "            _ => ::core::result::Result::Err({path}::FunctionError::NotGenerated {{ function: function.name() }}),");
@@ -142,15 +152,15 @@ fn robot(out: &mut String, request: &Request, programs: &[Program], parameters: 
 }
 
 /// How one function is called through slices.
-fn arm(out: &mut String, path: &str, name: &str, takes: &[(&str, &[Dim])], gives: &[Dim], parameters: bool) {
+fn arm(out: &mut String, (path, real): (&str, &str), name: &str, takes: &[(&str, &[Dim])], gives: &[Dim], parameters: bool) {
     let mut names: Vec<String> = takes.iter().map(|(name, _)| (*name).to_owned()).collect();
     let _ = writeln!(out, "            ({path}::FunctionId::{name}, &[{}]) => {{", names.join(", "));
     for (name, dims) in takes {
         let _ = match dims {
             [length, Dim::Of(width)] => {
-                writeln!(out, "                let {name} = {path}::exactly_rows::<{length}, {width}, f64>({name:?}, {name})?;")
+                writeln!(out, "                let {name} = {path}::exactly_rows::<{length}, {width}, {real}>({name:?}, {name})?;")
             }
-            [length, ..] => writeln!(out, "                let {name} = {path}::exactly::<{length}, f64>({name:?}, {name})?;"),
+            [length, ..] => writeln!(out, "                let {name} = {path}::exactly::<{length}, {real}>({name:?}, {name})?;"),
             [] => Ok(()),
         };
     }
@@ -165,7 +175,7 @@ fn arm(out: &mut String, path: &str, name: &str, takes: &[(&str, &[Dim])], gives
         0 => writeln!(out, "                out[0] = {call};"),
         n => {
             let flat = format!("result.as_slice(){}", ".as_flattened()".repeat(n - 1));
-            let _ = writeln!(out, "                let result: {} = {call};", array(gives));
+            let _ = writeln!(out, "                let result: {} = {call};", array_of(real, gives));
             writeln!(out, "                out.copy_from_slice({flat});")
         }
     };

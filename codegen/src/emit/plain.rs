@@ -4,10 +4,11 @@ use std::fmt::Write;
 
 use super::chunks::{gives_much, one_piece};
 use super::dialect::{Dialect, statements};
-use super::literal::{bare, operand};
+use super::literal::{bare, operand, single};
 use super::order::{Angle, Step, order};
 use super::signature::Signature;
 use crate::graph::{Graph, Node, NodeId, Op};
+use crate::{Arithmetic, Level, Sines};
 
 /// How many angles `trig::four` takes.
 const FOUR: usize = 4;
@@ -16,18 +17,25 @@ const FOUR: usize = 4;
 const BATCH_FROM: usize = 3;
 
 /// Whether the statements use `trig::four`.
-pub(super) fn has_batch(graph: &Graph) -> bool {
-    order(graph).iter().any(|s| matches!(s, Step::Batch(angles) if angles.len() >= BATCH_FROM))
+pub(super) fn has_batch(graph: &Graph, level: Level) -> bool {
+    order(graph).iter().any(|s| matches!(s, Step::Batch(angles) if !few(angles.len(), level)))
+}
+
+/// Whether the standard library does so few angles.
+fn few(angles: usize, level: Level) -> bool {
+    angles < BATCH_FROM
+        && level.fused
+        && level.sines == Sines::Ulp
+        && matches!(level.arithmetic, Arithmetic::Double | Arithmetic::SingleByDouble)
 }
 
 /// The statements, the result last.
-pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
-    let plain = Plain { graph, signature };
+pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature, dialect: &dyn Dialect) {
     if gives_much(graph) {
-        return one_piece(out, graph, signature, &plain);
+        return one_piece(out, graph, signature, dialect);
     }
-    statements(out, graph, &plain);
-    let values: Vec<String> = graph.outputs.iter().map(|&o| plain.operand(o)).collect();
+    statements(out, graph, dialect);
+    let values: Vec<String> = graph.outputs.iter().map(|&o| dialect.number(o)).collect();
     signature.result(out, &values);
 }
 
@@ -35,13 +43,14 @@ pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
 pub(super) struct Plain<'a> {
     pub(super) graph: &'a Graph,
     pub(super) signature: &'a Signature<'a>,
+    pub(super) level: Level,
 }
 
 impl Dialect for Plain<'_> {
     fn statement(&self, k: usize, node: &Node) -> Option<String> {
         match node.op {
             Op::Constant => None,
-            Op::Input => Some(format!("    let x{k} = {};\n", self.signature.inputs[node.args[0] as usize].at(node.args[1] as usize))),
+            Op::Input => Some(format!("    let x{k} = {};\n", self.input(node))),
             op => Some(format!("    let x{k} = {};\n", self.expression(op, node))),
         }
     }
@@ -49,7 +58,7 @@ impl Dialect for Plain<'_> {
     /// Four at a time, the last four padded; one by one if there are few.
     fn sines(&self, group: &[Angle], of: usize) -> String {
         let mut out = String::new();
-        if of < BATCH_FROM {
+        if few(of, self.level) {
             for a in group {
                 let _ = writeln!(out, "    let ({}, {}) = f64::sin_cos({});", name(a.sin), name(a.cos), self.operand(a.angle));
             }
@@ -71,15 +80,34 @@ impl Dialect for Plain<'_> {
     }
 
     fn number(&self, id: NodeId) -> String {
-        self.operand(id)
+        match (self.level.arithmetic, self.graph.node(id).constant()) {
+            (Arithmetic::SingleByDouble, Some(x)) => single(x),
+            (Arithmetic::SingleByDouble, None) => format!("x{} as f32", id.0),
+            _ => self.operand(id),
+        }
     }
 
     fn value(&self) -> (&'static str, &'static str) {
-        ("f64", "0.0")
+        (if self.is_single() { "f32" } else { "f64" }, "0.0")
     }
 }
 
 impl Plain<'_> {
+    fn is_single(&self) -> bool {
+        self.level.arithmetic == Arithmetic::Single
+    }
+
+    /// An element of an argument as one of the numbers that are computed with.
+    fn input(&self, node: &Node) -> String {
+        let input = &self.signature.inputs[node.args[0] as usize];
+        let number = input.at(node.args[1] as usize);
+        match (self.level.arithmetic, input.is_parameters()) {
+            (Arithmetic::SingleByDouble, false) => format!("{number} as f64"),
+            (Arithmetic::Single, true) => format!("{number} as f32"),
+            _ => number,
+        }
+    }
+
     fn expression(&self, op: Op, node: &Node) -> String {
         let (mut text, mut rest) = (String::new(), op.row().rust);
         for (hole, operand) in ["{a}", "{b}", "{c}"].iter().zip(node.operands()) {
@@ -90,12 +118,13 @@ impl Plain<'_> {
             text += if op == Op::Select { bare(&operand) } else { &operand };
             rest = behind;
         }
-        text + rest
+        if self.is_single() { (text + rest).replace("f64::", "f32::") } else { text + rest }
     }
 
     /// A name, or the literal of a constant.
     fn operand(&self, id: NodeId) -> String {
-        self.graph.node(id).constant().map_or_else(|| format!("x{}", id.0), operand)
+        let literal = if self.is_single() { single } else { operand };
+        self.graph.node(id).constant().map_or_else(|| format!("x{}", id.0), literal)
     }
 }
 

@@ -3,9 +3,11 @@
 use std::fmt::Write;
 
 use articulated_core::lanes::{Real, Set, source};
+use articulated_core::level::with_sines;
 
 use super::function::{in_lanes, needs_choice};
-use super::plain;
+use super::{levels, plain};
+use crate::Level;
 use crate::program::Program;
 
 /// Whether the processor has AVX2 and FMA.
@@ -23,18 +25,21 @@ pub(super) const NEITHER: &str =
     "#[cfg(not(any(target_arch = \"aarch64\", all(target_arch = \"x86_64\", target_feature = \"avx2\", target_feature = \"fma\"))))]";
 
 /// What the functions call: multiply-adds, sines, lanes.
-pub(super) fn support(out: &mut String, programs: &[Program], forbid_unsafe: bool) {
+pub(super) fn support(out: &mut String, programs: &[Program], forbid_unsafe: bool, level: Level) {
     let plain = || programs.iter().filter(|p| !in_lanes(&p.graph));
-    if plain().any(|p| needs_choice(&p.graph)) {
-        *out += FUSED;
+    if plain().any(|p| needs_choice(&p.graph, level)) {
+        *out += if level.fused { FUSED } else { NOT_FUSED };
     }
-    if plain().any(|p| p.graph.counts().fused() > 0) {
-        *out += FMA;
+    if plain().any(|p| p.graph.counts().fused() > 0) && !level.of_two() {
+        *out += &FMA.replace("f64", levels::computed(level));
     }
-    let sines = plain().any(|p| plain::has_batch(&p.graph));
-    if sines {
-        *out += if forbid_unsafe { PORTABLE_SINES } else { SINES };
+    let any = plain().any(|p| plain::has_batch(&p.graph, level));
+    let sines = any && levels::has_vectors(level);
+    let portable = forbid_unsafe || !level.fused;
+    if any {
+        levels::sines(out, if portable { PORTABLE_SINES } else { SINES }, level);
     }
+    levels::module(out, level);
     let mut widths: Vec<usize> = programs.iter().map(|p| p.graph.lanes().width).filter(|w| *w > 1).collect();
     if widths.contains(&2) {
         *out += TWO;
@@ -43,17 +48,17 @@ pub(super) fn support(out: &mut String, programs: &[Program], forbid_unsafe: boo
     widths.sort_unstable();
     widths.dedup();
     if !widths.is_empty() {
-        lanes(out, &widths, forbid_unsafe);
+        lanes(out, &widths, portable, level);
     }
 }
 
 /// The modules of lanes in these widths.
-fn lanes(out: &mut String, widths: &[usize], forbid_unsafe: bool) {
+fn lanes(out: &mut String, widths: &[usize], forbid_unsafe: bool, level: Level) {
     let sets: &[(Set, &str, &str)] = if forbid_unsafe { &SETS[..1] } else { &SETS };
     let lint = if forbid_unsafe { "" } else { "unsafe_code, " };
     for width in widths {
         for (set, name, cfg) in sets {
-            let Some(text) = source(*set, Real::F64, *width) else { continue };
+            let Some(text) = source(*set, Real::F64, *width).map(|text| with_sines(&text, level)) else { continue };
             let _ = writeln!(out, "/// Arithmetic and sines of {width} numbers at once.");
             let _ = writeln!(
                 out,
@@ -74,6 +79,12 @@ const SETS: [(Set, &str, &str); 3] = [
 const FUSED: &str = "\
 /// Whether this is compiled for a processor on which a·b + c is one instruction.
 const FUSED: bool = ::core::cfg!(any(all(target_arch = \"x86_64\", target_feature = \"avx2\", target_feature = \"fma\"), target_arch = \"aarch64\"));
+
+";
+
+const NOT_FUSED: &str = "\
+/// At this level a·b + c is never one instruction.
+const FUSED: bool = false;
 
 ";
 

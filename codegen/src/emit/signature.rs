@@ -5,7 +5,7 @@ use std::fmt::Write;
 use articulated_core::algorithm::{Dim, Shape};
 
 use super::results::{ZERO, is_sparse, nested, zeros};
-use crate::wanted::{Wanted, array};
+use crate::wanted::{Wanted, array_of};
 
 /// What is handed in.
 pub(super) struct Input {
@@ -15,8 +15,8 @@ pub(super) struct Input {
 }
 
 impl Input {
-    fn declared(&self) -> String {
-        let ty = if self.dims.is_empty() { "[f64; PARAMETERS.len()]".into() } else { array(&self.dims) };
+    fn declared(&self, real: &str) -> String {
+        let ty = if self.dims.is_empty() { "[f64; PARAMETERS.len()]".into() } else { array_of(real, &self.dims) };
         format!("{}: &{ty}", self.name)
     }
 
@@ -46,6 +46,8 @@ pub(super) struct Signature<'a> {
     sizes: Shape,
     /// The type of the result, if there are several.
     group: Option<String>,
+    /// The type of the numbers that go in and come out.
+    real: &'static str,
 }
 
 impl<'a> Signature<'a> {
@@ -54,12 +56,22 @@ impl<'a> Signature<'a> {
         if parameters {
             inputs.push(Input { name: "parameters", dims: Vec::new() });
         }
-        Self { wanted, inputs, sizes, group: wanted.group() }
+        Self { wanted, inputs, sizes, group: wanted.group(), real: "f64" }
+    }
+
+    /// The same with numbers of another type.
+    pub(super) fn with(self, real: &'static str) -> Self {
+        Self { real, ..self }
+    }
+
+    /// The type of an array of these dimensions.
+    pub(super) fn array(&self, dims: &[Dim]) -> String {
+        array_of(self.real, dims)
     }
 
     /// `q: &[f64; NQ], v: &[f64; NV]`
     pub(super) fn arguments(&self) -> String {
-        self.inputs.iter().map(Input::declared).collect::<Vec<_>>().join(", ")
+        self.inputs.iter().map(|i| i.declared(self.real)).collect::<Vec<_>>().join(", ")
     }
 
     /// `q, v`
@@ -69,7 +81,7 @@ impl<'a> Signature<'a> {
 
     /// The type of the result.
     pub(super) fn gives(&self) -> String {
-        self.group.clone().unwrap_or_else(|| array(self.wanted.parts[0].function.gives))
+        self.group.clone().unwrap_or_else(|| self.array(self.wanted.parts[0].function.gives))
     }
 
     /// Writes the type that holds the results of a group.
@@ -80,7 +92,15 @@ impl<'a> Signature<'a> {
         let _ = writeln!(out, "pub struct {name} {{");
         for part in &self.wanted.parts {
             let f = part.function;
-            let _ = writeln!(out, "    /// {}: `{}`, {}.\n    pub {}: {},", f.summary, array(f.gives), f.unit, f.name, array(f.gives));
+            let _ = writeln!(
+                out,
+                "    /// {}: `{}`, {}.\n    pub {}: {},",
+                f.summary,
+                self.array(f.gives),
+                f.unit,
+                f.name,
+                self.array(f.gives)
+            );
         }
         let _ = writeln!(out, "}}\n");
     }

@@ -136,7 +136,9 @@ impl Level {
     pub fn contract(self) -> Vec<String> {
         let arithmetic = match self.arithmetic {
             Arithmetic::Double => "Numbers: f64; each operation is off by at most 2⁻⁵³ of its result.",
-            Arithmetic::Single => "Numbers: f32, in and out too; each operation is off by at most 2⁻²⁴ of its result. What exceeds 3.4e38 is infinite.",
+            Arithmetic::Single => {
+                "Numbers: f32, in and out too; each operation is off by at most 2⁻²⁴ of its result. What exceeds 3.4e38 is infinite."
+            }
             Arithmetic::SingleByDouble => "Numbers: f64, arguments and results f32: results are those of f64 rounded to f32 once.",
             Arithmetic::Compensated => {
                 "Numbers: f64 and what each operation lost, to first order: with sines of two doubles results are as of some 2⁻¹⁰⁰, rounded once, for values of 1e-140 to 1e140."
@@ -146,10 +148,16 @@ impl Level {
             }
         };
         let sines = match self.sines {
-            Sines::Ulp => "Sines and cosines: off by at most 1 ulp up to 1e5 rad; beyond, and so at 1e6, 1e15 and 1e22, as the standard library has them.",
+            Sines::Ulp => {
+                "Sines and cosines: off by at most 1 ulp up to 1e5 rad; beyond, and so at 1e6, 1e15 and 1e22, as the standard library has them."
+            }
             Sines::Correct => "Sines and cosines: the nearest doubles, of any finite angle, 1e6, 1e15 and 1e22 among them.",
-            Sines::Fast7 => "Sines and cosines: |error| ≤ 1e-7 up to 1e5 rad; beyond, and so at 1e6, 1e15 and 1e22, as the standard library has them.",
-            Sines::Fast10 => "Sines and cosines: |error| ≤ 1e-10 up to 1e5 rad; beyond, and so at 1e6, 1e15 and 1e22, as the standard library has them.",
+            Sines::Fast7 => {
+                "Sines and cosines: |error| ≤ 1e-7 up to 1e5 rad; beyond, and so at 1e6, 1e15 and 1e22, as the standard library has them."
+            }
+            Sines::Fast10 => {
+                "Sines and cosines: |error| ≤ 1e-10 up to 1e5 rad; beyond, and so at 1e6, 1e15 and 1e22, as the standard library has them."
+            }
             Sines::Two => "Sines and cosines: off by at most 2⁻¹⁰⁰ of the value, of any finite angle, 1e6, 1e15 and 1e22 among them.",
         };
         let mut lines = Vec::from([arithmetic.to_string(), sines.to_string()]);
@@ -157,10 +165,15 @@ impl Level {
             lines.push("They are computed in f64 and rounded.".into());
         }
         if !self.fused {
-            lines.push("No fused multiply-add: the same bits on every processor where angles stay within 1e5 rad and nothing is an arctangent.".into());
+            lines.push(
+                "No fused multiply-add: the same bits on every processor where angles stay within 1e5 rad and nothing is an arctangent."
+                    .into(),
+            );
         }
         lines.push("NaN and ∞ in an argument that a result depends on give NaN or ∞ there, and never a panic.".into());
-        lines.push("The constants are those of the model in f64: each is off by some 2⁻⁵³ of what the URDF's decimals say, at every level.".into());
+        lines.push(
+            "The constants are those of the model in f64: each is off by some 2⁻⁵³ of what the URDF's decimals say, at every level.".into(),
+        );
         lines
     }
 }
