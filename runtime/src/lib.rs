@@ -9,7 +9,7 @@ pub use articulated_core::algorithm::{self, FunctionError, FunctionId, Shape, Wo
 pub use articulated_core::description::{Base, Description, EditError, Origin, Payload};
 pub use articulated_core::dynamics::Dynamics;
 pub use articulated_core::model::{Model, ModelError};
-pub use articulated_core::{Scalar, spatial};
+pub use articulated_core::{Scalar, effect, spatial};
 
 #[cfg(feature = "macros")]
 pub use articulated_macros::robot;

@@ -73,7 +73,13 @@ impl Known {
     pub(crate) fn recording<R: Dynamics<f64>>(&self, system: &System<R>, settings: &Settings) -> Recording {
         let (n, nq, nv) = (Times::count(settings), system.manifold.nq, system.manifold.nv);
         let room = |wanted: bool, each: usize| Vec::with_capacity(if wanted { n * each } else { 0 });
-        let names = [("kinetic_energy", self.kinetic), ("potential_energy", self.potential), ("centroidal_momentum", self.momentum)];
+        let names = [
+            ("kinetic_energy", self.kinetic),
+            ("potential_energy", self.potential),
+            ("centroidal_momentum", self.momentum),
+            ("dissipation", system.has_losses),
+            ("motor_torques", system.has_motors),
+        ];
         Recording {
             nq,
             nv,

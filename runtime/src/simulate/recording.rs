@@ -9,8 +9,10 @@ pub struct Counts {
     pub steps: u64,
     /// Steps rejected.
     pub rejected: u64,
-    /// Evaluations of forward dynamics.
+    /// Evaluations of forward dynamics for steps and curves.
     pub evaluations: u64,
+    /// Evaluations of forward dynamics to see whether a fixed step is stable; not among the others.
+    pub checks: u64,
     /// Evaluations of its derivatives.
     pub derivatives: u64,
     /// Matrices factorised.
@@ -33,6 +35,7 @@ impl Default for Counts {
             steps: 0,
             rejected: 0,
             evaluations: 0,
+            checks: 0,
             derivatives: 0,
             factorizations: 0,
             iterations: 0,

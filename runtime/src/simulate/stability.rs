@@ -104,6 +104,8 @@ impl Stability {
                 self.at.copy_from_slice(y);
                 self.at[..n].iter_mut().zip(from).for_each(|(y, z)| *y += by * z);
                 system.rate(control, t, &self.at, to)?;
+                system.counts.evaluations -= 1;
+                system.counts.checks += 1;
                 to[..n].iter_mut().zip(f).for_each(|(rate, f)| *rate = (*rate - f) / by);
             }
             let Some(pair) = fit(&self.z[0][..n], &self.z[1][..n], &self.z[2][..n]) else { return Ok(before) };

@@ -22,8 +22,8 @@ pub(crate) struct System<'r, R: Dynamics<f64>> {
     pub(crate) q: Vec<f64>,
     pub(crate) tau: Vec<f64>,
     applied: Vec<f64>,
-    has_motors: bool,
-    has_losses: bool,
+    pub(crate) has_motors: bool,
+    pub(crate) has_losses: bool,
 }
 
 impl<'r, R: Dynamics<f64>> System<'r, R> {

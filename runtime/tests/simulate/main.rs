@@ -1,4 +1,5 @@
 //! Laws of motion, for every integrator.
 
 mod closed_forms;
+mod orders;
 mod robots;

@@ -1,50 +1,52 @@
-//! Small robots with closed forms, and the means to run them.
+//! Small robots, generated and generic, and the means to run them.
 
 use articulated::simulate::{IntegratorId, NoTorque, Output, Recording, Settings, SimulateError, Simulation};
 use articulated::{Base, Dynamics, Model, load_bytes};
 
-/// A link of this mass and these moments of inertia (xx, yy, zz) about a centre at `xyz`.
-pub(crate) fn link(name: &str, mass: f64, xyz: [f64; 3], inertia: [f64; 3]) -> String {
-    let ([x, y, z], [xx, yy, zz]) = (xyz, inertia);
-    format!(
-        r#"<link name="{name}"><inertial><origin xyz="{x} {y} {z}"/><mass value="{mass}"/>
-        <inertia ixx="{xx}" ixy="0" ixz="0" iyy="{yy}" iyz="0" izz="{zz}"/></inertial></link>"#
-    )
+macro_rules! generated {
+    ($($(#[$doc:meta])* $name:ident, $urdf:literal, $base:ident, $gravity:literal $(, $more:ident)?;)*) => {
+        $(articulated::robot! {
+            $(#[$doc])*
+            pub(crate) mod $name {
+                urdf = $urdf,
+                base = $base,
+                gravity = [0.0, 0.0, $gravity],
+                functions = [placements, forward_dynamics, integrate, difference, kinetic_energy, potential_energy, centroidal_momentum
+                    $(, $more)?],
+            }
+        })*
+    };
 }
 
-/// A joint about or along an axis.
-pub(crate) fn joint(kind: &str, parent: &str, child: &str, xyz: [f64; 3], axis: [f64; 3]) -> String {
-    let ([x, y, z], [a, b, c]) = (xyz, axis);
-    format!(
-        r#"<joint name="{child}_joint" type="{kind}"><parent link="{parent}"/><child link="{child}"/><origin xyz="{x} {y} {z}"/><axis xyz="{a} {b} {c}"/></joint>"#
-    )
+generated! {
+    /// Three rods whose axes are not parallel.
+    chain, "tests/simulate/urdf/chain.urdf", fixed, -9.81, forward_dynamics_derivatives;
+    /// A double pendulum.
+    planar, "tests/simulate/urdf/planar.urdf", fixed, -9.81;
+    /// A free body about its centre, without gravity.
+    handle, "tests/simulate/urdf/handle.urdf", floating, 0.0;
+    /// A body that floats and has an arm with a ball joint.
+    satellite, "tests/simulate/urdf/satellite.urdf", floating, -9.81;
+    /// A top on its tip.
+    top, "tests/simulate/urdf/top.urdf", fixed, -9.81, forward_dynamics_derivatives;
 }
 
-pub(crate) fn robot(name: &str, base: Base, parts: &[String]) -> Model<f64> {
-    let text = format!("<robot name=\"{name}\">{}</robot>", parts.concat());
-    load_bytes(name, text.as_bytes(), base).unwrap_or_else(|e| panic!("{e}"))
+/// The generic model of one of the same files, or of another.
+pub(crate) fn model(name: &str, base: Base) -> Model<f64> {
+    let path = format!("{}/tests/simulate/urdf/{name}.urdf", env!("CARGO_MANIFEST_DIR"));
+    articulated::load(path, base).unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
-/// A point mass on a massless rod of one metre about y.
-pub(crate) fn pendulum() -> Model<f64> {
-    let bob = link("bob", 1.0, [0.0, 0.0, -1.0], [0.0; 3]);
-    robot("pendulum", Base::Fixed, &["<link name=\"base\"/>".into(), bob, joint("continuous", "base", "bob", [0.0; 3], [0.0, 1.0, 0.0])])
-}
-
-/// `n` equal rods hanging on each other, about axes that alternate.
-pub(crate) fn chain(n: usize, axes: &[[f64; 3]]) -> Model<f64> {
-    let mut parts = vec!["<link name=\"link_0\"/>".to_string()];
-    for i in 1..=n {
-        parts.push(link(&format!("link_{i}"), 1.0, [0.0, 0.0, -0.25], [0.02, 0.03, 0.01]));
-        let at = [0.0, 0.0, if i > 1 { -0.5 } else { 0.0 }];
-        parts.push(joint("continuous", &format!("link_{}", i - 1), &format!("link_{i}"), at, axes[(i - 1) % axes.len()]));
-    }
-    robot("chain", Base::Fixed, &parts)
-}
-
-/// A free rigid body with these principal moments, its centre at `xyz` of its frame.
-pub(crate) fn free_body(mass: f64, xyz: [f64; 3], inertia: [f64; 3]) -> Model<f64> {
-    robot("body", Base::Floating, &[link("body", mass, xyz, inertia)])
+/// A turning or sliding body of mass 1 and moment of inertia 1 about the axis z of its joint, its centre `off` from the axis along x.
+pub(crate) fn one_joint(kind: &str, off: f64) -> Model<f64> {
+    let text = format!(
+        r#"<robot name="one"><link name="base"/><link name="body"><inertial><origin xyz="{off} 0 0"/><mass value="1"/>
+        <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="{}"/></inertial></link>
+        <joint name="joint" type="{kind}"><parent link="base"/><child link="body"/><axis xyz="0 0 1"/>
+        <limit lower="-9" upper="9" effort="1" velocity="1"/></joint></robot>"#,
+        1.0 - off * off
+    );
+    load_bytes("one", text.as_bytes(), Base::Fixed).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Settings with both tolerances alike and no output but the ends.
@@ -57,6 +59,16 @@ pub(crate) fn stepping(integrator: IntegratorId, end: f64, step: f64) -> Setting
     Settings { step: Some(step), ..to(integrator, end, 1e-6) }
 }
 
+/// A motion that nothing drives.
 pub(crate) fn free<R: Dynamics<f64>>(robot: &R, settings: &Settings, q: &[f64], v: &[f64]) -> Result<Recording, SimulateError> {
     Simulation::new(robot, settings.clone())?.run(q, v, &mut NoTorque, &mut [])
+}
+
+/// Largest difference of the last states of two motions of the same robot, along the manifold.
+pub(crate) fn apart<R: Dynamics<f64>>(robot: &R, a: &Recording, b: &Recording) -> f64 {
+    let (i, j) = (a.len() - 1, b.len() - 1);
+    let mut step = vec![0.0; a.nv];
+    robot.difference(&mut robot.workspace(), a.q_at(i), b.q_at(j), &mut step).unwrap();
+    let rates = a.v_at(i).iter().zip(b.v_at(j)).map(|(a, b)| a - b);
+    step.iter().copied().chain(rates).fold(0.0, |most, x| if x.is_nan() { f64::INFINITY } else { most.max(x.abs()) })
 }
