@@ -29,6 +29,7 @@ pub struct Simulation<'r, R: Dynamics<f64>> {
     end: Vec<f64>,
     point: Point,
     v: Vec<f64>,
+    spare: Vec<f64>,
 }
 
 /// How far the run has got, beside the state.
@@ -78,6 +79,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             end: vec![0.0; n],
             point: Point::new(shape.nq, n),
             v: vec![0.0; nv],
+            spare: vec![0.0; n],
             system,
             settings,
         };
@@ -308,9 +310,13 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         let h = t - self.t;
         self.method.step(&mut self.system, run.control, start, h, &mut self.end, &self.norm)?;
         self.method.finish(&mut self.system, run.control, start, h, &mut self.end)?;
-        if let Some(i) = self.end[..2 * self.shape.nv].iter().position(|x| !x.is_finite()) {
-            self.stability.reset();
-            self.check_stability(run)?;
+        let bad = self.end[..2 * self.shape.nv].iter().position(|x| !x.is_finite());
+        let explicit = !self.settings.integrator.row().implicit && self.system.counts.stiff_at.is_none();
+        if explicit && (bad.is_some() || self.stability.suspects(self.system.counts.steps, h * self.method.fastest().map_or(0.0, |f| f.0)))
+        {
+            self.check_suspect(run)?;
+        }
+        if let Some(i) = bad {
             return Err(self.not_finite(i));
         }
         run.stretch.1 += 1;
@@ -325,9 +331,24 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             return Ok(());
         }
         let here = (self.t, &self.y[..], &self.f[..]);
-        let Some((admissible, rate)) = self.stability.exceeded(&mut self.system, run.control, &*self.method, here, h)? else {
-            return Ok(());
-        };
+        let found = self.stability.exceeded(&mut self.system, run.control, &*self.method, here, h)?;
+        self.refuse(h, found)
+    }
+
+    /// The same where the last step saw something fast, on its way.
+    fn check_suspect(&mut self, run: &mut Run) -> Result<(), SimulateError> {
+        let (Some(h), Some((_, suspect))) = (self.settings.step, self.method.fastest()) else { return Ok(()) };
+        let at = if suspect.iter().any(|x| !x.is_finite()) { &self.y } else { suspect };
+        self.point.y.copy_from_slice(at);
+        self.system.rate(run.control, self.t, &self.point.y, &mut self.spare)?;
+        self.stability.begin_anew();
+        let here = (self.t, &self.point.y[..], &self.spare[..]);
+        let found = self.stability.exceeded(&mut self.system, run.control, &*self.method, here, h)?;
+        self.refuse(h, found)
+    }
+
+    fn refuse(&mut self, h: f64, found: Option<(f64, f64)>) -> Result<(), SimulateError> {
+        let Some((admissible, rate)) = found else { return Ok(()) };
         self.stiff(SimulateError::Unstable { integrator: self.settings.integrator, t: self.t, step: h, admissible, rate })
     }
 

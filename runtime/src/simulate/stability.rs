@@ -22,6 +22,7 @@ pub(crate) struct Stability {
     at: Vec<f64>,
     fresh: bool,
     largest: f64,
+    wait: u64,
 }
 
 /// What a look found: λ² = aλ + b, and |λ|.
@@ -34,11 +35,16 @@ pub(crate) struct Pair {
 
 impl Stability {
     pub(crate) fn new(n: usize) -> Self {
-        Self { z: std::array::from_fn(|_| vec![0.0; n]), at: vec![0.0; n], fresh: true, largest: 0.0 }
+        Self { z: std::array::from_fn(|_| vec![0.0; n]), at: vec![0.0; n], fresh: true, largest: 0.0, wait: 0 }
     }
 
     pub(crate) fn reset(&mut self) {
-        (self.fresh, self.largest) = (true, 0.0);
+        (self.fresh, self.largest, self.wait) = (true, 0.0, 0);
+    }
+
+    /// The next look begins with everything.
+    pub(crate) fn begin_anew(&mut self) {
+        self.fresh = true;
     }
 
     /// Whether it is time to look after this many steps, or the motion has jumped: the largest velocity is more than eight times what it ever was.
@@ -49,6 +55,15 @@ impl Stability {
             self.largest = self.largest.max(size);
         }
         jumped || steps.is_multiple_of(EVERY)
+    }
+
+    /// Whether what a step saw of fast motion, |hλ| roughly, is reason to look; not twice in a row.
+    pub(crate) fn suspects(&mut self, steps: u64, seen: f64) -> bool {
+        let look = seen > 0.6 && steps >= self.wait;
+        if look {
+            self.wait = steps + EVERY;
+        }
+        look
     }
 
     /// The longest stable step up to h and the rate that bounds it, if h itself is not stable at (t, y), where dy/dt = f.
@@ -86,9 +101,12 @@ impl Stability {
         if n == 0 {
             return Ok(None);
         }
-        if self.fresh {
-            // Numbers without a pattern.
-            self.z[0][..n].iter_mut().enumerate().for_each(|(i, z)| *z = 1.0 + (i as f64 * 2.399_963).sin());
+        // What was fast is looked at again; a little of everything, in numbers without a pattern, lets in what has become fast.
+        let size = norm(&self.z[0][..n]);
+        let kept = if self.fresh || !(size > 0.0 && size.is_finite()) { 0.0 } else { 1.0 / size };
+        let other = if kept > 0.0 { 1e-2 } else { 1.0 };
+        for (i, z) in self.z[0][..n].iter_mut().enumerate() {
+            *z = if kept > 0.0 { *z * kept } else { 0.0 } + other * (1.5 + (i as f64 * 2.399_963).sin());
         }
         let mut before: Option<Pair> = None;
         for _ in 0..rounds {

@@ -3,3 +3,4 @@
 mod closed_forms;
 mod orders;
 mod robots;
+mod stiff;

@@ -7,7 +7,7 @@ use articulated_core::dynamics::Dynamics;
 
 use super::dop853_coefficients::{A, C, D, E3, E5};
 use super::stages::Stages;
-use super::{Method, Start, largest_of_polynomial};
+use super::{Method, Start, distance, largest_of_polynomial};
 use crate::simulate::step_control::{Controller, Error, Norm};
 use crate::simulate::system::System;
 use crate::simulate::{Control, SimulateError};
@@ -59,7 +59,7 @@ impl<R: Dynamics<f64>> Method<R> for Dop853 {
     ) -> Result<Error, SimulateError> {
         self.ready = false;
         let k = &mut self.stages;
-        k.begin(start.f);
+        k.begin(start);
         for i in 1..=LAST {
             k.stage(system, control, (start, h), i, C[i - 1], A[i - 1])?;
             if i == LAST - 1 {
@@ -113,11 +113,13 @@ impl<R: Dynamics<f64>> Method<R> for Dop853 {
     }
 
     fn stiffness(&self, h: f64, end: &[f64]) -> Option<(f64, f64)> {
-        let k = &self.stages;
-        let square = |(a, b): (&f64, &f64)| (a - b) * (a - b);
-        let rates: f64 = k.k(LAST).iter().zip(k.k(LAST - 1)).map(square).sum();
-        let points: f64 = end.iter().zip(&self.twelfth).map(square).sum();
-        (points > 0.0).then(|| (h * (rates / points).sqrt(), 6.1))
+        let points = distance(end, &self.twelfth);
+        (points > 0.0).then(|| (h * distance(self.stages.k(LAST), self.stages.k(LAST - 1)) / points, 6.1))
+    }
+
+    fn fastest(&self) -> Option<(f64, &[f64])> {
+        let seen = self.stages.fastest();
+        Some((seen.rate, &seen.at))
     }
 }
 

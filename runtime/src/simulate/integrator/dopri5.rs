@@ -6,7 +6,7 @@
 use articulated_core::dynamics::Dynamics;
 
 use super::stages::Stages;
-use super::{Method, Start, largest_of_polynomial};
+use super::{Method, Start, distance, largest_of_polynomial};
 use crate::simulate::step_control::{Controller, Error, Norm};
 use crate::simulate::system::System;
 use crate::simulate::{Control, SimulateError};
@@ -62,7 +62,7 @@ impl<R: Dynamics<f64>> Method<R> for Dopri5 {
         norm: &Norm,
     ) -> Result<Error, SimulateError> {
         let k = &mut self.stages;
-        k.begin(start.f);
+        k.begin(start);
         for i in 0..6 {
             k.stage(system, control, (start, h), i + 1, C[i], A[i])?;
             if i == 4 {
@@ -101,11 +101,13 @@ impl<R: Dynamics<f64>> Method<R> for Dopri5 {
     }
 
     fn stiffness(&self, h: f64, end: &[f64]) -> Option<(f64, f64)> {
-        let k = &self.stages;
-        let square = |(a, b): (&f64, &f64)| (a - b) * (a - b);
-        let rates: f64 = k.k(6).iter().zip(k.k(5)).map(square).sum();
-        let points: f64 = end.iter().zip(&self.sixth).map(square).sum();
-        (points > 0.0).then(|| (h * (rates / points).sqrt(), 3.25))
+        let points = distance(end, &self.sixth);
+        (points > 0.0).then(|| (h * distance(self.stages.k(6), self.stages.k(5)) / points, 3.25))
+    }
+
+    fn fastest(&self) -> Option<(f64, &[f64])> {
+        let seen = self.stages.fastest();
+        Some((seen.rate, &seen.at))
     }
 }
 

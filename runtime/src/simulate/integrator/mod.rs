@@ -80,8 +80,13 @@ pub(crate) trait Method<R: Dynamics<f64>> {
         None
     }
 
-    /// |hλ| of the fastest motion that the last step saw, and the most that is stable, where the method can say.
+    /// |hλ| of the fastest motion that the last step saw, by a quotient of differences, and the most that is stable.
     fn stiffness(&self, _h: f64, _end: &[f64]) -> Option<(f64, f64)> {
+        None
+    }
+
+    /// The fastest motion that the last step of an explicit method saw, 1/s, roughly, and where.
+    fn fastest(&self) -> Option<(f64, &[f64])> {
         None
     }
 }
@@ -98,6 +103,11 @@ pub(crate) fn method<R: Dynamics<f64>>(id: IntegratorId, manifold: &Manifold) ->
         IntegratorId::rodas4 => Box::new(rodas4::Rodas4::new(manifold)),
         IntegratorId::lie_midpoint => Box::new(lie_midpoint::LieMidpoint::new(nv)),
     }
+}
+
+/// √(Σ (a − b)²).
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
 }
 
 /// The roots of λ² = aλ + b as (re, im), (re, im).

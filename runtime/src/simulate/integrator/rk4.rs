@@ -32,7 +32,7 @@ impl<R: Dynamics<f64>> Method<R> for Rk4 {
     ) -> Result<Error, SimulateError> {
         self.curve.forget();
         let k = &mut self.stages;
-        k.begin(start.f);
+        k.begin(start);
         k.stage(system, control, (start, h), 1, 0.5, &[0.5])?;
         k.stage(system, control, (start, h), 2, 0.5, &[0.0, 0.5])?;
         k.stage(system, control, (start, h), 3, 1.0, &[0.0, 0.0, 1.0])?;
@@ -61,5 +61,10 @@ impl<R: Dynamics<f64>> Method<R> for Rk4 {
 
     fn amplification(&self, a: f64, b: f64, h: f64) -> Option<f64> {
         Some(largest_of_polynomial(&[1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0], a, b, h))
+    }
+
+    fn fastest(&self) -> Option<(f64, &[f64])> {
+        let seen = self.stages.fastest();
+        Some((seen.rate, &seen.at))
     }
 }

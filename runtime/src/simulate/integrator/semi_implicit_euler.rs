@@ -3,6 +3,7 @@
 use articulated_core::dynamics::Dynamics;
 
 use super::hermite::Hermite;
+use super::stages::Fastest;
 use super::{Method, Start, roots};
 use crate::simulate::step_control::{Error, Norm};
 use crate::simulate::system::System;
@@ -10,15 +11,23 @@ use crate::simulate::{Control, SimulateError};
 
 pub(crate) struct SemiImplicitEuler {
     curve: Hermite,
+    /// Where the last step began, in the chart of the present one, and its rate; from there to here.
+    before: Vec<f64>,
+    rate: Vec<f64>,
+    fastest: Fastest,
 }
 
 impl SemiImplicitEuler {
     pub(super) fn new(n: usize) -> Self {
-        Self { curve: Hermite::new(n) }
+        Self { curve: Hermite::new(n), before: vec![0.0; n], rate: vec![f64::NAN; n], fastest: Fastest::new(n) }
     }
 }
 
 impl<R: Dynamics<f64>> Method<R> for SemiImplicitEuler {
+    fn reset(&mut self) {
+        self.rate.fill(f64::NAN);
+    }
+
     fn step(
         &mut self,
         system: &mut System<R>,
@@ -30,9 +39,15 @@ impl<R: Dynamics<f64>> Method<R> for SemiImplicitEuler {
     ) -> Result<Error, SimulateError> {
         self.curve.forget();
         let nv = system.nv();
+        self.fastest.reset();
+        self.fastest.compare([&self.before, start.y], [&self.rate, start.f]);
         let (u, rest) = end.split_at_mut(nv);
         rest.iter_mut().zip(&start.y[nv..]).zip(&start.f[nv..]).for_each(|((end, y), f)| *end = y + h * f);
-        u.iter_mut().zip(rest).for_each(|(u, v)| *u = h * *v);
+        u.iter_mut().zip(&*rest).for_each(|(u, v)| *u = h * *v);
+        // To first order q_0 is q_1 ⊕ (−u).
+        self.before.copy_from_slice(start.y);
+        self.before[..nv].iter_mut().zip(&*u).for_each(|(before, u)| *before = -*u);
+        self.rate.copy_from_slice(start.f);
         Ok(Error { size: 0.0, index: 0 })
     }
 
@@ -59,5 +74,9 @@ impl<R: Dynamics<f64>> Method<R> for SemiImplicitEuler {
     fn amplification(&self, a: f64, b: f64, h: f64) -> Option<f64> {
         let both = roots(2.0 + h * a + h * h * b, -(1.0 + h * a));
         Some(both.into_iter().map(|(re, im)| re.hypot(im)).fold(0.0, f64::max))
+    }
+
+    fn fastest(&self) -> Option<(f64, &[f64])> {
+        Some((self.fastest.rate, &self.fastest.at))
     }
 }

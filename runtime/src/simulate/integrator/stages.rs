@@ -1,8 +1,8 @@
-//! Stages of explicit Runge–Kutta methods.
+//! Stages of explicit Runge–Kutta methods, and what is fast between them.
 
 use articulated_core::dynamics::Dynamics;
 
-use super::Start;
+use super::{Start, distance};
 use crate::simulate::system::System;
 use crate::simulate::{Control, SimulateError};
 
@@ -12,12 +12,14 @@ pub(super) struct Stages {
     n: usize,
     k: Vec<f64>,
     argument: Vec<f64>,
+    before: Vec<f64>,
+    fastest: Fastest,
 }
 
 impl Stages {
     /// `count` slopes of `n` numbers.
     pub(super) fn new(n: usize, count: usize) -> Self {
-        Self { n, k: vec![0.0; n * count], argument: vec![0.0; n] }
+        Self { n, k: vec![0.0; n * count], argument: vec![0.0; n], before: vec![0.0; n], fastest: Fastest::new(n) }
     }
 
     /// Slope i, from 0.
@@ -31,8 +33,15 @@ impl Stages {
     }
 
     /// The first slope is known.
-    pub(super) fn begin(&mut self, f: &[f64]) {
-        self.k[..self.n].copy_from_slice(f);
+    pub(super) fn begin(&mut self, start: Start) {
+        self.k[..self.n].copy_from_slice(start.f);
+        self.argument.copy_from_slice(start.y);
+        self.fastest.reset();
+    }
+
+    /// The fastest motion that the stages of the step saw.
+    pub(super) fn fastest(&self) -> &Fastest {
+        &self.fastest
     }
 
     /// Slope i at t + c·h, y + h·Σ a_j k_j.
@@ -45,11 +54,14 @@ impl Stages {
         c: f64,
         a: &[f64],
     ) -> Result<(), SimulateError> {
+        std::mem::swap(&mut self.argument, &mut self.before);
         let mut argument = std::mem::take(&mut self.argument);
         self.combine(start.y, h, a, &mut argument);
         self.argument = argument;
         let (n, k) = (self.n, &mut self.k);
-        system.rate(control, start.t + c * h, &self.argument, &mut k[i * n..(i + 1) * n])
+        system.rate(control, start.t + c * h, &self.argument, &mut k[i * n..(i + 1) * n])?;
+        self.fastest.compare([&self.before, &self.argument], [&self.k[(i - 1) * n..i * n], &self.k[i * n..(i + 1) * n]]);
+        Ok(())
     }
 
     /// out = y + h·Σ a_j k_j.
@@ -64,5 +76,38 @@ impl Stages {
     /// Σ a_j k_j of number i.
     pub(super) fn sum(&self, a: &[f64], i: usize) -> f64 {
         a.iter().enumerate().filter(|(_, a)| **a != 0.0).map(|(j, a)| a * self.k[j * self.n + i]).sum()
+    }
+}
+
+/// The fastest motion seen between points of a step: the λ with |Δa| = λ²|Δu| + λ|Δv|, which for springs and for damping by itself is at least 0.6 of the true one, and
+/// where it was seen.
+#[derive(Clone, Debug)]
+pub(super) struct Fastest {
+    pub(super) rate: f64,
+    pub(super) at: Vec<f64>,
+}
+
+impl Fastest {
+    pub(super) fn new(n: usize) -> Self {
+        Self { rate: 0.0, at: vec![0.0; n] }
+    }
+
+    pub(super) fn reset(&mut self) {
+        self.rate = 0.0;
+    }
+
+    /// Two points of a chart and their slopes.
+    pub(super) fn compare(&mut self, y: [&[f64]; 2], f: [&[f64]; 2]) {
+        let nv = (self.at.len() - 2) / 2;
+        let accelerations = f.map(|f| &f[nv..2 * nv]);
+        let (way, turn) = (distance(&y[0][..nv], &y[1][..nv]), distance(&y[0][nv..2 * nv], &y[1][nv..2 * nv]));
+        let change = distance(accelerations[0], accelerations[1]);
+        // The positive root of way·λ² + turn·λ = change, without cancellation.
+        let rate = 2.0 * change / (turn + (turn * turn + 4.0 * way * change).sqrt());
+        if rate > self.rate && rate.is_finite() {
+            self.rate = rate;
+            let size = accelerations.map(|a| a.iter().map(|a| a * a).sum::<f64>());
+            self.at.copy_from_slice(y[usize::from(size[1] > size[0])]);
+        }
     }
 }

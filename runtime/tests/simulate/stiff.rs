@@ -1,0 +1,104 @@
+//! Stiff effects: implicit steps decay without a change of sign, explicit ones refuse and say which step they can take.
+
+use articulated::effect::{Applied, EffectId};
+use articulated::simulate::{IntegratorId, Output, Settings, SimulateError, Stiffness};
+use articulated::{Model, Origin};
+
+use crate::robots::{free, one_joint, stepping, to};
+
+fn with(effect: EffectId, parameters: Vec<f64>) -> Model<f64> {
+    let applied = Applied { effect, on: "joint".into(), at: Origin::default(), parameters };
+    one_joint("prismatic", 0.0).with_gravity([0.0; 3]).with_effects(&[applied]).unwrap()
+}
+
+#[test]
+fn implicit_steps_of_any_length_decay_without_a_change_of_sign() {
+    for power in -4..=24 {
+        let z = 10_f64.powf(f64::from(power) / 4.0);
+        let h = 0.01;
+        let robot = with(EffectId::damping, vec![z / h]);
+        let settings = Settings { output: Output::Steps, ..stepping(IntegratorId::rodas4, 0.4, h) };
+        let motion = free(&robot, &settings, &[0.0], &[1.0]).unwrap();
+        for i in 1..motion.len() {
+            assert!(
+                motion.v[i] >= 0.0 && motion.v[i] <= (-0.9 * z.min(1.0)).exp() * motion.v[i - 1],
+                "h·d/I = {z}: {:?}",
+                &motion.v[i - 1..=i]
+            );
+        }
+        // It slides v_0·I/d in all.
+        let way = motion.q.last().unwrap() * z / h;
+        assert!((way - (1.0 - (-40.0 * z).exp())).abs() < 1e-3, "h·d/I = {z}: {way}");
+    }
+}
+
+#[test]
+fn explicit_steps_beyond_stability_are_refused_with_the_one_that_is_not() {
+    let rate = 1000.0;
+    let cases =
+        [(EffectId::damping, vec![rate], [2.0, 2.785, 3.307, 6.37]), (EffectId::spring, vec![rate * rate, 0.0], [2.0, 2.828, 1.0, 4.0])];
+    let explicit = [IntegratorId::semi_implicit_euler, IntegratorId::rk4, IntegratorId::dopri5, IntegratorId::dop853];
+    for (effect, parameters, limits) in cases {
+        let robot = with(effect, parameters);
+        for (integrator, limit) in explicit.into_iter().zip(limits) {
+            let error = free(&robot, &stepping(integrator, 1.0, 0.05), &[1e-3], &[0.1]).unwrap_err();
+            let SimulateError::Unstable { admissible, rate: found, step, .. } = error else { panic!("{integrator}: {error}") };
+            println!("{integrator}, {effect:?}: {:.3}/rate", admissible * rate);
+            assert_eq!(step, 0.05);
+            assert!((found / rate - 1.0).abs() < 0.02, "{integrator}: {found} 1/s");
+            // On the imaginary axis some are stable a little further than can be told from rounding.
+            assert!(admissible * rate > 0.98 * limit && (effect == EffectId::spring || admissible * rate < 1.02 * limit), "{integrator}");
+            let motion = free(&robot, &stepping(integrator, 0.2, 0.97 * admissible), &[1e-3], &[0.1]).unwrap();
+            assert!(motion.v.last().unwrap().abs() <= 1.5, "{integrator}: {motion:?}");
+        }
+    }
+}
+
+#[test]
+fn a_step_that_becomes_unstable_on_the_way_is_refused_there() {
+    // Nothing is stiff before the limit is reached, at t = 0.5 s.
+    let robot = with(EffectId::limit, vec![-10.0, 0.5, 1e6, 0.0]);
+    for integrator in [IntegratorId::semi_implicit_euler, IntegratorId::rk4, IntegratorId::dopri5, IntegratorId::dop853] {
+        let error = free(&robot, &stepping(integrator, 2.0, 0.01), &[0.0], &[1.0]).unwrap_err();
+        let SimulateError::Unstable { t, admissible, rate, .. } = error else { panic!("{integrator}: {error}") };
+        println!("{integrator}: {t} s, {admissible} s");
+        assert!((0.48..0.53).contains(&t) && admissible < 0.0065 && (rate / 1000.0 - 1.0).abs() < 0.02, "{integrator}: {t} s, {rate} 1/s");
+    }
+}
+
+#[test]
+fn steps_chosen_by_tolerance_say_that_stability_holds_them() {
+    let robot = with(EffectId::damping, vec![1e5]);
+    for integrator in [IntegratorId::dopri5, IntegratorId::dop853] {
+        let settings = to(integrator, 1.0, 1e-6);
+        let error = free(&robot, &settings, &[0.0], &[1.0]).unwrap_err();
+        assert!(matches!(error, SimulateError::Stiff { .. }), "{integrator}: {error}");
+        let motion = free(&robot, &Settings { end: 0.1, stiffness: Stiffness::Note, ..settings }, &[0.0], &[1.0]).unwrap();
+        assert!(motion.counts.stiff_at.is_some() && (motion.q.last().unwrap() - 1e-5).abs() < 1e-7);
+    }
+}
+
+#[test]
+fn a_body_comes_to_rest_on_a_limit_of_a_giganewton_a_metre() {
+    let applied = Applied { effect: EffectId::limit, on: "joint".into(), at: Origin::default(), parameters: vec![0.0, 10.0, 1e9, 1e4] };
+    let robot = one_joint("prismatic", 0.0).with_effects(&[applied]).unwrap();
+    // Dropped from 1 mm, with a contact that dissipates: what is left is the force balance, 9.81 nm below the limit.
+    let settings = to(IntegratorId::rodas4, 1.0, 1e-4);
+    let motion = free(&robot, &settings, &[1e-3], &[0.0]).unwrap();
+    let (q, v) = (motion.q.last().unwrap(), motion.v.last().unwrap());
+    println!("{q:e} m, {v:e} m/s, {} steps", motion.counts.steps);
+    assert!((q + 9.81e-9).abs() < 1e-10 && v.abs() < 1e-9, "{q:e} m, {v:e} m/s");
+}
+
+#[test]
+fn dry_friction_stops_a_body_and_does_not_turn_it_round() {
+    let robot = with(EffectId::friction, vec![2.0, 1e-6]);
+    let settings = Settings { output: Output::Steps, ..to(IntegratorId::rodas4, 2.0, 1e-6) };
+    let motion = free(&robot, &settings, &[0.0], &[1.0]).unwrap();
+    let (way, speed) = (motion.q.last().unwrap(), motion.v.last().unwrap());
+    println!("{way} m, {speed:e} m/s, {:?}", motion.counts);
+    assert!(motion.v.iter().all(|v| *v > -1e-7), "{:?}", motion.v);
+    assert!((way - 0.25).abs() < 1e-5 && speed.abs() < 1e-7);
+    let lost = motion.dissipated.last().unwrap();
+    assert!((lost + 0.5).abs() < 1e-4, "{lost} J");
+}
