@@ -45,7 +45,8 @@ struct Run<'a, 'e> {
     stretch: (f64, u64),
     samples: u64,
     chatter: u32,
-    last_map: f64,
+    /// The last event that mapped the state, and when.
+    last_map: (usize, f64),
     stiff: (u32, u32),
 }
 
@@ -138,7 +139,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             stretch: (self.t, 0),
             samples: 0,
             chatter: 0,
-            last_map: f64::NEG_INFINITY,
+            last_map: (0, f64::NEG_INFINITY),
             stiff: (0, 0),
         };
         let result = self.steps(&mut run, watch);
@@ -480,11 +481,13 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         let nv = self.shape.nv;
         let Some(event) = run.recording.events.last().map(|hit| hit.event) else { return Ok(false) };
         let Event { action: Action::Map(map), name, .. } = &mut run.events[event] else { return Ok(false) };
-        run.chatter = if self.t - run.last_map <= 4.0 * self.settings.event_tolerance.max(rounding(self.t)) { run.chatter + 1 } else { 0 };
-        run.last_map = self.t;
-        if run.chatter > 100 {
+        // The same event again at the same time: it would never end. Others may happen at one time, but not for ever.
+        let again = self.t - run.last_map.1 <= 2.0 * self.settings.event_tolerance.max(rounding(self.t));
+        run.chatter = if again { run.chatter + 1 } else { 0 };
+        if again && (run.last_map.0 == event || run.chatter > 100) {
             return Err(SimulateError::Chattering { t: self.t, event: name.clone() });
         }
+        run.last_map = (event, self.t);
         self.point.q.copy_from_slice(&self.system.origin);
         self.v.copy_from_slice(&self.y[nv..2 * nv]);
         let value = map(self.t, &mut self.point.q, &mut self.v)?;

@@ -64,7 +64,8 @@ impl Watch {
             let (mut side, mut from) = (self.side[e], 0);
             for place in 0..PLACES.len() {
                 let g = |place: usize| self.values[place * count + e];
-                let now = sign(g(place));
+                // Where the step begins, it is known on which side: rounding may say otherwise.
+                let now = if place == 0 && side != 0.0 { side } else { sign(g(place)) };
                 if now != 0.0 && side != 0.0 && now != side {
                     let theta = search.zero(e, (PLACES[from], side), (PLACES[place], now))?;
                     push(&mut self.zeros, search.events, e, theta, now);

@@ -77,9 +77,15 @@ impl<R: Dynamics<f64>> Method<R> for LieMidpoint {
             let found = &self.rate[nv..2 * nv];
             let change = h * largest(found.iter().zip(&self.acceleration).map(|(a, b)| a - b));
             let size = largest(v.iter().copied()).max(h * largest(found.iter().copied()));
-            if change.is_nan() {
+            if let Some(index) = found.iter().position(|a| !a.is_finite()) {
+                let diverged = before.is_finite();
                 self.acceleration.fill(0.0);
-                return Err(SimulateError::NoConvergence { t: start.t, step: h });
+                let t = start.t + 0.5 * h;
+                return Err(if diverged {
+                    SimulateError::NoConvergence { t: start.t, step: h }
+                } else {
+                    SimulateError::NotFinite { t, what: "acceleration", index }
+                });
             }
             self.acceleration.copy_from_slice(found);
             // Down to rounding, or as near as it goes.

@@ -1,0 +1,171 @@
+//! What drives a robot, and the balance of energy.
+
+use std::cell::RefCell;
+
+use articulated::effect::{Applied, EffectId};
+use articulated::simulate::{
+    Constant, Control, Hold, IntegratorId, NoTorque, Output, Pd, Settings, SimulateError, Simulation, StateError, TorqueTable,
+};
+use articulated::{Base, Dynamics, FunctionError, Origin};
+
+use crate::robots::{apart, chain, free, handle, model, one_joint, satellite, stepping, to};
+
+fn slider() -> articulated::Model<f64> {
+    one_joint("prismatic", 0.0).with_gravity([0.0; 3])
+}
+
+/// q̈ = u between samples: the sums are exact, and the samples come when they must.
+#[test]
+fn a_sampled_controller_is_asked_at_its_times_and_held_between() {
+    for id in [IntegratorId::dopri5, IntegratorId::rodas4, IntegratorId::rk4] {
+        let times = RefCell::new(Vec::new());
+        let law = |t: f64, q: &[f64], v: &[f64]| -2.0 * q[0] - v[0] + t;
+        let control = |t: f64, q: &[f64], v: &[f64], tau: &mut [f64]| {
+            times.borrow_mut().push(t);
+            tau[0] = law(t, q, v);
+        };
+        let settings = if id == IntegratorId::rk4 { stepping(id, 1.0, 0.03) } else { to(id, 1.0, 1e-6) };
+        let mut hold = Hold::new(control, 0.1).unwrap();
+        let motion = Simulation::new(&slider(), settings).unwrap().run(&[1.0], &[0.0], &mut hold, &mut []).unwrap();
+        let (mut q, mut v) = (1.0, 0.0);
+        for k in 0..10 {
+            let u = law(0.1 * f64::from(k), &[q], &[v]);
+            q += 0.1 * v + 0.005 * u;
+            v += 0.1 * u;
+        }
+        let times = times.into_inner();
+        assert_eq!(times.len(), 10, "{id}: {times:?}");
+        assert!(times.iter().enumerate().all(|(k, t)| (t - 0.1 * k as f64).abs() < 1e-15), "{id}: {times:?}");
+        assert!((motion.q[1] - q).abs() < 1e-13 && (motion.v[1] - v).abs() < 1e-13, "{id}: {} {q}", motion.q[1]);
+    }
+    assert!(Hold::new(NoTorque, 0.0).is_none());
+}
+
+/// A tent of force: steps end at its top, so that a curve of third degree is exact.
+#[test]
+fn a_table_is_followed_through_its_kinks() {
+    for id in [IntegratorId::dopri5, IntegratorId::rodas4, IntegratorId::rk4] {
+        let settings = if id == IntegratorId::rk4 { stepping(id, 2.0, 0.3) } else { to(id, 2.0, 1e-3) };
+        let mut table = TorqueTable::new(vec![0.0, 0.7, 1.4], vec![0.0, 1.0, 0.0], 1).unwrap();
+        let motion = Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[0.0], &mut table, &mut []).unwrap();
+        // ∫ = 0.7, the centre at 0.7. Derivatives in time are differences where steps are linearly implicit.
+        let bound = if id == IntegratorId::rodas4 { 1e-9 } else { 1e-14 };
+        assert!((motion.v[1] - 0.7).abs() < bound && (motion.q[1] - 0.7 * 1.3).abs() < bound, "{id}: {} {}", motion.v[1], motion.q[1]);
+        assert!((motion.work[1] - 0.5 * 0.49).abs() < bound, "{id}: {}", motion.work[1]);
+    }
+}
+
+#[test]
+fn a_controller_brings_a_robot_to_its_target_whatever_integrates_it() {
+    let (q, v) = ([0.4, -0.7, 0.5], [0.0; 3]);
+    let run = |id| {
+        let mut pd = Pd::new(&chain::Robot, vec![1.0, 0.5, -0.5], vec![300.0; 3], vec![20.0, 20.0, 10.0]).unwrap();
+        Simulation::new(&chain::Robot, to(id, 0.5, 1e-9)).unwrap().run(&q, &v, &mut pd, &mut []).unwrap()
+    };
+    let [a, b, c] = [IntegratorId::dop853, IntegratorId::dopri5, IntegratorId::rodas4].map(run);
+    let far = [apart(&chain::Robot, &a, &b), apart(&chain::Robot, &a, &c)];
+    println!("{far:?}; steps {} {} {}", a.counts.steps, b.counts.steps, c.counts.steps);
+    assert!(far.iter().all(|far| *far < 1e-7) && (a.q_at(1)[0] - 1.0).abs() < 0.1);
+    // A rotation vector where there is a quaternion.
+    let half = vec![0.0, 0.0, 0.0, 0.5, 0.5, 0.5, 0.5];
+    let mut gentle = Pd::new(&handle::Robot, half.clone(), vec![30.0; 6], vec![25.0; 6]).unwrap();
+    let start = [0.3, 0.1, 0.0, 0.0, 0.0, 0.0, 1.0];
+    let motion =
+        Simulation::new(&handle::Robot, to(IntegratorId::dopri5, 20.0, 1e-6)).unwrap().run(&start, &[0.0; 6], &mut gentle, &mut []);
+    let motion = motion.unwrap();
+    assert!(motion.q_at(1).iter().zip(&half).all(|(q, h)| (q - h).abs() < 1e-4), "{:?}", motion.q_at(1));
+}
+
+/// T + U − (T + U)_0 = work + dissipated, with friction, damping, a spring and a motor between command and joint.
+#[test]
+fn energy_is_accounted_for() {
+    let on = |effect, on: &str, parameters| Applied { effect, on: on.into(), at: Origin::default(), parameters };
+    let effects = [
+        on(EffectId::damping, "a", vec![0.3]),
+        on(EffectId::friction, "b", vec![0.2, 0.1]),
+        on(EffectId::spring, "c", vec![2.0, 0.1]),
+        on(EffectId::motor, "a", vec![2.0, 20.0, 1.0, 0.8, 0.1]),
+    ];
+    let robot = model("chain", Base::Fixed).with_effects(&effects).unwrap();
+    for (id, step) in
+        [(IntegratorId::dopri5, None), (IntegratorId::dop853, None), (IntegratorId::rodas4, None), (IntegratorId::rk4, Some(2e-3))]
+    {
+        let settings = Settings { step, output: Output::Every(0.1), ..to(id, 0.5, 1e-8) };
+        let mut control = |t: f64, _: &[f64], v: &[f64], tau: &mut [f64]| {
+            tau[0] = 1.2 * (4.0 * t).sin();
+            tau[2] = -0.1 * v[2];
+        };
+        let motion = Simulation::new(&robot, settings).unwrap().run(&[0.4, -0.7, 0.5], &[1.0, 0.5, -1.5], &mut control, &mut []).unwrap();
+        let worst = (0..motion.len()).map(|i| motion.imbalance(i).unwrap().abs()).fold(0.0, f64::max);
+        let (work, lost) = (motion.work.last().unwrap(), motion.dissipated.last().unwrap());
+        println!("{id}: {worst:e} J of {work} J and {lost} J");
+        assert!(worst < 3e-7 && *lost < -0.05 && work.abs() > 0.01, "{id}: {worst:e} J");
+    }
+}
+
+/// The same motion, written out and in loops.
+#[test]
+fn generated_and_generic_robots_move_alike() {
+    fn compare<R: Dynamics<f64>>(robot: &R, name: &str, base: Base, q: &[f64], v: &[f64]) {
+        let generic = model(name, base);
+        for settings in
+            [stepping(IntegratorId::rk4, 0.3, 0.01), to(IntegratorId::dopri5, 0.3, 1e-8), stepping(IntegratorId::lie_midpoint, 0.3, 0.01)]
+        {
+            let [a, b] = [free(robot, &settings, q, v).unwrap(), free(&generic, &settings, q, v).unwrap()];
+            let far = apart(&generic, &a, &b);
+            println!("{name}, {}: {far:e}", settings.integrator);
+            assert!(far < 1e-12 && a.counts.steps == b.counts.steps, "{name}, {}: {far:e}", settings.integrator);
+        }
+    }
+    compare(&chain::Robot, "chain", Base::Fixed, &[0.4, -0.7, 0.5], &[1.0, 0.5, -1.5]);
+    let q = [0.3, -0.2, 0.5, 0.5, -0.5, 0.5, 0.5, 0.7, 0.1, 0.7, -0.1, 0.7];
+    compare(&satellite::Robot, "satellite", Base::Floating, &q, &[1.8, -1.5, 2.0, 0.3, -0.2, 0.5, 0.4, 0.1, -0.1, 0.1]);
+}
+
+#[test]
+fn what_cannot_be_simulated_is_said_at_once() {
+    let settings = to(IntegratorId::dopri5, 1.0, 1e-6);
+    let error = free(&handle::Robot, &settings, &[0.0, f64::NAN, 0.0, 2.0, 0.0, 0.0, 0.0], &[0.0; 5]).unwrap_err();
+    let SimulateError::State(all) = &error else { panic!("{error}") };
+    assert!(all.contains(&StateError::Length { vector: "v", found: 5, expected: 6 }));
+    assert!(matches!(all[0], StateError::NotFinite { vector: "q", index: 1, .. }));
+    assert!(all.contains(&StateError::Quaternion { index: 3, norm: 2.0 }), "{error}");
+    let lacking = Simulation::new(&handle::Robot, to(IntegratorId::rodas4, 1.0, 1e-6)).err();
+    let function = "forward_dynamics_derivatives";
+    assert_eq!(lacking, Some(SimulateError::Function(FunctionError::NotGenerated { function })));
+    let mut burst = |t: f64, _: &[f64], _: &[f64], tau: &mut [f64]| tau[0] = if t > 0.5 { f64::NAN } else { 0.0 };
+    for id in [IntegratorId::dopri5, IntegratorId::rodas4, IntegratorId::rk4, IntegratorId::lie_midpoint] {
+        let settings = if id.row().adaptive { to(id, 1.0, 1e-6) } else { stepping(id, 1.0, 0.01) };
+        let error = Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[1.0], &mut burst, &mut []).unwrap_err();
+        let SimulateError::NotFinite { t, index, .. } = error else { panic!("{id}: {error}") };
+        assert!(t <= 0.51 && t > 0.3 && index == 0, "{id}: {error}");
+    }
+}
+
+/// Outputs are on the curve, as good as the steps.
+#[test]
+fn outputs_between_steps_are_as_good_as_steps() {
+    let (q, v) = ([0.4, -0.7, 0.5], [1.0, 0.5, -1.5]);
+    let fine = free(&chain::Robot, &Settings { output: Output::Every(0.013), ..to(IntegratorId::dop853, 1.0, 1e-14) }, &q, &v).unwrap();
+    for (id, bound) in [(IntegratorId::dopri5, 1e-6), (IntegratorId::dop853, 1e-6), (IntegratorId::rodas4, 1e-5)] {
+        let settings = Settings { output: Output::Every(0.013), ..to(id, 1.0, 1e-8) };
+        let motion = Simulation::new(&chain::Robot, settings).unwrap().run(&q, &v, &mut Constant::new(vec![0.0; 3]), &mut []).unwrap();
+        assert_eq!(motion.t, fine.t);
+        let far = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let (q, v) = (far(&motion.q, &fine.q), far(&motion.v, &fine.v));
+        println!("{id}: {q:e} {v:e}, {} steps", motion.counts.steps);
+        assert!(q.max(v) < bound && motion.counts.steps < 400, "{id}: {q:e} {v:e}");
+    }
+}
+
+/// A control that is a value of a type, behind the trait.
+#[test]
+fn any_control_will_do() {
+    let controls: [Box<dyn Control>; 3] =
+        [Box::new(NoTorque), Box::new(Constant::new(vec![0.0])), Box::new(Hold::new(NoTorque, 0.25).unwrap())];
+    for mut control in controls {
+        let motion =
+            Simulation::new(&slider(), to(IntegratorId::dopri5, 1.0, 1e-9)).unwrap().run(&[0.0], &[2.0], &mut *control, &mut []).unwrap();
+        assert!((motion.q[1] - 2.0).abs() < 1e-14);
+    }
+}

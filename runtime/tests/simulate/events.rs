@@ -1,0 +1,157 @@
+//! Events are found where they are, and none is stepped over.
+
+use std::cell::Cell;
+
+use articulated::effect::{Applied, EffectId};
+use articulated::simulate::{
+    Action, Direction, Ended, Event, Impact, IntegratorId, NoTorque, Output, Settings, SimulateError, Simulation, integrators,
+};
+use articulated::{Base, Dynamics, Origin};
+
+use crate::robots::{chain, model, one_joint, stepping, to};
+
+const G: f64 = 9.81;
+
+/// Settings that every integrator can do, with a fixed step where there is no other.
+fn any(integrator: IntegratorId, end: f64) -> Settings {
+    if integrator.row().adaptive { to(integrator, end, 1e-10) } else { stepping(integrator, end, 0.03) }
+}
+
+/// A curve of third degree is exact for a fall, and so is every method but the first.
+#[test]
+fn a_falling_ball_bounces_when_it_must() {
+    let robot = one_joint("prismatic", 0.0);
+    let restitution = 0.8;
+    for row in integrators().iter().filter(|row| row.order > 1) {
+        let floor =
+            Event::new("floor", |_, q: &[f64], _: &[f64]| q[0]).direction(Direction::Falling).action(Action::Map(Box::new(|_, _, v| {
+                v[0] *= -restitution;
+                Ok(Some(v[0]))
+            })));
+        let mut simulation = Simulation::new(&robot, any(row.id, 3.0)).unwrap();
+        let motion = simulation.run(&[1.0], &[0.0], &mut NoTorque, &mut [floor]).unwrap();
+        let (mut t, mut v) = ((2.0 / G).sqrt(), (2.0 * G).sqrt());
+        assert!(motion.events.len() > 5, "{}: {}", row.name, motion.events.len());
+        for hit in &motion.events {
+            assert!((hit.t - t).abs() < 1e-11, "{}: {} s, not {t} s", row.name, hit.t);
+            assert!((hit.value.unwrap() - restitution * v).abs() < 1e-10, "{}: {hit:?}", row.name);
+            v *= restitution;
+            t += 2.0 * v / G;
+        }
+    }
+}
+
+#[test]
+fn a_ball_that_bounces_ever_faster_is_an_error_that_names_the_event() {
+    let robot = one_joint("prismatic", 0.0);
+    let floor =
+        Event::new("floor", |_, q: &[f64], _: &[f64]| q[0]).direction(Direction::Falling).action(Action::Map(Box::new(|_, _, v| {
+            v[0] *= -0.5;
+            Ok(None)
+        })));
+    let mut simulation = Simulation::new(&robot, to(IntegratorId::dopri5, 5.0, 1e-9)).unwrap();
+    let error = simulation.run(&[1.0], &[0.0], &mut NoTorque, &mut [floor]).unwrap_err();
+    // Σ of the flights: √(2h/g)·(1 + e)/(1 − e).
+    let end = (2.0 / G).sqrt() * 3.0;
+    let SimulateError::Chattering { t, event } = &error else { panic!("{error}") };
+    assert!((t - end).abs() < 1e-9 && event == "floor", "{t} {end}");
+}
+
+/// The ball is above for 2√(2·δ/g), far less than a step, and both times are found.
+#[test]
+fn a_pair_of_zeros_within_a_step_is_not_stepped_over() {
+    let robot = one_joint("prismatic", 0.0);
+    let (speed, delta) = (5.0_f64, 1e-5);
+    let bound = speed * speed / (2.0 * G) - delta;
+    for id in [IntegratorId::dop853, IntegratorId::dopri5, IntegratorId::rodas4, IntegratorId::rk4] {
+        let settings = if id == IntegratorId::rk4 { stepping(id, 1.0, 0.2) } else { to(id, 1.0, 1e-8) };
+        let limit = Event::limit("limit", 0, f64::NEG_INFINITY, bound).direction(Direction::Either);
+        let motion = Simulation::new(&robot, settings).unwrap().run(&[0.0], &[speed], &mut NoTorque, &mut [limit]).unwrap();
+        let half = (2.0 * delta / G).sqrt();
+        let expected = [(speed / G - half, Direction::Falling), (speed / G + half, Direction::Rising)];
+        assert_eq!(motion.events.len(), 2, "{id}");
+        for (hit, (t, direction)) in motion.events.iter().zip(expected) {
+            assert!((hit.t - t).abs() < 1e-10 && hit.direction == direction, "{id}: {hit:?}, {t}");
+        }
+    }
+}
+
+#[test]
+fn a_body_that_slides_to_rest_sticks_when_friction_says() {
+    let applied = Applied { effect: EffectId::friction, on: "joint".into(), at: Origin::default(), parameters: vec![2.0, 1e-3] };
+    let robot = one_joint("prismatic", 0.0).with_gravity([0.0; 3]).with_effects(&[applied]).unwrap();
+    let sticks = Event::stick_slip("sticks", 0, 1e-3).direction(Direction::Falling).action(Action::Stop);
+    let settings = to(IntegratorId::rodas4, 2.0, 1e-10);
+    let motion = Simulation::new(&robot, settings).unwrap().run(&[0.0], &[1.0], &mut NoTorque, &mut [sticks]).unwrap();
+    // v̇ = −μ v/√(v² + s²): √(v² + s²) − s·artanh(s/√(v² + s²)) falls as μt.
+    let clock = |v: f64| v.hypot(1e-3) - 1e-3 * (1e-3 / v.hypot(1e-3)).atanh();
+    let t = (clock(1.0) - clock(1e-3)) / 2.0;
+    println!("{:e}", motion.events[0].t - t);
+    assert!((motion.events[0].t - t).abs() < 1e-9 && motion.ended == Ended::ByEvent(0));
+    assert_eq!(motion.t.last(), Some(&motion.events[0].t));
+}
+
+#[test]
+fn a_contact_is_made_where_the_sphere_touches_the_plane() {
+    let robot = model("ball", Base::Fixed);
+    let normal = [0.0, 0.6, 0.8];
+    let contact = Event::contact("touch", &robot, 1, [0.0, 0.1, 0.0], 0.05, normal.map(|n| 3.0 * n), 0.2).unwrap().action(Action::Stop);
+    let mut simulation = Simulation::new(&robot, to(IntegratorId::dopri5, 1.0, 1e-9)).unwrap();
+    let motion = simulation.run(&[1.0], &[0.0], &mut NoTorque, &mut [contact]).unwrap();
+    let height = (0.2 + 0.05 - 0.6 * 0.1) / 0.8;
+    assert!((motion.events[0].t - (2.0 * (1.0 - height) / G).sqrt()).abs() < 1e-11, "{:?}", motion.events);
+}
+
+/// A motion cut by events that do nothing is the same motion.
+#[test]
+fn events_that_are_only_recorded_change_nothing() {
+    let settings = Settings { output: Output::Every(0.1), ..to(IntegratorId::dopri5, 2.0, 1e-8) };
+    let mut simulation = Simulation::new(&chain::Robot, settings).unwrap();
+    let (q, v) = ([0.4, -0.7, 0.5], [1.0, 0.5, -1.5]);
+    let plain = simulation.run(&q, &v, &mut NoTorque, &mut []).unwrap();
+    let mut events = [Event::new("zero", |_, q: &[f64], _: &[f64]| q[0]), Event::new("fast", |_, _: &[f64], v: &[f64]| v[2] - 1.0)];
+    let watched = simulation.run(&q, &v, &mut NoTorque, &mut events).unwrap();
+    assert!(watched.events.len() > 3 && watched.events.windows(2).all(|w| w[0].t <= w[1].t));
+    assert_eq!((plain.q, plain.v), (watched.q, watched.v));
+}
+
+#[test]
+fn a_blow_hands_over_what_the_ball_and_the_mass_behind_the_point_say() {
+    let (ball, restitution) = (0.046, 0.78);
+    let q = [0.4, -0.7, 0.5];
+    let (robot, mut v) = (chain::Robot, [1.0, 0.5, -1.5]);
+    let generic = model("chain", Base::Fixed);
+    let mut impact = Impact::new(&generic, 3, [0.0, 0.02, -0.4], [0.3, -0.5, 0.2], ball, restitution).unwrap();
+    // So that they approach.
+    let approach = impact.strike(&q, &mut v.clone(), 0.0).unwrap().approach;
+    v.iter_mut().for_each(|v| *v *= approach.signum());
+    let energy = |v: &[f64]| {
+        let mut t = [0.0];
+        robot.kinetic_energy(&mut robot.workspace(), &q, v, &mut t).unwrap();
+        t[0]
+    };
+    let before = energy(&v);
+    let struck = impact.strike(&q, &mut v, 0.0).unwrap();
+    let (head, approach) = (struck.effective_mass, approach.abs());
+    // The smash factor.
+    assert!((struck.ball_speed / approach - (1.0 + restitution) * head / (head + ball)).abs() < 1e-14);
+    let lost = before - energy(&v) - 0.5 * ball * struck.ball_speed.powi(2);
+    let expected = 0.5 * (1.0 - restitution * restitution) * approach.powi(2) * head * ball / (head + ball);
+    assert!((lost - expected).abs() < 1e-14, "{lost} J, not {expected} J");
+    // Newton's law: what is left of the speed towards each other, reversed.
+    let after = impact.strike(&q, &mut v, struck.ball_speed).unwrap();
+    assert!((after.approach + restitution * approach).abs() < 1e-14 && after.impulse == 0.0);
+}
+
+#[test]
+fn one_who_watches_can_end_it() {
+    let robot = one_joint("prismatic", 0.0);
+    let mut simulation = Simulation::new(&robot, stepping(IntegratorId::rk4, 1.0, 0.01)).unwrap();
+    let (mut recording, calls) = (simulation.recording(), Cell::new(0));
+    let mut watch = |t: f64, _: &articulated::simulate::Counts| {
+        calls.set(calls.get() + 1);
+        t < 0.495
+    };
+    simulation.run_into(&[0.0], &[0.0], &mut NoTorque, &mut [], &mut recording, &mut watch).unwrap();
+    assert_eq!((recording.ended, recording.counts.steps, calls.get()), (Ended::ByWatcher, 50, 50));
+}
