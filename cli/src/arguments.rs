@@ -76,6 +76,14 @@ pub(crate) enum Command {
         "articulated compare quadruped --peers-manifest target/peers/peers.json --chart quadruped.svg",
     ]))]
     Compare(CompareArguments),
+    /// Measures what accuracy costs: error and time of each function at each level, and the cheapest that is accurate enough
+    #[command(after_help = examples(&[
+        "articulated accuracy panda_like",
+        "articulated accuracy arm.urdf --functions inverse_dynamics,mass_matrix --levels f32,f64,double_double --output accuracy",
+        "articulated accuracy panda_like --functions forward_dynamics --advise --error 1e-9",
+        "articulated accuracy ur5_like --peers-manifest target/peers/peers.json --output accuracy",
+    ]))]
+    Accuracy(AccuracyArguments),
     /// Lists all functions, and what they cost on some robots, on the frames of their tips
     #[command(after_help = examples(&[
         "articulated functions",
@@ -227,6 +235,44 @@ pub(crate) struct CompareArguments {
 }
 
 #[derive(Args, Debug)]
+pub(crate) struct AccuracyArguments {
+    #[command(flatten)]
+    pub(crate) robot: RobotArguments,
+    #[command(flatten)]
+    pub(crate) frames: FrameArguments,
+    /// The functions to measure, or groups of them [default: placements,inverse_dynamics,mass_matrix,forward_dynamics]
+    #[arg(long, alias = "function", value_name = "NAMES", value_parser = known)]
+    pub(crate) functions: Vec<Names>,
+    /// The levels to measure [default: all that are told apart]
+    #[arg(long, alias = "level", value_name = "LEVELS", value_delimiter = ',')]
+    pub(crate) levels: Vec<Level>,
+    /// How many states at random within the limits of the joints; the hard ones come beside them
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub(crate) states: u32,
+    /// Seed of the random states
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// How often each is timed
+    #[arg(long, value_name = "N", default_value_t = 31, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) repetitions: u32,
+    /// A peer library to measure beside them; may be given several times. It is run: name only libraries that you trust
+    #[arg(long, value_name = "LIBRARY")]
+    pub(crate) peer: Vec<PathBuf>,
+    /// A list of peer libraries, as the peers' build script writes it
+    #[arg(long, value_name = "FILE")]
+    pub(crate) peers_manifest: Option<PathBuf>,
+    /// The folder to write report.html, accuracy.csv, accuracy.json and diagrams in SVG and PNG to
+    #[arg(short, long, value_name = "FOLDER")]
+    pub(crate) output: Option<PathBuf>,
+    /// Only name the cheapest level of each function whose largest error is no larger than --error
+    #[arg(long, requires = "error")]
+    pub(crate) advise: bool,
+    /// The largest error that is right, relative to the sum of the magnitudes of the terms
+    #[arg(long, value_name = "ERROR", value_parser = wish)]
+    pub(crate) error: Option<f64>,
+}
+
+#[derive(Args, Debug)]
 pub(crate) struct FunctionsArguments {
     /// Bundled robots' names, or paths of URDF files [default: ur5_like panda_like quadruped humanoid]
     #[arg(value_name = "ROBOT")]
@@ -275,6 +321,10 @@ fn gravity(text: &str) -> Result<Gravity, String> {
 fn real(text: &str) -> Result<Real, String> {
     let all = [Real::F64, Real::F32];
     all.into_iter().find(|r| r.name() == text.trim()).ok_or_else(|| "expected f64 or f32".into())
+}
+
+fn wish(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|x: &f64| x.is_finite() && *x > 0.0).ok_or_else(|| "expected a positive number as 1e-9".into())
 }
 
 fn joints(text: &str) -> Result<usize, String> {

@@ -3,6 +3,7 @@
 //! For tests: [`precise::Big`], a scalar of 96 digits; [`magnitude::Magnitude`], the scale of rounding errors; [`states`], states at random and
 //! from files; [`compiled::Compiled`], generated source as functions that can be called; [`scaling::chain::chain`], robots of any length.
 
+mod accuracy;
 mod arguments;
 mod check;
 mod compare;
@@ -59,6 +60,7 @@ fn dispatch(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Check(a) => check::run(a, format),
         Command::Generate(a) => generate::run(a, format).map(|()| OK),
         Command::Eval(a) => eval::run(a, format),
+        Command::Accuracy(a) => accuracy::run(a, format).map(|()| OK),
         Command::Compare(a) => compare::run(a, format),
         Command::Functions(a) => functions::run(a, format).map(|()| OK),
         Command::Scaling(a) => scaling::run(a, format).map(|()| OK),

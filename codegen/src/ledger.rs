@@ -3,14 +3,14 @@
 use crate::graph::{Counts, Graph};
 
 /// The costs of all functions of one robot.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ledger {
     /// One entry a function, in the order asked for.
     pub functions: Vec<Entry>,
 }
 
 /// The costs of one function.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Entry {
     /// Name of the function.
     pub function: String,
@@ -23,6 +23,9 @@ pub struct Entry {
     pub depth: u32,
     /// How many limbs that are alike are computed at once; 1 where each is computed for itself.
     pub lanes: usize,
+    /// How far each result can be off by rounding, guaranteed, wherever the arguments are in the box of [`in_box`](crate::bound::in_box); infinite where a divisor could be nothing there.
+    /// Empty without [`stages`](crate::Options::stages), and at levels that have no bound.
+    pub bounds: Vec<f64>,
 }
 
 impl Entry {

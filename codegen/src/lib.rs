@@ -7,6 +7,7 @@
 //! [`generate`] is that list. The macro, the build-script interface ([`Build`]) and the command line all fill a [`Request`] and get the
 //! same source. There is no physics here: the algorithms are those of `articulated-core`, run on symbols.
 
+pub mod bound;
 mod build;
 mod cache;
 mod edit;
@@ -55,6 +56,8 @@ pub struct Generated {
     pub parameters: Vec<Parameter>,
     /// Costs.
     pub ledger: Ledger,
+    /// The graph of each function, in the order of the ledger: what the source computes.
+    pub graphs: Vec<graph::Graph>,
     /// Things in the document that are odd but used as written.
     pub warnings: Vec<Problem>,
     /// Content that is understood but not used.
@@ -89,7 +92,8 @@ pub fn generate(request: &Request) -> Result<Generated, Error> {
         programs.push(program);
     }
     let source = emit::module(request, &model, &names, &programs, &parameters, &unused) + &emit::warnings(&warnings);
-    Ok(Generated { source, model, parameters, ledger, warnings, unused, snapped })
+    let graphs = programs.into_iter().map(|p| p.graph).collect();
+    Ok(Generated { source, model, parameters, ledger, graphs, warnings, unused, snapped })
 }
 
 /// The functions that the request names, each once.

@@ -4,6 +4,7 @@ use articulated_core::model::Model;
 use articulated_core::model::pass::model_passes;
 
 use crate::Options;
+use crate::bound::{bounds, in_box};
 use crate::graph::{Counts, Graph, Op};
 use crate::ledger::{Entry, depth};
 use crate::limbs::Alike;
@@ -47,8 +48,22 @@ pub(crate) fn program(wanted: Wanted, model: &Model<f64>, parameters: &[Paramete
             }
         }
     }
-    let (graph, entry) = best;
+    let (graph, mut entry) = best;
+    if options.stages {
+        entry.bounds = in_the_box(&wanted, &graph, model, parameters, options);
+    }
     Program { wanted, graph, plain, entry }
+}
+
+/// Guaranteed bounds of the results, for the ledger.
+fn in_the_box(wanted: &Wanted, graph: &Graph, model: &Model<f64>, parameters: &[Parameter], options: &Options) -> Vec<f64> {
+    let arguments = wanted.arguments();
+    let nominal: Vec<f64> = parameters.iter().flat_map(|p| &p.nominal).copied().collect();
+    let input = |argument: usize, k: usize| match arguments.get(argument) {
+        Some(a) => in_box(model, *a, k),
+        None => (nominal[k], 0.0),
+    };
+    bounds(graph, options.level, &input).unwrap_or_default()
 }
 
 /// Lanes cost what no count shows (values that come and go one by one): they must be cheaper by this.
@@ -73,7 +88,7 @@ fn made(wanted: &Wanted, subject: &Subject) -> (Graph, Entry) {
         stages.push((name, graph.counts()));
     }
     let ways = choices.iter().map(|c| c.way.name).filter(|name| !name.is_empty()).collect();
-    let entry = Entry { function: wanted.name.clone(), ways, stages, depth: depth(&graph), lanes: graph.lanes().width };
+    let entry = Entry { function: wanted.name.clone(), ways, stages, depth: depth(&graph), lanes: graph.lanes().width, bounds: Vec::new() };
     (graph, entry)
 }
 

@@ -29,18 +29,18 @@ pub(super) struct Errors {
 
 /// The textbook form of a robot, to be evaluated with [`Big`] numbers.
 #[derive(Clone, Debug)]
-pub(super) struct Reference {
+pub(crate) struct Reference {
     description: Description,
     options: Options,
 }
 
 impl Reference {
-    pub(super) fn new(description: &Description, options: &Options) -> Self {
+    pub(crate) fn new(description: &Description, options: &Options) -> Self {
         Self { description: description.clone(), options: options.clone() }
     }
 
     /// With the frames of the model.
-    fn textbook(&self, model: &Model<f64>) -> Option<Textbook<Big>> {
+    pub(crate) fn textbook(&self, model: &Model<f64>) -> Option<Textbook<Big>> {
         let textbook = Textbook::<Big>::new(&self.description, self.options.base, self.options.gravity).ok()?;
         let names: Vec<&str> = model.frames.iter().map(|f| f.name.as_str()).collect();
         Some(textbook.with_frames(&names).ok()?.with_wrenches_in(self.options.wrench_reference))
@@ -51,7 +51,7 @@ impl Reference {
 const JUDGED: usize = 16;
 
 /// The function that says what torques the result of a function needs, where it is judged by those.
-fn inverse_of(function: &Function<f64>) -> Option<&'static str> {
+pub(crate) fn inverse_of(function: &Function<f64>) -> Option<&'static str> {
     match function.id {
         FunctionId::forward_dynamics => Some("inverse_dynamics"),
         FunctionId::forward_dynamics_with_wrenches => Some("inverse_dynamics_with_wrenches"),
@@ -96,7 +96,7 @@ pub(super) fn errors(
 }
 
 /// Whether the reference divided by nothing, or by what its 96 digits left of nothing: no answer is right there.
-fn singular(exact: &[Big]) -> bool {
+pub(crate) fn singular(exact: &[Big]) -> bool {
     exact.iter().map(|x| x.to_f64()).any(|x| x.is_nan() || x.abs() >= 1e40)
 }
 
@@ -127,7 +127,7 @@ fn backward(textbook: &Textbook<Big>, model: &Model<f64>, inverse: &str, state: 
 }
 
 /// What the textbook gives. A double's quaternion has a norm of one to 16 digits only, and what the rest does is nobody's error: it is of norm one here.
-fn exact(textbook: &Textbook<Big>, model: &Model<f64>, function: &str, state: &[&[f64]]) -> Option<Vec<Big>> {
+pub(crate) fn exact(textbook: &Textbook<Big>, model: &Model<f64>, function: &str, state: &[&[f64]]) -> Option<Vec<Big>> {
     let takes = articulated_core::algorithm::function::<f64>(function)?.takes;
     let precise = |(argument, x): (&Argument, &&[f64])| {
         let mut x: Vec<Big> = x.iter().map(|x| Big::from_f64(*x)).collect();

@@ -8,67 +8,67 @@ use serde_json::Value;
 
 /// A library, with what is known of its making. Only the path has to be there.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
-pub(super) struct Library {
-    pub(super) name: Option<String>,
-    pub(super) path: PathBuf,
+pub(crate) struct Library {
+    pub(crate) name: Option<String>,
+    pub(crate) path: PathBuf,
     /// Whose code it is, and its version: builds of the same engine are told apart by the rest.
-    pub(super) engine: Option<String>,
-    pub(super) compiler: Option<String>,
-    pub(super) version: Option<String>,
-    pub(super) flags: Option<String>,
+    pub(crate) engine: Option<String>,
+    pub(crate) compiler: Option<String>,
+    pub(crate) version: Option<String>,
+    pub(crate) flags: Option<String>,
     /// `f32` if it computes in single precision.
-    pub(super) element: Option<String>,
+    pub(crate) element: Option<String>,
     /// Machine code of all of it.
-    pub(super) text_bytes: Option<u64>,
+    pub(crate) text_bytes: Option<u64>,
     /// Of all of it.
-    pub(super) compilation_seconds: Option<f64>,
+    pub(crate) compilation_seconds: Option<f64>,
     /// Of a generator: the robots that it has code for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(super) robots: Vec<Code>,
+    pub(crate) robots: Vec<Code>,
 }
 
 /// The generated code of one robot.
 #[derive(Clone, Debug, Deserialize, Serialize)]
-pub(super) struct Code {
-    pub(super) robot: String,
-    pub(super) floating: bool,
+pub(crate) struct Code {
+    pub(crate) robot: String,
+    pub(crate) floating: bool,
     /// FNV-1a of the URDF, 64 bits, hexadecimal with `0x`.
-    pub(super) hash: String,
-    pub(super) functions: BTreeMap<String, Cost>,
+    pub(crate) hash: String,
+    pub(crate) functions: BTreeMap<String, Cost>,
 }
 
 /// What a generated function cost to make, and how long it became.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
-pub(super) struct Cost {
+pub(crate) struct Cost {
     /// Arithmetic in the code that was generated, sines and moves included.
-    pub(super) operations: Option<u64>,
-    pub(super) code_bytes: Option<u64>,
-    pub(super) generation_seconds: f64,
-    pub(super) compilation_seconds: f64,
+    pub(crate) operations: Option<u64>,
+    pub(crate) code_bytes: Option<u64>,
+    pub(crate) generation_seconds: f64,
+    pub(crate) compilation_seconds: f64,
 }
 
 impl Library {
     /// A library of which only the path is known.
-    pub(super) fn at(path: &Path) -> Self {
+    pub(crate) fn at(path: &Path) -> Self {
         Self { path: path.to_owned(), ..Self::default() }
     }
 
     /// Its code for the robot of this document.
-    pub(super) fn code(&self, urdf: &[u8], floating: bool) -> Option<&Code> {
+    pub(crate) fn code(&self, urdf: &[u8], floating: bool) -> Option<&Code> {
         let hash = format!("{:#x}", fnv(urdf));
         self.robots.iter().find(|r| r.hash == hash && r.floating == floating)
     }
 
     /// How far its results may be from ours, relative to the magnitude.
-    pub(super) fn bound(&self) -> f64 {
+    pub(crate) fn bound(&self) -> f64 {
         if self.element.as_deref() == Some("f32") { SINGLE_BOUND } else { BOUND }
     }
 }
 
 /// Of double precision.
-pub(super) const BOUND: f64 = 1e-9;
+pub(crate) const BOUND: f64 = 1e-9;
 /// Of single precision.
-pub(super) const SINGLE_BOUND: f64 = 1e-3;
+pub(crate) const SINGLE_BOUND: f64 = 1e-3;
 
 /// FNV-1a of 64 bits.
 fn fnv(bytes: &[u8]) -> u64 {
@@ -76,7 +76,7 @@ fn fnv(bytes: &[u8]) -> u64 {
 }
 
 /// The libraries of a manifest: a list of objects with `path`, or an object with such a list as `peers`.
-pub(super) fn read(file: &Path) -> Result<Vec<Library>, String> {
+pub(crate) fn read(file: &Path) -> Result<Vec<Library>, String> {
     let wrong = |e: &dyn std::fmt::Display| format!("{}: {e}", file.display());
     let text = std::fs::read_to_string(file).map_err(|e| wrong(&e))?;
     let value: Value = serde_json::from_str(&text).map_err(|e| wrong(&e))?;

@@ -1,12 +1,12 @@
 //! `articulated compare`.
 
-mod accuracy;
+pub(crate) mod accuracy;
 mod batch;
 mod chart;
 pub(crate) mod contender;
 mod making;
-mod manifest;
-mod peer;
+pub(crate) mod manifest;
+pub(crate) mod peer;
 mod prepare;
 mod report;
 mod text;

@@ -17,10 +17,10 @@ use crate::states::quaternions;
 const FLOOR: f64 = 1e-3;
 
 /// A robot open in a peer library.
-pub(super) struct Peer {
-    pub(super) name: String,
+pub(crate) struct Peer {
+    pub(crate) name: String,
     /// What the manifest says of the library.
-    pub(super) library: Library,
+    pub(crate) library: Library,
     /// Its code for this robot, if it is a generator's.
     code: Option<Code>,
     native: NativePeer,
@@ -34,7 +34,7 @@ pub(super) struct Peer {
 
 impl Peer {
     /// Opens the robot in the library; the reason if their joints are not ours.
-    pub(super) fn open(library: Library, urdf: &Path, robot: &Robot, model: &Model<f64>) -> Result<Self, String> {
+    pub(crate) fn open(library: Library, urdf: &Path, robot: &Robot, model: &Model<f64>) -> Result<Self, String> {
         let opened = Native::open(&library.path)?;
         let name = library.name.clone().or_else(|| opened.peer_name()).ok_or("it has no function peer_name")?;
         let native = NativePeer::open(&opened, urdf, robot.floating(), robot.options.gravity)?;
@@ -55,7 +55,7 @@ impl Peer {
     }
 
     /// The peer's own function of this name, if it has it and means the same by it.
-    pub(super) fn contender(&self, function: &Function<f64>, model: &Model<f64>) -> Option<Contender<'static>> {
+    pub(crate) fn contender(&self, function: &Function<f64>, model: &Model<f64>) -> Option<Contender<'static>> {
         let has = |dim: Dim| function.takes.iter().flat_map(|a| a.dims()).chain(function.gives).any(|d| *d == dim);
         let wrenches = !function.takes.contains(&Argument::Wrenches) || model.wrench_reference == Reference::Body;
         let told = (!has(Dim::Frames) || self.has_frames(model)) && (!has(Dim::Links) || self.links);
@@ -74,7 +74,7 @@ impl Peer {
     }
 
     /// Our arguments in the peer's order.
-    pub(super) fn arguments(&self, function: &Function<f64>, model: &Model<f64>, ours: &[&[f64]]) -> Vec<Vec<f64>> {
+    pub(crate) fn arguments(&self, function: &Function<f64>, model: &Model<f64>, ours: &[&[f64]]) -> Vec<Vec<f64>> {
         let reorder =
             |(argument, x): (&Argument, &&[f64])| (0..x.len()).map(|k| x[self.place(k, argument.dims(), model.shape())]).collect();
         function.takes.iter().zip(ours).map(reorder).collect()
@@ -99,7 +99,7 @@ impl Peer {
     }
 
     /// The peer's result as ours is laid out. Of a configuration's quaternions, which are rotations with either sign, with the signs of ours.
-    fn in_our_order(&self, theirs: &[f64], ours: &[f64], function: &Function<f64>, model: &Model<f64>) -> Vec<f64> {
+    pub(crate) fn in_our_order(&self, theirs: &[f64], ours: &[f64], function: &Function<f64>, model: &Model<f64>) -> Vec<f64> {
         let mut result = vec![f64::NAN; ours.len()];
         for (k, x) in theirs.iter().enumerate() {
             result[self.place(k, function.gives, model.shape())] = *x;

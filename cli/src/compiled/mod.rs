@@ -9,7 +9,7 @@ mod wrapper;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use articulated_codegen::Generated;
+use articulated_codegen::{Generated, Level};
 use articulated_core::algorithm::{FunctionError, Shape, check_length, function};
 
 use crate::native::{Kernel, Native};
@@ -61,6 +61,17 @@ impl Compiled {
         Ok(Self { functions, shape, time: library.time, _library: library })
     }
 
+    /// Compiles and loads functions of any level. Where numbers are `f32`, a kernel's arrays hold two of them in each of theirs: see [`packed`].
+    pub(crate) fn build_level(rustc: &Rustc, generated: &Generated, level: Level) -> Result<Self, CompileError> {
+        let names: Vec<&str> = generated.ledger.functions.iter().map(|f| f.function.as_str()).collect();
+        let library = Library::build(Target::Own, rustc, &generated.source, &wrapper::source(&names))?;
+        let sizes = symbols::Sizes::of(&library.file);
+        let shape = generated.model.shape();
+        let per = if level.is_single() { 2 } else { 1 };
+        let functions = names.iter().map(|name| load_packed(&library.native, &sizes, name, shape, per)).collect::<Result<_, _>>()?;
+        Ok(Self { functions, shape, time: library.time, _library: library })
+    }
+
     /// Calls a function by its name; arguments in the registry's order.
     pub fn call(&self, name: &str, arguments: &[&[f64]], out: &mut [f64]) -> Result<(), FunctionError> {
         let row = function::<f64>(name).ok_or(FunctionError::NotGenerated { function: "of this name" })?;
@@ -104,11 +115,35 @@ impl Library {
     }
 }
 
+/// Single precision numbers, two in the place of a double.
+pub(crate) fn packed(numbers: &[f64]) -> Vec<f64> {
+    let bits = |x: Option<&f64>| u64::from(x.map_or(0, |x| (*x as f32).to_bits()));
+    let pair = |two: &[f64]| {
+        let bytes = [bits(two.first()) as u32, bits(two.get(1)) as u32].map(u32::to_ne_bytes);
+        f64::from_ne_bytes(std::array::from_fn(|k| bytes[k / 4][k % 4]))
+    };
+    numbers.chunks(2).map(pair).collect()
+}
+
+/// The way back, of so many numbers.
+pub(crate) fn unpacked(pairs: &[f64], count: usize) -> Vec<f64> {
+    let two = |pair: &f64| {
+        let bytes = pair.to_ne_bytes();
+        [0, 4].map(|at| f64::from(f32::from_ne_bytes(std::array::from_fn(|k| bytes[at + k]))))
+    };
+    pairs.iter().flat_map(two).take(count).collect()
+}
+
 fn load(native: &Native, sizes: &symbols::Sizes, name: &str, shape: Shape) -> Result<Loaded, CompileError> {
+    load_packed(native, sizes, name, shape, 1)
+}
+
+/// With so many numbers in the place of a double.
+fn load_packed(native: &Native, sizes: &symbols::Sizes, name: &str, shape: Shape, per: usize) -> Result<Loaded, CompileError> {
     let missing = || CompileError::Load(format!("{name} is not in the library that was compiled"));
     let row = function::<f64>(name).ok_or_else(missing)?;
-    let lengths: Vec<usize> = row.takes.iter().map(|a| a.len(shape)).collect();
-    let kernel = native.kernel(&wrapper::symbol(name), &lengths, row.len(shape)).ok_or_else(missing)?;
+    let lengths: Vec<usize> = row.takes.iter().map(|a| a.len(shape).div_ceil(per)).collect();
+    let kernel = native.kernel(&wrapper::symbol(name), &lengths, row.len(shape).div_ceil(per)).ok_or_else(missing)?;
     Ok(Loaded { name: name.to_owned(), kernel, bytes: sizes.function(name, &wrapper::symbol(name)) })
 }
 

@@ -5,5 +5,5 @@ mod columns;
 mod csv;
 mod page;
 mod parquet;
-mod plot;
+pub(crate) mod plot;
 pub(crate) mod recording;

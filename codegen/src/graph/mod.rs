@@ -1,6 +1,7 @@
 //! The expression graph: a hash-consed arena in which an operand always stands before its use.
 
 mod counts;
+mod evaluate;
 mod fold;
 mod lanes;
 mod op;

@@ -1,11 +1,11 @@
 //! Pictures of a recording: angles, velocities, torques and energies over time, as SVG and as PNG.
 
 mod axis;
-mod drawing;
+pub(crate) mod drawing;
 mod font;
 mod panel;
-mod png;
-pub(super) mod svg;
+pub(crate) mod png;
+pub(crate) mod svg;
 
 use super::recording::{Named, Recording};
 use drawing::{Anchor, Drawing};

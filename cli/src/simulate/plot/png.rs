@@ -8,7 +8,7 @@ use super::font::{self, Pen};
 const SCALE: f32 = 2.0;
 
 /// The file's bytes.
-pub(super) fn bytes(drawing: &Drawing) -> Result<Vec<u8>, String> {
+pub(crate) fn bytes(drawing: &Drawing) -> Result<Vec<u8>, String> {
     let pixels = |points: f64| (points as f32 * SCALE).ceil().max(1.0) as u32;
     let (width, height) = (pixels(drawing.width), pixels(drawing.height));
     let mut map = Pixmap::new(width, height).ok_or_else(|| format!("{width} × {height} pixels are too many"))?;

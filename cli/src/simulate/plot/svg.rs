@@ -6,7 +6,7 @@ use super::drawing::{Anchor, Drawing, Mark, Point};
 use super::font;
 
 /// The file's text.
-pub(super) fn text(drawing: &Drawing) -> String {
+pub(crate) fn text(drawing: &Drawing) -> String {
     let (w, h) = (drawing.width, drawing.height);
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w:.0}\" height=\"{h:.0}\" viewBox=\"0 0 {w:.0} {h:.0}\" font-family=\"{}\">\n\
@@ -54,7 +54,7 @@ fn side(anchor: Anchor) -> &'static str {
 }
 
 /// Text between tags.
-pub(in crate::simulate) fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     text.chars().fold(String::with_capacity(text.len()), |mut out, c| {
         match c {
             '&' => out += "&amp;",

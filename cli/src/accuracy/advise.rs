@@ -1,0 +1,78 @@
+//! The cheapest level that is accurate enough.
+
+use std::fmt::Write;
+
+use articulated_codegen::Level;
+use serde::Serialize;
+
+use super::report::{Point, Report};
+
+/// What to take for one function.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Advice {
+    function: &'static str,
+    wish: f64,
+    /// None that was measured is accurate enough.
+    level: Option<String>,
+    ns: Option<f64>,
+    error: Option<f64>,
+    /// The most accurate there is, where none is enough.
+    best: Option<(String, f64)>,
+}
+
+/// For every function.
+pub(super) fn all(report: &Report, wish: f64) -> Vec<Advice> {
+    report.functions.iter().map(|f| one(f.function, &f.points, wish)).collect()
+}
+
+fn one(function: &'static str, points: &[Point], wish: f64) -> Advice {
+    let own = || points.iter().filter(|p| !p.peer);
+    let fit = own().filter(|p| p.relative.largest <= wish).min_by(|a, b| a.time.median.total_cmp(&b.time.median));
+    let best = own().min_by(|a, b| a.relative.largest.total_cmp(&b.relative.largest)).filter(|_| fit.is_none());
+    Advice {
+        function,
+        wish,
+        level: fit.map(|p| p.level.clone()),
+        ns: fit.map(|p| p.time.median),
+        error: fit.map(|p| p.relative.largest),
+        best: best.map(|p| (p.level.clone(), p.relative.largest)),
+    }
+}
+
+/// In sentences.
+pub(super) fn text(report: &Report, wish: f64) -> String {
+    let mut out = String::new();
+    for a in all(report, wish) {
+        let _ = match (&a.level, a.ns, a.error, &a.best) {
+            (Some(level), Some(ns), Some(error), _) => {
+                writeln!(out, "{}: {level}, {ns:.0} ns a call, off by at most {error:.1e} in {} states", a.function, report.states)
+            }
+            (.., Some((level, error))) => {
+                writeln!(out, "{}: nothing measured is accurate to {wish:e}; the most accurate is {level} with {error:.1e}", a.function)
+            }
+            _ => writeln!(out, "{}: nothing was measured", a.function),
+        };
+        let level = a.level.as_deref().and_then(|level| level.parse::<Level>().ok());
+        level.iter().flat_map(|l| l.contract()).for_each(|line| {
+            let _ = writeln!(out, "    {line}");
+        });
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::report::example;
+    use super::*;
+
+    #[test]
+    fn the_cheapest_that_is_enough_is_named() {
+        let report = example();
+        let level = |wish: f64| all(&report, wish).remove(0).level;
+        assert_eq!(level(1e-3).as_deref(), Some("f32"));
+        assert_eq!(level(1e-9).as_deref(), Some("f64"));
+        assert_eq!(level(1e-15).as_deref(), Some("double_double"));
+        assert_eq!(level(1e-30), None);
+        assert!(text(&report, 1e-30).contains("the most accurate is double_double"));
+    }
+}

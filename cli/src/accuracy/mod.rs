@@ -1,0 +1,87 @@
+//! `articulated accuracy`: what a digit costs.
+
+mod advise;
+mod contender;
+mod csv;
+mod judge;
+mod measure;
+mod page;
+mod plot;
+mod report;
+mod states;
+mod text;
+mod words;
+
+use std::path::Path;
+
+use articulated_codegen::Level;
+use articulated_core::algorithm::function;
+
+use crate::arguments::{AccuracyArguments, Format};
+use crate::compare::accuracy::Reference;
+use crate::compiled::Rustc;
+use crate::console;
+use crate::failure::Failure;
+use crate::names;
+use crate::robot::Robot;
+use crate::tips::Tips;
+use report::Report;
+
+/// What is measured unless functions are named.
+const FUNCTIONS: [&str; 4] = ["placements", "inverse_dynamics", "mass_matrix", "forward_dynamics"];
+
+/// Measures and prints.
+pub(crate) fn run(arguments: &AccuracyArguments, format: Format) -> Result<(), Failure> {
+    let mut robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
+    let reading = robot.read()?;
+    reading.warnings.iter().chain(&reading.snapped).for_each(|w| console::warn(&w.to_string()));
+    if robot.options.frames.is_none() {
+        let tips = Tips::of(&reading.description, &robot.whole_model(&reading)?);
+        robot = robot.on(tips.all());
+    }
+    let chosen = names::flat(&arguments.functions);
+    let mut functions: Vec<&'static str> = Vec::new();
+    let wanted = if chosen.is_empty() { FUNCTIONS.map(str::to_owned).to_vec() } else { chosen };
+    for name in wanted.iter().filter_map(|name| Some(function::<f64>(name)?.name)) {
+        if !functions.contains(&name) {
+            functions.push(name);
+        }
+    }
+    let mut levels: Vec<Level> = Vec::new();
+    for level in if arguments.levels.is_empty() { Level::all() } else { arguments.levels.clone() } {
+        if !levels.contains(&level) {
+            levels.push(level);
+        }
+    }
+    let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
+    let reference = Reference::new(&reading.description, &robot.options);
+    let report = measure::all(&robot, &reference, &rustc, &functions, &levels, arguments)?;
+    if let Some(folder) = &arguments.output {
+        write(folder, &report)?;
+    }
+    let text = match (arguments.advise, arguments.error, format) {
+        (true, Some(wish), Format::Text) => advise::text(&report, wish),
+        (true, Some(wish), Format::Json) => crate::json(&advise::all(&report, wish)),
+        (_, _, Format::Text) => text::text(&report),
+        (_, _, Format::Json) => crate::json(&report),
+    };
+    console::print(&text)
+}
+
+/// All files of a report.
+fn write(folder: &Path, report: &Report) -> Result<(), Failure> {
+    let failed = |path: &Path, e: &dyn std::fmt::Display| Failure::input([format!("{}: {e}", path.display())]);
+    std::fs::create_dir_all(folder).map_err(|e| failed(folder, &e))?;
+    let put = |name: &str, bytes: &[u8]| {
+        let path = folder.join(name);
+        std::fs::write(&path, bytes).map_err(|e| failed(&path, &e))
+    };
+    let diagrams = plot::diagrams(report);
+    for (name, drawing) in &diagrams {
+        put(&format!("{name}.svg"), plot::svg(drawing).as_bytes())?;
+        put(&format!("{name}.png"), &plot::png(drawing).map_err(|e| failed(folder, &e))?)?;
+    }
+    put("accuracy.csv", csv::text(report).as_bytes())?;
+    put("accuracy.json", crate::json(report).as_bytes())?;
+    put("report.html", page::html(report, &diagrams).as_bytes())
+}

@@ -1,0 +1,141 @@
+//! Work–precision diagrams: error over time, both logarithmic.
+
+use super::report::{FunctionReport, Point, Report};
+use crate::simulate::plot::drawing::{Anchor, Drawing};
+
+pub(super) use crate::simulate::plot::png::bytes as png;
+pub(super) use crate::simulate::plot::svg::text as svg;
+
+const WIDTH: f64 = 720.0;
+const HEIGHT: f64 = 430.0;
+/// Left, right, top and bottom of the field.
+const FIELD: [f64; 4] = [70.0, 530.0, 44.0, 380.0];
+const INK: &str = "#222222";
+const LINE: &str = "#dddddd";
+const OURS: &str = "#1b6ca8";
+const FRONT: &str = "#c03d20";
+const PEER: &str = "#777777";
+
+/// A diagram for each function: its file's name and the picture.
+pub(super) fn diagrams(report: &Report) -> Vec<(String, Drawing)> {
+    report.functions.iter().map(|f| (format!("work_precision_{}", f.function), diagram(f, report))).collect()
+}
+
+/// A logarithmic axis.
+pub(super) struct Axis {
+    range: [f64; 2],
+    ends: [f64; 2],
+}
+
+impl Axis {
+    /// Over all numbers that have a logarithm.
+    pub(super) fn new(numbers: impl Iterator<Item = f64>, ends: [f64; 2]) -> Self {
+        let logs = numbers.filter(|x| *x > 0.0 && x.is_finite()).map(f64::log10);
+        let [low, high] = logs.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
+        let [low, high] = if low <= high { [low - 0.15, high + 0.15] } else { [0.0, 1.0] };
+        Self { range: [low, high], ends }
+    }
+
+    /// Where a number stands; nothing stands beyond the ends.
+    pub(super) fn at(&self, x: f64) -> f64 {
+        let part = ((x.max(1e-300).log10() - self.range[0]) / (self.range[1] - self.range[0])).clamp(0.0, 1.0);
+        self.ends[0] + part * (self.ends[1] - self.ends[0])
+    }
+
+    /// Powers of ten, and their multiples by 2 and 5 where there are few.
+    pub(super) fn ticks(&self) -> Vec<f64> {
+        let decades = self.range[1] - self.range[0];
+        let multiples: &[f64] = if decades < 2.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+        let every = (decades / 12.0).ceil().max(1.0) as i32;
+        let powers = (self.range[0].floor() as i32..=self.range[1].ceil() as i32).filter(|p| p % every == 0);
+        let all = powers.flat_map(|p| multiples.iter().map(move |m| m * 10f64.powi(p)));
+        all.filter(|x| (self.range[0]..=self.range[1]).contains(&x.log10())).collect()
+    }
+}
+
+fn diagram(f: &FunctionReport, report: &Report) -> Drawing {
+    let [left, right, top, bottom] = FIELD;
+    let x = Axis::new(f.points.iter().map(|p| p.time.median), [left, right]);
+    let y = Axis::new(f.points.iter().flat_map(|p| [p.relative.median, p.relative.largest]), [bottom, top]);
+    let mut out = Drawing { width: WIDTH, height: HEIGHT, ..Drawing::default() };
+    out.text([16.0, 22.0], Anchor::Start, 14.0, INK, &format!("{} of {}: error over time", f.function, report.robot));
+    frame(&mut out, &x, &y, "time of a call, ns", "largest error, relative to its terms (thin: from the median)");
+    for point in &f.points {
+        mark(&mut out, &x, &y, point);
+    }
+    names(&mut out, &x, &y, &f.points);
+    out
+}
+
+/// Axes with their ticks and titles.
+pub(super) fn frame(out: &mut Drawing, x: &Axis, y: &Axis, below: &str, beside: &str) {
+    let [left, right, top, bottom] = FIELD;
+    for tick in x.ticks() {
+        out.path(vec![[x.at(tick), top], [x.at(tick), bottom]], LINE, 1.0, false);
+        out.text([x.at(tick), bottom + 16.0], Anchor::Middle, 11.0, INK, &plain(tick));
+    }
+    for tick in y.ticks() {
+        out.path(vec![[left, y.at(tick)], [right, y.at(tick)]], LINE, 1.0, false);
+        out.text([left - 6.0, y.at(tick) + 4.0], Anchor::End, 11.0, INK, &format!("{tick:.0e}"));
+    }
+    out.text([(left + right) / 2.0, bottom + 36.0], Anchor::Middle, 11.0, INK, below);
+    out.turned_text([18.0, (top + bottom) / 2.0], 11.0, INK, beside);
+}
+
+fn plain(x: f64) -> String {
+    if (1.0..1e5).contains(&x) { format!("{x:.0}") } else { format!("{x:.0e}") }
+}
+
+fn colour(p: &Point) -> &'static str {
+    if p.peer {
+        PEER
+    } else if p.front {
+        FRONT
+    } else {
+        OURS
+    }
+}
+
+/// A diamond at the largest error and a line to the median.
+fn mark(out: &mut Drawing, x: &Axis, y: &Axis, p: &Point) {
+    let (a, b) = (x.at(p.time.median), y.at(p.relative.largest));
+    out.path(vec![[a, y.at(p.relative.median)], [a, b]], colour(p), 1.0, false);
+    out.path(vec![[x.at(p.time.lower_quartile), b], [x.at(p.time.upper_quartile), b]], colour(p), 1.0, false);
+    out.path(vec![[a - 2.0, b], [a, b - 2.0], [a + 2.0, b], [a, b + 2.0], [a - 2.0, b], [a, b - 2.0]], colour(p), 4.0, false);
+}
+
+/// The names at the right, in the order of the errors, each with a line to its point.
+fn names(out: &mut Drawing, x: &Axis, y: &Axis, points: &[Point]) {
+    let [_, right, top, bottom] = FIELD;
+    let mut order: Vec<&Point> = points.iter().collect();
+    order.sort_by(|a, b| b.relative.largest.total_cmp(&a.relative.largest));
+    let step = ((bottom - top) / order.len().max(1) as f64).min(24.0);
+    let mut at = top;
+    for p in order {
+        at = (at + step).max(y.at(p.relative.largest).min(at + step));
+        out.path(vec![[x.at(p.time.median) + 4.0, y.at(p.relative.largest)], [right + 14.0, at - 4.0]], LINE, 0.7, true);
+        out.text([right + 18.0, at], Anchor::Start, 11.0, colour(p), &p.level);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::report::example;
+    use super::*;
+
+    #[test]
+    fn a_diagram_has_every_level_and_is_both_kinds_of_picture() {
+        let (name, drawing) = diagrams(&example()).remove(0);
+        assert_eq!(name, "work_precision_inverse_dynamics");
+        let text = svg(&drawing);
+        assert!(["f32", "f64+no_fma", "double_double"].iter().all(|level| text.contains(&format!(">{level}<"))));
+        assert!(png(&drawing).unwrap().starts_with(b"\x89PNG"));
+    }
+
+    #[test]
+    fn equal_ratios_are_equal_distances() {
+        let axis = Axis::new([1e-16, 1e-6].into_iter(), [0.0, 103.0]);
+        assert!((axis.at(1e-10) - axis.at(1e-12) - (axis.at(1e-12) - axis.at(1e-14))).abs() < 1e-9);
+        assert!(axis.ticks().len() >= 8 && Axis::new([].into_iter(), [0.0, 1.0]).ticks().len() >= 2);
+    }
+}

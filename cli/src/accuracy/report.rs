@@ -1,0 +1,164 @@
+//! What was measured.
+
+use serde::Serialize;
+
+use crate::compare::timing::Summary;
+
+/// All that was measured.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Report {
+    pub(super) robot: String,
+    pub(super) base: &'static str,
+    pub(super) joints: usize,
+    pub(super) degrees_of_freedom: usize,
+    pub(super) frames: Vec<String>,
+    pub(super) states: usize,
+    pub(super) hard_states: usize,
+    pub(super) seed: u64,
+    pub(super) repetitions: u32,
+    pub(super) reference_bits: usize,
+    pub(super) processor: String,
+    pub(super) compiler: String,
+    pub(super) flags: String,
+    pub(super) version: &'static str,
+    pub(super) commit: &'static str,
+    pub(super) notes: Vec<String>,
+    pub(super) functions: Vec<FunctionReport>,
+}
+
+/// One function at every level.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct FunctionReport {
+    pub(super) function: &'static str,
+    /// What the result is.
+    pub(super) summary: &'static str,
+    pub(super) points: Vec<Point>,
+    /// What is worth knowing.
+    pub(super) surprises: Vec<String>,
+}
+
+/// The middle, nearly the largest and the largest of some errors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub(super) struct Spread {
+    pub(super) median: f64,
+    pub(super) most: f64,
+    pub(super) largest: f64,
+}
+
+/// A function at a level, or another library's.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Point {
+    pub(super) level: String,
+    /// Whether it is a library of others.
+    pub(super) peer: bool,
+    /// ns a call.
+    pub(super) time: Summary,
+    /// Of each state the largest error of a result, relative to the sum of the magnitudes of its terms; against the textbook on the URDF's numbers.
+    pub(super) relative: Spread,
+    /// The same in units in the last place of a double.
+    pub(super) ulps: Spread,
+    /// As `relative`, against the graph that is emitted, in the reference's digits: rounding alone.
+    pub(super) rounding: Option<Spread>,
+    /// How far the torques that a solution needs are from those given, relative to the magnitudes of their terms.
+    pub(super) backward: Option<Spread>,
+    /// The largest relative error on the hard states, and what is hard about it.
+    pub(super) hard: Option<(f64, &'static str)>,
+    /// The largest guaranteed bound on `rounding`, over the random states.
+    pub(super) bound: Option<f64>,
+    /// How much of its bound an error reached at most.
+    pub(super) reached: Option<f64>,
+    pub(super) instructions: Option<u64>,
+    pub(super) operations: Option<u64>,
+    pub(super) code_bytes: Option<u64>,
+    /// rustc's time for all functions of the level.
+    pub(super) compilation_seconds: Option<f64>,
+    /// Whether nothing else is both faster and more accurate.
+    pub(super) front: bool,
+}
+
+impl Spread {
+    /// Of the largest errors of states.
+    pub(super) fn of(mut errors: Vec<f64>) -> Self {
+        errors.sort_by(f64::total_cmp);
+        let at = |part: f64| errors.get(((errors.len().max(1) - 1) as f64 * part).ceil() as usize).copied().unwrap_or(f64::NAN);
+        Self { median: at(0.5), most: at(0.99), largest: at(1.0) }
+    }
+}
+
+/// Marks the points that no other beats in both time and error.
+pub(super) fn mark_front(points: &mut [Point]) {
+    let all: Vec<(f64, f64)> = points.iter().map(|p| (p.time.median, p.relative.largest)).collect();
+    for (k, point) in points.iter_mut().enumerate() {
+        let (time, error) = all[k];
+        let beats = |(t, e): &(f64, f64)| *t <= time && *e <= error && (*t < time || *e < error);
+        point.front = error.is_finite() && !all.iter().any(beats);
+    }
+}
+
+#[cfg(test)]
+pub(super) fn point(level: &str, ns: f64, error: f64) -> Point {
+    let time = Summary { median: ns, lower_quartile: ns, upper_quartile: ns };
+    let of = |x: f64| Spread { median: x / 4.0, most: x / 2.0, largest: x };
+    Point {
+        level: level.into(),
+        peer: false,
+        time,
+        relative: of(error),
+        ulps: of(error * 9e15),
+        rounding: Some(of(error / 2.0)),
+        backward: None,
+        hard: Some((error * 2.0, "angles of 1e22")),
+        bound: Some(error * 30.0),
+        reached: Some(0.1),
+        instructions: Some(100),
+        operations: Some(150),
+        code_bytes: None,
+        compilation_seconds: Some(1.0),
+        front: false,
+    }
+}
+
+#[cfg(test)]
+pub(super) fn example() -> Report {
+    let mut points =
+        vec![point("f32", 50.0, 1e-6), point("f64", 60.0, 2e-15), point("f64+no_fma", 90.0, 3e-15), point("double_double", 2000.0, 4e-16)];
+    mark_front(&mut points);
+    Report {
+        robot: "an <arm> & more".into(),
+        base: "fixed",
+        joints: 7,
+        degrees_of_freedom: 7,
+        frames: vec!["tool".into()],
+        states: 64,
+        hard_states: 13,
+        seed: 1,
+        repetitions: 31,
+        reference_bits: 320,
+        processor: "a processor".into(),
+        compiler: "rustc".into(),
+        flags: String::new(),
+        version: "0",
+        commit: "none",
+        notes: vec![],
+        functions: vec![FunctionReport { function: "inverse_dynamics", summary: "torques", points, surprises: vec!["a surprise".into()] }],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_front_has_what_nothing_beats() {
+        let report = example();
+        let front: Vec<&str> = report.functions[0].points.iter().filter(|p| p.front).map(|p| p.level.as_str()).collect();
+        assert_eq!(front, ["f32", "f64", "double_double"]);
+    }
+
+    #[test]
+    fn a_spread_is_of_sorted_numbers() {
+        let s = Spread::of((1..=100).rev().map(f64::from).collect());
+        assert_eq!((s.median, s.most, s.largest), (51.0, 100.0, 100.0));
+        assert!(Spread::of(vec![1.0, f64::NAN]).largest.is_nan() && Spread::of(vec![]).median.is_nan());
+    }
+}

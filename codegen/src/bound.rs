@@ -1,0 +1,49 @@
+//! Guaranteed bounds on rounding errors of the functions that are emitted.
+
+use articulated_core::algorithm::Argument;
+use articulated_core::model::Model;
+use articulated_core::running::Running;
+
+use crate::graph::Graph;
+use crate::{Arithmetic, Level, Sines};
+
+/// How far each result of a graph at a level can be off from the same graph in real arithmetic, for arguments within a radius of a midpoint each: `input(argument, index)`
+/// is (midpoint, radius). Infinite where a divisor could be nothing, or a choice jump. `None` for levels whose errors are of second order: there is no bound for them.
+pub fn bounds(graph: &Graph, level: Level, input: &dyn Fn(usize, usize) -> (f64, f64)) -> Option<Vec<f64>> {
+    fn of<const BITS: u32, const SINES: u32>(graph: &Graph, bits: Option<u32>, input: &dyn Fn(usize, usize) -> (f64, f64)) -> Vec<f64> {
+        let given = |argument: usize, k: usize| {
+            let (value, radius) = input(argument, k);
+            Running::<BITS, SINES>::given(value, radius)
+        };
+        let results = graph.evaluate_as(given);
+        results.into_iter().map(|x| bits.map_or(x.error, |bits| x.rounded_to(bits))).collect()
+    }
+    let single = Some(24);
+    Some(match (level.arithmetic, level.sines) {
+        (Arithmetic::Compensated, _) => return None,
+        (Arithmetic::DoubleDouble, _) => of::<102, 0>(graph, Some(53), input),
+        (Arithmetic::Double, Sines::Fast7) => of::<53, 7>(graph, None, input),
+        (Arithmetic::Double, Sines::Fast10) => of::<53, 10>(graph, None, input),
+        (Arithmetic::Double, _) => of::<53, 0>(graph, None, input),
+        (Arithmetic::SingleByDouble, Sines::Fast7) => of::<53, 7>(graph, single, input),
+        (Arithmetic::SingleByDouble, Sines::Fast10) => of::<53, 10>(graph, single, input),
+        (Arithmetic::SingleByDouble, _) => of::<53, 0>(graph, single, input),
+        (Arithmetic::Single, Sines::Fast7) => of::<24, 7>(graph, None, input),
+        (Arithmetic::Single, Sines::Fast10) => of::<24, 10>(graph, None, input),
+        (Arithmetic::Single, _) => of::<24, 0>(graph, None, input),
+    })
+}
+
+/// What holds of all arguments in the box of the ledger's bounds: coordinates within their limits (angles without any, quaternions and the place of a floating base within ±1), everything
+/// else within ±2: (midpoint, radius) of element `index`.
+pub fn in_box(model: &Model<f64>, argument: Argument, index: usize) -> (f64, f64) {
+    if !matches!(argument, Argument::Q | Argument::Target) {
+        return if argument == Argument::SinCos { (0.0, 1.0) } else { (0.0, 2.0) };
+    }
+    let joint = model.joints.iter().find(|j| (j.q.0..j.q.0 + j.q.1).contains(&index));
+    match joint.and_then(|j| j.limit) {
+        Some(l) if (l.lower + l.upper).is_finite() => ((l.lower + l.upper) / 2.0, (l.upper - l.lower) / 2.0),
+        _ if joint.is_some_and(|j| j.q.1 > 1) => (0.0, 1.0),
+        _ => (0.0, std::f64::consts::PI),
+    }
+}

@@ -1,0 +1,260 @@
+//! A scalar that carries a bound on its rounding error: what an evaluation can be off by at most, operation by operation.
+//!
+//! Running error analysis (Wilkinson 1986; Higham, Accuracy and Stability of Numerical Algorithms, 2002, 3.3) on midpoints and radii, so that it holds for one state and for a
+//! box of states alike. All here is in f64 and rounded upward by a few units more than it can lose.
+
+use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
+
+use num_traits::{One, Zero};
+
+use crate::Scalar;
+
+/// A number x of which it is known that |x − value| ≤ radius, and that an evaluation in which each operation is off by at most 2^−`BITS` of its result is off
+/// from x by at most `error`. Sines: off by 2^(2−`BITS`) of their value if `SINES` is 0, by 10^−`SINES` and a rounding otherwise.
+///
+/// Underflow counts as an error of 10⁻³⁰⁰ an operation (of 10⁻⁴⁴ for single precision).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Running<const BITS: u32, const SINES: u32> {
+    /// The midpoint.
+    pub value: f64,
+    /// How far the exact number is from it at most.
+    pub radius: f64,
+    /// How far the evaluated number is from the exact one at most.
+    pub error: f64,
+}
+
+/// A test, and whether it is known how it comes out.
+#[derive(Clone, Copy, Debug)]
+pub struct Outcome {
+    holds: bool,
+    certain: bool,
+}
+
+/// 2^−n.
+fn power(n: u32) -> f64 {
+    f64::from_bits(u64::from(1023 - n.min(1022)) << 52)
+}
+
+/// A little more than a sum of a few products has lost.
+fn up(x: f64) -> f64 {
+    x * (1.0 + 64.0 * f64::EPSILON)
+}
+
+impl<const BITS: u32, const SINES: u32> Running<BITS, SINES> {
+    const TINY: f64 = if BITS < 53 { 1e-44 } else { 1e-300 };
+
+    /// A number that is given without error, within a radius of a midpoint.
+    pub fn given(value: f64, radius: f64) -> Self {
+        Self { value, radius, error: 0.0 }
+    }
+
+    /// The error after the result is rounded to so many bits.
+    pub fn rounded_to(self, bits: u32) -> f64 {
+        up(self.error + power(bits) * (self.most() + self.error))
+    }
+
+    /// |x| at most.
+    fn most(self) -> f64 {
+        self.value.abs() + self.radius
+    }
+
+    /// The result of an operation: value and radius, and what the errors of its operands make.
+    fn of(value: f64, radius: f64, error: f64) -> Self {
+        let radius = up(radius + f64::EPSILON * value.abs());
+        let error = if error.is_nan() { f64::INFINITY } else { error };
+        let most = value.abs() + radius + error;
+        Self { value, radius, error: up(error + power(BITS) * most + Self::TINY) }
+    }
+
+    /// What is known of nothing.
+    fn unknown() -> Self {
+        Self { value: 0.0, radius: f64::INFINITY, error: f64::INFINITY }
+    }
+
+    /// One of a sine and a cosine.
+    fn wave(self, value: f64) -> Self {
+        let (value, radius) = if self.radius < 1.0 { (value, self.radius) } else { (0.0, 1.0) };
+        let error = self.error.min(2.0);
+        let most = (value.abs() + radius + error).min(1.0);
+        let own = if SINES == 0 { 4.0 * power(BITS) * most } else { libm::pow(10.0, -f64::from(SINES)) + power(BITS) };
+        Self { value, radius: up(radius + 2.0 * f64::EPSILON), error: up(error + own + Self::TINY) }
+    }
+}
+
+impl<const BITS: u32, const SINES: u32> Zero for Running<BITS, SINES> {
+    fn zero() -> Self {
+        Self::given(0.0, 0.0)
+    }
+
+    fn is_zero(&self) -> bool {
+        *self == Self::zero()
+    }
+}
+
+impl<const BITS: u32, const SINES: u32> One for Running<BITS, SINES> {
+    fn one() -> Self {
+        Self::given(1.0, 0.0)
+    }
+}
+
+impl<const BITS: u32, const SINES: u32> Add for Running<BITS, SINES> {
+    type Output = Self;
+
+    fn add(self, b: Self) -> Self {
+        if self.is_zero() {
+            return b;
+        }
+        if b.is_zero() {
+            return self;
+        }
+        Self::of(self.value + b.value, self.radius + b.radius, self.error + b.error)
+    }
+}
+
+impl<const BITS: u32, const SINES: u32> Sub for Running<BITS, SINES> {
+    type Output = Self;
+
+    fn sub(self, b: Self) -> Self {
+        self + -b
+    }
+}
+
+impl<const BITS: u32, const SINES: u32> Mul for Running<BITS, SINES> {
+    type Output = Self;
+
+    fn mul(self, b: Self) -> Self {
+        if self.is_zero() || b.is_zero() {
+            return Self::zero();
+        }
+        let radius = self.value.abs() * b.radius + b.value.abs() * self.radius + self.radius * b.radius;
+        let error = self.most() * b.error + b.most() * self.error + self.error * b.error;
+        Self::of(self.value * b.value, radius, error)
+    }
+}
+
+impl<const BITS: u32, const SINES: u32> Div for Running<BITS, SINES> {
+    type Output = Self;
+
+    fn div(self, b: Self) -> Self {
+        let least = (b.value.abs() - b.radius) * (1.0 - 64.0 * f64::EPSILON);
+        if !(least > b.error * (1.0 + 64.0 * f64::EPSILON)) {
+            return Self::unknown();
+        }
+        let value = self.value / b.value;
+        let radius = (self.radius + value.abs() * b.radius) / least;
+        let error = (self.error + (value.abs() + radius) * (1.0 + 64.0 * f64::EPSILON) * b.error) / (least - b.error);
+        Self::of(value, radius, error)
+    }
+}
+
+impl<const BITS: u32, const SINES: u32> Neg for Running<BITS, SINES> {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { value: -self.value, ..self }
+    }
+}
+
+impl<const BITS: u32, const SINES: u32> AddAssign for Running<BITS, SINES> {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<const BITS: u32, const SINES: u32> SubAssign for Running<BITS, SINES> {
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl<const BITS: u32, const SINES: u32> MulAssign for Running<BITS, SINES> {
+    fn mul_assign(&mut self, other: Self) {
+        *self = *self * other;
+    }
+}
+
+impl<const BITS: u32, const SINES: u32> Scalar for Running<BITS, SINES> {
+    type Mask = Outcome;
+
+    /// A constant: fewer bits than 53 round it.
+    fn from_f64(x: f64) -> Self {
+        Self { value: x, radius: 0.0, error: if BITS < 53 { up(power(BITS) * x.abs()) } else { 0.0 } }
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = Scalar::sin_cos(self.value);
+        (self.wave(sin), self.wave(cos))
+    }
+
+    // |√x − √y| = |x − y| / (√x + √y) ≤ √|x − y|
+    fn sqrt(self) -> Self {
+        let least = self.value - self.radius;
+        let change = |by: f64, least: f64| {
+            let coarse = Scalar::sqrt(by);
+            if least > 0.0 { coarse.min(by / Scalar::sqrt(least)) } else { coarse }
+        };
+        Self::of(Scalar::sqrt(self.value.max(0.0)), change(self.radius, self.value.max(0.0)), change(self.error, least))
+    }
+
+    // The angle under which a change is seen from the origin.
+    fn atan2(self, x: Self) -> Self {
+        let (by, off) = (self.radius + x.radius, self.error + x.error);
+        let size = libm::hypot(self.value, x.value);
+        let near_the_cut = x.value - x.radius - x.error <= 0.0 && self.value.abs() <= self.radius + self.error;
+        if near_the_cut && (by > 0.0 || off > 0.0) || !(size > 2.0 * (by + off)) {
+            return if by + off == 0.0 { Self::of(Scalar::atan2(self.value, x.value), 0.0, 0.0) } else { Self::unknown() };
+        }
+        Self::of(Scalar::atan2(self.value, x.value), 2.0 * by / size, 4.0 * off / size)
+    }
+
+    fn positive(self) -> Outcome {
+        Outcome { holds: self.value > 0.0, certain: self.value.abs() > self.radius + self.error || self.is_zero() }
+    }
+
+    fn select(mask: Outcome, a: Self, b: Self) -> Self {
+        let (one, other) = if mask.holds { (a, b) } else { (b, a) };
+        if mask.certain {
+            return one;
+        }
+        // Either may be right, and either may be taken.
+        let apart = (one.value - other.value).abs();
+        let radius = up(one.radius.max(apart + other.radius));
+        Self { value: one.value, radius, error: up(one.error.max(other.error) + 2.0 * radius) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    type Single = Running<24, 0>;
+
+    #[test]
+    fn bounds_hold_for_single_precision() {
+        let mut x = 0.3_f32;
+        for k in 0..2000 {
+            x = (x * 3.7 * (1.0 - x)).clamp(0.01, 0.99);
+            let y = 1.0 + x * k as f32 * 0.01;
+            let (a, b) = (Single::given(f64::from(x), 0.0), Single::given(f64::from(y), 0.0));
+            let found = [(x * y - x / y) - x * x, x.sin() * y.sqrt() - y.cos(), (x - y) * (x + y)];
+            let bound = [(a * b - a / b) - a * a, Scalar::sin_cos(a).0 * b.sqrt() - Scalar::sin_cos(b).1, (a - b) * (a + b)];
+            for (found, bound) in found.iter().zip(bound) {
+                let error = (f64::from(*found) - bound.value).abs();
+                assert!(error <= bound.error + bound.radius, "{error:e} {bound:?}");
+                assert!(bound.error < 1e-4 && bound.radius < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn a_box_holds_what_is_in_it() {
+        let of = |x: f64, r: f64| Running::<53, 0>::given(x, r);
+        let whole = of(1.0, 0.25) * of(-2.0, 0.5) + of(0.5, 0.1) / of(3.0, 0.2);
+        for (a, b, c, d) in [(0.75, -2.5, 0.6, 2.8), (1.25, -2.5, 0.4, 3.2), (1.25, -1.5, 0.6, 2.8)] {
+            let one: f64 = a * b + c / d;
+            assert!((one - whole.value).abs() <= whole.radius, "{one} {whole:?}");
+        }
+        assert_eq!((of(1.0, 0.0) / of(0.0, 0.1)).error, f64::INFINITY);
+        assert_eq!(of(3.0, 100.0).sin_cos().0.radius, 1.0 + 2.0 * f64::EPSILON + 0.0);
+    }
+}
