@@ -3,8 +3,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use articulated_scene::{Robot, Scene};
+
 use crate::cache::Cache;
-use crate::{Appended, Base, Error, Generated, Origin, Payload, Reference, Request, generate};
+use crate::{Appended, Base, Error, Generated, Origin, Payload, Reference, Request, generate, scene};
 
 /// Generates a robot's code from a build script.
 ///
@@ -19,6 +21,8 @@ pub struct Build {
     request: Request,
     /// Paths of the robots to append, and the rest of what there is to say of each.
     append: Vec<(PathBuf, Appended)>,
+    /// The scene, if there is one: its file, and what is in it or what is wrong with it.
+    scene: Option<(PathBuf, Result<Scene, Error>)>,
 }
 
 /// What a build script wrote.
@@ -38,7 +42,40 @@ impl Build {
         let path = path.as_ref();
         let mut request = Request::new(path.display().to_string(), []);
         request.options.runtime = Some("::articulated".into());
-        Self { path: from_root(path), request, append: Vec::new() }
+        Self { path: from_root(path), request, append: Vec::new(), scene: None }
+    }
+
+    /// For the scene at `path`, relative to the crate's folder. What is said after this stands in place of what the scene says. What is wrong with the scene is told when the code is
+    /// generated.
+    ///
+    /// ```no_run
+    /// // build.rs
+    /// articulated_codegen::Build::scene("scenes/arm.toml").functions(["forward_dynamics"]).write("arm");
+    /// ```
+    pub fn scene(path: impl AsRef<Path>) -> Self {
+        let name = path.as_ref().display().to_string();
+        let file = from_root(path.as_ref());
+        let mut build = Self::new("");
+        let read = read(&file).and_then(|bytes| Ok(Scene::read_bytes(&name, &bytes)?));
+        if let Ok(found) = &read {
+            scene::fill(&mut build.request.options, found);
+            for other in std::mem::take(&mut build.request.options.append) {
+                let file = scene::beside(&name, &other.file);
+                build.append.push((from_root(Path::new(&file)), Appended { file, ..other }));
+            }
+            if let Robot::Urdf(urdf) = &found.robot {
+                build = build.urdf(scene::beside(&name, urdf));
+            }
+        }
+        Self { scene: Some((file, read)), ..build }
+    }
+
+    /// The robot, if the scene does not say where it is to be had: the URDF at `path`, relative to the crate's folder.
+    #[must_use]
+    pub fn urdf(mut self, path: impl AsRef<Path>) -> Self {
+        self.request.file = path.as_ref().display().to_string();
+        self.path = from_root(path.as_ref());
+        self
     }
 
     /// A floating base.
@@ -157,7 +194,8 @@ impl Build {
     ///
     /// If the last run wrote the file for the same request, and the build script is the same program, nothing is generated and nothing written: the file keeps its date.
     pub fn try_write(&self, name: &str) -> Result<Written, Error> {
-        for path in [&self.path].into_iter().chain(self.append.iter().map(|(path, _)| path)) {
+        let files = self.scene.iter().map(|(path, _)| path).chain([&self.path]).chain(self.append.iter().map(|(path, _)| path));
+        for path in files.filter(|path| !path.as_os_str().is_empty()) {
             println!("cargo::rerun-if-changed={}", path.display());
         }
         let folder = std::env::var_os("OUT_DIR").map(PathBuf::from).unwrap_or_default();
@@ -191,9 +229,21 @@ impl Build {
     /// The request, with the files read.
     fn request(&self) -> Result<Request, Error> {
         let mut request = self.request.clone();
+        let scene = self.scene.as_ref().map(|(_, scene)| scene.as_ref().map_err(Clone::clone)).transpose()?;
+        if let Some(scene) = scene.filter(|_| request.file.is_empty()) {
+            return Err(scene::no_robot(
+                scene,
+                "no URDF",
+                "urdf; a bundled robot is known to the command line alone: give its URDF with Build::urdf",
+            ));
+        }
         request.urdf = read(&self.path)?;
         for (path, other) in &self.append {
             request.options.append.push(Appended { urdf: read(path)?, ..other.clone() });
+        }
+        if let Some(scene) = scene {
+            let resolved = scene::resolve(&request, scene).map_err(|error| scene::placed(error, scene))?;
+            request.options.effects.splice(..0, resolved.effects);
         }
         Ok(request)
     }

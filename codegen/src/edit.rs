@@ -1,9 +1,10 @@
-//! The robot that a request asks for: read, other robots appended, payloads attached, joints locked, frames chosen; in this order, so that a payload may hang on an appended
-//! robot, and a lock may hold its joints.
+//! The robot that a request asks for: read, other robots appended, payloads attached, shafts made to bend, joints locked, frames chosen; in this order, so that a payload may
+//! hang on an appended robot, and a lock may hold its joints.
 
 use std::fmt;
 
 use articulated_core::description::{Base, Description, EditError};
+use articulated_core::effect::Applied;
 use articulated_core::model::Model;
 use articulated_urdf::{Kind, Problem, Problems, Reading, Subject, Unused};
 
@@ -17,6 +18,8 @@ pub enum Edit {
     Append(usize),
     /// An index into [`payloads`](crate::Options::payloads).
     Payload(usize),
+    /// An index into [`shafts`](crate::Options::shafts).
+    Shaft(usize),
     /// An index into [`lock`](crate::Options::lock).
     Lock(usize),
     /// An index into [`frames`](crate::Options::frames).
@@ -50,6 +53,7 @@ impl fmt::Display for Refusal {
         let what = match self.edit {
             Edit::Append(_) => "append",
             Edit::Payload(_) => "payload",
+            Edit::Shaft(_) => "shaft",
             Edit::Lock(_) => "lock",
             Edit::Frame(_) => "frames",
         };
@@ -63,13 +67,23 @@ impl fmt::Display for Refusal {
 
 /// Reads the request's robot and edits it. Everything that is wrong with the document, or else everything that is wrong with the edits.
 pub fn read(request: &Request) -> Result<Reading, Error> {
+    read_with_shafts(request).map(|(reading, _)| reading)
+}
+
+/// As [`read`], with the springs and dampings of each shaft.
+pub(crate) fn read_with_shafts(request: &Request) -> Result<(Reading, Vec<Vec<Applied>>), Error> {
     let mut editing = Editing { request, reading: articulated_urdf::read(&request.urdf, &reader_options(request))?, refusals: Vec::new() };
+    let mut springs = Vec::new();
     let options = &request.options;
     options.append.iter().enumerate().for_each(|(i, other)| editing.append(i, other));
     let appended = editing.refusals.is_empty();
     for (i, payload) in options.payloads.iter().enumerate() {
         let result = editing.reading.description.attach(payload).map(|_| ());
         editing.take(Edit::Payload(i), result.map_err(Reason::Edit));
+    }
+    for (i, shaft) in options.shafts.iter().enumerate() {
+        let result = editing.reading.description.shaft(shaft).map(|own| springs.push(own));
+        editing.take(Edit::Shaft(i), result.map_err(Reason::Edit));
     }
     for (i, (joint, at)) in options.lock.iter().enumerate() {
         let result = editing.reading.description.lock(joint, at);
@@ -82,7 +96,7 @@ pub fn read(request: &Request) -> Result<Reading, Error> {
         editing.refusals.retain(|r| matches!(r.edit, Edit::Append(_)) || !unknown(r));
     }
     editing.warn_of_limits();
-    if editing.refusals.is_empty() { Ok(editing.reading) } else { Err(Error::Edits { refusals: editing.refusals }) }
+    if editing.refusals.is_empty() { Ok((editing.reading, springs)) } else { Err(Error::Edits { refusals: editing.refusals }) }
 }
 
 /// The model of what was [read](read()), under the gravity, with the effects and with the reference of wrenches that the request asks for, and with a frame for every link.

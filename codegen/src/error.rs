@@ -2,6 +2,7 @@
 
 use articulated_core::effect::EffectError;
 use articulated_core::model::ModelError;
+use articulated_scene::SceneErrors;
 use articulated_urdf::Problems;
 use thiserror::Error;
 
@@ -29,6 +30,9 @@ pub enum Error {
         /// One for each effect.
         errors: Vec<EffectError>,
     },
+    /// A scene that is wrong, or does not fit its robot; everything that is.
+    #[error("{0}")]
+    Scene(#[from] SceneErrors),
     /// Edits of the robot that cannot be made; all of them.
     #[error("{}", refusals.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
     Edits {

@@ -20,6 +20,7 @@ mod parameters;
 pub mod pass;
 mod program;
 mod request;
+pub mod scene;
 mod sym;
 mod trace;
 mod wanted;
@@ -29,7 +30,7 @@ use articulated_core::model::Model;
 use articulated_urdf::{Problem, Reading, Unused};
 
 pub use articulated_core as core;
-pub use articulated_core::description::{Base, Origin, Payload};
+pub use articulated_core::description::{Base, Origin, Payload, Shaft};
 pub use articulated_core::effect::Applied;
 pub use articulated_core::lanes::Real;
 pub use articulated_core::level::{Arithmetic, Level, LevelError, Sines};

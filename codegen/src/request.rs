@@ -1,6 +1,6 @@
 //! What to generate.
 
-use articulated_core::description::{Base, Origin, Payload};
+use articulated_core::description::{Base, Origin, Payload, Shaft};
 use articulated_core::effect::Applied;
 use articulated_core::lanes::Real;
 use articulated_core::level::Level;
@@ -38,6 +38,8 @@ pub struct Options {
     pub append: Vec<Appended>,
     /// Loads to attach; to links of appended robots too.
     pub payloads: Vec<Payload>,
+    /// Fixed joints whose rigid offsets bend, see [`shaft`](articulated_core::description::Description::shaft). Their springs and dampings have to be among the effects.
+    pub shafts: Vec<Shaft>,
     /// Joints to lock and their coordinates, see [`lock`](articulated_core::description::Description::lock); joints of appended robots too.
     pub lock: Vec<(String, Vec<f64>)>,
     /// What the robot is subject to besides gravity; on joints and links of appended robots too.
@@ -88,6 +90,7 @@ impl Default for Options {
             wrench_reference: Reference::Body,
             append: Vec::new(),
             payloads: Vec::new(),
+            shafts: Vec::new(),
             lock: Vec::new(),
             effects: Vec::new(),
             allow_unphysical_inertia: false,

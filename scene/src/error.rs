@@ -52,6 +52,8 @@ pub enum Kind {
     UnknownName,
     /// What the robot does not allow.
     Robot,
+    /// What the robot's model does not take: `found` is a sentence.
+    Refused,
     /// More than are listed.
     More,
 }
@@ -76,7 +78,7 @@ impl fmt::Display for SceneError {
         if !self.key.is_empty() {
             write!(f, " {}:", self.key)?;
         }
-        write!(f, " found {}", self.found)?;
+        write!(f, " {}{}", if self.kind == Kind::Refused { "" } else { "found " }, self.found)?;
         if !self.expected.is_empty() {
             write!(f, ", expected {}", self.expected)?;
         }

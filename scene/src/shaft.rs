@@ -1,5 +1,7 @@
 //! `[effects.shaft]`: shafts that bend.
 
+use articulated_core::description::Shaft;
+
 use crate::log::Log;
 use crate::simulation::set;
 use crate::table::{Row, Spot};
@@ -11,20 +13,8 @@ pub(crate) const NAME: &str = "shaft";
 /// A fixed joint whose rigid offset bends.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShaftAsked {
-    /// The fixed joint.
-    pub joint: String,
-    /// How many pieces bend.
-    pub segments: usize,
-    /// Flexural rigidity E·I, N·m².
-    pub stiffness: f64,
-    /// Bending moment in proportion to the rate of bending, s.
-    pub damping: f64,
-    /// Its mass, kg; `None`: that of the link which carries it, which is taken from there.
-    pub mass: Option<f64>,
-    /// Where it begins in the carrying link's frame, m; `None`: at that frame's origin.
-    pub start: Option<[f64; 3]>,
-    /// Where it ends, there too, m; `None`: at the joint's frame.
-    pub end: Option<[f64; 3]>,
+    /// The shaft.
+    pub shaft: Shaft,
     /// Where the scene says so.
     pub place: At,
 }
@@ -39,7 +29,7 @@ pub(crate) const KEYS: &[Row<ShaftAsked>] = &[
         value: "whole number, 1 to 100",
         default: "",
         what: "how many pieces bend: each is a universal joint with springs; the error of deflections falls with its square",
-        read: |x, s, log| set(&mut x.segments, s.whole(log, 1, MOST_SEGMENTS).and_then(|n| usize::try_from(n).ok())),
+        read: |x, s, log| set(&mut x.shaft.segments, s.whole(log, 1, MOST_SEGMENTS).and_then(|n| usize::try_from(n).ok())),
     },
     Row {
         name: "stiffness",
@@ -47,7 +37,7 @@ pub(crate) const KEYS: &[Row<ShaftAsked>] = &[
         value: "number, N·m²",
         default: "",
         what: "flexural rigidity E·I, the same all along and in both directions",
-        read: |x, s, log| set(&mut x.stiffness, s.positive(log)),
+        read: |x, s, log| set(&mut x.shaft.stiffness, s.positive(log)),
     },
     Row {
         name: "damping",
@@ -55,7 +45,7 @@ pub(crate) const KEYS: &[Row<ShaftAsked>] = &[
         value: "number, s",
         default: "0",
         what: "bending moment E·I·damping at the unit rate of curvature",
-        read: |x, s, log| set(&mut x.damping, s.not_negative(log)),
+        read: |x, s, log| set(&mut x.shaft.damping, s.not_negative(log)),
     },
     Row {
         name: "mass",
@@ -63,7 +53,7 @@ pub(crate) const KEYS: &[Row<ShaftAsked>] = &[
         value: "number, kg",
         default: "that of the link before the joint, which is taken from there",
         what: "mass of the part that bends, the same all along",
-        read: |x, s, log| x.mass = s.not_negative(log),
+        read: |x, s, log| x.shaft.mass = s.positive(log),
     },
     Row {
         name: "start",
@@ -71,7 +61,7 @@ pub(crate) const KEYS: &[Row<ShaftAsked>] = &[
         value: "3 numbers, m",
         default: "[0, 0, 0]",
         what: "where it begins, in the frame of the link before the joint",
-        read: |x, s, log| x.start = s.numbers(log),
+        read: |x, s, log| x.shaft.start = s.numbers(log),
     },
     Row {
         name: "end",
@@ -79,7 +69,7 @@ pub(crate) const KEYS: &[Row<ShaftAsked>] = &[
         value: "3 numbers, m",
         default: "the joint's place",
         what: "where it ends, in the frame of the link before the joint; what is left to the joint is rigid",
-        read: |x, s, log| x.end = s.numbers(log),
+        read: |x, s, log| x.shaft.end = s.numbers(log),
     },
 ];
 
@@ -91,7 +81,7 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Vec<ShaftAsked> {
         if value.node.value == crate::tree::Value::Text("off".into()) {
             continue;
         }
-        let mut shaft = ShaftAsked { joint: entry.name.clone(), place: entry.at, ..ShaftAsked::default() };
+        let mut shaft = ShaftAsked { shaft: Shaft { joint: entry.name.clone(), ..Shaft::default() }, place: entry.at };
         value.read(KEYS, &mut shaft, log);
         shafts.push(shaft);
     }

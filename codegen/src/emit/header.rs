@@ -54,6 +54,9 @@ fn edits(request: &Request) -> Vec<String> {
         let inertia = if p.inertia == [0.0; 6] { "a point".into() } else { format!("inertia {:?} kg·m²", p.inertia) };
         lines.push(format!("Payload: {:?} kg on link {:?}, centre of mass {:?} m, {inertia}.", p.mass, p.link, p.center_of_mass));
     }
+    for shaft in &o.shafts {
+        lines.push(format!("Bends: {} of fixed joint {:?}.", pieces(shaft.segments), shaft.joint));
+    }
     for (joint, at) in &o.lock {
         lines.push(format!("Locked: joint {joint:?} at {at:?}."));
     }
@@ -66,6 +69,10 @@ fn edits(request: &Request) -> Vec<String> {
     lines.extend(o.frames.as_ref().map(|frames| format!("Frames: {}.", frames.join(", "))));
     lines.extend((o.wrench_reference != Reference::Body).then(|| format!("Wrenches in: {}.", o.wrench_reference.name())));
     lines
+}
+
+fn pieces(n: usize) -> String {
+    if n == 1 { "the offset, in one piece,".into() } else { format!("the offset, in {n} pieces,") }
 }
 
 /// The parameters of an effect by name.

@@ -5,13 +5,13 @@ use articulated_urdf::{Subject, Unused};
 
 use super::still::{moves, still};
 use super::{Asked, Numbers, Selector, urdf};
-use crate::error::{Kind, SceneErrors};
+use crate::error::{Kind, SceneError, SceneErrors, bare};
 use crate::log::Log;
 use crate::report::{EffectOff, EffectOn, Number, Report, Why};
 use crate::scene::Scene;
 use crate::shaft;
 use crate::tree::At;
-use articulated_core::effect::{Applied, Effect, EffectId, On, effects};
+use articulated_core::effect::{Applied, Effect, EffectError, EffectId, On, effects};
 
 /// A robot as the scene's edits left it.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +33,8 @@ pub struct Resolved {
     pub effects: Vec<Applied>,
     /// Where the scene asks for each of them.
     pub places: Vec<At>,
+    /// By which key.
+    pub keys: Vec<String>,
     /// What is on, off and not used.
     pub report: Report,
 }
@@ -49,6 +51,22 @@ impl Scene {
         }
         at_work.ignored();
         log.result(at_work.resolved)
+    }
+}
+
+impl Resolved {
+    /// What a model said of [`effects`](Self::effects), with the lines of the scene that asked for them.
+    pub fn place(&self, file: &str, errors: &[EffectError]) -> SceneErrors {
+        let placed = |error: &EffectError| SceneError {
+            file: file.to_owned(),
+            at: self.places.get(error.index).copied().unwrap_or_default(),
+            key: self.keys.get(error.index).cloned().unwrap_or_default(),
+            kind: Kind::Refused,
+            found: error.to_string(),
+            expected: String::new(),
+            nearest: None,
+        };
+        SceneErrors { errors: errors.iter().map(placed).collect() }
     }
 }
 
@@ -141,8 +159,8 @@ impl<'a> Resolving<'a> {
         let all = asked.iter().find(|a| a.on == Selector::All).copied();
         let description = self.robot.description;
         for joint in description.joints.iter().filter(|j| moves(j) && has_room(row.id, j.kind)) {
-            if let Some((one, place)) = self.of_shaft(row.id, &joint.name) {
-                self.put(row, one, place, &vec![None; row.fields.len()]);
+            if let Some((one, place, key)) = self.of_shaft(row.id, &joint.name) {
+                self.put(row, one, (place, key), &vec![None; row.fields.len()]);
             }
             let named = asked.iter().find(|a| a.on == Selector::Named(joint.name.clone())).copied();
             let spread = all.filter(|_| self.is_spread_over(row.id, joint));
@@ -150,7 +168,7 @@ impl<'a> Resolving<'a> {
             let layers = [named, all].map(|asked| asked.and_then(|a| a.says.as_ref()));
             let Some(layers) = one.says.as_ref().map(|_| layers) else { continue };
             match fill(row, &layers, &|tag: &str| urdf::number(joint, tag)) {
-                Ok(filled) => self.put_filled(row, &joint.name, Origin::default(), one.place, &filled),
+                Ok(filled) => self.put_filled(row, &joint.name, Origin::default(), one, &filled),
                 // Not every joint has what all are to have from the URDF.
                 Err(field) if named.is_none() && urdf::tag(row.id, field).is_some() => {}
                 Err(field) => missing(row, field, one, &format!("joint {:?}", joint.name), log),
@@ -174,7 +192,7 @@ impl<'a> Resolving<'a> {
                 let rest = all.filter(|_| named).and_then(|a| a.says.as_ref());
                 let at = says.at.or(rest.and_then(|r| r.at)).unwrap_or_default();
                 match fill(row, &[Some(says), rest], &|_| None) {
-                    Ok(filled) => self.put_filled(row, &link.name, at, one.place, &filled),
+                    Ok(filled) => self.put_filled(row, &link.name, at, one, &filled),
                     Err(field) => missing(row, field, one, &format!("link {:?}", link.name), log),
                 }
             }
@@ -190,22 +208,25 @@ impl<'a> Resolving<'a> {
     }
 
     /// What a shaft puts on one of its joints.
-    fn of_shaft(&self, effect: EffectId, joint: &str) -> Option<(Applied, At)> {
-        let shafts = self.scene.shafts.iter().zip(self.robot.shafts);
-        let mut own = shafts.flat_map(|(shaft, applied)| applied.iter().map(|a| (a, shaft.place)));
-        own.find(|(a, _)| a.effect == effect && a.on == joint).map(|(a, place)| (a.clone(), place))
+    fn of_shaft(&self, effect: EffectId, joint: &str) -> Option<(Applied, At, String)> {
+        for (asked, applied) in self.scene.shafts.iter().zip(self.robot.shafts) {
+            if let Some(own) = applied.iter().find(|a| a.effect == effect && a.on == joint) {
+                return Some((own.clone(), asked.place, format!("effects.{}.{}", shaft::NAME, bare(&asked.shaft.joint))));
+            }
+        }
+        None
     }
 
-    fn put_filled(&mut self, row: &'static Effect, on: &str, at: Origin, place: At, filled: &[Filled]) {
+    fn put_filled(&mut self, row: &'static Effect, on: &str, at: Origin, asked: &Asked, filled: &[Filled]) {
         let parameters: Vec<f64> = filled.iter().flat_map(|(numbers, _)| numbers.iter().copied()).collect();
         let tags: Vec<Option<&'static str>> = filled.iter().map(|(_, tag)| *tag).collect();
         self.used.extend(tags.iter().flatten().map(|tag| (on.to_owned(), *tag)));
         if !is_nothing(row, filled) {
-            self.put(row, Applied { effect: row.id, on: on.to_owned(), at, parameters }, place, &tags);
+            self.put(row, Applied { effect: row.id, on: on.to_owned(), at, parameters }, (asked.place, asked.key.clone()), &tags);
         }
     }
 
-    fn put(&mut self, row: &'static Effect, one: Applied, place: At, tags: &[Option<&'static str>]) {
+    fn put(&mut self, row: &'static Effect, one: Applied, (place, key): (At, String), tags: &[Option<&'static str>]) {
         let mut rest = one.parameters.as_slice();
         let mut number = |(field, from): (&articulated_core::effect::Field, &Option<&'static str>)| {
             let (own, others) = rest.split_at(field.len.min(rest.len()));
@@ -216,6 +237,7 @@ impl<'a> Resolving<'a> {
         self.resolved.report.on.push(EffectOn { effect: row.id, on: one.on.clone(), numbers, place });
         self.resolved.effects.push(one);
         self.resolved.places.push(place);
+        self.resolved.keys.push(key);
     }
 
     /// What of the URDF is not used: what the reader could not, less what effects do, and bounds that nothing keeps.

@@ -85,6 +85,24 @@ pub enum EditError {
         /// xx, xy, xz, yy, yz, zz, kg·m².
         found: [f64; 6],
     },
+    /// A joint that is not fixed was to bend.
+    ShaftNotFixed {
+        /// Its name.
+        joint: String,
+        /// Its kind.
+        kind: JointKind,
+    },
+    /// A number of a shaft that no shaft has.
+    ShaftNumber {
+        /// The joint that was to bend.
+        joint: String,
+        /// Which number.
+        field: &'static str,
+        /// What was given.
+        found: f64,
+        /// What would be right.
+        expected: &'static str,
+    },
     /// The robot to be appended has no root.
     NoRoot {
         /// Its name.
@@ -121,6 +139,12 @@ impl fmt::Display for EditError {
                 "load on link {link:?}: inertia: found {found:?} kg·m², expected xx, xy, xz, yy, yz, zz of a body with mass: no principal \
                  moment negative or greater than the other two together"
             ),
+            Self::ShaftNotFixed { joint, kind } => {
+                write!(f, "shaft at joint {joint:?}: found a {} joint, expected a fixed one, whose rigid offset is to bend", kind.name())
+            }
+            Self::ShaftNumber { joint, field, found, expected } => {
+                write!(f, "shaft at joint {joint:?}: {field}: found {found}, expected {expected}")
+            }
             Self::NoRoot { robot } => write!(f, "robot {robot:?}: found no root link, expected a tree"),
         }
     }

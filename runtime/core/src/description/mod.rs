@@ -3,10 +3,11 @@
 //! A [`Description`] is what a reader (URDF today) hands over and what [`crate::model::Model`] is built from. Frames follow
 //! the URDF: a joint's frame is placed in its parent link's frame by `origin`, and the child link's frame coincides with
 //! the joint's frame at zero. A moving joint's `axis` is expressed in the joint's frame. It can be edited first: [`Description::lock`],
-//! [`Description::attach`], [`Description::append`].
+//! [`Description::attach`], [`Description::append`], [`Description::shaft`].
 
 mod edit;
 mod error;
+mod shaft;
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -14,6 +15,7 @@ use alloc::vec::Vec;
 pub use edit::Payload;
 pub use error::EditError;
 pub(crate) use error::nearest;
+pub use shaft::Shaft;
 
 /// A tree of links and joints. Indices into `links` and `joints` follow the order of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
