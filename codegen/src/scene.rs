@@ -39,7 +39,8 @@ pub fn open(path: &Path, bundled: Bundled<'_>) -> Result<Prepared, Error> {
 }
 
 /// A scene that was read, with its robot. Files that it names are seen from `folder`.
-pub fn open_in(scene: Scene, folder: &Path, bundled: Bundled<'_>) -> Result<Prepared, Error> {
+pub fn open_in(mut scene: Scene, folder: &Path, bundled: Bundled<'_>) -> Result<Prepared, Error> {
+    scene.code.append.iter_mut().for_each(|other| other.urdf = folder.join(&other.urdf).display().to_string());
     let mut files = Vec::new();
     let (file, urdf, base) = match &scene.robot {
         Robot::Urdf(name) => {
@@ -56,8 +57,8 @@ pub fn open_in(scene: Scene, folder: &Path, bundled: Bundled<'_>) -> Result<Prep
         Robot::Given => return Err(no_robot(&scene, "no robot", "robot, or urdf")),
     };
     let append = scene.code.append.iter().map(|other| {
-        files.push(folder.join(&other.urdf));
-        bytes(&folder.join(&other.urdf))
+        files.push(PathBuf::from(&other.urdf));
+        bytes(Path::new(&other.urdf))
     });
     let append = append.collect::<Result<Vec<_>, _>>()?;
     Ok(Prepared { files, ..prepare(scene, &file, urdf, base, append)? })
@@ -93,6 +94,7 @@ pub fn fill(options: &mut Options, scene: &Scene) {
     options.rename = code.rename;
     put(code.limbs, &mut options.limbs);
     options.batch = code.batch.unwrap_or_default();
+    options.level = code.level.unwrap_or(options.level);
     put(code.forbid_unsafe, &mut options.forbid_unsafe);
 }
 

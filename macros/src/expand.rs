@@ -5,8 +5,9 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
-use articulated_codegen::Request;
-use proc_macro2::TokenStream;
+use articulated_codegen::scene::articulated_scene::{Resolved, Robot, Scene, SceneErrors};
+use articulated_codegen::{Options, Request, scene};
+use proc_macro2::{Span, TokenStream};
 use quote::quote;
 use syn::{Error, LitStr, Result};
 
@@ -35,29 +36,104 @@ fn module(invocation: Invocation) -> TokenStream {
     quote! { #allow #(#attributes)* #visibility #module #name { #errors #contents } }
 }
 
-/// The generated source and a mention of every URDF, by which the compiler knows that the module depends on them.
+/// The generated source and a mention of every file, by which the compiler knows that the module depends on them.
 fn contents(settings: &Settings, errors: &mut Errors) -> TokenStream {
-    let Some(urdf) = &settings.urdf else { return TokenStream::new() };
-    let names = [urdf].into_iter().chain(settings.append.iter().filter_map(|other| other.urdf.as_ref()));
-    let files: Vec<Option<File>> = names.map(|name| errors.take(File::read(name))).collect();
-    let paths: Vec<String> = files.iter().flatten().map(|file| file.path.clone()).collect();
-    let source = files.into_iter().collect::<Option<Vec<_>>>().map(|files| {
-        let mut bytes = files.into_iter().map(|file| file.bytes);
-        let mut request = Request { urdf: bytes.next().unwrap_or_default(), file: urdf.value(), options: settings.options() };
-        request.options.append.iter_mut().zip(bytes).for_each(|(other, bytes)| other.urdf = bytes);
-        source(request, settings, urdf, errors)
-    });
+    let mut files = Files::default();
+    let asked = Asked::of(settings, &mut files, errors);
+    let source = asked.map(|asked| source(asked, settings, errors));
+    let paths = files.paths;
     quote! { #source #(const _: &[u8] = ::core::include_bytes!(#paths);)* }
 }
 
+/// What is to be generated.
+struct Asked {
+    request: Request,
+    /// The scene, with the effects of the invocation in place of its own, if there are any.
+    scene: Scene,
+    /// Where the robot's file is named.
+    robot: Span,
+}
+
+impl Asked {
+    /// Nothing, if a file is missing or the scene is broken.
+    fn of(settings: &Settings, files: &mut Files, errors: &mut Errors) -> Option<Self> {
+        let scene = match &settings.scene {
+            Some(name) => scene(name, settings, files, errors),
+            None => Some(Scene::default()),
+        };
+        let scene = with_effects(scene, settings, errors);
+        let mut options = Options::default();
+        scene.iter().for_each(|scene| scene::fill(&mut options, scene));
+        let seen_from = settings.scene.as_ref().map(LitStr::value).unwrap_or_default();
+        options.append.iter_mut().for_each(|other| other.file = scene::beside(&seen_from, &other.file));
+        let mut options = settings.options(options);
+        let (file, robot) = robot(settings, scene.as_ref(), &seen_from, errors)?;
+        let urdf = errors.take(files.read(&file, robot));
+        let mut complete = urdf.is_some();
+        for (i, other) in options.append.iter_mut().enumerate() {
+            let span = settings.append.get(i).and_then(|other| other.urdf.as_ref()).map_or(robot, LitStr::span);
+            let bytes = errors.take(files.read(&other.file, span));
+            complete &= bytes.is_some();
+            other.urdf = bytes.unwrap_or_default();
+        }
+        let request = Request { urdf: urdf?, file, options };
+        Some(Self { request, scene: scene?, robot }).filter(|_| complete)
+    }
+}
+
+/// The scene that is named.
+fn scene(name: &LitStr, settings: &Settings, files: &mut Files, errors: &mut Errors) -> Option<Scene> {
+    let bytes = errors.take(files.read(&name.value(), name.span()))?;
+    scene_or_errors(Scene::read_bytes(&name.value(), &bytes), settings, name.span(), errors)
+}
+
+/// The scene with the effects that stand in the invocation.
+fn with_effects(scene: Option<Scene>, settings: &Settings, errors: &mut Errors) -> Option<Scene> {
+    let Some(effects) = &settings.effects else { return scene };
+    let own = scene_or_errors(Scene::of_effects("effects", effects), settings, Span::call_site(), errors)?;
+    scene.map(|scene| Scene { effects: own.effects, shafts: own.shafts, ..scene })
+}
+
+fn scene_or_errors(result: std::result::Result<Scene, SceneErrors>, settings: &Settings, span: Span, errors: &mut Errors) -> Option<Scene> {
+    let wrong = |SceneErrors { errors: all }: SceneErrors| all.iter().for_each(|error| errors.push(place::in_scene(error, settings, span)));
+    result.map_err(wrong).ok()
+}
+
+/// The robot's file, and where it is named.
+fn robot(settings: &Settings, scene: Option<&Scene>, seen_from: &str, errors: &mut Errors) -> Option<(String, Span)> {
+    if let Some(urdf) = &settings.urdf {
+        return Some((urdf.value(), urdf.span()));
+    }
+    let (named, scene) = (settings.scene.as_ref()?, scene?);
+    if let Robot::Urdf(urdf) = &scene.robot {
+        return Some((scene::beside(seen_from, urdf), named.span()));
+    }
+    let known = "a bundled robot is known to the command line alone";
+    errors.push(Error::new(named.span(), format!("{seen_from}: the scene names no URDF ({known}): give its path as `urdf`")));
+    None
+}
+
 /// The generated source. What is wrong is reported and left out, and the rest tried again: so every error shows, and only those.
-fn source(mut request: Request, settings: &Settings, urdf: &LitStr, errors: &mut Errors) -> TokenStream {
+fn source(asked: Asked, settings: &Settings, errors: &mut Errors) -> TokenStream {
+    let Asked { mut request, scene, robot } = asked;
+    let mut effects_told = false;
     for _ in 0..MOST_ERRORS {
+        let effects = if scene.has_effects() { scene::resolve(&request, &scene) } else { Ok(Resolved::default()) };
+        match effects {
+            Ok(resolved) => request.options.effects = resolved.effects,
+            // Once is enough: what else is wrong leaves them as they are.
+            Err(error @ articulated_codegen::Error::Scene(_)) if !effects_told => {
+                errors.push(place::at_its_word(&error, settings, robot));
+                effects_told = true;
+            }
+            // The generator says the same of it.
+            Err(_) => {}
+        }
         let error = match articulated_codegen::generate(&request) {
             Ok(generated) => return generated.tokens(),
             Err(error) => error,
         };
-        errors.push(place::at_its_word(&error, settings, urdf));
+        errors.push(place::at_its_word(&error, settings, robot));
         if !place::leave_out(&error, &mut request.options) {
             break;
         }
@@ -65,23 +141,23 @@ fn source(mut request: Request, settings: &Settings, urdf: &LitStr, errors: &mut
     TokenStream::new()
 }
 
-/// A URDF.
-struct File {
-    path: String,
-    bytes: Vec<u8>,
+/// Files that were read.
+#[derive(Default)]
+struct Files {
+    paths: Vec<String>,
 }
 
-impl File {
-    /// The file that `name` names, from the folder of the user's Cargo.toml.
-    fn read(name: &LitStr) -> Result<Self> {
-        let wrong = |reason: &str| Error::new(name.span(), format!("{}: {reason}", name.value()));
+impl Files {
+    /// The bytes of the file that `name`, which stands at `span`, names from the folder of the user's Cargo.toml.
+    fn read(&mut self, name: &str, span: Span) -> Result<Vec<u8>> {
+        let wrong = |reason: &str| Error::new(span, format!("{name}: {reason}"));
         let root = env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
-        let path = root.join(name.value());
+        let path = root.join(name);
         let bytes = fs::read(&path).map_err(|error| match error.kind() {
             ErrorKind::NotFound => wrong("there is no such file, seen from the folder of Cargo.toml"),
             _ => wrong(&error.to_string()),
         })?;
-        let path = path.into_os_string().into_string().map_err(|_| wrong("the path of the package is not UTF-8"))?;
-        Ok(Self { path, bytes })
+        self.paths.push(path.into_os_string().into_string().map_err(|_| wrong("the path of the package is not UTF-8"))?);
+        Ok(bytes)
     }
 }

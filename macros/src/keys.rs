@@ -10,6 +10,7 @@ use syn::{Error, Ident, Lit, LitBool, Path, Result, Token, braced, bracketed};
 use crate::edits::{self, LOAD, OTHER};
 use crate::settings::{Entry, Renaming, Settings};
 use crate::table::{Key, tables};
+use crate::tree;
 
 /// All keys, in the order in which they are listed to people.
 pub(crate) const KEYS: &[Key<Settings>] = &[
@@ -18,6 +19,18 @@ pub(crate) const KEYS: &[Key<Settings>] = &[
         required: true,
         expected: "the path of a URDF from the folder of Cargo.toml, as \"robots/arm.urdf\"",
         read: |s, value| value.parse().map(|path| s.urdf = Some(path)),
+    },
+    Key {
+        name: "scene",
+        required: false,
+        expected: "the path of a scene from the folder of Cargo.toml, as \"scenes/arm.toml\"",
+        read: |s, value| value.parse().map(|path| s.scene = Some(path)),
+    },
+    Key {
+        name: "effects",
+        required: false,
+        expected: "effects as scenes have them, as { damping = { \"*\" = 0.1, elbow = 0.5 }, friction = urdf }",
+        read: |s, value| tree::node(value, &mut s.spans).map(|node| s.effects = Some(node)),
     },
     Key { name: "base", required: false, expected: "`fixed` or `floating`", read: |s, value| base(value).map(|base| s.base = Some(base)) },
     Key {
@@ -48,7 +61,7 @@ pub(crate) const KEYS: &[Key<Settings>] = &[
         name: "wrenches_in",
         required: false,
         expected: "`body`, `world` or `world_aligned`",
-        read: |s, value| reference(value).map(|reference| s.wrench_reference = reference),
+        read: |s, value| reference(value).map(|reference| s.wrench_reference = Some(reference)),
     },
     Key {
         name: "lock",
@@ -78,7 +91,7 @@ pub(crate) const KEYS: &[Key<Settings>] = &[
         name: "allow_unphysical_inertia",
         required: false,
         expected: "`true` or `false`",
-        read: |s, value| value.parse::<LitBool>().map(|b| s.allow_unphysical_inertia = b.value),
+        read: |s, value| value.parse::<LitBool>().map(|b| s.allow_unphysical_inertia = Some(b.value)),
     },
     Key {
         name: "snap_angles",
@@ -102,13 +115,13 @@ pub(crate) const KEYS: &[Key<Settings>] = &[
         name: "level",
         required: false,
         expected: "a level of accuracy, as f64, f32, f32_f64, compensated + two, double_double or f64 + fast_10 + no_fma",
-        read: |s, value| level(value).map(|level| s.level = level),
+        read: |s, value| level(value).map(|level| s.level = Some(level)),
     },
     Key {
         name: "forbid_unsafe",
         required: false,
         expected: "`true` or `false`",
-        read: |s, value| value.parse::<LitBool>().map(|b| s.forbid_unsafe = b.value),
+        read: |s, value| value.parse::<LitBool>().map(|b| s.forbid_unsafe = Some(b.value)),
     },
     Key {
         name: "crate",

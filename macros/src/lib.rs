@@ -14,6 +14,7 @@ mod settings;
 mod table;
 #[cfg(test)]
 mod tests;
+mod tree;
 
 /// A module with the dynamics of one robot, written out from its URDF when the crate is built.
 ///

@@ -1,6 +1,7 @@
 //! Errors of the generator: where they show, and how to go on.
 
 use articulated_codegen::core::description::EditError;
+use articulated_codegen::scene::articulated_scene::SceneError;
 use articulated_codegen::{Edit, Error, Options, Reason, Refusal};
 use proc_macro2::Span;
 use syn::LitStr;
@@ -8,12 +9,13 @@ use syn::LitStr;
 use crate::errors::Errors;
 use crate::settings::Settings;
 
-/// The error at the word of the invocation that it is about: a function, a new name, otherwise the URDF.
-pub(crate) fn at_its_word(error: &Error, settings: &Settings, urdf: &LitStr) -> syn::Error {
+/// The error at the word of the invocation that it is about: a function, a new name, otherwise the robot's file.
+pub(crate) fn at_its_word(error: &Error, settings: &Settings, robot: Span) -> syn::Error {
     let renamed = |name: &String| settings.rename.iter().find(|r| r.from.value() == *name);
     let span = match error {
-        Error::Urdf(problems) => return each(problems, urdf.span()),
-        Error::Edits { refusals } => return all(refusals.iter().map(|refusal| refused(refusal, settings, urdf)), error, urdf.span()),
+        Error::Scene(errors) => return all(errors.errors.iter().map(|error| in_scene(error, settings, robot)), errors, robot),
+        Error::Urdf(problems) => return each(problems, robot),
+        Error::Edits { refusals } => return all(refusals.iter().map(|refusal| refused(refusal, settings, robot)), error, robot),
         Error::UnknownFunction { found: function, .. }
         | Error::Singular { function, .. }
         | Error::BoundFrames { function, .. }
@@ -25,12 +27,20 @@ pub(crate) fn at_its_word(error: &Error, settings: &Settings, urdf: &LitStr) -> 
         Error::NameClash { first, second, .. } => renamed(second).or_else(|| renamed(first)).map(|r| r.to.span()),
         _ => None,
     };
-    syn::Error::new(span.unwrap_or_else(|| urdf.span()), error)
+    syn::Error::new(span.unwrap_or(robot), error)
 }
 
 /// Whether an entry is the function, or has it in it.
 fn names(entry: &str, function: &str) -> bool {
     entry.trim() == function || entry.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == function)
+}
+
+/// A mistake in the scene, at the scene; one in `effects`, at its word.
+pub(crate) fn in_scene(error: &SceneError, settings: &Settings, robot: Span) -> syn::Error {
+    match settings.spans.of(error.at) {
+        Some(span) => syn::Error::new(span, error.message()),
+        None => syn::Error::new(settings.scene.as_ref().map_or(robot, LitStr::span), error),
+    }
 }
 
 /// One error for each mistake in the document.
@@ -46,17 +56,18 @@ fn all(errors: impl Iterator<Item = syn::Error>, whole: impl std::fmt::Display, 
 }
 
 /// An edit that cannot be made, at its name or file.
-fn refused(refusal: &Refusal, settings: &Settings, urdf: &LitStr) -> syn::Error {
+fn refused(refusal: &Refusal, settings: &Settings, robot: Span) -> syn::Error {
     let span = match refusal.edit {
         Edit::Append(i) => settings.append.get(i).and_then(|other| match refusal.reason {
             Reason::Edit(EditError::UnknownLink { .. }) => other.at.as_ref().map(|name| name.span),
             _ => other.urdf.as_ref().map(LitStr::span),
         }),
         Edit::Payload(i) => settings.payloads.get(i).and_then(|load| load.link.as_ref()).map(|name| name.span),
+        Edit::Shaft(_) => None,
         Edit::Lock(i) => settings.lock.get(i).map(|lock| lock.joint.span),
         Edit::Frame(i) => settings.frames.as_ref().and_then(|names| names.get(i)).map(|name| name.span),
     };
-    let span = span.unwrap_or_else(|| urdf.span());
+    let span = span.unwrap_or(robot);
     match &refusal.reason {
         Reason::Urdf(problems) => each(problems, span),
         _ => syn::Error::new(span, refusal),
@@ -97,6 +108,7 @@ fn leave_out_edits(refusals: &[Refusal], options: &mut Options) {
         return;
     }
     retain(&mut options.payloads, |i| !refused(Edit::Payload(i)));
+    retain(&mut options.shafts, |i| !refused(Edit::Shaft(i)));
     retain(&mut options.lock, |i| !refused(Edit::Lock(i)));
     options.frames.iter_mut().for_each(|frames| retain(frames, |i| !refused(Edit::Frame(i))));
 }

@@ -2,33 +2,39 @@
 
 use std::collections::BTreeSet;
 
-use articulated_codegen::{Base, Level, Options, Real, Reference, Wanted};
+use articulated_codegen::scene::articulated_scene::Node;
+use articulated_codegen::{Base, Options, Real, Reference, Wanted};
 use proc_macro2::Span;
 use syn::{Error, Ident, LitStr, Path};
 
 use crate::edits::{Load, Lock, Name, Other};
 use crate::errors::Errors;
+use crate::tree::Spans;
 
 /// The values of the keys; `None` where a key is absent.
 #[derive(Default)]
 pub(crate) struct Settings {
     pub(crate) urdf: Option<LitStr>,
+    pub(crate) scene: Option<LitStr>,
+    pub(crate) effects: Option<Node>,
+    /// Where the words of `effects` stand.
+    pub(crate) spans: Spans,
     pub(crate) base: Option<Base>,
     pub(crate) gravity: Option<[f64; 3]>,
     pub(crate) functions: Option<Vec<Entry>>,
     pub(crate) parameters: Vec<Entry>,
     pub(crate) frames: Option<Vec<Name>>,
-    pub(crate) wrench_reference: Reference,
+    pub(crate) wrench_reference: Option<Reference>,
     pub(crate) lock: Vec<Lock>,
     pub(crate) payloads: Vec<Load>,
     pub(crate) append: Vec<Other>,
-    pub(crate) allow_unphysical_inertia: bool,
+    pub(crate) allow_unphysical_inertia: Option<bool>,
     pub(crate) snap_angles: Option<f64>,
     pub(crate) rename: Vec<Renaming>,
     pub(crate) limbs: Option<bool>,
     pub(crate) batch: Vec<Real>,
-    pub(crate) level: Level,
-    pub(crate) forbid_unsafe: bool,
+    pub(crate) level: Option<Level>,
+    pub(crate) forbid_unsafe: Option<bool>,
     pub(crate) runtime: Option<Path>,
     pub(crate) standalone: bool,
     /// What is wrong inside the tables.
@@ -63,31 +69,36 @@ impl Settings {
         }
     }
 
-    /// The request's options: what is said, and defaults for the rest. Robots to append have no bytes yet.
-    pub(crate) fn options(&self) -> Options {
-        let default = Options::default();
+    /// The request's options: what is said, and `rest` where nothing is. Robots to append have no bytes yet.
+    pub(crate) fn options(&self, rest: Options) -> Options {
+        let names = |names: &Vec<Name>| names.iter().map(|name| name.text.clone()).collect();
         Options {
-            base: self.base.unwrap_or(default.base),
-            gravity: self.gravity.unwrap_or(default.gravity),
-            functions: self.functions.as_ref().map_or(default.functions, |entries| texts(entries)),
-            parameters: texts(&self.parameters),
-            frames: self.frames.as_ref().map(|names| names.iter().map(|name| name.text.clone()).collect()),
-            wrench_reference: self.wrench_reference,
-            append: self.append.iter().filter_map(Other::appended).collect(),
-            effects: Vec::new(),
-            payloads: self.payloads.iter().filter_map(Load::payload).collect(),
-            lock: self.lock.iter().map(|lock| (lock.joint.text.clone(), lock.at.clone())).collect(),
-            allow_unphysical_inertia: self.allow_unphysical_inertia,
-            snap_angles: self.snap_angles,
-            rename: self.rename.iter().map(|r| (r.from.value(), r.to.to_string())).collect(),
-            limbs: self.limbs.unwrap_or(default.limbs),
-            batch: self.batch.clone(),
-            level: self.level,
-            forbid_unsafe: self.forbid_unsafe,
+            base: self.base.unwrap_or(rest.base),
+            gravity: self.gravity.unwrap_or(rest.gravity),
+            functions: self.functions.as_ref().map_or(rest.functions, |entries| texts(entries)),
+            parameters: or(texts(&self.parameters), rest.parameters),
+            frames: self.frames.as_ref().map(names).or(rest.frames),
+            wrench_reference: self.wrench_reference.unwrap_or(rest.wrench_reference),
+            append: or(self.append.iter().filter_map(Other::appended).collect(), rest.append),
+            payloads: or(self.payloads.iter().filter_map(Load::payload).collect(), rest.payloads),
+            lock: or(self.lock.iter().map(|lock| (lock.joint.text.clone(), lock.at.clone())).collect(), rest.lock),
+            allow_unphysical_inertia: self.allow_unphysical_inertia.unwrap_or(rest.allow_unphysical_inertia),
+            snap_angles: self.snap_angles.or(rest.snap_angles),
+            rename: or(self.rename.iter().map(|r| (r.from.value(), r.to.to_string())).collect(), rest.rename),
+            limbs: self.limbs.unwrap_or(rest.limbs),
+            batch: or(self.batch.clone(), rest.batch),
+            level: self.level.unwrap_or(rest.level),
+            forbid_unsafe: self.forbid_unsafe.unwrap_or(rest.forbid_unsafe),
             stages: false,
             runtime: (!self.standalone).then(|| self.runtime.as_ref().map_or("::articulated".into(), spelled)),
+            ..rest
         }
     }
+}
+
+/// The list, if there is anything in it.
+fn or<T>(said: Vec<T>, rest: Vec<T>) -> Vec<T> {
+    if said.is_empty() { rest } else { said }
 }
 
 fn known(entry: &Entry) -> syn::Result<()> {

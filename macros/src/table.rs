@@ -20,6 +20,9 @@ pub(crate) struct Key<T> {
     pub(crate) read: fn(&mut T, ParseStream) -> Result<()>,
 }
 
+/// A key, and another that may say the same.
+const INSTEAD: &[(&str, &str)] = &[("urdf", "scene")];
+
 /// Reads the entries up to the end. What is missing is reported at `span`.
 pub(crate) fn entries<T: Default>(input: ParseStream, keys: &[Key<T>], span: Span, errors: &mut Errors) -> T {
     let mut table = Table { keys, value: T::default(), seen: Vec::new() };
@@ -27,7 +30,8 @@ pub(crate) fn entries<T: Default>(input: ParseStream, keys: &[Key<T>], span: Spa
         let result = table.entry(input);
         errors.take(result);
     }
-    for key in keys.iter().filter(|key| key.required && !table.seen.contains(&key.name)) {
+    let said = |name: &str| table.seen.contains(&name) || INSTEAD.iter().any(|(key, other)| *key == name && table.seen.contains(other));
+    for key in keys.iter().filter(|key| key.required && !said(key.name)) {
         errors.push(Error::new(span, format!("`{}` is missing: expected {}", key.name, key.expected)));
     }
     table.value

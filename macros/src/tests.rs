@@ -1,5 +1,6 @@
 //! The macro against the other ways to the same code. What it says of mistakes is in the workspace's `tests/ui`.
 
+use articulated_codegen::scene::Scene;
 use articulated_codegen::{Base, Build, Origin, Payload, Reference, Request, generate};
 use proc_macro2::TokenStream;
 use quote::{ToTokens, quote};
@@ -116,4 +117,61 @@ fn the_compiler_is_told_of_the_urdf_even_if_it_is_broken() {
     let items = items(module(quote!(mod broken { urdf = #urdf })));
     let text = items.last().to_token_stream().to_string();
     assert!(text.contains("include_bytes") && text.contains("broken.urdf"), "{text}");
+}
+
+#[test]
+fn a_scene_gives_the_same_tokens_by_macro_build_script_and_request() {
+    let file = "../tests/ui/scenes/three.toml";
+    let build = Build::scene(file).generate().unwrap();
+    for words in [
+        "Effect: damping on \"elbow\"",
+        "Effect: spring on \"grip_palm_mount_1\"",
+        "Payload: 0.5 kg",
+        "Appended: ../tests/ui/scenes/../urdf/gripper.urdf",
+        "Bends: ",
+    ] {
+        assert!(build.source.contains(words), "{words} in {}", build.source.lines().take(30).collect::<Vec<_>>().join("\n"));
+    }
+    let mut opened = articulated_codegen::scene::open(std::path::Path::new(file), &|_| None).unwrap().request;
+    opened.options.runtime = Some("::articulated".into());
+    assert_eq!(generate(&opened).unwrap().source, build.source);
+
+    let mut items = items(module(quote!(mod arm { scene = #file })));
+    let mentioned: Vec<String> = items.split_off(items.len() - 3).iter().map(|item| item.to_token_stream().to_string()).collect();
+    assert!(
+        mentioned[0].contains("three.toml") && mentioned[1].contains("three.urdf") && mentioned[2].contains("gripper.urdf"),
+        "{mentioned:?}"
+    );
+    assert_eq!(quote!(#(#items)*).to_string(), syn::parse2::<syn::File>(build.tokens()).unwrap().to_token_stream().to_string());
+}
+
+#[test]
+fn what_the_invocation_says_stands_in_place_of_what_the_scene_says() {
+    let file = "../tests/ui/scenes/three.toml";
+    let build = Build::scene(file).floating().gravity([0.0, 0.0, -1.62]).functions(["gravity_torque"]).generate().unwrap();
+    let mut items =
+        items(module(quote!(mod arm { scene = #file, base = floating, gravity = [0, 0, -1.62], functions = [gravity_torque] })));
+    items.truncate(items.len() - 3);
+    assert_eq!(quote!(#(#items)*).to_string(), syn::parse2::<syn::File>(build.tokens()).unwrap().to_token_stream().to_string());
+}
+
+#[test]
+fn effects_in_the_invocation_are_those_of_a_scene() {
+    let urdf = "../tests/ui/urdf/three.urdf";
+    let mut items = items(module(quote! {
+        mod arm {
+            urdf = #urdf,
+            functions = [effect_forces],
+            effects = { damping = { "*" = 0.1, elbow = off }, spring = { wrist = { stiffness = 2, rest = -0.5 } }, limit = { from = urdf, stiffness = 1e3 } },
+        }
+    }));
+    items.pop();
+    let scene = "[effects]\ndamping = { '*' = 0.1, elbow = 'off' }\nlimit = { from = 'urdf', stiffness = 1000 }\n[effects.spring.wrist]\nstiffness = 2\nrest = -0.5";
+    let mut request = Request::new(urdf, std::fs::read(urdf).unwrap());
+    request.options.functions = vec!["effect_forces".into()];
+    request.options.runtime = Some("::articulated".into());
+    request.options.effects = articulated_codegen::scene::resolve(&request, &Scene::read("s", scene).unwrap()).unwrap().effects;
+    assert_eq!(request.options.effects.len(), 2 + 1 + 3);
+    let tokens = generate(&request).unwrap().tokens();
+    assert_eq!(quote!(#(#items)*).to_string(), syn::parse2::<syn::File>(tokens).unwrap().to_token_stream().to_string());
 }

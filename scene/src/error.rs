@@ -75,14 +75,18 @@ impl fmt::Display for SceneError {
         if let Some(line) = self.at.line() {
             write!(f, "{line}:")?;
         }
-        if !self.key.is_empty() {
-            write!(f, " {}:", self.key)?;
-        }
-        write!(f, " {}{}", if self.kind == Kind::Refused { "" } else { "found " }, self.found)?;
-        if !self.expected.is_empty() {
-            write!(f, ", expected {}", self.expected)?;
-        }
-        self.nearest.as_ref().map_or(Ok(()), |near| write!(f, "; did you mean {near:?}?"))
+        write!(f, " {}", self.message())
+    }
+}
+
+impl SceneError {
+    /// All but the file and the line.
+    pub fn message(&self) -> String {
+        let key = if self.key.is_empty() { String::new() } else { format!("{}: ", self.key) };
+        let found = if self.kind == Kind::Refused { "" } else { "found " };
+        let expected = if self.expected.is_empty() { String::new() } else { format!(", expected {}", self.expected) };
+        let nearest = self.nearest.as_ref().map(|near| format!("; did you mean {near:?}?")).unwrap_or_default();
+        format!("{key}{found}{}{expected}{nearest}", self.found)
     }
 }
 

@@ -2,13 +2,14 @@
 
 use articulated_core::description::Base;
 use articulated_core::lanes::Real;
+use articulated_core::level::Level;
 use articulated_core::spatial::Reference;
 
 use crate::control::{self, Control};
 use crate::document;
 use crate::edits::{self, APPEND, Append, LOAD, Load, Lock};
 use crate::effects::{self, Asked};
-use crate::error::{Kind, SceneErrors};
+use crate::error::{Kind, SceneErrors, quote};
 use crate::impact::{self, Impact};
 use crate::initial::{self, Initial};
 use crate::log::Log;
@@ -85,6 +86,8 @@ pub struct Code {
     pub limbs: Option<bool>,
     /// Types of numbers for which there are functions of many states.
     pub batch: Option<Vec<Real>>,
+    /// How accurate the functions are.
+    pub level: Option<Level>,
     /// No `unsafe` in the generated code.
     pub forbid_unsafe: Option<bool>,
 }
@@ -121,6 +124,11 @@ impl Scene {
         let spot = Spot { node: effects, key: "effects".into(), at: effects.at };
         effects::read(&mut scene, &spot, &mut log);
         log.result(scene)
+    }
+
+    /// Whether it asks for any effect.
+    pub fn has_effects(&self) -> bool {
+        !(self.effects.is_empty() && self.shafts.is_empty())
     }
 
     fn fill(&mut self, root: &Node, log: &mut Log) {
@@ -278,6 +286,14 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         read: |s, spot, log| s.code.batch = batch(spot, log),
     },
     Row {
+        name: "level",
+        required: false,
+        value: "text",
+        default: "`\"f64\"`",
+        what: "how accurate the functions are, as `\"f32\"`, `\"compensated + two\"`",
+        read: |s, spot, log| s.code.level = level(spot, log),
+    },
+    Row {
         name: "forbid_unsafe",
         required: false,
         value: "true or false",
@@ -341,4 +357,11 @@ fn batch(spot: &Spot<'_>, log: &mut Log) -> Option<Vec<Real>> {
         }
     }
     Some(reals)
+}
+
+fn level(spot: &Spot<'_>, log: &mut Log) -> Option<Level> {
+    let expected = "a level of accuracy, as \"f64\", \"f32\", \"compensated + two\", \"double_double\" or \"f64 + fast_10 + no_fma\"";
+    let text = spot.text(log, expected)?;
+    let level = text.split_whitespace().collect::<String>().parse::<Level>();
+    level.map_err(|error| log.error(spot.node.at, &spot.key, Kind::Word, format!("{} ({error})", quote(text)), expected)).ok()
 }

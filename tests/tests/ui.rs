@@ -7,19 +7,21 @@ use std::path::Path;
 
 #[test]
 fn every_mistake_is_named_at_its_word() {
-    copy_urdfs();
+    copy_robots();
     let cases = trybuild::TestCases::new();
     cases.pass("ui/pass/*.rs");
     cases.compile_fail("ui/fail/*.rs");
 }
 
 /// The cases are compiled as a package of their own below the target folder, and paths in `robot!` start at the package's folder.
-fn copy_urdfs() {
+fn copy_robots() {
     let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap();
     let package = target.join("tests/trybuild").join(env!("CARGO_PKG_NAME"));
-    fs::create_dir_all(package.join("ui/urdf")).unwrap();
-    for entry in fs::read_dir("ui/urdf").unwrap() {
-        let file = entry.unwrap();
-        fs::copy(file.path(), package.join("ui/urdf").join(file.file_name())).unwrap();
+    for folder in ["ui/urdf", "ui/scenes"] {
+        fs::create_dir_all(package.join(folder)).unwrap();
+        for entry in fs::read_dir(folder).unwrap() {
+            let file = entry.unwrap();
+            fs::copy(file.path(), package.join(folder).join(file.file_name())).unwrap();
+        }
     }
 }

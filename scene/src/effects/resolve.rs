@@ -100,14 +100,15 @@ impl<'a> Resolving<'a> {
 
     /// Whether everything that is named is there and moves.
     fn known_names(&self, row: &Effect, asked: &[&Asked], log: &mut Log) {
-        let Description { joints, links, .. } = self.robot.description;
+        let description = self.robot.description;
+        let Description { joints, links, .. } = description;
         for one in asked {
             let Selector::Named(name) = &one.on else { continue };
             let place = |kind| (one.place, one.key.as_str(), kind);
             match row.on {
                 On::Joint => match joints.iter().find(|j| j.name == *name) {
                     None => {
-                        let names = joints.iter().filter(|j| moves(j)).map(|j| j.name.as_str());
+                        let names = joints.iter().filter(|j| moves(description, j)).map(|j| j.name.as_str());
                         log.unknown(
                             place(Kind::UnknownName),
                             ("a joint that there is not".into(), name),
@@ -115,8 +116,8 @@ impl<'a> Resolving<'a> {
                             names,
                         );
                     }
-                    Some(joint) if !moves(joint) && one.says.is_some() => {
-                        let found = if joint.locked.is_some() { "a joint that is locked" } else { "a fixed joint" };
+                    Some(joint) if !moves(description, joint) && one.says.is_some() => {
+                        let found = if joint.kind == JointKind::Fixed { "a fixed joint" } else { "a joint that is locked" };
                         log.error(one.place, &one.key, Kind::Robot, found, "a joint that moves");
                     }
                     Some(joint) if one.says.is_some() && !has_room(row.id, joint.kind) => {
@@ -158,7 +159,7 @@ impl<'a> Resolving<'a> {
     fn on_joints(&mut self, row: &'static Effect, asked: &[&'a Asked], log: &mut Log) {
         let all = asked.iter().find(|a| a.on == Selector::All).copied();
         let description = self.robot.description;
-        for joint in description.joints.iter().filter(|j| moves(j) && has_room(row.id, j.kind)) {
+        for joint in description.joints.iter().filter(|j| moves(description, j) && has_room(row.id, j.kind)) {
             if let Some((one, place, key)) = self.of_shaft(row.id, &joint.name) {
                 self.put(row, one, (place, key), &vec![None; row.fields.len()]);
             }
@@ -248,7 +249,7 @@ impl<'a> Resolving<'a> {
         let used = |joint: &str, tag: &str| self.used.iter().any(|(j, t)| j == joint && *t == tag);
         let unused = self.robot.unused.iter().filter(|u| !matches!(&u.subject, Subject::Joint(name) if used(name, &u.tag)));
         let mut ignored: Vec<Unused> = unused.cloned().collect();
-        for joint in self.robot.description.joints.iter().filter(|j| moves(j)) {
+        for joint in self.robot.description.joints.iter().filter(|j| moves(self.robot.description, j)) {
             let bounds = [("limit lower", "limit"), ("limit upper", "limit"), ("limit effort", "motor"), ("limit velocity", "motor")];
             for (tag, effect) in bounds {
                 if urdf::number(joint, tag).is_some() && !used(&joint.name, tag) {
