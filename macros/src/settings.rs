@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use articulated_codegen::scene::articulated_scene::Node;
-use articulated_codegen::{Base, Options, Real, Reference, Wanted};
+use articulated_codegen::{Base, Level, Options, Real, Reference, Wanted};
 use proc_macro2::Span;
 use syn::{Error, Ident, LitStr, Path};
 
