@@ -158,3 +158,135 @@ pub fn beside(scene: &str, name: &str) -> String {
 fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
     fs::read(path).map_err(|e| Error::File { file: path.display().to_string(), reason: e.to_string() })
 }
+
+#[cfg(test)]
+mod tests {
+    use articulated_scene::Why;
+
+    use super::*;
+
+    const ARM: &str = r#"<robot name="arm"><link name="base"/>
+        <link name="upper"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+        <link name="fore"><inertial><origin xyz="0 0 -0.3"/><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+          <collision><geometry><sphere radius="1"/></geometry></collision></link>
+        <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/>
+          <limit lower="-1" upper="2" effort="5" velocity="3"/><dynamics damping="0.3" friction="0.1"/></joint>
+        <joint name="elbow" type="continuous"><parent link="upper"/><child link="fore"/><origin xyz="0 0 -0.5"/><axis xyz="1 0 0"/>
+          <limit effort="5" velocity="3"/></joint>
+        <transmission name="t"><type>simple</type></transmission></robot>"#;
+
+    fn prepared(scene: &str) -> Prepared {
+        let scene = Scene::read("s.toml", scene).unwrap();
+        let mut prepared = prepare(scene, "arm.urdf", ARM.into(), Base::Fixed, Vec::new()).unwrap_or_else(|e| panic!("{e}"));
+        prepared.request.options.functions = ["inverse_dynamics", "forward_dynamics", "dissipation"].map(str::to_owned).into();
+        prepared
+    }
+
+    fn source(scene: &str) -> String {
+        crate::generate(&prepared(scene).request).unwrap().source
+    }
+
+    #[test]
+    fn an_effect_that_is_off_costs_nothing() {
+        let plain = source("");
+        for effect in articulated_core::effect::effects() {
+            assert_eq!(source(&format!("[effects]\n{} = 'off'", effect.name)), plain, "{}", effect.name);
+        }
+        let zeros = [
+            "armature = 0",
+            "damping = 0",
+            "friction = { '*' = 0 }",
+            "spring = { elbow = { stiffness = 0, rest = 1 } }",
+            "limit = { from = 'urdf', stiffness = 0 }",
+            "drag = { fore = 0 }",
+            "box_drag = { fore = { linear = [0, 0, 0], angular = [0, 0, 0] } }",
+            "buoyancy = { fore = { volume = 0 } }",
+            "added_mass = { fore = { linear = [0, 0, 0, 0, 0, 0], angular = [0, 0, 0, 0, 0, 0] } }",
+            "contact = { fore = { radius = 1, stiffness = 0, damping = 0, friction = 1 } }",
+            "damping = { '*' = 0.3, elbow = 'off', shoulder = 0 }",
+        ];
+        for zero in zeros {
+            assert_eq!(source(&format!("[effects]\n{zero}")), plain, "{zero}");
+        }
+        assert_ne!(source("[effects]\ndamping = 0.1"), plain);
+    }
+
+    #[test]
+    fn the_order_of_a_scene_does_not_matter() {
+        let one = "[effects]\ndamping = { shoulder = 0.2, elbow = 0.1 }\ndrag = { fore = 2, upper = 1 }\narmature = 0.1";
+        let other =
+            "[effects]\narmature = 0.1\n[effects.drag]\nupper = 1\nfore = 2\n[effects.damping]\n'*' = 0.1\nshoulder = { damping = 0.2 }";
+        assert_eq!(source(one), source(other));
+    }
+
+    #[test]
+    fn what_the_urdf_says_of_effects_is_used_or_reported() {
+        let ignored = |scene: &str| -> Vec<String> {
+            prepared(scene)
+                .resolved
+                .report
+                .ignored
+                .iter()
+                .map(|u| u.to_string().split_once(": ").map_or(String::new(), |(_, rest)| rest.into()))
+                .collect()
+        };
+        let has = |list: &[String], tag: &str, joint: &str| list.iter().any(|line| line.contains(tag) && (line.contains(joint)));
+        let plain = ignored("");
+        let tags = ["dynamics damping", "dynamics friction", "limit lower", "limit upper", "limit effort", "limit velocity"];
+        assert!(tags.iter().all(|tag| prepared("").resolved.report.ignored.iter().any(|u| u.tag == *tag)), "{plain:#?}");
+        assert!(has(&plain, "transmission", "") && has(&plain, "collision", ""), "{plain:#?}");
+        let used = |scene: &str| -> Vec<&str> {
+            let report = prepared(scene).resolved.report;
+            tags.into_iter().filter(|tag| !report.ignored.iter().any(|u| u.tag == *tag)).collect()
+        };
+        assert_eq!(used("[effects]\ndamping = 'urdf'"), ["dynamics damping"]);
+        assert_eq!(used("[effects]\nfriction = { shoulder = { from = 'urdf', speed = 0.1 } }"), ["dynamics friction"]);
+        assert_eq!(used("[effects]\nlimit = { from = 'urdf', stiffness = 100 }"), ["limit lower", "limit upper"]);
+        assert_eq!(used("[effects]\nmotor = 'urdf'"), ["limit effort", "limit velocity"]);
+        // Numbers of its own: those of the URDF are not used.
+        assert_eq!(used("[effects]\ndamping = 0.5"), [""; 0]);
+    }
+
+    #[test]
+    fn numbers_are_those_of_the_joint_then_of_all_then_of_the_urdf_then_defaults() {
+        let numbers = |scene: &str| -> Vec<(String, Vec<f64>)> {
+            prepared(scene).resolved.effects.iter().map(|a| (a.on.clone(), a.parameters.clone())).collect()
+        };
+        let is = |on: &str, x: &[f64]| (on.to_owned(), x.to_vec());
+        assert_eq!(numbers("[effects]\ndamping = 'urdf'"), [is("shoulder", &[0.3])]);
+        assert_eq!(numbers("[effects]\ndamping = { '*' = 'urdf', elbow = 0.7 }"), [is("shoulder", &[0.3]), is("elbow", &[0.7])]);
+        let limit = "[effects.limit]\n'*' = { from = 'urdf', stiffness = 10, damping = 1 }\nshoulder = { upper = 0.5 }";
+        assert_eq!(numbers(limit), [is("shoulder", &[-1.0, 0.5, 10.0, 1.0])]);
+        assert_eq!(numbers("[effects]\nmotor = { elbow = 'urdf' }"), [is("elbow", &[5.0, 3.0, 1.0, 1.0, 1e-3])]);
+        let report = prepared("[effects]\ndamping = 'urdf'\nspring = 'off'").resolved.report;
+        let why = |name: &str| report.off.iter().find(|off| off.effect == name).map(|off| off.why);
+        assert_eq!(
+            [why("spring"), why("damping"), why("drag"), why("shaft")],
+            [Some(Why::SaidSo), None, Some(Why::NotAsked), Some(Why::NotAsked)]
+        );
+        assert!(
+            report.to_string().contains("damping on joint \"shoulder\": damping 0.3 N·m·s/rad|N·s/m (URDF: dynamics damping)"),
+            "{report}"
+        );
+    }
+
+    #[test]
+    fn mistakes_that_only_the_robot_shows_have_their_lines() {
+        let wrong = |scene: &str| {
+            let scene = Scene::read("s.toml", scene).unwrap();
+            let equal = ARM.replace(r#"lower="-1" upper="2""#, r#"lower="1" upper="1""#);
+            prepare(scene, "arm.urdf", equal.into(), Base::Fixed, Vec::new()).map(|_| ()).unwrap_err().to_string()
+        };
+        let limit = wrong("\n[effects]\nlimit = { from = 'urdf', stiffness = 100 }");
+        assert_eq!(
+            limit,
+            "s.toml:3: effects.limit: limit on joint \"shoulder\": upper: found 1, expected a number above the lower bound, 1"
+        );
+        assert_eq!(wrong("\nlock = { elbo = 1 }"), "s.toml:2: lock.elbo: the robot has no joint \"elbo\", did you mean \"elbow\"?");
+        let shaft = wrong("[effects.shaft.elbow]\nsegments = 1\nstiffness = 1");
+        assert_eq!(
+            shaft,
+            "s.toml:1: effects.shaft.elbow: shaft at joint \"elbow\": found a continuous joint, expected a fixed one, whose rigid offset is to bend"
+        );
+    }
+}

@@ -1,4 +1,4 @@
-//! The bundled robots: nine URDF files, written for this project from published figures. Their sources, and what each
+//! The bundled robots: eleven URDF files, written for this project from published figures, and the bundled scenes. Their sources, and what each
 //! of them exercises, stand in the crate's README.
 //!
 //! Two of them are here as generated code too, one in each of the two ways: [`quadruped`] by the macro, [`panda_like`] by the build
@@ -41,11 +41,56 @@ pub const ROBOTS: &[Bundled] = robots! {
     "quadruped", Floating, "four legs of three joints";
     "golfer", Fixed, "a golfer's trunk, lead arm and club, 15 joints";
     "humanoid", Floating, "30 joints, two arms, two legs, neck and trunk";
+    "spinning_top", Fixed, "a symmetric top on a ball joint; closed form";
+    "t_handle", Floating, "a free rigid body with three different moments; closed form";
 };
 
 /// The robot called `name`.
 pub fn robot(name: &str) -> Option<&'static Bundled> {
     ROBOTS.iter().find(|r| r.name == name)
+}
+
+/// A scene that comes with the crate: TOML, as the crate `articulated-scene` reads it. The robot that it names is among [`ROBOTS`].
+#[derive(Clone, Copy, Debug)]
+pub struct BundledScene {
+    /// Its name on the command line; the file is `<name>.toml`.
+    pub name: &'static str,
+    /// The text of the scene.
+    pub toml: &'static str,
+}
+
+impl BundledScene {
+    /// What it is, in a line: the scene's own first line.
+    pub fn summary(&self) -> &'static str {
+        let line = self.toml.lines().next().unwrap_or_default();
+        line.trim_start_matches("summary = \"").trim_end_matches('"')
+    }
+}
+
+macro_rules! scenes {
+    ($($name:literal)*) => {
+        &[$(BundledScene { name: $name, toml: include_str!(concat!("../scenes/", $name, ".toml")) }),*]
+    };
+}
+
+/// All scenes, from small to large.
+pub const SCENES: &[BundledScene] = scenes! {
+    "pendulum"
+    "double_pendulum"
+    "cart_pole"
+    "spinning_top"
+    "t_handle"
+    "chain"
+    "arm"
+    "underwater_arm"
+    "quadruped_drop"
+    "golf_swing"
+    "humanoid_float"
+};
+
+/// The scene called `name`.
+pub fn scene(name: &str) -> Option<&'static BundledScene> {
+    SCENES.iter().find(|s| s.name == name)
 }
 
 /// The seven-axis arm, fixed base, written out by this crate's build script.
@@ -66,11 +111,14 @@ articulated::robot! {
 mod tests {
     use articulated::Dynamics;
 
-    use super::{ROBOTS, panda_like, quadruped, robot};
+    use articulated_codegen::scene::{Scene, open_in};
+    use articulated_scene::{Controller, Robot};
+
+    use super::{ROBOTS, SCENES, panda_like, quadruped, robot, scene};
 
     #[test]
     fn every_name_finds_its_own_file() {
-        assert_eq!(ROBOTS.len(), 9);
+        assert_eq!(ROBOTS.len(), 11);
         for r in ROBOTS {
             assert_eq!(robot(r.name).map(|found| found.urdf), Some(r.urdf));
             assert!(r.urdf.contains(&format!("<robot name=\"{}\"", r.name)), "{}", r.name);
@@ -105,5 +153,29 @@ mod tests {
         // The base carries the whole weight.
         let weight = still[3..6].iter().map(|f| f * f).sum::<f64>().sqrt();
         assert!((weight - 90.0 * 9.81).abs() < 1e-9, "{weight}");
+    }
+
+    #[test]
+    fn every_scene_reads_and_fits_its_robot() {
+        assert!(scene("golf_swing").is_some() && scene("golf").is_none());
+        for bundled in SCENES {
+            let scene = Scene::read(bundled.name, bundled.toml).unwrap_or_else(|e| panic!("{e}"));
+            assert_eq!(scene.summary, bundled.summary());
+            assert!(matches!(&scene.robot, Robot::Bundled(name) if robot(name).is_some()), "{}", bundled.name);
+            let prepared =
+                open_in(scene, std::path::Path::new(""), &|name| robot(name).map(|r| (r.urdf, r.base))).unwrap_or_else(|e| panic!("{e}"));
+            let reading = articulated_codegen::read(&prepared.request).unwrap();
+            let model = articulated_codegen::model(&prepared.request, &reading.description).unwrap();
+            let (q, v) = prepared.scene.start(&model).unwrap_or_else(|e| panic!("{e}"));
+            assert_eq!((q.len(), v.len()), (model.nq, model.nv), "{}", bundled.name);
+            let controller =
+                prepared.scene.controller(&model, &mut |file| Err(format!("{file} is not bundled"))).unwrap_or_else(|e| panic!("{e}"));
+            assert_eq!(controller == Controller::None, prepared.scene.control == Default::default(), "{}", bundled.name);
+            assert!(prepared.scene.simulation.is_some(), "{}", bundled.name);
+            // Every function that the scene asks for is there; a wrong name would be told.
+            for function in prepared.scene.code.functions.iter().flatten() {
+                assert!(articulated_core::algorithm::function::<f64>(function).is_some(), "{}: {function}", bundled.name);
+            }
+        }
     }
 }

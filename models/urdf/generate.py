@@ -510,7 +510,38 @@ def golfer():
     return r
 
 
-ROBOTS = (simple_pendulum, double_pendulum, cart_pole, ur5_like, panda_like, gripper_arm, quadruped, golfer, humanoid)
+def spinning_top():
+    r = Robot("spinning_top", 0.1, 3,
+              "A symmetric top that turns about a point which does not move: upright at q = 0, axis z. Own design; all numbers are",
+              "chosen. Its joint is spherical, an extension of the format: see the crate articulated-urdf.",
+              "m = 0.1 kg, a solid cylinder of radius 0.03 m and height 0.03 m, its centre l = 0.04 m above the point:",
+              "I3 = m r^2 / 2 = 4.5e-5, I1 = m (3 r^2 + h^2) / 12 + m l^2 = 1.9e-4 kg m^2 about the point.",
+              "Steady precession at the rate p and the angle t from the vertical, w3 the whole turn about the axis of the top:",
+              "I1 cos(t) p^2 - I3 w3 p + m g l = 0   (Goldstein, Classical Mechanics, 5.7)",
+              "at cos(t) = 0.8, p = 10 rad/s: w3 = (0.0152 + 0.03924) / 4.5e-4 = 120.977777777778 rad/s   (g = 9.81 m/s^2)")
+    r.link("ground")
+    r.joint("point", "spherical", "ground", "top")
+    r.link("top", cylinder(0.1, (0, 0, 0.04), Z, 0.03, 0.03), "solid cylinder, radius 0.03, height 0.03")
+    return r
+
+
+def t_handle():
+    bar = cylinder(0.12, (-0.01, 0, 0), Y, 0.005, 0.12)
+    stem = cylinder(0.06, (0.02, 0, 0), X, 0.005, 0.06)
+    r = Robot("t_handle", 0.18, 0,
+              "A handle in the shape of a T for a floating base: the frame is at its centre of mass, the axes are principal. Own",
+              "design; all numbers are chosen. Turned about its stem, the middle one of its principal axes, it flips over and",
+              "over: Dzhanibekov's handle.",
+              "Bar: solid cylinder along y, 0.12 kg, 0.12 m; stem: solid cylinder along x, 0.06 kg, 0.06 m; radius 0.005 m both.",
+              "Their centres are at x = -0.01 and 0.02, so that 0.12 * 0.01 = 0.06 * 0.02.",
+              "I_y = 5.5875e-5 < I_x = 1.455e-4 < I_z = 1.99125e-4 kg m^2",
+              "Free motion: Landau & Lifshitz, Mechanics, 37; w_x, w_y, w_z are Jacobi's elliptic functions of time.")
+    r.link("handle", lump([bar, stem]), "bar and stem")
+    return r
+
+
+ROBOTS = (simple_pendulum, double_pendulum, cart_pole, ur5_like, panda_like, gripper_arm, quadruped, golfer, humanoid,
+          spinning_top, t_handle)
 
 
 # ---------------------------------------------------------------- laws that every file keeps (read back from its text)
@@ -540,7 +571,8 @@ def joint_faults(joint):
     kind, limit = joint.get("type"), joint.find("limit")
     if kind in ("revolute", "prismatic") and not (limit is not None and float(limit.get("lower")) < float(limit.get("upper"))):
         yield f"joint {joint.get('name')}: no range"
-    if kind != "fixed" and not (limit is not None and float(limit.get("effort")) > 0 and float(limit.get("velocity")) > 0):
+    # A ball has no bounds to give.
+    if kind not in ("fixed", "spherical") and not (limit is not None and float(limit.get("effort")) > 0 and float(limit.get("velocity")) > 0):
         yield f"joint {joint.get('name')}: no effort or velocity"
 
 
@@ -570,9 +602,10 @@ def faults(robot):
     mass = sum(float(m.get("value")) for m in root.findall("link/inertial/mass"))
     if abs(mass - robot.mass) > 1e-9:
         yield f"masses sum to {mass}, not {robot.mass}"
-    free = [j for j in joints if j.get("type") != "fixed" and j.find("mimic") is None]
-    if len(free) != robot.dof:
-        yield f"{len(free)} coordinates, not {robot.dof}"
+    free = [j.get("type") for j in joints if j.get("type") != "fixed" and j.find("mimic") is None]
+    dof = sum(3 if kind == "spherical" else 1 for kind in free)
+    if dof != robot.dof:
+        yield f"{dof} degrees of freedom, not {robot.dof}"
     if robot.name == "golfer" and sum(v[0] * (2 if k in PAIRED else 1) for k, v in DE_LEVA.items()) != 10000:
         yield "de Leva's shares do not sum to 100 %"
 
@@ -587,7 +620,7 @@ def main(args):
         elif "--table" in args:
             root = ET.fromstring(text)
             print(f"{robot.name:16} links {len(root.findall('link')):3} joints {len(root.findall('joint')):3}"
-                  f" coordinates {robot.dof:3} mass {num(robot.mass)}")
+                  f" freedoms {robot.dof:3} mass {num(robot.mass)}")
         elif not found:
             path.write_bytes(text.encode())
         for fault in found:

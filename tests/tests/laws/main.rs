@@ -13,6 +13,7 @@ mod mimic;
 mod random_trees;
 mod reference;
 mod screws;
+mod shafts;
 mod sines;
 mod structure;
 mod table;
