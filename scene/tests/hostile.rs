@@ -32,7 +32,8 @@ fn corpus() -> Vec<Vec<u8>> {
 fn robot() -> Description {
     let body = Inertial { origin: Default::default(), mass: 1.0, inertia: [1.0, 0.0, 0.0, 1.0, 0.0, 1.0] };
     let link = |name: &str| Link { name: name.into(), inertial: Some(body) };
-    let joint = |name: &str, kind, parent, child| Joint { name: name.into(), kind, parent, child, axis: [0.0, 0.0, 1.0], ..Joint::default() };
+    let joint =
+        |name: &str, kind, parent, child| Joint { name: name.into(), kind, parent, child, axis: [0.0, 0.0, 1.0], ..Joint::default() };
     Description {
         name: "robot".into(),
         links: ["base", "tool", "club_head", "palm", "foot"].map(link).into(),
@@ -47,7 +48,9 @@ fn robot() -> Description {
 
 /// Reads it, and if it reads, looks its names up.
 fn try_out(bytes: &[u8], description: &Description, model: &Model<f64>) -> bool {
-    let Ok(scene) = Scene::read_bytes("s.toml", bytes).map_err(|errors| assert!(!errors.errors.is_empty() && !errors.to_string().is_empty())) else {
+    let Ok(scene) =
+        Scene::read_bytes("s.toml", bytes).map_err(|errors| assert!(!errors.errors.is_empty() && !errors.to_string().is_empty()))
+    else {
         return false;
     };
     let robot = Edited { description, base: Base::Fixed, unused: &[], shafts: &[] };
@@ -63,7 +66,22 @@ fn mutations_of_scenes_are_scenes_or_errors() {
     let model = Model::new(&description, Base::Fixed).unwrap();
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
     let words: [&[u8]; 16] = [
-        b"nan", b"-inf", b"1e400", b"[", b"]", b"{", b"}", b"\"", b"=", b"\n[effects.damping]\n", b"'*'", b"\xff", b"1979-05-27", b".", b"-0.0", b"\"off\"",
+        b"nan",
+        b"-inf",
+        b"1e400",
+        b"[",
+        b"]",
+        b"{",
+        b"}",
+        b"\"",
+        b"=",
+        b"\n[effects.damping]\n",
+        b"'*'",
+        b"\xff",
+        b"1979-05-27",
+        b".",
+        b"-0.0",
+        b"\"off\"",
     ];
     let mut read = 0;
     for round in 0..1500 {
@@ -109,7 +127,9 @@ fn what_is_deep_long_or_large_ends_soon() {
         "=\n".repeat(50_000),
         (0..20_000).map(|i| format!("dampng_{i} = 1\n")).collect(),
         "[effects.damping]\n".to_owned() + &(0..20_000).map(|i| format!("elbow_{i} = 1\n")).collect::<String>(),
-        "[control]\nkind='table'\ncolumns=['elbow']\nrows=[".to_owned() + &(0..20_000).map(|i| format!("[{i},1],")).collect::<String>() + "]",
+        "[control]\nkind='table'\ncolumns=['elbow']\nrows=[".to_owned()
+            + &(0..20_000).map(|i| format!("[{i},1],")).collect::<String>()
+            + "]",
         "a = 1".repeat(5_000_000),
     ];
     for text in &texts {
