@@ -26,6 +26,7 @@ pub mod scaling;
 mod shape;
 mod simulate;
 pub mod states;
+pub mod stress;
 mod table;
 mod tips;
 

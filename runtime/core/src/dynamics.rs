@@ -26,6 +26,12 @@ macro_rules! methods {
             /// The robot's name.
             fn name(&self) -> &str;
 
+            /// The joint that a degree of freedom belongs to, where the robot can tell.
+            fn joint_of(&self, freedom: usize) -> Option<&str> {
+                let _ = freedom;
+                None
+            }
+
             /// Any function by its number; `arguments` in its order.
             fn call(&self, function: FunctionId, ws: &mut Self::Workspace, arguments: &[&[S]], out: &mut [S]) -> Result<(), FunctionError>;
 
@@ -55,6 +61,10 @@ impl<S: Scalar> Dynamics<S> for Model<S> {
 
     fn name(&self) -> &str {
         &self.name
+    }
+
+    fn joint_of(&self, freedom: usize) -> Option<&str> {
+        (freedom < self.nv).then(|| Model::joint_of(self, freedom))
     }
 
     #[inline]

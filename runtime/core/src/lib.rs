@@ -32,6 +32,8 @@ pub mod lanes;
 pub mod level;
 #[cfg(feature = "alloc")]
 pub mod model;
+#[cfg(feature = "alloc")]
+pub mod monitor;
 
 pub use nalgebra;
 pub use scalar::Scalar;

@@ -14,8 +14,9 @@ use crate::{Scalar, with_pose};
 
 /// a = M(q)⁻¹·(τ − h(q, v)), in a time that grows with the number of joints.
 ///
-/// q: `[nq]`; v: `[nv]`; tau: `[nv]` N·m|N; out: `[nv]` rad/s²|m/s². For models in which no joint follows another. Where M is singular the result is not
-/// finite; a model with [`Model::massless_joints`] is singular everywhere.
+/// q: `[nq]`; v: `[nv]`; tau: `[nv]` N·m|N; out: `[nv]` rad/s²|m/s². For models in which no joint follows another. Where M is singular to
+/// working precision the result is what rounding made of a pivot: infinite, not a number, or finite and of no meaning; [`super::checked_forward_dynamics`] tells. A model
+/// with [`Model::massless_joints`] is singular everywhere.
 ///
 /// # Panics
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.

@@ -10,8 +10,9 @@ use crate::model::Model;
 
 /// a = M(q)⁻¹·(τ − h(q, v)).
 ///
-/// q: `[nq]`; v: `[nv]`; tau: `[nv]` N·m|N; out: `[nv]` rad/s²|m/s². By M = Lᵀ D L; Featherstone 2008, §6.5. Where M is singular the result is not
-/// finite; a model with [`Model::massless_joints`] is singular everywhere.
+/// q: `[nq]`; v: `[nv]`; tau: `[nv]` N·m|N; out: `[nv]` rad/s²|m/s². By M = Lᵀ D L; Featherstone 2008, §6.5. Where M is singular to
+/// working precision the result is what rounding made of a pivot: infinite, not a number, or finite and of no meaning; [`super::checked_forward_dynamics`] tells. A model
+/// with [`Model::massless_joints`] is singular everywhere.
 ///
 /// # Panics
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.

@@ -1,6 +1,7 @@
 //! The algorithms, each written once over the scalar, and the table of the functions that they give.
 
 mod aba;
+pub mod checked;
 mod common;
 mod coriolis;
 mod crba;
@@ -23,6 +24,7 @@ mod workspace;
 mod wrenches;
 
 pub use aba::{articulated_body, articulated_body_with_wrenches, solve_by_articulated_body};
+pub use checked::{checked_forward_dynamics, checked_forward_dynamics_with_wrenches};
 pub use coriolis::coriolis_matrix;
 pub use crba::mass_matrix;
 pub use derivatives::{

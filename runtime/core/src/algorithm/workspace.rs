@@ -7,6 +7,7 @@ use core::ops::Range;
 use nalgebra::{Matrix3, Vector3};
 
 use super::Shape;
+use super::checked::Size;
 use crate::Scalar;
 use crate::joint::Pose;
 use crate::model::Model;
@@ -24,6 +25,8 @@ pub struct Workspace<S> {
     pub(super) composite: Vec<SpatialInertia<S>>,
     /// Articulated inertia of each body, in its frame.
     pub(super) articulated: Vec<ArticulatedInertia<S>>,
+    /// Magnitudes of the terms of each body's articulated inertia, for the checked form.
+    pub(super) sizes: Vec<Size<S>>,
     /// Each body in common axes.
     pub(super) common: Vec<CommonState<S>>,
     /// The columns of all joint subspaces, followers' too; [`Workspace::columns_of`] says which are a body's.
@@ -124,6 +127,7 @@ impl<S: Scalar> Workspace<S> {
             zeros: vec![S::zero(); nv],
             composite: vec![SpatialInertia::zero(); n],
             articulated: vec![ArticulatedInertia::zero(); n],
+            sizes: vec![Size::zero(); n],
             common: vec![CommonState::zero(); n],
             columns,
             first,
@@ -134,6 +138,12 @@ impl<S: Scalar> Workspace<S> {
             driven: vec![S::zero(); nv],
             solution: vec![S::zero(); nv],
         }
+    }
+
+    /// After inverse dynamics: the wrench that body `i` needs for itself, and the one that its joint passes to it, in its frame.
+    pub(crate) fn wrenches_of(&self, model: &Model<S>, i: usize) -> (Wrench<S>, Wrench<S>) {
+        let state = &self.bodies[i];
+        (model.bodies[i].inertia.wrench(state.motion.acceleration, &state.u), state.wrench)
     }
 
     /// The columns of the joint of body `i`, which is not the base.

@@ -4,7 +4,9 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::Model;
+use crate::algorithm::Workspace;
 use crate::joint::Joint;
+use crate::monitor::pivot_cancellation;
 use crate::spatial::SpatialInertia;
 
 impl Model<f64> {
@@ -12,17 +14,50 @@ impl Model<f64> {
     /// forward dynamics is not defined.
     ///
     /// A turn moves something if its body has mass off the axis or inertia about it, or if anything farther out has mass; a slide, if anything from its
-    /// body on has mass. Only exact zeros count as none. A joint that follows another adds to the other's row.
+    /// body on has mass. Only exact zeros count as none. A joint that follows another adds to the other's row. A joint that moves no mass but what others farther out
+    /// can move in the same way is among them too: two coaxial joints with a body without mass between, four axes through one point.
     pub fn massless_joints(&self) -> Vec<usize> {
-        let mut carries = vec![false; self.nv];
-        for (i, moves) in self.moves_mass() {
-            carries[self.bodies[i].coordinates.v] |= moves;
+        let (mut carries, mut own) = (vec![false; self.nv], vec![false; self.nv]);
+        for (i, felt, moves) in self.moves_mass() {
+            let at = self.bodies[i].coordinates.v;
+            carries[at] |= moves;
+            own[at] |= felt;
         }
-        self.outward().filter(|&i| self.bodies[i].coordinates.mimic.is_none() && !carries[self.bodies[i].coordinates.v]).collect()
+        let repeats = if own.contains(&false) { self.repeated() } else { vec![false; self.nv] };
+        let lost = |i: &usize| {
+            let at = &self.bodies[*i].coordinates;
+            let repeated = (at.v..at.v + self.bodies[*i].joint.nv()).any(|k| repeats[k]);
+            at.mimic.is_none() && (!carries[at.v] || !own[at.v] && repeated)
+        };
+        self.outward().filter(lost).collect()
     }
 
-    /// For each moving body, whether its joint alone moves mass.
-    fn moves_mass(&self) -> Vec<(usize, bool)> {
+    /// For each degree of freedom, whether nothing is left of its pivot at two configurations that have nothing special: what is singular there is singular everywhere.
+    fn repeated(&self) -> Vec<bool> {
+        let (mut ws, mut left) = (Workspace::new(self), vec![1.0; self.nv]);
+        let mut lost = |seed: f64| {
+            pivot_cancellation(self, &mut ws, &self.configuration(seed), &mut left);
+            left.iter().map(|x| !(*x >= crate::algorithm::checked::least_pivot::<f64>())).collect::<Vec<bool>>()
+        };
+        let (first, second) = (lost(0.137), lost(0.731));
+        first.iter().zip(second).map(|(a, b)| *a && b).collect()
+    }
+
+    /// A configuration without symmetries: multiples of the golden section, modulo 1.
+    fn configuration(&self, seed: f64) -> Vec<f64> {
+        let mut q: Vec<f64> = (0..self.nq).map(|k| 0.1 + (seed + 0.618_033_988_749_895 * k as f64) % 1.0).collect();
+        for body in self.bodies.iter().skip(1) {
+            let end = body.coordinates.q + body.joint.nq();
+            if body.joint.nq() > 1 {
+                let norm = crate::Scalar::sqrt(q[end - 4..end].iter().map(|x| x * x).sum::<f64>());
+                q[end - 4..end].iter_mut().for_each(|x| *x /= norm);
+            }
+        }
+        q
+    }
+
+    /// For each moving body, whether its own mass is felt by its joint, and whether its joint alone moves mass.
+    fn moves_mass(&self) -> Vec<(usize, bool, bool)> {
         // Whether anything beyond a body's joint has mass: first of what hangs on the body, then with the body itself.
         let mut beyond = vec![false; self.bodies.len()];
         let mut moves = Vec::with_capacity(self.bodies.len());
@@ -37,7 +72,7 @@ impl Model<f64> {
                 Joint::Spherical => (0..3).all(|k| own.rotational()[(k, k)] != 0.0),
                 Joint::Floating => *own != SpatialInertia::zero(),
             };
-            moves.push((i, felt || outside));
+            moves.push((i, felt, felt || outside));
             beyond[body.parent] |= outside || *own != SpatialInertia::zero();
         }
         moves

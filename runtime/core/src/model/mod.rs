@@ -120,6 +120,11 @@ impl<S: Scalar> Model<S> {
         self.outward().fold(S::zero(), |sum, i| sum + self.bodies[i].inertia.mass)
     }
 
+    /// Name of the joint that a degree of freedom, by its index in v, belongs to; empty if there is none.
+    pub fn joint_of(&self, freedom: usize) -> &str {
+        self.joints.iter().find(|j| (j.v.0..j.v.0 + j.v.1).contains(&freedom)).map_or("", |j| &j.name)
+    }
+
     /// Indices in v of the degrees of freedom that move body `i`, each once.
     pub fn freedoms_of(&self, mut i: usize) -> Vec<usize> {
         let mut freedoms = Vec::new();

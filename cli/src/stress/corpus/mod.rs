@@ -1,0 +1,22 @@
+//! The corpus: chapters of hard cases.
+
+mod chains;
+mod inertias;
+mod masses;
+
+use super::row::Row;
+
+/// How much of a chapter is run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// Sampled: seconds.
+    Quick,
+    /// All of it: minutes.
+    Full,
+}
+
+/// A chapter: its name, and its rows.
+pub type Chapter = (&'static str, fn(Effort) -> Vec<Row>);
+
+/// All chapters.
+pub const CHAPTERS: &[Chapter] = &[(chains::NAME, chains::rows), (masses::NAME, masses::rows), (inertias::NAME, inertias::rows)];

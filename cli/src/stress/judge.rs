@@ -1,0 +1,235 @@
+//! Functions on a hard robot, judged in many digits.
+//!
+//! The reference is the generic library on the constants that the judged program has, in 320 bits (it is held to the textbook's form elsewhere, which shares no
+//! formula with it). What is solved for is judged by the torques that it needs:
+//!
+//! ```text
+//! η = max_i |ID_exact(q, v, a) − τ|_i / (|M| |a| + |h| + |τ|)_i
+//! ```
+
+use articulated_core::algorithm::checked::{Factor, Singular};
+use articulated_core::algorithm::{FunctionId, Workspace, articulated_body, checked_forward_dynamics};
+use articulated_core::model::Model;
+
+use super::machine::{Machine, cast, exact, wide, widened};
+use super::row::{Case, Row};
+use crate::magnitude::scales;
+use crate::precise::Big;
+
+/// η allowed, and errors allowed of what is not solved for, in units of u times the magnitude of the terms.
+pub const BACKWARD: f64 = 64.0;
+
+/// Forward errors of solutions with the mass matrix allowed, in units of uκ.
+pub const FORWARD: f64 = 4.0;
+
+/// A motion and torques, in double precision.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// `[nq]`.
+    pub q: Vec<f64>,
+    /// `[nv]`.
+    pub v: Vec<f64>,
+    /// `[nv]`.
+    pub a: Vec<f64>,
+    /// `[nv]`.
+    pub tau: Vec<f64>,
+}
+
+/// What comes out of forward dynamics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ends {
+    /// A solution.
+    Solved,
+    /// An error that names this joint.
+    Singular(&'static str),
+    /// An error or a solution.
+    Either,
+}
+
+/// A judge in one precision: the robot in it, and in many digits with the same constants.
+pub struct Judge<'a, F: Machine> {
+    case: &'a Case,
+    model: Model<F>,
+    wide: Model<f64>,
+}
+
+/// The worst of several; what is not a number stays.
+pub fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a >= b { a } else { b }
+}
+
+impl<'a, F: Machine> Judge<'a, F> {
+    /// For a model, its constants rounded to this precision.
+    pub fn new(case: &'a Case, model: &Model<f64>) -> Self {
+        let model = model.cast::<F>();
+        Self { case, wide: wide(&model), model }
+    }
+
+    fn row(&self, what: &str, measured: f64, limit: f64, unit: &'static str) -> Row {
+        self.case.row(format!("{what}, {}", F::NAME), measured, limit, unit)
+    }
+
+    /// Inverse dynamics and mass matrix, and derivatives of small robots: forward errors over the sums of magnitudes of terms.
+    pub fn forward(&self, states: &[State], derivatives: bool) -> Vec<Row> {
+        let mut functions = vec![FunctionId::inverse_dynamics, FunctionId::mass_matrix];
+        functions.extend(derivatives.then_some(FunctionId::inverse_dynamics_derivatives));
+        let error = |f: &FunctionId| states.iter().map(|s| self.error(*f, s)).fold(0.0, worse);
+        functions.iter().map(|f| self.row(f.name(), error(f), BACKWARD, "u")).collect()
+    }
+
+    /// Everything: [`Judge::forward`] with derivatives, then [`Judge::solved`].
+    pub fn all(&self, states: &[State], ends: Ends, limit: f64) -> Vec<Row> {
+        let mut rows = self.forward(states, true);
+        rows.extend(self.solved(states, ends, limit));
+        rows
+    }
+
+    /// Inverse dynamics, and forward dynamics by ABA: functions that take a time in proportion to the number of joints.
+    pub fn recursions(&self, states: &[State]) -> Vec<Row> {
+        let worst = |f: &dyn Fn(&State) -> f64| states.iter().map(f).fold(0.0, worse);
+        let by_aba = |s: &State| self.checked(s).map_or(f64::NAN, |(a, _)| self.solution(&a, s)[0]);
+        vec![
+            self.row("inverse_dynamics", worst(&|s| self.error(FunctionId::inverse_dynamics, s)), BACKWARD, "u"),
+            self.row("forward_dynamics by ABA, η", worst(&by_aba), BACKWARD, "u"),
+        ]
+    }
+
+    /// The largest error of a function in units of u times the magnitude of its terms.
+    fn error(&self, function: FunctionId, state: &State) -> f64 {
+        use articulated_core::algorithm::Argument::{A, Q, Tau, V};
+        let of = |a: &_| match a {
+            Q => &state.q,
+            V => &state.v,
+            A => &state.a,
+            Tau => &state.tau,
+            _ => unreachable!("functions of motion and torques"),
+        };
+        let takes = function.row::<F>().takes;
+        let given: Vec<Vec<F>> = takes.iter().map(|a| cast(of(a))).collect();
+        let found = call(function, &self.model, &given);
+        let given: Vec<Vec<f64>> = given.iter().map(|x| widened(x)).collect();
+        let slices: Vec<&[f64]> = given.iter().map(Vec::as_slice).collect();
+        let Ok(scale) = scales(&self.wide, function.name(), &slices) else { return f64::NAN };
+        Big::scope(|| {
+            let given: Vec<Vec<Big>> = given.iter().map(|x| cast(x)).collect();
+            let expected = call(function, &exact(&self.model), &given);
+            expected.iter().zip(&found).zip(&scale).map(|((e, f), s)| off(*e, *f, *s)).fold(0.0, worse)
+        })
+    }
+
+    /// Forward dynamics: backward errors by ABA and by LᵀDL, forward errors by LᵀDL, and how it ends.
+    pub fn solved(&self, states: &[State], ends: Ends, limit: f64) -> Vec<Row> {
+        let mut rows = Vec::new();
+        let outcomes: Vec<_> = states.iter().map(|s| self.checked(s)).collect();
+        rows.push(self.verdict(&outcomes, ends));
+        let found = outcomes.iter().zip(states).filter_map(|(x, s)| Some((x.as_ref().ok()?.0.clone(), s)));
+        let (errors, conditions): (Vec<[f64; 2]>, Vec<f64>) = found.map(|(a, s)| (self.solution(&a, s), self.condition(s))).unzip();
+        if errors.is_empty() {
+            return rows;
+        }
+        let most = |k: usize| errors.iter().map(|e| e[k]).fold(0.0, worse);
+        rows.push(self.row("forward_dynamics by ABA, η", most(0), limit, "u"));
+        let over = errors.iter().zip(&conditions).map(|(e, k)| e[1] / k).fold(0.0, worse);
+        rows.push(self.row("forward_dynamics by ABA, error over κ", over, FORWARD, "u"));
+        let by_matrix: Vec<_> = states.iter().filter_map(|s| Some((self.by_matrix(s)?, s))).collect();
+        if !by_matrix.is_empty() {
+            let errors: Vec<_> = by_matrix.iter().map(|((a, k), s)| (self.solution(a, s), *k)).collect();
+            rows.push(self.row("forward_dynamics by LTDL, η", errors.iter().map(|e| e.0[0]).fold(0.0, worse), limit, "u"));
+            let over = errors.iter().map(|(e, k)| e[1] / k).fold(0.0, worse);
+            rows.push(self.row("forward_dynamics by LTDL, error over κ", over, FORWARD, "u"));
+        }
+        rows
+    }
+
+    /// κ of the scaled mass matrix, at least one.
+    fn condition(&self, state: &State) -> f64 {
+        let m = self.wide_mass_matrix(state);
+        let mut factor = Factor::<f64>::new(self.wide.nv);
+        let _ = factor.factor(&m);
+        factor.condition().max(1.0)
+    }
+
+    fn wide_mass_matrix(&self, state: &State) -> Vec<f64> {
+        call(FunctionId::mass_matrix, &self.wide, &[widened::<F>(&cast(&state.q))])
+    }
+
+    /// Accelerations, and what is left of the smallest pivot.
+    fn checked(&self, state: &State) -> Result<(Vec<F>, f64), Singular<F>> {
+        let [q, v, tau] = [&state.q, &state.v, &state.tau].map(|x| cast::<F>(x));
+        let mut a = vec![F::zero(); self.model.nv];
+        let left = checked_forward_dynamics(&self.model, &mut Workspace::new(&self.model), &q, &v, &tau, &mut a)?;
+        Ok((a, left.to_f64()))
+    }
+
+    /// Accelerations by LᵀDL, and κ, where M is regular in this precision.
+    fn by_matrix(&self, state: &State) -> Option<(Vec<F>, f64)> {
+        let [q, v, tau] = [&state.q, &state.v, &state.tau].map(|x| cast::<F>(x));
+        let m = call(FunctionId::mass_matrix, &self.model, std::slice::from_ref(&q));
+        let mut factor = Factor::<F>::new(self.model.nv);
+        factor.factor(&m).ok()?;
+        let h = call(FunctionId::bias_forces, &self.model, &[q, v]);
+        let mut x: Vec<F> = tau.iter().zip(h).map(|(t, h)| *t - h).collect();
+        factor.solve(&mut x);
+        Some((x, self.condition(state)))
+    }
+
+    fn verdict(&self, outcomes: &[Result<(Vec<F>, f64), Singular<F>>], ends: Ends) -> Row {
+        let right = |outcome: &Result<_, Singular<F>>| match (ends, outcome) {
+            (Ends::Either, _) | (Ends::Solved, Ok(_)) => true,
+            (Ends::Singular(joint), Err(error)) => error.joint == joint,
+            _ => false,
+        };
+        let wrong = outcomes.iter().find(|o| !right(o));
+        let told = match wrong {
+            Some(Err(error)) => format!("found an error: {error}"),
+            Some(Ok((_, left))) => format!("found a solution, {left:e} of a pivot left"),
+            None if ends == Ends::Solved => "a solution".to_owned(),
+            None if ends == Ends::Either => "a solution or an error".to_owned(),
+            None => outcomes[0].as_ref().err().map_or_else(String::new, |e| format!("an error of joint {:?}", e.joint)),
+        };
+        self.case.holds(format!("checked_forward_dynamics, {}: {told}", F::NAME), wrong.is_none())
+    }
+
+    /// η, and the forward error relative to the largest acceleration, in units of u.
+    fn solution(&self, a: &[F], state: &State) -> [f64; 2] {
+        let [q, v, tau] = [&state.q, &state.v, &state.tau].map(|x| widened::<F>(&cast(x)));
+        let (a, n) = (widened(a), a.len());
+        let m = self.wide_mass_matrix(state);
+        let h = call(FunctionId::bias_forces, &self.wide, &[q.clone(), v.clone()]);
+        let scale = |i: usize| (0..n).map(|k| (m[i * n + k] * a[k]).abs()).sum::<f64>() + h[i].abs() + tau[i].abs();
+        Big::scope(|| {
+            let model = exact(&self.model);
+            let [q, v, precise] = [&q, &v, &a].map(|x| cast::<Big>(x));
+            let needed = call(FunctionId::inverse_dynamics, &model, &[q.clone(), v.clone(), precise]);
+            let backward = needed.iter().enumerate().map(|(i, t)| off(*t, F::from_f64(tau[i]), scale(i))).fold(0.0, worse);
+            [backward, forward_error(&model, [&q, &v, &cast(&tau)], &a) / F::ROUNDOFF]
+        })
+    }
+}
+
+/// max |a − a_exact| / max |a_exact|.
+fn forward_error(model: &Model<Big>, [q, v, tau]: [&[Big]; 3], a: &[f64]) -> f64 {
+    let mut expected = cast::<Big>(&vec![0.0; a.len()]);
+    if model.bodies.iter().any(|b| b.coordinates.mimic.is_some()) {
+        articulated_core::algorithm::forward_dynamics(model, &mut Workspace::new(model), q, v, tau, &mut expected);
+    } else {
+        articulated_body(model, &mut Workspace::new(model), q, v, tau, &mut expected);
+    }
+    let size = expected.iter().map(|x| x.to_f64().abs()).fold(0.0, worse);
+    let far = expected.iter().zip(a).map(|(e, f)| e.error_of(*f, 1.0)).fold(0.0, worse);
+    if far == 0.0 { 0.0 } else { far / size }
+}
+
+/// |found − expected| in units of u times the scale.
+fn off<F: Machine>(expected: Big, found: F, scale: f64) -> f64 {
+    expected.error_of(found.to_f64(), F::ROUNDOFF * scale)
+}
+
+/// A function of the table, in the first way that applies.
+pub fn call<S: articulated_core::Scalar>(function: FunctionId, model: &Model<S>, arguments: &[Vec<S>]) -> Vec<S> {
+    let row = function.row::<S>();
+    let arguments: Vec<&[S]> = arguments.iter().map(Vec::as_slice).collect();
+    let mut out = vec![S::zero(); row.len(model.shape())];
+    row.call(model, &mut Workspace::new(model), &arguments, &mut out).expect("arguments of the lengths that the model says");
+    out
+}

@@ -1,0 +1,9 @@
+//! `articulated stress`: cases that break dynamics software, measured.
+//!
+//! For tests: [`corpus::CHAPTERS`], each a list of [`row::Row`]s with a limit that each has to keep.
+
+pub mod corpus;
+pub mod judge;
+pub mod machine;
+pub mod robots;
+pub mod row;

@@ -1,0 +1,91 @@
+//! M = Lᵀ D L of a matrix that may be singular.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::pivots::{Watch, part};
+use crate::Scalar;
+
+/// M = Lᵀ D L of a symmetric matrix, with what is left of each pivot. Room for matrices of one size: made once, nothing is allocated after.
+///
+/// Of the matrix alone: that a diagonal element is itself what rounding left of its terms can only be seen where it was made
+/// ([`super::checked_forward_dynamics`] sees it).
+#[derive(Clone, Debug)]
+pub struct Factor<S = f64> {
+    pub(super) n: usize,
+    /// L below the diagonal, D on it; `[n · n]`.
+    l: Vec<S>,
+    /// D/(Σ|terms|), `[n]`.
+    pivots: Vec<S>,
+    /// √M_ii, and the 1-norm of M scaled by these.
+    pub(super) scale: Vec<S>,
+    pub(super) norm: S,
+    /// For estimates, `[n]` each.
+    pub(super) room: [Vec<S>; 2],
+}
+
+impl<S: Scalar<Mask = bool>> Factor<S> {
+    /// For matrices of n rows.
+    pub fn new(n: usize) -> Self {
+        let zeros = || vec![S::zero(); n];
+        Self { n, l: vec![S::zero(); n * n], pivots: zeros(), scale: zeros(), norm: S::zero(), room: [zeros(), zeros()] }
+    }
+
+    /// Factors; from the last row up, so that zeros between branches stay, as Featherstone 2008, §6.5.
+    ///
+    /// matrix: `[n · n]`, symmetric. An error is (the row whose pivot is lost, what of it is left), the last one of them.
+    ///
+    /// # Panics
+    /// If the matrix has another size.
+    pub fn factor(&mut self, matrix: &[S]) -> Result<(), (usize, S)> {
+        let n = self.n;
+        self.measure(matrix);
+        self.l.copy_from_slice(matrix);
+        let mut lost = None;
+        for k in (0..n).rev() {
+            let pivot = self.l[k * n + k];
+            // D = M_kk − Σ L²D, all of them positive: |terms| sum up to 2 M_kk − D.
+            let own = matrix[k * n + k];
+            self.pivots[k] = part(pivot, own + (own - pivot));
+            if lost.is_none() {
+                let mut watch = Watch::new();
+                watch.see(k, self.pivots[k]);
+                lost = watch.lost();
+            }
+            self.eliminate(k, pivot);
+        }
+        lost.map_or(Ok(()), Err)
+    }
+
+    fn eliminate(&mut self, k: usize, pivot: S) {
+        let n = self.n;
+        let (above, row) = self.l.split_at_mut(k * n);
+        for i in (0..k).rev().filter(|&i| !row[i].is_zero()) {
+            let l = row[i] / pivot;
+            // M_ij −= L_ki M_kj
+            above[i * n..=i * n + i].iter_mut().zip(row.iter()).for_each(|(m, x)| *m -= l * *x);
+        }
+        row[..k].iter_mut().for_each(|x| *x = *x / pivot);
+    }
+
+    /// What is left of each pivot, D/(Σ|terms|) in (0, 1]; `[n]`.
+    pub fn pivots(&self) -> &[S] {
+        &self.pivots
+    }
+
+    /// x = M⁻¹ x, in place; `[n]`.
+    ///
+    /// # Panics
+    /// If x is shorter.
+    pub fn solve(&self, x: &mut [S]) {
+        let (n, l) = (self.n, &self.l);
+        for k in (0..n).rev() {
+            let (before, own) = x.split_at_mut(k);
+            before.iter_mut().zip(&l[k * n..]).for_each(|(x, l)| *x -= *l * own[0]);
+        }
+        for k in 0..n {
+            let (before, own) = x.split_at_mut(k);
+            own[0] = before.iter().zip(&l[k * n..]).fold(own[0] / l[k * n + k], |sum, (x, l)| sum - *l * *x);
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! Forward dynamics of any robot, generated or not, that says whether it can be trusted.
+
+use alloc::string::ToString;
+use alloc::vec;
+use alloc::vec::Vec;
+use core::fmt;
+
+use super::pivots::Watch;
+use super::{Factor, Singular};
+use crate::Scalar;
+use crate::algorithm::{FunctionError, Shape, check_length};
+use crate::dynamics::Dynamics;
+
+/// Room for checked forward dynamics of a robot of one size, by M = Lᵀ D L: made once, so that no call allocates.
+///
+/// Works on everything that is [`Dynamics`] and has `bias_forces` and `mass_matrix`: that is how a generated robot is checked.
+#[derive(Clone, Debug)]
+pub struct Solver<S = f64> {
+    matrix: Vec<S>,
+    factor: Factor<S>,
+}
+
+/// Why there are no accelerations.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Unsolved<S = f64> {
+    /// A slice has the wrong length, or the robot lacks a function.
+    Function(FunctionError),
+    /// The mass matrix is singular to working precision.
+    Singular(Singular<S>),
+}
+
+impl<S: Scalar> fmt::Display for Unsolved<S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Function(error) => error.fmt(f),
+            Self::Singular(error) => error.fmt(f),
+        }
+    }
+}
+
+impl<S: Scalar> core::error::Error for Unsolved<S> {}
+
+impl<S: Scalar<Mask = bool>> Solver<S> {
+    /// For robots of this shape.
+    pub fn new(shape: Shape) -> Self {
+        Self { matrix: vec![S::zero(); shape.nv * shape.nv], factor: Factor::new(shape.nv) }
+    }
+
+    /// a = M(q)⁻¹·(τ − h(q, v)); what is returned is the smallest D/(Σ|terms|) of all pivots.
+    ///
+    /// q: `[nq]`; v, tau, out: `[nv]`. Calls the robot's `bias_forces` and `mass_matrix`, then eliminates: n³/3 operations at most.
+    ///
+    /// # Errors
+    /// [`Unsolved`]; `out` is of no meaning then.
+    pub fn forward_dynamics<R: Dynamics<S>>(
+        &mut self,
+        robot: &R,
+        ws: &mut R::Workspace,
+        [q, v, tau]: [&[S]; 3],
+        out: &mut [S],
+    ) -> Result<S, Unsolved<S>> {
+        let n = self.factor.n;
+        let mut asked = || {
+            check_length("solver", n, robot.shape().nv)?;
+            check_length("tau", tau.len(), n)?;
+            robot.bias_forces(ws, q, v, out)?;
+            robot.mass_matrix(ws, q, &mut self.matrix)
+        };
+        asked().map_err(Unsolved::Function)?;
+        // Singular or not, all pivots are looked at.
+        let _ = self.factor.factor(&self.matrix);
+        // b = τ − h
+        out.iter_mut().zip(tau).for_each(|(b, tau)| *b = *tau - *b);
+        self.factor.solve(out);
+        let mut watch = Watch::new();
+        self.factor.pivots().iter().enumerate().rev().for_each(|(k, left)| watch.see(k, *left));
+        watch.verdict(out, |k| robot.joint_of(k).unwrap_or_default().to_string()).map_err(Unsolved::Singular)
+    }
+
+    /// The factor of M of the last call, for other right-hand sides and for [`Factor::condition`].
+    pub fn factor(&mut self) -> &mut Factor<S> {
+        &mut self.factor
+    }
+}

@@ -1,0 +1,49 @@
+//! Of the inward sweep of inverse dynamics.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use crate::Scalar;
+use crate::algorithm::{Workspace, inverse_dynamics};
+use crate::model::Model;
+use crate::spatial::Vector3;
+
+/// How wrenches grow on their way inward: for each moving body the moment and the force that its joint passes to it, over the largest that any one body from
+/// there on needs for itself.
+///
+/// q: `[nq]`; v, a: `[nv]`; gives `[moving bodies]` of (moment's, force's); zero where nothing is needed. N alike bodies in a straight row at rest give N of forces and N²
+/// of moments: rounding errors of a torque are measured against the largest wrench that was handed on, and not against the torque. Allocates.
+///
+/// # Panics
+/// If a slice is shorter than stated.
+pub fn wrench_growth<S: Scalar<Mask = bool>>(model: &Model<S>, ws: &mut Workspace<S>, [q, v, a]: [&[S]; 3]) -> Vec<(S, S)> {
+    let mut tau = vec![S::zero(); model.nv];
+    inverse_dynamics(model, ws, q, v, a, &mut tau);
+    let mut largest = vec![(S::zero(), S::zero()); model.bodies.len()];
+    let mut growth = Vec::with_capacity(model.bodies.len());
+    for i in model.inward() {
+        let (own, passed) = ws.wrenches_of(model, i);
+        let beyond = &mut largest[i];
+        *beyond = (larger(beyond.0, length(own.moment)), larger(beyond.1, length(own.force)));
+        let (moment, force) = *beyond;
+        growth.push((over(length(passed.moment), moment), over(length(passed.force), force)));
+        let parent = &mut largest[model.bodies[i].parent];
+        *parent = (larger(parent.0, moment), larger(parent.1, force));
+    }
+    growth.reverse();
+    growth
+}
+
+/// √(x·x), of whatever size.
+fn length<S: Scalar<Mask = bool>>(x: Vector3<S>) -> S {
+    let most = x.iter().fold(S::zero(), |most, x| larger(x.abs(), most));
+    if most.is_zero() { most } else { x.iter().fold(S::zero(), |sum, x| sum + *x / most * (*x / most)).sqrt() * most }
+}
+
+fn over<S: Scalar>(x: S, y: S) -> S {
+    if x.is_zero() { x } else { x / y }
+}
+
+fn larger<S: Scalar<Mask = bool>>(a: S, b: S) -> S {
+    if (a - b).positive() { a } else { b }
+}

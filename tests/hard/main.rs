@@ -1,0 +1,31 @@
+//! The corpus of hard cases: every row of every chapter keeps its limit. `articulated stress` prints the same rows as a report.
+
+use articulated_cli::stress::corpus::{CHAPTERS, Effort};
+
+fn chapter(name: &str) {
+    let (_, rows) = CHAPTERS.iter().find(|(n, _)| *n == name).expect("a chapter of the corpus");
+    let rows = rows(Effort::Quick);
+    let show = std::env::var_os("SHOW").is_some();
+    let line =
+        |r: &articulated_cli::stress::row::Row| format!("{}: {}: found {:.3e} {}, limit {:?}", r.case, r.what, r.measured, r.unit, r.limit);
+    if show {
+        rows.iter().for_each(|r| println!("{} {}", if r.pass { "ok " } else { "BAD" }, line(r)));
+    }
+    let failed: Vec<String> = rows.iter().filter(|r| !r.pass).map(line).collect();
+    assert!(failed.is_empty(), "{} of {} rows:\n{}", failed.len(), rows.len(), failed.join("\n"));
+}
+
+#[test]
+fn chains() {
+    chapter("chains");
+}
+
+#[test]
+fn masses() {
+    chapter("masses");
+}
+
+#[test]
+fn inertias() {
+    chapter("inertias");
+}
