@@ -29,3 +29,28 @@ fn masses() {
 fn inertias() {
     chapter("inertias");
 }
+
+#[test]
+fn scaling() {
+    chapter("scaling");
+}
+
+#[test]
+fn axes() {
+    chapter("axes");
+}
+
+#[test]
+fn screws() {
+    chapter("screws");
+}
+
+#[test]
+fn turns() {
+    chapter("turns");
+}
+
+#[test]
+fn passes() {
+    chapter("passes");
+}

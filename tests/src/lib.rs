@@ -16,7 +16,6 @@ pub mod random;
 pub mod random_effects;
 pub mod random_tree;
 pub mod rigid;
-pub mod urdf_text;
 pub mod virtual_power;
 
 /// The README's examples, compiled and run as documentation tests.

@@ -7,3 +7,5 @@ pub mod judge;
 pub mod machine;
 pub mod robots;
 pub mod row;
+mod terms;
+pub mod urdf_text;

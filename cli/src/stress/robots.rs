@@ -68,12 +68,12 @@ impl Builder {
 
     /// The model on a fixed base.
     pub fn model(self) -> Model<f64> {
-        model(&self.0, Base::Fixed)
+        built(&self.0, Base::Fixed)
     }
 }
 
 /// The model of a description that is right.
-pub fn model(description: &Description, base: Base) -> Model<f64> {
+pub fn built(description: &Description, base: Base) -> Model<f64> {
     Model::new(description, base).expect("the corpus consists of trees of known joints")
 }
 
@@ -145,4 +145,79 @@ pub fn states(model: &Model<f64>, count: usize, seed: u64, torque: f64) -> Vec<S
 pub fn normalise(x: &mut [f64]) {
     let norm = x.iter().map(|x| x * x).sum::<f64>().sqrt();
     x.iter_mut().for_each(|x| *x /= norm);
+}
+
+/// Three links that turn about different axes, of these masses, kg.
+pub fn arm(masses: [f64; 3]) -> Description {
+    let body = |m: f64| Some(Body::of_radii(m, [0.4, 0.02, -0.03], [0.1, 0.25, 0.24]));
+    Builder::new("arm")
+        .turn([0.0, 0.0, 1.0], [0.0; 3], body(masses[0]))
+        .turn([0.0, 1.0, 0.0], [0.1, 0.0, 0.3], body(masses[1]))
+        .turn([0.0, 1.0, 0.0], [0.8, 0.05, 0.0], body(masses[2]))
+        .done()
+}
+
+/// A link without mass between two that have some: Cardan's joint in two parts.
+pub fn cardan() -> Description {
+    let body = Some(Body::of_radii(1.0, [0.4, 0.02, -0.03], [0.1, 0.25, 0.24]));
+    Builder::new("cardan")
+        .turn([0.0, 0.0, 1.0], [0.0; 3], body)
+        .turn([0.0, 1.0, 0.0], [0.5, 0.0, 0.0], None)
+        .turn([0.0, 0.0, 1.0], [0.0, 0.0, 0.1], body)
+        .done()
+}
+
+/// Two links with their centres of mass 1 m off their joints, and radii of gyration of k m about them.
+pub fn far_off(k: f64) -> Description {
+    let small = |c: [f64; 3]| Some(Body::of_radii(1.0, c, [k, 2.0 * k, 1.5 * k]));
+    let outer = small([0.6, 0.0, 0.8]);
+    Builder::new("far").turn([0.0, 0.0, 1.0], [0.0; 3], small([1.0, 0.0, 0.0])).turn([0.0, 1.0, 0.0], [1.0, 0.0, 0.0], outer).done()
+}
+
+/// Thin bodies, their inertias given in frames that are turned by any angles.
+pub fn turned() -> Description {
+    let mut out = Builder::new("turned");
+    for k in 0..4 {
+        let rpy = [0.7 + f64::from(k), -1.3 * f64::from(k), 2.1 - f64::from(k)];
+        let body = Body { rpy, ..Body::of_radii(1.0, [0.1, 0.0, 0.2], [1e-4, 0.1, 0.1]) };
+        out = out.turn([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]][k as usize % 2], [0.1, 0.0, 0.3], Some(body));
+    }
+    out.done()
+}
+
+/// Turns and a slide, askew, so that units mix in M.
+pub fn mixed() -> Description {
+    let body = |k: f64| Some(Body { rpy: [0.3 * k, -0.2, 0.9], ..Body::of_radii(1.0 + 0.3 * k, [0.1, 0.07 * k, 0.2], [0.1, 0.17, 0.13]) });
+    let at = |k: f64| Origin { xyz: [0.3, -0.1 * k, 0.25], rpy: [0.4 * k, 0.7, -0.2 * k] };
+    Builder::new("mixed")
+        .link(None, JointKind::Continuous, [0.0, 0.0, 1.0], at(0.0), body(1.0))
+        .link(None, JointKind::Prismatic, [0.0, 0.6, 0.8], at(1.0), body(2.0))
+        .link(None, JointKind::Continuous, [0.3, -0.5, 0.2], at(2.0), body(0.5))
+        .link(None, JointKind::Continuous, [0.0, 1.0, 0.0], at(3.0), body(1.5))
+        .done()
+}
+
+/// Thin rods in a row about three axes.
+pub fn rods() -> Description {
+    let rod = Some(Body::rod(1.0, 1.0, 0.0));
+    let along = [1.0, 0.0, 0.0];
+    Builder::new("rods").turn(along, [0.0; 3], rod).turn([0.0, 1.0, 0.0], along, rod).turn([0.0, 0.0, 1.0], along, rod).done()
+}
+
+/// A name and a robot on a fixed base for each kind of trouble with constants.
+pub fn hard() -> Vec<(&'static str, Description)> {
+    vec![
+        ("chain", chain(12, 1.0)),
+        ("tapering", chain(10, 0.5)),
+        ("light_tip", arm([1.0, 1.0, 1e-15])),
+        ("heavy_tip", arm([1.0, 1.0, 1e15])),
+        ("light_middle", arm([1.0, 1e-9, 1.0])),
+        ("heavy_middle", arm([1.0, 1e9, 1.0])),
+        ("cardan", cardan()),
+        ("far_off", far_off(1e-3)),
+        ("farther_off", far_off(1e-6)),
+        ("turned", turned()),
+        ("mixed", mixed()),
+        ("rods", rods()),
+    ]
 }

@@ -7,7 +7,7 @@ use articulated_core::model::Model;
 
 use super::Effort;
 use crate::stress::judge::{BACKWARD, Ends, Judge, call};
-use crate::stress::robots::{Shape, chain, model, state};
+use crate::stress::robots::{Shape, built, chain, state};
 use crate::stress::row::{Case, Row};
 
 pub(super) const NAME: &str = "chains";
@@ -35,7 +35,7 @@ fn one(n: usize, shape: Shape, ratio: f64) -> Vec<Row> {
     let why =
         if tapering { "masses fall by 8 and lengths by 2 from link to link, so that κ(M) grows as 32 to the number of rods" } else { WHY };
     let case = Case::new(NAME, name, why);
-    let model = model(&chain(n, ratio), Base::Fixed);
+    let model = built(&chain(n, ratio), Base::Fixed);
     let states = [state(shape.angles(n), n, 1, 10.0), state(shape.angles(n), n, 2, 1e-3)];
     let mut rows = Vec::new();
     let small = n <= 8;
@@ -59,7 +59,7 @@ fn long(n: usize) -> Vec<Row> {
         format!("{n} rods, zig-zag, recursions"),
         "a thousand joints: no matrix is formed, errors may still add up from joint to joint",
     );
-    let model = model(&chain(n, 1.0), Base::Fixed);
+    let model = built(&chain(n, 1.0), Base::Fixed);
     let states = [state(Shape::ZigZag.angles(n), n, 3, 10.0)];
     let judge = Judge::<f64>::new(&case, &model);
     judge.recursions(&states)

@@ -1,10 +1,10 @@
 //! Inertias that nearly cancel, or nearly cannot be.
 
-use articulated_core::description::{JointKind, Origin};
+use articulated_core::description::{Base, JointKind, Origin};
 
 use super::Effort;
 use crate::stress::judge::{BACKWARD, Ends, Judge};
-use crate::stress::robots::{Body, Builder, states};
+use crate::stress::robots::{self, Body, Builder, built, states};
 use crate::stress::row::{Case, Row};
 
 pub(super) const NAME: &str = "inertias";
@@ -31,8 +31,7 @@ fn far_off(exponent: i32) -> Vec<Row> {
         format!("radius of gyration 1e{exponent} m, centre of mass 1 m off"),
         "m c² and m k² differ by many digits, and so does their sum from either",
     );
-    let small = |c: [f64; 3]| Some(Body::of_radii(1.0, c, [k, 2.0 * k, 1.5 * k]));
-    let model = Builder::new("far").turn(Z, [0.0; 3], small([1.0, 0.0, 0.0])).turn(Y, [1.0, 0.0, 0.0], small([0.6, 0.0, 0.8])).model();
+    let model = built(&robots::far_off(k), Base::Fixed);
     let states = states(&model, 4, 21, 1.0);
     let mut rows = Judge::<f64>::new(&case, &model).all(&states, Ends::Solved, BACKWARD);
     rows.extend(Judge::<f32>::new(&case, &model).all(&states, Ends::Either, BACKWARD));
@@ -79,13 +78,7 @@ fn turned() -> Vec<Row> {
         "inertias in frames that are turned by any angles",
         "a small principal moment is the rest of the large ones after the turn",
     );
-    let mut out = Builder::new("turned");
-    for k in 0..4 {
-        let rpy = [0.7 + f64::from(k), -1.3 * f64::from(k), 2.1 - f64::from(k)];
-        let body = Body { rpy, ..Body::of_radii(1.0, [0.1, 0.0, 0.2], [1e-4, 0.1, 0.1]) };
-        out = out.turn([Z, Y][k as usize % 2], [0.1, 0.0, 0.3], Some(body));
-    }
-    let model = out.model();
+    let model = built(&robots::turned(), Base::Fixed);
     let mut rows = Judge::<f64>::new(&case, &model).all(&states(&model, 4, 24, 1.0), Ends::Solved, BACKWARD);
     rows.extend(Judge::<f32>::new(&case, &model).all(&states(&model, 4, 24, 1.0), Ends::Either, BACKWARD));
     rows

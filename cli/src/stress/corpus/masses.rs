@@ -1,10 +1,10 @@
 //! Masses that differ by many powers of ten, and none at all.
 
-use articulated_core::description::{JointKind, Origin};
+use articulated_core::description::{Base, JointKind, Origin};
 
 use super::Effort;
 use crate::stress::judge::{BACKWARD, Ends, Judge, State};
-use crate::stress::robots::{Body, Builder, state, states};
+use crate::stress::robots::{Body, Builder, arm, built, cardan, rods, state, states};
 use crate::stress::row::{Case, Row};
 
 pub(super) const NAME: &str = "masses";
@@ -26,22 +26,13 @@ pub(super) fn rows(_: Effort) -> Vec<Row> {
     rows
 }
 
-fn arm(masses: [f64; 3]) -> Builder {
-    let body = |m: f64| Some(Body::of_radii(m, [0.4, 0.02, -0.03], [0.1, 0.25, 0.24]));
-    Builder::new("arm").turn(Z, [0.0; 3], body(masses[0])).turn(Y, [0.1, 0.0, 0.3], body(masses[1])).turn(
-        Y,
-        [0.8, 0.05, 0.0],
-        body(masses[2]),
-    )
-}
-
 fn ratio(exponent: i32) -> Vec<Row> {
     let case = Case::new(
         NAME,
         format!("tip of 1e{exponent} times the mass of the rest"),
         "a sum of inertias forgets the smaller one, and elimination may need it again",
     );
-    let model = arm([1.0, 1.0, 10.0_f64.powi(exponent)]).model();
+    let model = built(&arm([1.0, 1.0, 10.0_f64.powi(exponent)]), Base::Fixed);
     let states = states(&model, 4, 11, 1.0);
     let mut rows = Judge::<f64>::new(&case, &model).all(&states, Ends::Solved, BACKWARD);
     if exponent.abs() <= 15 {
@@ -52,16 +43,14 @@ fn ratio(exponent: i32) -> Vec<Row> {
         format!("middle link of 1e{exponent} times the mass of the rest"),
         "what a link in the middle has for itself is lost in what it carries, or the other way round",
     );
-    let model = arm([1.0, 10.0_f64.powi(exponent), 1.0]).model();
+    let model = built(&arm([1.0, 10.0_f64.powi(exponent), 1.0]), Base::Fixed);
     rows.extend(Judge::<f64>::new(&case, &model).all(&states, Ends::Solved, BACKWARD));
     rows
 }
 
 fn massless_amid() -> Vec<Row> {
     let case = Case::new(NAME, "a link without mass in the middle", "its own pivot consists of what its child hands on alone");
-    let body = Some(Body::of_radii(1.0, [0.4, 0.02, -0.03], [0.1, 0.25, 0.24]));
-    let robot = Builder::new("cardan").turn(Z, [0.0; 3], body).turn(Y, [0.5, 0.0, 0.0], None).turn(Z, [0.0, 0.0, 0.1], body);
-    let model = robot.model();
+    let model = built(&cardan(), Base::Fixed);
     let states = states(&model, 4, 12, 1.0);
     let mut rows = Judge::<f64>::new(&case, &model).all(&states, Ends::Solved, BACKWARD);
     rows.extend(Judge::<f32>::new(&case, &model).all(&states, Ends::Solved, BACKWARD));
@@ -88,12 +77,12 @@ fn tiny() -> Vec<Row> {
     for exponent in [-290, -300] {
         let case = Case::new(NAME, format!("all masses 1e{exponent} kg"), "squares of moments of inertia underflow");
         let m = 10.0_f64.powi(exponent);
-        let model = arm([m, m, m]).model();
+        let model = built(&arm([m, m, m]), Base::Fixed);
         rows.extend(Judge::<f64>::new(&case, &model).all(&states(&model, 3, 14, m), Ends::Solved, BACKWARD));
     }
     let case =
         Case::new(NAME, "masses of 1e-310 kg, rates and angles of 1e-310", "denormal numbers have fewer digits the smaller they are");
-    let model = arm([1e-310; 3]).model();
+    let model = built(&arm([1e-310; 3]), Base::Fixed);
     let small = State { q: vec![5e-324, 1e-310, -1e-310], v: vec![1e-310; 3], a: vec![1e-310; 3], tau: vec![0.0; 3] };
     rows.extend(denormal(&case, &model, &small));
     rows
@@ -111,7 +100,7 @@ fn denormal(case: &Case, model: &articulated_core::model::Model<f64>, state: &St
 /// Rods without any inertia about their own axis: a turn about the common axis of a straight row of them moves nothing.
 fn thin_aligned() -> Vec<Row> {
     let rod = Some(Body::rod(1.0, 1.0, 0.0));
-    let model = Builder::new("rods").turn(X, [0.0; 3], rod).turn(Y, [1.0, 0.0, 0.0], rod).turn(Z, [1.0, 0.0, 0.0], rod).model();
+    let model = built(&rods(), Base::Fixed);
     let at = |bend: f64| vec![state(vec![0.4, bend, 0.0], 3, 15, 1.0), state(vec![-1.9, 0.0, bend], 3, 16, 1.0)];
     let case = Case::new(
         NAME,
@@ -122,8 +111,7 @@ fn thin_aligned() -> Vec<Row> {
     rows.extend(Judge::<f32>::new(&case, &model).solved(&at(0.0), Ends::Singular("joint_1"), BACKWARD));
     let case = Case::new(NAME, "the same, askew in space", "turned frames leave 10⁻¹⁶ where nothing should be");
     let askew = Origin { xyz: [0.1, 0.2, 0.3], rpy: [0.3, -0.7, 1.1] };
-    let turned = Body { rpy: [0.0; 3], ..Body::rod(1.0, 1.0, 0.0) };
-    let tilted = Builder::new("rods").link(None, JointKind::Continuous, X, askew, Some(turned)).turn(Y, [1.0, 0.0, 0.0], rod).turn(
+    let tilted = Builder::new("rods").link(None, JointKind::Continuous, X, askew, rod).turn(Y, [1.0, 0.0, 0.0], rod).turn(
         [0.0, 0.6, 0.8],
         [1.0, 0.0, 0.0],
         rod,

@@ -1,8 +1,13 @@
 //! The corpus: chapters of hard cases.
 
+mod axes;
 mod chains;
 mod inertias;
 mod masses;
+mod passes;
+mod scaling;
+mod screws;
+mod turns;
 
 use super::row::Row;
 
@@ -19,4 +24,13 @@ pub enum Effort {
 pub type Chapter = (&'static str, fn(Effort) -> Vec<Row>);
 
 /// All chapters.
-pub const CHAPTERS: &[Chapter] = &[(chains::NAME, chains::rows), (masses::NAME, masses::rows), (inertias::NAME, inertias::rows)];
+pub const CHAPTERS: &[Chapter] = &[
+    (chains::NAME, chains::rows),
+    (masses::NAME, masses::rows),
+    (inertias::NAME, inertias::rows),
+    (scaling::NAME, scaling::rows),
+    (axes::NAME, axes::rows),
+    (screws::NAME, screws::rows),
+    (turns::NAME, turns::rows),
+    (passes::NAME, passes::rows),
+];

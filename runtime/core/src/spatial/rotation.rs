@@ -94,11 +94,13 @@ pub fn from_rpy<S: Scalar>(rpy: [f64; 3]) -> Matrix3<S> {
 }
 
 /// A rotation whose third column is the direction of `axis` (not zero), as sparse as can be: for a coordinate axis a signed
-/// permutation, otherwise with one zero. The axis is normalised without overflow or underflow.
+/// permutation, otherwise with one zero. The axis is normalised without overflow or underflow; it counts as a coordinate axis where the others have no
+/// more than the rounding of that one.
 pub fn to_z_axis(axis: [f64; 3]) -> Matrix3<f64> {
     let z = unit(axis);
-    if let Some(k) = (0..3).find(|&k| z[k].abs() == 1.0) {
-        return signed_permutation(k, z[k]);
+    let rounding = f64::EPSILON / 4.0;
+    if let Some(k) = (0..3).find(|&k| (0..3).all(|j| j == k || z[j].abs() <= rounding)) {
+        return signed_permutation(k, z[k].signum());
     }
     let smallest = z.map(f64::abs).imin();
     let mut e = Vector3::zeros();

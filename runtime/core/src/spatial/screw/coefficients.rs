@@ -11,7 +11,7 @@
 //! | γ = (θ − sin θ)/θ³ | | 1/6 |
 //! | γ' = dγ/dx | | −1/120 |
 //! | ε = 1/θ² − cot(θ/2)/(2θ) | B_1/(4 B_0) | 1/12 |
-//! | ε' = dε/dx | (B_1² − B_0 B_2)/(32 B_0²) | 1/720 |
+//! | ε' = dε/dx | by a continued fraction up to θ = π, then (B_1² − B_0 B_2)/(32 B_0²) | 1/720 |
 //!
 //! ε has a pole at θ = 2π, where the logarithm ends: there its relative error is that of 1/(2π − θ).
 
@@ -108,8 +108,43 @@ impl<S: Scalar> HalfAngle<S> {
     #[inline(always)]
     pub fn inverse_rate(&self) -> S {
         let (zeroth, first, second) = (self.sinc(), self.first(), self.second());
-        (first * first - zeroth * second) / (S::from_f64(32.0) * (zeroth * zeroth))
+        let closed = (first * first - zeroth * second) / (S::from_f64(32.0) * (zeroth * zeroth));
+        let far = (self.y - S::from_f64(FRACTION)).positive();
+        S::select(far, closed, inverse_rate_by_fraction(S::select(far, S::zero(), self.y)))
     }
+}
+
+/// Up to which y = h² ε' is taken from its continued fraction: a little beyond (π/2)².
+const FRACTION: f64 = 2.5;
+
+/// ε' from y = h²: B_1/B_0 = 1/(3 − y/(5 − y/(7 − …))) (Gauss), and its derivative, a product of sums of positive terms: nothing cancels, where the closed form loses
+/// four bits.
+#[inline(always)]
+fn inverse_rate_by_fraction<S: Scalar>(y: S) -> S {
+    let odd = |k: u32| S::from_f64(f64::from(2 * k + 1));
+    // t = y/(2k + 1 − t_next), and its derivative.
+    let (mut t, mut slope) = (S::zero(), S::zero());
+    for k in (2..=const { levels(S::BITS) }).rev() {
+        let inverse = S::one() / (odd(k) - t);
+        t = y * inverse;
+        slope = inverse * (S::one() + t * slope);
+    }
+    let ratio = S::one() / (S::from_f64(3.0) - t);
+    S::from_f64(1.0 / 16.0) * (ratio * ratio * slope)
+}
+
+/// How many levels of the fraction leave less than 2^(−bits − 4): each is worth y/((2k + 1)(2k + 3)), and a little, of the one before.
+const fn levels(bits: u32) -> u32 {
+    let (mut k, mut left, mut halvings) = (1, 1.0_f64, 0);
+    while halvings < bits + 4 {
+        k += 1;
+        left *= FRACTION / (((2 * k - 1) * (2 * k + 1)) as f64 - 2.0 * FRACTION);
+        while left <= 0.5 {
+            left *= 2.0;
+            halvings += 1;
+        }
+    }
+    k
 }
 
 /// 2·atan(s/w)/s from s² and w ≥ 0, not both zero: what takes the vector of a quaternion (s times the axis, w) to the rotation vector.

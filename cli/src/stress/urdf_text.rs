@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use articulated_core::description::{Description, Inertial, Joint, JointKind, Origin};
 
-/// The URDF; of what [`Flavour::WRITTEN`](crate::random_tree::Flavour::WRITTEN) allows. Every number is printed so that reading gives the same double.
+/// The URDF; of what a URDF has words for. Every number is printed so that reading gives the same double.
 pub fn urdf_text(description: &Description) -> String {
     let mut out = format!("<?xml version=\"1.0\"?>\n<robot name=\"{}\">\n", description.name);
     for link in &description.links {
