@@ -37,6 +37,9 @@ pub struct State {
     pub tau: Vec<f64>,
 }
 
+/// Accelerations and what is left of the smallest pivot, or the joint that gave way.
+type Outcome<F> = Result<(Vec<F>, f64), Singular<F>>;
+
 /// What comes out of forward dynamics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ends {
@@ -152,7 +155,7 @@ impl<'a, F: Machine> Judge<'a, F> {
     }
 
     /// Accelerations, and what is left of the smallest pivot.
-    fn checked(&self, state: &State) -> Result<(Vec<F>, f64), Singular<F>> {
+    fn checked(&self, state: &State) -> Outcome<F> {
         let [q, v, tau] = [&state.q, &state.v, &state.tau].map(|x| cast::<F>(x));
         let mut a = vec![F::zero(); self.model.nv];
         let left = checked_forward_dynamics(&self.model, &mut Workspace::new(&self.model), &q, &v, &tau, &mut a)?;
@@ -180,7 +183,7 @@ impl<'a, F: Machine> Judge<'a, F> {
         Some([self.solution(&a, state)[0], far / F::ROUNDOFF / self.condition(state)])
     }
 
-    fn verdict(&self, outcomes: &[Result<(Vec<F>, f64), Singular<F>>], ends: Ends) -> Row {
+    fn verdict(&self, outcomes: &[Outcome<F>], ends: Ends) -> Row {
         let right = |outcome: &Result<_, Singular<F>>| match (ends, outcome) {
             (Ends::Either, _) | (Ends::Solved, Ok(_)) => true,
             (Ends::Singular(joint), Err(error)) => error.joint == joint,

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 
 use super::Model;
 use crate::algorithm::Workspace;
+use crate::algorithm::checked::least_pivot;
 use crate::joint::Joint;
 use crate::monitor::pivot_cancellation;
 use crate::spatial::SpatialInertia;
@@ -37,7 +38,7 @@ impl Model<f64> {
         let (mut ws, mut left) = (Workspace::new(self), vec![1.0; self.nv]);
         let mut lost = |seed: f64| {
             pivot_cancellation(self, &mut ws, &self.configuration(seed), &mut left);
-            left.iter().map(|x| !(*x >= crate::algorithm::checked::least_pivot::<f64>())).collect::<Vec<bool>>()
+            left.iter().map(|x| x.is_nan() || *x < least_pivot()).collect::<Vec<bool>>()
         };
         let (first, second) = (lost(0.137), lost(0.731));
         first.iter().zip(second).map(|(a, b)| *a && b).collect()

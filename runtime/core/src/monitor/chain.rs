@@ -57,7 +57,7 @@ mod tests {
             let position = Vector3::new(0.6, -0.48, 0.64) * d;
             let ad = Placement { rotation: from_rpy([0.3, -0.4, 2.0]), position }.adjoint();
             let values = ad.svd(false, false).singular_values;
-            let found = adjoint_condition(d);
+            let found: f64 = adjoint_condition(d);
             assert!((values.max() / values.min() / found - 1.0).abs() < 1e-9 * found, "{d}: {found}");
         }
     }

@@ -99,6 +99,8 @@ fn larger<S: Scalar<Mask = bool>>(a: S, b: S) -> S {
 }
 
 /// Whether it is a number, and not infinite.
+#[allow(clippy::eq_op)]
+// Why: ∞ − ∞ is not a number, and so is nothing else that is taken from itself.
 fn finite<S: Scalar>(x: S) -> bool {
     (x - x).is_zero()
 }

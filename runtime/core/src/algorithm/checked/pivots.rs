@@ -113,7 +113,7 @@ pub fn articulated_body_pivots<S: Scalar<Mask = bool>>(model: &Model<S>, ws: &mu
         let mut handed = Size::of_articulated(&ws.articulated[i]);
         for c in ws.columns_of(i) {
             let Column { at, axis, held, inverse, .. } = ws.columns[c];
-            see(at, part(held.power(&axis), size.along(&axis)));
+            see(at, part(S::one() / inverse, size.along(&axis)));
             handed = handed.plus(&Size::of_product(&held, inverse));
         }
         let (parent, origin) = (model.bodies[i].parent, ws.bodies[i].origin);
