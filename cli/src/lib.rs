@@ -65,6 +65,7 @@ fn dispatch(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Compare(a) => compare::run(a, format),
         Command::Functions(a) => functions::run(a, format).map(|()| OK),
         Command::Scaling(a) => scaling::run(a, format).map(|()| OK),
+        Command::Stress(a) => stress::run(a, format),
     }
 }
 

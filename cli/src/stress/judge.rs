@@ -113,13 +113,7 @@ impl<'a, F: Machine> Judge<'a, F> {
         let given: Vec<Vec<F>> = takes.iter().map(|a| cast(of(a))).collect();
         let found = call(function, &self.model, &given);
         let given: Vec<Vec<f64>> = given.iter().map(|x| widened(x)).collect();
-        let slices: Vec<&[f64]> = given.iter().map(Vec::as_slice).collect();
-        let Some(scale) = scale(function, &self.wide, &slices) else { return f64::NAN };
-        Big::scope(|| {
-            let given: Vec<Vec<Big>> = given.iter().map(|x| cast(x)).collect();
-            let expected = call(function, &exact(&self.model), &given);
-            expected.iter().zip(&found).zip(&scale).map(|((e, f), s)| off(*e, *f, *s)).fold(0.0, worse)
-        })
+        exact_error(function, &self.wide, &given, &found)
     }
 
     /// Forward dynamics: backward errors by ABA and by LᵀDL, forward errors by LᵀDL, and how it ends.
@@ -155,7 +149,7 @@ impl<'a, F: Machine> Judge<'a, F> {
     }
 
     /// Accelerations, and what is left of the smallest pivot.
-    fn checked(&self, state: &State) -> Outcome<F> {
+    pub(super) fn checked(&self, state: &State) -> Outcome<F> {
         let [q, v, tau] = [&state.q, &state.v, &state.tau].map(|x| cast::<F>(x));
         let mut a = vec![F::zero(); self.model.nv];
         let left = checked_forward_dynamics(&self.model, &mut Workspace::new(&self.model), &q, &v, &tau, &mut a)?;
@@ -201,7 +195,7 @@ impl<'a, F: Machine> Judge<'a, F> {
     }
 
     /// η, and the forward error relative to the largest acceleration, in units of u.
-    fn solution(&self, a: &[F], state: &State) -> [f64; 2] {
+    pub(super) fn solution(&self, a: &[F], state: &State) -> [f64; 2] {
         let [q, v, tau] = [&state.q, &state.v, &state.tau].map(|x| widened::<F>(&cast(x)));
         let (a, n) = (widened(a), a.len());
         let m = self.wide_mass_matrix(state);
@@ -215,6 +209,17 @@ impl<'a, F: Machine> Judge<'a, F> {
             [backward, forward_error(&model, [&q, &v, &cast(&tau)], &a) / F::ROUNDOFF]
         })
     }
+}
+
+/// The largest error of what was found in units of u times the magnitude of its terms; the model's constants and the arguments as the judged program has them.
+pub fn exact_error<F: Machine>(function: FunctionId, model: &Model<f64>, given: &[Vec<f64>], found: &[F]) -> f64 {
+    let slices: Vec<&[f64]> = given.iter().map(Vec::as_slice).collect();
+    let Some(scale) = scale(function, model, &slices) else { return f64::NAN };
+    Big::scope(|| {
+        let given: Vec<Vec<Big>> = given.iter().map(|x| cast(x)).collect();
+        let expected = call(function, &exact(model), &given);
+        expected.iter().zip(found).zip(&scale).map(|((e, f), s)| off(*e, *f, *s)).fold(0.0, worse)
+    })
 }
 
 /// The magnitudes of the terms of a function's results: the smaller one of those of their numbers and of their norms.

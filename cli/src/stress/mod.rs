@@ -2,10 +2,15 @@
 //!
 //! For tests: [`corpus::CHAPTERS`], each a list of [`row::Row`]s with a limit that each has to keep.
 
+mod command;
 pub mod corpus;
 pub mod judge;
 pub mod machine;
+pub mod own;
 pub mod robots;
 pub mod row;
 mod terms;
+mod text;
 pub mod urdf_text;
+
+pub(crate) use command::run;

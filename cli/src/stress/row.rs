@@ -63,6 +63,11 @@ impl Case {
         self.of(what.into(), f64::from(u8::from(!holds)), Some(0.0), "wrong", holds)
     }
 
+    /// To be seen beside the value from which on it is worth a look.
+    pub fn remark(&self, what: impl Into<String>, measured: f64, limit: f64, unit: &'static str) -> Row {
+        self.of(what.into(), measured, Some(limit), unit, true)
+    }
+
     /// To be seen, not judged.
     pub fn shown(&self, what: impl Into<String>, measured: f64, unit: &'static str) -> Row {
         self.of(what.into(), measured, None, unit, true)

@@ -57,7 +57,7 @@ impl Model<f64> {
         q
     }
 
-    /// For each moving body, whether its own mass is felt by its joint, and whether its joint alone moves mass.
+    /// For each moving body, whether its own mass is sure to be felt by all of its joint, and whether its joint alone moves mass.
     fn moves_mass(&self) -> Vec<(usize, bool, bool)> {
         // Whether anything beyond a body's joint has mass: first of what hangs on the body, then with the body itself.
         let mut beyond = vec![false; self.bodies.len()];
@@ -73,7 +73,8 @@ impl Model<f64> {
                 Joint::Spherical => (0..3).all(|k| own.rotational()[(k, k)] != 0.0),
                 Joint::Floating => *own != SpatialInertia::zero(),
             };
-            moves.push((i, felt, felt || outside));
+            // Of several degrees of freedom some may be felt and others not: a point mass turns freely.
+            moves.push((i, felt && body.joint.nv() == 1, felt || outside));
             beyond[body.parent] |= outside || *own != SpatialInertia::zero();
         }
         moves

@@ -1,0 +1,91 @@
+//! The command itself: which rows, and the exit status.
+
+use articulated_core::algorithm::Argument;
+use serde::Serialize;
+
+use super::corpus::{CHAPTERS, Effort};
+use super::judge::State;
+use super::row::Row;
+use super::{own, text};
+use crate::arguments::{Format, Gravity, RobotArguments, StressArguments};
+use crate::console::{self, Progress};
+use crate::failure::{Failure, OK};
+use crate::robot::{Robot, read_bytes};
+use crate::states;
+
+/// What was measured.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Report {
+    /// Every row is right.
+    pub(super) pass: bool,
+    /// How many were measured, and how many of them are wrong.
+    pub(super) rows_measured: usize,
+    pub(super) rows_failed: usize,
+    pub(super) rows: Vec<Row>,
+}
+
+/// Measures and prints; a row that is wrong is an exceeded bound.
+pub(crate) fn run(arguments: &StressArguments, format: Format) -> Result<u8, Failure> {
+    let rows = match &arguments.robot {
+        Some(robot) => of_robot(arguments, robot)?,
+        None => of_corpus(arguments)?,
+    };
+    let failed = rows.iter().filter(|r| !r.pass).count();
+    let report = Report { pass: failed == 0, rows_measured: rows.len(), rows_failed: failed, rows };
+    console::print(&match format {
+        Format::Text => text::text(&report, arguments.rows),
+        Format::Json => crate::json(&report),
+    })?;
+    match failed {
+        0 => Ok(OK),
+        n => Err(Failure::bound(format!("{n} of {} rows beyond their limits", report.rows_measured))),
+    }
+}
+
+fn of_corpus(arguments: &StressArguments) -> Result<Vec<Row>, Failure> {
+    let effort = if arguments.full { Effort::Full } else { Effort::Quick };
+    let wanted = |name: &str| arguments.chapters.is_empty() || arguments.chapters.iter().any(|c| c == name);
+    let chapters: Vec<_> = CHAPTERS.iter().filter(|(name, _)| wanted(name)).collect();
+    let progress = Progress::new(chapters.len() + 1);
+    let mut rows = Vec::new();
+    for (name, chapter) in chapters {
+        progress.doing(format!("chapter {name}"));
+        rows.extend(chapter(effort));
+        progress.step();
+    }
+    if wanted(own::NAME) {
+        for robot in articulated_models::ROBOTS {
+            progress.doing(format!("robot {}", robot.name));
+            let robot = Robot::find(&RobotArguments::plain(robot.name, false))?;
+            rows.extend(own::rows(&robot, &Vec::new(), arguments.generated)?);
+        }
+    }
+    progress.step();
+    Ok(rows)
+}
+
+fn of_robot(arguments: &StressArguments, name: &str) -> Result<Vec<Row>, Failure> {
+    let mut robot = RobotArguments::plain(name, arguments.floating);
+    robot.fixed = arguments.fixed;
+    robot.gravity = arguments.gravity.map(|Gravity(g)| Gravity(g));
+    robot.allow_unphysical_inertia = arguments.allow_unphysical_inertia;
+    let robot = Robot::find(&robot)?;
+    let given = match &arguments.states {
+        Some(file) => given(&robot, file)?,
+        None => Vec::new(),
+    };
+    own::rows(&robot, &given, arguments.generated)
+}
+
+/// The states of a file; what a state does not give is zero.
+fn given(robot: &Robot, file: &str) -> Result<Vec<State>, Failure> {
+    let model = robot.whole_model(&robot.read()?)?;
+    let bytes = read_bytes(file).map_err(|e| Failure::input([format!("{file}: {e}")]))?;
+    let read = states::read(&bytes, &model).map_err(|lines| Failure::input(lines.into_iter().map(|l| format!("{file}: {l}"))))?;
+    read.warnings.iter().for_each(|w| console::warn(w));
+    let one = |s: &states::State| {
+        let of = |a: Argument| s.get(a).map_or_else(|| vec![0.0; a.len(model.shape())], <[f64]>::to_vec);
+        State { q: of(Argument::Q), v: of(Argument::V), a: of(Argument::A), tau: of(Argument::Tau) }
+    };
+    Ok(read.states.iter().map(one).collect())
+}

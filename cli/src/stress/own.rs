@@ -1,0 +1,188 @@
+//! A robot of one's own: states at random and hard ones, generic and generated code, and the monitors.
+
+use articulated_codegen::Generated;
+use articulated_core::algorithm::{FunctionId, Workspace};
+use articulated_core::model::Model;
+use articulated_core::monitor::{
+    ADJOINT_LIMIT, adjoint_condition, pivot_cancellation, placement_orthonormality, quaternion_norms, scaled_condition, wrench_growth,
+};
+
+use super::judge::{BACKWARD, Ends, Judge, State, call, exact_error, worse};
+use super::machine::Machine;
+use super::robots::{state, states};
+use super::row::{Case, Row};
+use crate::compiled::{Compiled, Rustc};
+use crate::failure::Failure;
+use crate::robot::Robot;
+use crate::states::quaternions;
+
+/// The chapter of robots.
+pub const NAME: &str = "robots";
+
+/// Robots of more degrees of freedom than this are judged without derivatives: 96 digits of a cube of it take minutes.
+const DERIVATIVES: usize = 12;
+
+const TAU: f64 = 20.0;
+
+/// All rows of a robot.
+pub(super) fn rows(robot: &Robot, given: &[State], generated: bool) -> Result<Vec<Row>, Failure> {
+    let model = robot.whole_model(&robot.read()?)?;
+    let sets = sets(&model, given);
+    let compiled = if generated { Some(compile(robot, &model)?) } else { None };
+    let mut rows = Vec::new();
+    for (name, why, states) in &sets {
+        let case = Case::new(NAME, format!("{}: {name}", model.name), why);
+        rows.extend(judged(&case, &model, states));
+        if let Some(compiled) = &compiled {
+            rows.extend(by_generated(&case, &model, compiled, states));
+        }
+    }
+    rows.extend(watched(&model, &sets));
+    Ok(rows)
+}
+
+type Set = (&'static str, &'static str, Vec<State>);
+
+/// Sets of states: those given, some at random, and hard ones.
+fn sets(model: &Model<f64>, given: &[State]) -> Vec<Set> {
+    let alike = |x: f64| {
+        let mut q = vec![x; model.nq];
+        quaternions(model).for_each(|(_, at)| q[at..at + 4].copy_from_slice(&[0.0, 0.0, 0.0, 1.0]));
+        vec![state(q, model.nv, 72, TAU)]
+    };
+    let bound = |upper: bool| {
+        let mut s = alike(0.0);
+        for joint in model.joints.iter().filter(|j| j.q.1 == 1) {
+            s[0].q[joint.q.0] = joint.limit.map_or(0.0, |l| if upper { l.upper } else { l.lower });
+        }
+        s
+    };
+    let fast = |mut s: Vec<State>| {
+        s.iter_mut().for_each(|s| s.v.iter_mut().for_each(|v| *v *= 1e4));
+        s
+    };
+    let mut sets: Vec<Set> = vec![
+        ("states at random", "nothing special: what errors usually are", states(model, 8, 71, TAU)),
+        ("all coordinates zero", "axes line up where whoever drew the robot stretched it out", alike(0.0)),
+        ("at lower limits", "folded or stretched as far as it goes", bound(false)),
+        ("at upper limits", "folded or stretched as far as it goes", bound(true)),
+        (
+            "all coordinates π/2",
+            "right angles: axes are parallel again, cosines are what rounding left",
+            alike(std::f64::consts::FRAC_PI_2),
+        ),
+        ("all coordinates 1e-9", "sines of the size of roundings squared", alike(1e-9)),
+        ("all coordinates 1e8", "angles that need π to more digits than a double has", alike(1e8)),
+        ("rates of 1e4", "velocity forces are large, and everything else the rest of their difference", fast(states(model, 2, 73, TAU))),
+    ];
+    if !given.is_empty() {
+        sets.insert(0, ("states given", "yours", given.to_vec()));
+    }
+    sets
+}
+
+fn judged(case: &Case, model: &Model<f64>, states: &[State]) -> Vec<Row> {
+    let double = Judge::<f64>::new(case, model);
+    let mut rows = double.forward(states, model.nv <= DERIVATIVES);
+    rows.extend(double.solved(states, Ends::Either, BACKWARD));
+    let single = Judge::<f32>::new(case, model);
+    rows.extend(single.forward(states, false));
+    rows.extend(single.solved(states, Ends::Either, BACKWARD));
+    rows
+}
+
+fn wanted(model: &Model<f64>) -> Vec<String> {
+    let mut names = vec!["inverse_dynamics", "mass_matrix"];
+    names.extend(model.massless_joints().is_empty().then_some("forward_dynamics"));
+    names.into_iter().map(str::to_owned).collect()
+}
+
+fn compile(robot: &Robot, model: &Model<f64>) -> Result<Compiled, Failure> {
+    let generated: Generated = robot.generate(&wanted(model))?;
+    let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
+    Compiled::build(&rustc, &generated).map_err(|e| Failure::tool(&e))
+}
+
+/// Generated code by the same measure.
+pub fn by_generated(case: &Case, model: &Model<f64>, compiled: &Compiled, states: &[State]) -> Vec<Row> {
+    let judge = Judge::<f64>::new(case, model);
+    let mut rows = Vec::new();
+    for function in [FunctionId::inverse_dynamics, FunctionId::mass_matrix] {
+        let error = |s: &State| {
+            let arguments = [s.q.clone(), s.v.clone(), s.a.clone()];
+            let arguments: Vec<Vec<f64>> = arguments.into_iter().take(function.row::<f64>().takes.len()).collect();
+            let slices: Vec<&[f64]> = arguments.iter().map(Vec::as_slice).collect();
+            let mut out = vec![f64::NAN; function.row::<f64>().len(model.shape())];
+            if compiled.call(function.name(), &slices, &mut out).is_err() {
+                return f64::NAN;
+            }
+            exact_error(function, model, &arguments, &out)
+        };
+        let worst = states.iter().map(error).fold(0.0, worse);
+        rows.push(case.row(format!("{}, generated", function.name()), worst, BACKWARD, "u"));
+    }
+    let solved = |s: &State| {
+        let mut a = vec![f64::NAN; model.nv];
+        compiled.call("forward_dynamics", &[&s.q, &s.v, &s.tau], &mut a).ok()?;
+        // Where M is singular there is nothing to be judged: the unchecked form gives anything.
+        judge.checked(s).ok().map(|_| judge.solution(&a, s)[0])
+    };
+    let errors: Vec<f64> = states.iter().filter_map(solved).collect();
+    if !errors.is_empty() {
+        rows.push(case.row("forward_dynamics, generated, η", errors.into_iter().fold(0.0, worse), BACKWARD, "u"));
+    }
+    rows
+}
+
+/// The monitors, over all states.
+fn watched(model: &Model<f64>, sets: &[Set]) -> Vec<Row> {
+    let case = Case::new(NAME, format!("{}: monitors", model.name), "what to look at when results look wrong");
+    let states: Vec<&State> = sets.iter().flat_map(|(_, _, s)| s).collect();
+    let mut ws = Workspace::new(model);
+    let roundoff = <f64 as Machine>::ROUNDOFF;
+    let depth = depth(model) as f64;
+    let (mut turned, mut norm, mut growth, mut condition) = (0.0, 0.0, [0.0; 2], 0.0);
+    let mut least = (f64::INFINITY, 0);
+    for s in states {
+        let mut off = vec![0.0; model.frames.len()];
+        placement_orthonormality(&call(FunctionId::placements, model, std::slice::from_ref(&s.q)), &mut off);
+        turned = off.into_iter().fold(turned, worse);
+        norm = quaternion_norms(model, &s.q).map(|(_, n)| n.abs()).fold(norm, worse);
+        for (m, f) in wrench_growth(model, &mut ws, [&s.q, &s.v, &s.a]) {
+            growth = [worse(growth[0], m), worse(growth[1], f)];
+        }
+        condition = worse(condition, scaled_condition(model, &mut ws, &s.q));
+        let mut left = vec![0.0; model.nv];
+        pivot_cancellation(model, &mut ws, &s.q, &mut left);
+        least = left.into_iter().enumerate().map(|(k, x)| (x, k)).fold(least, |a, b| if b.0.is_nan() || b.0 < a.0 { b } else { a });
+    }
+    let distance = model.outward().map(|i| model.bodies[i].placement.position.norm()).fold(0.0, f64::max);
+    let mut rows = vec![
+        case.row(format!("|RᵀR − 1| of placements, over 4Nu, N = {depth}"), turned / (4.0 * (depth + 1.0) * roundoff), 1.0, ""),
+        case.row("|norm² − 1| of quaternions in q", norm / roundoff, 8.0, "u"),
+        case.shown("a joint's moment over the largest of any body beyond", growth[0], ""),
+        case.shown("a joint's force over the largest of any body beyond", growth[1], ""),
+        case.remark(
+            "condition number of Ad between neighbours; it depends on the units of length alone",
+            adjoint_condition(distance),
+            ADJOINT_LIMIT,
+            "",
+        ),
+    ];
+    if model.nv > 0 {
+        let name = format!(
+            "what is left of the smallest pivot, of joint {:?}; less than 2¹⁰u is an error of the checked form",
+            model.joint_of(least.1)
+        );
+        rows.push(case.shown("condition number of M scaled to a diagonal of ones", condition, ""));
+        rows.push(case.shown(name, least.0, ""));
+    }
+    rows
+}
+
+/// The largest number of joints between a body and the base.
+fn depth(model: &Model<f64>) -> usize {
+    let mut depths = vec![0; model.bodies.len()];
+    model.outward().for_each(|i| depths[i] = depths[model.bodies[i].parent] + 1);
+    depths.into_iter().max().unwrap_or(0)
+}
