@@ -1,5 +1,9 @@
 //! The corpus of hard cases: every row of every chapter keeps its limit. `articulated stress` prints the same rows as a report.
 
+mod checked;
+mod generated;
+mod monitors;
+
 use articulated_cli::stress::corpus::{CHAPTERS, Effort};
 
 fn chapter(name: &str) {

@@ -7,7 +7,7 @@ use super::corpus::{CHAPTERS, Effort};
 use super::judge::State;
 use super::row::Row;
 use super::{own, text};
-use crate::arguments::{Format, Gravity, RobotArguments, StressArguments};
+use crate::arguments::{Format, RobotArguments, StressArguments};
 use crate::console::{self, Progress};
 use crate::failure::{Failure, OK};
 use crate::robot::{Robot, read_bytes};
@@ -67,7 +67,7 @@ fn of_corpus(arguments: &StressArguments) -> Result<Vec<Row>, Failure> {
 fn of_robot(arguments: &StressArguments, name: &str) -> Result<Vec<Row>, Failure> {
     let mut robot = RobotArguments::plain(name, arguments.floating);
     robot.fixed = arguments.fixed;
-    robot.gravity = arguments.gravity.map(|Gravity(g)| Gravity(g));
+    robot.gravity = arguments.gravity;
     robot.allow_unphysical_inertia = arguments.allow_unphysical_inertia;
     let robot = Robot::find(&robot)?;
     let given = match &arguments.states {

@@ -92,6 +92,9 @@ fn forward_dynamics_inverts_inverse_dynamics() {
 /// Of M scaled to a diagonal of ones; zero where an element of the diagonal is.
 fn smallest_scaled_eigenvalue(m: &nalgebra::DMatrix<f64>) -> f64 {
     let size: Vec<f64> = m.diagonal().iter().map(|x| x.max(0.0).sqrt()).collect();
+    if size.is_empty() {
+        return 1.0;
+    }
     if size.iter().any(|s| *s <= 1e-14 * m.amax().sqrt()) {
         return 0.0;
     }
