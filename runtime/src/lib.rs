@@ -5,11 +5,12 @@
 //! ([`load`], or [`describe`] to lock its joints, load it or append others first). Both sides implement the trait [`Dynamics`].
 #![cfg_attr(not(feature = "std"), no_std)]
 
+pub use articulated_core::algorithm::checked::{Factor, Singular, Solver, Unsolved, checked_forward_dynamics};
 pub use articulated_core::algorithm::{self, FunctionError, FunctionId, Shape, Workspace, check_length, exactly, exactly_rows};
 pub use articulated_core::description::{Base, Description, EditError, Origin, Payload};
 pub use articulated_core::dynamics::Dynamics;
 pub use articulated_core::model::{Model, ModelError};
-pub use articulated_core::{Scalar, effect, spatial};
+pub use articulated_core::{Scalar, effect, monitor, spatial};
 
 #[cfg(feature = "macros")]
 pub use articulated_macros::robot;

@@ -41,7 +41,7 @@ fn an_error_names_the_joint_and_says_what_is_left() {
     let (mut ws, mut a) = (Workspace::new(&model), [0.0; 3]);
     let error = algorithm::checked_forward_dynamics(&model, &mut ws, &[0.4, 0.0, 0.0], &[0.1; 3], &[1.0; 3], &mut a).unwrap_err();
     assert_eq!((error.joint.as_str(), error.freedom, error.measure), ("joint_1", 0, Measure::Pivot));
-    assert!(error.found < error.least && error.least == least_pivot());
+    assert!(error.found < error.least && error.least == least_pivot::<f64>());
     assert!(error.to_string().starts_with("joint \"joint_1\" (degree of freedom 0): the mass matrix is singular"), "{error}");
 }
 

@@ -7,6 +7,7 @@ mod eval;
 mod functions;
 mod generate;
 mod scaling;
+mod stress;
 
 use std::io::Write;
 use std::path::PathBuf;

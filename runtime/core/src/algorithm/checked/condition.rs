@@ -19,8 +19,8 @@ impl<S: Scalar<Mask = bool>> Factor<S> {
     }
 
     /// An estimate of κ₁ of the matrix that was factored, scaled to a diagonal of ones: M_ik/√(M_ii M_kk), which has no units and is within n of the least that any
-    /// scaling of the joints' units gives (van der Sluis, *Numer. Math.* 14, 1969). Never more than κ₁, rarely less than a third: Hager's estimate with
-    /// Higham's second vector (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, alg. 15.1). Of no meaning where factoring was an error.
+    /// scaling of the joints' units gives (van der Sluis, *Numer. Math.* 14, 1969). Never more than κ₁, rarely less than a third: Hager's estimate from two
+    /// starts, with Higham's vector besides (Higham, *Accuracy and Stability of Numerical Algorithms*, 2002, alg. 15.1). Of no meaning where factoring was an error.
     pub fn condition(&mut self) -> S {
         let mut room = core::mem::take(&mut self.room);
         let inverse = self.inverse_norm(&mut room);
@@ -28,12 +28,23 @@ impl<S: Scalar<Mask = bool>> Factor<S> {
         self.norm * inverse
     }
 
-    /// ‖B⁻¹‖₁ of the scaled matrix B.
+    /// ‖B⁻¹‖₁ of the scaled matrix B: from even numbers, from numbers of alternating signs, and for a vector that both may miss.
     fn inverse_norm(&self, [x, sign]: &mut [alloc::vec::Vec<S>; 2]) -> S {
         let n = self.n;
         let Some(last) = n.checked_sub(1) else { return S::one() };
-        let count = |k: usize| S::from_f64(k as f64);
+        let (count, alternate) = (|k: usize| S::from_f64(k as f64), |k: usize, x: S| if k.is_multiple_of(2) { x } else { -x });
         x.fill(S::one() / count(n));
+        let even = self.climb(x, sign);
+        x.iter_mut().enumerate().for_each(|(k, x)| *x = alternate(k, S::one() / count(n)));
+        let estimate = larger(self.climb(x, sign), even);
+        // (−1)ᵏ (1 + k/(n − 1))
+        x.iter_mut().enumerate().for_each(|(k, x)| *x = alternate(k, S::one() + count(k) / count(last.max(1))));
+        self.apply(x);
+        larger(S::from_f64(2.0) * sum(x) / (S::from_f64(3.0) * count(n)), estimate)
+    }
+
+    /// Hager's ascent: ‖B⁻¹x‖₁ of ever better unit vectors.
+    fn climb(&self, x: &mut [S], sign: &mut [S]) -> S {
         let mut estimate = S::zero();
         for _ in 0..5 {
             self.apply(x);
@@ -44,18 +55,11 @@ impl<S: Scalar<Mask = bool>> Factor<S> {
             estimate = size;
             sign.iter_mut().zip(x.iter()).for_each(|(s, x)| *s = if greater(S::zero(), *x) { -S::one() } else { S::one() });
             self.apply(sign);
-            let largest = (0..n).fold(0, |best, k| if greater(sign[k].abs(), sign[best].abs()) { k } else { best });
+            let largest = (0..self.n).fold(0, |best, k| if greater(sign[k].abs(), sign[best].abs()) { k } else { best });
             x.fill(S::zero());
             x[largest] = S::one();
         }
-        // (−1)ᵏ (1 + k/(n − 1)), which the ways above may miss.
-        for (k, x) in x.iter_mut().enumerate() {
-            let size = S::one() + count(k) / count(last.max(1));
-            *x = if k % 2 == 0 { size } else { -size };
-        }
-        self.apply(x);
-        let two = S::from_f64(2.0);
-        larger(two * sum(x) / (S::from_f64(3.0) * count(n)), estimate)
+        estimate
     }
 
     /// B⁻¹ x, B⁻¹ = diag(s) M⁻¹ diag(s).

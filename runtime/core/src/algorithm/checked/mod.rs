@@ -10,7 +10,7 @@
 //! | [`checked_forward_dynamics`] of a [`Model`] without joints that follow others | some 60 operations a body, about a tenth of ABA |
 //! | of a model with such joints | some 30 operations a body and 5 a degree of freedom |
 //! | [`Solver`], of any robot that has `bias_forces` and `mass_matrix` | up to n³/3 operations of LᵀDL where nothing is zero |
-//! | [`Factor::condition`] | six to twelve solutions, 2n² operations each |
+//! | [`Factor::condition`] | nine to twenty-one solutions, 2n² operations each |
 
 mod condition;
 mod factor;
