@@ -22,3 +22,5 @@ pub mod virtual_power;
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 pub struct Readme;
+
+pub use articulated_cli::stress::urdf_text;
