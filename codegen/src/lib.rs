@@ -110,7 +110,8 @@ fn wanted(request: &Request, model: &Model<f64>, massless: &[String]) -> Result<
         function.check(model.shape())?;
         function.parts.iter().try_for_each(|part| defined(request, model, massless, part.function))?;
         let same_type = |f: &Wanted| f.group().is_some() && f.group() == function.group();
-        if wanted.iter().any(|f| f.name == function.name || same_type(f)) {
+        let into = |f: &Wanted, other: &Wanted| f.name.strip_suffix("_into") == Some(other.name.as_str());
+        if wanted.iter().any(|f| f.name == function.name || same_type(f) || into(f, &function) || into(&function, f)) {
             return Err(Error::SameName { name: function.name });
         }
         wanted.push(function);

@@ -54,7 +54,7 @@ impl Compiled {
     /// As [`Compiled::build`], for certain processors.
     pub fn build_for(target: Target, rustc: &Rustc, generated: &Generated) -> Result<Self, CompileError> {
         let names: Vec<&str> = generated.ledger.functions.iter().map(|f| f.function.as_str()).collect();
-        let library = Library::build(target, rustc, &generated.source, &wrapper::source(&names))?;
+        let library = Library::build(target, rustc, &generated.source, &wrapper::source(&names, &generated.source))?;
         let sizes = symbols::Sizes::of(&library.file);
         let shape = generated.model.shape();
         let functions = names.iter().map(|name| load(&library.native, &sizes, name, shape)).collect::<Result<_, _>>()?;

@@ -21,8 +21,8 @@ impl Sizes {
     pub(super) fn function(&self, name: &str, symbol: &str) -> Option<u64> {
         let own = self.0.iter().find(|(n, _)| n == symbol)?.1;
         // A mangled path holds each name with its length in front.
-        let path = format!("5robot{}{name}", name.len());
-        let outside = self.0.iter().filter(|(n, _)| n.contains(&path));
+        let paths = ["", "_into", "_fill"].map(|form| format!("5robot{}{name}{form}", name.len() + form.len()));
+        let outside = self.0.iter().filter(|(n, _)| paths.iter().any(|path| n.contains(path)));
         Some(own + outside.map(|(_, bytes)| bytes).sum::<u64>())
     }
 }

@@ -23,6 +23,10 @@ unsafe fn read<'a, T>(x: *const f64) -> &'a T {
 unsafe fn write<T>(out: *mut f64, result: T) {
     unsafe { out.cast::<T>().write_unaligned(result) }
 }
+
+unsafe fn place<'a, T>(out: *mut f64) -> &'a mut T {
+    unsafe { &mut *out.cast() }
+}
 ";
 
 /// The symbol of a function of many states.
@@ -30,19 +34,22 @@ pub(super) fn batch_symbol(function: &str, real: Real, layout: Layout) -> String
     format!("{}_{}{}", symbol(function), real.name(), layout.suffix())
 }
 
-/// The crate's source; the generated module is `robot.rs` beside it.
-pub(super) fn source(functions: &[&str]) -> String {
-    functions.iter().fold(HEAD.to_owned(), |text, name| text + &one(name))
+/// The crate's source; the generated module, `robot.rs` beside it, is this.
+pub(super) fn source(functions: &[&str], module: &str) -> String {
+    functions.iter().fold(HEAD.to_owned(), |text, name| text + &one(name, module.contains(&format!("pub fn {name}_into("))))
 }
 
-fn one(name: &str) -> String {
+/// What is large is written where it goes.
+fn one(name: &str, into: bool) -> String {
     let takes = function::<f64>(name).map_or(&[][..], |f| f.takes);
     let parameters: String = takes.iter().map(|a| format!("{}: *const f64, ", a.name())).collect();
     let arguments: Vec<String> = takes.iter().map(|a| format!("read({})", a.name())).collect();
     let (symbol, arguments) = (symbol(name), arguments.join(", "));
+    let call =
+        if into { format!("robot::{name}_into({arguments}, place(out))") } else { format!("write(out, robot::{name}({arguments}))") };
     format!(
         "\n#[unsafe(no_mangle)]\npub unsafe extern \"C\" fn {symbol}({parameters}out: *mut f64) {{\n    \
-         unsafe {{ write(out, robot::{name}({arguments})) }}\n}}\n"
+         unsafe {{ {call} }}\n}}\n"
     )
 }
 
@@ -80,8 +87,10 @@ pub(super) fn batches(name: &str, reals: &[Real]) -> String {
 mod tests {
     #[test]
     fn a_function_is_one_symbol_that_takes_pointers() {
-        let text = super::source(&["bias_forces"]);
+        let text = super::source(&["bias_forces"], "");
         assert!(text.contains("fn articulated_bias_forces(q: *const f64, v: *const f64, out: *mut f64)"));
-        assert!(text.contains("robot::bias_forces(read(q), read(v))"));
+        assert!(text.contains("write(out, robot::bias_forces(read(q), read(v)))"));
+        let text = super::source(&["bias_forces"], "pub fn bias_forces_into(q: ");
+        assert!(text.contains("robot::bias_forces_into(read(q), read(v), place(out))"));
     }
 }

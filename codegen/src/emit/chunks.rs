@@ -39,6 +39,7 @@ pub(super) fn cut(graph: &Graph, dialect: &dyn Dialect, places: &[String], lengt
 pub(super) fn pieces(out: &mut String, graph: &Graph, signature: &Signature, dialect: &dyn Dialect) {
     let (pieces, slots) = cut(graph, dialect, &signature.places(), LENGTH);
     let (arguments, names, gives) = (signature.arguments(), signature.names(), signature.gives());
+    let (takes, returns) = (signature.takes(), signature.returns());
     let (ty, zero) = dialect.value();
     for (c, piece) in pieces.iter().enumerate() {
         let _ = writeln!(out, "    $(#[$features])?\n    #[inline(never)]");
@@ -48,28 +49,35 @@ pub(super) fn pieces(out: &mut String, graph: &Graph, signature: &Signature, dia
         }
         let _ = writeln!(out, "    let _ = (&m, &out);\n{piece}    }}");
     }
-    let _ = writeln!(out, "    $(#[$features])?\n    fn whole({arguments}) -> {gives} {{");
-    let _ = writeln!(out, "    let mut m = [{zero}; {slots}];\n    let mut out = {};", signature.nothing());
-    for c in 0..pieces.len() {
-        let _ = writeln!(out, "    piece_{c}({names}, &mut m, &mut out);");
+    let _ = writeln!(out, "    $(#[$features])?\n    fn whole({takes}){returns} {{");
+    let _ = writeln!(out, "    let mut m = [{zero}; {slots}];");
+    let place = if signature.into { "out" } else { "&mut out" };
+    if !signature.into {
+        let _ = writeln!(out, "    let mut out = {};", signature.nothing());
     }
-    let _ = writeln!(out, "    out\n    }}");
+    for c in 0..pieces.len() {
+        let _ = writeln!(out, "    piece_{c}({names}, &mut m, {place});");
+    }
+    *out += if signature.into { "    }\n" } else { "    out\n    }\n" };
 }
 
 /// From this many results and nodes on each result is written as soon as it is made: kept until the end, they would fill the registers. Of a small
 /// function the compiler makes more where they come together.
 const WRITE_FROM: (usize, usize) = (32, 700);
 
-/// Whether there are so many results that they are written as soon as they are made.
+/// Whether there are so many results that they are written as soon as they are made; then there is a form that writes them into what the caller has, too: a copy of them
+/// costs as much as a third of the function.
 pub(super) fn gives_much(graph: &Graph) -> bool {
     graph.outputs.len() >= WRITE_FROM.0 && graph.nodes().len() >= WRITE_FROM.1
 }
 
 /// The statements of a function in one piece that gives much.
 pub(super) fn one_piece(out: &mut String, graph: &Graph, signature: &Signature, dialect: &dyn Dialect) {
-    let _ = writeln!(out, "    #[allow(unused_mut)]\n    let mut out = {};", signature.nothing());
+    if !signature.into {
+        let _ = writeln!(out, "    #[allow(unused_mut)]\n    let mut out = {};", signature.nothing());
+    }
     cut(graph, dialect, &signature.places(), usize::MAX).0.iter().for_each(|piece| *out += piece);
-    let _ = writeln!(out, "    out");
+    *out += if signature.into { "" } else { "    out\n" };
 }
 
 /// Whether a unit is made again wherever it is needed: inputs, and comparisons, whose values are no numbers.

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use articulated_core::algorithm::Shape;
 use articulated_core::level::Level;
 
-use super::chunks::pieces;
+use super::chunks::{gives_much, pieces};
 use super::levels::{self, real};
 use super::signature::Signature;
 use super::vector::Vector;
@@ -32,15 +32,20 @@ impl Context {
 /// The function's source, with its documentation and, where it gives several results, the type that holds them.
 pub(super) fn function(out: &mut String, program: &Program, context: Context) {
     let Program { wanted, graph, .. } = program;
-    let signature = Signature::of(wanted, context.sizes, context.parameters).with(real(context.level));
+    let mut signature = Signature::of(wanted, context.sizes, context.parameters).with(real(context.level));
+    signature.into = gives_much(graph);
     signature.results_type(out);
     if in_lanes(graph) || levels::is_long(graph, context.level) {
         body_macro(out, graph, &signature, context.level);
     }
     document(out, program, &signature, context);
+    if signature.into {
+        both(out, &signature);
+    }
     let _ =
         writeln!(out, "#[allow({}clippy::all, clippy::pedantic)]", if context.forbid_unsafe { "" } else { "unsafe_code, unused_unsafe, " });
-    let _ = writeln!(out, "pub fn {}({}) -> {} {{", wanted.name, signature.arguments(), signature.gives());
+    let name = if signature.into { format!("fn {}_fill", wanted.name) } else { format!("pub fn {}", wanted.name) };
+    let _ = writeln!(out, "{name}({}){} {{", signature.takes(), signature.returns());
     for input in &signature.inputs {
         let _ = writeln!(out, "    let _ = {};", input.name);
     }
@@ -56,6 +61,18 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
     let _ = writeln!(out, "}}\n");
 }
 
+/// A function that gives much, as a value and into what the caller has; both fill what is zero.
+fn both(out: &mut String, signature: &Signature) {
+    let (name, arguments, names, gives) = (&signature.wanted.name, signature.arguments(), signature.names(), signature.gives());
+    let nothing = signature.nothing();
+    let _ = writeln!(out, "#[inline]\npub fn {name}({arguments}) -> {gives} {{\n    let mut out = {nothing};");
+    let _ = writeln!(out, "    {name}_fill({names}, &mut out);\n    out\n}}\n");
+    let _ = writeln!(out, "/// As [`{name}`], into `out`, whatever that holds: nothing is copied.\n#[inline]");
+    let _ =
+        writeln!(out, "pub fn {name}_into({arguments}, out: &mut {gives}) {{\n    *out = {nothing};\n    {name}_fill({names}, out);\n}}\n");
+    let _ = writeln!(out, "/// Puts what is not zero into `out`.");
+}
+
 /// Whether the values are vectors.
 pub(super) fn in_lanes(graph: &Graph) -> bool {
     graph.lanes().width > 1
@@ -68,8 +85,8 @@ pub(super) fn needs_choice(graph: &Graph, level: Level) -> bool {
 
 /// Plain arithmetic, with fused multiply-add where the processor has it: compiled for it, or found to be so.
 fn chosen(out: &mut String, graph: &Graph, signature: &Signature, level: Level) {
-    let (arguments, names, gives) = (signature.arguments(), signature.names(), signature.gives());
-    let _ = writeln!(out, "    #[inline(always)]\n    fn body<const FUSED: bool>({arguments}) -> {gives} {{");
+    let (takes, names, returns) = (signature.takes(), signature.handed(), signature.returns());
+    let _ = writeln!(out, "    #[inline(always)]\n    fn body<const FUSED: bool>({takes}){returns} {{");
     for input in &signature.inputs {
         let _ = writeln!(out, "    let _ = {};", input.name);
     }
@@ -78,7 +95,7 @@ fn chosen(out: &mut String, graph: &Graph, signature: &Signature, level: Level) 
     let _ = writeln!(out, "    if {} {{", sets::HAS_AVX2);
     let _ = writeln!(
         out,
-        "        #[target_feature(enable = \"avx2,fma\")]\n        fn fused({arguments}) -> {gives} {{\n            body::<true>({names})\n        }}"
+        "        #[target_feature(enable = \"avx2,fma\")]\n        fn fused({takes}){returns} {{\n            body::<true>({names})\n        }}"
     );
     let _ = writeln!(out, "        // SAFETY: the processor was just asked for both.\n        return unsafe {{ fused({names}) }};\n    }}");
     let _ = writeln!(out, "    body::<FUSED>({names})");
@@ -86,13 +103,13 @@ fn chosen(out: &mut String, graph: &Graph, signature: &Signature, level: Level) 
 
 /// The body as a macro: it is compiled for several instruction sets.
 fn body_macro(out: &mut String, graph: &Graph, signature: &Signature, level: Level) {
-    let (arguments, gives, name) = (signature.arguments(), signature.gives(), &signature.wanted.name);
+    let (takes, returns, name) = (signature.takes(), signature.returns(), &signature.wanted.name);
     let _ = writeln!(out, "macro_rules! {name}_body {{\n    ($(#[$features:meta])?) => {{");
     if levels::is_long(graph, level) {
         let vector = Vector { graph, signature };
         levels::with_dialect(graph, signature, level, |own| pieces(out, graph, signature, if in_lanes(graph) { &vector } else { own }));
     } else {
-        let _ = writeln!(out, "    $(#[$features])?\n    #[inline]\n    fn whole({arguments}) -> {gives} {{");
+        let _ = writeln!(out, "    $(#[$features])?\n    #[inline]\n    fn whole({takes}){returns} {{");
         for input in &signature.inputs {
             let _ = writeln!(out, "    let _ = {};", input.name);
         }
@@ -104,7 +121,7 @@ fn body_macro(out: &mut String, graph: &Graph, signature: &Signature, level: Lev
 
 /// The call of a long body of plain arithmetic.
 fn long_calls(out: &mut String, signature: &Signature, context: Context) {
-    let (names, name) = (signature.names(), &signature.wanted.name);
+    let (names, name) = (signature.handed(), &signature.wanted.name);
     levels::imports(out, context.level);
     if context.chooses() {
         let _ = writeln!(out, "    {}\n    if {} {{", sets::NOT_COMPILED_FOR_AVX2, sets::HAS_AVX2);
@@ -117,7 +134,7 @@ fn long_calls(out: &mut String, signature: &Signature, context: Context) {
 
 /// The call of the body for the best instruction set there is.
 fn lanes_calls(out: &mut String, graph: &Graph, signature: &Signature) {
-    let (names, name, width) = (signature.names(), &signature.wanted.name, graph.lanes().width);
+    let (names, name, width) = (signature.handed(), &signature.wanted.name, graph.lanes().width);
     let mut block = |cfg: &str, set: &str, features: &str, calls: &str| {
         let two = if width == 2 { format!("\n        use self::two::{set}::sin_cos_of_two;") } else { String::new() };
         let _ = writeln!(

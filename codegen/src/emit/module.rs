@@ -7,6 +7,7 @@ use articulated_core::model::{JointInfo, Model};
 use articulated_urdf::Unused;
 
 use super::batch::{Batch, batches};
+use super::chunks::gives_much;
 use super::function::{Context, function};
 use super::header::header;
 use super::levels::real;
@@ -136,15 +137,9 @@ fn robot(out: &mut String, request: &Request, programs: &[Program], parameters: 
         "    fn call(&self, function: {path}::FunctionId, _: &mut (), arguments: &[&[{real}]], out: &mut [{real}]) -> ::core::result::Result<(), {path}::FunctionError> {{"
     );
     let _ = writeln!(out, "        match (function, arguments) {{");
-    for function in programs.iter().filter_map(|p| p.wanted.as_function()) {
-        arm(
-            out,
-            (path, real),
-            function.name,
-            &function.takes.iter().map(|a| (a.name(), a.dims())).collect::<Vec<_>>(),
-            function.gives,
-            parameters,
-        );
+    for (program, function) in programs.iter().filter_map(|p| Some((p, p.wanted.as_function()?))) {
+        let takes: Vec<_> = function.takes.iter().map(|a| (a.name(), a.dims())).collect();
+        arm(out, (path, real), function.name, &takes, function.gives, parameters, gives_much(&program.graph));
     }
     let _ =
         writeln!(out, "            _ => ::core::result::Result::Err({path}::FunctionError::NotGenerated {{ function: function.name() }}),");
@@ -152,7 +147,7 @@ fn robot(out: &mut String, request: &Request, programs: &[Program], parameters: 
 }
 
 /// How one function is called through slices.
-fn arm(out: &mut String, (path, real): (&str, &str), name: &str, takes: &[(&str, &[Dim])], gives: &[Dim], parameters: bool) {
+fn arm(out: &mut String, (path, real): (&str, &str), name: &str, takes: &[(&str, &[Dim])], gives: &[Dim], parameters: bool, into: bool) {
     let mut names: Vec<String> = takes.iter().map(|(name, _)| (*name).to_owned()).collect();
     let _ = writeln!(out, "            ({path}::FunctionId::{name}, &[{}]) => {{", names.join(", "));
     for (name, dims) in takes {
@@ -172,6 +167,15 @@ fn arm(out: &mut String, (path, real): (&str, &str), name: &str, takes: &[(&str,
     }
     let call = format!("self::{name}({})", names.join(", "));
     let _ = match gives.len() {
+        _ if into => {
+            let inner = gives.iter().skip(1).rev().map(|d| format!(".as_chunks_mut::<{{ {d} }}>().0"));
+            let rows = format!("out{}", inner.collect::<String>());
+            writeln!(
+                out,
+                "                if let ::core::result::Result::Ok(out) = {rows}.try_into() {{\n                    self::{name}_into({}, out);\n                }}",
+                names.join(", ")
+            )
+        }
         0 => writeln!(out, "                out[0] = {call};"),
         n => {
             let flat = format!("result.as_slice(){}", ".as_flattened()".repeat(n - 1));

@@ -44,6 +44,8 @@ pub(super) struct Signature<'a> {
     pub(super) wanted: &'a Wanted,
     pub(super) inputs: Vec<Input>,
     sizes: Shape,
+    /// Whether the result is written into what the caller hands in.
+    pub(super) into: bool,
     /// The type of the result, if there are several.
     group: Option<String>,
     /// The type of the numbers that go in and come out.
@@ -56,7 +58,7 @@ impl<'a> Signature<'a> {
         if parameters {
             inputs.push(Input { name: "parameters", dims: Vec::new() });
         }
-        Self { wanted, inputs, sizes, group: wanted.group(), real: "f64" }
+        Self { wanted, inputs, sizes, into: false, group: wanted.group(), real: "f64" }
     }
 
     /// The same with numbers of another type.
@@ -77,6 +79,21 @@ impl<'a> Signature<'a> {
     /// `q, v`
     pub(super) fn names(&self) -> String {
         self.inputs.iter().map(|i| i.name).collect::<Vec<_>>().join(", ")
+    }
+
+    /// What a body takes: the arguments, and where the result goes if it goes there.
+    pub(super) fn takes(&self) -> String {
+        if self.into { format!("{}, out: &mut {}", self.arguments(), self.gives()) } else { self.arguments() }
+    }
+
+    /// What a body is handed.
+    pub(super) fn handed(&self) -> String {
+        if self.into { format!("{}, out", self.names()) } else { self.names() }
+    }
+
+    /// What a body returns.
+    pub(super) fn returns(&self) -> String {
+        if self.into { String::new() } else { format!(" -> {}", self.gives()) }
     }
 
     /// The type of the result.

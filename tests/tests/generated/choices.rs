@@ -68,6 +68,21 @@ const Q: [f64; 3] = [0.4, -0.9, 1.3];
 const V: [f64; 3] = [1.1, 0.3, -0.8];
 const A: [f64; 3] = [-0.7, 2.0, 0.6];
 
+/// What is large is written into what the caller has too, whatever that held; through the trait that is how it is done.
+#[test]
+fn a_large_result_goes_into_what_the_caller_has() {
+    let q: [f64; in_lanes::NQ] =
+        std::array::from_fn(|k| if k == 6 { 1.0 } else { 0.3 * k as f64 * f64::from(u8::from(!(3..6).contains(&k))) });
+    let (v, a) = (std::array::from_fn(|k| 0.1 * k as f64 - 0.4), std::array::from_fn(|k| 1.0 - 0.2 * k as f64));
+    let expected = in_lanes::inverse_dynamics_derivatives(&q, &v, &a);
+    let mut out = [[[f64::NAN; in_lanes::NV]; in_lanes::NV]; 3];
+    in_lanes::inverse_dynamics_derivatives_into(&q, &v, &a, &mut out);
+    assert_eq!(out, expected);
+    let mut flat = vec![f64::NAN; 3 * in_lanes::NV * in_lanes::NV];
+    in_lanes::Robot.inverse_dynamics_derivatives(&mut (), &q, &v, &a, &mut flat).expect("lengths as they are");
+    assert_eq!(flat, expected.as_flattened().as_flattened());
+}
+
 /// Equal but for some last digits: the same terms in another order.
 fn same(found: &[f64], expected: &[f64]) {
     assert_eq!(found.len(), expected.len());
