@@ -64,7 +64,7 @@ impl Compiled {
     /// Compiles and loads functions of any level. Where numbers are `f32`, a kernel's arrays hold two of them in each of theirs: see [`packed`].
     pub(crate) fn build_level(rustc: &Rustc, generated: &Generated, level: Level) -> Result<Self, CompileError> {
         let names: Vec<&str> = generated.ledger.functions.iter().map(|f| f.function.as_str()).collect();
-        let library = Library::build(Target::Own, rustc, &generated.source, &wrapper::source(&names))?;
+        let library = Library::build(Target::Own, rustc, &generated.source, &wrapper::source(&names, &generated.source))?;
         let sizes = symbols::Sizes::of(&library.file);
         let shape = generated.model.shape();
         let per = if level.is_single() { 2 } else { 1 };
