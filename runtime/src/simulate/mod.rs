@@ -44,3 +44,8 @@ pub use recording::{Counts, Ended, Hit, Recording};
 pub use settings::{Output, SettingError, Settings, Stiffness};
 pub use simulation::Simulation;
 pub use table::{Integrator, IntegratorId, integrator, integrators};
+
+/// The chapter's examples, compiled and run as documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/simulation.md")]
+pub struct Chapter;

@@ -45,7 +45,7 @@ pub struct Settings {
 pub enum Output {
     /// At the start, every so many seconds, and at the end.
     Every(f64),
-    /// At these times, in order.
+    /// At the start, and at these times, in order.
     At(Vec<f64>),
     /// At the start and after each step.
     Steps,

@@ -6,7 +6,7 @@ use articulated::effect::{Applied, EffectId};
 use articulated::simulate::{
     Action, Direction, Ended, Event, Impact, IntegratorId, NoTorque, Output, Settings, SimulateError, Simulation, integrators,
 };
-use articulated::{Base, Dynamics, Origin};
+use articulated::{Base, Dynamics, Origin, load_bytes};
 
 use crate::robots::{chain, model, one_joint, stepping, to};
 
@@ -39,6 +39,34 @@ fn a_falling_ball_bounces_when_it_must() {
             t += 2.0 * v / G;
         }
     }
+}
+
+/// None of two that touch the floor together is forgotten.
+#[test]
+fn what_happens_at_one_time_all_happens() {
+    let text = r#"<robot name="two"><link name="base"/><link name="a"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+        <link name="b"><inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+        <joint name="x" type="prismatic"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/><limit lower="0" upper="9" effort="1" velocity="1"/></joint>
+        <joint name="y" type="prismatic"><parent link="base"/><child link="b"/><axis xyz="0 0 1"/><limit lower="0" upper="9" effort="1" velocity="1"/></joint>
+        </robot>"#;
+    let robot = load_bytes("two", text.as_bytes(), Base::Fixed).unwrap();
+    let mut bounces: Vec<Event> = (0..2)
+        .map(|i| {
+            let up = Action::Map(Box::new(move |_: f64, _: &mut [f64], v: &mut [f64]| {
+                v[i] = -v[i];
+                Ok(None)
+            }));
+            Event::limit(format!("floor {i}"), i, 0.0, f64::INFINITY).action(up)
+        })
+        .collect();
+    let mut simulation = Simulation::new(&robot, to(IntegratorId::dopri5, 5.0, 1e-9)).unwrap();
+    let motion = simulation.run(&[1.0, 1.0], &[0.0, 0.0], &mut NoTorque, &mut bounces).unwrap();
+    // After (2k + 1) falls of √(2h/g).
+    assert_eq!(motion.events.len(), 12);
+    for (k, hit) in motion.events.iter().enumerate() {
+        assert!(hit.event == k % 2 && (hit.t - (2 * (k / 2) + 1) as f64 * (2.0 / G).sqrt()).abs() < 1e-10, "{hit:?}");
+    }
+    assert!((motion.energy(1).unwrap() / motion.energy(0).unwrap() - 1.0).abs() < 1e-10);
 }
 
 #[test]

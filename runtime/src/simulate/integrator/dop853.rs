@@ -25,9 +25,9 @@ pub(crate) struct Dop853 {
 }
 
 impl Dop853 {
-    pub(super) fn new(n: usize) -> Self {
+    pub(super) fn new(n: usize, fixed: bool) -> Self {
         let curve = std::array::from_fn(|_| vec![0.0; n]);
-        Self { stages: Stages::new(n, 16), twelfth: vec![0.0; n], stability: stability(), curve, ready: false }
+        Self { stages: Stages::new(n, 16, fixed), twelfth: vec![0.0; n], stability: stability(), curve, ready: false }
     }
 }
 

@@ -46,8 +46,8 @@ pub(crate) struct Dopri5 {
 }
 
 impl Dopri5 {
-    pub(super) fn new(n: usize) -> Self {
-        Self { stages: Stages::new(n, 7), sixth: vec![0.0; n] }
+    pub(super) fn new(n: usize, fixed: bool) -> Self {
+        Self { stages: Stages::new(n, 7, fixed), sixth: vec![0.0; n] }
     }
 }
 

@@ -16,7 +16,7 @@ pub(crate) struct Rk4 {
 
 impl Rk4 {
     pub(super) fn new(n: usize) -> Self {
-        Self { stages: Stages::new(n, 4), curve: Hermite::new(n) }
+        Self { stages: Stages::new(n, 4, true), curve: Hermite::new(n) }
     }
 }
 

@@ -14,12 +14,14 @@ pub(super) struct Stages {
     argument: Vec<f64>,
     before: Vec<f64>,
     fastest: Fastest,
+    /// Whether to look for fast motion: who chooses steps by tolerance has no need.
+    looks: bool,
 }
 
 impl Stages {
-    /// `count` slopes of `n` numbers.
-    pub(super) fn new(n: usize, count: usize) -> Self {
-        Self { n, k: vec![0.0; n * count], argument: vec![0.0; n], before: vec![0.0; n], fastest: Fastest::new(n) }
+    /// `count` slopes of `n` numbers; whether steps are fixed.
+    pub(super) fn new(n: usize, count: usize, looks: bool) -> Self {
+        Self { n, k: vec![0.0; n * count], argument: vec![0.0; n], before: vec![0.0; n], fastest: Fastest::new(n), looks }
     }
 
     /// Slope i, from 0.
@@ -60,7 +62,9 @@ impl Stages {
         self.argument = argument;
         let (n, k) = (self.n, &mut self.k);
         system.rate(control, start.t + c * h, &self.argument, &mut k[i * n..(i + 1) * n])?;
-        self.fastest.compare([&self.before, &self.argument], [&self.k[(i - 1) * n..i * n], &self.k[i * n..(i + 1) * n]]);
+        if self.looks {
+            self.fastest.compare([&self.before, &self.argument], [&self.k[(i - 1) * n..i * n], &self.k[i * n..(i + 1) * n]]);
+        }
         Ok(())
     }
 

@@ -1,16 +1,19 @@
 //! A simulation: steps, outputs and events one after the other.
 
+mod happenings;
+mod stiffness;
+
 use articulated_core::algorithm::Shape;
 use articulated_core::dynamics::Dynamics;
 
-use super::curve::{Curve, Point};
-use super::event::watch::{Watch, Zero};
-use super::integrator::{Method, Start, method};
-use super::output::{Known, Times};
-use super::stability::Stability;
-use super::step_control::{Controller, Norm, first_step, rounding};
-use super::system::System;
-use super::{Action, Control, Counts, Ended, Event, Hit, Output, Recording, Settings, SimulateError, Stiffness};
+use crate::simulate::curve::Point;
+use crate::simulate::event::watch::Watch;
+use crate::simulate::integrator::{Method, Start, method};
+use crate::simulate::output::{Known, Times};
+use crate::simulate::stability::Stability;
+use crate::simulate::step_control::{Controller, Norm, first_step, rounding};
+use crate::simulate::system::System;
+use crate::simulate::{Control, Counts, Ended, Event, Output, Recording, Settings, SimulateError};
 
 /// A robot and all the room that its simulation needs; a step allocates nothing.
 pub struct Simulation<'r, R: Dynamics<f64>> {
@@ -44,6 +47,8 @@ struct Run<'a, 'e> {
     /// Where the present stretch began, and its steps so far.
     stretch: (f64, u64),
     samples: u64,
+    /// The first of the recorded events that cut the last step short.
+    cut: usize,
     chatter: u32,
     /// The last event that mapped the state, and when.
     last_map: (usize, f64),
@@ -69,7 +74,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         let (n, nv) = (system.len(), shape.nv);
         let mut simulation = Self {
             shape,
-            method: method(settings.integrator, &system.manifold),
+            method: method(settings.integrator, &system.manifold, settings.step.is_some()),
             norm: Norm::new(&settings, nv),
             stability: Stability::new(n),
             watch: Watch::default(),
@@ -138,6 +143,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             h: 0.0,
             stretch: (self.t, 0),
             samples: 0,
+            cut: 0,
             chatter: 0,
             last_map: (0, f64::NEG_INFINITY),
             stiff: (0, 0),
@@ -177,7 +183,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         self.sample(run);
         self.record_here(run)?;
         self.watch.begin(run.events.len());
-        self.take_sides(run, None)?;
+        self.take_sides(run)?;
         if self.method.wants_rate() {
             self.rate_here(run)?;
         }
@@ -324,124 +330,11 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         Ok(t)
     }
 
-    /// Refuses a fixed step that an explicit integrator is not stable at.
-    fn check_stability(&mut self, run: &mut Run) -> Result<(), SimulateError> {
-        let (nv, counts) = (self.shape.nv, &self.system.counts);
-        let Some(h) = self.settings.step.filter(|_| !self.settings.integrator.row().implicit) else { return Ok(()) };
-        if counts.stiff_at.is_some() || !self.stability.due(counts.steps, &self.y[nv..2 * nv]) {
-            return Ok(());
-        }
-        let here = (self.t, &self.y[..], &self.f[..]);
-        let found = self.stability.exceeded(&mut self.system, run.control, &*self.method, here, h)?;
-        self.refuse(h, found)
-    }
-
-    /// The same where the last step saw something fast, on its way.
-    fn check_suspect(&mut self, run: &mut Run) -> Result<(), SimulateError> {
-        let (Some(h), Some((_, suspect))) = (self.settings.step, self.method.fastest()) else { return Ok(()) };
-        let at = if suspect.iter().any(|x| !x.is_finite()) { &self.y } else { suspect };
-        self.point.y.copy_from_slice(at);
-        self.system.rate(run.control, self.t, &self.point.y, &mut self.spare)?;
-        self.stability.begin_anew();
-        let here = (self.t, &self.point.y[..], &self.spare[..]);
-        let found = self.stability.exceeded(&mut self.system, run.control, &*self.method, here, h)?;
-        self.refuse(h, found)
-    }
-
-    fn refuse(&mut self, h: f64, found: Option<(f64, f64)>) -> Result<(), SimulateError> {
-        let Some((admissible, rate)) = found else { return Ok(()) };
-        self.stiff(SimulateError::Unstable { integrator: self.settings.integrator, t: self.t, step: h, admissible, rate })
-    }
-
-    fn stiff(&mut self, error: SimulateError) -> Result<(), SimulateError> {
-        if self.settings.stiffness == Stiffness::Refuse {
-            return Err(error);
-        }
-        self.system.counts.stiff_at.get_or_insert(self.t);
-        Ok(())
-    }
-
-    /// Hairer & Wanner 1996, §IV.2: fifteen steps held back by stability, with no six between that are not; looked for every thousand steps.
-    fn check_stiffness(&mut self, run: &mut Run, h: f64) -> Result<(), SimulateError> {
-        let due = self.system.counts.steps.is_multiple_of(1000) || run.stiff.0 > 0;
-        if run.controller.is_none() || !due {
-            return Ok(());
-        }
-        let Some((found, most)) = self.method.stiffness(h, &self.end) else { return Ok(()) };
-        if found > most {
-            run.stiff = (run.stiff.0 + 1, 0);
-        } else {
-            run.stiff.1 += 1;
-            if run.stiff.1 >= 6 {
-                run.stiff = (0, 0);
-            }
-        }
-        if run.stiff.0 < 15 {
-            return Ok(());
-        }
-        run.stiff = (0, 0);
-        self.stiff(SimulateError::Stiff { integrator: self.settings.integrator, t: self.t, step: h })
-    }
-
     fn count_step(&mut self, h: f64) {
         let counts = &mut self.system.counts;
         counts.steps += 1;
         counts.largest_step = counts.largest_step.max(h);
         counts.smallest_step = counts.smallest_step.min(h);
-    }
-
-    /// Outputs and events of the step to t, which is not yet the state; where it is cut short, `end` is there. The time up to which it counts, and what is next.
-    fn look(&mut self, run: &mut Run, t: f64) -> Result<(f64, Outcome), SimulateError> {
-        let nv = self.shape.nv;
-        let start = Start { t: self.t, y: &self.y, f: &self.f };
-        let h = t - self.t;
-        let mut curve = Curve { method: &mut *self.method, start, h, end: &self.end, point: &mut self.point };
-        let (mut cut, mut outcome) = (1.0, Outcome::GoOn);
-        if !run.events.is_empty() {
-            curve.prepare(&mut self.system, run.control)?;
-            let tolerance = self.settings.event_tolerance.max(rounding(t) / 4.0) / h;
-            self.watch.scan(run.events, &mut self.system, &mut curve, tolerance)?;
-            for zero in &self.watch.zeros {
-                let Zero { theta, event, direction } = *zero;
-                let at = self.t + theta * h;
-                let hit = Hit { event, name: run.events[event].name.clone(), t: at, direction, value: None };
-                run.recording.events.push(hit);
-                self.system.counts.events += 1;
-                match run.events[event].action {
-                    Action::Record => continue,
-                    Action::Stop => outcome = Outcome::Stopped(event),
-                    Action::Map(_) => outcome = Outcome::Mapped,
-                }
-                cut = theta;
-                break;
-            }
-        }
-        let stop = if cut < 1.0 { self.t + cut * h } else { t };
-        loop {
-            let next = run.times.next(&self.settings);
-            if next > stop + rounding(stop) {
-                break;
-            }
-            if next > self.settings.start {
-                let theta = if next >= t - rounding(t) { 1.0 } else { ((next - self.t) / h).min(cut) };
-                if theta < 1.0 {
-                    curve.prepare(&mut self.system, run.control)?;
-                }
-                curve.at(&mut self.system, theta)?;
-                curve.point.t = next;
-                self.known.record(&mut self.system, run.control, curve.point, run.recording)?;
-            }
-            run.times.advance();
-            if next >= self.settings.end {
-                break;
-            }
-        }
-        if cut < 1.0 {
-            curve.at(&mut self.system, cut)?;
-            self.end.copy_from_slice(&self.point.y);
-        }
-        debug_assert!(self.end.len() == 2 * nv + 2);
-        Ok((stop, outcome))
     }
 
     /// The end of the step becomes the state.
@@ -471,52 +364,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             _ => self.rate_here(run)?,
         }
         if mapped {
-            self.take_sides(run, run.recording.events.last().map(|hit| hit.event))?;
-        }
-        Ok(())
-    }
-
-    /// Runs the map of the event that cut the step short, if it has one.
-    fn map(&mut self, run: &mut Run) -> Result<bool, SimulateError> {
-        let nv = self.shape.nv;
-        let Some(event) = run.recording.events.last().map(|hit| hit.event) else { return Ok(false) };
-        let Event { action: Action::Map(map), name, .. } = &mut run.events[event] else { return Ok(false) };
-        // The same event again at the same time: it would never end. Others may happen at one time, but not for ever.
-        let again = self.t - run.last_map.1 <= 2.0 * self.settings.event_tolerance.max(rounding(self.t));
-        run.chatter = if again { run.chatter + 1 } else { 0 };
-        if again && (run.last_map.0 == event || run.chatter > 100) {
-            return Err(SimulateError::Chattering { t: self.t, event: name.clone() });
-        }
-        run.last_map = (event, self.t);
-        self.point.q.copy_from_slice(&self.system.origin);
-        self.v.copy_from_slice(&self.y[nv..2 * nv]);
-        let value = map(self.t, &mut self.point.q, &mut self.v)?;
-        self.system.manifold.check(&self.point.q, &self.v)?;
-        self.system.origin.copy_from_slice(&self.point.q);
-        self.y[nv..2 * nv].copy_from_slice(&self.v);
-        self.renormalise()?;
-        if let Some(hit) = run.recording.events.last_mut() {
-            hit.value = value;
-        }
-        Ok(true)
-    }
-
-    /// On which side of zero each event is from here on; of one that has just happened, where it is a moment later.
-    fn take_sides(&mut self, run: &mut Run, fired: Option<usize>) -> Result<(), SimulateError> {
-        const MOMENT: f64 = 1e-9;
-        let nv = self.shape.nv;
-        for e in 0..run.events.len() {
-            let here = (run.events[e].function)(self.t, &self.system.origin, &self.y[nv..2 * nv]);
-            let mut value = here;
-            if fired == Some(e) || here == 0.0 {
-                let step = self.point.y.as_mut_slice();
-                step[..nv].iter_mut().zip(&self.y[nv..2 * nv]).for_each(|(u, v)| *u = MOMENT * v);
-                self.system.configuration(&step[..nv], &mut self.point.q)?;
-                let rates = self.y[nv..2 * nv].iter().zip(&self.f[nv..2 * nv]);
-                self.v.iter_mut().zip(rates).for_each(|(out, (v, a))| *out = v + MOMENT * a);
-                value = (run.events[e].function)(self.t + MOMENT, &self.point.q, &self.v) - here;
-            }
-            self.watch.set_side(e, value);
+            self.take_sides(run)?;
         }
         Ok(())
     }

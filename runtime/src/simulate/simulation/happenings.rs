@@ -1,0 +1,118 @@
+//! Outputs and events of a step, and what events do to the state.
+
+use articulated_core::dynamics::Dynamics;
+
+use super::{Outcome, Run, Simulation};
+use crate::simulate::curve::Curve;
+use crate::simulate::event::watch::Zero;
+use crate::simulate::integrator::Start;
+use crate::simulate::step_control::rounding;
+use crate::simulate::{Action, Event, Hit, SimulateError};
+
+impl<R: Dynamics<f64>> Simulation<'_, R> {
+    /// Outputs and events of the step to t, which is not yet the state; where it is cut short, `end` is there. The time up to which it counts, and what is next.
+    pub(super) fn look(&mut self, run: &mut Run, t: f64) -> Result<(f64, Outcome), SimulateError> {
+        let start = Start { t: self.t, y: &self.y, f: &self.f };
+        let h = t - self.t;
+        let mut curve = Curve { method: &mut *self.method, start, h, end: &self.end, point: &mut self.point };
+        let (mut cut, mut outcome) = (1.0, Outcome::GoOn);
+        if !run.events.is_empty() {
+            curve.prepare(&mut self.system, run.control)?;
+            let tolerance = self.settings.event_tolerance.max(rounding(t) / 4.0) / h;
+            self.watch.scan(run.events, &mut self.system, &mut curve, tolerance)?;
+            for &Zero { theta, event, direction } in &self.watch.zeros {
+                // What happens at the same time as the first that cuts the step short happens too; the rest is found again, if it still comes.
+                if !matches!(outcome, Outcome::GoOn) && theta > cut + tolerance {
+                    break;
+                }
+                let hit = Hit { event, name: run.events[event].name.clone(), t: self.t + theta * h, direction, value: None };
+                run.recording.events.push(hit);
+                self.system.counts.events += 1;
+                let next = match (&run.events[event].action, &outcome) {
+                    (Action::Record, _) | (_, Outcome::Stopped(_)) => continue,
+                    (Action::Stop, _) => Outcome::Stopped(event),
+                    (Action::Map(_), _) => Outcome::Mapped,
+                };
+                if matches!(outcome, Outcome::GoOn) {
+                    (cut, run.cut) = (theta, run.recording.events.len() - 1);
+                }
+                outcome = next;
+            }
+        }
+        let stop = if cut < 1.0 { self.t + cut * h } else { t };
+        loop {
+            let next = run.times.next(&self.settings);
+            if next > stop + rounding(stop) {
+                break;
+            }
+            if next > self.settings.start {
+                let theta = if next >= t - rounding(t) { 1.0 } else { ((next - self.t) / h).min(cut) };
+                if theta < 1.0 {
+                    curve.prepare(&mut self.system, run.control)?;
+                }
+                curve.at(&mut self.system, theta)?;
+                curve.point.t = next;
+                self.known.record(&mut self.system, run.control, curve.point, run.recording)?;
+            }
+            run.times.advance();
+            if next >= self.settings.end {
+                break;
+            }
+        }
+        if cut < 1.0 {
+            curve.at(&mut self.system, cut)?;
+            self.end.copy_from_slice(&self.point.y);
+        }
+        Ok((stop, outcome))
+    }
+
+    /// Runs the maps of the events that cut the step short, if there are some.
+    pub(super) fn map(&mut self, run: &mut Run) -> Result<bool, SimulateError> {
+        let mut mapped = false;
+        for hit in run.cut..run.recording.events.len() {
+            mapped |= self.map_by(run, hit)?;
+        }
+        Ok(mapped)
+    }
+
+    fn map_by(&mut self, run: &mut Run, hit: usize) -> Result<bool, SimulateError> {
+        let (nv, event) = (self.shape.nv, run.recording.events[hit].event);
+        let Event { action: Action::Map(map), name, .. } = &mut run.events[event] else { return Ok(false) };
+        // The same event again at the same time: it would never end. Others may happen at one time, but not for ever.
+        let again = self.t - run.last_map.1 <= 2.0 * self.settings.event_tolerance.max(rounding(self.t));
+        run.chatter = if again { run.chatter + 1 } else { 0 };
+        if again && (run.last_map.0 == event || run.chatter > 100) {
+            return Err(SimulateError::Chattering { t: self.t, event: name.clone() });
+        }
+        run.last_map = (event, self.t);
+        self.point.q.copy_from_slice(&self.system.origin);
+        self.v.copy_from_slice(&self.y[nv..2 * nv]);
+        run.recording.events[hit].value = map(self.t, &mut self.point.q, &mut self.v)?;
+        self.system.manifold.check(&self.point.q, &self.v)?;
+        self.system.origin.copy_from_slice(&self.point.q);
+        self.y[nv..2 * nv].copy_from_slice(&self.v);
+        self.renormalise()?;
+        Ok(true)
+    }
+
+    /// On which side of zero each event is from here on; of those that have just happened, where it is a moment later.
+    pub(super) fn take_sides(&mut self, run: &mut Run) -> Result<(), SimulateError> {
+        const MOMENT: f64 = 1e-9;
+        let nv = self.shape.nv;
+        for e in 0..run.events.len() {
+            let here = (run.events[e].function)(self.t, &self.system.origin, &self.y[nv..2 * nv]);
+            let mut value = here;
+            let fired = run.recording.events[run.cut..].iter().any(|hit| hit.event == e);
+            if fired || here == 0.0 {
+                let step = self.point.y.as_mut_slice();
+                step[..nv].iter_mut().zip(&self.y[nv..2 * nv]).for_each(|(u, v)| *u = MOMENT * v);
+                self.system.configuration(&step[..nv], &mut self.point.q)?;
+                let rates = self.y[nv..2 * nv].iter().zip(&self.f[nv..2 * nv]);
+                self.v.iter_mut().zip(rates).for_each(|(out, (v, a))| *out = v + MOMENT * a);
+                value = (run.events[e].function)(self.t + MOMENT, &self.point.q, &self.v) - here;
+            }
+            self.watch.set_side(e, value);
+        }
+        Ok(())
+    }
+}
