@@ -58,3 +58,8 @@ fn turns() {
 fn passes() {
     chapter("passes");
 }
+
+#[test]
+fn motions() {
+    chapter("motions");
+}

@@ -4,6 +4,7 @@ mod axes;
 mod chains;
 mod inertias;
 mod masses;
+mod motions;
 mod passes;
 mod scaling;
 mod screws;
@@ -33,4 +34,5 @@ pub const CHAPTERS: &[Chapter] = &[
     (screws::NAME, screws::rows),
     (turns::NAME, turns::rows),
     (passes::NAME, passes::rows),
+    (motions::NAME, motions::rows),
 ];
