@@ -8,11 +8,13 @@ use articulated_core::lanes::Real;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::edits::{Edits, FrameArguments};
+use crate::effects::arguments::EffectsArguments;
 use crate::failure::STATUSES;
 use crate::groups::Group;
 use crate::names::{Names, known, wanted};
+use crate::simulate::arguments::SimulateArguments;
 
-/// Robot dynamics, spelled out: checks a URDF, generates its straight-line code, evaluates it, and compares it.
+/// Robot dynamics, spelled out: checks a URDF, generates its straight-line code, evaluates it, compares it, and simulates it.
 #[derive(Debug, Parser)]
 #[command(name = "articulated", version, after_help = overview())]
 pub(crate) struct Arguments {
@@ -106,6 +108,22 @@ pub(crate) enum Command {
         "articulated stress arm.urdf --generated --format json",
     ]))]
     Stress(StressArguments),
+    /// Simulates a scene: a table of the motion, pictures, a page that plays it, and what became of energy and momentum
+    #[command(after_help = examples(&[
+        "articulated simulate double_pendulum",
+        "articulated simulate quadruped_drop -o drop              (then open drop/motion.html)",
+        "articulated simulate arm.toml -o arm --end 5 --integrator dop853 --rtol 1e-10",
+        "articulated simulate arm.toml --generated --format json",
+        "articulated simulate chain --against target/peers/peers.json",
+    ]))]
+    Simulate(SimulateArguments),
+    /// Says which effects of a scene are on and off, what of the URDF is not used, and what each effect costs
+    #[command(after_help = examples(&[
+        "articulated effects golf_swing",
+        "articulated effects arm.toml --time",
+        "articulated effects arm.toml --functions forward_dynamics,mass_matrix --format json",
+    ]))]
+    Effects(EffectsArguments),
 }
 
 /// Which robot, and how to read it.
@@ -400,7 +418,9 @@ fn overview() -> String {
     let group = |g: Group| format!("  {}: {}\n", g.name(), g.title());
     let one = |name: &'static str| function::<f64>(name).map(|f| format!("    {name:42} {}\n", f.summary)).unwrap_or_default();
     let functions: String = Group::ALL.into_iter().map(|g| group(g) + &g.functions().map(one).collect::<String>()).collect();
-    format!("Bundled robots:\n{robots}\nFunctions, in groups whose names stand for all of them:\n{functions}\n{STATUSES}")
+    let scenes: String = articulated_models::SCENES.iter().map(|s| format!("  {:16} {}\n", s.name, s.summary())).collect();
+    let functions = format!("Functions, in groups whose names stand for all of them:\n{functions}");
+    format!("Bundled robots:\n{robots}\nBundled scenes:\n{scenes}\n{functions}\n{STATUSES}")
 }
 
 #[cfg(test)]

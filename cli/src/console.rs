@@ -47,6 +47,21 @@ impl Progress {
         Self(bar)
     }
 
+    /// For something whole, of which parts get done.
+    pub(crate) fn of_whole(what: String) -> Self {
+        let bar = Self::new(1000);
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} {wide_bar} {percent} %") {
+            bar.0.set_style(style);
+        }
+        bar.doing(what);
+        bar
+    }
+
+    /// This part of the whole is done, from 0 to 1.
+    pub(crate) fn at(&self, part: f64) {
+        self.0.set_position((part.clamp(0.0, 1.0) * 1000.0) as u64);
+    }
+
     /// What is being done now.
     pub(crate) fn doing(&self, what: String) {
         self.0.set_message(what);

@@ -49,6 +49,7 @@ impl From<articulated_codegen::Error> for Failure {
         match error {
             articulated_codegen::Error::Urdf(problems) => Self::input(problems.errors.iter().map(ToString::to_string)),
             articulated_codegen::Error::Edits { refusals } => Self::input(refusals.iter().flat_map(|r| lines(&r.to_string()))),
+            articulated_codegen::Error::Scene(errors) => Self::input(errors.errors.iter().map(ToString::to_string)),
             articulated_codegen::Error::UnknownFunction { .. } => Self { status: USAGE, lines: vec![error.to_string()] },
             other => Self::input([other.to_string()]),
         }

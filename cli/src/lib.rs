@@ -10,6 +10,7 @@ mod compare;
 pub mod compiled;
 mod console;
 mod edits;
+mod effects;
 mod eval;
 pub mod failure;
 mod functions;
@@ -65,6 +66,8 @@ fn dispatch(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Compare(a) => compare::run(a, format),
         Command::Functions(a) => functions::run(a, format).map(|()| OK),
         Command::Scaling(a) => scaling::run(a, format).map(|()| OK),
+        Command::Simulate(a) => simulate::run(a, format),
+        Command::Effects(a) => effects::run(a, format).map(|()| OK),
         Command::Stress(a) => stress::run(a, format),
     }
 }

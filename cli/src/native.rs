@@ -113,6 +113,11 @@ impl Native {
         Some(Kernel { entry, arguments: arguments.to_vec(), out, _library: self.clone() })
     }
 
+    /// Whether a peer takes steps by itself.
+    pub(crate) fn simulates(&self) -> bool {
+        self.symbol::<unsafe extern "C" fn()>("peer_simulate").is_some()
+    }
+
     /// A peer's name for itself.
     pub(crate) fn peer_name(&self) -> Option<String> {
         let name: extern "C" fn() -> *const c_char = self.symbol("peer_name")?;
@@ -152,6 +157,12 @@ impl Kernel {
                 Entry::Four(f) => f(x[0].as_ptr(), x[1].as_ptr(), x[2].as_ptr(), x[3].as_ptr(), out),
             }
         }
+    }
+
+    /// Whether these are arguments and a result of the lengths promised.
+    #[inline]
+    pub(crate) fn fits(&self, x: &[&[f64]], out: &[f64]) -> bool {
+        out.len() == self.out && x.len() == self.arguments.len() && x.iter().zip(&self.arguments).all(|(x, n)| x.len() == *n)
     }
 
     /// Calls the function on all states, so many rounds: lengths are checked once, and then only called.

@@ -224,6 +224,7 @@ PEER_API int peer_simulate(void * handle, const double * q, const double * v, do
   Peer & p = peer(handle);
   mjModel * m = p.model.get();
   mjData * d = p.data.get();
+  mju_user_warning = [](const char *) {}; // it would write a file where it stands; who asks for too few steps is told below
   const mjOption kept = m->opt;
   m->opt.integrator = mjINT_RK4;
   m->opt.timestep = step;

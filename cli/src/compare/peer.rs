@@ -161,7 +161,7 @@ fn is_kept(gives: &[Dim]) -> bool {
 }
 
 /// Our indices of the peer's coordinates and rates.
-fn orders(peer: &NativePeer, model: &Model<f64>) -> Result<(Vec<usize>, Vec<usize>), String> {
+pub(crate) fn orders(peer: &NativePeer, model: &Model<f64>) -> Result<(Vec<usize>, Vec<usize>), String> {
     let incomplete = "it does not tell its joints";
     let (nq, nv, joints) = (peer.number("nq"), peer.number("nv"), peer.number("joint_count"));
     let (nq, nv, joints) = (nq.ok_or(incomplete)?, nv.ok_or(incomplete)?, joints.ok_or(incomplete)?);

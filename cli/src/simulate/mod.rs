@@ -1,9 +1,123 @@
 //! `articulated simulate`.
-#![allow(dead_code)]
 
+mod against;
+pub(crate) mod arguments;
 mod columns;
 mod csv;
+mod drive;
+mod motion;
 mod page;
 mod parquet;
 pub(crate) mod plot;
-pub(crate) mod recording;
+mod recording;
+mod settings;
+pub(crate) mod stage;
+mod straight;
+mod summary;
+mod text;
+mod watched;
+
+use std::path::Path;
+
+use articulated_core::effect::EffectId;
+
+use crate::arguments::Format;
+use crate::compiled::Rustc;
+use crate::console::{self, Progress};
+use crate::failure::{Failure, INPUT, OK};
+use arguments::SimulateArguments;
+use motion::Motion;
+use page::Setting;
+use stage::{Stage, field};
+use straight::Straight;
+use summary::Summary;
+
+/// Simulates and writes.
+pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, Failure> {
+    let stage = Stage::find(&arguments.scene)?;
+    let settings = settings::of(stage.prepared.scene.simulation.as_ref(), arguments, &stage.prepared.scene.file)?;
+    if let Some(file) = &arguments.against {
+        return against::run(&stage, &settings, file, format).map(|()| OK);
+    }
+    if let Some(folder) = &arguments.output {
+        std::fs::create_dir_all(folder).map_err(|e| unwritable(folder, &e))?;
+    }
+    let progress = Progress::of_whole(format!("{}: motion", stage.name));
+    let (motion, code) = if arguments.generated {
+        let (generated, frames) = motion::generate(&stage, settings.integrator)?;
+        progress.doing(format!("{}: rustc", stage.name));
+        let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
+        let robot = Straight::build(&rustc, &generated).map_err(|e| Failure::tool(&e))?;
+        progress.doing(format!("{}: motion", stage.name));
+        (motion::run(&stage, &robot, &frames, &settings, &progress)?, "generated")
+    } else {
+        if cfg!(debug_assertions) {
+            console::warn("this command was built without optimisation: its speed means little");
+        }
+        let frames: Vec<String> = stage.model.frames.iter().map(|f| f.name.clone()).collect();
+        (motion::run(&stage, &stage.model, &frames, &settings, &progress)?, "generic")
+    };
+    let mut summary = Summary::new(&stage, &motion, &settings, code);
+    if let Some(folder) = &arguments.output {
+        progress.doing(format!("{}: files", stage.name));
+        write(&stage, &motion, &mut summary, folder)?;
+    }
+    drop(progress);
+    console::print(&match format {
+        Format::Text => text::text(&summary),
+        Format::Json => crate::json(&summary),
+    })?;
+    Ok(match &motion.error {
+        None => OK,
+        Some(error) => {
+            console::error(&format!("{}: {error}", stage.prepared.scene.file));
+            INPUT
+        }
+    })
+}
+
+fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::input([format!("{}: {error}", path.display())])
+}
+
+/// All files of a motion; their names go into the summary, which is the last of them.
+fn write(stage: &Stage, motion: &Motion, summary: &mut Summary, folder: &Path) -> Result<(), Failure> {
+    let recording = &motion.recording;
+    let page = page::html(recording, &setting(stage, summary)).map_err(|e| Failure::tool(&e))?;
+    let mut save = |name: &str, bytes: &[u8]| {
+        let path = folder.join(name);
+        summary.files.push(name.to_owned());
+        std::fs::write(&path, bytes).map_err(|e| unwritable(&path, &e))
+    };
+    let columns = columns::columns(recording);
+    let csv = csv::text(&columns).map_err(|e| Failure::tool(&e))?;
+    save("recording.csv", csv.as_bytes())?;
+    save("recording.parquet", &parquet::bytes(&columns))?;
+    for picture in plot::pictures(recording, &stage.name).map_err(|e| Failure::tool(&e))? {
+        save(&format!("{}.svg", picture.name), picture.svg.as_bytes())?;
+        save(&format!("{}.png", picture.name), &picture.png)?;
+    }
+    save("motion.html", page.as_bytes())?;
+    summary.files.push("summary.json".to_owned());
+    let path = folder.join("summary.json");
+    std::fs::write(&path, crate::json(summary)).map_err(|e| unwritable(&path, &e))
+}
+
+/// What the page shows of a scene.
+fn setting<'a>(stage: &'a Stage, summary: &Summary) -> Setting<'a> {
+    let contacts = || stage.effects_of(EffectId::contact);
+    let ball = |a: &articulated_core::effect::Applied| (a.on.clone(), a.at.xyz, field(a, "radius").first().copied().unwrap_or(0.0));
+    let plane = |a: &articulated_core::effect::Applied| {
+        let normal: [f64; 3] = field(a, "normal").try_into().ok()?;
+        Some((normal, *field(a, "height").first()?))
+    };
+    Setting {
+        title: &stage.name,
+        note: format!("{}, {} base; {}", summary.robot, summary.base, summary.integrator.name),
+        description: &stage.description,
+        model: &stage.model,
+        base: stage.base(),
+        balls: contacts().map(ball).collect(),
+        ground: contacts().next().and_then(plane),
+    }
+}

@@ -3,10 +3,12 @@
 mod check;
 mod compare;
 mod edits;
+mod effects;
 mod eval;
 mod functions;
 mod generate;
 mod scaling;
+mod simulate;
 mod stress;
 
 use std::io::Write;
@@ -79,7 +81,7 @@ impl File {
 
 #[test]
 fn help_tells_examples_and_statuses() {
-    for command in ["check", "generate", "eval", "compare", "functions", "scaling"] {
+    for command in ["check", "generate", "eval", "compare", "functions", "scaling", "simulate", "effects"] {
         let help = run(&[command, "--help"]);
         assert_eq!(help.status, 0);
         assert!(help.out.contains(&format!("articulated {command} ")) && help.out.contains("Exit status"), "{}", help.out);

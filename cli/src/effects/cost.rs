@@ -1,0 +1,138 @@
+//! What effects cost: code is generated without them, with each of them, and with all of them, and counted or timed.
+
+use articulated_codegen::graph::{Counts, Op};
+use articulated_codegen::{Generated, generate as generate_code};
+use articulated_core::algorithm::function;
+use articulated_core::effect::{Applied, EffectId};
+
+use super::report::{Added, Cost, Counted, Operations};
+use crate::compare::contender::Contender;
+use crate::compare::timing::{self, Run};
+use crate::compiled::{Compiled, Rustc};
+use crate::console::Progress;
+use crate::failure::Failure;
+use crate::parallel;
+use crate::simulate::stage::Stage;
+use crate::states;
+
+/// The scene with some of its effects.
+pub(super) struct Variant {
+    /// What it has that the one of number `against` has not.
+    what: String,
+    places: usize,
+    effects: Vec<Applied>,
+    gravity: [f64; 3],
+    against: usize,
+}
+
+/// Number of the variant with gravity and nothing else.
+const WITHOUT: usize = 0;
+/// States that functions are timed on.
+const STATES: usize = 64;
+
+/// The scene without effects, the same without gravity, with each effect, and with all.
+pub(super) fn variants(stage: &Stage) -> Vec<Variant> {
+    let (all, gravity) = (stage.effects(), stage.prepared.request.options.gravity);
+    let variant =
+        |what: &str, effects: Vec<Applied>| Variant { what: what.to_owned(), places: effects.len(), effects, gravity, against: WITHOUT };
+    let mut variants = vec![variant("", Vec::new())];
+    if gravity != [0.0; 3] {
+        variants.push(Variant { gravity: [0.0; 3], ..variant("gravity", Vec::new()) });
+    }
+    let mut kinds: Vec<EffectId> = all.iter().map(|a| a.effect).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    for kind in &kinds {
+        variants.push(variant(kind.name(), all.iter().filter(|a| a.effect == *kind).cloned().collect()));
+    }
+    if kinds.len() > 1 {
+        variants.push(variant("all together", all.to_vec()));
+    }
+    variants
+}
+
+/// The code of all functions, of each variant.
+pub(super) fn generate(stage: &Stage, variants: &[Variant], functions: &[String], progress: &Progress) -> Result<Vec<Generated>, Failure> {
+    let made = parallel::map(variants, |variant| {
+        let mut request = stage.prepared.request.clone();
+        let o = &mut request.options;
+        (o.effects, o.gravity) = (variant.effects.clone(), variant.gravity);
+        (o.functions, o.frames, o.runtime, o.stages) = (functions.to_vec(), None, None, false);
+        (o.parameters, o.batch) = (Vec::new(), Vec::new());
+        progress.doing(format!("generation: {}", variant.what));
+        let made = generate_code(&request);
+        progress.step();
+        made
+    });
+    made.into_iter().map(|made| made.map_err(Failure::from)).collect()
+}
+
+/// What each function costs by its ledger.
+pub(super) fn counted(variants: &[Variant], made: &[Generated], functions: &[String]) -> Vec<Cost> {
+    let operations = |k: usize, f: usize| Operations::of(made[k].ledger.functions[f].emitted());
+    let cost = |(f, name): (usize, &String)| Cost {
+        function: name.clone(),
+        without: Counted { operations: operations(WITHOUT, f), ns: None },
+        adds: (1..variants.len()).map(|k| added(&variants[k], operations(k, f), operations(variants[k].against, f))).collect(),
+    };
+    functions.iter().enumerate().map(cost).collect()
+}
+
+fn added(variant: &Variant, with: Operations, against: Operations) -> Added {
+    // Code without gravity is what gravity is added to.
+    let operations = if variant.what == "gravity" { against.less(with) } else { with.less(against) };
+    Added { what: variant.what.clone(), places: variant.places, operations, ns: None }
+}
+
+impl Operations {
+    fn of(counts: &Counts) -> Self {
+        let number = |n: u64| i64::try_from(n).unwrap_or(i64::MAX);
+        Self {
+            multiplications: number(counts.multiplications()),
+            additions: number(counts.additions()),
+            divisions_and_roots: number(counts.of(Op::Div) + counts.of(Op::Sqrt)),
+            instructions: number(counts.instructions()),
+        }
+    }
+
+    fn less(self, other: Self) -> Self {
+        Self {
+            multiplications: self.multiplications - other.multiplications,
+            additions: self.additions - other.additions,
+            divisions_and_roots: self.divisions_and_roots - other.divisions_and_roots,
+            instructions: self.instructions - other.instructions,
+        }
+    }
+}
+
+/// Compiles all of it and times each function, all variants in turn.
+pub(super) fn time(
+    stage: &Stage,
+    made: &[Generated],
+    rustc: &Rustc,
+    repetitions: usize,
+    costs: &mut [Cost],
+    progress: &Progress,
+) -> Result<(), Failure> {
+    progress.doing("rustc".to_owned());
+    let compiled = parallel::map(made, |generated| Compiled::build(rustc, generated));
+    let compiled: Vec<Compiled> = compiled.into_iter().collect::<Result<_, _>>().map_err(|e| Failure::tool(&e))?;
+    let states = states::random(&stage.model, STATES, 1);
+    for cost in costs {
+        let Some(row) = function::<f64>(&cost.function) else { continue };
+        progress.doing(format!("{}: times", row.name));
+        let arguments: Vec<Vec<&[f64]>> = states.iter().map(|s| s.arguments(row).unwrap_or_default()).collect();
+        let contenders: Vec<Contender> = compiled.iter().map(|c| Contender::generated(c, row)).collect();
+        let mut runs: Vec<Run<'_>> = contenders.iter().map(|c| c.run(&arguments)).collect();
+        let times = timing::interleaved(&mut runs, repetitions, arguments.len());
+        drop(runs);
+        cost.without.ns = Some(timing::summary(&times[WITHOUT]));
+        for (added, time) in cost.adds.iter_mut().zip(&times[1..]) {
+            let sign = if added.what == "gravity" { -1.0 } else { 1.0 };
+            let more: Vec<f64> = time.iter().zip(&times[WITHOUT]).map(|(with, without)| sign * (with - without)).collect();
+            added.ns = Some(timing::summary(&more));
+        }
+        progress.step();
+    }
+    Ok(())
+}

@@ -1,0 +1,43 @@
+//! `articulated effects`.
+
+pub(crate) mod arguments;
+mod cost;
+mod report;
+mod text;
+
+use crate::arguments::Format;
+use crate::compiled::Rustc;
+use crate::console::{self, Progress};
+use crate::failure::Failure;
+use crate::names;
+use crate::simulate::stage::Stage;
+use arguments::EffectsArguments;
+use report::Report;
+
+/// What is told where nobody asks for others.
+const FUNCTIONS: [&str; 2] = ["inverse_dynamics", "forward_dynamics"];
+
+/// Prints what is on, off and not used, and what it costs.
+pub(crate) fn run(arguments: &EffectsArguments, format: Format) -> Result<(), Failure> {
+    let stage = Stage::find(&arguments.scene)?;
+    let mut functions = names::flat(&arguments.functions);
+    if functions.is_empty() {
+        functions = FUNCTIONS.map(str::to_owned).to_vec();
+    }
+    let rustc = arguments.time.then(Rustc::find).transpose().map_err(|e| Failure::tool(&e))?;
+    let mut report = Report::of(&stage);
+    let variants = cost::variants(&stage);
+    let progress = Progress::new(variants.len() + functions.len() * usize::from(arguments.time));
+    let made = cost::generate(&stage, &variants, &functions, &progress)?;
+    report.limbs = made.iter().flat_map(|g| &g.ledger.functions).map(|f| f.lanes).max().unwrap_or(1);
+    report.costs = cost::counted(&variants, &made, &functions);
+    if let Some(rustc) = &rustc {
+        report.compiler = Some(rustc.version.clone());
+        cost::time(&stage, &made, rustc, arguments.repetitions as usize, &mut report.costs, &progress)?;
+    }
+    drop(progress);
+    console::print(&match format {
+        Format::Text => text::text(&report),
+        Format::Json => crate::json(&report),
+    })
+}

@@ -1,0 +1,144 @@
+//! Effects of a scene as data.
+
+use articulated_core::description::JointKind;
+use articulated_core::effect::effects;
+use serde::Serialize;
+
+use crate::compare::timing::Summary;
+use crate::simulate::stage::Stage;
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Report {
+    pub(super) scene: String,
+    pub(super) robot: String,
+    pub(super) base: &'static str,
+    /// In the base frame, m/s².
+    pub(super) gravity: [f64; 3],
+    pub(super) degrees_of_freedom: usize,
+    pub(super) on: Vec<On>,
+    pub(super) off: Vec<Off>,
+    /// What the URDF says and nothing uses.
+    pub(super) ignored: Vec<Ignored>,
+    /// How many limbs the generated code computes at once.
+    pub(super) limbs: usize,
+    /// What compiled the code that was timed.
+    pub(super) compiler: Option<String>,
+    /// One for each function.
+    pub(super) costs: Vec<Cost>,
+}
+
+/// An effect on a joint or a link.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct On {
+    pub(super) effect: &'static str,
+    pub(super) law: &'static str,
+    pub(super) on: String,
+    pub(super) numbers: Vec<Number>,
+    /// In the scene's file.
+    pub(super) line: Option<u32>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Number {
+    pub(super) name: &'static str,
+    pub(super) values: Vec<f64>,
+    pub(super) unit: &'static str,
+    /// The tag of the URDF that it is from.
+    pub(super) from: Option<&'static str>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Off {
+    pub(super) effect: &'static str,
+    pub(super) why: String,
+}
+
+/// Something of the URDF.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Ignored {
+    /// The link or joint.
+    pub(super) of: String,
+    pub(super) tag: String,
+    pub(super) why: String,
+    /// In the URDF.
+    pub(super) line: Option<u32>,
+}
+
+/// What a function costs without effects, what each effect adds by itself, and what all of them add.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Cost {
+    pub(super) function: String,
+    /// Gravity is in it, effects are not.
+    pub(super) without: Counted,
+    pub(super) adds: Vec<Added>,
+}
+
+/// Operations of generated code.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub(super) struct Operations {
+    pub(super) multiplications: i64,
+    pub(super) additions: i64,
+    /// Divisions and roots.
+    pub(super) divisions_and_roots: i64,
+    /// A multiply-add counted once; signs, comparisons and selections too; no sines and cosines.
+    pub(super) instructions: i64,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Counted {
+    pub(super) operations: Operations,
+    pub(super) ns: Option<Summary>,
+}
+
+/// What something adds.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Added {
+    /// An effect's name, `gravity`, or `all together`.
+    pub(super) what: String,
+    /// On how many joints or places of links.
+    pub(super) places: usize,
+    pub(super) operations: Operations,
+    /// Repetition by repetition, against the code without it.
+    pub(super) ns: Option<Summary>,
+}
+
+impl Report {
+    pub(super) fn of(stage: &Stage) -> Self {
+        let told = &stage.prepared.resolved.report;
+        let law = |name: &str| effects().iter().find(|e| e.name == name).map_or("", |e| e.what);
+        let on = told.on.iter().map(|e| On {
+            effect: e.effect.name(),
+            law: law(e.effect.name()),
+            on: e.on.clone(),
+            numbers: e.numbers.iter().map(|n| number(n, slides(stage, &e.on))).collect(),
+            line: e.place.line(),
+        });
+        Self {
+            scene: stage.name.clone(),
+            robot: stage.model.name.clone(),
+            base: if stage.base() == articulated_core::description::Base::Floating { "floating" } else { "fixed" },
+            gravity: stage.model.gravity.into(),
+            degrees_of_freedom: stage.model.nv,
+            on: on.collect(),
+            off: told.off.iter().map(|e| Off { effect: e.effect, why: e.why.to_string() }).collect(),
+            ignored: told
+                .ignored
+                .iter()
+                .map(|u| Ignored { of: u.subject.to_string(), tag: u.tag.clone(), why: u.why.clone(), line: u.line })
+                .collect(),
+            limbs: 1,
+            compiler: None,
+            costs: Vec::new(),
+        }
+    }
+}
+
+/// Units are those of a joint that turns or of one that slides.
+fn number(n: &articulated_scene::Number, slides: bool) -> Number {
+    let (turning, sliding) = n.unit.split_once('|').unwrap_or((n.unit, n.unit));
+    Number { name: n.name, values: n.values.clone(), unit: if slides { sliding } else { turning }, from: n.from }
+}
+
+fn slides(stage: &Stage, name: &str) -> bool {
+    stage.description.joint(name).is_some_and(|j| stage.description.joints[j].kind == JointKind::Prismatic)
+}

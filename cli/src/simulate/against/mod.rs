@@ -1,0 +1,156 @@
+//! `articulated simulate --against`: how long who needs to get to the end of a motion, at the same error there.
+
+mod ours;
+mod peers;
+mod report;
+mod search;
+mod text;
+
+use std::path::Path;
+use std::time::Instant;
+
+use articulated::simulate::{IntegratorId, Settings};
+
+use super::motion;
+use super::stage::Stage;
+use super::straight::Straight;
+use crate::arguments::Format;
+use crate::compare::timing::{self, Run};
+use crate::compiled::Rustc;
+use crate::console::{self, Progress};
+use crate::failure::Failure;
+use ours::Ours;
+use peers::Peer;
+use report::{Reached, Report, Target};
+use search::{Effort, search};
+
+/// Errors of the last state, rad, m, and those a second: the largest of all.
+const TARGETS: [f64; 3] = [1e-3, 1e-6, 1e-9];
+const REPETITIONS: usize = 15;
+
+/// Somebody who can get to the end of the motion.
+pub(super) trait Runner {
+    fn name(&self) -> String;
+    fn order(&self) -> u32;
+    /// Whether it is `articulated`.
+    fn own(&self) -> bool;
+    /// From the least to the most that makes sense.
+    fn effort(&self, level: usize) -> Option<Effort>;
+    /// Goes to the end; (q, v) there, or nothing if it went astray.
+    fn run(&mut self, effort: Effort) -> Option<Vec<f64>>;
+    /// Steps and evaluations of forward dynamics of the last run.
+    fn spent(&self) -> (u64, u64);
+}
+
+/// Measures and prints.
+pub(super) fn run(stage: &Stage, settings: &Settings, file: &Path, format: Format) -> Result<(), Failure> {
+    bare(stage)?;
+    let (q, v) = motion::start(stage)?;
+    let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
+    let (generated, _) = motion::generate(stage, IntegratorId::dop853)?;
+    let robot = Straight::build(&rustc, &generated).map_err(|e| Failure::tool(&e))?;
+    let folder = tempfile::tempdir().map_err(|e| Failure::tool(&e))?;
+    let (peers, notes) = peers::open(stage, file, folder.path(), (&q, &v), settings)?;
+    let ours = |id| Ours::new(&robot, id, settings, (&q, &v));
+    let mut reference = ours(IntegratorId::dop853);
+    let best = reference.run(Effort::Tolerance(1e-14)).ok_or_else(|| astray("the reference"))?;
+    let second = reference.run(Effort::Tolerance(4e-14)).ok_or_else(|| astray("the reference"))?;
+    let mut runners: Vec<Box<dyn Runner + '_>> = Vec::new();
+    runners.extend(peers.into_iter().map(|p: Peer| Box::new(p) as Box<dyn Runner>));
+    for id in [IntegratorId::rk4, IntegratorId::dopri5, IntegratorId::dop853] {
+        runners.push(Box::new(ours(id)));
+    }
+    let progress = Progress::new(runners.len() * TARGETS.len() + TARGETS.len());
+    let found = found(&mut runners, &best, &progress);
+    let targets = (0..TARGETS.len()).map(|k| {
+        progress.doing(format!("error {:e}: times", TARGETS[k]));
+        let target = timed(&mut runners, k, &found, settings);
+        progress.step();
+        target
+    });
+    let report = Report {
+        scene: stage.name.clone(),
+        robot: stage.model.name.clone(),
+        simulated_s: settings.end - settings.start,
+        reference: format!("dop853 at a tolerance of 1e-14; at 4e-14 its last state is {:.1e} away", search::distance(&best, &second)),
+        compiler: rustc.version.clone(),
+        notes,
+        targets: targets.collect(),
+    };
+    drop(progress);
+    console::print(&match format {
+        Format::Text => text::text(&report),
+        Format::Json => crate::json(&report),
+    })
+}
+
+fn astray(who: &str) -> Failure {
+    Failure::input([format!("{who} does not get to the end of the motion")])
+}
+
+/// Peers know the robot's file and gravity, and nothing else of a scene.
+fn bare(stage: &Stage) -> Result<(), Failure> {
+    let (o, scene) = (&stage.prepared.request.options, &stage.prepared.scene);
+    let asked = [
+        (!o.effects.is_empty(), "effects"),
+        (!o.shafts.is_empty(), "effects.shaft"),
+        (!(o.append.is_empty() && o.payloads.is_empty() && o.lock.is_empty()), "append, payload or lock"),
+        (scene.control.drive != articulated_scene::Drive::None, "control"),
+        (scene.impact.is_some(), "impact"),
+    ];
+    let lines: Vec<String> = asked
+        .iter()
+        .filter(|(there, _)| *there)
+        .map(|(_, what)| {
+            format!("{}: found {what}, expected none for --against: peers know the robot's file and its gravity only", scene.file)
+        })
+        .collect();
+    if lines.is_empty() { Ok(()) } else { Err(Failure::input(lines)) }
+}
+
+/// The least effort of each runner for each target, and the error that is left.
+type Found = Vec<Vec<Option<(Effort, f64)>>>;
+
+fn found(runners: &mut [Box<dyn Runner + '_>], best: &[f64], progress: &Progress) -> Found {
+    let mut all = Vec::new();
+    for runner in runners {
+        let (mut own, mut level) = (Vec::new(), 0);
+        for target in TARGETS {
+            progress.doing(format!("{}: error {target:e}", runner.name()));
+            let found = search(runner.as_mut(), best, target, level);
+            level = found.map_or(level, |f| f.0);
+            own.push(found.map(|(_, effort, error)| (effort, error)));
+            progress.step();
+        }
+        all.push(own);
+    }
+    all
+}
+
+/// All runners that reach the target, timed in turn.
+fn timed(runners: &mut [Box<dyn Runner + '_>], target: usize, found: &Found, settings: &Settings) -> Target {
+    let mut reached: Vec<Reached> = Vec::new();
+    let mut runs: Vec<Run<'_>> = Vec::new();
+    for (runner, found) in runners.iter_mut().zip(found) {
+        let Some((effort, error)) = found[target] else { continue };
+        runner.run(effort);
+        let (steps, evaluations) = runner.spent();
+        let (name, order, own) = (runner.name(), runner.order(), runner.own());
+        reached.push(Reached { name, order, own, effort, error, steps, evaluations, ..Reached::default() });
+        runs.push(Box::new(move |rounds| {
+            let clock = Instant::now();
+            (0..rounds).for_each(|_| {
+                std::hint::black_box(runner.run(effort));
+            });
+            clock.elapsed()
+        }));
+    }
+    let times = timing::interleaved(&mut runs, REPETITIONS, 1);
+    drop(runs);
+    for (r, time) in reached.iter_mut().zip(&times) {
+        let summary = timing::summary(time);
+        r.wall_ms = summary.median * 1e-6;
+        r.simulated_s_per_wall_s = (settings.end - settings.start) / (summary.median * 1e-9);
+    }
+    Target::new(TARGETS[target], reached, &times)
+}

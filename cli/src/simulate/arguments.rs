@@ -1,0 +1,53 @@
+//! The words of `articulated simulate`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+#[derive(Args, Debug)]
+pub(crate) struct SimulateArguments {
+    /// A bundled scene's name, or the path of a scene
+    #[arg(value_name = "SCENE")]
+    pub(crate) scene: String,
+    /// The folder to write to; it is made if it is not there
+    #[arg(short, long, value_name = "FOLDER")]
+    pub(crate) output: Option<PathBuf>,
+    /// By generated code, compiled by rustc, instead of generic code
+    #[arg(long)]
+    pub(crate) generated: bool,
+    /// The last time, s, instead of the scene's
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub(crate) end: Option<f64>,
+    /// The integrator, instead of the scene's
+    #[arg(long, value_name = "NAME", value_parser = integrator)]
+    pub(crate) integrator: Option<String>,
+    /// Fixed steps of this length, s
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub(crate) step: Option<f64>,
+    /// Relative tolerance of a step, instead of the scene's
+    #[arg(long, value_name = "TOL")]
+    pub(crate) rtol: Option<f64>,
+    /// Absolute tolerance of a step, rad, m, and those a second, instead of the scene's
+    #[arg(long, value_name = "TOL")]
+    pub(crate) atol: Option<f64>,
+    /// Instead of writing a motion, measure how fast generated code gets to the scene's end at final errors of 1e-3, 1e-6 and 1e-9, beside
+    /// peer libraries that take steps: one library, or a list of them. They are run: name only what you trust
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["output", "generated", "integrator", "step", "rtol", "atol", "every"])]
+    pub(crate) against: Option<PathBuf>,
+    /// Record every so many seconds, instead of what the scene says
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub(crate) every: Option<f64>,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    text.trim().parse().ok().filter(|x: &f64| *x > 0.0 && x.is_finite()).ok_or_else(|| "expected a number of seconds greater than 0".into())
+}
+
+fn integrator(text: &str) -> Result<String, String> {
+    let names = || articulated::simulate::integrators().iter().map(|i| i.name);
+    if names().any(|name| name == text) {
+        return Ok(text.to_owned());
+    }
+    let near = articulated_codegen::nearest(text, names()).map(|n| format!("did you mean {n}? ")).unwrap_or_default();
+    Err(format!("{near}there are {}", names().collect::<Vec<_>>().join(", ")))
+}

@@ -1,0 +1,128 @@
+//! A scene's motion: robot, state, control and events put together, and run.
+
+use std::time::{Duration, Instant};
+
+use articulated::Dynamics;
+use articulated::simulate::{Counts, Ended, Hit, IntegratorId, Recording as Run, Settings, SimulateError, Simulation};
+use articulated_codegen::Generated;
+use articulated_core::description::JointKind;
+
+use super::drive::Drive;
+use super::recording::{Happening, Recording};
+use super::stage::Stage;
+use super::watched::{self, Watch};
+use crate::console::Progress;
+use crate::failure::Failure;
+
+/// What came of it.
+pub(super) struct Motion {
+    pub(super) recording: Recording,
+    pub(super) counts: Counts,
+    /// In a few words.
+    pub(super) ended: String,
+    /// Of the run alone.
+    pub(super) wall: Duration,
+    /// Why it did not go on to its end.
+    pub(super) error: Option<String>,
+}
+
+/// The state that it starts from.
+pub(super) fn start(stage: &Stage) -> Result<(Vec<f64>, Vec<f64>), Failure> {
+    stage.prepared.scene.start(&stage.model).map_err(|e| Failure::input(e.errors.iter().map(ToString::to_string)))
+}
+
+/// Runs it on a robot whose functions give these frames.
+pub(super) fn run<R: Dynamics<f64>>(
+    stage: &Stage,
+    robot: &R,
+    frames: &[String],
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<Motion, Failure> {
+    let (q, v) = start(stage)?;
+    let controller = stage.prepared.scene.controller(&stage.model, &mut |file| stage.file(file));
+    let controller = controller.map_err(|e| Failure::input(e.errors.iter().map(ToString::to_string)))?;
+    let refused = |e: SimulateError| Failure::input(e.to_string().lines().map(|l| format!("{}: {l}", stage.prepared.scene.file)));
+    let mut drive = Drive::new(robot, controller, stage.prepared.scene.control.period);
+    let mut watch = Watch::of(stage, robot, frames).map_err(refused)?;
+    let mut simulation = Simulation::new(robot, settings.clone()).map_err(refused)?;
+    let mut run = simulation.recording();
+    let (length, mut looked) = (settings.end - settings.start, 0_u64);
+    let mut follow = |over: bool, t: f64, counts: &Counts| {
+        // The bar is for people: often enough, and no burden.
+        if counts.steps >= looked + 256 {
+            looked = counts.steps;
+            progress.at((t - settings.start) / length);
+        }
+        !over
+    };
+    let over = watch.over.clone();
+    let clock = Instant::now();
+    let result = simulation.run_into(&q, &v, &mut drive, &mut watch.events, &mut run, &mut |t, counts| follow(over.get(), t, counts));
+    let wall = clock.elapsed();
+    let error = match result {
+        Ok(()) => None,
+        // Nothing was done yet: it is the scene that is wrong.
+        Err(e @ (SimulateError::Settings(_) | SimulateError::State(_) | SimulateError::Function(_))) => return Err(refused(e)),
+        Err(e) => Some(e.to_string()),
+    };
+    let ended = match run.ended {
+        Ended::Not => "by an error".to_owned(),
+        Ended::AtEnd => "at its end".to_owned(),
+        Ended::ByEvent(_) | Ended::ByWatcher => "by an event".to_owned(),
+    };
+    let counts = run.counts;
+    Ok(Motion { recording: told(stage, run, &|hit| watch.words(hit)), counts, ended, wall, error })
+}
+
+/// The library's recording with names.
+fn told(stage: &Stage, run: Run, words: &dyn Fn(&Hit) -> String) -> Recording {
+    let n = run.len();
+    let whole = |x: Vec<f64>| if x.len() == n { x } else { vec![0.0; n] };
+    let momentum = (0..n).map(|k| run.momentum_at(k).and_then(|p| p.try_into().ok()).unwrap_or_default()).collect();
+    Recording {
+        events: run.events.iter().map(|hit| Happening { time: hit.t, what: words(hit) }).collect(),
+        t: run.t,
+        q: run.q,
+        v: run.v,
+        tau: run.tau,
+        kinetic: whole(run.kinetic),
+        potential: whole(run.potential),
+        work: whole(run.work),
+        dissipated: whole(run.dissipated),
+        momentum,
+        ..Recording::of(&stage.model)
+    }
+}
+
+/// The code that a simulation of the scene needs, and the frames that it gives.
+pub(super) fn generate(stage: &Stage, integrator: IntegratorId) -> Result<(Generated, Vec<String>), Failure> {
+    let frames = watched::frames(stage);
+    let mut functions = vec!["forward_dynamics", "kinetic_energy", "potential_energy"];
+    if stage.model.moving_mass() > 0.0 {
+        functions.push("centroidal_momentum");
+    }
+    if !stage.effects().is_empty() {
+        functions.extend(["dissipation", "motor_torques"]);
+    }
+    let turns = |kind: JointKind| matches!(kind, JointKind::Floating | JointKind::Spherical);
+    if stage.model.joints.iter().any(|j| turns(j.kind)) {
+        functions.push("integrate");
+    }
+    functions.push("difference");
+    if integrator == IntegratorId::rodas4 {
+        functions.push("forward_dynamics_derivatives");
+    }
+    if !frames.is_empty() {
+        functions.push("placements");
+    }
+    if stage.prepared.scene.impact.is_some() {
+        functions.extend(["jacobians_world_aligned", "solve_mass_matrix"]);
+    }
+    let mut request = stage.prepared.request.clone();
+    request.options.functions = functions.into_iter().map(str::to_owned).collect();
+    request.options.frames = Some(frames.clone());
+    (request.options.runtime, request.options.stages) = (None, false);
+    (request.options.parameters, request.options.batch) = (Vec::new(), Vec::new());
+    Ok((articulated_codegen::generate(&request)?, frames))
+}

@@ -1,0 +1,88 @@
+//! How a scene is simulated: what it says itself, and what the command line says instead.
+
+use articulated::simulate::{IntegratorId, Output, Settings, Stiffness, integrator};
+use articulated_scene::{Integrator, Output as Recorded, Simulation, Stiffness as Stiff};
+
+use super::arguments::SimulateArguments;
+use crate::failure::Failure;
+
+/// The settings, or why there are none.
+pub(super) fn of(scene: Option<&Simulation>, arguments: &SimulateArguments, file: &str) -> Result<Settings, Failure> {
+    if scene.is_none() && arguments.end.is_none() {
+        return Err(Failure::input([format!("{file}: simulation: found nothing, expected [simulation] with `end`, s, or --end here")]));
+    }
+    let mut settings = from_scene(&scene.cloned().unwrap_or_default());
+    let a = arguments;
+    settings.end = a.end.unwrap_or(settings.end);
+    settings.rtol = a.rtol.unwrap_or(settings.rtol);
+    settings.atol = a.atol.unwrap_or(settings.atol);
+    settings.step = a.step.or(settings.step);
+    if let Some(row) = a.integrator.as_deref().and_then(integrator) {
+        settings.integrator = row.id;
+        // A step that the scene gives is for the integrator that it names.
+        if row.adaptive && a.step.is_none() {
+            settings.step = None;
+        }
+    }
+    if let Some(every) = a.every {
+        settings.output = Output::Every(every);
+    }
+    Ok(settings)
+}
+
+fn from_scene(s: &Simulation) -> Settings {
+    let output = match &s.output {
+        Recorded::Every(seconds) => Output::Every(*seconds),
+        Recorded::At(times) => Output::At(times.clone()),
+        Recorded::Steps => Output::Steps,
+        Recorded::Ends => Output::Ends,
+    };
+    Settings {
+        integrator: id(s.integrator),
+        start: s.start,
+        end: s.end,
+        step: s.step,
+        rtol: s.rtol,
+        atol: s.atol,
+        min_step: s.min_step,
+        max_step: s.max_step,
+        first_step: s.first_step,
+        max_steps: s.max_steps,
+        output,
+        event_tolerance: s.event_tolerance,
+        stiffness: match s.stiffness {
+            Stiff::Refuse => Stiffness::Refuse,
+            Stiff::Note => Stiffness::Note,
+        },
+        ..Settings::default()
+    }
+}
+
+fn id(scene: Integrator) -> IntegratorId {
+    match scene {
+        Integrator::SemiImplicitEuler => IntegratorId::semi_implicit_euler,
+        Integrator::Rk4 => IntegratorId::rk4,
+        Integrator::Dopri5 => IntegratorId::dopri5,
+        Integrator::Dop853 => IntegratorId::dop853,
+        Integrator::Rodas4 => IntegratorId::rodas4,
+        Integrator::LieMidpoint => IntegratorId::lie_midpoint,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn integrators_of_scenes_and_of_the_library_have_the_same_names() {
+        for scene in Integrator::all() {
+            assert_eq!(id(scene).name(), scene.name());
+        }
+        assert_eq!(Integrator::all().count(), articulated::simulate::integrators().len());
+    }
+
+    #[test]
+    fn defaults_of_scenes_are_those_of_the_library() {
+        assert_eq!(from_scene(&Simulation::default()), Settings::default());
+    }
+}

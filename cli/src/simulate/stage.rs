@@ -1,0 +1,95 @@
+//! A scene with its robot: what `simulate` and `effects` are about.
+
+use std::path::{Path, PathBuf};
+
+use articulated_codegen::scene::{self, Bundled, Prepared, Scene};
+use articulated_codegen::{Error, nearest};
+use articulated_core::description::{Base, Description};
+use articulated_core::effect::{Applied, EffectId};
+use articulated_core::model::Model;
+use articulated_scene::Robot;
+
+use crate::console;
+use crate::failure::Failure;
+
+/// A scene, its robot, and the model of both.
+pub(crate) struct Stage {
+    /// Of the scene, without folder and ending.
+    pub(crate) name: String,
+    pub(crate) prepared: Prepared,
+    /// The robot as edited.
+    pub(crate) description: Description,
+    /// With the scene's effects, and a frame for each link.
+    pub(crate) model: Model<f64>,
+    folder: PathBuf,
+}
+
+const BUNDLED: Bundled<'static> = &|name| articulated_models::robot(name).map(|r| (r.urdf, r.base));
+
+impl Stage {
+    /// The scene that a word of the command line names: a file, or a bundled one.
+    pub(crate) fn find(name: &str) -> Result<Self, Failure> {
+        let path = Path::new(name);
+        let bundled = articulated_models::scene(name).filter(|_| !path.is_file());
+        let (prepared, folder) = match bundled {
+            Some(bundled) => {
+                let scene = Scene::read(&format!("{name}.toml"), bundled.toml).map_err(Error::from)?;
+                (scene::open_in(scene, Path::new(""), BUNDLED)?, PathBuf::new())
+            }
+            None if path.is_file() => (scene::open(path, BUNDLED)?, path.parent().map(Path::to_owned).unwrap_or_default()),
+            None => return Err(unknown(name)),
+        };
+        let name = path.file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned());
+        Self::new(name, prepared, folder)
+    }
+
+    fn new(name: String, mut prepared: Prepared, folder: PathBuf) -> Result<Self, Failure> {
+        prepared.request.options.frames = None;
+        let reading = articulated_codegen::read(&prepared.request)?;
+        // Bundled robots are odd on purpose.
+        let odd = reading.warnings.iter().filter(|_| !matches!(prepared.scene.robot, Robot::Bundled(_)));
+        odd.chain(&reading.snapped).for_each(|w| console::warn(&w.to_string()));
+        let model = articulated_codegen::model(&prepared.request, &reading.description)?;
+        Ok(Self { name, prepared, description: reading.description, model, folder })
+    }
+
+    pub(crate) fn base(&self) -> Base {
+        self.prepared.request.options.base
+    }
+
+    /// The effects that are on.
+    pub(crate) fn effects(&self) -> &[Applied] {
+        &self.prepared.request.options.effects
+    }
+
+    /// Those of one kind.
+    pub(crate) fn effects_of(&self, effect: EffectId) -> impl Iterator<Item = &Applied> {
+        self.effects().iter().filter(move |a| a.effect == effect)
+    }
+
+    /// The text of a file that the scene names.
+    pub(crate) fn file(&self, name: &str) -> Result<String, String> {
+        let path = self.folder.join(name);
+        std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))
+    }
+}
+
+/// The numbers of a field of an effect.
+pub(crate) fn field<'a>(applied: &'a Applied, name: &str) -> &'a [f64] {
+    let mut start = 0;
+    for f in applied.effect.row().fields {
+        if f.name == name {
+            return applied.parameters.get(start..start + f.len).unwrap_or(&[]);
+        }
+        start += f.len;
+    }
+    &[]
+}
+
+fn unknown(name: &str) -> Failure {
+    let names = || articulated_models::SCENES.iter().map(|s| s.name);
+    let near = nearest(name, names()).map(|n| format!("; did you mean {n:?}?")).unwrap_or_default();
+    let robot = if articulated_models::robot(name).is_some() { "; that is a robot, and a scene says what to do with it" } else { "" };
+    let known = names().collect::<Vec<_>>().join(", ");
+    Failure::input([format!("{name}: found neither a file nor a bundled scene{robot}{near} (bundled: {known})")])
+}

@@ -1,0 +1,55 @@
+//! A robot by its generated code, compiled and loaded, as anything that has dynamics.
+
+use articulated::{Dynamics, FunctionError, FunctionId, Shape, check_length};
+use articulated_codegen::Generated;
+use articulated_core::algorithm::functions;
+
+use crate::compiled::{CompileError, Compiled, Rustc};
+use crate::native::Kernel;
+
+/// Generated code of some functions of a robot.
+pub(super) struct Straight {
+    name: String,
+    shape: Shape,
+    kernels: Vec<Option<Kernel>>,
+    // Last, so that the library is closed after its functions.
+    _compiled: Compiled,
+}
+
+impl Straight {
+    pub(super) fn build(rustc: &Rustc, generated: &Generated) -> Result<Self, CompileError> {
+        let compiled = Compiled::build(rustc, generated)?;
+        let kernels = functions::<f64>().iter().map(|f| compiled.kernel(f.name).cloned()).collect();
+        let (name, shape) = (generated.model.name.clone(), compiled.shape());
+        Ok(Self { name, shape, kernels, _compiled: compiled })
+    }
+}
+
+impl Dynamics<f64> for Straight {
+    type Workspace = ();
+
+    fn workspace(&self) {}
+
+    fn shape(&self) -> Shape {
+        self.shape
+    }
+
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    #[inline]
+    fn call(&self, function: FunctionId, (): &mut (), arguments: &[&[f64]], out: &mut [f64]) -> Result<(), FunctionError> {
+        let row = function.row::<f64>();
+        let kernel = self.kernels[function as usize].as_ref().ok_or(FunctionError::NotGenerated { function: row.name })?;
+        if !kernel.fits(arguments, out) {
+            check_length("arguments", arguments.len(), row.takes.len())?;
+            for (argument, given) in row.takes.iter().zip(arguments) {
+                check_length(argument.name(), given.len(), argument.len(self.shape))?;
+            }
+            check_length("out", out.len(), row.len(self.shape))?;
+        }
+        kernel.call(arguments, out);
+        Ok(())
+    }
+}

@@ -1,0 +1,159 @@
+//! What there is to say about a motion, as data.
+
+use articulated::simulate::{Counts, Settings};
+use serde::Serialize;
+
+use super::motion::Motion;
+use super::recording::{Happening, Recording};
+use super::stage::Stage;
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Summary {
+    pub(super) scene: String,
+    pub(super) robot: String,
+    pub(super) base: &'static str,
+    pub(super) degrees_of_freedom: usize,
+    /// Names of the effects that are on.
+    pub(super) effects: Vec<&'static str>,
+    /// `generated` or `generic`.
+    pub(super) code: &'static str,
+    pub(super) integrator: Method,
+    pub(super) start_s: f64,
+    /// The last time that was reached.
+    pub(super) end_s: f64,
+    pub(super) ended: String,
+    pub(super) error: Option<String>,
+    pub(super) energy: Energy,
+    pub(super) momentum: Momentum,
+    pub(super) counts: Done,
+    pub(super) events: Vec<Happening>,
+    pub(super) wall_s: f64,
+    pub(super) simulated_s_per_wall_s: f64,
+    /// Written into the folder.
+    pub(super) files: Vec<String>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Method {
+    pub(super) name: &'static str,
+    pub(super) order: u32,
+    /// Fixed steps of this length.
+    pub(super) step_s: Option<f64>,
+    pub(super) rtol: f64,
+    pub(super) atol: f64,
+}
+
+/// J.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(super) struct Energy {
+    pub(super) start: f64,
+    pub(super) end: f64,
+    pub(super) kinetic_end: f64,
+    pub(super) potential_end: f64,
+    pub(super) work: f64,
+    pub(super) dissipated: f64,
+    /// T + U − start − work − dissipated, the largest at any time of output.
+    pub(super) largest_imbalance: f64,
+    /// That over the largest kinetic energy, or what was done and lost.
+    pub(super) relative_imbalance: f64,
+}
+
+/// About the centre of mass, base axes: three of angular momentum, kg·m²/s, then three of linear momentum, kg·m/s.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(super) struct Momentum {
+    pub(super) start: [f64; 6],
+    pub(super) end: [f64; 6],
+    /// Length of the largest change since the start.
+    pub(super) largest_change_angular: f64,
+    pub(super) largest_change_linear: f64,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Done {
+    pub(super) steps: u64,
+    pub(super) rejected_steps: u64,
+    /// Of forward dynamics.
+    pub(super) evaluations: u64,
+    /// Of its derivatives.
+    pub(super) derivatives: u64,
+    pub(super) smallest_step_s: Option<f64>,
+    pub(super) largest_step_s: f64,
+    /// Where stiffness was noted.
+    pub(super) stiff_at_s: Option<f64>,
+    pub(super) records: usize,
+}
+
+impl Summary {
+    pub(super) fn new(stage: &Stage, motion: &Motion, settings: &Settings, code: &'static str) -> Self {
+        let r = &motion.recording;
+        let (row, wall) = (settings.integrator.row(), motion.wall.as_secs_f64());
+        let end = r.t.last().copied().unwrap_or(settings.start);
+        let mut effects: Vec<&'static str> = stage.effects().iter().map(|a| a.effect.name()).collect();
+        effects.dedup();
+        Self {
+            scene: stage.name.clone(),
+            robot: stage.model.name.clone(),
+            base: if stage.base() == articulated_core::description::Base::Floating { "floating" } else { "fixed" },
+            degrees_of_freedom: stage.model.nv,
+            effects,
+            code,
+            integrator: Method { name: row.name, order: row.order, step_s: settings.step, rtol: settings.rtol, atol: settings.atol },
+            start_s: settings.start,
+            end_s: end,
+            ended: motion.ended.clone(),
+            error: motion.error.clone(),
+            energy: Energy::of(r),
+            momentum: Momentum::of(r),
+            counts: Done::of(&motion.counts, r.len()),
+            events: r.events.clone(),
+            wall_s: wall,
+            simulated_s_per_wall_s: (end - settings.start) / wall.max(1e-9),
+            files: Vec::new(),
+        }
+    }
+}
+
+impl Energy {
+    fn of(r: &Recording) -> Self {
+        let largest = |all: &mut dyn Iterator<Item = f64>| all.fold(0.0_f64, |most, x| if x.abs() > most { x.abs() } else { most });
+        let (energy, imbalance) = (r.energy(), largest(&mut r.imbalance().into_iter()));
+        let scale = [&r.kinetic, &r.work, &r.dissipated].into_iter().map(|x| largest(&mut x.iter().copied())).fold(0.0, f64::max);
+        let at = |x: &[f64], last: bool| if last { x.last() } else { x.first() }.copied().unwrap_or(0.0);
+        Self {
+            start: at(&energy, false),
+            end: at(&energy, true),
+            kinetic_end: at(&r.kinetic, true),
+            potential_end: at(&r.potential, true),
+            work: at(&r.work, true),
+            dissipated: at(&r.dissipated, true),
+            largest_imbalance: imbalance,
+            relative_imbalance: if scale > 0.0 { imbalance / scale } else { 0.0 },
+        }
+    }
+}
+
+impl Momentum {
+    fn of(r: &Recording) -> Self {
+        let (Some(start), Some(end)) = (r.momentum.first(), r.momentum.last()) else { return Self::default() };
+        let change = |part: usize| {
+            let size = |p: &[f64; 6]| (0..3).map(|k| (p[part + k] - start[part + k]).powi(2)).sum::<f64>().sqrt();
+            r.momentum.iter().map(size).fold(0.0, f64::max)
+        };
+        Self { start: *start, end: *end, largest_change_angular: change(0), largest_change_linear: change(3) }
+    }
+}
+
+impl Done {
+    fn of(c: &Counts, records: usize) -> Self {
+        Self {
+            steps: c.steps,
+            rejected_steps: c.rejected,
+            evaluations: c.evaluations,
+            derivatives: c.derivatives,
+            smallest_step_s: Some(c.smallest_step).filter(|s| s.is_finite()),
+            largest_step_s: c.largest_step,
+            stiff_at_s: c.stiff_at,
+            records,
+        }
+    }
+}

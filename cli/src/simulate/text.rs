@@ -1,0 +1,91 @@
+//! A summary for people.
+
+use super::summary::Summary;
+use crate::table::{Table, number, plain};
+
+/// Events that are listed; the others are counted.
+const LISTED: usize = 12;
+
+pub(super) fn text(s: &Summary) -> String {
+    let effects = if s.effects.is_empty() { "no effects".to_owned() } else { s.effects.join(", ") };
+    let mut out = format!(
+        "{}: {}, {} base, {} degrees of freedom; {effects}\n{}\n\n",
+        plain(&s.scene),
+        plain(&s.robot),
+        s.base,
+        s.degrees_of_freedom,
+        method(s)
+    );
+    out += &table(s).text();
+    if !s.events.is_empty() {
+        let mut events = Table::new([("time", "s"), ("event", "")]).left(0);
+        s.events.iter().take(LISTED).for_each(|e| events.row([format!("{:.9}", e.time), e.what.clone()]));
+        out += &format!("\n{}", left_aligned(&events.text()));
+        if s.events.len() > LISTED {
+            out += &format!("… {} more, in the summary's JSON\n", s.events.len() - LISTED);
+        }
+    }
+    if !s.files.is_empty() {
+        out += &format!("\nwritten: {}\n", s.files.join(", "));
+    }
+    out
+}
+
+fn method(s: &Summary) -> String {
+    let m = &s.integrator;
+    let steps = match m.step_s {
+        Some(step) => format!("steps of {} s", number(step)),
+        None => format!("relative tolerance {:e}, absolute {:e}", m.rtol, m.atol),
+    };
+    format!(
+        "{} (order {}), {steps}; {} code; from {} s to {} s, ended {}",
+        m.name,
+        m.order,
+        s.code,
+        number(s.start_s),
+        number(s.end_s),
+        s.ended
+    )
+}
+
+fn table(s: &Summary) -> Table {
+    let mut table = Table::new([("", ""), ("start", ""), ("end", ""), ("unit", "")]);
+    let (e, p, c) = (&s.energy, &s.momentum, &s.counts);
+    let mut row = |name: &str, start: String, end: String, unit: &str| table.row([name.to_owned(), start, end, unit.to_owned()]);
+    let none = String::new;
+    row("energy T + U", number(e.start), number(e.end), "J");
+    row("  kinetic, potential at the end", number(e.kinetic_end), number(e.potential_end), "J");
+    row("work of the motors", none(), number(e.work), "J");
+    row("dissipated", none(), number(e.dissipated), "J");
+    row("largest imbalance", none(), number(e.largest_imbalance), "J");
+    row("  over the largest energy moved", none(), number(e.relative_imbalance), "");
+    let length = |p: &[f64]| number(p.iter().map(|x| x * x).sum::<f64>().sqrt());
+    row("angular momentum about the centre of mass", length(&p.start[..3]), length(&p.end[..3]), "kg·m²/s");
+    row("  largest change", none(), number(p.largest_change_angular), "kg·m²/s");
+    row("linear momentum", length(&p.start[3..]), length(&p.end[3..]), "kg·m/s");
+    row("  largest change", none(), number(p.largest_change_linear), "kg·m/s");
+    row("steps", none(), c.steps.to_string(), "");
+    row("  rejected", none(), c.rejected_steps.to_string(), "");
+    row("  shortest, longest", c.smallest_step_s.map_or_else(String::new, number), number(c.largest_step_s), "s");
+    row("evaluations of forward dynamics", none(), c.evaluations.to_string(), "");
+    if c.derivatives > 0 {
+        row("  of its derivatives", none(), c.derivatives.to_string(), "");
+    }
+    if let Some(t) = c.stiff_at_s {
+        row("stiff from", none(), number(t), "s");
+    }
+    row("events", none(), s.events.len().to_string(), "");
+    row("wall time", none(), number(s.wall_s), "s");
+    row("simulated seconds a second", none(), number(s.simulated_s_per_wall_s), "");
+    table
+}
+
+/// Events are words: the last column of a table of numbers would push them to the right.
+fn left_aligned(text: &str) -> String {
+    text.lines()
+        .map(|line| {
+            let (time, what) = line.trim_start().split_once("  ").unwrap_or((line.trim(), ""));
+            format!("{time:>16}  {}\n", what.trim_start())
+        })
+        .collect()
+}

@@ -1,0 +1,142 @@
+//! What a scene looks out for: limits, contacts, dry friction, and a ball.
+
+use std::cell::Cell;
+use std::rc::Rc;
+
+use articulated::Dynamics;
+use articulated::simulate::{Action, Direction, Event, Hit, Impact, SimulateError};
+use articulated_core::effect::EffectId;
+use articulated_core::model::JointInfo;
+use articulated_scene::{Watched, When};
+
+use super::stage::{Stage, field};
+
+/// Events of a robot, and how each of them reads.
+pub(super) struct Watch<'a> {
+    pub(super) events: Vec<Event<'a>>,
+    /// Where its function rises through zero, where it falls.
+    words: Vec<[String; 2]>,
+    /// Set by a blow that ends the motion.
+    pub(super) over: Rc<Cell<bool>>,
+}
+
+/// The links whose frames the events need.
+pub(super) fn frames(stage: &Stage) -> Vec<String> {
+    let contacts = stage.effects_of(EffectId::contact).filter(|_| looks_for(stage, Watched::Contacts)).map(|a| a.on.clone());
+    let mut all: Vec<String> = contacts.chain(stage.prepared.scene.impact.iter().map(|i| i.link.clone())).collect();
+    all.sort_unstable();
+    all.dedup();
+    all
+}
+
+fn looks_for(stage: &Stage, what: Watched) -> bool {
+    stage.prepared.scene.simulation.as_ref().is_some_and(|s| s.events.contains(&what))
+}
+
+impl<'a> Watch<'a> {
+    /// What the scene asks for; `frames` are the robot's, in its order.
+    pub(super) fn of<R: Dynamics<f64>>(stage: &Stage, robot: &'a R, frames: &[String]) -> Result<Self, SimulateError>
+    where
+        R::Workspace: 'a,
+    {
+        let mut watch = Self { events: Vec::new(), words: Vec::new(), over: Rc::default() };
+        if looks_for(stage, Watched::Limits) {
+            stage.model.joints.iter().for_each(|joint| watch.limit(stage, joint));
+        }
+        if looks_for(stage, Watched::Contacts) {
+            watch.contacts(stage, robot, frames)?;
+        }
+        if looks_for(stage, Watched::StickSlip) {
+            watch.stick_slip(stage);
+        }
+        watch.ball(stage, robot, frames)?;
+        Ok(watch)
+    }
+
+    /// What happened, in words.
+    pub(super) fn words(&self, hit: &Hit) -> String {
+        let text = &self.words[hit.event][usize::from(hit.direction == Direction::Falling)];
+        hit.value.map_or_else(|| text.clone(), |speed| format!("{text} {speed:.4} m/s"))
+    }
+
+    fn push(&mut self, event: Event<'a>, rising: String, falling: String) {
+        self.events.push(event);
+        self.words.push([rising, falling]);
+    }
+
+    /// The bounds of the effect if the joint has it, else those of the file.
+    fn limit(&mut self, stage: &Stage, joint: &JointInfo) {
+        let own = stage.effects_of(EffectId::limit).find(|a| a.on == joint.name);
+        let own = own.and_then(|a| Some((*field(a, "lower").first()?, *field(a, "upper").first()?)));
+        let Some((lower, upper)) = own.or(joint.limit.map(|l| (l.lower, l.upper))) else { return };
+        if joint.q.1 == 1 && (lower.is_finite() || upper.is_finite()) {
+            let event = Event::limit(joint.name.clone(), joint.q.0, lower, upper).direction(Direction::Either);
+            self.push(event, format!("{} comes back from its limit", joint.name), format!("{} reaches its limit", joint.name));
+        }
+    }
+
+    fn contacts<R: Dynamics<f64>>(&mut self, stage: &Stage, robot: &'a R, frames: &[String]) -> Result<(), SimulateError>
+    where
+        R::Workspace: 'a,
+    {
+        for a in stage.effects_of(EffectId::contact) {
+            let Some(frame) = frames.iter().position(|f| *f == a.on) else { continue };
+            let normal = three(field(a, "normal"));
+            let (radius, height) = (field(a, "radius")[0], field(a, "height")[0]);
+            let event = Event::contact(a.on.clone(), robot, frame, a.at.xyz, radius, normal, height)?.direction(Direction::Either);
+            self.push(event, format!("{} leaves the ground", a.on), format!("{} touches the ground", a.on));
+        }
+        Ok(())
+    }
+
+    fn stick_slip(&mut self, stage: &Stage) {
+        for a in stage.effects_of(EffectId::friction) {
+            let Some(joint) = stage.model.joints.iter().find(|j| j.name == a.on) else { continue };
+            for v in joint.v.0..joint.v.0 + joint.v.1 {
+                let event = Event::stick_slip(a.on.clone(), v, field(a, "speed")[0]);
+                self.push(event, format!("{} slips", a.on), format!("{} sticks", a.on));
+            }
+        }
+    }
+
+    fn ball<R: Dynamics<f64>>(&mut self, stage: &Stage, robot: &'a R, frames: &[String]) -> Result<(), SimulateError>
+    where
+        R::Workspace: 'a,
+    {
+        let Some(ball) = &stage.prepared.scene.impact else { return Ok(()) };
+        let Some(frame) = frames.iter().position(|f| *f == ball.link) else { return Ok(()) };
+        let mut blow = Impact::new(robot, frame, ball.point, ball.normal, ball.mass, ball.restitution)?;
+        let (over, stop, speed, mut done) = (self.over.clone(), ball.stop, ball.ball_speed, false);
+        let map = move |_: f64, q: &mut [f64], v: &mut [f64]| {
+            // One ball, one blow.
+            if std::mem::replace(&mut done, true) {
+                return Ok(None);
+            }
+            over.set(stop);
+            Ok(Some(blow.strike(q, v, speed)?.ball_speed))
+        };
+        let text = format!("{} hits the ball, which leaves at", ball.link);
+        let event = match ball.when {
+            When::Time(at) => Event::new(ball.link.clone(), move |t, _, _| t - at),
+            When::Ball(place) => {
+                let (mut ws, mut out) = (robot.workspace(), vec![0.0; 12 * robot.shape().frames]);
+                let (point, n) = (ball.point, ball.normal);
+                // n·(p − ball) with p = x + R r
+                Event::new(ball.link.clone(), move |_, q: &[f64], _| match robot.placements(&mut ws, q, &mut out) {
+                    Ok(()) => {
+                        let x = &out[12 * frame..][..12];
+                        let p = |k: usize| x[9 + k] + (0..3).map(|c| x[3 * k + c] * point[c]).sum::<f64>();
+                        (0..3).map(|k| n[k] * (p(k) - place[k])).sum()
+                    }
+                    Err(_) => f64::NAN,
+                })
+            }
+        };
+        self.push(event.direction(Direction::Rising).action(Action::Map(Box::new(map))), text.clone(), text);
+        Ok(())
+    }
+}
+
+fn three(x: &[f64]) -> [f64; 3] {
+    x.try_into().unwrap_or([0.0, 0.0, 1.0])
+}

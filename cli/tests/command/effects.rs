@@ -1,0 +1,59 @@
+use crate::run;
+
+#[test]
+fn every_effect_is_on_or_off_and_what_each_adds_is_counted() {
+    let ended = run(&["effects", "arm", "--format", "json"]);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let report = ended.json();
+    let names =
+        |key: &str| -> Vec<String> { report[key].as_array().unwrap().iter().map(|e| e["effect"].as_str().unwrap().to_owned()).collect() };
+    let (on, off) = (names("on"), names("off"));
+    for effect in articulated_core::effect::effects() {
+        let name = effect.name.to_owned();
+        assert!(on.contains(&name) != off.contains(&name), "{name}: {report}");
+    }
+    assert!(report["on"].as_array().unwrap().iter().all(|e| e["line"].as_u64().is_some()));
+    assert!(!report["ignored"].as_array().unwrap().is_empty());
+
+    let costs = report["costs"].as_array().unwrap();
+    assert_eq!(costs.iter().map(|c| c["function"].as_str().unwrap()).collect::<Vec<_>>(), ["inverse_dynamics", "forward_dynamics"]);
+    let inverse = costs[0]["adds"].as_array().unwrap();
+    let of = |what: &str| inverse.iter().find(|a| a["what"] == what).unwrap_or_else(|| panic!("{what}: {report}"));
+    // An addition a joint, and what is told of places is what the scene asks for.
+    assert_eq!((of("damping")["places"].as_u64(), of("damping")["operations"]["additions"].as_i64()), (Some(7), Some(7)));
+    assert_eq!(of("armature")["operations"]["instructions"], 7);
+    assert!(of("gravity")["operations"]["additions"].as_i64().unwrap() > 0);
+    let sum: i64 = inverse
+        .iter()
+        .filter(|a| a["what"] != "gravity" && a["what"] != "all together")
+        .map(|a| a["operations"]["instructions"].as_i64().unwrap())
+        .sum();
+    let together = of("all together")["operations"]["instructions"].as_i64().unwrap();
+    assert!(together > 0 && together <= sum, "{together} {sum}");
+}
+
+#[test]
+fn people_are_told_in_groups() {
+    let out = run(&["effects", "arm", "--functions", "mass_matrix"]).out;
+    for part in [
+        "\non:\n",
+        "\noff:\n",
+        "in the URDF, and not used:",
+        "joint_5, joint_6, joint_7: inertia 0.2 kg·m²",
+        "mass_matrix: what",
+        "without effects",
+    ] {
+        assert!(out.contains(part), "{part}: {out}");
+    }
+    assert!(!out.contains("inverse_dynamics:"));
+}
+
+#[test]
+fn times_are_told_where_they_are_asked_for() {
+    let report =
+        run(&["effects", "cart_pole", "--time", "--functions", "forward_dynamics", "--repetitions", "5", "--format", "json"]).json();
+    let cost = &report["costs"][0];
+    assert!(cost["without"]["ns"]["median"].as_f64().unwrap() > 0.0, "{report}");
+    assert!(cost["adds"].as_array().unwrap().iter().all(|a| a["ns"]["median"].as_f64().is_some()), "{report}");
+    assert!(report["compiler"].as_str().is_some());
+}

@@ -1,0 +1,150 @@
+use std::path::Path;
+
+use crate::{File, run};
+
+/// The outputs of a scene in a folder of their own.
+fn written(scene: &str, words: &[&str]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out/of/it");
+    let ended = run(&[&["simulate", scene, "-o", out.to_str().unwrap()], words].concat());
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    folder
+}
+
+fn text(folder: &tempfile::TempDir, name: &str) -> String {
+    std::fs::read_to_string(folder.path().join("out/of/it").join(name)).unwrap()
+}
+
+fn bytes(folder: &tempfile::TempDir, name: &str) -> Vec<u8> {
+    std::fs::read(folder.path().join("out/of/it").join(name)).unwrap()
+}
+
+#[test]
+fn everything_is_written_and_can_be_read() {
+    let folder = written("cart_pole", &["--end", "0.2", "--every", "0.01"]);
+    let summary: serde_json::Value = serde_json::from_str(&text(&folder, "summary.json")).unwrap();
+    let files: Vec<&str> = summary["files"].as_array().unwrap().iter().map(|f| f.as_str().unwrap()).collect();
+    let found = std::fs::read_dir(folder.path().join("out/of/it")).unwrap().count();
+    assert_eq!(found, files.len());
+    assert!(files.iter().all(|name| !bytes(&folder, name).is_empty()));
+
+    let table = text(&folder, "recording.csv");
+    let rows: Vec<Vec<&str>> = table.lines().map(|l| l.split(',').collect()).collect();
+    assert_eq!(rows[0][..3], ["t", "q.slide", "q.pole"]);
+    assert_eq!(rows.len(), 22);
+    let number = |row: usize, title: &str| {
+        let column = rows[0].iter().position(|t| *t == title).unwrap();
+        rows[row][column].parse::<f64>().unwrap()
+    };
+    assert_eq!((number(1, "t"), number(21, "t"), number(1, "q.slide")), (0.0, 0.2, 1.9));
+    let energy =
+        |row: usize| number(row, "kinetic_energy") + number(row, "potential_energy") - number(row, "work") - number(row, "dissipated");
+    assert!((energy(21) - energy(1) - number(21, "imbalance")).abs() < 1e-15);
+
+    let parquet = bytes(&folder, "recording.parquet");
+    assert!(parquet.starts_with(b"PAR1") && parquet.ends_with(b"PAR1"));
+    for picture in ["positions", "velocities", "torques", "energy"] {
+        let drawn = text(&folder, &format!("{picture}.svg"));
+        assert_eq!(roxmltree::Document::parse(&drawn).unwrap().root_element().tag_name().name(), "svg");
+        assert!(drawn.contains("time, s"));
+        assert!(bytes(&folder, &format!("{picture}.png")).starts_with(b"\x89PNG"));
+    }
+    let page = text(&folder, "motion.html");
+    assert!(!page.contains("http") && page.contains("<title>cart_pole</title>"));
+    let data = page.split("application/json\">").nth(1).unwrap().split("</script>").next().unwrap();
+    let motion: serde_json::Value = serde_json::from_str(data).unwrap();
+    assert_eq!((motion["moving"].as_u64(), motion["joints"].as_array().unwrap().len()), (Some(2), 2));
+}
+
+#[test]
+fn every_bundled_scene_runs() {
+    for scene in articulated_models::SCENES {
+        let ended = run(&["simulate", scene.name, "--end", "0.004", "--format", "json"]);
+        assert_eq!(ended.status, 0, "{}: {}", scene.name, ended.err);
+        let summary = ended.json();
+        assert_eq!(summary["end_s"], 0.004, "{}", scene.name);
+        assert!(summary["counts"]["steps"].as_u64().unwrap() > 0);
+        let imbalance = summary["energy"]["relative_imbalance"].as_f64().unwrap();
+        assert!(imbalance < 1e-4, "{}: {imbalance}", scene.name);
+    }
+}
+
+#[test]
+fn generated_code_gives_the_motion_that_generic_code_gives() {
+    let run = |words: &[&str]| run(&[&["simulate", "cart_pole", "--end", "0.3", "--format", "json"], words].concat()).json();
+    let (generic, generated) = (run(&[]), run(&["--generated"]));
+    assert_eq!((generic["code"].as_str(), generated["code"].as_str()), (Some("generic"), Some("generated")));
+    let energy = |x: &serde_json::Value, what: &str| x["energy"][what].as_f64().unwrap();
+    for what in ["end", "kinetic_end", "dissipated"] {
+        assert!((energy(&generic, what) - energy(&generated, what)).abs() < 1e-9, "{what}: {generic} {generated}");
+    }
+}
+
+#[test]
+fn the_command_line_goes_before_the_scene() {
+    let ended = run(&["simulate", "double_pendulum", "--end", "0.1", "--integrator", "rk4", "--step", "0.001", "--format", "json"]).json();
+    assert_eq!((ended["integrator"]["name"].as_str(), ended["counts"]["steps"].as_u64()), (Some("rk4"), Some(100)));
+    let text = run(&["simulate", "double_pendulum", "--end", "0.1"]).out;
+    for part in ["energy T + U", "largest imbalance", "rejected", "simulated seconds a second", "kg·m²/s"] {
+        assert!(text.contains(part), "{text}");
+    }
+}
+
+const BAD: &str = r#"robot = "cart_pole"
+[effects.dampin]
+"*" = 0.1
+[effects.damping]
+slid = 0.1
+pole = -1.0
+[simulation]
+end = -1
+"#;
+
+#[test]
+fn all_that_is_wrong_with_a_scene_is_said_with_its_line_and_what_would_be_right() {
+    let file = File::new("bad.toml", BAD.as_bytes());
+    for command in ["simulate", "effects"] {
+        let ended = run(&[command, file.name()]);
+        assert_eq!(ended.status, 1, "{}", ended.err);
+        let first = format!("error: {}:2: effects.dampin", file.name());
+        assert!(ended.err.contains(&first) && ended.err.contains("did you mean \"damping\"?"), "{}", ended.err);
+        assert!(ended.err.contains("bad.toml:8: simulation.end"), "{}", ended.err);
+        assert!(ended.err.lines().all(|line| line.starts_with("error: ")), "{}", ended.err);
+    }
+    let file = File::new(
+        "bad.toml",
+        BAD.replace("[effects.dampin]\n\"*\" = 0.1\n", "").replace("end = -1", "end = 1").replace("-1.0", "1").as_bytes(),
+    );
+    let ended = run(&["simulate", file.name()]);
+    assert!(ended.status == 1 && ended.err.contains("did you mean \"slide\"?"), "{}", ended.err);
+}
+
+#[test]
+fn what_cannot_be_found_or_run_is_said() {
+    let ended = run(&["simulate", "quadruped_drp"]);
+    assert!(ended.status == 1 && ended.err.contains("did you mean \"quadruped_drop\"?"), "{}", ended.err);
+    assert!(run(&["effects", "cart_pol"]).err.contains("bundled: "));
+    let file = File::new("still.toml", b"robot = \"cart_pole\"\n");
+    assert!(run(&["simulate", file.name()]).err.contains("[simulation]"));
+    assert_eq!(run(&["simulate", file.name(), "--end", "0.01"]).status, 0);
+    for words in [["--integrator", "rk5"], ["--end", "-1"], ["--step", "x"], ["--every", "0"]] {
+        assert_eq!(run(&[&["simulate", "cart_pole"][..], &words].concat()).status, 2, "{words:?}");
+    }
+}
+
+#[test]
+fn a_step_that_is_not_stable_is_refused_and_what_was_up_to_then_is_there() {
+    let text = "robot = \"simple_pendulum\"\n[effects.damping]\n\"*\" = 5e3\n[initial]\nv = [1.0]\n[simulation]\nend = 1\nintegrator = \"rk4\"\nstep = 0.01\n";
+    let (file, folder) = (File::new("stiff.toml", text.as_bytes()), tempfile::tempdir().unwrap());
+    let ended = run(&["simulate", file.name(), "-o", folder.path().to_str().unwrap()]);
+    assert!(ended.status == 1 && ended.err.contains("stable"), "{}", ended.err);
+    assert!(folder.path().join("recording.csv").is_file() && ended.out.contains("ended by an error"), "{}", ended.out);
+}
+
+#[test]
+fn peers_are_given_bare_scenes_only() {
+    let missing = Path::new("/nowhere/peers.json").to_str().unwrap().to_owned();
+    let ended = run(&["simulate", "cart_pole", "--against", &missing]);
+    assert!(ended.status == 1 && ended.err.contains("found effects, expected none for --against"), "{}", ended.err);
+    assert_eq!(run(&["simulate", "chain", "--against", &missing, "-o", "x"]).status, 2);
+}
