@@ -158,6 +158,21 @@ fn outputs_between_steps_are_as_good_as_steps() {
     }
 }
 
+/// Stretch by stretch it is the same motion.
+#[test]
+fn a_motion_can_be_taken_up_where_it_was_left() {
+    let mut simulation = Simulation::new(&chain::Robot, stepping(IntegratorId::rk4, 0.1, 1e-3)).unwrap();
+    let (mut q, mut v) = (vec![0.4, -0.7, 0.5], vec![1.0, 0.5, -1.5]);
+    for k in 0..5 {
+        simulation.set_span(0.1 * f64::from(k), 0.1 * f64::from(k + 1)).unwrap();
+        let motion = simulation.run(&q, &v, &mut NoTorque, &mut []).unwrap();
+        (q, v) = (motion.q_at(1).to_vec(), motion.v_at(1).to_vec());
+    }
+    let whole = free(&chain::Robot, &stepping(IntegratorId::rk4, 0.5, 1e-3), &[0.4, -0.7, 0.5], &[1.0, 0.5, -1.5]).unwrap();
+    assert!(whole.q_at(1).iter().zip(&q).chain(whole.v_at(1).iter().zip(&v)).all(|(a, b)| (a - b).abs() < 1e-13));
+    assert!(matches!(simulation.set_span(1.0, 1.0), Err(SimulateError::Settings(_))) && simulation.settings().end == 0.5);
+}
+
 /// A control that is a value of a type, behind the trait.
 #[test]
 fn any_control_will_do() {
@@ -167,5 +182,26 @@ fn any_control_will_do() {
         let motion =
             Simulation::new(&slider(), to(IntegratorId::dopri5, 1.0, 1e-9)).unwrap().run(&[0.0], &[2.0], &mut *control, &mut []).unwrap();
         assert!((motion.q[1] - 2.0).abs() < 1e-14);
+    }
+}
+
+/// Whatever its joints are: mimicking ones, planar ones, limbs on a floating base.
+#[test]
+fn every_bundled_robot_keeps_its_energy() {
+    let names =
+        ["simple_pendulum", "double_pendulum", "cart_pole", "ur5_like", "panda_like", "gripper_arm", "quadruped", "golfer", "humanoid"];
+    for name in names {
+        let base = if ["quadruped", "humanoid"].contains(&name) { Base::Floating } else { Base::Fixed };
+        let path = format!("{}/../models/urdf/{name}.urdf", env!("CARGO_MANIFEST_DIR"));
+        let robot = articulated::load(path, base).unwrap();
+        let shape = robot.shape();
+        let (mut ws, mut q) = (robot.workspace(), vec![0.0; shape.nq]);
+        let numbers = |n: usize| (0..n).map(|i| (0.37 + 0.618 * i as f64).fract()).collect::<Vec<f64>>();
+        robot.random_configuration(&mut ws, &numbers(shape.nq), &mut q).unwrap();
+        let v: Vec<f64> = numbers(shape.nv).iter().map(|x| 2.0 * x - 1.0).collect();
+        let motion = free(&robot, &to(IntegratorId::dop853, 0.2, 1e-10), &q, &v).unwrap();
+        let lost = motion.imbalance(1).unwrap() / motion.energy(0).unwrap().abs().max(1.0);
+        println!("{name}: {lost:e}, {} steps", motion.counts.steps);
+        assert!(lost.abs() < 1e-9, "{name}: {lost:e}");
     }
 }

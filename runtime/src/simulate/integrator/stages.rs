@@ -2,7 +2,7 @@
 
 use articulated_core::dynamics::Dynamics;
 
-use super::{Start, distance};
+use super::Start;
 use crate::simulate::system::System;
 use crate::simulate::{Control, SimulateError};
 
@@ -103,14 +103,17 @@ impl Fastest {
     /// Two points of a chart and their slopes.
     pub(super) fn compare(&mut self, y: [&[f64]; 2], f: [&[f64]; 2]) {
         let nv = (self.at.len() - 2) / 2;
-        let accelerations = f.map(|f| &f[nv..2 * nv]);
-        let (way, turn) = (distance(&y[0][..nv], &y[1][..nv]), distance(&y[0][nv..2 * nv], &y[1][nv..2 * nv]));
-        let change = distance(accelerations[0], accelerations[1]);
+        let (mut way, mut turn, mut change) = (0.0, 0.0, 0.0);
+        for i in 0..nv {
+            let square = |pair: [&[f64]; 2], i: usize| (pair[0][i] - pair[1][i]).powi(2);
+            (way, turn, change) = (way + square(y, i), turn + square(y, nv + i), change + square(f, nv + i));
+        }
+        let (way, turn, change) = (way.sqrt(), turn.sqrt(), change.sqrt());
         // The positive root of way·λ² + turn·λ = change, without cancellation.
         let rate = 2.0 * change / (turn + (turn * turn + 4.0 * way * change).sqrt());
         if rate > self.rate && rate.is_finite() {
             self.rate = rate;
-            let size = accelerations.map(|a| a.iter().map(|a| a * a).sum::<f64>());
+            let size = f.map(|f| f[nv..2 * nv].iter().map(|a| a * a).sum::<f64>());
             self.at.copy_from_slice(y[usize::from(size[1] > size[0])]);
         }
     }

@@ -11,7 +11,7 @@ use crate::simulate::event::watch::Watch;
 use crate::simulate::integrator::{Method, Start, method};
 use crate::simulate::output::{Known, Times};
 use crate::simulate::stability::Stability;
-use crate::simulate::step_control::{Controller, Norm, first_step, rounding};
+use crate::simulate::step_control::{Controller, Error, Norm, first_step, rounding};
 use crate::simulate::system::System;
 use crate::simulate::{Control, Counts, Ended, Event, Output, Recording, Settings, SimulateError};
 
@@ -53,6 +53,13 @@ struct Run<'a, 'e> {
     /// The last event that mapped the state, and when.
     last_map: (usize, f64),
     stiff: (u32, u32),
+}
+
+impl Run<'_, '_> {
+    /// Time between samples of a controller that has such times.
+    fn period(&self) -> Option<f64> {
+        self.control.period().filter(|p| *p > 0.0)
+    }
 }
 
 /// What a step has come to.
@@ -107,6 +114,18 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
     /// The settings.
     pub fn settings(&self) -> &Settings {
         &self.settings
+    }
+
+    /// Other times for the motions from now on, s: for a loop of one's own, stretch by stretch.
+    pub fn set_span(&mut self, start: f64, end: f64) -> Result<(), SimulateError> {
+        let before = (self.settings.start, self.settings.end);
+        (self.settings.start, self.settings.end) = (start, end);
+        let wrong = self.settings.problems(self.shape);
+        if wrong.is_empty() {
+            return Ok(());
+        }
+        (self.settings.start, self.settings.end) = before;
+        Err(SimulateError::Settings(wrong))
     }
 
     /// Room for the records of one motion.
@@ -216,7 +235,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
 
     /// The state is at the end of a stretch where a controller is sampled.
     fn sample(&mut self, run: &mut Run) {
-        if run.control.period().is_none() {
+        if run.period().is_none() {
             return;
         }
         let nv = self.shape.nv;
@@ -229,7 +248,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
 
     /// When the next sample, kink or the end is, s.
     fn stretch_end(&self, run: &Run) -> f64 {
-        let sample = run.control.period().map_or(f64::INFINITY, |p| self.settings.start + run.samples as f64 * p);
+        let sample = run.period().map_or(f64::INFINITY, |p| self.settings.start + run.samples as f64 * p);
         let kink = run.control.next_kink(self.t);
         let next = sample.min(kink).min(self.settings.end);
         // A stretch shorter than rounding is none.
@@ -276,7 +295,11 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
                 free
             };
             let start = Start { t: self.t, y: &self.y, f: &self.f };
-            let error = self.method.step(&mut self.system, run.control, start, h, &mut self.end, &self.norm)?;
+            let error = match self.method.step(&mut self.system, run.control, start, h, &mut self.end, &self.norm) {
+                // Another step has another matrix.
+                Err(SimulateError::Singular { .. }) if h > 2.0 * least => Error { size: f64::NAN, index: 0 },
+                result => result?,
+            };
             if let Some(factor) = controller.accept(error.size) {
                 self.method.finish(&mut self.system, run.control, start, h, &mut self.end)?;
                 run.h = if h < free { free.max(h * factor) } else { h * factor };
@@ -345,7 +368,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         self.y.copy_from_slice(&self.end);
         self.y[..nv].fill(0.0);
         self.t = t;
-        let sampled = run.control.period().is_some() && t >= until && until < self.settings.end;
+        let sampled = run.period().is_some() && t >= until && until < self.settings.end;
         if sampled {
             self.sample(run);
         }
