@@ -60,7 +60,7 @@ impl Manifold {
         let shape = robot.shape();
         let mut manifold = Self { nq: shape.nq, nv: shape.nv, free: Vec::new() };
         let (mut q, mut v) = (0, 0);
-        while manifold.free.len() < shape.nq - shape.nv && v < shape.nv {
+        while manifold.free.len() < shape.nq.saturating_sub(shape.nv) && v < shape.nv {
             match moved(robot, v)? {
                 changed if changed.len() == 1 => (q, v) = (q + 1, v + 1),
                 changed => {
@@ -69,6 +69,12 @@ impl Manifold {
                     manifold.free.push(free);
                 }
             }
+        }
+        // One more coordinate than rates for each quaternion.
+        let expected = shape.nv + manifold.free.len();
+        let fits = manifold.free.last().is_none_or(|f| f.quaternion().end <= shape.nq && f.v + f.rates() <= shape.nv);
+        if shape.nq != expected || !fits {
+            return Err(FunctionError::Length { argument: "q", found: shape.nq, expected });
         }
         Ok(manifold)
     }

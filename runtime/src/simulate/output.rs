@@ -35,14 +35,15 @@ impl Times {
         self.next += 1;
     }
 
-    /// How many there will be, as far as that is known.
+    /// How many there will be, as far as that is known, and as far as room for them is worth making beforehand.
     pub(crate) fn count(settings: &Settings) -> usize {
-        match &settings.output {
+        let count = match &settings.output {
             Output::Every(s) => ((settings.end - settings.start) / s).ceil() as usize + 3,
             Output::At(times) => times.len() + 2,
             Output::Steps => 1024,
             Output::Ends => 3,
-        }
+        };
+        count.min(1 << 20)
     }
 }
 

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use articulated::effect::{Applied, EffectId};
 use articulated::simulate::{
-    Constant, Control, Hold, IntegratorId, NoTorque, Output, Pd, Settings, SimulateError, Simulation, StateError, TorqueTable,
+    Constant, Control, Event, Hold, IntegratorId, NoTorque, Output, Pd, Settings, SimulateError, Simulation, StateError, TorqueTable,
 };
 use articulated::{Base, Dynamics, FunctionError, Origin};
 
@@ -133,6 +133,12 @@ fn what_cannot_be_simulated_is_said_at_once() {
     let lacking = Simulation::new(&handle::Robot, to(IntegratorId::rodas4, 1.0, 1e-6)).err();
     let function = "forward_dynamics_derivatives";
     assert_eq!(lacking, Some(SimulateError::Function(FunctionError::NotGenerated { function })));
+    let found =
+        Simulation::new(&slider(), settings.clone()).unwrap().run(&[0.0], &[0.0], &mut Constant::new(vec![1.0; 2]), &mut []).unwrap_err();
+    assert_eq!(found, SimulateError::State(vec![StateError::Length { vector: "tau", found: 2, expected: 1 }]));
+    let mut nowhere = [Event::limit("nowhere", 7, 0.0, 1.0)];
+    let found = Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[0.0], &mut NoTorque, &mut nowhere).unwrap_err();
+    assert_eq!(found, SimulateError::NotFinite { t: 0.0, what: "event", index: 0 });
     let mut burst = |t: f64, _: &[f64], _: &[f64], tau: &mut [f64]| tau[0] = if t > 0.5 { f64::NAN } else { 0.0 };
     for id in [IntegratorId::dopri5, IntegratorId::rodas4, IntegratorId::rk4, IntegratorId::lie_midpoint] {
         let settings = if id.row().adaptive { to(id, 1.0, 1e-6) } else { stepping(id, 1.0, 0.01) };

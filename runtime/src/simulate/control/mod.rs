@@ -25,6 +25,11 @@ pub trait Control {
         f64::INFINITY
     }
 
+    /// How many torques it gives, where that is fixed.
+    fn count(&self) -> Option<usize> {
+        None
+    }
+
     /// What the torques depend on. Linearly implicit steps take their derivatives, by differences.
     fn depends_on(&self) -> Dependence {
         Dependence { time: true, state: true }
@@ -78,6 +83,10 @@ impl Control for Constant {
         tau.iter_mut().zip(&self.0).for_each(|(tau, given)| *tau = *given);
     }
 
+    fn count(&self) -> Option<usize> {
+        Some(self.0.len())
+    }
+
     fn depends_on(&self) -> Dependence {
         Dependence::NOTHING
     }
@@ -104,6 +113,10 @@ impl<C: Control> Control for Hold<C> {
 
     fn period(&self) -> Option<f64> {
         Some(self.period)
+    }
+
+    fn count(&self) -> Option<usize> {
+        self.control.count()
     }
 
     fn depends_on(&self) -> Dependence {

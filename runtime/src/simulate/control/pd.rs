@@ -60,6 +60,10 @@ impl<R: Dynamics<f64>> Control for Pd<'_, R> {
         }
     }
 
+    fn count(&self) -> Option<usize> {
+        Some(self.rates.len())
+    }
+
     fn depends_on(&self) -> Dependence {
         Dependence { time: false, state: true }
     }

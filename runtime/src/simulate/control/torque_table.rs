@@ -94,6 +94,10 @@ impl Control for TorqueTable {
         self.times.get(self.times.partition_point(|x| *x <= t)).copied().unwrap_or(f64::INFINITY)
     }
 
+    fn count(&self) -> Option<usize> {
+        Some(self.nv)
+    }
+
     fn depends_on(&self) -> Dependence {
         Dependence { time: true, state: false }
     }

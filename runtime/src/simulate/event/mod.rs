@@ -78,17 +78,20 @@ impl<'a> Event<'a> {
 
     /// Coordinate i of q leaves the limits: g = (q − lower)(upper − q)/(upper − lower), falling; with one bound infinite the distance from the other.
     pub fn limit(name: impl Into<String>, i: usize, lower: f64, upper: f64) -> Self {
-        let g = move |_: f64, q: &[f64], _: &[f64]| match (lower.is_finite(), upper.is_finite()) {
-            (true, true) => (q[i] - lower) * (upper - q[i]) / (upper - lower),
-            (true, false) => q[i] - lower,
-            _ => upper - q[i],
+        let g = move |_: f64, q: &[f64], _: &[f64]| {
+            let x = number(q, i);
+            match (lower.is_finite(), upper.is_finite()) {
+                (true, true) => (x - lower) * (upper - x) / (upper - lower),
+                (true, false) => x - lower,
+                _ => upper - x,
+            }
         };
         Self::new(name, g).direction(Direction::Falling)
     }
 
     /// Rate i of v begins or ceases to slip: |v| passes the speed at which the friction law is smoothed. Rising: it slips; falling: it sticks.
     pub fn stick_slip(name: impl Into<String>, i: usize, speed: f64) -> Self {
-        Self::new(name, move |_, _, v: &[f64]| v[i].abs() - speed)
+        Self::new(name, move |_, _, v: &[f64]| number(v, i).abs() - speed)
     }
 
     /// A sphere about a point of a frame touches the plane nᵀx = height of the base frame: its distance falls through zero.
@@ -118,6 +121,11 @@ impl<'a> Event<'a> {
         };
         Ok(Self::new(name, g).direction(Direction::Falling))
     }
+}
+
+/// Number i, or none: then the event is an error of the motion.
+fn number(x: &[f64], i: usize) -> f64 {
+    x.get(i).copied().unwrap_or(f64::NAN)
 }
 
 /// Where points of a frame are.

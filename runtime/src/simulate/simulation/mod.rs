@@ -13,7 +13,7 @@ use crate::simulate::output::{Known, Times};
 use crate::simulate::stability::Stability;
 use crate::simulate::step_control::{Controller, Error, Norm, first_step, rounding};
 use crate::simulate::system::System;
-use crate::simulate::{Control, Counts, Ended, Event, Output, Recording, Settings, SimulateError};
+use crate::simulate::{Control, Counts, Ended, Event, Output, Recording, Settings, SimulateError, StateError};
 
 /// A robot and all the room that its simulation needs; a step allocates nothing.
 pub struct Simulation<'r, R: Dynamics<f64>> {
@@ -153,6 +153,9 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
     ) -> Result<(), SimulateError> {
         recording.clear();
         self.begin(q, v)?;
+        if let Some(found) = control.count().filter(|n| *n != self.shape.nv) {
+            return Err(SimulateError::State(vec![StateError::Length { vector: "tau", found, expected: self.shape.nv }]));
+        }
         let mut run = Run {
             control,
             events,
