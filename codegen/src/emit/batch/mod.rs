@@ -173,7 +173,10 @@ impl<'a> Batch<'a> {
         let mut calls = String::new();
         for (c, piece) in pieces.iter().enumerate() {
             let _ = writeln!(out, "    $(#[$features])?\n    #[inline(never)]");
-            let _ = writeln!(out, "    fn {name}_piece_{c}({declared}part: usize, m: &mut [{ty}; {slots}]) {{\n{piece}    }}\n");
+            let _ = writeln!(
+                out,
+                "    fn {name}_piece_{c}({declared}part: usize, m: &mut [{ty}; {slots}]) {{\n    align_frame();\n{piece}    }}\n"
+            );
             let _ = writeln!(calls, "        {name}_piece_{c}({names}part, &mut m);");
         }
         let _ = writeln!(out, "    $(#[$features])?\n    #[inline(never)]\n    fn {name}_block({declared}) {{");
