@@ -30,12 +30,19 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
     let robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
     let mut request = robot.request(&crate::names::flat(&arguments.functions));
     if arguments.functions.is_empty() {
-        request.options.functions = articulated_codegen::Options::default().functions;
+        request.options.functions.clone_from(&robot.options.functions);
     }
-    request.options.parameters.clone_from(&arguments.parameters);
-    request.options.batch.clone_from(&arguments.batch);
-    request.options.forbid_unsafe = arguments.forbid_unsafe;
-    request.options.level = arguments.level;
+    // What is not said is the scene's, if there is one.
+    if !arguments.parameters.is_empty() {
+        request.options.parameters.clone_from(&arguments.parameters);
+    }
+    if !arguments.batch.is_empty() {
+        request.options.batch.clone_from(&arguments.batch);
+    }
+    request.options.forbid_unsafe |= arguments.forbid_unsafe;
+    if arguments.level != articulated_codegen::Level::default() {
+        request.options.level = arguments.level;
+    }
     request.options.runtime = arguments.runtime.clone().filter(|_| !arguments.standalone);
     let generated = generate(&request)?;
     generated.warnings.iter().chain(&generated.snapped).for_each(|w| console::warn(&w.to_string()));

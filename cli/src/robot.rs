@@ -1,8 +1,9 @@
-//! The robot that a command is about: a bundled one by its name, or a URDF by its path.
+//! The robot that a command is about: a bundled one by its name, a URDF by its path, or that of a scene, with its edits and effects.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use articulated_codegen::scene::{self, Scene};
 use articulated_codegen::{Appended, Error, Generated, Options, Request, choose_frames, generate, nearest};
 use articulated_core::description::Base;
 use articulated_core::model::Model;
@@ -29,6 +30,9 @@ impl Robot {
     /// The robot that the arguments name.
     pub(crate) fn find(arguments: &RobotArguments) -> Result<Self, Failure> {
         let name = arguments.robot.as_str();
+        if name.ends_with(".toml") {
+            return Self::of_scene(name, arguments);
+        }
         let (file, urdf) = document(name)?;
         let bundled = articulated_models::robot(name);
         let base = bundled.map_or(Base::Fixed, |b| b.base);
@@ -46,10 +50,33 @@ impl Robot {
         Ok(Self { file, urdf, options, path })
     }
 
+    /// The robot of a scene: a file, or a bundled one. What the arguments say stands in place of what the scene says; edits come after the scene's.
+    fn of_scene(name: &str, arguments: &RobotArguments) -> Result<Self, Failure> {
+        let robot = |name: &str| articulated_models::robot(name).map(|r| (r.urdf, r.base));
+        let bundled = name.strip_suffix(".toml").and_then(articulated_models::scene).filter(|_| !Path::new(name).exists());
+        let prepared = match bundled {
+            Some(bundled) => scene::open_in(Scene::read(name, bundled.toml).map_err(Error::from)?, Path::new(""), &robot)?,
+            None => scene::open(Path::new(name), &robot)?,
+        };
+        let Request { urdf, file, mut options } = prepared.request;
+        options.base = match (arguments.floating, arguments.fixed) {
+            (true, _) => Base::Floating,
+            (_, true) => Base::Fixed,
+            _ => options.base,
+        };
+        options.gravity = arguments.gravity.map_or(options.gravity, |g| g.0);
+        options.allow_unphysical_inertia |= arguments.allow_unphysical_inertia;
+        options.snap_angles = arguments.snap_angles.or(options.snap_angles);
+        edit(&mut options, &arguments.edits)?;
+        Ok(Self { file, urdf, options, path: None })
+    }
+
     /// The robot with these frames.
     pub(crate) fn with(mut self, arguments: &FrameArguments) -> Self {
-        self.options.frames = (!arguments.frames.is_empty()).then(|| arguments.frames.clone());
-        self.options.wrench_reference = arguments.wrenches_in.unwrap_or_default();
+        if !arguments.frames.is_empty() {
+            self.options.frames = Some(arguments.frames.clone());
+        }
+        self.options.wrench_reference = arguments.wrenches_in.unwrap_or(self.options.wrench_reference);
         self
     }
 
@@ -100,9 +127,9 @@ impl Robot {
     /// A file with the document, for those who read files: the robot's own, or one in `folder`. There is none of an edited robot.
     pub(crate) fn file_in(&self, folder: &Path) -> std::io::Result<PathBuf> {
         let o = &self.options;
-        if !(o.append.is_empty() && o.payloads.is_empty() && o.lock.is_empty()) {
+        if !(o.append.is_empty() && o.payloads.is_empty() && o.lock.is_empty() && o.shafts.is_empty() && o.effects.is_empty()) {
             return Err(std::io::Error::other(
-                "peers read the file, which knows nothing of --append, --payload and --lock: leave out one or the other",
+                "peers read the file, which knows nothing of --append, --payload, --lock and the effects of scenes: leave out one or the other",
             ));
         }
         match &self.path {
@@ -122,8 +149,8 @@ fn edit(options: &mut Options, edits: &Edits) -> Result<(), Failure> {
         let (file, urdf) = document(&other.file)?;
         options.append.push(Appended { urdf, file, at: other.at.clone(), prefix: other.prefix.clone(), origin: other.origin });
     }
-    options.payloads.clone_from(&edits.payload);
-    options.lock = edits.lock.iter().map(|lock| (lock.joint.clone(), lock.at.clone())).collect();
+    options.payloads.extend(edits.payload.iter().cloned());
+    options.lock.extend(edits.lock.iter().map(|lock| (lock.joint.clone(), lock.at.clone())));
     Ok(())
 }
 

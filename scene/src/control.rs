@@ -1,9 +1,9 @@
 //! `[control]`: what drives the joints.
 
-use articulated_core::model::Model;
+use articulated_core::model::{FLOATING_BASE, Model};
 
 use crate::error::{Kind, SceneErrors, quote};
-use crate::initial::{Coordinates, Side, counted, fill, neutral, no_joint, values};
+use crate::initial::{Coordinates, Named, Side, counted, fill, neutral, no_joint, values};
 use crate::log::Log;
 use crate::scene::Scene;
 use crate::series::{Series, Source};
@@ -301,7 +301,7 @@ impl Scene {
     /// The control with names looked up and files read by `read`, which gets their names as the scene has them. Errors: all that do not fit the robot.
     pub fn controller(&self, model: &Model<f64>, read: &mut dyn FnMut(&str) -> Result<String, String>) -> Result<Controller, SceneErrors> {
         let mut log = Log::new(&self.file);
-        let vector = |from: &PerJoint, key: &str, log: &mut Log| vector(from, key, model, log);
+        let vector = |from: &PerJoint, key: &str, log: &mut Log| self.vector(from, key, model, log);
         let controller = match &self.control.drive {
             Drive::None => Controller::None,
             Drive::Torque(torque) => Controller::Torque(vector(torque, "control.torque", &mut log)),
@@ -324,31 +324,44 @@ impl Scene {
     }
 }
 
-/// `[nv]`. A single number for a joint of several degrees of freedom is for all of them.
-fn vector(from: &PerJoint, key: &str, model: &Model<f64>, log: &mut Log) -> Vec<f64> {
-    let mut all = vec![0.0; model.nv];
-    match from {
-        PerJoint::Same(x) => all.fill(*x),
-        PerJoint::All(values) => fill(values, key, model, Side::V, &mut all, log),
-        PerJoint::Named { rest, named } => {
-            all.fill(*rest);
-            let Coordinates::Named(named) = named else { return all };
-            for one in named {
-                let key = format!("{key}.{}", crate::error::bare(&one.joint));
-                let Some(joint) = model.joints.iter().find(|j| j.name == one.joint) else {
-                    no_joint(log, one.place, &key, &one.joint, model);
-                    continue;
-                };
-                let (first, count) = joint.v;
-                match *one.values.as_slice() {
-                    [x] => all[first..first + count].fill(x),
-                    ref values if values.len() == count => all[first..first + count].copy_from_slice(values),
-                    ref values => wrong_count(log, one.place, &key, values.len(), count),
-                }
+impl Scene {
+    /// `[nv]`. A single number for a joint of several degrees of freedom is for all of them.
+    fn vector(&self, from: &PerJoint, key: &str, model: &Model<f64>, log: &mut Log) -> Vec<f64> {
+        let mut all = vec![0.0; model.nv];
+        match from {
+            PerJoint::Same(x) => self.spread(*x, model, &mut all),
+            PerJoint::All(values) => fill(values, key, model, Side::V, &mut all, log),
+            PerJoint::Named { rest, named } => {
+                self.spread(*rest, model, &mut all);
+                let Coordinates::Named(named) = named else { return all };
+                named.iter().for_each(|one| put(one, key, model, &mut all, log));
             }
         }
+        all
     }
-    all
+
+    /// The number for all joints that something could drive: not those of a shaft, nor a floating base.
+    fn spread(&self, x: f64, model: &Model<f64>, all: &mut [f64]) {
+        let of_shaft =
+            |name: &str| self.shafts.iter().any(|asked| (1..=asked.shaft.segments).any(|k| name == format!("{}_{k}", asked.shaft.joint)));
+        for joint in model.joints.iter().filter(|j| j.name != FLOATING_BASE && !of_shaft(&j.name)) {
+            all[joint.v.0..joint.v.0 + joint.v.1].fill(x);
+        }
+    }
+}
+
+fn put(one: &Named, key: &str, model: &Model<f64>, all: &mut [f64], log: &mut Log) {
+    let key = format!("{key}.{}", crate::error::bare(&one.joint));
+    let Some(joint) = model.joints.iter().find(|j| j.name == one.joint) else {
+        no_joint(log, one.place, &key, &one.joint, model);
+        return;
+    };
+    let (first, count) = joint.v;
+    match *one.values.as_slice() {
+        [x] => all[first..first + count].fill(x),
+        ref values if values.len() == count => all[first..first + count].copy_from_slice(values),
+        ref values => wrong_count(log, one.place, &key, values.len(), count),
+    }
 }
 
 fn wrong_count(log: &mut Log, at: At, key: &str, found: usize, expected: usize) {

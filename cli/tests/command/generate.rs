@@ -35,6 +35,21 @@ fn flags_arrive_in_the_request() {
 }
 
 #[test]
+fn a_scene_gives_what_it_gives_in_a_build_script() {
+    let scene = "../tests/ui/scenes/three.toml";
+    let build = articulated_codegen::Build::scene(scene);
+    let made = run(&["generate", scene, "--runtime", "::articulated"]);
+    assert_eq!(made.status, 0, "{}", made.err);
+    assert!(made.out == build.generate().unwrap().source);
+    let made = run(&["generate", scene, "--runtime", "::articulated", "--functions", "gravity_torque", "--gravity", "0,0,-1.62", "--floating"]);
+    let other = build.functions(["gravity_torque"]).gravity([0.0, 0.0, -1.62]).floating();
+    assert!(made.out == other.generate().unwrap().source);
+    let wrong = run(&["generate", "../tests/ui/scenes/wrong.toml"]);
+    assert_eq!(wrong.status, 1);
+    assert!(wrong.err.contains("wrong.toml:2: gravty:") && wrong.err.contains("wrong.toml:5: effects.damping.elbow:"), "{}", wrong.err);
+}
+
+#[test]
 fn functions_of_many_states_are_those_of_the_types_asked_for() {
     let of = |types: &str| run(&["generate", "cart_pole", "--functions", "gravity_torque", "--batch", types]);
     for (types, [double, single]) in [("f64", [true, false]), ("f32", [false, true]), ("f64,f32", [true, true])] {
