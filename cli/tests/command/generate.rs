@@ -41,7 +41,8 @@ fn a_scene_gives_what_it_gives_in_a_build_script() {
     let made = run(&["generate", scene, "--runtime", "::articulated"]);
     assert_eq!(made.status, 0, "{}", made.err);
     assert!(made.out == build.generate().unwrap().source);
-    let made = run(&["generate", scene, "--runtime", "::articulated", "--functions", "gravity_torque", "--gravity", "0,0,-1.62", "--floating"]);
+    let made =
+        run(&["generate", scene, "--runtime", "::articulated", "--functions", "gravity_torque", "--gravity", "0,0,-1.62", "--floating"]);
     let other = build.functions(["gravity_torque"]).gravity([0.0, 0.0, -1.62]).floating();
     assert!(made.out == other.generate().unwrap().source);
     let wrong = run(&["generate", "../tests/ui/scenes/wrong.toml"]);
