@@ -124,3 +124,34 @@ pub(crate) fn first_step<R: Dynamics<f64>>(
 pub(crate) fn rounding(t: f64) -> f64 {
     16.0 * f64::EPSILON * t.abs().max(1e-30)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Controller, Norm};
+    use crate::simulate::Settings;
+
+    #[test]
+    fn an_error_is_measured_by_the_tolerances_of_its_number() {
+        let settings = Settings { rtol: 1e-3, atol_each: vec![1e-6, 1e-2], ..Settings::default() };
+        let norm = Norm { before: vec![2.0, 5.0], ..Norm::new(&settings, 1) };
+        // A step of q counts on top of where it began, a velocity as it is.
+        for (y, scales) in [([-3.0, 7.0], [1e-6 + 5e-3, 1e-2 + 7e-3]), ([0.0, -1.0], [1e-6 + 2e-3, 1e-2 + 5e-3])] {
+            for (i, scale) in scales.into_iter().enumerate() {
+                assert!((norm.scale(i, &y) - scale).abs() < 1e-17);
+            }
+            let error = norm.of(|i| [3.0, 4.0][i] * scales[i], &y);
+            assert!((error.size - 12.5_f64.sqrt()).abs() < 1e-14 && error.index == 1);
+        }
+    }
+
+    #[test]
+    fn a_step_grows_after_small_errors_and_not_after_a_rejection() {
+        let mut controller = Controller::new(5.0, 0.0, 0.2, 10.0);
+        assert!((controller.accept(0.9_f64.powi(5)).unwrap() - 1.0).abs() < 1e-14);
+        assert_eq!(controller.accept(0.0), Some(10.0));
+        assert_eq!(controller.accept(1.5), None);
+        assert_eq!(controller.again(f64::NAN), 0.1);
+        assert_eq!(controller.accept(1e-9), Some(1.0));
+        assert_eq!(controller.accept(1e-9), Some(10.0));
+    }
+}

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use articulated::simulate::{Action, Direction, Event, IntegratorId, NoTorque, Output, Settings, Simulation};
 use articulated::spatial::screw::{Quaternion, exp_rotation};
 use articulated::spatial::{Matrix3, Vector3, from_quaternion};
-use articulated::{Base, load_bytes};
+use articulated::{Base, Dynamics, load_bytes};
 
 use crate::robots::{free, handle, one_joint, planar, stepping, to, top};
 
@@ -163,6 +163,15 @@ fn a_box_about_any_frame_keeps_them_as_well() {
     let motion = free(&robot, &settings, &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], &[0.5, 3.0, -0.7, 0.5, -0.2, 0.1]).unwrap();
     let (last, norm) = (motion.len() - 1, |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt());
     let moved: Vec<f64> = motion.momentum_at(last).unwrap().iter().zip(motion.momentum_at(0).unwrap()).map(|(a, b)| a - b).collect();
-    println!("{:e} {:e}", motion.kinetic[last] / motion.kinetic[0] - 1.0, norm(&moved));
     assert!((motion.kinetic[last] / motion.kinetic[0] - 1.0).abs() < 1e-13 && norm(&moved) < 1e-12);
+    // Angular momentum about the origin too: the centre moves along a straight line.
+    let centre = |i: usize| {
+        let mut c = [0.0; 3];
+        robot.center_of_mass(&mut robot.workspace(), motion.q_at(i), &mut c).unwrap();
+        Vector3::from(c)
+    };
+    let (way, momentum) = (centre(last) - centre(0), motion.momentum_at(0).unwrap());
+    let aside = way.cross(&Vector3::new(momentum[3], momentum[4], momentum[5])).norm();
+    println!("{aside:e} of {}", way.norm());
+    assert!(way.norm() > 1.0 && aside < 1e-12);
 }
