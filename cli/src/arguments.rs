@@ -83,6 +83,7 @@ pub(crate) enum Command {
         "articulated accuracy panda_like",
         "articulated accuracy arm.urdf --functions inverse_dynamics,mass_matrix --levels f32,f64,double_double --output accuracy",
         "articulated accuracy panda_like --functions forward_dynamics --advise --error 1e-9",
+        "articulated accuracy --simulate double_pendulum --output integrators",
         "articulated accuracy ur5_like --peers-manifest target/peers/peers.json --output accuracy",
     ]))]
     Accuracy(AccuracyArguments),
@@ -290,6 +291,9 @@ pub(crate) struct AccuracyArguments {
     /// The folder to write report.html, accuracy.csv, accuracy.json and diagrams in SVG and PNG to
     #[arg(short, long, value_name = "FOLDER")]
     pub(crate) output: Option<PathBuf>,
+    /// Measure integrators instead, on the motion of a scene: ROBOT is a scene's file, or the name of a bundled scene
+    #[arg(long)]
+    pub(crate) simulate: bool,
     /// Only name the cheapest level of each function whose largest error is no larger than --error
     #[arg(long, requires = "error")]
     pub(crate) advise: bool,

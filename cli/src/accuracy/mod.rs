@@ -5,6 +5,7 @@ mod contender;
 mod csv;
 mod judge;
 mod measure;
+pub mod motion;
 mod page;
 mod plot;
 mod report;
@@ -32,6 +33,9 @@ const FUNCTIONS: [&str; 4] = ["placements", "inverse_dynamics", "mass_matrix", "
 
 /// Measures and prints.
 pub(crate) fn run(arguments: &AccuracyArguments, format: Format) -> Result<(), Failure> {
+    if arguments.simulate {
+        return motion::run(arguments, format);
+    }
     let mut robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
     let reading = robot.read()?;
     reading.warnings.iter().chain(&reading.snapped).for_each(|w| console::warn(&w.to_string()));

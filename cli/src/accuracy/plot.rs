@@ -6,11 +6,11 @@ use crate::simulate::plot::drawing::{Anchor, Drawing};
 pub(super) use crate::simulate::plot::png::bytes as png;
 pub(super) use crate::simulate::plot::svg::text as svg;
 
-const WIDTH: f64 = 720.0;
-const HEIGHT: f64 = 430.0;
+pub(super) const WIDTH: f64 = 720.0;
+pub(super) const HEIGHT: f64 = 430.0;
 /// Left, right, top and bottom of the field.
-const FIELD: [f64; 4] = [70.0, 530.0, 44.0, 380.0];
-const INK: &str = "#222222";
+pub(super) const FIELD: [f64; 4] = [70.0, 530.0, 44.0, 380.0];
+pub(super) const INK: &str = "#222222";
 const LINE: &str = "#dddddd";
 const OURS: &str = "#1b6ca8";
 const FRONT: &str = "#c03d20";

@@ -22,6 +22,7 @@ pub use rustc::{CompileError, Rustc, Target};
 pub struct Compiled {
     functions: Vec<Loaded>,
     shape: Shape,
+    single: bool,
     /// How long `rustc` took, start and linking included.
     pub time: Duration,
     // Last, so that the library is closed before its file is removed.
@@ -53,26 +54,21 @@ impl Compiled {
 
     /// As [`Compiled::build`], for certain processors.
     pub fn build_for(target: Target, rustc: &Rustc, generated: &Generated) -> Result<Self, CompileError> {
+        Self::build_level(target, rustc, generated, Level::default())
+    }
+
+    /// Compiles and loads functions of the level that they were generated at. Where numbers are `f32`, arrays of kernels hold two of them in the place of a double.
+    pub fn build_level(target: Target, rustc: &Rustc, generated: &Generated, level: Level) -> Result<Self, CompileError> {
         let names: Vec<&str> = generated.ledger.functions.iter().map(|f| f.function.as_str()).collect();
         let library = Library::build(target, rustc, &generated.source, &wrapper::source(&names, &generated.source))?;
         let sizes = symbols::Sizes::of(&library.file);
         let shape = generated.model.shape();
-        let functions = names.iter().map(|name| load(&library.native, &sizes, name, shape)).collect::<Result<_, _>>()?;
-        Ok(Self { functions, shape, time: library.time, _library: library })
-    }
-
-    /// Compiles and loads functions of any level. Where numbers are `f32`, a kernel's arrays hold two of them in each of theirs: see [`packed`].
-    pub(crate) fn build_level(rustc: &Rustc, generated: &Generated, level: Level) -> Result<Self, CompileError> {
-        let names: Vec<&str> = generated.ledger.functions.iter().map(|f| f.function.as_str()).collect();
-        let library = Library::build(Target::Own, rustc, &generated.source, &wrapper::source(&names, &generated.source))?;
-        let sizes = symbols::Sizes::of(&library.file);
-        let shape = generated.model.shape();
         let per = if level.is_single() { 2 } else { 1 };
-        let functions = names.iter().map(|name| load_packed(&library.native, &sizes, name, shape, per)).collect::<Result<_, _>>()?;
-        Ok(Self { functions, shape, time: library.time, _library: library })
+        let functions = names.iter().map(|name| load(&library.native, &sizes, name, shape, per)).collect::<Result<_, _>>()?;
+        Ok(Self { functions, shape, single: level.is_single(), time: library.time, _library: library })
     }
 
-    /// Calls a function by its name; arguments in the registry's order.
+    /// Calls a function by its name; arguments in the registry's order. Where numbers are `f32` these are rounded to them.
     pub fn call(&self, name: &str, arguments: &[&[f64]], out: &mut [f64]) -> Result<(), FunctionError> {
         let row = function::<f64>(name).ok_or(FunctionError::NotGenerated { function: "of this name" })?;
         let kernel = self.kernel(name).ok_or(FunctionError::NotGenerated { function: row.name })?;
@@ -81,7 +77,14 @@ impl Compiled {
             check_length(argument.name(), given.len(), argument.len(self.shape))?;
         }
         check_length("out", out.len(), row.len(self.shape))?;
-        kernel.call(arguments, out);
+        if self.single {
+            let arguments: Vec<Vec<f64>> = arguments.iter().map(|x| packed(x)).collect();
+            let mut pairs = vec![0.0; out.len().div_ceil(2)];
+            kernel.call(&arguments.iter().map(Vec::as_slice).collect::<Vec<_>>(), &mut pairs);
+            out.copy_from_slice(&unpacked(&pairs, out.len()));
+        } else {
+            kernel.call(arguments, out);
+        }
         Ok(())
     }
 
@@ -134,12 +137,8 @@ pub(crate) fn unpacked(pairs: &[f64], count: usize) -> Vec<f64> {
     pairs.iter().flat_map(two).take(count).collect()
 }
 
-fn load(native: &Native, sizes: &symbols::Sizes, name: &str, shape: Shape) -> Result<Loaded, CompileError> {
-    load_packed(native, sizes, name, shape, 1)
-}
-
 /// With so many numbers in the place of a double.
-fn load_packed(native: &Native, sizes: &symbols::Sizes, name: &str, shape: Shape, per: usize) -> Result<Loaded, CompileError> {
+fn load(native: &Native, sizes: &symbols::Sizes, name: &str, shape: Shape, per: usize) -> Result<Loaded, CompileError> {
     let missing = || CompileError::Load(format!("{name} is not in the library that was compiled"));
     let row = function::<f64>(name).ok_or_else(missing)?;
     let lengths: Vec<usize> = row.takes.iter().map(|a| a.len(shape).div_ceil(per)).collect();

@@ -137,7 +137,8 @@ impl<const BITS: u32, const SINES: u32> Div for Running<BITS, SINES> {
 
     fn div(self, b: Self) -> Self {
         let least = (b.value.abs() - b.radius) * (1.0 - 64.0 * f64::EPSILON);
-        if !(least > b.error * (1.0 + 64.0 * f64::EPSILON)) {
+        let apart = least > b.error * (1.0 + 64.0 * f64::EPSILON);
+        if !apart {
             return Self::unknown();
         }
         let value = self.value / b.value;
@@ -201,7 +202,8 @@ impl<const BITS: u32, const SINES: u32> Scalar for Running<BITS, SINES> {
         let (by, off) = (self.radius + x.radius, self.error + x.error);
         let size = libm::hypot(self.value, x.value);
         let near_the_cut = x.value - x.radius - x.error <= 0.0 && self.value.abs() <= self.radius + self.error;
-        if near_the_cut && (by > 0.0 || off > 0.0) || !(size > 2.0 * (by + off)) {
+        let apart = size > 2.0 * (by + off);
+        if near_the_cut && (by > 0.0 || off > 0.0) || !apart {
             return if by + off == 0.0 { Self::of(Scalar::atan2(self.value, x.value), 0.0, 0.0) } else { Self::unknown() };
         }
         Self::of(Scalar::atan2(self.value, x.value), 2.0 * by / size, 4.0 * off / size)
@@ -255,6 +257,6 @@ mod tests {
             assert!((one - whole.value).abs() <= whole.radius, "{one} {whole:?}");
         }
         assert_eq!((of(1.0, 0.0) / of(0.0, 0.1)).error, f64::INFINITY);
-        assert_eq!(of(3.0, 100.0).sin_cos().0.radius, 1.0 + 2.0 * f64::EPSILON + 0.0);
+        assert!((1.0..1.0 + 1e-12).contains(&Scalar::sin_cos(of(3.0, 100.0)).0.radius));
     }
 }

@@ -1,0 +1,47 @@
+//! `articulated accuracy --simulate`: what accuracy of a motion costs, integrator by integrator.
+
+mod page;
+mod plot;
+mod scene;
+mod sweep;
+mod text;
+
+use std::path::Path;
+
+use super::plot as picture;
+use crate::arguments::{AccuracyArguments, Format};
+use crate::console;
+use crate::failure::Failure;
+
+pub use sweep::{Curve, Motion, Sample, Subject, curve, slope};
+
+/// Measures and prints.
+pub(super) fn run(arguments: &AccuracyArguments, format: Format) -> Result<(), Failure> {
+    let (name, subject) = scene::find(&arguments.robot.robot)?;
+    let motion = sweep::all(&name, &subject, arguments.repetitions.min(5) as usize)?;
+    if let Some(folder) = &arguments.output {
+        write(folder, &motion)?;
+    }
+    console::print(&match (arguments.advise, arguments.error, format) {
+        (true, Some(wish), Format::Text) => text::advice(&motion, wish),
+        (_, _, Format::Text) => text::text(&motion),
+        (_, _, Format::Json) => crate::json(&motion),
+    })
+}
+
+fn write(folder: &Path, motion: &Motion) -> Result<(), Failure> {
+    let failed = |path: &Path, e: &dyn std::fmt::Display| Failure::input([format!("{}: {e}", path.display())]);
+    std::fs::create_dir_all(folder).map_err(|e| failed(folder, &e))?;
+    let put = |name: &str, bytes: &[u8]| {
+        let path = folder.join(name);
+        std::fs::write(&path, bytes).map_err(|e| failed(&path, &e))
+    };
+    let diagrams = plot::diagrams(motion);
+    for (name, drawing) in &diagrams {
+        put(&format!("{name}.svg"), picture::svg(drawing).as_bytes())?;
+        put(&format!("{name}.png"), &picture::png(drawing).map_err(|e| failed(folder, &e))?)?;
+    }
+    put("integrators.csv", text::csv(motion).as_bytes())?;
+    put("integrators.json", crate::json(motion).as_bytes())?;
+    put("integrators.html", page::html(motion, &diagrams).as_bytes())
+}

@@ -1,0 +1,48 @@
+//! Work–precision diagrams of integrators.
+
+use super::super::plot::{Axis, FIELD, HEIGHT, INK, WIDTH, frame};
+use super::{Motion, Sample};
+use crate::simulate::plot::drawing::{Anchor, Drawing};
+
+const COLOURS: [&str; 6] = ["#777777", "#1b6ca8", "#c03d20", "#2a8a3e", "#8e44ad", "#b8860b"];
+
+type What = fn(&Sample) -> Option<f64>;
+
+/// Of the error over evaluations and over time, and of the energy over evaluations.
+pub(super) fn diagrams(m: &Motion) -> Vec<(String, Drawing)> {
+    let error: What = |s| (s.told && s.error > 0.0).then_some(s.error);
+    let evaluations: What = |s| Some(s.evaluations as f64);
+    let wall: What = |s| Some(s.wall * 1e3);
+    let energy: What = |s| s.energy.filter(|e| *e > 0.0);
+    [
+        ("error_over_evaluations", "evaluations of forward dynamics and its derivatives", evaluations, "error of the last state", error),
+        ("error_over_time", "wall time, ms", wall, "error of the last state", error),
+        ("energy_over_evaluations", "evaluations of forward dynamics and its derivatives", evaluations, "energy missing at the end, relative", energy),
+    ]
+    .into_iter()
+    .map(|(name, below, x, beside, y)| (name.to_owned(), diagram(m, (below, x), (beside, y))))
+    .collect()
+}
+
+fn diagram(m: &Motion, (below, of_x): (&str, What), (beside, of_y): (&str, What)) -> Drawing {
+    let [left, right, top, bottom] = FIELD;
+    let places = |s: &Sample| Some((of_x(s)?, of_y(s)?));
+    let all = || m.curves.iter().flat_map(|c| c.samples.iter().filter_map(places));
+    let x = Axis::new(all().map(|p| p.0), [left, right]);
+    let y = Axis::new(all().map(|p| p.1), [bottom, top]);
+    let mut out = Drawing { width: WIDTH, height: HEIGHT, ..Drawing::default() };
+    out.text([16.0, 22.0], Anchor::Start, 14.0, INK, &format!("{}, {} s", m.scene, m.seconds));
+    frame(&mut out, &x, &y, below, beside);
+    for (k, c) in m.curves.iter().enumerate() {
+        let colour = COLOURS[k % COLOURS.len()];
+        let points: Vec<[f64; 2]> = c.samples.iter().filter_map(places).map(|(a, b)| [x.at(a), y.at(b)]).collect();
+        for [a, b] in &points {
+            out.path(vec![[a - 1.5, *b], [a + 1.5, *b]], colour, 3.0, false);
+        }
+        out.path(points, colour, 1.3, false);
+        let at = top + 18.0 * (k as f64 + 1.0);
+        out.path(vec![[right + 14.0, at - 4.0], [right + 34.0, at - 4.0]], colour, 2.0, false);
+        out.text([right + 40.0, at], Anchor::Start, 11.0, colour, c.integrator);
+    }
+    out
+}

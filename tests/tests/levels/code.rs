@@ -1,0 +1,149 @@
+//! Generated code of every level, compiled and run.
+
+use articulated_cli::compiled::{Compiled, Rustc, Target};
+use articulated_cli::precise::Big;
+use articulated_cli::states;
+use articulated_codegen::{Generated, Level, Request, bound, generate};
+use articulated_core::Scalar;
+use articulated_core::algorithm::{Argument, function};
+
+const FUNCTION: &str = "inverse_dynamics";
+
+fn generated(robot: &str, level: Level) -> Generated {
+    let bundled = articulated_models::robot(robot).unwrap();
+    let mut request = Request::new(format!("{robot}.urdf"), bundled.urdf);
+    request.options.base = bundled.base;
+    request.options.functions = vec![FUNCTION.into()];
+    request.options.level = level;
+    generate(&request).unwrap()
+}
+
+fn level(name: &str) -> Level {
+    name.parse().unwrap()
+}
+
+struct Made {
+    level: Level,
+    generated: Generated,
+    compiled: Compiled,
+}
+
+fn made(robot: &str, name: &str, target: Target) -> Made {
+    let level = level(name);
+    let generated = generated(robot, level);
+    let compiled = Compiled::build_level(target, &Rustc::find().unwrap(), &generated, level).unwrap();
+    Made { level, generated, compiled }
+}
+
+impl Made {
+    fn call(&self, state: &[Vec<f64>]) -> Vec<f64> {
+        let mut out = vec![0.0; self.generated.model.nv];
+        let arguments: Vec<&[f64]> = state.iter().map(Vec::as_slice).collect();
+        self.compiled.call(FUNCTION, &arguments, &mut out).unwrap();
+        out
+    }
+
+    /// The largest error, after each error has been held to its guaranteed bound. States have numbers of single precision.
+    fn worst(&self, states: &[Vec<Vec<f64>>]) -> f64 {
+        let mut worst = 0.0_f64;
+        for state in states {
+            let found = self.call(state);
+            let bounds = bound::bounds(&self.generated.graphs[0], self.level, &|argument, k| (state[argument][k], 0.0));
+            Big::scope(|| {
+                let exact = self.generated.graphs[0].evaluate_as(|argument, k| Big::from_f64(state[argument][k]));
+                for (k, (exact, found)) in exact.iter().zip(&found).enumerate() {
+                    let error = (Big::from_f64(*found) - *exact).to_f64().abs();
+                    worst = worst.max(error);
+                    if let Some(bounds) = &bounds {
+                        assert!(error <= bounds[k], "{}: result {k} is off by {error:e}, bound {:e}", self.level, bounds[k]);
+                    }
+                }
+            });
+        }
+        worst
+    }
+}
+
+/// In numbers that `f32` has too, some with angles far out.
+fn some_states(robot: &str, count: usize) -> Vec<Vec<Vec<f64>>> {
+    let model = generated(robot, Level::default()).model;
+    let takes = function::<f64>(FUNCTION).unwrap().takes;
+    let rounded = |x: &[f64]| x.iter().map(|x| f64::from(*x as f32)).collect::<Vec<_>>();
+    let of = |s: &states::State| takes.iter().map(|a: &Argument| rounded(s.get(*a).unwrap())).collect::<Vec<_>>();
+    states::random(&model, count, 5).iter().map(of).collect()
+}
+
+const LEVELS: [&str; 9] =
+    ["double_double", "compensated+two", "f64", "f64+no_fma", "f64+correct", "f64+fast_10", "f64+fast_7", "f32_f64", "f32"];
+
+/// Errors are within their bounds, and levels are as exact, one to another, as they promise.
+fn hold(robot: &str, count: usize) {
+    let states = some_states(robot, count);
+    let worst: Vec<f64> = LEVELS.map(|name| made(robot, name, Target::Own).worst(&states)).to_vec();
+    let of = |name: &str| worst[LEVELS.iter().position(|l| *l == name).unwrap()];
+    let plain = of("f64");
+    assert!(of("double_double") <= of("compensated+two") * (1.0 + 1e-9), "{worst:?}");
+    assert!(of("compensated+two") < plain && plain < 1e-12, "{worst:?}");
+    assert!(of("f64+no_fma") < 4.0 * plain && of("f64+correct") < 2.0 * plain, "{worst:?}");
+    assert!(plain < of("f64+fast_10") && of("f64+fast_10") < of("f64+fast_7") && of("f64+fast_7") < 1e-4, "{worst:?}");
+    assert!(of("f64+fast_10") < of("f32_f64") && of("f32_f64") < of("f32") && of("f32") < 1e-2, "{worst:?}");
+}
+
+#[test]
+fn errors_are_within_their_bounds_and_levels_in_their_order() {
+    hold("panda_like", 60);
+}
+
+#[test]
+#[ignore = "a million states in 96 digits take an hour"]
+fn errors_are_within_their_bounds_on_a_million_states() {
+    for robot in ["panda_like", "ur5_like", "quadruped"] {
+        hold(robot, 1_000_000);
+    }
+}
+
+#[test]
+fn far_angles_and_what_is_no_number_do_what_the_contract_says() {
+    let robot = "simple_pendulum";
+    for name in LEVELS {
+        let made = made(robot, name, Target::Own);
+        let far: Vec<Vec<Vec<f64>>> =
+            [1e6_f32, 1e15, 1e22, -1e22].iter().map(|q| vec![vec![f64::from(*q)], vec![0.5], vec![-0.25]]).collect();
+        assert!(made.worst(&far) < 1e-5, "{name}");
+        for odd in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for place in 0..3 {
+                let mut state = vec![vec![0.5], vec![0.25], vec![1.0]];
+                state[place][0] = odd;
+                let found = made.call(&state)[0];
+                // A pendulum's torque does not depend on its rate.
+                assert!(!found.is_finite() || place == 1, "{name}: {odd} as argument {place} gives {found}");
+            }
+        }
+    }
+}
+
+#[test]
+fn without_fused_multiply_add_the_bits_are_the_same_whatever_the_processor_can_do() {
+    for name in ["f64+no_fma", "f32+no_fma", "double_double+no_fma"] {
+        let [own, any] = [Target::Own, Target::Any].map(|target| made("ur5_like", name, target));
+        assert!(Target::differ() || !cfg!(target_feature = "fma"));
+        for state in some_states("ur5_like", 50) {
+            let bits = |m: &Made| m.call(&state).into_iter().map(f64::to_bits).collect::<Vec<_>>();
+            assert_eq!(bits(&own), bits(&any), "{name}");
+        }
+    }
+}
+
+#[test]
+fn the_ledger_has_a_bound_of_every_result_and_it_holds_all_over_the_box() {
+    for name in ["f64", "f32"] {
+        let generated = generated("ur5_like", level(name));
+        let entry = &generated.ledger.functions[0];
+        assert_eq!(entry.bounds.len(), generated.model.nv);
+        assert!(entry.bounds.iter().all(|b| b.is_finite() && *b > 0.0), "{:?}", entry.bounds);
+        for state in some_states("ur5_like", 20) {
+            let one = bound::bounds(&generated.graphs[0], level(name), &|argument, k| (state[argument][k], 0.0)).unwrap();
+            assert!(one.iter().zip(&entry.bounds).all(|(one, all)| one <= all), "{one:?} {:?}", entry.bounds);
+        }
+    }
+}

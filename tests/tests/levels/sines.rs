@@ -1,0 +1,111 @@
+//! Sines and cosines of the levels against 96 digits.
+
+use articulated_cli::precise::Big;
+use articulated_core::Scalar;
+use articulated_tests::random::Random;
+
+macro_rules! texts {
+    ($name:ident: $($file:literal)+) => {
+        #[allow(dead_code, non_upper_case_globals, unreachable_pub, unused_imports, unused_macros, clippy::all, clippy::pedantic)]
+        mod $name {
+            $(include!(concat!("../../../runtime/core/src/", $file, ".rs"));)+
+        }
+    };
+}
+
+texts!(two: "level/text/exact" "level/text/both" "level/text/pair" "level/text/pair_of_two" "level/text/sines" "level/text/whole" "level/text/correct");
+texts!(fast_7: "lanes/text/portable_f64" "lanes/text/portable_4" "lanes/text/portable" "lanes/text/common" "lanes/text/f64" "lanes/text/f64_fast_7");
+texts!(fast_10: "lanes/text/portable_f64" "lanes/text/portable_4" "lanes/text/portable" "lanes/text/common" "lanes/text/f64" "lanes/text/f64_fast_10");
+texts!(ulp: "lanes/text/portable_f64" "lanes/text/portable_4" "lanes/text/portable" "lanes/text/common" "lanes/text/f64" "lanes/text/f64_fused" "lanes/text/f64_split");
+
+/// Doubles that lie nearest to a multiple of π/2: below 10⁵ (found by trying every multiple), of all (6381956970095103·2⁷⁹⁷, Muller, Elementary Functions, 2016, 11.3),
+/// and others at the ends of ranges.
+fn worst() -> Vec<f64> {
+    let known = [45.553093477052, 91.106186954104, 182.212373908208, 364.424747816416, 728.849495632832, 1457.698991265664];
+    let muller = 6381956970095103.0 * 2.0_f64.powi(797);
+    let ends =
+        [1e5, 1e6, 1e15, 1e22, f64::MAX, 5.319_372_648_326_541_4e255, 3.725_290_298_461_914e-9, 7.450_580_596_923_828e-9, 1e-300, 5e-324];
+    let quarters = (1..40).map(|k| f64::from(k) * std::f64::consts::FRAC_PI_4);
+    let all = known.into_iter().chain([muller]).chain(ends).chain(quarters);
+    all.flat_map(|x| [x.next_down(), x, x.next_up()]).filter(|x| x.is_finite()).flat_map(|x| [x, -x]).collect()
+}
+
+/// Angles of every size, most of them such as joints have.
+fn angles(count: usize) -> Vec<f64> {
+    let mut random = Random::new(11);
+    let mut angles = worst();
+    angles.extend((0..count).map(|k| match k % 4 {
+        0 => random.within(-1000.0, 1000.0),
+        1 => random.within(-300.0, 300.0).exp2() * random.within(1.0, 2.0),
+        _ => random.within(-7.0, 7.0),
+    }));
+    angles
+}
+
+/// |found − exact| / |exact|, where two doubles add up to what was found.
+fn relative(exact: Big, found: (f64, f64)) -> f64 {
+    let difference = Big::from_f64(found.0) + Big::from_f64(found.1) - exact;
+    (difference / exact).to_f64().abs()
+}
+
+fn hold(count: usize) {
+    for x in angles(count) {
+        Big::scope(|| {
+            let (sin, cos) = Big::from_f64(x).sin_cos();
+            let nearest = (sin.to_f64(), cos.to_f64());
+            assert_eq!(two::sin_cos_correct::<false>(x), nearest, "{x:e}");
+            assert_eq!(two::sin_cos_correct::<true>(x), nearest, "{x:e}");
+            let (s, c) = two::sines_of_two::<false>((x, 0.0));
+            // Of what is so small that a double's remainder is subnormal there is no more to be had.
+            if x.abs() > 1e-200 {
+                let most = 2.0_f64.powi(-100);
+                assert!(relative(sin, s) <= most && relative(cos, c) <= most, "{x:e}: {:e} {:e}", relative(sin, s), relative(cos, c));
+            }
+            let fast = [fast_7::sin_cos([x, 0.1, 0.2, 0.3]), fast_10::sin_cos([x, 0.1, 0.2, 0.3])];
+            for ((s, c), most) in fast.into_iter().zip([1e-7, 1e-10]) {
+                let off = [(sin, s[0]), (cos, c[0])].map(|(e, f)| (Big::from_f64(f) - e).to_f64().abs());
+                assert!(off[0] <= most && off[1] <= most, "{x:e}: {off:?}");
+            }
+        });
+    }
+}
+
+#[test]
+fn sines_are_as_exact_as_their_level_says() {
+    hold(3_000);
+}
+
+#[test]
+#[ignore = "a quarter of an hour without optimisation"]
+fn sines_are_as_exact_as_their_level_says_at_a_million_angles() {
+    hold(1_000_000);
+}
+
+/// The `f32` of this many bits, by the level f32 (sines of doubles, rounded) and to the nearest: each against the sum of two doubles.
+fn single(bits: u32) {
+    let x = f32::from_bits(bits);
+    let ((s, s_low), (c, c_low)) = two::sines_of_two::<false>((f64::from(x), 0.0));
+    let (sines, cosines) = ulp::sin_cos([f64::from(x), 0.1, 0.2, 0.3]);
+    let correct = two::sin_cos_correct_f32::<false>(x);
+    for (exact, low, rounded, nearest) in [(s, s_low, sines[0] as f32, correct.0), (c, c_low, cosines[0] as f32, correct.1)] {
+        if x.is_nan() || x.is_infinite() {
+            assert!(rounded.is_nan() && nearest.is_nan());
+            continue;
+        }
+        let ulp = f64::from(nearest.abs().next_up()) - f64::from(nearest.abs());
+        let off = |y: f32| ((f64::from(y) - exact) - low).abs() / ulp;
+        assert!(off(nearest) <= 0.5, "{x:e}: {nearest:e} is off by {}", off(nearest));
+        assert!(off(rounded) <= 0.5 + 1e-8, "{x:e}: {rounded:e} is off by {}", off(rounded));
+    }
+}
+
+#[test]
+fn every_so_many_single_angles_have_the_nearest_sines() {
+    (0..=u32::MAX).step_by(40_009).for_each(single);
+}
+
+#[test]
+#[ignore = "every f32 there is: half an hour with optimisation"]
+fn all_single_angles_have_the_nearest_sines() {
+    (0..=u32::MAX).for_each(single);
+}
