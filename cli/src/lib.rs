@@ -3,7 +3,7 @@
 //! For tests: [`precise::Big`], a scalar of 96 digits; [`magnitude::Magnitude`], the scale of rounding errors; [`states`], states at random and
 //! from files; [`compiled::Compiled`], generated source as functions that can be called; [`scaling::chain::chain`], robots of any length.
 
-pub mod accuracy;
+mod accuracy;
 mod arguments;
 mod check;
 mod compare;

@@ -5,7 +5,7 @@ mod contender;
 mod csv;
 mod judge;
 mod measure;
-pub mod motion;
+mod motion;
 mod page;
 mod plot;
 mod report;

@@ -13,7 +13,7 @@ use crate::arguments::{AccuracyArguments, Format};
 use crate::console;
 use crate::failure::Failure;
 
-pub use sweep::{Curve, Motion, Sample, Subject, curve, slope};
+use sweep::{Motion, Sample, Subject};
 
 /// Measures and prints.
 pub(super) fn run(arguments: &AccuracyArguments, format: Format) -> Result<(), Failure> {

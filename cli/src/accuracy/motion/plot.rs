@@ -17,7 +17,13 @@ pub(super) fn diagrams(m: &Motion) -> Vec<(String, Drawing)> {
     [
         ("error_over_evaluations", "evaluations of forward dynamics and its derivatives", evaluations, "error of the last state", error),
         ("error_over_time", "wall time, ms", wall, "error of the last state", error),
-        ("energy_over_evaluations", "evaluations of forward dynamics and its derivatives", evaluations, "energy missing at the end, relative", energy),
+        (
+            "energy_over_evaluations",
+            "evaluations of forward dynamics and its derivatives",
+            evaluations,
+            "energy missing at the end, relative",
+            energy,
+        ),
     ]
     .into_iter()
     .map(|(name, below, x, beside, y)| (name.to_owned(), diagram(m, (below, x), (beside, y))))

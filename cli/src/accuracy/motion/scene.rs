@@ -37,7 +37,10 @@ fn subject(mut prepared: Prepared) -> Result<Subject, Failure> {
         scene::articulated_scene::Controller::None => vec![0.0; model.nv],
         scene::articulated_scene::Controller::Torque(tau) => tau,
         _ => {
-            let line = format!("{}: integrators are measured on motions without a controller: found a table or a PD law, expected kind \"none\" or \"torque\"", prepared.scene.file);
+            let line = format!(
+                "{}: integrators are measured on motions without a controller: found a table or a PD law, expected kind \"none\" or \"torque\"",
+                prepared.scene.file
+            );
             return Err(Failure::input([line]));
         }
     };
@@ -50,5 +53,8 @@ fn subject(mut prepared: Prepared) -> Result<Subject, Failure> {
 fn unknown(name: &str) -> Failure {
     let names = || articulated_models::SCENES.iter().map(|s| s.name);
     let near = nearest(name, names()).map(|n| format!("; did you mean {n:?}?")).unwrap_or_default();
-    Failure::input([format!("{name}: found neither a file nor a bundled scene{near} (bundled: {})", names().collect::<Vec<_>>().join(", "))])
+    Failure::input([format!(
+        "{name}: found neither a file nor a bundled scene{near} (bundled: {})",
+        names().collect::<Vec<_>>().join(", ")
+    )])
 }

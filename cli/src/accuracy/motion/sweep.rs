@@ -8,11 +8,12 @@ use articulated_core::dynamics::Dynamics;
 use articulated_core::model::Model;
 use serde::Serialize;
 
+use crate::console::Progress;
 use crate::failure::Failure;
 
 /// What moves.
 #[derive(Clone, Debug)]
-pub struct Subject {
+pub(crate) struct Subject {
     /// The robot with its effects.
     pub model: Model<f64>,
     /// Where it starts.
@@ -29,7 +30,7 @@ pub struct Subject {
 
 /// All integrators on one motion.
 #[derive(Clone, Debug, Serialize)]
-pub struct Motion {
+pub(crate) struct Motion {
     /// The scene.
     pub scene: String,
     /// How long, s.
@@ -46,7 +47,7 @@ pub struct Motion {
 
 /// One integrator.
 #[derive(Clone, Debug, Serialize)]
-pub struct Curve {
+pub(crate) struct Curve {
     /// Its name.
     pub integrator: &'static str,
     /// Its nominal order.
@@ -59,7 +60,7 @@ pub struct Curve {
 
 /// One run.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Sample {
+pub(crate) struct Sample {
     /// The step, s, where it is fixed.
     pub step: Option<f64>,
     /// The tolerance, where steps are chosen.
@@ -80,7 +81,7 @@ pub struct Sample {
 
 /// How the steps of a run are chosen.
 #[derive(Clone, Copy, Debug)]
-pub enum How {
+pub(super) enum How {
     /// All of this length, s.
     Step(f64),
     /// By this tolerance.
@@ -89,13 +90,23 @@ pub enum How {
 
 /// Tolerances and numbers of steps: half a decade apart.
 const TOLERANCES: usize = 21;
-const STEPS: usize = 10;
+const STEPS: usize = 9;
+
+/// Errors from here on are too coarse for the law of small steps.
+const COARSE: f64 = 3e-2;
+
+/// A run that takes more steps is given up.
+const MOST: u64 = 1_000_000;
 
 /// Everything: each run as often as told, the fastest counts.
 pub(super) fn all(scene: &str, subject: &Subject, repetitions: usize) -> Result<Motion, Failure> {
+    let progress = Progress::new(1 + integrators().len());
+    progress.doing("reference".to_owned());
     let (references, end, agreement) = reference(subject)?;
     let mut curves = Vec::new();
     for integrator in integrators() {
+        progress.step();
+        progress.doing(integrator.name.to_owned());
         let how: Vec<How> = if integrator.adaptive {
             (0..TOLERANCES).map(|k| How::Tolerance(10f64.powf(-2.0 - 0.5 * k as f64))).collect()
         } else {
@@ -108,8 +119,14 @@ pub(super) fn all(scene: &str, subject: &Subject, repetitions: usize) -> Result<
 }
 
 /// The last state by the two integrators that agree best, and how far they are from each other.
-pub fn reference(subject: &Subject) -> Result<([String; 2], (Vec<f64>, Vec<f64>), f64), Failure> {
-    let candidates = [(IntegratorId::dop853, 1e-14), (IntegratorId::dop853, 3e-13), (IntegratorId::dopri5, 1e-14), (IntegratorId::dopri5, 1e-13), (IntegratorId::rodas4, 1e-12)];
+pub(super) fn reference(subject: &Subject) -> Result<([String; 2], (Vec<f64>, Vec<f64>), f64), Failure> {
+    let candidates = [
+        (IntegratorId::dop853, 1e-13),
+        (IntegratorId::dop853, 1e-12),
+        (IntegratorId::dopri5, 1e-13),
+        (IntegratorId::dopri5, 1e-12),
+        (IntegratorId::rodas4, 1e-11),
+    ];
     let found: Vec<(IntegratorId, f64, End)> =
         candidates.into_iter().filter_map(|(id, tolerance)| Some((id, tolerance, run(subject, id, How::Tolerance(tolerance))?))).collect();
     let mut best: Option<([String; 2], usize, f64)> = None;
@@ -121,12 +138,20 @@ pub fn reference(subject: &Subject) -> Result<([String; 2], (Vec<f64>, Vec<f64>)
             }
         }
     }
-    let (names, at, apart) = best.ok_or_else(|| Failure::input(["no two integrators come to the end of this motion: there is no reference".to_owned()]))?;
+    let (names, at, apart) =
+        best.ok_or_else(|| Failure::input(["no two integrators come to the end of this motion: there is no reference".to_owned()]))?;
     Ok((names, found[at].2.state.clone(), apart.max(1e-16)))
 }
 
 /// One integrator over its settings.
-pub fn curve(subject: &Subject, integrator: &'static Integrator, how: &[How], end: &(Vec<f64>, Vec<f64>), agreement: f64, repetitions: usize) -> Curve {
+pub(super) fn curve(
+    subject: &Subject,
+    integrator: &'static Integrator,
+    how: &[How],
+    end: &(Vec<f64>, Vec<f64>),
+    agreement: f64,
+    repetitions: usize,
+) -> Curve {
     let mut samples: Vec<Sample> = Vec::new();
     for how in how {
         let Some(mut best) = run(subject, integrator.id, *how) else { continue };
@@ -146,9 +171,9 @@ pub fn curve(subject: &Subject, integrator: &'static Integrator, how: &[How], en
 }
 
 /// By which power of the evaluations the error falls: a line through the logarithms, over the samples that the reference can tell and that are past the first coarse ones.
-pub fn slope(samples: &[Sample]) -> Option<f64> {
+pub(super) fn slope(samples: &[Sample]) -> Option<f64> {
     let points: Vec<(f64, f64)> =
-        samples.iter().filter(|s| s.told && s.error < 1e-2).map(|s| ((s.evaluations as f64).log10(), s.error.log10())).collect();
+        samples.iter().filter(|s| s.told && s.error < COARSE).map(|s| ((s.evaluations as f64).log10(), s.error.log10())).collect();
     let wide = points.iter().map(|p| p.0).fold(f64::NEG_INFINITY, f64::max) - points.iter().map(|p| p.0).fold(f64::INFINITY, f64::min);
     if points.len() < 3 || wide < 0.5 {
         return None;
@@ -170,7 +195,14 @@ struct End {
 
 /// To the end; `None` if it does not get there.
 fn run(subject: &Subject, id: IntegratorId, how: How) -> Option<End> {
-    let mut settings = Settings { integrator: id, end: subject.seconds, output: Output::Ends, stiffness: Stiffness::Note, ..Settings::default() };
+    let mut settings = Settings {
+        integrator: id,
+        end: subject.seconds,
+        output: Output::Ends,
+        stiffness: Stiffness::Note,
+        max_steps: MOST,
+        ..Settings::default()
+    };
     match how {
         How::Step(h) => settings.step = Some(h),
         How::Tolerance(t) => (settings.rtol, settings.atol) = (t, t),
@@ -201,4 +233,51 @@ fn difference(subject: &Subject, a: &(Vec<f64>, Vec<f64>), b: &(Vec<f64>, Vec<f6
     let rates = a.1.iter().zip(&b.1).map(|(a, b)| (a - b).abs());
     let all = apart.iter().map(|x| x.abs()).chain(rates).fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) });
     if told.is_ok() { all } else { f64::NAN }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::scene::find;
+    use super::*;
+
+    /// From the coarsest to the finest, each twice as many steps as the last.
+    fn sweep(subject: &Subject, from: u32, times: u32) -> Vec<How> {
+        (0..times).map(|k| How::Step(subject.seconds / f64::from(from << k))).collect()
+    }
+
+    /// Higher orders reach rounding before their law of small steps is all there is: their errors fall faster until then. Implicit steps take fewer rounds
+    /// the shorter they are.
+    #[test]
+    fn errors_fall_with_evaluations_as_the_order_says() {
+        let (_, mut subject) = find("pendulum").unwrap();
+        (subject.q, subject.v, subject.seconds) = (vec![1.5], vec![1.0], 3.0);
+        let (names, end, agreement) = reference(&subject).unwrap();
+        assert!(names[0] != names[1] && agreement < 1e-12, "{names:?} {agreement:e}");
+        for integrator in integrators() {
+            let (from, times, decades, over) = match integrator.id {
+                IntegratorId::semi_implicit_euler => (400, 6, 1.5, 0.2),
+                IntegratorId::rk4 => (96, 6, 1.2, 0.2),
+                IntegratorId::dopri5 => (24, 5, 0.9, 0.6),
+                IntegratorId::dop853 => (9, 4, 0.5, 0.6),
+                IntegratorId::rodas4 => (48, 6, 1.2, 0.3),
+                IntegratorId::lie_midpoint => (400, 6, 1.3, 0.35),
+            };
+            let curve = curve(&subject, integrator, &sweep(&subject, from, times), &end, agreement, 1);
+            let seen: Vec<(u64, f64)> = curve.samples.iter().filter(|s| s.told).map(|s| (s.evaluations, s.error)).collect();
+            let (slope, order) = (curve.slope.unwrap_or_default(), f64::from(integrator.order));
+            assert!((order - 0.2..=order + over).contains(&slope), "{}: {slope} {seen:?}", integrator.name);
+            assert!((seen[seen.len() - 1].0 as f64 / seen[0].0 as f64).log10() >= decades, "{}: {seen:?}", integrator.name);
+        }
+    }
+
+    #[test]
+    fn a_power_law_has_its_power_as_slope() {
+        let sample = |n: u64| {
+            let error = 3.0 * (n as f64).powi(-4);
+            Sample { step: None, tolerance: None, evaluations: n, wall: 0.0, error, energy: None, momentum: None, told: true }
+        };
+        let samples: Vec<Sample> = [10, 30, 100, 300, 1000].into_iter().map(sample).collect();
+        assert!((slope(&samples).unwrap() - 4.0).abs() < 1e-12);
+        assert!(slope(&samples[..1]).is_none());
+    }
 }

@@ -12,7 +12,15 @@ pub(super) fn text(m: &Motion) -> String {
     for c in &m.curves {
         let slope = c.slope.map_or_else(|| "too little to tell".to_owned(), |s| format!("{s:.2}"));
         let _ = writeln!(out, "\n{}, order {}; the error falls as this power of the evaluations: {slope}", c.integrator, c.order);
-        let mut table = Table::new([("step", "s"), ("tolerance", ""), ("evaluations", ""), ("wall time", "ms"), ("error", ""), ("energy", "relative"), ("momentum", "relative")]);
+        let mut table = Table::new([
+            ("step", "s"),
+            ("tolerance", ""),
+            ("evaluations", ""),
+            ("wall time", "ms"),
+            ("error", ""),
+            ("energy", "relative"),
+            ("momentum", "relative"),
+        ]);
         for s in &c.samples {
             table.row(row(s));
         }
@@ -33,7 +41,15 @@ pub(super) fn head(m: &Motion) -> String {
 fn row(s: &Sample) -> Vec<String> {
     let optional = |x: Option<f64>| x.map_or_else(|| "–".into(), number);
     let error = if s.told { number(s.error) } else { format!("< {}", number(s.error)) };
-    vec![optional(s.step), optional(s.tolerance), s.evaluations.to_string(), format!("{:.3}", s.wall * 1e3), error, optional(s.energy), optional(s.momentum)]
+    vec![
+        optional(s.step),
+        optional(s.tolerance),
+        s.evaluations.to_string(),
+        format!("{:.3}", s.wall * 1e3),
+        error,
+        optional(s.energy),
+        optional(s.momentum),
+    ]
 }
 
 /// Rows of numbers with a head.
@@ -56,7 +72,8 @@ pub(super) fn csv(m: &Motion) -> String {
 
 /// The cheapest run that is accurate enough, by evaluations and by the clock.
 pub(super) fn advice(m: &Motion, wish: f64) -> String {
-    let fit: Vec<(&str, &Sample)> = m.curves.iter().flat_map(|c| c.samples.iter().map(|s| (c.integrator, s))).filter(|(_, s)| s.error <= wish).collect();
+    let fit: Vec<(&str, &Sample)> =
+        m.curves.iter().flat_map(|c| c.samples.iter().map(|s| (c.integrator, s))).filter(|(_, s)| s.error <= wish).collect();
     let told = |(name, s): &(&str, &Sample)| {
         let how = s.step.map_or_else(|| format!("tolerance {:.1e}", s.tolerance.unwrap_or_default()), |h| format!("steps of {h:.2e} s"));
         format!("{name} with {how}: error {:.1e}, {} evaluations, {:.2} ms", s.error, s.evaluations, s.wall * 1e3)
@@ -66,5 +83,44 @@ pub(super) fn advice(m: &Motion, wish: f64) -> String {
     match (by_evaluations, by_time) {
         (Some(a), Some(b)) => format!("{}: fewest evaluations: {}\n{}: least time: {}\n", m.scene, told(a), m.scene, told(b)),
         _ => format!("{}: no run is accurate to {wish:e}\n", m.scene),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sweep::{Curve, Motion, Sample};
+    use super::super::{page, plot};
+    use super::*;
+
+    fn motion() -> Motion {
+        let sample = |n: u64, error: f64| Sample {
+            step: Some(1.0 / n as f64),
+            tolerance: None,
+            evaluations: 4 * n,
+            wall: 1e-6 * n as f64,
+            error,
+            energy: Some(error / 2.0),
+            momentum: None,
+            told: error > 1e-11,
+        };
+        let samples = vec![sample(10, 1e-3), sample(100, 1e-7), sample(1000, 1e-12)];
+        let curves = vec![Curve { integrator: "rk4", order: 4, slope: Some(4.0), samples }];
+        let references = ["one".to_owned(), "other".to_owned()];
+        Motion { scene: "a <scene>".into(), seconds: 1.0, degrees_of_freedom: 2, references, agreement: 1e-13, curves }
+    }
+
+    #[test]
+    fn the_cheapest_run_is_named_and_what_the_reference_cannot_tell_is_marked() {
+        let m = motion();
+        assert!(advice(&m, 1e-6).contains("rk4 with steps of 1.00e-2 s") && advice(&m, 1e-20).contains("no run"));
+        assert!(text(&m).contains("< 1.0e-12"));
+        assert!(csv(&m).lines().all(|l| l.split(',').count() == 11));
+    }
+
+    #[test]
+    fn the_page_needs_nothing_else() {
+        let m = motion();
+        let page = page::html(&m, &plot::diagrams(&m));
+        assert!(!page.contains("src=") && page.contains("a &lt;scene&gt;") && page.matches("<svg").count() == 3);
     }
 }
