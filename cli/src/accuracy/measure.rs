@@ -220,7 +220,7 @@ impl One<'_> {
             .map(|s| {
                 let ours: Vec<Vec<f64>> = own.iter().map(|k| ours[*k].1.call(s)).collect();
                 let generic = ours.first().cloned().unwrap_or_default();
-                let theirs = others.iter().map(|k| theirs[*k].1.call(s, &theirs[*k].0, &generic, self.f, self.model));
+                let theirs = others.iter().map(|k| theirs[*k].1.call(s, theirs[*k].0, &generic, self.f, self.model));
                 ours.iter().cloned().chain(theirs).collect()
             })
             .collect();

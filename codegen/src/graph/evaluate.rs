@@ -7,7 +7,8 @@ use super::{Graph, MOST, Node, NodeId, Op};
 impl Graph {
     /// The results, computed node by node in `S`; `input(argument, index)` gives the inputs. Of results with several lanes, the first. A multiply-add is a product and a sum.
     pub fn evaluate_as<S: Scalar>(&self, input: impl Fn(usize, usize) -> S) -> Vec<S> {
-        let (mut values, mut masks): (Vec<[S; MOST]>, Vec<Option<[S::Mask; MOST]>>) = (Vec::new(), Vec::new());
+        let mut values: Vec<[S; MOST]> = Vec::with_capacity(self.nodes().len());
+        let mut masks: Vec<Option<[S::Mask; MOST]>> = Vec::with_capacity(self.nodes().len());
         for node in self.nodes() {
             let mask = (node.op == Op::Positive).then(|| values[node.args[0] as usize].map(S::positive));
             values.push(self.value_as(node, &values, &masks, &input));
