@@ -47,7 +47,7 @@ pub(super) fn pieces(out: &mut String, graph: &Graph, signature: &Signature, dia
         for input in &signature.inputs {
             let _ = writeln!(out, "    let _ = {};", input.name);
         }
-        let _ = writeln!(out, "    let _ = (&m, &out);\n{piece}    }}");
+        let _ = writeln!(out, "    let _ = (&m, &out);\n{}{piece}    }}", dialect.beginning());
     }
     let _ = writeln!(out, "    $(#[$features])?\n    fn whole({takes}){returns} {{");
     let _ = writeln!(out, "    let mut m = [{zero}; {slots}];");

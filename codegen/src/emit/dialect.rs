@@ -25,6 +25,11 @@ pub(super) trait Dialect {
         (value != ZERO).then(|| format!("    {place} = {};\n", bare(&value)))
     }
 
+    /// What stands at the beginning of a function.
+    fn beginning(&self) -> &'static str {
+        ""
+    }
+
     /// The type of a value, and a value of it.
     fn value(&self) -> (&'static str, &'static str);
 }

@@ -11,6 +11,7 @@ use crate::graph::{Graph, Node, NodeId, Op};
 /// The statements, the result last.
 pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
     let vector = Vector { graph, signature };
+    *out += vector.beginning();
     if gives_much(graph) {
         return one_piece(out, graph, signature, &vector);
     }
@@ -24,6 +25,17 @@ pub(super) struct Vector<'a> {
     pub(super) graph: &'a Graph,
     pub(super) signature: &'a Signature<'a>,
 }
+
+/// Has the compiler lay the function's frame at the start of a cache line. Vectors that it keeps there lie across two lines otherwise, wherever the stack happens to begin so:
+/// a function takes up to a seventh longer.
+const ALIGNED: &str = "    {
+        // Vectors in this frame lie in one cache line each.
+        #[repr(align(64))]
+        #[allow(dead_code)]
+        struct Line(u8);
+        ::core::hint::black_box(&::core::mem::MaybeUninit::<Line>::uninit());
+    }
+";
 
 impl Dialect for Vector<'_> {
     fn statement(&self, k: usize, node: &Node) -> Option<String> {
@@ -68,6 +80,10 @@ impl Dialect for Vector<'_> {
             (Op::Spread, _) => self.lane(&node),
             _ => format!("lane::<0>({})", self.operand(id)),
         }
+    }
+
+    fn beginning(&self) -> &'static str {
+        ALIGNED
     }
 
     fn value(&self) -> (&'static str, &'static str) {

@@ -35,6 +35,10 @@ impl Dialect for Block<'_> {
         Some(format!("    put(&mut {place}, part, {});\n", self.number(id)))
     }
 
+    fn beginning(&self) -> &'static str {
+        self.0.beginning()
+    }
+
     fn value(&self) -> (&'static str, &'static str) {
         self.0.value()
     }

@@ -175,7 +175,8 @@ impl<'a> Batch<'a> {
             let _ = writeln!(out, "    $(#[$features])?\n    #[inline(never)]");
             let _ = writeln!(
                 out,
-                "    fn {name}_piece_{c}({declared}part: usize, m: &mut [{ty}; {slots}]) {{\n    align_frame();\n{piece}    }}\n"
+                "    fn {name}_piece_{c}({declared}part: usize, m: &mut [{ty}; {slots}]) {{\n{}{piece}    }}\n",
+                block.beginning()
             );
             let _ = writeln!(calls, "        {name}_piece_{c}({names}part, &mut m);");
         }

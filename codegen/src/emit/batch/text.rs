@@ -7,15 +7,6 @@ macro_rules! batch_support {
         /// How many vectors a block has of each number.
         const PARTS: usize = Lanes::LEN / LANES;
 
-        /// Has the compiler lay the caller's frame at the start of a cache line. Vectors that it keeps there lie across two lines otherwise, wherever the stack happens to
-        /// begin so: a function takes a seventh longer.
-        #[inline(always)]
-        fn align_frame() {
-            #[repr(align(64))]
-            struct Line(u8);
-            ::core::hint::black_box(&::core::mem::MaybeUninit::<Line>::uninit());
-        }
-
         $(#[$features])?
         #[inline]
         fn at(from: &Lanes, part: usize) -> V {
