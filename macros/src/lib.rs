@@ -7,6 +7,8 @@
 mod edits;
 mod errors;
 mod expand;
+#[cfg(test)]
+mod hostile;
 mod invocation;
 mod keys;
 mod place;

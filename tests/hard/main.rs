@@ -2,6 +2,7 @@
 
 mod checked;
 mod generated;
+mod hostile;
 mod monitors;
 
 use articulated_cli::stress::corpus::{CHAPTERS, Effort};
