@@ -24,7 +24,9 @@ mod tree;
 /// articulated::robot! {
 ///     /// Attributes, documentation and visibility are the module's.
 ///     pub mod panda {
-///         urdf = "robots/panda.urdf",                    // from the folder of Cargo.toml; the only key that must be there
+///         urdf = "robots/panda.urdf",                    // from the folder of Cargo.toml; this or `scene` must be there
+///         scene = "scenes/panda.toml",                   // a robot with its edits and effects, see docs/scenes.md; the other keys stand in place of its own
+///         effects = { damping = { "*" = 0.1 }, friction = urdf }, // what acts beside rigid bodies and gravity, as scenes have it
 ///         base = fixed,                                  // or floating
 ///         gravity = [0.0, 0.0, -9.81],                   // m/s², in the base frame
 ///         functions = [                                  // what to generate: names of `articulated::algorithm`, and
@@ -51,11 +53,11 @@ mod tree;
 /// }
 /// ```
 ///
-/// The values above are the defaults, but for `urdf`, `rename`, `snap_angles`, the last two functions, and those from `parameters` to `append`. Names of links and joints
+/// The values above are the defaults, but for `urdf`, `scene`, `effects`, `rename`, `snap_angles`, the last two functions, and those from `parameters` to `append`. Names of links and joints
 /// are words or stand in quotation marks. Robots are appended first, then payloads attached, then joints locked. The module has one function for each name in `functions`,
 /// constants for sizes, names and limits, modules of indices (`joint`, `q_index`, `v_index`, `frame`), and `Robot`, a value that
 /// implements `articulated::Dynamics`. What looks odd in the URDF is listed in its constant `WARNINGS`. It is compiled
-/// again when a URDF changes. With `parameters` every function takes their numbers as its last argument; the constant `PARAMETERS` has those of the URDF, the
+/// again when a URDF or the scene changes. With `parameters` every function takes their numbers as its last argument; the constant `PARAMETERS` has those of the URDF, the
 /// module `parameter` where each begins, and `Robot` holds its own. `payload(link)` and `inertia(link)` are ten: m, m·c and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz
 /// about the origin of the link's frame in its axes, added to what the link has or in its place; `origin(joint)` is the joint's xyz in its parent link, m. A build script (`articulated_codegen::Build`) gives the same code, to read and to step through.
 ///
