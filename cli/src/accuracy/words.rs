@@ -68,5 +68,14 @@ pub(super) fn surprises(points: &[Point]) -> Vec<String> {
             bound / r.largest
         ));
     }
+    let far = |p: &&Point| p.peer && p.hard.is_some_and(|(error, _)| error > 1e-6 && error > 1e3 * p.relative.largest);
+    for p in points.iter().filter(far) {
+        let (error, name) = p.hard.unwrap_or_default();
+        out.push(format!(
+            "{} is off by {error:.0e} of the terms at \u{201c}{name}\u{201d}; f64 here by {:.1e} in its hardest state.",
+            p.level,
+            plain.hard.map_or(f64::NAN, |h| h.0)
+        ));
+    }
     out
 }
