@@ -115,6 +115,7 @@ pub(crate) enum Command {
         "articulated simulate quadruped_drop -o drop              (then open drop/motion.html)",
         "articulated simulate arm.toml -o arm --end 5 --integrator dop853 --rtol 1e-10",
         "articulated simulate arm.toml --generated --format json",
+        "articulated simulate --all",
         "articulated simulate chain --against target/peers/peers.json",
     ]))]
     Simulate(SimulateArguments),

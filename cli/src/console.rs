@@ -57,6 +57,11 @@ impl Progress {
         bar
     }
 
+    /// For what another bar tells of.
+    pub(crate) fn hidden() -> Self {
+        Self(ProgressBar::hidden())
+    }
+
     /// This part of the whole is done, from 0 to 1.
     pub(crate) fn at(&self, part: f64) {
         self.0.set_position((part.clamp(0.0, 1.0) * 1000.0) as u64);

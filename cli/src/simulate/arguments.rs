@@ -7,8 +7,11 @@ use clap::Args;
 #[derive(Args, Debug)]
 pub(crate) struct SimulateArguments {
     /// A bundled scene's name, or the path of a scene
-    #[arg(value_name = "SCENE")]
-    pub(crate) scene: String,
+    #[arg(value_name = "SCENE", required_unless_present = "all")]
+    pub(crate) scene: Option<String>,
+    /// Instead of one scene, how fast each bundled scene is, by generated and by generic code
+    #[arg(long, conflicts_with_all = ["scene", "output", "generated", "against"])]
+    pub(crate) all: bool,
     /// The folder to write to; it is made if it is not there
     #[arg(short, long, value_name = "FOLDER")]
     pub(crate) output: Option<PathBuf>,

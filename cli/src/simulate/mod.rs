@@ -1,6 +1,7 @@
 //! `articulated simulate`.
 
 mod against;
+mod all;
 pub(crate) mod arguments;
 mod columns;
 mod csv;
@@ -34,7 +35,8 @@ use summary::Summary;
 
 /// Simulates and writes.
 pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, Failure> {
-    let stage = Stage::find(&arguments.scene)?;
+    let Some(scene) = &arguments.scene else { return all::run(arguments, format).map(|()| OK) };
+    let stage = Stage::find(scene)?;
     let settings = settings::of(stage.prepared.scene.simulation.as_ref(), arguments, &stage.prepared.scene.file)?;
     if let Some(file) = &arguments.against {
         return against::run(&stage, &settings, file, format).map(|()| OK);

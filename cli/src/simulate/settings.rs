@@ -24,7 +24,9 @@ pub(super) fn of(scene: Option<&Simulation>, arguments: &SimulateArguments, file
             settings.step = None;
         }
     }
-    if let Some(every) = a.every {
+    // Two states are no motion to look at.
+    let looked_at = (a.output.is_some() && settings.output == Output::Ends).then_some(0.01);
+    if let Some(every) = a.every.or(looked_at) {
         settings.output = Output::Every(every);
     }
     Ok(settings)

@@ -84,14 +84,13 @@ impl Figure {
         figure
     }
 
-    /// How far the things of a body reach from its origin, m.
-    pub(super) fn extent(&self, body: usize) -> f64 {
-        let length = |x: [f64; 3]| Vector3::from(x).norm();
-        let boxes = self.boxes.iter().filter(|b| b.body == body).map(|b| length(b.center) + length(b.half));
-        let starts = self.sticks.iter().filter(|s| s.from == body).map(|s| length(s.start));
-        let ends = self.sticks.iter().filter(|s| s.to == body).map(|s| length(s.end));
-        let balls = self.balls.iter().filter(|b| b.body == body).map(|b| length(b.center) + b.radius);
-        boxes.chain(starts).chain(ends).chain(balls).fold(0.0, f64::max)
+    /// Points of a body that hold all that is drawn of it, each with how far around it that reaches, m.
+    pub(super) fn points(&self, body: usize) -> Vec<(Vector3<f64>, f64)> {
+        let corners = self.boxes.iter().filter(|b| b.body == body).flat_map(Box::corners).map(|p| (p, 0.0));
+        let starts = self.sticks.iter().filter(|s| s.from == body).map(|s| (Vector3::from(s.start), 0.0));
+        let ends = self.sticks.iter().filter(|s| s.to == body).map(|s| (Vector3::from(s.end), 0.0));
+        let balls = self.balls.iter().filter(|b| b.body == body).map(|b| (Vector3::from(b.center), b.radius));
+        corners.chain(starts).chain(ends).chain(balls).collect()
     }
 
     /// A sphere at a place of a link.
@@ -115,6 +114,15 @@ impl Figure {
             Linked { body: *body, place: relative(first, &frame.placement), limb: limb(model, frame.body) }
         };
         description.links.iter().map(|link| model.frames.iter().find(|f| f.name == link.name).map(&mut place)).collect()
+    }
+}
+
+impl Box {
+    fn corners(&self) -> [Vector3<f64>; 8] {
+        std::array::from_fn(|k| {
+            let along = |axis: usize| Vector3::from(self.axes[axis]) * if k >> axis & 1 == 1 { self.half[axis] } else { -self.half[axis] };
+            Vector3::from(self.center) + along(0) + along(1) + along(2)
+        })
     }
 }
 

@@ -145,25 +145,27 @@ impl Space {
             None => Vector3::z(),
         };
         let moving = figure.frames.len();
-        let reach = |k: usize| {
-            let own = figure.extent(k + 1);
-            placements.iter().skip(k).step_by(moving.max(1)).map(move |x| (x.position, own))
-        };
-        let mut low = Vector3::repeat(f64::INFINITY);
-        let mut high = -low;
-        let mut lowest = 0.0_f64;
-        let still = std::iter::once((Vector3::zeros(), figure.extent(0)));
-        for (p, r) in still.chain((0..moving).flat_map(reach)).filter(|(p, _)| p.iter().all(|x| x.is_finite())) {
-            low = low.inf(&p.add_scalar(-r));
-            high = high.sup(&p.add_scalar(r));
-            lowest = lowest.min(up.dot(&p) - r);
-        }
-        let first = &placements[..moving.min(placements.len())];
-        let spread = first.iter().map(|a| (a.position - first[0].position).norm()).fold(0.0, f64::max);
+        let points: Vec<_> = (0..=moving).map(|body| figure.points(body)).collect();
+        let still = points[0].iter().map(|(p, r)| (*p, *r));
+        let placed = placements.iter().enumerate().flat_map(|(k, x)| points[k % moving + 1].iter().map(|(p, r)| (x.transform(*p), *r)));
+        let all = || still.clone().chain(placed.clone()).filter(|(p, _)| p.iter().all(|x| x.is_finite()));
+        let (low, high) = bounds(all());
+        let lowest = all().map(|(p, r)| up.dot(&p) - r).fold(0.0, f64::min);
+        let (from, to) = bounds(still.clone().chain(placed.clone().take(points[1..].iter().map(Vec::len).sum())));
         let radius = (0.5 * (high - low).norm()).max(1e-3);
-        let size = (spread + (0..=moving).map(|k| figure.extent(k)).fold(0.0, f64::max)).clamp(1e-3, radius * 2.0);
+        let size = (to - from).norm().clamp(1e-3, 2.0 * radius);
         Self { up, ground: setting.ground.map_or(lowest, |g| g.1), center: 0.5 * (low + high), radius, size }
     }
+}
+
+/// The box that holds all of these.
+fn bounds(all: impl Iterator<Item = (Vector3<f64>, f64)>) -> (Vector3<f64>, Vector3<f64>) {
+    let mut ends: Option<(Vector3<f64>, Vector3<f64>)> = None;
+    for (p, r) in all {
+        let (low, high) = (p.add_scalar(-r), p.add_scalar(r));
+        ends = Some(ends.map_or((low, high), |(a, b)| (a.inf(&low), b.sup(&high))));
+    }
+    ends.unwrap_or_default()
 }
 
 #[cfg(test)]
