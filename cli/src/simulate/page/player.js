@@ -54,7 +54,7 @@
   let following = null;
   function whole() {
     const center = motion.center, fit = Math.max(motion.radius, 1e-3);
-    Object.assign(eye, { azimuth: -0.9, elevation: 0.32, target: [...center], distance: 2.6 * fit });
+    Object.assign(eye, { azimuth: -0.9, elevation: 0.32, target: [...center], distance: 3.3 * fit });
     following = null;
   }
   function camera(w, h) {
