@@ -23,7 +23,7 @@ pub(super) fn text(r: &Report) -> String {
             ("", &target.times_faster_at_order_4, "times at order 4 with equal steps"),
         ];
         let told: Vec<String> =
-            ratios.iter().filter_map(|(a, ratio, b)| Some(format!("{a} {:.1} {b}", ratio.as_ref()?.median).trim().to_owned())).collect();
+            ratios.iter().filter_map(|(a, ratio, b)| Some(format!("{a} {:.1} {b}", ratio.as_ref()?).trim().to_owned())).collect();
         if !told.is_empty() {
             let _ = writeln!(out, "{}", told.join(", "));
         }
