@@ -31,6 +31,9 @@ fn a_solver_runs_on_whatever_has_dynamics() {
         for k in 0..a.len() {
             assert!((a[k] - b[k]).abs() <= 1e-11 * size && (a[k] - c[k]).abs() <= 1e-11 * size, "{a:?} {b:?} {c:?}");
         }
+        let names =
+            |k| (Dynamics::joint_of(&model, k).map(str::to_owned), articulated_models::panda_like::Robot.joint_of(k).map(str::to_owned));
+        (0..=model.nv).map(names).for_each(|(a, b)| assert_eq!(a, b));
         assert!((left / same - 1.0).abs() < 1e-9 && left > 1e-4 && by_aba > 1e-4, "{left} {same} {by_aba}");
     }
 }

@@ -38,7 +38,7 @@ pub(crate) fn module(
     support(&mut out, programs, forbid_unsafe, level);
     let of_many: Vec<Batch> = programs.iter().map(|p| Batch::of(p, context)).collect();
     batches(&mut out, &of_many, &request.options.batch, forbid_unsafe);
-    robot(&mut out, request, programs, !parameters.is_empty());
+    robot(&mut out, request, model, programs, !parameters.is_empty());
     out
 }
 
@@ -114,7 +114,7 @@ fn inputs(out: &mut String, parameters: &[Parameter]) {
 }
 
 /// The type that stands for the robot where code is written over the trait `Dynamics`.
-fn robot(out: &mut String, request: &Request, programs: &[Program], parameters: bool) {
+fn robot(out: &mut String, request: &Request, model: &Model<f64>, programs: &[Program], parameters: bool) {
     let Some(path) = &request.options.runtime else { return };
     let real = real(request.options.level);
     let default = if parameters { "" } else { ", ::core::default::Default" };
@@ -131,6 +131,7 @@ fn robot(out: &mut String, request: &Request, programs: &[Program], parameters: 
     let _ = writeln!(out, "    type Workspace = ();\n    fn workspace(&self) {{}}");
     let _ = writeln!(out, "    fn shape(&self) -> {path}::Shape {{ {path}::Shape {{ nq: NQ, nv: NV, frames: FRAMES, links: LINKS }} }}");
     let _ = writeln!(out, "    fn name(&self) -> &str {{ NAME }}");
+    joint_of(out, model);
     let _ = writeln!(out, "    #[inline]");
     let _ = writeln!(
         out,
@@ -144,6 +145,17 @@ fn robot(out: &mut String, request: &Request, programs: &[Program], parameters: 
     let _ =
         writeln!(out, "            _ => ::core::result::Result::Err({path}::FunctionError::NotGenerated {{ function: function.name() }}),");
     let _ = writeln!(out, "        }}\n    }}\n}}");
+}
+
+/// The joint that a degree of freedom belongs to.
+fn joint_of(out: &mut String, model: &Model<f64>) {
+    let _ = writeln!(out, "    fn joint_of(&self, freedom: usize) -> ::core::option::Option<&str> {{\n        match freedom {{");
+    for (k, joint) in model.joints.iter().enumerate().filter(|(_, j)| j.v.1 > 0) {
+        let (first, last) = (joint.v.0, joint.v.0 + joint.v.1 - 1);
+        let range = if first == last { first.to_string() } else { format!("{first}..={last}") };
+        let _ = writeln!(out, "            {range} => ::core::option::Option::Some(JOINT_NAMES[{k}]),");
+    }
+    let _ = writeln!(out, "            _ => ::core::option::Option::None,\n        }}\n    }}");
 }
 
 /// How one function is called through slices.
