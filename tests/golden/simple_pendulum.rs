@@ -131,6 +131,12 @@ impl ::articulated::Dynamics<f64> for Robot {
     fn workspace(&self) {}
     fn shape(&self) -> ::articulated::Shape { ::articulated::Shape { nq: NQ, nv: NV, frames: FRAMES, links: LINKS } }
     fn name(&self) -> &str { NAME }
+    fn joint_of(&self, freedom: usize) -> ::core::option::Option<&str> {
+        match freedom {
+            0 => ::core::option::Option::Some(JOINT_NAMES[0]),
+            _ => ::core::option::Option::None,
+        }
+    }
     #[inline]
     fn call(&self, function: ::articulated::FunctionId, _: &mut (), arguments: &[&[f64]], out: &mut [f64]) -> ::core::result::Result<(), ::articulated::FunctionError> {
         match (function, arguments) {

@@ -154,7 +154,8 @@ fn watched(model: &Model<f64>, sets: &[Set]) -> Vec<Row> {
         condition = worse(condition, scaled_condition(model, &mut ws, &s.q));
         let mut left = vec![0.0; model.nv];
         pivot_cancellation(model, &mut ws, &s.q, &mut left);
-        least = left.into_iter().enumerate().map(|(k, x)| (x, k)).fold(least, |a, b| if b.0.is_nan() || b.0 < a.0 { b } else { a });
+        // What comes after a pivot that is nothing is not a number.
+        least = left.into_iter().enumerate().map(|(k, x)| (x, k)).fold(least, |a, b| if b.0 < a.0 { b } else { a });
     }
     let distance = model.outward().map(|i| model.bodies[i].placement.position.norm()).fold(0.0, f64::max);
     let mut rows = vec![
