@@ -6,6 +6,7 @@
 use std::fmt::Write;
 
 use super::dialect::{Dialect, Unit, units};
+use super::flat::flat;
 use super::signature::Signature;
 use crate::graph::{Graph, NodeId, Op};
 
@@ -76,7 +77,7 @@ pub(super) fn one_piece(out: &mut String, graph: &Graph, signature: &Signature, 
     if !signature.into {
         let _ = writeln!(out, "    #[allow(unused_mut)]\n    let mut out = {};", signature.nothing());
     }
-    cut(graph, dialect, &signature.places(), usize::MAX).0.iter().for_each(|piece| *out += piece);
+    cut(graph, dialect, &signature.places(), usize::MAX).0.iter().for_each(|piece| *out += &flat(piece));
     *out += if signature.into { "" } else { "    out\n" };
 }
 

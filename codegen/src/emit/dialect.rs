@@ -1,5 +1,6 @@
 //! How nodes are written: in plain arithmetic or in lanes. What is common to both.
 
+use super::flat::flat;
 use super::literal::bare;
 use super::order::{Angle, Step, order};
 use super::results::ZERO;
@@ -94,7 +95,6 @@ fn inner(graph: &Graph) -> Vec<bool> {
 
 /// All statements.
 pub(super) fn statements(out: &mut String, graph: &Graph, dialect: &dyn Dialect) {
-    for line in units(graph, dialect.group()).iter().filter_map(|unit| unit.written(graph, dialect)) {
-        *out += &line;
-    }
+    let lines = units(graph, dialect.group()).into_iter().filter_map(|unit| unit.written(graph, dialect));
+    *out += &flat(&lines.collect::<String>());
 }

@@ -3,6 +3,7 @@
 mod batch;
 mod chunks;
 mod dialect;
+mod flat;
 mod function;
 mod header;
 mod levels;

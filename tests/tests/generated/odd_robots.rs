@@ -98,3 +98,14 @@ fn gravity_and_base_are_the_requests() {
     assert_eq!(program.run("weightless", "gravity_torque", &[vec![&[0.3, 0.4]]]), [[0.0, 0.0]]);
     assert_ne!(program.run("standing", "gravity_torque", &[vec![&[0.3, 0.4]]]), [[0.0, 0.0]]);
 }
+
+/// As cargo compiles by default: with all names for a debugger, where statements must not be inside of one another by the thousand.
+#[test]
+fn a_long_function_compiles_with_names_for_debuggers() {
+    let robot = articulated_models::robot("panda_like").expect("a bundled robot");
+    let mut request = Request::new("panda_like.urdf", robot.urdf);
+    request.options.functions = vec!["forward_dynamics_derivatives".into()];
+    let generated = generate(&request).expect("a robot");
+    assert!(generated.ledger.functions[0].emitted().instructions() > 3000);
+    Program::build(&[("panda_like", &generated)], &["-C", "debuginfo=2"]);
+}

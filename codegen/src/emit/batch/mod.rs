@@ -24,6 +24,7 @@ use self::text::{PUBLIC, SUPPORT};
 use self::ways::{SAFE, WAYS, Way};
 use super::chunks::cut;
 use super::dialect::Dialect;
+use super::flat::flat;
 use super::function::Context;
 use super::signature::Signature;
 use super::vector::Vector;
@@ -176,7 +177,8 @@ impl<'a> Batch<'a> {
             let _ = writeln!(
                 out,
                 "    fn {name}_piece_{c}({declared}part: usize, m: &mut [{ty}; {slots}]) {{\n{}{piece}    }}\n",
-                block.beginning()
+                block.beginning(),
+                piece = flat(piece)
             );
             let _ = writeln!(calls, "        {name}_piece_{c}({names}part, &mut m);");
         }
