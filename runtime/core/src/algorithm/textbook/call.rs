@@ -81,6 +81,10 @@ impl<S: Scalar> Textbook<S> {
             "torque_regressor" => self.torque_regressor(q, x[1], x[2]),
             "kinetic_energy_regressor" => self.kinetic_energy_regressor(q, x[1]),
             "potential_energy_regressor" => self.potential_energy_regressor(q),
+            // The book knows of no effects.
+            "effect_forces" => self.rest(),
+            "dissipation" => vec![S::zero()],
+            "motor_torques" => x[1].to_vec(),
             "integrate" => self.integrate(q, x[1]),
             "difference" => self.difference(q, x[1]),
             "random_configuration" => self.random_configuration(q),
