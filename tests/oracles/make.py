@@ -31,6 +31,7 @@ ROBOTS = [
     ("quadruped", "floating"),
     ("golfer", "fixed"),
     ("humanoid", "floating"),
+    ("t_handle", "floating"),
 ]
 WITH_PLACEMENTS = (0, 4)  # the states that carry placements too
 WITHOUT_ANSWERS = ("humanoid",)  # its derivatives take as long as all others together

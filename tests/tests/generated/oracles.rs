@@ -12,8 +12,11 @@ use crate::robots::{NATIVE, ROBOTS};
 /// Error allowed relative to the fixture's own scale, and, of placements, to a metre. The fixtures are good to the last bit.
 const TOLERANCE: f64 = 4e-15;
 
+/// The oracle knows no ball joints: the engines of `tests/fixtures` do, and the top has closed forms.
+const WITHOUT: &str = "spinning_top";
+
 fn each(law: impl Fn(&Case, &Fixture)) {
-    for robot in BUNDLED {
+    for robot in BUNDLED.iter().filter(|r| r.name != WITHOUT) {
         let (case, reference) = (Case::bundled(robot), fixture(robot.name));
         law(&case.with_gravity(reference.gravity), &reference);
     }
