@@ -193,6 +193,17 @@ fn a_rotor_has_energy() {
     assert_near(call(&model, "kinetic_energy", &[&[0.0], &[3.0]])[0], 0.5 * (MASS + 4.0) * 9.0);
 }
 
+/// What hangs on a rotor may have no mass: the joint moves the rotor.
+#[test]
+fn a_rotor_makes_a_massless_joint_move_something() {
+    let mut bare = slide();
+    bare.bodies[1].inertia = articulated_core::spatial::SpatialInertia::zero();
+    assert_eq!(bare.massless_joints(), [1]);
+    let driven = bare.with_effects(&[on(EffectId::armature, "slide", &[0.01, 20.0])]).expect("a rotor");
+    assert!(driven.massless_joints().is_empty());
+    assert_near(call(&driven, "forward_dynamics", &[&[0.3], &[0.7], &[5.0]])[0], 5.0 / 4.0);
+}
+
 #[derive(Deserialize)]
 struct Answers {
     engine: String,

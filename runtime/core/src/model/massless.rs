@@ -3,9 +3,10 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::Model;
+use super::{Body, Model};
 use crate::algorithm::Workspace;
 use crate::algorithm::checked::least_pivot;
+use crate::effect::EffectId;
 use crate::joint::Joint;
 use crate::monitor::pivot_cancellation;
 use crate::spatial::SpatialInertia;
@@ -57,7 +58,7 @@ impl Model<f64> {
         q
     }
 
-    /// For each moving body, whether its own mass is sure to be felt by all of its joint, and whether its joint alone moves mass.
+    /// For each moving body, whether its own mass or a rotor is sure to be felt by all of its joint, and whether its joint alone moves mass.
     fn moves_mass(&self) -> Vec<(usize, bool, bool)> {
         // Whether anything beyond a body's joint has mass: first of what hangs on the body, then with the body itself.
         let mut beyond = vec![false; self.bodies.len()];
@@ -72,11 +73,17 @@ impl Model<f64> {
                 Joint::Helical => own.mass != 0.0 || own.second.m11 + own.second.m22 != 0.0,
                 Joint::Spherical => (0..3).all(|k| own.rotational()[(k, k)] != 0.0),
                 Joint::Floating => *own != SpatialInertia::zero(),
-            };
+            } || turns_rotors(body);
             // Of several degrees of freedom some may be felt and others not: a point mass turns freely.
             moves.push((i, felt && body.joint.nv() == 1, felt || outside));
             beyond[body.parent] |= outside || *own != SpatialInertia::zero();
         }
         moves
     }
+}
+
+/// Whether every degree of freedom of the body's joint turns a rotor, which has inertia whatever hangs on it.
+fn turns_rotors(body: &Body<f64>) -> bool {
+    let rotor = |k: usize| body.effects.joint.iter().any(|e| e.effect == EffectId::armature && e.freedom == k);
+    (0..body.joint.nv()).all(rotor)
 }
