@@ -8,6 +8,7 @@ mod eval;
 mod functions;
 mod generate;
 mod scaling;
+mod scenes;
 mod simulate;
 mod stress;
 
