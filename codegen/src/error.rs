@@ -50,7 +50,7 @@ pub enum Error {
         known: Vec<String>,
     },
     /// A function that is not defined for this robot.
-    #[error("{file}: {function} is not defined: joint {} moves no mass and no inertia, so the mass matrix is singular in every configuration; give a link behind it a mass, or leave {function} out", joints.join(", joint "))]
+    #[error("{file}: {function} is not defined: joint {} moves no mass and no inertia, or none but what other joints move in the same way, so the mass matrix is singular in every configuration; give a link behind it a mass, or leave {function} out", joints.join(", joint "))]
     Singular {
         /// The file.
         file: String,

@@ -89,7 +89,7 @@ fn whole_state(nq: usize, nv: usize, frames: usize) -> String {
 
 #[test]
 fn every_function_has_a_result_by_name() {
-    let groups = "kinematics,dynamics,derivatives,momentum,regressors,operational_space_inertia_inverse,configurations";
+    let groups = "kinematics,dynamics,derivatives,momentum,regressors,operational_space_inertia_inverse,effects,configurations";
     let words = ["eval", "cart_pole", "--function", groups, "--states", "-", "--frames", "cart,pole_rod"];
     let state = whole_state(2, 2, 2);
     let ended = run_with(&[&words[..], &["--format", "json"]].concat(), state.as_bytes());

@@ -18,15 +18,18 @@ fn every_function_has_its_cost_or_the_reason_why_not() {
     let of = |name: &str| functions.iter().find(|f| f["function"] == name).unwrap();
     assert_eq!(of("jacobians_body")["gives"], "[frames][6][nv]");
     assert!(of("forward_dynamics")["costs"][0]["cost"]["instructions"].as_u64().unwrap() > 10);
-    assert_eq!(of("forward_dynamics")["costs"][1]["undefined"], "no mass behind joint turn");
+    assert_eq!(of("forward_dynamics")["costs"][1]["undefined"], "no mass that joint turn alone moves");
     let few = "fewer than six degrees of freedom carry each tip";
     assert!((0..2).all(|k| of("operational_space_inertia")["costs"][k]["undefined"] == few));
     assert!(of("inverse_dynamics")["costs"][1]["cost"].is_object());
     let text = run(&words);
     assert_eq!(text.status, 0, "{}", text.err);
-    for part in
-        ["not defined: no mass behind joint turn", "not defined: nothing that moves has mass", "not defined: fewer than six", "– (3)"]
-    {
+    for part in [
+        "not defined: no mass that joint turn alone moves",
+        "not defined: nothing that moves has mass",
+        "not defined: fewer than six",
+        "– (3)",
+    ] {
         assert!(text.out.contains(part), "{part}: {}", text.out);
     }
 }
