@@ -162,12 +162,11 @@ fn an_arm_under_water_only_loses_energy() {
 #[test]
 fn a_top_goes_round_steadily() {
     let motion = Motion::of("spinning_top", &["--every", "0.0628318530717959"]);
-    let q: Vec<Vec<f64>> = (0..4).map(|k| motion.column(&format!("q.point[{k}]"))).collect();
-    for i in 0..motion.rows.len() {
-        let [x, y, z, w] = [0, 1, 2, 3].map(|k| q[k][i]);
+    for (i, time) in motion.column("t").into_iter().enumerate() {
+        let [x, y, z, w]: [f64; 4] = motion.at(i, "q.point").try_into().unwrap();
         // The axis of the top in the base: at cos θ = 0.8, and turned by 10 rad/s.
         let axis = [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)];
-        let turned = 10.0 * motion.column("t")[i];
+        let turned = 10.0 * time;
         let expected = [0.6 * turned.cos(), 0.6 * turned.sin(), 0.8];
         let off = largest(&[0, 1, 2].map(|k| axis[k] - expected[k]));
         assert!(off < 1e-9, "off by {off} at {turned} rad");
