@@ -7,3 +7,4 @@ mod equals_generic;
 mod odd_robots;
 mod oracles;
 mod robots;
+mod scenes;
