@@ -7,12 +7,14 @@ use articulated_core::algorithm::function;
 use articulated_core::lanes::Real;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::accuracy::arguments::AccuracyArguments;
 use crate::edits::{Edits, FrameArguments};
 use crate::effects::arguments::EffectsArguments;
 use crate::failure::STATUSES;
 use crate::groups::Group;
 use crate::names::{Names, known, wanted};
 use crate::simulate::arguments::SimulateArguments;
+use crate::stress::arguments::StressArguments;
 
 /// Robot dynamics, spelled out: checks a URDF, generates its straight-line code, evaluates it, compares it, and simulates it.
 #[derive(Debug, Parser)]
@@ -263,47 +265,6 @@ pub(crate) struct CompareArguments {
 }
 
 #[derive(Args, Debug)]
-pub(crate) struct AccuracyArguments {
-    #[command(flatten)]
-    pub(crate) robot: RobotArguments,
-    #[command(flatten)]
-    pub(crate) frames: FrameArguments,
-    /// The functions to measure, or groups of them [default: placements,inverse_dynamics,mass_matrix,forward_dynamics]
-    #[arg(long, alias = "function", value_name = "NAMES", value_parser = known)]
-    pub(crate) functions: Vec<Names>,
-    /// The levels to measure [default: all that are told apart]
-    #[arg(long, alias = "level", value_name = "LEVELS", value_delimiter = ',')]
-    pub(crate) levels: Vec<Level>,
-    /// How many states at random within the limits of the joints; the hard ones come beside them
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
-    pub(crate) states: u32,
-    /// Seed of the random states
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub(crate) seed: u64,
-    /// How often each is timed
-    #[arg(long, value_name = "N", default_value_t = 31, value_parser = clap::value_parser!(u32).range(1..=100_000))]
-    pub(crate) repetitions: u32,
-    /// A peer library to measure beside them; may be given several times. It is run: name only libraries that you trust
-    #[arg(long, value_name = "LIBRARY")]
-    pub(crate) peer: Vec<PathBuf>,
-    /// A list of peer libraries, as the peers' build script writes it
-    #[arg(long, value_name = "FILE")]
-    pub(crate) peers_manifest: Option<PathBuf>,
-    /// The folder to write report.html, accuracy.csv, accuracy.json and diagrams in SVG and PNG to
-    #[arg(short, long, value_name = "FOLDER")]
-    pub(crate) output: Option<PathBuf>,
-    /// Measure integrators instead, on the motion of a scene: ROBOT is a scene's file, or the name of a bundled scene
-    #[arg(long)]
-    pub(crate) simulate: bool,
-    /// Only name the cheapest level of each function whose largest error is no larger than --error
-    #[arg(long, requires = "error")]
-    pub(crate) advise: bool,
-    /// The largest error that is right, relative to the sum of the magnitudes of the terms
-    #[arg(long, value_name = "ERROR", value_parser = wish)]
-    pub(crate) error: Option<f64>,
-}
-
-#[derive(Args, Debug)]
 pub(crate) struct FunctionsArguments {
     /// Bundled robots' names, or paths of URDF files [default: ur5_like panda_like quadruped humanoid]
     #[arg(value_name = "ROBOT")]
@@ -338,50 +299,11 @@ pub(crate) struct ScalingArguments {
     pub(crate) repetitions: u32,
 }
 
-#[derive(Args, Debug)]
-pub(crate) struct StressArguments {
-    /// A bundled robot's name, the path of a URDF, or - for the standard input [default: the corpus and all bundled robots]
-    #[arg(value_name = "ROBOT")]
-    pub(crate) robot: Option<String>,
-    /// The root link moves freely (bundled robots know their own base)
-    #[arg(long, conflicts_with = "fixed", requires = "robot")]
-    pub(crate) floating: bool,
-    /// The root link is fixed
-    #[arg(long, requires = "robot")]
-    pub(crate) fixed: bool,
-    /// Gravity in the base frame, m/s² [default: 0,0,-9.81]
-    #[arg(long, value_name = "X,Y,Z", value_parser = gravity, allow_hyphen_values = true, requires = "robot")]
-    pub(crate) gravity: Option<Gravity>,
-    /// Take inertias that no body can have
-    #[arg(long, requires = "robot")]
-    pub(crate) allow_unphysical_inertia: bool,
-    /// A file of states of the robot in JSON or CSV, besides those at random and the hard ones
-    #[arg(long, value_name = "FILE", requires = "robot")]
-    pub(crate) states: Option<String>,
-    /// Robots' generated code too, compiled by rustc
-    #[arg(long)]
-    pub(crate) generated: bool,
-    /// Only these chapters of the corpus
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = chapters(), conflicts_with = "robot")]
-    pub(crate) chapters: Vec<String>,
-    /// All of it: longer chains, ten million steps; takes minutes
-    #[arg(long, conflicts_with = "robot")]
-    pub(crate) full: bool,
-    /// Every row, and not only the one of each case that comes nearest to its limit
-    #[arg(long)]
-    pub(crate) rows: bool,
-}
-
-fn chapters() -> clap::builder::PossibleValuesParser {
-    let names = crate::stress::corpus::CHAPTERS.iter().map(|(name, _)| *name).chain([crate::stress::own::NAME]);
-    clap::builder::PossibleValuesParser::new(names)
-}
-
 /// Three numbers in m/s².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Gravity(pub(crate) [f64; 3]);
 
-fn gravity(text: &str) -> Result<Gravity, String> {
+pub(crate) fn gravity(text: &str) -> Result<Gravity, String> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|x| x.trim().parse::<f64>()).collect();
     let numbers = numbers.map_err(|e| e.to_string())?;
     let three: [f64; 3] = numbers.try_into().map_err(|n: Vec<f64>| format!("found {} numbers, expected three", n.len()))?;
@@ -391,10 +313,6 @@ fn gravity(text: &str) -> Result<Gravity, String> {
 fn real(text: &str) -> Result<Real, String> {
     let all = [Real::F64, Real::F32];
     all.into_iter().find(|r| r.name() == text.trim()).ok_or_else(|| "expected f64 or f32".into())
-}
-
-fn wish(text: &str) -> Result<f64, String> {
-    text.parse().ok().filter(|x: &f64| x.is_finite() && *x > 0.0).ok_or_else(|| "expected a positive number as 1e-9".into())
 }
 
 fn joints(text: &str) -> Result<usize, String> {

@@ -11,7 +11,7 @@ use super::judge::{self, Found, Verdict};
 use super::report::{FunctionReport, Point, Report, Spread, mark_front};
 use super::states::{Case, cases};
 use super::words;
-use crate::arguments::AccuracyArguments;
+use crate::accuracy::arguments::AccuracyArguments;
 use crate::compare::accuracy::Reference;
 use crate::compare::manifest::{self, Library};
 use crate::compare::peer::Peer;

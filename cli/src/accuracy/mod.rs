@@ -1,6 +1,7 @@
 //! `articulated accuracy`: what a digit costs.
 
 mod advise;
+pub(crate) mod arguments;
 mod contender;
 mod csv;
 mod judge;
@@ -18,7 +19,8 @@ use std::path::Path;
 use articulated_codegen::Level;
 use articulated_core::algorithm::function;
 
-use crate::arguments::{AccuracyArguments, Format};
+use crate::accuracy::arguments::AccuracyArguments;
+use crate::arguments::Format;
 use crate::compare::accuracy::Reference;
 use crate::compiled::Rustc;
 use crate::console;

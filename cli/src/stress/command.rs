@@ -7,11 +7,12 @@ use super::corpus::{CHAPTERS, Effort};
 use super::judge::State;
 use super::row::Row;
 use super::{own, text};
-use crate::arguments::{Format, RobotArguments, StressArguments};
+use crate::arguments::{Format, RobotArguments};
 use crate::console::{self, Progress};
 use crate::failure::{Failure, OK};
 use crate::robot::{Robot, read_bytes};
 use crate::states;
+use crate::stress::arguments::StressArguments;
 
 /// What was measured.
 #[derive(Clone, Debug, Serialize)]

@@ -2,6 +2,7 @@
 //!
 //! For tests: [`corpus::CHAPTERS`], each a list of [`row::Row`]s with a limit that each has to keep.
 
+pub(crate) mod arguments;
 mod command;
 pub mod corpus;
 pub mod judge;

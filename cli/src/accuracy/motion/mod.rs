@@ -9,7 +9,8 @@ mod text;
 use std::path::Path;
 
 use super::plot as picture;
-use crate::arguments::{AccuracyArguments, Format};
+use crate::accuracy::arguments::AccuracyArguments;
+use crate::arguments::Format;
 use crate::console;
 use crate::failure::Failure;
 

@@ -1,0 +1,44 @@
+//! The words of `stress`.
+
+use clap::Args;
+
+use crate::arguments::{Gravity, gravity};
+
+#[derive(Args, Debug)]
+pub(crate) struct StressArguments {
+    /// A bundled robot's name, the path of a URDF, or - for the standard input [default: the corpus and all bundled robots]
+    #[arg(value_name = "ROBOT")]
+    pub(crate) robot: Option<String>,
+    /// The root link moves freely (bundled robots know their own base)
+    #[arg(long, conflicts_with = "fixed", requires = "robot")]
+    pub(crate) floating: bool,
+    /// The root link is fixed
+    #[arg(long, requires = "robot")]
+    pub(crate) fixed: bool,
+    /// Gravity in the base frame, m/s² [default: 0,0,-9.81]
+    #[arg(long, value_name = "X,Y,Z", value_parser = gravity, allow_hyphen_values = true, requires = "robot")]
+    pub(crate) gravity: Option<Gravity>,
+    /// Take inertias that no body can have
+    #[arg(long, requires = "robot")]
+    pub(crate) allow_unphysical_inertia: bool,
+    /// A file of states of the robot in JSON or CSV, besides those at random and the hard ones
+    #[arg(long, value_name = "FILE", requires = "robot")]
+    pub(crate) states: Option<String>,
+    /// Robots' generated code too, compiled by rustc
+    #[arg(long)]
+    pub(crate) generated: bool,
+    /// Only these chapters of the corpus
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = chapters(), conflicts_with = "robot")]
+    pub(crate) chapters: Vec<String>,
+    /// All of it: longer chains, ten million steps; takes minutes
+    #[arg(long, conflicts_with = "robot")]
+    pub(crate) full: bool,
+    /// Every row, and not only the one of each case that comes nearest to its limit
+    #[arg(long)]
+    pub(crate) rows: bool,
+}
+
+fn chapters() -> clap::builder::PossibleValuesParser {
+    let names = crate::stress::corpus::CHAPTERS.iter().map(|(name, _)| *name).chain([crate::stress::own::NAME]);
+    clap::builder::PossibleValuesParser::new(names)
+}
