@@ -6,13 +6,17 @@ mod hostile;
 mod monitors;
 
 use articulated_cli::stress::corpus::{CHAPTERS, Effort};
+use articulated_cli::stress::row::Row;
 
 fn chapter(name: &str) {
     let (_, rows) = CHAPTERS.iter().find(|(n, _)| *n == name).expect("a chapter of the corpus");
-    let rows = rows(Effort::Quick);
+    hold(&rows(Effort::Quick));
+}
+
+/// Every row keeps its limit. The variable SHOW prints them all.
+fn hold(rows: &[Row]) {
     let show = std::env::var_os("SHOW").is_some();
-    let line =
-        |r: &articulated_cli::stress::row::Row| format!("{}: {}: found {:.3e} {}, limit {:?}", r.case, r.what, r.measured, r.unit, r.limit);
+    let line = |r: &Row| format!("{}: {}: found {:.3e} {}, limit {:?}", r.case, r.what, r.measured, r.unit, r.limit);
     if show {
         rows.iter().for_each(|r| println!("{} {}", if r.pass { "ok " } else { "BAD" }, line(r)));
     }

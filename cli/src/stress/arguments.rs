@@ -1,5 +1,6 @@
 //! The words of `stress`.
 
+use articulated_codegen::Level;
 use clap::Args;
 
 use crate::arguments::{Gravity, gravity};
@@ -24,13 +25,16 @@ pub(crate) struct StressArguments {
     /// A file of states of the robot in JSON or CSV, besides those at random and the hard ones
     #[arg(long, value_name = "FILE", requires = "robot")]
     pub(crate) states: Option<String>,
-    /// Robots' generated code too, compiled by rustc
+    /// Generated code too, compiled by rustc
     #[arg(long)]
     pub(crate) generated: bool,
+    /// Levels of accuracy of generated code [default: all of the corpus, f64 of robots]
+    #[arg(long, alias = "level", value_name = "LEVELS", value_delimiter = ',', requires = "generated")]
+    pub(crate) levels: Vec<Level>,
     /// Only these chapters of the corpus
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = chapters(), conflicts_with = "robot")]
     pub(crate) chapters: Vec<String>,
-    /// All of it: longer chains, ten million steps; takes minutes
+    /// All of it: longer chains, ten million steps, every level on every robot; takes minutes
     #[arg(long, conflicts_with = "robot")]
     pub(crate) full: bool,
     /// Every row, and not only the one of each case that comes nearest to its limit
@@ -39,6 +43,7 @@ pub(crate) struct StressArguments {
 }
 
 fn chapters() -> clap::builder::PossibleValuesParser {
-    let names = crate::stress::corpus::CHAPTERS.iter().map(|(name, _)| *name).chain([crate::stress::own::NAME]);
+    let names =
+        crate::stress::corpus::CHAPTERS.iter().map(|(name, _)| *name).chain([crate::stress::levels::NAME, crate::stress::own::NAME]);
     clap::builder::PossibleValuesParser::new(names)
 }

@@ -1,12 +1,13 @@
 //! The command itself: which rows, and the exit status.
 
+use articulated_codegen::Level;
 use articulated_core::algorithm::Argument;
 use serde::Serialize;
 
 use super::corpus::{CHAPTERS, Effort};
 use super::judge::State;
 use super::row::Row;
-use super::{own, text};
+use super::{levels, own, text};
 use crate::arguments::{Format, RobotArguments};
 use crate::console::{self, Progress};
 use crate::failure::{Failure, OK};
@@ -47,22 +48,37 @@ fn of_corpus(arguments: &StressArguments) -> Result<Vec<Row>, Failure> {
     let effort = if arguments.full { Effort::Full } else { Effort::Quick };
     let wanted = |name: &str| arguments.chapters.is_empty() || arguments.chapters.iter().any(|c| c == name);
     let chapters: Vec<_> = CHAPTERS.iter().filter(|(name, _)| wanted(name)).collect();
-    let progress = Progress::new(chapters.len() + 1);
+    let progress = Progress::new(chapters.len() + 2);
     let mut rows = Vec::new();
     for (name, chapter) in chapters {
         progress.doing(format!("chapter {name}"));
         rows.extend(chapter(effort));
         progress.step();
     }
+    if arguments.generated && wanted(levels::NAME) || arguments.chapters.iter().any(|c| c == levels::NAME) {
+        progress.doing(format!("chapter {}", levels::NAME));
+        let all = if arguments.levels.is_empty() { Level::all() } else { arguments.levels.clone() };
+        rows.extend(levels::chapter(effort, &all)?);
+    }
+    progress.step();
     if wanted(own::NAME) {
         for robot in articulated_models::ROBOTS {
             progress.doing(format!("robot {}", robot.name));
             let robot = Robot::find(&RobotArguments::plain(robot.name, false))?;
-            rows.extend(own::rows(&robot, &Vec::new(), arguments.generated)?);
+            rows.extend(own::rows(&robot, &Vec::new(), &of_robots(arguments))?);
         }
     }
     progress.step();
     Ok(rows)
+}
+
+/// The levels of robots' generated code.
+fn of_robots(arguments: &StressArguments) -> Vec<Level> {
+    match (arguments.generated, arguments.levels.is_empty()) {
+        (false, _) => Vec::new(),
+        (true, true) => vec![Level::default()],
+        (true, false) => arguments.levels.clone(),
+    }
 }
 
 fn of_robot(arguments: &StressArguments, name: &str) -> Result<Vec<Row>, Failure> {
@@ -75,7 +91,7 @@ fn of_robot(arguments: &StressArguments, name: &str) -> Result<Vec<Row>, Failure
         Some(file) => given(&robot, file)?,
         None => Vec::new(),
     };
-    own::rows(&robot, &given, arguments.generated)
+    own::rows(&robot, &given, &of_robots(arguments))
 }
 
 /// The states of a file; what a state does not give is zero.

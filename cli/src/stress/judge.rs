@@ -11,6 +11,7 @@ use articulated_core::algorithm::checked::{Factor, Singular};
 use articulated_core::algorithm::{FunctionId, Workspace, articulated_body, checked_forward_dynamics};
 use articulated_core::model::Model;
 
+use super::condition::{condition, diagonal, norm, sensitivity};
 use super::machine::{Machine, cast, exact, wide, widened};
 use super::row::{Case, Row};
 use super::terms::terms;
@@ -20,9 +21,10 @@ use crate::precise::Big;
 /// η allowed, and errors allowed of what is not solved for, in units of u times the magnitude of the terms.
 pub const BACKWARD: f64 = 64.0;
 
-/// Forward errors of solutions with the mass matrix allowed, in units of uκ, κ the condition number of M scaled to a diagonal of ones, which
-/// does not depend on units. Seen: 4.12, with a link without mass amid others.
-pub const FORWARD: f64 = 8.0;
+/// Forward errors of solutions with the mass matrix allowed, ‖x − x_exact‖₂/‖x_exact‖₂: in units of uκ₂(M), and, M scaled to a diagonal of ones and x with it, of
+/// u‖M⁻¹‖₂‖T‖₂, T the sums of magnitudes of M's terms. That does not depend on units, and is much the smaller one wherever masses or lengths differ. It is κ₂ where no element of M
+/// is the rest of larger terms; where one is, M itself is off by that much before anything is solved.
+pub const FORWARD: f64 = 4.0;
 
 /// A motion and torques, in double precision.
 #[derive(Clone, Debug, PartialEq)]
@@ -128,20 +130,19 @@ impl<'a, F: Machine> Judge<'a, F> {
             rows.push(self.row("forward_dynamics by ABA, η", most(&errors, 0), limit, "u"));
             rows.push(self.case.shown(format!("the same, forward error, {}", F::NAME), most(&errors, 1), "u"));
         }
-        let errors: Vec<[f64; 2]> = states.iter().filter_map(|s| self.by_matrix(s)).collect();
+        let errors: Vec<[f64; 3]> = states.iter().filter_map(|s| self.by_matrix(s)).collect();
+        let most = |k: usize| errors.iter().map(|e| e[k]).fold(0.0, worse);
         if !errors.is_empty() {
-            rows.push(self.row("forward_dynamics by LTDL, η", most(&errors, 0), limit, "u"));
-            rows.push(self.row("solve_mass_matrix by LTDL, error over κ", most(&errors, 1), FORWARD, "u"));
+            rows.push(self.row("forward_dynamics by LTDL, η", most(0), limit, "u"));
+            rows.push(self.row("solve_mass_matrix by LTDL, error over κ₂(M)", most(1), FORWARD, "u"));
+            rows.push(self.row(
+                "solve_mass_matrix by LTDL, error over ‖M⁻¹‖₂‖terms of M‖₂, scaled to a diagonal of ones",
+                most(2),
+                FORWARD,
+                "u",
+            ));
         }
         rows
-    }
-
-    /// κ of the scaled mass matrix, at least one.
-    fn condition(&self, state: &State) -> f64 {
-        let m = self.wide_mass_matrix(state);
-        let mut factor = Factor::<f64>::new(self.wide.nv);
-        let _ = factor.factor(&m);
-        factor.condition().max(1.0)
     }
 
     fn wide_mass_matrix(&self, state: &State) -> Vec<f64> {
@@ -156,8 +157,8 @@ impl<'a, F: Machine> Judge<'a, F> {
         Ok((a, left.to_f64()))
     }
 
-    /// By LᵀDL, where M is regular in this precision: η of forward dynamics; error of M⁻¹τ over κ, both scaled to a diagonal of ones, in units of u.
-    fn by_matrix(&self, state: &State) -> Option<[f64; 2]> {
+    /// By LᵀDL, where M is regular in this precision: η of forward dynamics; errors of M⁻¹τ over κ₂ in units of u, of M as it is and of M scaled.
+    fn by_matrix(&self, state: &State) -> Option<[f64; 3]> {
         let [q, v, tau] = [&state.q, &state.v, &state.tau].map(|x| cast::<F>(x));
         let m = call(FunctionId::mass_matrix, &self.model, std::slice::from_ref(&q));
         let mut factor = Factor::<F>::new(self.model.nv);
@@ -167,14 +168,20 @@ impl<'a, F: Machine> Judge<'a, F> {
         factor.solve(&mut a);
         let mut x = tau.clone();
         factor.solve(&mut x);
-        let size: Vec<f64> = (0..x.len()).map(|k| m[k * x.len() + k].to_f64().sqrt()).collect();
-        let far = Big::scope(|| {
-            let [q, tau] = [q, tau].map(|x| cast::<Big>(&widened(&x)));
+        let difference: Vec<[f64; 2]> = Big::scope(|| {
+            let [q, tau] = [&q, &tau].map(|x| cast::<Big>(&widened(x)));
             let expected = call(FunctionId::solve_mass_matrix, &exact(&self.model), &[q, tau]);
-            let most = expected.iter().zip(&size).map(|(e, s)| e.to_f64().abs() * s).fold(0.0, worse);
-            expected.iter().zip(&x).zip(&size).map(|((e, x), s)| e.error_of(x.to_f64(), most / s)).fold(0.0, worse)
+            expected.iter().zip(&x).map(|(e, x)| [e.error_of(x.to_f64(), 1.0), e.to_f64()]).collect()
         });
-        Some([self.solution(&a, state)[0], far / F::ROUNDOFF / self.condition(state)])
+        let (m, one) = (self.wide_mass_matrix(state), vec![1.0; x.len()]);
+        let terms = scale(FunctionId::mass_matrix, &self.wide, &[&widened::<F>(&q)])?;
+        let far = |s: &[f64], by: f64| {
+            let norm = |k: usize| norm(&difference.iter().zip(s).map(|(x, s)| x[k] * s).collect::<Vec<_>>());
+            let error = norm(0);
+            if error == 0.0 { 0.0 } else { error / norm(1) / by.max(1.0) / F::ROUNDOFF }
+        };
+        let s = diagonal(&m);
+        Some([self.solution(&a, state)[0], far(&one, condition(&m, &one)), far(&s, sensitivity(&m, &terms, &s))])
     }
 
     fn verdict(&self, outcomes: &[Outcome<F>], ends: Ends) -> Row {

@@ -4,8 +4,10 @@
 
 pub(crate) mod arguments;
 mod command;
+mod condition;
 pub mod corpus;
 pub mod judge;
+pub mod levels;
 pub mod machine;
 pub mod own;
 pub mod robots;

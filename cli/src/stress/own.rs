@@ -1,17 +1,17 @@
 //! A robot of one's own: states at random and hard ones, generic and generated code, and the monitors.
 
-use articulated_codegen::Generated;
+use articulated_codegen::Level;
 use articulated_core::algorithm::{FunctionId, Workspace};
 use articulated_core::model::Model;
 use articulated_core::monitor::{
     ADJOINT_LIMIT, adjoint_condition, pivot_cancellation, placement_orthonormality, quaternion_norms, scaled_condition, wrench_growth,
 };
 
-use super::judge::{BACKWARD, Ends, Judge, State, call, exact_error, worse};
+use super::judge::{BACKWARD, Ends, Judge, State, call, worse};
+use super::levels::{self, Made};
 use super::machine::Machine;
 use super::robots::{state, states};
 use super::row::{Case, Row};
-use crate::compiled::{Compiled, Rustc};
 use crate::failure::Failure;
 use crate::robot::Robot;
 use crate::states::quaternions;
@@ -20,21 +20,22 @@ use crate::states::quaternions;
 pub const NAME: &str = "robots";
 
 /// Robots of more degrees of freedom than this are judged without derivatives: 96 digits of a cube of it take minutes.
-const DERIVATIVES: usize = 12;
+pub(super) const DERIVATIVES: usize = 12;
 
 const TAU: f64 = 20.0;
 
 /// All rows of a robot.
-pub(super) fn rows(robot: &Robot, given: &[State], generated: bool) -> Result<Vec<Row>, Failure> {
+pub(super) fn rows(robot: &Robot, given: &[State], generated: &[Level]) -> Result<Vec<Row>, Failure> {
     let model = robot.whole_model(&robot.read()?)?;
     let sets = sets(&model, given);
-    let compiled = if generated { Some(compile(robot, &model)?) } else { None };
+    let made: Vec<Made> = generated.iter().map(|level| make(robot, &model, *level)).collect::<Result<_, _>>()?;
     let mut rows = Vec::new();
     for (name, why, states) in &sets {
         let case = Case::new(NAME, format!("{}: {name}", model.name), why);
         rows.extend(judged(&case, &model, states));
-        if let Some(compiled) = &compiled {
-            rows.extend(by_generated(&case, &model, compiled, states));
+        for made in &made {
+            let case = Case::new(NAME, format!("{}, generated, {}: {name}", model.name, made.level()), why);
+            rows.extend(levels::of_made(&case, &model, made, states));
         }
     }
     rows.extend(watched(&model, &sets));
@@ -91,47 +92,16 @@ fn judged(case: &Case, model: &Model<f64>, states: &[State]) -> Vec<Row> {
     rows
 }
 
-fn wanted(model: &Model<f64>) -> Vec<String> {
-    let mut names = vec!["inverse_dynamics", "mass_matrix"];
-    names.extend(model.massless_joints().is_empty().then_some("forward_dynamics"));
-    names.into_iter().map(str::to_owned).collect()
-}
-
-fn compile(robot: &Robot, model: &Model<f64>) -> Result<Compiled, Failure> {
-    let generated: Generated = robot.generate(&wanted(model))?;
-    let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
-    Compiled::build(&rustc, &generated).map_err(|e| Failure::tool(&e))
-}
-
-/// Generated code by the same measure.
-pub fn by_generated(case: &Case, model: &Model<f64>, compiled: &Compiled, states: &[State]) -> Vec<Row> {
-    let judge = Judge::<f64>::new(case, model);
-    let mut rows = Vec::new();
-    for function in [FunctionId::inverse_dynamics, FunctionId::mass_matrix] {
-        let error = |s: &State| {
-            let arguments = [s.q.clone(), s.v.clone(), s.a.clone()];
-            let arguments: Vec<Vec<f64>> = arguments.into_iter().take(function.row::<f64>().takes.len()).collect();
-            let slices: Vec<&[f64]> = arguments.iter().map(Vec::as_slice).collect();
-            let mut out = vec![f64::NAN; function.row::<f64>().len(model.shape())];
-            if compiled.call(function.name(), &slices, &mut out).is_err() {
-                return f64::NAN;
-            }
-            exact_error(function, model, &arguments, &out)
-        };
-        let worst = states.iter().map(error).fold(0.0, worse);
-        rows.push(case.row(format!("{}, generated", function.name()), worst, BACKWARD, "u"));
+/// The code of a robot at a level.
+fn make(robot: &Robot, model: &Model<f64>, level: Level) -> Result<Made, Failure> {
+    let mut names = levels::functions(model.nv, level);
+    if !model.massless_joints().is_empty() {
+        names.retain(|f| !f.row::<f64>().inverts_mass_matrix());
     }
-    let solved = |s: &State| {
-        let mut a = vec![f64::NAN; model.nv];
-        compiled.call("forward_dynamics", &[&s.q, &s.v, &s.tau], &mut a).ok()?;
-        // Where M is singular there is nothing to be judged: the unchecked form gives anything.
-        judge.checked(s).ok().map(|_| judge.solution(&a, s)[0])
-    };
-    let errors: Vec<f64> = states.iter().filter_map(solved).collect();
-    if !errors.is_empty() {
-        rows.push(case.row("forward_dynamics, generated, η", errors.into_iter().fold(0.0, worse), BACKWARD, "u"));
-    }
-    rows
+    let names: Vec<String> = names.into_iter().map(|f| f.name().to_owned()).collect();
+    let mut request = robot.request(&names);
+    request.options.level = level;
+    Made::of(articulated_codegen::generate(&request)?, level)
 }
 
 /// The monitors, over all states.

@@ -27,4 +27,13 @@ fn a_robot_of_ones_own_is_judged_and_watched() {
     assert_eq!(ended.status, 0, "{}{}", ended.out, ended.err);
     assert!(ended.out.contains("smallest pivot, of joint \"bare\"") && ended.out.contains("condition number of Ad"), "{}", ended.out);
     assert_eq!(run_with(&["stress", "-"], b"<robot/>").status, 1);
+    // Its code too, at levels: each a case of its own.
+    let ended = run_with(&["stress", "-", "--rows", "--generated", "--levels", "f32,double_double"], urdf);
+    assert_eq!(ended.status, 0, "{}{}", ended.out, ended.err);
+    assert!(
+        ["generated, f32: ", "generated, double_double: ", "beyond one rounding"].iter().all(|x| ended.out.contains(x)),
+        "{}",
+        ended.out
+    );
+    assert_eq!(run_with(&["stress", "-", "--levels", "f32"], urdf).status, 2);
 }

@@ -1,11 +1,10 @@
 //! Long chains: condition numbers that grow as the fourth power of the number of joints.
 
 use articulated_core::algorithm::FunctionId;
-use articulated_core::algorithm::checked::Factor;
 use articulated_core::description::Base;
-use articulated_core::model::Model;
 
 use super::Effort;
+use crate::stress::condition::condition;
 use crate::stress::judge::{BACKWARD, Ends, Judge, call};
 use crate::stress::robots::{Shape, built, chain, state};
 use crate::stress::row::{Case, Row};
@@ -47,7 +46,8 @@ fn one(n: usize, shape: Shape, ratio: f64) -> Vec<Row> {
     rows.extend(single.solved(&states, if n < 30 && !tapering { Ends::Solved } else { Ends::Either }, BACKWARD));
     if shape == Shape::Straight && !tapering && n >= 8 {
         let law = 3.9 * (n as f64).powi(4);
-        rows.push(case.between("κ₂(M) over 3.9 N⁴, f64", condition(&model, &states[0].q) / law, [0.5, 2.0], ""));
+        let kappa = condition(&call(FunctionId::mass_matrix, &model, &[states[0].q.clone()]), &vec![1.0; n]);
+        rows.push(case.between("κ₂(M) over 3.9 N⁴, f64", kappa / law, [0.5, 2.0], ""));
     }
     rows
 }
@@ -63,24 +63,4 @@ fn long(n: usize) -> Vec<Row> {
     let states = [state(Shape::ZigZag.angles(n), n, 3, 10.0)];
     let judge = Judge::<f64>::new(&case, &model);
     judge.recursions(&states)
-}
-
-/// κ₂ by power iteration, with M and with M⁻¹.
-fn condition(model: &Model<f64>, q: &[f64]) -> f64 {
-    let (n, m) = (model.nv, call(FunctionId::mass_matrix, model, &[q.to_vec()]));
-    let mut factor = Factor::<f64>::new(n);
-    let _ = factor.factor(&m);
-    let product = |x: &mut Vec<f64>| *x = (0..n).map(|i| m[i * n..][..n].iter().zip(x.iter()).map(|(m, x)| m * x).sum()).collect();
-    largest(n, product) * largest(n, |x| factor.solve(x))
-}
-
-fn largest(n: usize, apply: impl Fn(&mut Vec<f64>)) -> f64 {
-    let mut x: Vec<f64> = (0..n).map(|k| 1.0 + 0.3 * ((k * 7) % 5) as f64 * if k % 2 == 0 { 1.0 } else { -1.0 }).collect();
-    let mut size = 1.0;
-    for _ in 0..40 {
-        apply(&mut x);
-        size = x.iter().map(|x| x * x).sum::<f64>().sqrt();
-        x.iter_mut().for_each(|x| *x /= size);
-    }
-    size
 }

@@ -1,0 +1,62 @@
+//! What a level of accuracy promises of a number.
+
+use articulated_codegen::{Arithmetic, Level, Sines};
+
+use crate::stress::judge::BACKWARD;
+
+const DOUBLE: f64 = f64::EPSILON / 2.0;
+const SINGLE: f64 = f32::EPSILON as f64 / 2.0;
+
+/// How far a result may be off:
+///
+/// ```text
+/// r |x| + 64 u Σ|terms| + 3 N σ Σ‖terms‖
+/// ```
+///
+/// u is that of the arithmetic, r that of the number that the result is rounded to at last. σ is the absolute error of a sine: a rotation by sines that are off by σ
+/// changes a vector by √2 σ of its length, and a torque's terms pass N joints on their way out and N on their way back, 2√2 N < 3 N; lengths are meant, since a
+/// sine that is nothing is off by σ too.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Contract {
+    roundoff: f64,
+    result: f64,
+    sines: f64,
+    joints: f64,
+}
+
+impl Contract {
+    /// Of a robot of so many joints.
+    pub(super) fn of(level: Level, joints: usize) -> Self {
+        let (roundoff, result) = match level.arithmetic {
+            Arithmetic::Single => (SINGLE, 0.0),
+            Arithmetic::SingleByDouble => (DOUBLE, SINGLE),
+            // Constants are those of the model in f64, whatever is computed of them.
+            Arithmetic::Double | Arithmetic::Compensated | Arithmetic::DoubleDouble => (DOUBLE, 0.0),
+        };
+        let sines = match level.sines {
+            Sines::Fast7 => 1e-7,
+            Sines::Fast10 => 1e-10,
+            Sines::Ulp | Sines::Correct | Sines::Two => 0.0,
+        };
+        Self { roundoff, result, sines, joints: joints as f64 }
+    }
+
+    /// An error over what is allowed, of a number with these terms.
+    pub(super) fn part(&self, error: f64, value: f64, terms: f64, norms: f64) -> f64 {
+        if error == 0.0 { 0.0 } else { error / self.allowed(value, terms, norms) }
+    }
+
+    fn allowed(&self, value: f64, terms: f64, norms: f64) -> f64 {
+        self.result * value.abs() + BACKWARD * self.roundoff * terms + 3.0 * self.joints * self.sines * norms
+    }
+
+    /// In what a part of what is allowed is shown: its unit, and how many of it are allowed.
+    pub(super) fn unit(&self) -> (f64, &'static str) {
+        match (self.result == 0.0, self.sines == 0.0) {
+            (true, true) => (BACKWARD, "u"),
+            (false, true) => (1.0, "of u₃₂|x| + 64u"),
+            (true, false) => (1.0, "of 64u + 3Nσ"),
+            (false, false) => (1.0, "of u₃₂|x| + 64u + 3Nσ"),
+        }
+    }
+}
