@@ -65,6 +65,11 @@ fn passes() {
 }
 
 #[test]
+fn stiff() {
+    chapter("stiff");
+}
+
+#[test]
 fn motions() {
     chapter("motions");
 }

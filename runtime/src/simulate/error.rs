@@ -48,7 +48,7 @@ pub enum SimulateError {
         t: f64,
         /// The step, s.
         step: f64,
-        /// The longest step at which it is stable here, s.
+        /// The longest step at which the motion, were it linear, is stable here, s. Where forces bend within a step (stops, dry friction) take three tenths of it.
         admissible: f64,
         /// Size of the fastest eigenvalue, 1/s.
         rate: f64,

@@ -102,3 +102,25 @@ fn dry_friction_stops_a_body_and_does_not_turn_it_round() {
     let lost = motion.dissipated.last().unwrap();
     assert!((lost + 0.5).abs() < 1e-4, "{lost} J");
 }
+
+/// Where the force jumps the rate is μ/s, but wherever a step of 10 ms comes to rest it is small: the motion would chatter, or stand still at a speed. A force that bends within a step
+/// is not its tangent: three tenths of the longest step that is stable.
+#[test]
+fn steps_that_leap_over_dry_friction_are_refused() {
+    let robot = with(EffectId::friction, vec![1.0, 1e-3]);
+    let explicit =
+        [(IntegratorId::semi_implicit_euler, 2.0), (IntegratorId::rk4, 2.785), (IntegratorId::dopri5, 3.307), (IntegratorId::dop853, 6.37)];
+    for (integrator, limit) in explicit {
+        let mut h = 0.01;
+        let motion = loop {
+            match free(&robot, &stepping(integrator, 2.0, h), &[0.0], &[1.0]) {
+                Ok(motion) => break motion,
+                Err(SimulateError::Unstable { admissible, .. }) if admissible < h => h = 0.3 * admissible,
+                Err(error) => panic!("{integrator}: {error}"),
+            }
+        };
+        println!("{integrator}: {h} s, {:?}", motion.v.last());
+        assert!(h < 1e-3 * limit && motion.v.last().unwrap().abs() < 1e-9, "{integrator}: {h} s");
+        assert!((motion.q.last().unwrap() - 0.5).abs() < 2.0 * h * h + 1e-5 + if limit == 2.0 { h } else { 0.0 }, "{integrator}");
+    }
+}

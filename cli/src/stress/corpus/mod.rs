@@ -8,6 +8,7 @@ mod motions;
 mod passes;
 mod scaling;
 mod screws;
+mod stiff;
 mod turns;
 
 use super::row::Row;
@@ -34,5 +35,6 @@ pub const CHAPTERS: &[Chapter] = &[
     (screws::NAME, screws::rows),
     (turns::NAME, turns::rows),
     (passes::NAME, passes::rows),
+    (stiff::NAME, stiff::rows),
     (motions::NAME, motions::rows),
 ];

@@ -117,9 +117,8 @@ impl<R: Dynamics<f64>> Method<R> for Dop853 {
         (points > 0.0).then(|| (h * distance(self.stages.k(LAST), self.stages.k(LAST - 1)) / points, 6.1))
     }
 
-    fn fastest(&self) -> Option<(f64, &[f64])> {
-        let seen = self.stages.fastest();
-        Some((seen.rate, &seen.at))
+    fn fastest(&self) -> Option<(f64, [&[f64]; 2])> {
+        Some(self.stages.fastest().seen())
     }
 }
 

@@ -105,9 +105,8 @@ impl<R: Dynamics<f64>> Method<R> for Dopri5 {
         (points > 0.0).then(|| (h * distance(self.stages.k(6), self.stages.k(5)) / points, 3.25))
     }
 
-    fn fastest(&self) -> Option<(f64, &[f64])> {
-        let seen = self.stages.fastest();
-        Some((seen.rate, &seen.at))
+    fn fastest(&self) -> Option<(f64, [&[f64]; 2])> {
+        Some(self.stages.fastest().seen())
     }
 }
 

@@ -85,8 +85,8 @@ pub(crate) trait Method<R: Dynamics<f64>> {
         None
     }
 
-    /// The fastest motion that the last step of an explicit method saw, 1/s, roughly, and where.
-    fn fastest(&self) -> Option<(f64, &[f64])> {
+    /// The fastest motion that the last step of an explicit method saw, 1/s, roughly, and two points where it may be.
+    fn fastest(&self) -> Option<(f64, [&[f64]; 2])> {
         None
     }
 }

@@ -63,8 +63,7 @@ impl<R: Dynamics<f64>> Method<R> for Rk4 {
         Some(largest_of_polynomial(&[1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0], a, b, h))
     }
 
-    fn fastest(&self) -> Option<(f64, &[f64])> {
-        let seen = self.stages.fastest();
-        Some((seen.rate, &seen.at))
+    fn fastest(&self) -> Option<(f64, [&[f64]; 2])> {
+        Some(self.stages.fastest().seen())
     }
 }

@@ -76,7 +76,7 @@ impl<R: Dynamics<f64>> Method<R> for SemiImplicitEuler {
         Some(both.into_iter().map(|(re, im)| re.hypot(im)).fold(0.0, f64::max))
     }
 
-    fn fastest(&self) -> Option<(f64, &[f64])> {
-        Some((self.fastest.rate, &self.fastest.at))
+    fn fastest(&self) -> Option<(f64, [&[f64]; 2])> {
+        Some(self.fastest.seen())
     }
 }

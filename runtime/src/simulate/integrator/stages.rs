@@ -84,25 +84,30 @@ impl Stages {
 }
 
 /// The fastest motion seen between points of a step: the λ with |Δa| = λ²|Δu| + λ|Δv|, which for springs and for damping by itself is at least 0.6 of the true one, and
-/// where it was seen.
+/// where it was seen: at that of the two points with the larger acceleration, and halfway between, where a force that changes its side is steepest.
 #[derive(Clone, Debug)]
 pub(super) struct Fastest {
-    pub(super) rate: f64,
-    pub(super) at: Vec<f64>,
+    rate: f64,
+    at: [Vec<f64>; 2],
 }
 
 impl Fastest {
     pub(super) fn new(n: usize) -> Self {
-        Self { rate: 0.0, at: vec![0.0; n] }
+        Self { rate: 0.0, at: [vec![0.0; n], vec![0.0; n]] }
     }
 
     pub(super) fn reset(&mut self) {
         self.rate = 0.0;
     }
 
+    /// 1/s, and where.
+    pub(super) fn seen(&self) -> (f64, [&[f64]; 2]) {
+        (self.rate, self.at.each_ref().map(Vec::as_slice))
+    }
+
     /// Two points of a chart and their slopes.
     pub(super) fn compare(&mut self, y: [&[f64]; 2], f: [&[f64]; 2]) {
-        let nv = (self.at.len() - 2) / 2;
+        let nv = (self.at[0].len() - 2) / 2;
         let (mut way, mut turn, mut change) = (0.0, 0.0, 0.0);
         for i in 0..nv {
             let square = |pair: [&[f64]; 2], i: usize| (pair[0][i] - pair[1][i]).powi(2);
@@ -114,7 +119,9 @@ impl Fastest {
         if rate > self.rate && rate.is_finite() {
             self.rate = rate;
             let size = f.map(|f| f[nv..2 * nv].iter().map(|a| a * a).sum::<f64>());
-            self.at.copy_from_slice(y[usize::from(size[1] > size[0])]);
+            let [end, middle] = &mut self.at;
+            end.copy_from_slice(y[usize::from(size[1] > size[0])]);
+            middle.iter_mut().zip(y[0]).zip(y[1]).for_each(|((m, a), b)| *m = 0.5 * (a + b));
         }
     }
 }

@@ -20,14 +20,19 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
 
     /// The same where the last step saw something fast, on its way.
     pub(super) fn check_suspect(&mut self, run: &mut Run) -> Result<(), SimulateError> {
-        let (Some(h), Some((_, suspect))) = (self.settings.step, self.method.fastest()) else { return Ok(()) };
-        let at = if suspect.iter().any(|x| !x.is_finite()) { &self.y } else { suspect };
-        self.point.y.copy_from_slice(at);
-        self.system.rate(run.control, self.t, &self.point.y, &mut self.spare)?;
-        self.stability.begin_anew();
-        let here = (self.t, &self.point.y[..], &self.spare[..]);
-        let found = self.stability.exceeded(&mut self.system, run.control, &*self.method, here, h)?;
-        self.refuse(h, found)
+        let Some(h) = self.settings.step else { return Ok(()) };
+        for place in 0..2 {
+            let Some((_, suspects)) = self.method.fastest() else { return Ok(()) };
+            let suspect = suspects[place];
+            let at = if suspect.iter().any(|x| !x.is_finite()) { &self.y } else { suspect };
+            self.point.y.copy_from_slice(at);
+            self.system.rate(run.control, self.t, &self.point.y, &mut self.spare)?;
+            self.stability.begin_anew();
+            let here = (self.t, &self.point.y[..], &self.spare[..]);
+            let found = self.stability.exceeded(&mut self.system, run.control, &*self.method, here, h)?;
+            self.refuse(h, found)?;
+        }
+        Ok(())
     }
 
     fn refuse(&mut self, h: f64, found: Option<(f64, f64)>) -> Result<(), SimulateError> {
