@@ -42,7 +42,8 @@ def build(words, again):
     plans = [(module, peer) for module in (pinocchio_build, casadi_build, mujoco_build) for peer in module.plan(found, OUT)]
     plans += [(rust_build, peer) for peer in rust_build.plan(OUT)]
     if again:
-        for stamp in (OUT / "casadi_code" / "robots.stamp", *(Path(peer["path"]).with_suffix(".stamp") for _, peer in plans if wanted(peer))):
+        code = (OUT / generator.FOLDER / "robots.stamp" for generator in casadi_build.GENERATORS)
+        for stamp in (*code, *(Path(peer["path"]).with_suffix(".stamp") for _, peer in plans if wanted(peer))):
             stamp.unlink(missing_ok=True)
     before = {entry["name"]: entry for entry in json.loads(MANIFEST.read_text())} if MANIFEST.exists() else {}
     peers = []

@@ -74,7 +74,7 @@ def theirs(out):
     found = list(environment.compilers())
     clang = next((c for c in found if c[0] == "clang++"), found[0])
     entries = [(pinocchio_build, pinocchio_build.entry(clang[0], clang[1], f"{clang[2]}_v3", FLAGS, out))]
-    entries += [(casadi_build, casadi_build.entry(*c[:2], f"{c[2]}_v3", FLAGS, out)) for c in found]
+    entries += [(casadi_build, casadi_build.entry(generator, *c[:2], f"{c[2]}_v3", FLAGS, out)) for generator in casadi_build.GENERATORS for c in found]
     entries += [(mujoco_build, mujoco_build.plan(found, out, FLAGS)[0])]
     entries += [(rust_build, peer) for peer in rust_build.plan(out, CPU)]
     return [(module.build(peer, out)["name"], peer["path"]) for module, peer in entries]

@@ -1,5 +1,7 @@
 // Code that CasADi generated for some robots, behind the C interface of a peer (README.md). The table of robots is written by casadi_build.py.
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -42,43 +44,62 @@ struct Robot
 
 #include "casadi_robots.inc"
 
+// name, number of arguments: results of one row of numbers, or [nv][nv] by rows
+#define PLAIN_FUNCTIONS(F) \
+  F(inverse_dynamics, 3) F(mass_matrix, 1) F(forward_dynamics, 3) F(bias_forces, 2) F(gravity_torque, 1) F(mass_matrix_inverse, 1) \
+  F(solve_mass_matrix, 2) F(coriolis_matrix, 2) F(kinetic_energy, 2) F(potential_energy, 1) F(center_of_mass, 1) \
+  F(center_of_mass_velocity, 2) F(center_of_mass_acceleration, 3) F(centroidal_momentum, 2) F(centroidal_momentum_rate, 3)
+
+// what stays inside until it is asked for
+#define KEPT_FUNCTIONS(F) \
+  F(inverse_dynamics_derivatives, 3) F(forward_dynamics_derivatives, 3) F(center_of_mass_jacobian, 1) F(centroidal_momentum_matrix, 1)
+
 namespace
 {
+
+enum Name
+{
+#define NAME(name, takes) NAME_##name,
+  PLAIN_FUNCTIONS(NAME) KEPT_FUNCTIONS(NAME) NAMES
+};
+
+const char * const names[] = {
+#define TEXT(name, takes) #name,
+  PLAIN_FUNCTIONS(TEXT) KEPT_FUNCTIONS(TEXT)
+};
 
 struct Peer
 {
   const Robot & robot;
-  Entry inverse, mass, forward, inverse_slopes, forward_slopes;
-  std::vector<double> work, slopes; // three square matrices, by columns
+  std::array<Entry, NAMES> entries{};
+  std::vector<double> work, kept; // of derivatives three square matrices by columns, else as it is read
 
   explicit Peer(const Robot & r)
   : robot(r)
-  , inverse(find("inverse_dynamics"))
-  , mass(find("mass_matrix"))
-  , forward(find("forward_dynamics"))
-  , inverse_slopes(find("inverse_dynamics_derivatives"))
-  , forward_slopes(find("forward_dynamics_derivatives"))
-  , slopes(3 * r.nv * r.nv)
+  , kept(std::max(3 * r.nv, 6) * r.nv)
   {
     int longest = 0;
-    for (const Entry & e : {inverse, mass, forward, inverse_slopes, forward_slopes})
-      longest = e.work > longest ? e.work : longest;
+    for (int i = 0; i < NAMES; ++i)
+    {
+      const auto found = robot.functions.find(names[i]);
+      if (found == robot.functions.end())
+        continue;
+      entries[i] = found->second;
+      longest = std::max(longest, entries[i].work);
+    }
     work.resize(longest);
   }
 
-  Entry find(const char * name) const
+  void call(Name name, std::array<const double *, 3> arguments, double * out)
   {
-    const auto found = robot.functions.find(name);
-    return found == robot.functions.end() ? Entry{nullptr, 0} : found->second;
+    entries[name].code(arguments.data(), &out, nullptr, work.data(), 0);
   }
 
-  void differentiate(const Entry & entry, const double * x, const double * y, const double * z)
+  void keep(Name name, std::array<const double *, 3> arguments)
   {
     const int n = robot.nv * robot.nv;
-    const double * arguments[] = {x, y, z};
-    double * results[] = {slopes.data(), slopes.data() + n, slopes.data() + 2 * n};
-    if (entry.code)
-      entry.code(arguments, results, nullptr, work.data(), 0);
+    double * results[] = {kept.data(), kept.data() + n, kept.data() + 2 * n};
+    entries[name].code(arguments.data(), results, nullptr, work.data(), 0);
   }
 };
 
@@ -121,51 +142,42 @@ PEER_API int peer_joint_iv(void * handle, int i) { return peer(handle).robot.joi
 PEER_API int peer_joint_nq(void * handle, int i) { return peer(handle).robot.joints[i].nq; }
 PEER_API int peer_joint_nv(void * handle, int i) { return peer(handle).robot.joints[i].nv; }
 
-PEER_API void peer_inverse_dynamics(void * handle, const double * q, const double * v, const double * a, double * tau)
-{
-  Peer & p = peer(handle);
-  const double * arguments[] = {q, v, a};
-  p.inverse.code(arguments, &tau, nullptr, p.work.data(), 0);
-}
-
-PEER_API void peer_mass_matrix(void * handle, const double * q, double * M)
-{
-  Peer & p = peer(handle);
-  p.mass.code(&q, &M, nullptr, p.work.data(), 0);
-}
-
-PEER_API void peer_forward_dynamics(void * handle, const double * q, const double * v, const double * tau, double * a)
-{
-  Peer & p = peer(handle);
-  const double * arguments[] = {q, v, tau};
-  p.forward.code(arguments, &a, nullptr, p.work.data(), 0);
-}
-
-PEER_API void peer_inverse_dynamics_derivatives(void * handle, const double * q, const double * v, const double * a)
-{
-  peer(handle).differentiate(peer(handle).inverse_slopes, q, v, a);
-}
-
-PEER_API void peer_forward_dynamics_derivatives(void * handle, const double * q, const double * v, const double * tau)
-{
-  peer(handle).differentiate(peer(handle).forward_slopes, q, v, tau);
-}
-
 // whether the robot has code for it
 PEER_API int peer_has(void * handle, const char * function)
 {
   return peer(handle).robot.functions.count(function) != 0;
 }
 
+#define TAKES_1 const double * x
+#define TAKES_2 TAKES_1, const double * y
+#define TAKES_3 TAKES_2, const double * z
+#define GIVEN_1 {x, nullptr, nullptr}
+#define GIVEN_2 {x, y, nullptr}
+#define GIVEN_3 {x, y, z}
+
+#define PLAIN(name, takes) \
+  PEER_API void peer_##name(void * handle, TAKES_##takes, double * out) { peer(handle).call(NAME_##name, GIVEN_##takes, out); }
+#define KEPT(name, takes) \
+  PEER_API void peer_##name(void * handle, TAKES_##takes) { peer(handle).keep(NAME_##name, GIVEN_##takes); }
+
+PLAIN_FUNCTIONS(PLAIN)
+KEPT_FUNCTIONS(KEPT)
+
 PEER_API int peer_read(void * handle, const char * function, double * out)
 {
   Peer & p = peer(handle);
-  if (!peer_has(handle, function) || !std::strstr(function, "derivatives"))
-    return 0;
   const int n = p.robot.nv;
+  if (!peer_has(handle, function))
+    return 0;
+  const int rows = !std::strcmp(function, "center_of_mass_jacobian") ? 3 : !std::strcmp(function, "centroidal_momentum_matrix") ? 6 : 0;
+  std::copy_n(p.kept.data(), rows * n, out);
+  if (rows)
+    return 1;
+  if (!std::strstr(function, "derivatives"))
+    return 0;
   for (int k = 0; k < 3; ++k)
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n; ++j)
-        *out++ = p.slopes[(k * n + j) * n + i];
+        *out++ = p.kept[(k * n + j) * n + i];
   return 1;
 }

@@ -66,7 +66,7 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
     };
     let prepared = prepare_all(&plan, arguments, &mut report)?;
     measure_all(&prepared, &peers, arguments.repetitions as usize, &mut report);
-    report.making = Making::of(&plan, &prepared, &peers)?;
+    report.making = Making::all(&plan, &prepared, &peers)?;
     if let Some(file) = &arguments.chart {
         std::fs::write(file, chart::svg(&report)).map_err(|e| Failure::input([format!("{}: {e}", file.display())]))?;
     }

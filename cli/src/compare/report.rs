@@ -45,7 +45,7 @@ pub(super) struct Report {
     pub(super) notes: Vec<String>,
     pub(super) functions: Vec<FunctionReport>,
     /// What it took to make the functions of which generators among the peers have code, all together.
-    pub(super) making: Option<Making>,
+    pub(super) making: Vec<Making>,
 }
 
 /// A library that was opened, under its name.
@@ -202,7 +202,7 @@ impl Report {
             peers: Vec::new(),
             notes: Vec::new(),
             functions: Vec::new(),
-            making: None,
+            making: Vec::new(),
         }
     }
 

@@ -161,16 +161,20 @@ fn what_a_generator_took_is_told_and_drawn() {
     let code = serde_json::json!({"robot": "any name", "floating": false, "hash": hash(urdf), "functions": {"gravity_torque": cost}});
     let entry = serde_json::json!({"name": "one", "path": library.name(), "engine": "by <heart>", "compiler": "g++", "flags": "-ffast-math",
         "robots": [code]});
-    let manifest = File::new("peers.json", serde_json::json!([entry]).to_string().as_bytes());
+    let other = peer("0.0");
+    let whole = serde_json::json!({"name": "whole", "path": other.name(), "engine": "for any", "compilation_seconds": 90.0});
+    let manifest = File::new("peers.json", serde_json::json!([entry, whole]).to_string().as_bytes());
     let chart = File::new("chart.svg", b"");
     let words = ["compare", "simple_pendulum", "--functions", "gravity_torque,mass_matrix", "--peers-manifest", manifest.name()];
     let more = ["--chart", chart.name()];
     let json = run(&[&words[..], &more, &SMALL, &["--format", "json"]].concat()).json();
     assert_eq!((&json["peers"][0]["flags"], &json["functions"][0]["peers"][0]["cost"]), (&"-ffast-math".into(), &cost));
-    let making = &json["making"];
+    let making = &json["making"][0];
     assert_eq!(making["functions"], serde_json::json!(["gravity_torque"]));
     let ours = making["generation_seconds"].as_f64().unwrap() + making["compilation_seconds"].as_f64().unwrap();
     assert!((making["peers"][0]["peer_over_ours"].as_f64().unwrap() * ours / 12.0 - 1.0).abs() < 1e-9, "{making}");
+    let any_robot = serde_json::json!({"peer": "whole", "generation_seconds": null, "compilation_seconds": 90.0, "peer_over_ours": null});
+    assert_eq!((&making["peers"][1], json["making"].as_array().unwrap().len()), (&any_robot, 1));
     let drawn = std::fs::read_to_string(&chart.path).unwrap();
     assert_eq!(drawn.matches("by &lt;heart&gt; (g++, fast-math)").count(), 1, "{drawn}");
     assert!(drawn.starts_with("<svg ") && drawn.trim_end().ends_with("</svg>") && drawn.matches("mass_matrix").count() == 1);

@@ -13,6 +13,9 @@ use super::{Control, SimulateError};
 /// Steps between two looks.
 const EVERY: u64 = 16;
 
+/// What a step may see of fast motion, |hλ| roughly, before it is reason to look.
+pub(crate) const SUSPICIOUS: f64 = 0.6;
+
 /// Rounds at most of a look that begins anew, and of one that confirms.
 const ROUNDS: usize = 40;
 
@@ -59,7 +62,7 @@ impl Stability {
 
     /// Whether what a step saw of fast motion, |hλ| roughly, is reason to look; not twice in a row.
     pub(crate) fn suspects(&mut self, steps: u64, seen: f64) -> bool {
-        let look = seen > 0.6 && steps >= self.wait;
+        let look = seen > SUSPICIOUS && steps >= self.wait;
         if look {
             self.wait = steps + EVERY;
         }

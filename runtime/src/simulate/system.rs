@@ -65,24 +65,22 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
     }
 
     /// The commanded torques of a state, in `tau`.
-    pub(crate) fn command(&mut self, control: &mut dyn Control, t: f64, q: &[f64], v: &[f64], tau: &mut [f64]) {
-        if let Some(held) = &self.held {
-            tau.copy_from_slice(held);
-            return;
-        }
-        tau.fill(0.0);
-        control.torques(t, q, v, tau);
+    pub(crate) fn command(&self, control: &mut dyn Control, t: f64, q: &[f64], v: &[f64], tau: &mut [f64]) {
+        command(self.held.as_deref(), control, t, (q, v), tau);
+    }
+
+    /// The configuration u of the chart and the commanded torques there: in `q` and `tau`.
+    fn command_at(&mut self, control: &mut dyn Control, t: f64, u: &[f64], v: &[f64]) -> Result<(), FunctionError> {
+        self.place(u)?;
+        command(self.held.as_deref(), control, t, (&self.q, v), &mut self.tau);
+        Ok(())
     }
 
     /// f = dy/dt.
     pub(crate) fn rate(&mut self, control: &mut dyn Control, t: f64, y: &[f64], f: &mut [f64]) -> Result<(), SimulateError> {
         let nv = self.nv();
         let (u, v) = (&y[..nv], &y[nv..2 * nv]);
-        self.place(u)?;
-        let mut tau = std::mem::take(&mut self.tau);
-        let q = std::mem::take(&mut self.q);
-        self.command(control, t, &q, v, &mut tau);
-        (self.q, self.tau) = (q, tau);
+        self.command_at(control, t, u, v)?;
         self.manifold.rates(u, v, &mut f[..nv]);
         self.robot.forward_dynamics(&mut self.ws, &self.q, v, &self.tau, &mut f[nv..2 * nv])?;
         self.counts.evaluations += 1;
@@ -95,11 +93,7 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
     pub(crate) fn power(&mut self, control: &mut dyn Control, t: f64, y: &[f64]) -> Result<[f64; 2], SimulateError> {
         let nv = self.nv();
         let (u, v) = (&y[..nv], &y[nv..2 * nv]);
-        self.place(u)?;
-        let mut tau = std::mem::take(&mut self.tau);
-        let q = std::mem::take(&mut self.q);
-        self.command(control, t, &q, v, &mut tau);
-        (self.q, self.tau) = (q, tau);
+        self.command_at(control, t, u, v)?;
         Ok(self.powers(v))
     }
 
@@ -125,4 +119,14 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
         std::mem::swap(&mut self.origin, &mut self.q);
         Ok(())
     }
+}
+
+/// The torques that are held, or else those that the controller gives.
+fn command(held: Option<&[f64]>, control: &mut dyn Control, t: f64, (q, v): (&[f64], &[f64]), tau: &mut [f64]) {
+    if let Some(held) = held {
+        tau.copy_from_slice(held);
+        return;
+    }
+    tau.fill(0.0);
+    control.torques(t, q, v, tau);
 }

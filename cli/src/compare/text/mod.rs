@@ -36,12 +36,14 @@ pub(super) fn text(report: &Report) -> String {
             ),
             sizes(report),
         ),
-        ("The same of the fastest build of code that others generate (operations as they count them)".to_owned(), peers::costs(report)),
         (
-            format!("Generation and compilation of {}, all together, with nothing else going on", peers::made(report)),
-            peers::making(report),
+            "The same of code that others generate, of each engine its fastest build (operations as they count them)".to_owned(),
+            peers::costs(report),
         ),
-    ] {
+    ]
+    .into_iter()
+    .chain(report.making.iter().map(peers::making))
+    {
         if !table.is_empty() {
             let _ = write!(out, "\n{title}\n{}", indent(&table.text()));
         }

@@ -1,5 +1,6 @@
 //! Tables of other libraries.
 
+use super::super::making::Making;
 use super::super::report::{FunctionReport, PeerReport, Report};
 use super::{by_function, nanoseconds, times_of};
 use crate::table::{Table, plain};
@@ -70,41 +71,46 @@ fn difference(f: &FunctionReport) -> Option<f64> {
     known.reduce(|a, b| if a.0.is_nan() || a.0 / a.1 >= b.0 / b.1 { a } else { b }).map(|(d, _)| d)
 }
 
-/// What is known of generated code of others: of the fastest build that has any.
+/// What is known of generated code of others: of each engine's fastest build, where it has any.
 pub(super) fn costs(report: &Report) -> Table {
     let names = names(report);
-    let columns =
-        [("function", ""), ("build", ""), ("operations", ""), ("machine code", "bytes"), ("generation", "ms"), ("compilation", "ms")];
-    let mut table = Table::new(columns);
+    let generated = |engine: &&str| report.functions.iter().any(|f| f.fastest_of(engine).is_some_and(|p| p.cost.is_some()));
+    let engines: Vec<&str> = report.engines().into_iter().filter(generated).collect();
+    let titles = engines.iter().flat_map(|engine| {
+        [(*engine, "build"), ("operations", ""), ("machine code", "bytes"), ("generation", "ms"), ("compilation", "ms")]
+    });
+    let mut table = Table::new(std::iter::once(("function", "")).chain(titles));
     by_function(report, &mut table, |f| {
-        let of = f.peers.iter().filter(|p| p.cost.is_some());
-        let peer = of.min_by(|a, b| a.time.median.total_cmp(&b.time.median))?;
-        let cost = peer.cost.as_ref()?;
-        let count = |n: Option<u64>| n.map_or_else(|| "–".into(), |n| n.to_string());
-        let milliseconds = |seconds: f64| format!("{:.1}", seconds * 1e3);
-        let times = [cost.generation_seconds, cost.compilation_seconds].map(milliseconds);
-        Some([vec![letter_of(&names, peer), count(cost.operations), count(cost.code_bytes)], times.to_vec()].concat())
+        let known: Vec<Option<&PeerReport>> = engines.iter().map(|e| f.fastest_of(e).filter(|p| p.cost.is_some())).collect();
+        known.iter().any(Option::is_some).then(|| known.iter().flat_map(|peer| cost_cells(&names, *peer)).collect())
     });
     table
 }
 
-/// The functions that were made together.
-pub(super) fn made(report: &Report) -> String {
-    report.making.as_ref().map_or_else(String::new, |m| m.functions.join(", "))
+fn cost_cells(names: &[&str], peer: Option<&PeerReport>) -> [String; 5] {
+    let Some((peer, cost)) = peer.and_then(|p| Some((p, p.cost.as_ref()?))) else {
+        return ["–"; 5].map(str::to_owned);
+    };
+    let count = |n: Option<u64>| n.map_or_else(|| "–".into(), |n| n.to_string());
+    let [generation, compilation] = [cost.generation_seconds, cost.compilation_seconds].map(|s| format!("{:.1}", s * 1e3));
+    [letter_of(names, peer), count(cost.operations), count(cost.code_bytes), generation, compilation]
 }
 
-/// Generation and compilation of several functions.
-pub(super) fn making(report: &Report) -> Table {
+/// Generation and compilation of several functions, under a title.
+pub(super) fn making(making: &Making) -> (String, Table) {
     let columns = [("whose", ""), ("generation", "ms"), ("compilation", "ms"), ("together", "ms"), ("/ours", "ratio")];
     let mut table = Table::new(columns);
-    let Some(making) = &report.making else { return table };
     let milliseconds = |seconds: f64| format!("{:.0}", seconds * 1e3);
-    let cells = |who: &str, generation: f64, compilation: f64, ratio: f64| {
-        [who.to_owned(), milliseconds(generation), milliseconds(compilation), milliseconds(generation + compilation), times_of(ratio)]
+    let cells = |who: &str, generation: Option<f64>, compilation: f64, ratio: Option<f64>| {
+        let told = |x: Option<f64>, text: &dyn Fn(f64) -> String| x.map_or_else(|| "–".into(), text);
+        let together = milliseconds(generation.unwrap_or_default() + compilation);
+        [who.to_owned(), told(generation, &milliseconds), milliseconds(compilation), together, told(ratio, &times_of)]
     };
-    table.row(cells("ours", making.generation_seconds, making.compilation_seconds, 1.0));
+    table.row(cells("ours", Some(making.generation_seconds), making.compilation_seconds, Some(1.0)));
     for p in &making.peers {
         table.row(cells(&p.peer, p.generation_seconds, p.compilation_seconds, p.peer_over_ours));
     }
-    table
+    let whole = making.peers.iter().any(|p| p.generation_seconds.is_none());
+    let rest = if whole { "; without generation: a library for any robot, all of its functions" } else { "" };
+    (format!("Generation and compilation of {}, all together, with nothing else going on{rest}", making.functions.join(", ")), table)
 }

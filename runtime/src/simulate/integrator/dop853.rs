@@ -59,7 +59,7 @@ impl<R: Dynamics<f64>> Method<R> for Dop853 {
     ) -> Result<Error, SimulateError> {
         self.ready = false;
         let k = &mut self.stages;
-        k.begin(start);
+        k.begin(start, h);
         for i in 1..=LAST {
             k.stage(system, control, (start, h), i, C[i - 1], A[i - 1])?;
             if i == LAST - 1 {

@@ -62,7 +62,7 @@ impl<R: Dynamics<f64>> Method<R> for Dopri5 {
         norm: &Norm,
     ) -> Result<Error, SimulateError> {
         let k = &mut self.stages;
-        k.begin(start);
+        k.begin(start, h);
         for i in 0..6 {
             k.stage(system, control, (start, h), i + 1, C[i], A[i])?;
             if i == 4 {

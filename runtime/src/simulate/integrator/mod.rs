@@ -85,7 +85,7 @@ pub(crate) trait Method<R: Dynamics<f64>> {
         None
     }
 
-    /// The fastest motion that the last step of an explicit method saw, 1/s, roughly, and two points where it may be.
+    /// The fastest motion that the last step of an explicit method saw, 1/s, roughly, and two points where it may be; zero if it saw nothing that makes its step suspicious.
     fn fastest(&self) -> Option<(f64, [&[f64]; 2])> {
         None
     }
@@ -107,7 +107,12 @@ pub(crate) fn method<R: Dynamics<f64>>(id: IntegratorId, manifold: &Manifold, fi
 
 /// √(Σ (a − b)²).
 fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+    squared_distance(a, b).sqrt()
+}
+
+/// Σ (a − b)².
+fn squared_distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 
 /// The roots of λ² = aλ + b as (re, im), (re, im).

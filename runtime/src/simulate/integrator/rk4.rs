@@ -32,7 +32,7 @@ impl<R: Dynamics<f64>> Method<R> for Rk4 {
     ) -> Result<Error, SimulateError> {
         self.curve.forget();
         let k = &mut self.stages;
-        k.begin(start);
+        k.begin(start, h);
         k.stage(system, control, (start, h), 1, 0.5, &[0.5])?;
         k.stage(system, control, (start, h), 2, 0.5, &[0.0, 0.5])?;
         k.stage(system, control, (start, h), 3, 1.0, &[0.0, 0.0, 1.0])?;

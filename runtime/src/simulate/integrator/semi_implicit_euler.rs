@@ -5,6 +5,7 @@ use articulated_core::dynamics::Dynamics;
 use super::hermite::Hermite;
 use super::stages::Fastest;
 use super::{Method, Start, roots};
+use crate::simulate::stability::SUSPICIOUS;
 use crate::simulate::step_control::{Error, Norm};
 use crate::simulate::system::System;
 use crate::simulate::{Control, SimulateError};
@@ -39,7 +40,7 @@ impl<R: Dynamics<f64>> Method<R> for SemiImplicitEuler {
     ) -> Result<Error, SimulateError> {
         self.curve.forget();
         let nv = system.nv();
-        self.fastest.reset();
+        self.fastest.reset(SUSPICIOUS / h);
         self.fastest.compare([&self.before, start.y], [&self.rate, start.f]);
         let (u, rest) = end.split_at_mut(nv);
         rest.iter_mut().zip(&start.y[nv..]).zip(&start.f[nv..]).for_each(|((end, y), f)| *end = y + h * f);

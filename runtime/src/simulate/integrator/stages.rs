@@ -2,9 +2,13 @@
 
 use articulated_core::dynamics::Dynamics;
 
-use super::Start;
+use super::{Start, squared_distance};
+use crate::simulate::stability::SUSPICIOUS;
 use crate::simulate::system::System;
 use crate::simulate::{Control, SimulateError};
+
+/// Numbers that are combined at once.
+const BLOCK: usize = 4;
 
 /// Slopes k_1 … k_s of a step, and room for an argument.
 #[derive(Clone, Debug)]
@@ -34,11 +38,11 @@ impl Stages {
         &self.argument
     }
 
-    /// The first slope is known.
-    pub(super) fn begin(&mut self, start: Start) {
+    /// The first slope of a step of length h is known.
+    pub(super) fn begin(&mut self, start: Start, h: f64) {
         self.k[..self.n].copy_from_slice(start.f);
         self.argument.copy_from_slice(start.y);
-        self.fastest.reset();
+        self.fastest.reset(SUSPICIOUS / h);
     }
 
     /// The fastest motion that the stages of the step saw.
@@ -70,11 +74,24 @@ impl Stages {
 
     /// out = y + h·Σ a_j k_j.
     pub(super) fn combine(&self, y: &[f64], h: f64, a: &[f64], out: &mut [f64]) {
-        out.fill(0.0);
-        for (k, &a) in self.k.chunks_exact(self.n).zip(a).filter(|(_, a)| **a != 0.0) {
-            out.iter_mut().zip(k).for_each(|(out, k)| *out += a * k);
+        let (blocks, rest) = out.as_chunks_mut::<BLOCK>();
+        let at = BLOCK * blocks.len();
+        for (i, (out, y)) in blocks.iter_mut().zip(y.as_chunks::<BLOCK>().0).enumerate() {
+            let sum = self.sums(a, BLOCK * i);
+            *out = std::array::from_fn(|l| y[l] + h * sum[l]);
         }
-        out.iter_mut().zip(y).for_each(|(out, y)| *out = y + h * *out);
+        for (i, out) in rest.iter_mut().enumerate() {
+            *out = y[at + i] + h * self.sum(a, at + i);
+        }
+    }
+
+    /// Σ a_j k_j of the numbers from i on.
+    fn sums(&self, a: &[f64], i: usize) -> [f64; BLOCK] {
+        let mut sums = [0.0; BLOCK];
+        for (k, &a) in self.k.chunks_exact(self.n).zip(a).filter(|(_, a)| **a != 0.0) {
+            sums.iter_mut().zip(&k[i..i + BLOCK]).for_each(|(sum, k)| *sum += a * k);
+        }
+        sums
     }
 
     /// Σ a_j k_j of number i.
@@ -84,23 +101,27 @@ impl Stages {
 }
 
 /// The fastest motion seen between points of a step: the λ with |Δa| = λ²|Δu| + λ|Δv|, which for springs and for damping by itself is at least 0.6 of the true one, and
-/// where it was seen: at that of the two points with the larger acceleration, and halfway between, where a force that changes its side is steepest.
+/// where it was seen: at that of the two points with the larger acceleration, and halfway between, where a force that changes its side is steepest. What is slower than
+/// matters is not looked at closely.
 #[derive(Clone, Debug)]
 pub(super) struct Fastest {
     rate: f64,
     at: [Vec<f64>; 2],
+    /// The rate from which on it matters.
+    least: f64,
 }
 
 impl Fastest {
     pub(super) fn new(n: usize) -> Self {
-        Self { rate: 0.0, at: [vec![0.0; n], vec![0.0; n]] }
+        Self { rate: 0.0, at: [vec![0.0; n], vec![0.0; n]], least: 0.0 }
     }
 
-    pub(super) fn reset(&mut self) {
-        self.rate = 0.0;
+    /// Another step; rates below `least` do not matter in it.
+    pub(super) fn reset(&mut self, least: f64) {
+        (self.rate, self.least) = (0.0, least);
     }
 
-    /// 1/s, and where.
+    /// 1/s, and where; zero where nothing was as fast as matters.
     pub(super) fn seen(&self) -> (f64, [&[f64]; 2]) {
         (self.rate, self.at.each_ref().map(Vec::as_slice))
     }
@@ -108,10 +129,12 @@ impl Fastest {
     /// Two points of a chart and their slopes.
     pub(super) fn compare(&mut self, y: [&[f64]; 2], f: [&[f64]; 2]) {
         let nv = (self.at[0].len() - 2) / 2;
-        let (mut way, mut turn, mut change) = (0.0, 0.0, 0.0);
-        for i in 0..nv {
-            let square = |pair: [&[f64]; 2], i: usize| (pair[0][i] - pair[1][i]).powi(2);
-            (way, turn, change) = (way + square(y, i), turn + square(y, nv + i), change + square(f, nv + i));
+        let square = |pair: [&[f64]; 2], at: usize| squared_distance(&pair[0][at..at + nv], &pair[1][at..at + nv]);
+        let (way, turn, change) = (square(y, 0), square(y, nv), square(f, nv));
+        // Then |Δa| ≤ λ²|Δu| + λ|Δv| for certain with this λ: nothing is faster. Mostly so, and without roots.
+        let known = self.rate.max(self.least).powi(2);
+        if change <= known * (known * way + turn) {
+            return;
         }
         let (way, turn, change) = (way.sqrt(), turn.sqrt(), change.sqrt());
         // The positive root of way·λ² + turn·λ = change, without cancellation.

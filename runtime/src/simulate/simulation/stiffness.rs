@@ -22,9 +22,9 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
     pub(super) fn check_suspect(&mut self, run: &mut Run) -> Result<(), SimulateError> {
         let Some(h) = self.settings.step else { return Ok(()) };
         for place in 0..2 {
-            let Some((_, suspects)) = self.method.fastest() else { return Ok(()) };
+            let Some((rate, suspects)) = self.method.fastest() else { return Ok(()) };
             let suspect = suspects[place];
-            let at = if suspect.iter().any(|x| !x.is_finite()) { &self.y } else { suspect };
+            let at = if rate == 0.0 || suspect.iter().any(|x| !x.is_finite()) { &self.y } else { suspect };
             self.point.y.copy_from_slice(at);
             self.system.rate(run.control, self.t, &self.point.y, &mut self.spare)?;
             self.stability.begin_anew();
