@@ -113,7 +113,7 @@ fn names(out: &mut Drawing, x: &Axis, y: &Axis, points: &[Point]) {
     let mut at = top;
     for p in order {
         at = (at + step).max(y.at(p.relative.largest).min(at + step));
-        out.path(vec![[x.at(p.time.median) + 4.0, y.at(p.relative.largest)], [right + 14.0, at - 4.0]], LINE, 0.7, true);
+        out.path(vec![[x.at(p.time.median) + 4.0, y.at(p.relative.largest)], [right + 14.0, at - 4.0]], colour(p), 0.4, true);
         out.text([right + 18.0, at], Anchor::Start, 11.0, colour(p), &p.level);
     }
 }

@@ -10,8 +10,8 @@ use crate::simulate::plot::svg::escaped;
 /// The page.
 pub(super) fn html(m: &Motion, diagrams: &[(String, Drawing)]) -> String {
     let mut out = format!(
-        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>What accuracy of a motion costs: {0}</title><style>body{{font:15px/1.5 sans-serif;max-width:62em;margin:2em auto;\
-         padding:0 1em;color:#222}}svg{{max-width:100%;height:auto}}pre{{background:#f5f5f5;padding:.6em;overflow-x:auto;font-size:12px}}</style></head><body>\n<h1>What accuracy of a motion costs: {0}</h1>\n",
+        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>What accuracy of a motion costs: {0}</title><style>body{{font:15px/1.5 sans-serif;max-width:76em;margin:2em auto;\
+         padding:0 1em;color:#222}}svg{{max-width:100%;height:auto}}p,li{{max-width:62em}}pre{{background:#f5f5f5;padding:.6em;overflow-x:auto;font-size:12px}}</style></head><body>\n<h1>What accuracy of a motion costs: {0}</h1>\n",
         escaped(&m.scene)
     );
     out += INTRODUCTION;

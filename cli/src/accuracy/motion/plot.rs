@@ -38,6 +38,11 @@ fn diagram(m: &Motion, (below, of_x): (&str, What), (beside, of_y): (&str, What)
     let y = Axis::new(all().map(|p| p.1), [bottom, top]);
     let mut out = Drawing { width: WIDTH, height: HEIGHT, ..Drawing::default() };
     out.text([16.0, 22.0], Anchor::Start, 14.0, INK, &format!("{}, {} s", m.scene, m.seconds));
+    if all().next().is_none() {
+        let why = format!("nothing to draw: {beside} could be told of no run");
+        out.text([left, 0.5 * (top + bottom)], Anchor::Start, 12.0, INK, &why);
+        return out;
+    }
     frame(&mut out, &x, &y, below, beside);
     for (k, c) in m.curves.iter().enumerate() {
         let colour = COLOURS[k % COLOURS.len()];

@@ -57,16 +57,18 @@
     Object.assign(eye, { azimuth: -0.9, elevation: 0.32, target: [...center], distance: 3.3 * fit });
     following = null;
   }
+  // The height of the picture above the panel at its foot.
+  const open = h => Math.max(0.4 * h, Math.min(h, $('foot').offsetTop || h));
   function camera(w, h) {
     const c = Math.cos(eye.elevation), s = Math.sin(eye.elevation);
     const back = add(add(scaled(side, c * Math.cos(eye.azimuth)), scaled(ahead, c * Math.sin(eye.azimuth))), scaled(up, s));
     const right = unit(cross(up, back)), top = cross(back, right), from = add(eye.target, scaled(back, eye.distance));
-    const focus = 1.5 * Math.min(w, h);
+    const free = open(h), focus = 1.5 * Math.min(w, free);
     const near = eye.distance * 0.02;
     return {
       from, right, top, near,
       depth: p => -dot(less(p, from), back),
-      show(p) { const d = less(p, from), z = Math.max(-dot(d, back), near); return [w / 2 + focus * dot(d, right) / z, h * 0.46 - focus * dot(d, top) / z, focus / z]; },
+      show(p) { const d = less(p, from), z = Math.max(-dot(d, back), near); return [w / 2 + focus * dot(d, right) / z, 0.5 * free - focus * dot(d, top) / z, focus / z]; },
     };
   }
 
@@ -218,7 +220,7 @@
     state.spots = spots;
     strip(...fitted(stripCanvas), state.t);
     $('numbers').textContent = readout(state.t);
-    $('note').textContent = `${motion.note}; meshes of the ground ${number(mesh)} m`;
+    $('note').textContent = `${motion.note}; squares of the ground ${Number(mesh.toPrecision(3))} m`;
     scrub.value = state.t;
     play.textContent = state.playing ? 'Pause' : 'Play';
   }
@@ -260,7 +262,7 @@
     pointers.set(e.pointerId, { x: e.clientX, y: e.clientY });
     if (pointers.size === 2) nearer(apart / (spread() || 1));
     else if (e.shiftKey || e.buttons & 6) {
-      const cam = camera(view.clientWidth, view.clientHeight), scale = eye.distance / (1.5 * Math.min(view.clientWidth, view.clientHeight));
+      const cam = camera(view.clientWidth, view.clientHeight), scale = eye.distance / (1.5 * Math.min(view.clientWidth, open(view.clientHeight)));
       eye.target = add(eye.target, add(scaled(cam.right, -dx * scale), scaled(cam.top, dy * scale)));
     } else {
       eye.azimuth -= dx * 0.008;
