@@ -18,10 +18,10 @@ def is_current(peer, parts):
 
 
 def build(peer, parts, make, engine):
-    """Has `make(file)` build the library and say what it cost, unless nothing has changed. The entry of the manifest."""
+    """Has `make(file)` build the library and say what it cost, unless that is known and nothing has changed. The entry of the manifest."""
     library, (current, stamp) = Path(peer["path"]), is_current(peer, parts)
     kept, fresh = library.with_suffix(".cost.json"), library.with_suffix(".new")
-    if current:
+    if current and kept.exists():
         print(f"{peer['name']}: up to date")
     else:
         print(f"{peer['name']}: building", flush=True)

@@ -9,8 +9,8 @@ use super::{plot, text};
 use crate::simulate::plot::drawing::Drawing;
 use crate::simulate::plot::svg::escaped;
 
-const STYLE: &str = "body{font:15px/1.5 sans-serif;max-width:76em;margin:2em auto;padding:0 1em;color:#222}table{border-collapse:collapse;font-size:13px}\
-td,th{padding:.2em .6em;text-align:right;border-bottom:1px solid #ddd;white-space:nowrap}td:first-child,th:first-child{text-align:left}tr.front{font-weight:bold}\
+const STYLE: &str = "body{font:15px/1.5 sans-serif;max-width:82em;margin:2em auto;padding:0 1em;color:#222}table{border-collapse:collapse;font-size:13px}\
+td,th{padding:.2em .6em;text-align:right;border-bottom:1px solid #ddd;white-space:nowrap}td:first-child,th:first-child{text-align:left}td:nth-child(11){white-space:normal;min-width:13em}tr.front{font-weight:bold}\
 .scroll{overflow-x:auto}svg{max-width:100%;height:auto}pre{background:#f5f5f5;padding:.6em;white-space:pre-wrap}p,li{max-width:62em}";
 
 /// The page.
