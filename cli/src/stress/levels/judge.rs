@@ -1,5 +1,6 @@
 //! Errors of a level's code, over what its contract allows.
 
+use articulated_codegen::graph::Graph;
 use articulated_codegen::{Arithmetic, Sines, bound};
 use articulated_core::Scalar;
 use articulated_core::algorithm::FunctionId;
@@ -68,12 +69,17 @@ impl Judged<'_> {
         if let Some(reached) = self.of_bound(states) {
             rows.push(case.row(format!("{name}, generated, rounding over its guaranteed bound"), reached, 1.0, ""));
         }
-        let two = matches!(self.made.level.sines, Sines::Two);
-        if two {
+        if self.made.level.sines == Sines::Two && self.graph().is_some() {
             let second = worst(&|s| self.second_order(s));
             rows.push(case.row(format!("{name}, generated, beyond one rounding of the result"), second, SECOND_ORDER, "2⁻¹⁰⁰"));
         }
         rows
+    }
+
+    /// What the code computes, where that is all of it.
+    fn graph(&self) -> Option<&Graph> {
+        let graph = self.made.generated.graphs.get(self.made.place(self.function)?)?;
+        (!graph.outputs.is_empty()).then_some(graph)
     }
 
     fn arguments(&self, s: &State) -> Vec<Vec<f64>> {
@@ -128,7 +134,7 @@ impl Judged<'_> {
 
     /// What rounding did over the bound that is guaranteed of it, where one is finite; none at levels that have none.
     fn of_bound(&self, states: &[State]) -> Option<f64> {
-        let graph = &self.made.generated.graphs[self.made.place(self.function)?];
+        let graph = self.graph()?;
         let mut reached = None;
         for state in states {
             let arguments = self.arguments(state);
@@ -147,7 +153,7 @@ impl Judged<'_> {
     /// Of sums of two doubles: what is left of the difference from the graph beyond a rounding of the result, in units of 2⁻¹⁰⁰ of the terms.
     fn second_order(&self, state: &State) -> Option<f64> {
         let arguments = self.arguments(state);
-        let graph = &self.made.generated.graphs[self.made.place(self.function)?];
+        let graph = self.graph()?;
         let found = self.made.call(self.function, &arguments)?;
         let terms = self.graph_terms(&arguments)?;
         Some(Big::scope(|| {
@@ -166,7 +172,7 @@ impl Judged<'_> {
             let slices: Vec<&[f64]> = arguments.iter().map(Vec::as_slice).collect();
             return scales(self.model, self.function.name(), &slices).ok();
         }
-        let graph = &self.made.generated.graphs[self.made.place(self.function)?];
+        let graph = self.graph()?;
         Some(graph.evaluate_as(|argument, k| Magnitude::from_f64(arguments[argument][k])).iter().map(|x| x.magnitude).collect())
     }
 }
