@@ -68,21 +68,20 @@ enum PeerEntry {
 
 impl PeerEntry {
     /// # Safety
-    /// The robot is open, `x` has as many arrays as the function takes, each as long as it reads, and `out` is as long as it writes.
+    /// The robot is open, there are as many arrays as the function takes, each as long as it reads, and `out` is as long as it writes.
     #[inline(always)]
-    unsafe fn run(self, robot: H, x: &[&[f64]], out: O) {
-        let x = |k: usize| x[k].as_ptr();
+    unsafe fn run(self, robot: H, [q, v, a, w]: [P; 4], out: O) {
         // Sound: what this function asks for is what they ask for.
         unsafe {
             match self {
-                Self::One(f) => f(robot, x(0), out),
-                Self::Two(f) => f(robot, x(0), x(1), out),
-                Self::Three(f) => f(robot, x(0), x(1), x(2), out),
-                Self::Four(f) => f(robot, x(0), x(1), x(2), x(3), out),
-                Self::QuietOne(f) => f(robot, x(0)),
-                Self::QuietTwo(f) => f(robot, x(0), x(1)),
-                Self::QuietThree(f) => f(robot, x(0), x(1), x(2)),
-                Self::QuietFour(f) => f(robot, x(0), x(1), x(2), x(3)),
+                Self::One(f) => f(robot, q, out),
+                Self::Two(f) => f(robot, q, v, out),
+                Self::Three(f) => f(robot, q, v, a, out),
+                Self::Four(f) => f(robot, q, v, a, w, out),
+                Self::QuietOne(f) => f(robot, q),
+                Self::QuietTwo(f) => f(robot, q, v),
+                Self::QuietThree(f) => f(robot, q, v, a),
+                Self::QuietFour(f) => f(robot, q, v, a, w),
             }
         }
     }
@@ -175,21 +174,28 @@ impl Kernel {
         // Sound: as in `call`.
         unsafe {
             match self.entry {
-                Entry::One(f) => repeat(rounds, states, |x| f(x[0].as_ptr(), out)),
-                Entry::Two(f) => repeat(rounds, states, |x| f(x[0].as_ptr(), x[1].as_ptr(), out)),
-                Entry::Three(f) => repeat(rounds, states, |x| f(x[0].as_ptr(), x[1].as_ptr(), x[2].as_ptr(), out)),
-                Entry::Four(f) => repeat(rounds, states, |x| f(x[0].as_ptr(), x[1].as_ptr(), x[2].as_ptr(), x[3].as_ptr(), out)),
+                Entry::One(f) => repeat(rounds, states, |[q, ..]| f(q, out)),
+                Entry::Two(f) => repeat(rounds, states, |[q, v, ..]| f(q, v, out)),
+                Entry::Three(f) => repeat(rounds, states, |[q, v, a, _]| f(q, v, a, out)),
+                Entry::Four(f) => repeat(rounds, states, |[q, v, a, w]| f(q, v, a, w, out)),
             }
         }
     }
 }
 
-/// So many rounds through all states, with nothing around the calls that the clock would see.
+/// Where up to four arrays begin.
+fn begin(x: &[&[f64]]) -> [P; 4] {
+    std::array::from_fn(|k| x.get(k).map_or(std::ptr::null(), |x| x.as_ptr()))
+}
+
+/// So many rounds through all states, with nothing around the calls that the clock would see: to look up where each state's arrays begin is not a part of a function, and a short
+/// one would wait for it.
 #[inline(always)]
-fn repeat(rounds: usize, states: &[Vec<&[f64]>], mut call: impl FnMut(&[&[f64]])) {
+fn repeat(rounds: usize, states: &[Vec<&[f64]>], mut call: impl FnMut([P; 4])) {
+    let states: Vec<[P; 4]> = black_box(states.iter().map(|state| begin(state)).collect());
     for _ in 0..rounds {
-        for state in states {
-            call(black_box(state));
+        for state in &states {
+            call(*state);
         }
     }
 }
@@ -203,7 +209,7 @@ impl PeerKernel {
         check(x, &self.arguments, out.len(), self.out);
         let (robot, out) = (self.robot.handle, out.as_mut_ptr());
         // Sound: as above, and the robot is open as long as the kernel lives; it is used by one thread only.
-        unsafe { self.entry.run(robot, x, out) };
+        unsafe { self.entry.run(robot, begin(x), out) };
         let Some(name) = &self.kept else { return true };
         type Read = unsafe extern "C" fn(H, *const c_char, O) -> c_int;
         let read: Option<Read> = self.robot.native.symbol("peer_read");
@@ -221,9 +227,9 @@ impl PeerKernel {
         // One loop for each number of arguments, so that nothing is chosen inside. Sound: as in `call`.
         unsafe {
             match self.entry {
-                PeerEntry::One(f) => repeat(rounds, states, |x| f(robot, x[0].as_ptr(), out)),
-                PeerEntry::Two(f) => repeat(rounds, states, |x| f(robot, x[0].as_ptr(), x[1].as_ptr(), out)),
-                PeerEntry::Three(f) => repeat(rounds, states, |x| f(robot, x[0].as_ptr(), x[1].as_ptr(), x[2].as_ptr(), out)),
+                PeerEntry::One(f) => repeat(rounds, states, |[q, ..]| f(robot, q, out)),
+                PeerEntry::Two(f) => repeat(rounds, states, |[q, v, ..]| f(robot, q, v, out)),
+                PeerEntry::Three(f) => repeat(rounds, states, |[q, v, a, _]| f(robot, q, v, a, out)),
                 other => repeat(rounds, states, |x| other.run(robot, x, out)),
             }
         }

@@ -57,7 +57,8 @@ pub struct Generated {
     pub parameters: Vec<Parameter>,
     /// Costs.
     pub ledger: Ledger,
-    /// The graph of each function, in the order of the ledger: what the source computes.
+    /// The graph of each function, in the order of the ledger: what the source computes. Empty where the source leaves a loop
+    /// ([`unsolved`](articulated_core::algorithm::Function::unsolved)): the graph is not all of it then.
     pub graphs: Vec<graph::Graph>,
     /// Things in the document that are odd but used as written.
     pub warnings: Vec<Problem>,
@@ -93,7 +94,7 @@ pub fn generate(request: &Request) -> Result<Generated, Error> {
         programs.push(program);
     }
     let source = emit::module(request, &model, &names, &programs, &parameters, &unused) + &emit::warnings(&warnings);
-    let graphs = programs.into_iter().map(|p| p.graph).collect();
+    let graphs = programs.into_iter().map(|p| if p.columns.is_some() { graph::Graph::default() } else { p.graph }).collect();
     Ok(Generated { source, model, parameters, ledger, graphs, warnings, unused, snapped })
 }
 
@@ -110,7 +111,8 @@ fn wanted(request: &Request, model: &Model<f64>, massless: &[String]) -> Result<
         function.check(model.shape())?;
         function.parts.iter().try_for_each(|part| defined(request, model, massless, part.function))?;
         let same_type = |f: &Wanted| f.group().is_some() && f.group() == function.group();
-        let into = |f: &Wanted, other: &Wanted| f.name.strip_suffix("_into") == Some(other.name.as_str());
+        let into =
+            |f: &Wanted, other: &Wanted| ["_into", "_fill"].iter().any(|form| f.name.strip_suffix(form) == Some(other.name.as_str()));
         if wanted.iter().any(|f| f.name == function.name || same_type(f) || into(f, &function) || into(&function, f)) {
             return Err(Error::SameName { name: function.name });
         }

@@ -100,6 +100,16 @@ fn run(part: &Part, way: &Way<Sym>, model: &Model<Sym>, arguments: &[Argument]) 
     out
 }
 
+/// Whether a way can be had for the model.
+pub(crate) fn applies(way: &Way<Sym>, model: &Model<f64>) -> bool {
+    let mut applies = false;
+    let _ = sym::trace(|| {
+        applies = (way.applies)(&model.cast());
+        Vec::new()
+    });
+    applies
+}
+
 /// The ways of a function that can be had for the model, and what each costs at least; the least first.
 pub(crate) fn ways(part: &Part, model: &Model<f64>) -> Vec<(&'static Way<Sym>, u64)> {
     if let [one] = part.function.ways {

@@ -61,14 +61,32 @@ pub mod frame {
 ///
 /// forward kinematics; Featherstone 2008, §4.4.
 /// 0 multiplications + 0 additions in 1 instructions (multiply-adds counted once), 2 sines and cosines, depth 2.
-#[allow(unsafe_code, unused_unsafe, clippy::all, clippy::pedantic)]
+#[allow(unsafe_code)]
+#[inline]
 pub fn placements(q: &[f64; NQ]) -> [[f64; 12]; FRAMES] {
+    let mut out = ::core::mem::MaybeUninit::uninit();
+    placements_fill(q, &mut out);
+    // SAFETY: it was just written, all of it.
+    unsafe { out.assume_init() }
+}
+
+/// As [`placements`], into `out`, whatever that holds.
+#[allow(unsafe_code)]
+#[inline]
+pub fn placements_into(q: &[f64; NQ], out: &mut [[f64; 12]; FRAMES]) {
+    // SAFETY: nothing is read there, and what is written is a value.
+    placements_fill(q, unsafe { &mut *::core::ptr::from_mut(out).cast() });
+}
+
+/// Puts the result into `out`.
+#[allow(unsafe_code, unused_unsafe, clippy::all, clippy::pedantic)]
+fn placements_fill(q: &[f64; NQ], out: &mut ::core::mem::MaybeUninit<[[f64; 12]; FRAMES]>) {
     let _ = q;
     let x2 = q[0];
     let (x3, x4) = f64::sin_cos(x2);
     let x5 = -x3;
-    [[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
-     [x4, 0.0, x3, 0.0, 1.0, 0.0, x5, 0.0, x4, 0.0, 0.0, 0.0]]
+    out.write([[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0],
+     [x4, 0.0, x3, 0.0, 1.0, 0.0, x5, 0.0, x4, 0.0, 0.0, 0.0]]);
 }
 
 /// τ = M(q)·a + h(q, v), gravity included.
@@ -111,6 +129,12 @@ pub fn inverse_dynamics(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV]) -> [f64; NV
     body::<FUSED>(q, v, a)
 }
 
+/// As [`inverse_dynamics`], into `out`, whatever that holds.
+#[inline]
+pub fn inverse_dynamics_into(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV], out: &mut [f64; NV]) {
+    *out = inverse_dynamics(q, v, a);
+}
+
 /// Whether this is compiled for a processor on which a·b + c is one instruction.
 const FUSED: bool = ::core::cfg!(any(all(target_arch = "x86_64", target_feature = "avx2", target_feature = "fma"), target_arch = "aarch64"));
 
@@ -143,8 +167,9 @@ impl ::articulated::Dynamics<f64> for Robot {
             (::articulated::FunctionId::placements, &[q]) => {
                 let q = ::articulated::exactly::<NQ, f64>("q", q)?;
                 ::articulated::check_length("out", out.len(), FRAMES * 12)?;
-                let result: [[f64; 12]; FRAMES] = self::placements(q);
-                out.copy_from_slice(result.as_slice().as_flattened());
+                if let ::core::result::Result::Ok(out) = out.as_chunks_mut::<{ 12 }>().0.try_into() {
+                    self::placements_into(q, out);
+                }
                 ::core::result::Result::Ok(())
             }
             (::articulated::FunctionId::inverse_dynamics, &[q, v, a]) => {
@@ -152,8 +177,9 @@ impl ::articulated::Dynamics<f64> for Robot {
                 let v = ::articulated::exactly::<NV, f64>("v", v)?;
                 let a = ::articulated::exactly::<NV, f64>("a", a)?;
                 ::articulated::check_length("out", out.len(), NV)?;
-                let result: [f64; NV] = self::inverse_dynamics(q, v, a);
-                out.copy_from_slice(result.as_slice());
+                if let ::core::result::Result::Ok(out) = out.try_into() {
+                    self::inverse_dynamics_into(q, v, a, out);
+                }
                 ::core::result::Result::Ok(())
             }
             _ => ::core::result::Result::Err(::articulated::FunctionError::NotGenerated { function: function.name() }),

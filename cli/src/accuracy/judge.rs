@@ -36,10 +36,10 @@ pub(super) struct Found<'a> {
     pub(super) own: Option<(&'a Graph, Level)>,
 }
 
-/// The graph of a function.
+/// The graph of a function, where it is all of it.
 pub(super) fn graph<'a>(generated: &'a Generated, function: &str) -> Option<&'a Graph> {
     let place = generated.ledger.functions.iter().position(|f| f.function == function)?;
-    generated.graphs.get(place)
+    generated.graphs.get(place).filter(|graph| !graph.outputs.is_empty())
 }
 
 /// What a state says of each; `None` where there is no right answer. `state`: the arguments in the function's order.

@@ -21,7 +21,9 @@ impl Sizes {
     pub(super) fn function(&self, name: &str, symbol: &str) -> Option<u64> {
         let own = self.0.iter().find(|(n, _)| n == symbol)?.1;
         // A mangled path holds each name with its length in front.
-        let paths = ["", "_into", "_fill"].map(|form| format!("5robot{}{name}{form}", name.len() + form.len()));
+        let mut paths = ["", "_into", "_fill"].map(|form| format!("5robot{}{name}{form}", name.len() + form.len())).to_vec();
+        // The loop over columns, where there is one.
+        paths.push("5robot7columns".into());
         let outside = self.0.iter().filter(|(n, _)| paths.iter().any(|path| n.contains(path)));
         Some(own + outside.map(|(_, bytes)| bytes).sum::<u64>())
     }

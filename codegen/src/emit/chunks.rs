@@ -7,7 +7,8 @@ use std::fmt::Write;
 
 use super::dialect::{Dialect, Unit, units};
 use super::flat::flat;
-use super::signature::Signature;
+use super::signature::{Place, Signature};
+use super::together::two_at_once;
 use crate::graph::{Graph, NodeId, Op};
 
 /// Statements of a piece.
@@ -39,7 +40,7 @@ pub(super) fn cut(graph: &Graph, dialect: &dyn Dialect, places: &[String], lengt
 /// The pieces as functions `piece_0`, …, each for the features that the macro around it is given, and `whole`, which calls them.
 pub(super) fn pieces(out: &mut String, graph: &Graph, signature: &Signature, dialect: &dyn Dialect) {
     let (pieces, slots) = cut(graph, dialect, &signature.places(), LENGTH);
-    let (arguments, names, gives) = (signature.arguments(), signature.names(), signature.gives());
+    let (arguments, names, gives) = (signature.arguments(), signature.names(), signature.filled());
     let (takes, returns) = (signature.takes(), signature.returns());
     let (ty, zero) = dialect.value();
     for (c, piece) in pieces.iter().enumerate() {
@@ -52,33 +53,30 @@ pub(super) fn pieces(out: &mut String, graph: &Graph, signature: &Signature, dia
     }
     let _ = writeln!(out, "    $(#[$features])?\n    fn whole({takes}){returns} {{");
     let _ = writeln!(out, "    let mut m = [{zero}; {slots}];");
-    let place = if signature.into { "out" } else { "&mut out" };
-    if !signature.into {
+    let filled = signature.place == Place::Filled;
+    let place = if filled { "out" } else { "&mut out" };
+    if !filled {
         let _ = writeln!(out, "    let mut out = {};", signature.nothing());
     }
     for c in 0..pieces.len() {
         let _ = writeln!(out, "    piece_{c}({names}, &mut m, {place});");
     }
-    *out += if signature.into { "    }\n" } else { "    out\n    }\n" };
+    *out += if filled { "    }\n" } else { "    out\n    }\n" };
 }
 
 /// From this many results and nodes on each result is written as soon as it is made: kept until the end, they would fill the registers. Of a small
 /// function the compiler makes more where they come together.
 const WRITE_FROM: (usize, usize) = (32, 700);
 
-/// Whether there are so many results that they are written as soon as they are made; then there is a form that writes them into what the caller has, too: a copy of them
-/// costs as much as a third of the function.
+/// Whether there are so many results that they are written as soon as they are made.
 pub(super) fn gives_much(graph: &Graph) -> bool {
     graph.outputs.len() >= WRITE_FROM.0 && graph.nodes().len() >= WRITE_FROM.1
 }
 
 /// The statements of a function in one piece that gives much.
 pub(super) fn one_piece(out: &mut String, graph: &Graph, signature: &Signature, dialect: &dyn Dialect) {
-    if !signature.into {
-        let _ = writeln!(out, "    #[allow(unused_mut)]\n    let mut out = {};", signature.nothing());
-    }
-    cut(graph, dialect, &signature.places(), usize::MAX).0.iter().for_each(|piece| *out += &flat(piece));
-    *out += if signature.into { "" } else { "    out\n" };
+    let (pieces, _) = cut(graph, dialect, &signature.places(), usize::MAX);
+    pieces.iter().for_each(|piece| *out += &flat(&if dialect.stores_two() { two_at_once(piece) } else { piece.clone() }));
 }
 
 /// Whether a unit is made again wherever it is needed: inputs, and comparisons, whose values are no numbers.

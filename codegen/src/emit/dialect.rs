@@ -26,6 +26,11 @@ pub(super) trait Dialect {
         (value != ZERO).then(|| format!("    {place} = {};\n", bare(&value)))
     }
 
+    /// Whether two numbers that stand side by side can be written by one instruction, `store` of `lanes`.
+    fn stores_two(&self) -> bool {
+        false
+    }
+
     /// What stands at the beginning of a function.
     fn beginning(&self) -> &'static str {
         ""

@@ -5,9 +5,10 @@ use std::fmt::Write;
 use articulated_core::algorithm::Shape;
 use articulated_core::level::Level;
 
-use super::chunks::{gives_much, pieces};
+use super::chunks::pieces;
+use super::columns::Layout;
 use super::levels::{self, real};
-use super::signature::Signature;
+use super::signature::{Place, Signature};
 use super::vector::Vector;
 use super::{plain, sets, vector};
 use crate::graph::Graph;
@@ -33,18 +34,21 @@ impl Context {
 pub(super) fn function(out: &mut String, program: &Program, context: Context) {
     let Program { wanted, graph, .. } = program;
     let mut signature = Signature::of(wanted, context.sizes, context.parameters).with(real(context.level));
-    signature.into = gives_much(graph);
+    signature.place = Place::of(program, context.level, context.forbid_unsafe);
+    signature.columns = program.columns.as_ref().map(Layout::of);
     signature.results_type(out);
     if in_lanes(graph) || levels::is_long(graph, context.level) {
         body_macro(out, graph, &signature, context.level);
     }
     document(out, program, &signature, context);
-    if signature.into {
-        both(out, &signature);
+    if signature.place != Place::Value {
+        value_form(out, &signature);
+        into_form(out, &signature);
+        let _ = writeln!(out, "/// Puts {} into `out`.", if signature.place == Place::Filled { "what is not zero" } else { "the result" });
     }
     let _ =
         writeln!(out, "#[allow({}clippy::all, clippy::pedantic)]", if context.forbid_unsafe { "" } else { "unsafe_code, unused_unsafe, " });
-    let name = if signature.into { format!("fn {}_fill", wanted.name) } else { format!("pub fn {}", wanted.name) };
+    let name = if signature.place == Place::Value { format!("pub fn {}", wanted.name) } else { format!("fn {}_fill", wanted.name) };
     let _ = writeln!(out, "{name}({}){} {{", signature.takes(), signature.returns());
     for input in &signature.inputs {
         let _ = writeln!(out, "    let _ = {};", input.name);
@@ -59,18 +63,46 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
         levels::body(out, graph, &signature, context.level);
     }
     let _ = writeln!(out, "}}\n");
+    if signature.place == Place::Value && signature.has_into() {
+        into_form(out, &signature);
+    }
 }
 
-/// A function that gives much, as a value and into what the caller has; both fill what is zero.
-fn both(out: &mut String, signature: &Signature) {
+/// The function as a value, where its body writes into what it is handed.
+fn value_form(out: &mut String, signature: &Signature) {
     let (name, arguments, names, gives) = (&signature.wanted.name, signature.arguments(), signature.names(), signature.gives());
-    let nothing = signature.nothing();
-    let _ = writeln!(out, "#[inline]\npub fn {name}({arguments}) -> {gives} {{\n    let mut out = {nothing};");
-    let _ = writeln!(out, "    {name}_fill({names}, &mut out);\n    out\n}}\n");
-    let _ = writeln!(out, "/// As [`{name}`], into `out`, whatever that holds: nothing is copied.\n#[inline]");
-    let _ =
-        writeln!(out, "pub fn {name}_into({arguments}, out: &mut {gives}) {{\n    *out = {nothing};\n    {name}_fill({names}, out);\n}}\n");
-    let _ = writeln!(out, "/// Puts what is not zero into `out`.");
+    let _ = writeln!(out, "{}#[inline]\npub fn {name}({arguments}) -> {gives} {{", allowed(signature));
+    let _ = if signature.columns.is_some() {
+        writeln!(out, "    let mut out = {};\n    {name}_into({names}, &mut out);\n    out\n}}\n", signature.nothing())
+    } else if signature.place == Place::Written {
+        let _ = writeln!(out, "    let mut out = ::core::mem::MaybeUninit::uninit();\n    {name}_fill({names}, &mut out);");
+        writeln!(out, "    // SAFETY: it was just written, all of it.\n    unsafe {{ out.assume_init() }}\n}}\n")
+    } else {
+        writeln!(out, "    let mut out = {};\n    {name}_fill({names}, &mut out);\n    out\n}}\n", signature.nothing())
+    };
+}
+
+/// The function that writes into what the caller has: a copy costs as much as a third of a function.
+fn into_form(out: &mut String, signature: &Signature) {
+    let (name, arguments, names, gives) = (&signature.wanted.name, signature.arguments(), signature.names(), signature.gives());
+    let _ = writeln!(out, "/// As [`{name}`], into `out`, whatever that holds.\n{}#[inline]", allowed(signature));
+    let _ = writeln!(out, "pub fn {name}_into({arguments}, out: &mut {gives}) {{");
+    let _ = match signature.place {
+        Place::Value => writeln!(out, "    *out = {name}({names});\n}}\n"),
+        Place::Written => {
+            let _ = writeln!(out, "    // SAFETY: nothing is read there, and what is written is a value.");
+            writeln!(out, "    {name}_fill({names}, unsafe {{ &mut *::core::ptr::from_mut(out).cast() }});\n}}\n")
+        }
+        Place::Filled if signature.columns.is_some() => {
+            let _ = writeln!(out, "    let mut unsolved = columns::Unsolved::new();\n    {name}_fill({names}, &mut unsolved);");
+            writeln!(out, "    columns::columns(&mut unsolved, out);\n}}\n")
+        }
+        Place::Filled => writeln!(out, "    *out = {};\n    {name}_fill({names}, out);\n}}\n", signature.nothing()),
+    };
+}
+
+fn allowed(signature: &Signature) -> &'static str {
+    if signature.place == Place::Written { "#[allow(unsafe_code)]\n" } else { "" }
 }
 
 /// Whether the values are vectors.

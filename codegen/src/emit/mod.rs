@@ -2,6 +2,7 @@
 
 mod batch;
 mod chunks;
+mod columns;
 mod dialect;
 mod flat;
 mod function;
@@ -16,6 +17,7 @@ mod plain;
 mod results;
 mod sets;
 mod signature;
+mod together;
 mod vector;
 mod warnings;
 

@@ -7,7 +7,6 @@ use articulated_core::model::{JointInfo, Model};
 use articulated_urdf::Unused;
 
 use super::batch::{Batch, batches};
-use super::chunks::gives_much;
 use super::function::{Context, function};
 use super::header::header;
 use super::levels::real;
@@ -15,7 +14,6 @@ use super::literal::literal;
 use super::names::Names;
 use super::sets::support;
 use crate::program::Program;
-use crate::wanted::array_of;
 use crate::{Parameter, Request};
 
 /// The contents of the module.
@@ -138,9 +136,9 @@ fn robot(out: &mut String, request: &Request, model: &Model<f64>, programs: &[Pr
         "    fn call(&self, function: {path}::FunctionId, _: &mut (), arguments: &[&[{real}]], out: &mut [{real}]) -> ::core::result::Result<(), {path}::FunctionError> {{"
     );
     let _ = writeln!(out, "        match (function, arguments) {{");
-    for (program, function) in programs.iter().filter_map(|p| Some((p, p.wanted.as_function()?))) {
+    for function in programs.iter().filter_map(|p| p.wanted.as_function()) {
         let takes: Vec<_> = function.takes.iter().map(|a| (a.name(), a.dims())).collect();
-        arm(out, (path, real), function.name, &takes, function.gives, parameters, gives_much(&program.graph));
+        arm(out, (path, real), function.name, &takes, function.gives, parameters);
     }
     let _ =
         writeln!(out, "            _ => ::core::result::Result::Err({path}::FunctionError::NotGenerated {{ function: function.name() }}),");
@@ -159,7 +157,7 @@ fn joint_of(out: &mut String, model: &Model<f64>) {
 }
 
 /// How one function is called through slices.
-fn arm(out: &mut String, (path, real): (&str, &str), name: &str, takes: &[(&str, &[Dim])], gives: &[Dim], parameters: bool, into: bool) {
+fn arm(out: &mut String, (path, real): (&str, &str), name: &str, takes: &[(&str, &[Dim])], gives: &[Dim], parameters: bool) {
     let mut names: Vec<String> = takes.iter().map(|(name, _)| (*name).to_owned()).collect();
     let _ = writeln!(out, "            ({path}::FunctionId::{name}, &[{}]) => {{", names.join(", "));
     for (name, dims) in takes {
@@ -177,23 +175,14 @@ fn arm(out: &mut String, (path, real): (&str, &str), name: &str, takes: &[(&str,
     if parameters {
         names.push("&self.parameters".into());
     }
-    let call = format!("self::{name}({})", names.join(", "));
-    let _ = match gives.len() {
-        _ if into => {
-            let inner = gives.iter().skip(1).rev().map(|d| format!(".as_chunks_mut::<{{ {d} }}>().0"));
-            let rows = format!("out{}", inner.collect::<String>());
-            writeln!(
-                out,
-                "                if let ::core::result::Result::Ok(out) = {rows}.try_into() {{\n                    self::{name}_into({}, out);\n                }}",
-                names.join(", ")
-            )
-        }
-        0 => writeln!(out, "                out[0] = {call};"),
-        n => {
-            let flat = format!("result.as_slice(){}", ".as_flattened()".repeat(n - 1));
-            let _ = writeln!(out, "                let result: {} = {call};", array_of(real, gives));
-            writeln!(out, "                out.copy_from_slice({flat});")
-        }
+    let names = names.join(", ");
+    let _ = if gives.is_empty() {
+        writeln!(out, "                out[0] = self::{name}({names});")
+    } else {
+        let inner = gives.iter().skip(1).rev().map(|d| format!(".as_chunks_mut::<{{ {d} }}>().0"));
+        let rows = format!("out{}", inner.collect::<String>());
+        let _ = writeln!(out, "                if let ::core::result::Result::Ok(out) = {rows}.try_into() {{");
+        writeln!(out, "                    self::{name}_into({names}, out);\n                }}")
     };
     let _ = writeln!(out, "                ::core::result::Result::Ok(())\n            }}");
 }

@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use super::chunks::{gives_much, one_piece};
+use super::chunks::one_piece;
 use super::dialect::{Dialect, statements};
 use super::literal::{bare, operand, single};
 use super::order::{Angle, Step, order};
-use super::signature::Signature;
+use super::signature::{Place, Signature};
 use crate::graph::{Graph, Node, NodeId, Op};
 use crate::{Arithmetic, Level, Sines};
 
@@ -31,7 +31,7 @@ fn few(angles: usize, level: Level) -> bool {
 
 /// The statements, the result last.
 pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature, dialect: &dyn Dialect) {
-    if gives_much(graph) {
+    if signature.place == Place::Filled {
         return one_piece(out, graph, signature, dialect);
     }
     statements(out, graph, dialect);

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use articulated_core::lanes::{Real, Set, source};
 use articulated_core::level::with_sines;
 
+use super::columns::Layout;
 use super::function::{in_lanes, needs_choice};
 use super::{levels, plain};
 use crate::Level;
@@ -43,6 +44,10 @@ pub(super) fn support(out: &mut String, programs: &[Program], forbid_unsafe: boo
     let mut widths: Vec<usize> = programs.iter().map(|p| p.graph.lanes().width).filter(|w| *w > 1).collect();
     if widths.contains(&2) {
         *out += TWO;
+    }
+    if let Some(columns) = programs.iter().find_map(|p| p.columns.as_ref()) {
+        Layout::of(columns).module(out);
+        widths.push(4);
     }
     widths.extend((sines || widths.contains(&2)).then_some(4));
     widths.sort_unstable();

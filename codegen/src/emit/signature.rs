@@ -4,7 +4,12 @@ use std::fmt::Write;
 
 use articulated_core::algorithm::{Dim, Shape};
 
+use super::chunks::gives_much;
+use super::columns::Layout;
+use super::levels::is_long;
 use super::results::{ZERO, is_sparse, nested, zeros};
+use crate::Level;
+use crate::program::Program;
 use crate::wanted::{Wanted, array_of};
 
 /// What is handed in.
@@ -39,13 +44,39 @@ impl Input {
     }
 }
 
+/// Where a body puts its result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    /// It is the body's value.
+    Value,
+    /// Into what the caller hands in, whole, whatever that holds or if it holds nothing.
+    Written,
+    /// Into what the caller hands in, number by number as they are made; it holds zeros.
+    Filled,
+}
+
+impl Place {
+    /// Of the result of this program. To write where nothing is yet needs a line of `unsafe`.
+    pub(super) fn of(program: &Program, level: Level, forbid_unsafe: bool) -> Self {
+        let graph = &program.graph;
+        match graph.outputs.len() {
+            _ if gives_much(graph) || program.columns.is_some() => Self::Filled,
+            0 | 1 => Self::Value,
+            _ if forbid_unsafe || is_long(graph, level) => Self::Value,
+            _ => Self::Written,
+        }
+    }
+}
+
 /// A function's arguments and results.
 pub(super) struct Signature<'a> {
     pub(super) wanted: &'a Wanted,
     pub(super) inputs: Vec<Input>,
     sizes: Shape,
-    /// Whether the result is written into what the caller hands in.
-    pub(super) into: bool,
+    /// Where the result goes.
+    pub(super) place: Place,
+    /// What the body fills instead of the result, where a loop remains.
+    pub(super) columns: Option<Layout<'a>>,
     /// The type of the result, if there are several.
     group: Option<String>,
     /// The type of the numbers that go in and come out.
@@ -58,7 +89,7 @@ impl<'a> Signature<'a> {
         if parameters {
             inputs.push(Input { name: "parameters", dims: Vec::new() });
         }
-        Self { wanted, inputs, sizes, into: false, group: wanted.group(), real: "f64" }
+        Self { wanted, inputs, sizes, place: Place::Value, columns: None, group: wanted.group(), real: "f64" }
     }
 
     /// The same with numbers of another type.
@@ -83,17 +114,32 @@ impl<'a> Signature<'a> {
 
     /// What a body takes: the arguments, and where the result goes if it goes there.
     pub(super) fn takes(&self) -> String {
-        if self.into { format!("{}, out: &mut {}", self.arguments(), self.gives()) } else { self.arguments() }
+        let (arguments, gives) = (self.arguments(), self.gives());
+        match self.place {
+            Place::Value => arguments,
+            Place::Written => format!("{arguments}, out: &mut ::core::mem::MaybeUninit<{gives}>"),
+            Place::Filled => format!("{arguments}, out: &mut {}", self.filled()),
+        }
     }
 
     /// What a body is handed.
     pub(super) fn handed(&self) -> String {
-        if self.into { format!("{}, out", self.names()) } else { self.names() }
+        if self.place == Place::Value { self.names() } else { format!("{}, out", self.names()) }
     }
 
     /// What a body returns.
     pub(super) fn returns(&self) -> String {
-        if self.into { String::new() } else { format!(" -> {}", self.gives()) }
+        if self.place == Place::Value { format!(" -> {}", self.gives()) } else { String::new() }
+    }
+
+    /// The type of what a body fills.
+    pub(super) fn filled(&self) -> String {
+        if self.columns.is_some() { "columns::Unsolved".to_owned() } else { self.gives() }
+    }
+
+    /// Whether there is a form that writes into what the caller has: wherever the result is more than a number.
+    pub(super) fn has_into(&self) -> bool {
+        self.group.is_some() || !self.wanted.parts[0].function.gives.is_empty()
     }
 
     /// The type of the result.
@@ -133,20 +179,28 @@ impl<'a> Signature<'a> {
         parts
     }
 
-    /// Writes the last expression of a function: the result made of these values.
+    /// Writes the end of a body: the result made of these values.
     pub(super) fn result(&self, out: &mut String, values: &[String]) {
+        if let (Place::Written, None, [(_, own, lengths)]) = (self.place, &self.group, self.parts(values).as_slice())
+            && is_sparse(own)
+            && own.iter().any(|value| value != ZERO)
+        {
+            let _ = writeln!(out, "    let out = out.write({});", zeros(lengths));
+            return put(out, "out", own, lengths);
+        }
         let mut results = Vec::new();
         for (name, own, lengths) in self.parts(values) {
             let value = if is_sparse(own) { sparse(out, name, own, &lengths) } else { nested(own, &lengths) };
             results.push((name, value));
         }
-        let _ = match &self.group {
-            None => results.iter().try_for_each(|(_, value)| writeln!(out, "    {value}")),
+        let value = match &self.group {
+            None => results.into_iter().map(|(_, value)| value).collect(),
             Some(name) => {
                 let fields: Vec<String> = results.iter().map(|(field, value)| format!("        {field}: {value},\n")).collect();
-                writeln!(out, "    {name} {{\n{}    }}", fields.concat())
+                format!("{name} {{\n{}    }}", fields.concat())
             }
         };
+        let _ = if self.place == Place::Written { writeln!(out, "    out.write({value});") } else { writeln!(out, "    {value}") };
     }
 
     /// A result of zeros.
@@ -164,6 +218,9 @@ impl<'a> Signature<'a> {
 
     /// Where each number of the result stands in `out: &mut` result.
     pub(super) fn places(&self) -> Vec<String> {
+        if let Some(columns) = &self.columns {
+            return columns.places();
+        }
         let mut places = Vec::new();
         for part in &self.wanted.parts {
             let lengths: Vec<usize> = part.function.gives.iter().map(|d| d.len(self.sizes)).collect();
@@ -179,8 +236,13 @@ impl<'a> Signature<'a> {
 fn sparse(out: &mut String, name: &str, values: &[String], lengths: &[usize]) -> String {
     let mutable = if values.iter().any(|value| value != ZERO) { "mut " } else { "" };
     let _ = writeln!(out, "    let {mutable}{name} = {};", zeros(lengths));
+    put(out, name, values, lengths);
+    name.to_owned()
+}
+
+/// Puts what is not zero into an array of zeros.
+fn put(out: &mut String, name: &str, values: &[String], lengths: &[usize]) {
     for (k, value) in values.iter().enumerate().filter(|(_, value)| *value != ZERO) {
         let _ = writeln!(out, "    {name}{} = {};", super::results::index(k, lengths), super::literal::bare(value));
     }
-    name.to_owned()
 }

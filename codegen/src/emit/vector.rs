@@ -1,18 +1,18 @@
 //! A graph as statements of the functions of [`articulated_core::lanes`], for whichever instruction set they stand in.
 
-use super::chunks::{gives_much, one_piece};
+use super::chunks::one_piece;
 use super::dialect::{Dialect, statements};
 use super::literal::{literal, operand};
 use super::order::Angle;
 use super::plain::name;
-use super::signature::Signature;
+use super::signature::{Place, Signature};
 use crate::graph::{Graph, Node, NodeId, Op};
 
 /// The statements, the result last.
 pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
     let vector = Vector { graph, signature };
     *out += vector.beginning();
-    if gives_much(graph) {
+    if signature.place == Place::Filled {
         return one_piece(out, graph, signature, &vector);
     }
     statements(out, graph, &vector);
@@ -80,6 +80,10 @@ impl Dialect for Vector<'_> {
             (Op::Spread, _) => self.lane(&node),
             _ => format!("lane::<0>({})", self.operand(id)),
         }
+    }
+
+    fn stores_two(&self) -> bool {
+        self.graph.lanes().width == 2
     }
 
     fn beginning(&self) -> &'static str {

@@ -7,7 +7,7 @@ use crate::model::Model;
 
 macro_rules! methods {
     ($($name:ident($($argument:ident),*) -> [$($dim:ident $(($n:literal))?),*] $unit:literal, $needs:ident, $regrouped:literal,
-        $summary:literal, $source:literal $(, by $ways:tt)?;)*) => {
+        $summary:literal, $source:literal $(, by $ways:tt)? $(, columns $unsolved:ident)?;)*) => {
         /// A robot's dynamics. Code written over this trait runs on generated robots and on a [`Model`] alike.
         ///
         /// Every function of the table is a method; shapes, units and frames are those of the function with the same name in

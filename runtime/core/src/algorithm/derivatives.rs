@@ -16,7 +16,7 @@ use super::common::{Axes, accelerations, coriolis, forces, inertias, positions, 
 use super::crba::mass_matrix_in_common_axes;
 use super::effects;
 use super::forward_dynamics::inverse;
-use super::ltdl::{factor, solve, solve_rows};
+use super::ltdl::{factor, solve, solve_rows, way};
 use super::rnea::inverse_dynamics_with_wrenches;
 use super::wrenches;
 use crate::Scalar;
@@ -139,6 +139,58 @@ pub fn forward_dynamics_derivatives_with_wrenches<S: Scalar>(
     out: &mut [S],
 ) {
     let n = model.nv * model.nv;
+    let matrix = unsolved(model, ws, (q, v, tau), wrenches, out);
+    for out in out.chunks_exact_mut(n.max(1)).take(2) {
+        solve_rows(&matrix, &ws.below, out, model.nv);
+    }
+    let by_tau = &mut out[2 * n..];
+    inverse(&matrix, &ws.below, by_tau);
+    effects::driven_slopes(model, v, tau, |i, _, slope| by_tau.iter_mut().skip(i).step_by(model.nv).for_each(|x| *x *= slope));
+    ws.matrix = matrix;
+}
+
+/// All of [`forward_dynamics_derivatives`] but the solution of M X = B column by column, which is the same for each, so that generated code may leave it a loop: B = −∂τ/∂q and
+/// B = −∂τ/∂v, and in the third matrix M = Lᵀ D L: L below the diagonal, D⁻¹ on it, zeros above. Without motors.
+///
+/// # Panics
+/// As [`inverse_dynamics_derivatives`].
+pub(super) fn unsolved_derivatives<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], tau: &[S], out: &mut [S]) {
+    unsolved_derivatives_with_wrenches(model, ws, q, v, tau, &[], out);
+}
+
+/// As [`unsolved_derivatives`], with external wrenches.
+///
+/// # Panics
+/// As [`inverse_dynamics_derivatives`].
+pub(super) fn unsolved_derivatives_with_wrenches<S: Scalar>(
+    model: &Model<S>,
+    ws: &mut Workspace<S>,
+    q: &[S],
+    v: &[S],
+    tau: &[S],
+    wrenches: &[S],
+    out: &mut [S],
+) {
+    let matrix = unsolved(model, ws, (q, v, tau), wrenches, out);
+    let factors = &mut out[2 * model.nv * model.nv..];
+    factors.fill(S::zero());
+    for k in 0..model.nv {
+        for i in core::iter::once(k).chain(way(&ws.below, k)) {
+            factors[k * model.nv + i] = matrix[k * model.nv + i];
+        }
+    }
+    ws.matrix = matrix;
+}
+
+/// −∂τ/∂q and −∂τ/∂v at the acceleration that τ makes, the slopes of motors with them, in `out`; returns the factors of M, in the workspace's matrix.
+fn unsolved<S: Scalar>(
+    model: &Model<S>,
+    ws: &mut Workspace<S>,
+    (q, v, tau): (&[S], &[S], &[S]),
+    wrenches: &[S],
+    out: &mut [S],
+) -> alloc::vec::Vec<S> {
+    let n = model.nv * model.nv;
     let (mut matrix, mut a) = (core::mem::take(&mut ws.matrix), core::mem::take(&mut ws.solution));
     let zeros = core::mem::take(&mut ws.zeros);
     inverse_dynamics_with_wrenches(model, ws, q, v, &zeros, wrenches, &mut a);
@@ -151,18 +203,18 @@ pub fn forward_dynamics_derivatives_with_wrenches<S: Scalar>(
     factor(&mut matrix, &ws.below);
     solve(&matrix, &ws.below, &mut a);
     inverse_dynamics_derivatives_with_wrenches(model, ws, q, v, &a, wrenches, out);
+    ws.solution = a;
     // ∂a = −M⁻¹ ∂τ;  ∂a/∂τ = M⁻¹
-    for (block, out) in out.chunks_exact_mut(n.max(1)).take(2).enumerate() {
-        out.iter_mut().for_each(|x| *x = -*x);
-        if block == 1 {
-            effects::driven_slopes(model, v, tau, |i, by_v, _| out[i * model.nv + i] += by_v);
-        }
-        solve_rows(&matrix, &ws.below, out, model.nv);
-    }
-    let by_tau = &mut out[2 * n..];
-    inverse(&matrix, &ws.below, by_tau);
-    effects::driven_slopes(model, v, tau, |i, _, slope| by_tau.iter_mut().skip(i).step_by(model.nv).for_each(|x| *x *= slope));
-    (ws.matrix, ws.solution) = (matrix, a);
+    out[..2 * n].iter_mut().for_each(|x| *x = -*x);
+    effects::driven_slopes(model, v, tau, |i, by_v, _| out[n + i * model.nv + i] += by_v);
+    matrix
+}
+
+/// Whether no motor stands between τ and the joints.
+pub(super) fn without_motors<S: Scalar>(model: &Model<S>) -> bool {
+    let (zeros, mut motors) = (alloc::vec![S::zero(); model.nv], false);
+    effects::driven_slopes(model, &zeros, &zeros, |_, _, _| motors = true);
+    !motors
 }
 
 /// Common axes: those in the middle of each tree, where nothing asks how bodies stand in the base.

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use crate::Scalar;
 
 /// The degrees of freedom on the way from `k` to the base, `k` not among them.
-fn way(below: &[usize], k: usize) -> impl Iterator<Item = usize> {
+pub(super) fn way(below: &[usize], k: usize) -> impl Iterator<Item = usize> {
     let next = |k: usize| below[k].checked_sub(1);
     core::iter::successors(next(k), move |&i| next(i))
 }

@@ -31,6 +31,7 @@ pub use derivatives::{
     forward_dynamics_derivatives, forward_dynamics_derivatives_with_wrenches, inverse_dynamics_derivatives,
     inverse_dynamics_derivatives_with_wrenches, static_torque_derivative,
 };
+use derivatives::{unsolved_derivatives, unsolved_derivatives_with_wrenches, without_motors};
 pub use effects::{dissipation, effect_forces, motor_torques};
 pub use energy::{kinetic_energy, potential_energy};
 pub use forward_dynamics::{forward_dynamics, forward_dynamics_with_wrenches, mass_matrix_inverse, solve_mass_matrix};

@@ -20,6 +20,12 @@ pub struct Shape {
 }
 
 impl<S: Scalar> Model<S> {
+    /// For each degree of freedom those on the way to the base, the next first: where row k of M and of the factors of M = Lᵀ D L has numbers before the diagonal.
+    pub fn ways_to_base(&self) -> alloc::vec::Vec<alloc::vec::Vec<usize>> {
+        let below = super::workspace::below(self);
+        (0..self.nv).map(|k| super::ltdl::way(&below, k).collect()).collect()
+    }
+
     /// The model's sizes.
     pub fn shape(&self) -> Shape {
         Shape { nq: self.nq, nv: self.nv, frames: self.frames.len(), links: self.links().count() }
@@ -195,6 +201,9 @@ pub struct Function<S: 'static> {
     pub regrouped: bool,
     /// Ways to compute it, from which the generator takes the cheapest; the first is what [`Function::call`] runs where it applies.
     pub ways: &'static [Way<S>],
+    /// All of it but the solution of M X = B for all columns of `[3][nv][nv]` numbers: two matrices B, and the factors of M = Lᵀ D L in the third, L below the diagonal and D⁻¹ on it;
+    /// its own third B is the unit matrix. Generated code may leave what remains a loop.
+    pub unsolved: Option<Way<S>>,
 }
 
 /// Why a function could not be called.

@@ -6,7 +6,7 @@
 //! name(arguments) -> [dimensions] "units", needs, regrouped?, "what it is", "algorithm and source";
 //! ```
 //!
-//! with `by` and a list of ways where there is more than one.
+//! with `by` and a list of ways where there is more than one, and `columns` where there is a part of it before M X = B is solved.
 
 use core::marker::PhantomData;
 
@@ -113,11 +113,11 @@ macro_rules! for_each_function {
                 "Singh, Russell & Wensing, IEEE RA-L 7, 2022";
             forward_dynamics_derivatives(q, v, tau) -> [Of(3), Nv, Nv] "∂a/∂q, ∂a/∂v, ∂a/∂τ = M⁻¹; rows a", MassMatrix, true,
                 "first derivatives of forward_dynamics; q in the tangent space",
-                "−M⁻¹ ∂(inverse dynamics); Carpentier & Mansard, RSS 2018";
+                "−M⁻¹ ∂(inverse dynamics); Carpentier & Mansard, RSS 2018", columns unsolved_derivatives;
             forward_dynamics_derivatives_with_wrenches(q, v, tau, wrenches) -> [Of(3), Nv, Nv]
                 "∂a/∂q, ∂a/∂v, ∂a/∂τ = M⁻¹; rows a", MassMatrix, true,
                 "first derivatives of forward_dynamics_with_wrenches; q in the tangent space, wrenches constant in their reference",
-                "−M⁻¹ ∂(inverse dynamics); Carpentier & Mansard, RSS 2018";
+                "−M⁻¹ ∂(inverse dynamics); Carpentier & Mansard, RSS 2018", columns unsolved_derivatives_with_wrenches;
             static_torque_derivative(q, wrenches) -> [Nv, Nv] "N·m|N a unit step, rows τ", Nothing, true,
                 "∂(static_torque)/∂q in the tangent space, wrenches constant in their reference",
                 "Singh, Russell & Wensing, IEEE RA-L 7, 2022";
@@ -205,9 +205,18 @@ macro_rules! ways {
     };
 }
 
+macro_rules! unsolved {
+    ($arguments:tt) => {
+        None
+    };
+    ($arguments:tt, $run:ident) => {
+        Some(ways!(one "columns in a loop", without_motors, nothing, $run, $arguments))
+    };
+}
+
 macro_rules! rows {
     ($($name:ident($($argument:ident),*) -> [$($dim:ident $(($n:literal))?),*] $unit:literal, $needs:ident, $regrouped:literal,
-        $summary:literal, $source:literal $(, by $ways:tt)?;)*) => {
+        $summary:literal, $source:literal $(, by $ways:tt)? $(, columns $unsolved:ident)?;)*) => {
         /// The functions by number: each variant is called as its function is.
         #[allow(non_camel_case_types)]
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -237,6 +246,7 @@ macro_rules! rows {
                     needs: Needs::$needs,
                     regrouped: $regrouped,
                     ways: ways!($name, ($($argument),*) $(, $ways)?),
+                    unsolved: unsolved!(($($argument),*) $(, $unsolved)?),
                 },
             )*];
         }
