@@ -114,7 +114,7 @@ impl Native {
 
     /// Whether a peer takes steps by itself.
     pub(crate) fn simulates(&self) -> bool {
-        self.symbol::<unsafe extern "C" fn()>("peer_simulate").is_some()
+        self.symbol::<unsafe extern "C" fn()>("peer_method_name").is_some()
     }
 
     /// A peer's name for itself.
@@ -236,6 +236,16 @@ impl PeerKernel {
     }
 }
 
+/// A method by which a peer makes steps.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Stepping {
+    number: c_int,
+    pub(crate) name: String,
+    pub(crate) order: u32,
+    /// Of forward dynamics, a step.
+    pub(crate) evaluations: u32,
+}
+
 /// A robot open in a peer library.
 #[derive(Clone, Debug)]
 pub(crate) struct NativePeer(Rc<Opened>);
@@ -294,17 +304,32 @@ impl NativePeer {
         c_int::try_from(pointers.len()).is_ok_and(|n| choose(self.0.handle, n, pointers.as_ptr()) != 0)
     }
 
-    /// Has the peer take so many steps from the state (q, v), which it replaces by the last one; `None` if it cannot or if it went astray.
-    pub(crate) fn simulate(&self, q: &mut [f64], v: &mut [f64], step: f64, steps: usize) -> Option<()> {
-        type Simulate = unsafe extern "C" fn(H, P, P, c_double, c_int, O, O) -> c_int;
+    /// The methods by which the peer makes steps: their names, orders, and evaluations of forward dynamics a step. None if it makes no steps or does not tell.
+    pub(crate) fn methods(&self) -> Vec<Stepping> {
+        let native = &self.0.native;
+        let name: Option<extern "C" fn(c_int) -> *const c_char> = native.symbol("peer_method_name");
+        let number = |what: &str, k: c_int| {
+            let ask: extern "C" fn(c_int) -> c_int = native.symbol(&format!("peer_method_{what}"))?;
+            u32::try_from(ask(k)).ok()
+        };
+        let one = |k: c_int| {
+            Some(Stepping { number: k, name: text(name?(k))?, order: number("order", k)?, evaluations: number("evaluations", k)? })
+        };
+        (0..).map_while(one).collect()
+    }
+
+    /// Has the peer make so many steps from the state (q, v), which it replaces by the last one; `None` if it cannot or if it went astray.
+    pub(crate) fn simulate(&self, method: &Stepping, q: &mut [f64], v: &mut [f64], step: f64, steps: usize) -> Option<()> {
+        type Simulate = unsafe extern "C" fn(H, c_int, P, P, c_double, c_int, O, O) -> c_int;
         let simulate: Simulate = self.0.native.symbol("peer_simulate")?;
         if self.number("nq") != Some(q.len()) || self.number("nv") != Some(v.len()) {
             return None;
         }
         let (from_q, from_v) = (q.to_vec(), v.to_vec());
-        let steps = c_int::try_from(steps).ok()?;
+        let (number, steps) = (method.number, c_int::try_from(steps).ok()?);
         // Sound: the arrays are as long as the peer says that they are, and the robot is open.
-        let right = unsafe { simulate(self.0.handle, from_q.as_ptr(), from_v.as_ptr(), step, steps, q.as_mut_ptr(), v.as_mut_ptr()) };
+        let right =
+            unsafe { simulate(self.0.handle, number, from_q.as_ptr(), from_v.as_ptr(), step, steps, q.as_mut_ptr(), v.as_mut_ptr()) };
         (right != 0).then_some(())
     }
 

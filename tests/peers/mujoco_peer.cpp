@@ -8,6 +8,7 @@
 
 #include <cstring>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -218,15 +219,41 @@ PEER_API void peer_forward_dynamics(void * handle, const double * q, const doubl
   }
 }
 
-// So many steps of the fourth-order Runge-Kutta method, all of them in MuJoCo's own loop: from (q, v) to (q_end, v_end), no torques.
-PEER_API int peer_simulate(void * handle, const double * q, const double * v, double step, int steps, double * q_end, double * v_end)
+namespace
 {
+
+struct Method
+{
+  const char * name;
+  int integrator, order, evaluations;
+};
+
+constexpr Method methods[] = {{"RK4", mjINT_RK4, 4, 4}, {"Euler", mjINT_EULER, 1, 1}, {"implicitfast", mjINT_IMPLICITFAST, 1, 1}};
+
+const Method * method(int i)
+{
+  return i >= 0 && i < static_cast<int>(std::size(methods)) ? methods + i : nullptr;
+}
+
+} // namespace
+
+PEER_API const char * peer_method_name(int i) { return method(i) ? method(i)->name : nullptr; }
+PEER_API int peer_method_order(int i) { return method(i) ? method(i)->order : 0; }
+PEER_API int peer_method_evaluations(int i) { return method(i) ? method(i)->evaluations : 0; }
+
+// So many steps, all of them in MuJoCo's own loop: from (q, v) to (q_end, v_end), no torques.
+PEER_API int peer_simulate(
+  void * handle, int method_number, const double * q, const double * v, double step, int steps, double * q_end, double * v_end)
+{
+  const Method * way = method(method_number);
+  if (!way)
+    return 0;
   Peer & p = peer(handle);
   mjModel * m = p.model.get();
   mjData * d = p.data.get();
   mju_user_warning = [](const char *) {}; // it would write a file where it stands; who asks for too few steps is told below
   const mjOption kept = m->opt;
-  m->opt.integrator = mjINT_RK4;
+  m->opt.integrator = way->integrator;
   m->opt.timestep = step;
   mj_resetData(m, d);
   p.place(q);

@@ -8,6 +8,7 @@ use articulated_core::model::Model;
 
 use super::contender::Contender;
 use super::judge::{self, Found, Verdict};
+use super::machine;
 use super::report::{FunctionReport, Point, Report, Spread, mark_front};
 use super::states::{Case, cases};
 use super::words;
@@ -85,21 +86,23 @@ fn report(robot: &Robot, model: &Model<f64>, rustc: &Rustc, arguments: &Accuracy
         seed: arguments.seed,
         repetitions: arguments.repetitions,
         reference_bits: BITS,
-        processor: processor(),
+        processor: machine::processor(),
         compiler: rustc.version.clone(),
         flags: Rustc::flags(Target::Own).join(" "),
         version: env!("CARGO_PKG_VERSION"),
-        commit: option_env!("ARTICULATED_COMMIT").unwrap_or("not told when this was built"),
+        commit: machine::COMMIT,
         notes: Vec::new(),
         functions: Vec::new(),
     }
 }
 
-/// The processor's name for itself.
-fn processor() -> String {
-    let told = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name = told.lines().find_map(|l| l.strip_prefix("model name")?.split_once(": ").map(|(_, name)| name.to_owned()));
-    name.unwrap_or_else(|| std::env::consts::ARCH.to_owned())
+/// The peer libraries that the command line names.
+pub(super) fn libraries(arguments: &AccuracyArguments) -> Result<Vec<Library>, Failure> {
+    let mut libraries: Vec<Library> = arguments.peer.iter().map(|path| Library::at(path)).collect();
+    if let Some(file) = &arguments.peers_manifest {
+        libraries.extend(manifest::read(file).map_err(|line| Failure::input([line]))?);
+    }
+    Ok(libraries)
 }
 
 /// The peers that read this robot; a note for each that does not.
@@ -110,10 +113,7 @@ fn peers(
     folder: &std::path::Path,
     report: &mut Report,
 ) -> Result<Vec<Peer>, Failure> {
-    let mut libraries: Vec<Library> = arguments.peer.iter().map(|path| Library::at(path)).collect();
-    if let Some(file) = &arguments.peers_manifest {
-        libraries.extend(manifest::read(file).map_err(|line| Failure::input([line]))?);
-    }
+    let libraries = libraries(arguments)?;
     let mut peers = Vec::new();
     if libraries.is_empty() {
         return Ok(peers);

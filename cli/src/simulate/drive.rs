@@ -5,7 +5,7 @@ use articulated::simulate::{Control, Dependence};
 use articulated_scene::{Aim, Controller, Series};
 
 /// A scene's controller on a robot.
-pub(super) struct Drive<'r, R: Dynamics<f64>> {
+pub(crate) struct Drive<'r, R: Dynamics<f64>> {
     robot: &'r R,
     ws: R::Workspace,
     controller: Controller,
@@ -16,7 +16,7 @@ pub(super) struct Drive<'r, R: Dynamics<f64>> {
 }
 
 impl<'r, R: Dynamics<f64>> Drive<'r, R> {
-    pub(super) fn new(robot: &'r R, controller: Controller, period: Option<f64>) -> Self {
+    pub(crate) fn new(robot: &'r R, controller: Controller, period: Option<f64>) -> Self {
         let shape = robot.shape();
         Self {
             robot,

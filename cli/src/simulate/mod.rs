@@ -1,12 +1,12 @@
 //! `articulated simulate`.
 
-mod against;
+pub(crate) mod against;
 mod all;
 pub(crate) mod arguments;
 mod columns;
 mod csv;
-mod drive;
-mod motion;
+pub(crate) mod drive;
+pub(crate) mod motion;
 mod page;
 mod parquet;
 pub(crate) mod plot;

@@ -27,7 +27,7 @@ pub(super) struct Motion {
 }
 
 /// The state that it starts from.
-pub(super) fn start(stage: &Stage) -> Result<(Vec<f64>, Vec<f64>), Failure> {
+pub(crate) fn start(stage: &Stage) -> Result<(Vec<f64>, Vec<f64>), Failure> {
     stage.prepared.scene.start(&stage.model).map_err(|e| Failure::input(e.errors.iter().map(ToString::to_string)))
 }
 

@@ -27,7 +27,8 @@ impl Graph {
         let (at, width) = (|k: usize| values[node.args[k] as usize], self.lanes().width);
         let each = |f: &dyn Fn(usize) -> S| {
             let mut out = [S::zero(); MOST];
-            (0..MOST).for_each(|k| out[k] = f(k % width));
+            (0..width).for_each(|k| out[k] = f(k));
+            (width..MOST).for_each(|k| out[k] = out[k % width]);
             out
         };
         let two = |f: &dyn Fn(S, S) -> S| each(&|k| f(at(0)[k], at(1)[k]));

@@ -81,31 +81,56 @@ fn sines_are_as_exact_as_their_level_says_at_a_million_angles() {
     hold(1_000_000);
 }
 
-/// The `f32` of this many bits, by the level f32 (sines of doubles, rounded) and to the nearest: each against the sum of two doubles.
-fn single(bits: u32) {
-    let x = f32::from_bits(bits);
-    let ((s, s_low), (c, c_low)) = two::sines_of_two::<false>((f64::from(x), 0.0));
-    let (sines, cosines) = ulp::sin_cos([f64::from(x), 0.1, 0.2, 0.3]);
-    let correct = two::sin_cos_correct_f32::<false>(x);
-    for (exact, low, rounded, nearest) in [(s, s_low, sines[0] as f32, correct.0), (c, c_low, cosines[0] as f32, correct.1)] {
-        if x.is_nan() || x.is_infinite() {
-            assert!(rounded.is_nan() && nearest.is_nan());
-            continue;
+/// Sines of the level f32 (those of doubles, rounded) and those to the nearest, of four numbers by their bits, against the standard library's of doubles. Those are off by
+/// less than 4 ulps of doubles (known: 0.55), which decides what is nearest in all but some hundred cases in all; 96 digits decide these. How many these were.
+fn singles(bits: [u32; 4]) -> usize {
+    let x = bits.map(f32::from_bits);
+    let (sines, cosines) = ulp::sin_cos(x.map(f64::from));
+    let mut doubtful = 0;
+    for (k, x) in x.into_iter().enumerate() {
+        let (known, nearest) = (f64::from(x).sin_cos(), two::sin_cos_correct_f32::<false>(x));
+        let both = [(known.0, nearest.0, sines[k] as f32), (known.1, nearest.1, cosines[k] as f32)];
+        for (which, (known, nearest, rounded)) in both.into_iter().enumerate() {
+            if x.is_nan() || x.is_infinite() {
+                assert!(rounded.is_nan() && nearest.is_nan());
+            } else if let Some(right) = decided(known) {
+                assert!(nearest == right && rounded == right, "{x:e}: {nearest:e} {rounded:e}, expected {right:e}");
+            } else {
+                doubtful += 1;
+                doubt(x, which == 0, nearest, rounded);
+            }
         }
-        let ulp = f64::from(nearest.abs().next_up()) - f64::from(nearest.abs());
-        let off = |y: f32| ((f64::from(y) - exact) - low).abs() / ulp;
+    }
+    doubtful
+}
+
+/// The `f32` nearest to a number that is within 4 ulps of doubles of this, where that decides.
+fn decided(known: f64) -> Option<f32> {
+    let (low, high) = (known * (1.0 - 4.0 * f64::EPSILON), known * (1.0 + 4.0 * f64::EPSILON));
+    (low as f32 == high as f32).then_some(high as f32)
+}
+
+fn doubt(x: f32, sine: bool, nearest: f32, rounded: f32) {
+    Big::scope(|| {
+        let (sin, cos) = Big::from_f64(f64::from(x)).sin_cos();
+        let (exact, ulp) = (if sine { sin } else { cos }, f64::from(nearest.abs().next_up()) - f64::from(nearest.abs()));
+        let off = |y: f32| (Big::from_f64(f64::from(y)) - exact).to_f64().abs() / ulp;
         assert!(off(nearest) <= 0.5, "{x:e}: {nearest:e} is off by {}", off(nearest));
         assert!(off(rounded) <= 0.5 + 1e-8, "{x:e}: {rounded:e} is off by {}", off(rounded));
-    }
+    });
 }
 
 #[test]
 fn every_so_many_single_angles_have_the_nearest_sines() {
-    (0..=u32::MAX).step_by(40_009).for_each(single);
+    (0..=u32::MAX).step_by(40_009).for_each(|bits| {
+        singles([bits, bits ^ 1, bits ^ 2, bits ^ (1 << 31)]);
+    });
 }
 
 #[test]
-#[ignore = "every f32 there is: half an hour with optimisation"]
+#[ignore = "every f32 there is"]
 fn all_single_angles_have_the_nearest_sines() {
-    (0..=u32::MAX).for_each(single);
+    let doubtful: usize = (0..=u32::MAX / 4).map(|n| singles([4 * n, 4 * n + 1, 4 * n + 2, 4 * n + 3])).sum();
+    assert!((1..10_000).contains(&doubtful), "{doubtful}");
+    println!("{doubtful} were doubtful");
 }

@@ -1,8 +1,14 @@
 //! `articulated accuracy --simulate`: what accuracy of a motion costs, integrator by integrator.
 
+#[cfg(test)]
+mod dop853_digits;
+#[cfg(test)]
+mod orders;
 mod page;
+mod peers;
 mod plot;
 mod scene;
+mod subject;
 mod sweep;
 mod text;
 
@@ -14,12 +20,14 @@ use crate::arguments::Format;
 use crate::console;
 use crate::failure::Failure;
 
-use sweep::{Motion, Sample, Subject};
+use sweep::{Motion, Sample};
 
 /// Measures and prints.
 pub(super) fn run(arguments: &AccuracyArguments, format: Format) -> Result<(), Failure> {
-    let (name, subject) = scene::find(&arguments.robot.robot)?;
-    let motion = sweep::all(&name, &subject, arguments.repetitions.min(5) as usize)?;
+    let (stage, subject) = scene::find(&arguments.robot.robot)?;
+    let folder = tempfile::tempdir().map_err(|e| Failure::tool(&e))?;
+    let peers = peers::Peers::open(&stage, &subject, arguments, folder.path())?;
+    let motion = sweep::all(&stage.name, &subject, &peers, arguments.repetitions.min(5) as usize)?;
     if let Some(folder) = &arguments.output {
         write(folder, &motion)?;
     }

@@ -4,7 +4,7 @@ use super::super::plot::{Axis, FIELD, HEIGHT, INK, WIDTH, frame};
 use super::{Motion, Sample};
 use crate::simulate::plot::drawing::{Anchor, Drawing};
 
-const COLOURS: [&str; 6] = ["#777777", "#1b6ca8", "#c03d20", "#2a8a3e", "#8e44ad", "#b8860b"];
+const COLOURS: [&str; 9] = ["#777777", "#1b6ca8", "#c03d20", "#2a8a3e", "#8e44ad", "#b8860b", "#d6277f", "#17a2b8", "#5d4037"];
 
 type What = fn(&Sample) -> Option<f64>;
 
@@ -53,7 +53,7 @@ fn diagram(m: &Motion, (below, of_x): (&str, What), (beside, of_y): (&str, What)
         out.path(points, colour, 1.3, false);
         let at = top + 18.0 * (k as f64 + 1.0);
         out.path(vec![[right + 14.0, at - 4.0], [right + 34.0, at - 4.0]], colour, 2.0, false);
-        out.text([right + 40.0, at], Anchor::Start, 11.0, colour, c.integrator);
+        out.text([right + 40.0, at], Anchor::Start, 11.0, colour, &c.integrator);
     }
     out
 }

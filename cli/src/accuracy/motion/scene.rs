@@ -1,60 +1,72 @@
 //! A scene as a motion to be measured.
 
-use std::path::Path;
-
 use articulated::simulate::Settings;
-use articulated_codegen::scene::{self, Bundled, Prepared, Scene};
-use articulated_codegen::{Error, nearest};
+use articulated_core::description::Base;
+use articulated_scene::{Aim, Controller};
 
-use super::Subject;
+use super::subject::Subject;
 use crate::failure::Failure;
+use crate::simulate::motion;
+use crate::simulate::stage::Stage;
 
-const BUNDLED: Bundled<'static> = &|name| articulated_models::robot(name).map(|r| (r.urdf, r.base));
-
-/// The scene that a word of the command line names, a file or a bundled one: its name, and what moves.
-pub(super) fn find(name: &str) -> Result<(String, Subject), Failure> {
-    let path = Path::new(name);
-    let bundled = articulated_models::scene(name).filter(|_| !path.is_file());
-    let prepared = match bundled {
-        Some(bundled) => {
-            let scene = Scene::read(&format!("{name}.toml"), bundled.toml).map_err(Error::from)?;
-            scene::open_in(scene, Path::new(""), BUNDLED)?
-        }
-        None if path.is_file() => scene::open(path, BUNDLED)?,
-        None => return Err(unknown(name)),
-    };
-    let stem = path.file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned());
-    Ok((stem, subject(prepared)?))
+/// The scene that a word of the command line names, a file or a bundled one, and what moves in it.
+pub(super) fn find(name: &str) -> Result<(Stage, Subject), Failure> {
+    let stage = Stage::find(name)?;
+    let subject = subject(&stage)?;
+    Ok((stage, subject))
 }
 
-fn subject(mut prepared: Prepared) -> Result<Subject, Failure> {
-    prepared.request.options.frames = None;
-    let reading = articulated_codegen::read(&prepared.request)?;
-    let model = articulated_codegen::model(&prepared.request, &reading.description)?;
-    let told = |e: scene::articulated_scene::SceneErrors| Failure::input(e.errors.iter().map(ToString::to_string));
-    let (q, v) = prepared.scene.start(&model).map_err(told)?;
-    let torque = match prepared.scene.controller(&model, &mut |_| Err("tables are not read here".to_owned())).map_err(told)? {
-        scene::articulated_scene::Controller::None => vec![0.0; model.nv],
-        scene::articulated_scene::Controller::Torque(tau) => tau,
-        _ => {
-            let line = format!(
-                "{}: integrators are measured on motions without a controller: found a table or a PD law, expected kind \"none\" or \"torque\"",
-                prepared.scene.file
-            );
-            return Err(Failure::input([line]));
-        }
-    };
-    let seconds = prepared.scene.simulation.as_ref().map_or(Settings::default().end, |s| s.end - s.start);
-    let options = &prepared.request.options;
-    let free = options.base == articulated_core::description::Base::Floating && options.gravity == [0.0; 3] && options.effects.is_empty();
-    Ok(Subject { model, q, v, torque, seconds, free })
+fn subject(stage: &Stage) -> Result<Subject, Failure> {
+    let scene = &stage.prepared.scene;
+    if scene.impact.is_some() {
+        let line = format!(
+            "{}: impact: found a blow, expected none for accuracy --simulate: when it falls is read off a curve between steps, and that has another order than the steps",
+            scene.file
+        );
+        return Err(Failure::input([line]));
+    }
+    let (q, v) = motion::start(stage)?;
+    let controller = scene.controller(&stage.model, &mut |file| stage.file(file));
+    let controller = controller.map_err(|e| Failure::input(e.errors.iter().map(ToString::to_string)))?;
+    let span = scene.simulation.as_ref().map_or((Settings::default().start, Settings::default().end), |s| (s.start, s.end));
+    let options = &stage.prepared.request.options;
+    let inside = options.gravity == [0.0; 3] && options.effects.is_empty() && !pushes_base(&controller);
+    Ok(Subject {
+        model: stage.model.clone(),
+        q,
+        v,
+        control: (controller, scene.control.period),
+        start: span.0,
+        seconds: span.1 - span.0,
+        free: options.base == Base::Floating && inside,
+    })
 }
 
-fn unknown(name: &str) -> Failure {
-    let names = || articulated_models::SCENES.iter().map(|s| s.name);
-    let near = nearest(name, names()).map(|n| format!("; did you mean {n:?}?")).unwrap_or_default();
-    Failure::input([format!(
-        "{name}: found neither a file nor a bundled scene{near} (bundled: {})",
-        names().collect::<Vec<_>>().join(", ")
-    )])
+/// Whether a controller could push the six rates of a floating base.
+fn pushes_base(controller: &Controller) -> bool {
+    let some = |x: &[f64]| x.iter().take(6).any(|x| *x != 0.0);
+    match controller {
+        Controller::None => false,
+        Controller::Torque(tau) => some(tau),
+        Controller::Table(series) => series.rows.iter().any(|row| some(row)),
+        Controller::Pd { kp, kd, torque, .. } => some(kp) || some(kd) || some(torque),
+    }
+}
+
+impl Subject {
+    /// What its controller means for what is measured.
+    pub(super) fn notes(&self) -> Vec<String> {
+        let (controller, period) = &self.control;
+        let mut notes = Vec::new();
+        if let Controller::Table(series) | Controller::Pd { target: Aim::Moving(series), .. } = controller {
+            notes.push(format!(
+                "the controller follows a table of {} rows: a step ends at each of them, so that no integrator meets a kink, and none takes fewer steps than that",
+                series.times.len()
+            ));
+        }
+        if let Some(period) = period {
+            notes.push(format!("the controller is sampled every {period} s: a step ends at each sample, and none is longer"));
+        }
+        notes
+    }
 }

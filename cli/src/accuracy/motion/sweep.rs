@@ -1,32 +1,13 @@
 //! Every integrator over steps or tolerances of many decades, against a reference that two of them agree on.
 
-use std::time::Instant;
-
-use articulated::simulate::{Constant, Integrator, IntegratorId, Output, Settings, Simulation, Stiffness, integrators};
-use articulated_core::algorithm::{FunctionId, Workspace};
-use articulated_core::dynamics::Dynamics;
-use articulated_core::model::Model;
+use articulated::simulate::{Integrator, IntegratorId, integrators};
 use serde::Serialize;
 
+use super::peers::Peers;
+use super::subject::{End, How, State, Subject, difference, run};
+use crate::accuracy::machine;
 use crate::console::Progress;
 use crate::failure::Failure;
-
-/// What moves.
-#[derive(Clone, Debug)]
-pub(crate) struct Subject {
-    /// The robot with its effects.
-    pub model: Model<f64>,
-    /// Where it starts.
-    pub q: Vec<f64>,
-    /// How it moves there.
-    pub v: Vec<f64>,
-    /// What acts all the time.
-    pub torque: Vec<f64>,
-    /// How long, s.
-    pub seconds: f64,
-    /// Whether nothing acts on it from outside, so that its momentum stays.
-    pub free: bool,
-}
 
 /// All integrators on one motion.
 #[derive(Clone, Debug, Serialize)]
@@ -41,7 +22,15 @@ pub(crate) struct Motion {
     pub references: [String; 2],
     /// How far they are from each other: nothing below 100 times this is shown.
     pub agreement: f64,
-    /// One an integrator.
+    /// Where it was measured.
+    pub processor: String,
+    /// With which version of this command.
+    pub version: &'static str,
+    /// Built from which commit.
+    pub commit: &'static str,
+    /// What is to be known of it.
+    pub notes: Vec<String>,
+    /// One an integrator; those of peers come last.
     pub curves: Vec<Curve>,
 }
 
@@ -49,7 +38,9 @@ pub(crate) struct Motion {
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Curve {
     /// Its name.
-    pub integrator: &'static str,
+    pub integrator: String,
+    /// Whether it is a peer's.
+    pub peer: bool,
     /// Its nominal order.
     pub order: u32,
     /// How fast the error falls with the evaluations, where it can be told.
@@ -59,7 +50,7 @@ pub(crate) struct Curve {
 }
 
 /// One run.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize)]
 pub(crate) struct Sample {
     /// The step, s, where it is fixed.
     pub step: Option<f64>,
@@ -79,20 +70,8 @@ pub(crate) struct Sample {
     pub told: bool,
 }
 
-/// q and v.
-type State = (Vec<f64>, Vec<f64>);
-
 /// Who the reference is from, the last state, and how far the two are from each other.
 type Reference = ([String; 2], State, f64);
-
-/// How the steps of a run are chosen.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum How {
-    /// All of this length, s.
-    Step(f64),
-    /// By this tolerance.
-    Tolerance(f64),
-}
 
 /// Tolerances and numbers of steps: half a decade apart.
 const TOLERANCES: usize = 21;
@@ -101,27 +80,47 @@ const STEPS: usize = 9;
 /// Errors from here on are too coarse for the law of small steps.
 const COARSE: f64 = 3e-2;
 
-/// A run that takes more steps is given up.
-const MOST: u64 = 1_000_000;
-
 /// Everything: each run as often as told, the fastest counts.
-pub(super) fn all(scene: &str, subject: &Subject, repetitions: usize) -> Result<Motion, Failure> {
-    let progress = Progress::new(1 + integrators().len());
+pub(super) fn all(scene: &str, subject: &Subject, peers: &Peers, repetitions: usize) -> Result<Motion, Failure> {
+    let progress = Progress::new(1 + integrators().len() + peers.count());
     progress.doing("reference".to_owned());
     let (references, end, agreement) = reference(subject)?;
-    let mut curves = Vec::new();
+    let mut motion = Motion {
+        scene: scene.to_owned(),
+        seconds: subject.seconds,
+        degrees_of_freedom: subject.model.nv,
+        references,
+        agreement,
+        processor: machine::processor(),
+        version: env!("CARGO_PKG_VERSION"),
+        commit: machine::COMMIT,
+        notes: subject.notes(),
+        curves: Vec::new(),
+    };
     for integrator in integrators() {
         progress.step();
         progress.doing(integrator.name.to_owned());
         let how: Vec<How> = if integrator.adaptive {
             (0..TOLERANCES).map(|k| How::Tolerance(10f64.powf(-2.0 - 0.5 * k as f64))).collect()
         } else {
-            (0..STEPS).map(|k| How::Step(subject.seconds / (10.0 * 10f64.powf(0.5 * k as f64)).round())).collect()
+            steps().map(|n| How::Step(subject.seconds / n as f64)).collect()
         };
-        curves.push(curve(subject, integrator, &how, &end, agreement, repetitions));
+        motion.curves.push(curve(subject, integrator, &how, (&end, agreement), repetitions));
     }
-    let (scene, seconds, degrees_of_freedom) = (scene.to_owned(), subject.seconds, subject.model.nv);
-    Ok(Motion { scene, seconds, degrees_of_freedom, references, agreement, curves })
+    motion.notes.extend(peers.notes.iter().cloned());
+    for peer in &peers.peers {
+        for method in peer.methods() {
+            progress.step();
+            progress.doing(format!("{} {}", peer.engine(), method.name));
+            motion.curves.push(super::peers::curve(subject, peer, &method, (&end, agreement), repetitions));
+        }
+    }
+    Ok(motion)
+}
+
+/// Numbers of equal steps.
+pub(super) fn steps() -> impl Iterator<Item = usize> {
+    (0..STEPS).map(|k| (10.0 * 10f64.powf(0.5 * k as f64)).round() as usize)
 }
 
 /// The last state by the two integrators that agree best, and how far they are from each other.
@@ -149,35 +148,43 @@ pub(super) fn reference(subject: &Subject) -> Result<Reference, Failure> {
     Ok((names, found[at].2.state.clone(), apart.max(1e-16)))
 }
 
-/// One integrator over its settings.
+/// One integrator over its settings, against the last state of the reference and what that can tell.
 pub(super) fn curve(
     subject: &Subject,
     integrator: &'static Integrator,
     how: &[How],
-    end: &State,
-    agreement: f64,
+    reference: (&State, f64),
     repetitions: usize,
 ) -> Curve {
+    let samples = samples(how, repetitions, &mut |how| sample(subject, reference, *how, run(subject, integrator.id, *how)?));
+    Curve { integrator: integrator.name.to_owned(), peer: false, order: integrator.order, slope: slope(&samples), samples }
+}
+
+/// A sample for each setting, of several the fastest, until errors are beyond what the reference can tell: twice is enough.
+pub(super) fn samples<T>(settings: &[T], repetitions: usize, take: &mut dyn FnMut(&T) -> Option<Sample>) -> Vec<Sample> {
     let mut samples: Vec<Sample> = Vec::new();
-    for how in how {
-        // Twice beyond what the reference can tell is enough.
+    for setting in settings {
         if samples.iter().filter(|s| !s.told).count() >= 2 {
             break;
         }
-        let Some(mut best) = run(subject, integrator.id, *how) else { continue };
+        let Some(mut best) = take(setting) else { continue };
         for _ in 1..repetitions {
-            best.wall = best.wall.min(run(subject, integrator.id, *how).map_or(f64::INFINITY, |r| r.wall));
+            best.wall = best.wall.min(take(setting).map_or(f64::INFINITY, |again| again.wall));
         }
-        let error = difference(subject, &best.state, end);
-        let (step, tolerance) = match how {
-            How::Step(h) => (Some(*h), None),
-            How::Tolerance(t) => (None, Some(*t)),
-        };
-        let End { evaluations, wall, energy, momentum, .. } = best;
-        samples.push(Sample { step, tolerance, evaluations, wall, error, energy, momentum, told: error >= 100.0 * agreement });
+        samples.push(best);
     }
-    let slope = slope(&samples);
-    Curve { integrator: integrator.name, order: integrator.order, slope, samples }
+    samples
+}
+
+/// What a run has come to.
+pub(super) fn sample(subject: &Subject, (end, agreement): (&State, f64), how: How, run: End) -> Option<Sample> {
+    let error = difference(subject, &run.state, end);
+    let (step, tolerance) = match how {
+        How::Step(h) => (Some(h), None),
+        How::Tolerance(t) => (None, Some(t)),
+    };
+    let End { evaluations, wall, energy, momentum, .. } = run;
+    Some(Sample { step, tolerance, evaluations, wall, error, energy, momentum, told: error >= 100.0 * agreement })
 }
 
 /// By which power of the evaluations the error falls: a line through the logarithms, over the samples that the reference can tell and that are past the first coarse ones.
@@ -194,97 +201,15 @@ pub(super) fn slope(samples: &[Sample]) -> Option<f64> {
     Some(-xy / xx)
 }
 
-/// Where a run ended.
-struct End {
-    state: State,
-    evaluations: u64,
-    wall: f64,
-    energy: Option<f64>,
-    momentum: Option<f64>,
-}
-
-/// To the end; `None` if it does not get there.
-fn run(subject: &Subject, id: IntegratorId, how: How) -> Option<End> {
-    let mut settings = Settings {
-        integrator: id,
-        end: subject.seconds,
-        output: Output::Ends,
-        stiffness: Stiffness::Note,
-        max_steps: MOST,
-        ..Settings::default()
-    };
-    match how {
-        How::Step(h) => settings.step = Some(h),
-        How::Tolerance(t) => (settings.rtol, settings.atol) = (t, t),
-    }
-    let mut simulation = Simulation::new(&subject.model, settings).ok()?;
-    let mut control = Constant::new(subject.torque.clone());
-    let clock = Instant::now();
-    let r = simulation.run(&subject.q, &subject.v, &mut control, &mut []).ok()?;
-    let wall = clock.elapsed().as_secs_f64();
-    let last = r.len().checked_sub(1)?;
-    let state = (r.q_at(last).to_vec(), r.v_at(last).to_vec());
-    if state.0.iter().chain(&state.1).any(|x| !x.is_finite()) {
-        return None;
-    }
-    let size = [0, last].iter().filter_map(|k| Some(r.kinetic.get(*k)?.abs().max(r.potential.get(*k)?.abs()))).fold(0.0, f64::max);
-    let energy = r.imbalance(last).map(|e| e.abs() / size.max(1e-12));
-    let momentum = subject.free.then(|| Some((r.momentum_at(0)?, r.momentum_at(last)?))).flatten().map(|(a, b)| {
-        let norm = a.iter().map(|x| x * x).sum::<f64>().sqrt();
-        a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / norm.max(1e-12)
-    });
-    Some(End { state, evaluations: r.counts.evaluations + r.counts.derivatives, wall, energy, momentum })
-}
-
-/// The largest difference of two states: of configurations along the manifold.
-fn difference(subject: &Subject, a: &State, b: &State) -> f64 {
-    let mut apart = vec![0.0; subject.model.nv];
-    let told = subject.model.call(FunctionId::difference, &mut Workspace::new(&subject.model), &[&a.0, &b.0], &mut apart);
-    let rates = a.1.iter().zip(&b.1).map(|(a, b)| (a - b).abs());
-    let all = apart.iter().map(|x| x.abs()).chain(rates).fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) });
-    if told.is_ok() { all } else { f64::NAN }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::scene::find;
     use super::*;
-
-    /// From the coarsest to the finest, each twice as many steps as the last.
-    fn sweep(subject: &Subject, from: u32, times: u32) -> Vec<How> {
-        (0..times).map(|k| How::Step(subject.seconds / f64::from(from << k))).collect()
-    }
-
-    /// Higher orders reach rounding before their law of small steps is all there is: their errors fall faster until then. Implicit steps take fewer rounds
-    /// the shorter they are.
-    #[test]
-    fn errors_fall_with_evaluations_as_the_order_says() {
-        let (_, mut subject) = find("pendulum").unwrap();
-        (subject.q, subject.v, subject.seconds) = (vec![1.5], vec![1.0], 3.0);
-        let (names, end, agreement) = reference(&subject).unwrap();
-        assert!(names[0] != names[1] && agreement < 1e-12, "{names:?} {agreement:e}");
-        for integrator in integrators() {
-            let (from, times, decades, over) = match integrator.id {
-                IntegratorId::semi_implicit_euler => (400, 6, 1.5, 0.2),
-                IntegratorId::rk4 => (96, 6, 1.2, 0.2),
-                IntegratorId::dopri5 => (24, 5, 0.85, 0.6),
-                IntegratorId::dop853 => (9, 4, 0.5, 0.6),
-                IntegratorId::rodas4 => (48, 6, 0.85, 0.4),
-                IntegratorId::lie_midpoint => (400, 6, 1.3, 0.35),
-            };
-            let curve = curve(&subject, integrator, &sweep(&subject, from, times), &end, agreement, 1);
-            let seen: Vec<(u64, f64)> = curve.samples.iter().filter(|s| s.told).map(|s| (s.evaluations, s.error)).collect();
-            let (slope, order) = (curve.slope.unwrap_or_default(), f64::from(integrator.order));
-            assert!((order - 0.2..=order + over).contains(&slope), "{}: {slope} {seen:?}", integrator.name);
-            assert!((seen[seen.len() - 1].0 as f64 / seen[0].0 as f64).log10() >= decades, "{}: {seen:?}", integrator.name);
-        }
-    }
 
     #[test]
     fn a_power_law_has_its_power_as_slope() {
         let sample = |n: u64| {
             let error = 3.0 * (n as f64).powi(-4);
-            Sample { step: None, tolerance: None, evaluations: n, wall: 0.0, error, energy: None, momentum: None, told: true }
+            Sample { evaluations: n, error, told: true, ..Sample::default() }
         };
         let samples: Vec<Sample> = [10, 30, 100, 300, 1000].into_iter().map(sample).collect();
         assert!((slope(&samples).unwrap() - 4.0).abs() < 1e-12);

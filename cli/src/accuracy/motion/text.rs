@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::super::text::number;
 use super::{Motion, Sample};
-use crate::table::Table;
+use crate::table::{Table, plain};
 
 /// For people.
 pub(super) fn text(m: &Motion) -> String {
@@ -32,10 +32,13 @@ pub(super) fn text(m: &Motion) -> String {
 /// What was measured.
 pub(super) fn head(m: &Motion) -> String {
     let [a, b] = &m.references;
-    format!(
-        "{}: {} s, {} degrees of freedom. Reference: {a} and {b}, which agree to {:.1e}; errors below 100 times that are not shown in diagrams.\n",
-        m.scene, m.seconds, m.degrees_of_freedom, m.agreement
-    )
+    let mut out = format!(
+        "{}: {} s, {} degrees of freedom. Reference: {a} and {b}, which agree to {:.1e}; errors below 100 times that are not shown in diagrams.\n\
+         {}; articulated {} ({}), generic code\n",
+        m.scene, m.seconds, m.degrees_of_freedom, m.agreement, m.processor, m.version, m.commit
+    );
+    m.notes.iter().for_each(|note| out += &format!("note: {}\n", plain(note)));
+    out
 }
 
 fn row(s: &Sample) -> Vec<String> {
@@ -72,8 +75,13 @@ pub(super) fn csv(m: &Motion) -> String {
 
 /// The cheapest run that is accurate enough, by evaluations and by the clock.
 pub(super) fn advice(m: &Motion, wish: f64) -> String {
-    let fit: Vec<(&str, &Sample)> =
-        m.curves.iter().flat_map(|c| c.samples.iter().map(|s| (c.integrator, s))).filter(|(_, s)| s.error <= wish).collect();
+    let fit: Vec<(&str, &Sample)> = m
+        .curves
+        .iter()
+        .filter(|c| !c.peer)
+        .flat_map(|c| c.samples.iter().map(|s| (c.integrator.as_str(), s)))
+        .filter(|(_, s)| s.error <= wish)
+        .collect();
     let told = |(name, s): &(&str, &Sample)| {
         let how = s.step.map_or_else(|| format!("tolerance {:.1e}", s.tolerance.unwrap_or_default()), |h| format!("steps of {h:.2e} s"));
         format!("{name} with {how}: error {:.1e}, {} evaluations, {:.2} ms", s.error, s.evaluations, s.wall * 1e3)
@@ -104,9 +112,11 @@ mod tests {
             told: error > 1e-11,
         };
         let samples = vec![sample(10, 1e-3), sample(100, 1e-7), sample(1000, 1e-12)];
-        let curves = vec![Curve { integrator: "rk4", order: 4, slope: Some(4.0), samples }];
+        let curves = vec![Curve { integrator: "rk4".into(), peer: false, order: 4, slope: Some(4.0), samples }];
         let references = ["one".to_owned(), "other".to_owned()];
-        Motion { scene: "a <scene>".into(), seconds: 1.0, degrees_of_freedom: 2, references, agreement: 1e-13, curves }
+        let (processor, notes) = ("a processor".to_owned(), vec!["a note".to_owned()]);
+        let (scene, seconds, degrees_of_freedom, agreement) = ("a <scene>".to_owned(), 1.0, 2, 1e-13);
+        Motion { scene, seconds, degrees_of_freedom, references, agreement, processor, version: "0", commit: "none", notes, curves }
     }
 
     #[test]

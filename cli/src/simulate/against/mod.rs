@@ -1,7 +1,7 @@
 //! `articulated simulate --against`: how long who needs to get to the end of a motion, at the same error there.
 
 mod ours;
-mod peers;
+pub(crate) mod peers;
 mod report;
 mod search;
 mod text;
@@ -15,6 +15,7 @@ use super::motion;
 use super::stage::Stage;
 use super::straight::Straight;
 use crate::arguments::Format;
+use crate::compare::manifest::{self, Library};
 use crate::compare::timing::{self, Run};
 use crate::compiled::Rustc;
 use crate::console::{self, Progress};
@@ -44,13 +45,26 @@ pub(super) trait Runner {
 
 /// Measures and prints.
 pub(super) fn run(stage: &Stage, settings: &Settings, file: &Path, format: Format) -> Result<(), Failure> {
-    bare(stage)?;
+    let lines: Vec<String> = unknown_to_peers(stage)
+        .into_iter()
+        .map(|what| {
+            format!(
+                "{}: found {what}, expected none for --against: peers know the robot's file and its gravity only",
+                stage.prepared.scene.file
+            )
+        })
+        .collect();
+    if !lines.is_empty() {
+        return Err(Failure::input(lines));
+    }
     let (q, v) = motion::start(stage)?;
     let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
     let (generated, _) = motion::generate(stage, IntegratorId::dop853)?;
     let robot = Straight::build(&rustc, &generated).map_err(|e| Failure::tool(&e))?;
     let folder = tempfile::tempdir().map_err(|e| Failure::tool(&e))?;
-    let (peers, notes) = peers::open(stage, file, folder.path(), (&q, &v), settings)?;
+    let list = file.extension().is_some_and(|e| e == "json");
+    let libraries = if list { manifest::read(file).map_err(|line| Failure::input([line]))? } else { vec![Library::at(file)] };
+    let (peers, notes) = peers::open(stage, &libraries, folder.path(), (&q, &v), settings.end - settings.start)?;
     let ours = |id| Ours::new(&robot, id, settings, (&q, &v));
     let mut reference = ours(IntegratorId::dop853);
     let best = reference.run(Effort::Tolerance(1e-14)).ok_or_else(|| astray("the reference"))?;
@@ -88,8 +102,8 @@ fn astray(who: &str) -> Failure {
     Failure::input([format!("{who} does not get to the end of the motion")])
 }
 
-/// Peers know the robot's file and gravity, and nothing else of a scene.
-fn bare(stage: &Stage) -> Result<(), Failure> {
+/// What a scene has that peers do not know: they are told the robot's file and gravity, and nothing else.
+pub(crate) fn unknown_to_peers(stage: &Stage) -> Vec<&'static str> {
     let (o, scene) = (&stage.prepared.request.options, &stage.prepared.scene);
     let asked = [
         (!o.effects.is_empty(), "effects"),
@@ -98,14 +112,7 @@ fn bare(stage: &Stage) -> Result<(), Failure> {
         (scene.control.drive != articulated_scene::Drive::None, "control"),
         (scene.impact.is_some(), "impact"),
     ];
-    let lines: Vec<String> = asked
-        .iter()
-        .filter(|(there, _)| *there)
-        .map(|(_, what)| {
-            format!("{}: found {what}, expected none for --against: peers know the robot's file and its gravity only", scene.file)
-        })
-        .collect();
-    if lines.is_empty() { Ok(()) } else { Err(Failure::input(lines)) }
+    asked.iter().filter(|(there, _)| *there).map(|(_, what)| *what).collect()
 }
 
 /// The least effort of each runner for each target, and the error that is left.

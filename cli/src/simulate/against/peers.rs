@@ -2,80 +2,103 @@
 
 use std::path::Path;
 
-use articulated::simulate::Settings;
 use articulated_core::description::Base;
 
 use super::Runner;
 use super::search::{self, Effort};
-use crate::compare::manifest::{self, Library};
+use crate::compare::manifest::Library;
 use crate::compare::peer::orders;
 use crate::failure::Failure;
-use crate::native::{Native, NativePeer};
+use crate::native::{Native, NativePeer, Stepping};
 use crate::simulate::stage::Stage;
 
 /// A peer at the start of the motion.
-pub(super) struct Peer {
-    name: String,
+pub(crate) struct Peer {
+    engine: String,
     native: NativePeer,
     /// Our index of each of its coordinates and rates.
     orders: (Vec<usize>, Vec<usize>),
     start: (Vec<f64>, Vec<f64>),
     length: f64,
+    /// By which it makes steps.
+    method: Stepping,
     steps: usize,
 }
 
-/// Those of the file that take steps and read the robot, and why others do not.
-pub(super) fn open(
+/// Those of the libraries that make steps and read the robot, and why others do not. They start at (q, v), in our order, and go on for so many seconds.
+pub(crate) fn open(
     stage: &Stage,
-    file: &Path,
+    libraries: &[Library],
     folder: &Path,
     start: (&[f64], &[f64]),
-    settings: &Settings,
+    seconds: f64,
 ) -> Result<(Vec<Peer>, Vec<String>), Failure> {
-    let list = file.extension().is_some_and(|e| e == "json");
-    let libraries = if list { manifest::read(file).map_err(|line| Failure::input([line]))? } else { vec![Library::at(file)] };
     let urdf = folder.join("robot.urdf");
     std::fs::write(&urdf, &stage.prepared.request.urdf).map_err(|e| Failure::tool(&e))?;
     let (mut peers, mut notes) = (Vec::new(), Vec::new());
     for library in libraries {
-        match Peer::open(stage, &library, &urdf, start, settings) {
+        match Peer::open(stage, library, &urdf, start, seconds) {
             Ok(Some(peer)) => peers.push(peer),
             Ok(None) => {}
             Err(reason) => {
-                notes.push(format!("peer {} is left out: {reason}", library.name.unwrap_or_else(|| library.path.display().to_string())));
+                let name = library.name.clone().unwrap_or_else(|| library.path.display().to_string());
+                notes.push(format!("peer {name} is left out: {reason}"));
             }
         }
     }
     if peers.is_empty() {
-        notes.push(format!("{}: found no peer that takes steps", file.display()));
+        notes.push("there is no peer that makes steps: see tests/peers for MuJoCo's".to_owned());
     }
     Ok((peers, notes))
 }
 
 impl Peer {
     /// `None`: it is no engine of simulation.
-    fn open(stage: &Stage, library: &Library, urdf: &Path, start: (&[f64], &[f64]), settings: &Settings) -> Result<Option<Self>, String> {
+    fn open(stage: &Stage, library: &Library, urdf: &Path, start: (&[f64], &[f64]), seconds: f64) -> Result<Option<Self>, String> {
         let opened = Native::open(&library.path)?;
-        let name = library.engine.clone().or_else(|| opened.peer_name()).ok_or("it has no function peer_name")?;
+        let engine = library.engine.clone().or_else(|| opened.peer_name()).ok_or("it has no function peer_name")?;
         let gravity = stage.prepared.request.options.gravity;
         if !opened.simulates() {
             return Ok(None);
         }
         let native = NativePeer::open(&opened, urdf, stage.base() == Base::Floating, gravity)?;
+        let method = native.methods().into_iter().next().ok_or("it names no method")?;
         let orders = orders(&native, &stage.model)?;
         let pick = |x: &[f64], order: &[usize]| order.iter().map(|&k| x[k]).collect::<Vec<f64>>();
         let start = (pick(start.0, &orders.0), pick(start.1, &orders.1));
-        Ok(Some(Self { name, native, orders, start, length: settings.end - settings.start, steps: 0 }))
+        Ok(Some(Self { engine, native, orders, start, length: seconds, method, steps: 0 }))
+    }
+
+    /// Whose it is.
+    pub(crate) fn engine(&self) -> &str {
+        &self.engine
+    }
+
+    /// By which it can make steps.
+    pub(crate) fn methods(&self) -> Vec<Stepping> {
+        self.native.methods()
+    }
+
+    /// Goes to the end in so many equal steps; q and v there in our order, or nothing if it went astray.
+    pub(crate) fn go(&self, method: &Stepping, steps: usize) -> Option<(Vec<f64>, Vec<f64>)> {
+        let (mut q, mut v) = self.start.clone();
+        self.native.simulate(method, &mut q, &mut v, self.length / steps as f64, steps)?;
+        let ours = |x: &[f64], order: &[usize]| {
+            let mut out = vec![0.0; x.len()];
+            order.iter().zip(x).for_each(|(&k, x)| out[k] = *x);
+            out
+        };
+        Some((ours(&q, &self.orders.0), ours(&v, &self.orders.1)))
     }
 }
 
 impl Runner for Peer {
     fn name(&self) -> String {
-        format!("{} RK4", self.name)
+        format!("{} {}", self.engine, self.method.name)
     }
 
     fn order(&self) -> u32 {
-        4
+        self.method.order
     }
 
     fn own(&self) -> bool {
@@ -89,16 +112,11 @@ impl Runner for Peer {
     fn run(&mut self, effort: Effort) -> Option<Vec<f64>> {
         let Effort::Steps(steps) = effort else { return None };
         self.steps = steps;
-        let (mut q, mut v) = self.start.clone();
-        self.native.simulate(&mut q, &mut v, self.length / steps as f64, steps)?;
-        let (nq, nv) = (q.len(), v.len());
-        let mut out = vec![0.0; nq + nv];
-        self.orders.0.iter().zip(&q).for_each(|(&k, x)| out[k] = *x);
-        self.orders.1.iter().zip(&v).for_each(|(&k, x)| out[nq + k] = *x);
-        Some(out)
+        let (q, v) = self.go(&self.method, steps)?;
+        Some([q, v].concat())
     }
 
     fn spent(&self) -> (u64, u64) {
-        (self.steps as u64, 4 * self.steps as u64)
+        (self.steps as u64, u64::from(self.method.evaluations) * self.steps as u64)
     }
 }

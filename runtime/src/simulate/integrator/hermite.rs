@@ -60,3 +60,29 @@ impl Hermite {
         }
     }
 }
+
+/// What a [`super::Method`] with the field `curve` of this kind hands on to it.
+macro_rules! hand_on_to_hermite {
+    () => {
+        fn last_rate(&self) -> Option<&[f64]> {
+            self.curve.last()
+        }
+
+        fn prepare(
+            &mut self,
+            system: &mut System<R>,
+            control: &mut dyn Control,
+            start: Start,
+            h: f64,
+            end: &[f64],
+        ) -> Result<(), SimulateError> {
+            let known = Method::<R>::wants_rate(self);
+            self.curve.prepare(system, control, (start, h), end, known)
+        }
+
+        fn between(&self, theta: f64, start: Start, h: f64, end: &[f64], out: &mut [f64]) {
+            self.curve.between(theta, start.y, h, end, out);
+        }
+    };
+}
+pub(super) use hand_on_to_hermite;

@@ -17,7 +17,7 @@
 
 use articulated_core::dynamics::Dynamics;
 
-use super::hermite::Hermite;
+use super::hermite::{Hermite, hand_on_to_hermite};
 use super::{Method, Start};
 use crate::simulate::step_control::{Error, Norm};
 use crate::simulate::system::System;
@@ -106,18 +106,5 @@ impl<R: Dynamics<f64>> Method<R> for LieMidpoint {
         false
     }
 
-    fn prepare(
-        &mut self,
-        system: &mut System<R>,
-        control: &mut dyn Control,
-        start: Start,
-        h: f64,
-        end: &[f64],
-    ) -> Result<(), SimulateError> {
-        self.curve.prepare(system, control, (start, h), end, false)
-    }
-
-    fn between(&self, theta: f64, start: Start, h: f64, end: &[f64], out: &mut [f64]) {
-        self.curve.between(theta, start.y, h, end, out);
-    }
+    hand_on_to_hermite!();
 }

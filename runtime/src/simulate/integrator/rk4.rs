@@ -2,7 +2,7 @@
 
 use articulated_core::dynamics::Dynamics;
 
-use super::hermite::Hermite;
+use super::hermite::{Hermite, hand_on_to_hermite};
 use super::stages::Stages;
 use super::{Method, Start, largest_of_polynomial};
 use crate::simulate::step_control::{Error, Norm};
@@ -40,24 +40,7 @@ impl<R: Dynamics<f64>> Method<R> for Rk4 {
         Ok(Error { size: 0.0, index: 0 })
     }
 
-    fn last_rate(&self) -> Option<&[f64]> {
-        self.curve.last()
-    }
-
-    fn prepare(
-        &mut self,
-        system: &mut System<R>,
-        control: &mut dyn Control,
-        start: Start,
-        h: f64,
-        end: &[f64],
-    ) -> Result<(), SimulateError> {
-        self.curve.prepare(system, control, (start, h), end, true)
-    }
-
-    fn between(&self, theta: f64, start: Start, h: f64, end: &[f64], out: &mut [f64]) {
-        self.curve.between(theta, start.y, h, end, out);
-    }
+    hand_on_to_hermite!();
 
     fn amplification(&self, a: f64, b: f64, h: f64) -> Option<f64> {
         Some(largest_of_polynomial(&[1.0, 1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0], a, b, h))

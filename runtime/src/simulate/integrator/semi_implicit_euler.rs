@@ -2,7 +2,7 @@
 
 use articulated_core::dynamics::Dynamics;
 
-use super::hermite::Hermite;
+use super::hermite::{Hermite, hand_on_to_hermite};
 use super::stages::Fastest;
 use super::{Method, Start, roots};
 use crate::simulate::stability::SUSPICIOUS;
@@ -52,24 +52,7 @@ impl<R: Dynamics<f64>> Method<R> for SemiImplicitEuler {
         Ok(Error { size: 0.0, index: 0 })
     }
 
-    fn last_rate(&self) -> Option<&[f64]> {
-        self.curve.last()
-    }
-
-    fn prepare(
-        &mut self,
-        system: &mut System<R>,
-        control: &mut dyn Control,
-        start: Start,
-        h: f64,
-        end: &[f64],
-    ) -> Result<(), SimulateError> {
-        self.curve.prepare(system, control, (start, h), end, true)
-    }
-
-    fn between(&self, theta: f64, start: Start, h: f64, end: &[f64], out: &mut [f64]) {
-        self.curve.between(theta, start.y, h, end, out);
-    }
+    hand_on_to_hermite!();
 
     /// One step of ü = a u̇ + b u: the matrix [1 + h²b, h(1 + ha); hb, 1 + ha], μ² = (2 + ha + h²b) μ − (1 + ha).
     fn amplification(&self, a: f64, b: f64, h: f64) -> Option<f64> {
