@@ -17,6 +17,8 @@ pub(crate) struct System<'r, R: Dynamics<f64>> {
     pub(crate) origin: Vec<f64>,
     /// The torques of a sampled controller, `[nv]`, where it is one.
     pub(crate) held: Option<Vec<f64>>,
+    /// The next time at which the torques have a kink or a jump, s: up to there they are those before it.
+    pub(crate) kink: f64,
     pub(crate) counts: Counts,
     /// Configuration and torques of the last evaluation.
     pub(crate) q: Vec<f64>,
@@ -36,6 +38,7 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
             manifold,
             origin: vec![0.5; nq],
             held: None,
+            kink: f64::INFINITY,
             counts: Counts::default(),
             q: vec![0.5; nq],
             tau: vec![0.0; nv],
@@ -69,11 +72,16 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
         command(self.held.as_deref(), control, t, (q, v), tau);
     }
 
-    /// The configuration u of the chart and the commanded torques there: in `q` and `tau`.
+    /// The configuration u of the chart and the commanded torques there: in `q` and `tau`. Where a step ends at a jump, those before it.
     fn command_at(&mut self, control: &mut dyn Control, t: f64, u: &[f64], v: &[f64]) -> Result<(), FunctionError> {
         self.place(u)?;
-        command(self.held.as_deref(), control, t, (&self.q, v), &mut self.tau);
+        command(self.held.as_deref(), control, self.within(t), (&self.q, v), &mut self.tau);
         Ok(())
+    }
+
+    /// t, or the last time before a jump that a step ends with.
+    fn within(&self, t: f64) -> f64 {
+        if t >= self.kink { self.kink.next_down() } else { t }
     }
 
     /// f = dy/dt.

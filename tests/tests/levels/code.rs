@@ -3,7 +3,7 @@
 use articulated_cli::compiled::{Compiled, Rustc, Target};
 use articulated_cli::precise::Big;
 use articulated_cli::states;
-use articulated_codegen::{Generated, Level, Request, bound, generate};
+use articulated_codegen::{Arithmetic, Generated, Level, Request, bound, generate};
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Argument, function};
 use articulated_core::model::Model;
@@ -49,8 +49,8 @@ impl Made {
         self.generated.graphs[0].evaluate_as(|argument, k| Big::from_f64(state[argument][k]))
     }
 
-    /// The largest error, after each error has been held to its guaranteed bound. The state has numbers of single precision.
-    fn error(&self, state: &[Vec<f64>], exact: &[Big]) -> f64 {
+    /// The largest error and the largest bound of the results, after each error has been held to its guaranteed bound. The state has numbers of single precision.
+    fn error(&self, state: &[Vec<f64>], exact: &[Big]) -> (f64, f64) {
         let found = self.call(state);
         let bounds = bound::bounds(&self.generated.graphs[0], self.level, &|argument, k| (state[argument][k], 0.0));
         let mut worst = 0.0_f64;
@@ -61,12 +61,12 @@ impl Made {
                 assert!(error <= bounds[k], "{}: result {k} is off by {error:e}, bound {:e}", self.level, bounds[k]);
             }
         }
-        worst
+        (worst, bounds.into_iter().flatten().fold(0.0, f64::max))
     }
 
     /// The largest error in these states.
     fn worst(&self, states: &[Vec<Vec<f64>>]) -> f64 {
-        states.iter().map(|state| Big::scope(|| self.error(state, &self.exact(state)))).fold(0.0, f64::max)
+        states.iter().map(|state| Big::scope(|| self.error(state, &self.exact(state)).0)).fold(0.0, f64::max)
     }
 }
 
@@ -99,17 +99,23 @@ const PART: usize = 1000;
 fn hold(robot: &str, count: usize) {
     let levels = LEVELS.map(|name| made(robot, name, Target::Own));
     let mut worst = [0.0_f64; LEVELS.len()];
+    let mut single: Vec<(f64, f64)> = Vec::with_capacity(count);
     for (state, first) in states_in_parts(&levels[0].generated.model, count) {
         Big::scope(|| {
             // Graphs of levels differ in nothing but how a node is computed: one evaluation in 96 digits serves all.
             let exact = levels[0].exact(&state);
             for (worst, level) in worst.iter_mut().zip(&levels) {
-                *worst = worst.max(level.error(&state, &exact));
+                let (error, bound) = level.error(&state, &exact);
+                *worst = worst.max(error);
+                if level.level.arithmetic == Arithmetic::Single {
+                    single.push((error, bound));
+                }
                 let same = |(a, b): (&Big, &Big)| (*a - *b).to_f64().abs() <= 1e-80 * a.to_f64().abs();
                 assert!(!first || exact.iter().zip(&level.exact(&state)).all(same), "{}", level.level);
             }
         });
     }
+    worst_of_single_is_where_the_bound_says(&single);
     let of = |name: &str| worst[LEVELS.iter().position(|l| *l == name).unwrap()];
     let plain = of("f64");
     assert!(of("double_double") <= of("compensated+two") * (1.0 + 1e-9), "{worst:?}");
@@ -117,6 +123,29 @@ fn hold(robot: &str, count: usize) {
     assert!(of("f64+no_fma") < 4.0 * plain && of("f64+correct") < 2.0 * plain, "{worst:?}");
     assert!(plain < of("f64+fast_10") && of("f64+fast_10") < of("f64+fast_7") && of("f64+fast_7") < 1e-4, "{worst:?}");
     assert!(of("f64+fast_10") < of("f32_f64") && of("f32_f64") < of("f32") && of("f32") < 1e-2, "{worst:?}");
+}
+
+/// Errors and bounds of states: the largest errors come where bounds are large. Of the hundredth of the states with the largest errors, or the three, most have a bound in the
+/// upper quarter.
+fn worst_of_single_is_where_the_bound_says(states: &[(f64, f64)]) {
+    let mut bounds: Vec<f64> = states.iter().map(|s| s.1).collect();
+    bounds.sort_by(f64::total_cmp);
+    let quarter = bounds[states.len() * 3 / 4];
+    let mut by_error = states.to_vec();
+    by_error.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let worst = &by_error[..(states.len() / 100).max(3)];
+    let there = worst.iter().filter(|s| s.1 >= quarter).count();
+    println!(
+        "{} of {} in the upper quarter; the worst: {:e} of {:e}; bounds {:e} {:e} {:e}",
+        there,
+        worst.len(),
+        worst[0].0,
+        worst[0].1,
+        bounds[0],
+        quarter,
+        bounds[bounds.len() - 1]
+    );
+    assert!(2 * there > worst.len(), "{there} of {}", worst.len());
 }
 
 #[test]

@@ -19,16 +19,19 @@ texts!(fast_10: "lanes/text/portable_f64" "lanes/text/portable_4" "lanes/text/po
 texts!(ulp: "lanes/text/portable_f64" "lanes/text/portable_4" "lanes/text/portable" "lanes/text/common" "lanes/text/f64" "lanes/text/f64_fused" "lanes/text/f64_split");
 
 /// Doubles that lie nearest to a multiple of π/2: below 10⁵ (found by trying every multiple), of all (6381956970095103·2⁷⁹⁷, Muller, Elementary Functions, 2016, 11.3),
-/// and others at the ends of ranges.
+/// singles that do ([`WORST_SINGLES`]), and others at the ends of ranges.
 fn worst() -> Vec<f64> {
     let known = [45.553093477052, 91.106186954104, 182.212373908208, 364.424747816416, 728.849495632832, 1457.698991265664];
     let muller = 6381956970095103.0 * 2.0_f64.powi(797);
     let ends =
         [1e5, 1e6, 1e15, 1e22, f64::MAX, 5.319_372_648_326_541e255, 3.725_290_298_461_914e-9, 7.450_580_596_923_828e-9, 1e-300, 5e-324];
     let quarters = (1..40).map(|k| f64::from(k) * std::f64::consts::FRAC_PI_4);
-    let all = known.into_iter().chain([muller]).chain(ends).chain(quarters);
+    let all = known.into_iter().chain([muller]).chain(WORST_SINGLES.map(f64::from)).chain(ends).chain(quarters);
     all.flat_map(|x| [x.next_down(), x, x.next_up()]).filter(|x| x.is_finite()).flat_map(|x| [x, -x]).collect()
 }
+
+/// The `f32` that lie nearest to a multiple of π/2, by continued fractions: 16573937·2⁻¹⁶ of those below 10⁵, 4.2·10⁻⁹ away; 16367173·2⁷² of all, 1.6·10⁻⁹ away.
+const WORST_SINGLES: [f32; 2] = [16_573_937.0 / 65_536.0, 16_367_173.0 * (1_u128 << 72) as f32];
 
 /// Angles of every size, most of them such as joints have.
 fn angles(count: usize) -> Vec<f64> {
@@ -122,7 +125,7 @@ fn doubt(x: f32, sine: bool, nearest: f32, rounded: f32) {
 
 #[test]
 fn every_so_many_single_angles_have_the_nearest_sines() {
-    (0..=u32::MAX).step_by(40_009).for_each(|bits| {
+    (0..=u32::MAX).step_by(40_009).chain(WORST_SINGLES.map(f32::to_bits)).for_each(|bits| {
         singles([bits, bits ^ 1, bits ^ 2, bits ^ (1 << 31)]);
     });
 }

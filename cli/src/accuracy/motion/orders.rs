@@ -159,3 +159,43 @@ fn the_method_of_order_8_has_it_over_twelve_decades_of_errors_and_the_integrator
         }
     });
 }
+
+/// Scenes that drive the pendulum; steps end at multiples of a quarter of a second.
+const DRIVEN: [(&str, &str); 5] = [
+    ("a law of position and rate", "kind = \"pd\"\nkp = 20.0\nkd = 2.0\ntarget = 1.0"),
+    (
+        "the same along a table",
+        "kind = \"pd\"\nkp = 20.0\nkd = 2.0\ncolumns = [\"swing\"]\nrows = [[0.0, 0.5], [0.25, 1.5], [0.75, -0.5], [1.0, 0.0]]",
+    ),
+    ("the same, sampled", "kind = \"pd\"\nkp = 20.0\nkd = 2.0\ntarget = 1.0\nperiod = 0.25"),
+    ("a table", "kind = \"table\"\ncolumns = [\"swing\"]\nrows = [[0.0, 1.0], [0.5, -8.0], [0.75, 4.0], [1.0, 0.0]]"),
+    (
+        "a table that jumps",
+        "kind = \"table\"\ninterpolation = \"hold\"\ncolumns = [\"swing\"]\nrows = [[0.0, 1.0], [0.5, -8.0], [0.75, 4.0]]",
+    ),
+];
+
+#[test]
+fn a_controller_costs_no_order() {
+    let folder = tempfile::tempdir().unwrap();
+    for (what, control) in DRIVEN {
+        let path = folder.path().join("driven.toml");
+        let scene = format!("robot = \"simple_pendulum\"\n[initial]\nq = [{START}]\n[simulation]\nend = {SECONDS}\n[control]\n{control}\n");
+        std::fs::write(&path, scene).unwrap();
+        let (_, subject) = find(&path.to_string_lossy()).unwrap();
+        let (_, end, agreement) = reference(&subject).unwrap();
+        assert!(agreement < 1e-13, "{what}: {agreement:e}");
+        let rk4 = IntegratorId::rk4.row();
+        let how: Vec<How> = (0..6).map(|k| How::Step(SECONDS / f64::from(24 << k))).collect();
+        let curve = curve(&subject, rk4, &how, (&end, agreement), 1);
+        let slope = curve.slope.unwrap_or_default();
+        println!("{what} {slope} {:?} {agreement:e}", seen(&curve.samples));
+        assert!((slope - 4.0).abs() <= 0.2 && decades(&curve.samples) >= 1.5, "{what}: {slope} {:?}", seen(&curve.samples));
+    }
+}
+
+#[test]
+fn a_scene_with_a_blow_is_refused() {
+    let refused = find("golf_swing").map(|_| ()).unwrap_err();
+    assert!(refused.lines[0].contains("impact: found a blow"), "{:?}", refused.lines);
+}

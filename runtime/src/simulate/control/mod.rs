@@ -20,7 +20,7 @@ pub trait Control {
         None
     }
 
-    /// The next time after t at which the torques have a kink or a jump, s: a step ends there.
+    /// The next time after t at which the torques have a kink or a jump, s: a step ends there, and is made with the torques before it.
     fn next_kink(&self, _t: f64) -> f64 {
         f64::INFINITY
     }

@@ -203,6 +203,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
     fn steps(&mut self, run: &mut Run, watch: &mut dyn FnMut(f64, &Counts) -> bool) -> Result<Ended, SimulateError> {
         let nv = self.shape.nv;
         self.sample(run);
+        self.system.kink = run.control.next_kink(self.t);
         self.record_here(run)?;
         self.watch.begin(run.events.len());
         self.take_sides(run)?;
@@ -252,8 +253,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
     /// When the next sample, kink or the end is, s.
     fn stretch_end(&self, run: &Run) -> f64 {
         let sample = run.period().map_or(f64::INFINITY, |p| self.settings.start + run.samples as f64 * p);
-        let kink = run.control.next_kink(self.t);
-        let next = sample.min(kink).min(self.settings.end);
+        let next = sample.min(self.system.kink).min(self.settings.end);
         // A stretch shorter than rounding is none.
         if next - self.t <= rounding(self.t) { next.max(self.t + rounding(self.t)).min(self.settings.end) } else { next }
     }
@@ -371,6 +371,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         self.y.copy_from_slice(&self.end);
         self.y[..nv].fill(0.0);
         self.t = t;
+        self.system.kink = run.control.next_kink(t);
         let sampled = run.period().is_some() && t >= until && until < self.settings.end;
         if sampled {
             self.sample(run);
