@@ -7,37 +7,51 @@ use super::{Graph, MOST, Node, NodeId, Op};
 impl Graph {
     /// The results, computed node by node in `S`; `input(argument, index)` gives the inputs. Of results with several lanes, the first. A multiply-add is a product and a sum.
     pub fn evaluate_as<S: Scalar>(&self, input: impl Fn(usize, usize) -> S) -> Vec<S> {
-        let mut values: Vec<[S; MOST]> = Vec::with_capacity(self.nodes().len());
-        let mut masks: Vec<Option<[S::Mask; MOST]>> = Vec::with_capacity(self.nodes().len());
+        if self.lanes().width == 1 { self.evaluate_in_lanes::<S, 1>(input) } else { self.evaluate_in_lanes::<S, MOST>(input) }
+    }
+
+    fn evaluate_in_lanes<S: Scalar, const N: usize>(&self, input: impl Fn(usize, usize) -> S) -> Vec<S> {
+        let mut values: Vec<[S; N]> = Vec::with_capacity(self.nodes().len());
+        let mut masks: Vec<Option<[S::Mask; N]>> = Vec::with_capacity(self.nodes().len());
+        let mut waves = (None, [(S::zero(), S::zero()); N]);
         for node in self.nodes() {
             let mask = (node.op == Op::Positive).then(|| values[node.args[0] as usize].map(S::positive));
-            values.push(self.value_as(node, &values, &masks, &input));
+            if matches!(node.op, Op::Sin | Op::Cos) && waves.0 != Some(node.args[0]) {
+                // The sine and the cosine of an angle come one after the other.
+                waves = (Some(node.args[0]), values[node.args[0] as usize].map(S::sin_cos));
+            }
+            let value = match node.op {
+                Op::Sin => waves.1.map(|w| w.0),
+                Op::Cos => waves.1.map(|w| w.1),
+                _ => self.value_as(node, &values, &masks, &input),
+            };
+            values.push(value);
             masks.push(mask);
         }
         self.outputs.iter().map(|id| values[id.index()][0]).collect()
     }
 
-    fn value_as<S: Scalar>(
+    fn value_as<S: Scalar, const N: usize>(
         &self,
         node: &Node,
-        values: &[[S; MOST]],
-        masks: &[Option<[S::Mask; MOST]>],
+        values: &[[S; N]],
+        masks: &[Option<[S::Mask; N]>],
         input: &impl Fn(usize, usize) -> S,
-    ) -> [S; MOST] {
+    ) -> [S; N] {
         let (at, width) = (|k: usize| values[node.args[k] as usize], self.lanes().width);
         let each = |f: &dyn Fn(usize) -> S| {
-            let mut out = [S::zero(); MOST];
+            let mut out = [S::zero(); N];
             (0..width).for_each(|k| out[k] = f(k));
-            (width..MOST).for_each(|k| out[k] = out[k % width]);
+            (width..N).for_each(|k| out[k] = out[k % width]);
             out
         };
         let two = |f: &dyn Fn(S, S) -> S| each(&|k| f(at(0)[k], at(1)[k]));
         let one = |f: &dyn Fn(S) -> S| each(&|k| f(at(0)[k]));
         let product = |k: usize| at(0)[k] * at(1)[k];
         match node.op {
-            Op::Constant => [S::from_f64(node.constant().unwrap_or(f64::NAN)); MOST],
-            Op::LaneConstant => self.lanes().constant(node.args[0]).map(S::from_f64),
-            Op::Input => [input(node.args[0] as usize, node.args[1] as usize); MOST],
+            Op::Constant => [S::from_f64(node.constant().unwrap_or(f64::NAN)); N],
+            Op::LaneConstant => std::array::from_fn(|k| S::from_f64(self.lanes().constant(node.args[0])[k])),
+            Op::Input => [input(node.args[0] as usize, node.args[1] as usize); N],
             Op::LaneInput => each(&|k| input(node.args[0] as usize, self.lanes().input(node.args[1])[k] as usize)),
             Op::Add => two(&|a, b| a + b),
             Op::Sub => two(&|a, b| a - b),
@@ -45,10 +59,9 @@ impl Graph {
             Op::Div => two(&|a, b| a / b),
             Op::Neg => one(&|a| -a),
             Op::Sqrt => one(&S::sqrt),
-            Op::Sin => one(&|a| a.sin_cos().0),
-            Op::Cos => one(&|a| a.sin_cos().1),
             Op::Atan2 => two(&|a, b| a.atan2(b)),
-            Op::Positive => [S::zero(); MOST],
+            // These three are not looked up here.
+            Op::Positive | Op::Sin | Op::Cos => [S::zero(); N],
             Op::Select => {
                 let mask = masks[node.args[0] as usize];
                 each(&|k| mask.map_or(S::zero(), |m| S::select(m[k], at(1)[k], at(2)[k])))
@@ -59,9 +72,9 @@ impl Graph {
             Op::NegMulSub => each(&|k| -product(k) - at(2)[k]),
             Op::Spread => {
                 let lane = self.node(NodeId(node.args[1])).constant().unwrap_or_default() as usize;
-                [at(0)[lane]; MOST]
+                [at(0)[lane]; N]
             }
-            Op::Across => [(1..width).fold(at(0)[0], |sum, k| sum + at(0)[k]); MOST],
+            Op::Across => [(1..width).fold(at(0)[0], |sum, k| sum + at(0)[k]); N],
         }
     }
 }
