@@ -53,7 +53,7 @@ pub(super) fn curve(subject: &Subject, peer: &Peer, method: &Stepping, reference
         let drift = drift(subject, &state);
         let evaluations = u64::from(method.evaluations) * *n as u64;
         let end = End { state, evaluations, wall, energy: drift.map(|d| d.0), momentum: drift.and_then(|d| d.1) };
-        sample(subject, reference, How::Step(subject.seconds / *n as f64), end)
+        Some(sample(subject, reference, How::Step(subject.seconds / *n as f64), &end))
     });
     let integrator = format!("{} {}", peer.engine(), method.name);
     Curve { integrator, peer: true, order: method.order, slope: slope(&samples), samples }

@@ -156,7 +156,7 @@ pub(super) fn curve(
     reference: (&State, f64),
     repetitions: usize,
 ) -> Curve {
-    let samples = samples(how, repetitions, &mut |how| sample(subject, reference, *how, run(subject, integrator.id, *how)?));
+    let samples = samples(how, repetitions, &mut |how| Some(sample(subject, reference, *how, &run(subject, integrator.id, *how)?)));
     Curve { integrator: integrator.name.to_owned(), peer: false, order: integrator.order, slope: slope(&samples), samples }
 }
 
@@ -177,14 +177,14 @@ pub(super) fn samples<T>(settings: &[T], repetitions: usize, take: &mut dyn FnMu
 }
 
 /// What a run has come to.
-pub(super) fn sample(subject: &Subject, (end, agreement): (&State, f64), how: How, run: End) -> Option<Sample> {
+pub(super) fn sample(subject: &Subject, (end, agreement): (&State, f64), how: How, run: &End) -> Sample {
     let error = difference(subject, &run.state, end);
     let (step, tolerance) = match how {
         How::Step(h) => (Some(h), None),
         How::Tolerance(t) => (None, Some(t)),
     };
-    let End { evaluations, wall, energy, momentum, .. } = run;
-    Some(Sample { step, tolerance, evaluations, wall, error, energy, momentum, told: error >= 100.0 * agreement })
+    let End { evaluations, wall, energy, momentum, .. } = *run;
+    Sample { step, tolerance, evaluations, wall, error, energy, momentum, told: error >= 100.0 * agreement }
 }
 
 /// By which power of the evaluations the error falls: a line through the logarithms, over the samples that the reference can tell and that are past the first coarse ones.
