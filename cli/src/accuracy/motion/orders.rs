@@ -180,7 +180,8 @@ fn the_method_of_order_8_has_it_over_twelve_decades_of_errors_and_the_integrator
         println!("{:?} {:?}", seen(&found), seen(&coarse));
         assert_eq!(found.len(), coarse.len());
         for (found, digits) in found.iter().zip(&coarse) {
-            assert!((1..4).contains(&(found.evaluations - digits.evaluations)), "{found:?} {digits:?}");
+            // Some more at both ends, and where a long step looks out for stiffness.
+            assert!((1..8).contains(&(found.evaluations - digits.evaluations)), "{found:?} {digits:?}");
             assert!(
                 (found.error - digits.error).abs() < 2e-14,
                 "{} evaluations: {:e} and {:e}",
