@@ -55,6 +55,31 @@ fn a_table_is_followed_through_its_kinks() {
     }
 }
 
+/// 1 N up to 0.7 s, −2 N from there on.
+struct Jump;
+
+impl Control for Jump {
+    fn torques(&mut self, t: f64, _: &[f64], _: &[f64], tau: &mut [f64]) {
+        tau[0] = if t < 0.7 { 1.0 } else { -2.0 };
+    }
+
+    fn next_kink(&self, t: f64) -> f64 {
+        if t < 0.7 { 0.7 } else { f64::INFINITY }
+    }
+}
+
+/// Steps end at the jump, and no stage of the step before it sees what comes after: parabolas are exact.
+#[test]
+fn a_step_that_ends_at_a_jump_is_made_with_the_torques_before_it() {
+    for id in [IntegratorId::dopri5, IntegratorId::dop853, IntegratorId::rodas4, IntegratorId::rk4, IntegratorId::lie_midpoint] {
+        let settings = if id.row().adaptive { to(id, 1.0, 1e-3) } else { stepping(id, 1.0, 0.3) };
+        let motion = Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[0.0], &mut Jump, &mut []).unwrap();
+        let (v, q) = (0.7 - 2.0 * 0.3, 0.5 * 0.49 + 0.7 * 0.3 - 0.09);
+        assert!((motion.v[1] - v).abs() < 1e-14 && (motion.q[1] - q).abs() < 1e-14, "{id}: {} {}", motion.v[1], motion.q[1]);
+        assert!((motion.work[1] - (0.5 * 0.49 - 2.0 * (q - 0.5 * 0.49))).abs() < 1e-13, "{id}: {}", motion.work[1]);
+    }
+}
+
 #[test]
 fn a_controller_brings_a_robot_to_its_target_whatever_integrates_it() {
     let (q, v) = ([0.4, -0.7, 0.5], [0.0; 3]);
