@@ -179,7 +179,7 @@ fn arm(out: &mut String, (path, real): (&str, &str), name: &str, takes: &[(&str,
     let _ = if gives.is_empty() {
         writeln!(out, "                out[0] = self::{name}({names});")
     } else {
-        let inner = gives.iter().skip(1).rev().map(|d| format!(".as_chunks_mut::<{{ {d} }}>().0"));
+        let inner = gives.iter().skip(1).rev().map(|d| format!(".as_chunks_mut::<{d}>().0"));
         let rows = format!("out{}", inner.collect::<String>());
         let _ = writeln!(out, "                if let ::core::result::Result::Ok(out) = {rows}.try_into() {{");
         writeln!(out, "                    self::{name}_into({names}, out);\n                }}")
