@@ -10,6 +10,7 @@
 pub mod bound;
 mod build;
 mod cache;
+mod checked;
 mod edit;
 mod emit;
 mod error;
@@ -37,6 +38,7 @@ pub use articulated_core::level::{Arithmetic, Level, LevelError, Sines};
 pub use articulated_core::spatial::Reference;
 pub use articulated_urdf as urdf;
 pub use build::{Build, Written};
+pub use checked::checked_cost;
 pub use edit::{Edit, Reason, Refusal, choose_frames, model, read};
 pub use emit::identifier;
 pub use error::{Error, nearest};

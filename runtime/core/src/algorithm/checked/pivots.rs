@@ -8,7 +8,7 @@ use super::super::Workspace;
 use super::super::aba::articulated_body_with_wrenches;
 use super::super::forward_dynamics::forward_dynamics_with_wrenches;
 use super::super::workspace::Column;
-use super::{Measure, Singular, finite, larger, least_pivot};
+use super::{Measure, Singular, finite, least_pivot};
 use crate::Scalar;
 use crate::model::Model;
 use crate::spatial::{ArticulatedInertia, SpatialInertia, Twist, Wrench};
@@ -104,7 +104,7 @@ impl<S: Scalar<Mask = bool>> Watch<S> {
 ///
 /// D_i = Sᵀ Iᴬ S is summed of the body's own inertia and of what its children hand on, each of these a difference; what is left of the sum of
 /// the magnitudes is the measure. For models in which no joint follows another.
-pub fn articulated_body_pivots<S: Scalar<Mask = bool>>(model: &Model<S>, ws: &mut Workspace<S>, mut see: impl FnMut(usize, S)) {
+pub fn articulated_body_pivots<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, mut see: impl FnMut(usize, S)) {
     for (size, body) in ws.sizes.iter_mut().zip(&model.bodies) {
         *size = Size::of(&body.inertia);
     }
@@ -121,8 +121,8 @@ pub fn articulated_body_pivots<S: Scalar<Mask = bool>>(model: &Model<S>, ws: &mu
     }
 }
 
-/// The same of the elimination Lᵀ D L of M, for what `forward_dynamics` left in the workspace: D⁻¹ on the diagonal of the matrix, composite inertias.
-fn factored_pivots<S: Scalar<Mask = bool>>(model: &Model<S>, ws: &mut Workspace<S>, mut see: impl FnMut(usize, S)) {
+/// The same of the elimination Lᵀ D L of M, for what [`forward_dynamics`](super::super::forward_dynamics()) left in the workspace: D⁻¹ on the diagonal of the matrix, composite inertias.
+pub fn factored_pivots<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, mut see: impl FnMut(usize, S)) {
     // A coordinate that several joints follow sums √(S_iᵀ I S_i) of each at most.
     ws.row.fill(S::zero());
     for i in model.outward() {
@@ -155,8 +155,8 @@ fn subspace<S: Scalar>(model: &Model<S>, i: usize, k: usize) -> Twist<S> {
 }
 
 /// D over its terms, which are no less than D itself.
-pub(super) fn part<S: Scalar<Mask = bool>>(pivot: S, terms: S) -> S {
-    if pivot.is_zero() { pivot } else { pivot / larger(terms, pivot) }
+pub(super) fn part<S: Scalar>(pivot: S, terms: S) -> S {
+    if pivot.is_zero() { pivot } else { pivot / S::select((terms - pivot).positive(), terms, pivot) }
 }
 
 /// Sums of magnitudes of the blocks of an inertia: of A (kg·m²), of B (kg·m), of C (kg).
