@@ -9,19 +9,14 @@ const APART: usize = 100;
 /// The statements with pairs of results `out[i][2j] = a; … out[i][2j + 1] = b;` as one, where the second stood.
 pub(super) fn two_at_once(statements: &str) -> String {
     let lines: Vec<&str> = statements.lines().collect();
-    let mut halves: BTreeMap<(&str, usize), [Option<(usize, &str)>; 2]> = BTreeMap::new();
-    for (n, line) in lines.iter().enumerate() {
-        if let Some((row, column, value)) = result(line) {
-            halves.entry((row, column / 2)).or_default()[column % 2] = Some((n, value));
-        }
-    }
+    let results = lines.iter().enumerate().filter_map(|(n, line)| result(line).map(|(row, column, value)| ((row, column), (n, value))));
+    let made: BTreeMap<(&str, usize), (usize, &str)> = results.collect();
     let mut text: Vec<Option<String>> = lines.iter().map(|line| Some((*line).to_owned())).collect();
-    for ((row, pair), both) in halves {
-        if let [Some((m, a)), Some((n, b))] = both
-            && m.abs_diff(n) <= APART
-        {
+    for (&(row, column), &(m, a)) in made.iter().filter(|((_, column), _)| column % 2 == 0) {
+        let second = made.get(&(row, column + 1)).filter(|(n, _)| m.abs_diff(*n) <= APART);
+        if let Some(&(n, b)) = second {
             text[m.min(n)] = None;
-            text[m.max(n)] = Some(format!("    store(lanes([{a}, {b}]), &mut {row}.as_chunks_mut::<2>().0[{pair}]);"));
+            text[m.max(n)] = Some(format!("    store(lanes([{a}, {b}]), &mut {row}.as_chunks_mut::<2>().0[{}]);", column / 2));
         }
     }
     text.into_iter().flatten().map(|line| line + "\n").collect()
