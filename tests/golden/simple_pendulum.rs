@@ -167,7 +167,7 @@ impl ::articulated::Dynamics<f64> for Robot {
             (::articulated::FunctionId::placements, &[q]) => {
                 let q = ::articulated::exactly::<NQ, f64>("q", q)?;
                 ::articulated::check_length("out", out.len(), FRAMES * 12)?;
-                if let ::core::result::Result::Ok(out) = out.as_chunks_mut::<{ 12 }>().0.try_into() {
+                if let ::core::result::Result::Ok(out) = out.as_chunks_mut::<12>().0.try_into() {
                     self::placements_into(q, out);
                 }
                 ::core::result::Result::Ok(())
