@@ -181,7 +181,7 @@ fn arm(out: &mut String, (path, real): (&str, &str), name: &str, takes: &[(&str,
     } else {
         let inner = gives.iter().skip(1).rev().map(|d| format!(".as_chunks_mut::<{d}>().0"));
         let rows = format!("out{}", inner.collect::<String>());
-        let _ = writeln!(out, "                if let ::core::result::Result::Ok(out) = {rows}.try_into() {{");
+        let _ = writeln!(out, "                if let ::core::result::Result::Ok(out) = ::core::convert::TryInto::try_into({rows}) {{");
         writeln!(out, "                    self::{name}_into({names}, out);\n                }}")
     };
     let _ = writeln!(out, "                ::core::result::Result::Ok(())\n            }}");
