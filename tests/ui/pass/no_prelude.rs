@@ -12,6 +12,7 @@ mod articulated {}
         urdf = "ui/urdf/arm.urdf",
         base = floating,
         functions = [placements, inverse_dynamics, bias_forces, gravity_torque],
+        batch = [f64],
     }
 }
 

@@ -90,7 +90,10 @@ impl Way {
         let _ = writeln!(out, "#[cfg({})]\nmod {} {{\n    mod lanes {{\n{text}}}\n", self.cfg, self.module);
         // Functions of the robot could bear names of the lanes': its constants alone are let in.
         let parameters = if functions.iter().any(|f| !f.parameters().0.is_empty()) { ", PARAMETERS" } else { "" };
-        let _ = writeln!(out, "    use self::lanes::*;\n    use super::{{Lanes, super::{{FRAMES, LINKS, NQ, NV{parameters}}}}};");
+        let _ = writeln!(
+            out,
+            "    use ::core::{{cmp::Ord, iter::Iterator}};\n\n    use self::lanes::*;\n    use super::{{Lanes, super::{{FRAMES, LINKS, NQ, NV{parameters}}}}};"
+        );
         let _ = writeln!(out, "    batch_support!({attribute});");
         for f in functions.iter().filter(|f| f.is_any()) {
             let _ = writeln!(out, "    {}_in_batch!({attribute});", f.name());

@@ -90,8 +90,15 @@ impl Real {
 
 /// Contents of a module; `None` if the set has no such width.
 pub fn source(set: Set, real: Real, lanes: usize) -> Option<String> {
-    MODULES.iter().find(|module| (module.0, module.1, module.2) == (set, real, lanes)).map(|module| module.3.to_string())
+    let module = MODULES.iter().find(|module| (module.0, module.1, module.2) == (set, real, lanes))?;
+    Some(format!("{TRAITS}{}", module.3).replace(HALF, &format!("{HALF}{TRAITS}")))
 }
+
+/// What the texts need of the prelude, for crates without it.
+const TRAITS: &str = "#[allow(unused_imports)]\nuse ::core::{convert::From, iter::Iterator};\n\n";
+
+/// Where a module in a module begins.
+const HALF: &str = "\nmod half {\n";
 
 /// What to add to such a module for states one after the other; `None` if the set has no such width, or that is not what batches use.
 pub fn tiles(set: Set, real: Real, lanes: usize) -> Option<String> {
