@@ -85,7 +85,7 @@ pub(crate) enum Command {
         "articulated accuracy panda_like",
         "articulated accuracy arm.urdf --functions inverse_dynamics,mass_matrix --levels f32,f64,double_double --output accuracy",
         "articulated accuracy panda_like --functions forward_dynamics --advise --error 1e-9",
-        "articulated accuracy --simulate double_pendulum --output integrators",
+        "articulated accuracy --simulate pendulum --output integrators",
         "articulated accuracy ur5_like --peers-manifest target/peers/peers.json --output accuracy",
     ]))]
     Accuracy(AccuracyArguments),
