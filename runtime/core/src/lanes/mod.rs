@@ -19,6 +19,7 @@
 //! A lane's sine depends on no other lane. Its error is below 1 ulp up to 10⁵ rad for f64 (0.9 seen) and 10⁴ rad for f32 (0.97 over all
 //! of them), and the standard library's beyond. All sets that fuse agree to the bit, and so do all that do not. sin(−0) is 0, not −0.
 
+use alloc::format;
 use alloc::string::{String, ToString};
 
 #[cfg(test)]
