@@ -167,7 +167,7 @@ impl ::articulated::Dynamics<f64> for Robot {
             (::articulated::FunctionId::placements, &[q]) => {
                 let q = ::articulated::exactly::<NQ, f64>("q", q)?;
                 ::articulated::check_length("out", out.len(), FRAMES * 12)?;
-                if let ::core::result::Result::Ok(out) = out.as_chunks_mut::<12>().0.try_into() {
+                if let ::core::result::Result::Ok(out) = ::core::convert::TryInto::try_into(out.as_chunks_mut::<12>().0) {
                     self::placements_into(q, out);
                 }
                 ::core::result::Result::Ok(())
@@ -177,7 +177,7 @@ impl ::articulated::Dynamics<f64> for Robot {
                 let v = ::articulated::exactly::<NV, f64>("v", v)?;
                 let a = ::articulated::exactly::<NV, f64>("a", a)?;
                 ::articulated::check_length("out", out.len(), NV)?;
-                if let ::core::result::Result::Ok(out) = out.try_into() {
+                if let ::core::result::Result::Ok(out) = ::core::convert::TryInto::try_into(out) {
                     self::inverse_dynamics_into(q, v, a, out);
                 }
                 ::core::result::Result::Ok(())
