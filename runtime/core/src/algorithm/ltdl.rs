@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use crate::Scalar;
 
 /// The degrees of freedom on the way from `k` to the base, `k` not among them.
-pub(super) fn way(below: &[usize], k: usize) -> impl Iterator<Item = usize> {
+pub(crate) fn way(below: &[usize], k: usize) -> impl Iterator<Item = usize> {
     let next = |k: usize| below[k].checked_sub(1);
     core::iter::successors(next(k), move |&i| next(i))
 }
@@ -61,7 +61,7 @@ pub(super) fn solve<S: Scalar>(l: &[S], below: &[usize], x: &mut [S]) {
 }
 
 /// X = M⁻¹ B in place, for a matrix B of rows of this width: all its columns at once.
-pub(super) fn solve_rows<S: Scalar>(l: &[S], below: &[usize], x: &mut [S], width: usize) {
+pub(crate) fn solve_rows<S: Scalar>(l: &[S], below: &[usize], x: &mut [S], width: usize) {
     let n = below.len();
     for k in (0..n).rev() {
         for i in way(below, k) {

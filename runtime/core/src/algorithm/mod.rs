@@ -11,7 +11,7 @@ mod energy;
 mod forward_dynamics;
 mod frames;
 mod kinematics;
-mod ltdl;
+pub(crate) mod ltdl;
 mod manifold;
 mod momentum;
 mod operational_space;

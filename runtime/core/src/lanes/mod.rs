@@ -18,6 +18,8 @@
 //!
 //! A lane's sine depends on no other lane. Its error is below 1 ulp up to 10⁵ rad for f64 (0.9 seen) and 10⁴ rad for f32 (0.97 over all
 //! of them), and the standard library's beyond. All sets that fuse agree to the bit, and so do all that do not. sin(−0) is 0, not −0.
+//!
+//! [`COLUMNS`] is built on these with four f64.
 
 use alloc::format;
 use alloc::string::{String, ToString};
@@ -106,6 +108,13 @@ pub fn tiles(set: Set, real: Real, lanes: usize) -> Option<String> {
     let module = MODULES.iter().find(|module| (module.0, module.1, module.2) == (set, real, lanes))?;
     (!module.4.is_empty()).then(|| module.4.to_string())
 }
+
+/// M X = B for all columns of three `[NV][NV]` matrices B, the third the unit matrix, by M = Lᵀ D L: Featherstone 2008, §6.5.
+///
+/// The text of a module that stands beside `portable_f64x4`, `avx2_f64x4` and `neon_f64x4`. Before it stand
+/// * `NV`, `VECTORS` = ⌈`NV`/4⌉, `TOGETHER`, how many matrices are solved for at once (3 or 1), and `ENTRIES`, numbers of L off the diagonal;
+/// * `BEFORE` and `BEYOND`: `[&[(u16, u16)]; NV]`, for each row of L (each column) the column (the row) of each number and its place in `l`.
+pub const COLUMNS: &str = include_str!("text/columns.rs");
 
 /// Modules' texts, which tests compile: common files in the order in which macros are needed.
 macro_rules! modules {

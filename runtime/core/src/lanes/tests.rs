@@ -1,5 +1,6 @@
 //! Every lane of every function of every set that this processor has, against scalars.
 
+mod columns;
 mod sines;
 mod source;
 mod tiles;

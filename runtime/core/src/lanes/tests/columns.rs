@@ -1,0 +1,126 @@
+//! M X = B for all columns, as generated code solves it, is what the run-time's loop gives, on trees of every shape.
+
+use std::sync::LazyLock;
+
+#[cfg(target_arch = "x86_64")]
+use super::super::avx2_f64x4;
+#[cfg(target_arch = "aarch64")]
+use super::super::neon_f64x4;
+use super::super::portable_f64x4;
+use crate::algorithm::ltdl::{solve_rows, way};
+
+/// Rows of (number, place).
+type Table = Vec<&'static [(u16, u16)]>;
+
+/// M, B and X in whole numbers and halves, too small to be rounded: every order of the sums and every instruction set gives the same.
+struct Sample {
+    /// `[nv]`, next joint to the base, from 1; 0 at the base.
+    below: Vec<usize>,
+    /// `[nv][nv]`, L below the diagonal, D⁻¹ on it.
+    l: Vec<f64>,
+    /// `[3][nv][nv]`, the third the unit matrix.
+    b: Vec<f64>,
+    /// `[3][nv][nv]`
+    x: Vec<f64>,
+}
+
+impl Sample {
+    /// Each joint stands on one of the `near` before it, the base being before the first.
+    fn random(nv: usize, near: usize) -> Self {
+        let mut random = random((100 * nv + near) as u64);
+        let below: Vec<usize> = (0..nv).map(|k| k - random(near.min(k + 1))).collect();
+        let mut l = vec![f64::NAN; nv * nv];
+        for k in 0..nv {
+            l[k * nv + k] = [0.5, 1.0, 2.0, -3.0][random(4)];
+            way(&below, k).for_each(|i| l[k * nv + i] = [-2.0, -1.0, 1.0, 2.0][random(4)]);
+        }
+        let mut b: Vec<f64> = (0..2 * nv * nv).map(|_| random(19) as f64 - 9.0).collect();
+        b.extend((0..nv * nv).map(|at| f64::from(at / nv == at % nv)));
+        let mut x = b.clone();
+        x.chunks_mut(nv * nv).for_each(|x| solve_rows(&l, &below, x, nv));
+        assert!(x.iter().all(|x| x.abs() < 2_f64.powi(48)), "numbers so large could be rounded");
+        Self { below, l, b, x }
+    }
+
+    /// Numbers of L row by row: for each row their columns and places, and for each column their rows and places.
+    fn tables(&self) -> [Table; 2] {
+        let mut tables = [(); 2].map(|()| vec![Vec::new(); self.below.len()]);
+        let numbers = (0..self.below.len()).flat_map(|k| way(&self.below, k).map(move |i| (k, i)));
+        for (at, (k, i)) in numbers.enumerate() {
+            tables[0][k].push((i as u16, at as u16));
+            tables[1][i].push((k as u16, at as u16));
+        }
+        tables.map(|table| table.into_iter().map(|row| &*row.leak()).collect())
+    }
+}
+
+/// Whole numbers below a bound; Knuth's constants, TAOCP 2, 3.3.4.
+fn random(mut state: u64) -> impl FnMut(usize) -> usize {
+    move |bound| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % bound
+    }
+}
+
+/// The text with a tree of `$nv` joints, of which each stands on one of the `$near` before it, solved for `$together` matrices at once.
+macro_rules! columns {
+    ($($name:ident: $nv:literal, $near:literal, $together:literal;)+) => { $(
+        #[allow(unsafe_code, unused_imports, unused_unsafe, clippy::all, clippy::pedantic)]
+        mod $name {
+            use super::{LazyLock, Sample, Table};
+
+            const NV: usize = $nv;
+            const VECTORS: usize = NV.div_ceil(4);
+            const TOGETHER: usize = $together;
+            const ENTRIES: usize = NV * (NV - 1) / 2;
+
+            static SAMPLE: LazyLock<Sample> = LazyLock::new(|| Sample::random(NV, $near));
+            static BEFORE: LazyLock<Table> = LazyLock::new(|| SAMPLE.tables()[0].clone());
+            static BEYOND: LazyLock<Table> = LazyLock::new(|| SAMPLE.tables()[1].clone());
+
+            include!("../text/columns.rs");
+
+            impl Unsolved {
+                fn of(sample: &Sample) -> Self {
+                    let mut new = Self::new();
+                    // The third is there.
+                    for (at, b) in sample.b[..2 * NV * NV].iter().enumerate() {
+                        let (matrix, row, column) = (at / NV / NV, at / NV % NV, at % NV);
+                        new.x[matrix / TOGETHER][row][matrix % TOGETHER * VECTORS + column / 4][column % 4] = *b;
+                    }
+                    for k in 0..NV {
+                        new.d[k] = sample.l[k * NV + k];
+                        BEFORE[k].iter().for_each(|&(i, at)| new.l[at as usize] = sample.l[k * NV + i as usize]);
+                    }
+                    new
+                }
+            }
+
+            #[test]
+            fn columns_in_vectors_solve_as_rows_one_by_one() {
+                let (mut unsolved, mut x) = (Unsolved::of(&SAMPLE), [[[f64::NAN; NV]; NV]; 3]);
+                columns(&mut unsolved, &mut x);
+                assert_eq!(x.as_flattened().as_flattened(), SAMPLE.x);
+
+                // What processors run that have no such vectors.
+                use super::portable_f64x4::*;
+                solve!();
+                let mut portable = Unsolved::of(&SAMPLE);
+                solve(&mut portable);
+                assert_eq!(portable.x, unsolved.x);
+            }
+        }
+    )+ };
+}
+
+columns! {
+    one: 1, 1, 3;
+    five: 5, 5, 3;
+    chain: 10, 1, 3;
+    ten: 10, 4, 3;
+    full_vectors: 12, 3, 3;
+    legs: 18, 5, 3;
+    wide: 20, 20, 3;
+    one_by_one: 21, 6, 1;
+    one_by_one_in_full_vectors: 32, 12, 1;
+}
