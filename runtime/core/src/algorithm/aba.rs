@@ -21,7 +21,7 @@ use crate::{Scalar, with_pose};
 /// # Panics
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
 pub fn articulated_body<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], tau: &[S], out: &mut [S]) {
-    solve(model, ws, q, v, tau, &[], &World::of(model), out);
+    articulated_body_with_wrenches(model, ws, q, v, tau, &[], out);
 }
 
 /// As [`articulated_body`], with external wrenches on the frames.
@@ -39,7 +39,7 @@ pub fn articulated_body_with_wrenches<S: Scalar>(
     wrenches: &[S],
     out: &mut [S],
 ) {
-    solve(model, ws, q, v, tau, wrenches, &World::of(model), out);
+    solve(model, ws, q, v, tau, &World::of(model, wrenches), out);
 }
 
 /// M(q)⁻¹·τ: forward dynamics at rest and without gravity.
@@ -49,18 +49,17 @@ pub fn articulated_body_with_wrenches<S: Scalar>(
 pub fn solve_by_articulated_body<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], tau: &[S], out: &mut [S]) {
     let mut rest = core::mem::take(&mut ws.row);
     rest.fill(S::zero());
-    solve(model, ws, q, &rest, tau, &[], &World::empty(), out);
+    solve(model, ws, q, &rest, tau, &World::empty(), out);
     ws.row = rest;
 }
 
-#[allow(clippy::too_many_arguments)]
-// Why: all that forward dynamics depends on.
-fn solve<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], tau: &[S], wrenches: &[S], world: &World<S>, out: &mut [S]) {
+/// Forward dynamics in a world.
+fn solve<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], tau: &[S], world: &World<S>, out: &mut [S]) {
     for i in model.outward() {
         velocity(model, ws, i, q, v);
     }
     // p_i −= w
-    wrenches::each(model, ws, q, wrenches, |ws, i, w| ws.bodies[i].wrench = ws.bodies[i].wrench - *w);
+    wrenches::each(model, ws, q, world.wrenches, |ws, i, w| ws.bodies[i].wrench = ws.bodies[i].wrench - *w);
     effects::give_way(model, ws, q, v, world);
     let mut tau = effects::given(model, ws, q, v, tau, world);
     for i in model.inward() {

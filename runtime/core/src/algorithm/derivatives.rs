@@ -139,7 +139,7 @@ pub fn forward_dynamics_derivatives_with_wrenches<S: Scalar>(
     out: &mut [S],
 ) {
     let n = model.nv * model.nv;
-    let matrix = unsolved(model, ws, (q, v, tau), wrenches, out);
+    let matrix = unsolved(model, ws, q, v, tau, wrenches, out);
     for out in out.chunks_exact_mut(n.max(1)).take(2) {
         solve_rows(&matrix, &ws.below, out, model.nv);
     }
@@ -171,7 +171,7 @@ pub(super) fn unsolved_derivatives_with_wrenches<S: Scalar>(
     wrenches: &[S],
     out: &mut [S],
 ) {
-    let matrix = unsolved(model, ws, (q, v, tau), wrenches, out);
+    let matrix = unsolved(model, ws, q, v, tau, wrenches, out);
     let factors = &mut out[2 * model.nv * model.nv..];
     factors.fill(S::zero());
     for k in 0..model.nv {
@@ -186,7 +186,9 @@ pub(super) fn unsolved_derivatives_with_wrenches<S: Scalar>(
 fn unsolved<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,
-    (q, v, tau): (&[S], &[S], &[S]),
+    q: &[S],
+    v: &[S],
+    tau: &[S],
     wrenches: &[S],
     out: &mut [S],
 ) -> alloc::vec::Vec<S> {

@@ -138,7 +138,7 @@ fn at_the_roots<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, point: Vector3<S
 fn rate<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S]) -> (S, Wrench<S>) {
     positions(model, ws, Axes::Base, q);
     let mut row = core::mem::take(&mut ws.row);
-    recursion(model, ws, q, v, a, &[], &World::bare(), &mut row);
+    recursion(model, ws, q, v, a, &World::bare(), &mut row);
     ws.row = row;
     let (inverse, center) = center(model, ws);
     (inverse, at_the_roots(model, ws, center))

@@ -38,29 +38,19 @@ pub fn inverse_dynamics_with_wrenches<S: Scalar>(
     wrenches: &[S],
     tau: &mut [S],
 ) {
-    recursion(model, ws, q, v, a, wrenches, &World::of(model), tau);
+    recursion(model, ws, q, v, a, &World::of(model, wrenches), tau);
 }
 
 /// M(q)·v, the generalised momentum: inverse dynamics of the acceleration v at rest and in an empty world.
 pub(super) fn momentum<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], world: &World<S>, out: &mut [S]) {
     let zeros = core::mem::take(&mut ws.zeros);
-    recursion(model, ws, q, &zeros, v, &[], world, out);
+    recursion(model, ws, q, &zeros, v, world, out);
     ws.zeros = zeros;
 }
 
-#[allow(clippy::too_many_arguments)]
-// Why: all that inverse dynamics depends on.
+/// Inverse dynamics in a world.
 #[inline(always)]
-pub(super) fn recursion<S: Scalar>(
-    model: &Model<S>,
-    ws: &mut Workspace<S>,
-    q: &[S],
-    v: &[S],
-    a: &[S],
-    wrenches: &[S],
-    world: &World<S>,
-    tau: &mut [S],
-) {
+pub(super) fn recursion<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S], world: &World<S>, tau: &mut [S]) {
     // V̇_0 = [0; −g]
     ws.bodies[0].motion.acceleration = -world.gravity;
     for i in model.outward() {
@@ -69,7 +59,7 @@ pub(super) fn recursion<S: Scalar>(
         with_pose!(pose, p => outward(&model.bodies[i], i, p, pose, ws, v, a));
     }
     // F_i −= w
-    wrenches::each(model, ws, q, wrenches, |ws, i, w| ws.bodies[i].wrench = ws.bodies[i].wrench - *w);
+    wrenches::each(model, ws, q, world.wrenches, |ws, i, w| ws.bodies[i].wrench = ws.bodies[i].wrench - *w);
     effects::push(model, ws, q, v, world);
     tau.fill(S::zero());
     for i in model.inward() {

@@ -18,24 +18,26 @@ pub(super) use slopes::{on_bodies as body_slopes, on_joints as joint_slopes};
 
 /// What acts on the robot from outside while a recursion runs.
 #[derive(Clone, Copy)]
-pub(super) struct World<S> {
+pub(super) struct World<'a, S> {
     /// In the base frame, m/s².
     pub(super) gravity: Vector3<S>,
     /// Whether effects push and pull.
     pub(super) forces: bool,
     /// Whether rotors and added mass count.
     pub(super) inertia: bool,
+    /// `[frames][6]` on the frames, N·m and N, as [`Model::wrench_reference`] says, or empty.
+    pub(super) wrenches: &'a [S],
 }
 
-impl<S: Scalar> World<S> {
+impl<'a, S: Scalar> World<'a, S> {
     /// The robot's own.
-    pub(super) fn of(model: &Model<S>) -> Self {
-        Self { gravity: model.gravity, forces: true, inertia: true }
+    pub(super) fn of(model: &Model<S>, wrenches: &'a [S]) -> Self {
+        Self { gravity: model.gravity, forces: true, inertia: true, wrenches }
     }
 
     /// Neither gravity nor forces.
     pub(super) fn empty() -> Self {
-        Self { gravity: Vector3::zeros(), forces: false, inertia: true }
+        Self { gravity: Vector3::zeros(), forces: false, inertia: true, wrenches: &[] }
     }
 
     /// Nothing but the links.
