@@ -15,11 +15,13 @@ mod order;
 mod pairs;
 mod plain;
 mod results;
+mod rows;
 mod sets;
 mod signature;
 mod together;
 mod vector;
 mod warnings;
+mod written;
 
 pub use names::identifier;
 

@@ -45,7 +45,7 @@ fn stages(graph: &Graph) -> Vec<u32> {
     stages
 }
 
-/// The angles of one stage, in the order in which they come first.
+/// The angles of one stage, in the order in which their sines and cosines are needed.
 fn angles(graph: &Graph, stages: &[u32], stage: u32) -> Vec<Angle> {
     let mut angles: Vec<Angle> = Vec::new();
     let mut place = std::collections::HashMap::new();
@@ -61,7 +61,19 @@ fn angles(graph: &Graph, stages: &[u32], stage: u32) -> Vec<Angle> {
         let slot = if node.op == Op::Sin { &mut angles[at].sin } else { &mut angles[at].cos };
         *slot = Some(k);
     }
+    let first = first_uses(graph);
+    let at = |k: Option<usize>| k.map_or(usize::MAX, |k| first[k]);
+    angles.sort_by_key(|a| at(a.sin).min(at(a.cos)));
     angles
+}
+
+/// The first node that uses each node.
+fn first_uses(graph: &Graph) -> Vec<usize> {
+    let mut first = vec![usize::MAX; graph.nodes().len()];
+    for (k, node) in graph.nodes().iter().enumerate().rev() {
+        node.operands().for_each(|a| first[a.index()] = k);
+    }
+    first
 }
 
 /// What the angles need and is not done yet, in order; marks it done.

@@ -4,8 +4,9 @@ use std::fmt::Write;
 
 use articulated_core::algorithm::{Dim, Shape};
 
-use super::chunks::gives_much;
+use super::chunks::{self, gives_much};
 use super::columns::Layout;
+use super::function::in_lanes;
 use super::levels::is_long;
 use super::results::{ZERO, is_sparse, nested, zeros};
 use crate::Level;
@@ -60,6 +61,7 @@ impl Place {
     pub(super) fn of(program: &Program, level: Level, forbid_unsafe: bool) -> Self {
         let graph = &program.graph;
         match graph.outputs.len() {
+            2.. if in_lanes(graph) && !forbid_unsafe && !chunks::is_long(graph) && program.columns.is_none() => Self::Written,
             _ if gives_much(graph) || program.columns.is_some() => Self::Filled,
             0 | 1 => Self::Value,
             _ if forbid_unsafe || is_long(graph, level) => Self::Value,
@@ -201,6 +203,17 @@ impl<'a> Signature<'a> {
             }
         };
         let _ = if self.place == Place::Written { writeln!(out, "    out.write({value});") } else { writeln!(out, "    {value}") };
+    }
+
+    /// The room of each array of a result that is written where nothing is yet: a name, a pointer to it, how many numbers.
+    pub(super) fn rooms(&self) -> Vec<(String, String, usize)> {
+        let parts = self.wanted.parts.iter().map(|part| (part.function.name, part.function.len(self.sizes)));
+        match &self.group {
+            None => parts.map(|(_, length)| ("out".to_owned(), "out.as_mut_ptr()".to_owned(), length)).collect(),
+            Some(_) => {
+                parts.map(|(name, length)| (format!("out_{name}"), format!("(&raw mut (*out.as_mut_ptr()).{name})"), length)).collect()
+            }
+        }
     }
 
     /// A result of zeros.

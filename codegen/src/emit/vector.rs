@@ -6,10 +6,14 @@ use super::literal::{literal, operand};
 use super::order::Angle;
 use super::plain::name;
 use super::signature::{Place, Signature};
+use super::written;
 use crate::graph::{Graph, Node, NodeId, Op};
 
 /// The statements, the result last.
 pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
+    if signature.place == Place::Written {
+        return written::body(out, graph, signature);
+    }
     let vector = Vector { graph, signature };
     *out += vector.beginning();
     if signature.place == Place::Filled {

@@ -1,4 +1,4 @@
-macro_rules! pair_functions {
+macro_rules! lane_functions {
     ($($item:item)*) => { $(#[inline] #[target_feature(enable = "sse2")] $item)* };
 }
 

@@ -1,0 +1,226 @@
+//! Which numbers of a result go together: lanes of vectors, turned so that what stands side by side is written by one store. A processor stores once a cycle, whatever the width.
+
+use std::collections::BTreeMap;
+
+use crate::graph::{Graph, NodeId, Op};
+
+/// A number of a result.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Cell {
+    Constant(f64),
+    /// A lane of a node.
+    Lane(usize, usize),
+}
+
+impl Cell {
+    /// What an output is.
+    pub(super) fn of(graph: &Graph, output: NodeId) -> Self {
+        let node = graph.node(output);
+        match (node.op, node.constant()) {
+            (_, Some(x)) => Self::Constant(x),
+            (Op::Spread, _) => Self::Lane(node.args[0] as usize, graph.node(NodeId(node.args[1])).constant().unwrap_or_default() as usize),
+            _ => Self::Lane(output.index(), 0),
+        }
+    }
+}
+
+/// What one column of a group is made of, a number a lane.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Column {
+    /// The lanes of a node.
+    Node(usize),
+    Constants(Vec<f64>),
+}
+
+/// Numbers that are written together.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Group {
+    /// The lanes of a node one behind the other.
+    Whole(usize, usize),
+    /// Three numbers of each lane, the lanes one behind the other.
+    InTurn([Column; 3], usize),
+    /// Four numbers of each lane, each lane's at a place of its own.
+    Fours([Column; 4], Vec<usize>),
+    /// Two of each.
+    Twos([Column; 2], Vec<usize>),
+    /// One number.
+    One(Cell, usize),
+    /// As many equal constants side by side.
+    Constant(f64, usize, usize),
+}
+
+impl Group {
+    /// The nodes whose values it writes.
+    pub(super) fn nodes(&self) -> Vec<usize> {
+        let columns: &[Column] = match self {
+            Self::Whole(node, _) | Self::One(Cell::Lane(node, _), _) => return vec![*node],
+            Self::One(Cell::Constant(_), _) | Self::Constant(..) => return Vec::new(),
+            Self::InTurn(columns, _) => columns,
+            Self::Fours(columns, _) => columns,
+            Self::Twos(columns, _) => columns,
+        };
+        columns.iter().filter_map(|column| if let Column::Node(node) = column { Some(*node) } else { None }).collect()
+    }
+}
+
+/// Each number of the result in one group.
+pub(super) fn groups(cells: &[Cell], width: usize) -> Vec<Group> {
+    let mut open = Open { cells, width, taken: vec![false; cells.len()] };
+    let mut groups: Vec<Group> = families(cells, width).into_iter().filter_map(|at| open.group(&at)).collect();
+    let mut k = 0;
+    while k < cells.len() {
+        let same = |n: &usize| !open.taken[*n] && cells[*n] == cells[k];
+        match cells[k] {
+            _ if open.taken[k] => k += 1,
+            Cell::Constant(x) => {
+                let n = (k..cells.len()).take_while(same).count();
+                groups.push(Group::Constant(x, k, n));
+                k += n;
+            }
+            cell => {
+                groups.push(Group::One(cell, k));
+                k += 1;
+            }
+        }
+    }
+    groups
+}
+
+/// Where a node's lanes stand, the first of each, the second of each and so on, of all nodes of which all lanes are wanted; in the order of places.
+fn families(cells: &[Cell], width: usize) -> Vec<Vec<usize>> {
+    let mut places: BTreeMap<usize, Vec<Vec<usize>>> = BTreeMap::new();
+    for (k, cell) in cells.iter().enumerate() {
+        if let Cell::Lane(node, lane) = *cell {
+            places.entry(node).or_insert_with(|| vec![Vec::new(); width])[lane].push(k);
+        }
+    }
+    let each = |lanes: &Vec<Vec<usize>>| {
+        let n = lanes.iter().map(Vec::len).min().unwrap_or(0);
+        (0..n).map(|k| lanes.iter().map(|places| places[k]).collect()).collect::<Vec<Vec<usize>>>()
+    };
+    let mut families: Vec<Vec<usize>> = places.values().flat_map(each).collect();
+    families.sort_unstable();
+    families
+}
+
+/// What is in no group yet.
+struct Open<'a> {
+    cells: &'a [Cell],
+    width: usize,
+    taken: Vec<bool>,
+}
+
+impl Open<'_> {
+    /// The group that the node whose lanes stand `at` these places begins or is in.
+    fn group(&mut self, at: &[usize]) -> Option<Group> {
+        if at.iter().any(|&k| self.taken[k]) {
+            return None;
+        }
+        let Cell::Lane(node, _) = self.cells[at[0]] else { return None };
+        if at.windows(2).all(|pair| pair[1] == pair[0] + 1) {
+            at.iter().for_each(|&k| self.taken[k] = true);
+            return Some(Group::Whole(node, at[0]));
+        }
+        if self.width != 4 {
+            return self.columns(at, 2).map(|columns| Group::Twos(columns, at.to_vec()));
+        }
+        if at.windows(2).all(|pair| pair[1] == pair[0] + 3) {
+            for before in 0..3.min(at[0] + 1) {
+                let at: Vec<usize> = at.iter().map(|k| k - before).collect();
+                if let Some(columns) = self.columns(&at, 2) {
+                    return Some(Group::InTurn(columns, at[0]));
+                }
+            }
+        }
+        if let Some(columns) = self.columns(at, 3) {
+            return Some(Group::Fours(columns, at.to_vec()));
+        }
+        self.columns(at, 1).map(|columns| Group::Twos(columns, at.to_vec()))
+    }
+
+    /// Takes the columns from these places on if at least so many are no constants.
+    fn columns<const N: usize>(&mut self, at: &[usize], least: usize) -> Option<[Column; N]> {
+        let columns: Vec<Column> = (0..N).map(|n| self.column(at, n)).collect::<Option<_>>()?;
+        let mut cells: Vec<usize> = at.iter().flat_map(|k| *k..k + N).collect();
+        cells.sort_unstable();
+        cells.dedup();
+        if columns.iter().filter(|column| matches!(column, Column::Node(_))).count() < least || cells.len() < N * at.len() {
+            return None;
+        }
+        cells.into_iter().for_each(|k| self.taken[k] = true);
+        columns.try_into().ok()
+    }
+
+    /// Column `n` from these places on: each lane of one node, or constants.
+    fn column(&self, at: &[usize], n: usize) -> Option<Column> {
+        let cells: Vec<Cell> = at.iter().map(|k| self.cells.get(k + n).filter(|_| !self.taken[k + n]).copied()).collect::<Option<_>>()?;
+        match cells[0] {
+            Cell::Lane(node, _) => cells.iter().enumerate().all(|(l, cell)| *cell == Cell::Lane(node, l)).then_some(Column::Node(node)),
+            Cell::Constant(_) => {
+                let number = |cell: &Cell| if let Cell::Constant(x) = cell { Some(*x) } else { None };
+                cells.iter().map(number).collect::<Option<_>>().map(Column::Constants)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The numbers that a group writes, each with its place.
+    fn written(group: &Group) -> Vec<(usize, Cell)> {
+        let number = |column: &Column, lane: usize| match column {
+            Column::Node(node) => Cell::Lane(*node, lane),
+            Column::Constants(x) => Cell::Constant(x[lane]),
+        };
+        let rows = |columns: &[Column], at: &[usize]| {
+            let row = |(lane, k): (usize, &usize)| columns.iter().enumerate().map(|(n, c)| (k + n, number(c, lane))).collect::<Vec<_>>();
+            at.iter().enumerate().flat_map(row).collect()
+        };
+        match group {
+            Group::Whole(node, at) => (0..4).map(|lane| (at + lane, Cell::Lane(*node, lane))).collect(),
+            Group::InTurn(columns, at) => rows(columns, &[0, 3, 6, 9].map(|k| k + at)),
+            Group::Fours(columns, at) => rows(columns, at),
+            Group::Twos(columns, at) => rows(columns, at),
+            Group::One(cell, at) => vec![(*at, *cell)],
+            Group::Constant(x, at, n) => (0..*n).map(|k| (at + k, Cell::Constant(*x))).collect(),
+        }
+    }
+
+    /// The mass matrix of four legs of three joints on a base of six coordinates.
+    fn four_legs() -> Vec<Cell> {
+        let joint = |i: usize| (i >= 6).then(|| ((i - 6) / 3, (i - 6) % 3));
+        let cell = |i: usize, j: usize| match (joint(i), joint(j)) {
+            (None, None) => Cell::Lane(100 + i.max(j), 0),
+            (Some((leg, n)), None) | (None, Some((leg, n))) => Cell::Lane(10 * n + i.min(j), leg),
+            (Some((leg, n)), Some((other, m))) if leg == other => Cell::Lane(50 + n + m, leg),
+            _ => Cell::Constant(0.0),
+        };
+        (0..18).flat_map(|i| (0..18).map(move |j| cell(i, j))).collect()
+    }
+
+    #[test]
+    fn each_number_is_written_once() {
+        let cells = four_legs();
+        let mut all: Vec<(usize, Cell)> = groups(&cells, 4).iter().flat_map(written).collect();
+        all.sort_by_key(|(k, _)| *k);
+        assert_eq!(all, cells.into_iter().enumerate().collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn lanes_of_legs_are_rows() {
+        let cells = four_legs();
+        let groups = groups(&cells, 4);
+        let count = |is: fn(&Group) -> bool| groups.iter().filter(|g| is(g)).count();
+        assert_eq!(count(|g| matches!(g, Group::InTurn(..))), 6);
+        assert_eq!(count(|g| matches!(g, Group::Fours(..))), 6);
+        assert_eq!(count(|g| matches!(g, Group::One(..))), 36);
+    }
+
+    #[test]
+    fn lanes_side_by_side_are_one_store() {
+        let cells: Vec<Cell> = (0..4).map(|lane| Cell::Lane(7, lane)).collect();
+        assert_eq!(groups(&cells, 4), [Group::Whole(7, 0)]);
+    }
+}
