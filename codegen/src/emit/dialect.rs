@@ -82,10 +82,17 @@ pub(super) fn units(graph: &Graph, group: usize) -> Vec<Unit> {
         match step {
             Step::Node(k) if inner[k] => units.push(Unit::Node(k)),
             Step::Node(_) => {}
-            Step::Batch(angles) => units.extend(angles.chunks(group).map(|some| Unit::Sines(some.to_vec(), angles.len()))),
+            Step::Batch(angles) => units.extend(angles.chunks(group).map(|some| Unit::Sines(in_order(some), angles.len()))),
         }
     }
     units
+}
+
+/// Angles that go together, in the order in which they were traced: as they lie in memory.
+fn in_order(angles: &[Angle]) -> Vec<Angle> {
+    let mut angles = angles.to_vec();
+    angles.sort_by_key(|a| a.angle);
+    angles
 }
 
 /// What other nodes use, and so needs a name. A lane of a vector does not where it is a result.

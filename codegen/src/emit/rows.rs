@@ -1,8 +1,12 @@
-//! Which numbers of a result go together: lanes of vectors, turned so that what stands side by side is written by one store. A processor stores once a cycle, whatever the width.
+//! Which numbers of a result go together: the lanes of vectors of four, turned so that what stands side by side is written by one store. A processor stores once a cycle, whatever
+//! the width.
 
 use std::collections::BTreeMap;
 
 use crate::graph::{Graph, NodeId, Op};
+
+/// Lanes of a vector.
+pub(super) const WIDTH: usize = 4;
 
 /// A number of a result.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,9 +44,11 @@ pub(super) enum Group {
     /// Three numbers of each lane, the lanes one behind the other.
     InTurn([Column; 3], usize),
     /// Four numbers of each lane, each lane's at a place of its own.
-    Fours([Column; 4], Vec<usize>),
+    Fours([Column; 4], [usize; WIDTH]),
     /// Two of each.
-    Twos([Column; 2], Vec<usize>),
+    Twos([Column; 2], [usize; WIDTH]),
+    /// Two numbers side by side, whatever they are lanes of.
+    Pair([Cell; 2], usize),
     /// One number.
     One(Cell, usize),
     /// As many equal constants side by side.
@@ -52,9 +58,12 @@ pub(super) enum Group {
 impl Group {
     /// The nodes whose values it writes.
     pub(super) fn nodes(&self) -> Vec<usize> {
+        let node = |cell: &Cell| if let Cell::Lane(node, _) = cell { Some(*node) } else { None };
         let columns: &[Column] = match self {
-            Self::Whole(node, _) | Self::One(Cell::Lane(node, _), _) => return vec![*node],
-            Self::One(Cell::Constant(_), _) | Self::Constant(..) => return Vec::new(),
+            Self::Whole(node, _) => return vec![*node],
+            Self::Pair(cells, _) => return cells.iter().filter_map(node).collect(),
+            Self::One(cell, _) => return node(cell).into_iter().collect(),
+            Self::Constant(..) => &[],
             Self::InTurn(columns, _) => columns,
             Self::Fours(columns, _) => columns,
             Self::Twos(columns, _) => columns,
@@ -64,41 +73,28 @@ impl Group {
 }
 
 /// Each number of the result in one group.
-pub(super) fn groups(cells: &[Cell], width: usize) -> Vec<Group> {
-    let mut open = Open { cells, width, taken: vec![false; cells.len()] };
-    let mut groups: Vec<Group> = families(cells, width).into_iter().filter_map(|at| open.group(&at)).collect();
-    let mut k = 0;
-    while k < cells.len() {
-        let same = |n: &usize| !open.taken[*n] && cells[*n] == cells[k];
-        match cells[k] {
-            _ if open.taken[k] => k += 1,
-            Cell::Constant(x) => {
-                let n = (k..cells.len()).take_while(same).count();
-                groups.push(Group::Constant(x, k, n));
-                k += n;
-            }
-            cell => {
-                groups.push(Group::One(cell, k));
-                k += 1;
-            }
+pub(super) fn groups(cells: &[Cell]) -> Vec<Group> {
+    let mut open = Open { cells, taken: vec![false; cells.len()] };
+    let mut groups: Vec<Group> = families(cells).iter().filter_map(|at| open.group(at)).collect();
+    for k in 0..cells.len() {
+        if !open.taken[k] {
+            groups.push(open.rest(k));
         }
     }
     groups
 }
 
 /// Where a node's lanes stand, the first of each, the second of each and so on, of all nodes of which all lanes are wanted; in the order of places.
-fn families(cells: &[Cell], width: usize) -> Vec<Vec<usize>> {
-    let mut places: BTreeMap<usize, Vec<Vec<usize>>> = BTreeMap::new();
+fn families(cells: &[Cell]) -> Vec<[usize; WIDTH]> {
+    let mut places: BTreeMap<usize, [Vec<usize>; WIDTH]> = BTreeMap::new();
     for (k, cell) in cells.iter().enumerate() {
         if let Cell::Lane(node, lane) = *cell {
-            places.entry(node).or_insert_with(|| vec![Vec::new(); width])[lane].push(k);
+            places.entry(node).or_default()[lane].push(k);
         }
     }
-    let each = |lanes: &Vec<Vec<usize>>| {
-        let n = lanes.iter().map(Vec::len).min().unwrap_or(0);
-        (0..n).map(|k| lanes.iter().map(|places| places[k]).collect()).collect::<Vec<Vec<usize>>>()
-    };
-    let mut families: Vec<Vec<usize>> = places.values().flat_map(each).collect();
+    let each =
+        |[a, b, c, d]: &[Vec<usize>; WIDTH]| a.iter().zip(b).zip(c).zip(d).map(|(((a, b), c), d)| [*a, *b, *c, *d]).collect::<Vec<_>>();
+    let mut families: Vec<[usize; WIDTH]> = places.values().flat_map(each).collect();
     families.sort_unstable();
     families
 }
@@ -106,40 +102,52 @@ fn families(cells: &[Cell], width: usize) -> Vec<Vec<usize>> {
 /// What is in no group yet.
 struct Open<'a> {
     cells: &'a [Cell],
-    width: usize,
     taken: Vec<bool>,
 }
 
 impl Open<'_> {
     /// The group that the node whose lanes stand `at` these places begins or is in.
-    fn group(&mut self, at: &[usize]) -> Option<Group> {
+    fn group(&mut self, at: &[usize; WIDTH]) -> Option<Group> {
         if at.iter().any(|&k| self.taken[k]) {
             return None;
         }
-        let Cell::Lane(node, _) = self.cells[at[0]] else { return None };
-        if at.windows(2).all(|pair| pair[1] == pair[0] + 1) {
-            at.iter().for_each(|&k| self.taken[k] = true);
-            return Some(Group::Whole(node, at[0]));
+        let apart = |n: usize| at.windows(2).all(|pair| pair[1] == pair[0] + n);
+        if apart(1) {
+            return self
+                .columns(at, 1)
+                .and_then(|[column]| if let Column::Node(node) = column { Some(Group::Whole(node, at[0])) } else { None });
         }
-        if self.width != 4 {
-            return self.columns(at, 2).map(|columns| Group::Twos(columns, at.to_vec()));
-        }
-        if at.windows(2).all(|pair| pair[1] == pair[0] + 3) {
-            for before in 0..3.min(at[0] + 1) {
-                let at: Vec<usize> = at.iter().map(|k| k - before).collect();
-                if let Some(columns) = self.columns(&at, 2) {
-                    return Some(Group::InTurn(columns, at[0]));
-                }
+        if apart(3) {
+            let found = (0..3.min(at[0] + 1)).find_map(|before| Some((self.columns(&at.map(|k| k - before), 2)?, at[0] - before)));
+            if let Some((columns, at)) = found {
+                return Some(Group::InTurn(columns, at));
             }
         }
         if let Some(columns) = self.columns(at, 3) {
-            return Some(Group::Fours(columns, at.to_vec()));
+            return Some(Group::Fours(columns, *at));
         }
-        self.columns(at, 1).map(|columns| Group::Twos(columns, at.to_vec()))
+        self.columns(at, 1).map(|columns| Group::Twos(columns, *at))
+    }
+
+    /// The group of what stands alone at `k`.
+    fn rest(&mut self, k: usize) -> Group {
+        let next = self.cells[k + 1..].iter().zip(&self.taken[k + 1..]).take_while(|(_, taken)| !**taken).map(|(cell, _)| *cell);
+        let (group, n) = match self.cells[k] {
+            Cell::Constant(x) => {
+                let n = 1 + next.take_while(|cell| *cell == self.cells[k]).count();
+                (Group::Constant(x, k, n), n)
+            }
+            cell => match next.take(1).find(|cell| matches!(cell, Cell::Lane(..))) {
+                Some(next) => (Group::Pair([cell, next], k), 2),
+                None => (Group::One(cell, k), 1),
+            },
+        };
+        self.taken[k..k + n].fill(true);
+        group
     }
 
     /// Takes the columns from these places on if at least so many are no constants.
-    fn columns<const N: usize>(&mut self, at: &[usize], least: usize) -> Option<[Column; N]> {
+    fn columns<const N: usize>(&mut self, at: &[usize; WIDTH], least: usize) -> Option<[Column; N]> {
         let columns: Vec<Column> = (0..N).map(|n| self.column(at, n)).collect::<Option<_>>()?;
         let mut cells: Vec<usize> = at.iter().flat_map(|k| *k..k + N).collect();
         cells.sort_unstable();
@@ -152,7 +160,7 @@ impl Open<'_> {
     }
 
     /// Column `n` from these places on: each lane of one node, or constants.
-    fn column(&self, at: &[usize], n: usize) -> Option<Column> {
+    fn column(&self, at: &[usize; WIDTH], n: usize) -> Option<Column> {
         let cells: Vec<Cell> = at.iter().map(|k| self.cells.get(k + n).filter(|_| !self.taken[k + n]).copied()).collect::<Option<_>>()?;
         match cells[0] {
             Cell::Lane(node, _) => cells.iter().enumerate().all(|(l, cell)| *cell == Cell::Lane(node, l)).then_some(Column::Node(node)),
@@ -183,6 +191,7 @@ mod tests {
             Group::InTurn(columns, at) => rows(columns, &[0, 3, 6, 9].map(|k| k + at)),
             Group::Fours(columns, at) => rows(columns, at),
             Group::Twos(columns, at) => rows(columns, at),
+            Group::Pair([a, b], at) => vec![(*at, *a), (at + 1, *b)],
             Group::One(cell, at) => vec![(*at, *cell)],
             Group::Constant(x, at, n) => (0..*n).map(|k| (at + k, Cell::Constant(*x))).collect(),
         }
@@ -203,7 +212,7 @@ mod tests {
     #[test]
     fn each_number_is_written_once() {
         let cells = four_legs();
-        let mut all: Vec<(usize, Cell)> = groups(&cells, 4).iter().flat_map(written).collect();
+        let mut all: Vec<(usize, Cell)> = groups(&cells).iter().flat_map(written).collect();
         all.sort_by_key(|(k, _)| *k);
         assert_eq!(all, cells.into_iter().enumerate().collect::<Vec<_>>());
     }
@@ -211,16 +220,16 @@ mod tests {
     #[test]
     fn lanes_of_legs_are_rows() {
         let cells = four_legs();
-        let groups = groups(&cells, 4);
+        let groups = groups(&cells);
         let count = |is: fn(&Group) -> bool| groups.iter().filter(|g| is(g)).count();
         assert_eq!(count(|g| matches!(g, Group::InTurn(..))), 6);
         assert_eq!(count(|g| matches!(g, Group::Fours(..))), 6);
-        assert_eq!(count(|g| matches!(g, Group::One(..))), 36);
+        assert_eq!(count(|g| matches!(g, Group::Pair(..))), 18);
     }
 
     #[test]
     fn lanes_side_by_side_are_one_store() {
         let cells: Vec<Cell> = (0..4).map(|lane| Cell::Lane(7, lane)).collect();
-        assert_eq!(groups(&cells, 4), [Group::Whole(7, 0)]);
+        assert_eq!(groups(&cells), [Group::Whole(7, 0)]);
     }
 }

@@ -6,9 +6,9 @@ use articulated_core::algorithm::{Dim, Shape};
 
 use super::chunks::{self, gives_much};
 use super::columns::Layout;
-use super::function::in_lanes;
 use super::levels::is_long;
 use super::results::{ZERO, is_sparse, nested, zeros};
+use super::rows::WIDTH;
 use crate::Level;
 use crate::program::Program;
 use crate::wanted::{Wanted, array_of};
@@ -61,7 +61,7 @@ impl Place {
     pub(super) fn of(program: &Program, level: Level, forbid_unsafe: bool) -> Self {
         let graph = &program.graph;
         match graph.outputs.len() {
-            2.. if in_lanes(graph) && !forbid_unsafe && !chunks::is_long(graph) && program.columns.is_none() => Self::Written,
+            2.. if graph.lanes().width == WIDTH && !forbid_unsafe && !chunks::is_long(graph) && program.columns.is_none() => Self::Written,
             _ if gives_much(graph) || program.columns.is_some() => Self::Filled,
             0 | 1 => Self::Value,
             _ if forbid_unsafe || is_long(graph, level) => Self::Value,

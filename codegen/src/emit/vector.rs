@@ -5,13 +5,14 @@ use super::dialect::{Dialect, statements};
 use super::literal::{literal, operand};
 use super::order::Angle;
 use super::plain::name;
+use super::rows::WIDTH;
 use super::signature::{Place, Signature};
 use super::written;
 use crate::graph::{Graph, Node, NodeId, Op};
 
 /// The statements, the result last.
 pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
-    if signature.place == Place::Written {
+    if signature.place == Place::Written && graph.lanes().width == WIDTH {
         return written::body(out, graph, signature);
     }
     let vector = Vector { graph, signature };

@@ -1,5 +1,5 @@
-//! Functions in lanes that write their results as they are made, into room that may hold nothing yet: constants first, while the sines take their time, then what belongs together
-//! as soon as the last of it is known.
+//! Functions in four lanes that write their results as they are made, into room that may hold nothing yet: constants first, while the processor waits for the sines, then what belongs
+//! together as soon as the last of it is known.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write;
@@ -12,9 +12,6 @@ use super::signature::Signature;
 use super::vector::Vector;
 use crate::graph::{Graph, Op};
 
-/// Two numbers side by side go together if at most so many statements lie between them: longer kept, they would fill the registers.
-const APART: usize = 100;
-
 /// The statements.
 pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
     let vector = Vector { graph, signature };
@@ -24,68 +21,35 @@ pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
     for (name, place, length) in signature.rooms() {
         let _ = writeln!(out, "    // SAFETY: room for as many numbers, which need not be there yet.");
         let _ = writeln!(out, "    let {name} = unsafe {{ &mut *{place}.cast::<[::core::mem::MaybeUninit<f64>; {length}]>() }};");
-        all.extend(groups(&cells[from..from + length], graph.lanes().width).into_iter().map(|group| (name.clone(), group)));
+        all.extend(groups(&cells[from..from + length]).into_iter().map(|group| (name.clone(), group)));
         from += length;
     }
     *out += vector.beginning();
-    *out += &flat(&Writer::of(&vector, all).statements());
+    *out += &flat(&Writer::of(&vector, &all).statements());
 }
 
-/// A statement or the place where it would stand.
+/// The statements, and what is written between them.
 struct Writer<'a> {
     vector: &'a Vector<'a>,
     units: Vec<Unit>,
     /// What is written after each unit, and before the first.
-    after: Vec<Vec<String>>,
+    after: Vec<String>,
     first: String,
 }
 
 impl<'a> Writer<'a> {
-    fn of(vector: &'a Vector<'a>, groups: Vec<(String, Group)>) -> Self {
+    fn of(vector: &'a Vector<'a>, groups: &[(String, Group)]) -> Self {
         let units = units(vector.graph, vector.group());
         let made: HashMap<usize, usize> =
             units.iter().enumerate().flat_map(|(u, unit)| unit.makes().into_iter().map(move |k| (k, u))).collect();
-        let after = vec![Vec::new(); units.len()];
-        let mut writer = Self { vector, units, after, first: String::new() };
-        let mut waiting: Option<(usize, String, Cell, usize)> = None;
+        let mut after = vec![String::new(); units.len()];
+        let mut first = String::new();
         for (name, group) in groups {
-            let last = group.nodes().iter().filter_map(|k| made.get(k)).max().copied();
-            let one = if let (Group::One(cell, at), Some(unit)) = (&group, last) { Some((unit, name.clone(), *cell, *at)) } else { None };
-            match (waiting.take(), one) {
-                (Some((unit, of, a, at)), Some((other, name, b, next)))
-                    if of == name && next == at + 1 && unit.abs_diff(other) <= APART =>
-                {
-                    let pair = format!("put_two([{}, {}], {name}, {at})", vector.cell(a), vector.cell(b));
-                    writer.write(Some(unit.max(other)), &pair);
-                }
-                (before, one) => {
-                    writer.single(before);
-                    match one {
-                        Some(one) => waiting = Some(one),
-                        None => writer.write(last, &vector.put(&name, &group)),
-                    }
-                }
-            }
+            let last = group.nodes().iter().filter_map(|k| made.get(k)).max();
+            let place = last.map_or(&mut first, |&unit| &mut after[unit]);
+            let _ = writeln!(place, "    {};", vector.put(name, group));
         }
-        writer.single(waiting);
-        writer
-    }
-
-    fn single(&mut self, one: Option<(usize, String, Cell, usize)>) {
-        if let Some((unit, name, cell, at)) = one {
-            let statement = self.vector.put(&name, &Group::One(cell, at));
-            self.write(Some(unit), &statement);
-        }
-    }
-
-    /// Puts a statement after a unit, or before all.
-    fn write(&mut self, after: Option<usize>, statement: &str) {
-        match after {
-            Some(unit) => self.after[unit].push(format!("    {statement};\n")),
-            None => {
-                let _ = writeln!(self.first, "    {statement};");
-            }
-        }
+        Self { vector, units, after, first }
     }
 
     fn statements(&self) -> String {
@@ -101,7 +65,7 @@ impl<'a> Writer<'a> {
                 }
                 None => out += &unit.written(graph, self.vector).unwrap_or_default(),
             }
-            after.iter().for_each(|statement| out += statement);
+            out += after;
         }
         out
     }
@@ -140,15 +104,8 @@ impl Vector<'_> {
             Group::Whole(node, at) => format!("put(x{node}, {out}, {at})"),
             Group::InTurn(of, at) => format!("put_in_turn({}, {out}, {at})", columns(of)),
             Group::Fours(of, at) => format!("put_fours({}, {out}, {at:?})", columns(of)),
-            Group::Twos(of, at) if self.graph.lanes().width == 4 => format!("put_twos({}, {out}, {at:?})", columns(of)),
-            Group::Twos([a, b], at) => {
-                let number = |column: &Column, lane: usize| match column {
-                    Column::Node(node) => self.cell(Cell::Lane(*node, lane)),
-                    Column::Constants(x) => literal(x[lane]),
-                };
-                let two = |lane: usize| format!("put_two([{}, {}], {out}, {})", number(a, lane), number(b, lane), at[lane]);
-                (0..at.len()).map(two).collect::<Vec<_>>().join("; ")
-            }
+            Group::Twos(of, at) => format!("put_twos({}, {out}, {at:?})", columns(of)),
+            Group::Pair([a, b], at) => format!("put_two([{}, {}], {out}, {at})", self.cell(*a), self.cell(*b)),
             Group::One(cell, at) => format!("put_one({}, {out}, {at})", self.cell(*cell)),
             Group::Constant(x, at, 1) => format!("put_one({}, {out}, {at})", literal(*x)),
             Group::Constant(x, at, n) => format!("{out}[{at}..{}].fill(::core::mem::MaybeUninit::new({}))", at + n, literal(*x)),

@@ -10,7 +10,7 @@
 //! * `positive(x) -> M`, x > 0; `select(m, a, b)`, a where m; `across(x)`, the sum of the lanes in every lane (f64 of 2 and 4);
 //! * `sin_cos(x) -> (V, V)`, x in rad, any, and `atan2(y, x)`, lane by lane by the standard library.
 //!
-//! Sets of 2 and 4 f64 also write results into `to: &mut [MaybeUninit<f64>]`, number by number from `at` on: `put_one`, `put_two`, and `put(x, to, at)`. Of four,
+//! Sets of 4 f64 also write results into `to: &mut [MaybeUninit<f64>]`, number by number from `at` on: `put_one`, `put_two`, and `put(x, to, at)`. Of four,
 //! `put_fours(a, b, c, d, to, [at; 4])` writes a, b, c, d of each lane at a place of its own, `put_twos` two of them, and `put_in_turn(a, b, c, to, at)` those of all lanes one behind the
 //! other, as `every_third(&[f64; 12]) -> [V; 3]` reads them.
 //!
@@ -145,7 +145,7 @@ macro_rules! modules {
 }
 
 modules! {
-    portable_f64x2, Portable, F64, 2, all(): ["portable_f64" "portable_2" "portable" "common" "put" "f64" "f64_fused" "f64_split"];
+    portable_f64x2, Portable, F64, 2, all(): ["portable_f64" "portable_2" "portable" "common" "f64" "f64_fused" "f64_split"];
     portable_f64x4, Portable, F64, 4, all():
         ["portable_f64" "portable_4" "portable" "common" "put" "rows" "f64" "f64_fused" "f64_split"];
     portable_f64x8, Portable, F64, 8, all(): ["portable_f64" "portable_8" "portable" "common" "f64" "f64_fused" "f64_split"]
@@ -161,7 +161,7 @@ modules! {
         half ["sse2_f64x2" "sse2" "register" "common" "f64" "f64_split"];
     sse2_f32x4, Sse2, F32, 4, target_arch = "x86_64": ["sse2_f32x4" "sse2" "register" "common" "f32" "f32_split"]
         tiles ["tiles" "tiles_16_bytes" "tiles_register" "tiles_f32" "tiles_sse2_f32"];
-    avx2_f64x2, Avx2, F64, 2, target_arch = "x86_64": ["avx2_f64x2" "avx2" "register" "common" "put" "f64" "f64_fused"];
+    avx2_f64x2, Avx2, F64, 2, target_arch = "x86_64": ["avx2_f64x2" "avx2" "register" "common" "f64" "f64_fused"];
     avx2_f64x4, Avx2, F64, 4, target_arch = "x86_64": ["avx2_f64x4" "avx2" "register" "common" "put" "rows_avx2" "f64" "f64_fused"]
         tiles ["tiles" "tiles_32_bytes" "tiles_register" "tiles_f64" "tiles_avx2_f64"];
     avx2_f32x8, Avx2, F32, 8, target_arch = "x86_64": ["avx2_f32x8" "avx2" "register" "common" "f32" "f32_fused"]
@@ -170,7 +170,7 @@ modules! {
         tiles ["tiles" "tiles_32_bytes" "tiles_register" "tiles_f64" "tiles_avx2_f64"];
     avx512_f32x16, Avx512, F32, 16, target_arch = "x86_64": ["avx512_f32x16" "avx512" "register" "common" "f32" "f32_fused"]
         tiles ["tiles" "tiles_32_bytes" "tiles_register" "tiles_f32" "tiles_avx2_f32"];
-    neon_f64x2, Neon, F64, 2, target_arch = "aarch64": ["neon_f64x2" "neon" "register" "common" "put" "f64" "f64_fused"]
+    neon_f64x2, Neon, F64, 2, target_arch = "aarch64": ["neon_f64x2" "neon" "register" "common" "f64" "f64_fused"]
         tiles ["tiles" "tiles_16_bytes" "tiles_register" "tiles_f64" "tiles_neon_f64"];
     neon_f64x4, Neon, F64, 4, target_arch = "aarch64": ["pair_neon" "pair" "put" "rows"]
         half ["neon_f64x2" "neon" "register" "common" "f64" "f64_fused"];
