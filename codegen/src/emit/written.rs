@@ -1,5 +1,5 @@
-//! Functions in four lanes that write their results as they are made, into room that may hold nothing yet: constants first, while the processor waits for the sines, then what belongs
-//! together as soon as the last of it is known.
+//! Functions in four lanes that write their results as they are made, into room that may hold nothing yet: constants first, half of
+//! them before the first sines and half behind, so that the stores fill the time in which nothing else can be done, then what belongs together as soon as the last of it is known.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write;
@@ -42,14 +42,22 @@ impl<'a> Writer<'a> {
         let units = units(vector.graph, vector.group());
         let made: HashMap<usize, usize> =
             units.iter().enumerate().flat_map(|(u, unit)| unit.makes().into_iter().map(move |k| (k, u))).collect();
-        let mut after = vec![String::new(); units.len()];
-        let mut first = String::new();
-        for (name, group) in groups {
-            let last = group.nodes().iter().filter_map(|k| made.get(k)).max();
-            let place = last.map_or(&mut first, |&unit| &mut after[unit]);
-            let _ = writeln!(place, "    {};", vector.put(name, group));
+        let sines = units.iter().position(|unit| matches!(unit, Unit::Sines(..)));
+        let (constant, others): (Vec<_>, Vec<_>) = groups.iter().partition(|(_, group)| group.nodes().is_empty());
+        let mut writer = Self { vector, after: vec![String::new(); units.len()], units, first: String::new() };
+        for (n, (name, group)) in constant.iter().enumerate() {
+            writer.write(sines.filter(|_| n >= constant.len() / 2), name, group);
         }
-        Self { vector, units, after, first }
+        for (name, group) in others {
+            writer.write(group.nodes().iter().filter_map(|k| made.get(k)).max().copied(), name, group);
+        }
+        writer
+    }
+
+    /// Writes a group after a unit, or before all.
+    fn write(&mut self, after: Option<usize>, name: &str, group: &Group) {
+        let place = after.map_or(&mut self.first, |unit| &mut self.after[unit]);
+        let _ = writeln!(place, "    {};", self.vector.put(name, group));
     }
 
     fn statements(&self) -> String {
