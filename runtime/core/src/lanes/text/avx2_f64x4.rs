@@ -8,6 +8,10 @@ macro_rules! lane_functions {
     ($($item:item)*) => { $(#[inline] #[target_feature(enable = "avx2,fma")] $item)* };
 }
 
+macro_rules! four_functions {
+    ($($item:item)*) => { $(#[inline] #[target_feature(enable = "avx2,fma")] $item)* };
+}
+
 pub(super) use ::core::arch::x86_64::{
     _mm256_add_pd as add, _mm256_sub_pd as sub, _mm256_mul_pd as mul, _mm256_div_pd as div, _mm256_sqrt_pd as sqrt,
     _mm256_fmadd_pd as fmadd, _mm256_fmsub_pd as fmsub, _mm256_fnmadd_pd as fnmadd, _mm256_fnmsub_pd as fnmsub, _mm256_set1_pd as k,

@@ -4,7 +4,7 @@ pub(super) const LANES: usize = 2 * half::LANES;
 pub(super) type V = (half::V, half::V);
 pub(super) type M = (half::M, half::M);
 
-lane_functions! {
+four_functions! {
     pub(super) fn k(x: f64) -> V {
         (half::k(x), half::k(x))
     }

@@ -1,4 +1,4 @@
-macro_rules! lane_functions {
+macro_rules! four_functions {
     ($($item:item)*) => { $(#[inline] #[target_feature(enable = "neon")] $item)* };
 }
 

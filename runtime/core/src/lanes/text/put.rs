@@ -1,5 +1,5 @@
 
-lane_functions! {
+four_functions! {
     pub(super) fn put_one(x: Real, to: &mut [::core::mem::MaybeUninit<Real>], at: usize) {
         to[at].write(x);
     }

@@ -1,5 +1,5 @@
 
-lane_functions! {
+four_functions! {
     pub(super) fn put_fours(a: V, b: V, c: V, d: V, to: &mut [::core::mem::MaybeUninit<Real>], at: [usize; LANES]) {
         let (a, b, c, d) = (array(a), array(b), array(c), array(d));
         put(lanes([a[0], b[0], c[0], d[0]]), to, at[0]);
