@@ -224,7 +224,7 @@ mod tests {
         let count = |is: fn(&Group) -> bool| groups.iter().filter(|g| is(g)).count();
         assert_eq!(count(|g| matches!(g, Group::InTurn(..))), 6);
         assert_eq!(count(|g| matches!(g, Group::Fours(..))), 3);
-        assert_eq!(count(|g| matches!(g, Group::Twos(..))), 10);
+        assert_eq!(count(|g| matches!(g, Group::Twos(..))), 6);
         assert_eq!(count(|g| matches!(g, Group::Pair(..))), 18);
     }
 
