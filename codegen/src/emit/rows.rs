@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::graph::{Graph, NodeId, Op};
+use crate::graph::{Graph, Node, NodeId, Op};
 
 /// Lanes of a vector.
 pub(super) const WIDTH: usize = 4;
@@ -20,10 +20,16 @@ impl Cell {
     /// What an output is.
     pub(super) fn of(graph: &Graph, output: NodeId) -> Self {
         let node = graph.node(output);
-        match (node.op, node.constant()) {
-            (_, Some(x)) => Self::Constant(x),
-            (Op::Spread, _) => Self::Lane(node.args[0] as usize, graph.node(NodeId(node.args[1])).constant().unwrap_or_default() as usize),
-            _ => Self::Lane(output.index(), 0),
+        if let Some(x) = node.constant() {
+            return Self::Constant(x);
+        }
+        let (of, lane) = match node.op {
+            Op::Spread => (NodeId(node.args[0]), graph.node(NodeId(node.args[1])).constant().unwrap_or_default() as usize),
+            _ => (output, 0),
+        };
+        match graph.node(of) {
+            Node { op: Op::LaneConstant, args } => Self::Constant(graph.lanes().constant(args[0])[lane]),
+            _ => Self::Lane(of.index(), lane),
         }
     }
 }
