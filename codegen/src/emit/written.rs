@@ -1,5 +1,5 @@
-//! Functions in four lanes that write their results as they are made, into room that may hold nothing yet: constants first, half of
-//! them before the first sines and half behind, so that the stores fill the time in which nothing else can be done, then what belongs together as soon as the last of it is known.
+//! Functions in four lanes that write their results as they are made, into room that may hold nothing yet: constants first, half of them before the sines and half between and behind
+//! them, so that the stores fill the time in which nothing else can be done; then what belongs together as soon as the last of it is known.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write;
@@ -42,11 +42,13 @@ impl<'a> Writer<'a> {
         let units = units(vector.graph, vector.group());
         let made: HashMap<usize, usize> =
             units.iter().enumerate().flat_map(|(u, unit)| unit.makes().into_iter().map(move |k| (k, u))).collect();
-        let sines = units.iter().position(|unit| matches!(unit, Unit::Sines(..)));
+        let sines: Vec<usize> = (0..units.len()).filter(|&u| matches!(units[u], Unit::Sines(..))).collect();
         let (constant, others): (Vec<_>, Vec<_>) = groups.iter().partition(|(_, group)| group.nodes().is_empty());
         let mut writer = Self { vector, after: vec![String::new(); units.len()], units, first: String::new() };
+        let before = constant.len() / 2;
         for (n, (name, group)) in constant.iter().enumerate() {
-            writer.write(sines.filter(|_| n >= constant.len() / 2), name, group);
+            let behind = n.checked_sub(before).and_then(|n| sines.get(n * sines.len() / (constant.len() - before)));
+            writer.write(behind.copied(), name, group);
         }
         for (name, group) in others {
             writer.write(group.nodes().iter().filter_map(|k| made.get(k)).max().copied(), name, group);
