@@ -93,10 +93,12 @@ pub(super) fn twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes: A
         let columns = ws.columns_of(i);
         let joint = columns.clone().fold(Twist::zero(), |sum, c| sum + ws.columns[c].axis.times(v[ws.columns[c].at]));
         let twist = if moves_along(body, axes) { Twist { angular: joint.angular, linear: Vector3::zeros() } } else { carried + joint };
+        // Of a joint of one degree of freedom Ṡ = ψ̇, as S × S q̇ is nothing.
+        let alone = columns.len() == 1;
         for c in columns {
             let column = &mut ws.columns[c];
             column.drift = carried.cross(&column.axis);
-            column.rate = twist.cross(&column.axis);
+            column.rate = if alone { column.drift } else { twist.cross(&column.axis) };
         }
         ws.common[i].carried_twist = carried;
         ws.common[i].twist = twist;

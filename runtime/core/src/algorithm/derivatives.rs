@@ -295,7 +295,7 @@ impl<S: Scalar> Matrices<'_, S> {
         let two = S::from_f64(2.0);
         let twice_b = |omega: Vector3<S>| state.coriolis.wrench(omega * two);
         let held = state.inertia.apply(&column.axis);
-        let turning = state.coriolis.transposed(&column.axis) * two;
+        let turning = state.coriolis.transposed(&column.axis.times(two));
         let by_q = twice_b(column.drift.angular) + state.inertia.apply(&column.curl) + column.axis.cross_wrench(&state.force);
         let by_v = twice_b(column.axis.angular) + state.inertia.apply(&(column.drift + column.rate));
         pairs(model, ws, i, [held, by_q, by_v], |own, [held, by_q, by_v], other| {
