@@ -19,6 +19,8 @@ pub(crate) use batch::{BatchKernel, Numbers};
 #[derive(Clone, Debug)]
 pub(crate) struct Native {
     library: Arc<libloading::Library>,
+    /// Where the copy is that was opened.
+    _copy: Arc<tempfile::TempDir>,
 }
 
 /// A function on arrays of doubles, with the lengths it was promised to have. Keeps its library open.
@@ -88,11 +90,16 @@ impl PeerEntry {
 }
 
 impl Native {
-    /// Opens the library at `path`.
+    /// Opens a copy of the library at `path`. What a linker has written piece by piece lies scattered in memory, and code that fills the cache for instructions then takes up to a third
+    /// longer, or not, as it happens; a copy is written in one go.
     pub(crate) fn open(path: &Path) -> Result<Self, String> {
+        let failed = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
+        let folder = tempfile::Builder::new().prefix("articulated").tempdir().map_err(|e| failed(&e))?;
+        let copy = folder.path().join(path.file_name().unwrap_or_default());
+        std::fs::copy(path, &copy).map_err(|e| failed(&e))?;
         // Sound if the library's initialisers are: ours has none, and a peer is a library that the user asked to be run.
-        let library = unsafe { libloading::Library::new(path) }.map_err(|e| format!("{}: {e}", path.display()))?;
-        Ok(Self { library: Arc::new(library) })
+        let library = unsafe { libloading::Library::new(&copy) }.map_err(|e| failed(&e))?;
+        Ok(Self { library: Arc::new(library), _copy: Arc::new(folder) })
     }
 
     fn symbol<T: Copy>(&self, name: &str) -> Option<T> {

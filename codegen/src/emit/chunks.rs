@@ -12,7 +12,7 @@ use super::together::two_at_once;
 use crate::graph::{Graph, NodeId, Op};
 
 /// Statements of a piece.
-const LENGTH: usize = 300;
+const LENGTH: usize = 200;
 
 /// From this many nodes on a function is cut: below, one piece is faster to run and as fast to compile.
 const CUT_FROM: usize = 4500;
