@@ -47,7 +47,7 @@ impl Contender {
     /// What the clock is held to.
     pub(super) fn run<'a>(&'a self, states: &'a [Vec<&'a [f64]>]) -> Run<'a> {
         let mut out = self.room();
-        Box::new(move |rounds| {
+        Run::new(states.len(), move |rounds| {
             let start = Instant::now();
             self.kernel.repeat(rounds, states, black_box(&mut out));
             start.elapsed()

@@ -176,7 +176,7 @@ impl One<'_> {
         let their_slices: Vec<Vec<Vec<&[f64]>>> = theirs.iter().map(|(_, t)| t.slices(random)).collect();
         let mut runs: Vec<Run<'_>> = ours.iter().zip(&slices).map(|((_, c), x)| c.run(x)).collect();
         runs.extend(theirs.iter().zip(&their_slices).map(|((_, t), x)| t.contender.run(x)));
-        timing::interleaved(&mut runs, self.repetitions, random)
+        timing::interleaved(&mut runs, self.repetitions)
     }
 
     fn entry(&self, made: Option<&Made>, name: &str, times: &[f64]) -> Entry {

@@ -82,7 +82,7 @@ impl<'a> Many<'a> {
     /// What the clock is held to: so many rounds through all states.
     pub(super) fn run(&self) -> Run<'_> {
         let mut out = self.out.clone();
-        Box::new(move |rounds| clock(|| self.batch.kernel.repeat(rounds, self.count, &self.arguments, &mut out)))
+        Run::new(self.states, move |rounds| clock(|| self.batch.kernel.repeat(rounds, self.count, &self.arguments, &mut out)))
     }
 
     /// The result in each state.

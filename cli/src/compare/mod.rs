@@ -159,7 +159,7 @@ fn measure(ready: &Prepared, peers: &[Peer], repetitions: usize) -> FunctionRepo
     let mut runs: Vec<timing::Run<'_>> = ours.map(|c| c.run(&arguments)).collect();
     runs.extend(batches.iter().map(Many::run));
     runs.extend(known.iter().zip(&theirs).map(|((_, c), x)| c.run(x)));
-    let times = timing::interleaved(&mut runs, repetitions, arguments.len());
+    let times = timing::interleaved(&mut runs, repetitions);
     drop(runs);
     // Where the robot is singular nobody's result is right.
     let regular = ready.errors.is_none_or(|e| e.states > 0);

@@ -4,8 +4,24 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-/// Runs so many rounds through all states and says how long it took.
-pub(crate) type Run<'a> = Box<dyn FnMut(usize) -> Duration + 'a>;
+/// Somebody who is timed.
+pub(crate) struct Run<'a> {
+    /// How many states a round goes through.
+    states: usize,
+    clocked: Box<dyn FnMut(usize) -> Duration + 'a>,
+}
+
+impl<'a> Run<'a> {
+    /// `clocked` goes so many rounds, each through so many states, and says how long it took.
+    pub(crate) fn new(states: usize, clocked: impl FnMut(usize) -> Duration + 'a) -> Self {
+        Self { states: states.max(1), clocked: Box::new(clocked) }
+    }
+
+    /// How long so many rounds take.
+    pub(crate) fn go(&mut self, rounds: usize) -> Duration {
+        (self.clocked)(rounds)
+    }
+}
 
 /// One batch of one contender takes about this long.
 const BATCH: Duration = Duration::from_micros(400);
@@ -18,8 +34,8 @@ pub(crate) struct Summary {
     pub(crate) upper_quartile: f64,
 }
 
-/// ns per call of each run in each repetition.
-pub(crate) fn interleaved(runs: &mut [Run<'_>], repetitions: usize, states: usize) -> Vec<Vec<f64>> {
+/// ns a state of each run in each repetition.
+pub(crate) fn interleaved(runs: &mut [Run<'_>], repetitions: usize) -> Vec<Vec<f64>> {
     let rounds: Vec<usize> = runs.iter_mut().map(rounds_of_a_batch).collect();
     let mut times = vec![Vec::with_capacity(repetitions); runs.len()];
     for repetition in 0..repetitions {
@@ -27,9 +43,9 @@ pub(crate) fn interleaved(runs: &mut [Run<'_>], repetitions: usize, states: usiz
             // Everybody is first in turn.
             let k = (turn + repetition) % runs.len();
             // What the others have put into the caches is not for this one to pay.
-            runs[k](1);
-            let time = runs[k](rounds[k]);
-            times[k].push(time.as_secs_f64() * 1e9 / (rounds[k] * states.max(1)) as f64);
+            runs[k].go(1);
+            let time = runs[k].go(rounds[k]);
+            times[k].push(time.as_secs_f64() * 1e9 / (rounds[k] * runs[k].states) as f64);
         }
     }
     times
@@ -40,7 +56,7 @@ fn rounds_of_a_batch(run: &mut Run<'_>) -> usize {
     let mut rounds = 1;
     loop {
         // The least of three: a machine with other work to do interrupts.
-        let time = (0..3).map(|_| run(rounds)).min().unwrap_or_default();
+        let time = (0..3).map(|_| run.go(rounds)).min().unwrap_or_default();
         if time * 4 >= BATCH || rounds > 1 << 24 {
             let scale = BATCH.as_secs_f64() / time.as_secs_f64().max(1e-9);
             return ((rounds as f64 * scale) as usize).max(1);
@@ -83,9 +99,9 @@ mod tests {
 
     #[test]
     fn everybody_is_timed_in_every_repetition() {
-        let mut runs: Vec<Run<'_>> =
-            vec![Box::new(|n| Duration::from_micros(10) * n as u32), Box::new(|n| Duration::from_micros(30) * n as u32)];
-        let times = interleaved(&mut runs, 5, 10);
+        let took = |micros: u64| move |n: usize| Duration::from_micros(micros) * n as u32;
+        let mut runs = [Run::new(10, took(10)), Run::new(20, took(60))];
+        let times = interleaved(&mut runs, 5);
         assert_eq!(times.iter().map(Vec::len).collect::<Vec<_>>(), [5, 5]);
         assert!((summary(&ratio_list(&times)).median - 3.0).abs() < 1e-9);
     }

@@ -124,7 +124,7 @@ pub(super) fn time(
         let arguments: Vec<Vec<&[f64]>> = states.iter().map(|s| s.arguments(row).unwrap_or_default()).collect();
         let contenders: Vec<Contender> = compiled.iter().map(|c| Contender::generated(c, row)).collect();
         let mut runs: Vec<Run<'_>> = contenders.iter().map(|c| c.run(&arguments)).collect();
-        let times = timing::interleaved(&mut runs, repetitions, arguments.len());
+        let times = timing::interleaved(&mut runs, repetitions);
         drop(runs);
         cost.without.ns = Some(timing::summary(&times[WITHOUT]));
         for (added, time) in cost.adds.iter_mut().zip(&times[1..]) {

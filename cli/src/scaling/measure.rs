@@ -48,7 +48,7 @@ pub(super) fn measure(
         )));
     }
     let mut runs: Vec<Run<'_>> = contenders.iter().map(|c| c.run(&arguments)).collect();
-    let hot = timing::interleaved(&mut runs, repetitions, arguments.len());
+    let hot = timing::interleaved(&mut runs, repetitions);
     let chilled = chilled(&contenders, &arguments, repetitions, cold);
     let entry = &generated.ledger.functions[0];
     Ok(Point {
@@ -84,7 +84,7 @@ fn chilled(contenders: &[Contender<'_>; 2], arguments: &[Vec<&[f64]>], repetitio
             let k = (turn + repetition) % 2;
             let mut run = contenders[k].run(std::slice::from_ref(&arguments[repetition % arguments.len()]));
             cold.chill();
-            times[k].push(run(1).as_secs_f64() * 1e9);
+            times[k].push(run.go(1).as_secs_f64() * 1e9);
         }
     }
     times

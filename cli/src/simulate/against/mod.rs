@@ -144,7 +144,7 @@ fn timed(runners: &mut [Box<dyn Runner + '_>], target: usize, found: &Found, set
         let (steps, evaluations) = runner.spent();
         let (name, order, own) = (runner.name(), runner.order(), runner.own());
         reached.push(Reached { name, order, own, effort, error, steps, evaluations, ..Reached::default() });
-        runs.push(Box::new(move |rounds| {
+        runs.push(Run::new(1, move |rounds| {
             let clock = Instant::now();
             (0..rounds).for_each(|_| {
                 std::hint::black_box(runner.run(effort));
@@ -152,7 +152,7 @@ fn timed(runners: &mut [Box<dyn Runner + '_>], target: usize, found: &Found, set
             clock.elapsed()
         }));
     }
-    let times = timing::interleaved(&mut runs, REPETITIONS, 1);
+    let times = timing::interleaved(&mut runs, REPETITIONS);
     drop(runs);
     for (r, time) in reached.iter_mut().zip(&times) {
         let fastest = time.iter().copied().fold(f64::INFINITY, f64::min);
