@@ -22,12 +22,13 @@ pub(super) fn is_long(graph: &Graph) -> bool {
     graph.nodes().len() >= CUT_FROM
 }
 
-/// The statements of each piece of `length`, each result put where `places` says, and how many places of `m` they use.
-pub(super) fn cut(graph: &Graph, dialect: &dyn Dialect, places: &[String], length: usize) -> (Vec<String>, usize) {
+/// The statements of each piece of `length`, each result put where `places` says and `zeros` among them, and how many places of `m` they use.
+pub(super) fn cut(graph: &Graph, dialect: &dyn Dialect, places: &[String], zeros: &[String], length: usize) -> (Vec<String>, usize) {
     let units: Vec<Unit> = units(graph, dialect.group()).into_iter().filter(|u| !is_light(graph, u)).collect();
     let pieces = if units.is_empty() { vec![units.as_slice()] } else { units.chunks(length).collect() };
     let plan = Plan::of(graph, pieces);
-    let mut piece = Piece { plan: &plan, graph, dialect, c: 0, named: vec![NOWHERE; graph.nodes().len()] };
+    let zeros = Spread { statements: zeros, units: units.len(), passed: 0 };
+    let mut piece = Piece { plan: &plan, graph, dialect, zeros, c: 0, named: vec![NOWHERE; graph.nodes().len()] };
     let write = |c: usize| {
         let mut out = String::new();
         piece.c = c;
@@ -39,7 +40,8 @@ pub(super) fn cut(graph: &Graph, dialect: &dyn Dialect, places: &[String], lengt
 
 /// The pieces as functions `piece_0`, …, each for the features that the macro around it is given, and `whole`, which calls them.
 pub(super) fn pieces(out: &mut String, graph: &Graph, signature: &Signature, dialect: &dyn Dialect) {
-    let (pieces, slots) = cut(graph, dialect, &signature.places(), LENGTH);
+    let places = signature.places();
+    let (pieces, slots) = cut(graph, dialect, &places, &zeros(graph, signature, dialect, &places), LENGTH);
     let (arguments, names, gives) = (signature.arguments(), signature.names(), signature.filled());
     let (takes, returns) = (signature.takes(), signature.returns());
     let (ty, zero) = dialect.value();
@@ -75,8 +77,15 @@ pub(super) fn gives_much(graph: &Graph) -> bool {
 
 /// The statements of a function in one piece that gives much.
 pub(super) fn one_piece(out: &mut String, graph: &Graph, signature: &Signature, dialect: &dyn Dialect) {
-    let (pieces, _) = cut(graph, dialect, &signature.places(), usize::MAX);
+    let places = signature.places();
+    let (pieces, _) = cut(graph, dialect, &places, &zeros(graph, signature, dialect, &places), usize::MAX);
     pieces.iter().for_each(|piece| *out += &flat(&if dialect.stores_two() { two_at_once(piece) } else { piece.clone() }));
+}
+
+/// The statements that write zeros, where the result may hold anything.
+fn zeros(graph: &Graph, signature: &Signature, dialect: &dyn Dialect, places: &[String]) -> Vec<String> {
+    let written = signature.place == Place::Filled && signature.columns.is_none();
+    if written { super::zeros::statements(graph, dialect, places) } else { Vec::new() }
 }
 
 /// Whether a unit is made again wherever it is needed: inputs, and comparisons, whose values are no numbers.
@@ -158,11 +167,30 @@ fn heavy_needs(graph: &Graph, nodes: Vec<usize>) -> Vec<usize> {
     needs
 }
 
+/// Statements between units, as far apart as there are units for.
+struct Spread<'a> {
+    statements: &'a [String],
+    units: usize,
+    /// Units that are written.
+    passed: usize,
+}
+
+impl Spread<'_> {
+    /// What stands behind the next unit.
+    fn next(&mut self) -> &[String] {
+        let until = |passed: usize| passed * self.statements.len() / self.units.max(1);
+        let behind = &self.statements[until(self.passed)..until(self.passed + 1)];
+        self.passed += 1;
+        behind
+    }
+}
+
 /// The writer of one piece.
 struct Piece<'a> {
     plan: &'a Plan<'a>,
     graph: &'a Graph,
     dialect: &'a dyn Dialect,
+    zeros: Spread<'a>,
     c: usize,
     /// The piece in which each node was given a name last.
     named: Vec<usize>,
@@ -172,6 +200,9 @@ impl Piece<'_> {
     fn write(&mut self, out: &mut String, places: &[String]) {
         // What is made nowhere, inputs and constants, is given by the first piece.
         if self.c == 0 {
+            if self.zeros.units == 0 {
+                *out += &self.zeros.statements.concat();
+            }
             (0..self.plan.made.len()).filter(|&k| self.plan.made[k] == NOWHERE).for_each(|k| self.give(out, k, places));
         }
         for unit in self.plan.pieces[self.c] {
@@ -184,6 +215,7 @@ impl Piece<'_> {
                 }
                 self.give(out, k, places);
             }
+            *out += &self.zeros.next().concat();
         }
     }
 

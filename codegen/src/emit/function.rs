@@ -44,7 +44,7 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
     if signature.place != Place::Value {
         value_form(out, &signature);
         into_form(out, &signature);
-        let _ = writeln!(out, "/// Puts {} into `out`.", if signature.place == Place::Filled { "what is not zero" } else { "the result" });
+        *out += "/// Puts the result into `out`.\n";
     }
     let _ =
         writeln!(out, "#[allow({}clippy::all, clippy::pedantic)]", if context.forbid_unsafe { "" } else { "unsafe_code, unused_unsafe, " });
@@ -97,7 +97,7 @@ fn into_form(out: &mut String, signature: &Signature) {
             let _ = writeln!(out, "    let mut unsolved = columns::Unsolved::new();\n    {name}_fill({names}, &mut unsolved);");
             writeln!(out, "    columns::columns(&mut unsolved, out);\n}}\n")
         }
-        Place::Filled => writeln!(out, "    *out = {};\n    {name}_fill({names}, out);\n}}\n", signature.nothing()),
+        Place::Filled => writeln!(out, "    {name}_fill({names}, out);\n}}\n"),
     };
 }
 

@@ -21,6 +21,7 @@ mod signature;
 mod together;
 mod vector;
 mod warnings;
+mod zeros;
 mod written;
 
 pub use names::identifier;

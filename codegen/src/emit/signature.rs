@@ -52,7 +52,7 @@ pub(super) enum Place {
     Value,
     /// Into what the caller hands in, whole, whatever that holds or if it holds nothing.
     Written,
-    /// Into what the caller hands in, number by number as they are made; it holds zeros.
+    /// Into what the caller hands in, number by number as they are made, whatever that holds; where a loop remains, zeros.
     Filled,
 }
 

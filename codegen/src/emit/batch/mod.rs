@@ -172,7 +172,7 @@ impl<'a> Batch<'a> {
         let name = self.name();
         let block = Block(Vector { graph: self.graph, signature: &self.signature });
         let length = if self.graph.nodes().len() < CUT_FROM { usize::MAX } else { LENGTH };
-        let (pieces, slots) = cut(self.graph, &block, &self.places(), length);
+        let (pieces, slots) = cut(self.graph, &block, &self.places(), &[], length);
         let (ty, zero) = block.value();
         let mut calls = String::new();
         for (c, piece) in pieces.iter().enumerate() {
