@@ -21,8 +21,8 @@ mod signature;
 mod together;
 mod vector;
 mod warnings;
-mod zeros;
 mod written;
+mod zeros;
 
 pub use names::identifier;
 

@@ -24,14 +24,19 @@ struct Run<'a> {
 impl Run<'_> {
     fn statement(&self) -> String {
         let Self { row, start, count } = self;
-        if *count == 1 { format!("    {row}[{start}] = {ZERO};\n") } else { format!("    {row}[{start}..{}].fill({ZERO});\n", start + count) }
+        if *count == 1 {
+            format!("    {row}[{start}] = {ZERO};\n")
+        } else {
+            format!("    {row}[{start}..{}].fill({ZERO});\n", start + count)
+        }
     }
 }
 
 fn runs<'a>(places: impl Iterator<Item = &'a str>) -> Vec<Run<'a>> {
     let mut runs: Vec<Run<'a>> = Vec::new();
     for place in places {
-        let Some((row, column)) = place.strip_suffix(']').and_then(|p| p.rsplit_once('[')).and_then(|(row, k)| Some((row, k.parse().ok()?)))
+        let Some((row, column)) =
+            place.strip_suffix(']').and_then(|p| p.rsplit_once('[')).and_then(|(row, k)| Some((row, k.parse().ok()?)))
         else {
             continue;
         };
