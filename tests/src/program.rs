@@ -100,9 +100,19 @@ impl<T: Numbers, const N: usize> Numbers for [T; N] {
     }
 }
 
+/// A result, and the same written where there were other numbers.
+fn assert_same(y: &impl Numbers, z: &impl Numbers) {
+    let (mut value, mut written) = (Vec::new(), Vec::new());
+    y.add_to(&mut value);
+    z.add_to(&mut written);
+    let same = |(a, b): (&f64, &f64)| a == b || a.is_nan() && b.is_nan();
+    assert!(value.len() == written.len() && value.iter().zip(&written).all(same), \"{value:?} was written as {written:?}\");
+}
+
 #[allow(unused)]
 fn main() {
     let arguments: Vec<String> = std::env::args().collect();
+    let nothing = vec![f64::NAN; 1 << 17];
     let mut bytes = Vec::new();
     std::io::stdin().read_to_end(&mut bytes).unwrap();
     let numbers: Vec<f64> = bytes.chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().unwrap())).collect();
@@ -126,8 +136,15 @@ fn main(robots: &[(&str, &Generated)]) -> String {
     for (robot, generated) in robots {
         for name in generated.ledger.functions.iter().map(|e| &e.function) {
             let row = function::<f64>(name).expect("a function of the registry");
-            let arguments = vec!["&Numbers::take(&mut x)"; row.takes.len()].join(", ");
-            let _ = writeln!(out, "            ({robot:?}, {name:?}) => {robot}::{name}({arguments}).add_to(&mut out),");
+            let names: Vec<String> = (0..row.takes.len()).map(|k| format!("a{k}")).collect();
+            let taken: String = names.iter().map(|a| format!("                let {a} = Numbers::take(&mut x);\n")).collect();
+            let arguments: String = names.iter().map(|a| format!("&{a}, ")).collect();
+            let _ = writeln!(out, "            ({robot:?}, {name:?}) => {{\n{taken}                let y = {robot}::{name}({arguments});");
+            if !row.gives.is_empty() {
+                out += "                let mut z = Numbers::take(&mut &nothing[..]);\n";
+                let _ = writeln!(out, "                {robot}::{name}_into({arguments}&mut z);\n                assert_same(&y, &z);");
+            }
+            out += "                y.add_to(&mut out);\n            }\n";
         }
     }
     out += TAIL;
