@@ -11,38 +11,48 @@ const MOST: usize = 16;
 /// The statements that write the zeros of a result whose numbers have these places.
 pub(super) fn statements(graph: &Graph, dialect: &dyn Dialect, places: &[String]) -> Vec<String> {
     let zeros = places.iter().zip(&graph.outputs).filter(|(_, id)| dialect.number(**id) == ZERO).map(|(place, _)| place.as_str());
-    runs(zeros).into_iter().map(|run| run.statement()).collect()
+    runs(zeros).iter().map(Run::statement).collect()
 }
 
-/// Neighbours in a row.
-struct Run<'a> {
-    row: &'a str,
-    start: usize,
-    count: usize,
+/// Zeros side by side.
+enum Run<'a> {
+    /// So many in a row of an array from a column on.
+    Row { row: &'a str, start: usize, count: usize },
+    /// One that is in no array.
+    Alone(&'a str),
 }
 
-impl Run<'_> {
+impl<'a> Run<'a> {
+    fn of(place: &'a str) -> Self {
+        let element = || {
+            let (row, column) = place.strip_suffix(']')?.rsplit_once('[')?;
+            Some(Self::Row { row, start: column.parse().ok()?, count: 1 })
+        };
+        element().unwrap_or(Self::Alone(place))
+    }
+
+    /// Takes in what stands right behind, if it is not too much then.
+    fn takes(&mut self, next: &Self) -> bool {
+        let (Self::Row { row, start, count }, Self::Row { row: other, start: column, .. }) = (self, next) else { return false };
+        let follows = row == other && *start + *count == *column && *count < MOST;
+        *count += usize::from(follows);
+        follows
+    }
+
     fn statement(&self) -> String {
-        let Self { row, start, count } = self;
-        if *count == 1 {
-            format!("    {row}[{start}] = {ZERO};\n")
-        } else {
-            format!("    {row}[{start}..{}].fill({ZERO});\n", start + count)
+        match self {
+            Self::Row { row, start, count: 1 } => format!("    {row}[{start}] = {ZERO};\n"),
+            Self::Row { row, start, count } => format!("    {row}[{start}..{}].fill({ZERO});\n", start + count),
+            Self::Alone(place) => format!("    {place} = {ZERO};\n"),
         }
     }
 }
 
 fn runs<'a>(places: impl Iterator<Item = &'a str>) -> Vec<Run<'a>> {
     let mut runs: Vec<Run<'a>> = Vec::new();
-    for place in places {
-        let Some((row, column)) =
-            place.strip_suffix(']').and_then(|p| p.rsplit_once('[')).and_then(|(row, k)| Some((row, k.parse().ok()?)))
-        else {
-            continue;
-        };
-        match runs.last_mut() {
-            Some(run) if run.row == row && run.start + run.count == column && run.count < MOST => run.count += 1,
-            _ => runs.push(Run { row, start: column, count: 1 }),
+    for next in places.map(Run::of) {
+        if !runs.last_mut().is_some_and(|run| run.takes(&next)) {
+            runs.push(next);
         }
     }
     runs
@@ -52,13 +62,21 @@ fn runs<'a>(places: impl Iterator<Item = &'a str>) -> Vec<Run<'a>> {
 mod tests {
     use super::*;
 
+    fn text<'a>(places: impl Iterator<Item = &'a str>) -> String {
+        runs(places).iter().map(Run::statement).collect()
+    }
+
     #[test]
-    fn neighbours_go_together_as_long_as_they_are_few() {
-        let places: Vec<String> = [(0, 1), (0, 2), (0, 4), (1, 5)].iter().map(|(i, j)| format!("out[{i}][{j}]")).collect();
-        let text: String = runs(places.iter().map(String::as_str)).iter().map(Run::statement).collect();
-        assert_eq!(text, "    out[0][1..3].fill(0.0);\n    out[0][4] = 0.0;\n    out[1][5] = 0.0;\n");
+    fn neighbours_go_together_and_none_is_left_out() {
+        let places = ["out.m[0][1]", "out.m[0][2]", "out.m[0][4]", "out.m[1][5]", "out.energy", "out.f[6]"];
+        let statements = ["out.m[0][1..3].fill(0.0)", "out.m[0][4] = 0.0", "out.m[1][5] = 0.0", "out.energy = 0.0", "out.f[6] = 0.0"];
+        assert_eq!(text(places.into_iter()), statements.map(|s| format!("    {s};\n")).concat());
+    }
+
+    #[test]
+    fn no_statement_writes_much() {
         let row: Vec<String> = (0..40).map(|j| format!("out[{j}]")).collect();
-        let counts: Vec<usize> = runs(row.iter().map(String::as_str)).iter().map(|run| run.count).collect();
-        assert_eq!(counts, [16, 16, 8]);
+        let written = text(row.iter().map(String::as_str));
+        assert_eq!(written, "    out[0..16].fill(0.0);\n    out[16..32].fill(0.0);\n    out[32..40].fill(0.0);\n");
     }
 }
