@@ -20,7 +20,7 @@ pub(super) trait Dialect {
     /// A result, as a number.
     fn number(&self, id: NodeId) -> String;
 
-    /// The statement that puts a result in its place; nothing for a zero, which is there from the start.
+    /// The statement that puts a result in its place; nothing for a zero, which is there from the start or has statements of its own ([`super::zeros`]).
     fn give(&self, place: &str, id: NodeId) -> Option<String> {
         let value = self.number(id);
         (value != ZERO).then(|| format!("    {place} = {};\n", bare(&value)))
