@@ -253,7 +253,7 @@ pub(crate) struct CompareArguments {
     /// How often each is timed
     #[arg(long, value_name = "N", default_value_t = 61, value_parser = clap::value_parser!(u32).range(31..=100_000))]
     pub(crate) repetitions: u32,
-    /// How many random states they are timed and judged on
+    /// How many random states they are judged on; one call at a time they are timed on the first of them, as many as keep arguments within 16 kB
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) states: u32,
     /// Seed of the random states
