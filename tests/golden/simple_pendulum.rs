@@ -104,7 +104,7 @@ pub fn inverse_dynamics(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV]) -> [f64; NV
     let _ = v;
     let _ = a;
     #[inline(always)]
-    fn body<const FUSED: bool>(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV]) -> [f64; NV] {
+    fn body<F: Fma>(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV]) -> [f64; NV] {
     let _ = q;
     let _ = v;
     let _ = a;
@@ -113,7 +113,7 @@ pub fn inverse_dynamics(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV]) -> [f64; NV
     let x3 = a[0];
     let x6 = 9.81 * x5;
     let x7 = 1.0005 * x3;
-    let x8 = fma::<FUSED>(0.0005, x3, x7);
+    let x8 = F::fma(0.0005, x3, x7);
     let x9 = x6 + x8;
     [x9]
     }
@@ -121,12 +121,12 @@ pub fn inverse_dynamics(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV]) -> [f64; NV
     if ::std::is_x86_feature_detected!("avx2") && ::std::is_x86_feature_detected!("fma") {
         #[target_feature(enable = "avx2,fma")]
         fn fused(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV]) -> [f64; NV] {
-            body::<true>(q, v, a)
+            body::<MultiplyAdd<true>>(q, v, a)
         }
         // SAFETY: the processor was just asked for both.
         return unsafe { fused(q, v, a) };
     }
-    body::<FUSED>(q, v, a)
+    body::<MultiplyAdd<FUSED>>(q, v, a)
 }
 
 /// As [`inverse_dynamics`], into `out`, whatever that holds.
@@ -138,12 +138,30 @@ pub fn inverse_dynamics_into(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV], out: &
 /// Whether this is compiled for a processor on which a·b + c is one instruction.
 const FUSED: bool = ::core::cfg!(any(all(target_arch = "x86_64", target_feature = "avx2", target_feature = "fma"), target_arch = "aarch64"));
 
-/// a·b + c: one instruction, and one rounding, where the processor has it.
-#[inline(always)]
-#[allow(clippy::all, clippy::pedantic)]
-fn fma<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
-    if FUSED { a.mul_add(b, c) } else { a * b + c }
+/// How a·b + c is computed.
+#[allow(dead_code)]
+trait Fma {
+    const FUSED: bool;
+
+    fn fma(a: f64, b: f64, c: f64) -> f64;
 }
+
+/// In one instruction, and with one rounding, or in two.
+struct MultiplyAdd<const FUSED: bool>;
+
+#[allow(clippy::all, clippy::pedantic)]
+impl<const FUSED: bool> Fma for MultiplyAdd<FUSED> {
+    const FUSED: bool = FUSED;
+
+    #[inline(always)]
+    fn fma(a: f64, b: f64, c: f64) -> f64 {
+        if FUSED { a.mul_add(b, c) } else { a * b + c }
+    }
+}
+
+/// Unless a function says otherwise.
+#[allow(dead_code)]
+type F = MultiplyAdd<FUSED>;
 
 /// The robot as a value, for code over the trait `Dynamics`.
 #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::default::Default)]

@@ -79,7 +79,9 @@ pub(super) fn gives_much(graph: &Graph) -> bool {
 pub(super) fn one_piece(out: &mut String, graph: &Graph, signature: &Signature, dialect: &dyn Dialect) {
     let places = signature.places();
     let (pieces, _) = cut(graph, dialect, &places, &zeros(graph, signature, dialect, &places), usize::MAX);
-    pieces.iter().for_each(|piece| *out += &flat(&if dialect.stores_two() { two_at_once(piece) } else { piece.clone() }));
+    pieces
+        .iter()
+        .for_each(|piece| *out += &flat(&if dialect.stores_two() { two_at_once(piece) } else { piece.clone() }, dialect.value().0));
 }
 
 /// The statements that write zeros, where the result may hold anything.

@@ -108,5 +108,5 @@ fn inner(graph: &Graph) -> Vec<bool> {
 /// All statements.
 pub(super) fn statements(out: &mut String, graph: &Graph, dialect: &dyn Dialect) {
     let lines = units(graph, dialect.group()).into_iter().filter_map(|unit| unit.written(graph, dialect));
-    *out += &flat(&lines.collect::<String>());
+    *out += &flat(&lines.collect::<String>(), dialect.value().0);
 }

@@ -118,7 +118,9 @@ pub(super) fn needs_choice(graph: &Graph, level: Level) -> bool {
 /// Plain arithmetic, with fused multiply-add where the processor has it: compiled for it, or found to be so.
 fn chosen(out: &mut String, graph: &Graph, signature: &Signature, level: Level) {
     let (takes, names, returns) = (signature.takes(), signature.handed(), signature.returns());
-    let _ = writeln!(out, "    #[inline(always)]\n    fn body<const FUSED: bool>({takes}){returns} {{");
+    let (generic, own, fused) =
+        if level.of_two() { ("const FUSED: bool", "FUSED", "true") } else { ("F: Fma", "MultiplyAdd<FUSED>", "MultiplyAdd<true>") };
+    let _ = writeln!(out, "    #[inline(always)]\n    fn body<{generic}>({takes}){returns} {{");
     for input in &signature.inputs {
         let _ = writeln!(out, "    let _ = {};", input.name);
     }
@@ -127,10 +129,10 @@ fn chosen(out: &mut String, graph: &Graph, signature: &Signature, level: Level) 
     let _ = writeln!(out, "    if {} {{", sets::HAS_AVX2);
     let _ = writeln!(
         out,
-        "        #[target_feature(enable = \"avx2,fma\")]\n        fn fused({takes}){returns} {{\n            body::<true>({names})\n        }}"
+        "        #[target_feature(enable = \"avx2,fma\")]\n        fn fused({takes}){returns} {{\n            body::<{fused}>({names})\n        }}"
     );
     let _ = writeln!(out, "        // SAFETY: the processor was just asked for both.\n        return unsafe {{ fused({names}) }};\n    }}");
-    let _ = writeln!(out, "    body::<FUSED>({names})");
+    let _ = writeln!(out, "    body::<{own}>({names})");
 }
 
 /// The body as a macro: it is compiled for several instruction sets.
@@ -157,7 +159,8 @@ fn long_calls(out: &mut String, signature: &Signature, context: Context) {
     levels::imports(out, context.level);
     if context.chooses() {
         let _ = writeln!(out, "    {}\n    if {} {{", sets::NOT_COMPILED_FOR_AVX2, sets::HAS_AVX2);
-        let _ = writeln!(out, "        const FUSED: bool = true;\n        {name}_body!(#[target_feature(enable = \"avx2,fma\")]);");
+        let fused = if context.level.of_two() { "const FUSED: bool = true" } else { "type F = MultiplyAdd<true>" };
+        let _ = writeln!(out, "        {fused};\n        {name}_body!(#[target_feature(enable = \"avx2,fma\")]);");
         let _ =
             writeln!(out, "        // SAFETY: the processor was just asked for both.\n        return unsafe {{ whole({names}) }};\n    }}");
     }

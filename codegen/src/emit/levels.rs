@@ -87,9 +87,9 @@ const CORRECT: &str = "\
 mod trig {
     /// [sin x, cos x] of four angles, rad: the nearest there are.
     #[inline(always)]
-    pub(super) fn four<const FUSED: bool>(a: f64, b: f64, c: f64, d: f64) -> [[f64; 4]; 2] {
+    pub(super) fn four<F: super::Fma>(a: f64, b: f64, c: f64, d: f64) -> [[f64; 4]; 2] {
         use super::level::NAME as one;
-        let [(a, e), (b, f), (c, g), (d, h)] = [one::<FUSED>(a), one::<FUSED>(b), one::<FUSED>(c), one::<FUSED>(d)];
+        let [(a, e), (b, f), (c, g), (d, h)] = [a, b, c, d].map(|x| if F::FUSED { one::<true>(x) } else { one::<false>(x) });
         [[a, b, c, d], [e, f, g, h]]
     }
 }
@@ -101,8 +101,8 @@ const SINGLE: &str = "\
 mod trig {
     /// [sin x, cos x] of four angles, rad, by those of `f64`.
     #[inline(always)]
-    pub(super) fn four<const FUSED: bool>(a: f32, b: f32, c: f32, d: f32) -> [[f32; 4]; 2] {
-        let [[a, b, c, d], [e, f, g, h]] = super::trig_of_f64::four::<FUSED>(a as f64, b as f64, c as f64, d as f64);
+    pub(super) fn four<F: super::Fma>(a: f32, b: f32, c: f32, d: f32) -> [[f32; 4]; 2] {
+        let [[a, b, c, d], [e, f, g, h]] = super::trig_of_f64::four::<F>(a as f64, b as f64, c as f64, d as f64);
         [[a as f32, b as f32, c as f32, d as f32], [e as f32, f as f32, g as f32, h as f32]]
     }
 }

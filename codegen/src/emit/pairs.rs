@@ -74,7 +74,7 @@ impl Pairs<'_> {
         };
         let named = |letter: &str| padded(group.iter().map(|a| format!("{letter}{}", a.angle.0)).collect(), "_");
         let angles = padded(group.iter().map(|a| format!("{}.0", self.operand(a.angle))).collect(), "0.0");
-        let _ = writeln!(out, "    let [[{}], [{}]] = trig::four::<FUSED>({angles});", named("s"), named("c"));
+        let _ = writeln!(out, "    let [[{}], [{}]] = trig::four::<MultiplyAdd<FUSED>>({angles});", named("s"), named("c"));
         for a in group {
             let (angle, k) = (self.operand(a.angle), a.angle.0);
             let _ = writeln!(out, "    let ({}, {}) = turned::<FUSED>({angle}, s{k}, c{k});", name(a.sin), name(a.cos));

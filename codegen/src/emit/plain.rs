@@ -71,7 +71,7 @@ impl Dialect for Plain<'_> {
         let sines = padded(group.iter().map(|a| name(a.sin)).collect(), "_");
         let cosines = padded(group.iter().map(|a| name(a.cos)).collect(), "_");
         let angles = padded(group.iter().map(|a| self.operand(a.angle)).collect(), "0.0");
-        let _ = writeln!(out, "    let [[{sines}], [{cosines}]] = trig::four::<FUSED>({angles});");
+        let _ = writeln!(out, "    let [[{sines}], [{cosines}]] = trig::four::<F>({angles});");
         out
     }
 

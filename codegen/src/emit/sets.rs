@@ -30,8 +30,6 @@ pub(super) fn support(out: &mut String, programs: &[Program], forbid_unsafe: boo
     let plain = || programs.iter().filter(|p| !in_lanes(&p.graph));
     if plain().any(|p| needs_choice(&p.graph, level)) {
         *out += if level.fused { FUSED } else { NOT_FUSED };
-    }
-    if plain().any(|p| p.graph.counts().fused() > 0) && !level.of_two() {
         *out += &FMA.replace("f64", levels::computed(level));
     }
     let any = plain().any(|p| plain::has_batch(&p.graph, level));
@@ -93,13 +91,32 @@ const FUSED: bool = false;
 
 ";
 
+/// A trait, so that compilers know late what `F::fma` is: where they know early, they inline each call before they optimise, and take longer.
 const FMA: &str = "\
-/// a·b + c: one instruction, and one rounding, where the processor has it.
-#[inline(always)]
-#[allow(clippy::all, clippy::pedantic)]
-fn fma<const FUSED: bool>(a: f64, b: f64, c: f64) -> f64 {
-    if FUSED { a.mul_add(b, c) } else { a * b + c }
+/// How a·b + c is computed.
+#[allow(dead_code)]
+trait Fma {
+    const FUSED: bool;
+
+    fn fma(a: f64, b: f64, c: f64) -> f64;
 }
+
+/// In one instruction, and with one rounding, or in two.
+struct MultiplyAdd<const FUSED: bool>;
+
+#[allow(clippy::all, clippy::pedantic)]
+impl<const FUSED: bool> Fma for MultiplyAdd<FUSED> {
+    const FUSED: bool = FUSED;
+
+    #[inline(always)]
+    fn fma(a: f64, b: f64, c: f64) -> f64 {
+        if FUSED { a.mul_add(b, c) } else { a * b + c }
+    }
+}
+
+/// Unless a function says otherwise.
+#[allow(dead_code)]
+type F = MultiplyAdd<FUSED>;
 
 ";
 
@@ -108,9 +125,9 @@ const SINES: &str = "\
 mod trig {
     /// [sin x, cos x] of four angles, rad. Error at most 1 ulp.
     #[inline(always)]
-    pub(super) fn four<const FUSED: bool>(a: f64, b: f64, c: f64, d: f64) -> [[f64; 4]; 2] {
+    pub(super) fn four<F: super::Fma>(a: f64, b: f64, c: f64, d: f64) -> [[f64; 4]; 2] {
         #[cfg(target_arch = \"x86_64\")]
-        if FUSED {
+        if F::FUSED {
             use super::avx2_f64x4::{array, lanes, sin_cos};
             #[inline]
             #[target_feature(enable = \"avx2,fma\")]
@@ -133,7 +150,7 @@ const PORTABLE_SINES: &str = "\
 mod trig {
     /// [sin x, cos x] of four angles, rad. Error at most 1 ulp.
     #[inline(always)]
-    pub(super) fn four<const FUSED: bool>(a: f64, b: f64, c: f64, d: f64) -> [[f64; 4]; 2] {
+    pub(super) fn four<F: super::Fma>(a: f64, b: f64, c: f64, d: f64) -> [[f64; 4]; 2] {
         let (sin, cos) = super::portable_f64x4::sin_cos([a, b, c, d]);
         [sin, cos]
     }

@@ -25,7 +25,7 @@ pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
         from += length;
     }
     *out += vector.beginning();
-    *out += &flat(&Writer::of(&vector, &all).statements());
+    *out += &flat(&Writer::of(&vector, &all).statements(), vector.value().0);
 }
 
 /// The statements, and what is written between them.

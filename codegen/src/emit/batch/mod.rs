@@ -181,7 +181,7 @@ impl<'a> Batch<'a> {
                 out,
                 "    fn {name}_piece_{c}({declared}part: usize, m: &mut [{ty}; {slots}]) {{\n{}{piece}    }}\n",
                 block.beginning(),
-                piece = flat(piece)
+                piece = flat(piece, ty)
             );
             let _ = writeln!(calls, "        {name}_piece_{c}({names}part, &mut m);");
         }
