@@ -77,8 +77,12 @@ pub(crate) fn trace_in_lanes(wanted: &Wanted, choices: &[Choice], model: &Model<
 
 /// The model after the passes that are chosen.
 fn passed<S: Scalar>(part: &Part, choice: &Choice, model: &Model<S>) -> Model<S> {
+    let mut model = model.clone();
+    if !part.function.asks_for_frames() {
+        model.frames.clear();
+    }
     let passes = model_passes::<S>().iter().take(if part.function.regrouped { choice.passes } else { 0 });
-    passes.fold(model.clone(), |model, (_, pass, _)| pass(model))
+    passes.fold(model, |model, (_, pass, _)| pass(model))
 }
 
 fn run(part: &Part, way: &Way<Sym>, model: &Model<Sym>, arguments: &[Argument]) -> Vec<Sym> {

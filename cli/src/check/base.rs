@@ -3,7 +3,7 @@
 use articulated_core::algorithm::{Argument, Workspace, inverse_dynamics};
 use articulated_core::joint::Joint;
 use articulated_core::model::Model;
-use articulated_core::model::pass::model_passes;
+use articulated_core::model::pass::{model_passes, still};
 use articulated_core::spatial::{Placement, SpatialInertia};
 use serde::Serialize;
 
@@ -36,6 +36,8 @@ pub(super) struct BaseRow {
     pub(super) slid: [f64; 3],
     /// rad, by which it was turned about the joint.
     pub(super) turned: f64,
+    /// Whether the body is the same from all sides, so that no torque depends on the joint's angle.
+    pub(super) round: bool,
     /// What is left to the body; the rest is its parent's.
     pub(super) parameters: Vec<Parameter>,
 }
@@ -110,7 +112,10 @@ impl Base {
             return None;
         }
         let passed = model_passes::<f64>().iter().fold(read.clone(), |model, (_, pass, _)| pass(model));
-        let mut joints: Vec<BaseRow> = passed.inward().map(|i| row(i, read, &passed)).collect();
+        let without_frames = Model { frames: Vec::new(), ..passed.clone() };
+        let stilled = still(without_frames);
+        let round = |i: usize| stilled.bodies[i].coordinates.turns == 0.0;
+        let mut joints: Vec<BaseRow> = passed.inward().map(|i| row(i, read, &passed, round(i))).collect();
         let columns = columns(&passed);
         let felt = felt(&columns);
         joints.iter_mut().flat_map(|j| &mut j.parameters).zip(&felt).for_each(|(p, felt)| p.felt = *felt);
@@ -124,7 +129,7 @@ impl Base {
     }
 }
 
-fn row(i: usize, read: &Model<f64>, passed: &Model<f64>) -> BaseRow {
+fn row(i: usize, read: &Model<f64>, passed: &Model<f64>, round: bool) -> BaseRow {
     let body = &passed.bodies[i];
     let ten = body.inertia.parameters();
     let value = |(name, _): &Unit| match *name {
@@ -140,7 +145,7 @@ fn row(i: usize, read: &Model<f64>, passed: &Model<f64>) -> BaseRow {
         Placement { rotation, position: before.position - rotation * after.position }
     });
     let turned = moved.rotation.m21.atan2(moved.rotation.m11);
-    BaseRow { joint: body.name.clone(), slid: tidy(moved.position.into()), turned: tidy([turned])[0], parameters }
+    BaseRow { joint: body.name.clone(), slid: tidy(moved.position.into()), turned: tidy([turned])[0], round, parameters }
 }
 
 /// Without rounding errors where frames stayed.
@@ -217,6 +222,12 @@ mod tests {
         let alone: Vec<&str> = first.parameters.iter().filter(|p| p.felt == Felt::Alone).map(|p| p.name).collect();
         assert_eq!((first.joint.as_str(), alone.as_slice()), ("joint_1", ["I_zz"].as_slice()));
         assert!(panda.joints.iter().any(|j| j.slid != [0.0; 3]));
+    }
+
+    #[test]
+    fn the_last_link_of_an_arm_is_round_and_no_other() {
+        let round: Vec<String> = base("ur5_like").joints.into_iter().filter(|j| j.round).map(|j| j.joint).collect();
+        assert_eq!(round, ["wrist_3_joint"]);
     }
 
     /// A floating base feels everything that regrouping leaves.

@@ -155,7 +155,8 @@ fn felt(row: &BaseRow) -> String {
         Felt::WithOthers => Some(format!("({} {})", p.name, number(p.value))),
     };
     let all: Vec<String> = row.parameters.iter().filter_map(one).collect();
-    if all.is_empty() { "–".into() } else { all.join("  ") }
+    let all = if all.is_empty() { "–".into() } else { all.join("  ") };
+    if row.round { all + "  (round: its angle plays no part)" } else { all }
 }
 
 /// `3`, `0..7`, or a dash.

@@ -54,6 +54,15 @@ articulated::robot! {
 }
 
 articulated::robot! {
+    /// Four wheels in lanes, of which three are round.
+    mod rover {
+        urdf = "robots/rover.urdf",
+        base = floating,
+        functions = [inverse_dynamics, mass_matrix, inverse_dynamics_derivatives],
+    }
+}
+
+articulated::robot! {
     /// Many states at once: vectors, matrices, and several results in one.
     mod many {
         urdf = "robots/arm.urdf",
@@ -209,6 +218,41 @@ fn limbs_in_lanes_give_what_each_gives_for_itself() {
         let sines = q.map(|q| [q.sin(), q.cos()]);
         same(&in_lanes::quick(&q, &v, &a, &sines), &one_by_one::inverse_dynamics(&q, &v, &a));
     }
+}
+
+/// A wheel that is out of balance stands somewhere; the three beside it in the same vectors do not care.
+#[test]
+fn one_wheel_of_four_may_be_out_of_balance() {
+    const URDF: &str = include_str!("../../robots/rover.urdf");
+    let model = Model::new(&read(URDF), Base::Floating).unwrap();
+    for state in 0..10 {
+        let mut q: [f64; rover::NQ] = std::array::from_fn(|k| number(k + 31 * state));
+        let size = q[3..7].iter().map(|x| x * x).sum::<f64>().sqrt();
+        q[3..7].iter_mut().for_each(|x| *x /= size);
+        let [v, a]: [[f64; rover::NV]; 2] = [7, 11].map(|m| std::array::from_fn(|k| number(m * k + state + 3)));
+        let generic = |id: FunctionId, arguments: &[&[f64]]| {
+            let mut out = vec![0.0; id.row::<f64>().len(model.shape())];
+            id.row().call(&model, &mut Workspace::new(&model), arguments, &mut out).unwrap();
+            out
+        };
+        same(&rover::inverse_dynamics(&q, &v, &a), &generic(FunctionId::inverse_dynamics, &[&q, &v, &a]));
+        same(rover::mass_matrix(&q).as_flattened(), &generic(FunctionId::mass_matrix, &[&q]));
+        let found = rover::inverse_dynamics_derivatives(&q, &v, &a);
+        same(found.as_flattened().as_flattened(), &generic(FunctionId::inverse_dynamics_derivatives, &[&q, &v, &a]));
+        // ∂τ/∂q of the wheels that are round: nothing but rounding.
+        let column = |wheel: usize| found[0].map(|row| row[wheel]);
+        let round = [rover::v_index::FL_ROLL, rover::v_index::FR_ROLL, rover::v_index::HL_ROLL, rover::v_index::HR_ROLL]
+            .map(|k| column(k).iter().all(|x| x.abs() < 1e-15));
+        assert_eq!(round, [true, true, false, true]);
+    }
+    let sines = |urdf: &str| {
+        let mut request = Request::new("rover.urdf", urdf);
+        (request.options.base, request.options.functions) = (Base::Floating, vec!["inverse_dynamics".into()]);
+        let entry = &generate(&request).unwrap().ledger.functions[0];
+        (entry.lanes, entry.emitted().trigonometric())
+    };
+    let balanced = URDF.replace("0.011 0 0", "0 0 0");
+    assert_eq!([sines(URDF), sines(&balanced)], [(4, 4), (4, 2)]);
 }
 
 #[test]

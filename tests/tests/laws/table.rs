@@ -4,9 +4,10 @@
 use articulated_cli::precise::Big;
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Argument, Function, FunctionId, Needs, Workspace, functions};
+use articulated_core::joint::Joint;
 use articulated_core::model::Model;
 use articulated_core::model::pass::model_passes;
-use articulated_core::spatial::Reference;
+use articulated_core::spatial::{Matrix3, Reference, SpatialInertia, Vector3};
 use articulated_tests::case::{Case, State, cast, for_each_tree};
 use articulated_tests::random_tree::Flavour;
 
@@ -111,4 +112,39 @@ fn model_passes_change_no_function_that_allows_them() {
             });
         });
     });
+}
+
+/// A robot's last bodies made round, and nobody asking for its frames: they stop turning, which changes nothing.
+#[test]
+fn round_bodies_need_not_turn() {
+    let seen = std::cell::Cell::new(0);
+    for_each_tree(12, SMALL, |case, random| {
+        let state = case.state(random);
+        let mut model = case.model.clone();
+        let last =
+            |model: &Model, i: usize| model.outward().all(|k| model.bodies[k].parent != i) && model.bodies[i].joint == Joint::Revolute;
+        let round: Vec<usize> = model.outward().filter(|&i| last(&model, i)).collect();
+        for &i in &round {
+            let SpatialInertia { first, second, .. } = &mut model.bodies[i].inertia;
+            (first.x, first.y) = (0.0, 0.0);
+            *second = Matrix3::from_diagonal(&Vector3::new(second.m11, second.m11, second.m33));
+        }
+        model.frames.clear();
+        seen.set(seen.get() + round.len());
+        Big::scope(|| {
+            let model = model.cast::<Big>();
+            let passed = model_passes::<Big>().iter().fold(model.clone(), |m, (_, pass, _)| pass(m));
+            let stopped: Vec<usize> = passed.outward().filter(|&i| passed.bodies[i].coordinates.turns.to_f64() == 0.0).collect();
+            assert_eq!(stopped, round);
+            each(case, &model, &state, |row, given| {
+                if row.regrouped && !row.asks_for_frames() {
+                    for k in (0..row.ways.len()).filter(|&k| (row.ways[k].applies)(&model)) {
+                        let off = difference(&run(row, k, &passed, given), &run(row, k, &model, given));
+                        assert!(off <= near(row), "{} {}: off by {off:e}", row.name, row.ways[k].name);
+                    }
+                }
+            });
+        });
+    });
+    assert!(seen.get() > 10, "only {} round bodies", seen.get());
 }

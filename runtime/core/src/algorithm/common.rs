@@ -2,7 +2,8 @@
 //!
 //! All bodies of a tree are expressed in the same axes, each about its own origin: to carry a wrench from body to body takes a cross product and no
 //! rotation, and no moment is ever taken about a far point, where it would cancel. The axes are those of the base frame, or ([`Axes::Tree`]) those of the body
-//! in the middle of the tree: the fewer joints lie between, the more zeros there are. Dynamics do not depend on how fast the base moves either: where a tree
+//! in the middle of the tree: the fewer joints lie between, the more zeros there are. Or those of its first body, where gravity is constant if its joint stands
+//! upright, and the axes of joints that are parallel to the next one are too. Dynamics do not depend on how fast the base moves either: where a tree
 //! hangs on a floating joint, its inertial frame moves with that joint's body.
 
 use super::Workspace;
@@ -17,7 +18,7 @@ use crate::{Scalar, with_pose};
 pub(super) enum Axes {
     /// Those of the base frame.
     Base,
-    /// For each tree, those of the body in its middle.
+    /// For each tree, those of the body in its center ([`Workspace::centers`]).
     Tree,
 }
 
@@ -29,14 +30,14 @@ pub(super) fn positions<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes
         ws.common[i].base = Matrix3::identity();
     }
     if axes == Axes::Tree {
-        from_the_middle(model, ws);
+        from_the_center(model, ws);
     }
     for i in model.outward() {
         let (body, Some(pose)) = (&model.bodies[i], ws.bodies[i].pose) else { continue };
         let parent = if body.parent == 0 { CommonState { rotation: ws.common[i].base, ..ws.common[0] } } else { ws.common[body.parent] };
         with_pose!(pose, p => {
             let state = &mut ws.common[i];
-            if axes == Axes::Base || !ws.inside[i] {
+            if axes == Axes::Base || !ws.centers.inside[i] {
                 state.rotation = turned(body, &p, &parent.rotation);
             }
             state.shift = rotate(&parent.rotation, p.origin(&body.placement));
@@ -49,11 +50,11 @@ pub(super) fn positions<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes
     }
 }
 
-/// Rotations of the bodies between the middle of each tree and the base, and the base's as its first body has it.
-fn from_the_middle<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
-    for &middle in &ws.middles {
-        ws.common[middle].rotation = Matrix3::identity();
-        let mut i = middle;
+/// Rotations of the bodies between the center of each tree and the base, and the base's as its first body has it.
+fn from_the_center<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
+    for &center in &ws.centers.bodies {
+        ws.common[center].rotation = Matrix3::identity();
+        let mut i = center;
         while let (true, Some(pose)) = (i != 0, ws.bodies[i].pose) {
             let body = &model.bodies[i];
             // R_λ = R_i X_iᵀ

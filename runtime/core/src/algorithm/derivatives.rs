@@ -296,13 +296,20 @@ impl<S: Scalar> Matrices<'_, S> {
         let twice_b = |omega: Vector3<S>| state.coriolis.wrench(omega * two);
         let held = state.inertia.apply(&column.axis);
         let turning = state.coriolis.transposed(&column.axis.times(two));
-        let by_q = twice_b(column.drift.angular) + state.inertia.apply(&column.curl) + column.axis.cross_wrench(&state.force);
+        // A round body is the same however it stands.
+        let round = model.bodies[i].coordinates.turns.is_zero();
+        let by_q = match round {
+            true => Wrench::zero(),
+            false => twice_b(column.drift.angular) + state.inertia.apply(&column.curl) + column.axis.cross_wrench(&state.force),
+        };
         let by_v = twice_b(column.axis.angular) + state.inertia.apply(&(column.drift + column.rate));
         pairs(model, ws, i, [held, by_q, by_v], |own, [held, by_q, by_v], other| {
             let (row, transposed) = (column.at * n + other.at, other.at * n + column.at);
             let inertia = held.power(&other.axis);
             self.by_a[row] += inertia;
-            self.by_q[row] += turning.dot(&other.drift.angular) + held.power(&other.curl);
+            if !(own && round) {
+                self.by_q[row] += turning.dot(&other.drift.angular) + held.power(&other.curl);
+            }
             self.by_v[row] += turning.dot(&other.axis.angular) + held.power(&(other.drift + other.rate));
             if !own {
                 self.by_a[transposed] += inertia;

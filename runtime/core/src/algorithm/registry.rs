@@ -242,6 +242,12 @@ impl<S: Scalar> Function<S> {
         matches!(self.needs, Needs::MassMatrix | Needs::FreeFrames)
     }
 
+    /// Whether it takes something or gives something for each frame.
+    pub fn asks_for_frames(&self) -> bool {
+        let of_frames = |dims: &[Dim]| dims.contains(&Dim::Frames);
+        of_frames(self.gives) || self.takes.iter().any(|a| of_frames(a.dims()))
+    }
+
     /// How many numbers it gives.
     pub fn len(&self, shape: Shape) -> usize {
         size(self.gives, shape)

@@ -6,7 +6,7 @@
 //! name(arguments) -> [dimensions] "units", needs, regrouped?, "what it is", "algorithm and source";
 //! ```
 //!
-//! with `by` and a list of ways where there is more than one, and `columns` where there is a part of it before M X = B is solved.
+//! with `by` and a list of ways where there is more than one (its name, where it can be had, its least cost, its algorithm, and in whose axes if not the usual), and `columns` where there is a part of it before M X = B is solved.
 
 use core::marker::PhantomData;
 
@@ -73,7 +73,8 @@ macro_rules! for_each_function {
                 "M(q)", "CRBA; Featherstone 2008, Table 6.2";
             coriolis_matrix(q, v) -> [Nv, Nv] "N·m·s|N·s", Nothing, true,
                 "C(q, v) with C v + g = h, and Ṁ − 2C skew: that of the Christoffel symbols",
-                "Echeandia & Wensing, J. Comput. Nonlinear Dyn. 16, 2021";
+                "Echeandia & Wensing, J. Comput. Nonlinear Dyn. 16, 2021",
+                by ["", always, nothing, coriolis_matrix; "the axes of the first body", near_the_middle, nothing, coriolis_matrix in axes_of_first_bodies];
             forward_dynamics(q, v, tau) -> [Nv] "rad/s²|m/s²", MassMatrix, true,
                 "a = M(q)⁻¹·(τ − h(q, v))", "ABA, or RNEA, CRBA and M = Lᵀ D L; Featherstone 2008, Table 7.1 and §6.5",
                 by ["ABA", untied, nothing, articulated_body; "LTDL", always, factorization, forward_dynamics];
@@ -106,21 +107,26 @@ macro_rules! for_each_function {
                 "d/dt of centroidal_momentum = A a + Ȧ v", "Newton and Euler; Orin, Goswami & Lee, Auton. Robots 35, 2013";
             inverse_dynamics_derivatives(q, v, a) -> [Of(3), Nv, Nv] "∂τ/∂q, ∂τ/∂v, ∂τ/∂a = M; rows τ", Nothing, true,
                 "first derivatives of inverse_dynamics; q in the tangent space",
-                "Singh, Russell & Wensing, IEEE RA-L 7, 2022; Carpentier & Mansard, RSS 2018";
+                "Singh, Russell & Wensing, IEEE RA-L 7, 2022; Carpentier & Mansard, RSS 2018",
+                by ["", always, nothing, inverse_dynamics_derivatives; "the axes of the first body", near_the_middle, nothing, inverse_dynamics_derivatives in axes_of_first_bodies];
             inverse_dynamics_derivatives_with_wrenches(q, v, a, wrenches) -> [Of(3), Nv, Nv]
                 "∂τ/∂q, ∂τ/∂v, ∂τ/∂a = M; rows τ", Nothing, true,
                 "first derivatives of inverse_dynamics_with_wrenches; q in the tangent space, wrenches constant in their reference",
-                "Singh, Russell & Wensing, IEEE RA-L 7, 2022";
+                "Singh, Russell & Wensing, IEEE RA-L 7, 2022",
+                by ["", always, nothing, inverse_dynamics_derivatives_with_wrenches; "the axes of the first body", near_the_middle, nothing, inverse_dynamics_derivatives_with_wrenches in axes_of_first_bodies];
             forward_dynamics_derivatives(q, v, tau) -> [Of(3), Nv, Nv] "∂a/∂q, ∂a/∂v, ∂a/∂τ = M⁻¹; rows a", MassMatrix, true,
                 "first derivatives of forward_dynamics; q in the tangent space",
-                "−M⁻¹ ∂(inverse dynamics); Carpentier & Mansard, RSS 2018", columns unsolved_derivatives;
+                "−M⁻¹ ∂(inverse dynamics); Carpentier & Mansard, RSS 2018",
+                by ["", always, nothing, forward_dynamics_derivatives; "the axes of the first body", near_the_middle, nothing, forward_dynamics_derivatives in axes_of_first_bodies], columns unsolved_derivatives;
             forward_dynamics_derivatives_with_wrenches(q, v, tau, wrenches) -> [Of(3), Nv, Nv]
                 "∂a/∂q, ∂a/∂v, ∂a/∂τ = M⁻¹; rows a", MassMatrix, true,
                 "first derivatives of forward_dynamics_with_wrenches; q in the tangent space, wrenches constant in their reference",
-                "−M⁻¹ ∂(inverse dynamics); Carpentier & Mansard, RSS 2018", columns unsolved_derivatives_with_wrenches;
+                "−M⁻¹ ∂(inverse dynamics); Carpentier & Mansard, RSS 2018",
+                by ["", always, nothing, forward_dynamics_derivatives_with_wrenches; "the axes of the first body", near_the_middle, nothing, forward_dynamics_derivatives_with_wrenches in axes_of_first_bodies], columns unsolved_derivatives_with_wrenches;
             static_torque_derivative(q, wrenches) -> [Nv, Nv] "N·m|N a unit step, rows τ", Nothing, true,
                 "∂(static_torque)/∂q in the tangent space, wrenches constant in their reference",
-                "Singh, Russell & Wensing, IEEE RA-L 7, 2022";
+                "Singh, Russell & Wensing, IEEE RA-L 7, 2022",
+                by ["", always, nothing, static_torque_derivative; "the axes of the first body", near_the_middle, nothing, static_torque_derivative in axes_of_first_bodies];
             torque_regressor(q, v, a) -> [Nv, Links, Of(10)] "per m, m c, I_xx I_xy I_xz I_yy I_yz I_zz about the link's origin",
                 Nothing, false,
                 "Y with inverse_dynamics = Y π, π the inertial parameters of the moving links in their axes",
@@ -188,8 +194,20 @@ macro_rules! ways {
     ($name:ident, $arguments:tt) => {
         &[ways!(one "", always, nothing, $name, $arguments)]
     };
-    ($name:ident, $arguments:tt, [$($way:literal, $applies:ident, $least:ident, $run:ident);+]) => {
-        &[$(ways!(one $way, $applies, $least, $run, $arguments)),+]
+    ($name:ident, $arguments:tt, [$($way:literal, $applies:ident, $least:ident, $run:ident $(in $axes:ident)?);+]) => {
+        &[$(ways!(one $way, $applies, $least, $run, $arguments $(, in $axes)?)),+]
+    };
+    (one $way:literal, $applies:ident, $least:ident, $run:ident, ($($argument:ident),*), in $axes:ident) => {
+        Way {
+            name: $way,
+            applies: $applies,
+            least: $least,
+            run: |model, ws, arguments, out| {
+                if let &[$($argument),*] = arguments {
+                    ws.$axes(|ws| $run(model, ws, $($argument,)* out));
+                }
+            },
+        }
     };
     (one $way:literal, $applies:ident, $least:ident, $run:ident, ($($argument:ident),*)) => {
         Way {
@@ -263,6 +281,11 @@ fn always<S>(_: &Model<S>) -> bool {
 
 fn nothing<S>(_: &Model<S>) -> u64 {
     0
+}
+
+/// Whether the axes of first bodies are others than those in the middle, and may be cheaper: where neighbouring axes are parallel, zeros are not where the middle is.
+fn near_the_middle<S: Scalar>(model: &Model<S>) -> bool {
+    super::workspace::near_the_middle(model)
 }
 
 /// Multiplications of M = Lᵀ D L.

@@ -33,10 +33,10 @@ pub struct Workspace<S> {
     pub(super) columns: Vec<Column<S>>,
     /// First column of each body, and the number of all.
     first: Vec<usize>,
-    /// The body in the middle of each tree that hangs on the base.
-    pub(super) middles: Vec<usize>,
-    /// Whether a body is in the middle of its tree or between that and the base.
-    pub(super) inside: Vec<bool>,
+    /// The bodies in the middle of their trees.
+    pub(super) centers: Centers,
+    /// The first bodies of all trees.
+    firsts: Centers,
     /// One row of a matrix, `[nv]`.
     pub(super) row: Vec<S>,
     /// For each degree of freedom the next one on the way to the base, as [`below`] gives them.
@@ -87,6 +87,14 @@ pub(super) struct CommonState<S> {
     pub(super) force: Wrench<S>,
 }
 
+/// Bodies whose axes are common to their trees, one for each that hangs on the base.
+#[derive(Clone, Debug)]
+pub(super) struct Centers {
+    pub(super) bodies: Vec<usize>,
+    /// Whether a body is one of them, or between one and the base.
+    pub(super) inside: Vec<bool>,
+}
+
 /// One degree of freedom of a body's joint: its motion subspace in common axes, about the body's origin, per unit of the coordinate that moves it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Column<S> {
@@ -117,11 +125,10 @@ impl<S: Scalar> Workspace<S> {
             columns.extend((0..body.joint.nv()).map(|k| Column::zero(body.coordinates.v + k)));
         }
         first.push(columns.len());
-        let middles = middles(model);
         Self {
             shape: model.shape(),
-            inside: inside(model, &middles),
-            middles,
+            centers: Centers::of(model, middles(model)),
+            firsts: Centers::of(model, firsts(model).collect()),
             bodies: vec![BodyState::zero(); n],
             placements: vec![Placement::identity(); n],
             zeros: vec![S::zero(); nv],
@@ -150,6 +157,13 @@ impl<S: Scalar> Workspace<S> {
     #[inline(always)]
     pub(super) fn columns_of(&self, i: usize) -> Range<usize> {
         self.first[i]..self.first[i + 1]
+    }
+
+    /// Runs `work` with the first bodies of trees for centers.
+    pub(super) fn axes_of_first_bodies(&mut self, work: impl FnOnce(&mut Self)) {
+        core::mem::swap(&mut self.centers, &mut self.firsts);
+        work(self);
+        core::mem::swap(&mut self.centers, &mut self.firsts);
     }
 }
 
@@ -199,19 +213,36 @@ fn middles<S: Scalar>(model: &Model<S>) -> Vec<usize> {
         let next = |i: &usize| (i + 1..model.bodies.len()).find(|k| model.bodies[*k].parent == *i && heavy(k));
         core::iter::successors(Some(root), next).last().unwrap_or(root)
     };
-    model.outward().filter(|&i| model.bodies[i].parent == 0).map(middle).collect()
+    firsts(model).map(middle).collect()
 }
 
-fn inside<S: Scalar>(model: &Model<S>, middles: &[usize]) -> Vec<bool> {
-    let mut inside = vec![false; model.bodies.len()];
-    for &middle in middles {
-        let mut i = middle;
-        while i != 0 {
-            inside[i] = true;
-            i = model.bodies[i].parent;
+/// The bodies that hang on the base.
+fn firsts<S: Scalar>(model: &Model<S>) -> impl Iterator<Item = usize> + '_ {
+    model.outward().filter(|&i| model.bodies[i].parent == 0)
+}
+
+/// How far from its first body the middle of a tree may be for [`near_the_middle`].
+const NEAR: usize = 4;
+
+/// Whether the first bodies of trees are other bodies than those in the middle, but not far from them.
+pub(super) fn near_the_middle<S: Scalar>(model: &Model<S>) -> bool {
+    let depth = |i: usize| core::iter::successors(Some(i), |&i| Some(model.bodies[i].parent).filter(|p| *p != 0)).count();
+    let depths = || middles(model).into_iter().map(depth);
+    depths().any(|d| d > 1) && depths().all(|d| d <= NEAR)
+}
+
+impl Centers {
+    fn of<S: Scalar>(model: &Model<S>, bodies: Vec<usize>) -> Self {
+        let mut inside = vec![false; model.bodies.len()];
+        for &center in &bodies {
+            let mut i = center;
+            while i != 0 {
+                inside[i] = true;
+                i = model.bodies[i].parent;
+            }
         }
+        Self { bodies, inside }
     }
-    inside
 }
 
 /// For each degree of freedom the number of the next one on the way to the base plus one; 0 where the base is next. The mass matrix is zero

@@ -80,6 +80,8 @@ pub struct Coordinates<S> {
     pub pitch: S,
     /// Where the angle of a revolute joint is counted from: its frame is turned by q and this.
     pub from: Angle<S>,
+    /// One; zero for a revolute joint whose body is the same from all sides and has a frame that stays while it turns ([`crate::model::pass::still`]).
+    pub turns: S,
 }
 
 /// A constant angle, by its sine and cosine.
@@ -134,6 +136,17 @@ impl<S: Scalar> Coordinates<S> {
         }
     }
 
+    /// Sine and cosine of the angle by which the frame of a revolute joint is turned.
+    #[inline(always)]
+    pub fn turned(&self, q: &[S]) -> (S, S) {
+        if self.turns.is_zero() {
+            return (S::zero(), S::one());
+        }
+        let turned = self.coordinate(q).sin_cos();
+        let (sin, cos) = if self.from.is_zero() { turned } else { self.from.plus(turned) };
+        if self.turns == S::one() { (sin, cos) } else { (sin * self.turns, S::one() + (cos - S::one()) * self.turns) }
+    }
+
     /// The joint's own single rate, or acceleration.
     #[inline(always)]
     pub fn rate(&self, v: &[S]) -> S {
@@ -163,7 +176,7 @@ impl<S: Scalar> Coordinates<S> {
     pub(crate) fn map<T: Scalar>(&self, f: impl Fn(S) -> T) -> Coordinates<T> {
         let mimic = self.mimic.as_ref().map(|m| Follow { multiplier: f(m.multiplier), offset: f(m.offset) });
         let from = Angle { sin: f(self.from.sin), cos: f(self.from.cos) };
-        Coordinates { q: self.q, v: self.v, mimic, pitch: f(self.pitch), from }
+        Coordinates { q: self.q, v: self.v, mimic, pitch: f(self.pitch), from, turns: f(self.turns) }
     }
 }
 

@@ -16,8 +16,7 @@ pub struct Revolute<S> {
 impl<S: Scalar> JointLaw<S> for Revolute<S> {
     #[inline(always)]
     fn at(at: &Coordinates<S>, q: &[S]) -> Self {
-        let turned = at.coordinate(q).sin_cos();
-        let (sin, cos) = if at.from.is_zero() { turned } else { at.from.plus(turned) };
+        let (sin, cos) = at.turned(q);
         Self { sin, cos }
     }
 

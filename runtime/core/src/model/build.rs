@@ -257,7 +257,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-const AT_ZERO: Coordinates<f64> = Coordinates { q: 0, v: 0, mimic: None, pitch: 0.0, from: Angle { sin: 0.0, cos: 1.0 } };
+const AT_ZERO: Coordinates<f64> = Coordinates { q: 0, v: 0, mimic: None, pitch: 0.0, from: Angle { sin: 0.0, cos: 1.0 }, turns: 1.0 };
 
 /// An elementary joint as part of a joint of the file.
 struct Stage {

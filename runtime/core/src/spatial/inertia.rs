@@ -81,7 +81,22 @@ impl<S: Scalar> SpatialInertia<S> {
     #[inline(always)]
     #[must_use]
     pub fn turned(&self, turn: &Matrix3<S>) -> Self {
-        Self { mass: self.mass, first: rotate(turn, self.first), second: symmetric(turn * self.second * turn.transpose()) }
+        let second = if self.is_round() { self.turned_round(turn) } else { turn * self.second * turn.transpose() };
+        Self { mass: self.mass, first: rotate(turn, self.first), second: symmetric(second) }
+    }
+
+    /// Whether Σ is the same from all sides about z.
+    #[inline(always)]
+    fn is_round(&self) -> bool {
+        let m = &self.second;
+        m.m11 == m.m22 && [m.m12, m.m13, m.m23].iter().all(S::is_zero)
+    }
+
+    /// R Σ Rᵀ where Σ = Σ_xx·1 + (Σ_zz − Σ_xx) e_z e_zᵀ.
+    #[inline(always)]
+    fn turned_round(&self, turn: &Matrix3<S>) -> Matrix3<S> {
+        let (m, z) = (&self.second, turn.column(2).into_owned());
+        Matrix3::from_diagonal_element(m.m11) + z * (z * (m.m33 - m.m11)).transpose()
     }
 
     /// Rotational inertia about the origin, tr(Σ)·1 − Σ, kg·m².

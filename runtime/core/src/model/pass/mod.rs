@@ -3,6 +3,7 @@
 mod places;
 mod regroup;
 mod slide;
+mod still;
 mod turn;
 mod zeros;
 
@@ -10,6 +11,7 @@ use core::marker::PhantomData;
 
 pub use regroup::regroup;
 pub use slide::slide;
+pub use still::still;
 pub use turn::turn;
 
 use super::Model;
@@ -37,11 +39,16 @@ impl<S: Scalar> Table<S> {
             slide,
             "frames of revolute and prismatic bodies are where offsets and moments are fewest, along their axes; frames of links are where they were, bodies' own origins are not those of their links",
         ),
+        (
+            "still",
+            still,
+            "frames of revolute bodies that are the same from all sides about their axes and carry nothing, not even a frame, do not turn",
+        ),
     ];
 }
 
 /// The passes in order; each row: name, pass, and what holds after it. They keep joint torques, and where the frames of links are: functions of the table that need more are not
-/// [`crate::algorithm::Function::regrouped`].
+/// [`crate::algorithm::Function::regrouped`]. For those that do not even ask for frames ([`crate::algorithm::Function::asks_for_frames`]) these may be taken away before.
 pub fn model_passes<S: Scalar>() -> &'static [(&'static str, ModelPass<S>, &'static str)] {
     Table::<S>::ROWS
 }

@@ -1,0 +1,39 @@
+//! Frames of round bodies that stay while their bodies turn.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::zeros::or_zero;
+use crate::Scalar;
+use crate::joint::Joint;
+use crate::model::{Body, Model};
+use crate::spatial::SpatialInertia;
+
+/// Lets the frame of a revolute body stay as its joint's frame stands, if the body is the same from all sides about that axis and carries nothing.
+///
+/// In a frame that does not turn with it such a body has constant moments as well, and what turns is ω alone: neither sine nor cosine of the angle is left, as
+/// of a wheel, of a propeller, or of the last link of many arms. For a model whose frames nobody asks for: a body that carries a frame is left alone, and so is one on which effects
+/// act. Exact for all joint torques.
+pub fn still<S: Scalar>(mut model: Model<S>) -> Model<S> {
+    let mut carries = alloc::vec![false; model.bodies.len()];
+    model.outward().for_each(|i| carries[model.bodies[i].parent] = true);
+    model.frames.iter().for_each(|frame| carries[frame.body] = true);
+    for (body, _) in model.bodies.iter_mut().zip(carries).skip(1).filter(|(_, carries)| !carries) {
+        if body.joint == Joint::Revolute && body.effects.body.is_empty() && is_round(body) {
+            body.coordinates.turns = S::zero();
+        }
+    }
+    model
+}
+
+/// Whether a body is the same from all sides about its z-axis, but for rounding; that is then taken away.
+fn is_round<S: Scalar>(body: &mut Body<S>) -> bool {
+    let SpatialInertia { first, second, .. } = body.inertia;
+    let size = second.m11.abs() + second.m22.abs();
+    let across = [second.m12, second.m13, second.m23, second.m11 - second.m22].map(|x| or_zero(x, size));
+    let round = [first.x, first.y].into_iter().chain(across).all(|x| x == S::zero());
+    if round {
+        let mean = (second.m11 + second.m22) * S::from_f64(0.5);
+        body.inertia.second = Matrix3::from_diagonal(&Vector3::new(mean, mean, second.m33));
+    }
+    round
+}
