@@ -12,7 +12,7 @@ use crate::limbs::Alike;
 use crate::parameters::Parameter;
 use crate::pass::{self, GRAPH_PASSES};
 use crate::sym::Sym;
-use crate::trace::{Choice, applies, trace, trace_in_lanes, ways};
+use crate::trace::{Choice, applies, can_be_unturned, trace, trace_in_lanes, ways};
 use crate::wanted::{Part, Wanted};
 
 /// A function and what it became.
@@ -114,23 +114,27 @@ const WORTH: f64 = 1.15;
 /// The graph of a function, traced on the model as it was read and after each model pass, and taken through the graph passes.
 fn made(wanted: &Wanted, subject: &Subject, unsolved: Option<&'static Way<Sym>>) -> (Graph, Entry) {
     let all = model_passes::<Sym>().len();
-    let choose = |part| unsolved.map_or_else(|| cheapest(part, subject, all), |way| Choice { way, passes: all });
+    let choose = |part| unsolved.map_or_else(|| cheapest(part, subject, all), |way| Choice { way, passes: all, unturned: false });
     let choices: Vec<Choice> = wanted.parts.iter().map(choose).collect();
     let mut graph = Graph::default();
     let mut stages: Vec<(&'static str, Counts)> = Vec::new();
     for passes in if subject.stages { 0 } else { all }..=all {
-        let limited: Vec<Choice> = choices.iter().map(|c| Choice { passes: c.passes.min(passes), ..*c }).collect();
+        let limited: Vec<Choice> = choices.iter().map(|c| Choice { passes: c.passes.min(passes), unturned: false, ..*c }).collect();
         graph = subject.trace(wanted, &limited);
         if stages.is_empty() {
             stages.push(("asked", graph.asked().clone()));
         }
         stages.push((if passes == 0 { "trace" } else { model_passes::<Sym>()[passes - 1].0 }, graph.counts()));
     }
+    if choices.iter().any(|c| c.unturned) {
+        graph = subject.trace(wanted, &choices);
+        stages.push(("unturned", graph.counts()));
+    }
     for (name, pass, _) in GRAPH_PASSES {
         graph = pass::run(name, *pass, &graph);
         stages.push((name, graph.counts()));
     }
-    let ways = choices.iter().map(|c| c.way.name).filter(|name| !name.is_empty()).collect();
+    let ways = choices.iter().flat_map(Choice::names).collect();
     let entry = Entry { function: wanted.name.clone(), ways, stages, depth: depth(&graph), lanes: graph.lanes().width, bounds: Vec::new() };
     (graph, entry)
 }
@@ -144,12 +148,18 @@ impl Subject<'_> {
     }
 }
 
+/// Up to so many degrees of freedom rows of parallel joints are tried in the same axes.
+const UNTURNED_TO: usize = 64;
+
 /// The way that costs least once the graph passes are done. With parameters, model passes may cost more than they save: then they are not taken.
 fn cheapest(part: &Part, subject: &Subject, all: usize) -> Choice {
     let few = if subject.parameters.is_empty() { all..=all } else { 0..=all };
     let ways = ways(part, subject.model);
+    let may = subject.parameters.is_empty() && subject.model.nv <= UNTURNED_TO && can_be_unturned(part, subject.model);
+    let axes: &[bool] = if may { &[false, true] } else { &[false] };
+    let of = |way, passes| axes.iter().map(move |&unturned| Choice { way, passes, unturned });
     let candidates: Vec<(Choice, u64)> =
-        ways.iter().flat_map(|(way, least)| few.clone().map(move |passes| (Choice { way, passes }, *least))).collect();
+        ways.iter().flat_map(|(way, least)| few.clone().flat_map(move |passes| of(*way, passes)).map(|c| (c, *least))).collect();
     if let [(one, _)] = candidates.as_slice() {
         return *one;
     }
@@ -165,7 +175,7 @@ fn cheapest(part: &Part, subject: &Subject, all: usize) -> Choice {
             best = Some((choice, cost));
         }
     }
-    best.map_or(Choice { way: &part.function.ways[0], passes: all }, |(choice, _)| choice)
+    best.map_or(Choice { way: &part.function.ways[0], passes: all, unturned: false }, |(choice, _)| choice)
 }
 
 fn cost(wanted: &Wanted, choice: Choice, subject: &Subject) -> u32 {

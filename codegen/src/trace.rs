@@ -19,6 +19,15 @@ pub(crate) struct Choice {
     pub(crate) way: &'static Way<Sym>,
     /// How many model passes to take.
     pub(crate) passes: usize,
+    /// Whether the bodies of each row of parallel joints are in the axes in which it begins ([`Model::unturned`]).
+    pub(crate) unturned: bool,
+}
+
+impl Choice {
+    /// What it is called in the ledger.
+    pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> {
+        [self.way.name, if self.unturned { "parallel joints in the same axes" } else { "" }].into_iter().filter(|name| !name.is_empty())
+    }
 }
 
 /// The graph of a function on `model`: its argument k is argument k of the graph, parameters come after the last; the results of the parts one after the other.
@@ -33,7 +42,7 @@ pub(crate) fn trace(wanted: &Wanted, choices: &[Choice], model: &Model<f64>, par
         let run = |(part, choice): (&Part, &Choice)| {
             // Where all is numbers, passes go over numbers, which is sooner done.
             let symbolic = with_inputs.as_ref().map_or_else(|| passed(part, choice, model).cast(), |m| passed(part, choice, m));
-            run(part, choice.way, &symbolic, &arguments)
+            run(part, choice, &symbolic, &arguments)
         };
         wanted.parts.iter().zip(choices).flat_map(run).collect()
     });
@@ -67,7 +76,7 @@ pub(crate) fn trace_in_lanes(wanted: &Wanted, choices: &[Choice], model: &Model<
     let graph = sym::trace(|| {
         let mut run = |(part, choice): (&Part, &Choice)| {
             let symbolic = alike.symbolic(&passed(part, choice, model), &mut constants);
-            run(part, choice.way, &symbolic, &arguments)
+            run(part, choice, &symbolic, &arguments)
         };
         wanted.parts.iter().zip(choices).flat_map(&mut run).collect()
     });
@@ -85,7 +94,14 @@ fn passed<S: Scalar>(part: &Part, choice: &Choice, model: &Model<S>) -> Model<S>
     passes.fold(model, |model, (_, pass, _)| pass(model))
 }
 
-fn run(part: &Part, way: &Way<Sym>, model: &Model<Sym>, arguments: &[Argument]) -> Vec<Sym> {
+/// Whether a function has rows of parallel joints that could be in the same axes, on the model after all passes.
+pub(crate) fn can_be_unturned(part: &Part, model: &Model<f64>) -> bool {
+    let choice = Choice { way: &part.function.ways[0], passes: usize::MAX, unturned: false };
+    let free = part.function.regrouped && !part.function.asks_for_frames() && part.function.takes.contains(&Argument::Q);
+    free && model.bodies.iter().all(|b| b.effects.body.is_empty()) && passed(part, &choice, model).has_parallel_joints()
+}
+
+fn run(part: &Part, choice: &Choice, model: &Model<Sym>, arguments: &[Argument]) -> Vec<Sym> {
     let shape = model.shape();
     let vector = |argument: &Argument| -> Vec<Sym> {
         let place = arguments.iter().position(|a| a == argument);
@@ -99,7 +115,10 @@ fn run(part: &Part, way: &Way<Sym>, model: &Model<Sym>, arguments: &[Argument]) 
     let vectors: Vec<Vec<Sym>> = part.function.takes.iter().map(vector).collect();
     let slices: Vec<&[Sym]> = vectors.iter().map(Vec::as_slice).collect();
     let mut out = vec![Sym::zero(); part.function.len(shape)];
-    let called = part.function.call_by(way, model, &mut Workspace::new(model), &slices, &mut out);
+    let q = part.function.takes.iter().position(|a| *a == Argument::Q).filter(|_| choice.unturned);
+    let unturned = q.map(|k| model.unturned(slices[k]));
+    let model = unturned.as_ref().unwrap_or(model);
+    let called = part.function.call_by(choice.way, model, &mut Workspace::new(model), &slices, &mut out);
     debug_assert!(called.is_ok(), "arguments were made to measure");
     out
 }

@@ -300,8 +300,9 @@ fn forward_dynamics_goes_the_way_that_costs_least() {
         (request.options.base, request.options.functions) = (robot.base, vec!["forward_dynamics".into()]);
         generate(&request).unwrap().ledger.functions[0].ways.clone()
     };
-    // A short arm, a tree, and a robot with a joint that follows: there one way is all there is.
-    assert_eq!([ways("panda_like"), ways("humanoid"), ways("gripper_arm")], [["LTDL"], ["ABA"], ["LTDL"]]);
+    // A short arm, a tree, and a robot with a joint that follows, which no recursion along a branch can invert; its shoulder and elbow are parallel.
+    assert_eq!([ways("panda_like"), ways("humanoid")], [["LTDL"], ["ABA"]]);
+    assert_eq!(ways("gripper_arm"), ["LTDL", "parallel joints in the same axes"]);
 }
 
 /// Numbers that differ from the URDF's: payload, inertia of the forearm, origin of the wrist.

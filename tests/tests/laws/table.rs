@@ -114,6 +114,18 @@ fn model_passes_change_no_function_that_allows_them() {
     });
 }
 
+/// Holds what asks for torques alone, in all ways, on one model to what it is on another.
+fn same_without_frames(case: &Case, state: &State, one: &Model<Big>, other: &Model<Big>) {
+    each(case, other, state, |row, given| {
+        if row.regrouped && !row.asks_for_frames() {
+            for k in (0..row.ways.len()).filter(|&k| (row.ways[k].applies)(other)) {
+                let off = difference(&run(row, k, one, given), &run(row, k, other, given));
+                assert!(off <= near(row), "{} {}: off by {off:e}", row.name, row.ways[k].name);
+            }
+        }
+    });
+}
+
 /// A robot's last bodies made round, and nobody asking for its frames: they stop turning, which changes nothing.
 #[test]
 fn round_bodies_need_not_turn() {
@@ -136,15 +148,36 @@ fn round_bodies_need_not_turn() {
             let passed = model_passes::<Big>().iter().fold(model.clone(), |m, (_, pass, _)| pass(m));
             let stopped: Vec<usize> = passed.outward().filter(|&i| passed.bodies[i].coordinates.turns.to_f64() == 0.0).collect();
             assert_eq!(stopped, round);
-            each(case, &model, &state, |row, given| {
-                if row.regrouped && !row.asks_for_frames() {
-                    for k in (0..row.ways.len()).filter(|&k| (row.ways[k].applies)(&model)) {
-                        let off = difference(&run(row, k, &passed, given), &run(row, k, &model, given));
-                        assert!(off <= near(row), "{} {}: off by {off:e}", row.name, row.ways[k].name);
-                    }
-                }
-            });
+            same_without_frames(case, &state, &passed, &model);
         });
     });
     assert!(seen.get() > 10, "only {} round bodies", seen.get());
+}
+
+/// Rows of parallel joints, with other bodies before, between and behind them, in the axes in which they begin.
+#[test]
+fn parallel_joints_may_share_their_axes() {
+    let (seen, rows) = (std::cell::Cell::new(0), std::cell::Cell::new(0));
+    for_each_tree(16, Flavour { links: 9, ..SMALL }, |case, random| {
+        let state = case.state(random);
+        let mut model = case.model.clone();
+        for i in model.outward() {
+            let (body, parent) = (&model.bodies[i], &model.bodies[model.bodies[i].parent]);
+            let revolute = body.joint == Joint::Revolute && parent.joint == Joint::Revolute;
+            // What a universal joint consists of has no mass between.
+            if body.parent != 0 && revolute && parent.link.is_some() && random.below(3) > 0 {
+                model.bodies[i].placement.rotation = Matrix3::identity();
+                seen.set(seen.get() + 1);
+            }
+        }
+        rows.set(rows.get() + usize::from(model.has_parallel_joints()));
+        Big::scope(|| {
+            let model = model.cast::<Big>();
+            let unturned = model.unturned(&cast::<Big>(&state.q));
+            same_without_frames(case, &state, &unturned, &model);
+            let passed = model_passes::<Big>().iter().fold(Model { frames: Vec::new(), ..model.clone() }, |m, (_, pass, _)| pass(m));
+            same_without_frames(case, &state, &passed.unturned(&cast::<Big>(&state.q)), &model);
+        });
+    });
+    assert!(seen.get() > 12 && rows.get() > 5, "only {} parallel joints in {} trees", seen.get(), rows.get());
 }

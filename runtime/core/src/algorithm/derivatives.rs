@@ -297,7 +297,7 @@ impl<S: Scalar> Matrices<'_, S> {
         let held = state.inertia.apply(&column.axis);
         let turning = state.coriolis.transposed(&column.axis.times(two));
         // A round body is the same however it stands.
-        let round = model.bodies[i].coordinates.turns.is_zero();
+        let round = model.is_round(i);
         let by_q = match round {
             true => Wrench::zero(),
             false => twice_b(column.drift.angular) + state.inertia.apply(&column.curl) + column.axis.cross_wrench(&state.force),

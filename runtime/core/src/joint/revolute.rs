@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Coordinates, JointLaw};
+use super::{Angle, Coordinates, JointLaw};
 use crate::Scalar;
 use crate::spatial::{ArticulatedInertia, Motion, Placement, SpatialInertia, Twist, Wrench, turned_about_z};
 
@@ -11,6 +11,13 @@ use crate::spatial::{ArticulatedInertia, Motion, Placement, SpatialInertia, Twis
 pub struct Revolute<S> {
     sin: S,
     cos: S,
+}
+
+impl<S> Revolute<S> {
+    /// At this angle.
+    pub(crate) fn of(angle: Angle<S>) -> Self {
+        Self { sin: angle.sin, cos: angle.cos }
+    }
 }
 
 impl<S: Scalar> JointLaw<S> for Revolute<S> {

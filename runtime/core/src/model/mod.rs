@@ -3,6 +3,7 @@
 mod build;
 mod limbs;
 mod massless;
+mod parallel;
 pub mod pass;
 
 use alloc::string::{String, ToString};
@@ -113,6 +114,12 @@ impl<S: Scalar> Model<S> {
     /// Indices of the bodies that are moving links of the file: one for each joint that moves, followers included.
     pub fn links(&self) -> impl Iterator<Item = usize> + '_ {
         self.outward().filter(|&i| self.bodies[i].link.is_some())
+    }
+
+    /// Whether body `i` is the same from all sides about its joint, carries nothing, and has a frame that does not turn ([`pass::still`]).
+    pub(crate) fn is_round(&self, i: usize) -> bool {
+        let Body { coordinates, inertia, .. } = &self.bodies[i];
+        coordinates.turns.is_zero() && inertia.is_round() && self.outward().all(|k| self.bodies[k].parent != i)
     }
 
     /// Mass of the moving links, kg.

@@ -85,11 +85,11 @@ impl<S: Scalar> SpatialInertia<S> {
         Self { mass: self.mass, first: rotate(turn, self.first), second: symmetric(second) }
     }
 
-    /// Whether Σ is the same from all sides about z.
+    /// Whether the body is the same from all sides about z.
     #[inline(always)]
-    fn is_round(&self) -> bool {
-        let m = &self.second;
-        m.m11 == m.m22 && [m.m12, m.m13, m.m23].iter().all(S::is_zero)
+    pub fn is_round(&self) -> bool {
+        let (h, m) = (&self.first, &self.second);
+        m.m11 == m.m22 && [m.m12, m.m13, m.m23, h.x, h.y].iter().all(S::is_zero)
     }
 
     /// R Σ Rᵀ where Σ = Σ_xx·1 + (Σ_zz − Σ_xx) e_z e_zᵀ.
