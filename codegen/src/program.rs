@@ -1,8 +1,10 @@
 //! One function, from its algorithms to the graph that is emitted.
 
+use std::iter::once;
+
 use articulated_core::algorithm::Way;
-use articulated_core::model::Model;
 use articulated_core::model::pass::model_passes;
+use articulated_core::model::{Model, Unturned};
 
 use crate::Options;
 use crate::bound::{bounds, in_box};
@@ -12,7 +14,7 @@ use crate::limbs::Alike;
 use crate::parameters::Parameter;
 use crate::pass::{self, GRAPH_PASSES};
 use crate::sym::Sym;
-use crate::trace::{Choice, applies, can_be_unturned, trace, trace_in_lanes, ways};
+use crate::trace::{Choice, applies, trace, trace_in_lanes, unturnable, ways};
 use crate::wanted::{Part, Wanted};
 
 /// A function and what it became.
@@ -114,19 +116,19 @@ const WORTH: f64 = 1.15;
 /// The graph of a function, traced on the model as it was read and after each model pass, and taken through the graph passes.
 fn made(wanted: &Wanted, subject: &Subject, unsolved: Option<&'static Way<Sym>>) -> (Graph, Entry) {
     let all = model_passes::<Sym>().len();
-    let choose = |part| unsolved.map_or_else(|| cheapest(part, subject, all), |way| Choice { way, passes: all, unturned: false });
+    let choose = |part| unsolved.map_or_else(|| cheapest(part, subject, all), |way| Choice { way, passes: all, unturned: None });
     let choices: Vec<Choice> = wanted.parts.iter().map(choose).collect();
     let mut graph = Graph::default();
     let mut stages: Vec<(&'static str, Counts)> = Vec::new();
     for passes in if subject.stages { 0 } else { all }..=all {
-        let limited: Vec<Choice> = choices.iter().map(|c| Choice { passes: c.passes.min(passes), unturned: false, ..*c }).collect();
+        let limited: Vec<Choice> = choices.iter().map(|c| Choice { passes: c.passes.min(passes), unturned: None, ..*c }).collect();
         graph = subject.trace(wanted, &limited);
         if stages.is_empty() {
             stages.push(("asked", graph.asked().clone()));
         }
         stages.push((if passes == 0 { "trace" } else { model_passes::<Sym>()[passes - 1].0 }, graph.counts()));
     }
-    if choices.iter().any(|c| c.unturned) {
+    if choices.iter().any(|c| c.unturned.is_some()) {
         graph = subject.trace(wanted, &choices);
         stages.push(("unturned", graph.counts()));
     }
@@ -148,16 +150,17 @@ impl Subject<'_> {
     }
 }
 
-/// Up to so many degrees of freedom rows of parallel joints are tried in the same axes.
+/// Up to so many degrees of freedom bodies are tried with frames that do not turn.
 const UNTURNED_TO: usize = 64;
 
 /// The way that costs least once the graph passes are done. With parameters, model passes may cost more than they save: then they are not taken.
 fn cheapest(part: &Part, subject: &Subject, all: usize) -> Choice {
     let few = if subject.parameters.is_empty() { all..=all } else { 0..=all };
     let ways = ways(part, subject.model);
-    let may = subject.parameters.is_empty() && subject.model.nv <= UNTURNED_TO && can_be_unturned(part, subject.model);
-    let axes: &[bool] = if may { &[false, true] } else { &[false] };
-    let of = |way, passes| axes.iter().map(move |&unturned| Choice { way, passes, unturned });
+    let may = subject.parameters.is_empty() && subject.model.nv <= UNTURNED_TO;
+    let unturned = if may { unturnable(part, subject.model) } else { Vec::new() };
+    let unturned: Vec<Option<Unturned>> = once(None).chain(unturned.into_iter().map(Some)).collect();
+    let of = |way, passes| unturned.iter().map(move |&unturned| Choice { way, passes, unturned });
     let candidates: Vec<(Choice, u64)> =
         ways.iter().flat_map(|(way, least)| few.clone().flat_map(move |passes| of(*way, passes)).map(|c| (c, *least))).collect();
     if let [(one, _)] = candidates.as_slice() {
@@ -175,7 +178,7 @@ fn cheapest(part: &Part, subject: &Subject, all: usize) -> Choice {
             best = Some((choice, cost));
         }
     }
-    best.map_or(Choice { way: &part.function.ways[0], passes: all, unturned: false }, |(choice, _)| choice)
+    best.map_or(Choice { way: &part.function.ways[0], passes: all, unturned: None }, |(choice, _)| choice)
 }
 
 fn cost(wanted: &Wanted, choice: Choice, subject: &Subject) -> u32 {

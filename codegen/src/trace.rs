@@ -2,8 +2,8 @@
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Argument, Way, Workspace};
-use articulated_core::model::Model;
 use articulated_core::model::pass::model_passes;
+use articulated_core::model::{Model, Unturned};
 use num_traits::Zero;
 
 use crate::graph::{Graph, Op};
@@ -19,14 +19,19 @@ pub(crate) struct Choice {
     pub(crate) way: &'static Way<Sym>,
     /// How many model passes to take.
     pub(crate) passes: usize,
-    /// Whether the bodies of each row of parallel joints are in the axes in which it begins ([`Model::unturned`]).
-    pub(crate) unturned: bool,
+    /// Bodies whose frames do not turn.
+    pub(crate) unturned: Option<Unturned>,
 }
 
 impl Choice {
     /// What it is called in the ledger.
     pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> {
-        [self.way.name, if self.unturned { "parallel joints in the same axes" } else { "" }].into_iter().filter(|name| !name.is_empty())
+        let unturned = match self.unturned {
+            None => "",
+            Some(Unturned::Parallel) => "parallel joints unturned",
+            Some(Unturned::ParallelAndLast) => "parallel and last joints unturned",
+        };
+        [self.way.name, unturned].into_iter().filter(|name| !name.is_empty())
     }
 }
 
@@ -94,11 +99,12 @@ fn passed<S: Scalar>(part: &Part, choice: &Choice, model: &Model<S>) -> Model<S>
     passes.fold(model, |model, (_, pass, _)| pass(model))
 }
 
-/// Whether a function has rows of parallel joints that could be in the same axes, on the model after all passes.
-pub(crate) fn can_be_unturned(part: &Part, model: &Model<f64>) -> bool {
-    let choice = Choice { way: &part.function.ways[0], passes: usize::MAX, unturned: false };
+/// Which bodies need not turn, on the model after all passes, as the function does not ask where they are.
+pub(crate) fn unturnable(part: &Part, model: &Model<f64>) -> Vec<Unturned> {
+    let choice = Choice { way: &part.function.ways[0], passes: usize::MAX, unturned: None };
     let free = part.function.regrouped && !part.function.asks_for_frames() && part.function.takes.contains(&Argument::Q);
-    free && model.bodies.iter().all(|b| b.effects.body.is_empty()) && passed(part, &choice, model).has_parallel_joints()
+    let free = free && model.bodies.iter().all(|b| b.effects.body.is_empty());
+    if free { passed(part, &choice, model).unturnable() } else { Vec::new() }
 }
 
 fn run(part: &Part, choice: &Choice, model: &Model<Sym>, arguments: &[Argument]) -> Vec<Sym> {
@@ -115,8 +121,8 @@ fn run(part: &Part, choice: &Choice, model: &Model<Sym>, arguments: &[Argument])
     let vectors: Vec<Vec<Sym>> = part.function.takes.iter().map(vector).collect();
     let slices: Vec<&[Sym]> = vectors.iter().map(Vec::as_slice).collect();
     let mut out = vec![Sym::zero(); part.function.len(shape)];
-    let q = part.function.takes.iter().position(|a| *a == Argument::Q).filter(|_| choice.unturned);
-    let unturned = q.map(|k| model.unturned(slices[k]));
+    let q = part.function.takes.iter().position(|a| *a == Argument::Q);
+    let unturned = q.zip(choice.unturned).map(|(k, which)| model.unturned(slices[k], which));
     let model = unturned.as_ref().unwrap_or(model);
     let called = part.function.call_by(choice.way, model, &mut Workspace::new(model), &slices, &mut out);
     debug_assert!(called.is_ok(), "arguments were made to measure");

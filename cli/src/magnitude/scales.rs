@@ -27,20 +27,14 @@ pub(super) fn given(arguments: &[&[f64]]) -> Vec<Vec<Magnitude>> {
     arguments.iter().map(|x| x.iter().map(|x| Magnitude::from_f64(*x)).collect()).collect()
 }
 
-/// What a function gives with these arguments; the least magnitude, where there are several ways to compute it: one that turns everything into common axes adds
-/// up terms that no other has.
+/// What a function gives with these arguments, in its first way: others may have terms that this one has not, or zeros where it adds up what cancels.
 pub(super) fn magnitudes(model: &Model<f64>, name: &str, arguments: &[Vec<Magnitude>]) -> Result<Vec<Magnitude>, FunctionError> {
     let row = function::<Magnitude>(name).ok_or(UNKNOWN)?;
     let model = constants(model);
     let arguments: Vec<&[Magnitude]> = arguments.iter().map(Vec::as_slice).collect();
-    let mut least: Option<Vec<Magnitude>> = None;
-    for way in row.ways.iter().filter(|w| (w.applies)(&model)) {
-        let mut out = vec![Magnitude::zero(); row.len(model.shape())];
-        row.call_by(way, &model, &mut Workspace::new(&model), &arguments, &mut out)?;
-        let smaller = |(a, b): (&Magnitude, &Magnitude)| if a.magnitude <= b.magnitude { *a } else { *b };
-        least = Some(least.map_or_else(|| out.clone(), |least| least.iter().zip(&out).map(smaller).collect()));
-    }
-    least.ok_or(UNKNOWN)
+    let mut out = vec![Magnitude::zero(); row.len(model.shape())];
+    row.call(&model, &mut Workspace::new(&model), &arguments, &mut out)?;
+    Ok(out)
 }
 
 /// The model's constants. Each was computed from numbers of the file, so that what is small may be the rest of larger terms: its

@@ -91,7 +91,7 @@ mod tests {
         for f in functions::<Sym>().iter().filter(|f| f.needs != Needs::FreeFrames) {
             let wanted = Wanted::parse(f.name).unwrap();
             for (way, _) in ways(&wanted.parts[0], model) {
-                let choice = [Choice { way, passes: usize::MAX, unturned: false }];
+                let choice = [Choice { way, passes: usize::MAX, unturned: None }];
                 let plain = passed(trace(&wanted, &choice, model, &[]));
                 let lanes = passed(trace_in_lanes(&wanted, &choice, model, &alike));
                 lanes.verify().unwrap();

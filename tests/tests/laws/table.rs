@@ -5,8 +5,8 @@ use articulated_cli::precise::Big;
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Argument, Function, FunctionId, Needs, Workspace, functions};
 use articulated_core::joint::Joint;
-use articulated_core::model::Model;
 use articulated_core::model::pass::model_passes;
+use articulated_core::model::{Model, Unturned};
 use articulated_core::spatial::{Matrix3, Reference, SpatialInertia, Vector3};
 use articulated_tests::case::{Case, State, cast, for_each_tree};
 use articulated_tests::random_tree::Flavour;
@@ -154,10 +154,10 @@ fn round_bodies_need_not_turn() {
     assert!(seen.get() > 10, "only {} round bodies", seen.get());
 }
 
-/// Rows of parallel joints, with other bodies before, between and behind them, in the axes in which they begin.
+/// Rows of parallel joints, with other bodies before, between and behind them, in the axes in which they begin; and last bodies in those of their joints.
 #[test]
-fn parallel_joints_may_share_their_axes() {
-    let (seen, rows) = (std::cell::Cell::new(0), std::cell::Cell::new(0));
+fn constants_may_be_turned_instead_of_vectors() {
+    let (seen, kinds) = (std::cell::Cell::new(0), std::cell::RefCell::new(Vec::new()));
     for_each_tree(16, Flavour { links: 9, ..SMALL }, |case, random| {
         let state = case.state(random);
         let mut model = case.model.clone();
@@ -170,14 +170,18 @@ fn parallel_joints_may_share_their_axes() {
                 seen.set(seen.get() + 1);
             }
         }
-        rows.set(rows.get() + usize::from(model.has_parallel_joints()));
         Big::scope(|| {
             let model = model.cast::<Big>();
-            let unturned = model.unturned(&cast::<Big>(&state.q));
-            same_without_frames(case, &state, &unturned, &model);
             let passed = model_passes::<Big>().iter().fold(Model { frames: Vec::new(), ..model.clone() }, |m, (_, pass, _)| pass(m));
-            same_without_frames(case, &state, &passed.unturned(&cast::<Big>(&state.q)), &model);
+            for which in model.unturnable() {
+                let [plain, passed] = [&model, &passed].map(|m| m.unturned(&cast::<Big>(&state.q), which));
+                same_without_frames(case, &state, &plain, &model);
+                same_without_frames(case, &state, &passed, &model);
+                kinds.borrow_mut().push(which);
+            }
         });
     });
-    assert!(seen.get() > 12 && rows.get() > 5, "only {} parallel joints in {} trees", seen.get(), rows.get());
+    let of = |which| kinds.borrow().iter().filter(|k| **k == which).count();
+    let counts = (seen.get(), of(Unturned::Parallel), of(Unturned::ParallelAndLast));
+    assert!(counts.0 > 12 && counts.1 > 5 && counts.2 > 5, "only {counts:?}");
 }

@@ -20,6 +20,7 @@ use super::ltdl::{factor, solve, solve_rows, way};
 use super::rnea::inverse_dynamics_with_wrenches;
 use super::wrenches;
 use crate::Scalar;
+use crate::joint::Joint;
 use crate::model::Model;
 use crate::spatial::{Reference, Twist, Vector3, Wrench, rotate};
 
@@ -92,7 +93,7 @@ pub fn static_torque_derivative<S: Scalar>(model: &Model<S>, ws: &mut Workspace<
         let state = &mut ws.common[i];
         state.force = state.inertia.apply(&state.acceleration);
         for k in ws.columns_of(i) {
-            ws.columns[k].curl = ws.common[i].carried_acceleration.cross(&ws.columns[k].axis);
+            ws.columns[k].curl = falling(model, ws, i, k, &ws.common[i].carried_acceleration);
         }
     }
     external(model, ws, q, wrenches, out);
@@ -239,10 +240,22 @@ fn curls<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
     for i in model.outward() {
         let (twist, acceleration) = (ws.common[i].carried_twist, ws.common[i].carried_acceleration);
         for k in ws.columns_of(i) {
+            let falling = falling(model, ws, i, k, &acceleration);
             let column = &mut ws.columns[k];
-            column.curl = acceleration.cross(&column.axis) + twist.cross(&column.drift);
+            column.curl = falling + twist.cross(&column.drift);
         }
     }
+}
+
+/// V̇_λ × S. What hangs on the base by a revolute joint falls as the base does: then the product is taken before its factors are turned, and is nothing for a joint that stands upright.
+fn falling<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, k: usize, carried: &Twist<S>) -> Twist<S> {
+    let body = &model.bodies[i];
+    if body.parent != 0 || body.joint != Joint::Revolute {
+        return carried.cross(&ws.columns[k].axis);
+    }
+    let product = body.placement.rotation.column(2).cross(&model.gravity);
+    let product = Twist { angular: Vector3::zeros(), linear: rotate(&ws.common[i].base, product) };
+    body.coordinates.rate_of_one().map_or(product, |m| product.times(m))
 }
 
 /// Hands what a body and all beyond it have together to its parent.

@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::Shape;
 use super::checked::Size;
 use crate::Scalar;
-use crate::joint::Pose;
+use crate::joint::{Joint, Pose};
 use crate::model::Model;
 use crate::spatial::{ArticulatedInertia, CoriolisInertia, Motion, Placement, SpatialInertia, Twist, Wrench};
 
@@ -224,11 +224,12 @@ fn firsts<S: Scalar>(model: &Model<S>) -> impl Iterator<Item = usize> + '_ {
 /// How far from its first body the middle of a tree may be for [`near_the_middle`].
 const NEAR: usize = 4;
 
-/// Whether the first bodies of trees are other bodies than those in the middle, but not far from them.
+/// Whether the first bodies of trees are other bodies than those in the middle, but not far from them, and nothing but turns lies between.
 pub(super) fn near_the_middle<S: Scalar>(model: &Model<S>) -> bool {
-    let depth = |i: usize| core::iter::successors(Some(i), |&i| Some(model.bodies[i].parent).filter(|p| *p != 0)).count();
-    let depths = || middles(model).into_iter().map(depth);
-    depths().any(|d| d > 1) && depths().all(|d| d <= NEAR)
+    let way = |i: usize| core::iter::successors(Some(i), |&i| Some(model.bodies[i].parent).filter(|p| *p != 0));
+    let ways = || middles(model).into_iter().map(way);
+    let turns = |i: usize| model.bodies[i].joint == Joint::Revolute;
+    ways().any(|way| way.count() > 1) && ways().all(|way| way.clone().count() <= NEAR && way.into_iter().all(turns))
 }
 
 impl Centers {

@@ -3,8 +3,8 @@
 mod build;
 mod limbs;
 mod massless;
-mod parallel;
 pub mod pass;
+mod unturned;
 
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
@@ -13,6 +13,7 @@ use nalgebra::{Matrix3, Vector3};
 
 pub use build::ModelError;
 pub use limbs::Limbs;
+pub use unturned::Unturned;
 
 use crate::Scalar;
 use crate::description::{JointKind, Limit};
