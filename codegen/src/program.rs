@@ -150,15 +150,14 @@ impl Subject<'_> {
     }
 }
 
-/// Up to so many degrees of freedom bodies are tried with frames that do not turn.
-const UNTURNED_TO: usize = 64;
+/// What costs more than this is not tried with frames that do not turn: it would gain a hundredth, and takes long to trace.
+const UNTURNED_TO: u32 = 2500;
 
 /// The way that costs least once the graph passes are done. With parameters, model passes may cost more than they save: then they are not taken.
 fn cheapest(part: &Part, subject: &Subject, all: usize) -> Choice {
     let few = if subject.parameters.is_empty() { all..=all } else { 0..=all };
     let ways = ways(part, subject.model);
-    let may = subject.parameters.is_empty() && subject.model.nv <= UNTURNED_TO;
-    let unturned = if may { unturnable(part, subject.model) } else { Vec::new() };
+    let unturned = if subject.parameters.is_empty() { unturnable(part, subject.model) } else { Vec::new() };
     let unturned: Vec<Option<Unturned>> = once(None).chain(unturned.into_iter().map(Some)).collect();
     let of = |way, passes| unturned.iter().map(move |&unturned| Choice { way, passes, unturned });
     let candidates: Vec<(Choice, u64)> =
@@ -170,7 +169,7 @@ fn cheapest(part: &Part, subject: &Subject, all: usize) -> Choice {
     let mut best: Option<(Choice, u32)> = None;
     for (choice, least) in candidates {
         // A way whose least is more than another's cost is not tried: the factorisation of a long chain grows with the cube of its length.
-        if best.is_some_and(|(_, cost)| least > u64::from(cost)) {
+        if best.is_some_and(|(_, cost)| least > u64::from(cost) || choice.unturned.is_some() && cost > UNTURNED_TO) {
             continue;
         }
         let cost = cost(&alone, choice, subject);
