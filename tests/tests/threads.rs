@@ -146,8 +146,9 @@ fn no_state_is_allocated_for() {
         });
         ALLOCATIONS.load(Ordering::Relaxed) - before
     };
-    allocations(1000);
-    // What the pool allocates for its queues is little, and no more for forty times as many parts.
-    let found = [1000, 100_000].map(allocations);
+    // What the pool allocates for its queues, and for a thread when it first finds work, is little, and no more for a hundred times as many parts: the least of some runs, as a thread may
+    // find none for a while.
+    let found = [1000, 100_000].map(|n| (0..5).map(|_| allocations(n)).min());
+    let found = found.map(Option::unwrap_or_default);
     assert!(found.iter().all(|n| *n <= 8), "{found:?}");
 }
