@@ -27,7 +27,8 @@ pub(super) fn given(arguments: &[&[f64]]) -> Vec<Vec<Magnitude>> {
     arguments.iter().map(|x| x.iter().map(|x| Magnitude::from_f64(*x)).collect()).collect()
 }
 
-/// What a function gives with these arguments, in its first way: others may have terms that this one has not, or zeros where it adds up what cancels.
+/// What a function gives with these arguments, in its first way, which is what [`articulated_core::algorithm::Function::call`] takes: in others some
+/// terms are zero that cancel in it, which is no reason to ask more of it.
 pub(super) fn magnitudes(model: &Model<f64>, name: &str, arguments: &[Vec<Magnitude>]) -> Result<Vec<Magnitude>, FunctionError> {
     let row = function::<Magnitude>(name).ok_or(UNKNOWN)?;
     let model = constants(model);

@@ -10,6 +10,7 @@
 
 use core::marker::PhantomData;
 
+use super::workspace::near_the_middle;
 #[allow(clippy::wildcard_imports)]
 // Why: the rows name every algorithm there is.
 use super::*;
@@ -197,28 +198,21 @@ macro_rules! ways {
     ($name:ident, $arguments:tt, [$($way:literal, $applies:ident, $least:ident, $run:ident $(in $axes:ident)?);+]) => {
         &[$(ways!(one $way, $applies, $least, $run, $arguments $(, in $axes)?)),+]
     };
-    (one $way:literal, $applies:ident, $least:ident, $run:ident, ($($argument:ident),*), in $axes:ident) => {
-        Way {
-            name: $way,
-            applies: $applies,
-            least: $least,
-            run: |model, ws, arguments, out| {
-                if let &[$($argument),*] = arguments {
-                    ws.$axes(|ws| $run(model, ws, $($argument,)* out));
-                }
-            },
+    (one $way:literal, $applies:ident, $least:ident, $run:ident, $arguments:tt $(, in $axes:ident)?) => {
+        Way { name: $way, applies: $applies, least: $least, run: ways!(run $run, $arguments $(, in $axes)?) }
+    };
+    (run $run:ident, ($($argument:ident),*)) => {
+        |model, ws, arguments, out| {
+            if let &[$($argument),*] = arguments {
+                $run(model, ws, $($argument,)* out);
+            }
         }
     };
-    (one $way:literal, $applies:ident, $least:ident, $run:ident, ($($argument:ident),*)) => {
-        Way {
-            name: $way,
-            applies: $applies,
-            least: $least,
-            run: |model, ws, arguments, out| {
-                if let &[$($argument),*] = arguments {
-                    $run(model, ws, $($argument,)* out);
-                }
-            },
+    (run $run:ident, ($($argument:ident),*), in $axes:ident) => {
+        |model, ws, arguments, out| {
+            if let &[$($argument),*] = arguments {
+                ws.$axes(|ws| $run(model, ws, $($argument,)* out));
+            }
         }
     };
 }
@@ -281,11 +275,6 @@ fn always<S>(_: &Model<S>) -> bool {
 
 fn nothing<S>(_: &Model<S>) -> u64 {
     0
-}
-
-/// Whether the axes of first bodies are others than those in the middle, and may be cheaper: where neighbouring axes are parallel, zeros are not where the middle is.
-fn near_the_middle<S: Scalar>(model: &Model<S>) -> bool {
-    super::workspace::near_the_middle(model)
 }
 
 /// Multiplications of M = Lᵀ D L.

@@ -224,7 +224,8 @@ fn firsts<S: Scalar>(model: &Model<S>) -> impl Iterator<Item = usize> + '_ {
 /// How far from its first body the middle of a tree may be for [`near_the_middle`].
 const NEAR: usize = 4;
 
-/// Whether the first bodies of trees are other bodies than those in the middle, but not far from them, and nothing but turns lies between.
+/// Whether the first bodies of trees are other bodies than those in the middle, but not far from them, and nothing but turns lies between: then theirs may be the cheaper
+/// axes, as zeros of parallel joints are not where the middle is.
 pub(super) fn near_the_middle<S: Scalar>(model: &Model<S>) -> bool {
     let way = |i: usize| core::iter::successors(Some(i), |&i| Some(model.bodies[i].parent).filter(|p| *p != 0));
     let ways = || middles(model).into_iter().map(way);

@@ -136,7 +136,7 @@ impl<S: Scalar> Coordinates<S> {
         }
     }
 
-    /// Sine and cosine of the angle by which the frame of a revolute joint is turned.
+    /// Sine and cosine of the angle by which the frame of a revolute joint is turned; q: `[nq]`, rad.
     #[inline(always)]
     pub fn turned(&self, q: &[S]) -> (S, S) {
         if self.turns.is_zero() {

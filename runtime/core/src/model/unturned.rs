@@ -21,7 +21,10 @@ pub enum Unturned {
 impl<S: Scalar> Model<S> {
     /// The model as it is at the configuration q, where the frames of these bodies stay, and their constants are turned instead (offsets, moments of mass), by the sum of the angles.
     ///
-    /// Joint torques, M(q) and whatever follows from them are those of the model itself, at this q alone; frames are not kept, and effects on bodies must not be there.
+    /// q: `[nq]` rad|m|quaternion. Joint torques, M(q) and whatever follows from them are those of the model itself, at this q alone; frames are not kept, and effects on bodies must not be there.
+    ///
+    /// # Panics
+    /// If q is shorter than stated.
     pub fn unturned(&self, q: &[S], which: Unturned) -> Self {
         let mut model = self.clone();
         model.frames.clear();
@@ -44,7 +47,7 @@ impl<S: Scalar> Model<S> {
         model
     }
 
-    /// What there is to choose from: nothing where no body is of the kind.
+    /// What [`Model::unturned`] has to choose from: nothing where no body is of the kind.
     pub fn unturnable(&self) -> Vec<Unturned> {
         let [none, parallel, all] = [vec![false; self.bodies.len()], self.stays(Unturned::Parallel), self.stays(Unturned::ParallelAndLast)];
         let mut choices = Vec::new();

@@ -87,7 +87,7 @@ impl<S: Scalar> SpatialInertia<S> {
 
     /// Whether the body is the same from all sides about z.
     #[inline(always)]
-    pub fn is_round(&self) -> bool {
+    pub(crate) fn is_round(&self) -> bool {
         let (h, m) = (&self.first, &self.second);
         m.m11 == m.m22 && [m.m12, m.m13, m.m23, h.x, h.y].iter().all(S::is_zero)
     }

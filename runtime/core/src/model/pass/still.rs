@@ -18,7 +18,7 @@ pub fn still<S: Scalar>(mut model: Model<S>) -> Model<S> {
     model.outward().for_each(|i| carries[model.bodies[i].parent] = true);
     model.frames.iter().for_each(|frame| carries[frame.body] = true);
     for (body, _) in model.bodies.iter_mut().zip(carries).skip(1).filter(|(_, carries)| !carries) {
-        if body.joint == Joint::Revolute && body.effects.body.is_empty() && is_round(body) {
+        if body.joint == Joint::Revolute && body.effects.body.is_empty() && made_round(body) {
             body.coordinates.turns = S::zero();
         }
     }
@@ -26,7 +26,7 @@ pub fn still<S: Scalar>(mut model: Model<S>) -> Model<S> {
 }
 
 /// Whether a body is the same from all sides about its z-axis, but for rounding; that is then taken away.
-fn is_round<S: Scalar>(body: &mut Body<S>) -> bool {
+fn made_round<S: Scalar>(body: &mut Body<S>) -> bool {
     let SpatialInertia { first, second, .. } = body.inertia;
     let size = second.m11.abs() + second.m22.abs();
     let across = [second.m12, second.m13, second.m23, second.m11 - second.m22].map(|x| or_zero(x, size));
