@@ -1,7 +1,7 @@
 //! A long function as several short ones, one after the other: compilers take time that grows faster than a function's length, and spill more.
 //!
-//! What one piece makes and a later one needs goes through an array `m`, in which a place is used again once its value is not needed any more.
-//! Inputs are read where they are needed, results are written where they are made.
+//! What one piece makes and a later one needs goes through `m`, in which a place is used again once its value is not needed any more. Its places are fields: a compiler checks
+//! a field in a sixth of the time of an index. Inputs are read where they are needed, results are written where they are made.
 
 use std::fmt::Write;
 
@@ -38,32 +38,60 @@ pub(super) fn cut(graph: &Graph, dialect: &dyn Dialect, places: &[String], zeros
     ((0..plan.pieces.len()).map(write).collect(), plan.slots)
 }
 
-/// The pieces as functions `piece_0`, …, each for the features that the macro around it is given, and `whole`, which calls them.
+/// The pieces as functions `piece_0`, …, each for the features that the macro around it is given, and `whole`, which calls them. Arrays of arrays are one array to them: a compiler
+/// takes as long to check two further indices as for all the rest of a statement.
 pub(super) fn pieces(out: &mut String, graph: &Graph, signature: &Signature, dialect: &dyn Dialect) {
-    let places = signature.places();
+    let flattened = signature.flattened();
+    let places = flattened.as_ref().map_or_else(|| signature.places(), |flat| (0..flat.numbers).map(|k| format!("out[{k}]")).collect());
+    let gives = flattened.as_ref().map_or_else(|| signature.filled(), |flat| flat.ty.clone());
     let (pieces, slots) = cut(graph, dialect, &places, &zeros(graph, signature, dialect, &places), LENGTH);
-    let (arguments, names, gives) = (signature.arguments(), signature.names(), signature.filled());
-    let (takes, returns) = (signature.takes(), signature.returns());
-    let (ty, zero) = dialect.value();
+    kept(out, "Kept", dialect, slots);
     for (c, piece) in pieces.iter().enumerate() {
         let _ = writeln!(out, "    $(#[$features])?\n    #[inline(never)]");
-        let _ = writeln!(out, "    fn piece_{c}({arguments}, m: &mut [{ty}; {slots}], out: &mut {gives}) {{");
+        let _ = writeln!(out, "    fn piece_{c}({}, m: &mut Kept, out: &mut {gives}) {{", signature.arguments());
         for input in &signature.inputs {
             let _ = writeln!(out, "    let _ = {};", input.name);
         }
         let _ = writeln!(out, "    let _ = (&m, &out);\n{}{piece}    }}", dialect.beginning());
     }
-    let _ = writeln!(out, "    $(#[$features])?\n    fn whole({takes}){returns} {{");
-    let _ = writeln!(out, "    let mut m = [{zero}; {slots}];");
+    let _ = writeln!(out, "    $(#[$features])?\n    fn whole({}){} {{", signature.takes(), signature.returns());
+    *out += &nothing_kept("Kept", dialect, slots);
+    calls(out, signature, pieces.len());
+    *out += "    }\n";
+}
+
+/// What calls so many pieces, and the result if it is a value.
+fn calls(out: &mut String, signature: &Signature, pieces: usize) {
     let filled = signature.place == Place::Filled;
-    let place = if filled { "out" } else { "&mut out" };
     if !filled {
         let _ = writeln!(out, "    let mut out = {};", signature.nothing());
     }
-    for c in 0..pieces.len() {
-        let _ = writeln!(out, "    piece_{c}({names}, &mut m, {place});");
+    let place = if let Some(flat) = signature.flattened() {
+        let all = format!("out{}.first_chunk_mut()", ".as_flattened_mut()".repeat(flat.nests));
+        let _ = writeln!(out, "    let ::core::option::Option::Some(flat) = {all} else {{ ::core::unreachable!() }};");
+        "flat"
+    } else if filled {
+        "out"
+    } else {
+        "&mut out"
+    };
+    for c in 0..pieces {
+        let _ = writeln!(out, "    piece_{c}({}, &mut m, {place});", signature.names());
     }
-    *out += if filled { "    }\n" } else { "    out\n    }\n" };
+    *out += if filled { "" } else { "    out\n" };
+}
+
+/// The type of `m`, with so many places.
+pub(super) fn kept(out: &mut String, name: &str, dialect: &dyn Dialect, slots: usize) {
+    let ty = dialect.value().0;
+    let fields: Vec<String> = (0..slots).map(|slot| format!("m{slot}: {ty}")).collect();
+    let _ = writeln!(out, "    #[allow(dead_code, non_camel_case_types)]\n    struct {name} {{ {} }}", fields.join(", "));
+}
+
+/// The statements that make such an `m`.
+pub(super) fn nothing_kept(name: &str, dialect: &dyn Dialect, slots: usize) -> String {
+    let fields: Vec<String> = (0..slots).map(|slot| format!("m{slot}: zero")).collect();
+    format!("    let zero = {};\n    let mut m = {name} {{ {} }};\n", dialect.value().1, fields.join(", "))
 }
 
 /// From this many results and nodes on each result is written as soon as it is made: kept until the end, they would fill the registers. Of a small
@@ -213,7 +241,7 @@ impl Piece<'_> {
             for k in unit.makes() {
                 self.named[k] = self.c;
                 if let Some(slot) = self.plan.slot[k] {
-                    let _ = writeln!(out, "    m[{slot}] = x{k};");
+                    let _ = writeln!(out, "    m.m{slot} = x{k};");
                 }
                 self.give(out, k, places);
             }
@@ -241,7 +269,7 @@ impl Piece<'_> {
             self.graph.nodes()[k].operands().for_each(|o| self.name(out, o.index()));
             *out += &Unit::Node(k).written(self.graph, self.dialect).unwrap_or_default();
         } else if let Some(slot) = self.plan.slot[k] {
-            let _ = writeln!(out, "    let x{k} = m[{slot}];");
+            let _ = writeln!(out, "    let x{k} = m.m{slot};");
         }
     }
 }

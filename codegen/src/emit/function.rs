@@ -185,9 +185,11 @@ fn lanes_calls(out: &mut String, graph: &Graph, signature: &Signature) {
         sets::COMPILED_FOR_AVX2,
     );
     block("#[cfg(target_arch = \"x86_64\")]", "avx2", "#[target_feature(enable = \"avx2,fma\")]", &calls);
+    let calls = format!("        // SAFETY: every x86-64 processor has it.\n        return unsafe {{ whole({names}) }};\n");
+    block(sets::NOT_COMPILED_FOR_AVX2, "sse2", "#[target_feature(enable = \"sse2,fxsr\")]", &calls);
     let calls = format!("        // SAFETY: every 64-bit Arm processor has it.\n        return unsafe {{ whole({names}) }};\n");
     block("#[cfg(target_arch = \"aarch64\")]", "neon", "#[target_feature(enable = \"neon\")]", &calls);
-    block(sets::NEITHER, "portable", "", &format!("        whole({names})\n"));
+    block(sets::OTHERS, "portable", "", &format!("        whole({names})\n"));
 }
 
 fn document(out: &mut String, program: &Program, signature: &Signature, context: Context) {

@@ -21,9 +21,8 @@ pub(super) const NOT_COMPILED_FOR_AVX2: &str =
 /// Stands before what is for builds that run with AVX2 and FMA alone.
 pub(super) const COMPILED_FOR_AVX2: &str = "#[cfg(all(target_feature = \"avx2\", target_feature = \"fma\"))]";
 
-/// Stands before what is for processors that have neither AVX2 nor NEON.
-pub(super) const NEITHER: &str =
-    "#[cfg(not(any(target_arch = \"aarch64\", all(target_arch = \"x86_64\", target_feature = \"avx2\", target_feature = \"fma\"))))]";
+/// Stands before what is for processors other than x86-64 and 64-bit Arm.
+pub(super) const OTHERS: &str = "#[cfg(not(any(target_arch = \"aarch64\", target_arch = \"x86_64\")))]";
 
 /// What the functions call: multiply-adds, sines, lanes.
 pub(super) fn support(out: &mut String, programs: &[Program], forbid_unsafe: bool, level: Level) {
@@ -73,8 +72,9 @@ fn lanes(out: &mut String, widths: &[usize], forbid_unsafe: bool, level: Level) 
 }
 
 /// The instruction sets of limbs and sines.
-const SETS: [(Set, &str, &str); 3] = [
+const SETS: [(Set, &str, &str); 4] = [
     (Set::Portable, "portable", ""),
+    (Set::Sse2, "sse2", "#[cfg(all(target_arch = \"x86_64\", not(all(target_feature = \"avx2\", target_feature = \"fma\"))))]\n"),
     (Set::Avx2, "avx2", "#[cfg(target_arch = \"x86_64\")]\n"),
     (Set::Neon, "neon", "#[cfg(target_arch = \"aarch64\")]\n"),
 ];
@@ -175,6 +175,17 @@ mod two {
                 [_mm256_castpd256_pd128(sin), _mm256_extractf128_pd::<1>(sin)],
                 [_mm256_castpd256_pd128(cos), _mm256_extractf128_pd::<1>(cos)],
             ]
+        }
+    }
+    #[cfg(all(target_arch = \"x86_64\", not(all(target_feature = \"avx2\", target_feature = \"fma\"))))]
+    pub(super) mod sse2 {
+        use super::super::sse2_f64x2::{V, sin_cos};
+
+        #[inline]
+        #[target_feature(enable = \"sse2,fxsr\")]
+        pub(in super::super) fn sin_cos_of_two(a: V, b: V) -> [[V; 2]; 2] {
+            let ((s, c), (t, d)) = (sin_cos(a), sin_cos(b));
+            [[s, t], [c, d]]
         }
     }
     #[cfg(target_arch = \"aarch64\")]

@@ -70,6 +70,14 @@ impl Place {
     }
 }
 
+/// An array of arrays as one.
+pub(super) struct Flat {
+    pub(super) ty: String,
+    pub(super) numbers: usize,
+    /// Arrays of one another, less one.
+    pub(super) nests: usize,
+}
+
 /// A function's arguments and results.
 pub(super) struct Signature<'a> {
     pub(super) wanted: &'a Wanted,
@@ -142,6 +150,16 @@ impl<'a> Signature<'a> {
     /// Whether there is a form that writes into what the caller has: wherever the result is more than a number.
     pub(super) fn has_into(&self) -> bool {
         self.group.is_some() || !self.wanted.parts[0].function.gives.is_empty()
+    }
+
+    /// What a body fills as one array, where it is an array of arrays.
+    pub(super) fn flattened(&self) -> Option<Flat> {
+        let nests = self.wanted.parts[0].function.gives.len().checked_sub(1)?;
+        if nests == 0 || self.group.is_some() || self.columns.is_some() {
+            return None;
+        }
+        let numbers = self.wanted.parts[0].function.len(self.sizes);
+        Some(Flat { ty: format!("[{}; {numbers}]", self.real), numbers, nests })
     }
 
     /// The type of the result.

@@ -22,7 +22,7 @@ use self::arrays::{Array, each, inputs, results};
 use self::block::Block;
 use self::text::{PUBLIC, SUPPORT};
 use self::ways::{SAFE, WAYS, Way};
-use super::chunks::cut;
+use super::chunks::{cut, kept, nothing_kept};
 use super::dialect::Dialect;
 use super::flat::flat;
 use super::function::Context;
@@ -173,20 +173,22 @@ impl<'a> Batch<'a> {
         let block = Block(Vector { graph: self.graph, signature: &self.signature });
         let length = if self.graph.nodes().len() < CUT_FROM { usize::MAX } else { LENGTH };
         let (pieces, slots) = cut(self.graph, &block, &self.places(), &[], length);
-        let (ty, zero) = block.value();
+        let m = format!("{name}_kept");
+        kept(out, &m, &block, slots);
         let mut calls = String::new();
         for (c, piece) in pieces.iter().enumerate() {
             let _ = writeln!(out, "    $(#[$features])?\n    #[inline(never)]");
             let _ = writeln!(
                 out,
-                "    fn {name}_piece_{c}({declared}part: usize, m: &mut [{ty}; {slots}]) {{\n{}{piece}    }}\n",
+                "    fn {name}_piece_{c}({declared}part: usize, m: &mut {m}) {{\n{}{piece}    }}\n",
                 block.beginning(),
-                piece = flat(piece, ty)
+                piece = flat(piece, block.value().0)
             );
             let _ = writeln!(calls, "        {name}_piece_{c}({names}part, &mut m);");
         }
         let _ = writeln!(out, "    $(#[$features])?\n    #[inline(never)]\n    fn {name}_block({declared}) {{");
-        let _ = writeln!(out, "        let mut m = [{zero}; {slots}];\n        for part in 0..PARTS {{\n{calls}        }}\n    }}\n");
+        *out += &nothing_kept(&m, &block, slots);
+        let _ = writeln!(out, "        for part in 0..PARTS {{\n{calls}        }}\n    }}\n");
     }
 
     /// Where each number of the results is put.

@@ -60,7 +60,8 @@ impl Set {
     pub fn features(self) -> &'static str {
         match self {
             Self::Portable => "",
-            Self::Sse2 => "sse2",
+            // The second says nothing, every x86-64 has it, but sets these functions apart from arithmetic in registers.
+            Self::Sse2 => "sse2,fxsr",
             Self::Avx2 => "avx2,fma",
             Self::Avx512 => "avx512f,avx512dq,avx2,fma",
             Self::Neon => "neon",
@@ -155,20 +156,20 @@ modules! {
     portable_f32x16, Portable, F32, 16, all():
         ["portable_f32" "portable_16" "portable" "portable_f32_reduce" "common" "f32" "f32_fused" "f32_split"]
         tiles ["tiles_portable"];
-    sse2_f64x2, Sse2, F64, 2, target_arch = "x86_64": ["sse2_f64x2" "sse2" "register" "common" "f64" "f64_split"]
+    sse2_f64x2, Sse2, F64, 2, target_arch = "x86_64": ["sse2_f64x2" "in_registers" "sse2" "register" "common" "f64" "f64_split"]
         tiles ["tiles" "tiles_16_bytes" "tiles_register" "tiles_f64" "tiles_sse2_f64"];
     sse2_f64x4, Sse2, F64, 4, target_arch = "x86_64": ["pair_sse2" "pair" "put" "rows"]
-        half ["sse2_f64x2" "sse2" "register" "common" "f64" "f64_split"];
-    sse2_f32x4, Sse2, F32, 4, target_arch = "x86_64": ["sse2_f32x4" "sse2" "register" "common" "f32" "f32_split"]
+        half ["sse2_f64x2" "in_registers" "sse2" "register" "common" "f64" "f64_split"];
+    sse2_f32x4, Sse2, F32, 4, target_arch = "x86_64": ["sse2_f32x4" "in_registers" "sse2" "register" "common" "f32" "f32_split"]
         tiles ["tiles" "tiles_16_bytes" "tiles_register" "tiles_f32" "tiles_sse2_f32"];
-    avx2_f64x2, Avx2, F64, 2, target_arch = "x86_64": ["avx2_f64x2" "avx2" "register" "common" "f64" "f64_fused"];
-    avx2_f64x4, Avx2, F64, 4, target_arch = "x86_64": ["avx2_f64x4" "avx2" "register" "common" "put" "rows_avx2" "f64" "f64_fused"]
+    avx2_f64x2, Avx2, F64, 2, target_arch = "x86_64": ["avx2_f64x2" "in_registers" "in_registers_fused" "avx2" "register" "common" "f64" "f64_fused"];
+    avx2_f64x4, Avx2, F64, 4, target_arch = "x86_64": ["avx2_f64x4" "in_registers" "in_registers_fused" "avx2" "register" "common" "put" "rows_avx2" "f64" "f64_fused"]
         tiles ["tiles" "tiles_32_bytes" "tiles_register" "tiles_f64" "tiles_avx2_f64"];
-    avx2_f32x8, Avx2, F32, 8, target_arch = "x86_64": ["avx2_f32x8" "avx2" "register" "common" "f32" "f32_fused"]
+    avx2_f32x8, Avx2, F32, 8, target_arch = "x86_64": ["avx2_f32x8" "in_registers" "in_registers_fused" "avx2" "register" "common" "f32" "f32_fused"]
         tiles ["tiles" "tiles_32_bytes" "tiles_register" "tiles_f32" "tiles_avx2_f32"];
-    avx512_f64x8, Avx512, F64, 8, target_arch = "x86_64": ["avx512_f64x8" "avx512" "register" "common" "f64" "f64_fused"]
+    avx512_f64x8, Avx512, F64, 8, target_arch = "x86_64": ["avx512_f64x8" "in_registers" "in_registers_fused" "avx512" "register" "common" "f64" "f64_fused"]
         tiles ["tiles" "tiles_32_bytes" "tiles_register" "tiles_f64" "tiles_avx2_f64"];
-    avx512_f32x16, Avx512, F32, 16, target_arch = "x86_64": ["avx512_f32x16" "avx512" "register" "common" "f32" "f32_fused"]
+    avx512_f32x16, Avx512, F32, 16, target_arch = "x86_64": ["avx512_f32x16" "in_registers" "in_registers_fused" "avx512" "register" "common" "f32" "f32_fused"]
         tiles ["tiles" "tiles_32_bytes" "tiles_register" "tiles_f32" "tiles_avx2_f32"];
     neon_f64x2, Neon, F64, 2, target_arch = "aarch64": ["neon_f64x2" "neon" "register" "common" "f64" "f64_fused"]
         tiles ["tiles" "tiles_16_bytes" "tiles_register" "tiles_f64" "tiles_neon_f64"];

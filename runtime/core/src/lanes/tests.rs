@@ -161,11 +161,11 @@ suite!(portable_f32x8, f32, super::FMA, Portable);
 suite!(portable_f32x16, f32, super::FMA, Portable);
 
 #[cfg(target_arch = "x86_64")]
-suite!(sse2_f64x2, f64, false, Sse2, #[target_feature(enable = "sse2")]);
+suite!(sse2_f64x2, f64, false, Sse2, #[target_feature(enable = "sse2,fxsr")]);
 #[cfg(target_arch = "x86_64")]
-suite!(sse2_f64x4, f64, false, Sse2, #[target_feature(enable = "sse2")]);
+suite!(sse2_f64x4, f64, false, Sse2, #[target_feature(enable = "sse2,fxsr")]);
 #[cfg(target_arch = "x86_64")]
-suite!(sse2_f32x4, f32, false, Sse2, #[target_feature(enable = "sse2")]);
+suite!(sse2_f32x4, f32, false, Sse2, #[target_feature(enable = "sse2,fxsr")]);
 #[cfg(target_arch = "x86_64")]
 suite!(avx2_f64x2, f64, true, Avx2, #[target_feature(enable = "avx2,fma")]);
 #[cfg(target_arch = "x86_64")]
@@ -189,8 +189,8 @@ fn sums_over_the_lanes() {
     sum!(portable_f64x4, Portable);
     #[cfg(target_arch = "x86_64")]
     {
-        sum!(sse2_f64x2, Sse2, #[target_feature(enable = "sse2")]);
-        sum!(sse2_f64x4, Sse2, #[target_feature(enable = "sse2")]);
+        sum!(sse2_f64x2, Sse2, #[target_feature(enable = "sse2,fxsr")]);
+        sum!(sse2_f64x4, Sse2, #[target_feature(enable = "sse2,fxsr")]);
         sum!(avx2_f64x2, Avx2, #[target_feature(enable = "avx2,fma")]);
         sum!(avx2_f64x4, Avx2, #[target_feature(enable = "avx2,fma")]);
     }

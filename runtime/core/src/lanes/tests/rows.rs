@@ -60,7 +60,7 @@ fn each_lane_s_numbers_stand_where_they_were_put() {
     rows!(portable_f64x4, Portable);
     #[cfg(target_arch = "x86_64")]
     {
-        rows!(sse2_f64x4, Sse2, #[target_feature(enable = "sse2")]);
+        rows!(sse2_f64x4, Sse2, #[target_feature(enable = "sse2,fxsr")]);
         rows!(avx2_f64x4, Avx2, #[target_feature(enable = "avx2,fma")]);
     }
     #[cfg(target_arch = "aarch64")]

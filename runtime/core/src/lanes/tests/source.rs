@@ -22,9 +22,11 @@ fn sources_are_for_the_features_of_their_set() {
             let text = source(set, real, lanes);
             assert_eq!(text.is_some(), widths.contains(&lanes), "{set:?} {real:?} {lanes}");
             let Some(text) = text.map(|text| text + &tiles(set, real, lanes).unwrap_or_default()) else { continue };
-            let features = text.matches("target_feature(enable").count();
-            assert_eq!(features, text.matches(&format!("#[target_feature(enable = \"{}\")]", set.features())).count());
-            assert_eq!(features == 0, set == Set::Portable);
+            let enabled: Vec<&str> =
+                text.split("#[target_feature(enable = \"").skip(1).filter_map(|rest| Some(rest.split_once("\")]")?.0)).collect();
+            assert_eq!(enabled.len(), text.matches("target_feature(enable").count());
+            assert!(enabled.iter().flat_map(|some| some.split(',')).all(|one| set.features().split(',').any(|of_set| one == of_set)));
+            assert_eq!(enabled.contains(&set.features()), set != Set::Portable);
             assert!(set == Set::Portable || text.contains(&format!("::core::arch::{}::", set.arch())));
         }
     }

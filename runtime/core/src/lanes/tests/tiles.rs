@@ -68,9 +68,9 @@ tiles!(portable_f64x8, f64, Portable);
 tiles!(portable_f32x16, f32, Portable);
 
 #[cfg(target_arch = "x86_64")]
-tiles!(sse2_f64x2, f64, Sse2, #[target_feature(enable = "sse2")]);
+tiles!(sse2_f64x2, f64, Sse2, #[target_feature(enable = "sse2,fxsr")]);
 #[cfg(target_arch = "x86_64")]
-tiles!(sse2_f32x4, f32, Sse2, #[target_feature(enable = "sse2")]);
+tiles!(sse2_f32x4, f32, Sse2, #[target_feature(enable = "sse2,fxsr")]);
 #[cfg(target_arch = "x86_64")]
 tiles!(avx2_f64x4, f64, Avx2, #[target_feature(enable = "avx2,fma")]);
 #[cfg(target_arch = "x86_64")]

@@ -3,10 +3,6 @@
 const BITS: i32 = 8 * ::core::mem::size_of::<Real>() as i32;
 
 lane_functions! {
-    pub(super) fn neg(x: V) -> V {
-        xor(x, k(-0.0))
-    }
-
     pub(super) fn positive(x: V) -> M {
         compare::<GREATER>(x, k(0.0))
     }

@@ -1,4 +1,4 @@
 macro_rules! four_functions {
-    ($($item:item)*) => { $(#[inline] #[target_feature(enable = "sse2")] $item)* };
+    ($($item:item)*) => { $(#[inline] #[target_feature(enable = "sse2,fxsr")] $item)* };
 }
 

@@ -2,27 +2,25 @@
 /// Bits of a lane.
 const BITS: i32 = 8 * ::core::mem::size_of::<Real>() as i32;
 
-lane_functions! {
-    pub(super) fn neg(x: V) -> V {
-        xor(x, k(-0.0))
-    }
-
-    pub(super) fn fmadd(a: V, b: V, c: V) -> V {
+register_functions! {
+    pub(super) extern "C" fn fmadd(a: V, b: V, c: V) -> V {
         add(mul(a, b), c)
     }
 
-    pub(super) fn fmsub(a: V, b: V, c: V) -> V {
+    pub(super) extern "C" fn fmsub(a: V, b: V, c: V) -> V {
         sub(mul(a, b), c)
     }
 
-    pub(super) fn fnmadd(a: V, b: V, c: V) -> V {
+    pub(super) extern "C" fn fnmadd(a: V, b: V, c: V) -> V {
         sub(c, mul(a, b))
     }
 
-    pub(super) fn fnmsub(a: V, b: V, c: V) -> V {
+    pub(super) extern "C" fn fnmsub(a: V, b: V, c: V) -> V {
         sub(neg(mul(a, b)), c)
     }
+}
 
+lane_functions! {
     pub(super) fn positive(x: V) -> M {
         greater(x, k(0.0))
     }

@@ -5,22 +5,23 @@ pub(super) type V = ::core::arch::x86_64::__m128;
 pub(super) type M = ::core::arch::x86_64::__m128;
 
 macro_rules! lane_functions {
-    ($($item:item)*) => { $(#[inline] #[target_feature(enable = "sse2")] $item)* };
+    ($($item:item)*) => { $(#[inline] #[target_feature(enable = "sse2,fxsr")] $item)* };
 }
 
-pub(super) use ::core::arch::x86_64::{
-    _mm_add_ps as add, _mm_sub_ps as sub, _mm_mul_ps as mul, _mm_div_ps as div, _mm_sqrt_ps as sqrt,
-};
+macro_rules! register_functions {
+    ($($item:item)*) => { $(#[inline] #[target_feature(enable = "sse2")] #[allow(improper_ctypes_definitions)] $item)* };
+}
+
+mod instruction {
+    pub(super) use ::core::arch::x86_64::{
+        _mm_add_ps as add, _mm_sub_ps as sub, _mm_mul_ps as mul, _mm_div_ps as div, _mm_xor_ps as xor, _mm_sqrt_ps as sqrt,
+        _mm_set1_ps as k,
+    };
+}
 use ::core::arch::x86_64::{
     _mm_and_ps as and, _mm_andnot_ps as and_not, _mm_cmpgt_ps as greater, _mm_cmple_ps as at_most, _mm_movemask_ps as signs,
-    _mm_or_ps as or, _mm_xor_ps as xor, _mm_slli_epi32 as shift, _mm_castps_si128 as bits, _mm_castsi128_ps as real,
+    _mm_or_ps as or, _mm_slli_epi32 as shift, _mm_castps_si128 as bits, _mm_castsi128_ps as real,
 };
-
-lane_functions! {
-    pub(super) fn k(x: f64) -> V {
-        ::core::arch::x86_64::_mm_set1_ps(x as f32)
-    }
-}
 
 lane_functions! {
     // All bits of a lane as its lowest.
