@@ -81,17 +81,37 @@ fn calls(out: &mut String, signature: &Signature, pieces: usize) {
     *out += if filled { "" } else { "    out\n" };
 }
 
+/// So many places are fields of one struct: a compiler looks at them one by one.
+const FIELDS: usize = 1024;
+
+/// A place of `m`.
+fn place(slot: usize) -> String {
+    format!("m.k{}.m{}", slot / FIELDS, slot % FIELDS)
+}
+
+/// The places of each struct in `m`: which one, and how many.
+fn structs(slots: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..slots.div_ceil(FIELDS)).map(move |k| (k, FIELDS.min(slots - k * FIELDS)))
+}
+
 /// The type of `m`, with so many places.
 pub(super) fn kept(out: &mut String, name: &str, dialect: &dyn Dialect, slots: usize) {
     let ty = dialect.value().0;
-    let fields: Vec<String> = (0..slots).map(|slot| format!("m{slot}: {ty}")).collect();
-    let _ = writeln!(out, "    #[allow(dead_code, non_camel_case_types)]\n    struct {name} {{ {} }}", fields.join(", "));
+    let mut declare = |name: &str, fields: Vec<String>| {
+        let _ = writeln!(out, "    #[allow(dead_code, non_camel_case_types)]\n    struct {name} {{ {} }}", fields.join(", "));
+    };
+    declare(name, structs(slots).map(|(k, _)| format!("k{k}: {name}_{k}")).collect());
+    structs(slots).for_each(|(k, fields)| declare(&format!("{name}_{k}"), (0..fields).map(|m| format!("m{m}: {ty}")).collect()));
 }
 
 /// The statements that make such an `m`.
 pub(super) fn nothing_kept(name: &str, dialect: &dyn Dialect, slots: usize) -> String {
-    let fields: Vec<String> = (0..slots).map(|slot| format!("m{slot}: zero")).collect();
-    format!("    let zero = {};\n    let mut m = {name} {{ {} }};\n", dialect.value().1, fields.join(", "))
+    let of = |(k, fields)| {
+        let zeros: Vec<String> = (0..fields).map(|m| format!("m{m}: zero")).collect();
+        format!("k{k}: {name}_{k} {{ {} }}", zeros.join(", "))
+    };
+    let all: Vec<String> = structs(slots).map(of).collect();
+    format!("    let zero = {};\n    let mut m = {name} {{ {} }};\n", dialect.value().1, all.join(", "))
 }
 
 /// From this many results and nodes on each result is written as soon as it is made: kept until the end, they would fill the registers. Of a small
@@ -241,7 +261,7 @@ impl Piece<'_> {
             for k in unit.makes() {
                 self.named[k] = self.c;
                 if let Some(slot) = self.plan.slot[k] {
-                    let _ = writeln!(out, "    m.m{slot} = x{k};");
+                    let _ = writeln!(out, "    {} = x{k};", place(slot));
                 }
                 self.give(out, k, places);
             }
@@ -269,7 +289,7 @@ impl Piece<'_> {
             self.graph.nodes()[k].operands().for_each(|o| self.name(out, o.index()));
             *out += &Unit::Node(k).written(self.graph, self.dialect).unwrap_or_default();
         } else if let Some(slot) = self.plan.slot[k] {
-            let _ = writeln!(out, "    let x{k} = m.m{slot};");
+            let _ = writeln!(out, "    let x{k} = {};", place(slot));
         }
     }
 }
@@ -291,6 +311,15 @@ mod tests {
         let late = g.apply(Op::Select, &[positive, values[5], values[202]]);
         g.outputs = vec![values[202], late, values[30]];
         g
+    }
+
+    #[test]
+    fn every_place_is_a_field_and_no_struct_is_long() {
+        for slots in [1, FIELDS, FIELDS + 1, 3 * FIELDS - 1] {
+            let all: Vec<String> = structs(slots).flat_map(|(k, fields)| (0..fields).map(move |m| format!("m.k{k}.m{m}"))).collect();
+            assert_eq!(all, (0..slots).map(place).collect::<Vec<_>>());
+            assert!(structs(slots).all(|(_, fields)| fields <= FIELDS));
+        }
     }
 
     #[test]

@@ -6,7 +6,7 @@ use articulated_tests::measure::{arguments, error};
 use articulated_tests::program::Program;
 use articulated_tests::random::Random;
 
-use crate::robots::{ANYBODYS, CHOSEN, NATIVE, PORTABLE, ROBOTS, Robot};
+use crate::robots::{ANYBODYS, CHOSEN, ELSEWHERE, LANES, NATIVE, PORTABLE, ROBOTS, Robot};
 
 /// Error allowed, in units of u times the yardstick.
 fn allowed(function: &str) -> f64 {
@@ -44,6 +44,9 @@ fn so_does_code_for_any_machine_whatever_instructions_it_has() {
     for robot in ROBOTS.iter().filter(|r| ANYBODYS.contains(&r.name.as_str())) {
         let [chosen, portable] = [&CHOSEN, &PORTABLE].map(|program| compare(program, robot));
         println!("{}: {chosen:.1} units of roundoff, without multiply-add {portable:.1}", robot.name);
+        if robot.name == LANES {
+            println!("{}: {:.1} units of roundoff on another processor", robot.name, compare(&ELSEWHERE, robot));
+        }
     }
 }
 

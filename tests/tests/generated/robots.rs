@@ -93,20 +93,30 @@ pub(crate) static NATIVE: LazyLock<Program> = LazyLock::new(|| {
 });
 
 /// Some of them as `cargo build` compiles for anybody, with every check that the compiler knows: vector instructions and multiply-adds are chosen when it runs.
-pub(crate) static CHOSEN: LazyLock<Program> = LazyLock::new(|| anybodys("with the instructions that there are", |source| source));
+pub(crate) static CHOSEN: LazyLock<Program> =
+    LazyLock::new(|| anybodys(&ANYBODYS, "with the instructions that there are", |source| source));
 
 /// The same on a processor that has neither AVX2 nor fused multiply-add: that is what the programs are told.
 pub(crate) static PORTABLE: LazyLock<Program> = LazyLock::new(|| {
     let asked = "::std::is_x86_feature_detected!(\"avx2\")";
-    anybodys("without multiply-add", |source| source.replace(asked, "false"))
+    anybodys(&ANYBODYS, "without multiply-add", |source| source.replace(asked, "false"))
 });
 
-/// The robots of both.
-pub(crate) const ANYBODYS: [&str; 5] = ["panda_like", "gripper_arm", "tree_1", "stone", "walker"];
+/// The same on a processor that is neither x86-64 nor Arm: its lanes are arrays.
+pub(crate) static ELSEWHERE: LazyLock<Program> = LazyLock::new(|| {
+    let [asked, other] = ["x86_64", "none"].map(|arch| format!("target_arch = \"{arch}\""));
+    anybodys(&[LANES], "for another processor", |source| source.replace(&asked, &other))
+});
 
-fn anybodys(how: &str, change: impl Fn(String) -> String) -> Program {
+/// The robots of the first two.
+pub(crate) const ANYBODYS: [&str; 5] = ["panda_like", "gripper_arm", "tree_1", "stone", LANES];
+
+/// The one with limbs in lanes.
+pub(crate) const LANES: &str = "walker";
+
+fn anybodys(robots: &[&str], how: &str, change: impl Fn(String) -> String) -> Program {
     let find = |name: &&str| ROBOTS.iter().find(|r| r.name == *name).expect("one of them");
-    let some: Vec<&Robot> = ANYBODYS.iter().map(find).collect();
+    let some: Vec<&Robot> = robots.iter().map(find).collect();
     let changed: Vec<Generated> =
         some.iter().map(|r| Generated { source: change(r.generated.source.clone()), ..r.generated.clone() }).collect();
     let named: Vec<(&str, &Generated)> = some.iter().map(|r| r.name.as_str()).zip(&changed).collect();
