@@ -153,11 +153,15 @@ impl Subject<'_> {
 /// What costs more than this is not tried with frames that do not turn: it would gain a hundredth, and takes long to trace.
 const UNTURNED_TO: u32 = 2500;
 
+/// Nor is any function of a robot with more bodies than this: to find out what it costs is to trace it twice.
+const UNTURNED_BODIES: usize = 64;
+
 /// The way that costs least once the graph passes are done. With parameters, model passes may cost more than they save: then they are not taken.
 fn cheapest(part: &Part, subject: &Subject, all: usize) -> Choice {
     let few = if subject.parameters.is_empty() { all..=all } else { 0..=all };
     let ways = ways(part, subject.model);
-    let unturned = if subject.parameters.is_empty() { unturnable(part, subject.model) } else { Vec::new() };
+    let tried = subject.parameters.is_empty() && subject.model.bodies.len() <= UNTURNED_BODIES;
+    let unturned = if tried { unturnable(part, subject.model) } else { Vec::new() };
     let unturned: Vec<Option<Unturned>> = once(None).chain(unturned.into_iter().map(Some)).collect();
     let of = |way, passes| unturned.iter().map(move |&unturned| Choice { way, passes, unturned });
     let candidates: Vec<(Choice, u64)> =
