@@ -1,7 +1,7 @@
 //! A long function as several short ones, one after the other: compilers take time that grows faster than a function's length, and spill more.
 //!
 //! What one piece makes and a later one needs goes through `m`, in which a place is used again once its value is not needed any more. Its places are fields: a compiler checks
-//! a field in a sixth of the time of an index. Inputs are read where they are needed, results are written where they are made.
+//! a field far sooner than an index. Inputs are read where they are needed, results are written where they are made.
 
 use std::fmt::Write;
 
@@ -38,8 +38,8 @@ pub(super) fn cut(graph: &Graph, dialect: &dyn Dialect, places: &[String], zeros
     ((0..plan.pieces.len()).map(write).collect(), plan.slots)
 }
 
-/// The pieces as functions `piece_0`, …, each for the features that the macro around it is given, and `whole`, which calls them. Arrays of arrays are one array to them: a compiler
-/// takes as long to check two further indices as for all the rest of a statement.
+/// The pieces as functions `piece_0`, …, each for the features that the macro around it is given, and `whole`, which calls them. Arrays of arrays are one array to them: to check
+/// further indices takes a compiler long.
 pub(super) fn pieces(out: &mut String, graph: &Graph, signature: &Signature, dialect: &dyn Dialect) {
     let flattened = signature.flattened();
     let places = flattened.as_ref().map_or_else(|| signature.places(), |flat| (0..flat.numbers).map(|k| format!("out[{k}]")).collect());

@@ -62,9 +62,10 @@ fn lanes(out: &mut String, widths: &[usize], forbid_unsafe: bool, level: Level) 
         for (set, name, cfg) in sets {
             let Some(text) = source(*set, Real::F64, *width).map(|text| with_sines(&text, level)) else { continue };
             let _ = writeln!(out, "/// Arithmetic and sines of {width} numbers at once.");
+            let line = if cfg.is_empty() { "" } else { "\n" };
             let _ = writeln!(
                 out,
-                "{cfg}#[allow({lint}dead_code, unused_imports, unused_macros, unreachable_pub, clippy::all, clippy::pedantic)]"
+                "{cfg}{line}#[allow({lint}dead_code, unused_imports, unused_macros, unreachable_pub, clippy::all, clippy::pedantic)]"
             );
             let _ = writeln!(out, "mod {name}_f64x{width} {{\n{text}}}\n");
         }
@@ -74,9 +75,9 @@ fn lanes(out: &mut String, widths: &[usize], forbid_unsafe: bool, level: Level) 
 /// The instruction sets of limbs and sines.
 const SETS: [(Set, &str, &str); 4] = [
     (Set::Portable, "portable", ""),
-    (Set::Sse2, "sse2", "#[cfg(all(target_arch = \"x86_64\", not(all(target_feature = \"avx2\", target_feature = \"fma\"))))]\n"),
-    (Set::Avx2, "avx2", "#[cfg(target_arch = \"x86_64\")]\n"),
-    (Set::Neon, "neon", "#[cfg(target_arch = \"aarch64\")]\n"),
+    (Set::Sse2, "sse2", NOT_COMPILED_FOR_AVX2),
+    (Set::Avx2, "avx2", "#[cfg(target_arch = \"x86_64\")]"),
+    (Set::Neon, "neon", "#[cfg(target_arch = \"aarch64\")]"),
 ];
 
 const FUSED: &str = "\

@@ -74,7 +74,7 @@ impl Place {
 pub(super) struct Flat {
     pub(super) ty: String,
     pub(super) numbers: usize,
-    /// Arrays of one another, less one.
+    /// How many times its elements are arrays themselves.
     pub(super) nests: usize,
 }
 
