@@ -39,7 +39,8 @@ pub(crate) static ROBOTS: LazyLock<Vec<Robot>> = LazyLock::new(|| {
     });
     let stone = "<robot name='stone'><link name='stone'/></robot>";
     let walker = robot("walker".into(), include_str!("../../robots/walker.urdf"), Base::Floating, false);
-    bundled.chain(trees).chain([walker, robot("stone".into(), stone, Base::Fixed, false)]).collect()
+    let strider = robot("strider".into(), include_str!("../../robots/strider.urdf"), Base::Floating, false);
+    bundled.chain(trees).chain([walker, strider, robot("stone".into(), stone, Base::Fixed, false)]).collect()
 });
 
 /// With every function, save those that need what the robot does not have, on one or two frames.
@@ -105,14 +106,14 @@ pub(crate) static PORTABLE: LazyLock<Program> = LazyLock::new(|| {
 /// The same on a processor that is neither x86-64 nor Arm: its lanes are arrays.
 pub(crate) static ELSEWHERE: LazyLock<Program> = LazyLock::new(|| {
     let [asked, other] = ["x86_64", "none"].map(|arch| format!("target_arch = \"{arch}\""));
-    anybodys(&[LANES], "for another processor", |source| source.replace(&asked, &other))
+    anybodys(&LANES.map(|l| l.0), "for another processor", |source| source.replace(&asked, &other))
 });
 
 /// The robots of the first two.
-pub(crate) const ANYBODYS: [&str; 5] = ["panda_like", "gripper_arm", "tree_1", "stone", LANES];
+pub(crate) const ANYBODYS: [&str; 6] = ["panda_like", "gripper_arm", "tree_1", "stone", LANES[0].0, LANES[1].0];
 
-/// The one with limbs in lanes.
-pub(crate) const LANES: &str = "walker";
+/// Those with limbs in lanes, and how many.
+pub(crate) const LANES: [(&str, usize); 2] = [("walker", 4), ("strider", 2)];
 
 fn anybodys(robots: &[&str], how: &str, change: impl Fn(String) -> String) -> Program {
     let find = |name: &&str| ROBOTS.iter().find(|r| r.name == *name).expect("one of them");

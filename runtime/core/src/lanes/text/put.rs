@@ -5,14 +5,15 @@ four_functions! {
     }
 
     pub(super) fn put_two(x: [Real; 2], to: &mut [::core::mem::MaybeUninit<Real>], at: usize) {
-        if let ::core::option::Option::Some(to) = to[at..].first_chunk_mut() {
+        if let ::core::option::Option::Some(to) = to[at..at + 2].first_chunk_mut() {
             *to = x.map(::core::mem::MaybeUninit::new);
         }
     }
 
     pub(super) fn put(x: V, to: &mut [::core::mem::MaybeUninit<Real>], at: usize) {
-        if let ::core::option::Option::Some(to) = to[at..].first_chunk_mut() {
-            *to = array(x).map(::core::mem::MaybeUninit::new);
+        let x = array(x);
+        if let ::core::option::Option::Some(to) = to[at..at + x.len()].first_chunk_mut() {
+            *to = x.map(::core::mem::MaybeUninit::new);
         }
     }
 }
