@@ -5,6 +5,7 @@
 
 use std::fmt::Write;
 
+use super::apart;
 use super::dialect::{Dialect, Unit, units};
 use super::flat::flat;
 use super::signature::{Place, Signature};
@@ -125,11 +126,19 @@ pub(super) fn gives_much(graph: &Graph) -> bool {
 
 /// The statements of a function in one piece that gives much.
 pub(super) fn one_piece(out: &mut String, graph: &Graph, signature: &Signature, dialect: &dyn Dialect) {
-    let places = signature.places();
+    let apart = signature.flattened().filter(|_| apart::keeps_apart(graph, dialect));
+    let places = apart.as_ref().map_or_else(|| signature.places(), |flat| (0..flat.numbers).map(apart::place).collect());
     let (pieces, _) = cut(graph, dialect, &places, &zeros(graph, signature, dialect, &places), usize::MAX);
-    pieces
-        .iter()
-        .for_each(|piece| *out += &flat(&if dialect.stores_two() { two_at_once(piece) } else { piece.clone() }, dialect.value().0));
+    let statements = pieces.concat();
+    let statements = match &apart {
+        Some(flat) => {
+            apart::pointers(out, flat);
+            apart::written(&statements)
+        }
+        None if dialect.stores_two() => two_at_once(&statements),
+        None => statements,
+    };
+    *out += &flat(&statements, dialect.value().0);
 }
 
 /// The statements that write zeros, where the result may hold anything.

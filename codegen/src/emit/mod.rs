@@ -1,5 +1,6 @@
 //! From graphs to Rust.
 
+mod apart;
 mod batch;
 mod chunks;
 mod columns;
