@@ -20,6 +20,7 @@ mod rows;
 mod sets;
 mod signature;
 mod together;
+mod used;
 mod vector;
 mod warnings;
 mod written;

@@ -7,6 +7,7 @@ use articulated_core::level::with_sines;
 
 use super::columns::Layout;
 use super::function::{in_lanes, needs_choice};
+use super::used::{Caller, used};
 use super::{levels, plain};
 use crate::Level;
 use crate::program::Program;
@@ -54,13 +55,15 @@ pub(super) fn support(out: &mut String, programs: &[Program], forbid_unsafe: boo
     }
 }
 
-/// The modules of lanes in these widths.
+/// The modules of lanes in these widths: what is called in `out` of them.
 fn lanes(out: &mut String, widths: &[usize], forbid_unsafe: bool, level: Level) {
+    let caller = Caller::new(out.as_str());
     let sets: &[(Set, &str, &str)] = if forbid_unsafe { &SETS[..1] } else { &SETS };
     let lint = if forbid_unsafe { "" } else { "unsafe_code, " };
     for width in widths {
         for (set, name, cfg) in sets {
             let Some(text) = source(*set, Real::F64, *width).map(|text| with_sines(&text, level)) else { continue };
+            let text = used(&text, &caller);
             let _ = writeln!(out, "/// Arithmetic and sines of {width} numbers at once.");
             let line = if cfg.is_empty() { "" } else { "\n" };
             let _ = writeln!(

@@ -27,6 +27,7 @@ use super::dialect::Dialect;
 use super::flat::flat;
 use super::function::Context;
 use super::signature::Signature;
+use super::used::{Caller, used};
 use super::vector::Vector;
 use crate::graph::Graph;
 use crate::program::Program;
@@ -58,12 +59,13 @@ pub(super) fn batches(out: &mut String, functions: &[Batch], reals: &[Real], for
     }
     functions.iter().for_each(|f| f.body(out));
     *out += SUPPORT;
+    let caller = Caller::new(out.as_str());
     for real in reals {
-        module(out, functions, *real, if forbid_unsafe { &SAFE } else { &WAYS });
+        module(out, functions, *real, if forbid_unsafe { &SAFE } else { &WAYS }, &caller);
     }
 }
 
-fn module(out: &mut String, functions: &[Batch], real: Real, ways: &[Way]) {
+fn module(out: &mut String, functions: &[Batch], real: Real, ways: &[Way], caller: &Caller) {
     let (real_name, n) = (real.name(), states_of_block(real));
     let lint = if ways.len() == 1 { "" } else { "unsafe_code, unused_unsafe, " };
     let _ = writeln!(
@@ -76,17 +78,18 @@ fn module(out: &mut String, functions: &[Batch], real: Real, ways: &[Way]) {
     );
     *out += &PUBLIC.replace("REAL", real_name).replace("BLOCK", &n.to_string());
     for way in ways {
-        way.module(out, functions, real);
+        way.module(out, functions, real, caller);
     }
     functions.iter().for_each(|f| f.public(out, real_name, ways));
     let _ = writeln!(out, "}}\n");
 }
 
 impl Way {
-    fn module(&self, out: &mut String, functions: &[Batch], real: Real) {
+    fn module(&self, out: &mut String, functions: &[Batch], real: Real, caller: &Caller) {
         let (features, width) = (self.set.features(), self.bytes / real.bytes());
         let attribute = if features.is_empty() { String::new() } else { format!("#[target_feature(enable = \"{features}\")]") };
         let text: String = [source, tiles].iter().filter_map(|text| text(self.set, real, width)).collect();
+        let text = used(&text, caller);
         let _ = writeln!(out, "#[cfg({})]\nmod {} {{\n    mod lanes {{\n{text}}}\n", self.cfg, self.module);
         // Functions of the robot could bear names of the lanes': its constants alone are let in.
         let parameters = if functions.iter().any(|f| !f.parameters().0.is_empty()) { ", PARAMETERS" } else { "" };
