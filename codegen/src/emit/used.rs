@@ -37,6 +37,9 @@ pub(super) fn used(text: &str, caller: &Caller) -> String {
     let live = live(&lines, &items, items.iter().map(|item| item.name).filter(|name| caller.names(name)).collect());
     let mut kept = vec![true; lines.len()];
     items.iter().filter(|item| !live.contains(item.name)).for_each(|item| kept[item.first..=item.last].fill(false));
+    // Another name for a function that is not there any more.
+    let gone = |line: &str| renamed(line).is_some_and(|(name, _)| items.iter().any(|item| item.name == name) && !live.contains(name));
+    lines.iter().zip(&mut kept).filter(|(line, _)| gone(line)).for_each(|(_, kept)| *kept = false);
     let rest: Vec<&str> = lines.iter().zip(kept).filter(|(_, kept)| *kept).map(|(line, _)| *line).collect();
     without_gaps(&rest).iter().map(|line| format!("{line}\n")).collect()
 }
@@ -158,6 +161,7 @@ fn d(x: V) -> V {
         let expected = TEXT.replace("\n    // Of no use.\n    #[inline]\n    pub(super) extern \"C\" fn c(x: V) -> V {\n        if x > 0.0 { a(x) } else { x }\n    }\n", "");
         assert_eq!(used(TEXT, &Caller::new("x = a(y); // and not abc, nor _c")), expected);
         assert_eq!(used(TEXT, &Caller::new("c(y)")), TEXT);
+        assert_eq!(used(TEXT, &Caller::new("nothing")), "type V = f64;\n\n");
     }
 
     #[test]
