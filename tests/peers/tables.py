@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The README's tables: `articulated compare` on four robots, several times over, with all peers.
+"""Tables as in the README: `articulated compare` on four robots, several times over, with all peers.
 
     python3 tests/peers/build.py --all      first: the peers
     python3 tests/peers/tables.py           three runs of every robot; tables in Markdown
@@ -29,7 +29,7 @@ ROBOTS = {
     "humanoid": "`humanoid`, floating, 30 joints",
 }
 FUNCTIONS = ["inverse_dynamics", "mass_matrix", "forward_dynamics", "inverse_dynamics_derivatives"]
-BATCHES = {"inverse_dynamics": "ID", "forward_dynamics": "FD"}
+BATCHES = ["inverse_dynamics", "forward_dynamics"]
 ENGINES = {
     "Pinocchio": lambda engine: engine.startswith("Pinocchio") and "CasADi" not in engine,
     "CasADi, textbook": lambda engine: engine.startswith("CasADi"),
@@ -59,6 +59,14 @@ class Run:
 
     def batch(self, function, numbers, layout):
         return next(b for b in self.functions[function]["batches"] if (b["numbers"], b["layout"]) == (numbers, layout))["time"]["median"]
+
+    def over(self, function, wanted):
+        """How many times our time of a call that is."""
+        return self.peer(function, wanted) / self.time(function, "generated")
+
+    def over_batch(self, function, numbers):
+        """How many times our time of a state in blocks Pinocchio's time of a call is."""
+        return self.peer(function, ENGINES["Pinocchio"]) / self.batch(function, numbers, "blocks")
 
     def noise(self):
         """Grows with every contender's time, each weighing the same."""
@@ -120,7 +128,7 @@ def single(runs):
         for title, f in zip(titles(robot, FUNCTIONS), FUNCTIONS):
             ours = median(own, lambda r: r.time(f, "generated"))
             others = [median(own, lambda r, e=engine: r.peer(f, e)) for engine in ENGINES.values()]
-            over = [median(own, lambda r, e=engine: r.peer(f, e) / r.time(f, "generated")) for engine in RATIOS.values()]
+            over = [median(own, lambda r, e=engine: r.over(f, e)) for engine in RATIOS.values()]
             beside = [median(own, lambda r: r.variant(f)), median(own, lambda r: r.time(f, "generic"))]
             yield [title, *map(shown, [ours, *beside, *others]), *(f"{x:.1f}" for x in over)]
 
@@ -128,11 +136,9 @@ def single(runs):
 def ratios(one, many):
     """Times of Pinocchio's fastest build and of the fastest generated C over ours, a column for each robot; of batches, Pinocchio's over a state's in `f64` and `f32` blocks."""
     for f in FUNCTIONS:
-        over = lambda run, wanted, f=f: run.peer(f, wanted) / run.time(f, "generated")
-        yield [f"`{f}`", *(" · ".join(f"{median(own, lambda r, e=e: over(r, e)):.1f}" for e in RATIOS.values()) for own in one.values())]
+        yield [f"`{f}`", *(" · ".join(f"{median(own, lambda r, e=e: r.over(f, e)):.1f}" for e in RATIOS.values()) for own in one.values())]
     for f in BATCHES:
-        over = lambda run, numbers, f=f: run.peer(f, ENGINES["Pinocchio"]) / run.batch(f, numbers, "blocks")
-        yield [f"`{f}`, many states", *(" · ".join(f"{median(own, lambda r, n=n: over(r, n)):.0f}" for n in ("f64", "f32")) for own in many.values())]
+        yield [f"`{f}`, many states", *(" · ".join(f"{median(own, lambda r, n=n: r.over_batch(f, n)):.0f}" for n in ("f64", "f32")) for own in many.values())]
 
 
 def batches(runs):
@@ -141,7 +147,7 @@ def batches(runs):
         for title, f in zip(titles(robot, BATCHES), BATCHES):
             kinds = [(numbers, layout) for numbers in ("f64", "f32") for layout in ("blocks", "states")]
             times = [median(own, lambda r, k=kind: r.batch(f, *k)) for kind in kinds]
-            over = [median(own, lambda r, n=n: r.peer(f, ENGINES["Pinocchio"]) / r.batch(f, n, "blocks")) for n in ("f64", "f32")]
+            over = [median(own, lambda r, n=n: r.over_batch(f, n)) for n in ("f64", "f32")]
             yield [title, *map(shown, [*times, median(own, lambda r: r.time(f, "generated"))]), *(f"{x:.0f}" for x in over)]
 
 

@@ -16,8 +16,7 @@ impl Caller {
 
     /// Whether the name stands in the text, as a word.
     fn names(&self, name: &str) -> bool {
-        let is_part = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
-        let alone = |at: usize| !is_part(self.text[..at].chars().next_back()) && !is_part(self.text[at + name.len()..].chars().next());
+        let alone = |at: usize| !self.text[..at].ends_with(in_word) && !self.text[at + name.len()..].starts_with(in_word);
         let look = || self.text.match_indices(name).any(|(at, _)| alone(at));
         *self.known.borrow_mut().entry(name.to_owned()).or_insert_with(look)
     }
@@ -125,8 +124,12 @@ fn renamed(line: &str) -> Option<(&str, &str)> {
     line.trim().strip_prefix("use self::")?.strip_suffix(';')?.split_once(" as ")
 }
 
+fn in_word(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
+}
+
 fn words(text: &str) -> impl Iterator<Item = &str> {
-    text.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty())
+    text.split(|c| !in_word(c)).filter(|word| !word.is_empty())
 }
 
 #[cfg(test)]
