@@ -1,10 +1,10 @@
 //! Results that stand side by side, through two pointers in turn of which a compiler cannot know that they are one. Where it sees two neighbours it looks for two vectors to make them from,
 //! all the way back to the inputs, and puts the statements of the whole function into another order each time: of a seven-axis arm's derivatives that was a third of the time to compile, and saved no time when they ran.
+//! What pieces of a long function hand on is kept apart by its places ([`super::chunks`]).
 
 use std::fmt::Write;
 
 use super::dialect::Dialect;
-use super::signature::Flat;
 use crate::graph::Graph;
 
 /// From this many nodes on. Below, it is little time, and the code is a little faster as it was.
@@ -20,16 +20,21 @@ pub(super) fn place(k: usize) -> String {
     format!("{}[{k}]", ["even", "odd"][k % 2])
 }
 
-/// The two pointers to `out`.
-pub(super) fn pointers(out: &mut String, flat: &Flat) {
+/// The two pointers to `out`, an array so many times in arrays.
+pub(super) fn pointers(out: &mut String, numbers: usize, nests: usize) {
+    let slice = if nests == 0 { ".as_mut_slice()".to_owned() } else { ".as_flattened_mut()".repeat(nests) };
     let _ = writeln!(
         out,
-        "    let ::core::option::Option::Some(even) = ::core::cell::Cell::from_mut(out{}).as_slice_of_cells().first_chunk::<{}>() else {{ ::core::unreachable!() }};\n    \
+        "    let ::core::option::Option::Some(even) = ::core::cell::Cell::from_mut(out{slice}).as_slice_of_cells().first_chunk::<{numbers}>() else {{ ::core::unreachable!() }};\n    \
          // The same, but compilers do not know: they would look for vectors, and take longer.\n    \
-         let odd = ::core::hint::black_box(even);",
-        ".as_flattened_mut()".repeat(flat.nests),
-        flat.numbers
+         let odd = ::core::hint::black_box(even);\n    \
+         let _ = (even, odd);"
     );
+}
+
+/// Whether there is a result among the statements.
+pub(super) fn is_any(statements: &str) -> bool {
+    statements.lines().any(|line| set(line).is_some())
 }
 
 /// The statements with `even[4] = x;` and `odd[5] = y;` written to these places.

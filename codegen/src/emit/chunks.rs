@@ -43,7 +43,9 @@ pub(super) fn cut(graph: &Graph, dialect: &dyn Dialect, places: &[String], zeros
 /// further indices takes a compiler long.
 pub(super) fn pieces(out: &mut String, graph: &Graph, signature: &Signature, dialect: &dyn Dialect) {
     let flattened = signature.flattened();
-    let places = flattened.as_ref().map_or_else(|| signature.places(), |flat| (0..flat.numbers).map(|k| format!("out[{k}]")).collect());
+    let apart = flattened.is_some() && apart::keeps_apart(graph, dialect);
+    let place = |k| if apart { apart::place(k) } else { format!("out[{k}]") };
+    let places = flattened.as_ref().map_or_else(|| signature.places(), |flat| (0..flat.numbers).map(place).collect());
     let gives = flattened.as_ref().map_or_else(|| signature.filled(), |flat| flat.ty.clone());
     let (pieces, slots) = cut(graph, dialect, &places, &zeros(graph, signature, dialect, &places), LENGTH);
     kept(out, "Kept", dialect, slots);
@@ -53,7 +55,15 @@ pub(super) fn pieces(out: &mut String, graph: &Graph, signature: &Signature, dia
         for input in &signature.inputs {
             let _ = writeln!(out, "    let _ = {};", input.name);
         }
-        let _ = writeln!(out, "    let _ = (&m, &out);\n{}{piece}    }}", dialect.beginning());
+        let _ = writeln!(out, "    let _ = (&m, &out);\n{}", dialect.beginning());
+        match &flattened {
+            Some(flat) if apart && apart::is_any(piece) => {
+                apart::pointers(out, flat.numbers, 0);
+                *out += &apart::written(piece);
+            }
+            _ => *out += piece,
+        }
+        *out += "    }\n";
     }
     let _ = writeln!(out, "    $(#[$features])?\n    fn whole({}){} {{", signature.takes(), signature.returns());
     *out += &nothing_kept("Kept", dialect, slots);
@@ -132,7 +142,7 @@ pub(super) fn one_piece(out: &mut String, graph: &Graph, signature: &Signature, 
     let statements = pieces.concat();
     let statements = match &apart {
         Some(flat) => {
-            apart::pointers(out, flat);
+            apart::pointers(out, flat.numbers, flat.nests);
             apart::written(&statements)
         }
         None if dialect.stores_two() => two_at_once(&statements),
@@ -198,21 +208,48 @@ impl<'a> Plan<'a> {
 
     /// A place for each value that outlives its piece; places become free when the last piece that needs them is done.
     fn place(&mut self, last: &[usize]) {
-        let mut free: Vec<usize> = Vec::new();
+        let mut places = Places::default();
         let mut ends: Vec<Vec<usize>> = vec![Vec::new(); self.pieces.len()];
-        let mut next = 0;
         for c in 0..self.pieces.len() {
             for k in self.pieces[c].iter().flat_map(Unit::makes).filter(|&k| last[k] > c) {
-                let slot = free.pop().unwrap_or_else(|| {
-                    next += 1;
-                    next - 1
-                });
+                let slot = places.take(c);
                 self.slot[k] = Some(slot);
                 ends[last[k]].push(slot);
             }
-            free.append(&mut ends[c]);
+            places.free.append(&mut ends[c]);
         }
-        self.slots = next.max(1);
+        self.slots = places.written.len().max(1);
+    }
+}
+
+/// Places of `m`.
+#[derive(Default)]
+struct Places {
+    free: Vec<usize>,
+    /// The piece that wrote each last.
+    written: Vec<usize>,
+}
+
+impl Places {
+    /// A place for piece `c` to write to, and not beside another: of neighbours a compiler would look for vectors to make them from.
+    fn take(&mut self, c: usize) -> usize {
+        let beside = |slot: usize| [slot.wrapping_sub(1), slot + 1].into_iter().any(|k| self.written.get(k) == Some(&c));
+        let found = self.free.iter().rposition(|&slot| !beside(slot));
+        let slot = match found {
+            Some(at) => self.free.remove(at),
+            None => self.new_place(c),
+        };
+        self.written[slot] = c;
+        slot
+    }
+
+    fn new_place(&mut self, c: usize) -> usize {
+        if self.written.last() == Some(&c) {
+            self.free.push(self.written.len());
+            self.written.push(NOWHERE);
+        }
+        self.written.push(NOWHERE);
+        self.written.len() - 1
     }
 }
 
@@ -347,6 +384,9 @@ mod tests {
                 }
                 unit.makes().into_iter().filter_map(|k| Some((k, plan.slot[k]?))).for_each(|(k, slot)| held[slot] = Some(k));
             }
+            let mut written: Vec<usize> = piece.iter().flat_map(Unit::makes).filter_map(|k| plan.slot[k]).collect();
+            written.sort_unstable();
+            assert!(written.windows(2).all(|pair| pair[1] > pair[0] + 1), "piece {c} writes neighbours: {written:?}");
         }
         assert!(taken > 50 && plan.slots < taken, "{taken} taken from {} places", plan.slots);
     }
