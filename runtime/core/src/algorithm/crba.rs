@@ -42,21 +42,23 @@ pub fn mass_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], 
 /// The wrench that accelerates everything from body `i` on in its degree of freedom `k`, and what it asks of the joints on the way to the base.
 fn column<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, k: usize, out: &mut [S]) {
     let (n, at) = (model.nv, &model.bodies[i].coordinates);
-    let Some(pose) = ws.bodies[i].pose else { return };
+    let Some(pose) = &ws.bodies[i].pose else { return };
     // F = I_i S_i,k;  M_ik,i = S_iᵀ F
     let mut wrench = with_pose!(pose, p => p.column(&ws.composite[i], k)).scaled(at.rate_of_one());
     let row = at.v + k;
     with_pose!(pose, p => p.add_torque(&wrench, at, &mut out[row * n..][..n]));
     let mut j = i;
     while model.bodies[j].parent != 0 {
-        let Some(pose) = ws.bodies[j].pose else { return };
+        let (body, state) = (&model.bodies[j], &ws.bodies[j]);
+        let Some(pose) = &state.pose else { return };
         // F in the parent's frame;  M_ik,j = M_j,ik = S_jᵀ F
-        wrench = with_pose!(pose, p => to_parent(&model.bodies[j], &p, ws.bodies[j].origin, &wrench));
-        j = model.bodies[j].parent;
-        let (Some(pose), at) = (ws.bodies[j].pose, &model.bodies[j].coordinates) else { return };
-        ws.row.fill(S::zero());
-        with_pose!(pose, p => p.add_torque(&wrench, at, &mut ws.row));
-        for l in at.v..at.v + model.bodies[j].joint.nv() {
+        wrench = with_pose!(pose, p => to_parent(body, p, state.origin, &wrench));
+        j = body.parent;
+        let (body, Some(pose)) = (&model.bodies[j], &ws.bodies[j].pose) else { return };
+        let (first, end) = (body.coordinates.v, body.coordinates.v + body.joint.nv());
+        ws.row[first..end].fill(S::zero());
+        with_pose!(pose, p => p.add_torque(&wrench, &body.coordinates, &mut ws.row));
+        for l in first..end {
             out[row * n + l] += ws.row[l];
             out[l * n + row] += ws.row[l];
         }
