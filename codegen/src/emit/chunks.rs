@@ -44,8 +44,8 @@ pub(super) fn cut(graph: &Graph, dialect: &dyn Dialect, places: &[String], zeros
 pub(super) fn pieces(out: &mut String, graph: &Graph, signature: &Signature, dialect: &dyn Dialect) {
     let flattened = signature.flattened();
     let apart = flattened.is_some() && apart::keeps_apart(graph, dialect);
-    let place = |k| if apart { apart::place(k) } else { format!("out[{k}]") };
-    let places = flattened.as_ref().map_or_else(|| signature.places(), |flat| (0..flat.numbers).map(place).collect());
+    let result = |k| if apart { apart::place(k) } else { format!("out[{k}]") };
+    let places = flattened.as_ref().map_or_else(|| signature.places(), |flat| (0..flat.numbers).map(result).collect());
     let gives = flattened.as_ref().map_or_else(|| signature.filled(), |flat| flat.ty.clone());
     let (pieces, slots) = cut(graph, dialect, &places, &zeros(graph, signature, dialect, &places), LENGTH);
     kept(out, "Kept", dialect, slots);
@@ -222,7 +222,7 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// Places of `m`.
+/// Places of `m`, as they are given away.
 #[derive(Default)]
 struct Places {
     free: Vec<usize>,
