@@ -20,8 +20,18 @@ pub(super) fn place(k: usize) -> String {
     format!("{}[{k}]", ["even", "odd"][k % 2])
 }
 
-/// The two pointers to `out`, an array so many times in arrays.
-pub(super) fn pointers(out: &mut String, numbers: usize, nests: usize) {
+/// The statements with `even[4] = x;` and `odd[5] = y;` written to these places of `out`, which is an array of so many numbers, so many times in arrays.
+pub(super) fn written(statements: &str, numbers: usize, nests: usize) -> String {
+    let mut out = String::new();
+    if statements.lines().any(|line| set(line).is_some()) {
+        pointers(&mut out, numbers, nests);
+    }
+    statements.lines().for_each(|line| out += &(set(line).unwrap_or_else(|| line.to_owned()) + "\n"));
+    out
+}
+
+/// The two pointers.
+fn pointers(out: &mut String, numbers: usize, nests: usize) {
     let slice = if nests == 0 { ".as_mut_slice()".to_owned() } else { ".as_flattened_mut()".repeat(nests) };
     let _ = writeln!(
         out,
@@ -30,16 +40,6 @@ pub(super) fn pointers(out: &mut String, numbers: usize, nests: usize) {
          let odd = ::core::hint::black_box(even);\n    \
          let _ = (even, odd);"
     );
-}
-
-/// Whether there is a result among the statements.
-pub(super) fn is_any(statements: &str) -> bool {
-    statements.lines().any(|line| set(line).is_some())
-}
-
-/// The statements with `even[4] = x;` and `odd[5] = y;` written to these places.
-pub(super) fn written(statements: &str) -> String {
-    statements.lines().map(|line| set(line).unwrap_or_else(|| line.to_owned()) + "\n").collect()
 }
 
 fn set(line: &str) -> Option<String> {
@@ -55,6 +55,13 @@ mod tests {
     #[test]
     fn results_are_set_and_all_else_stays() {
         let text = format!("    let x1 = a;\n    {} = x1;\n    {} = -x1;\n    x2 = b;\n", place(4), place(7));
-        assert_eq!(written(&text), "    let x1 = a;\n    even[4].set(x1);\n    odd[7].set(-x1);\n    x2 = b;\n");
+        let written_so = "    let x1 = a;\n    even[4].set(x1);\n    odd[7].set(-x1);\n    x2 = b;\n";
+        let written = written(&text, 8, 0);
+        assert!(written.starts_with("    let ::core::option::Option::Some(even)") && written.ends_with(written_so), "{written}");
+    }
+
+    #[test]
+    fn without_results_there_are_no_pointers() {
+        assert_eq!(written("    let x1 = a;\n", 8, 0), "    let x1 = a;\n");
     }
 }

@@ -55,15 +55,8 @@ pub(super) fn pieces(out: &mut String, graph: &Graph, signature: &Signature, dia
         for input in &signature.inputs {
             let _ = writeln!(out, "    let _ = {};", input.name);
         }
-        let _ = writeln!(out, "    let _ = (&m, &out);\n{}", dialect.beginning());
-        match &flattened {
-            Some(flat) if apart && apart::is_any(piece) => {
-                apart::pointers(out, flat.numbers, 0);
-                *out += &apart::written(piece);
-            }
-            _ => *out += piece,
-        }
-        *out += "    }\n";
+        let statements = flattened.as_ref().filter(|_| apart).map_or_else(|| piece.clone(), |flat| apart::written(piece, flat.numbers, 0));
+        let _ = writeln!(out, "    let _ = (&m, &out);\n{}{statements}    }}", dialect.beginning());
     }
     let _ = writeln!(out, "    $(#[$features])?\n    fn whole({}){} {{", signature.takes(), signature.returns());
     *out += &nothing_kept("Kept", dialect, slots);
@@ -141,10 +134,7 @@ pub(super) fn one_piece(out: &mut String, graph: &Graph, signature: &Signature, 
     let (pieces, _) = cut(graph, dialect, &places, &zeros(graph, signature, dialect, &places), usize::MAX);
     let statements = pieces.concat();
     let statements = match &apart {
-        Some(flat) => {
-            apart::pointers(out, flat.numbers, flat.nests);
-            apart::written(&statements)
-        }
+        Some(flat) => apart::written(&statements, flat.numbers, flat.nests),
         None if dialect.stores_two() => two_at_once(&statements),
         None => statements,
     };
