@@ -17,11 +17,11 @@ pub struct Entry {
     /// The ways chosen by count, where the function can be computed in several.
     pub ways: Vec<&'static str>,
     /// Counts after each stage: `asked` (what the algorithm asks for), `trace` (folded and shared), the same after each model
-    /// pass, then after each graph pass. Without [`stages`](crate::Options::stages) only the last of the model passes.
+    /// pass, then after each graph pass; `loops`, what is executed of a function that is left loops. Without [`stages`](crate::Options::stages) only the last of the model passes.
     pub stages: Vec<(&'static str, Counts)>,
-    /// Longest chain of operations from an input to an output.
+    /// Longest chain of operations from an input to an output; of what is left loops, where it is written out.
     pub depth: u32,
-    /// How many limbs that are alike are computed at once; 1 where each is computed for itself.
+    /// How many limbs that are alike, or joints in loops, are computed at once; 1 where each is computed for itself.
     pub lanes: usize,
     /// How far each result can be off by rounding, guaranteed, wherever the arguments are in the box of [`in_box`](crate::bound::in_box); infinite where a divisor could be nothing there.
     /// Empty without [`stages`](crate::Options::stages), and at levels that have no bound.

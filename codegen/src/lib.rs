@@ -15,6 +15,7 @@ mod edit;
 mod emit;
 mod error;
 pub mod graph;
+mod groups;
 pub mod ledger;
 mod limbs;
 mod parameters;

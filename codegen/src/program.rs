@@ -9,6 +9,7 @@ use articulated_core::model::{Model, Unturned};
 use crate::Options;
 use crate::bound::{bounds, in_box};
 use crate::graph::{Counts, Graph, Op};
+use crate::groups::{self, Groups};
 use crate::ledger::{Entry, depth};
 use crate::limbs::Alike;
 use crate::parameters::Parameter;
@@ -26,6 +27,8 @@ pub(crate) struct Program {
     pub(crate) entry: Entry,
     /// What is left a loop. Then `graph` is what comes before.
     pub(crate) columns: Option<Columns>,
+    /// Where joints stand if all of it is left loops over them. Then `graph` is empty.
+    pub(crate) groups: Option<Groups>,
 }
 
 /// The solution of M X = B column by column, which is the same for each.
@@ -65,13 +68,35 @@ pub(crate) fn program(wanted: Wanted, model: &Model<f64>, parameters: &[Paramete
             }
         }
     }
-    let (graph, mut entry) = best;
-    if let Some(columns) = &columns {
+    let (mut graph, mut entry) = best;
+    let groups = groups(&wanted, price(&graph), &subject, options);
+    if let Some((_, counts)) = &groups {
+        graph = Graph::default();
+        in_loops(&mut entry, counts);
+    } else if let Some(columns) = &columns {
         columns.count(&mut entry);
     } else if options.stages {
         entry.bounds = in_the_box(&wanted, &graph, model, parameters, options);
     }
-    Program { wanted, graph, plain, entry, columns }
+    Program { wanted, graph, plain, entry, columns, groups: groups.map(|(groups, _)| groups) }
+}
+
+/// The entry of what is left loops, which cost this.
+fn in_loops(entry: &mut Entry, counts: &Counts) {
+    (entry.ways, entry.lanes) = (vec!["joints in loops"], groups::LANES);
+    entry.stages.push(("loops", counts.clone()));
+}
+
+/// What is fewer instructions than this is never left loops over joints: it is fetched as fast as it is executed, and does nothing that is not asked for.
+const WRITTEN_OUT: f64 = 3500.0;
+
+/// Where joints stand, if a function that would be so many instructions is fewer as loops over them: these need vectors, and constants that are known.
+fn groups(wanted: &Wanted, written: f64, subject: &Subject, options: &Options) -> Option<(Groups, Counts)> {
+    let meant = written > WRITTEN_OUT && wanted.as_function().is_some_and(|f| f.name == "inverse_dynamics_derivatives");
+    let can = options.limbs && options.level.has_lanes() && !options.forbid_unsafe && subject.parameters.is_empty();
+    let groups = (meant && can).then(|| Groups::of(subject.model)).flatten()?;
+    let counts = groups.counts(subject.model);
+    ((counts.instructions() as f64) < written).then_some((groups, counts))
 }
 
 /// From so many degrees of freedom on, and up to so many, the solution column by column is a loop: with seven it takes as long as written out, with 18 and 36 a fifth less for the

@@ -37,6 +37,9 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
     signature.place = Place::of(program, context.level, context.forbid_unsafe);
     signature.columns = program.columns.as_ref().map(Layout::of);
     signature.results_type(out);
+    if program.groups.is_some() {
+        return loops(out, program, &mut signature, context);
+    }
     if in_lanes(graph) || levels::is_long(graph, context.level) {
         body_macro(out, graph, &signature, context.level);
     }
@@ -66,6 +69,20 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
     if signature.place == Place::Value && signature.has_into() {
         into_form(out, &signature);
     }
+}
+
+/// The function that loops compute, of a module of their own.
+fn loops(out: &mut String, program: &Program, signature: &mut Signature, context: Context) {
+    document(out, program, signature, context);
+    signature.place = Place::Filled;
+    let (name, arguments, names, gives) = (&signature.wanted.name, signature.arguments(), signature.names(), signature.gives());
+    let _ = writeln!(out, "#[inline]\npub fn {name}({arguments}) -> {gives} {{\n    let mut out = {};", signature.nothing());
+    let _ = writeln!(out, "    {name}_into({names}, &mut out);\n    out\n}}\n");
+    let _ = writeln!(out, "/// As [`{name}`], into `out`, whatever that holds.");
+    let _ = writeln!(
+        out,
+        "pub fn {name}_into({arguments}, out: &mut {gives}) {{\n    derivatives::inverse_dynamics_derivatives({names}, out);\n}}\n"
+    );
 }
 
 /// The function as a value, where its body writes into what it is handed.
@@ -193,7 +210,7 @@ fn lanes_calls(out: &mut String, graph: &Graph, signature: &Signature) {
 }
 
 fn document(out: &mut String, program: &Program, signature: &Signature, context: Context) {
-    let Program { wanted, graph, entry, .. } = program;
+    let Program { wanted, entry, .. } = program;
     for part in &wanted.parts {
         let constants: Vec<String> = part.constants.iter().map(|(a, c)| format!("{} = {}", a.name(), shown(c))).collect();
         let at = if constants.is_empty() { String::new() } else { format!(", at {}", constants.join(", ")) };
@@ -211,17 +228,26 @@ fn document(out: &mut String, program: &Program, signature: &Signature, context:
     }
     let by = if entry.ways.is_empty() { String::new() } else { format!("By {}, the cheapest for this robot; ", entry.ways.join(", ")) };
     let c = entry.emitted();
-    let mut form = if entry.lanes > 1 { format!("; limbs that are alike in {} lanes", entry.lanes) } else { String::new() };
-    form += if levels::is_long(graph, context.level) { "; in pieces, so that it is compiled in less time" } else { "" };
     let _ = writeln!(
         out,
-        "/// {by}{} multiplications + {} additions in {} instructions (multiply-adds counted once), {} sines and cosines, depth {}{form}.",
+        "/// {by}{} multiplications + {} additions in {} instructions (multiply-adds counted once), {} sines and cosines{}.",
         c.multiplications(),
         c.additions(),
         c.instructions(),
         c.trigonometric(),
-        entry.depth
+        form(program, context)
     );
+}
+
+/// What there is to say of a function's form.
+fn form(program: &Program, context: Context) -> String {
+    let Program { graph, entry, .. } = program;
+    if program.groups.is_some() {
+        return format!(", each of {} joints at once", entry.lanes);
+    }
+    let lanes = if entry.lanes > 1 { format!("; limbs that are alike in {} lanes", entry.lanes) } else { String::new() };
+    let pieces = if levels::is_long(graph, context.level) { "; in pieces, so that it is compiled in less time" } else { "" };
+    format!(", depth {}{lanes}{pieces}", entry.depth)
 }
 
 fn shown(constant: &crate::Constant) -> String {

@@ -4,6 +4,7 @@ mod apart;
 mod batch;
 mod chunks;
 mod columns;
+mod derivatives;
 mod dialect;
 mod flat;
 mod function;

@@ -33,7 +33,7 @@ pub(crate) fn module(
     let (forbid_unsafe, level) = (request.options.forbid_unsafe, request.options.level);
     let context = Context { sizes: model.shape(), parameters: !parameters.is_empty(), forbid_unsafe, level };
     programs.iter().for_each(|p| function(&mut out, p, context));
-    support(&mut out, programs, forbid_unsafe, level);
+    support(&mut out, model, programs, forbid_unsafe, level);
     let of_many: Vec<Batch> = programs.iter().map(|p| Batch::of(p, context)).collect();
     batches(&mut out, &of_many, &request.options.batch, forbid_unsafe);
     robot(&mut out, request, model, programs, !parameters.is_empty());

@@ -4,11 +4,12 @@ use std::fmt::Write;
 
 use articulated_core::lanes::{Real, Set, source};
 use articulated_core::level::with_sines;
+use articulated_core::model::Model;
 
 use super::columns::Layout;
 use super::function::{in_lanes, needs_choice};
 use super::used::{Caller, used};
-use super::{levels, plain};
+use super::{derivatives, levels, plain};
 use crate::Level;
 use crate::program::Program;
 
@@ -26,7 +27,7 @@ pub(super) const COMPILED_FOR_AVX2: &str = "#[cfg(all(target_feature = \"avx2\",
 pub(super) const OTHERS: &str = "#[cfg(not(any(target_arch = \"aarch64\", target_arch = \"x86_64\")))]";
 
 /// What the functions call: multiply-adds, sines, lanes.
-pub(super) fn support(out: &mut String, programs: &[Program], forbid_unsafe: bool, level: Level) {
+pub(super) fn support(out: &mut String, model: &Model<f64>, programs: &[Program], forbid_unsafe: bool, level: Level) {
     let plain = || programs.iter().filter(|p| !in_lanes(&p.graph));
     if plain().any(|p| needs_choice(&p.graph, level)) {
         *out += if level.fused { FUSED } else { NOT_FUSED };
@@ -45,6 +46,10 @@ pub(super) fn support(out: &mut String, programs: &[Program], forbid_unsafe: boo
     }
     if let Some(columns) = programs.iter().find_map(|p| p.columns.as_ref()) {
         Layout::of(columns).module(out);
+        widths.push(4);
+    }
+    if let Some(groups) = programs.iter().find_map(|p| p.groups.as_ref()) {
+        derivatives::module(out, groups, model);
         widths.push(4);
     }
     widths.extend((sines || widths.contains(&2)).then_some(4));

@@ -40,12 +40,25 @@ pub(crate) static ROBOTS: LazyLock<Vec<Robot>> = LazyLock::new(|| {
     let stone = "<robot name='stone'><link name='stone'/></robot>";
     let walker = robot("walker".into(), include_str!("../../robots/walker.urdf"), Base::Floating, false);
     let strider = robot("strider".into(), include_str!("../../robots/strider.urdf"), Base::Floating, false);
-    bundled.chain(trees).chain([walker, strider, robot("stone".into(), stone, Base::Fixed, false)]).collect()
+    let groves = GROVES.map(|(name, seed)| only_derivatives(name, &urdf_text(&random_tree(seed, GROVE)), Base::Floating));
+    let humanoid = articulated_models::robot("humanoid").expect("it is bundled");
+    let humanoid = only_derivatives("humanoid_derivatives", humanoid.urdf, humanoid.base);
+    bundled.chain(trees).chain(groves).chain([humanoid, walker, strider, robot("stone".into(), stone, Base::Fixed, false)]).collect()
 });
+
+/// Trees of revolute, prismatic and fixed joints, so many that derivatives are loops over joints: broad, with many branches, and deep.
+const GROVES: [(&str, u64); 3] = [("grove_0", 125), ("grove_1", 103), ("grove_2", 166)];
+
+const GROVE: Flavour = Flavour { massless: true, mimic: false, floating: false, fixed: true, every_kind: false, locked: false, links: 40 };
+
+fn only_derivatives(name: &str, urdf: &str, base: Base) -> Robot {
+    with(name.into(), urdf, base, true, Options::default(), |name| name == "inverse_dynamics_derivatives")
+}
 
 /// With every function, save those that need what the robot does not have, on one or two frames.
 fn robot(name: String, urdf: &str, base: Base, singular: bool) -> Robot {
-    with(name, urdf, base, singular, Options::default(), |_| true)
+    let small = Case::new(name.clone(), read(urdf), base).model.nv < 18;
+    with(name, urdf, base, singular, Options::default(), |name| small || !LONG.contains(&name))
 }
 
 /// The same with further choices, and of the functions those that are `wanted`.
@@ -79,8 +92,8 @@ fn has(model: &Model<f64>, frames: &[String], function: &Function<f64>, singular
     let free = model.frames.iter().filter(|f| frames.contains(&f.name)).all(|f| freedoms(f) >= 6);
     match function.needs {
         Needs::Mass => model.moving_mass() > 0.0,
-        Needs::Nothing => model.nv < 18 || !LONG.contains(&function.name),
-        Needs::MassMatrix => !singular && (model.nv < 18 || !LONG.contains(&function.name)),
+        Needs::Nothing => true,
+        Needs::MassMatrix => !singular,
         Needs::FreeFrames => !singular && free,
     }
 }
@@ -110,10 +123,11 @@ pub(crate) static ELSEWHERE: LazyLock<Program> = LazyLock::new(|| {
 });
 
 /// The robots of the first two.
-pub(crate) const ANYBODYS: [&str; 6] = ["panda_like", "gripper_arm", "tree_1", "stone", LANES[0].0, LANES[1].0];
+pub(crate) const ANYBODYS: [&str; 9] =
+    ["panda_like", "gripper_arm", "tree_1", "stone", LANES[0].0, LANES[1].0, LANES[2].0, LANES[3].0, LANES[4].0];
 
-/// Those with limbs in lanes, and how many.
-pub(crate) const LANES: [(&str, usize); 2] = [("walker", 4), ("strider", 2)];
+/// Those with limbs or joints in lanes, and how many.
+pub(crate) const LANES: [(&str, usize); 5] = [("walker", 4), ("strider", 2), (GROVES[0].0, 4), (GROVES[1].0, 4), (GROVES[2].0, 4)];
 
 fn anybodys(robots: &[&str], how: &str, change: impl Fn(String) -> String) -> Program {
     let find = |name: &&str| ROBOTS.iter().find(|r| r.name == *name).expect("one of them");

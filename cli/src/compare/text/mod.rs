@@ -99,13 +99,32 @@ fn head(report: &Report) -> String {
 }
 
 fn operations(report: &Report) -> Table {
-    // Every function goes through the same stages.
-    let stages = report.functions.first().map_or(&[][..], |f| &f.stages);
-    let titles = stages.iter().map(|s| s.stage.clone());
-    let mut table = Table::new(std::iter::once("function".to_owned()).chain(titles).map(|t| (t, "")));
-    let cell = |s: &Stage| format!("{}+{}", s.multiplications, s.additions);
-    by_function(report, &mut table, |f| Some(f.stages.iter().map(cell).collect()));
+    let titles = titles(report);
+    let mut table = Table::new(["function"].into_iter().chain(titles.iter().copied()).map(|t| (t, "")));
+    let cell = |f: &FunctionReport, title: &str| {
+        let stage = f.stages.iter().find(|s| s.stage == title);
+        stage.map_or_else(|| "–".to_owned(), |s| format!("{}+{}", s.multiplications, s.additions))
+    };
+    by_function(report, &mut table, |f| Some(titles.iter().map(|title| cell(f, title)).collect()));
     table
+}
+
+/// The stages that any function went through, in their order.
+fn titles(report: &Report) -> Vec<&str> {
+    let mut titles: Vec<&str> = Vec::new();
+    for function in &report.functions {
+        let mut next = 0;
+        for stage in &function.stages {
+            match titles.iter().position(|title| *title == stage.stage) {
+                Some(at) => next = at + 1,
+                None => {
+                    titles.insert(next, &stage.stage);
+                    next += 1;
+                }
+            }
+        }
+    }
+    titles
 }
 
 fn sizes(report: &Report) -> Table {
