@@ -58,11 +58,7 @@ impl Tables<'_> {
         for group in 0..self.groups.groups() {
             let parents: [usize; LANES] = std::array::from_fn(|lane| self.parent(group, lane));
             let beside = parents.iter().enumerate().all(|(lane, p)| p / LANES == parents[0] / LANES && p % LANES == lane);
-            let behind = if beside || parents.iter().all(|p| *p == self.groups.slot[ROOT]) {
-                (parents[0] / LANES).to_string()
-            } else {
-                "APART".into()
-            };
+            let behind = if beside { (parents[0] / LANES).to_string() } else { "APART".into() };
             let place = |of: fn(&Body<f64>) -> usize| -> [usize; LANES] { std::array::from_fn(|lane| of(self.stands_for(group, lane))) };
             let _ = writeln!(out, "    Group {{");
             let _ = writeln!(out, "        behind: {behind},\n        parents: {parents:?},");
@@ -81,19 +77,22 @@ impl Tables<'_> {
         let _ = writeln!(out, "];");
     }
 
-    /// The slot of the parent; where nothing stands, of whatever stands before it in its lane.
+    /// The slot of the parent, and of the root that in the same lane; where nothing stands, of whatever stands before it in its lane.
     fn parent(&self, group: usize, lane: usize) -> usize {
-        match self.groups.body(group, lane) {
-            Some(body) => self.groups.slot[self.model.bodies[body].parent],
-            None if group == 0 => self.groups.slot[ROOT] + lane,
+        let root = self.groups.slot[ROOT];
+        match self.groups.body(group, lane).map(|body| self.groups.slot[self.model.bodies[body].parent]) {
+            Some(slot) if slot == root => root + lane,
+            Some(slot) => slot,
+            None if group == 0 => root + lane,
             None => (group - 1) * LANES + lane,
         }
     }
 
-    /// A joint whose coordinates a slot may read: its own, or one of its group.
+    /// The joint whose coordinates a slot reads: its own; where none stands, the last before it in its lane, or one of its group: what is no number goes no further than it would.
     fn stands_for(&self, group: usize, lane: usize) -> &Body<f64> {
-        let own = (0..LANES).map(|k| (lane + k) % LANES).find_map(|lane| self.groups.body(group, lane));
-        &self.model.bodies[own.unwrap_or(ROOT)]
+        let above = (0..=group).rev().find_map(|group| self.groups.body(group, lane));
+        let beside = || (0..LANES).find_map(|lane| self.groups.body(group, lane));
+        &self.model.bodies[above.or_else(beside).unwrap_or(ROOT)]
     }
 
     /// A field with numbers of the four bodies: lanes of nothing are zeros.

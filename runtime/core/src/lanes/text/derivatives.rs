@@ -75,7 +75,7 @@ const APART: usize = usize::MAX;
 const MATRIX: usize = NV * NV;
 
 /// What four joints have. Of twists and wrenches the angular part comes first; all are in the axes of the root body, each about the joint's origin.
-#[derive(Clone, Copy)]
+#[derive(::core::clone::Clone, ::core::marker::Copy)]
 #[repr(align(32))]
 struct Block {
     /// First R, r from the root, V, V̇ and r from the first of the chunk, then `sums`, then `wrenches`.
@@ -116,7 +116,7 @@ const BLOCKS: usize = GROUPS.next_multiple_of(4);
 
 /// The root body's motion.
 struct Root {
-    /// ω and v, and V̇ on top of −g; that inertial frame is meant that moves with the body.
+    /// ω and v, and V̇ on top of −g, in the inertial frame that moves as the body's origin does.
     angular: [f64; 3],
     linear: [f64; 3],
     acceleration: [f64; 6],
@@ -160,8 +160,8 @@ macro_rules! derivatives {
         #[inline]
         fn write<const N: usize>(x: [V; N], to: &mut [Four]) {
             let to = &mut to[..N];
-            for (x, to) in x.into_iter().zip(to) {
-                store(x, to);
+            for (x, to) in x.iter().zip(to) {
+                store(*x, to);
             }
         }
 
@@ -450,7 +450,7 @@ macro_rules! derivatives {
             let mut handed = x;
             handed[..3].copy_from_slice(&first);
             // Σ + d hᵀ + (h + m d) dᵀ
-            for (at, (i, j)) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].into_iter().enumerate() {
+            for (at, &(i, j)) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].iter().enumerate() {
                 handed[3 + at] = fmadd(shift[i], own[j], fmadd(first[i], shift[j], x[3 + at]));
             }
             for (i, j) in [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (2, 0), (2, 1), (2, 2)] {
@@ -461,7 +461,7 @@ macro_rules! derivatives {
         }
 
         /// What moves with a joint, from its body and all beyond it: G S (6), 2 Bᵀ S (3), and with ψ̇ and ψ̈ what S meets of a joint before it,
-        /// 2B ψ̇ + G ψ̈ + S ×* F and 2 (B S + G ψ̇).
+        /// 2B ψ̇ + G ψ̈ + S ×* F and 2 (B S + G ψ̇). From then on groups are turned.
         $(#[$features])?
         #[inline(never)]
         fn wrenches(bodies: &mut Bodies) {
