@@ -22,8 +22,9 @@ impl Sizes {
         let own = self.0.iter().find(|(n, _)| n == symbol)?.1;
         // A mangled path holds each name with its length in front.
         let mut paths = ["", "_into", "_fill"].map(|form| format!("5robot{}{name}{form}", name.len() + form.len())).to_vec();
-        // The loop over columns, where there is one.
+        // The loop over columns, where there is one, and loops over joints.
         paths.push("5robot7columns".into());
+        paths.extend((name == "inverse_dynamics_derivatives").then(|| "5robot11derivatives".into()));
         let outside = self.0.iter().filter(|(n, _)| paths.iter().any(|path| n.contains(path)));
         Some(own + outside.map(|(_, bytes)| bytes).sum::<u64>())
     }
@@ -43,5 +44,17 @@ mod tests {
         ]);
         assert_eq!(sizes.function("placements", "articulated_placements"), Some(120));
         assert_eq!(sizes.function("bias_forces", "articulated_bias_forces"), None);
+    }
+
+    #[test]
+    fn loops_over_joints_count_with_the_function_that_they_compute() {
+        let symbol = |name: &str, bytes| (name.to_owned(), bytes);
+        let sizes = Sizes(vec![
+            symbol("articulated_inverse_dynamics_derivatives", 10),
+            symbol("_RNvNvNtNtCs1_9generated5robot11derivatives6chosen5pairs", 200),
+            symbol("articulated_mass_matrix", 100),
+        ]);
+        assert_eq!(sizes.function("inverse_dynamics_derivatives", "articulated_inverse_dynamics_derivatives"), Some(210));
+        assert_eq!(sizes.function("mass_matrix", "articulated_mass_matrix"), Some(100));
     }
 }
