@@ -38,7 +38,7 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
     signature.columns = program.columns.as_ref().map(Layout::of);
     signature.results_type(out);
     if program.groups.is_some() {
-        return loops(out, program, &mut signature, context);
+        return loops(out, program, &signature, context);
     }
     if in_lanes(graph) || levels::is_long(graph, context.level) {
         body_macro(out, graph, &signature, context.level);
@@ -72,9 +72,8 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
 }
 
 /// The function that loops compute, of a module of their own.
-fn loops(out: &mut String, program: &Program, signature: &mut Signature, context: Context) {
+fn loops(out: &mut String, program: &Program, signature: &Signature, context: Context) {
     document(out, program, signature, context);
-    signature.place = Place::Filled;
     let (name, arguments, names, gives) = (&signature.wanted.name, signature.arguments(), signature.names(), signature.gives());
     let _ = writeln!(out, "#[inline]\npub fn {name}({arguments}) -> {gives} {{\n    let mut out = {};", signature.nothing());
     let _ = writeln!(out, "    {name}_into({names}, &mut out);\n    out\n}}\n");
@@ -226,7 +225,11 @@ fn document(out: &mut String, program: &Program, signature: &Signature, context:
         let _ = writeln!(out, "/// Returns `{}` {}.\n///", signature.array(part.function.gives), part.function.unit);
         let _ = writeln!(out, "/// {}.", part.function.source);
     }
-    let by = if entry.ways.is_empty() { String::new() } else { format!("By {}, the cheapest for this robot; ", entry.ways.join(", ")) };
+    let by = match entry.ways.join(", ") {
+        ways if ways.is_empty() => ways,
+        _ if program.groups.is_some() => "In loops over joints: ".into(),
+        ways => format!("By {ways}, the cheapest for this robot; "),
+    };
     let c = entry.emitted();
     let _ = writeln!(
         out,
