@@ -128,7 +128,13 @@ pub const COLUMNS: &str = include_str!("text/columns.rs");
 /// * `GROUPS`, `TREE: [Group; GROUPS]`, `SLIDES`, whether there are prismatic joints, `ROOT: [f64; 10]`, the root body's m, h and Σ, `MASS`, that of all bodies, and `GRAVITY`;
 /// * `CHUNKS: [Chunk; _]`, `STEPS` and `PATHS: [Path; STEPS]`, a path behind those that it goes on from;
 /// * `BEFORE` and `BEYOND`: `[Pair; _]`, each joint with itself and those before it, and with those beyond it.
-pub const DERIVATIVES: &str = include_str!("text/derivatives.rs");
+pub const DERIVATIVES: &str = concat!(
+    include_str!("text/derivatives_tables.rs"),
+    include_str!("text/derivatives_vectors.rs"),
+    include_str!("text/derivatives_sweeps.rs"),
+    include_str!("text/derivatives_pairs.rs"),
+    include_str!("text/derivatives.rs"),
+);
 
 /// What [`DERIVATIVES`] cost, in vectors of four numbers: additions, products, multiply-adds, signs and sines of one group, of one chunk, of a pair of each kind, and of what is done once.
 pub struct LoopCost {

@@ -146,6 +146,10 @@ macro_rules! trees {
             static BEFORE: LazyLock<Vec<Pair>> = LazyLock::new(|| pairs_of(|own, other| is_before(other, own)));
             static BEYOND: LazyLock<Vec<Pair>> = LazyLock::new(|| pairs_of(|own, other| own != other && is_before(own, other)));
 
+            include!("../text/derivatives_tables.rs");
+            include!("../text/derivatives_vectors.rs");
+            include!("../text/derivatives_sweeps.rs");
+            include!("../text/derivatives_pairs.rs");
             include!("../text/derivatives.rs");
 
             fn first<const N: usize>(x: &[f64]) -> [Four; N] {
