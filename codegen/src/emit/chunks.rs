@@ -46,7 +46,7 @@ pub(super) fn pieces(out: &mut String, graph: &Graph, signature: &Signature, dia
     let apart = flattened.is_some() && apart::keeps_apart(graph, dialect);
     let result = |k| if apart { apart::place(k) } else { format!("out[{k}]") };
     let places = flattened.as_ref().map_or_else(|| signature.places(), |flat| (0..flat.numbers).map(result).collect());
-    let gives = flattened.as_ref().map_or_else(|| signature.filled(), |flat| flat.ty.clone());
+    let gives = flattened.as_ref().map_or_else(|| signature.gives(), |flat| flat.ty.clone());
     let (pieces, slots) = cut(graph, dialect, &places, &zeros(graph, signature, dialect, &places), LENGTH);
     kept(out, "Kept", dialect, slots);
     for (c, piece) in pieces.iter().enumerate() {
@@ -141,10 +141,15 @@ pub(super) fn one_piece(out: &mut String, graph: &Graph, signature: &Signature, 
     *out += &flat(&statements, dialect.value().0);
 }
 
-/// The statements that write zeros, where the result may hold anything.
+/// The statements that write zeros, where the result may hold anything and they are read.
 fn zeros(graph: &Graph, signature: &Signature, dialect: &dyn Dialect, places: &[String]) -> Vec<String> {
-    let written = signature.place == Place::Filled && signature.columns.is_none();
-    if written { super::zeros::statements(graph, dialect, places) } else { Vec::new() }
+    let read = match signature.place {
+        // Both B; of the factors those that are.
+        Place::Filled if signature.columns => places.len() / 3 * 2,
+        Place::Filled => places.len(),
+        _ => 0,
+    };
+    super::zeros::statements(graph, dialect, &places[..read])
 }
 
 /// Whether a unit is made again wherever it is needed: inputs, and comparisons, whose values are no numbers.

@@ -6,7 +6,6 @@ use articulated_core::algorithm::Shape;
 use articulated_core::level::Level;
 
 use super::chunks::pieces;
-use super::columns::Layout;
 use super::levels::{self, real};
 use super::signature::{Place, Signature};
 use super::vector::Vector;
@@ -35,7 +34,7 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
     let Program { wanted, graph, .. } = program;
     let mut signature = Signature::of(wanted, context.sizes, context.parameters).with(real(context.level));
     signature.place = Place::of(program, context.level, context.forbid_unsafe);
-    signature.columns = program.columns.as_ref().map(Layout::of);
+    signature.columns = program.columns.is_some();
     signature.results_type(out);
     if program.groups.is_some() {
         return loops(out, program, &signature, context);
@@ -88,13 +87,11 @@ fn loops(out: &mut String, program: &Program, signature: &Signature, context: Co
 fn value_form(out: &mut String, signature: &Signature) {
     let (name, arguments, names, gives) = (&signature.wanted.name, signature.arguments(), signature.names(), signature.gives());
     let _ = writeln!(out, "{}#[inline]\npub fn {name}({arguments}) -> {gives} {{", allowed(signature));
-    let _ = if signature.columns.is_some() {
-        writeln!(out, "    let mut out = {};\n    {name}_into({names}, &mut out);\n    out\n}}\n", signature.nothing())
-    } else if signature.place == Place::Written {
+    let _ = if signature.place == Place::Written {
         let _ = writeln!(out, "    let mut out = ::core::mem::MaybeUninit::uninit();\n    {name}_fill({names}, &mut out);");
         writeln!(out, "    // SAFETY: it was just written, all of it.\n    unsafe {{ out.assume_init() }}\n}}\n")
     } else {
-        writeln!(out, "    let mut out = {};\n    {name}_fill({names}, &mut out);\n    out\n}}\n", signature.nothing())
+        writeln!(out, "    let mut out = {};\n    {name}_into({names}, &mut out);\n    out\n}}\n", signature.nothing())
     };
 }
 
@@ -109,11 +106,10 @@ fn into_form(out: &mut String, signature: &Signature) {
             let _ = writeln!(out, "    // SAFETY: nothing is read there, and what is written is a value.");
             writeln!(out, "    {name}_fill({names}, unsafe {{ &mut *::core::ptr::from_mut(out).cast() }});\n}}\n")
         }
-        Place::Filled if signature.columns.is_some() => {
-            let _ = writeln!(out, "    let mut unsolved = columns::Unsolved::new();\n    {name}_fill({names}, &mut unsolved);");
-            writeln!(out, "    columns::columns(&mut unsolved, out);\n}}\n")
+        Place::Filled => {
+            let _ = writeln!(out, "    {name}_fill({names}, out);");
+            writeln!(out, "{}}}\n", if signature.columns { "    columns::columns(out);\n" } else { "" })
         }
-        Place::Filled => writeln!(out, "    {name}_fill({names}, out);\n}}\n"),
     };
 }
 

@@ -5,7 +5,6 @@ use std::fmt::Write;
 use articulated_core::algorithm::{Dim, Shape};
 
 use super::chunks::{self, gives_much};
-use super::columns::Layout;
 use super::levels::is_long;
 use super::results::{ZERO, is_sparse, nested, zeros};
 use super::rows::WIDTH;
@@ -85,8 +84,8 @@ pub(super) struct Signature<'a> {
     sizes: Shape,
     /// Where the result goes.
     pub(super) place: Place,
-    /// What the body fills instead of the result, where a loop remains.
-    pub(super) columns: Option<Layout<'a>>,
+    /// Whether a loop over columns remains.
+    pub(super) columns: bool,
     /// The type of the result, if there are several.
     group: Option<String>,
     /// The type of the numbers that go in and come out.
@@ -99,7 +98,7 @@ impl<'a> Signature<'a> {
         if parameters {
             inputs.push(Input { name: "parameters", dims: Vec::new() });
         }
-        Self { wanted, inputs, sizes, place: Place::Value, columns: None, group: wanted.group(), real: "f64" }
+        Self { wanted, inputs, sizes, place: Place::Value, columns: false, group: wanted.group(), real: "f64" }
     }
 
     /// The same with numbers of another type.
@@ -128,7 +127,7 @@ impl<'a> Signature<'a> {
         match self.place {
             Place::Value => arguments,
             Place::Written => format!("{arguments}, out: &mut ::core::mem::MaybeUninit<{gives}>"),
-            Place::Filled => format!("{arguments}, out: &mut {}", self.filled()),
+            Place::Filled => format!("{arguments}, out: &mut {gives}"),
         }
     }
 
@@ -142,11 +141,6 @@ impl<'a> Signature<'a> {
         if self.place == Place::Value { format!(" -> {}", self.gives()) } else { String::new() }
     }
 
-    /// The type of what a body fills.
-    pub(super) fn filled(&self) -> String {
-        if self.columns.is_some() { "columns::Unsolved".to_owned() } else { self.gives() }
-    }
-
     /// Whether there is a form that writes into what the caller has: wherever the result is more than a number.
     pub(super) fn has_into(&self) -> bool {
         self.group.is_some() || !self.wanted.parts[0].function.gives.is_empty()
@@ -155,7 +149,7 @@ impl<'a> Signature<'a> {
     /// What a body fills as one array, where it is an array of arrays.
     pub(super) fn flattened(&self) -> Option<Flat> {
         let nests = self.wanted.parts[0].function.gives.len().checked_sub(1)?;
-        if nests == 0 || self.group.is_some() || self.columns.is_some() {
+        if nests == 0 || self.group.is_some() {
             return None;
         }
         let numbers = self.wanted.parts[0].function.len(self.sizes);
@@ -249,9 +243,6 @@ impl<'a> Signature<'a> {
 
     /// Where each number of the result stands in `out: &mut` result.
     pub(super) fn places(&self) -> Vec<String> {
-        if let Some(columns) = &self.columns {
-            return columns.places();
-        }
         let mut places = Vec::new();
         for part in &self.wanted.parts {
             let lengths: Vec<usize> = part.function.gives.iter().map(|d| d.len(self.sizes)).collect();

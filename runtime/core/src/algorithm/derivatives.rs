@@ -141,6 +141,8 @@ pub fn forward_dynamics_derivatives_with_wrenches<S: Scalar>(
 ) {
     let n = model.nv * model.nv;
     let matrix = unsolved(model, ws, q, v, tau, wrenches, out);
+    // ∂a = −M⁻¹ ∂τ;  ∂a/∂τ = M⁻¹
+    out[..2 * n].iter_mut().for_each(|x| *x = -*x);
     for out in out.chunks_exact_mut(n.max(1)).take(2) {
         solve_rows(&matrix, &ws.below, out, model.nv);
     }
@@ -150,8 +152,8 @@ pub fn forward_dynamics_derivatives_with_wrenches<S: Scalar>(
     ws.matrix = matrix;
 }
 
-/// All of [`forward_dynamics_derivatives`] but the solution of M X = B column by column, which is the same for each, so that generated code may leave it a loop: B = −∂τ/∂q and
-/// B = −∂τ/∂v, and in the third matrix M = Lᵀ D L: L below the diagonal, D⁻¹ on it, zeros above. Without motors.
+/// All of [`forward_dynamics_derivatives`] but the solution of M X = B column by column, which is the same for each, so that generated code may leave it a loop: B = ∂τ/∂q and
+/// B = ∂τ/∂v, and in the third matrix M = Lᵀ D L: L below the diagonal, D⁻¹ on it, zeros above. Without motors.
 ///
 /// # Panics
 /// As [`inverse_dynamics_derivatives`].
@@ -183,7 +185,7 @@ pub(super) fn unsolved_derivatives_with_wrenches<S: Scalar>(
     ws.matrix = matrix;
 }
 
-/// −∂τ/∂q and −∂τ/∂v at the acceleration that τ makes, the slopes of motors with them, in `out`; returns the factors of M, in the workspace's matrix.
+/// ∂τ/∂q and ∂τ/∂v at the acceleration that τ makes, the slopes of motors with them, in `out`; returns the factors of M, in the workspace's matrix.
 fn unsolved<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,
@@ -207,9 +209,7 @@ fn unsolved<S: Scalar>(
     solve(&matrix, &ws.below, &mut a);
     inverse_dynamics_derivatives_with_wrenches(model, ws, q, v, &a, wrenches, out);
     ws.solution = a;
-    // ∂a = −M⁻¹ ∂τ;  ∂a/∂τ = M⁻¹
-    out[..2 * n].iter_mut().for_each(|x| *x = -*x);
-    effects::driven_slopes(model, v, tau, |i, by_v, _| out[n + i * model.nv + i] += by_v);
+    effects::driven_slopes(model, v, tau, |i, by_v, _| out[n + i * model.nv + i] -= by_v);
     matrix
 }
 

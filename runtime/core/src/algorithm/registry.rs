@@ -201,8 +201,8 @@ pub struct Function<S: 'static> {
     pub regrouped: bool,
     /// Ways to compute it, from which the generator takes the cheapest; the first is what [`Function::call`] runs where it applies.
     pub ways: &'static [Way<S>],
-    /// All of it but the solution of M X = B for all columns of `[3][nv][nv]` numbers: two matrices B, and the factors of M = Lᵀ D L in the third, L below the diagonal and D⁻¹ on it;
-    /// its own third B is the unit matrix. Generated code may leave what remains a loop.
+    /// All of it but the solution of M X = −B for all columns of `[3][nv][nv]` numbers: two matrices B, and the factors of M = Lᵀ D L in the third, L below the diagonal and D⁻¹ on it;
+    /// the third X is M⁻¹. Generated code may leave what remains a loop.
     pub unsolved: Option<Way<S>>,
 }
 

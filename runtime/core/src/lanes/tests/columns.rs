@@ -9,8 +9,8 @@ use super::super::neon_f64x4;
 use super::super::portable_f64x4;
 use crate::algorithm::ltdl::{solve_rows, way};
 
-/// Rows of (number, place).
-type Table = Vec<&'static [(u16, u16)]>;
+/// Rows of numbers.
+type Table = Vec<&'static [u16]>;
 
 /// M, B and X in whole numbers and halves, too small to be rounded: every order of the sums and every instruction set gives the same.
 struct Sample {
@@ -20,7 +20,7 @@ struct Sample {
     l: Vec<f64>,
     /// `[3][nv][nv]`, the third the unit matrix.
     b: Vec<f64>,
-    /// `[3][nv][nv]`
+    /// `[3][nv][nv]`, of −B for the first two.
     x: Vec<f64>,
 }
 
@@ -37,18 +37,18 @@ impl Sample {
         let mut b: Vec<f64> = (0..2 * nv * nv).map(|_| random(19) as f64 - 9.0).collect();
         b.extend((0..nv * nv).map(|at| f64::from(at / nv == at % nv)));
         let mut x = b.clone();
+        x[..2 * nv * nv].iter_mut().for_each(|x| *x = -*x);
         x.chunks_mut(nv * nv).for_each(|x| solve_rows(&l, &below, x, nv));
         assert!(x.iter().all(|x| x.abs() < 2_f64.powi(48)), "numbers so large could be rounded");
         Self { below, l, b, x }
     }
 
-    /// Numbers of L row by row: for each row their columns and places, and for each column their rows and places.
+    /// Numbers of L: for each row their columns, and for each column their rows.
     fn tables(&self) -> [Table; 2] {
         let mut tables = [(); 2].map(|()| vec![Vec::new(); self.below.len()]);
-        let numbers = (0..self.below.len()).flat_map(|k| way(&self.below, k).map(move |i| (k, i)));
-        for (at, (k, i)) in numbers.enumerate() {
-            tables[0][k].push((i as u16, at as u16));
-            tables[1][i].push((k as u16, at as u16));
+        for (k, i) in (0..self.below.len()).flat_map(|k| way(&self.below, k).map(move |i| (k, i))) {
+            tables[0][k].push(i as u16);
+            tables[1][i].push(k as u16);
         }
         tables.map(|table| table.into_iter().map(|row| &*row.leak()).collect())
     }
@@ -72,7 +72,6 @@ macro_rules! columns {
             const NV: usize = $nv;
             const VECTORS: usize = NV.div_ceil(4);
             const TOGETHER: usize = $together;
-            const ENTRIES: usize = NV * (NV - 1) / 2;
 
             static SAMPLE: LazyLock<Sample> = LazyLock::new(|| Sample::random(NV, $near));
             static BEFORE: LazyLock<Table> = LazyLock::new(|| SAMPLE.tables()[0].clone());
@@ -80,34 +79,20 @@ macro_rules! columns {
 
             include!("../text/columns.rs");
 
-            impl Unsolved {
-                fn of(sample: &Sample) -> Self {
-                    let mut new = Self::new();
-                    // The third is there.
-                    for (at, b) in sample.b[..2 * NV * NV].iter().enumerate() {
-                        let (matrix, row, column) = (at / NV / NV, at / NV % NV, at % NV);
-                        new.x[matrix / TOGETHER][row][matrix % TOGETHER * VECTORS + column / 4][column % 4] = *b;
-                    }
-                    for k in 0..NV {
-                        new.d[k] = sample.l[k * NV + k];
-                        BEFORE[k].iter().for_each(|&(i, at)| new.l[at as usize] = sample.l[k * NV + i as usize]);
-                    }
-                    new
-                }
-            }
-
             #[test]
             fn columns_in_vectors_solve_as_rows_one_by_one() {
-                let (mut unsolved, mut x) = (Unsolved::of(&SAMPLE), [[[f64::NAN; NV]; NV]; 3]);
-                columns(&mut unsolved, &mut x);
+                let mut x = [[[f64::NAN; NV]; NV]; 3];
+                let given = [&SAMPLE.b[..2 * NV * NV], &SAMPLE.l].concat();
+                x.as_flattened_mut().as_flattened_mut().copy_from_slice(&given);
+                let mut portable = x;
+                columns(&mut x);
                 assert_eq!(x.as_flattened().as_flattened(), SAMPLE.x);
 
                 // What processors run that have no such vectors.
                 use super::portable_f64x4::*;
                 solve!();
-                let mut portable = Unsolved::of(&SAMPLE);
                 solve(&mut portable);
-                assert_eq!(portable.x, unsolved.x);
+                assert_eq!(portable, x);
             }
         }
     )+ };

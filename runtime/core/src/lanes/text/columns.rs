@@ -1,38 +1,55 @@
-/// What is solved: B in vectors of four columns, D⁻¹, and L row by row.
-#[repr(align(64))]
-pub(super) struct Unsolved {
-    pub(super) x: [[[[f64; 4]; TOGETHER * VECTORS]; NV]; 3 / TOGETHER],
-    pub(super) d: [f64; NV],
-    pub(super) l: [f64; ENTRIES],
-}
+type Matrix = [[f64; NV]; NV];
 
-impl Unsolved {
-    /// Zeros, and the unit matrix for the third B.
+/// Matrices that are solved for at once, side by side, in vectors of four columns.
+#[repr(align(64))]
+struct Block([[[f64; 4]; TOGETHER * VECTORS]; NV]);
+
+impl Block {
+    /// −B, and for the last of three the unit matrix.
     #[inline]
-    pub(super) fn new() -> Self {
-        let mut new = Self { x: [[[[0.0; 4]; TOGETHER * VECTORS]; NV]; 3 / TOGETHER], d: [0.0; NV], l: [0.0; ENTRIES] };
-        let last = &mut new.x[3 / TOGETHER - 1];
-        for i in 0..NV {
-            last[i][(TOGETHER - 1) * VECTORS + i / 4][i % 4] = 1.0;
+    fn take(&mut self, first: usize, b: &[Matrix]) {
+        for (m, b) in b.iter().enumerate() {
+            for i in 0..NV {
+                let x = self.0[i][m * VECTORS..][..VECTORS].as_flattened_mut();
+                if first + m == 2 {
+                    x.fill(0.0);
+                    x[i] = 1.0;
+                    continue;
+                }
+                for (x, b) in x.iter_mut().zip(&b[i]) {
+                    *x = -b;
+                }
+            }
         }
-        new
+    }
+
+    #[inline]
+    fn give(&self, x: &mut [Matrix]) {
+        for (m, x) in x.iter_mut().enumerate() {
+            for (to, from) in x.iter_mut().zip(&self.0) {
+                to.copy_from_slice(&from[m * VECTORS..][..VECTORS].as_flattened()[..NV]);
+            }
+        }
     }
 }
 
 macro_rules! solve {
     ($(#[$features:meta])?) => {
         $(#[$features])?
-        fn solve(unsolved: &mut Unsolved) {
-            let Unsolved { x, d, l } = unsolved;
-            for x in x {
+        fn solve(b: &mut [Matrix; 3]) {
+            let mut block = Block([[[0.0; 4]; TOGETHER * VECTORS]; NV]);
+            for first in (0..3).step_by(TOGETHER) {
+                block.take(first, &b[first..first + TOGETHER]);
+                // The factors stay until the last matrix is given.
+                let (x, l) = (&mut block.0, &b[2]);
                 // L⁻ᵀ, from the tips to the base.
                 for i in (0..NV).rev() {
                     let mut row = [k(0.0); TOGETHER * VECTORS];
                     for b in 0..TOGETHER * VECTORS {
                         row[b] = load(&x[i][b]);
                     }
-                    for &(j, at) in BEYOND[i] {
-                        let (factor, other) = (k(l[at as usize]), &x[j as usize]);
+                    for &j in BEYOND[i] {
+                        let (factor, other) = (k(l[j as usize][i]), &x[j as usize]);
                         for b in 0..TOGETHER * VECTORS {
                             row[b] = fnmadd(factor, load(&other[b]), row[b]);
                         }
@@ -43,12 +60,12 @@ macro_rules! solve {
                 }
                 // L⁻¹ D⁻¹, from the base to the tips.
                 for i in 0..NV {
-                    let (factor, mut row) = (k(d[i]), [k(0.0); TOGETHER * VECTORS]);
+                    let (factor, mut row) = (k(l[i][i]), [k(0.0); TOGETHER * VECTORS]);
                     for b in 0..TOGETHER * VECTORS {
                         row[b] = mul(factor, load(&x[i][b]));
                     }
-                    for &(j, at) in BEFORE[i] {
-                        let (factor, other) = (k(l[at as usize]), &x[j as usize]);
+                    for &j in BEFORE[i] {
+                        let (factor, other) = (k(l[i][j as usize]), &x[j as usize]);
                         for b in 0..TOGETHER * VECTORS {
                             row[b] = fnmadd(factor, load(&other[b]), row[b]);
                         }
@@ -57,24 +74,14 @@ macro_rules! solve {
                         store(row[b], &mut x[i][b]);
                     }
                 }
+                block.give(&mut b[first..first + TOGETHER]);
             }
         }
     };
 }
 
-/// X = M⁻¹ B of all three.
-pub(super) fn columns(unsolved: &mut Unsolved, out: &mut [[[f64; NV]; NV]; 3]) {
-    solve(unsolved);
-    for (x, out) in unsolved.x.iter().zip(out.chunks_exact_mut(TOGETHER)) {
-        for (m, out) in out.iter_mut().enumerate() {
-            for (x, out) in x.iter().zip(out) {
-                out.copy_from_slice(&x[m * VECTORS..][..VECTORS].as_flattened()[..NV]);
-            }
-        }
-    }
-}
-
-fn solve(unsolved: &mut Unsolved) {
+/// −M⁻¹ B in the place of both B, and M⁻¹ in that of the factors of M = Lᵀ D L: the third matrix has L below the diagonal and D⁻¹ on it.
+pub(super) fn columns(b: &mut [Matrix; 3]) {
     #[cfg(target_arch = "x86_64")]
     {
         use super::avx2_f64x4::*;
@@ -82,23 +89,23 @@ fn solve(unsolved: &mut Unsolved) {
         #[cfg(all(target_arch = "x86_64", not(all(target_feature = "avx2", target_feature = "fma"))))]
         if ::std::is_x86_feature_detected!("avx2") && ::std::is_x86_feature_detected!("fma") {
             // SAFETY: the processor was just asked for both.
-            return unsafe { solve(unsolved) };
+            return unsafe { solve(b) };
         }
         #[cfg(all(target_feature = "avx2", target_feature = "fma"))]
         // SAFETY: this is compiled for processors with both.
-        return unsafe { solve(unsolved) };
+        return unsafe { solve(b) };
     }
     #[cfg(target_arch = "aarch64")]
     {
         use super::neon_f64x4::*;
         solve!(#[target_feature(enable = "neon")]);
         // SAFETY: every 64-bit Arm processor has it.
-        return unsafe { solve(unsolved) };
+        return unsafe { solve(b) };
     }
     #[cfg(not(any(target_arch = "aarch64", all(target_arch = "x86_64", target_feature = "avx2", target_feature = "fma"))))]
     {
         use super::portable_f64x4::*;
         solve!();
-        solve(unsolved)
+        solve(b)
     }
 }
