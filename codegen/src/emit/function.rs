@@ -34,12 +34,12 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
     let Program { wanted, graph, .. } = program;
     let mut signature = Signature::of(wanted, context.sizes, context.parameters).with(real(context.level));
     signature.place = Place::of(program, context.level, context.forbid_unsafe);
-    signature.columns = program.columns.is_some();
+    (signature.columns, signature.long) = (program.columns.is_some(), levels::is_long(program, context.level));
     signature.results_type(out);
     if program.groups.is_some() {
         return loops(out, program, &signature, context);
     }
-    if in_lanes(graph) || levels::is_long(graph, context.level) {
+    if in_lanes(graph) || signature.long {
         body_macro(out, graph, &signature, context.level);
     }
     document(out, program, &signature, context);
@@ -57,7 +57,7 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
     }
     if in_lanes(graph) {
         lanes_calls(out, graph, &signature);
-    } else if levels::is_long(graph, context.level) {
+    } else if signature.long {
         long_calls(out, &signature, context);
     } else if needs_choice(graph, context.level) && context.chooses() {
         chosen(out, graph, &signature, context.level);
@@ -151,7 +151,7 @@ fn chosen(out: &mut String, graph: &Graph, signature: &Signature, level: Level) 
 fn body_macro(out: &mut String, graph: &Graph, signature: &Signature, level: Level) {
     let (takes, returns, name) = (signature.takes(), signature.returns(), &signature.wanted.name);
     let _ = writeln!(out, "macro_rules! {name}_body {{\n    ($(#[$features:meta])?) => {{");
-    if levels::is_long(graph, level) {
+    if signature.long {
         let vector = Vector { graph, signature };
         levels::with_dialect(graph, signature, level, |own| pieces(out, graph, signature, if in_lanes(graph) { &vector } else { own }));
     } else {
@@ -240,12 +240,12 @@ fn document(out: &mut String, program: &Program, signature: &Signature, context:
 
 /// What there is to say of a function's form.
 fn form(program: &Program, context: Context) -> String {
-    let Program { graph, entry, .. } = program;
+    let entry = &program.entry;
     if program.groups.is_some() {
         return format!(", each of {} joints at once", entry.lanes);
     }
     let lanes = if entry.lanes > 1 { format!("; limbs that are alike in {} lanes", entry.lanes) } else { String::new() };
-    let pieces = if levels::is_long(graph, context.level) { "; in pieces, so that it is compiled in less time" } else { "" };
+    let pieces = if levels::is_long(program, context.level) { "; in pieces, so that it is compiled in less time" } else { "" };
     format!(", depth {}{lanes}{pieces}", entry.depth)
 }
 

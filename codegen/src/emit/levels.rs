@@ -10,6 +10,7 @@ use super::pairs::Pairs;
 use super::plain::{self, Plain};
 use super::signature::Signature;
 use crate::graph::Graph;
+use crate::program::Program;
 use crate::{Arithmetic, Level, Sines};
 
 /// The type of arguments and results.
@@ -26,8 +27,8 @@ pub(super) fn computed(level: Level) -> &'static str {
 const CUT_FROM: usize = 400;
 
 /// Whether a function is cut into pieces.
-pub(super) fn is_long(graph: &Graph, level: Level) -> bool {
-    chunks::is_long(graph) || level.of_two() && graph.nodes().len() >= CUT_FROM
+pub(super) fn is_long(program: &Program, level: Level) -> bool {
+    chunks::is_long(&program.graph, program.columns.is_some()) || level.of_two() && program.graph.nodes().len() >= CUT_FROM
 }
 
 /// Runs `work` with the dialect of a level.

@@ -60,10 +60,12 @@ impl Place {
     pub(super) fn of(program: &Program, level: Level, forbid_unsafe: bool) -> Self {
         let graph = &program.graph;
         match graph.outputs.len() {
-            2.. if graph.lanes().width == WIDTH && !forbid_unsafe && !chunks::is_long(graph) && program.columns.is_none() => Self::Written,
+            2.. if graph.lanes().width == WIDTH && !forbid_unsafe && !chunks::is_long(graph, false) && program.columns.is_none() => {
+                Self::Written
+            }
             _ if gives_much(graph) || program.columns.is_some() => Self::Filled,
             0 | 1 => Self::Value,
-            _ if forbid_unsafe || is_long(graph, level) => Self::Value,
+            _ if forbid_unsafe || is_long(program, level) => Self::Value,
             _ => Self::Written,
         }
     }
@@ -86,6 +88,8 @@ pub(super) struct Signature<'a> {
     pub(super) place: Place,
     /// Whether a loop over columns remains.
     pub(super) columns: bool,
+    /// Whether the body is cut into pieces.
+    pub(super) long: bool,
     /// The type of the result, if there are several.
     group: Option<String>,
     /// The type of the numbers that go in and come out.
@@ -98,7 +102,7 @@ impl<'a> Signature<'a> {
         if parameters {
             inputs.push(Input { name: "parameters", dims: Vec::new() });
         }
-        Self { wanted, inputs, sizes, place: Place::Value, columns: false, group: wanted.group(), real: "f64" }
+        Self { wanted, inputs, sizes, place: Place::Value, columns: false, long: false, group: wanted.group(), real: "f64" }
     }
 
     /// The same with numbers of another type.
