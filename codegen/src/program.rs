@@ -112,6 +112,13 @@ fn columns(wanted: &Wanted, model: &Model<f64>, options: &Options) -> Option<Col
 }
 
 impl Columns {
+    /// Whether the loop reads number `k` of the three matrices: both B, and of the factors what is on the diagonal or on a way.
+    pub(crate) fn reads(&self, k: usize) -> bool {
+        let n = self.ways.len();
+        let (matrix, row, column) = (k / n / n, k / n % n, k % n);
+        matrix < 2 || row == column || self.ways[row].contains(&column)
+    }
+
     /// Adds what the loop computes, in vectors of four columns, to every stage.
     fn count(&self, entry: &mut Entry) {
         let (n, entries) = (self.ways.len() as u64, self.ways.iter().map(|way| way.len() as u64).sum::<u64>());

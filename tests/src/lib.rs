@@ -10,6 +10,7 @@ pub mod case;
 pub mod fixture;
 pub mod golden;
 pub mod jet;
+pub mod machine;
 pub mod measure;
 pub mod program;
 pub mod random;

@@ -3,11 +3,13 @@
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 use articulated_codegen::Generated;
 use articulated_core::algorithm::function;
+
+use crate::machine;
 
 /// Several robots' generated modules, compiled as one program.
 #[derive(Debug)]
@@ -37,9 +39,8 @@ impl Program {
         write("main.rs", main);
         let file = folder.path().join(format!("program{}", std::env::consts::EXE_SUFFIX));
         let start = Instant::now();
-        let compiler = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
-        let mut command = Command::new(compiler);
-        command.args(["--edition", "2024", "--crate-name", "program"]).args(flags);
+        let mut command = machine::compiler(flags);
+        command.args(["--edition", "2024", "--crate-name", "program"]);
         let answer = command.arg("-o").arg(&file).arg(folder.path().join("main.rs")).output().expect("a Rust compiler");
         assert!(answer.status.success(), "refused: {}", String::from_utf8_lossy(&answer.stderr));
         Self { file, time: start.elapsed(), _folder: folder }
@@ -50,7 +51,7 @@ impl Program {
     /// # Panics
     /// If the program fails, as it would on a panic in generated code.
     pub fn run(&self, robot: &str, function: &str, states: &[Vec<&[f64]>]) -> Vec<Vec<f64>> {
-        let mut child = Command::new(&self.file)
+        let mut child = machine::run(&self.file)
             .args([robot, function, &states.len().to_string()])
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())

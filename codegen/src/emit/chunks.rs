@@ -146,13 +146,11 @@ pub(super) fn one_piece(out: &mut String, graph: &Graph, signature: &Signature, 
 
 /// The statements that write zeros, where the result may hold anything and they are read.
 fn zeros(graph: &Graph, signature: &Signature, dialect: &dyn Dialect, places: &[String]) -> Vec<String> {
-    let read = match signature.place {
-        // Both B; of the factors those that are.
-        Place::Filled if signature.columns => places.len() / 3 * 2,
-        Place::Filled => places.len(),
-        _ => 0,
-    };
-    super::zeros::statements(graph, dialect, &places[..read])
+    let read = |k| signature.columns.is_none_or(|columns| columns.reads(k));
+    match signature.place {
+        Place::Filled => super::zeros::statements(graph, dialect, places, read),
+        _ => Vec::new(),
+    }
 }
 
 /// Whether a unit is made again wherever it is needed: inputs, and comparisons, whose values are no numbers.

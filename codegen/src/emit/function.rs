@@ -34,7 +34,7 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
     let Program { wanted, graph, .. } = program;
     let mut signature = Signature::of(wanted, context.sizes, context.parameters).with(real(context.level));
     signature.place = Place::of(program, context.level, context.forbid_unsafe);
-    (signature.columns, signature.long) = (program.columns.is_some(), levels::is_long(program, context.level));
+    (signature.columns, signature.long) = (program.columns.as_ref(), levels::is_long(program, context.level));
     signature.results_type(out);
     if program.groups.is_some() {
         return loops(out, program, &signature, context);
@@ -108,7 +108,7 @@ fn into_form(out: &mut String, signature: &Signature) {
         }
         Place::Filled => {
             let _ = writeln!(out, "    {name}_fill({names}, out);");
-            writeln!(out, "{}}}\n", if signature.columns { "    columns::columns(out);\n" } else { "" })
+            writeln!(out, "{}}}\n", if signature.columns.is_some() { "    columns::columns(out);\n" } else { "" })
         }
     };
 }

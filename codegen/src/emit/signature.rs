@@ -9,7 +9,7 @@ use super::levels::is_long;
 use super::results::{ZERO, is_sparse, nested, zeros};
 use super::rows::WIDTH;
 use crate::Level;
-use crate::program::Program;
+use crate::program::{Columns, Program};
 use crate::wanted::{Wanted, array_of};
 
 /// What is handed in.
@@ -86,8 +86,8 @@ pub(super) struct Signature<'a> {
     sizes: Shape,
     /// Where the result goes.
     pub(super) place: Place,
-    /// Whether a loop over columns remains.
-    pub(super) columns: bool,
+    /// The loop over columns that remains.
+    pub(super) columns: Option<&'a Columns>,
     /// Whether the body is cut into pieces.
     pub(super) long: bool,
     /// The type of the result, if there are several.
@@ -102,7 +102,7 @@ impl<'a> Signature<'a> {
         if parameters {
             inputs.push(Input { name: "parameters", dims: Vec::new() });
         }
-        Self { wanted, inputs, sizes, place: Place::Value, columns: false, long: false, group: wanted.group(), real: "f64" }
+        Self { wanted, inputs, sizes, place: Place::Value, columns: None, long: false, group: wanted.group(), real: "f64" }
     }
 
     /// The same with numbers of another type.

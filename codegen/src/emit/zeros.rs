@@ -8,9 +8,9 @@ use crate::graph::Graph;
 /// So many numbers at once are written in place; more would be a call.
 const MOST: usize = 16;
 
-/// The statements that write the zeros of a result whose numbers have these places.
-pub(super) fn statements(graph: &Graph, dialect: &dyn Dialect, places: &[String]) -> Vec<String> {
-    let zeros = places.iter().zip(&graph.outputs).filter(|(_, id)| dialect.number(**id) == ZERO).map(|(place, _)| place.as_str());
+/// The statements that write the zeros of a result whose numbers have these places, as far as they are read.
+pub(super) fn statements(graph: &Graph, dialect: &dyn Dialect, places: &[String], read: impl Fn(usize) -> bool) -> Vec<String> {
+    let zeros = (0..places.len()).filter(|&k| read(k) && dialect.number(graph.outputs[k]) == ZERO).map(|k| places[k].as_str());
     runs(zeros).iter().map(Run::statement).collect()
 }
 

@@ -6,6 +6,7 @@ use articulated_codegen::{Generated, Options, Real};
 use articulated_core::description::Base;
 use articulated_tests::batch_program::{BatchProgram, STATES};
 use articulated_tests::case::State;
+use articulated_tests::machine::{is_arm, is_x86_64};
 use articulated_tests::measure::{arguments, error};
 use articulated_tests::random::Random;
 use articulated_tests::random_tree::{Flavour, random_tree};
@@ -68,11 +69,11 @@ static WAYS: LazyLock<Vec<Way>> = LazyLock::new(|| {
     #[cfg(not(target_arch = "x86_64"))]
     let (avx2, avx512) = (false, false);
     let sets = [
-        ("avx512", avx512, true),
-        ("avx2", avx2, true),
-        ("sse2", cfg!(target_arch = "x86_64"), false),
-        ("neon", cfg!(target_arch = "aarch64"), true),
-        ("portable", true, cfg!(target_arch = "aarch64")),
+        ("avx512", avx512 && is_x86_64(), true),
+        ("avx2", avx2 && is_x86_64(), true),
+        ("sse2", is_x86_64(), false),
+        ("neon", is_arm(), true),
+        ("portable", true, is_arm()),
     ];
     let way = |(set, has, fused): (&'static str, bool, bool)| {
         if !has {
