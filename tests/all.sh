@@ -28,6 +28,14 @@ readme_command() {
     cargo run --quiet --release -p articulated-cli -- compare panda_like --repetitions 31
 }
 
+arm() { # where there is an emulator: it is the one thing that only an administrator can install
+    if command -v qemu-aarch64-static >/dev/null || command -v qemu-aarch64 >/dev/null; then
+        tests/arm.sh
+    else
+        echo "not run: 64-bit Arm, which needs qemu-aarch64-static (Debian: qemu-user-static)"
+    fi
+}
+
 ensure fmt rustfmt
 ensure clippy clippy
 
@@ -35,6 +43,7 @@ step cargo fmt --all --check
 step cargo clippy --quiet --workspace --all-targets -- -D warnings
 step no_std
 step cargo test --workspace
+step arm
 step documentation
 step python3 models/urdf/generate.py --check
 step python3 tests/oracles/make.py --check

@@ -10,4 +10,4 @@ target=aarch64-unknown-linux-musl
 
 CARGO_TARGET_AARCH64_UNKNOWN_LINUX_MUSL_LINKER=rust-lld CARGO_TARGET_AARCH64_UNKNOWN_LINUX_MUSL_RUNNER="$emulator" \
     cargo test --quiet -p articulated-core --target "$target"
-ARTICULATED_ARM_EMULATOR="$emulator" cargo test --quiet -p articulated-tests --test generated -- equals_generic batches
+ARTICULATED_ARM_EMULATOR="$emulator" cargo test --quiet -p articulated-tests --test generated -- so_does_code_for_any_machine batches
