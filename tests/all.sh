@@ -28,11 +28,11 @@ readme_command() {
     cargo run --quiet --release -p articulated-cli -- compare panda_like --repetitions 31
 }
 
-arm() { # where there is an emulator: it is the one thing that only an administrator can install
-    if command -v qemu-aarch64-static >/dev/null || command -v qemu-aarch64 >/dev/null; then
+arm() { # where there is an emulator, which only an administrator can install, and rustup for the compiler's target
+    if command -v rustup >/dev/null && { command -v qemu-aarch64-static || command -v qemu-aarch64; } >/dev/null; then
         tests/arm.sh
     else
-        echo "not run: 64-bit Arm, which needs qemu-aarch64-static (Debian: qemu-user-static)"
+        echo "not run: 64-bit Arm, which needs rustup and qemu-aarch64-static (Debian: qemu-user-static)"
     fi
 }
 

@@ -18,7 +18,6 @@ const LANES: usize = 4;
 const TOGETHER: usize = 15;
 
 /// How columns are laid out.
-#[derive(Clone, Copy)]
 pub(super) struct Layout<'a> {
     columns: &'a Columns,
 }

@@ -234,18 +234,18 @@ fn document(out: &mut String, program: &Program, signature: &Signature, context:
         c.additions(),
         c.instructions(),
         c.trigonometric(),
-        form(program, context)
+        form(program, signature)
     );
 }
 
 /// What there is to say of a function's form.
-fn form(program: &Program, context: Context) -> String {
+fn form(program: &Program, signature: &Signature) -> String {
     let entry = &program.entry;
     if program.groups.is_some() {
         return format!(", each of {} joints at once", entry.lanes);
     }
     let lanes = if entry.lanes > 1 { format!("; limbs that are alike in {} lanes", entry.lanes) } else { String::new() };
-    let pieces = if levels::is_long(program, context.level) { "; in pieces, so that it is compiled in less time" } else { "" };
+    let pieces = if signature.long { "; in pieces, so that it is compiled in less time" } else { "" };
     format!(", depth {}{lanes}{pieces}", entry.depth)
 }
 

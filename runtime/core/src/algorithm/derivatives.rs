@@ -152,7 +152,7 @@ pub fn forward_dynamics_derivatives_with_wrenches<S: Scalar>(
     ws.matrix = matrix;
 }
 
-/// All of [`forward_dynamics_derivatives`] but the solution of M X = B column by column, which is the same for each, so that generated code may leave it a loop: B = ∂τ/∂q and
+/// All of [`forward_dynamics_derivatives`] but the solution of M X = −B column by column, which is the same for each, so that generated code may leave it a loop: B = ∂τ/∂q and
 /// B = ∂τ/∂v, and in the third matrix M = Lᵀ D L: L below the diagonal, D⁻¹ on it, zeros above. Without motors.
 ///
 /// # Panics
