@@ -145,6 +145,9 @@ fn in_the_box(wanted: &Wanted, graph: &Graph, model: &Model<f64>, parameters: &[
 /// Lanes cost what no count shows (values that come and go one by one): they must be cheaper by this.
 const WORTH: f64 = 1.15;
 
+/// Functions whose statements go column by column, not as they are traced.
+const COLUMN_BY_COLUMN: [&str; 2] = ["mass_matrix", "mass_matrix_inverse"];
+
 /// The graph of a function, traced on the model as it was read and after each model pass, and taken through the graph passes.
 fn made(wanted: &Wanted, subject: &Subject, unsolved: Option<&'static Way<Sym>>) -> (Graph, Entry) {
     let all = model_passes::<Sym>().len();
@@ -167,6 +170,9 @@ fn made(wanted: &Wanted, subject: &Subject, unsolved: Option<&'static Way<Sym>>)
     for (name, pass, _) in GRAPH_PASSES {
         graph = pass::run(name, *pass, &graph);
         stages.push((name, graph.counts()));
+    }
+    if wanted.parts.iter().all(|part| COLUMN_BY_COLUMN.contains(&part.function.name)) {
+        graph = pass::run("from the last", pass::from_the_last, &graph);
     }
     let ways = choices.iter().flat_map(Choice::names).collect();
     let entry = Entry { function: wanted.name.clone(), ways, stages, depth: depth(&graph), lanes: graph.lanes().width, bounds: Vec::new() };

@@ -2,9 +2,11 @@
 
 mod chains;
 mod contract;
+mod from_the_last;
 mod live;
 
 pub use contract::contract;
+pub use from_the_last::from_the_last;
 pub use live::live;
 
 use articulated_core::running::Running;

@@ -91,7 +91,7 @@ fn velocity<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, q: &[S
         }
     });
     ws.zeros = zeros;
-    ws.bodies[i].pose = Some(pose);
+    ws.bodies[i].pose = pose;
     ws.bodies[i].u = rate_matrix(ws.bodies[i].motion.omega, zero);
     ws.bodies[i].wrench = body.inertia.wrench(zero, &ws.bodies[i].u);
     ws.articulated[i] = ArticulatedInertia::rigid(&body.inertia);
@@ -99,7 +99,7 @@ fn velocity<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, q: &[S
 
 /// Lets the joint of body `i` give way, and hands what is left to the parent.
 fn give_way<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, tau: &[S]) {
-    let Some(pose) = ws.bodies[i].pose else { return };
+    let pose = ws.bodies[i].pose;
     let (mut inertia, mut bias) = (ws.articulated[i], ws.bodies[i].wrench);
     for (k, c) in ws.columns_of(i).enumerate() {
         let column = &mut ws.columns[c];
@@ -135,7 +135,7 @@ fn give_way<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, tau: &
 
 /// a of the joint of body `i`, and the acceleration of the body.
 fn accelerate<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, out: &mut [S]) {
-    let Some(pose) = ws.bodies[i].pose else { return };
+    let pose = ws.bodies[i].pose;
     let (turn, motion) = (&model.bodies[i].placement.rotation, &ws.bodies[i].motion);
     let carried = ws.common[model.bodies[i].parent].acceleration.at(ws.bodies[i].origin);
     let to_child = |x: Vector3<S>| with_pose!(pose, p => p.to_child(rotate_back(turn, x)));

@@ -26,16 +26,16 @@ pub(super) enum Axes {
 pub(super) fn positions<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes: Axes, q: &[S]) {
     for i in model.outward() {
         let body = &model.bodies[i];
-        ws.bodies[i].pose = Some(body.joint.pose(&body.coordinates, q));
+        ws.bodies[i].pose = body.joint.pose(&body.coordinates, q);
         ws.common[i].base = Matrix3::identity();
     }
     if axes == Axes::Tree {
         from_the_center(model, ws);
     }
     for i in model.outward() {
-        let (body, Some(pose)) = (&model.bodies[i], ws.bodies[i].pose) else { continue };
+        let body = &model.bodies[i];
         let parent = if body.parent == 0 { CommonState { rotation: ws.common[i].base, ..ws.common[0] } } else { ws.common[body.parent] };
-        with_pose!(pose, p => {
+        with_pose!(ws.bodies[i].pose, p => {
             let state = &mut ws.common[i];
             if axes == Axes::Base || !ws.centers.inside[i] {
                 state.rotation = turned(body, &p, &parent.rotation);
@@ -55,10 +55,10 @@ fn from_the_center<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
     for &center in &ws.centers.bodies {
         ws.common[center].rotation = Matrix3::identity();
         let mut i = center;
-        while let (true, Some(pose)) = (i != 0, ws.bodies[i].pose) {
+        while i != 0 {
             let body = &model.bodies[i];
             // R_λ = R_i X_iᵀ
-            let relative = with_pose!(pose, p => turned(body, &p, &Matrix3::identity()));
+            let relative = with_pose!(ws.bodies[i].pose, p => turned(body, &p, &Matrix3::identity()));
             let rotation = ws.common[i].rotation * relative.transpose();
             if body.parent == 0 {
                 ws.common[i].base = rotation;

@@ -19,49 +19,46 @@ pub fn mass_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], 
         let body = &model.bodies[i];
         let pose = body.joint.pose(&body.coordinates, q);
         ws.bodies[i].origin = with_pose!(pose, p => p.origin(&body.placement));
-        ws.bodies[i].pose = Some(pose);
+        ws.bodies[i].pose = pose;
         ws.composite[i] = body.inertia;
     }
     out.fill(S::zero());
     for i in model.inward() {
-        let body = &model.bodies[i];
-        let Some(pose) = ws.bodies[i].pose else { continue };
-        for k in 0..body.joint.nv() {
-            column(model, ws, i, k, out);
-        }
-        if body.parent != 0 {
-            // I_λ += X_λi I_i
-            let joint = with_pose!(pose, p => p.inertia_to_joint(&ws.composite[i]));
-            ws.composite[body.parent] += joint.moved(&body.placement);
-        }
+        with_pose!(ws.bodies[i].pose, p => joint(model, ws, i, &p, out));
     }
     effects::armature_matrix(model, out);
     effects::add_inertia(model, ws, q, out);
 }
 
-/// The wrench that accelerates everything from body `i` on in its degree of freedom `k`, and what it asks of the joints on the way to the base.
-fn column<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, k: usize, out: &mut [S]) {
-    let (n, at) = (model.nv, &model.bodies[i].coordinates);
-    let Some(pose) = &ws.bodies[i].pose else { return };
-    // F = I_i S_i,k;  M_ik,i = S_iᵀ F
-    let mut wrench = with_pose!(pose, p => p.column(&ws.composite[i], k)).scaled(at.rate_of_one());
-    let row = at.v + k;
-    with_pose!(pose, p => p.add_torque(&wrench, at, &mut out[row * n..][..n]));
-    let mut j = i;
-    while model.bodies[j].parent != 0 {
-        let (body, state) = (&model.bodies[j], &ws.bodies[j]);
-        let Some(pose) = &state.pose else { return };
-        // F in the parent's frame;  M_ik,j = M_j,ik = S_jᵀ F
-        wrench = with_pose!(pose, p => to_parent(body, p, state.origin, &wrench));
-        j = body.parent;
-        let (body, Some(pose)) = (&model.bodies[j], &ws.bodies[j].pose) else { return };
-        let (first, end) = (body.coordinates.v, body.coordinates.v + body.joint.nv());
-        ws.row[first..end].fill(S::zero());
-        with_pose!(pose, p => p.add_torque(&wrench, &body.coordinates, &mut ws.row));
-        for l in first..end {
-            out[row * n + l] += ws.row[l];
-            out[l * n + row] += ws.row[l];
+/// The inertia that joint `i` shares with itself and with each joint beyond: what their columns' wrenches, carried as far as its body, ask of it. Then hands them, and the inertia of
+/// all that it carries, on to the parent.
+#[inline(always)]
+fn joint<S: Scalar, P: JointLaw<S>>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, p: &P, out: &mut [S]) {
+    let (n, body, origin) = (model.nv, &model.bodies[i], ws.bodies[i].origin);
+    let (at, dofs) = (&body.coordinates, body.joint.nv());
+    for (k, c) in ws.columns_of(i).enumerate() {
+        // F = I_i S_i,k
+        ws.columns[c].held = p.column(&ws.composite[i], k).scaled(at.rate_of_one());
+    }
+    let all = ws.columns_from(i);
+    for (c, column) in ws.columns[all].iter_mut().enumerate() {
+        // M_cj = M_jc = S_jᵀ F
+        let (k, wrench) = (column.at, &mut column.held);
+        for own in 0..dofs {
+            let (l, inertia) = (at.v + own, at.handed_on(p.torque(wrench, own)));
+            out[k * n + l] += inertia;
+            if c >= dofs {
+                out[l * n + k] += inertia;
+            }
         }
+        if body.parent != 0 {
+            *wrench = to_parent(body, p, origin, wrench);
+        }
+    }
+    if body.parent != 0 {
+        // I_λ += X_λi I_i
+        let joint = p.inertia_to_joint(&ws.composite[i]);
+        ws.composite[body.parent] += joint.moved(&body.placement);
     }
 }
 

@@ -15,8 +15,7 @@ use super::Workspace;
 use super::common::{Axes, accelerations, coriolis, forces, inertias, positions, twists};
 use super::crba::mass_matrix_in_common_axes;
 use super::effects;
-use super::forward_dynamics::inverse;
-use super::ltdl::{factor, solve, solve_rows, way};
+use super::ltdl::{factor, inverse, solve, solve_rows, way};
 use super::rnea::inverse_dynamics_with_wrenches;
 use super::wrenches;
 use crate::Scalar;
@@ -144,7 +143,7 @@ pub fn forward_dynamics_derivatives_with_wrenches<S: Scalar>(
     // ∂a = −M⁻¹ ∂τ;  ∂a/∂τ = M⁻¹
     out[..2 * n].iter_mut().for_each(|x| *x = -*x);
     for out in out.chunks_exact_mut(n.max(1)).take(2) {
-        solve_rows(&matrix, &ws.below, out, model.nv);
+        solve_rows(&matrix, &ws.below, out);
     }
     let by_tau = &mut out[2 * n..];
     inverse(&matrix, &ws.below, by_tau);

@@ -3,7 +3,7 @@
 use super::Workspace;
 use super::crba::mass_matrix;
 use super::effects;
-use super::ltdl::{factor, solve, solve_rows};
+use super::ltdl::{factor, inverse, solve};
 use super::rnea::inverse_dynamics_with_wrenches;
 use crate::Scalar;
 use crate::model::Model;
@@ -71,18 +71,6 @@ pub fn mass_matrix_inverse<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q
     let matrix = factored(model, ws, q);
     inverse(&matrix, &ws.below, out);
     ws.matrix = matrix;
-}
-
-/// M⁻¹ from what `factor` left of M.
-pub(super) fn inverse<S: Scalar>(matrix: &[S], below: &[usize], out: &mut [S]) {
-    let n = below.len();
-    out.fill(S::zero());
-    (0..n).for_each(|k| out[k * n + k] = S::one());
-    solve_rows(matrix, below, out, n);
-    // What is the same twice, once.
-    for j in 0..n {
-        (0..j).for_each(|i| out[j * n + i] = out[i * n + j]);
-    }
 }
 
 /// M(q) as `factor` leaves it. The matrix is the workspace's, to be given back.

@@ -60,26 +60,45 @@ pub(super) fn solve<S: Scalar>(l: &[S], below: &[usize], x: &mut [S]) {
     }
 }
 
-/// X = M⁻¹ B in place, for a matrix B of rows of this width: all its columns at once.
-pub(crate) fn solve_rows<S: Scalar>(l: &[S], below: &[usize], x: &mut [S], width: usize) {
+/// X = M⁻¹ B in place, for a matrix B of `below.len()` columns, row by row: all its columns at once.
+pub(crate) fn solve_rows<S: Scalar>(l: &[S], below: &[usize], x: &mut [S]) {
+    solve_from(l, below, x, |_| 0);
+}
+
+/// X = M⁻¹, `[n][n]`, row by row.
+pub(super) fn inverse<S: Scalar>(l: &[S], below: &[usize], x: &mut [S]) {
+    let n = below.len();
+    x.fill(S::zero());
+    (0..n).for_each(|k| x[k * n + k] = S::one());
+    // L⁻ᵀ has nothing below its diagonal, and of what is the same twice one is enough.
+    solve_from(l, below, x, |k| k);
+    for j in 0..n {
+        (0..j).for_each(|i| x[j * n + i] = x[i * n + j]);
+    }
+}
+
+/// As [`solve_rows`], each row from this column on.
+#[inline(always)]
+fn solve_from<S: Scalar>(l: &[S], below: &[usize], x: &mut [S], first: impl Fn(usize) -> usize) {
     let n = below.len();
     for k in (0..n).rev() {
         for i in way(below, k) {
-            subtract(x, width, i, k, l[k * n + i]);
+            let (before, row) = x.split_at_mut(k * n);
+            subtract(&mut before[i * n..][first(k)..n], &row[first(k)..n], l[k * n + i]);
         }
     }
     for k in 0..n {
-        x[k * width..][..width].iter_mut().for_each(|x| *x *= l[k * n + k]);
+        let (before, row) = x.split_at_mut(k * n);
+        let row = &mut row[first(k)..n];
+        row.iter_mut().for_each(|x| *x *= l[k * n + k]);
         for i in way(below, k) {
-            subtract(x, width, k, i, l[k * n + i]);
+            subtract(row, &before[i * n..][first(k)..n], l[k * n + i]);
         }
     }
 }
 
-/// Row i −= factor · row k.
-fn subtract<S: Scalar>(x: &mut [S], width: usize, i: usize, k: usize, factor: S) {
-    let (low, high) = x.split_at_mut(i.max(k) * width);
-    let (first, second) = (&mut low[i.min(k) * width..][..width], &mut high[..width]);
-    let (to, from) = if i < k { (first, second) } else { (second, first) };
-    to.iter_mut().zip(from.iter()).for_each(|(to, from)| *to -= factor * *from);
+/// to −= factor · from.
+#[inline(always)]
+fn subtract<S: Scalar>(to: &mut [S], from: &[S], factor: S) {
+    to.iter_mut().zip(from).for_each(|(to, from)| *to -= factor * *from);
 }

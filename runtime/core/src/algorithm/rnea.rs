@@ -64,9 +64,7 @@ pub(super) fn recursion<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &
     tau.fill(S::zero());
     for i in model.inward() {
         let body = &model.bodies[i];
-        if let Some(pose) = ws.bodies[i].pose {
-            with_pose!(pose, p => inward(body, i, &p, ws, tau));
-        }
+        with_pose!(ws.bodies[i].pose, p => inward(body, i, &p, ws, tau));
     }
     if world.inertia {
         effects::armature(model, a, tau);
@@ -147,7 +145,7 @@ fn outward<S: Scalar, P: JointLaw<S>>(body: &Body<S>, i: usize, p: P, pose: Pose
     let motion = p.motion(carried, &body.coordinates, v, a);
     let u = rate_matrix(motion.omega, motion.alpha);
     let state = &mut ws.bodies[i];
-    state.pose = Some(pose);
+    state.pose = pose;
     state.origin = origin;
     state.motion = motion;
     state.u = u;
@@ -161,7 +159,9 @@ fn inward<S: Scalar, P: JointLaw<S>>(body: &Body<S>, i: usize, p: &P, ws: &mut W
     let state = &ws.bodies[i];
     let (wrench, origin) = (state.wrench, state.origin);
     // τ_i = S_iᵀ F_i
-    p.add_torque(&wrench, &body.coordinates, tau);
+    for k in 0..body.joint.nv() {
+        tau[body.coordinates.v + k] += body.coordinates.handed_on(p.torque(&wrench, k));
+    }
     if body.parent == 0 {
         return;
     }

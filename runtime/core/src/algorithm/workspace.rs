@@ -33,6 +33,8 @@ pub struct Workspace<S> {
     pub(super) columns: Vec<Column<S>>,
     /// First column of each body, and the number of all.
     first: Vec<usize>,
+    /// End of the columns of each body and all that it carries.
+    end: Vec<usize>,
     /// The bodies in the middle of their trees.
     pub(super) centers: Centers,
     /// The first bodies of all trees.
@@ -55,7 +57,7 @@ pub struct Workspace<S> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BodyState<S> {
     /// The pose of its joint.
-    pub(super) pose: Option<Pose<S>>,
+    pub(super) pose: Pose<S>,
     /// Its origin in its parent's frame.
     pub(super) origin: Vector3<S>,
     pub(super) motion: Motion<S>,
@@ -125,6 +127,11 @@ impl<S: Scalar> Workspace<S> {
             columns.extend((0..body.joint.nv()).map(|k| Column::zero(body.coordinates.v + k)));
         }
         first.push(columns.len());
+        let mut end = first[1..].to_vec();
+        for i in model.inward() {
+            let parent = model.bodies[i].parent;
+            end[parent] = end[parent].max(end[i]);
+        }
         Self {
             shape: model.shape(),
             centers: Centers::of(model, middles(model)),
@@ -138,6 +145,7 @@ impl<S: Scalar> Workspace<S> {
             common: vec![CommonState::zero(); n],
             columns,
             first,
+            end,
             row: vec![S::zero(); nv],
             below: below(model),
             matrix: vec![S::zero(); nv * nv],
@@ -159,6 +167,12 @@ impl<S: Scalar> Workspace<S> {
         self.first[i]..self.first[i + 1]
     }
 
+    /// The columns of the joint of body `i` and of all beyond it: bodies stand depth-first.
+    #[inline(always)]
+    pub(super) fn columns_from(&self, i: usize) -> Range<usize> {
+        self.first[i]..self.end[i]
+    }
+
     /// Runs `work` with the first bodies of trees for centers.
     pub(super) fn axes_of_first_bodies(&mut self, work: impl FnOnce(&mut Self)) {
         core::mem::swap(&mut self.centers, &mut self.firsts);
@@ -171,7 +185,7 @@ impl<S: Scalar> BodyState<S> {
     fn zero() -> Self {
         let zero = Vector3::zeros();
         let motion = Motion { omega: zero, alpha: zero, acceleration: zero };
-        Self { pose: None, origin: zero, motion, u: Matrix3::zeros(), wrench: Wrench::zero() }
+        Self { pose: Pose::identity(), origin: zero, motion, u: Matrix3::zeros(), wrench: Wrench::zero() }
     }
 }
 

@@ -95,10 +95,7 @@ impl<S: Scalar> JointLaw<S> for Floating<S> {
     }
 
     #[inline(always)]
-    fn add_torque(&self, wrench: &Wrench<S>, at: &Coordinates<S>, tau: &mut [S]) {
-        for k in 0..3 {
-            tau[at.v + k] += wrench.moment[k];
-            tau[at.v + 3 + k] += wrench.force[k];
-        }
+    fn torque(&self, wrench: &Wrench<S>, k: usize) -> S {
+        if k < 3 { wrench.moment[k] } else { wrench.force[k - 3] }
     }
 }

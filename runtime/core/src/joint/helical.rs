@@ -76,7 +76,7 @@ impl<S: Scalar> JointLaw<S> for Helical<S> {
     }
 
     #[inline(always)]
-    fn add_torque(&self, wrench: &Wrench<S>, at: &Coordinates<S>, tau: &mut [S]) {
-        at.add_torque(wrench.moment.z + self.pitch * wrench.force.z, tau);
+    fn torque(&self, wrench: &Wrench<S>, _: usize) -> S {
+        wrench.moment.z + self.pitch * wrench.force.z
     }
 }

@@ -162,13 +162,10 @@ impl<S: Scalar> Coordinates<S> {
         self.mimic.as_ref().map(|f| f.multiplier)
     }
 
-    /// Adds the joint's own single torque to that of the coordinate it moves with: power is the same, so τ_leader += multiplier · τ.
+    /// What the joint's own torque is for the coordinate it moves with: power is the same, so τ_leader = multiplier · τ.
     #[inline(always)]
-    pub fn add_torque(&self, torque: S, tau: &mut [S]) {
-        tau[self.v] += match &self.mimic {
-            None => torque,
-            Some(f) => torque * f.multiplier,
-        };
+    pub fn handed_on(&self, torque: S) -> S {
+        self.rate_of_one().map_or(torque, |multiplier| torque * multiplier)
     }
 
     /// The same in another scalar.
@@ -216,8 +213,8 @@ pub trait JointLaw<S: Scalar>: Copy {
     /// I·S_k: the wrench, in the child's frame, that gives a body of this inertia at rest the unit acceleration in the joint's own degree of freedom k.
     fn column(&self, inertia: &SpatialInertia<S>, k: usize) -> Wrench<S>;
 
-    /// τ = Sᵀ F: adds to `tau` the joint's torques for the wrench F on the child, in the child's frame.
-    fn add_torque(&self, wrench: &Wrench<S>, at: &Coordinates<S>, tau: &mut [S]);
+    /// S_kᵀ F: the joint's own torque k for the wrench F on the child, in the child's frame.
+    fn torque(&self, wrench: &Wrench<S>, k: usize) -> S;
 }
 
 /// A pose of any kind of joint, to be kept between sweeps.
@@ -236,6 +233,11 @@ pub enum Pose<S> {
 }
 
 impl<S: Scalar> Pose<S> {
+    /// Where the child is its joint frame.
+    pub fn identity() -> Self {
+        Self::Prismatic(Prismatic::by(S::zero()))
+    }
+
     /// As [`JointLaw::freedom`].
     #[inline(always)]
     pub fn freedom(&self, k: usize) -> Option<usize> {

@@ -97,7 +97,7 @@ impl<S: Scalar> JointLaw<S> for Prismatic<S> {
     }
 
     #[inline(always)]
-    fn add_torque(&self, wrench: &Wrench<S>, at: &Coordinates<S>, tau: &mut [S]) {
-        at.add_torque(wrench.force.z, tau);
+    fn torque(&self, wrench: &Wrench<S>, _: usize) -> S {
+        wrench.force.z
     }
 }

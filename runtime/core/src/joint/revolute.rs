@@ -94,7 +94,7 @@ impl<S: Scalar> JointLaw<S> for Revolute<S> {
     }
 
     #[inline(always)]
-    fn add_torque(&self, wrench: &Wrench<S>, at: &Coordinates<S>, tau: &mut [S]) {
-        at.add_torque(wrench.moment.z, tau);
+    fn torque(&self, wrench: &Wrench<S>, _: usize) -> S {
+        wrench.moment.z
     }
 }

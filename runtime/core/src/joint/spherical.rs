@@ -84,9 +84,7 @@ impl<S: Scalar> JointLaw<S> for Spherical<S> {
     }
 
     #[inline(always)]
-    fn add_torque(&self, wrench: &Wrench<S>, at: &Coordinates<S>, tau: &mut [S]) {
-        for k in 0..3 {
-            tau[at.v + k] += wrench.moment[k];
-        }
+    fn torque(&self, wrench: &Wrench<S>, k: usize) -> S {
+        wrench.moment[k]
     }
 }

@@ -37,10 +37,11 @@ impl<S: Scalar> SpatialInertia<S> {
     /// The same body seen from the frame a, where `x_ab` places the frame b that the moments are given in.
     ///
     /// m' = m, h' = R h + m p, Σ' = R Σ Rᵀ + (R h) pᵀ + p (R h)ᵀ + m p pᵀ.
+    #[inline(always)]
+    #[must_use]
     pub fn moved(&self, x_ab: &Placement<S>) -> Self {
-        let (r, p) = (&x_ab.rotation, x_ab.position);
-        let h = rotate(r, self.first);
-        Self { mass: self.mass, first: h, second: r * self.second * r.transpose() }.shifted(p)
+        let r = &x_ab.rotation;
+        Self { mass: self.mass, first: rotate(r, self.first), second: turned(&self.second, r) }.shifted(x_ab.position)
     }
 
     /// The wrench that moves the body, about its origin: f = m a + U h, n = h × a + ∫ r × (U r) dm.
@@ -81,8 +82,8 @@ impl<S: Scalar> SpatialInertia<S> {
     #[inline(always)]
     #[must_use]
     pub fn turned(&self, turn: &Matrix3<S>) -> Self {
-        let second = if self.is_round() { self.turned_round(turn) } else { turn * self.second * turn.transpose() };
-        Self { mass: self.mass, first: rotate(turn, self.first), second: symmetric(second) }
+        let second = if self.is_round() { symmetric(self.turned_round(turn)) } else { turned(&self.second, turn) };
+        Self { mass: self.mass, first: rotate(turn, self.first), second }
     }
 
     /// Whether the body is the same from all sides about z.
@@ -138,6 +139,25 @@ impl<S: Scalar> core::ops::AddAssign for SpatialInertia<S> {
 #[inline(always)]
 pub(super) fn complement<S: Scalar>(m: &Matrix3<S>) -> Matrix3<S> {
     Matrix3::new(m.m22 + m.m33, -m.m12, -m.m13, -m.m21, m.m11 + m.m33, -m.m23, -m.m31, -m.m32, m.m11 + m.m22)
+}
+
+/// R M Rᵀ of a symmetric matrix.
+#[inline(always)]
+fn turned<S: Scalar>(m: &Matrix3<S>, r: &Matrix3<S>) -> Matrix3<S> {
+    // RM, by columns
+    let (x, y, z) = (
+        rotate(r, Vector3::new(m.m11, m.m12, m.m13)), //
+        rotate(r, Vector3::new(m.m12, m.m22, m.m23)),
+        rotate(r, Vector3::new(m.m13, m.m23, m.m33)),
+    );
+    let (xx, xy, xz) = (
+        x.x * r.m11 + y.x * r.m12 + z.x * r.m13, //
+        x.x * r.m21 + y.x * r.m22 + z.x * r.m23,
+        x.x * r.m31 + y.x * r.m32 + z.x * r.m33,
+    );
+    let (yy, yz) = (x.y * r.m21 + y.y * r.m22 + z.y * r.m23, x.y * r.m31 + y.y * r.m32 + z.y * r.m33);
+    let zz = x.z * r.m31 + y.z * r.m32 + z.z * r.m33;
+    Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
 }
 
 /// The upper triangle, mirrored: rounding must not make a symmetric matrix lopsided.

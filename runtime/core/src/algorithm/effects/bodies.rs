@@ -14,11 +14,11 @@ use crate::{Scalar, with_pose};
 fn body_twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, v: &[S]) {
     ws.common[0].twist = Twist::zero();
     for i in model.outward() {
-        let (body, Some(pose)) = (&model.bodies[i], ws.bodies[i].pose) else { continue };
+        let body = &model.bodies[i];
         let carried = ws.common[body.parent].twist.at(ws.bodies[i].origin).linear;
         let at = &body.coordinates;
         // v_i = Rᵀ (v_λ + ω_λ × p) + S q̇
-        let linear = with_pose!(pose, p => {
+        let linear = with_pose!(ws.bodies[i].pose, p => {
             let mut linear = p.to_child(rotate_back(&body.placement.rotation, carried));
             for k in 0..body.joint.nv() {
                 let rate = at.rate_of_one().map_or(v[at.v + k], |m| v[at.v + k] * m);

@@ -38,7 +38,7 @@ impl Sample {
         b.extend((0..nv * nv).map(|at| f64::from(at / nv == at % nv)));
         let mut x = b.clone();
         x[..2 * nv * nv].iter_mut().for_each(|x| *x = -*x);
-        x.chunks_mut(nv * nv).for_each(|x| solve_rows(&l, &below, x, nv));
+        x.chunks_mut(nv * nv).for_each(|x| solve_rows(&l, &below, x));
         assert!(x.iter().all(|x| x.abs() < 2_f64.powi(48)), "numbers so large could be rounded");
         Self { below, l, b, x }
     }
