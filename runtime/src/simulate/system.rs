@@ -92,8 +92,7 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
         self.manifold.rates(u, v, &mut f[..nv]);
         self.robot.forward_dynamics(&mut self.ws, &self.q, v, &self.tau, &mut f[nv..2 * nv])?;
         self.counts.evaluations += 1;
-        let powers = self.powers(v);
-        f[2 * nv..].copy_from_slice(&powers);
+        [f[2 * nv], f[2 * nv + 1]] = self.powers(v);
         Ok(())
     }
 

@@ -110,9 +110,15 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     squared_distance(a, b).sqrt()
 }
 
-/// Σ (a − b)².
+/// Σ (a − b)², four sums side by side.
 fn squared_distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
+    let square = |a: f64, b: f64| (a - b) * (a - b);
+    let ((fours, rest), (others, other)) = (a.as_chunks::<4>(), b.as_chunks::<4>());
+    let mut sums = [0.0; 4];
+    for (a, b) in fours.iter().zip(others) {
+        sums = std::array::from_fn(|l| sums[l] + square(a[l], b[l]));
+    }
+    rest.iter().zip(other).fold((sums[0] + sums[1]) + (sums[2] + sums[3]), |sum, (a, b)| sum + square(*a, *b))
 }
 
 /// The roots of λ² = aλ + b as (re, im), (re, im).

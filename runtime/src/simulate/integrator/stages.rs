@@ -51,6 +51,7 @@ impl Stages {
     }
 
     /// Slope i at t + c·h, y + h·Σ a_j k_j.
+    #[inline(always)]
     pub(super) fn stage<R: Dynamics<f64>>(
         &mut self,
         system: &mut System<R>,
@@ -72,24 +73,30 @@ impl Stages {
         Ok(())
     }
 
-    /// out = y + h·Σ a_j k_j.
+    /// out = y + h·Σ a_j k_j. Inlined, so that nothing is asked of coefficients that are known where it is called.
+    #[inline(always)]
     pub(super) fn combine(&self, y: &[f64], h: f64, a: &[f64], out: &mut [f64]) {
-        let (blocks, rest) = out.as_chunks_mut::<BLOCK>();
-        let at = BLOCK * blocks.len();
-        for (i, (out, y)) in blocks.iter_mut().zip(y.as_chunks::<BLOCK>().0).enumerate() {
-            let sum = self.sums(a, BLOCK * i);
-            *out = std::array::from_fn(|l| y[l] + h * sum[l]);
-        }
-        for (i, out) in rest.iter_mut().enumerate() {
-            *out = y[at + i] + h * self.sum(a, at + i);
+        let n = self.n;
+        let (y, out) = (&y[..n], &mut out[..n]);
+        for block in 0..n.div_ceil(BLOCK) {
+            // The last block overlaps the one before it where blocks do not fill the whole.
+            let i = (BLOCK * block).min(n.saturating_sub(BLOCK));
+            match (y[i..].first_chunk::<BLOCK>(), out[i..].first_chunk_mut::<BLOCK>()) {
+                (Some(y), Some(out)) => {
+                    let sum = self.sums(a, i);
+                    *out = std::array::from_fn(|l| y[l] + h * sum[l]);
+                }
+                _ => (0..n).for_each(|i| out[i] = y[i] + h * self.sum(a, i)),
+            }
         }
     }
 
-    /// Σ a_j k_j of the numbers from i on.
+    /// Σ a_j k_j of a block of numbers, from i on.
+    #[inline(always)]
     fn sums(&self, a: &[f64], i: usize) -> [f64; BLOCK] {
         let mut sums = [0.0; BLOCK];
-        for (k, &a) in self.k.chunks_exact(self.n).zip(a).filter(|(_, a)| **a != 0.0) {
-            sums.iter_mut().zip(&k[i..i + BLOCK]).for_each(|(sum, k)| *sum += a * k);
+        for (j, &a) in a.iter().enumerate().filter(|(_, a)| **a != 0.0) {
+            sums.iter_mut().zip(&self.k[j * self.n + i..][..BLOCK]).for_each(|(sum, k)| *sum += a * k);
         }
         sums
     }
@@ -130,9 +137,13 @@ impl Fastest {
     pub(super) fn compare(&mut self, y: [&[f64]; 2], f: [&[f64]; 2]) {
         let nv = (self.at[0].len() - 2) / 2;
         let square = |pair: [&[f64]; 2], at: usize| squared_distance(&pair[0][at..at + nv], &pair[1][at..at + nv]);
-        let (way, turn, change) = (square(y, 0), square(y, nv), square(f, nv));
+        let (turn, change) = (square(y, nv), square(f, nv));
         // Then |Δa| ≤ λ²|Δu| + λ|Δv| for certain with this λ: nothing is faster. Mostly so, and without roots.
         let known = self.rate.max(self.least).powi(2);
+        if change <= known * turn {
+            return;
+        }
+        let way = square(y, 0);
         if change <= known * (known * way + turn) {
             return;
         }

@@ -215,7 +215,9 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             if self.system.counts.steps + self.system.counts.rejected >= self.settings.max_steps {
                 return Err(SimulateError::TooManySteps { t: self.t, steps: self.settings.max_steps });
             }
-            self.norm.begin(&self.system, &self.y);
+            if run.controller.is_some() {
+                self.norm.begin(&self.system, &self.y);
+            }
             self.check_stability(run)?;
             let t = self.step(run)?;
             let (stop, outcome) = self.look(run, t)?;
