@@ -151,6 +151,9 @@ pub(crate) struct RobotArguments {
     /// Take an angle of the file within TOL rad of a multiple of π/2 as that multiple
     #[arg(long, value_name = "TOL", value_parser = tolerance)]
     pub(crate) snap_angles: Option<f64>,
+    /// Another name in Rust for a joint or link, where two would be one there; again for each
+    #[arg(long, value_name = "NAME=RUST_NAME", value_parser = renaming)]
+    pub(crate) rename: Vec<(String, String)>,
     #[command(flatten)]
     pub(crate) edits: Edits,
 }
@@ -159,7 +162,7 @@ impl RobotArguments {
     /// A robot as it is.
     pub(crate) fn plain(robot: &str, floating: bool) -> Self {
         let (robot, edits) = (robot.to_owned(), Edits::default());
-        Self { robot, floating, fixed: false, gravity: None, allow_unphysical_inertia: false, snap_angles: None, edits }
+        Self { robot, floating, fixed: false, gravity: None, allow_unphysical_inertia: false, snap_angles: None, rename: Vec::new(), edits }
     }
 }
 
@@ -324,11 +327,19 @@ fn tolerance(text: &str) -> Result<f64, String> {
     if (0.0..=0.5).contains(&x) { Ok(x) } else { Err("expected 0 to 0.5 rad".into()) }
 }
 
+/// `name=RUST_NAME`; the name in the file may hold such a sign too.
+fn renaming(text: &str) -> Result<(String, String), String> {
+    let (from, to) = text.rsplit_once('=').filter(|(from, _)| !from.is_empty()).ok_or("expected NAME=RUST_NAME, as in a-b=A_MINUS_B")?;
+    Ok((from.to_owned(), to.trim().to_owned()))
+}
+
 /// A path as it stands in Rust: `::articulated`, `crate::dynamics`.
 fn rust_path(text: &str) -> Result<String, String> {
     let word = |w: &str| !w.is_empty() && w.chars().all(|c| c.is_alphanumeric() || c == '_') && !w.starts_with(char::is_numeric);
     let path = text.strip_prefix("::").unwrap_or(text);
-    if path.split("::").all(word) { Ok(text.to_owned()) } else { Err("expected a path of Rust such as ::articulated".into()) }
+    let begins = |(k, w): (usize, &str)| w == "super" || k == 0 && path == text && ["crate", "self"].contains(&w);
+    let free = |(k, w): (usize, &str)| word(w) && w != "_" && (begins((k, w)) || !articulated_codegen::is_keyword(w));
+    if path.split("::").enumerate().all(free) { Ok(text.to_owned()) } else { Err("expected a path of Rust such as ::articulated".into()) }
 }
 
 fn examples(lines: &[&str]) -> String {
@@ -365,6 +376,8 @@ mod tests {
     #[test]
     fn a_path_is_one_of_rust() {
         assert!(rust_path("::a::b_1").is_ok() && rust_path("crate::x").is_ok());
+        assert!(["fn::x", "a::fn", "_", "a::crate", "::self::x"].iter().all(|path| rust_path(path).is_err()));
+        assert!(rust_path("super::super::x").is_ok() && rust_path("self::x").is_ok());
         assert!(rust_path("a; fn").is_err() && rust_path("::").is_err() && rust_path("1a").is_err());
     }
 }

@@ -46,6 +46,7 @@ impl Robot {
         options.gravity = arguments.gravity.map_or(options.gravity, |g| g.0);
         options.allow_unphysical_inertia = arguments.allow_unphysical_inertia;
         options.snap_angles = arguments.snap_angles;
+        options.rename.clone_from(&arguments.rename);
         edit(&mut options, &arguments.edits)?;
         Ok(Self { file, urdf, options, path })
     }
@@ -67,6 +68,7 @@ impl Robot {
         options.gravity = arguments.gravity.map_or(options.gravity, |g| g.0);
         options.allow_unphysical_inertia |= arguments.allow_unphysical_inertia;
         options.snap_angles = arguments.snap_angles.or(options.snap_angles);
+        options.rename.extend_from_slice(&arguments.rename);
         edit(&mut options, &arguments.edits)?;
         Ok(Self { file, urdf, options, path: None })
     }

@@ -14,7 +14,7 @@ use crate::{Appended, Base, Error, Generated, Origin, Payload, Reference, Reques
 /// // build.rs
 /// articulated_codegen::Build::new("robots/arm.urdf").functions(["inverse_dynamics"]).write("arm");
 /// ```
-/// and in the crate: `mod arm { include!(concat!(env!("OUT_DIR"), "/arm.rs")); }`.
+/// and in the crate: `#[allow(dead_code)] mod arm { include!(concat!(env!("OUT_DIR"), "/arm.rs")); }`.
 #[derive(Clone, Debug)]
 pub struct Build {
     path: PathBuf,

@@ -59,6 +59,16 @@ pub enum Error {
         /// The joints that carry nothing.
         joints: Vec<String>,
     },
+    /// A robot so large that its code would be of no use.
+    #[error("{file}: found {found} degrees of freedom, expected at most {most} to write code for; `articulated::load` takes any")]
+    TooLarge {
+        /// The file.
+        file: String,
+        /// Its degrees of freedom.
+        found: usize,
+        /// How many it may have.
+        most: usize,
+    },
     /// Two names of the URDF that are the same in Rust.
     #[error("{file}: {kind}s {first:?} and {second:?} are both `{ident}` in Rust; give one another name with `rename`")]
     NameClash {

@@ -47,7 +47,7 @@ pub use ledger::Ledger;
 pub use parameters::Parameter;
 pub use request::{Appended, Options, Request};
 pub use sym::Sym;
-pub use wanted::{Constant, Part, Wanted};
+pub use wanted::{Constant, Part, Wanted, is_keyword};
 
 /// What was generated, and what there is to say about it.
 #[derive(Clone, Debug)]
@@ -78,11 +78,17 @@ impl Generated {
     }
 }
 
+/// Degrees of freedom from which on no code is written: a workspace has room for a matrix of their number squared.
+const MOST_FREEDOMS: usize = 10_000;
+
 /// Generates the code that `request` asks for. Pure: nothing is read or written.
 pub fn generate(request: &Request) -> Result<Generated, Error> {
     let options = &request.options;
     let Reading { mut description, warnings, unused, snapped } = read(request)?;
     let whole = model(request, &description)?;
+    if whole.nv > MOST_FREEDOMS {
+        return Err(Error::TooLarge { file: request.file.clone(), found: whole.nv, most: MOST_FREEDOMS });
+    }
     // Mass that stays an input is mass all the same.
     let massless: Vec<String> = whole.massless_joints().into_iter().map(|i| whole.bodies[i].name.clone()).collect();
     let parameters = parameters::parse(&options.parameters, &mut description, &whole)?;
@@ -114,8 +120,9 @@ fn wanted(request: &Request, model: &Model<f64>, massless: &[String]) -> Result<
         function.check(model.shape())?;
         function.parts.iter().try_for_each(|part| defined(request, model, massless, part.function))?;
         let same_type = |f: &Wanted| f.group().is_some() && f.group() == function.group();
-        let into =
-            |f: &Wanted, other: &Wanted| ["_into", "_fill"].iter().any(|form| f.name.strip_suffix(form) == Some(other.name.as_str()));
+        let into = |f: &Wanted, other: &Wanted| {
+            ["_into", "_fill", "_blocks"].iter().any(|form| f.name.strip_suffix(form) == Some(other.name.as_str()))
+        };
         if wanted.iter().any(|f| f.name == function.name || same_type(f) || into(f, &function) || into(&function, f)) {
             return Err(Error::SameName { name: function.name });
         }

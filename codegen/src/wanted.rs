@@ -62,14 +62,15 @@ impl Wanted {
             (None, [one]) => one.function.name,
             (None, _) => return Err(wrong("several functions in one need a name: write name = first + second".into())),
         };
-        if !is_function_name(name) {
-            return Err(wrong(format!("`{name}` is no name of a function in Rust: expected lower case letters, digits and _")));
-        }
         let twice = (1..parts.len()).find(|&k| parts[..k].iter().any(|p| p.function.id == parts[k].function.id));
         if let Some(k) = twice {
             return Err(wrong(format!("`{}` is in it twice", parts[k].function.name)));
         }
-        Ok(Self { name: name.into(), parts })
+        let wanted = Self { name: name.into(), parts };
+        match wanted.no_name() {
+            Some(reason) => Err(wrong(format!("`{name}` {reason}"))),
+            None => Ok(wanted),
+        }
     }
 
     /// What it takes: everything that a part takes and that is no constant there, in the order of the table; sines last.
@@ -77,6 +78,25 @@ impl Wanted {
         let taken = |a: &Argument| self.parts.iter().any(|p| p.function.takes.contains(a) && p.constant(*a).is_none());
         let sines = self.parts.iter().any(|p| p.sines).then_some(Argument::SinCos);
         Argument::ALL.into_iter().filter(taken).chain(sines).collect()
+    }
+
+    /// Why it cannot be called so, if it cannot.
+    fn no_name(&self) -> Option<&'static str> {
+        let (name, among) = (self.name.as_str(), |words: &str| words.split_whitespace().any(|word| word == self.name));
+        let plain = name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
+        if !plain || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
+            return Some("is no name of a function in Rust: expected lower case letters, digits and _");
+        }
+        // The type of several results is called as they are: `self_` would be `Self`.
+        if is_keyword(name) || name.trim_end_matches('_') == "self" {
+            return Some("is a word that Rust keeps for itself: expected another name");
+        }
+        if among(KEPT) {
+            return Some("is kept for a part of the generated module: expected another name");
+        }
+        let results = self.parts.len() > 1 && self.parts.iter().any(|p| p.function.name == name);
+        let argument = results || self.arguments().iter().any(|a| a.name() == name);
+        argument.then_some("is what one of its arguments or results is called: expected another name")
     }
 
     /// The type that holds the results of several parts: the name with each word's first letter in capitals. `None` for one part.
@@ -206,18 +226,17 @@ pub(crate) fn all_outside(mut text: &str, mark: char) -> Vec<&str> {
     pieces
 }
 
-fn is_function_name(name: &str) -> bool {
-    let plain = name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
-    plain && name.starts_with(|c: char| c.is_ascii_lowercase()) && is_free(name)
+/// Whether Rust keeps the word for itself.
+pub fn is_keyword(word: &str) -> bool {
+    KEYWORDS.split_whitespace().any(|keyword| keyword == word)
 }
 
-/// Whether Rust does not keep the word for itself.
-fn is_free(name: &str) -> bool {
-    const KEYWORDS: &str = "as async await break const continue crate dyn else enum extern false fn for gen if impl in let loop match mod move mut pub \
-                            ref return self static struct super trait true try type unsafe use where while abstract become box do final macro \
-                            override priv typeof unsized virtual yield fma trig joint frame link q_index v_index parameter robot";
-    !KEYWORDS.split_whitespace().any(|k| k == name)
-}
+const KEYWORDS: &str = "as async await break const continue crate dyn else enum extern false fn for gen if impl in let loop match mod move mut pub \
+                        ref return self static struct super trait true try type unsafe use where while abstract become box do final macro \
+                        override priv typeof unsized virtual yield";
+
+/// Names that generated code uses, beside those of arguments and results.
+const KEPT: &str = "fma trig joint frame link q_index v_index parameter parameters robot out";
 
 /// The type of an array of these dimensions in generated code, of numbers of this type.
 pub(crate) fn array_of(real: &str, dims: &[Dim]) -> String {
@@ -267,7 +286,12 @@ mod tests {
             ("bias_forces(v = 0", "expected `)`"),
             ("mass_matrix(q = sin_cos, q = 0)", "its sines are an argument"),
             ("Big = mass_matrix", "no name"),
-            ("fn = mass_matrix", "no name"),
+            ("fn = mass_matrix", "Rust keeps"),
+            ("self_ = mass_matrix + placements", "Rust keeps"),
+            ("robot = mass_matrix", "generated module"),
+            ("q = mass_matrix", "arguments or results"),
+            ("mass_matrix = mass_matrix + placements", "arguments or results"),
+            ("out = mass_matrix", "generated module"),
             ("x = ", "expected a function"),
         ] {
             let error = Wanted::parse(text).err().map(|e| e.to_string()).unwrap_or_default();

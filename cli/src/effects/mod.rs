@@ -24,6 +24,9 @@ pub(crate) fn run(arguments: &EffectsArguments, format: Format) -> Result<(), Fa
     if functions.is_empty() {
         functions = FUNCTIONS.map(str::to_owned).to_vec();
     }
+    if arguments.time {
+        stage.is_of_doubles()?;
+    }
     let rustc = arguments.time.then(Rustc::find).transpose().map_err(|e| Failure::tool(&e))?;
     let mut report = Report::of(&stage);
     let variants = cost::variants(&stage);

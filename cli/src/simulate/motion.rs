@@ -97,6 +97,7 @@ fn told(stage: &Stage, run: Run, words: &dyn Fn(&Hit) -> String) -> Recording {
 
 /// The code that a simulation of the scene needs, and the frames that it gives.
 pub(super) fn generate(stage: &Stage, integrator: IntegratorId) -> Result<(Generated, Vec<String>), Failure> {
+    stage.is_of_doubles()?;
     let frames = watched::frames(stage);
     let mut functions = vec!["forward_dynamics", "kinetic_energy", "potential_energy"];
     if stage.model.moving_mass() > 0.0 {

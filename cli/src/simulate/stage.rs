@@ -27,6 +27,18 @@ pub(crate) struct Stage {
 const BUNDLED: Bundled<'static> = &|name| articulated_models::robot(name).map(|r| (r.urdf, r.base));
 
 impl Stage {
+    /// Refuses a level whose functions take `f32`, which what calls them here has not.
+    pub(crate) fn is_of_doubles(&self) -> Result<(), Failure> {
+        let level = self.prepared.request.options.level;
+        if !level.is_single() {
+            return Ok(());
+        }
+        Err(Failure::input([format!(
+            "{}: level: found {level}, expected one whose functions take f64, as states here are",
+            self.prepared.scene.file
+        )]))
+    }
+
     /// The scene that a word of the command line names: a file, or a bundled one.
     pub(crate) fn find(name: &str) -> Result<Self, Failure> {
         let path = Path::new(name);

@@ -98,3 +98,24 @@ fn output_that_cannot_be_written_is_not_success() {
     let status = super::articulated(&["generate", "cart_pole"]).stdout(full).stderr(std::process::Stdio::null()).status().unwrap();
     assert_eq!(status.code(), Some(1));
 }
+
+#[test]
+fn names_that_are_one_in_rust_can_be_told_apart() {
+    let urdf = r#"<robot name="r"><link name="base"/><link name="a-b"/><link name="a_b"/>
+        <joint name="j" type="fixed"><parent link="base"/><child link="a-b"/></joint>
+        <joint name="k" type="fixed"><parent link="base"/><child link="a_b"/></joint></robot>"#;
+    let file = File::new("two.urdf", urdf.as_bytes());
+    let words = ["generate", file.name(), "--functions", "placements"];
+    let refused = run(&words);
+    assert!(refused.status == 1 && refused.err.contains("`A_B`") && refused.err.contains("rename"), "{}", refused.err);
+    let made = run(&[&words[..], &["--rename", "a-b=A_MINUS_B"]].concat());
+    assert_eq!(made.status, 0, "{}", made.err);
+    assert!(made.out.contains("pub const A_MINUS_B: usize = 1;") && made.out.contains("pub const A_B: usize = 2;"));
+    assert_eq!(run(&[&words[..], &["--rename", "a-b"]].concat()).status, 2);
+}
+
+#[test]
+fn a_type_asked_for_twice_is_there_once() {
+    let made = run(&["generate", "cart_pole", "--functions", "gravity_torque", "--batch", "f64,f64"]);
+    assert_eq!((made.status, made.out.matches("pub mod batch_f64").count()), (0, 1), "{}", made.err);
+}

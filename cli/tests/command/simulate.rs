@@ -151,3 +151,14 @@ fn peers_are_given_bare_scenes_only() {
     assert!(ended.status == 1 && ended.err.contains("found effects, expected none for --against"), "{}", ended.err);
     assert_eq!(run(&["simulate", "chain", "--against", &missing, "-o", "x"]).status, 2);
 }
+
+/// Their code would be called with doubles.
+#[test]
+fn levels_of_single_precision_are_refused_where_states_are_doubles() {
+    let scene = File::new("single.toml", b"robot = \"cart_pole\"\nlevel = \"f32_f64\"\n[simulation]\nend = 0.1\n");
+    for words in [&["simulate", scene.name(), "--generated"][..], &["effects", scene.name(), "--time"]] {
+        let refused = run(words);
+        assert_eq!(refused.status, 1, "{words:?}: {}", refused.out);
+        assert!(refused.err.contains("level: found f32_f64, expected one whose functions take f64"), "{}", refused.err);
+    }
+}

@@ -54,7 +54,7 @@ pub(super) fn pieces(out: &mut String, graph: &Graph, signature: &Signature, dia
     kept(out, "Kept", dialect, slots);
     for (c, piece) in pieces.iter().enumerate() {
         let _ = writeln!(out, "    $(#[$features])?\n    #[inline(never)]");
-        let _ = writeln!(out, "    fn piece_{c}({}, m: &mut Kept, out: &mut {gives}) {{", signature.arguments());
+        let _ = writeln!(out, "    fn piece_{c}({}) {{", signature.arguments_and(&format!("m: &mut Kept, out: &mut {gives}")));
         for input in &signature.inputs {
             let _ = writeln!(out, "    let _ = {};", input.name);
         }
@@ -83,7 +83,7 @@ fn calls(out: &mut String, signature: &Signature, pieces: usize) {
         "&mut out"
     };
     for c in 0..pieces {
-        let _ = writeln!(out, "    piece_{c}({}, &mut m, {place});", signature.names());
+        let _ = writeln!(out, "    piece_{c}({});", signature.names_and(&format!("&mut m, {place}")));
     }
     *out += if filled { "" } else { "    out\n" };
 }

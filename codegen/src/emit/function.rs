@@ -73,41 +73,42 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
 /// The function that loops compute, of a module of their own.
 fn loops(out: &mut String, program: &Program, signature: &Signature, context: Context) {
     document(out, program, signature, context);
-    let (name, arguments, names, gives) = (&signature.wanted.name, signature.arguments(), signature.names(), signature.gives());
+    let (name, arguments, gives) = (&signature.wanted.name, signature.arguments(), signature.gives());
     let _ = writeln!(out, "#[inline]\npub fn {name}({arguments}) -> {gives} {{\n    let mut out = {};", signature.nothing());
-    let _ = writeln!(out, "    {name}_into({names}, &mut out);\n    out\n}}\n");
+    let _ = writeln!(out, "    {name}_into({});\n    out\n}}\n", signature.names_and("&mut out"));
     let _ = writeln!(out, "/// As [`{name}`], into `out`, whatever that holds.");
-    let _ = writeln!(
-        out,
-        "pub fn {name}_into({arguments}, out: &mut {gives}) {{\n    derivatives::inverse_dynamics_derivatives({names}, out);\n}}\n"
-    );
+    let takes = signature.arguments_and(&format!("out: &mut {gives}"));
+    let handed = signature.names_and("out");
+    let _ = writeln!(out, "pub fn {name}_into({takes}) {{\n    derivatives::inverse_dynamics_derivatives({handed});\n}}\n");
 }
 
 /// The function as a value, where its body writes into what it is handed.
 fn value_form(out: &mut String, signature: &Signature) {
-    let (name, arguments, names, gives) = (&signature.wanted.name, signature.arguments(), signature.names(), signature.gives());
+    let (name, arguments, gives) = (&signature.wanted.name, signature.arguments(), signature.gives());
+    let handed = signature.names_and("&mut out");
     let _ = writeln!(out, "{}#[inline]\npub fn {name}({arguments}) -> {gives} {{", allowed(signature));
     let _ = if signature.place == Place::Written {
-        let _ = writeln!(out, "    let mut out = ::core::mem::MaybeUninit::uninit();\n    {name}_fill({names}, &mut out);");
+        let _ = writeln!(out, "    let mut out = ::core::mem::MaybeUninit::uninit();\n    {name}_fill({handed});");
         writeln!(out, "    // SAFETY: it was just written, all of it.\n    unsafe {{ out.assume_init() }}\n}}\n")
     } else {
-        writeln!(out, "    let mut out = {};\n    {name}_into({names}, &mut out);\n    out\n}}\n", signature.nothing())
+        writeln!(out, "    let mut out = {};\n    {name}_into({handed});\n    out\n}}\n", signature.nothing())
     };
 }
 
 /// The function that writes into what the caller has: a copy costs as much as a third of a function.
 fn into_form(out: &mut String, signature: &Signature) {
-    let (name, arguments, names, gives) = (&signature.wanted.name, signature.arguments(), signature.names(), signature.gives());
+    let (name, names, gives) = (&signature.wanted.name, signature.names(), signature.gives());
     let _ = writeln!(out, "/// As [`{name}`], into `out`, whatever that holds.\n{}#[inline]", allowed(signature));
-    let _ = writeln!(out, "pub fn {name}_into({arguments}, out: &mut {gives}) {{");
+    let _ = writeln!(out, "pub fn {name}_into({}) {{", signature.arguments_and(&format!("out: &mut {gives}")));
     let _ = match signature.place {
         Place::Value => writeln!(out, "    *out = {name}({names});\n}}\n"),
         Place::Written => {
             let _ = writeln!(out, "    // SAFETY: nothing is read there, and what is written is a value.");
-            writeln!(out, "    {name}_fill({names}, unsafe {{ &mut *::core::ptr::from_mut(out).cast() }});\n}}\n")
+            let handed = signature.names_and("unsafe { &mut *::core::ptr::from_mut(out).cast() }");
+            writeln!(out, "    {name}_fill({handed});\n}}\n")
         }
         Place::Filled => {
-            let _ = writeln!(out, "    {name}_fill({names}, out);");
+            let _ = writeln!(out, "    {name}_fill({});", signature.names_and("out"));
             writeln!(out, "{}}}\n", if signature.columns.is_some() { "    columns::columns(out);\n" } else { "" })
         }
     };

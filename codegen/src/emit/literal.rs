@@ -1,8 +1,9 @@
 //! Numbers in source.
 
-/// The shortest literal that is read back as exactly `x`; infinities by their names.
+/// The shortest literal that is read back as exactly `x`; infinities, and what is no number, by their names.
 pub(super) fn literal(x: f64) -> String {
     match x {
+        x if x.is_nan() => "f64::NAN".into(),
         f64::INFINITY => "f64::INFINITY".into(),
         f64::NEG_INFINITY => "f64::NEG_INFINITY".into(),
         x => format!("{x:?}"),
@@ -17,6 +18,7 @@ pub(super) fn operand(x: f64) -> String {
 /// The nearest `f32` as an operand.
 pub(super) fn single(x: f64) -> String {
     match x as f32 {
+        x if x.is_nan() => "f32::NAN".into(),
         f32::INFINITY => "f32::INFINITY".into(),
         f32::NEG_INFINITY => "f32::NEG_INFINITY".into(),
         x if x < 0.0 => format!("({x:?})"),
@@ -34,7 +36,7 @@ pub(super) fn bare(operand: &str) -> &str {
 
 #[cfg(test)]
 mod tests {
-    use super::literal;
+    use super::{literal, single};
 
     #[test]
     fn literals_are_read_back_to_the_bit() {
@@ -42,5 +44,7 @@ mod tests {
             assert_eq!(literal(x).parse::<f64>().map(f64::to_bits), Ok(x.to_bits()));
             assert!(literal(x).contains(['.', 'e']), "{} would be an integer", literal(x));
         }
+        // Code that overflows is code.
+        assert_eq!([literal(f64::NAN), single(f64::NAN), single(-1e40)], ["f64::NAN", "f32::NAN", "f32::NEG_INFINITY"]);
     }
 }

@@ -71,6 +71,11 @@ impl Place {
     }
 }
 
+/// A list and what comes last: a function whose arguments are all constants has no other.
+fn joined(list: &str, last: &str) -> String {
+    if list.is_empty() { last.to_owned() } else { format!("{list}, {last}") }
+}
+
 /// An array of arrays as one.
 pub(super) struct Flat {
     pub(super) ty: String,
@@ -125,19 +130,29 @@ impl<'a> Signature<'a> {
         self.inputs.iter().map(|i| i.name).collect::<Vec<_>>().join(", ")
     }
 
+    /// The arguments and one more.
+    pub(super) fn arguments_and(&self, last: &str) -> String {
+        joined(&self.arguments(), last)
+    }
+
+    /// The names of the arguments and one more operand.
+    pub(super) fn names_and(&self, last: &str) -> String {
+        joined(&self.names(), last)
+    }
+
     /// What a body takes: the arguments, and where the result goes if it goes there.
     pub(super) fn takes(&self) -> String {
-        let (arguments, gives) = (self.arguments(), self.gives());
+        let gives = self.gives();
         match self.place {
-            Place::Value => arguments,
-            Place::Written => format!("{arguments}, out: &mut ::core::mem::MaybeUninit<{gives}>"),
-            Place::Filled => format!("{arguments}, out: &mut {gives}"),
+            Place::Value => self.arguments(),
+            Place::Written => self.arguments_and(&format!("out: &mut ::core::mem::MaybeUninit<{gives}>")),
+            Place::Filled => self.arguments_and(&format!("out: &mut {gives}")),
         }
     }
 
     /// What a body is handed.
     pub(super) fn handed(&self) -> String {
-        if self.place == Place::Value { self.names() } else { format!("{}, out", self.names()) }
+        if self.place == Place::Value { self.names() } else { self.names_and("out") }
     }
 
     /// What a body returns.

@@ -19,6 +19,8 @@ articulated::robot! {
             bias = inverse_dynamics(a = 0),
             hold = inverse_dynamics(v = 0, a = [0, 0, 0]),
             push = static_torque(wrenches = [0, 0, 0, -1.5, 0, 2e1]),
+            home = mass_matrix(q = 0),
+            at_home = inverse_dynamics(q = 0, v = 0, a = 1) + placements(q = 0),
             quick = inverse_dynamics(q = sin_cos),
             step = inverse_dynamics + mass_matrix + jacobians_world_aligned,
         ],
@@ -67,7 +69,7 @@ articulated::robot! {
     mod many {
         urdf = "robots/arm.urdf",
         frames = [tool],
-        functions = [inverse_dynamics, mass_matrix, kinetic_energy, static_torque, both = bias_forces + mass_matrix],
+        functions = [inverse_dynamics, mass_matrix, kinetic_energy, static_torque, both = bias_forces + mass_matrix, home = mass_matrix(q = 0)],
         batch = [f64, f32],
     }
 }
@@ -112,6 +114,19 @@ fn constants_are_what_the_argument_would_have_been() {
     same(&arm::bias(&Q, &V), &arm::inverse_dynamics(&Q, &V, &[0.0; 3]));
     same(&arm::hold(&Q), &arm::inverse_dynamics(&Q, &[0.0; 3], &[0.0; 3]));
     same(&arm::push(&Q), &arm::static_torque(&Q, &[[0.0, 0.0, 0.0, -1.5, 0.0, 20.0]]));
+}
+
+#[test]
+fn where_all_arguments_are_constants_none_is_left() {
+    let (zero, matrix) = ([0.0; 3], arm::mass_matrix(&[0.0; 3]));
+    same(arm::home().as_flattened(), matrix.as_flattened());
+    let mut out = [[f64::NAN; 3]; 3];
+    arm::home_into(&mut out);
+    same(out.as_flattened(), matrix.as_flattened());
+    same(&arm::at_home().inverse_dynamics, &arm::inverse_dynamics(&zero, &zero, &[1.0; 3]));
+    let mut all = vec![[[f64::NAN; 3]; 3]; 11];
+    many::batch_f64::home(&mut all).expect("one slice has its own length");
+    all.iter().for_each(|m| same(m.as_flattened(), matrix.as_flattened()));
 }
 
 #[test]
@@ -391,12 +406,19 @@ fn what_a_robot_cannot_have_is_said_when_it_is_built() {
         let functions: Vec<String> = functions.iter().map(|f| (*f).to_owned()).collect();
         move |r: &mut Request| r.options.functions.clone_from(&functions)
     };
+    let link =
+        |k: usize| format!("<link name='l{k}'/><joint name='j{k}' type='continuous'><parent link='root'/><child link='l{k}'/></joint>");
+    let star = format!("<robot name='star'><link name='root'/>{}</robot>", (0..=10_000).map(link).collect::<String>());
+    let error = refusal(&star, &asks(&["gravity_torque"]));
+    assert!(matches!(error, Error::TooLarge { found: 10_001, most: 10_000, .. }), "{error}");
     let error = refusal(URDF, &asks(&["operational_space_inertia"]));
     assert!(matches!(&error, Error::BoundFrames { frames, .. } if frames.len() == 4), "{error}");
     assert!(error.to_string().contains("link \"tool\" (3)"), "{error}");
     let error = refusal("<robot name='stone'><link name='stone'/></robot>", &asks(&["center_of_mass"]));
     assert!(matches!(error, Error::NoMass { .. }), "{error}");
     let error = refusal(URDF, &asks(&["mass_matrix", "mass_matrix = gravity_torque"]));
+    assert!(matches!(error, Error::SameName { .. }), "{error}");
+    let error = refusal(URDF, &asks(&["x = mass_matrix", "x_blocks = gravity_torque"]));
     assert!(matches!(error, Error::SameName { .. }), "{error}");
     let error = refusal(URDF, &asks(&["a_1 = mass_matrix + placements", "a1 = mass_matrix + gravity_torque"]));
     assert!(matches!(error, Error::SameName { .. }), "{error}");

@@ -169,6 +169,22 @@ fn who_follows_nobody_with_one_coordinate_is_an_error() {
     assert!(following(1, joint("b", Continuous, 1, 2)).is_ok());
 }
 
+#[test]
+fn what_overflows_is_an_error_that_names_it() {
+    let far = |mass: f64, x: f64, at: f64| {
+        let origin = Origin { xyz: [x, 0.0, 0.0], ..Origin::default() };
+        let mut description = tree(2, vec![joint("a", JointKind::Continuous, 0, 1)]);
+        description.links[1].inertial = Some(Inertial { origin, mass, inertia: [0.1, 0.0, 0.0, 0.1, 0.0, 0.1] });
+        description.joints[0].origin.xyz = [at, 0.0, 0.0];
+        Model::new(&description, Base::Fixed)
+    };
+    for (mass, x) in [(1.0, 1e155), (1e300, 1e10), (1e308, 9.0)] {
+        let message = far(mass, x, 0.0).map_or_else(|e| e.to_string(), |_| String::new());
+        assert!(message.contains("joint \"a\"") && message.contains("overflow"), "{message}");
+    }
+    assert!(far(1e300, 1.0, 1e300).is_ok());
+}
+
 /// A link alone has no coordinates on a fixed base, and six on a floating one.
 #[test]
 fn a_single_link_goes_through_everything() {

@@ -36,6 +36,11 @@ pub enum ModelError {
         /// Name of the joint.
         joint: String,
     },
+    /// Masses and lengths whose products are beyond the range of doubles.
+    TooLarge {
+        /// Names of the joints behind which they are, and of the links that are too far away.
+        names: Vec<String>,
+    },
 }
 
 impl fmt::Display for ModelError {
@@ -50,6 +55,9 @@ impl fmt::Display for ModelError {
             }
             Self::BadMimic { joint } => {
                 write!(f, "joint {joint:?}: mimic: expected a leader with one degree of freedom that does not follow this joint")
+            }
+            Self::TooLarge { names } => {
+                write!(f, "{}: found masses or lengths that overflow, expected m·r² and r below 1e308, in kg and m", names.join(", "))
             }
         }
     }
@@ -82,6 +90,15 @@ struct Builder<'a> {
     /// The body of each moving joint.
     body_of: Vec<Option<usize>>,
     model: Model<f64>,
+}
+
+/// What has overflowed: joints by what they move, links by where they are.
+fn too_large(model: &Model<f64>) -> Vec<String> {
+    let is_finite = |x: &Placement<f64>| x.position.iter().all(|x| x.is_finite());
+    let heavy = |body: &&Body<f64>| !(is_finite(&body.placement) && body.inertia.parameters().iter().all(|x| x.is_finite()));
+    let joints = model.bodies.iter().skip(1).filter(heavy).map(|body| format!("joint {:?}", body.name));
+    let links = model.frames.iter().filter(|frame| !is_finite(&frame.placement)).map(|frame| format!("link {:?}", frame.name));
+    joints.chain(links).collect()
 }
 
 impl<'a> Builder<'a> {
@@ -225,7 +242,8 @@ impl<'a> Builder<'a> {
             Frame { name: link.name.clone(), body, placement }
         };
         self.model.frames = self.description.links.iter().zip(&self.seats).map(frame).collect();
-        Ok(self.model)
+        let names = too_large(&self.model);
+        if names.is_empty() { Ok(self.model) } else { Err(ModelError::TooLarge { names }) }
     }
 
     /// Resolves a chain of joints that follow each other down to a coordinate.
