@@ -80,7 +80,19 @@ fn reference(joint: &Tag<'_>, which: &str, log: &mut Log) -> Option<Reference> {
 fn motion(tag: &Tag<'_>, kind: JointKind, open: bool, joint: &mut DraftJoint, log: &mut Log) {
     match kind {
         JointKind::Universal => (joint.axis, joint.second_axis) = cross(tag, log),
-        kind if kind.has_axis() => joint.axis = tag.only("axis", log).and_then(|tag| axis(&tag, log)).unwrap_or(DEFAULT_AXIS),
+        kind if kind.has_axis() => {
+            let given = tag.only("axis", log);
+            if kind == JointKind::Planar && given.is_none() {
+                // Others take the joint's own x and y for the plane then.
+                log.warning(
+                    &tag.place("axis"),
+                    Kind::NoAxis,
+                    "none",
+                    "the normal of the plane: without one it is x, and the plane y and z",
+                );
+            }
+            joint.axis = given.and_then(|tag| axis(&tag, log)).unwrap_or(DEFAULT_AXIS);
+        }
         _ => report_useless(tag, "axis", log),
     }
     if kind == JointKind::Helical {

@@ -91,6 +91,8 @@ pub enum Kind {
     SeveralRoots,
     /// An axis without a direction.
     ZeroAxis,
+    /// A planar joint without an axis.
+    NoAxis,
     /// The two axes of a universal joint have one direction.
     ParallelAxes,
     /// A helical joint that does not slide.

@@ -106,6 +106,17 @@ fn floating_and_planar_joints_are_described() {
     }
 }
 
+/// Programs differ in what they take for its plane.
+#[test]
+fn a_planar_joint_without_an_axis_moves_across_x_and_is_warned_of() {
+    let reading = accepted(&slew("planar", ""));
+    let warning = reading.warnings.iter().find(|w| w.kind == Kind::NoAxis).expect("a warning");
+    assert!(warning.to_string().contains("slew") && warning.to_string().contains("the plane y and z"), "{warning}");
+    assert_eq!(joint(&slew("planar", ""), "slew").axis, [1.0, 0.0, 0.0]);
+    assert!(accepted(&slew("planar", "<axis xyz='0 0 1'/>")).warnings.iter().all(|w| w.kind != Kind::NoAxis));
+    assert!(accepted(&slew("continuous", "")).warnings.iter().all(|w| w.kind != Kind::NoAxis));
+}
+
 /// The crane with a slew of another type and other tags in place of its axis.
 fn slew(kind: &str, tags: &str) -> String {
     crane("<axis xyz=\"0 0 1\"/>", tags).replace("\"continuous\"", &format!("\"{kind}\""))

@@ -1,5 +1,6 @@
 //! From a description to a model: order, merge, and turn frames so that joint axes are z.
 
+use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec;
 use alloc::vec::Vec;
