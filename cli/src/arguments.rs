@@ -263,7 +263,7 @@ pub(crate) struct CompareArguments {
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
     /// The largest error that is right, in units of 2⁻⁵³ of the sum of the magnitudes of the terms
-    #[arg(long, value_name = "UNITS", default_value_t = 64.0)]
+    #[arg(long, value_name = "UNITS", default_value_t = 64.0, value_parser = units)]
     pub(crate) bound: f64,
 }
 
@@ -333,6 +333,10 @@ fn renaming(text: &str) -> Result<(String, String), String> {
     Ok((from.to_owned(), to.trim().to_owned()))
 }
 
+fn units(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|x: &f64| x.is_finite() && *x >= 0.0).ok_or_else(|| "expected a finite number, 0 or more".into())
+}
+
 /// A path as it stands in Rust: `::articulated`, `crate::dynamics`.
 fn rust_path(text: &str) -> Result<String, String> {
     let word = |w: &str| !w.is_empty() && w.chars().all(|c| c.is_alphanumeric() || c == '_') && !w.starts_with(char::is_numeric);
@@ -371,6 +375,12 @@ mod tests {
     fn gravity_is_three_finite_numbers() {
         assert_eq!(gravity("0, -9.81,1e0"), Ok(Gravity([0.0, -9.81, 1.0])));
         assert!(gravity("1,2").is_err() && gravity("1,2,nan").is_err() && gravity("").is_err());
+    }
+
+    #[test]
+    fn a_bound_is_a_finite_number() {
+        assert_eq!((units("0"), units("2.5e1")), (Ok(0.0), Ok(25.0)));
+        assert!(["nan", "inf", "-1", ""].iter().all(|text| units(text).is_err()));
     }
 
     #[test]

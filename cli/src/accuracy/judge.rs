@@ -10,7 +10,7 @@ use articulated_core::algorithm::Function;
 use articulated_core::algorithm::textbook::Textbook;
 use articulated_core::model::Model;
 
-use crate::compare::accuracy::{exact, inverse_of, singular};
+use crate::compare::accuracy::{above_residues, exact, inverse_of, singular};
 use crate::magnitude::scales;
 use crate::precise::Big;
 
@@ -55,9 +55,7 @@ pub(super) fn verdicts(
         if singular(&by_textbook) {
             return None;
         }
-        let mut scale = scales(model, function.name, state).ok()?;
-        let floor = scale.iter().copied().fold(0.0, f64::max) * 1e-60;
-        scale.iter_mut().for_each(|s| *s = s.max(floor));
+        let scale = above_residues(scales(model, function.name, state).ok()?);
         let mut graphs: Vec<(*const Graph, Vec<Big>)> = Vec::new();
         Some(found.iter().map(|f| one(f, (textbook, model, function), state, (&by_textbook, &scale), &mut graphs)).collect())
     })

@@ -102,11 +102,20 @@ pub(crate) fn singular(exact: &[Big]) -> bool {
 
 /// |found − exact| over the scale of the result, of each that was found.
 fn forward(exact: &[Big], model: &Model<f64>, name: &str, state: &[&[f64]], found: &[Vec<f64>; 2]) -> Option<[f64; 2]> {
-    let mut scale = scales(model, name, state).ok()?;
-    // Where the model knows that a result is zero, the reference may be left with the roundings of its 96 digits.
-    let floor = scale.iter().copied().fold(0.0, f64::max) * 1e-60;
-    scale.iter_mut().for_each(|s| *s = s.max(floor));
+    let scale = above_residues(scales(model, name, state).ok()?);
     Some(found.each_ref().map(|found| largest(exact, found, &scale)))
+}
+
+/// How much of the scale of a result may be left of its zeros by the roundings of the reference's 96 digits, and more than that.
+const RESIDUE: f64 = 1e-60;
+
+/// Scales that are no less than what is left in the reference where the model knows that a result is zero. Where all of it is, there is no scale to go
+/// by: that of numbers near one is taken, and any number that is not tiny beyond that is wrong.
+pub(crate) fn above_residues(mut scale: Vec<f64>) -> Vec<f64> {
+    let largest = scale.iter().copied().fold(0.0, f64::max);
+    let floor = RESIDUE * if largest == 0.0 { 1.0 } else { largest };
+    scale.iter_mut().for_each(|s| *s = s.max(floor));
+    scale
 }
 
 /// η = maxᵢ |ID_exact(q, v, a) − τ|ᵢ / (scale of ID + |τ|)ᵢ, for the state (q, v, τ, …) and each acceleration that was found.
@@ -165,6 +174,15 @@ mod tests {
         let [one, zero] = [1.0, 0.0].map(Big::from_f64);
         assert!(singular(&[one, one / zero]) && singular(&[zero / zero]) && singular(&[one / Big::from_f64(1e-90)]));
         assert!(!singular(&[one, zero, Big::from_f64(-1e20)]));
+    }
+
+    #[test]
+    fn zeros_are_right_where_all_of_a_result_is_zero_and_nothing_else_is() {
+        let scale = above_residues(vec![0.0, 0.0]);
+        let exact = [Big::from_f64(3e-93), Big::from_f64(0.0)];
+        assert!(largest(&exact, &[0.0, 0.0], &scale) < 1e-9);
+        assert!(largest(&exact, &[0.0, 1e-30], &scale) > 1e9);
+        assert_eq!(above_residues(vec![0.0, 2.0]), [2.0 * RESIDUE, 2.0]);
     }
 
     #[test]

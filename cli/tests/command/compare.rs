@@ -91,6 +91,22 @@ fn an_error_beyond_the_bound_is_status_4() {
 }
 
 #[test]
+fn a_result_that_is_zero_throughout_is_right() {
+    let ended = run(&[&["compare", "simple_pendulum", "--functions", "jacobian_rates_body", "--format", "json"], &SMALL[..]].concat());
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let errors = &ended.json()["functions"][0]["errors"];
+    assert!(["generated", "generic"].iter().all(|side| errors[side].as_f64().is_some_and(|e| e < 1.0)), "{errors}");
+}
+
+#[test]
+fn a_bound_that_is_no_number_is_status_2() {
+    for bound in ["nan", "inf", "-1"] {
+        let ended = run(&["compare", "simple_pendulum", &format!("--bound={bound}")]);
+        assert!(ended.status == 2 && ended.err.contains("expected a finite number, 0 or more"), "{}", ended.err);
+    }
+}
+
+#[test]
 fn without_a_compiler_it_is_status_3() {
     let mut command = articulated(&["compare", "simple_pendulum"]);
     command.env("RUSTC", "/no/such/compiler");
