@@ -60,7 +60,7 @@ impl From<articulated_codegen::Error> for Failure {
 pub(crate) fn undefined(error: articulated_codegen::Error) -> Result<String, articulated_codegen::Error> {
     use articulated_codegen::Error::{BoundFrames, NoMass, Singular};
     match error {
-        Singular { joints, .. } => Ok(format!("no mass that joint {} alone moves", joints.join(", joint "))),
+        Singular { joints, .. } => Ok(format!("no inertia of its own for joint {}", joints.join(", joint "))),
         NoMass { .. } => Ok("nothing that moves has mass".into()),
         BoundFrames { frames, .. } => Ok(format!("fewer than six degrees of freedom carry {}", frames.join(", "))),
         other => Err(other),

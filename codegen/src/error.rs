@@ -50,13 +50,13 @@ pub enum Error {
         known: Vec<String>,
     },
     /// A function that is not defined for this robot.
-    #[error("{file}: {function} is not defined: joint {} moves no mass and no inertia, or none but what other joints move in the same way, so the mass matrix is singular in every configuration; give a link behind it a mass, or leave {function} out", joints.join(", joint "))]
+    #[error("{file}: {function} is not defined: no inertia of its own for joint {}: nothing behind it resists its motion, or another joint moves the same mass in the same way, so the mass matrix is singular in every configuration; give a link behind it an inertia, or the joint an armature, or take one joint fewer, or leave {function} out", joints.join(", joint "))]
     Singular {
         /// The file.
         file: String,
         /// The function.
         function: String,
-        /// The joints that carry nothing.
+        /// The joints without an inertia of their own.
         joints: Vec<String>,
     },
     /// A robot so large that its code would be of no use.

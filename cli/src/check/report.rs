@@ -130,7 +130,7 @@ impl Report {
         }
     }
 
-    /// Fills in what the robot is made of, and warns of joints that move nothing.
+    /// Fills in what the robot is made of, and warns of joints without an inertia of their own.
     pub(super) fn describe(&mut self, description: &Description, model: &Model<f64>) {
         self.robot = Some(description.name.clone());
         self.links = description.links.iter().enumerate().map(|(k, link)| link_row(k, link, model)).collect();
@@ -149,14 +149,17 @@ impl Report {
 
     fn warn_of_massless_joints(&mut self, model: &Model<f64>) {
         if model.bodies.len() > MANY {
-            return self
-                .warnings
-                .push(Diagnostic::plain(format!("more than {MANY} bodies: whether every joint moves mass was not looked at")));
+            return self.warnings.push(Diagnostic::plain(format!(
+                "more than {MANY} bodies: whether every joint has an inertia of its own was not looked at"
+            )));
         }
         for body in model.massless_joints() {
             let name = &model.bodies[body].name;
-            let message =
-                format!("joint {name:?} moves no mass: the mass matrix is singular, and forward dynamics is undefined for this robot");
+            let message = format!(
+                "joint {name:?} has no inertia of its own: nothing behind it resists its motion, or another joint moves the same mass in the same way, \
+                 so the mass matrix is singular, and forward dynamics is undefined for this robot; expected an inertia behind it, an armature, or one \
+                 joint fewer"
+            );
             let subject = Some(format!("joint {name:?}"));
             self.warnings.push(Diagnostic { line: None, subject, field: None, message });
         }

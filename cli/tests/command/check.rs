@@ -74,6 +74,14 @@ fn an_unphysical_inertia_is_an_error_unless_allowed() {
 }
 
 #[test]
+fn a_joint_that_turns_a_mass_on_its_axis_is_said_to_lack_inertia() {
+    let mass = r#"<link name="b"><inertial><mass value="1"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>"#;
+    let file = File::new("spinner.urdf", MASSLESS.replace(r#"<link name="b"/>"#, mass).as_bytes());
+    let out = run(&["check", file.name()]).out;
+    assert!(out.contains("has no inertia of its own") && !out.contains("moves no mass"), "{out}");
+}
+
+#[test]
 fn a_snapped_angle_is_told() {
     let urdf = MASSLESS.replace("<parent", "<origin rpy=\"1.5708 0 0\"/><parent");
     let file = File::new("almost.urdf", urdf.as_bytes());

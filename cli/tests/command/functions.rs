@@ -18,14 +18,14 @@ fn every_function_has_its_cost_or_the_reason_why_not() {
     let of = |name: &str| functions.iter().find(|f| f["function"] == name).unwrap();
     assert_eq!(of("jacobians_body")["gives"], "[frames][6][nv]");
     assert!(of("forward_dynamics")["costs"][0]["cost"]["instructions"].as_u64().unwrap() > 10);
-    assert_eq!(of("forward_dynamics")["costs"][1]["undefined"], "no mass that joint turn alone moves");
+    assert_eq!(of("forward_dynamics")["costs"][1]["undefined"], "no inertia of its own for joint turn");
     let few = "fewer than six degrees of freedom carry each tip";
     assert!((0..2).all(|k| of("operational_space_inertia")["costs"][k]["undefined"] == few));
     assert!(of("inverse_dynamics")["costs"][1]["cost"].is_object());
     let text = run(&words);
     assert_eq!(text.status, 0, "{}", text.err);
     for part in [
-        "not defined: no mass that joint turn alone moves",
+        "not defined: no inertia of its own for joint turn",
         "not defined: nothing that moves has mass",
         "not defined: fewer than six",
         "– (3)",

@@ -1,4 +1,4 @@
-// A joint that moves no mass has inverse but no forward dynamics.
+// A robot with a joint that has no inertia of its own has inverse but no forward dynamics.
 articulated::robot! {
     mod arm {
         urdf = "ui/urdf/massless.urdf",
