@@ -27,6 +27,7 @@ mod sym;
 mod trace;
 mod wanted;
 
+use articulated_core::Scalar;
 use articulated_core::algorithm::{Function, Needs, functions};
 use articulated_core::model::Model;
 use articulated_urdf::{Problem, Reading, Unused};
@@ -90,7 +91,7 @@ pub fn generate(request: &Request) -> Result<Generated, Error> {
         return Err(Error::TooLarge { file: request.file.clone(), found: whole.nv, most: MOST_FREEDOMS });
     }
     // Mass that stays an input is mass all the same.
-    let massless: Vec<String> = whole.massless_joints().into_iter().map(|i| whole.bodies[i].name.clone()).collect();
+    let massless = massless(&whole);
     let parameters = parameters::parse(&options.parameters, &mut description, &whole)?;
     let model = choose_frames(request, if parameters.is_empty() { whole } else { model(request, &description)? })?;
     let wanted = wanted(request, &model, &massless)?;
@@ -118,7 +119,7 @@ fn wanted(request: &Request, model: &Model<f64>, massless: &[String]) -> Result<
         seen.push(text);
         let function = Wanted::parse(text)?;
         function.check(model.shape())?;
-        function.parts.iter().try_for_each(|part| defined(request, model, massless, part.function))?;
+        function.parts.iter().try_for_each(|part| defined(&request.file, model, massless, part.function))?;
         let same_type = |f: &Wanted| f.group().is_some() && f.group() == function.group();
         let into = |f: &Wanted, other: &Wanted| {
             ["_into", "_fill", "_blocks"].iter().any(|form| f.name.strip_suffix(form) == Some(other.name.as_str()))
@@ -131,9 +132,14 @@ fn wanted(request: &Request, model: &Model<f64>, massless: &[String]) -> Result<
     Ok(wanted)
 }
 
-/// Whether the robot has what the function needs.
-fn defined(request: &Request, model: &Model<f64>, massless: &[String], function: &Function<Sym>) -> Result<(), Error> {
-    let (file, name) = (request.file.clone(), function.name.to_owned());
+/// The names of the joints that have no inertia of their own.
+pub fn massless(model: &Model<f64>) -> Vec<String> {
+    model.massless_joints().into_iter().map(|i| model.bodies[i].name.clone()).collect()
+}
+
+/// Whether the robot has what the function needs; `massless`: what [`massless`] gives of it.
+pub fn defined<S: Scalar>(file: &str, model: &Model<f64>, massless: &[String], function: &Function<S>) -> Result<(), Error> {
+    let (file, name) = (file.to_owned(), function.name.to_owned());
     if function.needs == Needs::Mass && model.moving_mass() == 0.0 {
         return Err(Error::NoMass { file, function: name });
     }

@@ -31,6 +31,8 @@ pub(crate) fn run(arguments: &EvalArguments, format: Format) -> Result<u8, Failu
     let states = read_states(&arguments.states, &model, &functions)?;
     let mut report = Report::new(&robot, states.warnings);
     report.warnings.iter().for_each(|w| console::warn(w));
+    let massless = articulated_codegen::massless(&model);
+    functions.iter().try_for_each(|f| articulated_codegen::defined(&robot.file, &model, &massless, f))?;
     let compiled = if arguments.generic { None } else { compile(&robot, &names, arguments.generated, &mut report)? };
     for f in &functions {
         report.functions.push(evaluate(f, &model, &states.states, compiled.as_ref(), arguments.generated));

@@ -20,6 +20,7 @@ mod watched;
 
 use std::path::Path;
 
+use articulated_core::algorithm::FunctionId;
 use articulated_core::effect::EffectId;
 
 use crate::arguments::Format;
@@ -41,6 +42,7 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     if let Some(file) = &arguments.against {
         return against::run(&stage, &settings, file, format).map(|()| OK);
     }
+    solvable(&stage)?;
     if let Some(folder) = &arguments.output {
         std::fs::create_dir_all(folder).map_err(|e| unwritable(folder, &e))?;
     }
@@ -76,6 +78,12 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
             INPUT
         }
     })
+}
+
+/// Whether torques determine accelerations at all. What generated code would be refused for, generic code is.
+fn solvable(stage: &Stage) -> Result<(), Failure> {
+    let (file, model) = (&stage.prepared.request.file, &stage.model);
+    Ok(articulated_codegen::defined(file, model, &articulated_codegen::massless(model), FunctionId::forward_dynamics.row::<f64>())?)
 }
 
 fn unwritable(path: &Path, error: &std::io::Error) -> Failure {

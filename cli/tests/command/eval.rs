@@ -65,6 +65,31 @@ fn mistakes_name_the_state_and_the_joint() {
     assert_eq!(run(&["eval", "simple_pendulum", "--function", "inverse_dynamics", "--states", "/no/such/file"]).status, 1);
 }
 
+/// A mass on the axis of its joint, which nothing resists.
+const ON_AXIS: &str = r#"<robot name="spinner"><link name="base"/><link name="mass"><inertial><mass value="1"/>
+<inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>
+<joint name="spin" type="continuous"><parent link="base"/><child link="mass"/><axis xyz="0 0 1"/></joint></robot>"#;
+
+#[test]
+fn what_no_code_can_be_generated_for_is_not_evaluated_either() {
+    let file = File::new("spinner.urdf", ON_AXIS.as_bytes());
+    let eval = |function: &str, way: &[&str]| {
+        let words = ["eval", file.name(), "--function", function, "--states", "-"];
+        run_with(&[&words[..], way].concat(), br#"[{"q": [0], "v": [0], "a": [1], "tau": [1]}]"#)
+    };
+    for function in ["forward_dynamics", "mass_matrix_inverse", "operational_space_inertia"] {
+        let (generated, generic) = (eval(function, &["--generated"]), eval(function, &["--generic"]));
+        assert_eq!((generated.status, generic.status), (1, 1), "{}", generic.out);
+        assert_eq!(generated.err, generic.err);
+        assert!(generic.err.contains("no inertia of its own for joint spin"), "{}", generic.err);
+    }
+    assert_eq!(eval("inverse_dynamics", &["--generic"]).status, 0);
+    let scene = File::new("spinner.toml", format!("urdf = {:?}\n[simulation]\nend = 1\n", file.name()).as_bytes());
+    let (generic, generated) = (run(&["simulate", scene.name()]), run(&["simulate", scene.name(), "--generated"]));
+    assert!(generic.status == 1 && generic.err.contains("no inertia of its own for joint spin"), "{}", generic.err);
+    assert_eq!((generic.status, generic.err), (generated.status, generated.err));
+}
+
 #[test]
 fn without_a_compiler_there_are_generic_results() {
     let words = ["eval", "simple_pendulum", "--function", "gravity_torque", "--states", "-"];
