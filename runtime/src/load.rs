@@ -1,7 +1,7 @@
 //! Robots loaded at run time: as models at once, or as descriptions to be edited first.
 
 use std::fmt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use articulated_core::description::{Base, Description};
 use articulated_core::model::{Model, ModelError};
@@ -11,7 +11,12 @@ use articulated_urdf::{Options, Problems, read};
 #[derive(Debug)]
 pub enum LoadError {
     /// The file cannot be read.
-    Io(std::io::Error),
+    Io {
+        /// Which.
+        file: PathBuf,
+        /// What the system said.
+        error: std::io::Error,
+    },
     /// The document is not a usable URDF; every error in it.
     Urdf(Problems),
     /// A robot of a kind that the algorithms do not know.
@@ -21,7 +26,7 @@ pub enum LoadError {
 impl fmt::Display for LoadError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Io(e) => e.fmt(f),
+            Self::Io { file, error } => write!(f, "{}: {error}", file.display()),
             Self::Urdf(e) => e.fmt(f),
             Self::Model(e) => e.fmt(f),
         }
@@ -57,7 +62,7 @@ pub fn load_bytes(file: &str, bytes: &[u8], base: Base) -> Result<Model<f64>, Lo
 /// `base` decides no more than what would be reported as unused.
 pub fn describe(path: impl AsRef<Path>, base: Base) -> Result<Description, LoadError> {
     let path = path.as_ref();
-    let bytes = std::fs::read(path).map_err(LoadError::Io)?;
+    let bytes = std::fs::read(path).map_err(|error| LoadError::Io { file: path.to_owned(), error })?;
     describe_bytes(&path.display().to_string(), &bytes, base)
 }
 
@@ -65,4 +70,15 @@ pub fn describe(path: impl AsRef<Path>, base: Base) -> Result<Description, LoadE
 pub fn describe_bytes(file: &str, bytes: &[u8], base: Base) -> Result<Description, LoadError> {
     let options = Options { file: file.into(), base, ..Options::default() };
     Ok(read(bytes, &options).map_err(LoadError::Urdf)?.description)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_is_not_there_is_named() {
+        let error = load("/no/such/arm.urdf", Base::Fixed).unwrap_err().to_string();
+        assert!(error.starts_with("/no/such/arm.urdf: ") && error.len() > "/no/such/arm.urdf: ".len(), "{error}");
+    }
 }
