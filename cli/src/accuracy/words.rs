@@ -8,7 +8,7 @@ pub(super) fn surprises(points: &[Point]) -> Vec<String> {
     let Some(plain) = at("f64") else { return Vec::new() };
     let times = |p: &Point| p.time.median / plain.time.median;
     let mut out = Vec::new();
-    if let Some(p) = at("f32").filter(|p| times(p) > 0.7) {
+    if let Some(p) = at("f32").filter(|p| times(p) > 0.7 && plain.relative.largest > 0.0) {
         out.push(format!(
             "f32 takes {:.2} times the time of f64 and is {:.0e} times less accurate: one call is a chain of operations that wait for each other, and they wait as long in either type. \
              Single precision pays where many states are computed at once.",
@@ -57,16 +57,14 @@ pub(super) fn surprises(points: &[Point]) -> Vec<String> {
         out.push(format!("Without fused multiply-add, with the same bits on every machine: {:.2} times the time.", times(p)));
     }
     if let Some((error, name)) = plain.hard.filter(|(error, _)| *error > 8.0 * plain.relative.largest) {
-        out.push(format!(
-            "The hardest state for f64 is \u{201c}{name}\u{201d}: {error:.1e}, {:.0} times the worst at random.",
-            error / plain.relative.largest
-        ));
+        let random = match plain.relative.largest {
+            0.0 => "and none at random".to_owned(),
+            worst => format!("{:.0} times the worst at random", error / worst),
+        };
+        out.push(format!("The hardest state for f64 is \u{201c}{name}\u{201d}: {error:.1e}, {random}."));
     }
     if let (Some(bound), Some(r)) = (plain.bound, plain.rounding) {
-        out.push(format!(
-            "The guaranteed bound of f64 is {bound:.1e}, {:.0} times what was seen: roundings cancel more often than they add up.",
-            bound / r.largest
-        ));
+        out.extend(bound_and_seen(bound, r.largest));
     }
     let far = |p: &&Point| p.peer && p.hard.is_some_and(|(error, _)| error > 1e-6 && error > 1e3 * p.relative.largest);
     for p in points.iter().filter(far) {
@@ -78,4 +76,26 @@ pub(super) fn surprises(points: &[Point]) -> Vec<String> {
         ));
     }
     out
+}
+
+/// How far the guaranteed bound is from the rounding that was seen.
+fn bound_and_seen(bound: f64, seen: f64) -> Option<String> {
+    let said = match seen {
+        _ if bound == 0.0 => return None,
+        0.0 => "where no rounding was seen".to_owned(),
+        _ => format!("{:.0} times what was seen: roundings cancel more often than they add up", bound / seen),
+    };
+    Some(format!("The guaranteed bound of f64 is {bound:.1e}, {said}."))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_rounding_is_no_number_of_times() {
+        assert_eq!(bound_and_seen(0.0, 0.0), None);
+        assert_eq!(bound_and_seen(1e-15, 0.0).unwrap(), "The guaranteed bound of f64 is 1.0e-15, where no rounding was seen.");
+        assert!(bound_and_seen(1e-15, 1e-16).unwrap().contains("10 times what was seen"));
+    }
 }
