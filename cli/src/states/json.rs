@@ -4,19 +4,26 @@ use articulated_core::algorithm::Argument;
 use serde_json::{Map, Value};
 
 use super::read::{Found, Gathering};
-use super::{State, owner, slots};
+use super::{State, owner, slots, unique};
 
 pub(super) fn read(text: &str, found: &mut Found<'_>) {
-    let value: Value = match serde_json::from_str(text) {
+    let value = match unique::parse(text) {
         Ok(value) => value,
+        Err(error) if error.is_data() => return found.errors.push(error.to_string()),
         Err(error) => return found.errors.push(format!("not JSON: {error}")),
     };
     let list = match &value {
         Value::Array(list) => Some(list),
-        Value::Object(object) => object.get("states").and_then(Value::as_array),
+        Value::Object(object) => {
+            alone("states", object, found);
+            object.get("states").and_then(Value::as_array)
+        }
         _ => None,
     };
     let Some(list) = list else {
+        if !found.errors.is_empty() {
+            return;
+        }
         return found.errors.push("found an object without a list, expected {\"states\": [...]} or a list of states".into());
     };
     for (k, entry) in list.iter().enumerate() {
@@ -25,6 +32,13 @@ pub(super) fn read(text: &str, found: &mut Found<'_>) {
             Value::Object(object) => state(&place, object, found),
             other => found.error(&place, format!("found {}, expected an object", kind(other))),
         }
+    }
+}
+
+/// An error for each key beside the one that there is.
+fn alone(known: &str, object: &Map<String, Value>, found: &mut Found<'_>) {
+    for key in object.keys().filter(|key| *key != known) {
+        found.errors.push(format!("found the key {key:?}, expected {known:?} alone"));
     }
 }
 
@@ -144,6 +158,22 @@ mod tests {
         assert!(said(serde_json::json!({"cart": [1, 2]})).contains("link \"cart\": found 2 numbers, expected 6"));
         assert!(said(serde_json::json!([a, [1]])).contains("wrenches[1]: expected a list of 6"));
         assert!(said(serde_json::json!([1, 2])).contains("found 2 numbers, expected 12"));
+    }
+
+    #[test]
+    fn a_key_stands_once_and_is_known() {
+        let twice = [
+            (r#"[{"q": [1, 2], "q": [3, 4]}]"#, "q"),
+            (r#"[{"q": {"slide": 1, "pole": 2, "slide": 3}}]"#, "slide"),
+            (r#"{"states": [], "states": [{"q": [1, 2]}]}"#, "states"),
+        ];
+        for (text, key) in twice {
+            let said = errors("cart_pole", text);
+            assert!(said.starts_with(&format!("found the key {key:?} twice, expected it once at line 1")), "{said}");
+        }
+        let unknown = errors("cart_pole", r#"{"robot": "x", "states": [{"q": [1, 2]}]}"#);
+        assert_eq!(unknown, "found the key \"robot\", expected \"states\" alone");
+        assert_eq!(errors("cart_pole", r#"{"state": []}"#), "found the key \"state\", expected \"states\" alone");
     }
 
     #[test]

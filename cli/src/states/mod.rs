@@ -4,6 +4,7 @@ mod csv;
 mod json;
 mod random;
 mod read;
+mod unique;
 
 use articulated_core::algorithm::{Argument, Dim, Function};
 use articulated_core::description::JointKind;
