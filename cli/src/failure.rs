@@ -33,6 +33,11 @@ impl Failure {
         Self { status: INPUT, lines: lines.into_iter().collect() }
     }
 
+    /// The command line is wrong.
+    pub(crate) fn usage(line: String) -> Self {
+        Self { status: USAGE, lines: vec![line] }
+    }
+
     /// A tool failed.
     pub(crate) fn tool(error: &impl ToString) -> Self {
         Self { status: TOOL, lines: vec![error.to_string()] }
@@ -50,7 +55,7 @@ impl From<articulated_codegen::Error> for Failure {
             articulated_codegen::Error::Urdf(problems) => Self::input(problems.errors.iter().map(ToString::to_string)),
             articulated_codegen::Error::Edits { refusals } => Self::input(refusals.iter().flat_map(|r| lines(&r.to_string()))),
             articulated_codegen::Error::Scene(errors) => Self::input(errors.errors.iter().map(ToString::to_string)),
-            articulated_codegen::Error::UnknownFunction { .. } => Self { status: USAGE, lines: vec![error.to_string()] },
+            articulated_codegen::Error::UnknownFunction { .. } => Self::usage(error.to_string()),
             other => Self::input([other.to_string()]),
         }
     }

@@ -28,6 +28,9 @@ struct Function {
 /// Writes the source to where it is wanted.
 pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), Failure> {
     let robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
+    if let Some(path) = arguments.output.as_ref().filter(|path| robot.was_read_from(path)) {
+        return Err(Failure::usage(format!("--output {}: found a file that the robot is read from, expected another", path.display())));
+    }
     let mut request = robot.request(&crate::names::flat(&arguments.functions));
     if arguments.functions.is_empty() {
         request.options.functions.clone_from(&robot.options.functions);

@@ -24,6 +24,8 @@ pub(crate) struct Robot {
     pub(crate) urdf: Vec<u8>,
     pub(crate) options: Options,
     path: Option<PathBuf>,
+    /// All files that it was read from.
+    files: Vec<PathBuf>,
 }
 
 impl Robot {
@@ -48,7 +50,8 @@ impl Robot {
         options.snap_angles = arguments.snap_angles;
         options.rename.clone_from(&arguments.rename);
         edit(&mut options, &arguments.edits)?;
-        Ok(Self { file, urdf, options, path })
+        let files = path.iter().cloned().chain(appended(&arguments.edits)).collect();
+        Ok(Self { file, urdf, options, path, files })
     }
 
     /// The robot of a scene: a file, or a bundled one. What the arguments say stands in place of what the scene says; edits come after the scene's.
@@ -70,7 +73,8 @@ impl Robot {
         options.snap_angles = arguments.snap_angles.or(options.snap_angles);
         options.rename.extend_from_slice(&arguments.rename);
         edit(&mut options, &arguments.edits)?;
-        Ok(Self { file, urdf, options, path: None })
+        let files = prepared.files.into_iter().chain(appended(&arguments.edits)).collect();
+        Ok(Self { file, urdf, options, path: None, files })
     }
 
     /// The robot with these frames.
@@ -126,6 +130,12 @@ impl Robot {
         if self.floating() { "floating" } else { "fixed" }
     }
 
+    /// Whether writing to this path would replace a file that the robot was read from.
+    pub(crate) fn was_read_from(&self, path: &Path) -> bool {
+        let Ok(path) = path.canonicalize() else { return false };
+        self.files.iter().any(|file| file.canonicalize().is_ok_and(|file| file == path))
+    }
+
     /// A file with the document, for those who read files: the robot's own, or one in `folder`. There is none of an edited robot.
     pub(crate) fn file_in(&self, folder: &Path) -> std::io::Result<PathBuf> {
         let o = &self.options;
@@ -154,6 +164,11 @@ fn edit(options: &mut Options, edits: &Edits) -> Result<(), Failure> {
     options.payloads.extend(edits.payload.iter().cloned());
     options.lock.extend(edits.lock.iter().map(|lock| (lock.joint.clone(), lock.at.clone())));
     Ok(())
+}
+
+/// The files of the robots to append.
+fn appended(edits: &Edits) -> impl Iterator<Item = PathBuf> + '_ {
+    edits.append.iter().map(|other| PathBuf::from(&other.file)).filter(|file| file.is_file())
 }
 
 /// A file's name for messages, and its bytes: of a bundled robot by its name, the standard input, or a file.

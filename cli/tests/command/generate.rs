@@ -91,6 +91,33 @@ fn warnings_are_on_the_other_stream_and_errors_are_status_1() {
     assert_eq!(run(&["generate", "cart_pole", "-o", "/no/such/folder/x.rs"]).status, 1);
 }
 
+#[test]
+fn a_robot_is_not_replaced_by_its_code() {
+    let urdf = articulated_models::robot("cart_pole").unwrap().urdf;
+    let file = File::new("cart_pole.urdf", urdf.as_bytes());
+    let again = format!("{}/../{}/cart_pole.urdf", file.path.parent().unwrap().display(), folder_of(&file));
+    let scene = File::new("cart.toml", format!("urdf = {:?}\n", file.name()).as_bytes());
+    let onto = format!("{}@pole_rod:other_", file.name());
+    let cases: [&[&str]; 5] = [
+        &[file.name(), "-o", file.name()],
+        &[file.name(), "-o", &again],
+        &["cart_pole", "--append", &onto, "-o", file.name()],
+        &[scene.name(), "-o", scene.name()],
+        &[scene.name(), "-o", file.name()],
+    ];
+    for words in cases {
+        let refused = run(&[&["generate"], words].concat());
+        assert!(refused.status == 2 && refused.err.contains("found a file that the robot is read from"), "{words:?}: {}", refused.err);
+    }
+    assert_eq!(std::fs::read_to_string(&file.path).unwrap(), urdf);
+    assert!(std::fs::read_to_string(&scene.path).unwrap().starts_with("urdf"));
+}
+
+/// The last part of the path of the file's folder.
+fn folder_of(file: &File) -> String {
+    file.path.parent().and_then(|folder| folder.file_name()).unwrap().to_string_lossy().into_owned()
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn output_that_cannot_be_written_is_not_success() {
