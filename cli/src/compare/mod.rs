@@ -67,13 +67,14 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
     let prepared = prepare_all(&plan, arguments, &mut report)?;
     measure_all(&prepared, &peers, arguments.repetitions as usize, &mut report);
     report.making = Making::all(&plan, &prepared, &peers)?;
-    if let Some(file) = &arguments.chart {
-        std::fs::write(file, chart::svg(&report)).map_err(|e| Failure::input([format!("{}: {e}", file.display())]))?;
-    }
     console::print(&match format {
         Format::Text => text::text(&report),
         Format::Json => crate::json(&report),
     })?;
+    // What took minutes to measure is told even if the drawing cannot be written.
+    if let Some(file) = &arguments.chart {
+        std::fs::write(file, chart::svg(&report)).map_err(|e| Failure::input([format!("{}: {e}", file.display())]))?;
+    }
     match report.exceeded(arguments.bound, VARIANT_BOUND) {
         None => Ok(OK),
         Some(line) => Err(Failure::bound(line)),

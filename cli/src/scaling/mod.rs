@@ -61,14 +61,16 @@ pub(crate) fn run(arguments: &ScalingArguments, format: Format) -> Result<(), Fa
     }
     drop(progress);
     report.conclude(points);
-    if let Some(path) = &arguments.chart {
-        std::fs::write(path, plot::svg(&report)).map_err(|e| Failure::input([format!("{}: {e}", path.display())]))?;
-    }
     console::print(&match format {
         Format::Json => crate::json(&report),
         Format::Text if arguments.markdown => document::markdown(&report, arguments.chart.as_deref()),
         Format::Text => text::text(&report),
-    })
+    })?;
+    // What took minutes to measure is told even if the drawing cannot be written.
+    match &arguments.chart {
+        None => Ok(()),
+        Some(path) => std::fs::write(path, plot::svg(&report)).map_err(|e| Failure::input([format!("{}: {e}", path.display())])),
+    }
 }
 
 /// Every function on every length that its result allows.

@@ -99,6 +99,14 @@ fn a_result_that_is_zero_throughout_is_right() {
 }
 
 #[test]
+fn a_chart_that_cannot_be_written_does_not_cost_the_report() {
+    let words = ["compare", "simple_pendulum", "--functions", "gravity_torque", "--chart", "/no/such/folder/x.svg"];
+    let ended = run(&[&words[..], &SMALL[..]].concat());
+    assert!(ended.status == 1 && ended.err.contains("error: /no/such/folder/x.svg: "), "{}", ended.err);
+    assert!(ended.out.contains("gravity_torque"), "{}", ended.out);
+}
+
+#[test]
 fn a_bound_that_is_no_number_is_status_2() {
     for bound in ["nan", "inf", "-1"] {
         let ended = run(&["compare", "simple_pendulum", &format!("--bound={bound}")]);

@@ -25,6 +25,14 @@ fn chains_are_measured_and_drawn() {
 }
 
 #[test]
+fn a_chart_that_cannot_be_written_does_not_cost_the_report() {
+    let words = ["scaling", "--joints", "2", "--functions", "inverse_dynamics", "--repetitions", "5", "--chart", "/no/such/folder/x.svg"];
+    let ended = run(&words);
+    assert!(ended.status == 1 && ended.err.contains("error: /no/such/folder/x.svg: "), "{}", ended.err);
+    assert!(ended.out.contains("inverse_dynamics"), "{}", ended.out);
+}
+
+#[test]
 fn lengths_are_joints() {
     for words in [["scaling", "--joints", "0"], ["scaling", "--joints", "7,x"], ["scaling", "--functions", "inverse"]] {
         assert_eq!(run(&words).status, 2, "{words:?}");
