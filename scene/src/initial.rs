@@ -153,7 +153,22 @@ pub(crate) const BASE: &[Row<BaseState>] = &[
 pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Initial {
     let mut initial = Initial::default();
     spot.read(KEYS, &mut initial, log);
+    base_once(&initial.q, "q", &["xyz", "rpy", "quaternion"], spot, log);
+    base_once(&initial.v, "v", &["angular", "linear"], spot, log);
     initial
+}
+
+/// A list has the numbers of a floating base too, which `base` may not give beside it.
+fn base_once(coordinates: &Coordinates, key: &str, of_base: &[&str], initial: &Spot<'_>, log: &mut Log) {
+    let has_base = match coordinates {
+        Coordinates::Neutral => false,
+        Coordinates::All { .. } => true,
+        Coordinates::Named(named) => named.iter().any(|one| one.joint == FLOATING_BASE),
+    };
+    let (Some(spot), Some(base)) = (initial.get(key).filter(|_| has_base), initial.get("base")) else { return };
+    if let Some(there) = of_base.iter().find_map(|name| base.get(name)) {
+        spot.clash(log, format!("numbers of the base, and {}", there.key), "one of them");
+    }
 }
 
 pub(crate) fn values(spot: &Spot<'_>, log: &mut Log) -> Coordinates {

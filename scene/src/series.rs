@@ -1,5 +1,7 @@
 //! Tables over time: in a file of numbers between commas, or in the scene itself.
 
+use std::collections::HashSet;
+
 use articulated_core::model::Model;
 
 use crate::control::unreadable;
@@ -50,10 +52,19 @@ impl Series {
 /// More columns or rows no table has.
 const MOST: usize = 10_000_000;
 
+/// The first name that was there before.
+fn twice(names: &[String]) -> Option<&String> {
+    let mut seen = HashSet::new();
+    names.iter().find(|name| !seen.insert(name.as_str()))
+}
+
 impl Source {
     /// What can be told of rows in the scene without the robot.
     pub(crate) fn check(&self, key: &str, log: &mut Log) {
         let width = self.columns.len() + 1;
+        if let Some(name) = twice(&self.columns) {
+            log.error(self.place, &format!("{key}.columns"), Kind::Together, format!("the column {} twice", quote(name)), "each once");
+        }
         if self.rows.is_empty() {
             log.error(self.place, key, Kind::MissingKey, "columns without rows", "rows: the time and a number for each column");
         }
@@ -102,6 +113,9 @@ impl Source {
             return Err(format!("line 1: found {} as the first column, expected t", quote(&first)));
         }
         let mut source = Self { file: Some(file.to_owned()), columns: names.collect(), rows: Vec::new(), ..self.clone() };
+        if let Some(name) = twice(&source.columns) {
+            return Err(format!("line 1: found the column {} twice, expected each once", quote(name)));
+        }
         for (i, line) in lines.take(MOST) {
             let numbers = line.split(',').map(|word| word.trim().parse::<f64>().ok().filter(|x| x.is_finite()));
             let row: Option<Vec<f64>> = numbers.collect();
@@ -170,5 +184,12 @@ mod tests {
         };
         assert_eq!([-1.0, 0.0, 0.5, 1.0, 2.0, 3.0, 9.0].map(|t| at(false, t)), [1.0, 1.0, 2.0, 3.0, 1.0, -1.0, -1.0]);
         assert_eq!([-1.0, 0.5, 1.0, 2.9, 3.0, 9.0].map(|t| at(true, t)), [1.0, 1.0, 3.0, 3.0, -1.0, -1.0]);
+    }
+
+    #[test]
+    fn a_column_stands_once() {
+        let parsed = |text: &str| Source::default().parsed("t.csv", text).map(|source| source.columns);
+        assert_eq!(parsed("t,a,\"a\"\n0,1,2\n"), Err("line 1: found the column \"a\" twice, expected each once".into()));
+        assert_eq!(parsed("t,a,b\n0,1,2\n"), Ok(vec!["a".into(), "b".into()]));
     }
 }

@@ -285,6 +285,11 @@ fn check(x: &Simulation, spot: &Spot<'_>, log: &mut Log) {
         let (name, at) = (x.integrator.name(), key("integrator").map_or(spot.at, |s| s.at));
         log.error(at, &spot.key, Kind::MissingKey, format!("no step for {name:?}"), "step: the length of its steps, s");
     }
+    if x.step.is_some() {
+        for spot in ["min_step", "max_step", "first_step"].into_iter().filter_map(key) {
+            spot.clash(log, "a fixed step and what is for steps by tolerance", "no step, or no such key");
+        }
+    }
     if x.rtol == 0.0 && x.atol == 0.0 {
         spot.clash(log, "rtol and atol both 0", "one of them above 0");
     }

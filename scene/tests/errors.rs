@@ -118,6 +118,35 @@ fn a_simulation_that_cannot_be_is_told() {
 }
 
 #[test]
+fn what_would_be_passed_over_is_told() {
+    assert_eq!(
+        wrong("[simulation]\nend = 1\nstep = 0.1\nmax_step = 0.2\nmin_step = 1e-6\nfirst_step = 0.01"),
+        [("4", "max"), ("5", "min"), ("6", "first")].map(|(line, key)| format!(
+            "s.toml:{line}: simulation.{key}_step: found a fixed step and what is for steps by tolerance, expected no step, or no such key"
+        ))
+    );
+    assert!(Scene::read("s.toml", "[simulation]\nend = 1\nmax_step = 0.2\nmin_step = 1e-6\nfirst_step = 0.01").is_ok());
+    let cases = [
+        ("q = [0, 0, 1, 0, 0, 0, 1, 0.5]", "rpy = [0, 0, 2]", "initial.q: found numbers of the base, and initial.base.rpy"),
+        ("v = [0, 0, 0, 0, 0, 0, 1]", "linear = [0, 0, 2]", "initial.v: found numbers of the base, and initial.base.linear"),
+        (
+            "v = { __floating_base__ = [0, 0, 0, 0, 0, 1] }",
+            "linear = [0, 0, 2]",
+            "initial.v: found numbers of the base, and initial.base.linear",
+        ),
+    ];
+    for (numbers, base, said) in cases {
+        assert_eq!(one(&format!("[initial]\n{numbers}\n[initial.base]\n{base}")), format!("s.toml:2: {said}, expected one of them"));
+    }
+    assert!(Scene::read("s.toml", "[initial]\nq = [0, 0, 1, 0, 0, 0, 1]\nbase = { linear = [0, 0, 2] }").is_ok());
+    assert!(Scene::read("s.toml", "[initial]\nq = { elbow = 1 }\nbase = { xyz = [0, 0, 2] }").is_ok());
+    assert_eq!(
+        one("[control]\nkind = \"table\"\ncolumns = [\"a\", \"b\", \"a\"]\nrows = [[0, 1, 2, 3]]"),
+        "s.toml:1: control.columns: found the column \"a\" twice, expected each once"
+    );
+}
+
+#[test]
 fn what_is_not_toml_is_told() {
     assert_eq!(one("robot = \"a\"\nurdf = \"b\""), "s.toml:1: robot: found robot and urdf, expected one of them");
     assert!(one("a = ").starts_with("s.toml:1: found what is not TOML ("));
