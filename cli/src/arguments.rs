@@ -63,11 +63,13 @@ pub(crate) enum Command {
     /// Evaluates functions on a file of states, by generic and by generated code
     #[command(after_help = examples(&[
         "articulated eval simple_pendulum --function inverse_dynamics --states states.json",
-        "articulated eval arm.urdf --function gravity_torque,placements --states states.csv --generic --format json",
+        "articulated eval simple_pendulum --function gravity_torque,placements --states states.csv --generic --format json",
         "",
-        "states.json:  {\"states\": [{\"q\": [0.1], \"v\": {\"hinge\": 0.2}, \"a\": [0], \"wrenches\": {\"tip\": [0, 0, 0, 0, 0, -5]}}]}",
-        "states.csv:   q.hinge,v.hinge,a.hinge      (q.base[0],q.base[1],… where a joint has several numbers)",
+        "states.json:  {\"states\": [{\"q\": [0.1], \"v\": {\"swing\": 0.2}, \"a\": [0], \"wrenches\": {\"bob\": [0, 0, 0, 0, 0, -5]}}]}",
+        "states.csv:   q.swing,v.swing,a.swing",
         "              0.1,0.2,0",
+        "",
+        "Columns of a joint that has several numbers: q.base[0],q.base[1],…",
     ]))]
     Eval(EvalArguments),
     /// Measures generated code against generic code: operations, size, time, error

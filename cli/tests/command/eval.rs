@@ -65,6 +65,23 @@ fn mistakes_name_the_state_and_the_joint() {
     assert_eq!(run(&["eval", "simple_pendulum", "--function", "inverse_dynamics", "--states", "/no/such/file"]).status, 1);
 }
 
+#[test]
+fn the_examples_of_the_help_run_as_they_are_printed() {
+    let help = run(&["eval", "--help"]).out;
+    let lines: Vec<&str> = help.lines().map(str::trim).collect();
+    let at = |start: &str| lines.iter().position(|line| line.starts_with(start)).unwrap();
+    let after = |file: &str| lines[at(file)].split_once(':').unwrap().1.trim();
+    let json = after("states.json:").to_owned();
+    let csv = format!("{}\n{}\n", after("states.csv:"), lines[at("states.csv:") + 1]);
+    for (name, content) in [("states.json", json), ("states.csv", csv)] {
+        let file = File::new(name, content.as_bytes());
+        let example = lines.iter().find(|line| line.starts_with("articulated eval ") && line.contains(name)).unwrap();
+        let words: Vec<&str> = example.split(' ').skip(1).map(|word| if word == name { file.name() } else { word }).collect();
+        let ended = run(&words);
+        assert_eq!(ended.status, 0, "{example}: {}", ended.err);
+    }
+}
+
 /// A mass on the axis of its joint, which nothing resists.
 const ON_AXIS: &str = r#"<robot name="spinner"><link name="base"/><link name="mass"><inertial><mass value="1"/>
 <inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>
