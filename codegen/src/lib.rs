@@ -29,6 +29,7 @@ mod wanted;
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Function, Needs, functions};
+use articulated_core::description::Description;
 use articulated_core::model::Model;
 use articulated_urdf::{Problem, Reading, Unused};
 
@@ -130,6 +131,13 @@ fn wanted(request: &Request, model: &Model<f64>, massless: &[String]) -> Result<
         wanted.push(function);
     }
     Ok(wanted)
+}
+
+/// Whether there are the functions, parameters and frames that the request names; `whole`: the model with a frame for every link.
+pub fn check_names(request: &Request, description: &Description, whole: &Model<f64>) -> Result<(), Error> {
+    parameters::parse(&request.options.parameters, &mut description.clone(), whole)?;
+    let shape = choose_frames(request, whole.clone())?.shape();
+    request.options.functions.iter().try_for_each(|text| Wanted::parse(text)?.check(shape))
 }
 
 /// The names of the joints that have no inertia of their own.

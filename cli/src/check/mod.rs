@@ -48,7 +48,11 @@ fn examine(robot: &Robot, functions: &[String]) -> Report {
 
 fn describe(robot: &Robot, reading: &Reading, report: &mut Report) {
     match robot.whole_model(reading) {
-        Ok(model) => report.describe(&reading.description, &model),
+        Ok(model) => {
+            report.describe(&reading.description, &model);
+            let named = articulated_codegen::check_names(&robot.request(&robot.options.functions), &reading.description, &model);
+            report.errors.extend(named.err().into_iter().flat_map(|e| Failure::from(e).lines).map(Diagnostic::plain));
+        }
         Err(failure) => report.errors.extend(failure.lines.into_iter().map(Diagnostic::plain)),
     }
 }

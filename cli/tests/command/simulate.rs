@@ -123,6 +123,30 @@ fn all_that_is_wrong_with_a_scene_is_said_with_its_line_and_what_would_be_right(
 }
 
 #[test]
+fn names_that_only_generated_code_needs_are_checked_too() {
+    let scene = |line: &str| File::new("named.toml", format!("robot = \"cart_pole\"\n{line}\n[simulation]\nend = 0.01\n").as_bytes());
+    let cases = [
+        ("functions = [\"inverse_dynamic\"]", "unknown function `inverse_dynamic`, did you mean `inverse_dynamics`?"),
+        ("functions = [\"x = mass_matrix(v = 0)\"]", "functions: `"),
+        ("parameters = [\"payload(pole_rd)\"]", "parameters: `payload(pole_rd)`: there is no link \"pole_rd\", did you mean \"pole_rod\"?"),
+        ("frames = [\"pole_rd\"]", "pole_rd"),
+    ];
+    for (line, said) in cases {
+        let file = scene(line);
+        let generated = run(&["generate", file.name()]);
+        for command in ["simulate", "effects"] {
+            let ended = run(&[command, file.name()]);
+            assert_eq!((ended.status, ended.err.as_str()), (generated.status, generated.err.as_str()), "{command} {line}");
+            assert!(ended.status > 0 && ended.err.contains(said), "{}", ended.err);
+        }
+        let checked = run(&["check", file.name()]);
+        assert!(checked.status == 1 && checked.lines_with(said) == 1, "{}{}", checked.out, checked.err);
+    }
+    let right = scene("functions = [\"inverse_dynamics\"]\nparameters = [\"payload(pole_rod)\"]\nframes = [\"pole_rod\"]");
+    assert_eq!(run(&["simulate", right.name()]).status, 0);
+}
+
+#[test]
 fn what_cannot_be_found_or_run_is_said() {
     let ended = run(&["simulate", "quadruped_drp"]);
     assert!(ended.status == 1 && ended.err.contains("did you mean \"quadruped_drop\"?"), "{}", ended.err);
