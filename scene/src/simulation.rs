@@ -194,7 +194,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         required: false,
         value: "number, s",
         default: "what the clock can tell",
-        what: "no step is shorter",
+        what: "no step by tolerance is shorter",
         read: |x, s, log| set(&mut x.min_step, s.not_negative(log)),
     },
     Row {
@@ -202,7 +202,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         required: false,
         value: "number, s",
         default: "no bound",
-        what: "no step is longer",
+        what: "no step by tolerance is longer",
         read: |x, s, log| set(&mut x.max_step, s.positive(log)),
     },
     Row {
@@ -210,7 +210,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         required: false,
         value: "number, s",
         default: "chosen",
-        what: "the first step, where steps are chosen",
+        what: "the first step, by tolerance",
         read: |x, s, log| x.first_step = s.positive(log),
     },
     Row {
