@@ -213,7 +213,7 @@ pub trait JointLaw<S: Scalar>: Copy {
     /// I·S_k: the wrench, in the child's frame, that gives a body of this inertia at rest the unit acceleration in the joint's own degree of freedom k.
     fn column(&self, inertia: &SpatialInertia<S>, k: usize) -> Wrench<S>;
 
-    /// S_kᵀ F: the joint's own torque k for the wrench F on the child, in the child's frame.
+    /// S_kᵀ F: the joint's own torque k, N·m or N, for the wrench F on the child, in the child's frame.
     fn torque(&self, wrench: &Wrench<S>, k: usize) -> S;
 }
 
