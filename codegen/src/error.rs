@@ -60,7 +60,7 @@ pub enum Error {
         joints: Vec<String>,
     },
     /// A robot so large that its code would be of no use.
-    #[error("{file}: found {found} degrees of freedom, expected at most {most} to write code for; `articulated::load` takes any")]
+    #[error("{file}: found {found} degrees of freedom, expected at most {most} to write code for")]
     TooLarge {
         /// The file.
         file: String,

@@ -162,7 +162,7 @@ impl<S: Scalar> Coordinates<S> {
         self.mimic.as_ref().map(|f| f.multiplier)
     }
 
-    /// What the joint's own torque is for the coordinate it moves with: power is the same, so τ_leader = multiplier · τ.
+    /// What the joint's own torque, N·m or N, is for the coordinate it moves with: power is the same, so τ_leader = multiplier · τ.
     #[inline(always)]
     pub fn handed_on(&self, torque: S) -> S {
         self.rate_of_one().map_or(torque, |multiplier| torque * multiplier)
