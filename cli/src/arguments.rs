@@ -278,7 +278,7 @@ pub(crate) struct FunctionsArguments {
     #[arg(long)]
     pub(crate) floating: bool,
     /// As tables in Markdown, with a head and the meaning of each function
-    #[arg(long)]
+    #[arg(long, conflicts_with = "format")]
     pub(crate) markdown: bool,
 }
 
@@ -297,7 +297,7 @@ pub(crate) struct ScalingArguments {
     #[arg(long, value_name = "FILE")]
     pub(crate) chart: Option<PathBuf>,
     /// As a document in Markdown
-    #[arg(long)]
+    #[arg(long, conflicts_with = "format")]
     pub(crate) markdown: bool,
     /// How often each is timed
     #[arg(long, value_name = "N", default_value_t = 31, value_parser = clap::value_parser!(u32).range(5..=100_000))]

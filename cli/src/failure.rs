@@ -1,5 +1,8 @@
 //! Why a command ended without doing what was asked, and the status it ends with.
 
+use articulated_scene::SceneErrors;
+use serde::Serialize;
+
 /// Everything went well.
 pub const OK: u8 = 0;
 /// The input was found wrong or unusable.
@@ -21,9 +24,10 @@ Exit status:
   4  a comparison exceeded its bound";
 
 /// A status and what to say, a line for each thing that is wrong.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub(crate) struct Failure {
     pub(crate) status: u8,
+    #[serde(rename = "errors")]
     pub(crate) lines: Vec<String>,
 }
 
@@ -43,18 +47,43 @@ impl Failure {
         Self { status: TOOL, lines: vec![error.to_string()] }
     }
 
+    /// All of them, with the gravest status: wrong input comes before a wrong command line, and both before a tool that fails.
+    pub(crate) fn of(failures: impl IntoIterator<Item = Self>) -> Self {
+        let mut all = Self { status: BOUND, lines: Vec::new() };
+        for failure in failures {
+            all.status = all.status.min(failure.status);
+            all.lines.extend(failure.lines);
+        }
+        all
+    }
+
+    /// Both values, or what is wrong with either.
+    pub(crate) fn both<A, B>(a: Result<A, Self>, b: Result<B, Self>) -> Result<(A, B), Self> {
+        match (a, b) {
+            (Ok(a), Ok(b)) => Ok((a, b)),
+            (a, b) => Err(Self::of(a.err().into_iter().chain(b.err()))),
+        }
+    }
+
     /// A comparison exceeded its bound.
     pub(crate) fn bound(line: String) -> Self {
         Self { status: BOUND, lines: vec![line] }
     }
 }
 
+impl From<SceneErrors> for Failure {
+    fn from(all: SceneErrors) -> Self {
+        Self::input(all.errors.iter().map(ToString::to_string))
+    }
+}
+
 impl From<articulated_codegen::Error> for Failure {
     fn from(error: articulated_codegen::Error) -> Self {
         match error {
+            articulated_codegen::Error::Several { errors } => Self::of(errors.into_iter().map(Self::from)),
             articulated_codegen::Error::Urdf(problems) => Self::input(problems.errors.iter().map(ToString::to_string)),
             articulated_codegen::Error::Edits { refusals } => Self::input(refusals.iter().flat_map(|r| lines(&r.to_string()))),
-            articulated_codegen::Error::Scene(errors) => Self::input(errors.errors.iter().map(ToString::to_string)),
+            articulated_codegen::Error::Scene(errors) => errors.into(),
             articulated_codegen::Error::UnknownFunction { .. } => Self::usage(error.to_string()),
             other => Self::input([other.to_string()]),
         }

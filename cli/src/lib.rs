@@ -35,7 +35,7 @@ use std::ffi::OsString;
 
 use clap::Parser;
 
-use arguments::{Arguments, Command};
+use arguments::{Arguments, Command, Format};
 use failure::{Failure, OK, USAGE};
 
 /// Runs the command with these words, the program's own name first. The exit status: see [`failure`].
@@ -51,6 +51,10 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Ok(status) => status,
         Err(failure) => {
             failure.lines.iter().for_each(|line| console::error(line));
+            if arguments.format == Format::Json {
+                // A reader that has gone away has nothing to be told.
+                let _ = console::print(&json(&failure));
+            }
             failure.status
         }
     }

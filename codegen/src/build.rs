@@ -242,8 +242,7 @@ impl Build {
             request.options.append.push(Appended { urdf: read(path)?, ..other.clone() });
         }
         if let Some(scene) = scene {
-            let resolved = scene::resolve(&request, scene).map_err(|error| scene::placed(error, scene))?;
-            request.options.effects.splice(..0, resolved.effects);
+            scene::settle(&mut request, scene).map_err(|error| scene::placed(error, scene))?;
         }
         Ok(request)
     }

@@ -135,6 +135,12 @@ pub enum Error {
         /// The frames, each with how many carry it.
         frames: Vec<String>,
     },
+    /// Several of these.
+    #[error("{}", errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    Several {
+        /// Two at least, none of them several again.
+        errors: Vec<Error>,
+    },
     /// A file that could not be read or written.
     #[error("{file}: {reason}")]
     File {
@@ -143,6 +149,22 @@ pub enum Error {
         /// What the system said.
         reason: String,
     },
+}
+
+impl Error {
+    /// All of them as one; `None` of none.
+    pub(crate) fn of(errors: Vec<Error>) -> Option<Self> {
+        let mut errors: Vec<Error> = errors.into_iter().flat_map(Error::into_each).collect();
+        if errors.len() > 1 { Some(Self::Several { errors }) } else { errors.pop() }
+    }
+
+    /// Each of several errors; one that is by itself.
+    pub fn into_each(self) -> Vec<Error> {
+        match self {
+            Self::Several { errors } => errors,
+            one => vec![one],
+        }
+    }
 }
 
 /// The known name most like `found`, if one is like it at all.

@@ -14,6 +14,7 @@ mod checked;
 mod edit;
 mod emit;
 mod error;
+mod faults;
 pub mod graph;
 mod groups;
 pub mod ledger;
@@ -45,6 +46,7 @@ pub use checked::checked_cost;
 pub use edit::{Edit, Reason, Refusal, choose_frames, model, read};
 pub use emit::identifier;
 pub use error::{Error, nearest};
+pub use faults::names;
 pub use ledger::Ledger;
 pub use parameters::Parameter;
 pub use request::{Appended, Options, Request};
@@ -83,24 +85,40 @@ impl Generated {
 /// Degrees of freedom from which on no code is written: a workspace has room for a matrix of their number squared.
 const MOST_FREEDOMS: usize = 10_000;
 
-/// Generates the code that `request` asks for. Pure: nothing is read or written.
-pub fn generate(request: &Request) -> Result<Generated, Error> {
+/// What can be refused of a request, settled.
+struct Plan {
+    reading: Reading,
+    model: Model<f64>,
+    parameters: Vec<Parameter>,
+    wanted: Vec<Wanted>,
+    names: emit::Names,
+}
+
+/// Everything that comes before programs are made.
+fn plan(request: &Request) -> Result<Plan, Error> {
     let options = &request.options;
-    let Reading { mut description, warnings, unused, snapped } = read(request)?;
-    let whole = model(request, &description)?;
+    let mut reading = read(request)?;
+    let whole = model(request, &reading.description)?;
     if whole.nv > MOST_FREEDOMS {
         return Err(Error::TooLarge { file: request.file.clone(), found: whole.nv, most: MOST_FREEDOMS });
     }
     // Mass that stays an input is mass all the same.
     let massless = massless(&whole);
-    let parameters = parameters::parse(&options.parameters, &mut description, &whole)?;
-    let model = choose_frames(request, if parameters.is_empty() { whole } else { model(request, &description)? })?;
+    let parameters = parameters::parse(&options.parameters, &mut reading.description, &whole)?;
+    let model = choose_frames(request, if parameters.is_empty() { whole } else { model(request, &reading.description)? })?;
     let wanted = wanted(request, &model, &massless)?;
     let names = emit::Names::new(&model, request)?;
+    Ok(Plan { reading, model, parameters, wanted, names })
+}
+
+/// Generates the code that `request` asks for. Pure: nothing is read or written. Errors: everything that is wrong with the document, or else with the request.
+pub fn generate(request: &Request) -> Result<Generated, Error> {
+    let Plan { reading, model, parameters, wanted, names } = faults::all(request, plan)?;
+    let Reading { warnings, unused, snapped, .. } = reading;
     let mut ledger = Ledger::default();
     let mut programs = Vec::new();
     for function in wanted {
-        let program = program::program(function, &model, &parameters, options);
+        let program = program::program(function, &model, &parameters, &request.options);
         ledger.functions.push(program.entry.clone());
         programs.push(program);
     }
@@ -133,11 +151,19 @@ fn wanted(request: &Request, model: &Model<f64>, massless: &[String]) -> Result<
     Ok(wanted)
 }
 
-/// Whether there are the functions, parameters and frames that the request names; `whole`: the model with a frame for every link.
+/// Whether there are the functions, parameters and frames that the request names; `whole`: the model with a frame for every link. Errors: all that are not there.
 pub fn check_names(request: &Request, description: &Description, whole: &Model<f64>) -> Result<(), Error> {
-    parameters::parse(&request.options.parameters, &mut description.clone(), whole)?;
-    let shape = choose_frames(request, whole.clone())?.shape();
-    request.options.functions.iter().try_for_each(|text| Wanted::parse(text)?.check(shape))
+    let names = |request: &Request| {
+        parameters::parse(&request.options.parameters, &mut description.clone(), whole)?;
+        let shape = choose_frames(request, whole.clone())?.shape();
+        request.options.functions.iter().try_for_each(|text| Wanted::parse(text)?.check(shape))
+    };
+    faults::all(request, names)
+}
+
+/// Whether all joints and links have names of their own in Rust. Errors: all names of which two are the same, and renamings that cannot be.
+pub fn check_identifiers(request: &Request, model: &Model<f64>) -> Result<(), Error> {
+    faults::all(request, |request| emit::Names::new(model, request).map(drop))
 }
 
 /// The names of the joints that have no inertia of their own.

@@ -8,9 +8,10 @@ use articulated_scene::{At, Edited, Kind, Resolved, Robot, SceneError, SceneErro
 
 pub use articulated_scene::{self, Scene};
 
-use crate::edit::{model, read_with_shafts};
+use crate::edit::{model, read, read_with_shafts};
+use crate::faults::{Tried, tried};
 use crate::request::Appended;
-use crate::{Edit, Error, Options, Reason, Refusal, Request};
+use crate::{Edit, Error, Options, Reason, Refusal, Request, check_names, plan};
 
 /// A scene and the request that it amounts to.
 #[derive(Clone, Debug)]
@@ -65,14 +66,53 @@ pub fn open_in(mut scene: Scene, folder: &Path, bundled: Bundled<'_>) -> Result<
 }
 
 /// The request of a scene for the robot in `urdf`; `append` are the documents that it appends. Nothing is opened. `base` is taken where the scene does not say.
+/// Errors: everything that is wrong with the document, or else everything of the scene that does not fit the robot, tables of control in files apart.
 pub fn prepare(scene: Scene, file: &str, urdf: Vec<u8>, base: Base, append: Vec<Vec<u8>>) -> Result<Prepared, Error> {
     let mut request = Request::new(file, urdf);
     request.options.base = base;
     fill(&mut request.options, &scene);
     request.options.append.iter_mut().zip(append).for_each(|(other, urdf)| other.urdf = urdf);
-    let resolved = resolve(&request, &scene).map_err(|error| placed(error, &scene))?;
+    let named = |request: &Request| {
+        let description = read(request)?.description;
+        let model = model(request, &description)?;
+        check_names(request, &description, &model)?;
+        Ok(model)
+    };
+    let Tried { value, mut errors, rest } = tried(&request, named);
+    let resolved = effects(&rest, &scene, &mut errors);
+    if let Some(model) = value {
+        errors.extend(scene.fits(&model).err().map(Error::from));
+    }
+    if let Some(error) = Error::of(errors) {
+        return Err(placed(error, &scene));
+    }
     request.options.effects.clone_from(&resolved.effects);
     Ok(Prepared { scene, request, resolved, files: Vec::new() })
+}
+
+/// Puts the scene's effects before those of the request. Errors: everything that is wrong with the document, or else with the request and the effects; what is wrong
+/// with effects by their places in the scene.
+pub fn settle(request: &mut Request, scene: &Scene) -> Result<Resolved, Error> {
+    let Tried { mut errors, rest, .. } = tried(request, |request| plan(request).map(drop));
+    let resolved = effects(&rest, scene, &mut errors);
+    if let Some(error) = Error::of(errors) {
+        return Err(error);
+    }
+    request.options.effects.splice(..0, resolved.effects.iter().cloned());
+    Ok(resolved)
+}
+
+/// The scene's effects on what of the request was not refused; none, and an error at least, where there are none to be had.
+fn effects(rest: &Request, scene: &Scene, errors: &mut Vec<Error>) -> Resolved {
+    // Springs go with the shafts of the scene one by one.
+    if rest.options.shafts.len() != scene.shafts.len() {
+        return Resolved::default();
+    }
+    resolve(rest, scene).unwrap_or_else(|error| {
+        // All that the robot itself is refused for was told already.
+        errors.extend(Some(error).filter(|error| errors.is_empty() || matches!(error, Error::Scene(_))));
+        Resolved::default()
+    })
 }
 
 /// Writes what the scene says into the options: all but the effects, which need the robot, and the documents of the robots to append.
@@ -116,11 +156,46 @@ pub fn resolve(request: &Request, scene: &Scene) -> Result<Resolved, Error> {
     }
 }
 
-/// Edits that were refused, by their places in the scene; other errors as they are.
+/// What the scene asks for and was refused, by its places in the scene; other errors as they are, after it.
 pub fn placed(error: Error, scene: &Scene) -> Error {
-    let Error::Edits { refusals } = &error else { return error };
-    let placed: Option<Vec<SceneError>> = refusals.iter().map(|refusal| place(refusal, scene)).collect();
-    placed.map_or(error, |errors| SceneErrors { errors }.into())
+    let (mut in_scene, mut others) = (Vec::new(), Vec::new());
+    for error in error.into_each() {
+        match error {
+            Error::Scene(SceneErrors { errors }) => in_scene.extend(errors),
+            error => match in_its_place(&error, scene) {
+                Some(placed) => in_scene.extend(placed),
+                None => others.push(error),
+            },
+        }
+    }
+    in_scene.sort_by_key(|error| error.at);
+    let in_scene = Some(SceneErrors { errors: in_scene }).filter(|all| !all.errors.is_empty());
+    others.splice(..0, in_scene.map(Error::from));
+    Error::of(others).expect("as many errors as there were")
+}
+
+/// `None`: it is not the scene's.
+fn in_its_place(error: &Error, scene: &Scene) -> Option<Vec<SceneError>> {
+    let named = |key: &str| {
+        let (key, found) = (key.to_owned(), error.to_string());
+        vec![SceneError {
+            file: scene.file.clone(),
+            at: At::Nowhere,
+            key,
+            kind: Kind::Refused,
+            found,
+            expected: String::new(),
+            nearest: None,
+        }]
+    };
+    match error {
+        Error::Edits { refusals } => refusals.iter().map(|refusal| place(refusal, scene)).collect(),
+        Error::UnknownFunction { .. } => scene.code.functions.as_ref().map(|_| named("functions")),
+        // They begin with their key.
+        Error::Wanted { .. } | Error::SameName { .. } => scene.code.functions.as_ref().map(|_| named("")),
+        Error::Parameter { .. } => scene.code.parameters.as_ref().map(|_| named("")),
+        _ => None,
+    }
 }
 
 /// `None`: it is not the scene's.
@@ -268,6 +343,52 @@ mod tests {
             report.to_string().contains("damping on joint \"shoulder\": damping 0.3 N·m·s/rad|N·s/m (URDF: dynamics damping)"),
             "{report}"
         );
+    }
+
+    #[test]
+    fn everything_that_does_not_fit_the_robot_is_told_at_once() {
+        let scene = "functions = ['no_such', 'mass_matrix', 'x = inverse_dynamics(b = 0)']
+            parameters = ['payload(nowhere)']
+            lock = { elbo = 1 }
+            [effects]
+            damping = { shouder = 1 }
+            limit = { shoulder = { lower = 0, upper = 1, stiffness = 1 }, elbw = 'off' }
+            [initial]
+            q = { elbow = [1, 2], wrist = 0 }
+            base = {}
+            [control]
+            kind = 'pd'
+            kp = { sholder = 1 }
+            kd = [1, 2, 3]";
+        let scene = Scene::read("s.toml", scene).unwrap();
+        let error = prepare(scene.clone(), "arm.urdf", ARM.into(), Base::Fixed, Vec::new()).unwrap_err();
+        let told = error.to_string();
+        let keys = [
+            "lock.elbo",
+            "no_such",
+            "inverse_dynamics(b = 0)",
+            "nowhere",
+            "damping.shouder",
+            "limit.elbw",
+            "q.elbow",
+            "q.wrist",
+            "initial.base",
+            "kp.sholder",
+            "kd",
+        ];
+        assert!(keys.iter().all(|key| told.lines().any(|line| line.contains(key))), "{told}");
+        assert_eq!(told.lines().count(), keys.len(), "{told}");
+        // Those of the file with their lines, in its order.
+        let lines: Vec<usize> = told.lines().filter_map(|l| l.strip_prefix("s.toml:")?.split(':').next()?.parse().ok()).collect();
+        assert!(lines.is_sorted() && lines.len() > 7, "{told}");
+        // The same of a request and its scene for those who generate, start and control apart.
+        let mut request = prepared("").request;
+        fill(&mut request.options, &scene);
+        let told = settle(&mut request, &scene).unwrap_err().to_string();
+        assert!(["elbo", "no_such", "b = 0", "nowhere", "shouder", "elbw"].iter().all(|key| told.contains(key)), "{told}");
+        // A robot that cannot be read comes first, and alone.
+        let told = prepare(scene, "arm.urdf", ARM.replace("parent link=\"base\"", "parent link=\"bse\"").into(), Base::Fixed, Vec::new());
+        assert!(matches!(told, Err(Error::Urdf(_))), "{told:?}");
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
-use articulated_codegen::scene::articulated_scene::{Resolved, Robot, Scene, SceneErrors};
+use articulated_codegen::scene::articulated_scene::{Robot, Scene, SceneErrors};
 use articulated_codegen::{Options, Request, scene};
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
@@ -15,9 +15,6 @@ use crate::errors::Errors;
 use crate::invocation::Invocation;
 use crate::place;
 use crate::settings::Settings;
-
-/// So many errors of the generator are looked for; the mistakes in a URDF count as one.
-const MOST_ERRORS: usize = 100;
 
 /// The module, or one with as much as could be made and the errors.
 pub(crate) fn expand(input: TokenStream) -> TokenStream {
@@ -113,32 +110,17 @@ fn robot(settings: &Settings, scene: Option<&Scene>, seen_from: &str, errors: &m
     None
 }
 
-/// The generated source. What is wrong is reported and left out, and the rest tried again: so every error shows, and only those.
+/// The generated source, or nothing and every error.
 fn source(asked: Asked, settings: &Settings, errors: &mut Errors) -> TokenStream {
     let Asked { mut request, scene, robot } = asked;
-    let mut effects_told = false;
-    for _ in 0..MOST_ERRORS {
-        let effects = if scene.has_effects() { scene::resolve(&request, &scene) } else { Ok(Resolved::default()) };
-        match effects {
-            Ok(resolved) => request.options.effects = resolved.effects,
-            // Once is enough: what else is wrong leaves them as they are.
-            Err(error @ articulated_codegen::Error::Scene(_)) if !effects_told => {
-                errors.push(place::at_its_word(&error, settings, robot));
-                effects_told = true;
-            }
-            // The generator says the same of it.
-            Err(_) => {}
-        }
-        let error = match articulated_codegen::generate(&request) {
-            Ok(generated) => return generated.tokens(),
-            Err(error) => error,
-        };
-        errors.push(place::at_its_word(&error, settings, robot));
-        if !place::leave_out(&error, &mut request.options) {
-            break;
+    let effects = if scene.has_effects() { scene::settle(&mut request, &scene).map(drop) } else { Ok(()) };
+    match effects.and_then(|()| articulated_codegen::generate(&request)) {
+        Ok(generated) => generated.tokens(),
+        Err(error) => {
+            errors.push(place::at_its_word(&error, settings, robot));
+            TokenStream::new()
         }
     }
-    TokenStream::new()
 }
 
 /// Files that were read.

@@ -2,7 +2,7 @@
 
 use articulated_codegen::core::description::EditError;
 use articulated_codegen::scene::articulated_scene::SceneError;
-use articulated_codegen::{Edit, Error, Options, Reason, Refusal};
+use articulated_codegen::{Edit, Error, Reason, Refusal, names};
 use proc_macro2::Span;
 use syn::LitStr;
 
@@ -13,6 +13,7 @@ use crate::settings::Settings;
 pub(crate) fn at_its_word(error: &Error, settings: &Settings, robot: Span) -> syn::Error {
     let renamed = |name: &String| settings.rename.iter().find(|r| r.from.value() == *name);
     let span = match error {
+        Error::Several { errors } => return all(errors.iter().map(|error| at_its_word(error, settings, robot)), error, robot),
         Error::Scene(errors) => return all(errors.errors.iter().map(|error| in_scene(error, settings, robot)), errors, robot),
         Error::Urdf(problems) => return each(problems, robot),
         Error::Edits { refusals } => return all(refusals.iter().map(|refusal| refused(refusal, settings, robot)), error, robot),
@@ -28,11 +29,6 @@ pub(crate) fn at_its_word(error: &Error, settings: &Settings, robot: Span) -> sy
         _ => None,
     };
     syn::Error::new(span.unwrap_or(robot), error)
-}
-
-/// Whether an entry is the function, or has it in it.
-fn names(entry: &str, function: &str) -> bool {
-    entry.trim() == function || entry.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == function)
 }
 
 /// A mistake in the scene, at the scene; one in `effects`, at its word.
@@ -72,48 +68,4 @@ fn refused(refusal: &Refusal, settings: &Settings, robot: Span) -> syn::Error {
         Reason::Urdf(problems) => each(problems, span),
         _ => syn::Error::new(span, refusal),
     }
-}
-
-/// Takes out of the options what `error` is about, or names it otherwise; whether there was such a thing.
-pub(crate) fn leave_out(error: &Error, options: &mut Options) -> bool {
-    let before = options.clone();
-    match error {
-        Error::UnknownFunction { found: function, .. }
-        | Error::Singular { function, .. }
-        | Error::BoundFrames { function, .. }
-        | Error::NoMass { function, .. }
-        | Error::Wanted { found: function, .. }
-        | Error::SameName { name: function } => {
-            if let Some(at) = options.functions.iter().rposition(|f| names(f, function)) {
-                options.functions.remove(at);
-            }
-        }
-        Error::Parameter { found, .. } => options.parameters.retain(|p| p.trim() != found),
-        Error::Rename { from, to, .. } => options.rename.retain(|(f, t)| (f, t) != (from, to)),
-        Error::NameClash { second, ident, .. } => {
-            let count = options.rename.len();
-            options.rename.retain(|(from, _)| from != second);
-            options.rename.push((second.clone(), format!("{ident}__{count}")));
-        }
-        Error::Edits { refusals } => leave_out_edits(refusals, options),
-        _ => {}
-    }
-    *options != before
-}
-
-/// All those that were refused. Without a robot that was to be appended there is no going on: others may name what it has.
-fn leave_out_edits(refusals: &[Refusal], options: &mut Options) {
-    let refused = |edit: Edit| refusals.iter().any(|refusal| refusal.edit == edit);
-    if refusals.iter().any(|refusal| matches!(refusal.edit, Edit::Append(_))) {
-        return;
-    }
-    retain(&mut options.payloads, |i| !refused(Edit::Payload(i)));
-    retain(&mut options.shafts, |i| !refused(Edit::Shaft(i)));
-    retain(&mut options.lock, |i| !refused(Edit::Lock(i)));
-    options.frames.iter_mut().for_each(|frames| retain(frames, |i| !refused(Edit::Frame(i))));
-}
-
-fn retain<T>(list: &mut Vec<T>, keep: impl Fn(usize) -> bool) {
-    let mut index = 0..;
-    list.retain(|_| index.next().is_some_and(&keep));
 }

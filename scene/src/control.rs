@@ -6,7 +6,7 @@ use crate::error::{Kind, SceneErrors, quote};
 use crate::initial::{Coordinates, Named, Side, counted, fill, neutral, no_joint, values};
 use crate::log::Log;
 use crate::scene::Scene;
-use crate::series::{Series, Source};
+use crate::series::{Reader, Series, Source};
 use crate::simulation::set;
 use crate::table::{Row, Spot};
 use crate::tree::{At, Value};
@@ -299,32 +299,45 @@ fn per_joint(spot: &Spot<'_>, least: f64, log: &mut Log) -> PerJoint {
 
 impl Scene {
     /// The control with names looked up and files read by `read`, which gets their names as the scene has them. Errors: all that do not fit the robot.
-    pub fn controller(&self, model: &Model<f64>, read: &mut dyn FnMut(&str) -> Result<String, String>) -> Result<Controller, SceneErrors> {
+    pub fn controller(&self, model: &Model<f64>, read: &mut Reader<'_>) -> Result<Controller, SceneErrors> {
         let mut log = Log::new(&self.file);
+        let controller = self.controlled(model, Some(read), &mut log);
+        log.result(controller)
+    }
+
+    /// Without `read` files are left alone.
+    fn controlled(&self, model: &Model<f64>, read: Option<&mut Reader<'_>>, log: &mut Log) -> Controller {
         let vector = |from: &PerJoint, key: &str, log: &mut Log| self.vector(from, key, model, log);
-        let controller = match &self.control.drive {
+        match &self.control.drive {
             Drive::None => Controller::None,
-            Drive::Torque(torque) => Controller::Torque(vector(torque, "control.torque", &mut log)),
-            Drive::Table(source) => Controller::Table(source.series(model, Side::V, read, &mut log)),
+            Drive::Torque(torque) => Controller::Torque(vector(torque, "control.torque", log)),
+            Drive::Table(source) => Controller::Table(source.series(model, Side::V, read, log)),
             Drive::Pd { target, kp, kd, torque } => Controller::Pd {
-                kp: vector(kp, "control.kp", &mut log),
-                kd: vector(kd, "control.kd", &mut log),
-                torque: vector(torque, "control.torque", &mut log),
+                kp: vector(kp, "control.kp", log),
+                kd: vector(kd, "control.kd", log),
+                torque: vector(torque, "control.torque", log),
                 target: match target {
                     Target::Still(target) => {
                         let mut q = neutral(model);
-                        fill(target, "control.target", model, Side::Q, &mut q, &mut log);
+                        fill(target, "control.target", model, Side::Q, &mut q, log);
                         Aim::Still(q)
                     }
-                    Target::Moving(source) => Aim::Moving(source.series(model, Side::Q, read, &mut log)),
+                    Target::Moving(source) => Aim::Moving(source.series(model, Side::Q, read, log)),
                 },
             },
-        };
-        log.result(controller)
+        }
     }
 }
 
 impl Scene {
+    /// Whether start and control fit the robot, as far as it can be told without opening a file. Errors: all that do not.
+    pub fn fits(&self, model: &Model<f64>) -> Result<(), SceneErrors> {
+        let mut log = Log::new(&self.file);
+        self.started(model, &mut log);
+        self.controlled(model, None, &mut log);
+        log.result(())
+    }
+
     /// `[nv]`. A single number for a joint of several degrees of freedom is for all of them.
     fn vector(&self, from: &PerJoint, key: &str, model: &Model<f64>, log: &mut Log) -> Vec<f64> {
         let mut all = vec![0.0; model.nv];

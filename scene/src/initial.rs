@@ -209,13 +209,18 @@ impl Scene {
     /// The state at the start: q `[nq]`, v `[nv]`. Errors: joints that there are not, wrong numbers of coordinates, a base that does not float; all of them.
     pub fn start(&self, model: &Model<f64>) -> Result<(Vec<f64>, Vec<f64>), SceneErrors> {
         let mut log = Log::new(&self.file);
+        let state = self.started(model, &mut log);
+        log.result(state)
+    }
+
+    pub(crate) fn started(&self, model: &Model<f64>, log: &mut Log) -> (Vec<f64>, Vec<f64>) {
         let mut q = neutral(model);
         let mut v = vec![0.0; model.nv];
-        self.place_base(model, (&mut q, &mut v), &mut log);
-        fill(&self.initial.q, "initial.q", model, Side::Q, &mut q, &mut log);
-        fill(&self.initial.v, "initial.v", model, Side::V, &mut v, &mut log);
-        normalise(model, &mut q, &self.initial.q, &mut log);
-        log.result((q, v))
+        self.place_base(model, (&mut q, &mut v), log);
+        fill(&self.initial.q, "initial.q", model, Side::Q, &mut q, log);
+        fill(&self.initial.v, "initial.v", model, Side::V, &mut v, log);
+        normalise(model, &mut q, &self.initial.q, log);
+        (q, v)
     }
 
     fn place_base(&self, model: &Model<f64>, (q, v): (&mut [f64], &mut [f64]), log: &mut Log) {

@@ -40,7 +40,7 @@ pub use impact::{Impact, When};
 pub use initial::{BaseState, Coordinates, Initial, Named};
 pub use report::{EffectOff, EffectOn, Number, Report, Why};
 pub use scene::{Code, Robot, Scene};
-pub use series::{Series, Source};
+pub use series::{Reader, Series, Source};
 pub use shaft::ShaftAsked;
 pub use simulation::{Integrator, Output, Simulation, Stiffness, Watched};
 pub use tree::{At, Entry, Node, Value};

@@ -49,6 +49,9 @@ impl Series {
     }
 }
 
+/// Gives the text of a file by its name in the scene, or says why not.
+pub type Reader<'a> = dyn FnMut(&str) -> Result<String, String> + 'a;
+
 /// More columns or rows no table has.
 const MOST: usize = 10_000_000;
 
@@ -79,15 +82,10 @@ impl Source {
         }
     }
 
-    /// The table for a robot; columns that are not there are neutral.
-    pub(crate) fn series(
-        &self,
-        model: &Model<f64>,
-        side: Side,
-        read: &mut dyn FnMut(&str) -> Result<String, String>,
-        log: &mut Log,
-    ) -> Series {
+    /// The table for a robot; columns that are not there are neutral. Without `read` a file is left alone.
+    pub(crate) fn series(&self, model: &Model<f64>, side: Side, read: Option<&mut Reader<'_>>, log: &mut Log) -> Series {
         let Some(file) = &self.file else { return self.placed(model, side, "control.columns", log) };
+        let Some(read) = read else { return Series::default() };
         match read(file).and_then(|text| self.parsed(file, &text)) {
             Ok(source) => source.placed(model, side, "control.file", log),
             Err(reason) => {
@@ -105,6 +103,7 @@ impl Source {
 
     /// The rows of a CSV.
     fn parsed(&self, file: &str, text: &str) -> Result<Self, String> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
         let (_, head) = lines.next().ok_or("it is empty")?;
         let mut names = head.split(',').map(|name| name.trim().trim_matches('"').to_owned());
@@ -191,5 +190,6 @@ mod tests {
         let parsed = |text: &str| Source::default().parsed("t.csv", text).map(|source| source.columns);
         assert_eq!(parsed("t,a,\"a\"\n0,1,2\n"), Err("line 1: found the column \"a\" twice, expected each once".into()));
         assert_eq!(parsed("t,a,b\n0,1,2\n"), Ok(vec!["a".into(), "b".into()]));
+        assert_eq!(parsed("\u{feff}t,a\n0,1\n"), Ok(vec!["a".into()]), "a byte order mark, as spreadsheets write it");
     }
 }

@@ -50,8 +50,14 @@ fn describe(robot: &Robot, reading: &Reading, report: &mut Report) {
     match robot.whole_model(reading) {
         Ok(model) => {
             report.describe(&reading.description, &model);
-            let named = articulated_codegen::check_names(&robot.request(&robot.options.functions), &reading.description, &model);
-            report.errors.extend(named.err().into_iter().flat_map(|e| Failure::from(e).lines).map(Diagnostic::plain));
+            let request = robot.request(&robot.options.functions);
+            let told = |result: Result<(), Error>| result.err().into_iter().flat_map(Error::into_each);
+            let named = told(articulated_codegen::check_names(&request, &reading.description, &model));
+            // Names that are one in Rust are in the way of code alone.
+            let (clashes, wrong): (Vec<Error>, _) =
+                told(articulated_codegen::check_identifiers(&request, &model)).partition(|e| matches!(e, Error::NameClash { .. }));
+            report.errors.extend(named.chain(wrong).flat_map(|e| Failure::from(e).lines).map(Diagnostic::plain));
+            report.warnings.extend(clashes.iter().map(|e| Diagnostic::plain(e.to_string())));
         }
         Err(failure) => report.errors.extend(failure.lines.into_iter().map(Diagnostic::plain)),
     }

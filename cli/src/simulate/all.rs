@@ -49,12 +49,13 @@ pub(super) fn run(arguments: &SimulateArguments, format: Format) -> Result<(), F
 fn row(name: &'static str, arguments: &SimulateArguments, rustc: &Rustc) -> Result<Row, Failure> {
     let stage = Stage::find(name)?;
     let settings = settings::of(stage.prepared.scene.simulation.as_ref(), arguments, &stage.prepared.scene.file)?;
+    let begin = motion::begin(&stage)?;
     let (generated, frames) = motion::generate(&stage, settings.integrator)?;
     let robot = Straight::build(rustc, &generated).map_err(|e| Failure::tool(&e))?;
     let quiet = Progress::hidden();
-    let fast = motion::run(&stage, &robot, &frames, &settings, &quiet)?;
+    let fast = motion::run(&stage, &begin, (&robot, &frames), &settings, &quiet)?;
     let all: Vec<String> = stage.model.frames.iter().map(|f| f.name.clone()).collect();
-    let slow = motion::run(&stage, &stage.model, &all, &settings, &quiet)?;
+    let slow = motion::run(&stage, &begin, (&stage.model, &all), &settings, &quiet)?;
     let (fast, slow) = (Summary::new(&stage, &fast, &settings, "generated"), Summary::new(&stage, &slow, &settings, "generic"));
     if let Some(error) = fast.error.or(slow.error) {
         return Err(Failure::input([format!("{name}: {error}")]));

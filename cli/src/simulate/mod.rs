@@ -38,9 +38,10 @@ use summary::Summary;
 pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, Failure> {
     let Some(scene) = &arguments.scene else { return all::run(arguments, format).map(|()| OK) };
     let stage = Stage::find(scene)?;
-    let settings = settings::of(stage.prepared.scene.simulation.as_ref(), arguments, &stage.prepared.scene.file)?;
+    let settings = settings::of(stage.prepared.scene.simulation.as_ref(), arguments, &stage.prepared.scene.file);
+    let (settings, begin) = Failure::both(settings, motion::begin(&stage))?;
     if let Some(file) = &arguments.against {
-        return against::run(&stage, &settings, file, format).map(|()| OK);
+        return against::run(&stage, &begin, &settings, file, format).map(|()| OK);
     }
     solvable(&stage)?;
     if let Some(folder) = &arguments.output {
@@ -53,13 +54,13 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
         let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
         let robot = Straight::build(&rustc, &generated).map_err(|e| Failure::tool(&e))?;
         progress.doing(format!("{}: motion", stage.name));
-        (motion::run(&stage, &robot, &frames, &settings, &progress)?, "generated")
+        (motion::run(&stage, &begin, (&robot, &frames), &settings, &progress)?, "generated")
     } else {
         if cfg!(debug_assertions) {
             console::warn("this command was built without optimisation: its speed means little");
         }
         let frames: Vec<String> = stage.model.frames.iter().map(|f| f.name.clone()).collect();
-        (motion::run(&stage, &stage.model, &frames, &settings, &progress)?, "generic")
+        (motion::run(&stage, &begin, (&stage.model, &frames), &settings, &progress)?, "generic")
     };
     let mut summary = Summary::new(&stage, &motion, &settings, code);
     if let Some(folder) = &arguments.output {

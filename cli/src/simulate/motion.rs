@@ -6,6 +6,7 @@ use articulated::Dynamics;
 use articulated::simulate::{Counts, Ended, Hit, IntegratorId, Recording as Run, Settings, SimulateError, Simulation};
 use articulated_codegen::Generated;
 use articulated_core::description::JointKind;
+use articulated_scene::Controller;
 
 use super::drive::Drive;
 use super::recording::{Happening, Recording};
@@ -26,24 +27,32 @@ pub(super) struct Motion {
     pub(super) error: Option<String>,
 }
 
-/// The state that it starts from.
-pub(crate) fn start(stage: &Stage) -> Result<(Vec<f64>, Vec<f64>), Failure> {
-    stage.prepared.scene.start(&stage.model).map_err(|e| Failure::input(e.errors.iter().map(ToString::to_string)))
+/// The state that it starts from, and what drives it.
+pub(crate) struct Begin {
+    pub(crate) q: Vec<f64>,
+    pub(crate) v: Vec<f64>,
+    pub(crate) controller: Controller,
+}
+
+/// Start and control as the scene has them. Errors: all that do not fit the robot, and tables that cannot be read.
+pub(crate) fn begin(stage: &Stage) -> Result<Begin, Failure> {
+    let scene = &stage.prepared.scene;
+    let start = scene.start(&stage.model).map_err(Failure::from);
+    let controller = scene.controller(&stage.model, &mut |file| stage.file(file)).map_err(Failure::from);
+    let ((q, v), controller) = Failure::both(start, controller)?;
+    Ok(Begin { q, v, controller })
 }
 
 /// Runs it on a robot whose functions give these frames.
 pub(super) fn run<R: Dynamics<f64>>(
     stage: &Stage,
-    robot: &R,
-    frames: &[String],
+    begin: &Begin,
+    (robot, frames): (&R, &[String]),
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Motion, Failure> {
-    let (q, v) = start(stage)?;
-    let controller = stage.prepared.scene.controller(&stage.model, &mut |file| stage.file(file));
-    let controller = controller.map_err(|e| Failure::input(e.errors.iter().map(ToString::to_string)))?;
     let refused = |e: SimulateError| Failure::input(e.to_string().lines().map(|l| format!("{}: {l}", stage.prepared.scene.file)));
-    let mut drive = Drive::new(robot, controller, stage.prepared.scene.control.period);
+    let mut drive = Drive::new(robot, begin.controller.clone(), stage.prepared.scene.control.period);
     let mut watch = Watch::of(stage, robot, frames).map_err(refused)?;
     let mut simulation = Simulation::new(robot, settings.clone()).map_err(refused)?;
     let mut run = simulation.recording();
@@ -58,7 +67,8 @@ pub(super) fn run<R: Dynamics<f64>>(
     };
     let over = watch.over.clone();
     let clock = Instant::now();
-    let result = simulation.run_into(&q, &v, &mut drive, &mut watch.events, &mut run, &mut |t, counts| follow(over.get(), t, counts));
+    let result =
+        simulation.run_into(&begin.q, &begin.v, &mut drive, &mut watch.events, &mut run, &mut |t, counts| follow(over.get(), t, counts));
     let wall = clock.elapsed();
     let error = match result {
         Ok(()) => None,

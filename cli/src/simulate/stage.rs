@@ -56,14 +56,12 @@ impl Stage {
     }
 
     fn new(name: String, mut prepared: Prepared, folder: PathBuf) -> Result<Self, Failure> {
-        let asked = prepared.request.clone();
         prepared.request.options.frames = None;
         let reading = articulated_codegen::read(&prepared.request)?;
         // Bundled robots are odd on purpose.
         let odd = reading.warnings.iter().filter(|_| !matches!(prepared.scene.robot, Robot::Bundled(_)));
         odd.chain(&reading.snapped).for_each(|w| console::warn(&w.to_string()));
         let model = articulated_codegen::model(&prepared.request, &reading.description)?;
-        articulated_codegen::check_names(&asked, &reading.description, &model)?;
         Ok(Self { name, prepared, description: reading.description, model, folder })
     }
 

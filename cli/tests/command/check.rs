@@ -62,6 +62,19 @@ fn a_joint_that_moves_no_mass_is_a_warning() {
 }
 
 #[test]
+fn names_that_are_one_in_rust_are_a_warning() {
+    let robot = r#"<robot name="r"><link name="a"/><link name="b b"><inertial><mass value="1"/>
+<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link><link name="b-b"/><link name="b_b"/>
+<joint name="turn" type="continuous"><parent link="a"/><child link="b b"/><axis xyz="0 0 1"/></joint>
+<joint name="w" type="fixed"><parent link="a"/><child link="b-b"/></joint><joint name="u" type="fixed"><parent link="a"/><child link="b_b"/></joint></robot>"#;
+    let file = File::new("r.urdf", robot.as_bytes());
+    let checked = run(&["check", file.name()]);
+    assert_eq!((checked.status, checked.lines_with("`B_B` in Rust; give one another name with `rename`")), (0, 2), "{}", checked.out);
+    let renamed = run(&["check", file.name(), "--rename", "b-b=B", "--rename", "b b=B_1"]);
+    assert_eq!((renamed.status, renamed.lines_with("rename")), (0, 0), "{}", renamed.out);
+}
+
+#[test]
 fn an_unphysical_inertia_is_an_error_unless_allowed() {
     let urdf = r#"<robot name="r"><link name="a"/><link name="b"><inertial><mass value="1"/>
         <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="-2"/></inertial></link>

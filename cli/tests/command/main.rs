@@ -82,7 +82,7 @@ impl File {
 
 #[test]
 fn help_tells_examples_and_statuses() {
-    for command in ["check", "generate", "eval", "compare", "functions", "scaling", "simulate", "effects"] {
+    for command in ["check", "generate", "eval", "compare", "functions", "scaling", "simulate", "effects", "accuracy", "stress"] {
         let help = run(&[command, "--help"]);
         assert_eq!(help.status, 0);
         assert!(help.out.contains(&format!("articulated {command} ")) && help.out.contains("Exit status"), "{}", help.out);
@@ -93,16 +93,27 @@ fn help_tells_examples_and_statuses() {
 
 #[test]
 fn a_wrong_command_line_is_status_2() {
-    let wrong: [&[&str]; 6] = [
+    let wrong: [&[&str]; 7] = [
         &[],
         &["chek"],
         &["check"],
         &["check", "panda_like", "--fixed", "--floating"],
         &["generate", "panda_like", "--functions", "inverse_dynamic"],
         &["compare", "panda_like", "--repetitions", "3"],
+        &["functions", "simple_pendulum", "--markdown", "--format", "json"],
     ];
     for words in wrong {
         assert_eq!(run(words).status, 2, "{words:?}");
     }
     assert!(run(wrong[4]).err.contains("did you mean inverse_dynamics?"));
+}
+
+#[test]
+fn a_failure_is_json_too_where_that_was_asked_for() {
+    let failed = run(&["eval", "no_such_robot", "--function", "mass_matrix", "--states", "-", "--format", "json"]);
+    let (json, status) = (failed.json(), failed.status);
+    assert_eq!((json["status"].as_i64(), status), (Some(1), 1));
+    let told = json["errors"][0].as_str().unwrap();
+    assert!(told.contains("no_such_robot") && failed.err.contains(told), "{}", failed.err);
+    assert_eq!(run(&["eval", "no_such_robot", "--function", "mass_matrix", "--states", "-"]).out, "");
 }

@@ -120,6 +120,15 @@ fn all_that_is_wrong_with_a_scene_is_said_with_its_line_and_what_would_be_right(
     );
     let ended = run(&["simulate", file.name()]);
     assert!(ended.status == 1 && ended.err.contains("did you mean \"slide\"?"), "{}", ended.err);
+    // What only the robot shows, wherever it stands; then what only its motion and its files show.
+    let effects = "[effects.damping]\nslid = 0.1\n[initial]\nq = { pol = 1 }\n[control]\nkind = \"pd\"\nkp = { slde = 1 }\n";
+    let table = "[control]\nkind = \"table\"\nfile = \"nowhere.csv\"\n";
+    for (lines, told) in [(effects, &["slid", "pol", "slde"][..]), (table, &["nowhere.csv", "[simulation]"])] {
+        let file = File::new("bad.toml", format!("robot = \"cart_pole\"\n{lines}").as_bytes());
+        let ended = run(&["simulate", file.name()]);
+        assert!(ended.status == 1 && told.iter().all(|word| ended.err.contains(word)), "{}", ended.err);
+        assert_eq!(ended.err.lines().count(), told.len(), "{}", ended.err);
+    }
 }
 
 #[test]

@@ -120,13 +120,17 @@ impl Settings {
         );
         if let Some(step) = self.step {
             found.unless(positive(step), "step", step, "a length of time greater than zero, s");
+            let least = 16.0 * f64::EPSILON * self.start.abs().max(self.end.abs());
+            let told = format!("at least {least:.1e} s, sixteen units of rounding of the time");
+            found.unless(!positive(step) || step >= least || !least.is_finite(), "step", step, &told);
         } else if !self.integrator.row().adaptive {
             found.unless(false, "step", "nothing", &format!("{} has no error estimate, so it needs a step, s", self.integrator));
         }
-        found.unless(self.rtol >= 0.0 && self.rtol < 1.0, "rtol", self.rtol, "at least 0 and less than 1");
-        found.unless(self.atol >= 0.0 && self.atol.is_finite(), "atol", self.atol, "at least 0");
-        found.unless(self.rtol + self.atol > 0.0, "rtol", self.rtol, "one of rtol and atol greater than 0");
-        found.unless(self.rtol == 0.0 || self.rtol >= 1e-15, "rtol", self.rtol, "0, or at least 1e-15: below that is rounding");
+        let rtol = self.rtol == 0.0 || (self.rtol >= 1e-15 && self.rtol < 1.0);
+        found.unless(rtol, "rtol", self.rtol, "0, or at least 1e-15, below which is rounding, and less than 1");
+        let atol = self.atol >= 0.0 && self.atol.is_finite();
+        found.unless(atol, "atol", self.atol, "at least 0");
+        found.unless(!(rtol && atol) || self.rtol + self.atol > 0.0, "rtol", self.rtol, "one of rtol and atol greater than 0");
         let each = &self.atol_each;
         let lengths = [0, 2 * shape.nv].contains(&each.len());
         found.unless(lengths, "atol_each", format!("{} numbers", each.len()), &format!("{} numbers, or none", 2 * shape.nv));
@@ -196,9 +200,22 @@ mod tests {
         };
         let keys: Vec<_> = bad.problems(shape).iter().map(|p| p.key).collect();
         for key in ["start", "end", "step", "rtol", "atol", "atol_each", "max_step", "first_step", "max_steps", "output"] {
-            assert!(keys.contains(&key), "{key} is not among {keys:?}");
+            assert_eq!(keys.iter().filter(|k| **k == key).count(), 1, "{key} among {keys:?}");
         }
+        let none = Settings { rtol: 0.0, atol: 0.0, ..Settings::default() };
+        assert_eq!(none.problems(shape)[0].to_string(), "rtol = 0: one of rtol and atol greater than 0");
         let fixed = Settings { integrator: IntegratorId::rk4, ..Settings::default() };
         assert_eq!(fixed.problems(shape)[0].to_string(), "step = nothing: rk4 has no error estimate, so it needs a step, s");
+    }
+
+    #[test]
+    fn a_step_that_the_time_cannot_take_is_refused() {
+        let shape = Shape { nq: 1, nv: 1, frames: 1, links: 1 };
+        let at = |start: f64, end: f64| {
+            let settings = Settings { integrator: IntegratorId::rk4, step: Some(0.25), start, end, ..Settings::default() };
+            settings.problems(shape).iter().map(|p| p.key).collect::<Vec<_>>()
+        };
+        // Near 1e15 s the time is a multiple of 1/8 s, near 1e12 s of 1/8192 s.
+        assert_eq!([at(1e15, 1e15 + 4.0), at(1e12, 1e12 + 4.0)], [vec!["step"], vec![]]);
     }
 }

@@ -6,7 +6,7 @@ use articulated_scene::{Aim, Controller};
 
 use super::subject::Subject;
 use crate::failure::Failure;
-use crate::simulate::motion;
+use crate::simulate::motion::{self, Begin};
 use crate::simulate::stage::Stage;
 
 /// The scene that a word of the command line names, a file or a bundled one, and what moves in it.
@@ -25,9 +25,7 @@ fn subject(stage: &Stage) -> Result<Subject, Failure> {
         );
         return Err(Failure::input([line]));
     }
-    let (q, v) = motion::start(stage)?;
-    let controller = scene.controller(&stage.model, &mut |file| stage.file(file));
-    let controller = controller.map_err(|e| Failure::input(e.errors.iter().map(ToString::to_string)))?;
+    let Begin { q, v, controller } = motion::begin(stage)?;
     let span = scene.simulation.as_ref().map_or((Settings::default().start, Settings::default().end), |s| (s.start, s.end));
     let options = &stage.prepared.request.options;
     let inside = options.gravity == [0.0; 3] && options.effects.is_empty() && !pushes_base(&controller);

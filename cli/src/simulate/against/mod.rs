@@ -11,7 +11,7 @@ use std::time::Instant;
 
 use articulated::simulate::{IntegratorId, Settings};
 
-use super::motion;
+use super::motion::{self, Begin};
 use super::stage::Stage;
 use super::straight::Straight;
 use crate::arguments::Format;
@@ -44,7 +44,7 @@ pub(super) trait Runner {
 }
 
 /// Measures and prints.
-pub(super) fn run(stage: &Stage, settings: &Settings, file: &Path, format: Format) -> Result<(), Failure> {
+pub(super) fn run(stage: &Stage, begin: &Begin, settings: &Settings, file: &Path, format: Format) -> Result<(), Failure> {
     let lines: Vec<String> = unknown_to_peers(stage)
         .into_iter()
         .map(|what| {
@@ -57,15 +57,15 @@ pub(super) fn run(stage: &Stage, settings: &Settings, file: &Path, format: Forma
     if !lines.is_empty() {
         return Err(Failure::input(lines));
     }
-    let (q, v) = motion::start(stage)?;
+    let Begin { q, v, .. } = begin;
     let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
     let (generated, _) = motion::generate(stage, IntegratorId::dop853)?;
     let robot = Straight::build(&rustc, &generated).map_err(|e| Failure::tool(&e))?;
     let folder = tempfile::tempdir().map_err(|e| Failure::tool(&e))?;
     let list = file.extension().is_some_and(|e| e == "json");
     let libraries = if list { manifest::read(file).map_err(|line| Failure::input([line]))? } else { vec![Library::at(file)] };
-    let (peers, notes) = peers::open(stage, &libraries, folder.path(), (&q, &v), settings.end - settings.start)?;
-    let ours = |id| Ours::new(&robot, id, settings, (&q, &v));
+    let (peers, notes) = peers::open(stage, &libraries, folder.path(), (q, v), settings.end - settings.start)?;
+    let ours = |id| Ours::new(&robot, id, settings, (q, v));
     let mut reference = ours(IntegratorId::dop853);
     let best = reference.run(Effort::Tolerance(1e-14)).ok_or_else(|| astray("the reference"))?;
     let second = reference.run(Effort::Tolerance(4e-14)).ok_or_else(|| astray("the reference"))?;
