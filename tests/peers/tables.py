@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tables as in the README: `articulated compare` on four robots, several times over, with all peers.
+"""Tables as in the README and docs/speed.md: `articulated compare` on four robots, several times over, with all peers.
 
     python3 tests/peers/build.py --all      first: the peers
     python3 tests/peers/tables.py           three runs of every robot; tables in Markdown
