@@ -203,6 +203,9 @@ pub(crate) struct GenerateArguments {
     /// No `unsafe` in the generated code: sines take a little longer on x86-64
     #[arg(long)]
     pub(crate) forbid_unsafe: bool,
+    /// For crates without std, which depend on the crate libm: no `unsafe`, no multiply-adds
+    #[arg(long, conflicts_with = "runtime")]
+    pub(crate) no_std: bool,
     /// How accurate: f64, f32, f32_f64, compensated, double_double, with +correct, +fast_7, +fast_10, +two, +no_fma
     #[arg(long, value_name = "LEVEL", default_value_t = Level::default())]
     pub(crate) level: Level,

@@ -43,6 +43,7 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
         request.options.batch.clone_from(&arguments.batch);
     }
     request.options.forbid_unsafe |= arguments.forbid_unsafe;
+    request.options.no_std = arguments.no_std;
     if arguments.level != articulated_codegen::Level::default() {
         request.options.level = arguments.level;
     }

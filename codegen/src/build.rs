@@ -178,6 +178,14 @@ impl Build {
         self
     }
 
+    /// For crates without `std`, which have to depend on the crate `libm`: it is called for square roots, arctangents, and sines of angles beyond what the level promises.
+    /// Without `unsafe`, multiply-adds and an implementation of the trait `Dynamics`, whatever was chosen.
+    #[must_use]
+    pub fn no_std(mut self) -> Self {
+        self.request.options.no_std = true;
+        self
+    }
+
     /// Any other choice.
     #[must_use]
     pub fn options(mut self, change: impl FnOnce(&mut crate::Options)) -> Self {

@@ -113,6 +113,7 @@ fn plan(request: &Request) -> Result<Plan, Error> {
 
 /// Generates the code that `request` asks for. Pure: nothing is read or written. Errors: everything that is wrong with the document, or else with the request.
 pub fn generate(request: &Request) -> Result<Generated, Error> {
+    let request = &*request.settled();
     let Plan { reading, model, parameters, wanted, names } = faults::all(request, plan)?;
     let Reading { warnings, unused, snapped, .. } = reading;
     let mut ledger = Ledger::default();

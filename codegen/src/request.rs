@@ -1,5 +1,7 @@
 //! What to generate.
 
+use std::borrow::Cow;
+
 use articulated_core::description::{Base, Origin, Payload, Shaft};
 use articulated_core::effect::Applied;
 use articulated_core::lanes::Real;
@@ -58,6 +60,8 @@ pub struct Options {
     pub level: Level,
     /// No `unsafe` in the generated code, for crates that forbid it: sines and cosines take a little longer on x86-64.
     pub forbid_unsafe: bool,
+    /// For crates without `std`: without `unsafe` and a runtime, no multiply-add, and what `core` lacks is called in the crate `libm`.
+    pub no_std: bool,
     /// Path of the runtime crate, to implement its trait `Dynamics`; `None`: the code depends on nothing but `core` and `std`.
     pub runtime: Option<String>,
     /// Whether the ledger has counts after each model pass: for each of them the functions are traced once more. The code is the same. Build scripts and the macro do without.
@@ -100,6 +104,7 @@ impl Default for Options {
             batch: Vec::new(),
             level: Level::default(),
             forbid_unsafe: false,
+            no_std: false,
             runtime: None,
             stages: true,
         }
@@ -110,5 +115,16 @@ impl Request {
     /// A request with default options: fixed base, standard gravity, `placements` and `inverse_dynamics`.
     pub fn new(file: impl Into<String>, urdf: impl Into<Vec<u8>>) -> Self {
         Self { urdf: urdf.into(), file: file.into(), options: Options::default() }
+    }
+
+    /// The request with what follows from its choices: without `std` nobody can ask what the processor has, nor call for a multiply-add.
+    pub(crate) fn settled(&self) -> Cow<'_, Self> {
+        if !self.options.no_std {
+            return Cow::Borrowed(self);
+        }
+        let mut request = self.clone();
+        let options = &mut request.options;
+        (options.forbid_unsafe, options.level.fused, options.runtime) = (true, false, None);
+        Cow::Owned(request)
     }
 }

@@ -25,8 +25,10 @@ pub const FRAME_NAMES: [&str; FRAMES] = ["support", "bob"];
 /// For each moving link, the joint that carries it.
 pub const LINK_JOINTS: [&str; LINKS] = ["swing"];
 /// Lower bounds of the coordinates, rad or m; −∞ where there is none.
+#[allow(clippy::all, clippy::pedantic)]
 pub const Q_LOWER: [f64; NQ] = [-6.283185307179586];
 /// Upper bounds of the coordinates, rad or m; ∞ where there is none.
+#[allow(clippy::all, clippy::pedantic)]
 pub const Q_UPPER: [f64; NQ] = [6.283185307179586];
 /// Indices into [`JOINT_NAMES`].
 pub mod joint {

@@ -31,6 +31,9 @@ pub(super) fn header(out: &mut String, request: &Request, model: &Model<f64>, un
         line(&format!("Level {}. Contract: SI units and radians; no allocation, no panic.", o.level));
         o.level.contract().iter().for_each(|text| line(&format!("  {text}")));
     }
+    if o.no_std {
+        line("For crates without std: square roots, arctangents and sines of large angles are those of the crate libm.");
+    }
     if !unused.is_empty() {
         line("Understood in the URDF and not used:");
         unused.iter().take(LISTED).for_each(|u| line(&format!("  {u}")));

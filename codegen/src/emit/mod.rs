@@ -1,6 +1,7 @@
 //! From graphs to Rust.
 
 mod apart;
+mod bare;
 mod batch;
 mod chunks;
 mod columns;

@@ -6,6 +6,7 @@ use articulated_core::algorithm::Dim;
 use articulated_core::model::{JointInfo, Model};
 use articulated_urdf::Unused;
 
+use super::bare;
 use super::batch::{Batch, batches};
 use super::function::{Context, function};
 use super::header::header;
@@ -37,8 +38,11 @@ pub(crate) fn module(
     let of_many: Vec<Batch> = programs.iter().map(|p| Batch::of(p, context)).collect();
     batches(&mut out, &of_many, &request.options.batch, forbid_unsafe);
     robot(&mut out, request, model, programs, !parameters.is_empty());
-    out
+    if request.options.no_std { bare::without_std(&out) } else { out }
 }
+
+/// Stands before constants with numbers of the file, which are what they are: also 3.14, and 6.283185307179586.
+const NUMBERS: &str = "#[allow(clippy::all, clippy::pedantic)]";
 
 fn constants(out: &mut String, model: &Model<f64>) {
     let joints: Vec<&str> = model.joints.iter().map(|j| j.name.as_str()).collect();
@@ -75,7 +79,7 @@ fn constants(out: &mut String, model: &Model<f64>) {
 
 fn limits(out: &mut String, name: &str, doc: &str, model: &Model<f64>, limit: impl Fn(&JointInfo) -> Option<f64>, none: f64) {
     let values: Vec<String> = model.joints.iter().flat_map(|j| vec![literal(limit(j).unwrap_or(none)); j.q.1]).collect();
-    let _ = writeln!(out, "/// {doc}\npub const {name}: [f64; NQ] = [{}];", values.join(", "));
+    let _ = writeln!(out, "/// {doc}\n{NUMBERS}\npub const {name}: [f64; NQ] = [{}];", values.join(", "));
 }
 
 fn indices(out: &mut String, model: &Model<f64>, names: &Names) {
@@ -106,7 +110,7 @@ fn inputs(out: &mut String, parameters: &[Parameter]) {
     }
     let values: Vec<String> = parameters.iter().flat_map(|p| &p.nominal).map(|x| literal(*x)).collect();
     let _ = writeln!(out, "/// The parameters as the URDF has them; [`parameter`] says where each begins.");
-    let _ = writeln!(out, "pub const PARAMETERS: [f64; {}] = [{}];", values.len(), values.join(", "));
+    let _ = writeln!(out, "{NUMBERS}\npub const PARAMETERS: [f64; {}] = [{}];", values.len(), values.join(", "));
     let rows: Vec<_> = parameters.iter().map(|p| (super::identifier(&p.name), p.what.clone(), p.at)).collect();
     list(out, "parameter", "Index in [`PARAMETERS`] of the first number of each.", &rows);
 }
