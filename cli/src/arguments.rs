@@ -69,7 +69,7 @@ pub(crate) enum Command {
         "states.csv:   q.swing,v.swing,a.swing",
         "              0.1,0.2,0",
         "",
-        "Columns of a joint that has several numbers: q.base[0],q.base[1],…",
+        "Columns of a joint that has several numbers: q.hip[0],q.hip[1],…; a floating base is the joint __floating_base__",
     ]))]
     Eval(EvalArguments),
     /// Measures generated code against generic code: operations, size, time, error

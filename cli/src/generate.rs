@@ -49,7 +49,7 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
     }
     request.options.runtime = arguments.runtime.clone().filter(|_| !arguments.standalone);
     let generated = generate(&request)?;
-    generated.warnings.iter().chain(&generated.snapped).for_each(|w| console::warn(&w.to_string()));
+    robot.warn_of(generated.warnings.iter().chain(&generated.snapped));
     let text = match format {
         Format::Text => generated.source.clone(),
         Format::Json => json(&generated),

@@ -7,9 +7,10 @@ use articulated_codegen::scene::{self, Scene};
 use articulated_codegen::{Appended, Error, Generated, Options, Request, choose_frames, generate, nearest};
 use articulated_core::description::Base;
 use articulated_core::model::Model;
-use articulated_urdf::Reading;
+use articulated_urdf::{Problem, Reading};
 
 use crate::arguments::RobotArguments;
+use crate::console;
 use crate::edits::{Edits, FrameArguments};
 use crate::failure::Failure;
 
@@ -24,6 +25,8 @@ pub(crate) struct Robot {
     pub(crate) urdf: Vec<u8>,
     pub(crate) options: Options,
     path: Option<PathBuf>,
+    /// Bundled robots are odd on purpose.
+    bundled: bool,
     /// All files that it was read from.
     files: Vec<PathBuf>,
 }
@@ -51,7 +54,7 @@ impl Robot {
         options.rename.clone_from(&arguments.rename);
         edit(&mut options, &arguments.edits)?;
         let files = path.iter().cloned().chain(appended(&arguments.edits)).collect();
-        Ok(Self { file, urdf, options, path, files })
+        Ok(Self { file, urdf, options, path, bundled: bundled.is_some(), files })
     }
 
     /// The robot of a scene: a file, or a bundled one. What the arguments say stands in place of what the scene says; edits come after the scene's.
@@ -62,6 +65,7 @@ impl Robot {
             Some(bundled) => scene::open_in(Scene::read(name, bundled.toml).map_err(Error::from)?, Path::new(""), &robot)?,
             None => scene::open(Path::new(name), &robot)?,
         };
+        let bundled = matches!(prepared.scene.robot, articulated_scene::Robot::Bundled(_));
         let Request { urdf, file, mut options } = prepared.request;
         options.base = match (arguments.floating, arguments.fixed) {
             (true, _) => Base::Floating,
@@ -74,7 +78,7 @@ impl Robot {
         options.rename.extend_from_slice(&arguments.rename);
         edit(&mut options, &arguments.edits)?;
         let files = prepared.files.into_iter().chain(appended(&arguments.edits)).collect();
-        Ok(Self { file, urdf, options, path: None, files })
+        Ok(Self { file, urdf, options, path: None, bundled, files })
     }
 
     /// The robot with these frames.
@@ -90,6 +94,11 @@ impl Robot {
     pub(crate) fn on(mut self, frames: &[String]) -> Self {
         self.options.frames = Some(frames.to_vec());
         self
+    }
+
+    /// Warns of what is odd about it; not of what is odd about a bundled robot, which `check` tells all the same.
+    pub(crate) fn warn_of<'a>(&self, odd: impl Iterator<Item = &'a Problem>) {
+        odd.filter(|_| !self.bundled).for_each(|problem| console::warn(&problem.to_string()));
     }
 
     /// What the reader finds in the document, edited as asked for.

@@ -51,10 +51,24 @@ pub(crate) fn joint(tag: &Tag<'_>, open: bool, options: &Options, log: &mut Log)
         limit: None,
         dynamics: None,
     };
-    if let Some(kind) = kind {
-        motion(&tag, kind, open, &mut joint, log);
+    match kind {
+        Some(kind) => motion(&tag, kind, open, &mut joint, log),
+        None => of_any_kind(&tag, open, log),
     }
     joint
+}
+
+/// What is wrong with a joint whatever its type should be.
+fn of_any_kind(tag: &Tag<'_>, open: bool, log: &mut Log) {
+    for name in ["axis", "axis2"] {
+        if let Some(given) = tag.only(name, log) {
+            axis(&given, log);
+        }
+    }
+    if tag.children().any(|child| child.is("limit")) {
+        limits::limit(tag, JointKind::Revolute, open, log);
+    }
+    limits::dynamics(tag, log);
 }
 
 fn kind(tag: &Tag<'_>, log: &mut Log) -> Option<JointKind> {

@@ -114,6 +114,16 @@ fn all_mistakes_of_a_file_are_reported_at_once() {
 }
 
 #[test]
+fn a_joint_of_an_unknown_type_is_read_on() {
+    let text = crane("type=\"continuous\"", "type=\"continous\"")
+        .replace("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 0\"/><dynamics damping=\"x\"/>");
+    let kinds: Vec<Kind> = refused(&text).errors.iter().map(|e| e.kind).collect();
+    for kind in [Kind::UnknownJointType, Kind::ZeroAxis, Kind::NotANumber] {
+        assert!(kinds.contains(&kind), "{kind:?} among {kinds:?}");
+    }
+}
+
+#[test]
 fn a_ring_beside_the_tree_is_named() {
     let text = crane("<link name=\"lamp\"/>", "<link name=\"lamp\"/><link name=\"a\"/><link name=\"b\"/>").replace(
         "</robot>",

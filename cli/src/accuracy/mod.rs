@@ -41,7 +41,7 @@ pub(crate) fn run(arguments: &AccuracyArguments, format: Format) -> Result<(), F
     }
     let mut robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
     let reading = robot.read()?;
-    reading.warnings.iter().chain(&reading.snapped).for_each(|w| console::warn(&w.to_string()));
+    robot.warn_of(reading.warnings.iter().chain(&reading.snapped));
     if robot.options.frames.is_none() {
         let tips = Tips::of(&reading.description, &robot.whole_model(&reading)?);
         robot = robot.on(tips.all());

@@ -44,7 +44,7 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
     let mut robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
     robot.options.forbid_unsafe = arguments.forbid_unsafe;
     let reading = robot.read()?;
-    reading.warnings.iter().chain(&reading.snapped).for_each(|w| console::warn(&w.to_string()));
+    robot.warn_of(reading.warnings.iter().chain(&reading.snapped));
     if cfg!(debug_assertions) {
         console::warn("this command was built without optimisation: times of generic code, and of the generation, mean little");
     }

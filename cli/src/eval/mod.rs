@@ -24,7 +24,7 @@ const BOUND: f64 = 128.0;
 pub(crate) fn run(arguments: &EvalArguments, format: Format) -> Result<u8, Failure> {
     let robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
     let reading = robot.read()?;
-    reading.warnings.iter().chain(&reading.snapped).for_each(|w| console::warn(&w.to_string()));
+    robot.warn_of(reading.warnings.iter().chain(&reading.snapped));
     let model = robot.model(&reading)?;
     let names = names::flat(&arguments.function);
     let functions = functions(&names);

@@ -5,7 +5,7 @@ use articulated_core::algorithm::Argument;
 use articulated_core::model::Model;
 
 use super::random::normalise;
-use super::{State, csv, json, owner, quaternions, slots};
+use super::{Slot, State, csv, json, owner, quaternions, slots};
 
 /// A quaternion may be off the unit norm by this much; it is then normalised.
 const NORM: f64 = 1e-6;
@@ -106,7 +106,7 @@ impl Found<'_> {
         let slots = slots(argument, self.model);
         let found = slots.iter().position(|s| s.name == name);
         if found.is_none() {
-            let near = hint(nearest(name, slots.iter().map(|s| s.name)));
+            let near = nearest(name, slots.iter().map(|s| s.name)).map_or_else(|| there_are(&slots), |near| hint(Some(near)));
             self.error(
                 place,
                 match argument {
@@ -143,6 +143,15 @@ impl Found<'_> {
         }
         Err(self.errors)
     }
+}
+
+/// All names, or the first of many.
+fn there_are(slots: &[Slot<'_>]) -> String {
+    const SHOWN: usize = 12;
+    let names: Vec<&str> = slots.iter().take(SHOWN).map(|s| s.name).collect();
+    let more = slots.len().saturating_sub(SHOWN);
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    format!("; there are {}{more}", names.join(", "))
 }
 
 fn hint(near: Option<String>) -> String {

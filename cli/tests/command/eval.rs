@@ -54,6 +54,7 @@ fn mistakes_name_the_state_and_the_joint() {
         (r#"[{"q": [0.1]}]"#, "states[0]: v: found nothing"),
         (r#"[{"q": [0.1], "v": [1], "a": [1]}, {"q": [0.1, 0.2], "v": [1], "a": [1]}]"#, "states[1]: q: found 2 numbers, expected 1"),
         (r#"[{"q": {"swimg": 1}, "v": [1], "a": [1]}]"#, "did you mean \"swing\"?"),
+        (r#"[{"q": {"base": 1}, "v": [1], "a": [1]}]"#, "not a coordinate of this robot; there are swing"),
         ("q.swing,v.swing,a.swing\n0,inf,0\n", "line 2: v: joint \"swing\": found inf"),
         ("", "no state"),
     ];
