@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use articulated::effect::{Applied, EffectId};
 use articulated::simulate::{
-    Action, Direction, Ended, Event, Impact, IntegratorId, NoTorque, Output, Settings, SimulateError, Simulation, integrators,
+    Action, Direction, Ended, Event, Hit, Impact, IntegratorId, NoTorque, Output, Settings, SimulateError, Simulation, integrators,
 };
 use articulated::{Base, Dynamics, Origin, load_bytes};
 
@@ -67,6 +67,40 @@ fn what_happens_at_one_time_all_happens() {
         assert!(hit.event == k % 2 && (hit.t - (2 * (k / 2) + 1) as f64 * (2.0 / G).sqrt()).abs() < 1e-10, "{hit:?}");
     }
     assert!((motion.energy(1).unwrap() / motion.energy(0).unwrap() - 1.0).abs() < 1e-10);
+}
+
+/// A map may take the state away from the zero of its event, as one does that winds a coordinate back: then it is on the side that its function says. Where a map leaves
+/// it at the zero, as a bounce does, what the search left says nothing, however much that is.
+#[test]
+fn what_a_map_takes_away_from_a_zero_is_not_found_there_again() {
+    let robot = one_joint("prismatic", 0.0);
+    let still = robot.clone().with_gravity([0.0; 3]);
+    for (direction, event_tolerance) in
+        [(Direction::Either, 1e-12), (Direction::Rising, 1e-12), (Direction::Either, 1e-5), (Direction::Rising, 1e-5)]
+    {
+        let back = |_: f64, q: &mut [f64], _: &mut [f64]| {
+            q[0] -= 1.0;
+            Ok(None)
+        };
+        let wound = Event::new("wound", |_, q: &[f64], _: &[f64]| q[0] - 1.0).direction(direction).action(Action::Map(Box::new(back)));
+        let settings = Settings { event_tolerance, ..to(IntegratorId::dopri5, 5.25, 1e-9) };
+        let motion = Simulation::new(&still, settings).unwrap().run(&[0.0], &[1.0], &mut NoTorque, &mut [wound]).unwrap();
+        let near = |hit: &Hit, t: f64| hit.direction == Direction::Rising && (hit.t - t).abs() < 2.0 * event_tolerance;
+        assert_eq!(motion.events.len(), 5, "{direction:?}: {:?}", motion.events);
+        assert!(motion.events.iter().zip([1.0, 2.0, 3.0, 4.0, 5.0]).all(|(hit, t)| near(hit, t)), "{:?}", motion.events);
+        assert!((motion.q[1] - 0.25).abs() < 1e-12, "{}", motion.q[1]);
+
+        let up = |_: f64, _: &mut [f64], v: &mut [f64]| {
+            v[0] = -v[0];
+            Ok(None)
+        };
+        let direction = if direction == Direction::Either { direction } else { Direction::Falling };
+        let floor = Event::new("floor", |_, q: &[f64], _: &[f64]| q[0]).direction(direction).action(Action::Map(Box::new(up)));
+        let settings = Settings { event_tolerance, ..to(IntegratorId::dopri5, 5.0, 1e-9) };
+        let motion = Simulation::new(&robot, settings).unwrap().run(&[1.0], &[0.0], &mut NoTorque, &mut [floor]).unwrap();
+        assert_eq!(motion.events.len(), 6, "{direction:?}: {:?}", motion.events);
+        assert!(motion.events.iter().all(|hit| hit.direction == Direction::Falling), "{:?}", motion.events);
+    }
 }
 
 #[test]

@@ -23,6 +23,8 @@ pub(crate) struct Zero {
 pub(crate) struct Watch {
     /// On which side of zero each event's function is: ±1, or 0 as long as nobody knows.
     side: Vec<f64>,
+    /// What was left of each event's function where it was last found to be zero.
+    left: Vec<f64>,
     /// Values, `[places][events]`.
     values: Vec<f64>,
     /// Zeros of the step, in order.
@@ -34,6 +36,8 @@ impl Watch {
     pub(crate) fn begin(&mut self, events: usize) {
         self.side.clear();
         self.side.resize(events, 0.0);
+        self.left.clear();
+        self.left.resize(events, 0.0);
         self.values.resize(PLACES.len() * events, 0.0);
         self.zeros.clear();
         self.zeros.reserve(4 * PLACES.len() * events);
@@ -42,6 +46,16 @@ impl Watch {
     /// The side of event `e` from now on.
     pub(crate) fn set_side(&mut self, e: usize, value: f64) {
         self.side[e] = sign(value);
+    }
+
+    /// What is left of the function of event `e` at its zero.
+    pub(crate) fn set_left(&mut self, e: usize, value: f64) {
+        self.left[e] = value.abs();
+    }
+
+    /// As it was set, without its sign.
+    pub(crate) fn left(&self, e: usize) -> f64 {
+        self.left[e]
     }
 
     /// All zeros of a step, in `zeros`; its curve is ready.

@@ -68,7 +68,11 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
 
     /// Runs the maps of the events that cut the step short, if there are some.
     pub(super) fn map(&mut self, run: &mut Run) -> Result<bool, SimulateError> {
-        let mut mapped = false;
+        let (mut mapped, nv) = (false, self.shape.nv);
+        for hit in &run.recording.events[run.cut..] {
+            let left = (run.events[hit.event].function)(self.t, &self.system.origin, &self.y[nv..2 * nv]);
+            self.watch.set_left(hit.event, left);
+        }
         for hit in run.cut..run.recording.events.len() {
             mapped |= self.map_by(run, hit)?;
         }
@@ -95,7 +99,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         Ok(true)
     }
 
-    /// On which side of zero each event is from here on; of those that have just happened, where it is a moment later.
+    /// On which side of zero each event is from here on; of those that have just happened, where it is a moment later, unless a map has taken it away from zero.
     pub(super) fn take_sides(&mut self, run: &mut Run) -> Result<(), SimulateError> {
         const MOMENT: f64 = 1e-9;
         let nv = self.shape.nv;
@@ -109,7 +113,10 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
                 self.system.configuration(&step[..nv], &mut self.point.q)?;
                 let rates = self.y[nv..2 * nv].iter().zip(&self.f[nv..2 * nv]);
                 self.v.iter_mut().zip(rates).for_each(|(out, (v, a))| *out = v + MOMENT * a);
-                value = (run.events[e].function)(self.t + MOMENT, &self.point.q, &self.v) - here;
+                let change = (run.events[e].function)(self.t + MOMENT, &self.point.q, &self.v) - here;
+                // More than what the search left, and more than a moment does.
+                let away = here.abs() > (2.0 * self.watch.left(e)).max(change.abs());
+                value = if away { here } else { change };
             }
             self.watch.set_side(e, value);
         }
