@@ -217,5 +217,33 @@ mod tests {
         };
         // Near 1e15 s the time is a multiple of 1/8 s, near 1e12 s of 1/8192 s.
         assert_eq!([at(1e15, 1e15 + 4.0), at(1e12, 1e12 + 4.0)], [vec!["step"], vec![]]);
+
+    fn what_does_not_go_together_is_named() {
+        let shape = Shape { nq: 1, nv: 1, frames: 1, links: 1 };
+        let right = Settings {
+            start: 1.0,
+            end: 2.0,
+            min_step: 1e-3,
+            max_step: 1e-3,
+            output: Output::At(vec![1.0, 1.5, 2.0]),
+            ..Settings::default()
+        };
+        assert_eq!(right.problems(shape), []);
+        let wrong = [
+            ("min_step", Settings { min_step: -1e-3, ..right.clone() }),
+            ("min_step", Settings { min_step: f64::INFINITY, max_step: f64::INFINITY, ..right.clone() }),
+            ("max_step", Settings { max_step: 1e-4, ..right.clone() }),
+            ("rtol", Settings { rtol: 1e-16, ..right.clone() }),
+            ("rtol", Settings { rtol: 0.0, atol: 0.0, ..right.clone() }),
+            ("event_tolerance", Settings { event_tolerance: -1e-12, ..right.clone() }),
+            ("output", Settings { output: Output::At(vec![1.5, 1.5]), ..right.clone() }),
+            ("output", Settings { output: Output::At(vec![0.5, 1.5]), ..right.clone() }),
+            ("output", Settings { output: Output::At(vec![1.5, 2.5]), ..right.clone() }),
+            ("output", Settings { output: Output::Every(1e-10), ..right.clone() }),
+        ];
+        for (key, settings) in wrong {
+            let found: Vec<_> = settings.problems(shape).iter().map(|p| p.key).collect();
+            assert_eq!(found, [key], "{settings:?}");
+        }
     }
 }

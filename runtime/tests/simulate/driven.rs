@@ -5,6 +5,7 @@ use std::cell::RefCell;
 use articulated::effect::{Applied, EffectId};
 use articulated::simulate::{
     Constant, Control, Event, Hold, IntegratorId, NoTorque, Output, Pd, Settings, SimulateError, Simulation, StateError, TorqueTable,
+    integrators,
 };
 use articulated::{Base, Dynamics, FunctionError, Origin};
 
@@ -187,6 +188,86 @@ fn outputs_between_steps_are_as_good_as_steps() {
         println!("{id}: {q:e} {v:e}, {} steps", motion.counts.steps);
         assert!(q.max(v) < bound && motion.counts.steps < 400, "{id}: {q:e} {v:e}");
     }
+}
+
+/// Records are where they were asked for: none twice, none left out, whatever rounding makes of the times.
+#[test]
+fn outputs_come_at_their_times() {
+    let robot = slider();
+    let times = |settings: Settings| {
+        let motion = free(&robot, &settings, &[0.0], &[1.0]).unwrap();
+        assert!(motion.q.iter().zip(&motion.t).all(|(q, t)| (q - (t - settings.start)).abs() < 1e-14), "{motion:?}");
+        motion.t
+    };
+    for k in 1..60 {
+        let settings = Settings { start: 0.5, end: 1.2, output: Output::Every(0.7 / f64::from(k)), ..to(IntegratorId::dopri5, 1.2, 1e-9) };
+        let found = times(settings);
+        let expected = (0..=k).map(|i| 0.5 + 0.7 * f64::from(i) / f64::from(k));
+        assert_eq!(found.len(), k as usize + 1, "{k}: {found:?}");
+        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15 * 8.0), "{k}: {found:?}");
+    }
+    let asked = vec![0.0, 0.25, 1.0];
+    assert_eq!(times(Settings { output: Output::At(asked.clone()), ..to(IntegratorId::dopri5, 1.0, 1e-9) }), asked);
+    assert_eq!(times(to(IntegratorId::dopri5, 1.0, 1e-9)), [0.0, 1.0]);
+}
+
+/// The first step is the one that was asked for, none is longer than allowed, and where one shorter than allowed would be needed, that is an error.
+#[test]
+fn steps_keep_the_bounds_that_they_are_given() {
+    let (q, v) = ([0.4, -0.7, 0.5], [1.0, 0.5, -1.5]);
+    for id in [IntegratorId::dopri5, IntegratorId::dop853, IntegratorId::rodas4] {
+        let bounded = Settings { first_step: Some(1e-4), max_step: 3e-3, output: Output::Steps, ..to(id, 0.2, 1e-3) };
+        let motion = free(&model("chain", Base::Fixed), &bounded, &q, &v).unwrap();
+        assert!((motion.t[1] - 1e-4).abs() < 1e-16, "{id}: {}", motion.t[1]);
+        assert!(
+            motion.t.windows(2).all(|w| w[1] - w[0] <= 3e-3 * (1.0 + 1e-12)) && motion.counts.largest_step > 2.9e-3,
+            "{id}: {:?}",
+            motion.counts
+        );
+        // A jump that nobody told of.
+        let mut jump = |t: f64, _: &[f64], _: &[f64], tau: &mut [f64]| tau[0] = if t < 0.05 { 0.0 } else { 1e3 };
+        let run = |min_step, jump: &mut dyn Control| {
+            let settings = Settings { min_step, ..to(id, 0.2, 1e-9) };
+            Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[0.0], jump, &mut []).map(|_| ())
+        };
+        let Err(SimulateError::StepTooSmall { t, step, .. }) = run(1e-3, &mut jump) else { panic!("{id}") };
+        assert!(t <= 0.05 && t > 0.04 && step < 1e-3, "{id}: {t} {step}");
+        assert_eq!(run(0.0, &mut jump), Ok(()), "{id}");
+    }
+}
+
+/// Nothing of one motion is left in the next: neither torques that were held, nor derivatives, nor records.
+#[test]
+fn a_motion_is_the_same_whatever_the_simulation_did_before() {
+    let robot = model("chain", Base::Fixed);
+    let mut crossing = [Event::new("zero", |_, q: &[f64], _: &[f64]| q[0])];
+    for row in integrators() {
+        for steps in [1.0, 40.0] {
+            let settings = Settings { output: Output::Every(0.02), first_step: Some(0.04 / steps), ..stepping(row.id, 0.04, 0.04 / steps) };
+            let mut simulation = Simulation::new(&robot, settings.clone()).unwrap();
+            let mut pulled = Hold::new(|_: f64, _: &[f64], _: &[f64], tau: &mut [f64]| tau.fill(3.0), 0.01).unwrap();
+            let mut recording = simulation.recording();
+            simulation
+                .run_into(&[-0.03, 0.7, 1.5], &[2.0, -3.0, 1.0], &mut pulled, &mut crossing, &mut recording, &mut |_, _| true)
+                .unwrap();
+            assert_eq!(recording.events.len(), 1, "{}", row.name);
+            simulation.run(&[0.4, 1.0, -1.5], &[1.0, 0.0, 0.0], &mut NoTorque, &mut []).unwrap();
+            let (q, v) = ([0.4, -0.7, 0.5], [1.0, 0.5, -1.5]);
+            simulation.run_into(&q, &v, &mut NoTorque, &mut crossing, &mut recording, &mut |_, _| true).unwrap();
+            let alone = Simulation::new(&robot, settings).unwrap().run(&q, &v, &mut NoTorque, &mut crossing).unwrap();
+            assert_eq!(recording, alone, "{}", row.name);
+        }
+    }
+}
+
+/// τ = k_p·(target − q) + k_d·(rate − v): once under way, a body that is to follow a rate lags by what its own acceleration and friction ask for, which is nothing here.
+#[test]
+fn a_controller_with_rates_holds_them() {
+    let robot = slider();
+    let mut pd = Pd::new(&robot, vec![0.0], vec![0.0], vec![5.0]).unwrap().with_rates(&[0.7]);
+    let motion = Simulation::new(&robot, to(IntegratorId::dop853, 2.0, 1e-12)).unwrap().run(&[0.0], &[-0.2], &mut pd, &mut []).unwrap();
+    // v̇ = k_d (v_0 − v)
+    assert!((motion.v[1] - (0.7 - 0.9 * (-10.0_f64).exp())).abs() < 1e-11, "{}", motion.v[1]);
 }
 
 /// Stretch by stretch it is the same motion.

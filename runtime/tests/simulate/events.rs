@@ -4,11 +4,12 @@ use std::cell::Cell;
 
 use articulated::effect::{Applied, EffectId};
 use articulated::simulate::{
-    Action, Direction, Ended, Event, Hit, Impact, IntegratorId, NoTorque, Output, Settings, SimulateError, Simulation, integrators,
+    Action, Direction, Ended, Event, Hit, Impact, IntegratorId, NoTorque, Output, Settings, SimulateError, Simulation, StateError,
+    integrators,
 };
 use articulated::{Base, Dynamics, Origin, load_bytes};
 
-use crate::robots::{chain, model, one_joint, stepping, to};
+use crate::robots::{chain, handle, model, one_joint, stepping, to};
 
 const G: f64 = 9.81;
 
@@ -203,6 +204,86 @@ fn a_blow_hands_over_what_the_ball_and_the_mass_behind_the_point_say() {
     // Newton's law: what is left of the speed towards each other, reversed.
     let after = impact.strike(&q, &mut v, struck.ball_speed).unwrap();
     assert!((after.approach + restitution * approach).abs() < 1e-14 && after.impulse == 0.0);
+}
+
+/// In the order of time, whatever that of their list, and where one maps the state, the others of its time happen with it.
+#[test]
+fn events_of_one_step_happen_in_order() {
+    let still = one_joint("prismatic", 0.0).with_gravity([0.0; 3]);
+    let at = |name: &str, x: f64| Event::new(name, move |_, q: &[f64], _: &[f64]| q[0] - x);
+    let mut events = [at("last", 0.9), at("first", 0.2), at("middle", 0.5)];
+    let settings = stepping(IntegratorId::rk4, 1.0, 1.0);
+    let motion = Simulation::new(&still, settings.clone()).unwrap().run(&[0.0], &[1.0], &mut NoTorque, &mut events).unwrap();
+    let found: Vec<(usize, f64)> = motion.events.iter().map(|hit| (hit.event, hit.t)).collect();
+    assert!(found.iter().zip([(1, 0.2), (2, 0.5), (0, 0.9)]).all(|(a, b)| a.0 == b.0 && (a.1 - b.1).abs() < 1e-12), "{found:?}");
+    assert_eq!((found.len(), motion.counts.steps), (3, 1));
+    // Two that are zero at one place, found by different ways to within the tolerance.
+    for k in 1..50 {
+        let x = f64::from(k) / 51.0;
+        let counted = |by: f64| {
+            Action::Map(Box::new(move |_: f64, _: &mut [f64], v: &mut [f64]| {
+                v[0] += by;
+                Ok(None)
+            }))
+        };
+        let mut both = [
+            Event::new("steep", move |_, q: &[f64], _: &[f64]| (q[0] - x) * (3.0 + q[0])).action(counted(1.0)),
+            Event::new("bent", move |_, q: &[f64], _: &[f64]| (q[0] - x) * (9.0 - q[0])).action(counted(0.25)),
+        ];
+        let settings = Settings { end: 0.99, ..settings.clone() };
+        let motion = Simulation::new(&still, settings).unwrap().run(&[0.0], &[1.0], &mut NoTorque, &mut both).unwrap();
+        assert!(motion.events.len() == 2 && motion.events.iter().all(|hit| (hit.t - x).abs() < 3e-12), "{x}: {:?}", motion.events);
+        assert_eq!(motion.v[1], 2.25);
+    }
+}
+
+/// Between walls a billionth of a step apart two events take turns for ever.
+#[test]
+fn two_events_that_cause_each_other_are_an_error_too() {
+    let still = one_joint("prismatic", 0.0).with_gravity([0.0; 3]);
+    let back = || {
+        Action::Map(Box::new(|_: f64, _: &mut [f64], v: &mut [f64]| {
+            v[0] = -v[0];
+            Ok(None)
+        }))
+    };
+    let mut walls =
+        [Event::limit("left", 0, 0.0, f64::INFINITY).action(back()), Event::limit("right", 0, f64::NEG_INFINITY, 1e-13).action(back())];
+    let settings = Settings { max_steps: 5000, ..to(IntegratorId::dopri5, 1.0, 1e-9) };
+    let error = Simulation::new(&still, settings).unwrap().run(&[5e-14], &[1.0], &mut NoTorque, &mut walls).unwrap_err();
+    assert!(matches!(error, SimulateError::Chattering { t, .. } if t < 1e-9), "{error}");
+}
+
+/// What a map makes of the state has to be one.
+#[test]
+fn a_map_that_gives_no_state_is_an_error() {
+    let run = |change: &'static dyn Fn(&mut [f64], &mut [f64])| {
+        let action = Action::Map(Box::new(move |_: f64, q: &mut [f64], v: &mut [f64]| {
+            change(q, v);
+            Ok(None)
+        }));
+        let mut event = [Event::new("soon", |t, _: &[f64], _: &[f64]| t - 0.3).action(action)];
+        let q = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+        Simulation::new(&handle::Robot, to(IntegratorId::dopri5, 1.0, 1e-6)).unwrap().run(&q, &[0.1; 6], &mut NoTorque, &mut event)
+    };
+    let found = run(&|q, _| q[3..].fill(1.0)).unwrap_err();
+    assert_eq!(found, SimulateError::State(vec![StateError::Quaternion { index: 3, norm: 2.0 }]));
+    let found = run(&|_, v| v[4] = f64::INFINITY).unwrap_err();
+    assert_eq!(found, SimulateError::State(vec![StateError::NotFinite { vector: "v", index: 4, found: f64::INFINITY }]));
+    let motion = run(&|q, v| (q[0], v[3]) = (5.0, 0.0)).unwrap();
+    assert!(motion.q_at(1)[0] > 4.9);
+}
+
+/// Two bounds: a parabola between them that falls through zero at both.
+#[test]
+fn a_coordinate_leaves_its_limits_at_both_ends() {
+    let still = one_joint("prismatic", 0.0).with_gravity([0.0; 3]);
+    for (v, t) in [(1.0, 0.4), (-1.0, 0.8)] {
+        let mut limit = [Event::limit("limit", 0, -0.6, 0.6).action(Action::Stop)];
+        let settings = Settings { first_step: Some(0.1), max_step: 0.1, ..to(IntegratorId::dopri5, 2.0, 1e-9) };
+        let motion = Simulation::new(&still, settings).unwrap().run(&[0.2], &[v], &mut NoTorque, &mut limit).unwrap();
+        assert!(motion.events.len() == 1 && (motion.events[0].t - t).abs() < 1e-11, "{:?}", motion.events);
+    }
 }
 
 #[test]
