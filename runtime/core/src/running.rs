@@ -248,6 +248,128 @@ mod tests {
         }
     }
 
+    /// Multiples of the golden section, from 0 to 1.
+    fn numbers() -> impl Iterator<Item = f64> {
+        (1..).map(|k| (0.618_033_988_749_895 * f64::from(k)) % 1.0)
+    }
+
+    /// f on a box of states, in single precision: whatever is in the box has its result within the radius, and its evaluation within the error of that. `f` of the bounds, of
+    /// `f64` and of `f32`. Gives the largest parts of radius and error that were needed.
+    fn hold(
+        (midpoints, radii): ([f64; 2], [f64; 2]),
+        f: impl Fn(Single, Single) -> Single,
+        exact: impl Fn(f64, f64) -> f64,
+        found: impl Fn(f32, f32) -> f32,
+    ) -> (f64, f64) {
+        let bound = f(Single::given(midpoints[0], radii[0]), Single::given(midpoints[1], radii[1]));
+        let mut random = numbers();
+        let (mut far, mut off) = (0.0_f64, 0.0_f64);
+        for _ in 0..3000 {
+            // Both ends among them; numbers that are of single precision.
+            let part = |u: Option<f64>| ((u.unwrap_or(0.0) - 0.5) * 2.4).clamp(-1.0, 1.0);
+            let [x, y] = [0, 1].map(|k| (midpoints[k] + part(random.next()) * radii[k]) as f32);
+            if [x, y].iter().zip(midpoints.iter().zip(radii)).any(|(x, (m, r))| (f64::from(*x) - m).abs() > r) {
+                continue;
+            }
+            let (e, a) = (exact(f64::from(x), f64::from(y)), f64::from(found(x, y)));
+            assert!((e - bound.value).abs() <= bound.radius * (1.0 + 1e-12), "{x} {y}: {e} {bound:?}");
+            assert!((a - e).abs() <= bound.error, "{x} {y}: {a} {e} {bound:?}");
+            (far, off) = (far.max((e - bound.value).abs() / bound.radius), off.max((a - e).abs() / bound.error));
+        }
+        (far, off)
+    }
+
+    /// Where one more operation follows on one that has an error.
+    #[test]
+    fn bounds_of_every_operation_hold_on_boxes() {
+        let third = |x: Single| x * Single::from_f64(0.1);
+        let near = |x: f64| x * 0.1;
+        let off = |x: f32| x * 0.1_f32;
+        for r in [0.0, 1e-6, 0.04, 0.3] {
+            let wide = ([0.75, 0.625], [r, 0.5 * r]);
+            let tight = |(far, off): (f64, f64)| assert!(r < 0.01 || far > 0.01 && off > 0.02, "{r}: {far} {off}");
+            tight(hold(wide, |x, y| third(x) * y, |x, y| near(x) * y, |x, y| off(x) * y));
+            tight(hold(wide, |x, y| third(x) / y, |x, y| near(x) / y, |x, y| off(x) / y));
+            tight(hold(wide, |x, y| x / third(y), |x, y| x / near(y), |x, y| x / off(y)));
+            tight(hold(wide, |x, y| third(x) - y, |x, y| near(x) - y, |x, y| off(x) - y));
+            tight(hold(wide, |x, y| third(x).sqrt() + y, |x, y| near(x).sqrt() + y, |x, y| off(x).sqrt() + y));
+            tight(hold(wide, |x, y| third(x).atan2(y), |x, y| near(x).atan2(y), |x, y| off(x).atan2(y)));
+            tight(hold(wide, |x, y| y.atan2(third(x) - y), |x, y| y.atan2(near(x) - y), |x, y| y.atan2(off(x) - y)));
+            tight(hold(wide, |x, _| third(x).atan2(Single::from_f64(0.5)), |x, _| near(x).atan2(0.5), |x, _| off(x).atan2(0.5)));
+            tight(hold(wide, |x, y| Scalar::sin_cos(third(x)).0 + y, |x, y| near(x).sin() + y, |x, y| off(x).sin() + y));
+            tight(hold(wide, |x, y| Scalar::sin_cos(third(x) + y).1, |x, y| (near(x) + y).cos(), |x, y| (off(x) + y).cos()));
+        }
+    }
+
+    /// The worst that operands can be: anywhere in their radii, and evaluated with all of their errors, to either side.
+    #[test]
+    fn errors_and_radii_of_operands_are_carried_in_full() {
+        type Wide = Running<53, 0>;
+        let ends = [-1.0, 0.0, 1.0];
+        let all = |f: &dyn Fn(Wide, Wide) -> Wide, exact: &dyn Fn(f64, f64) -> f64, [x, y]: [Wide; 2]| {
+            let bound = f(x, y);
+            let (mut far, mut off) = (0.0_f64, 0.0_f64);
+            for [a, b, c, d] in ends
+                .iter()
+                .flat_map(|a| ends.map(|b| [*a, b]))
+                .flat_map(|[a, b]| ends.iter().flat_map(move |c| ends.map(|d| [a, b, *c, d])))
+            {
+                let (u, v) = (x.value + a * x.radius, y.value + b * y.radius);
+                let (e, found) = (exact(u, v), exact(u + c * x.error, v + d * y.error));
+                (far, off) = (far.max((e - bound.value).abs()), off.max((found - e).abs()));
+            }
+            let slack = 1e-14 * (1.0 + bound.value.abs());
+            assert!(far <= bound.radius + slack && off <= bound.error + slack, "{far} {off} {bound:?}");
+            // And not much more than in full.
+            assert!(bound.radius <= 8.0 * far + slack && bound.error <= 8.0 * off + slack, "{far} {off} {bound:?}");
+        };
+        for (r, e) in [(0.0, 0.25), (0.25, 0.0), (0.125, 0.125), (0.3, 0.1)] {
+            let of = |value: f64| Wide { value, radius: r, error: e };
+            for pair in [[of(1.0), of(-0.75)], [of(-2.0), of(3.0)], [of(0.75), of(0.75)]] {
+                all(&|x, y| x * y, &|x, y| x * y, pair);
+                all(&|x, y| x / y, &|x, y| x / y, pair);
+                all(&|x, y| x - y, &|x, y| x - y, pair);
+                all(&|x, _| Scalar::abs(x).sqrt(), &|x, _| x.abs().sqrt(), pair);
+                all(&|x, _| x.atan2(Wide::given(2.0, 0.0)), &|x, _| x.atan2(2.0), pair);
+            }
+        }
+        // A divisor that may be evaluated to nothing.
+        assert_eq!((Wide::one() / Wide { value: 0.5, radius: 0.25, error: 0.25 }).error, f64::INFINITY);
+        // What cannot be written is not known: a third in double precision, a tenth in single.
+        let third = Wide::one() / Wide::given(3.0, 0.0);
+        assert!(third.radius >= 1.86e-17 && third.radius < 1e-15, "{third:?}");
+        assert!((0.1 - f64::from(0.1_f32)).abs() <= Single::from_f64(0.1).error && Single::from_f64(0.1).error < 1e-8);
+        hold(([0.0, 0.0], [0.5, 0.0]), |x, _| Scalar::sin_cos(x).0, |x, _| x.sin(), |x, _| x.sin());
+    }
+
+    /// What is chosen one way here and the other way there, and what is the same either way.
+    #[test]
+    fn a_choice_that_is_not_certain_allows_for_both() {
+        let ramp = |x: Single, y: Single| Single::select((x - y).positive(), x - y, Single::zero());
+        let step = |x: Single, y: Single| Single::select((x - y).positive(), x, -y);
+        for (x, r) in [(0.5, 0.0), (0.5, 0.1), (0.55, 0.1), (0.45, 0.1), (0.9, 0.1), (0.1, 0.1)] {
+            hold(([x, 0.5], [r, r]), ramp, |x, y| (x - y).max(0.0), |x, y| (x - y).max(0.0));
+            hold(([x, 0.5], [r, r]), step, |x, y| if x > y { x } else { -y }, |x, y| if x > y { x } else { -y });
+        }
+        // Where rounding alone may turn it round, the result may be off by the jump; where it may not, it is off by nothing.
+        let tenth = |x: f64| Single::given(x, 0.0) * Single::from_f64(0.1);
+        let jump = |x: f64| Single::select((tenth(x) - Single::given(0.05, 0.0)).positive(), Single::one(), Single::zero());
+        assert!(jump(0.5).error >= 1.0 && jump(0.5001).error < 1e-6, "{:?} {:?}", jump(0.5), jump(0.5001));
+        // From one side of the cut of the angle to the other.
+        assert!(Single::given(0.0, 0.1).atan2(Single::given(-1.0, 0.0)).radius >= core::f64::consts::PI);
+    }
+
+    #[test]
+    fn sines_of_fewer_digits_and_results_of_fewer_bits_are_allowed_for() {
+        let x = Running::<53, 7>::given(0.7, 0.0);
+        let error = Scalar::sin_cos(x).0.error;
+        assert!((1e-7..1.001e-7).contains(&error), "{error:e}");
+        let double = Running::<53, 0>::given(1.0, 0.0) / Running::given(3.0, 0.0);
+        let rounded = f64::from((1.0_f64 / 3.0) as f32);
+        assert!((rounded - 1.0 / 3.0).abs() <= double.rounded_to(24) && double.rounded_to(24) < 2.1e-8, "{:e}", double.rounded_to(24));
+        assert!((double.rounded_to(53) - double.error) <= 4e-17);
+    }
+
     #[test]
     fn a_box_holds_what_is_in_it() {
         let of = |x: f64, r: f64| Running::<53, 0>::given(x, r);
