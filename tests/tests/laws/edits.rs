@@ -191,6 +191,42 @@ fn a_quaternion_is_normalised_if_it_nearly_is_one() {
     assert!((z.hypot(*w) - 1.0).abs() < 1e-15 && (z / w - 0.6 / 0.8001).abs() < 1e-15);
 }
 
+/// A norm that is off by the fourth digit is a matter of writing, one that is off by the third is not.
+#[test]
+fn a_quaternion_may_be_off_by_a_thousandth() {
+    for (by, right) in [(9e-4, true), (-9e-4, true), (1.1e-3, false), (-1.1e-3, false)] {
+        let mut robot = read(ARM);
+        robot.joints[0].kind = JointKind::Spherical;
+        let found = robot.lock("elbow", &[0.0, 0.6 * (1.0 + by), 0.0, 0.8 * (1.0 + by)]);
+        assert_eq!(found.is_ok(), right, "{by}: {found:?}");
+    }
+}
+
+/// c = 3 b + 0.7 and b = 2 a + 0.3, with a locked at 0.5: where the robot that is not locked has them there.
+#[test]
+fn who_follows_a_locked_joint_through_another_stops_where_they_put_it() {
+    let joint = |name: &str, parent: &str, child: &str, follows: &str| {
+        format!(
+            r#"<link name="{child}"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+            <joint name="{name}" type="continuous"><parent link="{parent}"/><child link="{child}"/><origin xyz="0.3 0.1 0"/><axis xyz="0 1 0"/>{follows}</joint>"#
+        )
+    };
+    let text = [
+        joint("a", "base", "upper", ""),
+        joint("b", "upper", "fore", r#"<mimic joint="a" multiplier="2" offset="0.3"/>"#),
+        joint("c", "fore", "hand", r#"<mimic joint="b" multiplier="3" offset="0.7"/>"#),
+    ];
+    let mut robot = read(&format!(r#"<robot name="chain"><link name="base"/>{}</robot>"#, text.concat()));
+    let free = Model::new(&robot, Base::Fixed).unwrap();
+    robot.lock("a", &[0.5]).unwrap();
+    let locked = Model::new(&robot, Base::Fixed).unwrap();
+    assert_eq!((free.nq, locked.nq), (1, 0));
+    let (found, expected) = (placements(&locked, &[]), placements(&free, &[0.5]));
+    assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-15), "{found:?} {expected:?}");
+    // The hand is turned by a + b + c = 0.5 + 1.3 + 4.6.
+    assert!((found[found.len() - 12] - 6.4_f64.cos()).abs() < 1e-15);
+}
+
 #[test]
 fn payloads_that_cannot_be_are_refused() {
     let mut arm = read(ARM);

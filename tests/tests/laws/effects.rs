@@ -217,6 +217,48 @@ fn effects_that_cannot_be_had_are_refused() {
     assert!(arm.with_effects(&twice).expect_err("given twice")[0].to_string().contains("twice"));
 }
 
+/// What would give energy for nothing, or divide by it, or has no place to be.
+#[test]
+fn effects_that_are_half_right_are_refused_too() {
+    let arm = Case::bundled(articulated_models::robot("ur5_like").expect("a bundled robot")).model;
+    let (joint, link) = (arm.joints[0].name.clone(), arm.frames[3].name.clone());
+    let on = |effect: EffectId, parameters: &[f64]| {
+        let on = if effect.row().on == articulated_core::effect::On::Joint { &joint } else { &link };
+        Applied { effect, on: on.clone(), at: Default::default(), parameters: parameters.to_vec() }
+    };
+    let told = |one: Applied| match arm.clone().with_effects(std::slice::from_ref(&one)) {
+        Err(errors) => errors[0].to_string(),
+        Ok(_) => panic!("{one:?}"),
+    };
+    // Zero where a number has to be greater.
+    assert!(told(on(EffectId::friction, &[1.0, 0.0])).contains("speed: found 0, expected a finite number above 0"));
+    assert!(told(on(EffectId::motor, &[1.0, 0.0, 1.0, 1.0, 1e-3])).contains("speed: found 0"));
+    // Σ ≥ 0 in its blocks alone is not enough: m w² + I ω² + 2 c ω w < 0 for some motion with c² > I m.
+    let coupled = |c: f64| {
+        [[2.0, 0.0, 0.0, 2.0, 0.0, 2.0].as_slice(), &[3.0, 0.0, 0.0, 3.0, 0.0, 3.0], &[0.0, c, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]].concat()
+    };
+    assert!(told(on(EffectId::added_mass, &coupled(2.5))).contains("semidefinite"));
+    assert!(arm.clone().with_effects(&[on(EffectId::added_mass, &coupled(2.4))]).is_ok());
+    let mut far = on(EffectId::drag, &[1.0]);
+    far.at.xyz[1] = f64::INFINITY;
+    assert!(told(far).contains("xyz or rpy: found inf"));
+    // Nothing at all still has to be on something that is there, and then is nothing.
+    let nothing = on(EffectId::damping, &[0.0]);
+    assert!(told(Applied { on: "elbo_joint".into(), ..nothing.clone() }).contains("no joint of this name"));
+    let count = |applied: &[Applied]| {
+        let with = arm.clone().with_effects(applied).expect("effects that can be had");
+        with.bodies.iter().map(|b| b.effects.joint.len() + b.effects.body.len()).sum::<usize>()
+    };
+    assert_eq!(count(&[nothing, on(EffectId::drag, &[0.0]), on(EffectId::buoyancy, &[0.0, 1000.0])]), 0);
+    assert_eq!(count(&[on(EffectId::armature, &[1.0, -3.0]), on(EffectId::drag, &[0.1])]), 2);
+    let ball = Case::bundled(articulated_models::robot("quadruped").expect("a bundled robot")).model;
+    for (effect, parameters) in [(EffectId::spring, vec![1.0, 0.0]), (EffectId::limit, vec![0.0, 1.0, 1.0, 0.0])] {
+        let floating = Applied { effect, on: ball.joints[0].name.clone(), at: Default::default(), parameters };
+        let errors = ball.clone().with_effects(&[floating]).expect_err("a floating joint has no coordinate for each degree of freedom");
+        assert!(errors[0].to_string().contains("needs a coordinate"), "{}", errors[0]);
+    }
+}
+
 #[test]
 fn every_effect_has_a_law_of_its_own() {
     assert_eq!(effects().len(), 11);

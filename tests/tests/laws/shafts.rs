@@ -97,6 +97,21 @@ fn the_lowest_frequency_becomes_that_of_a_beam() {
     assert!(fine.abs() < 2e-3 && (coarse / fine - 4.0).abs() < 0.2, "{coarse} {fine}");
 }
 
+/// Whatever its direction, a rod has m ℓ²/12 about its middle across it, and nothing about itself.
+#[test]
+fn rods_are_thin() {
+    let mut description = rod([0.3, -0.5, 0.7], 0.2);
+    description.shaft(&shaft(3, 0.06)).unwrap();
+    for link in &description.links[2..] {
+        let Inertial { origin, mass, inertia: [xx, xy, xz, yy, yz, zz] } = link.inertial.unwrap();
+        let [x, y, z] = origin.xyz;
+        let across = mass * (x * x + y * y + z * z) / 3.0;
+        let about_itself = [xx * x + xy * y + xz * z, xy * x + yy * y + yz * z, xz * x + yz * y + zz * z];
+        assert!(about_itself.iter().all(|m| m.abs() < 1e-15 * across), "{}: {about_itself:?}", link.name);
+        assert!((xx + yy + zz - 2.0 * across).abs() < 1e-15 * across && xx > 0.0 && yy > 0.0 && zz > 0.0, "{}", link.name);
+    }
+}
+
 /// τ = k q on each of the 2n coordinates, and E I damping/ℓ times the rate.
 #[test]
 fn every_joint_has_its_springs_in_both_directions() {

@@ -194,6 +194,11 @@ mod tests {
             assert!(!is([1.0, 0.0, 0.0, 1.0, 0.0, 2.1]) && !is([-1.0, 0.0, 0.0, 1.0, 0.0, 1.0]) && !is([1.0, 0.6, 0.0, 1.0, 0.0, 1.0]));
             assert!(is([1.0, 0.4, 0.0, 1.0, 0.0, 1.0]));
         }
+        // With x' = 0.6 between all axes no two of them give it away, nor does one alone where there is no extent along the third.
+        assert!(is_inertia([2.0, -0.6, -0.6, 2.0, -0.6, 2.0]) && !is_inertia([2.0, 0.6, 0.6, 2.0, 0.6, 2.0]));
+        for flat in [[2.0, 0.0, 0.0, 1.0, 1.1, 1.0], [1.0, 0.0, 1.1, 2.0, 0.0, 1.0], [1.0, 1.1, 0.0, 1.0, 0.0, 2.0]] {
+            assert!(!is_inertia(flat) && is_inertia(flat.map(|x| if x == 1.1 { 0.9 } else { x })), "{flat:?}");
+        }
         assert!(is_inertia([0.0; 6]) && !is_inertia([f64::NAN, 0.0, 0.0, 1.0, 0.0, 1.0]) && !is_inertia([0.0, 0.1, 0.0, 0.0, 0.0, 0.0]));
     }
 }
