@@ -221,7 +221,32 @@ fn arc(x: f64) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::arc;
+    use super::{Free, Manifold, TAU, arc};
+
+    /// A slide, a floating joint, a hinge, a ball joint.
+    fn mixed() -> Manifold {
+        Manifold { nq: 13, nv: 11, free: vec![Free { q: 1, v: 1, moves: true }, Free { q: 9, v: 8, moves: false }] }
+    }
+
+    #[test]
+    fn errors_are_relative_to_coordinates_turns_and_distances() {
+        let q = [-3.0, 2.0, -3.0, 6.0, 0.5, 0.5, 0.5, 0.5, -0.25, 0.5, 0.5, 0.5, 0.5];
+        let mut out = [f64::NAN; 11];
+        mixed().magnitudes(&q, &mut out);
+        assert_eq!(out, [3.0, 1.0, 1.0, 1.0, 7.0, 7.0, 7.0, 0.25, 1.0, 1.0, 1.0]);
+    }
+
+    #[test]
+    fn beyond_a_whole_turn_there_are_no_rates() {
+        for (at, rates) in [(1, 1..7), (8, 8..11)] {
+            for (turn, known) in [(0.999 * TAU, true), (1.001 * TAU, false)] {
+                let (mut u, mut out) = ([0.0; 11], [0.0; 11]);
+                u[at + 1] = turn;
+                mixed().rates(&u, &[0.5; 11], &mut out);
+                assert!((0..11).all(|i| out[i].is_finite() == (known || !rates.contains(&i))), "{turn}: {out:?}");
+            }
+        }
+    }
 
     #[test]
     fn series_and_closed_form_of_the_arc_meet() {

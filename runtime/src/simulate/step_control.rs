@@ -154,4 +154,14 @@ mod tests {
         assert_eq!(controller.accept(1e-9), Some(1.0));
         assert_eq!(controller.accept(1e-9), Some(10.0));
     }
+
+    /// h·0.9·e_n^−(1/k − ¾β)·e_{n−1}^β, Hairer & Wanner 1996, (IV.2.43).
+    #[test]
+    fn the_error_before_has_its_say() {
+        let mut controller = Controller::new(5.0, 0.04, 1e-9, 1e9);
+        controller.accept(0.5).unwrap();
+        let factor = controller.accept(0.02).unwrap();
+        assert!((factor - 0.9 * 0.02_f64.powf(-0.17) * 0.5_f64.powf(0.04)).abs() < 1e-14, "{factor}");
+        assert!((controller.again(3.0) - 0.9 * 3.0_f64.powf(-0.17)).abs() < 1e-14);
+    }
 }

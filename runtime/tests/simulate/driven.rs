@@ -190,6 +190,18 @@ fn outputs_between_steps_are_as_good_as_steps() {
     }
 }
 
+/// A force that grows with time: velocities are parabolas, which the curve of a step follows from its slopes at both ends.
+#[test]
+fn curves_know_the_time_of_their_slopes() {
+    let mut growing = |t: f64, _: &[f64], _: &[f64], tau: &mut [f64]| tau[0] = 6.0 * t;
+    for id in [IntegratorId::lie_midpoint, IntegratorId::rk4, IntegratorId::dopri5, IntegratorId::dop853] {
+        let settings = Settings { output: Output::Every(0.07), ..stepping(id, 1.0, 0.2) };
+        let motion = Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[0.0], &mut growing, &mut []).unwrap();
+        let wrong = motion.t.iter().zip(&motion.v).map(|(t, v)| (v - 3.0 * t * t).abs()).fold(0.0, f64::max);
+        assert!(wrong < 1e-14, "{id}: {wrong:e}");
+    }
+}
+
 /// Records are where they were asked for: none twice, none left out, whatever rounding makes of the times.
 #[test]
 fn outputs_come_at_their_times() {

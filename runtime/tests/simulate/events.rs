@@ -286,6 +286,46 @@ fn a_coordinate_leaves_its_limits_at_both_ends() {
     }
 }
 
+/// What an event that strikes records is the ball's speed, and the motion goes on with what is left; what cannot strike is refused.
+#[test]
+fn an_event_that_strikes_gives_the_speed_of_the_ball() {
+    let robot = model("chain", Base::Fixed);
+    let blow = || Impact::new(&robot, 3, [0.0, 0.02, -0.4], [0.3, -0.5, 0.2], 0.046, 0.78).unwrap();
+    let (q, v) = ([0.4, -0.7, 0.5], [1.0, 0.5, -1.5]);
+    let sign = blow().strike(&q, &mut v.clone(), 0.0).unwrap().approach.signum();
+    let v = v.map(|v| v * sign);
+    let mut struck = [Event::new("now", |t, _: &[f64], _: &[f64]| t - 0.01).action(blow().action())];
+    let run = |end: f64, events: &mut [Event]| {
+        Simulation::new(&robot, to(IntegratorId::dop853, end, 1e-12)).unwrap().run(&q, &v, &mut NoTorque, events).unwrap()
+    };
+    let (motion, before) = (run(0.01 + 1e-9, &mut struck), run(0.01, &mut []));
+    let mut after = before.v_at(1).to_vec();
+    let expected = blow().strike(before.q_at(1), &mut after, 0.0).unwrap();
+    assert!((motion.events[0].value.unwrap() - expected.ball_speed).abs() < 1e-9 && expected.ball_speed > 0.1, "{:?}", motion.events);
+    assert!(motion.v_at(1).iter().zip(&after).all(|(a, b)| (a - b).abs() < 1e-6), "{:?} {after:?}", motion.v_at(1));
+    for (normal, mass, restitution, what) in [
+        ([0.0; 3], 1.0, 0.5, "normal"),
+        ([1.0; 3], 0.0, 0.5, "mass of the ball"),
+        ([1.0; 3], 1.0, 1.1, "restitution"),
+        ([1.0; 3], 1.0, -0.1, "restitution"),
+    ] {
+        let Err(SimulateError::State(all)) = Impact::new(&robot, 3, [0.0; 3], normal, mass, restitution) else { panic!("{what}") };
+        assert!(matches!(all[..], [StateError::Value { what: found, .. }] if found == what), "{all:?}");
+    }
+}
+
+/// A motion that stops where something is recorded anyway has one record of it.
+#[test]
+fn a_stop_at_a_time_of_output_is_recorded_once() {
+    let still = one_joint("prismatic", 0.0).with_gravity([0.0; 3]);
+    for k in 1..20 {
+        let mut stop = [Event::new("stop", move |_, q: &[f64], _: &[f64]| q[0] - 0.1 * f64::from(k)).action(Action::Stop)];
+        let settings = Settings { output: Output::Every(0.1), ..to(IntegratorId::dopri5, 2.0, 1e-9) };
+        let motion = Simulation::new(&still, settings).unwrap().run(&[0.0], &[1.0], &mut NoTorque, &mut stop).unwrap();
+        assert!(motion.t.windows(2).all(|w| w[1] > w[0] + 0.05) && motion.t.len() == k as usize + 1, "{k}: {:?}", motion.t);
+    }
+}
+
 #[test]
 fn one_who_watches_can_end_it() {
     let robot = one_joint("prismatic", 0.0);

@@ -405,8 +405,10 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         self.known.record(&mut self.system, run.control, &self.point, run.recording)
     }
 
-    /// As [`Self::record_here`], unless this time is recorded already.
+    /// As [`Self::record_here`], unless this time is recorded already, as that of an output that is a rounding away.
     fn record_end(&mut self, run: &mut Run) -> Result<(), SimulateError> {
-        if run.recording.t.last() == Some(&self.t) { Ok(()) } else { self.record_here(run) }
+        let near = if self.settings.output == Output::Steps { 0.0 } else { rounding(self.t) };
+        let recorded = run.recording.t.last().is_some_and(|t| (self.t - t).abs() <= near);
+        if recorded { Ok(()) } else { self.record_here(run) }
     }
 }
