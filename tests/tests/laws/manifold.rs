@@ -184,6 +184,18 @@ fn a_limit_that_is_open_on_one_side_is_kept_on_the_other() {
     }
 }
 
+/// URDF gives bounds of a continuous joint no meaning: it turns all the way round, whatever is written there.
+#[test]
+fn a_continuous_joint_has_no_limits() {
+    let text = r#"<robot name="r"><link name="base"/>
+        <link name="arm"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+        <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/><limit lower="-0.1" upper="0.2" effort="1" velocity="1"/></joint></robot>"#;
+    let mut robot = articulated_tests::case::read(text);
+    robot.joints[0].limit = Some(Limit { lower: -0.1, upper: 0.2, effort: 1.0, velocity: 1.0 });
+    let model = Model::new(&robot, articulated_core::description::Base::Fixed).unwrap();
+    assert_eq!(model.joints[0].limit, None);
+}
+
 #[test]
 fn random_configurations_keep_to_the_limits_and_are_rotations() {
     let greatest = 1.0 - U;

@@ -1,6 +1,7 @@
 //! What every equation of motion M(q)·a + h(q, v) = τ is made of.
 
-use articulated_core::description::Base;
+use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, Origin};
+use articulated_core::model::Model;
 use articulated_core::model::pass::model_passes;
 use articulated_tests::case::{Case, State, for_each_bundled, for_each_tree, inverse_dynamics, mass_matrix, placements};
 use articulated_tests::measure::{distance, error, plus, scale, torque_scale};
@@ -119,6 +120,24 @@ fn joints_that_move_no_mass_are_found() {
             }
         }
     });
+}
+
+/// A rod that hangs in a ball joint and points along one of its axes does not feel that turn, though it feels the other two.
+#[test]
+fn a_rod_in_a_ball_joint_can_turn_about_itself() {
+    for (axis, inertia) in [(0, [0.0, 0.0, 0.0, 1.0, 0.0, 1.0]), (1, [1.0, 0.0, 0.0, 0.0, 0.0, 1.0]), (2, [1.0, 0.0, 0.0, 1.0, 0.0, 0.0])] {
+        let link = |name: &str, inertial| Link { name: name.into(), inertial };
+        let rod = |inertia| Some(Inertial { origin: Origin::default(), mass: 1.0, inertia });
+        let ball = |inertia| {
+            let joint = Joint { name: "ball".into(), kind: JointKind::Spherical, parent: 0, child: 1, ..Joint::default() };
+            let robot = Description { name: "rod".into(), links: vec![link("base", None), link("rod", rod(inertia))], joints: vec![joint] };
+            Model::new(&robot, Base::Fixed).unwrap()
+        };
+        let model = ball(inertia);
+        assert_eq!(mass_matrix(&model, &[0.1, 0.7, -0.1, 0.7]).row(axis).amax(), 0.0);
+        assert_eq!(model.massless_joints(), [1]);
+        assert!(ball([1.0, 0.0, 0.0, 1.0, 0.0, 1.0]).massless_joints().is_empty());
+    }
 }
 
 fn passes_keep_the_physics(case: &Case, random: &mut Random) {

@@ -1,0 +1,94 @@
+//! What scenes say, as numbers in the order of a robot.
+
+use articulated_core::description::{Base, Description};
+use articulated_core::effect::EffectId;
+use articulated_core::model::{FLOATING_BASE, Model};
+use articulated_core::spatial::{from_quaternion, from_rpy};
+use articulated_scene::{Controller, Edited, Scene};
+
+/// Two hinges, the second of which has limits, damping and an effort; a ball; a slide that follows the first; a link without mass at its end.
+const ROBOT: &str = r#"<robot name="r">
+  <link name="trunk"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <link name="a"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <link name="b"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <link name="c"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <link name="tip"/>
+  <joint name="one" type="continuous"><parent link="trunk"/><child link="a"/><axis xyz="0 0 1"/></joint>
+  <joint name="two" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 1 0"/><dynamics damping="0.5" friction="0.25"/>
+    <limit lower="-1" upper="2" effort="7" velocity="3"/></joint>
+  <joint name="three" type="continuous"><parent link="b"/><child link="c"/><axis xyz="1 0 0"/><mimic joint="one" multiplier="2" offset="0"/></joint>
+  <joint name="end" type="fixed"><parent link="c"/><child link="tip"/></joint>
+</robot>"#;
+
+fn robot() -> Description {
+    articulated_urdf::read(ROBOT.as_bytes(), &articulated_urdf::Options::default()).unwrap().description
+}
+
+fn model(base: Base) -> Model<f64> {
+    Model::new(&robot(), base).unwrap()
+}
+
+fn scene(text: &str) -> Scene {
+    Scene::read("s.toml", text).unwrap_or_else(|e| panic!("{e:?}"))
+}
+
+#[test]
+fn a_base_stands_as_its_angles_say() {
+    let rpy = [0.3, -0.7, 1.9];
+    let text = "base = \"floating\"\n[initial]\nq = { one = 0.25, two = -0.5 }\nv = { two = 4 }\n\
+                base = { xyz = [1, 2, 3], rpy = [0.3, -0.7, 1.9], angular = [0.1, 0.2, 0.3], linear = [4, 5, 6] }";
+    let (q, v) = scene(text).start(&model(Base::Floating)).unwrap();
+    assert_eq!((&q[..3], &q[7..]), (&[1.0, 2.0, 3.0][..], &[0.25, -0.5][..]));
+    assert_eq!(v, [0.1, 0.2, 0.3, 4.0, 5.0, 6.0, 0.0, 4.0]);
+    let turned = from_quaternion([q[3], q[4], q[5], q[6]]) - from_rpy(rpy);
+    assert!(turned.amax() < 1e-15, "{turned}");
+}
+
+/// A gain for all is for those that something could drive, and one by name is before it.
+#[test]
+fn gains_are_those_of_their_joints() {
+    let text =
+        "base = \"floating\"\n[control]\nkind = \"pd\"\nkp = 3\nkd = { \"*\" = 5, two = 7 }\ntorque = { one = -1 }\ntarget = { two = 0.5 }";
+    let found = scene(text).controller(&model(Base::Floating), &mut |_| Err("no files".into())).unwrap();
+    let Controller::Pd { kp, kd, torque, .. } = found else { panic!("{found:?}") };
+    let base = [0.0; 6];
+    assert_eq!(model(Base::Floating).joints[0].name, FLOATING_BASE);
+    assert_eq!(kp, [&base[..], &[3.0, 3.0]].concat());
+    assert_eq!(kd, [&base[..], &[5.0, 7.0]].concat());
+    assert_eq!(torque, [&base[..], &[-1.0, 0.0]].concat());
+}
+
+/// Of each effect: on what, and its numbers.
+fn on(text: &str) -> Vec<(EffectId, String, Vec<f64>)> {
+    let description = robot();
+    let edited = Edited { description: &description, base: Base::Fixed, unused: &[], shafts: &[] };
+    let resolved = scene(text).resolve(&edited).unwrap_or_else(|e| panic!("{e:?}"));
+    resolved.effects.into_iter().map(|a| (a.effect, a.on, a.parameters)).collect()
+}
+
+#[test]
+fn what_is_asked_of_all_is_had_by_those_that_can() {
+    let named = |effect, on: &str, numbers: &[f64]| (effect, on.to_owned(), numbers.to_vec());
+    // A name goes before all; what a name does not say, all do.
+    let friction = on("[effects.friction]\n\"*\" = { friction = 2, speed = 0.5 }\ntwo = { friction = 3 }");
+    let (f, d) = (EffectId::friction, EffectId::damping);
+    assert_eq!(friction, [named(f, "one", &[2.0, 0.5]), named(f, "two", &[3.0, 0.5]), named(f, "three", &[2.0, 0.5])]);
+    // From the URDF, where it says so.
+    assert_eq!(on("[effects]\ndamping = \"urdf\""), [named(d, "two", &[0.5])]);
+    assert_eq!(on("[effects.damping]\n\"*\" = \"urdf\"\none = 4"), [named(d, "one", &[4.0]), named(d, "two", &[0.5])]);
+    let motor = on("[effects.motor]\n\"*\" = { torque = 5, speed = 6 }");
+    // A joint that follows another has no motor of its own.
+    assert_eq!(motor.iter().map(|m| m.1.as_str()).collect::<Vec<_>>(), ["one", "two"]);
+    let motor = on("[effects]\nmotor = \"urdf\"");
+    assert!(motor.len() == 1 && motor[0].2[..2] == [7.0, 3.0], "{motor:?}");
+    // Off where a name says so, though all have it, and a number that nobody gives is not looked for where nobody said.
+    assert_eq!(on("[effects.damping]\n\"*\" = 1\ntwo = \"off\"").iter().map(|d| d.1.as_str()).collect::<Vec<_>>(), ["one", "three"]);
+    let description = robot();
+    let edited = Edited { description: &description, base: Base::Fixed, unused: &[], shafts: &[] };
+    let wrong = scene("[effects.motor]\ntwo = { gear = 2 }").resolve(&edited).unwrap_err().errors;
+    assert!(wrong.len() == 1 && wrong[0].to_string().contains("no torque for joint \"two\""), "{wrong:?}");
+    // Nothing pulls at a link without mass that was not named, nor at one that stands still.
+    let drag = on("[effects.drag]\n\"*\" = { coefficient = 1 }");
+    assert_eq!(drag.iter().map(|m| m.1.as_str()).collect::<Vec<_>>(), ["a", "b", "c"]);
+    assert_eq!(on("[effects.drag]\ntip = { coefficient = 2 }"), [named(EffectId::drag, "tip", &[2.0])]);
+}
