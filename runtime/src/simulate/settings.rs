@@ -217,7 +217,9 @@ mod tests {
         };
         // Near 1e15 s the time is a multiple of 1/8 s, near 1e12 s of 1/8192 s.
         assert_eq!([at(1e15, 1e15 + 4.0), at(1e12, 1e12 + 4.0)], [vec!["step"], vec![]]);
+    }
 
+    #[test]
     fn what_does_not_go_together_is_named() {
         let shape = Shape { nq: 1, nv: 1, frames: 1, links: 1 };
         let right = Settings {
