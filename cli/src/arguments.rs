@@ -147,7 +147,7 @@ pub(crate) struct RobotArguments {
     /// Gravity in the base frame, m/s² [default: 0,0,-9.81]
     #[arg(long, value_name = "X,Y,Z", value_parser = gravity, allow_hyphen_values = true)]
     pub(crate) gravity: Option<Gravity>,
-    /// Take inertias that no body can have, with a warning
+    /// Take inertias with a moment below zero, with a warning (moments of which one exceeds the sum of the others always are)
     #[arg(long)]
     pub(crate) allow_unphysical_inertia: bool,
     /// Take an angle of the file within TOL rad of a multiple of π/2 as that multiple

@@ -46,7 +46,7 @@ pub struct Options {
     pub lock: Vec<(String, Vec<f64>)>,
     /// What the robot is subject to besides gravity; on joints and links of appended robots too.
     pub effects: Vec<Applied>,
-    /// Accept inertias that no body can have.
+    /// Accept inertias with a principal moment below zero, with a warning. (Moments of which one exceeds the sum of the others are accepted with a warning anyway.)
     pub allow_unphysical_inertia: bool,
     /// Take angles this near (rad) to a multiple of π/2 as that multiple; every one is reported. `None`: never.
     pub snap_angles: Option<f64>,

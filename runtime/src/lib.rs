@@ -3,6 +3,23 @@
 //! `articulated` reads one robot's URDF when your crate is built and writes that robot's dynamics out as straight-line Rust
 //! ([`robot!`], or a build script with the crate `articulated-codegen`). The same algorithms run here generically, on any robot loaded at run time
 //! ([`load`], or [`describe`] to lock its joints, load it or append others first). Both sides implement the trait [`Dynamics`].
+//!
+//! ```
+//! use articulated::{Base, Dynamics};
+//!
+//! let urdf = r#"<robot name="pendulum"><link name="base"/><link name="bob"><inertial><origin xyz="0 0 -0.5"/><mass value="2"/>
+//!     <inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>
+//!     <joint name="swing" type="continuous"><parent link="base"/><child link="bob"/><axis xyz="0 1 0"/></joint></robot>"#;
+//! let model = articulated::load_bytes("pendulum.urdf", urdf.as_bytes(), Base::Fixed)?;
+//! let (mut ws, mut tau) = (model.workspace(), [0.0]);
+//! model.gravity_torque(&mut ws, &[0.5], &mut tau)?;
+//! assert!((tau[0] - 2.0 * 9.81 * 0.5 * 0.5_f64.sin()).abs() < 1e-14); // N·m
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Conventions: SI units and radians. Vectors of six are (angular; linear). Joints are ordered depth-first in the URDF's order; names are in [`Model::joints`]. A floating base comes
+//! first: of q its position and quaternion (x, y, z, w); of v, a and τ its [ω; v], the rates of these, and [m; f], all in its own axes. Matrices are given row by row. Gravity is
+//! (0, 0, −9.81) m/s² in the base frame unless [`Model::with_gravity`] says otherwise.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 pub use articulated_core::algorithm::checked::{Factor, Singular, Solver, Unsolved, checked_forward_dynamics};

@@ -78,7 +78,7 @@ pub struct Code {
     pub append: Vec<Append>,
     /// Rust names to use: (name in the URDF, name in Rust).
     pub rename: Vec<(String, String)>,
-    /// Accept inertias that no body can have.
+    /// Accept inertias with a principal moment below zero.
     pub allow_unphysical_inertia: Option<bool>,
     /// Take angles this near to a multiple of π/2 as that, rad.
     pub snap_angles: Option<f64>,
@@ -258,7 +258,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         required: false,
         value: "true or false",
         default: "false",
-        what: "accept inertias that no body can have",
+        what: "accept inertias with a moment below zero; those of which one exceeds the sum of the others are accepted anyway, both with a warning",
         read: |s, spot, log| s.code.allow_unphysical_inertia = spot.boolean(log),
     },
     Row {

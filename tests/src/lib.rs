@@ -24,4 +24,9 @@ pub mod virtual_power;
 #[doc = include_str!("../../README.md")]
 pub struct Readme;
 
+/// The recipes of `docs/conventions.md`.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/conventions.md")]
+pub struct Recipes;
+
 pub use articulated_cli::stress::urdf_text;

@@ -19,7 +19,7 @@ pub(crate) struct StressArguments {
     /// Gravity in the base frame, m/s² [default: 0,0,-9.81]
     #[arg(long, value_name = "X,Y,Z", value_parser = gravity, allow_hyphen_values = true, requires = "robot")]
     pub(crate) gravity: Option<Gravity>,
-    /// Take inertias that no body can have
+    /// Take inertias with a moment below zero
     #[arg(long, requires = "robot")]
     pub(crate) allow_unphysical_inertia: bool,
     /// A file of states of the robot in JSON or CSV, besides those at random and the hard ones

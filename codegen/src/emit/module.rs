@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use articulated_core::algorithm::Dim;
-use articulated_core::model::{JointInfo, Model};
+use articulated_core::model::{FLOATING_BASE, JointInfo, Model};
 use articulated_urdf::Unused;
 
 use super::bare;
@@ -48,8 +48,12 @@ fn constants(out: &mut String, model: &Model<f64>) {
     let joints: Vec<&str> = model.joints.iter().map(|j| j.name.as_str()).collect();
     let frames: Vec<&str> = model.frames.iter().map(|f| f.name.as_str()).collect();
     let _ = writeln!(out, "/// The robot's name.\npub const NAME: &str = {:?};", model.name);
-    let _ = writeln!(out, "/// Number of coordinates: the length of q.\npub const NQ: usize = {};", model.nq);
-    let _ = writeln!(out, "/// Number of degrees of freedom: the length of v, a and τ.\npub const NV: usize = {};", model.nv);
+    let floats = model.joints.first().is_some_and(|joint| joint.name == FLOATING_BASE);
+    let of_base = |text: &'static str| if floats { text } else { "" };
+    let q = of_base(" First the base's position, m, and quaternion x, y, z, w.");
+    let v = of_base(" First the base's six: angular, then linear, in its own axes; of τ moment, then force.");
+    let _ = writeln!(out, "/// Number of coordinates: the length of q.{q}\npub const NQ: usize = {};", model.nq);
+    let _ = writeln!(out, "/// Number of degrees of freedom: the length of v, a and τ.{v}\npub const NV: usize = {};", model.nv);
     let _ = writeln!(out, "/// Number of degrees of freedom.\npub const DOF: usize = NV;");
     let _ = writeln!(out, "/// Number of joints that are coordinates.\npub const JOINTS: usize = {};", joints.len());
     let links: Vec<&str> = model.links().map(|i| model.bodies[i].name.as_str()).collect();
