@@ -46,7 +46,7 @@ pub(crate) fn all<T>(request: &Request, attempt: impl Fn(&Request) -> Result<T, 
 }
 
 /// Whether an entry is the function, or has it in it.
-pub fn names(entry: &str, function: &str) -> bool {
+pub fn mentions(entry: &str, function: &str) -> bool {
     entry.trim() == function || entry.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == function)
 }
 
@@ -60,7 +60,7 @@ fn leave_out(error: &Error, options: &mut Options) -> bool {
         | Error::NoMass { function, .. }
         | Error::Wanted { found: function, .. }
         | Error::SameName { name: function } => {
-            if let Some(at) = options.functions.iter().rposition(|f| names(f, function)) {
+            if let Some(at) = options.functions.iter().rposition(|f| mentions(f, function)) {
                 options.functions.remove(at);
             }
         }

@@ -46,7 +46,7 @@ pub use checked::checked_cost;
 pub use edit::{Edit, Reason, Refusal, choose_frames, model, read};
 pub use emit::identifier;
 pub use error::{Error, nearest};
-pub use faults::names;
+pub use faults::mentions;
 pub use ledger::Ledger;
 pub use parameters::Parameter;
 pub use request::{Appended, Options, Request};

@@ -2,7 +2,7 @@
 
 use articulated_codegen::core::description::EditError;
 use articulated_codegen::scene::articulated_scene::SceneError;
-use articulated_codegen::{Edit, Error, Reason, Refusal, names};
+use articulated_codegen::{Edit, Error, Reason, Refusal, mentions};
 use proc_macro2::Span;
 use syn::LitStr;
 
@@ -22,7 +22,7 @@ pub(crate) fn at_its_word(error: &Error, settings: &Settings, robot: Span) -> sy
         | Error::BoundFrames { function, .. }
         | Error::NoMass { function, .. }
         | Error::Wanted { found: function, .. }
-        | Error::SameName { name: function } => settings.functions.iter().flatten().rfind(|e| names(&e.text, function)).map(|e| e.span),
+        | Error::SameName { name: function } => settings.functions.iter().flatten().rfind(|e| mentions(&e.text, function)).map(|e| e.span),
         Error::Parameter { found, .. } => settings.parameters.iter().rfind(|e| e.text.trim() == *found).map(|e| e.span),
         Error::Rename { from, .. } => renamed(from).map(|r| r.from.span()),
         Error::NameClash { first, second, .. } => renamed(second).or_else(|| renamed(first)).map(|r| r.to.span()),
