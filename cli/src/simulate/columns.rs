@@ -24,6 +24,7 @@ pub(super) fn columns(r: &Recording) -> Vec<Column> {
     all.push(one("potential_energy", "J", r.potential.clone()));
     all.push(one("work", "J", r.work.clone()));
     all.push(one("dissipated", "J", r.dissipated.clone()));
+    all.push(one("from_events", "J", r.from_events.clone()));
     all.push(one("imbalance", "J", r.imbalance()));
     for (k, name) in MOMENTUM.into_iter().enumerate() {
         let unit = if k < 3 { "kg·m²/s" } else { "kg·m/s" };

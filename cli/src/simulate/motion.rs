@@ -23,6 +23,8 @@ pub(super) struct Motion {
     pub(super) ended: String,
     /// Of the run alone.
     pub(super) wall: Duration,
+    /// Kinetic energy that the ball of the scene's impact got, J, if it was hit.
+    pub(super) ball: Option<f64>,
     /// Why it did not go on to its end.
     pub(super) error: Option<String>,
 }
@@ -82,7 +84,7 @@ pub(super) fn run<R: Dynamics<f64>>(
         Ended::ByEvent(_) | Ended::ByWatcher => "by an event".to_owned(),
     };
     let counts = run.counts;
-    Ok(Motion { recording: told(stage, run, &|hit| watch.words(hit)), counts, ended, wall, error })
+    Ok(Motion { recording: told(stage, run, &|hit| watch.words(hit)), counts, ended, wall, ball: watch.ball.get(), error })
 }
 
 /// The library's recording with names.
@@ -100,6 +102,7 @@ fn told(stage: &Stage, run: Run, words: &dyn Fn(&Hit) -> String) -> Recording {
         potential: whole(run.potential),
         work: whole(run.work),
         dissipated: whole(run.dissipated),
+        from_events: whole(run.from_events),
         momentum,
         ..Recording::of(&stage.model)
     }

@@ -49,8 +49,10 @@ pub(crate) struct Recording {
     pub(crate) potential: Vec<f64>,
     /// Of motors and wrenches since the start, J.
     pub(crate) work: Vec<f64>,
-    /// Of friction, damping, drag and impacts since the start, J: negative, since they take energy.
+    /// Of friction, damping and drag since the start, J: negative, since they take energy.
     pub(crate) dissipated: Vec<f64>,
+    /// Of events that map the state since the start, J: negative where they take energy, as a blow does.
+    pub(crate) from_events: Vec<f64>,
     /// Angular momentum about the centre of mass, then linear momentum, in axes of the base frame: kg·m²/s, kg·m/s.
     pub(crate) momentum: Vec<[f64; 6]>,
     /// In the order of their times.
@@ -81,11 +83,11 @@ impl Recording {
         self.kinetic.iter().zip(&self.potential).map(|(t, u)| t + u).collect()
     }
 
-    /// What the energy balance misses at each time, J: (T + U) − (T + U)₀ − work − dissipated.
+    /// What the energy balance misses at each time, J: (T + U) − (T + U)₀ − work − dissipated − what events brought.
     pub(crate) fn imbalance(&self) -> Vec<f64> {
         let energy = self.energy();
         let start = energy.first().copied().unwrap_or(0.0);
-        (0..energy.len()).map(|k| energy[k] - start - self.work[k] - self.dissipated[k]).collect()
+        (0..energy.len()).map(|k| energy[k] - start - self.work[k] - self.dissipated[k] - self.from_events[k]).collect()
     }
 
     /// The k-th number of a row of `names` at each time.
@@ -151,6 +153,7 @@ pub(crate) fn example(model: &Model<f64>, times: usize) -> Recording {
         r.potential.push(10.0 - t * t);
         r.work.push(t);
         r.dissipated.push(-t + 1e-12 * (40.0 * t).sin());
+        r.from_events.push(0.0);
         r.momentum.push([t; 6]);
     }
     r.events = vec![Happening { time: 0.035, what: "left_foot touches the ground".into() }];
@@ -177,14 +180,15 @@ mod tests {
     }
 
     #[test]
-    fn the_imbalance_is_what_neither_work_nor_loss_explains() {
+    fn the_imbalance_is_what_neither_work_nor_loss_nor_events_explain() {
         let r = Recording {
             kinetic: vec![1.0, 4.0],
             potential: vec![2.0, 1.0],
             work: vec![0.0, 3.0],
             dissipated: vec![0.0, -0.5],
+            from_events: vec![0.0, -0.25],
             ..Recording::default()
         };
-        assert_eq!(r.imbalance(), [0.0, -0.5]);
+        assert_eq!(r.imbalance(), [0.0, -0.25]);
     }
 }

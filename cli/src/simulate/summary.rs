@@ -48,13 +48,19 @@ pub(super) struct Method {
 pub(super) struct Energy {
     pub(super) start: f64,
     pub(super) end: f64,
+    pub(super) kinetic_start: f64,
     pub(super) kinetic_end: f64,
+    pub(super) potential_start: f64,
     pub(super) potential_end: f64,
     pub(super) work: f64,
     pub(super) dissipated: f64,
-    /// T + U − start − work − dissipated, the largest at any time of output.
+    /// What events that map the state brought; negative where they took energy.
+    pub(super) from_events: f64,
+    /// Kinetic energy that the ball of the scene's impact got, if it was hit.
+    pub(super) ball: Option<f64>,
+    /// T + U − start − work − dissipated − from_events, the largest at any time of output.
     pub(super) largest_imbalance: f64,
-    /// That over the largest kinetic energy, or what was done and lost.
+    /// That over the largest kinetic energy, or what was done, lost or brought by events.
     pub(super) relative_imbalance: f64,
 }
 
@@ -102,7 +108,7 @@ impl Summary {
             end_s: end,
             ended: motion.ended.clone(),
             error: motion.error.clone(),
-            energy: Energy::of(r),
+            energy: Energy::of(r, motion.ball),
             momentum: Momentum::of(r),
             counts: Done::of(&motion.counts, r.len()),
             events: r.events.clone(),
@@ -114,18 +120,23 @@ impl Summary {
 }
 
 impl Energy {
-    fn of(r: &Recording) -> Self {
+    fn of(r: &Recording, ball: Option<f64>) -> Self {
         let largest = |all: &mut dyn Iterator<Item = f64>| all.fold(0.0_f64, |most, x| if x.abs() > most { x.abs() } else { most });
         let (energy, imbalance) = (r.energy(), largest(&mut r.imbalance().into_iter()));
-        let scale = [&r.kinetic, &r.work, &r.dissipated].into_iter().map(|x| largest(&mut x.iter().copied())).fold(0.0, f64::max);
+        let scale =
+            [&r.kinetic, &r.work, &r.dissipated, &r.from_events].into_iter().map(|x| largest(&mut x.iter().copied())).fold(0.0, f64::max);
         let at = |x: &[f64], last: bool| if last { x.last() } else { x.first() }.copied().unwrap_or(0.0);
         Self {
             start: at(&energy, false),
             end: at(&energy, true),
+            kinetic_start: at(&r.kinetic, false),
             kinetic_end: at(&r.kinetic, true),
+            potential_start: at(&r.potential, false),
             potential_end: at(&r.potential, true),
             work: at(&r.work, true),
             dissipated: at(&r.dissipated, true),
+            from_events: at(&r.from_events, true),
+            ball,
             largest_imbalance: imbalance,
             relative_imbalance: if scale > 0.0 { imbalance / scale } else { 0.0 },
         }

@@ -54,9 +54,16 @@ fn table(s: &Summary) -> Table {
     let mut row = |name: &str, start: String, end: String, unit: &str| table.row([name.to_owned(), start, end, unit.to_owned()]);
     let none = String::new;
     row("energy T + U", number(e.start), number(e.end), "J");
-    row("  kinetic, potential at the end", number(e.kinetic_end), number(e.potential_end), "J");
+    row("  kinetic", number(e.kinetic_start), number(e.kinetic_end), "J");
+    row("  potential", number(e.potential_start), number(e.potential_end), "J");
     row("work of the motors", none(), number(e.work), "J");
     row("dissipated", none(), number(e.dissipated), "J");
+    if e.from_events != 0.0 || e.ball.is_some() {
+        row("brought by events", none(), number(e.from_events), "J");
+    }
+    if let Some(ball) = e.ball {
+        row("  handed to the ball", none(), number(ball), "J");
+    }
     row("largest imbalance", none(), number(e.largest_imbalance), "J");
     row("  over the largest energy moved", none(), number(e.relative_imbalance), "");
     let length = |p: &[f64]| number(p.iter().map(|x| x * x).sum::<f64>().sqrt());
@@ -66,7 +73,8 @@ fn table(s: &Summary) -> Table {
     row("  largest change", none(), number(p.largest_change_linear), "kg·m/s");
     row("steps", none(), c.steps.to_string(), "");
     row("  rejected", none(), c.rejected_steps.to_string(), "");
-    row("  shortest, longest", c.smallest_step_s.map_or_else(String::new, number), number(c.largest_step_s), "s");
+    row("  shortest step", none(), c.smallest_step_s.map_or_else(String::new, number), "s");
+    row("  longest step", none(), number(c.largest_step_s), "s");
     row("evaluations of forward dynamics", none(), c.evaluations.to_string(), "");
     if c.derivatives > 0 {
         row("  of its derivatives", none(), c.derivatives.to_string(), "");

@@ -18,6 +18,8 @@ pub(super) struct Watch<'a> {
     words: Vec<[String; 2]>,
     /// Set by a blow that ends the motion.
     pub(super) over: Rc<Cell<bool>>,
+    /// Kinetic energy that the ball got, J, once it was hit.
+    pub(super) ball: Rc<Cell<Option<f64>>>,
 }
 
 /// The links whose frames the events need.
@@ -39,7 +41,7 @@ impl<'a> Watch<'a> {
     where
         R::Workspace: 'a,
     {
-        let mut watch = Self { events: Vec::new(), words: Vec::new(), over: Rc::default() };
+        let mut watch = Self { events: Vec::new(), words: Vec::new(), over: Rc::default(), ball: Rc::default() };
         if looks_for(stage, Watched::Limits) {
             stage.model.joints.iter().for_each(|joint| watch.limit(stage, joint));
         }
@@ -107,13 +109,16 @@ impl<'a> Watch<'a> {
         let Some(frame) = frames.iter().position(|f| *f == ball.link) else { return Ok(()) };
         let mut blow = Impact::new(robot, frame, ball.point, ball.normal, ball.mass, ball.restitution)?;
         let (over, stop, speed, mut done) = (self.over.clone(), ball.stop, ball.ball_speed, false);
+        let (got, mass) = (self.ball.clone(), ball.mass);
         let map = move |_: f64, q: &mut [f64], v: &mut [f64]| {
             // One ball, one blow.
             if std::mem::replace(&mut done, true) {
                 return Ok(None);
             }
             over.set(stop);
-            Ok(Some(blow.strike(q, v, speed)?.ball_speed))
+            let after = blow.strike(q, v, speed)?.ball_speed;
+            got.set(Some(0.5 * mass * (after * after - speed * speed)));
+            Ok(Some(after))
         };
         let text = format!("{} hits the ball, which leaves at", ball.link);
         let event = match ball.when {

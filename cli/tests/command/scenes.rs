@@ -124,6 +124,11 @@ fn a_golf_ball_leaves_faster_than_the_head_that_hits_it() {
     let row = motion.column("t").iter().position(|t| *t >= time).unwrap();
     let lost = y[row - 1] - y[row + 1];
     assert!((0.04593 * speed - lost).abs() < 0.6 * 0.04593 * speed, "{lost} N·s for {}", 0.04593 * speed);
+    // What the blow took is in the balance, and more than the ball got.
+    let (taken, ball) = (-motion.number("energy", "from_events"), motion.number("energy", "ball"));
+    assert!((ball - 0.5 * 0.04593 * speed * speed).abs() < 1e-3 * ball && taken > ball, "{taken} J, {ball} J");
+    assert!(motion.number("energy", "relative_imbalance") < 1e-8, "{}", motion.number("energy", "relative_imbalance"));
+    assert_eq!(motion.column("from_events")[row - 1..=row].iter().map(|e| *e < 0.0).collect::<Vec<_>>(), [false, true]);
 }
 
 #[test]

@@ -37,12 +37,12 @@ fn everything_is_written_and_can_be_read() {
         rows[row][column].parse::<f64>().unwrap()
     };
     assert_eq!((number(1, "t"), number(21, "t")), (0.0, 0.2));
-    // T + U − (T + U)₀ − work − dissipated, to the rounding of its seven terms
+    // T + U − (T + U)₀ − work − dissipated − from events, to the rounding of its eight terms
     let energies = |sign: f64, row: usize| ["kinetic_energy", "potential_energy"].map(|title| sign * number(row, title));
-    let others = ["work", "dissipated", "imbalance"].map(|title| -number(21, title));
+    let others = ["work", "dissipated", "from_events", "imbalance"].map(|title| -number(21, title));
     let terms = [&energies(1.0, 21)[..], &energies(-1.0, 1), &others].concat();
     let magnitude: f64 = terms.iter().map(|x| x.abs()).sum();
-    assert!(terms.iter().sum::<f64>().abs() < 7.0 * f64::EPSILON * magnitude, "{terms:?}");
+    assert!(terms.iter().sum::<f64>().abs() < 8.0 * f64::EPSILON * magnitude, "{terms:?}");
 
     let parquet = bytes(&folder, "recording.parquet");
     assert!(parquet.starts_with(b"PAR1") && parquet.ends_with(b"PAR1"));
@@ -88,7 +88,8 @@ fn the_command_line_goes_before_the_scene() {
     let ended = run(&["simulate", "double_pendulum", "--end", "0.1", "--integrator", "rk4", "--step", "0.001", "--format", "json"]).json();
     assert_eq!((ended["integrator"]["name"].as_str(), ended["counts"]["steps"].as_u64()), (Some("rk4"), Some(100)));
     let text = run(&["simulate", "double_pendulum", "--end", "0.1"]).out;
-    for part in ["energy T + U", "largest imbalance", "rejected", "simulated seconds a second", "kg·m²/s"] {
+    for part in ["energy T + U", "largest imbalance", "rejected", "shortest step", "longest step", "simulated seconds a second", "kg·m²/s"]
+    {
         assert!(text.contains(part), "{text}");
     }
 }

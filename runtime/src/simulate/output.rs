@@ -54,6 +54,8 @@ pub(crate) struct Known {
     potential: bool,
     momentum: bool,
     tau: Vec<f64>,
+    /// What the maps of events have brought since the start, J.
+    pub(crate) from_events: f64,
 }
 
 impl Known {
@@ -67,6 +69,7 @@ impl Known {
             potential: has(robot.potential_energy(ws, &q, &mut [0.0])),
             momentum: has(robot.centroidal_momentum(ws, &q, &v, &mut [0.0; 6])),
             tau: v,
+            from_events: 0.0,
         }
     }
 
@@ -92,6 +95,7 @@ impl Known {
             potential: room(self.potential, 1),
             work: room(true, 1),
             dissipated: room(true, 1),
+            from_events: room(self.kinetic && self.potential, 1),
             momentum: room(self.momentum, 6),
             missing: names.into_iter().filter(|(_, there)| !there).map(|(name, _)| name).collect(),
             events: Vec::with_capacity(16),
@@ -116,20 +120,38 @@ impl Known {
         to.tau.extend_from_slice(&self.tau);
         to.work.push(point.y[2 * nv]);
         to.dissipated.push(point.y[2 * nv + 1]);
-        let (robot, ws, mut number) = (system.robot, &mut system.ws, [0.0]);
-        if self.kinetic {
-            robot.kinetic_energy(ws, q, v, &mut number)?;
-            to.kinetic.push(number[0]);
-        }
-        if self.potential {
-            robot.potential_energy(ws, q, &mut number)?;
-            to.potential.push(number[0]);
-        }
+        let (kinetic, potential) = self.energies(system, q, v)?;
+        to.kinetic.extend(kinetic);
+        to.potential.extend(potential);
+        to.from_events.extend(kinetic.and(potential).map(|_| self.from_events));
         if self.momentum {
             let mut six = [0.0; 6];
-            robot.centroidal_momentum(ws, q, v, &mut six)?;
+            system.robot.centroidal_momentum(&mut system.ws, q, v, &mut six)?;
             to.momentum.extend_from_slice(&six);
         }
         Ok(())
+    }
+
+    /// T and U, J, as far as they are there.
+    fn energies<R: Dynamics<f64>>(
+        &self,
+        system: &mut System<R>,
+        q: &[f64],
+        v: &[f64],
+    ) -> Result<(Option<f64>, Option<f64>), FunctionError> {
+        let (robot, ws, mut t, mut u) = (system.robot, &mut system.ws, [0.0], [0.0]);
+        if self.kinetic {
+            robot.kinetic_energy(ws, q, v, &mut t)?;
+        }
+        if self.potential {
+            robot.potential_energy(ws, q, &mut u)?;
+        }
+        Ok((self.kinetic.then_some(t[0]), self.potential.then_some(u[0])))
+    }
+
+    /// T + U, J; zero if one of them is not there.
+    pub(crate) fn energy<R: Dynamics<f64>>(&self, system: &mut System<R>, q: &[f64], v: &[f64]) -> Result<f64, FunctionError> {
+        let (kinetic, potential) = self.energies(system, q, v)?;
+        Ok(kinetic.zip(potential).map_or(0.0, |(t, u)| t + u))
     }
 }

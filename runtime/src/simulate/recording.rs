@@ -99,6 +99,8 @@ pub struct Recording {
     pub work: Vec<f64>,
     /// Energy of the effects that are not conservative since the start, J; negative where they took some.
     pub dissipated: Vec<f64>,
+    /// Energy that the maps of events brought since the start, J: change of T + U, negative where they took some; empty for a robot without one of the two.
+    pub from_events: Vec<f64>,
     /// Momentum about the centre of mass [k; l], `[n][6]`, N·m·s and N·s, base axes; empty for a robot without the function.
     pub momentum: Vec<f64>,
     /// Functions that the robot was generated without, so that there is nothing of them here.
@@ -150,9 +152,9 @@ impl Recording {
         Some(self.kinetic.get(i)? + self.potential.get(i)?)
     }
 
-    /// What the balance of energy lacks in record i, J: T + U − (T + U at the start) − work − dissipated.
+    /// What the balance of energy lacks in record i, J: T + U − (T + U at the start) − work − dissipated − what events brought.
     pub fn imbalance(&self, i: usize) -> Option<f64> {
-        Some(self.energy(i)? - self.energy(0)? - self.work[i] - self.dissipated[i])
+        Some(self.energy(i)? - self.energy(0)? - self.work[i] - self.dissipated[i] - self.from_events.get(i)?)
     }
 
     /// Nothing, but the room and the names.
@@ -166,6 +168,7 @@ impl Recording {
             &mut self.potential,
             &mut self.work,
             &mut self.dissipated,
+            &mut self.from_events,
             &mut self.momentum,
         ];
         columns.into_iter().for_each(Vec::clear);

@@ -42,6 +42,36 @@ fn a_falling_ball_bounces_when_it_must() {
     }
 }
 
+/// Each bounce leaves e² of the energy; at every time of output the balance knows it.
+#[test]
+fn what_a_map_takes_is_booked() {
+    let (robot, restitution) = (one_joint("prismatic", 0.0), 0.8);
+    for output in [Output::Every(0.05), Output::Steps] {
+        let floor =
+            Event::new("floor", |_, q: &[f64], _: &[f64]| q[0]).direction(Direction::Falling).action(Action::Map(Box::new(|_, _, v| {
+                v[0] *= -restitution;
+                Ok(None)
+            })));
+        let settings = Settings { output, ..to(IntegratorId::dopri5, 2.0, 1e-10) };
+        let mut simulation = Simulation::new(&robot, settings).unwrap();
+        let motion = simulation.run(&[1.0], &[0.0], &mut NoTorque, &mut [floor]).unwrap();
+        let start = motion.energy(0).unwrap();
+        assert!(motion.events.len() > 1 && start > 1.0, "{} events, {start} J", motion.events.len());
+        for i in 0..motion.len() {
+            let bounces = motion.events.iter().filter(|hit| hit.t <= motion.t[i]).count();
+            let left = restitution.powi(2 * bounces as i32);
+            let expected = start * (left - 1.0);
+            assert!(
+                (motion.from_events[i] - expected).abs() < 1e-9 * start,
+                "{} s: {} J, not {expected} J",
+                motion.t[i],
+                motion.from_events[i]
+            );
+            assert!(motion.imbalance(i).unwrap().abs() < 1e-9 * start, "{} s: {:?} J", motion.t[i], motion.imbalance(i));
+        }
+    }
+}
+
 /// None of two that touch the floor together is forgotten.
 #[test]
 fn what_happens_at_one_time_all_happens() {

@@ -72,11 +72,12 @@ pub(super) fn html(r: &Recording, setting: &Setting<'_>) -> Result<String, Funct
     let space = Space::of(&figure, &placements, setting);
     let floats = |all: &mut dyn Iterator<Item = f64>| base64(&all.flat_map(|x| (x as f32).to_le_bytes()).collect::<Vec<u8>>());
     let imbalance = r.imbalance();
-    let energies: [(&str, &[f64]); 5] = [
+    let energies: [(&str, &[f64]); 6] = [
         ("kinetic T", &r.kinetic),
         ("potential U", &r.potential),
         ("work", &r.work),
         ("dissipated", &r.dissipated),
+        ("from events", &r.from_events),
         ("imbalance", &imbalance),
     ];
     let motion = Motion {

@@ -95,12 +95,19 @@ fn energies(r: &Recording) -> Vec<Panel> {
         energy.iter().map(|e| e - start).collect()
     };
     let all = vec![curve("kinetic T", r.kinetic.clone()), curve("potential U", r.potential.clone()), curve("T + U", r.energy())];
-    let flows = vec![curve("T + U − start", change), curve("work of motors", r.work.clone()), curve("dissipated", r.dissipated.clone())];
+    let mut flows =
+        vec![curve("T + U − start", change), curve("work of motors", r.work.clone()), curve("dissipated", r.dissipated.clone())];
+    let mapped = r.from_events.iter().any(|e| *e != 0.0);
+    if mapped {
+        flows.push(curve("from events", r.from_events.clone()));
+    }
     let missing = vec![curve("imbalance", r.imbalance())];
     vec![
         Panel { title: "energy, J".to_owned(), curves: all },
         Panel { title: "where it came from and went, J".to_owned(), curves: flows },
-        Panel { title: "T + U − start − work − dissipated, J".to_owned(), curves: missing },
+        Panel {
+            title: format!("T + U − start − work − dissipated{}, J", if mapped { " − from events" } else { "" }), curves: missing
+        },
     ]
 }
 

@@ -91,11 +91,14 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         run.last_map = (event, self.t);
         self.point.q.copy_from_slice(&self.system.origin);
         self.v.copy_from_slice(&self.y[nv..2 * nv]);
+        let before = self.known.energy(&mut self.system, &self.point.q, &self.v)?;
         run.recording.events[hit].value = map(self.t, &mut self.point.q, &mut self.v)?;
         self.system.manifold.check(&self.point.q, &self.v)?;
         self.system.origin.copy_from_slice(&self.point.q);
         self.y[nv..2 * nv].copy_from_slice(&self.v);
         self.renormalise()?;
+        self.point.q.copy_from_slice(&self.system.origin);
+        self.known.from_events += self.known.energy(&mut self.system, &self.point.q, &self.v)? - before;
         Ok(true)
     }
 

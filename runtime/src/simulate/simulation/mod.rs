@@ -181,6 +181,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         self.system.origin.copy_from_slice(q);
         self.system.counts = Counts::default();
         self.system.held = None;
+        self.known.from_events = 0.0;
         self.method.reset();
         self.stability.reset();
         self.t = self.settings.start;
