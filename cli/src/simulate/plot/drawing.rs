@@ -11,11 +11,14 @@ pub(crate) enum Anchor {
     End,
 }
 
+/// Lengths of dashes and gaps along a line, in points.
+pub(crate) type Dash = [f64; 2];
+
 /// One thing that is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Mark {
     /// A line through points.
-    Path { points: Vec<Point>, colour: &'static str, width: f64, dashed: bool },
+    Path { points: Vec<Point>, colour: &'static str, width: f64, dash: Option<Dash> },
     /// A text on its base line; `turned` reads from below upward.
     Text { at: Point, content: String, size: f64, anchor: Anchor, colour: &'static str, turned: bool },
 }
@@ -30,7 +33,11 @@ pub(crate) struct Drawing {
 
 impl Drawing {
     pub(crate) fn path(&mut self, points: Vec<Point>, colour: &'static str, width: f64, dashed: bool) {
-        self.marks.push(Mark::Path { points, colour, width, dashed });
+        self.line(points, colour, width, dashed.then_some([4.0, 3.0]));
+    }
+
+    pub(crate) fn line(&mut self, points: Vec<Point>, colour: &'static str, width: f64, dash: Option<Dash>) {
+        self.marks.push(Mark::Path { points, colour, width, dash });
     }
 
     pub(crate) fn text(&mut self, at: Point, anchor: Anchor, size: f64, colour: &'static str, content: &str) {

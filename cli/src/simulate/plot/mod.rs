@@ -5,6 +5,7 @@ pub(crate) mod drawing;
 mod font;
 mod panel;
 pub(crate) mod png;
+mod stroke;
 pub(crate) mod svg;
 
 use super::recording::{Named, Recording};
@@ -19,29 +20,56 @@ pub(super) struct Picture {
     pub(super) png: Vec<u8>,
 }
 
-/// More events than this are not drawn: they would be all that is seen.
+/// More events than this are counted and not drawn: they would be all that is seen.
 const EVENTS: usize = 60;
 
-/// All pictures of a motion called `title`.
+/// Smaller than this throughout, in the curve's unit: zero.
+const ZERO: f64 = 1e-12;
+
+/// All pictures of a motion called `title`; one without a field that is worth drawing is none.
 pub(super) fn pictures(r: &Recording, title: &str) -> Result<Vec<Picture>, String> {
+    let driven = coordinates(&r.tau_names, r, &r.tau).into_iter().filter(|(_, values)| !still(values)).collect::<Vec<_>>();
     let kinds = [
-        ("positions", panels(&coordinates(&r.q_names, r, &r.q))),
-        ("velocities", panels(&coordinates(&r.v_names, r, &r.v))),
-        ("torques", panels(&coordinates(&r.tau_names, r, &r.tau))),
-        ("energy", energies(r)),
+        ("positions", moving(panels(&coordinates(&r.q_names, r, &r.q))), r.q_names.len()),
+        ("velocities", moving(panels(&coordinates(&r.v_names, r, &r.v))), r.v_names.len()),
+        ("torques", panels(&driven), r.tau_names.len()),
+        ("energy", energies(r), 0),
     ];
-    kinds.into_iter().filter(|(_, panels)| !panels.is_empty()).map(|(name, panels)| picture(name, &panels, r, title)).collect()
+    let worth = kinds.into_iter().filter(|(_, panels, _)| !panels.is_empty());
+    worth.map(|(name, panels, all)| picture(name, &panels, &notes(r, &panels, all), r, title)).collect()
 }
 
-fn picture(name: &'static str, panels: &[Panel], r: &Recording, title: &str) -> Result<Picture, String> {
-    const HEAD: f64 = 30.0;
+/// Whether it is zero throughout.
+fn still(values: &[f64]) -> bool {
+    values.iter().all(|x| x.abs() < ZERO)
+}
+
+/// Without fields where nothing happens.
+fn moving(mut panels: Vec<Panel>) -> Vec<Panel> {
+    panels.retain(|p| !p.curves.iter().all(|c| still(&c.values)));
+    panels
+}
+
+/// What a picture leaves out of so many curves, and of the events.
+fn notes(r: &Recording, panels: &[Panel], all: usize) -> String {
+    let left = all.saturating_sub(panels.iter().map(|p| p.curves.len()).sum());
+    let curves = (left > 0).then(|| format!("{left} of {all} curves are zero throughout, not drawn"));
+    let events = (r.events.len() > EVENTS).then(|| format!("{} events, not drawn", r.events.len()));
+    curves.into_iter().chain(events).collect::<Vec<_>>().join("; ")
+}
+
+fn picture(name: &'static str, panels: &[Panel], notes: &str, r: &Recording, title: &str) -> Result<Picture, String> {
+    let head = if notes.is_empty() { 30.0 } else { 48.0 };
     let events: Vec<f64> = if r.events.len() <= EVENTS { r.events.iter().map(|e| e.time).collect() } else { Vec::new() };
     let columns = if panels.len() > 3 { 2 } else { 1 };
     let rows = panels.len().div_ceil(columns);
-    let mut out = Drawing { width: panel::WIDTH * columns as f64, height: HEAD + panel::HEIGHT * rows as f64, ..Drawing::default() };
+    let mut out = Drawing { width: panel::WIDTH * columns as f64, height: head + panel::HEIGHT * rows as f64, ..Drawing::default() };
     out.text([16.0, 22.0], Anchor::Start, 14.0, "#222222", &format!("{title}: {name}"));
+    if !notes.is_empty() {
+        out.text([16.0, 40.0], Anchor::Start, 11.0, "#555555", notes);
+    }
     for (k, p) in panels.iter().enumerate() {
-        let corner = [panel::WIDTH * (k % columns) as f64, HEAD + panel::HEIGHT * (k / columns) as f64];
+        let corner = [panel::WIDTH * (k % columns) as f64, head + panel::HEIGHT * (k / columns) as f64];
         panel::draw(&mut out, p, &r.t, &events, corner);
     }
     Ok(Picture { name, svg: svg::text(&out), png: png::bytes(&out)? })
@@ -126,6 +154,20 @@ mod tests {
     }
 
     #[test]
+    fn what_is_left_out_is_said() {
+        let mut r = example(&bundled_model("quadruped"), 50);
+        r.events = vec![r.events[0].clone(); EVENTS + 1];
+        let torque =
+            |r: &mut Recording, force: f64| r.tau.iter_mut().enumerate().for_each(|(k, x)| *x = if k % 18 == 7 { force } else { 0.0 });
+        torque(&mut r, 1.0);
+        let all = pictures(&r, "few").unwrap();
+        assert!(all.iter().all(|p| p.svg.contains("61 events, not drawn") && !p.svg.contains(">events<")));
+        assert!(all[2].svg.contains("17 of 18 curves are zero throughout, not drawn") && all[2].svg.matches("time, s").count() == 1);
+        torque(&mut r, 0.0);
+        assert_eq!(pictures(&r, "none").unwrap().iter().map(|p| p.name).collect::<Vec<_>>(), ["positions", "velocities", "energy"]);
+    }
+
+    #[test]
     fn pictures_are_xml_with_every_series_and_png() {
         let r = example(&bundled_model("quadruped"), 50);
         let all = pictures(&r, "a <quadruped> & \"more\"").unwrap();
@@ -134,6 +176,7 @@ mod tests {
             assert_eq!(roxmltree::Document::parse(&p.svg).unwrap().root_element().tag_name().name(), "svg");
             assert!(p.png.starts_with(b"\x89PNG\r\n\x1a\n"));
         }
+        assert!(!all[0].svg.contains("not drawn"));
         assert!(r.q_names.iter().filter(|n| n.label.len() < 16).all(|n| all[0].svg.contains(&format!(">{}<", n.label))));
     }
 }

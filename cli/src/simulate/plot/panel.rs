@@ -3,6 +3,7 @@
 use super::axis::Axis;
 use super::drawing::{Anchor, Drawing, Point};
 use super::font;
+use super::stroke::{Stroke, strokes};
 
 /// A curve and its name.
 #[derive(Clone, Debug)]
@@ -55,12 +56,13 @@ pub(super) fn draw(out: &mut Drawing, panel: &Panel, t: &[f64], events: &[f64], 
     for &e in events.iter().filter(|e| (time.range[0]..=time.range[1]).contains(*e)) {
         out.path(vec![[time.at(e), top], [time.at(e), bottom]], EVENT, 0.8, true);
     }
-    for (curve, colour) in panel.curves.iter().zip(COLOURS.into_iter().cycle()) {
+    let strokes = strokes(panel, &value, right - left);
+    for (curve, stroke) in panel.curves.iter().zip(&strokes) {
         for points in thinned(t, &curve.values, &time, &value) {
-            out.path(points, colour, 1.5, false);
+            out.line(points, stroke.colour, stroke.width, stroke.dash);
         }
     }
-    legend(out, panel, !events.is_empty(), [right + 12.0, top + 6.0]);
+    legend(out, panel, &strokes, !events.is_empty(), [right + 12.0, top + 6.0]);
 }
 
 /// Grid and numbers; the power of ten of those at the left.
@@ -83,10 +85,10 @@ fn axes(out: &mut Drawing, time: &Axis, value: &Axis) -> i32 {
     power
 }
 
-fn legend(out: &mut Drawing, panel: &Panel, events: bool, [x, y]: Point) {
+fn legend(out: &mut Drawing, panel: &Panel, strokes: &[Stroke], events: bool, [x, y]: Point) {
     let row = |k: usize| y + 17.0 * k as f64;
-    for ((k, curve), colour) in panel.curves.iter().enumerate().zip(COLOURS.into_iter().cycle()) {
-        out.path(vec![[x, row(k)], [x + 18.0, row(k)]], colour, 2.0, false);
+    for ((k, curve), stroke) in panel.curves.iter().enumerate().zip(strokes) {
+        out.line(vec![[x, row(k)], [x + 18.0, row(k)]], stroke.colour, 2.0, stroke.dash);
         out.text([x + 24.0, row(k) + 4.0], Anchor::Start, SMALL, INK, &font::fitted(&curve.name, SMALL, RIGHT - 42.0));
     }
     if events {

@@ -20,8 +20,8 @@ pub(crate) fn bytes(drawing: &Drawing) -> Result<Vec<u8>, String> {
 fn mark(map: &mut Pixmap, mark: &Mark) {
     let scale = Transform::from_scale(SCALE, SCALE);
     match mark {
-        Mark::Path { points, colour, width, dashed } => {
-            let dash = if *dashed { StrokeDash::new(vec![4.0, 3.0], 0.0) } else { None };
+        Mark::Path { points, colour, width, dash } => {
+            let dash = dash.and_then(|lengths| StrokeDash::new(lengths.map(|x| x as f32).into(), 0.0));
             let stroke = Stroke { width: *width as f32, line_join: LineJoin::Round, line_cap: LineCap::Butt, dash, ..Stroke::default() };
             if let Some(path) = line(points) {
                 map.stroke_path(&path, &paint(colour), &stroke, scale, None);

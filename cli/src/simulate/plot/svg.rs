@@ -19,8 +19,8 @@ pub(crate) fn text(drawing: &Drawing) -> String {
 
 fn mark(out: &mut String, mark: &Mark) {
     let _ = match mark {
-        Mark::Path { points, colour, width, dashed } => {
-            let dashes = if *dashed { " stroke-dasharray=\"4 3\"" } else { "" };
+        Mark::Path { points, colour, width, dash } => {
+            let dashes = dash.map_or_else(String::new, |[on, off]| format!(" stroke-dasharray=\"{on} {off}\""));
             let places: Vec<String> = points.iter().map(|p| format!("{:.1},{:.1}", p[0], p[1])).collect();
             writeln!(
                 out,
