@@ -3,6 +3,8 @@
 mod figure;
 mod track;
 
+use std::cmp::Ordering;
+
 use articulated_core::algorithm::FunctionError;
 use articulated_core::description::{Base, Description};
 use articulated_core::dynamics::Dynamics;
@@ -19,6 +21,25 @@ use track::{Track, base64};
 const PAGE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 const PLAYER: &str = include_str!("player.js");
+
+/// Seconds of the motion a second that the page offers.
+const SPEEDS: [f64; 9] = [0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0];
+
+/// How long a motion should be seen at first, s.
+const SEEN: [f64; 2] = [5.0, 15.0];
+
+/// The speed nearest to 1 at which a motion of this length is seen as long as it should be; else the one that comes nearest to that.
+fn speed(length: f64) -> f64 {
+    let off = |speed: f64| {
+        let seen = length / speed;
+        (SEEN[0] / seen).max(seen / SEEN[1]).max(1.0)
+    };
+    let from_one = |speed: f64| speed.ln().abs();
+    SPEEDS
+        .into_iter()
+        .min_by(|a, b| (off(*a), from_one(*a)).partial_cmp(&(off(*b), from_one(*b))).unwrap_or(Ordering::Equal))
+        .unwrap_or(1.0)
+}
 
 /// What the page shows beside the motion.
 pub(super) struct Setting<'a> {
@@ -49,6 +70,9 @@ struct Motion<'a> {
     size: f64,
     #[serde(flatten)]
     figure: &'a Figure,
+    speeds: [f64; 9],
+    /// The one that it begins with.
+    speed: f64,
     /// Number of bodies that move.
     moving: usize,
     low: [f64; 3],
@@ -66,7 +90,8 @@ pub(super) fn html(r: &Recording, setting: &Setting<'_>) -> Result<String, Funct
     for (link, center, radius) in &setting.balls {
         figure.ball(setting.description, setting.model, link, *center, *radius);
     }
-    let chosen = track::chosen(&r.t, figure.frames.len());
+    let speed = speed(r.t.last().zip(r.t.first()).map_or(0.0, |(last, first)| last - first));
+    let chosen = track::chosen(&r.t, figure.frames.len(), speed);
     let placements = placements(r, &chosen, setting.model, &figure.frames)?;
     let track = Track::of(&placements);
     let space = Space::of(&figure, &placements, setting);
@@ -88,6 +113,8 @@ pub(super) fn html(r: &Recording, setting: &Setting<'_>) -> Result<String, Funct
         radius: space.radius,
         size: space.size,
         figure: &figure,
+        speeds: SPEEDS,
+        speed,
         moving: figure.frames.len(),
         low: track.low,
         quantum: track.quantum,
@@ -201,14 +228,23 @@ mod tests {
     }
 
     #[test]
+    fn a_motion_is_seen_for_some_ten_seconds() {
+        for (length, expected) in [(0.35, 0.05), (2.0, 0.25), (3.0, 0.5), (5.0, 1.0), (10.0, 1.0), (20.0, 2.0), (100.0, 4.0), (1e-9, 0.01)]
+        {
+            assert_eq!(speed(length), expected, "{length} s");
+        }
+        assert!(SPEEDS.contains(&speed(0.0)) && SPEEDS.contains(&speed(f64::NAN)));
+    }
+
+    #[test]
     fn the_data_are_json_with_every_frame() {
         let page = page("quadruped", 20);
         let data = page.split("application/json\">").nth(1).unwrap().split("</script>").next().unwrap();
         let motion: serde_json::Value = serde_json::from_str(data).unwrap();
         assert_eq!(motion["moving"], 13);
-        // 0.2 s at 50 frames a second, since the recording's times are 10 ms apart
+        // All of them: 0.2 s are played slowly.
         let frames = motion["times"].as_str().unwrap().len() * 3 / 4 / 4;
-        assert!((10..=11).contains(&frames), "{frames}");
+        assert_eq!(frames, 20);
         assert_eq!(motion["placements"].as_str().unwrap().len(), (14 * 13 * frames).div_ceil(3) * 4);
     }
 }

@@ -52,23 +52,61 @@
   const ahead = cross(up, side);
   const eye = { azimuth: -0.9, elevation: 0.32, distance: 1, target: [0, 0, 0] };
   let following = null;
+  function axes() {
+    const c = Math.cos(eye.elevation), s = Math.sin(eye.elevation);
+    const back = add(add(scaled(side, c * Math.cos(eye.azimuth)), scaled(ahead, c * Math.sin(eye.azimuth))), scaled(up, s));
+    const right = unit(cross(up, back));
+    return { right, top: cross(back, right), back };
+  }
+  // What is drawn of each body: corners, ends, and spheres with their radius.
+  function points() {
+    const all = Array.from({ length: motion.moving + 1 }, () => []), put = (body, p, r) => all[body].push({ p, r });
+    for (const b of motion.boxes) for (let k = 0; k < 8; k++) {
+      const reach = [4, 2, 1].map((bit, i) => scaled(b.axes[i], (k & bit ? 1 : -1) * b.half[i]));
+      put(b.body, reach.reduce(add, b.center), 0);
+    }
+    for (const s of motion.sticks) { put(s.from, s.start, 0); put(s.to, s.end, 0); }
+    for (const b of motion.balls) put(b.body, b.center, b.radius);
+    return all;
+  }
+  // The nearest place from which nothing leaves the picture during the motion, as the eye looks: |a − x| ≤ k (d − c) for all points (a across, c towards the eye)
+  // has its least d at x = k (A − B)/2, with the most A of c + a/k and B of c − a/k.
+  function fit(w, h) {
+    const { right, top, back } = axes(), room = 0.46 / focus(1, 1), least = Math.min(w, h);
+    const most = [right, top].map((axis, i) => ({ axis, k: room * (i ? h : w) / least, A: -Infinity, B: -Infinity }));
+    const drawn = points(), stride = Math.max(1, Math.floor(frames / 600));
+    const reach = X => drawn.forEach((list, body) => list.forEach(({ p, r }) => {
+      const place = less(at(X[body], p), motion.center), c = dot(place, back);
+      for (const m of most) {
+        const a = dot(place, m.axis) / m.k, wide = r * Math.hypot(1, 1 / m.k);
+        if (c + a + wide > m.A) m.A = c + a + wide;
+        if (c - a + wide > m.B) m.B = c - a + wide;
+      }
+    }));
+    for (let k = 0; k < frames; k += stride) reach(pose(times[k]));
+    reach(pose(last));
+    const distance = Math.max(...most.map(m => (m.A + m.B) / 2)), known = Number.isFinite(distance);
+    const target = most.reduce((sum, m) => known ? add(sum, scaled(m.axis, m.k * (m.A - m.B) / 2)) : sum, motion.center);
+    return { target: [...target], distance: known ? Math.max(distance, 0.05 * motion.radius) : 3.3 * motion.radius };
+  }
+  // Whether the eye is where `whole` put it.
+  let fitting = true;
   function whole() {
-    const center = motion.center, fit = Math.max(motion.radius, 1e-3);
-    Object.assign(eye, { azimuth: -0.9, elevation: 0.32, target: [...center], distance: 3.3 * fit });
-    following = null;
+    Object.assign(eye, { azimuth: -0.9, elevation: 0.32 });
+    Object.assign(eye, fit(view.clientWidth || 1, open(view.clientHeight || 1)));
+    [following, fitting] = [null, true];
   }
   // The height of the picture above the panel at its foot.
   const open = h => Math.max(0.4 * h, Math.min(h, $('foot').offsetTop || h));
+  const focus = (w, h) => 1.5 * Math.min(w, h);
   function camera(w, h) {
-    const c = Math.cos(eye.elevation), s = Math.sin(eye.elevation);
-    const back = add(add(scaled(side, c * Math.cos(eye.azimuth)), scaled(ahead, c * Math.sin(eye.azimuth))), scaled(up, s));
-    const right = unit(cross(up, back)), top = cross(back, right), from = add(eye.target, scaled(back, eye.distance));
-    const free = open(h), focus = 1.5 * Math.min(w, free);
+    const { right, top, back } = axes(), from = add(eye.target, scaled(back, eye.distance));
+    const free = open(h), lens = focus(w, free);
     const near = eye.distance * 0.02;
     return {
       from, right, top, near,
       depth: p => -dot(less(p, from), back),
-      show(p) { const d = less(p, from), z = Math.max(-dot(d, back), near); return [w / 2 + focus * dot(d, right) / z, 0.5 * free - focus * dot(d, top) / z, focus / z]; },
+      show(p) { const d = less(p, from), z = Math.max(-dot(d, back), near); return [w / 2 + lens * dot(d, right) / z, 0.5 * free - lens * dot(d, top) / z, lens / z]; },
     };
   }
 
@@ -178,17 +216,30 @@
   function strip(ctx, w, h, t) {
     let low = Infinity, high = -Infinity;
     for (let k = 0; k < frames; k++) for (let kind = 0; kind < 3; kind++) { const x = series(kind, k); if (x < low) low = x; if (x > high) high = x; }
+    const ends = [low, high];
     const span = high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high)) ? high - low : 1;
     const X = s => (s - first) / (last - first || 1) * (w - 2) + 1, Y = e => h - 4 - (e - low) / span * (h - 8);
     ctx.clearRect(0, 0, w, h);
-    ctx.strokeStyle = 'rgba(160, 40, 40, .6)'; ctx.lineWidth = 1;
-    for (const e of motion.events) { ctx.beginPath(); ctx.moveTo(X(e.time), 0); ctx.lineTo(X(e.time), h); ctx.stroke(); }
+    if (low < 0 && high > 0) { ctx.strokeStyle = '#aab'; ctx.lineWidth = 1; ctx.beginPath(); ctx.moveTo(0, Y(0)); ctx.lineTo(w, Y(0)); ctx.stroke(); }
+    // Of events that are nearer than three points to one another the first is drawn; many are pale.
+    ctx.strokeStyle = `rgba(160, 40, 40, ${motion.events.length > 20 ? 0.25 : 0.6})`; ctx.lineWidth = 1;
+    let drawn = -Infinity;
+    for (const e of motion.events) { const x = X(e.time); if (x - drawn < 3) continue; drawn = x; ctx.beginPath(); ctx.moveTo(x, 0); ctx.lineTo(x, h); ctx.stroke(); }
     for (const kind of [0, 1, 2]) {
       ctx.strokeStyle = ENERGY[kind]; ctx.lineWidth = 1.4; ctx.beginPath();
       for (let k = 0; k < frames; k++) { const y = Y(series(kind, k)); if (k) ctx.lineTo(X(times[k]), y); else ctx.moveTo(X(times[k]), y); }
       ctx.stroke();
     }
     ctx.strokeStyle = '#222'; ctx.lineWidth = 1.5; ctx.beginPath(); ctx.moveTo(X(t), 0); ctx.lineTo(X(t), h); ctx.stroke();
+    label(ctx, `${number(ends[1])} J`, 4, 11);
+    label(ctx, `${number(ends[0])} J`, 4, h - 3);
+    if (low < 0 && high > 0 && Y(0) > 24 && Y(0) < h - 16) label(ctx, '0', 4, Y(0) + 4);
+  }
+  // A number in the strip, readable over curves.
+  function label(ctx, text, x, y) {
+    ctx.font = '11px "DejaVu Sans", Verdana, Arial, sans-serif';
+    ctx.lineWidth = 3; ctx.strokeStyle = 'rgba(255, 255, 255, .85)'; ctx.strokeText(text, x, y);
+    ctx.fillStyle = '#445'; ctx.fillText(text, x, y);
   }
 
   function readout(t) {
@@ -206,7 +257,7 @@
   const view = $('view'), stripCanvas = $('strip'), scrub = $('scrub'), play = $('play'), tip = $('tip');
   const state = { t: first, playing: true, before: null, spots: [], pointer: null };
   const shown = () => ({ boxes: $('boxes').checked, sticks: $('sticks').checked, follow: $('follow').checked });
-  for (const x of [0.05, 0.1, 0.25, 0.5, 1, 2, 4]) $('speed').add(new Option(`${x}×`, x, x === 1, x === 1));
+  for (const x of motion.speeds) $('speed').add(new Option(`${x}×`, x, x === motion.speed, x === motion.speed));
   scrub.min = first; scrub.max = last;
   function fitted(canvas) {
     const scale = window.devicePixelRatio || 1, w = canvas.clientWidth, h = canvas.clientHeight;
@@ -244,13 +295,13 @@
   document.addEventListener('keydown', e => {
     if (e.target === scrub || e.target === $('speed')) return;
     const frame = find(state.t)[0];
-    if (e.key === ' ') { if (e.target.tagName !== 'BUTTON') { toggle(); e.preventDefault(); } }
+    if (e.key === ' ') { if (!['BUTTON', 'INPUT'].includes(e.target.tagName)) { toggle(); e.preventDefault(); } }
     else if (e.key === 'ArrowRight') { state.playing = false; go(times[Math.min(frame + 1, frames - 1)]); }
     else if (e.key === 'ArrowLeft') { state.playing = false; go(state.t > times[frame] ? times[frame] : times[Math.max(frame - 1, 0)]); }
     else if (e.key === 'Home') whole();
   });
   const pointers = new Map();
-  const nearer = factor => { eye.distance = Math.min(1e3 * motion.radius, Math.max(1e-2 * motion.radius, eye.distance * factor)); };
+  const nearer = factor => { fitting = false; eye.distance = Math.min(1e3 * motion.radius, Math.max(1e-2 * motion.radius, eye.distance * factor)); };
   const spread = () => { const [a, b] = [...pointers.values()]; return Math.hypot(a.x - b.x, a.y - b.y); };
   view.onpointerdown = e => { view.setPointerCapture(e.pointerId); pointers.set(e.pointerId, { x: e.clientX, y: e.clientY }); };
   view.onpointerup = view.onpointercancel = e => pointers.delete(e.pointerId);
@@ -258,6 +309,7 @@
   view.onpointermove = e => {
     const old = pointers.get(e.pointerId);
     if (!old) return name(e);
+    fitting = false;
     const dx = e.clientX - old.x, dy = e.clientY - old.y, apart = pointers.size === 2 ? spread() : 0;
     pointers.set(e.pointerId, { x: e.clientX, y: e.clientY });
     if (pointers.size === 2) nearer(apart / (spread() || 1));
@@ -276,6 +328,7 @@
     tip.hidden = !near;
     if (near) { tip.textContent = near.name; tip.style.left = `${e.clientX + 14}px`; tip.style.top = `${e.clientY + 10}px`; }
   }
+  window.addEventListener('resize', () => { if (fitting && !$('follow').checked) whole(); });
   whole();
   requestAnimationFrame(tick);
 })();

@@ -8,11 +8,11 @@ const RATE: f64 = 60.0;
 /// Bodies times frames, at most: some 6 MB of the page.
 const MOST: usize = 300_000;
 
-/// Indices of the times that become frames: as many as are seen, first and last among them.
-pub(super) fn chosen(t: &[f64], bodies: usize) -> Vec<usize> {
+/// Indices of the times that become frames: as many as are seen at so many seconds a second, first and last among them.
+pub(super) fn chosen(t: &[f64], bodies: usize, speed: f64) -> Vec<usize> {
     let (Some(first), Some(last)) = (t.first(), t.last()) else { return Vec::new() };
     let frames = (MOST / bodies.max(1)).max(2) as f64;
-    let gap = (1.0 / RATE).max((last - first) / frames) * (1.0 - 1e-6);
+    let gap = (speed.min(1.0) / RATE).max((last - first) / frames) * (1.0 - 1e-6);
     let mut chosen: Vec<usize> = Vec::new();
     for (k, &now) in t.iter().enumerate() {
         if chosen.last().is_none_or(|&before| now - t[before] >= gap) {
@@ -84,13 +84,14 @@ mod tests {
     #[test]
     fn frames_are_no_more_than_are_seen_and_end_at_the_end() {
         let t: Vec<f64> = (0..=1000).map(|k| f64::from(k) * 1e-3).collect();
-        let frames = chosen(&t, 10);
+        let frames = chosen(&t, 10, 1.0);
         assert!((59..=61).contains(&frames.len()), "{}", frames.len());
         assert_eq!((frames[0], frames[frames.len() - 1]), (0, 1000));
         let slow: Vec<f64> = (0..10).map(f64::from).collect();
-        assert_eq!(chosen(&slow, 10).len(), 10);
-        assert!(chosen(&t, MOST / 10).len() <= 12);
-        assert!(chosen(&[], 1).is_empty());
+        assert_eq!(chosen(&slow, 10, 1.0).len(), 10);
+        assert!(chosen(&t, MOST / 10, 1.0).len() <= 12);
+        assert!((118..=122).contains(&chosen(&t, 10, 0.5).len()) && chosen(&t, 10, 4.0) == frames);
+        assert!(chosen(&[], 1, 1.0).is_empty());
     }
 
     #[test]

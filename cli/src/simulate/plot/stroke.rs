@@ -16,13 +16,13 @@ pub(super) struct Stroke {
 const APART: f64 = 0.75;
 /// What shows of each of several curves that are one, in points.
 const SHOWN: f64 = 6.0;
-/// Points to an oscillation, at least, for a line of full width.
-const WAVE: f64 = 4.0;
+/// Points to an oscillation for a line of full width; with fewer it is thinner.
+const WAVE: f64 = 12.0;
 
 const WIDTH: f64 = 1.5;
 const THIN: f64 = 0.5;
 
-/// Of the curves of a panel, over a field of this width in points: those that oscillate too often to be told apart are thin; of those that lie on each other all
+/// Of the curves of a panel, over a field of this width in points: those that oscillate too often to be told apart are thinner; of those that lie on each other all
 /// but the first are dashed, the later the shorter.
 pub(super) fn strokes(panel: &Panel, value: &Axis, width: f64) -> Vec<Stroke> {
     let first = firsts(panel, value);
@@ -32,7 +32,7 @@ pub(super) fn strokes(panel: &Panel, value: &Axis, width: f64) -> Vec<Stroke> {
         let (all, over) = (alike(k) as f64, before(k) as f64);
         (over > 0.0).then_some([SHOWN * (all - over), SHOWN * over])
     };
-    let line = |k: usize| if waves(&panel.curves[k].values, value) > width / WAVE { THIN } else { WIDTH };
+    let line = |k: usize| (WIDTH * width / (WAVE * waves(&panel.curves[k].values, value))).clamp(THIN, WIDTH);
     (0..first.len()).map(|k| Stroke { colour: COLOURS[k % COLOURS.len()], width: line(k), dash: dash(k) }).collect()
 }
 
@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn what_oscillates_too_often_is_thin() {
         let wave = |times: f64| (0..5000).map(|k| (std::f64::consts::TAU * times * f64::from(k) / 5000.0).sin()).collect();
-        let widths: Vec<f64> = drawn(vec![wave(90.0), wave(110.0)]).into_iter().map(|s| s.width).collect();
+        let widths: Vec<f64> = drawn(vec![wave(30.0), wave(110.0)]).into_iter().map(|s| s.width).collect();
         assert_eq!(widths, [WIDTH, THIN]);
     }
 }
