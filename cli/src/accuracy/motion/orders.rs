@@ -76,7 +76,7 @@ fn errors_fall_with_evaluations_as_the_order_says() {
         let (swing, from) = range(integrator.id);
         let end = in_doubles(swing);
         let curve = measured(integrator, swing, from, (&end, 1e-15));
-        let (slope, order) = (curve.slope.unwrap_or_default(), f64::from(integrator.order));
+        let (slope, order) = (slope(&curve.samples).unwrap_or_default(), f64::from(integrator.order));
         println!("{} {slope:.2} {:?}", integrator.name, seen(&curve.samples));
         assert!((slope - order).abs() <= 0.2, "{}: {slope} {:?}", integrator.name, seen(&curve.samples));
         assert!(curve.samples.iter().all(|s| s.told), "{}: {:?}", integrator.name, seen(&curve.samples));
@@ -223,7 +223,7 @@ fn a_controller_costs_no_order() {
         let rk4 = IntegratorId::rk4.row();
         let how: Vec<How> = (0..7).map(|k| How::Step(SLOW.seconds / f64::from(8 << k))).collect();
         let curve = curve(&subject, rk4, &how, (&end, agreement), 1);
-        let slope = curve.slope.unwrap_or_default();
+        let slope = slope(&curve.samples).unwrap_or_default();
         println!("{what} {slope} {:?} {agreement:e}", seen(&curve.samples));
         assert!((slope - 4.0).abs() <= 0.2 && decades(&curve.samples) >= 1.5, "{what}: {slope} {:?}", seen(&curve.samples));
         assert!(curve.samples.iter().all(|s| s.told), "{what}: {agreement:e} {:?}", seen(&curve.samples));

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::subject::{End, How, State, Subject, drift};
-use super::sweep::{Curve, sample, samples, slope, steps};
+use super::sweep::{Curve, sample, samples, steps};
 use crate::accuracy::arguments::AccuracyArguments;
 use crate::accuracy::measure;
 use crate::failure::Failure;
@@ -56,5 +56,5 @@ pub(super) fn curve(subject: &Subject, peer: &Peer, method: &Stepping, reference
         Some(sample(subject, reference, How::Step(subject.seconds / *n as f64), &end))
     });
     let integrator = format!("{} {}", peer.engine(), method.name);
-    Curve { integrator, peer: true, order: method.order, slope: slope(&samples), samples }
+    Curve::new(integrator, true, method.order, samples)
 }

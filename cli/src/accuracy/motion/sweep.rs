@@ -43,8 +43,10 @@ pub(crate) struct Curve {
     pub peer: bool,
     /// Its nominal order.
     pub order: u32,
-    /// How fast the error falls with the evaluations, where it can be told.
+    /// By which power of the evaluations the error falls over the finest rows, where it can be told.
     pub slope: Option<f64>,
+    /// How many of the finest rows that can be told that is from.
+    pub slope_rows: usize,
     /// From the coarsest to the finest.
     pub samples: Vec<Sample>,
 }
@@ -78,7 +80,10 @@ const TOLERANCES: usize = 21;
 const STEPS: usize = 9;
 
 /// Errors from here on are too coarse for the law of small steps.
-const COARSE: f64 = 3e-2;
+pub(super) const COARSE: f64 = 3e-2;
+
+/// A power this near to the order is the order.
+const SHOWN: f64 = 0.3;
 
 /// Everything: each run as often as told, the fastest counts.
 pub(super) fn all(scene: &str, subject: &Subject, peers: &Peers, repetitions: usize) -> Result<Motion, Failure> {
@@ -157,7 +162,22 @@ pub(super) fn curve(
     repetitions: usize,
 ) -> Curve {
     let samples = samples(how, repetitions, &mut |how| Some(sample(subject, reference, *how, &run(subject, integrator.id, *how)?)));
-    Curve { integrator: integrator.name.to_owned(), peer: false, order: integrator.order, slope: slope(&samples), samples }
+    Curve::new(integrator.name.to_owned(), false, integrator.order, samples)
+}
+
+impl Curve {
+    /// With what its samples say of the order.
+    pub(super) fn new(integrator: String, peer: bool, order: u32, samples: Vec<Sample>) -> Self {
+        let finest = finest(&samples);
+        let slope = slope(&samples).and_then(|_| power(&finest));
+        let slope_rows = if slope.is_some() { finest.len() } else { 0 };
+        Self { integrator, peer, order, slope, slope_rows, samples }
+    }
+
+    /// Whether the power that was measured is the order.
+    pub(super) fn shows_order(&self) -> bool {
+        self.slope.is_some_and(|s| (s - f64::from(self.order)).abs() <= SHOWN)
+    }
 }
 
 /// A sample for each setting, of several the fastest, until errors are beyond what the reference can tell: twice is enough.
@@ -187,32 +207,69 @@ pub(super) fn sample(subject: &Subject, (end, agreement): (&State, f64), how: Ho
     Sample { step, tolerance, evaluations, wall, error, energy, momentum, told: error >= 100.0 * agreement }
 }
 
-/// By which power of the evaluations the error falls: a line through the logarithms, over the samples that the reference can tell and that are past the first coarse ones.
+/// The logarithms of evaluations and errors of the samples that the reference can tell and that are past the first coarse ones.
+fn points(samples: &[Sample]) -> Vec<(f64, f64)> {
+    let within = |s: &&Sample| s.told && s.error > 0.0 && s.error < COARSE;
+    samples.iter().filter(within).map(|s| ((s.evaluations as f64).log10(), s.error.log10())).collect()
+}
+
+/// The finer half of the points, three at least: long steps hide the order.
+fn finest(samples: &[Sample]) -> Vec<(f64, f64)> {
+    let points = points(samples);
+    let count = points.len().div_ceil(2).max(3).min(points.len());
+    points[points.len() - count..].to_vec()
+}
+
+/// By which power of the evaluations the error falls over all samples that can be told.
 pub(super) fn slope(samples: &[Sample]) -> Option<f64> {
-    let points: Vec<(f64, f64)> =
-        samples.iter().filter(|s| s.told && s.error < COARSE).map(|s| ((s.evaluations as f64).log10(), s.error.log10())).collect();
+    let points = points(samples);
     let wide = points.iter().map(|p| p.0).fold(f64::NEG_INFINITY, f64::max) - points.iter().map(|p| p.0).fold(f64::INFINITY, f64::min);
-    if points.len() < 3 || wide < 0.5 {
-        return None;
-    }
+    if wide < 0.5 { None } else { power(&points) }
+}
+
+/// The slope, downward, of a straight line through points; of three at least that do not stand above each other.
+fn power(points: &[(f64, f64)]) -> Option<f64> {
     let n = points.len() as f64;
     let (x, y) = (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);
     let (xy, xx) = points.iter().fold((0.0, 0.0), |(xy, xx), p| (xy + (p.0 - x) * (p.1 - y), xx + (p.0 - x) * (p.0 - x)));
-    Some(-xy / xx)
+    (points.len() >= 3 && xx > 0.0).then(|| -xy / xx)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn samples(error: impl Fn(f64) -> f64, counts: &[u64]) -> Vec<Sample> {
+        let sample = |n: &u64| Sample { evaluations: *n, error: error(*n as f64), told: true, ..Sample::default() };
+        counts.iter().map(sample).collect()
+    }
+
     #[test]
     fn a_power_law_has_its_power_as_slope() {
-        let sample = |n: u64| {
-            let error = 3.0 * (n as f64).powi(-4);
-            Sample { evaluations: n, error, told: true, ..Sample::default() }
-        };
-        let samples: Vec<Sample> = [10, 30, 100, 300, 1000].into_iter().map(sample).collect();
+        let samples = samples(|n| 3.0 * n.powi(-4), &[10, 30, 100, 300, 1000]);
         assert!((slope(&samples).unwrap() - 4.0).abs() < 1e-12);
         assert!(slope(&samples[..1]).is_none());
+        let curve = Curve::new("rk4".into(), false, 4, samples[..2].to_vec());
+        assert!(curve.slope.is_none() && curve.slope_rows == 0 && !curve.shows_order());
+    }
+
+    #[test]
+    fn long_steps_do_not_count_for_the_order() {
+        // A term of order 7 hides the order until steps are short.
+        let error = |n: f64| 3.0 * n.powi(-4) + 3e5 * n.powi(-7);
+        let curve = Curve::new("rk4".into(), false, 4, samples(error, &[10, 20, 40, 80, 160, 320, 640]));
+        assert_eq!(curve.slope_rows, 3);
+        assert!((curve.slope.unwrap() - 4.0).abs() < 0.1 && curve.shows_order(), "{curve:?}");
+        assert!(slope(&curve.samples).unwrap() > 4.5);
+        let coarse = Curve::new("rk4".into(), false, 4, samples(error, &[10, 20, 30, 40, 50, 60]));
+        assert!(!coarse.shows_order(), "{coarse:?}");
+    }
+
+    #[test]
+    fn what_the_reference_cannot_tell_does_not_count_for_the_order() {
+        let mut samples = samples(|n| n.powi(-2), &[10, 30, 100, 300, 1000]);
+        samples.extend([3000, 10_000].map(|evaluations| Sample { evaluations, error: 1e-6, told: false, ..Sample::default() }));
+        let curve = Curve::new("midpoint".into(), false, 2, samples);
+        assert!((curve.slope.unwrap() - 2.0).abs() < 1e-12 && curve.slope_rows == 3, "{curve:?}");
     }
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::super::text::number;
+use super::sweep::{COARSE, Curve};
 use super::{Motion, Sample};
 use crate::table::{Table, plain};
 
@@ -10,8 +11,7 @@ use crate::table::{Table, plain};
 pub(super) fn text(m: &Motion) -> String {
     let mut out = head(m);
     for c in &m.curves {
-        let slope = c.slope.map_or_else(|| "too little to tell".to_owned(), |s| format!("{s:.2}"));
-        let _ = writeln!(out, "\n{}, order {}; the error falls as this power of the evaluations: {slope}", c.integrator, c.order);
+        let _ = writeln!(out, "\n{}, order {}{}", c.integrator, c.order, power(c));
         let mut table = Table::new([
             ("step", "s"),
             ("tolerance", ""),
@@ -26,7 +26,21 @@ pub(super) fn text(m: &Motion) -> String {
         }
         out += &table.text();
     }
-    out + "\nError: the largest difference of a number of the last state (rad, m, and those a second). <: below what the reference can tell.\n"
+    let _ = writeln!(out, "\n{EXPLAINED}Rows with errors from {COARSE} on count for no power.");
+    out
+}
+
+const EXPLAINED: &str = "Error: the largest difference of a number of the last state (rad, m, and those a second). <: below what the reference can tell.
+Power: by which the error falls with the evaluations, a straight line through the logarithms of the finer half of the rows that the reference
+can tell. The order is that of short steps; it does not show where steps are longer than that, or where evaluations do not grow as steps do
+(steps that are refused, rounds of an implicit method).
+";
+
+/// What was measured of the order.
+fn power(c: &Curve) -> String {
+    let Some(slope) = c.slope else { return "; too few rows to measure it".into() };
+    let seen = if c.shows_order() { "" } else { ", which does not show here" };
+    format!("{seen}; measured over the finest {} rows: the error falls as the power {slope:.2} of the evaluations", c.slope_rows)
 }
 
 /// What was measured.
@@ -43,16 +57,20 @@ pub(super) fn head(m: &Motion) -> String {
 
 fn row(s: &Sample) -> Vec<String> {
     let optional = |x: Option<f64>| x.map_or_else(|| "–".into(), number);
-    let error = if s.told { number(s.error) } else { format!("< {}", number(s.error)) };
     vec![
         optional(s.step),
         optional(s.tolerance),
         s.evaluations.to_string(),
         format!("{:.3}", s.wall * 1e3),
-        error,
+        error(s),
         optional(s.energy),
         optional(s.momentum),
     ]
+}
+
+/// Marked where it is below what the reference can tell.
+fn error(s: &Sample) -> String {
+    if s.told { number(s.error) } else { format!("< {}", number(s.error)) }
 }
 
 /// Rows of numbers with a head.
@@ -73,30 +91,32 @@ pub(super) fn csv(m: &Motion) -> String {
     out
 }
 
-/// The cheapest run that is accurate enough, by evaluations and by the clock.
+/// The cheapest run that is accurate enough, by evaluations and by the clock; of each integrator those count that are no lucky hits.
 pub(super) fn advice(m: &Motion, wish: f64) -> String {
-    let fit: Vec<(&str, &Sample)> = m
-        .curves
-        .iter()
-        .filter(|c| !c.peer)
-        .flat_map(|c| c.samples.iter().map(|s| (c.integrator.as_str(), s)))
-        .filter(|(_, s)| s.error <= wish)
-        .collect();
-    let told = |(name, s): &(&str, &Sample)| {
-        let how = s.step.map_or_else(|| format!("tolerance {:.1e}", s.tolerance.unwrap_or_default()), |h| format!("steps of {h:.2e} s"));
-        format!("{name} with {how}: error {:.1e}, {} evaluations, {:.2} ms", s.error, s.evaluations, s.wall * 1e3)
-    };
+    let own = m.curves.iter().filter(|c| !c.peer);
+    let fit: Vec<(&str, &Sample)> = own.flat_map(|c| lasting(&c.samples, wish).iter().map(|s| (c.integrator.as_str(), s))).collect();
     let by_evaluations = fit.iter().min_by_key(|(_, s)| s.evaluations);
     let by_time = fit.iter().min_by(|a, b| a.1.wall.total_cmp(&b.1.wall));
     match (by_evaluations, by_time) {
         (Some(a), Some(b)) => format!("{}: fewest evaluations: {}\n{}: least time: {}\n", m.scene, told(a), m.scene, told(b)),
-        _ => format!("{}: no run is accurate to {wish:e}\n", m.scene),
+        _ => format!("{}: no run is accurate to {wish:e}, and the finer ones of its integrator with it\n", m.scene),
     }
+}
+
+/// The finest runs, all of which reach the error; two at least. A run that reaches it while a finer one does not has hit it by accident.
+fn lasting(samples: &[Sample], wish: f64) -> &[Sample] {
+    let from = samples.iter().rposition(|s| s.error.is_nan() || s.error > wish).map_or(0, |k| k + 1);
+    if samples.len() - from >= 2 { &samples[from..] } else { &[] }
+}
+
+/// An integrator with its setting, and what that comes to.
+fn told((name, s): &(&str, &Sample)) -> String {
+    let how = s.step.map_or_else(|| format!("tolerance {:.1e}", s.tolerance.unwrap_or_default()), |h| format!("steps of {h:.2e} s"));
+    format!("{name} with {how}: error {}, {} evaluations, {:.2} ms", error(s), s.evaluations, s.wall * 1e3)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::sweep::{Curve, Motion, Sample};
     use super::super::{page, plot};
     use super::*;
 
@@ -112,7 +132,7 @@ mod tests {
             told: error > 1e-11,
         };
         let samples = vec![sample(10, 1e-3), sample(100, 1e-7), sample(1000, 1e-12)];
-        let curves = vec![Curve { integrator: "rk4".into(), peer: false, order: 4, slope: Some(4.0), samples }];
+        let curves = vec![Curve::new("rk4".into(), false, 4, samples)];
         let references = ["one".to_owned(), "other".to_owned()];
         let (processor, notes) = ("a processor".to_owned(), vec!["a note".to_owned()]);
         let (scene, seconds, degrees_of_freedom, agreement) = ("a <scene>".to_owned(), 1.0, 2, 1e-13);
@@ -125,6 +145,56 @@ mod tests {
         assert!(advice(&m, 1e-6).contains("rk4 with steps of 1.00e-2 s") && advice(&m, 1e-20).contains("no run"));
         assert!(text(&m).contains("< 1.0e-12"));
         assert!(csv(&m).lines().all(|l| l.split(',').count() == 11));
+    }
+
+    /// Of dop853, its errors and tolerances on the pendulum: 3.2e-6 is a lucky hit, and the last two are below what the reference can tell.
+    fn lucky() -> Motion {
+        let errors = [(1e-5, 1.9e-4), (3.2e-6, 1.9e-5), (1e-6, 1.3e-4), (3.2e-7, 1.6e-5), (1e-7, 3e-6), (1e-11, 8.6e-11), (3.2e-12, 3e-11)];
+        let sample = |(k, (tolerance, error)): (usize, (f64, f64))| Sample {
+            tolerance: Some(tolerance),
+            evaluations: 500 + 100 * k as u64,
+            wall: 1e-4 * (k + 1) as f64,
+            error,
+            told: error > 1e-10,
+            ..Sample::default()
+        };
+        let samples = errors.into_iter().enumerate().map(sample).collect();
+        Motion { curves: vec![Curve::new("dop853".into(), false, 8, samples)], ..motion() }
+    }
+
+    #[test]
+    fn a_lucky_hit_is_not_advised() {
+        let told = advice(&lucky(), 1e-4);
+        assert!(told.lines().all(|l| l.contains("dop853 with tolerance 3.2e-7: error 1.6e-5")), "{told}");
+        // The finest run has none beside it that would say that it is no hit.
+        assert!(advice(&lucky(), 5e-11).contains("no run is accurate to 5e-11"));
+        assert!(advice(&Motion { curves: Vec::new(), ..motion() }, 1.0).contains("no run"));
+        let mut broken = lucky();
+        broken.curves[0].samples[6].error = f64::NAN;
+        assert!(advice(&broken, 1.0).contains("no run"));
+    }
+
+    #[test]
+    fn what_the_reference_cannot_tell_is_marked_in_the_advice_too() {
+        let told = advice(&lucky(), 1e-9);
+        assert!(told.lines().all(|l| l.contains("error < 8.6e-11,")), "{told}");
+    }
+
+    #[test]
+    fn an_order_that_does_not_show_is_said_not_to() {
+        let m = motion();
+        assert!(text(&m).contains("rk4, order 4; too few rows to measure it\n"));
+        let shown = |order: u32, power: i32| {
+            let sample = |n: u64| Sample { evaluations: n, error: (n as f64).powi(power), told: true, ..Sample::default() };
+            let samples = [10, 30, 100, 300, 1000].map(sample).to_vec();
+            text(&Motion { curves: vec![Curve::new("a".into(), false, order, samples)], ..motion() })
+        };
+        let right = "a, order 4; measured over the finest 3 rows: the error falls as the power 4.00 of the evaluations\n";
+        assert!(shown(4, -4).contains(right));
+        assert!(
+            shown(8, -4)
+                .contains("a, order 8, which does not show here; measured over the finest 3 rows: the error falls as the power 4.00")
+        );
     }
 
     #[test]
