@@ -258,7 +258,7 @@ pub(crate) struct CompareArguments {
     /// Draw the medians as bars into this file, in SVG: of ours, and of the fastest build of each engine among the peers
     #[arg(long, value_name = "FILE")]
     pub(crate) chart: Option<PathBuf>,
-    /// How often each is timed
+    /// How often each is timed, 31 times at least
     #[arg(long, value_name = "N", default_value_t = 61, value_parser = clap::value_parser!(u32).range(31..=100_000))]
     pub(crate) repetitions: u32,
     /// How many random states they are judged on; one call at a time they are timed on the first of them, as many as keep arguments within 16 kB
@@ -302,7 +302,7 @@ pub(crate) struct ScalingArguments {
     /// As a document in Markdown
     #[arg(long, conflicts_with = "format")]
     pub(crate) markdown: bool,
-    /// How often each is timed
+    /// How often each is timed, 5 times at least
     #[arg(long, value_name = "N", default_value_t = 31, value_parser = clap::value_parser!(u32).range(5..=100_000))]
     pub(crate) repetitions: u32,
 }

@@ -30,6 +30,7 @@ pub mod states;
 pub mod stress;
 mod table;
 mod tips;
+mod units;
 
 use std::ffi::OsString;
 

@@ -6,13 +6,15 @@ pub(crate) struct Table {
     head: [Vec<String>; 2],
     rows: Vec<Vec<String>>,
     left: usize,
+    /// How many columns the first cell of a row may take before the others.
+    first: Option<usize>,
 }
 
 impl Table {
     /// Columns as (title, unit).
     pub(crate) fn new<T: Into<String>, U: Into<String>>(columns: impl IntoIterator<Item = (T, U)>) -> Self {
         let (titles, units) = columns.into_iter().map(|(t, u)| (t.into(), u.into())).unzip();
-        Self { head: [titles, units], rows: Vec::new(), left: 1 }
+        Self { head: [titles, units], rows: Vec::new(), left: 1, first: None }
     }
 
     /// The first `n` columns are text.
@@ -21,9 +23,19 @@ impl Table {
         self
     }
 
+    /// A first cell of more than so many columns stands on a line of its own.
+    pub(crate) fn first_within(mut self, columns: usize) -> Self {
+        self.first = Some(columns);
+        self
+    }
+
     /// Appends a row.
     pub(crate) fn row<T: Into<String>>(&mut self, cells: impl IntoIterator<Item = T>) {
-        self.rows.push(cells.into_iter().map(|c| plain(&c.into())).collect());
+        let mut cells: Vec<String> = cells.into_iter().map(|c| plain(&c.into())).collect();
+        if let Some(first) = cells.first_mut().filter(|c| self.first.is_some_and(|most| columns(c) > most)) {
+            self.rows.push(vec![std::mem::take(first)]);
+        }
+        self.rows.push(cells);
     }
 
     /// Appends a line of text across all columns.
@@ -60,6 +72,43 @@ impl Table {
 /// How many columns of a terminal a text takes: marks on the letter before take none.
 fn columns(text: &str) -> usize {
     text.chars().filter(|c| !('\u{300}'..='\u{36f}').contains(c)).count()
+}
+
+/// How many columns prose takes.
+pub(crate) const WIDTH: usize = 100;
+
+/// Prose in lines of at most [`WIDTH`] columns, as far as its spaces allow; what continues a line stands below its beginning.
+pub(crate) fn wrapped(text: &str) -> String {
+    text.split_inclusive('\n').map(wrapped_line).collect()
+}
+
+fn wrapped_line(line: &str) -> String {
+    let text = line.trim_start_matches(' ');
+    let indent = &line[..line.len() - text.len()];
+    let (mut out, mut at) = (indent.to_owned(), indent.len());
+    for (k, word) in text.split(' ').enumerate() {
+        let wide = columns(word.trim_end_matches('\n'));
+        if k > 0 && at + 1 + wide > WIDTH {
+            out = out.trim_end_matches(' ').to_owned() + "\n" + indent;
+            at = indent.len();
+        } else if k > 0 {
+            out.push(' ');
+            at += 1;
+        }
+        out += word;
+        at += wide;
+    }
+    out
+}
+
+/// So many things: `1 joint`, `2 joints`.
+pub(crate) fn counted(n: usize, thing: &str) -> String {
+    format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
+}
+
+/// So many degrees of freedom.
+pub(crate) fn freedom(n: usize) -> String {
+    counted(n, "degree") + " of freedom"
 }
 
 /// Text on one line, whatever a name contains.
@@ -111,6 +160,31 @@ mod tests {
         table.heading("a heading that is longer than the table");
         table.row(["q̈", "1"]);
         assert_eq!(table.text(), "   n\na heading that is longer than the table\nq̈  1\n");
+    }
+
+    #[test]
+    fn a_long_first_cell_stands_on_a_line_of_its_own() {
+        let mut table = Table::new([("case", ""), ("n", "")]).first_within(5);
+        table.row(["short", "1"]);
+        table.row(["longer than that", "2"]);
+        assert_eq!(table.text(), "case   n\nshort  1\nlonger than that\n       2\n");
+    }
+
+    #[test]
+    fn prose_is_wrapped_and_loses_nothing() {
+        let text = format!("  {}\nshort\n\n{}\n", "q̈ word ".repeat(30).trim_end(), "x".repeat(120));
+        let lines = wrapped(&text);
+        assert!(lines.lines().filter(|l| l.contains(' ')).all(|l| columns(l) <= WIDTH && l.trim_end() == l), "{lines}");
+        assert!(lines.lines().take(3).all(|l| l.starts_with("  q̈") || l.starts_with("  word")), "{lines}");
+        assert!(lines.lines().next().is_some_and(|l| columns(l) > WIDTH - 5), "{lines}");
+        assert!(text.split_whitespace().eq(lines.split_whitespace()) && lines.ends_with("x\n") && lines.contains("\nshort\n\nx"));
+        assert_eq!(wrapped("no end"), "no end");
+    }
+
+    #[test]
+    fn one_is_singular() {
+        assert_eq!([0, 1, 2].map(|n| counted(n, "joint")), ["0 joints", "1 joint", "2 joints"]);
+        assert_eq!([1, 6].map(freedom), ["1 degree of freedom", "6 degrees of freedom"]);
     }
 
     #[test]

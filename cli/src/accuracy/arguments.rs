@@ -27,7 +27,7 @@ pub(crate) struct AccuracyArguments {
     /// Seed of the random states
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
-    /// How often each is timed
+    /// How often each is timed, once at least; of motions the fastest of five at most counts
     #[arg(long, value_name = "N", default_value_t = 31, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) repetitions: u32,
     /// A peer library to measure beside them; may be given several times. It is run: name only libraries that you trust

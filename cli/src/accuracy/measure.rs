@@ -91,6 +91,7 @@ fn report(robot: &Robot, model: &Model<f64>, rustc: &Rustc, arguments: &Accuracy
         flags: Rustc::flags(Target::Own).join(" "),
         version: env!("CARGO_PKG_VERSION"),
         commit: machine::COMMIT,
+        units: super::report::UNITS,
         notes: Vec::new(),
         functions: Vec::new(),
     }

@@ -3,6 +3,21 @@
 use serde::Serialize;
 
 use crate::compare::timing::Summary;
+use crate::units::Units;
+
+const MAGNITUDE: &str = "the sum of the magnitudes of the terms";
+
+/// Of all numbers that have one.
+pub(super) const UNITS: Units = Units(&[
+    ("functions[].points[].time", "ns a call"),
+    ("functions[].points[].relative", MAGNITUDE),
+    ("functions[].points[].ulps", "the last place of the result as a double"),
+    ("functions[].points[].rounding", MAGNITUDE),
+    ("functions[].points[].backward", "the sum of the magnitudes of the terms of the torques"),
+    ("functions[].points[].hard", "the sum of the magnitudes of the terms, and the name of the state"),
+    ("functions[].points[].bound", MAGNITUDE),
+    ("functions[].points[].reached", "the bound"),
+]);
 
 /// All that was measured.
 #[derive(Clone, Debug, Serialize)]
@@ -22,6 +37,7 @@ pub(super) struct Report {
     pub(super) flags: String,
     pub(super) version: &'static str,
     pub(super) commit: &'static str,
+    pub(super) units: Units,
     pub(super) notes: Vec<String>,
     pub(super) functions: Vec<FunctionReport>,
 }
@@ -139,6 +155,7 @@ pub(super) fn example() -> Report {
         flags: String::new(),
         version: "0",
         commit: "none",
+        units: UNITS,
         notes: vec![],
         functions: vec![FunctionReport { function: "inverse_dynamics", summary: "torques", points, surprises: vec!["a surprise".into()] }],
     }
@@ -153,6 +170,11 @@ mod tests {
         let report = example();
         let front: Vec<&str> = report.functions[0].points.iter().filter(|p| p.front).map(|p| p.level.as_str()).collect();
         assert_eq!(front, ["f32", "f64", "double_double"]);
+    }
+
+    #[test]
+    fn units_are_those_of_numbers_that_are_there() {
+        assert!(crate::units::lead(UNITS, &serde_json::to_value(example()).unwrap()));
     }
 
     #[test]

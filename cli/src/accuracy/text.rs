@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::report::{FunctionReport, Point, Report, Spread};
-use crate::table::{Table, plain};
+use crate::table::{Table, counted, freedom, plain, wrapped};
 
 /// Everything.
 pub(super) fn text(report: &Report) -> String {
@@ -14,22 +14,22 @@ pub(super) fn text(report: &Report) -> String {
             let _ = writeln!(out, "  {s}");
         });
     }
-    out + EXPLAINED
+    out + &wrapped(EXPLAINED)
 }
 
 /// What was measured where.
 pub(super) fn head(report: &Report) -> String {
     let mut out = format!(
-        "{}, {} base: {} joints, {} degrees of freedom; frames: {}\n{} random states (seed {}) and {} hard ones, {} repetitions in turns; reference of {} bits\n{}; {} {}; articulated {} ({})\n",
+        "{}, {} base: {}, {}; frames: {}\n{} (seed {}) and {}, {} in turns; reference of {} bits\n{}; {} {}; articulated {} ({})\n",
         plain(&report.robot),
         report.base,
-        report.joints,
-        report.degrees_of_freedom,
+        counted(report.joints, "joint"),
+        freedom(report.degrees_of_freedom),
         plain(&report.frames.join(", ")),
-        report.states,
+        counted(report.states, "random state"),
         report.seed,
-        report.hard_states,
-        report.repetitions,
+        counted(report.hard_states, "hard one"),
+        counted(report.repetitions as usize, "repetition"),
         report.reference_bits,
         report.processor,
         report.compiler,
@@ -40,13 +40,17 @@ pub(super) fn head(report: &Report) -> String {
     for note in &report.notes {
         let _ = writeln!(out, "note: {}", plain(note));
     }
-    out
+    wrapped(&out)
 }
 
 const EXPLAINED: &str = "
-*: nothing measured is both faster and more accurate. Errors are relative to the sum of the magnitudes of the terms: median, 99 % and largest over the
-random states, against the textbook's formulas on the URDF's numbers; rounding: against the same formulas with the constants of the generated code; bound: what rounding
-can be at most on these states, guaranteed; reached: the largest part of a bound that an error was; hard: the largest error on the hard states.
+*: nothing measured is both faster and more accurate. Time: the median of a call; IQR: the distance of its quartiles.
+Errors are relative to the sum of the magnitudes of the terms: median, 99 % and largest over the random states, against the textbook's formulas on the URDF's numbers.
+ulps: the same error in units of the last place of the result itself (of a double), large where terms cancel.
+backward: how far the torques that a solution needs are from those given, relative to the magnitudes of their terms.
+rounding: the error against the same formulas with the constants of the generated code; bound: what rounding can be at most on these states, guaranteed; reached: the largest \
+part of a bound that an error was; hard: the largest error on the hard states.
+operations: additions, multiplications, divisions and roots of a call (a multiply-add is two; sines and cosines apart); code: machine code of the function alone.
 ";
 
 fn table(f: &FunctionReport) -> Table {
@@ -121,7 +125,17 @@ mod tests {
     #[test]
     fn every_level_has_its_line() {
         let text = super::text(&example());
-        for word in ["f32  ", "double_double  *", "a surprise", "64 random states", "13 hard ones"] {
+        for word in [
+            "f32  ",
+            "double_double  *",
+            "a surprise",
+            "64 random states",
+            "13 hard ones",
+            "\nulps: ",
+            "\noperations: ",
+            "IQR: ",
+            "; code: ",
+        ] {
             assert!(text.contains(word), "{word}: {text}");
         }
     }

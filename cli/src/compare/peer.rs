@@ -12,6 +12,7 @@ use crate::magnitude::scales;
 use crate::native::{Native, NativePeer};
 use crate::robot::Robot;
 use crate::states::quaternions;
+use crate::table::counted;
 
 /// The least scale of a difference, as a part of the largest in the same result.
 const FLOOR: f64 = 1e-3;
@@ -166,10 +167,9 @@ pub(crate) fn orders(peer: &NativePeer, model: &Model<f64>) -> Result<(Vec<usize
     let (nq, nv, joints) = (peer.number("nq"), peer.number("nv"), peer.number("joint_count"));
     let (nq, nv, joints) = (nq.ok_or(incomplete)?, nv.ok_or(incomplete)?, joints.ok_or(incomplete)?);
     if (nq, nv, joints) != (model.nq, model.nv, model.joints.len()) {
-        let ours = format!("{} with {} coordinates", model.joints.len(), model.nq);
-        return Err(format!(
-            "it has {joints} joints with {nq} coordinates, and here there are {ours} (peers take joints that follow others as free)"
-        ));
+        let [theirs, ours] = [(joints, nq), (model.joints.len(), model.nq)]
+            .map(|(joints, nq)| format!("{} with {}", counted(joints, "joint"), counted(nq, "coordinate")));
+        return Err(format!("it has {theirs}, and here there are {ours} (peers take joints that follow others as free)"));
     }
     let (mut q, mut v) = (vec![usize::MAX; nq], vec![usize::MAX; nv]);
     for k in 0..joints {

@@ -18,6 +18,39 @@ use crate::ledger::{Stage, stages};
 use crate::precise::BITS;
 use crate::robot::Robot;
 use crate::tips::Tips;
+use crate::units::Units;
+
+const CALL: &str = "ns a call";
+const STATE: &str = "ns a state";
+const RATIO: &str = "ratio";
+const MAGNITUDE: &str = "the sum of the magnitudes of the terms";
+const ROUNDING: &str = "2⁻⁵³ of the sum of the magnitudes of the terms";
+
+/// Of all numbers that have one.
+const UNITS: Units = Units(&[
+    ("gravity", "m/s²"),
+    ("bound", ROUNDING),
+    ("functions[].depth", "operations one after the other"),
+    ("functions[].generated", CALL),
+    ("functions[].generic", CALL),
+    ("functions[].generic_over_generated", RATIO),
+    ("functions[].errors.generated", ROUNDING),
+    ("functions[].errors.generic", ROUNDING),
+    ("functions[].variants[].time", CALL),
+    ("functions[].variants[].over_generated", RATIO),
+    ("functions[].variants[].largest_difference", MAGNITUDE),
+    ("functions[].batches[].time", STATE),
+    ("functions[].batches[].generated_over_batch", RATIO),
+    ("functions[].batches[].largest_difference", MAGNITUDE),
+    ("functions[].batches[].bound", MAGNITUDE),
+    ("functions[].batches[].peers[].peer_over_batch", RATIO),
+    ("functions[].peers[].time", CALL),
+    ("functions[].peers[].generic_over_peer", RATIO),
+    ("functions[].peers[].generated_over_peer", RATIO),
+    ("functions[].peers[].largest_difference", MAGNITUDE),
+    ("functions[].peers[].bound", MAGNITUDE),
+    ("making[].peers[].peer_over_ours", RATIO),
+]);
 
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Report {
@@ -40,6 +73,7 @@ pub(super) struct Report {
     pub(super) bound: f64,
     /// Whether the command itself is optimised; generic code and generation are as fast as it is.
     pub(super) optimised: bool,
+    pub(super) units: Units,
     /// Bytes of machine code, operations and seconds of peers are of each build; what a generator made of this robot is with the functions.
     pub(super) peers: Vec<PeerLibrary>,
     pub(super) notes: Vec<String>,
@@ -199,6 +233,7 @@ impl Report {
             reference_bits: BITS,
             bound: arguments.bound,
             optimised: !cfg!(debug_assertions),
+            units: UNITS,
             peers: Vec::new(),
             notes: Vec::new(),
             functions: Vec::new(),

@@ -4,16 +4,16 @@ use std::fmt::Write;
 
 use super::report::{Cost, Ignored, On, Operations, Report};
 use crate::compare::timing::Summary;
-use crate::table::{Table, number, plain};
+use crate::table::{Table, freedom, number, plain};
 
 pub(super) fn text(r: &Report) -> String {
     let [x, y, z] = r.gravity.map(number);
     let mut out = format!(
-        "{}: {}, {} base, {} degrees of freedom, gravity ({x}, {y}, {z}) m/s²\n",
+        "{}: {}, {} base, {}, gravity ({x}, {y}, {z}) m/s²\n",
         plain(&r.scene),
         plain(&r.robot),
         r.base,
-        r.degrees_of_freedom
+        freedom(r.degrees_of_freedom)
     );
     let none = |count: usize| if count == 0 { " nothing" } else { "" };
     let _ = writeln!(out, "\non:{}", none(r.on.len()));

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::report::{Footnotes, Report};
 use crate::groups::Group;
+use crate::table::freedom;
 
 const HEAD: &str = "\
 # All functions
@@ -20,7 +21,7 @@ pub(super) fn markdown(report: &Report) -> String {
     let mut out = HEAD.to_owned();
     for r in &report.robots {
         let frames: Vec<String> = r.frames.iter().map(|f| format!("`{f}`")).collect();
-        let _ = writeln!(out, "* {}: {} base, {} degrees of freedom; tips {}", r.robot, r.base, r.degrees_of_freedom, frames.join(", "));
+        let _ = writeln!(out, "* {}: {} base, {}; tips {}", r.robot, r.base, freedom(r.degrees_of_freedom), frames.join(", "));
     }
     let mut footnotes = Footnotes::default();
     for group in Group::ALL {

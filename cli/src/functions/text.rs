@@ -4,15 +4,14 @@ use std::fmt::Write;
 
 use super::report::{Footnotes, FunctionRow, Report};
 use crate::groups::Group;
-use crate::table::{Table, plain};
+use crate::table::{Table, freedom, plain};
 
 pub(super) fn text(report: &Report) -> String {
     let mut out =
         "Multiplications+additions of generated code, and instructions (a multiply-add counted once); sines and cosines apart\n".to_owned();
     for r in &report.robots {
         let (name, frames) = (plain(&r.robot), plain(&r.frames.join(", ")));
-        let _ =
-            writeln!(out, "{name}: {} base, {} degrees of freedom; functions of frames on its tips {frames}", r.base, r.degrees_of_freedom);
+        let _ = writeln!(out, "{name}: {} base, {}; functions of frames on its tips {frames}", r.base, freedom(r.degrees_of_freedom));
     }
     let mut footnotes = Footnotes::default();
     let titles = report.robots.iter().map(|r| r.robot.clone());

@@ -13,6 +13,7 @@ use crate::compare::timing::{self, Run};
 use crate::compiled::{Compiled, Rustc};
 use crate::failure::Failure;
 use crate::states::{self, State};
+use crate::table::counted;
 
 /// Random states that evaluations go through: enough that no branch is learnt by heart, few enough that those of a long chain stay in the cache.
 pub(super) const STATES: usize = 8;
@@ -44,7 +45,8 @@ pub(super) fn measure(
     if difference.is_nan() || difference > AGREE {
         let name = function.name;
         return Err(Failure::bound(format!(
-            "{name}, {joints} joints: generated and generic results differ by {difference:.1e} of the largest"
+            "{name}, {}: generated and generic results differ by {difference:.1e} of the largest",
+            counted(joints, "joint")
         )));
     }
     let mut runs: Vec<Run<'_>> = contenders.iter().map(|c| c.run(&arguments)).collect();

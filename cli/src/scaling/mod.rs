@@ -15,6 +15,7 @@ use crate::compiled::{FILLER_INSTRUCTIONS, Rustc, Target};
 use crate::console::{self, Progress};
 use crate::failure::Failure;
 use crate::names;
+use crate::table::counted;
 use cold::Cold;
 use report::Report;
 
@@ -55,7 +56,7 @@ pub(crate) fn run(arguments: &ScalingArguments, format: Format) -> Result<(), Fa
     let progress = Progress::new(plan.len());
     let mut points = Vec::new();
     for (function, joints) in plan {
-        progress.doing(format!("{}, {joints} joints", function.name));
+        progress.doing(format!("{}, {}", function.name, counted(joints, "joint")));
         points.push(measure::measure(function, joints, arguments.repetitions as usize, &rustc, &mut cold)?);
         progress.step();
     }

@@ -4,26 +4,33 @@ use std::fmt::Write;
 
 use super::report::{Crossover, Growth, Point, Report};
 use crate::compare::timing::Summary;
-use crate::table::{Table, number};
+use crate::table::{Table, counted, number, wrapped};
 
 pub(super) fn text(report: &Report) -> String {
     let mut out = format!(
-        "serial arms of revolute joints; {} {}\n{} random states, {} repetitions; before an evaluation with cold caches {} MiB are written to and {} instructions run\n",
+        "serial arms of revolute joints; {} {}\n{}, {}; before an evaluation with cold caches {} MiB are written to and {} instructions run\n",
         report.compiler,
         report.flags,
-        report.states,
-        report.repetitions,
+        counted(report.states, "random state"),
+        counted(report.repetitions as usize, "repetition"),
         report.buffer_bytes >> 20,
         report.filler_instructions
     );
     report.notes.iter().for_each(|note| out += &format!("note: {note}\n"));
+    out = wrapped(&out);
     for (function, points) in report.functions() {
         let _ = write!(out, "\n{function}\n{}", table(&points).text());
     }
     let crossovers: String = report.crossovers.iter().map(|c| crossover(c) + "\n").collect();
     let growth: String = report.growth.iter().map(|g| self::growth(g) + "\n").collect();
-    out + "\n" + &crossovers + &growth
+    out + "\n" + &wrapped(&(LEGEND.to_owned() + "\n" + &crossovers + &growth))
 }
+
+const LEGEND: &str = "\
+Times are medians of a call. Hot: again and again; cold: each call after everything was driven out of the caches.
+instructions: of generated code (a multiply-add is one; sines and cosines apart); code: its machine code; generation: from the URDF's text to the source; rustc: start and \
+linking included. Beside a number of joints stand the ways of computing that the generator chose by count.
+";
 
 /// Titles and units of what is said of a chain; the last row is [`cells`].
 pub(super) const COLUMNS: [(&str, &str); 12] = [
@@ -76,14 +83,21 @@ fn three(x: f64) -> String {
 
 /// From which length on generic code is faster, as a sentence.
 pub(super) fn crossover(c: &Crossover) -> String {
-    let at = |n: Option<f64>| n.map_or_else(|| format!("at no length up to {}", c.up_to), |n| format!("from {n:.0} joints on"));
+    let at = |n: Option<f64>| {
+        n.map_or_else(|| format!("at no length up to {}", c.up_to), |n| format!("from {} on", counted(n.round() as usize, "joint")))
+    };
     format!("{}: generic code is faster {} with hot caches, {} with cold ones", c.function, at(c.hot), at(c.cold))
 }
 
 /// By how much a joint's costs grow, as a sentence.
 pub(super) fn growth(g: &Growth) -> String {
     format!(
-        "{}: from {} to {} joints a joint costs {:.1} times the time with hot caches, {:.1} times the generation, {:.1} times the compilation",
-        g.function, g.from, g.to, g.time, g.generation, g.compilation
+        "{}: from {} to {} a joint costs {:.1} times the time with hot caches, {:.1} times the generation, {:.1} times the compilation",
+        g.function,
+        g.from,
+        counted(g.to, "joint"),
+        g.time,
+        g.generation,
+        g.compilation
     )
 }

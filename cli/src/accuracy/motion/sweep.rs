@@ -8,6 +8,20 @@ use super::subject::{End, How, State, Subject, difference, run};
 use crate::accuracy::machine;
 use crate::console::Progress;
 use crate::failure::Failure;
+use crate::units::Units;
+
+/// Of all numbers that have one.
+pub(super) const UNITS: Units = Units(&[
+    ("seconds", "s"),
+    ("agreement", "rad, m, rad/s, m/s: the largest of all"),
+    ("curves[].slope", "power of the evaluations"),
+    ("curves[].samples[].step", "s"),
+    ("curves[].samples[].tolerance", "relative and absolute, of rad, m, rad/s, m/s"),
+    ("curves[].samples[].wall", "s"),
+    ("curves[].samples[].error", "rad, m, rad/s, m/s: the largest of all"),
+    ("curves[].samples[].energy", "the largest kinetic or potential energy"),
+    ("curves[].samples[].momentum", "the momentum at the start"),
+]);
 
 /// All integrators on one motion.
 #[derive(Clone, Debug, Serialize)]
@@ -28,6 +42,8 @@ pub(crate) struct Motion {
     pub version: &'static str,
     /// Built from which commit.
     pub commit: &'static str,
+    /// Units of the numbers.
+    pub units: Units,
     /// What is to be known of it.
     pub notes: Vec<String>,
     /// One an integrator; those of peers come last.
@@ -99,6 +115,7 @@ pub(super) fn all(scene: &str, subject: &Subject, peers: &Peers, repetitions: us
         processor: machine::processor(),
         version: env!("CARGO_PKG_VERSION"),
         commit: machine::COMMIT,
+        units: UNITS,
         notes: subject.notes(),
         curves: Vec::new(),
     };

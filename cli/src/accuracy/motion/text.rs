@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::super::text::number;
 use super::sweep::{COARSE, Curve};
 use super::{Motion, Sample};
-use crate::table::{Table, plain};
+use crate::table::{Table, freedom, plain, wrapped};
 
 /// For people.
 pub(super) fn text(m: &Motion) -> String {
@@ -26,15 +26,13 @@ pub(super) fn text(m: &Motion) -> String {
         }
         out += &table.text();
     }
-    let _ = writeln!(out, "\n{EXPLAINED}Rows with errors from {COARSE} on count for no power.");
-    out
+    out + "\n" + &wrapped(&format!("{EXPLAINED} Rows with errors from {COARSE} on are left out.\n"))
 }
 
 const EXPLAINED: &str = "Error: the largest difference of a number of the last state (rad, m, and those a second). <: below what the reference can tell.
-Power: by which the error falls with the evaluations, a straight line through the logarithms of the finer half of the rows that the reference
-can tell. The order is that of short steps; it does not show where steps are longer than that, or where evaluations do not grow as steps do
-(steps that are refused, rounds of an implicit method).
-";
+Energy: missing or too much at the end, relative to the largest kinetic or potential energy; momentum: its change, relative to it, where nothing acts from outside.
+Power: the slope of a straight line through the logarithms of the finest rows that the reference can tell, half of these and three at least. The order is that of short \
+steps; it does not show where steps are longer than that, or where evaluations do not grow as steps do (steps that are refused, rounds of an implicit method).";
 
 /// What was measured of the order.
 fn power(c: &Curve) -> String {
@@ -47,12 +45,18 @@ fn power(c: &Curve) -> String {
 pub(super) fn head(m: &Motion) -> String {
     let [a, b] = &m.references;
     let mut out = format!(
-        "{}: {} s, {} degrees of freedom. Reference: {a} and {b}, which agree to {:.1e}; errors below 100 times that are not shown in diagrams.\n\
+        "{}: {} s, {}. Reference: {a} and {b}, which agree to {:.1e}; errors below 100 times that are not shown in diagrams.\n\
          {}; articulated {} ({}), generic code\n",
-        m.scene, m.seconds, m.degrees_of_freedom, m.agreement, m.processor, m.version, m.commit
+        m.scene,
+        m.seconds,
+        freedom(m.degrees_of_freedom),
+        m.agreement,
+        m.processor,
+        m.version,
+        m.commit
     );
     m.notes.iter().for_each(|note| out += &format!("note: {}\n", plain(note)));
-    out
+    wrapped(&out)
 }
 
 fn row(s: &Sample) -> Vec<String> {
@@ -117,6 +121,7 @@ fn told((name, s): &(&str, &Sample)) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::sweep::UNITS;
     use super::super::{page, plot};
     use super::*;
 
@@ -136,7 +141,8 @@ mod tests {
         let references = ["one".to_owned(), "other".to_owned()];
         let (processor, notes) = ("a processor".to_owned(), vec!["a note".to_owned()]);
         let (scene, seconds, degrees_of_freedom, agreement) = ("a <scene>".to_owned(), 1.0, 2, 1e-13);
-        Motion { scene, seconds, degrees_of_freedom, references, agreement, processor, version: "0", commit: "none", notes, curves }
+        let (version, commit, units) = ("0", "none", UNITS);
+        Motion { scene, seconds, degrees_of_freedom, references, agreement, processor, version, commit, units, notes, curves }
     }
 
     #[test]
@@ -195,6 +201,11 @@ mod tests {
             shown(8, -4)
                 .contains("a, order 8, which does not show here; measured over the finest 3 rows: the error falls as the power 4.00")
         );
+    }
+
+    #[test]
+    fn units_are_those_of_numbers_that_are_there() {
+        assert!(crate::units::lead(UNITS, &serde_json::to_value(motion()).unwrap()));
     }
 
     #[test]

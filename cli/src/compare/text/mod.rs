@@ -8,26 +8,29 @@ use std::fmt::Write;
 use super::report::{FunctionReport, Report, VariantReport};
 use super::timing::Summary;
 use crate::ledger::Stage;
-use crate::table::{Table, plain};
+use crate::table::{Table, counted, freedom, plain, wrapped};
 
 pub(super) fn text(report: &Report) -> String {
     let mut out = head(report);
-    for (title, table) in [
-        ("Time of a call: median, and quartiles' distance (IQR)".to_owned(), times(report)),
+    for (title, table, legend) in [
+        ("Time of a call: median, and quartiles' distance (IQR)".to_owned(), times(report), TIMES),
         (
             "Time of a state where many are computed at once, on one core, and how many times that of a call of others (of each engine its fastest build)"
                 .to_owned(),
             batches::batches(report),
+            BATCHES,
         ),
-        ("The fastest build of each engine, by the letter of its build, and how many times our time it takes".to_owned(), peers::engines(report)),
-        (format!("Time of a call in each build of other libraries{}", peers::letters(report)), peers::builds(report)),
+        ("The fastest build of each engine, by the letter of its build, and how many times our time it takes".to_owned(), peers::engines(report), ""),
+        (format!("Time of a call in each build of other libraries{}", peers::letters(report)), peers::builds(report), ""),
         (
             "Largest error in units of 2⁻⁵³ of the sum of the magnitudes of the terms, against an independent evaluation in big floats".to_owned(),
             errors(report),
+            ERRORS,
         ),
         (
-            "Multiplications and additions after each stage of the generator (asked: what the algorithm asks for; the last: what is emitted)".to_owned(),
+            "Multiplications and additions after each stage of the generator (the last: what is emitted)".to_owned(),
             operations(report),
+            STAGES,
         ),
         (
             format!(
@@ -35,21 +38,33 @@ pub(super) fn text(report: &Report) -> String {
                 crate::parallel::threads()
             ),
             sizes(report),
+            SIZES,
         ),
         (
             "The same of code that others generate, of each engine its fastest build (operations as they count them)".to_owned(),
             peers::costs(report),
+            "",
         ),
     ]
     .into_iter()
-    .chain(report.making.iter().map(peers::making))
+    .chain(report.making.iter().map(peers::making).map(|(title, table)| (title, table, "")))
     {
         if !table.is_empty() {
-            let _ = write!(out, "\n{title}\n{}", indent(&table.text()));
+            let legend = if legend.is_empty() { String::new() } else { wrapped(&format!("  {legend}\n")) };
+            let _ = write!(out, "\n{}{}{legend}", wrapped(&(title + "\n")), indent(&table.text()));
         }
     }
-    out + "\n" + &newcomer(report)
+    out + "\n" + &wrapped(&newcomer(report))
 }
+
+const TIMES: &str = "generated: for this processor; any processor: the same source for any of its kind, where that is other code; generic: the library, for any robot";
+const BATCHES: &str = "blocks: 8 states (f32: 16) with each of their numbers side by side; states: one state after the other, to be turned first; \
+                       generated/it: how many times its time a call of generated code takes";
+const ERRORS: &str = "forward: of the result; backward: of the torques that the result needs; states: on which they were looked at, without those where the function is singular";
+const STAGES: &str = "asked: by the algorithm; trace: zeros, ones and what is the same folded in; turn, regroup, slide, still: frames and masses moved to where numbers vanish; unturned: constants turned in place of vectors; \
+                      live: without what no result needs; contract: sums as chains of multiply-adds; swept: once more without what no result needs";
+const SIZES: &str = "depth: the longest chain of operations that wait for each other; way chosen: how it is computed, where there are several ways, by count (LTDL: by factors of the mass \
+                     matrix; ABA: by the articulated-body algorithm)";
 
 /// A row for each function, under the name of its group where there are several.
 fn by_function(report: &Report, table: &mut Table, cells: impl Fn(&FunctionReport) -> Option<Vec<String>>) {
@@ -69,12 +84,12 @@ fn by_function(report: &Report, table: &mut Table, cells: impl Fn(&FunctionRepor
 fn head(report: &Report) -> String {
     let [x, y, z] = report.gravity;
     let mut out = format!(
-        "{}, {} base: {} joints, {} degrees of freedom; gravity ({x}, {y}, {z}) m/s²\n{} random states (seed {}), {} interleaved repetitions; {} {}\n",
+        "{}, {} base: {}, {}; gravity ({x}, {y}, {z}) m/s²\n{} (seed {}), {} interleaved repetitions; {} {}\n",
         plain(&report.robot),
         report.base,
-        report.joints,
-        report.degrees_of_freedom,
-        report.states,
+        counted(report.joints, "joint"),
+        freedom(report.degrees_of_freedom),
+        counted(report.states as usize, "random state"),
         report.seed,
         report.repetitions,
         report.compiler,
@@ -95,7 +110,7 @@ fn head(report: &Report) -> String {
     for note in &report.notes {
         let _ = writeln!(out, "note: {}", plain(note));
     }
-    out
+    wrapped(&out)
 }
 
 fn operations(report: &Report) -> Table {
@@ -209,7 +224,7 @@ fn newcomer(report: &Report) -> String {
     let most = times_of(ratio(best));
     let gain = if least == most { format!("{most} times") } else { format!("{least} times to {most} times ({})", best.function) };
     format!(
-        "The generator wrote this one robot's equations out with everything known beforehand folded in, and the library's generic code, which serves\n\
+        "The generator wrote this one robot's equations out with everything known beforehand folded in, and the library's generic code, which serves \
          any robot and computes the same numbers, takes {gain} as long for a call on this machine.\n{}",
         accuracy(report)
     )
@@ -226,7 +241,7 @@ fn accuracy(report: &Report) -> String {
         "which is more than rounding explains"
     };
     format!(
-        "Both round their results: the generated code was off by at most {worst:.1} times the rounding of one operation (2⁻⁵³, some 1.1e-16), measured against\n\
+        "Both round their results: the generated code was off by at most {worst:.1} times the rounding of one operation (2⁻⁵³, some 1.1e-16), measured against \
          the size of the terms that were added up, {verdict}.\n"
     )
 }
