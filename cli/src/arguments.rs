@@ -255,7 +255,7 @@ pub(crate) struct CompareArguments {
     /// A list of peer libraries, as the peers' build script writes it
     #[arg(long, value_name = "FILE")]
     pub(crate) peers_manifest: Option<PathBuf>,
-    /// Draw the medians as bars into this file, in SVG: of ours, and of the fastest build of each engine among the peers
+    /// Draw the medians as dots on a logarithmic axis into this file, in SVG: of ours, and of the fastest build of each engine among the peers
     #[arg(long, value_name = "FILE")]
     pub(crate) chart: Option<PathBuf>,
     /// How often each is timed, 31 times at least

@@ -1,12 +1,13 @@
-//! The medians as bars, in SVG: a panel for each function, a bar for each contender, on a logarithmic axis.
+//! The medians as dots, in SVG: a panel for each function, a row for each contender, on a logarithmic axis. A bar would have a length, which says nothing there.
 
 use std::fmt::Write;
 
 use super::batch::BatchReport;
 use super::report::{FunctionReport, Report};
+use crate::table::{counted, freedom};
 
-/// A bar: whose time, ns, how many times that of generated code it is, and the colour.
-struct Bar {
+/// A row: whose time, ns, how many times that of generated code it is, and the colour.
+struct Row {
     label: String,
     time: f64,
     ratio: Option<f64>,
@@ -16,11 +17,12 @@ struct Bar {
 const WIDTH: f64 = 860.0;
 /// From the left edge to the axis.
 const LABELS: f64 = 250.0;
-/// From the end of the axis to the right edge, for the numbers at the bars.
+/// From the end of the axis to the right edge, for the numbers beside the dots.
 const NUMBERS: f64 = 110.0;
+/// The height of a row.
 const ROW: f64 = 19.0;
-const BAR: f64 = 14.0;
-/// Above the bars of a function, its name.
+const RADIUS: f64 = 5.0;
+/// Above the rows of a function, its name.
 const TITLE: f64 = 26.0;
 const HEAD: f64 = 62.0;
 const FOOT: f64 = 44.0;
@@ -33,19 +35,19 @@ const ENGINES: [&str; 6] = ["#d9822b", "#7a5195", "#3f8f5b", "#c2453f", "#b59f00
 
 /// The chart of all functions that were measured.
 pub(super) fn svg(report: &Report) -> String {
-    let panels: Vec<(&str, Vec<Bar>)> = report.functions.iter().map(|f| (f.function, bars(report, f))).collect();
-    let times = || panels.iter().flat_map(|(_, bars)| bars).map(|b| b.time).filter(|t| t.is_finite() && *t > 0.0);
+    let panels: Vec<(&str, Vec<Row>)> = report.functions.iter().map(|f| (f.function, rows(report, f))).collect();
+    let times = || panels.iter().flat_map(|(_, rows)| rows).map(|r| r.time).filter(|t| t.is_finite() && *t > 0.0);
     let axis = Axis::over(times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max));
-    let rows: usize = panels.iter().map(|(_, bars)| bars.len()).sum();
-    let bottom = HEAD + panels.len() as f64 * TITLE + rows as f64 * ROW;
+    let count: usize = panels.iter().map(|(_, rows)| rows.len()).sum();
+    let bottom = HEAD + panels.len() as f64 * TITLE + count as f64 * ROW;
     let mut out = head(report, bottom + FOOT);
     axis.draw(&mut out, bottom);
     let mut y = HEAD;
-    for (function, bars) in &panels {
+    for (function, rows) in &panels {
         text(&mut out, 12.0, y + TITLE - 8.0, "font-weight=\"bold\"", function);
         y += TITLE;
-        for bar in bars {
-            draw(&mut out, &axis, bar, y);
+        for row in rows {
+            draw(&mut out, &axis, row, y + ROW / 2.0);
             y += ROW;
         }
     }
@@ -53,13 +55,13 @@ pub(super) fn svg(report: &Report) -> String {
 }
 
 /// Ours, and the fastest build of each engine.
-fn bars(report: &Report, f: &FunctionReport) -> Vec<Bar> {
-    let mut bars = vec![Bar { label: "generated".into(), time: f.generated.median, ratio: None, colour: GENERATED }];
-    let bar = |label: String, time: f64, ratio: f64, colour| Bar { label, time, ratio: Some(ratio), colour };
-    bars.extend(f.variants.iter().map(|v| bar(format!("generated, {}", v.variant), v.time.median, v.over_generated.median, VARIANT)));
+fn rows(report: &Report, f: &FunctionReport) -> Vec<Row> {
+    let mut rows = vec![Row { label: "generated".into(), time: f.generated.median, ratio: None, colour: GENERATED }];
+    let row = |label: String, time: f64, ratio: f64, colour| Row { label, time, ratio: Some(ratio), colour };
+    rows.extend(f.variants.iter().map(|v| row(format!("generated, {}", v.variant), v.time.median, v.over_generated.median, VARIANT)));
     let label = |b: &BatchReport| format!("{} {}, a state of many", b.numbers, b.layout);
-    bars.extend(f.batches.iter().map(|b| bar(label(b), b.time.median, 1.0 / b.generated_over_batch.median, VARIANT)));
-    bars.push(bar("generic".into(), f.generic.median, f.generic_over_generated.median, GENERIC));
+    rows.extend(f.batches.iter().map(|b| row(label(b), b.time.median, 1.0 / b.generated_over_batch.median, VARIANT)));
+    rows.push(row("generic".into(), f.generic.median, f.generic_over_generated.median, GENERIC));
     for (engine, colour) in report.engines().into_iter().zip(ENGINES.into_iter().cycle()) {
         let Some(peer) = f.fastest_of(engine) else { continue };
         let library = report.peers.iter().find(|p| p.peer == peer.peer).map(|p| &p.library);
@@ -69,9 +71,9 @@ fn bars(report: &Report, f: &FunctionReport) -> Vec<Bar> {
         let notes: Vec<String> =
             compiler.cloned().into_iter().chain(fast.then(|| "fast-math".into())).chain(single.then(|| "f32".into())).collect();
         let label = if notes.is_empty() { engine.to_owned() } else { format!("{engine} ({})", notes.join(", ")) };
-        bars.push(bar(label, peer.time.median, 1.0 / peer.generated_over_peer.median, colour));
+        rows.push(row(label, peer.time.median, 1.0 / peer.generated_over_peer.median, colour));
     }
-    bars
+    rows
 }
 
 /// A logarithmic axis of ns, between powers of ten or halves of them.
@@ -83,8 +85,8 @@ struct Axis {
 impl Axis {
     fn over(least: f64, most: f64) -> Self {
         let (least, most) = if least <= most { (least, most) } else { (1.0, 10.0) };
-        // Ends are 1, 2 or 5 times a power of ten, the lower one well below the shortest bar.
-        let low = ticks().rev().find(|t| *t <= least / 1.5).unwrap_or(1e-3);
+        // Ends are 1, 2 or 5 times a power of ten, the lower one left of the first dot.
+        let low = ticks().rev().find(|t| *t <= least / 1.2).unwrap_or(1e-3);
         let high = ticks().find(|t| *t >= most).unwrap_or(1e12);
         Self { low, high }
     }
@@ -106,7 +108,13 @@ impl Axis {
             }
         }
         let middle = (LABELS + WIDTH - NUMBERS) / 2.0;
-        text(out, middle, bottom + 34.0, "text-anchor=\"middle\" fill=\"#555555\"", "ns a call, median; logarithmic");
+        text(
+            out,
+            middle,
+            bottom + 34.0,
+            "text-anchor=\"middle\" fill=\"#555555\"",
+            "ns a call, median; logarithmic: equal ratios are equal distances",
+        );
     }
 }
 
@@ -120,25 +128,27 @@ fn head(report: &Report, height: f64) -> String {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{height:.0}\" viewBox=\"0 0 {WIDTH} {height:.0}\" \
          font-family=\"DejaVu Sans, Verdana, Arial, sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
     );
-    let title = format!("{}, {} base, {} degrees of freedom", report.robot, report.base, report.degrees_of_freedom);
+    let title = format!("{}, {} base, {}", report.robot, report.base, freedom(report.degrees_of_freedom));
     text(&mut out, 12.0, 22.0, "font-size=\"15\" font-weight=\"bold\"", &title);
     let engines = if report.engines().is_empty() { "" } else { "; of each engine its fastest build" };
     let how = format!(
-        "{} interleaved repetitions on {} random states, one core{engines}; {}",
-        report.repetitions, report.states, report.compiler
+        "{} interleaved repetitions on {}, one core{engines}; {}",
+        report.repetitions,
+        counted(report.states as usize, "random state"),
+        report.compiler
     );
     text(&mut out, 12.0, 42.0, "fill=\"#555555\" font-size=\"11\"", &how);
     out
 }
 
-/// A bar with its name before it and its numbers behind it.
-fn draw(out: &mut String, axis: &Axis, bar: &Bar, y: f64) {
-    let (left, right, middle) = (axis.x(axis.low), axis.x(bar.time), y + BAR / 2.0 + 4.0);
-    text(out, LABELS - 8.0, middle, "text-anchor=\"end\"", &bar.label);
-    let width = (right - left).max(1.0);
-    let _ = writeln!(out, "<rect x=\"{left:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{BAR}\" fill=\"{}\"/>", bar.colour);
-    let times = bar.ratio.map_or_else(String::new, |ratio| format!(" ({}×)", digits(ratio)));
-    text(out, right + 5.0, middle, "", &format!("{} ns{times}", digits(bar.time)));
+/// A dot with its name before the axis, a dotted line from one to the other, and its numbers beside it. `y` is the middle of the row.
+fn draw(out: &mut String, axis: &Axis, row: &Row, y: f64) {
+    let (x, line) = (axis.x(row.time), y + 4.0);
+    text(out, LABELS - 8.0, line, "text-anchor=\"end\"", &row.label);
+    let _ = writeln!(out, "<path d=\"M{LABELS:.1} {y:.1}H{x:.1}\" stroke=\"#aaaaaa\" stroke-dasharray=\"1 4\"/>");
+    let _ = writeln!(out, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{RADIUS}\" fill=\"{}\"/>", row.colour);
+    let times = row.ratio.map_or_else(String::new, |ratio| format!(" ({}×)", digits(ratio)));
+    text(out, x + RADIUS + 4.0, line, "", &format!("{} ns{times}", digits(row.time)));
 }
 
 fn text(out: &mut String, x: f64, y: f64, attributes: &str, text: &str) {
@@ -179,6 +189,15 @@ mod tests {
         assert_eq!((axis.low, axis.high), (10.0, 1000.0));
         let [a, b, c] = [10.0, 100.0, 1000.0].map(|t| axis.x(t));
         assert!((b - (a + c) / 2.0).abs() < 1e-9 && a == LABELS && c == WIDTH - NUMBERS);
+    }
+
+    #[test]
+    fn a_time_is_a_dot_with_its_numbers_and_has_no_length() {
+        let mut out = String::new();
+        let axis = Axis::over(20.0, 900.0);
+        draw(&mut out, &axis, &Row { label: "generic".into(), time: 100.0, ratio: Some(2.5), colour: GENERIC }, 50.0);
+        let circle = format!("<circle cx=\"{:.1}\" cy=\"50.0\"", axis.x(100.0));
+        assert!(out.contains(&circle) && out.contains(">100 ns (2.50×)<") && out.contains(">generic<") && !out.contains("<rect"), "{out}");
     }
 
     #[test]

@@ -4,11 +4,12 @@ use std::fmt::Write;
 
 use super::report::{Crossover, Point, Report};
 use crate::compare::timing::Summary;
+use crate::table::counted;
 
 const PANEL: f64 = 350.0;
 const HEIGHT: f64 = 360.0;
 /// Room on the left, right, top and bottom of a panel's field.
-const MARGIN: [f64; 4] = [62.0, 12.0, 66.0, 44.0];
+const MARGIN: [f64; 4] = [76.0, 12.0, 66.0, 44.0];
 
 struct Curve {
     name: &'static str,
@@ -61,21 +62,47 @@ fn panel(out: &mut String, function: &str, points: &[&Point], crossover: &Crosso
         text(out, [left - 6.0, y + 4.0], "end", &duration(t));
     }
     text(out, [(left + PANEL - right) / 2.0, HEIGHT - 10.0], "middle", "joints");
-    for (crossing, dashes, y) in [(crossover.hot, "none", 12.0), (crossover.cold, DASHES, 26.0)] {
-        let Some(n) = crossing else { continue };
-        let x = joints.at(n);
-        line(out, [x, top], [x, HEIGHT - bottom], "#777", dashes, 1.0);
-        text(out, [x - 4.0, top + y], "end", &format!("{n:.0}"));
-    }
+    turned_text(out, [14.0, (top + HEIGHT - bottom) / 2.0], "time of a call, median");
     for c in &CURVES {
-        let places: Vec<String> =
-            points.iter().map(|p| format!("{:.1},{:.1}", joints.at(p.joints as f64), time.at((c.time)(p).median))).collect();
+        let places: Vec<[f64; 2]> = points.iter().map(|p| [joints.at(p.joints as f64), time.at((c.time)(p).median)]).collect();
+        curve(out, c, &places);
+    }
+    // Low down, where curves that rise to the right leave room.
+    for (crossing, what, dashes, y) in [(crossover.hot, "hot", "none", 52.0), (crossover.cold, "cold", DASHES, 22.0)] {
+        let Some(n) = crossing else { continue };
+        let sentence = ["generic faster from".to_owned(), format!("{} ({what})", counted(n.round() as usize, "joint"))];
+        crossing_at(out, joints.at(n), &sentence, dashes, HEIGHT - bottom - y);
+    }
+}
+
+/// A line through what was measured, with a mark at each.
+fn curve(out: &mut String, c: &Curve, places: &[[f64; 2]]) {
+    let points: Vec<String> = places.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
+    let _ = writeln!(
+        out,
+        "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\" stroke-dasharray=\"{}\"/>",
+        points.join(" "),
+        c.colour,
+        c.dashes
+    );
+    places.iter().for_each(|[x, y]| mark(out, [*x, *y], c));
+}
+
+/// A full mark for hot caches, an empty one for cold ones.
+fn mark(out: &mut String, [x, y]: [f64; 2], c: &Curve) {
+    let fill = if c.dashes == DASHES { "#fff" } else { c.colour };
+    let _ = writeln!(out, "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3\" fill=\"{fill}\" stroke=\"{}\" stroke-width=\"1.5\"/>", c.colour);
+}
+
+/// An upright line where generic code becomes the faster, with its sentence in two lines from `y` on, on the side that has more room.
+fn crossing_at(out: &mut String, x: f64, sentence: &[String; 2], dashes: &str, y: f64) {
+    let [left, right, top, bottom] = MARGIN;
+    line(out, [x, top], [x, HEIGHT - bottom], "#777", dashes, 1.0);
+    let (at, anchor) = if x > (left + PANEL - right) / 2.0 { (x - 5.0, "end") } else { (x + 5.0, "start") };
+    for (words, y) in sentence.iter().zip([y, y + 14.0]) {
         let _ = writeln!(
             out,
-            "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\" stroke-dasharray=\"{}\"/>",
-            places.join(" "),
-            c.colour,
-            c.dashes
+            "<text x=\"{at:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\" stroke=\"#fff\" stroke-width=\"3\" paint-order=\"stroke\">{words}</text>"
         );
     }
 }
@@ -84,6 +111,7 @@ fn legend(out: &mut String) {
     for (k, c) in CURVES.iter().enumerate() {
         let (x, y) = (MARGIN[0] + 135.0 * (k % 2) as f64, 34.0 + 15.0 * (k / 2) as f64);
         line(out, [x, y], [x + 26.0, y], c.colour, c.dashes, 2.0);
+        mark(out, [x + 13.0, y], c);
         text(out, [x + 32.0, y + 4.0], "start", c.name);
     }
 }
@@ -126,6 +154,11 @@ fn text(out: &mut String, [x, y]: [f64; 2], anchor: &str, content: &str) {
     let _ = writeln!(out, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{content}</text>");
 }
 
+/// Reads from below upward.
+fn turned_text(out: &mut String, [x, y]: [f64; 2], content: &str) {
+    let _ = writeln!(out, "<text transform=\"translate({x:.1} {y:.1}) rotate(-90)\" text-anchor=\"middle\">{content}</text>");
+}
+
 /// ns in the unit that fits.
 fn duration(ns: f64) -> String {
     match ns {
@@ -138,6 +171,37 @@ fn duration(ns: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn point(joints: usize, generated: f64, generic: f64) -> Point {
+        let time = |ns: f64| Summary { median: ns, lower_quartile: ns, upper_quartile: ns };
+        Point {
+            function: "f",
+            joints,
+            ways: vec![],
+            instructions: 1,
+            source_bytes: 1,
+            code_bytes: None,
+            generation_seconds: 1.0,
+            compilation_seconds: 1.0,
+            difference: 0.0,
+            generated_hot: time(generated),
+            generic_hot: time(generic),
+            generated_cold: time(generated * 3.0),
+            generic_cold: time(generic * 2.0),
+        }
+    }
+
+    #[test]
+    fn a_panel_has_a_mark_at_each_point_titles_and_sentences_at_its_lines() {
+        let points = [point(10, 50.0, 500.0), point(100, 700.0, 4000.0), point(400, 9000.0, 11000.0)];
+        let crossover = Crossover { function: "f", hot: None, cold: Some(377.2), up_to: 400 };
+        let mut out = String::new();
+        panel(&mut out, "f", &points.iter().collect::<Vec<_>>(), &crossover);
+        assert_eq!(out.matches("<circle").count(), CURVES.len() * (points.len() + 1), "{out}");
+        assert!(out.contains(">time of a call, median<") && out.contains(">joints<"), "{out}");
+        let words = ["text-anchor=\"end\" stroke=\"#fff\"", ">generic faster from<", ">377 joints (cold)<"];
+        assert!(words.iter().all(|w| out.contains(w)) && !out.contains("(hot)<"), "{out}");
+    }
 
     #[test]
     fn equal_ratios_are_equal_distances() {
