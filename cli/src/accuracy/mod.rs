@@ -5,6 +5,7 @@ pub(crate) mod arguments;
 mod contender;
 mod csv;
 mod judge;
+mod labels;
 mod machine;
 mod measure;
 mod motion;

@@ -22,6 +22,7 @@ pub(super) fn html(report: &Report, diagrams: &[(String, Drawing)]) -> String {
     out += INTRODUCTION;
     let _ = writeln!(out, "<h2>What was measured</h2><pre>{}</pre>", escaped(&text::head(report)));
     out += CHOICE;
+    out += COLUMNS;
     for (f, (_, drawing)) in report.functions.iter().zip(diagrams) {
         function(&mut out, f, drawing);
     }
@@ -42,6 +43,15 @@ const CHOICE: &str = "<h2>What to choose when</h2><ul>\
 <li><b>Identification and calibration</b>: <code>f64</code>; least squares square the condition, so where residuals are of 1e-8 of the terms take <code>compensated+two</code>.</li>\
 <li><b>Long orbits</b> of conservative systems: <code>compensated</code> for the right-hand side only if the integrator's own error is below 1e-13; see the report of the integrators.</li>\
 <li><b>Checking other code</b>: <code>double_double</code>; it is right to the last bit of its result save for constants.</li></ul>\n";
+
+const COLUMNS: &str = "<h2>What the columns say</h2><ul>\
+<li><b>ns</b>: the median time of a call; <b>spread</b>: the distance of its quartiles, ns.</li>\
+<li><b>median error, 99 %, largest</b>: over the random states, relative to the sum of the magnitudes of the terms; <b>ulps</b>: the largest error in units of the last place of the result itself, large where \
+terms cancel.</li>\
+<li><b>rounding alone</b>: the largest error against the same formulas with the constants of the generated code; <b>guaranteed</b>: what it can be at most on these states; <b>backward</b>: how far the torques \
+that a solution needs are from those given.</li>\
+<li><b>hardest state</b>: the largest error on states chosen to be hard; <b>operations</b>: additions, multiplications, divisions and roots of a call, a multiply-add as two, without sines and cosines; \
+<b>bytes</b>: machine code of the function alone. Bold rows are the red marks.</li></ul>\n";
 
 fn function(out: &mut String, f: &FunctionReport, drawing: &Drawing) {
     let _ = writeln!(out, "<h2>{}</h2><p>{}.</p>\n{}", f.function, escaped(f.summary), plot::svg(drawing));
@@ -99,6 +109,7 @@ mod tests {
         let report = example();
         let page = super::html(&report, &plot::diagrams(&report));
         assert!(!page.contains("src=") && !page.contains("href="));
+        assert!(page.contains("<b>ulps</b>") && page.contains("<b>operations</b>"));
         assert!(page.contains("an &lt;arm&gt; &amp; more") && page.contains("<svg") && page.contains("a surprise"));
     }
 }

@@ -1,5 +1,6 @@
 //! Work–precision diagrams: error over time, both logarithmic.
 
+use super::labels::{self, Area, Labels};
 use super::report::{FunctionReport, Point, Report};
 use crate::simulate::plot::drawing::{Anchor, Drawing};
 
@@ -10,6 +11,8 @@ pub(super) const WIDTH: f64 = 720.0;
 pub(super) const HEIGHT: f64 = 430.0;
 /// Left, right, top and bottom of the field.
 pub(super) const FIELD: [f64; 4] = [70.0, 530.0, 44.0, 380.0];
+/// Where the line about colours stands.
+const LEGEND: f64 = 38.0;
 pub(super) const INK: &str = "#222222";
 const LINE: &str = "#dddddd";
 const OURS: &str = "#1b6ca8";
@@ -59,6 +62,7 @@ fn diagram(f: &FunctionReport, report: &Report) -> Drawing {
     let y = Axis::new(f.points.iter().flat_map(|p| [p.relative.median, p.relative.largest]), [bottom, top]);
     let mut out = Drawing { width: WIDTH, height: HEIGHT, ..Drawing::default() };
     out.text([16.0, 22.0], Anchor::Start, 14.0, INK, &format!("{} of {}: error over time", f.function, report.robot));
+    legend(&mut out, &f.points);
     frame(&mut out, &x, &y, "time of a call, ns", "largest error, relative to its terms (thin: from the median)");
     for point in &f.points {
         mark(&mut out, &x, &y, point);
@@ -101,20 +105,48 @@ fn mark(out: &mut Drawing, x: &Axis, y: &Axis, p: &Point) {
     let (a, b) = (x.at(p.time.median), y.at(p.relative.largest));
     out.path(vec![[a, y.at(p.relative.median)], [a, b]], colour(p), 1.0, false);
     out.path(vec![[x.at(p.time.lower_quartile), b], [x.at(p.time.upper_quartile), b]], colour(p), 1.0, false);
-    out.path(vec![[a - 2.0, b], [a, b - 2.0], [a + 2.0, b], [a, b + 2.0], [a - 2.0, b], [a, b - 2.0]], colour(p), 4.0, false);
+    diamond(out, [a, b], colour(p));
 }
 
-/// The names at the right, in the order of the errors, each with a line to its point.
+fn diamond(out: &mut Drawing, [a, b]: [f64; 2], colour: &'static str) {
+    out.path(vec![[a - 2.0, b], [a, b - 2.0], [a + 2.0, b], [a, b + 2.0], [a - 2.0, b], [a, b - 2.0]], colour, 4.0, false);
+}
+
+/// The names beside their marks; where there is no room, farther off with a line.
 fn names(out: &mut Drawing, x: &Axis, y: &Axis, points: &[Point]) {
-    let [_, right, top, bottom] = FIELD;
+    let [left, _, top, bottom] = FIELD;
+    let at = |p: &Point| [x.at(p.time.median), y.at(p.relative.largest)];
+    let mut labels = Labels::new([left, top, WIDTH - 4.0, bottom + 5.0], points.iter().map(|p| taken(x, y, p)).collect());
     let mut order: Vec<&Point> = points.iter().collect();
     order.sort_by(|a, b| b.relative.largest.total_cmp(&a.relative.largest));
-    let step = ((bottom - top) / order.len().max(1) as f64).min(24.0);
-    let mut at = top;
     for p in order {
-        at = (at + step).max(y.at(p.relative.largest).min(at + step));
-        out.path(vec![[x.at(p.time.median) + 4.0, y.at(p.relative.largest)], [right + 14.0, at - 4.0]], colour(p), 0.4, true);
-        out.text([right + 18.0, at], Anchor::Start, 11.0, colour(p), &p.level);
+        let place = labels.place(at(p), &p.level);
+        if let Some(end) = place.leader {
+            out.path(vec![at(p), end], colour(p), 0.6, false);
+        }
+        out.text(place.at, place.anchor, labels::SIZE, colour(p), &p.level);
+    }
+}
+
+/// What a mark takes, with its line down to the median.
+fn taken(x: &Axis, y: &Axis, p: &Point) -> Area {
+    let [low, high, at] = [p.time.lower_quartile, p.time.upper_quartile, p.time.median].map(|t| x.at(t));
+    let (largest, median) = (y.at(p.relative.largest), y.at(p.relative.median));
+    [low.min(at - 4.0), largest - 4.0, high.max(at + 4.0), median.max(largest + 4.0)]
+}
+
+/// What the colours mean, in a line below the title.
+fn legend(out: &mut Drawing, points: &[Point]) {
+    let lines = [
+        (FRONT, "nothing else is both faster and more accurate", true),
+        (OURS, "something else is both", points.iter().any(|p| !p.peer && !p.front)),
+        (PEER, "another library", points.iter().any(|p| p.peer)),
+    ];
+    let mut at = 20.0;
+    for (colour, words, _) in lines.into_iter().filter(|(.., there)| *there) {
+        diamond(out, [at, LEGEND - 4.0], colour);
+        out.text([at + 8.0, LEGEND], Anchor::Start, labels::SIZE, INK, words);
+        at += labels::width(words) + 28.0;
     }
 }
 
@@ -129,6 +161,8 @@ mod tests {
         assert_eq!(name, "work_precision_inverse_dynamics");
         let text = svg(&drawing);
         assert!(["f32", "f64+no_fma", "double_double"].iter().all(|level| text.contains(&format!(">{level}<"))));
+        assert!(text.contains(">nothing else is both faster and more accurate<") && text.contains(">something else is both<"));
+        assert!(!text.contains("another library"));
         assert!(png(&drawing).unwrap().starts_with(b"\x89PNG"));
     }
 

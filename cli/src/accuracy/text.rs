@@ -11,7 +11,7 @@ pub(super) fn text(report: &Report) -> String {
     for f in &report.functions {
         let _ = write!(out, "\n{}: {}\n{}", f.function, f.summary, table(f).text());
         f.surprises.iter().for_each(|s| {
-            let _ = writeln!(out, "  {s}");
+            out += &wrapped(&format!("  {s}\n"));
         });
     }
     out + &wrapped(EXPLAINED)

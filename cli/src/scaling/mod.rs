@@ -46,6 +46,7 @@ pub(crate) fn run(arguments: &ScalingArguments, format: Format) -> Result<(), Fa
         repetitions: arguments.repetitions,
         buffer_bytes: cold::BUFFER,
         filler_instructions: FILLER_INSTRUCTIONS,
+        units: report::UNITS,
         points: Vec::new(),
         crossovers: Vec::new(),
         growth: Vec::new(),

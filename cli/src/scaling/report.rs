@@ -3,6 +3,21 @@
 use serde::Serialize;
 
 use crate::compare::timing::Summary;
+use crate::units::Units;
+
+/// Of all numbers that have one.
+pub(super) const UNITS: Units = Units(&[
+    ("points[].generated_hot", "ns a call"),
+    ("points[].generic_hot", "ns a call"),
+    ("points[].generated_cold", "ns a call"),
+    ("points[].generic_cold", "ns a call"),
+    ("points[].difference", "the largest number of the result"),
+    ("crossovers[].hot", "joints"),
+    ("crossovers[].cold", "joints"),
+    ("growth[].time", "times that of a joint of the shortest chain"),
+    ("growth[].generation", "times that of a joint of the shortest chain"),
+    ("growth[].compilation", "times that of a joint of the shortest chain"),
+]);
 
 /// One function on one chain.
 #[derive(Clone, Debug, Serialize)]
@@ -60,6 +75,7 @@ pub(super) struct Report {
     /// What is written to, and what is run, before an evaluation with cold caches.
     pub(super) buffer_bytes: usize,
     pub(super) filler_instructions: usize,
+    pub(super) units: Units,
     pub(super) points: Vec<Point>,
     pub(super) crossovers: Vec<Crossover>,
     pub(super) growth: Vec<Growth>,

@@ -19,8 +19,11 @@ fn chains_are_measured_and_drawn() {
     }
     assert_eq!(report["crossovers"].as_array().unwrap().len(), 2);
     assert_eq!(report["growth"][1]["to"], 4);
+    assert_eq!(report["units"]["points[].generated_cold"], "ns a call");
     let drawn = std::fs::read_to_string(chart).unwrap();
     assert_eq!(drawn.matches("<polyline").count(), 8);
+    // Two points and one in the legend.
+    assert_eq!(drawn.matches("<circle").count(), 8 * 3);
     assert!(drawn.starts_with("<svg ") && drawn.ends_with("</svg>\n"));
 }
 

@@ -1,0 +1,135 @@
+//! Names beside their marks.
+
+use crate::simulate::plot::drawing::{Anchor, Point};
+
+/// Left, top, right and bottom.
+pub(super) type Area = [f64; 4];
+
+/// The size of names.
+pub(super) const SIZE: f64 = 11.0;
+
+/// How far a name's edge stands from its mark.
+const GAP: f64 = 7.0;
+
+/// Where a name stands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Place {
+    pub(super) at: Point,
+    pub(super) anchor: Anchor,
+    /// Where a line from the mark ends, if the name stands too far off to be known by its place.
+    pub(super) leader: Option<Point>,
+}
+
+/// What is taken of a picture.
+#[derive(Clone, Debug)]
+pub(super) struct Labels {
+    within: Area,
+    taken: Vec<Area>,
+}
+
+impl Labels {
+    /// All names stand within this area, and beside what is taken.
+    pub(super) fn new(within: Area, taken: Vec<Area>) -> Self {
+        Self { within, taken }
+    }
+
+    /// Beside a mark, or the nearest free place from which a line leads to it. It is taken then.
+    pub(super) fn place(&mut self, mark: Point, name: &str) -> Place {
+        let free = |p: &Place| {
+            let area = area(p, name);
+            let clear = p.leader.is_none_or(|end| self.clear(mark, end));
+            clear && self.holds(&area) && !self.taken.iter().any(|t| overlap(t, &area))
+        };
+        let place = beside(mark).into_iter().chain(farther(mark)).find(free).unwrap_or(beside(mark)[0]);
+        self.taken.push(area(&place, name));
+        place
+    }
+
+    /// Whether the outer part of a line leads through nothing that is taken.
+    fn clear(&self, [x, y]: Point, end: Point) -> bool {
+        let on = |part: f64| [x + part * (end[0] - x), y + part * (end[1] - y)];
+        let inside = |[x, y]: Point| self.taken.iter().any(|t| (t[0]..=t[2]).contains(&x) && (t[1]..=t[3]).contains(&y));
+        !(4..=10).any(|k| inside(on(0.1 * f64::from(k))))
+    }
+
+    fn holds(&self, [left, top, right, bottom]: &Area) -> bool {
+        let [a, b, c, d] = self.within;
+        *left >= a && *top >= b && *right <= c && *bottom <= d
+    }
+}
+
+/// Right, left, and at the corners.
+fn beside([x, y]: Point) -> [Place; 6] {
+    let right = |dy: f64, gap: f64| Place { at: [x + gap, y + dy], anchor: Anchor::Start, leader: None };
+    let left = |dy: f64, gap: f64| Place { at: [x - gap, y + dy], anchor: Anchor::End, leader: None };
+    [right(4.0, GAP), left(4.0, GAP), right(-5.0, 3.0), right(14.0, 3.0), left(-5.0, 3.0), left(14.0, 3.0)]
+}
+
+/// On either side, farther and farther up and down.
+fn farther([x, y]: Point) -> impl Iterator<Item = Place> {
+    (1..30).flat_map(move |k| {
+        let away = 6.0 * f64::from(k);
+        [(1.0, -away), (1.0, away), (-1.0, -away), (-1.0, away)].map(|(side, dy)| {
+            let end = [x + side * 22.0, y + dy];
+            let anchor = if side > 0.0 { Anchor::Start } else { Anchor::End };
+            Place { at: [end[0] + side * 2.0, end[1] + 4.0], anchor, leader: Some(end) }
+        })
+    })
+}
+
+/// What a name takes.
+pub(super) fn area(place: &Place, name: &str) -> Area {
+    let [x, y] = place.at;
+    let wide = width(name);
+    let left = match place.anchor {
+        Anchor::Start => x,
+        Anchor::Middle => x - 0.5 * wide,
+        Anchor::End => x - wide,
+    };
+    [left, y - 0.8 * SIZE, left + wide, y + 0.25 * SIZE]
+}
+
+/// About how wide a name is: letters of a sans serif are.
+pub(super) fn width(name: &str) -> f64 {
+    0.61 * SIZE * name.chars().count() as f64
+}
+
+fn overlap(a: &Area, b: &Area) -> bool {
+    a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_stand_beside_their_marks_and_never_on_each_other() {
+        let marks: Vec<Point> = (0..9).map(|k| [100.0 + f64::from(k % 3), 100.0 + 2.0 * f64::from(k)]).collect();
+        let taken = marks.iter().map(|[x, y]| [x - 4.0, y - 4.0, x + 4.0, y + 4.0]).collect();
+        let mut labels = Labels::new([0.0, 0.0, 400.0, 300.0], taken);
+        let places: Vec<Place> = marks.iter().map(|m| labels.place(*m, "compensated")).collect();
+        assert_eq!(places[0], beside(marks[0])[0]);
+        assert!(places.iter().any(|p| p.leader.is_some()) && places.iter().filter(|p| p.leader.is_none()).count() >= 2);
+        let areas: Vec<Area> = places.iter().map(|p| area(p, "compensated")).collect();
+        for (k, a) in areas.iter().enumerate() {
+            assert!(labels.holds(a) && areas[k + 1..].iter().all(|b| !overlap(a, b)), "{areas:?}");
+        }
+    }
+
+    #[test]
+    fn a_line_leads_around_what_is_taken() {
+        let labels = Labels::new([0.0, 0.0, 100.0, 100.0], vec![[60.0, 40.0, 80.0, 60.0]]);
+        assert!(!labels.clear([40.0, 50.0], [90.0, 50.0]) && labels.clear([40.0, 50.0], [90.0, 10.0]));
+        // A line may begin within its own mark.
+        assert!(labels.clear([78.0, 50.0], [100.0, 50.0]));
+    }
+
+    #[test]
+    fn a_name_at_the_edge_stands_on_the_other_side() {
+        let mut labels = Labels::new([0.0, 0.0, 100.0, 100.0], vec![]);
+        assert_eq!(labels.place([95.0, 50.0], "f64"), beside([95.0, 50.0])[1]);
+        assert_eq!(labels.place([5.0, 50.0], "f64").anchor, Anchor::Start);
+        // Where there is no room at all it stands beside its mark nevertheless.
+        assert_eq!(Labels::new([0.0; 4], vec![]).place([50.0, 50.0], "f64"), beside([50.0, 50.0])[0]);
+    }
+}
