@@ -34,6 +34,6 @@ mod tests {
         let lines: Vec<&str> = written.lines().collect();
         assert_eq!(lines.len(), 6);
         assert!(lines[0].starts_with("t,q.__floating_base__[0],q.__floating_base__[1]"), "{}", lines[0]);
-        assert!(lines.iter().all(|l| l.split(',').count() == 1 + 19 + 18 + 18 + 5 + 6));
+        assert!(lines.iter().all(|l| l.split(',').count() == 1 + 19 + 18 + 18 + 6 + 6));
     }
 }

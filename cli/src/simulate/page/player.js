@@ -220,7 +220,7 @@
     const span = high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high)) ? high - low : 1;
     const X = s => (s - first) / (last - first || 1) * (w - 2) + 1, Y = e => h - 4 - (e - low) / span * (h - 8);
     ctx.clearRect(0, 0, w, h);
-    if (low < 0 && high > 0) { ctx.strokeStyle = '#aab'; ctx.lineWidth = 1; ctx.beginPath(); ctx.moveTo(0, Y(0)); ctx.lineTo(w, Y(0)); ctx.stroke(); }
+    if (low <= 0 && high >= 0) { ctx.strokeStyle = '#aab'; ctx.lineWidth = 1; ctx.beginPath(); ctx.moveTo(0, Y(0)); ctx.lineTo(w, Y(0)); ctx.stroke(); }
     // Of events that are nearer than three points to one another the first is drawn; many are pale.
     ctx.strokeStyle = `rgba(160, 40, 40, ${motion.events.length > 20 ? 0.25 : 0.6})`; ctx.lineWidth = 1;
     let drawn = -Infinity;
