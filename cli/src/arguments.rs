@@ -15,6 +15,7 @@ use crate::groups::Group;
 use crate::names::{Names, known, wanted};
 use crate::simulate::arguments::SimulateArguments;
 use crate::stress::arguments::StressArguments;
+use crate::table::counted;
 
 /// Robot dynamics, spelled out: checks a URDF, generates its straight-line code, evaluates it, compares it, and simulates it.
 #[derive(Debug, Parser)]
@@ -314,7 +315,7 @@ pub(crate) struct Gravity(pub(crate) [f64; 3]);
 pub(crate) fn gravity(text: &str) -> Result<Gravity, String> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|x| x.trim().parse::<f64>()).collect();
     let numbers = numbers.map_err(|e| e.to_string())?;
-    let three: [f64; 3] = numbers.try_into().map_err(|n: Vec<f64>| format!("found {} numbers, expected three", n.len()))?;
+    let three: [f64; 3] = numbers.try_into().map_err(|n: Vec<f64>| format!("found {}, expected three", counted(n.len(), "number")))?;
     if three.iter().all(|x| x.is_finite()) { Ok(Gravity(three)) } else { Err("expected finite numbers".into()) }
 }
 

@@ -4,6 +4,8 @@ use articulated_core::description::{Origin, Payload};
 use articulated_core::spatial::Reference;
 use clap::Args;
 
+use crate::table::counted;
+
 /// What to do to the robot before anything else: append, then attach, then lock.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct Edits {
@@ -88,7 +90,7 @@ fn origin(text: &str) -> Result<Origin, String> {
 fn exactly<const N: usize>(text: &str, expected: &str) -> Result<[f64; N], String> {
     let found = numbers(text)?;
     let count = found.len();
-    found.try_into().map_err(|_| format!("found {count} numbers, expected {expected}"))
+    found.try_into().map_err(|_| format!("found {}, expected {expected}", counted(count, "number")))
 }
 
 fn numbers(text: &str) -> Result<Vec<f64>, String> {

@@ -6,6 +6,7 @@ use articulated_codegen::Level;
 use serde::Serialize;
 
 use super::report::{Point, Report};
+use crate::table::counted;
 
 /// What to take for one function.
 #[derive(Clone, Debug, Serialize)]
@@ -45,7 +46,12 @@ pub(super) fn text(report: &Report, wish: f64) -> String {
     for a in all(report, wish) {
         let _ = match (&a.level, a.ns, a.error, &a.best) {
             (Some(level), Some(ns), Some(error), _) => {
-                writeln!(out, "{}: {level}, {ns:.0} ns a call, off by at most {error:.1e} in {} states", a.function, report.states)
+                writeln!(
+                    out,
+                    "{}: {level}, {ns:.0} ns a call, off by at most {error:.1e} in {}",
+                    a.function,
+                    counted(report.states, "state")
+                )
             }
             (.., Some((level, error))) => {
                 writeln!(out, "{}: nothing measured is accurate to {wish:e}; the most accurate is {level} with {error:.1e}", a.function)

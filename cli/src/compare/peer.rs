@@ -178,7 +178,7 @@ pub(crate) fn orders(peer: &NativePeer, model: &Model<f64>) -> Result<(Vec<usize
         let number = |what: &str| peer.joint_number(what, k).ok_or(incomplete);
         let (iq, iv, sizes) = (number("iq")?, number("iv")?, (number("nq")?, number("nv")?));
         if sizes != (ours.q.1, ours.v.1) || iq + sizes.0 > nq || iv + sizes.1 > nv {
-            return Err(format!("its joint {name:?} has {} coordinates, and here it has {}", sizes.0, ours.q.1));
+            return Err(format!("its joint {name:?} has {}, and here it has {}", counted(sizes.0, "coordinate"), ours.q.1));
         }
         (0..sizes.0).for_each(|i| q[iq + i] = ours.q.0 + i);
         (0..sizes.1).for_each(|i| v[iv + i] = ours.v.0 + rate(ours, i));

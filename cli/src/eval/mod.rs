@@ -15,6 +15,7 @@ use crate::magnitude::scales;
 use crate::names;
 use crate::robot::{Robot, read_bytes};
 use crate::states::{self, State};
+use crate::table::counted;
 use report::{Difference, FunctionReport, Outcome, Report};
 
 /// Generic and generated results may differ by this many units of roundoff of the sum of the magnitudes of their terms.
@@ -67,8 +68,8 @@ fn read_states(file: &str, model: &Model<f64>, functions: &[&'static Function<f6
             if let Err(argument) = state.arguments(f) {
                 let name = argument.name();
                 missing.push(format!(
-                    "{file}: states[{k}]: {name}: found nothing, expected {} numbers: {} takes {name}",
-                    argument.len(model.shape()),
+                    "{file}: states[{k}]: {name}: found nothing, expected {}: {} takes {name}",
+                    counted(argument.len(model.shape()), "number"),
                     f.name
                 ));
             }

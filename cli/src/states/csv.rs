@@ -6,6 +6,7 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 
 use super::read::{Found, Gathering};
 use super::{State, owner, slots};
+use crate::table::counted;
 
 /// What a column holds.
 struct Column {
@@ -46,7 +47,7 @@ fn column(title: &str, found: &mut Found<'_>) -> Option<Column> {
     let slot = &slots[slot];
     if number.is_none() && slot.count != 1 || number.is_some_and(|n| n >= slot.count) {
         let (what, name) = (owner(argument), format!("{}.{}", argument.name(), slot.name));
-        found.error(&place, format!("this {what} has {} numbers here, expected `{name}[0]` and so on", slot.count));
+        found.error(&place, format!("this {what} has {} here, expected `{name}[0]` and so on", counted(slot.count, "number")));
         return None;
     }
     Some(Column { argument, at: slot.at + number.unwrap_or(0), title: title.to_owned() })

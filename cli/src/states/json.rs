@@ -5,6 +5,7 @@ use serde_json::{Map, Value};
 
 use super::read::{Found, Gathering};
 use super::{State, owner, slots, unique};
+use crate::table::counted;
 
 pub(super) fn read(text: &str, found: &mut Found<'_>) {
     let value = match unique::parse(text) {
@@ -70,7 +71,7 @@ fn rows(place: &str, argument: Argument, list: &[Value], found: &mut Found<'_>) 
     for (k, row) in list.iter().enumerate() {
         let row = row.as_array().filter(|r| r.len() == width);
         let Some(row) = row else {
-            found.error(&format!("{place}[{k}]"), format!("expected a list of {width} numbers"));
+            found.error(&format!("{place}[{k}]"), format!("expected a list of {}", counted(width, "number")));
             return None;
         };
         all.extend(numbers(&format!("{place}[{k}]"), row, found)?);
@@ -91,7 +92,7 @@ fn by_name(place: &str, argument: Argument, parts: &Map<String, Value>, state: &
         };
         let Some(given) = given else { continue };
         if given.len() != slot.count {
-            found.error(&place, format!("found {} numbers, expected {}", given.len(), slot.count));
+            found.error(&place, format!("found {}, expected {}", counted(given.len(), "number"), slot.count));
             continue;
         }
         given.into_iter().enumerate().for_each(|(k, x)| gathering.set(slot.at + k, x));
@@ -186,8 +187,7 @@ mod tests {
     fn every_mistake_is_named_with_its_state() {
         let text = r#"[{"q": [1]}, {"q": [1, null]}, {"w": [1, 2]}, 3, {"q": {"cart_jiont": 1}}]"#;
         let said = errors("cart_pole", text);
-        for part in
-            ["states[0]: q: found 1 numbers, expected 2", "states[1]: q: found null", "states[2]: found \"w\"", "states[3]: found 3"]
+        for part in ["states[0]: q: found 1 number, expected 2", "states[1]: q: found null", "states[2]: found \"w\"", "states[3]: found 3"]
         {
             assert!(said.contains(part), "{said}");
         }

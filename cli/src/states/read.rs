@@ -6,6 +6,7 @@ use articulated_core::model::Model;
 
 use super::random::normalise;
 use super::{Slot, State, csv, json, owner, quaternions, slots};
+use crate::table::counted;
 
 /// A quaternion may be off the unit norm by this much; it is then normalised.
 const NORM: f64 = 1e-6;
@@ -53,7 +54,7 @@ impl Found<'_> {
     pub(super) fn take(&mut self, state: &mut State, argument: Argument, place: &str, mut numbers: Vec<f64>) {
         let expected = argument.len(self.model.shape());
         if numbers.len() != expected {
-            return self.error(place, format!("found {} numbers, expected {expected}", numbers.len()));
+            return self.error(place, format!("found {}, expected {expected}", counted(numbers.len(), "number")));
         }
         let bad: Vec<usize> = (0..expected).filter(|&k| !numbers[k].is_finite()).collect();
         for &k in &bad {

@@ -8,6 +8,7 @@ use super::subject::Subject;
 use crate::failure::Failure;
 use crate::simulate::motion::{self, Begin};
 use crate::simulate::stage::Stage;
+use crate::table::counted;
 
 /// The scene that a word of the command line names, a file or a bundled one, and what moves in it.
 pub(super) fn find(name: &str) -> Result<(Stage, Subject), Failure> {
@@ -58,8 +59,8 @@ impl Subject {
         let mut notes = Vec::new();
         if let Controller::Table(series) | Controller::Pd { target: Aim::Moving(series), .. } = controller {
             notes.push(format!(
-                "the controller follows a table of {} rows: a step ends at each of them, so that no integrator meets a kink, and none takes fewer steps than that",
-                series.times.len()
+                "the controller follows a table of {}: a step ends at each, so that no integrator meets a kink, and none takes fewer steps than that",
+                counted(series.times.len(), "row")
             ));
         }
         if let Some(period) = period {
