@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::base::{Base, BaseRow, Felt};
 use super::report::{JointRow, LinkRow, Report};
-use crate::table::{Table, number, plain};
+use crate::table::{Table, counted, freedom, number, plain};
 
 pub(super) fn text(report: &Report) -> String {
     let mut out = String::new();
@@ -28,9 +28,15 @@ pub(super) fn text(report: &Report) -> String {
 fn body(out: &mut String, report: &Report) {
     let t = report.totals;
     let name = plain(report.robot.as_deref().unwrap_or_default());
-    let _ =
-        writeln!(out, "{name}, {} base: {} links, {} joints, {} degrees of freedom", report.base, t.links, t.joints, t.degrees_of_freedom);
-    let _ = writeln!(out, "{} coordinates in q; mass {} kg, of which {} kg move\n", t.coordinates, number(t.mass), number(t.moving_mass));
+    let (links_of, joints_of) = (counted(t.links, "link"), counted(t.joints, "joint"));
+    let _ = writeln!(out, "{name}, {} base: {links_of}, {joints_of}, {}", report.base, freedom(t.degrees_of_freedom));
+    let _ = writeln!(
+        out,
+        "{} in q; mass {} kg, of which {} kg move\n",
+        counted(t.coordinates, "coordinate"),
+        number(t.mass),
+        number(t.moving_mass)
+    );
     *out += &links(&report.links).text();
     out.push('\n');
     let joints = joints(&report.joints);

@@ -1,7 +1,7 @@
 //! A summary for people.
 
 use super::summary::Summary;
-use crate::table::{Table, number, plain};
+use crate::table::{Table, freedom, number, plain};
 
 /// Events that are listed; the others are counted.
 const LISTED: usize = 12;
@@ -9,11 +9,11 @@ const LISTED: usize = 12;
 pub(super) fn text(s: &Summary) -> String {
     let effects = if s.effects.is_empty() { "no effects".to_owned() } else { s.effects.join(", ") };
     let mut out = format!(
-        "{}: {}, {} base, {} degrees of freedom; {effects}\n{}\n\n",
+        "{}: {}, {} base, {}; {effects}\n{}\n\n",
         plain(&s.scene),
         plain(&s.robot),
         s.base,
-        s.degrees_of_freedom,
+        freedom(s.degrees_of_freedom),
         method(s)
     );
     out += &table(s).text();
