@@ -425,7 +425,9 @@ fn what_a_robot_cannot_have_is_said_when_it_is_built() {
     let error = refusal(&URDF.replace("\"fore\"", "\"to-ol\"").replace("\"tool\"", "\"to_ol\""), &|r| {
         r.options.parameters = vec!["payload(to-ol)".into(), "payload(to_ol)".into()];
     });
-    assert!(matches!(&error, Error::Parameter { reason, .. } if reason.contains("TO_OL_PAYLOAD")), "{error}");
+    // Both are told: the parameters, and the links themselves.
+    let told = error.clone().into_each();
+    assert!(matches!(&told[..], [Error::Parameter { reason, .. }, Error::NameClash { .. }] if reason.contains("TO_OL_PAYLOAD")), "{error}");
     let error = refusal(URDF, &asks(&["x = bias_forces(v = [0, 0])"]));
     assert!(error.to_string().contains("found 2 numbers, expected 3"), "{error}");
     for (parameter, part) in
