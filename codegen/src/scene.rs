@@ -79,7 +79,7 @@ pub fn prepare(scene: Scene, file: &str, urdf: Vec<u8>, base: Base, append: Vec<
         Ok(model)
     };
     let Tried { value, mut errors, rest } = tried(&request, named);
-    let resolved = effects(&rest, &scene, &mut errors);
+    let resolved = effects(&request, &rest, &scene, &mut errors);
     if let Some(model) = value {
         errors.extend(scene.fits(&model).err().map(Error::from));
     }
@@ -94,7 +94,7 @@ pub fn prepare(scene: Scene, file: &str, urdf: Vec<u8>, base: Base, append: Vec<
 /// with effects by their places in the scene.
 pub fn settle(request: &mut Request, scene: &Scene) -> Result<Resolved, Error> {
     let Tried { mut errors, rest, .. } = tried(request, |request| plan(request).map(drop));
-    let resolved = effects(&rest, scene, &mut errors);
+    let resolved = effects(request, &rest, scene, &mut errors);
     if let Some(error) = Error::of(errors) {
         return Err(error);
     }
@@ -103,9 +103,9 @@ pub fn settle(request: &mut Request, scene: &Scene) -> Result<Resolved, Error> {
 }
 
 /// The scene's effects on what of the request was not refused; none, and an error at least, where there are none to be had.
-fn effects(rest: &Request, scene: &Scene, errors: &mut Vec<Error>) -> Resolved {
-    // Springs go with the shafts of the scene one by one.
-    if rest.options.shafts.len() != scene.shafts.len() {
+fn effects(request: &Request, rest: &Request, scene: &Scene, errors: &mut Vec<Error>) -> Resolved {
+    // Springs go with the shafts one by one: where one was refused, others would get its own.
+    if rest.options.shafts != request.options.shafts {
         return Resolved::default();
     }
     resolve(rest, scene).unwrap_or_else(|error| {
