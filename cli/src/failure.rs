@@ -13,6 +13,8 @@ pub const USAGE: u8 = 2;
 pub const TOOL: u8 = 3;
 /// A comparison exceeded its bound.
 pub const BOUND: u8 = 4;
+/// Ctrl-C; what shells make of that signal.
+pub const INTERRUPTED: u8 = 130;
 
 /// What each status means, for people.
 pub const STATUSES: &str = "\
@@ -21,7 +23,8 @@ Exit status:
   1  the input was found wrong or unusable
   2  the command line is wrong
   3  a tool (rustc) failed or was not found
-  4  a comparison exceeded its bound";
+  4  a comparison exceeded its bound
+  130  interrupted (Ctrl-C)";
 
 /// A status and what to say, a line for each thing that is wrong.
 #[derive(Clone, Debug, Serialize)]

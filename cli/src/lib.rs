@@ -13,6 +13,7 @@ mod edits;
 mod effects;
 mod eval;
 pub mod failure;
+mod folder;
 mod functions;
 mod generate;
 mod groups;

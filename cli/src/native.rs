@@ -13,6 +13,8 @@ use std::path::Path;
 use std::rc::Rc;
 use std::sync::Arc;
 
+use crate::folder::Folder;
+
 pub(crate) use batch::{BatchKernel, Numbers};
 
 /// An open library.
@@ -20,7 +22,7 @@ pub(crate) use batch::{BatchKernel, Numbers};
 pub(crate) struct Native {
     library: Arc<libloading::Library>,
     /// Where the copy is that was opened.
-    _copy: Arc<tempfile::TempDir>,
+    _copy: Arc<Folder>,
 }
 
 /// A function on arrays of doubles, with the lengths it was promised to have. Keeps its library open.
@@ -94,7 +96,7 @@ impl Native {
     /// longer, or not, as it happens; a copy is written in one go.
     pub(crate) fn open(path: &Path) -> Result<Self, String> {
         let failed = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
-        let folder = tempfile::Builder::new().prefix("articulated").tempdir().map_err(|e| failed(&e))?;
+        let folder = Folder::new().map_err(|e| failed(&e))?;
         let copy = folder.path().join(path.file_name().unwrap_or_default());
         std::fs::copy(path, &copy).map_err(|e| failed(&e))?;
         // Sound if the library's initialisers are: ours has none, and a peer is a library that the user asked to be run.

@@ -20,6 +20,7 @@ use crate::compare::timing::{self, Run};
 use crate::compiled::{Compiled, Rustc, Target};
 use crate::console::Progress;
 use crate::failure::Failure;
+use crate::folder::Folder;
 use crate::parallel;
 use crate::precise::{BITS, Big};
 use crate::robot::Robot;
@@ -51,7 +52,7 @@ pub(super) fn all(
     let Some(first) = made.first() else { return Err(Failure::input(["no level to measure".to_owned()])) };
     let model = &first.generated.model;
     let mut report = report(robot, model, rustc, arguments);
-    let folder = tempfile::tempdir().map_err(|e| Failure::tool(&e))?;
+    let folder = Folder::new().map_err(|e| Failure::tool(&e))?;
     let peers = peers(robot, model, arguments, folder.path(), &mut report)?;
     let sets = [false, true].map(|single| cases(model, arguments.states as usize, arguments.seed, single));
     report.hard_states = sets[0].iter().filter(|c| c.hard.is_some()).count();

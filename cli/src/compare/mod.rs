@@ -21,6 +21,7 @@ use crate::arguments::{CompareArguments, Format};
 use crate::compiled::Rustc;
 use crate::console::{self, Progress};
 use crate::failure::{Failure, OK};
+use crate::folder::Folder;
 use crate::robot::Robot;
 use crate::tips::Tips;
 use crate::{groups, names, parallel};
@@ -52,7 +53,7 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
     let tips = robot.options.frames.is_none().then(|| Tips::of(&reading.description, &whole));
     let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
     let mut report = Report::new(&robot, &whole, tips.as_ref(), arguments, &rustc);
-    let folder = tempfile::tempdir().map_err(|e| Failure::tool(&e))?;
+    let folder = Folder::new().map_err(|e| Failure::tool(&e))?;
     let peers = open_peers(arguments, &robot, &whole, folder.path(), &mut report)?;
     let plan = Plan {
         reference: Reference::new(&reading.description, &robot.options),

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::rustc::{CompileError, Rustc, Target};
+use crate::folder::Folder;
 use crate::native::{Kernel, Native};
 
 /// Instructions of the filler. One each is a byte on x86-64 and four elsewhere.
@@ -13,13 +14,13 @@ pub(crate) const INSTRUCTIONS: usize = 1 << 20;
 pub(crate) struct Filler {
     kernel: Kernel,
     // Last, so that the library is closed before its file is removed.
-    _folder: tempfile::TempDir,
+    _folder: Folder,
 }
 
 impl Filler {
     /// Compiles and loads it.
     pub(crate) fn build(rustc: &Rustc) -> Result<Self, CompileError> {
-        let folder = tempfile::Builder::new().prefix("articulated").tempdir().map_err(CompileError::Folder)?;
+        let folder = Folder::new().map_err(CompileError::Folder)?;
         let source = folder.path().join("filler.rs");
         std::fs::write(&source, text()).map_err(CompileError::Folder)?;
         let library: PathBuf = folder.path().join(format!("{}filler{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX));

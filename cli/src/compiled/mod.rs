@@ -12,6 +12,7 @@ use std::time::Duration;
 use articulated_codegen::{Generated, Level};
 use articulated_core::algorithm::{FunctionError, Shape, check_length, function};
 
+use crate::folder::Folder;
 use crate::native::{Kernel, Native};
 pub(crate) use batch::{Batch, CompiledBatches};
 pub(crate) use filler::{Filler, INSTRUCTIONS as FILLER_INSTRUCTIONS};
@@ -36,7 +37,7 @@ struct Library {
     file: PathBuf,
     time: Duration,
     // Last, as above.
-    _folder: tempfile::TempDir,
+    _folder: Folder,
 }
 
 #[derive(Debug)]
@@ -107,7 +108,7 @@ impl Compiled {
 impl Library {
     /// A generated module and what wraps it.
     fn build(target: Target, rustc: &Rustc, module: &str, wrapper: &str) -> Result<Self, CompileError> {
-        let folder = tempfile::Builder::new().prefix("articulated").tempdir().map_err(CompileError::Folder)?;
+        let folder = Folder::new().map_err(CompileError::Folder)?;
         let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).map_err(CompileError::Folder);
         write("robot.rs", module)?;
         write("lib.rs", wrapper)?;

@@ -257,3 +257,21 @@ fn a_peer_with_other_joints_is_left_out_with_a_note() {
     let broken = File::new("peers.json", b"{");
     assert_eq!(run(&["compare", "double_pendulum", "--peers-manifest", broken.name()]).status, 1);
 }
+
+/// Ctrl-C while it compiles.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_command_leaves_no_files_behind() {
+    let temporary = tempfile::tempdir().unwrap();
+    let files = || std::fs::read_dir(temporary.path()).unwrap().count();
+    let mut command = articulated(&["compare", "humanoid"]);
+    command.env("TMPDIR", temporary.path()).stdout(std::process::Stdio::null()).stderr(std::process::Stdio::null());
+    let mut child = command.spawn().unwrap();
+    while files() == 0 {
+        assert!(child.try_wait().unwrap().is_none(), "it ended before it made a folder");
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert_eq!(files(), 0);
+}

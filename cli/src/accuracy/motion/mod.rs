@@ -19,13 +19,14 @@ use crate::accuracy::arguments::AccuracyArguments;
 use crate::arguments::Format;
 use crate::console;
 use crate::failure::Failure;
+use crate::folder::Folder;
 
 use sweep::{Motion, Sample};
 
 /// Measures and prints.
 pub(super) fn run(arguments: &AccuracyArguments, format: Format) -> Result<(), Failure> {
     let (stage, subject) = scene::find(&arguments.robot.robot)?;
-    let folder = tempfile::tempdir().map_err(|e| Failure::tool(&e))?;
+    let folder = Folder::new().map_err(|e| Failure::tool(&e))?;
     let peers = peers::Peers::open(&stage, &subject, arguments, folder.path())?;
     let motion = sweep::all(&stage.name, &subject, &peers, arguments.repetitions.min(5) as usize)?;
     if let Some(folder) = &arguments.output {

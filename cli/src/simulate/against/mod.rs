@@ -20,6 +20,7 @@ use crate::compare::timing::{self, Run};
 use crate::compiled::Rustc;
 use crate::console::{self, Progress};
 use crate::failure::Failure;
+use crate::folder::Folder;
 use ours::Ours;
 use peers::Peer;
 use report::{Reached, Report, Target};
@@ -61,7 +62,7 @@ pub(super) fn run(stage: &Stage, begin: &Begin, settings: &Settings, file: &Path
     let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
     let (generated, _) = motion::generate(stage, IntegratorId::dop853)?;
     let robot = Straight::build(&rustc, &generated).map_err(|e| Failure::tool(&e))?;
-    let folder = tempfile::tempdir().map_err(|e| Failure::tool(&e))?;
+    let folder = Folder::new().map_err(|e| Failure::tool(&e))?;
     let list = file.extension().is_some_and(|e| e == "json");
     let libraries = if list { manifest::read(file).map_err(|line| Failure::input([line]))? } else { vec![Library::at(file)] };
     let (peers, notes) = peers::open(stage, &libraries, folder.path(), (q, v), settings.end - settings.start)?;

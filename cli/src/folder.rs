@@ -1,0 +1,60 @@
+//! Temporary folders, which go when the command does: also when it is interrupted (Ctrl-C), where nothing that lives is dropped.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, Once, PoisonError};
+
+use tempfile::TempDir;
+
+use crate::failure::INTERRUPTED;
+
+/// Those there are.
+static FOLDERS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// A folder that is removed with this.
+#[derive(Debug)]
+pub(crate) struct Folder(TempDir);
+
+impl Folder {
+    /// An empty folder where temporary files belong.
+    pub(crate) fn new() -> io::Result<Self> {
+        static HANDLER: Once = Once::new();
+        // Where no handler can be set, an interrupted command leaves its folders behind, and nothing else is amiss.
+        HANDLER.call_once(|| drop(ctrlc::set_handler(interrupted)));
+        // Nothing can come between a folder and its place in the list.
+        let mut folders = folders();
+        let folder = tempfile::Builder::new().prefix("articulated").tempdir()?;
+        folders.push(folder.path().to_owned());
+        Ok(Self(folder))
+    }
+
+    pub(crate) fn path(&self) -> &Path {
+        self.0.path()
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        folders().retain(|path| path != self.0.path());
+    }
+}
+
+fn folders() -> MutexGuard<'static, Vec<PathBuf>> {
+    FOLDERS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes them and ends the process. The list stays locked, so that no other thread makes another.
+fn interrupted() {
+    let folders = folders();
+    for folder in folders.iter() {
+        // A file that is still being written can keep a folder for a moment.
+        let _ = (0..20).any(|_| std::fs::remove_dir_all(folder).is_ok() || !folder.exists() || wait());
+    }
+    std::process::exit(INTERRUPTED.into());
+}
+
+/// Waits a moment; false.
+fn wait() -> bool {
+    std::thread::sleep(std::time::Duration::from_millis(10));
+    false
+}
