@@ -236,6 +236,8 @@ fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
 
 #[cfg(test)]
 mod tests {
+    use articulated_core::description::Shaft;
+    use articulated_core::effect::EffectId;
     use articulated_scene::Why;
 
     use super::*;
@@ -389,6 +391,29 @@ mod tests {
         // A robot that cannot be read comes first, and alone.
         let told = prepare(scene, "arm.urdf", ARM.replace("parent link=\"base\"", "parent link=\"bse\"").into(), Base::Fixed, Vec::new());
         assert!(matches!(told, Err(Error::Urdf(_))), "{told:?}");
+    }
+
+    #[test]
+    fn a_shaft_of_the_request_leaves_the_scene_its_effects() {
+        let club = |name: &str| {
+            format!(
+                r#"<link name="{name}"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+                <joint name="{name}_fixed" type="fixed"><parent link="fore"/><child link="{name}"/><origin xyz="0 0 -0.5"/></joint>"#
+            )
+        };
+        let urdf = ARM.replace("</robot>", &format!("{}{}</robot>", club("club"), club("other")));
+        let scene =
+            Scene::read("s.toml", "[effects]\ndamping = { elbow = 0.1 }\n[effects.shaft.club_fixed]\nsegments = 2\nstiffness = 3\nmass = 0.2").unwrap();
+        let settled = |more: Option<Shaft>| {
+            let mut request = Request::new("arm.urdf", urdf.clone());
+            fill(&mut request.options, &scene);
+            request.options.shafts.extend(more);
+            settle(&mut request, &scene).unwrap_or_else(|e| panic!("{e}")).effects
+        };
+        let alone = settled(None);
+        assert!([EffectId::damping, EffectId::spring].iter().all(|name| alone.iter().any(|a| a.effect == *name)), "{alone:?}");
+        let own = Shaft { joint: "other_fixed".into(), ..scene.shafts[0].shaft.clone() };
+        assert_eq!(settled(Some(own)), alone);
     }
 
     #[test]
