@@ -61,6 +61,7 @@ mod tests {
     fn only_what_is_within_the_tolerance_snaps() {
         assert_eq!(right_angle(FRAC_PI_2 + 4e-6, 1e-5), Some((1.0, FRAC_PI_2)));
         assert_eq!(right_angle(4e-6 - PI, 1e-5), Some((-2.0, -PI)));
+        assert_eq!(right_angle(50.0 * FRAC_PI_2 + 4e-6, 1e-5), Some((50.0, 50.0 * FRAC_PI_2)));
         assert_eq!(right_angle(1e-7, 1e-5), Some((0.0, 0.0)));
         assert_eq!(right_angle(FRAC_PI_2 + 4e-6, 1e-6), None);
         assert_eq!(right_angle(FRAC_PI_2, 1e-5), None);

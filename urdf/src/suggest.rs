@@ -58,5 +58,9 @@ mod tests {
         assert_eq!(nearest("uper", names.into_iter()), Some("upper"));
         assert_eq!(nearest("Forearm", names.into_iter()), Some("fore_arm"));
         assert_eq!(nearest("wheel", names.into_iter()), None);
+        for names in [["left_hand", "left_hands"], ["left_hands", "left_hand"]] {
+            assert_eq!(nearest("lft_hands", names.into_iter()), Some("left_hands"));
+            assert_eq!(nearest("lft_hand", names.into_iter()), Some("left_hand"));
+        }
     }
 }

@@ -172,6 +172,32 @@ fn limits_that_are_left_open_are_infinite() {
     assert_eq!((travel.lower, travel.upper, travel.effort), (f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY));
 }
 
+/// As the format has it before version 1.2; from then on, nothing is amiss with a bound that is left open.
+#[test]
+fn bounds_that_are_left_out_are_zero_before_version_1_2_and_open_from_then_on() {
+    let travel = |version: &str, given: &str| {
+        let text = crane("lower=\"0\" upper=\"3\" effort=\"100\" velocity=\"0.5\"", given);
+        let reading = accepted(&text.replace("<robot ", &format!("<robot version='{version}' ")));
+        let limit = reading.description.joints[1].limit.unwrap();
+        let warned: Vec<String> = reading.warnings.iter().map(|w| w.field.clone()).collect();
+        ([limit.lower, limit.upper, limit.effort, limit.velocity], warned.join(", "))
+    };
+    let (none, open) = (String::new(), f64::INFINITY);
+    assert_eq!(travel("1.0", "upper='3' effort='1' velocity='2'"), ([0.0, 3.0, 1.0, 2.0], none.clone()));
+    assert_eq!(travel("1.1", "lower='-3' effort='1' velocity='2'"), ([-3.0, 0.0, 1.0, 2.0], none.clone()));
+    assert_eq!(travel("1.0", ""), ([0.0, 0.0, open, open], "limit, limit effort, limit velocity".to_owned()));
+    assert_eq!(travel("1.2", "upper='3'"), ([-open, 3.0, open, open], none.clone()));
+    assert_eq!(travel(" 1.2 ", ""), ([-open, open, open, open], none));
+}
+
+#[test]
+fn coefficients_that_are_left_out_are_zero() {
+    for (given, damping, friction) in [("friction='2'", 0.0, 2.0), ("damping='3'", 3.0, 0.0), ("", 0.0, 0.0)] {
+        let swing = joint(&crane("damping=\"0.5\" friction=\"0.1\"", given), "swing");
+        assert_eq!(swing.dynamics, Some(JointDynamics { damping, friction }), "{given}");
+    }
+}
+
 #[test]
 fn mimics_have_defaults_and_chains() {
     let text = crane("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"travel\"/>")
@@ -207,6 +233,36 @@ fn the_size_of_units_does_not_matter() {
         let text = crane("ixx=\"2\" ixy=\"0.1\"", &format!("ixx=\"{xx}\" ixy=\"0\"")).replace("\"30\"", &format!("\"{yy}\""));
         assert!(accepted(&text.replace("\"31\"", &format!("\"{zz}\""))).warnings.is_empty(), "{xx} {yy} {zz}");
     }
+}
+
+/// A boom of these principal moments, in turn: what is said of its inertia.
+fn said_of(moments: [&str; 3]) -> Option<Kind> {
+    let [xx, yy, zz] = moments.map(|moment| format!("=\"{moment}\""));
+    let text = crane("ixx=\"2\" ixy=\"0.1\"", &format!("ixx{xx} ixy=\"0\"")).replace("iyy=\"30\"", &format!("iyy{yy}"));
+    let problems = match read(text.replace("izz=\"31\"", &format!("izz{zz}")).as_bytes(), &options()) {
+        Ok(reading) => reading.warnings,
+        Err(problems) => problems.errors,
+    };
+    problems.first().map(|problem| problem.kind)
+}
+
+/// Files print some six digits.
+#[test]
+fn moments_are_forgiven_what_rounding_makes_of_them_and_no_more() {
+    assert_eq!(said_of(["-5e-10", "1", "1"]), None);
+    assert_eq!(said_of(["-5e-9", "1", "1"]), Some(Kind::InertiaNotPositive));
+    assert_eq!(said_of(["1", "2.000001", "1"]), None);
+    assert_eq!(said_of(["1", "2.000004", "1"]), Some(Kind::InertiaTriangle));
+    // In any units.
+    assert_eq!(said_of(["-5e-29", "1e-20", "1e-20"]), Some(Kind::InertiaNotPositive));
+    assert_eq!(said_of(["-1", "-1", "-1"]), Some(Kind::InertiaNotPositive));
+}
+
+#[test]
+fn axes_of_a_universal_joint_may_be_nearly_parallel_but_not_quite() {
+    let leaning = |by: &str| slew("universal", &format!("<axis xyz='1 0 0'/><axis2 xyz='-1 {by} 0'/>"));
+    assert_eq!(joint(&leaning("3e-6"), "slew").second_axis, [-1.0, 3e-6, 0.0]);
+    assert_eq!(corpus::only_error(&leaning("3e-7")).kind, Kind::ParallelAxes);
 }
 
 #[test]
@@ -248,6 +304,25 @@ fn mass_on_a_fixed_base_is_one_warning_that_names_the_links() {
     assert_eq!(reading.description.links[0].inertial.unwrap().mass, 1.0);
     let floating = read(text.as_bytes(), &Options { base: Base::Floating, ..options() }).unwrap();
     assert!(floating.warnings.is_empty() && floating.unused.iter().all(|u| u.tag != "inertial"));
+}
+
+/// A point of mass, and inertia without mass, which has a warning of its own.
+#[test]
+fn a_mass_or_an_inertia_alone_on_a_fixed_base_is_warned_of_and_zeros_are_not() {
+    let warned = |mass: &str, moment: &str| {
+        let inertial = format!(
+            "<link name='tower'><inertial><mass value='{mass}'/>
+             <inertia ixx='{moment}' ixy='0' ixz='0' iyy='{moment}' iyz='0' izz='{moment}'/></inertial></link>"
+        );
+        accepted(&crane("<link name=\"tower\"/>", &inertial)).warnings.iter().any(|w| w.kind == Kind::UnusedInertia)
+    };
+    assert!(warned("1", "0") && warned("0", "1") && !warned("0", "0"));
+}
+
+#[test]
+fn declarations_of_prefixes_are_no_content() {
+    let reading = accepted(&crane("<robot ", "<robot xmlns='http://a' xmlns:xacro='http://b' "));
+    assert!(reading.unused.iter().all(|u| u.subject != Subject::Document), "{:?}", reading.unused);
 }
 
 const EXTENSIONS: &str = r#"

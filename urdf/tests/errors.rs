@@ -54,6 +54,7 @@ const MISTAKES: &[Mistake] = &[
     ("type=\"continuous\"", "type=\"universal\"", Kind::MissingTag, 19, &["slew", "<axis2>"]),
     ("0 0 1\"", "0 -0 0.0\"", Kind::ZeroAxis, 23, &["slew", "axis", "zero"]),
     ("0 0 1\"", "0 1e-200 0\"", Kind::ZeroAxis, 23, &["slew", "axis"]),
+    ("0 0 1\"", "0 1e200 0\"", Kind::ZeroAxis, 23, &["slew", "axis", "can be squared"]),
     ("<axis xyz=\"0 0 1\"/>", "<axis/>", Kind::MissingAttribute, 23, &["slew", "xyz"]),
     ("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 1\"/><axis xyz=\"0 0 1\"/>", Kind::DuplicateTag, 23, &["slew", "<axis>"]),
     ("<child link=\"lamp\"/>", "<child/>", Kind::MissingAttribute, 40, &["mount", "link"]),
@@ -121,6 +122,14 @@ fn a_joint_of_an_unknown_type_is_read_on() {
     for kind in [Kind::UnknownJointType, Kind::ZeroAxis, Kind::NotANumber] {
         assert!(kinds.contains(&kind), "{kind:?} among {kinds:?}");
     }
+}
+
+#[test]
+fn of_very_many_roots_the_first_are_named_and_the_rest_counted() {
+    let strays: String = (0..9).map(|k| format!("<link name='stray{k}'/>")).collect();
+    let error = only_error(&crane("<link name=\"lamp\"/>", &format!("<link name=\"lamp\"/>{strays}")));
+    assert_eq!(error.kind, Kind::SeveralRoots);
+    assert!(error.found.starts_with("10 roots") && error.found.ends_with("link \"stray6\" and 2 more"), "{error}");
 }
 
 #[test]
