@@ -185,6 +185,25 @@ fn what_overflows_is_an_error_that_names_it() {
     assert!(far(1e300, 1.0, 1e300).is_ok());
 }
 
+/// Each is finite, and the joint that follows the follower has the product of the two.
+#[test]
+fn multipliers_that_overflow_are_an_error_that_names_the_joint() {
+    let chain = |multiplier: f64, offset: f64, locked: Option<Vec<f64>>| {
+        let mut joints: Vec<Joint> = ["a", "b", "c"].iter().enumerate().map(|(k, n)| joint(n, JointKind::Continuous, k, k + 1)).collect();
+        joints.iter_mut().skip(1).enumerate().for_each(|(k, j)| j.mimic = Some(Mimic { joint: k, multiplier, offset }));
+        joints[0].locked = locked;
+        Model::new(&tree(4, joints), Base::Fixed)
+    };
+    let message = |m: Result<Model, ModelError>| m.map_or_else(|e| e.to_string(), |_| String::new());
+    for (multiplier, offset) in [(1e200, 0.0), (1e200, 1e200)] {
+        let found = message(chain(multiplier, offset, None));
+        assert!(found.contains("joint \"c\"") && !found.contains("joint \"b\"") && found.contains("overflow"), "{found}");
+    }
+    let found = message(chain(1e200, 0.0, Some(vec![1.0])));
+    assert!(found.contains("link \"l3\"") && !found.contains("link \"l2\"") && found.contains("overflow"), "{found}");
+    assert!(chain(1e100, 1e100, None).is_ok() && chain(1e100, 0.0, Some(vec![1.0])).is_ok());
+}
+
 /// A link alone has no coordinates on a fixed base, and six on a floating one.
 #[test]
 fn a_single_link_goes_through_everything() {

@@ -37,7 +37,7 @@ pub enum ModelError {
         /// Name of the joint.
         joint: String,
     },
-    /// Masses and lengths whose products are beyond the range of doubles.
+    /// Masses and lengths, or multipliers of joints that follow each other, whose products are beyond the range of doubles.
     TooLarge {
         /// Names of the joints behind which they are, and of the links that are too far away.
         names: Vec<String>,
@@ -58,7 +58,11 @@ impl fmt::Display for ModelError {
                 write!(f, "joint {joint:?}: mimic: expected a leader with one degree of freedom that does not follow this joint")
             }
             Self::TooLarge { names } => {
-                write!(f, "{}: found masses or lengths that overflow, expected m·r² and r below 1e308, in kg and m", names.join(", "))
+                write!(
+                    f,
+                    "{}: found masses, lengths or multipliers that overflow, expected m·r², r and products of multipliers below 1e308, in kg and m",
+                    names.join(", ")
+                )
             }
         }
     }
@@ -96,7 +100,9 @@ struct Builder<'a> {
 /// What has overflowed: joints by what they move, links by where they are.
 fn too_large(model: &Model<f64>) -> Vec<String> {
     let is_finite = |x: &Placement<f64>| x.position.iter().all(|x| x.is_finite());
-    let heavy = |body: &&Body<f64>| !(is_finite(&body.placement) && body.inertia.parameters().iter().all(|x| x.is_finite()));
+    let follows = |body: &Body<f64>| body.coordinates.mimic.is_none_or(|f| f.multiplier.is_finite() && f.offset.is_finite());
+    let heavy =
+        |body: &&Body<f64>| !(is_finite(&body.placement) && follows(body) && body.inertia.parameters().iter().all(|x| x.is_finite()));
     let joints = model.bodies.iter().skip(1).filter(heavy).map(|body| format!("joint {:?}", body.name));
     let links = model.frames.iter().filter(|frame| !is_finite(&frame.placement)).map(|frame| format!("link {:?}", frame.name));
     joints.chain(links).collect()
