@@ -81,4 +81,15 @@ mod tests {
         assert_eq!(level(1e-30), None);
         assert!(text(&report, 1e-30).contains("the most accurate is double_double"));
     }
+
+    #[test]
+    fn another_library_is_no_level_however_cheap_and_accurate() {
+        let mut report = example();
+        for point in &mut report.functions[0].points {
+            point.peer = point.level == "double_double";
+        }
+        let advice = all(&report, 1e-15).remove(0);
+        assert_eq!(advice.level, None);
+        assert_ne!(advice.best.expect("a level that was measured").0, "double_double");
+    }
 }
