@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use articulated_core::model::Model;
 
-use crate::{Error, Request};
+use crate::{Error, Request, is_keyword};
 
 /// The constant's name for a name of the URDF: letters in upper case, everything that cannot be in an identifier as `_`, `_` in front of a
 /// digit. `shoulder pan-joint` is `SHOULDER_PAN_JOINT`, `1st-link` is `_1ST_LINK`.
@@ -34,6 +34,11 @@ fn ascii(name: &str) -> String {
 fn is_identifier(ident: &str) -> bool {
     let tokens = ident.parse::<proc_macro2::TokenStream>().map(|t| t.into_iter().collect::<Vec<_>>());
     matches!(tokens.as_deref(), Ok([proc_macro2::TokenTree::Ident(i)]) if i == ident)
+}
+
+/// Whether a constant can be called so.
+fn is_name(ident: &str) -> bool {
+    is_identifier(ident) && !is_keyword(ident) && !matches!(ident, "_" | "Self")
 }
 
 /// The Rust names of a robot's joints and links.
@@ -75,7 +80,7 @@ fn check_renames(model: &Model<f64>, request: &Request) -> Result<(), Error> {
     let wrong = request.options.rename.iter().find_map(|(from, to)| {
         if !known(from) {
             Some((from, to, "the robot has no joint and no link of this name"))
-        } else if !is_identifier(to) {
+        } else if !is_name(to) {
             Some((from, to, "this is not an identifier of Rust"))
         } else {
             None
@@ -106,6 +111,16 @@ mod tests {
         for (name, ident) in cases {
             assert_eq!(identifier(name), ident);
             assert!(is_identifier(ident), "{ident}");
+        }
+    }
+
+    #[test]
+    fn a_word_that_rust_keeps_for_itself_is_no_name() {
+        for word in ["type", "self", "Self", "crate", "_", "a-b", "a b", "", "1"] {
+            assert!(!is_name(word), "{word}");
+        }
+        for name in ["TIP", "tip_2", "_1", "TYPE", "r#type"] {
+            assert!(is_name(name), "{name}");
         }
     }
 }
