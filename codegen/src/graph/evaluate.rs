@@ -82,6 +82,7 @@ impl Graph {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::graph::OPS;
 
     #[test]
     fn in_doubles_it_is_the_evaluation_of_doubles() {
@@ -94,6 +95,30 @@ mod tests {
         for (x, y) in [(0.3, 2.0), (-0.7, -1.5)] {
             let at = |argument: usize, _: usize| if argument == 0 { x } else { y };
             assert_eq!(g.evaluate_as::<f64>(at), g.evaluate(at));
+        }
+    }
+
+    #[test]
+    fn every_operation_is_that_of_doubles_in_every_lane() {
+        for width in [2, 4] {
+            let mut g = Graph::in_lanes(width);
+            let numbers = std::array::from_fn(|k| [0.4, -1.1, 2.2, -0.6][k % width]);
+            let (x, y, z) = (g.lane_input(0, &[0, 1, 2, 3][..width]), g.lane_constant(numbers), g.input(1, 5));
+            let mut results = vec![g.exactly(Op::Sin, &[y]), g.exactly(Op::Cos, &[z])];
+            for row in OPS.iter().filter(|row| row.arity > 0 && !matches!(row.op, Op::Positive | Op::Select | Op::Spread)) {
+                results.push(g.exactly(row.op, &[x, y, z][..row.arity]));
+            }
+            let positive = g.exactly(Op::Positive, &[x]);
+            results.push(g.exactly(Op::Select, &[positive, y, z]));
+            for lane in 0..width {
+                let lane = g.constant(lane as f64);
+                let of_lane: Vec<NodeId> = results.iter().map(|&r| g.exactly(Op::Spread, &[r, lane])).collect();
+                g.outputs.extend(of_lane);
+            }
+            let at = |argument: usize, k: usize| [0.9, -0.8, 1.7, -0.3, 0.0, 2.6][k] + argument as f64;
+            // Of a negative number the root is none.
+            let numbers = |values: Vec<f64>| values.into_iter().map(|x| (!x.is_nan()).then_some(x)).collect::<Vec<_>>();
+            assert_eq!(numbers(g.evaluate_as::<f64>(at)), numbers(g.evaluate(at)), "{width} lanes");
         }
     }
 }

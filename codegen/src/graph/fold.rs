@@ -277,6 +277,85 @@ mod tests {
     }
 
     #[test]
+    fn sums_of_sums_keep_their_value_whatever_their_signs() {
+        let (mut g, x, y) = xy();
+        let z = g.input(0, 2);
+        let values = [0.7, -1.3, 2.9];
+        let terms = [x, y, z].into_iter().zip(values);
+        let pairs = terms.clone().flat_map(|a| terms.clone().map(move |b| (a, b)));
+        let sums: Vec<(NodeId, f64)> =
+            pairs.flat_map(|((a, va), (b, vb))| [(g.apply(Op::Add, &[a, b]), va + vb), (g.apply(Op::Sub, &[a, b]), va - vb)]).collect();
+        let mut expected = Vec::new();
+        for &(a, va) in &sums {
+            for &(b, vb) in &sums {
+                let [sum, difference] = [Op::Add, Op::Sub].map(|op| g.apply(op, &[a, b]));
+                g.outputs.extend([sum, difference]);
+                expected.extend([va + vb, va - vb]);
+            }
+        }
+        for (found, expected) in g.evaluate(|_, k| values[k]).into_iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn a_sign_goes_out_of_a_sine_and_is_nothing_to_a_cosine() {
+        let (mut g, x, _) = xy();
+        let minus = g.apply(Op::Neg, &[x]);
+        let [sin, cos] = [Op::Sin, Op::Cos].map(|op| g.apply(op, &[x]));
+        assert_eq!(g.apply(Op::Sin, &[minus]), g.apply(Op::Neg, &[sin]));
+        assert_eq!(g.apply(Op::Cos, &[minus]), cos);
+    }
+
+    #[test]
+    fn what_may_be_no_number_is_left_to_the_program() {
+        let (mut g, x, _) = xy();
+        let [zero, one, minus, huge] = [0.0, 1.0, -1.0, 1e200].map(|c| g.constant(c));
+        let cases = [(Op::Div, vec![one, zero]), (Op::Div, vec![x, zero]), (Op::Div, vec![x, x]), (Op::Mul, vec![huge, huge])];
+        for (op, operands) in cases.into_iter().chain([(Op::Sqrt, vec![minus]), (Op::Sub, vec![x, huge])]) {
+            let id = g.apply(op, &operands);
+            assert_eq!(g.node(id).op, op);
+        }
+    }
+
+    #[test]
+    fn constant_factors_are_one_unless_that_would_be_nothing_or_too_much() {
+        let (mut g, x, _) = xy();
+        let scaled = |g: &mut Graph, c: f64, d: f64, x: NodeId| {
+            let [c, d] = [c, d].map(|c| g.constant(c));
+            let product = g.apply(Op::Mul, &[d, x]);
+            g.apply(Op::Mul, &[product, c])
+        };
+        assert_eq!(scaled(&mut g, 2.0, 3.0, x), scaled(&mut g, 1.0, 6.0, x));
+        // Of a constant that is older than what it multiplies, too.
+        let late = g.input(0, 2);
+        assert_eq!(scaled(&mut g, 2.0, 3.0, late), scaled(&mut g, 1.0, 6.0, late));
+        g.outputs = vec![scaled(&mut g, 1e200, 1e200, x), scaled(&mut g, 1e-200, 1e-200, late)];
+        let found = g.evaluate(|_, k| [1e-300, 0.0, 1e300][k]);
+        assert!((found[0] / 1e100 - 1.0).abs() < 1e-15 && (found[1] / 1e-100 - 1.0).abs() < 1e-15, "{found:?}");
+    }
+
+    #[test]
+    fn a_choice_that_is_known_is_made() {
+        let (mut g, x, y) = xy();
+        let [zero, one, minus] = [0.0, 1.0, -1.0].map(|c| g.constant(c));
+        for (of, chosen) in [(zero, y), (one, x), (minus, y)] {
+            let positive = g.apply(Op::Positive, &[of]);
+            assert_eq!(g.apply(Op::Select, &[positive, x, y]), chosen);
+        }
+        let positive = g.apply(Op::Positive, &[x]);
+        assert_eq!(g.apply(Op::Select, &[positive, y, y]), y);
+    }
+
+    #[test]
+    fn zero_has_one_node_whatever_its_sign() {
+        let mut g = Graph::in_lanes(2);
+        assert_eq!(g.constant(-0.0), g.constant(0.0));
+        let of_lanes = [1.0, -1.0].map(|one| g.lane_constant([-0.0 * one, 1.0, 0.0, 0.0]));
+        assert_eq!(of_lanes[0], of_lanes[1]);
+    }
+
+    #[test]
     fn an_expression_and_its_negative_share_their_operation() {
         let (mut g, x, y) = xy();
         let d = g.apply(Op::Sub, &[x, y]);
