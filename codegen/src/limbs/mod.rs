@@ -17,15 +17,17 @@ pub(crate) use pack::pack;
 mod tests {
     use std::fmt::Write;
 
-    use articulated_core::algorithm::{Needs, functions};
+    use articulated_core::Scalar;
+    use articulated_core::algorithm::{Argument, Needs, functions};
     use articulated_core::description::Base;
     use articulated_core::model::Model;
+    use num_traits::One;
 
     use super::*;
     use crate::graph::{Counts, Graph};
     use crate::pass::GRAPH_PASSES;
     use crate::trace::{Choice, trace, trace_in_lanes, ways};
-    use crate::{Request, Sym, Wanted};
+    use crate::{Request, Sym, Wanted, sym};
 
     /// A number that looks random, in (−1, 1).
     fn number(seed: &mut u64) -> f64 {
@@ -88,8 +90,9 @@ mod tests {
     fn all(model: &Model<f64>, width: usize) -> Vec<(&'static str, Counts, Counts)> {
         let alike = Alike::of(model, width).unwrap();
         let mut counts = Vec::new();
-        for f in functions::<Sym>().iter().filter(|f| f.needs != Needs::FreeFrames) {
-            let wanted = Wanted::parse(f.name).unwrap();
+        let all = functions::<Sym>().iter().filter(|f| f.needs != Needs::FreeFrames).map(|f| (f.name, f.name));
+        for (name, text) in all.chain([("inverse_dynamics", "quick = inverse_dynamics(q = sin_cos)")]) {
+            let wanted = Wanted::parse(text).unwrap();
             for (way, _) in ways(&wanted.parts[0], model) {
                 let choice = [Choice { way, passes: usize::MAX, unturned: None }];
                 let plain = passed(trace(&wanted, &choice, model, &[]));
@@ -97,9 +100,9 @@ mod tests {
                 lanes.verify().unwrap();
                 for (k, (a, b)) in plain.evaluate(input).into_iter().zip(lanes.evaluate(input)).enumerate() {
                     // Solves amplify roundings; a wrong lane or sign is off by far more.
-                    assert!((a - b).abs() <= 1e-8 * (1.0 + a.abs()), "{} {}, output {k}: {a} {b}", f.name, way.name);
+                    assert!((a - b).abs() <= 1e-8 * (1.0 + a.abs()), "{name} {}, output {k}: {a} {b}", way.name);
                 }
-                counts.push((f.name, plain.counts(), lanes.counts()));
+                counts.push((name, plain.counts(), lanes.counts()));
             }
         }
         counts
@@ -113,5 +116,20 @@ mod tests {
             assert!(lanes.instructions() * 2 < plain.instructions(), "{name}: {} {}", lanes.instructions(), plain.instructions());
         }
         all(&walker(5, &mut seed), 2);
+    }
+
+    #[test]
+    fn a_sum_over_the_lanes_keeps_the_sign_of_each() {
+        let model = walker(4, &mut 7);
+        let alike = Alike::of(&model, 4).unwrap();
+        let hips: Vec<usize> = model.limbs(4)[0].roots.iter().map(|&i| model.bodies[i].coordinates.q).collect();
+        for signs in 0..16 {
+            let plain = sym::trace(|| {
+                let term = |lane: usize| Sym::input(0, hips[lane]) * if signs >> lane & 1 == 1 { -Sym::one() } else { Sym::one() };
+                vec![(1..4).fold(term(0), |sum, lane| sum + term(lane)) + Sym::from_f64(0.25)]
+            });
+            let lanes = pack(&plain, &[Argument::Q], &alike, &Constants::new(1));
+            assert!((plain.evaluate(input)[0] - lanes.evaluate(input)[0]).abs() < 1e-15, "signs {signs:b}");
+        }
     }
 }

@@ -310,4 +310,22 @@ mod tests {
         g.outputs = vec![minus];
         check(&g, 1);
     }
+
+    #[test]
+    fn a_sum_that_has_another_use_keeps_its_sign_when_it_is_turned() {
+        for [first, second] in [[Op::Add, Op::Add], [Op::Add, Op::Sub], [Op::Sub, Op::Add], [Op::Sub, Op::Sub]] {
+            let mut g = Graph::default();
+            let [a, b, c, d] = [0, 1, 2, 3].map(|k| g.input(0, k));
+            let ab = g.exactly(Op::Mul, &[a, b]);
+            for sum in [g.exactly(first, &[ab, c]), g.exactly(second, &[d, ab])] {
+                let (minus, root) = (g.exactly(Op::Neg, &[sum]), g.exactly(Op::Sqrt, &[sum]));
+                g.outputs.extend([minus, root, sum]);
+            }
+            let new = live(&contract(&g));
+            let positive = |argument: usize, k: usize| at(argument, k).abs();
+            for (a, b) in new.evaluate(positive).into_iter().zip(g.evaluate(positive)) {
+                assert!((a - b).abs() < 1e-15 || a.is_nan() && b.is_nan(), "{a} {b}");
+            }
+        }
+    }
 }
