@@ -119,6 +119,8 @@ fn chains(model: &Model<f64>) -> Vec<Vec<usize>> {
 #[cfg(test)]
 mod tests {
     use articulated_core::description::Base;
+    use articulated_core::effect::{BodyEffect, EffectId, JointEffect};
+    use articulated_core::joint::Follow;
 
     use super::*;
     use crate::Request;
@@ -189,6 +191,48 @@ mod tests {
         assert_eq!([all(&before), all(&beyond)], [29, 17]);
         assert!(before.iter().chain(&beyond).all(|p| p.path <= paths.len()));
         assert!(paths.iter().enumerate().all(|(k, p)| p.before <= k && model.bodies[p.first].parent == p.on));
+    }
+
+    #[test]
+    fn a_path_leads_from_the_chunk_before_to_that_beyond() {
+        let model = tree(&WALKER, Base::Floating);
+        let groups = Groups::of(&model).unwrap();
+        let chunks = groups.chunks(&model);
+        let has = |chunk: &Chunk, body: usize| chunk.bodies.contains(&Some(body));
+        let of = |body: usize| chunks.iter().find(|chunk| has(chunk, body)).unwrap();
+        let ([before, beyond], paths) = groups.pairs(&model);
+        assert!(paths.iter().all(|p| p.on > ROOT && of(p.first).first() == p.first));
+        for (pair, turned) in before.iter().map(|p| (p, false)).chain(beyond.iter().map(|p| (p, true))) {
+            let other = chunks.iter().find(|chunk| (chunk.at, chunk.column) == (pair.at, pair.column)).unwrap();
+            let (from, to) = if turned { (of(pair.own), other) } else { (other, of(pair.own)) };
+            let (mut at, mut path) = (to, pair.path);
+            while let Some(p) = path.checked_sub(1).map(|k| &paths[k]) {
+                assert!(has(at, p.first));
+                (at, path) = (of(p.on), p.before);
+            }
+            assert_eq!((at.at, at.column), (from.at, from.column), "joint {}", pair.own);
+        }
+        assert!(before.iter().any(|p| p.path > 0 && paths[p.path - 1].before == 0));
+        assert!(beyond.iter().any(|p| p.path > 0 && paths[p.path - 1].before == 0));
+    }
+
+    #[test]
+    fn joints_on_which_anything_acts_or_that_follow_others_have_no_groups() {
+        let has_groups = |change: &dyn Fn(&mut Model<f64>)| {
+            let mut model = tree(&WALKER, Base::Floating);
+            change(&mut model);
+            Groups::of(&model).is_some()
+        };
+        assert!(has_groups(&|_| ()));
+        let (parameters, placement) = (vec![1.0], tree(&WALKER, Base::Floating).frames[0].placement);
+        let joint = JointEffect { effect: EffectId::damping, freedom: 0, parameters: parameters.clone() };
+        assert!(!has_groups(&|model| model.bodies[3].effects.joint.push(joint.clone())));
+        let body = BodyEffect { effect: EffectId::drag, placement, parameters };
+        for k in [ROOT, 3] {
+            assert!(!has_groups(&|model| model.bodies[k].effects.body.push(body.clone())));
+        }
+        assert!(!has_groups(&|model| model.bodies[4].coordinates.mimic = Some(Follow { multiplier: 1.0, offset: 0.0 })));
+        assert!(!has_groups(&|model| model.bodies[5].parent = 0));
     }
 
     #[test]
