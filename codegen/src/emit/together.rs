@@ -35,10 +35,11 @@ mod tests {
 
     #[test]
     fn neighbours_are_stored_together_and_others_alone() {
-        let found =
-            two_at_once("    let x1 = a;\n    out[3][5] = x1;\n    out[3][4] = lane::<1>(x0);\n    out[3][6] = x1;\n    out[7] = x1;\n");
-        let stored = "    store(lanes([lane::<1>(x0), x1]), &mut out[3].as_chunks_mut::<2>().0[2]);\n";
-        assert_eq!(found, format!("    let x1 = a;\n{stored}    out[3][6] = x1;\n    out[7] = x1;\n"));
+        let alone = "    out[3][6] = x1;\n    out[6] = x1;\n    out[7] = x1;\n";
+        let found = two_at_once(&format!("    let x1 = a;\n    out[3][5] = x1;\n    let x2 = b;\n    out[3][4] = lane::<1>(x2);\n{alone}"));
+        // Where both are known.
+        let stored = "    store(lanes([lane::<1>(x2), x1]), &mut out[3].as_chunks_mut::<2>().0[2]);\n";
+        assert_eq!(found, format!("    let x1 = a;\n    let x2 = b;\n{stored}{alone}"));
     }
 
     #[test]

@@ -164,7 +164,7 @@ fn d(x: V) -> V {
         let expected = TEXT.replace("\n    // Of no use.\n    #[inline]\n    pub(super) extern \"C\" fn c(x: V) -> V {\n        if x > 0.0 { a(x) } else { x }\n    }\n", "");
         assert_eq!(used(TEXT, &Caller::new("x = a(y); // and not abc, nor _c")), expected);
         assert_eq!(used(TEXT, &Caller::new("c(y)")), TEXT);
-        assert_eq!(used(TEXT, &Caller::new("nothing")), "type V = f64;\n\n");
+        assert_eq!(used(TEXT, &Caller::new("abc, _a and a_")), "type V = f64;\n\n");
     }
 
     #[test]
