@@ -223,6 +223,46 @@ mod tests {
         assert_eq!(all, cells.into_iter().enumerate().collect::<Vec<_>>());
     }
 
+    /// Lanes of nodes at equal distances that get into each other's way, and between them whatever.
+    fn any(seed: u64) -> Vec<Cell> {
+        let mut state = seed;
+        let mut below = |n: u64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((state >> 33) % n) as usize
+        };
+        let mut cells: Vec<Cell> =
+            (0..48).map(|_| if below(3) == 0 { Cell::Lane(below(4), below(4)) } else { Cell::Constant(below(2) as f64) }).collect();
+        for node in 4..16 {
+            let (start, apart) = (below(24), 1 + below(7));
+            (0..4).for_each(|lane| cells[start + apart * lane] = Cell::Lane(node, lane));
+        }
+        cells
+    }
+
+    #[test]
+    fn each_number_is_written_once_wherever_lanes_stand() {
+        for seed in 0..500 {
+            let cells = any(seed);
+            let mut all: Vec<(usize, Cell)> = groups(&cells).iter().flat_map(written).collect();
+            all.sort_by_key(|(k, _)| *k);
+            assert_eq!(all, cells.into_iter().enumerate().collect::<Vec<_>>(), "seed {seed}");
+        }
+    }
+
+    #[test]
+    fn a_lane_of_an_output_is_that_lane() {
+        let mut g = Graph::in_lanes(WIDTH);
+        let (input, numbers, number) = (g.lane_input(0, &[1, 2, 3, 4]), g.lane_constant([0.5, 1.5, 2.5, 3.5]), g.constant(7.0));
+        for lane in 0..WIDTH {
+            let k = g.constant(lane as f64);
+            let [of_input, of_numbers] = [input, numbers].map(|x| g.exactly(Op::Spread, &[x, k]));
+            assert_eq!(Cell::of(&g, of_input), Cell::Lane(input.index(), lane));
+            assert_eq!(Cell::of(&g, of_numbers), Cell::Constant(0.5 + lane as f64));
+        }
+        assert_eq!(Cell::of(&g, number), Cell::Constant(7.0));
+        assert_eq!(Cell::of(&g, input), Cell::Lane(input.index(), 0));
+    }
+
     #[test]
     fn lanes_of_legs_are_rows() {
         let cells = four_legs();
