@@ -115,3 +115,93 @@ impl Parameter {
 fn cast(x: &Placement<f64>) -> Placement<Sym> {
     Placement { rotation: x.rotation.map(Sym::from_f64), position: x.position.map(Sym::from_f64) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Request;
+    use crate::trace::{Choice, trace, ways};
+    use crate::wanted::Wanted;
+
+    /// A table that slides and turns in a plane, and on it an arm with a tool; these numbers are the robot's.
+    fn robot([origin, mass, com, shoulder]: [&str; 4]) -> Request {
+        let inertial = |mass: &str, com: &str| {
+            format!(
+                "<inertial><origin xyz='{com}' rpy='0.3 0.1 -0.2'/><mass value='{mass}'/>\
+                 <inertia ixx='0.3' ixy='0.01' ixz='0.02' iyy='0.4' iyz='-0.01' izz='0.5'/></inertial>"
+            )
+        };
+        let joint = |name: &str, kind: &str, parent: &str, child: &str, xyz: &str| {
+            format!(
+                "<joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{child}'/><origin xyz='{xyz}' rpy='0.4 -0.7 1.1'/>\
+                 <axis xyz='0 0.6 0.8'/></joint>"
+            )
+        };
+        let links = ["ground", "rail"].map(|name| format!("<link name='{name}'/>")).concat()
+            + &["table", "arm"].map(|name| format!("<link name='{name}'>{}</link>", inertial("1.5", "0.1 0 0.2"))).concat()
+            + &format!("<link name='tool'>{}</link>", inertial(mass, com));
+        let joints = joint("foot", "fixed", "ground", "rail", "0.1 0.2 0.3")
+            + &joint("slide", "planar", "rail", "table", origin)
+            + &joint("shoulder", "continuous", "table", "arm", shoulder)
+            + &joint("grip", "fixed", "arm", "tool", "0.3 0.1 -0.2");
+        Request::new("robot.urdf", format!("<robot name='robot'>{links}{joints}</robot>"))
+    }
+
+    /// The model, with what stays an input taken out of it.
+    fn read(request: &Request, list: &[&str]) -> (Model<f64>, Vec<Parameter>) {
+        let mut description = crate::read(request).unwrap().description;
+        let whole = crate::model(request, &description).unwrap();
+        let list: Vec<String> = list.iter().map(|p| (*p).to_owned()).collect();
+        let parameters = parse(&list, &mut description, &whole).unwrap();
+        (crate::model(request, &description).unwrap(), parameters)
+    }
+
+    #[test]
+    fn the_numbers_of_another_robot_make_it_that_robot() {
+        const LIST: [&str; 3] = ["origin(slide)", "inertia(tool)", "origin(\"shoulder\")"];
+        let here = robot(["0.1 0.5 -0.3", "2", "0.05 0.2 0.1", "0 0 0.4"]);
+        let there = robot(["-0.4 0.2 0.7", "3.5", "-0.1 0.3 0.2", "0.6 -0.1 0.2"]);
+        let (model, parameters) = read(&here, &LIST);
+        let numbers: Vec<f64> = read(&there, &LIST).1.into_iter().flat_map(|p| p.nominal).collect();
+        let input = |argument: usize, k: usize| (argument * 5 + k * 3) as f64 * 0.37 % 1.9 - 0.8;
+        for name in ["inverse_dynamics", "placements", "potential_energy"] {
+            let wanted = Wanted::parse(name).unwrap();
+            for passes in [0, usize::MAX] {
+                let choice = [Choice { way: ways(&wanted.parts[0], &model)[0].0, passes, unturned: None }];
+                let found = trace(&wanted, &choice, &model, &parameters);
+                let expected = trace(&wanted, &choice, &read(&there, &[]).0, &[]);
+                let given = |argument: usize, k: usize| if argument == wanted.arguments().len() { numbers[k] } else { input(argument, k) };
+                for (found, expected) in found.evaluate(given).into_iter().zip(expected.evaluate(input)) {
+                    assert!((found - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{name}: {found} {expected}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_payload_is_added_to_what_the_link_has() {
+        let request = robot(["0.1 0.5 -0.3", "2", "0.05 0.2 0.1", "0 0 0.4"]);
+        let own = read(&request, &["inertia(tool)"]).1.remove(0).nominal;
+        let wanted = Wanted::parse("inverse_dynamics").unwrap();
+        let input = |argument: usize, k: usize| (argument * 5 + k * 3) as f64 * 0.37 % 1.9 - 0.8;
+        let values = |list: &[&str], factor: f64| {
+            let (model, parameters) = read(&request, list);
+            let choice = [Choice { way: ways(&wanted.parts[0], &model)[0].0, passes: usize::MAX, unturned: None }];
+            trace(&wanted, &choice, &model, &parameters)
+                .evaluate(|argument, k| if argument == 3 { factor * own[k] } else { input(argument, k) })
+        };
+        for (twice, with) in values(&["inertia(tool)"], 2.0).into_iter().zip(values(&["payload(tool)"], 1.0)) {
+            assert!((twice - with).abs() < 1e-12 * (1.0 + twice.abs()), "{twice} {with}");
+        }
+        assert_eq!(read(&request, &["payload(tool)"]).1[0].nominal, [0.0; PARAMETERS]);
+    }
+
+    #[test]
+    fn two_that_have_one_name_in_rust_are_refused() {
+        let request = robot(["0 0 0", "2", "0 0 0", "0 0 0"]);
+        let mut description = crate::read(&request).unwrap().description;
+        let model = crate::model(&request, &description).unwrap();
+        let list = ["payload(tool)", "payload(\"tool\")"].map(String::from);
+        assert!(matches!(parse(&list, &mut description, &model), Err(Error::Parameter { .. })));
+    }
+}
