@@ -338,7 +338,11 @@ impl Piece<'_> {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::{HashMap, HashSet};
+
     use super::*;
+    use crate::emit::order::Angle;
+    use crate::graph::Node;
 
     /// A graph in which values are needed soon, late and never again.
     fn graph() -> Graph {
@@ -385,5 +389,77 @@ mod tests {
             assert!(written.windows(2).all(|pair| pair[1] > pair[0] + 1), "piece {c} writes neighbours: {written:?}");
         }
         assert!(taken > 50 && plan.slots < taken, "{taken} taken from {} places", plan.slots);
+    }
+
+    /// Statements that say what they are made of.
+    struct Text<'a>(&'a Graph);
+
+    impl Dialect for Text<'_> {
+        fn statement(&self, k: usize, node: &Node) -> Option<String> {
+            let operands: Vec<String> = node.operands().map(|o| self.number(o)).collect();
+            (node.op != Op::Constant).then(|| format!("    let x{k} = {};\n", operands.join(" ")))
+        }
+
+        fn sines(&self, _: &[Angle], _: usize) -> String {
+            String::new()
+        }
+
+        fn group(&self) -> usize {
+            4
+        }
+
+        fn number(&self, id: NodeId) -> String {
+            self.0.node(id).constant().map_or_else(|| format!("x{}", id.0), |x| format!("{x:?}"))
+        }
+
+        fn value(&self) -> (&'static str, &'static str) {
+            ("f64", "0.0")
+        }
+    }
+
+    /// The places that pieces write, in order; each name must be known where it is used, and each place of `m` hold it.
+    fn written(graph: &Graph, zeros: &[String], length: usize) -> Vec<String> {
+        let places: Vec<String> = (0..graph.outputs.len()).map(|k| format!("out[{k}]")).collect();
+        let (pieces, _) = cut(graph, &Text(graph), &places, zeros, length);
+        let (mut kept, mut results) = (HashMap::new(), Vec::new());
+        for piece in &pieces {
+            let mut named = HashSet::new();
+            for line in piece.lines() {
+                let (left, right) = line.trim().trim_end_matches(';').split_once(" = ").unwrap();
+                assert!(right.split(' ').all(|word| !word.starts_with('x') || named.contains(word)), "{line} in\n{piece}");
+                if let Some(name) = left.strip_prefix("let ") {
+                    assert!(named.insert(name), "{name} twice in\n{piece}");
+                    assert!(!right.starts_with("m.") || kept.get(right) == Some(&name), "{line} in\n{piece}");
+                } else if left.starts_with("m.") {
+                    let op = graph.nodes()[right[1..].parse::<usize>().unwrap()].op;
+                    assert!(op != Op::Positive, "a comparison is no number");
+                    kept.insert(left, right);
+                } else {
+                    results.push(left.to_owned());
+                }
+            }
+        }
+        results.sort_unstable();
+        results
+    }
+
+    #[test]
+    fn pieces_name_what_they_use_and_write_each_result_once() {
+        let mut graph = graph();
+        let positive = graph.nodes().iter().position(|node| node.op == Op::Positive).unwrap() as u32;
+        let mut value = graph.outputs[0];
+        for _ in 0..30 {
+            value = graph.exactly(Op::Mul, &[value, graph.outputs[2]]);
+        }
+        let (late, number, input) = (graph.exactly(Op::Select, &[NodeId(positive), value, value]), graph.constant(2.5), graph.input(0, 1));
+        graph.outputs.extend([late, number, input, late]);
+        let zeros: Vec<String> = (0..9).map(|k| format!("    zero[{k}] = 0.0;\n")).collect();
+        let expected: Vec<String> = (0..7).map(|k| format!("out[{k}]")).chain((0..9).map(|k| format!("zero[{k}]"))).collect();
+        for length in [1, 10, usize::MAX] {
+            assert_eq!(written(&graph, &zeros, length), expected, "pieces of {length}");
+        }
+        let mut constant = Graph::default();
+        constant.outputs = vec![constant.constant(1.0); 7];
+        assert_eq!(written(&constant, &zeros, 10), expected);
     }
 }

@@ -233,8 +233,8 @@ mod tests {
         let mut cells: Vec<Cell> =
             (0..48).map(|_| if below(3) == 0 { Cell::Lane(below(4), below(4)) } else { Cell::Constant(below(2) as f64) }).collect();
         for node in 4..16 {
-            let (start, apart) = (below(24), 1 + below(7));
-            (0..4).for_each(|lane| cells[start + apart * lane] = Cell::Lane(node, lane));
+            let (start, apart, turned) = (below(12), [1, 3, 7, 9][below(4)], usize::from(below(4) == 0));
+            (0..4).for_each(|lane| cells[start + apart * (lane ^ turned)] = Cell::Lane(node, lane));
         }
         cells
     }
