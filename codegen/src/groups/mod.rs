@@ -195,7 +195,8 @@ mod tests {
 
     #[test]
     fn a_path_leads_from_the_chunk_before_to_that_beyond() {
-        let model = tree(&WALKER, Base::Floating);
+        let fingers = [("thumb", "left_hand"), ("finger", "left_hand"), ("tip", "finger"), ("nail", "tip"), ("other_nail", "tip")];
+        let model = tree(&[&WALKER[..], &fingers].concat(), Base::Floating);
         let groups = Groups::of(&model).unwrap();
         let chunks = groups.chunks(&model);
         let has = |chunk: &Chunk, body: usize| chunk.bodies.contains(&Some(body));
@@ -212,8 +213,7 @@ mod tests {
             }
             assert_eq!((at.at, at.column), (from.at, from.column), "joint {}", pair.own);
         }
-        assert!(before.iter().any(|p| p.path > 0 && paths[p.path - 1].before == 0));
-        assert!(beyond.iter().any(|p| p.path > 0 && paths[p.path - 1].before == 0));
+        assert!([before, beyond].iter().all(|pairs| pairs.iter().any(|p| p.path > 0 && paths[p.path - 1].before > 0)));
     }
 
     #[test]
