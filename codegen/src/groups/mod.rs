@@ -194,6 +194,36 @@ mod tests {
     }
 
     #[test]
+    fn what_stands_behind_a_chain_by_chance_is_no_part_of_its_chunk() {
+        // The longer branch stands behind the back, though the shorter one has the next column.
+        let forked = [("back", "trunk"), ("short", "back"), ("long", "back"), ("longer", "long"), ("longest", "longer")];
+        // The fifth stands behind the first, and has the next column.
+        let legs = ["a", "b", "c", "d", "e"].map(|name| (name, "trunk"));
+        let feet = [("foot_a", "a"), ("foot_c", "c"), ("foot_d", "d"), ("foot_e", "e")];
+        let five = [legs[0], feet[0], legs[1], legs[2], feet[1], legs[3], feet[2], legs[4], feet[3]];
+        // What is left for the third finger is a lane before that of its hand.
+        let hand = [("hand", "trunk"), ("thumb", "hand"), ("tip", "thumb"), ("second", "hand"), ("third", "hand")];
+        let of = |arm: &'static str, one: &'static str, two: &'static str| [(arm, "trunk"), (one, arm), (two, one)];
+        let full = [&of("p", "p1", "p2")[..], &hand, &of("r", "r1", "r2"), &of("s", "s1", "s2")].concat();
+        for joints in [&forked[..], &five, &full] {
+            let model = tree(joints, Base::Floating);
+            let groups = Groups::of(&model).unwrap();
+            let chunks = groups.chunks(&model);
+            for chunk in &chunks {
+                let bodies: Vec<(usize, usize)> =
+                    chunk.bodies.iter().enumerate().filter_map(|(lane, body)| Some((lane, (*body)?))).collect();
+                assert!(bodies.windows(2).all(|w| model.bodies[w[1].1].parent == w[0].1 && w[1].0 == w[0].0 + 1));
+                assert!(bodies.iter().all(|(lane, body)| model.bodies[*body].coordinates.v == chunk.column + lane));
+            }
+            let all = chunks.iter().flat_map(|chunk| chunk.bodies).flatten().count();
+            assert_eq!(all, joints.len());
+            // A chunk comes behind the one that it stands on.
+            let place = |body: usize| chunks.iter().position(|chunk| chunk.bodies.contains(&Some(body)));
+            assert!(chunks.iter().enumerate().all(|(k, chunk)| place(model.bodies[chunk.first()].parent).is_none_or(|on| on < k)));
+        }
+    }
+
+    #[test]
     fn a_path_leads_from_the_chunk_before_to_that_beyond() {
         let fingers = [("thumb", "left_hand"), ("finger", "left_hand"), ("tip", "finger"), ("nail", "tip"), ("other_nail", "tip")];
         let model = tree(&[&WALKER[..], &fingers].concat(), Base::Floating);
