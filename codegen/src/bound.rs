@@ -47,3 +47,63 @@ pub fn in_box(model: &Model<f64>, argument: Argument, index: usize) -> (f64, f64
         _ => (0.0, std::f64::consts::PI),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use articulated_core::description::Base;
+
+    use super::*;
+    use crate::Request;
+    use crate::graph::Op;
+
+    #[test]
+    fn the_box_is_that_of_limits_of_quaternions_and_of_all_angles() {
+        let joint = |name: &str, kind: &str, limit: &str| {
+            format!(
+                "<link name='{name}'/><joint name='{name}' type='{kind}'><parent link='trunk'/><child link='{name}'/><axis xyz='0 0 1'/>{limit}</joint>"
+            )
+        };
+        let limit = "<limit lower='-1' upper='3' effort='1' velocity='1'/>";
+        let mut request = Request::new(
+            "robot",
+            format!("<robot name='robot'><link name='trunk'/>{}{}</robot>", joint("a", "revolute", limit), joint("b", "continuous", "")),
+        );
+        request.options.base = Base::Floating;
+        let mut model = crate::model(&request, &crate::read(&request).unwrap().description).unwrap();
+        for argument in [Argument::Q, Argument::Target] {
+            let found: Vec<(f64, f64)> = (0..9).map(|k| in_box(&model, argument, k)).collect();
+            assert_eq!(found, [[(0.0, 1.0); 7].as_slice(), &[(1.0, 2.0), (0.0, PI)]].concat());
+        }
+        assert_eq!([Argument::V, Argument::SinCos].map(|argument| in_box(&model, argument, 7)), [(0.0, 2.0), (0.0, 1.0)]);
+        // A bound on one side alone is none.
+        model.joints[1].limit.as_mut().unwrap().lower = f64::NEG_INFINITY;
+        assert_eq!(in_box(&model, Argument::Q, 7), (0.0, PI));
+    }
+
+    #[test]
+    fn fewer_digits_have_larger_bounds() {
+        let mut g = Graph::default();
+        let (x, y) = (g.input(0, 0), g.input(0, 1));
+        let sine = g.apply(Op::Sin, &[x]);
+        g.outputs = vec![g.exactly(Op::Mul, &[sine, y])];
+        let of =
+            |arithmetic, sines| bounds(&g, Level { arithmetic, sines, ..Level::default() }, &|_, k| ([0.7, 1.3][k], 0.0)).map(|b| b[0]);
+        let all = [Arithmetic::Double, Arithmetic::SingleByDouble, Arithmetic::Single];
+        for arithmetic in all {
+            let [ulp, ten, seven] = [Sines::Ulp, Sines::Fast10, Sines::Fast7].map(|sines| of(arithmetic, sines).unwrap());
+            // In single precision, a sine to an ulp is no nearer than one of ten digits.
+            let single = arithmetic == Arithmetic::Single;
+            assert!(0.0 < ulp && ulp < seven && (single || ulp < ten) && ten < seven && seven < 1e-5, "{arithmetic:?} {ulp} {ten} {seven}");
+        }
+        let [double, rounded, single] = all.map(|arithmetic| of(arithmetic, Sines::Ulp).unwrap());
+        let exact = of(Arithmetic::DoubleDouble, Sines::Two).unwrap();
+        // Rounded to the nearest double, and to the nearest single: half a unit in the last place.
+        assert!(
+            4e-17 < exact && exact < double && double < 1e-15 && 1e-8 < rounded && rounded < single,
+            "{exact} {double} {rounded} {single}"
+        );
+        assert_eq!(of(Arithmetic::Compensated, Sines::Two), None);
+    }
+}
