@@ -119,6 +119,19 @@ mod tests {
     }
 
     #[test]
+    fn where_one_leg_lacks_a_frame_the_others_stand_for_themselves() {
+        let mut model = walker(4, &mut 7);
+        let third = model.limbs(4)[0].roots[2];
+        model.frames.retain(|frame| frame.body != third);
+        let (alike, wanted) = (Alike::of(&model, 4).unwrap(), Wanted::parse("placements").unwrap());
+        let choice = [Choice { way: ways(&wanted.parts[0], &model)[0].0, passes: usize::MAX, unturned: None }];
+        let [plain, lanes] = [trace(&wanted, &choice, &model, &[]), trace_in_lanes(&wanted, &choice, &model, &alike)];
+        for (a, b) in plain.evaluate(input).into_iter().zip(lanes.evaluate(input)) {
+            assert!((a - b).abs() <= 1e-12 * (1.0 + a.abs()), "{a} {b}");
+        }
+    }
+
+    #[test]
     fn a_sum_over_the_lanes_keeps_the_sign_of_each() {
         let model = walker(4, &mut 7);
         let alike = Alike::of(&model, 4).unwrap();
