@@ -402,8 +402,11 @@ mod tests {
             )
         };
         let urdf = ARM.replace("</robot>", &format!("{}{}</robot>", club("club"), club("other")));
-        let scene =
-            Scene::read("s.toml", "[effects]\ndamping = { elbow = 0.1 }\n[effects.shaft.club_fixed]\nsegments = 2\nstiffness = 3\nmass = 0.2").unwrap();
+        let scene = Scene::read(
+            "s.toml",
+            "[effects]\ndamping = { elbow = 0.1 }\n[effects.shaft.club_fixed]\nsegments = 2\nstiffness = 3\nmass = 0.2",
+        )
+        .unwrap();
         let settled = |more: Option<Shaft>| {
             let mut request = Request::new("arm.urdf", urdf.clone());
             fill(&mut request.options, &scene);

@@ -14,8 +14,9 @@ use crate::program::Columns;
 /// Columns of a vector.
 const LANES: usize = 4;
 
-/// Up to this many vectors are in registers at once: all three matrices if they fit, or one after the other.
-const TOGETHER: usize = 15;
+/// Vectors of a row of one matrix with which all three matrices are solved for at once: with fewer, one after the other is faster (up to a tenth of the whole function), with more, the
+/// vectors of a row are more than there are registers.
+const ALL_AT_ONCE: std::ops::RangeInclusive<usize> = 3..=5;
 
 /// How columns are laid out.
 pub(super) struct Layout<'a> {
@@ -38,7 +39,7 @@ impl<'a> Layout<'a> {
 
     /// Matrices that are solved for at once.
     fn together(&self) -> usize {
-        if 3 * self.vectors() <= TOGETHER { 3 } else { 1 }
+        if ALL_AT_ONCE.contains(&self.vectors()) { 3 } else { 1 }
     }
 
     /// How the tree stands, and the function `columns`.
