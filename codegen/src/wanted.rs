@@ -276,6 +276,32 @@ mod tests {
     }
 
     #[test]
+    fn only_what_stands_as_it_is_in_the_table_is_a_function_of_it() {
+        let is = |text: &str| Wanted::parse(text).unwrap().as_function().is_some();
+        assert!(is("inverse_dynamics") && is(" inverse_dynamics = inverse_dynamics( ) "));
+        assert!(!is("inverse_dynamics(a = 0)") && !is("other = inverse_dynamics"));
+    }
+
+    #[test]
+    fn a_constant_has_as_many_numbers_as_the_argument() {
+        let shape = |n: usize| Shape { nq: n, nv: n, links: 0, frames: 0 };
+        let wanted = Wanted::parse("slow = inverse_dynamics(v = 0, a = [0, 1])").unwrap();
+        assert!(wanted.check(shape(2)).is_ok() && wanted.check(shape(1)).is_err() && wanted.check(shape(3)).is_err());
+    }
+
+    #[test]
+    fn the_type_of_several_results_is_called_as_the_function() {
+        let group = |text: &str| Wanted::parse(text).unwrap().group();
+        assert_eq!(group("one__step_2_ = mass_matrix + placements").as_deref(), Some("OneStep2"));
+        assert_eq!(group("step = mass_matrix"), None);
+    }
+
+    #[test]
+    fn brackets_keep_together_what_is_in_them() {
+        assert_eq!(all_outside("a(b + c) + d[e + (f)] + g", '+'), ["a(b + c) ", " d[e + (f)] ", " g"]);
+    }
+
+    #[test]
     fn what_is_wrong_is_said() {
         for (text, part) in [
             ("mass_matrix + placements", "need a name"),
@@ -293,6 +319,13 @@ mod tests {
             ("mass_matrix = mass_matrix + placements", "arguments or results"),
             ("out = mass_matrix", "generated module"),
             ("x = ", "expected a function"),
+            ("x = mass_matrix + placements + mass_matrix", "twice"),
+            ("inverse_dynamics(v = 0, v = [1])", "given twice"),
+            ("bias_forces(v = inf)", "expected a constant"),
+            ("bias_forces(v = [0, NaN])", "expected a constant"),
+            ("regressor_of_nothing(q = sin_cos)", "unknown function"),
+            ("1st = mass_matrix", "no name"),
+            ("_x = mass_matrix", "no name"),
         ] {
             let error = Wanted::parse(text).err().map(|e| e.to_string()).unwrap_or_default();
             assert!(error.contains(part), "{text}: {error}");
