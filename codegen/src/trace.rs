@@ -154,3 +154,97 @@ pub(crate) fn ways(part: &Part, model: &Model<f64>) -> Vec<(&'static Way<Sym>, u
     ways.sort_by_key(|(_, least)| *least);
     ways
 }
+
+#[cfg(test)]
+mod tests {
+    use articulated_core::algorithm::{Needs, functions};
+    use articulated_core::description::Origin;
+    use articulated_core::effect::{Applied, EffectId};
+
+    use super::*;
+    use crate::Request;
+
+    /// An arm on a track: its last two joints are parallel, and hold a fixed tool.
+    const ARM: &str = "<link name='ground'/>
+        <joint name='track' type='prismatic'><parent link='ground'/><child link='cart'/><axis xyz='1 0 0'/></joint>
+        <joint name='yaw' type='revolute'><parent link='cart'/><child link='upper'/><origin xyz='0.1 0 0.3' rpy='0.2 0 0'/><axis xyz='0 0 1'/></joint>
+        <joint name='pitch' type='revolute'><parent link='upper'/><child link='fore'/><origin xyz='0 0.2 0.3' rpy='0 0 0.4'/><axis xyz='0 1 0'/></joint>
+        <joint name='bend' type='continuous'><parent link='fore'/><child link='hand'/><origin xyz='0.4 0 0.1'/><axis xyz='0 1 0'/></joint>
+        <joint name='grip' type='fixed'><parent link='hand'/><child link='tool'/><origin xyz='0.1 0 0.2' rpy='0.3 0.1 0'/></joint>";
+
+    /// A joint that goes as another does.
+    const FOLLOWER: &str = "<link name='finger'><inertial><origin xyz='0.1 0 0'/><mass value='0.3'/>\
+        <inertia ixx='0.1' ixy='0' ixz='0' iyy='0.1' iyz='0' izz='0.1'/></inertial></link>
+        <joint name='finger' type='revolute'><parent link='hand'/><child link='finger'/><axis xyz='1 0 0'/><mimic joint='yaw' multiplier='-0.5'/></joint>";
+
+    /// With drag on the tool or without.
+    fn arm(more: &str, drag: bool) -> Model<f64> {
+        let link = |name: &str, com: &str| {
+            format!(
+                "<link name='{name}'><inertial><origin xyz='{com}' rpy='0.3 0.1 -0.2'/><mass value='1.5'/>\
+                 <inertia ixx='0.3' ixy='0.01' ixz='0.02' iyy='0.4' iyz='-0.01' izz='0.5'/></inertial></link>"
+            )
+        };
+        let links: String =
+            [("cart", "0 0 0.1"), ("upper", "0.1 0 0.2"), ("fore", "0.2 0.1 0"), ("hand", "0 0.1 0.2"), ("tool", "0.1 0 0")]
+                .map(|(name, com)| link(name, com))
+                .concat();
+        let limited = ARM.replace("type='revolute'>", "type='revolute'><limit effort='1' velocity='1' lower='-1' upper='1'/>");
+        let mut request = Request::new("arm", format!("<robot name='arm'>{links}{limited}{more}</robot>"));
+        let drag = drag.then(|| Applied { effect: EffectId::drag, on: "tool".into(), at: Origin::default(), parameters: vec![0.7] });
+        request.options.effects.extend(drag);
+        crate::model(&request, &crate::read(&request).unwrap().description).unwrap()
+    }
+
+    fn input(argument: usize, k: usize) -> f64 {
+        ((argument * 7919 + k * 104_729 + 13) as f64 * 0.754_877_666_246_692_7).fract() - 0.4
+    }
+
+    fn close(a: &[f64], b: &[f64], what: &str) {
+        assert!(a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-9 * (1.0 + a.abs())), "{what}: {a:?} {b:?}");
+    }
+
+    /// The functions that a model without a free frame has, by themselves.
+    fn all() -> impl Iterator<Item = Wanted> {
+        functions::<Sym>().iter().filter(|f| f.needs != Needs::FreeFrames).map(Wanted::plain)
+    }
+
+    #[test]
+    fn whatever_is_chosen_the_values_are_the_same() {
+        for model in [arm("", false), arm("", true), arm(FOLLOWER, false)] {
+            for wanted in all() {
+                let part = &wanted.parts[0];
+                let all = ways(part, &model);
+                let values = |way, passes, unturned| trace(&wanted, &[Choice { way, passes, unturned }], &model, &[]).evaluate(input);
+                let expected = values(all[0].0, 0, None);
+                let unturned: Vec<Option<Unturned>> = [None].into_iter().chain(unturnable(part, &model).into_iter().map(Some)).collect();
+                for (way, _) in all {
+                    for passes in 1..=model_passes::<Sym>().len() {
+                        close(&values(way, passes, None), &expected, &format!("{} by {}, {passes} passes", wanted.name, way.name));
+                    }
+                    for which in &unturned {
+                        close(&values(way, usize::MAX, *which), &expected, &format!("{} by {}, {which:?}", wanted.name, way.name));
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn sines_that_are_given_are_those_of_q_alone() {
+        let model = arm("", false);
+        let plain = all().filter(|wanted| wanted.arguments().contains(&Argument::Q));
+        for wanted in plain {
+            let given = Wanted::parse(&format!("{}(q = sin_cos)", wanted.name)).unwrap();
+            let choice = [Choice { way: ways(&wanted.parts[0], &model)[0].0, passes: usize::MAX, unturned: None }];
+            let sines = given.arguments().len() - 1;
+            let with = |argument: usize, k: usize| {
+                let (sin, cos) = input(0, k / 2).sin_cos();
+                if argument == sines { [sin, cos][k % 2] } else { input(argument, k) }
+            };
+            assert_eq!(given.arguments()[0], Argument::Q);
+            let graph = trace(&given, &choice, &model, &[]);
+            close(&graph.evaluate(with), &trace(&wanted, &choice, &model, &[]).evaluate(input), &wanted.name);
+        }
+    }
+}

@@ -249,3 +249,41 @@ impl Graph {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_node_before_what_it_needs_and_a_result_that_is_not_there_are_found() {
+        let mut graph = Graph::default();
+        let x = graph.input(0, 0);
+        graph.outputs = vec![graph.apply(Op::Sin, &[x])];
+        assert_eq!(graph.verify(), Ok(()));
+        for late in [1, 2] {
+            let mut wrong = graph.clone();
+            wrong.nodes[1].args[0] = late;
+            assert!(wrong.verify().is_err(), "node 1 of node {late}");
+        }
+        graph.outputs.push(NodeId(2));
+        assert!(graph.verify().is_err());
+    }
+
+    #[test]
+    fn inputs_and_constants_of_lanes_are_one_only_where_all_lanes_are() {
+        for width in [2, 4] {
+            let mut graph = Graph::in_lanes(width);
+            let indices = [[3, 5, 7, 9], [3, 5, 7, 8], [3, 4, 7, 9], [5, 3, 7, 9]];
+            graph.outputs = indices.iter().map(|i| graph.lane_input(1, &i[..width])).collect();
+            // Two lanes of the first and of the second are the same.
+            assert_eq!(graph.outputs[0] == graph.outputs[1], width == 2);
+            let lanes = graph.outputs.clone();
+            for lane in 0..width {
+                let lane_of_all = graph.constant(lane as f64);
+                graph.outputs = lanes.iter().map(|&id| graph.exactly(Op::Spread, &[id, lane_of_all])).collect();
+                let expected: Vec<f64> = indices.iter().map(|i| i[lane] as f64).collect();
+                assert_eq!(graph.evaluate(|argument, k| if argument == 1 { k as f64 } else { f64::NAN }), expected);
+            }
+        }
+    }
+}
