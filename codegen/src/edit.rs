@@ -195,3 +195,94 @@ fn renamed(unused: Unused, prefix: &str) -> Unused {
     };
     Unused { subject, ..unused }
 }
+
+#[cfg(test)]
+mod tests {
+    use articulated_core::description::{Origin, Payload};
+
+    use super::*;
+
+    /// As no body is, which is a warning.
+    const LINK: &str = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='3'/></inertial>";
+
+    /// A link that turns on another, between these bounds, with a colour that nobody uses; its axis is nearly that of z.
+    fn robot(name: &str) -> String {
+        format!(
+            "<robot name='{name}'><link name='base'>{LINK}</link><link name='tip'>{LINK}<visual/></link>
+            <joint name='hinge' type='revolute'><parent link='base'/><child link='tip'/><origin rpy='1.5707963 0 0'/><axis xyz='0 0 2'/>
+            <limit lower='-1' upper='2' effort='1' velocity='1'/><calibration rising='0'/></joint></robot>"
+        )
+    }
+
+    fn request() -> Request {
+        let mut request = Request::new("arm.urdf", robot("arm"));
+        request.options.snap_angles = Some(1e-6);
+        request
+    }
+
+    fn appended(at: &str) -> Appended {
+        Appended {
+            urdf: robot("hand").into_bytes(),
+            file: "hand.urdf".into(),
+            at: at.into(),
+            prefix: "left_".into(),
+            origin: Origin::default(),
+        }
+    }
+
+    fn refused(request: &Request) -> Vec<Edit> {
+        match read(request) {
+            Err(Error::Edits { refusals }) => refusals.into_iter().map(|r| r.edit).collect(),
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn what_is_said_of_an_appended_robot_is_said_of_the_whole() {
+        let alone = read(&request()).unwrap();
+        let mut request = request();
+        request.options.append.push(appended("tip"));
+        let both = read(&request).unwrap();
+        let hand = |problems: &[Problem]| problems.iter().filter(|p| p.file == "hand.urdf").count();
+        assert_eq!((hand(&both.snapped), both.snapped.len()), (alone.snapped.len(), 2 * alone.snapped.len()));
+        assert_eq!(both.warnings.len() - hand(&both.warnings), alone.warnings.len());
+        // The mass of its root moves; that of a fixed base does nothing, which is a warning.
+        assert!(hand(&both.warnings) > 0 && hand(&both.warnings) < alone.warnings.len(), "{:?}", both.warnings);
+        let subjects: Vec<&Subject> = both.unused.iter().map(|u| &u.subject).collect();
+        for subject in [Subject::Link("tip".into()), Subject::Link("left_tip".into()), Subject::Joint("left_hinge".into())] {
+            assert!(subjects.contains(&&subject), "{subjects:?}");
+        }
+    }
+
+    #[test]
+    fn a_lock_is_told_of_where_it_is_beyond_a_bound() {
+        for (at, beyond) in [(-1.5, true), (-1.0, false), (0.0, false), (2.0, false), (2.5, true)] {
+            let mut request = request();
+            request.options.lock.push(("hinge".into(), vec![at]));
+            let warnings = read(&request).unwrap().warnings;
+            assert_eq!(warnings.iter().any(|w| w.kind == Kind::BeyondLimit), beyond, "{at}");
+        }
+    }
+
+    #[test]
+    fn each_frame_is_listed_once_and_is_a_link() {
+        let mut request = request();
+        request.options.frames = Some(["tip", "base", "tap", "tip"].map(String::from).to_vec());
+        assert_eq!(refused(&request), [Edit::Frame(2), Edit::Frame(3)]);
+    }
+
+    #[test]
+    fn where_a_robot_cannot_be_appended_its_names_are_not_unknown() {
+        let mut request = request();
+        request.options.append.push(appended("top"));
+        request.options.payloads.push(Payload { link: "left_tip".into(), mass: 1.0, ..Payload::default() });
+        request.options.payloads.push(Payload { link: "tip".into(), mass: -1.0, ..Payload::default() });
+        request.options.lock.push(("left_hinge".into(), vec![0.0]));
+        request.options.frames = Some(vec!["left_tip".into()]);
+        assert_eq!(refused(&request), [Edit::Append(0), Edit::Payload(1)]);
+        request.options.append[0].at = "tip".into();
+        assert_eq!(refused(&request), [Edit::Payload(1)]);
+        request.options.append.clear();
+        assert_eq!(refused(&request), [Edit::Payload(0), Edit::Payload(1), Edit::Lock(0), Edit::Frame(0)]);
+    }
+}

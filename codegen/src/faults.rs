@@ -97,3 +97,71 @@ fn retain<T>(list: &mut Vec<T>, keep: impl Fn(usize) -> bool) {
     let mut index = 0..;
     list.retain(|_| index.next().is_some_and(&keep));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generate;
+
+    const ARM: &str = "<robot name='arm'><link name='base'/><link name='tip-1'><inertial><mass value='1'/>\
+        <inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link><link name='tip 1'/><link name='tip.1'/>\
+        <joint name='hinge' type='continuous'><parent link='base'/><child link='tip-1'/></joint>\
+        <joint name='one' type='fixed'><parent link='base'/><child link='tip 1'/></joint>\
+        <joint name='two' type='fixed'><parent link='base'/><child link='tip.1'/></joint></robot>";
+
+    fn told(change: impl Fn(&mut Options)) -> String {
+        let mut request = Request::new("arm.urdf", ARM);
+        request.options.rename = [("tip-1", "A"), ("tip 1", "B"), ("tip.1", "C")].map(|(from, to)| (from.into(), to.into())).to_vec();
+        change(&mut request.options);
+        generate(&request).map(|_| String::new()).unwrap_or_else(|e| e.to_string())
+    }
+
+    fn each_once(told: &str, words: &[&str]) {
+        assert!(words.iter().all(|word| told.lines().filter(|line| line.contains(word)).count() == 1), "{told}");
+        assert_eq!(told.lines().count(), words.len(), "{told}");
+    }
+
+    #[test]
+    fn every_function_that_cannot_be_is_told_once() {
+        let list = [
+            "mass_matrix",
+            "no_such",
+            "other = inverse_dynamics(b = 0)",
+            "x = no_such_2 + mass_matrix",
+            "placements",
+            "mass_matrix = placements",
+        ];
+        let told = told(|o| o.functions = list.map(String::from).to_vec());
+        each_once(&told, &["function `no_such`", "b = 0", "function `no_such_2`", "`mass_matrix`"]);
+    }
+
+    #[test]
+    fn a_function_is_mentioned_by_whole_words() {
+        assert!(mentions(" mass_matrix ", "mass_matrix") && mentions("x = a + mass_matrix(q = 0)", "mass_matrix"));
+        assert!(!mentions("mass_matrix_inverse", "mass_matrix") && !mentions("x = my_mass_matrix(q = 0)", "mass_matrix"));
+    }
+
+    #[test]
+    fn every_name_that_two_have_is_told_and_every_renaming_that_cannot_be() {
+        let told_of =
+            |rename: &[(&str, &str)]| told(|o| o.rename = rename.iter().map(|(from, to)| ((*from).into(), (*to).into())).collect());
+        assert_eq!(told_of(&[("tip 1", "B"), ("tip.1", "C")]), "");
+        each_once(&told_of(&[]), &["\"tip 1\"", "\"tip.1\""]);
+        each_once(&told_of(&[("tip 1", "B"), ("tip.1", "B"), ("nobody", "C"), ("hinge", "fn")]), &["nobody", "\"hinge\"", "`B`"]);
+    }
+
+    #[test]
+    fn every_parameter_and_every_edit_that_cannot_be_is_told_once() {
+        each_once(
+            &told(|o| o.parameters = [" payload(x)", "origin(hinge)", "inertia(y) "].map(String::from).to_vec()),
+            &["\"x\"", "\"y\""],
+        );
+        let edits = told(|o| {
+            o.lock = [("a", 0.0), ("hinge", 0.0), ("b", 0.0)].map(|(name, at)| (name.to_owned(), vec![at])).to_vec();
+            o.frames = Some(["tip-1", "c", "tip-1"].map(String::from).to_vec());
+            o.functions = vec!["no_such".into()];
+            o.rename.clear();
+        });
+        each_once(&edits, &["\"a\"", "\"b\"", "\"c\"", "listed twice", "no_such"]);
+    }
+}
