@@ -85,8 +85,36 @@ mod tests {
     }
 
     #[test]
+    fn a_file_that_somebody_wrote_to_is_not_as_it_was_written() {
+        let folder = std::env::temp_dir().join(format!("articulated-stamp-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let output = folder.join("arm.rs");
+        let write = |text: &str, seconds: u64| {
+            fs::write(&output, text).unwrap();
+            let file = fs::File::options().append(true).open(&output).unwrap();
+            file.set_modified(UNIX_EPOCH + std::time::Duration::from_secs(seconds)).unwrap();
+        };
+        write("one", 1000);
+        let cache = Cache::of(&output, &request(), "g");
+        assert_eq!(cache.warnings(), None);
+        let warnings = ["odd".to_owned(), "odder".to_owned()];
+        cache.remember(&warnings);
+        assert_eq!(cache.warnings(), Some(warnings.to_vec()));
+        // As long, but later; and as late, but longer.
+        write("two", 1001);
+        assert_eq!(cache.warnings(), None);
+        write("three", 1000);
+        assert_eq!(cache.warnings(), None);
+        write("one", 1000);
+        assert!(cache.warnings().is_some() && Cache::of(&output, &request(), "h").warnings().is_none());
+        cache.forget();
+        assert_eq!(cache.warnings(), None);
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
     fn whatever_changes_the_output_changes_the_key() {
-        let changes: [fn(&mut Request); 9] = [
+        let changes: [fn(&mut Request); 10] = [
             |r| r.urdf.push(b' '),
             |r| r.file.push('2'),
             |r| r.options.base = Base::Floating,
@@ -95,6 +123,7 @@ mod tests {
             |r| r.options.payloads.push(Payload { link: "tool".into(), mass: 1.0, ..Payload::default() }),
             |r| r.options.lock.push(("elbow".into(), vec![0.1])),
             |r| r.options.append[1].urdf.push(b'd'),
+            |r| r.options.append[1].urdf[0] = b'd',
             |r| {
                 // The same bytes, divided in another way.
                 let moved = r.options.append[0].urdf.pop().unwrap();

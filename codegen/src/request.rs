@@ -128,3 +128,20 @@ impl Request {
         Cow::Owned(request)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn without_std_there_is_nothing_that_needs_it_and_all_else_stays() {
+        let mut request = Request::new("robot", "");
+        request.options.runtime = Some("::articulated".into());
+        assert_eq!(request.settled().options, request.options);
+        request.options.no_std = true;
+        let mut expected = request.options.clone();
+        (expected.forbid_unsafe, expected.level.fused, expected.runtime) = (true, false, None);
+        assert!(request.options.level.fused);
+        assert_eq!(request.settled().options, expected);
+    }
+}
