@@ -36,7 +36,7 @@ pub(super) fn bare(operand: &str) -> &str {
 
 #[cfg(test)]
 mod tests {
-    use super::{literal, single};
+    use super::{bare, literal, operand, single};
 
     #[test]
     fn literals_are_read_back_to_the_bit() {
@@ -45,6 +45,14 @@ mod tests {
             assert!(literal(x).contains(['.', 'e']), "{} would be an integer", literal(x));
         }
         // Code that overflows is code.
+        assert_eq!([f64::INFINITY, f64::NEG_INFINITY].map(literal), ["f64::INFINITY", "f64::NEG_INFINITY"]);
         assert_eq!([literal(f64::NAN), single(f64::NAN), single(-1e40)], ["f64::NAN", "f32::NAN", "f32::NEG_INFINITY"]);
+    }
+
+    #[test]
+    fn a_sign_belongs_to_its_number() {
+        // `-2.0.sqrt()` is −√2.
+        assert_eq!([operand(-2.0), single(-2.0), operand(2.0), single(0.1)], ["(-2.0)", "(-2.0)", "2.0", "0.1"]);
+        assert_eq!([bare("(-2.0)"), bare("2.0"), bare("(a) + b")], ["-2.0", "2.0", "(a) + b"]);
     }
 }

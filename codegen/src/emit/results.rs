@@ -34,3 +34,18 @@ pub(super) fn nested(values: &[String], lengths: &[usize]) -> String {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_stand_row_by_row() {
+        let values: Vec<String> = (0..24).map(|k| k.to_string()).collect();
+        let text: String = nested(&values, &[2, 3, 4]).split_whitespace().collect();
+        assert_eq!(text, "[[[0,1,2,3],[4,5,6,7],[8,9,10,11]],[[12,13,14,15],[16,17,18,19],[20,21,22,23]]]");
+        assert_eq!([index(0, &[2, 3, 4]), index(17, &[2, 3, 4]), index(7, &[8]), index(0, &[])], ["[0][0][0]", "[1][1][1]", "[7]", ""]);
+        assert_eq!(zeros(&[2, 3]), "[[0.0; 3]; 2]");
+        assert_eq!(nested(&values, &[]), "0");
+    }
+}
