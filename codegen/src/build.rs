@@ -292,6 +292,37 @@ mod tests {
     }
 
     #[test]
+    fn each_choice_arrives_in_the_request() {
+        let folder = folder("choices");
+        let hand = folder.join("hand.urdf");
+        fs::write(&hand, ARM.replace("mass value=\"1\"", "mass value=\"3\"")).unwrap();
+        let build = Build::new(folder.join("arm.urdf"));
+        let of = |build: Build| build.request().unwrap().options;
+        let plain = of(build.clone());
+        let mut expected = plain.clone();
+        assert_eq!(plain.runtime.as_deref(), Some("::articulated"));
+        (expected.runtime, expected.limbs, expected.forbid_unsafe, expected.no_std) = (None, false, true, true);
+        assert_eq!(of(build.clone().standalone().each_limb_alone().forbid_unsafe().no_std()), expected);
+        let both = of(build.clone().append(&hand, "tip", "left_", Origin::default()));
+        assert_eq!(both.append[0].urdf, fs::read(&hand).unwrap());
+        assert_eq!((both.append[0].at.as_str(), both.append[0].prefix.as_str()), ("tip", "left_"));
+        assert!(build.append(folder.join("none.urdf"), "tip", "left_", Origin::default()).request().is_err());
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn a_scene_without_a_robot_asks_for_one() {
+        let folder = folder("no-robot");
+        let scene = folder.join("still.toml");
+        fs::write(&scene, "gravity = [0, 0, 0]").unwrap();
+        let build = Build::scene(&scene);
+        let error = build.request().unwrap_err().to_string();
+        assert!(error.contains("Build::urdf"), "{error}");
+        assert_eq!(build.urdf(folder.join("arm.urdf")).request().unwrap().options.gravity, [0.0; 3]);
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
     fn an_unchanged_request_generates_nothing_and_warns_all_the_same() {
         let folder = folder("cache");
         let build = Build::new(folder.join("arm.urdf")).functions(["gravity_torque"]);

@@ -164,4 +164,25 @@ mod tests {
         });
         each_once(&edits, &["\"a\"", "\"b\"", "\"c\"", "listed twice", "no_such"]);
     }
+
+    #[test]
+    fn every_effect_that_cannot_be_is_told_once_and_without_a_robot_nothing_that_needs_it() {
+        let damping = |on: &str| crate::Applied {
+            effect: articulated_core::effect::EffectId::damping,
+            on: on.into(),
+            at: crate::Origin::default(),
+            parameters: vec![0.1],
+        };
+        let effects = told(|o| {
+            o.effects = ["hinge", "a", "hinge", "b"].map(damping).to_vec();
+            o.functions = vec!["no_such".into()];
+        });
+        each_once(&effects, &["\"a\"", "given twice", "\"b\"", "`no_such`"]);
+        let appended = told(|o| {
+            let urdf = ARM.replace("'tip", "'top").into_bytes();
+            o.append.push(crate::Appended { urdf, file: "hand.urdf".into(), at: "nowhere".into(), ..Default::default() });
+            o.payloads.push(crate::Payload { link: "tip-1".into(), mass: -1.0, ..Default::default() });
+        });
+        each_once(&appended, &["append: ", "payload: "]);
+    }
 }

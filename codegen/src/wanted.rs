@@ -320,6 +320,7 @@ mod tests {
             ("out = mass_matrix", "generated module"),
             ("x = ", "expected a function"),
             ("x = mass_matrix + placements + mass_matrix", "twice"),
+            ("x = placements + mass_matrix + mass_matrix", "twice"),
             ("inverse_dynamics(v = 0, v = [1])", "given twice"),
             ("bias_forces(v = inf)", "expected a constant"),
             ("bias_forces(v = [0, NaN])", "expected a constant"),

@@ -68,3 +68,27 @@ fn table(out: &mut String, name: &str, what: &str, rows: &[Vec<usize>]) {
     let rows: Vec<String> = rows.iter().map(|row| format!("&{row:?}")).collect();
     let _ = writeln!(out, "/// {what}\nconst {name}: [&[u16]; NV] = [\n    {},\n];", rows.join(",\n    "));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_row_has_its_columns_and_each_column_its_rows() {
+        // A fork: two ways of different lengths to one base.
+        let columns = Columns { ways: vec![vec![], vec![0], vec![1, 0], vec![0], vec![3, 0]] };
+        let mut out = String::new();
+        Layout::of(&columns).module(&mut out);
+        let table = |name: &str| -> String {
+            let (_, rest) = out.split_once(&format!("const {name}: [&[u16]; NV] = [")).unwrap();
+            rest.split_once("];").unwrap().0.split_whitespace().collect()
+        };
+        assert_eq!(table("BEFORE"), "&[],&[0],&[1,0],&[0],&[3,0],");
+        assert_eq!(table("BEYOND"), "&[1,2,3,4],&[2],&[],&[4],&[],");
+        assert!(out.contains("const VECTORS: usize = 2;") && out.contains("const TOGETHER: usize = 3;"));
+        // In registers up to five vectors of each of three matrices.
+        for (n, together) in [(20, 3), (21, 1)] {
+            assert_eq!(Layout::of(&Columns { ways: vec![vec![]; n] }).together(), together, "{n}");
+        }
+    }
+}

@@ -115,6 +115,25 @@ mod tests {
     }
 
     #[test]
+    fn names_are_those_asked_for_and_no_two_are_one() {
+        let urdf = "<robot name='arm'><link name='base'/><link name='tip-1'/><link name='tip 1'/>\
+            <joint name='base' type='continuous'><parent link='base'/><child link='tip-1'/></joint>\
+            <joint name='fixed' type='fixed'><parent link='base'/><child link='tip 1'/></joint></robot>";
+        let mut request = Request::new("arm.urdf", urdf);
+        let model = crate::model(&request, &crate::read(&request).unwrap().description).unwrap();
+        let clash = Names::new(&model, &request);
+        assert!(matches!(&clash, Err(Error::NameClash { kind: "link", ident, .. }) if ident == "TIP_1"), "{clash:?}");
+        for (from, to, fits) in [("tip 1", "other", true), ("tip 1", "BASE", false), ("fixed", "OTHER", false), ("tip 1", "fn", false)] {
+            request.options.rename = vec![(from.into(), to.into())];
+            assert_eq!(Names::new(&model, &request).is_ok(), fits, "{from} {to}");
+        }
+        // A joint and a link may have one name.
+        request.options.rename = vec![("tip 1".into(), "other".into())];
+        let names = Names::new(&model, &request).unwrap();
+        assert_eq!((names.joints.concat(), names.frames.join(" ")), ("BASE".into(), "BASE TIP_1 other".into()));
+    }
+
+    #[test]
     fn a_word_that_rust_keeps_for_itself_is_no_name() {
         for word in ["type", "self", "Self", "crate", "_", "a-b", "a b", "", "1"] {
             assert!(!is_name(word), "{word}");

@@ -137,3 +137,74 @@ impl Vector<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use articulated_core::algorithm::Shape;
+
+    use super::*;
+    use crate::graph::NodeId;
+    use crate::wanted::Wanted;
+
+    fn with<T>(graph: &Graph, work: impl FnOnce(&Vector) -> T) -> T {
+        let wanted = Wanted::parse("inverse_dynamics").unwrap();
+        let signature = Signature::of(&wanted, Shape { nq: 15, nv: 15, frames: 0, links: 0 }, false);
+        work(&Vector { graph, signature: &signature })
+    }
+
+    /// All lanes of a node, in turn.
+    fn lanes_of(graph: &mut Graph, id: NodeId) -> [NodeId; 4] {
+        std::array::from_fn(|k| {
+            let lane = graph.constant(k as f64);
+            graph.exactly(Op::Spread, &[id, lane])
+        })
+    }
+
+    #[test]
+    fn three_vectors_are_read_together_where_their_lanes_lie_one_behind_the_other() {
+        let all = |starts: [usize; 4]| {
+            let mut graph = Graph::in_lanes(4);
+            let x: Vec<NodeId> = (0..3).map(|n| graph.lane_input(0, &starts.map(|k| k + n))).collect();
+            (with(&graph, |v| v.thirds().into_iter().map(|three| (three.nodes, three.statement)).collect::<Vec<_>>()), x)
+        };
+        let (thirds, x) = all([2, 5, 8, 11]);
+        let numbers: Vec<String> = (2..14).map(|k| format!("q[{k}]")).collect();
+        let names = x.iter().map(|id| format!("x{}", id.0)).collect::<Vec<_>>().join(", ");
+        assert_eq!(thirds.len(), 1);
+        assert_eq!(thirds[0].0.to_vec(), x.iter().map(|id| id.index()).collect::<Vec<_>>());
+        assert_eq!(thirds[0].1, format!("    let [{names}] = every_third(&[{}]);\n", numbers.join(", ")));
+        for starts in [[2, 6, 9, 12], [2, 5, 9, 12], [2, 5, 8, 12], [11, 8, 5, 2]] {
+            assert_eq!(all(starts).0, [], "{starts:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_made_before_and_every_number_is_its_own() {
+        let mut graph = Graph::in_lanes(4);
+        let x = graph.lane_input(0, &[0, 3, 6, 9]);
+        let y = graph.lane_input(0, &[1, 4, 7, 10]);
+        let sine = graph.apply(Op::Sin, &[x]);
+        let sum = graph.apply(Op::Add, &[sine, y]);
+        let product = graph.apply(Op::Mul, &[sum, y]);
+        let numbers = graph.lane_constant([2.0, 2.0, 2.0, -3.0]);
+        // Pairs of each lane, one of them made late; constants beside; one alone.
+        let (early, late, given) = (lanes_of(&mut graph, sine), lanes_of(&mut graph, product), lanes_of(&mut graph, numbers));
+        let mut outputs: Vec<NodeId> = (0..4).flat_map(|k| [early[k], late[k], given[k]]).collect();
+        outputs.extend([graph.constant(0.5), late[2], graph.constant(0.0), graph.constant(0.0)]);
+        graph.outputs = outputs;
+        let cells: Vec<Cell> = graph.outputs.iter().map(|&o| Cell::of(&graph, o)).collect();
+        let all: Vec<(String, Group)> = groups(&cells).into_iter().map(|group| ("out".into(), group)).collect();
+        let text = with(&graph, |v| Writer::of(v, &all).statements());
+        let mut named: Vec<&str> = Vec::new();
+        for line in text.lines() {
+            let (left, right) = line.split_once(" = ").unwrap_or(("", line));
+            let words = right.split(|c: char| !c.is_ascii_alphanumeric()).filter(|w| w.starts_with('x') && w.len() > 1);
+            words.for_each(|word| assert!(named.contains(&word), "{line} in\n{text}"));
+            named.extend(left.split(|c: char| !c.is_ascii_alphanumeric()).filter(|w| w.starts_with('x')));
+        }
+        for group in ["lanes([2.0, 2.0, 2.0, -3.0])", "put_one(0.5, out, 12);", "out[14..16].fill(::core::mem::MaybeUninit::new(0.0));"] {
+            assert!(text.contains(group), "{group} in\n{text}");
+        }
+        assert_eq!(text.matches("put").count() + text.matches("fill").count(), all.len(), "{text}");
+    }
+}
