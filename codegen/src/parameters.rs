@@ -203,5 +203,12 @@ mod tests {
         let model = crate::model(&request, &description).unwrap();
         let list = ["payload(tool)", "payload(\"tool\")"].map(String::from);
         assert!(matches!(parse(&list, &mut description, &model), Err(Error::Parameter { .. })));
+        // Constants of Rust have one case.
+        let mut request = request;
+        request.urdf = String::from_utf8(request.urdf).unwrap().replace("'rail'", "'TOOL'").into_bytes();
+        let mut description = crate::read(&request).unwrap().description;
+        let model = crate::model(&request, &description).unwrap();
+        let mut refused = |list: [&str; 2]| parse(&list.map(String::from), &mut description, &model).is_err();
+        assert!(refused(["payload(tool)", "payload(TOOL)"]) && !refused(["payload(tool)", "inertia(TOOL)"]));
     }
 }

@@ -396,7 +396,8 @@ mod tests {
 
     impl Dialect for Text<'_> {
         fn statement(&self, k: usize, node: &Node) -> Option<String> {
-            let operands: Vec<String> = node.operands().map(|o| self.number(o)).collect();
+            let name = |id: NodeId| self.0.node(id).constant().map_or_else(|| format!("x{}", id.0), |x| format!("{x:?}"));
+            let operands: Vec<String> = node.operands().map(name).collect();
             (node.op != Op::Constant).then(|| format!("    let x{k} = {};\n", operands.join(" ")))
         }
 
@@ -409,7 +410,10 @@ mod tests {
         }
 
         fn number(&self, id: NodeId) -> String {
-            self.0.node(id).constant().map_or_else(|| format!("x{}", id.0), |x| format!("{x:?}"))
+            let node = self.0.node(id);
+            // A lane of a vector is taken where it is a result.
+            let from = if node.op == Op::Spread { node.args[0] } else { id.0 };
+            node.constant().map_or_else(|| format!("x{from}"), |x| format!("{x:?}"))
         }
 
         fn value(&self) -> (&'static str, &'static str) {
@@ -461,5 +465,22 @@ mod tests {
         let mut constant = Graph::default();
         constant.outputs = vec![constant.constant(1.0); 7];
         assert_eq!(written(&constant, &zeros, 10), expected);
+    }
+
+    #[test]
+    fn a_lane_that_is_a_result_is_taken_where_its_vector_is_known() {
+        let mut graph = Graph::in_lanes(4);
+        let x = graph.lane_input(0, &[0, 1, 2, 3]);
+        let y = graph.apply(Op::Mul, &[x, x]);
+        let [first, third] = [0.0, 2.0].map(|lane| graph.constant(lane));
+        let [of_y, of_x, inner] = [(y, first), (x, first), (y, third)].map(|(of, lane)| graph.exactly(Op::Spread, &[of, lane]));
+        let sum = graph.apply(Op::Add, &[inner, y]);
+        let product = graph.apply(Op::Mul, &[sum, x]);
+        let lane = graph.exactly(Op::Spread, &[product, third]);
+        graph.outputs = vec![of_y, of_x, inner, product, lane, of_y];
+        let expected: Vec<String> = (0..6).map(|k| format!("out[{k}]")).collect();
+        for length in [1, 2, usize::MAX] {
+            assert_eq!(written(&graph, &[], length), expected, "pieces of {length}");
+        }
     }
 }

@@ -120,3 +120,40 @@ impl Vector<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use articulated_core::algorithm::Shape;
+
+    use super::*;
+    use crate::wanted::Wanted;
+
+    #[test]
+    fn each_lane_has_its_number() {
+        let wanted = Wanted::parse("fast = inverse_dynamics(q = sin_cos)").unwrap();
+        let signature = Signature::of(&wanted, Shape { nq: 9, nv: 9, frames: 0, links: 0 }, false);
+        for (width, indices, numbers, of_two) in [
+            (2, &[7, 4][..], "v[7], v[4]", "sines[3][1], sines[2][0]"),
+            (4, &[7, 4, 0, 8], "v[7], v[4], v[0], v[8]", "sines[3][1], sines[2][0], sines[0][0], sines[4][0]"),
+        ] {
+            let mut graph = Graph::in_lanes(width);
+            let [v, sines] = [1, 3].map(|argument| graph.lane_input(argument, indices));
+            let constant = graph.lane_constant(std::array::from_fn(|k| k as f64 - 0.5));
+            let lane = graph.constant(1.0);
+            let [of_v, of_constant] = [v, constant].map(|id| graph.exactly(Op::Spread, &[id, lane]));
+            let product = graph.exactly(Op::MulSub, &[of_v, v, constant]);
+            let vector = Vector { graph: &graph, signature: &signature };
+            let statement = |id: NodeId| vector.statement(id.index(), &graph.node(id));
+            assert_eq!(statement(v), Some(format!("    let x{} = lanes([{numbers}]);\n", v.0)));
+            assert_eq!(statement(sines), Some(format!("    let x{} = lanes([{of_two}]);\n", sines.0)));
+            assert_eq!((statement(constant), statement(lane)), (None, None));
+            let constants = ["-0.5", "0.5", "1.5", "2.5"][..width].join(", ");
+            assert_eq!(statement(of_v), Some(format!("    let x{} = k(lane::<1>(x{}));\n", of_v.0, v.0)));
+            assert_eq!(vector.number(of_constant), format!("lane::<1>(lanes([{constants}]))"));
+            let operands: Vec<String> = graph.node(product).operands().map(|id| vector.operand(id)).collect();
+            assert_eq!(statement(product), Some(format!("    let x{} = fmsub({});\n", product.0, operands.join(", "))));
+            assert_eq!(operands[2], format!("lanes([{constants}])"));
+            assert_eq!([v, lane].map(|id| vector.number(id)), [format!("lane::<0>(x{})", v.0), "1.0".into()]);
+        }
+    }
+}
