@@ -287,3 +287,65 @@ fn put(out: &mut String, name: &str, values: &[String], lengths: &[usize]) {
         let _ = writeln!(out, "    {name}{} = {};", super::results::index(k, lengths), super::literal::bare(value));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SHAPE: Shape = Shape { nq: 9, nv: 9, frames: 0, links: 0 };
+
+    /// The end of a body that gives these values.
+    fn end(text: &str, place: Place, values: &[String]) -> String {
+        let wanted = Wanted::parse(text).unwrap();
+        let (mut signature, mut out) = (Signature::of(&wanted, SHAPE, false), String::new());
+        signature.place = place;
+        signature.result(&mut out, values);
+        out
+    }
+
+    /// Zeros but for one in so many.
+    fn sparse(n: usize, every: usize) -> Vec<String> {
+        (0..n).map(|k| if k % every == 1 { format!("x{k}") } else { ZERO.to_owned() }).collect()
+    }
+
+    #[test]
+    fn of_a_result_of_zeros_what_is_none_is_put_in_its_place() {
+        let values = sparse(81, 10);
+        let puts: String = (0..81).filter(|k| values[*k] != ZERO).map(|k| format!("    NAME[{}][{}] = x{k};\n", k / 9, k % 9)).collect();
+        let zeros = "[[0.0; 9]; 9]";
+        let into = end("mass_matrix", Place::Written, &values);
+        assert_eq!(into, format!("    let out = out.write({zeros});\n{}", puts.replace("NAME", "out")));
+        let value = end("mass_matrix", Place::Value, &values);
+        let puts = puts.replace("NAME", "mass_matrix");
+        assert_eq!(value, format!("    let mut mass_matrix = {zeros};\n{puts}    mass_matrix\n"));
+        let both = end("both = mass_matrix + gravity_torque", Place::Written, &[values, sparse(9, 2)].concat());
+        let torque = "[0.0, x1, 0.0, x3, 0.0, x5, 0.0, x7, 0.0]";
+        let fields = format!("        mass_matrix: mass_matrix,\n        gravity_torque: {torque},\n");
+        assert_eq!(both, format!("    let mut mass_matrix = {zeros};\n{puts}    out.write(Both {{\n{fields}    }});\n"));
+        // A number that is assigned needs no brackets.
+        let negative = [&["(-2.0)".to_owned()], &vec![ZERO.to_owned(); 80][..]].concat();
+        let into = end("mass_matrix", Place::Written, &negative);
+        assert_eq!(into, format!("    let out = out.write({zeros});\n    out[0][0] = -2.0;\n"));
+        // Nothing is put where all is zero.
+        let none = end("mass_matrix", Place::Written, &vec![ZERO.to_owned(); 81]);
+        assert_eq!(none, format!("    let mass_matrix = {zeros};\n    out.write(mass_matrix);\n"));
+    }
+
+    #[test]
+    fn each_number_has_its_place_whatever_it_is_part_of() {
+        let of = |text: &str| {
+            let wanted = Wanted::parse(text).unwrap();
+            let signature = Signature::of(&wanted, Shape { nq: 2, nv: 2, ..SHAPE }, false);
+            (signature.places(), signature.flattened().map(|flat| (flat.numbers, flat.nests)), signature.nothing())
+        };
+        let strings = |places: &[&str]| places.iter().map(|place| (*place).to_owned()).collect::<Vec<_>>();
+        let matrix = ["out[0][0]", "out[0][1]", "out[1][0]", "out[1][1]"];
+        assert_eq!(of("mass_matrix"), (strings(&matrix), Some((4, 1)), "[[0.0; 2]; 2]".into()));
+        assert_eq!(of("gravity_torque"), (strings(&["out[0]", "out[1]"]), None, "[0.0; 2]".into()));
+        assert_eq!(of("kinetic_energy"), (strings(&["*out"]), None, "0.0".into()));
+        let both = of("both = kinetic_energy + gravity_torque");
+        let places = strings(&["out.kinetic_energy", "out.gravity_torque[0]", "out.gravity_torque[1]"]);
+        assert_eq!(both, (places, None, "Both { kinetic_energy: 0.0, gravity_torque: [0.0; 2] }".into()));
+        assert_eq!(of("both = mass_matrix + kinetic_energy").1, None);
+    }
+}

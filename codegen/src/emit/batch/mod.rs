@@ -200,3 +200,30 @@ impl<'a> Batch<'a> {
         self.results().iter().flat_map(|a| (0..a.numbers).map(|k| format!("{}[{k}]", a.name)).collect::<Vec<_>>()).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Request, generate};
+
+    #[test]
+    fn parameters_are_the_same_for_all_states() {
+        let urdf = "<robot name='arm'><link name='base'/><link name='tip'/>\
+            <joint name='hinge' type='continuous'><parent link='base'/><child link='tip'/><axis xyz='0 1 0'/></joint></robot>";
+        let mut request = Request::new("arm.urdf", urdf);
+        request.options.functions = vec!["gravity_torque".into()];
+        request.options.parameters = vec!["payload(tip)".into()];
+        request.options.batch = vec![Real::F64];
+        let source = generate(&request).unwrap().source;
+        let (_, batch) = source.split_once("macro_rules! gravity_torque_in_batch").unwrap();
+        assert!(
+            batch.contains("= at(&q[0], part);") && batch.contains("= k(parameters[1]);") && !batch.contains("at(&parameters"),
+            "{batch}"
+        );
+        assert!(batch.contains("gravity_torque_block(&q_block, parameters, &mut out_block, );"), "{batch}");
+        assert!(batch.contains("super::{FRAMES, LINKS, NQ, NV, PARAMETERS}"), "{batch}");
+        request.options.parameters.clear();
+        request.options.functions = vec!["mass_matrix".into()];
+        assert!(!generate(&request).unwrap().source.contains("PARAMETERS}"));
+    }
+}
