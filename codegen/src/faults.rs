@@ -160,9 +160,11 @@ mod tests {
             o.lock = [("a", 0.0), ("hinge", 0.0), ("b", 0.0)].map(|(name, at)| (name.to_owned(), vec![at])).to_vec();
             o.frames = Some(["tip-1", "c", "tip-1"].map(String::from).to_vec());
             o.functions = vec!["no_such".into()];
+            o.shafts =
+                ["d", "e"].map(|joint| crate::Shaft { joint: joint.into(), segments: 1, stiffness: 1.0, ..Default::default() }).to_vec();
             o.rename.clear();
         });
-        each_once(&edits, &["\"a\"", "\"b\"", "\"c\"", "listed twice", "no_such"]);
+        each_once(&edits, &["\"d\"", "\"e\"", "\"a\"", "\"b\"", "\"c\"", "listed twice", "no_such"]);
     }
 
     #[test]

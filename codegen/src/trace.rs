@@ -231,6 +231,21 @@ mod tests {
     }
 
     #[test]
+    fn sines_of_what_is_no_coordinate_are_computed() {
+        let mut graph = Graph::default();
+        let (q, v, twice) = (graph.input(0, 1), graph.input(1, 1), graph.input(0, 0));
+        let twice = graph.apply(Op::Add, &[twice, q]);
+        let angles = [q, v, twice];
+        graph.outputs = angles.iter().flat_map(|&a| [Op::Sin, Op::Cos].map(|op| (op, a))).map(|(op, a)| graph.exactly(op, &[a])).collect();
+        let given = sines_given(graph.clone(), &[Argument::Q, Argument::V, Argument::SinCos]);
+        let counts = given.counts();
+        assert_eq!((counts.of(Op::Sin), counts.of(Op::Cos)), (2, 2));
+        let sines = |k: usize| if k.is_multiple_of(2) { input(0, k / 2).sin() } else { input(0, k / 2).cos() };
+        let with = |argument: usize, k: usize| if argument == 2 { sines(k) } else { input(argument, k) };
+        assert_eq!(given.evaluate(with), graph.evaluate(input));
+    }
+
+    #[test]
     fn sines_that_are_given_are_those_of_q_alone() {
         let model = arm("", false);
         let plain = all().filter(|wanted| wanted.arguments().contains(&Argument::Q));

@@ -324,7 +324,7 @@ mod tests {
             ("inverse_dynamics(v = 0, v = [1])", "given twice"),
             ("bias_forces(v = inf)", "expected a constant"),
             ("bias_forces(v = [0, NaN])", "expected a constant"),
-            ("regressor_of_nothing(q = sin_cos)", "unknown function"),
+            ("random_configuration(q = sin_cos)", "expected a constant"),
             ("1st = mass_matrix", "no name"),
             ("_x = mass_matrix", "no name"),
         ] {
