@@ -79,7 +79,7 @@ fn check_renames(model: &Model<f64>, request: &Request) -> Result<(), Error> {
     let known = |name: &str| model.joints.iter().any(|j| j.name == name) || model.frames.iter().any(|f| f.name == name);
     let wrong = request.options.rename.iter().find_map(|(from, to)| {
         if !known(from) {
-            Some((from, to, "the robot has no joint and no link of this name"))
+            Some((from, to, "no joint that moves and no link that is a frame has this name"))
         } else if !is_name(to) {
             Some((from, to, "this is not an identifier of Rust"))
         } else {
