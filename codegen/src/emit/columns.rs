@@ -85,9 +85,9 @@ mod tests {
         };
         assert_eq!(table("BEFORE"), "&[],&[0],&[1,0],&[0],&[3,0],");
         assert_eq!(table("BEYOND"), "&[1,2,3,4],&[2],&[],&[4],&[],");
-        assert!(out.contains("const VECTORS: usize = 2;") && out.contains("const TOGETHER: usize = 3;"));
-        // In registers up to five vectors of each of three matrices.
-        for (n, together) in [(20, 3), (21, 1)] {
+        assert!(out.contains("const VECTORS: usize = 2;") && out.contains("const TOGETHER: usize = 1;"));
+        // All three matrices where each has three to five vectors.
+        for (n, together) in [(8, 1), (9, 3), (20, 3), (21, 1)] {
             assert_eq!(Layout::of(&Columns { ways: vec![vec![]; n] }).together(), together, "{n}");
         }
     }
