@@ -10,8 +10,8 @@ use articulated_core::algorithm::Function;
 use articulated_core::algorithm::textbook::Textbook;
 use articulated_core::model::Model;
 
-use crate::compare::accuracy::{above_residues, exact, inverse_of, singular};
-use crate::magnitude::scales;
+use crate::compare::accuracy::{above_residues, backward, exact, inverse_of, largest, singular, worse};
+use crate::magnitude::{ROUNDOFF, scales};
 use crate::precise::Big;
 
 /// What one state says of one contender.
@@ -70,10 +70,13 @@ fn one(
     (by_textbook, scale): (&[Big], &[f64]),
     graphs: &mut Vec<(*const Graph, Vec<Big>)>,
 ) -> Verdict {
-    let mut verdict =
-        Verdict { relative: largest(by_textbook, &found.result, scale), ulps: in_ulps(by_textbook, &found.result), ..Verdict::default() };
+    let mut verdict = Verdict {
+        relative: ROUNDOFF * largest(by_textbook, &found.result, scale),
+        ulps: in_ulps(by_textbook, &found.result),
+        ..Verdict::default()
+    };
     if let Some(inverse) = inverse_of(function) {
-        verdict.backward = backward(textbook, model, inverse, state, &found.result);
+        verdict.backward = backward(textbook, model, inverse, state, &found.result).map(|units| ROUNDOFF * units);
     }
     let Some((graph, level)) = found.own else { return verdict };
     let key: *const Graph = graph;
@@ -81,7 +84,7 @@ fn one(
         graphs.push((key, graph.evaluate_as(|argument, k| Big::from_f64(state[argument][k]))));
     }
     let Some((_, by_graph)) = graphs.iter().find(|(k, _)| *k == key) else { return verdict };
-    verdict.rounding = Some(largest(by_graph, &found.result, scale));
+    verdict.rounding = Some(ROUNDOFF * largest(by_graph, &found.result, scale));
     let given = |argument: usize, k: usize| (state[argument][k], 0.0);
     if let Some(bounds) = bound::bounds(graph, level, &given) {
         verdict.bound = Some(bounds.iter().zip(scale).map(|(b, s)| if *b == 0.0 { 0.0 } else { b / s }).fold(0.0, f64::max));
@@ -89,23 +92,6 @@ fn one(
         verdict.reached = Some(parts.fold(0.0, worse));
     }
     verdict
-}
-
-/// How far the torques that accelerations need are from those given.
-fn backward(textbook: &Textbook<Big>, model: &Model<f64>, inverse: &str, state: &[&[f64]], accelerations: &[f64]) -> Option<f64> {
-    let tau = *state.get(2)?;
-    if accelerations.iter().any(|x| !x.is_finite()) {
-        return Some(f64::NAN);
-    }
-    let mut state = state.to_vec();
-    state[2] = accelerations;
-    let scale = scales(model, inverse, &state).ok()?;
-    let scale: Vec<f64> = scale.iter().zip(tau).map(|(s, t)| s + t.abs()).collect();
-    Some(largest(&exact(textbook, model, inverse, &state)?, tau, &scale))
-}
-
-fn largest(exact: &[Big], found: &[f64], scale: &[f64]) -> f64 {
-    exact.iter().zip(found).zip(scale).map(|((e, f), s)| e.error_of(*f, *s)).fold(0.0, worse)
 }
 
 /// In units in the last place of the exact result as a double; exact zeros are left out.
@@ -116,9 +102,4 @@ fn in_ulps(exact: &[Big], found: &[f64]) -> f64 {
         if size < 1e-60 { 0.0 } else { e.error_of(*f, size.next_up() - size) }
     };
     exact.iter().zip(found).map(one).fold(0.0, worse)
-}
-
-/// The larger, and not a number if either is not.
-pub(super) fn worse(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a >= b { a } else { b }
 }

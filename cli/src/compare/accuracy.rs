@@ -81,7 +81,7 @@ pub(super) fn errors(
                     return Some(None);
                 }
                 let errors = match inverse {
-                    Some(inverse) => backward(&textbook, model, inverse, state, &sides),
+                    Some(inverse) => both(sides.each_ref().map(|found| backward(&textbook, model, inverse, state, found))),
                     None => forward(&exact, model, function.name, state, &sides),
                 };
                 errors.map(Some)
@@ -118,21 +118,22 @@ pub(crate) fn above_residues(mut scale: Vec<f64>) -> Vec<f64> {
     scale
 }
 
-/// η = maxᵢ |ID_exact(q, v, a) − τ|ᵢ / (scale of ID + |τ|)ᵢ, for the state (q, v, τ, …) and each acceleration that was found.
-fn backward(textbook: &Textbook<Big>, model: &Model<f64>, inverse: &str, state: &[&[f64]], found: &[Vec<f64>; 2]) -> Option<[f64; 2]> {
-    let tau = *state.get(2)?;
-    let one = |a: &Vec<f64>| {
-        if a.iter().any(|x| !x.is_finite()) {
-            return Some(f64::NAN);
-        }
-        let mut state = state.to_vec();
-        state[2] = a;
-        let scale = scales(model, inverse, &state).ok()?;
-        let scale: Vec<f64> = scale.iter().zip(tau).map(|(s, t)| s + t.abs()).collect();
-        Some(largest(&exact(textbook, model, inverse, &state)?, tau, &scale))
-    };
-    let [a, b] = found.each_ref().map(one);
+/// Both, if there are both.
+fn both([a, b]: [Option<f64>; 2]) -> Option<[f64; 2]> {
     Some([a?, b?])
+}
+
+/// η = maxᵢ |ID_exact(q, v, a) − τ|ᵢ / (scale of ID + |τ|)ᵢ, in units of 2⁻⁵³, for the state (q, v, τ, …) and accelerations that were found.
+pub(crate) fn backward(textbook: &Textbook<Big>, model: &Model<f64>, inverse: &str, state: &[&[f64]], found: &[f64]) -> Option<f64> {
+    let tau = *state.get(2)?;
+    if found.iter().any(|x| !x.is_finite()) {
+        return Some(f64::NAN);
+    }
+    let mut state = state.to_vec();
+    state[2] = found;
+    let scale = scales(model, inverse, &state).ok()?;
+    let scale: Vec<f64> = scale.iter().zip(tau).map(|(s, t)| s + t.abs()).collect();
+    Some(largest(&exact(textbook, model, inverse, &state)?, tau, &scale))
 }
 
 /// What the textbook gives. A double's quaternion has a norm of one to 16 digits only, and what the rest does is nobody's error: it is of norm one here.
@@ -155,13 +156,13 @@ fn normalise(quaternion: &mut [Big]) {
     quaternion.iter_mut().for_each(|x| *x = *x / norm);
 }
 
-fn largest(exact: &[Big], found: &[f64], scale: &[f64]) -> f64 {
+pub(crate) fn largest(exact: &[Big], found: &[f64], scale: &[f64]) -> f64 {
     let errors = exact.iter().zip(found).zip(scale).map(|((e, f), s)| e.error_of(*f, ROUNDOFF * s));
     errors.fold(0.0, worse)
 }
 
 /// The larger, and not a number if either is not.
-fn worse(a: f64, b: f64) -> f64 {
+pub(crate) fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || a >= b { a } else { b }
 }
 
@@ -194,9 +195,13 @@ mod tests {
         // 1.001 kg·m² · a + 9.81 N·m · sin q = τ
         let (q, tau) = (0.5_f64, 3.0);
         let a = (tau - 9.81 * q.sin()) / 1.001;
-        let error = |a: f64| backward(&textbook, &model, "inverse_dynamics", &[&[q], &[0.0], &[tau]], &[vec![a], vec![a]]).unwrap()[0];
+        let error = |a: f64| backward(&textbook, &model, "inverse_dynamics", &[&[q], &[0.0], &[tau]], &[a]).unwrap();
         assert!(error(a) < 4.0, "{}", error(a));
-        assert!(error(a * (1.0 + 1e-10)) > 1e4);
+        // 1e-10 of what accelerates, over the sizes of the terms and of τ.
+        let scale = scales(&model, "inverse_dynamics", &[&[q], &[0.0], &[a]]).unwrap()[0];
+        let expected = 1e-10 * (1.001 * a).abs() / (ROUNDOFF * (scale + tau));
+        let found = error(a * (1.0 + 1e-10));
+        assert!((found / expected - 1.0).abs() < 0.01, "{found} {expected}");
         assert!(error(f64::NAN).is_nan());
     }
 }
