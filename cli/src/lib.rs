@@ -32,6 +32,7 @@ pub mod stress;
 mod table;
 mod tips;
 mod units;
+mod worse;
 
 use std::ffi::OsString;
 

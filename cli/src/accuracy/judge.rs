@@ -10,9 +10,10 @@ use articulated_core::algorithm::Function;
 use articulated_core::algorithm::textbook::Textbook;
 use articulated_core::model::Model;
 
-use crate::compare::accuracy::{above_residues, backward, exact, inverse_of, largest, singular, worse};
+use crate::compare::accuracy::{above_residues, backward, exact, inverse_of, largest, singular};
 use crate::magnitude::{ROUNDOFF, scales};
 use crate::precise::Big;
+use crate::worse::worse;
 
 /// What one state says of one contender.
 #[derive(Clone, Copy, Debug, Default)]

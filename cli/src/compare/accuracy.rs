@@ -15,6 +15,7 @@ use super::contender::Contender;
 use crate::magnitude::{ROUNDOFF, scales};
 use crate::precise::Big;
 use crate::states::quaternions;
+use crate::worse::worse;
 
 /// The largest error of each, in units of 2⁻⁵³ of the sum of the magnitudes of the terms.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -159,11 +160,6 @@ fn normalise(quaternion: &mut [Big]) {
 pub(crate) fn largest(exact: &[Big], found: &[f64], scale: &[f64]) -> f64 {
     let errors = exact.iter().zip(found).zip(scale).map(|((e, f), s)| e.error_of(*f, ROUNDOFF * s));
     errors.fold(0.0, worse)
-}
-
-/// The larger, and not a number if either is not.
-pub(crate) fn worse(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a >= b { a } else { b }
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use super::BOUND;
 use super::layout::labelled;
 use crate::magnitude::ROUNDOFF;
 use crate::robot::Robot;
+use crate::worse::worse;
 
 /// All results.
 pub(super) struct Report {
@@ -65,11 +66,6 @@ impl Difference {
             None => new,
         })
     }
-}
-
-/// The larger, and not a number if either is not.
-fn worse(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a >= b { a } else { b }
 }
 
 impl FunctionReport {

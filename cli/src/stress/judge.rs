@@ -17,6 +17,7 @@ use super::row::{Case, Row};
 use super::terms::terms;
 use crate::magnitude::scales;
 use crate::precise::Big;
+use crate::worse::worse;
 
 /// η allowed, and errors allowed of what is not solved for, in units of u times the magnitude of the terms.
 pub const BACKWARD: f64 = 64.0;
@@ -58,11 +59,6 @@ pub struct Judge<'a, F: Machine> {
     case: &'a Case,
     model: Model<F>,
     wide: Model<f64>,
-}
-
-/// The worst of several; what is not a number stays.
-pub fn worse(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a >= b { a } else { b }
 }
 
 impl<'a, F: Machine> Judge<'a, F> {

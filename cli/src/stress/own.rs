@@ -7,7 +7,7 @@ use articulated_core::monitor::{
     ADJOINT_LIMIT, adjoint_condition, pivot_cancellation, placement_orthonormality, quaternion_norms, scaled_condition, wrench_growth,
 };
 
-use super::judge::{BACKWARD, Ends, Judge, State, call, worse};
+use super::judge::{BACKWARD, Ends, Judge, State, call};
 use super::levels::{self, Made};
 use super::machine::Machine;
 use super::robots::{state, states};
@@ -15,6 +15,7 @@ use super::row::{Case, Row};
 use crate::failure::Failure;
 use crate::robot::Robot;
 use crate::states::quaternions;
+use crate::worse::worse;
 
 /// The chapter of robots.
 pub const NAME: &str = "robots";

@@ -7,10 +7,11 @@ use articulated_core::model::Model;
 
 use super::Effort;
 use crate::precise::Big;
-use crate::stress::judge::{BACKWARD, Ends, Judge, State, call, scale, worse};
+use crate::stress::judge::{BACKWARD, Ends, Judge, State, call, scale};
 use crate::stress::machine::{Machine, cast};
 use crate::stress::robots::{Body, Builder, built, state, states};
 use crate::stress::row::{Case, Row};
+use crate::worse::worse;
 
 pub(super) const NAME: &str = "axes";
 

@@ -8,9 +8,10 @@ use articulated_core::model::Model;
 
 use super::Effort;
 use crate::states::SplitMix64;
-use crate::stress::judge::{call, worse};
+use crate::stress::judge::call;
 use crate::stress::robots::{Body, Builder, built, chain, normalise};
 use crate::stress::row::{Case, Row};
+use crate::worse::worse;
 
 pub(super) const NAME: &str = "motions";
 

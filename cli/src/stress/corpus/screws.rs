@@ -8,8 +8,8 @@ use articulated_core::spatial::{Twist, Vector3};
 
 use super::Effort;
 use crate::precise::Big;
-use crate::stress::judge::worse;
 use crate::stress::row::{Case, Row};
+use crate::worse::worse;
 
 pub(super) const NAME: &str = "screws";
 

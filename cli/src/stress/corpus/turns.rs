@@ -13,9 +13,10 @@ use articulated_core::spatial::{Matrix3, Placement, Vector3};
 use super::Effort;
 use crate::precise::Big;
 use crate::states::SplitMix64;
-use crate::stress::judge::{BACKWARD, Ends, Judge, State, call, worse};
+use crate::stress::judge::{BACKWARD, Ends, Judge, State, call};
 use crate::stress::robots::{Body, Builder, built, normalise, state, states};
 use crate::stress::row::{Case, Row};
+use crate::worse::worse;
 
 pub(super) const NAME: &str = "turns";
 

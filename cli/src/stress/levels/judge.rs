@@ -10,10 +10,11 @@ use super::Made;
 use super::contract::Contract;
 use crate::magnitude::{Magnitude, scales};
 use crate::precise::Big;
-use crate::stress::judge::{Judge, State, call, scale, worse};
+use crate::stress::judge::{Judge, State, call, scale};
 use crate::stress::machine::{cast, exact};
 use crate::stress::row::{Case, Row};
 use crate::stress::terms::terms;
+use crate::worse::worse;
 
 /// Of sums of two doubles: what is left beyond one rounding of the result, in units of 2⁻¹⁰⁰ of the terms.
 const SECOND_ORDER: f64 = 1.0;
