@@ -15,6 +15,7 @@ pub mod measure;
 pub mod program;
 pub mod random;
 pub mod random_effects;
+pub mod random_limbs;
 pub mod random_tree;
 pub mod rigid;
 pub mod virtual_power;

@@ -53,7 +53,7 @@ pub fn random_tree(seed: u64, flavour: Flavour) -> Description {
     shuffled(random, &description)
 }
 
-fn joint(random: &mut Random, flavour: Flavour, parent: usize, child: usize) -> Joint {
+pub(crate) fn joint(random: &mut Random, flavour: Flavour, parent: usize, child: usize) -> Joint {
     use JointKind::{Continuous, Fixed, Floating, Helical, Planar, Prismatic, Revolute, Spherical, Universal};
     let mut kinds = vec![Revolute, Revolute, Continuous, Prismatic];
     kinds.extend(flavour.fixed.then_some(Fixed));
@@ -137,7 +137,7 @@ fn rpy(random: &mut Random) -> [f64; 3] {
     }
 }
 
-fn inertial(random: &mut Random, flavour: Flavour) -> Option<Inertial> {
+pub(crate) fn inertial(random: &mut Random, flavour: Flavour) -> Option<Inertial> {
     if flavour.massless && random.chance(0.25) {
         return None;
     }

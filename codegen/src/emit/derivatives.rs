@@ -134,7 +134,8 @@ fn bits(which: [bool; LANES]) -> usize {
 }
 
 fn table(out: &mut String, name: &str, of: &str, rows: &[String]) {
-    let _ = writeln!(out, "static {name}: [{of}; {}] = [\n    {},\n];", rows.len(), rows.join(",\n    "));
+    let lines: String = rows.iter().map(|row| format!("    {row},\n")).collect();
+    let _ = writeln!(out, "static {name}: [{of}; {}] = [\n{lines}];", rows.len());
 }
 
 /// xx, yy, zz, xy, xz, yz.

@@ -27,8 +27,9 @@ impl Cell {
             Op::Spread => (NodeId(node.args[0]), graph.node(NodeId(node.args[1])).constant().unwrap_or_default() as usize),
             _ => (output, 0),
         };
-        match graph.node(of) {
-            Node { op: Op::LaneConstant, args } => Self::Constant(graph.lanes().constant(args[0])[lane]),
+        match (graph.node(of), graph.node(of).constant()) {
+            (_, Some(x)) => Self::Constant(x),
+            (Node { op: Op::LaneConstant, args }, _) => Self::Constant(graph.lanes().constant(args[0])[lane]),
             _ => Self::Lane(of.index(), lane),
         }
     }

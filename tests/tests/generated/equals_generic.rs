@@ -17,7 +17,7 @@ fn allowed(function: &str) -> f64 {
 const STATES: usize = 32;
 
 /// The largest difference of any function of a robot from the generic library.
-fn compare(program: &Program, robot: &Robot) -> f64 {
+pub(crate) fn compare(program: &Program, robot: &Robot) -> f64 {
     let mut random = Random::new(17);
     let states: Vec<State> = (0..STATES).map(|_| robot.case.state(&mut random)).collect();
     let mut worst: f64 = 0.0;

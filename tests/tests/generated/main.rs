@@ -4,6 +4,7 @@ mod batches;
 mod choices;
 mod effects;
 mod equals_generic;
+mod limbs;
 mod odd_robots;
 mod oracles;
 mod robots;
