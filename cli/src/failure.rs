@@ -32,27 +32,30 @@ pub(crate) struct Failure {
     pub(crate) status: u8,
     #[serde(rename = "errors")]
     pub(crate) lines: Vec<String>,
+    /// Whether a report was printed, which shows it: as JSON it is all there is to print.
+    #[serde(skip)]
+    pub(crate) reported: bool,
 }
 
 impl Failure {
     /// The input is wrong.
     pub(crate) fn input(lines: impl IntoIterator<Item = String>) -> Self {
-        Self { status: INPUT, lines: lines.into_iter().collect() }
+        Self { status: INPUT, lines: lines.into_iter().collect(), reported: false }
     }
 
     /// The command line is wrong.
     pub(crate) fn usage(line: String) -> Self {
-        Self { status: USAGE, lines: vec![line] }
+        Self { status: USAGE, lines: vec![line], reported: false }
     }
 
     /// A tool failed.
     pub(crate) fn tool(error: &impl ToString) -> Self {
-        Self { status: TOOL, lines: vec![error.to_string()] }
+        Self { status: TOOL, lines: vec![error.to_string()], reported: false }
     }
 
     /// All of them, with the gravest status: wrong input comes before a wrong command line, and both before a tool that fails.
     pub(crate) fn of(failures: impl IntoIterator<Item = Self>) -> Self {
-        let mut all = Self { status: BOUND, lines: Vec::new() };
+        let mut all = Self { status: BOUND, lines: Vec::new(), reported: false };
         for failure in failures {
             all.status = all.status.min(failure.status);
             all.lines.extend(failure.lines);
@@ -70,7 +73,12 @@ impl Failure {
 
     /// A comparison exceeded its bound.
     pub(crate) fn bound(line: String) -> Self {
-        Self { status: BOUND, lines: vec![line] }
+        Self { status: BOUND, lines: vec![line], reported: false }
+    }
+
+    /// So does one in the report that was just printed.
+    pub(crate) fn bound_of_report(line: String) -> Self {
+        Self { reported: true, ..Self::bound(line) }
     }
 }
 

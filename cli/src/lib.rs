@@ -54,7 +54,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Ok(status) => status,
         Err(failure) => {
             failure.lines.iter().for_each(|line| console::error(line));
-            if arguments.format == Format::Json {
+            if arguments.format == Format::Json && !failure.reported {
                 // A reader that has gone away has nothing to be told.
                 let _ = console::print(&json(&failure));
             }

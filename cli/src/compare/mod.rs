@@ -78,7 +78,7 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
     }
     match report.exceeded(arguments.bound, VARIANT_BOUND) {
         None => Ok(OK),
-        Some(line) => Err(Failure::bound(line)),
+        Some(line) => Err(Failure::bound_of_report(line)),
     }
 }
 

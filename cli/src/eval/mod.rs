@@ -10,7 +10,7 @@ use articulated_core::model::Model;
 use crate::arguments::{EvalArguments, Format};
 use crate::compiled::{CompileError, Compiled, Rustc, Target};
 use crate::console;
-use crate::failure::{Failure, OK, TOOL};
+use crate::failure::{Failure, OK};
 use crate::magnitude::scales;
 use crate::names;
 use crate::robot::{Robot, read_bytes};
@@ -44,7 +44,9 @@ pub(crate) fn run(arguments: &EvalArguments, format: Format) -> Result<u8, Failu
     })?;
     match report.functions.iter().find(|f| f.exceeded()) {
         None => Ok(OK),
-        Some(f) => Err(Failure::bound(format!("{}: generic and generated results differ by more than {BOUND} units", f.function.name))),
+        Some(f) => {
+            Err(Failure::bound_of_report(format!("{}: generic and generated results differ by more than {BOUND} units", f.function.name)))
+        }
     }
 }
 
@@ -97,7 +99,7 @@ fn compile(robot: &Robot, names: &[String], needed: bool, report: &mut Report) -
             report.warnings.push(note);
             Ok(None)
         }
-        Err(error) => Err(Failure { status: TOOL, lines: vec![error.to_string()] }),
+        Err(error) => Err(Failure::tool(&error)),
     }
 }
 

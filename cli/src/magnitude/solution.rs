@@ -12,8 +12,8 @@
 use articulated_core::algorithm::{Argument, Function, FunctionError, FunctionId, Workspace};
 use articulated_core::model::Model;
 
-use super::Magnitude;
 use super::scales::{UNKNOWN, given, magnitudes};
+use super::{Magnitude, ROUNDOFF};
 
 pub(super) fn scales(model: &Model<f64>, row: &Function<f64>, arguments: &[&[f64]]) -> Result<Vec<f64>, FunctionError> {
     let q = arguments.first().ok_or(FunctionError::Length { argument: "arguments", found: 0, expected: row.takes.len() })?;
@@ -113,13 +113,18 @@ impl State<'_> {
         }
         let jacobians = magnitudes(self.model, "jacobians_world_aligned", &given(&self.arguments[..1]))?;
         for (k, jacobian) in jacobians.chunks_exact(6 * n).enumerate() {
-            let terms: Vec<f64> = jacobian.iter().map(|x| x.magnitude).collect();
+            let terms = vectors(&jacobian.iter().map(|x| x.magnitude).collect::<Vec<_>>(), n);
             let values: Vec<f64> = jacobian.iter().map(|x| x.value).collect();
             let x = product(&self.mass.inverse, &transposed(&values, n), n, n);
             // ‖J‖ |X|
             let rounding = product(&terms, &absolute(&x), 6, n);
             let (held, by_jacobian, rounding) = match inertia.map(|all| &all[36 * k..][..36]) {
-                None => (absolute(&x), rounding.clone(), rounding),
+                None => {
+                    // δJ M⁻¹ δJᵀ is all there is where J has a row of zeros.
+                    let second = product(&terms, &product(&self.mass.modulus, &transposed(&terms, n), n, n), 6, n);
+                    let rounding: Vec<f64> = rounding.iter().zip(second).map(|(r, s)| r + ROUNDOFF * s).collect();
+                    (absolute(&x), rounding.clone(), rounding)
+                }
                 Some(inertia) => {
                     let (y, inertia) = (absolute(&product(&x, inertia, n, 6)), absolute(inertia));
                     let through = |m: &[f64]| product(&inertia, m, 6, 6);
@@ -149,6 +154,12 @@ fn value(model: &Model<f64>, row: &Function<f64>, arguments: &[&[f64]]) -> Resul
 
 fn absolute(x: &[f64]) -> Vec<f64> {
     x.iter().map(|x| x.abs()).collect()
+}
+
+/// Of magnitudes of a Jacobian, `[6][n]`: each column is two vectors, and whoever computes them in other axes rounds all of a vector's numbers as its largest.
+fn vectors(magnitudes: &[f64], n: usize) -> Vec<f64> {
+    let largest = |row: usize, column: usize| (0..3).map(|k| magnitudes[(row / 3 * 3 + k) * n + column]).fold(0.0, f64::max);
+    (0..6 * n).map(|k| largest(k / n, k % n)).collect()
 }
 
 /// A·B of an `[rows][inner]` and an `[inner][any]` matrix.

@@ -40,7 +40,7 @@ pub(crate) fn run(arguments: &StressArguments, format: Format) -> Result<u8, Fai
     })?;
     match failed {
         0 => Ok(OK),
-        n => Err(Failure::bound(format!("{n} of {} rows beyond their limits", report.rows_measured))),
+        n => Err(Failure::bound_of_report(format!("{n} of {} rows beyond their limits", report.rows_measured))),
     }
 }
 

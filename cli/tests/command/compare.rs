@@ -180,9 +180,13 @@ fn a_peer_is_timed_and_must_agree() {
     assert!(peers(0)[0]["generated_over_peer"]["median"].as_f64().unwrap() > 0.0);
     let wrong = peer("1e-6");
     let words = ["compare", "simple_pendulum", "--functions", "gravity_torque", "--peer", wrong.name()];
-    let ended = run(&[&words[..], &SMALL[..]].concat());
-    assert_eq!(ended.status, 4, "{}", ended.err);
-    assert!(ended.err.contains("by heart"), "{}", ended.err);
+    for format in ["text", "json"] {
+        let ended = run(&[&words[..], &SMALL[..], &["--format", format]].concat());
+        assert_eq!(ended.status, 4, "{}", ended.err);
+        assert!(ended.err.contains("by heart"), "{}", ended.err);
+        // One document, and that is the report.
+        assert!(format == "text" || ended.json()["functions"][0]["peers"][0]["largest_difference"].as_f64().unwrap() > 1e-9);
+    }
 }
 
 /// FNV-1a, by which a manifest knows a document.

@@ -21,6 +21,28 @@ fn the_pendulum_is_its_closed_form_in_both_ways() {
     assert_eq!(json["functions"][1]["function"], "gravity_torque");
 }
 
+/// A frame that no joint can move along y or turn about x but by way of z: zeros that generated code computes in other axes are zeros but for rounding.
+#[test]
+fn a_result_of_zeros_may_be_off_by_a_rounding_of_its_neighbours() {
+    let body =
+        "<inertial><origin xyz='0.1 0 0'/><mass value='1'/><inertia ixx='0.01' ixy='0' ixz='0' iyy='0.02' iyz='0' izz='0.02'/></inertial>";
+    let joint = |k: usize, place: &str, axis: &str| {
+        format!(
+            "<joint name='j{k}' type='continuous'><origin xyz='{place}'/><parent link='l{k}'/><child link='l{}'/><axis xyz='{axis}'/></joint>",
+            k + 1
+        )
+    };
+    let joints = joint(0, "0 0 0", "0 1 0") + &joint(1, "0.3 0.1 0.2", "0 0 1");
+    let urdf = format!("<robot name='two'><link name='l0'/><link name='l1'>{body}</link><link name='l2'>{body}</link>{joints}</robot>");
+    let file = File::new("two.urdf", urdf.as_bytes());
+    let words =
+        ["eval", file.name(), "--frames", "l2", "--function", "operational_space_inertia_inverse", "--states", "-", "--format", "json"];
+    let ended = run_with(&words, br#"[{"q": [0.3, 0.7]}, {"q": [-1.2, 2.0]}]"#);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let difference = &ended.json()["functions"][0]["largest_difference"];
+    assert!(difference["in_units_of_roundoff"].as_f64().unwrap() < 16.0, "{difference}");
+}
+
 /// About the joint's axis: what a unit of acceleration costs at rest.
 fn inertia() -> f64 {
     let torque = |a: f64| {

@@ -12,7 +12,8 @@ use crate::robots::{Robot, with};
 const ROBOTS: u64 = 24;
 
 /// One of each way in which code is made: lanes alone, matrices in lanes, loops over joints, frames, and what all limbs add to.
-const FUNCTIONS: [&str; 5] = ["inverse_dynamics", "mass_matrix", "inverse_dynamics_derivatives", "jacobians_body", "centroidal_momentum_matrix"];
+const FUNCTIONS: [&str; 5] =
+    ["inverse_dynamics", "mass_matrix", "inverse_dynamics_derivatives", "jacobians_body", "centroidal_momentum_matrix"];
 
 #[test]
 fn limbs_of_every_kind_are_those_of_the_generic_library() {
