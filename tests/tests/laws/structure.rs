@@ -4,7 +4,7 @@ use articulated_core::description::{Base, Description, Inertial, Joint, JointKin
 use articulated_core::model::Model;
 use articulated_core::model::pass::model_passes;
 use articulated_tests::case::{Case, State, for_each_bundled, for_each_tree, inverse_dynamics, mass_matrix, placements};
-use articulated_tests::measure::{distance, error, plus, scale, torque_scale};
+use articulated_tests::measure::{arguments, distance, error, plus, scale, torque_scale};
 use articulated_tests::random::Random;
 use articulated_tests::random_tree::Flavour;
 
@@ -214,6 +214,37 @@ fn angles_about_a_joints_own_axis_are_counted_with_its_own() {
             let turn = &body.placement.rotation;
             let along_a_coordinate_axis = turn.column(2).iter().all(|x| fixed(*x));
             assert!(!along_a_coordinate_axis || turn.iter().all(|x| fixed(*x)), "{}: {turn}", body.name);
+        }
+    });
+}
+
+/// Nothing but places depends on where a robot is, and no digit is lost where it is far away.
+#[test]
+fn a_robot_far_from_the_origin_is_none_the_worse() {
+    const FAR: [[f64; 3]; 2] = [[1e6, -3e5, 0.1], [3e11, 1e12, -2e12]];
+    const NAMES: [&str; 12] = [
+        "inverse_dynamics",
+        "mass_matrix",
+        "forward_dynamics",
+        "coriolis_matrix",
+        "inverse_dynamics_derivatives",
+        "jacobians_body",
+        "jacobians_world_aligned",
+        "center_of_mass_velocity",
+        "center_of_mass_acceleration",
+        "centroidal_momentum",
+        "centroidal_momentum_matrix",
+        "centroidal_momentum_rate",
+    ];
+    for_each_bundled(|case, random| {
+        let state = case.state(random);
+        for at in FAR.into_iter().filter(|_| case.base == Base::Floating) {
+            let mut far = state.clone();
+            far.q[..3].copy_from_slice(&at);
+            for name in NAMES {
+                let [here, there] = [&state, &far].map(|s| case.call::<f64>(name, &arguments(name, s)));
+                assert_eq!(here, there, "{name}");
+            }
         }
     });
 }

@@ -18,9 +18,9 @@ use crate::spatial::{Vector3, Wrench, rotate};
 /// # Panics
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
 pub fn center_of_mass<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
-    positions(model, ws, Axes::Base, q);
+    let first = places(model, ws, q);
     let (_, center) = center(model, ws);
-    out.copy_from_slice(center.as_slice());
+    out.copy_from_slice((first + center).as_slice());
 }
 
 /// Velocity of the centre of mass, base axes.
@@ -30,7 +30,7 @@ pub fn center_of_mass<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S
 /// # Panics
 /// As [`center_of_mass`].
 pub fn center_of_mass_velocity<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
-    positions(model, ws, Axes::Base, q);
+    places(model, ws, q);
     generalised(model, ws, q, v);
     // ċ = l / m
     let (inverse, center) = center(model, ws);
@@ -56,7 +56,7 @@ pub fn center_of_mass_acceleration<S: Scalar>(model: &Model<S>, ws: &mut Workspa
 /// # Panics
 /// As [`center_of_mass`].
 pub fn center_of_mass_jacobian<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
-    positions(model, ws, Axes::Base, q);
+    places(model, ws, q);
     inertias(model, ws);
     let (inverse, _) = center(model, ws);
     out.fill(S::zero());
@@ -70,7 +70,7 @@ pub fn center_of_mass_jacobian<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S
 /// # Panics
 /// As [`center_of_mass`].
 pub fn centroidal_momentum<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
-    positions(model, ws, Axes::Base, q);
+    places(model, ws, q);
     generalised(model, ws, q, v);
     let (_, center) = center(model, ws);
     out.copy_from_slice(&at_the_roots(model, ws, center).to_array());
@@ -83,7 +83,7 @@ pub fn centroidal_momentum<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q
 /// # Panics
 /// As [`center_of_mass`].
 pub fn centroidal_momentum_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
-    positions(model, ws, Axes::Base, q);
+    places(model, ws, q);
     inertias(model, ws);
     let (_, center) = center(model, ws);
     out.fill(S::zero());
@@ -105,7 +105,19 @@ pub fn centroidal_momentum_rate<S: Scalar>(model: &Model<S>, ws: &mut Workspace<
     out.copy_from_slice(&rate.to_array());
 }
 
-/// (1 / mass, centre of mass) of the moving links.
+/// Positions of all bodies about the origin of the first, which it returns, in base axes: however far from the base a robot is, its momentum about its centre of mass has
+/// all its digits.
+fn places<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S]) -> Vector3<S> {
+    positions(model, ws, Axes::Base, q);
+    let first = model.outward().next().map_or_else(Vector3::zeros, |i| ws.common[i].shift);
+    for i in model.outward() {
+        let (parent, shift) = (model.bodies[i].parent, ws.common[i].shift);
+        ws.common[i].position = if parent == 0 { shift - first } else { ws.common[parent].position + shift };
+    }
+    first
+}
+
+/// (1 / mass, centre of mass) of the moving links, about the origin that [`places`] chose.
 fn center<S: Scalar>(model: &Model<S>, ws: &Workspace<S>) -> (S, Vector3<S>) {
     let (mut mass, mut first) = (S::zero(), Vector3::zeros());
     for i in model.outward() {
@@ -136,7 +148,7 @@ fn at_the_roots<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, point: Vector3<S
 
 /// (1 / mass, Σ F about the centre of mass).
 fn rate<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S]) -> (S, Wrench<S>) {
-    positions(model, ws, Axes::Base, q);
+    places(model, ws, q);
     let mut row = core::mem::take(&mut ws.row);
     recursion(model, ws, q, v, a, &World::bare(), &mut row);
     ws.row = row;
