@@ -14,12 +14,14 @@ use super::stage::{Stage, field};
 /// Events of a robot, and how each of them reads.
 pub(super) struct Watch<'a> {
     pub(super) events: Vec<Event<'a>>,
-    /// Where its function rises through zero, where it falls.
+    /// Where its function rises through zero, where it falls; of a ball, when it is hit and when it is not.
     words: Vec<[String; 2]>,
     /// Set by a blow that ends the motion.
     pub(super) over: Rc<Cell<bool>>,
     /// Kinetic energy that the ball got, J, once it was hit.
     pub(super) ball: Rc<Cell<Option<f64>>>,
+    /// Whether the ball's turn came when nothing moved towards it.
+    missed: Rc<Cell<bool>>,
 }
 
 /// The links whose frames the events need.
@@ -41,7 +43,7 @@ impl<'a> Watch<'a> {
     where
         R::Workspace: 'a,
     {
-        let mut watch = Self { events: Vec::new(), words: Vec::new(), over: Rc::default(), ball: Rc::default() };
+        let mut watch = Self { events: Vec::new(), words: Vec::new(), over: Rc::default(), ball: Rc::default(), missed: Rc::default() };
         if looks_for(stage, Watched::Limits) {
             stage.model.joints.iter().for_each(|joint| watch.limit(stage, joint));
         }
@@ -57,8 +59,12 @@ impl<'a> Watch<'a> {
 
     /// What happened, in words.
     pub(super) fn words(&self, hit: &Hit) -> String {
-        let text = &self.words[hit.event][usize::from(hit.direction == Direction::Falling)];
-        hit.value.map_or_else(|| text.clone(), |speed| format!("{text} {speed:.4} m/s"))
+        let [rising, falling] = &self.words[hit.event];
+        match hit.value {
+            // Of the ball, which is all that has a value.
+            Some(speed) => format!("{} {speed:.4} m/s", if self.missed.get() { falling } else { rising }),
+            None => if hit.direction == Direction::Falling { falling } else { rising }.clone(),
+        }
     }
 
     fn push(&mut self, event: Event<'a>, rising: String, falling: String) {
@@ -108,19 +114,22 @@ impl<'a> Watch<'a> {
         let Some(ball) = &stage.prepared.scene.impact else { return Ok(()) };
         let Some(frame) = frames.iter().position(|f| *f == ball.link) else { return Ok(()) };
         let mut blow = Impact::new(robot, frame, ball.point, ball.normal, ball.mass, ball.restitution)?;
-        let (over, stop, speed, mut done) = (self.over.clone(), ball.stop, ball.ball_speed, false);
-        let (got, mass) = (self.ball.clone(), ball.mass);
+        let (over, stop, speed, done) = (self.over.clone(), ball.stop, ball.ball_speed, Rc::new(Cell::new(false)));
+        let (got, missed, mass, was) = (self.ball.clone(), self.missed.clone(), ball.mass, done.clone());
         let map = move |_: f64, q: &mut [f64], v: &mut [f64]| {
             // One ball, one blow.
-            if std::mem::replace(&mut done, true) {
+            if done.replace(true) {
                 return Ok(None);
             }
             over.set(stop);
-            let after = blow.strike(q, v, speed)?.ball_speed;
+            let struck = blow.strike(q, v, speed)?;
+            missed.set(struck.impulse == 0.0);
+            let after = struck.ball_speed;
             got.set(Some(0.5 * mass * (after * after - speed * speed)));
             Ok(Some(after))
         };
-        let text = format!("{} hits the ball, which leaves at", ball.link);
+        let hits = format!("{} hits the ball, which leaves at", ball.link);
+        let misses = format!("{} is not moving towards the ball, which keeps", ball.link);
         let event = match ball.when {
             When::Time(at) => Event::new(ball.link.clone(), move |t, _, _| t - at),
             When::Ball(place) => {
@@ -128,6 +137,8 @@ impl<'a> Watch<'a> {
                 let (point, n) = (ball.point, ball.normal);
                 // n·(p − ball) with p = x + R r
                 Event::new(ball.link.clone(), move |_, q: &[f64], _| match robot.placements(&mut ws, q, &mut out) {
+                    // Nobody looks for a ball that is gone.
+                    _ if was.get() => -1.0,
                     Ok(()) => {
                         let x = &out[12 * frame..][..12];
                         let p = |k: usize| x[9 + k] + (0..3).map(|c| x[3 * k + c] * point[c]).sum::<f64>();
@@ -137,7 +148,7 @@ impl<'a> Watch<'a> {
                 })
             }
         };
-        self.push(event.direction(Direction::Rising).action(Action::Map(Box::new(map))), text.clone(), text);
+        self.push(event.direction(Direction::Rising).action(Action::Map(Box::new(map))), hits, misses);
         Ok(())
     }
 }

@@ -1,6 +1,6 @@
 //! What each bundled scene is there to show.
 
-use crate::run;
+use crate::{File, run};
 
 /// A motion as its files tell it.
 struct Motion {
@@ -129,6 +129,28 @@ fn a_golf_ball_leaves_faster_than_the_head_that_hits_it() {
     assert!((ball - 0.5 * 0.04593 * speed * speed).abs() < 1e-3 * ball && taken > ball, "{taken} J, {ball} J");
     assert!(motion.number("energy", "relative_imbalance") < 1e-8, "{}", motion.number("energy", "relative_imbalance"));
     assert_eq!(motion.column("from_events")[row - 1..=row].iter().map(|e| *e < 0.0).collect::<Vec<_>>(), [false, true]);
+}
+
+/// The bob comes down at once and passes the lowest point forth and back: one blow there. What goes faster than the bob is not hit.
+#[test]
+fn a_ball_is_hit_once_and_only_by_what_moves_towards_it() {
+    let file = File::new("pendulum.urdf", articulated_models::robot("simple_pendulum").unwrap().urdf.as_bytes());
+    let events = |impact: &str| {
+        let text = format!(
+            "urdf = {:?}\n[initial]\nq = [1.0]\n[simulation]\nend = 4.0\n[impact]\nlink = \"bob\"\nnormal = [1, 0, 0]\n\
+             mass = 0.1\nrestitution = 1.0\n{impact}\n",
+            file.name()
+        );
+        let scene = File::new("ball.toml", text.as_bytes());
+        let motion = Motion::of(scene.name(), &[]);
+        let told = motion.summary["events"].as_array().unwrap().iter().map(|e| e["what"].as_str().unwrap().to_owned());
+        (told.collect::<Vec<_>>(), motion.summary["energy"]["ball"].clone())
+    };
+    let (hit, got) = events("point = [0, 0, -1]\nball = [0, 0, -1]");
+    assert!(hit.len() == 1 && hit[0].starts_with("bob hits the ball, which leaves at"), "{hit:?}");
+    assert!(got.as_f64().unwrap() > 0.1, "{got}");
+    let (missed, got) = events("time = 0.05\nball_speed = 40.0");
+    assert_eq!((missed, got.as_f64()), (vec!["bob is not moving towards the ball, which keeps 40.0000 m/s".to_owned()], Some(0.0)));
 }
 
 #[test]
