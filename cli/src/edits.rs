@@ -15,7 +15,8 @@ pub(crate) struct Edits {
     /// Attach a load, kg, to a link: its centre of mass in m, its inertia about that in kg·m²; may be given several times
     #[arg(long, value_name = "LINK=MASS[@X,Y,Z[:XX,XY,XZ,YY,YZ,ZZ]]", value_parser = payload)]
     pub(crate) payload: Vec<Payload>,
-    /// Lock a joint at its coordinates (rad or m; a quaternion as x,y,z,w); may be given several times
+    /// Lock a joint at its coordinates (rad or m; a quaternion as x,y,z,w); may be given several times. Links that nothing moves any more count as the base's: energy and centre
+    /// of mass are of the links that move
     #[arg(long, value_name = "JOINT=VALUE[,VALUE…]", value_parser = lock)]
     pub(crate) lock: Vec<Lock>,
 }

@@ -100,6 +100,11 @@ fn origin(name: &str, at: usize, description: &Description, model: &Model<f64>) 
 }
 
 impl Parameter {
+    /// Whether its numbers are the inertial parameters of something.
+    pub(crate) fn is_inertial(&self) -> bool {
+        self.kind != Kind::Origin
+    }
+
     /// Puts the numbers that `input` gives into the model.
     pub(crate) fn put(&self, model: &mut Model<Sym>, input: impl Fn(usize) -> Sym) {
         let number = |k: usize| input(self.at + k);

@@ -28,7 +28,7 @@ pub fn random_limbs(seed: u64) -> Description {
     let on_spine = random.chance(0.3);
     if on_spine {
         let spine = one_joint(random, BODY);
-        attach(&mut robot, "spine".into(), 0, spine, inertial(random, BODY));
+        attach(&mut robot, "spine", 0, spine, inertial(random, BODY));
     }
     let (limbs, mimic) = (2 + random.below(5), random.chance(0.25));
     for limb in 0..limbs {
@@ -45,7 +45,7 @@ pub fn random_limbs(seed: u64) -> Description {
                 _ => {}
             }
             let before = robot.joints.len();
-            last = attach(&mut robot, format!("{limb}_{k}"), last, joint, body);
+            last = attach(&mut robot, &format!("{limb}_{k}"), last, joint, body);
             if mimic && k == 1 && [before - 1, before].iter().all(|&j| robot.joints[j].kind.sizes() == (1, 1)) {
                 robot.joints[before].mimic = Some(Mimic { joint: before - 1, multiplier: -0.7, offset: 0.2 });
             }
@@ -80,7 +80,7 @@ fn link(name: String, inertial: Option<Inertial>) -> Link {
 }
 
 /// Hangs a body on a link; the new link.
-fn attach(robot: &mut Description, name: String, parent: usize, joint: Joint, body: Option<Inertial>) -> usize {
+fn attach(robot: &mut Description, name: &str, parent: usize, joint: Joint, body: Option<Inertial>) -> usize {
     let child = robot.links.len();
     robot.links.push(link(format!("link_{name}"), body));
     robot.joints.push(Joint { name: format!("joint_{name}"), parent, child, ..joint });

@@ -114,6 +114,12 @@ fn inputs(out: &mut String, parameters: &[Parameter]) {
     }
     let values: Vec<String> = parameters.iter().flat_map(|p| &p.nominal).map(|x| literal(*x)).collect();
     let _ = writeln!(out, "/// The parameters as the URDF has them; [`parameter`] says where each begins.");
+    if parameters.iter().any(Parameter::is_inertial) {
+        let _ = writeln!(
+            out,
+            "///\n/// Inertial parameters: m, m·c and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz, about the origin and in axes of the link; kg, kg·m, kg·m²."
+        );
+    }
     let _ = writeln!(out, "{NUMBERS}\npub const PARAMETERS: [f64; {}] = [{}];", values.len(), values.join(", "));
     let rows: Vec<_> = parameters.iter().map(|p| (super::identifier(&p.name), p.what.clone(), p.at)).collect();
     list(out, "parameter", "Index in [`PARAMETERS`] of the first number of each.", &rows);
