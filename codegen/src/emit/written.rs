@@ -189,8 +189,11 @@ mod tests {
         let numbers = graph.lane_constant([2.0, 2.0, 2.0, -3.0]);
         // Pairs of each lane, one of them made late; constants beside; one alone.
         let (early, late, given) = (lanes_of(&mut graph, sine), lanes_of(&mut graph, product), lanes_of(&mut graph, numbers));
+        // What all lanes are.
+        let same = graph.constant(0.25);
+        let same = lanes_of(&mut graph, same);
         let mut outputs: Vec<NodeId> = (0..4).flat_map(|k| [early[k], late[k], given[k]]).collect();
-        outputs.extend([graph.constant(0.5), late[2], graph.constant(0.0), graph.constant(0.0)]);
+        outputs.extend([graph.constant(0.5), late[2], graph.constant(0.0), graph.constant(0.0), late[3], same[2]]);
         graph.outputs = outputs;
         let cells: Vec<Cell> = graph.outputs.iter().map(|&o| Cell::of(&graph, o)).collect();
         let all: Vec<(String, Group)> = groups(&cells).into_iter().map(|group| ("out".into(), group)).collect();
@@ -202,7 +205,12 @@ mod tests {
             words.for_each(|word| assert!(named.contains(&word), "{line} in\n{text}"));
             named.extend(left.split(|c: char| !c.is_ascii_alphanumeric()).filter(|w| w.starts_with('x')));
         }
-        for group in ["lanes([2.0, 2.0, 2.0, -3.0])", "put_one(0.5, out, 12);", "out[14..16].fill(::core::mem::MaybeUninit::new(0.0));"] {
+        for group in [
+            "lanes([2.0, 2.0, 2.0, -3.0])",
+            "put_one(0.5, out, 12);",
+            "put_one(0.25, out, 17);",
+            "out[14..16].fill(::core::mem::MaybeUninit::new(0.0));",
+        ] {
             assert!(text.contains(group), "{group} in\n{text}");
         }
         assert_eq!(text.matches("put").count() + text.matches("fill").count(), all.len(), "{text}");

@@ -9,7 +9,7 @@ use articulated_tests::random_limbs::random_limbs;
 use crate::equals_generic::compare;
 use crate::robots::{Robot, with};
 
-const ROBOTS: u64 = 24;
+const ROBOTS: u64 = 32;
 
 /// One of each way in which code is made: lanes alone, matrices in lanes, loops over joints, frames, and what all limbs add to.
 const FUNCTIONS: [&str; 5] =
