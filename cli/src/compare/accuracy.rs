@@ -12,7 +12,7 @@ use articulated_core::model::Model;
 use serde::Serialize;
 
 use super::contender::Contender;
-use crate::magnitude::{ROUNDOFF, scales};
+use crate::magnitude::{ROUNDOFF, scales, scales_of_generated};
 use crate::precise::Big;
 use crate::states::quaternions;
 use crate::worse::worse;
@@ -101,10 +101,18 @@ pub(crate) fn singular(exact: &[Big]) -> bool {
     exact.iter().map(|x| x.to_f64()).any(|x| x.is_nan() || x.abs() >= 1e40)
 }
 
+/// Errors beyond this are looked at once more: see [`scales_of_generated`].
+const SUSPECT: f64 = 16.0;
+
 /// |found − exact| over the scale of the result, of each that was found.
 fn forward(exact: &[Big], model: &Model<f64>, name: &str, state: &[&[f64]], found: &[Vec<f64>; 2]) -> Option<[f64; 2]> {
-    let scale = above_residues(scales(model, name, state).ok()?);
-    Some(found.each_ref().map(|found| largest(exact, found, &scale)))
+    let own = above_residues(scales(model, name, state).ok()?);
+    let [generated, generic] = found.each_ref().map(|found| largest(exact, found, &own));
+    if generated <= SUSPECT {
+        return Some([generated, generic]);
+    }
+    let moved = above_residues(scales_of_generated(model, name, state).ok()?);
+    Some([largest(exact, &found[0], &moved), generic])
 }
 
 /// How much of the scale of a result may be left of its zeros by the roundings of the reference's 96 digits, and more than that.

@@ -56,6 +56,11 @@ impl Difference {
         worst
     }
 
+    /// Whether it is more than rounding explains.
+    pub(super) fn exceeded(&self) -> bool {
+        self.units.is_nan() || self.units > BOUND
+    }
+
     /// The larger of what was found and what is new.
     pub(super) fn larger(old: Option<Self>, new: Self) -> Option<Self> {
         Some(match old {
@@ -71,7 +76,7 @@ impl Difference {
 impl FunctionReport {
     /// Whether the results are further apart than rounding explains.
     pub(super) fn exceeded(&self) -> bool {
-        self.largest.is_some_and(|d| d.units.is_nan() || d.units > BOUND)
+        self.largest.is_some_and(|d| d.exceeded())
     }
 
     fn json(&self, model: &Model<f64>) -> Value {

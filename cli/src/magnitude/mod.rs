@@ -8,7 +8,7 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 use articulated_core::Scalar;
 use num_traits::{One, Zero};
 
-pub use scales::scales;
+pub use scales::{scales, scales_of_generated};
 
 /// A value together with the sum of the magnitudes of the terms that it was summed from.
 ///

@@ -20,6 +20,19 @@ pub fn scales(model: &Model<f64>, name: &str, arguments: &[&[f64]]) -> Result<Ve
     Ok(magnitudes(model, name, &given(arguments))?.into_iter().map(|x| x.magnitude).collect())
 }
 
+/// What generated code may be off by where [`scales`] is too much to ask: model passes turn and move frames, so that one term becomes several whose sum it
+/// is, and a number of a moment m·c, of an offset or of a rotation that is zero in the file comes back as the rest of its neighbours. No more than the largest
+/// scale of all numbers of the result.
+pub fn scales_of_generated(model: &Model<f64>, name: &str, arguments: &[&[f64]]) -> Result<Vec<f64>, FunctionError> {
+    let own = scales(model, name, arguments)?;
+    if function::<f64>(name).is_some_and(|row| row.inverts_mass_matrix()) {
+        return Ok(own);
+    }
+    let moved = evaluated(&turned(constants(model)), name, &given(arguments))?;
+    let largest = own.iter().copied().fold(0.0, f64::max);
+    Ok(own.into_iter().zip(moved).map(|(own, moved)| own.max(moved.magnitude.min(largest))).collect())
+}
+
 pub(super) const UNKNOWN: FunctionError = FunctionError::NotGenerated { function: "of this name" };
 
 /// Numbers without error.
@@ -30,11 +43,14 @@ pub(super) fn given(arguments: &[&[f64]]) -> Vec<Vec<Magnitude>> {
 /// What a function gives with these arguments, in its first way, which is what [`articulated_core::algorithm::Function::call`] takes: in others some
 /// terms are zero that cancel in it, which is no reason to ask more of it.
 pub(super) fn magnitudes(model: &Model<f64>, name: &str, arguments: &[Vec<Magnitude>]) -> Result<Vec<Magnitude>, FunctionError> {
+    evaluated(&constants(model), name, arguments)
+}
+
+fn evaluated(model: &Model<Magnitude>, name: &str, arguments: &[Vec<Magnitude>]) -> Result<Vec<Magnitude>, FunctionError> {
     let row = function::<Magnitude>(name).ok_or(UNKNOWN)?;
-    let model = constants(model);
     let arguments: Vec<&[Magnitude]> = arguments.iter().map(Vec::as_slice).collect();
     let mut out = vec![Magnitude::zero(); row.len(model.shape())];
-    row.call(&model, &mut Workspace::new(&model), &arguments, &mut out)?;
+    row.call(model, &mut Workspace::new(model), &arguments, &mut out)?;
     Ok(out)
 }
 
@@ -53,6 +69,17 @@ fn constants(model: &Model<f64>) -> Model<Magnitude> {
         neighbours(placement.position.as_mut_slice(), false);
     }
     cast
+}
+
+/// Constants of frames that may have been turned and moved: every number of a body is the rest of its neighbours.
+fn turned(mut model: Model<Magnitude>) -> Model<Magnitude> {
+    for body in &mut model.bodies {
+        neighbours(body.inertia.first.as_mut_slice(), true);
+        neighbours(body.inertia.second.as_mut_slice(), true);
+        neighbours(body.placement.position.as_mut_slice(), true);
+        neighbours(body.placement.rotation.as_mut_slice(), true);
+    }
+    model
 }
 
 fn neighbours(numbers: &mut [Magnitude], all: bool) {

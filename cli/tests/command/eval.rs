@@ -43,6 +43,30 @@ fn a_result_of_zeros_may_be_off_by_a_rounding_of_its_neighbours() {
     assert!(difference["in_units_of_roundoff"].as_f64().unwrap() < 16.0, "{difference}");
 }
 
+/// A lever that vanishes at q = 0, where frames were turned by a seventh of a turn: zero but for rounding.
+#[test]
+fn where_levers_vanish_frames_that_were_turned_may_round() {
+    let body = |at: &str| {
+        format!(
+            "<inertial><origin xyz='{at}'/><mass value='3'/><inertia ixx='0.1' ixy='0.02' ixz='0' iyy='0.2' iyz='0' izz='0.25'/></inertial>"
+        )
+    };
+    let link = |name: &str, at: &str| format!("<link name='{name}'>{}</link>", body(at));
+    let joint = |k: usize, place: &str, axis: &str| {
+        format!(
+            "<joint name='j{k}' type='continuous'><origin xyz='{place}'/><parent link='l{k}'/><child link='l{}'/><axis xyz='{axis}'/></joint>",
+            k + 1
+        )
+    };
+    let joints = joint(0, "0.1 0 0.2", "0 0 1") + &joint(1, "0.3 0 0", "0.6 0.35 0.1");
+    let urdf = format!("<robot name='lever'>{}{}{}{joints}</robot>", link("l0", "0 0 0"), link("l1", "0.2 0 0"), link("l2", "0 0 0"));
+    let file = File::new("lever.urdf", urdf.as_bytes());
+    let functions = "mass_matrix,inverse_dynamics_derivatives,coriolis_matrix,jacobians_body";
+    let zeros = br#"[{"q": [0, 0, 0, 0, 0, 0, 1, 0, 0], "v": [0.3, 0.3, 0.3, 0.3, 0.3, 0.3, 0.3, 0.3], "a": [0, 0, 0, 0, 0, 0, 0, 0]}]"#;
+    let ended = run_with(&["eval", file.name(), "--floating", "--function", functions, "--states", "-"], zeros);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+}
+
 /// About the joint's axis: what a unit of acceleration costs at rest.
 fn inertia() -> f64 {
     let torque = |a: f64| {
