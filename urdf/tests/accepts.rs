@@ -280,12 +280,15 @@ fn what_looks_wrong_is_a_warning_and_used_as_written() {
         ("effort=\"100\"", "effort=\"100\" efort=\"1\"", Kind::Misspelt, "travel", 29),
         ("<robot ", "<robot version=\"7\" ", Kind::Version, "", 2),
     ];
+    let mut messages = Vec::new();
     for (from, to, kind, name, line) in cases {
         let warnings = accepted(&crane(from, to)).warnings;
         let found: Vec<_> = warnings.iter().map(|w| (w.kind, w.line)).collect();
         assert_eq!(found, [(kind, Some(line))], "{to}");
         assert!(warnings[0].to_string().contains(name));
+        messages.push(warnings[0].to_string());
     }
+    corpus::as_kept("warnings.txt", &messages);
     let travel = joint(&crane("lower=\"0\"", "lower=\"4\""), "travel").limit.unwrap();
     assert_eq!((travel.lower, travel.upper), (4.0, 3.0));
 }

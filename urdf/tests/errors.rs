@@ -3,7 +3,7 @@
 mod corpus;
 
 use articulated_urdf::{Kind, Options, Subject, read};
-use corpus::{CRANE, crane, only_error, options, refused, refused_bytes};
+use corpus::{CRANE, as_kept, crane, only_error, options, refused, refused_bytes};
 
 /// One mistake: what is replaced by what; the kind and line of the error; words of the message.
 type Mistake = (&'static str, &'static str, Kind, u32, &'static [&'static str]);
@@ -92,6 +92,7 @@ const MISTAKES: &[Mistake] = &[
 
 #[test]
 fn each_mistake_is_one_error_with_its_line_and_names() {
+    let mut messages = Vec::new();
     for (from, to, kind, line, words) in MISTAKES {
         let error = only_error(&crane(from, to));
         let message = error.to_string();
@@ -99,7 +100,9 @@ fn each_mistake_is_one_error_with_its_line_and_names() {
         assert!(message.starts_with(&format!("crane.urdf:{line}: ")), "{message}");
         assert!(words.iter().all(|word| message.contains(word)), "{message}\n{words:?}");
         assert!(!message.contains('\n'), "{message}");
+        messages.push(message);
     }
+    as_kept("mistakes.txt", &messages);
 }
 
 #[test]
@@ -197,13 +200,16 @@ const SPECIALS: &[Special] = &[
 
 #[test]
 fn each_mistake_in_an_extension_is_one_error() {
+    let mut messages = Vec::new();
     for (name, axes, kind, line, words) in SPECIALS {
         let text = crane("<axis xyz=\"0 0 1\"/>", axes).replace("\"continuous\"", &format!("\"{name}\""));
         let error = only_error(&text);
         let message = error.to_string();
         assert_eq!((error.kind, error.line), (*kind, Some(*line)), "{message}");
         assert!(words.iter().all(|word| message.contains(word)), "{message}\n{words:?}");
+        messages.push(message);
     }
+    as_kept("special_mistakes.txt", &messages);
 }
 
 #[test]
@@ -232,11 +238,14 @@ fn documents_that_are_no_robots_are_refused() {
         (b"<robot name='r'><!-- <link name='l'/> --></robot>", Kind::NoLinks),
         (b"<!DOCTYPE robot SYSTEM 'other.dtd'><robot name='r'><link name='l'/></robot>", Kind::Doctype),
     ];
+    let mut messages = Vec::new();
     for (bytes, kind) in cases {
         let problems = refused_bytes(bytes);
         assert_eq!(problems.errors.iter().map(|e| e.kind).collect::<Vec<_>>(), [*kind], "{problems}");
         assert!(problems.errors[0].line.is_some(), "{problems}");
+        messages.push(problems.errors[0].to_string());
     }
+    as_kept("no_robots.txt", &messages);
 }
 
 #[test]

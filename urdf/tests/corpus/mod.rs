@@ -1,6 +1,9 @@
 //! A sound robot, and ways to spoil it.
 #![allow(dead_code, reason = "each test file uses a part")]
 
+use std::path::Path;
+use std::{env, fs};
+
 use articulated_core::description::Description;
 use articulated_urdf::{Options, Problem, Problems, Reading, read};
 
@@ -41,4 +44,18 @@ pub(crate) fn only_error(text: &str) -> Problem {
     let problems = refused(text);
     assert_eq!(problems.errors.len(), 1, "{problems}\n{text}");
     problems.errors[0].clone()
+}
+
+/// Holds messages to those in a file of this folder, word by word; `UPDATE_GOLDEN=1` writes it anew.
+pub(crate) fn as_kept(file: &str, messages: &[String]) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus").join(file);
+    if env::var_os("UPDATE_GOLDEN").is_some() {
+        fs::write(&path, messages.join("\n") + "\n").expect("the folder can be written to");
+    }
+    let kept = fs::read_to_string(&path).expect("the file is there");
+    let kept: Vec<&str> = kept.lines().collect();
+    for (message, kept) in messages.iter().zip(&kept) {
+        assert_eq!(message, kept, "{file}");
+    }
+    assert_eq!(messages.len(), kept.len(), "{file}");
 }
