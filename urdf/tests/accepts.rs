@@ -263,6 +263,11 @@ fn axes_of_a_universal_joint_may_be_nearly_parallel_but_not_quite() {
     let leaning = |by: &str| slew("universal", &format!("<axis xyz='1 0 0'/><axis2 xyz='-1 {by} 0'/>"));
     assert_eq!(joint(&leaning("3e-6"), "slew").second_axis, [-1.0, 3e-6, 0.0]);
     assert_eq!(corpus::only_error(&leaning("3e-7")).kind, Kind::ParallelAxes);
+    let askew = |second: &str| slew("universal", &format!("<axis xyz='1 2 3'/><axis2 xyz='{second}'/>"));
+    assert_eq!(corpus::only_error(&askew("-2 -4 -6")).kind, Kind::ParallelAxes);
+    for second in ["3 2 1", "-2 -4 6", "-2 4 -6", "2 -4 -6", "-2 -4 -6.001"] {
+        accepted(&askew(second));
+    }
 }
 
 #[test]
@@ -289,6 +294,9 @@ fn what_looks_wrong_is_a_warning_and_used_as_written() {
         messages.push(warnings[0].to_string());
     }
     corpus::as_kept("warnings.txt", &messages);
+    for (from, to) in [("effort=\"100\"", "effort=\"0\""), ("damping=\"0.5\"", "damping=\"0\"")] {
+        assert!(accepted(&crane(from, to)).warnings.is_empty(), "{to}");
+    }
     let travel = joint(&crane("lower=\"0\"", "lower=\"4\""), "travel").limit.unwrap();
     assert_eq!((travel.lower, travel.upper), (4.0, 3.0));
 }

@@ -274,6 +274,38 @@ fn a_message_stays_on_one_line_and_short() {
 }
 
 #[test]
+fn an_attribute_is_in_the_line_where_it_is_written() {
+    for (from, to, kind) in [
+        ("type=\"continuous\"", "\n\ntype=\"continous\"", Kind::UnknownJointType),
+        ("<joint name=\"slew\"", "<joint\n\nname=\"\"", Kind::EmptyName),
+    ] {
+        let error = only_error(&crane(from, to));
+        assert_eq!((error.kind, error.line), (kind, Some(21)), "{error}");
+    }
+}
+
+#[test]
+fn a_name_may_be_as_long_as_this_and_no_longer() {
+    let named = |length: usize| crane("<link name=\"lamp\"/>", &format!("<link name=\"lamp\"/><link\nname=\"{}\"/>", "x".repeat(length)));
+    assert_eq!(only_error(&named(1024)).kind, Kind::SeveralRoots);
+    let error = only_error(&named(1025));
+    assert_eq!((error.kind, error.line), (Kind::TooLarge, Some(19)), "{error}");
+    assert!(error.to_string().contains("1025 bytes"), "{error}");
+}
+
+#[test]
+fn very_many_warnings_are_counted() {
+    let tag = "<link name='lamp'><inertial><mass value='0'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>";
+    let links: String = (0..1003).map(|k| tag.replace("lamp", &format!("lamp{k}"))).collect();
+    let joints: String = (0..1003)
+        .map(|k| format!("<joint name='mount{k}' type='continuous'><parent link='boom'/><child link='lamp{k}'/></joint>"))
+        .collect();
+    let warnings = corpus::accepted(&crane("</robot>", &format!("{links}{joints}</robot>"))).warnings;
+    assert_eq!((warnings.len(), warnings[1000].kind), (1001, Kind::More));
+    assert!(warnings[1000].to_string().contains("3 more that"), "{}", warnings[1000]);
+}
+
+#[test]
 fn very_many_errors_are_counted() {
     let joints = "<joint name='j' type='?'><parent link='x'/><child link='y'/></joint>".repeat(2000);
     let problems = refused(&crane("</robot>", &format!("{joints}</robot>")));
