@@ -90,13 +90,16 @@ fn in_loops(entry: &mut Entry, counts: &Counts) {
 /// What is fewer instructions than this is never left loops over joints: it is fetched as fast as it is executed, and does nothing that is not asked for.
 const WRITTEN_OUT: f64 = 3500.0;
 
+/// An instruction in loops takes this part of the time of one that is written out, or less.
+const LOOPED: f64 = 0.95;
+
 /// Where joints stand, if a function that would be so many instructions is fewer as loops over them: these need vectors, and constants that are known.
 fn groups(wanted: &Wanted, written: f64, subject: &Subject, options: &Options) -> Option<(Groups, Counts)> {
     let meant = written > WRITTEN_OUT && wanted.as_function().is_some_and(|f| f.name == "inverse_dynamics_derivatives");
     let can = options.limbs && options.level.has_lanes() && !options.forbid_unsafe && subject.parameters.is_empty();
     let groups = (meant && can).then(|| Groups::of(subject.model)).flatten()?;
     let counts = groups.counts(subject.model);
-    ((counts.instructions() as f64) < written).then_some((groups, counts))
+    (counts.instructions() as f64 * LOOPED < written).then_some((groups, counts))
 }
 
 /// From so many degrees of freedom on, and up to so many, the solution column by column is a loop: with six the whole function takes a quarter longer than written out, with seven

@@ -11,12 +11,9 @@ use articulated_core::lanes::COLUMNS;
 
 use crate::program::Columns;
 
-/// Columns of a vector.
-const LANES: usize = 4;
-
-/// Vectors of a row of one matrix with which all three matrices are solved for at once: with fewer, one after the other is faster (up to a tenth of the whole function), with more, the
-/// vectors of a row are more than there are registers.
-const ALL_AT_ONCE: std::ops::RangeInclusive<usize> = 3..=5;
+/// Columns of a vector, and vectors of a row of one matrix with which all three matrices are solved for at once: with fewer, one after the other is faster (up to a tenth of the whole function), with
+/// more, the vectors of a row are more than there are registers, or slower on one processor (five of eight: Emerald Rapids 8 %) than they are faster on another (Zen 5: 3 %).
+const ALL_AT_ONCE: [(usize, std::ops::RangeInclusive<usize>); 2] = [(4, 3..=5), (8, 1..=3)];
 
 /// How columns are laid out.
 pub(super) struct Layout<'a> {
@@ -32,32 +29,25 @@ impl<'a> Layout<'a> {
         self.columns.ways.len()
     }
 
-    /// Vectors of a row of one matrix.
-    fn vectors(&self) -> usize {
-        self.n().div_ceil(LANES)
-    }
-
-    /// Matrices that are solved for at once.
-    fn together(&self) -> usize {
-        if ALL_AT_ONCE.contains(&self.vectors()) { 3 } else { 1 }
+    /// Matrices that are solved for at once, in vectors of four columns and of eight.
+    fn together(&self) -> [usize; 2] {
+        ALL_AT_ONCE.map(|(lanes, vectors)| if vectors.contains(&self.n().div_ceil(lanes)) { 3 } else { 1 })
     }
 
     /// How the tree stands, and the function `columns`.
     pub(super) fn module(&self, out: &mut String) {
         let before = &self.columns.ways;
         let beyond: Vec<Vec<usize>> = (0..self.n()).map(|i| (0..self.n()).filter(|&k| before[k].contains(&i)).collect()).collect();
-        let numbers = [
-            ("VECTORS", "Vectors of a row of one matrix.", self.vectors()),
-            ("TOGETHER", "Matrices that are solved for at once.", self.together()),
-        ];
         let _ = writeln!(out, "/// M X = B for all columns of three matrices, by M = Lᵀ D L; Featherstone 2008, §6.5.");
         let _ = writeln!(
             out,
             "#[allow(unsafe_code, unused_unsafe, dead_code, clippy::all, clippy::pedantic)]\nmod columns {{\n#[allow(unused_imports)]\nuse ::core::iter::Iterator;\n\nuse super::NV;\n"
         );
-        for (name, what, value) in numbers {
-            let _ = writeln!(out, "/// {what}\nconst {name}: usize = {value};");
-        }
+        let _ = writeln!(
+            out,
+            "/// Matrices that are solved for at once, in vectors of four columns and of eight.\nconst TOGETHER: [usize; 2] = {:?};",
+            self.together()
+        );
         table(out, "BEFORE", "For each row of L the columns of its numbers.", before);
         table(out, "BEYOND", "For each column of L the rows of its numbers.", &beyond);
         let _ = writeln!(out, "\n{COLUMNS}}}\n");
@@ -85,9 +75,9 @@ mod tests {
         };
         assert_eq!(table("BEFORE"), "&[],&[0],&[1,0],&[0],&[3,0],");
         assert_eq!(table("BEYOND"), "&[1,2,3,4],&[2],&[],&[4],&[],");
-        assert!(out.contains("const VECTORS: usize = 2;") && out.contains("const TOGETHER: usize = 1;"));
-        // All three matrices where each has three to five vectors.
-        for (n, together) in [(8, 1), (9, 3), (20, 3), (21, 1)] {
+        assert!(out.contains("const TOGETHER: [usize; 2] = [1, 3];"));
+        // All three matrices where each has three to five vectors of four, and up to three of eight.
+        for (n, together) in [(8, [1, 3]), (9, [3, 3]), (20, [3, 3]), (21, [1, 3]), (24, [1, 3]), (25, [1, 1])] {
             assert_eq!(Layout::of(&Columns { ways: vec![vec![]; n] }).together(), together, "{n}");
         }
     }

@@ -18,7 +18,7 @@ pub(super) fn module(out: &mut String, groups: &Groups, model: &Model<f64>) {
     let _ = writeln!(out, "/// Derivatives of inverse dynamics, four joints at a time; Singh, Russell & Wensing 2022.");
     let _ = writeln!(
         out,
-        "#[allow(unsafe_code, unused_unsafe, dead_code, clippy::all, clippy::pedantic)]\nmod derivatives {{\n#[allow(unused_imports)]\nuse ::core::iter::Iterator;\n\nuse super::{{NQ, NV}};\n"
+        "#[allow(unsafe_code, unused_unsafe, unused_macros, dead_code, clippy::all, clippy::pedantic)]\nmod derivatives {{\n#[allow(unused_imports)]\nuse ::core::iter::Iterator;\n\nuse super::{{NQ, NV}};\n"
     );
     let tables = Tables { groups, model };
     tables.constants(out);
@@ -117,14 +117,31 @@ impl Tables<'_> {
         let _ = writeln!(out, "/// Paths between chunks.\nconst STEPS: usize = {};", paths.len());
         table(out, "PATHS", "Path", &paths.iter().map(path).collect::<Vec<_>>());
         for (name, pairs) in ["BEFORE", "BEYOND"].into_iter().zip(pairs) {
-            table(out, name, "Pair", &pairs.iter().map(|pair| self.pair(pair)).collect::<Vec<_>>());
+            table(out, name, "Pair", &self.twos(&pairs));
         }
     }
 
-    fn pair(&self, pair: &Pair) -> String {
-        let (at, lane) = self.groups.turned(pair.own);
+    /// What joints of a block have to do with the same others, two by two.
+    fn twos(&self, pairs: &[Pair]) -> Vec<String> {
+        let mut meetings: Vec<(_, Vec<&Pair>)> = Vec::new();
+        for pair in pairs {
+            let meeting = (self.groups.turned(pair.own).0, pair.path, pair.at);
+            match meetings.iter_mut().find(|(other, _)| *other == meeting) {
+                Some((_, own)) => own.push(pair),
+                None => meetings.push((meeting, vec![pair])),
+            }
+        }
+        let twos = meetings.iter().flat_map(|(meeting, own)| own.chunks(2).map(move |two| (meeting, two)));
+        let written = twos.map(|((at, path, others), two)| {
+            let second = two.get(1).map_or_else(|| "Own { lane: 0, which: 0, place: 0 }".into(), |pair| self.own(pair));
+            format!("Pair {{ at: {at}, path: {path}, others: {others}, own: [{}, {second}] }}", self.own(two[0]))
+        });
+        written.collect()
+    }
+
+    fn own(&self, pair: &Pair) -> String {
         let place = self.model.bodies[pair.own].coordinates.v * self.model.nv + pair.column;
-        format!("Pair {{ at: {at}, lane: {lane}, path: {}, others: {}, which: {}, place: {place} }}", pair.path, pair.at, bits(pair.which))
+        format!("Own {{ lane: {}, which: {}, place: {place} }}", self.groups.turned(pair.own).1, bits(pair.which))
     }
 }
 

@@ -47,6 +47,7 @@ pub(super) fn support(out: &mut String, model: &Model<f64>, programs: &[Program]
     if let Some(columns) = programs.iter().find_map(|p| p.columns.as_ref()) {
         Layout::of(columns).module(out);
         widths.push(4);
+        widths.push(8);
     }
     if let Some(groups) = programs.iter().find_map(|p| p.groups.as_ref()) {
         derivatives::module(out, groups, model);
@@ -67,7 +68,9 @@ fn lanes(out: &mut String, widths: &[usize], forbid_unsafe: bool, level: Level) 
     let lint = if forbid_unsafe { "" } else { "unsafe_code, " };
     for width in widths {
         for (set, name, cfg) in sets {
-            let Some(text) = source(*set, Real::F64, *width).map(|text| with_sines(&text, level)) else { continue };
+            // Eight are for AVX-512 alone, and that for eight.
+            let text = source(*set, Real::F64, *width).filter(|_| (*set == Set::Avx512) == (*width == 8));
+            let Some(text) = text.map(|text| with_sines(&text, level)) else { continue };
             let text = used(&text, &caller);
             let _ = writeln!(out, "/// Arithmetic and sines of {width} numbers at once.");
             let line = if cfg.is_empty() { "" } else { "\n" };
@@ -81,10 +84,15 @@ fn lanes(out: &mut String, widths: &[usize], forbid_unsafe: bool, level: Level) 
 }
 
 /// The instruction sets of limbs and sines.
-const SETS: [(Set, &str, &str); 4] = [
+const SETS: [(Set, &str, &str); 5] = [
     (Set::Portable, "portable", ""),
     (Set::Sse2, "sse2", NOT_COMPILED_FOR_AVX2),
     (Set::Avx2, "avx2", "#[cfg(target_arch = \"x86_64\")]"),
+    (
+        Set::Avx512,
+        "avx512",
+        "#[cfg(all(target_arch = \"x86_64\", target_feature = \"avx512dq\", target_feature = \"avx512vl\", target_feature = \"avx512vbmi2\"))]",
+    ),
     (Set::Neon, "neon", "#[cfg(target_arch = \"aarch64\")]"),
 ];
 

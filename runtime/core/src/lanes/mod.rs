@@ -116,8 +116,8 @@ pub fn tiles(set: Set, real: Real, lanes: usize) -> Option<String> {
 
 /// M X = B for all columns of three `[NV][NV]` matrices B, the third the unit matrix, by M = Lᵀ D L: Featherstone 2008, §6.5.
 ///
-/// The text of a module that stands beside `portable_f64x4`, `avx2_f64x4` and `neon_f64x4`. Before it stand
-/// * `NV`, `VECTORS` = ⌈`NV`/4⌉, `TOGETHER`, how many matrices are solved for at once (3 or 1), and `ENTRIES`, numbers of L off the diagonal;
+/// The text of a module that stands beside `portable_f64x4`, `avx2_f64x4`, `avx512_f64x8` and `neon_f64x4`. Before it stand
+/// * `NV`, and `TOGETHER`, how many matrices are solved for at once (3 or 1) in vectors of four columns and in vectors of eight;
 /// * `BEFORE` and `BEYOND`: `[&[(u16, u16)]; NV]`, for each row of L (each column) the column (the row) of each number and its place in `l`.
 pub const COLUMNS: &str = include_str!("text/columns.rs");
 
@@ -127,12 +127,13 @@ pub const COLUMNS: &str = include_str!("text/columns.rs");
 /// The text of a module that stands beside `portable_f64x4`, `avx2_f64x4` and `neon_f64x4`. Before it stand `NQ`, `NV`, and of types that it has
 /// * `GROUPS`, `TREE: [Group; GROUPS]`, `SLIDES`, whether there are prismatic joints, `ROOT: [f64; 10]`, the root body's m, h and Σ, `MASS`, that of all bodies, and `GRAVITY`;
 /// * `CHUNKS: [Chunk; _]`, `STEPS` and `PATHS: [Path; STEPS]`, a path behind those that it goes on from;
-/// * `BEFORE` and `BEYOND`: `[Pair; _]`, each joint with itself and those before it, and with those beyond it.
+/// * `BEFORE` and `BEYOND`: `[Pair; _]`, each joint with itself and those before it, and with those beyond it: joints of a block in twos.
 pub const DERIVATIVES: &str = concat!(
     include_str!("text/derivatives_tables.rs"),
     include_str!("text/derivatives_vectors.rs"),
     include_str!("text/derivatives_sweeps.rs"),
     include_str!("text/derivatives_pairs.rs"),
+    include_str!("text/derivatives_wide.rs"),
     include_str!("text/derivatives.rs"),
 );
 
@@ -149,8 +150,8 @@ pub struct LoopCost {
 pub const DERIVATIVES_COST: LoopCost = LoopCost {
     groups: [47, 110, 342, 25, 1],
     chunks: [0, 6, 36, 0, 0],
-    before: [3, 4, 27, 0, 0],
-    beyond: [6, 6, 18, 0, 0],
+    before: [6, 4, 27, 0, 0],
+    beyond: [9, 6, 18, 0, 0],
     once: [12, 54, 153, 24, 0],
 };
 

@@ -2,11 +2,12 @@
 
 use std::sync::LazyLock;
 
-#[cfg(target_arch = "x86_64")]
-use super::super::avx2_f64x4;
 #[cfg(target_arch = "aarch64")]
 use super::super::neon_f64x4;
 use super::super::portable_f64x4;
+#[cfg(target_arch = "x86_64")]
+#[allow(unused_imports, reason = "one or the other, as the processor has it")]
+use super::super::{avx2_f64x4, avx512_f64x8};
 use crate::algorithm::ltdl::{solve_rows, way};
 
 /// Rows of numbers.
@@ -64,14 +65,13 @@ fn random(mut state: u64) -> impl FnMut(usize) -> usize {
 
 /// The text with a tree of `$nv` joints, of which each stands on one of the `$near` before it, solved for `$together` matrices at once.
 macro_rules! columns {
-    ($($name:ident: $nv:literal, $near:literal, $together:literal;)+) => { $(
+    ($($name:ident: $nv:literal, $near:literal, $together:expr;)+) => { $(
         #[allow(unsafe_code, unused_imports, unused_unsafe, clippy::all, clippy::pedantic)]
         mod $name {
             use super::{LazyLock, Sample, Table};
 
             const NV: usize = $nv;
-            const VECTORS: usize = NV.div_ceil(4);
-            const TOGETHER: usize = $together;
+            const TOGETHER: [usize; 2] = $together;
 
             static SAMPLE: LazyLock<Sample> = LazyLock::new(|| Sample::random(NV, $near));
             static BEFORE: LazyLock<Table> = LazyLock::new(|| SAMPLE.tables()[0].clone());
@@ -88,9 +88,19 @@ macro_rules! columns {
                 columns(&mut x);
                 assert_eq!(x.as_flattened().as_flattened(), SAMPLE.x);
 
+                // With AVX2 alone: what this is compiled for may have more.
+                #[cfg(target_arch = "x86_64")]
+                if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+                    use super::avx2_f64x4::*;
+                    solve!(4, TOGETHER[0]; #[target_feature(enable = "avx2,fma")]);
+                    let mut in_fours = portable;
+                    // SAFETY: the processor was just asked for both.
+                    unsafe { solve(&mut in_fours) };
+                    assert_eq!(in_fours, x);
+                }
                 // What processors run that have no such vectors.
                 use super::portable_f64x4::*;
-                solve!();
+                solve!(4, TOGETHER[0];);
                 solve(&mut portable);
                 assert_eq!(portable, x);
             }
@@ -99,13 +109,14 @@ macro_rules! columns {
 }
 
 columns! {
-    one: 1, 1, 3;
-    five: 5, 5, 3;
-    chain: 10, 1, 3;
-    ten: 10, 4, 3;
-    full_vectors: 12, 3, 3;
-    legs: 18, 5, 3;
-    wide: 20, 20, 3;
-    one_by_one: 21, 6, 1;
-    one_by_one_in_full_vectors: 32, 12, 1;
+    one: 1, 1, [3, 3];
+    five: 5, 5, [3, 1];
+    chain: 10, 1, [3, 3];
+    ten: 10, 4, [3, 1];
+    full_vectors: 12, 3, [3, 3];
+    legs: 18, 5, [3, 3];
+    wide: 20, 20, [3, 1];
+    one_by_one: 21, 6, [1, 3];
+    full_vectors_of_eight: 24, 7, [1, 3];
+    one_by_one_in_full_vectors: 32, 12, [1, 1];
 }

@@ -114,7 +114,7 @@ mod counting {
 /// The text with a tree of which each joint is a group of its own, in lane 0.
 macro_rules! trees {
     ($($name:ident: $nv:literal, $paths:literal, $parents:expr;)+) => { $(
-        #[allow(unsafe_code, unused_imports, unused_unsafe, clippy::all, clippy::pedantic)]
+        #[allow(unsafe_code, dead_code, unused_imports, unused_macros, unused_unsafe, clippy::all, clippy::pedantic)]
         mod $name {
             use super::*;
 
@@ -150,6 +150,7 @@ macro_rules! trees {
             include!("../text/derivatives_vectors.rs");
             include!("../text/derivatives_sweeps.rs");
             include!("../text/derivatives_pairs.rs");
+            include!("../text/derivatives_wide.rs");
             include!("../text/derivatives.rs");
 
             fn first<const N: usize>(x: &[f64]) -> [Four; N] {
@@ -209,20 +210,38 @@ macro_rules! trees {
                 paths
             }
 
+            /// Joints of a chunk in twos, each two with each chunk.
             fn pairs_of(meant: impl Fn(usize, usize) -> bool) -> Vec<Pair> {
                 let mut pairs = Vec::new();
-                for own in 0..GROUPS {
-                    for (number, chunk) in chunks().iter().enumerate() {
+                for (from, of) in chunks().iter().enumerate() {
+                    for (to, chunk) in chunks().iter().enumerate() {
                         let others = chunk[0] / 4 * 4;
-                        let ends = (chunk_of(own).min(number), chunk_of(own).max(number));
-                        let path = paths().iter().position(|p| (p.0, p.1) == ends).map_or(0, |k| k + 1) as u16;
-                        let which = chunk.iter().filter(|k| meant(own, **k)).map(|k| 1 << (k % 4)).sum();
-                        let place = ((6 + own) * NV + 6 + others) as u32;
-                        let (at, lane) = (own as u16 / 4 * 4, own as u16 % 4);
-                        pairs.extend((which != 0).then_some(Pair { at, lane, path, others: others as u16, which, place }));
+                        let path = paths().iter().position(|p| (p.0, p.1) == (from.min(to), from.max(to))).map_or(0, |k| k + 1) as u16;
+                        let asked = |own: usize| chunk.iter().filter(|k| meant(own, **k)).map(|k| 1 << (k % 4)).sum();
+                        let row = |own: usize| Own { lane: own as u16 % 4, which: asked(own), place: ((6 + own) * NV + 6 + others) as u32 };
+                        let met: Vec<usize> = of.iter().copied().filter(|own| asked(*own) != 0).collect();
+                        for two in met.chunks(2) {
+                            let second = two.get(1).map_or(Own { lane: 0, which: 0, place: 0 }, |own| row(*own));
+                            pairs.push(Pair { at: of[0] as u16 / 4 * 4, path, others: others as u16, own: [row(two[0]), second] });
+                        }
                     }
                 }
                 pairs
+            }
+
+            /// With AVX2 alone, where the processor has it: what this is compiled for may have more.
+            fn in_fours(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV]) -> Option<[f64; 3 * MATRIX]> {
+                #[cfg(target_arch = "x86_64")]
+                if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+                    use super::avx2_f64x4::*;
+                    derivatives!(#[target_feature(enable = "avx2,fma")]);
+                    narrow!(#[target_feature(enable = "avx2,fma")]);
+                    let mut out = [f64::NAN; 3 * MATRIX];
+                    // SAFETY: the processor was just asked for both.
+                    unsafe { derivatives(q, v, a, &mut out) };
+                    return Some(out);
+                }
+                None
             }
 
             #[test]
@@ -242,15 +261,18 @@ macro_rules! trees {
                 {
                     use super::counting::*;
                     derivatives!();
+                    narrow!();
                     COUNTED.set([0; 5]);
                     derivatives(&q, &v, &a, &mut portable);
                 }
-                for found in [found.as_flattened().as_flattened(), &portable] {
+                let in_fours = in_fours(&q, &v, &a).unwrap_or(portable);
+                for found in [found.as_flattened().as_flattened(), &portable, &in_fours] {
                     for (found, expected) in found.iter().zip(&expected) {
                         assert!((found - expected).abs() < 64.0 * f64::EPSILON * largest, "{found} is not {expected}");
                     }
                 }
-                let cost = DERIVATIVES_COST.of(GROUPS as u64, CHUNKS.len() as u64, BEFORE.len() as u64, BEYOND.len() as u64);
+                let joints = |pairs: &[Pair]| pairs.iter().flat_map(|pair| &pair.own).filter(|own| own.which != 0).count() as u64;
+                let cost = DERIVATIVES_COST.of(GROUPS as u64, CHUNKS.len() as u64, joints(&BEFORE), joints(&BEYOND));
                 // What no vector adds up.
                 let apart = 27 * TREE.iter().filter(|group| group.behind == APART).count() as u64;
                 let [additions, rest @ ..] = COUNTED.take();

@@ -2,12 +2,14 @@
 macro_rules! derivatives {
     ($(#[$features:meta])?) => {
         vectors!($(#[$features])?);
+        matrices!($(#[$features])?);
         sweeps!($(#[$features])?);
-        pairings!($(#[$features])?);
+        rooted!($(#[$features])?);
 
         $(#[$features])?
         fn derivatives(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV], out: &mut [f64; 3 * MATRIX]) {
-            let mut bodies = Bodies { blocks: [NOTHING; BLOCKS], root: NOTHING, paths: [[0.0; 3]; 1 + STEPS] };
+            let mut bodies = Bodies { blocks: [UNKNOWN; BLOCKS], root: NOTHING, paths: [[0.0; 3]; 1 + STEPS] };
+            bodies.blocks[GROUPS..].fill(NOTHING);
             let root = Root::new(q, v, a);
             inputs(&mut bodies, &root, q, v, a);
             places(&mut bodies);
@@ -34,6 +36,10 @@ fn chosen(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV], out: &mut [f64; 3 * MATRI
     {
         use super::avx2_f64x4::*;
         derivatives!(#[target_feature(enable = "avx2,fma")]);
+        #[cfg(all(target_feature = "avx512vl", target_feature = "avx512vbmi2"))]
+        use wide::{all_pairs as pairs, mix, turn_each};
+        #[cfg(not(all(target_feature = "avx512vl", target_feature = "avx512vbmi2")))]
+        narrow!(#[target_feature(enable = "avx2,fma")]);
         #[cfg(all(target_arch = "x86_64", not(all(target_feature = "avx2", target_feature = "fma"))))]
         if ::std::is_x86_feature_detected!("avx2") && ::std::is_x86_feature_detected!("fma") {
             // SAFETY: the processor was just asked for both.
@@ -47,6 +53,7 @@ fn chosen(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV], out: &mut [f64; 3 * MATRI
     {
         use super::neon_f64x4::*;
         derivatives!(#[target_feature(enable = "neon")]);
+        narrow!(#[target_feature(enable = "neon")]);
         // SAFETY: every 64-bit Arm processor has it.
         return unsafe { derivatives(q, v, a, out) };
     }
@@ -54,6 +61,7 @@ fn chosen(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV], out: &mut [f64; 3 * MATRI
     {
         use super::portable_f64x4::*;
         derivatives!();
+        narrow!();
         derivatives(q, v, a, out)
     }
 }

@@ -1,28 +1,14 @@
 
-/// What joints have to do with one another and with the root, into the matrices.
-macro_rules! pairings {
+/// What joints have to do with the root, into the matrices.
+macro_rules! rooted {
     ($(#[$features:meta])?) => {
-        /// The lanes asked for, into the matrices.
-        $(#[$features])?
-        #[inline]
-        fn mix(x: V, which: &Four, out: &mut [f64; 3 * MATRIX], place: usize) {
-            match out.get_mut(place..place + 4).and_then(|to| to.first_chunk_mut()) {
-                ::core::option::Option::Some(to) => store(select(positive(load(which)), x, load(to)), to),
-                ::core::option::Option::None => {
-                    for ((to, x), which) in out[place..].iter_mut().zip(array(x)).zip(which) {
-                        *to = if *which > 0.0 { x } else { *to };
-                    }
-                }
-            }
-        }
-
         /// Rows and columns of the root's degrees of freedom.
         $(#[$features])?
         #[inline(never)]
         fn with_root(bodies: &Bodies, root: &Root, out: &mut [f64; 3 * MATRIX]) {
             for chunk in CHUNKS.iter() {
-                let (block, which) = (&bodies.blocks[chunk.at], &ASKED[chunk.which as usize % 16]);
-                let (mut x, origin): ([V; 21], [V; 3]) = (read(&block.x), read(&block.origin));
+                let (block, which) = (&bodies.blocks[chunk.at], chunk.which);
+                let (mut x, origin): ([V; 21], [V; 3]) = (read(&block.x), read(&block.points[3..]));
                 // About the root's origin.
                 for at in [0, 9, 15] {
                     let moment = cross_and(origin, three(&x[at + 3..]), three(&x[at..]));
@@ -46,62 +32,13 @@ macro_rules! pairings {
             }
         }
 
-        /// Rows of joints with themselves and with those before them, and with those beyond them.
-        $(#[$features])?
-        #[inline(never)]
-        fn pairs(bodies: &Bodies, out: &mut [f64; 3 * MATRIX]) {
-            for pair in BEFORE.iter() {
-                let (own, others, lane) = (&bodies.blocks[pair.at as usize], &bodies.blocks[pair.others as usize], pair.lane as usize % 4);
-                let (which, place) = (&ASKED[pair.which as usize % 16], pair.place as usize);
-                // G S about the origins of the others.
-                let arm = minus(from_first(bodies, pair, own, 1.0), read(&others.near));
-                let x = |i: usize| k(own.x[i][lane]);
-                let (force, turning) = ([x(3), x(4), x(5)], [x(6), x(7), x(8)]);
-                let moment = cross_and(arm, force, [x(0), x(1), x(2)]);
-                let (axis, drift, curl): ([V; 6], [V; 6], [V; 6]) = (read(&others.axis), read(&others.drift), read(&others.curl));
-                let mut by_a = dot(moment, three(&axis));
-                if SLIDES {
-                    by_a = dot_and(force, three(&axis[3..]), by_a);
-                }
-                let by_q = dot_and(turning, three(&drift), dot_and(force, three(&curl[3..]), dot(moment, three(&curl))));
-                let twice = dot_and(force, three(&drift[3..]), dot(moment, three(&drift)));
-                mix(by_q, which, out, place);
-                mix(fmadd(twice, k(2.0), dot(turning, three(&axis))), which, out, place + MATRIX);
-                mix(by_a, which, out, place + 2 * MATRIX);
-            }
-            for pair in BEYOND.iter() {
-                let (own, others, lane) = (&bodies.blocks[pair.at as usize], &bodies.blocks[pair.others as usize], pair.lane as usize % 4);
-                let (which, place) = (&ASKED[pair.which as usize % 16], pair.place as usize);
-                // S about the origins of the others.
-                let arm = minus(read(&others.near), from_first(bodies, pair, own, -1.0));
-                let angular = [k(own.axis[0][lane]), k(own.axis[1][lane]), k(own.axis[2][lane])];
-                let mut linear = cross(angular, arm);
-                if SLIDES {
-                    linear = plus(linear, [k(own.axis[3][lane]), k(own.axis[4][lane]), k(own.axis[5][lane])]);
-                }
-                let x: [V; 21] = read(&others.x);
-                let power = |at: usize| dot_and(linear, three(&x[at + 3..]), dot(angular, three(&x[at..])));
-                mix(power(9), which, out, place);
-                mix(power(15), which, out, place + MATRIX);
-                mix(power(0), which, out, place + 2 * MATRIX);
-            }
-        }
-
-        /// The joint's origin, from that of the first joint of the others' chunk; the sign says which of the two chunks the path begins at.
-        $(#[$features])?
-        #[inline]
-        fn from_first(bodies: &Bodies, pair: &Pair, own: &Block, sign: f64) -> [V; 3] {
-            let (path, lane) = (&bodies.paths[pair.path as usize], pair.lane as usize % 4);
-            [k(own.near[0][lane] + sign * path[0]), k(own.near[1][lane] + sign * path[1]), k(own.near[2][lane] + sign * path[2])]
-        }
-
         /// The root's degrees of freedom with one another.
         $(#[$features])?
         #[inline(never)]
         fn root_alone(bodies: &Bodies, root: &Root, out: &mut [f64; 3 * MATRIX]) {
             let mut x = [k(0.0); 27];
             for (x, from) in x.iter_mut().zip(&bodies.root.x) {
-                *x = across(load(from));
+                *x = across(load(from.numbers()));
             }
             let sums = Sums { mass: k(MASS), first: three(&x), second: complement(&symmetric(&x[3..])), momentum: three(&x[9..]), k: coriolis(&x) };
             // Turns about x, y, z in lanes, then moves along them.
@@ -139,5 +76,134 @@ macro_rules! pairings {
             ];
             ::core::array::from_fn(|i| ::core::array::from_fn(|j| array(columns[j][i])))
         }
+    };
+}
+
+/// What joints have to do with one another, into the matrices: as many of two joints at once as have room, each with four others.
+macro_rules! pairings {
+    ($(#[$features:meta])?) => {
+        /// Rows of joints with themselves and with those before them, and with those beyond them.
+        $(#[$features])?
+        #[inline(never)]
+        fn pairs(bodies: &Bodies, out: &mut [f64; 3 * MATRIX]) {
+            for pair in BEFORE.iter() {
+                for own in pair.own.as_chunks().0 {
+                    if own[0].which != 0 {
+                        before(bodies, pair, own, out);
+                    }
+                }
+            }
+            for pair in BEYOND.iter() {
+                for own in pair.own.as_chunks().0 {
+                    if own[0].which != 0 {
+                        beyond(bodies, pair, own, out);
+                    }
+                }
+            }
+        }
+
+        $(#[$features])?
+        #[inline]
+        fn before(bodies: &Bodies, pair: &Pair, own: &[Own; OWN], out: &mut [f64; 3 * MATRIX]) {
+            let (block, others, path) = meeting(bodies, pair);
+            // G S about the origins of the others.
+            let arm = minus(plus(of_each(&block.points, own), path), read(&others.points));
+            let (force, turning) = (of_each(&block.x[3..], own), of_each(&block.x[6..], own));
+            let moment = cross_and(arm, force, of_each(&block.x, own));
+            let (axis, drift, curl): ([V; 6], [V; 6], [V; 6]) = (read(&others.axis), read(&others.drift), read(&others.curl));
+            let mut by_a = dot(moment, three(&axis));
+            if SLIDES {
+                by_a = dot_and(force, three(&axis[3..]), by_a);
+            }
+            let by_q = dot_and(turning, three(&drift), dot_and(force, three(&curl[3..]), dot(moment, three(&curl))));
+            let twice = dot_and(force, three(&drift[3..]), dot(moment, three(&drift)));
+            put(by_q, own, out, 0);
+            put(fmadd(twice, k(2.0), dot(turning, three(&axis))), own, out, MATRIX);
+            put(by_a, own, out, 2 * MATRIX);
+        }
+
+        $(#[$features])?
+        #[inline]
+        fn beyond(bodies: &Bodies, pair: &Pair, own: &[Own; OWN], out: &mut [f64; 3 * MATRIX]) {
+            let (block, others, path) = meeting(bodies, pair);
+            // S about the origins of the others.
+            let arm = minus(read(&others.points), minus(of_each(&block.points, own), path));
+            let angular = of_each(&block.axis, own);
+            let mut linear = cross(angular, arm);
+            if SLIDES {
+                linear = plus(linear, of_each(&block.axis[3..], own));
+            }
+            let x: [V; 21] = read(&others.x);
+            for (matrix, at) in [9, 15, 0].into_iter().enumerate() {
+                put(dot_and(linear, three(&x[at + 3..]), dot(angular, three(&x[at..]))), own, out, matrix * MATRIX);
+            }
+        }
+
+        /// The block of the two, that of the others, and the path between the first joints of their chunks.
+        $(#[$features])?
+        #[inline]
+        fn meeting<'a>(bodies: &'a Bodies, pair: &Pair) -> (&'a Block, &'a Block, [V; 3]) {
+            let path = &bodies.paths[pair.path as usize];
+            (&bodies.blocks[pair.at as usize], &bodies.blocks[pair.others as usize], [k(path[0]), k(path[1]), k(path[2])])
+        }
+
+        /// Three numbers of each of the two, in all of its lanes.
+        $(#[$features])?
+        #[inline]
+        fn of_each(x: &[Held], own: &[Own; OWN]) -> [V; 3] {
+            [each(&x[0], own), each(&x[1], own), each(&x[2], own)]
+        }
+    };
+}
+
+/// What differs between processors, in vectors of four.
+macro_rules! narrow {
+    ($(#[$features:meta])?) => {
+        /// Of two joints, one at a time.
+        const OWN: usize = 1;
+
+        /// A joint's number in all lanes.
+        $(#[$features])?
+        #[inline]
+        fn each(x: &Held, own: &[Own; OWN]) -> V {
+            k(x.numbers()[own[0].lane as usize % 4])
+        }
+
+        /// A joint's row, so far behind its place.
+        $(#[$features])?
+        #[inline]
+        fn put(x: V, own: &[Own; OWN], out: &mut [f64; 3 * MATRIX], behind: usize) {
+            mix(x, own[0].which, out, own[0].place as usize + behind);
+        }
+
+        /// The lanes asked for, into the matrices.
+        $(#[$features])?
+        #[inline]
+        fn mix(x: V, which: u16, out: &mut [f64; 3 * MATRIX], place: usize) {
+            let which = &ASKED[which as usize % 16];
+            match out.get_mut(place..place + 4).and_then(|to| to.first_chunk_mut()) {
+                ::core::option::Option::Some(to) => store(select(positive(load(which)), x, load(to)), to),
+                ::core::option::Option::None => {
+                    for ((to, x), which) in out[place..].iter_mut().zip(array(x)).zip(which) {
+                        *to = if *which > 0.0 { x } else { *to };
+                    }
+                }
+            }
+        }
+
+        /// The same numbers of four groups, turned.
+        $(#[$features])?
+        #[inline]
+        fn turn_each([a, b, c, d]: [&mut [Held]; 4]) {
+            for (((a, b), c), d) in a.iter_mut().zip(b).zip(c).zip(d) {
+                let x = turned([load(a.numbers()), load(b.numbers()), load(c.numbers()), load(d.numbers())]);
+                a.write(array(x[0]));
+                b.write(array(x[1]));
+                c.write(array(x[2]));
+                d.write(array(x[3]));
+            }
+        }
+
+        pairings!($(#[$features])?);
     };
 }

@@ -13,7 +13,7 @@ macro_rules! sweeps {
             let [a, b, c, d] = group.parents.map(|slot| (&block(slot as usize / 4).x, slot as usize % 4));
             let mut x = [k(0.0); N];
             for i in 0..N {
-                x[i] = lanes([a.0[first + i][a.1], b.0[first + i][b.1], c.0[first + i][c.1], d.0[first + i][d.1]]);
+                x[i] = lanes([a, b, c, d].map(|(x, lane)| x[first + i].numbers()[lane]));
             }
             x
         }
@@ -23,19 +23,19 @@ macro_rules! sweeps {
         #[inline(never)]
         fn inputs(bodies: &mut Bodies, root: &Root, q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV]) {
             for i in 0..3 {
-                bodies.root.x[4 * i] = [1.0; 4];
-                bodies.root.x[12 + i] = [root.angular[i]; 4];
-                bodies.root.x[18 + i] = [root.acceleration[i]; 4];
-                bodies.root.x[21 + i] = [root.acceleration[i + 3]; 4];
+                bodies.root.x[4 * i].write([1.0; 4]);
+                bodies.root.x[12 + i].write([root.angular[i]; 4]);
+                bodies.root.x[18 + i].write([root.acceleration[i]; 4]);
+                bodies.root.x[21 + i].write([root.acceleration[i + 3]; 4]);
             }
             for (block, group) in bodies.blocks.iter_mut().zip(TREE.iter()) {
                 let q = group.q.map(|at| q[at as usize]);
                 let turns = if SLIDES { mul(load(&q), sub(k(1.0), load(&group.slides))) } else { load(&q) };
                 let (sin, cos) = sin_cos(turns);
                 write([sin, cos], &mut block.drift);
-                block.curl[0] = q;
-                block.curl[1] = group.v.map(|at| v[at as usize]);
-                block.curl[2] = group.v.map(|at| a[at as usize]);
+                block.curl[0].write(q);
+                block.curl[1].write(group.v.map(|at| v[at as usize]));
+                block.curl[2].write(group.v.map(|at| a[at as usize]));
             }
         }
 
@@ -45,7 +45,7 @@ macro_rules! sweeps {
         fn places(bodies: &mut Bodies) {
             for (g, group) in TREE.iter().enumerate() {
                 let block = &bodies.blocks[g];
-                let (sin, cos, q) = (load(&block.drift[0]), load(&block.drift[1]), load(&block.curl[0]));
+                let ([sin, cos], [q]) = (read(&block.drift), read(&block.curl));
                 // R = R_λ X, X = the joint's frame turned about its z.
                 let (r, fixed): ([V; 9], [V; 9]) = (parents(bodies, group, 0), read(&group.rotation));
                 let x = product(&r, [fixed[0], fixed[3], fixed[6]]);
@@ -66,16 +66,16 @@ macro_rules! sweeps {
                 write(origin, &mut block.x[9..]);
                 write(near, &mut block.x[24..]);
                 write(shift, &mut block.shift);
-                write(near, &mut block.near);
-                write(origin, &mut block.origin);
+                write(near, &mut block.points);
+                write(origin, &mut block.points[3..]);
                 write(angular, &mut block.axis);
                 write(linear, &mut block.axis[3..]);
             }
             for (at, path) in PATHS.iter().enumerate() {
                 let block = |slot: u16| (&bodies.blocks[slot as usize / 4], slot as usize % 4);
                 let ((first, lane), (on, beside)) = (block(path.first), block(path.on));
-                bodies.paths[1 + at] =
-                    ::core::array::from_fn(|i| bodies.paths[path.before as usize][i] + on.near[i][beside] + first.shift[i][lane]);
+                let before = bodies.paths[path.before as usize];
+                bodies.paths[1 + at] = ::core::array::from_fn(|i| before[i] + on.points[i].numbers()[beside] + first.shift[i].numbers()[lane]);
             }
         }
 
@@ -90,7 +90,7 @@ macro_rules! sweeps {
                 let block = &mut bodies.blocks[g];
                 let shift = read(&block.shift);
                 let (u, du) = (cross_and(w, shift, u), cross_and(dw, shift, du));
-                let (v, a) = (load(&block.curl[1]), load(&block.curl[2]));
+                let [v, a] = read(&block.curl[1..]);
                 let angular = read(&block.axis);
                 let mut drift = (cross(w, angular), cross(u, angular));
                 let mut curl = cross(du, angular);
@@ -142,7 +142,7 @@ macro_rules! sweeps {
                 if group.behind != APART {
                     let to = before.get_mut(group.behind).unwrap_or(&mut bodies.root);
                     for (to, from) in to.x.iter_mut().zip(handed) {
-                        store(add(load(to), from), to);
+                        to.write(array(add(load(to.numbers()), from)));
                     }
                     continue;
                 }
@@ -150,7 +150,7 @@ macro_rules! sweeps {
                 for (lane, slot) in group.parents.iter().enumerate() {
                     let (to, at) = (before.get_mut(*slot as usize / 4).unwrap_or(&mut bodies.root), *slot as usize % 4);
                     for (to, from) in to.x.iter_mut().zip(&handed) {
-                        to[at] += from[lane];
+                        to.numbers_mut()[at] += from[lane];
                     }
                 }
             }
@@ -267,24 +267,12 @@ macro_rules! sweeps {
         /// Four groups turned: what was lane l of each becomes block l.
         $(#[$features])?
         #[inline]
-        fn turn(tile: &mut [Block; 4]) {
-            let [a, b, c, d] = tile;
-            let each = |a: &mut [Four], b: &mut [Four], c: &mut [Four], d: &mut [Four]| {
-                for (((a, b), c), d) in a.iter_mut().zip(b).zip(c).zip(d) {
-                    let x = turned([load(a), load(b), load(c), load(d)]);
-                    store(x[0], a);
-                    store(x[1], b);
-                    store(x[2], c);
-                    store(x[3], d);
-                }
-            };
-            each(&mut a.x[..21], &mut b.x[..21], &mut c.x[..21], &mut d.x[..21]);
-            let used = if SLIDES { 6 } else { 3 };
-            each(&mut a.axis[..used], &mut b.axis[..used], &mut c.axis[..used], &mut d.axis[..used]);
-            each(&mut a.drift, &mut b.drift, &mut c.drift, &mut d.drift);
-            each(&mut a.curl, &mut b.curl, &mut c.curl, &mut d.curl);
-            each(&mut a.near, &mut b.near, &mut c.near, &mut d.near);
-            each(&mut a.origin, &mut b.origin, &mut c.origin, &mut d.origin);
+        fn turn([a, b, c, d]: &mut [Block; 4]) {
+            turn_each([&mut a.x[..22], &mut b.x[..22], &mut c.x[..22], &mut d.x[..22]]);
+            turn_each([&mut a.axis, &mut b.axis, &mut c.axis, &mut d.axis]);
+            turn_each([&mut a.drift, &mut b.drift, &mut c.drift, &mut d.drift]);
+            turn_each([&mut a.curl, &mut b.curl, &mut c.curl, &mut d.curl]);
+            turn_each([&mut a.points, &mut b.points, &mut c.points, &mut d.points]);
         }
     };
 }

@@ -43,15 +43,21 @@ struct Path {
     on: u16,
 }
 
-/// What one joint has to do with some of four.
+/// What two joints of a block have to do with some of four.
 struct Pair {
-    /// Its block and lane.
+    /// The joints' block.
     at: u16,
-    lane: u16,
-    /// The path between their chunks; 0 if there is but one.
+    /// The path between the chunks; 0 if there is but one.
     path: u16,
-    /// The others' block, and which of them, a bit each.
+    /// The others' block.
     others: u16,
+    own: [Own; 2],
+}
+
+/// One of the two.
+struct Own {
+    lane: u16,
+    /// Which of the others, a bit each; none of them if there is no second joint.
     which: u16,
     /// The place of lane 0 in the matrices, in the joint's row.
     place: u32,
@@ -74,22 +80,55 @@ const APART: usize = usize::MAX;
 /// Numbers of a matrix.
 const MATRIX: usize = NV * NV;
 
-/// What four joints have. Of twists and wrenches the angular part comes first; all are in the axes of the root body, each about the joint's origin.
+/// A number of four joints that a sweep writes before anything reads it.
+type Held = ::core::mem::MaybeUninit<Four>;
+
+/// Where four numbers stand.
+trait Numbers {
+    fn numbers(&self) -> &Four;
+    fn numbers_mut(&mut self) -> &mut Four;
+}
+
+impl Numbers for Four {
+    fn numbers(&self) -> &Four {
+        self
+    }
+
+    fn numbers_mut(&mut self) -> &mut Four {
+        self
+    }
+}
+
+impl Numbers for Held {
+    fn numbers(&self) -> &Four {
+        // SAFETY: a block without joints is zeros. Of all others `inputs` writes the first numbers of `drift` and `curl`, which is what `places` reads of these; `places` writes all of `axis`,
+        // `shift` and `points` and x[..12] and x[24..], `motion` x[12..24] and the rest of `drift` and `curl`. Groups stand behind those of their parents, whose numbers are there when they are read;
+        // paths are read of joints behind `places`. From `sums` on everything has been written.
+        unsafe { self.assume_init_ref() }
+    }
+
+    fn numbers_mut(&mut self) -> &mut Four {
+        // SAFETY: as above.
+        unsafe { self.assume_init_mut() }
+    }
+}
+
+/// What four joints have. Of twists and wrenches the angular part comes first; all are in the axes of the root body, each about the joint's origin. In pairs within lines of 64 bytes.
 #[derive(::core::clone::Clone, ::core::marker::Copy)]
-#[repr(align(32))]
+#[repr(C, align(64))]
 struct Block {
     /// First R, r from the root, V, V̇ and r from the first of the chunk, then `sums`, then `wrenches`.
-    x: [Four; 27],
+    x: [Held; 27],
+    /// The joint's origin, from that of its parent.
+    shift: [Held; 3],
     /// S.
-    axis: [Four; 6],
+    axis: [Held; 6],
     /// ψ̇ = V_λ × S, which is Ṡ too.
-    drift: [Four; 6],
+    drift: [Held; 6],
     /// ψ̈ = V̇_λ × S + V_λ × ψ̇.
-    curl: [Four; 6],
-    /// The joint's origin, from that of its parent, of the first of its chunk and of the root.
-    shift: [Four; 3],
-    near: [Four; 3],
-    origin: [Four; 3],
+    curl: [Held; 6],
+    /// The joint's origin, from that of the first of its chunk, and from the root's.
+    points: [Held; 6],
 }
 
 /// The blocks of all groups, filled up to a multiple of four, and the root body's.
@@ -101,16 +140,17 @@ struct Bodies {
     paths: [[f64; 3]; 1 + STEPS],
 }
 
+/// Four joints of which nothing is known yet: 20 kB of zeros for a humanoid would take a tenth of the time.
+const UNKNOWN: Block = Block::filled(Held::uninit());
+
 /// Zeros.
-const NOTHING: Block = Block {
-    x: [[0.0; 4]; 27],
-    axis: [[0.0; 4]; 6],
-    drift: [[0.0; 4]; 6],
-    curl: [[0.0; 4]; 6],
-    shift: [[0.0; 4]; 3],
-    near: [[0.0; 4]; 3],
-    origin: [[0.0; 4]; 3],
-};
+const NOTHING: Block = Block::filled(Held::new([0.0; 4]));
+
+impl Block {
+    const fn filled(x: Held) -> Self {
+        Self { x: [x; 27], shift: [x; 3], axis: [x; 6], drift: [x; 6], curl: [x; 6], points: [x; 6] }
+    }
+}
 
 const BLOCKS: usize = GROUPS.next_multiple_of(4);
 

@@ -1,24 +1,15 @@
 
-/// Vectors of three and matrices, of four joints each.
+/// Vectors of three, of as many joints as a vector has lanes.
 macro_rules! vectors {
     ($(#[$features:meta])?) => {
         $(#[$features])?
         #[inline]
-        fn read<const N: usize>(from: &[Four]) -> [V; N] {
+        fn read<const N: usize>(from: &[impl Numbers]) -> [V; N] {
             let (mut x, from) = ([k(0.0); N], &from[..N]);
             for (x, from) in x.iter_mut().zip(from) {
-                *x = load(from);
+                *x = load(from.numbers());
             }
             x
-        }
-
-        $(#[$features])?
-        #[inline]
-        fn write<const N: usize>(x: [V; N], to: &mut [Four]) {
-            let to = &mut to[..N];
-            for (x, to) in x.iter().zip(to) {
-                store(*x, to);
-            }
         }
 
         $(#[$features])?
@@ -39,20 +30,6 @@ macro_rules! vectors {
         #[inline]
         fn minus(a: [V; 3], b: [V; 3]) -> [V; 3] {
             [sub(a[0], b[0]), sub(a[1], b[1]), sub(a[2], b[2])]
-        }
-
-        /// a s
-        $(#[$features])?
-        #[inline]
-        fn times(a: [V; 3], s: V) -> [V; 3] {
-            [mul(a[0], s), mul(a[1], s), mul(a[2], s)]
-        }
-
-        /// a s + c
-        $(#[$features])?
-        #[inline]
-        fn times_and(a: [V; 3], s: V, c: [V; 3]) -> [V; 3] {
-            [fmadd(a[0], s, c[0]), fmadd(a[1], s, c[1]), fmadd(a[2], s, c[2])]
         }
 
         /// a × b
@@ -85,6 +62,34 @@ macro_rules! vectors {
         #[inline]
         fn dot_and(a: [V; 3], b: [V; 3], c: V) -> V {
             fmadd(a[0], b[0], fmadd(a[1], b[1], fmadd(a[2], b[2], c)))
+        }
+    };
+}
+
+/// Matrices of four joints, and what is read and written of them.
+macro_rules! matrices {
+    ($(#[$features:meta])?) => {
+        $(#[$features])?
+        #[inline]
+        fn write<const N: usize>(x: [V; N], to: &mut [Held]) {
+            let to = &mut to[..N];
+            for (x, to) in x.iter().zip(to) {
+                to.write(array(*x));
+            }
+        }
+
+        /// a s
+        $(#[$features])?
+        #[inline]
+        fn times(a: [V; 3], s: V) -> [V; 3] {
+            [mul(a[0], s), mul(a[1], s), mul(a[2], s)]
+        }
+
+        /// a s + c
+        $(#[$features])?
+        #[inline]
+        fn times_and(a: [V; 3], s: V, c: [V; 3]) -> [V; 3] {
+            [fmadd(a[0], s, c[0]), fmadd(a[1], s, c[1]), fmadd(a[2], s, c[2])]
         }
 
         /// M a, by rows.
