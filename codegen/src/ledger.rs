@@ -1,5 +1,7 @@
 //! What each generated function costs, stage by stage.
 
+use std::borrow::Cow;
+
 use crate::graph::{Counts, Graph};
 
 /// The costs of all functions of one robot.
@@ -15,7 +17,7 @@ pub struct Entry {
     /// Name of the function.
     pub function: String,
     /// The ways chosen by count, where the function can be computed in several.
-    pub ways: Vec<&'static str>,
+    pub ways: Vec<Cow<'static, str>>,
     /// Counts after each stage: `asked` (what the algorithm asks for), `trace` (folded and shared), the same after each model
     /// pass, then after each graph pass; `loops`, what is executed of a function that is left loops. Without [`stages`](crate::Options::stages) only the last of the model passes.
     pub stages: Vec<(&'static str, Counts)>,

@@ -172,7 +172,7 @@ mod tests {
         for name in ["inverse_dynamics", "placements", "potential_energy"] {
             let wanted = Wanted::parse(name).unwrap();
             for passes in [0, usize::MAX] {
-                let choice = [Choice { way: ways(&wanted.parts[0], &model)[0].0, passes, unturned: None }];
+                let choice = [Choice::plain(ways(&wanted.parts[0], &model)[0].0, passes)];
                 let found = trace(&wanted, &choice, &model, &parameters);
                 let expected = trace(&wanted, &choice, &read(&there, &[]).0, &[]);
                 let given = |argument: usize, k: usize| if argument == wanted.arguments().len() { numbers[k] } else { input(argument, k) };
@@ -191,7 +191,7 @@ mod tests {
         let input = |argument: usize, k: usize| (argument * 5 + k * 3) as f64 * 0.37 % 1.9 - 0.8;
         let values = |list: &[&str], factor: f64| {
             let (model, parameters) = read(&request, list);
-            let choice = [Choice { way: ways(&wanted.parts[0], &model)[0].0, passes: usize::MAX, unturned: None }];
+            let choice = [Choice::plain(ways(&wanted.parts[0], &model)[0].0, usize::MAX)];
             trace(&wanted, &choice, &model, &parameters)
                 .evaluate(|argument, k| if argument == 3 { factor * own[k] } else { input(argument, k) })
         };

@@ -15,7 +15,7 @@ use crate::limbs::Alike;
 use crate::parameters::Parameter;
 use crate::pass::{self, GRAPH_PASSES};
 use crate::sym::Sym;
-use crate::trace::{Choice, applies, trace, trace_in_lanes, unturnable, ways};
+use crate::trace::{Choice, applies, trace, trace_in_lanes, units, unturnable, ways};
 use crate::wanted::{Part, Wanted};
 
 /// A function and what it became.
@@ -83,7 +83,7 @@ pub(crate) fn program(wanted: Wanted, model: &Model<f64>, parameters: &[Paramete
 
 /// The entry of what is left loops, which cost this.
 fn in_loops(entry: &mut Entry, counts: &Counts) {
-    (entry.ways, entry.lanes) = (vec!["joints in loops"], groups::LANES);
+    (entry.ways, entry.lanes) = (vec!["joints in loops".into()], groups::LANES);
     entry.stages.push(("loops", counts.clone()));
 }
 
@@ -130,7 +130,7 @@ impl Columns {
             counts.add(Op::NegMulAdd, 2 * entries * vectors);
             counts.add(Op::Mul, n * vectors);
         }
-        entry.ways = vec!["columns in a loop"];
+        entry.ways = vec!["columns in a loop".into()];
     }
 }
 
@@ -154,12 +154,12 @@ const COLUMN_BY_COLUMN: [&str; 2] = ["mass_matrix", "mass_matrix_inverse"];
 /// The graph of a function, traced on the model as it was read and after each model pass, and taken through the graph passes.
 fn made(wanted: &Wanted, subject: &Subject, unsolved: Option<&'static Way<Sym>>) -> (Graph, Entry) {
     let all = model_passes::<Sym>().len();
-    let choose = |part| unsolved.map_or_else(|| cheapest(part, subject, all), |way| Choice { way, passes: all, unturned: None });
-    let choices: Vec<Choice> = wanted.parts.iter().map(choose).collect();
+    let choose = |part| unsolved.map_or_else(|| cheapest(part, subject, all), |way| Choice::plain(way, all));
+    let choices = in_the_best_unit(wanted, wanted.parts.iter().map(choose).collect(), subject);
     let mut graph = Graph::default();
     let mut stages: Vec<(&'static str, Counts)> = Vec::new();
     for passes in if subject.stages { 0 } else { all }..=all {
-        let limited: Vec<Choice> = choices.iter().map(|c| Choice { passes: c.passes.min(passes), unturned: None, ..*c }).collect();
+        let limited: Vec<Choice> = choices.iter().map(|c| Choice::plain(c.way, c.passes.min(passes))).collect();
         graph = subject.trace(wanted, &limited);
         if stages.is_empty() {
             stages.push(("asked", graph.asked().clone()));
@@ -167,8 +167,12 @@ fn made(wanted: &Wanted, subject: &Subject, unsolved: Option<&'static Way<Sym>>)
         stages.push((if passes == 0 { "trace" } else { model_passes::<Sym>()[passes - 1].0 }, graph.counts()));
     }
     if choices.iter().any(|c| c.unturned.is_some()) {
-        graph = subject.trace(wanted, &choices);
+        graph = subject.trace(wanted, &choices.iter().map(|c| Choice { unit: None, ..*c }).collect::<Vec<_>>());
         stages.push(("unturned", graph.counts()));
+    }
+    if choices.iter().any(|c| c.unit.is_some()) {
+        graph = subject.trace(wanted, &choices);
+        stages.push(("unit", graph.counts()));
     }
     for (name, pass, _) in GRAPH_PASSES {
         graph = pass::run(name, *pass, &graph);
@@ -189,6 +193,11 @@ impl Subject<'_> {
             Some(alike) => trace_in_lanes(wanted, choices, self.model, alike),
         }
     }
+
+    /// What is traced, after all graph passes.
+    fn finished(&self, wanted: &Wanted, choices: &[Choice]) -> Graph {
+        GRAPH_PASSES.iter().fold(self.trace(wanted, choices), |graph, (_, pass, _)| pass(&graph))
+    }
 }
 
 /// What costs more than this is not tried with frames that do not turn: it would gain a hundredth, and takes long to trace.
@@ -204,7 +213,7 @@ fn cheapest(part: &Part, subject: &Subject, all: usize) -> Choice {
     let tried = subject.parameters.is_empty() && subject.model.bodies.len() <= UNTURNED_BODIES;
     let unturned = if tried { unturnable(part, subject.model) } else { Vec::new() };
     let unturned: Vec<Option<Unturned>> = once(None).chain(unturned.into_iter().map(Some)).collect();
-    let of = |way, passes| unturned.iter().map(move |&unturned| Choice { way, passes, unturned });
+    let of = |way, passes| unturned.iter().map(move |&unturned| Choice { unturned, ..Choice::plain(way, passes) });
     let candidates: Vec<(Choice, u64)> =
         ways.iter().flat_map(|(way, least)| few.clone().flat_map(move |passes| of(*way, passes)).map(|c| (c, *least))).collect();
     if let [(one, _)] = candidates.as_slice() {
@@ -222,11 +231,44 @@ fn cheapest(part: &Part, subject: &Subject, all: usize) -> Choice {
             best = Some((choice, cost));
         }
     }
-    best.map_or(Choice { way: &part.function.ways[0], passes: all, unturned: None }, |(choice, _)| choice)
+    best.map_or(Choice::plain(&part.function.ways[0], all), |(choice, _)| choice)
 }
 
 fn cost(wanted: &Wanted, choice: Choice, subject: &Subject) -> u32 {
-    pass::cost(&GRAPH_PASSES.iter().fold(subject.trace(wanted, &[choice]), |graph, (_, pass, _)| pass(&graph)))
+    pass::cost(&subject.finished(wanted, &[choice]))
+}
+
+/// So many units of length are tried at most.
+const UNITS: usize = 64;
+
+/// The choices with lengths in the unit that costs least: where a constant is one, what it multiplies is only added.
+fn in_the_best_unit(wanted: &Wanted, choices: Vec<Choice>, subject: &Subject) -> Vec<Choice> {
+    if !subject.parameters.is_empty() {
+        return choices;
+    }
+    let units: Vec<Vec<f64>> = wanted.parts.iter().map(|part| units(part, subject.model)).collect();
+    let with = |metres: f64| -> Vec<Choice> {
+        let one = |(choice, units): (&Choice, &Vec<f64>)| Choice { unit: units.contains(&metres).then_some(metres), ..*choice };
+        choices.iter().zip(&units).map(one).collect()
+    };
+    // Cores have fewer multipliers than they have places for instructions: a multiplication counts twice.
+    let price = |choices: &[Choice]| {
+        let graph = subject.finished(wanted, choices);
+        (pass::cost(&graph), u64::from(pass::cost(&graph)) + graph.counts().multiplications())
+    };
+    let Some(most) = units.iter().max_by_key(|units| units.len()).filter(|units| !units.is_empty()) else { return choices };
+    let (cost, mut least) = price(&choices);
+    if cost > UNTURNED_TO {
+        return choices;
+    }
+    let mut best = choices.clone();
+    for other in most.iter().take(UNITS).map(|&metres| with(metres)) {
+        let (_, price) = price(&other);
+        if price < least {
+            (least, best) = (price, other);
+        }
+    }
+    best
 }
 
 /// Instructions of sines and cosines of as many angles as there are lanes.

@@ -1,5 +1,8 @@
 //! Running algorithms on symbols.
 
+use std::borrow::Cow;
+use std::ops::RangeInclusive;
+
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Argument, Way, Workspace};
 use articulated_core::model::pass::model_passes;
@@ -21,18 +24,30 @@ pub(crate) struct Choice {
     pub(crate) passes: usize,
     /// Bodies whose frames do not turn.
     pub(crate) unturned: Option<Unturned>,
+    /// The unit of length, m, if it is not the metre.
+    pub(crate) unit: Option<f64>,
 }
 
 impl Choice {
+    /// A way after so many model passes, with all frames turning and lengths in metres.
+    pub(crate) fn plain(way: &'static Way<Sym>, passes: usize) -> Self {
+        Self { way, passes, unturned: None, unit: None }
+    }
+
     /// What it is called in the ledger.
-    pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> {
+    pub(crate) fn names(&self) -> impl Iterator<Item = Cow<'static, str>> {
         let unturned = match self.unturned {
             None => "",
             Some(Unturned::Parallel) => "parallel joints unturned",
             Some(Unturned::ParallelAndLast) => "parallel and last joints unturned",
         };
-        [self.way.name, unturned].into_iter().filter(|name| !name.is_empty())
+        let unit = self.unit.map(|metres| Cow::Owned(format!("lengths in {} m", to_four_digits(metres))));
+        [self.way.name, unturned].into_iter().filter(|name| !name.is_empty()).map(Cow::Borrowed).chain(unit)
     }
+}
+
+fn to_four_digits(x: f64) -> f64 {
+    format!("{x:.3e}").parse().unwrap_or(x)
 }
 
 /// The graph of a function on `model`: its argument k is argument k of the graph, parameters come after the last; the results of the parts one after the other.
@@ -96,15 +111,34 @@ fn passed<S: Scalar>(part: &Part, choice: &Choice, model: &Model<S>) -> Model<S>
         model.frames.clear();
     }
     let passes = model_passes::<S>().iter().take(if part.function.regrouped { choice.passes } else { 0 });
-    passes.fold(model, |model, (_, pass, _)| pass(model))
+    let model = passes.fold(model, |model, (_, pass, _)| pass(model));
+    choice.unit.map(|metres| model.in_unit_of(S::from_f64(metres))).unwrap_or(model)
 }
 
 /// Which bodies need not turn, on the model after all passes, as the function does not ask where they are.
 pub(crate) fn unturnable(part: &Part, model: &Model<f64>) -> Vec<Unturned> {
-    let choice = Choice { way: &part.function.ways[0], passes: usize::MAX, unturned: None };
+    if indifferent(part, model) { finished(part, model).unturnable() } else { Vec::new() }
+}
+
+/// Units of other sizes, m, are not tried: constants would be far from one.
+const UNITS: RangeInclusive<f64> = 1e-3..=1e3;
+
+/// Units of length that may spare multiplications, on the model after all passes, as the function does not ask for lengths: neither frames nor joints that slide.
+pub(crate) fn units(part: &Part, model: &Model<f64>) -> Vec<f64> {
+    let mut units = if indifferent(part, model) && model.only_turns() { finished(part, model).units() } else { Vec::new() };
+    units.retain(|metres| UNITS.contains(metres) && *metres != 1.0);
+    units
+}
+
+/// Whether a function is the same in whatever axes and units bodies are, as neither it nor an effect asks where they are.
+fn indifferent(part: &Part, model: &Model<f64>) -> bool {
     let free = part.function.regrouped && !part.function.asks_for_frames() && part.function.takes.contains(&Argument::Q);
-    let free = free && model.bodies.iter().all(|b| b.effects.body.is_empty());
-    if free { passed(part, &choice, model).unturnable() } else { Vec::new() }
+    free && model.bodies.iter().all(|b| b.effects.body.is_empty())
+}
+
+/// The model after all passes.
+fn finished(part: &Part, model: &Model<f64>) -> Model<f64> {
+    passed(part, &Choice::plain(&part.function.ways[0], usize::MAX), model)
 }
 
 fn run(part: &Part, choice: &Choice, model: &Model<Sym>, arguments: &[Argument]) -> Vec<Sym> {
@@ -157,6 +191,8 @@ pub(crate) fn ways(part: &Part, model: &Model<f64>) -> Vec<(&'static Way<Sym>, u
 
 #[cfg(test)]
 mod tests {
+    use std::iter::once;
+
     use articulated_core::algorithm::{Needs, functions};
     use articulated_core::description::Origin;
     use articulated_core::effect::{Applied, EffectId};
@@ -179,6 +215,15 @@ mod tests {
 
     /// With drag on the tool or without.
     fn arm(more: &str, drag: bool) -> Model<f64> {
+        made(&format!("{ARM}{more}"), drag)
+    }
+
+    /// The same on a turntable.
+    fn turning(more: &str) -> Model<f64> {
+        made(&format!("{ARM}{more}").replace("prismatic", "revolute"), false)
+    }
+
+    fn made(joints: &str, drag: bool) -> Model<f64> {
         let link = |name: &str, com: &str| {
             format!(
                 "<link name='{name}'><inertial><origin xyz='{com}' rpy='0.3 0.1 -0.2'/><mass value='1.5'/>\
@@ -189,8 +234,8 @@ mod tests {
             [("cart", "0 0 0.1"), ("upper", "0.1 0 0.2"), ("fore", "0.2 0.1 0"), ("hand", "0 0.1 0.2"), ("tool", "0.1 0 0")]
                 .map(|(name, com)| link(name, com))
                 .concat();
-        let limited = ARM.replace("type='revolute'>", "type='revolute'><limit effort='1' velocity='1' lower='-1' upper='1'/>");
-        let mut request = Request::new("arm", format!("<robot name='arm'>{links}{limited}{more}</robot>"));
+        let limited = joints.replace("type='revolute'>", "type='revolute'><limit effort='1' velocity='1' lower='-1' upper='1'/>");
+        let mut request = Request::new("arm", format!("<robot name='arm'>{links}{limited}</robot>"));
         let drag = drag.then(|| Applied { effect: EffectId::drag, on: "tool".into(), at: Origin::default(), parameters: vec![0.7] });
         request.options.effects.extend(drag);
         crate::model(&request, &crate::read(&request).unwrap().description).unwrap()
@@ -211,23 +256,30 @@ mod tests {
 
     #[test]
     fn whatever_is_chosen_the_values_are_the_same() {
-        for model in [arm("", false), arm("", true), arm(FOLLOWER, false)] {
+        let mut seen = 0;
+        for (model, turns) in [(arm("", false), false), (arm("", true), false), (arm(FOLLOWER, false), false), (turning(FOLLOWER), true)] {
+            assert_eq!(model.only_turns(), turns);
             for wanted in all() {
                 let part = &wanted.parts[0];
                 let all = ways(part, &model);
-                let values = |way, passes, unturned| trace(&wanted, &[Choice { way, passes, unturned }], &model, &[]).evaluate(input);
-                let expected = values(all[0].0, 0, None);
+                let values = |choice| trace(&wanted, &[choice], &model, &[]).evaluate(input);
+                let expected = values(Choice::plain(all[0].0, 0));
                 let unturned: Vec<Option<Unturned>> = [None].into_iter().chain(unturnable(part, &model).into_iter().map(Some)).collect();
                 for (way, _) in all {
                     for passes in 1..=model_passes::<Sym>().len() {
-                        close(&values(way, passes, None), &expected, &format!("{} by {}, {passes} passes", wanted.name, way.name));
+                        close(&values(Choice::plain(way, passes)), &expected, &format!("{} by {}, {passes} passes", wanted.name, way.name));
                     }
-                    for which in &unturned {
-                        close(&values(way, usize::MAX, *which), &expected, &format!("{} by {}, {which:?}", wanted.name, way.name));
+                    for &unturned in &unturned {
+                        for unit in once(None).chain(units(part, &model).into_iter().map(Some)) {
+                            let choice = Choice { unturned, unit, ..Choice::plain(way, usize::MAX) };
+                            close(&values(choice), &expected, &format!("{} by {}, {unturned:?}, {unit:?}", wanted.name, way.name));
+                            seen += usize::from(unit.is_some());
+                        }
                     }
                 }
             }
         }
+        assert!(seen > 100, "{seen} with another unit");
     }
 
     #[test]
@@ -251,7 +303,7 @@ mod tests {
         let plain = all().filter(|wanted| wanted.arguments().contains(&Argument::Q));
         for wanted in plain {
             let given = Wanted::parse(&format!("{}(q = sin_cos)", wanted.name)).unwrap();
-            let choice = [Choice { way: ways(&wanted.parts[0], &model)[0].0, passes: usize::MAX, unturned: None }];
+            let choice = [Choice::plain(ways(&wanted.parts[0], &model)[0].0, usize::MAX)];
             let sines = given.arguments().len() - 1;
             let with = |argument: usize, k: usize| {
                 let (sin, cos) = input(0, k / 2).sin_cos();

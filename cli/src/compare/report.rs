@@ -1,5 +1,7 @@
 //! What was measured, as data.
 
+use std::borrow::Cow;
+
 use articulated_core::algorithm::Dim;
 use articulated_core::model::Model;
 use serde::Serialize;
@@ -95,7 +97,7 @@ pub(super) struct FunctionReport {
     pub(super) function: &'static str,
     pub(super) group: &'static str,
     /// The ways that the generator chose by count, where it had a choice.
-    pub(super) ways: Vec<&'static str>,
+    pub(super) ways: Vec<Cow<'static, str>>,
     /// The frames that it was evaluated on, if it is a function of frames.
     pub(super) frames: Option<Vec<String>>,
     pub(super) stages: Vec<Stage>,

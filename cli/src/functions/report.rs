@@ -1,5 +1,7 @@
 //! The table of functions as data.
 
+use std::borrow::Cow;
+
 use articulated_codegen::ledger::Entry;
 use articulated_core::algorithm::{Argument, Function};
 use serde::Serialize;
@@ -55,7 +57,7 @@ pub(super) struct Cost {
     pub(super) sines_and_cosines: u64,
     pub(super) depth: u32,
     /// The ways chosen by count, where there is a choice.
-    pub(super) ways: Vec<&'static str>,
+    pub(super) ways: Vec<Cow<'static, str>>,
 }
 
 fn name_of<S: serde::Serializer>(group: &Group, serializer: S) -> Result<S::Ok, S::Error> {

@@ -1,5 +1,7 @@
 //! What was measured, as data.
 
+use std::borrow::Cow;
+
 use serde::Serialize;
 
 use crate::compare::timing::Summary;
@@ -25,7 +27,7 @@ pub(super) struct Point {
     pub(super) function: &'static str,
     pub(super) joints: usize,
     /// The way that the generator chose by count, where it had a choice.
-    pub(super) ways: Vec<&'static str>,
+    pub(super) ways: Vec<Cow<'static, str>>,
     pub(super) instructions: u64,
     pub(super) source_bytes: usize,
     pub(super) code_bytes: Option<u64>,

@@ -94,7 +94,7 @@ mod tests {
         for (name, text) in all.chain([("inverse_dynamics", "quick = inverse_dynamics(q = sin_cos)")]) {
             let wanted = Wanted::parse(text).unwrap();
             for (way, _) in ways(&wanted.parts[0], model) {
-                let choice = [Choice { way, passes: usize::MAX, unturned: None }];
+                let choice = [Choice::plain(way, usize::MAX)];
                 let plain = passed(trace(&wanted, &choice, model, &[]));
                 let lanes = passed(trace_in_lanes(&wanted, &choice, model, &alike));
                 lanes.verify().unwrap();
@@ -124,7 +124,7 @@ mod tests {
         let third = model.limbs(4)[0].roots[2];
         model.frames.retain(|frame| frame.body != third);
         let (alike, wanted) = (Alike::of(&model, 4).unwrap(), Wanted::parse("placements").unwrap());
-        let choice = [Choice { way: ways(&wanted.parts[0], &model)[0].0, passes: usize::MAX, unturned: None }];
+        let choice = [Choice::plain(ways(&wanted.parts[0], &model)[0].0, usize::MAX)];
         let [plain, lanes] = [trace(&wanted, &choice, &model, &[]), trace_in_lanes(&wanted, &choice, &model, &alike)];
         for (a, b) in plain.evaluate(input).into_iter().zip(lanes.evaluate(input)) {
             assert!((a - b).abs() <= 1e-12 * (1.0 + a.abs()), "{a} {b}");

@@ -185,3 +185,58 @@ fn constants_may_be_turned_instead_of_vectors() {
     let counts = (seen.get(), of(Unturned::Parallel), of(Unturned::ParallelAndLast));
     assert!(counts.0 > 12 && counts.1 > 5 && counts.2 > 5, "only {counts:?}");
 }
+
+/// Where all joints turn, no result has a length in it: it is the same in every unit, before model passes and after, with frames that do not turn too.
+#[test]
+fn lengths_may_be_in_any_unit() {
+    let (seen, unturned) = (std::cell::Cell::new(0), std::cell::Cell::new(0));
+    for_each_tree(16, Flavour { floating: false, ..SMALL }, |case, random| {
+        let state = case.state(random);
+        let mut model = case.model.clone();
+        for body in &mut model.bodies {
+            if matches!(body.joint, Joint::Prismatic | Joint::Helical) {
+                (body.joint, body.coordinates.pitch) = (Joint::Revolute, 0.0);
+            }
+        }
+        if !model.only_turns() {
+            return;
+        }
+        let units = model.units();
+        Big::scope(|| {
+            let model = model.cast::<Big>();
+            let passed = model_passes::<Big>().iter().fold(Model { frames: Vec::new(), ..model.clone() }, |m, (_, pass, _)| pass(m));
+            // Among levers, gravity, moments and masses, and one that is none of them.
+            for metres in units.iter().step_by(1 + units.len() / 3).copied().chain([0.3]) {
+                let [plain, passed] = [&model, &passed].map(|m| m.in_unit_of(Big::from_f64(metres)));
+                same_without_frames(case, &state, &plain, &model);
+                same_without_frames(case, &state, &passed, &model);
+                for which in passed.unturnable() {
+                    same_without_frames(case, &state, &passed.unturned(&cast::<Big>(&state.q), which), &model);
+                    unturned.set(unturned.get() + 1);
+                }
+                seen.set(seen.get() + 1);
+            }
+        });
+    });
+    assert!(seen.get() > 30 && unturned.get() > 20, "only {} and {} unturned", seen.get(), unturned.get());
+}
+
+/// In a unit in which a constant is one, it is.
+#[test]
+fn units_are_where_a_constant_is_one() {
+    let mut seen = 0;
+    for robot in ["ur5_like", "panda_like", "double_pendulum"] {
+        let model = Case::bundled(articulated_models::robot(robot).expect("bundled")).model;
+        for metres in model.units() {
+            let scaled = model.in_unit_of(metres);
+            let constants = scaled.outward().map(|i| &scaled.bodies[i]).flat_map(|body| {
+                let (p, h) = (body.placement.position, body.inertia.first);
+                [p.x, p.y, p.z, h.x, h.y, h.z, body.inertia.mass]
+            });
+            let gravity = [scaled.gravity.x, scaled.gravity.y, scaled.gravity.z];
+            assert!(constants.chain(gravity).any(|x| (x.abs() - 1.0).abs() < 1e-15), "{robot}: nothing is one in {metres} m");
+            seen += 1;
+        }
+    }
+    assert!(seen > 20, "{seen}");
+}

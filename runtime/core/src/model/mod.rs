@@ -4,6 +4,7 @@ mod build;
 mod limbs;
 mod massless;
 pub mod pass;
+mod unit;
 mod unturned;
 
 use alloc::string::{String, ToString};
