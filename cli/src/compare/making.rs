@@ -14,7 +14,7 @@ pub(super) struct Making {
     /// All those that were compared of which these generators have code.
     pub(super) functions: Vec<&'static str>,
     pub(super) generation_seconds: f64,
-    /// `rustc` on one module, start and linking included.
+    /// `rustc` on one module to its object file, start included: what the peers' compilers are timed for.
     pub(super) compilation_seconds: f64,
     pub(super) peers: Vec<PeerMaking>,
 }
@@ -54,7 +54,7 @@ impl Making {
         let start = Instant::now();
         let generated = plan.robot.generate(&wanted)?;
         let generation_seconds = start.elapsed().as_secs_f64();
-        let compilation_seconds = Compiled::build(&plan.rustc, &generated).map_err(|e| Failure::tool(&e))?.time.as_secs_f64();
+        let compilation_seconds = Compiled::object_time(&plan.rustc, &generated).map_err(|e| Failure::tool(&e))?.as_secs_f64();
         for row in &mut rows {
             let theirs = row.generation_seconds.unwrap_or_default() + row.compilation_seconds;
             row.peer_over_ours = Some(theirs / (generation_seconds + compilation_seconds));

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::rustc::{CompileError, Rustc, Target};
+use super::rustc::{CompileError, Makes, Rustc, Target};
 use crate::folder::Folder;
 use crate::native::{Kernel, Native};
 
@@ -24,7 +24,7 @@ impl Filler {
         let source = folder.path().join("filler.rs");
         std::fs::write(&source, text()).map_err(CompileError::Folder)?;
         let library: PathBuf = folder.path().join(format!("{}filler{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX));
-        rustc.compile(&source, &library, Target::Own)?;
+        rustc.compile(&source, &library, Makes::Library, Target::Own)?;
         let kernel = Native::open(&library).map_err(CompileError::Load)?.kernel("articulated_filler", &[0], 0);
         let kernel = kernel.ok_or_else(|| CompileError::Load("the filler is not in the library that was compiled".into()))?;
         Ok(Self { kernel, _folder: folder })

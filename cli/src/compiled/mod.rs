@@ -16,6 +16,7 @@ use crate::folder::Folder;
 use crate::native::{Kernel, Native};
 pub(crate) use batch::{Batch, CompiledBatches};
 pub(crate) use filler::{Filler, INSTRUCTIONS as FILLER_INSTRUCTIONS};
+use rustc::Makes;
 pub use rustc::{CompileError, Rustc, Target};
 
 /// The functions of one [`Generated`], compiled by `rustc` as a library and loaded.
@@ -69,6 +70,13 @@ impl Compiled {
         Ok(Self { functions, shape, single: level.is_single(), time: library.time, _library: library })
     }
 
+    /// How long `rustc` takes to the object file, its start included, as long as a C compiler's `-c`.
+    pub(crate) fn object_time(rustc: &Rustc, generated: &Generated) -> Result<Duration, CompileError> {
+        let names: Vec<&str> = generated.ledger.functions.iter().map(|f| f.function.as_str()).collect();
+        let folder = sources(&generated.source, &wrapper::source(&names, &generated.source))?;
+        rustc.compile(&folder.path().join("lib.rs"), &folder.path().join("lib.o"), Makes::Object, Target::Own)
+    }
+
     /// Calls a function by its name; arguments in the registry's order. Where numbers are `f32` these are rounded to them.
     pub fn call(&self, name: &str, arguments: &[&[f64]], out: &mut [f64]) -> Result<(), FunctionError> {
         let row = function::<f64>(name).ok_or(FunctionError::NotGenerated { function: "of this name" })?;
@@ -108,15 +116,21 @@ impl Compiled {
 impl Library {
     /// A generated module and what wraps it.
     fn build(target: Target, rustc: &Rustc, module: &str, wrapper: &str) -> Result<Self, CompileError> {
-        let folder = Folder::new().map_err(CompileError::Folder)?;
-        let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).map_err(CompileError::Folder);
-        write("robot.rs", module)?;
-        write("lib.rs", wrapper)?;
+        let folder = sources(module, wrapper)?;
         let file: PathBuf = folder.path().join(format!("{}generated{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX));
-        let time = rustc.compile(&folder.path().join("lib.rs"), &file, target)?;
+        let time = rustc.compile(&folder.path().join("lib.rs"), &file, Makes::Library, target)?;
         let native = Native::open(&file).map_err(CompileError::Load)?;
         Ok(Self { native, file, time, _folder: folder })
     }
+}
+
+/// A folder with a generated module, `robot.rs`, and what wraps it, `lib.rs`.
+fn sources(module: &str, wrapper: &str) -> Result<Folder, CompileError> {
+    let folder = Folder::new().map_err(CompileError::Folder)?;
+    for (name, text) in [("robot.rs", module), ("lib.rs", wrapper)] {
+        std::fs::write(folder.path().join(name), text).map_err(CompileError::Folder)?;
+    }
+    Ok(folder)
 }
 
 /// Single precision numbers, two in the place of a double.

@@ -29,6 +29,15 @@ impl Target {
     }
 }
 
+/// What the compiler makes of a source file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Makes {
+    /// A library that can be loaded.
+    Library,
+    /// Its object file, as a C compiler's `-c` makes it: nothing is linked.
+    Object,
+}
+
 /// Why generated source could not be run.
 #[derive(Debug)]
 pub enum CompileError {
@@ -86,11 +95,14 @@ impl Rustc {
     }
 
     /// Compiles one source file as a library with a C interface. Wall-clock time.
-    pub(super) fn compile(&self, source: &Path, library: &Path, target: Target) -> Result<Duration, CompileError> {
+    pub(super) fn compile(&self, source: &Path, to: &Path, makes: Makes, target: Target) -> Result<Duration, CompileError> {
         let start = Instant::now();
         let mut command = Command::new(&self.program);
         command.args(["--edition", "2024", "--crate-type", "cdylib", "--crate-name", "generated"]).args(Self::flags(target));
-        let answer = command.arg("-o").arg(library).arg(source).output();
+        if makes == Makes::Object {
+            command.args(["--emit", "obj"]);
+        }
+        let answer = command.arg("-o").arg(to).arg(source).output();
         let answer = answer.map_err(|e| CompileError::NotFound { program: self.program.clone(), reason: e.to_string() })?;
         let time = start.elapsed();
         if answer.status.success() {

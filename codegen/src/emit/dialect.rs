@@ -82,16 +82,27 @@ pub(super) fn units(graph: &Graph, group: usize) -> Vec<Unit> {
         match step {
             Step::Node(k) if inner[k] => units.push(Unit::Node(k)),
             Step::Node(_) => {}
-            Step::Batch(angles) => units.extend(angles.chunks(group).map(|some| Unit::Sines(in_order(some), angles.len()))),
+            Step::Batch(angles) => {
+                units.extend(in_order(&angles, graph).chunks(group).map(|some| Unit::Sines(some.to_vec(), angles.len())));
+            }
         }
     }
     units
 }
 
-/// Angles that go together, in the order in which they were traced: as they lie in memory.
-fn in_order(angles: &[Angle]) -> Vec<Angle> {
-    let mut angles = angles.to_vec();
-    angles.sort_by_key(|a| a.angle);
+/// Angles that are known at once, as they lie in memory, so that neighbours are one load, or backwards where more are needed in that order, for the last lane is the last to be had.
+/// What was computed comes after them, as it is needed.
+fn in_order(needed: &[Angle], graph: &Graph) -> Vec<Angle> {
+    let place = |angle: &Angle| {
+        let node = graph.node(angle.angle);
+        if node.op == Op::Input { (0, node.args[0], node.args[1]) } else { (1, 0, 0) }
+    };
+    let mut angles = needed.to_vec();
+    angles.sort_by_key(place);
+    let pairs = || needed.iter().enumerate().flat_map(|(k, one)| needed[k + 1..].iter().map(move |other| place(one) > place(other)));
+    if pairs().filter(|backward| *backward).count() * 2 > pairs().count() {
+        angles.reverse();
+    }
     angles
 }
 

@@ -112,5 +112,11 @@ pub(super) fn making(making: &Making) -> (String, Table) {
     }
     let whole = making.peers.iter().any(|p| p.generation_seconds.is_none());
     let rest = if whole { "; without generation: a library for any robot, all of its functions" } else { "" };
-    (format!("Generation and compilation of {}, all together, with nothing else going on{rest}", making.functions.join(", ")), table)
+    (
+        format!(
+            "Generation and compilation of {}, all together, to object files, with nothing else going on{rest}",
+            making.functions.join(", ")
+        ),
+        table,
+    )
 }

@@ -13,12 +13,13 @@ lane_functions! {
         let lo = fnmadd(n, k(HALF_PI[2]), fnmadd(n, k(HALF_PI[1]), sub(r, hi)));
         let z = mul(hi, hi);
         let zz = mul(z, z);
-        // sin(hi + lo) = hi + (hi³·(S₀ + z·p) + lo)
-        let p = fmadd(zz, fmadd(zz, k(S[5]), fmadd(z, k(S[4]), k(S[3]))), fmadd(z, k(S[2]), k(S[1])));
-        let sin = add(hi, fmadd(mul(hi, z), fmadd(z, p, k(S[0])), lo));
-        // cos(hi + lo) = 1 + hi·(hi·(z·p − 1/2) − lo)
+        let cube = mul(hi, z);
+        // sin(hi + lo) = hi + (hi³·p + lo)
+        let p = fmadd(zz, fmadd(zz, fmadd(z, k(S[5]), k(S[4])), fmadd(z, k(S[3]), k(S[2]))), fmadd(z, k(S[1]), k(S[0])));
+        let sin = add(hi, fmadd(cube, p, lo));
+        // cos(hi + lo) = 1 + hi·(hi³·p − hi/2 − lo)
         let p = fmadd(zz, fmadd(zz, fmadd(z, k(C[5]), k(C[4])), fmadd(z, k(C[3]), k(C[2]))), fmadd(z, k(C[1]), k(C[0])));
-        let cos = fmadd(hi, fmsub(hi, fmadd(z, p, k(-0.5)), lo), k(1.0));
+        let cos = fmadd(hi, fmadd(cube, p, fmsub(hi, k(-0.5), lo)), k(1.0));
         // The quadrant is in the two lowest bits of `rounded`: exchange for an odd one, and signs.
         turn(rounded, sin, cos)
     }
