@@ -7,10 +7,9 @@ use articulated_core::level::Level;
 
 use super::chunks::pieces;
 use super::levels::{self, real};
-use super::order::{Step, order};
 use super::signature::{Place, Signature};
 use super::vector::Vector;
-use super::{plain, sets, vector};
+use super::{plain, sets, several, vector};
 use crate::graph::Graph;
 use crate::program::Program;
 
@@ -184,12 +183,12 @@ fn long_calls(out: &mut String, signature: &Signature, context: Context) {
 /// The call of the body for the best instruction set there is.
 fn lanes_calls(out: &mut String, graph: &Graph, signature: &Signature) {
     let (names, name, width) = (signature.handed(), &signature.wanted.name, graph.lanes().width);
-    let side_by_side = order(graph).iter().any(|step| matches!(step, Step::Batch(angles) if angles.len() > 1));
+    let several = several::wanted(graph);
     let mut block = |cfg: &str, set: &str, features: &str, calls: &str| {
-        let two = if width == 2 && side_by_side { format!("\n        use self::two::{set}::sin_cos_of_two;") } else { String::new() };
+        let several = if several { format!("\n        use self::several_f64x{width}::{set}::*;") } else { String::new() };
         let _ = writeln!(
             out,
-            "    {cfg}\n    {{\n        use self::{set}_f64x{width}::*;{two}\n        {name}_body!({features});\n{calls}    }}"
+            "    {cfg}\n    {{\n        use self::{set}_f64x{width}::*;{several}\n        {name}_body!({features});\n{calls}    }}"
         );
     };
     let calls = format!(

@@ -20,6 +20,7 @@ mod plain;
 mod results;
 mod rows;
 mod sets;
+mod several;
 mod signature;
 mod together;
 mod used;

@@ -9,7 +9,7 @@ use articulated_core::model::Model;
 use super::columns::Layout;
 use super::function::{in_lanes, needs_choice};
 use super::used::{Caller, used};
-use super::{derivatives, levels, plain};
+use super::{derivatives, levels, plain, several};
 use crate::Level;
 use crate::program::Program;
 
@@ -22,6 +22,15 @@ pub(super) const NOT_COMPILED_FOR_AVX2: &str =
 
 /// Stands before what is for builds that run with AVX2 and FMA alone.
 pub(super) const COMPILED_FOR_AVX2: &str = "#[cfg(all(target_feature = \"avx2\", target_feature = \"fma\"))]";
+
+macro_rules! compiled_for_avx512 {
+    () => {
+        "all(target_arch = \"x86_64\", target_feature = \"avx512dq\", target_feature = \"avx512vl\", target_feature = \"avx512vbmi2\")"
+    };
+}
+
+/// What holds of builds that run with AVX-512 alone.
+pub(super) const COMPILED_FOR_AVX512: &str = compiled_for_avx512!();
 
 /// Stands before what is for processors other than x86-64 and 64-bit Arm.
 pub(super) const OTHERS: &str = "#[cfg(not(any(target_arch = \"aarch64\", target_arch = \"x86_64\")))]";
@@ -41,8 +50,12 @@ pub(super) fn support(out: &mut String, model: &Model<f64>, programs: &[Program]
     }
     levels::module(out, level);
     let mut widths: Vec<usize> = programs.iter().map(|p| p.graph.lanes().width).filter(|w| *w > 1).collect();
-    if widths.contains(&2) {
-        *out += TWO;
+    // Vectors of which there is more than one, in those of the widest registers.
+    for width in [2, 4] {
+        if programs.iter().any(|p| p.graph.lanes().width == width && several::wanted(&p.graph)) {
+            several::module(out, width);
+            widths.extend([4, 8]);
+        }
     }
     if let Some(columns) = programs.iter().find_map(|p| p.columns.as_ref()) {
         Layout::of(columns).module(out);
@@ -53,7 +66,7 @@ pub(super) fn support(out: &mut String, model: &Model<f64>, programs: &[Program]
         derivatives::module(out, groups, model);
         widths.push(4);
     }
-    widths.extend((sines || widths.contains(&2)).then_some(4));
+    widths.extend(sines.then_some(4));
     widths.sort_unstable();
     widths.dedup();
     if !widths.is_empty() {
@@ -88,11 +101,7 @@ const SETS: [(Set, &str, &str); 5] = [
     (Set::Portable, "portable", ""),
     (Set::Sse2, "sse2", NOT_COMPILED_FOR_AVX2),
     (Set::Avx2, "avx2", "#[cfg(target_arch = \"x86_64\")]"),
-    (
-        Set::Avx512,
-        "avx512",
-        "#[cfg(all(target_arch = \"x86_64\", target_feature = \"avx512dq\", target_feature = \"avx512vl\", target_feature = \"avx512vbmi2\"))]",
-    ),
+    (Set::Avx512, "avx512", concat!("#[cfg(", compiled_for_avx512!(), ")]")),
     (Set::Neon, "neon", "#[cfg(target_arch = \"aarch64\")]"),
 ];
 
@@ -170,60 +179,6 @@ mod trig {
     pub(super) fn four<F: super::Fma>(a: f64, b: f64, c: f64, d: f64) -> [[f64; 4]; 2] {
         let (sin, cos) = super::portable_f64x4::sin_cos([a, b, c, d]);
         [sin, cos]
-    }
-}
-
-";
-
-const TWO: &str = "\
-/// Sines and cosines of two vectors of two: as one of four where there are such.
-#[allow(unsafe_code, dead_code, unused_imports, unreachable_pub, clippy::all, clippy::pedantic)]
-mod two {
-    #[cfg(target_arch = \"x86_64\")]
-    pub(super) mod avx2 {
-        use super::super::avx2_f64x2::V;
-        use ::core::arch::x86_64::*;
-
-        #[inline]
-        #[target_feature(enable = \"avx2,fma\")]
-        pub(in super::super) fn sin_cos_of_two(a: V, b: V) -> [[V; 2]; 2] {
-            let (sin, cos) = super::super::avx2_f64x4::sin_cos(_mm256_set_m128d(b, a));
-            [
-                [_mm256_castpd256_pd128(sin), _mm256_extractf128_pd::<1>(sin)],
-                [_mm256_castpd256_pd128(cos), _mm256_extractf128_pd::<1>(cos)],
-            ]
-        }
-    }
-    #[cfg(all(target_arch = \"x86_64\", not(all(target_feature = \"avx2\", target_feature = \"fma\"))))]
-    pub(super) mod sse2 {
-        use super::super::sse2_f64x2::{V, sin_cos};
-
-        #[inline]
-        #[target_feature(enable = \"sse2,fxsr\")]
-        pub(in super::super) fn sin_cos_of_two(a: V, b: V) -> [[V; 2]; 2] {
-            let ((s, c), (t, d)) = (sin_cos(a), sin_cos(b));
-            [[s, t], [c, d]]
-        }
-    }
-    #[cfg(target_arch = \"aarch64\")]
-    pub(super) mod neon {
-        use super::super::neon_f64x2::{V, sin_cos};
-
-        #[inline]
-        #[target_feature(enable = \"neon\")]
-        pub(in super::super) fn sin_cos_of_two(a: V, b: V) -> [[V; 2]; 2] {
-            let ((s, c), (t, d)) = (sin_cos(a), sin_cos(b));
-            [[s, t], [c, d]]
-        }
-    }
-    pub(super) mod portable {
-        use super::super::portable_f64x2::{V, sin_cos};
-
-        #[inline(always)]
-        pub(in super::super) fn sin_cos_of_two(a: V, b: V) -> [[V; 2]; 2] {
-            let ((s, c), (t, d)) = (sin_cos(a), sin_cos(b));
-            [[s, t], [c, d]]
-        }
     }
 }
 

@@ -7,7 +7,7 @@ use super::order::Angle;
 use super::plain::name;
 use super::rows::WIDTH;
 use super::signature::{Place, Signature};
-use super::written;
+use super::{several, written};
 use crate::graph::{Graph, Node, NodeId, Op};
 
 /// The statements, the result last.
@@ -62,20 +62,20 @@ impl Dialect for Vector<'_> {
     }
 
     fn sines(&self, group: &[Angle], _: usize) -> String {
-        let one = |a: &Angle| format!("    let ({}, {}) = sin_cos({});\n", name(a.sin), name(a.cos), self.operand(a.angle));
-        match group {
-            // Two vectors of two fill one of four.
-            [a, b] => {
-                let (x, y) = (self.operand(a.angle), self.operand(b.angle));
-                let (sines, cosines) = ([name(a.sin), name(b.sin)].join(", "), [name(a.cos), name(b.cos)].join(", "));
-                format!("    let [[{sines}], [{cosines}]] = sin_cos_of_two({x}, {y});\n")
-            }
-            group => group.iter().map(one).collect(),
+        if let [one] = group {
+            return format!("    let ({}, {}) = sin_cos({});\n", name(one.sin), name(one.cos), self.operand(one.angle));
         }
+        // There are functions of two and of four.
+        let (now, rest) = group.split_at(if group.len() < 4 { 2 } else { 4 });
+        let list = |of: &dyn Fn(&Angle) -> String| now.iter().map(of).collect::<Vec<_>>().join(", ");
+        let (sines, cosines) = (list(&|a| name(a.sin)), list(&|a| name(a.cos)));
+        let function = several::name(now.len());
+        let out = format!("    let [[{sines}], [{cosines}]] = {function}({});\n", list(&|a| self.operand(a.angle)));
+        if rest.is_empty() { out } else { out + &self.sines(rest, rest.len()) }
     }
 
     fn group(&self) -> usize {
-        if self.graph.lanes().width == 2 { 2 } else { 1 }
+        several::together(self.graph.lanes().width)
     }
 
     fn number(&self, id: NodeId) -> String {
