@@ -19,7 +19,7 @@ pub struct Entry {
     /// The ways chosen by count, where the function can be computed in several.
     pub ways: Vec<Cow<'static, str>>,
     /// Counts after each stage: `asked` (what the algorithm asks for), `trace` (folded and shared), the same after each model
-    /// pass, then after each graph pass; `loops`, what is executed of a function that is left loops. Without [`stages`](crate::Options::stages) only the last of the model passes.
+    /// pass, with frames that do not turn (`unturned`) and lengths in another unit (`unit`) where that is chosen, then after each graph pass; `loops`, what is executed of a function that is left loops. Without [`stages`](crate::Options::stages) only the last of the model passes.
     pub stages: Vec<(&'static str, Counts)>,
     /// Longest chain of operations from an input to an output; of what is left loops, where it is written out.
     pub depth: u32,

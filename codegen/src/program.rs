@@ -238,8 +238,8 @@ fn cost(wanted: &Wanted, choice: Choice, subject: &Subject) -> u32 {
     pass::cost(&subject.finished(wanted, &[choice]))
 }
 
-/// So many units of length are tried at most.
-const UNITS: usize = 64;
+/// So many instructions are traced at most to find the best unit of length: of a long function fewer are tried.
+const TRIED: usize = 20_000;
 
 /// The choices with lengths in the unit that costs least: where a constant is one, what it multiplies is only added.
 fn in_the_best_unit(wanted: &Wanted, choices: Vec<Choice>, subject: &Subject) -> Vec<Choice> {
@@ -262,7 +262,7 @@ fn in_the_best_unit(wanted: &Wanted, choices: Vec<Choice>, subject: &Subject) ->
         return choices;
     }
     let mut best = choices.clone();
-    for other in most.iter().take(UNITS).map(|&metres| with(metres)) {
+    for other in most.iter().take(TRIED / (cost as usize).max(1)).map(|&metres| with(metres)) {
         let (_, price) = price(&other);
         if price < least {
             (least, best) = (price, other);

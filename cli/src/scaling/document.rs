@@ -17,8 +17,8 @@ inertia. *Generic* is the same algorithm as a library, in loops over the joints.
 
 * *Hot*: the function is called again and again on eight states, as in a simulation or an optimiser.
 * *Cold*: before every single call 64 MiB of data are written to and 2²⁰ instructions of straight-line code are run, so that neither the code nor the data of the function are in
-  any cache; as when a control loop calls it once a millisecond between other work. What the processor has learnt of branches stays, to the advantage of loops. The clock, some tens of ns, is in it. Generated
-  and generic code are near each other over a wide range there, so that the length from which on generic code is faster moves from run to run.
+  any cache; as when a control loop calls it once a millisecond between other work. What the processor has learnt of branches stays, to the advantage of loops. The clock, some tens of ns, is in it. The length
+  from which on generic code is faster depends on how soon a processor has code from its memory; where the two are near each other over a wide range, it moves from run to run.
 * *Generation*: from the URDF's text to the source, in an optimised program. A build script is compiled without optimisation unless the profile says otherwise
   (`[profile.dev.build-override] opt-level = 3`) and takes about ten times as long: inverse dynamics of 1000 joints takes 1.3 s of one core, the reading of the URDF (a quarter of it) included.
 * *rustc*: its start and linking included, for code of that function alone.
