@@ -99,7 +99,7 @@ fn placements_fill(q: &[f64; NQ], out: &mut ::core::mem::MaybeUninit<[[f64; 12];
 /// Returns `[f64; NV]` N·m|N.
 ///
 /// RNEA; Featherstone 2008, Table 5.1.
-/// By lengths in 9.81 m, the cheapest for this robot; 3 multiplications + 2 additions in 3 instructions (multiply-adds counted once), 1 sines and cosines, depth 3.
+/// 2 multiplications + 1 additions in 2 instructions (multiply-adds counted once), 1 sines and cosines, depth 3.
 #[allow(unsafe_code, unused_unsafe, clippy::all, clippy::pedantic)]
 pub fn inverse_dynamics(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV]) -> [f64; NV] {
     let _ = q;
@@ -110,13 +110,12 @@ pub fn inverse_dynamics(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV]) -> [f64; NV
     let _ = q;
     let _ = v;
     let _ = a;
-    let x2 = q[0];
-    let (x4, _) = f64::sin_cos(x2);
-    let x3 = a[0];
-    let x5 = 1.0005 * x3;
-    let x7 = F::fma(0.0005, x3, x5);
-    let x8 = F::fma(x4, 9.81, x7);
-    [x8]
+    let x0 = q[0];
+    let (x3, _) = f64::sin_cos(x0);
+    let x1 = a[0];
+    let x4 = 9.81 * x3;
+    let x6 = F::fma(x1, 1.001, x4);
+    [x6]
     }
     #[cfg(all(target_arch = "x86_64", not(all(target_feature = "avx2", target_feature = "fma"))))]
     if ::std::is_x86_feature_detected!("avx2") && ::std::is_x86_feature_detected!("fma") {

@@ -1,6 +1,7 @@
 //! Sums as chains of multiply-adds.
 
 use super::chains::{Known, plan};
+use super::sums::{Term, flatten, inner, is_sum, uses_in_sums};
 use crate::graph::{Graph, Node, NodeId, Op};
 
 /// Multiplications or multiply-adds that a processor begins in a cycle.
@@ -12,7 +13,11 @@ const GRACE: u32 = 16;
 /// Instructions from which on a program nearly fills the cache for instructions: then nothing is worth more of them.
 const LONG: u32 = 1800;
 
-/// Flattens nested sums and rebuilds each as a chain, in which every product that only sums use is part of a multiply-add.
+/// Sums from which on a product that they use is computed once: one instruction more for two multiplications fewer, and processors that add beside
+/// multiplying have additions to spare.
+const SHARED: u32 = 3;
+
+/// Flattens nested sums and rebuilds each as a chain, in which every product that only sums use, and at most two, is part of a multiply-add.
 ///
 /// A chain takes its terms in the order in which they become known, so that the last one waits for nothing but itself. Each sum is due when the last
 /// result still is in time; where one chain would be late, it is cut into two or three, which takes more instructions. A sum of products alone needs one that is computed on its own to start from;
@@ -38,13 +43,6 @@ fn build<'a>(graph: &'a Graph, sums: &Sums, due: &[u32]) -> Builder<'a> {
     builder
 }
 
-/// A term of a sum.
-#[derive(Clone, Copy, Debug)]
-struct Term {
-    negative: bool,
-    node: usize,
-}
-
 /// The sums of a graph.
 struct Sums {
     /// Nodes that are part of a larger sum and nothing else.
@@ -53,25 +51,19 @@ struct Sums {
     terms: Vec<Option<Vec<Term>>>,
     /// Products that nothing but sums use.
     fusible: Vec<bool>,
-    /// Of those, the ones that are computed on their own all the same, because a sum starts from them.
+    /// Of those, the ones that are computed on their own all the same, because a sum starts from them or many sums use them.
     seed: Vec<bool>,
-}
-
-fn is_sum(node: &Node) -> bool {
-    matches!(node.op, Op::Add | Op::Sub | Op::Neg)
 }
 
 impl Sums {
     fn of(graph: &Graph) -> Self {
         let nodes = graph.nodes();
-        let uses = graph.uses();
-        let mut in_sums = vec![0; nodes.len()];
-        nodes.iter().filter(|n| is_sum(n)).flat_map(Node::operands).for_each(|a| in_sums[a.index()] += 1);
-        let only_in_sums = |k: usize| uses[k] > 0 && uses[k] == in_sums[k];
-        let inner: Vec<bool> = nodes.iter().enumerate().map(|(k, n)| is_sum(n) && uses[k] == 1 && only_in_sums(k)).collect();
-        let fusible = nodes.iter().enumerate().map(|(k, n)| n.op == Op::Mul && only_in_sums(k)).collect();
+        let (uses, in_sums) = (graph.uses(), uses_in_sums(graph));
+        let inner = inner(graph);
+        let fusible: Vec<bool> = (0..nodes.len()).map(|k| nodes[k].op == Op::Mul && uses[k] > 0 && uses[k] == in_sums[k]).collect();
+        let seed = (0..nodes.len()).map(|k| fusible[k] && uses[k] >= SHARED).collect();
         let terms = (0..nodes.len()).map(|k| (is_sum(&nodes[k]) && !inner[k]).then(|| flatten(graph, &inner, k))).collect();
-        let mut sums = Self { inner, terms, fusible, seed: vec![false; nodes.len()] };
+        let mut sums = Self { inner, terms, fusible, seed };
         sums.choose_seeds(&uses);
         sums
     }
@@ -91,26 +83,6 @@ impl Sums {
             }
         }
     }
-}
-
-/// The terms of the sum at `root`, inner sums opened.
-fn flatten(graph: &Graph, inner: &[bool], root: usize) -> Vec<Term> {
-    let mut terms = Vec::new();
-    let mut stack = vec![Term { negative: false, node: root }];
-    while let Some(Term { negative, node }) = stack.pop() {
-        if node != root && !inner[node] {
-            terms.push(Term { negative, node });
-            continue;
-        }
-        let Node { op, args } = graph.nodes()[node];
-        let at = |k: usize, flip: bool| Term { negative: negative != flip, node: args[k] as usize };
-        match op {
-            Op::Add => stack.extend([at(1, false), at(0, false)]),
-            Op::Sub => stack.extend([at(1, true), at(0, false)]),
-            _ => stack.push(at(0, true)),
-        }
-    }
-    terms
 }
 
 /// A node with a sign in front.
@@ -290,7 +262,17 @@ mod tests {
     }
 
     #[test]
-    fn a_product_that_only_sums_use_vanishes_into_all_of_them() {
+    fn a_product_that_three_sums_use_is_computed_once() {
+        let mut g = Graph::default();
+        let [a, b, c, d, e] = [0, 1, 2, 3, 4].map(|k| g.input(0, k));
+        let ab = g.apply(Op::Mul, &[a, b]);
+        g.outputs = [c, d, e].map(|x| g.apply(Op::Add, &[ab, x])).to_vec();
+        check(&g, 4);
+        assert_eq!(live(&contract(&g)).nodes().iter().filter(|n| n.op == Op::Add).count(), 3);
+    }
+
+    #[test]
+    fn a_product_that_two_sums_use_vanishes_into_both() {
         let mut g = Graph::default();
         let [a, b, c, d] = [0, 1, 2, 3].map(|k| g.input(0, k));
         let ab = g.apply(Op::Mul, &[a, b]);

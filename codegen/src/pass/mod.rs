@@ -2,10 +2,13 @@
 
 mod chains;
 mod contract;
+mod factor;
 mod from_the_last;
 mod live;
+mod sums;
 
 pub use contract::contract;
+pub use factor::factor;
 pub use from_the_last::from_the_last;
 pub use live::live;
 
@@ -19,10 +22,11 @@ pub type GraphPass = fn(&Graph) -> Graph;
 /// The passes in order; each row: name, pass, and what holds after it.
 pub const GRAPH_PASSES: &[(&str, GraphPass, &str)] = &[
     ("live", live, "every node is needed by an output"),
+    ("factor", factor, "no two products that only one sum uses have a factor in common there"),
     (
         "contract",
         contract,
-        "no sum is a term of one other sum; a product that only sums use is part of multiply-adds, but for one a sum at most",
+        "no sum is a term of one other sum; a product that only one or two sums use is part of multiply-adds, but for one a sum at most",
     ),
     ("swept", live, "every node is needed by an output again"),
 ];
