@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::sums::{Term, flatten, inner, is_sum};
-use super::{copy, live};
+use super::live;
+use super::sums::{Rebuild, Term, flatten, inner, is_sum, open};
 use crate::graph::{Graph, Node, NodeId, Op};
 
 /// Writes a·x + a·y as a·(x + y): a multiplication less and as many additions, and as many instructions once sums are chains of multiply-adds.
@@ -16,25 +16,11 @@ pub fn factor(graph: &Graph) -> Graph {
     let sum = |k: usize| (is_sum(&nodes[k]) && !inner[k]).then(|| Sum::of(nodes, flatten(graph, &inner, k), &single));
     let sums: Vec<Option<Sum>> = (0..nodes.len()).map(|k| sum(k).filter(|s| !s.factored.is_empty())).collect();
     let mut gone = vec![false; nodes.len()];
-    for (root, sum) in sums.iter().enumerate() {
-        let products = sum.iter().flat_map(|s| &s.factored).flat_map(|f| &f.products);
-        products.for_each(|p| gone[p.node] = true);
-        if sum.is_some() {
-            open(nodes, &inner, root, &mut gone);
-        }
+    for (root, sum) in sums.iter().enumerate().filter_map(|(k, sum)| Some((k, sum.as_ref()?))) {
+        sum.factored.iter().flat_map(|f| &f.products).for_each(|p| gone[p.node] = true);
+        open(graph, &inner, root, &mut gone);
     }
-    live(&rebuilt(graph, &sums, &gone))
-}
-
-/// Marks the sums within a sum.
-fn open(nodes: &[Node], inner: &[bool], root: usize, gone: &mut [bool]) {
-    let mut stack = vec![root];
-    while let Some(k) = stack.pop() {
-        for a in nodes[k].operands().map(NodeId::index).filter(|&a| inner[a]) {
-            gone[a] = true;
-            stack.push(a);
-        }
-    }
+    live(&Rebuild::graph(graph, &gone, |rebuild, k| Some(sums[k].as_ref()?.built(rebuild))))
 }
 
 /// A sum, what has a common factor apart from the rest.
@@ -60,6 +46,26 @@ impl Sum {
         }
         sum
     }
+
+    fn built(&self, rebuild: &mut Rebuild) -> NodeId {
+        let mut terms: Vec<(bool, NodeId)> = self.rest.iter().map(|t| (t.negative, rebuild.ids[t.node])).collect();
+        terms.extend(self.factored.iter().map(|f| (f.products[0].negative, f.built(rebuild))));
+        rebuild.add(&terms)
+    }
+}
+
+impl Factored {
+    /// The product with the sign of the first of the products.
+    fn built(&self, rebuild: &mut Rebuild) -> NodeId {
+        let beside = |rebuild: &Rebuild, product: usize| {
+            let [a, b, _] = rebuild.graph.nodes()[product].args.map(|a| a as usize);
+            rebuild.ids[if a == self.factor { b } else { a }]
+        };
+        let others: Vec<(bool, NodeId)> =
+            self.products.iter().map(|t| (t.negative != self.products[0].negative, beside(rebuild, t.node))).collect();
+        let others = rebuild.add(&others);
+        rebuild.new.apply(Op::Mul, &[rebuild.ids[self.factor], others])
+    }
 }
 
 /// The factor that most of the products have, if two have it; of several such the last of the graph, which is known latest.
@@ -73,59 +79,6 @@ fn most_common<'a>(nodes: &[Node], products: impl Iterator<Item = &'a Term>) -> 
         }
     }
     counts.into_iter().filter(|(_, n)| *n > 1).max_by_key(|(factor, n)| (*n, *factor)).map(|(factor, _)| factor)
-}
-
-/// The graph with these sums in place of those of the same place, and without what is gone.
-fn rebuilt(graph: &Graph, sums: &[Option<Sum>], gone: &[bool]) -> Graph {
-    let nodes = graph.nodes();
-    let mut builder = Builder { nodes, new: graph.emptied(), ids: vec![NodeId(u32::MAX); nodes.len()] };
-    for (k, node) in nodes.iter().enumerate().filter(|(k, _)| !gone[*k]) {
-        builder.ids[k] = match &sums[k] {
-            Some(sum) => builder.sum(sum),
-            None if node.op.row().arity == 0 => builder.new.leaf(*node),
-            None => {
-                let operands: Vec<NodeId> = node.operands().map(|a| builder.ids[a.index()]).collect();
-                copy(&mut builder.new, *node, &operands)
-            }
-        };
-    }
-    builder.new.outputs = graph.outputs.iter().map(|o| builder.ids[o.index()]).collect();
-    builder.new
-}
-
-struct Builder<'a> {
-    nodes: &'a [Node],
-    new: Graph,
-    /// The new node of each old one that has one.
-    ids: Vec<NodeId>,
-}
-
-impl Builder<'_> {
-    fn sum(&mut self, sum: &Sum) -> NodeId {
-        let mut terms: Vec<(bool, NodeId)> = sum.rest.iter().map(|t| (t.negative, self.ids[t.node])).collect();
-        for Factored { factor, products } in &sum.factored {
-            let negative = products[0].negative;
-            let others: Vec<(bool, NodeId)> = products.iter().map(|t| (t.negative != negative, self.other(t.node, *factor))).collect();
-            let others = self.add(&others);
-            terms.push((negative, self.new.apply(Op::Mul, &[self.ids[*factor], others])));
-        }
-        self.add(&terms)
-    }
-
-    /// What stands beside a factor in a product.
-    fn other(&self, product: usize, factor: usize) -> NodeId {
-        let [a, b, _] = self.nodes[product].args.map(|a| a as usize);
-        self.ids[if a == factor { b } else { a }]
-    }
-
-    /// The sum of terms, each with whether it is negative.
-    fn add(&mut self, terms: &[(bool, NodeId)]) -> NodeId {
-        let first = terms.iter().position(|(negative, _)| !negative).unwrap_or(0);
-        let (negative, node) = terms[first];
-        let start = if negative { self.new.apply(Op::Neg, &[node]) } else { node };
-        let others = terms.iter().enumerate().filter(|(k, _)| *k != first);
-        others.fold(start, |sum, (_, (negative, node))| self.new.apply(if *negative { Op::Sub } else { Op::Add }, &[sum, *node]))
-    }
 }
 
 #[cfg(test)]

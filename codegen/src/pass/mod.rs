@@ -5,12 +5,14 @@ mod contract;
 mod factor;
 mod from_the_last;
 mod live;
+mod partial;
 mod sums;
 
 pub use contract::contract;
 pub use factor::factor;
 pub use from_the_last::from_the_last;
 pub use live::live;
+pub use partial::partial;
 
 use articulated_core::running::Running;
 
@@ -23,6 +25,7 @@ pub type GraphPass = fn(&Graph) -> Graph;
 pub const GRAPH_PASSES: &[(&str, GraphPass, &str)] = &[
     ("live", live, "every node is needed by an output"),
     ("factor", factor, "no two products that only one sum uses have a factor in common there"),
+    ("partial", partial, "no two sums have two terms in common, where that saves an instruction"),
     (
         "contract",
         contract,

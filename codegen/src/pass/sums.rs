@@ -1,6 +1,6 @@
-//! Nested sums as lists of terms.
+//! Nested sums as lists of terms, and graphs with other sums in their place.
 
-use crate::graph::{Graph, Node, Op};
+use crate::graph::{Graph, Node, NodeId, Op};
 
 /// A term of a sum.
 #[derive(Clone, Copy, Debug)]
@@ -45,4 +45,52 @@ pub(super) fn flatten(graph: &Graph, inner: &[bool], root: usize) -> Vec<Term> {
         }
     }
     terms
+}
+
+/// Marks the sums within the sum at `root`.
+pub(super) fn open(graph: &Graph, inner: &[bool], root: usize, marked: &mut [bool]) {
+    let mut stack = vec![root];
+    while let Some(k) = stack.pop() {
+        for a in graph.nodes()[k].operands().map(NodeId::index).filter(|&a| inner[a]) {
+            marked[a] = true;
+            stack.push(a);
+        }
+    }
+}
+
+/// A graph whose sums are built anew.
+pub(super) struct Rebuild<'a> {
+    pub(super) graph: &'a Graph,
+    pub(super) new: Graph,
+    /// The new node of each old one that has one.
+    pub(super) ids: Vec<NodeId>,
+}
+
+impl<'a> Rebuild<'a> {
+    /// The graph without what is `gone`, and with what `sum` makes of a node where it makes something.
+    pub(super) fn graph(graph: &'a Graph, gone: &[bool], mut sum: impl FnMut(&mut Self, usize) -> Option<NodeId>) -> Graph {
+        let mut rebuild = Self { graph, new: graph.emptied(), ids: vec![NodeId(u32::MAX); graph.nodes().len()] };
+        for (k, node) in graph.nodes().iter().enumerate().filter(|(k, _)| !gone[*k]) {
+            rebuild.ids[k] = sum(&mut rebuild, k).unwrap_or_else(|| rebuild.copy(*node));
+        }
+        rebuild.new.outputs = graph.outputs.iter().map(|o| rebuild.ids[o.index()]).collect();
+        rebuild.new
+    }
+
+    fn copy(&mut self, node: Node) -> NodeId {
+        if node.op.row().arity == 0 {
+            return self.new.leaf(node);
+        }
+        let operands: Vec<NodeId> = node.operands().map(|a| self.ids[a.index()]).collect();
+        self.new.exactly(node.op, &operands)
+    }
+
+    /// The sum of terms, each with whether it is negative.
+    pub(super) fn add(&mut self, terms: &[(bool, NodeId)]) -> NodeId {
+        let first = terms.iter().position(|(negative, _)| !negative).unwrap_or(0);
+        let (negative, node) = terms[first];
+        let start = if negative { self.new.apply(Op::Neg, &[node]) } else { node };
+        let others = terms.iter().enumerate().filter(|(k, _)| *k != first);
+        others.fold(start, |sum, (_, (negative, node))| self.new.apply(if *negative { Op::Sub } else { Op::Add }, &[sum, *node]))
+    }
 }
