@@ -1,20 +1,24 @@
-//! Common factors.
+//! Like terms and common factors.
 
-use std::collections::HashMap;
+use std::iter::once;
 
 use super::live;
 use super::sums::{Rebuild, Term, flatten, inner, is_sum, open};
 use crate::graph::{Graph, Node, NodeId, Op};
 
-/// Writes a·x + a·y as a·(x + y): a multiplication less and as many additions, and as many instructions once sums are chains of multiply-adds.
+/// Adds the constants of a sum now, leaves out x − x, and writes a·x + a·y as a·(x + y): a multiplication less and as many additions, and as many instructions once sums are
+/// chains of multiply-adds.
 ///
-/// Of products that nothing but the sum uses; of several factors first the one that most of the products have. Re-association changes results by roundings only.
+/// Factors are those of products that nothing but the sum uses; of several first the one that most of the products have. Re-association changes results by roundings only.
 pub fn factor(graph: &Graph) -> Graph {
     let inner = inner(graph);
     let nodes = graph.nodes();
     let single: Vec<bool> = nodes.iter().zip(graph.uses()).map(|(n, uses)| n.op == Op::Mul && uses == 1).collect();
-    let sum = |k: usize| (is_sum(&nodes[k]) && !inner[k]).then(|| Sum::of(nodes, flatten(graph, &inner, k), &single));
-    let sums: Vec<Option<Sum>> = (0..nodes.len()).map(|k| sum(k).filter(|s| !s.factored.is_empty())).collect();
+    let sum = |k: usize| if is_sum(&nodes[k]) && !inner[k] { Sum::of(nodes, flatten(graph, &inner, k), &single) } else { None };
+    let sums: Vec<Option<Sum>> = (0..nodes.len()).map(sum).collect();
+    if sums.iter().all(Option::is_none) {
+        return graph.clone();
+    }
     let mut gone = vec![false; nodes.len()];
     for (root, sum) in sums.iter().enumerate().filter_map(|(k, sum)| Some((k, sum.as_ref()?))) {
         sum.factored.iter().flat_map(|f| &f.products).for_each(|p| gone[p.node] = true);
@@ -23,8 +27,9 @@ pub fn factor(graph: &Graph) -> Graph {
     live(&Rebuild::graph(graph, &gone, |rebuild, k| Some(sums[k].as_ref()?.built(rebuild))))
 }
 
-/// A sum, what has a common factor apart from the rest.
+/// A sum, constants and what has a common factor apart from the rest.
 struct Sum {
+    constants: Vec<Term>,
     rest: Vec<Term>,
     factored: Vec<Factored>,
 }
@@ -36,19 +41,25 @@ struct Factored {
 }
 
 impl Sum {
-    fn of(nodes: &[Node], terms: Vec<Term>, single: &[bool]) -> Self {
-        let mut sum = Self { rest: terms, factored: Vec::new() };
+    /// The sum of these terms, if there is anything to collect.
+    fn of(nodes: &[Node], terms: Vec<Term>, single: &[bool]) -> Option<Self> {
+        let all = terms.len();
+        let (constants, rest) = terms.into_iter().partition(|t| matches!(nodes[t.node].op, Op::Constant | Op::LaneConstant));
+        let mut sum = Self { constants, rest: without_opposites(rest), factored: Vec::new() };
+        let vanished = sum.constants.len() + sum.rest.len() < all;
         while let Some(factor) = most_common(nodes, sum.rest.iter().filter(|t| single[t.node])) {
             let has_it = |t: &Term| single[t.node] && nodes[t.node].operands().any(|a| a.index() == factor);
             let (products, rest) = sum.rest.into_iter().partition(has_it);
             sum.rest = rest;
             sum.factored.push(Factored { factor, products });
         }
-        sum
+        (vanished || sum.constants.len() > 1 || !sum.factored.is_empty()).then_some(sum)
     }
 
     fn built(&self, rebuild: &mut Rebuild) -> NodeId {
-        let mut terms: Vec<(bool, NodeId)> = self.rest.iter().map(|t| (t.negative, rebuild.ids[t.node])).collect();
+        // Constants come first: they are one before anything else is added.
+        let terms = self.constants.iter().chain(&self.rest);
+        let mut terms: Vec<(bool, NodeId)> = terms.map(|t| (t.negative, rebuild.ids[t.node])).collect();
         terms.extend(self.factored.iter().map(|f| (f.products[0].negative, f.built(rebuild))));
         rebuild.add(&terms)
     }
@@ -68,17 +79,33 @@ impl Factored {
     }
 }
 
-/// The factor that most of the products have, if two have it; of several such the last of the graph, which is known latest.
-fn most_common<'a>(nodes: &[Node], products: impl Iterator<Item = &'a Term>) -> Option<usize> {
-    let mut counts: HashMap<usize, usize> = HashMap::new();
-    for product in products {
-        let [a, b, _] = nodes[product.node].args.map(|a| a as usize);
-        *counts.entry(a).or_default() += 1;
-        if b != a {
-            *counts.entry(b).or_default() += 1;
+/// Terms without those that the same with the other sign takes away.
+fn without_opposites(mut terms: Vec<Term>) -> Vec<Term> {
+    let mut k = 0;
+    while k < terms.len() {
+        let Term { negative, node } = terms[k];
+        match terms[..k].iter().position(|t| t.node == node && t.negative != negative) {
+            Some(other) => {
+                terms.remove(k);
+                terms.remove(other);
+                k -= 1;
+            }
+            None => k += 1,
         }
     }
-    counts.into_iter().filter(|(_, n)| *n > 1).max_by_key(|(factor, n)| (*n, *factor)).map(|(factor, _)| factor)
+    terms
+}
+
+/// The factor that most of the products have, if two have it; of several such the last of the graph, which is known latest.
+fn most_common<'a>(nodes: &[Node], products: impl Iterator<Item = &'a Term>) -> Option<usize> {
+    let factors = products.flat_map(|product| {
+        let [a, b, _] = nodes[product.node].args.map(|a| a as usize);
+        once(a).chain((a != b).then_some(b))
+    });
+    let mut factors: Vec<usize> = factors.collect();
+    factors.sort_unstable();
+    let same = factors.chunk_by(|a, b| a == b).filter(|same| same.len() > 1);
+    same.max_by_key(|same| same.len()).map(|same| same[0])
 }
 
 #[cfg(test)]
@@ -135,6 +162,18 @@ mod tests {
         let difference = g.apply(Op::Sub, &[aa, ab]);
         g.outputs = vec![difference];
         check(&g, 1, 1);
+    }
+
+    #[test]
+    fn constants_are_added_at_once_and_opposites_are_gone() {
+        let mut g = Graph::default();
+        let [a, b, c] = [0, 1, 2].map(|k| g.input(0, k));
+        let [two, three] = [2.0, 3.0].map(|x| g.constant(x));
+        let terms = [(Op::Add, b), (Op::Sub, two), (Op::Sub, c), (Op::Sub, b), (Op::Sub, three), (Op::Add, c), (Op::Sub, b)];
+        let sum = terms.into_iter().fold(a, |sum, (op, term)| g.exactly(op, &[sum, term]));
+        let nothing = g.exactly(Op::Sub, &[a, a]);
+        g.outputs = vec![sum, nothing];
+        check(&g, 0, 2);
     }
 
     #[test]

@@ -12,7 +12,7 @@ pub fn live(graph: &Graph) -> Graph {
             node.operands().for_each(|a| needed[a.index()] = true);
         }
     }
-    rebuild(graph, |k| needed[k], copy)
+    if needed.iter().all(|needed| *needed) { graph.clone() } else { rebuild(graph, |k| needed[k], copy) }
 }
 
 #[cfg(test)]

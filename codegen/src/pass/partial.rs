@@ -18,6 +18,9 @@ pub fn partial(graph: &Graph) -> Graph {
     let sums = (0..nodes.len()).map(|k| if is_sum(&nodes[k]) && !inner[k] { flatten(graph, &inner, k) } else { Vec::new() }).collect();
     let mut sums = Sums { fused: fused(graph), changed: vec![false; nodes.len()], sums, pairs: Vec::new() };
     while sums.round() {}
+    if sums.pairs.is_empty() {
+        return graph.clone();
+    }
     let mut gone = vec![false; nodes.len()];
     sums.changed.iter().enumerate().filter(|(_, changed)| **changed).for_each(|(k, _)| open(graph, &inner, k, &mut gone));
     let mut built = vec![None; sums.pairs.len()];
@@ -122,10 +125,9 @@ impl Sums {
 fn keys(terms: &[Term]) -> impl Iterator<Item = Key> + '_ {
     let once = move |node: usize| terms.iter().filter(|t| t.node == node).count() == 1;
     let pairs = terms.iter().enumerate().flat_map(|(j, b)| terms[..j].iter().map(move |a| (a, b)));
-    pairs.filter(move |(a, b)| once(a.node) && once(b.node)).map(|(a, b)| Key {
-        nodes: [a.node.min(b.node), a.node.max(b.node)],
-        apart: a.negative != b.negative,
-    })
+    pairs
+        .filter(move |(a, b)| once(a.node) && once(b.node))
+        .map(|(a, b)| Key { nodes: [a.node.min(b.node), a.node.max(b.node)], apart: a.negative != b.negative })
 }
 
 #[cfg(test)]

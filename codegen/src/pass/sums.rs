@@ -87,10 +87,7 @@ impl<'a> Rebuild<'a> {
 
     /// The sum of terms, each with whether it is negative.
     pub(super) fn add(&mut self, terms: &[(bool, NodeId)]) -> NodeId {
-        let first = terms.iter().position(|(negative, _)| !negative).unwrap_or(0);
-        let (negative, node) = terms[first];
-        let start = if negative { self.new.apply(Op::Neg, &[node]) } else { node };
-        let others = terms.iter().enumerate().filter(|(k, _)| *k != first);
-        others.fold(start, |sum, (_, (negative, node))| self.new.apply(if *negative { Op::Sub } else { Op::Add }, &[sum, *node]))
+        let nothing = self.new.constant(0.0);
+        terms.iter().fold(nothing, |sum, (negative, node)| self.new.apply(if *negative { Op::Sub } else { Op::Add }, &[sum, *node]))
     }
 }

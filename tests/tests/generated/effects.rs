@@ -143,8 +143,12 @@ fn every_subset_of_effects_builds_and_costs_what_the_ledger_says() {
     };
     let joints = JOINTS.len() as i64;
     assert_eq!(cost(2, "inverse_dynamics"), (joints, joints), "damping: a multiplication and an addition a joint");
-    assert_eq!(cost(1, "mass_matrix"), (0, joints - 1), "armature: an addition a joint, but for the last, whose inertia is a number");
-    assert_eq!(cost(1, "inverse_dynamics"), (1, joints), "armature: an addition a joint, and a multiplication where the acceleration is in no other product");
+    assert_eq!(
+        cost(1, "mass_matrix"),
+        (0, 1),
+        "armature: an addition that two joints share without it; each inertia has a constant that it is added to"
+    );
+    assert_eq!(cost(1, "inverse_dynamics"), (1, 0), "armature: a multiplication where the acceleration has no factor that is a constant");
     assert_eq!(cost(0b10_1110, "mass_matrix"), (0, 0), "forces do not change the mass matrix");
     assert_eq!(cost(0b10_0000, "inverse_dynamics"), (0, 0), "motors do not change inverse dynamics");
     let named: Vec<(&str, &Generated)> = subsets.iter().map(|r| (r.name.as_str(), &r.generated)).collect();
