@@ -258,12 +258,19 @@ impl Build {
     /// As [`Build::try_write`]; on an error prints it for cargo and ends the build script with status 1.
     pub fn write(&self, name: &str) {
         if let Err(error) = self.try_write(name) {
-            for line in error.to_string().lines() {
-                println!("cargo::error={line}");
-            }
+            print!("{}", for_cargo(&error));
             std::process::exit(1);
         }
     }
+}
+
+/// An error as a build script tells it to cargo, which says itself that it is one; with the warnings that come with it.
+fn for_cargo(error: &Error) -> String {
+    let told = |line: &str| match line.strip_prefix("warning: ") {
+        Some(warning) => format!("cargo::warning={warning}\n"),
+        None => format!("cargo::error={}\n", line.strip_prefix("error: ").unwrap_or(line)),
+    };
+    error.to_string().lines().map(told).collect()
 }
 
 /// A path as seen from the crate's folder.
@@ -289,6 +296,21 @@ mod tests {
         fs::create_dir_all(&folder).unwrap();
         fs::write(folder.join("arm.urdf"), ARM).unwrap();
         folder
+    }
+
+    #[test]
+    fn cargo_is_told_each_error_on_a_line_and_once_that_it_is_one() {
+        let folder = folder("errors");
+        let path = folder.join("heavy.urdf");
+        fs::write(&path, ARM.replace("mass value=\"1\"", "mass value=\"-1\"").replace("effort=\"1\"", "effort=\"much\"")).unwrap();
+        let told = for_cargo(&Build::new(&path).try_write("heavy").unwrap_err());
+        let told: Vec<(&str, &str)> = told.lines().filter_map(|line| line.split_once('=')).collect();
+        let expected = [("error", "a negative mass, -1 kg"), ("error", "effort: found \"much\""), ("warning", "limit: found no bounds")];
+        assert_eq!(told.len(), expected.len(), "{told:?}");
+        for ((kind, line), (of, text)) in told.iter().zip(expected) {
+            assert!(kind.ends_with(of) && line.contains(text) && !line.contains(&format!("{of}: ")), "{kind} {line}");
+        }
+        fs::remove_dir_all(folder).unwrap();
     }
 
     #[test]
