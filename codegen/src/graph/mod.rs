@@ -72,10 +72,11 @@ impl Graph {
         Self { lanes: Lanes::new(width), ..Self::default() }
     }
 
-    /// An empty graph that leaves of this one can be copied to.
+    /// An empty graph that leaves of this one can be copied to, with room for as many nodes.
     #[must_use]
     pub fn emptied(&self) -> Self {
-        Self { lanes: self.lanes.clone(), ..Self::default() }
+        let places = table::Places::with_room(self.nodes.len());
+        Self { lanes: self.lanes.clone(), nodes: Vec::with_capacity(self.nodes.len()), places, ..Self::default() }
     }
 
     /// The tables of lane constants and lane inputs.

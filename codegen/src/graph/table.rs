@@ -50,14 +50,21 @@ impl Places {
         }
     }
 
+    /// Room for so many nodes before it grows.
+    pub(super) fn with_room(nodes: usize) -> Self {
+        Self { slots: vec![0; (2 * nodes + 1).next_power_of_two().max(64)], taken: 0 }
+    }
+
+    /// Twice the room. The nodes are those that were put in, each once and in this order: none has to be looked at again to see that it is another.
     fn grow(&mut self, nodes: &[Node]) {
-        let size = (self.slots.len() * 2).max(64);
-        let old = std::mem::replace(&mut self.slots, vec![0; size]);
-        for place in old {
-            if place != 0 {
-                let slot = self.slot(nodes, &nodes[place as usize - 1]);
-                self.slots[slot] = place;
+        self.slots = vec![0; (self.slots.len() * 2).max(64)];
+        let mask = self.slots.len() - 1;
+        for (place, node) in nodes.iter().enumerate() {
+            let mut at = hash(node) & mask;
+            while self.slots[at] != 0 {
+                at = (at + 1) & mask;
             }
+            self.slots[at] = place as u32 + 1;
         }
     }
 }
@@ -94,5 +101,9 @@ mod tests {
             assert_eq!(places.find(&nodes, &node(k)), Some(k));
             assert_eq!(places.find_or_insert(&nodes, &node(k), 9999), k);
         }
+        let mut roomy = Places::with_room(5000);
+        let slots = roomy.slots.len();
+        nodes.iter().enumerate().for_each(|(k, node)| assert_eq!(roomy.find_or_insert(&nodes, node, k as u32), k as u32));
+        assert_eq!(roomy.slots.len(), slots);
     }
 }
