@@ -177,6 +177,16 @@ mod tests {
     }
 
     #[test]
+    fn constants_alone_are_collected_and_what_stands_twice_stays() {
+        let mut g = Graph::default();
+        let [a, b] = [0, 1].map(|k| g.input(0, k));
+        let [two, three] = [2.0, 3.0].map(|x| g.constant(x));
+        let add = |g: &mut Graph, terms: &[NodeId]| terms[1..].iter().fold(terms[0], |sum, term| g.exactly(Op::Add, &[sum, *term]));
+        g.outputs = vec![add(&mut g, &[a, two, b, three]), add(&mut g, &[a, b, a])];
+        check(&g, 0, 4);
+    }
+
+    #[test]
     fn a_product_that_something_else_uses_stays() {
         let mut g = Graph::default();
         let [a, b, c] = [0, 1, 2].map(|k| g.input(0, k));

@@ -192,6 +192,12 @@ mod tests {
     }
 
     #[test]
+    fn a_term_that_stands_twice_is_left_alone() {
+        check(&graph(&[&[2, 1, 1, 1], &[3, 1, 1, 1]]), 5);
+        check(&graph(&[&[3, 1, 1, 2], &[4, 1, 2, 3], &[5, 1, 1, 2]]), 8);
+    }
+
+    #[test]
     fn two_products_need_three_sums() {
         for (sums, instructions) in [(2, 4), (3, 5)] {
             let mut g = Graph::default();
@@ -204,6 +210,7 @@ mod tests {
                 g.outputs.push(three);
             }
             check(&g, instructions);
+            assert_eq!(partial(&g).nodes().len() == g.nodes().len(), sums == 2);
         }
     }
 }
