@@ -23,14 +23,14 @@ pub(super) const NOT_COMPILED_FOR_AVX2: &str =
 /// Stands before what is for builds that run with AVX2 and FMA alone.
 pub(super) const COMPILED_FOR_AVX2: &str = "#[cfg(all(target_feature = \"avx2\", target_feature = \"fma\"))]";
 
-macro_rules! compiled_for_avx512 {
-    () => {
-        "all(target_arch = \"x86_64\", target_feature = \"avx512dq\", target_feature = \"avx512vl\", target_feature = \"avx512vbmi2\")"
-    };
-}
-
 /// What holds of builds that run with AVX-512 alone.
-pub(super) const COMPILED_FOR_AVX512: &str = compiled_for_avx512!();
+const COMPILED_FOR_AVX512: &str =
+    "all(target_arch = \"x86_64\", target_feature = \"avx512dq\", target_feature = \"avx512vl\", target_feature = \"avx512vbmi2\")";
+
+/// What holds of those of them on which a few vectors of eight among vectors of four cost nothing: AMD's, which alone have SSE4a. Intel's do without one of their two ports for vectors of four
+/// until some time after a vector of eight.
+pub(super) const COMPILED_FOR_AVX512_BESIDE_AVX2: &str = "all(target_arch = \"x86_64\", target_feature = \"avx512dq\", target_feature = \"avx512vl\", \
+                                                         target_feature = \"avx512vbmi2\", target_feature = \"sse4a\")";
 
 /// Stands before what is for processors other than x86-64 and 64-bit Arm.
 pub(super) const OTHERS: &str = "#[cfg(not(any(target_arch = \"aarch64\", target_arch = \"x86_64\")))]";
@@ -49,6 +49,7 @@ pub(super) fn support(out: &mut String, model: &Model<f64>, programs: &[Program]
         levels::sines(out, if portable { PORTABLE_SINES } else { SINES }, level);
     }
     levels::module(out, level);
+    let mut eight = COMPILED_FOR_AVX512_BESIDE_AVX2;
     let mut widths: Vec<usize> = programs.iter().map(|p| p.graph.lanes().width).filter(|w| *w > 1).collect();
     // Vectors of which there is more than one, in those of the widest registers.
     for width in [2, 4] {
@@ -59,6 +60,7 @@ pub(super) fn support(out: &mut String, model: &Model<f64>, programs: &[Program]
     }
     if let Some(columns) = programs.iter().find_map(|p| p.columns.as_ref()) {
         Layout::of(columns).module(out);
+        eight = COMPILED_FOR_AVX512;
         widths.push(4);
         widths.push(8);
     }
@@ -70,12 +72,12 @@ pub(super) fn support(out: &mut String, model: &Model<f64>, programs: &[Program]
     widths.sort_unstable();
     widths.dedup();
     if !widths.is_empty() {
-        lanes(out, &widths, portable, level);
+        lanes(out, &widths, eight, portable, level);
     }
 }
 
-/// The modules of lanes in these widths: what is called in `out` of them.
-fn lanes(out: &mut String, widths: &[usize], forbid_unsafe: bool, level: Level) {
+/// The modules of lanes in these widths: what is called in `out` of them. Of eight lanes where the condition `eight` holds.
+fn lanes(out: &mut String, widths: &[usize], eight: &str, forbid_unsafe: bool, level: Level) {
     let caller = Caller::new(out.as_str());
     let sets: &[(Set, &str, &str)] = if forbid_unsafe { &SETS[..1] } else { &SETS };
     let lint = if forbid_unsafe { "" } else { "unsafe_code, " };
@@ -86,6 +88,7 @@ fn lanes(out: &mut String, widths: &[usize], forbid_unsafe: bool, level: Level) 
             let Some(text) = text.map(|text| with_sines(&text, level)) else { continue };
             let text = used(&text, &caller);
             let _ = writeln!(out, "/// Arithmetic and sines of {width} numbers at once.");
+            let cfg = if *set == Set::Avx512 { format!("#[cfg({eight})]") } else { (*cfg).to_owned() };
             let line = if cfg.is_empty() { "" } else { "\n" };
             let _ = writeln!(
                 out,
@@ -101,7 +104,7 @@ const SETS: [(Set, &str, &str); 5] = [
     (Set::Portable, "portable", ""),
     (Set::Sse2, "sse2", NOT_COMPILED_FOR_AVX2),
     (Set::Avx2, "avx2", "#[cfg(target_arch = \"x86_64\")]"),
-    (Set::Avx512, "avx512", concat!("#[cfg(", compiled_for_avx512!(), ")]")),
+    (Set::Avx512, "avx512", ""),
     (Set::Neon, "neon", "#[cfg(target_arch = \"aarch64\")]"),
 ];
 

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::order::{Step, order};
-use super::sets::{COMPILED_FOR_AVX512, NOT_COMPILED_FOR_AVX2};
+use super::sets::{COMPILED_FOR_AVX512_BESIDE_AVX2, NOT_COMPILED_FOR_AVX2};
 use crate::graph::Graph;
 
 /// How many vectors of so many lanes fill the widest register there is.
@@ -58,8 +58,8 @@ fn one_by_one(width: usize, features: &str) -> String {
 /// Two of four lanes, or four of two, in a register of AVX-512 where this is compiled for that; two of two lanes in one of AVX2.
 fn avx2(width: usize) -> String {
     let features = "#[inline]\n#[target_feature(enable = \"avx2,fma\")]";
-    let not_avx512 = format!("#[cfg(not({COMPILED_FOR_AVX512}))]\n{features}");
-    let avx512 = format!("#[cfg({COMPILED_FOR_AVX512})]\n{features}");
+    let not_avx512 = format!("#[cfg(not({COMPILED_FOR_AVX512_BESIDE_AVX2}))]\n{features}");
+    let avx512 = format!("#[cfg({COMPILED_FOR_AVX512_BESIDE_AVX2})]\n{features}");
     let mut text = String::from("use ::core::arch::x86_64::*;\n");
     if width == 2 {
         text += &function(2, features, TWO_OF_TWO);
