@@ -1,5 +1,6 @@
 //! From graphs to Rust.
 
+mod across;
 mod apart;
 mod bare;
 mod batch;

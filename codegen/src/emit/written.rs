@@ -4,13 +4,14 @@
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write;
 
+use super::across::Across;
 use super::dialect::{Dialect, Unit, units};
 use super::flat::flat;
 use super::literal::literal;
 use super::rows::{Cell, Column, Group, groups};
 use super::signature::Signature;
 use super::vector::Vector;
-use crate::graph::{Graph, Op};
+use crate::graph::{Graph, NodeId, Op};
 
 /// The statements.
 pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
@@ -32,6 +33,9 @@ pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
 struct Writer<'a> {
     vector: &'a Vector<'a>,
     units: Vec<Unit>,
+    across: Across,
+    /// The unit in which a node is made.
+    made: HashMap<usize, usize>,
     /// What is written after each unit, and before the first.
     after: Vec<String>,
     first: String,
@@ -40,32 +44,37 @@ struct Writer<'a> {
 impl<'a> Writer<'a> {
     fn of(vector: &'a Vector<'a>, groups: &[(String, Group)]) -> Self {
         let units = units(vector.graph, vector.group());
-        let made: HashMap<usize, usize> =
+        let across = Across::of(vector.graph);
+        let mut made: HashMap<usize, usize> =
             units.iter().enumerate().flat_map(|(u, unit)| unit.makes().into_iter().map(move |k| (k, u))).collect();
+        let alone = made.clone();
+        made.iter_mut().for_each(|(k, unit)| *unit = across.set(*k).iter().map(|other| alone[other]).max().unwrap_or(*unit));
         let sines: Vec<usize> = (0..units.len()).filter(|&u| matches!(units[u], Unit::Sines(..))).collect();
         let (constant, others): (Vec<_>, Vec<_>) = groups.iter().partition(|(_, group)| group.nodes().is_empty());
-        let mut writer = Self { vector, after: vec![String::new(); units.len()], units, first: String::new() };
+        let mut writer = Self { vector, after: vec![String::new(); units.len()], units, across, made, first: String::new() };
         let before = constant.len() / 2;
         for (n, (name, group)) in constant.iter().enumerate() {
             let behind = n.checked_sub(before).and_then(|n| sines.get(n * sines.len() / (constant.len() - before)));
             writer.write(behind.copied(), name, group);
         }
         for (name, group) in others {
-            writer.write(group.nodes().iter().filter_map(|k| made.get(k)).max().copied(), name, group);
+            let ready = group.nodes().iter().filter_map(|k| writer.made.get(k)).max().copied();
+            writer.write(ready, name, group);
         }
         writer
     }
 
     /// Writes a group after a unit, or before all.
     fn write(&mut self, after: Option<usize>, name: &str, group: &Group) {
+        let put = self.put(name, group);
         let place = after.map_or(&mut self.first, |unit| &mut self.after[unit]);
-        let _ = writeln!(place, "    {};", self.vector.put(name, group));
+        let _ = writeln!(place, "    {put};");
     }
 
     fn statements(&self) -> String {
-        let (graph, mut out) = (self.vector.graph, self.first.clone());
+        let mut out = self.first.clone();
         let mut thirds = self.vector.thirds();
-        for (unit, after) in self.units.iter().zip(&self.after) {
+        for (u, (unit, after)) in self.units.iter().zip(&self.after).enumerate() {
             let three = if let Unit::Node(k) = unit { thirds.iter().position(|three| three.nodes.contains(k)) } else { None };
             match three {
                 Some(at) if thirds[at].written => {}
@@ -73,11 +82,56 @@ impl<'a> Writer<'a> {
                     thirds[at].written = true;
                     out += &thirds[at].statement;
                 }
-                None => out += &unit.written(graph, self.vector).unwrap_or_default(),
+                None => out += &self.written(u, unit).unwrap_or_default(),
             }
             out += after;
         }
         out
+    }
+
+    /// A unit as text; of sums that are made together, where the last of them stands.
+    fn written(&self, u: usize, unit: &Unit) -> Option<String> {
+        match unit {
+            Unit::Node(k) if !self.across.set(*k).is_empty() => (self.made[k] == u).then(|| {
+                let nodes = self.vector.graph.nodes();
+                self.across.statement(*k, |sum| self.vector.operand(NodeId(nodes[sum].args[0])))
+            }),
+            _ => unit.written(self.vector.graph, self.vector),
+        }
+    }
+
+    /// What writes a group.
+    fn put(&self, out: &str, group: &Group) -> String {
+        let columns = |columns: &[Column]| columns.iter().map(|c| self.column(c)).collect::<Vec<_>>().join(", ");
+        match group {
+            Group::Whole(node, at) => format!("put(x{node}, {out}, {at})"),
+            Group::InTurn(of, at) => format!("put_in_turn({}, {out}, {at})", columns(of)),
+            Group::Fours(of, at) => format!("put_fours({}, {out}, {at:?})", columns(of)),
+            Group::Twos(of, at) => format!("put_twos({}, {out}, {at:?})", columns(of)),
+            Group::Pair([a, b], at) => format!("put_two([{}, {}], {out}, {at})", self.cell(*a), self.cell(*b)),
+            Group::One(cell, at) => format!("put_one({}, {out}, {at})", self.cell(*cell)),
+            Group::Constant(x, at, 1) => format!("put_one({}, {out}, {at})", literal(*x)),
+            Group::Constant(x, at, n) => format!("{out}[{at}..{}].fill(::core::mem::MaybeUninit::new({}))", at + n, literal(*x)),
+        }
+    }
+
+    fn cell(&self, cell: Cell) -> String {
+        match cell {
+            Cell::Constant(x) => literal(x),
+            Cell::Lane(node, 0) => {
+                let (vector, lane) = self.across.place(node);
+                format!("lane::<{lane}>({vector})")
+            }
+            Cell::Lane(node, lane) => format!("lane::<{lane}>(x{node})"),
+        }
+    }
+
+    fn column(&self, column: &Column) -> String {
+        match column {
+            Column::Node(node) => format!("x{node}"),
+            Column::Constants(x) if x.iter().all(|y| y == &x[0]) => format!("k({})", literal(x[0])),
+            Column::Constants(x) => format!("lanes([{}])", x.iter().map(|x| literal(*x)).collect::<Vec<_>>().join(", ")),
+        }
     }
 }
 
@@ -106,36 +160,6 @@ impl Vector<'_> {
         };
         inputs.iter().filter_map(three).collect()
     }
-
-    /// What writes a group.
-    fn put(&self, out: &str, group: &Group) -> String {
-        let columns = |columns: &[Column]| columns.iter().map(|c| self.column(c)).collect::<Vec<_>>().join(", ");
-        match group {
-            Group::Whole(node, at) => format!("put(x{node}, {out}, {at})"),
-            Group::InTurn(of, at) => format!("put_in_turn({}, {out}, {at})", columns(of)),
-            Group::Fours(of, at) => format!("put_fours({}, {out}, {at:?})", columns(of)),
-            Group::Twos(of, at) => format!("put_twos({}, {out}, {at:?})", columns(of)),
-            Group::Pair([a, b], at) => format!("put_two([{}, {}], {out}, {at})", self.cell(*a), self.cell(*b)),
-            Group::One(cell, at) => format!("put_one({}, {out}, {at})", self.cell(*cell)),
-            Group::Constant(x, at, 1) => format!("put_one({}, {out}, {at})", literal(*x)),
-            Group::Constant(x, at, n) => format!("{out}[{at}..{}].fill(::core::mem::MaybeUninit::new({}))", at + n, literal(*x)),
-        }
-    }
-
-    fn cell(&self, cell: Cell) -> String {
-        match cell {
-            Cell::Constant(x) => literal(x),
-            Cell::Lane(node, lane) => format!("lane::<{lane}>(x{node})"),
-        }
-    }
-
-    fn column(&self, column: &Column) -> String {
-        match column {
-            Column::Node(node) => format!("x{node}"),
-            Column::Constants(x) if x.iter().all(|y| y == &x[0]) => format!("k({})", literal(x[0])),
-            Column::Constants(x) => format!("lanes([{}])", x.iter().map(|x| literal(*x)).collect::<Vec<_>>().join(", ")),
-        }
-    }
 }
 
 #[cfg(test)]
@@ -143,7 +167,6 @@ mod tests {
     use articulated_core::algorithm::Shape;
 
     use super::*;
-    use crate::graph::NodeId;
     use crate::wanted::Wanted;
 
     fn with<T>(graph: &Graph, work: impl FnOnce(&Vector) -> T) -> T {
@@ -175,6 +198,40 @@ mod tests {
         assert_eq!(thirds[0].1, format!("    let [{names}] = every_third(&[{}]);\n", numbers.join(", ")));
         for starts in [[2, 6, 9, 12], [2, 5, 9, 12], [2, 5, 8, 12], [11, 8, 5, 2]] {
             assert_eq!(all(starts).0, [], "{starts:?}");
+        }
+    }
+
+    #[test]
+    fn sums_over_lanes_are_made_four_at_a_time_where_they_are_results_alone() {
+        for (count, statements) in [
+            (1, vec!["let x1 = across(x0);"]),
+            (2, vec!["let sums_0 = across_of_two(x0, x2);"]),
+            (3, vec!["let sums_0 = across_of_four(x0, x2, x4, x4);"]),
+            (6, vec!["let sums_0 = across_of_four(x0, x2, x4, x6);", "let sums_1 = across_of_two(x8, x10);"]),
+        ] {
+            let mut graph = Graph::in_lanes(4);
+            let sums: Vec<NodeId> = (0..count)
+                .map(|k| {
+                    let x = graph.lane_input(0, &[k, k + 2, k + 4, k + 6]);
+                    graph.exactly(Op::Across, &[x])
+                })
+                .collect();
+            graph.outputs = sums.clone();
+            let written = |graph: &Graph| {
+                let cells: Vec<Cell> = graph.outputs.iter().map(|&o| Cell::of(graph, o)).collect();
+                let all: Vec<(String, Group)> = groups(&cells).into_iter().map(|group| ("out".into(), group)).collect();
+                with(graph, |v| Writer::of(v, &all).statements())
+            };
+            let text = written(&graph);
+            let found: Vec<&str> = text.lines().map(str::trim).filter(|line| line.contains("across")).collect();
+            assert_eq!(found, statements);
+            let last =
+                if count == 1 { "put_one(lane::<0>(x1), out, 0)" } else { "put_two([lane::<0>(sums_0), lane::<1>(sums_0)], out, 0)" };
+            assert!(text.contains(last), "{text}");
+            // One that something else needs too is made by itself.
+            let twice = graph.exactly(Op::Add, &[sums[0], sums[0]]);
+            graph.outputs.push(twice);
+            assert!(written(&graph).contains("let x1 = across(x0);"));
         }
     }
 

@@ -4,6 +4,7 @@ mod chains;
 mod contract;
 mod factor;
 mod from_the_last;
+mod inside;
 mod live;
 mod partial;
 mod sums;
@@ -11,6 +12,7 @@ mod sums;
 pub use contract::contract;
 pub use factor::factor;
 pub use from_the_last::from_the_last;
+pub use inside::inside;
 pub use live::live;
 pub use partial::partial;
 
@@ -26,6 +28,7 @@ pub const GRAPH_PASSES: &[(&str, GraphPass, &str)] = &[
     ("live", live, "every node is needed by an output"),
     ("factor", factor, "no two products that only one sum uses have a factor in common there"),
     ("partial", partial, "no two sums have two terms in common, where that saves an instruction"),
+    ("inside", inside, "what is added to a sum over lanes is in it, where that takes no instruction more"),
     (
         "contract",
         contract,

@@ -37,6 +37,7 @@ fn body(parent: usize, joint: Joint, at: (usize, usize), random: &mut impl FnMut
         joint,
         coordinates: Coordinates { q: at.0, v: at.1, mimic: None, pitch: 0.0, from: Angle::zero(), turns: 1.0 },
         inertia: SpatialInertia::from_central(MASS, Matrix3::from_diagonal(&Vector3::new(0.3, 0.2, 0.25)), &own),
+        lent: None,
         link: None,
         effects: Effects::none(),
     }

@@ -38,4 +38,20 @@ lane_functions! {
         let (ab, ac, bc) = (either::<0b1100>(a, b), halves::<0x21>(a, c), either::<0b1100>(b, c));
         [pairs::<0b1010>(ab, ac), pairs::<0b0101>(ab, bc), pairs::<0b1010>(ac, bc)]
     }
+
+    // The sums of the lanes of each, added up as by `across`.
+    pub(super) fn across_of_four(a: V, b: V, c: V, d: V) -> V {
+        use ::core::arch::x86_64::{
+            _mm256_blend_pd as either, _mm256_permute2f128_pd as halves, _mm256_unpackhi_pd as odd, _mm256_unpacklo_pd as even,
+        };
+        let (ab, cd) = (add(even(a, b), odd(a, b)), add(even(c, d), odd(c, d)));
+        add(either::<0b1100>(ab, cd), halves::<0x21>(ab, cd))
+    }
+
+    // Those of two, twice.
+    pub(super) fn across_of_two(a: V, b: V) -> V {
+        use ::core::arch::x86_64::{_mm256_permute2f128_pd as halves, _mm256_unpackhi_pd as odd, _mm256_unpacklo_pd as even};
+        let ab = add(even(a, b), odd(a, b));
+        add(ab, halves::<1>(ab, ab))
+    }
 }
