@@ -166,6 +166,10 @@ fn made(wanted: &Wanted, subject: &Subject, unsolved: Option<&'static Way<Sym>>)
         }
         stages.push((if passes == 0 { "trace" } else { model_passes::<Sym>()[passes - 1].0 }, graph.counts()));
     }
+    if choices.iter().any(|c| c.lent) {
+        graph = subject.trace(wanted, &choices.iter().map(|c| Choice { unit: None, unturned: None, ..*c }).collect::<Vec<_>>());
+        stages.push(("lent", graph.counts()));
+    }
     if choices.iter().any(|c| c.unturned.is_some()) {
         graph = subject.trace(wanted, &choices.iter().map(|c| Choice { unit: None, ..*c }).collect::<Vec<_>>());
         stages.push(("unturned", graph.counts()));
@@ -200,11 +204,15 @@ impl Subject<'_> {
     }
 }
 
-/// What costs more than this is not tried with frames that do not turn: it would gain a hundredth, and takes long to trace.
+/// What costs more than this is not tried with frames that do not turn or mass that is lent: it would gain a hundredth, and takes long to trace.
 const UNTURNED_TO: u32 = 2500;
 
 /// Nor is any function of a robot with more bodies than this: to find out what it costs is to trace it twice.
 const UNTURNED_BODIES: usize = 64;
+
+/// Functions with an inverse dynamics in them in which bodies turn: of these mass that is lent takes numbers away.
+const WITH_INVERSE_DYNAMICS: [&str; 5] =
+    ["inverse_dynamics", "inverse_dynamics_with_wrenches", "bias_forces", "forward_dynamics", "forward_dynamics_with_wrenches"];
 
 /// The way that costs least once the graph passes are done. With parameters, model passes may cost more than they save: then they are not taken.
 fn cheapest(part: &Part, subject: &Subject, all: usize) -> Choice {
@@ -213,7 +221,9 @@ fn cheapest(part: &Part, subject: &Subject, all: usize) -> Choice {
     let tried = subject.parameters.is_empty() && subject.model.bodies.len() <= UNTURNED_BODIES;
     let unturned = if tried { unturnable(part, subject.model) } else { Vec::new() };
     let unturned: Vec<Option<Unturned>> = once(None).chain(unturned.into_iter().map(Some)).collect();
-    let of = |way, passes| unturned.iter().map(move |&unturned| Choice { unturned, ..Choice::plain(way, passes) });
+    let lending: &[bool] = if tried && WITH_INVERSE_DYNAMICS.contains(&part.function.name) { &[false, true] } else { &[false] };
+    let forms = || unturned.iter().flat_map(|&unturned| lending.iter().map(move |&lent| (unturned, lent)));
+    let of = |way, passes| forms().map(move |(unturned, lent)| Choice { unturned, lent, ..Choice::plain(way, passes) });
     let candidates: Vec<(Choice, u64)> =
         ways.iter().flat_map(|(way, least)| few.clone().flat_map(move |passes| of(*way, passes)).map(|c| (c, *least))).collect();
     if let [(one, _)] = candidates.as_slice() {
@@ -223,7 +233,7 @@ fn cheapest(part: &Part, subject: &Subject, all: usize) -> Choice {
     let mut best: Option<(Choice, u32)> = None;
     for (choice, least) in candidates {
         // A way whose least is more than another's cost is not tried: the factorisation of a long chain grows with the cube of its length.
-        if best.is_some_and(|(_, cost)| least > u64::from(cost) || choice.unturned.is_some() && cost > UNTURNED_TO) {
+        if best.is_some_and(|(_, cost)| least > u64::from(cost) || (choice.unturned.is_some() || choice.lent) && cost > UNTURNED_TO) {
             continue;
         }
         let cost = cost(&alone, choice, subject);
@@ -246,7 +256,7 @@ fn in_the_best_unit(wanted: &Wanted, choices: Vec<Choice>, subject: &Subject) ->
     if !subject.parameters.is_empty() {
         return choices;
     }
-    let units: Vec<Vec<f64>> = wanted.parts.iter().map(|part| units(part, subject.model)).collect();
+    let units: Vec<Vec<f64>> = wanted.parts.iter().zip(&choices).map(|(part, choice)| units(part, choice, subject.model)).collect();
     let with = |metres: f64| -> Vec<Choice> {
         let one = |(choice, units): (&Choice, &Vec<f64>)| Choice { unit: units.contains(&metres).then_some(metres), ..*choice };
         choices.iter().zip(&units).map(one).collect()

@@ -26,12 +26,14 @@ pub(crate) struct Choice {
     pub(crate) unturned: Option<Unturned>,
     /// The unit of length, m, if it is not the metre.
     pub(crate) unit: Option<f64>,
+    /// Whether bodies have other inertias for inverse dynamics ([`Model::lent`]).
+    pub(crate) lent: bool,
 }
 
 impl Choice {
     /// A way after so many model passes, with all frames turning and lengths in metres.
     pub(crate) fn plain(way: &'static Way<Sym>, passes: usize) -> Self {
-        Self { way, passes, unturned: None, unit: None }
+        Self { way, passes, unturned: None, unit: None, lent: false }
     }
 
     /// What it is called in the ledger.
@@ -42,7 +44,8 @@ impl Choice {
             Some(Unturned::ParallelAndLast) => "parallel and last joints unturned",
         };
         let unit = self.unit.map(|metres| Cow::Owned(format!("lengths in {} m", to_four_digits(metres))));
-        [self.way.name, unturned].into_iter().filter(|name| !name.is_empty()).map(Cow::Borrowed).chain(unit)
+        let lent = if self.lent { "mass lent" } else { "" };
+        [self.way.name, lent, unturned].into_iter().filter(|name| !name.is_empty()).map(Cow::Borrowed).chain(unit)
     }
 }
 
@@ -110,8 +113,10 @@ fn passed<S: Scalar>(part: &Part, choice: &Choice, model: &Model<S>) -> Model<S>
     if !part.function.asks_for_frames() {
         model.frames.clear();
     }
-    let passes = model_passes::<S>().iter().take(if part.function.regrouped { choice.passes } else { 0 });
-    let model = passes.fold(model, |model, (_, pass, _)| pass(model));
+    let (passes, lent) = if part.function.regrouped { (choice.passes, choice.lent) } else { (0, false) };
+    let most = model.moving_mass();
+    let model = model_passes::<S>().iter().take(passes).fold(model, |model, (_, pass, _)| pass(model));
+    let model = if lent { model.lent(most) } else { model };
     choice.unit.map(|metres| model.in_unit_of(S::from_f64(metres))).unwrap_or(model)
 }
 
@@ -123,9 +128,10 @@ pub(crate) fn unturnable(part: &Part, model: &Model<f64>) -> Vec<Unturned> {
 /// Units of other sizes, m, are not tried: constants would be far from one.
 const UNITS: RangeInclusive<f64> = 1e-3..=1e3;
 
-/// Units of length that may spare multiplications, on the model after all passes, as the function does not ask for lengths: neither frames nor joints that slide.
-pub(crate) fn units(part: &Part, model: &Model<f64>) -> Vec<f64> {
-    let mut units = if indifferent(part, model) && model.only_turns() { finished(part, model).units() } else { Vec::new() };
+/// Units of length that may spare multiplications, on the model that is chosen, as the function does not ask for lengths: neither frames nor joints that slide.
+pub(crate) fn units(part: &Part, choice: &Choice, model: &Model<f64>) -> Vec<f64> {
+    let fits = indifferent(part, model) && model.only_turns();
+    let mut units = if fits { passed(part, &Choice { unit: None, ..*choice }, model).units() } else { Vec::new() };
     units.retain(|metres| UNITS.contains(metres) && *metres != 1.0);
     units
 }
@@ -269,10 +275,15 @@ mod tests {
                     for passes in 1..=model_passes::<Sym>().len() {
                         close(&values(Choice::plain(way, passes)), &expected, &format!("{} by {}, {passes} passes", wanted.name, way.name));
                     }
-                    for &unturned in &unturned {
-                        for unit in once(None).chain(units(part, &model).into_iter().map(Some)) {
-                            let choice = Choice { unturned, unit, ..Choice::plain(way, usize::MAX) };
-                            close(&values(choice), &expected, &format!("{} by {}, {unturned:?}, {unit:?}", wanted.name, way.name));
+                    for (&unturned, lent) in unturned.iter().flat_map(|unturned| [(unturned, false), (unturned, true)]) {
+                        let choice = Choice { unturned, lent, ..Choice::plain(way, usize::MAX) };
+                        for unit in once(None).chain(units(part, &choice, &model).into_iter().map(Some)) {
+                            let choice = Choice { unit, ..choice };
+                            close(
+                                &values(choice),
+                                &expected,
+                                &format!("{} by {}, {unturned:?}, {unit:?}, lent: {lent}", wanted.name, way.name),
+                            );
                             seen += usize::from(unit.is_some());
                         }
                     }

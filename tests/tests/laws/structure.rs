@@ -203,6 +203,23 @@ fn frames_slide_to_where_axes_meet() {
     assert!(offset(&case.model, 3) > 0.3);
 }
 
+/// Mass is lent where it takes numbers away, to limbs that are alike in the same way, and never more than may be.
+#[test]
+fn mass_is_lent_where_that_is_worth_it() {
+    for (robot, joints) in [("ur5_like", 1..4), ("quadruped", 8..9)] {
+        let model = Case::bundled(articulated_models::robot(robot).expect("it is bundled")).model;
+        let passed = model_passes::<f64>().iter().fold(model.clone(), |m, (_, pass, _)| pass(m));
+        let lent = |most: f64| -> Vec<f64> {
+            let lent = passed.lent(most);
+            lent.bodies.iter().skip(1).filter(|b| b.parent != 0).map(|b| b.lent.as_ref().map_or(f64::NAN, |i| i.mass)).collect()
+        };
+        let [all, none] = [lent(model.moving_mass()), lent(0.0)];
+        assert!(joints.contains(&all.iter().filter(|m| **m != 0.0).count()), "{robot}: {all:?}");
+        assert!(all.iter().all(|m| m.abs() <= model.moving_mass()));
+        assert!(none.iter().all(|m| *m == 0.0), "{robot}: {none:?}");
+    }
+}
+
 /// A shoulder as files have it, its axis y and its frame pitched by nearly a right angle: the pitch is counted with the joint's angle, and no rotation is left but a
 /// change of axes.
 #[test]

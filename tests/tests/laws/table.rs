@@ -6,7 +6,7 @@ use articulated_core::Scalar;
 use articulated_core::algorithm::{Argument, Function, FunctionId, Needs, Workspace, functions};
 use articulated_core::joint::Joint;
 use articulated_core::model::pass::model_passes;
-use articulated_core::model::{Model, Unturned};
+use articulated_core::model::{Body, Model, Unturned};
 use articulated_core::spatial::{Matrix3, Reference, SpatialInertia, Vector3};
 use articulated_tests::case::{Case, State, cast, for_each_tree};
 use articulated_tests::random_tree::Flavour;
@@ -184,6 +184,35 @@ fn constants_may_be_turned_instead_of_vectors() {
     let of = |which| kinds.borrow().iter().filter(|k| **k == which).count();
     let counts = (seen.get(), of(Unturned::Parallel), of(Unturned::ParallelAndLast));
     assert!(counts.0 > 12 && counts.1 > 5 && counts.2 > 5, "only {counts:?}");
+}
+
+/// A mass at a joint may be in the body on either side, and inverse dynamics have other inertias than mass matrices: no torque, energy or acceleration is another, in whatever unit and axes.
+#[test]
+fn mass_at_a_joint_may_be_lent() {
+    let lent = std::cell::Cell::new(0);
+    for_each_tree(24, Flavour { links: 9, ..SMALL }, |case, random| {
+        let state = case.state(random);
+        let mut model = case.model.clone();
+        // Mostly a chain.
+        for i in model.outward().filter(|_| random.below(4) > 0) {
+            model.bodies[i].parent = i - 1;
+        }
+        Big::scope(|| {
+            let model = model.cast::<Big>();
+            let passed = model_passes::<Big>().iter().fold(Model { frames: Vec::new(), ..model.clone() }, |m, (_, pass, _)| pass(m));
+            let lending = passed.lent(Big::from_f64(1e3));
+            let has_some = |body: &&Body<Big>| body.joint == Joint::Revolute && body.lent.as_ref().is_some_and(|i| i.mass.to_f64() != 0.0);
+            lent.set(lent.get() + lending.bodies.iter().filter(has_some).count());
+            same_without_frames(case, &state, &lending, &model);
+            if passed.only_turns() {
+                same_without_frames(case, &state, &lending.in_unit_of(Big::from_f64(0.3)), &model);
+            }
+            for which in lending.unturnable() {
+                same_without_frames(case, &state, &lending.unturned(&cast::<Big>(&state.q), which), &model);
+            }
+        });
+    });
+    assert!(lent.get() > 10, "only {} bodies were lent something", lent.get());
 }
 
 /// Where all joints turn, no result has a length in it: it is the same in every unit, before model passes and after, with frames that do not turn too.

@@ -150,7 +150,7 @@ fn outward<S: Scalar, P: JointLaw<S>>(body: &Body<S>, i: usize, p: P, pose: Pose
     state.motion = motion;
     state.u = u;
     // F_i = [h × r̈ + ∫ r × (U r) dm;  m r̈ + U h]
-    state.wrench = body.inertia.wrench(motion.acceleration, &u);
+    state.wrench = body.for_torques().wrench(motion.acceleration, &u);
 }
 
 /// τ of joint `i`, and its wrench on to the parent.

@@ -222,7 +222,17 @@ impl<'a> Builder<'a> {
 
     fn push_body(&mut self, name: String, parent: usize, placement: Placement<f64>, joint: Joint, coordinates: Coordinates<f64>) -> usize {
         let inertia = SpatialInertia::zero();
-        self.model.bodies.push(Body { name, parent, placement, joint, coordinates, inertia, link: None, effects: Effects::none() });
+        self.model.bodies.push(Body {
+            name,
+            parent,
+            placement,
+            joint,
+            coordinates,
+            inertia,
+            lent: None,
+            link: None,
+            effects: Effects::none(),
+        });
         self.model.bodies.len() - 1
     }
 

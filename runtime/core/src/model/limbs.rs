@@ -137,6 +137,7 @@ mod tests {
                 turns: 1.0,
             },
             inertia: SpatialInertia::zero(),
+            lent: None,
             link: None,
             effects: Effects::none(),
         };

@@ -1,12 +1,14 @@
 //! A robot made ready for the algorithms: bodies joined by moving joints, in depth-first order.
 
 mod build;
+mod lent;
 mod limbs;
 mod massless;
 pub mod pass;
 mod unit;
 mod unturned;
 
+use alloc::boxed::Box;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
@@ -67,6 +69,8 @@ pub struct Body<S> {
     pub coordinates: Coordinates<S>,
     /// Mass properties in the body's frame, everything that is fixed to the body included.
     pub inertia: SpatialInertia<S>,
+    /// What inverse dynamics takes in its place ([`Model::lent`]): the same for all torques, not for wrenches between bodies.
+    pub lent: Option<Box<SpatialInertia<S>>>,
     /// For the body of a joint's child link, the axes of that link in the body's, as a rotation; the origins are the same, until a pass slides the
     /// body's. `None` for the base, and for the bodies without mass inside a planar or universal joint.
     pub link: Option<Matrix3<S>>,
@@ -187,6 +191,12 @@ impl Model<f64> {
 }
 
 impl<S: Scalar> Body<S> {
+    /// Mass properties for inverse dynamics.
+    #[inline(always)]
+    pub(crate) fn for_torques(&self) -> &SpatialInertia<S> {
+        self.lent.as_deref().unwrap_or(&self.inertia)
+    }
+
     /// The same body with `f` of each constant, always in the same order.
     pub fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> Body<T> {
         Body {
@@ -196,6 +206,7 @@ impl<S: Scalar> Body<S> {
             joint: self.joint,
             coordinates: self.coordinates.map(f),
             inertia: self.inertia.map(f),
+            lent: self.lent.as_ref().map(|lent| Box::new(lent.map(f))),
             link: self.link.map(|r| r.map(f)),
             effects: self.effects.map(f),
         }

@@ -7,7 +7,6 @@ use nalgebra::Vector3;
 use crate::Scalar;
 use crate::joint::Joint;
 use crate::model::Model;
-use crate::spatial::SpatialInertia;
 
 impl<S: Scalar> Model<S> {
     /// The model with lengths in a unit of `metres`: offsets and gravity divided by it, masses m times its square, moments h times it; second moments, kg·m², stay.
@@ -24,8 +23,10 @@ impl<S: Scalar> Model<S> {
         for body in &mut model.bodies {
             assert!(body.effects.body.is_empty(), "an effect on {}", body.name);
             body.placement.position = body.placement.position.map(|x| x / metres);
-            let SpatialInertia { mass, first, second } = body.inertia;
-            body.inertia = SpatialInertia { mass: mass * metres * metres, first: first * metres, second };
+            for inertia in [&mut body.inertia].into_iter().chain(body.lent.as_deref_mut()) {
+                inertia.mass = inertia.mass * metres * metres;
+                inertia.first *= metres;
+            }
         }
         model
     }
@@ -41,8 +42,8 @@ impl Model<f64> {
     pub fn units(&self) -> Vec<f64> {
         let moving = || self.outward().map(|i| &self.bodies[i]);
         let levers = moving().filter(|body| body.parent != 0).map(|body| body.placement.position);
-        let moments = moving().map(|body| body.inertia.first.map(|h| 1.0 / h));
-        let masses = moving().map(|body| Vector3::x() / body.inertia.mass.sqrt());
+        let moments = moving().map(|body| body.for_torques().first.map(|h| 1.0 / h));
+        let masses = moving().map(|body| Vector3::x() / body.for_torques().mass.sqrt());
         let mut units = Vec::new();
         for unit in levers.chain([self.gravity]).chain(moments).chain(masses).flat_map(|v| [v.x, v.y, v.z]).map(f64::abs) {
             if unit > 0.0 && unit.is_finite() && !units.contains(&unit) {

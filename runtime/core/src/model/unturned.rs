@@ -1,5 +1,6 @@
 //! Bodies whose frames do not turn at a configuration: their constants do.
 
+use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -41,7 +42,9 @@ impl<S: Scalar> Model<S> {
                 let (sin, cos) = if in_row { carried.plus(own) } else { own };
                 turned[i] = Angle { sin, cos };
                 to.coordinates.turns = S::zero();
-                to.inertia = Revolute::of(turned[i]).inertia_to_joint(&from.inertia);
+                let turn = Revolute::of(turned[i]);
+                to.inertia = turn.inertia_to_joint(&from.inertia);
+                to.lent = from.lent.as_ref().map(|lent| Box::new(turn.inertia_to_joint(lent)));
             }
         }
         model

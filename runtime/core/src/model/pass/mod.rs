@@ -10,9 +10,12 @@ mod zeros;
 use core::marker::PhantomData;
 
 pub use regroup::regroup;
+pub(super) use regroup::{give_to_parent, given_away, subtract};
+pub(super) use slide::counts_an_offset;
 pub use slide::slide;
 pub use still::still;
 pub use turn::turn;
+pub(super) use zeros::within;
 
 use super::Model;
 use crate::Scalar;

@@ -14,39 +14,36 @@ use crate::spatial::SpatialInertia;
 /// matrix (Khalil & Dombre, *Modeling, Identification and Control of Robots*, 2002, §9.4); placements do not change.
 pub fn regroup<S: Scalar>(mut model: Model<S>) -> Model<S> {
     for i in model.inward() {
-        let Some((given, kept)) = split(&model.bodies[i]) else { continue };
-        let moved = given.moved(&model.bodies[i].placement);
-        let parent = model.bodies[i].parent;
-        model.bodies[i].inertia = kept;
-        model.bodies[parent].inertia += moved;
+        give_to_parent(&mut model, i);
     }
     model.bodies[0].inertia = SpatialInertia::zero();
     model
 }
 
-/// (what the parent gets, in the joint's frame; what the body keeps).
-fn split<S: Scalar>(body: &Body<S>) -> Option<(SpatialInertia<S>, SpatialInertia<S>)> {
+/// Moves what the joint of body `i` cannot feel to its parent.
+pub(in crate::model) fn give_to_parent<S: Scalar>(model: &mut Model<S>, i: usize) {
+    let Body { joint, parent, placement, inertia, .. } = &model.bodies[i];
+    let (parent, Some(given)) = (*parent, given_away(*joint, inertia)) else { return };
+    let (kept, moved) = (subtract(*inertia, given), given.moved(placement));
+    model.bodies[i].inertia = kept;
+    model.bodies[parent].inertia += moved;
+}
+
+/// What of a body's inertia its joint cannot feel, in the joint's frame.
+pub(in crate::model) fn given_away<S: Scalar>(joint: Joint, own: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
     let o = S::zero();
-    let own = body.inertia;
-    match body.joint {
+    match joint {
         Joint::Floating | Joint::Helical => None,
-        Joint::Spherical => {
-            let given = SpatialInertia { mass: own.mass, first: Vector3::zeros(), second: Matrix3::zeros() };
-            Some((given, subtract(own, given)))
-        }
+        Joint::Spherical => Some(SpatialInertia { mass: own.mass, ..SpatialInertia::zero() }),
         Joint::Revolute => {
-            let first = Vector3::new(o, o, own.first.z);
             let second = Matrix3::from_diagonal(&Vector3::new(o, o, own.second.m33));
-            let given = SpatialInertia { mass: own.mass, first, second };
-            Some((given, subtract(own, given)))
+            Some(SpatialInertia { mass: own.mass, first: Vector3::new(o, o, own.first.z), second })
         }
-        Joint::Prismatic => {
-            let given = SpatialInertia { mass: o, first: Vector3::zeros(), second: own.second };
-            Some((given, subtract(own, given)))
-        }
+        Joint::Prismatic => Some(SpatialInertia { second: own.second, ..SpatialInertia::zero() }),
     }
 }
 
-fn subtract<S: Scalar>(a: SpatialInertia<S>, b: SpatialInertia<S>) -> SpatialInertia<S> {
+/// a − b.
+pub(in crate::model) fn subtract<S: Scalar>(a: SpatialInertia<S>, b: SpatialInertia<S>) -> SpatialInertia<S> {
     SpatialInertia { mass: a.mass - b.mass, first: a.first - b.first, second: a.second - b.second }
 }

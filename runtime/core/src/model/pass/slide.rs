@@ -122,3 +122,8 @@ fn offsets<S: Scalar>(model: &Model<S>, i: usize, shift: Vector3<S>, parent: Vec
 fn count<S: Scalar>(x: &[S]) -> u32 {
     x.iter().filter(|x| **x != S::zero()).count() as u32
 }
+
+/// Whether inverse dynamics has to reckon with the lever of body `i`.
+pub(in crate::model) fn counts_an_offset<S: Scalar>(model: &Model<S>, i: usize) -> bool {
+    offsets(model, i, Vector3::zeros(), Vector3::zeros()) > 0
+}

@@ -10,7 +10,7 @@ pub(super) fn or_zero<S: Scalar>(x: S, size: S) -> S {
 }
 
 /// Whether x ≤ limit. Of a symbol nobody knows, and the answer is no.
-pub(super) fn within<S: Scalar>(x: S, limit: S) -> bool {
+pub(in crate::model) fn within<S: Scalar>(x: S, limit: S) -> bool {
     S::select((x - limit).positive(), S::zero(), S::one()) == S::one()
 }
 
