@@ -32,6 +32,9 @@ const COMPILED_FOR_AVX512: &str =
 pub(super) const COMPILED_FOR_AVX512_BESIDE_AVX2: &str = "all(target_arch = \"x86_64\", target_feature = \"avx512dq\", target_feature = \"avx512vl\", \
                                                          target_feature = \"avx512vbmi2\", target_feature = \"sse4a\")";
 
+/// Stands before what is for builds that may run without AVX2, on whatever processor.
+const MAY_LACK_AVX2: &str = "#[cfg(not(all(target_arch = \"x86_64\", target_feature = \"avx2\", target_feature = \"fma\")))]";
+
 /// Stands before what is for processors other than x86-64 and 64-bit Arm.
 pub(super) const OTHERS: &str = "#[cfg(not(any(target_arch = \"aarch64\", target_arch = \"x86_64\")))]";
 
@@ -49,7 +52,7 @@ pub(super) fn support(out: &mut String, model: &Model<f64>, programs: &[Program]
         levels::sines(out, if portable { PORTABLE_SINES } else { SINES }, level);
     }
     levels::module(out, level);
-    let mut eight = COMPILED_FOR_AVX512_BESIDE_AVX2;
+    let mut when = When { portable: OTHERS, eight: COMPILED_FOR_AVX512_BESIDE_AVX2 };
     let mut widths: Vec<usize> = programs.iter().map(|p| p.graph.lanes().width).filter(|w| *w > 1).collect();
     // Vectors of which there is more than one, in those of the widest registers.
     for width in [2, 4] {
@@ -60,24 +63,34 @@ pub(super) fn support(out: &mut String, model: &Model<f64>, programs: &[Program]
     }
     if let Some(columns) = programs.iter().find_map(|p| p.columns.as_ref()) {
         Layout::of(columns).module(out);
-        eight = COMPILED_FOR_AVX512;
+        when = When { portable: MAY_LACK_AVX2, eight: COMPILED_FOR_AVX512 };
         widths.push(4);
         widths.push(8);
     }
     if let Some(groups) = programs.iter().find_map(|p| p.groups.as_ref()) {
         derivatives::module(out, groups, model);
+        when.portable = MAY_LACK_AVX2;
         widths.push(4);
     }
-    widths.extend(sines.then_some(4));
+    if sines {
+        widths.push(4);
+        when.portable = if portable { "" } else { MAY_LACK_AVX2 };
+    }
     widths.sort_unstable();
     widths.dedup();
     if !widths.is_empty() {
-        lanes(out, &widths, eight, portable, level);
+        lanes(out, &widths, &when, portable, level);
     }
 }
 
-/// The modules of lanes in these widths: what is called in `out` of them. Of eight lanes where the condition `eight` holds.
-fn lanes(out: &mut String, widths: &[usize], eight: &str, forbid_unsafe: bool, level: Level) {
+/// When modules are compiled: that without instructions of its own, as an attribute, and that of eight lanes, as a condition.
+struct When {
+    portable: &'static str,
+    eight: &'static str,
+}
+
+/// The modules of lanes in these widths: what is called in `out` of them.
+fn lanes(out: &mut String, widths: &[usize], when: &When, forbid_unsafe: bool, level: Level) {
     let caller = Caller::new(out.as_str());
     let sets: &[(Set, &str, &str)] = if forbid_unsafe { &SETS[..1] } else { &SETS };
     let lint = if forbid_unsafe { "" } else { "unsafe_code, " };
@@ -88,7 +101,11 @@ fn lanes(out: &mut String, widths: &[usize], eight: &str, forbid_unsafe: bool, l
             let Some(text) = text.map(|text| with_sines(&text, level)) else { continue };
             let text = used(&text, &caller);
             let _ = writeln!(out, "/// Arithmetic and sines of {width} numbers at once.");
-            let cfg = if *set == Set::Avx512 { format!("#[cfg({eight})]") } else { (*cfg).to_owned() };
+            let cfg = match set {
+                Set::Portable => when.portable.to_owned(),
+                Set::Avx512 => format!("#[cfg({})]", when.eight),
+                _ => (*cfg).to_owned(),
+            };
             let line = if cfg.is_empty() { "" } else { "\n" };
             let _ = writeln!(
                 out,
@@ -153,20 +170,29 @@ const SINES: &str = "\
 #[allow(unsafe_code, clippy::all, clippy::pedantic)]
 mod trig {
     /// [sin x, cos x] of four angles, rad. Error at most 1 ulp.
+    #[cfg(target_arch = \"x86_64\")]
     #[inline(always)]
     pub(super) fn four<F: super::Fma>(a: f64, b: f64, c: f64, d: f64) -> [[f64; 4]; 2] {
-        #[cfg(target_arch = \"x86_64\")]
-        if F::FUSED {
-            use super::avx2_f64x4::{array, lanes, sin_cos};
-            #[inline]
-            #[target_feature(enable = \"avx2,fma\")]
-            fn four(angles: [f64; 4]) -> [[f64; 4]; 2] {
-                let (sin, cos) = sin_cos(lanes(angles));
-                [array(sin), array(cos)]
-            }
-            // SAFETY: what is fused runs on processors with AVX2 and FMA alone.
-            return unsafe { four([a, b, c, d]) };
+        #[cfg(not(all(target_feature = \"avx2\", target_feature = \"fma\")))]
+        if !F::FUSED {
+            let (sin, cos) = super::portable_f64x4::sin_cos([a, b, c, d]);
+            return [sin, cos];
         }
+        use super::avx2_f64x4::{array, lanes, sin_cos};
+        #[inline]
+        #[target_feature(enable = \"avx2,fma\")]
+        fn four(angles: [f64; 4]) -> [[f64; 4]; 2] {
+            let (sin, cos) = sin_cos(lanes(angles));
+            [array(sin), array(cos)]
+        }
+        // SAFETY: what is fused runs on processors with AVX2 and FMA alone.
+        unsafe { four([a, b, c, d]) }
+    }
+
+    /// [sin x, cos x] of four angles, rad. Error at most 1 ulp.
+    #[cfg(not(target_arch = \"x86_64\"))]
+    #[inline(always)]
+    pub(super) fn four<F: super::Fma>(a: f64, b: f64, c: f64, d: f64) -> [[f64; 4]; 2] {
         let (sin, cos) = super::portable_f64x4::sin_cos([a, b, c, d]);
         [sin, cos]
     }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::order::{Step, order};
-use super::sets::{COMPILED_FOR_AVX512_BESIDE_AVX2, NOT_COMPILED_FOR_AVX2};
+use super::sets::{COMPILED_FOR_AVX512_BESIDE_AVX2, NOT_COMPILED_FOR_AVX2, OTHERS};
 use crate::graph::Graph;
 
 /// How many vectors of so many lanes fill the widest register there is.
@@ -34,7 +34,7 @@ pub(super) fn module(out: &mut String, width: usize) {
     for (cfg, set, features) in [
         (NOT_COMPILED_FOR_AVX2, "sse2", "#[inline]\n#[target_feature(enable = \"sse2,fxsr\")]"),
         ("#[cfg(target_arch = \"aarch64\")]", "neon", "#[inline]\n#[target_feature(enable = \"neon\")]"),
-        ("", "portable", "#[inline(always)]"),
+        (OTHERS, "portable", "#[inline(always)]"),
     ] {
         block(out, cfg, set, width, &one_by_one(width, features));
     }
@@ -42,8 +42,7 @@ pub(super) fn module(out: &mut String, width: usize) {
 }
 
 fn block(out: &mut String, cfg: &str, set: &str, width: usize, functions: &str) {
-    let line = if cfg.is_empty() { "" } else { "\n" };
-    let _ = writeln!(out, "{cfg}{line}pub(super) mod {set} {{\nuse super::super::{set}_f64x{width}::{{V, sin_cos}};\n{functions}}}\n");
+    let _ = writeln!(out, "{cfg}\npub(super) mod {set} {{\nuse super::super::{set}_f64x{width}::{{V, sin_cos}};\n{functions}}}\n");
 }
 
 /// Each by itself.

@@ -61,8 +61,8 @@ const TIMES: &str = "generated: for this processor; any processor: the same sour
 const BATCHES: &str = "blocks: 8 states (f32: 16) with each of their numbers side by side; states: one state after the other, to be turned first; \
                        generated/it: how many times its time a call of generated code takes";
 const ERRORS: &str = "forward: of the result; backward: of the torques that the result needs; states: on which they were looked at, without those where the function is singular";
-const STAGES: &str = "asked: by the algorithm; trace: zeros, ones and what is the same folded in; turn, regroup, slide, still: frames and masses moved to where numbers vanish; unturned: constants turned in place of vectors; unit: lengths in a unit in which a constant is one; \
-                      live: without what no result needs; factor: common factors multiplied once; partial: what several sums have added once; contract: sums as chains of multiply-adds; swept: once more without what no result needs";
+const STAGES: &str = "asked: by the algorithm; trace: zeros, ones and what is the same folded in; turn, regroup, slide, still: frames and masses moved to where numbers vanish; lent: mass in the body beyond a joint for torques, where numbers vanish for it; unturned: constants turned in place of vectors; unit: lengths in a unit in which a constant is one; \
+                      live: without what no result needs; factor: common factors multiplied once; partial: what several sums have added once; inside: what is added to sums over lanes in them; contract: sums as chains of multiply-adds; swept: once more without what no result needs";
 const SIZES: &str = "depth: the longest chain of operations that wait for each other; way chosen: how it is computed, where there are several ways, by count (LTDL: by factors of the mass \
                      matrix; ABA: by the articulated-body algorithm)";
 
