@@ -114,9 +114,9 @@ fn passed<S: Scalar>(part: &Part, choice: &Choice, model: &Model<S>) -> Model<S>
         model.frames.clear();
     }
     let (passes, lent) = if part.function.regrouped { (choice.passes, choice.lent) } else { (0, false) };
-    let most = model.moving_mass();
+    let carried = model.carried();
     let model = model_passes::<S>().iter().take(passes).fold(model, |model, (_, pass, _)| pass(model));
-    let model = if lent { model.lent(most) } else { model };
+    let model = if lent { model.lent(&carried) } else { model };
     choice.unit.map(|metres| model.in_unit_of(S::from_f64(metres))).unwrap_or(model)
 }
 

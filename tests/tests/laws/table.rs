@@ -200,7 +200,7 @@ fn mass_at_a_joint_may_be_lent() {
         Big::scope(|| {
             let model = model.cast::<Big>();
             let passed = model_passes::<Big>().iter().fold(Model { frames: Vec::new(), ..model.clone() }, |m, (_, pass, _)| pass(m));
-            let lending = passed.lent(Big::from_f64(1e3));
+            let lending = passed.lent(&model.carried());
             let has_some = |body: &&Body<Big>| body.joint == Joint::Revolute && body.lent.as_ref().is_some_and(|i| i.mass.to_f64() != 0.0);
             lent.set(lent.get() + lending.bodies.iter().filter(has_some).count());
             same_without_frames(case, &state, &lending, &model);

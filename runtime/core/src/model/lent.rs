@@ -14,15 +14,18 @@ impl<S: Scalar> Model<S> {
     /// The model with inertias for inverse dynamics beside its own ([`Body::lent`]).
     ///
     /// What [`super::pass::regroup`] gives to the parent of a revolute joint need not all stay there: wherever on the joint's axis a mass is, and in whichever of the two bodies, the torques are the same. The mass
-    /// with which the parent's h_x or h_y vanishes is lent to the child, at its origin, where that takes fewer instructions, from the tips inward; up to `most`, kg, as greater ones would cost digits.
-    /// Mass matrices want bodies without mass, and keep their own. For a model that is regrouped.
+    /// with which the parent's h_x or h_y vanishes is lent to the child, at its origin, where that takes fewer instructions, from the tips inward; no more than twice what the joint carries ([`Model::carried`],
+    /// kg, before regrouping), as greater masses would cost digits. Mass matrices want bodies without mass, and keep their own. For a model that is regrouped.
+    ///
+    /// # Panics
+    /// If `carried` is not as long as there are bodies.
     #[must_use]
-    pub fn lent(&self, most: S) -> Self {
+    pub fn lent(&self, carried: &[S]) -> Self {
         let mut model = self.clone();
         let handed_on = self.forces_handed_on();
         for i in self.inward() {
             give_to_parent(&mut model, i);
-            if let Some((child, parent)) = cheapest(&model, i, &handed_on, most) {
+            if let Some((child, parent)) = cheapest(&model, i, &handed_on, carried[i] + carried[i]) {
                 model.bodies[i].inertia = child;
                 model.bodies[self.bodies[i].parent].inertia = parent;
             }

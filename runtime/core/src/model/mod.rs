@@ -133,6 +133,16 @@ impl<S: Scalar> Model<S> {
         self.outward().fold(S::zero(), |sum, i| sum + self.bodies[i].inertia.mass)
     }
 
+    /// Mass that each body's joint carries, kg, the body's own among it: `[bodies]`. Of the model as it was read.
+    pub fn carried(&self) -> Vec<S> {
+        let mut carried: Vec<S> = self.bodies.iter().map(|body| body.inertia.mass).collect();
+        for i in self.inward() {
+            let own = carried[i];
+            carried[self.bodies[i].parent] += own;
+        }
+        carried
+    }
+
     /// Name of the joint that a degree of freedom, by its index in v, belongs to; empty if there is none.
     pub fn joint_of(&self, freedom: usize) -> &str {
         self.joints.iter().find(|j| (j.v.0..j.v.0 + j.v.1).contains(&freedom)).map_or("", |j| &j.name)
