@@ -24,7 +24,7 @@ mod tests {
     use num_traits::One;
 
     use super::*;
-    use crate::graph::{Counts, Graph};
+    use crate::graph::{Counts, Graph, Op};
     use crate::pass::GRAPH_PASSES;
     use crate::trace::{Choice, trace, trace_in_lanes, ways};
     use crate::{Request, Sym, Wanted, sym};
@@ -128,6 +128,30 @@ mod tests {
         let [plain, lanes] = [trace(&wanted, &choice, &model, &[]), trace_in_lanes(&wanted, &choice, &model, &alike)];
         for (a, b) in plain.evaluate(input).into_iter().zip(lanes.evaluate(input)) {
             assert!((a - b).abs() <= 1e-12 * (1.0 + a.abs()), "{a} {b}");
+        }
+    }
+
+    /// As a factorisation leaves them: a limb's terms are added up before they meet the others', of which each is a term by itself.
+    #[test]
+    fn limbs_whose_terms_were_added_before_are_one_sum_over_lanes_with_the_others() {
+        let model = walker(4, &mut 7);
+        let alike = Alike::of(&model, 4).unwrap();
+        let hips: Vec<usize> = model.limbs(4)[0].roots.iter().map(|&i| model.bodies[i].coordinates.q).collect();
+        for before in 0..16 {
+            let plain = sym::trace(|| {
+                let terms = |lane: usize| {
+                    let x = Sym::input(0, hips[lane]);
+                    [x, -(x * x), x * x * x * Sym::from_f64(0.5)]
+                };
+                let one_by_one = |sum: Sym, lane: usize| terms(lane).into_iter().fold(sum, |sum, term| sum - term);
+                let together = |sum: Sym, lane: usize| sum - (terms(lane)[0] + (terms(lane)[2] + terms(lane)[1]));
+                let start = Sym::input(0, 0) * Sym::input(0, 1);
+                vec![(0..4).fold(start, |sum, lane| if before >> lane & 1 == 1 { together(sum, lane) } else { one_by_one(sum, lane) })]
+            });
+            let lanes = pack(&plain, &[Argument::Q], &alike, &Constants::new(1));
+            assert!((plain.evaluate(input)[0] - lanes.evaluate(input)[0]).abs() < 1e-15, "{before:b}");
+            let counts = lanes.counts();
+            assert_eq!((counts.of(Op::Across), counts.of(Op::Spread)), (1, 0), "{before:b}");
         }
     }
 

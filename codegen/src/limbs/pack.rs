@@ -34,6 +34,9 @@ struct Term {
     from: usize,
 }
 
+/// Terms of one sum from which on none is opened to find others like it.
+const MANY: usize = 1000;
+
 /// Lays the trace of a whole robot together: an operation on values of one lane is the same operation on all lanes, made once, wherever they come from. Sums
 /// over all lanes become one sum of vectors, added across at the end. The outputs are in lane 0.
 pub(crate) fn pack(graph: &Graph, arguments: &[Argument], alike: &Alike, constants: &Constants) -> Graph {
@@ -126,9 +129,14 @@ impl Packer<'_> {
                 across = Some(self.add(across, term));
             }
             // What is in some lanes only may hide a term that is in all.
-            let Some(place) = terms.iter().position(|t| self.can_open(t)) else { break };
-            let term = terms.swap_remove(place);
-            self.open(term, &mut terms);
+            if let Some(place) = terms.iter().position(|t| self.can_open(t)) {
+                let term = terms.swap_remove(place);
+                self.open(term, &mut terms);
+            } else if let Some(opened) = self.opened(&terms) {
+                terms = opened;
+            } else {
+                break;
+            }
         }
         let mut sum = across.map(|id| self.new.apply(Op::Across, &[id]));
         for term in terms {
@@ -165,6 +173,44 @@ impl Packer<'_> {
                 if term.at == At::Sum { stack.push(term) } else { terms.push(term) }
             }
         }
+    }
+
+    /// The terms with sums of single lanes opened where others have their terms one by one, as a lane whose sum was begun first has: as many opened as leave fewest terms that are not in all lanes.
+    /// `None` if that is none.
+    fn opened(&self, terms: &[Term]) -> Option<Vec<Term>> {
+        let (mut best, mut fewest) = (None, self.alone(terms));
+        let mut opened = terms.to_vec();
+        while let Some(place) = opened.iter().position(|t| self.is_sum_in_lane(t) && !self.in_all_lanes(t, &opened)) {
+            let term = opened.swap_remove(place);
+            self.open(term, &mut opened);
+            if opened.len() > MANY {
+                break;
+            }
+            let left = self.alone(&opened);
+            if left < fewest {
+                (best, fewest) = (Some(opened.clone()), left);
+            }
+        }
+        best
+    }
+
+    /// How many terms are left once those that are in all lanes are taken out.
+    fn alone(&self, terms: &[Term]) -> usize {
+        let mut left = terms.to_vec();
+        while self.take_all_lanes(&mut left).is_some() {}
+        left.len()
+    }
+
+    /// Whether a term is a sum in its lane.
+    fn is_sum_in_lane(&self, term: &Term) -> bool {
+        matches!(term.at, At::Lane(..)) && matches!(self.graph.nodes()[term.from].op, Op::Add | Op::Sub | Op::Neg)
+    }
+
+    /// Whether the same is a term in every lane.
+    fn in_all_lanes(&self, term: &Term, terms: &[Term]) -> bool {
+        let At::Lane(id, _) = term.at else { return false };
+        let has = |lane: usize| terms.iter().any(|t| t.at == At::Lane(id, lane) && t.negative == term.negative);
+        (0..self.new.lanes().width).all(has)
     }
 
     /// Takes out a term that is there in all lanes with the same sign.
