@@ -116,7 +116,7 @@ fn lanes(out: &mut String, widths: &[usize], when: &When, forbid_unsafe: bool, l
     }
 }
 
-/// The instruction sets of limbs and sines.
+/// The instruction sets of limbs and sines, and what stands before the module of each; [`When`] has it of those that have none here.
 const SETS: [(Set, &str, &str); 5] = [
     (Set::Portable, "portable", ""),
     (Set::Sse2, "sse2", NOT_COMPILED_FOR_AVX2),

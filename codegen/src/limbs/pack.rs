@@ -1,9 +1,11 @@
 //! The traces of branches that are alike, laid on one another.
 
+use std::collections::HashMap;
+
 use articulated_core::algorithm::Argument;
 
 use super::{Alike, Constants};
-use crate::graph::{Graph, Node, NodeId, Op};
+use crate::graph::{Graph, MOST, Node, NodeId, Op};
 
 /// Where the value of a scalar node is in the new graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,6 +58,31 @@ pub(crate) fn pack(graph: &Graph, arguments: &[Argument], alike: &Alike, constan
     let outputs = graph.outputs.iter().map(|o| packer.everywhere(o.index())).collect();
     packer.new.outputs = outputs;
     packer.new
+}
+
+/// How often each node, with its sign, is a term in each lane.
+struct Tally {
+    width: usize,
+    /// All terms, those in no lane among them.
+    terms: usize,
+    places: HashMap<(NodeId, bool), [usize; MOST]>,
+}
+
+impl Tally {
+    /// How often something is a term in every lane.
+    fn everywhere(&self, lanes: &[usize; MOST]) -> usize {
+        lanes[..self.width].iter().copied().min().unwrap_or(0)
+    }
+
+    /// Whether the same as this is a term in every lane.
+    fn in_all_lanes(&self, term: &Term) -> bool {
+        term.at.node().and_then(|id| self.places.get(&(id, term.negative))).is_some_and(|lanes| self.everywhere(lanes) > 0)
+    }
+
+    /// How many terms are left once those that are in all lanes are taken out.
+    fn alone(&self) -> usize {
+        self.terms - self.places.values().map(|lanes| self.width * self.everywhere(lanes)).sum::<usize>()
+    }
 }
 
 struct Packer<'a> {
@@ -178,27 +205,21 @@ impl Packer<'_> {
     /// The terms with sums of single lanes opened where others have their terms one by one, as a lane whose sum was begun first has: as many opened as leave fewest terms that are not in all lanes.
     /// `None` if that is none.
     fn opened(&self, terms: &[Term]) -> Option<Vec<Term>> {
-        let (mut best, mut fewest) = (None, self.alone(terms));
         let mut opened = terms.to_vec();
-        while let Some(place) = opened.iter().position(|t| self.is_sum_in_lane(t) && !self.in_all_lanes(t, &opened)) {
+        let mut tally = self.tally(&opened);
+        let (mut best, mut fewest) = (None, tally.alone());
+        while let Some(place) = opened.iter().position(|t| self.is_sum_in_lane(t) && !tally.in_all_lanes(t)) {
             let term = opened.swap_remove(place);
             self.open(term, &mut opened);
             if opened.len() > MANY {
                 break;
             }
-            let left = self.alone(&opened);
-            if left < fewest {
-                (best, fewest) = (Some(opened.clone()), left);
+            tally = self.tally(&opened);
+            if tally.alone() < fewest {
+                (best, fewest) = (Some(opened.clone()), tally.alone());
             }
         }
         best
-    }
-
-    /// How many terms are left once those that are in all lanes are taken out.
-    fn alone(&self, terms: &[Term]) -> usize {
-        let mut left = terms.to_vec();
-        while self.take_all_lanes(&mut left).is_some() {}
-        left.len()
     }
 
     /// Whether a term is a sum in its lane.
@@ -206,11 +227,14 @@ impl Packer<'_> {
         matches!(term.at, At::Lane(..)) && matches!(self.graph.nodes()[term.from].op, Op::Add | Op::Sub | Op::Neg)
     }
 
-    /// Whether the same is a term in every lane.
-    fn in_all_lanes(&self, term: &Term, terms: &[Term]) -> bool {
-        let At::Lane(id, _) = term.at else { return false };
-        let has = |lane: usize| terms.iter().any(|t| t.at == At::Lane(id, lane) && t.negative == term.negative);
-        (0..self.new.lanes().width).all(has)
+    fn tally(&self, terms: &[Term]) -> Tally {
+        let mut tally = Tally { width: self.new.lanes().width, terms: terms.len(), places: HashMap::new() };
+        for term in terms {
+            if let At::Lane(id, lane) = term.at {
+                tally.places.entry((id, term.negative)).or_default()[lane] += 1;
+            }
+        }
+        tally
     }
 
     /// Takes out a term that is there in all lanes with the same sign.
