@@ -155,7 +155,8 @@ const COLUMN_BY_COLUMN: [&str; 2] = ["mass_matrix", "mass_matrix_inverse"];
 fn made(wanted: &Wanted, subject: &Subject, unsolved: Option<&'static Way<Sym>>) -> (Graph, Entry) {
     let all = model_passes::<Sym>().len();
     let choose = |part| unsolved.map_or_else(|| cheapest(part, subject, all), |way| Choice::plain(way, all));
-    let choices = in_the_best_unit(wanted, wanted.parts.iter().map(choose).collect(), subject);
+    let choices = by_axes(wanted, wanted.parts.iter().map(choose).collect(), subject);
+    let choices = in_the_best_unit(wanted, choices, subject);
     let mut graph = Graph::default();
     let mut stages: Vec<(&'static str, Counts)> = Vec::new();
     for passes in if subject.stages { 0 } else { all }..=all {
@@ -167,8 +168,13 @@ fn made(wanted: &Wanted, subject: &Subject, unsolved: Option<&'static Way<Sym>>)
         stages.push((if passes == 0 { "trace" } else { model_passes::<Sym>()[passes - 1].0 }, graph.counts()));
     }
     if choices.iter().any(|c| c.lent) {
-        graph = subject.trace(wanted, &choices.iter().map(|c| Choice { unit: None, unturned: None, ..*c }).collect::<Vec<_>>());
+        graph =
+            subject.trace(wanted, &choices.iter().map(|c| Choice { unit: None, unturned: None, axes: false, ..*c }).collect::<Vec<_>>());
         stages.push(("lent", graph.counts()));
+    }
+    if choices.iter().any(|c| c.axes) {
+        graph = subject.trace(wanted, &choices.iter().map(|c| Choice { unit: None, unturned: None, ..*c }).collect::<Vec<_>>());
+        stages.push(("axes", graph.counts()));
     }
     if choices.iter().any(|c| c.unturned.is_some()) {
         graph = subject.trace(wanted, &choices.iter().map(|c| Choice { unit: None, ..*c }).collect::<Vec<_>>());
@@ -201,6 +207,13 @@ impl Subject<'_> {
     /// What is traced, after all graph passes.
     fn finished(&self, wanted: &Wanted, choices: &[Choice]) -> Graph {
         GRAPH_PASSES.iter().fold(self.trace(wanted, choices), |graph, (_, pass, _)| pass(&graph))
+    }
+
+    /// What choices cost, in instructions, and with each multiplication counted twice: cores have fewer multipliers than they have places for instructions.
+    fn price(&self, wanted: &Wanted, choices: &[Choice]) -> (u32, u64) {
+        let graph = self.finished(wanted, choices);
+        let cost = pass::cost(&graph);
+        (cost, u64::from(cost) + graph.counts().multiplications())
     }
 }
 
@@ -248,6 +261,34 @@ fn cost(wanted: &Wanted, choice: Choice, subject: &Subject) -> u32 {
     pass::cost(&subject.finished(wanted, &[choice]))
 }
 
+/// Functions in which bodies turn while they move: the rates of that by the axes of joints may take less than by ω̇.
+const TURNING: [&str; 10] = [
+    "inverse_dynamics",
+    "inverse_dynamics_with_wrenches",
+    "joint_wrenches",
+    "bias_forces",
+    "forward_dynamics",
+    "forward_dynamics_with_wrenches",
+    "forward_dynamics_derivatives",
+    "forward_dynamics_derivatives_with_wrenches",
+    "center_of_mass_acceleration",
+    "centroidal_momentum_rate",
+];
+
+/// The choices with rates by axes, if that takes fewer multiplications and no more instructions; of robots with many bodies, which take long to trace, without trying.
+fn by_axes(wanted: &Wanted, choices: Vec<Choice>, subject: &Subject) -> Vec<Choice> {
+    let turns = |part: &Part| TURNING.contains(&part.function.name);
+    if !wanted.parts.iter().any(turns) {
+        return choices;
+    }
+    let with: Vec<Choice> = wanted.parts.iter().zip(&choices).map(|(part, choice)| Choice { axes: turns(part), ..*choice }).collect();
+    let better = || {
+        let ((cost, price), (other_cost, other_price)) = (subject.price(wanted, &with), subject.price(wanted, &choices));
+        cost <= other_cost && price < other_price
+    };
+    if subject.model.bodies.len() > UNTURNED_BODIES || better() { with } else { choices }
+}
+
 /// So many instructions are traced at most to find the best unit of length: of a long function fewer are tried.
 const TRIED: usize = 20_000;
 
@@ -261,19 +302,14 @@ fn in_the_best_unit(wanted: &Wanted, choices: Vec<Choice>, subject: &Subject) ->
         let one = |(choice, units): (&Choice, &Vec<f64>)| Choice { unit: units.contains(&metres).then_some(metres), ..*choice };
         choices.iter().zip(&units).map(one).collect()
     };
-    // Cores have fewer multipliers than they have places for instructions: a multiplication counts twice.
-    let price = |choices: &[Choice]| {
-        let graph = subject.finished(wanted, choices);
-        (pass::cost(&graph), u64::from(pass::cost(&graph)) + graph.counts().multiplications())
-    };
     let Some(most) = units.iter().max_by_key(|units| units.len()).filter(|units| !units.is_empty()) else { return choices };
-    let (cost, mut least) = price(&choices);
+    let (cost, mut least) = subject.price(wanted, &choices);
     if cost > UNTURNED_TO {
         return choices;
     }
     let mut best = choices.clone();
     for other in most.iter().take(TRIED / (cost as usize).max(1)).map(|&metres| with(metres)) {
-        let (_, price) = price(&other);
+        let (_, price) = subject.price(wanted, &other);
         if price < least {
             (least, best) = (price, other);
         }

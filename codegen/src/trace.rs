@@ -28,12 +28,14 @@ pub(crate) struct Choice {
     pub(crate) unit: Option<f64>,
     /// Whether bodies have other inertias for inverse dynamics ([`Model::lent`]).
     pub(crate) lent: bool,
+    /// Whether bodies have their rates by the axes of their joints ([`Model::with_rates_by_axes`]).
+    pub(crate) axes: bool,
 }
 
 impl Choice {
     /// A way after so many model passes, with all frames turning and lengths in metres.
     pub(crate) fn plain(way: &'static Way<Sym>, passes: usize) -> Self {
-        Self { way, passes, unturned: None, unit: None, lent: false }
+        Self { way, passes, unturned: None, unit: None, lent: false, axes: false }
     }
 
     /// What it is called in the ledger.
@@ -45,7 +47,8 @@ impl Choice {
         };
         let unit = self.unit.map(|metres| Cow::Owned(format!("lengths in {} m", to_four_digits(metres))));
         let lent = if self.lent { "mass lent" } else { "" };
-        [self.way.name, lent, unturned].into_iter().filter(|name| !name.is_empty()).map(Cow::Borrowed).chain(unit)
+        let axes = if self.axes { "rates by axes" } else { "" };
+        [self.way.name, lent, axes, unturned].into_iter().filter(|name| !name.is_empty()).map(Cow::Borrowed).chain(unit)
     }
 }
 
@@ -164,6 +167,8 @@ fn run(part: &Part, choice: &Choice, model: &Model<Sym>, arguments: &[Argument])
     let q = part.function.takes.iter().position(|a| *a == Argument::Q);
     let unturned = q.zip(choice.unturned).map(|(k, which)| model.unturned(slices[k], which));
     let model = unturned.as_ref().unwrap_or(model);
+    let by_axes = choice.axes.then(|| model.clone().with_rates_by_axes());
+    let model = by_axes.as_ref().unwrap_or(model);
     let called = part.function.call_by(choice.way, model, &mut Workspace::new(model), &slices, &mut out);
     debug_assert!(called.is_ok(), "arguments were made to measure");
     out

@@ -4,12 +4,13 @@
 use articulated_cli::precise::Big;
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Argument, Function, FunctionId, Needs, Workspace, functions};
-use articulated_core::joint::Joint;
+use articulated_core::joint::{Angle, Joint};
 use articulated_core::model::pass::model_passes;
-use articulated_core::model::{Body, Model, Unturned};
-use articulated_core::spatial::{Matrix3, Reference, SpatialInertia, Vector3};
+use articulated_core::model::{Body, Model, Rates, Unturned};
+use articulated_core::spatial::{Matrix3, Reference, SpatialInertia, Vector3, to_z_axis};
 use articulated_tests::case::{Case, State, cast, for_each_tree};
 use articulated_tests::random_tree::Flavour;
+use num_traits::Zero;
 
 /// What the library's constants allow, which are double precision however the rest is computed. Seen: 2·10⁻¹⁵.
 const NEAR: f64 = 2e-14;
@@ -184,6 +185,41 @@ fn constants_may_be_turned_instead_of_vectors() {
     let of = |which| kinds.borrow().iter().filter(|k| **k == which).count();
     let counts = (seen.get(), of(Unturned::Parallel), of(Unturned::ParallelAndLast));
     assert!(counts.0 > 12 && counts.1 > 5 && counts.2 > 5, "only {counts:?}");
+}
+
+/// The second derivative of a joint's axis tells as much as ω̇: no function is another, with the diagonal of U by it or not, whatever kinds of joints stand before and behind.
+#[test]
+fn rates_may_be_found_by_the_axes_of_joints() {
+    const AXES: [[f64; 3]; 6] = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, -1.0, 0.0], [-1.0, 0.0, 0.0]];
+    let seen = std::cell::RefCell::new(Vec::new());
+    for_each_tree(24, Flavour { links: 9, ..SMALL }, |case, random| {
+        let state = case.state(random);
+        Big::scope(|| {
+            let mut model = case.model.cast::<Big>();
+            // Mostly axes along axes, turned about themselves by any angle, and bodies with some of their products of inertia.
+            for i in model.outward() {
+                // What a universal joint consists of has no mass between: its axes stay as they are.
+                if random.below(4) == 0 || model.bodies[model.bodies[i].parent].link.is_none() {
+                    continue;
+                }
+                let body = &mut model.bodies[i];
+                let (sin, cos) = Big::from_f64(random.below(3) as f64).sin_cos();
+                body.placement.rotation = to_z_axis(AXES[random.below(6)]).map(Big::from_f64) * Angle { sin, cos }.rotation();
+                for (row, column) in [(0, 1), (0, 2), (1, 2)].into_iter().filter(|_| random.below(2) == 0) {
+                    (body.inertia.second[(row, column)], body.inertia.second[(column, row)]) = (Big::zero(), Big::zero());
+                }
+            }
+            let by_axes = model.clone().with_rates_by_axes();
+            seen.borrow_mut().extend(by_axes.bodies.iter().skip(1).map(|body| body.rates));
+            each(case, &model, &state, |row, given| {
+                let off = difference(&run(row, 0, &by_axes, given), &run(row, 0, &model, given));
+                assert!(off <= near(row), "{}: off by {off:e}", row.name);
+            });
+        });
+    });
+    let counts =
+        [Rates::Angular, Rates::Axis, Rates::AxisAndDiagonal].map(|rates| seen.borrow().iter().filter(|one| **one == rates).count());
+    assert!(counts.iter().all(|count| *count > 20), "only {counts:?}");
 }
 
 /// A mass at a joint may be in the body on either side, and inverse dynamics have other inertias than mass matrices: no torque, energy or acceleration is another, in whatever unit and axes.

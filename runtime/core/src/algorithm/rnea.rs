@@ -3,13 +3,14 @@
 //! Two sweeps in body axes. Instead of spatial accelerations it carries ω, ω̇ and the classical acceleration of each origin, and
 //! applies them through U = [ω̇]× + [ω]×[ω]×, so that no linear velocity is ever formed (Luh, Walker & Paul, *ASME J. Dyn. Syst. Meas.
 //! Control* 102, 1980, 69–76; the rate matrix after Balafoutis & Patel, *Dynamic Analysis of Robot Manipulators*, 1991, ch. 4).
+//! Bodies may have U by the axis of their joint, which accelerates alike in both of its bodies, in place of ω̇ ([`crate::model::Rates`]).
 //! The plain matrix form is [`super::textbook`].
 
 use super::effects::{self, World};
 use super::{Workspace, wrenches};
 use crate::joint::{JointLaw, Pose};
-use crate::model::{Body, Model};
-use crate::spatial::{Motion, Vector3, Wrench, rate_matrix, rotate, rotate_back};
+use crate::model::{Body, Model, Rates};
+use crate::spatial::{Motion, Vector3, Wrench, rate_matrix, rates_about, rotate, rotate_back};
 use crate::{Scalar, with_pose};
 
 /// τ = M(q)·a + h(q, v), gravity included.
@@ -142,8 +143,17 @@ fn outward<S: Scalar, P: JointLaw<S>>(body: &Body<S>, i: usize, p: P, pose: Pose
         alpha: rotate_back(turn, parent.motion.alpha),
         acceleration: rotate_back(turn, parent.motion.acceleration + rotate(&parent.u, origin)),
     };
-    let motion = p.motion(carried, &body.coordinates, v, a);
-    let u = rate_matrix(motion.omega, motion.alpha);
+    let mut motion = p.motion(carried, &body.coordinates, v, a);
+    let u = match body.rates {
+        Rates::Angular => rate_matrix(motion.omega, motion.alpha),
+        Rates::Axis | Rates::AxisAndDiagonal => {
+            // ë = U_λ e
+            let axis = p.to_child(rotate_back(turn, rotate(&parent.u, turn.column(2).into_owned())));
+            let (alpha, u) = rates_about(motion.omega, motion.alpha.z, axis, body.rates == Rates::AxisAndDiagonal);
+            motion.alpha = alpha;
+            u
+        }
+    };
     let state = &mut ws.bodies[i];
     state.pose = pose;
     state.origin = origin;

@@ -8,7 +8,7 @@ use core::fmt;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Body, FLOATING_BASE, Frame, GRAVITY, JointInfo, Model};
+use super::{Body, FLOATING_BASE, Frame, GRAVITY, JointInfo, Model, Rates};
 use crate::description::{self, Base, Description, Inertial, JointKind, Mimic, Origin};
 use crate::effect::Effects;
 use crate::joint::{Angle, Coordinates, Follow, Joint, JointLaw};
@@ -230,6 +230,7 @@ impl<'a> Builder<'a> {
             coordinates,
             inertia,
             lent: None,
+            rates: Rates::Angular,
             link: None,
             effects: Effects::none(),
         });

@@ -138,6 +138,7 @@ mod tests {
             },
             inertia: SpatialInertia::zero(),
             lent: None,
+            rates: crate::model::Rates::Angular,
             link: None,
             effects: Effects::none(),
         };

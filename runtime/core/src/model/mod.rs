@@ -1,5 +1,6 @@
 //! A robot made ready for the algorithms: bodies joined by moving joints, in depth-first order.
 
+mod axes;
 mod build;
 mod lent;
 mod limbs;
@@ -14,6 +15,7 @@ use alloc::vec::Vec;
 
 use nalgebra::{Matrix3, Vector3};
 
+pub use axes::Rates;
 pub use build::ModelError;
 pub use limbs::Limbs;
 pub use unturned::Unturned;
@@ -71,6 +73,8 @@ pub struct Body<S> {
     pub inertia: SpatialInertia<S>,
     /// What inverse dynamics takes in its place ([`Model::lent`]): the same for all torques, not for wrenches between bodies.
     pub lent: Option<Box<SpatialInertia<S>>>,
+    /// What inverse dynamics finds the rates of its turning from ([`Model::with_rates_by_axes`]).
+    pub rates: Rates,
     /// For the body of a joint's child link, the axes of that link in the body's, as a rotation; the origins are the same, until a pass slides the
     /// body's. `None` for the base, and for the bodies without mass inside a planar or universal joint.
     pub link: Option<Matrix3<S>>,
@@ -217,6 +221,7 @@ impl<S: Scalar> Body<S> {
             coordinates: self.coordinates.map(f),
             inertia: self.inertia.map(f),
             lent: self.lent.as_ref().map(|lent| Box::new(lent.map(f))),
+            rates: self.rates,
             link: self.link.map(|r| r.map(f)),
             effects: self.effects.map(f),
         }

@@ -16,7 +16,7 @@ mod wrench;
 pub use articulated::ArticulatedInertia;
 pub use coriolis::CoriolisInertia;
 pub use inertia::SpatialInertia;
-pub use motion::{Motion, rate_matrix};
+pub use motion::{Motion, rate_matrix, rates_about};
 pub use placement::Placement;
 pub use reference::Reference;
 pub use rotation::{from_quaternion, from_rpy, rotate, rotate_back, sin_cos_of_written_angle, to_z_axis, turned_about_z};

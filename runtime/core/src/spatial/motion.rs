@@ -36,9 +36,42 @@ pub fn rate_matrix<S: Scalar>(omega: Vector3<S>, alpha: Vector3<S>) -> Matrix3<S
     )
 }
 
+/// ω̇ and U of a body from ω, ω̇_z and ë = U e_z of its z-axis.
+///
+/// ë = [ω_x ω_z + ω̇_y; ω_y ω_z − ω̇_x; −(ω_x² + ω_y²)], so that the third row of U and its third column add up to 2 ω_z ω. `diagonal`: the diagonal from ë_z, in two squares, not in three.
+#[inline(always)]
+pub fn rates_about<S: Scalar>(omega: Vector3<S>, alpha_z: S, axis: Vector3<S>, diagonal: bool) -> (Vector3<S>, Matrix3<S>) {
+    let (w, twice) = (omega, omega.z + omega.z);
+    let alpha = Vector3::new(w.y * w.z - axis.y, axis.x - w.x * w.z, alpha_z);
+    let (xx, yy, zz, xy) = (w.x * w.x, w.y * w.y, w.z * w.z, w.x * w.y);
+    let (m11, m33) = if diagonal { (axis.z + (xx - zz), axis.z) } else { (-(yy + zz), -(xx + yy)) };
+    let u = Matrix3::new(
+        m11,
+        xy - alpha.z,
+        axis.x, //
+        xy + alpha.z,
+        -(xx + zz),
+        axis.y, //
+        w.x * twice - axis.x,
+        w.y * twice - axis.y,
+        m33,
+    );
+    (alpha, u)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rates_about_an_axis_are_those_of_its_second_derivative() {
+        let (w, d) = (Vector3::new(0.3, -1.2, 0.7), Vector3::new(2.0, 0.5, -0.9));
+        let u: Matrix3<f64> = rate_matrix(w, d);
+        for diagonal in [false, true] {
+            let (alpha, found) = rates_about(w, d.z, u.column(2).into_owned(), diagonal);
+            assert!((alpha - d).amax() < 1e-15 && (found - u).amax() < 1e-15, "{diagonal}: {alpha} {found}");
+        }
+    }
 
     #[test]
     fn rate_matrix_times_r_is_euler_plus_centripetal_acceleration() {
