@@ -54,10 +54,11 @@ pub(super) fn momentum<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[
 pub(super) fn recursion<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S], world: &World<S>, tau: &mut [S]) {
     // V̇_0 = [0; −g]
     ws.bodies[0].motion.acceleration = -world.gravity;
-    for i in model.outward() {
-        let body = &model.bodies[i];
-        let pose = body.joint.pose(&body.coordinates, q);
-        with_pose!(pose, p => outward(&model.bodies[i], i, p, pose, ws, v, a));
+    // A sweep for each, as one with both takes a quarter longer on numbers.
+    if model.bodies.iter().all(|body| body.rates == Rates::Angular) {
+        outward_sweep::<S, false>(model, ws, q, v, a);
+    } else {
+        outward_sweep::<S, true>(model, ws, q, v, a);
     }
     // F_i −= w
     wrenches::each(model, ws, q, world.wrenches, |ws, i, w| ws.bodies[i].wrench = ws.bodies[i].wrench - *w);
@@ -131,9 +132,26 @@ pub fn gravity_torque<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S
     ws.zeros = zeros;
 }
 
+/// Motion and own wrench of each body, with some rates by the axes of joints or with none.
+fn outward_sweep<S: Scalar, const BY_AXES: bool>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S]) {
+    for i in model.outward() {
+        let body = &model.bodies[i];
+        let pose = body.joint.pose(&body.coordinates, q);
+        with_pose!(pose, p => outward::<S, _, BY_AXES>(body, i, p, pose, ws, v, a));
+    }
+}
+
 /// Motion and own wrench of body `i` from its parent's motion.
 #[inline(always)]
-fn outward<S: Scalar, P: JointLaw<S>>(body: &Body<S>, i: usize, p: P, pose: Pose<S>, ws: &mut Workspace<S>, v: &[S], a: &[S]) {
+fn outward<S: Scalar, P: JointLaw<S>, const BY_AXES: bool>(
+    body: &Body<S>,
+    i: usize,
+    p: P,
+    pose: Pose<S>,
+    ws: &mut Workspace<S>,
+    v: &[S],
+    a: &[S],
+) {
     let parent = &ws.bodies[body.parent];
     let turn = &body.placement.rotation;
     let origin = p.origin(&body.placement);
@@ -144,15 +162,14 @@ fn outward<S: Scalar, P: JointLaw<S>>(body: &Body<S>, i: usize, p: P, pose: Pose
         acceleration: rotate_back(turn, parent.motion.acceleration + rotate(&parent.u, origin)),
     };
     let mut motion = p.motion(carried, &body.coordinates, v, a);
-    let u = match body.rates {
-        Rates::Angular => rate_matrix(motion.omega, motion.alpha),
-        Rates::Axis | Rates::AxisAndDiagonal => {
-            // ë = U_λ e
-            let axis = p.to_child(rotate_back(turn, rotate(&parent.u, turn.column(2).into_owned())));
-            let (alpha, u) = rates_about(motion.omega, motion.alpha.z, axis, body.rates == Rates::AxisAndDiagonal);
-            motion.alpha = alpha;
-            u
-        }
+    let u = if BY_AXES && body.rates != Rates::Angular {
+        // ë = U_λ e
+        let axis = p.to_child(rotate_back(turn, rotate(&parent.u, turn.column(2).into_owned())));
+        let (alpha, u) = rates_about(motion.omega, motion.alpha.z, axis, body.rates == Rates::AxisAndDiagonal);
+        motion.alpha = alpha;
+        u
+    } else {
+        rate_matrix(motion.omega, motion.alpha)
     };
     let state = &mut ws.bodies[i];
     state.pose = pose;
