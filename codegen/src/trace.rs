@@ -280,14 +280,15 @@ mod tests {
                     for passes in 1..=model_passes::<Sym>().len() {
                         close(&values(Choice::plain(way, passes)), &expected, &format!("{} by {}, {passes} passes", wanted.name, way.name));
                     }
-                    for (&unturned, lent) in unturned.iter().flat_map(|unturned| [(unturned, false), (unturned, true)]) {
-                        let choice = Choice { unturned, lent, ..Choice::plain(way, usize::MAX) };
+                    let inertias_and_rates = [(false, false), (true, false), (false, true), (true, true)];
+                    for (&unturned, (lent, axes)) in unturned.iter().flat_map(|unturned| inertias_and_rates.map(|both| (unturned, both))) {
+                        let choice = Choice { unturned, lent, axes, ..Choice::plain(way, usize::MAX) };
                         for unit in once(None).chain(units(part, &choice, &model).into_iter().map(Some)) {
                             let choice = Choice { unit, ..choice };
                             close(
                                 &values(choice),
                                 &expected,
-                                &format!("{} by {}, {unturned:?}, {unit:?}, lent: {lent}", wanted.name, way.name),
+                                &format!("{} by {}, {unturned:?}, {unit:?}, lent: {lent}, by axes: {axes}", wanted.name, way.name),
                             );
                             seen += usize::from(unit.is_some());
                         }

@@ -117,7 +117,7 @@ mod tests {
 
     use crate::effect::Effects;
     use crate::joint::{Angle, Coordinates, Joint};
-    use crate::model::{Body, Model};
+    use crate::model::{Body, Model, Rates};
     use crate::spatial::{Placement, Reference, SpatialInertia};
     use nalgebra::{Matrix3, Vector3};
 
@@ -138,7 +138,7 @@ mod tests {
             },
             inertia: SpatialInertia::zero(),
             lent: None,
-            rates: crate::model::Rates::Angular,
+            rates: Rates::Angular,
             link: None,
             effects: Effects::none(),
         };

@@ -36,7 +36,7 @@ pub fn rate_matrix<S: Scalar>(omega: Vector3<S>, alpha: Vector3<S>) -> Matrix3<S
     )
 }
 
-/// ω̇ and U of a body from ω, ω̇_z and ë = U e_z of its z-axis.
+/// ω̇ and U of a body from `omega` = ω, rad/s, `alpha_z` = ω̇_z, rad/s², and `axis` = ë = U e_z, 1/s², the second derivative of its z-axis. All in axes of the body.
 ///
 /// ë = [ω_x ω_z + ω̇_y; ω_y ω_z − ω̇_x; −(ω_x² + ω_y²)], so that the third row of U and its third column add up to 2 ω_z ω. `diagonal`: the diagonal from ë_z, in two squares, not in three.
 #[inline(always)]
