@@ -1,10 +1,13 @@
 //! What every equation of motion M(q)·a + h(q, v) = τ is made of.
 
+use articulated_cli::precise::Big;
+use articulated_core::Scalar;
 use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, Origin};
 use articulated_core::model::Model;
 use articulated_core::model::pass::model_passes;
+use articulated_core::monitor::orthonormality;
 use articulated_tests::case::{Case, State, for_each_bundled, for_each_tree, inverse_dynamics, mass_matrix, placements};
-use articulated_tests::measure::{arguments, distance, error, plus, scale, torque_scale};
+use articulated_tests::measure::{U, arguments, distance, error, plus, scale, torque_scale};
 use articulated_tests::random::Random;
 use articulated_tests::random_tree::Flavour;
 
@@ -156,6 +159,22 @@ fn passes_keep_the_physics(case: &Case, random: &mut Random) {
 fn model_passes_leave_torques_and_placements_as_they_are() {
     for_each_tree(150, Flavour::ANY, passes_keep_the_physics);
     for_each_bundled(passes_keep_the_physics);
+}
+
+/// A column that is too long by ε makes every lever that it turns too long, and moments of inertia by 2ε: those of several bodies add up.
+#[test]
+fn rotations_of_models_are_rotations_to_rounding_before_and_after_passes() {
+    for_each_tree(150, Flavour::WRITTEN, |case, _| {
+        let mut model = case.model.clone();
+        for (name, pass, _) in [("none", (|m| m) as fn(Model<f64>) -> Model<f64>, "")].iter().chain(model_passes::<f64>()) {
+            model = pass(model);
+            for body in &model.bodies {
+                let [fixed, from] = [body.placement.rotation, body.coordinates.from.rotation()];
+                let off = [fixed, from].map(|r| Big::scope(|| orthonormality(&r.map(Big::from_f64)).to_f64() / U));
+                assert!(off.iter().all(|off| *off <= 3.0), "{}: {} after {name}: {off:?} units of roundoff", case.name, body.name);
+            }
+        }
+    });
 }
 
 /// Base parameters: what a joint cannot feel is zero.

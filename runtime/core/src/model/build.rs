@@ -12,7 +12,7 @@ use super::{Body, FLOATING_BASE, Frame, GRAVITY, JointInfo, Model, Rates};
 use crate::description::{self, Base, Description, Inertial, JointKind, Mimic, Origin};
 use crate::effect::Effects;
 use crate::joint::{Angle, Coordinates, Follow, Joint, JointLaw};
-use crate::spatial::{Placement, Reference, SpatialInertia, from_rpy, to_z_axis};
+use crate::spatial::{Placement, Reference, SpatialInertia, from_rpy, nearest_rotation, to_z_axis};
 use crate::with_pose;
 
 /// Why a description is not a model. A description that the URDF reader accepted gives none of these.
@@ -260,8 +260,16 @@ impl<'a> Builder<'a> {
             Frame { name: link.name.clone(), body, placement }
         };
         self.model.frames = self.description.links.iter().zip(&self.seats).map(frame).collect();
+        self.sharpen();
         let names = too_large(&self.model);
         if names.is_empty() { Ok(self.model) } else { Err(ModelError::TooLarge { names }) }
+    }
+
+    /// Takes the rounding of the products that they are out of the rotations.
+    fn sharpen(&mut self) {
+        let Model { bodies, frames, .. } = &mut self.model;
+        let placements = bodies.iter_mut().map(|b| &mut b.placement).chain(frames.iter_mut().map(|f| &mut f.placement));
+        placements.for_each(|x| x.rotation = nearest_rotation(&x.rotation));
     }
 
     /// Resolves a chain of joints that follow each other down to a coordinate.

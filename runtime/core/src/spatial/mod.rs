@@ -19,7 +19,7 @@ pub use inertia::SpatialInertia;
 pub use motion::{Motion, rate_matrix, rates_about};
 pub use placement::Placement;
 pub use reference::Reference;
-pub use rotation::{from_quaternion, from_rpy, rotate, rotate_back, sin_cos_of_written_angle, to_z_axis, turned_about_z};
+pub use rotation::{from_quaternion, from_rpy, nearest_rotation, rotate, rotate_back, sin_cos_of_written_angle, to_z_axis, turned_about_z};
 pub use twist::Twist;
 pub use wrench::Wrench;
 

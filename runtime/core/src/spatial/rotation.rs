@@ -61,6 +61,17 @@ pub fn from_quaternion<S: Scalar>(q: [S; 4]) -> Matrix3<S> {
     )
 }
 
+/// The rotation that is nearest to a matrix that is one but for rounding: R − R (RᵀR − 1)/2, a step of Newton's for the orthogonal factor of R.
+///
+/// Products of rotations drift: columns of a few turns are some units of roundoff too long or too short, all the same way, and so is every lever that they
+/// turn. A step leaves what rounding of nine numbers makes of it. Numbers that are 0, 1 or −1 stay so.
+pub fn nearest_rotation<S: Scalar>(r: &Matrix3<S>) -> Matrix3<S> {
+    let (zero, one) = (S::zero(), S::one());
+    let too_long = r.transpose() * r - Matrix3::identity();
+    let change = (r * too_long).map(|x| x * S::from_f64(0.5));
+    r.zip_map(&change, |x, by| if x == zero || x == one || x == -one { x } else { x - by })
+}
+
 /// (sin, cos) of an angle that somebody wrote into a file.
 ///
 /// The double nearest to a multiple of π/2 (up to ±2π) is taken as that multiple, so that a right angle is a right angle: this
@@ -174,6 +185,18 @@ mod tests {
         assert_eq!(sin_cos_of_written_angle::<f64>(FRAC_PI_2), (1.0, 0.0));
         assert_eq!(sin_cos_of_written_angle::<f64>(-core::f64::consts::PI), (0.0, -1.0));
         assert_eq!(sin_cos_of_written_angle::<f64>(1.571).1, (1.571_f64).cos());
+    }
+
+    #[test]
+    fn a_product_of_many_turns_drifts_and_its_nearest_rotation_does_not() {
+        let length = |r: &Matrix3<f64>| (r.transpose() * r - Matrix3::identity()).amax() / f64::EPSILON;
+        let turn = from_rpy::<f64>([0.3, -0.4, 2.0]);
+        let product = (0..1000).fold(Matrix3::identity(), |r, _| r * turn);
+        let nearest = nearest_rotation(&product);
+        assert!(length(&product) > 20.0 && length(&nearest) <= 1.5, "{} {}", length(&product), length(&nearest));
+        assert!((nearest - product).amax() <= length(&product) * f64::EPSILON);
+        let quarter = from_rpy::<f64>([0.0, FRAC_PI_2, FRAC_PI_2]);
+        assert_eq!(nearest_rotation(&quarter), quarter);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use super::zeros::{or_zero, within};
 use crate::Scalar;
 use crate::joint::{Angle, Joint};
 use crate::model::Model;
-use crate::spatial::{Placement, rotate_back};
+use crate::spatial::{Placement, nearest_rotation, rotate_back};
 
 /// Turns the frame of each revolute body about its axis, so that the fixed rotations between joints have fewer numbers.
 ///
@@ -98,7 +98,7 @@ fn is_quarter<S: Scalar>(angle: &Angle<S>) -> bool {
 fn turn_body<S: Scalar>(model: &mut Model<S>, i: usize, angle: &Angle<S>, hanging: &Hanging) {
     let rotation = angle.rotation();
     let body = &mut model.bodies[i];
-    body.placement.rotation = (body.placement.rotation * rotation).map(tidy);
+    body.placement.rotation = nearest_rotation(&(body.placement.rotation * rotation).map(tidy));
     body.inertia = body.inertia.turned(&rotation.transpose());
     body.link = body.link.map(|link| rotation.transpose() * link);
     let turn = |x: &mut Placement<S>| *x = Placement { rotation: turned(&x.rotation, angle), position: back(angle, x.position) };
@@ -128,13 +128,14 @@ fn plain<S: Scalar>(r: &Matrix3<S>) -> Option<(Matrix3<S>, Angle<S>)> {
     };
     let new_x = Vector3::from_fn(|j, _| if j == k { S::one() } else { o });
     let new_y = z.cross(&new_x);
-    let angle = Angle { sin: tidy(new_y.dot(&x)), cos: tidy(new_x.dot(&x)) };
+    let angle = nearest_rotation(&Angle { sin: tidy(new_y.dot(&x)), cos: tidy(new_x.dot(&x)) }.rotation());
+    let angle = Angle { sin: angle.m21, cos: angle.m11 };
     Some((Matrix3::from_columns(&[new_x, new_y, z]), angle))
 }
 
 /// A rotation or a direction of the parent's, when the parent is turned.
 fn turned<S: Scalar>(r: &Matrix3<S>, angle: &Angle<S>) -> Matrix3<S> {
-    (angle.rotation().transpose() * r).map(tidy)
+    nearest_rotation(&(angle.rotation().transpose() * r).map(tidy))
 }
 
 fn back<S: Scalar>(angle: &Angle<S>, x: Vector3<S>) -> Vector3<S> {
