@@ -101,6 +101,8 @@ impl One for Sym {
 }
 
 impl Scalar for Sym {
+    const FOLDS: bool = true;
+
     type Mask = Sym;
 
     fn from_f64(x: f64) -> Self {

@@ -24,11 +24,20 @@ pub trait Scalar:
     /// Bits of its significand: how far a power series has to go.
     const BITS: u32 = f64::MANTISSA_DIGITS;
 
+    /// Whether what is computed with zeros and ones costs nothing, as they are known before: then sparse factors one after the other cost less than their product.
+    const FOLDS: bool = false;
+
     /// The scalar nearest to `x`.
     fn from_f64(x: f64) -> Self;
 
     /// (sin self, cos self); self in rad.
     fn sin_cos(self) -> (Self, Self);
+
+    /// self·b + c; with one rounding where that is one instruction of the processor compiled for.
+    #[inline(always)]
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        self * b + c
+    }
 
     /// √self.
     fn sqrt(self) -> Self;
@@ -66,6 +75,12 @@ macro_rules! impl_float {
                 return <$t>::sin_cos(self);
                 #[cfg(not(feature = "std"))]
                 $sincos(self)
+            }
+
+            #[cfg(all(feature = "std", any(all(target_arch = "x86_64", target_feature = "fma"), target_arch = "aarch64")))]
+            #[inline(always)]
+            fn mul_add(self, b: Self, c: Self) -> Self {
+                <$t>::mul_add(self, b, c)
             }
 
             #[inline(always)]

@@ -4,12 +4,11 @@
 //! a body then need no linear velocity. Effects are in [`super::effects`]: forces of those on joints count as torques, a rotor's inertia stands in the pivot. A joint with several degrees of freedom gives way in one after the other.
 
 use super::effects::{self, World};
-use super::rnea::to_parent;
 use super::workspace::Column;
 use super::{Workspace, wrenches};
-use crate::joint::JointLaw;
+use crate::joint::{JointLaw, Mount};
 use crate::model::Model;
-use crate::spatial::{ArticulatedInertia, Matrix3, Motion, Placement, Twist, Vector3, rate_matrix, rotate, rotate_back};
+use crate::spatial::{ArticulatedInertia, Matrix3, Motion, Twist, Vector3, rate_matrix, rotate};
 use crate::{Scalar, with_pose};
 
 /// a = M(q)⁻¹·(τ − h(q, v)), in a time that grows with the number of joints.
@@ -55,8 +54,9 @@ pub fn solve_by_articulated_body<S: Scalar>(model: &Model<S>, ws: &mut Workspace
 
 /// Forward dynamics in a world.
 fn solve<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], tau: &[S], world: &World<S>, out: &mut [S]) {
+    ws.set_poses(model, q);
     for i in model.outward() {
-        velocity(model, ws, i, q, v);
+        velocity(model, ws, i, v);
     }
     // p_i −= w
     wrenches::each(model, ws, q, world.wrenches, |ws, i, w| ws.bodies[i].wrench = ws.bodies[i].wrench - *w);
@@ -73,25 +73,21 @@ fn solve<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], t
 }
 
 /// ω, the bias acceleration c, the bias wrench p and the placement in the parent of body `i`, and S of its joint.
-fn velocity<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, q: &[S], v: &[S]) {
+fn velocity<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, v: &[S]) {
     let body = &model.bodies[i];
-    let pose = body.joint.pose(&body.coordinates, q);
+    let pose = ws.bodies[i].pose;
     let omega = ws.bodies[body.parent].motion.omega;
     let (zeros, zero) = (core::mem::take(&mut ws.zeros), Vector3::zeros());
-    let turn = &body.placement.rotation;
     with_pose!(pose, p => {
-        let origin = p.origin(&body.placement);
+        let mount = Mount::new(p, &body.placement);
         // The point of the parent accelerates by U_λ p = ω × (ω × p) more than the parent's origin does.
-        let centripetal = rotate_back(turn, rotate(&ws.bodies[body.parent].u, origin));
-        let carried = Motion { omega: rotate_back(turn, omega), alpha: zero, acceleration: centripetal };
-        ws.bodies[i].motion = p.motion(carried, &body.coordinates, v, &zeros);
-        ws.bodies[i].origin = origin;
+        let carried = Motion { omega, alpha: zero, acceleration: rotate(&ws.bodies[body.parent].u, mount.origin) };
+        ws.bodies[i].motion = p.motion(carried, |vector| mount.outward(vector), &body.coordinates, v, &zeros);
         for (k, c) in ws.columns_of(i).enumerate() {
             ws.columns[c].axis = p.subspace(&Matrix3::identity(), k);
         }
     });
     ws.zeros = zeros;
-    ws.bodies[i].pose = pose;
     ws.bodies[i].u = rate_matrix(ws.bodies[i].motion.omega, zero);
     ws.bodies[i].wrench = body.inertia.wrench(zero, &ws.bodies[i].u);
     ws.articulated[i] = ArticulatedInertia::rigid(&body.inertia);
@@ -125,23 +121,23 @@ fn give_way<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, tau: &
     // p += I c
     let motion = &ws.bodies[i].motion;
     bias += inertia.apply(&Twist { angular: motion.alpha, linear: motion.acceleration });
-    let (body, origin) = (&model.bodies[i], ws.bodies[i].origin);
-    let x = Placement { rotation: body.placement.rotation, position: origin };
     with_pose!(pose, p => {
-        ws.articulated[parent] += p.articulated_to_joint(&inertia).moved(&x);
-        ws.bodies[parent].wrench += to_parent(body, &p, origin, &bias);
+        let mount = Mount::new(p, &model.bodies[i].placement);
+        ws.articulated[parent] += mount.articulated(&inertia);
+        ws.bodies[parent].wrench += mount.wrench(&bias);
     });
 }
 
 /// a of the joint of body `i`, and the acceleration of the body.
 fn accelerate<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, out: &mut [S]) {
     let pose = ws.bodies[i].pose;
-    let (turn, motion) = (&model.bodies[i].placement.rotation, &ws.bodies[i].motion);
-    let carried = ws.common[model.bodies[i].parent].acceleration.at(ws.bodies[i].origin);
-    let to_child = |x: Vector3<S>| with_pose!(pose, p => p.to_child(rotate_back(turn, x)));
+    let (body, motion) = (&model.bodies[i], &ws.bodies[i].motion);
     // a' = X a_λ + c
-    let mut acceleration =
-        Twist { angular: to_child(carried.angular) + motion.alpha, linear: to_child(carried.linear) + motion.acceleration };
+    let mut acceleration = with_pose!(pose, p => {
+        let mount = Mount::new(p, &body.placement);
+        let carried = ws.common[body.parent].acceleration.at(mount.origin);
+        Twist { angular: mount.outward(carried.angular) + motion.alpha, linear: mount.outward(carried.linear) + motion.acceleration }
+    });
     for c in ws.columns_of(i).rev() {
         let Column { at, axis, held, inverse, residue, .. } = ws.columns[c];
         // q̈ = (u − Uᵀ a') / D;  a = a' + S q̈

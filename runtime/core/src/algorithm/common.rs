@@ -24,9 +24,8 @@ pub(super) enum Axes {
 
 /// Rotation and origin of every body, and the columns of S.
 pub(super) fn positions<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes: Axes, q: &[S]) {
+    ws.set_poses(model, q);
     for i in model.outward() {
-        let body = &model.bodies[i];
-        ws.bodies[i].pose = body.joint.pose(&body.coordinates, q);
         ws.common[i].base = Matrix3::identity();
     }
     if axes == Axes::Tree {

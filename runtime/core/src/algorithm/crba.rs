@@ -3,8 +3,7 @@
 use super::Workspace;
 use super::common::{Axes, inertias, positions};
 use super::effects;
-use super::rnea::to_parent;
-use crate::joint::JointLaw;
+use crate::joint::{JointLaw, Mount};
 use crate::model::Model;
 use crate::{Scalar, with_pose};
 
@@ -15,12 +14,9 @@ use crate::{Scalar, with_pose};
 /// # Panics
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
 pub fn mass_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
+    ws.set_poses(model, q);
     for i in model.outward() {
-        let body = &model.bodies[i];
-        let pose = body.joint.pose(&body.coordinates, q);
-        ws.bodies[i].origin = with_pose!(pose, p => p.origin(&body.placement));
-        ws.bodies[i].pose = pose;
-        ws.composite[i] = body.inertia;
+        ws.composite[i] = model.bodies[i].inertia;
     }
     out.fill(S::zero());
     for i in model.inward() {
@@ -34,7 +30,8 @@ pub fn mass_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], 
 /// all that it carries, on to the parent.
 #[inline(always)]
 fn joint<S: Scalar, P: JointLaw<S>>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, p: &P, out: &mut [S]) {
-    let (n, body, origin) = (model.nv, &model.bodies[i], ws.bodies[i].origin);
+    let (n, body) = (model.nv, &model.bodies[i]);
+    let mount = Mount::new(*p, &body.placement);
     let (at, dofs) = (&body.coordinates, body.joint.nv());
     for (k, c) in ws.columns_of(i).enumerate() {
         // F = I_i S_i,k
@@ -52,13 +49,13 @@ fn joint<S: Scalar, P: JointLaw<S>>(model: &Model<S>, ws: &mut Workspace<S>, i: 
             }
         }
         if body.parent != 0 {
-            *wrench = to_parent(body, p, origin, wrench);
+            *wrench = mount.wrench(wrench);
         }
     }
     if body.parent != 0 {
         // I_λ += X_λi I_i
-        let joint = p.inertia_to_joint(&ws.composite[i]);
-        ws.composite[body.parent] += joint.moved(&body.placement);
+        let inertia = mount.inertia(&ws.composite[i]);
+        ws.composite[body.parent] += inertia;
     }
 }
 

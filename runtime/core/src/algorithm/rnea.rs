@@ -8,9 +8,9 @@
 
 use super::effects::{self, World};
 use super::{Workspace, wrenches};
-use crate::joint::{JointLaw, Pose};
+use crate::joint::{JointLaw, Mount};
 use crate::model::{Body, Model, Rates};
-use crate::spatial::{Motion, Vector3, Wrench, rate_matrix, rates_about, rotate, rotate_back};
+use crate::spatial::{Motion, Wrench, rate_matrix, rates_about, rotate, rotate_back};
 use crate::{Scalar, with_pose};
 
 /// τ = M(q)·a + h(q, v), gravity included.
@@ -134,37 +134,24 @@ pub fn gravity_torque<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S
 
 /// Motion and own wrench of each body, with some rates by the axes of joints or with none.
 fn outward_sweep<S: Scalar, const BY_AXES: bool>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S]) {
+    ws.set_poses(model, q);
     for i in model.outward() {
         let body = &model.bodies[i];
-        let pose = body.joint.pose(&body.coordinates, q);
-        with_pose!(pose, p => outward::<S, _, BY_AXES>(body, i, p, pose, ws, v, a));
+        with_pose!(ws.bodies[i].pose, p => outward::<S, _, BY_AXES>(body, i, p, ws, v, a));
     }
 }
 
 /// Motion and own wrench of body `i` from its parent's motion.
 #[inline(always)]
-fn outward<S: Scalar, P: JointLaw<S>, const BY_AXES: bool>(
-    body: &Body<S>,
-    i: usize,
-    p: P,
-    pose: Pose<S>,
-    ws: &mut Workspace<S>,
-    v: &[S],
-    a: &[S],
-) {
+fn outward<S: Scalar, P: JointLaw<S>, const BY_AXES: bool>(body: &Body<S>, i: usize, p: P, ws: &mut Workspace<S>, v: &[S], a: &[S]) {
     let parent = &ws.bodies[body.parent];
-    let turn = &body.placement.rotation;
-    let origin = p.origin(&body.placement);
+    let mount = Mount::new(p, &body.placement);
     // r̈ = r̈_λ + U_λ p
-    let carried = Motion {
-        omega: rotate_back(turn, parent.motion.omega),
-        alpha: rotate_back(turn, parent.motion.alpha),
-        acceleration: rotate_back(turn, parent.motion.acceleration + rotate(&parent.u, origin)),
-    };
-    let mut motion = p.motion(carried, &body.coordinates, v, a);
+    let carried = Motion { acceleration: parent.motion.acceleration + rotate(&parent.u, mount.origin), ..parent.motion };
+    let mut motion = p.motion(carried, |vector| mount.outward(vector), &body.coordinates, v, a);
     let u = if BY_AXES && body.rates != Rates::Angular {
         // ë = U_λ e
-        let axis = p.to_child(rotate_back(turn, rotate(&parent.u, turn.column(2).into_owned())));
+        let axis = mount.outward(rotate(&parent.u, body.placement.rotation.column(2).into_owned()));
         let (alpha, u) = rates_about(motion.omega, motion.alpha.z, axis, body.rates == Rates::AxisAndDiagonal);
         motion.alpha = alpha;
         u
@@ -172,8 +159,6 @@ fn outward<S: Scalar, P: JointLaw<S>, const BY_AXES: bool>(
         rate_matrix(motion.omega, motion.alpha)
     };
     let state = &mut ws.bodies[i];
-    state.pose = pose;
-    state.origin = origin;
     state.motion = motion;
     state.u = u;
     // F_i = [h × r̈ + ∫ r × (U r) dm;  m r̈ + U h]
@@ -183,8 +168,7 @@ fn outward<S: Scalar, P: JointLaw<S>, const BY_AXES: bool>(
 /// τ of joint `i`, and its wrench on to the parent.
 #[inline(always)]
 fn inward<S: Scalar, P: JointLaw<S>>(body: &Body<S>, i: usize, p: &P, ws: &mut Workspace<S>, tau: &mut [S]) {
-    let state = &ws.bodies[i];
-    let (wrench, origin) = (state.wrench, state.origin);
+    let wrench = ws.bodies[i].wrench;
     // τ_i = S_iᵀ F_i
     for k in 0..body.joint.nv() {
         tau[body.coordinates.v + k] += body.coordinates.handed_on(p.torque(&wrench, k));
@@ -192,14 +176,5 @@ fn inward<S: Scalar, P: JointLaw<S>>(body: &Body<S>, i: usize, p: &P, ws: &mut W
     if body.parent == 0 {
         return;
     }
-    ws.bodies[body.parent].wrench += to_parent(body, p, origin, &wrench);
-}
-
-/// A wrench from the body's frame to its parent's: [R n + p × R f; R f].
-#[inline(always)]
-pub(super) fn to_parent<S: Scalar, P: JointLaw<S>>(body: &Body<S>, p: &P, origin: Vector3<S>, wrench: &Wrench<S>) -> Wrench<S> {
-    let turn = &body.placement.rotation;
-    let force = rotate(turn, p.to_joint(wrench.force));
-    let moment = rotate(turn, p.to_joint(wrench.moment));
-    Wrench { moment: moment + origin.cross(&force), force }
+    ws.bodies[body.parent].wrench += Mount::new(*p, &body.placement).wrench(&wrench);
 }

@@ -58,8 +58,6 @@ pub struct Workspace<S> {
 pub(super) struct BodyState<S> {
     /// The pose of its joint.
     pub(super) pose: Pose<S>,
-    /// Its origin in its parent's frame.
-    pub(super) origin: Vector3<S>,
     pub(super) motion: Motion<S>,
     /// U = [ω̇]× + [ω]×[ω]×.
     pub(super) u: Matrix3<S>,
@@ -161,6 +159,14 @@ impl<S: Scalar> Workspace<S> {
         (model.bodies[i].inertia.wrench(state.motion.acceleration, &state.u), state.wrench)
     }
 
+    /// The poses of all joints, at the coordinates in `q`: before the sweep that needs them, so that it need not wait for sines.
+    #[inline(always)]
+    pub(super) fn set_poses(&mut self, model: &Model<S>, q: &[S]) {
+        for (state, body) in self.bodies.iter_mut().zip(&model.bodies).skip(1) {
+            state.pose = body.joint.pose(&body.coordinates, q);
+        }
+    }
+
     /// The columns of the joint of body `i`, which is not the base.
     #[inline(always)]
     pub(super) fn columns_of(&self, i: usize) -> Range<usize> {
@@ -185,7 +191,7 @@ impl<S: Scalar> BodyState<S> {
     fn zero() -> Self {
         let zero = Vector3::zeros();
         let motion = Motion { omega: zero, alpha: zero, acceleration: zero };
-        Self { pose: Pose::identity(), origin: zero, motion, u: Matrix3::zeros(), wrench: Wrench::zero() }
+        Self { pose: Pose::identity(), motion, u: Matrix3::zeros(), wrench: Wrench::zero() }
     }
 }
 

@@ -55,15 +55,15 @@ impl<S: Scalar> JointLaw<S> for Floating<S> {
     }
 
     #[inline(always)]
-    fn motion(&self, carried: Motion<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
+    fn motion(&self, carried: Motion<S>, turn: impl Fn(Vector3<S>) -> Vector3<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
         let (rate, derivative) = (six(v, at.v), six(a, at.v));
-        let omega = self.to_child(carried.omega);
+        let omega = turn(carried.omega);
         let total = omega + rate.angular;
         // ω̇ = Rᵀ ω̇_λ + Rᵀ ω_λ × ω_J + ω̇_J
-        let alpha = self.to_child(carried.alpha) + omega.cross(&rate.angular) + derivative.angular;
+        let alpha = turn(carried.alpha) + omega.cross(&rate.angular) + derivative.angular;
         // r̈ = Rᵀ r̈_carried + 2 Rᵀ ω_λ × v_J + ω_J × v_J + v̇_J
         let coriolis = (omega + total).cross(&rate.linear);
-        let acceleration = self.to_child(carried.acceleration) + coriolis + derivative.linear;
+        let acceleration = turn(carried.acceleration) + coriolis + derivative.linear;
         Motion { omega: total, alpha, acceleration }
     }
 

@@ -47,9 +47,9 @@ impl<S: Scalar> JointLaw<S> for Helical<S> {
     }
 
     #[inline(always)]
-    fn motion(&self, carried: Motion<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
-        let slid = Prismatic::slide(carried, at.rate(v) * self.pitch, at.rate(a) * self.pitch);
-        self.turn.motion(slid, at, v, a)
+    fn motion(&self, carried: Motion<S>, turn: impl Fn(Vector3<S>) -> Vector3<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
+        let slid = Prismatic::slide(carried.turned(turn), at.rate(v) * self.pitch, at.rate(a) * self.pitch);
+        self.turn.motion(slid, |vector| vector, at, v, a)
     }
 
     #[inline(always)]

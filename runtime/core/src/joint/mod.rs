@@ -5,12 +5,14 @@
 
 mod floating;
 mod helical;
+mod mount;
 mod prismatic;
 mod revolute;
 mod spherical;
 
 pub use floating::Floating;
 pub use helical::Helical;
+pub(crate) use mount::Mount;
 pub use prismatic::Prismatic;
 pub use revolute::Revolute;
 pub use spherical::Spherical;
@@ -197,9 +199,9 @@ pub trait JointLaw<S: Scalar>: Copy {
     /// Column k of S, the twist of the child about its origin at the unit rate k of the joint, in the axes that `turn` takes the child's to.
     fn subspace(&self, turn: &Matrix3<S>, k: usize) -> Twist<S>;
 
-    /// The child's motion in its axes, from `carried`, the motion that the point of the parent now at the child's origin has, in axes
-    /// of the joint frame, and from the joint's rates in `v` and their derivatives in `a`.
-    fn motion(&self, carried: Motion<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S>;
+    /// The child's motion in its axes, from `carried`, the motion that the point of the parent now at the child's origin has, in axes from which `turn` takes vectors to the
+    /// child's, and from the joint's rates in `v` and their derivatives in `a`.
+    fn motion(&self, carried: Motion<S>, turn: impl Fn(Vector3<S>) -> Vector3<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S>;
 
     /// The child's mass as seen from the joint frame.
     fn inertia_to_joint(&self, inertia: &SpatialInertia<S>) -> SpatialInertia<S>;

@@ -62,8 +62,8 @@ impl<S: Scalar> JointLaw<S> for Prismatic<S> {
     }
 
     #[inline(always)]
-    fn motion(&self, carried: Motion<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
-        Self::slide(carried, at.rate(v), at.rate(a))
+    fn motion(&self, carried: Motion<S>, turn: impl Fn(Vector3<S>) -> Vector3<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
+        Self::slide(carried.turned(turn), at.rate(v), at.rate(a))
     }
 
     #[inline(always)]

@@ -58,16 +58,15 @@ impl<S: Scalar> JointLaw<S> for Revolute<S> {
     }
 
     #[inline(always)]
-    fn motion(&self, carried: Motion<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
+    fn motion(&self, carried: Motion<S>, turn: impl Fn(Vector3<S>) -> Vector3<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
         let (rate, acceleration) = (at.rate(v), at.rate(a));
-        let mut omega = self.to_child(carried.omega);
-        let mut alpha = self.to_child(carried.alpha);
+        let (mut omega, mut alpha) = (turn(carried.omega), turn(carried.alpha));
         // ω̇ = Rᵀ ω̇_λ + Rᵀ ω_λ × e_z q̇ + e_z q̈;  ω = Rᵀ ω_λ + e_z q̇
         alpha.x += omega.y * rate;
         alpha.y -= omega.x * rate;
         alpha.z += acceleration;
         omega.z += rate;
-        Motion { omega, alpha, acceleration: self.to_child(carried.acceleration) }
+        Motion { omega, alpha, acceleration: turn(carried.acceleration) }
     }
 
     #[inline(always)]

@@ -52,12 +52,12 @@ impl<S: Scalar> JointLaw<S> for Spherical<S> {
     }
 
     #[inline(always)]
-    fn motion(&self, carried: Motion<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
+    fn motion(&self, carried: Motion<S>, turn: impl Fn(Vector3<S>) -> Vector3<S>, at: &Coordinates<S>, v: &[S], a: &[S]) -> Motion<S> {
         let (rate, derivative) = (three(v, at.v), three(a, at.v));
-        let omega = self.to_child(carried.omega);
+        let omega = turn(carried.omega);
         // ω̇ = Rᵀ ω̇_λ + Rᵀ ω_λ × ω_J + ω̇_J;  ω = Rᵀ ω_λ + ω_J
-        let alpha = self.to_child(carried.alpha) + omega.cross(&rate) + derivative;
-        Motion { omega: omega + rate, alpha, acceleration: self.to_child(carried.acceleration) }
+        let alpha = turn(carried.alpha) + omega.cross(&rate) + derivative;
+        Motion { omega: omega + rate, alpha, acceleration: turn(carried.acceleration) }
     }
 
     #[inline(always)]

@@ -52,9 +52,9 @@ impl<S: Scalar> SpatialInertia<S> {
         let (s, h) = (&self.second, self.first);
         // ∫ r × (U r) dm has the components (UΣ)_zy − (UΣ)_yz and so on round, with what Σ's off-diagonals multiply taken together.
         let spin = Vector3::new(
-            u.m31 * s.m12 - u.m21 * s.m13 + (u.m33 - u.m22) * s.m23 + u.m32 * s.m22 - u.m23 * s.m33,
-            u.m12 * s.m23 - u.m32 * s.m12 + (u.m11 - u.m33) * s.m13 + u.m13 * s.m33 - u.m31 * s.m11,
-            u.m23 * s.m13 - u.m13 * s.m23 + (u.m22 - u.m11) * s.m12 + u.m21 * s.m11 - u.m12 * s.m22,
+            sum([(u.m31, s.m12), (-u.m21, s.m13), (u.m33 - u.m22, s.m23), (u.m32, s.m22), (-u.m23, s.m33)]),
+            sum([(u.m12, s.m23), (-u.m32, s.m12), (u.m11 - u.m33, s.m13), (u.m13, s.m33), (-u.m31, s.m11)]),
+            sum([(u.m23, s.m13), (-u.m13, s.m23), (u.m22 - u.m11, s.m12), (u.m21, s.m11), (-u.m12, s.m22)]),
         );
         Wrench { moment: h.cross(&acceleration) + spin, force: acceleration * self.mass + rotate(u, h) }
     }
@@ -151,13 +151,20 @@ fn turned<S: Scalar>(m: &Matrix3<S>, r: &Matrix3<S>) -> Matrix3<S> {
         rotate(r, Vector3::new(m.m13, m.m23, m.m33)),
     );
     let (xx, xy, xz) = (
-        x.x * r.m11 + y.x * r.m12 + z.x * r.m13, //
-        x.x * r.m21 + y.x * r.m22 + z.x * r.m23,
-        x.x * r.m31 + y.x * r.m32 + z.x * r.m33,
+        sum([(x.x, r.m11), (y.x, r.m12), (z.x, r.m13)]),
+        sum([(x.x, r.m21), (y.x, r.m22), (z.x, r.m23)]),
+        sum([(x.x, r.m31), (y.x, r.m32), (z.x, r.m33)]),
     );
-    let (yy, yz) = (x.y * r.m21 + y.y * r.m22 + z.y * r.m23, x.y * r.m31 + y.y * r.m32 + z.y * r.m33);
-    let zz = x.z * r.m31 + y.z * r.m32 + z.z * r.m33;
+    let (yy, yz) = (sum([(x.y, r.m21), (y.y, r.m22), (z.y, r.m23)]), sum([(x.y, r.m31), (y.y, r.m32), (z.y, r.m33)]));
+    let zz = sum([(x.z, r.m31), (y.z, r.m32), (z.z, r.m33)]);
     Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+}
+
+/// The sum of products, from the first on.
+#[inline(always)]
+fn sum<S: Scalar, const N: usize>(products: [(S, S); N]) -> S {
+    let [(a, b), rest @ ..] = products.as_slice() else { return S::zero() };
+    rest.iter().fold(*a * *b, |sum, (a, b)| a.mul_add(*b, sum))
 }
 
 /// The upper triangle, mirrored: rounding must not make a symmetric matrix lopsided.

@@ -18,6 +18,14 @@ pub struct Motion<S> {
     pub acceleration: Vector3<S>,
 }
 
+impl<S: Scalar> Motion<S> {
+    /// The same in other axes, to which `turn` takes vectors.
+    #[inline(always)]
+    pub(crate) fn turned(self, turn: impl Fn(Vector3<S>) -> Vector3<S>) -> Self {
+        Self { omega: turn(self.omega), alpha: turn(self.alpha), acceleration: turn(self.acceleration) }
+    }
+}
+
 /// `U = [ω̇]× + [ω]×[ω]×`: a point at r from the origin accelerates by U·r more than the origin does.
 #[inline(always)]
 pub fn rate_matrix<S: Scalar>(omega: Vector3<S>, alpha: Vector3<S>) -> Matrix3<S> {

@@ -9,13 +9,19 @@ use crate::Scalar;
 /// R·v, written out: 9 multiplications, 6 additions.
 #[inline(always)]
 pub fn rotate<S: Scalar>(r: &Matrix3<S>, v: Vector3<S>) -> Vector3<S> {
-    Vector3::new(r.m11 * v.x + r.m12 * v.y + r.m13 * v.z, r.m21 * v.x + r.m22 * v.y + r.m23 * v.z, r.m31 * v.x + r.m32 * v.y + r.m33 * v.z)
+    Vector3::new(dot([r.m11, r.m12, r.m13], v), dot([r.m21, r.m22, r.m23], v), dot([r.m31, r.m32, r.m33], v))
 }
 
 /// Rᵀ·v, written out: 9 multiplications, 6 additions.
 #[inline(always)]
 pub fn rotate_back<S: Scalar>(r: &Matrix3<S>, v: Vector3<S>) -> Vector3<S> {
-    Vector3::new(r.m11 * v.x + r.m21 * v.y + r.m31 * v.z, r.m12 * v.x + r.m22 * v.y + r.m32 * v.z, r.m13 * v.x + r.m23 * v.y + r.m33 * v.z)
+    Vector3::new(dot([r.m11, r.m21, r.m31], v), dot([r.m12, r.m22, r.m32], v), dot([r.m13, r.m23, r.m33], v))
+}
+
+/// a_x v_x + a_y v_y + a_z v_z
+#[inline(always)]
+fn dot<S: Scalar>([x, y, z]: [S; 3], v: Vector3<S>) -> S {
+    z.mul_add(v.z, y.mul_add(v.y, x * v.x))
 }
 
 /// R M Rᵀ with R = Rz of the angle of this sine and cosine: 20 operations instead of 90.

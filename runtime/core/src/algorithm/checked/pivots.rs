@@ -9,9 +9,10 @@ use super::super::aba::articulated_body_with_wrenches;
 use super::super::forward_dynamics::forward_dynamics_with_wrenches;
 use super::super::workspace::Column;
 use super::{Measure, Singular, finite, least_pivot};
-use crate::Scalar;
-use crate::model::Model;
+use crate::joint::JointLaw;
+use crate::model::{Body, Model};
 use crate::spatial::{ArticulatedInertia, SpatialInertia, Twist, Wrench};
+use crate::{Scalar, with_pose};
 
 /// a = M(q)⁻¹·(τ − h(q, v)), or the joint at which M is singular to working precision.
 ///
@@ -116,8 +117,9 @@ pub fn articulated_body_pivots<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S
             see(at, part(S::one() / inverse, size.along(&axis)));
             handed = handed.plus(&Size::of_product(&held, inverse));
         }
-        let (parent, origin) = (model.bodies[i].parent, ws.bodies[i].origin);
-        ws.sizes[parent] = ws.sizes[parent].plus(&handed.moved(&origin));
+        let Body { parent, placement, .. } = &model.bodies[i];
+        let origin = with_pose!(ws.bodies[i].pose, p => p.origin(placement));
+        ws.sizes[*parent] = ws.sizes[*parent].plus(&handed.moved(&origin));
     }
 }
 

@@ -5,7 +5,7 @@ use crate::algorithm::Workspace;
 use crate::algorithm::common::{Axes, positions};
 use crate::algorithm::wrenches::place_bodies;
 use crate::effect::Law;
-use crate::joint::JointLaw;
+use crate::joint::{JointLaw, Mount};
 use crate::model::Model;
 use crate::spatial::{ArticulatedInertia, Matrix3, Twist, Vector3, Wrench, rotate, rotate_back};
 use crate::{Scalar, with_pose};
@@ -15,11 +15,11 @@ fn body_twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, v: &[S]) {
     ws.common[0].twist = Twist::zero();
     for i in model.outward() {
         let body = &model.bodies[i];
-        let carried = ws.common[body.parent].twist.at(ws.bodies[i].origin).linear;
-        let at = &body.coordinates;
+        let (at, carried) = (&body.coordinates, ws.common[body.parent].twist);
         // v_i = Rᵀ (v_λ + ω_λ × p) + S q̇
         let linear = with_pose!(ws.bodies[i].pose, p => {
-            let mut linear = p.to_child(rotate_back(&body.placement.rotation, carried));
+            let mount = Mount::new(p, &body.placement);
+            let mut linear = mount.outward(carried.at(mount.origin).linear);
             for k in 0..body.joint.nv() {
                 let rate = at.rate_of_one().map_or(v[at.v + k], |m| v[at.v + k] * m);
                 linear += p.subspace(&Matrix3::identity(), k).linear * rate;
