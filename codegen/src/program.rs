@@ -220,7 +220,7 @@ impl Subject<'_> {
 /// What costs more than this is not tried with frames that do not turn or mass that is lent: it would gain a hundredth, and takes long to trace.
 const UNTURNED_TO: u32 = 2500;
 
-/// Nor is any function of a robot with more bodies than this: to find out what it costs is to trace it twice.
+/// Nor is any function of a robot with more bodies than this, nor with another unit of length: to find out what it costs is to trace it twice.
 const UNTURNED_BODIES: usize = 64;
 
 /// Functions with an inverse dynamics in them in which bodies turn: of these mass that is lent takes numbers away.
@@ -294,7 +294,7 @@ const TRIED: usize = 20_000;
 
 /// The choices with lengths in the unit that costs least: where a constant is one, what it multiplies is only added.
 fn in_the_best_unit(wanted: &Wanted, choices: Vec<Choice>, subject: &Subject) -> Vec<Choice> {
-    if !subject.parameters.is_empty() {
+    if !subject.parameters.is_empty() || subject.model.bodies.len() > UNTURNED_BODIES {
         return choices;
     }
     let units: Vec<Vec<f64>> = wanted.parts.iter().zip(&choices).map(|(part, choice)| units(part, choice, subject.model)).collect();

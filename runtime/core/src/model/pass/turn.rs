@@ -101,7 +101,9 @@ fn turn_body<S: Scalar>(model: &mut Model<S>, i: usize, angle: &Angle<S>, hangin
     body.placement.rotation = nearest_rotation(&(body.placement.rotation * rotation).map(tidy));
     body.inertia = body.inertia.turned(&rotation.transpose());
     body.link = body.link.map(|link| rotation.transpose() * link);
-    let turn = |x: &mut Placement<S>| *x = Placement { rotation: turned(&x.rotation, angle), position: back(angle, x.position) };
+    let turn = |x: &mut Placement<S>| {
+        *x = Placement { rotation: nearest_rotation(&turned(&x.rotation, angle)), position: back(angle, x.position) }
+    };
     hanging.bodies.iter().for_each(|&k| turn(&mut model.bodies[k].placement));
     hanging.frames.iter().for_each(|&k| turn(&mut model.frames[k].placement));
     model.bodies[i].effects.body.iter_mut().for_each(|e| turn(&mut e.placement));
@@ -135,7 +137,7 @@ fn plain<S: Scalar>(r: &Matrix3<S>) -> Option<(Matrix3<S>, Angle<S>)> {
 
 /// A rotation or a direction of the parent's, when the parent is turned.
 fn turned<S: Scalar>(r: &Matrix3<S>, angle: &Angle<S>) -> Matrix3<S> {
-    nearest_rotation(&(angle.rotation().transpose() * r).map(tidy))
+    (angle.rotation().transpose() * r).map(tidy)
 }
 
 fn back<S: Scalar>(angle: &Angle<S>, x: Vector3<S>) -> Vector3<S> {
