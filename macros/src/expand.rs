@@ -68,7 +68,7 @@ impl Asked {
         let urdf = errors.take(files.read(&file, robot));
         let mut complete = urdf.is_some();
         for (i, other) in options.append.iter_mut().enumerate() {
-            let span = settings.append.get(i).and_then(|other| other.urdf.as_ref()).map_or(robot, LitStr::span);
+            let span = settings.append.as_ref().and_then(|all| all.get(i)?.urdf.as_ref()).map_or(robot, LitStr::span);
             let bytes = errors.take(files.read(&other.file, span));
             complete &= bytes.is_some();
             other.urdf = bytes.unwrap_or_default();

@@ -49,7 +49,7 @@ pub(crate) const KEYS: &[Key<Settings>] = &[
         name: "parameters",
         required: false,
         expected: "a list of what stays an input, as [payload(tool), inertia(forearm), origin(elbow)]",
-        read: |s, value| entries(value).map(|entries| s.parameters = entries),
+        read: |s, value| entries(value).map(|entries| s.parameters = Some(entries)),
     },
     Key {
         name: "frames",
@@ -67,25 +67,25 @@ pub(crate) const KEYS: &[Key<Settings>] = &[
         name: "lock",
         required: false,
         expected: "joints with their coordinates in rad or m, as { elbow = 0.5, ball = [0.0, 0.0, 0.0, 1.0] }",
-        read: |s, value| edits::locks(value).map(|locks| s.lock = locks),
+        read: |s, value| edits::locks(value).map(|locks| s.lock = Some(locks)),
     },
     Key {
         name: "payload",
         required: false,
         expected: "a load on a link, as { link = tool, mass = 1.2, center_of_mass = [0.0, 0.0, 0.1] }, or a list of such",
-        read: |s, value| tables(value, LOAD, &mut s.faults).map(|loads| s.payloads = loads),
+        read: |s, value| tables(value, LOAD, &mut s.faults).map(|loads| s.payloads = Some(loads)),
     },
     Key {
         name: "append",
         required: false,
         expected: "another robot on a link, as { urdf = \"gripper.urdf\", at = tool, prefix = \"left_\" }, or a list of such",
-        read: |s, value| tables(value, OTHER, &mut s.faults).map(|others| s.append = others),
+        read: |s, value| tables(value, OTHER, &mut s.faults).map(|others| s.append = Some(others)),
     },
     Key {
         name: "rename",
         required: false,
         expected: "names of the URDF with names in Rust, as { \"a-b\" = A_MINUS_B }",
-        read: |s, value| rename(value).map(|renamings| s.rename = renamings),
+        read: |s, value| rename(value).map(|renamings| s.rename = Some(renamings)),
     },
     Key {
         name: "allow_unphysical_inertia",
@@ -109,7 +109,7 @@ pub(crate) const KEYS: &[Key<Settings>] = &[
         name: "batch",
         required: false,
         expected: "types of numbers, as [f64, f32]",
-        read: |s, value| reals(value).map(|reals| s.batch = reals),
+        read: |s, value| reals(value).map(|reals| s.batch = Some(reals)),
     },
     Key {
         name: "level",
@@ -228,15 +228,22 @@ pub(crate) struct Number(pub(crate) f64);
 
 impl Parse for Number {
     fn parse(input: ParseStream) -> Result<Self> {
-        let sign = if input.parse::<Option<Token![-]>>()?.is_some() { -1.0 } else { 1.0 };
-        let literal: Lit = input.parse()?;
-        let number: f64 = match &literal {
-            Lit::Float(x) => x.base10_parse()?,
-            Lit::Int(x) => x.base10_parse()?,
-            _ => return Err(Error::new(literal.span(), "not a number")),
-        };
-        if number.is_finite() { Ok(Self(sign * number)) } else { Err(Error::new(literal.span(), "not finite")) }
+        let span = input.span();
+        let number = signed(input)?;
+        if number.is_finite() { Ok(Self(number)) } else { Err(Error::new(span, "not finite")) }
     }
+}
+
+/// A number, finite or not, with or without a sign. Units are not guessed from what stands behind it: `90deg` is none.
+pub(crate) fn signed(input: ParseStream) -> Result<f64> {
+    let sign = if input.parse::<Option<Token![-]>>()?.is_some() { -1.0 } else { 1.0 };
+    let literal: Lit = input.parse()?;
+    let (number, suffix): (f64, &str) = match &literal {
+        Lit::Float(x) => (x.base10_parse()?, x.suffix()),
+        Lit::Int(x) => (x.base10_parse()?, x.suffix()),
+        _ => return Err(Error::new(literal.span(), "not a number")),
+    };
+    if matches!(suffix, "" | "f64") { Ok(sign * number) } else { Err(Error::new(literal.span(), "a unit")) }
 }
 
 impl Parse for Renaming {

@@ -11,7 +11,7 @@ use crate::settings::Settings;
 
 /// The error at the word of the invocation that it is about: a function, a new name, otherwise the robot's file.
 pub(crate) fn at_its_word(error: &Error, settings: &Settings, robot: Span) -> syn::Error {
-    let renamed = |name: &String| settings.rename.iter().find(|r| r.from.value() == *name);
+    let renamed = |name: &String| settings.rename.iter().flatten().find(|r| r.from.value() == *name);
     let span = match error {
         Error::Several { errors } => return all(errors.iter().map(|error| at_its_word(error, settings, robot)), error, robot),
         Error::Scene(errors) => return all(errors.errors.iter().map(|error| in_scene(error, settings, robot)), errors, robot),
@@ -23,7 +23,7 @@ pub(crate) fn at_its_word(error: &Error, settings: &Settings, robot: Span) -> sy
         | Error::NoMass { function, .. }
         | Error::Wanted { found: function, .. }
         | Error::SameName { name: function } => settings.functions.iter().flatten().rfind(|e| mentions(&e.text, function)).map(|e| e.span),
-        Error::Parameter { found, .. } => settings.parameters.iter().rfind(|e| e.text.trim() == *found).map(|e| e.span),
+        Error::Parameter { found, .. } => settings.parameters.iter().flatten().rfind(|e| e.text.trim() == *found).map(|e| e.span),
         Error::Rename { from, .. } => renamed(from).map(|r| r.from.span()),
         Error::NameClash { first, second, .. } => renamed(second).or_else(|| renamed(first)).map(|r| r.to.span()),
         _ => None,
@@ -54,13 +54,13 @@ fn all(errors: impl Iterator<Item = syn::Error>, whole: impl std::fmt::Display, 
 /// An edit that cannot be made, at its name or file.
 fn refused(refusal: &Refusal, settings: &Settings, robot: Span) -> syn::Error {
     let span = match refusal.edit {
-        Edit::Append(i) => settings.append.get(i).and_then(|other| match refusal.reason {
+        Edit::Append(i) => settings.append.as_ref().and_then(|all| all.get(i)).and_then(|other| match refusal.reason {
             Reason::Edit(EditError::UnknownLink { .. }) => other.at.as_ref().map(|name| name.span),
             _ => other.urdf.as_ref().map(LitStr::span),
         }),
-        Edit::Payload(i) => settings.payloads.get(i).and_then(|load| load.link.as_ref()).map(|name| name.span),
+        Edit::Payload(i) => settings.payloads.as_ref().and_then(|all| all.get(i)?.link.as_ref()).map(|name| name.span),
         Edit::Shaft(_) => None,
-        Edit::Lock(i) => settings.lock.get(i).map(|lock| lock.joint.span),
+        Edit::Lock(i) => settings.lock.as_ref().and_then(|all| all.get(i)).map(|lock| lock.joint.span),
         Edit::Frame(i) => settings.frames.as_ref().and_then(|names| names.get(i)).map(|name| name.span),
     };
     let span = span.unwrap_or(robot);

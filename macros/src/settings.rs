@@ -22,17 +22,17 @@ pub(crate) struct Settings {
     pub(crate) base: Option<Base>,
     pub(crate) gravity: Option<[f64; 3]>,
     pub(crate) functions: Option<Vec<Entry>>,
-    pub(crate) parameters: Vec<Entry>,
+    pub(crate) parameters: Option<Vec<Entry>>,
     pub(crate) frames: Option<Vec<Name>>,
     pub(crate) wrench_reference: Option<Reference>,
-    pub(crate) lock: Vec<Lock>,
-    pub(crate) payloads: Vec<Load>,
-    pub(crate) append: Vec<Other>,
+    pub(crate) lock: Option<Vec<Lock>>,
+    pub(crate) payloads: Option<Vec<Load>>,
+    pub(crate) append: Option<Vec<Other>>,
     pub(crate) allow_unphysical_inertia: Option<bool>,
     pub(crate) snap_angles: Option<f64>,
-    pub(crate) rename: Vec<Renaming>,
+    pub(crate) rename: Option<Vec<Renaming>>,
     pub(crate) limbs: Option<bool>,
-    pub(crate) batch: Vec<Real>,
+    pub(crate) batch: Option<Vec<Real>>,
     pub(crate) level: Option<Level>,
     pub(crate) forbid_unsafe: Option<bool>,
     pub(crate) runtime: Option<Path>,
@@ -57,13 +57,14 @@ impl Settings {
     /// What is wrong with the values, as far as can be told without the robot. What is wrong in a list is taken out.
     pub(crate) fn check(&mut self, errors: &mut Errors) {
         std::mem::take(&mut self.faults).into_error().into_iter().for_each(|fault| errors.push(fault));
-        self.payloads.retain(|load| load.payload().is_some());
-        self.append.retain(|other| other.appended().is_some());
+        self.payloads.iter_mut().for_each(|loads| loads.retain(|load| load.payload().is_some()));
+        self.append.iter_mut().for_each(|others| others.retain(|other| other.appended().is_some()));
         if let Some(functions) = &mut self.functions {
             functions.retain(|entry| errors.take(known(entry)).is_some());
         }
         let mut seen = BTreeSet::new();
-        self.rename.retain(|renaming| errors.take(once(renaming, &mut seen)).is_some());
+        let renamings = self.rename.iter_mut();
+        renamings.for_each(|all| all.retain(|renaming| errors.take(once(renaming, &mut seen)).is_some()));
         if let (true, Some(path)) = (self.standalone, &self.runtime) {
             errors.push(Error::new_spanned(path, "standalone code uses no crate: leave out `crate` or `standalone`"));
         }
@@ -72,21 +73,23 @@ impl Settings {
     /// The request's options: what is said, and `rest` where nothing is. Robots to append have no bytes yet.
     pub(crate) fn options(&self, rest: Options) -> Options {
         let names = |names: &Vec<Name>| names.iter().map(|name| name.text.clone()).collect();
+        let locked = |lock: &Lock| Some((lock.joint.text.clone(), lock.at.clone()));
+        let renamed = |r: &Renaming| Some((r.from.value(), r.to.to_string()));
         Options {
             base: self.base.unwrap_or(rest.base),
             gravity: self.gravity.unwrap_or(rest.gravity),
             functions: self.functions.as_ref().map_or(rest.functions, |entries| texts(entries)),
-            parameters: or(texts(&self.parameters), rest.parameters),
+            parameters: self.parameters.as_ref().map_or(rest.parameters, |entries| texts(entries)),
             frames: self.frames.as_ref().map(names).or(rest.frames),
             wrench_reference: self.wrench_reference.unwrap_or(rest.wrench_reference),
-            append: or(self.append.iter().filter_map(Other::appended).collect(), rest.append),
-            payloads: or(self.payloads.iter().filter_map(Load::payload).collect(), rest.payloads),
-            lock: or(self.lock.iter().map(|lock| (lock.joint.text.clone(), lock.at.clone())).collect(), rest.lock),
+            append: or(self.append.as_ref(), Other::appended, rest.append),
+            payloads: or(self.payloads.as_ref(), Load::payload, rest.payloads),
+            lock: or(self.lock.as_ref(), locked, rest.lock),
             allow_unphysical_inertia: self.allow_unphysical_inertia.unwrap_or(rest.allow_unphysical_inertia),
             snap_angles: self.snap_angles.or(rest.snap_angles),
-            rename: or(self.rename.iter().map(|r| (r.from.value(), r.to.to_string())).collect(), rest.rename),
+            rename: or(self.rename.as_ref(), renamed, rest.rename),
             limbs: self.limbs.unwrap_or(rest.limbs),
-            batch: or(self.batch.clone(), rest.batch),
+            batch: self.batch.clone().unwrap_or(rest.batch),
             level: self.level.unwrap_or(rest.level),
             forbid_unsafe: self.forbid_unsafe.unwrap_or(rest.forbid_unsafe),
             stages: false,
@@ -96,9 +99,9 @@ impl Settings {
     }
 }
 
-/// The list, if there is anything in it.
-fn or<T>(said: Vec<T>, rest: Vec<T>) -> Vec<T> {
-    if said.is_empty() { rest } else { said }
+/// What is said, be it nothing, in place of the rest.
+fn or<T, U>(said: Option<&Vec<T>>, of: impl Fn(&T) -> Option<U>, rest: Vec<U>) -> Vec<U> {
+    said.map_or(rest, |said| said.iter().filter_map(of).collect())
 }
 
 fn known(entry: &Entry) -> syn::Result<()> {

@@ -175,3 +175,40 @@ fn effects_in_the_invocation_are_those_of_a_scene() {
     let tokens = generate(&request).unwrap().tokens();
     assert_eq!(quote!(#(#items)*).to_string(), syn::parse2::<syn::File>(tokens).unwrap().to_token_stream().to_string());
 }
+
+#[test]
+fn a_number_with_a_unit_behind_it_is_refused() {
+    let refused = |entry: &str| {
+        let text = format!("mod arm {{ urdf = \"../tests/ui/urdf/three.urdf\", functions = [gravity_torque], {entry} }}");
+        let out = expand(text.parse().unwrap()).to_string();
+        out.contains("compile_error") && out.contains("expected")
+    };
+    for entry in [
+        "lock = { elbow = 90deg }",
+        "lock = { elbow = -90deg }",
+        "lock = { elbow = [0.5rad] }",
+        "gravity = [0, 0, -9.81m]",
+        "payload = { link = tool, mass = 500g }",
+        "payload = { link = tool, mass = 1, center_of_mass = [0, 0, -70cm] }",
+        "effects = { damping = 5mNms }",
+        "effects = { damping = { elbow = 1.5f32 } }",
+        "snap_angles = 1u8",
+    ] {
+        assert!(refused(entry), "{entry}");
+    }
+    assert!(!refused("lock = { elbow = 0.5f64 }, gravity = [0, 0, -9.81_f64]"));
+}
+
+#[test]
+fn empty_lists_stand_in_place_of_those_of_the_scene_too() {
+    let file = "../tests/ui/scenes/three.toml";
+    let empty = |o: &mut articulated_codegen::Options| {
+        (o.payloads, o.parameters, o.batch) = (Vec::new(), Vec::new(), Vec::new());
+        (o.lock, o.rename) = (Vec::new(), Vec::new());
+    };
+    let build = Build::scene(file).options(empty).generate().unwrap();
+    assert!(!build.source.contains("Payload: "));
+    let mut items = items(module(quote!(mod arm { scene = #file, payload = [], parameters = [], batch = [], lock = {}, rename = {} })));
+    items.truncate(items.len() - 3);
+    assert_eq!(quote!(#(#items)*).to_string(), syn::parse2::<syn::File>(build.tokens()).unwrap().to_token_stream().to_string());
+}

@@ -4,7 +4,9 @@ use articulated_codegen::scene::articulated_scene::{At, Entry, Node, Value};
 use proc_macro2::Span;
 use syn::ext::IdentExt;
 use syn::parse::ParseStream;
-use syn::{Ident, Lit, LitBool, LitStr, Result, Token, braced, bracketed, token};
+use syn::{Ident, LitBool, LitStr, Result, Token, braced, bracketed, token};
+
+use crate::keys::signed;
 
 /// Deeper values are not read: nothing in a scene is so deep.
 const DEEPEST: usize = 16;
@@ -49,21 +51,10 @@ fn within(input: ParseStream, spans: &mut Spans, depth: usize) -> Result<Node> {
     } else if input.peek(Ident::peek_any) {
         Value::Text(Ident::parse_any(input)?.unraw().to_string())
     } else {
-        Value::Number(number(input)?)
+        // Finite or not: the scene's reader says what it has to be.
+        Value::Number(signed(input)?)
     };
     Ok(Node { at, value })
-}
-
-/// A number, finite or not: the scene's reader says what it has to be.
-fn number(input: ParseStream) -> Result<f64> {
-    let sign = if input.parse::<Option<Token![-]>>()?.is_some() { -1.0 } else { 1.0 };
-    let literal: Lit = input.parse()?;
-    let number: f64 = match &literal {
-        Lit::Float(x) => x.base10_parse()?,
-        Lit::Int(x) => x.base10_parse()?,
-        _ => return Err(syn::Error::new(literal.span(), "not a number")),
-    };
-    Ok(sign * number)
 }
 
 fn entries(input: ParseStream, spans: &mut Spans, depth: usize) -> Result<Vec<Entry>> {
