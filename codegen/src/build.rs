@@ -45,7 +45,7 @@ impl Build {
         Self { path: from_root(path), request, append: Vec::new(), scene: None }
     }
 
-    /// For the scene at `path`, relative to the crate's folder. What is said after this stands in place of what the scene says. What is wrong with the scene is told when the code is
+    /// For the scene at `path`, relative to the crate's folder. What is said after this stands in place of what the scene says; locks, loads and robots to append are added to its own. What is wrong with the scene is told when the code is
     /// generated.
     ///
     /// ```no_run
@@ -217,7 +217,7 @@ impl Build {
     fn write_in(&self, folder: &Path, name: &str) -> Result<Written, Error> {
         let mut request = self.request()?;
         request.options.stages = false;
-        let path = folder.join(name).with_extension("rs");
+        let path = file_in(folder, name)?;
         let cache = Cache::new(&path, &request);
         if let Some(warnings) = cache.as_ref().and_then(Cache::warnings) {
             return Ok(Written { path, warnings, generated: false });
@@ -262,6 +262,14 @@ impl Build {
             std::process::exit(1);
         }
     }
+}
+
+/// `name`.rs in the folder. Errors: a name that is none of a file, or of one elsewhere.
+fn file_in(folder: &Path, name: &str) -> Result<PathBuf, Error> {
+    if Path::new(name).file_name().is_some_and(|file| file == name) {
+        return Ok(folder.join(format!("{name}.rs")));
+    }
+    Err(Error::File { file: name.into(), reason: "found no name of a file, expected one, without folders and `.rs`, as \"arm\"".into() })
 }
 
 /// An error as a build script tells it to cargo, which says itself that it is one; with the warnings that come with it.
@@ -329,6 +337,23 @@ mod tests {
         assert_eq!(both.append[0].urdf, fs::read(&hand).unwrap());
         assert_eq!((both.append[0].at.as_str(), both.append[0].prefix.as_str()), ("tip", "left_"));
         assert!(build.append(folder.join("none.urdf"), "tip", "left_", Origin::default()).request().is_err());
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn each_name_is_a_file_of_its_own() {
+        let folder = folder("names");
+        let build = Build::new(folder.join("arm.urdf")).functions(["gravity_torque"]);
+        for name in ["arm", "arm.v2", "arm.v3"] {
+            let written = build.write_in(&folder, name).unwrap();
+            assert!(written.generated, "{name}");
+            assert_eq!(written.path, folder.join(format!("{name}.rs")));
+            assert!(!build.write_in(&folder, name).unwrap().generated, "{name}");
+        }
+        for name in ["", "..", "../arm", "robots/arm", "/"] {
+            let error = build.write_in(&folder, name).unwrap_err().to_string();
+            assert!(error.contains("expected one"), "{name}: {error}");
+        }
         fs::remove_dir_all(folder).unwrap();
     }
 

@@ -9,7 +9,7 @@ use articulated_core::model::Model;
 use articulated_urdf::{Kind, Problem, Problems, Reading, Subject, Unused};
 
 use crate::request::Appended;
-use crate::{Error, Request};
+use crate::{Error, Options, Request};
 
 /// One edit of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,6 +72,7 @@ pub fn read(request: &Request) -> Result<Reading, Error> {
 
 /// As [`read`], with the springs and dampings of each shaft.
 pub(crate) fn read_with_shafts(request: &Request) -> Result<(Reading, Vec<Vec<Applied>>), Error> {
+    numbers(&request.options)?;
     let mut editing = Editing { request, reading: articulated_urdf::read(&request.urdf, &reader_options(request))?, refusals: Vec::new() };
     let mut springs = Vec::new();
     let options = &request.options;
@@ -114,6 +115,19 @@ pub fn choose_frames(request: &Request, model: Model<f64>) -> Result<Model<f64>,
         let reason = Reason::Edit(EditError::UnknownLink { name, nearest: None });
         Error::Edits { refusals: vec![Refusal { file: request.file.clone(), edit: Edit::Frame(0), reason }] }
     })
+}
+
+/// From this on an angle would be as near to one multiple of π/2 as to another, or nearly.
+const MOST_SNAPPED: f64 = 0.5;
+
+/// Whether the numbers among the choices can be. Errors: all that cannot.
+fn numbers(options: &Options) -> Result<(), Error> {
+    let wrong = |key, found, expected| Error::Number { key, found, expected };
+    let gravity = options.gravity.iter().any(|x| !x.is_finite());
+    let gravity = gravity.then(|| wrong("gravity", format!("{:?}", options.gravity), "three finite numbers in m/s²"));
+    let snapped = options.snap_angles.filter(|x| !(0.0..=MOST_SNAPPED).contains(x));
+    let snapped = snapped.map(|x| wrong("snap_angles", x.to_string(), "0 to 0.5 rad"));
+    Error::of(gravity.into_iter().chain(snapped).collect()).map_or(Ok(()), Err)
 }
 
 fn reader_options(request: &Request) -> articulated_urdf::Options {

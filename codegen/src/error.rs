@@ -39,6 +39,16 @@ pub enum Error {
         /// One for each edit.
         refusals: Vec<Refusal>,
     },
+    /// A choice whose number cannot be.
+    #[error("{key}: found {found}, expected {expected}")]
+    Number {
+        /// The choice, as a scene calls it.
+        key: &'static str,
+        /// The number.
+        found: String,
+        /// What is wanted.
+        expected: &'static str,
+    },
     /// A function that does not exist.
     #[error("unknown function `{found}`{}; there are: {}", nearest.as_ref().map(|n| format!(", did you mean `{n}`?")).unwrap_or_default(), known.join(", "))]
     UnknownFunction {

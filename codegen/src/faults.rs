@@ -64,6 +64,8 @@ fn leave_out(error: &Error, options: &mut Options) -> bool {
                 options.functions.remove(at);
             }
         }
+        Error::Number { key: "gravity", .. } => options.gravity = [0.0; 3],
+        Error::Number { .. } => options.snap_angles = None,
         Error::Parameter { found, .. } => options.parameters.retain(|p| p.trim() != found),
         Error::Rename { from, to, .. } => options.rename.retain(|(f, t)| (f, t) != (from, to)),
         Error::NameClash { second, ident, .. } => {
@@ -133,6 +135,16 @@ mod tests {
         ];
         let told = told(|o| o.functions = list.map(String::from).to_vec());
         each_once(&told, &["function `no_such`", "b = 0", "function `no_such_2`", "`mass_matrix`"]);
+    }
+
+    #[test]
+    fn numbers_that_cannot_be_are_told_once_and_with_all_else() {
+        let told = told(|o| {
+            o.gravity = [0.0, f64::NAN, 0.0];
+            o.snap_angles = Some(2.0);
+            o.functions = vec!["no_such".into()];
+        });
+        each_once(&told, &["gravity: found [0.0, NaN, 0.0], expected", "snap_angles: found 2, expected", "`no_such`"]);
     }
 
     #[test]

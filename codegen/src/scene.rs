@@ -194,6 +194,7 @@ fn in_its_place(error: &Error, scene: &Scene) -> Option<Vec<SceneError>> {
         // They begin with their key.
         Error::Wanted { .. } | Error::SameName { .. } => scene.code.functions.as_ref().map(|_| named("")),
         Error::Parameter { .. } => scene.code.parameters.as_ref().map(|_| named("")),
+        Error::Number { key: "snap_angles", .. } => scene.code.snap_angles.map(|_| named("")),
         _ => None,
     }
 }

@@ -96,7 +96,7 @@ pub(crate) const KEYS: &[Key<Settings>] = &[
     Key {
         name: "snap_angles",
         required: false,
-        expected: "a positive number of radians, as 1e-9",
+        expected: "a positive number of radians up to 0.5, as 1e-9",
         read: |s, value| angle(value).map(|angle| s.snap_angles = Some(angle)),
     },
     Key {
@@ -213,7 +213,7 @@ fn rename(value: ParseStream) -> Result<Vec<Renaming>> {
 
 fn angle(value: ParseStream) -> Result<f64> {
     let Number(angle) = value.parse()?;
-    if angle > 0.0 { Ok(angle) } else { Err(value.error("not positive")) }
+    if angle > 0.0 && angle <= 0.5 { Ok(angle) } else { Err(value.error("too large, or not positive")) }
 }
 
 /// A path that means the same inside the generated module as outside of it.

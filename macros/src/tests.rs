@@ -193,6 +193,7 @@ fn a_number_with_a_unit_behind_it_is_refused() {
         "effects = { damping = 5mNms }",
         "effects = { damping = { elbow = 1.5f32 } }",
         "snap_angles = 1u8",
+        "snap_angles = 2",
     ] {
         assert!(refused(entry), "{entry}");
     }

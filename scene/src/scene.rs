@@ -266,7 +266,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         required: false,
         value: "number, rad",
         default: "never",
-        what: "take angles this near to a multiple of π/2 as that",
+        what: "take angles this near to a multiple of π/2 as that, up to 0.5",
         read: |s, spot, log| s.code.snap_angles = spot.positive(log),
     },
     Row {

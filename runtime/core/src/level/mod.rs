@@ -197,12 +197,13 @@ impl FromStr for Level {
         let mut words = text.split('+').map(str::trim);
         let first = words.next().unwrap_or_default();
         let (_, arithmetic) = ARITHMETICS.iter().find(|(name, _)| *name == first).ok_or_else(|| wrong(first))?;
-        let mut level = Self::of(*arithmetic);
+        let (mut level, mut sines_said) = (Self::of(*arithmetic), false);
         for word in words {
+            // Each kind of word once: of two the last would win in silence.
             match SINES.iter().find(|(name, _)| *name == word) {
-                Some((_, sines)) => level.sines = *sines,
-                None if word == "no_fma" => level.fused = false,
-                None => return Err(wrong(word)),
+                Some((_, sines)) if !sines_said => (level.sines, sines_said) = (*sines, true),
+                None if word == "no_fma" && level.fused => level.fused = false,
+                _ => return Err(wrong(word)),
             }
         }
         level.check()
