@@ -66,7 +66,8 @@ impl Robot {
             None => scene::open(Path::new(name), &robot)?,
         };
         let bundled = matches!(prepared.scene.robot, articulated_scene::Robot::Bundled(_));
-        let Request { urdf, file, mut options } = prepared.request;
+        let mut request = prepared.request;
+        let options = &mut request.options;
         options.base = match (arguments.floating, arguments.fixed) {
             (true, _) => Base::Floating,
             (_, true) => Base::Fixed,
@@ -76,7 +77,11 @@ impl Robot {
         options.allow_unphysical_inertia |= arguments.allow_unphysical_inertia;
         options.snap_angles = arguments.snap_angles.or(options.snap_angles);
         options.rename.extend_from_slice(&arguments.rename);
-        edit(&mut options, &arguments.edits)?;
+        edit(options, &arguments.edits)?;
+        // The scene's effects on all joints are those of the robot as it is now.
+        let resolved = scene::resolve(&request, &prepared.scene).map_err(|error| scene::placed(error, &prepared.scene))?;
+        let Request { urdf, file, mut options } = request;
+        options.effects = resolved.effects;
         let files = prepared.files.into_iter().chain(appended(&arguments.edits)).collect();
         Ok(Self { file, urdf, options, path: None, bundled, files })
     }

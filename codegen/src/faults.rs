@@ -148,6 +148,15 @@ mod tests {
     }
 
     #[test]
+    fn of_a_function_and_a_form_of_another_the_name_that_both_have_is_told() {
+        let list = ["gravity_torque_into = placements", "gravity_torque"];
+        for list in [list, [list[1], list[0]]] {
+            let told = told(|o| o.functions = list.map(String::from).to_vec());
+            assert!(told.contains("two are called `gravity_torque_into`"), "{told}");
+        }
+    }
+
+    #[test]
     fn a_function_is_mentioned_by_whole_words() {
         assert!(mentions(" mass_matrix ", "mass_matrix") && mentions("x = a + mass_matrix(q = 0)", "mass_matrix"));
         assert!(!mentions("mass_matrix_inverse", "mass_matrix") && !mentions("x = my_mass_matrix(q = 0)", "mass_matrix"));

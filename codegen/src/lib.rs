@@ -144,8 +144,12 @@ fn wanted(request: &Request, model: &Model<f64>, massless: &[String]) -> Result<
         let into = |f: &Wanted, other: &Wanted| {
             ["_into", "_fill", "_blocks"].iter().any(|form| f.name.strip_suffix(form) == Some(other.name.as_str()))
         };
-        if wanted.iter().any(|f| f.name == function.name || same_type(f) || into(f, &function) || into(&function, f)) {
+        if wanted.iter().any(|f| f.name == function.name || same_type(f) || into(&function, f)) {
             return Err(Error::SameName { name: function.name });
+        }
+        // A form of this one has the name of the other.
+        if let Some(other) = wanted.iter().find(|f| into(f, &function)) {
+            return Err(Error::SameName { name: other.name.clone() });
         }
         wanted.push(function);
     }

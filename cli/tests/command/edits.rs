@@ -75,3 +75,18 @@ fn a_locked_joint_is_missing_in_states() {
     let ended = run(&words);
     assert_eq!(ended.status, 0, "{}", ended.err);
 }
+
+/// Of a joint that is appended there is as much damping as of the scene's own, and of one that is locked none.
+#[test]
+fn effects_of_a_scene_are_on_the_joints_of_the_edited_robot() {
+    let gripper = File::new("gripper.urdf", GRIPPER.as_bytes());
+    let scene = File::new("damped.toml", b"robot = \"double_pendulum\"\n[effects]\ndamping = 0.1\n");
+    let plain = run(&["check", "double_pendulum", "--format", "json"]).json();
+    let link = plain["links"][2]["link"].as_str().unwrap();
+    let joint = plain["joints"][0]["joint"].as_str().unwrap();
+    let states = File::new("states.json", br#"{"states":[{"q":[0,0],"v":[0,1],"a":[0,0]}]}"#);
+    let (append, lock) = (format!("{}@{link}:left_", gripper.name()), format!("{joint}=0"));
+    let words = ["eval", scene.name(), "--append", &append, "--lock", &lock, "--function", "effect_forces", "--states", states.name()];
+    let json = run(&[&words[..], &["--format", "json"]].concat()).json();
+    assert!(json.to_string().contains("-0.1"), "{json}");
+}

@@ -38,7 +38,7 @@ const ALIGNED: &str = "    {
         #[repr(align(64))]
         #[allow(dead_code)]
         struct Line(u8);
-        ::core::hint::black_box(&::core::mem::MaybeUninit::<Line>::uninit());
+        let _ = ::core::hint::black_box(&::core::mem::MaybeUninit::<Line>::uninit());
     }
 ";
 
