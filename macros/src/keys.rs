@@ -84,7 +84,7 @@ pub(crate) const KEYS: &[Key<Settings>] = &[
     Key {
         name: "rename",
         required: false,
-        expected: "names of the URDF with names in Rust, as { \"a-b\" = A_MINUS_B }",
+        expected: "names of the URDF with names in Rust, as { tool = TCP, \"a-b\" = A_MINUS_B }",
         read: |s, value| rename(value).map(|renamings| s.rename = Some(renamings)),
     },
     Key {

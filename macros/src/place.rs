@@ -11,7 +11,7 @@ use crate::settings::Settings;
 
 /// The error at the word of the invocation that it is about: a function, a new name, otherwise the robot's file.
 pub(crate) fn at_its_word(error: &Error, settings: &Settings, robot: Span) -> syn::Error {
-    let renamed = |name: &String| settings.rename.iter().flatten().find(|r| r.from.value() == *name);
+    let renamed = |name: &String| settings.rename.iter().flatten().find(|r| r.from.text == *name);
     let span = match error {
         Error::Several { errors } => return all(errors.iter().map(|error| at_its_word(error, settings, robot)), error, robot),
         Error::Scene(errors) => return all(errors.errors.iter().map(|error| in_scene(error, settings, robot)), errors, robot),
@@ -24,7 +24,7 @@ pub(crate) fn at_its_word(error: &Error, settings: &Settings, robot: Span) -> sy
         | Error::Wanted { found: function, .. }
         | Error::SameName { name: function } => settings.functions.iter().flatten().rfind(|e| mentions(&e.text, function)).map(|e| e.span),
         Error::Parameter { found, .. } => settings.parameters.iter().flatten().rfind(|e| e.text.trim() == *found).map(|e| e.span),
-        Error::Rename { from, .. } => renamed(from).map(|r| r.from.span()),
+        Error::Rename { from, .. } => renamed(from).map(|r| r.from.span),
         Error::NameClash { first, second, .. } => renamed(second).or_else(|| renamed(first)).map(|r| r.to.span()),
         _ => None,
     };

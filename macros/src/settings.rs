@@ -47,9 +47,9 @@ pub(crate) struct Entry {
     pub(crate) span: Span,
 }
 
-/// `"name in the URDF" = NAME_IN_RUST`.
+/// `"name in the URDF" = NAME_IN_RUST`; a name that is a word needs no quotation marks.
 pub(crate) struct Renaming {
-    pub(crate) from: LitStr,
+    pub(crate) from: Name,
     pub(crate) to: Ident,
 }
 
@@ -74,7 +74,7 @@ impl Settings {
     pub(crate) fn options(&self, rest: Options) -> Options {
         let names = |names: &Vec<Name>| names.iter().map(|name| name.text.clone()).collect();
         let locked = |lock: &Lock| Some((lock.joint.text.clone(), lock.at.clone()));
-        let renamed = |r: &Renaming| Some((r.from.value(), r.to.to_string()));
+        let renamed = |r: &Renaming| Some((r.from.text.clone(), r.to.to_string()));
         Options {
             base: self.base.unwrap_or(rest.base),
             gravity: self.gravity.unwrap_or(rest.gravity),
@@ -113,8 +113,8 @@ fn texts(entries: &[Entry]) -> Vec<String> {
 }
 
 fn once(renaming: &Renaming, seen: &mut BTreeSet<String>) -> syn::Result<()> {
-    let name = renaming.from.value();
-    let twice = Error::new(renaming.from.span(), format!("{name:?} is renamed twice"));
+    let name = renaming.from.text.clone();
+    let twice = Error::new(renaming.from.span, format!("{name:?} is renamed twice"));
     if seen.insert(name) { Ok(()) } else { Err(twice) }
 }
 

@@ -213,3 +213,12 @@ fn empty_lists_stand_in_place_of_those_of_the_scene_too() {
     items.truncate(items.len() - 3);
     assert_eq!(quote!(#(#items)*).to_string(), syn::parse2::<syn::File>(build.tokens()).unwrap().to_token_stream().to_string());
 }
+
+#[test]
+fn names_are_words_or_stand_in_quotation_marks() {
+    let urdf = "../tests/ui/urdf/three.urdf";
+    let word = items(module(quote!(mod arm { urdf = #urdf, rename = { tool = TCP } })));
+    let quoted = items(module(quote!(mod arm { urdf = #urdf, rename = { "tool" = TCP } })));
+    assert_eq!(quote!(#(#word)*).to_string(), quote!(#(#quoted)*).to_string());
+    assert!(quote!(#(#word)*).to_string().contains("TCP"));
+}
