@@ -32,7 +32,7 @@ pub(crate) struct Failure {
     pub(crate) status: u8,
     #[serde(rename = "errors")]
     pub(crate) lines: Vec<String>,
-    /// Whether a report was printed, which shows it: as JSON it is all there is to print.
+    /// Whether a report was printed: as JSON it is all there is to print.
     #[serde(skip)]
     pub(crate) reported: bool,
 }
@@ -78,7 +78,12 @@ impl Failure {
 
     /// So does one in the report that was just printed.
     pub(crate) fn bound_of_report(line: String) -> Self {
-        Self { reported: true, ..Self::bound(line) }
+        Self::bound(line).after_report()
+    }
+
+    /// What failed once a report was printed.
+    pub(crate) fn after_report(self) -> Self {
+        Self { reported: true, ..self }
     }
 }
 

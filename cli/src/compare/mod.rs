@@ -74,7 +74,7 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
     })?;
     // What took minutes to measure is told even if the drawing cannot be written.
     if let Some(file) = &arguments.chart {
-        std::fs::write(file, chart::svg(&report)).map_err(|e| Failure::input([format!("{}: {e}", file.display())]))?;
+        std::fs::write(file, chart::svg(&report)).map_err(|e| Failure::input([format!("{}: {e}", file.display())]).after_report())?;
     }
     match report.exceeded(arguments.bound, VARIANT_BOUND) {
         None => Ok(OK),

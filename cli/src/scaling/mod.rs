@@ -71,7 +71,9 @@ pub(crate) fn run(arguments: &ScalingArguments, format: Format) -> Result<(), Fa
     // What took minutes to measure is told even if the drawing cannot be written.
     match &arguments.chart {
         None => Ok(()),
-        Some(path) => std::fs::write(path, plot::svg(&report)).map_err(|e| Failure::input([format!("{}: {e}", path.display())])),
+        Some(path) => {
+            std::fs::write(path, plot::svg(&report)).map_err(|e| Failure::input([format!("{}: {e}", path.display())]).after_report())
+        }
     }
 }
 

@@ -118,6 +118,10 @@ fn a_chart_that_cannot_be_written_does_not_cost_the_report() {
     let ended = run(&[&words[..], &SMALL[..]].concat());
     assert!(ended.status == 1 && ended.err.contains("error: /no/such/folder/x.svg: "), "{}", ended.err);
     assert!(ended.out.contains("gravity_torque"), "{}", ended.out);
+    // As JSON the report is the one document.
+    let ended = run(&[&words[..], &SMALL[..], &["--format", "json"]].concat());
+    assert!(ended.status == 1 && ended.err.contains("error: /no/such/folder/x.svg: "), "{}", ended.err);
+    assert_eq!(ended.json()["functions"][0]["function"], "gravity_torque");
 }
 
 #[test]

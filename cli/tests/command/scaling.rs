@@ -33,6 +33,10 @@ fn a_chart_that_cannot_be_written_does_not_cost_the_report() {
     let ended = run(&words);
     assert!(ended.status == 1 && ended.err.contains("error: /no/such/folder/x.svg: "), "{}", ended.err);
     assert!(ended.out.contains("inverse_dynamics"), "{}", ended.out);
+    // As JSON the report is the one document.
+    let ended = run(&[&words[..], &["--format", "json"]].concat());
+    assert!(ended.status == 1 && ended.err.contains("error: /no/such/folder/x.svg: "), "{}", ended.err);
+    assert_eq!(ended.json()["points"][0]["function"], "inverse_dynamics");
 }
 
 #[test]
