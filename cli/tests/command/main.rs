@@ -1,5 +1,6 @@
 //! The command as its users run it.
 
+mod accuracy;
 mod check;
 mod compare;
 mod edits;

@@ -1,5 +1,6 @@
 //! `articulated accuracy --simulate`: what accuracy of a motion costs, integrator by integrator.
 
+mod advise;
 #[cfg(test)]
 mod dop853_digits;
 #[cfg(test)]
@@ -34,6 +35,7 @@ pub(super) fn run(arguments: &AccuracyArguments, format: Format) -> Result<(), F
     }
     console::print(&match (arguments.advise, arguments.error, format) {
         (true, Some(wish), Format::Text) => text::advice(&motion, wish),
+        (true, Some(wish), Format::Json) => crate::json(&advise::all(&motion, wish)),
         (_, _, Format::Text) => text::text(&motion),
         (_, _, Format::Json) => crate::json(&motion),
     })

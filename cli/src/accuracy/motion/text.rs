@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::super::text::number;
+use super::advise::{self, Run};
 use super::sweep::{COARSE, Curve};
 use super::{Motion, Sample};
 use crate::table::{Table, freedom, plain, wrapped};
@@ -95,28 +96,18 @@ pub(super) fn csv(m: &Motion) -> String {
     out
 }
 
-/// The cheapest run that is accurate enough, by evaluations and by the clock; of each integrator those count that are no lucky hits.
+/// The cheapest run that is accurate enough, by evaluations and by the clock, in sentences.
 pub(super) fn advice(m: &Motion, wish: f64) -> String {
-    let own = m.curves.iter().filter(|c| !c.peer);
-    let fit: Vec<(&str, &Sample)> = own.flat_map(|c| lasting(&c.samples, wish).iter().map(|s| (c.integrator.as_str(), s))).collect();
-    let by_evaluations = fit.iter().min_by_key(|(_, s)| s.evaluations);
-    let by_time = fit.iter().min_by(|a, b| a.1.wall.total_cmp(&b.1.wall));
-    match (by_evaluations, by_time) {
-        (Some(a), Some(b)) => format!("{}: fewest evaluations: {}\n{}: least time: {}\n", m.scene, told(a), m.scene, told(b)),
+    match advise::all(m, wish).runs.as_slice() {
+        [a, b] => format!("{}: fewest evaluations: {}\n{}: least time: {}\n", m.scene, told(a), m.scene, told(b)),
         _ => format!("{}: no run is accurate to {wish:e}, and the finer ones of its integrator with it\n", m.scene),
     }
 }
 
-/// The finest runs, all of which reach the error; two at least. A run that reaches it while a finer one does not has hit it by accident.
-fn lasting(samples: &[Sample], wish: f64) -> &[Sample] {
-    let from = samples.iter().rposition(|s| s.error.is_nan() || s.error > wish).map_or(0, |k| k + 1);
-    if samples.len() - from >= 2 { &samples[from..] } else { &[] }
-}
-
 /// An integrator with its setting, and what that comes to.
-fn told((name, s): &(&str, &Sample)) -> String {
+fn told(Run { integrator, sample: s, .. }: &Run<'_>) -> String {
     let how = s.step.map_or_else(|| format!("tolerance {:.1e}", s.tolerance.unwrap_or_default()), |h| format!("steps of {h:.2e} s"));
-    format!("{name} with {how}: error {}, {} evaluations, {:.2} ms", error(s), s.evaluations, s.wall * 1e3)
+    format!("{integrator} with {how}: error {}, {} evaluations, {:.2} ms", error(s), s.evaluations, s.wall * 1e3)
 }
 
 #[cfg(test)]
@@ -206,6 +197,8 @@ mod tests {
     #[test]
     fn units_are_those_of_numbers_that_are_there() {
         assert!(crate::units::lead(UNITS, &serde_json::to_value(motion()).unwrap()));
+        let m = motion();
+        assert!(crate::units::lead(advise::UNITS, &serde_json::to_value(advise::all(&m, 1e-6)).unwrap()));
     }
 
     #[test]
