@@ -9,6 +9,25 @@ use crate::arguments::RobotArguments;
 use crate::edits::FrameArguments;
 use crate::names::{Names, known};
 
+/// What motions have no use for: how to read and edit a robot, which a scene says, and which functions to measure on which states.
+const OF_FUNCTIONS: [&str; 15] = [
+    "floating",
+    "fixed",
+    "gravity",
+    "allow_unphysical_inertia",
+    "snap_angles",
+    "rename",
+    "append",
+    "payload",
+    "lock",
+    "frames",
+    "wrenches_in",
+    "functions",
+    "levels",
+    "states",
+    "seed",
+];
+
 #[derive(Args, Debug)]
 pub(crate) struct AccuracyArguments {
     #[command(flatten)]
@@ -40,13 +59,13 @@ pub(crate) struct AccuracyArguments {
     #[arg(short, long, value_name = "FOLDER")]
     pub(crate) output: Option<PathBuf>,
     /// Measure integrators instead, on the motion of a scene: ROBOT is a scene's file, or the name of a bundled scene
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = OF_FUNCTIONS)]
     pub(crate) simulate: bool,
     /// Only name the cheapest level of each function whose largest error is no larger than --error
     #[arg(long, requires = "error")]
     pub(crate) advise: bool,
-    /// The largest error that is right, relative to the sum of the magnitudes of the terms
-    #[arg(long, value_name = "ERROR", value_parser = wish)]
+    /// The largest error that is right, relative to the sum of the magnitudes of the terms; of a motion rad, m, and those a second
+    #[arg(long, value_name = "ERROR", value_parser = wish, requires = "advise")]
     pub(crate) error: Option<f64>,
 }
 

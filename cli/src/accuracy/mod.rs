@@ -64,16 +64,14 @@ pub(crate) fn run(arguments: &AccuracyArguments, format: Format) -> Result<(), F
     let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
     let reference = Reference::new(&reading.description, &robot.options);
     let report = measure::all(&robot, &reference, &rustc, &functions, &levels, arguments)?;
-    if let Some(folder) = &arguments.output {
-        write(folder, &report)?;
-    }
-    let text = match (arguments.advise, arguments.error, format) {
+    console::print(&match (arguments.advise, arguments.error, format) {
         (true, Some(wish), Format::Text) => advise::text(&report, wish),
         (true, Some(wish), Format::Json) => crate::json(&advise::all(&report, wish)),
         (_, _, Format::Text) => text::text(&report),
         (_, _, Format::Json) => crate::json(&report),
-    };
-    console::print(&text)
+    })?;
+    // What took minutes to measure is told even if the files cannot be written.
+    arguments.output.as_ref().map_or(Ok(()), |folder| write(folder, &report)).map_err(Failure::after_report)
 }
 
 /// All files of a report.

@@ -1,4 +1,4 @@
-use crate::run;
+use crate::{File, run};
 
 #[test]
 fn advice_on_a_motion_is_json_too() {
@@ -13,4 +13,45 @@ fn advice_on_a_motion_is_json_too() {
         assert!(run["step"].is_number() != run["tolerance"].is_number(), "{run}");
     }
     assert_eq!(json.get("curves"), None);
+}
+
+#[test]
+fn files_that_cannot_be_written_do_not_cost_the_report() {
+    let file = File::new("taken", b"");
+    let folder = format!("{}/report", file.name());
+    let functions = ["simple_pendulum", "--functions", "gravity_torque", "--levels", "f64", "--states", "2"];
+    let motion = ["--simulate", "pendulum"];
+    for (words, list) in [(&functions[..], "functions"), (&motion[..], "curves")] {
+        let words = [&["accuracy", "--repetitions", "1", "--format", "json", "--output", &folder], words].concat();
+        let ended = run(&words);
+        assert!(ended.status == 1 && ended.err.contains(&format!("error: {folder}: ")), "{}", ended.err);
+        assert!(ended.json()[list].as_array().is_some_and(|l| !l.is_empty()), "{}", ended.out);
+    }
+}
+
+#[test]
+fn what_would_be_ignored_is_status_2() {
+    let of_functions: [&[&str]; 15] = [
+        &["--floating"],
+        &["--fixed"],
+        &["--gravity", "0,0,-1"],
+        &["--allow-unphysical-inertia"],
+        &["--snap-angles", "1e-3"],
+        &["--rename", "a=b"],
+        &["--append", "gripper.urdf@tool"],
+        &["--payload", "bob=1"],
+        &["--lock", "swing=0"],
+        &["--frames", "bob"],
+        &["--wrenches-in", "world"],
+        &["--functions", "mass_matrix"],
+        &["--levels", "f64"],
+        &["--states", "5"],
+        &["--seed", "2"],
+    ];
+    for words in of_functions {
+        let ended = run(&[&["accuracy", "--simulate", "pendulum"], words].concat());
+        assert!(ended.status == 2 && ended.err.contains("cannot be used with"), "{words:?}: {}", ended.err);
+    }
+    let ended = run(&["accuracy", "simple_pendulum", "--error", "1e-9"]);
+    assert!(ended.status == 2 && ended.err.contains("--advise"), "{}", ended.err);
 }

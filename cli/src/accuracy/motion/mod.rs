@@ -30,15 +30,14 @@ pub(super) fn run(arguments: &AccuracyArguments, format: Format) -> Result<(), F
     let folder = Folder::new().map_err(|e| Failure::tool(&e))?;
     let peers = peers::Peers::open(&stage, &subject, arguments, folder.path())?;
     let motion = sweep::all(&stage.name, &subject, &peers, arguments.repetitions.min(5) as usize)?;
-    if let Some(folder) = &arguments.output {
-        write(folder, &motion)?;
-    }
     console::print(&match (arguments.advise, arguments.error, format) {
         (true, Some(wish), Format::Text) => text::advice(&motion, wish),
         (true, Some(wish), Format::Json) => crate::json(&advise::all(&motion, wish)),
         (_, _, Format::Text) => text::text(&motion),
         (_, _, Format::Json) => crate::json(&motion),
-    })
+    })?;
+    // What took minutes to measure is told even if the files cannot be written.
+    arguments.output.as_ref().map_or(Ok(()), |folder| write(folder, &motion)).map_err(Failure::after_report)
 }
 
 fn write(folder: &Path, motion: &Motion) -> Result<(), Failure> {
