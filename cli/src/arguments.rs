@@ -136,7 +136,7 @@ pub(crate) enum Command {
 /// Which robot, and how to read it.
 #[derive(Args, Debug)]
 pub(crate) struct RobotArguments {
-    /// A bundled robot's name, the path of a URDF, or - for the standard input
+    /// A bundled robot's name, the path of a URDF or of a scene (.toml), or - for a URDF on the standard input
     #[arg(value_name = "ROBOT")]
     pub(crate) robot: String,
     /// The root link moves freely (bundled robots know their own base)
@@ -275,7 +275,7 @@ pub(crate) struct CompareArguments {
 
 #[derive(Args, Debug)]
 pub(crate) struct FunctionsArguments {
-    /// Bundled robots' names, or paths of URDF files [default: ur5_like panda_like quadruped humanoid]
+    /// Bundled robots' names, or paths of URDF files or of scenes (.toml) [default: ur5_like panda_like quadruped humanoid]
     #[arg(value_name = "ROBOT")]
     pub(crate) robots: Vec<String>,
     /// The root links of robots that are files move freely

@@ -7,7 +7,7 @@ use crate::arguments::{Gravity, gravity};
 
 #[derive(Args, Debug)]
 pub(crate) struct StressArguments {
-    /// A bundled robot's name, the path of a URDF, or - for the standard input [default: the corpus and all bundled robots]
+    /// A bundled robot's name, the path of a URDF or of a scene (.toml), or - for a URDF on the standard input [default: the corpus and all bundled robots]
     #[arg(value_name = "ROBOT")]
     pub(crate) robot: Option<String>,
     /// The root link moves freely (bundled robots know their own base)

@@ -93,6 +93,18 @@ fn help_tells_examples_and_statuses() {
 }
 
 #[test]
+fn a_robot_may_be_that_of_a_scene_and_help_says_so() {
+    for command in ["check", "generate", "eval", "compare", "functions", "accuracy", "stress"] {
+        let help = run(&[command, "--help"]).out;
+        assert!(help.lines().any(|l| l.contains("URDF") && l.contains("(.toml)")), "{help}");
+    }
+    for command in ["check", "functions", "stress"] {
+        let ended = run(&[command, "pendulum.toml"]);
+        assert!(ended.status == 0 && ended.out.contains("pendulum"), "{command}: {}", ended.err);
+    }
+}
+
+#[test]
 fn a_wrong_command_line_is_status_2() {
     let wrong: [&[&str]; 7] = [
         &[],
