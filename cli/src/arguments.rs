@@ -201,6 +201,9 @@ pub(crate) struct GenerateArguments {
     /// Code that depends on nothing but core and std (this is the default)
     #[arg(long, conflicts_with = "runtime")]
     pub(crate) standalone: bool,
+    /// Each limb for itself: no limbs that are alike in lanes, no joints in loops, also where that would be cheaper
+    #[arg(long)]
+    pub(crate) no_limbs: bool,
     /// No `unsafe` in the generated code: sines take a little longer on x86-64
     #[arg(long)]
     pub(crate) forbid_unsafe: bool,

@@ -42,6 +42,7 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
     if !arguments.batch.is_empty() {
         request.options.batch.clone_from(&arguments.batch);
     }
+    request.options.limbs &= !arguments.no_limbs;
     request.options.forbid_unsafe |= arguments.forbid_unsafe;
     request.options.no_std = arguments.no_std;
     if arguments.level != articulated_codegen::Level::default() {

@@ -35,6 +35,21 @@ fn flags_arrive_in_the_request() {
 }
 
 #[test]
+fn limbs_are_each_for_itself_where_asked_for() {
+    let words = ["generate", "quadruped", "--functions", "inverse_dynamics"];
+    let (together, apart) = (run(&words), run(&[&words[..], &["--no-limbs"]].concat()));
+    assert_eq!((together.status, apart.status), (0, 0), "{}", apart.err);
+    // Numbers of four legs, one a lane; sines of four angles at once are something else.
+    let lanes = |code: &str| code.contains("fmadd(lanes([");
+    assert!(lanes(&together.out) && !lanes(&apart.out), "{}", apart.out);
+    let robot = articulated_models::robot("quadruped").unwrap();
+    let mut request = Request::new("quadruped.urdf", robot.urdf);
+    (request.options.base, request.options.limbs) = (robot.base, false);
+    request.options.functions = vec!["inverse_dynamics".into()];
+    assert!(apart.out == generate(&request).unwrap().source);
+}
+
+#[test]
 fn a_scene_gives_what_it_gives_in_a_build_script() {
     let scene = "../tests/ui/scenes/three.toml";
     let build = articulated_codegen::Build::scene(scene);
