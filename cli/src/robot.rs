@@ -207,6 +207,9 @@ pub(crate) fn read_bytes(name: &str) -> std::io::Result<Vec<u8>> {
 
 fn read_file(name: &str) -> Result<Vec<u8>, Failure> {
     read_bytes(name).map_err(|error| {
+        if name == "-" || Path::new(name).exists() {
+            return Failure::input([format!("{name}: cannot be read: {error}")]);
+        }
         let names = || articulated_models::ROBOTS.iter().map(|r| r.name);
         let near = nearest(name, names()).map(|n| format!("; did you mean {n:?}?")).unwrap_or_default();
         let known = names().collect::<Vec<_>>().join(", ");

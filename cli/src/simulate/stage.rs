@@ -48,7 +48,7 @@ impl Stage {
                 let scene = Scene::read(&format!("{name}.toml"), bundled.toml).map_err(Error::from)?;
                 (scene::open_in(scene, Path::new(""), BUNDLED)?, PathBuf::new())
             }
-            None if path.is_file() => (scene::open(path, BUNDLED)?, path.parent().map(Path::to_owned).unwrap_or_default()),
+            None if path.exists() => (scene::open(path, BUNDLED)?, path.parent().map(Path::to_owned).unwrap_or_default()),
             None => return Err(unknown(name)),
         };
         let name = path.file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned());

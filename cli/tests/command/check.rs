@@ -110,6 +110,18 @@ fn an_unknown_name_is_guessed() {
 }
 
 #[test]
+fn what_is_there_and_cannot_be_read_is_not_taken_for_a_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let name = folder.path().to_str().unwrap();
+    for words in [&["check", name][..], &["check", "panda_like", "--append", &format!("{name}@hand")], &["simulate", name]] {
+        let ended = run(words);
+        assert_eq!(ended.status, 1, "{}", ended.err);
+        assert!(ended.err.starts_with(&format!("error: {name}: ")) && !ended.err.contains("bundled"), "{}", ended.err);
+    }
+    assert!(run(&["check", name]).err.contains(": cannot be read: "));
+}
+
+#[test]
 fn any_bytes_are_refused_with_an_error() {
     let mut numbers = articulated_cli::states::SplitMix64::new(3);
     let pendulum = articulated_models::robot("simple_pendulum").unwrap().urdf.as_bytes();
