@@ -1,16 +1,15 @@
 //! Errors of all levels of a function in one state.
 //!
-//! Two references, each of 320 bits: the textbook's formulas on the numbers of the URDF, which share nothing with what is judged, and the very graph that is emitted, in
+//! Two references, each of 320 bits: the textbook's formulas on the numbers of the URDF, which share nothing with what is judged (with effects, which they do not know, the generic library), and the very graph that is emitted, in
 //! the constants that it has. The difference to the second is rounding alone.
 
 use articulated_codegen::graph::Graph;
 use articulated_codegen::{Generated, Level, bound};
 use articulated_core::Scalar;
 use articulated_core::algorithm::Function;
-use articulated_core::algorithm::textbook::Textbook;
 use articulated_core::model::Model;
 
-use crate::compare::accuracy::{above_residues, backward, exact, inverse_of, largest, singular};
+use crate::compare::accuracy::{Exact, above_residues, backward, exact, inverse_of, largest, singular};
 use crate::magnitude::{ROUNDOFF, scales};
 use crate::precise::Big;
 use crate::worse::worse;
@@ -18,7 +17,7 @@ use crate::worse::worse;
 /// What one state says of one contender.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Verdict {
-    /// Against the textbook, relative to the scale.
+    /// Against the first, relative to the scale.
     pub(super) relative: f64,
     /// In units in the last place.
     pub(super) ulps: f64,
@@ -45,39 +44,39 @@ pub(super) fn graph<'a>(generated: &'a Generated, function: &str) -> Option<&'a 
 
 /// What a state says of each; `None` where there is no right answer. `state`: the arguments in the function's order.
 pub(super) fn verdicts(
-    textbook: &Textbook<Big>,
+    reference: &Exact,
     model: &Model<f64>,
     function: &'static Function<f64>,
     state: &[&[f64]],
     found: &[Found<'_>],
 ) -> Option<Vec<Verdict>> {
     Big::scope(|| {
-        let by_textbook = exact(textbook, model, function.name, state)?;
-        if singular(&by_textbook) {
+        let by_reference = exact(reference, model, function.name, state)?;
+        if singular(&by_reference) {
             return None;
         }
         let scale = above_residues(scales(model, function.name, state).ok()?);
         let mut graphs: Vec<(*const Graph, Vec<Big>)> = Vec::new();
-        Some(found.iter().map(|f| one(f, (textbook, model, function), state, (&by_textbook, &scale), &mut graphs)).collect())
+        Some(found.iter().map(|f| one(f, (reference, model, function), state, (&by_reference, &scale), &mut graphs)).collect())
     })
 }
 
-type Place<'a> = (&'a Textbook<Big>, &'a Model<f64>, &'static Function<f64>);
+type Place<'a> = (&'a Exact, &'a Model<f64>, &'static Function<f64>);
 
 fn one(
     found: &Found<'_>,
-    (textbook, model, function): Place<'_>,
+    (reference, model, function): Place<'_>,
     state: &[&[f64]],
-    (by_textbook, scale): (&[Big], &[f64]),
+    (by_reference, scale): (&[Big], &[f64]),
     graphs: &mut Vec<(*const Graph, Vec<Big>)>,
 ) -> Verdict {
     let mut verdict = Verdict {
-        relative: ROUNDOFF * largest(by_textbook, &found.result, scale),
-        ulps: in_ulps(by_textbook, &found.result),
+        relative: ROUNDOFF * largest(by_reference, &found.result, scale),
+        ulps: in_ulps(by_reference, &found.result),
         ..Verdict::default()
     };
     if let Some(inverse) = inverse_of(function) {
-        verdict.backward = backward(textbook, model, inverse, state, &found.result).map(|units| ROUNDOFF * units);
+        verdict.backward = backward(reference, model, inverse, state, &found.result).map(|units| ROUNDOFF * units);
     }
     let Some((graph, level)) = found.own else { return verdict };
     let key: *const Graph = graph;

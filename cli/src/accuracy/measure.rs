@@ -52,6 +52,7 @@ pub(super) fn all(
     let Some(first) = made.first() else { return Err(Failure::input(["no level to measure".to_owned()])) };
     let model = &first.generated.model;
     let mut report = report(robot, model, rustc, arguments);
+    report.notes.extend(reference.note());
     let folder = Folder::new().map_err(|e| Failure::tool(&e))?;
     let peers = peers(robot, model, arguments, folder.path(), &mut report)?;
     let sets = [false, true].map(|single| cases(model, arguments.states as usize, arguments.seed, single));
@@ -253,11 +254,11 @@ fn judge_some(
     graphs: &[Option<(&articulated_codegen::graph::Graph, Level)>],
 ) -> Vec<(usize, Vec<Verdict>)> {
     Big::scope(|| {
-        let Some(textbook) = reference.textbook(model) else { return Vec::new() };
+        let Some(exact) = reference.exact(model) else { return Vec::new() };
         let one = |s: &usize| {
             let own = graphs.iter().copied().chain(std::iter::repeat(None));
             let found: Vec<Found<'_>> = results[*s].iter().zip(own).map(|(r, own)| Found { result: r.clone(), own }).collect();
-            Some((*s, judge::verdicts(&textbook, model, f, &arguments[*s], &found)?))
+            Some((*s, judge::verdicts(&exact, model, f, &arguments[*s], &found)?))
         };
         states.iter().filter_map(one).collect()
     })

@@ -1,4 +1,4 @@
-//! Errors against a reference of 96 digits that shares no formula with what it judges.
+//! Errors against a reference of 96 digits: the textbook's form, which shares no formula with what it judges; of a robot with effects, which that does not know, the generic library.
 //!
 //! A result is compared with the textbook form's. The accelerations of forward dynamics are judged by their backward error
 //! instead: how far the torques that they need are from those that were given.
@@ -6,7 +6,7 @@
 use articulated_codegen::Options;
 use articulated_core::Scalar;
 use articulated_core::algorithm::textbook::Textbook;
-use articulated_core::algorithm::{Argument, Function, FunctionId};
+use articulated_core::algorithm::{Argument, Function, FunctionId, Workspace};
 use articulated_core::description::Description;
 use articulated_core::model::Model;
 use serde::Serialize;
@@ -28,7 +28,30 @@ pub(super) struct Errors {
     pub(super) generic: f64,
 }
 
-/// The textbook form of a robot, to be evaluated with [`Big`] numbers.
+/// What results are held to.
+pub(crate) enum Exact {
+    /// The textbook's form on the numbers of the URDF.
+    Textbook(Box<Textbook<Big>>),
+    /// The generic library on the numbers of the model, with its effects.
+    Library(Box<Model<Big>>),
+}
+
+impl Exact {
+    /// The result of a function; `None` where it is not to be had.
+    fn call(&self, name: &str, arguments: &[&[Big]]) -> Option<Vec<Big>> {
+        match self {
+            Self::Textbook(textbook) => textbook.call(name, arguments)?.ok(),
+            Self::Library(model) => {
+                let row = articulated_core::algorithm::function::<Big>(name)?;
+                let mut out = vec![Big::from_f64(0.0); row.len(model.shape())];
+                row.call(model, &mut Workspace::new(model), arguments, &mut out).ok()?;
+                Some(out)
+            }
+        }
+    }
+}
+
+/// A robot as the reference takes it.
 #[derive(Clone, Debug)]
 pub(crate) struct Reference {
     description: Description,
@@ -40,11 +63,20 @@ impl Reference {
         Self { description: description.clone(), options: options.clone() }
     }
 
-    /// With the frames of the model.
-    pub(crate) fn textbook(&self, model: &Model<f64>) -> Option<Textbook<Big>> {
+    /// Where results are not held to the textbook: said in reports.
+    pub(crate) fn note(&self) -> Option<String> {
+        let note = "the textbook's form knows no effects: the reference is the generic library in 320 bits, which tells roundings, not whether its formulas are right";
+        (!self.options.effects.is_empty()).then(|| note.into())
+    }
+
+    /// With the frames and effects of the model.
+    pub(crate) fn exact(&self, model: &Model<f64>) -> Option<Exact> {
+        if !self.options.effects.is_empty() {
+            return Some(Exact::Library(Box::new(model.cast())));
+        }
         let textbook = Textbook::<Big>::new(&self.description, self.options.base, self.options.gravity).ok()?;
         let names: Vec<&str> = model.frames.iter().map(|f| f.name.as_str()).collect();
-        Some(textbook.with_frames(&names).ok()?.with_wrenches_in(self.options.wrench_reference))
+        Some(Exact::Textbook(Box::new(textbook.with_frames(&names).ok()?.with_wrenches_in(self.options.wrench_reference))))
     }
 }
 
@@ -60,7 +92,7 @@ pub(crate) fn inverse_of(function: &Function<f64>) -> Option<&'static str> {
     }
 }
 
-/// The largest errors over some of the states; `None` where the textbook form does not have the function.
+/// The largest errors over some of the states; `None` where the reference does not have the function.
 pub(super) fn errors(
     reference: &Reference,
     model: &Model<f64>,
@@ -71,18 +103,18 @@ pub(super) fn errors(
     let generic = Contender::generic(model, function);
     let inverse = inverse_of(function);
     Big::scope(|| {
-        let textbook = reference.textbook(model)?;
+        let reference = reference.exact(model)?;
         let kind = if inverse.is_some() { "backward" } else { "forward" };
         let mut worst = Errors { kind, states: 0, generated: 0.0, generic: 0.0 };
         for state in states.iter().take(JUDGED) {
             let sides = [generated.call(state), generic.call(state)];
             let judged = Big::scope(|| {
-                let exact = exact(&textbook, model, function.name, state)?;
+                let exact = exact(&reference, model, function.name, state)?;
                 if singular(&exact) {
                     return Some(None);
                 }
                 let errors = match inverse {
-                    Some(inverse) => both(sides.each_ref().map(|found| backward(&textbook, model, inverse, state, found))),
+                    Some(inverse) => both(sides.each_ref().map(|found| backward(&reference, model, inverse, state, found))),
                     None => forward(&exact, model, function.name, state, &sides),
                 };
                 errors.map(Some)
@@ -133,7 +165,7 @@ fn both([a, b]: [Option<f64>; 2]) -> Option<[f64; 2]> {
 }
 
 /// η = maxᵢ |ID_exact(q, v, a) − τ|ᵢ / (scale of ID + |τ|)ᵢ, in units of 2⁻⁵³, for the state (q, v, τ, …) and accelerations that were found.
-pub(crate) fn backward(textbook: &Textbook<Big>, model: &Model<f64>, inverse: &str, state: &[&[f64]], found: &[f64]) -> Option<f64> {
+pub(crate) fn backward(reference: &Exact, model: &Model<f64>, inverse: &str, state: &[&[f64]], found: &[f64]) -> Option<f64> {
     let tau = *state.get(2)?;
     if found.iter().any(|x| !x.is_finite()) {
         return Some(f64::NAN);
@@ -142,11 +174,11 @@ pub(crate) fn backward(textbook: &Textbook<Big>, model: &Model<f64>, inverse: &s
     state[2] = found;
     let scale = scales(model, inverse, &state).ok()?;
     let scale: Vec<f64> = scale.iter().zip(tau).map(|(s, t)| s + t.abs()).collect();
-    Some(largest(&exact(textbook, model, inverse, &state)?, tau, &scale))
+    Some(largest(&exact(reference, model, inverse, &state)?, tau, &scale))
 }
 
-/// What the textbook gives. A double's quaternion has a norm of one to 16 digits only, and what the rest does is nobody's error: it is of norm one here.
-pub(crate) fn exact(textbook: &Textbook<Big>, model: &Model<f64>, function: &str, state: &[&[f64]]) -> Option<Vec<Big>> {
+/// What the reference gives. A double's quaternion has a norm of one to 16 digits only, and what the rest does is nobody's error: it is of norm one here.
+pub(crate) fn exact(reference: &Exact, model: &Model<f64>, function: &str, state: &[&[f64]]) -> Option<Vec<Big>> {
     let takes = articulated_core::algorithm::function::<f64>(function)?.takes;
     let precise = |(argument, x): (&Argument, &&[f64])| {
         let mut x: Vec<Big> = x.iter().map(|x| Big::from_f64(*x)).collect();
@@ -157,7 +189,7 @@ pub(crate) fn exact(textbook: &Textbook<Big>, model: &Model<f64>, function: &str
     };
     let arguments: Vec<Vec<Big>> = takes.iter().zip(state).map(precise).collect();
     let arguments: Vec<&[Big]> = arguments.iter().map(Vec::as_slice).collect();
-    textbook.call(function, &arguments)?.ok()
+    reference.call(function, &arguments)
 }
 
 fn normalise(quaternion: &mut [Big]) {
@@ -195,7 +227,7 @@ mod tests {
         let robot = articulated_models::robot("simple_pendulum").unwrap();
         let description = articulated_urdf::read(robot.urdf.as_bytes(), &articulated_urdf::Options::default()).unwrap().description;
         let model = Model::new(&description, robot.base).unwrap();
-        let textbook = Textbook::<Big>::new(&description, robot.base, [0.0, 0.0, -9.81]).unwrap();
+        let textbook = Exact::Textbook(Box::new(Textbook::new(&description, robot.base, [0.0, 0.0, -9.81]).unwrap()));
         // 1.001 kg·m² · a + 9.81 N·m · sin q = τ
         let (q, tau) = (0.5_f64, 3.0);
         let a = (tau - 9.81 * q.sin()) / 1.001;

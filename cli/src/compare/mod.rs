@@ -65,6 +65,7 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
         batch: arguments.batch.clone(),
         named: !arguments.functions.is_empty(),
     };
+    report.notes.extend(plan.reference.note());
     let prepared = prepare_all(&plan, arguments, &mut report)?;
     measure_all(&prepared, &peers, arguments.repetitions as usize, &mut report);
     report.making = Making::all(&plan, &prepared, &peers)?;

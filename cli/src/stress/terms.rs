@@ -8,9 +8,12 @@ use articulated_core::joint::Joint;
 use articulated_core::model::{Body, Model};
 use articulated_core::nalgebra::Vector3;
 
-/// Of a function's results; none for those of other functions.
+/// Of a function's results; none for those of other functions, and none with effects, whose terms are not in it.
 pub(super) fn terms(function: FunctionId, model: &Model<f64>, arguments: &[&[f64]]) -> Vec<f64> {
     let n = model.nv;
+    if model.bodies.iter().any(|body| !(body.effects.joint.is_empty() && body.effects.body.is_empty())) {
+        return Vec::new();
+    }
     match (function, arguments) {
         (FunctionId::inverse_dynamics, [q, v, a]) => torque(model, q, v, a, model.gravity.norm()),
         (FunctionId::mass_matrix, [q]) => {

@@ -37,3 +37,10 @@ fn a_robot_of_ones_own_is_judged_and_watched() {
     );
     assert_eq!(run_with(&["stress", "-", "--levels", "f32"], urdf).status, 2);
 }
+
+/// Magnitudes of terms have those of effects among them: stops are stiff, and far beyond them forces are large.
+#[test]
+fn a_scene_with_effects_is_within_its_limits() {
+    let ended = run(&["stress", "arm.toml"]);
+    assert_eq!(ended.status, 0, "{}", ended.out);
+}
