@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use articulated_codegen::Level;
+use articulated_codegen::{Level, MOST_SNAPPED};
 use articulated_core::algorithm::function;
 use articulated_core::lanes::Real;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -333,7 +333,7 @@ fn joints(text: &str) -> Result<usize, String> {
 
 fn tolerance(text: &str) -> Result<f64, String> {
     let x: f64 = text.parse().map_err(|_| "expected a number of rad".to_owned())?;
-    if (0.0..=0.5).contains(&x) { Ok(x) } else { Err("expected 0 to 0.5 rad".into()) }
+    if (0.0..=MOST_SNAPPED).contains(&x) { Ok(x) } else { Err("expected 0 to 0.5 rad".into()) }
 }
 
 /// `name=RUST_NAME`; the name in the file may hold such a sign too.

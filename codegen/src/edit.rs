@@ -117,8 +117,8 @@ pub fn choose_frames(request: &Request, model: Model<f64>) -> Result<Model<f64>,
     })
 }
 
-/// From this on an angle would be as near to one multiple of π/2 as to another, or nearly.
-const MOST_SNAPPED: f64 = 0.5;
+/// The largest [`Options::snap_angles`], rad: an angle that is farther from a multiple of π/2 was not meant to be one.
+pub const MOST_SNAPPED: f64 = 0.5;
 
 /// Whether the numbers among the choices can be. Errors: all that cannot.
 fn numbers(options: &Options) -> Result<(), Error> {

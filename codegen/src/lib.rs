@@ -43,7 +43,7 @@ pub use articulated_core::spatial::Reference;
 pub use articulated_urdf as urdf;
 pub use build::{Build, Written};
 pub use checked::checked_cost;
-pub use edit::{Edit, Reason, Refusal, choose_frames, model, read};
+pub use edit::{Edit, MOST_SNAPPED, Reason, Refusal, choose_frames, model, read};
 pub use emit::identifier;
 pub use error::{Error, nearest};
 pub use faults::mentions;

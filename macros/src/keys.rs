@@ -1,6 +1,6 @@
 //! The keys of an invocation: one row each.
 
-use articulated_codegen::{Base, Level, Real, Reference};
+use articulated_codegen::{Base, Level, MOST_SNAPPED, Real, Reference};
 use proc_macro2::{TokenStream, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{Parse, ParseStream};
@@ -213,7 +213,7 @@ fn rename(value: ParseStream) -> Result<Vec<Renaming>> {
 
 fn angle(value: ParseStream) -> Result<f64> {
     let Number(angle) = value.parse()?;
-    if angle > 0.0 && angle <= 0.5 { Ok(angle) } else { Err(value.error("too large, or not positive")) }
+    if angle > 0.0 && angle <= MOST_SNAPPED { Ok(angle) } else { Err(value.error("too large, or not positive")) }
 }
 
 /// A path that means the same inside the generated module as outside of it.

@@ -51,8 +51,7 @@ pub(super) fn all(
     let made: Vec<Made> = parallel::map(levels, make).into_iter().collect::<Result<_, _>>()?;
     let Some(first) = made.first() else { return Err(Failure::input(["no level to measure".to_owned()])) };
     let model = &first.generated.model;
-    let mut report = report(robot, model, rustc, arguments);
-    report.notes.extend(reference.note());
+    let mut report = report(robot, reference, model, rustc, arguments);
     let folder = Folder::new().map_err(|e| Failure::tool(&e))?;
     let peers = peers(robot, model, arguments, folder.path(), &mut report)?;
     let sets = [false, true].map(|single| cases(model, arguments.states as usize, arguments.seed, single));
@@ -76,7 +75,7 @@ fn made(robot: &Robot, rustc: &Rustc, functions: &[&'static str], level: Level) 
     Ok(Made { level, generated, compiled })
 }
 
-fn report(robot: &Robot, model: &Model<f64>, rustc: &Rustc, arguments: &AccuracyArguments) -> Report {
+fn report(robot: &Robot, reference: &Reference, model: &Model<f64>, rustc: &Rustc, arguments: &AccuracyArguments) -> Report {
     Report {
         robot: robot.file.clone(),
         base: robot.base(),
@@ -87,6 +86,7 @@ fn report(robot: &Robot, model: &Model<f64>, rustc: &Rustc, arguments: &Accuracy
         hard_states: 0,
         seed: arguments.seed,
         repetitions: arguments.repetitions,
+        reference: reference.against(),
         reference_bits: BITS,
         processor: machine::processor(),
         compiler: rustc.version.clone(),
@@ -94,7 +94,7 @@ fn report(robot: &Robot, model: &Model<f64>, rustc: &Rustc, arguments: &Accuracy
         version: env!("CARGO_PKG_VERSION"),
         commit: machine::COMMIT,
         units: super::report::UNITS,
-        notes: Vec::new(),
+        notes: reference.note().into_iter().collect(),
         functions: Vec::new(),
     }
 }

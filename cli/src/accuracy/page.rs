@@ -6,6 +6,7 @@ use articulated_codegen::Level;
 
 use super::report::{FunctionReport, Point, Report};
 use super::{plot, text};
+use crate::compare::accuracy::Against;
 use crate::simulate::plot::drawing::Drawing;
 use crate::simulate::plot::svg::escaped;
 
@@ -19,7 +20,13 @@ pub(super) fn html(report: &Report, diagrams: &[(String, Drawing)]) -> String {
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>What accuracy costs: {0}</title><style>{STYLE}</style></head><body>\n<h1>What accuracy costs: {0}</h1>\n",
         escaped(&report.robot)
     );
-    out += INTRODUCTION;
+    out += &INTRODUCTION.replace(
+        "REFERENCE",
+        match report.reference {
+            Against::Textbook => "the textbook's formulas computed with 96 digits, which share no line with the code that is judged",
+            Against::Library => "the generic library computed with 96 digits, as the textbook's formulas know no effects",
+        },
+    );
     let _ = writeln!(out, "<h2>What was measured</h2><pre>{}</pre>", escaped(&text::head(report)));
     out += CHOICE;
     out += COLUMNS;
@@ -33,7 +40,7 @@ pub(super) fn html(report: &Report, diagrams: &[(String, Drawing)]) -> String {
 const INTRODUCTION: &str = "<p>A computer rounds every number it computes. The same formulas can be computed with more or fewer digits, and more digits take more time. \
 This page says, for each function of this robot's dynamics, how far off the result is and how long a call takes at each <em>level</em> of accuracy, so that you can choose. \
 In the diagrams every mark is a level: further left is faster, further down is more accurate. Red marks are worth choosing: nothing else is both faster and more accurate.</p>\n\
-<p>Errors are measured against the textbook's formulas computed with 96 digits, which share no line with the code that is judged. They are relative to the sum of the magnitudes of the \
+<p>Errors are measured against REFERENCE. They are relative to the sum of the magnitudes of the \
 terms that are added up: 1e-16 is the rounding of one operation in double precision, 1e-7 in single precision.</p>\n";
 
 const CHOICE: &str = "<h2>What to choose when</h2><ul>\

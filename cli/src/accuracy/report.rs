@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::compare::accuracy::Against;
 use crate::compare::timing::Summary;
 use crate::units::Units;
 
@@ -31,6 +32,7 @@ pub(super) struct Report {
     pub(super) hard_states: usize,
     pub(super) seed: u64,
     pub(super) repetitions: u32,
+    pub(super) reference: Against,
     pub(super) reference_bits: usize,
     pub(super) processor: String,
     pub(super) compiler: String,
@@ -69,7 +71,7 @@ pub(super) struct Point {
     pub(super) peer: bool,
     /// ns a call.
     pub(super) time: Summary,
-    /// Of each state the largest error of a result, relative to the sum of the magnitudes of its terms; against the textbook on the URDF's numbers.
+    /// Of each state the largest error of a result, relative to the sum of the magnitudes of its terms; against [`Report::reference`].
     pub(super) relative: Spread,
     /// The same in units in the last place of a double.
     pub(super) ulps: Spread,
@@ -149,6 +151,7 @@ pub(super) fn example() -> Report {
         hard_states: 13,
         seed: 1,
         repetitions: 31,
+        reference: Against::Textbook,
         reference_bits: 320,
         processor: "a processor".into(),
         compiler: "rustc".into(),

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::report::{FunctionReport, Point, Report, Spread};
+use crate::compare::accuracy::Against;
 use crate::table::{Table, counted, freedom, plain, wrapped};
 
 /// Everything.
@@ -14,7 +15,11 @@ pub(super) fn text(report: &Report) -> String {
             out += &wrapped(&format!("  {s}\n"));
         });
     }
-    out + &wrapped(EXPLAINED)
+    let reference = match report.reference {
+        Against::Textbook => "the textbook's formulas on the URDF's numbers",
+        Against::Library => "the generic library on the model's numbers",
+    };
+    out + &wrapped(&EXPLAINED.replace("REFERENCE", reference))
 }
 
 /// What was measured where.
@@ -45,7 +50,7 @@ pub(super) fn head(report: &Report) -> String {
 
 const EXPLAINED: &str = "
 *: nothing measured is both faster and more accurate. Time: the median of a call; IQR: the distance of its quartiles.
-Errors are relative to the sum of the magnitudes of the terms: median, 99 % and largest over the random states, against the textbook's formulas on the URDF's numbers.
+Errors are relative to the sum of the magnitudes of the terms: median, 99 % and largest over the random states, against REFERENCE.
 ulps: the same error in units of the last place of the result itself (of a double), large where terms cancel.
 backward: how far the torques that a solution needs are from those given, relative to the magnitudes of their terms.
 rounding: the error against the same formulas with the constants of the generated code; bound: what rounding can be at most on these states, guaranteed; reached: the largest \

@@ -28,6 +28,22 @@ pub(super) struct Errors {
     pub(super) generic: f64,
 }
 
+/// Which reference a robot has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Against {
+    /// The textbook's form, on the numbers of the URDF.
+    Textbook,
+    /// The generic library, on those of the model: the textbook's form knows no effects.
+    Library,
+}
+
+impl Against {
+    pub(crate) fn of(options: &Options) -> Self {
+        if options.effects.is_empty() { Self::Textbook } else { Self::Library }
+    }
+}
+
 /// What results are held to.
 pub(crate) enum Exact {
     /// The textbook's form on the numbers of the URDF.
@@ -63,15 +79,20 @@ impl Reference {
         Self { description: description.clone(), options: options.clone() }
     }
 
+    /// What the robot's results are held to.
+    pub(crate) fn against(&self) -> Against {
+        Against::of(&self.options)
+    }
+
     /// Where results are not held to the textbook: said in reports.
     pub(crate) fn note(&self) -> Option<String> {
         let note = "the textbook's form knows no effects: the reference is the generic library in 320 bits, which tells roundings, not whether its formulas are right";
-        (!self.options.effects.is_empty()).then(|| note.into())
+        (self.against() == Against::Library).then(|| note.into())
     }
 
     /// With the frames and effects of the model.
     pub(crate) fn exact(&self, model: &Model<f64>) -> Option<Exact> {
-        if !self.options.effects.is_empty() {
+        if self.against() == Against::Library {
             return Some(Exact::Library(Box::new(model.cast())));
         }
         let textbook = Textbook::<Big>::new(&self.description, self.options.base, self.options.gravity).ok()?;

@@ -6,7 +6,7 @@ use articulated_core::algorithm::Dim;
 use articulated_core::model::Model;
 use serde::Serialize;
 
-use super::accuracy::Errors;
+use super::accuracy::{Against, Errors};
 use super::batch::BatchReport;
 use super::making::Making;
 use super::manifest::{Cost, Library};
@@ -69,7 +69,9 @@ pub(super) struct Report {
     pub(super) repetitions: u32,
     pub(super) compiler: String,
     pub(super) flags: String,
-    /// Bits of the numbers of the reference.
+    /// What errors are against.
+    pub(super) reference: Against,
+    /// Bits of its numbers.
     pub(super) reference_bits: usize,
     /// The largest error that is right, in units of 2⁻⁵³ of the magnitude.
     pub(super) bound: f64,
@@ -232,6 +234,7 @@ impl Report {
             repetitions: arguments.repetitions,
             compiler: rustc.version.clone(),
             flags: Rustc::flags(Target::Own).join(" "),
+            reference: Against::of(&robot.options),
             reference_bits: BITS,
             bound: arguments.bound,
             optimised: !cfg!(debug_assertions),

@@ -1,6 +1,6 @@
 //! A crate without the prelude, that has other things under the names that generated code needs.
 #![no_implicit_prelude]
-#![deny(warnings, missing_docs, unreachable_pub, unused)]
+#![deny(warnings, missing_docs, unreachable_pub, unused, unused_results)]
 
 mod core {}
 mod std {}

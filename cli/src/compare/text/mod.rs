@@ -5,6 +5,7 @@ mod peers;
 
 use std::fmt::Write;
 
+use super::accuracy::Against;
 use super::report::{FunctionReport, Report, VariantReport};
 use super::timing::Summary;
 use crate::ledger::Stage;
@@ -23,7 +24,7 @@ pub(super) fn text(report: &Report) -> String {
         ("The fastest build of each engine, by the letter of its build, and how many times our time it takes".to_owned(), peers::engines(report), ""),
         (format!("Time of a call in each build of other libraries{}", peers::letters(report)), peers::builds(report), ""),
         (
-            "Largest error in units of 2⁻⁵³ of the sum of the magnitudes of the terms, against an independent evaluation in big floats".to_owned(),
+            format!("Largest error in units of 2⁻⁵³ of the sum of the magnitudes of the terms, against {} in big floats", against(report)),
             errors(report),
             ERRORS,
         ),
@@ -60,6 +61,14 @@ pub(super) fn text(report: &Report) -> String {
 const TIMES: &str = "generated: for this processor; any processor: the same source for any of its kind, where that is other code; generic: the library, for any robot";
 const BATCHES: &str = "blocks: 8 states (f32: 16) with each of their numbers side by side; states: one state after the other, to be turned first; \
                        generated/it: how many times its time a call of generated code takes";
+/// What errors are against.
+fn against(report: &Report) -> &'static str {
+    match report.reference {
+        Against::Textbook => "an independent evaluation",
+        Against::Library => "the generic library",
+    }
+}
+
 const ERRORS: &str = "forward: of the result; backward: of the torques that the result needs; states: on which they were looked at, without those where the function is singular";
 const STAGES: &str = "asked: by the algorithm; trace: zeros, ones and what is the same folded in; turn, regroup, slide, still: frames and masses moved to where numbers vanish; lent: mass in the body beyond a joint for torques, where numbers vanish for it; axes: rates by the second derivatives of joints' axes, not by ω̇; unturned: constants turned in place of vectors; unit: lengths in a unit in which a constant is one; \
                       live: without what no result needs; factor: common factors multiplied once; partial: what several sums have added once; inside: what is added to sums over lanes in them; contract: sums as chains of multiply-adds; swept: once more without what no result needs";

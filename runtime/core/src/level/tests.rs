@@ -29,7 +29,17 @@ fn levels_are_read_as_they_are_written() {
     }
     assert_eq!(Level::all().len(), 13);
     assert_eq!("f64".parse(), Ok(Level::default()));
-    for wrong in ["f16", "f64+fast", "f64+two", "double_double+correct", "", "f64+"] {
+    for wrong in [
+        "f16",
+        "f64+fast",
+        "f64+two",
+        "double_double+correct",
+        "",
+        "f64+",
+        "f64+fast_7+fast_10",
+        "f64+correct+correct",
+        "f64+no_fma+no_fma",
+    ] {
         assert!(wrong.parse::<Level>().is_err(), "{wrong}");
     }
 }
