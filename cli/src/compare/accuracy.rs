@@ -185,17 +185,19 @@ fn both([a, b]: [Option<f64>; 2]) -> Option<[f64; 2]> {
     Some([a?, b?])
 }
 
-/// η = maxᵢ |ID_exact(q, v, a) − τ|ᵢ / (scale of ID + |τ|)ᵢ, in units of 2⁻⁵³, for the state (q, v, τ, …) and accelerations that were found.
+/// η = maxᵢ |ID_exact(q, v, a) − τ|ᵢ / (scale of ID + that of τ)ᵢ, in units of 2⁻⁵³, for the state (q, v, τ, …) and accelerations that were found; τ is what motors make of that of the state.
 pub(crate) fn backward(reference: &Exact, model: &Model<f64>, inverse: &str, state: &[&[f64]], found: &[f64]) -> Option<f64> {
-    let tau = *state.get(2)?;
+    let asked = [*state.get(1)?, *state.get(2)?];
     if found.iter().any(|x| !x.is_finite()) {
         return Some(f64::NAN);
     }
     let mut state = state.to_vec();
     state[2] = found;
-    let scale = scales(model, inverse, &state).ok()?;
-    let scale: Vec<f64> = scale.iter().zip(tau).map(|(s, t)| s + t.abs()).collect();
-    Some(largest(&exact(reference, model, inverse, &state)?, tau, &scale))
+    let motors = FunctionId::motor_torques;
+    let (mut tau, terms) = (vec![0.0; model.nv], scales(model, motors.name(), &asked).ok()?);
+    motors.row().call(model, &mut Workspace::new(model), &asked, &mut tau).ok()?;
+    let scale: Vec<f64> = scales(model, inverse, &state).ok()?.iter().zip(terms).map(|(s, t)| s + t).collect();
+    Some(largest(&exact(reference, model, inverse, &state)?, &tau, &scale))
 }
 
 /// What the reference gives. A double's quaternion has a norm of one to 16 digits only, and what the rest does is nobody's error: it is of norm one here.

@@ -1,5 +1,6 @@
 //! The scale against which a rounding error is measured.
 
+mod norms;
 mod scales;
 mod solution;
 
@@ -8,6 +9,7 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 use articulated_core::Scalar;
 use num_traits::{One, Zero};
 
+pub(crate) use norms::{is_plain, norms};
 pub use scales::{scales, scales_of_generated};
 
 /// A value together with the sum of the magnitudes of the terms that it was summed from.

@@ -5,10 +5,10 @@ use articulated_core::algorithm::{FunctionError, Workspace, function};
 use articulated_core::model::Model;
 use num_traits::Zero;
 
-use super::{Magnitude, solution};
+use super::{Magnitude, norms, solution};
 
 /// The scale of each number that a function gives: the algorithm of the table, run with [`Magnitude`] on `model`, which has
-/// to be as it was read, before model passes.
+/// to be as it was read, before model passes; no more than the [`norms`] of its terms, where there are such.
 ///
 /// A function that solves with the mass matrix is measured by what rounding does to a backward stable solution instead: divisions would let the sum of
 /// magnitudes grow without bound, and everything would pass.
@@ -17,7 +17,9 @@ pub fn scales(model: &Model<f64>, name: &str, arguments: &[&[f64]]) -> Result<Ve
     if row.inverts_mass_matrix() {
         return solution::scales(model, row, arguments);
     }
-    Ok(magnitudes(model, name, &given(arguments))?.into_iter().map(|x| x.magnitude).collect())
+    let mut scales: Vec<f64> = magnitudes(model, name, &given(arguments))?.into_iter().map(|x| x.magnitude).collect();
+    scales.iter_mut().zip(norms(row.id, model, arguments)).for_each(|(scale, norm)| *scale = scale.min(norm));
+    Ok(scales)
 }
 
 /// What generated code may be off by where [`scales`] is too much to ask: model passes turn and move frames, so that one term becomes several whose sum it

@@ -6,6 +6,8 @@
 //! ```text
 //! η = max_i |ID_exact(q, v, a) − τ|_i / (|M| |a| + |h| + |τ|)_i
 //! ```
+//!
+//! with τ what motors make of the torques that are asked for. Where joints follow others, or effects act, M and h may be the rest of larger terms: then the sums of their magnitudes stand for |M| and |h|.
 
 use articulated_core::algorithm::checked::{Factor, Singular};
 use articulated_core::algorithm::{FunctionId, Workspace, articulated_body, checked_forward_dynamics};
@@ -14,8 +16,7 @@ use articulated_core::model::Model;
 use super::condition::{condition, diagonal, norm, sensitivity};
 use super::machine::{Machine, cast, exact, wide, widened};
 use super::row::{Case, Row};
-use super::terms::terms;
-use crate::magnitude::scales;
+use crate::magnitude::{is_plain, scales};
 use crate::precise::Big;
 use crate::worse::worse;
 
@@ -130,7 +131,9 @@ impl<'a, F: Machine> Judge<'a, F> {
         let most = |k: usize| errors.iter().map(|e| e[k]).fold(0.0, worse);
         if !errors.is_empty() {
             rows.push(self.row("forward_dynamics by LTDL, η", most(0), limit, "u"));
-            rows.push(self.row("solve_mass_matrix by LTDL, error over κ₂(M)", most(1), FORWARD, "u"));
+            if is_plain(&self.wide) {
+                rows.push(self.row("solve_mass_matrix by LTDL, error over κ₂(M)", most(1), FORWARD, "u"));
+            }
             rows.push(self.row(
                 "solve_mass_matrix by LTDL, error over ‖M⁻¹‖₂‖terms of M‖₂, scaled to a diagonal of ones",
                 most(2),
@@ -159,8 +162,9 @@ impl<'a, F: Machine> Judge<'a, F> {
         let m = call(FunctionId::mass_matrix, &self.model, std::slice::from_ref(&q));
         let mut factor = Factor::<F>::new(self.model.nv);
         factor.factor(&m).ok()?;
-        let h = call(FunctionId::bias_forces, &self.model, &[q.clone(), v]);
-        let mut a: Vec<F> = tau.iter().zip(h).map(|(t, h)| *t - h).collect();
+        let h = call(FunctionId::bias_forces, &self.model, &[q.clone(), v.clone()]);
+        let driven = call(FunctionId::motor_torques, &self.model, &[v, tau.clone()]);
+        let mut a: Vec<F> = driven.iter().zip(h).map(|(t, h)| *t - h).collect();
         factor.solve(&mut a);
         let mut x = tau.clone();
         factor.solve(&mut x);
@@ -197,18 +201,33 @@ impl<'a, F: Machine> Judge<'a, F> {
         self.case.holds(format!("checked_forward_dynamics, {}: {told}", F::NAME), wrong.is_none())
     }
 
+    /// |M| and |h|.
+    fn sizes(&self, q: &[f64], v: &[f64]) -> [Vec<f64>; 2] {
+        let zeros = vec![0.0; v.len()];
+        let terms =
+            || Some([scale(FunctionId::mass_matrix, &self.wide, &[q])?, scale(FunctionId::inverse_dynamics, &self.wide, &[q, v, &zeros])?]);
+        if let Some(terms) = (!is_plain(&self.wide)).then(terms).flatten() {
+            return terms;
+        }
+        let of = |function, arguments: &[&[f64]]| {
+            let arguments: Vec<Vec<f64>> = arguments.iter().map(|x| x.to_vec()).collect();
+            call(function, &self.wide, &arguments).into_iter().map(f64::abs).collect()
+        };
+        [of(FunctionId::mass_matrix, &[q]), of(FunctionId::bias_forces, &[q, v])]
+    }
+
     /// η, and the forward error relative to the largest acceleration, in units of u.
     pub(super) fn solution(&self, a: &[F], state: &State) -> [f64; 2] {
         let [q, v, tau] = [&state.q, &state.v, &state.tau].map(|x| widened::<F>(&cast(x)));
         let (a, n) = (widened(a), a.len());
-        let m = self.wide_mass_matrix(state);
-        let h = call(FunctionId::bias_forces, &self.wide, &[q.clone(), v.clone()]);
-        let scale = |i: usize| (0..n).map(|k| (m[i * n + k] * a[k]).abs()).sum::<f64>() + h[i].abs() + tau[i].abs();
+        let [m, h] = self.sizes(&q, &v);
+        let driven = call(FunctionId::motor_torques, &self.wide, &[v.clone(), tau.clone()]);
+        let scale = |i: usize| (0..n).map(|k| (m[i * n + k] * a[k]).abs()).sum::<f64>() + h[i] + driven[i].abs();
         Big::scope(|| {
             let model = exact(&self.model);
             let [q, v, precise] = [&q, &v, &a].map(|x| cast::<Big>(x));
             let needed = call(FunctionId::inverse_dynamics, &model, &[q.clone(), v.clone(), precise]);
-            let backward = needed.iter().enumerate().map(|(i, t)| off(*t, F::from_f64(tau[i]), scale(i))).fold(0.0, worse);
+            let backward = needed.iter().enumerate().map(|(i, t)| off(*t, F::from_f64(driven[i]), scale(i))).fold(0.0, worse);
             [backward, forward_error(&model, [&q, &v, &cast(&tau)], &a) / F::ROUNDOFF]
         })
     }
@@ -225,11 +244,9 @@ pub fn exact_error<F: Machine>(function: FunctionId, model: &Model<f64>, given: 
     })
 }
 
-/// The magnitudes of the terms of a function's results: the smaller one of those of their numbers and of their norms.
+/// The magnitudes of the terms of a function's results.
 pub fn scale(function: FunctionId, model: &Model<f64>, arguments: &[&[f64]]) -> Option<Vec<f64>> {
-    let mut scale = scales(model, function.name(), arguments).ok()?;
-    scale.iter_mut().zip(terms(function, model, arguments)).for_each(|(a, b)| *a = a.min(b));
-    Some(scale)
+    scales(model, function.name(), arguments).ok()
 }
 
 /// max |a − a_exact| / max |a_exact|.

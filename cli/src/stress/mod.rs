@@ -12,7 +12,6 @@ pub mod machine;
 pub mod own;
 pub mod robots;
 pub mod row;
-mod terms;
 mod text;
 pub mod urdf_text;
 

@@ -1,6 +1,6 @@
 //! `articulated stress`.
 
-use super::{run, run_with};
+use super::{File, run, run_with};
 
 #[test]
 fn a_chapter_is_a_table_and_its_rows_are_in_the_json() {
@@ -43,4 +43,43 @@ fn a_robot_of_ones_own_is_judged_and_watched() {
 fn a_scene_with_effects_is_within_its_limits() {
     let ended = run(&["stress", "arm.toml"]);
     assert_eq!(ended.status, 0, "{}", ended.out);
+}
+
+/// Two links that stay level: M and h are what two joints leave of each other. And one whose angle is a sum itself.
+const FOLLOWED: &str = "<robot name='arm'><link name='base'/>LINKS\
+    <joint name='shoulder' type='continuous'><parent link='base'/><child link='l1'/><axis xyz='0 -1 0'/></joint>\
+    <joint name='elbow' type='continuous'><parent link='l1'/><child link='l2'/><origin xyz='0.5 0 0'/><axis xyz='0 -1 0'/>MIMIC</joint></robot>";
+
+fn arm(mimic: &str) -> String {
+    let link = |name: &str, x: f64| {
+        format!(
+            "<link name='{name}'><inertial><origin xyz='{x} 0 0'/><mass value='2'/>\
+             <inertia ixx='0.01' ixy='0' ixz='0' iyy='0.03' iyz='0' izz='0.03'/></inertial></link>"
+        )
+    };
+    FOLLOWED.replace("LINKS", &(link("l1", 0.25) + &link("l2", 0.2))).replace("MIMIC", mimic)
+}
+
+#[test]
+fn what_joints_that_follow_leave_of_each_other_is_within_its_limits() {
+    for mimic in ["<mimic joint='shoulder' multiplier='-1'/>", "<mimic joint='shoulder' multiplier='-2' offset='0.1'/>"] {
+        let ended = run_with(&["stress", "-"], arm(mimic).as_bytes());
+        assert_eq!(ended.status, 0, "{mimic}: {}", ended.out);
+    }
+}
+
+/// A motor gives less than it is asked for, and drag is nearly what Coriolis forces are: in the library and in generated code.
+#[test]
+fn motors_and_drag_are_within_their_limits() {
+    let urdf = File::new("arm.urdf", arm("").as_bytes());
+    let text = format!("urdf = {:?}\n[effects.motor]\nshoulder = {{ torque = 2.0, speed = 3.0 }}\n", urdf.name());
+    let scene = File::new("motor.toml", text.as_bytes());
+    for words in [&[][..], &["--generated"]] {
+        let ended = run(&[&["stress", scene.name()], words].concat());
+        assert_eq!(ended.status, 0, "{}{}", ended.out, ended.err);
+    }
+    let ended = run(&["compare", scene.name(), "--functions", "forward_dynamics", "--repetitions", "31"]);
+    assert_eq!(ended.status, 0, "{}{}", ended.out, ended.err);
+    let ended = run(&["stress", "underwater_arm.toml", "--generated", "--levels", "f64"]);
+    assert_eq!(ended.status, 0, "{}{}", ended.out, ended.err);
 }

@@ -8,12 +8,11 @@ use articulated_core::model::Model;
 
 use super::Made;
 use super::contract::Contract;
-use crate::magnitude::{Magnitude, scales};
+use crate::magnitude::{Magnitude, norms, scales};
 use crate::precise::Big;
 use crate::stress::judge::{Judge, State, call, scale};
 use crate::stress::machine::{cast, exact};
 use crate::stress::row::{Case, Row};
-use crate::stress::terms::terms;
 use crate::worse::worse;
 
 /// Of sums of two doubles: what is left beyond one rounding of the result, in units of 2⁻¹⁰⁰ of the terms.
@@ -95,20 +94,23 @@ impl Judged<'_> {
         self.function.row::<f64>().takes.iter().map(|a| of(a).clone()).collect()
     }
 
+    /// The magnitudes of the terms as norms; of functions and robots that have none, as they are.
+    fn norms(&self, function: FunctionId, arguments: &[&[f64]]) -> Option<Vec<f64>> {
+        let norms = norms(function, self.model, arguments);
+        if norms.is_empty() { scale(function, self.model, arguments) } else { Some(norms) }
+    }
+
     /// The largest error over what the contract allows, against the model in many digits.
     fn error(&self, state: &State) -> Option<f64> {
         let arguments = self.arguments(state);
         let found = self.made.call(self.function, &arguments)?;
         let slices: Vec<&[f64]> = arguments.iter().map(Vec::as_slice).collect();
         let sums = scale(self.function, self.model, &slices)?;
-        let norms = terms(self.function, self.model, &slices);
+        let norms = self.norms(self.function, &slices)?;
         Some(Big::scope(|| {
             let given: Vec<Vec<Big>> = arguments.iter().map(|x| cast(x)).collect();
             let expected = call(self.function, &exact(self.model), &given);
-            let one = |(k, e): (usize, &Big)| {
-                let norm = norms.get(k).copied().unwrap_or(sums[k]);
-                self.contract.part(e.error_of(found[k], 1.0), e.to_f64(), sums[k], norm)
-            };
+            let one = |(k, e): (usize, &Big)| self.contract.part(e.error_of(found[k], 1.0), e.to_f64(), sums[k], norms[k]);
             expected.iter().enumerate().map(one).fold(0.0, worse)
         }))
     }
@@ -119,15 +121,16 @@ impl Judged<'_> {
         let (a, n) = (self.made.call(self.function, &self.arguments(state))?, tau.len());
         let m = call(FunctionId::mass_matrix, self.model, std::slice::from_ref(q));
         let h = call(FunctionId::bias_forces, self.model, &[q.clone(), v.clone()]);
-        let norms_m = terms(FunctionId::mass_matrix, self.model, &[q]);
-        let norms_h = terms(FunctionId::inverse_dynamics, self.model, &[q, v, &vec![0.0; n]]);
+        let driven = call(FunctionId::motor_torques, self.model, &[v.clone(), tau.clone()]);
+        let norms_m = self.norms(FunctionId::mass_matrix, &[q])?;
+        let norms_h = self.norms(FunctionId::inverse_dynamics, &[q, v, &vec![0.0; n]])?;
         let moved = |m: &[f64], i: usize| (0..n).map(|k| (m[i * n + k] * a[k]).abs()).sum::<f64>();
         Some(Big::scope(|| {
             let [q, v, precise] = [q, v, &a].map(|x| cast::<Big>(x));
             let needed = call(FunctionId::inverse_dynamics, &exact(self.model), &[q, v, precise]);
             let one = |(i, t): (usize, &Big)| {
-                let sum = moved(&m, i) + h[i].abs() + tau[i].abs();
-                self.contract.part(t.error_of(tau[i], 1.0), moved(&m, i), sum, moved(&norms_m, i) + norms_h[i] + tau[i].abs())
+                let sum = moved(&m, i) + h[i].abs() + driven[i].abs();
+                self.contract.part(t.error_of(driven[i], 1.0), moved(&m, i), sum, moved(&norms_m, i) + norms_h[i] + driven[i].abs())
             };
             needed.iter().enumerate().map(one).fold(0.0, worse)
         }))

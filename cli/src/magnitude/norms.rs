@@ -8,10 +8,10 @@ use articulated_core::joint::Joint;
 use articulated_core::model::{Body, Model};
 use articulated_core::nalgebra::Vector3;
 
-/// Of a function's results; none for those of other functions, and none with effects, whose terms are not in it.
-pub(super) fn terms(function: FunctionId, model: &Model<f64>, arguments: &[&[f64]]) -> Vec<f64> {
+/// Of a function's results; none for those of other functions, none with effects, whose terms are not in it, and none where joints follow others, whose angles are sums themselves.
+pub(crate) fn norms(function: FunctionId, model: &Model<f64>, arguments: &[&[f64]]) -> Vec<f64> {
     let n = model.nv;
-    if model.bodies.iter().any(|body| !(body.effects.joint.is_empty() && body.effects.body.is_empty())) {
+    if !is_plain(model) {
         return Vec::new();
     }
     match (function, arguments) {
@@ -23,6 +23,11 @@ pub(super) fn terms(function: FunctionId, model: &Model<f64>, arguments: &[&[f64
         }
         _ => Vec::new(),
     }
+}
+
+/// Whether no joint follows another, and nothing acts but gravity.
+pub(crate) fn is_plain(model: &Model<f64>) -> bool {
+    model.bodies.iter().all(|body| body.coordinates.mimic.is_none() && body.effects.joint.is_empty() && body.effects.body.is_empty())
 }
 
 /// Norms of what a body's motion and its wrench are summed of.
