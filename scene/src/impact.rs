@@ -117,7 +117,7 @@ pub(crate) const KEYS: &[Row<Impact>] = &[
         required: false,
         value: "number, s",
         default: "this or `ball` has to be given",
-        what: "when the ball is hit, wherever the point is then",
+        what: "when the ball is hit, wherever the point is then: from the start on, before the end",
         read: |x, s, log| set(&mut x.when, s.number(log).map(When::Time)),
     },
     Row {

@@ -6,7 +6,7 @@ use articulated::Dynamics;
 use articulated::simulate::{Counts, Ended, Hit, IntegratorId, Recording as Run, Settings, SimulateError, Simulation};
 use articulated_codegen::Generated;
 use articulated_core::description::JointKind;
-use articulated_scene::Controller;
+use articulated_scene::{Controller, When};
 
 use super::drive::Drive;
 use super::recording::{Happening, Recording};
@@ -55,7 +55,8 @@ pub(super) fn run<R: Dynamics<f64>>(
 ) -> Result<Motion, Failure> {
     let refused = |e: SimulateError| Failure::input(e.to_string().lines().map(|l| format!("{}: {l}", stage.prepared.scene.file)));
     let mut drive = Drive::new(robot, begin.controller.clone(), stage.prepared.scene.control.period);
-    let mut watch = Watch::of(stage, robot, frames).map_err(refused)?;
+    in_time(stage, settings)?;
+    let mut watch = Watch::of(stage, robot, frames, settings.start).map_err(refused)?;
     let mut simulation = Simulation::new(robot, settings.clone()).map_err(refused)?;
     let mut run = simulation.recording();
     let (length, mut looked) = (settings.end - settings.start, 0_u64);
@@ -85,6 +86,18 @@ pub(super) fn run<R: Dynamics<f64>>(
     };
     let counts = run.counts;
     Ok(Motion { recording: told(stage, run, &|hit| watch.words(hit)), counts, ended, wall, ball: watch.ball.get(), error })
+}
+
+/// Whether the ball is hit while the robot moves.
+fn in_time(stage: &Stage, settings: &Settings) -> Result<(), Failure> {
+    let Settings { start, end, .. } = settings;
+    match stage.prepared.scene.impact.as_ref().map(|impact| impact.when) {
+        Some(When::Time(t)) if t < *start || t >= *end => {
+            let file = &stage.prepared.scene.file;
+            Err(Failure::input([format!("{file}: impact.time: found {t:?}, expected a time from {start:?} s on and before {end:?} s")]))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The library's recording with names.

@@ -27,6 +27,8 @@ pub(super) struct Summary {
     pub(super) momentum: Momentum,
     pub(super) counts: Done,
     pub(super) events: Vec<Happening>,
+    /// Whether the ball of the scene's impact was reached; `None` where there is none.
+    pub(super) ball_reached: Option<bool>,
     pub(super) wall_s: f64,
     pub(super) simulated_s_per_wall_s: f64,
     /// Written into the folder.
@@ -112,6 +114,7 @@ impl Summary {
             momentum: Momentum::of(r),
             counts: Done::of(&motion.counts, r.len()),
             events: r.events.clone(),
+            ball_reached: stage.prepared.scene.impact.as_ref().map(|_| motion.ball.is_some()),
             wall_s: wall,
             simulated_s_per_wall_s: (end - settings.start) / wall.max(1e-9),
             files: Vec::new(),

@@ -39,7 +39,7 @@ fn looks_for(stage: &Stage, what: Watched) -> bool {
 
 impl<'a> Watch<'a> {
     /// What the scene asks for; `frames` are the robot's, in its order.
-    pub(super) fn of<R: Dynamics<f64>>(stage: &Stage, robot: &'a R, frames: &[String]) -> Result<Self, SimulateError>
+    pub(super) fn of<R: Dynamics<f64>>(stage: &Stage, robot: &'a R, frames: &[String], start: f64) -> Result<Self, SimulateError>
     where
         R::Workspace: 'a,
     {
@@ -53,7 +53,7 @@ impl<'a> Watch<'a> {
         if looks_for(stage, Watched::StickSlip) {
             watch.stick_slip(stage);
         }
-        watch.ball(stage, robot, frames)?;
+        watch.ball(stage, robot, frames, start)?;
         Ok(watch)
     }
 
@@ -107,7 +107,8 @@ impl<'a> Watch<'a> {
         }
     }
 
-    fn ball<R: Dynamics<f64>>(&mut self, stage: &Stage, robot: &'a R, frames: &[String]) -> Result<(), SimulateError>
+    /// What is where the ball is at the start passes it there.
+    fn ball<R: Dynamics<f64>>(&mut self, stage: &Stage, robot: &'a R, frames: &[String], start: f64) -> Result<(), SimulateError>
     where
         R::Workspace: 'a,
     {
@@ -130,19 +131,20 @@ impl<'a> Watch<'a> {
         };
         let hits = format!("{} hits the ball, which leaves at", ball.link);
         let misses = format!("{} is not moving towards the ball, which keeps", ball.link);
+        let before = move |t: f64, g: f64| if g == 0.0 && t <= start { -f64::MIN_POSITIVE } else { g };
         let event = match ball.when {
-            When::Time(at) => Event::new(ball.link.clone(), move |t, _, _| t - at),
+            When::Time(at) => Event::new(ball.link.clone(), move |t, _, _| before(t, t - at)),
             When::Ball(place) => {
                 let (mut ws, mut out) = (robot.workspace(), vec![0.0; 12 * robot.shape().frames]);
                 let (point, n) = (ball.point, ball.normal);
                 // n·(p − ball) with p = x + R r
-                Event::new(ball.link.clone(), move |_, q: &[f64], _| match robot.placements(&mut ws, q, &mut out) {
+                Event::new(ball.link.clone(), move |t, q: &[f64], _| match robot.placements(&mut ws, q, &mut out) {
                     // Nobody looks for a ball that is gone.
                     _ if was.get() => -1.0,
                     Ok(()) => {
                         let x = &out[12 * frame..][..12];
                         let p = |k: usize| x[9 + k] + (0..3).map(|c| x[3 * k + c] * point[c]).sum::<f64>();
-                        (0..3).map(|k| n[k] * (p(k) - place[k])).sum()
+                        before(t, (0..3).map(|k| n[k] * (p(k) - place[k])).sum())
                     }
                     Err(_) => f64::NAN,
                 })

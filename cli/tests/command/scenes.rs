@@ -153,6 +153,40 @@ fn a_ball_is_hit_once_and_only_by_what_moves_towards_it() {
     assert_eq!((missed, got.as_f64()), (vec!["bob is not moving towards the ball, which keeps 40.0000 m/s".to_owned()], Some(0.0)));
 }
 
+/// A pendulum without weight that turns at 2 rad/s, its bob a metre below the hinge: the ball is hit where it is or when it is said, at the start too, and what the blow makes of the motion is told where it ends with it.
+#[test]
+fn a_ball_is_hit_at_the_start_and_not_outside_of_the_motion() {
+    let file = File::new("pendulum.urdf", articulated_models::robot("simple_pendulum").unwrap().urdf.as_bytes());
+    let scene = |q: f64, impact: &str| {
+        let text = format!(
+            "urdf = {:?}\ngravity = [0, 0, 0]\n[initial]\nq = [{q}]\nv = [2.0]\n[simulation]\nend = 1.0\n[impact]\nlink = \"bob\"\n\
+             normal = [-1, 0, 0]\npoint = [0, 0, -1]\nmass = 0.1\nrestitution = 0.7\n{impact}\n",
+            file.name()
+        );
+        File::new("ball.toml", text.as_bytes())
+    };
+    let hit = |q: f64, impact: &str| {
+        let motion = Motion::of(scene(q, impact).name(), &[]);
+        let times: Vec<f64> = motion.summary["events"].as_array().unwrap().iter().map(|e| e["time"].as_f64().unwrap()).collect();
+        (times, motion.summary["ball_reached"].as_bool(), motion.number("energy", "from_events"), motion.number("energy", "kinetic_end"))
+    };
+    // By time at the start, and by place where the point starts.
+    for (q, impact) in [(-0.1, "time = 0.0"), (0.0, "ball = [0, 0, -1]")] {
+        let (times, reached, ..) = hit(q, impact);
+        assert!(times.len() == 1 && times[0].abs() < 1e-9 && reached == Some(true), "{impact}: {times:?} {reached:?}");
+    }
+    let (times, reached, brought, kinetic) = hit(-0.1, "time = 0.5\nstop = true");
+    let before = hit(-0.1, "ball = [9, 0, 0]");
+    assert_eq!((times.as_slice(), reached), (&[0.5][..], Some(true)));
+    assert!(brought < 0.0 && (kinetic - before.3 - brought).abs() < 1e-9, "{kinetic} J, {brought} J");
+    assert_eq!((before.0, before.1), (vec![], Some(false)));
+    for time in ["-1.0", "1.0", "2.0"] {
+        let ended = run(&["simulate", scene(-0.1, &format!("time = {time}")).name()]);
+        let told = format!("impact.time: found {time}, expected a time from 0.0 s on and before 1.0 s");
+        assert!(ended.status == 1 && ended.err.contains(&told), "{}", ended.err);
+    }
+}
+
 #[test]
 fn a_quadruped_comes_to_rest_where_the_ground_holds_its_weight() {
     let motion = Motion::of("quadruped_drop", &["--every", "0.1"]);

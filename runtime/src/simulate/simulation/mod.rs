@@ -233,7 +233,11 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             match outcome {
                 Outcome::Stopped(event) => return Ok(Ended::ByEvent(event)),
                 _ if self.t >= self.settings.end => return Ok(Ended::AtEnd),
-                _ if !watch(self.t, &self.system.counts) => return Ok(Ended::ByWatcher),
+                _ if !watch(self.t, &self.system.counts) => {
+                    // What a map made of a state stands beside what was there before.
+                    if matches!(outcome, Outcome::Mapped) { self.record_here(run) } else { self.record_end(run) }?;
+                    return Ok(Ended::ByWatcher);
+                }
                 _ => {}
             }
             debug_assert!(self.y[..nv].iter().all(|u| *u == 0.0));
