@@ -4,7 +4,7 @@
 use std::fmt;
 
 use articulated_core::description::{Base, Description, EditError};
-use articulated_core::effect::Applied;
+use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
 use articulated_urdf::{Kind, Problem, Problems, Reading, Subject, Unused};
 
@@ -97,6 +97,7 @@ pub(crate) fn read_with_shafts(request: &Request) -> Result<(Reading, Vec<Vec<Ap
         editing.refusals.retain(|r| matches!(r.edit, Edit::Append(_)) || !unknown(r));
     }
     editing.warn_of_limits();
+    editing.leave_what_is_used();
     if editing.refusals.is_empty() { Ok((editing.reading, springs)) } else { Err(Error::Edits { refusals: editing.refusals }) }
 }
 
@@ -197,6 +198,24 @@ impl Editing<'_> {
             })
         });
         self.reading.warnings.extend(joints.collect::<Vec<_>>());
+    }
+
+    /// Numbers of the URDF that an effect has taken are used.
+    fn leave_what_is_used(&mut self) {
+        let Reading { description, unused, .. } = &mut self.reading;
+        let used = |u: &Unused| {
+            let Subject::Joint(name) = &u.subject else { return false };
+            let dynamics = description.joints.iter().find(|j| j.name == *name).and_then(|j| j.dynamics.as_ref());
+            // The first number of each.
+            let taken = dynamics.and_then(|d| match u.tag.as_str() {
+                "dynamics damping" => Some((EffectId::damping, d.damping)),
+                "dynamics friction" => Some((EffectId::friction, d.friction)),
+                _ => None,
+            });
+            let is = |e: &Applied| taken.is_some_and(|(id, x)| e.effect == id && e.on == *name && e.parameters.first() == Some(&x));
+            self.request.options.effects.iter().any(is)
+        };
+        unused.retain(|u| !used(u));
     }
 }
 

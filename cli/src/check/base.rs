@@ -1,6 +1,7 @@
 //! Base parameters: what joints can feel of the inertial parameters, and what model passes made of them.
 
 use articulated_core::algorithm::{Argument, Workspace, inverse_dynamics};
+use articulated_core::effect::Effects;
 use articulated_core::joint::Joint;
 use articulated_core::model::Model;
 use articulated_core::model::pass::{model_passes, still};
@@ -156,7 +157,8 @@ fn tidy<const N: usize>(x: [f64; N]) -> [f64; N] {
 /// For each parameter the torques of one unit of it alone, over a number of states.
 fn columns(model: &Model<f64>) -> Vec<Vec<f64>> {
     let mut weightless = model.clone();
-    weightless.bodies.iter_mut().for_each(|b| b.inertia = SpatialInertia::zero());
+    // What springs, drag and rotors do is not theirs.
+    weightless.bodies.iter_mut().for_each(|b| (b.inertia, b.effects) = (SpatialInertia::zero(), Effects::default()));
     let count: usize = model.outward().map(|i| units(model.bodies[i].joint).len()).sum();
     let states = random(model, 2 * count / model.nv.max(1) + 2, 1);
     let mut ws = Workspace::new(model);

@@ -107,7 +107,9 @@ fn joints(rows: &[JointRow]) -> Table {
         let text = |x: &Option<String>| x.clone().unwrap_or_else(|| "–".into());
         let limit = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), number);
         let locked = row.locked.as_ref().map(|at| format!("locked at {}", at.iter().map(|x| number(*x)).collect::<Vec<_>>().join(", ")));
-        let follows = row.mimic.as_ref().map(|m| format!("{} · {} + {}", number(m.multiplier), m.joint, number(m.offset)));
+        let follows = row.mimic.as_ref().map(|m| {
+            format!("{} · {} {} {}", number(m.multiplier), m.joint, if m.offset < 0.0 { '-' } else { '+' }, number(m.offset.abs()))
+        });
         table.row([
             row.joint.clone(),
             row.kind.to_owned(),

@@ -153,3 +153,23 @@ fn base_parameters_are_counted_and_listed() {
     let text = run(&["check", "panda_like"]);
     assert!(text.out.contains("torques determine 43"), "{}", text.out);
 }
+
+#[test]
+fn effects_are_no_inertial_parameters_and_what_they_take_of_the_file_is_used() {
+    for (scene, robot) in [("arm.toml", "panda_like"), ("cart_pole.toml", "cart_pole"), ("underwater_arm.toml", "ur5_like")] {
+        let felt = |name: &str| run(&["check", name, "--format", "json"]).json()["base_parameters"]["identifiable"].as_u64().unwrap();
+        assert_eq!(felt(scene), felt(robot), "{scene}");
+    }
+    let urdf = br#"<robot name="arm"><link name="a"/><link name="b"><inertial><mass value="1"/>
+        <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+        <joint name="j" type="continuous"><parent link="a"/><child link="b"/><dynamics damping="0.5" friction="0.25"/></joint></robot>"#;
+    let urdf = File::new("arm.urdf", urdf);
+    let unused = |effects: &str| {
+        let scene = File::new("s.toml", format!("urdf = {:?}\n{effects}", urdf.name()).as_bytes());
+        let told = run(&["check", scene.name(), "--format", "json"]).json()["unused"].to_string();
+        ["damping", "friction"].map(|tag| told.contains(&format!("dynamics {tag}")))
+    };
+    assert_eq!(unused(""), [true, true]);
+    assert_eq!(unused("effects.damping = \"urdf\""), [false, true]);
+    assert_eq!(unused("effects.damping.j = 0.1"), [true, true]);
+}
