@@ -77,7 +77,7 @@ pub(crate) enum Command {
     #[command(after_help = examples(&[
         "articulated compare panda_like",
         "articulated compare humanoid --functions inverse_dynamics --repetitions 101",
-        "articulated compare ur5_like --functions kinematics,derivatives --frames tool0",
+        "articulated compare ur5_like --functions kinematics,derivatives --frames flange",
         "articulated compare panda_like --functions inverse_dynamics --batch f64,f32",
         "articulated compare arm.urdf --peer libpeer.so --format json",
         "articulated compare quadruped --peers-manifest target/peers/peers.json --chart quadruped.svg",

@@ -286,13 +286,11 @@ pub(crate) fn counted(n: usize) -> String {
 
 /// There is no such joint that has coordinates.
 pub(crate) fn no_joint(log: &mut Log, at: At, key: &str, name: &str, model: &Model<f64>) {
+    if model.bodies.iter().any(|body| body.name == name && body.coordinates.mimic.is_some()) {
+        return log.error(at, key, Kind::Robot, "a joint that follows another", "the joint that it follows, whose coordinates it has");
+    }
     let names = model.joints.iter().map(|j| j.name.as_str());
-    log.unknown(
-        (at, key, Kind::UnknownName),
-        ("a joint that is not there or has no coordinate of its own".into(), name),
-        "a joint that moves",
-        names,
-    );
+    log.unknown((at, key, Kind::UnknownName), ("a joint that is not there, or is locked".into(), name), "a joint that moves", names);
 }
 
 /// Quaternions to norm one.

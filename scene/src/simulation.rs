@@ -286,7 +286,7 @@ fn check(x: &Simulation, spot: &Spot<'_>, log: &mut Log) {
         log.error(at, &spot.key, Kind::MissingKey, format!("no step for {name:?}"), "step: the length of its steps, s");
     }
     if x.step.is_some() {
-        for spot in ["min_step", "max_step", "first_step"].into_iter().filter_map(key) {
+        for spot in ["min_step", "max_step", "first_step", "rtol", "atol"].into_iter().filter_map(key) {
             spot.clash(log, "a fixed step and what is for steps by tolerance", "no step, or no such key");
         }
     }

@@ -120,9 +120,9 @@ fn a_simulation_that_cannot_be_is_told() {
 #[test]
 fn what_would_be_passed_over_is_told() {
     assert_eq!(
-        wrong("[simulation]\nend = 1\nstep = 0.1\nmax_step = 0.2\nmin_step = 1e-6\nfirst_step = 0.01"),
-        [("4", "max"), ("5", "min"), ("6", "first")].map(|(line, key)| format!(
-            "s.toml:{line}: simulation.{key}_step: found a fixed step and what is for steps by tolerance, expected no step, or no such key"
+        wrong("[simulation]\nend = 1\nstep = 0.1\nmax_step = 0.2\nmin_step = 1e-6\nfirst_step = 0.01\nrtol = 1e-3\natol = 1e-3"),
+        [("4", "max_step"), ("5", "min_step"), ("6", "first_step"), ("7", "rtol"), ("8", "atol")].map(|(line, key)| format!(
+            "s.toml:{line}: simulation.{key}: found a fixed step and what is for steps by tolerance, expected no step, or no such key"
         ))
     );
     assert!(Scene::read("s.toml", "[simulation]\nend = 1\nmax_step = 0.2\nmin_step = 1e-6\nfirst_step = 0.01").is_ok());
@@ -175,8 +175,12 @@ const ARM: &str = r#"<robot name="arm">
 
 /// What is said of a scene that reads, against the arm.
 fn against_the_arm(text: &str) -> Vec<String> {
+    against(ARM, text)
+}
+
+fn against(urdf: &str, text: &str) -> Vec<String> {
     let scene = Scene::read("s.toml", text).unwrap();
-    let reading = articulated_urdf::read(ARM.as_bytes(), &articulated_urdf::Options::default()).unwrap();
+    let reading = articulated_urdf::read(urdf.as_bytes(), &articulated_urdf::Options::default()).unwrap();
     let robot = Edited { description: &reading.description, base: Base::Fixed, unused: &reading.unused, shafts: &[] };
     let model = Model::new(&reading.description, Base::Fixed).unwrap();
     let mut errors: Vec<_> = scene.resolve(&robot).err().into_iter().flat_map(|e| e.errors).collect();
@@ -208,7 +212,7 @@ fn names_that_the_robot_does_not_have_are_told_with_the_nearest() {
         ),
         (
             "[initial]\nq = { elbo = 1 }",
-            "s.toml:2: initial.q.elbo: found a joint that is not there or has no coordinate of its own, expected a joint that moves; did you mean \
+            "s.toml:2: initial.q.elbo: found a joint that is not there, or is locked, expected a joint that moves; did you mean \
              \"elbow\"?",
         ),
         ("[initial]\nq = [1, 2, 3]", "s.toml:2: initial.q: found 3 numbers, expected 2 numbers for this robot"),
@@ -231,6 +235,25 @@ fn names_that_the_robot_does_not_have_are_told_with_the_nearest() {
         assert_eq!(against_the_arm(text), [expected]);
     }
 }
+
+#[test]
+fn a_joint_that_follows_another_has_neither_motor_nor_coordinates() {
+    let follower = ARM.replace("</robot>", FOLLOWER);
+    let told = |text: &str| against(&follower, text);
+    let expected = "expected the joint that it follows: that is what a motor drives";
+    assert_eq!(
+        told("[effects.motor]\nfinger = { torque = 1, speed = 1 }"),
+        [format!("s.toml:2: effects.motor.finger: found a joint that follows another, {expected}")]
+    );
+    assert_eq!(told("[effects.motor]\n\"*\" = { torque = 1, speed = 1 }\nfinger = \"off\""), Vec::<String>::new());
+    assert_eq!(
+        told("[initial]\nq = { finger = 1 }"),
+        ["s.toml:2: initial.q.finger: found a joint that follows another, expected the joint that it follows, whose coordinates it has"]
+    );
+}
+
+const FOLLOWER: &str = "<link name='finger'/><joint name='finger' type='continuous'><parent link='tip'/><child link='finger'/>\
+    <mimic joint='elbow'/></joint></robot>";
 
 #[test]
 fn sorts_of_mistakes_are_data() {

@@ -101,11 +101,7 @@ fn report(robot: &Robot, reference: &Reference, model: &Model<f64>, rustc: &Rust
 
 /// The peer libraries that the command line names.
 pub(super) fn libraries(arguments: &AccuracyArguments) -> Result<Vec<Library>, Failure> {
-    let mut libraries: Vec<Library> = arguments.peer.iter().map(|path| Library::at(path)).collect();
-    if let Some(file) = &arguments.peers_manifest {
-        libraries.extend(manifest::read(file).map_err(|line| Failure::input([line]))?);
-    }
-    Ok(libraries)
+    manifest::named(&arguments.peer, arguments.peers_manifest.as_deref())
 }
 
 /// The peers that read this robot; a note for each that does not.

@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::failure::Failure;
+
 /// A library, with what is known of its making. Only the path has to be there.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub(crate) struct Library {
@@ -73,6 +75,20 @@ pub(crate) const SINGLE_BOUND: f64 = 1e-3;
 /// FNV-1a of 64 bits.
 fn fnv(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, b| (hash ^ u64::from(*b)).wrapping_mul(0x0100_0000_01b3))
+}
+
+/// The libraries that a command line names one by one, and those of a manifest.
+pub(crate) fn named(paths: &[PathBuf], manifest: Option<&Path>) -> Result<Vec<Library>, Failure> {
+    let missing: Vec<String> =
+        paths.iter().filter(|p| !p.exists()).map(|p| format!("{}: found no such file, expected a peer's library", p.display())).collect();
+    if !missing.is_empty() {
+        return Err(Failure::input(missing));
+    }
+    let mut libraries: Vec<Library> = paths.iter().map(|path| Library::at(path)).collect();
+    if let Some(file) = manifest {
+        libraries.extend(read(file).map_err(|line| Failure::input([line]))?);
+    }
+    Ok(libraries)
 }
 
 /// The libraries of a manifest: a list of objects with `path`, or an object with such a list as `peers`.

@@ -91,10 +91,7 @@ fn open_peers(
     folder: &Path,
     report: &mut Report,
 ) -> Result<Vec<Peer>, Failure> {
-    let mut libraries: Vec<Library> = arguments.peer.iter().map(|path| Library::at(path)).collect();
-    if let Some(file) = &arguments.peers_manifest {
-        libraries.extend(manifest::read(file).map_err(|line| Failure::input([line]))?);
-    }
+    let libraries = manifest::named(&arguments.peer, arguments.peers_manifest.as_deref())?;
     let mut peers: Vec<Peer> = Vec::new();
     if libraries.is_empty() {
         return Ok(peers);

@@ -1,6 +1,7 @@
 //! Results as data.
 
 use articulated_core::algorithm::Function;
+use articulated_core::effect::Applied;
 use articulated_core::model::Model;
 use serde_json::{Value, json};
 
@@ -15,6 +16,8 @@ pub(super) struct Report {
     pub(super) robot: String,
     pub(super) base: &'static str,
     pub(super) gravity: [f64; 3],
+    /// Names of the effects that are on.
+    pub(super) effects: Vec<&'static str>,
     pub(super) compiler: Option<String>,
     pub(super) warnings: Vec<String>,
     pub(super) functions: Vec<FunctionReport>,
@@ -102,12 +105,20 @@ impl FunctionReport {
     }
 }
 
+/// The name of each sort of effect, once.
+fn names(effects: &[Applied]) -> Vec<&'static str> {
+    let mut names: Vec<&'static str> = effects.iter().map(|one| one.effect.name()).collect();
+    names.dedup();
+    names
+}
+
 impl Report {
     pub(super) fn new(robot: &Robot, warnings: Vec<String>) -> Self {
         Self {
             robot: robot.file.clone(),
             base: robot.base(),
             gravity: robot.options.gravity,
+            effects: names(&robot.options.effects),
             compiler: None,
             warnings,
             functions: Vec::new(),
@@ -120,6 +131,7 @@ impl Report {
             "robot": self.robot,
             "base": self.base,
             "gravity": self.gravity,
+            "effects": self.effects,
             "compiler": self.compiler,
             "warnings": self.warnings,
             "functions": self.functions.iter().map(|f| f.json(model)).collect::<Vec<_>>(),

@@ -11,7 +11,8 @@ use crate::table::{Table, plain};
 
 pub(super) fn text(report: &Report, model: &Model<f64>) -> String {
     let [x, y, z] = report.gravity;
-    let mut out = format!("{}, {} base, gravity ({x}, {y}, {z}) m/s²\n", plain(&report.robot), report.base);
+    let effects = if report.effects.is_empty() { String::new() } else { format!("; with {}", report.effects.join(", ")) };
+    let mut out = format!("{}, {} base, gravity ({x}, {y}, {z}) m/s²{effects}\n", plain(&report.robot), report.base);
     if let Some(compiler) = &report.compiler {
         let _ = writeln!(out, "generated code compiled by {compiler}");
     }

@@ -19,27 +19,31 @@ pub(crate) struct SimulateArguments {
     #[arg(long)]
     pub(crate) generated: bool,
     /// The last time, s, instead of the scene's
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = time, allow_negative_numbers = true)]
     pub(crate) end: Option<f64>,
     /// The integrator, instead of the scene's
     #[arg(long, value_name = "NAME", value_parser = integrator)]
     pub(crate) integrator: Option<String>,
     /// Fixed steps of this length, s
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) step: Option<f64>,
     /// Relative tolerance of a step, instead of the scene's
-    #[arg(long, value_name = "TOL")]
+    #[arg(long, value_name = "TOL", conflicts_with = "step", allow_negative_numbers = true)]
     pub(crate) rtol: Option<f64>,
     /// Absolute tolerance of a step, rad, m, and those a second, instead of the scene's
-    #[arg(long, value_name = "TOL")]
+    #[arg(long, value_name = "TOL", conflicts_with = "step", allow_negative_numbers = true)]
     pub(crate) atol: Option<f64>,
     /// Instead of writing a motion, measure how fast generated code gets to the scene's end at final errors of 1e-3, 1e-6 and 1e-9, beside
     /// peer libraries that take steps: one library, or a list of them. They are run: name only what you trust
     #[arg(long, value_name = "FILE", conflicts_with_all = ["output", "generated", "integrator", "step", "rtol", "atol", "every"])]
     pub(crate) against: Option<PathBuf>,
     /// Record every so many seconds, instead of what the scene says
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) every: Option<f64>,
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    text.trim().parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(|| "expected a number of seconds".into())
 }
 
 fn seconds(text: &str) -> Result<f64, String> {

@@ -166,9 +166,14 @@ fn what_cannot_be_found_or_run_is_said() {
     let file = File::new("still.toml", b"robot = \"cart_pole\"\n");
     assert!(run(&["simulate", file.name()]).err.contains("[simulation]"));
     assert_eq!(run(&["simulate", file.name(), "--end", "0.01"]).status, 0);
-    for words in [["--integrator", "rk5"], ["--end", "-1"], ["--step", "x"], ["--every", "0"]] {
-        assert_eq!(run(&[&["simulate", "cart_pole"][..], &words].concat()).status, 2, "{words:?}");
+    for words in [["--integrator", "rk5"], ["--end", "x"], ["--step", "-0.01"], ["--every", "0"]] {
+        let ended = run(&[&["simulate", "cart_pole"][..], &words].concat());
+        assert!(ended.status == 2 && ended.err.contains("expected") | ended.err.contains("did you mean"), "{words:?}: {}", ended.err);
     }
+    // A scene may begin before 0 s.
+    let ended = run(&["simulate", "cart_pole", "--end", "-1"]);
+    assert!(ended.status == 1 && ended.err.contains("end = -1"), "{}", ended.err);
+    assert_eq!(run(&["simulate", "cart_pole", "--step", "0.01", "--rtol", "1e-3"]).status, 2);
 }
 
 #[test]

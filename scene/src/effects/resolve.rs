@@ -124,6 +124,15 @@ impl<'a> Resolving<'a> {
                         let found = format!("a {} joint, which has no coordinate of its own for each degree of freedom", joint.kind.name());
                         log.error(one.place, &one.key, Kind::Robot, found, "another joint");
                     }
+                    Some(joint) if one.says.is_some() && row.id == EffectId::motor && joint.mimic.is_some() => {
+                        log.error(
+                            one.place,
+                            &one.key,
+                            Kind::Robot,
+                            "a joint that follows another",
+                            "the joint that it follows: that is what a motor drives",
+                        );
+                    }
                     Some(_) => {}
                 },
                 On::Link => match links.iter().position(|l| l.name == *name) {

@@ -195,7 +195,10 @@ fn check(one: &Applied) -> Result<(), Fault> {
         EffectId::limit if p[0] >= p[1] => wrong("upper", p[1], &alloc::format!("a number above the lower bound, {}", p[0])),
         EffectId::motor if p[3] > 1.0 => wrong("efficiency", p[3], "at most 1"),
         EffectId::contact if p[start(row, "normal")..][..3] == [0.0; 3] => wrong("normal", 0.0, "a direction"),
-        EffectId::added_mass if !semidefinite(p) => wrong("angular, linear and coupling", p[0], "a positive semidefinite matrix"),
+        EffectId::added_mass => match negative_eigenvalue(p) {
+            Some(x) => wrong("an eigenvalue of angular, linear and coupling", x, "a positive semidefinite matrix"),
+            None => Ok(()),
+        },
         _ => Ok(()),
     }
 }
@@ -214,7 +217,7 @@ fn within(field: &Field, x: f64) -> Result<(), Fault> {
 }
 
 /// Whether no motion has less than no energy, but for rounding of written numbers.
-fn semidefinite(p: &[f64]) -> bool {
+fn negative_eigenvalue(p: &[f64]) -> Option<f64> {
     let inertia = super::added_mass::inertia(p);
     let mut matrix = Matrix6::zeros();
     matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&inertia.angular);
@@ -222,5 +225,5 @@ fn semidefinite(p: &[f64]) -> bool {
     matrix.fixed_view_mut::<3, 3>(3, 0).copy_from(&inertia.coupling.transpose());
     matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&inertia.linear);
     let values = matrix.symmetric_eigenvalues();
-    values.iter().all(|x| *x >= -1e-9 * values.amax())
+    Some(values.min()).filter(|least| *least < -1e-9 * values.amax())
 }
