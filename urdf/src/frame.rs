@@ -1,6 +1,6 @@
 //! The tag `<origin>`.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use articulated_core::description::Origin;
 
@@ -19,7 +19,18 @@ pub(crate) fn origin(parent: &Tag<'_>, snap: Option<f64>, log: &mut Log) -> Orig
     unused::rest(&tag, &[], &["xyz", "rpy", "quat_xyzw"], log);
     let xyz = attribute_list(&tag, "xyz", log).unwrap_or_default();
     let rpy = attribute_list(&tag, "rpy", log).unwrap_or_default();
+    warn_of_turns(&tag, rpy, log);
     Origin { xyz, rpy: snapped(rpy, snap, &tag, log) }
+}
+
+/// So many rad and more are written by mistake: degrees, most often.
+const TURN: f64 = 1.001 * TAU;
+
+fn warn_of_turns(tag: &Tag<'_>, rpy: [f64; 3], log: &mut Log) {
+    if let Some(angle) = rpy.into_iter().find(|angle| angle.abs() > TURN) {
+        let expected = "rad, of which 90° are 1.5707963267948966; used as written";
+        log.warning(&tag.place("origin rpy"), Kind::MoreThanATurn, format!("{angle}, more than a turn"), expected);
+    }
 }
 
 /// Left out, it would be another robot.

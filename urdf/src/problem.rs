@@ -121,6 +121,8 @@ pub enum Kind {
     LimitOrder,
     /// A joint's coordinate, as asked for, that is beyond its limits.
     BeyondLimit,
+    /// An angle of a frame that is more than a turn.
+    MoreThanATurn,
     /// A bound or a coefficient below zero that has no such meaning.
     Negative,
     /// A tag or attribute that nobody knows, but nearly one that matters.

@@ -284,6 +284,7 @@ fn what_looks_wrong_is_a_warning_and_used_as_written() {
         ("<link name=\"hook\"/>", "<link name=\"hook\"><inertal/></link>", Kind::Misspelt, "hook", 17),
         ("effort=\"100\"", "effort=\"100\" efort=\"1\"", Kind::Misspelt, "travel", 29),
         ("<robot ", "<robot version=\"7\" ", Kind::Version, "", 2),
+        ("<child link=\"hook\"/>", "<child link=\"hook\"/><origin rpy=\"0 -90 0\"/>", Kind::MoreThanATurn, "swing", 33),
     ];
     let mut messages = Vec::new();
     for (from, to, kind, name, line) in cases {
@@ -294,7 +295,8 @@ fn what_looks_wrong_is_a_warning_and_used_as_written() {
         messages.push(warnings[0].to_string());
     }
     corpus::as_kept("warnings.txt", &messages);
-    for (from, to) in [("effort=\"100\"", "effort=\"0\""), ("damping=\"0.5\"", "damping=\"0\"")] {
+    let turned = ("<child link=\"hook\"/>", "<child link=\"hook\"/><origin rpy=\"6.283185307 0 -6.28319\"/>");
+    for (from, to) in [("effort=\"100\"", "effort=\"0\""), ("damping=\"0.5\"", "damping=\"0\""), turned] {
         assert!(accepted(&crane(from, to)).warnings.is_empty(), "{to}");
     }
     let travel = joint(&crane("lower=\"0\"", "lower=\"4\""), "travel").limit.unwrap();

@@ -7,9 +7,7 @@ use super::report::Report;
 use super::text::{COLUMNS, cells, crossover, growth};
 
 const HEAD: &str = "\
-# Chains from 7 to 1000 joints
-
-Made by `articulated scaling --all --markdown --chart docs/scaling.svg > docs/scaling.md`.
+Made by `articulated scaling --markdown`; docs/scaling.md by `articulated scaling --all --markdown --chart docs/scaling.svg`.
 
 Straight-line code grows with the robot: from some length on it no longer fits the caches, and a loop over the joints, which is the same code for
 each, is faster. The measurements say from which. The robots are serial arms of revolute joints with axes that change from joint to joint, every fifth askew, and links with a full
@@ -46,7 +44,12 @@ tokens, which the compiler has to read in any case. Who finds that long sets `[p
 ";
 
 pub(super) fn markdown(report: &Report, chart: Option<&Path>) -> String {
-    let mut out = format!("{HEAD}\n`{} {}`; medians of {}.\n", report.compiler, report.flags, report.repetitions);
+    let joints = || report.points.iter().map(|p| p.joints);
+    let chains = match (joints().min(), joints().max()) {
+        (Some(least), Some(most)) if least < most => format!("Chains from {least} to {most} joints"),
+        (least, _) => format!("A chain of {} joints", least.unwrap_or(0)),
+    };
+    let mut out = format!("# {chains}\n\n{HEAD}\n`{} {}`; medians of {}.\n", report.compiler, report.flags, report.repetitions);
     if let Some(name) = chart.and_then(Path::file_name) {
         let _ = writeln!(out, "\n![Time of a call against the number of joints]({})", name.to_string_lossy());
     }

@@ -24,6 +24,11 @@ pub(super) fn of(scene: Option<&Simulation>, arguments: &SimulateArguments, file
             settings.step = None;
         }
     }
+    if let (false, None, Some(name)) = (settings.integrator.row().adaptive, settings.step, &a.integrator) {
+        return Err(Failure::input([format!(
+            "--integrator {name}: found no length of its steps, expected --step, s, or `step` in [simulation] of {file}"
+        )]));
+    }
     // Two states are no motion to look at.
     let looked_at = (a.output.is_some() && settings.output == Output::Ends).then_some(0.01);
     if let Some(every) = a.every.or(looked_at) {

@@ -48,6 +48,10 @@ impl Stage {
                 let scene = Scene::read(&format!("{name}.toml"), bundled.toml).map_err(Error::from)?;
                 (scene::open_in(scene, Path::new(""), BUNDLED)?, PathBuf::new())
             }
+            None if path.is_file() && path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf")) => {
+                let expected = format!("a scene, a TOML file with urdf = {name:?} in it");
+                return Err(Failure::input([format!("{name}: found a URDF, expected {expected}")]));
+            }
             None if path.exists() => (scene::open(path, BUNDLED)?, path.parent().map(Path::to_owned).unwrap_or_default()),
             None => return Err(unknown(name)),
         };

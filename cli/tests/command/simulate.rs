@@ -170,6 +170,13 @@ fn what_cannot_be_found_or_run_is_said() {
         let ended = run(&[&["simulate", "cart_pole"][..], &words].concat());
         assert!(ended.status == 2 && ended.err.contains("expected") | ended.err.contains("did you mean"), "{words:?}: {}", ended.err);
     }
+    let ended = run(&["simulate", "pendulum", "--integrator", "rk4"]);
+    assert!(ended.status == 1 && ended.err.contains("--integrator rk4: found no length of its steps, expected --step"), "{}", ended.err);
+    let urdf = File::new("arm.urdf", b"<robot name='arm'><link name='base'/></robot>");
+    for command in ["simulate", "effects"] {
+        let ended = run(&[command, urdf.name()]);
+        assert!(ended.status == 1 && ended.lines_with("found a URDF, expected a scene, a TOML file with urdf = ") == 1, "{}", ended.err);
+    }
     // A scene may begin before 0 s.
     let ended = run(&["simulate", "cart_pole", "--end", "-1"]);
     assert!(ended.status == 1 && ended.err.contains("end = -1"), "{}", ended.err);
