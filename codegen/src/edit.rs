@@ -97,6 +97,7 @@ pub(crate) fn read_with_shafts(request: &Request) -> Result<(Reading, Vec<Vec<Ap
         editing.refusals.retain(|r| matches!(r.edit, Edit::Append(_)) || !unknown(r));
     }
     editing.warn_of_limits();
+    editing.warn_of_loads();
     editing.leave_what_is_used();
     if editing.refusals.is_empty() { Ok((editing.reading, springs)) } else { Err(Error::Edits { refusals: editing.refusals }) }
 }
@@ -200,6 +201,23 @@ impl Editing<'_> {
         self.reading.warnings.extend(joints.collect::<Vec<_>>());
     }
 
+    /// A load on what the base holds is odd, and of no account.
+    fn warn_of_loads(&mut self) {
+        let (options, description) = (&self.request.options, &self.reading.description);
+        let still = articulated_scene::still(description, options.base);
+        let held = |link: &str| description.links.iter().zip(&still).any(|(l, still)| l.name == link && *still);
+        let loads = options.payloads.iter().filter(|load| load.mass != 0.0 && held(&load.link)).map(|load| Problem {
+            file: self.request.file.clone(),
+            line: None,
+            subject: Subject::Link(load.link.clone()),
+            kind: Kind::UnusedInertia,
+            field: "payload".into(),
+            found: format!("{} kg on a link that a fixed base holds", load.mass),
+            expected: "a link that moves: here it plays no part in the dynamics".into(),
+        });
+        self.reading.warnings.extend(loads.collect::<Vec<_>>());
+    }
+
     /// Numbers of the URDF that an effect has taken are used.
     fn leave_what_is_used(&mut self) {
         let Reading { description, unused, .. } = &mut self.reading;
@@ -295,6 +313,23 @@ mod tests {
             let warnings = read(&request).unwrap().warnings;
             assert_eq!(warnings.iter().any(|w| w.kind == Kind::BeyondLimit), beyond, "{at}");
         }
+    }
+
+    #[test]
+    fn a_load_is_told_of_where_the_base_holds_it() {
+        let warned = |change: &dyn Fn(&mut Options)| {
+            let mut request = request();
+            change(&mut request.options);
+            read(&request).unwrap().warnings.iter().filter(|w| w.field == "payload").count()
+        };
+        let load = |link: &str, mass: f64| Payload { link: link.into(), mass, ..Payload::default() };
+        assert_eq!(warned(&|o| o.payloads.extend([load("base", 1.0), load("tip", 1.0), load("base", 0.0)])), 1);
+        let locked = |o: &mut Options| {
+            o.payloads.push(load("tip", 1.0));
+            o.lock.push(("hinge".into(), vec![0.0]));
+        };
+        assert_eq!(warned(&locked), 1);
+        assert_eq!(warned(&|o| (o.base, o.payloads) = (Base::Floating, vec![load("base", 1.0)])), 0);
     }
 
     #[test]

@@ -136,7 +136,8 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Option<Impact> {
     spot.read(KEYS, &mut impact, log);
     match (spot.get("ball"), spot.get("time")) {
         (Some(_), Some(time)) => time.clash(log, "ball and time", "one of them"),
-        (None, None) if log.count() == before => spot.clash(log, "neither ball nor time", "one of them, to say when the ball is hit"),
+        // One of them may be misspelt.
+        (None, None) if log.unknown_keys(before)[1] => spot.clash(log, "neither ball nor time", "one of them, to say when the ball is hit"),
         _ => {}
     }
     (log.count() == before).then_some(impact)

@@ -34,7 +34,7 @@ mod tree;
 
 pub use control::{Aim, Control, Controller, Drive, PerJoint, Target};
 pub use edits::{Append, Load, Lock};
-pub use effects::{Asked, Edited, Numbers, Resolved, Selector};
+pub use effects::{Asked, Edited, Numbers, Resolved, Selector, still};
 pub use error::{Kind, SceneError, SceneErrors};
 pub use impact::{Impact, When};
 pub use initial::{BaseState, Coordinates, Initial, Named};

@@ -57,6 +57,12 @@ impl Log {
         }
     }
 
+    /// Of the errors from number `before` on, whether keys that there are not are all of them, and whether they are none.
+    pub(crate) fn unknown_keys(&self, before: usize) -> [bool; 2] {
+        let mut unknown = self.errors.get(before..).unwrap_or_default().iter().map(|e| e.kind == Kind::UnknownKey);
+        [unknown.clone().all(|is| is) && self.more == 0, !unknown.any(|is| is)]
+    }
+
     /// How many errors there are.
     pub(crate) fn count(&self) -> usize {
         self.errors.len() + self.more

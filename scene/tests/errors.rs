@@ -147,6 +147,15 @@ fn what_would_be_passed_over_is_told() {
 }
 
 #[test]
+fn one_mistake_of_a_table_does_not_hide_another() {
+    let told = |text: &str| wrong(text).len();
+    assert_eq!(told("[simulation]\nend = -1\nsteps = 3"), 2);
+    assert_eq!(told("[simulation]\nend = -1\nstep = -1"), 1);
+    let ball = "[impact]\nlink = \"tip\"\nnormal = [1, 0, 0]\nrestitution = 1\n";
+    assert_eq!([told(&format!("{ball}mass = -0.5")), told(&format!("{ball}mass = 1\nbal = [0, 0, 0]"))], [2, 1]);
+}
+
+#[test]
 fn what_is_not_toml_is_told() {
     assert_eq!(one("robot = \"a\"\nurdf = \"b\""), "s.toml:1: robot: found robot and urdf, expected one of them");
     assert!(one("a = ").starts_with("s.toml:1: found what is not TOML ("));

@@ -25,6 +25,7 @@ use crate::tree::{At, Value};
 use articulated_core::effect::{Effect, EffectId, Field, On, effect, effects};
 
 pub use resolve::{Edited, Resolved};
+pub use still::still;
 pub(crate) use urdf::{offers, tag};
 
 /// One line of effects.

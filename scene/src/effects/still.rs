@@ -19,7 +19,7 @@ pub(crate) fn moves(description: &Description, joint: &Joint) -> bool {
 }
 
 /// For each link, whether it is fixed to the base.
-pub(crate) fn still(description: &Description, base: Base) -> Vec<bool> {
+pub fn still(description: &Description, base: Base) -> Vec<bool> {
     let mut still = vec![false; description.links.len()];
     if base == Base::Floating {
         return still;
