@@ -81,6 +81,11 @@ fn what_is_asked_of_all_is_had_by_those_that_can() {
     assert_eq!(motor.iter().map(|m| m.1.as_str()).collect::<Vec<_>>(), ["one", "two"]);
     let motor = on("[effects]\nmotor = \"urdf\"");
     assert!(motor.len() == 1 && motor[0].2[..2] == [7.0, 3.0], "{motor:?}");
+    // What a URDF has is behind the gear.
+    let geared = on("[effects.motor.\"*\"]\nfrom = \"urdf\"\ngear = 10");
+    assert!(geared.len() == 1 && geared[0].2[..3] == [0.7, 30.0, 10.0], "{geared:?}");
+    let own = on("[effects.motor.\"*\"]\nfrom = \"urdf\"\ngear = 10\ntorque = 2");
+    assert_eq!(own.iter().map(|m| &m.2[..2]).collect::<Vec<_>>(), [[2.0, 30.0]]);
     // Off where a name says so, though all have it, and a number that nobody gives is not looked for where nobody said.
     assert_eq!(on("[effects.damping]\n\"*\" = 1\ntwo = \"off\"").iter().map(|d| d.1.as_str()).collect::<Vec<_>>(), ["one", "three"]);
     let description = robot();

@@ -6,13 +6,14 @@ use articulated::Dynamics;
 use articulated::simulate::{Counts, Ended, Hit, IntegratorId, Recording as Run, Settings, SimulateError, Simulation};
 use articulated_codegen::Generated;
 use articulated_core::description::JointKind;
+use articulated_core::model::JointInfo;
 use articulated_scene::{Controller, When};
 
 use super::drive::Drive;
 use super::recording::{Happening, Recording};
 use super::stage::Stage;
 use super::watched::{self, Watch};
-use crate::console::Progress;
+use crate::console::{self, Progress};
 use crate::failure::Failure;
 
 /// What came of it.
@@ -42,7 +43,19 @@ pub(crate) fn begin(stage: &Stage) -> Result<Begin, Failure> {
     let start = scene.start(&stage.model).map_err(Failure::from);
     let controller = scene.controller(&stage.model, &mut |file| stage.file(file)).map_err(Failure::from);
     let ((q, v), controller) = Failure::both(start, controller)?;
+    beyond_limits(stage, &q).iter().for_each(|line| console::warn(line));
     Ok(Begin { q, v, controller })
+}
+
+/// A start beyond a joint's limits is odd, and used.
+fn beyond_limits(stage: &Stage, q: &[f64]) -> Vec<String> {
+    let told = |joint: &JointInfo| {
+        let (limit, x) = (joint.limit?, *q.get(joint.q.0).filter(|_| joint.q.1 == 1)?);
+        let (file, name) = (&stage.prepared.scene.file, &joint.name);
+        let expected = format!("{} to {}; used as asked for", limit.lower, limit.upper);
+        (x < limit.lower || x > limit.upper).then(|| format!("{file}: initial.q.{name}: found {x}, beyond its limits, expected {expected}"))
+    };
+    stage.model.joints.iter().filter_map(told).collect()
 }
 
 /// Runs it on a robot whose functions give these frames.

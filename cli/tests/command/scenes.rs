@@ -188,6 +188,20 @@ fn a_ball_is_hit_at_the_start_and_not_outside_of_the_motion() {
 }
 
 #[test]
+fn a_start_beyond_a_limit_is_told_and_used() {
+    let urdf = articulated_models::robot("cart_pole").unwrap().urdf;
+    let file = File::new("cart_pole.urdf", urdf.as_bytes());
+    let warned = |q: &str| {
+        let text = format!("urdf = {:?}\n[initial]\nq = {q}\n[simulation]\nend = 0.01\n", file.name());
+        let scene = File::new("start.toml", text.as_bytes());
+        let ended = run(&["simulate", scene.name()]);
+        assert_eq!(ended.status, 0, "{}", ended.err);
+        ended.lines_with("beyond its limits")
+    };
+    assert_eq!([warned("[0.0, 0.0]"), warned("[50.0, 0.0]"), warned("[-50.0, 0.0]")], [0, 1, 1]);
+}
+
+#[test]
 fn a_quadruped_comes_to_rest_where_the_ground_holds_its_weight() {
     let motion = Motion::of("quadruped_drop", &["--every", "0.1"]);
     assert_eq!(motion.summary["events"].as_array().unwrap().len(), 4);

@@ -81,7 +81,7 @@ struct Resolving<'a> {
 }
 
 /// A field's numbers, and the tag of the URDF that they are from.
-type Filled = (Vec<f64>, Option<&'static str>);
+pub(super) type Filled = (Vec<f64>, Option<&'static str>);
 
 impl<'a> Resolving<'a> {
     fn effect(&mut self, row: &'static Effect, log: &mut Log) {
@@ -178,7 +178,10 @@ impl<'a> Resolving<'a> {
             let layers = [named, all].map(|asked| asked.and_then(|a| a.says.as_ref()));
             let Some(layers) = one.says.as_ref().map(|_| layers) else { continue };
             match fill(row, &layers, &|tag: &str| urdf::number(joint, tag)) {
-                Ok(filled) => self.put_filled(row, &joint.name, Origin::default(), one, &filled),
+                Ok(mut filled) => {
+                    urdf::before_the_gear(row.id, &mut filled);
+                    self.put_filled(row, &joint.name, Origin::default(), one, &filled);
+                }
                 // Not every joint has what all are to have from the URDF.
                 Err(field) if named.is_none() && urdf::tag(row.id, field).is_some() => {}
                 Err(field) => missing(row, field, one, &format!("joint {:?}", joint.name), log),

@@ -4,6 +4,8 @@ use articulated_core::description::Joint;
 
 use articulated_core::effect::{Effect, EffectId};
 
+use super::resolve::Filled;
+
 /// Whether the format has numbers for this effect.
 pub(crate) fn offers(row: &Effect) -> bool {
     matches!(row.id, EffectId::damping | EffectId::friction | EffectId::limit | EffectId::motor)
@@ -20,6 +22,14 @@ pub(crate) fn tag(effect: EffectId, field: &str) -> Option<&'static str> {
         (EffectId::motor, "speed") => Some("limit velocity"),
         _ => None,
     }
+}
+
+/// A URDF has effort and velocity of the joint, behind the gear: those of the motor are less and more by its turns.
+pub(super) fn before_the_gear(effect: EffectId, filled: &mut [Filled]) {
+    let [torque, speed, (gear, _), ..] = filled else { return };
+    let Some(gear) = gear.first().filter(|_| effect == EffectId::motor) else { return };
+    torque.0.iter_mut().filter(|_| torque.1.is_some()).for_each(|x| *x /= gear);
+    speed.0.iter_mut().filter(|_| speed.1.is_some()).for_each(|x| *x *= gear);
 }
 
 /// The number that stands there for a joint; `None`, if there is none or it is infinite.
