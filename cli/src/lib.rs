@@ -43,11 +43,16 @@ use failure::{Failure, OK, USAGE};
 
 /// Runs the command with these words, the program's own name first. The exit status: see [`failure`].
 pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
-    let arguments = match Arguments::try_parse_from(words) {
+    let words: Vec<OsString> = words.into_iter().collect();
+    let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => arguments,
         Err(error) => {
             let _ = error.print();
-            return u8::try_from(error.exit_code()).unwrap_or(USAGE);
+            let status = u8::try_from(error.exit_code()).unwrap_or(USAGE);
+            if status == USAGE && asks_for_json(&words) {
+                let _ = console::print(&json(&Failure::usage(first_line(&error))));
+            }
+            return status;
         }
     };
     match dispatch(&arguments) {
@@ -61,6 +66,18 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
             failure.status
         }
     }
+}
+
+/// Of words that cannot be read, whether they ask for JSON.
+fn asks_for_json(words: &[OsString]) -> bool {
+    words.iter().any(|word| word == "--format=json") || words.windows(2).any(|w| w[0] == "--format" && w[1] == "json")
+}
+
+/// What is wrong with the command line, without the advice below it.
+fn first_line(error: &clap::Error) -> String {
+    let text = error.render().to_string();
+    let line = text.lines().next().unwrap_or_default();
+    line.strip_prefix("error: ").unwrap_or(line).to_owned()
 }
 
 fn dispatch(arguments: &Arguments) -> Result<u8, Failure> {

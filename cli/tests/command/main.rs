@@ -130,3 +130,17 @@ fn a_failure_is_json_too_where_that_was_asked_for() {
     assert!(told.contains("no_such_robot") && failed.err.contains(told), "{}", failed.err);
     assert_eq!(run(&["eval", "no_such_robot", "--function", "mass_matrix", "--states", "-"]).out, "");
 }
+
+#[test]
+fn a_command_line_that_cannot_be_read_is_told_as_data_too() {
+    for words in
+        [&["check", "panda_like", "--gravity", "1", "--format", "json"][..], &["--format=json", "simulate", "pendulum", "--step", "-1"]]
+    {
+        let ended = run(words);
+        let told = ended.json();
+        assert_eq!((ended.status, told["status"].as_u64()), (2, Some(2)), "{}", ended.out);
+        let error = told["errors"][0].as_str().unwrap();
+        assert!(error.starts_with("invalid value '") && ended.err.contains(error), "{error}");
+    }
+    assert_eq!(run(&["check", "panda_like", "--gravity", "1"]).out, "");
+}
