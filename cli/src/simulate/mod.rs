@@ -45,6 +45,12 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     }
     solvable(&stage)?;
     if let Some(folder) = &arguments.output {
+        if folder.is_file() {
+            return Err(Failure::input([format!(
+                "-o {}: found a file, expected a folder, which is made if it is not there",
+                folder.display()
+            )]));
+        }
         std::fs::create_dir_all(folder).map_err(|e| unwritable(folder, &e))?;
     }
     let progress = Progress::of_whole(format!("{}: motion", stage.name));

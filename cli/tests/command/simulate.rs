@@ -177,6 +177,8 @@ fn what_cannot_be_found_or_run_is_said() {
         let ended = run(&[command, urdf.name()]);
         assert!(ended.status == 1 && ended.lines_with("found a URDF, expected a scene, a TOML file with urdf = ") == 1, "{}", ended.err);
     }
+    let ended = run(&["simulate", "pendulum", "-o", urdf.name()]);
+    assert!(ended.status == 1 && ended.err.contains("found a file, expected a folder"), "{}", ended.err);
     // A scene may begin before 0 s.
     let ended = run(&["simulate", "cart_pole", "--end", "-1"]);
     assert!(ended.status == 1 && ended.err.contains("end = -1"), "{}", ended.err);
