@@ -154,13 +154,11 @@ impl Settings {
                 found.unless(sensible, "output", s, "a length of time greater than zero, s, and no more than 1e9 records");
             }
             Output::At(times) => {
-                let ordered = times.windows(2).all(|w| w[0] < w[1]) && times.iter().all(|t| *t >= self.start && *t <= self.end);
-                found.unless(
-                    ordered,
-                    "output",
-                    format!("{} times", times.len()),
-                    "times between start and end, each later than the one before",
-                );
+                let inside = |t: f64| t >= self.start && t <= self.end;
+                let early = times.windows(2).find(|w| w[0] >= w[1] || w[1].is_nan()).map(|w| w[1]);
+                let bad = times.iter().copied().find(|t| !inside(*t)).or(early);
+                let expected = format!("times from start = {} to end = {}, each later than the one before", self.start, self.end);
+                found.unless(bad.is_none(), "output", format!("{} among the times", bad.unwrap_or(0.0)), &expected);
             }
             Output::Steps | Output::Ends => {}
         }
@@ -202,6 +200,8 @@ mod tests {
         for key in ["start", "end", "step", "rtol", "atol", "atol_each", "max_step", "first_step", "max_steps", "output"] {
             assert_eq!(keys.iter().filter(|k| **k == key).count(), 1, "{key} among {keys:?}");
         }
+        let late = Settings { output: Output::At(vec![0.5, 1.5]), start: 0.0, end: 1.3, ..Settings::default() };
+        assert!(late.problems(shape)[0].to_string().starts_with("output = 1.5 among the times: times from start = 0 to end = 1.3"));
         let none = Settings { rtol: 0.0, atol: 0.0, ..Settings::default() };
         assert_eq!(none.problems(shape)[0].to_string(), "rtol = 0: one of rtol and atol greater than 0");
         let fixed = Settings { integrator: IntegratorId::rk4, ..Settings::default() };
