@@ -5,6 +5,8 @@ mod cost;
 mod report;
 mod text;
 
+use articulated_core::effect::Applied;
+
 use crate::arguments::Format;
 use crate::compiled::Rustc;
 use crate::console::{self, Progress};
@@ -16,6 +18,13 @@ use report::Report;
 
 /// What is told where nobody asks for others.
 const FUNCTIONS: [&str; 2] = ["inverse_dynamics", "forward_dynamics"];
+
+/// The name of each sort of effect, once; effects stand by sorts.
+pub(crate) fn sorts(effects: &[Applied]) -> Vec<&'static str> {
+    let mut names: Vec<&'static str> = effects.iter().map(|one| one.effect.name()).collect();
+    names.dedup();
+    names
+}
 
 /// Prints what is on, off and not used, and what it costs.
 pub(crate) fn run(arguments: &EffectsArguments, format: Format) -> Result<(), Failure> {

@@ -1,12 +1,12 @@
 //! Results as data.
 
 use articulated_core::algorithm::Function;
-use articulated_core::effect::Applied;
 use articulated_core::model::Model;
 use serde_json::{Value, json};
 
 use super::BOUND;
 use super::layout::labelled;
+use crate::effects::sorts;
 use crate::magnitude::ROUNDOFF;
 use crate::robot::Robot;
 use crate::worse::worse;
@@ -105,20 +105,13 @@ impl FunctionReport {
     }
 }
 
-/// The name of each sort of effect, once.
-fn names(effects: &[Applied]) -> Vec<&'static str> {
-    let mut names: Vec<&'static str> = effects.iter().map(|one| one.effect.name()).collect();
-    names.dedup();
-    names
-}
-
 impl Report {
     pub(super) fn new(robot: &Robot, warnings: Vec<String>) -> Self {
         Self {
             robot: robot.file.clone(),
             base: robot.base(),
             gravity: robot.options.gravity,
-            effects: names(&robot.options.effects),
+            effects: sorts(&robot.options.effects),
             compiler: None,
             warnings,
             functions: Vec::new(),

@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::motion::Motion;
 use super::recording::{Happening, Recording};
 use super::stage::Stage;
+use crate::effects::sorts;
 
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Summary {
@@ -96,14 +97,12 @@ impl Summary {
         let r = &motion.recording;
         let (row, wall) = (settings.integrator.row(), motion.wall.as_secs_f64());
         let end = r.t.last().copied().unwrap_or(settings.start);
-        let mut effects: Vec<&'static str> = stage.effects().iter().map(|a| a.effect.name()).collect();
-        effects.dedup();
         Self {
             scene: stage.name.clone(),
             robot: stage.model.name.clone(),
             base: if stage.base() == articulated_core::description::Base::Floating { "floating" } else { "fixed" },
             degrees_of_freedom: stage.model.nv,
-            effects,
+            effects: sorts(stage.effects()),
             code,
             integrator: Method { name: row.name, order: row.order, step_s: settings.step, rtol: settings.rtol, atol: settings.atol },
             start_s: settings.start,
