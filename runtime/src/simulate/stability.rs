@@ -26,6 +26,8 @@ pub(crate) struct Stability {
     fresh: bool,
     largest: f64,
     wait: u64,
+    /// What the step saw that was reason for the last look.
+    seen: f64,
 }
 
 /// What a look found: λ² = aλ + b, and |λ|.
@@ -38,11 +40,11 @@ pub(crate) struct Pair {
 
 impl Stability {
     pub(crate) fn new(n: usize) -> Self {
-        Self { z: std::array::from_fn(|_| vec![0.0; n]), at: vec![0.0; n], fresh: true, largest: 0.0, wait: 0 }
+        Self { z: std::array::from_fn(|_| vec![0.0; n]), at: vec![0.0; n], fresh: true, largest: 0.0, wait: 0, seen: 0.0 }
     }
 
     pub(crate) fn reset(&mut self) {
-        (self.fresh, self.largest, self.wait) = (true, 0.0, 0);
+        (self.fresh, self.largest, self.wait, self.seen) = (true, 0.0, 0, 0.0);
     }
 
     /// The next look begins with everything.
@@ -60,11 +62,11 @@ impl Stability {
         jumped || steps.is_multiple_of(EVERY)
     }
 
-    /// Whether what a step saw of fast motion, |hλ| roughly, is reason to look; not twice in a row.
+    /// Whether what a step saw of fast motion, |hλ| roughly, is reason to look; not twice in a row, unless it is much faster than what was looked at.
     pub(crate) fn suspects(&mut self, steps: u64, seen: f64) -> bool {
-        let look = seen > SUSPICIOUS && steps >= self.wait;
+        let look = seen > SUSPICIOUS && (steps >= self.wait || seen > 4.0 * self.seen);
         if look {
-            self.wait = steps + EVERY;
+            (self.wait, self.seen) = (steps + EVERY, seen);
         }
         look
     }

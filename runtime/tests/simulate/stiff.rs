@@ -66,6 +66,33 @@ fn a_step_that_becomes_unstable_on_the_way_is_refused_there() {
     }
 }
 
+/// An arm of two links falls against the stop of its shoulder: the first stage behind it is thrown so far that what follows moves at any rate at all. The stop's is √(k/m_eff).
+#[test]
+fn a_motion_that_is_thrown_within_a_step_is_refused_at_the_rate_of_what_throws_it() {
+    let links = [("upper", 2.0, 0.25, 0.05), ("lower", 1.5, 0.2, 0.02)].map(|(name, mass, x, i)| {
+        format!(
+            "<link name='{name}'><inertial><origin xyz='{x} 0 0'/><mass value='{mass}'/>\
+             <inertia ixx='0.001' ixy='0' ixz='0' iyy='{i}' iyz='0' izz='{i}'/></inertial></link>"
+        )
+    });
+    let urdf = format!(
+        "<robot name='arm'><link name='base'/>{}<joint name='shoulder' type='continuous'><parent link='base'/><child link='upper'/>\
+         <axis xyz='0 -1 0'/></joint><joint name='elbow' type='continuous'><parent link='upper'/><child link='lower'/>\
+         <origin xyz='0.5 0 0'/><axis xyz='0 -1 0'/></joint></robot>",
+        links.concat()
+    );
+    let stop = Applied { effect: EffectId::limit, on: "shoulder".into(), at: Origin::default(), parameters: vec![-3.0, 3.0, 1e7, 0.0] };
+    let robot = articulated::load_bytes("arm", urdf.as_bytes(), articulated::Base::Fixed).unwrap().with_effects(&[stop]).unwrap();
+    for integrator in [IntegratorId::semi_implicit_euler, IntegratorId::rk4, IntegratorId::dopri5, IntegratorId::dop853] {
+        for h in [0.02, 0.01, 0.005] {
+            let error = free(&robot, &stepping(integrator, 1.0, h), &[0.0, 0.0], &[3.0, 0.0]).unwrap_err();
+            let SimulateError::Unstable { t, admissible, rate, .. } = error else { panic!("{integrator}, {h} s: {error}") };
+            println!("{integrator}, {h} s: {t} s, {rate} 1/s, {admissible} s");
+            assert!((3e3..8e3).contains(&rate) && (1e-4..2e-3).contains(&admissible), "{integrator}, {h} s: {rate} 1/s, {admissible} s");
+        }
+    }
+}
+
 #[test]
 fn steps_chosen_by_tolerance_say_that_stability_holds_them() {
     let robot = with(EffectId::damping, vec![1e5]);

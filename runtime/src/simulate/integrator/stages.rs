@@ -107,6 +107,9 @@ impl Stages {
     }
 }
 
+/// So many times the rate that matters is stable with no explicit method: what stages see after that is what it made of the motion.
+const WILD: f64 = 10.0;
+
 /// The fastest motion seen between points of a step: the λ with |Δa| = λ²|Δu| + λ|Δv|, which for springs and for damping by itself is at least 0.6 of the true one, and
 /// where it was seen: at that of the two points with the larger acceleration, and halfway between, where a force that changes its side is steepest. What is slower than
 /// matters is not looked at closely.
@@ -135,6 +138,10 @@ impl Fastest {
 
     /// Two points of a chart and their slopes.
     pub(super) fn compare(&mut self, y: [&[f64]; 2], f: [&[f64]; 2]) {
+        // Where the motion was thrown is no place to look at.
+        if self.rate > WILD * self.least {
+            return;
+        }
         let nv = (self.at[0].len() - 2) / 2;
         let square = |pair: [&[f64]; 2], at: usize| squared_distance(&pair[0][at..at + nv], &pair[1][at..at + nv]);
         let (turn, change) = (square(y, nv), square(f, nv));
