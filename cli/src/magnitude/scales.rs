@@ -8,7 +8,7 @@ use num_traits::Zero;
 use super::{Magnitude, norms, solution};
 
 /// The scale of each number that a function gives: the algorithm of the table, run with [`Magnitude`] on `model`, which has
-/// to be as it was read, before model passes; no more than the [`norms`] of its terms, where there are such.
+/// to be as it was read, before model passes; no more than the norms of its terms, where there are such.
 ///
 /// A function that solves with the mass matrix is measured by what rounding does to a backward stable solution instead: divisions would let the sum of
 /// magnitudes grow without bound, and everything would pass.
