@@ -14,6 +14,11 @@ use crate::console;
 use crate::edits::{Edits, FrameArguments};
 use crate::failure::Failure;
 
+/// A robot's file as reports name it, with the scene that it is of.
+pub(crate) fn named(file: &str, scene: Option<&str>) -> String {
+    scene.map_or_else(|| file.to_owned(), |scene| format!("{file} of {scene}"))
+}
+
 /// A little more than the reader accepts, so that it is the reader who refuses.
 const MOST_BYTES: u64 = (64 << 20) + 1;
 
@@ -22,6 +27,8 @@ const MOST_BYTES: u64 = (64 << 20) + 1;
 pub(crate) struct Robot {
     /// Its file, for messages and for the header of generated code.
     pub(crate) file: String,
+    /// The scene that it is of.
+    pub(crate) scene: Option<String>,
     pub(crate) urdf: Vec<u8>,
     pub(crate) options: Options,
     path: Option<PathBuf>,
@@ -54,7 +61,7 @@ impl Robot {
         options.rename.clone_from(&arguments.rename);
         edit(&mut options, &arguments.edits)?;
         let files = path.iter().cloned().chain(appended(&arguments.edits)).collect();
-        Ok(Self { file, urdf, options, path, bundled: bundled.is_some(), files })
+        Ok(Self { file, scene: None, urdf, options, path, bundled: bundled.is_some(), files })
     }
 
     /// The robot of a scene: a file, or a bundled one. What the arguments say stands in place of what the scene says; edits come after the scene's.
@@ -83,7 +90,7 @@ impl Robot {
         let Request { urdf, file, mut options } = request;
         options.effects = resolved.effects;
         let files = prepared.files.into_iter().chain(appended(&arguments.edits)).collect();
-        Ok(Self { file, urdf, options, path: None, bundled, files })
+        Ok(Self { file, scene: Some(name.to_owned()), urdf, options, path: None, bundled, files })
     }
 
     /// The robot with these frames.

@@ -116,6 +116,13 @@ impl Integrator {
     }
 }
 
+impl Watched {
+    /// Its name in scenes.
+    pub fn name(self) -> &'static str {
+        WATCHED.iter().find(|(_, w)| *w == self).map_or("", |(name, _)| name)
+    }
+}
+
 const WATCHED: &[(&str, Watched)] = &[("limits", Watched::Limits), ("contacts", Watched::Contacts), ("stick_slip", Watched::StickSlip)];
 const STIFFNESS: &[(&str, Stiffness)] = &[("refuse", Stiffness::Refuse), ("note", Stiffness::Note)];
 

@@ -78,6 +78,7 @@ fn made(robot: &Robot, rustc: &Rustc, functions: &[&'static str], level: Level) 
 fn report(robot: &Robot, reference: &Reference, model: &Model<f64>, rustc: &Rustc, arguments: &AccuracyArguments) -> Report {
     Report {
         robot: robot.file.clone(),
+        scene: robot.scene.clone(),
         base: robot.base(),
         joints: model.joints.len(),
         degrees_of_freedom: model.nv,

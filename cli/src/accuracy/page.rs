@@ -7,6 +7,7 @@ use articulated_codegen::Level;
 use super::report::{FunctionReport, Point, Report};
 use super::{plot, text};
 use crate::compare::accuracy::Against;
+use crate::robot::named;
 use crate::simulate::plot::drawing::Drawing;
 use crate::simulate::plot::svg::escaped;
 
@@ -18,7 +19,7 @@ td,th{padding:.2em .6em;text-align:right;border-bottom:1px solid #ddd;white-spac
 pub(super) fn html(report: &Report, diagrams: &[(String, Drawing)]) -> String {
     let mut out = format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>What accuracy costs: {0}</title><style>{STYLE}</style></head><body>\n<h1>What accuracy costs: {0}</h1>\n",
-        escaped(&report.robot)
+        escaped(&named(&report.robot, report.scene.as_deref()))
     );
     out += &INTRODUCTION.replace(
         "REFERENCE",

@@ -24,6 +24,8 @@ pub(super) const UNITS: Units = Units(&[
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Report {
     pub(super) robot: String,
+    /// The scene that it is of.
+    pub(super) scene: Option<String>,
     pub(super) base: &'static str,
     pub(super) joints: usize,
     pub(super) degrees_of_freedom: usize,
@@ -143,6 +145,7 @@ pub(super) fn example() -> Report {
     mark_front(&mut points);
     Report {
         robot: "an <arm> & more".into(),
+        scene: None,
         base: "fixed",
         joints: 7,
         degrees_of_freedom: 7,

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::report::{FunctionReport, Point, Report, Spread};
 use crate::compare::accuracy::Against;
+use crate::robot::named;
 use crate::table::{Table, counted, freedom, plain, wrapped};
 
 /// Everything.
@@ -26,7 +27,7 @@ pub(super) fn text(report: &Report) -> String {
 pub(super) fn head(report: &Report) -> String {
     let mut out = format!(
         "{}, {} base: {}, {}; frames: {}\n{} (seed {}) and {}, {} in turns; reference of {} bits\n{}; {} {}; articulated {} ({})\n",
-        plain(&report.robot),
+        plain(&named(&report.robot, report.scene.as_deref())),
         report.base,
         counted(report.joints, "joint"),
         freedom(report.degrees_of_freedom),

@@ -15,6 +15,8 @@ const MANY: usize = 5000;
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Report {
     pub(super) file: String,
+    /// The scene that it is of.
+    pub(super) scene: Option<String>,
     pub(super) usable: bool,
     pub(super) robot: Option<String>,
     pub(super) base: &'static str,
@@ -115,6 +117,7 @@ impl Report {
     pub(super) fn new(robot: &Robot) -> Self {
         Self {
             file: robot.file.clone(),
+            scene: robot.scene.clone(),
             usable: false,
             robot: None,
             base: robot.base(),

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::batch::BatchReport;
 use super::report::{FunctionReport, Report};
+use crate::robot::named;
 use crate::table::{counted, freedom};
 
 /// A row: whose time, ns, how many times that of generated code it is, and the colour.
@@ -128,7 +129,7 @@ fn head(report: &Report, height: f64) -> String {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{height:.0}\" viewBox=\"0 0 {WIDTH} {height:.0}\" \
          font-family=\"DejaVu Sans, Verdana, Arial, sans-serif\" font-size=\"12\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
     );
-    let title = format!("{}, {} base, {}", report.robot, report.base, freedom(report.degrees_of_freedom));
+    let title = format!("{}, {} base, {}", named(&report.robot, report.scene.as_deref()), report.base, freedom(report.degrees_of_freedom));
     text(&mut out, 12.0, 22.0, "font-size=\"15\" font-weight=\"bold\"", &title);
     let engines = if report.engines().is_empty() { "" } else { "; of each engine its fastest build" };
     let how = format!(

@@ -57,6 +57,8 @@ const UNITS: Units = Units(&[
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Report {
     pub(super) robot: String,
+    /// The scene that it is of.
+    pub(super) scene: Option<String>,
     pub(super) base: &'static str,
     pub(super) gravity: [f64; 3],
     pub(super) joints: usize,
@@ -225,6 +227,7 @@ impl Report {
             frames_chosen: chosen.is_some(),
             frames: chosen.unwrap_or_else(|| tips.map_or_else(Vec::new, |t| t.all().to_vec())),
             robot: robot.file.clone(),
+            scene: robot.scene.clone(),
             base: robot.base(),
             gravity: robot.options.gravity,
             joints: model.joints.len(),

@@ -14,6 +14,8 @@ use crate::worse::worse;
 /// All results.
 pub(super) struct Report {
     pub(super) robot: String,
+    /// The scene that it is of.
+    pub(super) scene: Option<String>,
     pub(super) base: &'static str,
     pub(super) gravity: [f64; 3],
     /// Names of the effects that are on.
@@ -109,6 +111,7 @@ impl Report {
     pub(super) fn new(robot: &Robot, warnings: Vec<String>) -> Self {
         Self {
             robot: robot.file.clone(),
+            scene: robot.scene.clone(),
             base: robot.base(),
             gravity: robot.options.gravity,
             effects: sorts(&robot.options.effects),
@@ -122,6 +125,7 @@ impl Report {
     pub(super) fn json(&self, model: &Model<f64>) -> Value {
         json!({
             "robot": self.robot,
+            "scene": self.scene,
             "base": self.base,
             "gravity": self.gravity,
             "effects": self.effects,

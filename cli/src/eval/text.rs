@@ -7,12 +7,14 @@ use articulated_core::model::Model;
 use super::BOUND;
 use super::layout::Grid;
 use super::report::{FunctionReport, Outcome, Report};
+use crate::robot::named;
 use crate::table::{Table, plain};
 
 pub(super) fn text(report: &Report, model: &Model<f64>) -> String {
     let [x, y, z] = report.gravity;
     let effects = if report.effects.is_empty() { String::new() } else { format!("; with {}", report.effects.join(", ")) };
-    let mut out = format!("{}, {} base, gravity ({x}, {y}, {z}) m/s²{effects}\n", plain(&report.robot), report.base);
+    let mut out =
+        format!("{}, {} base, gravity ({x}, {y}, {z}) m/s²{effects}\n", plain(&named(&report.robot, report.scene.as_deref())), report.base);
     if let Some(compiler) = &report.compiler {
         let _ = writeln!(out, "generated code compiled by {compiler}");
     }

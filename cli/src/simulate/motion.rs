@@ -7,7 +7,7 @@ use articulated::simulate::{Counts, Ended, Hit, IntegratorId, Recording as Run, 
 use articulated_codegen::Generated;
 use articulated_core::description::JointKind;
 use articulated_core::model::JointInfo;
-use articulated_scene::{Controller, When};
+use articulated_scene::{Controller, Watched, When};
 
 use super::drive::Drive;
 use super::recording::{Happening, Recording};
@@ -70,6 +70,7 @@ pub(super) fn run<R: Dynamics<f64>>(
     let mut drive = Drive::new(robot, begin.controller.clone(), stage.prepared.scene.control.period);
     in_time(stage, settings)?;
     let mut watch = Watch::of(stage, robot, frames, settings.start).map_err(refused)?;
+    watch.without.iter().for_each(|what| console::warn(&nothing_of(stage, *what)));
     let mut simulation = Simulation::new(robot, settings.clone()).map_err(refused)?;
     let mut run = simulation.recording();
     let (length, mut looked) = (settings.end - settings.start, 0_u64);
@@ -99,6 +100,17 @@ pub(super) fn run<R: Dynamics<f64>>(
     };
     let counts = run.counts;
     Ok(Motion { recording: told(stage, run, &|hit| watch.words(hit)), counts, ended, wall, ball: watch.ball.get(), error })
+}
+
+/// An event that can't happen is odd, and no mistake: effects come and go.
+fn nothing_of(stage: &Stage, what: Watched) -> String {
+    let (file, name) = (&stage.prepared.scene.file, what.name());
+    let expected = match what {
+        Watched::Limits => "a joint with bounds",
+        Watched::Contacts => "an effect contact of the scene",
+        Watched::StickSlip => "an effect friction of the scene",
+    };
+    format!("{file}: simulation.events: found {name:?}, expected {expected}; nothing to look for")
 }
 
 /// Whether the ball is hit while the robot moves.

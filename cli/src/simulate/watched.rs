@@ -16,6 +16,8 @@ pub(super) struct Watch<'a> {
     pub(super) events: Vec<Event<'a>>,
     /// Where its function rises through zero, where it falls; of a ball, when it is hit and when it is not.
     words: Vec<[String; 2]>,
+    /// Sorts that the scene looks for and has nothing of.
+    pub(super) without: Vec<Watched>,
     /// Set by a blow that ends the motion.
     pub(super) over: Rc<Cell<bool>>,
     /// Kinetic energy that the ball got, J, once it was hit.
@@ -26,15 +28,15 @@ pub(super) struct Watch<'a> {
 
 /// The links whose frames the events need.
 pub(super) fn frames(stage: &Stage) -> Vec<String> {
-    let contacts = stage.effects_of(EffectId::contact).filter(|_| looks_for(stage, Watched::Contacts)).map(|a| a.on.clone());
+    let contacts = stage.effects_of(EffectId::contact).filter(|_| looked_for(stage).contains(&Watched::Contacts)).map(|a| a.on.clone());
     let mut all: Vec<String> = contacts.chain(stage.prepared.scene.impact.iter().map(|i| i.link.clone())).collect();
     all.sort_unstable();
     all.dedup();
     all
 }
 
-fn looks_for(stage: &Stage, what: Watched) -> bool {
-    stage.prepared.scene.simulation.as_ref().is_some_and(|s| s.events.contains(&what))
+fn looked_for(stage: &Stage) -> &[Watched] {
+    stage.prepared.scene.simulation.as_ref().map_or(&[], |s| &s.events)
 }
 
 impl<'a> Watch<'a> {
@@ -43,15 +45,24 @@ impl<'a> Watch<'a> {
     where
         R::Workspace: 'a,
     {
-        let mut watch = Self { events: Vec::new(), words: Vec::new(), over: Rc::default(), ball: Rc::default(), missed: Rc::default() };
-        if looks_for(stage, Watched::Limits) {
-            stage.model.joints.iter().for_each(|joint| watch.limit(stage, joint));
-        }
-        if looks_for(stage, Watched::Contacts) {
-            watch.contacts(stage, robot, frames)?;
-        }
-        if looks_for(stage, Watched::StickSlip) {
-            watch.stick_slip(stage);
+        let mut watch = Self {
+            events: Vec::new(),
+            words: Vec::new(),
+            without: Vec::new(),
+            over: Rc::default(),
+            ball: Rc::default(),
+            missed: Rc::default(),
+        };
+        for what in looked_for(stage) {
+            let before = watch.events.len();
+            match what {
+                Watched::Limits => stage.model.joints.iter().for_each(|joint| watch.limit(stage, joint)),
+                Watched::Contacts => watch.contacts(stage, robot, frames)?,
+                Watched::StickSlip => watch.stick_slip(stage),
+            }
+            if watch.events.len() == before {
+                watch.without.push(*what);
+            }
         }
         watch.ball(stage, robot, frames, start)?;
         Ok(watch)

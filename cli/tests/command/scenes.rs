@@ -202,6 +202,16 @@ fn a_start_beyond_a_limit_is_told_and_used() {
 }
 
 #[test]
+fn an_event_of_what_the_scene_has_not_is_told() {
+    let urdf = articulated_models::robot("cart_pole").unwrap().urdf;
+    let file = File::new("cart_pole.urdf", urdf.as_bytes());
+    let text = format!("urdf = {:?}\n[simulation]\nend = 0.01\nevents = [\"limits\", \"contacts\", \"stick_slip\"]\n", file.name());
+    let ended = run(&["simulate", File::new("events.toml", text.as_bytes()).name()]);
+    let told = |what: &str| ended.lines_with(&format!("simulation.events: found {what:?}, expected an effect"));
+    assert_eq!((ended.status, told("limits"), told("contacts"), told("stick_slip")), (0, 0, 1, 1), "{}", ended.err);
+}
+
+#[test]
 fn a_quadruped_comes_to_rest_where_the_ground_holds_its_weight() {
     let motion = Motion::of("quadruped_drop", &["--every", "0.1"]);
     assert_eq!(motion.summary["events"].as_array().unwrap().len(), 4);

@@ -9,6 +9,7 @@ use super::accuracy::Against;
 use super::report::{FunctionReport, Report, VariantReport};
 use super::timing::Summary;
 use crate::ledger::Stage;
+use crate::robot::named;
 use crate::table::{Table, counted, freedom, plain, wrapped};
 
 pub(super) fn text(report: &Report) -> String {
@@ -94,7 +95,7 @@ fn head(report: &Report) -> String {
     let [x, y, z] = report.gravity;
     let mut out = format!(
         "{}, {} base: {}, {}; gravity ({x}, {y}, {z}) m/s²\n{} (seed {}), {} interleaved repetitions; {} {}\n",
-        plain(&report.robot),
+        plain(&named(&report.robot, report.scene.as_deref())),
         report.base,
         counted(report.joints, "joint"),
         freedom(report.degrees_of_freedom),
