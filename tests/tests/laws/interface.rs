@@ -1,10 +1,11 @@
 //! The interface: wrong input is an error, and nothing panics.
 
 use articulated::{Dynamics, FunctionError};
+use articulated_core::algorithm::checked::checked_forward_dynamics;
 use articulated_core::algorithm::{Function, Workspace, functions};
 use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, Mimic, Origin};
 use articulated_core::model::{Model, ModelError};
-use articulated_tests::case::{Case, for_each_tree, inverse_dynamics, placements};
+use articulated_tests::case::{Case, State, for_each_tree, inverse_dynamics, placements};
 use articulated_tests::measure::arguments;
 use articulated_tests::random_tree::Flavour;
 
@@ -65,7 +66,43 @@ fn a_workspace_of_another_robot_is_an_error() {
     let model = |name| Case::bundled(articulated_models::robot(name).unwrap()).model;
     let (arm, pendulum) = (model("panda_like"), model("double_pendulum"));
     let mut out = [0.0; 7];
-    assert!(arm.gravity_torque(&mut pendulum.workspace(), &[0.0; 7], &mut out).is_err());
+    assert_eq!(arm.gravity_torque(&mut pendulum.workspace(), &[0.0; 7], &mut out), Err(FunctionError::Workspace));
+}
+
+/// So is one of as many bodies: on other joints, in another tree, with other frames, of a joint that follows another.
+#[test]
+fn a_workspace_of_another_robot_of_that_size_is_an_error() {
+    use JointKind::{Continuous, Planar, Prismatic, Universal};
+    let model = |links, joints| Model::new(&tree(links, joints), Base::Fixed).unwrap();
+    let two = |second: Joint| model(3, vec![joint("a", Continuous, 0, 1), second]);
+    let (chain, branches) = (two(joint("b", Continuous, 1, 2)), two(joint("b", Continuous, 0, 2)));
+    let leader = Mimic { joint: 0, multiplier: 2.0, offset: 0.0 };
+    let follower = two(Joint { mimic: Some(leader), ..joint("b", Continuous, 1, 2) });
+    let (planar, three) = (model(2, vec![joint("a", Planar, 0, 1)]), {
+        let joints = (0..3).map(|k| joint(["a", "b", "c"][k], Continuous, k, k + 1));
+        model(4, joints.collect())
+    });
+    let floating = Model::new(&tree(1, vec![]), Base::Floating).unwrap();
+    let pendulum = model(2, vec![joint("a", Continuous, 0, 1)]);
+    let universal = model(2, vec![joint("a", Universal, 0, 1)]);
+    let fewer = chain.clone().with_frames(&["l2"]).unwrap();
+    let others = [
+        (&chain, &branches),
+        (&chain, &follower),
+        (&follower, &pendulum),
+        (&planar, &three),
+        (&floating, &pendulum),
+        (&chain, &fewer),
+        (&chain, &universal),
+    ];
+    for (a, b) in others.into_iter().flat_map(|(a, b)| [(a, b), (b, a)]) {
+        let (q, mut out) = (vec![0.0; a.nq], vec![0.0; a.nv * a.nv]);
+        assert_eq!(a.mass_matrix(&mut b.workspace(), &q, &mut out), Err(FunctionError::Workspace), "{a:?} {b:?}");
+        assert_eq!(a.mass_matrix(&mut a.workspace(), &q, &mut out), Ok(()));
+    }
+    // What a joint of as many coordinates does is not the workspace's business.
+    let slide = two(joint("b", Prismatic, 1, 2));
+    assert_eq!(slide.mass_matrix(&mut chain.workspace(), &[0.0; 2], &mut [0.0; 4]), Ok(()));
 }
 
 /// One program over the trait, on a generated robot and on its model.
@@ -101,9 +138,13 @@ fn a_wrong_number_of_arguments_is_an_error() {
 fn no_value_makes_an_algorithm_panic() {
     for_each_tree(10, Flavour::ANY, |case, _| {
         for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e308, -1e-308, 5e-324, -0.0] {
-            let (q, v) = (vec![x; case.model.nq], vec![x; case.model.nv]);
-            inverse_dynamics(&case.model, &q, &v, &v);
-            placements(&case.model, &q);
+            let state = State::of(case.model.shape(), |_, n| vec![x; n]);
+            let ws = &mut case.model.workspace();
+            for row in functions::<f64>() {
+                let mut out = vec![0.0; row.len(case.model.shape())];
+                assert_eq!(row.call(&case.model, ws, &arguments(row.name, &state), &mut out), Ok(()), "{}", row.name);
+            }
+            let _ = checked_forward_dynamics(&case.model, ws, &state.q, &state.v, &state.tau, &mut vec![0.0; case.model.nv]);
         }
     });
 }

@@ -218,6 +218,8 @@ pub enum FunctionError {
         /// The length expected.
         expected: usize,
     },
+    /// The workspace was made for a robot with another tree, other coordinates or another number of frames.
+    Workspace,
     /// The robot was generated without this function.
     NotGenerated {
         /// The function's name.
@@ -229,6 +231,7 @@ impl fmt::Display for FunctionError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Length { argument, found, expected } => write!(f, "{argument}: found {found} numbers, expected {expected}"),
+            Self::Workspace => f.write_str("workspace: found that of another robot, expected one that this robot made"),
             Self::NotGenerated { function } => write!(f, "this robot was generated without {function}: add it to `functions`"),
         }
     }
@@ -268,8 +271,10 @@ impl<S: Scalar> Function<S> {
         arguments: &[&[S]],
         out: &mut [S],
     ) -> Result<(), FunctionError> {
+        if !ws.fits(model) {
+            return Err(FunctionError::Workspace);
+        }
         let shape = ws.shape;
-        check_length("workspace", ws.bodies.len(), model.bodies.len())?;
         check_length("arguments", arguments.len(), self.takes.len())?;
         for (argument, given) in self.takes.iter().zip(arguments) {
             check_length(argument.name(), given.len(), argument.len(shape))?;

@@ -18,6 +18,8 @@ use crate::spatial::{ArticulatedInertia, CoriolisInertia, Motion, Placement, Spa
 pub struct Workspace<S> {
     /// The sizes of the model it was made for.
     pub(super) shape: Shape,
+    /// The body that each hangs on, as in that model, and whether it is a link.
+    tree: Vec<(usize, bool)>,
     pub(super) bodies: Vec<BodyState<S>>,
     pub(super) placements: Vec<Placement<S>>,
     pub(super) zeros: Vec<S>,
@@ -132,6 +134,7 @@ impl<S: Scalar> Workspace<S> {
         }
         Self {
             shape: model.shape(),
+            tree: model.bodies.iter().map(|b| (b.parent, b.link.is_some())).collect(),
             centers: Centers::of(model, middles(model)),
             firsts: Centers::of(model, firsts(model).collect()),
             bodies: vec![BodyState::zero(); n],
@@ -151,6 +154,20 @@ impl<S: Scalar> Workspace<S> {
             driven: vec![S::zero(); nv],
             solution: vec![S::zero(); nv],
         }
+    }
+
+    /// Whether it was made for a model with as many frames, and with the same tree and the same coordinates.
+    pub(super) fn fits(&self, model: &Model<S>) -> bool {
+        let Shape { nq, nv, frames, .. } = self.shape;
+        let alike = |i: usize| {
+            let (body, columns) = (&model.bodies[i], self.columns_of(i));
+            let at = self.columns.get(columns.start).map_or(nv, |column| column.at);
+            self.tree[i] == (body.parent, body.link.is_some())
+                && columns.len() == body.joint.nv()
+                && (columns.is_empty() || at == body.coordinates.v)
+        };
+        let sizes = (model.nq, model.nv, model.frames.len(), model.bodies.len()) == (nq, nv, frames, self.tree.len());
+        sizes && model.outward().all(alike)
     }
 
     /// After inverse dynamics: the wrench that body `i` needs for itself, and the one that its joint passes to it, in its frame.
