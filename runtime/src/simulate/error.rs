@@ -113,6 +113,17 @@ pub enum StateError {
         /// Its norm.
         norm: f64,
     },
+    /// An event is about a number of a vector that has not so many.
+    Beyond {
+        /// The event's name.
+        event: String,
+        /// The vector.
+        vector: &'static str,
+        /// Which of its numbers.
+        index: usize,
+        /// How many it has.
+        length: usize,
+    },
     /// A number that cannot be used.
     Value {
         /// What it is.
@@ -122,6 +133,21 @@ pub enum StateError {
     },
 }
 
+impl StateError {
+    /// What is wrong with a vector that should have so many numbers, all finite.
+    pub(crate) fn of(vector: &'static str, x: &[f64], expected: usize) -> impl Iterator<Item = Self> {
+        let length = (x.len() != expected).then_some(Self::Length { vector, found: x.len(), expected });
+        let bad = x.iter().enumerate().filter(|(_, x)| !x.is_finite());
+        length.into_iter().chain(bad.map(move |(index, &found)| Self::NotFinite { vector, index, found }))
+    }
+
+    /// Nothing is wrong, or all that is.
+    pub(crate) fn none(wrong: impl Iterator<Item = Self>) -> Result<(), SimulateError> {
+        let wrong: Vec<Self> = wrong.collect();
+        if wrong.is_empty() { Ok(()) } else { Err(SimulateError::State(wrong)) }
+    }
+}
+
 impl fmt::Display for StateError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -129,6 +155,9 @@ impl fmt::Display for StateError {
             Self::NotFinite { vector, index, found } => write!(f, "{vector}[{index}] = {found} is not finite"),
             Self::Quaternion { index, norm } => {
                 write!(f, "q[{index}..{}] is a quaternion of norm {norm}; it should be 1", index + 4)
+            }
+            Self::Beyond { event, vector, index, length } => {
+                write!(f, "the event `{event}` is about {vector}[{index}], and {vector} has {length} numbers")
             }
             Self::Value { what, found } => write!(f, "{what} = {found} cannot be used"),
         }

@@ -163,21 +163,12 @@ impl Manifold {
 
     /// What is wrong with a state to begin with.
     pub(crate) fn check(&self, q: &[f64], v: &[f64]) -> Result<(), SimulateError> {
-        let mut wrong = Vec::new();
-        for (vector, x, expected) in [("q", q, self.nq), ("v", v, self.nv)] {
-            if x.len() != expected {
-                wrong.push(StateError::Length { vector, found: x.len(), expected });
-            }
-            let bad = x.iter().enumerate().filter(|(_, x)| !x.is_finite());
-            wrong.extend(bad.map(|(index, &found)| StateError::NotFinite { vector, index, found }));
-        }
-        for free in self.free.iter().filter(|_| q.len() == self.nq) {
+        let quaternion = |free: &Free| {
             let norm = q[free.quaternion()].iter().map(|x| x * x).sum::<f64>().sqrt();
-            if (norm - 1.0).abs() > 1e-6 {
-                wrong.push(StateError::Quaternion { index: free.quaternion().start, norm });
-            }
-        }
-        if wrong.is_empty() { Ok(()) } else { Err(SimulateError::State(wrong)) }
+            ((norm - 1.0).abs() > 1e-6).then(|| StateError::Quaternion { index: free.quaternion().start, norm })
+        };
+        let quaternions = self.free.iter().filter(|_| q.len() == self.nq).filter_map(quaternion);
+        StateError::none(StateError::of("q", q, self.nq).chain(StateError::of("v", v, self.nv)).chain(quaternions))
     }
 }
 

@@ -59,7 +59,7 @@ pub(crate) struct Known {
 }
 
 impl Known {
-    /// By asking.
+    /// The functions that the robot answers when it is asked.
     pub(crate) fn of<R: Dynamics<f64>>(system: &mut System<R>) -> Self {
         let (q, v) = (system.origin.clone(), vec![0.0; system.nv()]);
         let (robot, ws) = (system.robot, &mut system.ws);
@@ -77,16 +77,7 @@ impl Known {
     pub(crate) fn recording<R: Dynamics<f64>>(&self, system: &System<R>, settings: &Settings) -> Recording {
         let (n, nq, nv) = (Times::count(settings), system.manifold.nq, system.manifold.nv);
         let room = |wanted: bool, each: usize| Vec::with_capacity(if wanted { n * each } else { 0 });
-        let names = [
-            ("kinetic_energy", self.kinetic),
-            ("potential_energy", self.potential),
-            ("centroidal_momentum", self.momentum),
-            ("dissipation", system.has_losses),
-            ("motor_torques", system.has_motors),
-        ];
-        Recording {
-            nq,
-            nv,
+        let mut recording = Recording {
             t: room(true, 1),
             q: room(true, nq),
             v: room(true, nv),
@@ -97,10 +88,25 @@ impl Known {
             dissipated: room(true, 1),
             from_events: room(self.kinetic && self.potential, 1),
             momentum: room(self.momentum, 6),
-            missing: names.into_iter().filter(|(_, there)| !there).map(|(name, _)| name).collect(),
             events: Vec::with_capacity(16),
             ..Recording::default()
-        }
+        };
+        self.begin(system, &mut recording);
+        recording
+    }
+
+    /// Nothing is recorded but whose motion it will be.
+    pub(crate) fn begin<R: Dynamics<f64>>(&self, system: &System<R>, recording: &mut Recording) {
+        let names = [
+            ("kinetic_energy", self.kinetic),
+            ("potential_energy", self.potential),
+            ("centroidal_momentum", self.momentum),
+            ("dissipation", system.has_losses),
+            ("motor_torques", system.has_motors),
+        ];
+        recording.clear();
+        (recording.nq, recording.nv) = (system.manifold.nq, system.manifold.nv);
+        recording.missing.extend(names.into_iter().filter(|(_, there)| !there).map(|(name, _)| name));
     }
 
     /// One more record.

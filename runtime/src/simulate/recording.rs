@@ -1,5 +1,7 @@
 //! What is kept of a motion.
 
+use std::sync::Arc;
+
 use super::Direction;
 
 /// What was done.
@@ -53,7 +55,7 @@ pub struct Hit {
     /// Which of the events.
     pub event: usize,
     /// Its name.
-    pub name: String,
+    pub name: Arc<str>,
     /// When, s.
     pub t: f64,
     /// Which way its function went through zero.
@@ -157,7 +159,7 @@ impl Recording {
         Some(self.energy(i)? - self.energy(0)? - self.work[i] - self.dissipated[i] - self.from_events.get(i)?)
     }
 
-    /// Nothing, but the room and the names.
+    /// Nothing, but the room.
     pub(crate) fn clear(&mut self) {
         let columns = [
             &mut self.t,
@@ -173,6 +175,7 @@ impl Recording {
         ];
         columns.into_iter().for_each(Vec::clear);
         self.events.clear();
+        self.missing.clear();
         (self.counts, self.ended) = (Counts::default(), Ended::Not);
     }
 }

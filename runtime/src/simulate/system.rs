@@ -16,7 +16,8 @@ pub(crate) struct System<'r, R: Dynamics<f64>> {
     /// Origin of the chart, `[nq]`.
     pub(crate) origin: Vec<f64>,
     /// The torques of a sampled controller, `[nv]`, where it is one.
-    pub(crate) held: Option<Vec<f64>>,
+    pub(crate) held: Vec<f64>,
+    pub(crate) holds: bool,
     /// The next time at which the torques have a kink or a jump, s: up to there they are those before it.
     pub(crate) kink: f64,
     pub(crate) counts: Counts,
@@ -37,7 +38,8 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
             ws: robot.workspace(),
             manifold,
             origin: vec![0.5; nq],
-            held: None,
+            held: vec![0.0; nv],
+            holds: false,
             kink: f64::INFINITY,
             counts: Counts::default(),
             q: vec![0.5; nq],
@@ -69,13 +71,13 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
 
     /// The commanded torques of a state, in `tau`.
     pub(crate) fn command(&self, control: &mut dyn Control, t: f64, q: &[f64], v: &[f64], tau: &mut [f64]) {
-        command(self.held.as_deref(), control, t, (q, v), tau);
+        command(self.holds.then_some(&self.held), control, t, (q, v), tau);
     }
 
     /// The configuration u of the chart and the commanded torques there: in `q` and `tau`. Where a step ends at a jump, those before it.
     fn command_at(&mut self, control: &mut dyn Control, t: f64, u: &[f64], v: &[f64]) -> Result<(), FunctionError> {
         self.place(u)?;
-        command(self.held.as_deref(), control, self.within(t), (&self.q, v), &mut self.tau);
+        command(self.holds.then_some(&self.held), control, self.within(t), (&self.q, v), &mut self.tau);
         Ok(())
     }
 

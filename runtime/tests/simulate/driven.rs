@@ -39,7 +39,7 @@ fn a_sampled_controller_is_asked_at_its_times_and_held_between() {
         assert!(times.iter().enumerate().all(|(k, t)| (t - 0.1 * k as f64).abs() < 1e-15), "{id}: {times:?}");
         assert!((motion.q[1] - q).abs() < 1e-13 && (motion.v[1] - v).abs() < 1e-13, "{id}: {} {q}", motion.q[1]);
     }
-    assert!(Hold::new(NoTorque, 0.0).is_none());
+    assert!([0.0, -1.0, f64::NAN, f64::INFINITY].iter().all(|period| Hold::new(NoTorque, *period).is_err()));
 }
 
 /// A tent of force: steps end at its top, so that a curve of third degree is exact.
@@ -162,7 +162,7 @@ fn what_cannot_be_simulated_is_said_at_once() {
     let found =
         Simulation::new(&slider(), settings.clone()).unwrap().run(&[0.0], &[0.0], &mut Constant::new(vec![1.0; 2]), &mut []).unwrap_err();
     assert_eq!(found, SimulateError::State(vec![StateError::Length { vector: "tau", found: 2, expected: 1 }]));
-    let mut nowhere = [Event::limit("nowhere", 7, 0.0, 1.0)];
+    let mut nowhere = [Event::new("nowhere", |_, _: &[f64], _: &[f64]| f64::NAN)];
     let found = Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[0.0], &mut NoTorque, &mut nowhere).unwrap_err();
     assert_eq!(found, SimulateError::NotFinite { t: 0.0, what: "event", index: 0 });
     let mut burst = |t: f64, _: &[f64], _: &[f64], tau: &mut [f64]| tau[0] = if t > 0.5 { f64::NAN } else { 0.0 };
@@ -276,10 +276,14 @@ fn a_motion_is_the_same_whatever_the_simulation_did_before() {
 #[test]
 fn a_controller_with_rates_holds_them() {
     let robot = slider();
-    let mut pd = Pd::new(&robot, vec![0.0], vec![0.0], vec![5.0]).unwrap().with_rates(&[0.7]);
+    let mut pd = Pd::new(&robot, vec![0.0], vec![0.0], vec![5.0]).unwrap().with_rates(&[0.7]).unwrap();
     let motion = Simulation::new(&robot, to(IntegratorId::dop853, 2.0, 1e-12)).unwrap().run(&[0.0], &[-0.2], &mut pd, &mut []).unwrap();
     // v̇ = k_d (v_0 − v)
     assert!((motion.v[1] - (0.7 - 0.9 * (-10.0_f64).exp())).abs() < 1e-11, "{}", motion.v[1]);
+    let pd = |gain: f64, rates: &[f64]| Pd::new(&robot, vec![0.0], vec![gain], vec![5.0]).and_then(|pd| pd.with_rates(rates));
+    for (gain, rates) in [(1.0, &[0.7, 0.1][..]), (1.0, &[]), (1.0, &[f64::NAN]), (f64::INFINITY, &[0.7])] {
+        assert!(matches!(pd(gain, rates), Err(SimulateError::State(wrong)) if wrong.len() == 1), "{gain} {rates:?}");
+    }
 }
 
 /// Stretch by stretch it is the same motion.

@@ -7,7 +7,7 @@ use articulated::simulate::{
     Action, Direction, Ended, Event, Hit, Impact, IntegratorId, NoTorque, Output, Settings, SimulateError, Simulation, StateError,
     integrators,
 };
-use articulated::{Base, Dynamics, Origin, load_bytes};
+use articulated::{Base, Dynamics, FunctionError, Origin, load_bytes};
 
 use crate::robots::{chain, handle, model, one_joint, stepping, to};
 
@@ -316,6 +316,31 @@ fn a_coordinate_leaves_its_limits_at_both_ends() {
     }
 }
 
+#[test]
+fn an_event_about_a_number_that_there_is_not_is_an_error_that_names_it() {
+    let robot = one_joint("prismatic", 0.0);
+    let mut simulation = Simulation::new(&robot, to(IntegratorId::dopri5, 0.1, 1e-6)).unwrap();
+    let mut events = [Event::limit("end", 3, 0.0, 1.0), Event::limit("wall", 0, -9.0, 9.0), Event::stick_slip("slide", 1, 0.1)];
+    let beyond = |event: &str, vector, index| StateError::Beyond { event: event.into(), vector, index, length: 1 };
+    assert_eq!(
+        simulation.run(&[0.0], &[0.0], &mut NoTorque, &mut events),
+        Err(SimulateError::State(vec![beyond("end", "q", 3), beyond("slide", "v", 1)]))
+    );
+}
+
+/// A recording belongs to the robot whose motion it is, whatever was in it.
+#[test]
+fn a_recording_may_be_taken_from_another_robot() {
+    let (robot, settings) = (one_joint("prismatic", 0.0), to(IntegratorId::dopri5, 0.1, 1e-6));
+    let mut simulation = Simulation::new(&robot, settings.clone()).unwrap();
+    let alone = simulation.run(&[0.2], &[0.1], &mut NoTorque, &mut []).unwrap();
+    let other = Simulation::new(&chain::Robot, settings).unwrap().run(&[0.1; 3], &[0.0; 3], &mut NoTorque, &mut []).unwrap();
+    for mut recording in [articulated::simulate::Recording::default(), other] {
+        simulation.run_into(&[0.2], &[0.1], &mut NoTorque, &mut [], &mut recording, &mut |_, _| true).unwrap();
+        assert_eq!(recording, alone);
+    }
+}
+
 /// What an event that strikes records is the ball's speed, and the motion goes on with what is left; what cannot strike is refused.
 #[test]
 fn an_event_that_strikes_gives_the_speed_of_the_ball() {
@@ -333,6 +358,12 @@ fn an_event_that_strikes_gives_the_speed_of_the_ball() {
     let expected = blow().strike(before.q_at(1), &mut after, 0.0).unwrap();
     assert!((motion.events[0].value.unwrap() - expected.ball_speed).abs() < 1e-9 && expected.ball_speed > 0.1, "{:?}", motion.events);
     assert!(motion.v_at(1).iter().zip(&after).all(|(a, b)| (a - b).abs() < 1e-6), "{:?} {after:?}", motion.v_at(1));
+    for n in [0, 2, 4] {
+        assert!(matches!(
+            blow().strike(&q, &mut vec![0.0; n], 0.0),
+            Err(SimulateError::Function(FunctionError::Length { argument: "v", .. }))
+        ));
+    }
     for (normal, mass, restitution, what) in [
         ([0.0; 3], 1.0, 0.5, "normal"),
         ([1.0; 3], 0.0, 0.5, "mass of the ball"),

@@ -3,6 +3,8 @@
 mod pd;
 mod torque_table;
 
+use super::{SimulateError, StateError};
+
 pub use pd::Pd;
 pub use torque_table::{TableError, TorqueTable};
 
@@ -100,9 +102,10 @@ pub struct Hold<C> {
 }
 
 impl<C: Control> Hold<C> {
-    /// Samples every `period` seconds; `None` if that is no length of time.
-    pub fn new(control: C, period: f64) -> Option<Self> {
-        (period > 0.0 && period.is_finite()).then_some(Self { control, period })
+    /// Samples every `period` seconds. Errors: a period that is no length of time.
+    pub fn new(control: C, period: f64) -> Result<Self, SimulateError> {
+        let wrong = || SimulateError::State(vec![StateError::Value { what: "period", found: period }]);
+        if period > 0.0 && period.is_finite() { Ok(Self { control, period }) } else { Err(wrong()) }
     }
 }
 

@@ -22,23 +22,19 @@ impl<'r, R: Dynamics<f64>> Pd<'r, R> {
         let (manifold, shape) = (Manifold::of(robot)?, robot.shape());
         let rates = vec![0.0; shape.nv];
         manifold.check(&target, &rates)?;
-        let gains = [("proportional gains", &proportional), ("derivative gains", &derivative)];
-        let wrong = gains.into_iter().filter(|(_, x)| x.len() != shape.nv);
-        let wrong: Vec<_> = wrong.map(|(vector, x)| StateError::Length { vector, found: x.len(), expected: shape.nv }).collect();
-        if !wrong.is_empty() {
-            return Err(SimulateError::State(wrong));
-        }
+        let gains = |vector, x| StateError::of(vector, x, shape.nv);
+        StateError::none(gains("proportional gains", &proportional).chain(gains("derivative gains", &derivative)))?;
         let mut pd = Self { robot, ws: robot.workspace(), flat: manifold.is_flat(), target, rates, proportional, derivative };
         let (q, mut out) = (pd.target.clone(), vec![0.0; shape.nv]);
         pd.difference(&q, &mut out)?;
         Ok(pd)
     }
 
-    /// The same with rates to follow, `[nv]`; others than that many are left as they are.
-    #[must_use]
-    pub fn with_rates(mut self, rates: &[f64]) -> Self {
-        self.rates.iter_mut().zip(rates).for_each(|(to, from)| *to = *from);
-        self
+    /// The same with rates to follow, `[nv]` finite numbers.
+    pub fn with_rates(mut self, rates: &[f64]) -> Result<Self, SimulateError> {
+        StateError::none(StateError::of("rates", rates, self.rates.len()))?;
+        self.rates.copy_from_slice(rates);
+        Ok(self)
     }
 
     fn difference(&mut self, q: &[f64], out: &mut [f64]) -> Result<(), SimulateError> {

@@ -1,5 +1,6 @@
 //! The blow between a point of the robot and a free ball: an instantaneous map.
 
+use articulated_core::algorithm::check_length;
 use articulated_core::dynamics::Dynamics;
 
 use super::{Action, Points};
@@ -52,10 +53,7 @@ impl<'r, R: Dynamics<f64>> Impact<'r, R> {
             ("restitution", restitution, (0.0..=1.0).contains(&restitution)),
         ];
         let wrong = all.into_iter().filter(|(_, x, right)| !right || !x.is_finite());
-        let wrong: Vec<_> = wrong.map(|(what, found, _)| StateError::Value { what, found }).collect();
-        if !wrong.is_empty() {
-            return Err(SimulateError::State(wrong));
-        }
+        StateError::none(wrong.map(|(what, found, _)| StateError::Value { what, found }))?;
         let (nv, vectors) = (shape.nv, || vec![0.0; shape.nv]);
         let jacobians = vec![0.0; 6 * nv * shape.frames];
         let (row, response) = (vectors(), vectors());
@@ -66,7 +64,8 @@ impl<'r, R: Dynamics<f64>> Impact<'r, R> {
 
     /// The state before becomes the state after: v `[nv]` is changed; `ball` is the ball's speed along the normal before, m/s.
     pub fn strike(&mut self, q: &[f64], v: &mut [f64], ball: f64) -> Result<Struck, SimulateError> {
-        let nv = v.len();
+        let nv = self.row.len();
+        check_length("v", v.len(), nv)?;
         self.points.point(q, self.point)?;
         let [x, y, z] = self.points.turned(self.point);
         let robot = self.points.robot;

@@ -3,6 +3,9 @@
 mod impact;
 pub(crate) mod watch;
 
+use std::sync::Arc;
+
+use articulated_core::algorithm::Shape;
 use articulated_core::dynamics::Dynamics;
 
 pub use impact::{Impact, Struck};
@@ -45,16 +48,25 @@ pub enum Action<'a> {
 /// sign, and a pair of zeros where |g| has a least value among them. What is missed is a pair that comes and goes between two neighbours without |g| falling towards them:
 /// less than an eighth of a step, which `max_step` can bound.
 pub struct Event<'a> {
-    pub(crate) name: String,
+    pub(crate) name: Arc<str>,
+    /// Which number of q or v it is about, if of one.
+    about: Option<About>,
     pub(crate) direction: Direction,
     pub(crate) action: Action<'a>,
     pub(crate) function: Box<Function<'a>>,
 }
 
+/// A number of the state.
+#[derive(Clone, Copy)]
+enum About {
+    Coordinate(usize),
+    Rate(usize),
+}
+
 impl<'a> Event<'a> {
     /// An event where g(t, q, v) goes through zero, either way; it is recorded.
     pub fn new(name: impl Into<String>, g: impl FnMut(f64, &[f64], &[f64]) -> f64 + 'a) -> Self {
-        Self { name: name.into(), direction: Direction::Either, action: Action::Record, function: Box::new(g) }
+        Self { name: Arc::from(name.into()), about: None, direction: Direction::Either, action: Action::Record, function: Box::new(g) }
     }
 
     /// Only where g goes this way.
@@ -86,12 +98,21 @@ impl<'a> Event<'a> {
                 _ => upper - x,
             }
         };
-        Self::new(name, g).direction(Direction::Falling)
+        Self { about: Some(About::Coordinate(i)), ..Self::new(name, g).direction(Direction::Falling) }
     }
 
     /// Rate i of v begins or ceases to slip: |v| passes the speed at which the friction law is smoothed. Rising: it slips; falling: it sticks.
     pub fn stick_slip(name: impl Into<String>, i: usize, speed: f64) -> Self {
-        Self::new(name, move |_, _, v: &[f64]| number(v, i).abs() - speed)
+        Self { about: Some(About::Rate(i)), ..Self::new(name, move |_, _, v: &[f64]| number(v, i).abs() - speed) }
+    }
+
+    /// What is wrong with it for a robot of this shape: it is about a number that there is not.
+    pub(crate) fn beyond(&self, shape: Shape) -> Option<StateError> {
+        let (vector, index, length) = match self.about? {
+            About::Coordinate(i) => ("q", i, shape.nq),
+            About::Rate(i) => ("v", i, shape.nv),
+        };
+        (index >= length).then(|| StateError::Beyond { event: self.name.to_string(), vector, index, length })
     }
 
     /// A sphere about a point of a frame touches the plane nᵀx = height of the base frame: its distance falls through zero.
@@ -123,7 +144,7 @@ impl<'a> Event<'a> {
     }
 }
 
-/// Number i, or none: then the event is an error of the motion.
+/// Number i, which is there ([`Event::beyond`]).
 fn number(x: &[f64], i: usize) -> f64 {
     x.get(i).copied().unwrap_or(f64::NAN)
 }

@@ -113,7 +113,7 @@ impl Rodas4 {
         system.robot.forward_dynamics_derivatives(&mut system.ws, &system.origin, v, tau, &mut self.derivatives)?;
         system.counts.derivatives += 1;
         self.drift.fill(0.0);
-        let depends = if system.held.is_some() { Dependence::NOTHING } else { control.depends_on() };
+        let depends = if system.holds { Dependence::NOTHING } else { control.depends_on() };
         if depends.state || depends.time {
             self.feedback.fill(0.0);
             self.differentiate_control(system, control, start, depends)?;

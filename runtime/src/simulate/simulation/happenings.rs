@@ -86,7 +86,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         let again = self.t - run.last_map.1 <= 2.0 * self.settings.event_tolerance.max(rounding(self.t));
         run.chatter = if again { run.chatter + 1 } else { 0 };
         if again && (run.last_map.0 == event || run.chatter > 100) {
-            return Err(SimulateError::Chattering { t: self.t, event: name.clone() });
+            return Err(SimulateError::Chattering { t: self.t, event: name.to_string() });
         }
         run.last_map = (event, self.t);
         self.point.q.copy_from_slice(&self.system.origin);

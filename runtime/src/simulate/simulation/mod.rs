@@ -105,7 +105,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         let nv = self.shape.nv;
         let (q, zero, mut out) = (vec![0.5; self.shape.nq], vec![0.0; nv], vec![0.0; 3 * nv * nv]);
         for function in self.settings.integrator.row().needs {
-            let length = if *function == articulated_core::algorithm::FunctionId::forward_dynamics { nv } else { 3 * nv * nv };
+            let length = function.row::<f64>().len(self.shape);
             self.system.robot.call(*function, &mut self.system.ws, &[&q, &zero, &zero], &mut out[..length])?;
         }
         Ok(())
@@ -151,8 +151,9 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         recording: &mut Recording,
         watch: &mut dyn FnMut(f64, &Counts) -> bool,
     ) -> Result<(), SimulateError> {
-        recording.clear();
+        self.known.begin(&self.system, recording);
         self.begin(q, v)?;
+        StateError::none(events.iter().filter_map(|event| event.beyond(self.shape)))?;
         if let Some(found) = control.count().filter(|n| *n != self.shape.nv) {
             return Err(SimulateError::State(vec![StateError::Length { vector: "tau", found, expected: self.shape.nv }]));
         }
@@ -180,7 +181,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         self.system.manifold.check(q, v)?;
         self.system.origin.copy_from_slice(q);
         self.system.counts = Counts::default();
-        self.system.held = None;
+        self.system.holds = false;
         self.known.from_events = 0.0;
         self.method.reset();
         self.stability.reset();
@@ -250,10 +251,9 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             return;
         }
         let nv = self.shape.nv;
-        let mut held = self.system.held.take().unwrap_or_else(|| vec![0.0; nv]);
-        held.fill(0.0);
-        run.control.torques(self.t, &self.system.origin, &self.y[nv..2 * nv], &mut held);
-        self.system.held = Some(held);
+        self.system.held.fill(0.0);
+        run.control.torques(self.t, &self.system.origin, &self.y[nv..2 * nv], &mut self.system.held);
+        self.system.holds = true;
         run.samples += 1;
     }
 
