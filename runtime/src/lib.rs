@@ -24,9 +24,9 @@
 
 pub use articulated_core::algorithm::checked::{Factor, Singular, Solver, Unsolved, checked_forward_dynamics};
 pub use articulated_core::algorithm::{self, FunctionError, FunctionId, Shape, Workspace, check_length, exactly, exactly_rows};
-pub use articulated_core::description::{Base, Description, EditError, Origin, Payload};
+pub use articulated_core::description::{self, Base, Description, EditError, Origin, Payload};
 pub use articulated_core::dynamics::Dynamics;
-pub use articulated_core::model::{Model, ModelError};
+pub use articulated_core::model::{self, Model, ModelError};
 pub use articulated_core::{Scalar, effect, monitor, spatial};
 
 #[cfg(feature = "macros")]
@@ -37,6 +37,9 @@ pub mod simulate;
 
 #[cfg(feature = "urdf")]
 mod load;
+/// The reader of URDFs, with its warnings and choices.
+#[cfg(feature = "urdf")]
+pub use articulated_urdf as urdf;
 #[cfg(feature = "urdf")]
 pub use load::{LoadError, describe, describe_bytes, load, load_bytes};
 

@@ -36,13 +36,29 @@ impl fmt::Display for LoadError {
 impl std::error::Error for LoadError {}
 
 /// The generic model of the URDF at `path`, with standard gravity.
+///
+/// Every mistake of the file is an error. What is merely odd (an inertia that no body has, mass that a fixed base holds, …) is used as it is written, and not told here:
+/// [`urdf::read`](crate::urdf::read) tells it, and has choices besides.
+///
+/// ```no_run
+/// # fn arm() -> Result<(), Box<dyn std::error::Error>> {
+/// use articulated::{Base, Model, urdf};
+///
+/// let options = urdf::Options { file: "arm.urdf".into(), ..urdf::Options::default() };
+/// let reading = urdf::read(&std::fs::read("arm.urdf")?, &options)?;
+/// for warning in &reading.warnings {
+///     eprintln!("warning: {warning}");
+/// }
+/// let arm = Model::new(&reading.description, Base::Fixed)?;
+/// # Ok(()) }
+/// ```
 pub fn load(path: impl AsRef<Path>, base: Base) -> Result<Model<f64>, LoadError> {
-    Model::new(&describe(path, base)?, base).map_err(LoadError::Model)
+    Model::new(&describe(path)?, base).map_err(LoadError::Model)
 }
 
-/// The generic model of a URDF in memory; `file` is its name in messages.
+/// As [`load`], of a URDF in memory; `file` is its name in messages.
 pub fn load_bytes(file: &str, bytes: &[u8], base: Base) -> Result<Model<f64>, LoadError> {
-    Model::new(&describe_bytes(file, bytes, base)?, base).map_err(LoadError::Model)
+    Model::new(&describe_bytes(file, bytes)?, base).map_err(LoadError::Model)
 }
 
 /// What the URDF at `path` says, to be edited and made a model of:
@@ -51,24 +67,24 @@ pub fn load_bytes(file: &str, bytes: &[u8], base: Base) -> Result<Model<f64>, Lo
 /// # fn arm() -> Result<(), Box<dyn std::error::Error>> {
 /// use articulated::{Base, Model, Origin, Payload, describe};
 ///
-/// let mut arm = describe("arm.urdf", Base::Fixed)?;
-/// arm.append("tool", &describe("gripper.urdf", Base::Floating)?, "left_", Origin::default())?;
+/// let mut arm = describe("arm.urdf")?;
+/// arm.append("tool", &describe("gripper.urdf")?, "left_", Origin::default())?;
 /// arm.attach(&Payload { link: "left_palm".into(), mass: 0.5, ..Payload::default() })?;
 /// arm.lock("elbow", &[0.5])?;
 /// let arm = Model::new(&arm, Base::Fixed)?.with_frames(&["left_palm"])?;
 /// # Ok(()) }
 /// ```
 ///
-/// `base` decides no more than what would be reported as unused.
-pub fn describe(path: impl AsRef<Path>, base: Base) -> Result<Description, LoadError> {
+/// Warnings are not told, as [`load`] says.
+pub fn describe(path: impl AsRef<Path>) -> Result<Description, LoadError> {
     let path = path.as_ref();
     let bytes = std::fs::read(path).map_err(|error| LoadError::Io { file: path.to_owned(), error })?;
-    describe_bytes(&path.display().to_string(), &bytes, base)
+    describe_bytes(&path.display().to_string(), &bytes)
 }
 
 /// As [`describe`], of a URDF in memory; `file` is its name in messages.
-pub fn describe_bytes(file: &str, bytes: &[u8], base: Base) -> Result<Description, LoadError> {
-    let options = Options { file: file.into(), base, ..Options::default() };
+pub fn describe_bytes(file: &str, bytes: &[u8]) -> Result<Description, LoadError> {
+    let options = Options { file: file.into(), ..Options::default() };
     Ok(read(bytes, &options).map_err(LoadError::Urdf)?.description)
 }
 
@@ -80,5 +96,13 @@ mod tests {
     fn a_file_that_is_not_there_is_named() {
         let error = load("/no/such/arm.urdf", Base::Fixed).unwrap_err().to_string();
         assert!(error.starts_with("/no/such/arm.urdf: ") && error.len() > "/no/such/arm.urdf: ".len(), "{error}");
+    }
+
+    #[test]
+    fn what_is_odd_and_what_is_wrong_can_be_had_one_by_one() {
+        let reading = crate::urdf::read(b"<robot name='r'><link name='a'/></robot>", &crate::urdf::Options::default()).unwrap();
+        assert!(reading.warnings.is_empty() && reading.description.links.len() == 1);
+        let LoadError::Urdf(problems) = load_bytes("r.urdf", b"<robot/>", Base::Fixed).unwrap_err() else { panic!("not the reader's") };
+        assert!(problems.to_string().starts_with("error: r.urdf:1: "), "{problems}");
     }
 }
