@@ -120,7 +120,7 @@ impl<'a> Resolving<'a> {
                         let found = if joint.kind == JointKind::Fixed { "a fixed joint" } else { "a joint that is locked" };
                         log.error(one.place, &one.key, Kind::Robot, found, "a joint that moves");
                     }
-                    Some(joint) if one.says.is_some() && !has_room(row.id, joint.kind) => {
+                    Some(joint) if one.says.is_some() && !has_room(row, joint.kind) => {
                         let found = format!("a {} joint, which has no coordinate of its own for each degree of freedom", joint.kind.name());
                         log.error(one.place, &one.key, Kind::Robot, found, "another joint");
                     }
@@ -168,7 +168,7 @@ impl<'a> Resolving<'a> {
     fn on_joints(&mut self, row: &'static Effect, asked: &[&'a Asked], log: &mut Log) {
         let all = asked.iter().find(|a| a.on == Selector::All).copied();
         let description = self.robot.description;
-        for joint in description.joints.iter().filter(|j| moves(description, j) && has_room(row.id, j.kind)) {
+        for joint in description.joints.iter().filter(|j| moves(description, j) && has_room(row, j.kind)) {
             if let Some((one, place, key)) = self.of_shaft(row.id, &joint.name) {
                 self.put(row, one, (place, key), &vec![None; row.fields.len()]);
             }
@@ -234,7 +234,7 @@ impl<'a> Resolving<'a> {
         let parameters: Vec<f64> = filled.iter().flat_map(|(numbers, _)| numbers.iter().copied()).collect();
         let tags: Vec<Option<&'static str>> = filled.iter().map(|(_, tag)| *tag).collect();
         self.used.extend(tags.iter().flatten().map(|tag| (on.to_owned(), *tag)));
-        if !is_nothing(row, filled) {
+        if !row.is_nothing(&parameters) {
             self.put(row, Applied { effect: row.id, on: on.to_owned(), at, parameters }, (asked.place, asked.key.clone()), &tags);
         }
     }
@@ -275,9 +275,9 @@ impl<'a> Resolving<'a> {
 }
 
 /// Whether a joint of this kind has what the effect acts on.
-fn has_room(effect: EffectId, kind: JointKind) -> bool {
+fn has_room(row: &Effect, kind: JointKind) -> bool {
     let ball = matches!(kind, JointKind::Spherical | JointKind::Floating);
-    !(ball && matches!(effect, EffectId::spring | EffectId::limit))
+    !(ball && row.needs_coordinate())
 }
 
 /// All numbers: of the first layer that says or takes them from the URDF, otherwise the defaults. The name of a field for which there are none.
@@ -304,21 +304,6 @@ fn missing(row: &Effect, field: &str, one: &Asked, on: &str, log: &mut Log) {
         None => format!("no {field} for {on}"),
     };
     log.error(one.place, &one.key, Kind::MissingKey, found, format!("{field}, {unit}"));
-}
-
-/// Whether the numbers make nothing of the effect.
-fn is_nothing(row: &Effect, filled: &[Filled]) -> bool {
-    let zero = |name: &str| row.fields.iter().zip(filled).any(|(f, (x, _))| f.name == name && x.iter().all(|x| *x == 0.0));
-    match row.id {
-        EffectId::armature => zero("inertia") || zero("gear"),
-        EffectId::damping => zero("damping"),
-        EffectId::friction => zero("friction"),
-        EffectId::spring | EffectId::limit | EffectId::contact => zero("stiffness"),
-        EffectId::drag => zero("coefficient"),
-        EffectId::box_drag | EffectId::added_mass => filled.iter().all(|(x, _)| x.iter().all(|x| *x == 0.0)),
-        EffectId::buoyancy => zero("volume") || zero("density"),
-        EffectId::motor => false,
-    }
 }
 
 fn why(asked: &[&Asked]) -> Why {

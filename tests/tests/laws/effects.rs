@@ -3,9 +3,10 @@
 use articulated_core::Scalar;
 use articulated_core::algorithm::{self as dynamics, Workspace, functions};
 use articulated_core::dual::Dual;
-use articulated_core::effect::{Applied, EffectId, effects};
+use articulated_core::effect::{self, Applied, BodyEffect, EffectId, JointEffect, On, effects};
 use articulated_core::model::Model;
 use articulated_core::model::pass::model_passes;
+use articulated_core::spatial::Placement;
 use articulated_tests::case::{Case, State, cast, for_each_tree};
 use articulated_tests::random::Random;
 use articulated_tests::random_effects::random_effects;
@@ -175,6 +176,55 @@ fn nothing_of_nothing_is_nothing() {
         assert_eq!(call(&case.model, "dissipation", &[&q, &v]), [0.0]);
         assert_eq!(call(&case.model, "motor_torques", &[&v, &tau]), tau);
     });
+}
+
+/// An effect is left out where its numbers make nothing of it, and nowhere else: put on a body by hand, it changes accelerations then and only then.
+#[test]
+fn what_is_left_out_does_nothing_and_what_stays_does_something() {
+    let arm = Case::bundled(articulated_models::robot("ur5_like").expect("a bundled robot")).model;
+    let state = [[0.7, -1.2, 1.4, 0.6, -0.9, 0.8], [0.3, -0.2, 0.4, 0.5, 0.7, -0.6], [3.0, 2.0, -2.5, 1.5, -2.0, 1.8]];
+    let [q, v, tau] = &state;
+    let accelerations = |model: &Model<f64>| call(model, "forward_dynamics", &[q, v, tau]);
+    let plain = accelerations(&arm);
+    for row in effects() {
+        let full: Vec<f64> = row.fields.iter().flat_map(|f| numbers(row.id, f)).collect();
+        let mut start = 0;
+        let each = row.fields.iter().map(|field| {
+            let mut some = full.clone();
+            some[start..start + field.len].fill(0.0);
+            start += field.len;
+            // What may not be zero is no question, nor is where a stop or a plane is.
+            let place = ["lower", "upper", "normal", "height"].contains(&field.name);
+            if field.strictly || place { full.clone() } else { some }
+        });
+        for parameters in each.chain([full.clone(), vec![0.0; full.len()]]).filter(|p| row.id != EffectId::motor || p[0] > 0.0) {
+            let mut model = arm.clone();
+            let body = &mut model.bodies[3].effects;
+            match row.on {
+                On::Joint => body.joint.push(JointEffect { effect: row.id, freedom: 0, parameters: parameters.clone() }),
+                On::Link => {
+                    body.body.push(BodyEffect { effect: row.id, placement: Placement::identity(), parameters: parameters.clone() });
+                }
+            }
+            let with = accelerations(&model);
+            // A law divided by what is zero, friction at the speed 0, is none to ask.
+            let same = with == plain || with.iter().any(|x| x.is_nan());
+            assert_eq!(row.is_nothing(&parameters), same, "{} of {parameters:?}: {with:?}, without {plain:?}", row.name);
+        }
+    }
+}
+
+/// Numbers with which each effect acts on the third joint's body.
+fn numbers(id: EffectId, field: &effect::Field) -> Vec<f64> {
+    match (id, field.name) {
+        (EffectId::limit, "lower") => vec![2.0],
+        (EffectId::limit, "upper") => vec![3.0],
+        (EffectId::contact, "height") => vec![9.0],
+        (EffectId::contact, "normal") => vec![0.0, 0.0, 1.0],
+        (EffectId::added_mass, "angular" | "linear") => vec![1.0, 0.0, 0.0, 1.0, 0.0, 1.0],
+        (EffectId::added_mass, _) => vec![0.1, 0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.1],
+        _ => vec![0.4; field.len],
+    }
 }
 
 /// All that is wrong is told, each with what would be right.

@@ -7,9 +7,9 @@ use crate::Scalar;
 use crate::spatial::ArticulatedInertia;
 
 pub(super) const FIELDS: &[Field] = &[
-    Field::number("angular", "kg·m²", "moments about the axes: xx, xy, xz, yy, yz, zz").of(6),
-    Field::number("linear", "kg", "masses along the axes: xx, xy, xz, yy, yz, zz").of(6),
-    Field::number("coupling", "kg·m", "row by row: moment about an axis at the unit acceleration along another").or(&[0.0; 9]).of(9),
+    Field::number("angular", "kg·m²", "moments about the axes: xx, xy, xz, yy, yz, zz").part().of(6),
+    Field::number("linear", "kg", "masses along the axes: xx, xy, xz, yy, yz, zz").part().of(6),
+    Field::number("coupling", "kg·m", "row by row: moment about an axis at the unit acceleration along another").part().or(&[0.0; 9]).of(9),
 ];
 
 /// The 6×6 matrix on [ω̇; a] in the effect's frame.

@@ -71,7 +71,9 @@ impl fmt::Display for EffectError {
             }
             Fault::Twice => write!(f, "given twice: expected one for a joint"),
             Fault::Still => write!(f, "the link is fixed to the base, nothing would feel it: expected a link that moves"),
-            Fault::NoCoordinate => write!(f, "the law needs a coordinate for each degree of freedom, which a ball or a free joint has not"),
+            Fault::NoCoordinate => {
+                write!(f, "the law needs a coordinate for each degree of freedom, which a ball or a free joint does not have")
+            }
             Fault::Length { found, expected } => write!(f, "found {found} parameters, expected {expected}"),
             Fault::Number { field, found, expected } => write!(f, "{field}: found {found}, expected {expected}"),
         }
@@ -81,13 +83,13 @@ impl fmt::Display for EffectError {
 impl core::error::Error for EffectError {}
 
 impl Model<f64> {
-    /// The same robot with these effects besides those that it has. Several on one link add up; one with all its coefficients zero is left out. All that is wrong is told at
+    /// The same robot with these effects besides those that it has. Several on one link add up; one that does nothing ([`Effect::is_nothing`]) is left out. All that is wrong is told at
     /// once. The model must still have all its frames.
     pub fn with_effects(mut self, applied: &[Applied]) -> Result<Self, Vec<EffectError>> {
         let mut errors = Vec::new();
         for (index, one) in applied.iter().enumerate() {
             let put = check(one).and_then(|()| match one.effect.row().on {
-                _ if is_nothing(one) => self.has(one),
+                _ if one.effect.row().is_nothing(&one.parameters) => self.has(one),
                 On::Joint => self.put_on_joint(one),
                 On::Link => self.put_on_link(one),
             });
@@ -114,7 +116,7 @@ impl Model<f64> {
             if body.effects.joint.iter().any(|e| e.effect == one.effect) {
                 return Err(Fault::Twice);
             }
-            if matches!(body.joint, Joint::Spherical | Joint::Floating) && needs_coordinate(one.effect) {
+            if matches!(body.joint, Joint::Spherical | Joint::Floating) && one.effect.row().needs_coordinate() {
                 return Err(Fault::NoCoordinate);
             }
             let on = |freedom| JointEffect { effect: one.effect, freedom, parameters: one.parameters.clone() };
@@ -136,24 +138,6 @@ impl Model<f64> {
         self.bodies[body].effects.body.push(BodyEffect { effect: one.effect, placement, parameters });
         Ok(())
     }
-}
-
-/// Whether all coefficients are zero: then there is no effect.
-fn is_nothing(one: &Applied) -> bool {
-    let mut rest = one.parameters.as_slice();
-    let coefficients = one.effect.row().fields.iter().flat_map(|f| {
-        let (own, others) = rest.split_at(f.len);
-        rest = others;
-        let is_one = one.effect == EffectId::added_mass || f.at_least == 0.0 && !f.strictly;
-        own.iter().filter(move |_| is_one)
-    });
-    let (mut some, mut none) = (false, true);
-    coefficients.for_each(|x| (some, none) = (true, none && *x == 0.0));
-    some && none
-}
-
-fn needs_coordinate(effect: EffectId) -> bool {
-    matches!(effect, EffectId::spring | EffectId::limit)
 }
 
 /// The normal of a plane to length 1.

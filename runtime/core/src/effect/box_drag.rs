@@ -5,10 +5,10 @@ use crate::Scalar;
 use crate::spatial::{Vector3, Wrench};
 
 pub(super) const FIELDS: &[Field] = &[
-    Field::number("linear", "N·s²/m²", "force along each axis at the unit speed, quadratic").at_least_zero().of(3),
-    Field::number("angular", "N·m·s²", "moment about each axis at the unit rate, quadratic").at_least_zero().of(3),
-    Field::number("viscous_linear", "N·s/m", "force at the unit speed, linear").at_least_zero().or(&[0.0]),
-    Field::number("viscous_angular", "N·m·s", "moment at the unit rate, linear").at_least_zero().or(&[0.0]),
+    Field::number("linear", "N·s²/m²", "force along each axis at the unit speed, quadratic").at_least_zero().part().of(3),
+    Field::number("angular", "N·m·s²", "moment about each axis at the unit rate, quadratic").at_least_zero().part().of(3),
+    Field::number("viscous_linear", "N·s/m", "force at the unit speed, linear").at_least_zero().part().or(&[0.0]),
+    Field::number("viscous_angular", "N·m·s", "moment at the unit rate, linear").at_least_zero().part().or(&[0.0]),
 ];
 
 pub(super) struct Law;

@@ -5,7 +5,7 @@ use crate::Scalar;
 use crate::spatial::{Vector3, Wrench, rotate_back};
 
 pub(super) const FIELDS: &[Field] = &[
-    Field::number("volume", "m³", "displaced volume; its centre is the origin of the effect's frame").at_least_zero(),
+    Field::number("volume", "m³", "displaced volume; its centre is the origin of the effect's frame").at_least_zero().factor(),
     Field::number("density", "kg/m³", "of the fluid").positive().or(&[1000.0]),
 ];
 

@@ -3,7 +3,7 @@
 use super::{Field, Force};
 use crate::Scalar;
 
-pub(super) const FIELDS: &[Field] = &[Field::number("damping", "N·m·s/rad|N·s/m", "torque at the unit rate").at_least_zero()];
+pub(super) const FIELDS: &[Field] = &[Field::number("damping", "N·m·s/rad|N·s/m", "torque at the unit rate").at_least_zero().factor()];
 
 pub(super) struct Law;
 

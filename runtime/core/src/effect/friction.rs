@@ -4,7 +4,7 @@ use super::{Field, Force, smooth_sign};
 use crate::Scalar;
 
 pub(super) const FIELDS: &[Field] = &[
-    Field::number("friction", "N·m|N", "torque of sliding").at_least_zero(),
+    Field::number("friction", "N·m|N", "torque of sliding").at_least_zero().factor(),
     Field::number("speed", "rad/s|m/s", "rate below which the law is smooth").positive().or(&[1e-3]),
 ];
 

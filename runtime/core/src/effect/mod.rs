@@ -55,14 +55,27 @@ pub struct Field {
     pub at_least: f64,
     /// Nor be equal to that.
     pub strictly: bool,
+    /// What zeros in it make of the effect.
+    pub zeros: Zeros,
     /// What it means.
     pub what: &'static str,
+}
+
+/// What becomes of an effect where all numbers of a field are 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Zeros {
+    /// It is there all the same.
+    Count,
+    /// It is nothing: all that it does is multiplied by this.
+    Nothing,
+    /// It is nothing if all such fields are 0: what it does is a sum of parts, each multiplied by one of them.
+    NothingTogether,
 }
 
 impl Field {
     /// Any number, to be given.
     const fn number(name: &'static str, unit: &'static str, what: &'static str) -> Self {
-        Self { name, len: 1, unit, default: None, at_least: f64::NEG_INFINITY, strictly: false, what }
+        Self { name, len: 1, unit, default: None, at_least: f64::NEG_INFINITY, strictly: false, zeros: Zeros::Count, what }
     }
 
     /// Not negative.
@@ -72,6 +85,14 @@ impl Field {
 
     const fn positive(self) -> Self {
         Self { at_least: 0.0, strictly: true, ..self }
+    }
+
+    const fn factor(self) -> Self {
+        Self { zeros: Zeros::Nothing, ..self }
+    }
+
+    const fn part(self) -> Self {
+        Self { zeros: Zeros::NothingTogether, ..self }
     }
 
     const fn or(self, default: &'static [f64]) -> Self {
@@ -109,6 +130,29 @@ impl Effect {
     /// Whether it has none.
     pub fn is_empty(&self) -> bool {
         self.fields.is_empty()
+    }
+
+    /// Whether these numbers, as many as it has, make nothing of it: then it is left out.
+    pub fn is_nothing(&self, parameters: &[f64]) -> bool {
+        let (mut rest, mut parts) = (parameters, Vec::new());
+        let mut zero = |field: &Field| {
+            let (own, others) = rest.split_at_checked(field.len).unwrap_or((rest, &[]));
+            rest = others;
+            own.iter().all(|x| *x == 0.0)
+        };
+        for field in self.fields {
+            match (field.zeros, zero(field)) {
+                (Zeros::Nothing, true) => return true,
+                (Zeros::NothingTogether, zero) => parts.push(zero),
+                _ => {}
+            }
+        }
+        !parts.is_empty() && parts.into_iter().all(|zero| zero)
+    }
+
+    /// Whether a joint has to have a coordinate for each degree of freedom: the law is about it.
+    pub fn needs_coordinate(&self) -> bool {
+        matches!(self.id, EffectId::spring | EffectId::limit)
     }
 }
 
