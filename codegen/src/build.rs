@@ -269,7 +269,10 @@ fn file_in(folder: &Path, name: &str) -> Result<PathBuf, Error> {
     if Path::new(name).file_name().is_some_and(|file| file == name) {
         return Ok(folder.join(format!("{name}.rs")));
     }
-    Err(Error::File { file: name.into(), reason: "found no name of a file, expected one, without folders and `.rs`, as \"arm\"".into() })
+    Err(Error::File {
+        file: name.into(),
+        reason: "found something else than a plain file name, expected one, without folders and `.rs`, as \"arm\"".into(),
+    })
 }
 
 /// An error as a build script tells it to cargo, which says itself that it is one; with the warnings that come with it.
@@ -298,7 +301,7 @@ mod tests {
         <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
         <joint name="hinge" type="revolute"><parent link="base"/><child link="tip"/><axis xyz="0 0 2"/><limit effort="1" velocity="1"/></joint></robot>"#;
 
-    /// A folder of its own under the target folder, with a robot in it.
+    /// A folder of its own among temporary ones, with a robot in it.
     fn folder(name: &str) -> PathBuf {
         let folder = std::env::temp_dir().join(format!("articulated-{name}-{}", std::process::id()));
         fs::create_dir_all(&folder).unwrap();

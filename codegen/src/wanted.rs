@@ -85,11 +85,11 @@ impl Wanted {
         let (name, among) = (self.name.as_str(), |words: &str| words.split_whitespace().any(|word| word == self.name));
         let plain = name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
         if !plain || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
-            return Some("is no name of a function in Rust: expected lower case letters, digits and _");
+            return Some("is not a valid name for a Rust function: expected lower case letters, digits and _");
         }
         // The type of several results is called as they are: `self_` would be `Self`.
         if is_keyword(name) || name.trim_end_matches('_') == "self" {
-            return Some("is a word that Rust keeps for itself: expected another name");
+            return Some("is a reserved word of Rust: expected another name");
         }
         if among(KEPT) {
             return Some("is kept for a part of the generated module: expected another name");
@@ -311,9 +311,9 @@ mod tests {
             ("bias_forces(v = x)", "expected a constant"),
             ("bias_forces(v = 0", "expected `)`"),
             ("mass_matrix(q = sin_cos, q = 0)", "its sines are an argument"),
-            ("Big = mass_matrix", "no name"),
-            ("fn = mass_matrix", "Rust keeps"),
-            ("self_ = mass_matrix + placements", "Rust keeps"),
+            ("Big = mass_matrix", "not a valid name"),
+            ("fn = mass_matrix", "reserved word"),
+            ("self_ = mass_matrix + placements", "reserved word"),
             ("robot = mass_matrix", "generated module"),
             ("q = mass_matrix", "arguments or results"),
             ("mass_matrix = mass_matrix + placements", "arguments or results"),
@@ -325,8 +325,8 @@ mod tests {
             ("bias_forces(v = inf)", "expected a constant"),
             ("bias_forces(v = [0, NaN])", "expected a constant"),
             ("random_configuration(q = sin_cos)", "expected a constant"),
-            ("1st = mass_matrix", "no name"),
-            ("_x = mass_matrix", "no name"),
+            ("1st = mass_matrix", "not a valid name"),
+            ("_x = mass_matrix", "not a valid name"),
         ] {
             let error = Wanted::parse(text).err().map(|e| e.to_string()).unwrap_or_default();
             assert!(error.contains(part), "{text}: {error}");

@@ -77,7 +77,7 @@ impl Log {
         self.errors.sort_by_key(|e| e.at);
         if self.more > 0 {
             let (more, file) = (self.more, self.file.clone());
-            let found = format!("{more} errors more that are not listed");
+            let found = format!("{more} more errors, not listed");
             self.errors.push(SceneError {
                 file,
                 at: At::Nowhere,

@@ -171,7 +171,7 @@ fn all_mistakes_of_a_scene_are_told_at_once_in_the_order_of_the_file() {
     assert_eq!(lines, ["s.toml:1:", "s.toml:2:", "s.toml:4:", "s.toml:5:", "s.toml:8:", "s.toml:9:"]);
     let many = wrong(&(0..3000).map(|i| format!("key_{i} = 1\n")).collect::<String>());
     assert_eq!(many.len(), 1001);
-    assert_eq!(many[1000], "s.toml: found 2000 errors more that are not listed");
+    assert_eq!(many[1000], "s.toml: found 2000 more errors, not listed");
 }
 
 const ARM: &str = r#"<robot name="arm">

@@ -40,7 +40,7 @@ fn error(follower: &DraftJoint, mimic: &DraftMimic, kind: Kind, found: String, e
 
 fn report_follower(follower: &DraftJoint, mimic: &DraftMimic, log: &mut Log) {
     if follower.kind.is_some_and(|kind| !has_one_coordinate(kind)) {
-        let found = "a follower that has not exactly one coordinate".to_owned();
+        let found = "a follower that does not have exactly one coordinate".to_owned();
         let expected = "a revolute, continuous, prismatic or helical joint";
         error(follower, mimic, Kind::FollowerCannotFollow, found, expected, log);
     }
@@ -48,7 +48,7 @@ fn report_follower(follower: &DraftJoint, mimic: &DraftMimic, log: &mut Log) {
 
 fn report_leader(follower: &DraftJoint, mimic: &DraftMimic, leader: &DraftJoint, log: &mut Log) {
     if leader.kind.is_some_and(|kind| !has_one_coordinate(kind)) {
-        let found = format!("{}, which has not exactly one coordinate", quote(&mimic.leader.name));
+        let found = format!("{}, which does not have exactly one coordinate", quote(&mimic.leader.name));
         let expected = "a revolute, continuous, prismatic or helical joint to follow";
         error(follower, mimic, Kind::LeaderCannotLead, found, expected, log);
     }

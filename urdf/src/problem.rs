@@ -109,9 +109,9 @@ pub enum Kind {
     UnknownLeader,
     /// A joint mimics itself, directly or by way of others.
     MimicRing,
-    /// The joint that is followed has not exactly one coordinate.
+    /// The joint that is followed does not have exactly one coordinate.
     LeaderCannotLead,
-    /// The joint that follows has not exactly one coordinate.
+    /// The joint that follows does not have exactly one coordinate.
     FollowerCannotFollow,
     /// A revolute, helical or prismatic joint without `<limit>`.
     LimitMissing,

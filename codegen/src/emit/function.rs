@@ -231,13 +231,18 @@ fn document(out: &mut String, program: &Program, signature: &Signature, context:
     let c = entry.emitted();
     let _ = writeln!(
         out,
-        "/// {by}{} multiplications + {} additions in {} instructions (multiply-adds counted once), {} sines and cosines{}.",
-        c.multiplications(),
-        c.additions(),
-        c.instructions(),
-        c.trigonometric(),
+        "/// {by}{} + {} in {} (multiply-adds counted once), {}{}.",
+        counted(c.multiplications(), ["multiplication", "multiplications"]),
+        counted(c.additions(), ["addition", "additions"]),
+        counted(c.instructions(), ["instruction", "instructions"]),
+        counted(c.trigonometric(), ["sine or cosine", "sines and cosines"]),
         form(program, signature)
     );
+}
+
+/// So many things, of which one and several are called so.
+fn counted(n: u64, [one, several]: [&str; 2]) -> String {
+    format!("{n} {}", if n == 1 { one } else { several })
 }
 
 /// What there is to say of a function's form.

@@ -24,9 +24,12 @@ pub(super) fn header(out: &mut String, request: &Request, model: &Model<f64>, un
     line(&format!("Functions: {}.", o.functions.join(", ")));
     if o.level == Level::default() {
         line(
-            "Contract: SI units and radians; no allocation, no panic; no branch on data but one: if one of four angles is beyond 10⁵ rad or",
+            "Contract: SI units and radians; no allocation, no panic; no branch on data but one: sines of four angles are computed together,",
         );
-        line("not finite, their sines come from the standard library. Finite input gives what the formulas give.");
+        line(
+            "but if one of these is beyond 10⁵ rad or not finite, by the standard library, as those of fewer than three angles always are.",
+        );
+        line("Finite input gives what the formulas give.");
     } else {
         line(&format!("Level {}. Contract: SI units and radians; no allocation, no panic.", o.level));
         o.level.contract().iter().for_each(|text| line(&format!("  {text}")));

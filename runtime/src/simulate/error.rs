@@ -13,7 +13,7 @@ pub enum SimulateError {
     Settings(Vec<SettingError>),
     /// A state to begin with that is none; everything that is wrong with it.
     State(Vec<StateError>),
-    /// A function that the robot has not, or that was given something of the wrong length.
+    /// A function that the robot does not have, or that was given something of the wrong length.
     Function(FunctionError),
     /// A number of the motion, or of what moves it, is not finite.
     NotFinite {

@@ -78,7 +78,7 @@ impl<S: Scalar> Place<S> {
         Self { frame: Placement { rotation: x.rotation, position: body.position + x.position }, offset: x.position }
     }
 
-    /// The linear part of a twist that is in base axes about the frame's origin, with the axes and the point of the reference.
+    /// A twist that is in base axes about the frame's origin, in the axes and about the point of the reference.
     fn refer(&self, x: Twist<S>, reference: Reference) -> Twist<S> {
         match reference {
             Reference::WorldAligned => x,

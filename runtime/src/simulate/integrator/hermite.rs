@@ -19,7 +19,7 @@ impl Hermite {
         Self { first: vec![0.0; n], last: vec![0.0; n], ready: false }
     }
 
-    /// Another step was made.
+    /// The slopes are of an earlier step from now on.
     pub(super) fn forget(&mut self) {
         self.ready = false;
     }

@@ -7,10 +7,10 @@
 //!
 //! where cay turns by 2 atan(½h|ω|) about ω where exp would turn by h|ω| (on SE(3) the same in dual numbers), and plain coordinates add h v̄.
 //!
-//! **What it keeps.** For one body that moves or turns freely and feels no force, I V̇ = coad(V) I V is quadratic in V, and the rule keeps quadratic invariants:
-//! with P = I V, (1 + ½ad(hV̄)ᵀ… )P_1 = (1 − …)P_0 is P_1 = coAd(cay(hV̄))⁻¹ P_0, so that momentum in fixed axes, R P, and with it energy, are kept exactly: what is left is
-//! rounding. For any other robot it is symmetric, so reversible, with an error of energy that does not grow over long motions that are regular; momentum about
-//! axes that are plain coordinates and of which nothing depends is kept, any other to the order of the method.
+//! **What it keeps.** For one body that moves or turns freely and feels no force, I V̇ = −V ×* I V = ad(V)ᵀ I V is quadratic in V, and the rule keeps quadratic invariants:
+//! with P = I V, P_1 − P_0 = ad(hV̄)ᵀ ½(P_0 + P_1) is P_1 = Ad(cay(hV̄))ᵀ P_0, so that momentum in fixed axes, R P, and with it energy, are kept exactly: what is left is
+//! rounding. For any other robot it is symmetric, so reversible, with an error of energy that does not grow over long motions that are regular; momentum that
+//! belongs to a cyclic coordinate (a plain one on which nothing depends) is kept, any other to the order of the method.
 //!
 //! Simo & Wong, Int. J. Numer. Methods Eng. 31, 1991 (energy and momentum with the midpoint); Hairer, Lubich & Wanner 2006, §IV.2 (quadratic invariants), §IV.8
 //! (Cayley's map).

@@ -31,7 +31,7 @@ pub(crate) trait Method<R: Dynamics<f64>> {
     /// Another motion begins.
     fn reset(&mut self) {}
 
-    /// One step of length h from `start` to `end`; its error if `norm` is given and there is an estimate, else zero.
+    /// One step of length h from `start` to `end`; its error in `norm` if the method estimates one, else zero.
     fn step(
         &mut self,
         system: &mut System<R>,
