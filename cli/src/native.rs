@@ -75,7 +75,7 @@ impl PeerEntry {
     /// The robot is open, there are as many arrays as the function takes, each as long as it reads, and `out` is as long as it writes.
     #[inline(always)]
     unsafe fn run(self, robot: H, [q, v, a, w]: [P; 4], out: O) {
-        // Sound: what this function asks for is what they ask for.
+        // SAFETY: what this function asks for is what they ask for.
         unsafe {
             match self {
                 Self::One(f) => f(robot, q, out),
@@ -99,13 +99,13 @@ impl Native {
         let folder = Folder::new().map_err(|e| failed(&e))?;
         let copy = folder.path().join(path.file_name().unwrap_or_default());
         std::fs::copy(path, &copy).map_err(|e| failed(&e))?;
-        // Sound if the library's initialisers are: ours has none, and a peer is a library that the user asked to be run.
+        // SAFETY: initialisers of the library run: ours has none, and a peer is a library that the user asked to be run.
         let library = unsafe { libloading::Library::new(&copy) }.map_err(|e| failed(&e))?;
         Ok(Self { library: Arc::new(library), _copy: Arc::new(folder) })
     }
 
     fn symbol<T: Copy>(&self, name: &str) -> Option<T> {
-        // Sound if T is the type that the library gives the symbol; each caller names the interface that says so.
+        // SAFETY: T is the type that the library gives the symbol: each caller names the interface that says so.
         unsafe { self.library.get::<T>(name.as_bytes()) }.ok().map(|s| *s)
     }
 
@@ -135,7 +135,7 @@ impl Native {
 
 /// A C string's text.
 fn text(pointer: *const c_char) -> Option<String> {
-    // Sound: the interface promises a string that lives as long as its library or robot, and it is copied here and now.
+    // SAFETY: the interface promises a string that lives as long as its library or robot, and it is copied here and now.
     (!pointer.is_null()).then(|| unsafe { CStr::from_ptr(pointer) }.to_string_lossy().into_owned())
 }
 
@@ -156,7 +156,7 @@ impl Kernel {
     pub(crate) fn call(&self, x: &[&[f64]], out: &mut [f64]) {
         check(x, &self.arguments, out.len(), self.out);
         let out = out.as_mut_ptr();
-        // Sound: the arrays have the lengths that the library reads and writes, and it is open as long as the kernel lives.
+        // SAFETY: the arrays have the lengths that the library reads and writes, and it is open as long as the kernel lives.
         unsafe {
             match self.entry {
                 Entry::One(f) => f(x[0].as_ptr(), out),
@@ -180,7 +180,7 @@ impl Kernel {
     pub(crate) fn repeat(&self, rounds: usize, states: &[Vec<&[f64]>], out: &mut [f64]) {
         states.iter().for_each(|x| check(x, &self.arguments, out.len(), self.out));
         let out = out.as_mut_ptr();
-        // Sound: as in `call`.
+        // SAFETY: as in `call`.
         unsafe {
             match self.entry {
                 Entry::One(f) => repeat(rounds, states, |[q, ..]| f(q, out)),
@@ -217,12 +217,12 @@ impl PeerKernel {
     pub(crate) fn call(&self, x: &[&[f64]], out: &mut [f64]) -> bool {
         check(x, &self.arguments, out.len(), self.out);
         let (robot, out) = (self.robot.handle, out.as_mut_ptr());
-        // Sound: as above, and the robot is open as long as the kernel lives; it is used by one thread only.
+        // SAFETY: as above, and the robot is open as long as the kernel lives; it is used by one thread only.
         unsafe { self.entry.run(robot, begin(x), out) };
         let Some(name) = &self.kept else { return true };
         type Read = unsafe extern "C" fn(H, *const c_char, O) -> c_int;
         let read: Option<Read> = self.robot.native.symbol("peer_read");
-        // Sound: it writes the result of the function, whose length was checked.
+        // SAFETY: it writes the result of the function, whose length was checked.
         read.is_some_and(|read| unsafe { read(robot, name.as_ptr(), out) } != 0)
     }
 
@@ -233,7 +233,8 @@ impl PeerKernel {
     pub(crate) fn repeat(&self, rounds: usize, states: &[Vec<&[f64]>], out: &mut [f64]) {
         states.iter().for_each(|x| check(x, &self.arguments, out.len(), self.out));
         let (robot, out) = (self.robot.handle, out.as_mut_ptr());
-        // One loop for each number of arguments, so that nothing is chosen inside. Sound: as in `call`.
+        // One loop for each number of arguments, so that nothing is chosen inside.
+        // SAFETY: as in `call`.
         unsafe {
             match self.entry {
                 PeerEntry::One(f) => repeat(rounds, states, |[q, ..]| f(robot, q, out)),
@@ -336,7 +337,7 @@ impl NativePeer {
         }
         let (from_q, from_v) = (q.to_vec(), v.to_vec());
         let (number, steps) = (method.number, c_int::try_from(steps).ok()?);
-        // Sound: the arrays are as long as the peer says that they are, and the robot is open.
+        // SAFETY: the arrays are as long as the peer says that they are, and the robot is open.
         let right =
             unsafe { simulate(self.0.handle, number, from_q.as_ptr(), from_v.as_ptr(), step, steps, q.as_mut_ptr(), v.as_mut_ptr()) };
         (right != 0).then_some(())

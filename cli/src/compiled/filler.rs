@@ -38,7 +38,7 @@ impl Filler {
 
 fn text() -> String {
     format!(
-        "#[unsafe(no_mangle)]\npub extern \"C\" fn articulated_filler(_: *const f64, _: *mut f64) {{\n    \
+        "// SAFETY: it does nothing but take time and place.\n#[unsafe(no_mangle)]\npub extern \"C\" fn articulated_filler(_: *const f64, _: *mut f64) {{\n    \
          unsafe {{ ::core::arch::asm!(\".rept {INSTRUCTIONS}\", \"nop\", \".endr\") }}\n}}\n"
     )
 }

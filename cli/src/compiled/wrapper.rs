@@ -12,6 +12,8 @@ pub(super) fn symbol(function: &str) -> String {
 
 const HEAD: &str = "\
 //! The generated functions behind a C interface.
+//!
+//! SAFETY, of all that is unsafe here: who calls gives arrays of the type and the length that a function takes and gives, and no array twice.
 #[allow(dead_code)]
 #[path = \"robot.rs\"]
 mod robot;
@@ -55,6 +57,8 @@ fn one(name: &str, into: bool) -> String {
 
 const BATCH_HEAD: &str = "\
 //! Generated functions of many states behind a C interface.
+//!
+//! SAFETY, of all that is unsafe here: who calls gives arrays of the type and of `count` times the length that a function takes and gives, and no array twice.
 #[allow(dead_code)]
 #[path = \"robot.rs\"]
 mod robot;

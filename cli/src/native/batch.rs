@@ -95,7 +95,7 @@ impl BatchKernel {
         let p = |k: usize| x[k].lines.as_ptr().cast();
         let out: O = out.lines.as_mut_ptr().cast();
         for _ in 0..rounds {
-            // Sound: the arrays have the type and the lengths that the library reads and writes, and it is open as long as the kernel lives.
+            // SAFETY: the arrays have the type and the lengths that the library reads and writes, and it is open as long as the kernel lives.
             unsafe {
                 match black_box(self.entry) {
                     Entry::One(f) => f(p(0), out, count),
