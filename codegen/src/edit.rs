@@ -114,8 +114,9 @@ pub fn model(request: &Request, description: &Description) -> Result<Model<f64>,
 pub fn choose_frames(request: &Request, model: Model<f64>) -> Result<Model<f64>, Error> {
     let Some(names) = &request.options.frames else { return Ok(model) };
     model.with_frames(names).map_err(|name| {
+        let at = names.iter().position(|n| *n == name).unwrap_or_default();
         let reason = Reason::Edit(EditError::UnknownLink { name, nearest: None });
-        Error::Edits { refusals: vec![Refusal { file: request.file.clone(), edit: Edit::Frame(0), reason }] }
+        Error::Edits { refusals: vec![Refusal { file: request.file.clone(), edit: Edit::Frame(at), reason }] }
     })
 }
 

@@ -77,6 +77,9 @@ pub struct Generated {
 
 impl Generated {
     /// The source as tokens.
+    ///
+    /// # Panics
+    /// If the source was changed into something that is not Rust.
     pub fn tokens(&self) -> proc_macro2::TokenStream {
         self.source.parse().expect("the emitter writes Rust")
     }

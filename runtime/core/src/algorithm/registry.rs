@@ -259,6 +259,7 @@ impl<S: Scalar> Function<S> {
     /// Evaluates the function; `arguments` in the order of `takes`, `out` as `gives` says, row by row.
     pub fn call(&self, model: &Model<S>, ws: &mut Workspace<S>, arguments: &[&[S]], out: &mut [S]) -> Result<(), FunctionError> {
         let way = self.ways.iter().find(|w| (w.applies)(model));
+        debug_assert!(way.is_some(), "{}: no way for this robot", self.name);
         way.map_or(Ok(()), |way| self.call_by(way, model, ws, arguments, out))
     }
 

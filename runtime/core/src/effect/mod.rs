@@ -279,6 +279,21 @@ pub fn effects() -> &'static [Effect] {
     ROWS
 }
 
+/// The largest number of parameters of an effect.
+pub(crate) const fn most_parameters() -> usize {
+    let (mut most, mut i) = (0, 0);
+    while i < ROWS.len() {
+        let (mut len, mut k) = (0, 0);
+        while k < ROWS[i].fields.len() {
+            len += ROWS[i].fields[k].len;
+            k += 1;
+        }
+        most = if len > most { len } else { most };
+        i += 1;
+    }
+    most
+}
+
 /// The effect called `name`.
 pub fn effect(name: &str) -> Option<&'static Effect> {
     ROWS.iter().find(|e| e.name == name)

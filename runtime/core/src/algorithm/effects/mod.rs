@@ -51,8 +51,10 @@ pub(super) fn any_on_bodies<S: Scalar>(model: &Model<S>) -> bool {
     model.bodies.iter().any(|b| !b.effects.body.is_empty())
 }
 
-/// More parameters than any effect has.
+/// As many parameters as any effect has.
 const MOST: usize = 24;
+
+const _: () = assert!(crate::effect::most_parameters() <= MOST);
 
 /// Parameters as constants with no derivative: the first `p.len()` of them.
 fn duals<S: Scalar>(p: &[S]) -> [Dual<S>; MOST] {
