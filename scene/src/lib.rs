@@ -42,5 +42,5 @@ pub use report::{EffectOff, EffectOn, Number, Report, Why};
 pub use scene::{Code, Robot, Scene};
 pub use series::{Reader, Series, Source};
 pub use shaft::ShaftAsked;
-pub use simulation::{Integrator, Output, Simulation, Stiffness, Watched};
+pub use simulation::{Output, Simulation, Stiffness, Watched};
 pub use tree::{At, Entry, Node, Value};

@@ -1,5 +1,7 @@
 //! `[simulation]`: from when to when, by which integrator, how exactly, and what is recorded.
 
+use articulated_core::integrator::{IntegratorId, integrators};
+
 use crate::error::Kind;
 use crate::log::Log;
 use crate::table::{Row, Spot};
@@ -13,7 +15,7 @@ pub struct Simulation {
     /// Time at the end, s.
     pub end: f64,
     /// The integrator.
-    pub integrator: Integrator,
+    pub integrator: IntegratorId,
     /// Steps of this length, s; `None`: chosen by the integrator, if it can.
     pub step: Option<f64>,
     /// Error of a step, in parts of the state.
@@ -72,50 +74,6 @@ pub enum Stiffness {
     Note,
 }
 
-/// The integrators.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Integrator {
-    /// Semi-implicit Euler, order 1.
-    SemiImplicitEuler,
-    /// The classical Runge–Kutta method, order 4.
-    Rk4,
-    /// Dormand and Prince's embedded pair of order 5(4).
-    #[default]
-    Dopri5,
-    /// Dormand and Prince's embedded pair of order 8.
-    Dop853,
-    /// A linearly implicit (Rosenbrock) method of order 4, for stiff scenes.
-    Rodas4,
-    /// The implicit midpoint rule on the group: keeps momentum, and energy over long times.
-    LieMidpoint,
-}
-
-const INTEGRATORS: &[(&str, Integrator)] = &[
-    ("semi_implicit_euler", Integrator::SemiImplicitEuler),
-    ("rk4", Integrator::Rk4),
-    ("dopri5", Integrator::Dopri5),
-    ("dop853", Integrator::Dop853),
-    ("rodas4", Integrator::Rodas4),
-    ("lie_midpoint", Integrator::LieMidpoint),
-];
-
-impl Integrator {
-    /// Its name in scenes.
-    pub fn name(self) -> &'static str {
-        INTEGRATORS.iter().find(|(_, i)| *i == self).map_or("", |(name, _)| name)
-    }
-
-    /// All of them.
-    pub fn all() -> impl Iterator<Item = Self> {
-        INTEGRATORS.iter().map(|(_, i)| *i)
-    }
-
-    /// Whether it chooses its steps by their errors where the scene gives none.
-    pub fn is_adaptive(self) -> bool {
-        matches!(self, Self::Dopri5 | Self::Dop853 | Self::Rodas4)
-    }
-}
-
 impl Watched {
     /// Its name in scenes.
     pub fn name(self) -> &'static str {
@@ -131,7 +89,7 @@ impl Default for Simulation {
         Self {
             start: 0.0,
             end: 1.0,
-            integrator: Integrator::default(),
+            integrator: IntegratorId::dopri5,
             step: None,
             rtol: 1e-6,
             atol: 1e-9,
@@ -170,7 +128,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         value: "`\"semi_implicit_euler\"`, `\"rk4\"`, `\"dopri5\"`, `\"dop853\"`, `\"rodas4\"` or `\"lie_midpoint\"`",
         default: "`\"dopri5\"`",
         what: "the integrator",
-        read: |x, s, log| set(&mut x.integrator, s.word(log, INTEGRATORS)),
+        read: |x, s, log| set(&mut x.integrator, s.word(log, &words())),
     },
     Row {
         name: "step",
@@ -290,7 +248,7 @@ fn check(x: &Simulation, spot: &Spot<'_>, log: &mut Log) {
     {
         spot.clash(log, format!("{end:?}, not after the start, {start:?}"), format!("a time above {start:?} s"));
     }
-    if x.step.is_none() && !x.integrator.is_adaptive() {
+    if x.step.is_none() && !x.integrator.row().adaptive {
         let (name, at) = (x.integrator.name(), key("integrator").map_or(spot.at, |s| s.at));
         log.error(at, &spot.key, Kind::MissingKey, format!("no step for {name:?}"), "step: the length of its steps, s");
     }
@@ -316,6 +274,11 @@ fn check(x: &Simulation, spot: &Spot<'_>, log: &mut Log) {
     }
 }
 
+/// What scenes call the integrators.
+fn words() -> Vec<(&'static str, IntegratorId)> {
+    integrators().iter().map(|row| (row.name, row.id)).collect()
+}
+
 fn output(spot: &Spot<'_>, log: &mut Log) -> Option<Output> {
     match &spot.node.value {
         Value::Text(_) => spot.word(log, &[("steps", 0), ("ends", 1)]).map(|i| [Output::Steps, Output::Ends][i].clone()),
@@ -332,4 +295,18 @@ fn events(spot: &Spot<'_>, log: &mut Log) -> Vec<Watched> {
     let mut events: Vec<Watched> = list.iter().filter_map(|item| item.word(log, WATCHED)).collect();
     events.dedup();
     events
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_manual_names_every_integrator_and_which_want_a_step() {
+        let row = |name: &str| KEYS.iter().find(|row| row.name == name).unwrap();
+        for one in integrators() {
+            assert!(row("integrator").value.contains(&format!("`\"{}\"`", one.name)), "{}", one.name);
+            assert_eq!(row("step").default.contains(&format!("`{}`", one.name)), !one.adaptive, "{}", one.name);
+        }
+    }
 }

@@ -150,7 +150,8 @@ fn told(stage: &Stage, run: Run, words: &dyn Fn(&Hit) -> String) -> Recording {
 pub(super) fn generate(stage: &Stage, integrator: IntegratorId) -> Result<(Generated, Vec<String>), Failure> {
     stage.is_of_doubles()?;
     let frames = watched::frames(stage);
-    let mut functions = vec!["forward_dynamics", "kinetic_energy", "potential_energy"];
+    let mut functions: Vec<&str> = integrator.row().needs.iter().map(|f| f.name()).collect();
+    functions.extend(["kinetic_energy", "potential_energy"]);
     if stage.model.moving_mass() > 0.0 {
         functions.push("centroidal_momentum");
     }
@@ -162,9 +163,6 @@ pub(super) fn generate(stage: &Stage, integrator: IntegratorId) -> Result<(Gener
         functions.push("integrate");
     }
     functions.push("difference");
-    if integrator == IntegratorId::rodas4 {
-        functions.push("forward_dynamics_derivatives");
-    }
     if !frames.is_empty() {
         functions.push("placements");
     }

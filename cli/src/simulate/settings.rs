@@ -1,7 +1,7 @@
 //! How a scene is simulated: what it says itself, and what the command line says instead.
 
-use articulated::simulate::{IntegratorId, Output, Settings, Stiffness, integrator};
-use articulated_scene::{Integrator, Output as Recorded, Simulation, Stiffness as Stiff};
+use articulated::simulate::{Output, Settings, Stiffness, integrator};
+use articulated_scene::{Output as Recorded, Simulation, Stiffness as Stiff};
 
 use super::arguments::SimulateArguments;
 use crate::failure::Failure;
@@ -45,7 +45,7 @@ fn from_scene(s: &Simulation) -> Settings {
         Recorded::Ends => Output::Ends,
     };
     Settings {
-        integrator: id(s.integrator),
+        integrator: s.integrator,
         start: s.start,
         end: s.end,
         step: s.step,
@@ -65,28 +65,9 @@ fn from_scene(s: &Simulation) -> Settings {
     }
 }
 
-fn id(scene: Integrator) -> IntegratorId {
-    match scene {
-        Integrator::SemiImplicitEuler => IntegratorId::semi_implicit_euler,
-        Integrator::Rk4 => IntegratorId::rk4,
-        Integrator::Dopri5 => IntegratorId::dopri5,
-        Integrator::Dop853 => IntegratorId::dop853,
-        Integrator::Rodas4 => IntegratorId::rodas4,
-        Integrator::LieMidpoint => IntegratorId::lie_midpoint,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn integrators_of_scenes_and_of_the_library_have_the_same_names() {
-        for scene in Integrator::all() {
-            assert_eq!(id(scene).name(), scene.name());
-        }
-        assert_eq!(Integrator::all().count(), articulated::simulate::integrators().len());
-    }
 
     #[test]
     fn defaults_of_scenes_are_those_of_the_library() {

@@ -25,6 +25,8 @@ pub mod description;
 pub mod dynamics;
 #[cfg(feature = "alloc")]
 pub mod effect;
+#[cfg(feature = "alloc")]
+pub mod integrator;
 pub mod joint;
 #[cfg(feature = "alloc")]
 pub mod lanes;

@@ -35,15 +35,14 @@ mod simulation;
 mod stability;
 mod step_control;
 mod system;
-mod table;
 
+pub use articulated_core::integrator::{Integrator, IntegratorId, integrator, integrators};
 pub use control::{Constant, Control, Dependence, Hold, NoTorque, Pd, TableError, TorqueTable};
 pub use error::{SimulateError, StateError};
 pub use event::{Action, Direction, Event, Impact, Map, Struck};
 pub use recording::{Counts, Ended, Hit, Recording};
 pub use settings::{Output, SettingError, Settings, Stiffness};
 pub use simulation::Simulation;
-pub use table::{Integrator, IntegratorId, integrator, integrators};
 
 /// The chapter's examples, compiled and run as documentation tests.
 #[cfg(doctest)]

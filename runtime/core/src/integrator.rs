@@ -1,28 +1,10 @@
-//! The one table of integrators, from which settings, scenes, documentation and tests read.
+//! The one table of integrators, from which simulations, scenes, documentation and tests read.
 //!
-//! Adding one: its file in `integrator`, its row here, its line in `integrator::method`.
+//! Adding one: its file in `runtime/src/simulate/integrator`, its line in the `method` of that folder, its row here.
 
-use std::fmt;
+use core::fmt;
 
-use articulated_core::algorithm::FunctionId;
-
-/// The integrators by name: each variant is called as scenes call it.
-#[allow(non_camel_case_types)]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum IntegratorId {
-    /// Velocities first, then configurations with the new velocities.
-    semi_implicit_euler,
-    /// The classical method of four stages.
-    rk4,
-    /// Dormand's and Prince's pair of orders 5 and 4.
-    dopri5,
-    /// Dormand's, Prince's and Hairer's method of order 8.
-    dop853,
-    /// Hairer's and Wanner's linearly implicit method of order 4.
-    rodas4,
-    /// The implicit midpoint rule on the manifold.
-    lie_midpoint,
-}
+use crate::algorithm::FunctionId;
 
 /// One row: an integrator.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,72 +29,79 @@ pub struct Integrator {
 
 const EXPLICIT: &[FunctionId] = &[FunctionId::forward_dynamics];
 
-static ROWS: [Integrator; 6] = [
-    Integrator {
-        id: IntegratorId::semi_implicit_euler,
-        name: "semi_implicit_euler",
-        order: 1,
-        adaptive: false,
-        implicit: false,
+macro_rules! integrators {
+    ($($(#[$doc:meta])* $name:ident { order: $order:literal, adaptive: $adaptive:literal, implicit: $implicit:literal, what_for: $what_for:literal,
+        source: $source:literal, needs: $needs:expr })*) => {
+        /// The integrators by name: each variant is called as scenes call it.
+        #[allow(non_camel_case_types)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum IntegratorId {
+            $($(#[$doc])* $name,)*
+        }
+
+        const ROWS: &[Integrator] = &[$(
+            Integrator {
+                id: IntegratorId::$name,
+                name: stringify!($name),
+                order: $order,
+                adaptive: $adaptive,
+                implicit: $implicit,
+                what_for: $what_for,
+                source: $source,
+                needs: $needs,
+            },
+        )*];
+    };
+}
+
+integrators! {
+    /// Velocities first, then configurations with the new velocities.
+    semi_implicit_euler {
+        order: 1, adaptive: false, implicit: false,
         what_for: "one evaluation a step, no drift of energy without damping: games, sketches, comparison",
         source: "Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, (I.1.9)",
-        needs: EXPLICIT,
-    },
-    Integrator {
-        id: IntegratorId::rk4,
-        name: "rk4",
-        order: 4,
-        adaptive: false,
-        implicit: false,
+        needs: EXPLICIT
+    }
+    /// The classical method of four stages.
+    rk4 {
+        order: 4, adaptive: false, implicit: false,
         what_for: "fixed steps: a controller's clock, a cost that is known beforehand",
         source: "Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 1993, Table II.1.2",
-        needs: EXPLICIT,
-    },
-    Integrator {
-        id: IntegratorId::dopri5,
-        name: "dopri5",
-        order: 5,
-        adaptive: true,
-        implicit: false,
+        needs: EXPLICIT
+    }
+    /// Dormand's and Prince's pair of orders 5 and 4.
+    dopri5 {
+        order: 5, adaptive: true, implicit: false,
         what_for: "the first to try: errors from 1e-3 to 1e-8, motions that are not stiff",
         source: "Dormand & Prince, J. Comput. Appl. Math. 6, 1980; dense output Hairer, Nørsett & Wanner 1993, (II.6.12)",
-        needs: EXPLICIT,
-    },
-    Integrator {
-        id: IntegratorId::dop853,
-        name: "dop853",
-        order: 8,
-        adaptive: true,
-        implicit: false,
+        needs: EXPLICIT
+    }
+    /// Dormand's, Prince's and Hairer's method of order 8.
+    dop853 {
+        order: 8, adaptive: true, implicit: false,
         what_for: "errors below 1e-8, long smooth motions, references",
         source: "Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 1993, §II.5 and §II.10",
-        needs: EXPLICIT,
-    },
-    Integrator {
-        id: IntegratorId::rodas4,
-        name: "rodas4",
-        order: 4,
-        adaptive: true,
-        implicit: true,
+        needs: EXPLICIT
+    }
+    /// Hairer's and Wanner's linearly implicit method of order 4.
+    rodas4 {
+        order: 4, adaptive: true, implicit: true,
         what_for: "stiff damping, springs, limits, contact: L-stable, and a decay never changes its sign, whatever the step",
         source: "Hairer & Wanner, Solving Ordinary Differential Equations II, 1996, §IV.7 and §VI.4",
-        needs: &[FunctionId::forward_dynamics, FunctionId::forward_dynamics_derivatives],
-    },
-    Integrator {
-        id: IntegratorId::lie_midpoint,
-        name: "lie_midpoint",
-        order: 2,
-        adaptive: false,
-        implicit: true,
+        needs: &[FunctionId::forward_dynamics, FunctionId::forward_dynamics_derivatives]
+    }
+    /// The implicit midpoint rule on the manifold.
+    lie_midpoint {
+        order: 2, adaptive: false, implicit: true,
         what_for: "long free motion: a body by itself keeps energy and momentum to rounding, other robots do not drift",
         source: "Simo & Wong, Int. J. Numer. Methods Eng. 31, 1991; Hairer, Lubich & Wanner 2006, §IV.2",
-        needs: EXPLICIT,
-    },
-];
+        needs: EXPLICIT
+    }
+}
 
 /// All integrators, in the order in which they are listed to people.
 pub fn integrators() -> &'static [Integrator] {
-    &ROWS
+    ROWS
 }
 
 /// The integrator called `name`.
@@ -147,7 +136,6 @@ mod tests {
         for row in integrators() {
             assert_eq!(integrator(row.name), Some(row));
             assert_eq!(row.id.row(), row);
-            assert_eq!(row.name, format!("{:?}", row.id));
         }
         assert_eq!(integrator("euler"), None);
     }
