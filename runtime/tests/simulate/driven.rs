@@ -42,6 +42,45 @@ fn a_sampled_controller_is_asked_at_its_times_and_held_between() {
     assert!([0.0, -1.0, f64::NAN, f64::INFINITY].iter().all(|period| Hold::new(NoTorque, *period).is_err()));
 }
 
+/// A table that is sampled; it counts how often.
+struct Sampled(TorqueTable, usize);
+
+impl Control for Sampled {
+    fn torques(&mut self, t: f64, q: &[f64], v: &[f64], tau: &mut [f64]) {
+        self.1 += 1;
+        self.0.torques(t, q, v, tau);
+    }
+
+    fn period(&self) -> Option<f64> {
+        Some(0.1)
+    }
+
+    fn next_kink(&self, t: f64) -> f64 {
+        self.0.next_kink(t)
+    }
+}
+
+/// Rows between two samples are nothing to a controller that is sampled: they neither ask it nor take a sample away.
+#[test]
+fn a_sampled_table_is_asked_at_samples_alone() {
+    let rows = ([0.0, 0.3, 0.5, 0.55, 0.8], [0.0, 1.0, 2.0, 0.0, 0.2]);
+    let table = || TorqueTable::new(rows.0.to_vec(), rows.1.to_vec(), 1).unwrap();
+    let (mut q, mut v) = (0.3, -0.2);
+    for k in 0..10 {
+        let mut u = [0.0];
+        table().torques(0.1 * f64::from(k), &[q], &[v], &mut u);
+        q += 0.1 * v + 0.005 * u[0];
+        v += 0.1 * u[0];
+    }
+    for id in [IntegratorId::dopri5, IntegratorId::rodas4, IntegratorId::rk4] {
+        let settings = if id == IntegratorId::rk4 { stepping(id, 1.0, 0.03) } else { to(id, 1.0, 1e-6) };
+        let mut sampled = Sampled(table(), 0);
+        let motion = Simulation::new(&slider(), settings).unwrap().run(&[0.3], &[-0.2], &mut sampled, &mut []).unwrap();
+        assert_eq!(sampled.1, 10, "{id}");
+        assert!((motion.q[1] - q).abs() < 1e-13 && (motion.v[1] - v).abs() < 1e-13, "{id}: {} {q}", motion.q[1]);
+    }
+}
+
 /// A tent of force: steps end at its top, so that a curve of third degree is exact.
 #[test]
 fn a_table_is_followed_through_its_kinks() {

@@ -22,7 +22,8 @@ pub trait Control {
         None
     }
 
-    /// The next time after t at which the torques have a kink or a jump, s: a step ends there, and is made with the torques before it.
+    /// The next time after t at which the torques have a kink or a jump, s: a step ends there, and is made with the torques before it. A controller that is
+    /// sampled is not asked.
     fn next_kink(&self, _t: f64) -> f64 {
         f64::INFINITY
     }

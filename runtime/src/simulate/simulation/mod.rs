@@ -60,6 +60,11 @@ impl Run<'_, '_> {
     fn period(&self) -> Option<f64> {
         self.control.period().filter(|p| *p > 0.0)
     }
+
+    /// The next kink or jump of the torques after t, s: where they are held from sample to sample there is none between.
+    fn next_kink(&self, t: f64) -> f64 {
+        if self.period().is_some() { f64::INFINITY } else { self.control.next_kink(t) }
+    }
 }
 
 /// What a step has come to.
@@ -205,7 +210,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
     fn steps(&mut self, run: &mut Run, watch: &mut dyn FnMut(f64, &Counts) -> bool) -> Result<Ended, SimulateError> {
         let nv = self.shape.nv;
         self.sample(run);
-        self.system.kink = run.control.next_kink(self.t);
+        self.system.kink = run.next_kink(self.t);
         self.record_here(run)?;
         self.watch.begin(run.events.len());
         self.take_sides(run)?;
@@ -378,7 +383,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         self.y.copy_from_slice(&self.end);
         self.y[..nv].fill(0.0);
         self.t = t;
-        self.system.kink = run.control.next_kink(t);
+        self.system.kink = run.next_kink(t);
         let sampled = run.period().is_some() && t >= until && until < self.settings.end;
         if sampled {
             self.sample(run);
