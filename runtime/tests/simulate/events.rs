@@ -328,6 +328,39 @@ fn an_event_about_a_number_that_there_is_not_is_an_error_that_names_it() {
     );
 }
 
+#[test]
+fn bounds_that_nothing_is_between_are_an_error() {
+    let robot = one_joint("prismatic", 0.0);
+    for (lower, upper) in [(1.0, -1.0), (0.5, 0.5), (f64::NAN, 1.0), (0.0, f64::NAN)] {
+        let mut events = [Event::limit("stop", 0, lower, upper)];
+        let found = Simulation::new(&robot, to(IntegratorId::dopri5, 0.1, 1e-6)).unwrap().run(&[0.0], &[0.0], &mut NoTorque, &mut events);
+        assert!(matches!(found, Err(SimulateError::State(all)) if matches!(all[..], [StateError::Value { .. }])), "{lower} {upper}");
+    }
+}
+
+/// Stretch by stretch nothing is lost and nothing comes twice: what is zero where a stretch ends happened in it.
+#[test]
+fn an_event_where_two_stretches_meet_happens_once() {
+    let robot = one_joint("prismatic", 0.0);
+    for row in integrators() {
+        let mut simulation = Simulation::new(&robot, any(row.id, 1.0)).unwrap();
+        let alarm = || [Event::new("alarm", |t, _: &[f64], _: &[f64]| t - 0.5)];
+        let (mut q, mut v, mut found) = (vec![0.3], vec![0.1], Vec::new());
+        for k in 0..4 {
+            simulation.set_span(0.25 * f64::from(k), 0.25 * f64::from(k + 1)).unwrap();
+            let motion = simulation.run(&q, &v, &mut NoTorque, &mut alarm()).unwrap();
+            found.extend(motion.events.iter().map(|hit| (k, hit.t, hit.direction)));
+            let last = motion.len() - 1;
+            (q, v) = (motion.q_at(last).to_vec(), motion.v_at(last).to_vec());
+        }
+        assert_eq!(found, [(1, 0.5, Direction::Rising)], "{}", row.name);
+        let mut falling = [Event::new("end", |t, _: &[f64], _: &[f64]| 1.0 - t).action(Action::Stop)];
+        simulation.set_span(0.25, 1.0).unwrap();
+        let motion = simulation.run(&[0.3], &[0.1], &mut NoTorque, &mut falling).unwrap();
+        assert_eq!((motion.events.len(), motion.ended), (1, Ended::ByEvent(0)), "{}", row.name);
+    }
+}
+
 /// A recording belongs to the robot whose motion it is, whatever was in it.
 #[test]
 fn a_recording_may_be_taken_from_another_robot() {

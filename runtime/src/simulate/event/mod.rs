@@ -51,6 +51,8 @@ pub struct Event<'a> {
     pub(crate) name: Arc<str>,
     /// Which number of q or v it is about, if of one.
     about: Option<About>,
+    /// Bounds between which nothing is.
+    inverted: Option<f64>,
     pub(crate) direction: Direction,
     pub(crate) action: Action<'a>,
     pub(crate) function: Box<Function<'a>>,
@@ -66,7 +68,14 @@ enum About {
 impl<'a> Event<'a> {
     /// An event where g(t, q, v) goes through zero, either way; it is recorded.
     pub fn new(name: impl Into<String>, g: impl FnMut(f64, &[f64], &[f64]) -> f64 + 'a) -> Self {
-        Self { name: Arc::from(name.into()), about: None, direction: Direction::Either, action: Action::Record, function: Box::new(g) }
+        Self {
+            name: Arc::from(name.into()),
+            about: None,
+            inverted: None,
+            direction: Direction::Either,
+            action: Action::Record,
+            function: Box::new(g),
+        }
     }
 
     /// Only where g goes this way.
@@ -98,7 +107,9 @@ impl<'a> Event<'a> {
                 _ => upper - x,
             }
         };
-        Self { about: Some(About::Coordinate(i)), ..Self::new(name, g).direction(Direction::Falling) }
+        // Not a number is no bound.
+        let inverted = if lower < upper { None } else { Some(upper - lower) };
+        Self { about: Some(About::Coordinate(i)), inverted, ..Self::new(name, g).direction(Direction::Falling) }
     }
 
     /// Rate i of v begins or ceases to slip: |v| passes the speed at which the friction law is smoothed. Rising: it slips; falling: it sticks.
@@ -106,8 +117,11 @@ impl<'a> Event<'a> {
         Self { about: Some(About::Rate(i)), ..Self::new(name, move |_, _, v: &[f64]| number(v, i).abs() - speed) }
     }
 
-    /// What is wrong with it for a robot of this shape: it is about a number that there is not.
-    pub(crate) fn beyond(&self, shape: Shape) -> Option<StateError> {
+    /// What is wrong with it for a robot of this shape: it is about a number that there is not, or has bounds that nothing can be between.
+    pub(crate) fn wrong(&self, shape: Shape) -> Option<StateError> {
+        if let Some(found) = self.inverted {
+            return Some(StateError::Value { what: "upper less lower bound of an event", found });
+        }
         let (vector, index, length) = match self.about? {
             About::Coordinate(i) => ("q", i, shape.nq),
             About::Rate(i) => ("v", i, shape.nv),
@@ -144,7 +158,7 @@ impl<'a> Event<'a> {
     }
 }
 
-/// Number i, which is there ([`Event::beyond`]).
+/// Number i, which is there ([`Event::wrong`]).
 fn number(x: &[f64], i: usize) -> f64 {
     x.get(i).copied().unwrap_or(f64::NAN)
 }

@@ -58,13 +58,13 @@ impl Watch {
         self.left[e]
     }
 
-    /// All zeros of a step, in `zeros`; its curve is ready.
+    /// All zeros of a step, in `zeros`; its curve is ready. A zero at the end belongs to the next step, if it is not the `last`.
     pub(crate) fn scan<R: Dynamics<f64>>(
         &mut self,
         events: &mut [Event],
         system: &mut System<R>,
         curve: &mut Curve<R>,
-        tolerance: f64,
+        (tolerance, last): (f64, bool),
     ) -> Result<(), SimulateError> {
         self.zeros.clear();
         let count = events.len();
@@ -96,6 +96,9 @@ impl Watch {
                 if now != 0.0 {
                     (side, from) = (now, place);
                 }
+            }
+            if last && side != 0.0 && self.values[(PLACES.len() - 1) * count + e] == 0.0 {
+                push(&mut self.zeros, search.events, e, 1.0, -side);
             }
             self.side[e] = side;
         }

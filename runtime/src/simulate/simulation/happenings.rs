@@ -19,7 +19,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         if !run.events.is_empty() {
             curve.prepare(&mut self.system, run.control)?;
             let tolerance = self.settings.event_tolerance.max(rounding(t) / 4.0) / h;
-            self.watch.scan(run.events, &mut self.system, &mut curve, tolerance)?;
+            self.watch.scan(run.events, &mut self.system, &mut curve, (tolerance, t >= self.settings.end))?;
             for &Zero { theta, event, direction } in &self.watch.zeros {
                 // What happens at the same time as the first that cuts the step short happens too; the rest is found again, if it still comes.
                 if !matches!(outcome, Outcome::GoOn) && theta > cut + tolerance {

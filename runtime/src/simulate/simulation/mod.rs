@@ -158,7 +158,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
     ) -> Result<(), SimulateError> {
         self.known.begin(&self.system, recording);
         self.begin(q, v)?;
-        StateError::none(events.iter().filter_map(|event| event.beyond(self.shape)))?;
+        StateError::none(events.iter().filter_map(|event| event.wrong(self.shape)))?;
         if let Some(found) = control.count().filter(|n| *n != self.shape.nv) {
             return Err(SimulateError::State(vec![StateError::Length { vector: "tau", found, expected: self.shape.nv }]));
         }
