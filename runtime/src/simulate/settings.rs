@@ -136,7 +136,7 @@ impl Settings {
         found.unless(lengths, "atol_each", format!("{} numbers", each.len()), &format!("{} numbers, or none", 2 * shape.nv));
         let bad = each.iter().find(|x| !(**x >= 0.0 && x.is_finite()));
         found.unless(bad.is_none(), "atol_each", bad.copied().unwrap_or(0.0), "each at least 0");
-        found.unless(self.min_step >= 0.0 && self.min_step.is_finite(), "min_step", self.min_step, "at least 0 s");
+        found.unless(self.min_step >= 0.0 && self.min_step.is_finite(), "min_step", self.min_step, "finite, at least 0 s");
         let longest = self.max_step > 0.0 && self.max_step >= self.min_step;
         found.unless(longest, "max_step", self.max_step, "greater than 0 s and at least min_step");
         let first = self.first_step;

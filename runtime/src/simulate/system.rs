@@ -25,6 +25,8 @@ pub(crate) struct System<'r, R: Dynamics<f64>> {
     pub(crate) q: Vec<f64>,
     pub(crate) tau: Vec<f64>,
     applied: Vec<f64>,
+    /// Since the last step that was accepted: when, s, and which commanded torque was not finite, at a state that was.
+    pub(crate) no_torque: Option<(f64, usize)>,
     pub(crate) has_motors: bool,
     pub(crate) has_losses: bool,
 }
@@ -45,6 +47,7 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
             q: vec![0.5; nq],
             tau: vec![0.0; nv],
             applied: vec![0.0; nv],
+            no_torque: None,
             has_motors: false,
             has_losses: false,
         };
@@ -70,14 +73,16 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
     }
 
     /// The commanded torques of a state, in `tau`.
-    pub(crate) fn command(&self, control: &mut dyn Control, t: f64, q: &[f64], v: &[f64], tau: &mut [f64]) {
+    pub(crate) fn command(&mut self, control: &mut dyn Control, t: f64, q: &[f64], v: &[f64], tau: &mut [f64]) {
         command(self.holds.then_some(&self.held), control, t, (q, v), tau);
+        self.no_torque = self.no_torque.or(not_finite(t, (q, v), tau));
     }
 
     /// The configuration u of the chart and the commanded torques there: in `q` and `tau`. Where a step ends at a jump, those before it.
     fn command_at(&mut self, control: &mut dyn Control, t: f64, u: &[f64], v: &[f64]) -> Result<(), FunctionError> {
         self.place(u)?;
         command(self.holds.then_some(&self.held), control, self.within(t), (&self.q, v), &mut self.tau);
+        self.no_torque = self.no_torque.or(not_finite(t, (&self.q, v), &self.tau));
         Ok(())
     }
 
@@ -128,6 +133,12 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
         std::mem::swap(&mut self.origin, &mut self.q);
         Ok(())
     }
+}
+
+/// The time and the torque that is not finite, at a state that is.
+fn not_finite(t: f64, (q, v): (&[f64], &[f64]), tau: &[f64]) -> Option<(f64, usize)> {
+    let index = tau.iter().position(|x| !x.is_finite())?;
+    q.iter().chain(v).all(|x| x.is_finite()).then_some((t, index))
 }
 
 /// The torques that are held, or else those that the controller gives.

@@ -178,15 +178,23 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         };
         let result = self.steps(&mut run, watch);
         run.recording.counts = self.system.counts;
-        run.recording.ended = result?;
+        run.recording.ended = result.map_err(|error| self.blamed(error))?;
         Ok(())
+    }
+
+    /// Where a torque was no number, that is why nothing else is.
+    fn blamed(&self, error: SimulateError) -> SimulateError {
+        match (error, self.system.no_torque) {
+            (SimulateError::NotFinite { .. }, Some((t, index))) => SimulateError::NotFinite { t, what: "tau", index },
+            (error, _) => error,
+        }
     }
 
     fn begin(&mut self, q: &[f64], v: &[f64]) -> Result<(), SimulateError> {
         self.system.manifold.check(q, v)?;
         self.system.origin.copy_from_slice(q);
         self.system.counts = Counts::default();
-        self.system.holds = false;
+        (self.system.holds, self.system.no_torque) = (false, None);
         self.known.from_events = 0.0;
         self.method.reset();
         self.stability.reset();
@@ -383,6 +391,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         self.y.copy_from_slice(&self.end);
         self.y[..nv].fill(0.0);
         self.t = t;
+        self.system.no_torque = None;
         self.system.kink = run.next_kink(t);
         let sampled = run.period().is_some() && t >= until && until < self.settings.end;
         if sampled {
