@@ -3,7 +3,7 @@
 use articulated_core::model::{FLOATING_BASE, Model};
 
 use crate::error::{Kind, SceneErrors, quote};
-use crate::initial::{Coordinates, Named, Side, counted, fill, neutral, no_joint, values};
+use crate::initial::{Coordinates, Named, Side, counted, fill, neutral, no_joint, normalise, values};
 use crate::log::Log;
 use crate::scene::Scene;
 use crate::series::{Reader, Series, Source};
@@ -209,7 +209,7 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
         required: false,
         value: "`\"linear\"` or `\"hold\"`",
         default: "`\"linear\"`",
-        what: "`table`, `pd`: between rows; before the first and after the last the nearest row holds",
+        what: "`table`, `pd`: between rows (a quaternion by the shortest turn, at one rate); before the first and after the last the nearest row holds",
         read: |x, s, log| set(&mut x.source.hold, s.word(log, &[("linear", false), ("hold", true)])),
     },
     Row {
@@ -320,6 +320,7 @@ impl Scene {
                     Target::Still(target) => {
                         let mut q = neutral(model);
                         fill(target, "control.target", model, Side::Q, &mut q, log);
+                        normalise(model, &mut q, ("control.target", &|joint| target.place(joint)), log);
                         Aim::Still(q)
                     }
                     Target::Moving(source) => Aim::Moving(source.series(model, Side::Q, read, log)),

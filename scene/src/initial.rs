@@ -38,6 +38,17 @@ pub enum Coordinates {
     Named(Vec<Named>),
 }
 
+impl Coordinates {
+    /// Where the scene says those of a joint.
+    pub(crate) fn place(&self, joint: &str) -> At {
+        match self {
+            Self::All { place, .. } => *place,
+            Self::Named(named) => named.iter().find(|n| n.joint == joint).map_or(At::Nowhere, |n| n.place),
+            Self::Neutral => At::Nowhere,
+        }
+    }
+}
+
 /// The numbers of one joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Named {
@@ -219,7 +230,7 @@ impl Scene {
         self.place_base(model, (&mut q, &mut v), log);
         fill(&self.initial.q, "initial.q", model, Side::Q, &mut q, log);
         fill(&self.initial.v, "initial.v", model, Side::V, &mut v, log);
-        normalise(model, &mut q, &self.initial.q, log);
+        normalise(model, &mut q, ("initial.q", &|joint| self.initial.q.place(joint)), log);
         (q, v)
     }
 
@@ -293,20 +304,15 @@ pub(crate) fn no_joint(log: &mut Log, at: At, key: &str, name: &str, model: &Mod
     log.unknown((at, key, Kind::UnknownName), ("a joint that is not there, or is locked".into(), name), "a joint that moves", names);
 }
 
-/// Quaternions to norm one.
-fn normalise(model: &Model<f64>, q: &mut [f64], from: &Coordinates, log: &mut Log) {
+/// Quaternions to norm one; `place`: where those of a joint are given.
+pub(crate) fn normalise(model: &Model<f64>, q: &mut [f64], (key, place): (&str, &dyn Fn(&str) -> At), log: &mut Log) {
     for joint in model.joints.iter().filter(|j| matches!(j.kind, JointKind::Spherical | JointKind::Floating)) {
         let end = joint.q.0 + joint.q.1;
         let quaternion = &mut q[end - 4..end];
         let norm = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
         if (norm - 1.0).abs() > NORM {
-            let place = match from {
-                Coordinates::All { place, .. } => *place,
-                Coordinates::Named(named) => named.iter().find(|n| n.joint == joint.name).map_or(At::Nowhere, |n| n.place),
-                Coordinates::Neutral => At::Nowhere,
-            };
             let found = format!("a quaternion of norm {norm:.4} for joint {:?}", joint.name);
-            log.error(place, "initial.q", Kind::Number, found, "norm one, in the order x, y, z, w");
+            log.error(place(&joint.name), key, Kind::Number, found, "norm one, in the order x, y, z, w");
         } else {
             quaternion.iter_mut().for_each(|x| *x /= norm);
         }

@@ -6,7 +6,7 @@ use articulated_core::model::Model;
 
 use crate::control::unreadable;
 use crate::error::{Kind, quote};
-use crate::initial::{Side, counted, neutral};
+use crate::initial::{Side, counted, neutral, normalise};
 use crate::log::Log;
 use crate::tree::At;
 
@@ -30,14 +30,14 @@ pub struct Source {
 pub struct Series {
     /// Times in order, s.
     pub times: Vec<f64>,
-    /// One row a time, each as long as q or v.
+    /// One row a time, each as long as q or v; quaternions have norm one.
     pub rows: Vec<Vec<f64>>,
     /// Each row holds until the next; otherwise linear between them.
     pub hold: bool,
 }
 
 impl Series {
-    /// The numbers at the time `t`; before the first row and after the last the nearest of them.
+    /// The numbers at the time `t`, each by itself (a quaternion is none between two rows); before the first row and after the last the nearest of them.
     pub fn at(&self, t: f64, out: &mut [f64]) {
         let next = self.times.partition_point(|x| *x <= t);
         let before = next.saturating_sub(1);
@@ -141,7 +141,12 @@ impl Source {
             });
             row
         };
-        Series { times: self.rows.iter().map(|r| r[0]).collect(), rows: self.rows.iter().map(row).collect(), hold: self.hold }
+        let mut rows: Vec<Vec<f64>> = self.rows.iter().map(row).collect();
+        if side == Side::Q && places.iter().all(Option::is_some) {
+            let key = |i: usize| if self.file.is_some() { format!("{key}, row {i}") } else { format!("control.rows[{i}]") };
+            rows.iter_mut().enumerate().for_each(|(i, row)| normalise(model, row, (&key(i), &|_| self.place), log));
+        }
+        Series { times: self.rows.iter().map(|r| r[0]).collect(), rows, hold: self.hold }
     }
 
     /// The place of `joint` or `joint[k]`.

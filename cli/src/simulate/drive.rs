@@ -13,6 +13,7 @@ pub(crate) struct Drive<'r, R: Dynamics<f64>> {
     target: Vec<f64>,
     error: Vec<f64>,
     rate: Vec<f64>,
+    step: Vec<f64>,
 }
 
 impl<'r, R: Dynamics<f64>> Drive<'r, R> {
@@ -26,6 +27,7 @@ impl<'r, R: Dynamics<f64>> Drive<'r, R> {
             target: vec![0.0; shape.nq],
             error: vec![0.0; shape.nv],
             rate: vec![0.0; shape.nv],
+            step: vec![0.0; shape.nv],
         }
     }
 }
@@ -42,9 +44,18 @@ impl<R: Dynamics<f64>> Control for Drive<'_, R> {
                     Aim::Still(still) => self.target.copy_from_slice(still),
                     Aim::Moving(series) => {
                         series.at(t, &mut self.target);
-                        if let Some((span, from, to)) = rows(series, t) {
-                            let told = self.robot.difference(&mut self.ws, from, to, &mut self.rate);
-                            self.rate.iter_mut().for_each(|r| *r = if told.is_ok() { *r / span } else { f64::NAN });
+                        if let Some((since, span, from, to)) = rows(series, t) {
+                            let robot = self.robot;
+                            let mut told = robot.difference(&mut self.ws, from, to, &mut self.rate);
+                            self.rate.iter_mut().for_each(|r| *r /= span);
+                            // from ⊕ (t − t_from) target': the shortest way at a constant rate, which plain coordinates take anyway.
+                            if from.len() != self.rate.len() {
+                                self.step.iter_mut().zip(&self.rate).for_each(|(step, rate)| *step = since * rate);
+                                told = told.and(robot.integrate(&mut self.ws, from, &self.step, &mut self.target));
+                            }
+                            if told.is_err() {
+                                self.rate.fill(f64::NAN); // generated robots have both functions where they are needed
+                            }
                         }
                     }
                 }
@@ -82,9 +93,10 @@ impl<R: Dynamics<f64>> Control for Drive<'_, R> {
     }
 }
 
-/// The rows around t, if t is between two that are joined by a straight line.
-fn rows(series: &Series, t: f64) -> Option<(f64, &[f64], &[f64])> {
+/// The rows around t, if t is between two that are joined by a straight way: the time since the first, s, that between them, and both.
+fn rows(series: &Series, t: f64) -> Option<(f64, f64, &[f64], &[f64])> {
     let next = series.times.partition_point(|x| *x <= t);
     let before = next.checked_sub(1).filter(|_| !series.hold)?;
-    Some((series.times.get(next)? - series.times[before], series.rows.get(before)?, series.rows.get(next)?))
+    let begin = series.times[before];
+    Some((t - begin, series.times.get(next)? - begin, series.rows.get(before)?, series.rows.get(next)?))
 }

@@ -78,6 +78,9 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
         Format::Text => text::text(&summary),
         Format::Json => crate::json(&summary),
     })?;
+    if let Some(odd) = summary.energy.out_of_balance() {
+        console::warn(&format!("{}: {odd}", stage.prepared.scene.file));
+    }
     Ok(match &motion.error {
         None => OK,
         Some(error) => {

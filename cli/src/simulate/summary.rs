@@ -123,7 +123,9 @@ impl Summary {
 
 impl Energy {
     fn of(r: &Recording, ball: Option<f64>) -> Self {
-        let largest = |all: &mut dyn Iterator<Item = f64>| all.fold(0.0_f64, |most, x| if x.abs() > most { x.abs() } else { most });
+        // What is no number is the largest of all.
+        let largest =
+            |all: &mut dyn Iterator<Item = f64>| all.fold(0.0_f64, |most, x| if x.abs() > most || x.is_nan() { x.abs() } else { most });
         let (energy, imbalance) = (r.energy(), largest(&mut r.imbalance().into_iter()));
         let scale =
             [&r.kinetic, &r.work, &r.dissipated, &r.from_events].into_iter().map(|x| largest(&mut x.iter().copied())).fold(0.0, f64::max);
@@ -140,8 +142,20 @@ impl Energy {
             from_events: at(&r.from_events, true),
             ball,
             largest_imbalance: imbalance,
-            relative_imbalance: if scale > 0.0 { imbalance / scale } else { 0.0 },
+            relative_imbalance: if scale == 0.0 { 0.0 } else { imbalance / scale },
         }
+    }
+
+    /// What to say where energy came from nowhere, or went there, by more than can be an error of steps that are short enough.
+    pub(super) fn out_of_balance(&self) -> Option<String> {
+        let part = self.relative_imbalance;
+        if !part.is_finite() {
+            return Some("energy is beyond the largest number: it says nothing of this motion".into());
+        }
+        let parts = crate::table::number(part);
+        (part > 0.1).then(|| {
+            format!("the balance of energy lacks {parts} of the largest energy moved: the steps are too long for this motion, which is not that of the scene")
+        })
     }
 }
 

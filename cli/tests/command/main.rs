@@ -3,6 +3,7 @@
 mod accuracy;
 mod check;
 mod compare;
+mod drives;
 mod edits;
 mod effects;
 mod eval;

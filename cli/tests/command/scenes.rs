@@ -3,14 +3,14 @@
 use crate::{File, run};
 
 /// A motion as its files tell it.
-struct Motion {
+pub(crate) struct Motion {
     titles: Vec<String>,
     rows: Vec<Vec<f64>>,
     summary: serde_json::Value,
 }
 
 impl Motion {
-    fn of(scene: &str, words: &[&str]) -> Self {
+    pub(crate) fn of(scene: &str, words: &[&str]) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let ended = run(&[&["simulate", scene, "-o", folder.path().to_str().unwrap()], words].concat());
         assert_eq!(ended.status, 0, "{scene}: {}", ended.err);
@@ -23,13 +23,13 @@ impl Motion {
     }
 
     /// A column, by its title.
-    fn column(&self, title: &str) -> Vec<f64> {
+    pub(crate) fn column(&self, title: &str) -> Vec<f64> {
         let at = self.titles.iter().position(|t| t == title).unwrap_or_else(|| panic!("{title} of {:?}", self.titles));
         self.rows.iter().map(|r| r[at]).collect()
     }
 
     /// The last numbers of all columns whose title begins so.
-    fn last(&self, start: &str) -> Vec<f64> {
+    pub(crate) fn last(&self, start: &str) -> Vec<f64> {
         self.at(self.rows.len() - 1, start)
     }
 
@@ -42,7 +42,7 @@ impl Motion {
     }
 }
 
-fn largest(x: &[f64]) -> f64 {
+pub(crate) fn largest(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |m, x| m.max(x.abs()))
 }
 
