@@ -113,9 +113,10 @@ pub fn model(request: &Request, description: &Description) -> Result<Model<f64>,
 /// The model with the frames that the request asks for.
 pub fn choose_frames(request: &Request, model: Model<f64>) -> Result<Model<f64>, Error> {
     let Some(names) = &request.options.frames else { return Ok(model) };
-    model.with_frames(names).map_err(|name| {
-        let at = names.iter().position(|n| *n == name).unwrap_or_default();
-        let reason = Reason::Edit(EditError::UnknownLink { name, nearest: None });
+    model.with_frames(names).map_err(|error| {
+        let is = |n: &String| matches!(&error, EditError::UnknownLink { name, .. } if n == name);
+        let at = names.iter().position(is).unwrap_or_default();
+        let reason = Reason::Edit(error);
         Error::Edits { refusals: vec![Refusal { file: request.file.clone(), edit: Edit::Frame(at), reason }] }
     })
 }

@@ -140,10 +140,7 @@ fn axis(tag: &Tag<'_>, log: &mut Log) -> Option<[f64; 3]> {
     if AXIS.contains(&size) {
         return Some(axis);
     }
-    let expected = match size > 1.0 {
-        true => "a vector of a length that can be squared",
-        false => "a vector that is not zero",
-    };
+    let expected = if size == 0.0 { "a vector that is not zero" } else { "a vector of a length that can be squared, 1e-150 to 1e150" };
     log.error(&tag.place(&tag.name()), Kind::ZeroAxis, shown(axis), expected);
     None
 }

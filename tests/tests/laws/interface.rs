@@ -3,7 +3,7 @@
 use articulated::{Dynamics, FunctionError};
 use articulated_core::algorithm::checked::checked_forward_dynamics;
 use articulated_core::algorithm::{Function, Workspace, functions};
-use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, Mimic, Origin};
+use articulated_core::description::{Base, Description, EditError, Inertial, Joint, JointKind, Link, Mimic, Origin};
 use articulated_core::model::{Model, ModelError};
 use articulated_tests::case::{Case, State, for_each_tree, inverse_dynamics, placements};
 use articulated_tests::measure::arguments;
@@ -173,6 +173,33 @@ fn what_is_not_a_tree_is_an_error() {
     assert!(not_a_tree(&tree(2, vec![joint("a", Continuous, 0, 1), joint("b", Continuous, 0, 1)])), "two ways");
     assert!(not_a_tree(&tree(1, vec![joint("a", Continuous, 0, 0)])), "a link on itself");
     assert!(not_a_tree(&tree(1, vec![joint("a", Continuous, 0, 9)])), "a link that is not there");
+}
+
+#[test]
+fn a_joint_is_not_called_as_that_of_a_floating_base() {
+    let named = tree(2, vec![joint("__floating_base__", JointKind::Continuous, 0, 1)]);
+    assert!(matches!(Model::new(&named, Base::Floating), Err(ModelError::NamedAsBase)));
+    assert!(Model::new(&named, Base::Fixed).is_ok());
+}
+
+#[test]
+fn a_frame_that_is_not_there_is_named_with_the_nearest() {
+    let arm = Case::bundled(articulated_models::robot("panda_like").unwrap()).model;
+    let error = arm.clone().with_frames(&["hand_tpc"]).unwrap_err();
+    assert_eq!(error, EditError::UnknownLink { name: "hand_tpc".into(), nearest: Some("hand_tcp".into()) });
+    assert_eq!(arm.with_frames(&["hand_tcp", "hand_tcp"]).unwrap().frames.len(), 2);
+}
+
+/// Λ of a frame that less than six degrees of freedom move is no matrix, and is not given as one.
+#[test]
+fn inertia_in_all_directions_is_no_number_where_a_frame_cannot_move_in_all() {
+    let arm = Case::bundled(articulated_models::robot("ur5_like").unwrap()).model;
+    let mut out = vec![0.0; 36 * arm.frames.len()];
+    arm.operational_space_inertia(&mut arm.workspace(), &[0.1, -0.9, 1.2, 0.4, 0.5, 0.6], &mut out).unwrap();
+    for (frame, lambda) in arm.frames.iter().zip(out.chunks_exact(36)) {
+        let moved = frame.body != 0 && arm.freedoms_of(frame.body).len() == 6;
+        assert!(lambda.iter().all(|x| x.is_finite() == moved && x.is_nan() != moved), "{}: {lambda:?}", frame.name);
+    }
 }
 
 #[test]

@@ -26,14 +26,26 @@ pub fn operational_space_inertia_inverse<S: Scalar>(model: &Model<S>, ws: &mut W
 
 /// Λ = (J M⁻¹ Jᵀ)⁻¹ of each frame by itself.
 ///
-/// q: `[nq]`; out: `[frames][6][6]`, symmetric. Not finite where fewer than six degrees of freedom move the frame, or in a configuration in which they do not
-/// move it in all six directions.
+/// q: `[nq]`; out: `[frames][6][6]`, symmetric. Not a number for a frame with less than six degrees of freedom on its way to the base. In a configuration in which they do
+/// not move it in all six directions Λ⁻¹ is singular, and its inverse what rounding makes of it: large numbers that mean nothing.
 ///
 /// # Panics
 /// As [`operational_space_inertia_inverse`].
 pub fn operational_space_inertia<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
     operational_space_inertia_inverse(model, ws, q, out);
-    out.chunks_exact_mut(36).for_each(invert);
+    for (frame, out) in model.frames.iter().zip(out.chunks_exact_mut(36)) {
+        if freedoms_before(model, frame.body) < 6 { out.fill(S::from_f64(f64::NAN)) } else { invert(out) }
+    }
+}
+
+/// So many degrees of freedom move body `i`, or fewer where joints follow others.
+fn freedoms_before<S: Scalar>(model: &Model<S>, mut i: usize) -> usize {
+    let mut count = 0;
+    while i != 0 {
+        count += model.bodies[i].joint.nv();
+        i = model.bodies[i].parent;
+    }
+    count
 }
 
 fn inverse_of<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, matrix: &[S], frame: &Frame<S>, out: &mut [S]) {

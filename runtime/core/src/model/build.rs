@@ -32,6 +32,8 @@ pub enum ModelError {
         /// Names of the links that are not reached.
         unreached: Vec<String>,
     },
+    /// A joint is called as the joint of a floating base is.
+    NamedAsBase,
     /// A joint follows a joint that is not a coordinate with one degree of freedom, or follows itself.
     BadMimic {
         /// Name of the joint.
@@ -53,6 +55,9 @@ impl fmt::Display for ModelError {
             }
             Self::NotATree { unreached } => {
                 write!(f, "links and joints are not one tree: not reached from a root: {}", unreached.join(", "))
+            }
+            Self::NamedAsBase => {
+                write!(f, "joint {FLOATING_BASE:?}: found the name of the joint by which a floating base moves, expected another")
             }
             Self::BadMimic { joint } => {
                 write!(f, "joint {joint:?}: mimic: expected a leader with one degree of freedom that does not follow this joint")
@@ -76,6 +81,9 @@ impl Model<f64> {
     /// Joints are ordered depth-first, in the order of the file among the children of a link. Body frames are the link frames turned so that
     /// the joint's axis is z.
     pub fn new(description: &Description, base: Base) -> Result<Self, ModelError> {
+        if base == Base::Floating && description.joints.iter().any(|j| j.name == FLOATING_BASE) {
+            return Err(ModelError::NamedAsBase);
+        }
         let mut builder = Builder::new(description);
         let root = description.root().ok_or_else(|| builder.not_a_tree())?;
         builder.add_root(root, base);

@@ -21,7 +21,7 @@ pub use limbs::Limbs;
 pub use unturned::Unturned;
 
 use crate::Scalar;
-use crate::description::{JointKind, Limit};
+use crate::description::{EditError, JointKind, Limit, nearest};
 use crate::effect::Effects;
 use crate::joint::{Coordinates, Joint};
 use crate::spatial::{Placement, Reference, SpatialInertia};
@@ -165,9 +165,16 @@ impl<S: Scalar> Model<S> {
         freedoms
     }
 
-    /// The same robot with only the named frames, in this order, or the first name that no link has.
-    pub fn with_frames<N: AsRef<str>>(mut self, names: &[N]) -> Result<Self, String> {
-        let find = |name: &N| self.frames.iter().find(|f| f.name == name.as_ref()).cloned().ok_or_else(|| name.as_ref().to_string());
+    /// The same robot with only the named frames, in this order; a name may be there twice. Errors: [`EditError::UnknownLink`] of the first name that none of its frames has.
+    pub fn with_frames<N: AsRef<str>>(mut self, names: &[N]) -> Result<Self, EditError> {
+        let find = |name: &N| {
+            let name = name.as_ref();
+            let found = self.frames.iter().find(|f| f.name == name).cloned();
+            found.ok_or_else(|| EditError::UnknownLink {
+                name: name.to_string(),
+                nearest: nearest(name, self.frames.iter().map(|f| f.name.as_str())),
+            })
+        };
         self.frames = names.iter().map(find).collect::<Result<_, _>>()?;
         Ok(self)
     }
