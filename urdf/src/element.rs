@@ -52,6 +52,12 @@ impl<'a> Tag<'a> {
         node.children().filter(Node::is_element).map(move |node| Tag { node, lines, subject })
     }
 
+    /// The first text that stands in it, and its line.
+    pub(crate) fn text(&self) -> Option<(&'a str, u32)> {
+        let text = |node: Node<'a, 'a>| Some((node.text()?.trim(), self.lines.at(node.range().start)));
+        self.node.children().filter(Node::is_text).filter_map(text).find(|(text, _)| !text.is_empty())
+    }
+
     /// This tag and all inside it.
     pub(crate) fn descendants(&self) -> impl Iterator<Item = Tag<'a>> + use<'a> {
         let Tag { lines, subject, node } = *self;

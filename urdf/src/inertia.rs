@@ -3,8 +3,6 @@
 //! Judged by the principal moments relative to the largest of them, so that the units do not matter: a robot with
 //! lengths in nanometres has inertias of 1e-20, and a sound one passes.
 
-use articulated_core::description::Inertial;
-
 use crate::eigen::eigenvalues;
 use crate::log::{Log, Place};
 use crate::problem::Kind;
@@ -14,18 +12,18 @@ const NEGATIVE: f64 = 1e-9;
 /// The triangle inequality may be missed by this part of the largest moment: files print some six digits.
 const TRIANGLE: f64 = 1e-6;
 
-/// Reports what cannot be, or looks wrong. `allow`: an inertia that is not positive is a warning.
-pub(crate) fn check(inertial: &Inertial, allow: bool, place: &Place<'_>, log: &mut Log) {
+/// Reports what cannot be, or looks wrong, of what there is. `allow`: an inertia that is not positive is a warning.
+pub(crate) fn check(mass: Option<f64>, inertia: Option<[f64; 6]>, allow: bool, place: &Place<'_>, log: &mut Log) {
     let place = |field| Place { field, ..*place };
-    if inertial.mass < 0.0 {
-        let found = format!("a negative mass, {} kg", inertial.mass);
-        log.error(&place("mass"), Kind::NegativeMass, found, "a mass of zero or more");
+    if let Some(mass) = mass.filter(|mass| *mass < 0.0) {
+        log.error(&place("mass"), Kind::NegativeMass, format!("a negative mass, {mass} kg"), "a mass of zero or more");
     }
-    if inertial.mass == 0.0 && inertial.inertia.iter().any(|i| *i != 0.0) {
+    let Some(inertia) = inertia else { return };
+    if mass == Some(0.0) && inertia.iter().any(|i| *i != 0.0) {
         let found = "a mass of zero with a rotational inertia that is not";
         log.warning(&place("inertial"), Kind::InertiaWithoutMass, found, "both or neither; used as written");
     }
-    check_moments(inertial.inertia, allow, &place("inertia"), log);
+    check_moments(inertia, allow, &place("inertia"), log);
 }
 
 fn check_moments(inertia: [f64; 6], allow: bool, place: &Place<'_>, log: &mut Log) {

@@ -23,9 +23,8 @@ fn inertial(tag: &Tag<'_>, options: &Options, log: &mut Log) -> Option<Inertial>
     let origin = frame::origin(tag, options.snap_angles, log);
     let mass = mass(tag, log);
     let moments = moments(tag, log);
-    let inertial = Inertial { origin, mass: mass?, inertia: moments? };
-    inertia::check(&inertial, options.allow_unphysical_inertia, &tag.place("inertial"), log);
-    Some(inertial)
+    inertia::check(mass, moments, options.allow_unphysical_inertia, &tag.place("inertial"), log);
+    Some(Inertial { origin, mass: mass?, inertia: moments? })
 }
 
 fn mass(inertial: &Tag<'_>, log: &mut Log) -> Option<f64> {

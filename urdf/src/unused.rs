@@ -54,9 +54,17 @@ const KNOWN: &[(&str, &str, &str)] = &[
     ("limit", "jerk", "jerk is not limited"),
 ];
 
-/// Reports the tags and attributes inside `tag` other than those that are used.
+/// So much of a text is told.
+const SHOWN: usize = 40;
+
+/// Reports the tags, the attributes and the text inside `tag` other than those that are used.
 pub(crate) fn rest(tag: &Tag<'_>, tags: &[&str], attributes: &[&str], log: &mut Log) {
     rest_of_attributes(tag, attributes, log);
+    if let Some((text, line)) = tag.text() {
+        let shown: String = text.chars().take(SHOWN).collect();
+        let why = format!("text between tags says nothing of a robot: {}", crate::problem::quote(&markup::as_written(&shown)));
+        log.unused_at(Some(line), tag.subject(), format!("text in <{}>", tag.name()), why);
+    }
     for child in tag.children().filter(|child| !tags.iter().any(|name| child.is(name))) {
         let name = child.name();
         let parent = tag.name();

@@ -358,6 +358,20 @@ fn extensions_are_no_part_of_the_tree_and_are_reported() {
     assert_eq!(tags, names.into_iter().zip(lines).collect::<Vec<_>>());
 }
 
+/// Text is no tag, and a tag that is text is none either.
+#[test]
+fn text_between_tags_is_reported() {
+    let reading = accepted(&crane("<link name=\"hook\"/>", "<![CDATA[<link name='ghost'/>]]><link name=\"hook\"> steel\n </link>"));
+    assert_eq!(reading.description, described(CRANE));
+    let told: Vec<String> =
+        reading.unused.iter().filter(|u| u.tag.starts_with("text")).map(|u| format!("{} {} {}", u.subject, u.tag, u.why)).collect();
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(
+        told.iter().any(|t| t.contains("<robot>") && t.contains("<link name='ghost'/>")) && told.iter().any(|t| t.contains("\"steel\"")),
+        "{told:?}"
+    );
+}
+
 #[test]
 fn content_of_links_and_joints_that_is_not_used_is_reported() {
     let text = crane(

@@ -117,6 +117,21 @@ fn all_mistakes_of_a_file_are_reported_at_once() {
     assert_eq!(problems.to_string().lines().count(), 4);
 }
 
+/// What is missing beside it does not hide that a number cannot be.
+#[test]
+fn half_an_inertial_is_looked_at_too() {
+    let kinds = |from: &str, to: &str, and: (&str, &str)| {
+        let text = crane(from, to).replace(and.0, and.1);
+        let kinds: Vec<Kind> = refused(&text).errors.iter().map(|e| e.kind).collect();
+        assert_eq!(kinds.len(), 2, "{kinds:?}");
+        kinds
+    };
+    let without_moments = kinds("<mass value=\"40\"/>", "<mass value=\"-40\"/>", ("izz=\"31\"", ""));
+    assert!([Kind::NegativeMass, Kind::MissingAttribute].iter().all(|kind| without_moments.contains(kind)), "{without_moments:?}");
+    let without_mass = kinds("<mass value=\"40\"/>", "", ("izz=\"31\"", "izz=\"-31\""));
+    assert!([Kind::InertiaNotPositive, Kind::MissingTag].iter().all(|kind| without_mass.contains(kind)), "{without_mass:?}");
+}
+
 #[test]
 fn a_joint_of_an_unknown_type_is_read_on() {
     let text = crane("type=\"continuous\"", "type=\"continous\"")
