@@ -1,6 +1,7 @@
 //! `articulated eval`.
 
 mod layout;
+mod odd;
 mod report;
 mod text;
 
@@ -38,6 +39,9 @@ pub(crate) fn run(arguments: &EvalArguments, format: Format) -> Result<u8, Failu
     for f in &functions {
         report.functions.push(evaluate(f, &model, &states.states, compiled.as_ref(), arguments.generated));
     }
+    let odd = odd::results(&report.functions, &states.states, &model, &arguments.states);
+    odd.iter().for_each(|w| console::warn(w));
+    report.warnings.extend(odd);
     console::print(&match format {
         Format::Text => text::text(&report, &model),
         Format::Json => crate::json(&report.json(&model)),

@@ -205,6 +205,35 @@ fn every_function_has_a_result_by_name() {
     assert!(text.lines_with("largest difference") == all.len() && text.lines_with(&format!("[1] {cart}")) >= 1, "{}", text.out);
 }
 
+/// Turned about z, y, z with y = 0 the first and the last axis are one: M is singular there, and next to it as good as that.
+#[test]
+fn results_of_a_singular_mass_matrix_are_told() {
+    let joint = |k: usize, axis: &str| {
+        let (name, parent) = (["z1", "y", "z2"][k], ["base", "l0", "l1"][k]);
+        format!("<joint name='{name}' type='continuous'><parent link='{parent}'/><child link='l{k}'/><axis xyz='{axis}'/></joint>")
+    };
+    let text = format!(
+        "<robot name='wrist'><link name='base'/><link name='l0'/><link name='l1'/><link name='l2'><inertial><mass value='1'/>\
+         <inertia ixx='0.2' ixy='0' ixz='0' iyy='0.25' iyz='0' izz='0.3'/></inertial></link>{}{}{}</robot>",
+        joint(0, "0 0 1"),
+        joint(1, "0 1 0"),
+        joint(2, "0 0 1")
+    );
+    let urdf = File::new("wrist.urdf", text.as_bytes());
+    let states = r#"{"states": [{"q": [0.1, 0.8, 0.2]}, {"q": [0.1, 0.0, 0.2]}, {"q": [0.1, 1e-9, 0.2]}]}"#;
+    let words = |function| ["eval", urdf.name(), "--function", function, "--states", "-", "--generic", "--format", "json"];
+    let ended = run_with(&words("mass_matrix_inverse"), states.as_bytes());
+    let warnings = ended.json()["warnings"].to_string();
+    assert_eq!((ended.status, ended.lines_with("warning: -: states[0]")), (0, 0), "{}", ended.err);
+    for k in [1, 2] {
+        let singular = format!("states[{k}]: mass_matrix_inverse: joint \\\"z1\\\" (degree of freedom 0): the mass matrix is singular");
+        assert!(warnings.contains(&singular), "{warnings}");
+    }
+    assert!(warnings.contains("states[1]: mass_matrix_inverse: number 0 of the result is not finite"), "{warnings}");
+    // What does not divide by it is well there.
+    assert_eq!(run_with(&words("mass_matrix"), states.as_bytes()).lines_with("warning: -"), 0);
+}
+
 #[test]
 fn a_moment_on_the_rod_is_a_torque_less() {
     let torque = |wrenches: serde_json::Value| {

@@ -1,0 +1,39 @@
+//! Results that are not to be trusted: beyond the largest number, or of a mass matrix that is singular where the robot stands.
+
+use articulated_core::algorithm::checked::checked_forward_dynamics;
+use articulated_core::algorithm::{Argument, Workspace};
+use articulated_core::model::Model;
+
+use super::report::FunctionReport;
+use crate::states::State;
+
+/// More are counted, not listed.
+const MOST: usize = 10;
+
+/// What there is to say of the functions' results, one line each; `file` has the states.
+pub(super) fn results(functions: &[FunctionReport], states: &[State], model: &Model<f64>, file: &str) -> Vec<String> {
+    let inverse = functions.iter().filter(|f| f.function.inverts_mass_matrix()).map(|f| f.function.name).collect::<Vec<_>>().join(", ");
+    let mut ws = Workspace::new(model);
+    let mut lines = Vec::new();
+    for (k, state) in states.iter().enumerate() {
+        if let Some(why) = state.get(Argument::Q).filter(|_| !inverse.is_empty()).and_then(|q| singular(model, &mut ws, q)) {
+            lines.push(format!("{file}: states[{k}]: {inverse}: {why}"));
+        }
+        for f in functions {
+            let of = |x: &Option<Vec<f64>>| x.as_ref()?.iter().position(|x| !x.is_finite());
+            if let Some(at) = of(&f.outcomes[k].generic).or_else(|| of(&f.outcomes[k].generated)) {
+                lines.push(format!("{file}: states[{k}]: {}: number {at} of the result is not finite", f.function.name));
+            }
+        }
+    }
+    let more = lines.len().saturating_sub(MOST);
+    lines.truncate(MOST);
+    lines.extend((more > 0).then(|| format!("{file}: {more} more results that are not finite, or of a singular mass matrix")));
+    lines
+}
+
+/// Why solutions with the mass matrix at these coordinates say nothing.
+fn singular(model: &Model<f64>, ws: &mut Workspace<f64>, q: &[f64]) -> Option<String> {
+    let (zero, mut out) = (vec![0.0; model.nv], vec![0.0; model.nv]);
+    checked_forward_dynamics(model, ws, q, &zero, &zero, &mut out).err().map(|singular| singular.to_string())
+}
