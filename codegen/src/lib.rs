@@ -176,7 +176,10 @@ pub fn check_identifiers(request: &Request, model: &Model<f64>) -> Result<(), Er
 
 /// The names of the joints that have no inertia of their own.
 pub fn massless(model: &Model<f64>) -> Vec<String> {
-    model.massless_joints().into_iter().map(|i| model.bodies[i].name.clone()).collect()
+    let mut names: Vec<String> = model.massless_joints().into_iter().map(|i| model.bodies[i].name.clone()).collect();
+    // A joint of several degrees of freedom is several bodies, which follow one another.
+    names.dedup();
+    names
 }
 
 /// Whether the robot has what the function needs; `massless`: what [`massless`] gives of it.

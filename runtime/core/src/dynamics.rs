@@ -5,14 +5,53 @@ use crate::algorithm::table::for_each_function;
 use crate::algorithm::{FunctionError, FunctionId, Shape, Workspace};
 use crate::model::Model;
 
+/// A dimension, or dimensions, as they are indexed; a single number is an array of one.
+macro_rules! dims {
+    () => { "[1]" };
+    ($($dim:ident $(($n:literal))?),+) => { concat!($(dims!(one $dim $($n)?)),+) };
+    (one Nq) => { "[nq]" };
+    (one Nv) => { "[nv]" };
+    (one Frames) => { "[frames]" };
+    (one Links) => { "[links]" };
+    (one Of $n:literal) => { concat!("[", $n, "]") };
+}
+
+/// An argument with its dimensions and unit.
+macro_rules! argument {
+    (q) => {
+        "q: `[nq]` rad|m|unit quaternion"
+    };
+    (v) => {
+        "v: `[nv]` rad/s|m/s"
+    };
+    (a) => {
+        "a: `[nv]` rad/s²|m/s²"
+    };
+    (tau) => {
+        "tau: `[nv]` N·m|N"
+    };
+    (wrenches) => {
+        "wrenches: `[frames][6]` [m; f] on each frame, N·m and N"
+    };
+    (step) => {
+        "step: `[nv]` rad|m, a small motion in the tangent space"
+    };
+    (target) => {
+        "target: `[nq]` rad|m|unit quaternion"
+    };
+    (uniform) => {
+        "uniform: `[nq]` each uniform in 0 to 1"
+    };
+}
+
 macro_rules! methods {
     ($($name:ident($($argument:ident),*) -> [$($dim:ident $(($n:literal))?),*] $unit:literal, $needs:ident, $regrouped:literal,
         $summary:literal, $source:literal $(, by $ways:tt)? $(, columns $unsolved:ident)?;)*) => {
         /// A robot's dynamics. Code written over this trait runs on generated robots and on a [`Model`] alike.
         ///
-        /// Every function of the table is a method; shapes, units and frames are those of the function with the same name in
-        /// [`crate::algorithm`], results are written row by row. A slice of the wrong length is an error, and so is a function that
-        /// a robot was generated without; nothing panics.
+        /// Every function of the table is a method, with what it takes and gives; more on each is at the function of the same name in
+        /// [`crate::algorithm`]. Results are written row by row. A slice of the wrong length is an error, and so is a function that
+        /// a robot was generated without; nothing panics, as long as nobody has changed the fields of a [`Model`] into what is none.
         pub trait Dynamics<S: Scalar = f64> {
             /// What an evaluation needs room for; `()` for generated robots.
             type Workspace;
@@ -36,7 +75,7 @@ macro_rules! methods {
             fn call(&self, function: FunctionId, ws: &mut Self::Workspace, arguments: &[&[S]], out: &mut [S]) -> Result<(), FunctionError>;
 
             $(
-                #[doc = concat!($summary, ".\n\nout: `[", stringify!($($dim $(($n))?),*), "]`, ", $unit, ".")]
+                #[doc = concat!($summary, ".\n\n", $("* ", argument!($argument), "\n",)* "* out: `", dims!($($dim $(($n))?),*), "` ", $unit, "\n\n", $source, ".")]
                 #[inline]
                 fn $name(&self, ws: &mut Self::Workspace, $($argument: &[S],)* out: &mut [S]) -> Result<(), FunctionError> {
                     self.call(FunctionId::$name, ws, &[$($argument),*], out)
@@ -70,5 +109,41 @@ impl<S: Scalar> Dynamics<S> for Model<S> {
     #[inline]
     fn call(&self, function: FunctionId, ws: &mut Workspace<S>, arguments: &[&[S]], out: &mut [S]) -> Result<(), FunctionError> {
         function.row().call(self, ws, arguments, out)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::format;
+    use alloc::string::String;
+
+    use crate::algorithm::{Argument, Dim};
+
+    /// As it is indexed: the names of dimensions in small letters.
+    fn shown(dims: &[Dim]) -> String {
+        dims.iter().map(|d| format!("[{}]", format!("{d}").to_lowercase())).collect()
+    }
+
+    #[test]
+    fn arguments_are_documented_as_the_table_has_them() {
+        let told = [
+            argument!(q),
+            argument!(v),
+            argument!(a),
+            argument!(tau),
+            argument!(wrenches),
+            argument!(step),
+            argument!(target),
+            argument!(uniform),
+        ];
+        for (argument, told) in Argument::ALL.into_iter().zip(told) {
+            assert_eq!(told, format!("{}: `{}` {}", argument.name(), shown(argument.dims()), argument.unit()));
+        }
+    }
+
+    #[test]
+    fn dimensions_are_documented_as_they_are() {
+        assert_eq!(dims!(Frames, Of(6), Nv), shown(&[Dim::Frames, Dim::Of(6), Dim::Nv]));
+        assert_eq!((dims!(Nq, Links), dims!()), ("[nq][links]", "[1]"));
     }
 }
