@@ -19,8 +19,10 @@ const DEPENDS: f64 = 1e-7;
 /// The inertial parameters of the moving bodies after regrouping.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(super) struct Base {
-    /// Ten for each moving body.
+    /// Ten for each moving link.
     pub(super) parameters: usize,
+    /// Whether joints of several stages (planar, universal) have bodies between that are no links: what is listed of these is of the links beyond, and not all independent.
+    pub(super) stages: bool,
     /// How many are not zero by regrouping, and how many of those joint torques determine.
     pub(super) regrouped: usize,
     pub(super) identifiable: usize,
@@ -120,10 +122,13 @@ impl Base {
         let columns = columns(&passed);
         let felt = felt(&columns);
         joints.iter_mut().flat_map(|j| &mut j.parameters).zip(&felt).for_each(|(p, felt)| p.felt = *felt);
+        let alone = |felt: &[Felt]| felt.iter().filter(|f| **f == Felt::Alone).count();
+        let (links, stages) = (read.links().count(), read.links().count() < joints.len());
         Some(Self {
-            parameters: 10 * joints.len(),
+            parameters: 10 * links,
+            stages,
             regrouped: felt.len(),
-            identifiable: felt.iter().filter(|f| **f == Felt::Alone).count(),
+            identifiable: if stages { alone(&self::felt(&columns_of(read, |i| ten_of_link(read, i)))) } else { alone(&felt) },
             merged_joints: 0,
             joints,
         })
@@ -154,17 +159,34 @@ fn tidy<const N: usize>(x: [f64; N]) -> [f64; N] {
     x.map(|x| if x.abs() < 1e-14 { 0.0 } else { x })
 }
 
-/// For each parameter the torques of one unit of it alone, over a number of states.
+/// All ten of a link, none of a stage between.
+fn ten_of_link(model: &Model<f64>, i: usize) -> &'static [Unit] {
+    if model.bodies[i].link.is_some() { ALL } else { &[] }
+}
+
+/// For each parameter that regrouping leaves, the torques of one unit of it alone, over a number of states.
 fn columns(model: &Model<f64>) -> Vec<Vec<f64>> {
+    columns_of(model, |i| units(model.bodies[i].joint))
+}
+
+/// So many states that the parameters of the bodies on one coordinate, which may be seen in its torque alone, can be told apart.
+fn states_for(model: &Model<f64>, units: &impl Fn(usize) -> &'static [Unit]) -> usize {
+    let mut on_coordinate = vec![0; model.nv];
+    model.outward().for_each(|i| on_coordinate[model.bodies[i].coordinates.v] += units(i).len());
+    let all: usize = on_coordinate.iter().sum();
+    on_coordinate.into_iter().max().unwrap_or(0).max(2 * all / model.nv.max(1)) + 2
+}
+
+/// The same for these parameters of each body.
+fn columns_of(model: &Model<f64>, units: impl Fn(usize) -> &'static [Unit]) -> Vec<Vec<f64>> {
     let mut weightless = model.clone();
     // What springs, drag and rotors do is not theirs.
     weightless.bodies.iter_mut().for_each(|b| (b.inertia, b.effects) = (SpatialInertia::zero(), Effects::default()));
-    let count: usize = model.outward().map(|i| units(model.bodies[i].joint).len()).sum();
-    let states = random(model, 2 * count / model.nv.max(1) + 2, 1);
+    let states = random(model, states_for(model, &units), 1);
     let mut ws = Workspace::new(model);
-    let mut columns = Vec::with_capacity(count);
+    let mut columns = Vec::new();
     for i in model.inward() {
-        for (_, unit) in units(model.bodies[i].joint) {
+        for (_, unit) in units(i) {
             weightless.bodies[i].inertia = SpatialInertia::from_parameters(*unit);
             columns.push(states.iter().flat_map(|state| torques(&weightless, &mut ws, state)).collect());
         }
@@ -208,6 +230,8 @@ fn felt(columns: &[Vec<f64>]) -> Vec<Felt> {
 
 #[cfg(test)]
 mod tests {
+    use articulated_core::description::Base as Stand;
+
     use super::*;
     use crate::robot::bundled_model;
 
@@ -224,6 +248,46 @@ mod tests {
         let alone: Vec<&str> = first.parameters.iter().filter(|p| p.felt == Felt::Alone).map(|p| p.name).collect();
         assert_eq!((first.joint.as_str(), alone.as_slice()), ("joint_1", ["I_zz"].as_slice()));
         assert!(panda.joints.iter().any(|j| j.slid != [0.0; 3]));
+    }
+
+    /// As many as the torque regressor has independent columns: with joints of several stages, and with many bodies on one coordinate.
+    #[test]
+    fn as_many_are_identifiable_as_the_regressor_has_ranks() {
+        let inertial = "<inertial><origin xyz='0.1 0.2 -0.1'/><mass value='1.5'/><inertia ixx='0.2' ixy='0.01' ixz='-0.02' iyy='0.3' iyz='0.03' izz='0.25'/></inertial>";
+        let link = |k: usize| format!("<link name='l{k}'>{inertial}</link>");
+        let joint = |k: usize, kind: &str, rest: &str| {
+            format!(
+                "<joint name='j{k}' type='{kind}'><parent link='l{}'/><child link='l{k}'/><origin xyz='0.3 -0.1 0.2' rpy='0.4 -0.7 1.1'/>{rest}</joint>",
+                k - 1
+            )
+        };
+        let two = "<axis xyz='1 0 0'/><axis2 xyz='0 1 0'/>";
+        let follows = "<axis xyz='0 1 2'/><mimic joint='j1' multiplier='-1.9' offset='0.2'/>";
+        for (joints, base, identifiable) in [
+            (vec![joint(1, "universal", two)], Stand::Fixed, 9),
+            (vec![joint(1, "planar", "<axis xyz='0 0 1'/>")], Stand::Fixed, 4),
+            (vec![joint(1, "planar", "<axis xyz='1 2 0'/>")], Stand::Floating, 19),
+            (
+                vec![joint(1, "continuous", "<axis xyz='0 0 1'/>"), joint(2, "continuous", follows), joint(3, "floating", "")],
+                Stand::Fixed,
+                19,
+            ),
+        ] {
+            let links: String = (0..=joints.len()).map(link).collect();
+            let urdf = format!("<robot name='r'>{links}{}</robot>", joints.concat());
+            let model = articulated::load_bytes("r.urdf", urdf.as_bytes(), base).unwrap();
+            let mut ws = Workspace::new(&model);
+            let width = 10 * model.links().count();
+            let mut columns = vec![Vec::new(); width];
+            for state in random(&model, 80, 3) {
+                let [q, v, a] = [Argument::Q, Argument::V, Argument::A].map(|x| state.get(x).unwrap());
+                let mut y = vec![0.0; model.nv * width];
+                articulated_core::algorithm::torque_regressor(&model, &mut ws, q, v, a, &mut y);
+                y.chunks(width).for_each(|row| columns.iter_mut().zip(row).for_each(|(column, x)| column.push(*x)));
+            }
+            let rank = felt(&columns).iter().filter(|f| **f == Felt::Alone).count();
+            assert_eq!((self::Base::of(&model).unwrap().identifiable, rank), (identifiable, identifiable), "{urdf}");
+        }
     }
 
     #[test]

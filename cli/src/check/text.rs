@@ -129,15 +129,21 @@ fn joints(rows: &[JointRow]) -> Table {
 }
 
 fn base_parameters(base: &Base) -> String {
-    let Base { parameters, regrouped, identifiable, merged_joints, joints } = base;
+    let Base { parameters, stages, regrouped, identifiable, merged_joints, joints } = base;
     let merged = match merged_joints {
         0 => String::new(),
         1 => "1 fixed joint merged; ".into(),
         n => format!("{n} fixed joints merged; "),
     };
+    let (left, several) = match stages {
+        false => (format!("regrouping leaves {regrouped}, and "), ""),
+        true => {
+            (String::new(), ";\na planar or universal joint has a row for each of its stages, whose parameters are not all independent")
+        }
+    };
     let head = format!(
-        "{merged}of {parameters} inertial parameters regrouping leaves {regrouped}, and torques determine {identifiable}: from the tips inward, in (brackets) what only\n\
-         combinations with those before show, left out what no torque shows; about the joint's frame where it was moved to, in its axes; SI units"
+        "{merged}of {parameters} inertial parameters {left}torques determine {identifiable}: from the tips inward, in (brackets) what only\n\
+         combinations with those before show, left out what no torque shows; about the joint's frame where it was moved to, in its axes; SI units{several}"
     );
     let mut table = Table::new([("joint", ""), ("frame slid by", "m"), ("parameters", "")]).left(3);
     for row in joints {
