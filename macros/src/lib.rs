@@ -56,7 +56,7 @@ mod tree;
 ///
 /// The values above are the defaults, but for `urdf`, `scene`, `effects`, `rename`, `snap_angles`, the last two functions, and those from `parameters` to `append`. Names of links and joints
 /// are words or stand in quotation marks. Robots are appended first, then payloads attached, then joints locked. The module has one function for each name in `functions`,
-/// constants for sizes, names and limits, modules of indices (`joint`, `q_index`, `v_index`, `frame`), and `Robot`, a value that
+/// constants for sizes, names, limits and the neutral configuration, modules of indices (`joint`, `q_index`, `v_index`, `frame`), and `Robot`, a value that
 /// implements `articulated::Dynamics`. What looks odd in the URDF is listed in its constant `WARNINGS`. It is compiled
 /// again when a URDF or the scene changes. With `parameters` every function takes their numbers as the last of its inputs, before `out` where it has that; the constant `PARAMETERS` has those of the URDF, the
 /// module `parameter` where each begins, and `Robot` holds its own. `payload(link)` and `inertia(link)` are ten: m, m·c and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz

@@ -25,12 +25,21 @@ pub const JOINT_NAMES: [&str; JOINTS] = ["swing"];
 pub const FRAME_NAMES: [&str; FRAMES] = ["support", "bob"];
 /// For each moving link, the joint that carries it.
 pub const LINK_JOINTS: [&str; LINKS] = ["swing"];
+/// Where all coordinates are zero, and no quaternion turns.
+#[allow(clippy::all, clippy::pedantic)]
+pub const NEUTRAL: [f64; NQ] = [0.0];
 /// Lower bounds of the coordinates, rad or m; −∞ where there is none.
 #[allow(clippy::all, clippy::pedantic)]
 pub const Q_LOWER: [f64; NQ] = [-6.283185307179586];
 /// Upper bounds of the coordinates, rad or m; ∞ where there is none.
 #[allow(clippy::all, clippy::pedantic)]
 pub const Q_UPPER: [f64; NQ] = [6.283185307179586];
+/// Largest rates, rad/s or m/s; ∞ where none is given.
+#[allow(clippy::all, clippy::pedantic)]
+pub const V_LIMIT: [f64; NV] = [50.0];
+/// Largest torques and forces, N·m or N; ∞ where none is given.
+#[allow(clippy::all, clippy::pedantic)]
+pub const TAU_LIMIT: [f64; NV] = [50.0];
 /// Indices into [`JOINT_NAMES`].
 pub mod joint {
     /// The revolute joint "swing".

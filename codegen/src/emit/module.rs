@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use articulated_core::algorithm::Dim;
+use articulated_core::algorithm::{Dim, neutral};
+use articulated_core::description::Limit;
 use articulated_core::model::{FLOATING_BASE, JointInfo, Model};
 use articulated_urdf::Unused;
 
@@ -63,27 +64,28 @@ fn constants(out: &mut String, model: &Model<f64>) {
         writeln!(out, "/// Names of the joints, in the order of their coordinates.\npub const JOINT_NAMES: [&str; JOINTS] = {joints:?};");
     let _ = writeln!(out, "/// Names of the frames.\npub const FRAME_NAMES: [&str; FRAMES] = {frames:?};");
     let _ = writeln!(out, "/// For each moving link, the joint that carries it.\npub const LINK_JOINTS: [&str; LINKS] = {links:?};");
-    limits(
-        out,
-        "Q_LOWER",
-        "Lower bounds of the coordinates, rad or m; −∞ where there is none.",
-        model,
-        |j| j.limit.map(|l| l.lower),
-        f64::NEG_INFINITY,
-    );
-    limits(
-        out,
-        "Q_UPPER",
-        "Upper bounds of the coordinates, rad or m; ∞ where there is none.",
-        model,
-        |j| j.limit.map(|l| l.upper),
-        f64::INFINITY,
-    );
-}
-
-fn limits(out: &mut String, name: &str, doc: &str, model: &Model<f64>, limit: impl Fn(&JointInfo) -> Option<f64>, none: f64) {
-    let values: Vec<String> = model.joints.iter().flat_map(|j| vec![literal(limit(j).unwrap_or(none)); j.q.1]).collect();
-    let _ = writeln!(out, "/// {doc}\n{NUMBERS}\npub const {name}: [f64; NQ] = [{}];", values.join(", "));
+    // As many as the joint has of each, in q or in v.
+    let each = |count: fn(&JointInfo) -> usize, of: fn(&Limit) -> f64, none: f64| -> Vec<f64> {
+        model.joints.iter().flat_map(|j| vec![j.limit.as_ref().map_or(none, of); count(j)]).collect()
+    };
+    let mut rest = vec![0.0; model.nq];
+    neutral(model, &mut rest);
+    let rows = [
+        ("NEUTRAL", "NQ", "Where all coordinates are zero, and no quaternion turns.", rest),
+        (
+            "Q_LOWER",
+            "NQ",
+            "Lower bounds of the coordinates, rad or m; −∞ where there is none.",
+            each(|j| j.q.1, |l| l.lower, f64::NEG_INFINITY),
+        ),
+        ("Q_UPPER", "NQ", "Upper bounds of the coordinates, rad or m; ∞ where there is none.", each(|j| j.q.1, |l| l.upper, f64::INFINITY)),
+        ("V_LIMIT", "NV", "Largest rates, rad/s or m/s; ∞ where none is given.", each(|j| j.v.1, |l| l.velocity, f64::INFINITY)),
+        ("TAU_LIMIT", "NV", "Largest torques and forces, N·m or N; ∞ where none is given.", each(|j| j.v.1, |l| l.effort, f64::INFINITY)),
+    ];
+    for (name, length, doc, values) in rows {
+        let values: Vec<String> = values.into_iter().map(literal).collect();
+        let _ = writeln!(out, "/// {doc}\n{NUMBERS}\npub const {name}: [f64; {length}] = [{}];", values.join(", "));
+    }
 }
 
 fn indices(out: &mut String, model: &Model<f64>, names: &Names) {

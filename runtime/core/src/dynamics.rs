@@ -75,7 +75,7 @@ macro_rules! methods {
             fn call(&self, function: FunctionId, ws: &mut Self::Workspace, arguments: &[&[S]], out: &mut [S]) -> Result<(), FunctionError>;
 
             $(
-                #[doc = concat!($summary, ".\n\n", $("* ", argument!($argument), "\n",)* "* out: `", dims!($($dim $(($n))?),*), "` ", $unit, "\n\n", $source, ".")]
+                #[doc = concat!($summary, ".\n\n", $("* ", argument!($argument), "\n",)* "* out: `", dims!($($dim $(($n))?),*), "` ", $unit, ".")]
                 #[inline]
                 fn $name(&self, ws: &mut Self::Workspace, $($argument: &[S],)* out: &mut [S]) -> Result<(), FunctionError> {
                     self.call(FunctionId::$name, ws, &[$($argument),*], out)

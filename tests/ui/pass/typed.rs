@@ -25,5 +25,6 @@ fn main() {
     }
     assert_eq!(placements(&[0.0; 2])[arm::frame::FORE][9], 0.4);
     assert_eq!((arm::Q_LOWER, arm::Q_UPPER), ([f64::NEG_INFINITY, -2.0], [f64::INFINITY, 2.0]));
+    assert_eq!((arm::NEUTRAL, arm::V_LIMIT, arm::TAU_LIMIT), ([0.0; 2], [f64::INFINITY, 3.0], [f64::INFINITY, 10.0]));
     assert_eq!((arm::NAME, arm::DOF, arm::WARNINGS), ("arm", 2, []));
 }
