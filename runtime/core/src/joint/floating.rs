@@ -98,4 +98,12 @@ impl<S: Scalar> JointLaw<S> for Floating<S> {
     fn torque(&self, wrench: &Wrench<S>, k: usize) -> S {
         if k < 3 { wrench.moment[k] } else { wrench.force[k - 3] }
     }
+
+    fn unfelt(_: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
+        None
+    }
+
+    fn feels(own: &SpatialInertia<S>) -> bool {
+        *own != SpatialInertia::zero()
+    }
 }

@@ -79,4 +79,12 @@ impl<S: Scalar> JointLaw<S> for Helical<S> {
     fn torque(&self, wrench: &Wrench<S>, _: usize) -> S {
         wrench.moment.z + self.pitch * wrench.force.z
     }
+
+    fn unfelt(_: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
+        None
+    }
+
+    fn feels(own: &SpatialInertia<S>) -> bool {
+        Prismatic::feels(own) || Revolute::feels(own)
+    }
 }

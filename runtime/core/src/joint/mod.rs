@@ -56,6 +56,28 @@ impl Joint {
         }
     }
 
+    /// As [`JointLaw::unfelt`].
+    pub fn unfelt<S: Scalar>(self, inertia: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
+        match self {
+            Joint::Revolute => Revolute::unfelt(inertia),
+            Joint::Prismatic => Prismatic::unfelt(inertia),
+            Joint::Helical => Helical::unfelt(inertia),
+            Joint::Spherical => Spherical::unfelt(inertia),
+            Joint::Floating => Floating::unfelt(inertia),
+        }
+    }
+
+    /// As [`JointLaw::feels`].
+    pub fn feels<S: Scalar>(self, inertia: &SpatialInertia<S>) -> bool {
+        match self {
+            Joint::Revolute => Revolute::feels(inertia),
+            Joint::Prismatic => Prismatic::feels(inertia),
+            Joint::Helical => Helical::feels(inertia),
+            Joint::Spherical => Spherical::feels(inertia),
+            Joint::Floating => Floating::feels(inertia),
+        }
+    }
+
     /// The joint's pose at its coordinates in `q`.
     #[inline(always)]
     pub fn pose<S: Scalar>(self, at: &Coordinates<S>, q: &[S]) -> Pose<S> {
@@ -217,6 +239,12 @@ pub trait JointLaw<S: Scalar>: Copy {
 
     /// S_kᵀ F: the joint's own torque k, N·m or N, for the wrench F on the child, in the child's frame.
     fn torque(&self, wrench: &Wrench<S>, k: usize) -> S;
+
+    /// What of the child's inertia, in its frame, no torque of the joint tells from the parent's; `None`: nothing.
+    fn unfelt(inertia: &SpatialInertia<S>) -> Option<SpatialInertia<S>>;
+
+    /// Whether the joint moves mass of a child of this inertia, alone in one of its directions at least.
+    fn feels(inertia: &SpatialInertia<S>) -> bool;
 }
 
 /// A pose of any kind of joint, to be kept between sweeps.

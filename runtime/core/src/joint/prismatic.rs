@@ -100,4 +100,12 @@ impl<S: Scalar> JointLaw<S> for Prismatic<S> {
     fn torque(&self, wrench: &Wrench<S>, _: usize) -> S {
         wrench.force.z
     }
+
+    fn unfelt(own: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
+        Some(SpatialInertia { second: own.second, ..SpatialInertia::zero() })
+    }
+
+    fn feels(own: &SpatialInertia<S>) -> bool {
+        !own.mass.is_zero()
+    }
 }

@@ -96,4 +96,15 @@ impl<S: Scalar> JointLaw<S> for Revolute<S> {
     fn torque(&self, wrench: &Wrench<S>, _: usize) -> S {
         wrench.moment.z
     }
+
+    fn unfelt(own: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
+        let o = S::zero();
+        let second = Matrix3::from_diagonal(&Vector3::new(o, o, own.second.m33));
+        Some(SpatialInertia { mass: own.mass, first: Vector3::new(o, o, own.first.z), second })
+    }
+
+    fn feels(own: &SpatialInertia<S>) -> bool {
+        // I_zz = Σ_xx + Σ_yy
+        !(own.second.m11 + own.second.m22).is_zero()
+    }
 }

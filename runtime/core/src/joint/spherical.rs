@@ -87,4 +87,12 @@ impl<S: Scalar> JointLaw<S> for Spherical<S> {
     fn torque(&self, wrench: &Wrench<S>, k: usize) -> S {
         wrench.moment[k]
     }
+
+    fn unfelt(own: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
+        Some(SpatialInertia { mass: own.mass, ..SpatialInertia::zero() })
+    }
+
+    fn feels(own: &SpatialInertia<S>) -> bool {
+        (0..3).all(|k| !own.rotational()[(k, k)].is_zero())
+    }
 }

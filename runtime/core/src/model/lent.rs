@@ -4,7 +4,7 @@ use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::pass::{counts_an_offset, give_to_parent, given_away, subtract, within};
+use super::pass::{counts_an_offset, give_to_parent, subtract, within};
 use crate::Scalar;
 use crate::joint::Joint;
 use crate::model::{Body, Model};
@@ -62,7 +62,7 @@ type Pair<S> = (SpatialInertia<S>, SpatialInertia<S>);
 fn cheapest<S: Scalar>(model: &Model<S>, i: usize, handed_on: &[bool], most: S) -> Option<Pair<S>> {
     let (body, parent) = (&model.bodies[i], &model.bodies[model.bodies[i].parent]);
     // The parent gives away what it can in turn.
-    let kept = |own: &SpatialInertia<S>| given_away(parent.joint, own).map_or(*own, |given| subtract(*own, given));
+    let kept = |own: &SpatialInertia<S>| parent.joint.unfelt(own).map_or(*own, |given| subtract(*own, given));
     let both = |(child, own): &Pair<S>| price(child, handed_on[i]) + price(&kept(own), handed_on[body.parent]);
     let loans = (0..2).filter(|_| model.borrows(i)).filter_map(|k| loan(body, &parent.inertia, k, most));
     let best = loans.min_by_key(both)?;

@@ -7,7 +7,6 @@ use super::{Body, Model};
 use crate::algorithm::Workspace;
 use crate::algorithm::checked::least_pivot;
 use crate::effect::EffectId;
-use crate::joint::Joint;
 use crate::monitor::pivot_cancellation;
 use crate::spatial::SpatialInertia;
 
@@ -66,14 +65,7 @@ impl Model<f64> {
         for i in self.inward() {
             let (body, outside) = (&self.bodies[i], beyond[i]);
             let own = &body.inertia;
-            let felt = match body.joint {
-                // I_zz = Σ_xx + Σ_yy
-                Joint::Revolute => own.second.m11 + own.second.m22 != 0.0,
-                Joint::Prismatic => own.mass != 0.0,
-                Joint::Helical => own.mass != 0.0 || own.second.m11 + own.second.m22 != 0.0,
-                Joint::Spherical => (0..3).all(|k| own.rotational()[(k, k)] != 0.0),
-                Joint::Floating => *own != SpatialInertia::zero(),
-            } || turns_rotors(body);
+            let felt = body.joint.feels(own) || turns_rotors(body);
             // Of several degrees of freedom some may be felt and others not: a point mass turns freely.
             moves.push((i, felt && body.joint.nv() == 1, felt || outside));
             beyond[body.parent] |= outside || *own != SpatialInertia::zero();

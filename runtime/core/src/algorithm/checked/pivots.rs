@@ -130,7 +130,7 @@ pub fn factored_pivots<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, mut s
     for i in model.outward() {
         let (at, size) = (&model.bodies[i].coordinates, Size::of(&ws.composite[i]));
         for c in ws.columns_of(i) {
-            let axis = subspace(model, i, ws.columns[c].at - at.v);
+            let axis = with_pose!(ws.bodies[i].pose, p => p.subspace(&Matrix3::identity(), ws.columns[c].at - at.v));
             let rate = at.rate_of_one().map_or(S::one(), Scalar::abs);
             ws.row[ws.columns[c].at] += size.along(&axis).sqrt() * rate;
         }
@@ -139,21 +139,6 @@ pub fn factored_pivots<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, mut s
         let pivot = S::one() / ws.matrix[k * model.nv + k];
         see(k, part(pivot, ws.row[k] * ws.row[k]));
     }
-}
-
-/// S of the joint's degree of freedom k, in the body's axes.
-fn subspace<S: Scalar>(model: &Model<S>, i: usize, k: usize) -> Twist<S> {
-    use crate::joint::Joint;
-    let (mut axis, one) = (Twist::zero(), S::one());
-    let body = &model.bodies[i];
-    match body.joint {
-        Joint::Revolute => axis.angular.z = one,
-        Joint::Prismatic => axis.linear.z = one,
-        Joint::Helical => (axis.angular.z, axis.linear.z) = (one, body.coordinates.pitch),
-        Joint::Spherical | Joint::Floating if k < 3 => axis.angular[k] = one,
-        Joint::Spherical | Joint::Floating => axis.linear[k - 3] = one,
-    }
-    axis
 }
 
 /// D over its terms, which are no less than D itself.

@@ -10,7 +10,7 @@ mod zeros;
 use core::marker::PhantomData;
 
 pub use regroup::regroup;
-pub(super) use regroup::{give_to_parent, given_away, subtract};
+pub(super) use regroup::{give_to_parent, subtract};
 pub(super) use slide::counts_an_offset;
 pub use slide::slide;
 pub use still::still;

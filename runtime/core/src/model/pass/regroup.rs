@@ -1,9 +1,6 @@
 //! Base parameters: what a joint cannot feel goes to its parent.
 
-use nalgebra::{Matrix3, Vector3};
-
 use crate::Scalar;
-use crate::joint::Joint;
 use crate::model::{Body, Model};
 use crate::spatial::SpatialInertia;
 
@@ -23,24 +20,10 @@ pub fn regroup<S: Scalar>(mut model: Model<S>) -> Model<S> {
 /// Moves what the joint of body `i` cannot feel to its parent.
 pub(in crate::model) fn give_to_parent<S: Scalar>(model: &mut Model<S>, i: usize) {
     let Body { joint, parent, placement, inertia, .. } = &model.bodies[i];
-    let (parent, Some(given)) = (*parent, given_away(*joint, inertia)) else { return };
+    let (parent, Some(given)) = (*parent, joint.unfelt(inertia)) else { return };
     let (kept, moved) = (subtract(*inertia, given), given.moved(placement));
     model.bodies[i].inertia = kept;
     model.bodies[parent].inertia += moved;
-}
-
-/// What of a body's inertia its joint cannot feel, in the joint's frame.
-pub(in crate::model) fn given_away<S: Scalar>(joint: Joint, own: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
-    let o = S::zero();
-    match joint {
-        Joint::Floating | Joint::Helical => None,
-        Joint::Spherical => Some(SpatialInertia { mass: own.mass, ..SpatialInertia::zero() }),
-        Joint::Revolute => {
-            let second = Matrix3::from_diagonal(&Vector3::new(o, o, own.second.m33));
-            Some(SpatialInertia { mass: own.mass, first: Vector3::new(o, o, own.first.z), second })
-        }
-        Joint::Prismatic => Some(SpatialInertia { second: own.second, ..SpatialInertia::zero() }),
-    }
 }
 
 /// a − b.
