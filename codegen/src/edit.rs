@@ -107,7 +107,7 @@ pub fn model(request: &Request, description: &Description) -> Result<Model<f64>,
     let options = &request.options;
     let model = Model::new(description, options.base).map_err(|error| Error::Model { file: request.file.clone(), error })?;
     let model = model.with_gravity(options.gravity).with_wrenches_in(options.wrench_reference);
-    model.with_effects(&options.effects).map_err(|errors| Error::Effects { file: request.file.clone(), errors })
+    model.with_effects(&options.effects).map_err(|errors| Error::Effects { file: request.file.clone(), errors: errors.0 })
 }
 
 /// The model with the frames that the request asks for.

@@ -37,7 +37,7 @@ mod step_control;
 mod system;
 
 pub use articulated_core::integrator::{Integrator, IntegratorId, integrator, integrators};
-pub use control::{Constant, Control, Dependence, Hold, NoTorque, Pd, TableError, TorqueTable};
+pub use control::{Constant, Control, Dependence, Hold, NoTorque, Pd, TableError, TableErrors, TorqueTable};
 pub use error::{SimulateError, StateError};
 pub use event::{Action, Direction, Event, Impact, Map, Struck};
 pub use recording::{Counts, Ended, Hit, Recording};

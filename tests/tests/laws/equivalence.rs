@@ -1,6 +1,8 @@
 //! Different descriptions of the same physics.
 
+use articulated_core::algorithm::FunctionId;
 use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link};
+use articulated_core::dynamics::Dynamics;
 use articulated_core::spatial::from_quaternion;
 use articulated_tests::case::{Case, State, for_each_tree, inverse_dynamics};
 use articulated_tests::measure::{distance, torque_scale};
@@ -207,4 +209,37 @@ fn a_free_body_obeys_newton_and_euler() {
     let expected: Vec<f64> = moment.iter().chain(force.iter()).copied().collect();
     let far = distance(&case.inverse_dynamics(&state), &expected, &torque_scale(&case, &state));
     assert!(far <= FEW, "{far} units of roundoff");
+}
+
+/// τ = Y π, T = y_T π and U = y_U π with the parameters that the model gives, on trees of any kind.
+#[test]
+fn regressors_times_the_models_parameters_are_torques_and_energies() {
+    for_each_tree(30, Flavour::ANY, |case, random| {
+        let State { q, v, a, .. } = case.state(random);
+        let (model, mut ws) = (&case.model, case.model.workspace());
+        let pi = model.inertial_parameters().concat();
+        if pi.is_empty() {
+            return; // nothing moves
+        }
+        let mut called = |function: FunctionId, given: &[&[f64]]| {
+            let mut out = vec![0.0; function.row::<f64>().len(model.shape())];
+            model.call(function, &mut ws, given, &mut out).unwrap();
+            out
+        };
+        for (regressor, function, given) in [
+            (FunctionId::torque_regressor, FunctionId::inverse_dynamics, &[&q[..], &v, &a][..]),
+            (FunctionId::kinetic_energy_regressor, FunctionId::kinetic_energy, &[&q[..], &v]),
+            (FunctionId::potential_energy_regressor, FunctionId::potential_energy, &[&q[..]]),
+        ] {
+            let (y, expected) = (called(regressor, given), called(function, given));
+            for (row, expected) in y.chunks_exact(pi.len()).zip(&expected) {
+                let (found, size) = row.iter().zip(&pi).fold((0.0, 0.0), |(sum, size), (y, p)| (sum + y * p, size + (y * p).abs()));
+                assert!(
+                    (found - expected).abs() <= 1e-12 * size.max(f64::MIN_POSITIVE),
+                    "{}: {found}, expected {expected}",
+                    regressor.name()
+                );
+            }
+        }
+    });
 }

@@ -82,10 +82,30 @@ impl fmt::Display for EffectError {
 
 impl core::error::Error for EffectError {}
 
+/// All that is wrong with effects that were asked for, a line each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EffectErrors(pub Vec<EffectError>);
+
+impl core::ops::Deref for EffectErrors {
+    type Target = [EffectError];
+
+    fn deref(&self) -> &[EffectError] {
+        &self.0
+    }
+}
+
+impl fmt::Display for EffectErrors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.iter().enumerate().try_for_each(|(k, one)| write!(f, "{}{one}", if k > 0 { "\n" } else { "" }))
+    }
+}
+
+impl core::error::Error for EffectErrors {}
+
 impl Model<f64> {
     /// The same robot with these effects besides those that it has. Several on one link add up; one that does nothing ([`Effect::is_nothing`]) is left out. All that is wrong is told at
     /// once. The model must still have all its frames.
-    pub fn with_effects(mut self, applied: &[Applied]) -> Result<Self, Vec<EffectError>> {
+    pub fn with_effects(mut self, applied: &[Applied]) -> Result<Self, EffectErrors> {
         let mut errors = Vec::new();
         for (index, one) in applied.iter().enumerate() {
             let put = check(one).and_then(|()| match one.effect.row().on {
@@ -97,7 +117,7 @@ impl Model<f64> {
                 errors.push(EffectError { index, effect: one.effect, on: one.on.clone(), fault });
             }
         }
-        if errors.is_empty() { Ok(self) } else { Err(errors) }
+        if errors.is_empty() { Ok(self) } else { Err(EffectErrors(errors)) }
     }
 
     /// Whether there is what an effect of nothing would be on.

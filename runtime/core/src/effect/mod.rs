@@ -23,7 +23,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use core::marker::PhantomData;
 
-pub use apply::{EffectError, Fault};
+pub use apply::{EffectError, EffectErrors, Fault};
 pub use station::Station;
 
 use crate::Scalar;

@@ -6,7 +6,7 @@ mod torque_table;
 use super::{SimulateError, StateError};
 
 pub use pd::Pd;
-pub use torque_table::{TableError, TorqueTable};
+pub use torque_table::{TableError, TableErrors, TorqueTable};
 
 /// What gives the torques, closed or open loop.
 ///

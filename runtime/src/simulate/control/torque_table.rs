@@ -53,9 +53,29 @@ impl fmt::Display for TableError {
 
 impl std::error::Error for TableError {}
 
+/// All that is wrong with a table, a line each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableErrors(pub Vec<TableError>);
+
+impl std::ops::Deref for TableErrors {
+    type Target = [TableError];
+
+    fn deref(&self) -> &[TableError] {
+        &self.0
+    }
+}
+
+impl fmt::Display for TableErrors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.iter().enumerate().try_for_each(|(k, one)| write!(f, "{}{one}", if k > 0 { "\n" } else { "" }))
+    }
+}
+
+impl std::error::Error for TableErrors {}
+
 impl TorqueTable {
     /// times: `[n]`, s, each later than the one before; rows: `[n][nv]`, N·m|N. Everything that is wrong.
-    pub fn new(times: Vec<f64>, rows: Vec<f64>, nv: usize) -> Result<Self, Vec<TableError>> {
+    pub fn new(times: Vec<f64>, rows: Vec<f64>, nv: usize) -> Result<Self, TableErrors> {
         let (n, mut wrong) = (times.len(), Vec::new());
         if n == 0 {
             wrong.push(TableError::Empty);
@@ -68,7 +88,7 @@ impl TorqueTable {
         wrong.extend(bad.map(|row| TableError::NotFinite { row }));
         let order = times.windows(2).enumerate().filter(|(_, w)| w[1] <= w[0]);
         wrong.extend(order.map(|(k, w)| TableError::Order { row: k + 1, found: w[1], before: w[0] }));
-        if wrong.is_empty() { Ok(Self { times, rows, nv }) } else { Err(wrong) }
+        if wrong.is_empty() { Ok(Self { times, rows, nv }) } else { Err(TableErrors(wrong)) }
     }
 
     fn row(&self, k: usize) -> &[f64] {
@@ -105,7 +125,7 @@ impl Control for TorqueTable {
 
 #[cfg(test)]
 mod tests {
-    use super::{Control, TableError, TorqueTable};
+    use super::{Control, TableError, TableErrors, TorqueTable};
 
     #[test]
     fn a_table_is_straight_between_its_rows_and_held_outside() {
@@ -120,7 +140,7 @@ mod tests {
 
     #[test]
     fn everything_wrong_with_a_table_is_named() {
-        assert_eq!(TorqueTable::new(vec![], vec![], 1), Err(vec![TableError::Empty]));
+        assert_eq!(TorqueTable::new(vec![], vec![], 1), Err(TableErrors(vec![TableError::Empty])));
         let wrong = TorqueTable::new(vec![0.0, 0.0, f64::NAN], vec![1.0], 1).unwrap_err();
         assert!(wrong.contains(&TableError::Length { found: 1, expected: 3 }));
         assert!(wrong.contains(&TableError::Order { row: 1, found: 0.0, before: 0.0 }));
