@@ -17,7 +17,7 @@ pub(crate) const KEYS: &[Key<Settings>] = &[
     Key {
         name: "urdf",
         required: true,
-        expected: "the path of a URDF from the folder of Cargo.toml, as \"robots/arm.urdf\"",
+        expected: "the path of a URDF from the folder of Cargo.toml, as \"robots/arm.urdf\", here or in a `scene`",
         read: |s, value| value.parse().map(|path| s.urdf = Some(path)),
     },
     Key {

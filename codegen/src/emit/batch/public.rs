@@ -25,7 +25,13 @@ impl Batch<'_> {
 
     fn document(&self, out: &mut String, what: &str) {
         let parts: Vec<&str> = self.signature.wanted.parts.iter().map(|p| p.function.summary).collect();
-        let _ = writeln!(out, "/// {}; for as many {what} as the first argument has.\n///", parts.join("; "));
+        let name = &self.signature.wanted.name;
+        let _ = writeln!(
+            out,
+            "/// {}; for as many {what} as the first argument has. Each state's arguments and results are those of",
+            parts.join("; ")
+        );
+        let _ = writeln!(out, "/// [`{name}`](super::{name}()), with their units.\n///");
         let _ = writeln!(out, "/// # Errors\n/// If another slice has another length: nothing is computed.");
     }
 

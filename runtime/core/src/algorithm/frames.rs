@@ -54,9 +54,10 @@ in_three_references! {
     /// q: `[nq]`; v: `[nv]`; out: `[frames][6]`.
     frame_bias, bias_accelerations_body, bias_accelerations_world, bias_accelerations_world_aligned, (q, v);
 
-    /// Jacobians of all frames: twist = J v.
+    /// Jacobians of all frames: twist = J v, with the six rows of the twist [ω; v] of the same reference (`_body`: own axes, own origin; `_world`: base axes, the base's
+    /// origin; `_world_aligned`: base axes, own origin) and a column for each degree of freedom.
     ///
-    /// q: `[nq]`; out: `[frames][6][nv]`.
+    /// q: `[nq]`; out: `[frames][6][nv]`, 1 and m per rad, or m per m.
     frame_jacobians, jacobians_body, jacobians_world, jacobians_world_aligned, (q);
 
     /// dJ/dt of the Jacobians of all frames.

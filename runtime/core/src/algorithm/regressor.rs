@@ -13,9 +13,9 @@ use crate::spatial::{Matrix3, Twist, Vector3, rate_matrix, rotate_back};
 /// Inertial parameters of a link.
 pub const PARAMETERS: usize = 10;
 
-/// Y with τ = Y π.
+/// Y with τ = Y π, π as [`Model::inertial_parameters`] has it: of each link m, m c and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz about its origin, in its axes.
 ///
-/// q: `[nq]`; v, a: `[nv]`; out: `[nv][links][10]`. By virtual power: τ_l = Σ ∫ (s_l(r))·(r̈ − g) dm, with s_l(r) the velocity of the point at unit rate l.
+/// q: `[nq]`; v, a: `[nv]`; out: `[nv][links][10]`, N·m|N per kg, kg·m and kg·m². By virtual power: τ_l = Σ ∫ (s_l(r))·(r̈ − g) dm, with s_l(r) the velocity of the point at unit rate l.
 ///
 /// # Panics
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
