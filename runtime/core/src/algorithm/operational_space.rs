@@ -38,7 +38,7 @@ pub fn operational_space_inertia<S: Scalar>(model: &Model<S>, ws: &mut Workspace
     }
 }
 
-/// So many degrees of freedom move body `i`, or fewer where joints follow others.
+/// At most so many degrees of freedom move body `i`: where joints follow others there are fewer.
 fn freedoms_before<S: Scalar>(model: &Model<S>, mut i: usize) -> usize {
     let mut count = 0;
     while i != 0 {

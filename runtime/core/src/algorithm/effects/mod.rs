@@ -51,7 +51,7 @@ pub(super) fn any_on_bodies<S: Scalar>(model: &Model<S>) -> bool {
     model.bodies.iter().any(|b| !b.effects.body.is_empty())
 }
 
-/// As many parameters as any effect has.
+/// No effect has more parameters.
 const MOST: usize = 24;
 
 const _: () = assert!(crate::effect::most_parameters() <= MOST);
