@@ -39,7 +39,7 @@ fn a_chain_of_a_thousand_joints_is_generated() {
     let start = Instant::now();
     let generated = generate(&request).unwrap();
     let operations = generated.ledger.functions[0].emitted().instructions();
-    println!("1000 joints: {operations} instructions generated in {:.1?}, unoptimised", start.elapsed());
+    println!("1000 joints: {operations} instructions generated in {:.1?}", start.elapsed());
     assert_eq!(generated.model.nv, n);
     // Linear in the joints: no more a joint than some three hundred instructions.
     assert!(operations < 300_000, "{operations}");
