@@ -20,6 +20,8 @@ fn a_robot_that_cannot_move_is_generated_and_compiles() {
     assert_eq!(found, [[1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]]);
 }
 
+/// Its time as in a build script, unoptimised: `cargo test -p articulated-tests --test generated --config profile.dev.package.articulated-core.opt-level=0
+/// --config profile.dev.package.articulated-codegen.opt-level=0 -- --nocapture a_chain_of_a_thousand`.
 #[test]
 fn a_chain_of_a_thousand_joints_is_generated() {
     use std::fmt::Write;
