@@ -9,6 +9,7 @@ use super::apart;
 use super::dialect::{Dialect, Unit, units};
 use super::flat::flat;
 use super::signature::{Place, Signature};
+use super::spill::spilled;
 use super::together::two_at_once;
 use crate::graph::{Graph, NodeId, Op};
 
@@ -135,7 +136,10 @@ pub(super) fn one_piece(out: &mut String, graph: &Graph, signature: &Signature, 
     let apart = signature.flattened().filter(|_| apart::keeps_apart(graph, dialect));
     let places = apart.as_ref().map_or_else(|| signature.places(), |flat| (0..flat.numbers).map(apart::place).collect());
     let (pieces, _) = cut(graph, dialect, &places, &zeros(graph, signature, dialect, &places), usize::MAX);
-    let statements = pieces.concat();
+    let mut statements = pieces.concat();
+    if signature.spills {
+        statements = spilled(&statements, &mut []);
+    }
     let statements = match &apart {
         Some(flat) => apart::written(&statements, flat.numbers, flat.nests),
         None if dialect.stores_two() => two_at_once(&statements),

@@ -116,8 +116,8 @@ fn inner(graph: &Graph) -> Vec<bool> {
     inner
 }
 
-/// All statements.
-pub(super) fn statements(out: &mut String, graph: &Graph, dialect: &dyn Dialect) {
+/// All statements, as `rewritten` has them.
+pub(super) fn statements(out: &mut String, graph: &Graph, dialect: &dyn Dialect, rewritten: impl FnOnce(String) -> String) {
     let lines = units(graph, dialect.group()).into_iter().filter_map(|unit| unit.written(graph, dialect));
-    *out += &flat(&lines.collect::<String>(), dialect.value().0);
+    *out += &flat(&rewritten(lines.collect()), dialect.value().0);
 }

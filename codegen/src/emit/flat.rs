@@ -25,7 +25,7 @@ pub(super) fn flat(statements: &str, ty: &str) -> String {
 }
 
 /// Whether a statement gives no number, but whether one is positive.
-fn compares(line: &str) -> bool {
+pub(super) fn compares(line: &str) -> bool {
     let row = Op::Positive.row();
     let right = line.split_once(" = ").map_or("", |(_, right)| right);
     let [rust, lanes] = [row.rust, row.lanes].map(|text| text.trim_start_matches("{a}"));

@@ -9,7 +9,7 @@ use super::chunks::pieces;
 use super::levels::{self, real};
 use super::signature::{Place, Signature};
 use super::vector::Vector;
-use super::{plain, sets, several, vector};
+use super::{plain, sets, several, spill, vector};
 use crate::graph::Graph;
 use crate::program::Program;
 
@@ -39,7 +39,9 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
     if program.groups.is_some() {
         return loops(out, program, &signature, context);
     }
+    let spills = spill::spills(program, context.level, context.forbid_unsafe);
     if in_lanes(graph) || signature.long {
+        *out += &if spills { format!("{}\n", spill::MORE_REGISTERS) } else { String::new() };
         body_macro(out, graph, &signature, context.level);
     }
     document(out, program, &signature, context);
@@ -57,12 +59,14 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
     }
     if in_lanes(graph) {
         lanes_calls(out, graph, &signature);
-    } else if signature.long {
-        long_calls(out, &signature, context);
-    } else if needs_choice(graph, context.level) && context.chooses() {
-        chosen(out, graph, &signature, context.level);
+    } else if spills {
+        for (processors, signature) in [(spill::FEW_REGISTERS, &signature.that_spills()), (spill::MORE_REGISTERS, &signature)] {
+            let _ = writeln!(out, "    {processors}\n    return {{");
+            calls(out, graph, signature, context);
+            *out += "    };\n";
+        }
     } else {
-        levels::body(out, graph, &signature, context.level);
+        calls(out, graph, &signature, context);
     }
     let _ = writeln!(out, "}}\n");
     if signature.place == Place::Value && signature.has_into() {
@@ -126,6 +130,17 @@ pub(super) fn in_lanes(graph: &Graph) -> bool {
 /// Whether the function profits from an instruction set that not every processor has.
 pub(super) fn needs_choice(graph: &Graph, level: Level) -> bool {
     !in_lanes(graph) && (graph.counts().fused() > 0 || plain::has_batch(graph, level) || level.of_two())
+}
+
+/// A body of plain arithmetic, in pieces or one, and its call.
+fn calls(out: &mut String, graph: &Graph, signature: &Signature, context: Context) {
+    if signature.long {
+        long_calls(out, signature, context);
+    } else if needs_choice(graph, context.level) && context.chooses() {
+        chosen(out, graph, signature, context.level);
+    } else {
+        levels::body(out, graph, signature, context.level);
+    }
 }
 
 /// Plain arithmetic, with fused multiply-add where the processor has it: compiled for it, or found to be so.

@@ -7,6 +7,7 @@ use super::dialect::{Dialect, statements};
 use super::literal::{bare, operand, single};
 use super::order::{Angle, Step, order};
 use super::signature::{Place, Signature};
+use super::spill::spilled;
 use crate::graph::{Graph, Node, NodeId, Op};
 use crate::{Arithmetic, Level, Sines};
 
@@ -34,8 +35,8 @@ pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature, diale
     if signature.place == Place::Filled {
         return one_piece(out, graph, signature, dialect);
     }
-    statements(out, graph, dialect);
-    let values: Vec<String> = graph.outputs.iter().map(|&o| dialect.number(o)).collect();
+    let mut values: Vec<String> = graph.outputs.iter().map(|&o| dialect.number(o)).collect();
+    statements(out, graph, dialect, |lines| if signature.spills { spilled(&lines, &mut values) } else { lines });
     signature.result(out, &values);
 }
 

@@ -13,6 +13,7 @@ use crate::program::{Columns, Program};
 use crate::wanted::{Wanted, array_of};
 
 /// What is handed in.
+#[derive(Clone)]
 pub(super) struct Input {
     pub(super) name: &'static str,
     /// None for the parameters.
@@ -85,6 +86,7 @@ pub(super) struct Flat {
 }
 
 /// A function's arguments and results.
+#[derive(Clone)]
 pub(super) struct Signature<'a> {
     pub(super) wanted: &'a Wanted,
     pub(super) inputs: Vec<Input>,
@@ -95,6 +97,8 @@ pub(super) struct Signature<'a> {
     pub(super) columns: Option<&'a Columns>,
     /// Whether the body is cut into pieces.
     pub(super) long: bool,
+    /// Whether values wait in memory where this text says, not where a compiler does.
+    pub(super) spills: bool,
     /// The type of the result, if there are several.
     group: Option<String>,
     /// The type of the numbers that go in and come out.
@@ -107,12 +111,17 @@ impl<'a> Signature<'a> {
         if parameters {
             inputs.push(Input { name: "parameters", dims: Vec::new() });
         }
-        Self { wanted, inputs, sizes, place: Place::Value, columns: None, long: false, group: wanted.group(), real: "f64" }
+        Self { wanted, inputs, sizes, place: Place::Value, columns: None, long: false, spills: false, group: wanted.group(), real: "f64" }
     }
 
     /// The same with numbers of another type.
     pub(super) fn with(self, real: &'static str) -> Self {
         Self { real, ..self }
+    }
+
+    /// The same of a body in one piece, in which values wait where its text says.
+    pub(super) fn that_spills(&self) -> Self {
+        Self { long: false, spills: true, ..self.clone() }
     }
 
     /// The type of an array of these dimensions.

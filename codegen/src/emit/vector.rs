@@ -20,7 +20,7 @@ pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
     if signature.place == Place::Filled {
         return one_piece(out, graph, signature, &vector);
     }
-    statements(out, graph, &vector);
+    statements(out, graph, &vector, |lines| lines);
     let values: Vec<String> = graph.outputs.iter().map(|&o| vector.number(o)).collect();
     signature.result(out, &values);
 }
