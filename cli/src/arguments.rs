@@ -204,7 +204,7 @@ pub(crate) struct GenerateArguments {
     /// Each limb for itself: no limbs that are alike in lanes, no joints in loops, also where that would be cheaper
     #[arg(long)]
     pub(crate) no_limbs: bool,
-    /// No `unsafe` in the generated code: sines take a little longer on x86-64
+    /// No `unsafe` in the generated code: on x86-64 sines take a little longer, and long functions without AVX-512 up to twice as long
     #[arg(long)]
     pub(crate) forbid_unsafe: bool,
     /// For crates without std, which depend on the crate libm: no `unsafe`, no multiply-adds

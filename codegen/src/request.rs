@@ -58,7 +58,7 @@ pub struct Options {
     pub batch: Vec<Real>,
     /// How accurate the functions are. Functions of many states at once are what their type of numbers is.
     pub level: Level,
-    /// No `unsafe` in the generated code, for crates that forbid it: sines and cosines take a little longer on x86-64.
+    /// No `unsafe` in the generated code, for crates that forbid it: on x86-64 sines and cosines take a little longer, and long functions without AVX-512 up to twice as long.
     pub forbid_unsafe: bool,
     /// For crates without `std`: without `unsafe` and a runtime, no multiply-add, and what `core` lacks is called in the crate `libm`.
     pub no_std: bool,

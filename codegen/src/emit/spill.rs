@@ -14,8 +14,8 @@ use crate::Level;
 use crate::graph::{Graph, NodeId, Op};
 use crate::program::Program;
 
-/// From this many nodes on. Below, a processor keeps the code decoded whoever chose what waits, and compilers know better how long an instruction takes.
-const FROM: usize = 1000;
+/// From this many nodes on, some 20 kB. Below, a processor keeps the code decoded whoever chose what waits, if nobody else runs on its core, and compilers know better how long an instruction takes.
+const FROM: usize = 1400;
 
 /// What waits must be read so many times on the average, in tenths: where it is put away once and fetched once, nothing is gained.
 const READS: usize = 14;
