@@ -251,7 +251,7 @@ fn document(out: &mut String, program: &Program, signature: &Signature, context:
         counted(c.additions(), ["addition", "additions"]),
         counted(c.instructions(), ["instruction", "instructions"]),
         counted(c.trigonometric(), ["sine or cosine", "sines and cosines"]),
-        form(program, signature)
+        form(program, signature, context)
     );
 }
 
@@ -261,14 +261,19 @@ fn counted(n: u64, [one, several]: [&str; 2]) -> String {
 }
 
 /// What there is to say of a function's form.
-fn form(program: &Program, signature: &Signature) -> String {
+fn form(program: &Program, signature: &Signature, context: Context) -> String {
     let entry = &program.entry;
     if program.groups.is_some() {
         return format!(", each of {} joints at once", entry.lanes);
     }
     let lanes = if entry.lanes > 1 { format!("; limbs that are alike in {} lanes", entry.lanes) } else { String::new() };
     let pieces = if signature.long { "; in pieces, so that it is compiled in less time" } else { "" };
-    format!(", depth {}{lanes}{pieces}", entry.depth)
+    let spills = if spill::spills(program, context.level, context.forbid_unsafe) {
+        "; for x86-64 without AVX-512 in one piece that says what waits in memory"
+    } else {
+        ""
+    };
+    format!(", depth {}{lanes}{pieces}{spills}", entry.depth)
 }
 
 fn shown(constant: &crate::Constant) -> String {
