@@ -8,19 +8,22 @@ macro_rules! rooted {
         fn with_root(bodies: &Bodies, root: &Root, out: &mut [f64; 3 * MATRIX]) {
             for chunk in CHUNKS.iter() {
                 let (block, which) = (&bodies.blocks[chunk.at], chunk.which);
-                let (mut x, origin): ([V; 21], [V; 3]) = (read(&block.x), read(&block.points[3..]));
+                let origin = read(&block.points[3..]);
                 // About the root's origin.
-                for at in [0, 9, 15] {
-                    let moment = cross_and(origin, three(&x[at + 3..]), three(&x[at..]));
-                    x[at..at + 3].copy_from_slice(&moment);
+                let wrench = |at: usize| {
+                    let force: [V; 3] = read(&block.x[at + 3..]);
+                    (cross_and(origin, force, read(&block.x[at..])), force)
+                };
+                let wrenches = [wrench(9), wrench(15), wrench(0)];
+                for (matrix, (moment, force)) in wrenches.iter().enumerate() {
+                    for i in 0..3 {
+                        let place = matrix * MATRIX + i * NV + chunk.column;
+                        mix(moment[i], which, out, place);
+                        mix(force[i], which, out, place + 3 * NV);
+                    }
                 }
-                for i in 0..6 {
-                    let place = i * NV + chunk.column;
-                    mix(x[9 + i], which, out, place);
-                    mix(x[15 + i], which, out, place + MATRIX);
-                    mix(x[i], which, out, place + 2 * MATRIX);
-                }
-                let rows = against_root(root, [x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], x[8]]);
+                let ([_, _, ([a, b, c], [d, e, f])], [g, h, i]) = (wrenches, read(&block.x[6..]));
+                let rows = against_root(root, [a, b, c, d, e, f, g, h, i]);
                 for (i, rows) in rows.iter().enumerate().filter(|(i, _)| chunk.which >> i & 1 == 1) {
                     let place = (chunk.column + i) * NV;
                     out[place..place + 4].copy_from_slice(&rows[0]);
@@ -115,8 +118,8 @@ macro_rules! pairings {
             if SLIDES {
                 by_a = dot_and(force, three(&axis[3..]), by_a);
             }
-            let by_q = dot_and(turning, three(&drift), dot_and(force, three(&curl[3..]), dot(moment, three(&curl))));
-            let twice = dot_and(force, three(&drift[3..]), dot(moment, three(&drift)));
+            let by_q = dot_and(moment, three(&curl), dot_and(force, three(&curl[3..]), dot(turning, three(&drift))));
+            let twice = dot_and(moment, three(&drift), dot(force, three(&drift[3..])));
             put(by_q, own, out, 0);
             put(fmadd(twice, k(2.0), dot(turning, three(&axis))), own, out, MATRIX);
             put(by_a, own, out, 2 * MATRIX);
@@ -176,16 +179,17 @@ macro_rules! narrow {
             mix(x, own[0].which, out, own[0].place as usize + behind);
         }
 
-        /// The lanes asked for, into the matrices.
+        /// The lanes asked for, into the matrices. Not a vector selected by a mask: compilers make a masked store of that, which takes a processor without AVX-512 a dozen cycles.
         $(#[$features])?
         #[inline]
         fn mix(x: V, which: u16, out: &mut [f64; 3 * MATRIX], place: usize) {
-            let which = &ASKED[which as usize % 16];
-            match out.get_mut(place..place + 4).and_then(|to| to.first_chunk_mut()) {
-                ::core::option::Option::Some(to) => store(select(positive(load(which)), x, load(to)), to),
+            let (x, which) = (array(x), &ASKED[which as usize % 16]);
+            let mixed = |lane: usize, old: f64| f64::from_bits(x[lane].to_bits() & which[lane] | old.to_bits() & !which[lane]);
+            match out.get_mut(place..place + 4).and_then(|to| to.first_chunk_mut::<4>()) {
+                ::core::option::Option::Some(to) => *to = [mixed(0, to[0]), mixed(1, to[1]), mixed(2, to[2]), mixed(3, to[3])],
                 ::core::option::Option::None => {
-                    for ((to, x), which) in out[place..].iter_mut().zip(array(x)).zip(which) {
-                        *to = if *which > 0.0 { x } else { *to };
+                    for (lane, to) in out[place..].iter_mut().enumerate() {
+                        *to = mixed(lane, *to);
                     }
                 }
             }

@@ -63,12 +63,12 @@ struct Own {
     place: u32,
 }
 
-/// Lanes by their bits.
-static ASKED: [Four; 16] = {
-    let mut lanes = [[0.0; 4]; 16];
+/// Lanes by their bits: all bits of a number, or none.
+static ASKED: [[u64; 4]; 16] = {
+    let mut lanes = [[0; 4]; 16];
     let mut at = 0;
     while at < 64 {
-        lanes[at / 4][at % 4] = ((at / 4) >> (at % 4) & 1) as f64;
+        lanes[at / 4][at % 4] = 0_u64.wrapping_sub((at / 4) as u64 >> (at % 4) & 1);
         at += 1;
     }
     lanes
