@@ -9,7 +9,7 @@ use super::apart;
 use super::dialect::{Dialect, Unit, units};
 use super::flat::flat;
 use super::signature::{Place, Signature};
-use super::spill::spilled;
+use super::spill::{self, Kind, spilled};
 use super::together::two_at_once;
 use crate::graph::{Graph, NodeId, Op};
 
@@ -137,14 +137,15 @@ pub(super) fn one_piece(out: &mut String, graph: &Graph, signature: &Signature, 
     let places = apart.as_ref().map_or_else(|| signature.places(), |flat| (0..flat.numbers).map(apart::place).collect());
     let (pieces, _) = cut(graph, dialect, &places, &zeros(graph, signature, dialect, &places), usize::MAX);
     let mut statements = pieces.concat();
-    if signature.spills {
-        statements = spilled(&statements, &mut []);
+    if apart.is_none() && dialect.stores_two() {
+        statements = two_at_once(&statements);
     }
-    let statements = match &apart {
-        Some(flat) => apart::written(&statements, flat.numbers, flat.nests),
-        None if dialect.stores_two() => two_at_once(&statements),
-        None => statements,
-    };
+    if signature.spills {
+        statements = spilled(&statements, &mut [], Kind::of(dialect.value().0, graph.lanes().width)) + spill::END;
+    }
+    if let Some(flat) = &apart {
+        statements = apart::written(&statements, flat.numbers, flat.nests);
+    }
     *out += &flat(&statements, dialect.value().0);
 }
 

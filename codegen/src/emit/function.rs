@@ -39,10 +39,14 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
     if program.groups.is_some() {
         return loops(out, program, &signature, context);
     }
-    let spills = spill::spills(program, context.level, context.forbid_unsafe);
+    let spilled = spilled(program, &signature, context);
+    signature.has_spilled = spilled.is_some();
     if in_lanes(graph) || signature.long {
-        *out += &if spills { format!("{}\n", spill::MORE_REGISTERS) } else { String::new() };
+        *out += &if signature.has_spilled { format!("{}\n", spill::MORE_REGISTERS) } else { String::new() };
         body_macro(out, graph, &signature, context.level);
+    }
+    if let Some(text) = spilled.as_ref().filter(|_| in_lanes(graph)) {
+        let _ = writeln!(out, "{}\n{text}", spill::FEW_REGISTERS);
     }
     document(out, program, &signature, context);
     if signature.place != Place::Value {
@@ -59,19 +63,36 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
     }
     if in_lanes(graph) {
         lanes_calls(out, graph, &signature);
-    } else if spills {
-        for (processors, signature) in [(spill::FEW_REGISTERS, &signature.that_spills()), (spill::MORE_REGISTERS, &signature)] {
-            let _ = writeln!(out, "    {processors}\n    return {{");
-            calls(out, graph, signature, context);
-            *out += "    };\n";
-        }
     } else {
-        calls(out, graph, &signature, context);
+        let mut text = String::new();
+        calls(&mut text, graph, &signature, context);
+        *out += &match &spilled {
+            Some(few) => format!(
+                "    {}\n    return {{\n{few}    }};\n    {}\n    return {{\n{text}    }};\n",
+                spill::FEW_REGISTERS,
+                spill::MORE_REGISTERS
+            ),
+            None => text,
+        };
     }
     let _ = writeln!(out, "}}\n");
     if signature.place == Place::Value && signature.has_into() {
         into_form(out, &signature);
     }
+}
+
+/// The text for processors with sixteen registers, if there is one.
+fn spilled(program: &Program, signature: &Signature, context: Context) -> Option<String> {
+    if !spill::may_be(program, context.level, context.forbid_unsafe) {
+        return None;
+    }
+    let (mut out, graph, signature) = (String::new(), &program.graph, signature.that_spills());
+    if in_lanes(graph) {
+        body_macro(&mut out, graph, &signature, context.level);
+    } else {
+        calls(&mut out, graph, &signature, context);
+    }
+    spill::pays(&out, in_lanes(graph)).then_some(out)
 }
 
 /// The function that loops compute, of a module of their own.
@@ -251,7 +272,7 @@ fn document(out: &mut String, program: &Program, signature: &Signature, context:
         counted(c.additions(), ["addition", "additions"]),
         counted(c.instructions(), ["instruction", "instructions"]),
         counted(c.trigonometric(), ["sine or cosine", "sines and cosines"]),
-        form(program, signature, context)
+        form(program, signature)
     );
 }
 
@@ -261,18 +282,14 @@ fn counted(n: u64, [one, several]: [&str; 2]) -> String {
 }
 
 /// What there is to say of a function's form.
-fn form(program: &Program, signature: &Signature, context: Context) -> String {
+fn form(program: &Program, signature: &Signature) -> String {
     let entry = &program.entry;
     if program.groups.is_some() {
         return format!(", each of {} joints at once", entry.lanes);
     }
     let lanes = if entry.lanes > 1 { format!("; limbs that are alike in {} lanes", entry.lanes) } else { String::new() };
     let pieces = if signature.long { "; in pieces, so that it is compiled in less time" } else { "" };
-    let spills = if spill::spills(program, context.level, context.forbid_unsafe) {
-        "; for x86-64 without AVX-512 in one piece that says what waits in memory"
-    } else {
-        ""
-    };
+    let spills = if signature.has_spilled { "; for x86-64 without AVX-512 in one piece that says what waits in memory" } else { "" };
     format!(", depth {}{lanes}{pieces}{spills}", entry.depth)
 }
 

@@ -15,6 +15,7 @@ use super::levels::real;
 use super::literal::literal;
 use super::names::Names;
 use super::sets::support;
+use super::spill;
 use crate::program::Program;
 use crate::{Parameter, Request};
 
@@ -38,6 +39,7 @@ pub(crate) fn module(
     support(&mut out, model, programs, forbid_unsafe, level);
     let of_many: Vec<Batch> = programs.iter().map(|p| Batch::of(p, context)).collect();
     batches(&mut out, &of_many, &request.options.batch, forbid_unsafe);
+    spill::module(&mut out);
     robot(&mut out, request, model, programs, !parameters.is_empty());
     if request.options.no_std { bare::without_std(&out) } else { out }
 }

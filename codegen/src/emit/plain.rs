@@ -7,7 +7,7 @@ use super::dialect::{Dialect, statements};
 use super::literal::{bare, operand, single};
 use super::order::{Angle, Step, order};
 use super::signature::{Place, Signature};
-use super::spill::spilled;
+use super::spill::{self, Kind, spilled};
 use crate::graph::{Graph, Node, NodeId, Op};
 use crate::{Arithmetic, Level, Sines};
 
@@ -36,8 +36,10 @@ pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature, diale
         return one_piece(out, graph, signature, dialect);
     }
     let mut values: Vec<String> = graph.outputs.iter().map(|&o| dialect.number(o)).collect();
-    statements(out, graph, dialect, |lines| if signature.spills { spilled(&lines, &mut values) } else { lines });
+    let kind = Kind::of(dialect.value().0, graph.lanes().width);
+    statements(out, graph, dialect, |lines| if signature.spills { spilled(&lines, &mut values, kind) } else { lines });
     signature.result(out, &values);
+    *out += if signature.spills { spill::END } else { "" };
 }
 
 /// Operators on numbers.

@@ -9,7 +9,7 @@ use articulated_core::model::Model;
 use super::columns::Layout;
 use super::function::{in_lanes, needs_choice};
 use super::used::{Caller, used};
-use super::{derivatives, levels, plain, several, spill};
+use super::{derivatives, levels, plain, several};
 use crate::Level;
 use crate::program::Program;
 
@@ -52,9 +52,6 @@ pub(super) fn support(out: &mut String, model: &Model<f64>, programs: &[Program]
         levels::sines(out, if portable { PORTABLE_SINES } else { SINES }, level);
     }
     levels::module(out, level);
-    if programs.iter().any(|p| spill::spills(p, level, forbid_unsafe)) {
-        *out += &spill::module();
-    }
     let mut when = When { portable: OTHERS, eight: COMPILED_FOR_AVX512_BESIDE_AVX2 };
     let mut widths: Vec<usize> = programs.iter().map(|p| p.graph.lanes().width).filter(|w| *w > 1).collect();
     // Vectors of which there is more than one, in those of the widest registers.

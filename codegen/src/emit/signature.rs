@@ -99,6 +99,8 @@ pub(super) struct Signature<'a> {
     pub(super) long: bool,
     /// Whether values wait in memory where this text says, not where a compiler does.
     pub(super) spills: bool,
+    /// Whether there is such a text beside this one.
+    pub(super) has_spilled: bool,
     /// The type of the result, if there are several.
     group: Option<String>,
     /// The type of the numbers that go in and come out.
@@ -111,7 +113,18 @@ impl<'a> Signature<'a> {
         if parameters {
             inputs.push(Input { name: "parameters", dims: Vec::new() });
         }
-        Self { wanted, inputs, sizes, place: Place::Value, columns: None, long: false, spills: false, group: wanted.group(), real: "f64" }
+        Self {
+            wanted,
+            inputs,
+            sizes,
+            place: Place::Value,
+            columns: None,
+            long: false,
+            spills: false,
+            has_spilled: false,
+            group: wanted.group(),
+            real: "f64",
+        }
     }
 
     /// The same with numbers of another type.

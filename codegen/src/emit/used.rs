@@ -15,7 +15,7 @@ impl Caller {
     }
 
     /// Whether the name stands in the text, as a word.
-    fn names(&self, name: &str) -> bool {
+    pub(super) fn names(&self, name: &str) -> bool {
         let alone = |at: usize| !self.text[..at].ends_with(in_word) && !self.text[at + name.len()..].starts_with(in_word);
         let look = || self.text.match_indices(name).any(|(at, _)| alone(at));
         *self.known.borrow_mut().entry(name.to_owned()).or_insert_with(look)

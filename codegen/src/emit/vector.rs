@@ -1,10 +1,9 @@
 //! A graph as statements of the functions of [`articulated_core::lanes`], for whichever instruction set they stand in.
 
-use super::chunks::one_piece;
-use super::dialect::{Dialect, statements};
+use super::dialect::Dialect;
 use super::literal::{literal, operand};
 use super::order::Angle;
-use super::plain::name;
+use super::plain::{self, name};
 use super::rows::WIDTH;
 use super::signature::{Place, Signature};
 use super::{several, written};
@@ -17,12 +16,7 @@ pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
     }
     let vector = Vector { graph, signature };
     *out += vector.beginning();
-    if signature.place == Place::Filled {
-        return one_piece(out, graph, signature, &vector);
-    }
-    statements(out, graph, &vector, |lines| lines);
-    let values: Vec<String> = graph.outputs.iter().map(|&o| vector.number(o)).collect();
-    signature.result(out, &values);
+    plain::body(out, graph, signature, &vector);
 }
 
 /// Functions on vectors.

@@ -8,8 +8,9 @@ use super::across::Across;
 use super::dialect::{Dialect, Unit, units};
 use super::flat::flat;
 use super::literal::literal;
-use super::rows::{Cell, Column, Group, groups};
+use super::rows::{Cell, Column, Group, WIDTH, groups};
 use super::signature::Signature;
+use super::spill::{self, Kind, spilled};
 use super::vector::Vector;
 use crate::graph::{Graph, NodeId, Op};
 
@@ -26,7 +27,11 @@ pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
         from += length;
     }
     *out += vector.beginning();
-    *out += &flat(&Writer::of(&vector, &all).statements(), vector.value().0);
+    let mut statements = Writer::of(&vector, &all).statements();
+    if signature.spills {
+        statements = spilled(&statements, &mut [], Kind::of(vector.value().0, WIDTH)) + spill::END;
+    }
+    *out += &flat(&statements, vector.value().0);
 }
 
 /// The statements, and what is written between them.

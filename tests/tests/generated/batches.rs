@@ -31,19 +31,23 @@ const FUNCTIONS: [&str; 13] = [
     "difference",
 ];
 
-/// An arm, every kind of joint on a floating base, joints that follow others, and nothing at all: small ones, since they are compiled for each
+/// A function so long that its text for sixteen registers says what waits in memory.
+const LONG: &str = "coriolis_matrix";
+
+/// An arm, every kind of joint on a floating base, joints that follow others, a long function, and nothing at all: small ones, since they are compiled for each
 /// instruction set. What is computed is what single evaluation computes, which is tested on many robots.
 fn robots(forbid_unsafe: bool) -> Vec<Robot> {
     let robot = |name: &str, urdf: &str, base: Base, functions: &[&str]| {
         let options = Options { batch: vec![Real::F64, Real::F32], forbid_unsafe, ..Options::default() };
         with(name.into(), urdf, base, false, options, |name| functions.contains(&name))
     };
-    let gripper = articulated_models::robot("gripper_arm").expect("a bundled robot").urdf;
+    let [gripper, seven_axes] = ["gripper_arm", "panda_like"].map(|name| articulated_models::robot(name).expect("a bundled robot").urdf);
     let tree = urdf_text(&random_tree(102, Flavour { massless: false, ..Flavour::WRITTEN }));
     vec![
         robot("arm", include_str!("../../robots/arm.urdf"), Base::Fixed, &FUNCTIONS),
         robot("tree", &tree, Base::Floating, &["placements", "inverse_dynamics_with_wrenches", "difference"]),
         robot("gripper_arm", gripper, Base::Fixed, &["inverse_dynamics", "mass_matrix"]),
+        robot("seven_axes", seven_axes, Base::Fixed, &[LONG]),
         robot("stone", "<robot name='stone'><link name='stone'/></robot>", Base::Fixed, &FUNCTIONS),
     ]
 }
@@ -134,6 +138,13 @@ fn batches_give_what_the_generic_library_gives() {
             assert!(worst.0 <= ALLOWED, "{} of {} {real:?} in {}: {} units of roundoff", worst.1, robot.name, way.set, worst.0);
         }
     }
+}
+
+#[test]
+fn a_long_function_has_a_text_for_sixteen_registers_where_unsafe_is_allowed() {
+    let text = format!("{LONG}_in_block_that_spills");
+    let found = ROBOTS.each_ref().map(|robots| robots.iter().any(|r| r.generated.source.contains(&text)));
+    assert_eq!(found, [true, false]);
 }
 
 #[test]

@@ -16,7 +16,7 @@ mod ways;
 use std::fmt::Write;
 
 use articulated_core::algorithm::Shape;
-use articulated_core::lanes::{Real, source, tiles};
+use articulated_core::lanes::{Real, Set, source, tiles};
 
 use self::arrays::{Array, each, inputs, results};
 use self::block::Block;
@@ -27,6 +27,7 @@ use super::dialect::Dialect;
 use super::flat::flat;
 use super::function::Context;
 use super::signature::Signature;
+use super::spill::{self, Kind, spilled};
 use super::used::{Caller, used};
 use super::vector::Vector;
 use crate::graph::Graph;
@@ -38,6 +39,8 @@ pub(super) struct Batch<'a> {
     sizes: Shape,
     /// Of plain numbers.
     graph: &'a Graph,
+    /// Whether it may be said here what waits in memory.
+    may_spill: bool,
 }
 
 /// Statements of a piece of a long body.
@@ -46,6 +49,9 @@ const LENGTH: usize = 300;
 /// From this many nodes on a body is cut: below, compilers take no less for pieces, and what goes from piece to piece costs time. Vectors fill memory sooner than numbers do, so
 /// that is later than for one state.
 const CUT_FROM: usize = 20_000;
+
+/// Vectors of AVX2 are as long as so many `f64`.
+const AVX2_LANES: usize = 4;
 
 /// How many states a block has, whatever the instruction set: a cache line of each number.
 fn states_of_block(real: Real) -> usize {
@@ -100,7 +106,16 @@ impl Way {
         );
         let _ = writeln!(out, "    batch_support!({attribute});");
         for f in functions.iter().filter(|f| f.is_any()) {
-            let _ = writeln!(out, "    {}_in_batch!({attribute});", f.name());
+            let name = f.name();
+            if self.set == Set::Avx2 && caller.names(&f.that_spills()) {
+                let (few, more) = (spill::FEW_REGISTERS, spill::MORE_REGISTERS);
+                let _ = writeln!(
+                    out,
+                    "    {few}\n    use super::super::spills;\n    {few}\n    {}!({attribute});\n    {more}",
+                    f.that_spills()
+                );
+            }
+            let _ = writeln!(out, "    {name}_in_block!({attribute});\n    {name}_in_batch!({attribute});");
         }
         let _ = writeln!(out, "}}\n");
     }
@@ -108,7 +123,9 @@ impl Way {
 
 impl<'a> Batch<'a> {
     pub(super) fn of(program: &'a Program, context: Context) -> Self {
-        Self { signature: Signature::of(&program.wanted, context.sizes, context.parameters), sizes: context.sizes, graph: &program.plain }
+        let graph = &program.plain;
+        let may_spill = !context.forbid_unsafe && graph.nodes().len() >= spill::FROM;
+        Self { signature: Signature::of(&program.wanted, context.sizes, context.parameters), sizes: context.sizes, graph, may_spill }
     }
 
     fn name(&self) -> &str {
@@ -147,9 +164,8 @@ impl<'a> Batch<'a> {
             each(&inputs, &format!("NAME: &{of}, ")) + parameters + &each(&results, &format!("NAME: &mut {of}, "))
         };
         let given = |input: &str, result: &str| each(&inputs, input) + self.parameters().1 + &each(&results, result);
+        self.blocks(out, &declared("[Lanes; { LEN }]"), &given("NAME, ", "NAME, "));
         let _ = writeln!(out, "macro_rules! {name}_in_batch {{\n    ($(#[$features:meta])?) => {{");
-        self.block(out, &declared("[Lanes; { LEN }]"), &given("NAME, ", "NAME, "));
-
         let first = &results[0].name;
         let _ = writeln!(out, "    $(#[$features])?\n    pub(super) fn {name}_blocks({}) {{", declared("[[Lanes; { LEN }]]"));
         let _ = writeln!(out, "        for k in 0..{first}.len() {{\n            {name}_block({});", given("&NAME[k], ", "&mut NAME[k], "));
@@ -171,14 +187,36 @@ impl<'a> Batch<'a> {
         *out += "        }\n    }\n    };\n}\n\n";
     }
 
-    /// What is computed for one block, in pieces where it is long.
-    fn block(&self, out: &mut String, declared: &str, names: &str) {
+    /// What is computed for one block, in pieces where it is long; where it pays, for sixteen registers too.
+    fn blocks(&self, out: &mut String, declared: &str, names: &str) {
         let name = self.name();
         let block = Block(Vector { graph: self.graph, signature: &self.signature });
         let length = if self.graph.nodes().len() < CUT_FROM { usize::MAX } else { LENGTH };
         let (pieces, slots) = cut(self.graph, &block, &self.places(), &[], length);
+        let mut write = |name: &str, pieces: &[String]| {
+            let _ = writeln!(out, "macro_rules! {name} {{\n    ($(#[$features:meta])?) => {{");
+            self.block(out, (declared, names), &block, pieces, slots);
+            *out += "    };\n}\n\n";
+        };
+        write(&format!("{name}_in_block"), &pieces);
+        if let ([whole], true) = (pieces.as_slice(), self.may_spill) {
+            // As many bytes of either real.
+            let text = spilled(whole, &mut [], Kind::of(block.value().0, AVX2_LANES)) + spill::END;
+            if spill::pays(&text, true) {
+                write(&self.that_spills(), &[text]);
+            }
+        }
+    }
+
+    /// The macro of a block for sixteen registers.
+    fn that_spills(&self) -> String {
+        format!("{}_in_block_that_spills", self.name())
+    }
+
+    fn block(&self, out: &mut String, (declared, names): (&str, &str), block: &Block, pieces: &[String], slots: usize) {
+        let name = self.name();
         let m = format!("{name}_kept");
-        kept(out, &m, &block, slots);
+        kept(out, &m, block, slots);
         let mut calls = String::new();
         for (c, piece) in pieces.iter().enumerate() {
             let _ = writeln!(out, "    $(#[$features])?\n    #[inline(never)]");
@@ -191,7 +229,7 @@ impl<'a> Batch<'a> {
             let _ = writeln!(calls, "        {name}_piece_{c}({names}part, &mut m);");
         }
         let _ = writeln!(out, "    $(#[$features])?\n    #[inline(never)]\n    fn {name}_block({declared}) {{");
-        *out += &nothing_kept(&m, &block, slots);
+        *out += &nothing_kept(&m, block, slots);
         let _ = writeln!(out, "        for part in 0..PARTS {{\n{calls}        }}\n    }}\n");
     }
 
@@ -215,7 +253,7 @@ mod tests {
         request.options.parameters = vec!["payload(tip)".into()];
         request.options.batch = vec![Real::F64];
         let source = generate(&request).unwrap().source;
-        let (_, batch) = source.split_once("macro_rules! gravity_torque_in_batch").unwrap();
+        let (_, batch) = source.split_once("macro_rules! gravity_torque_in_block").unwrap();
         assert!(
             batch.contains("= at(&q[0], part);") && batch.contains("= k(parameters[1]);") && !batch.contains("at(&parameters"),
             "{batch}"
