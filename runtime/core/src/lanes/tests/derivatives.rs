@@ -77,7 +77,7 @@ std::thread_local! {
 /// A set that counts.
 mod counting {
     use super::portable_f64x4 as set;
-    pub(super) use set::{V, array, lanes, load, positive, select, store};
+    pub(super) use set::{V, array, lanes, load, turned_from};
 
     fn count(what: usize) {
         super::COUNTED.with_borrow_mut(|counted| counted[what] += 1);

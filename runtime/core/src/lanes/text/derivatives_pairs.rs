@@ -200,7 +200,7 @@ macro_rules! narrow {
         #[inline]
         fn turn_each([a, b, c, d]: [&mut [Held]; 4]) {
             for (((a, b), c), d) in a.iter_mut().zip(b).zip(c).zip(d) {
-                let x = turned([load(a.numbers()), load(b.numbers()), load(c.numbers()), load(d.numbers())]);
+                let x = turned_from([a.numbers(), b.numbers(), c.numbers(), d.numbers()]);
                 a.write(array(x[0]));
                 b.write(array(x[1]));
                 c.write(array(x[2]));
