@@ -9,7 +9,7 @@ use std::fmt::Write;
 use std::ops::Range;
 
 use super::registers::{Plan, Step, Uses};
-use super::{chunks, flat, levels};
+use super::{chunks, flat};
 use crate::Level;
 use crate::program::Program;
 
@@ -32,9 +32,9 @@ pub(super) const MORE_REGISTERS: &str = "#[cfg(not(all(target_arch = \"x86_64\",
 /// Whether there may be a text of this function for processors with sixteen registers, in which values wait.
 pub(super) fn may_be(program: &Program, level: Level, forbid_unsafe: bool) -> bool {
     let graph = &program.graph;
-    let of_doubles = levels::computed(level) == "f64" && !level.of_two() && level.fused;
+    let of_numbers = !level.of_two() && level.fused;
     let is_long = graph.nodes().len() >= FROM && !chunks::is_long(graph, false);
-    program.groups.is_none() && of_doubles && !forbid_unsafe && is_long
+    program.groups.is_none() && of_numbers && !forbid_unsafe && is_long
 }
 
 /// Whether enough is read in such a text of what waits.
@@ -79,7 +79,8 @@ pub(super) struct Kind {
 impl Kind {
     /// Of a type with so many lanes.
     pub(super) fn of(ty: &'static str, lanes: usize) -> Self {
-        Self { ty, places: SHELF / (8 * lanes) }
+        let bytes = if ty == "f32" { size_of::<f32>() } else { size_of::<f64>() };
+        Self { ty, places: SHELF / (bytes * lanes) }
     }
 }
 
