@@ -193,18 +193,20 @@ impl<'a> Batch<'a> {
         let block = Block(Vector { graph: self.graph, signature: &self.signature });
         let length = if self.graph.nodes().len() < CUT_FROM { usize::MAX } else { LENGTH };
         let (pieces, slots) = cut(self.graph, &block, &self.places(), &[], length);
+        // As many bytes of either real.
+        let kind = Kind::of(block.value().0, AVX2_LANES);
+        let spilled = pieces.first().filter(|_| self.may_spill && pieces.len() == 1).map(|text| spilled(text, &mut [], kind) + spill::END);
+        let spilled = spilled.filter(|text| spill::pays(text, true));
         let mut write = |name: &str, pieces: &[String]| {
+            // A build may have but one of two.
+            *out += if spilled.is_some() { "#[allow(unused_macros)]\n" } else { "" };
             let _ = writeln!(out, "macro_rules! {name} {{\n    ($(#[$features:meta])?) => {{");
             self.block(out, (declared, names), &block, pieces, slots);
             *out += "    };\n}\n\n";
         };
         write(&format!("{name}_in_block"), &pieces);
-        if let ([whole], true) = (pieces.as_slice(), self.may_spill) {
-            // As many bytes of either real.
-            let text = spilled(whole, &mut [], Kind::of(block.value().0, AVX2_LANES)) + spill::END;
-            if spill::pays(&text, true) {
-                write(&self.that_spills(), &[text]);
-            }
+        if let Some(text) = &spilled {
+            write(&self.that_spills(), std::slice::from_ref(text));
         }
     }
 
