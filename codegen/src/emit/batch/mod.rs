@@ -6,6 +6,8 @@
 //!     inverse_dynamics_blocks    blocks of states, each number of a block in one cache line
 //!     mod avx512, avx2, …        the same body in each instruction set
 //! ```
+//!
+//! A long body has a second text for AVX2, which says what waits in memory while sixteen registers are full ([`super::spill`]).
 
 mod arrays;
 mod block;
