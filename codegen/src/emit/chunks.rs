@@ -9,7 +9,7 @@ use super::apart;
 use super::dialect::{Dialect, Unit, units};
 use super::flat::flat;
 use super::signature::{Place, Signature};
-use super::spill::{self, Kind, spilled};
+use super::spill::{Kind, spilled};
 use super::together::two_at_once;
 use crate::graph::{Graph, NodeId, Op};
 
@@ -141,7 +141,7 @@ pub(super) fn one_piece(out: &mut String, graph: &Graph, signature: &Signature, 
         statements = two_at_once(&statements);
     }
     if signature.spills {
-        statements = spilled(&statements, &mut [], Kind::of(dialect.value().0, graph.lanes().width)) + spill::END;
+        statements = spilled(&statements, Kind::of(dialect.value().0, graph.lanes().width));
     }
     if let Some(flat) = &apart {
         statements = apart::written(&statements, flat.numbers, flat.nests);

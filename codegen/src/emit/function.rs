@@ -83,7 +83,7 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
 
 /// The text for processors with sixteen registers, if there is one.
 fn spilled(program: &Program, signature: &Signature, context: Context) -> Option<String> {
-    if !spill::may_be(program, context.level, context.forbid_unsafe) {
+    if !spill::is_possible(program, context.level, context.forbid_unsafe) {
         return None;
     }
     let (mut out, graph, signature) = (String::new(), &program.graph, signature.that_spills());

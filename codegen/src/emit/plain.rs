@@ -7,7 +7,7 @@ use super::dialect::{Dialect, statements};
 use super::literal::{bare, operand, single};
 use super::order::{Angle, Step, order};
 use super::signature::{Place, Signature};
-use super::spill::{self, Kind, spilled};
+use super::spill::{self, Kind, spilled_before};
 use crate::graph::{Graph, Node, NodeId, Op};
 use crate::{Arithmetic, Level, Sines};
 
@@ -37,7 +37,7 @@ pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature, diale
     }
     let mut values: Vec<String> = graph.outputs.iter().map(|&o| dialect.number(o)).collect();
     let kind = Kind::of(dialect.value().0, graph.lanes().width);
-    statements(out, graph, dialect, |lines| if signature.spills { spilled(&lines, &mut values, kind) } else { lines });
+    statements(out, graph, dialect, |lines| if signature.spills { spilled_before(&lines, &mut values, kind) } else { lines });
     signature.result(out, &values);
     *out += if signature.spills { spill::END } else { "" };
 }

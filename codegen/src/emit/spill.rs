@@ -30,7 +30,7 @@ pub(super) const FEW_REGISTERS: &str = "#[cfg(all(target_arch = \"x86_64\", not(
 pub(super) const MORE_REGISTERS: &str = "#[cfg(not(all(target_arch = \"x86_64\", not(target_feature = \"avx512f\"))))]";
 
 /// Whether there may be a text of this function for processors with sixteen registers, in which values wait.
-pub(super) fn may_be(program: &Program, level: Level, forbid_unsafe: bool) -> bool {
+pub(super) fn is_possible(program: &Program, level: Level, forbid_unsafe: bool) -> bool {
     let graph = &program.graph;
     let of_numbers = !level.of_two() && level.fused;
     let is_long = graph.nodes().len() >= FROM && !chunks::is_long(graph, false);
@@ -84,8 +84,13 @@ impl Kind {
     }
 }
 
-/// The same statements, with what waits put where it waits, and read from there; `results` are what is made of values at the end. Behind them [`END`] has to stand.
-pub(super) fn spilled(statements: &str, results: &mut [String], kind: Kind) -> String {
+/// The same statements, with what waits put where it waits, and read from there.
+pub(super) fn spilled(statements: &str, kind: Kind) -> String {
+    spilled_before(statements, &mut [], kind) + END
+}
+
+/// The same with `results`, what is made of values at the end; behind that [`END`] has to stand.
+pub(super) fn spilled_before(statements: &str, results: &mut [String], kind: Kind) -> String {
     let lines: Vec<Statement> = statements.lines().map(Statement::of).collect();
     let last = results.iter().map(|result| Step { made: Vec::new(), ..Statement::of(result).step });
     let steps: Vec<Step> = lines.iter().map(|line| line.step.clone()).chain(last).collect();
@@ -276,7 +281,7 @@ mod tests {
     }
 
     fn spilled(statements: &str, results: &mut [String]) -> String {
-        super::spilled(statements, results, Kind::of("f64", 1))
+        spilled_before(statements, results, Kind::of("f64", 1))
     }
 
     #[test]
@@ -331,10 +336,10 @@ mod tests {
 
     #[test]
     fn of_lanes_fewer_lie_on_a_shelf_and_two_shelves_around_a_pointer() {
-        let text = super::spilled(&long(40).replace("f64", "V"), &mut [], Kind::of("V", 4));
+        let text = super::spilled(&long(40).replace("f64", "V"), Kind::of("V", 4));
         assert!(text.contains("struct Shelf { m0: V, m1: V, m2: V, m3: V }") && text.contains("MaybeUninit::<[Shelf; 7]>"), "{text}");
         assert!(text.contains("    let s5 = hidden(shelves.wrapping_add(5));\n    let s4 = s5.wrapping_sub(1);\n    let s6 = hidden(shelves.wrapping_add(6));\n"));
-        assert!(pays(&(text + END), true));
+        assert!(pays(&text, true));
     }
 
     /// The statements as they were before: each place stands for what was put there last, each name for the value that was loaded.

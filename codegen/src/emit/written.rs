@@ -10,7 +10,7 @@ use super::flat::flat;
 use super::literal::literal;
 use super::rows::{Cell, Column, Group, WIDTH, groups};
 use super::signature::Signature;
-use super::spill::{self, Kind, spilled};
+use super::spill::{Kind, spilled};
 use super::vector::Vector;
 use crate::graph::{Graph, NodeId, Op};
 
@@ -29,7 +29,7 @@ pub(super) fn body(out: &mut String, graph: &Graph, signature: &Signature) {
     *out += vector.beginning();
     let mut statements = Writer::of(&vector, &all).statements();
     if signature.spills {
-        statements = spilled(&statements, &mut [], Kind::of(vector.value().0, WIDTH)) + spill::END;
+        statements = spilled(&statements, Kind::of(vector.value().0, WIDTH));
     }
     *out += &flat(&statements, vector.value().0);
 }

@@ -197,7 +197,7 @@ impl<'a> Batch<'a> {
         let (pieces, slots) = cut(self.graph, &block, &self.places(), &[], length);
         // As many bytes of either real.
         let kind = Kind::of(block.value().0, AVX2_LANES);
-        let spilled = pieces.first().filter(|_| self.may_spill && pieces.len() == 1).map(|text| spilled(text, &mut [], kind) + spill::END);
+        let spilled = pieces.first().filter(|_| self.may_spill && pieces.len() == 1).map(|text| spilled(text, kind));
         let spilled = spilled.filter(|text| spill::pays(text, true));
         let mut write = |name: &str, pieces: &[String]| {
             // A build may have but one of two.
