@@ -176,10 +176,3 @@ impl Error {
         }
     }
 }
-
-/// The known name most like `found`, if one is like it at all.
-pub fn nearest<'a>(found: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
-    let score = |name: &str| strsim::jaro_winkler(found, name);
-    let best = known.into_iter().map(|n| (score(n), n)).max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (best.0 > 0.75).then(|| best.1.to_owned())
-}

@@ -28,7 +28,6 @@ mod scene;
 mod series;
 mod shaft;
 mod simulation;
-mod suggest;
 mod table;
 mod tree;
 

@@ -1,7 +1,8 @@
 //! Where everything that is wrong with a scene is gathered.
 
+use articulated_core::suggest::Suggester;
+
 use crate::error::{Kind, SceneError, SceneErrors};
-use crate::suggest::Suggester;
 use crate::tree::At;
 
 /// More than these are counted, not listed.
@@ -42,7 +43,7 @@ impl Log {
         expected: impl Into<String>,
         names: impl IntoIterator<Item = &'a str>,
     ) {
-        let nearest = self.suggester.nearest(name, names);
+        let nearest = self.suggester.nearest(name, names).map(str::to_owned);
         self.error(at, key, kind, found, expected);
         if let Some(last) = self.errors.last_mut().filter(|_| self.more == 0) {
             last.nearest = nearest;

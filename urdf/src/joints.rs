@@ -1,13 +1,14 @@
 //! The tag `<joint>`.
 
 use articulated_core::description::JointKind;
+use articulated_core::suggest::nearest;
 
 use crate::draft::{DraftJoint, DraftMimic, Reference, has_one_coordinate};
 use crate::element::Tag;
 use crate::log::{Log, Place};
 use crate::number::{self, attribute, attribute_list};
-use crate::problem::{Kind, Subject, quote};
-use crate::{Options, frame, limits, suggest, unused};
+use crate::problem::{Kind, Subject, hint, quote};
+use crate::{Options, frame, limits, unused};
 
 /// The format's six, and three of this crate's own.
 const KINDS: [JointKind; 9] = [
@@ -76,7 +77,7 @@ fn kind(tag: &Tag<'_>, log: &mut Log) -> Option<JointKind> {
     let kind = KINDS.into_iter().find(|kind| kind.name() == name);
     if kind.is_none() {
         let names = KINDS.map(JointKind::name);
-        let hint = suggest::Suggester::new().hint(name, names.into_iter());
+        let hint = hint(nearest(name, names).as_deref());
         let [before @ .., last] = names;
         let expected = format!("{} or {last}{hint}", before.join(", "));
         let place = Place { line: Some(line), ..tag.place("type") };

@@ -51,7 +51,6 @@ mod number;
 mod plain;
 mod problem;
 mod robot;
-mod suggest;
 mod tree;
 mod unused;
 mod xacro;

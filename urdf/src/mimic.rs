@@ -2,10 +2,11 @@
 
 use std::collections::HashMap;
 
+use articulated_core::suggest::Suggester;
+
 use crate::draft::{DraftJoint, DraftMimic, has_one_coordinate};
 use crate::log::{Log, Place};
-use crate::problem::{Kind, quote};
-use crate::suggest::Suggester;
+use crate::problem::{Kind, hint, quote};
 use crate::tree::List;
 
 /// For each joint, the joint that it follows.
@@ -14,7 +15,7 @@ pub(crate) fn leaders(joints: &[DraftJoint], log: &mut Log) -> Vec<Option<usize>
     for (i, joint) in joints.iter().enumerate() {
         joint.name.as_deref().into_iter().for_each(|name| *index.entry(name).or_insert(i) = i);
     }
-    let mut suggester = Suggester::new();
+    let mut suggester = Suggester::default();
     let mut leaders = Vec::with_capacity(joints.len());
     for follower in joints {
         let leader = follower.mimic.as_ref().and_then(|mimic| {
@@ -56,7 +57,7 @@ fn report_leader(follower: &DraftJoint, mimic: &DraftMimic, leader: &DraftJoint,
 
 fn report_unknown(follower: &DraftJoint, mimic: &DraftMimic, joints: &[DraftJoint], suggester: &mut Suggester, log: &mut Log) {
     let name = &mimic.leader.name;
-    let hint = suggester.hint(name, joints.iter().filter_map(|j| j.name.as_deref()));
+    let hint = hint(suggester.nearest(name, joints.iter().filter_map(|j| j.name.as_deref())));
     let found = format!("{}, which is not a joint of this file", quote(name));
     error(follower, mimic, Kind::UnknownLeader, found, &format!("the name of a joint{hint}"), log);
 }

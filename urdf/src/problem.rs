@@ -181,6 +181,11 @@ impl fmt::Display for Subject {
     }
 }
 
+/// ` (did you mean "upper"?)`, or nothing.
+pub(crate) fn hint(meant: Option<&str>) -> String {
+    meant.map(|name| format!(" (did you mean {}?)", quote(name))).unwrap_or_default()
+}
+
 /// `text` in quotation marks, on one line, cut where it gets long.
 pub(crate) fn quote(text: &str) -> String {
     const MOST: usize = 80;

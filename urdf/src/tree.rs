@@ -2,10 +2,11 @@
 
 use std::collections::HashMap;
 
+use articulated_core::suggest::Suggester;
+
 use crate::draft::{Draft, DraftJoint, Reference};
 use crate::log::{Log, Place};
-use crate::problem::{Kind, Subject, quote};
-use crate::suggest::Suggester;
+use crate::problem::{Kind, Subject, hint, quote};
 
 /// More names than these are counted, not listed.
 const MOST_NAMES: usize = 8;
@@ -63,7 +64,7 @@ struct Ends {
 
 impl Ends {
     fn of(draft: &Draft, links: &Names<'_>, log: &mut Log) -> Self {
-        let mut look = LookUp { draft, links, suggester: Suggester::new() };
+        let mut look = LookUp { draft, links, suggester: Suggester::default() };
         let mut ends = Self { parent: Vec::new(), child: Vec::new(), complete: true };
         for joint in &draft.joints {
             ends.parent.push(look.up(joint, joint.parent.as_ref(), "parent", log));
@@ -86,7 +87,7 @@ impl LookUp<'_> {
         let index = self.links.get(name.as_str()).copied();
         if index.is_none() {
             let names = self.draft.links.iter().filter_map(|l| l.name.as_deref());
-            let hint = self.suggester.hint(name, names);
+            let hint = hint(self.suggester.nearest(name, names));
             let subject = joint.subject();
             let place = Place { line: Some(*line), subject: &subject, field };
             let found = format!("{}, which is not a link of this file", quote(name));

@@ -2,11 +2,12 @@
 
 use std::fmt;
 
+use articulated_core::suggest::Suggester;
+
 use crate::element::Tag;
 use crate::log::{Log, Place};
 use crate::markup;
 use crate::problem::{Kind, Subject};
-use crate::suggest::nearest;
 
 /// Content of the file that is not used.
 #[derive(Clone, Debug, PartialEq)]
@@ -93,7 +94,7 @@ fn rest_of_attributes(tag: &Tag<'_>, used: &[&str], log: &mut Log) {
 
 fn unknown(place: &Place<'_>, what: String, name: &str, used: &[&str], log: &mut Log) {
     log.unused_at(place.line, place.subject, what, "not known");
-    if let Some(near) = nearest(name, used.iter().copied()) {
+    if let Some(near) = Suggester::default().misspelt(name, used.iter().copied()) {
         log.warning(place, Kind::Misspelt, "what is not known and not used", format!("{near}, perhaps"));
     }
 }

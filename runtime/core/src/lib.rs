@@ -36,6 +36,8 @@ pub mod level;
 pub mod model;
 #[cfg(feature = "alloc")]
 pub mod monitor;
+#[cfg(feature = "alloc")]
+pub mod suggest;
 
 pub use nalgebra;
 pub use scalar::Scalar;

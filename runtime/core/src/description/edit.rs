@@ -6,9 +6,10 @@ use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
-use super::{Description, EditError, Inertial, Joint, JointKind, Link, Mimic, Origin, nearest};
+use super::{Description, EditError, Inertial, Joint, JointKind, Link, Mimic, Origin};
 use crate::model::FLOATING_BASE;
 use crate::scalar::Scalar;
+use crate::suggest::nearest;
 
 /// A rigid load on a link.
 #[derive(Clone, Debug, Default, PartialEq)]

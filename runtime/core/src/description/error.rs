@@ -1,7 +1,6 @@
 //! Why an edit was refused.
 
 use alloc::string::String;
-use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt;
 
@@ -181,48 +180,9 @@ fn taken(f: &mut fmt::Formatter<'_>, names: &[String]) -> fmt::Result {
     }
 }
 
-/// Longer names are not compared.
-const LONGEST: usize = 64;
-
-/// The name that differs least from `wrong`, if by a third of its letters at most.
-pub(crate) fn nearest<'a>(wrong: &str, names: impl Iterator<Item = &'a str>) -> Option<String> {
-    let letters: Vec<char> = wrong.chars().take(LONGEST).collect();
-    let most = (letters.len() / 3).max(1);
-    let near = names.map(|name| (distance(&letters, name), name)).filter(|(d, _)| *d <= most);
-    near.min_by_key(|(d, _)| *d).map(|(_, name)| name.into())
-}
-
-/// How many letters to insert, take out, change, or swap with the next, whatever their case (optimal string alignment).
-fn distance(a: &[char], b: &str) -> usize {
-    let same = |a: char, b: char| a.to_lowercase().eq(b.to_lowercase());
-    let b: Vec<char> = b.chars().take(LONGEST + 1).collect();
-    let (mut before, mut row): (Vec<usize>, Vec<usize>) = (Vec::new(), (0..=a.len()).collect());
-    for i in 0..b.len() {
-        let mut next = vec![i + 1];
-        for j in 0..a.len() {
-            let changed = row[j] + usize::from(!same(a[j], b[i]));
-            let swapped = i > 0 && j > 0 && same(a[j], b[i - 1]) && same(a[j - 1], b[i]);
-            let swapped = if swapped { before[j - 1] + 1 } else { changed };
-            next.push(changed.min(swapped).min(row[j + 1] + 1).min(next[j] + 1));
-        }
-        (before, row) = (row, next);
-    }
-    row[a.len()]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn near_names_are_found_and_far_ones_are_not() {
-        let near = |wrong| nearest(wrong, ["shoulder", "elbow", "wrist_1"].into_iter());
-        assert_eq!(near("elbo").as_deref(), Some("elbow"));
-        assert_eq!(near("Wrist1").as_deref(), Some("wrist_1"));
-        assert_eq!(nearest("plam", ["arm", "palm"].into_iter()).as_deref(), Some("palm"));
-        assert_eq!(near("hip"), None);
-        assert_eq!(nearest("x", core::iter::empty()), None);
-    }
 
     #[test]
     fn a_message_names_the_joint_and_what_would_be_right() {

@@ -14,7 +14,6 @@ use alloc::vec::Vec;
 
 pub use edit::Payload;
 pub use error::EditError;
-pub(crate) use error::nearest;
 pub use shaft::Shaft;
 
 /// A tree of links and joints. Indices into `links` and `joints` follow the order of the file.

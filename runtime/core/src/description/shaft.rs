@@ -4,9 +4,10 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use super::{Description, EditError, Inertial, Joint, JointKind, Link, Origin, nearest};
+use super::{Description, EditError, Inertial, Joint, JointKind, Link, Origin};
 use crate::effect::{Applied, EffectId};
 use crate::scalar::Scalar;
+use crate::suggest::nearest;
 
 /// A fixed joint whose rigid offset bends: a straight uniform shaft, the same in both directions, that neither twists nor stretches.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -7,10 +7,10 @@ use core::fmt;
 use nalgebra::{Matrix6, Vector3};
 
 use super::{Applied, BodyEffect, Effect, EffectId, Field, JointEffect, On};
-use crate::description::nearest;
 use crate::joint::Joint;
 use crate::model::Model;
 use crate::spatial::{Placement, from_rpy};
+use crate::suggest::nearest;
 
 /// Why an effect cannot be had. The first that is found of each effect that was asked for.
 #[derive(Clone, Debug, PartialEq)]

@@ -21,10 +21,11 @@ pub use limbs::Limbs;
 pub use unturned::Unturned;
 
 use crate::Scalar;
-use crate::description::{EditError, JointKind, Limit, nearest};
+use crate::description::{EditError, JointKind, Limit};
 use crate::effect::Effects;
 use crate::joint::{Coordinates, Joint};
 use crate::spatial::{Placement, Reference, SpatialInertia};
+use crate::suggest::nearest;
 
 /// The name under which the joint of a floating base is listed.
 pub const FLOATING_BASE: &str = "__floating_base__";
