@@ -2,7 +2,7 @@
 
 articulated::robot! {
     pub mod broken {
-        urdf = "ui/urdf/broken.urdf",
+        urdf = "urdf/broken.urdf",
     }
 }
 

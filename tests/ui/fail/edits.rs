@@ -2,7 +2,7 @@
 
 articulated::robot! {
     pub mod arm {
-        urdf = "ui/urdf/three.urdf",
+        urdf = "urdf/three.urdf",
         frames = [tol, fore, "fore"],
         wrenches_in = base,
         lock = { elbo = 0.5, wrist = [0.0, 1.0], yaw = 0.1, "yaw" = 0.2 },
@@ -12,16 +12,16 @@ articulated::robot! {
 
 articulated::robot! {
     pub mod with_nothing {
-        urdf = "ui/urdf/three.urdf",
-        append = { urdf = "ui/urdf/none.urdf", at = tool },
+        urdf = "urdf/three.urdf",
+        append = { urdf = "urdf/none.urdf", at = tool },
         lock = { close = 0.0 },
     }
 }
 
 articulated::robot! {
     pub mod with_itself {
-        urdf = "ui/urdf/three.urdf",
-        append = [{ urdf = "ui/urdf/three.urdf", at = tool }, { urdf = "ui/urdf/gripper.urdf", at = toll }, { urdf = "ui/urdf/broken.urdf", at = tool }],
+        urdf = "urdf/three.urdf",
+        append = [{ urdf = "urdf/three.urdf", at = tool }, { urdf = "urdf/gripper.urdf", at = toll }, { urdf = "urdf/broken.urdf", at = tool }],
         lock = { close = 0.0 },
         payload = { link = fore, mass = 1, inertia = [1, 0, 0, 1, 0, 3] },
     }
@@ -29,8 +29,8 @@ articulated::robot! {
 
 articulated::robot! {
     pub mod no_table {
-        urdf = "ui/urdf/three.urdf",
-        append = "ui/urdf/gripper.urdf",
+        urdf = "urdf/three.urdf",
+        append = "urdf/gripper.urdf",
         lock = elbow,
         frames = tool,
         payload = { "link" = tool },

@@ -2,7 +2,7 @@
 
 articulated::robot! {
     pub mod arm {
-        urdf = "ui/urdf/amr.urdf",
+        urdf = "urdf/amr.urdf",
     }
 }
 

@@ -2,7 +2,7 @@
 
 articulated::robot! {
     pub mod clash {
-        urdf = "ui/urdf/clash.urdf",
+        urdf = "urdf/clash.urdf",
     }
 }
 

@@ -1,7 +1,7 @@
 //! Keys without a module around them.
 
 articulated::robot! {
-    urdf = "ui/urdf/arm.urdf",
+    urdf = "urdf/arm.urdf",
 }
 
 fn main() {}

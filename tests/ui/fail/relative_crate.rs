@@ -2,7 +2,7 @@
 
 articulated::robot! {
     pub mod arm {
-        urdf = "ui/urdf/arm.urdf",
+        urdf = "urdf/arm.urdf",
         crate = self::articulated,
     }
 }

@@ -1,24 +1,24 @@
 //! What is wrong with scenes, at the scene; what is wrong with effects, at their words.
 
 articulated::robot! {
-    mod wrong { scene = "ui/scenes/wrong.toml" }
+    mod wrong { scene = "scenes/wrong.toml" }
 }
 
 articulated::robot! {
-    mod not_there { scene = "ui/scenes/there_is_none.toml" }
+    mod not_there { scene = "scenes/there_is_none.toml" }
 }
 
 articulated::robot! {
-    mod bundled { scene = "ui/scenes/other.toml" }
+    mod bundled { scene = "scenes/other.toml" }
 }
 
 articulated::robot! {
-    mod other { scene = "ui/scenes/other.toml", urdf = "ui/urdf/three.urdf" }
+    mod other { scene = "scenes/other.toml", urdf = "urdf/three.urdf" }
 }
 
 articulated::robot! {
     mod words {
-        urdf = "ui/urdf/three.urdf",
+        urdf = "urdf/three.urdf",
         effects = {
             damping = { elbow = -1.0 },
             frction = { elbow = 1.0 },
@@ -29,7 +29,7 @@ articulated::robot! {
 
 articulated::robot! {
     mod names {
-        urdf = "ui/urdf/three.urdf",
+        urdf = "urdf/three.urdf",
         effects = { damping = { wirst = 1.0 }, drag = { base = 1.0 } },
         functions = [no_function],
     }

@@ -1,7 +1,7 @@
 // A robot with a joint that has no inertia of its own has inverse but no forward dynamics.
 articulated::robot! {
     mod arm {
-        urdf = "ui/urdf/massless.urdf",
+        urdf = "urdf/massless.urdf",
         functions = [inverse_dynamics, forward_dynamics],
     }
 }

@@ -2,10 +2,10 @@
 
 articulated::robot! {
     pub mod arm {
-        urdf = "ui/urdf/arm.urdf",
+        urdf = "urdf/arm.urdf",
     }
     pub mod other {
-        urdf = "ui/urdf/arm.urdf",
+        urdf = "urdf/arm.urdf",
     }
 }
 

@@ -2,7 +2,7 @@
 
 articulated::robot! {
     pub mod arm {
-        urdf = "ui/urdf/arm.urdf",
+        urdf = "urdf/arm.urdf",
         functions = [placements, inverse_dynamic],
     }
 }

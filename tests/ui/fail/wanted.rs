@@ -2,7 +2,7 @@
 
 articulated::robot! {
     mod arm {
-        urdf = "ui/urdf/arm.urdf",
+        urdf = "urdf/arm.urdf",
         functions = [
             mass_matrix,
             mass_matrix + placements,

@@ -2,7 +2,7 @@
 
 articulated::robot! {
     pub mod arm {
-        urdf = "ui/urdf/arm.urdf",
+        urdf = "urdf/arm.urdf",
         gravity = [0.0, -9.81],
     }
 }

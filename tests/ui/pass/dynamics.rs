@@ -4,7 +4,7 @@ use articulated::{Base, Dynamics, FunctionError};
 
 articulated::robot! {
     mod arm {
-        urdf = "ui/urdf/arm.urdf",
+        urdf = "urdf/arm.urdf",
         functions = [inverse_dynamics],
     }
 }
@@ -16,7 +16,7 @@ fn torque<R: Dynamics>(robot: &R) -> [f64; 2] {
 }
 
 fn main() {
-    let loaded = articulated::load(concat!(env!("CARGO_MANIFEST_DIR"), "/ui/urdf/arm.urdf"), Base::Fixed).unwrap();
+    let loaded = articulated::load(concat!(env!("CARGO_MANIFEST_DIR"), "/urdf/arm.urdf"), Base::Fixed).unwrap();
     let (generated, generic) = (torque(&arm::Robot), torque(&loaded));
     assert!(generated.iter().zip(generic).all(|(a, b)| (a - b).abs() < 1e-12), "{generated:?} {generic:?}");
     assert_eq!((arm::Robot.name(), arm::Robot.shape()), (Dynamics::name(&loaded), Dynamics::shape(&loaded)));

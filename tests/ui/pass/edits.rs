@@ -2,13 +2,13 @@
 
 articulated::robot! {
     mod arm {
-        urdf = "ui/urdf/three.urdf",
+        urdf = "urdf/three.urdf",
         functions = [placements, gravity_torque],
         frames = [grip_finger, "grip_left thumb", load],
         wrenches_in = world_aligned,
         lock = { wrist = -0.5 },
         payload = [{ link = grip_palm, mass = 0.7, center_of_mass = [0.0, 0.0, 0.05], name = load }, { link = "tool", mass = 1 }],
-        append = { urdf = "ui/urdf/gripper.urdf", at = tool, prefix = "grip_", xyz = [0, 0, 0.1], rpy = [0.0, 0.0, 1.0] },
+        append = { urdf = "urdf/gripper.urdf", at = tool, prefix = "grip_", xyz = [0, 0, 0.1], rpy = [0.0, 0.0, 1.0] },
     }
 }
 

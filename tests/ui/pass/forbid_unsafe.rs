@@ -3,7 +3,7 @@
 
 articulated::robot! {
     mod arm {
-        urdf = "ui/urdf/three.urdf",
+        urdf = "urdf/three.urdf",
         forbid_unsafe = true,
     }
 }

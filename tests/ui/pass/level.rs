@@ -2,7 +2,7 @@
 
 articulated::robot! {
     mod single {
-        urdf = "ui/urdf/arm.urdf",
+        urdf = "urdf/arm.urdf",
         functions = [inverse_dynamics],
         level = f32 + fast_7,
     }
@@ -10,7 +10,7 @@ articulated::robot! {
 
 articulated::robot! {
     mod exact {
-        urdf = "ui/urdf/arm.urdf",
+        urdf = "urdf/arm.urdf",
         functions = [inverse_dynamics],
         level = double_double + no_fma,
     }

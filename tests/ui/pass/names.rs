@@ -2,7 +2,7 @@
 
 articulated::robot! {
     pub mod names {
-        urdf = "ui/urdf/names.urdf",
+        urdf = "urdf/names.urdf",
     }
 }
 

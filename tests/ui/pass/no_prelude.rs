@@ -9,7 +9,7 @@ mod articulated {}
 ::articulated::robot! {
     /// The arm.
     pub mod arm {
-        urdf = "ui/urdf/arm.urdf",
+        urdf = "urdf/arm.urdf",
         base = floating,
         functions = [placements, inverse_dynamics, bias_forces, gravity_torque],
         batch = [f64],
@@ -18,7 +18,7 @@ mod articulated {}
 
 ::articulated::robot! {
     mod alone {
-        urdf = "ui/urdf/arm.urdf",
+        urdf = "urdf/arm.urdf",
         standalone = true,
     }
 }

@@ -8,7 +8,7 @@ mod parts {
 
 articulated::robot! {
     mod arm {
-        urdf = "ui/urdf/arm.urdf",
+        urdf = "urdf/arm.urdf",
         crate = crate::parts::dynamics,
     }
 }

@@ -2,7 +2,7 @@
 
 articulated::robot! {
     mod clash {
-        urdf = "ui/urdf/clash.urdf",
+        urdf = "urdf/clash.urdf",
         rename = { "a-b" = A_MINUS_B, "j-1" = J_MINUS_1 },
     }
 }

@@ -2,12 +2,12 @@
 #![deny(warnings)]
 
 articulated::robot! {
-    mod with_scene { scene = "ui/scenes/three.toml" }
+    mod with_scene { scene = "scenes/three.toml" }
 }
 
 articulated::robot! {
     mod with_effects {
-        urdf = "ui/urdf/three.urdf",
+        urdf = "urdf/three.urdf",
         functions = [effect_forces, forward_dynamics],
         effects = { damping = { "*" = 0.5, wrist = off }, spring = { elbow = { stiffness = 2.0, rest = -0.25 } } },
     }

@@ -1,9 +1,9 @@
 //! Two robots in one crate, one of them twice, one in a function, one from a macro of the user's.
 
-articulated::robot! { pub mod arm { urdf = "ui/urdf/arm.urdf" } }
+articulated::robot! { pub mod arm { urdf = "urdf/arm.urdf" } }
 
 mod inner {
-    articulated::robot! { pub(crate) mod arm { urdf = "ui/urdf/arm.urdf", base = floating } }
+    articulated::robot! { pub(crate) mod arm { urdf = "urdf/arm.urdf", base = floating } }
 }
 
 macro_rules! robot {
@@ -11,10 +11,10 @@ macro_rules! robot {
         articulated::robot! { mod $name { urdf = $urdf, functions = [] } }
     };
 }
-robot!(names, "ui/urdf/names.urdf");
+robot!(names, "urdf/names.urdf");
 
 fn main() {
-    articulated::robot! { mod odd { urdf = "ui/urdf/odd.urdf", standalone = true } }
+    articulated::robot! { mod odd { urdf = "urdf/odd.urdf", standalone = true } }
     assert_eq!((arm::NQ, inner::arm::NQ, names::NQ, odd::NQ), (2, 9, 2, 1));
     assert_eq!(odd::WARNINGS.len(), 1);
     let placements = odd::placements(&[0.0]);

@@ -4,7 +4,7 @@
 articulated::robot! {
     /// Two links on hinges.
     pub mod arm {
-        urdf = "ui/urdf/arm.urdf",
+        urdf = "urdf/arm.urdf",
         gravity = [0, 0, -10],
         functions = [placements, inverse_dynamics, bias_forces, gravity_torque,],
         snap_angles = 1e-9,

@@ -1,0 +1,1 @@
+//! Cases for the macro `robot!`: `pass` compiles and runs, `fail` says what stands beside it.
