@@ -1,5 +1,6 @@
 //! `[control]`: what drives the joints.
 
+use articulated_core::effect::Range;
 use articulated_core::model::{FLOATING_BASE, Model};
 
 use crate::error::{Kind, SceneErrors, quote};
@@ -282,9 +283,9 @@ fn rows(spot: &Spot<'_>, log: &mut Log) -> Vec<Vec<f64>> {
 
 fn per_joint(spot: &Spot<'_>, least: f64, log: &mut Log) -> PerJoint {
     match &spot.node.value {
-        Value::Number(_) => PerJoint::Same(spot.within(log, least, false).unwrap_or_default()),
+        Value::Number(_) => PerJoint::Same(spot.within(log, Range::from(least)).unwrap_or_default()),
         Value::Table(_) => {
-            let rest = spot.get("*").map_or(Some(0.0), |all| all.within(log, least, false)).unwrap_or_default();
+            let rest = spot.get("*").map_or(Some(0.0), |all| all.within(log, Range::from(least))).unwrap_or_default();
             let Coordinates::Named(mut named) = values(spot, log) else { return PerJoint::default() };
             named.retain(|one| one.joint != "*");
             PerJoint::Named { rest, named: Coordinates::Named(named) }

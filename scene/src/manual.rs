@@ -69,13 +69,12 @@ fn fields() -> String {
                 Some(x) if x.iter().all(|x| *x == 0.0) => "zeros".to_owned(),
                 Some(x) => format!("{x:?}"),
             };
-            let least = match (field.at_least == f64::NEG_INFINITY, field.strictly) {
-                (true, _) => String::new(),
-                (_, true) => format!(", above {}", field.at_least),
-                _ => format!(", at least {}", field.at_least),
-            };
+            let bounds = Some(field.range.bounds()).filter(|bounds| !bounds.is_empty());
+            let rule = field.rule.map(|rule| rule.expected.to_owned());
+            let has_to_be: String = bounds.into_iter().chain(rule).map(|what| format!(", {what}")).collect();
             let unit = field.unit.replace('|', " or ");
-            let _ = writeln!(out, "| {} | `{}` | {} | {unit} | {default} | {}{least} |", effect.name, field.name, field.len, field.what);
+            let _ =
+                writeln!(out, "| {} | `{}` | {} | {unit} | {default} | {}{has_to_be} |", effect.name, field.name, field.len, field.what);
         }
     }
     out

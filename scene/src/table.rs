@@ -1,5 +1,7 @@
 //! Tables of keys, one row each, from which scenes are read and their documentation is made; and the types of values.
 
+use articulated_core::effect::Range;
+
 use crate::error::{Kind, bare, quote};
 use crate::log::Log;
 use crate::tree::{At, Entry, Node, Value};
@@ -90,34 +92,29 @@ impl<'a> Spot<'a> {
 
     /// A finite number.
     pub(crate) fn number(&self, log: &mut Log) -> Option<f64> {
-        self.within(log, f64::NEG_INFINITY, false)
+        self.within(log, Range::ALL)
     }
 
     /// A finite number, at least zero.
     pub(crate) fn not_negative(&self, log: &mut Log) -> Option<f64> {
-        self.within(log, 0.0, false)
+        self.within(log, Range::NOT_NEGATIVE)
     }
 
     /// A finite number above zero.
     pub(crate) fn positive(&self, log: &mut Log) -> Option<f64> {
-        self.within(log, 0.0, true)
+        self.within(log, Range::POSITIVE)
     }
 
-    /// A finite number, at least `least`, or above it.
-    pub(crate) fn within(&self, log: &mut Log, least: f64, strictly: bool) -> Option<f64> {
-        let expected = || match (least == f64::NEG_INFINITY, strictly) {
-            (true, _) => "a finite number".to_owned(),
-            (_, true) => format!("a finite number above {least}"),
-            _ => format!("a finite number, at least {least}"),
-        };
+    /// A number of the range.
+    pub(crate) fn within(&self, log: &mut Log, range: Range) -> Option<f64> {
         match self.node.value {
-            Value::Number(x) if x.is_finite() && (x > least || (x == least && !strictly)) => Some(x),
+            Value::Number(x) if range.has(x) => Some(x),
             Value::Number(x) => {
-                self.bad(log, format!("{x:?}"), expected());
+                self.bad(log, format!("{x:?}"), range.to_string());
                 None
             }
             _ => {
-                self.wrong(log, expected());
+                self.wrong(log, range.to_string());
                 None
             }
         }

@@ -175,7 +175,7 @@ fn table(row: &'static Effect, spot: &Spot<'_>, log: &mut Log) -> Numbers {
         }
     }
     if log.count() == before {
-        check(row.id, &numbers, spot, log);
+        check(row, &numbers, spot, log);
     }
     numbers
 }
@@ -215,39 +215,18 @@ fn field_of(field: &Field, spot: &Spot<'_>, log: &mut Log) -> Option<Vec<f64>> {
 }
 
 fn number(field: &Field, spot: &Spot<'_>, log: &mut Log) -> Option<f64> {
-    spot.within(log, field.at_least, field.strictly)
+    spot.within(log, field.range)
 }
 
-/// What numbers have to be together, as far as they are given.
-fn check(effect: EffectId, numbers: &Numbers, spot: &Spot<'_>, log: &mut Log) {
-    let first = |name: &str| {
-        let index = effect.row().fields.iter().position(|f| f.name == name)?;
-        numbers.fields[index].as_deref()
+/// What numbers have to be together. Where one is still to come, from the URDF or from what is said of all, the model looks at it.
+fn check(row: &'static Effect, numbers: &Numbers, spot: &Spot<'_>, log: &mut Log) {
+    let given = |(i, field): (usize, &'static Field)| numbers.fields[i].as_deref().or(field.default);
+    let Some(all) = row.fields.iter().enumerate().map(given).collect::<Option<Vec<&[f64]>>>().filter(|_| !numbers.from_urdf) else {
+        return;
     };
-    let one = |name: &str| first(name).and_then(|x| x.first().copied());
-    match effect {
-        EffectId::limit => {
-            if let (Some(lower), Some(upper)) = (one("lower"), one("upper"))
-                && lower >= upper
-            {
-                let found = format!("lower {lower:?} and upper {upper:?}");
-                spot.get("upper").unwrap_or(Spot { node: spot.node, key: spot.key.clone(), at: spot.at }).clash(
-                    log,
-                    found,
-                    "a lower bound below the upper one",
-                );
-            }
-        }
-        EffectId::motor => {
-            if let (Some(x), Some(spot)) = (one("efficiency").filter(|x| *x > 1.0), spot.get("efficiency")) {
-                spot.bad(log, format!("{x:?}"), "a number above 0, at most 1");
-            }
-        }
-        EffectId::contact => {
-            if let (Some([0.0, 0.0, 0.0]), Some(spot)) = (first("normal"), spot.get("normal")) {
-                spot.bad(log, "no direction", "three numbers that are not all 0");
-            }
-        }
-        _ => {}
-    }
+    let all = all.concat();
+    let Some((field, own)) = row.broken(&all) else { return };
+    let expected = field.rule.map_or("", |rule| rule.expected);
+    let at = spot.get(field.name).unwrap_or(Spot { node: spot.node, key: spot.key.clone(), at: spot.at });
+    at.clash(log, own.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(", "), expected);
 }

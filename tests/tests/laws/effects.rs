@@ -195,7 +195,7 @@ fn what_is_left_out_does_nothing_and_what_stays_does_something() {
             start += field.len;
             // What may not be zero is no question, nor is where a stop or a plane is.
             let place = ["lower", "upper", "normal", "height"].contains(&field.name);
-            if field.strictly || place { full.clone() } else { some }
+            if field.range.strictly || place { full.clone() } else { some }
         });
         for parameters in each.chain([full.clone(), vec![0.0; full.len()]]).filter(|p| row.id != EffectId::motor || p[0] > 0.0) {
             let mut model = arm.clone();

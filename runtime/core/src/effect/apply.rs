@@ -4,9 +4,9 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 use core::fmt;
 
-use nalgebra::{Matrix6, Vector3};
+use nalgebra::Vector3;
 
-use super::{Applied, BodyEffect, Effect, EffectId, Field, JointEffect, On};
+use super::{Applied, BodyEffect, Effect, EffectId, JointEffect, On};
 use crate::joint::Joint;
 use crate::model::Model;
 use crate::spatial::{Placement, from_rpy};
@@ -48,12 +48,12 @@ pub enum Fault {
         /// How many there must be.
         expected: usize,
     },
-    /// A number that is not finite, or less than it may be.
+    /// Numbers that are not finite, out of their range, or that break the rule of their field.
     Number {
         /// The parameter's name.
         field: &'static str,
-        /// The number.
-        found: f64,
+        /// The number, or all of the field.
+        found: Vec<f64>,
         /// What it must be.
         expected: String,
     },
@@ -75,7 +75,11 @@ impl fmt::Display for EffectError {
                 write!(f, "the law needs a coordinate for each degree of freedom, which a ball or a free joint does not have")
             }
             Fault::Length { found, expected } => write!(f, "found {found} parameters, expected {expected}"),
-            Fault::Number { field, found, expected } => write!(f, "{field}: found {found}, expected {expected}"),
+            Fault::Number { field, found, expected } => {
+                write!(f, "{field}: found ")?;
+                found.iter().enumerate().try_for_each(|(k, x)| write!(f, "{}{x}", if k > 0 { ", " } else { "" }))?;
+                write!(f, ", expected {expected}")
+            }
         }
     }
 }
@@ -184,50 +188,21 @@ fn check(one: &Applied) -> Result<(), Fault> {
     if p.len() != row.len() {
         return Err(Fault::Length { found: p.len(), expected: row.len() });
     }
+    let wrong = |field: &'static str, found: &[f64], expected: String| Err(Fault::Number { field, found: found.to_vec(), expected });
     let mut rest = p.as_slice();
     for field in row.fields {
         let (own, others) = rest.split_at(field.len);
-        own.iter().try_for_each(|x| within(field, *x))?;
+        if let Some(x) = own.iter().find(|x| !field.range.has(**x)) {
+            return wrong(field.name, &[*x], field.range.to_string());
+        }
         rest = others;
     }
-    let wrong = |field: &'static str, found: f64, expected: &str| Err(Fault::Number { field, found, expected: expected.to_string() });
-    let all = one.at.xyz.iter().chain(&one.at.rpy);
-    if let Some(x) = all.copied().find(|x| !x.is_finite()) {
-        return wrong("xyz or rpy", x, "finite numbers");
+    let mut frame = one.at.xyz.iter().chain(&one.at.rpy);
+    if let Some(x) = frame.find(|x| !x.is_finite()) {
+        return wrong("xyz or rpy", &[*x], "finite numbers".into());
     }
-    match one.effect {
-        EffectId::limit if p[0] >= p[1] => wrong("upper", p[1], &alloc::format!("a number above the lower bound, {}", p[0])),
-        EffectId::motor if p[3] > 1.0 => wrong("efficiency", p[3], "at most 1"),
-        EffectId::contact if p[start(row, "normal")..][..3] == [0.0; 3] => wrong("normal", 0.0, "a direction"),
-        EffectId::added_mass => match negative_eigenvalue(p) {
-            Some(x) => wrong("an eigenvalue of angular, linear and coupling", x, "a positive semidefinite matrix"),
-            None => Ok(()),
-        },
-        _ => Ok(()),
+    match row.broken(p).and_then(|(field, own)| Some((field.name, own, field.rule?.expected))) {
+        Some((field, own, expected)) => wrong(field, own, expected.into()),
+        None => Ok(()),
     }
-}
-
-fn within(field: &Field, x: f64) -> Result<(), Fault> {
-    let least = field.at_least;
-    if x.is_finite() && (x > least || (x == least && !field.strictly)) {
-        return Ok(());
-    }
-    let expected = match (least == f64::NEG_INFINITY, field.strictly) {
-        (true, _) => "a finite number".to_string(),
-        (_, true) => alloc::format!("a finite number above {least}"),
-        _ => alloc::format!("a finite number, at least {least}"),
-    };
-    Err(Fault::Number { field: field.name, found: x, expected })
-}
-
-/// Whether no motion has less than no energy, but for rounding of written numbers.
-fn negative_eigenvalue(p: &[f64]) -> Option<f64> {
-    let inertia = super::added_mass::inertia(p);
-    let mut matrix = Matrix6::zeros();
-    matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&inertia.angular);
-    matrix.fixed_view_mut::<3, 3>(0, 3).copy_from(&inertia.coupling);
-    matrix.fixed_view_mut::<3, 3>(3, 0).copy_from(&inertia.coupling.transpose());
-    matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&inertia.linear);
-    let values = matrix.symmetric_eigenvalues();
-    Some(values.min()).filter(|least| *least < -1e-9 * values.amax())
 }

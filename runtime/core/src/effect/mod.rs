@@ -16,6 +16,7 @@ mod drag;
 mod friction;
 mod limit;
 mod motor;
+mod range;
 mod spring;
 mod station;
 
@@ -24,6 +25,7 @@ use alloc::vec::Vec;
 use core::marker::PhantomData;
 
 pub use apply::{EffectError, EffectErrors, Fault};
+pub use range::{Range, Rule};
 pub use station::Station;
 
 use crate::Scalar;
@@ -41,7 +43,7 @@ pub enum On {
 }
 
 /// A parameter of an effect: one number or several.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Field {
     /// Its key in scenes.
     pub name: &'static str,
@@ -51,10 +53,10 @@ pub struct Field {
     pub unit: &'static str,
     /// What it is where a scene does not say, as many numbers as it has; `None`: a scene must say.
     pub default: Option<&'static [f64]>,
-    /// No number may be less.
-    pub at_least: f64,
-    /// Nor be equal to that.
-    pub strictly: bool,
+    /// Where each of its numbers has to be.
+    pub range: Range,
+    /// What else has to hold.
+    pub rule: Option<Rule>,
     /// What zeros in it make of the effect.
     pub zeros: Zeros,
     /// What it means.
@@ -75,16 +77,25 @@ pub enum Zeros {
 impl Field {
     /// Any number, to be given.
     const fn number(name: &'static str, unit: &'static str, what: &'static str) -> Self {
-        Self { name, len: 1, unit, default: None, at_least: f64::NEG_INFINITY, strictly: false, zeros: Zeros::Count, what }
+        Self { name, len: 1, unit, default: None, range: Range::ALL, rule: None, zeros: Zeros::Count, what }
     }
 
     /// Not negative.
     const fn at_least_zero(self) -> Self {
-        Self { at_least: 0.0, ..self }
+        Self { range: Range::NOT_NEGATIVE, ..self }
     }
 
     const fn positive(self) -> Self {
-        Self { at_least: 0.0, strictly: true, ..self }
+        Self { range: Range::POSITIVE, ..self }
+    }
+
+    const fn at_most(self, at_most: f64) -> Self {
+        Self { range: Range { at_most, ..self.range }, ..self }
+    }
+
+    /// What has to hold of all numbers of the effect, and how to say that of this field.
+    const fn rule(self, holds: fn(&[f64]) -> bool, expected: &'static str) -> Self {
+        Self { rule: Some(Rule { holds, expected }), ..self }
     }
 
     const fn factor(self) -> Self {
@@ -130,6 +141,16 @@ impl Effect {
     /// Whether it has none.
     pub fn is_empty(&self) -> bool {
         self.fields.is_empty()
+    }
+
+    /// The first field whose rule these numbers, as many as the effect has, do not keep, with its part of them.
+    pub fn broken<'a>(&self, parameters: &'a [f64]) -> Option<(&'static Field, &'a [f64])> {
+        let mut rest = parameters;
+        self.fields.iter().find_map(|field| {
+            let (own, others) = rest.split_at(field.len);
+            rest = others;
+            field.rule.filter(|rule| !(rule.holds)(parameters)).map(|_| (field, own))
+        })
     }
 
     /// Whether these numbers, as many as it has, make nothing of it: then it is left out.
