@@ -1,5 +1,8 @@
 //! The tags `<limit>` and `<dynamics>` of a joint with one coordinate.
 
+use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
+
 use articulated_core::description::{JointDynamics, JointKind, Limit};
 
 use crate::element::Tag;
@@ -21,6 +24,7 @@ pub(crate) fn limit(joint: &Tag<'_>, kind: JointKind, open: bool, log: &mut Log)
         JointKind::Continuous => without_bounds(&tag, log),
         _ => bounds(&tag, open, log),
     };
+    warn_of_degrees(&tag, kind, lower.abs().max(upper.abs()), log);
     let effort = positive(&tag, "effort", open, log);
     let velocity = positive(&tag, "velocity", open, log);
     Some(Limit { lower, upper, effort, velocity })
@@ -54,6 +58,16 @@ fn bounds(tag: &Tag<'_>, open: bool, log: &mut Log) -> (f64, f64) {
         log.warning(&tag.place("limit"), Kind::LimitOrder, found, "lower below upper; used as written");
     }
     (lower, upper)
+}
+
+/// Bounds of a joint that turns, from more than three turns in rad to three turns in degrees: the latter, most often.
+const DEGREES: RangeInclusive<f64> = 20.0..=1080.0;
+
+fn warn_of_degrees(tag: &Tag<'_>, kind: JointKind, bound: f64, log: &mut Log) {
+    if kind == JointKind::Revolute && DEGREES.contains(&bound) {
+        let found = format!("a bound of {bound}, {:.1} turns", bound / TAU);
+        log.warning(&tag.place("limit"), Kind::MoreThanATurn, found, "rad, of which 180° are 3.141592653589793; used as written");
+    }
 }
 
 fn positive(tag: &Tag<'_>, name: &str, open: bool, log: &mut Log) -> f64 {

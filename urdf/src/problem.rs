@@ -121,7 +121,7 @@ pub enum Kind {
     LimitOrder,
     /// A joint's coordinate, as asked for, that is beyond its limits.
     BeyondLimit,
-    /// An angle of a frame that is more than a turn.
+    /// An angle of a frame that is more than a turn, or a bound that is many: degrees, most often.
     MoreThanATurn,
     /// A bound or a coefficient below zero that has no such meaning.
     Negative,

@@ -285,6 +285,7 @@ fn what_looks_wrong_is_a_warning_and_used_as_written() {
         ("effort=\"100\"", "effort=\"100\" efort=\"1\"", Kind::Misspelt, "travel", 29),
         ("<robot ", "<robot version=\"7\" ", Kind::Version, "", 2),
         ("<child link=\"hook\"/>", "<child link=\"hook\"/><origin rpy=\"0 -90 0\"/>", Kind::MoreThanATurn, "swing", 33),
+        ("<limit lower=\"-1\" upper=\"1\"", "<limit lower=\"-180\" upper=\"1\"", Kind::MoreThanATurn, "swing", 35),
     ];
     let mut messages = Vec::new();
     for (from, to, kind, name, line) in cases {
