@@ -91,7 +91,8 @@ impl Wanted {
         if is_keyword(name) || name.trim_end_matches('_') == "self" {
             return Some("is a reserved word of Rust: expected another name");
         }
-        if among(KEPT) {
+        let group = self.group();
+        if among(KEPT) || KEPT_TYPES.split_whitespace().any(|word| group.as_deref() == Some(word)) {
             return Some("is kept for a part of the generated module: expected another name");
         }
         let results = self.parts.len() > 1 && self.parts.iter().any(|p| p.function.name == name);
@@ -238,6 +239,10 @@ const KEYWORDS: &str = "as async await break const continue crate dyn else enum 
 /// Names that generated code uses, beside those of arguments and results.
 const KEPT: &str = "fma trig joint frame link q_index v_index parameter parameters robot out";
 
+/// Types that generated code uses, which the type of several results cannot be.
+const KEPT_TYPES: &str = "Bits Block Bodies Chunk F Far Float Fma Four Fraction Group Held Kept Lanes LengthError Line M Matrix MultiplyAdd N Numbers Own Pair Path Plain Real Robot Root S Shelf \
+                          Spread Sums T Three Turned V Workspace";
+
 /// The type of an array of these dimensions in generated code, of numbers of this type.
 pub(crate) fn array_of(real: &str, dims: &[Dim]) -> String {
     dims.iter().rev().fold(real.to_owned(), |inner, dim| format!("[{inner}; {dim}]"))
@@ -245,7 +250,10 @@ pub(crate) fn array_of(real: &str, dims: &[Dim]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use articulated_core::description::Base;
+
     use super::*;
+    use crate::{Options, Real, Request, generate};
 
     #[test]
     fn a_name_alone_is_the_function() {
@@ -301,6 +309,49 @@ mod tests {
         assert_eq!(all_outside("a(b + c) + d[e + (f)] + g", '+'), ["a(b + c) ", " d[e + (f)] ", " g"]);
     }
 
+    /// Whatever the robot and the choices: types of lanes, of loops, of levels, of shelves, of batches, of crates without `std`.
+    #[test]
+    fn no_type_of_generated_code_is_a_name_for_several_results() {
+        let source = |robot: &str, change: &dyn Fn(&mut Options)| {
+            let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/urdf");
+            let mut request = Request::new(robot, std::fs::read(format!("{folder}/{robot}.urdf")).unwrap());
+            request.options.base = if robot == "panda_like" { Base::Fixed } else { Base::Floating };
+            request.options.functions = ["forward_dynamics", "inverse_dynamics_derivatives", "integrate"].map(str::to_owned).into();
+            change(&mut request.options);
+            generate(&request).unwrap().source
+        };
+        let level = |name: &'static str| move |o: &mut Options| o.level = name.parse().unwrap();
+        let sources = [
+            source("humanoid", &|_| {}),
+            source("quadruped", &|o| (o.batch, o.runtime) = (vec![Real::F64, Real::F32], Some("::articulated".into()))),
+            source("panda_like", &|_| {}),
+            source("panda_like", &level("f32")),
+            source("panda_like", &level("compensated + two")),
+            source("panda_like", &level("f64 + correct")),
+            source("panda_like", &level("double_double")),
+            source("panda_like", &|o| o.no_std = true),
+        ];
+        let mut free = Vec::new();
+        for source in &sources {
+            let code: Vec<&str> = source.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
+            let code = code.join("\n");
+            let words: Vec<&str> = code.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|w| !w.is_empty()).collect();
+            let types = words.windows(2).filter(|two| ["struct", "type", "trait", "enum", "union"].contains(&two[0])).map(|two| two[1]);
+            let types = types.filter(|word| word.starts_with(|c: char| c.is_ascii_uppercase()) && !word.contains('_'));
+            for word in types.chain(["F", "T", "N"]) {
+                let name: String = word
+                    .chars()
+                    .enumerate()
+                    .map(|(k, c)| if c.is_uppercase() && k > 0 { format!("_{}", c.to_lowercase()) } else { c.to_lowercase().to_string() })
+                    .collect();
+                if Wanted::parse(&format!("{name} = mass_matrix + placements")).is_ok() {
+                    free.push(word.to_owned());
+                }
+            }
+        }
+        assert_eq!(free, [""; 0]);
+    }
+
     #[test]
     fn what_is_wrong_is_said() {
         for (text, part) in [
@@ -318,6 +369,9 @@ mod tests {
             ("q = mass_matrix", "arguments or results"),
             ("mass_matrix = mass_matrix + placements", "arguments or results"),
             ("out = mass_matrix", "generated module"),
+            ("shelf = mass_matrix + placements", "generated module"),
+            ("multiply_add = mass_matrix + placements", "generated module"),
+            ("f_ = mass_matrix + placements", "generated module"),
             ("x = ", "expected a function"),
             ("x = mass_matrix + placements + mass_matrix", "twice"),
             ("x = placements + mass_matrix + mass_matrix", "twice"),

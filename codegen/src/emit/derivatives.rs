@@ -88,18 +88,19 @@ impl Tables<'_> {
         }
     }
 
-    /// The joint whose coordinates a slot reads: its own; where none stands, the last before it in its lane, or one of its group: what is no number goes no further than it would.
+    /// The joint whose coordinates a slot reads: its own; where none stands, the last before it in its lane, or one of its group, or any: what is no number goes no further than it would.
     fn stands_for(&self, group: usize, lane: usize) -> &Body<f64> {
         let above = (0..=group).rev().find_map(|group| self.groups.body(group, lane));
         let beside = || (0..LANES).find_map(|lane| self.groups.body(group, lane));
-        &self.model.bodies[above.or_else(beside).unwrap_or(ROOT)]
+        &self.model.bodies[above.or_else(beside).unwrap_or(ROOT + 1)]
     }
 
     /// A field with numbers of the four bodies: lanes of nothing are zeros.
     fn fours(&self, out: &mut String, group: usize, name: &str, of: impl Fn(usize, &Body<f64>) -> Vec<f64>) {
         let lanes: [Vec<f64>; LANES] =
             std::array::from_fn(|lane| self.groups.body(group, lane).map_or_else(Vec::new, |i| of(i, &self.model.bodies[i])));
-        let length = lanes.iter().map(Vec::len).max().unwrap_or(0);
+        // A group can stand empty between those before it and a chain that begins with a block.
+        let length = of(ROOT, &self.model.bodies[ROOT]).len();
         let four = |k: usize| numbers(&lanes.each_ref().map(|lane| lane.get(k).copied().unwrap_or(0.0)));
         let rows: Vec<String> = (0..length).map(four).collect();
         let _ = match rows.as_slice() {

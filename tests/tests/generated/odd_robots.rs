@@ -2,8 +2,9 @@
 
 use std::time::Instant;
 
+use articulated_codegen::function_groups::Group;
 use articulated_codegen::{Error, Request, generate};
-use articulated_core::algorithm::functions;
+use articulated_core::algorithm::{Workspace, function, functions};
 use articulated_core::description::Base;
 use articulated_tests::program::Program;
 
@@ -81,7 +82,7 @@ fn an_unknown_function_is_refused_with_the_nearest_and_all() {
     request.options.functions = vec!["inverse_dynamic".into()];
     let Err(Error::UnknownFunction { found, nearest, known }) = generate(&request) else { panic!("it was accepted") };
     assert_eq!((found.as_str(), nearest.as_deref()), ("inverse_dynamic", Some("inverse_dynamics")));
-    assert_eq!(known.len(), functions::<f64>().len());
+    assert_eq!(known.len(), functions::<f64>().len() + Group::ALL.len());
 }
 
 #[test]
@@ -112,4 +113,47 @@ fn a_long_function_compiles_with_names_for_debuggers() {
     assert!(generated.ledger.functions[0].emitted().instructions() > 2900);
     assert!(!generated.source.contains("fn piece_"), "it is cut into pieces, where no statement is inside of many");
     Program::build(&[("golfer", &generated)], &["-C", "debuginfo=2"]);
+}
+
+/// Two arms of seven joints with two fingers of two each: where joints go four at a time, a group between an arm and its fingers has none.
+#[test]
+fn a_group_without_a_joint_is_generated_and_compiles() {
+    use std::fmt::Write;
+    let inertial = "<inertial><origin xyz='0.01 0.02 0.1'/><mass value='1'/>\
+                    <inertia ixx='0.02' ixy='0.001' ixz='0.002' iyy='0.03' iyz='0.003' izz='0.025'/></inertial>";
+    let mut urdf = format!("<robot name='hands'><link name='trunk'>{inertial}</link>");
+    let mut joint = |name: String, parent: &str, k: usize| {
+        let (axis, x) = (["1 0 0", "0 1 0", "0 0 1"][k % 3], 0.05 * (k + 1) as f64);
+        let _ = write!(
+            urdf,
+            "<link name='{name}'>{inertial}</link><joint name='{name}' type='continuous'><parent link='{parent}'/><child link='{name}'/>\
+             <origin xyz='{x} 0.1 0.2' rpy='0.1 0.2 0.3'/><axis xyz='{axis}'/></joint>"
+        );
+        name
+    };
+    for arm in ["left", "right"] {
+        let hand = (0..7).fold("trunk".to_owned(), |parent, k| joint(format!("{arm}_{k}"), &parent, k));
+        for finger in ["thumb", "index"] {
+            (0..2).fold(hand.clone(), |parent, k| joint(format!("{arm}_{finger}_{k}"), &parent, k));
+        }
+    }
+    let mut request = Request::new("hands.urdf", urdf + "</robot>");
+    request.options.base = Base::Floating;
+    request.options.functions = vec!["inverse_dynamics_derivatives".into()];
+    let generated = generate(&request).unwrap();
+    assert!(generated.source.contains("static TREE: [Group; GROUPS]"), "no loops over joints");
+    let n = generated.model.nv;
+    let numbers = |from: usize, count: usize| (0..count).map(|k| (1.3 * (from + k) as f64).sin()).collect::<Vec<f64>>();
+    let mut q = numbers(0, n + 1);
+    q[3..7].copy_from_slice(&[0.5, -0.5, 0.5, 0.5]);
+    let (v, a) = (numbers(n, n), numbers(2 * n, n));
+    let program = Program::build(&[("hands", &generated)], &["-C", "opt-level=1", "-C", "target-cpu=native"]);
+    let found = program.run("hands", "inverse_dynamics_derivatives", &[vec![&q, &v, &a]]);
+    let row = function::<f64>("inverse_dynamics_derivatives").unwrap();
+    let mut expected = vec![0.0; 3 * n * n];
+    row.call(&generated.model, &mut Workspace::new(&generated.model), &[&q, &v, &a], &mut expected).unwrap();
+    let largest = expected.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+    for (k, (found, expected)) in found[0].iter().zip(&expected).enumerate() {
+        assert!((found - expected).abs() <= 1e-13 * largest, "{k}: {found} {expected}");
+    }
 }

@@ -107,15 +107,15 @@ impl Way {
             "    use ::core::{{cmp::Ord, iter::Iterator}};\n\n    use self::lanes::*;\n    use super::{{Lanes, super::{{FRAMES, LINKS, NQ, NV{parameters}}}}};"
         );
         let _ = writeln!(out, "    batch_support!({attribute});");
+        let (few, more) = (spill::FEW_REGISTERS, spill::MORE_REGISTERS);
+        let spills = |f: &&Batch| self.set == Set::Avx2 && caller.names(&f.that_spills());
+        if functions.iter().any(|f| spills(&f)) {
+            let _ = writeln!(out, "    {few}\n    use super::super::spills;");
+        }
         for f in functions.iter().filter(|f| f.is_any()) {
             let name = f.name();
-            if self.set == Set::Avx2 && caller.names(&f.that_spills()) {
-                let (few, more) = (spill::FEW_REGISTERS, spill::MORE_REGISTERS);
-                let _ = writeln!(
-                    out,
-                    "    {few}\n    use super::super::spills;\n    {few}\n    {}!({attribute});\n    {more}",
-                    f.that_spills()
-                );
+            if spills(&f) {
+                let _ = writeln!(out, "    {few}\n    {}!({attribute});\n    {more}", f.that_spills());
             }
             let _ = writeln!(out, "    {name}_in_block!({attribute});\n    {name}_in_batch!({attribute});");
         }
