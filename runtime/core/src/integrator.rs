@@ -2,6 +2,7 @@
 //!
 //! Adding one: its file in `runtime/src/simulate/integrator`, its line in the `method` of that folder, its row here.
 
+use alloc::string::String;
 use core::fmt;
 
 use crate::algorithm::FunctionId;
@@ -21,6 +22,8 @@ pub struct Integrator {
     pub implicit: bool,
     /// When to take it.
     pub what_for: &'static str,
+    /// What methods for the same problems are called by others, in small letters without `_` and `-`.
+    pub elsewhere: &'static str,
     /// Where it is from.
     pub source: &'static str,
     /// Functions that the robot has to have. One with a quaternion among its coordinates needs `integrate` as well, for all of them.
@@ -31,7 +34,7 @@ const EXPLICIT: &[FunctionId] = &[FunctionId::forward_dynamics];
 
 macro_rules! integrators {
     ($($(#[$doc:meta])* $name:ident { order: $order:literal, adaptive: $adaptive:literal, implicit: $implicit:literal, what_for: $what_for:literal,
-        source: $source:literal, needs: $needs:expr })*) => {
+        elsewhere: $elsewhere:literal, source: $source:literal, needs: $needs:expr })*) => {
         /// The integrators by name: each variant is called as scenes call it.
         #[allow(non_camel_case_types)]
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -47,6 +50,7 @@ macro_rules! integrators {
                 adaptive: $adaptive,
                 implicit: $implicit,
                 what_for: $what_for,
+                elsewhere: $elsewhere,
                 source: $source,
                 needs: $needs,
             },
@@ -59,6 +63,7 @@ integrators! {
     semi_implicit_euler {
         order: 1, adaptive: false, implicit: false,
         what_for: "one evaluation a step, no drift of energy without damping: games, sketches, comparison",
+        elsewhere: "euler expliciteuler forwardeuler symplecticeuler",
         source: "Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, (I.1.9)",
         needs: EXPLICIT
     }
@@ -66,6 +71,7 @@ integrators! {
     rk4 {
         order: 4, adaptive: false, implicit: false,
         what_for: "fixed steps: a controller's clock, a cost that is known beforehand",
+        elsewhere: "rungekutta rungekutta4 classicalrk4",
         source: "Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 1993, Table II.1.2",
         needs: EXPLICIT
     }
@@ -73,6 +79,7 @@ integrators! {
     dopri5 {
         order: 5, adaptive: true, implicit: false,
         what_for: "the first to try: errors from 1e-3 to 1e-8, motions that are not stiff",
+        elsewhere: "rk45 rk23 rkf45 ode45 ode23 dopri dopri45 dormandprince dp5 dp45 bs3 tsit5",
         source: "Dormand & Prince, J. Comput. Appl. Math. 6, 1980; dense output Hairer, Nørsett & Wanner 1993, (II.6.12)",
         needs: EXPLICIT
     }
@@ -80,6 +87,7 @@ integrators! {
     dop853 {
         order: 8, adaptive: true, implicit: false,
         what_for: "errors below 1e-8, long smooth motions, references",
+        elsewhere: "ode78 ode89 ode113 dp8 vern7 vern8 vern9",
         source: "Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 1993, §II.5 and §II.10",
         needs: EXPLICIT
     }
@@ -87,6 +95,7 @@ integrators! {
     rodas4 {
         order: 4, adaptive: true, implicit: true,
         what_for: "stiff damping, springs, limits, contact: L-stable, and a decay never changes its sign, whatever the step",
+        elsewhere: "radau radau5 radauiia5 bdf lsoda vode cvode cvodebdf qndf fbdf trbdf2 kencarp4 rosenbrock rosenbrock23 rodas rodas5 rodas5p ode15s ode15i ode23s ode23t ode23tb",
         source: "Hairer & Wanner, Solving Ordinary Differential Equations II, 1996, §IV.7 and §VI.4",
         needs: &[FunctionId::forward_dynamics, FunctionId::forward_dynamics_derivatives]
     }
@@ -94,6 +103,7 @@ integrators! {
     lie_midpoint {
         order: 2, adaptive: false, implicit: true,
         what_for: "long free motion: a body by itself keeps energy and momentum to rounding, other robots do not drift",
+        elsewhere: "midpoint implicitmidpoint",
         source: "Simo & Wong, Int. J. Numer. Methods Eng. 31, 1991; Hairer, Lubich & Wanner 2006, §IV.2",
         needs: EXPLICIT
     }
@@ -107,6 +117,12 @@ pub fn integrators() -> &'static [Integrator] {
 /// The integrator called `name`.
 pub fn integrator(name: &str) -> Option<&'static Integrator> {
     ROWS.iter().find(|row| row.name == name)
+}
+
+/// The integrator for what is called `name` elsewhere, whatever the case.
+pub fn meant(name: &str) -> Option<&'static Integrator> {
+    let plain: String = name.chars().filter(|c| !"_- ".contains(*c)).flat_map(char::to_lowercase).collect();
+    ROWS.iter().find(|row| row.elsewhere.split(' ').any(|word| word == plain))
 }
 
 impl IntegratorId {
@@ -129,7 +145,7 @@ impl fmt::Display for IntegratorId {
 
 #[cfg(test)]
 mod tests {
-    use super::{integrator, integrators};
+    use super::{integrator, integrators, meant};
 
     #[test]
     fn every_name_finds_its_own_row() {
@@ -138,5 +154,17 @@ mod tests {
             assert_eq!(row.id.row(), row);
         }
         assert_eq!(integrator("euler"), None);
+    }
+
+    #[test]
+    fn what_others_call_them_finds_one_for_the_same_problems() {
+        let named = |name| meant(name).map(|row| row.name);
+        assert_eq!(
+            ["RK45", "ode15s", "Radau", "DOP853", "midpoint", "verlet"].map(named),
+            [Some("dopri5"), Some("rodas4"), Some("rodas4"), None, Some("lie_midpoint"), None]
+        );
+        for row in integrators() {
+            assert!(row.elsewhere.split(' ').all(|word| integrator(word).is_none() && meant(word) == Some(row)), "{}", row.name);
+        }
     }
 }

@@ -3,6 +3,8 @@
 use std::fmt;
 
 use articulated_core::algorithm::FunctionError;
+use articulated_core::algorithm::checked::Singular;
+use articulated_core::dynamics::Dynamics;
 
 use super::{IntegratorId, SettingError};
 
@@ -15,14 +17,23 @@ pub enum SimulateError {
     State(Vec<StateError>),
     /// A function that the robot does not have, or that was given something of the wrong length.
     Function(FunctionError),
-    /// A number of the motion, or of what moves it, is not finite.
+    /// Numbers of the motion, or of what moves it, are not finite.
     NotFinite {
         /// Time, s.
         t: f64,
         /// What is not finite.
         what: &'static str,
-        /// Which of them.
-        index: usize,
+        /// Which of them, in order.
+        index: Vec<usize>,
+        /// Names of the joints that they belong to, each once, as far as the robot can tell; of an event its own.
+        names: Vec<String>,
+    },
+    /// There are no accelerations: the mass matrix is singular.
+    NoMass {
+        /// Time, s.
+        t: f64,
+        /// The joint where it is.
+        cause: Singular,
     },
     /// The tolerances ask for a step that is too short to be made.
     StepTooSmall {
@@ -30,8 +41,12 @@ pub enum SimulateError {
         t: f64,
         /// The step that would be needed, s.
         step: f64,
-        /// The coordinate whose error is largest: below nv of q, from there of v.
+        /// Where the error is largest: the step of q, or v.
+        what: &'static str,
+        /// Which of its numbers.
         index: usize,
+        /// Name of the joint that it belongs to, where the robot can tell.
+        joint: Option<String>,
     },
     /// More steps than allowed.
     TooManySteps {
@@ -61,6 +76,8 @@ pub enum SimulateError {
         t: f64,
         /// The step that it is held to, s.
         step: f64,
+        /// How many of these there would be to the end, rejected ones among them.
+        left: f64,
     },
     /// The equations of an implicit step were not solved.
     NoConvergence {
@@ -105,13 +122,26 @@ pub enum StateError {
         index: usize,
         /// The number.
         found: f64,
+        /// Name of the joint that it belongs to, where the robot can tell.
+        joint: Option<String>,
     },
     /// A quaternion whose norm is not one to 1e-6.
     Quaternion {
-        /// Where it begins in q.
+        /// The vector.
+        vector: &'static str,
+        /// Where it begins there.
         index: usize,
         /// Its norm.
         norm: f64,
+        /// Name of the joint that it belongs to, where the robot can tell.
+        joint: Option<String>,
+    },
+    /// A frame that there is not.
+    Frame {
+        /// Its number.
+        index: usize,
+        /// How many there are.
+        frames: usize,
     },
     /// An event is about a number of a vector that has not so many.
     Beyond {
@@ -124,21 +154,42 @@ pub enum StateError {
         /// How many it has.
         length: usize,
     },
+    /// An event has bounds that nothing can be between.
+    Bounds {
+        /// The event's name.
+        event: String,
+        /// Its lower bound.
+        lower: f64,
+        /// Its upper bound.
+        upper: f64,
+    },
     /// A number that cannot be used.
     Value {
         /// What it is.
         what: &'static str,
         /// The number.
         found: f64,
+        /// What would be right.
+        right: &'static str,
     },
 }
 
 impl StateError {
-    /// What is wrong with a vector that should have so many numbers, all finite.
-    pub(crate) fn of(vector: &'static str, x: &[f64], expected: usize) -> impl Iterator<Item = Self> {
+    /// What is wrong with a vector that should have so many numbers, all finite; `joint` has the names of what they belong to.
+    pub(crate) fn of(
+        vector: &'static str,
+        x: &[f64],
+        expected: usize,
+        joint: impl Fn(usize) -> Option<String>,
+    ) -> impl Iterator<Item = Self> {
         let length = (x.len() != expected).then_some(Self::Length { vector, found: x.len(), expected });
         let bad = x.iter().enumerate().filter(|(_, x)| !x.is_finite());
-        length.into_iter().chain(bad.map(move |(index, &found)| Self::NotFinite { vector, index, found }))
+        length.into_iter().chain(bad.map(move |(index, &found)| Self::NotFinite { vector, index, found, joint: joint(index) }))
+    }
+
+    /// The same of a vector with a number for each degree of freedom.
+    pub(crate) fn of_freedoms<R: Dynamics<f64>>(vector: &'static str, x: &[f64], robot: &R) -> impl Iterator<Item = Self> {
+        Self::of(vector, x, robot.shape().nv, |freedom| joint(robot, freedom))
     }
 
     /// Nothing is wrong, or all that is.
@@ -152,14 +203,18 @@ impl fmt::Display for StateError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Length { vector, found, expected } => write!(f, "{vector} has {found} numbers, expected {expected}"),
-            Self::NotFinite { vector, index, found } => write!(f, "{vector}[{index}] = {found} is not finite"),
-            Self::Quaternion { index, norm } => {
-                write!(f, "q[{index}..{}] is a quaternion of norm {norm}; it should be 1", index + 4)
+            Self::NotFinite { vector, index, found, joint } => write!(f, "{vector}[{index}]{} = {found} is not finite", of_joints(joint)),
+            Self::Quaternion { vector, index, norm, joint } => {
+                write!(f, "{vector}[{index}..{}]{} is a quaternion of norm {norm}; it should be 1", index + 4, of_joints(joint))
             }
+            Self::Frame { index, frames } => write!(f, "there is no frame {index}: the robot has {frames}, the first is 0"),
             Self::Beyond { event, vector, index, length } => {
                 write!(f, "the event `{event}` is about {vector}[{index}], and {vector} has {length} numbers")
             }
-            Self::Value { what, found } => write!(f, "{what} = {found} cannot be used"),
+            Self::Bounds { event, lower, upper } => {
+                write!(f, "the event `{event}` has the bounds {lower} and {upper}; the first should be less than the second")
+            }
+            Self::Value { what, found, right } => write!(f, "{what} = {found} cannot be used; it should be {right}"),
         }
     }
 }
@@ -170,10 +225,23 @@ impl fmt::Display for SimulateError {
             Self::Settings(all) => lines(f, all),
             Self::State(all) => lines(f, all),
             Self::Function(e) => e.fmt(f),
-            Self::NotFinite { t, what, index } => write!(f, "at t = {t} s {what}[{index}] is not finite"),
-            Self::StepTooSmall { t, step, index } => write!(
+            Self::NotFinite { t, what, index, names } => {
+                let numbers = list(index.iter().map(|i| format!("[{i}]")));
+                let names = if *what == "event" { of_names("event", names) } else { of_joints(names) };
+                write!(f, "at t = {t} s {what}{numbers}{names} {} not finite", if index.len() > 1 { "are" } else { "is" })
+            }
+            Self::NoMass { t, cause } => {
+                let joint = Some(&cause.joint).filter(|name| !name.is_empty());
+                let freedom = format!("v[{}]{}", cause.freedom, of_joints(joint));
+                write!(
+                    f,
+                    "at t = {t} s the mass matrix is singular at {freedom}: does it move a mass, and otherwise than the joints behind it?"
+                )
+            }
+            Self::StepTooSmall { t, step, what, index, joint } => write!(
                 f,
-                "at t = {t} s the tolerances ask for a step of {step:.3e} s (coordinate {index}): is there a jump in what moves the robot, or are rtol and atol below rounding?"
+                "at t = {t} s the tolerances ask for a step of {step:.3e} s, {what}[{index}]{} most of all: is there a jump in what moves the robot, or are rtol and atol below rounding?",
+                of_joints(joint)
             ),
             Self::TooManySteps { t, steps } => {
                 write!(f, "{steps} steps were made by t = {t} s: looser tolerances, rodas4 if the motion is stiff, or a greater max_steps")
@@ -182,9 +250,9 @@ impl fmt::Display for SimulateError {
                 f,
                 "at t = {t} s {integrator} is not stable with steps of {step:.3e} s: something here moves at a rate of {rate:.3e} 1/s. Steps of at most {admissible:.3e} s, or rodas4"
             ),
-            Self::Stiff { integrator, t, step } => write!(
+            Self::Stiff { integrator, t, step, left } => write!(
                 f,
-                "at t = {t} s the motion is stiff: {integrator} is held to steps of {step:.3e} s by stability. Take rodas4, or stiffness = note to go on"
+                "at t = {t} s the motion is stiff: {integrator} is held to steps of {step:.3e} s by stability, {left:.1e} of them to the end. Take rodas4, or go on with stiffness = \"note\" (Stiffness::Note in Rust)"
             ),
             Self::NoConvergence { t, step } => {
                 write!(f, "at t = {t} s the equations of a step of {step:.3e} s were not solved: a shorter step")
@@ -195,6 +263,34 @@ impl fmt::Display for SimulateError {
             }
         }
     }
+}
+
+/// Name of the joint that a degree of freedom belongs to, where the robot can tell.
+pub(crate) fn joint<R: Dynamics<f64>>(robot: &R, freedom: usize) -> Option<String> {
+    robot.joint_of(freedom).filter(|name| !name.is_empty()).map(str::to_owned)
+}
+
+/// In brackets, if there are some.
+fn of_joints<'a>(names: impl IntoIterator<Item = &'a String>) -> String {
+    of_names("joint", names)
+}
+
+fn of_names<'a>(kind: &str, names: impl IntoIterator<Item = &'a String>) -> String {
+    let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
+    match names.len() {
+        0 => String::new(),
+        1 => format!(" ({kind} {})", names[0]),
+        _ => format!(" ({kind}s {})", list(names.into_iter())),
+    }
+}
+
+/// Most of what a message lists one by one.
+const LISTED: usize = 8;
+
+fn list(all: impl ExactSizeIterator<Item = String>) -> String {
+    let more = all.len().saturating_sub(LISTED);
+    let shown = all.take(LISTED).collect::<Vec<_>>().join(", ");
+    if more > 0 { format!("{shown} and {more} more") } else { shown }
 }
 
 fn lines<T: fmt::Display>(f: &mut fmt::Formatter<'_>, all: &[T]) -> fmt::Result {

@@ -19,7 +19,8 @@ use articulated_core::nalgebra::Matrix6;
 use articulated_core::spatial::screw::{cross_matrix, right_jacobian_inverse};
 use articulated_core::spatial::{Twist, Vector3};
 
-use super::{SimulateError, StateError};
+use super::StateError;
+use super::error::joint;
 
 /// A joint whose coordinates are more than its rates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -161,14 +162,29 @@ impl Manifold {
         }
     }
 
-    /// What is wrong with a state to begin with.
-    pub(crate) fn check(&self, q: &[f64], v: &[f64]) -> Result<(), SimulateError> {
-        let quaternion = |free: &Free| {
+    /// The degree of freedom, or the first of those, that a coordinate belongs to.
+    fn freedom_of(&self, coordinate: usize) -> usize {
+        match self.free.iter().rev().find(|free| free.q <= coordinate) {
+            Some(free) if coordinate < free.quaternion().end => free.v,
+            Some(free) => free.v + free.rates() + coordinate - free.quaternion().end,
+            None => coordinate,
+        }
+    }
+
+    /// What is wrong with a configuration, which whoever gave it calls `vector`.
+    pub(crate) fn wrong<R: Dynamics<f64>>(&self, robot: &R, vector: &'static str, q: &[f64]) -> impl Iterator<Item = StateError> {
+        let quaternion = move |free: &Free| {
             let norm = q[free.quaternion()].iter().map(|x| x * x).sum::<f64>().sqrt();
-            ((norm - 1.0).abs() > 1e-6).then(|| StateError::Quaternion { index: free.quaternion().start, norm })
+            let wrong = || StateError::Quaternion { vector, index: free.quaternion().start, norm, joint: joint(robot, free.v) };
+            ((norm - 1.0).abs() > 1e-6).then(wrong)
         };
         let quaternions = self.free.iter().filter(|_| q.len() == self.nq).filter_map(quaternion);
-        StateError::none(StateError::of("q", q, self.nq).chain(StateError::of("v", v, self.nv)).chain(quaternions))
+        StateError::of(vector, q, self.nq, |i| joint(robot, self.freedom_of(i))).chain(quaternions)
+    }
+
+    /// What is wrong with a state.
+    pub(crate) fn wrong_state<R: Dynamics<f64>>(&self, robot: &R, q: &[f64], v: &[f64]) -> impl Iterator<Item = StateError> {
+        self.wrong(robot, "q", q).chain(StateError::of_freedoms("v", v, robot))
     }
 }
 
@@ -225,6 +241,14 @@ mod tests {
         let mut out = [f64::NAN; 11];
         mixed().magnitudes(&q, &mut out);
         assert_eq!(out, [3.0, 1.0, 1.0, 1.0, 7.0, 7.0, 7.0, 0.25, 1.0, 1.0, 1.0]);
+    }
+
+    #[test]
+    fn coordinates_belong_to_the_joints_that_have_their_rates() {
+        let freedoms: [usize; 13] = std::array::from_fn(|i| mixed().freedom_of(i));
+        assert_eq!(freedoms, [0, 1, 1, 1, 1, 1, 1, 1, 7, 8, 8, 8, 8]);
+        let hinge_behind = Manifold { nq: 6, nv: 5, free: vec![Free { q: 1, v: 1, moves: false }] };
+        assert_eq!([0, 1, 4, 5].map(|i| hinge_behind.freedom_of(i)), [0, 1, 1, 4]);
     }
 
     #[test]

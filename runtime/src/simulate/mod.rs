@@ -36,7 +36,7 @@ mod stability;
 mod step_control;
 mod system;
 
-pub use articulated_core::integrator::{Integrator, IntegratorId, integrator, integrators};
+pub use articulated_core::integrator::{Integrator, IntegratorId, integrator, integrators, meant};
 pub use control::{Constant, Control, Dependence, Hold, NoTorque, Pd, TableError, TableErrors, TorqueTable};
 pub use error::{SimulateError, StateError};
 pub use event::{Action, Direction, Event, Impact, Map, Struck};

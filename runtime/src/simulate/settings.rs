@@ -56,7 +56,8 @@ pub enum Output {
 /// What to do where an explicit integrator meets a stiff motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Stiffness {
-    /// End with [`super::SimulateError::Unstable`] or [`super::SimulateError::Stiff`].
+    /// End with [`super::SimulateError::Unstable`], or with [`super::SimulateError::Stiff`] where more than 20 000 steps of the length that stability admits would be left to
+    /// the end; where they are fewer, they are made, and the time is noted as by [`Self::Note`].
     #[default]
     Refuse,
     /// Note the time in [`super::Counts::stiff_at`] and go on.

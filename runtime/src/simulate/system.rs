@@ -1,8 +1,10 @@
 //! The equations of motion in the chart of a step: y = (u, v, work, dissipated) and its derivative.
 
 use articulated_core::algorithm::FunctionError;
+use articulated_core::algorithm::checked::{Measure, Singular, Solver, Unsolved};
 use articulated_core::dynamics::Dynamics;
 
+use super::error::joint;
 use super::manifold::Manifold;
 use super::{Control, Counts, SimulateError};
 
@@ -125,6 +127,30 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
         };
         let lost = if self.has_losses { super::effects::dissipation(self.robot, &mut self.ws, &self.q, v).unwrap_or(0.0) } else { 0.0 };
         [given, lost]
+    }
+
+    /// Which of these numbers, one for each degree of freedom, are not finite.
+    pub(crate) fn not_finite(&self, t: f64, what: &'static str, x: &[f64]) -> Option<SimulateError> {
+        let index: Vec<usize> = (0..x.len()).filter(|&i| !x[i].is_finite()).collect();
+        if index.is_empty() { None } else { Some(self.named(t, what, index)) }
+    }
+
+    /// With the names of the joints that these degrees of freedom belong to.
+    pub(crate) fn named(&self, t: f64, what: &'static str, index: Vec<usize>) -> SimulateError {
+        let mut names: Vec<String> = index.iter().filter_map(|&i| joint(self.robot, i)).collect();
+        names.dedup();
+        SimulateError::NotFinite { t, what, index, names }
+    }
+
+    /// The joint at which the mass matrix is singular where the chart begins, at these velocities, if the robot has the functions that tell.
+    pub(crate) fn without_mass(&mut self, v: &[f64]) -> Option<Singular> {
+        let zero = vec![0.0; self.nv()];
+        let state = [&self.origin[..], v, &zero];
+        let solved = Solver::new(self.robot.shape()).forward_dynamics(self.robot, &mut self.ws, state, &mut zero.clone());
+        match solved {
+            Err(Unsolved::Singular(cause)) if cause.measure == Measure::Pivot => Some(cause),
+            _ => None,
+        }
     }
 
     /// The next chart begins where this one has got to, `u`.

@@ -297,9 +297,11 @@ fn a_map_that_gives_no_state_is_an_error() {
         Simulation::new(&handle::Robot, to(IntegratorId::dopri5, 1.0, 1e-6)).unwrap().run(&q, &[0.1; 6], &mut NoTorque, &mut event)
     };
     let found = run(&|q, _| q[3..].fill(1.0)).unwrap_err();
-    assert_eq!(found, SimulateError::State(vec![StateError::Quaternion { index: 3, norm: 2.0 }]));
+    let joint = || Some("__floating_base__".to_owned());
+    assert_eq!(found, SimulateError::State(vec![StateError::Quaternion { vector: "q", index: 3, norm: 2.0, joint: joint() }]));
     let found = run(&|_, v| v[4] = f64::INFINITY).unwrap_err();
-    assert_eq!(found, SimulateError::State(vec![StateError::NotFinite { vector: "v", index: 4, found: f64::INFINITY }]));
+    let expected = StateError::NotFinite { vector: "v", index: 4, found: f64::INFINITY, joint: joint() };
+    assert_eq!(found, SimulateError::State(vec![expected]));
     let motion = run(&|q, v| (q[0], v[3]) = (5.0, 0.0)).unwrap();
     assert!(motion.q_at(1)[0] > 4.9);
 }
@@ -334,7 +336,7 @@ fn bounds_that_nothing_is_between_are_an_error() {
     for (lower, upper) in [(1.0, -1.0), (0.5, 0.5), (f64::NAN, 1.0), (0.0, f64::NAN)] {
         let mut events = [Event::limit("stop", 0, lower, upper)];
         let found = Simulation::new(&robot, to(IntegratorId::dopri5, 0.1, 1e-6)).unwrap().run(&[0.0], &[0.0], &mut NoTorque, &mut events);
-        assert!(matches!(found, Err(SimulateError::State(all)) if matches!(all[..], [StateError::Value { .. }])), "{lower} {upper}");
+        assert!(matches!(found, Err(SimulateError::State(all)) if matches!(all[..], [StateError::Bounds { .. }])), "{lower} {upper}");
     }
 }
 
@@ -398,7 +400,7 @@ fn an_event_that_strikes_gives_the_speed_of_the_ball() {
         ));
     }
     for (normal, mass, restitution, what) in [
-        ([0.0; 3], 1.0, 0.5, "normal"),
+        ([0.0; 3], 1.0, 0.5, "length of the normal"),
         ([1.0; 3], 0.0, 0.5, "mass of the ball"),
         ([1.0; 3], 1.0, 1.1, "restitution"),
         ([1.0; 3], 1.0, -0.1, "restitution"),
@@ -406,6 +408,30 @@ fn an_event_that_strikes_gives_the_speed_of_the_ball() {
         let Err(SimulateError::State(all)) = Impact::new(&robot, 3, [0.0; 3], normal, mass, restitution) else { panic!("{what}") };
         assert!(matches!(all[..], [StateError::Value { what: found, .. }] if found == what), "{all:?}");
     }
+}
+
+#[test]
+fn all_that_is_wrong_with_a_blow_or_a_contact_is_said_at_once() {
+    let robot = model("chain", Base::Fixed);
+    let frames = format!("there is no frame 99: the robot has {}, the first is 0", robot.frames.len());
+    let told = |error: Option<SimulateError>| error.unwrap().to_string().lines().map(str::to_owned).collect::<Vec<_>>();
+    let blow = Impact::new(&robot, 99, [0.0, f64::NAN, 0.0], [0.0; 3], -1.0, 3.0).err();
+    let normal = "length of the normal = 0 cannot be used; it should be finite, greater than 0";
+    let point = "y of the point = NaN cannot be used; it should be finite, m";
+    let expected = [
+        &frames,
+        point,
+        normal,
+        "mass of the ball = -1 cannot be used; it should be finite, greater than 0, kg",
+        "restitution = 3 cannot be used; it should be from 0 to 1",
+    ];
+    assert_eq!(told(blow), expected);
+    let contact = Event::contact("foot", &robot, 99, [0.0, f64::NAN, 0.0], f64::INFINITY, [0.0; 3], f64::NAN).err();
+    let radius = "radius = inf cannot be used; it should be finite, m";
+    assert_eq!(told(contact), [&frames, point, normal, radius, "height = NaN cannot be used; it should be finite, m"]);
+    let next = robot.frames.len();
+    assert!(Impact::new(&robot, next - 1, [0.0; 3], [0.0, 0.0, 1.0], 1.0, 0.5).is_ok());
+    assert!(Impact::new(&robot, next, [0.0; 3], [0.0, 0.0, 1.0], 1.0, 0.5).is_err());
 }
 
 /// A motion that stops where something is recorded anyway has one record of it.

@@ -1,10 +1,10 @@
 //! Stiff effects: implicit steps decay without a change of sign, explicit ones refuse and say which step they can take.
 
 use articulated::effect::{Applied, EffectId};
-use articulated::simulate::{IntegratorId, Output, Settings, SimulateError, Stiffness};
-use articulated::{Model, Origin};
+use articulated::simulate::{IntegratorId, Output, Pd, Settings, SimulateError, Simulation, Stiffness};
+use articulated::{Base, Model, Origin};
 
-use crate::robots::{free, one_joint, stepping, to};
+use crate::robots::{apart, free, one_joint, stepping, to};
 
 fn with(effect: EffectId, parameters: Vec<f64>) -> Model<f64> {
     let applied = Applied { effect, on: "joint".into(), at: Origin::default(), parameters };
@@ -82,7 +82,7 @@ fn a_motion_that_is_thrown_within_a_step_is_refused_at_the_rate_of_what_throws_i
         links.concat()
     );
     let stop = Applied { effect: EffectId::limit, on: "shoulder".into(), at: Origin::default(), parameters: vec![-3.0, 3.0, 1e7, 0.0] };
-    let robot = articulated::load_bytes("arm", urdf.as_bytes(), articulated::Base::Fixed).unwrap().with_effects(&[stop]).unwrap();
+    let robot = articulated::load_bytes("arm", urdf.as_bytes(), Base::Fixed).unwrap().with_effects(&[stop]).unwrap();
     for integrator in [IntegratorId::semi_implicit_euler, IntegratorId::rk4, IntegratorId::dopri5, IntegratorId::dop853] {
         for h in [0.02, 0.01, 0.005] {
             let error = free(&robot, &stepping(integrator, 1.0, h), &[0.0, 0.0], &[3.0, 0.0]).unwrap_err();
@@ -96,13 +96,63 @@ fn a_motion_that_is_thrown_within_a_step_is_refused_at_the_rate_of_what_throws_i
 #[test]
 fn steps_chosen_by_tolerance_say_that_stability_holds_them() {
     let robot = with(EffectId::damping, vec![1e5]);
-    for integrator in [IntegratorId::dopri5, IntegratorId::dop853] {
-        let settings = to(integrator, 1.0, 1e-6);
+    for (integrator, limit) in [(IntegratorId::dopri5, 3.307), (IntegratorId::dop853, 6.37)] {
+        let settings = to(integrator, 2.0, 1e-6);
         let error = free(&robot, &settings, &[0.0], &[1.0]).unwrap_err();
-        assert!(matches!(error, SimulateError::Stiff { .. }), "{integrator}: {error}");
+        let SimulateError::Stiff { t, step, left, .. } = error else { panic!("{integrator}: {error}") };
+        println!("{error}");
+        assert!((step * 1e5 / limit - 1.0).abs() < 0.2 && (left * step / (2.0 - t) - 1.0).abs() < 0.01, "{integrator}: {error}");
+        assert!(error.to_string().ends_with("Take rodas4, or go on with stiffness = \"note\" (Stiffness::Note in Rust)"), "{error}");
         let motion = free(&robot, &Settings { end: 0.1, stiffness: Stiffness::Note, ..settings }, &[0.0], &[1.0]).unwrap();
         assert!(motion.counts.stiff_at.is_some() && (motion.q.last().unwrap() - 1e-5).abs() < 1e-7);
     }
+}
+
+/// Held to steps of 3.3/λ or 6.4/λ: up to 20 000 of them are made and noted, more are refused.
+#[test]
+fn a_stiff_motion_that_is_soon_over_is_noted_and_made() {
+    let robot = with(EffectId::damping, vec![1e5]);
+    for (integrator, limit) in [(IntegratorId::dopri5, 3.307e-5), (IntegratorId::dop853, 6.37e-5)] {
+        let run = |steps: f64| free(&robot, &to(integrator, steps * limit, 1e-6), &[0.0], &[1.0]);
+        let motion = run(15e3).unwrap();
+        println!("{integrator}: {:?}", motion.counts);
+        assert!(motion.counts.stiff_at.is_some_and(|t| t > 0.0 && t < 2e3 * limit), "{integrator}: {:?}", motion.counts);
+        assert!(motion.counts.steps > 12_000 && (motion.q.last().unwrap() - 1e-5).abs() < 1e-7, "{integrator}: {:?}", motion.counts);
+        assert!(matches!(run(30e3), Err(SimulateError::Stiff { left, .. }) if left > 20e3 && left < 40e3), "{integrator}");
+    }
+}
+
+/// A light wrist under the gains of its shoulder is stiff, and over before anybody would care.
+#[test]
+fn an_arm_under_a_firm_controller_arrives() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/urdf/ur5_like.urdf");
+    let robot = articulated::load(path, Base::Fixed).unwrap();
+    let (zero, nv) = (vec![0.0; robot.nv], robot.nv);
+    let run = |integrator| {
+        let mut pd = Pd::new(&robot, vec![0.5; nv], vec![30.0; nv], vec![3.0; nv]).unwrap();
+        let settings = Settings { integrator, end: 2.0, output: Output::Ends, ..Settings::default() };
+        Simulation::new(&robot, settings).unwrap().run(&zero, &zero, &mut pd, &mut []).unwrap()
+    };
+    let [explicit, implicit] = [run(IntegratorId::dopri5), run(IntegratorId::rodas4)];
+    let far = apart(&robot, &explicit, &implicit);
+    println!("{far:e}, {:?}", explicit.counts);
+    assert!(explicit.counts.stiff_at.is_some() && explicit.counts.steps < 20_000 && far < 1e-6, "{far:e}, {:?}", explicit.counts);
+}
+
+/// What begins well can become dear: noted at first, refused when a stop is reached.
+#[test]
+fn a_motion_that_becomes_stiffer_is_refused_then() {
+    let on = |effect, parameters| Applied { effect, on: "joint".into(), at: Origin::default(), parameters };
+    let stop = on(EffectId::limit, vec![-10.0, 0.5, 1e7, 1e3]);
+    let mut push = |t: f64, _: &[f64], v: &[f64], tau: &mut [f64]| tau[0] = if t < 6.0 { 2e3 * (0.08 - v[0]) } else { 1e3 };
+    let robot = one_joint("prismatic", 0.0).with_gravity([0.0; 3]).with_effects(&[stop]).unwrap();
+    let settings = Settings { output: Output::Every(0.5), ..to(IntegratorId::dopri5, 20.0, 1e-6) };
+    let mut simulation = Simulation::new(&robot, settings).unwrap();
+    let mut recording = simulation.recording();
+    let error = simulation.run_into(&[0.0], &[0.0], &mut push, &mut [], &mut recording, &mut |_, _| true).unwrap_err();
+    println!("{error}\n{:?}", recording.counts);
+    let SimulateError::Stiff { t, .. } = error else { panic!("{error}") };
+    assert!(t > 6.0 && recording.counts.stiff_at.is_some_and(|t| t < 5.0), "{error}: {:?}", recording.counts);
 }
 
 #[test]

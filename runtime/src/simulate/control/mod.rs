@@ -105,7 +105,8 @@ pub struct Hold<C> {
 impl<C: Control> Hold<C> {
     /// Samples every `period` seconds. Errors: a period that is no length of time.
     pub fn new(control: C, period: f64) -> Result<Self, SimulateError> {
-        let wrong = || SimulateError::State(vec![StateError::Value { what: "period", found: period }]);
+        let right = "a length of time greater than zero, s";
+        let wrong = || SimulateError::State(vec![StateError::Value { what: "period", found: period, right }]);
         if period > 0.0 && period.is_finite() { Ok(Self { control, period }) } else { Err(wrong()) }
     }
 }

@@ -17,13 +17,13 @@ pub struct Pd<'r, R: Dynamics<f64>> {
 }
 
 impl<'r, R: Dynamics<f64>> Pd<'r, R> {
-    /// target: `[nq]`; gains: `[nv]`, N·m/rad|N/m and N·m·s/rad|N·s/m. The robot needs the function `difference` if one of its coordinates is a quaternion.
+    /// target: `[nq]`; gains: `[nv]`, N·m/rad|N/m and N·m·s/rad|N·s/m; all that is wrong with them is told at once. The robot needs the function `difference` if one of its coordinates is a quaternion.
     pub fn new(robot: &'r R, target: Vec<f64>, proportional: Vec<f64>, derivative: Vec<f64>) -> Result<Self, SimulateError> {
         let (manifold, shape) = (Manifold::of(robot)?, robot.shape());
         let rates = vec![0.0; shape.nv];
-        manifold.check(&target, &rates)?;
-        let gains = |vector, x| StateError::of(vector, x, shape.nv);
-        StateError::none(gains("proportional gains", &proportional).chain(gains("derivative gains", &derivative)))?;
+        let gains = [("proportional gains", &proportional), ("derivative gains", &derivative)];
+        let gains = gains.into_iter().flat_map(|(vector, x)| StateError::of_freedoms(vector, x, robot));
+        StateError::none(manifold.wrong(robot, "target", &target).chain(gains))?;
         let mut pd = Self { robot, ws: robot.workspace(), flat: manifold.is_flat(), target, rates, proportional, derivative };
         let (q, mut out) = (pd.target.clone(), vec![0.0; shape.nv]);
         pd.difference(&q, &mut out)?;
@@ -32,7 +32,7 @@ impl<'r, R: Dynamics<f64>> Pd<'r, R> {
 
     /// The same with rates to follow, `[nv]` finite numbers.
     pub fn with_rates(mut self, rates: &[f64]) -> Result<Self, SimulateError> {
-        StateError::none(StateError::of("rates", rates, self.rates.len()))?;
+        StateError::none(StateError::of_freedoms("rates", rates, self.robot))?;
         self.rates.copy_from_slice(rates);
         Ok(self)
     }

@@ -51,8 +51,8 @@ pub struct Event<'a> {
     pub(crate) name: Arc<str>,
     /// Which number of q or v it is about, if of one.
     about: Option<About>,
-    /// Bounds between which nothing is.
-    inverted: Option<f64>,
+    /// Lower and upper bound, where nothing is between them.
+    inverted: Option<(f64, f64)>,
     pub(crate) direction: Direction,
     pub(crate) action: Action<'a>,
     pub(crate) function: Box<Function<'a>>,
@@ -108,7 +108,7 @@ impl<'a> Event<'a> {
             }
         };
         // Not a number is no bound.
-        let inverted = if lower < upper { None } else { Some(upper - lower) };
+        let inverted = if lower < upper { None } else { Some((lower, upper)) };
         Self { about: Some(About::Coordinate(i)), inverted, ..Self::new(name, g).direction(Direction::Falling) }
     }
 
@@ -118,21 +118,22 @@ impl<'a> Event<'a> {
     }
 
     /// What is wrong with it for a robot of this shape: it is about a number that there is not, or has bounds that nothing can be between.
-    pub(crate) fn wrong(&self, shape: Shape) -> Option<StateError> {
-        if let Some(found) = self.inverted {
-            return Some(StateError::Value { what: "upper less lower bound of an event", found });
-        }
-        let (vector, index, length) = match self.about? {
+    pub(crate) fn wrong(&self, shape: Shape) -> impl Iterator<Item = StateError> {
+        let event = || self.name.to_string();
+        let about = self.about.map(|about| match about {
             About::Coordinate(i) => ("q", i, shape.nq),
             About::Rate(i) => ("v", i, shape.nv),
-        };
-        (index >= length).then(|| StateError::Beyond { event: self.name.to_string(), vector, index, length })
+        });
+        let beyond = about.filter(|(_, index, length)| index >= length);
+        let beyond = beyond.map(|(vector, index, length)| StateError::Beyond { event: event(), vector, index, length });
+        let bounds = self.inverted.map(|(lower, upper)| StateError::Bounds { event: event(), lower, upper });
+        beyond.into_iter().chain(bounds)
     }
 
     /// A sphere about a point of a frame touches the plane nᵀx = height of the base frame: its distance falls through zero.
     ///
     /// `frame`: number of the frame among the robot's; `point`: in the frame, m; radius, m; `normal`: in base axes, of any length but zero. The robot needs the function
-    /// `placements`.
+    /// `placements`. Errors: all numbers that cannot be used, at once.
     pub fn contact<R: Dynamics<f64>>(
         name: impl Into<String>,
         robot: &'a R,
@@ -145,17 +146,36 @@ impl<'a> Event<'a> {
     where
         R::Workspace: 'a,
     {
+        let length = length(normal);
+        let finite = [("radius", radius, "finite, m"), ("height", height, "finite, m")];
+        let values = finite.map(|(what, found, right)| value(what, found, right, true));
+        StateError::none(wrong_place(robot, frame, point, length).chain(values.into_iter().flatten()))?;
         let mut place = Points::new(robot, frame)?;
-        let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
-        if !(length > 0.0 && length.is_finite()) {
-            return Err(SimulateError::State(vec![StateError::Value { what: "length of the normal", found: length }]));
-        }
         let g = move |_: f64, q: &[f64], _: &[f64]| match place.point(q, point) {
             Ok(x) => x.iter().zip(normal).map(|(x, n)| x * n).sum::<f64>() / length - height - radius,
             Err(_) => f64::NAN, // it was tried when this was made
         };
         Ok(Self::new(name, g).direction(Direction::Falling))
     }
+}
+
+fn length(normal: [f64; 3]) -> f64 {
+    normal.iter().map(|n| n * n).sum::<f64>().sqrt()
+}
+
+/// A number that is not finite, or not otherwise `fit`.
+fn value(what: &'static str, found: f64, right: &'static str, fit: bool) -> Option<StateError> {
+    (!fit || !found.is_finite()).then_some(StateError::Value { what, found, right })
+}
+
+/// What is wrong with a point of a frame and a normal of this length.
+fn wrong_place<R: Dynamics<f64>>(robot: &R, frame: usize, point: [f64; 3], length: f64) -> impl Iterator<Item = StateError> {
+    let frames = robot.shape().frames;
+    let frame = (frame >= frames).then_some(StateError::Frame { index: frame, frames });
+    let point = ["x of the point", "y of the point", "z of the point"].into_iter().zip(point);
+    let point = point.filter_map(|(what, x)| value(what, x, "finite, m", true));
+    let normal = value("length of the normal", length, "finite, greater than 0", length > 0.0);
+    frame.into_iter().chain(point).chain(normal)
 }
 
 /// Number i, which is there ([`Event::wrong`]).
@@ -172,11 +192,9 @@ struct Points<'r, R: Dynamics<f64>> {
 }
 
 impl<'r, R: Dynamics<f64>> Points<'r, R> {
+    /// Of a frame that there is ([`wrong_place`]).
     fn new(robot: &'r R, frame: usize) -> Result<Self, SimulateError> {
         let shape = robot.shape();
-        if frame >= shape.frames {
-            return Err(SimulateError::State(vec![StateError::Length { vector: "frames", found: shape.frames, expected: frame + 1 }]));
-        }
         let mut points = Self { robot, ws: robot.workspace(), placements: vec![0.0; 12 * shape.frames], frame };
         points.point(&vec![0.5; shape.nq], [0.0; 3])?;
         Ok(points)

@@ -133,7 +133,8 @@ fn value<R: Dynamics<f64>>(
     }
     let point = &*curve.point;
     let g = (events[e].function)(point.t, &point.q, &point.y[nv..2 * nv]);
-    if g.is_nan() { Err(SimulateError::NotFinite { t: point.t, what: "event", index: e }) } else { Ok(g) }
+    let nowhere = || SimulateError::NotFinite { t: point.t, what: "event", index: vec![e], names: vec![events[e].name.to_string()] };
+    if g.is_nan() { Err(nowhere()) } else { Ok(g) }
 }
 
 struct Search<'s, 'e, 'c, 'r, R: Dynamics<f64>> {

@@ -77,15 +77,11 @@ impl<R: Dynamics<f64>> Method<R> for LieMidpoint {
             let found = &self.rate[nv..2 * nv];
             let change = h * largest(found.iter().zip(&self.acceleration).map(|(a, b)| a - b));
             let size = largest(v.iter().copied()).max(h * largest(found.iter().copied()));
-            if let Some(index) = found.iter().position(|a| !a.is_finite()) {
-                let diverged = before.is_finite();
+            if found.iter().any(|a| !a.is_finite()) {
+                let diverged = SimulateError::NoConvergence { t: start.t, step: h };
+                let first = if before.is_finite() { None } else { system.not_finite(start.t + 0.5 * h, "acceleration", found) };
                 self.acceleration.fill(0.0);
-                let t = start.t + 0.5 * h;
-                return Err(if diverged {
-                    SimulateError::NoConvergence { t: start.t, step: h }
-                } else {
-                    SimulateError::NotFinite { t, what: "acceleration", index }
-                });
+                return Err(first.unwrap_or(diverged));
             }
             self.acceleration.copy_from_slice(found);
             // Down to rounding, or as near as it goes.

@@ -7,7 +7,7 @@ use crate::simulate::curve::Curve;
 use crate::simulate::event::watch::Zero;
 use crate::simulate::integrator::Start;
 use crate::simulate::step_control::rounding;
-use crate::simulate::{Action, Event, Hit, SimulateError};
+use crate::simulate::{Action, Event, Hit, SimulateError, StateError};
 
 impl<R: Dynamics<f64>> Simulation<'_, R> {
     /// Outputs and events of the step to t, which is not yet the state; where it is cut short, `end` is there. The time up to which it counts, and what is next.
@@ -93,7 +93,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         self.v.copy_from_slice(&self.y[nv..2 * nv]);
         let before = self.known.energy(&mut self.system, &self.point.q, &self.v)?;
         run.recording.events[hit].value = map(self.t, &mut self.point.q, &mut self.v)?;
-        self.system.manifold.check(&self.point.q, &self.v)?;
+        StateError::none(self.system.manifold.wrong_state(self.system.robot, &self.point.q, &self.v))?;
         self.system.origin.copy_from_slice(&self.point.q);
         self.y[nv..2 * nv].copy_from_slice(&self.v);
         self.renormalise()?;

@@ -6,7 +6,9 @@ mod stiffness;
 use articulated_core::algorithm::Shape;
 use articulated_core::dynamics::Dynamics;
 
+use self::stiffness::Held;
 use crate::simulate::curve::Point;
+use crate::simulate::error::joint;
 use crate::simulate::event::watch::Watch;
 use crate::simulate::integrator::{Method, Start, method};
 use crate::simulate::output::{Known, Times};
@@ -52,7 +54,7 @@ struct Run<'a, 'e> {
     chatter: u32,
     /// The last event that mapped the state, and when.
     last_map: (usize, f64),
-    stiff: (u32, u32),
+    held: Held,
 }
 
 impl Run<'_, '_> {
@@ -66,6 +68,9 @@ impl Run<'_, '_> {
         if self.period().is_some() { f64::INFINITY } else { self.control.next_kink(t) }
     }
 }
+
+/// What errors call the step vector of a step.
+const STEP: &str = "step of q";
 
 /// What a step has come to.
 enum Outcome {
@@ -157,11 +162,11 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         watch: &mut dyn FnMut(f64, &Counts) -> bool,
     ) -> Result<(), SimulateError> {
         self.known.begin(&self.system, recording);
+        let expected = self.shape.nv;
+        let torques = control.count().filter(|n| *n != expected).map(|found| StateError::Length { vector: "tau", found, expected });
+        let state = self.system.manifold.wrong_state(self.system.robot, q, v);
+        StateError::none(state.chain(events.iter().flat_map(|event| event.wrong(self.shape))).chain(torques))?;
         self.begin(q, v)?;
-        StateError::none(events.iter().filter_map(|event| event.wrong(self.shape)))?;
-        if let Some(found) = control.count().filter(|n| *n != self.shape.nv) {
-            return Err(SimulateError::State(vec![StateError::Length { vector: "tau", found, expected: self.shape.nv }]));
-        }
         let mut run = Run {
             control,
             events,
@@ -174,7 +179,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             cut: 0,
             chatter: 0,
             last_map: (0, f64::NEG_INFINITY),
-            stiff: (0, 0),
+            held: Held::default(),
         };
         let result = self.steps(&mut run, watch);
         run.recording.counts = self.system.counts;
@@ -182,16 +187,21 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         Ok(())
     }
 
-    /// Where a torque was no number, that is why nothing else is.
-    fn blamed(&self, error: SimulateError) -> SimulateError {
-        match (error, self.system.no_torque) {
-            (SimulateError::NotFinite { .. }, Some((t, index))) => SimulateError::NotFinite { t, what: "tau", index },
-            (error, _) => error,
+    /// Where a torque was no number, that is why nothing else is; where there is no mass to move, that is why there are no accelerations.
+    fn blamed(&mut self, error: SimulateError) -> SimulateError {
+        let nv = self.shape.nv;
+        match (&error, self.system.no_torque) {
+            (SimulateError::NotFinite { .. }, Some((t, index))) => self.system.named(t, "tau", vec![index]),
+            (SimulateError::NotFinite { what: "event", .. }, _) => error,
+            (SimulateError::NotFinite { .. } | SimulateError::Singular { .. }, _) => {
+                let cause = self.system.without_mass(&self.y[nv..2 * nv]);
+                cause.map_or(error, |cause| SimulateError::NoMass { t: self.t, cause })
+            }
+            _ => error,
         }
     }
 
     fn begin(&mut self, q: &[f64], v: &[f64]) -> Result<(), SimulateError> {
-        self.system.manifold.check(q, v)?;
         self.system.origin.copy_from_slice(q);
         self.system.counts = Counts::default();
         (self.system.holds, self.system.no_torque) = (false, None);
@@ -285,10 +295,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
 
     fn check_rate(&self) -> Result<(), SimulateError> {
         let nv = self.shape.nv;
-        match self.f[nv..2 * nv].iter().position(|a| !a.is_finite()) {
-            Some(index) => Err(SimulateError::NotFinite { t: self.t, what: "acceleration", index }),
-            None => Ok(()),
-        }
+        self.system.not_finite(self.t, "acceleration", &self.f[nv..2 * nv]).map_or(Ok(()), Err)
     }
 
     fn first_step(&mut self, run: &mut Run) -> Result<f64, SimulateError> {
@@ -341,16 +348,18 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
     }
 
     fn too_small(&self, error: f64, step: f64, index: usize) -> SimulateError {
-        match self.end[..2 * self.shape.nv].iter().position(|x| !x.is_finite()) {
-            Some(i) if error.is_nan() => self.not_finite(i),
-            _ => SimulateError::StepTooSmall { t: self.t, step, index },
+        if let Some(wrong) = self.not_finite().filter(|_| error.is_nan()) {
+            return wrong;
         }
+        let nv = self.shape.nv;
+        let (what, index) = if index < nv { (STEP, index) } else { ("v", index - nv) };
+        SimulateError::StepTooSmall { t: self.t, step, what, index, joint: joint(self.system.robot, index) }
     }
 
-    fn not_finite(&self, i: usize) -> SimulateError {
-        let nv = self.shape.nv;
-        let (what, index) = if i < nv { ("step of q", i) } else { ("v", i - nv) };
-        SimulateError::NotFinite { t: self.t, what, index }
+    /// What of the end of the step is not finite.
+    fn not_finite(&self) -> Option<SimulateError> {
+        let (u, v) = self.end[..2 * self.shape.nv].split_at(self.shape.nv);
+        self.system.not_finite(self.t, STEP, u).or_else(|| self.system.not_finite(self.t, "v", v))
     }
 
     /// The next of the equal steps of a stretch.
@@ -363,14 +372,14 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         let h = t - self.t;
         self.method.step(&mut self.system, run.control, start, h, &mut self.end, &self.norm)?;
         self.method.finish(&mut self.system, run.control, start, h, &mut self.end)?;
-        let bad = self.end[..2 * self.shape.nv].iter().position(|x| !x.is_finite());
+        let bad = self.not_finite();
         let explicit = !self.settings.integrator.row().implicit && self.system.counts.stiff_at.is_none();
         if explicit && (bad.is_some() || self.stability.suspects(self.system.counts.steps, h * self.method.fastest().map_or(0.0, |f| f.0)))
         {
             self.check_suspect(run)?;
         }
-        if let Some(i) = bad {
-            return Err(self.not_finite(i));
+        if let Some(bad) = bad {
+            return Err(bad);
         }
         run.stretch.1 += 1;
         Ok(t)

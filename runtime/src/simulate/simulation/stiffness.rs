@@ -40,6 +40,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         self.stiff(SimulateError::Unstable { integrator: self.settings.integrator, t: self.t, step: h, admissible, rate })
     }
 
+    /// Refused or noted.
     fn stiff(&mut self, error: SimulateError) -> Result<(), SimulateError> {
         if self.settings.stiffness == Stiffness::Refuse {
             return Err(error);
@@ -50,23 +51,53 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
 
     /// Hairer & Wanner 1996, §IV.2: fifteen steps held back by stability, with no six between that are not; looked for every thousand steps.
     pub(super) fn check_stiffness(&mut self, run: &mut Run, h: f64) -> Result<(), SimulateError> {
-        let due = self.system.counts.steps.is_multiple_of(1000) || run.stiff.0 > 0;
+        let due = self.system.counts.steps.is_multiple_of(1000) || run.held.steps > 0;
         if run.controller.is_none() || !due {
             return Ok(());
         }
         let Some((found, most)) = self.method.stiffness(h, &self.end) else { return Ok(()) };
-        if found > most {
-            run.stiff = (run.stiff.0 + 1, 0);
-        } else {
-            run.stiff.1 += 1;
-            if run.stiff.1 >= 6 {
-                run.stiff = (0, 0);
-            }
+        if run.held.steps == 0 {
+            run.held.since = (self.t, self.tries() - 1);
         }
-        if run.stiff.0 < 15 {
+        run.held.count(found > most);
+        if run.held.steps < 15 {
             return Ok(());
         }
-        run.stiff = (0, 0);
-        self.stiff(SimulateError::Stiff { integrator: self.settings.integrator, t: self.t, step: h })
+        let (since, before) = std::mem::take(&mut run.held).since;
+        let t = self.t + h;
+        let step = (t - since) / (self.tries() - before) as f64;
+        let left = (self.settings.end - t) / step;
+        if left <= AFFORDABLE {
+            self.system.counts.stiff_at.get_or_insert(self.t);
+            return Ok(());
+        }
+        self.stiff(SimulateError::Stiff { integrator: self.settings.integrator, t: self.t, step, left })
+    }
+
+    /// Steps, rejected ones among them.
+    fn tries(&self) -> u64 {
+        self.system.counts.steps + self.system.counts.rejected
+    }
+}
+
+/// So many steps of an explicit integrator are made sooner than another is chosen.
+const AFFORDABLE: f64 = 20_000.0;
+
+/// Steps that stability holds back.
+#[derive(Default)]
+pub(super) struct Held {
+    steps: u32,
+    /// Steps since the last of them that it did not.
+    free: u32,
+    /// When the first began, s, and the tries before.
+    since: (f64, u64),
+}
+
+impl Held {
+    fn count(&mut self, held: bool) {
+        (self.steps, self.free) = if held { (self.steps + 1, 0) } else { (self.steps, self.free + 1) };
+        if self.free >= 6 {
+            *self = Self::default();
+        }
     }
 }
