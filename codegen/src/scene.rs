@@ -3,15 +3,16 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use articulated_core::description::Base;
+use articulated_core::description::{Base, EditError};
+use articulated_core::model::Model;
 use articulated_scene::{At, Edited, Kind, Resolved, Robot, SceneError, SceneErrors};
 
 pub use articulated_scene::{self, Scene};
 
-use crate::edit::{model, read, read_with_shafts};
-use crate::faults::{Tried, tried};
+use crate::edit::{choose_frames, model, read, read_with_shafts};
+use crate::faults::{Tried, mentions, tried};
 use crate::request::Appended;
-use crate::{Edit, Error, Options, Reason, Refusal, Request, check_names, plan};
+use crate::{Edit, Error, Options, Reason, Refusal, Request, check_identifiers, check_names, plan};
 
 /// A scene and the request that it amounts to.
 #[derive(Clone, Debug)]
@@ -81,6 +82,7 @@ pub fn prepare(scene: Scene, file: &str, urdf: Vec<u8>, base: Base, append: Vec<
     let Tried { value, mut errors, rest } = tried(&request, named);
     let resolved = effects(&request, &rest, &scene, &mut errors);
     if let Some(model) = value {
+        errors.extend(renamings((&request, &rest), &model, &scene));
         errors.extend(scene.fits(&model).err().map(Error::from));
     }
     if let Some(error) = Error::of(errors) {
@@ -88,6 +90,16 @@ pub fn prepare(scene: Scene, file: &str, urdf: Vec<u8>, base: Base, append: Vec<
     }
     request.options.effects.clone_from(&resolved.effects);
     Ok(Prepared { scene, request, resolved, files: Vec::new() })
+}
+
+/// What is wrong with the scene's names in Rust; those that come of themselves matter only to who writes Rust.
+fn renamings((request, rest): (&Request, &Request), whole: &Model<f64>, scene: &Scene) -> Vec<Error> {
+    // Where a frame was refused, it is not known which links were meant to be one.
+    let whole = whole.clone();
+    let model = if rest.options.frames == request.options.frames { choose_frames(rest, whole) } else { Ok(whole) };
+    let names = model.and_then(|model| check_identifiers(rest, &model));
+    let errors = names.err().map(Error::into_each).unwrap_or_default();
+    errors.into_iter().filter(|error| in_its_place(error, scene).is_some()).collect()
 }
 
 /// Puts the scene's effects before those of the request. Errors: everything that is wrong with the document, or else with the request and the effects; what is wrong
@@ -176,27 +188,41 @@ pub fn placed(error: Error, scene: &Scene) -> Error {
 
 /// `None`: it is not the scene's.
 fn in_its_place(error: &Error, scene: &Scene) -> Option<Vec<SceneError>> {
-    let named = |key: &str| {
-        let (key, found) = (key.to_owned(), error.to_string());
-        vec![SceneError {
-            file: scene.file.clone(),
-            at: At::Nowhere,
-            key,
-            kind: Kind::Refused,
-            found,
-            expected: String::new(),
-            nearest: None,
-        }]
+    let (code, places) = (&scene.code, &scene.code.places);
+    let entry = |list: &Option<Vec<String>>, at: &[At], is: &dyn Fn(&str) -> bool| {
+        list.as_ref()?.iter().rposition(|entry| is(entry)).map(|i| place_of(at, i))
     };
+    let function = |name: &str| entry(&code.functions, &places.functions, &|entry| mentions(entry, name));
+    let renaming = |from: &str| code.rename.iter().rposition(|(name, _)| name == from).map(|i| place_of(&places.rename, i));
+    let refused = |at, key: &str, found| vec![refused(scene, at, key.to_owned(), found)];
+    let whole = error.to_string();
     match error {
         Error::Edits { refusals } => refusals.iter().map(|refusal| place(refusal, scene)).collect(),
-        Error::UnknownFunction { .. } => scene.code.functions.as_ref().map(|_| named("functions")),
+        Error::UnknownFunction { found, .. } => function(found).map(|at| refused(at, "functions", whole)),
         // They begin with their key.
-        Error::Wanted { .. } | Error::SameName { .. } => scene.code.functions.as_ref().map(|_| named("")),
-        Error::Parameter { .. } => scene.code.parameters.as_ref().map(|_| named("")),
-        Error::Number { key: "snap_angles", .. } => scene.code.snap_angles.map(|_| named("")),
+        Error::Wanted { found: name, .. } | Error::SameName { name } => function(name).map(|at| refused(at, "", whole)),
+        Error::Parameter { found, .. } => {
+            entry(&code.parameters, &places.parameters, &|entry| entry.trim() == found).map(|at| refused(at, "", whole))
+        }
+        Error::Rename { from, to, reason, .. } => {
+            renaming(from).map(|at| refused(at, &format!("rename.{from}"), format!("to `{to}`: {reason}")))
+        }
+        Error::NameClash { kind, first, second, ident, .. } => {
+            let (at, name) = [second, first].into_iter().find_map(|name| Some((renaming(name)?, name)))?;
+            let found = format!("{kind}s {first:?} and {second:?} are both `{ident}` in Rust; give one another name");
+            Some(refused(at, &format!("rename.{name}"), found))
+        }
         _ => None,
     }
+}
+
+/// The place of one of a list.
+fn place_of(places: &[At], i: usize) -> At {
+    places.get(i).copied().unwrap_or_default()
+}
+
+fn refused(scene: &Scene, at: At, key: String, found: String) -> SceneError {
+    SceneError { file: scene.file.clone(), at, key, kind: Kind::Refused, found, expected: String::new(), nearest: None }
 }
 
 /// `None`: it is not the scene's.
@@ -207,21 +233,33 @@ fn place(refusal: &Refusal, scene: &Scene) -> Option<SceneError> {
         Edit::Payload(i) => (code.payload.get(i)?.place, "payload".to_owned()),
         Edit::Shaft(i) => scene.shafts.get(i).map(|asked| (asked.place, format!("effects.shaft.{}", asked.shaft.joint)))?,
         Edit::Lock(i) => code.lock.get(i).map(|lock| (lock.place, format!("lock.{}", lock.joint)))?,
-        Edit::Frame(_) => (At::Nowhere, "frames".to_owned()),
+        Edit::Frame(i) => {
+            let named = code.frames.as_ref()?.get(i)?;
+            is_about(&refusal.reason, named).then(|| (place_of(&code.places.frames, i), "frames".to_owned()))?
+        }
     };
     let found = match &refusal.reason {
         Reason::Edit(error) => error.to_string(),
         Reason::Urdf(problems) => problems.to_string(),
         Reason::FrameTwice(name) => format!("{name:?} is listed twice"),
     };
-    Some(SceneError { file: scene.file.clone(), at, key, kind: Kind::Refused, found, expected: String::new(), nearest: None })
+    Some(refused(scene, at, key, found))
+}
+
+/// Whether a frame was refused because of this link: others may stand in place of the scene's.
+fn is_about(reason: &Reason, link: &str) -> bool {
+    match reason {
+        Reason::Edit(EditError::UnknownLink { name, .. }) | Reason::FrameTwice(name) => name == link,
+        _ => false,
+    }
 }
 
 /// The scene has no robot that could be had.
 pub(crate) fn no_robot(scene: &Scene, found: &str, expected: &str) -> Error {
     let (found, expected) = (found.to_owned(), expected.to_owned());
     let key = if scene.robot == Robot::Given { String::new() } else { "robot".to_owned() };
-    let error = SceneError { file: scene.file.clone(), at: At::Nowhere, key, kind: Kind::UnknownName, found, expected, nearest: None };
+    let at = scene.code.places.robot;
+    let error = SceneError { file: scene.file.clone(), at, key, kind: Kind::UnknownName, found, expected, nearest: None };
     SceneErrors { errors: vec![error] }.into()
 }
 
@@ -394,6 +432,44 @@ mod tests {
         assert!(matches!(told, Err(Error::Urdf(_))), "{told:?}");
     }
 
+    /// A build script's own functions, frames and names stand in place of the scene's.
+    #[test]
+    fn what_is_not_the_scenes_is_not_blamed_on_it() {
+        let told = |scene: &str, change: &dyn Fn(&mut Options)| {
+            let scene = Scene::read("s.toml", scene).unwrap();
+            let mut request = Request::new("arm.urdf", ARM);
+            fill(&mut request.options, &scene);
+            change(&mut request.options);
+            placed(settle(&mut request, &scene).unwrap_err(), &scene).to_string()
+        };
+        assert!(told("functions = ['mass_matrix']", &|o| o.functions = vec!["no_such".into()]).starts_with("unknown function `no_such`"));
+        assert!(told("frames = ['fore']", &|o| o.frames = Some(vec!["none".into()])).starts_with("arm.urdf: frames: "));
+        assert!(told("rename = { fore = 'X' }", &|o| o.rename = vec![("none".into(), "X".into())]).starts_with("arm.urdf: rename "));
+    }
+
+    /// Names that are the same in Rust are no matter of a scene that gives none of them.
+    #[test]
+    fn names_are_asked_for_where_the_scene_gives_them() {
+        let urdf = ARM.replace(
+            "</robot>",
+            "<link name='a-b'/><link name='a_b'/>\
+            <joint name='one' type='fixed'><parent link='fore'/><child link='a-b'/></joint>\
+            <joint name='two' type='fixed'><parent link='fore'/><child link='a_b'/></joint></robot>",
+        );
+        let told = |scene: &str| {
+            let scene = Scene::read("s.toml", scene).unwrap();
+            prepare(scene, "arm.urdf", urdf.clone().into(), Base::Fixed, Vec::new()).map(|_| ()).map_err(|e| e.to_string())
+        };
+        assert_eq!(told("rename = { fore = 'FORE' }"), Ok(()));
+        assert!(told("rename = { a-b = 'A_B' }").unwrap_err().starts_with("s.toml:1: rename.a-b: "));
+    }
+
+    #[test]
+    fn a_scene_takes_the_angles_that_a_request_takes() {
+        let read = |most: f64| Scene::read("s.toml", &format!("snap_angles = {most}")).is_ok();
+        assert!(read(crate::edit::MOST_SNAPPED) && !read(crate::edit::MOST_SNAPPED * 1.01));
+    }
+
     #[test]
     fn a_shaft_of_the_request_leaves_the_scene_its_effects() {
         let club = |name: &str| {
@@ -428,11 +504,26 @@ mod tests {
             prepare(scene, "arm.urdf", equal.into(), Base::Fixed, Vec::new()).map(|_| ()).unwrap_err().to_string()
         };
         let limit = wrong("\n[effects]\nlimit = { from = 'urdf', stiffness = 100 }");
-        assert_eq!(
-            limit,
-            "s.toml:3: effects.limit: limit on joint \"shoulder\": upper: found 1, expected a number above the lower bound, 1"
-        );
+        assert_eq!(limit, "s.toml:3: effects.limit: limit on joint \"shoulder\": upper: found 1, expected a number above the lower bound");
         assert_eq!(wrong("\nlock = { elbo = 1 }"), "s.toml:2: lock.elbo: the robot has no joint \"elbo\", did you mean \"elbow\"?");
+        let named = [
+            ("\nfunctions = ['mass_matrix',\n 'no_such']", "s.toml:3: functions: unknown function `no_such`"),
+            ("\nfunctions = ['x = inverse_dynamics(b = 0)']", "s.toml:2: functions: `x = inverse_dynamics(b = 0)`: "),
+            ("parameters = [\n'payload(for)']", "s.toml:2: parameters: `payload(for)`: "),
+            ("frames = ['fore',\n'upper',\n'for']", "s.toml:3: frames: the robot has no link \"for\", did you mean \"fore\"?"),
+            ("frames = ['for']\nrename = { fore = 'X' }", "s.toml:1: frames: the robot has no link \"for\", did you mean"),
+            ("frames = ['fore',\n'fore']", "s.toml:2: frames: \"fore\" is listed twice"),
+            ("\nrename = { elbo = 'X' }", "s.toml:2: rename.elbo: to `X`: no joint that moves"),
+            ("[rename]\nfore = 'X'\nelbow = 'fn'", "s.toml:3: rename.elbow: to `fn`: this is not an identifier of Rust"),
+            (
+                "[rename]\nfore = 'X'\nupper = 'X'",
+                "s.toml:2: rename.fore: links \"upper\" and \"fore\" are both `X` in Rust; give one another name",
+            ),
+        ];
+        for (scene, told) in named {
+            let found = wrong(scene);
+            assert!(found.starts_with(told) && found.lines().count() == 1, "{found}");
+        }
         let shaft = wrong("[effects.shaft.elbow]\nsegments = 1\nstiffness = 1");
         assert_eq!(
             shaft,

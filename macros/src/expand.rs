@@ -117,10 +117,24 @@ fn source(asked: Asked, settings: &Settings, errors: &mut Errors) -> TokenStream
     match effects.and_then(|()| articulated_codegen::generate(&request)) {
         Ok(generated) => generated.tokens(),
         Err(error) => {
+            let error = scene::placed(error, &without_what_is_replaced(scene, settings));
             errors.push(place::at_its_word(&error, settings, robot));
             TokenStream::new()
         }
     }
+}
+
+/// The scene without lists in whose place the invocation has its own: what is wrong with those is not the scene's.
+fn without_what_is_replaced(mut scene: Scene, settings: &Settings) -> Scene {
+    let code = &mut scene.code;
+    code.functions.take_if(|_| settings.functions.is_some());
+    code.parameters.take_if(|_| settings.parameters.is_some());
+    code.frames.take_if(|_| settings.frames.is_some());
+    code.lock.retain(|_| settings.lock.is_none());
+    code.payload.retain(|_| settings.payloads.is_none());
+    code.append.retain(|_| settings.append.is_none());
+    code.rename.retain(|_| settings.rename.is_none());
+    scene
 }
 
 /// Files that were read.

@@ -3,7 +3,8 @@
 use articulated_core::effect::Range;
 use articulated_core::model::{FLOATING_BASE, Model};
 
-use crate::error::{Kind, SceneErrors, quote};
+use crate::edits::{name, places};
+use crate::error::{Kind, SceneErrors};
 use crate::initial::{Coordinates, Named, Side, counted, fill, neutral, no_joint, normalise, values};
 use crate::log::Log;
 use crate::scene::Scene;
@@ -152,7 +153,7 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
         value: "number, numbers, or table: joint = number; N·m, N",
         default: "0",
         what: "`torque`, `pd`: the torques",
-        read: |x, s, log| x.torque = per_joint(s, f64::NEG_INFINITY, log),
+        read: |x, s, log| x.torque = per_joint(s, Range::ALL, log),
     },
     Row {
         name: "target",
@@ -167,16 +168,16 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
         required: false,
         value: "number, numbers, or table: joint = number; N·m/rad, N/m",
         default: "0",
-        what: "`pd`: gain of the position",
-        read: |x, s, log| x.kp = per_joint(s, 0.0, log),
+        what: "`pd`: gain of the position, at least 0",
+        read: |x, s, log| x.kp = per_joint(s, Range::NOT_NEGATIVE, log),
     },
     Row {
         name: "kd",
         required: false,
         value: "number, numbers, or table: joint = number; N·m·s/rad, N·s/m",
         default: "0",
-        what: "`pd`: gain of the rate",
-        read: |x, s, log| x.kd = per_joint(s, 0.0, log),
+        what: "`pd`: gain of the rate, at least 0",
+        read: |x, s, log| x.kd = per_joint(s, Range::NOT_NEGATIVE, log),
     },
     Row {
         name: "file",
@@ -184,7 +185,10 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
         value: "text",
         default: "none",
         what: "`table`, `pd`: a CSV, seen from the scene's folder; its first line names the columns, the first of which is `t`, s; the others are joints (`joint[k]` for the k-th number of one that has several)",
-        read: |x, s, log| x.source.file = crate::edits::name(s, log, "the path of a CSV"),
+        read: |x, s, log| {
+            x.source.file = name(s, log, "the path of a CSV");
+            x.source.place = s.at;
+        },
     },
     Row {
         name: "columns",
@@ -194,6 +198,7 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
         what: "`table`, `pd`: instead of a file: names of the columns after the time",
         read: |x, s, log| {
             x.source.columns = s.texts(log, "a list of joints").unwrap_or_default();
+            x.source.column_places = places(s);
             x.source.place = s.at;
         },
     },
@@ -203,7 +208,10 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
         value: "list of lists of numbers",
         default: "none",
         what: "`table`, `pd`: instead of a file: the time, s, and a number for each column",
-        read: |x, s, log| x.source.rows = rows(s, log),
+        read: |x, s, log| {
+            x.source.rows = rows(s, log);
+            x.source.row_places = places(s);
+        },
     },
     Row {
         name: "interpolation",
@@ -218,7 +226,7 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
         required: false,
         value: "number, s",
         default: "none",
-        what: "`table`, `pd`: the torques are kept for so long, as by a digital controller",
+        what: "`table`, `pd`: the torques are kept for so long, above 0, as by a digital controller",
         read: |x, s, log| x.period = s.positive(log),
     },
 ];
@@ -230,7 +238,6 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Control {
     if log.count() > before {
         return Control::default();
     }
-    keys.source.place = spot.at;
     let of_sort = OF_SORT.iter().find(|(sort, _)| *sort == keys.kind).map_or(&[][..], |(_, keys)| keys);
     let word = SORTS.iter().find(|(_, sort)| *sort == keys.kind).map_or("", |(word, _)| word);
     for row in KEYS.iter().filter(|row| row.name != "kind" && !of_sort.contains(&row.name)) {
@@ -238,7 +245,8 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Control {
             there.clash(log, format!("a key that control of kind {word:?} does not have"), listed(of_sort));
         }
     }
-    if keys.kind == Sort::Table || (keys.kind == Sort::Pd && keys.source != Source { place: spot.at, ..Source::default() }) {
+    let over_time = ["file", "columns", "rows", "interpolation"].iter().any(|key| spot.get(key).is_some());
+    if keys.kind == Sort::Table || (keys.kind == Sort::Pd && over_time) {
         check_source(&keys, spot, log);
     }
     let Keys { kind, torque, target, kp, kd, source, period } = keys;
@@ -281,20 +289,36 @@ fn rows(spot: &Spot<'_>, log: &mut Log) -> Vec<Vec<f64>> {
     }
 }
 
-fn per_joint(spot: &Spot<'_>, least: f64, log: &mut Log) -> PerJoint {
+fn per_joint(spot: &Spot<'_>, range: Range, log: &mut Log) -> PerJoint {
     match &spot.node.value {
-        Value::Number(_) => PerJoint::Same(spot.within(log, Range::from(least)).unwrap_or_default()),
+        Value::Number(_) => PerJoint::Same(spot.within(log, range).unwrap_or_default()),
         Value::Table(_) => {
-            let rest = spot.get("*").map_or(Some(0.0), |all| all.within(log, Range::from(least))).unwrap_or_default();
+            let rest = spot.get("*").map_or(Some(0.0), |all| all.number(log)).unwrap_or_default();
             let Coordinates::Named(mut named) = values(spot, log) else { return PerJoint::default() };
             named.retain(|one| one.joint != "*");
+            all_within(spot, range, log);
             PerJoint::Named { rest, named: Coordinates::Named(named) }
         }
-        Value::List(_) => PerJoint::All(values(spot, log)),
+        Value::List(_) => {
+            all_within(spot, range, log);
+            PerJoint::All(values(spot, log))
+        }
         _ => {
             spot.wrong(log, "a number, a list of numbers, or a table of joints, as { \"*\" = 10, elbow = 20 }");
             PerJoint::default()
         }
+    }
+}
+
+/// Every finite number is in the range; what else is wrong is told by who reads the numbers.
+fn all_within(spot: &Spot<'_>, range: Range, log: &mut Log) {
+    match &spot.node.value {
+        Value::Number(x) if x.is_finite() => {
+            let _ = spot.within(log, range);
+        }
+        Value::List(_) => spot.list().iter().flatten().for_each(|item| all_within(item, range, log)),
+        Value::Table(entries) => entries.iter().for_each(|entry| all_within(&spot.of(entry), range, log)),
+        _ => {}
     }
 }
 
@@ -381,9 +405,4 @@ fn put(one: &Named, key: &str, model: &Model<f64>, all: &mut [f64], log: &mut Lo
 
 fn wrong_count(log: &mut Log, at: At, key: &str, found: usize, expected: usize) {
     log.error(at, key, Kind::Number, counted(found), format!("one number, or {}", counted(expected)));
-}
-
-/// A file that cannot be read, in words.
-pub(crate) fn unreadable(name: &str, reason: &str) -> String {
-    format!("{}, which cannot be read ({reason})", quote(name))
 }

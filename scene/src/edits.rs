@@ -66,6 +66,15 @@ pub(crate) fn renamings(spot: &Spot<'_>, log: &mut Log) -> Vec<(String, String)>
     entries.iter().filter_map(|e| Some((e.name.clone(), spot.of(e).text(log, "a name in Rust")?.to_owned()))).collect()
 }
 
+/// Where the items of a list, or the entries of a table, stand.
+pub(crate) fn places(spot: &Spot<'_>) -> Vec<At> {
+    match &spot.node.value {
+        Value::List(list) => list.iter().map(|item| item.at).collect(),
+        Value::Table(entries) => entries.iter().map(|entry| entry.at).collect(),
+        _ => Vec::new(),
+    }
+}
+
 /// A name that is not empty.
 pub(crate) fn name(spot: &Spot<'_>, log: &mut Log, what: &str) -> Option<String> {
     let name = spot.text(log, what)?;
@@ -93,7 +102,7 @@ pub(crate) const LOAD: &[Row<Load>] = &[
         required: true,
         value: "number, kg",
         default: "",
-        what: "its mass",
+        what: "its mass, at least 0",
         read: |l, s, log| l.payload.mass = s.not_negative(log).unwrap_or_default(),
     },
     Row {

@@ -1,5 +1,7 @@
 //! `[impact]`: a ball that a link hits.
 
+use articulated_core::effect::Range;
+
 use crate::edits::name;
 use crate::log::Log;
 use crate::simulation::set;
@@ -25,7 +27,7 @@ pub struct Impact {
     pub when: When,
     /// Whether the simulation ends with it.
     pub stop: bool,
-    /// Where the scene says so.
+    /// Where the scene names the link.
     pub place: At,
 }
 
@@ -51,7 +53,10 @@ pub(crate) const KEYS: &[Row<Impact>] = &[
         value: "text",
         default: "",
         what: "the link that hits",
-        read: |x, s, log| x.link = name(s, log, "the name of a link").unwrap_or_default(),
+        read: |x, s, log| {
+            x.place = s.at;
+            x.link = name(s, log, "the name of a link").unwrap_or_default();
+        },
     },
     Row {
         name: "point",
@@ -80,7 +85,7 @@ pub(crate) const KEYS: &[Row<Impact>] = &[
         required: true,
         value: "number, kg",
         default: "",
-        what: "mass of the ball",
+        what: "mass of the ball, above 0",
         read: |x, s, log| set(&mut x.mass, s.positive(log)),
     },
     Row {
@@ -88,12 +93,9 @@ pub(crate) const KEYS: &[Row<Impact>] = &[
         required: true,
         value: "number, 1",
         default: "",
-        what: "coefficient of restitution, from 0 to 1",
+        what: "coefficient of restitution, at least 0, at most 1",
         read: |x, s, log| {
-            set(&mut x.restitution, s.not_negative(log));
-            if x.restitution > 1.0 {
-                s.bad(log, format!("{:?}", x.restitution), "a number from 0 to 1");
-            }
+            set(&mut x.restitution, s.within(log, Range { at_most: 1.0, ..Range::NOT_NEGATIVE }));
         },
     },
     Row {
@@ -131,7 +133,7 @@ pub(crate) const KEYS: &[Row<Impact>] = &[
 ];
 
 pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Option<Impact> {
-    let mut impact = Impact { place: spot.at, ..Impact::default() };
+    let mut impact = Impact::default();
     let before = log.count();
     spot.read(KEYS, &mut impact, log);
     match (spot.get("ball"), spot.get("time")) {

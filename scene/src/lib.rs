@@ -38,7 +38,7 @@ pub use error::{Kind, SceneError, SceneErrors};
 pub use impact::{Impact, When};
 pub use initial::{BaseState, Coordinates, Initial, Named};
 pub use report::{EffectOff, EffectOn, Number, Report, Why};
-pub use scene::{Code, Robot, Scene};
+pub use scene::{Code, Places, Robot, Scene};
 pub use series::{Reader, Series, Source};
 pub use shaft::ShaftAsked;
 pub use simulation::{Output, Simulation, Stiffness, Watched};

@@ -22,6 +22,17 @@ impl Log {
         Self { file: file.to_owned(), errors: Vec::new(), more: 0, suggester: Suggester::default() }
     }
 
+    /// The file, as it was called when it was read.
+    pub(crate) fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// What was found of another file.
+    pub(crate) fn take(&mut self, other: Self) {
+        self.more += other.more;
+        other.errors.into_iter().for_each(|error| self.push(error));
+    }
+
     /// One error more.
     pub(crate) fn error(&mut self, at: At, key: &str, kind: Kind, found: impl Into<String>, expected: impl Into<String>) {
         self.push(SceneError {
@@ -74,8 +85,8 @@ impl Log {
         if self.errors.is_empty() {
             return Ok(value);
         }
-        // As they stand in the file; those of one line as they were found.
-        self.errors.sort_by_key(|e| e.at);
+        // As they stand in the file, and then in files that it names; those of one line as they were found.
+        self.errors.sort_by_key(|e| (e.file != self.file, e.at));
         if self.more > 0 {
             let (more, file) = (self.more, self.file.clone());
             let found = format!("{more} more errors, not listed");

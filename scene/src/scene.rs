@@ -1,6 +1,7 @@
 //! A scene, and the keys at its top.
 
 use articulated_core::description::Base;
+use articulated_core::effect::Range;
 use articulated_core::lanes::Real;
 use articulated_core::level::Level;
 use articulated_core::spatial::Reference;
@@ -16,7 +17,7 @@ use crate::log::Log;
 use crate::shaft::ShaftAsked;
 use crate::simulation::{self, Simulation};
 use crate::table::{Row, Spot};
-use crate::tree::Node;
+use crate::tree::{At, Node};
 
 /// A scene as its file has it: names are not looked up yet, files not opened.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -90,6 +91,23 @@ pub struct Code {
     pub level: Option<Level>,
     /// No `unsafe` in the generated code.
     pub forbid_unsafe: Option<bool>,
+    /// Where the scene says so.
+    pub places: Places,
+}
+
+/// Where a scene names what only the robot, or who uses the scene, shows to be wrong: of a list, each of its items.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Places {
+    /// A bundled robot, or a URDF.
+    pub robot: At,
+    /// Of [`Code::functions`].
+    pub functions: Vec<At>,
+    /// Of [`Code::parameters`].
+    pub parameters: Vec<At>,
+    /// Of [`Code::frames`].
+    pub frames: Vec<At>,
+    /// Of [`Code::rename`].
+    pub rename: Vec<At>,
 }
 
 impl Scene {
@@ -109,7 +127,7 @@ impl Scene {
             Ok(text) => Self::read(file, text),
             Err(error) => {
                 let lines = bytes[..error.valid_up_to()].iter().filter(|b| **b == b'\n').count();
-                let at = crate::tree::At::Line(u32::try_from(lines + 1).unwrap_or(u32::MAX));
+                let at = At::Line(u32::try_from(lines + 1).unwrap_or(u32::MAX));
                 let mut log = Log::new(file);
                 log.error(at, "", Kind::Syntax, "bytes that are not UTF-8", "a TOML file");
                 log.result(Self::default())
@@ -161,7 +179,10 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         value: "text",
         default: "given by who uses the scene",
         what: "a bundled robot",
-        read: |s, spot, log| s.robot = edits::name(spot, log, "the name of a bundled robot").map_or(Robot::Given, Robot::Bundled),
+        read: |s, spot, log| {
+            s.robot = edits::name(spot, log, "the name of a bundled robot").map_or(Robot::Given, Robot::Bundled);
+            s.code.places.robot = spot.at;
+        },
     },
     Row {
         name: "urdf",
@@ -169,7 +190,10 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         value: "text",
         default: "given by who uses the scene",
         what: "a URDF, seen from the scene's folder; instead of `robot`",
-        read: |s, spot, log| s.robot = edits::name(spot, log, "the path of a URDF").map_or(Robot::Given, Robot::Urdf),
+        read: |s, spot, log| {
+            s.robot = edits::name(spot, log, "the path of a URDF").map_or(Robot::Given, Robot::Urdf);
+            s.code.places.robot = spot.at;
+        },
     },
     Row {
         name: "base",
@@ -195,6 +219,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         what: "the functions to generate, as the macro's key has them",
         read: |s, spot, log| {
             s.code.functions = spot.texts(log, "a list of functions, as [\"placements\", \"bias = inverse_dynamics(a = 0)\"]");
+            s.code.places.functions = edits::places(spot);
         },
     },
     Row {
@@ -203,7 +228,10 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         value: "texts",
         default: "none",
         what: "constants of the model that stay inputs, as `\"payload(tool)\"`",
-        read: |s, spot, log| s.code.parameters = spot.texts(log, "a list of what stays an input, as [\"payload(tool)\"]"),
+        read: |s, spot, log| {
+            s.code.parameters = spot.texts(log, "a list of what stays an input, as [\"payload(tool)\"]");
+            s.code.places.parameters = edits::places(spot);
+        },
     },
     Row {
         name: "frames",
@@ -211,7 +239,10 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         value: "texts",
         default: "all links",
         what: "the links whose frames the functions of frames give",
-        read: |s, spot, log| s.code.frames = spot.texts(log, "a list of links, as [\"tool\"]"),
+        read: |s, spot, log| {
+            s.code.frames = spot.texts(log, "a list of links, as [\"tool\"]");
+            s.code.places.frames = edits::places(spot);
+        },
     },
     Row {
         name: "wrenches_in",
@@ -251,7 +282,10 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         value: "table: name in the URDF = text",
         default: "none",
         what: "names in Rust",
-        read: |s, spot, log| s.code.rename = edits::renamings(spot, log),
+        read: |s, spot, log| {
+            s.code.rename = edits::renamings(spot, log);
+            s.code.places.rename = edits::places(spot);
+        },
     },
     Row {
         name: "allow_unphysical_inertia",
@@ -266,8 +300,8 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         required: false,
         value: "number, rad",
         default: "never",
-        what: "take angles this near to a multiple of π/2 as that, up to 0.5",
-        read: |s, spot, log| s.code.snap_angles = spot.positive(log),
+        what: "take angles this near to a multiple of π/2 as that, above 0, at most 0.5",
+        read: |s, spot, log| s.code.snap_angles = spot.within(log, Range { at_most: 0.5, ..Range::POSITIVE }),
     },
     Row {
         name: "limbs",

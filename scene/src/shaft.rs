@@ -36,7 +36,7 @@ pub(crate) const KEYS: &[Row<ShaftAsked>] = &[
         required: true,
         value: "number, N·m²",
         default: "",
-        what: "flexural rigidity E·I, the same all along and in both directions",
+        what: "flexural rigidity E·I, the same all along and in both directions, above 0",
         read: |x, s, log| set(&mut x.shaft.stiffness, s.positive(log)),
     },
     Row {
@@ -44,7 +44,7 @@ pub(crate) const KEYS: &[Row<ShaftAsked>] = &[
         required: false,
         value: "number, s",
         default: "0",
-        what: "bending moment E·I·damping at the unit rate of curvature",
+        what: "bending moment E·I·damping at the unit rate of curvature, at least 0",
         read: |x, s, log| set(&mut x.shaft.damping, s.not_negative(log)),
     },
     Row {
@@ -52,7 +52,7 @@ pub(crate) const KEYS: &[Row<ShaftAsked>] = &[
         required: false,
         value: "number, kg",
         default: "that of the link before the joint, which is taken from there",
-        what: "mass of the part that bends, the same all along",
+        what: "mass of the part that bends, the same all along, above 0",
         read: |x, s, log| x.shaft.mass = s.positive(log),
     },
     Row {

@@ -1,6 +1,6 @@
 //! `[simulation]`: from when to when, by which integrator, how exactly, and what is recorded.
 
-use articulated_core::integrator::{IntegratorId, integrators};
+use articulated_core::integrator::{IntegratorId, integrators, meant};
 
 use crate::error::Kind;
 use crate::log::Log;
@@ -128,14 +128,14 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         value: "`\"semi_implicit_euler\"`, `\"rk4\"`, `\"dopri5\"`, `\"dop853\"`, `\"rodas4\"` or `\"lie_midpoint\"`",
         default: "`\"dopri5\"`",
         what: "the integrator",
-        read: |x, s, log| set(&mut x.integrator, s.word(log, &words())),
+        read: |x, s, log| set(&mut x.integrator, integrator(s, log)),
     },
     Row {
         name: "step",
         required: false,
         value: "number, s",
         default: "chosen by the errors; has to be given for `semi_implicit_euler`, `rk4` and `lie_midpoint`",
-        what: "length of all steps",
+        what: "length of all steps, above 0, and more than the time's rounding",
         read: |x, s, log| x.step = s.positive(log),
     },
     Row {
@@ -143,15 +143,15 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         required: false,
         value: "number, 1",
         default: "1e-6",
-        what: "error of a step, in parts of the state",
-        read: |x, s, log| set(&mut x.rtol, s.not_negative(log)),
+        what: "error of a step, in parts of the state: 0, or at least 1e-15 and below 1",
+        read: |x, s, log| set(&mut x.rtol, part(s, log)),
     },
     Row {
         name: "atol",
         required: false,
         value: "number, rad, m, rad/s, m/s",
         default: "1e-9",
-        what: "error of a step beside that",
+        what: "error of a step beside that, at least 0; not 0 where `rtol` is",
         read: |x, s, log| set(&mut x.atol, s.not_negative(log)),
     },
     Row {
@@ -159,7 +159,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         required: false,
         value: "number, s",
         default: "what the clock can tell",
-        what: "no step by tolerance is shorter",
+        what: "no step by tolerance is shorter, at least 0",
         read: |x, s, log| set(&mut x.min_step, s.not_negative(log)),
     },
     Row {
@@ -167,7 +167,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         required: false,
         value: "number, s",
         default: "no bound",
-        what: "no step by tolerance is longer",
+        what: "no step by tolerance is longer, above 0 and above `min_step`",
         read: |x, s, log| set(&mut x.max_step, s.positive(log)),
     },
     Row {
@@ -175,13 +175,13 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         required: false,
         value: "number, s",
         default: "chosen",
-        what: "the first step, by tolerance",
+        what: "the first step, by tolerance, above 0",
         read: |x, s, log| x.first_step = s.positive(log),
     },
     Row {
         name: "max_steps",
         required: false,
-        value: "whole number",
+        value: "whole number, 1 to 1099511627776",
         default: "10000000",
         what: "more are not made",
         read: |x, s, log| set(&mut x.max_steps, s.whole(log, 1, 1 << 40)),
@@ -191,7 +191,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         required: false,
         value: "number, s; numbers, s; `\"steps\"` or `\"ends\"`",
         default: "0.01",
-        what: "how often the state is recorded, or when: the times, after each step, at the ends",
+        what: "how often the state is recorded, above 0 and less than 1e9 times, or when: the times, in order, after each step, at the ends",
         read: |x, s, log| set(&mut x.output, output(s, log)),
     },
     Row {
@@ -199,7 +199,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         required: false,
         value: "list of `\"limits\"`, `\"contacts\"`, `\"stick_slip\"`",
         default: "none",
-        what: "what is looked for on the way and recorded, for every effect of that sort",
+        what: "what is looked for on the way and recorded: joints at the bounds of their effect `limit`, or else of the URDF; every effect `contact`; every effect `friction`",
         read: |x, s, log| x.events = events(s, log),
     },
     Row {
@@ -207,7 +207,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         required: false,
         value: "number, s",
         default: "1e-12",
-        what: "how exactly events are found",
+        what: "how exactly events are found, above 0",
         read: |x, s, log| set(&mut x.event_tolerance, s.positive(log)),
     },
     Row {
@@ -215,7 +215,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         required: false,
         value: "`\"refuse\"` or `\"note\"`",
         default: "`\"refuse\"`",
-        what: "what happens where an explicit integrator is outside its stable step",
+        what: "what happens where an explicit integrator is outside its stable step; with steps by tolerance `\"refuse\"` ends a motion only where more than 20 000 such steps would be left",
         read: |x, s, log| set(&mut x.stiffness, s.word(log, STIFFNESS)),
     },
 ];
@@ -257,11 +257,21 @@ fn check(x: &Simulation, spot: &Spot<'_>, log: &mut Log) {
             spot.clash(log, "a fixed step and what is for steps by tolerance", "no step, or no such key");
         }
     }
-    if x.rtol == 0.0 && x.atol == 0.0 {
+    if let (true, Some(spot)) = (x.rtol == 0.0 && x.atol == 0.0, key("rtol")) {
         spot.clash(log, "rtol and atol both 0", "one of them above 0");
     }
     if let (true, Some(spot)) = (x.max_step <= x.min_step, key("max_step")) {
         spot.clash(log, format!("{:?}, not above min_step, {:?}", x.max_step, x.min_step), "a longer step");
+    }
+    let least = 16.0 * f64::EPSILON * start.abs().max(end.abs());
+    if let (Some(step), Some(spot)) = (x.step.filter(|step| *step < least), key("step")) {
+        spot.clash(log, format!("{step:?}"), format!("at least {least:.1e} s, sixteen units of rounding of the time"));
+    }
+    if let (Output::Every(every), Some(spot)) = (&x.output, key("output"))
+        && end > start
+        && (end - start) / every >= MOST_RECORDS
+    {
+        spot.clash(log, format!("{every:?}, so {MOST_RECORDS:e} records or more"), "a longer time from one to the next");
     }
     if let (Output::At(times), Some(spot)) = (&x.output, key("output")) {
         let outside = times.iter().find(|t| *t < start || *t > end);
@@ -272,6 +282,24 @@ fn check(x: &Simulation, spot: &Spot<'_>, log: &mut Log) {
             _ => {}
         }
     }
+}
+
+/// So many times or more no state is recorded.
+const MOST_RECORDS: f64 = 1e9;
+
+/// A part of the state: nothing below 1e-15, which is rounding, but 0.
+fn part(spot: &Spot<'_>, log: &mut Log) -> Option<f64> {
+    let expected = "0, or at least 1e-15 and below 1";
+    match spot.node.value {
+        Value::Number(x) if x == 0.0 || (1e-15..1.0).contains(&x) => return Some(x),
+        Value::Number(x) => spot.bad(log, format!("{x:?}"), expected),
+        _ => spot.wrong(log, expected),
+    }
+    None
+}
+
+fn integrator(spot: &Spot<'_>, log: &mut Log) -> Option<IntegratorId> {
+    spot.word_like(log, &words(), |found| meant(found).map_or(found, |row| row.name))
 }
 
 /// What scenes call the integrators.

@@ -193,13 +193,18 @@ impl<'a> Spot<'a> {
 
     /// One of some words.
     pub(crate) fn word<W: Copy>(&self, log: &mut Log, words: &[(&'static str, W)]) -> Option<W> {
+        self.word_like(log, words, |found| found)
+    }
+
+    /// One of some words; the one to suggest for another is that nearest to what `meant` makes of it.
+    pub(crate) fn word_like<W: Copy>(&self, log: &mut Log, words: &[(&'static str, W)], meant: impl Fn(&str) -> &str) -> Option<W> {
         let listed = words.iter().map(|(word, _)| format!("{word:?}")).collect::<Vec<_>>().join(", ");
         let found = self.text(log, &format!("one of {listed}"))?;
         if let Some((_, meant)) = words.iter().find(|(word, _)| *word == found) {
             return Some(*meant);
         }
         let names = words.iter().map(|(word, _)| *word);
-        log.unknown((self.node.at, &self.key, Kind::Word), (quote(found), found), format!("one of {listed}"), names);
+        log.unknown((self.node.at, &self.key, Kind::Word), (quote(found), meant(found)), format!("one of {listed}"), names);
         None
     }
 

@@ -105,7 +105,7 @@ fn a_simulation_that_cannot_be_is_told() {
     );
     assert_eq!(
         one("[control]\nkind = \"table\"\ncolumns = [\"a\"]\nrows = [[0, 1], [0, 2]]"),
-        "s.toml:1: control.rows[1]: found the time 0.0 after 0.0, expected times in order"
+        "s.toml:4: control.rows[1]: found the time 0.0 after 0.0, expected times in order"
     );
     assert_eq!(
         one("[initial]\nbase = { quaternion = [1, 1, 0, 0] }"),
@@ -142,7 +142,7 @@ fn what_would_be_passed_over_is_told() {
     assert!(Scene::read("s.toml", "[initial]\nq = { elbow = 1 }\nbase = { xyz = [0, 0, 2] }").is_ok());
     assert_eq!(
         one("[control]\nkind = \"table\"\ncolumns = [\"a\", \"b\", \"a\"]\nrows = [[0, 1, 2, 3]]"),
-        "s.toml:1: control.columns: found the column \"a\" twice, expected each once"
+        "s.toml:3: control.columns[2]: found the column \"a\" twice, expected each once"
     );
 }
 
@@ -153,6 +153,80 @@ fn one_mistake_of_a_table_does_not_hide_another() {
     assert_eq!(told("[simulation]\nend = -1\nstep = -1"), 1);
     let ball = "[impact]\nlink = \"tip\"\nnormal = [1, 0, 0]\nrestitution = 1\n";
     assert_eq!([told(&format!("{ball}mass = -0.5")), told(&format!("{ball}mass = 1\nbal = [0, 0, 0]"))], [2, 1]);
+}
+
+#[test]
+fn settings_that_the_library_would_refuse_are_told_with_their_lines() {
+    let part = |x: &str, found: &str| {
+        let told = one(&format!("[simulation]\nend = 1\nrtol = {x}"));
+        assert_eq!(told, format!("s.toml:3: simulation.rtol: found {found}, expected 0, or at least 1e-15 and below 1"));
+    };
+    [("5", "5.0"), ("-1", "-1.0"), ("1", "1.0"), ("1e-16", "1e-16"), ("nan", "NaN")].iter().for_each(|(x, found)| part(x, found));
+    assert!(Scene::read("s.toml", "[simulation]\nend = 1\nrtol = 0").is_ok());
+    assert!(Scene::read("s.toml", "[simulation]\nend = 1\nrtol = 1e-15").is_ok());
+    assert_eq!(
+        one("[simulation]\nend = 1\natol = 0\nrtol = 0"),
+        "s.toml:4: simulation.rtol: found rtol and atol both 0, expected one of them above 0"
+    );
+    assert_eq!(
+        one("[simulation]\nend = 1e6\nintegrator = \"rk4\"\nstep = 1e-10"),
+        "s.toml:4: simulation.step: found 1e-10, expected at least 3.6e-9 s, sixteen units of rounding of the time"
+    );
+    assert_eq!(
+        one("[simulation]\nend = 1\noutput = 1e-10"),
+        "s.toml:3: simulation.output: found 1e-10, so 1e9 records or more, expected a longer time from one to the next"
+    );
+    assert_eq!(one("snap_angles = 0.6"), "s.toml:1: snap_angles: found 0.6, expected a finite number above 0, at most 0.5");
+}
+
+#[test]
+fn integrators_of_others_are_told_as_those_for_the_same_problems() {
+    let nearest = |name: &str| {
+        let errors = Scene::read("s.toml", &format!("[simulation]\nend = 1\nintegrator = {name:?}")).unwrap_err().errors;
+        assert_eq!((errors.len(), errors[0].kind), (1, Kind::Word), "{name}");
+        errors[0].nearest.clone()
+    };
+    let meant = [
+        ("dopri5", &["rk45", "RK45", "ode45", "Dormand-Prince", "Tsit5", "dopri"][..]),
+        ("dop853", &["DOP853", "ode113", "Vern9"]),
+        ("rodas4", &["Radau", "BDF", "ode15s", "ode23s", "LSODA", "rodas5P"]),
+        ("semi_implicit_euler", &["euler", "symplectic_euler"]),
+        ("lie_midpoint", &["implicit_midpoint"]),
+        ("rk4", &["rk5"]),
+    ];
+    for (ours, theirs) in meant {
+        theirs.iter().for_each(|name| assert_eq!(nearest(name).as_deref(), Some(ours), "{name}"));
+    }
+    assert_eq!(nearest("something"), None);
+}
+
+#[test]
+fn rows_of_a_table_have_their_own_lines() {
+    let table =
+        "[control]\nkind = \"table\"\n\ncolumns = [\n\"elbow\",\n\"elbow\",\n\"elbo\"]\nrows = [\n[0, 1, 2, 3],\n[2, 1],\n[1, 1, 2, 3]]";
+    assert_eq!(
+        wrong(table),
+        [
+            "s.toml:6: control.columns[1]: found the column \"elbow\" twice, expected each once",
+            "s.toml:10: control.rows[1]: found 2 numbers, expected 4 numbers: the time and one for each of the columns",
+            "s.toml:11: control.rows[2]: found the time 1.0 after 2.0, expected times in order",
+        ]
+    );
+    assert_eq!(
+        one("[control]\nkind = \"table\"\nrows = [[0, 1],\n[1, 2]]"),
+        "s.toml:3: control: found rows without columns, expected columns: the names of the numbers after the time"
+    );
+}
+
+#[test]
+fn no_gain_is_negative() {
+    let told = wrong("[control]\nkind = \"pd\"\nkp = [1, -2]\nkd = { \"*\" = -1, b = -3 }\ntorque = { a = -1 }");
+    let line = |key: &str, x: &str| format!("{key}: found {x}, expected a finite number, at least 0");
+    assert_eq!(
+        told,
+        [("s.toml:3: control.kp[1]", "-2.0"), ("s.toml:4: control.kd.\"*\"", "-1.0"), ("s.toml:4: control.kd.b", "-3.0")]
+            .map(|(key, x)| line(key, x))
+    );
 }
 
 #[test]
@@ -232,17 +306,47 @@ fn names_that_the_robot_does_not_have_are_told_with_the_nearest() {
         ),
         (
             "[control]\nkind = \"table\"\nfile = \"t.csv\"",
-            "s.toml:1: control.file: found \"t.csv\", which cannot be read (there is no such file), expected a CSV with a first line that names its \
+            "s.toml:3: control.file: found \"t.csv\", which cannot be read (there is no such file), expected a CSV with a first line that names its \
              columns",
         ),
         (
             "[impact]\nlink = \"tipp\"\nnormal = [1, 0, 0]\nmass = 1\nrestitution = 1\ntime = 0",
-            "s.toml:1: impact.link: found a link that there is not, expected a link of the robot; did you mean \"tip\"?",
+            "s.toml:2: impact.link: found a link that there is not, expected a link of the robot; did you mean \"tip\"?",
         ),
     ];
     for (text, expected) in cases {
         assert_eq!(against_the_arm(text), [expected]);
     }
+}
+
+#[test]
+fn all_that_is_wrong_with_a_csv_is_told_of_its_lines() {
+    let scene = Scene::read("there/s.toml", "\n[control]\nkind = \"table\"\nfile = \"t.csv\"").unwrap();
+    let model = Model::new(&articulated_urdf::read(ARM.as_bytes(), &Default::default()).unwrap().description, Base::Fixed).unwrap();
+    let read = |text: &str| {
+        let (result, text) = (scene.controller(&model, &mut |_| Ok(text.to_owned())), text.len());
+        result.map(|_| text).map_err(|e| e.errors.iter().map(|e| e.to_string().replace('\\', "/")).collect::<Vec<_>>())
+    };
+    let told = |text: &str, expected: &[&str]| {
+        let expected: Vec<String> = expected.iter().map(|line| format!("there/t.csv:{line}")).collect();
+        assert_eq!(read(text), Err(expected), "{text}");
+    };
+    assert!(read("\u{feff}time, \"elbow\",shoulder\n\n0,1,2\n").is_ok(), "a byte order mark, as spreadsheets write it");
+    let each = "each of the columns";
+    told(
+        "t,elbo,shoulder,shoulder\n0,1,2,3\n\n1,one,2,inf\n2,3\n-1,0,0,0\n",
+        &[
+            "1: found the column \"shoulder\" twice, expected each once",
+            "1: found the column \"elbo\", expected a joint that moves, as elbow, or one of its numbers, as ball[0]; did you mean \"elbow\"?",
+            "4: elbo: found \"one\", expected a finite number",
+            "4: shoulder: found \"inf\", expected a finite number",
+            &format!("5: found 2 numbers, expected 4 numbers: the time and one for {each}"),
+            "6: found the time -1.0 after 0.0, expected times in order",
+        ],
+    );
+    told("x,elbow\n0,1\n", &["1: found \"x\" as the first column, expected t"]);
+    told("t,elbow\n", &[&format!(" found no rows, expected lines of numbers: the time and one for {each}")]);
+    told("\n", &[" found nothing, expected a first line that names the columns, t and joints"]);
 }
 
 #[test]

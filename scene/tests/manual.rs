@@ -31,3 +31,36 @@ fn examples_of_the_manual_are_scenes() {
         articulated_scene::Scene::read("example", example).unwrap_or_else(|errors| panic!("{errors}\n{example}"));
     }
 }
+
+/// What is asked of a number, where it is wrong, the manual says too.
+#[test]
+fn the_manual_says_where_numbers_have_to_be() {
+    let headers = [
+        ("top", ""),
+        ("payload", "payload"),
+        ("shaft", "effects.shaft.x"),
+        ("simulation", "simulation"),
+        ("control", "control"),
+        ("impact", "impact"),
+    ];
+    let mut bounded = 0;
+    for (name, table) in articulated_scene::manual::tables() {
+        let Some((_, header)) = headers.iter().find(|(table, _)| *table == name) else { continue };
+        for line in table.lines() {
+            let cells: Vec<&str> = line.split(" | ").collect();
+            let [key, value, _, what] = cells[..] else { continue };
+            if !value.starts_with("number") || value.starts_with("numbers") {
+                continue;
+            }
+            let key = key.trim_matches(['|', ' ', '`']);
+            let text = if header.is_empty() { format!("{key} = nan") } else { format!("[{header}]\n{key} = nan") };
+            let errors = articulated_scene::Scene::read("s", &text).unwrap_err().errors;
+            let error =
+                errors.iter().find(|e| e.key == format!("{header}.{key}").trim_start_matches('.')).unwrap_or_else(|| panic!("{text}"));
+            let bounds = error.expected.trim_start_matches("a finite number").trim_start_matches([',', ' ']);
+            assert!(what.contains(bounds), "{text}: {} is not in {what}", error.expected);
+            bounded += usize::from(!bounds.is_empty());
+        }
+    }
+    assert!(bounded >= 15, "{bounded}");
+}
