@@ -16,7 +16,6 @@ pub mod failure;
 mod folder;
 mod functions;
 mod generate;
-mod groups;
 mod ledger;
 pub mod magnitude;
 mod names;
@@ -50,7 +49,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
             let _ = error.print();
             let status = u8::try_from(error.exit_code()).unwrap_or(USAGE);
             if status == USAGE && asks_for_json(&words) {
-                let _ = console::print(&json(&Failure::usage(first_line(&error))));
+                let _ = console::print(&json(&Failure::usage(sentence(&error.render().to_string()))));
             }
             return status;
         }
@@ -73,11 +72,13 @@ fn asks_for_json(words: &[OsString]) -> bool {
     words.iter().any(|word| word == "--format=json") || words.windows(2).any(|w| w[0] == "--format" && w[1] == "json")
 }
 
-/// What is wrong with the command line, without the advice below it.
-fn first_line(error: &clap::Error) -> String {
-    let text = error.render().to_string();
-    let line = text.lines().next().unwrap_or_default();
-    line.strip_prefix("error: ").unwrap_or(line).to_owned()
+/// What is wrong with the command line, on one line and without the advice below it: what is listed under it belongs to it.
+fn sentence(text: &str) -> String {
+    let mut lines = text.lines().take_while(|line| !line.trim().is_empty()).map(str::trim);
+    let first = lines.next().unwrap_or_default();
+    let first = first.strip_prefix("error: ").unwrap_or(first);
+    let rest = lines.collect::<Vec<_>>().join(if first.ends_with(':') { ", " } else { " " });
+    if rest.is_empty() { first.to_owned() } else { format!("{first} {rest}") }
 }
 
 fn dispatch(arguments: &Arguments) -> Result<u8, Failure> {
@@ -99,4 +100,18 @@ fn dispatch(arguments: &Arguments) -> Result<u8, Failure> {
 /// A report as JSON, indented, with a line's end.
 fn json(report: &impl serde::Serialize) -> String {
     serde_json::to_string_pretty(report).map_or_else(|e| format!("{{\"error\": {:?}}}\n", e.to_string()), |text| text + "\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::sentence;
+
+    #[test]
+    fn a_sentence_has_its_list_and_no_advice() {
+        let missing = "error: these were not provided:\n  <ROBOT>\n  --function <NAMES>\n\nUsage: articulated eval\n";
+        assert_eq!(sentence(missing), "these were not provided: <ROBOT>, --function <NAMES>");
+        let odd = "error: invalid value 'x' for '--format'\n  [possible values: text, json]\n\n  tip: json\n";
+        assert_eq!(sentence(odd), "invalid value 'x' for '--format' [possible values: text, json]");
+        assert_eq!(sentence(""), "");
+    }
 }

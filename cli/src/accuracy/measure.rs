@@ -71,7 +71,7 @@ fn made(robot: &Robot, rustc: &Rustc, functions: &[&'static str], level: Level) 
     let mut request = robot.request(&names);
     request.options.level = level;
     let generated = articulated_codegen::generate(&request)?;
-    let compiled = Compiled::build_level(Target::Own, rustc, &generated, level).map_err(|e| Failure::tool(&e))?;
+    let compiled = Compiled::build(rustc, &generated).map_err(|e| Failure::tool(&e))?;
     Ok(Made { level, generated, compiled })
 }
 

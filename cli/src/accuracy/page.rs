@@ -58,7 +58,7 @@ const COLUMNS: &str = "<h2>What the columns say</h2><ul>\
 terms cancel.</li>\
 <li><b>rounding alone</b>: the largest error against the same formulas with the constants of the generated code; <b>guaranteed</b>: what it can be at most on these states; <b>backward</b>: how far the torques \
 that a solution needs are from those given.</li>\
-<li><b>hardest state</b>: the largest error on states chosen to be hard; <b>operations</b>: additions, multiplications, divisions and roots of a call, a multiply-add as two, without sines and cosines; \
+<li><b>hardest state</b>: the largest error on states chosen to be hard, overflow if one has no result: a number on the way is beyond the largest of the level; <b>operations</b>: additions, multiplications, divisions and roots of a call, a multiply-add as two, without sines and cosines; \
 <b>bytes</b>: machine code of the function alone. Bold rows are the red marks.</li></ul>\n";
 
 fn function(out: &mut String, f: &FunctionReport, drawing: &Drawing) {
@@ -76,7 +76,7 @@ fn function(out: &mut String, f: &FunctionReport, drawing: &Drawing) {
 fn row(out: &mut String, p: &Point) {
     let optional = |x: Option<f64>| x.map_or_else(|| "–".into(), text::number);
     let count = |n: Option<u64>| n.map_or_else(|| "–".into(), |n| n.to_string());
-    let hard = p.hard.map_or_else(|| "–".into(), |(error, name)| format!("{} ({name})", text::number(error)));
+    let hard = p.hard.map_or_else(|| "–".into(), |(error, name)| format!("{} ({name})", text::hardest(error)));
     let cells = [
         escaped(&p.level),
         format!("{:.1}", p.time.median),

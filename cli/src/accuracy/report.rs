@@ -15,7 +15,7 @@ pub(super) const UNITS: Units = Units(&[
     ("functions[].points[].ulps", "the last place of the result as a double"),
     ("functions[].points[].rounding", MAGNITUDE),
     ("functions[].points[].backward", "the sum of the magnitudes of the terms of the torques"),
-    ("functions[].points[].hard", "the sum of the magnitudes of the terms, and the name of the state"),
+    ("functions[].points[].hard", "the sum of the magnitudes of the terms, or \"overflow\"; and the name of the state"),
     ("functions[].points[].bound", MAGNITUDE),
     ("functions[].points[].reached", "the bound"),
 ]);
@@ -81,7 +81,8 @@ pub(super) struct Point {
     pub(super) rounding: Option<Spread>,
     /// How far the torques that a solution needs are from those given, relative to the magnitudes of their terms.
     pub(super) backward: Option<Spread>,
-    /// The largest relative error on the hard states, and what is hard about it.
+    /// The largest relative error on the hard states, not a number where the result is none, and what is hard about it.
+    #[serde(serialize_with = "hard")]
     pub(super) hard: Option<(f64, &'static str)>,
     /// The largest guaranteed bound on `rounding`, over the random states.
     pub(super) bound: Option<f64>,
@@ -99,9 +100,19 @@ pub(super) struct Point {
 impl Spread {
     /// Of the largest errors of states.
     pub(super) fn of(mut errors: Vec<f64>) -> Self {
+        // What is not a number may have a sign, and would be the least with it.
+        errors.iter_mut().filter(|e| e.is_nan()).for_each(|e| *e = f64::NAN);
         errors.sort_by(f64::total_cmp);
         let at = |part: f64| errors.get(((errors.len().max(1) - 1) as f64 * part).ceil() as usize).copied().unwrap_or(f64::NAN);
         Self { median: at(0.5), most: at(0.99), largest: at(1.0) }
+    }
+}
+
+/// JSON has nothing that is not a number.
+fn hard<S: serde::Serializer>(hard: &Option<(f64, &'static str)>, to: S) -> Result<S::Ok, S::Error> {
+    match hard {
+        Some((error, name)) if !error.is_finite() => ("overflow", name).serialize(to),
+        other => other.serialize(to),
     }
 }
 
@@ -184,9 +195,21 @@ mod tests {
     }
 
     #[test]
+    fn what_has_overflowed_is_told_as_data_too() {
+        let told = |hard| serde_json::to_value(Point { hard, ..point("f32", 1.0, 1e-7) }).unwrap()["hard"].clone();
+        assert_eq!(told(Some((f64::NAN, "angles of 1e22"))), serde_json::json!(["overflow", "angles of 1e22"]));
+        assert_eq!(told(Some((0.5, "at rest"))), serde_json::json!([0.5, "at rest"]));
+        assert!(told(None).is_null());
+    }
+
+    #[test]
     fn a_spread_is_of_sorted_numbers() {
         let s = Spread::of((1..=100).rev().map(f64::from).collect());
         assert_eq!((s.median, s.most, s.largest), (51.0, 100.0, 100.0));
-        assert!(Spread::of(vec![1.0, f64::NAN]).largest.is_nan() && Spread::of(vec![]).median.is_nan());
+        assert!(
+            Spread::of(vec![1.0, f64::NAN]).largest.is_nan()
+                && Spread::of(vec![1.0, -f64::NAN]).largest.is_nan()
+                && Spread::of(vec![]).median.is_nan()
+        );
     }
 }

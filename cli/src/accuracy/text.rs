@@ -55,7 +55,7 @@ Errors are relative to the sum of the magnitudes of the terms: median, 99 % and 
 ulps: the same error in units of the last place of the result itself (of a double), large where terms cancel.
 backward: how far the torques that a solution needs are from those given, relative to the magnitudes of their terms.
 rounding: the error against the same formulas with the constants of the generated code; bound: what rounding can be at most on these states, guaranteed; reached: the largest \
-part of a bound that an error was; hard: the largest error on the hard states.
+part of a bound that an error was that is finite; hard: the largest error on the hard states, overflow if one has no result: a number on the way is beyond the largest of the level.
 operations: additions, multiplications, divisions and roots of a call (a multiply-add is two; sines and cosines apart); code: machine code of the function alone.
 ";
 
@@ -106,11 +106,16 @@ fn row(p: &Point, backward: bool) -> Vec<String> {
         largest(p.rounding),
         optional(p.bound),
         p.reached.map_or_else(|| "–".into(), |x| format!("{x:.3}")),
-        optional(p.hard.map(|h| h.0)),
+        p.hard.map_or_else(|| "–".into(), |h| hardest(h.0)),
         count(p.operations),
         count(p.code_bytes),
     ]);
     cells
+}
+
+/// An error on a hard state, which may have none.
+pub(super) fn hardest(x: f64) -> String {
+    if x.is_finite() { number(x) } else { "overflow".into() }
 }
 
 /// An error in two digits.

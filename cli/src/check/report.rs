@@ -180,7 +180,7 @@ fn link_row(k: usize, link: &Link, model: &Model<f64>) -> LinkRow {
     }
 }
 
-/// The floating base first, then the joints of the file in its order.
+/// The floating base first, then the joints in the order of their coordinates, then those that have none of their own, as the file has them.
 fn joint_rows(description: &Description, model: &Model<f64>) -> Vec<JointRow> {
     let carried = carried(model);
     let base = model.joints.iter().find(|j| j.name == FLOATING_BASE).map(|j| JointRow {
@@ -223,7 +223,9 @@ fn joint_rows(description: &Description, model: &Model<f64>) -> Vec<JointRow> {
             carries: if body == model.frames[joint.parent].body { 0.0 } else { carried[body] },
         }
     });
-    base.into_iter().chain(rows).collect()
+    let mut all: Vec<JointRow> = base.into_iter().chain(rows).collect();
+    all.sort_by_key(|row| row.q.map_or(usize::MAX, |(at, _)| at));
+    all
 }
 
 /// Joints that join links of one body.

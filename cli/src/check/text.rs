@@ -49,7 +49,7 @@ fn body(out: &mut String, report: &Report) {
         out.push('\n');
     }
     if !report.unused.is_empty() {
-        *out += "Understood and not used:\n";
+        *out += "Not used, and why:\n";
         for line in &report.unused {
             let _ = writeln!(out, "  {}", plain(line));
         }

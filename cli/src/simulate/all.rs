@@ -48,7 +48,7 @@ pub(super) fn run(arguments: &SimulateArguments, format: Format) -> Result<(), F
 
 fn row(name: &'static str, arguments: &SimulateArguments, rustc: &Rustc) -> Result<Row, Failure> {
     let stage = Stage::find(name)?;
-    let settings = settings::of(stage.prepared.scene.simulation.as_ref(), arguments, &stage.prepared.scene.file)?;
+    let settings = settings::of(&stage, arguments)?;
     let begin = motion::begin(&stage)?;
     let (generated, frames) = motion::generate(&stage, settings.integrator)?;
     let robot = Straight::build(rustc, &generated).map_err(|e| Failure::tool(&e))?;

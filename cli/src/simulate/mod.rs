@@ -38,7 +38,7 @@ use summary::Summary;
 pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, Failure> {
     let Some(scene) = &arguments.scene else { return all::run(arguments, format).map(|()| OK) };
     let stage = Stage::find(scene)?;
-    let settings = settings::of(stage.prepared.scene.simulation.as_ref(), arguments, &stage.prepared.scene.file);
+    let settings = settings::of(&stage, arguments);
     let (settings, begin) = Failure::both(settings, motion::begin(&stage))?;
     if let Some(file) = &arguments.against {
         return against::run(&stage, &begin, &settings, file, format).map(|()| OK);
@@ -113,11 +113,13 @@ fn write(stage: &Stage, motion: &Motion, summary: &mut Summary, folder: &Path) -
     let csv = csv::text(&columns).map_err(|e| Failure::tool(&e))?;
     save("recording.csv", csv.as_bytes())?;
     save("recording.parquet", &parquet::bytes(&columns))?;
-    for picture in plot::pictures(recording, &stage.name).map_err(|e| Failure::tool(&e))? {
+    let pictures = plot::pictures(recording, &stage.name).map_err(|e| Failure::tool(&e))?;
+    for picture in &pictures {
         save(&format!("{}.svg", picture.name), picture.svg.as_bytes())?;
         save(&format!("{}.png", picture.name), &picture.png)?;
     }
     save("motion.html", page.as_bytes())?;
+    summary.pictures_left_out = plot::PICTURES.into_iter().filter(|name| pictures.iter().all(|p| p.name != *name)).collect();
     summary.files.push("summary.json".to_owned());
     let path = folder.join("summary.json");
     std::fs::write(&path, crate::json(summary)).map_err(|e| unwritable(&path, &e))

@@ -131,7 +131,7 @@ fn told(stage: &Stage, run: Run, words: &dyn Fn(&Hit) -> String) -> Recording {
     let whole = |x: Vec<f64>| if x.len() == n { x } else { vec![0.0; n] };
     let momentum = (0..n).map(|k| run.momentum_at(k).and_then(|p| p.try_into().ok()).unwrap_or_default()).collect();
     Recording {
-        events: run.events.iter().map(|hit| Happening { time: hit.t, what: words(hit) }).collect(),
+        events: run.events.iter().map(|hit| Happening { time: hit.t, what: words(hit), ball_speed_m_per_s: hit.value }).collect(),
         t: run.t,
         q: run.q,
         v: run.v,

@@ -24,6 +24,9 @@ pub(crate) struct Happening {
     pub(crate) time: f64,
     /// What, in a few words.
     pub(crate) what: String,
+    /// Of the ball's turn, its speed along the normal after it, m/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) ball_speed_m_per_s: Option<f64>,
 }
 
 /// A motion at the times of its output. Vectors of vectors are one behind the other, one of each a time.
@@ -156,7 +159,7 @@ pub(crate) fn example(model: &Model<f64>, times: usize) -> Recording {
         r.from_events.push(0.0);
         r.momentum.push([t; 6]);
     }
-    r.events = vec![Happening { time: 0.035, what: "left_foot touches the ground".into() }];
+    r.events = vec![Happening { time: 0.035, what: "left_foot touches the ground".into(), ball_speed_m_per_s: None }];
     r
 }
 

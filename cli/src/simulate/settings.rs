@@ -1,13 +1,15 @@
 //! How a scene is simulated: what it says itself, and what the command line says instead.
 
-use articulated::simulate::{Output, Settings, Stiffness, integrator};
+use articulated::simulate::{Output, SettingError, Settings, Stiffness, integrator};
 use articulated_scene::{Output as Recorded, Simulation, Stiffness as Stiff};
 
 use super::arguments::SimulateArguments;
+use super::stage::Stage;
 use crate::failure::Failure;
 
 /// The settings, or why there are none.
-pub(super) fn of(scene: Option<&Simulation>, arguments: &SimulateArguments, file: &str) -> Result<Settings, Failure> {
+pub(super) fn of(stage: &Stage, arguments: &SimulateArguments) -> Result<Settings, Failure> {
+    let (scene, file) = (stage.prepared.scene.simulation.as_ref(), &stage.prepared.scene.file);
     if scene.is_none() && arguments.end.is_none() {
         return Err(Failure::input([format!("{file}: simulation: found nothing, expected [simulation] with `end`, s, or --end here")]));
     }
@@ -34,7 +36,23 @@ pub(super) fn of(scene: Option<&Simulation>, arguments: &SimulateArguments, file
     if let Some(every) = a.every.or(looked_at) {
         settings.output = Output::Every(every);
     }
-    Ok(settings)
+    let problems = settings.problems(stage.model.shape());
+    if problems.is_empty() { Ok(settings) } else { Err(Failure::input(problems.iter().map(|p| told(p, a, file)))) }
+}
+
+/// A problem, of the option where that has said it, else of the scene.
+fn told(problem: &SettingError, a: &SimulateArguments, file: &str) -> String {
+    let options = [
+        ("end", "end", a.end.is_some()),
+        ("step", "step", a.step.is_some()),
+        ("rtol", "rtol", a.rtol.is_some()),
+        ("atol", "atol", a.atol.is_some()),
+        ("output", "every", a.every.is_some()),
+    ];
+    match options.iter().find(|(key, _, given)| *key == problem.key && *given) {
+        Some((_, option, _)) => format!("--{option}: found {}, expected {}", problem.found, problem.right),
+        None => format!("{file}: {problem}"),
+    }
 }
 
 fn from_scene(s: &Simulation) -> Settings {

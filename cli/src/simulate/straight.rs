@@ -1,6 +1,6 @@
 //! A robot by its generated code, compiled and loaded, as anything that has dynamics.
 
-use articulated::{Dynamics, FunctionError, FunctionId, Shape, check_length};
+use articulated::{Dynamics, FunctionError, FunctionId, Shape, check_count, check_length};
 use articulated_codegen::Generated;
 use articulated_core::algorithm::functions;
 
@@ -43,7 +43,7 @@ impl Dynamics<f64> for Straight {
         let row = function.row::<f64>();
         let kernel = self.kernels[function as usize].as_ref().ok_or(FunctionError::NotGenerated { function: row.name })?;
         if !kernel.fits(arguments, out) {
-            check_length("arguments", arguments.len(), row.takes.len())?;
+            check_count(row.name, arguments.len(), row.takes.len())?;
             for (argument, given) in row.takes.iter().zip(arguments) {
                 check_length(argument.name(), given.len(), argument.len(self.shape))?;
             }

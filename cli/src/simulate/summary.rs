@@ -22,6 +22,8 @@ pub(super) struct Summary {
     pub(super) start_s: f64,
     /// The last time that was reached.
     pub(super) end_s: f64,
+    /// That which was asked for.
+    pub(super) asked_end_s: f64,
     pub(super) ended: String,
     pub(super) error: Option<String>,
     pub(super) energy: Energy,
@@ -30,10 +32,14 @@ pub(super) struct Summary {
     pub(super) events: Vec<Happening>,
     /// Whether the ball of the scene's impact was reached; `None` where there is none.
     pub(super) ball_reached: Option<bool>,
+    /// Its speed along the normal once its turn came.
+    pub(super) ball_speed_m_per_s: Option<f64>,
     pub(super) wall_s: f64,
     pub(super) simulated_s_per_wall_s: f64,
     /// Written into the folder.
     pub(super) files: Vec<String>,
+    /// Pictures that are not, since all that they would show is zero throughout.
+    pub(super) pictures_left_out: Vec<&'static str>,
 }
 
 #[derive(Clone, Debug, Serialize)]
@@ -107,6 +113,7 @@ impl Summary {
             integrator: Method { name: row.name, order: row.order, step_s: settings.step, rtol: settings.rtol, atol: settings.atol },
             start_s: settings.start,
             end_s: end,
+            asked_end_s: settings.end,
             ended: motion.ended.clone(),
             error: motion.error.clone(),
             energy: Energy::of(r, motion.ball),
@@ -114,9 +121,11 @@ impl Summary {
             counts: Done::of(&motion.counts, r.len()),
             events: r.events.clone(),
             ball_reached: stage.prepared.scene.impact.as_ref().map(|_| motion.ball.is_some()),
+            ball_speed_m_per_s: r.events.iter().find_map(|e| e.ball_speed_m_per_s),
             wall_s: wall,
             simulated_s_per_wall_s: (end - settings.start) / wall.max(1e-9),
             files: Vec::new(),
+            pictures_left_out: Vec::new(),
         }
     }
 }

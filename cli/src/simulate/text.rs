@@ -28,6 +28,9 @@ pub(super) fn text(s: &Summary) -> String {
     if !s.files.is_empty() {
         out += &format!("\nwritten: {}\n", s.files.join(", "));
     }
+    if !s.pictures_left_out.is_empty() {
+        out += &format!("not written, since zero throughout: {}\n", s.pictures_left_out.join(", "));
+    }
     out
 }
 
@@ -37,8 +40,9 @@ fn method(s: &Summary) -> String {
         Some(step) => format!("steps of {} s", number(step)),
         None => format!("relative tolerance {:e}, absolute {:e}", m.rtol, m.atol),
     };
+    let asked = if s.end_s == s.asked_end_s { String::new() } else { format!(" of {} s", number(s.asked_end_s)) };
     format!(
-        "{} (order {}), {steps}; {} code; from {} s to {} s, ended {}",
+        "{} (order {}), {steps}; {} code; from {} s to {} s{asked}, ended {}",
         m.name,
         m.order,
         s.code,
@@ -63,6 +67,9 @@ fn table(s: &Summary) -> Table {
     }
     if let Some(ball) = e.ball {
         row("  handed to the ball", none(), number(ball), "J");
+    }
+    if let Some(speed) = s.ball_speed_m_per_s {
+        row("  speed of the ball", none(), number(speed), "m/s");
     }
     row("largest imbalance", none(), number(e.largest_imbalance), "J");
     row("  over the largest energy moved", none(), number(e.relative_imbalance), "");

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::corpus::{CHAPTERS, Effort};
 use super::judge::State;
+use super::own::Found;
 use super::row::Row;
 use super::{levels, own, text};
 use crate::arguments::{Format, RobotArguments};
@@ -23,17 +24,19 @@ pub(super) struct Report {
     /// How many were measured, and how many of them are wrong.
     pub(super) rows_measured: usize,
     pub(super) rows_failed: usize,
+    /// What was left out, and why.
+    pub(super) notes: Vec<String>,
     pub(super) rows: Vec<Row>,
 }
 
 /// Measures and prints; a row that is wrong is an exceeded bound.
 pub(crate) fn run(arguments: &StressArguments, format: Format) -> Result<u8, Failure> {
-    let rows = match &arguments.robot {
+    let Found { rows, notes } = match &arguments.robot {
         Some(robot) => of_robot(arguments, robot)?,
         None => of_corpus(arguments)?,
     };
     let failed = rows.iter().filter(|r| !r.pass).count();
-    let report = Report { pass: failed == 0, rows_measured: rows.len(), rows_failed: failed, rows };
+    let report = Report { pass: failed == 0, rows_measured: rows.len(), rows_failed: failed, notes, rows };
     console::print(&match format {
         Format::Text => text::text(&report, arguments.rows),
         Format::Json => crate::json(&report),
@@ -44,12 +47,12 @@ pub(crate) fn run(arguments: &StressArguments, format: Format) -> Result<u8, Fai
     }
 }
 
-fn of_corpus(arguments: &StressArguments) -> Result<Vec<Row>, Failure> {
+fn of_corpus(arguments: &StressArguments) -> Result<Found, Failure> {
     let effort = if arguments.full { Effort::Full } else { Effort::Quick };
     let wanted = |name: &str| arguments.chapters.is_empty() || arguments.chapters.iter().any(|c| c == name);
     let chapters: Vec<_> = CHAPTERS.iter().filter(|(name, _)| wanted(name)).collect();
     let progress = Progress::new(chapters.len() + 2);
-    let mut rows = Vec::new();
+    let Found { mut rows, mut notes } = Found::default();
     for (name, chapter) in chapters {
         progress.doing(format!("chapter {name}"));
         rows.extend(chapter(effort));
@@ -65,11 +68,13 @@ fn of_corpus(arguments: &StressArguments) -> Result<Vec<Row>, Failure> {
         for robot in articulated_models::ROBOTS {
             progress.doing(format!("robot {}", robot.name));
             let robot = Robot::find(&RobotArguments::plain(robot.name, false))?;
-            rows.extend(own::rows(&robot, &Vec::new(), &of_robots(arguments))?);
+            let found = own::rows(&robot, &[], &of_robots(arguments))?;
+            rows.extend(found.rows);
+            notes.extend(found.notes.iter().map(|note| format!("{}: {note}", robot.file)));
         }
     }
     progress.step();
-    Ok(rows)
+    Ok(Found { rows, notes })
 }
 
 /// The levels of robots' generated code.
@@ -81,7 +86,7 @@ fn of_robots(arguments: &StressArguments) -> Vec<Level> {
     }
 }
 
-fn of_robot(arguments: &StressArguments, name: &str) -> Result<Vec<Row>, Failure> {
+fn of_robot(arguments: &StressArguments, name: &str) -> Result<Found, Failure> {
     let mut robot = RobotArguments::plain(name, arguments.floating);
     robot.fixed = arguments.fixed;
     robot.gravity = arguments.gravity;

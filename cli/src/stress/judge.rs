@@ -18,6 +18,7 @@ use super::machine::{Machine, cast, exact, wide, widened};
 use super::row::{Case, Row};
 use crate::magnitude::{is_plain, scales};
 use crate::precise::Big;
+use crate::table::counted;
 use crate::worse::worse;
 
 /// η allowed, and errors allowed of what is not solved for, in units of u times the magnitude of the terms.
@@ -195,7 +196,7 @@ impl<'a, F: Machine> Judge<'a, F> {
             Some(Err(error)) => format!("found an error: {error}"),
             Some(Ok((_, left))) => format!("found a solution, {left:e} of a pivot left"),
             None if ends == Ends::Solved => "a solution".to_owned(),
-            None if ends == Ends::Either => "a solution or an error".to_owned(),
+            None if ends == Ends::Either => either(outcomes),
             None => outcomes[0].as_ref().err().map_or_else(String::new, |e| format!("an error of joint {:?}", e.joint)),
         };
         self.case.holds(format!("checked_forward_dynamics, {}: {told}", F::NAME), wrong.is_none())
@@ -230,6 +231,17 @@ impl<'a, F: Machine> Judge<'a, F> {
             let backward = needed.iter().enumerate().map(|(i, t)| off(*t, F::from_f64(driven[i]), scale(i))).fold(0.0, worse);
             [backward, forward_error(&model, [&q, &v, &cast(&tau)], &a) / F::ROUNDOFF]
         })
+    }
+}
+
+/// How it ended where both ways are right.
+fn either<F: Machine>(outcomes: &[Outcome<F>]) -> String {
+    let errors: Vec<&Singular<F>> = outcomes.iter().filter_map(|o| o.as_ref().err()).collect();
+    let joint = errors.first().map_or("", |e| &e.joint);
+    match (outcomes.len() - errors.len(), errors.len()) {
+        (_, 0) => "a solution".to_owned(),
+        (0, _) => format!("an error of joint {joint:?}"),
+        (solved, refused) => format!("a solution in {}, an error of joint {joint:?} in {refused}", counted(solved, "state")),
     }
 }
 

@@ -12,7 +12,7 @@ use super::levels::{self, Made};
 use super::machine::Machine;
 use super::robots::{state, states};
 use super::row::{Case, Row};
-use crate::failure::Failure;
+use crate::failure::{Failure, undefined};
 use crate::robot::Robot;
 use crate::states::quaternions;
 use crate::worse::worse;
@@ -25,8 +25,15 @@ pub(super) const DERIVATIVES: usize = 12;
 
 const TAU: f64 = 20.0;
 
+/// What was measured of a robot, and what could not be.
+#[derive(Default)]
+pub(super) struct Found {
+    pub(super) rows: Vec<Row>,
+    pub(super) notes: Vec<String>,
+}
+
 /// All rows of a robot.
-pub(super) fn rows(robot: &Robot, given: &[State], generated: &[Level]) -> Result<Vec<Row>, Failure> {
+pub(super) fn rows(robot: &Robot, given: &[State], generated: &[Level]) -> Result<Found, Failure> {
     let model = robot.whole_model(&robot.read()?)?;
     let sets = sets(&model, given);
     let made: Vec<Made> = generated.iter().map(|level| make(robot, &model, *level)).collect::<Result<_, _>>()?;
@@ -40,7 +47,24 @@ pub(super) fn rows(robot: &Robot, given: &[State], generated: &[Level]) -> Resul
         }
     }
     rows.extend(watched(&model, &sets));
-    Ok(rows)
+    Ok(Found { rows, notes: left_out(robot, &model, generated)? })
+}
+
+/// Which functions a robot is not judged by because it does not have them, and why.
+fn left_out(robot: &Robot, model: &Model<f64>, generated: &[Level]) -> Result<Vec<String>, Failure> {
+    let massless = articulated_codegen::massless(model);
+    let mut functions = vec![FunctionId::forward_dynamics, FunctionId::solve_mass_matrix];
+    functions.extend(generated.iter().flat_map(|level| levels::functions(model.nv, *level)));
+    let mut notes = Vec::new();
+    for f in functions {
+        if let Err(error) = articulated_codegen::defined(&robot.file, model, &massless, f.row::<f64>()) {
+            let note = format!("{} is left out: {}", f.name(), undefined(error)?);
+            if !notes.contains(&note) {
+                notes.push(note);
+            }
+        }
+    }
+    Ok(notes)
 }
 
 type Set = (&'static str, &'static str, Vec<State>);
@@ -102,7 +126,7 @@ fn make(robot: &Robot, model: &Model<f64>, level: Level) -> Result<Made, Failure
     let names: Vec<String> = names.into_iter().map(|f| f.name().to_owned()).collect();
     let mut request = robot.request(&names);
     request.options.level = level;
-    Made::of(articulated_codegen::generate(&request)?, level)
+    Made::of(articulated_codegen::generate(&request)?)
 }
 
 /// The monitors, over all states.

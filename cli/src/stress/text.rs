@@ -20,6 +20,7 @@ pub(super) fn text(report: &Report, all: bool) -> String {
     }
     let Report { rows_measured, rows_failed, .. } = report;
     out += &legend(&out);
+    report.notes.iter().for_each(|note| out += &wrapped(&format!("note: {}\n", plain(note))));
     let _ = writeln!(out, "{}, {rows_failed} beyond their limits", counted(*rows_measured, "row"));
     out
 }
@@ -100,7 +101,7 @@ mod tests {
     use crate::stress::row::Case;
 
     fn report(rows: Vec<Row>) -> Report {
-        Report { pass: true, rows_measured: rows.len(), rows_failed: 0, rows }
+        Report { pass: true, rows_measured: rows.len(), rows_failed: 0, notes: Vec::new(), rows }
     }
 
     #[test]

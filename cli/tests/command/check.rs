@@ -31,6 +31,25 @@ fn the_mass_table_adds_up() {
     assert!(!gripper["unused"].as_array().unwrap().is_empty());
 }
 
+/// The humanoid's file has its legs before its arms, and q has them after.
+#[test]
+fn joints_are_in_the_order_of_q_and_those_without_come_last() {
+    for (robot, without) in [("humanoid", false), ("gripper_arm", true)] {
+        let json = run(&["check", robot, "--format", "json"]).json();
+        let places: Vec<u64> = json["joints"].as_array().unwrap().iter().map(|j| j["q"][0].as_u64().unwrap_or(u64::MAX)).collect();
+        assert!(places.is_sorted() && places[0] == 0, "{robot}: {places:?}");
+        assert_eq!(places.contains(&u64::MAX), without, "{robot}: {places:?}");
+    }
+}
+
+#[test]
+fn what_is_not_known_is_not_said_to_be_understood() {
+    let urdf = MASSLESS.replace("<link name=\"b\"/>", "<link name=\"b\"><foo/></link>");
+    let told = run_with(&["check", "-"], urdf.as_bytes()).out;
+    let (head, lines) = told.split_once("\nNot used, and why:\n").unwrap_or_else(|| panic!("{told}"));
+    assert!(lines.contains("foo: not known\n") && !head.contains("nderstood"), "{told}");
+}
+
 #[test]
 fn the_base_can_be_chosen() {
     let freedoms = |words: &[&str]| run(&[&["check", "--format", "json"], words].concat()).json()["totals"]["degrees_of_freedom"].clone();

@@ -260,3 +260,25 @@ fn a_floating_base_has_named_parts() {
     assert!(ended.err.contains("warning") && ended.err.contains("normalised"), "{}", ended.err);
     assert!(ended.out.contains("__floating_base__[5]") && ended.out.contains("largest difference"));
 }
+
+/// Generated code of such levels is off by more than rounding, and takes other numbers.
+#[test]
+fn levels_that_are_less_exact_than_the_library_are_refused() {
+    let states = File::new("states.json", STATES.as_bytes());
+    for level in ["f32", "f32_f64", "f64+fast_7"] {
+        let scene = File::new("level.toml", format!("robot = \"simple_pendulum\"\nlevel = \"{level}\"\n").as_bytes());
+        for words in [&["eval", scene.name(), "--function", "inverse_dynamics", "--states", states.name()][..], &["compare", scene.name()]]
+        {
+            let refused = run(words);
+            assert_eq!(refused.status, 1, "{words:?}: {}", refused.out);
+            assert!(
+                refused.err.contains("level: found f") && refused.err.contains("expected f64 or what is more exact"),
+                "{}",
+                refused.err
+            );
+        }
+    }
+    let scene = File::new("level.toml", b"robot = \"simple_pendulum\"\nlevel = \"compensated\"\n");
+    let ended = run(&["eval", scene.name(), "--function", "inverse_dynamics", "--states", states.name()]);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+}

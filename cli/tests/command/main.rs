@@ -144,4 +144,11 @@ fn a_command_line_that_cannot_be_read_is_told_as_data_too() {
         assert!(error.starts_with("invalid value '") && ended.err.contains(error), "{error}");
     }
     assert_eq!(run(&["check", "panda_like", "--gravity", "1"]).out, "");
+    // What is listed under the sentence is part of it.
+    let missing = [(&["check"][..], "<ROBOT>"), (&["simulate"], "<SCENE>"), (&["accuracy", "panda_like", "--error", "1"], "--advise")];
+    for (words, what) in missing {
+        let told = run(&[words, &["--format", "json"]].concat()).json();
+        let expected = format!("the following required arguments were not provided: {what}");
+        assert_eq!(told["errors"], serde_json::json!([expected]), "{words:?}");
+    }
 }

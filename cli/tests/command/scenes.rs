@@ -147,12 +147,15 @@ fn a_ball_is_hit_once_and_only_by_what_moves_towards_it() {
         let scene = File::new("ball.toml", text.as_bytes());
         let motion = Motion::of(scene.name(), &[]);
         let told = motion.summary["events"].as_array().unwrap().iter().map(|e| e["what"].as_str().unwrap().to_owned());
-        (told.collect::<Vec<_>>(), motion.summary["energy"]["ball"].clone())
+        let speed = motion.summary["ball_speed_m_per_s"].as_f64();
+        assert_eq!(motion.summary["events"][0]["ball_speed_m_per_s"].as_f64(), speed);
+        (told.collect::<Vec<_>>(), motion.summary["energy"]["ball"].clone(), speed.unwrap())
     };
-    let (hit, got) = events("point = [0, 0, -1]\nball = [0, 0, -1]");
+    let (hit, got, speed) = events("point = [0, 0, -1]\nball = [0, 0, -1]");
     assert!(hit.len() == 1 && hit[0].starts_with("bob hits the ball, which leaves at"), "{hit:?}");
-    assert!(got.as_f64().unwrap() > 0.1, "{got}");
-    let (missed, got) = events("time = 0.05\nball_speed = 40.0");
+    assert!(got.as_f64().unwrap() > 0.1 && hit[0].ends_with(&format!(" {speed:.4} m/s")), "{got} {speed} {hit:?}");
+    let (missed, got, speed) = events("time = 0.05\nball_speed = 40.0");
+    assert_eq!(speed, 40.0);
     assert_eq!((missed, got.as_f64()), (vec!["bob is not moving towards the ball, which keeps 40.0000 m/s".to_owned()], Some(0.0)));
 }
 

@@ -179,9 +179,16 @@ fn what_cannot_be_found_or_run_is_said() {
     }
     let ended = run(&["simulate", "pendulum", "-o", urdf.name()]);
     assert!(ended.status == 1 && ended.err.contains("found a file, expected a folder"), "{}", ended.err);
-    // A scene may begin before 0 s.
-    let ended = run(&["simulate", "cart_pole", "--end", "-1"]);
-    assert!(ended.status == 1 && ended.err.contains("end = -1"), "{}", ended.err);
+    // A scene may begin before 0 s. What the command line says is not the scene's mistake.
+    for (words, told) in [
+        (["--end", "-1"], "--end: found -1, expected a finite time after start = 0"),
+        (["--end", "0"], "--end: found 0, expected a finite time after start = 0"),
+        (["--rtol", "-1"], "--rtol: found -1, expected 0, or at least"),
+        (["--every", "1e-12"], "--every: found 0.000000000001, expected a length"),
+    ] {
+        let ended = run(&[&["simulate", "cart_pole"][..], &words].concat());
+        assert!(ended.status == 1 && ended.err.starts_with(&format!("error: {told}")), "{words:?}: {}", ended.err);
+    }
     assert_eq!(run(&["simulate", "cart_pole", "--step", "0.01", "--rtol", "1e-3"]).status, 2);
 }
 
@@ -191,7 +198,25 @@ fn a_step_that_is_not_stable_is_refused_and_what_was_up_to_then_is_there() {
     let (file, folder) = (File::new("stiff.toml", text.as_bytes()), tempfile::tempdir().unwrap());
     let ended = run(&["simulate", file.name(), "-o", folder.path().to_str().unwrap()]);
     assert!(ended.status == 1 && ended.err.contains("stable"), "{}", ended.err);
-    assert!(folder.path().join("recording.csv").is_file() && ended.out.contains("ended by an error"), "{}", ended.out);
+    assert!(folder.path().join("recording.csv").is_file() && ended.out.contains(" s of 1 s, ended by an error"), "{}", ended.out);
+    let told = run(&["simulate", file.name(), "--format", "json"]).json();
+    assert!(told["asked_end_s"] == 1.0 && told["end_s"].as_f64().unwrap() < 1.0, "{told}");
+}
+
+/// A pendulum that hangs: nothing to draw of its angle and its rate.
+#[test]
+fn a_picture_of_nothing_is_not_written_and_that_is_said() {
+    let file = File::new("still.toml", b"robot = \"simple_pendulum\"\n[simulation]\nend = 0.1\n");
+    let folder = tempfile::tempdir().unwrap();
+    let ended = run(&["simulate", file.name(), "-o", folder.path().to_str().unwrap()]);
+    assert!(
+        ended.status == 0 && ended.out.ends_with("not written, since zero throughout: positions, velocities, torques\n"),
+        "{}",
+        ended.out
+    );
+    let summary: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(folder.path().join("summary.json")).unwrap()).unwrap();
+    assert_eq!(summary["pictures_left_out"], serde_json::json!(["positions", "velocities", "torques"]));
+    assert!(!folder.path().join("positions.svg").exists() && folder.path().join("energy.svg").is_file());
 }
 
 #[test]

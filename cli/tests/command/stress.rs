@@ -25,6 +25,12 @@ fn a_robot_of_ones_own_is_judged_and_watched() {
         <joint name="bare" type="continuous"><parent link="b"/><child link="c"/><origin xyz="1 0 0"/><axis xyz="0 1 0"/></joint></robot>"#;
     let ended = run_with(&["stress", "-", "--rows"], urdf);
     assert_eq!(ended.status, 0, "{}{}", ended.out, ended.err);
+    let notes = ["forward_dynamics", "solve_mass_matrix"].map(|f| format!("{f} is left out: no inertia of its own for joint bare"));
+    assert!(notes.iter().all(|note| ended.out.contains(&format!("\nnote: {note}\n"))), "{}", ended.out);
+    let json = run_with(&["stress", "-", "--format", "json"], urdf).json();
+    assert!(json["notes"] == serde_json::json!(notes) && json["pass"] == true, "{}", json["notes"]);
+    let ends = json["rows"].as_array().unwrap().iter().filter(|r| r["what"].as_str().unwrap().contains("an error of joint \"bare\""));
+    assert_eq!(ends.count(), 16, "eight sets of states in two precisions");
     assert!(ended.out.contains("smallest pivot, of joint \"bare\"") && ended.out.contains("condition number of Ad"), "{}", ended.out);
     assert_eq!(run_with(&["stress", "-"], b"<robot/>").status, 1);
     // Its code too, at levels: each a case of its own.
@@ -35,7 +41,10 @@ fn a_robot_of_ones_own_is_judged_and_watched() {
         "{}",
         ended.out
     );
+    assert!(ended.out.contains("note: forward_dynamics_derivatives is left out: "), "{}", ended.out);
     assert_eq!(run_with(&["stress", "-", "--levels", "f32"], urdf).status, 2);
+    let whole = run(&["stress", "simple_pendulum", "--format", "json"]).json();
+    assert_eq!(whole["notes"], serde_json::json!([]));
 }
 
 /// Magnitudes of terms have those of effects among them: stops are stiff, and far beyond them forces are large.

@@ -3,6 +3,7 @@
 use super::super::plot::{Axis, FIELD, HEIGHT, INK, WIDTH, frame};
 use super::{Motion, Sample};
 use crate::simulate::plot::drawing::{Anchor, Drawing};
+use crate::table::{counted, number};
 
 const COLOURS: [&str; 9] = ["#777777", "#1b6ca8", "#c03d20", "#2a8a3e", "#8e44ad", "#b8860b", "#d6277f", "#17a2b8", "#5d4037"];
 
@@ -30,14 +31,25 @@ pub(super) fn diagrams(m: &Motion) -> Vec<(String, Drawing)> {
     .collect()
 }
 
+/// That runs which have lost the motion are not drawn: next to their errors all others would be one line.
+pub(super) fn lost(m: &Motion) -> Option<String> {
+    let count = m.curves.iter().flat_map(|c| &c.samples).filter(|s| s.lost).count();
+    let runs = counted(count, "run");
+    let off = format!("off by more than the motion itself ({} rad, m, and those a second)", number(m.extent));
+    (count > 0).then(|| format!("{runs} not drawn: {off}"))
+}
+
 fn diagram(m: &Motion, (below, of_x): (&str, What), (beside, of_y): (&str, What)) -> Drawing {
     let [left, right, top, bottom] = FIELD;
-    let places = |s: &Sample| Some((of_x(s)?, of_y(s)?));
+    let places = |s: &Sample| if s.lost { None } else { Some((of_x(s)?, of_y(s)?)) };
     let all = || m.curves.iter().flat_map(|c| c.samples.iter().filter_map(places));
     let x = Axis::new(all().map(|p| p.0), [left, right]);
     let y = Axis::new(all().map(|p| p.1), [bottom, top]);
     let mut out = Drawing { width: WIDTH, height: HEIGHT, ..Drawing::default() };
     out.text([16.0, 22.0], Anchor::Start, 14.0, INK, &format!("{}, {} s", m.scene, m.seconds));
+    if let Some(line) = lost(m) {
+        out.text([16.0, 38.0], Anchor::Start, 11.0, INK, &line);
+    }
     if all().next().is_none() {
         let why = format!("nothing to draw: {beside} could be told of no run");
         out.text([left, 0.5 * (top + bottom)], Anchor::Start, 12.0, INK, &why);

@@ -108,6 +108,12 @@ pub(super) fn drift(subject: &Subject, end: &State) -> Option<(f64, Option<f64>)
     Some(((b.0 + b.1 - a.0 - a.1).abs() / size, a.2.zip(b.2).map(|(a, b)| change(&a, &b))))
 }
 
+/// How far the motion goes and how fast it is at its ends: the largest number of all, at least 1 rad, m, and those a second.
+pub(super) fn extent(subject: &Subject, end: &State) -> f64 {
+    let way = difference(subject, &(subject.q.clone(), end.1.clone()), end);
+    subject.v.iter().chain(&end.1).map(|v| v.abs()).fold(way.max(1.0), f64::max)
+}
+
 /// The largest difference of two states: of configurations along the manifold.
 pub(super) fn difference(subject: &Subject, a: &State, b: &State) -> f64 {
     let mut apart = vec![0.0; subject.model.nv];

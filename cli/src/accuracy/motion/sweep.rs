@@ -4,7 +4,7 @@ use articulated::simulate::{Integrator, IntegratorId, integrators};
 use serde::Serialize;
 
 use super::peers::Peers;
-use super::subject::{End, How, State, Subject, difference, run};
+use super::subject::{End, How, State, Subject, difference, extent, run};
 use crate::accuracy::machine;
 use crate::console::Progress;
 use crate::failure::Failure;
@@ -14,6 +14,7 @@ use crate::units::Units;
 pub(super) const UNITS: Units = Units(&[
     ("seconds", "s"),
     ("agreement", "rad, m, rad/s, m/s: the largest of all"),
+    ("extent", "rad, m, rad/s, m/s: the largest of all"),
     ("curves[].slope", "power of the evaluations"),
     ("curves[].samples[].step", "s"),
     ("curves[].samples[].tolerance", "relative and absolute, of rad, m, rad/s, m/s"),
@@ -36,6 +37,8 @@ pub(crate) struct Motion {
     pub references: [String; 2],
     /// How far they are from each other: nothing below 100 times this is shown.
     pub agreement: f64,
+    /// How far the motion goes and how fast it is at its ends: a run whose error is larger has lost it.
+    pub extent: f64,
     /// Where it was measured.
     pub processor: String,
     /// With which version of this command.
@@ -86,6 +89,8 @@ pub(crate) struct Sample {
     pub momentum: Option<f64>,
     /// Whether the reference can tell this error.
     pub told: bool,
+    /// Whether the error is larger than the motion itself, as that of steps that are not stable is.
+    pub lost: bool,
 }
 
 /// Who the reference is from, the last state, and how far the two are from each other.
@@ -112,6 +117,7 @@ pub(super) fn all(scene: &str, subject: &Subject, peers: &Peers, repetitions: us
         degrees_of_freedom: subject.model.nv,
         references,
         agreement,
+        extent: extent(subject, &end),
         processor: machine::processor(),
         version: env!("CARGO_PKG_VERSION"),
         commit: machine::COMMIT,
@@ -221,7 +227,8 @@ pub(super) fn sample(subject: &Subject, (end, agreement): (&State, f64), how: Ho
         How::Tolerance(t) => (None, Some(t)),
     };
     let End { evaluations, wall, energy, momentum, .. } = *run;
-    Sample { step, tolerance, evaluations, wall, error, energy, momentum, told: error >= 100.0 * agreement }
+    let (told, lost) = (error >= 100.0 * agreement, error > extent(subject, end));
+    Sample { step, tolerance, evaluations, wall, error, energy, momentum, told, lost }
 }
 
 /// The logarithms of evaluations and errors of the samples that the reference can tell and that are past the first coarse ones.

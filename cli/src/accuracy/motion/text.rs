@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::super::text::number;
 use super::advise::{self, Run};
+use super::plot::lost;
 use super::sweep::{COARSE, Curve};
 use super::{Motion, Sample};
 use crate::table::{Table, freedom, plain, wrapped};
@@ -30,7 +31,7 @@ pub(super) fn text(m: &Motion) -> String {
     out + "\n" + &wrapped(&format!("{EXPLAINED} Rows with errors from {COARSE} on are left out.\n"))
 }
 
-const EXPLAINED: &str = "Error: the largest difference of a number of the last state (rad, m, and those a second). <: below what the reference can tell.
+const EXPLAINED: &str = "Error: the largest difference of a number of the last state (rad, m, and those a second). <: below what the reference can tell; lost: larger than the motion itself, not drawn.
 Energy: missing or too much at the end, relative to the largest kinetic or potential energy; momentum: its change, relative to it, where nothing acts from outside.
 Power: the slope of a straight line through the logarithms of the finest rows that the reference can tell, half of these and three at least. The order is that of short \
 steps; it does not show where steps are longer than that, or where evaluations do not grow as steps do (steps that are refused, rounds of an implicit method).";
@@ -56,6 +57,7 @@ pub(super) fn head(m: &Motion) -> String {
         m.version,
         m.commit
     );
+    lost(m).iter().for_each(|line| out += &format!("note: {line}; marked \"lost\" in the tables\n"));
     m.notes.iter().for_each(|note| out += &format!("note: {}\n", plain(note)));
     wrapped(&out)
 }
@@ -75,21 +77,25 @@ fn row(s: &Sample) -> Vec<String> {
 
 /// Marked where it is below what the reference can tell.
 fn error(s: &Sample) -> String {
-    if s.told { number(s.error) } else { format!("< {}", number(s.error)) }
+    match s {
+        Sample { lost: true, .. } => format!("lost {}", number(s.error)),
+        Sample { told: true, .. } => number(s.error),
+        _ => format!("< {}", number(s.error)),
+    }
 }
 
 /// Rows of numbers with a head.
 pub(super) fn csv(m: &Motion) -> String {
     let number = |x: Option<f64>| x.map_or_else(String::new, |x| format!("{x:e}"));
-    let mut out = String::from("scene,integrator,order,step,tolerance,evaluations,wall_seconds,error,energy,momentum,told\n");
+    let mut out = String::from("scene,integrator,order,step,tolerance,evaluations,wall_seconds,error,energy,momentum,told,lost\n");
     for c in &m.curves {
         for s in &c.samples {
             let (step, tolerance) = (number(s.step), number(s.tolerance));
             let (energy, momentum) = (number(s.energy), number(s.momentum));
             let _ = writeln!(
                 out,
-                "{},{},{},{step},{tolerance},{},{:e},{:e},{energy},{momentum},{}",
-                m.scene, c.integrator, c.order, s.evaluations, s.wall, s.error, s.told
+                "{},{},{},{step},{tolerance},{},{:e},{:e},{energy},{momentum},{},{}",
+                m.scene, c.integrator, c.order, s.evaluations, s.wall, s.error, s.told, s.lost
             );
         }
     }
@@ -126,14 +132,15 @@ mod tests {
             energy: Some(error / 2.0),
             momentum: None,
             told: error > 1e-11,
+            lost: false,
         };
         let samples = vec![sample(10, 1e-3), sample(100, 1e-7), sample(1000, 1e-12)];
         let curves = vec![Curve::new("rk4".into(), false, 4, samples)];
         let references = ["one".to_owned(), "other".to_owned()];
         let (processor, notes) = ("a processor".to_owned(), vec!["a note".to_owned()]);
         let (scene, seconds, degrees_of_freedom, agreement) = ("a <scene>".to_owned(), 1.0, 2, 1e-13);
-        let (version, commit, units) = ("0", "none", UNITS);
-        Motion { scene, seconds, degrees_of_freedom, references, agreement, processor, version, commit, units, notes, curves }
+        let (version, commit, units, extent) = ("0", "none", UNITS, 3.0);
+        Motion { scene, seconds, degrees_of_freedom, references, agreement, extent, processor, version, commit, units, notes, curves }
     }
 
     #[test]
@@ -141,7 +148,27 @@ mod tests {
         let m = motion();
         assert!(advice(&m, 1e-6).contains("rk4 with steps of 1.00e-2 s") && advice(&m, 1e-20).contains("no run"));
         assert!(text(&m).contains("< 1.0e-12"));
-        assert!(csv(&m).lines().all(|l| l.split(',').count() == 11));
+        assert!(csv(&m).lines().all(|l| l.split(',').count() == 12));
+    }
+
+    #[test]
+    fn a_run_that_has_lost_the_motion_is_marked_and_not_drawn() {
+        let mut m = motion();
+        let drawn = |m: &Motion| plot::diagrams(m).into_iter().map(|(_, d)| crate::accuracy::plot::svg(&d)).collect::<Vec<_>>();
+        let before = drawn(&m);
+        m.curves[0]
+            .samples
+            .insert(0, Sample { evaluations: 8, error: 1e98, energy: Some(1.0), told: true, lost: true, ..Sample::default() });
+        let line = "1 run not drawn: off by more than the motion itself (3 rad, m, and those a second)";
+        for (with, without) in drawn(&m).iter().zip(&before) {
+            assert!(with.contains(line) && !with.contains("1e98") && !without.contains("not drawn"));
+            let others = with.lines().filter(|l| !l.contains(line)).collect::<Vec<_>>();
+            assert_eq!(others, without.lines().collect::<Vec<_>>());
+        }
+        assert!(
+            text(&m).contains("lost 1.0e98") && text(&m).contains(&format!("note: {line}")) && !text(&motion()).contains("note: 1 run")
+        );
+        assert!(csv(&m).lines().nth(1).unwrap().ends_with(",true,true"));
     }
 
     /// Of dop853, its errors and tolerances on the pendulum: 3.2e-6 is a lucky hit, and the last two are below what the reference can tell.

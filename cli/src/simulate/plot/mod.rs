@@ -26,28 +26,23 @@ const EVENTS: usize = 60;
 /// Smaller than this throughout, in the curve's unit: zero.
 const ZERO: f64 = 1e-12;
 
-/// All pictures of a motion called `title`; one without a field that is worth drawing is none.
+/// What there can be pictures of; of energy there always is one.
+pub(super) const PICTURES: [&str; 4] = ["positions", "velocities", "torques", "energy"];
+
+/// All pictures of a motion called `title`; one without a curve that is worth drawing is none.
 pub(super) fn pictures(r: &Recording, title: &str) -> Result<Vec<Picture>, String> {
-    let driven = coordinates(&r.tau_names, r, &r.tau).into_iter().filter(|(_, values)| !still(values)).collect::<Vec<_>>();
-    let kinds = [
-        ("positions", moving(panels(&coordinates(&r.q_names, r, &r.q))), r.q_names.len()),
-        ("velocities", moving(panels(&coordinates(&r.v_names, r, &r.v))), r.v_names.len()),
-        ("torques", panels(&driven), r.tau_names.len()),
-        ("energy", energies(r), 0),
-    ];
-    let worth = kinds.into_iter().filter(|(_, panels, _)| !panels.is_empty());
-    worth.map(|(name, panels, all)| picture(name, &panels, &notes(r, &panels, all), r, title)).collect()
+    let moving = |names: &[Named], rows: &[f64]| {
+        let curves: Vec<Series> = coordinates(names, r, rows).into_iter().filter(|(_, values)| !still(values)).collect();
+        (panels(&curves), names.len())
+    };
+    let kinds = [moving(&r.q_names, &r.q), moving(&r.v_names, &r.v), moving(&r.tau_names, &r.tau), (energies(r), 0)];
+    let worth = PICTURES.into_iter().zip(kinds).filter(|(_, (panels, _))| !panels.is_empty());
+    worth.map(|(name, (panels, all))| picture(name, &panels, &notes(r, &panels, all), r, title)).collect()
 }
 
 /// Whether it is zero throughout.
 fn still(values: &[f64]) -> bool {
     values.iter().all(|x| x.abs() < ZERO)
-}
-
-/// Without fields where nothing happens.
-fn moving(mut panels: Vec<Panel>) -> Vec<Panel> {
-    panels.retain(|p| !p.curves.iter().all(|c| still(&c.values)));
-    panels
 }
 
 /// What a picture leaves out of so many curves, and of the events.
@@ -165,6 +160,12 @@ mod tests {
         assert!(all[2].svg.contains("17 of 18 curves are zero throughout, not drawn") && all[2].svg.matches("time, s").count() == 1);
         torque(&mut r, 0.0);
         assert_eq!(pictures(&r, "none").unwrap().iter().map(|p| p.name).collect::<Vec<_>>(), ["positions", "velocities", "energy"]);
+        // One angle at zero among others that move; and a robot at rest at zero.
+        r.q.iter_mut().skip(9).step_by(19).for_each(|x| *x = 0.0);
+        let drawn = &pictures(&r, "few").unwrap()[0].svg;
+        assert!(drawn.contains("1 of 19 curves are zero throughout, not drawn") && !drawn.contains(&format!(">{}<", r.q_names[9].label)));
+        (r.q, r.v) = (vec![0.0; r.q.len()], vec![1e-14; r.v.len()]);
+        assert_eq!(pictures(&r, "still").unwrap().iter().map(|p| p.name).collect::<Vec<_>>(), ["energy"]);
     }
 
     #[test]

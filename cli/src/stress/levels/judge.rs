@@ -22,7 +22,7 @@ const SECOND_ORDER: f64 = 1.0;
 pub fn rows(case: &Case, model: &Model<f64>, made: &Made, states: &[State]) -> Vec<Row> {
     let states: Vec<State> = states.iter().map(|s| made.rounded(s)).collect();
     let regular: Vec<State> = states.iter().filter(|s| is_regular(case, model, made, s)).cloned().collect();
-    let contract = Contract::of(made.level, model.outward().count());
+    let contract = Contract::of(made.level(), model.outward().count());
     let mut rows = Vec::new();
     for function in FUNCTIONS.into_iter().filter(|f| made.place(*f).is_some()) {
         // Where M is singular there is nothing to be judged: the unchecked form gives anything.
@@ -44,7 +44,7 @@ const FUNCTIONS: [FunctionId; 5] = [
 
 /// Whether M can be inverted in the level's numbers.
 fn is_regular(case: &Case, model: &Model<f64>, made: &Made, state: &State) -> bool {
-    match made.level.arithmetic {
+    match made.level().arithmetic {
         Arithmetic::Single => Judge::<f32>::new(case, model).checked(state).is_ok(),
         _ => Judge::<f64>::new(case, model).checked(state).is_ok(),
     }
@@ -69,7 +69,7 @@ impl Judged<'_> {
         if let Some(reached) = self.of_bound(states) {
             rows.push(case.row(format!("{name}, generated, rounding over its guaranteed bound"), reached, 1.0, ""));
         }
-        if self.made.level.sines == Sines::Two && self.graph().is_some() {
+        if self.made.level().sines == Sines::Two && self.graph().is_some() {
             let second = worst(&|s| self.second_order(s));
             rows.push(case.row(format!("{name}, generated, beyond one rounding of the result"), second, SECOND_ORDER, "2⁻¹⁰⁰"));
         }
@@ -142,7 +142,7 @@ impl Judged<'_> {
         let mut reached = None;
         for state in states {
             let arguments = self.arguments(state);
-            let bounds = bound::bounds(graph, self.made.level, &|argument, k| (arguments[argument][k], 0.0))?;
+            let bounds = bound::bounds(graph, self.made.level(), &|argument, k| (arguments[argument][k], 0.0))?;
             let found = self.made.call(self.function, &arguments)?;
             Big::scope(|| {
                 let expected = graph.evaluate_as(|argument, k| Big::from_f64(arguments[argument][k]));

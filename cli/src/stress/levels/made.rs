@@ -4,7 +4,7 @@ use articulated_codegen::{Generated, Level, Request, generate};
 use articulated_core::algorithm::FunctionId;
 use articulated_core::description::Description;
 
-use crate::compiled::{Compiled, Rustc, Target};
+use crate::compiled::{Compiled, Rustc};
 use crate::failure::Failure;
 use crate::stress::judge::State;
 use crate::stress::machine::{cast, widened};
@@ -14,16 +14,15 @@ use crate::stress::urdf_text::urdf_text;
 #[derive(Debug)]
 pub struct Made {
     pub(super) generated: Generated,
-    pub(super) level: Level,
     compiled: Compiled,
 }
 
 impl Made {
-    /// Of what was generated at this level.
-    pub(crate) fn of(generated: Generated, level: Level) -> Result<Self, Failure> {
+    /// Of what was generated.
+    pub(crate) fn of(generated: Generated) -> Result<Self, Failure> {
         let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
-        let compiled = Compiled::build_level(Target::Own, &rustc, &generated, level).map_err(|e| Failure::tool(&e))?;
-        Ok(Self { generated, level, compiled })
+        let compiled = Compiled::build(&rustc, &generated).map_err(|e| Failure::tool(&e))?;
+        Ok(Self { generated, compiled })
     }
 
     /// Of a description, with these functions.
@@ -32,12 +31,12 @@ impl Made {
         request.options.functions = functions.iter().map(|f| f.name().to_owned()).collect();
         request.options.level = level;
         request.options.stages = false;
-        Self::of(generate(&request)?, level)
+        Self::of(generate(&request)?)
     }
 
     /// How accurate it is.
     pub fn level(&self) -> Level {
-        self.level
+        self.generated.level
     }
 
     /// Of the functions that it has: their places in the ledger.
@@ -47,7 +46,7 @@ impl Made {
 
     /// In numbers that the level takes.
     pub(super) fn rounded(&self, state: &State) -> State {
-        let round = |x: &[f64]| if self.level.is_single() { widened(&cast::<f32>(x)) } else { x.to_vec() };
+        let round = |x: &[f64]| if self.level().is_single() { widened(&cast::<f32>(x)) } else { x.to_vec() };
         let State { q, v, a, tau } = state;
         State { q: round(q), v: round(v), a: round(a), tau: round(tau) }
     }
