@@ -11,11 +11,11 @@ use crate::accuracy::arguments::AccuracyArguments;
 use crate::edits::{Edits, FrameArguments};
 use crate::effects::arguments::EffectsArguments;
 use crate::failure::STATUSES;
-use crate::groups::Group;
 use crate::names::{Names, known, wanted};
 use crate::simulate::arguments::SimulateArguments;
 use crate::stress::arguments::StressArguments;
 use crate::table::counted;
+use articulated_codegen::function_groups::Group;
 
 /// Robot dynamics, spelled out: checks a URDF, generates its straight-line code, evaluates it, compares it, and simulates it.
 #[derive(Debug, Parser)]

@@ -3,7 +3,7 @@
 use articulated_codegen::{Wanted, nearest};
 use articulated_core::algorithm::{function, functions};
 
-use crate::groups::Group;
+use articulated_codegen::function_groups::Group;
 
 /// The functions that one word of the command line names.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -52,7 +52,7 @@ fn known_one(name: &str) -> Result<Vec<String>, String> {
     if function::<f64>(name).is_some() {
         return Ok(vec![name.to_owned()]);
     }
-    if let Some(group) = Group::ALL.into_iter().find(|g| g.name() == name) {
+    if let Some(group) = Group::named(name) {
         return Ok(group.functions().map(str::to_owned).collect());
     }
     let all = || functions::<f64>().iter().map(|f| f.name).chain(Group::ALL.map(Group::name));

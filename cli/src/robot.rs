@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use articulated_codegen::scene::{self, Scene};
-use articulated_codegen::{Appended, Error, Generated, Options, Request, choose_frames, generate, nearest};
+use articulated_codegen::{Appended, Error, Generated, Options, Request, Sines, choose_frames, generate, nearest};
 use articulated_core::description::Base;
 use articulated_core::model::Model;
 use articulated_urdf::{Problem, Reading};
@@ -91,6 +91,18 @@ impl Robot {
         options.effects = resolved.effects;
         let files = prepared.files.into_iter().chain(appended(&arguments.edits)).collect();
         Ok(Self { file, scene: Some(name.to_owned()), urdf, options, path: None, bundled, files })
+    }
+
+    /// Refuses a scene's level whose results differ from the library's by more than rounding: what is held to those would fail as promised.
+    pub(crate) fn has_a_level_of_rounding(&self) -> Result<(), Failure> {
+        let level = self.options.level;
+        if !level.is_single() && !matches!(level.sines, Sines::Fast7 | Sines::Fast10) {
+            return Ok(());
+        }
+        let file = self.scene.as_deref().unwrap_or(&self.file);
+        Err(Failure::input([format!(
+            "{file}: level: found {level}, expected f64 or what is more exact, as results are held to the library's; `articulated accuracy {file}` measures others"
+        )]))
     }
 
     /// The robot with these frames.

@@ -85,6 +85,34 @@ impl Build {
         self
     }
 
+    /// A fixed base, whatever a scene says.
+    #[must_use]
+    pub fn fixed(mut self) -> Self {
+        self.request.options.base = Base::Fixed;
+        self
+    }
+
+    /// Angles of the URDF that are this near to a multiple of π/2, rad, are that: some exporters write 1.5708.
+    #[must_use]
+    pub fn snap_angles(mut self, tolerance: f64) -> Self {
+        self.request.options.snap_angles = Some(tolerance);
+        self
+    }
+
+    /// Inertia that no body can have is used as it is written, with a warning.
+    #[must_use]
+    pub fn allow_unphysical_inertia(mut self) -> Self {
+        self.request.options.allow_unphysical_inertia = true;
+        self
+    }
+
+    /// The constants of the joint or link `from` are called `to`.
+    #[must_use]
+    pub fn rename(mut self, from: impl Into<String>, to: impl Into<String>) -> Self {
+        self.request.options.rename.push((from.into(), to.into()));
+        self
+    }
+
     /// Gravity in the base frame, m/s².
     #[must_use]
     pub fn gravity(mut self, gravity: [f64; 3]) -> Self {
@@ -164,10 +192,10 @@ impl Build {
         self
     }
 
-    /// Each limb for itself, also where branches that are alike would be cheaper at once, one a lane of a vector.
+    /// Whether branches that are alike may be computed at once, one a lane of a vector, where that is cheaper: so it is unless this says `false`.
     #[must_use]
-    pub fn each_limb_alone(mut self) -> Self {
-        self.request.options.limbs = false;
+    pub fn limbs(mut self, at_once: bool) -> Self {
+        self.request.options.limbs = at_once;
         self
     }
 
@@ -335,7 +363,12 @@ mod tests {
         let mut expected = plain.clone();
         assert_eq!(plain.runtime.as_deref(), Some("::articulated"));
         (expected.runtime, expected.limbs, expected.forbid_unsafe, expected.no_std) = (None, false, true, true);
-        assert_eq!(of(build.clone().standalone().each_limb_alone().forbid_unsafe().no_std()), expected);
+        assert_eq!(of(build.clone().standalone().limbs(false).forbid_unsafe().no_std()), expected);
+        let mut expected = plain.clone();
+        (expected.base, expected.snap_angles, expected.allow_unphysical_inertia) = (Base::Fixed, Some(1e-6), true);
+        expected.rename = vec![("a-b".into(), "A_MINUS_B".into())];
+        let all = build.clone().floating().fixed().snap_angles(1e-6).allow_unphysical_inertia().rename("a-b", "A_MINUS_B");
+        assert_eq!(of(all), expected);
         let both = of(build.clone().append(&hand, "tip", "left_", Origin::default()));
         assert_eq!(both.append[0].urdf, fs::read(&hand).unwrap());
         assert_eq!((both.append[0].at.as_str(), both.append[0].prefix.as_str()), ("tip", "left_"));

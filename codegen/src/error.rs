@@ -50,13 +50,13 @@ pub enum Error {
         expected: &'static str,
     },
     /// A function that does not exist.
-    #[error("unknown function `{found}`{}; there are: {}", nearest.as_ref().map(|n| format!(", did you mean `{n}`?")).unwrap_or_default(), known.join(", "))]
+    #[error("unknown function `{found}`, {}", nearest.as_ref().map_or_else(|| format!("there are: {}", known.join(", ")), |n| format!("did you mean `{n}`?")))]
     UnknownFunction {
         /// The name found.
         found: String,
         /// The known name most like it.
         nearest: Option<String>,
-        /// All names.
+        /// All names, and those of groups.
         known: Vec<String>,
     },
     /// A function that is not defined for this robot.

@@ -1,5 +1,6 @@
 //! Everything that is wrong with a request, not only the first of it: what was refused is left out, and the rest tried again.
 
+use crate::function_groups::Group;
 use crate::{Edit, Error, Options, Refusal, Request};
 
 /// More than these are not looked for.
@@ -45,9 +46,10 @@ pub(crate) fn all<T>(request: &Request, attempt: impl Fn(&Request) -> Result<T, 
     })
 }
 
-/// Whether an entry is the function, or has it in it.
+/// Whether an entry is the function, or its group, or has it in it.
 pub fn mentions(entry: &str, function: &str) -> bool {
-    entry.trim() == function || entry.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == function)
+    let of_group = Group::named(entry.trim()).is_some_and(|group| group.functions().any(|f| f == function));
+    entry.trim() == function || of_group || entry.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == function)
 }
 
 /// Takes out of the options what `error` is about, or names it otherwise; whether there was such a thing.

@@ -15,6 +15,7 @@ mod edit;
 mod emit;
 mod error;
 mod faults;
+pub mod function_groups;
 pub mod graph;
 mod groups;
 pub mod ledger;
@@ -63,6 +64,8 @@ pub struct Generated {
     pub model: Model<f64>,
     /// Constants of the model that stayed inputs.
     pub parameters: Vec<Parameter>,
+    /// How accurate the functions are, and what numbers they take.
+    pub level: Level,
     /// Costs.
     pub ledger: Ledger,
     /// The graph of each function, in the order of the ledger: what the source computes. Empty where the source leaves a loop
@@ -129,18 +132,13 @@ pub fn generate(request: &Request) -> Result<Generated, Error> {
     }
     let source = emit::module(request, &model, &names, &programs, &parameters, &unused) + &emit::warnings(&warnings);
     let graphs = programs.into_iter().map(|p| if p.columns.is_some() { graph::Graph::default() } else { p.graph }).collect();
-    Ok(Generated { source, model, parameters, ledger, graphs, warnings, unused, snapped })
+    Ok(Generated { source, model, parameters, level: request.options.level, ledger, graphs, warnings, unused, snapped })
 }
 
-/// The functions that the request names, each once.
+/// The functions that the request names.
 fn wanted(request: &Request, model: &Model<f64>, massless: &[String]) -> Result<Vec<Wanted>, Error> {
     let mut wanted: Vec<Wanted> = Vec::new();
-    let mut seen: Vec<&str> = Vec::new();
     for text in &request.options.functions {
-        if seen.contains(&text.as_str()) {
-            continue;
-        }
-        seen.push(text);
         let function = Wanted::parse(text)?;
         function.check(model.shape())?;
         function.parts.iter().try_for_each(|part| defined(&request.file, model, massless, part.function))?;
@@ -167,7 +165,7 @@ pub fn check_names(request: &Request, description: &Description, whole: &Model<f
         let shape = choose_frames(request, whole.clone())?.shape();
         request.options.functions.iter().try_for_each(|text| Wanted::parse(text)?.check(shape))
     };
-    faults::all(request, names)
+    faults::all(&request.settled(), names)
 }
 
 /// Whether all joints and links have names of their own in Rust. Errors: all names of which two are the same, and renamings that cannot be.
@@ -206,7 +204,8 @@ pub fn defined<S: Scalar>(file: &str, model: &Model<f64>, massless: &[String], f
 /// The function called `name`, or the error that names the nearest.
 pub fn function(name: &str) -> Result<&'static Function<Sym>, Error> {
     articulated_core::algorithm::function(name).ok_or_else(|| {
-        let known: Vec<String> = functions::<Sym>().iter().map(|f| f.name.to_owned()).collect();
+        let groups = function_groups::Group::ALL.map(function_groups::Group::name);
+        let known: Vec<String> = functions::<Sym>().iter().map(|f| f.name).chain(groups).map(str::to_owned).collect();
         Error::UnknownFunction { found: name.into(), nearest: nearest(name, known.iter().map(String::as_str)), known }
     })
 }

@@ -9,6 +9,8 @@ use articulated_core::level::Level;
 use articulated_core::model::GRAVITY;
 use articulated_core::spatial::Reference;
 
+use crate::function_groups;
+
 /// A robot's document and what to make of it. Macro, build script and command line all fill one of these.
 #[derive(Clone, Debug)]
 pub struct Request {
@@ -117,14 +119,18 @@ impl Request {
         Self { urdf: urdf.into(), file: file.into(), options: Options::default() }
     }
 
-    /// The request with what follows from its choices: without `std` nobody can ask what the processor has, nor call for a multiply-add.
+    /// The request with what follows from its choices: functions in the place of groups; without `std` nobody can ask what the processor has, nor call for a multiply-add.
     pub(crate) fn settled(&self) -> Cow<'_, Self> {
-        if !self.options.no_std {
+        let functions = function_groups::expanded(&self.options.functions);
+        if !self.options.no_std && functions == self.options.functions {
             return Cow::Borrowed(self);
         }
         let mut request = self.clone();
         let options = &mut request.options;
-        (options.forbid_unsafe, options.level.fused, options.runtime) = (true, false, None);
+        options.functions = functions;
+        if options.no_std {
+            (options.forbid_unsafe, options.level.fused, options.runtime) = (true, false, None);
+        }
         Cow::Owned(request)
     }
 }

@@ -124,6 +124,12 @@ pub(crate) const KEYS: &[Key<Settings>] = &[
         read: |s, value| value.parse::<LitBool>().map(|b| s.forbid_unsafe = Some(b.value)),
     },
     Key {
+        name: "no_std",
+        required: false,
+        expected: "`true` or `false`",
+        read: |s, value| value.parse::<LitBool>().map(|b| s.no_std = Some(b.value)),
+    },
+    Key {
         name: "crate",
         required: false,
         expected: "the absolute path of the crate `articulated`, as ::articulated or crate::path",

@@ -35,6 +35,7 @@ pub(crate) struct Settings {
     pub(crate) batch: Option<Vec<Real>>,
     pub(crate) level: Option<Level>,
     pub(crate) forbid_unsafe: Option<bool>,
+    pub(crate) no_std: Option<bool>,
     pub(crate) runtime: Option<Path>,
     pub(crate) standalone: bool,
     /// What is wrong inside the tables.
@@ -92,6 +93,7 @@ impl Settings {
             batch: self.batch.clone().unwrap_or(rest.batch),
             level: self.level.unwrap_or(rest.level),
             forbid_unsafe: self.forbid_unsafe.unwrap_or(rest.forbid_unsafe),
+            no_std: self.no_std.unwrap_or(rest.no_std),
             stages: false,
             runtime: (!self.standalone).then(|| self.runtime.as_ref().map_or("::articulated".into(), spelled)),
             ..rest

@@ -21,11 +21,8 @@ fn items(module: ItemMod) -> Vec<Item> {
 #[test]
 fn macro_build_script_and_library_give_the_same_tokens() {
     let rename = [("a-b", "A_MINUS_B"), ("j-1", "J_MINUS_1")].map(|(from, to)| (from.to_owned(), to.to_owned()));
-    let build = Build::new(URDF).floating().gravity([0.0, 1.5, -9.0]).functions(["gravity_torque", "placements"]).options(|o| {
-        o.rename = rename.to_vec();
-        o.snap_angles = Some(1e-9);
-    });
-    let build = build.generate().unwrap();
+    let build = Build::new(URDF).floating().gravity([0.0, 1.5, -9.0]).functions(["gravity_torque", "placements"]);
+    let build = rename.iter().fold(build.snap_angles(1e-9), |build, (from, to)| build.rename(from, to)).generate().unwrap();
 
     let mut request = Request::new(URDF, std::fs::read(URDF).unwrap());
     request.options.base = Base::Floating;
@@ -221,4 +218,14 @@ fn names_are_words_or_stand_in_quotation_marks() {
     let quoted = items(module(quote!(mod arm { urdf = #urdf, rename = { "tool" = TCP } })));
     assert_eq!(quote!(#(#word)*).to_string(), quote!(#(#quoted)*).to_string());
     assert!(quote!(#(#word)*).to_string().contains("TCP"));
+}
+
+#[test]
+fn a_group_of_functions_and_a_crate_without_std_are_asked_for_as_elsewhere() {
+    let urdf = "../tests/ui/urdf/arm.urdf";
+    let mut items = items(module(quote!(mod arm { urdf = #urdf, functions = [momentum, gravity_torque], no_std = true })));
+    items.pop();
+    let build = Build::new(urdf).functions(["momentum", "gravity_torque"]).no_std().generate().unwrap();
+    assert!(build.source.contains("pub fn center_of_mass_jacobian(") && build.source.contains("libm::"));
+    assert_eq!(quote!(#(#items)*).to_string(), syn::parse2::<syn::File>(build.tokens()).unwrap().to_token_stream().to_string());
 }

@@ -23,10 +23,12 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 
 pub use articulated_core::algorithm::checked::{Factor, Singular, Solver, Unsolved, checked_forward_dynamics};
-pub use articulated_core::algorithm::{self, FunctionError, FunctionId, Shape, Workspace, check_length, exactly, exactly_rows};
-pub use articulated_core::description::{self, Base, Description, EditError, Origin, Payload};
+pub use articulated_core::algorithm::{
+    self, FunctionError, FunctionId, Shape, Workspace, check_count, check_length, exactly, exactly_rows,
+};
+pub use articulated_core::description::{self, Base, Description, EditError, JointKind, Limit, Origin, Payload};
 pub use articulated_core::dynamics::Dynamics;
-pub use articulated_core::model::{self, Model, ModelError};
+pub use articulated_core::model::{self, JointRow, Model, ModelError};
 pub use articulated_core::{Scalar, effect, monitor, spatial};
 
 #[cfg(feature = "macros")]

@@ -183,11 +183,14 @@ impl ::articulated::Dynamics<f64> for Robot {
     fn workspace(&self) {}
     fn shape(&self) -> ::articulated::Shape { ::articulated::Shape { nq: NQ, nv: NV, frames: FRAMES, links: LINKS } }
     fn name(&self) -> &str { NAME }
-    fn joint_of(&self, freedom: usize) -> ::core::option::Option<&str> {
-        match freedom {
-            0 => ::core::option::Option::Some(JOINT_NAMES[0]),
-            _ => ::core::option::Option::None,
-        }
+    fn frame_name(&self, frame: usize) -> ::core::option::Option<&str> { FRAME_NAMES.get(frame).copied() }
+    fn joint(&self, index: usize) -> ::core::option::Option<::articulated::JointRow<'_>> {
+        let (kind, q, v) = match index {
+            0 => (::articulated::JointKind::Revolute, (0, 1), (0, 1)),
+            _ => return ::core::option::Option::None,
+        };
+        let limit = ::articulated::Limit { lower: Q_LOWER[q.0], upper: Q_UPPER[q.0], effort: TAU_LIMIT[v.0], velocity: V_LIMIT[v.0] };
+        ::core::option::Option::Some(::articulated::JointRow { name: JOINT_NAMES[index], kind, q, v, limit })
     }
     #[inline]
     fn call(&self, function: ::articulated::FunctionId, _: &mut (), arguments: &[&[f64]], out: &mut [f64]) -> ::core::result::Result<(), ::articulated::FunctionError> {
@@ -210,7 +213,7 @@ impl ::articulated::Dynamics<f64> for Robot {
                 }
                 ::core::result::Result::Ok(())
             }
-            _ => ::core::result::Result::Err(::articulated::FunctionError::NotGenerated { function: function.name() }),
+            _ => ::core::result::Result::Err(::articulated::FunctionError::of_call(function, arguments.len(), &[::articulated::FunctionId::placements, ::articulated::FunctionId::inverse_dynamics])),
         }
     }
 }

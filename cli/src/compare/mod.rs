@@ -14,6 +14,7 @@ pub(crate) mod timing;
 
 use std::path::Path;
 
+use articulated_codegen::function_groups;
 use articulated_core::algorithm::{Function, function};
 use articulated_core::model::Model;
 
@@ -24,7 +25,7 @@ use crate::failure::{Failure, OK};
 use crate::folder::Folder;
 use crate::robot::Robot;
 use crate::tips::Tips;
-use crate::{groups, names, parallel};
+use crate::{names, parallel};
 use accuracy::Reference;
 use batch::{Beside, Many};
 use contender::Contender;
@@ -43,6 +44,7 @@ const DEFAULT_BUILD: &str = "any processor";
 /// Measures and prints.
 pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Failure> {
     let mut robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
+    robot.has_a_level_of_rounding()?;
     robot.options.forbid_unsafe = arguments.forbid_unsafe;
     let reading = robot.read()?;
     robot.warn_of(reading.warnings.iter().chain(&reading.snapped));
@@ -112,7 +114,7 @@ fn open_peers(
 /// All functions that were asked for, or all that the robot has.
 fn prepare_all(plan: &Plan, arguments: &CompareArguments, report: &mut Report) -> Result<Vec<Prepared>, Failure> {
     let chosen = names::flat(&arguments.functions);
-    let mut names = if chosen.is_empty() { groups::all() } else { chosen.clone() };
+    let mut names = if chosen.is_empty() { function_groups::all() } else { chosen.clone() };
     let mut seen: Vec<String> = Vec::new();
     names.retain(|name| {
         !seen.contains(name) && {

@@ -15,12 +15,12 @@ use super::prepare::Prepared;
 use super::timing::{self, Summary};
 use crate::arguments::CompareArguments;
 use crate::compiled::{Rustc, Target};
-use crate::groups::Group;
 use crate::ledger::{Stage, stages};
 use crate::precise::BITS;
 use crate::robot::Robot;
 use crate::tips::Tips;
 use crate::units::Units;
+use articulated_codegen::function_groups::Group;
 
 const CALL: &str = "ns a call";
 const STATE: &str = "ns a state";

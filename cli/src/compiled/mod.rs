@@ -9,8 +9,8 @@ mod wrapper;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use articulated_codegen::{Generated, Level};
-use articulated_core::algorithm::{FunctionError, Shape, check_length, function};
+use articulated_codegen::Generated;
+use articulated_core::algorithm::{FunctionError, Shape, check_count, check_length, function};
 
 use crate::folder::Folder;
 use crate::native::{Kernel, Native};
@@ -54,20 +54,16 @@ impl Compiled {
         Self::build_for(Target::Own, rustc, generated)
     }
 
-    /// As [`Compiled::build`], for certain processors.
+    /// As [`Compiled::build`], for certain processors. Where numbers are `f32`, arrays of kernels hold two of them in the place of a double.
     pub fn build_for(target: Target, rustc: &Rustc, generated: &Generated) -> Result<Self, CompileError> {
-        Self::build_level(target, rustc, generated, Level::default())
-    }
-
-    /// Compiles and loads functions of the level that they were generated at. Where numbers are `f32`, arrays of kernels hold two of them in the place of a double.
-    pub fn build_level(target: Target, rustc: &Rustc, generated: &Generated, level: Level) -> Result<Self, CompileError> {
         let names: Vec<&str> = generated.ledger.functions.iter().map(|f| f.function.as_str()).collect();
         let library = Library::build(target, rustc, &generated.source, &wrapper::source(&names, &generated.source))?;
         let sizes = symbols::Sizes::of(&library.file);
         let shape = generated.model.shape();
-        let per = if level.is_single() { 2 } else { 1 };
+        let single = generated.level.is_single();
+        let per = if single { 2 } else { 1 };
         let functions = names.iter().map(|name| load(&library.native, &sizes, name, shape, per)).collect::<Result<_, _>>()?;
-        Ok(Self { functions, shape, single: level.is_single(), time: library.time, _library: library })
+        Ok(Self { functions, shape, single, time: library.time, _library: library })
     }
 
     /// How long `rustc` takes to the object file, its start included, as long as a C compiler's `-c`.
@@ -81,7 +77,7 @@ impl Compiled {
     pub fn call(&self, name: &str, arguments: &[&[f64]], out: &mut [f64]) -> Result<(), FunctionError> {
         let row = function::<f64>(name).ok_or(FunctionError::NotGenerated { function: "of this name" })?;
         let kernel = self.kernel(name).ok_or(FunctionError::NotGenerated { function: row.name })?;
-        check_length("arguments", arguments.len(), row.takes.len())?;
+        check_count(row.name, arguments.len(), row.takes.len())?;
         for (argument, given) in row.takes.iter().zip(arguments) {
             check_length(argument.name(), given.len(), argument.len(self.shape))?;
         }

@@ -25,6 +25,7 @@ const BOUND: f64 = 128.0;
 /// Prints the results of every function on every state.
 pub(crate) fn run(arguments: &EvalArguments, format: Format) -> Result<u8, Failure> {
     let robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
+    robot.has_a_level_of_rounding()?;
     let reading = robot.read()?;
     robot.warn_of(reading.warnings.iter().chain(&reading.snapped));
     let model = robot.model(&reading)?;

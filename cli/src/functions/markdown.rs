@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::report::{Footnotes, Report};
-use crate::groups::Group;
 use crate::table::freedom;
+use articulated_codegen::function_groups::Group;
 
 const HEAD: &str = "\
 # All functions

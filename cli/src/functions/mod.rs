@@ -4,14 +4,15 @@ mod markdown;
 mod report;
 mod text;
 
+use articulated_codegen::function_groups;
 use articulated_core::algorithm::{Function, function};
 
 use crate::arguments::{Format, FunctionsArguments, RobotArguments};
 use crate::console::{self, Progress};
 use crate::failure::{Failure, undefined};
+use crate::parallel;
 use crate::robot::Robot;
 use crate::tips::{FEW, Tips};
-use crate::{groups, parallel};
 use report::{Cell, Cost, FunctionRow, Report, RobotRow};
 
 /// What the table is about where nobody says: a small arm, an arm, and two that walk.
@@ -34,7 +35,7 @@ pub(crate) fn run(arguments: &FunctionsArguments, format: Format) -> Result<(), 
         subjects.push(subject);
         report.robots.push(row);
     }
-    let rows: Vec<&'static Function<f64>> = groups::all().iter().filter_map(|name| function::<f64>(name)).collect();
+    let rows: Vec<&'static Function<f64>> = function_groups::all().iter().filter_map(|name| function::<f64>(name)).collect();
     let pairs: Vec<(&Function<f64>, &Subject)> = rows.iter().flat_map(|f| subjects.iter().map(move |s| (*f, s))).collect();
     let progress = Progress::new(pairs.len());
     let cells = parallel::map(&pairs, |(f, s)| {

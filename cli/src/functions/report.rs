@@ -6,8 +6,8 @@ use articulated_codegen::ledger::Entry;
 use articulated_core::algorithm::{Argument, Function};
 use serde::Serialize;
 
-use crate::groups::Group;
 use crate::shape;
+use articulated_codegen::function_groups::Group;
 
 #[derive(Clone, Debug, Default, Serialize)]
 pub(super) struct Report {

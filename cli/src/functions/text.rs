@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::report::{Footnotes, FunctionRow, Report};
-use crate::groups::Group;
 use crate::table::{Table, freedom, plain};
+use articulated_codegen::function_groups::Group;
 
 pub(super) fn text(report: &Report) -> String {
     let mut out =

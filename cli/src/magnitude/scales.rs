@@ -32,7 +32,22 @@ pub fn scales_of_generated(model: &Model<f64>, name: &str, arguments: &[&[f64]])
     }
     let moved = evaluated(&turned(constants(model)), name, &given(arguments))?;
     let largest = own.iter().copied().fold(0.0, f64::max);
-    Ok(own.into_iter().zip(moved).map(|(own, moved)| own.max(moved.magnitude.min(largest))).collect())
+    let mut scales: Vec<f64> = own.into_iter().zip(moved).map(|(own, moved)| own.max(moved.magnitude.min(largest))).collect();
+    if name.starts_with("inverse_dynamics_derivatives") {
+        scales.chunks_mut(model.nv * model.nv).for_each(|matrix| rests(matrix, model.nv));
+    }
+    Ok(scales)
+}
+
+/// In axes other than the joint's own, what is nothing in those (the force along a slide that goes with its own rate, at a right angle to it) is what products of its neighbours leave: no less is
+/// asked than of the largest number of its row or of its column, whichever is less.
+fn rests(matrix: &mut [f64], n: usize) {
+    let largest = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(0.0, f64::max);
+    let rows: Vec<f64> = matrix.chunks(n).map(|row| largest(&mut row.iter().copied())).collect();
+    let columns: Vec<f64> = (0..n).map(|j| largest(&mut matrix.iter().skip(j).step_by(n).copied())).collect();
+    for (k, scale) in matrix.iter_mut().enumerate() {
+        *scale = scale.max(rows[k / n].min(columns[k % n]));
+    }
 }
 
 pub(super) const UNKNOWN: FunctionError = FunctionError::NotGenerated { function: "of this name" };
@@ -88,5 +103,17 @@ fn neighbours(numbers: &mut [Magnitude], all: bool) {
     let largest = numbers.iter().map(|x| x.magnitude).fold(0.0, f64::max);
     for x in numbers.iter_mut().filter(|x| all || x.value != 0.0 && x.value.abs() != 1.0) {
         x.magnitude = largest;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rest_is_measured_by_the_lesser_of_its_row_and_its_column() {
+        let mut matrix = [4.0, 0.0, 1.0, 3.0, 0.0, 2.0, 0.0, 0.0, 8.0];
+        rests(&mut matrix, 3);
+        assert_eq!(matrix, [4.0, 0.0, 4.0, 3.0, 0.0, 3.0, 4.0, 0.0, 8.0]);
     }
 }

@@ -147,7 +147,7 @@ fn robot(out: &mut String, request: &Request, model: &Model<f64>, programs: &[Pr
     let _ = writeln!(out, "    type Workspace = ();\n    fn workspace(&self) {{}}");
     let _ = writeln!(out, "    fn shape(&self) -> {path}::Shape {{ {path}::Shape {{ nq: NQ, nv: NV, frames: FRAMES, links: LINKS }} }}");
     let _ = writeln!(out, "    fn name(&self) -> &str {{ NAME }}");
-    joint_of(out, model);
+    names_by_number(out, path, model);
     let _ = writeln!(out, "    #[inline]");
     let _ = writeln!(
         out,
@@ -158,20 +158,33 @@ fn robot(out: &mut String, request: &Request, model: &Model<f64>, programs: &[Pr
         let takes: Vec<_> = function.takes.iter().map(|a| (a.name(), a.dims())).collect();
         arm(out, (path, real), function.name, &takes, function.gives, parameters);
     }
-    let _ =
-        writeln!(out, "            _ => ::core::result::Result::Err({path}::FunctionError::NotGenerated {{ function: function.name() }}),");
+    let has: Vec<String> =
+        programs.iter().filter_map(|p| p.wanted.as_function()).map(|f| format!("{path}::FunctionId::{}", f.name)).collect();
+    let _ = writeln!(
+        out,
+        "            _ => ::core::result::Result::Err({path}::FunctionError::of_call(function, arguments.len(), &[{}])),",
+        has.join(", ")
+    );
     let _ = writeln!(out, "        }}\n    }}\n}}");
 }
 
-/// The joint that a degree of freedom belongs to.
-fn joint_of(out: &mut String, model: &Model<f64>) {
-    let _ = writeln!(out, "    fn joint_of(&self, freedom: usize) -> ::core::option::Option<&str> {{\n        match freedom {{");
-    for (k, joint) in model.joints.iter().enumerate().filter(|(_, j)| j.v.1 > 0) {
-        let (first, last) = (joint.v.0, joint.v.0 + joint.v.1 - 1);
-        let range = if first == last { first.to_string() } else { format!("{first}..={last}") };
-        let _ = writeln!(out, "            {range} => ::core::option::Option::Some(JOINT_NAMES[{k}]),");
+/// The joints and frames by their numbers.
+fn names_by_number(out: &mut String, path: &str, model: &Model<f64>) {
+    let option = "::core::option::Option";
+    let _ = writeln!(out, "    fn frame_name(&self, frame: usize) -> {option}<&str> {{ FRAME_NAMES.get(frame).copied() }}");
+    let _ = writeln!(out, "    fn joint(&self, index: usize) -> {option}<{path}::JointRow<'_>> {{");
+    if model.joints.is_empty() {
+        let _ = writeln!(out, "        let _ = index;\n        {option}::None\n    }}");
+        return;
     }
-    let _ = writeln!(out, "            _ => ::core::option::Option::None,\n        }}\n    }}");
+    let _ = writeln!(out, "        let (kind, q, v) = match index {{");
+    for (k, joint) in model.joints.iter().enumerate() {
+        let _ = writeln!(out, "            {k} => ({path}::JointKind::{:?}, {:?}, {:?}),", joint.kind, joint.q, joint.v);
+    }
+    let _ = writeln!(out, "            _ => return {option}::None,\n        }};");
+    let limit = "lower: Q_LOWER[q.0], upper: Q_UPPER[q.0], effort: TAU_LIMIT[v.0], velocity: V_LIMIT[v.0]";
+    let _ = writeln!(out, "        let limit = {path}::Limit {{ {limit} }};");
+    let _ = writeln!(out, "        {option}::Some({path}::JointRow {{ name: JOINT_NAMES[index], kind, q, v, limit }})\n    }}");
 }
 
 /// How one function is called through slices.

@@ -3,7 +3,7 @@
 use crate::Scalar;
 use crate::algorithm::table::for_each_function;
 use crate::algorithm::{FunctionError, FunctionId, Shape, Workspace};
-use crate::model::Model;
+use crate::model::{JointInfo, JointRow, Model};
 
 /// A dimension, or dimensions, as they are indexed; a single number is an array of one.
 macro_rules! dims {
@@ -65,10 +65,32 @@ macro_rules! methods {
             /// The robot's name.
             fn name(&self) -> &str;
 
+            /// The joints in the order of their coordinates, a floating base's own first; `None` beyond the last, and where the robot cannot tell.
+            fn joint(&self, index: usize) -> Option<JointRow<'_>> {
+                let _ = index;
+                None
+            }
+
+            /// The name of a frame, where the robot can tell.
+            fn frame_name(&self, frame: usize) -> Option<&str> {
+                let _ = frame;
+                None
+            }
+
             /// The joint that a degree of freedom belongs to, where the robot can tell.
             fn joint_of(&self, freedom: usize) -> Option<&str> {
-                let _ = freedom;
-                None
+                let mut joints = (0..).map_while(|k| self.joint(k));
+                joints.find(|j| (j.v.0..j.v.0 + j.v.1).contains(&freedom)).map(|j| j.name)
+            }
+
+            /// The joint of this name.
+            fn joint_named(&self, name: &str) -> Option<JointRow<'_>> {
+                (0..).map_while(|k| self.joint(k)).find(|j| j.name == name)
+            }
+
+            /// The frame of this name: its index among those that functions of frames give.
+            fn frame_named(&self, name: &str) -> Option<usize> {
+                (0..self.shape().frames).find(|k| self.frame_name(*k) == Some(name))
             }
 
             /// Any function by its number; `arguments` in its order.
@@ -102,8 +124,12 @@ impl<S: Scalar> Dynamics<S> for Model<S> {
         &self.name
     }
 
-    fn joint_of(&self, freedom: usize) -> Option<&str> {
-        (freedom < self.nv).then(|| Model::joint_of(self, freedom))
+    fn joint(&self, index: usize) -> Option<JointRow<'_>> {
+        self.joints.get(index).map(JointInfo::row)
+    }
+
+    fn frame_name(&self, frame: usize) -> Option<&str> {
+        self.frames.get(frame).map(|f| f.name.as_str())
     }
 
     #[inline]

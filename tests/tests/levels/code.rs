@@ -32,7 +32,7 @@ struct Made {
 fn made(robot: &str, name: &str, target: Target) -> Made {
     let level = level(name);
     let generated = generated(robot, level);
-    let compiled = Compiled::build_level(target, &Rustc::find().unwrap(), &generated, level).unwrap();
+    let compiled = Compiled::build_for(target, &Rustc::find().unwrap(), &generated).unwrap();
     Made { level, generated, compiled }
 }
 

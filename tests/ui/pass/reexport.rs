@@ -2,7 +2,7 @@
 
 mod parts {
     pub mod dynamics {
-        pub use articulated::{Dynamics, FunctionError, FunctionId, Shape, check_length, exactly, exactly_rows};
+        pub use articulated::{Dynamics, FunctionError, FunctionId, JointKind, JointRow, Limit, Shape, check_length, exactly, exactly_rows};
     }
 }
 

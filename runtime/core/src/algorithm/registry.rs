@@ -218,6 +218,15 @@ pub enum FunctionError {
         /// The length expected.
         expected: usize,
     },
+    /// More arguments or fewer than the function takes.
+    Arguments {
+        /// The function's name.
+        function: &'static str,
+        /// How many were found.
+        found: usize,
+        /// How many were expected.
+        expected: usize,
+    },
     /// The workspace was made for a robot with another tree, other coordinates or another number of frames.
     Workspace,
     /// The robot was generated without this function.
@@ -231,6 +240,7 @@ impl fmt::Display for FunctionError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Length { argument, found, expected } => write!(f, "{argument}: found {found} numbers, expected {expected}"),
+            Self::Arguments { function, found, expected } => write!(f, "{function}: found {found} arguments, expected {expected}"),
             Self::Workspace => f.write_str("workspace: found that of another robot, expected one that this robot made"),
             Self::NotGenerated { function } => write!(f, "this robot was generated without {function}: add it to `functions`"),
         }
@@ -238,6 +248,17 @@ impl fmt::Display for FunctionError {
 }
 
 impl core::error::Error for FunctionError {}
+
+impl FunctionError {
+    /// Why a robot that was generated with certain functions did not take a call.
+    pub fn of_call(function: FunctionId, found: usize, generated: &[FunctionId]) -> Self {
+        let row = function.row::<f64>();
+        match generated.contains(&function) {
+            true => Self::Arguments { function: row.name, found, expected: row.takes.len() },
+            false => Self::NotGenerated { function: row.name },
+        }
+    }
+}
 
 impl<S: Scalar> Function<S> {
     /// Whether the function divides by the mass matrix, so that a joint that moves no mass makes it undefined.
@@ -276,7 +297,7 @@ impl<S: Scalar> Function<S> {
             return Err(FunctionError::Workspace);
         }
         let shape = ws.shape;
-        check_length("arguments", arguments.len(), self.takes.len())?;
+        check_count(self.name, arguments.len(), self.takes.len())?;
         for (argument, given) in self.takes.iter().zip(arguments) {
             check_length(argument.name(), given.len(), argument.len(shape))?;
         }
@@ -284,6 +305,11 @@ impl<S: Scalar> Function<S> {
         (way.run)(model, ws, arguments, out);
         Ok(())
     }
+}
+
+/// The number of arguments, or the error that names the function.
+pub fn check_count(function: &'static str, found: usize, expected: usize) -> Result<(), FunctionError> {
+    if found == expected { Ok(()) } else { Err(FunctionError::Arguments { function, found, expected }) }
 }
 
 /// The length of an argument, or the error that names it.

@@ -170,6 +170,11 @@ pub struct Limit {
     pub velocity: f64,
 }
 
+impl Limit {
+    /// None at all.
+    pub const NONE: Self = Self { lower: f64::NEG_INFINITY, upper: f64::INFINITY, effort: f64::INFINITY, velocity: f64::INFINITY };
+}
+
 /// The `<dynamics>` tag.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JointDynamics {

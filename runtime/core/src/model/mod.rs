@@ -109,6 +109,28 @@ pub struct JointInfo {
     pub limit: Option<Limit>,
 }
 
+/// A joint of any robot, generated or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct JointRow<'a> {
+    /// Its name; [`FLOATING_BASE`] for that of a floating base.
+    pub name: &'a str,
+    /// Its kind in the file.
+    pub kind: JointKind,
+    /// First index and number of its coordinates in q.
+    pub q: (usize, usize),
+    /// First index and number of its rates in v.
+    pub v: (usize, usize),
+    /// Its limits; infinite where the file gives none.
+    pub limit: Limit,
+}
+
+impl JointInfo {
+    /// The same, with a limit in any case.
+    pub fn row(&self) -> JointRow<'_> {
+        JointRow { name: &self.name, kind: self.kind, q: self.q, v: self.v, limit: self.limit.unwrap_or(Limit::NONE) }
+    }
+}
+
 impl<S: Scalar> Model<S> {
     /// Indices of the moving bodies, from the base outward.
     #[inline(always)]

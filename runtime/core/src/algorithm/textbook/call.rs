@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use super::Textbook;
 use crate::Scalar;
-use crate::algorithm::{Argument, FunctionError, Shape, check_length, function};
+use crate::algorithm::{Function, FunctionError, Shape, check_count, check_length, function};
 use crate::spatial::Reference;
 
 /// The reference that a name ends with, and what is left of the name.
@@ -18,16 +18,16 @@ fn reference(name: &str) -> (&str, Reference) {
 impl<S: Scalar> Textbook<S> {
     /// Any function of the table by its name; `arguments` in its order. `None` for a name that is not in it.
     pub fn call(&self, name: &str, arguments: &[&[S]]) -> Option<Result<Vec<S>, FunctionError>> {
-        match self.check(function::<f64>(name)?.takes, arguments) {
+        match self.check(function::<f64>(name)?, arguments) {
             Err(error) => Some(Err(error)),
             Ok(()) => self.answer(name, arguments).map(Ok),
         }
     }
 
-    fn check(&self, takes: &[Argument], arguments: &[&[S]]) -> Result<(), FunctionError> {
+    fn check(&self, function: &Function<f64>, arguments: &[&[S]]) -> Result<(), FunctionError> {
         let shape = Shape { nq: self.nq, nv: self.nv, frames: self.frames.len(), links: self.moving_links().count() };
-        check_length("arguments", arguments.len(), takes.len())?;
-        takes.iter().zip(arguments).try_for_each(|(takes, given)| check_length(takes.name(), given.len(), takes.len(shape)))
+        check_count(function.name, arguments.len(), function.takes.len())?;
+        function.takes.iter().zip(arguments).try_for_each(|(takes, given)| check_length(takes.name(), given.len(), takes.len(shape)))
     }
 
     /// With as many arguments as the name takes.

@@ -1,23 +1,31 @@
-//! The functions of the table in groups, for lists that people read and for the command line.
+//! The functions of the table in groups: for lists that people read, and to ask for them by one word.
 
 use articulated_core::algorithm::{FunctionId, functions};
 
 /// A group of functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Group {
+pub enum Group {
+    /// Of frames.
     Kinematics,
+    /// Torques, accelerations and the mass matrix.
     Dynamics,
+    /// Of placements and dynamics.
     Derivatives,
+    /// With energy and the centre of mass.
     Momentum,
+    /// Of torques and energy.
     Regressors,
+    /// Λ and its inverse.
     OperationalSpace,
+    /// What a scene's effects do.
     Effects,
+    /// Steps, differences and draws.
     Configurations,
 }
 
 impl Group {
     /// All of them, in the order in which they are listed.
-    pub(crate) const ALL: [Self; 8] = [
+    pub const ALL: [Self; 8] = [
         Self::Kinematics,
         Self::Dynamics,
         Self::Derivatives,
@@ -28,8 +36,8 @@ impl Group {
         Self::Configurations,
     ];
 
-    /// Its name on the command line.
-    pub(crate) fn name(self) -> &'static str {
+    /// Its name in lists of functions.
+    pub fn name(self) -> &'static str {
         match self {
             Self::Kinematics => "kinematics",
             Self::Dynamics => "dynamics",
@@ -42,8 +50,13 @@ impl Group {
         }
     }
 
+    /// The group of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|group| group.name() == name)
+    }
+
     /// What is in it.
-    pub(crate) fn title(self) -> &'static str {
+    pub fn title(self) -> &'static str {
         match self {
             Self::Kinematics => "Kinematics of frames",
             Self::Dynamics => "Dynamics",
@@ -57,7 +70,7 @@ impl Group {
     }
 
     /// The group of a function. A new function needs its row here.
-    pub(crate) fn of(function: FunctionId) -> Self {
+    pub fn of(function: FunctionId) -> Self {
         use FunctionId as F;
         match function {
             F::placements
@@ -111,13 +124,30 @@ impl Group {
     }
 
     /// Names of its functions, in the table's order.
-    pub(crate) fn functions(self) -> impl Iterator<Item = &'static str> {
+    pub fn functions(self) -> impl Iterator<Item = &'static str> {
         functions::<f64>().iter().filter(move |f| Self::of(f.id) == self).map(|f| f.name)
     }
 }
 
+/// The same list with each group's functions in the place of its name, and each entry once.
+pub(crate) fn expanded(list: &[String]) -> Vec<String> {
+    let mut all: Vec<String> = Vec::new();
+    for entry in list {
+        let names: Vec<String> = match Group::named(entry) {
+            Some(group) => group.functions().map(str::to_owned).collect(),
+            None => vec![entry.clone()],
+        };
+        for name in names {
+            if !all.contains(&name) {
+                all.push(name);
+            }
+        }
+    }
+    all
+}
+
 /// All functions, group by group.
-pub(crate) fn all() -> Vec<String> {
+pub fn all() -> Vec<String> {
     Group::ALL.into_iter().flat_map(Group::functions).map(str::to_owned).collect()
 }
 
@@ -129,5 +159,10 @@ mod tests {
     fn every_function_is_in_one_group_and_no_group_is_called_like_a_function() {
         assert_eq!(all().len(), functions::<f64>().len());
         assert!(Group::ALL.into_iter().all(|g| g.functions().next().is_some() && !all().contains(&g.name().to_owned())));
+    }
+    #[test]
+    fn a_group_stands_for_its_functions_and_what_is_asked_for_twice_is_there_once() {
+        let list = ["dissipation", "operational_space", "dissipation", "operational_space_inertia", "x = effects"].map(str::to_owned);
+        assert_eq!(expanded(&list), ["dissipation", "operational_space_inertia", "operational_space_inertia_inverse", "x = effects"]);
     }
 }
