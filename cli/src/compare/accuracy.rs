@@ -12,7 +12,7 @@ use articulated_core::model::Model;
 use serde::Serialize;
 
 use super::contender::Contender;
-use crate::magnitude::{ROUNDOFF, scales, scales_of_generated};
+use crate::magnitude::{ROUNDOFF, scales, scales_of_generated, where_suspect};
 use crate::precise::Big;
 use crate::states::quaternions;
 use crate::worse::worse;
@@ -165,7 +165,8 @@ fn forward(exact: &[Big], model: &Model<f64>, name: &str, state: &[&[f64]], foun
         return Some([generated, generic]);
     }
     let moved = above_residues(scales_of_generated(model, name, state).ok()?);
-    Some([largest(exact, &found[0], &moved), generic])
+    let is_suspect = |k: usize, own: f64| exact[k].error_of(found[0][k], ROUNDOFF * own) > SUSPECT;
+    Some([largest(exact, &found[0], &where_suspect(&own, &moved, is_suspect)), generic])
 }
 
 /// How much of the scale of a result may be left of its zeros by the roundings of the reference's 96 digits, and more than that.

@@ -5,14 +5,14 @@ mod odd;
 mod report;
 mod text;
 
-use articulated_core::algorithm::{Function, FunctionError, Workspace, function};
+use articulated_core::algorithm::{Function, Workspace, function};
 use articulated_core::model::Model;
 
 use crate::arguments::{EvalArguments, Format};
 use crate::compiled::{CompileError, Compiled, Rustc, Target};
 use crate::console;
 use crate::failure::{Failure, OK};
-use crate::magnitude::{scales, scales_of_generated};
+use crate::magnitude::{scales, scales_of_generated, where_suspect};
 use crate::names;
 use crate::robot::{Robot, read_bytes};
 use crate::states::{self, State};
@@ -124,9 +124,15 @@ fn evaluate(
         let generated = compiled.and_then(|c| c.call(function.name, &arguments, &mut out).ok().map(|()| out.clone()));
         let generic = function.call(model, &mut workspace, &arguments, &mut out).ok().map(|()| out);
         if let (Some(a), Some(b)) = (&generic, &generated) {
-            let by = |scale: Result<Vec<f64>, FunctionError>| Difference::largest(k, a, b, &scale.unwrap_or_default());
-            let own = by(scales(model, function.name, &arguments));
-            let difference = if own.exceeded() { by(scales_of_generated(model, function.name, &arguments)) } else { own };
+            let own = scales(model, function.name, &arguments).unwrap_or_default();
+            let difference = match Difference::largest(k, a, b, &own) {
+                difference if difference.exceeded() => {
+                    let moved = scales_of_generated(model, function.name, &arguments).unwrap_or_default();
+                    let is_suspect = |i: usize, own: f64| Difference::largest(k, &a[i..=i], &b[i..=i], &[own]).exceeded();
+                    Difference::largest(k, a, b, &where_suspect(&own, &moved, is_suspect))
+                }
+                difference => difference,
+            };
             largest = Difference::larger(largest, difference);
         }
         outcomes.push(Outcome { generic: generic.filter(|_| !generated_only), generated });

@@ -10,6 +10,7 @@ use articulated_core::Scalar;
 use num_traits::{One, Zero};
 
 pub(crate) use norms::{is_plain, norms};
+pub(crate) use scales::where_suspect;
 pub use scales::{scales, scales_of_generated};
 
 /// A value together with the sum of the magnitudes of the terms that it was summed from.

@@ -39,6 +39,11 @@ pub fn scales_of_generated(model: &Model<f64>, name: &str, arguments: &[&[f64]])
     Ok(scales)
 }
 
+/// The scales of a result: those of generated code for numbers that are suspect by their own, and no others.
+pub(crate) fn where_suspect(own: &[f64], moved: &[f64], is_suspect: impl Fn(usize, f64) -> bool) -> Vec<f64> {
+    own.iter().zip(moved).enumerate().map(|(k, (own, moved))| if is_suspect(k, *own) { *moved } else { *own }).collect()
+}
+
 /// In axes other than the joint's own, what is nothing in those (the force along a slide that goes with its own rate, at a right angle to it) is what products of its neighbours leave: no less is
 /// asked than of the largest number of its row or of its column, whichever is less.
 fn rests(matrix: &mut [f64], n: usize) {
@@ -109,6 +114,11 @@ fn neighbours(numbers: &mut [Magnitude], all: bool) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_not_suspect_keeps_its_own_scale() {
+        assert_eq!(where_suspect(&[1.0, 2.0, 0.0], &[5.0, 6.0, 7.0], |k, own| k == 1 || own == 0.0), [1.0, 6.0, 7.0]);
+    }
 
     #[test]
     fn a_rest_is_measured_by_the_lesser_of_its_row_and_its_column() {
