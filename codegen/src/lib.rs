@@ -34,6 +34,7 @@ use articulated_core::algorithm::{Function, Needs, functions};
 use articulated_core::description::Description;
 use articulated_core::model::Model;
 use articulated_urdf::{Problem, Reading, Unused};
+use function_groups::Group;
 
 pub use articulated_core as core;
 pub use articulated_core::description::{Base, Origin, Payload, Shaft};
@@ -204,7 +205,8 @@ pub fn defined<S: Scalar>(file: &str, model: &Model<f64>, massless: &[String], f
 /// The function called `name`, or the error that names the nearest.
 pub fn function(name: &str) -> Result<&'static Function<Sym>, Error> {
     articulated_core::algorithm::function(name).ok_or_else(|| {
-        let groups = function_groups::Group::ALL.map(function_groups::Group::name);
+        // In a sum of functions a group is none of them.
+        let groups = Group::ALL.map(Group::name).into_iter().filter(|_| Group::named(name).is_none());
         let known: Vec<String> = functions::<Sym>().iter().map(|f| f.name).chain(groups).map(str::to_owned).collect();
         Error::UnknownFunction { found: name.into(), nearest: nearest(name, known.iter().map(String::as_str)), known }
     })

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use articulated_codegen::function_groups::Group;
 use articulated_codegen::scene::articulated_scene::Node;
 use articulated_codegen::{Base, Level, Options, Real, Reference, Wanted};
 use proc_macro2::Span;
@@ -107,6 +108,9 @@ fn or<T, U>(said: Option<&Vec<T>>, of: impl Fn(&T) -> Option<U>, rest: Vec<U>) -
 }
 
 fn known(entry: &Entry) -> syn::Result<()> {
+    if Group::named(entry.text.trim()).is_some() {
+        return Ok(());
+    }
     Wanted::parse(&entry.text).map(|_| ()).map_err(|error| Error::new(entry.span, error))
 }
 

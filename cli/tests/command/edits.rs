@@ -18,7 +18,8 @@ fn check_tells_what_an_edited_robot_is_made_of() {
     assert_eq!(json["totals"]["degrees_of_freedom"], plain["totals"]["degrees_of_freedom"]);
     let mass = |report: &serde_json::Value| report["totals"]["mass"].as_f64().unwrap();
     assert!((mass(&json) - mass(&plain) - 1.75).abs() < 1e-12);
-    assert_eq!((json["joints"][0]["locked"][0].as_f64(), json["joints"][0]["q"].is_null()), (Some(0.5), true));
+    let locked = json["joints"].as_array().unwrap().iter().find(|j| j["joint"] == joint).unwrap();
+    assert_eq!((locked["locked"][0].as_f64(), locked["q"].is_null()), (Some(0.5), true));
     let text = run(&words);
     assert!(text.status == 0 && text.lines_with("locked at 0.5") == 1 && text.lines_with("left_close") >= 1, "{}", text.out);
 }
