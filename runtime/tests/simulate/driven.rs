@@ -4,16 +4,11 @@ use std::cell::RefCell;
 
 use articulated::effect::{Applied, EffectId};
 use articulated::simulate::{
-    Constant, Control, Event, Hold, IntegratorId, NoTorque, Output, Pd, Settings, SimulateError, Simulation, StateError, TorqueTable,
-    integrators,
+    Constant, Control, Event, Hold, IntegratorId, NoTorque, Output, Pd, Settings, SimulateError, Simulation, TorqueTable, integrators,
 };
-use articulated::{Base, Dynamics, FunctionError, Origin};
+use articulated::{Base, Dynamics, Origin};
 
-use crate::robots::{apart, chain, free, handle, model, one_joint, satellite, stepping, to};
-
-fn slider() -> articulated::Model<f64> {
-    one_joint("prismatic", 0.0).with_gravity([0.0; 3])
-}
+use crate::robots::{apart, chain, free, handle, model, satellite, slider, stepping, to};
 
 /// q̈ = u between samples: the sums are exact, and the samples come when they must.
 #[test]
@@ -187,106 +182,6 @@ fn generated_and_generic_robots_move_alike() {
     compare(&satellite::Robot, "satellite", Base::Floating, &q, &[1.8, -1.5, 2.0, 0.3, -0.2, 0.5, 0.4, 0.1, -0.1, 0.1]);
 }
 
-#[test]
-fn what_cannot_be_simulated_is_said_at_once() {
-    let settings = to(IntegratorId::dopri5, 1.0, 1e-6);
-    let error = free(&handle::Robot, &settings, &[0.0, f64::NAN, 0.0, 2.0, 0.0, 0.0, 0.0], &[0.0; 5]).unwrap_err();
-    let SimulateError::State(all) = &error else { panic!("{error}") };
-    assert!(all.contains(&StateError::Length { vector: "v", found: 5, expected: 6 }));
-    assert!(matches!(all[0], StateError::NotFinite { vector: "q", index: 1, .. }));
-    let base = || Some("__floating_base__".to_owned());
-    assert!(all.contains(&StateError::Quaternion { vector: "q", index: 3, norm: 2.0, joint: base() }), "{error}");
-    let lacking = Simulation::new(&handle::Robot, to(IntegratorId::rodas4, 1.0, 1e-6)).err();
-    let function = "forward_dynamics_derivatives";
-    assert_eq!(lacking, Some(SimulateError::Function(FunctionError::NotGenerated { function })));
-    let found =
-        Simulation::new(&slider(), settings.clone()).unwrap().run(&[0.0], &[0.0], &mut Constant::new(vec![1.0; 2]), &mut []).unwrap_err();
-    assert_eq!(found, SimulateError::State(vec![StateError::Length { vector: "tau", found: 2, expected: 1 }]));
-    let mut nowhere = [Event::new("nowhere", |_, _: &[f64], _: &[f64]| f64::NAN)];
-    let found = Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[0.0], &mut NoTorque, &mut nowhere).unwrap_err();
-    assert_eq!(found, SimulateError::NotFinite { t: 0.0, what: "event", index: vec![0], names: vec!["nowhere".into()] });
-    assert_eq!(found.to_string(), "at t = 0 s event[0] (event `nowhere`) is not finite");
-    let mut burst = |t: f64, _: &[f64], _: &[f64], tau: &mut [f64]| tau[0] = if t > 0.5 { f64::NAN } else { 0.0 };
-    for id in [IntegratorId::dopri5, IntegratorId::rodas4, IntegratorId::rk4, IntegratorId::lie_midpoint] {
-        let settings = if id.row().adaptive { to(id, 1.0, 1e-6) } else { stepping(id, 1.0, 0.01) };
-        let error = Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[1.0], &mut burst, &mut []).unwrap_err();
-        let SimulateError::NotFinite { t, what: "tau", .. } = error else { panic!("{id}: {error}") };
-        assert!(t <= 0.52 && t > 0.49, "{id}: {error}");
-        assert!(error.to_string().ends_with(" s tau[0] (joint `joint`) is not finite"), "{id}: {error}");
-    }
-}
-
-#[test]
-fn what_is_wrong_with_a_state_its_events_and_its_torques_is_said_at_once() {
-    let mut simulation = Simulation::new(&chain::Robot, to(IntegratorId::dopri5, 1.0, 1e-6)).unwrap();
-    let mut events = [Event::limit("end", 7, 2.0, -1.0), Event::stick_slip("slide", 3, 0.1)];
-    let mut torques = Constant::new(vec![1.0; 2]);
-    let error = simulation.run(&[0.0, f64::NAN, 0.0], &[0.0, 0.0, f64::INFINITY], &mut torques, &mut events).unwrap_err();
-    let names: Vec<_> = (0..3).map(|k| chain::Robot.joint_of(k).unwrap().to_owned()).collect();
-    let expected = [
-        format!("q[1] (joint `{}`) = NaN is not finite", names[1]),
-        format!("v[2] (joint `{}`) = inf is not finite", names[2]),
-        "the event `end` is about q[7], and q has 3 numbers".into(),
-        "the event `end` has the bounds 2 and -1; the first should be less than the second".into(),
-        "the event `slide` is about v[3], and v has 3 numbers".into(),
-        "tau has 2 numbers, expected 3".into(),
-    ];
-    assert_eq!(error.to_string().lines().collect::<Vec<_>>(), expected);
-}
-
-/// A coordinate's joint is found behind quaternions too.
-#[test]
-fn coordinates_are_told_with_their_joints() {
-    let robot = model("satellite", Base::Floating);
-    for (k, joint) in robot.joints.iter().enumerate() {
-        for index in joint.q.0..joint.q.0 + joint.q.1 {
-            let mut q = [0.3, -0.2, 0.5, 0.5, -0.5, 0.5, 0.5, 0.7, 0.1, 0.7, -0.1, 0.7];
-            q[index] = f64::NAN;
-            let error = free(&robot, &to(IntegratorId::dopri5, 0.1, 1e-6), &q, &[0.0; 10]).unwrap_err();
-            assert_eq!(error.to_string(), format!("q[{index}] (joint `{}`) = NaN is not finite", joint.name), "{k}");
-        }
-    }
-}
-
-/// Links without mass behind the elbow: every acceleration is none, and it is the last joint that moves nothing.
-#[test]
-fn a_joint_that_moves_no_mass_is_named() {
-    let joint = |name: &str, parent: &str, child: &str| {
-        format!(
-            "<joint name='{name}' type='continuous'><parent link='{parent}'/><child link='{child}'/><origin xyz='0.5 0 0'/><axis xyz='0 0 1'/></joint>"
-        )
-    };
-    let upper =
-        "<link name='upper'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>";
-    let urdf = format!(
-        "<robot name='arm'><link name='base'/>{upper}<link name='lower'/>{}{}</robot>",
-        joint("shoulder", "base", "upper"),
-        joint("elbow", "upper", "lower")
-    );
-    let robot = articulated::load_bytes("arm", urdf.as_bytes(), Base::Fixed).unwrap();
-    for row in integrators() {
-        let settings = if row.adaptive { to(row.id, 1.0, 1e-6) } else { stepping(row.id, 1.0, 0.01) };
-        let error = free(&robot, &settings, &[0.1, 0.2], &[0.5, 0.5]).unwrap_err();
-        let SimulateError::NoMass { t: 0.0, cause } = &error else { panic!("{}: {error}", row.name) };
-        assert_eq!((cause.joint.as_str(), cause.freedom), ("elbow", 1), "{}", row.name);
-        assert!(error.to_string().starts_with("at t = 0 s the mass matrix is singular at v[1] (joint `elbow`): "), "{error}");
-    }
-}
-
-/// Torques that are finite and no motion: all accelerations that are none are told, with their joints.
-#[test]
-fn accelerations_that_are_not_finite_are_all_told() {
-    let robot = model("chain", Base::Fixed);
-    let mut huge = |_: f64, _: &[f64], _: &[f64], tau: &mut [f64]| tau.fill(f64::MAX);
-    let mut simulation = Simulation::new(&robot, to(IntegratorId::dopri5, 1.0, 1e-6)).unwrap();
-    let error = simulation.run(&[0.4, -0.7, 0.5], &[0.0; 3], &mut huge, &mut []).unwrap_err();
-    let SimulateError::NotFinite { t: 0.0, what: "acceleration", index, names } = &error else { panic!("{error}") };
-    let expected: Vec<_> = index.iter().map(|&k| robot.joint_of(k).to_owned()).collect();
-    assert!(index.len() > 1 && *names == expected, "{error}");
-    let told = names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-    assert!(error.to_string().ends_with(&format!(" (joints {told}) are not finite")), "{error}");
-}
-
 /// Outputs are on the curve, as good as the steps.
 #[test]
 fn outputs_between_steps_are_as_good_as_steps() {
@@ -397,20 +292,6 @@ fn a_controller_with_rates_holds_them() {
     for (gain, rates) in [(1.0, &[0.7, 0.1][..]), (1.0, &[]), (1.0, &[f64::NAN]), (f64::INFINITY, &[0.7])] {
         assert!(matches!(pd(gain, rates), Err(SimulateError::State(wrong)) if wrong.len() == 1), "{gain} {rates:?}");
     }
-}
-
-#[test]
-fn what_is_wrong_with_a_controller_is_called_as_its_arguments_are() {
-    let all = |error: Option<SimulateError>| error.unwrap().to_string();
-    let error = Pd::new(&chain::Robot, vec![0.0; 2], vec![1.0; 4], vec![1.0, f64::NAN, 1.0]).err();
-    let joint = chain::Robot.joint_of(1).unwrap();
-    let expected = format!(
-        "target has 2 numbers, expected 3\nproportional gains has 4 numbers, expected 3\nderivative gains[1] (joint `{joint}`) = NaN is not finite"
-    );
-    assert_eq!(all(error), expected);
-    let error = Pd::new(&handle::Robot, vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0], vec![1.0; 6], vec![1.0; 6]).err();
-    assert_eq!(all(error), "target[3..7] (joint `__floating_base__`) is a quaternion of norm 2; it should be 1");
-    assert_eq!(all(Hold::new(NoTorque, -1.0).err()), "period = -1 cannot be used; it should be a length of time greater than zero, s");
 }
 
 /// Stretch by stretch it is the same motion.

@@ -72,3 +72,8 @@ pub(crate) fn apart<R: Dynamics<f64>>(robot: &R, a: &Recording, b: &Recording) -
     let rates = a.v_at(i).iter().zip(b.v_at(j)).map(|(a, b)| a - b);
     step.iter().copied().chain(rates).fold(0.0, |most, x| if x.is_nan() { f64::INFINITY } else { most.max(x.abs()) })
 }
+
+/// A slide without gravity.
+pub(crate) fn slider() -> Model<f64> {
+    one_joint("prismatic", 0.0).with_gravity([0.0; 3])
+}

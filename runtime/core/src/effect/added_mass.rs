@@ -13,18 +13,23 @@ pub(super) const FIELDS: &[Field] = &[
         .part()
         .or(&[0.0; 9])
         .of(9)
-        .rule(is_no_loss, "with angular and linear a 6×6 matrix that is positive semidefinite"),
+        .rule(is_positive_semidefinite, "with angular and linear a 6×6 matrix that is positive semidefinite"),
 ];
 
 /// Whether no motion has less than no energy, but for rounding of written numbers.
-fn is_no_loss(p: &[f64]) -> bool {
+fn is_positive_semidefinite(p: &[f64]) -> bool {
     let inertia = inertia(p);
     let mut matrix = Matrix6::zeros();
     matrix.fixed_view_mut::<3, 3>(0, 0).copy_from(&inertia.angular);
     matrix.fixed_view_mut::<3, 3>(0, 3).copy_from(&inertia.coupling);
     matrix.fixed_view_mut::<3, 3>(3, 0).copy_from(&inertia.coupling.transpose());
     matrix.fixed_view_mut::<3, 3>(3, 3).copy_from(&inertia.linear);
-    let values = matrix.symmetric_eigenvalues();
+    // Squares of large numbers overflow.
+    let largest = matrix.amax();
+    if largest == 0.0 {
+        return true;
+    }
+    let values = (matrix / largest).symmetric_eigenvalues();
     values.min() >= -1e-9 * values.amax()
 }
 
@@ -32,4 +37,20 @@ fn is_no_loss(p: &[f64]) -> bool {
 pub(super) fn inertia<S: Scalar>(p: &[S]) -> ArticulatedInertia<S> {
     let symmetric = |x: &[S]| Matrix3::new(x[0], x[1], x[2], x[1], x[3], x[4], x[2], x[4], x[5]);
     ArticulatedInertia { angular: symmetric(&p[..6]), linear: symmetric(&p[6..12]), coupling: Matrix3::from_row_slice(&p[12..21]) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_would_give_energy_is_told_whatever_its_size() {
+        let diagonal = |x: f64| [&[x, 0.0, 0.0, x, 0.0, x].repeat(2)[..], &[0.0; 9]].concat();
+        for size in [0.0, 1e-300, 1.0, 1e300] {
+            assert!(is_positive_semidefinite(&diagonal(size)), "{size}");
+            let mut leaning = diagonal(size);
+            leaning[1] = 2.0 * size;
+            assert_eq!(is_positive_semidefinite(&leaning), size == 0.0, "{size}");
+        }
+    }
 }

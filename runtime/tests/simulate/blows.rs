@@ -1,0 +1,92 @@
+//! Blows: a ball that a robot strikes.
+
+use articulated::simulate::{Event, Impact, IntegratorId, NoTorque, SimulateError, Simulation, StateError};
+use articulated::{Base, Dynamics, FunctionError};
+
+use crate::robots::{chain, model, to};
+
+#[test]
+fn a_blow_hands_over_what_the_ball_and_the_mass_behind_the_point_say() {
+    let (ball, restitution) = (0.046, 0.78);
+    let q = [0.4, -0.7, 0.5];
+    let (robot, mut v) = (chain::Robot, [1.0, 0.5, -1.5]);
+    let generic = model("chain", Base::Fixed);
+    let mut impact = Impact::new(&generic, 3, [0.0, 0.02, -0.4], [0.3, -0.5, 0.2], ball, restitution).unwrap();
+    // So that they approach.
+    let approach = impact.strike(&q, &mut v.clone(), 0.0).unwrap().approach;
+    v.iter_mut().for_each(|v| *v *= approach.signum());
+    let energy = |v: &[f64]| {
+        let mut t = [0.0];
+        robot.kinetic_energy(&mut robot.workspace(), &q, v, &mut t).unwrap();
+        t[0]
+    };
+    let before = energy(&v);
+    let struck = impact.strike(&q, &mut v, 0.0).unwrap();
+    let (head, approach) = (struck.effective_mass, approach.abs());
+    // The smash factor.
+    assert!((struck.ball_speed / approach - (1.0 + restitution) * head / (head + ball)).abs() < 1e-14);
+    let lost = before - energy(&v) - 0.5 * ball * struck.ball_speed.powi(2);
+    let expected = 0.5 * (1.0 - restitution * restitution) * approach.powi(2) * head * ball / (head + ball);
+    assert!((lost - expected).abs() < 1e-14, "{lost} J, not {expected} J");
+    // Newton's law: what is left of the speed towards each other, reversed.
+    let after = impact.strike(&q, &mut v, struck.ball_speed).unwrap();
+    assert!((after.approach + restitution * approach).abs() < 1e-14 && after.impulse == 0.0);
+}
+
+/// What an event that strikes records is the ball's speed, and the motion goes on with what is left; what cannot strike is refused.
+#[test]
+fn an_event_that_strikes_gives_the_speed_of_the_ball() {
+    let robot = model("chain", Base::Fixed);
+    let blow = || Impact::new(&robot, 3, [0.0, 0.02, -0.4], [0.3, -0.5, 0.2], 0.046, 0.78).unwrap();
+    let (q, v) = ([0.4, -0.7, 0.5], [1.0, 0.5, -1.5]);
+    let sign = blow().strike(&q, &mut v.clone(), 0.0).unwrap().approach.signum();
+    let v = v.map(|v| v * sign);
+    let mut struck = [Event::new("now", |t, _: &[f64], _: &[f64]| t - 0.01).action(blow().action())];
+    let run = |end: f64, events: &mut [Event]| {
+        Simulation::new(&robot, to(IntegratorId::dop853, end, 1e-12)).unwrap().run(&q, &v, &mut NoTorque, events).unwrap()
+    };
+    let (motion, before) = (run(0.01 + 1e-9, &mut struck), run(0.01, &mut []));
+    let mut after = before.v_at(1).to_vec();
+    let expected = blow().strike(before.q_at(1), &mut after, 0.0).unwrap();
+    assert!((motion.events[0].value.unwrap() - expected.ball_speed).abs() < 1e-9 && expected.ball_speed > 0.1, "{:?}", motion.events);
+    assert!(motion.v_at(1).iter().zip(&after).all(|(a, b)| (a - b).abs() < 1e-6), "{:?} {after:?}", motion.v_at(1));
+    for n in [0, 2, 4] {
+        assert!(matches!(
+            blow().strike(&q, &mut vec![0.0; n], 0.0),
+            Err(SimulateError::Function(FunctionError::Length { argument: "v", .. }))
+        ));
+    }
+    for (normal, mass, restitution, what) in [
+        ([0.0; 3], 1.0, 0.5, "length of the normal"),
+        ([1.0; 3], 0.0, 0.5, "mass of the ball"),
+        ([1.0; 3], 1.0, 1.1, "restitution"),
+        ([1.0; 3], 1.0, -0.1, "restitution"),
+    ] {
+        let Err(SimulateError::State(all)) = Impact::new(&robot, 3, [0.0; 3], normal, mass, restitution) else { panic!("{what}") };
+        assert!(matches!(all[..], [StateError::Value { what: found, .. }] if found == what), "{all:?}");
+    }
+}
+
+#[test]
+fn all_that_is_wrong_with_a_blow_or_a_contact_is_said_at_once() {
+    let robot = model("chain", Base::Fixed);
+    let frames = format!("there is no frame 99: the robot has {}, the first is 0", robot.frames.len());
+    let told = |error: Option<SimulateError>| error.unwrap().to_string().lines().map(str::to_owned).collect::<Vec<_>>();
+    let blow = Impact::new(&robot, 99, [0.0, f64::NAN, 0.0], [0.0; 3], -1.0, 3.0).err();
+    let normal = "length of the normal = 0 cannot be used; it should be finite, greater than 0";
+    let point = "y of the point = NaN cannot be used; it should be finite, m";
+    let expected = [
+        &frames,
+        point,
+        normal,
+        "mass of the ball = -1 cannot be used; it should be finite, greater than 0, kg",
+        "restitution = 3 cannot be used; it should be from 0 to 1",
+    ];
+    assert_eq!(told(blow), expected);
+    let contact = Event::contact("foot", &robot, 99, [0.0, f64::NAN, 0.0], f64::INFINITY, [0.0; 3], f64::NAN).err();
+    let radius = "radius = inf cannot be used; it should be finite, m";
+    assert_eq!(told(contact), [&frames, point, normal, radius, "height = NaN cannot be used; it should be finite, m"]);
+    let next = robot.frames.len();
+    assert!(Impact::new(&robot, next - 1, [0.0; 3], [0.0, 0.0, 1.0], 1.0, 0.5).is_ok());
+    assert!(Impact::new(&robot, next, [0.0; 3], [0.0, 0.0, 1.0], 1.0, 0.5).is_err());
+}
