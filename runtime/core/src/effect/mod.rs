@@ -143,8 +143,11 @@ impl Effect {
         self.fields.is_empty()
     }
 
-    /// The first field whose rule these numbers, as many as the effect has, do not keep, with its part of them.
+    /// The first field whose rule these numbers do not keep, with its part of them; `None` too where they are not as many as the effect has.
     pub fn broken<'a>(&self, parameters: &'a [f64]) -> Option<(&'static Field, &'a [f64])> {
+        if parameters.len() != self.len() {
+            return None;
+        }
         let mut rest = parameters;
         self.fields.iter().find_map(|field| {
             let (own, others) = rest.split_at(field.len);
@@ -409,6 +412,7 @@ mod tests {
         for (k, row) in effects().iter().enumerate() {
             assert_eq!(row.id as usize, k);
             assert_eq!(effect(row.name).map(|e| e.id), Some(row.id));
+            assert!(row.broken(&[]).is_none());
         }
     }
 }
