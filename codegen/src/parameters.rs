@@ -125,7 +125,8 @@ fn cast(x: &Placement<f64>) -> Placement<Sym> {
 mod tests {
     use super::*;
     use crate::Request;
-    use crate::trace::{Choice, trace, ways};
+    use crate::program::Choice;
+    use crate::trace::{trace, ways};
     use crate::wanted::Wanted;
 
     /// A table that slides and turns in a plane, and on it an arm with a tool; these numbers are the robot's.

@@ -1,6 +1,5 @@
 //! Running algorithms on symbols.
 
-use std::borrow::Cow;
 use std::ops::RangeInclusive;
 
 use articulated_core::Scalar;
@@ -13,48 +12,9 @@ use crate::graph::{Graph, Op};
 use crate::limbs::{Alike, Constants, pack};
 use crate::parameters::Parameter;
 use crate::pass::{copy, live, rebuild};
+use crate::program::Choice;
 use crate::sym::{self, Sym};
 use crate::wanted::{Part, Wanted};
-
-/// How to compute a part.
-#[derive(Clone, Copy)]
-pub(crate) struct Choice {
-    pub(crate) way: &'static Way<Sym>,
-    /// How many model passes to take.
-    pub(crate) passes: usize,
-    /// Bodies whose frames do not turn.
-    pub(crate) unturned: Option<Unturned>,
-    /// The unit of length, m, if it is not the metre.
-    pub(crate) unit: Option<f64>,
-    /// Whether bodies have other inertias for inverse dynamics ([`Model::lent`]).
-    pub(crate) lent: bool,
-    /// Whether bodies have their rates by the axes of their joints ([`Model::with_rates_by_axes`]).
-    pub(crate) axes: bool,
-}
-
-impl Choice {
-    /// A way after so many model passes, with all frames turning and lengths in metres.
-    pub(crate) fn plain(way: &'static Way<Sym>, passes: usize) -> Self {
-        Self { way, passes, unturned: None, unit: None, lent: false, axes: false }
-    }
-
-    /// What it is called in the ledger.
-    pub(crate) fn names(&self) -> impl Iterator<Item = Cow<'static, str>> {
-        let unturned = match self.unturned {
-            None => "",
-            Some(Unturned::Parallel) => "parallel joints unturned",
-            Some(Unturned::ParallelAndLast) => "parallel and last joints unturned",
-        };
-        let unit = self.unit.map(|metres| Cow::Owned(format!("lengths in {} m", to_four_digits(metres))));
-        let lent = if self.lent { "mass lent" } else { "" };
-        let axes = if self.axes { "rates by axes" } else { "" };
-        [self.way.name, lent, axes, unturned].into_iter().filter(|name| !name.is_empty()).map(Cow::Borrowed).chain(unit)
-    }
-}
-
-fn to_four_digits(x: f64) -> f64 {
-    format!("{x:.3e}").parse().unwrap_or(x)
-}
 
 /// The graph of a function on `model`: its argument k is argument k of the graph, parameters come after the last; the results of the parts one after the other.
 pub(crate) fn trace(wanted: &Wanted, choices: &[Choice], model: &Model<f64>, parameters: &[Parameter]) -> Graph {

@@ -26,7 +26,8 @@ mod tests {
     use super::*;
     use crate::graph::{Counts, Graph, Op};
     use crate::pass::GRAPH_PASSES;
-    use crate::trace::{Choice, trace, trace_in_lanes, ways};
+    use crate::program::Choice;
+    use crate::trace::{trace, trace_in_lanes, ways};
     use crate::{Request, Sym, Wanted, sym};
 
     /// A number that looks random, in (−1, 1).

@@ -46,7 +46,7 @@ macro_rules! argument {
 
 macro_rules! methods {
     ($($name:ident($($argument:ident),*) -> [$($dim:ident $(($n:literal))?),*] $unit:literal, $needs:ident, $regrouped:literal,
-        $summary:literal, $source:literal $(, by $ways:tt)? $(, columns $unsolved:ident)?;)*) => {
+        $summary:literal, $source:literal $(, by $ways:tt)? $(, columns $unsolved:ident)? $(, forms $forms:tt)?;)*) => {
         /// A robot's dynamics. Code written over this trait runs on generated robots and on a [`Model`] alike.
         ///
         /// Every function of the table is a method, with what it takes and gives; more on each is at the function of the same name in

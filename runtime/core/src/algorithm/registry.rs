@@ -178,6 +178,19 @@ pub struct Way<S: 'static> {
     pub(super) run: Run<S>,
 }
 
+/// A form of generated code that not every function takes. The first two keep the results and are taken where they cost less.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// Mass at a joint in the body beyond it ([`Model::lent`]): for what has an inverse dynamics in it in which bodies turn, of which that takes numbers away.
+    MassLent,
+    /// Rates of bodies by the axes of their joints ([`Model::with_rates_by_axes`]): for what has bodies that turn while they move.
+    RatesByAxes,
+    /// Statements from the last result on, not as they are traced: for matrices whose columns are carried side by side.
+    FromTheLast,
+    /// Loops over joints where the whole would be long.
+    JointsInLoops,
+}
+
 /// One row: a function that any robot can have.
 pub struct Function<S: 'static> {
     /// Its number.
@@ -204,6 +217,8 @@ pub struct Function<S: 'static> {
     /// All of it but the solution of M X = −B for all columns of `[3][nv][nv]` numbers: two matrices B, and the factors of M = Lᵀ D L in the third, L below the diagonal and D⁻¹ on it;
     /// the third X is M⁻¹. Generated code may leave what remains a loop.
     pub unsolved: Option<Way<S>>,
+    /// What else generated code may look like.
+    pub forms: &'static [Form],
 }
 
 /// Why a function could not be called.

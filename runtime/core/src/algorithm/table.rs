@@ -6,7 +6,7 @@
 //! name(arguments) -> [dimensions] "units", needs, regrouped?, "what it is", "algorithm and source";
 //! ```
 //!
-//! with `by` and a list of ways where there is more than one (its name, where it can be had, its least cost, its algorithm, and in whose axes if not the usual), and `columns` where there is a part of it before M X = B is solved.
+//! with `by` and a list of ways where there is more than one (its name, where it can be had, its least cost, its algorithm, and in whose axes if not the usual), `columns` where there is a part of it before M X = B is solved, and `forms` that generated code may take.
 
 use core::marker::PhantomData;
 
@@ -59,32 +59,40 @@ macro_rules! for_each_function {
             placement_derivatives(q) -> [Frames, Of(12), Nv] "of rotation row by row, then position; 1 and m a unit step", Nothing, false,
                 "∂(placements)/∂q in the tangent space", "columns [s]×R and s × p; Lynch & Park 2017, §5.1";
             inverse_dynamics(q, v, a) -> [Nv] "N·m|N", Nothing, true,
-                "τ = M(q)·a + h(q, v), gravity included", "RNEA; Featherstone 2008, Table 5.1";
+                "τ = M(q)·a + h(q, v), gravity included", "RNEA; Featherstone 2008, Table 5.1",
+                forms [MassLent, RatesByAxes];
             inverse_dynamics_with_wrenches(q, v, a, wrenches) -> [Nv] "N·m|N", Nothing, true,
-                "τ = M(q)·a + h(q, v) − Σ Jᵀw, with external wrenches w on the frames", "RNEA; Featherstone 2008, Table 5.1";
+                "τ = M(q)·a + h(q, v) − Σ Jᵀw, with external wrenches w on the frames", "RNEA; Featherstone 2008, Table 5.1",
+                forms [MassLent, RatesByAxes];
             joint_wrenches(q, v, a) -> [Links, Of(6)] "[m; f], N·m and N, in axes of the link about its origin", Nothing, false,
-                "the wrench that each joint passes to its child link", "RNEA; Featherstone 2008, Table 5.1";
+                "the wrench that each joint passes to its child link", "RNEA; Featherstone 2008, Table 5.1",
+                forms [RatesByAxes];
             bias_forces(q, v) -> [Nv] "N·m|N", Nothing, true,
-                "h(q, v) = τ at a = 0: Coriolis, centrifugal and gravity forces", "RNEA; Featherstone 2008, Table 5.1";
+                "h(q, v) = τ at a = 0: Coriolis, centrifugal and gravity forces", "RNEA; Featherstone 2008, Table 5.1",
+                forms [MassLent, RatesByAxes];
             gravity_torque(q) -> [Nv] "N·m|N", Nothing, true,
                 "g(q) = τ at v = a = 0: what holds the robot still", "RNEA; Featherstone 2008, Table 5.1";
             static_torque(q, wrenches) -> [Nv] "N·m|N", Nothing, true,
                 "g(q) − Σ Jᵀw: what holds the robot still under external wrenches w on the frames", "RNEA; Featherstone 2008, Table 5.1";
             mass_matrix(q) -> [Nv, Nv] "kg·m²|kg·m|kg, symmetric", Nothing, true,
-                "M(q)", "CRBA; Featherstone 2008, Table 6.2";
+                "M(q)", "CRBA; Featherstone 2008, Table 6.2",
+                forms [FromTheLast];
             coriolis_matrix(q, v) -> [Nv, Nv] "N·m·s|N·s", Nothing, true,
                 "C(q, v) with C v + g = h, and Ṁ − 2C skew: that of the Christoffel symbols",
                 "Echeandia & Wensing, J. Comput. Nonlinear Dyn. 16, 2021",
                 by ["", always, nothing, coriolis_matrix; "the axes of the first body", near_the_middle, nothing, coriolis_matrix in axes_of_first_bodies];
             forward_dynamics(q, v, tau) -> [Nv] "rad/s²|m/s²", MassMatrix, true,
                 "a = M(q)⁻¹·(τ − h(q, v))", "ABA, or RNEA, CRBA and M = Lᵀ D L; Featherstone 2008, Table 7.1 and §6.5",
-                by ["ABA", untied, nothing, articulated_body; "LTDL", always, factorization, forward_dynamics];
+                by ["ABA", untied, nothing, articulated_body; "LTDL", always, factorization, forward_dynamics],
+                forms [MassLent, RatesByAxes];
             forward_dynamics_with_wrenches(q, v, tau, wrenches) -> [Nv] "rad/s²|m/s²", MassMatrix, true,
                 "a = M(q)⁻¹·(τ + Σ Jᵀw − h(q, v)), with external wrenches w on the frames",
                 "ABA, or RNEA, CRBA and M = Lᵀ D L; Featherstone 2008, Table 7.1 and §6.5",
-                by ["ABA", untied, nothing, articulated_body_with_wrenches; "LTDL", always, factorization, forward_dynamics_with_wrenches];
+                by ["ABA", untied, nothing, articulated_body_with_wrenches; "LTDL", always, factorization, forward_dynamics_with_wrenches],
+                forms [MassLent, RatesByAxes];
             mass_matrix_inverse(q) -> [Nv, Nv] "1/(kg·m²)|…, symmetric", MassMatrix, true,
-                "M(q)⁻¹", "M = Lᵀ D L; Featherstone 2008, §6.5";
+                "M(q)⁻¹", "M = Lᵀ D L; Featherstone 2008, §6.5",
+                forms [FromTheLast];
             solve_mass_matrix(q, tau) -> [Nv] "rad/s²|m/s²", MassMatrix, true,
                 "M(q)⁻¹·τ, without M⁻¹", "ABA at rest, or M = Lᵀ D L; Featherstone 2008, Table 7.1 and §6.5",
                 by ["ABA", untied, nothing, solve_by_articulated_body; "LTDL", always, factorization, solve_mass_matrix];
@@ -97,7 +105,8 @@ macro_rules! for_each_function {
             center_of_mass_velocity(q, v) -> [Of(3)] "m/s, base axes", Mass, false,
                 "velocity of the centre of mass of the moving links", "outward sweep";
             center_of_mass_acceleration(q, v, a) -> [Of(3)] "m/s², base axes", Mass, false,
-                "acceleration of the centre of mass of the moving links, gravity not added", "outward sweep";
+                "acceleration of the centre of mass of the moving links, gravity not added", "outward sweep",
+                forms [RatesByAxes];
             center_of_mass_jacobian(q) -> [Of(3), Nv] "m|1, base axes", Mass, false,
                 "J with center_of_mass_velocity = J v", "composite masses; Orin, Goswami & Lee, Auton. Robots 35, 2013";
             centroidal_momentum(q, v) -> [Of(6)] "[k; l], N·m·s and N·s, base axes", Mass, false,
@@ -105,11 +114,13 @@ macro_rules! for_each_function {
             centroidal_momentum_matrix(q) -> [Of(6), Nv] "base axes", Mass, false,
                 "A with centroidal_momentum = A v", "composite inertias; Orin, Goswami & Lee, Auton. Robots 35, 2013";
             centroidal_momentum_rate(q, v, a) -> [Of(6)] "[k̇; l̇], N·m and N, base axes", Mass, false,
-                "d/dt of centroidal_momentum = A a + Ȧ v", "Newton and Euler; Orin, Goswami & Lee, Auton. Robots 35, 2013";
+                "d/dt of centroidal_momentum = A a + Ȧ v", "Newton and Euler; Orin, Goswami & Lee, Auton. Robots 35, 2013",
+                forms [RatesByAxes];
             inverse_dynamics_derivatives(q, v, a) -> [Of(3), Nv, Nv] "∂τ/∂q, ∂τ/∂v, ∂τ/∂a = M; rows τ", Nothing, true,
                 "first derivatives of inverse_dynamics; q in the tangent space",
                 "Singh, Russell & Wensing, IEEE RA-L 7, 2022; Carpentier & Mansard, RSS 2018",
-                by ["", always, nothing, inverse_dynamics_derivatives; "the axes of the first body", near_the_middle, nothing, inverse_dynamics_derivatives in axes_of_first_bodies];
+                by ["", always, nothing, inverse_dynamics_derivatives; "the axes of the first body", near_the_middle, nothing, inverse_dynamics_derivatives in axes_of_first_bodies],
+                forms [JointsInLoops];
             inverse_dynamics_derivatives_with_wrenches(q, v, a, wrenches) -> [Of(3), Nv, Nv]
                 "∂τ/∂q, ∂τ/∂v, ∂τ/∂a = M; rows τ", Nothing, true,
                 "first derivatives of inverse_dynamics_with_wrenches; q in the tangent space, wrenches constant in their reference",
@@ -118,12 +129,14 @@ macro_rules! for_each_function {
             forward_dynamics_derivatives(q, v, tau) -> [Of(3), Nv, Nv] "∂a/∂q, ∂a/∂v, ∂a/∂τ = M⁻¹; rows a", MassMatrix, true,
                 "first derivatives of forward_dynamics; q in the tangent space",
                 "−M⁻¹ ∂(inverse dynamics); Carpentier & Mansard, RSS 2018",
-                by ["", always, nothing, forward_dynamics_derivatives; "the axes of the first body", near_the_middle, nothing, forward_dynamics_derivatives in axes_of_first_bodies], columns unsolved_derivatives;
+                by ["", always, nothing, forward_dynamics_derivatives; "the axes of the first body", near_the_middle, nothing, forward_dynamics_derivatives in axes_of_first_bodies], columns unsolved_derivatives,
+                forms [RatesByAxes];
             forward_dynamics_derivatives_with_wrenches(q, v, tau, wrenches) -> [Of(3), Nv, Nv]
                 "∂a/∂q, ∂a/∂v, ∂a/∂τ = M⁻¹; rows a", MassMatrix, true,
                 "first derivatives of forward_dynamics_with_wrenches; q in the tangent space, wrenches constant in their reference",
                 "−M⁻¹ ∂(inverse dynamics); Carpentier & Mansard, RSS 2018",
-                by ["", always, nothing, forward_dynamics_derivatives_with_wrenches; "the axes of the first body", near_the_middle, nothing, forward_dynamics_derivatives_with_wrenches in axes_of_first_bodies], columns unsolved_derivatives_with_wrenches;
+                by ["", always, nothing, forward_dynamics_derivatives_with_wrenches; "the axes of the first body", near_the_middle, nothing, forward_dynamics_derivatives_with_wrenches in axes_of_first_bodies], columns unsolved_derivatives_with_wrenches,
+                forms [RatesByAxes];
             static_torque_derivative(q, wrenches) -> [Nv, Nv] "N·m|N a unit step, rows τ", Nothing, true,
                 "∂(static_torque)/∂q in the tangent space, wrenches constant in their reference",
                 "Singh, Russell & Wensing, IEEE RA-L 7, 2022",
@@ -228,7 +241,7 @@ macro_rules! unsolved {
 
 macro_rules! rows {
     ($($name:ident($($argument:ident),*) -> [$($dim:ident $(($n:literal))?),*] $unit:literal, $needs:ident, $regrouped:literal,
-        $summary:literal, $source:literal $(, by $ways:tt)? $(, columns $unsolved:ident)?;)*) => {
+        $summary:literal, $source:literal $(, by $ways:tt)? $(, columns $unsolved:ident)? $(, forms [$($form:ident),*])?;)*) => {
         /// The functions by number: each variant is called as its function is.
         #[allow(non_camel_case_types)]
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -259,6 +272,7 @@ macro_rules! rows {
                     regrouped: $regrouped,
                     ways: ways!($name, ($($argument),*) $(, $ways)?),
                     unsolved: unsolved!(($($argument),*) $(, $unsolved)?),
+                    forms: &[$($(Form::$form),*)?],
                 },
             )*];
         }

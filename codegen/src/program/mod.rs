@@ -1,0 +1,98 @@
+//! One function, from its algorithms to the graph that is emitted.
+
+mod choice;
+mod choose;
+mod looped;
+mod subject;
+
+use articulated_core::model::Model;
+
+use crate::Options;
+use crate::bound::{bounds, in_box};
+use crate::graph::{Graph, Op};
+use crate::groups::Groups;
+use crate::ledger::Entry;
+use crate::limbs::Alike;
+use crate::parameters::Parameter;
+use crate::pass;
+use crate::wanted::Wanted;
+use subject::Subject;
+
+pub(crate) use choice::Choice;
+pub(crate) use looped::Columns;
+
+/// A function and what it became.
+pub(crate) struct Program {
+    pub(crate) wanted: Wanted,
+    pub(crate) graph: Graph,
+    /// The graph with each limb for itself: what a batch runs, a state a lane.
+    pub(crate) plain: Graph,
+    pub(crate) entry: Entry,
+    /// What is left a loop. Then `graph` is what comes before.
+    pub(crate) columns: Option<Columns>,
+    /// Where joints stand if all of it is left loops over them. Then `graph` is empty.
+    pub(crate) groups: Option<Groups>,
+}
+
+/// A function by the cheapest of its ways, limbs that are alike in lanes if that is cheaper.
+pub(crate) fn program(wanted: Wanted, model: &Model<f64>, parameters: &[Parameter], options: &Options) -> Program {
+    let subject = Subject { model, parameters, stages: options.stages, alike: None };
+    let columns = looped::columns(&wanted, model, options);
+    let whole = (columns.is_none() || !options.batch.is_empty()).then(|| subject.made(&wanted, None));
+    let unsolved = columns.as_ref().and(wanted.parts[0].function.unsolved.as_ref());
+    let mut best = match &whole {
+        Some(whole) if unsolved.is_none() => whole.clone(),
+        _ => subject.made(&wanted, unsolved),
+    };
+    let plain = whole.map_or_else(Graph::default, |(graph, _)| graph);
+    // Limbs need the vector instructions; constants that stay inputs differ from limb to limb.
+    if options.limbs && options.level.has_lanes() && !options.forbid_unsafe && parameters.is_empty() {
+        for width in [4, 2] {
+            let Some(alike) = Alike::of(model, width) else { continue };
+            let other = Subject { alike: Some(alike), ..subject }.made(&wanted, unsolved);
+            if price(&other.0) * WORTH < price(&best.0) {
+                best = other;
+            }
+        }
+    }
+    let (mut graph, mut entry) = best;
+    let groups = looped::groups(&wanted, price(&graph), &subject, options);
+    if let Some((_, counts)) = &groups {
+        graph = Graph::default();
+        looped::count(&mut entry, counts);
+    } else if let Some(columns) = &columns {
+        columns.count(&mut entry);
+    } else if options.stages {
+        entry.bounds = in_the_box(&wanted, &graph, model, parameters, options);
+    }
+    Program { wanted, graph, plain, entry, columns, groups: groups.map(|(groups, _)| groups) }
+}
+
+/// Guaranteed bounds of the results, for the ledger.
+fn in_the_box(wanted: &Wanted, graph: &Graph, model: &Model<f64>, parameters: &[Parameter], options: &Options) -> Vec<f64> {
+    let arguments = wanted.arguments();
+    let nominal: Vec<f64> = parameters.iter().flat_map(|p| &p.nominal).copied().collect();
+    let input = |argument: usize, k: usize| match arguments.get(argument) {
+        Some(a) => in_box(model, *a, k),
+        None => (nominal[k], 0.0),
+    };
+    bounds(graph, options.level, &input).unwrap_or_default()
+}
+
+/// Lanes cost what no count shows (values that come and go one by one): they must be cheaper by this.
+const WORTH: f64 = 1.15;
+
+/// Instructions of sines and cosines of as many angles as there are lanes.
+const SINES: f64 = 28.0;
+
+/// What a program costs, in instructions, plain or in lanes: sines go four angles at a time, or the angles of all lanes; inputs of lanes come one by one.
+fn price(graph: &Graph) -> f64 {
+    let counts = graph.counts();
+    let rows = f64::from(pass::cost(graph)) - 10.0 * counts.trigonometric() as f64;
+    let mut angles: Vec<u32> = graph.nodes().iter().filter(|n| matches!(n.op, Op::Sin | Op::Cos)).map(|n| n.args[0]).collect();
+    angles.sort_unstable();
+    angles.dedup();
+    let width = graph.lanes().width;
+    let calls = (angles.len() * width).div_ceil(4);
+    rows + SINES * calls as f64 + (counts.of(Op::LaneInput) as usize * width) as f64
+}

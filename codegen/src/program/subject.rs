@@ -1,0 +1,88 @@
+//! What a function is traced on, and what it costs there.
+
+use articulated_core::algorithm::{Form, Way};
+use articulated_core::model::Model;
+use articulated_core::model::pass::model_passes;
+
+use super::choice::Choice;
+use super::choose::{by_axes, cheapest, in_the_best_unit};
+use crate::graph::{Counts, Graph};
+use crate::ledger::{Entry, depth};
+use crate::limbs::Alike;
+use crate::parameters::Parameter;
+use crate::pass::{self, GRAPH_PASSES};
+use crate::sym::Sym;
+use crate::trace::{trace, trace_in_lanes};
+use crate::wanted::Wanted;
+
+/// What a function is traced on.
+pub(super) struct Subject<'a> {
+    pub(super) model: &'a Model<f64>,
+    pub(super) parameters: &'a [Parameter],
+    /// Whether to trace after each model pass, for the ledger.
+    pub(super) stages: bool,
+    /// Limbs to lay on one another.
+    pub(super) alike: Option<Alike>,
+}
+
+impl Subject<'_> {
+    /// The graph of a function by the choices that cost least, or of what comes before a loop, and what became of it on the way.
+    pub(super) fn made(&self, wanted: &Wanted, unsolved: Option<&'static Way<Sym>>) -> (Graph, Entry) {
+        let all = model_passes::<Sym>().len();
+        let choose = |part| unsolved.map_or_else(|| cheapest(part, self, all), |way| Choice::plain(way, all));
+        let choices = by_axes(wanted, wanted.parts.iter().map(choose).collect(), self);
+        let choices = in_the_best_unit(wanted, choices, self);
+        let (mut graph, mut stages) = self.traced(wanted, &choices, all);
+        for (name, pass, _) in GRAPH_PASSES {
+            graph = pass::run(name, *pass, &graph);
+            stages.push((name, graph.counts()));
+        }
+        if wanted.parts.iter().all(|part| part.function.forms.contains(&Form::FromTheLast)) {
+            graph = pass::run("from the last", pass::from_the_last, &graph);
+        }
+        let ways = choices.iter().flat_map(Choice::names).collect();
+        let entry =
+            Entry { function: wanted.name.clone(), ways, stages, depth: depth(&graph), lanes: graph.lanes().width, bounds: Vec::new() };
+        (graph, entry)
+    }
+
+    /// The graph as it is traced, and its counts after each model pass, `all` of them, and each addition that a choice has.
+    fn traced(&self, wanted: &Wanted, choices: &[Choice], all: usize) -> (Graph, Vec<(&'static str, Counts)>) {
+        let mut graph = Graph::default();
+        let mut stages: Vec<(&'static str, Counts)> = Vec::new();
+        for passes in if self.stages { 0 } else { all }..=all {
+            let limited: Vec<Choice> = choices.iter().map(|c| Choice::plain(c.way, c.passes.min(passes))).collect();
+            graph = self.trace(wanted, &limited);
+            if stages.is_empty() {
+                stages.push(("asked", graph.asked().clone()));
+            }
+            stages.push((if passes == 0 { "trace" } else { model_passes::<Sym>()[passes - 1].0 }, graph.counts()));
+        }
+        for (k, name) in Choice::ADDED.into_iter().enumerate() {
+            if choices.iter().any(|c| c.adds(k)) {
+                graph = self.trace(wanted, &choices.iter().map(|c| c.with_first(k + 1)).collect::<Vec<_>>());
+                stages.push((name, graph.counts()));
+            }
+        }
+        (graph, stages)
+    }
+
+    fn trace(&self, wanted: &Wanted, choices: &[Choice]) -> Graph {
+        match &self.alike {
+            None => trace(wanted, choices, self.model, self.parameters),
+            Some(alike) => trace_in_lanes(wanted, choices, self.model, alike),
+        }
+    }
+
+    /// What is traced, after all graph passes.
+    pub(super) fn finished(&self, wanted: &Wanted, choices: &[Choice]) -> Graph {
+        GRAPH_PASSES.iter().fold(self.trace(wanted, choices), |graph, (_, pass, _)| pass(&graph))
+    }
+
+    /// What choices cost, in instructions, and with each multiplication counted twice: cores have fewer multipliers than they have places for instructions.
+    pub(super) fn price(&self, wanted: &Wanted, choices: &[Choice]) -> (u32, u64) {
+        let graph = self.finished(wanted, choices);
+        let cost = pass::cost(&graph);
+        (cost, u64::from(cost) + graph.counts().multiplications())
+    }
+}
