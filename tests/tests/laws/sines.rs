@@ -14,9 +14,9 @@ macro_rules! lanes {
     };
 }
 
-lanes!(portable: "portable_f64" "portable_4" "portable" "common" "f64" "f64_fused" "f64_split");
+lanes!(portable: "portable/f64" "portable/4" "portable/common" "common" "sines/f64" "sines/f64_fused" "sines/f64_split");
 #[cfg(target_arch = "x86_64")]
-lanes!(avx2: "avx2_f64x4" "in_registers" "in_registers_fused" "avx2" "register" "common" "f64" "f64_fused");
+lanes!(avx2: "registers/avx2_f64x4" "registers/in_registers" "registers/in_registers_fused" "registers/avx2" "registers/common" "common" "sines/f64" "sines/f64_fused");
 
 /// Sines and cosines by each way that this processor has. Other instruction sets agree with one of these to the bit.
 fn ways(x: [f64; 4]) -> Vec<[[f64; 4]; 2]> {

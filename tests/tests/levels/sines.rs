@@ -14,9 +14,9 @@ macro_rules! texts {
 }
 
 texts!(two: "level/text/exact" "level/text/both" "level/text/pair" "level/text/pair_of_two" "level/text/sines" "level/text/whole" "level/text/correct");
-texts!(fast_7: "lanes/text/portable_f64" "lanes/text/portable_4" "lanes/text/portable" "lanes/text/common" "lanes/text/f64" "lanes/text/f64_fast_7");
-texts!(fast_10: "lanes/text/portable_f64" "lanes/text/portable_4" "lanes/text/portable" "lanes/text/common" "lanes/text/f64" "lanes/text/f64_fast_10");
-texts!(ulp: "lanes/text/portable_f64" "lanes/text/portable_4" "lanes/text/portable" "lanes/text/common" "lanes/text/f64" "lanes/text/f64_fused" "lanes/text/f64_split");
+texts!(fast_7: "lanes/text/portable/f64" "lanes/text/portable/4" "lanes/text/portable/common" "lanes/text/common" "lanes/text/sines/f64" "lanes/text/sines/f64_fast_7");
+texts!(fast_10: "lanes/text/portable/f64" "lanes/text/portable/4" "lanes/text/portable/common" "lanes/text/common" "lanes/text/sines/f64" "lanes/text/sines/f64_fast_10");
+texts!(ulp: "lanes/text/portable/f64" "lanes/text/portable/4" "lanes/text/portable/common" "lanes/text/common" "lanes/text/sines/f64" "lanes/text/sines/f64_fused" "lanes/text/sines/f64_split");
 
 /// Doubles that lie nearest to a multiple of π/2: below 10⁵ (found by trying every multiple), of all (6381956970095103·2⁷⁹⁷, Muller, Elementary Functions, 2016, 11.3),
 /// singles that do ([`WORST_SINGLES`]), and others at the ends of ranges.

@@ -24,6 +24,8 @@
 //! of them), and the standard library's beyond. All sets that fuse agree to the bit, and so do all that do not. sin(−0) is 0, not −0.
 //!
 //! [`COLUMNS`] is built on these with four f64.
+//!
+//! The texts: `registers` and `portable`, what a vector is and its arithmetic; `common`, what follows from that; `sines`; `results`, four lanes at places of their own; `tiles`; `loops`, algorithms that stay loops.
 
 use alloc::format;
 use alloc::string::{String, ToString};
@@ -119,7 +121,7 @@ pub fn tiles(set: Set, real: Real, lanes: usize) -> Option<String> {
 /// The text of a module that stands beside `portable_f64x4`, `avx2_f64x4`, `avx512_f64x8` and `neon_f64x4`. Before it stand
 /// * `NV`, and `TOGETHER`, how many matrices are solved for at once (3 or 1) in vectors of four columns and in vectors of eight;
 /// * `BEFORE` and `BEYOND`: `[&[(u16, u16)]; NV]`, for each row of L (each column) the column (the row) of each number and its place in `l`.
-pub const COLUMNS: &str = include_str!("text/columns.rs");
+pub const COLUMNS: &str = include_str!("text/loops/columns.rs");
 
 /// ∂τ/∂q, ∂τ/∂v and ∂τ/∂a of a tree on a floating joint, in loops over its joints, four at a time: what [`crate::algorithm::inverse_dynamics_derivatives`] gives, in the axes of the root
 /// body.
@@ -129,12 +131,12 @@ pub const COLUMNS: &str = include_str!("text/columns.rs");
 /// * `CHUNKS: [Chunk; _]`, `STEPS` and `PATHS: [Path; STEPS]`, a path behind those that it goes on from;
 /// * `BEFORE` and `BEYOND`: `[Pair; _]`, each joint with itself and those before it, and with those beyond it: joints of a block in twos.
 pub const DERIVATIVES: &str = concat!(
-    include_str!("text/derivatives_tables.rs"),
-    include_str!("text/derivatives_vectors.rs"),
-    include_str!("text/derivatives_sweeps.rs"),
-    include_str!("text/derivatives_pairs.rs"),
-    include_str!("text/derivatives_wide.rs"),
-    include_str!("text/derivatives.rs"),
+    include_str!("text/loops/derivatives_tables.rs"),
+    include_str!("text/loops/derivatives_vectors.rs"),
+    include_str!("text/loops/derivatives_sweeps.rs"),
+    include_str!("text/loops/derivatives_pairs.rs"),
+    include_str!("text/loops/derivatives_wide.rs"),
+    include_str!("text/loops/derivatives.rs"),
 );
 
 /// What [`DERIVATIVES`] cost, in vectors of four numbers: additions, products, multiply-adds, signs and sines of one group, of one chunk, of a pair of each kind, and of what is done once.
@@ -188,35 +190,48 @@ macro_rules! modules {
 }
 
 modules! {
-    portable_f64x2, Portable, F64, 2, all(): ["portable_f64" "portable_2" "portable" "common" "f64" "f64_fused" "f64_split"];
+    portable_f64x2, Portable, F64, 2, all():
+        ["portable/f64" "portable/2" "portable/common" "common" "sines/f64" "sines/f64_fused" "sines/f64_split"];
     portable_f64x4, Portable, F64, 4, all():
-        ["portable_f64" "portable_4" "portable" "common" "put" "rows" "f64" "f64_fused" "f64_split"];
-    portable_f64x8, Portable, F64, 8, all(): ["portable_f64" "portable_8" "portable" "common" "f64" "f64_fused" "f64_split"]
-        tiles ["tiles_portable"];
+        ["portable/f64" "portable/4" "portable/common" "common" "results/put" "results/rows" "sines/f64" "sines/f64_fused" "sines/f64_split"];
+    portable_f64x8, Portable, F64, 8, all():
+        ["portable/f64" "portable/8" "portable/common" "common" "sines/f64" "sines/f64_fused" "sines/f64_split"]
+        tiles ["tiles/portable"];
     portable_f32x8, Portable, F32, 8, all():
-        ["portable_f32" "portable_8" "portable" "portable_f32_reduce" "common" "f32" "f32_fused" "f32_split"];
+        ["portable/f32" "portable/8" "portable/common" "portable/f32_reduce" "common" "sines/f32" "sines/f32_fused" "sines/f32_split"];
     portable_f32x16, Portable, F32, 16, all():
-        ["portable_f32" "portable_16" "portable" "portable_f32_reduce" "common" "f32" "f32_fused" "f32_split"]
-        tiles ["tiles_portable"];
-    sse2_f64x2, Sse2, F64, 2, target_arch = "x86_64": ["sse2_f64x2" "in_registers" "sse2" "register" "common" "f64" "f64_split"]
-        tiles ["tiles" "tiles_16_bytes" "tiles_register" "tiles_f64" "tiles_sse2_f64"];
-    sse2_f64x4, Sse2, F64, 4, target_arch = "x86_64": ["pair_sse2" "pair" "put" "rows"]
-        half ["sse2_f64x2" "in_registers" "sse2" "register" "common" "f64" "f64_split"];
-    sse2_f32x4, Sse2, F32, 4, target_arch = "x86_64": ["sse2_f32x4" "in_registers" "sse2" "register" "common" "f32" "f32_split"]
-        tiles ["tiles" "tiles_16_bytes" "tiles_register" "tiles_f32" "tiles_sse2_f32"];
-    avx2_f64x2, Avx2, F64, 2, target_arch = "x86_64": ["avx2_f64x2" "in_registers" "in_registers_fused" "avx2" "register" "common" "f64" "f64_fused"];
-    avx2_f64x4, Avx2, F64, 4, target_arch = "x86_64": ["avx2_f64x4" "in_registers" "in_registers_fused" "avx2" "register" "common" "put" "rows_avx2" "f64" "f64_fused"]
-        tiles ["tiles" "tiles_32_bytes" "tiles_register" "tiles_f64" "tiles_avx2_f64"];
-    avx2_f32x8, Avx2, F32, 8, target_arch = "x86_64": ["avx2_f32x8" "in_registers" "in_registers_fused" "avx2" "register" "common" "f32" "f32_fused"]
-        tiles ["tiles" "tiles_32_bytes" "tiles_register" "tiles_f32" "tiles_avx2_f32"];
-    avx512_f64x8, Avx512, F64, 8, target_arch = "x86_64": ["avx512_f64x8" "in_registers" "in_registers_fused" "avx512" "register" "common" "f64" "f64_fused"]
-        tiles ["tiles" "tiles_32_bytes" "tiles_register" "tiles_f64" "tiles_avx2_f64"];
-    avx512_f32x16, Avx512, F32, 16, target_arch = "x86_64": ["avx512_f32x16" "in_registers" "in_registers_fused" "avx512" "register" "common" "f32" "f32_fused"]
-        tiles ["tiles" "tiles_32_bytes" "tiles_register" "tiles_f32" "tiles_avx2_f32"];
-    neon_f64x2, Neon, F64, 2, target_arch = "aarch64": ["neon_f64x2" "neon" "register" "common" "f64" "f64_fused"]
-        tiles ["tiles" "tiles_16_bytes" "tiles_register" "tiles_f64" "tiles_neon_f64"];
-    neon_f64x4, Neon, F64, 4, target_arch = "aarch64": ["pair_neon" "pair" "put" "rows"]
-        half ["neon_f64x2" "neon" "register" "common" "f64" "f64_fused"];
-    neon_f32x4, Neon, F32, 4, target_arch = "aarch64": ["neon_f32x4" "neon" "register" "common" "f32" "f32_fused"]
-        tiles ["tiles" "tiles_16_bytes" "tiles_register" "tiles_f32" "tiles_neon_f32"];
+        ["portable/f32" "portable/16" "portable/common" "portable/f32_reduce" "common" "sines/f32" "sines/f32_fused" "sines/f32_split"]
+        tiles ["tiles/portable"];
+    sse2_f64x2, Sse2, F64, 2, target_arch = "x86_64":
+        ["registers/sse2_f64x2" "registers/in_registers" "registers/sse2" "registers/common" "common" "sines/f64" "sines/f64_split"]
+        tiles ["tiles/common" "tiles/16_bytes" "tiles/register" "tiles/f64" "tiles/sse2_f64"];
+    sse2_f64x4, Sse2, F64, 4, target_arch = "x86_64":
+        ["registers/pair_sse2" "registers/pair" "results/put" "results/rows"]
+        half ["registers/sse2_f64x2" "registers/in_registers" "registers/sse2" "registers/common" "common" "sines/f64" "sines/f64_split"];
+    sse2_f32x4, Sse2, F32, 4, target_arch = "x86_64":
+        ["registers/sse2_f32x4" "registers/in_registers" "registers/sse2" "registers/common" "common" "sines/f32" "sines/f32_split"]
+        tiles ["tiles/common" "tiles/16_bytes" "tiles/register" "tiles/f32" "tiles/sse2_f32"];
+    avx2_f64x2, Avx2, F64, 2, target_arch = "x86_64":
+        ["registers/avx2_f64x2" "registers/in_registers" "registers/in_registers_fused" "registers/avx2" "registers/common" "common" "sines/f64" "sines/f64_fused"];
+    avx2_f64x4, Avx2, F64, 4, target_arch = "x86_64":
+        ["registers/avx2_f64x4" "registers/in_registers" "registers/in_registers_fused" "registers/avx2" "registers/common" "common" "results/put" "results/rows_avx2" "sines/f64" "sines/f64_fused"]
+        tiles ["tiles/common" "tiles/32_bytes" "tiles/register" "tiles/f64" "tiles/avx2_f64"];
+    avx2_f32x8, Avx2, F32, 8, target_arch = "x86_64":
+        ["registers/avx2_f32x8" "registers/in_registers" "registers/in_registers_fused" "registers/avx2" "registers/common" "common" "sines/f32" "sines/f32_fused"]
+        tiles ["tiles/common" "tiles/32_bytes" "tiles/register" "tiles/f32" "tiles/avx2_f32"];
+    avx512_f64x8, Avx512, F64, 8, target_arch = "x86_64":
+        ["registers/avx512_f64x8" "registers/in_registers" "registers/in_registers_fused" "registers/avx512" "registers/common" "common" "sines/f64" "sines/f64_fused"]
+        tiles ["tiles/common" "tiles/32_bytes" "tiles/register" "tiles/f64" "tiles/avx2_f64"];
+    avx512_f32x16, Avx512, F32, 16, target_arch = "x86_64":
+        ["registers/avx512_f32x16" "registers/in_registers" "registers/in_registers_fused" "registers/avx512" "registers/common" "common" "sines/f32" "sines/f32_fused"]
+        tiles ["tiles/common" "tiles/32_bytes" "tiles/register" "tiles/f32" "tiles/avx2_f32"];
+    neon_f64x2, Neon, F64, 2, target_arch = "aarch64":
+        ["registers/neon_f64x2" "registers/neon" "registers/common" "common" "sines/f64" "sines/f64_fused"]
+        tiles ["tiles/common" "tiles/16_bytes" "tiles/register" "tiles/f64" "tiles/neon_f64"];
+    neon_f64x4, Neon, F64, 4, target_arch = "aarch64":
+        ["registers/pair_neon" "registers/pair" "results/put" "results/rows"]
+        half ["registers/neon_f64x2" "registers/neon" "registers/common" "common" "sines/f64" "sines/f64_fused"];
+    neon_f32x4, Neon, F32, 4, target_arch = "aarch64":
+        ["registers/neon_f32x4" "registers/neon" "registers/common" "common" "sines/f32" "sines/f32_fused"]
+        tiles ["tiles/common" "tiles/16_bytes" "tiles/register" "tiles/f32" "tiles/neon_f32"];
 }

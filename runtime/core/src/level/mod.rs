@@ -243,15 +243,15 @@ pub fn source(level: Level) -> Option<&'static str> {
 /// The text of a module of [`lanes`](crate::lanes) with the sines of a level.
 pub fn with_sines(lanes: &str, level: Level) -> String {
     let fast = match level.sines {
-        Sines::Fast7 => include_str!("../lanes/text/f64_fast_7.rs"),
-        Sines::Fast10 => include_str!("../lanes/text/f64_fast_10.rs"),
+        Sines::Fast7 => include_str!("../lanes/text/sines/f64_fast_7.rs"),
+        Sines::Fast10 => include_str!("../lanes/text/sines/f64_fast_10.rs"),
         _ => "",
     };
     let text = if level.fused { lanes.to_string() } else { lanes.replace(FUSED, "const FMA: bool = false;") };
     if fast.is_empty() {
         return text;
     }
-    let (fused, split) = (include_str!("../lanes/text/f64_fused.rs"), include_str!("../lanes/text/f64_split.rs"));
+    let (fused, split) = (include_str!("../lanes/text/sines/f64_fused.rs"), include_str!("../lanes/text/sines/f64_split.rs"));
     // One of them is replaced, the other goes.
     let one = text.contains(fused) && text.contains(split);
     text.replace(fused, fast).replace(split, if one { "" } else { fast })

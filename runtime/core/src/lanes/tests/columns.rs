@@ -77,7 +77,7 @@ macro_rules! columns {
             static BEFORE: LazyLock<Table> = LazyLock::new(|| SAMPLE.tables()[0].clone());
             static BEYOND: LazyLock<Table> = LazyLock::new(|| SAMPLE.tables()[1].clone());
 
-            include!("../text/columns.rs");
+            include!("../text/loops/columns.rs");
 
             #[test]
             fn columns_in_vectors_solve_as_rows_one_by_one() {

@@ -148,12 +148,12 @@ macro_rules! trees {
             static BEFORE: LazyLock<Vec<Pair>> = LazyLock::new(|| pairs_of(|own, other| is_before(other, own)));
             static BEYOND: LazyLock<Vec<Pair>> = LazyLock::new(|| pairs_of(|own, other| own != other && is_before(own, other)));
 
-            include!("../text/derivatives_tables.rs");
-            include!("../text/derivatives_vectors.rs");
-            include!("../text/derivatives_sweeps.rs");
-            include!("../text/derivatives_pairs.rs");
-            include!("../text/derivatives_wide.rs");
-            include!("../text/derivatives.rs");
+            include!("../text/loops/derivatives_tables.rs");
+            include!("../text/loops/derivatives_vectors.rs");
+            include!("../text/loops/derivatives_sweeps.rs");
+            include!("../text/loops/derivatives_pairs.rs");
+            include!("../text/loops/derivatives_wide.rs");
+            include!("../text/loops/derivatives.rs");
 
             fn first<const N: usize>(x: &[f64]) -> [Four; N] {
                 from_fn(|i| [x[i], 0.0, 0.0, 0.0])
