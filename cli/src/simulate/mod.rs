@@ -20,6 +20,7 @@ mod watched;
 
 use std::path::Path;
 
+use articulated::simulate::Settings;
 use articulated_core::algorithm::FunctionId;
 use articulated_core::effect::EffectId;
 
@@ -28,7 +29,7 @@ use crate::compiled::Rustc;
 use crate::console::{self, Progress};
 use crate::failure::{Failure, INPUT, OK};
 use arguments::SimulateArguments;
-use motion::Motion;
+use motion::{Begin, Motion};
 use page::Setting;
 use stage::{Stage, field};
 use straight::Straight;
@@ -44,29 +45,11 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
         return against::run(&stage, &begin, &settings, file, format).map(|()| OK);
     }
     solvable(&stage)?;
-    if let Some(folder) = &arguments.output {
-        if folder.is_file() {
-            return Err(Failure::input([format!(
-                "-o {}: found a file, expected a folder, which is made if it is not there",
-                folder.display()
-            )]));
-        }
-        std::fs::create_dir_all(folder).map_err(|e| unwritable(folder, &e))?;
-    }
+    arguments.output.as_deref().map(room).transpose()?;
     let progress = Progress::of_whole(format!("{}: motion", stage.name));
-    let (motion, code) = if arguments.generated {
-        let (generated, frames) = motion::generate(&stage, settings.integrator)?;
-        progress.doing(format!("{}: rustc", stage.name));
-        let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
-        let robot = Straight::build(&rustc, &generated).map_err(|e| Failure::tool(&e))?;
-        progress.doing(format!("{}: motion", stage.name));
-        (motion::run(&stage, &begin, (&robot, &frames), &settings, &progress)?, "generated")
-    } else {
-        if cfg!(debug_assertions) {
-            console::warn("this command was built without optimisation: its speed means little");
-        }
-        let frames: Vec<String> = stage.model.frames.iter().map(|f| f.name.clone()).collect();
-        (motion::run(&stage, &begin, (&stage.model, &frames), &settings, &progress)?, "generic")
+    let (motion, code) = match arguments.generated {
+        true => (by_generated_code(&stage, &begin, &settings, &progress)?, "generated"),
+        false => (by_generic_code(&stage, &begin, &settings, &progress)?, "generic"),
     };
     let mut summary = Summary::new(&stage, &motion, &settings, code);
     if let Some(folder) = &arguments.output {
@@ -88,6 +71,32 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
             INPUT
         }
     })
+}
+
+/// The folder that files go to, made if it is not there.
+fn room(folder: &Path) -> Result<(), Failure> {
+    if folder.is_file() {
+        let expected = "a folder, which is made if it is not there";
+        return Err(Failure::input([format!("-o {}: found a file, expected {expected}", folder.display())]));
+    }
+    std::fs::create_dir_all(folder).map_err(|e| unwritable(folder, &e))
+}
+
+fn by_generated_code(stage: &Stage, begin: &Begin, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
+    let (generated, frames) = motion::generate(stage, settings.integrator)?;
+    progress.doing(format!("{}: rustc", stage.name));
+    let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
+    let robot = Straight::build(&rustc, &generated).map_err(|e| Failure::tool(&e))?;
+    progress.doing(format!("{}: motion", stage.name));
+    motion::run(stage, begin, (&robot, &frames), settings, progress)
+}
+
+fn by_generic_code(stage: &Stage, begin: &Begin, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
+    if cfg!(debug_assertions) {
+        console::warn("this command was built without optimisation: its speed means little");
+    }
+    let frames: Vec<String> = stage.model.frames.iter().map(|f| f.name.clone()).collect();
+    motion::run(stage, begin, (&stage.model, &frames), settings, progress)
 }
 
 /// Whether torques determine accelerations at all. What generated code would be refused for, generic code is.

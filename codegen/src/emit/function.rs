@@ -54,30 +54,31 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
         into_form(out, &signature);
         *out += "/// Puts the result into `out`.\n";
     }
-    let _ =
-        writeln!(out, "#[allow({}clippy::all, clippy::pedantic)]", if context.forbid_unsafe { "" } else { "unsafe_code, unused_unsafe, " });
-    let name = if signature.place == Place::Value { format!("pub fn {}", wanted.name) } else { format!("fn {}_fill", wanted.name) };
-    let _ = writeln!(out, "{name}({}){} {{", signature.takes(), signature.returns());
-    for input in &signature.inputs {
-        let _ = writeln!(out, "    let _ = {};", input.name);
-    }
+    opening(out, &wanted.name, &signature, context);
     if in_lanes(graph) {
         lanes_calls(out, graph, &signature);
     } else {
         let mut text = String::new();
         calls(&mut text, graph, &signature, context);
         *out += &match &spilled {
-            Some(few) => format!(
-                "    {}\n    return {{\n{few}    }};\n    {}\n    return {{\n{text}    }};\n",
-                spill::FEW_REGISTERS,
-                spill::MORE_REGISTERS
-            ),
+            Some(few) => spill::by_registers(few, &text),
             None => text,
         };
     }
     let _ = writeln!(out, "}}\n");
     if signature.place == Place::Value && signature.has_into() {
         into_form(out, &signature);
+    }
+}
+
+/// The function's head, up to its first statement that computes.
+fn opening(out: &mut String, name: &str, signature: &Signature, context: Context) {
+    let uses = if context.forbid_unsafe { "" } else { "unsafe_code, unused_unsafe, " };
+    let _ = writeln!(out, "#[allow({uses}clippy::all, clippy::pedantic)]");
+    let name = if signature.place == Place::Value { format!("pub fn {name}") } else { format!("fn {name}_fill") };
+    let _ = writeln!(out, "{name}({}){} {{", signature.takes(), signature.returns());
+    for input in &signature.inputs {
+        let _ = writeln!(out, "    let _ = {};", input.name);
     }
 }
 

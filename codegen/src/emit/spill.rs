@@ -29,6 +29,11 @@ const SHELF: usize = 128;
 pub(super) const FEW_REGISTERS: &str = "#[cfg(all(target_arch = \"x86_64\", not(target_feature = \"avx512f\")))]";
 pub(super) const MORE_REGISTERS: &str = "#[cfg(not(all(target_arch = \"x86_64\", not(target_feature = \"avx512f\"))))]";
 
+/// The statements of a function of which there are both.
+pub(super) fn by_registers(few: &str, more: &str) -> String {
+    format!("    {FEW_REGISTERS}\n    return {{\n{few}    }};\n    {MORE_REGISTERS}\n    return {{\n{more}    }};\n")
+}
+
 /// Whether there may be a text of this function for processors with sixteen registers, in which values wait.
 pub(super) fn is_possible(program: &Program, level: Level, forbid_unsafe: bool) -> bool {
     let graph = &program.graph;

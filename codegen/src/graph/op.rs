@@ -71,48 +71,55 @@ pub struct Row {
     pub lanes: &'static str,
 }
 
-#[allow(clippy::too_many_arguments)]
-// Why: a row of a table.
-const fn row(
-    op: Op,
-    name: &'static str,
-    arity: usize,
-    value: fn(f64, f64, f64) -> f64,
-    cost: u32,
-    latency: u32,
-    rust: &'static str,
-    lanes: &'static str,
-) -> Row {
-    Row { op, name, arity, commutes: false, value, cost, latency, rust, lanes }
+/// An operation's row: that of a number or an input, which costs nothing and is not written by name, as long as no more is said.
+const fn row(op: Op, name: &'static str) -> Row {
+    Row { op, name, arity: 0, commutes: false, value: |_, _, _| f64::NAN, cost: 0, latency: 0, rust: "", lanes: "" }
 }
 
-const fn commuting(row: Row) -> Row {
-    Row { commutes: true, ..row }
+impl Row {
+    const fn of_operands(self, arity: usize, value: fn(f64, f64, f64) -> f64) -> Self {
+        Self { arity, value, ..self }
+    }
+
+    const fn commuting(self) -> Self {
+        Self { commutes: true, ..self }
+    }
+
+    const fn takes(self, cost: u32, latency: u32) -> Self {
+        Self { cost, latency, ..self }
+    }
+
+    const fn written(self, rust: &'static str, lanes: &'static str) -> Self {
+        Self { rust, lanes, ..self }
+    }
 }
 
 /// All operations, in the order of [`Op`].
 pub const OPS: [Row; 21] = [
-    row(Op::Constant, "constants", 0, |_, _, _| f64::NAN, 0, 0, "", ""),
-    row(Op::Input, "inputs", 0, |_, _, _| f64::NAN, 0, 0, "", ""),
-    commuting(row(Op::Add, "add", 2, |a, b, _| a + b, 1, 4, "{a} + {b}", "add")),
-    row(Op::Sub, "sub", 2, |a, b, _| a - b, 1, 4, "{a} - {b}", "sub"),
-    commuting(row(Op::Mul, "mul", 2, |a, b, _| a * b, 1, 4, "{a} * {b}", "mul")),
-    row(Op::Div, "div", 2, |a, b, _| a / b, 4, 13, "{a} / {b}", "div"),
-    row(Op::Neg, "neg", 1, |a, _, _| -a, 1, 1, "-{a}", "neg"),
-    row(Op::Sqrt, "sqrt", 1, |a, _, _| a.sqrt(), 4, 18, "{a}.sqrt()", "sqrt"),
-    row(Op::Sin, "sin", 1, |a, _, _| a.sin(), 10, 60, "{a}.sin()", ""),
-    row(Op::Cos, "cos", 1, |a, _, _| a.cos(), 10, 60, "{a}.cos()", ""),
-    row(Op::Atan2, "atan2", 2, |a, b, _| a.atan2(b), 20, 80, "f64::atan2({a}, {b})", "atan2"),
-    row(Op::Positive, "compare", 1, |a, _, _| if a > 0.0 { 1.0 } else { 0.0 }, 1, 3, "{a} > 0.0", "positive"),
-    row(Op::Select, "select", 3, |a, b, c| if a == 1.0 { b } else { c }, 1, 2, "if {a} { {b} } else { {c} }", "select"),
-    commuting(row(Op::MulAdd, "fma", 3, |a, b, c| a * b + c, 1, 4, "F::fma({a}, {b}, {c})", "fmadd")),
-    commuting(row(Op::MulSub, "fma", 3, |a, b, c| a * b - c, 1, 4, "F::fma({a}, {b}, -{c})", "fmsub")),
-    commuting(row(Op::NegMulAdd, "fma", 3, |a, b, c| c - a * b, 1, 4, "F::fma(-{a}, {b}, {c})", "fnmadd")),
-    commuting(row(Op::NegMulSub, "fma", 3, |a, b, c| -(a * b) - c, 1, 4, "F::fma(-{a}, {b}, -{c})", "fnmsub")),
-    row(Op::LaneConstant, "lane constants", 0, |_, _, _| f64::NAN, 0, 0, "", ""),
-    row(Op::LaneInput, "lane inputs", 0, |_, _, _| f64::NAN, 0, 0, "", ""),
-    row(Op::Spread, "spread", 2, |a, _, _| a, 1, 3, "", "spread"),
-    row(Op::Across, "across", 1, |a, _, _| a, 4, 14, "", "across"),
+    row(Op::Constant, "constants"),
+    row(Op::Input, "inputs"),
+    row(Op::Add, "add").of_operands(2, |a, b, _| a + b).commuting().takes(1, 4).written("{a} + {b}", "add"),
+    row(Op::Sub, "sub").of_operands(2, |a, b, _| a - b).takes(1, 4).written("{a} - {b}", "sub"),
+    row(Op::Mul, "mul").of_operands(2, |a, b, _| a * b).commuting().takes(1, 4).written("{a} * {b}", "mul"),
+    row(Op::Div, "div").of_operands(2, |a, b, _| a / b).takes(4, 13).written("{a} / {b}", "div"),
+    row(Op::Neg, "neg").of_operands(1, |a, _, _| -a).takes(1, 1).written("-{a}", "neg"),
+    row(Op::Sqrt, "sqrt").of_operands(1, |a, _, _| a.sqrt()).takes(4, 18).written("{a}.sqrt()", "sqrt"),
+    row(Op::Sin, "sin").of_operands(1, |a, _, _| a.sin()).takes(10, 60).written("{a}.sin()", ""),
+    row(Op::Cos, "cos").of_operands(1, |a, _, _| a.cos()).takes(10, 60).written("{a}.cos()", ""),
+    row(Op::Atan2, "atan2").of_operands(2, |a, b, _| a.atan2(b)).takes(20, 80).written("f64::atan2({a}, {b})", "atan2"),
+    row(Op::Positive, "compare").of_operands(1, |a, _, _| if a > 0.0 { 1.0 } else { 0.0 }).takes(1, 3).written("{a} > 0.0", "positive"),
+    row(Op::Select, "select")
+        .of_operands(3, |a, b, c| if a == 1.0 { b } else { c })
+        .takes(1, 2)
+        .written("if {a} { {b} } else { {c} }", "select"),
+    row(Op::MulAdd, "fma").of_operands(3, |a, b, c| a * b + c).commuting().takes(1, 4).written("F::fma({a}, {b}, {c})", "fmadd"),
+    row(Op::MulSub, "fma").of_operands(3, |a, b, c| a * b - c).commuting().takes(1, 4).written("F::fma({a}, {b}, -{c})", "fmsub"),
+    row(Op::NegMulAdd, "fma").of_operands(3, |a, b, c| c - a * b).commuting().takes(1, 4).written("F::fma(-{a}, {b}, {c})", "fnmadd"),
+    row(Op::NegMulSub, "fma").of_operands(3, |a, b, c| -(a * b) - c).commuting().takes(1, 4).written("F::fma(-{a}, {b}, -{c})", "fnmsub"),
+    row(Op::LaneConstant, "lane constants"),
+    row(Op::LaneInput, "lane inputs"),
+    row(Op::Spread, "spread").of_operands(2, |a, _, _| a).takes(1, 3).written("", "spread"),
+    row(Op::Across, "across").of_operands(1, |a, _, _| a).takes(4, 14).written("", "across"),
 ];
 
 impl Op {

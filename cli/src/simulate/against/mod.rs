@@ -46,18 +46,7 @@ pub(super) trait Runner {
 
 /// Measures and prints.
 pub(super) fn run(stage: &Stage, begin: &Begin, settings: &Settings, file: &Path, format: Format) -> Result<(), Failure> {
-    let lines: Vec<String> = unknown_to_peers(stage)
-        .into_iter()
-        .map(|what| {
-            format!(
-                "{}: found {what}, expected none for --against: peers know the robot's file and its gravity only",
-                stage.prepared.scene.file
-            )
-        })
-        .collect();
-    if !lines.is_empty() {
-        return Err(Failure::input(lines));
-    }
+    known_to_peers(stage)?;
     let Begin { q, v, .. } = begin;
     let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
     let (generated, _) = motion::generate(stage, IntegratorId::dop853)?;
@@ -70,11 +59,8 @@ pub(super) fn run(stage: &Stage, begin: &Begin, settings: &Settings, file: &Path
     let mut reference = ours(IntegratorId::dop853);
     let best = reference.run(Effort::Tolerance(1e-14)).ok_or_else(|| astray("the reference"))?;
     let second = reference.run(Effort::Tolerance(4e-14)).ok_or_else(|| astray("the reference"))?;
-    let mut runners: Vec<Box<dyn Runner + '_>> = Vec::new();
-    runners.extend(peers.into_iter().map(|p: Peer| Box::new(p) as Box<dyn Runner>));
-    for id in [IntegratorId::rk4, IntegratorId::dopri5, IntegratorId::dop853] {
-        runners.push(Box::new(ours(id)));
-    }
+    let mut runners: Vec<Box<dyn Runner + '_>> = peers.into_iter().map(|p: Peer| Box::new(p) as Box<dyn Runner>).collect();
+    runners.extend([IntegratorId::rk4, IntegratorId::dopri5, IntegratorId::dop853].map(|id| Box::new(ours(id)) as Box<dyn Runner>));
     let progress = Progress::new(runners.len() * TARGETS.len() + TARGETS.len());
     let found = found(&mut runners, &best, &progress);
     let targets = (0..TARGETS.len()).map(|k| {
@@ -97,6 +83,14 @@ pub(super) fn run(stage: &Stage, begin: &Begin, settings: &Settings, file: &Path
         Format::Text => text::text(&report),
         Format::Json => crate::json(&report),
     })
+}
+
+/// Whether the scene has nothing that peers do not know.
+fn known_to_peers(stage: &Stage) -> Result<(), Failure> {
+    let file = &stage.prepared.scene.file;
+    let told = |what| format!("{file}: found {what}, expected none for --against: peers know the robot's file and its gravity only");
+    let lines: Vec<String> = unknown_to_peers(stage).into_iter().map(told).collect();
+    if lines.is_empty() { Ok(()) } else { Err(Failure::input(lines)) }
 }
 
 fn astray(who: &str) -> Failure {

@@ -9,44 +9,71 @@ use crate::simulate::integrator::Start;
 use crate::simulate::step_control::rounding;
 use crate::simulate::{Action, Event, Hit, SimulateError, StateError};
 
+/// The curve of the step from the state to `$t`: of the parts of a simulation that it takes, so that others stay free.
+macro_rules! curve {
+    ($of:ident, $t:ident) => {
+        Curve {
+            method: &mut *$of.method,
+            start: Start { t: $of.t, y: &$of.y, f: &$of.f },
+            h: $t - $of.t,
+            end: &$of.end,
+            point: &mut $of.point,
+        }
+    };
+}
+
 impl<R: Dynamics<f64>> Simulation<'_, R> {
     /// Outputs and events of the step to t, which is not yet the state; where it is cut short, `end` is there. The time up to which it counts, and what is next.
     pub(super) fn look(&mut self, run: &mut Run, t: f64) -> Result<(f64, Outcome), SimulateError> {
-        let start = Start { t: self.t, y: &self.y, f: &self.f };
-        let h = t - self.t;
-        let mut curve = Curve { method: &mut *self.method, start, h, end: &self.end, point: &mut self.point };
-        let (mut cut, mut outcome) = (1.0, Outcome::GoOn);
-        if !run.events.is_empty() {
-            curve.prepare(&mut self.system, run.control)?;
-            let tolerance = self.settings.event_tolerance.max(rounding(t) / 4.0) / h;
-            self.watch.scan(run.events, &mut self.system, &mut curve, (tolerance, t >= self.settings.end))?;
-            for &Zero { theta, event, direction } in &self.watch.zeros {
-                // What happens at the same time as the first that cuts the step short happens too; the rest is found again, if it still comes.
-                if !matches!(outcome, Outcome::GoOn) && theta > cut + tolerance {
-                    break;
-                }
-                let hit = Hit { event, name: run.events[event].name.clone(), t: self.t + theta * h, direction, value: None };
-                run.recording.events.push(hit);
-                self.system.counts.events += 1;
-                let next = match (&run.events[event].action, &outcome) {
-                    (Action::Record, _) | (_, Outcome::Stopped(_)) => continue,
-                    (Action::Stop, _) => Outcome::Stopped(event),
-                    (Action::Map(_), _) => Outcome::Mapped,
-                };
-                if matches!(outcome, Outcome::GoOn) {
-                    (cut, run.cut) = (theta, run.recording.events.len() - 1);
-                }
-                outcome = next;
-            }
+        let (cut, outcome) = if run.events.is_empty() { (1.0, Outcome::GoOn) } else { self.events(run, t)? };
+        let stop = if cut < 1.0 { self.t + cut * (t - self.t) } else { t };
+        self.outputs(run, t, (cut, stop))?;
+        if cut < 1.0 {
+            curve!(self, t).at(&mut self.system, cut)?;
+            self.end.copy_from_slice(&self.point.y);
         }
-        let stop = if cut < 1.0 { self.t + cut * h } else { t };
+        Ok((stop, outcome))
+    }
+
+    /// Records the events of the step to t. The part of it after which one of them cuts it short, and what is next.
+    fn events(&mut self, run: &mut Run, t: f64) -> Result<(f64, Outcome), SimulateError> {
+        let (start, h) = (self.t, t - self.t);
+        let tolerance = self.settings.event_tolerance.max(rounding(t) / 4.0) / h;
+        let mut curve = curve!(self, t);
+        curve.prepare(&mut self.system, run.control)?;
+        self.watch.scan(run.events, &mut self.system, &mut curve, (tolerance, t >= self.settings.end))?;
+        let (mut cut, mut outcome) = (1.0, Outcome::GoOn);
+        for &Zero { theta, event, direction } in &self.watch.zeros {
+            // What happens at the same time as the first that cuts the step short happens too; the rest is found again, if it still comes.
+            if !matches!(outcome, Outcome::GoOn) && theta > cut + tolerance {
+                break;
+            }
+            run.recording.events.push(Hit { event, name: run.events[event].name.clone(), t: start + theta * h, direction, value: None });
+            self.system.counts.events += 1;
+            let next = match (&run.events[event].action, &outcome) {
+                (Action::Record, _) | (_, Outcome::Stopped(_)) => continue,
+                (Action::Stop, _) => Outcome::Stopped(event),
+                (Action::Map(_), _) => Outcome::Mapped,
+            };
+            if matches!(outcome, Outcome::GoOn) {
+                (cut, run.cut) = (theta, run.recording.events.len() - 1);
+            }
+            outcome = next;
+        }
+        Ok((cut, outcome))
+    }
+
+    /// Records what is asked for up to where the step to t is cut: a part of it, and a time.
+    fn outputs(&mut self, run: &mut Run, t: f64, (cut, stop): (f64, f64)) -> Result<(), SimulateError> {
+        let (start, h) = (self.t, t - self.t);
+        let mut curve = curve!(self, t);
         loop {
             let next = run.times.next(&self.settings);
             if next > stop + rounding(stop) {
-                break;
+                return Ok(());
             }
             if next > self.settings.start {
-                let theta = if next >= t - rounding(t) { 1.0 } else { ((next - self.t) / h).min(cut) };
+                let theta = if next >= t - rounding(t) { 1.0 } else { ((next - start) / h).min(cut) };
                 if theta < 1.0 {
                     curve.prepare(&mut self.system, run.control)?;
                 }
@@ -56,14 +83,9 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
             }
             run.times.advance();
             if next >= self.settings.end {
-                break;
+                return Ok(());
             }
         }
-        if cut < 1.0 {
-            curve.at(&mut self.system, cut)?;
-            self.end.copy_from_slice(&self.point.y);
-        }
-        Ok((stop, outcome))
     }
 
     /// Runs the maps of the events that cut the step short, if there are some.
