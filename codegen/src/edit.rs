@@ -1,6 +1,7 @@
 //! The robot that a request asks for: read, other robots appended, payloads attached, shafts made to bend, joints locked, frames chosen; in this order, so that a payload may
 //! hang on an appended robot, and a lock may hold its joints.
 
+use std::collections::HashSet;
 use std::fmt;
 
 use articulated_core::description::{Base, Description, EditError};
@@ -96,6 +97,7 @@ pub(crate) fn read_with_shafts(request: &Request) -> Result<(Reading, Vec<Vec<Ap
         let unknown = |r: &Refusal| matches!(r.reason, Reason::Edit(EditError::UnknownLink { .. } | EditError::UnknownJoint { .. }));
         editing.refusals.retain(|r| matches!(r.edit, Edit::Append(_)) || !unknown(r));
     }
+    editing.let_go();
     editing.warn_of_limits();
     editing.warn_of_loads();
     editing.leave_what_is_used();
@@ -184,6 +186,18 @@ impl Editing<'_> {
         }
     }
 
+    /// Mass behind a shaft moves, and so does what the shaft has taken for its own.
+    fn let_go(&mut self) {
+        if self.request.options.shafts.is_empty() {
+            return;
+        }
+        let description = &self.reading.description;
+        let still = articulated_scene::still(description, self.request.options.base);
+        let held = description.links.iter().zip(still).filter(|(link, still)| *still && link.inertial.is_some());
+        let held: HashSet<String> = held.map(|(link, _)| link.name.clone()).collect();
+        self.reading.release(|link| !held.contains(link));
+    }
+
     /// A lock beyond the joint's limits is odd, and used.
     fn warn_of_limits(&mut self) {
         let joints = self.request.options.lock.iter().filter_map(|(name, at)| {
@@ -251,7 +265,7 @@ fn renamed(unused: Unused, prefix: &str) -> Unused {
 
 #[cfg(test)]
 mod tests {
-    use articulated_core::description::{Origin, Payload};
+    use articulated_core::description::{Origin, Payload, Shaft};
 
     use super::*;
 
@@ -332,6 +346,33 @@ mod tests {
         };
         assert_eq!(warned(&locked), 1);
         assert_eq!(warned(&|o| (o.base, o.payloads) = (Base::Floating, vec![load("base", 1.0)])), 0);
+    }
+
+    /// A hand and, fixed to it, a tip and a lamp.
+    fn club() -> Request {
+        let fixed = |link: &str| {
+            format!(
+                "<link name='{link}'>{LINK}</link><joint name='to_{link}' type='fixed'><parent link='hand'/><child link='{link}'/>
+                <origin xyz='1 0 0'/></joint>"
+            )
+        };
+        Request::new("club.urdf", format!("<robot name='club'><link name='hand'>{LINK}</link>{}{}</robot>", fixed("tip"), fixed("lamp")))
+    }
+
+    #[test]
+    fn mass_that_a_shaft_carries_or_takes_is_not_held_by_the_base() {
+        let held = |shaft: Option<Shaft>| {
+            let mut request = club();
+            request.options.shafts.extend(shaft);
+            let Reading { warnings, unused, .. } = read(&request).unwrap();
+            let found: Vec<String> = warnings.into_iter().filter(|w| w.kind == Kind::UnusedInertia).map(|w| w.found).collect();
+            (found, unused.iter().filter(|u| u.tag == "inertial").count())
+        };
+        let said = |links: &str| vec![format!("mass that a fixed base holds ({links})")];
+        let shaft = |mass| Some(Shaft { joint: "to_tip".into(), segments: 2, stiffness: 1.0, mass, ..Shaft::default() });
+        assert_eq!(held(None), (said("link \"hand\", link \"tip\", link \"lamp\""), 3));
+        assert_eq!(held(shaft(Some(0.1))), (said("link \"hand\", link \"lamp\""), 2));
+        assert_eq!(held(shaft(None)), (said("link \"lamp\""), 1));
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::path::Path;
 
 use articulated_core::effect::Range;
-use articulated_core::model::Model;
+use articulated_core::model::{JointInfo, Model};
 
 use crate::error::{Kind, bare, quote};
 use crate::initial::{Side, counted, neutral, normalise};
@@ -57,7 +57,7 @@ impl Series {
 /// Gives the text of a file by its name in the scene, or says why not.
 pub type Reader<'a> = dyn FnMut(&str) -> Result<String, String> + 'a;
 
-/// More columns or rows no table has.
+/// More rows no table has.
 const MOST: usize = 10_000_000;
 
 /// The way to a column or a row, by its number.
@@ -67,6 +67,9 @@ type Key = dyn Fn(usize) -> String;
 fn at(places: &[At], i: usize) -> At {
     places.get(i).copied().unwrap_or_default()
 }
+
+/// More columns than these are not listed.
+const MOST_LISTED: usize = 10;
 
 /// What a row has to have.
 const ROW: &str = "the time and one for each of the columns";
@@ -138,7 +141,7 @@ impl Source {
     fn parsed(&self, file: &str, text: &str, model: &Model<f64>, side: Side, log: &mut Log) -> Series {
         let folder = Path::new(log.file()).parent().unwrap_or(Path::new(""));
         let mut own = Log::new(&folder.join(file).display().to_string());
-        let source = self.lines(file, text, &mut own);
+        let source = self.lines(file, text, (model, side), &mut own);
         source.check_columns(&|_| String::new(), &mut own);
         source.check_rows(&|_| String::new(), &mut own);
         let series = if own.count() == 0 {
@@ -152,37 +155,55 @@ impl Source {
     }
 
     /// The names and numbers of a CSV; rows that are wrong are told and left out.
-    fn lines(&self, file: &str, text: &str, log: &mut Log) -> Self {
+    fn lines(&self, file: &str, text: &str, robot: (&Model<f64>, Side), log: &mut Log) -> Self {
         let mut source = Self { file: Some(file.to_owned()), place: self.place, hold: self.hold, ..Self::default() };
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let line = |i: usize| At::Line(u32::try_from(i + 1).unwrap_or(u32::MAX));
-        let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
-        let Some((i, head)) = lines.next() else {
+        let mut lines = text.lines().enumerate().filter(|(_, text)| !text.trim().is_empty()).map(|(i, text)| (line(i), text));
+        let Some(head) = lines.next() else {
             log.error(At::Nowhere, "", Kind::Syntax, "nothing", "a first line that names the columns, t and joints");
             return source;
         };
-        let mut names = head.split(',').map(|name| name.trim().trim_matches('"').to_owned());
-        let first = names.next().unwrap_or_default();
-        if !["t", "time"].contains(&first.as_str()) {
-            log.error(line(i), "", Kind::Word, format!("{} as the first column", quote(&first)), "t");
-        }
-        source.columns = names.collect();
-        source.column_places = vec![line(i); source.columns.len()];
-        for (i, words) in lines.take(MOST) {
-            if let Some(row) = source.row(words, line(i), log) {
-                source.rows.push(row);
-                source.row_places.push(line(i));
-            }
-        }
+        source.head(head, robot, log);
+        source.body(lines, MOST, log);
         if source.rows.is_empty() && log.count() == 0 {
             log.error(At::Nowhere, "", Kind::Syntax, "no rows", format!("lines of numbers: {ROW}"));
         }
         source
     }
 
+    /// The names of the columns.
+    fn head(&mut self, (at, text): (At, &str), (model, side): (&Model<f64>, Side), log: &mut Log) {
+        let mut names = fields(text).map(str::to_owned);
+        let first = names.next().unwrap_or_default();
+        if !["t", "time"].contains(&first.as_str()) {
+            log.error(at, "", Kind::Word, format!("{} as the first column", quote(&first)), "t");
+        }
+        self.columns = names.collect();
+        self.column_places = vec![at; self.columns.len()];
+        if self.columns.is_empty() {
+            let expected = format!("columns of joints that move after t: {}", listed(model, side));
+            log.error(at, "", Kind::MissingKey, "a single column", expected);
+        }
+    }
+
+    /// The numbers of the lines after that, `most` at most.
+    fn body<'t>(&mut self, lines: impl Iterator<Item = (At, &'t str)>, most: usize, log: &mut Log) {
+        for (count, (at, text)) in lines.enumerate() {
+            if count == most {
+                log.error(at, "", Kind::Number, format!("row {}", count + 1), format!("at most {most} rows"));
+                return;
+            }
+            if let Some(row) = self.row(text, at, log) {
+                self.rows.push(row);
+                self.row_places.push(at);
+            }
+        }
+    }
+
     /// The numbers of a line of a CSV.
-    fn row(&self, words: &str, at: At, log: &mut Log) -> Option<Vec<f64>> {
-        let words: Vec<&str> = words.split(',').map(str::trim).collect();
+    fn row(&self, text: &str, at: At, log: &mut Log) -> Option<Vec<f64>> {
+        let words: Vec<&str> = fields(text).map(str::trim).collect();
         let width = self.columns.len() + 1;
         let before = log.count();
         if words.len() != width {
@@ -227,6 +248,27 @@ impl Source {
     }
 }
 
+/// What stands between the commas of a line, without the quotation marks around it.
+fn fields(line: &str) -> impl Iterator<Item = &str> {
+    line.split(',').map(str::trim).map(|word| word.strip_prefix('"').and_then(|word| word.strip_suffix('"')).unwrap_or(word))
+}
+
+/// The columns that a robot has.
+fn listed(model: &Model<f64>, side: Side) -> String {
+    let count = |j: &JointInfo| if side == Side::Q { j.q.1 } else { j.v.1 };
+    let mut names: Vec<String> = model
+        .joints
+        .iter()
+        .map(|j| match count(j) {
+            1 => j.name.clone(),
+            n => format!("{0}[0] to {0}[{1}]", j.name, n - 1),
+        })
+        .collect();
+    let more = names.len().saturating_sub(MOST_LISTED);
+    names.truncate(MOST_LISTED);
+    names.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() }
+}
+
 /// The place of `joint` or `joint[k]`.
 fn place_of(name: &str, model: &Model<f64>, side: Side, (at, key): (At, &str), log: &mut Log) -> Option<usize> {
     let range = |joint: &str| model.joints.iter().find(|j| j.name == joint).map(|j| if side == Side::Q { j.q } else { j.v });
@@ -249,6 +291,32 @@ fn place_of(name: &str, model: &Model<f64>, side: Side, (at, key): (At, &str), l
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rows_beyond_the_most_are_told_and_not_read() {
+        let lines = |n: usize| (0..n).map(|i| (At::Line(i as u32 + 2), ["0,1", "1,2", "2,3", "rubbish"][i]));
+        let body = |n: usize| {
+            let (mut source, mut log) = (Source { columns: vec!["elbow".into()], ..Source::default() }, Log::new("t.csv"));
+            source.body(lines(n), 2, &mut log);
+            (source.rows.len(), log.result(()).err().map(|e| e.to_string()))
+        };
+        assert_eq!(body(2), (2, None));
+        let told = Some("t.csv:4: found row 3, expected at most 2 rows".to_owned());
+        assert_eq!((body(3), body(4)), ((2, told.clone()), (2, told)));
+    }
+
+    #[test]
+    fn a_long_list_of_columns_is_cut() {
+        let link = |i: usize| {
+            let kind = if i == 0 { "spherical" } else { "continuous" };
+            format!("<link name='l{i}'/><joint name='j{i}' type='{kind}'><parent link='base'/><child link='l{i}'/></joint>")
+        };
+        let urdf = format!("<robot name='r'><link name='base'/>{}</robot>", (0..12).map(link).collect::<String>());
+        let description = articulated_urdf::read(urdf.as_bytes(), &Default::default()).unwrap().description;
+        let model = Model::new(&description, articulated_core::description::Base::Fixed).unwrap();
+        assert_eq!(listed(&model, Side::Q), "j0[0] to j0[3], j1, j2, j3, j4, j5, j6, j7, j8, j9 and 2 more");
+        assert!(listed(&model, Side::V).starts_with("j0[0] to j0[2], j1"));
+    }
 
     #[test]
     fn numbers_are_linear_between_rows_or_held_and_hold_at_the_ends() {

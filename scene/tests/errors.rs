@@ -67,7 +67,7 @@ fn numbers_that_mean_nothing_are_told() {
     );
     assert_eq!(
         one("[effects.friction]\nelbow = { friction = 1, speed = 0 }"),
-        "s.toml:2: effects.friction.elbow.speed: found 0.0, expected a finite number above 0"
+        "s.toml:2: effects.friction.elbow.speed: found 0.0, expected a finite number, at least 1e-15"
     );
     assert_eq!(
         one("[effects.motor.elbow]\ntorque = 1\nspeed = 1\nefficiency = 1.5"),
@@ -77,6 +77,23 @@ fn numbers_that_mean_nothing_are_told() {
         one("[effects.shaft.hosel]\nsegments = 0\nstiffness = 1"),
         "s.toml:2: effects.shaft.hosel.segments: found 0.0, expected a whole number from 1 to 100"
     );
+}
+
+#[test]
+fn an_added_mass_that_gives_energy_is_told_of_the_numbers_that_are_written() {
+    let told = |numbers: &str| wrong(&format!("[effects.added_mass.bob]\n{numbers}"));
+    let line = |line: u32, key: &str, found: &str, others: &str| {
+        let matrix = format!("expected with {others} a 6×6 matrix that is positive semidefinite");
+        format!("s.toml:{line}: effects.added_mass.bob.{key}: found {found}, {matrix}")
+    };
+    let (good, bad, shown) = ("[1, 0, 0, 1, 0, 1]", "[-1, 0, 0, 1, 0, 1]", "-1.0, 0.0, 0.0, 1.0, 0.0, 1.0");
+    let angular = line(2, "angular", shown, "coupling and linear");
+    let linear = line(3, "linear", shown, "angular and coupling");
+    assert_eq!(told(&format!("angular = {bad}\nlinear = {good}")), [&*angular]);
+    assert_eq!(told(&format!("angular = {good}\nlinear = {bad}")), [&*linear]);
+    assert_eq!(told(&format!("angular = {bad}\nlinear = {bad}")), [angular, linear]);
+    let coupling = line(4, "coupling", "2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0", "angular and linear");
+    assert_eq!(told(&format!("angular = {good}\nlinear = {good}\ncoupling = [2, 0, 0, 0, 0, 0, 0, 0, 0]")), [coupling]);
 }
 
 #[test]
@@ -332,6 +349,12 @@ fn all_that_is_wrong_with_a_csv_is_told_of_its_lines() {
         assert_eq!(read(text), Err(expected), "{text}");
     };
     assert!(read("\u{feff}time, \"elbow\",shoulder\n\n0,1,2\n").is_ok(), "a byte order mark, as spreadsheets write it");
+    assert!(read("\"t\",\"elbow\"\n\"0\",\" 1.5 \"\n1,2\n").is_ok(), "quotation marks");
+    told(
+        "t,elbow\n\"0\",\"one\"\n1,\"\n",
+        &["2: elbow: found \"one\", expected a finite number", "3: elbow: found \"\"\", expected a finite number"],
+    );
+    told("t\n0\n1\n", &["1: found a single column, expected columns of joints that move after t: shoulder, elbow"]);
     let each = "each of the columns";
     told(
         "t,elbo,shoulder,shoulder\n0,1,2,3\n\n1,one,2,inf\n2,3\n-1,0,0,0\n",

@@ -3,7 +3,8 @@
 use articulated::algorithm::checked::{Factor, Measure, Solver, Unsolved, least_pivot};
 use articulated::{Dynamics, Workspace, algorithm};
 use articulated_cli::stress::robots::{Shape, built, chain, rods, state, states};
-use articulated_core::description::{Base, JointKind, Mimic};
+use articulated_core::description::{Base, JointKind, Mimic, Origin};
+use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
 use articulated_tests::case::Case;
 
@@ -35,6 +36,34 @@ fn a_solver_runs_on_whatever_has_dynamics() {
             |k| (Dynamics::joint_of(&model, k).map(str::to_owned), articulated_models::panda_like::Robot.joint_of(k).map(str::to_owned));
         (0..=model.nv).map(names).for_each(|(a, b)| assert_eq!(a, b));
         assert!((left / same - 1.0).abs() < 1e-9 && left > 1e-4 && by_aba > 1e-4, "{left} {same} {by_aba}");
+    }
+}
+
+/// What a motor cannot give does not accelerate anything: of a model, and of code generated for it.
+#[test]
+fn a_solver_solves_with_what_motors_give() {
+    articulated::robot! {
+        pub mod driven {
+            urdf = "../models/urdf/simple_pendulum.urdf",
+            functions = [bias_forces, mass_matrix, motor_torques, forward_dynamics],
+            effects = { motor = { "*" = { torque = 2.0, speed = 30.0, gear = 3.0, smooth = 1e-3 } } },
+        }
+    }
+    fn both<R: Dynamics>(robot: &R) -> [f64; 2] {
+        let (mut ws, given) = (robot.workspace(), [[0.3], [5.0], [100.0]]);
+        let [q, v, tau] = given.each_ref().map(|x| &x[..]);
+        let (mut expected, mut found) = ([0.0], [0.0]);
+        robot.forward_dynamics(&mut ws, q, v, tau, &mut expected).unwrap();
+        Solver::new(robot.shape()).forward_dynamics(robot, &mut ws, [q, v, tau], &mut found).unwrap();
+        [found[0], expected[0]]
+    }
+    let bare = Case::bundled(articulated_models::robot("simple_pendulum").unwrap()).model;
+    let on = bare.joints[0].name.clone();
+    let motor = Applied { effect: EffectId::motor, on, at: Origin::default(), parameters: vec![2.0, 30.0, 3.0, 1.0, 1e-3] };
+    let model = bare.clone().with_effects(&[motor]).unwrap();
+    assert!(Dynamics::has_motors(&model) && driven::Robot.has_motors() && !Dynamics::has_motors(&bare));
+    for [found, expected] in [both(&model), both(&driven::Robot)] {
+        assert!((found - expected).abs() <= 1e-12 * expected.abs() && (expected - both(&bare)[1]).abs() > 1.0, "{found} {expected}");
     }
 }
 

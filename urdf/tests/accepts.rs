@@ -316,6 +316,12 @@ fn mass_on_a_fixed_base_is_one_warning_that_names_the_links() {
     assert!(message.contains("\"tower\"") && message.contains("\"lamp\"") && !message.contains("\"boom\""), "{message}");
     assert_eq!(reading.unused.iter().filter(|u| u.tag == "inertial").count(), 2);
     assert_eq!(reading.description.links[0].inertial.unwrap().mass, 1.0);
+    let mut edited = reading.clone();
+    edited.release(|link| link == "tower");
+    let message = edited.warnings[0].to_string();
+    assert!(edited.warnings.len() == 1 && message.contains("link \"lamp\": inertial") && !message.contains("\"tower\""), "{message}");
+    edited.release(|_| true);
+    assert!(edited.warnings.is_empty() && edited.unused.iter().all(|u| u.tag != "inertial"));
     let floating = read(text.as_bytes(), &Options { base: Base::Floating, ..options() }).unwrap();
     assert!(floating.warnings.is_empty() && floating.unused.iter().all(|u| u.tag != "inertial"));
 }

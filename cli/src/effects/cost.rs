@@ -1,22 +1,22 @@
 //! What effects cost: code is generated without them, with each of them, and with all of them, and counted or timed.
 
 use articulated_codegen::graph::{Counts, Op};
-use articulated_codegen::{Generated, generate as generate_code};
+use articulated_codegen::{Error, Generated, defined, generate as generate_code, massless};
 use articulated_core::algorithm::function;
 use articulated_core::effect::{Applied, EffectId};
 
-use super::report::{Added, Cost, Counted, Operations};
+use super::report::{Added, Cost, Counted, OnlyWith, Operations};
 use crate::compare::contender::Contender;
 use crate::compare::timing::{self, Run};
 use crate::compiled::{Compiled, Rustc};
 use crate::console::Progress;
-use crate::failure::Failure;
+use crate::failure::{Failure, undefined};
 use crate::parallel;
 use crate::simulate::stage::Stage;
 use crate::states;
 
 /// The scene with some of its effects.
-pub(super) struct Variant {
+struct Variant {
     /// What it has that the one of number `against` has not.
     what: String,
     places: usize,
@@ -25,16 +25,48 @@ pub(super) struct Variant {
     against: usize,
 }
 
-/// Number of the variant with gravity and nothing else.
-const WITHOUT: usize = 0;
+/// Functions, and the variants of the scene that have all of them.
+pub(super) struct Part {
+    variants: Vec<Variant>,
+    functions: Vec<String>,
+    /// Why one is not defined without effects.
+    why: Vec<Option<String>>,
+}
+
+/// Number of the variant that others are compared with.
+const FIRST: usize = 0;
 /// States that functions are timed on.
 const STATES: usize = 64;
 
+/// The functions that are defined without effects, and those that are not.
+pub(super) fn parts(stage: &Stage, functions: &[String]) -> Result<Vec<Part>, Failure> {
+    let mut bare = stage.prepared.request.clone();
+    bare.options.effects.clear();
+    let model = articulated_codegen::model(&bare, &stage.description)?;
+    let massless = massless(&model);
+    let part = |variants| Part { variants, functions: Vec::new(), why: Vec::new() };
+    let mut parts = [part(variants(stage)), part(vec![variant(stage, "", stage.effects().to_vec())])];
+    for name in functions {
+        let why = match defined(&bare.file, &model, &massless, articulated_codegen::function(name)?) {
+            Err(error @ Error::Singular { .. }) => Some(undefined(error)?),
+            _ => None,
+        };
+        let part = &mut parts[usize::from(why.is_some())];
+        part.functions.push(name.clone());
+        part.why.push(why);
+    }
+    Ok(parts.into_iter().filter(|part| !part.functions.is_empty()).collect())
+}
+
+fn variant(stage: &Stage, what: &str, effects: Vec<Applied>) -> Variant {
+    let gravity = stage.prepared.request.options.gravity;
+    Variant { what: what.to_owned(), places: effects.len(), effects, gravity, against: FIRST }
+}
+
 /// The scene without effects, the same without gravity, with each effect, and with all.
-pub(super) fn variants(stage: &Stage) -> Vec<Variant> {
+fn variants(stage: &Stage) -> Vec<Variant> {
     let (all, gravity) = (stage.effects(), stage.prepared.request.options.gravity);
-    let variant =
-        |what: &str, effects: Vec<Applied>| Variant { what: what.to_owned(), places: effects.len(), effects, gravity, against: WITHOUT };
+    let variant = |what: &str, effects: Vec<Applied>| variant(stage, what, effects);
     let mut variants = vec![variant("", Vec::new())];
     if gravity != [0.0; 3] {
         variants.push(Variant { gravity: [0.0; 3], ..variant("gravity", Vec::new()) });
@@ -51,31 +83,43 @@ pub(super) fn variants(stage: &Stage) -> Vec<Variant> {
     variants
 }
 
-/// The code of all functions, of each variant.
-pub(super) fn generate(stage: &Stage, variants: &[Variant], functions: &[String], progress: &Progress) -> Result<Vec<Generated>, Failure> {
-    let made = parallel::map(variants, |variant| {
-        let mut request = stage.prepared.request.clone();
-        let o = &mut request.options;
-        (o.effects, o.gravity) = (variant.effects.clone(), variant.gravity);
-        (o.functions, o.frames, o.runtime, o.stages) = (functions.to_vec(), None, None, false);
-        (o.parameters, o.batch) = (Vec::new(), Vec::new());
-        progress.doing(format!("generation: {}", variant.what));
-        let made = generate_code(&request);
-        progress.step();
-        made
-    });
-    made.into_iter().map(|made| made.map_err(Failure::from)).collect()
-}
+impl Part {
+    /// How many steps of progress it takes.
+    pub(super) fn steps(&self, timed: bool) -> usize {
+        self.variants.len() + self.functions.len() * usize::from(timed)
+    }
 
-/// What each function costs by its ledger.
-pub(super) fn counted(variants: &[Variant], made: &[Generated], functions: &[String]) -> Vec<Cost> {
-    let operations = |k: usize, f: usize| Operations::of(made[k].ledger.functions[f].emitted());
-    let cost = |(f, name): (usize, &String)| Cost {
-        function: name.clone(),
-        without: Counted { operations: operations(WITHOUT, f), ns: None },
-        adds: (1..variants.len()).map(|k| added(&variants[k], operations(k, f), operations(variants[k].against, f))).collect(),
-    };
-    functions.iter().enumerate().map(cost).collect()
+    /// The code of all functions, of each variant.
+    pub(super) fn generate(&self, stage: &Stage, progress: &Progress) -> Result<Vec<Generated>, Failure> {
+        let made = parallel::map(&self.variants, |variant| {
+            let mut request = stage.prepared.request.clone();
+            let o = &mut request.options;
+            (o.effects, o.gravity) = (variant.effects.clone(), variant.gravity);
+            (o.functions, o.frames, o.runtime, o.stages) = (self.functions.clone(), None, None, false);
+            (o.parameters, o.batch) = (Vec::new(), Vec::new());
+            progress.doing(format!("generation: {}", variant.what));
+            let made = generate_code(&request);
+            progress.step();
+            made
+        });
+        made.into_iter().map(|made| made.map_err(Failure::from)).collect()
+    }
+
+    /// What each function costs by its ledger.
+    pub(super) fn counted(&self, made: &[Generated]) -> Vec<Cost> {
+        let operations = |k: usize, f: usize| Operations::of(made[k].ledger.functions[f].emitted());
+        let cost = |(f, name): (usize, &String)| {
+            let first = Counted { operations: operations(FIRST, f), ns: None };
+            let (without, only_with) = match self.why[f].clone() {
+                Some(why) => (None, Some(OnlyWith { why, cost: first })),
+                None => (Some(first), None),
+            };
+            let others = self.variants.iter().enumerate().skip(1);
+            let adds = others.map(|(k, variant)| added(variant, operations(k, f), operations(variant.against, f))).collect();
+            Cost { function: name.clone(), without, only_with, adds }
+        };
+        self.functions.iter().enumerate().map(cost).collect()
+    }
 }
 
 fn added(variant: &Variant, with: Operations, against: Operations) -> Added {
@@ -126,10 +170,12 @@ pub(super) fn time(
         let mut runs: Vec<Run<'_>> = contenders.iter().map(|c| c.run(&arguments)).collect();
         let times = timing::interleaved(&mut runs, repetitions);
         drop(runs);
-        cost.without.ns = Some(timing::summary(&times[WITHOUT]));
+        if let Some(whole) = cost.whole_mut() {
+            whole.ns = Some(timing::summary(&times[FIRST]));
+        }
         for (added, time) in cost.adds.iter_mut().zip(&times[1..]) {
             let sign = if added.what == "gravity" { -1.0 } else { 1.0 };
-            let more: Vec<f64> = time.iter().zip(&times[WITHOUT]).map(|(with, without)| sign * (with - without)).collect();
+            let more: Vec<f64> = time.iter().zip(&times[FIRST]).map(|(with, without)| sign * (with - without)).collect();
             added.ns = Some(timing::summary(&more));
         }
         progress.step();

@@ -38,15 +38,19 @@ pub(crate) fn run(arguments: &EffectsArguments, format: Format) -> Result<(), Fa
     }
     let rustc = arguments.time.then(Rustc::find).transpose().map_err(|e| Failure::tool(&e))?;
     let mut report = Report::of(&stage);
-    let variants = cost::variants(&stage);
-    let progress = Progress::new(variants.len() + functions.len() * usize::from(arguments.time));
-    let made = cost::generate(&stage, &variants, &functions, &progress)?;
-    report.limbs = made.iter().flat_map(|g| &g.ledger.functions).map(|f| f.lanes).max().unwrap_or(1);
-    report.costs = cost::counted(&variants, &made, &functions);
-    if let Some(rustc) = &rustc {
-        report.compiler = Some(rustc.version.clone());
-        cost::time(&stage, &made, rustc, arguments.repetitions as usize, &mut report.costs, &progress)?;
+    report.compiler = rustc.as_ref().map(|rustc| rustc.version.clone());
+    let parts = cost::parts(&stage, &functions)?;
+    let progress = Progress::new(parts.iter().map(|part| part.steps(arguments.time)).sum());
+    for part in &parts {
+        let made = part.generate(&stage, &progress)?;
+        report.limbs = made.iter().flat_map(|g| &g.ledger.functions).map(|f| f.lanes).fold(report.limbs, usize::max);
+        let mut costs = part.counted(&made);
+        if let Some(rustc) = &rustc {
+            cost::time(&stage, &made, rustc, arguments.repetitions as usize, &mut costs, &progress)?;
+        }
+        report.costs.extend(costs);
     }
+    report.costs.sort_by_key(|cost| functions.iter().position(|name| *name == cost.function));
     drop(progress);
     console::print(&match format {
         Format::Text => text::text(&report),

@@ -64,13 +64,24 @@ pub(super) struct Ignored {
     pub(super) line: Option<u32>,
 }
 
-/// What a function costs without effects, what each effect adds by itself, and what all of them add.
+/// What a function costs without effects, what each effect adds by itself, and what all of them add; or what it costs with all of them.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Cost {
     pub(super) function: String,
-    /// Gravity is in it, effects are not.
-    pub(super) without: Counted,
+    /// Gravity is in it, effects are not; `None` where it is not defined without them.
+    pub(super) without: Option<Counted>,
+    /// For a function that is not defined without effects.
+    pub(super) only_with: Option<OnlyWith>,
     pub(super) adds: Vec<Added>,
+}
+
+/// A function that is not defined without effects.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct OnlyWith {
+    /// Why not.
+    pub(super) why: String,
+    /// With all effects.
+    pub(super) cost: Counted,
 }
 
 /// Operations of generated code.
@@ -100,6 +111,17 @@ pub(super) struct Added {
     pub(super) operations: Operations,
     /// Repetition by repetition, against the code without it.
     pub(super) ns: Option<Summary>,
+}
+
+impl Cost {
+    /// What is told as it is, and not as a difference.
+    pub(super) fn whole(&self) -> Option<&Counted> {
+        self.without.as_ref().or(self.only_with.as_ref().map(|only| &only.cost))
+    }
+
+    pub(super) fn whole_mut(&mut self) -> Option<&mut Counted> {
+        self.without.as_mut().or(self.only_with.as_mut().map(|only| &mut only.cost))
+    }
 }
 
 impl Report {

@@ -36,7 +36,13 @@ pub(super) fn text(r: &Report) -> String {
         let _ = writeln!(out, "\n{} limbs that are alike are computed at once: an instruction for all of them counts once", r.limbs);
     }
     for cost in &r.costs {
-        let _ = write!(out, "\n{}: what generated code costs, and what each effect adds to it\n{}", cost.function, table(cost).text());
+        let what = match &cost.only_with {
+            Some(only) => {
+                format!("without the effects it is not defined ({}): what generated code costs with all of them", plain(&only.why))
+            }
+            None => "what generated code costs, and what each effect adds to it".into(),
+        };
+        let _ = write!(out, "\n{}: {what}\n{}", cost.function, table(cost).text());
     }
     if let Some(compiler) = &r.compiler {
         let _ = writeln!(out, "\nmedians of differences, ns; {compiler}");
@@ -88,7 +94,7 @@ fn unit(unit: &str, from: Option<&str>) -> String {
 }
 
 fn table(cost: &Cost) -> Table {
-    let timed = cost.without.ns.is_some();
+    let timed = cost.whole().is_some_and(|c| c.ns.is_some());
     let columns = ["", "on", "multiplications", "additions", "divisions, roots", "instructions", "ns"];
     let mut table = Table::new(columns.iter().take(if timed { 7 } else { 6 }).map(|c| (*c, "")));
     let mut row = |what: String, places: String, o: Operations, ns: Option<Summary>, plus: bool| {
@@ -98,7 +104,8 @@ fn table(cost: &Cost) -> Table {
         cells.extend(ns.map(|s| if plus { format!("{:+.1}", s.median) } else { format!("{:.1}", s.median) }));
         table.row(cells);
     };
-    row("without effects".into(), String::new(), cost.without.operations, cost.without.ns, false);
+    let name = if cost.only_with.is_some() { "with all effects" } else { "without effects" };
+    cost.whole().into_iter().for_each(|c| row(name.into(), String::new(), c.operations, c.ns, false));
     for a in &cost.adds {
         let (what, places) =
             if a.what == "gravity" { ("  of it gravity".to_owned(), String::new()) } else { (a.what.clone(), a.places.to_string()) };

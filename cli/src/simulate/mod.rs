@@ -113,6 +113,9 @@ fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
 fn write(stage: &Stage, motion: &Motion, summary: &mut Summary, folder: &Path) -> Result<(), Failure> {
     let recording = &motion.recording;
     let page = page::html(recording, &setting(stage, summary)).map_err(|e| Failure::tool(&e))?;
+    let pictures = plot::pictures(recording, &stage.name).map_err(|e| Failure::tool(&e))?;
+    summary.pictures_left_out = plot::PICTURES.into_iter().filter(|name| pictures.iter().all(|p| p.name != *name)).collect();
+    clear(folder, &summary.pictures_left_out)?;
     let mut save = |name: &str, bytes: &[u8]| {
         let path = folder.join(name);
         summary.files.push(name.to_owned());
@@ -122,16 +125,25 @@ fn write(stage: &Stage, motion: &Motion, summary: &mut Summary, folder: &Path) -
     let csv = csv::text(&columns).map_err(|e| Failure::tool(&e))?;
     save("recording.csv", csv.as_bytes())?;
     save("recording.parquet", &parquet::bytes(&columns))?;
-    let pictures = plot::pictures(recording, &stage.name).map_err(|e| Failure::tool(&e))?;
     for picture in &pictures {
         save(&format!("{}.svg", picture.name), picture.svg.as_bytes())?;
         save(&format!("{}.png", picture.name), &picture.png)?;
     }
     save("motion.html", page.as_bytes())?;
-    summary.pictures_left_out = plot::PICTURES.into_iter().filter(|name| pictures.iter().all(|p| p.name != *name)).collect();
     summary.files.push("summary.json".to_owned());
     let path = folder.join("summary.json");
     std::fs::write(&path, crate::json(summary)).map_err(|e| unwritable(&path, &e))
+}
+
+/// Removes pictures that are of an earlier motion.
+fn clear(folder: &Path, pictures: &[&str]) -> Result<(), Failure> {
+    for path in pictures.iter().flat_map(|name| ["svg", "png"].map(|ending| folder.join(format!("{name}.{ending}")))) {
+        match std::fs::remove_file(&path) {
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(unwritable(&path, &e)),
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 /// What the page shows of a scene.

@@ -20,6 +20,8 @@ use crate::failure::Failure;
 pub(super) struct Motion {
     pub(super) recording: Recording,
     pub(super) counts: Counts,
+    /// The time that was reached, s.
+    pub(super) reached: f64,
     /// In a few words.
     pub(super) ended: String,
     /// Of the run alone.
@@ -73,8 +75,9 @@ pub(super) fn run<R: Dynamics<f64>>(
     watch.without.iter().for_each(|what| console::warn(&nothing_of(stage, *what)));
     let mut simulation = Simulation::new(robot, settings.clone()).map_err(refused)?;
     let mut run = simulation.recording();
-    let (length, mut looked) = (settings.end - settings.start, 0_u64);
+    let (length, mut looked, mut reached) = (settings.end - settings.start, 0_u64, settings.start);
     let mut follow = |over: bool, t: f64, counts: &Counts| {
+        reached = t;
         // The bar is for people: often enough, and no burden.
         if counts.steps >= looked + 256 {
             looked = counts.steps;
@@ -98,8 +101,9 @@ pub(super) fn run<R: Dynamics<f64>>(
         Ended::AtEnd => "at its end".to_owned(),
         Ended::ByEvent(_) | Ended::ByWatcher => "by an event".to_owned(),
     };
+    let reached = if run.ended == Ended::AtEnd { settings.end } else { run.t.last().map_or(reached, |t| t.max(reached)) };
     let counts = run.counts;
-    Ok(Motion { recording: told(stage, run, &|hit| watch.words(hit)), counts, ended, wall, ball: watch.ball.get(), error })
+    Ok(Motion { reached, recording: told(stage, run, &|hit| watch.words(hit)), counts, ended, wall, ball: watch.ball.get(), error })
 }
 
 /// An event that can't happen is odd, and no mistake: effects come and go.
@@ -129,7 +133,9 @@ fn in_time(stage: &Stage, settings: &Settings) -> Result<(), Failure> {
 fn told(stage: &Stage, run: Run, words: &dyn Fn(&Hit) -> String) -> Recording {
     let n = run.len();
     let whole = |x: Vec<f64>| if x.len() == n { x } else { vec![0.0; n] };
-    let momentum = (0..n).map(|k| run.momentum_at(k).and_then(|p| p.try_into().ok()).unwrap_or_default()).collect();
+    // Without mass there is no centre of it: rotors have no momentum here.
+    let heavy = stage.model.moving_mass() > 0.0;
+    let momentum = (0..n).map(|k| run.momentum_at(k).filter(|_| heavy).and_then(|p| p.try_into().ok()).unwrap_or_default()).collect();
     Recording {
         events: run.events.iter().map(|hit| Happening { time: hit.t, what: words(hit), ball_speed_m_per_s: hit.value }).collect(),
         t: run.t,

@@ -18,6 +18,19 @@ pub(super) fn of(stage: &Stage, arguments: &SimulateArguments) -> Result<Setting
     settings.end = a.end.unwrap_or(settings.end);
     settings.rtol = a.rtol.unwrap_or(settings.rtol);
     settings.atol = a.atol.unwrap_or(settings.atol);
+    choose_steps(&mut settings, a, file)?;
+    // Two states are no motion to look at.
+    let looked_at = a.every.is_none() && a.output.is_some() && settings.output == Output::Ends;
+    if let Some(every) = a.every.or(looked_at.then_some(LOOKED_AT)) {
+        settings.output = Output::Every(every);
+    }
+    let problems = settings.problems(stage.model.shape());
+    let told = |p: &SettingError| if looked_at && p.key == "output" { too_many(&settings, file) } else { told(p, a, file) };
+    if problems.is_empty() { Ok(settings) } else { Err(Failure::input(problems.iter().map(told))) }
+}
+
+/// The integrator and what chooses its steps. Errors: an option that has no part in it, and steps that nothing chooses.
+fn choose_steps(settings: &mut Settings, a: &SimulateArguments, file: &str) -> Result<(), Failure> {
     settings.step = a.step.or(settings.step);
     if let Some(row) = a.integrator.as_deref().and_then(integrator) {
         settings.integrator = row.id;
@@ -31,13 +44,29 @@ pub(super) fn of(stage: &Stage, arguments: &SimulateArguments) -> Result<Setting
             "--integrator {name}: found no length of its steps, expected --step, s, or `step` in [simulation] of {file}"
         )]));
     }
-    // Two states are no motion to look at.
-    let looked_at = (a.output.is_some() && settings.output == Output::Ends).then_some(0.01);
-    if let Some(every) = a.every.or(looked_at) {
-        settings.output = Output::Every(every);
-    }
-    let problems = settings.problems(stage.model.shape());
-    if problems.is_empty() { Ok(settings) } else { Err(Failure::input(problems.iter().map(|p| told(p, a, file)))) }
+    let Some(step) = settings.step else { return Ok(()) };
+    let tolerances = [("rtol", a.rtol), ("atol", a.atol)].into_iter().filter(|(_, given)| given.is_some());
+    let by = if a.step.is_some() { "--step".to_owned() } else { format!("`step` in [simulation] of {file}") };
+    let told = |(option, _)| {
+        format!(
+            "--{option}: found a fixed step of {step:?} s ({by}), which no tolerance chooses, expected an integrator that chooses its steps, as --integrator dopri5"
+        )
+    };
+    let lines: Vec<String> = tolerances.map(told).collect();
+    if lines.is_empty() { Ok(()) } else { Err(Failure::input(lines)) }
+}
+
+/// Between records of a scene that asks for its ends only, where a folder is written, s.
+const LOOKED_AT: f64 = 0.01;
+
+/// Neither the scene nor an option has said how often to record.
+fn too_many(settings: &Settings, file: &str) -> String {
+    let length = settings.end - settings.start;
+    format!(
+        "{file}: output = \"ends\" is recorded every {LOOKED_AT} s where a folder is written: found {:.0e} records to the end, expected fewer than 1e9: --every, s, with more than {}",
+        length / LOOKED_AT,
+        length * 1e-9
+    )
 }
 
 /// A problem, of the option where that has said it, else of the scene.

@@ -10,6 +10,7 @@ use crate::native::Kernel;
 /// Generated code of some functions of a robot.
 pub(super) struct Straight {
     name: String,
+    has_motors: bool,
     shape: Shape,
     kernels: Vec<Option<Kernel>>,
     // Last, so that the library is closed after its functions.
@@ -20,8 +21,8 @@ impl Straight {
     pub(super) fn build(rustc: &Rustc, generated: &Generated) -> Result<Self, CompileError> {
         let compiled = Compiled::build(rustc, generated)?;
         let kernels = functions::<f64>().iter().map(|f| compiled.kernel(f.name).cloned()).collect();
-        let (name, shape) = (generated.model.name.clone(), compiled.shape());
-        Ok(Self { name, shape, kernels, _compiled: compiled })
+        let (name, has_motors, shape) = (generated.model.name.clone(), generated.model.has_motors(), compiled.shape());
+        Ok(Self { name, has_motors, shape, kernels, _compiled: compiled })
     }
 }
 
@@ -36,6 +37,10 @@ impl Dynamics<f64> for Straight {
 
     fn name(&self) -> &str {
         &self.name
+    }
+
+    fn has_motors(&self) -> bool {
+        self.has_motors
     }
 
     #[inline]

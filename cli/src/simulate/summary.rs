@@ -20,10 +20,12 @@ pub(super) struct Summary {
     pub(super) code: &'static str,
     pub(super) integrator: Method,
     pub(super) start_s: f64,
-    /// The last time that was reached.
+    /// The time that was reached.
     pub(super) end_s: f64,
     /// That which was asked for.
     pub(super) asked_end_s: f64,
+    /// The time of the last record: what energies and momentum are of at the end.
+    pub(super) last_record_s: f64,
     pub(super) ended: String,
     pub(super) error: Option<String>,
     pub(super) energy: Energy,
@@ -102,7 +104,7 @@ impl Summary {
     pub(super) fn new(stage: &Stage, motion: &Motion, settings: &Settings, code: &'static str) -> Self {
         let r = &motion.recording;
         let (row, wall) = (settings.integrator.row(), motion.wall.as_secs_f64());
-        let end = r.t.last().copied().unwrap_or(settings.start);
+        let last_record = r.t.last().copied().unwrap_or(settings.start);
         Self {
             scene: stage.name.clone(),
             robot: stage.model.name.clone(),
@@ -112,8 +114,9 @@ impl Summary {
             code,
             integrator: Method { name: row.name, order: row.order, step_s: settings.step, rtol: settings.rtol, atol: settings.atol },
             start_s: settings.start,
-            end_s: end,
+            end_s: motion.reached,
             asked_end_s: settings.end,
+            last_record_s: last_record,
             ended: motion.ended.clone(),
             error: motion.error.clone(),
             energy: Energy::of(r, motion.ball),
@@ -123,7 +126,7 @@ impl Summary {
             ball_reached: stage.prepared.scene.impact.as_ref().map(|_| motion.ball.is_some()),
             ball_speed_m_per_s: r.events.iter().find_map(|e| e.ball_speed_m_per_s),
             wall_s: wall,
-            simulated_s_per_wall_s: (end - settings.start) / wall.max(1e-9),
+            simulated_s_per_wall_s: (motion.reached - settings.start) / wall.max(1e-9),
             files: Vec::new(),
             pictures_left_out: Vec::new(),
         }

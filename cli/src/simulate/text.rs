@@ -40,20 +40,27 @@ fn method(s: &Summary) -> String {
         Some(step) => format!("steps of {} s", number(step)),
         None => format!("relative tolerance {:e}, absolute {:e}", m.rtol, m.atol),
     };
-    let asked = if s.end_s == s.asked_end_s { String::new() } else { format!(" of {} s", number(s.asked_end_s)) };
-    format!(
-        "{} (order {}), {steps}; {} code; from {} s to {} s{asked}, ended {}",
-        m.name,
-        m.order,
-        s.code,
-        number(s.start_s),
-        number(s.end_s),
-        s.ended
-    )
+    format!("{} (order {}), {steps}; {} code; {}", m.name, m.order, s.code, span(s))
+}
+
+/// From when to when, and the last record where that is another time.
+fn span(s: &Summary) -> String {
+    let time = |t: f64| time(t, s.asked_end_s - s.start_s);
+    let [start, asked, recorded] = [s.start_s, s.asked_end_s, s.last_record_s].map(time);
+    let recorded = if s.end_s == s.last_record_s { String::new() } else { format!("; last record at {recorded} s") };
+    let of = if s.end_s == s.asked_end_s { String::new() } else { format!(" of {asked} s") };
+    format!("from {start} s to {} s{of}, ended {}{recorded}", time(s.end_s), s.ended)
+}
+
+/// To a millionth of the motion's length at least.
+fn time(t: f64, length: f64) -> String {
+    let short = number(t);
+    if short.parse().is_ok_and(|x: f64| (x - t).abs() <= 1e-6 * length) { short } else { t.to_string() }
 }
 
 fn table(s: &Summary) -> Table {
-    let mut table = Table::new([("", ""), ("start", ""), ("end", ""), ("unit", "")]);
+    let last = if s.end_s == s.last_record_s { "end" } else { "last record" };
+    let mut table = Table::new([("", ""), ("start", ""), (last, ""), ("unit", "")]);
     let (e, p, c) = (&s.energy, &s.momentum, &s.counts);
     let mut row = |name: &str, start: String, end: String, unit: &str| table.row([name.to_owned(), start, end, unit.to_owned()]);
     let none = String::new;
@@ -78,6 +85,9 @@ fn table(s: &Summary) -> Table {
     row("  largest change", none(), number(p.largest_change_angular), "kg·m²/s");
     row("linear momentum", length(&p.start[3..]), length(&p.end[3..]), "kg·m/s");
     row("  largest change", none(), number(p.largest_change_linear), "kg·m/s");
+    if last != "end" {
+        row("in all", none(), none(), "");
+    }
     row("steps", none(), c.steps.to_string(), "");
     row("  rejected", none(), c.rejected_steps.to_string(), "");
     row("  shortest step", none(), c.smallest_step_s.map_or_else(String::new, number), "s");
@@ -106,4 +116,19 @@ fn left_aligned(text: &str) -> String {
             format!("{time:>16}  {}\n", what.trim_start())
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn times_of_a_short_motion_far_from_zero_are_told_apart() {
+        let cases = [
+            (1e9, 2.0, "1.000e9"),
+            (1e9 + 2.0, 2.0, "1000000002"),
+            (160_000.4, 0.4, "160000.4"),
+            (1.0 / 3.0, 1.0, "0.333333"),
+            (0.0, 1e-9, "0"),
+        ];
+        cases.iter().for_each(|(t, length, text)| assert_eq!(super::time(*t, *length), *text));
+    }
 }

@@ -5,8 +5,8 @@ use std::rc::Rc;
 
 use articulated::Dynamics;
 use articulated::simulate::{Action, Direction, Event, Hit, Impact, SimulateError};
-use articulated_core::effect::EffectId;
-use articulated_core::model::JointInfo;
+use articulated_core::effect::{EffectId, JointEffect};
+use articulated_core::model::Body;
 use articulated_scene::{Watched, When};
 
 use super::stage::{Stage, field};
@@ -56,7 +56,7 @@ impl<'a> Watch<'a> {
         for what in looked_for(stage) {
             let before = watch.events.len();
             match what {
-                Watched::Limits => stage.model.joints.iter().for_each(|joint| watch.limit(stage, joint)),
+                Watched::Limits => watch.limits(stage),
                 Watched::Contacts => watch.contacts(stage, robot, frames)?,
                 Watched::StickSlip => watch.stick_slip(stage),
             }
@@ -83,14 +83,17 @@ impl<'a> Watch<'a> {
         self.words.push([rising, falling]);
     }
 
-    /// The bounds of the effect if the joint has it, else those of the file.
-    fn limit(&mut self, stage: &Stage, joint: &JointInfo) {
-        let own = stage.effects_of(EffectId::limit).find(|a| a.on == joint.name);
-        let own = own.and_then(|a| Some((*field(a, "lower").first()?, *field(a, "upper").first()?)));
-        let Some((lower, upper)) = own.or(joint.limit.map(|l| (l.lower, l.upper))) else { return };
-        if joint.q.1 == 1 && (lower.is_finite() || upper.is_finite()) {
-            let event = Event::limit(joint.name.clone(), joint.q.0, lower, upper).direction(Direction::Either);
-            self.push(event, format!("{} comes back from its limit", joint.name), format!("{} reaches its limit", joint.name));
+    /// The bounds of the effect if a joint has it, else those of the file.
+    fn limits(&mut self, stage: &Stage) {
+        for (at, body) in freedoms(stage) {
+            let own = effect_of(body, at.freedom, EffectId::limit).map(|e| (e.parameters[0], e.parameters[1]));
+            let joint = || stage.model.joints.iter().find(|joint| joint.q == (at.q, 1));
+            let Some(bounds) = own.or_else(|| joint()?.limit.map(|l| (l.lower, l.upper))) else { continue };
+            let (lower, upper) = at.of_the_coordinate(bounds);
+            if lower.is_finite() || upper.is_finite() {
+                let event = Event::limit(body.name.clone(), at.q, lower, upper).direction(Direction::Either);
+                self.push(event, format!("{} comes back from its limit", body.name), format!("{} reaches its limit", body.name));
+            }
         }
     }
 
@@ -109,12 +112,10 @@ impl<'a> Watch<'a> {
     }
 
     fn stick_slip(&mut self, stage: &Stage) {
-        for a in stage.effects_of(EffectId::friction) {
-            let Some(joint) = stage.model.joints.iter().find(|j| j.name == a.on) else { continue };
-            for v in joint.v.0..joint.v.0 + joint.v.1 {
-                let event = Event::stick_slip(a.on.clone(), v, field(a, "speed")[0]);
-                self.push(event, format!("{} slips", a.on), format!("{} sticks", a.on));
-            }
+        for (at, body) in freedoms(stage) {
+            let Some(friction) = effect_of(body, at.freedom, EffectId::friction) else { continue };
+            let event = Event::stick_slip(body.name.clone(), at.v, friction.parameters[1] / at.multiplier.abs());
+            self.push(event, format!("{} slips", body.name), format!("{} sticks", body.name));
         }
     }
 
@@ -164,6 +165,38 @@ impl<'a> Watch<'a> {
         self.push(event.direction(Direction::Rising).action(Action::Map(Box::new(map))), hits, misses);
         Ok(())
     }
+}
+
+/// A degree of freedom: which of its joint's, the coordinate and the rate that it moves with, and how: its own coordinate is multiplier · that + offset.
+struct Freedom {
+    freedom: usize,
+    q: usize,
+    v: usize,
+    multiplier: f64,
+    offset: f64,
+}
+
+impl Freedom {
+    /// Bounds of its own coordinate as those of the coordinate that it moves with.
+    fn of_the_coordinate(&self, (lower, upper): (f64, f64)) -> (f64, f64) {
+        let [a, b] = [lower, upper].map(|x| (x - self.offset) / self.multiplier);
+        if self.multiplier < 0.0 { (b, a) } else { (a, b) }
+    }
+}
+
+/// All degrees of freedom with their bodies, those of joints that follow others too. A quaternion's have no coordinates: they are no place of bounds.
+fn freedoms(stage: &Stage) -> impl Iterator<Item = (Freedom, &Body<f64>)> {
+    stage.model.bodies.iter().skip(1).flat_map(|body| {
+        let (at, follow) = (&body.coordinates, body.coordinates.mimic);
+        let (multiplier, offset) = follow.map_or((1.0, 0.0), |f| (f.multiplier, f.offset));
+        let one = move |freedom| (Freedom { freedom, q: at.q + freedom, v: at.v + freedom, multiplier, offset }, body);
+        (0..body.joint.nv()).filter(move |_| multiplier != 0.0).map(one)
+    })
+}
+
+/// The effect on a degree of freedom of a body's joint.
+fn effect_of(body: &Body<f64>, freedom: usize, effect: EffectId) -> Option<&JointEffect<f64>> {
+    body.effects.joint.iter().find(|e| e.effect == effect && e.freedom == freedom)
 }
 
 fn three(x: &[f64]) -> [f64; 3] {

@@ -7,7 +7,8 @@
 //! η = max_i |ID_exact(q, v, a) − τ|_i / (|M| |a| + |h| + |τ|)_i
 //! ```
 //!
-//! with τ what motors make of the torques that are asked for. Where joints follow others, or effects act, M and h may be the rest of larger terms: then the sums of their magnitudes stand for |M| and |h|.
+//! with τ what motors make of the torques that are asked for. Where joints follow others, or effects act, M and h may be the rest of larger terms: then the sums of their magnitudes stand for |M| and |h|;
+//! so they do in every robot of a user's ([`Case::by_terms`]).
 
 use articulated_core::algorithm::checked::{Factor, Singular};
 use articulated_core::algorithm::{FunctionId, Workspace, articulated_body, checked_forward_dynamics};
@@ -207,7 +208,7 @@ impl<'a, F: Machine> Judge<'a, F> {
         let zeros = vec![0.0; v.len()];
         let terms =
             || Some([scale(FunctionId::mass_matrix, &self.wide, &[q])?, scale(FunctionId::inverse_dynamics, &self.wide, &[q, v, &zeros])?]);
-        if let Some(terms) = (!is_plain(&self.wide)).then(terms).flatten() {
+        if let Some(terms) = (self.case.by_terms || !is_plain(&self.wide)).then(terms).flatten() {
             return terms;
         }
         let of = |function, arguments: &[&[f64]]| {

@@ -39,10 +39,10 @@ pub(super) fn rows(robot: &Robot, given: &[State], generated: &[Level]) -> Resul
     let made: Vec<Made> = generated.iter().map(|level| make(robot, &model, *level)).collect::<Result<_, _>>()?;
     let mut rows = Vec::new();
     for (name, why, states) in &sets {
-        let case = Case::new(NAME, format!("{}: {name}", model.name), why);
+        let case = Case::new(NAME, format!("{}: {name}", model.name), why).by_terms();
         rows.extend(judged(&case, &model, states));
         for made in &made {
-            let case = Case::new(NAME, format!("{}, generated, {}: {name}", model.name, made.level()), why);
+            let case = Case::new(NAME, format!("{}, generated, {}: {name}", model.name, made.level()), why).by_terms();
             rows.extend(levels::of_made(&case, &model, made, states));
         }
     }

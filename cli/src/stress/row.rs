@@ -38,12 +38,19 @@ pub struct Case {
     pub name: String,
     /// As [`Row::why`].
     pub why: &'static str,
+    /// Whether |M| and |h| of η are the sums of the magnitudes of their terms in any case.
+    pub by_terms: bool,
 }
 
 impl Case {
     /// A case of a chapter.
     pub fn new(chapter: &'static str, name: impl Into<String>, why: &'static str) -> Self {
-        Self { chapter, name: name.into(), why }
+        Self { chapter, name: name.into(), why, by_terms: false }
+    }
+
+    /// Of a robot that may have numbers of h that cancel to the last digit, as that of a round tool about its own axis does.
+    pub fn by_terms(self) -> Self {
+        Self { by_terms: true, ..self }
     }
 
     /// Right up to the limit.

@@ -1,4 +1,4 @@
-use crate::run;
+use crate::{File, run};
 
 #[test]
 fn every_effect_is_on_or_off_and_what_each_adds_is_counted() {
@@ -57,4 +57,27 @@ fn times_are_told_where_they_are_asked_for() {
     assert!(cost["without"]["ns"]["median"].as_f64().unwrap() > 0.0, "{report}");
     assert!(cost["adds"].as_array().unwrap().iter().all(|a| a["ns"]["median"].as_f64().is_some()), "{report}");
     assert!(report["compiler"].as_str().is_some());
+}
+
+#[test]
+fn a_function_that_only_effects_define_is_told_with_all_of_them() {
+    let urdf = "<robot name='r'><link name='base'/><link name='body'/><joint name='j' type='continuous'><parent link='base'/>\
+                <child link='body'/><axis xyz='0 0 1'/></joint></robot>";
+    let urdf = File::new("r.urdf", urdf.as_bytes());
+    let scene = |effects: &str| File::new("s.toml", format!("urdf = {:?}\n[effects]\n{effects}\n", urdf.name()).as_bytes());
+    let rotor = scene("armature = 0.1\ndamping = 0.2");
+    let names = "forward_dynamics,inverse_dynamics";
+    let report = run(&["effects", rotor.name(), "--functions", names, "--format", "json"]).json();
+    let [forward, inverse] = [0, 1].map(|i| &report["costs"][i]);
+    assert_eq!((&forward["function"], &inverse["function"]), (&"forward_dynamics".into(), &"inverse_dynamics".into()));
+    assert!(forward["without"].is_null() && forward["adds"].as_array().unwrap().is_empty(), "{report}");
+    assert_eq!(forward["only_with"]["why"], "no inertia of its own for joint j");
+    assert!(forward["only_with"]["cost"]["operations"]["instructions"].as_i64().unwrap() > 0, "{report}");
+    assert!(inverse["only_with"].is_null() && inverse["without"].is_object() && inverse["adds"].as_array().unwrap().len() == 4, "{report}");
+    let ended = run(&["effects", rotor.name(), "--functions", "forward_dynamics"]);
+    let said = "forward_dynamics: without the effects it is not defined (no inertia of its own for joint j)";
+    assert!(ended.status == 0 && ended.out.contains(said) && ended.out.contains("with all effects"), "{}{}", ended.out, ended.err);
+    assert!(!ended.out.contains("without effects"), "{}", ended.out);
+    let none = run(&["effects", scene("damping = 0.2").name()]);
+    assert!(none.status == 1 && none.err.contains("forward_dynamics is not defined"), "{}", none.err);
 }

@@ -7,6 +7,7 @@ mod drives;
 mod edits;
 mod effects;
 mod eval;
+mod events;
 mod functions;
 mod generate;
 mod scaling;

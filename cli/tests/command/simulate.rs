@@ -198,9 +198,36 @@ fn a_step_that_is_not_stable_is_refused_and_what_was_up_to_then_is_there() {
     let (file, folder) = (File::new("stiff.toml", text.as_bytes()), tempfile::tempdir().unwrap());
     let ended = run(&["simulate", file.name(), "-o", folder.path().to_str().unwrap()]);
     assert!(ended.status == 1 && ended.err.contains("stable"), "{}", ended.err);
-    assert!(folder.path().join("recording.csv").is_file() && ended.out.contains(" s of 1 s, ended by an error"), "{}", ended.out);
+    assert!(folder.path().join("recording.csv").is_file(), "{}", ended.out);
+    assert!(ended.out.contains("from 0 s to 0 s of 1 s, ended by an error\n"), "{}", ended.out);
     let told = run(&["simulate", file.name(), "--format", "json"]).json();
-    assert!(told["asked_end_s"] == 1.0 && told["end_s"].as_f64().unwrap() < 1.0, "{told}");
+    assert!(told["asked_end_s"] == 1.0 && told["last_record_s"] == 0.0 && told["end_s"] == 0.0, "{told}");
+    assert!(told["error"].as_str().unwrap().contains("at t = "), "{told}");
+}
+
+/// The end of a motion, and the last time that something is known of.
+#[test]
+fn what_is_told_of_the_end_is_told_with_its_time() {
+    let scene = |output: &str| format!("robot = \"simple_pendulum\"\n[initial]\nv = [1.0]\n[simulation]\nend = 2\noutput = {output}\n");
+    let file = File::new("early.toml", scene("[0.3]").as_bytes());
+    let told = run(&["simulate", file.name(), "--format", "json"]).json();
+    assert_eq!((&told["end_s"], &told["asked_end_s"], &told["last_record_s"]), (&2.0.into(), &2.0.into(), &0.3.into()));
+    let out = run(&["simulate", file.name()]).out;
+    assert!(out.contains("from 0 s to 2 s, ended at its end; last record at 0.3 s") && out.contains("last record     unit"), "{out}");
+    let at = |part: &str| out.find(part).unwrap();
+    assert!(at("linear momentum") < at("\nin all\n") && at("\nin all\n") < at("\nsteps "), "{out}");
+    let file = File::new("ends.toml", scene("\"ends\"").as_bytes());
+    let out = run(&["simulate", file.name()]).out;
+    assert!(out.contains("from 0 s to 2 s, ended at its end\n") && !out.contains("last record"), "{out}");
+}
+
+#[test]
+fn records_that_nobody_asked_for_are_not_called_the_scene_s() {
+    let text = "robot = \"simple_pendulum\"\n[simulation]\nend = 1e7\noutput = \"ends\"\n";
+    let (file, folder) = (File::new("long.toml", text.as_bytes()), tempfile::tempdir().unwrap());
+    let ended = run(&["simulate", file.name(), "-o", folder.path().to_str().unwrap()]);
+    let told = "output = \"ends\" is recorded every 0.01 s where a folder is written: found 1e9 records to the end, expected fewer than 1e9: --every, s, with more than 0.01";
+    assert!(ended.status == 1 && ended.err.contains(told) && !ended.err.contains("output = 0.01"), "{}", ended.err);
 }
 
 /// A pendulum that hangs: nothing to draw of its angle and its rate.
@@ -217,6 +244,22 @@ fn a_picture_of_nothing_is_not_written_and_that_is_said() {
     let summary: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(folder.path().join("summary.json")).unwrap()).unwrap();
     assert_eq!(summary["pictures_left_out"], serde_json::json!(["positions", "velocities", "torques"]));
     assert!(!folder.path().join("positions.svg").exists() && folder.path().join("energy.svg").is_file());
+}
+
+/// Pictures of another motion would pass for pictures of this one.
+#[test]
+fn pictures_that_a_motion_has_not_are_removed() {
+    let scene = |v: f64| {
+        File::new("again.toml", format!("robot = \"simple_pendulum\"\n[initial]\nv = [{v:?}]\n[simulation]\nend = 0.1\n").as_bytes())
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let there = |name: &str| folder.path().join(name).exists();
+    let pictures = ["positions.svg", "positions.png", "velocities.svg", "velocities.png"];
+    std::fs::write(folder.path().join("torques.txt"), "mine").unwrap();
+    for (v, expected) in [(1.0, true), (0.0, false)] {
+        assert_eq!(run(&["simulate", scene(v).name(), "-o", folder.path().to_str().unwrap()]).status, 0);
+        assert!(pictures.iter().all(|name| there(name) == expected) && there("energy.svg") && there("torques.txt"), "{v}");
+    }
 }
 
 #[test]
@@ -236,4 +279,15 @@ fn levels_of_single_precision_are_refused_where_states_are_doubles() {
         assert_eq!(refused.status, 1, "{words:?}: {}", refused.out);
         assert!(refused.err.contains("level: found f32_f64, expected one whose functions take f64"), "{}", refused.err);
     }
+}
+
+/// A tolerance does not choose a fixed step: it is no use to say it, unless the integrator goes too.
+#[test]
+fn tolerances_of_fixed_steps_are_refused() {
+    let text = "robot = \"simple_pendulum\"\n[simulation]\nend = 0.1\nintegrator = \"rk4\"\nstep = 0.01\n";
+    let file = File::new("steps.toml", text.as_bytes());
+    let ended = run(&["simulate", file.name(), "--rtol", "1e-3", "--atol", "1e-3"]);
+    let lines: Vec<&str> = ended.err.lines().filter(|line| line.contains("found a fixed step of 0.01 s (`step` in [simulation]")).collect();
+    assert!(ended.status == 1 && lines.len() == 2, "{}", ended.err);
+    assert_eq!(run(&["simulate", file.name(), "--integrator", "dopri5", "--rtol", "1e-3"]).status, 0);
 }

@@ -47,6 +47,26 @@ fn a_robot_of_ones_own_is_judged_and_watched() {
     assert_eq!(whole["notes"], serde_json::json!([]));
 }
 
+/// A round tool about its own axis has velocity forces that cancel to the last digit: what is left of them is no measure.
+#[test]
+fn what_cancels_to_nothing_is_measured_by_its_terms() {
+    let link = |name: &str| {
+        format!(
+            "<link name='{name}'><inertial><origin xyz='0.1 0 0'/><mass value='1'/>\
+             <inertia ixx='0.01' ixy='0' ixz='0' iyy='0.01' iyz='0' izz='0.01'/></inertial></link>"
+        )
+    };
+    let urdf = format!(
+        "<robot name='two'><link name='base'/>{}{}\
+         <joint name='shoulder' type='continuous'><parent link='base'/><child link='upper'/><axis xyz='0 1 0'/></joint>\
+         <joint name='wrist' type='continuous'><parent link='upper'/><child link='tool'/><origin xyz='0.3 0 0'/><axis xyz='1 0 0'/></joint></robot>",
+        link("upper"),
+        link("tool")
+    );
+    let ended = run_with(&["stress", "-", "--generated", "--levels", "f64,f32"], urdf.as_bytes());
+    assert_eq!(ended.status, 0, "{}{}", ended.out, ended.err);
+}
+
 /// Magnitudes of terms have those of effects among them: stops are stiff, and far beyond them forces are large.
 #[test]
 fn a_scene_with_effects_is_within_its_limits() {

@@ -77,6 +77,11 @@ macro_rules! methods {
                 None
             }
 
+            /// Whether motors stand between the torques that forward dynamics is given and the joints: then `motor_torques` says what they make of them.
+            fn has_motors(&self) -> bool {
+                false
+            }
+
             /// The joint that a degree of freedom belongs to, where the robot can tell.
             fn joint_of(&self, freedom: usize) -> Option<&str> {
                 let mut joints = (0..).map_while(|k| self.joint(k));
@@ -130,6 +135,10 @@ impl<S: Scalar> Dynamics<S> for Model<S> {
 
     fn frame_name(&self, frame: usize) -> Option<&str> {
         self.frames.get(frame).map(|f| f.name.as_str())
+    }
+
+    fn has_motors(&self) -> bool {
+        Model::has_motors(self)
     }
 
     #[inline]

@@ -93,6 +93,19 @@ pub enum SimulateError {
         /// The step, s.
         step: f64,
     },
+    /// A fixed step turns a joint further than a step can.
+    Turn {
+        /// Time, s.
+        t: f64,
+        /// The step, s.
+        step: f64,
+        /// By how much it would turn, rad.
+        turn: f64,
+        /// What it has to be less than, rad.
+        most: f64,
+        /// Name of the joint, where the robot can tell.
+        joint: Option<String>,
+    },
     /// An event that maps the state happens again and again at one time.
     Chattering {
         /// Time, s.
@@ -258,6 +271,13 @@ impl fmt::Display for SimulateError {
                 write!(f, "at t = {t} s the equations of a step of {step:.3e} s were not solved: a shorter step")
             }
             Self::Singular { t, step } => write!(f, "at t = {t} s the matrix of a step of {step:.3e} s is singular: another step"),
+            Self::Turn { t, step, turn, most, joint } => {
+                let (joint, least) = (of_joints(joint), step * most / turn);
+                write!(
+                    f,
+                    "at t = {t} s a step of {step:.3e} s turns by {turn:.3} rad{joint}: a step can turn by {most:.3} rad at most, here one of {least:.3e} s"
+                )
+            }
             Self::Chattering { t, event } => {
                 write!(f, "at t = {t} s the event `{event}` happens again and again: let it stop, or let the map end what causes it")
             }

@@ -129,6 +129,11 @@ impl Manifold {
         all
     }
 
+    /// The joint that turns fastest of those that turn freely, by the first of its degrees of freedom, and how fast, rad/s.
+    pub(crate) fn fastest_turn(&self, v: &[f64]) -> Option<(usize, f64)> {
+        self.free.iter().map(|free| (free.v, three(v, free.v).norm())).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
     /// What errors of the steps of q are relative to: the coordinate, 1 for a turn, the distance from the origin for a position.
     pub(crate) fn magnitudes(&self, q: &[f64], out: &mut [f64]) {
         let (mut at, mut free) = ((0, 0), self.free.iter());

@@ -143,7 +143,8 @@ impl Settings {
         let first = self.first_step;
         found.unless(first.is_none_or(positive), "first_step", first.unwrap_or(0.0), "a length of time greater than zero, s");
         found.unless(self.max_steps > 0, "max_steps", self.max_steps, "at least 1");
-        found.unless(self.event_tolerance >= 0.0, "event_tolerance", self.event_tolerance, "at least 0 s");
+        let time = self.event_tolerance >= 0.0 && self.event_tolerance.is_finite();
+        found.unless(time, "event_tolerance", self.event_tolerance, "at least 0 s");
         self.check_output(&mut found);
         found.0
     }
@@ -239,6 +240,7 @@ mod tests {
             ("rtol", Settings { rtol: 1e-16, ..right.clone() }),
             ("rtol", Settings { rtol: 0.0, atol: 0.0, ..right.clone() }),
             ("event_tolerance", Settings { event_tolerance: -1e-12, ..right.clone() }),
+            ("event_tolerance", Settings { event_tolerance: f64::INFINITY, ..right.clone() }),
             ("output", Settings { output: Output::At(vec![1.5, 1.5]), ..right.clone() }),
             ("output", Settings { output: Output::At(vec![0.5, 1.5]), ..right.clone() }),
             ("output", Settings { output: Output::At(vec![1.5, 2.5]), ..right.clone() }),

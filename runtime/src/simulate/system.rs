@@ -135,6 +135,12 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
         if index.is_empty() { None } else { Some(self.named(t, what, index)) }
     }
 
+    /// Whether a step of h s at these rates turns a joint by `most` rad or more.
+    pub(crate) fn turns_too_far(&self, (t, h): (f64, f64), v: &[f64], most: f64) -> Option<SimulateError> {
+        let (freedom, rate) = self.manifold.fastest_turn(v).filter(|(_, rate)| rate * h >= most)?;
+        Some(SimulateError::Turn { t, step: h, turn: rate * h, most, joint: joint(self.robot, freedom) })
+    }
+
     /// With the names of the joints that these degrees of freedom belong to.
     pub(crate) fn named(&self, t: f64, what: &'static str, index: Vec<usize>) -> SimulateError {
         let mut names: Vec<String> = index.iter().filter_map(|&i| joint(self.robot, i)).collect();

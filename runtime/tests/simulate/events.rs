@@ -8,7 +8,7 @@ use articulated::simulate::{
 };
 use articulated::{Base, Origin, load_bytes};
 
-use crate::robots::{chain, handle, model, one_joint, stepping, to};
+use crate::robots::{chain, handle, model, one_joint, slider, stepping, to};
 
 const G: f64 = 9.81;
 
@@ -370,4 +370,31 @@ fn one_who_watches_can_end_it() {
     };
     simulation.run_into(&[0.0], &[0.0], &mut NoTorque, &mut [], &mut recording, &mut watch).unwrap();
     assert_eq!((recording.ended, recording.counts.steps, calls.get()), (Ended::ByWatcher, 50, 50));
+}
+
+/// What happens where the motion ends has happened: the state behind it is recorded too, and one who watches is asked.
+#[test]
+fn a_map_at_the_end_is_part_of_the_motion() {
+    let robot = slider();
+    let settings = Settings { output: Output::Every(0.25), ..stepping(IntegratorId::semi_implicit_euler, 0.5, 0.25) };
+    for goes_on in [true, false] {
+        let stop = Event::new("wall", |_, q: &[f64], _| q[0] - 0.5).action(Action::Map(Box::new(|_, _, v| {
+            v[0] = 0.0;
+            Ok(None)
+        })));
+        let mut simulation = Simulation::new(&robot, settings.clone()).unwrap();
+        let mut motion = simulation.recording();
+        simulation.run_into(&[0.0], &[1.0], &mut NoTorque, &mut [stop], &mut motion, &mut |t, _| goes_on || t < 0.5).unwrap();
+        assert_eq!((motion.t.as_slice(), motion.v.as_slice()), (&[0.0, 0.25, 0.5, 0.5][..], &[1.0, 1.0, 1.0, 0.0][..]));
+        assert_eq!(motion.ended, if goes_on { Ended::AtEnd } else { Ended::ByWatcher });
+    }
+}
+
+/// What stays at zero does not come to it.
+#[test]
+fn what_is_at_zero_all_the_while_is_no_event_at_the_end() {
+    let still = Event::new("still", |t: f64, q: &[f64], _| if t == 0.0 { -1.0 } else { q[0] });
+    let robot = slider();
+    let mut simulation = Simulation::new(&robot, to(IntegratorId::dopri5, 1.0, 1e-6)).unwrap();
+    assert!(simulation.run(&[0.0], &[0.0], &mut NoTorque, &mut [still]).unwrap().events.is_empty());
 }

@@ -1,6 +1,10 @@
 //! What is refused, and what cannot go on: every mistake at once, with the joint that it is about.
 
-use articulated::simulate::{Constant, Event, Hold, IntegratorId, NoTorque, Pd, SimulateError, Simulation, StateError, integrators};
+use std::f64::consts::{PI, TAU};
+
+use articulated::simulate::{
+    Constant, Control, Event, Hold, Impact, IntegratorId, NoTorque, Pd, SimulateError, Simulation, StateError, Stiffness, integrators,
+};
 use articulated::{Base, Dynamics, FunctionError};
 
 use crate::robots::{chain, free, handle, model, slider, stepping, to};
@@ -117,4 +121,49 @@ fn what_is_wrong_with_a_controller_is_called_as_its_arguments_are() {
     let error = Pd::new(&handle::Robot, vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0], vec![1.0; 6], vec![1.0; 6]).err();
     assert_eq!(all(error), "target[3..7] (joint `__floating_base__`) is a quaternion of norm 2; it should be 1");
     assert_eq!(all(Hold::new(NoTorque, -1.0).err()), "period = -1 cannot be used; it should be a length of time greater than zero, s");
+}
+
+/// A step of a joint that turns freely has an end: its coordinates repeat after a whole turn, and Cayley's map does not reach half of one.
+#[test]
+fn a_step_that_turns_too_far_says_by_how_much() {
+    let robot = model("handle", Base::Floating).with_gravity([0.0; 3]);
+    let spin = |integrator, rate: f64| {
+        let mut settings = stepping(integrator, 1.0, 0.1);
+        settings.stiffness = Stiffness::Note;
+        free(&robot, &settings, &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], &[0.0, 0.0, rate, 0.0, 0.0, 0.0])
+    };
+    for (integrator, bound) in [(IntegratorId::lie_midpoint, PI), (IntegratorId::rk4, TAU), (IntegratorId::rodas4, TAU)] {
+        let error = spin(integrator, 11.0 * bound).unwrap_err();
+        let SimulateError::Turn { step, turn, most, .. } = error else { panic!("{integrator}: {error}") };
+        assert!((step - 0.1).abs() < 1e-12 && (turn - 1.1 * bound).abs() < 1e-9 && most == bound, "{integrator}: {error}");
+        assert!(error.to_string().contains(" rad (joint `__floating_base__`): a step can turn by "), "{error}");
+        assert!(spin(integrator, 2.0 * bound).is_ok(), "{integrator}");
+    }
+}
+
+/// Numbers that are none: a period, a ball's speed; a kink that is not to come does not hold up the motion.
+#[test]
+fn what_a_controller_or_a_ball_says_is_looked_at() {
+    struct Odd(Option<f64>, f64);
+    impl Control for Odd {
+        fn torques(&mut self, _: f64, _: &[f64], _: &[f64], _: &mut [f64]) {}
+        fn period(&self) -> Option<f64> {
+            self.0
+        }
+        fn next_kink(&self, _: f64) -> f64 {
+            self.1
+        }
+    }
+    let robot = slider();
+    let run = |mut odd| Simulation::new(&robot, to(IntegratorId::dopri5, 1.0, 1e-6)).unwrap().run(&[0.0], &[1.0], &mut odd, &mut []);
+    for period in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let error = run(Odd(Some(period), f64::INFINITY)).unwrap_err();
+        assert!(error.to_string().starts_with("period = "), "{error}");
+    }
+    for kink in [0.0, -1.0, f64::NAN] {
+        assert!(run(Odd(None, kink)).unwrap().counts.steps < 100);
+    }
+    let wide = model("planar", Base::Fixed);
+    let mut blow = Impact::new(&wide, 0, [0.0; 3], [1.0, 0.0, 0.0], 1.0, 1.0).unwrap();
+    assert!(blow.strike(&[0.1; 2], &mut [0.0; 2], f64::NAN).is_err());
 }

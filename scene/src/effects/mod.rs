@@ -14,6 +14,8 @@ mod resolve;
 mod still;
 mod urdf;
 
+use std::ops::Range;
+
 use articulated_core::description::Origin;
 
 use crate::error::{Kind, quote};
@@ -225,8 +227,29 @@ fn check(row: &'static Effect, numbers: &Numbers, spot: &Spot<'_>, log: &mut Log
         return;
     };
     let all = all.concat();
-    let Some((field, own)) = row.broken(&all) else { return };
-    let expected = field.rule.map_or("", |rule| rule.expected);
-    let at = spot.get(field.name).unwrap_or(Spot { node: spot.node, key: spot.key.clone(), at: spot.at });
-    at.clash(log, own.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(", "), expected);
+    let Some((broken, _)) = row.broken(&all) else { return };
+    let expected = broken.rule.map_or("", |rule| rule.expected);
+    for (field, own) in blamed(row, numbers, broken, &all) {
+        let at = spot.get(field.name).unwrap_or(Spot { node: spot.node, key: spot.key.clone(), at: spot.at });
+        let found = own.iter().map(|x| format!("{x:?}")).collect::<Vec<_>>().join(", ");
+        // What the rule says of its own field, said of this one.
+        at.clash(log, found, expected.replace(field.name, broken.name));
+    }
+}
+
+/// The fields to blame for a broken rule, with their part of `all`: the rule's own if it is written, else those written that break it with zeros for the others.
+fn blamed<'a>(row: &'static Effect, numbers: &Numbers, broken: &'static Field, all: &'a [f64]) -> Vec<(&'static Field, &'a [f64])> {
+    let parts = row.fields.iter().zip(&numbers.fields).scan(0, |end, (field, said)| {
+        let start = *end;
+        *end += field.len;
+        Some((field, said.is_some(), start..*end))
+    });
+    let own_is_written = parts.clone().any(|(field, said, _)| said && field.name == broken.name);
+    let alone = |part: &Range<usize>| {
+        let mut others = vec![0.0; all.len()];
+        others[part.clone()].copy_from_slice(&all[part.clone()]);
+        row.broken(&others).is_some()
+    };
+    let is = |field: &Field, part: &Range<usize>| if own_is_written { field.name == broken.name } else { alone(part) };
+    parts.filter(|(field, said, part)| *said && is(field, part)).map(|(field, _, part)| (field, &all[part])).collect()
 }

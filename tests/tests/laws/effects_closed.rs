@@ -232,6 +232,19 @@ fn a_rotor_makes_a_massless_joint_move_something() {
     assert_near(call(&driven, "forward_dynamics", &[&[0.3], &[0.7], &[5.0]])[0], 5.0 / 4.0);
 }
 
+/// Water that has to be moved is inertia too: along a slide, and not about an axis through its middle.
+#[test]
+fn added_mass_makes_a_massless_joint_move_something() {
+    let mut bare = slide();
+    bare.bodies[1].inertia = articulated_core::spatial::SpatialInertia::zero();
+    let added = |linear: f64| [&[0.0; 6][..], &[linear, 0.0, 0.0, linear, 0.0, linear], &[0.0; 9]].concat();
+    let link = bare.frames[bare.frames.len() - 1].name.clone();
+    let wet = |linear: f64| bare.clone().with_effects(&[on(EffectId::added_mass, &link, &added(linear))]).expect("added mass");
+    assert!(wet(2.0).massless_joints().is_empty());
+    assert_near(call(&wet(2.0), "forward_dynamics", &[&[0.3], &[0.7], &[5.0]])[0], 2.5);
+    assert_eq!(wet(0.0).massless_joints(), [1]);
+}
+
 #[derive(Deserialize)]
 struct Answers {
     engine: String,

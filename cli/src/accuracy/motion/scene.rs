@@ -58,14 +58,46 @@ impl Subject {
         let (controller, period) = &self.control;
         let mut notes = Vec::new();
         if let Controller::Table(series) | Controller::Pd { target: Aim::Moving(series), .. } = controller {
-            notes.push(format!(
-                "the controller follows a table of {}: a step ends at each, so that no integrator meets a kink, and none takes fewer steps than that",
-                counted(series.times.len(), "row")
-            ));
+            notes.push(self.of_table(&series.times, period.is_some()));
         }
         if let Some(period) = period {
             notes.push(format!("the controller is sampled every {period} s: a step ends at each sample, and none is longer"));
         }
         notes
+    }
+
+    /// What rows at these times mean.
+    fn of_table(&self, times: &[f64], sampled: bool) -> String {
+        let rows = format!("the controller follows a table of {}", counted(times.len(), "row"));
+        if sampled {
+            return format!("{rows} and reads it at its samples alone: no step ends at a row as such");
+        }
+        let inside = times.iter().filter(|t| self.start < **t && **t < self.start + self.seconds).count();
+        format!(
+            "{rows}, {inside} of them within the motion: a step ends at each of these, so that no integrator meets a kink, and none takes fewer steps than that"
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use articulated_scene::Series;
+
+    use super::*;
+
+    #[test]
+    fn steps_end_at_rows_within_the_motion_or_at_samples() {
+        let (_, mut subject) = find("pendulum").unwrap_or_else(|_| panic!("bundled"));
+        (subject.start, subject.seconds) = (0.0, 2.0);
+        let times = vec![-1.0, 0.0, 0.31, 0.777, 2.0];
+        let table = Controller::Table(Series { rows: vec![vec![1.0]; times.len()], times, hold: true });
+        subject.control = (table.clone(), None);
+        let rows = "the controller follows a table of 5 rows";
+        let kinks = "a step ends at each of these, so that no integrator meets a kink, and none takes fewer steps than that";
+        assert_eq!(subject.notes(), [format!("{rows}, 2 of them within the motion: {kinks}")]);
+        subject.control = (table, Some(0.25));
+        let samples = "the controller is sampled every 0.25 s: a step ends at each sample, and none is longer";
+        let sampled = format!("{rows} and reads it at its samples alone: no step ends at a row as such");
+        assert_eq!(subject.notes(), [sampled, samples.to_owned()]);
     }
 }

@@ -1,9 +1,8 @@
 //! A motion as one page that plays it in three dimensions: everything is in the file, and nothing is fetched.
 
+mod clock;
 mod figure;
 mod track;
-
-use std::cmp::Ordering;
 
 use articulated_core::algorithm::FunctionError;
 use articulated_core::description::{Base, Description};
@@ -21,25 +20,6 @@ use track::{Track, base64};
 const PAGE: &str = include_str!("page.html");
 const STYLE: &str = include_str!("page.css");
 const PLAYER: &str = include_str!("player.js");
-
-/// Seconds of the motion a second that the page offers.
-const SPEEDS: [f64; 9] = [0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0];
-
-/// How long a motion should be seen at first, s.
-const SEEN: [f64; 2] = [5.0, 15.0];
-
-/// The speed nearest to 1 at which a motion of this length is seen as long as it should be; else the one that comes nearest to that.
-fn speed(length: f64) -> f64 {
-    let off = |speed: f64| {
-        let seen = length / speed;
-        (SEEN[0] / seen).max(seen / SEEN[1]).max(1.0)
-    };
-    let from_one = |speed: f64| speed.ln().abs();
-    SPEEDS
-        .into_iter()
-        .min_by(|a, b| (off(*a), from_one(*a)).partial_cmp(&(off(*b), from_one(*b))).unwrap_or(Ordering::Equal))
-        .unwrap_or(1.0)
-}
 
 /// What the page shows beside the motion.
 pub(super) struct Setting<'a> {
@@ -70,14 +50,19 @@ struct Motion<'a> {
     size: f64,
     #[serde(flatten)]
     figure: &'a Figure,
-    speeds: [f64; 9],
-    /// The one that it begins with.
+    /// Seconds of the motion a second that are offered, and the one that it begins with.
+    speeds: Vec<f64>,
     speed: f64,
+    /// Decimal places of the clock.
+    places: usize,
     /// Number of bodies that move.
     moving: usize,
     low: [f64; 3],
     quantum: [f64; 3],
     placements: String,
+    /// s.
+    start: f64,
+    /// Of frames, from the start on: doubles.
     times: String,
     energy_names: Vec<&'static str>,
     energies: String,
@@ -90,7 +75,9 @@ pub(super) fn html(r: &Recording, setting: &Setting<'_>) -> Result<String, Funct
     for (link, center, radius) in &setting.balls {
         figure.ball(setting.description, setting.model, link, *center, *radius);
     }
-    let speed = speed(r.t.last().zip(r.t.first()).map_or(0.0, |(last, first)| last - first));
+    let (start, length) = r.t.first().zip(r.t.last()).map_or((0.0, 0.0), |(first, last)| (*first, last - first));
+    let speeds = clock::speeds(length);
+    let speed = clock::speed(length, &speeds);
     let chosen = track::chosen(&r.t, figure.frames.len(), speed);
     let placements = placements(r, &chosen, setting.model, &figure.frames)?;
     let track = Track::of(&placements);
@@ -113,13 +100,15 @@ pub(super) fn html(r: &Recording, setting: &Setting<'_>) -> Result<String, Funct
         radius: space.radius,
         size: space.size,
         figure: &figure,
-        speeds: SPEEDS,
+        speeds,
         speed,
+        places: clock::places(&r.t),
         moving: figure.frames.len(),
         low: track.low,
         quantum: track.quantum,
         placements: base64(&track.bytes),
-        times: floats(&mut chosen.iter().map(|&k| r.t[k])),
+        start,
+        times: base64(&chosen.iter().flat_map(|&k| (r.t[k] - start).to_le_bytes()).collect::<Vec<u8>>()),
         energy_names: energies.iter().map(|e| e.0).collect(),
         energies: floats(&mut chosen.iter().flat_map(|&k| energies.map(|e| e.1.get(k).copied().unwrap_or(0.0)))),
         events: &r.events,
@@ -203,6 +192,10 @@ mod tests {
     use crate::robot::bundled_model;
 
     fn page(robot: &str, times: usize) -> String {
+        page_of(robot, &example(&bundled_model(robot), times))
+    }
+
+    fn page_of(robot: &str, recording: &Recording) -> String {
         let bundled = articulated_models::robot(robot).unwrap();
         let options = articulated_urdf::Options { base: bundled.base, ..articulated_urdf::Options::default() };
         let description = articulated_urdf::read(bundled.urdf.as_bytes(), &options).unwrap().description;
@@ -216,7 +209,11 @@ mod tests {
             balls: Vec::new(),
             ground: None,
         };
-        html(&example(&model, times), &setting).unwrap()
+        html(recording, &setting).unwrap()
+    }
+
+    fn data(page: &str) -> serde_json::Value {
+        serde_json::from_str(page.split("application/json\">").nth(1).unwrap().split("</script>").next().unwrap()).unwrap()
     }
 
     #[test]
@@ -228,23 +225,23 @@ mod tests {
     }
 
     #[test]
-    fn a_motion_is_seen_for_some_ten_seconds() {
-        for (length, expected) in [(0.35, 0.05), (2.0, 0.25), (3.0, 0.5), (5.0, 1.0), (10.0, 1.0), (20.0, 2.0), (100.0, 4.0), (1e-9, 0.01)]
-        {
-            assert_eq!(speed(length), expected, "{length} s");
-        }
-        assert!(SPEEDS.contains(&speed(0.0)) && SPEEDS.contains(&speed(f64::NAN)));
-    }
-
-    #[test]
     fn the_data_are_json_with_every_frame() {
-        let page = page("quadruped", 20);
-        let data = page.split("application/json\">").nth(1).unwrap().split("</script>").next().unwrap();
-        let motion: serde_json::Value = serde_json::from_str(data).unwrap();
+        let motion = data(&page("quadruped", 20));
         assert_eq!(motion["moving"], 13);
         // All of them: 0.2 s are played slowly.
-        let frames = motion["times"].as_str().unwrap().len() * 3 / 4 / 4;
+        let frames = motion["times"].as_str().unwrap().len() * 3 / 4 / 8;
         assert_eq!(frames, 20);
         assert_eq!(motion["placements"].as_str().unwrap().len(), (14 * 13 * frames).div_ceil(3) * 4);
+    }
+
+    /// A clock that has been running for years tells its frames apart.
+    #[test]
+    fn times_are_kept_from_the_start_on() {
+        let early = example(&bundled_model("quadruped"), 20);
+        let late = Recording { t: early.t.iter().map(|t| 1e9 + t).collect(), ..early.clone() };
+        let (early, late) = (data(&page_of("quadruped", &early)), data(&page_of("quadruped", &late)));
+        assert_eq!((&late["start"], &late["speeds"], &late["places"]), (&1e9.into(), &early["speeds"], &3.into()));
+        let shifted: Vec<u8> = (0..20).flat_map(|k| ((1e9 + f64::from(k) * 0.01) - 1e9).to_le_bytes()).collect();
+        assert_eq!(late["times"], base64(&shifted));
     }
 }

@@ -5,9 +5,12 @@
   const bytes = text => Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer;
 
   // What was recorded: for each frame and each body that moves 3 numbers of 16 bits for its place and 4 for its quaternion.
-  const places = new DataView(bytes(motion.placements)), times = new Float32Array(bytes(motion.times));
+  const places = new DataView(bytes(motion.placements)), times = new Float64Array(bytes(motion.times));
   const energies = new Float32Array(bytes(motion.energies)), KINDS = motion.energyNames.length;
   const frames = times.length, first = times[0], last = times[frames - 1];
+  // Times are from the start on, and shown as they are.
+  const events = motion.events.map(e => ({ what: e.what, t: e.time - motion.start }));
+  const clock = t => (motion.start + t).toFixed(motion.places);
 
   // Vectors and rotations (row by row).
   const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]], scaled = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
@@ -222,9 +225,9 @@
     ctx.clearRect(0, 0, w, h);
     if (low <= 0 && high >= 0) { ctx.strokeStyle = '#aab'; ctx.lineWidth = 1; ctx.beginPath(); ctx.moveTo(0, Y(0)); ctx.lineTo(w, Y(0)); ctx.stroke(); }
     // Of events that are nearer than three points to one another the first is drawn; many are pale.
-    ctx.strokeStyle = `rgba(160, 40, 40, ${motion.events.length > 20 ? 0.25 : 0.6})`; ctx.lineWidth = 1;
+    ctx.strokeStyle = `rgba(160, 40, 40, ${events.length > 20 ? 0.25 : 0.6})`; ctx.lineWidth = 1;
     let drawn = -Infinity;
-    for (const e of motion.events) { const x = X(e.time); if (x - drawn < 3) continue; drawn = x; ctx.beginPath(); ctx.moveTo(x, 0); ctx.lineTo(x, h); ctx.stroke(); }
+    for (const e of events) { const x = X(e.t); if (x - drawn < 3) continue; drawn = x; ctx.beginPath(); ctx.moveTo(x, 0); ctx.lineTo(x, h); ctx.stroke(); }
     for (const kind of [0, 1, 2]) {
       ctx.strokeStyle = ENERGY[kind]; ctx.lineWidth = 1.4; ctx.beginPath();
       for (let k = 0; k < frames; k++) { const y = Y(series(kind, k)); if (k) ctx.lineTo(X(times[k]), y); else ctx.moveTo(X(times[k]), y); }
@@ -242,14 +245,16 @@
     ctx.fillStyle = '#445'; ctx.fillText(text, x, y);
   }
 
+  // Columns of a number beside the picture.
+  const wide = Math.max(10, clock(first).length, clock(last).length);
   function readout(t) {
     const [a, b, s] = find(t), value = kind => energies[KINDS * a + kind] * (1 - s) + energies[KINDS * b + kind] * s;
-    const line = (name, x, unit) => `${name.padEnd(12)} ${number(x).padStart(10)} ${unit}`;
-    const lines = [`${'time'.padEnd(12)} ${t.toFixed(3).padStart(10)} s`];
-    motion.energyNames.forEach((name, kind) => lines.push(line(name, value(kind), 'J')));
-    if (KINDS) lines.splice(3, 0, line('T + U', value(0) + value(1), 'J'));
-    const before = motion.events.filter(e => e.time <= t).pop();
-    if (before) lines.push('', `${before.time.toFixed(3)} s: ${before.what}`);
+    const line = (name, text, unit) => `${name.padEnd(12)} ${text.padStart(wide)} ${unit}`;
+    const lines = [line('time', clock(t), 's')];
+    motion.energyNames.forEach((name, kind) => lines.push(line(name, number(value(kind)), 'J')));
+    if (KINDS) lines.splice(3, 0, line('T + U', number(value(0) + value(1)), 'J'));
+    const before = events.filter(e => e.t <= t).pop();
+    if (before) lines.push('', `${clock(before.t)} s: ${before.what}`);
     return lines.join('\n');
   }
 
@@ -259,6 +264,7 @@
   const shown = () => ({ boxes: $('boxes').checked, sticks: $('sticks').checked, follow: $('follow').checked });
   for (const x of motion.speeds) $('speed').add(new Option(`${x}×`, x, x === motion.speed, x === motion.speed));
   scrub.min = first; scrub.max = last;
+  $('numbers').style.width = `${wide + 16}ch`;
   function fitted(canvas) {
     const scale = window.devicePixelRatio || 1, w = canvas.clientWidth, h = canvas.clientHeight;
     if (canvas.width !== Math.round(w * scale) || canvas.height !== Math.round(h * scale)) { canvas.width = Math.round(w * scale); canvas.height = Math.round(h * scale); }

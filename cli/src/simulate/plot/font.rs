@@ -24,20 +24,6 @@ pub(super) fn width(text: &str, size: f64) -> f64 {
     units * size / f64::from(face.units_per_em())
 }
 
-/// A text that is no wider than `most`, with … for what does not fit, in its middle: names differ at their ends.
-pub(super) fn fitted(text: &str, size: f64, most: f64) -> String {
-    if width(text, size) <= most {
-        return text.to_owned();
-    }
-    let letters: Vec<char> = text.chars().collect();
-    let cut = |keep: usize| {
-        let (head, tail) = (keep.div_ceil(2), keep / 2);
-        let part = |from: usize, to: usize| letters[from..to].iter().collect::<String>();
-        part(0, head) + "…" + &part(letters.len() - tail, letters.len())
-    };
-    (0..letters.len()).rev().map(cut).find(|t| width(t, size) <= most).unwrap_or_default()
-}
-
 /// Gives the outlines of a text at a size to `pen`, the start of the base line at the origin, y up.
 pub(super) fn outline(text: &str, size: f64, pen: &mut impl Pen) {
     let Some(face) = face() else { return };
@@ -97,14 +83,6 @@ impl<P: Pen> OutlineBuilder for Placed<'_, P> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_text_that_is_cut_fits_and_keeps_its_ends() {
-        assert_eq!(fitted("hip", 10.0, 100.0), "hip");
-        let cut = fitted("left_front_hip_abduction_joint", 10.0, 80.0);
-        assert!(width(&cut, 10.0) <= 80.0 && cut.starts_with("left") && cut.ends_with("joint") && cut.contains('…'), "{cut}");
-        assert_eq!(fitted("name", 10.0, 0.0), "");
-    }
 
     #[test]
     fn widths_grow_with_size_and_letters_of_all_names_are_there() {

@@ -1,14 +1,17 @@
 //! Pictures of a recording: angles, velocities, torques and energies over time, as SVG and as PNG.
 
 mod axis;
+mod clock;
 pub(crate) mod drawing;
 mod font;
+mod label;
 mod panel;
 pub(crate) mod png;
 mod stroke;
 pub(crate) mod svg;
 
 use super::recording::{Named, Recording};
+use clock::Clock;
 use drawing::{Anchor, Drawing};
 use panel::{Curve, Panel};
 
@@ -23,32 +26,33 @@ pub(super) struct Picture {
 /// More events than this are counted and not drawn: they would be all that is seen.
 const EVENTS: usize = 60;
 
-/// Smaller than this throughout, in the curve's unit: zero.
-const ZERO: f64 = 1e-12;
+/// Of the largest number of a picture: what is no more than this throughout is rounding of it as a rule, and a line at zero beside it.
+const UNSEEN: f64 = 1e-12;
 
 /// What there can be pictures of; of energy there always is one.
 pub(super) const PICTURES: [&str; 4] = ["positions", "velocities", "torques", "energy"];
 
 /// All pictures of a motion called `title`; one without a curve that is worth drawing is none.
 pub(super) fn pictures(r: &Recording, title: &str) -> Result<Vec<Picture>, String> {
-    let moving = |names: &[Named], rows: &[f64]| {
-        let curves: Vec<Series> = coordinates(names, r, rows).into_iter().filter(|(_, values)| !still(values)).collect();
-        (panels(&curves), names.len())
-    };
+    let moving = |names: &[Named], rows: &[f64]| (panels(&seen(coordinates(names, r, rows))), names.len());
     let kinds = [moving(&r.q_names, &r.q), moving(&r.v_names, &r.v), moving(&r.tau_names, &r.tau), (energies(r), 0)];
     let worth = PICTURES.into_iter().zip(kinds).filter(|(_, (panels, _))| !panels.is_empty());
     worth.map(|(name, (panels, all))| picture(name, &panels, &notes(r, &panels, all), r, title)).collect()
 }
 
-/// Whether it is zero throughout.
-fn still(values: &[f64]) -> bool {
-    values.iter().all(|x| x.abs() < ZERO)
+/// Without those that are zero throughout, or as good as that beside the largest.
+fn seen(mut all: Vec<Series>) -> Vec<Series> {
+    let numbers = all.iter().flat_map(|(_, values)| values).map(|x| x.abs());
+    let least = UNSEEN * numbers.filter(|x| x.is_finite()).fold(0.0, f64::max);
+    all.retain(|(_, values)| values.iter().any(|x| x.is_nan() || x.abs() > least));
+    all
 }
 
 /// What a picture leaves out of so many curves, and of the events.
 fn notes(r: &Recording, panels: &[Panel], all: usize) -> String {
     let left = all.saturating_sub(panels.iter().map(|p| p.curves.len()).sum());
-    let curves = (left > 0).then(|| format!("{left} of {all} curves are zero throughout, not drawn"));
+    let curves =
+        (left > 0).then(|| format!("{left} of {all} curves are not drawn: zero, or at most {UNSEEN:e} of the largest number here"));
     let events = (r.events.len() > EVENTS).then(|| format!("{} events, not drawn", r.events.len()));
     curves.into_iter().chain(events).collect::<Vec<_>>().join("; ")
 }
@@ -63,9 +67,10 @@ fn picture(name: &'static str, panels: &[Panel], notes: &str, r: &Recording, tit
     if !notes.is_empty() {
         out.text([16.0, 40.0], Anchor::Start, 11.0, "#555555", notes);
     }
+    let clock = Clock::of(&r.t, &events);
     for (k, p) in panels.iter().enumerate() {
         let corner = [panel::WIDTH * (k % columns) as f64, head + panel::HEIGHT * (k / columns) as f64];
-        panel::draw(&mut out, p, &r.t, &events, corner);
+        panel::draw(&mut out, p, &clock, corner);
     }
     Ok(Picture { name, svg: svg::text(&out), png: png::bytes(&out)? })
 }
@@ -97,12 +102,14 @@ fn panels(series: &[Series]) -> Vec<Panel> {
             kinds.push((n.base, n.unit));
         }
     }
+    let labels: Vec<String> = series.iter().map(|(n, _)| crate::table::plain(&n.label)).collect();
+    let labels = label::told_apart(&labels, panel::SMALL, panel::NAME);
     let mut out = Vec::new();
     for kind in kinds {
-        let alike: Vec<&Series> = series.iter().filter(|(n, _)| (n.base, n.unit) == kind).collect();
+        let alike: Vec<_> = series.iter().zip(&labels).filter(|((n, _), _)| (n.base, n.unit) == kind).collect();
         let count = alike.len().div_ceil(panel::COLOURS.len());
         for part in alike.chunks(alike.len().div_ceil(count)) {
-            let curves = part.iter().map(|(n, values)| Curve { name: n.label.clone(), values: values.clone() }).collect();
+            let curves = part.iter().map(|((_, values), label)| Curve { name: (*label).clone(), values: values.clone() }).collect();
             let whose = if kind.0 { "base: " } else { "" };
             out.push(Panel { title: format!("{whose}{}", quantity(kind.1)), curves });
         }
@@ -157,15 +164,26 @@ mod tests {
         torque(&mut r, 1.0);
         let all = pictures(&r, "few").unwrap();
         assert!(all.iter().all(|p| p.svg.contains("61 events, not drawn") && !p.svg.contains(">events<")));
-        assert!(all[2].svg.contains("17 of 18 curves are zero throughout, not drawn") && all[2].svg.matches("time, s").count() == 1);
+        assert!(
+            all[2].svg.contains("17 of 18 curves are not drawn: zero, or at most 1e-12 of the largest")
+                && all[2].svg.matches("time, s").count() == 1
+        );
         torque(&mut r, 0.0);
         assert_eq!(pictures(&r, "none").unwrap().iter().map(|p| p.name).collect::<Vec<_>>(), ["positions", "velocities", "energy"]);
         // One angle at zero among others that move; and a robot at rest at zero.
         r.q.iter_mut().skip(9).step_by(19).for_each(|x| *x = 0.0);
         let drawn = &pictures(&r, "few").unwrap()[0].svg;
-        assert!(drawn.contains("1 of 19 curves are zero throughout, not drawn") && !drawn.contains(&format!(">{}<", r.q_names[9].label)));
-        (r.q, r.v) = (vec![0.0; r.q.len()], vec![1e-14; r.v.len()]);
+        assert!(drawn.contains("1 of 19 curves are not drawn") && !drawn.contains(&format!(">{}<", r.q_names[9].label)));
+        (r.q, r.v) = (vec![0.0; r.q.len()], vec![0.0; r.v.len()]);
         assert_eq!(pictures(&r, "still").unwrap().iter().map(|p| p.name).collect::<Vec<_>>(), ["energy"]);
+        // What is small by itself is there; beside what is large it is rounding.
+        torque(&mut r, 9e-13);
+        let drawn = &pictures(&r, "small").unwrap()[0];
+        assert!(drawn.name == "torques" && drawn.svg.contains("17 of 18 curves") && drawn.svg.contains("torque, N·m (numbers × 10⁻¹"));
+        r.tau[0] = f64::NAN;
+        r.tau[1] = 1.0;
+        r.tau[2] = f64::INFINITY;
+        assert!(pictures(&r, "small").unwrap()[0].svg.contains("15 of 18 curves"));
     }
 
     #[test]

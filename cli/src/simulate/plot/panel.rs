@@ -1,8 +1,8 @@
 //! A field with curves over time, its axes, and the names of the curves at its right.
 
 use super::axis::Axis;
+use super::clock::Clock;
 use super::drawing::{Anchor, Drawing, Point};
-use super::font;
 use super::stroke::{Stroke, strokes};
 
 /// A curve and its name.
@@ -29,7 +29,10 @@ const RIGHT: f64 = 168.0;
 const TOP: f64 = 30.0;
 const BOTTOM: f64 = 40.0;
 
-const SMALL: f64 = 11.0;
+/// Letters of numbers and names, and the room for a name.
+pub(super) const SMALL: f64 = 11.0;
+pub(super) const NAME: f64 = RIGHT - 42.0;
+
 const INK: &str = "#222222";
 const GREY: &str = "#555555";
 const GRID: &str = "#e2e2e2";
@@ -38,43 +41,41 @@ const EVENT: &str = "#9a9a9a";
 /// Told apart by people who do not see all colours, on screen and in print; at most so many curves share a field.
 pub(super) const COLOURS: [&str; 8] = ["#1b6ca8", "#d9822b", "#3f8f5b", "#c2453f", "#7a5195", "#b59f00", "#36a9bf", "#555555"];
 
-/// Draws a panel with its corner at `corner`. `events` are times.
-pub(super) fn draw(out: &mut Drawing, panel: &Panel, t: &[f64], events: &[f64], [x0, y0]: Point) {
+/// Draws a panel with its corner at a place.
+pub(super) fn draw(out: &mut Drawing, panel: &Panel, clock: &Clock, [x0, y0]: Point) {
     let (left, right, top, bottom) = (x0 + LEFT, x0 + WIDTH - RIGHT, y0 + TOP, y0 + HEIGHT - BOTTOM);
-    let time = Axis::exactly(t.iter().copied(), [left, right], 6.0);
+    let time = Axis::exactly(clock.t.iter().copied(), [left, right], 6.0);
     let value = Axis::around(panel.curves.iter().flat_map(|c| c.values.iter().copied()), [bottom, top], 5.0);
-    let power = axes(out, &time, &value);
-    let factor = if power == 0 { String::new() } else { format!(" × 10{}", raised(power)) };
-    out.text(
-        [left, y0 + 18.0],
-        Anchor::Start,
-        12.0,
-        INK,
-        &format!("{}{}", panel.title, if power == 0 { String::new() } else { format!(" (numbers{factor})") }),
-    );
-    out.text([(left + right) / 2.0, y0 + HEIGHT - 8.0], Anchor::Middle, SMALL, GREY, "time, s");
-    for &e in events.iter().filter(|e| (time.range[0]..=time.range[1]).contains(*e)) {
+    let [along, up] = axes(out, &time, &value);
+    out.text([left, y0 + 18.0], Anchor::Start, 12.0, INK, &titled(&panel.title, up));
+    out.text([(left + right) / 2.0, y0 + HEIGHT - 8.0], Anchor::Middle, SMALL, GREY, &titled(&clock.title, along));
+    for &e in clock.events.iter().filter(|e| (time.range[0]..=time.range[1]).contains(*e)) {
         out.path(vec![[time.at(e), top], [time.at(e), bottom]], EVENT, 0.8, true);
     }
     let strokes = strokes(panel, &value, right - left);
     for (curve, stroke) in panel.curves.iter().zip(&strokes) {
-        for points in thinned(t, &curve.values, &time, &value) {
+        for points in thinned(&clock.t, &curve.values, &time, &value) {
             out.line(points, stroke.colour, stroke.width, stroke.dash);
         }
     }
-    legend(out, panel, &strokes, !events.is_empty(), [right + 12.0, top + 6.0]);
+    legend(out, panel, &strokes, !clock.events.is_empty(), [right + 12.0, top + 6.0]);
 }
 
-/// Grid and numbers; the power of ten of those at the left.
-fn axes(out: &mut Drawing, time: &Axis, value: &Axis) -> i32 {
+/// What an axis is of, with the power of ten of the numbers at it.
+fn titled(what: &str, power: i32) -> String {
+    if power == 0 { what.to_owned() } else { format!("{what} (numbers × 10{})", raised(power)) }
+}
+
+/// Grid and numbers; the powers of ten of those below and of those at the left.
+fn axes(out: &mut Drawing, time: &Axis, value: &Axis) -> [i32; 2] {
     let ([left, right], [bottom, top]) = (time.ends, value.ends);
-    let (ticks, _) = time.ticks();
+    let (ticks, along) = time.ticks();
     for (number, text) in &ticks {
         let x = time.at(*number);
         out.path(vec![[x, top], [x, bottom]], GRID, 1.0, false);
         out.text([x, bottom + 15.0], Anchor::Middle, SMALL, GREY, text);
     }
-    let (ticks, power) = value.ticks();
+    let (ticks, up) = value.ticks();
     for (number, text) in &ticks {
         let y = value.at(*number);
         let zero = *number == 0.0;
@@ -82,14 +83,14 @@ fn axes(out: &mut Drawing, time: &Axis, value: &Axis) -> i32 {
         out.text([left - 6.0, y + 4.0], Anchor::End, SMALL, GREY, text);
     }
     out.path(vec![[left, top], [left, bottom], [right, bottom]], GREY, 1.0, false);
-    power
+    [along, up]
 }
 
 fn legend(out: &mut Drawing, panel: &Panel, strokes: &[Stroke], events: bool, [x, y]: Point) {
     let row = |k: usize| y + 17.0 * k as f64;
     for ((k, curve), stroke) in panel.curves.iter().enumerate().zip(strokes) {
         out.line(vec![[x, row(k)], [x + 18.0, row(k)]], stroke.colour, 2.0, stroke.dash);
-        out.text([x + 24.0, row(k) + 4.0], Anchor::Start, SMALL, INK, &font::fitted(&curve.name, SMALL, RIGHT - 42.0));
+        out.text([x + 24.0, row(k) + 4.0], Anchor::Start, SMALL, INK, &curve.name);
     }
     if events {
         let k = panel.curves.len();
@@ -142,6 +143,7 @@ fn raised(power: i32) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::drawing::Mark;
     use super::*;
 
     #[test]
@@ -170,5 +172,19 @@ mod tests {
     #[test]
     fn powers_are_raised() {
         assert_eq!(raised(-12), "⁻¹²");
+    }
+
+    /// Each number at the axis times the power that the axis tells is a time.
+    #[test]
+    fn the_axis_of_time_tells_its_power() {
+        for (end, told, last) in
+            [(5e-4, "time, s (numbers × 10⁻⁶)", "500"), (1e5, "time, s (numbers × 10³)", "100"), (10.0, "time, s", "10")]
+        {
+            let panel = Panel { title: String::new(), curves: vec![Curve { name: String::new(), values: vec![0.0, 1.0] }] };
+            let mut out = Drawing::default();
+            draw(&mut out, &panel, &Clock::of(&[0.0, end], &[]), [0.0, 0.0]);
+            let has = |text: &str| out.marks.iter().any(|m| matches!(m, Mark::Text { content, .. } if content == text));
+            assert!(has(told) && has(last), "{end} s: {:?}", out.marks);
+        }
     }
 }

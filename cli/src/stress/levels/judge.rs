@@ -28,7 +28,7 @@ pub fn rows(case: &Case, model: &Model<f64>, made: &Made, states: &[State]) -> V
         // Where M is singular there is nothing to be judged: the unchecked form gives anything.
         let states = if function.row::<f64>().inverts_mass_matrix() { &regular } else { &states };
         if !states.is_empty() {
-            rows.extend(Judged { model, made, contract, function }.rows(case, states));
+            rows.extend(Judged { model, made, contract, function, by_terms: case.by_terms }.rows(case, states));
         }
     }
     rows
@@ -56,6 +56,8 @@ struct Judged<'a> {
     made: &'a Made,
     contract: Contract,
     function: FunctionId,
+    /// As [`Case::by_terms`].
+    by_terms: bool,
 }
 
 impl Judged<'_> {
@@ -122,14 +124,18 @@ impl Judged<'_> {
         let m = call(FunctionId::mass_matrix, self.model, std::slice::from_ref(q));
         let h = call(FunctionId::bias_forces, self.model, &[q.clone(), v.clone()]);
         let driven = call(FunctionId::motor_torques, self.model, &[v.clone(), tau.clone()]);
+        let zeros = vec![0.0; n];
         let norms_m = self.norms(FunctionId::mass_matrix, &[q])?;
-        let norms_h = self.norms(FunctionId::inverse_dynamics, &[q, v, &vec![0.0; n]])?;
+        let norms_h = self.norms(FunctionId::inverse_dynamics, &[q, v, &zeros])?;
+        let terms =
+            || Some((scale(FunctionId::mass_matrix, self.model, &[q])?, scale(FunctionId::inverse_dynamics, self.model, &[q, v, &zeros])?));
+        let (size_m, size_h) = if self.by_terms { terms()? } else { (m.clone(), h) };
         let moved = |m: &[f64], i: usize| (0..n).map(|k| (m[i * n + k] * a[k]).abs()).sum::<f64>();
         Some(Big::scope(|| {
             let [q, v, precise] = [q, v, &a].map(|x| cast::<Big>(x));
             let needed = call(FunctionId::inverse_dynamics, &exact(self.model), &[q, v, precise]);
             let one = |(i, t): (usize, &Big)| {
-                let sum = moved(&m, i) + h[i].abs() + driven[i].abs();
+                let sum = moved(&size_m, i) + size_h[i].abs() + driven[i].abs();
                 self.contract.part(t.error_of(driven[i], 1.0), moved(&m, i), sum, moved(&norms_m, i) + norms_h[i] + driven[i].abs())
             };
             needed.iter().enumerate().map(one).fold(0.0, worse)

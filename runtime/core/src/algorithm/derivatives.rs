@@ -214,9 +214,7 @@ fn unsolved<S: Scalar>(
 
 /// Whether no motor stands between τ and the joints.
 pub(super) fn without_motors<S: Scalar>(model: &Model<S>) -> bool {
-    let (zeros, mut motors) = (alloc::vec![S::zero(); model.nv], false);
-    effects::driven_slopes(model, &zeros, &zeros, |_, _, _| motors = true);
-    !motors
+    !model.has_motors()
 }
 
 /// Common axes: those in the middle of each tree, where nothing asks how bodies stand in the base.

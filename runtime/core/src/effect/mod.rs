@@ -89,6 +89,11 @@ impl Field {
         Self { range: Range::POSITIVE, ..self }
     }
 
+    /// A rate below which a law is smooth: its square is a number in single precision too.
+    const fn smooth(self) -> Self {
+        Self { range: Range::from(1e-15), ..self }
+    }
+
     const fn at_most(self, at_most: f64) -> Self {
         Self { range: Range { at_most, ..self.range }, ..self }
     }

@@ -8,7 +8,7 @@ pub(super) const FIELDS: &[Field] = &[
     Field::number("speed", "rad/s|m/s", "speed of the motor at which it has no torque left").positive(),
     Field::number("gear", "1", "turns of the motor a turn of the joint").positive().or(&[1.0]),
     Field::number("efficiency", "1", "of the gear").positive().at_most(1.0).or(&[1.0]),
-    Field::number("smooth", "rad/s|m/s", "rate of the joint below which the loss is smooth").positive().or(&[1e-3]),
+    Field::number("smooth", "rad/s|m/s", "rate of the joint below which the loss is smooth").smooth().or(&[1e-3]),
 ];
 
 /// The torque at the joint, where `tau` is asked for at the rate `v`: within ±T(1 ∓ v/v₀) and ±T, with T = torque·gear and v₀ = speed/gear, less the

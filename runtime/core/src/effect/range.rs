@@ -37,10 +37,10 @@ impl Range {
     /// `above 0, at most 1`; nothing where there are no bounds.
     pub fn bounds(&self) -> String {
         let least = match self.strictly {
-            true => format!("above {}", self.at_least),
-            false => format!("at least {}", self.at_least),
+            true => format!("above {}", number(self.at_least)),
+            false => format!("at least {}", number(self.at_least)),
         };
-        let most = format!("at most {}", self.at_most);
+        let most = format!("at most {}", number(self.at_most));
         let both = [(least, self.at_least.is_finite()), (most, self.at_most.is_finite())];
         both.into_iter().filter(|(_, there)| *there).map(|(bound, _)| bound).collect::<Vec<_>>().join(", ")
     }
@@ -56,6 +56,11 @@ impl fmt::Display for Range {
             _ => write!(f, "a finite number, {bounds}"),
         }
     }
+}
+
+/// As short as it goes.
+fn number(x: f64) -> String {
+    if x != 0.0 && x.abs() < 1e-3 { format!("{x:e}") } else { format!("{x}") }
 }
 
 /// What has to hold of several numbers.
@@ -84,6 +89,7 @@ mod tests {
         assert_eq!(format!("{}", Range { at_most: 1.0, ..Range::POSITIVE }), "a finite number above 0, at most 1");
         assert_eq!(format!("{}", Range::POSITIVE), "a finite number above 0");
         assert_eq!(format!("{}", Range::NOT_NEGATIVE), "a finite number, at least 0");
+        assert_eq!(format!("{}", Range::from(1e-15)), "a finite number, at least 1e-15");
         assert_eq!(format!("{}", Range::ALL), "a finite number");
     }
 }

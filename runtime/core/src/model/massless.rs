@@ -15,7 +15,7 @@ impl Model<f64> {
     /// forward dynamics is not defined.
     ///
     /// A turn moves something if its body has mass off the axis or inertia about it, or if anything farther out has mass; a slide, if anything from its
-    /// body on has mass. Only exact zeros count as none. A joint that follows another adds to the other's row. A joint that moves no mass but what others farther out
+    /// body on has mass, added mass of a fluid too. Only exact zeros count as none. A joint that follows another adds to the other's row. A joint that moves no mass but what others farther out
     /// can move in the same way is among them too: two coaxial joints with a body without mass between, four axes through one point.
     pub fn massless_joints(&self) -> Vec<usize> {
         let (mut carries, mut own) = (vec![false; self.nv], vec![false; self.nv]);
@@ -66,12 +66,18 @@ impl Model<f64> {
             let (body, outside) = (&self.bodies[i], beyond[i]);
             let own = &body.inertia;
             let felt = body.joint.feels(own) || turns_rotors(body);
+            // Added mass need not be felt along every axis: numbers tell.
+            let added = has_added_mass(body);
             // Of several degrees of freedom some may be felt and others not: a point mass turns freely.
-            moves.push((i, felt && body.joint.nv() == 1, felt || outside));
-            beyond[body.parent] |= outside || *own != SpatialInertia::zero();
+            moves.push((i, felt && body.joint.nv() == 1, felt || added || outside));
+            beyond[body.parent] |= outside || added || *own != SpatialInertia::zero();
         }
         moves
     }
+}
+
+fn has_added_mass(body: &Body<f64>) -> bool {
+    body.effects.body.iter().any(|e| e.effect == EffectId::added_mass)
 }
 
 /// Whether every degree of freedom of the body's joint turns a rotor, which has inertia whatever hangs on it.

@@ -95,6 +95,13 @@ impl Control for Constant {
     }
 }
 
+/// What is wrong with a period.
+pub(crate) fn wrong_period(period: f64) -> Option<StateError> {
+    let right = "a length of time greater than zero, s";
+    let wrong = !(period > 0.0 && period.is_finite());
+    wrong.then_some(StateError::Value { what: "period", found: period, right })
+}
+
 /// A controller sampled with a period: zero-order hold.
 #[derive(Clone, Copy, Debug)]
 pub struct Hold<C> {
@@ -105,9 +112,8 @@ pub struct Hold<C> {
 impl<C: Control> Hold<C> {
     /// Samples every `period` seconds. Errors: a period that is no length of time.
     pub fn new(control: C, period: f64) -> Result<Self, SimulateError> {
-        let right = "a length of time greater than zero, s";
-        let wrong = || SimulateError::State(vec![StateError::Value { what: "period", found: period, right }]);
-        if period > 0.0 && period.is_finite() { Ok(Self { control, period }) } else { Err(wrong()) }
+        StateError::none(wrong_period(period).into_iter())?;
+        Ok(Self { control, period })
     }
 }
 

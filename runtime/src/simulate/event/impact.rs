@@ -62,6 +62,9 @@ impl<'r, R: Dynamics<f64>> Impact<'r, R> {
     pub fn strike(&mut self, q: &[f64], v: &mut [f64], ball: f64) -> Result<Struck, SimulateError> {
         let nv = self.row.len();
         check_length("v", v.len(), nv)?;
+        StateError::none(
+            (!ball.is_finite()).then_some(StateError::Value { what: "ball", found: ball, right: "a speed, m/s" }).into_iter(),
+        )?;
         self.points.point(q, self.point)?;
         let [x, y, z] = self.points.turned(self.point);
         let robot = self.points.robot;

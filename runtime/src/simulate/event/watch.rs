@@ -97,7 +97,9 @@ impl Watch {
                     (side, from) = (now, place);
                 }
             }
-            if last && side != 0.0 && self.values[(PLACES.len() - 1) * count + e] == 0.0 {
+            // What was at zero before does not come to it.
+            let [before, end] = [2, 1].map(|back| self.values[(PLACES.len() - back) * count + e]);
+            if last && side != 0.0 && end == 0.0 && before != 0.0 {
                 push(&mut self.zeros, search.events, e, 1.0, -side);
             }
             self.side[e] = side;

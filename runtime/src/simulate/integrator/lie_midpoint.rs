@@ -15,6 +15,8 @@
 //! Simo & Wong, Int. J. Numer. Methods Eng. 31, 1991 (energy and momentum with the midpoint); Hairer, Lubich & Wanner 2006, §IV.2 (quadratic invariants), §IV.8
 //! (Cayley's map).
 
+use std::f64::consts::PI;
+
 use articulated_core::dynamics::Dynamics;
 
 use super::hermite::{Hermite, hand_on_to_hermite};
@@ -62,6 +64,10 @@ impl<R: Dynamics<f64>> Method<R> for LieMidpoint {
         self.curve.forget();
         let nv = system.nv();
         let v = &start.y[nv..2 * nv];
+        // Cayley's map turns by less than π, whatever it is given.
+        if let Some(error) = system.turns_too_far((start.t, h), v, PI) {
+            return Err(error);
+        }
         let (mut before, mut solved) = (f64::INFINITY, false);
         for _ in 0..MOST_ROUNDS {
             let mean = &mut self.middle[nv..2 * nv];

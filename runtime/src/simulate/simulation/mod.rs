@@ -3,10 +3,13 @@
 mod happenings;
 mod stiffness;
 
+use std::f64::consts::TAU;
+
 use articulated_core::algorithm::Shape;
 use articulated_core::dynamics::Dynamics;
 
 use self::stiffness::Held;
+use crate::simulate::control::wrong_period;
 use crate::simulate::curve::Point;
 use crate::simulate::error::joint;
 use crate::simulate::event::watch::Watch;
@@ -58,14 +61,10 @@ struct Run<'a, 'e> {
 }
 
 impl Run<'_, '_> {
-    /// Time between samples of a controller that has such times.
-    fn period(&self) -> Option<f64> {
-        self.control.period().filter(|p| *p > 0.0)
-    }
-
-    /// The next kink or jump of the torques after t, s: where they are held from sample to sample there is none between.
+    /// The next kink or jump of the torques after t, s: where they are held from sample to sample there is none between. What a controller calls one and is not after t is none.
     fn next_kink(&self, t: f64) -> f64 {
-        if self.period().is_some() { f64::INFINITY } else { self.control.next_kink(t) }
+        let kink = if self.control.period().is_some() { f64::INFINITY } else { self.control.next_kink(t) };
+        if kink > t { kink } else { f64::INFINITY }
     }
 }
 
@@ -165,7 +164,8 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         let expected = self.shape.nv;
         let torques = control.count().filter(|n| *n != expected).map(|found| StateError::Length { vector: "tau", found, expected });
         let state = self.system.manifold.wrong_state(self.system.robot, q, v);
-        StateError::none(state.chain(events.iter().flat_map(|event| event.wrong(self.shape))).chain(torques))?;
+        let period = control.period().and_then(wrong_period);
+        StateError::none(state.chain(events.iter().flat_map(|event| event.wrong(self.shape))).chain(torques).chain(period))?;
         self.begin(q, v)?;
         let mut run = Run {
             control,
@@ -256,13 +256,14 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             }
             match outcome {
                 Outcome::Stopped(event) => return Ok(Ended::ByEvent(event)),
-                _ if self.t >= self.settings.end => return Ok(Ended::AtEnd),
-                _ if !watch(self.t, &self.system.counts) => {
-                    // What a map made of a state stands beside what was there before.
-                    if matches!(outcome, Outcome::Mapped) { self.record_here(run) } else { self.record_end(run) }?;
-                    return Ok(Ended::ByWatcher);
-                }
-                _ => {}
+                Outcome::GoOn if self.t >= self.settings.end => return Ok(Ended::AtEnd),
+                Outcome::GoOn | Outcome::Mapped => {}
+            }
+            let (at_end, goes_on) = (self.t >= self.settings.end, watch(self.t, &self.system.counts));
+            if at_end || !goes_on {
+                // What a map made of a state stands beside what was there before.
+                if matches!(outcome, Outcome::Mapped) { self.record_here(run) } else { self.record_end(run) }?;
+                return Ok(if goes_on { Ended::AtEnd } else { Ended::ByWatcher });
             }
             debug_assert!(self.y[..nv].iter().all(|u| *u == 0.0));
         }
@@ -270,7 +271,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
 
     /// The state is at the end of a stretch where a controller is sampled.
     fn sample(&mut self, run: &mut Run) {
-        if run.period().is_none() {
+        if run.control.period().is_none() {
             return;
         }
         let nv = self.shape.nv;
@@ -282,7 +283,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
 
     /// When the next sample, kink or the end is, s.
     fn stretch_end(&self, run: &Run) -> f64 {
-        let sample = run.period().map_or(f64::INFINITY, |p| self.settings.start + run.samples as f64 * p);
+        let sample = run.control.period().map_or(f64::INFINITY, |p| self.settings.start + run.samples as f64 * p);
         let next = sample.min(self.system.kink).min(self.settings.end);
         // A stretch shorter than rounding is none.
         if next - self.t <= rounding(self.t) { next.max(self.t + rounding(self.t)).min(self.settings.end) } else { next }
@@ -379,7 +380,8 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             self.check_suspect(run)?;
         }
         if let Some(bad) = bad {
-            return Err(bad);
+            let v = &self.y[self.shape.nv..2 * self.shape.nv];
+            return Err(self.system.turns_too_far((self.t, h), v, TAU).unwrap_or(bad));
         }
         run.stretch.1 += 1;
         Ok(t)
@@ -402,7 +404,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         self.t = t;
         self.system.no_torque = None;
         self.system.kink = run.next_kink(t);
-        let sampled = run.period().is_some() && t >= until && until < self.settings.end;
+        let sampled = run.control.period().is_some() && t >= until && until < self.settings.end;
         if sampled {
             self.sample(run);
         }

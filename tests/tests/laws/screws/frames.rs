@@ -88,6 +88,12 @@ fn a_twist_is_that_of_its_screw() {
             assert!((screw.direction.norm() - 1.0).abs() <= 4.0 * U && screw.turn >= 0.0);
         }
     }
+    for scale in [1e-300, 1e-170, 1e160] {
+        let xi = moved(random, 0.7);
+        let (screw, scaled) = (Screw::of(&xi), Screw::of(&Twist { angular: xi.angular * scale, linear: xi.linear * scale }));
+        let far = [scaled.turn / scale - screw.turn, scaled.slide / scale - screw.slide, (scaled.point - screw.point).amax()];
+        assert!(far.iter().all(|x| x.abs() <= 1e-14 * (1.0 + screw.point.norm())), "{scale:e}: {scaled:?} {screw:?}");
+    }
     // Lynch & Park 2017, example 3.23: a car that turns with 2 rad/s about (2, −1, 0).
     let screw = Screw::with_pitch(Vector3::new(2.0, -1.0, 0.0), -Vector3::z(), 0.0).twist();
     assert_eq!(six(&screw) * 2.0, Vector6::new(0.0, 0.0, -2.0, 2.0, 4.0, 0.0));

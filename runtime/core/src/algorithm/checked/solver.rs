@@ -13,10 +13,12 @@ use crate::dynamics::Dynamics;
 
 /// Room for checked forward dynamics of a robot of one size, by M = Lᵀ D L: made once, so that no call allocates.
 ///
-/// Works on everything that is [`Dynamics`] and has `bias_forces` and `mass_matrix`: that is how a generated robot is checked.
+/// Works on everything that is [`Dynamics`] and has `bias_forces` and `mass_matrix`, and `motor_torques` where it has motors: that is how a generated robot is checked.
 #[derive(Clone, Debug)]
 pub struct Solver<S = f64> {
     matrix: Vec<S>,
+    /// The torques that joints get.
+    given: Vec<S>,
     factor: Factor<S>,
 }
 
@@ -43,12 +45,12 @@ impl<S: Scalar> core::error::Error for Unsolved<S> {}
 impl<S: Scalar<Mask = bool>> Solver<S> {
     /// For robots of this shape.
     pub fn new(shape: Shape) -> Self {
-        Self { matrix: vec![S::zero(); shape.nv * shape.nv], factor: Factor::new(shape.nv) }
+        Self { matrix: vec![S::zero(); shape.nv * shape.nv], given: vec![S::zero(); shape.nv], factor: Factor::new(shape.nv) }
     }
 
-    /// a = M(q)⁻¹·(τ − h(q, v)); what is returned is the smallest D/(Σ|terms|) of all pivots.
+    /// a = M(q)⁻¹·(τ − h(q, v)), τ after motors; what is returned is the smallest D/(Σ|terms|) of all pivots.
     ///
-    /// q: `[nq]`; v, tau, out: `[nv]`. Calls the robot's `bias_forces` and `mass_matrix`, then eliminates: n³/3 operations at most.
+    /// q: `[nq]`; v, tau, out: `[nv]`. Calls the robot's `bias_forces`, `mass_matrix` and, where it has motors, `motor_torques`, then eliminates: n³/3 operations at most.
     ///
     /// # Errors
     /// [`Unsolved`]; `out` is of no meaning then.
@@ -63,6 +65,10 @@ impl<S: Scalar<Mask = bool>> Solver<S> {
         let mut asked = || {
             check_length("solver", n, robot.shape().nv)?;
             check_length("tau", tau.len(), n)?;
+            self.given.copy_from_slice(tau);
+            if robot.has_motors() {
+                robot.motor_torques(ws, v, tau, &mut self.given)?;
+            }
             robot.bias_forces(ws, q, v, out)?;
             robot.mass_matrix(ws, q, &mut self.matrix)
         };
@@ -70,7 +76,7 @@ impl<S: Scalar<Mask = bool>> Solver<S> {
         // Singular or not, all pivots are looked at.
         let _ = self.factor.factor(&self.matrix);
         // b = τ − h
-        out.iter_mut().zip(tau).for_each(|(b, tau)| *b = *tau - *b);
+        out.iter_mut().zip(&self.given).for_each(|(b, tau)| *b = *tau - *b);
         self.factor.solve(out);
         let mut watch = Watch::new();
         self.factor.pivots().iter().enumerate().rev().for_each(|(k, left)| watch.see(k, *left));

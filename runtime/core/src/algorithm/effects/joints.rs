@@ -29,6 +29,11 @@ impl<S: Scalar> Acting<'_, S> {
         scaled(v[self.at], self.ratio)
     }
 
+    /// Whether it is a motor: of a joint that follows another there is none.
+    pub(super) fn is_motor(&self) -> bool {
+        self.ratio.is_none() && matches!(self.effect.effect.law::<S>(), Law::Drive { .. })
+    }
+
     /// As a torque of the coordinate that it moves with.
     pub(super) fn torque(&self, own: S) -> S {
         scaled(own, self.ratio)

@@ -160,6 +160,13 @@ pub(super) fn energy<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S]
     sum
 }
 
+impl<S: Scalar> Model<S> {
+    /// Whether a motor stands between the torques that forward dynamics is given and the joints.
+    pub fn has_motors(&self) -> bool {
+        joints::all(self).any(|one| one.is_motor())
+    }
+}
+
 /// What motors make of the torques that they are asked for.
 ///
 /// v: `[nv]`; tau: `[nv]` N·m|N, at the joints; out: `[nv]`. Joints without a motor get what is asked for.

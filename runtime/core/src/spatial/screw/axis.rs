@@ -41,7 +41,8 @@ impl<S: Scalar> Screw<S> {
 
     /// The screw of a twist that is not zero: its point is the line's nearest to the origin, ω × v/ω², as far off as the twist is near to a translation.
     pub fn of(twist: &Twist<S>) -> Self {
-        let (w, v, one) = (twist.angular, twist.linear, S::one());
+        let (one, unit) = (S::one(), unit_of(twist));
+        let (w, v) = (twist.angular.map(|x| x / unit), twist.linear.map(|x| x / unit));
         let square = w.dot(&w);
         let turns = square.positive();
         let safe = S::select(turns, square, one);
@@ -50,8 +51,15 @@ impl<S: Scalar> Screw<S> {
         let way = S::select(turns, one, v.dot(&v)).sqrt();
         let length = S::select(turns, safe.sqrt(), way);
         let direction = w.zip_map(&v, |w, v| S::select(turns, w, v) / length);
-        Self { point: w.cross(&v).map(|c| c / safe), direction, turn, slide: direction.dot(&v) }
+        Self { point: w.cross(&v).map(|c| c / safe), direction, turn: turn * unit, slide: direction.dot(&v) * unit }
     }
+}
+
+/// What a twist is measured in so that its squares are numbers that are not zero: one, unless it is very small or very large.
+fn unit_of<S: Scalar>(twist: &Twist<S>) -> S {
+    let size = twist.angular.iter().chain(twist.linear.iter()).fold(S::zero(), |sum, x| sum + x.abs());
+    let (small, large) = ((S::from_f64(1e-15) - size).positive(), (size - S::from_f64(1e15)).positive());
+    S::select(small, size, S::select(large, size, S::one()))
 }
 
 /// Product of exponentials with screws in the base frame: e^{S_1 θ_1} ⋯ e^{S_n θ_n} M, where `home` is the placement M at θ = 0.

@@ -1,0 +1,66 @@
+//! What `articulated simulate` tells of events, and of robots that have hardly any mass.
+
+use super::{File, run};
+
+/// A scene of a robot whose joints are these; every link weighs as much.
+fn simulated(joints: &str, mass: f64, scene: &str) -> serde_json::Value {
+    let link = |name: &str| {
+        let inertial =
+            format!("<inertial><mass value='{mass}'/><inertia ixx='{mass}' ixy='0' ixz='0' iyy='{mass}' iyz='0' izz='{mass}'/></inertial>");
+        format!("<link name='{name}'>{}</link>", if mass > 0.0 { inertial.as_str() } else { "" })
+    };
+    let urdf = format!("<robot name='r'><link name='g'/>{}{}{joints}</robot>", link("a"), link("b"));
+    let urdf = File::new("r.urdf", urdf.as_bytes());
+    let scene = File::new("scene.toml", format!("urdf = {:?}\n{scene}", urdf.name()).as_bytes());
+    let ended = run(&["simulate", scene.name(), "--format", "json"]);
+    assert!(ended.status == 0 && !ended.err.contains("stick_slip"), "{}{}", ended.out, ended.err);
+    ended.json()
+}
+
+fn told(summary: &serde_json::Value) -> Vec<String> {
+    summary["events"].as_array().unwrap().iter().map(|e| e["what"].as_str().unwrap().to_owned()).collect()
+}
+
+const LEADER: &str = "<joint name='x' type='prismatic'><parent link='g'/><child link='a'/><axis xyz='1 0 0'/>
+    <limit lower='-9' upper='9' effort='1' velocity='1'/></joint>";
+
+/// A joint that follows another has stops and friction of its own, at its own coordinate and rate: y = 0.5 − 2 x.
+#[test]
+fn joints_that_follow_come_to_their_limits_and_stick() {
+    let follower = "<joint name='y' type='prismatic'><parent link='g'/><child link='b'/><axis xyz='1 0 0'/>
+        <limit lower='-1' upper='1' effort='1' velocity='1'/><mimic joint='x' multiplier='-2' offset='0.5'/></joint>";
+    let scene = "initial = { v = { x = 1.0 } }\n[effects]\nfriction = { y = { friction = 1.0, speed = 0.01 } }
+        limit = { y = { lower = -1.0, upper = 1.0, stiffness = 1e3 } }\n[simulation]\nend = 1.0\nevents = [\"limits\", \"stick_slip\"]\n";
+    let summary = simulated(&format!("{LEADER}{follower}"), 1.0, scene);
+    let events = told(&summary);
+    assert_eq!(events[0], "y reaches its limit", "{events:?}");
+    assert!(events.contains(&"y sticks".to_owned()) && events.iter().all(|what| what.starts_with("y ")), "{events:?}");
+    // y = −1 at x = 0.75; friction of 1 N at y slows x by 2 N of an inertia of 1 + 4 kg.
+    let expected = (1.0 - (1.0_f64 - 2.0 * 0.4 * 0.75).sqrt()) / 0.4;
+    let time = summary["events"][0]["time"].as_f64().unwrap();
+    assert!((time - expected).abs() < 1e-3, "{time} {expected}");
+}
+
+/// Both angles of a universal joint have the bounds of its effect.
+#[test]
+fn universal_joints_come_to_their_limits() {
+    let joints = "<joint name='u' type='universal'><parent link='g'/><child link='a'/><axis xyz='1 0 0'/><axis2 xyz='0 1 0'/></joint>
+        <joint name='w' type='fixed'><parent link='a'/><child link='b'/></joint>";
+    let scene = "initial = { v = { u = [0.0, 1.0] } }\ngravity = [0, 0, 0]\n[effects]
+        limit = { u = { lower = -0.3, upper = 0.3, stiffness = 1e3 } }\n[simulation]\nend = 0.5\nevents = [\"limits\"]\n";
+    let summary = simulated(joints, 1.0, scene);
+    assert_eq!(told(&summary)[0], "u reaches its limit");
+    assert!((summary["events"][0]["time"].as_f64().unwrap() - 0.3).abs() < 1e-6, "{}", summary["events"]);
+}
+
+/// Rotors alone move, and there is no centre of mass: no number of the summary is missing.
+#[test]
+fn a_robot_of_rotors_alone_moves() {
+    let scene = "initial = { v = { x = 1.0 } }\neffects = { armature = { x = 0.5 } }\n[simulation]\nend = 0.1\n";
+    let still = "<joint name='w' type='fixed'><parent link='a'/><child link='b'/></joint>";
+    let summary = simulated(&format!("{LEADER}{still}"), 0.0, scene);
+    let text = summary.to_string();
+    assert!(summary["energy"]["kinetic_start"].as_f64() == Some(0.25) && !text.contains("NaN"), "{text}");
+    let momentum = summary["momentum"].to_string();
+    assert!(!momentum.contains("null"), "{momentum}");
+}
