@@ -10,7 +10,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use crate::accuracy::arguments::AccuracyArguments;
 use crate::edits::{Edits, FrameArguments};
 use crate::effects::arguments::EffectsArguments;
-use crate::failure::STATUSES;
+use crate::failure::{Failure, STATUSES};
 use crate::names::{Names, known, wanted};
 use crate::simulate::arguments::SimulateArguments;
 use crate::stress::arguments::StressArguments;
@@ -211,8 +211,9 @@ pub(crate) struct GenerateArguments {
     #[arg(long, conflicts_with = "runtime")]
     pub(crate) no_std: bool,
     /// How accurate: f64, f32, f32_f64, compensated, double_double, with +correct, +fast_7, +fast_10, +two, +no_fma
-    #[arg(long, value_name = "LEVEL", default_value_t = Level::default())]
-    pub(crate) level: Level,
+    /// [default: f64, or what the scene says]
+    #[arg(long, value_name = "LEVEL")]
+    pub(crate) level: Option<Level>,
     /// The path of the runtime crate, to implement its trait `Dynamics`
     #[arg(long, value_name = "PATH", value_parser = rust_path)]
     pub(crate) runtime: Option<String>,
@@ -325,6 +326,25 @@ pub(crate) fn gravity(text: &str) -> Result<Gravity, String> {
 fn real(text: &str) -> Result<Real, String> {
     let all = [Real::F64, Real::F32];
     all.into_iter().find(|r| r.name() == text.trim()).ok_or_else(|| "expected f64 or f32".into())
+}
+
+/// The first of a list that stands before it too.
+pub(crate) fn twice<T>(all: &[T], same: impl Fn(&T, &T) -> bool) -> Option<&T> {
+    all.iter().enumerate().find(|(k, one)| all[..*k].iter().any(|other| same(other, one))).map(|(_, one)| one)
+}
+
+/// Whether each type is asked for once.
+pub(crate) fn types_of_batch(types: &[Real]) -> Result<(), Failure> {
+    let wrong = |real: &Real| Failure::usage(format!("--batch: found a type that is there twice, {}, expected each once", real.name()));
+    twice(types, |a, b| a == b).map_or(Ok(()), |real| Err(wrong(real)))
+}
+
+/// Whether each joint and link is renamed once.
+pub(crate) fn names_in_rust(rename: &[(String, String)]) -> Result<(), Failure> {
+    let wrong = |(from, to): &(String, String)| {
+        Failure::usage(format!("--rename {from}={to}: found a name that is renamed twice, {from:?}, expected each once"))
+    };
+    twice(rename, |a, b| a.0 == b.0).map_or(Ok(()), |second| Err(wrong(second)))
 }
 
 fn joints(text: &str) -> Result<usize, String> {

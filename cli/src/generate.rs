@@ -3,7 +3,7 @@
 use articulated_codegen::{Generated, generate};
 use serde::Serialize;
 
-use crate::arguments::{Format, GenerateArguments};
+use crate::arguments::{Format, GenerateArguments, types_of_batch};
 use crate::console;
 use crate::failure::Failure;
 use crate::ledger::{Stage, stages};
@@ -27,11 +27,12 @@ struct Function {
 
 /// Writes the source to where it is wanted.
 pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), Failure> {
+    types_of_batch(&arguments.batch)?;
     let robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
     if let Some(path) = arguments.output.as_ref().filter(|path| robot.was_read_from(path)) {
         return Err(Failure::usage(format!("--output {}: found a file that the robot is read from, expected another", path.display())));
     }
-    let mut request = robot.request(&crate::names::flat(&arguments.functions));
+    let mut request = robot.whole_request(&crate::names::flat(&arguments.functions));
     if arguments.functions.is_empty() {
         request.options.functions.clone_from(&robot.options.functions);
     }
@@ -45,9 +46,7 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
     request.options.limbs &= !arguments.no_limbs;
     request.options.forbid_unsafe |= arguments.forbid_unsafe;
     request.options.no_std = arguments.no_std;
-    if arguments.level != articulated_codegen::Level::default() {
-        request.options.level = arguments.level;
-    }
+    request.options.level = arguments.level.unwrap_or(request.options.level);
     request.options.runtime = arguments.runtime.clone().filter(|_| !arguments.standalone);
     let generated = generate(&request)?;
     robot.warn_of(generated.warnings.iter().chain(&generated.snapped));

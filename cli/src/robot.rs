@@ -9,7 +9,7 @@ use articulated_core::description::Base;
 use articulated_core::model::Model;
 use articulated_urdf::{Problem, Reading};
 
-use crate::arguments::RobotArguments;
+use crate::arguments::{RobotArguments, names_in_rust};
 use crate::console;
 use crate::edits::{Edits, FrameArguments};
 use crate::failure::Failure;
@@ -41,6 +41,7 @@ pub(crate) struct Robot {
 impl Robot {
     /// The robot that the arguments name.
     pub(crate) fn find(arguments: &RobotArguments) -> Result<Self, Failure> {
+        names_in_rust(&arguments.rename)?;
         let name = arguments.robot.as_str();
         if name.ends_with(".toml") {
             return Self::of_scene(name, arguments);
@@ -83,7 +84,7 @@ impl Robot {
         options.gravity = arguments.gravity.map_or(options.gravity, |g| g.0);
         options.allow_unphysical_inertia |= arguments.allow_unphysical_inertia;
         options.snap_angles = arguments.snap_angles.or(options.snap_angles);
-        options.rename.extend_from_slice(&arguments.rename);
+        arguments.rename.iter().for_each(|(from, to)| options.set_name(from, to));
         edit(options, &arguments.edits)?;
         // The scene's effects on all joints are those of the robot as it is now.
         let resolved = scene::resolve(&request, &prepared.scene).map_err(|error| scene::placed(error, &prepared.scene))?;
@@ -114,9 +115,11 @@ impl Robot {
         self
     }
 
-    /// The robot with the frames of these links.
+    /// The robot with the frames of these links, which the command chose by itself.
     pub(crate) fn on(mut self, frames: &[String]) -> Self {
-        self.options.frames = Some(frames.to_vec());
+        let mut request = self.whole_request(&self.options.functions);
+        request.set_frames(frames);
+        self.options = request.options;
         self
     }
 
@@ -140,15 +143,22 @@ impl Robot {
         Ok(articulated_codegen::model(&self.request(&[]), &reading.description)?)
     }
 
-    /// The request for these functions, without a runtime.
-    pub(crate) fn request(&self, functions: &[String]) -> Request {
+    /// The request for these functions, without a runtime, for who writes their code or tells what it costs.
+    pub(crate) fn whole_request(&self, functions: &[String]) -> Request {
         let mut request = Request::new(self.file.clone(), self.urdf.clone());
         request.options = self.options.clone();
         request.options.functions = functions.to_vec();
         request
     }
 
-    /// The code of these functions, without a runtime.
+    /// As [`Robot::whole_request`], for who calls them: they take what the table says and no parameters, which are constants, see [`note_of_parameters`].
+    pub(crate) fn request(&self, functions: &[String]) -> Request {
+        let mut request = self.whole_request(functions);
+        request.options.parameters.clear();
+        request
+    }
+
+    /// The code of these functions, for who calls them.
     pub(crate) fn generate(&self, functions: &[String]) -> Result<Generated, Error> {
         generate(&self.request(functions))
     }
@@ -186,6 +196,12 @@ impl Robot {
             }
         }
     }
+}
+
+/// What a report says of a scene's parameters.
+pub(crate) fn note_of_parameters(options: &Options) -> Option<String> {
+    let list = options.parameters.join(", ");
+    (!list.is_empty()).then(|| format!("parameters: {list}: constants here, with the numbers of the robot's description"))
 }
 
 /// The edits, with the documents of the robots to append.

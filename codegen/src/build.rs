@@ -106,10 +106,10 @@ impl Build {
         self
     }
 
-    /// The constants of the joint or link `from` are called `to`.
+    /// The constants of the joint or link `from` are called `to`, whatever was said of it before.
     #[must_use]
     pub fn rename(mut self, from: impl Into<String>, to: impl Into<String>) -> Self {
-        self.request.options.rename.push((from.into(), to.into()));
+        self.request.options.set_name(&from.into(), &to.into());
         self
     }
 
@@ -368,7 +368,9 @@ mod tests {
         (expected.base, expected.snap_angles, expected.allow_unphysical_inertia) = (Base::Fixed, Some(1e-6), true);
         expected.rename = vec![("a-b".into(), "A_MINUS_B".into())];
         let all = build.clone().floating().fixed().snap_angles(1e-6).allow_unphysical_inertia().rename("a-b", "A_MINUS_B");
-        assert_eq!(of(all), expected);
+        assert_eq!(of(all.clone()), expected);
+        expected.rename = vec![("c".into(), "C".into()), ("a-b".into(), "D".into())];
+        assert_eq!(of(all.rename("c", "C").rename("a-b", "D")), expected);
         let both = of(build.clone().append(&hand, "tip", "left_", Origin::default()));
         assert_eq!(both.append[0].urdf, fs::read(&hand).unwrap());
         assert_eq!((both.append[0].at.as_str(), both.append[0].prefix.as_str()), ("tip", "left_"));
@@ -402,6 +404,19 @@ mod tests {
         let error = build.request().unwrap_err().to_string();
         assert!(error.contains("Build::urdf"), "{error}");
         assert_eq!(build.urdf(folder.join("arm.urdf")).request().unwrap().options.gravity, [0.0; 3]);
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn what_is_said_beside_a_scene_stands_in_its_place() {
+        let folder = folder("beside");
+        let scene = folder.join("named.toml");
+        fs::write(&scene, "urdf = 'arm.urdf'\nfunctions = ['gravity_torque']\nrename = { tip = 'SCENE', base = 'GROUND' }").unwrap();
+        let build = Build::scene(&scene).rename("tip", "TCP").functions(["mass_matrix"]);
+        let source = build.generate().unwrap().source;
+        for (part, there) in [("TCP", true), ("GROUND", true), ("SCENE", false), ("fn mass_matrix(", true), ("fn gravity_torque(", false)] {
+            assert_eq!(source.contains(part), there, "{part}");
+        }
         fs::remove_dir_all(folder).unwrap();
     }
 

@@ -49,6 +49,12 @@ pub enum Error {
         /// What is wanted.
         expected: &'static str,
     },
+    /// A type of numbers that is asked for twice.
+    #[error("batch: found a type that is there twice, {found}, expected each once")]
+    BatchTwice {
+        /// The type.
+        found: &'static str,
+    },
     /// A function that does not exist.
     #[error("unknown function `{found}`, {}", nearest.as_ref().map_or_else(|| format!("there are: {}", known.join(", ")), |n| format!("did you mean `{n}`?")))]
     UnknownFunction {

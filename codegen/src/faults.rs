@@ -68,6 +68,7 @@ fn leave_out(error: &Error, options: &mut Options) -> bool {
         }
         Error::Number { key: "gravity", .. } => options.gravity = [0.0; 3],
         Error::Number { .. } => options.snap_angles = None,
+        Error::BatchTwice { found } => options.batch.retain(|real| real.name() != *found),
         Error::Parameter { found, .. } => options.parameters.retain(|p| p.trim() != found),
         Error::Rename { from, to, .. } => options.rename.retain(|(f, t)| (f, t) != (from, to)),
         Error::NameClash { second, ident, .. } => {
@@ -150,6 +151,15 @@ mod tests {
     }
 
     #[test]
+    fn a_type_of_numbers_that_is_there_twice_is_told_once_and_with_all_else() {
+        let told = told(|o| {
+            o.batch = [crate::Real::F32, crate::Real::F64, crate::Real::F32, crate::Real::F32].to_vec();
+            o.functions = vec!["no_such".into()];
+        });
+        each_once(&told, &["batch: found a type that is there twice, f32, expected each once", "`no_such`"]);
+    }
+
+    #[test]
     fn of_a_function_and_a_form_of_another_the_name_that_both_have_is_told() {
         let list = ["gravity_torque_into = placements", "gravity_torque"];
         for list in [list, [list[1], list[0]]] {
@@ -171,6 +181,7 @@ mod tests {
         assert_eq!(told_of(&[("tip 1", "B"), ("tip.1", "C")]), "");
         each_once(&told_of(&[]), &["\"tip 1\"", "\"tip.1\""]);
         each_once(&told_of(&[("tip 1", "B"), ("tip.1", "B"), ("nobody", "C"), ("hinge", "fn")]), &["nobody", "\"hinge\"", "`B`"]);
+        each_once(&told_of(&[("tip 1", "B"), ("tip.1", "C"), ("tip 1", "D")]), &["rename \"tip 1\" to `D`: it is renamed twice"]);
     }
 
     #[test]

@@ -105,6 +105,7 @@ struct Plan {
 /// Everything that comes before programs are made.
 fn plan(request: &Request) -> Result<Plan, Error> {
     let options = &request.options;
+    types_of_batch(&options.batch)?;
     let mut reading = read(request)?;
     let whole = model(request, &reading.description)?;
     if whole.nv > MOST_FREEDOMS {
@@ -117,6 +118,12 @@ fn plan(request: &Request) -> Result<Plan, Error> {
     let wanted = wanted(request, &model, &massless)?;
     let names = emit::Names::new(&model, request)?;
     Ok(Plan { reading, model, parameters, wanted, names })
+}
+
+/// Whether each type is there once.
+fn types_of_batch(types: &[Real]) -> Result<(), Error> {
+    let twice = types.iter().enumerate().find(|(k, real)| types[..*k].contains(real));
+    twice.map_or(Ok(()), |(_, real)| Err(Error::BatchTwice { found: real.name() }))
 }
 
 /// Generates the code that `request` asks for. Pure: nothing is read or written. Errors: everything that is wrong with the document, or else with the request.

@@ -51,7 +51,10 @@ pub(crate) fn parse(list: &[String], description: &mut Description, model: &Mode
         let at = parameters.last().map_or(0, |p| p.at + p.nominal.len());
         let parameter = one(text, at, description, model)?;
         if let Some(other) = parameters.iter().find(|p| identifier(&p.name) == identifier(&parameter.name)) {
-            let reason = format!("is {} in Rust, as the {} is", identifier(&other.name), other.what);
+            let reason = match other.what == parameter.what {
+                true => "is there twice, expected once".into(),
+                false => format!("is {} in Rust, as the {} is", identifier(&other.name), other.what),
+            };
             return Err(Error::Parameter { found: text.trim().into(), reason });
         }
         parameters.push(parameter);
@@ -208,13 +211,15 @@ mod tests {
         let mut description = crate::read(&request).unwrap().description;
         let model = crate::model(&request, &description).unwrap();
         let list = ["payload(tool)", "payload(\"tool\")"].map(String::from);
-        assert!(matches!(parse(&list, &mut description, &model), Err(Error::Parameter { .. })));
+        let told = parse(&list, &mut description, &model).map(|_| ()).unwrap_err().to_string();
+        assert_eq!(told, "parameters: `payload(\"tool\")`: is there twice, expected once");
         // Constants of Rust have one case.
         let mut request = request;
         request.urdf = String::from_utf8(request.urdf).unwrap().replace("'rail'", "'TOOL'").into_bytes();
         let mut description = crate::read(&request).unwrap().description;
         let model = crate::model(&request, &description).unwrap();
-        let mut refused = |list: [&str; 2]| parse(&list.map(String::from), &mut description, &model).is_err();
-        assert!(refused(["payload(tool)", "payload(TOOL)"]) && !refused(["payload(tool)", "inertia(TOOL)"]));
+        let mut told = |list: [&str; 2]| parse(&list.map(String::from), &mut description, &model).err().map(|error| error.to_string());
+        assert!(told(["payload(tool)", "payload(TOOL)"]).is_some_and(|told| told.contains("is TOOL_PAYLOAD in Rust, as the")));
+        assert_eq!(told(["payload(tool)", "inertia(TOOL)"]), None);
     }
 }

@@ -9,7 +9,8 @@ use articulated_core::level::Level;
 use articulated_core::model::GRAVITY;
 use articulated_core::spatial::Reference;
 
-use crate::function_groups;
+use crate::emit::is_name;
+use crate::{function_groups, model, read};
 
 /// A robot's document and what to make of it. Macro, build script and command line all fill one of these.
 #[derive(Clone, Debug)]
@@ -113,10 +114,34 @@ impl Default for Options {
     }
 }
 
+impl Options {
+    /// Another name in Rust for a joint or link, in place of one that it had.
+    pub fn set_name(&mut self, from: &str, to: &str) {
+        self.rename.retain(|(name, _)| name != from);
+        self.rename.push((from.into(), to.into()));
+    }
+}
+
 impl Request {
     /// A request with default options: fixed base, standard gravity, `placements` and `inverse_dynamics`.
     pub fn new(file: impl Into<String>, urdf: impl Into<Vec<u8>>) -> Self {
         Self { urdf: urdf.into(), file: file.into(), options: Options::default() }
+    }
+
+    /// Takes the frames that a program chose by itself. Names in Rust of links that are none of these are in order then, and not used: they are left out.
+    pub fn set_frames(&mut self, frames: &[String]) {
+        let unused = if self.options.rename.is_empty() { Vec::new() } else { self.links_without_a_joint() };
+        let is_left_out = |(from, to): &(String, String)| is_name(to) && unused.contains(from) && !frames.contains(from);
+        self.options.rename.retain(|names| !is_left_out(names));
+        self.options.frames = Some(frames.to_vec());
+    }
+
+    /// Links of which no joint that moves has the name; none of a robot that cannot be had.
+    fn links_without_a_joint(&self) -> Vec<String> {
+        let whole = read(self).and_then(|reading| model(self, &reading.description));
+        let Ok(whole) = whole else { return Vec::new() };
+        let is_joint = |name: &String| whole.joints.iter().any(|joint| joint.name == *name);
+        whole.frames.iter().map(|frame| frame.name.clone()).filter(|name| !is_joint(name)).collect()
     }
 
     /// The request with what follows from its choices: functions in the place of groups; without `std` nobody can ask what the processor has, nor call for a multiply-add.
@@ -138,6 +163,27 @@ impl Request {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_of_links_that_a_program_leaves_out_are_no_mistake_and_others_are() {
+        const ARM: &str = "<robot name='arm'><link name='base'/><link name='fore'/><link name='tip'><inertial><mass value='1'/>\
+            <inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>\
+            <joint name='fore' type='continuous'><parent link='base'/><child link='fore'/></joint>\
+            <joint name='wrist' type='fixed'><parent link='fore'/><child link='tip'/></joint></robot>";
+        let told = |from: &str, to: &str| {
+            let mut request = Request::new("arm.urdf", ARM);
+            request.options.set_name(from, to);
+            request.set_frames(&["tip".into()]);
+            assert_eq!(request.options.frames.as_deref(), Some(&["tip".to_owned()][..]));
+            crate::generate(&request).map(|generated| generated.source).map_err(|error| error.to_string())
+        };
+        assert!(["fore", "tip"].iter().all(|name| told(name, "OTHER").unwrap().contains("pub const OTHER: usize = 0;")));
+        assert!(!told("base", "OTHER").unwrap().contains("OTHER"));
+        for (from, to, reason) in [("wrist", "OTHER", "no joint that moves"), ("nobody", "OTHER", "no link"), ("base", "fn", "identifier")]
+        {
+            assert!(told(from, to).is_err_and(|told| told.contains(reason)), "{from} {to}");
+        }
+    }
 
     #[test]
     fn without_std_there_is_nothing_that_needs_it_and_all_else_stays() {

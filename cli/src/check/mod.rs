@@ -50,7 +50,7 @@ fn describe(robot: &Robot, reading: &Reading, report: &mut Report) {
     match robot.whole_model(reading) {
         Ok(model) => {
             report.describe(&reading.description, &model);
-            let request = robot.request(&robot.options.functions);
+            let request = robot.whole_request(&robot.options.functions);
             let told = |result: Result<(), Error>| result.err().into_iter().flat_map(Error::into_each);
             let named = told(articulated_codegen::check_names(&request, &reading.description, &model));
             // Names that are one in Rust are in the way of code alone.
@@ -64,7 +64,7 @@ fn describe(robot: &Robot, reading: &Reading, report: &mut Report) {
 }
 
 fn check_function(robot: &Robot, function: &str, report: &mut Report) {
-    match robot.generate(&[function.to_owned()]) {
+    match articulated_codegen::generate(&robot.whole_request(&[function.to_owned()])) {
         Ok(_) => report.functions.push(function.to_owned()),
         Err(error) => report.errors.extend(Failure::from(error).lines.into_iter().map(Diagnostic::plain)),
     }

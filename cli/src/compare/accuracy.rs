@@ -14,6 +14,7 @@ use serde::Serialize;
 use super::contender::Contender;
 use crate::magnitude::{ROUNDOFF, scales, scales_of_generated, where_suspect};
 use crate::precise::Big;
+use crate::robot::note_of_parameters;
 use crate::states::quaternions;
 use crate::worse::worse;
 
@@ -84,10 +85,11 @@ impl Reference {
         Against::of(&self.options)
     }
 
-    /// Where results are not held to the textbook: said in reports.
-    pub(crate) fn note(&self) -> Option<String> {
+    /// Said in reports: where results are not held to the textbook, and what of the scene has no part in them.
+    pub(crate) fn note(&self) -> Vec<String> {
         let note = "the textbook's form knows no effects: the reference is the generic library in 320 bits, which tells roundings, not whether its formulas are right";
-        (self.against() == Against::Library).then(|| note.into())
+        let effects = (self.against() == Against::Library).then(|| note.into());
+        effects.into_iter().chain(note_of_parameters(&self.options)).collect()
     }
 
     /// With the frames and effects of the model.

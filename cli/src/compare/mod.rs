@@ -18,7 +18,7 @@ use articulated_codegen::function_groups;
 use articulated_core::algorithm::{Function, function};
 use articulated_core::model::Model;
 
-use crate::arguments::{CompareArguments, Format};
+use crate::arguments::{CompareArguments, Format, types_of_batch};
 use crate::compiled::Rustc;
 use crate::console::{self, Progress};
 use crate::failure::{Failure, OK};
@@ -43,9 +43,10 @@ const DEFAULT_BUILD: &str = "any processor";
 
 /// Measures and prints.
 pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Failure> {
+    types_of_batch(&arguments.batch)?;
     let mut robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
     robot.has_a_level_of_rounding()?;
-    robot.options.forbid_unsafe = arguments.forbid_unsafe;
+    robot.options.forbid_unsafe |= arguments.forbid_unsafe;
     let reading = robot.read()?;
     robot.warn_of(reading.warnings.iter().chain(&reading.snapped));
     if cfg!(debug_assertions) {

@@ -14,7 +14,7 @@ use crate::console;
 use crate::failure::{Failure, OK};
 use crate::magnitude::{scales, scales_of_generated, where_suspect};
 use crate::names;
-use crate::robot::{Robot, read_bytes};
+use crate::robot::{Robot, note_of_parameters, read_bytes};
 use crate::states::{self, State};
 use crate::table::counted;
 use report::{Difference, FunctionReport, Outcome, Report};
@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &EvalArguments, format: Format) -> Result<u8, Failu
     let names = names::flat(&arguments.function);
     let functions = functions(&names);
     let states = read_states(&arguments.states, &model, &functions)?;
-    let mut report = Report::new(&robot, states.warnings);
+    let mut report = Report::new(&robot, states.warnings.into_iter().chain(note_of_parameters(&robot.options)).collect());
     report.warnings.iter().for_each(|w| console::warn(w));
     let massless = articulated_codegen::massless(&model);
     functions.iter().try_for_each(|f| articulated_codegen::defined(&robot.file, &model, &massless, f))?;

@@ -77,7 +77,8 @@ fn subject(name: &str, floating: bool) -> Result<(Subject, RobotRow), Failure> {
 /// What a function costs on a robot, or why it is not defined there.
 fn cell(f: &Function<f64>, subject: &Subject) -> Result<Cell, Failure> {
     let Some(frames) = subject.tips.of_function(f) else { return Ok(Cell::Undefined(FEW.into())) };
-    match subject.robot.clone().on(frames).generate(&[f.name.to_owned()]) {
+    let request = subject.robot.clone().on(frames).whole_request(&[f.name.to_owned()]);
+    match articulated_codegen::generate(&request) {
         Ok(generated) => Ok(Cell::Cost(Cost::of(&generated.ledger.functions[0]))),
         Err(error) => Ok(Cell::Undefined(undefined(error)?)),
     }

@@ -177,7 +177,7 @@ pub(super) fn generate(stage: &Stage, integrator: IntegratorId) -> Result<(Gener
     }
     let mut request = stage.prepared.request.clone();
     request.options.functions = functions.into_iter().map(str::to_owned).collect();
-    request.options.frames = Some(frames.clone());
+    request.set_frames(&frames);
     (request.options.runtime, request.options.stages) = (None, false);
     (request.options.parameters, request.options.batch) = (Vec::new(), Vec::new());
     Ok((articulated_codegen::generate(&request)?, frames))

@@ -294,3 +294,39 @@ fn a_scene_with_effects_is_held_to_the_library_and_that_is_said() {
     let found = ["generated", "generic"].map(|who| errors[who].as_f64().unwrap());
     assert!(found.iter().all(|units| (0.0..16.0).contains(units)) && found[0] > 0.0, "{errors}");
 }
+
+/// They are inputs of a function that its user writes; here they have the numbers of the file.
+#[test]
+fn parameters_of_a_scene_are_constants_where_its_functions_are_called() {
+    let scene = File::new("loaded.toml", b"robot = \"cart_pole\"\nparameters = [\"payload(pole_rod)\"]\n");
+    let states = File::new("states.json", br#"[{"q": [0.3, 0.2], "v": [0, 1], "a": [1, 1]}]"#);
+    let accuracy = ["--levels", "f64", "--states", "2", "--repetitions", "1"];
+    for words in [&["eval", "--states", states.name()][..], &[&["compare"], &SMALL[..]].concat(), &[&["accuracy"], &accuracy[..]].concat()]
+    {
+        let ended = run(&[words, &[scene.name(), "--functions", "inverse_dynamics", "--format", "json"]].concat());
+        assert_eq!(ended.status, 0, "{words:?}: {}", ended.err);
+        assert!(ended.out.contains("parameters: payload(pole_rod): constants here"), "{words:?}: {}", ended.out);
+    }
+}
+
+/// The frames that these commands choose are the tips: the name of another link is in order.
+#[test]
+fn a_link_that_is_no_tip_may_be_renamed() {
+    let scene = File::new("renamed.toml", b"robot = \"cart_pole\"\nrename = { cart = \"CAR\" }\n");
+    let functions = ["--functions", "placements"];
+    let accuracy = ["accuracy", scene.name(), "--levels", "f64", "--states", "2", "--repetitions", "1"];
+    let renamed = |name: &'static str| [&["compare", "cart_pole", "--rename", name][..], &SMALL].concat();
+    let all = [[&["compare", scene.name()][..], &SMALL].concat(), accuracy.to_vec(), renamed("cart=CAR")];
+    for words in all {
+        let ended = run(&[&words[..], &functions].concat());
+        assert_eq!(ended.status, 0, "{words:?}: {}", ended.err);
+    }
+    assert_eq!(run(&["functions", scene.name()]).status, 0);
+    let chosen = [&renamed("cart=CAR")[..], &["--frames", "pole_rod"]].concat();
+    for (words, reason) in
+        [(renamed("tracc=CAR"), "no link that is a frame"), (renamed("cart=fn"), "not an identifier"), (chosen, "no link that is a frame")]
+    {
+        let refused = run(&[&words[..], &functions].concat());
+        assert!(refused.status == 1 && refused.err.contains(reason), "{words:?}: {}", refused.err);
+    }
+}

@@ -64,3 +64,12 @@ fn a_robot_of_rotors_alone_moves() {
     let momentum = summary["momentum"].to_string();
     assert!(!momentum.contains("null"), "{momentum}");
 }
+
+/// Generated code of a motion has hardly any frames; a link may have another name in Rust all the same.
+#[test]
+fn links_that_a_motion_does_not_need_may_be_renamed() {
+    let text = "robot = \"ur5_like\"\nrename = { flange = \"FLANGE\" }\n[simulation]\nend = 0.01\n";
+    let scene = File::new("renamed.toml", text.as_bytes());
+    let ended = run(&["simulate", scene.name(), "--generated"]);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+}

@@ -160,7 +160,51 @@ fn names_that_are_one_in_rust_can_be_told_apart() {
 }
 
 #[test]
-fn a_type_asked_for_twice_is_there_once() {
-    let made = run(&["generate", "cart_pole", "--functions", "gravity_torque", "--batch", "f64,f64"]);
-    assert_eq!((made.status, made.out.matches("pub mod batch_f64").count()), (0, 1), "{}", made.err);
+fn what_is_asked_for_twice_is_refused() {
+    let cases: [(&[&str], &str); 4] = [
+        (&["generate", "--batch", "f64,f64"], "--batch: found a type that is there twice, f64, expected each once"),
+        (&["compare", "--batch", "f32", "--batch", "f64,f32"], "--batch: found a type that is there twice, f32, expected each once"),
+        (
+            &["generate", "--rename", "cart=A", "--rename", "cart=B"],
+            "--rename cart=B: found a name that is renamed twice, \"cart\", expected each once",
+        ),
+        (&["generate", "--parameters", "payload(cart),payload(cart)"], "parameters: `payload(cart)`: is there twice, expected once"),
+    ];
+    for (words, told) in cases {
+        let refused = run(&[&words[..1], &["cart_pole"], &words[1..]].concat());
+        assert!(refused.status != 0 && refused.err.contains(told), "{words:?}: {}", refused.err);
+    }
+}
+
+#[test]
+fn what_is_said_stands_in_place_of_what_the_scene_says() {
+    let scene = b"robot = \"cart_pole\"\nlevel = \"f32\"\nrename = { cart = \"SCENE\", pole_rod = \"ROD\" }\n";
+    let scene = File::new("cart.toml", scene);
+    let of = |words: &[&str]| {
+        let made = run(&[&["generate", scene.name(), "--functions", "placements"], words].concat());
+        assert_eq!(made.status, 0, "{}", made.err);
+        made.out
+    };
+    let (own, other) = (of(&[]), of(&["--level", "f64", "--rename", "cart=CAR"]));
+    assert!(own.contains("-> [[f32; 12]; FRAMES]") && own.contains("pub const SCENE: usize"), "{own}");
+    assert!(other.contains("-> [[f64; 12]; FRAMES]") && other.contains("pub const CAR: usize"), "{other}");
+    assert!(other.contains("pub const ROD: usize") && !other.contains("SCENE"), "{other}");
+}
+
+/// Names with two `_` side by side come of those that end in one; names in lower case are those asked for.
+#[test]
+fn code_with_odd_names_has_no_warnings() {
+    let functions =
+        "tau_ = gravity_torque, a__b = forward_dynamics(v = 0), d_ = inverse_dynamics_derivatives, both_ = mass_matrix + placements";
+    for (robot, rename) in [("quadruped", "trunk=body"), ("panda_like", "flange=tcp")] {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("robot.rs");
+        let words = ["generate", robot, "--functions", functions, "--batch", "f64", "--rename", rename, "-o", file.to_str().unwrap()];
+        let made = run(&words);
+        assert_eq!(made.status, 0, "{}", made.err);
+        let mut rustc = std::process::Command::new("rustc");
+        rustc.args(["--edition", "2024", "--crate-type", "lib", "--emit", "metadata", "-D", "warnings"]);
+        let ended = rustc.arg("--out-dir").arg(folder.path()).arg(&file).output().unwrap();
+        assert!(ended.status.success(), "{robot}: {}", String::from_utf8_lossy(&ended.stderr));
+    }
 }

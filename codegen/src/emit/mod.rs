@@ -25,6 +25,7 @@ mod sets;
 mod several;
 mod signature;
 mod spill;
+mod style;
 mod together;
 mod used;
 mod vector;
@@ -35,5 +36,5 @@ mod zeros;
 pub use names::identifier;
 
 pub(crate) use module::module;
-pub(crate) use names::Names;
+pub(crate) use names::{Names, is_name};
 pub(crate) use warnings::warnings;

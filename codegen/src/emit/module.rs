@@ -15,7 +15,7 @@ use super::levels::real;
 use super::literal::literal;
 use super::names::Names;
 use super::sets::support;
-use super::spill;
+use super::{spill, style};
 use crate::program::Program;
 use crate::{Parameter, Request};
 
@@ -41,6 +41,8 @@ pub(crate) fn module(
     batches(&mut out, &of_many, &request.options.batch, forbid_unsafe);
     spill::module(&mut out);
     robot(&mut out, request, model, programs, !parameters.is_empty());
+    let functions: Vec<&str> = programs.iter().map(|p| p.wanted.name.as_str()).collect();
+    let out = style::allowed(out, &functions);
     if request.options.no_std { bare::without_std(&out) } else { out }
 }
 
@@ -106,7 +108,7 @@ fn indices(out: &mut String, model: &Model<f64>, names: &Names) {
 fn list(out: &mut String, module: &str, doc: &str, rows: &[(String, String, usize)]) {
     let _ = writeln!(out, "/// {doc}\npub mod {module} {{");
     for (ident, doc, value) in rows {
-        let _ = writeln!(out, "    /// The {doc}.\n    pub const {ident}: usize = {value};");
+        let _ = writeln!(out, "    /// The {doc}.\n    {}pub const {ident}: usize = {value};", style::of_constant(ident));
     }
     let _ = writeln!(out, "}}\n");
 }
@@ -148,6 +150,9 @@ fn robot(out: &mut String, request: &Request, model: &Model<f64>, programs: &[Pr
     let _ = writeln!(out, "    fn shape(&self) -> {path}::Shape {{ {path}::Shape {{ nq: NQ, nv: NV, frames: FRAMES, links: LINKS }} }}");
     let _ = writeln!(out, "    fn name(&self) -> &str {{ NAME }}");
     names_by_number(out, path, model);
+    if model.has_motors() {
+        let _ = writeln!(out, "    fn has_motors(&self) -> bool {{ true }}");
+    }
     let _ = writeln!(out, "    #[inline]");
     let _ = writeln!(
         out,

@@ -7,7 +7,8 @@ use articulated_core::model::Model;
 use crate::{Error, Request, is_keyword};
 
 /// The constant's name for a name of the URDF: letters in upper case, everything that cannot be in an identifier as `_`, `_` in front of a
-/// digit. `shoulder pan-joint` is `SHOULDER_PAN_JOINT`, `1st-link` is `_1ST_LINK`.
+/// digit. `shoulder pan-joint` is `SHOULDER_PAN_JOINT`, `1st-link` is `_1ST_LINK`. Letters beyond ASCII stay; where all of a crate's
+/// look like Latin ones, the compiler warns (`mixed_script_confusables`), which only the root of that crate can allow: there another name helps.
 pub fn identifier(name: &str) -> String {
     let upper: String = name.trim_matches('_').chars().flat_map(char::to_uppercase).collect();
     let mut ident: String = upper.chars().map(|c| if c == '_' || c.is_alphanumeric() { c } else { '_' }).collect();
@@ -37,7 +38,7 @@ fn is_identifier(ident: &str) -> bool {
 }
 
 /// Whether a constant can be called so.
-fn is_name(ident: &str) -> bool {
+pub(crate) fn is_name(ident: &str) -> bool {
     is_identifier(ident) && !is_keyword(ident) && !matches!(ident, "_" | "Self")
 }
 
@@ -77,14 +78,18 @@ fn unique<'a>(kind: &'static str, names: impl Iterator<Item = &'a str>, request:
 
 fn check_renames(model: &Model<f64>, request: &Request) -> Result<(), Error> {
     let known = |name: &str| model.joints.iter().any(|j| j.name == name) || model.frames.iter().any(|f| f.name == name);
-    let wrong = request.options.rename.iter().find_map(|(from, to)| {
-        if !known(from) {
-            Some((from, to, "no joint that moves and no link that is a frame has this name"))
-        } else if !is_name(to) {
-            Some((from, to, "this is not an identifier of Rust"))
+    let rename = &request.options.rename;
+    let wrong = rename.iter().enumerate().find_map(|(k, (from, to))| {
+        let reason = if !is_name(to) {
+            "this is not an identifier of Rust"
+        } else if !known(from) {
+            "no joint that moves and no link that is a frame has this name"
+        } else if rename[..k].iter().any(|(name, _)| name == from) {
+            "it is renamed twice, expected once"
         } else {
-            None
-        }
+            return None;
+        };
+        Some((from, to, reason))
     });
     match wrong {
         Some((from, to, reason)) => Err(Error::Rename { file: request.file.clone(), from: from.clone(), to: to.clone(), reason }),

@@ -68,8 +68,7 @@ pub(super) fn batches(out: &mut String, functions: &[Batch], reals: &[Real], for
     functions.iter().for_each(|f| f.body(out));
     *out += SUPPORT;
     let caller = Caller::new(out.as_str());
-    // Each once, however often it is asked for.
-    for (_, real) in reals.iter().enumerate().filter(|(k, real)| !reals[..*k].contains(real)) {
+    for real in reals {
         module(out, functions, *real, if forbid_unsafe { &SAFE } else { &WAYS }, &caller);
     }
 }
