@@ -1,4 +1,6 @@
 //! Reference values: a scalar of 320 bits, some 96 decimal digits.
+//!
+//! Operations are calls, not inlined: algorithms would become several times as large, and as long to compile, for nothing.
 
 use std::cell::RefCell;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -162,6 +164,7 @@ impl One for Big {
 impl Add for Big {
     type Output = Self;
 
+    #[inline(never)]
     fn add(self, other: Self) -> Self {
         match (self.is_zero(), other.is_zero()) {
             (true, _) => other,
@@ -174,6 +177,7 @@ impl Add for Big {
 impl Sub for Big {
     type Output = Self;
 
+    #[inline(never)]
     fn sub(self, other: Self) -> Self {
         if other.is_zero() { self } else { self.two_of(other, |a, b| a.sub(b, BITS, ROUNDING)) }
     }
@@ -182,6 +186,7 @@ impl Sub for Big {
 impl Mul for Big {
     type Output = Self;
 
+    #[inline(never)]
     fn mul(self, other: Self) -> Self {
         match (self.0, other.0) {
             (1, _) => other,
@@ -194,6 +199,7 @@ impl Mul for Big {
 impl Div for Big {
     type Output = Self;
 
+    #[inline(never)]
     fn div(self, other: Self) -> Self {
         self.two_of(other, |a, b| a.div(b, BITS, ROUNDING))
     }
@@ -202,24 +208,28 @@ impl Div for Big {
 impl Neg for Big {
     type Output = Self;
 
+    #[inline(never)]
     fn neg(self) -> Self {
         self.one_of(BigFloat::neg)
     }
 }
 
 impl AddAssign for Big {
+    #[inline(never)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
 impl SubAssign for Big {
+    #[inline(never)]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
 impl MulAssign for Big {
+    #[inline(never)]
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }
@@ -230,6 +240,7 @@ impl Scalar for Big {
 
     const BITS: u32 = BITS as u32;
 
+    #[inline(never)]
     fn from_f64(x: f64) -> Self {
         match x {
             1.0 => ONE,
@@ -237,6 +248,7 @@ impl Scalar for Big {
         }
     }
 
+    #[inline(never)]
     fn sin_cos(self) -> (Self, Self) {
         if self.is_zero() {
             return (ZERO, ONE);
@@ -244,11 +256,13 @@ impl Scalar for Big {
         (self.with_constants(|x, c| x.sin(BITS, ROUNDING, c)), self.with_constants(|x, c| x.cos(BITS, ROUNDING, c)))
     }
 
+    #[inline(never)]
     fn sqrt(self) -> Self {
         self.one_of(|x| x.sqrt(BITS, ROUNDING))
     }
 
     // atan y/x for x > 0, half a turn further for x < 0; no zero here has a sign.
+    #[inline(never)]
     fn atan2(self, x: Self) -> Self {
         let minus = |mask: bool, a: Self| if mask { -a } else { a };
         let below = (-self).positive();

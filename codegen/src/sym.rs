@@ -1,4 +1,6 @@
 //! The symbolic scalar: a node of the graph that is being traced on this thread.
+//!
+//! Operations are calls, not inlined: algorithms would become several times as large, and as long to compile, for nothing.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -55,11 +57,13 @@ macro_rules! operator {
     ($op:ident, $trait:ident::$method:ident, $assign:ident::$assign_method:ident) => {
         impl $trait for Sym {
             type Output = Sym;
+            #[inline(never)]
             fn $method(self, other: Sym) -> Sym {
                 apply(Op::$op, &[self, other])
             }
         }
         impl $assign for Sym {
+            #[inline(never)]
             fn $assign_method(&mut self, other: Sym) {
                 *self = apply(Op::$op, &[*self, other]);
             }
@@ -73,6 +77,7 @@ operator!(Mul, Mul::mul, MulAssign::mul_assign);
 
 impl Div for Sym {
     type Output = Sym;
+    #[inline(never)]
     fn div(self, other: Sym) -> Sym {
         apply(Op::Div, &[self, other])
     }
@@ -80,6 +85,7 @@ impl Div for Sym {
 
 impl Neg for Sym {
     type Output = Sym;
+    #[inline(never)]
     fn neg(self) -> Sym {
         apply(Op::Neg, &[self])
     }

@@ -1,4 +1,6 @@
 //! The scale against which a rounding error is measured.
+//!
+//! Operations are calls, not inlined: algorithms would become several times as large, and as long to compile, for nothing.
 
 mod norms;
 mod scales;
@@ -54,6 +56,7 @@ impl Add for Magnitude {
     type Output = Self;
 
     // ‖a + b‖ = ‖a‖ + ‖b‖
+    #[inline(never)]
     fn add(self, other: Self) -> Self {
         Self::computed(self.value + other.value, self.magnitude + other.magnitude)
     }
@@ -62,6 +65,7 @@ impl Add for Magnitude {
 impl Sub for Magnitude {
     type Output = Self;
 
+    #[inline(never)]
     fn sub(self, other: Self) -> Self {
         self + -other
     }
@@ -71,6 +75,7 @@ impl Mul for Magnitude {
     type Output = Self;
 
     // ‖a b‖ = ‖a‖ ‖b‖
+    #[inline(never)]
     fn mul(self, other: Self) -> Self {
         Self::computed(self.value * other.value, self.magnitude * other.magnitude)
     }
@@ -80,6 +85,7 @@ impl Div for Magnitude {
     type Output = Self;
 
     // ‖a / b‖ = ‖a‖ ‖b‖ / b²
+    #[inline(never)]
     fn div(self, other: Self) -> Self {
         Self::computed(self.value / other.value, self.magnitude / other.value.abs() * (other.magnitude / other.value.abs()))
     }
@@ -88,24 +94,28 @@ impl Div for Magnitude {
 impl Neg for Magnitude {
     type Output = Self;
 
+    #[inline(never)]
     fn neg(self) -> Self {
         Self { value: -self.value, ..self }
     }
 }
 
 impl AddAssign for Magnitude {
+    #[inline(never)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
 impl SubAssign for Magnitude {
+    #[inline(never)]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
 impl MulAssign for Magnitude {
+    #[inline(never)]
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }
@@ -114,11 +124,13 @@ impl MulAssign for Magnitude {
 impl Scalar for Magnitude {
     type Mask = bool;
 
+    #[inline(never)]
     fn from_f64(x: f64) -> Self {
         Self { value: x, magnitude: x.abs(), given: true }
     }
 
     // ‖sin x‖ = |sin x| + |cos x| ‖x‖ for a computed angle x, |sin x| for a given one
+    #[inline(never)]
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = self.value.sin_cos();
         let angle = if self.given { 0.0 } else { self.magnitude };
@@ -126,12 +138,14 @@ impl Scalar for Magnitude {
     }
 
     // ‖√x‖ = ‖x‖ / √x
+    #[inline(never)]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
         Self::computed(root, if self.magnitude == 0.0 { 0.0 } else { self.magnitude / root })
     }
 
     // ‖atan2(y, x)‖ = |atan2(y, x)| + (|x| ‖y‖ + |y| ‖x‖) / (x² + y²)
+    #[inline(never)]
     fn atan2(self, x: Self) -> Self {
         let (angle, r) = (self.value.atan2(x.value), self.value.hypot(x.value));
         let share = |along: f64, across: f64| if across == 0.0 { 0.0 } else { along.abs() / r * (across / r) };

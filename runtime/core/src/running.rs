@@ -2,6 +2,8 @@
 //!
 //! Running error analysis (Wilkinson 1986; Higham, Accuracy and Stability of Numerical Algorithms, 2002, 3.3) on midpoints and radii, so that it holds for one state and for a
 //! box of states alike. All here is in f64 and rounded upward by a few units more than it can lose.
+//!
+//! Operations are calls, not inlined: algorithms would become several times as large, and as long to compile, for nothing.
 
 use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -100,6 +102,7 @@ impl<const BITS: u32, const SINES: u32> One for Running<BITS, SINES> {
 impl<const BITS: u32, const SINES: u32> Add for Running<BITS, SINES> {
     type Output = Self;
 
+    #[inline(never)]
     fn add(self, b: Self) -> Self {
         if self.is_zero() {
             return b;
@@ -114,6 +117,7 @@ impl<const BITS: u32, const SINES: u32> Add for Running<BITS, SINES> {
 impl<const BITS: u32, const SINES: u32> Sub for Running<BITS, SINES> {
     type Output = Self;
 
+    #[inline(never)]
     fn sub(self, b: Self) -> Self {
         self + -b
     }
@@ -122,6 +126,7 @@ impl<const BITS: u32, const SINES: u32> Sub for Running<BITS, SINES> {
 impl<const BITS: u32, const SINES: u32> Mul for Running<BITS, SINES> {
     type Output = Self;
 
+    #[inline(never)]
     fn mul(self, b: Self) -> Self {
         if self.is_zero() || b.is_zero() {
             return Self::zero();
@@ -135,6 +140,7 @@ impl<const BITS: u32, const SINES: u32> Mul for Running<BITS, SINES> {
 impl<const BITS: u32, const SINES: u32> Div for Running<BITS, SINES> {
     type Output = Self;
 
+    #[inline(never)]
     fn div(self, b: Self) -> Self {
         let least = (b.value.abs() - b.radius) * (1.0 - 64.0 * f64::EPSILON);
         let apart = least > b.error * (1.0 + 64.0 * f64::EPSILON);
@@ -151,24 +157,28 @@ impl<const BITS: u32, const SINES: u32> Div for Running<BITS, SINES> {
 impl<const BITS: u32, const SINES: u32> Neg for Running<BITS, SINES> {
     type Output = Self;
 
+    #[inline(never)]
     fn neg(self) -> Self {
         Self { value: -self.value, ..self }
     }
 }
 
 impl<const BITS: u32, const SINES: u32> AddAssign for Running<BITS, SINES> {
+    #[inline(never)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
 impl<const BITS: u32, const SINES: u32> SubAssign for Running<BITS, SINES> {
+    #[inline(never)]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
 impl<const BITS: u32, const SINES: u32> MulAssign for Running<BITS, SINES> {
+    #[inline(never)]
     fn mul_assign(&mut self, other: Self) {
         *self = *self * other;
     }
@@ -178,16 +188,19 @@ impl<const BITS: u32, const SINES: u32> Scalar for Running<BITS, SINES> {
     type Mask = Outcome;
 
     /// A constant: fewer bits than 53 round it.
+    #[inline(never)]
     fn from_f64(x: f64) -> Self {
         Self { value: x, radius: 0.0, error: if BITS < 53 { up(power(BITS) * x.abs()) } else { 0.0 } }
     }
 
+    #[inline(never)]
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = Scalar::sin_cos(self.value);
         (self.wave(sin), self.wave(cos))
     }
 
     // |√x − √y| = |x − y| / (√x + √y) ≤ √|x − y|
+    #[inline(never)]
     fn sqrt(self) -> Self {
         let least = self.value - self.radius;
         let change = |by: f64, least: f64| {
@@ -198,6 +211,7 @@ impl<const BITS: u32, const SINES: u32> Scalar for Running<BITS, SINES> {
     }
 
     // The angle under which a change is seen from the origin.
+    #[inline(never)]
     fn atan2(self, x: Self) -> Self {
         let (by, off) = (self.radius + x.radius, self.error + x.error);
         let size = libm::hypot(self.value, x.value);

@@ -281,7 +281,11 @@ fn effects_that_are_half_right_are_refused_too() {
         Ok(_) => panic!("{one:?}"),
     };
     // Zero where a number has to be greater.
-    assert!(told(on(EffectId::friction, &[1.0, 0.0])).contains("speed: found 0, expected a finite number above 0"));
+    // Nor may a law be smooth below what has no square.
+    for speed in [0.0, 1e-200] {
+        let text = told(on(EffectId::friction, &[1.0, speed]));
+        assert!(text.contains("speed: found ") && text.contains("expected a finite number, at least 1e-15"), "{text}");
+    }
     assert!(told(on(EffectId::motor, &[1.0, 0.0, 1.0, 1.0, 1e-3])).contains("speed: found 0"));
     // Σ ≥ 0 in its blocks alone is not enough: m w² + I ω² + 2 c ω w < 0 for some motion with c² > I m.
     let coupled = |c: f64| {
