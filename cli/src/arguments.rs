@@ -99,7 +99,7 @@ pub(crate) enum Command {
         "articulated functions --markdown > docs/functions.md",
     ]))]
     Functions(FunctionsArguments),
-    /// Measures how costs grow with the robot: chains of up to 1000 joints, generated against generic code, hot and cold caches
+    /// Measures how costs grow with the robot: chains of 7 to 125 joints (--all: to 1000), generated against generic code, hot and cold caches
     #[command(after_help = examples(&[
         "articulated scaling",
         "articulated scaling --joints 7,30,100 --functions inverse_dynamics --chart scaling.svg",

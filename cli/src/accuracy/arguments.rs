@@ -55,7 +55,7 @@ pub(crate) struct AccuracyArguments {
     /// A list of peer libraries, as the peers' build script writes it
     #[arg(long, value_name = "FILE")]
     pub(crate) peers_manifest: Option<PathBuf>,
-    /// The folder to write report.html, accuracy.csv, accuracy.json and diagrams in SVG and PNG to
+    /// The folder to write report.html, accuracy.csv, accuracy.json and diagrams in SVG and PNG to; with --simulate integrators.html, integrators.csv, integrators.json and diagrams
     #[arg(short, long, value_name = "FOLDER")]
     pub(crate) output: Option<PathBuf>,
     /// Measure integrators instead, on the motion of a scene: ROBOT is a scene's file, or the name of a bundled scene
