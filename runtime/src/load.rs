@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use articulated_core::description::{Base, Description};
 use articulated_core::model::{Model, ModelError};
-use articulated_urdf::{Options, Problems, read};
+use articulated_urdf::{MOST_BYTES, Options, Problems, read, read_file};
 
 /// Why a file is not a robot.
 #[derive(Debug)]
 pub enum LoadError {
-    /// The file cannot be read.
+    /// The file cannot be read, or is larger than any URDF.
     Io {
         /// Which.
         file: PathBuf,
@@ -78,7 +78,7 @@ pub fn load_bytes(file: &str, bytes: &[u8], base: Base) -> Result<Model<f64>, Lo
 /// Warnings are not told, as [`load`] says.
 pub fn describe(path: impl AsRef<Path>) -> Result<Description, LoadError> {
     let path = path.as_ref();
-    let bytes = std::fs::read(path).map_err(|error| LoadError::Io { file: path.to_owned(), error })?;
+    let bytes = read_file(path, MOST_BYTES).map_err(|error| LoadError::Io { file: path.to_owned(), error })?;
     describe_bytes(&path.display().to_string(), &bytes)
 }
 
@@ -96,6 +96,16 @@ mod tests {
     fn a_file_that_is_not_there_is_named() {
         let error = load("/no/such/arm.urdf", Base::Fixed).unwrap_err().to_string();
         assert!(error.starts_with("/no/such/arm.urdf: ") && error.len() > "/no/such/arm.urdf: ".len(), "{error}");
+    }
+
+    #[test]
+    fn of_a_file_larger_than_any_robot_nothing_is_read() {
+        let file = std::env::temp_dir().join(format!("articulated-vast-{}.urdf", std::process::id()));
+        std::fs::File::create(&file).unwrap().set_len(1 << 40).unwrap();
+        let error = describe(&file);
+        std::fs::remove_file(&file).unwrap();
+        let told = error.unwrap_err().to_string();
+        assert_eq!(told, format!("{}: found 1099511627776 bytes, expected at most 67108864 bytes", file.display()));
     }
 
     #[test]

@@ -183,7 +183,7 @@ pub enum StateError {
         /// The number.
         found: f64,
         /// What would be right.
-        right: &'static str,
+        right: String,
     },
 }
 
@@ -225,9 +225,10 @@ impl fmt::Display for StateError {
                 write!(f, "the event `{event}` is about {vector}[{index}], and {vector} has {length} numbers")
             }
             Self::Bounds { event, lower, upper } => {
+                let (lower, upper) = (Plain(*lower), Plain(*upper));
                 write!(f, "the event `{event}` has the bounds {lower} and {upper}; the first should be less than the second")
             }
-            Self::Value { what, found, right } => write!(f, "{what} = {found} cannot be used; it should be {right}"),
+            Self::Value { what, found, right } => write!(f, "{what} = {} cannot be used; it should be {right}", Plain(*found)),
         }
     }
 }
@@ -238,50 +239,84 @@ impl fmt::Display for SimulateError {
             Self::Settings(all) => lines(f, all),
             Self::State(all) => lines(f, all),
             Self::Function(e) => e.fmt(f),
-            Self::NotFinite { t, what, index, names } => {
-                let numbers = list(index.iter().map(|i| format!("[{i}]")));
-                let names = if *what == "event" { of_names("event", names) } else { of_joints(names) };
-                write!(f, "at t = {t} s {what}{numbers}{names} {} not finite", if index.len() > 1 { "are" } else { "is" })
-            }
-            Self::NoMass { t, cause } => {
-                let joint = Some(&cause.joint).filter(|name| !name.is_empty());
-                let freedom = format!("v[{}]{}", cause.freedom, of_joints(joint));
-                write!(
-                    f,
-                    "at t = {t} s the mass matrix is singular at {freedom}: does it move a mass, and otherwise than the joints behind it?"
-                )
-            }
-            Self::StepTooSmall { t, step, what, index, joint } => write!(
-                f,
-                "at t = {t} s the tolerances ask for a step of {step:.3e} s, {what}[{index}]{} most of all: is there a jump in what moves the robot, or are rtol and atol below rounding?",
-                of_joints(joint)
-            ),
             Self::TooManySteps { t, steps } => {
+                let t = Plain(*t);
                 write!(f, "{steps} steps were made by t = {t} s: looser tolerances, rodas4 if the motion is stiff, or a greater max_steps")
             }
-            Self::Unstable { integrator, t, step, admissible, rate } => write!(
-                f,
-                "at t = {t} s {integrator} is not stable with steps of {step:.3e} s: something here moves at a rate of {rate:.3e} 1/s. Steps of at most {admissible:.3e} s, or rodas4"
-            ),
-            Self::Stiff { integrator, t, step, left } => write!(
-                f,
-                "at t = {t} s the motion is stiff: {integrator} is held to steps of {step:.3e} s by stability, {left:.1e} of them to the end. Take rodas4, or go on with stiffness = \"note\" (Stiffness::Note in Rust)"
-            ),
-            Self::NoConvergence { t, step } => {
-                write!(f, "at t = {t} s the equations of a step of {step:.3e} s were not solved: a shorter step")
+            Self::NotFinite { t, .. }
+            | Self::NoMass { t, .. }
+            | Self::StepTooSmall { t, .. }
+            | Self::Unstable { t, .. }
+            | Self::Stiff { t, .. }
+            | Self::NoConvergence { t, .. }
+            | Self::Singular { t, .. }
+            | Self::Turn { t, .. }
+            | Self::Chattering { t, .. } => {
+                write!(f, "at t = {} s ", Plain(*t))?;
+                self.of_a_step(f).and_then(|()| self.of_a_state(f))
             }
-            Self::Singular { t, step } => write!(f, "at t = {t} s the matrix of a step of {step:.3e} s is singular: another step"),
-            Self::Turn { t, step, turn, most, joint } => {
+        }
+    }
+}
+
+impl SimulateError {
+    /// What happened there, if it is about how a step was made.
+    fn of_a_step(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::StepTooSmall { step, what, index, joint, .. } => write!(
+                f,
+                "the tolerances ask for a step of {step:.3e} s, {what}[{index}]{} most of all: is there a jump in what moves the robot, or are rtol and atol below rounding?",
+                of_joints(joint)
+            ),
+            Self::Unstable { integrator, step, admissible, rate, .. } => write!(
+                f,
+                "{integrator} is not stable with steps of {step:.3e} s: something here moves at a rate of {rate:.3e} 1/s. Steps of at most {admissible:.3e} s, or rodas4"
+            ),
+            Self::Stiff { integrator, step, left, .. } => write!(
+                f,
+                "the motion is stiff: {integrator} is held to steps of {step:.3e} s by stability, {left:.1e} of them to the end. Take rodas4, or go on with stiffness = \"note\" (Stiffness::Note in Rust)"
+            ),
+            Self::NoConvergence { step, .. } => write!(f, "the equations of a step of {step:.3e} s were not solved: a shorter step"),
+            Self::Singular { step, .. } => write!(f, "the matrix of a step of {step:.3e} s is singular: another step"),
+            Self::Turn { step, turn, most, joint, .. } => {
                 let (joint, least) = (of_joints(joint), step * most / turn);
                 write!(
                     f,
-                    "at t = {t} s a step of {step:.3e} s turns by {turn:.3} rad{joint}: a step can turn by {most:.3} rad at most, here one of {least:.3e} s"
+                    "a step of {step:.3e} s turns by {turn:.3} rad{joint}: a step can turn by {most:.3} rad at most, here one of {least:.3e} s"
                 )
             }
-            Self::Chattering { t, event } => {
-                write!(f, "at t = {t} s the event `{event}` happens again and again: let it stop, or let the map end what causes it")
-            }
+            _ => Ok(()),
         }
+    }
+
+    /// What happened there, if it is about the state that was reached.
+    fn of_a_state(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite { what, index, names, .. } => {
+                let numbers = list(index.iter().map(|i| format!("[{i}]")));
+                let names = if *what == "event" { of_names("event", names) } else { of_joints(names) };
+                write!(f, "{what}{numbers}{names} {} not finite", if index.len() > 1 { "are" } else { "is" })
+            }
+            Self::NoMass { cause, .. } => {
+                let joint = Some(&cause.joint).filter(|name| !name.is_empty());
+                let freedom = format!("v[{}]{}", cause.freedom, of_joints(joint));
+                write!(f, "the mass matrix is singular at {freedom}: does it move a mass, and otherwise than the joints behind it?")
+            }
+            Self::Chattering { event, .. } => {
+                write!(f, "the event `{event}` happens again and again: let it stop, or let the map end what causes it")
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A number as people write it: with a power of ten where it is very small or very large.
+pub(crate) struct Plain(pub(crate) f64);
+
+impl fmt::Display for Plain {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let exact = format!("{:?}", self.0);
+        f.write_str(exact.strip_suffix(".0").unwrap_or(&exact))
     }
 }
 

@@ -5,6 +5,7 @@ use std::fmt;
 use articulated_core::algorithm::Shape;
 
 use super::IntegratorId;
+use super::error::Plain;
 
 /// What a simulation is asked for; keys are called as in scenes.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,28 +105,33 @@ impl fmt::Display for SettingError {
 
 impl std::error::Error for SettingError {}
 
-/// Most records that `Output::Every` may ask for.
-const MOST_OUTPUTS: f64 = 1e9;
+/// Most numbers that the records of `Output::Every` may have together: 8 GB.
+const MOST_RECORDED: f64 = 1e9;
 
 impl Settings {
     /// Everything that is wrong with them for a robot of this shape.
     pub fn problems(&self, shape: Shape) -> Vec<SettingError> {
         let mut found = Problems(Vec::new());
         let positive = |x: f64| x > 0.0 && x.is_finite();
+        let least = self.least_step();
         found.unless(self.start.is_finite(), "start", self.start, "a finite time, s");
         found.unless(
             self.end.is_finite() && self.end > self.start,
             "end",
             self.end,
-            &format!("a finite time after start = {}", self.start),
+            &format!("a finite time after start = {}", Plain(self.start)),
         );
         if let Some(step) = self.step {
             found.unless(positive(step), "step", step, "a length of time greater than zero, s");
-            let least = 16.0 * f64::EPSILON * self.start.abs().max(self.end.abs());
             let told = format!("at least {least:.1e} s, sixteen units of rounding of the time");
             found.unless(!positive(step) || step >= least || !least.is_finite(), "step", step, &told);
         } else if !self.integrator.row().adaptive {
-            found.unless(false, "step", "nothing", &format!("{} has no error estimate, so it needs a step, s", self.integrator));
+            found.unless_told(
+                false,
+                "step",
+                || "nothing".into(),
+                &format!("{} has no error estimate, so it needs a step, s", self.integrator),
+            );
         }
         let rtol = self.rtol == 0.0 || (self.rtol >= 1e-15 && self.rtol < 1.0);
         found.unless(rtol, "rtol", self.rtol, "0, or at least 1e-15, below which is rounding, and less than 1");
@@ -134,7 +140,7 @@ impl Settings {
         found.unless(!(rtol && atol) || self.rtol + self.atol > 0.0, "rtol", self.rtol, "one of rtol and atol greater than 0");
         let each = &self.atol_each;
         let lengths = [0, 2 * shape.nv].contains(&each.len());
-        found.unless(lengths, "atol_each", format!("{} numbers", each.len()), &format!("{} numbers, or none", 2 * shape.nv));
+        found.unless_told(lengths, "atol_each", || format!("{} numbers", each.len()), &format!("{} numbers, or none", 2 * shape.nv));
         let bad = each.iter().find(|x| !(**x >= 0.0 && x.is_finite()));
         found.unless(bad.is_none(), "atol_each", bad.copied().unwrap_or(0.0), "each at least 0");
         found.unless(self.min_step >= 0.0 && self.min_step.is_finite(), "min_step", self.min_step, "finite, at least 0 s");
@@ -142,37 +148,66 @@ impl Settings {
         found.unless(longest, "max_step", self.max_step, "greater than 0 s and at least min_step");
         let first = self.first_step;
         found.unless(first.is_none_or(positive), "first_step", first.unwrap_or(0.0), "a length of time greater than zero, s");
-        found.unless(self.max_steps > 0, "max_steps", self.max_steps, "at least 1");
+        found.unless(self.max_steps > 0, "max_steps", self.max_steps as f64, "at least 1");
         let time = self.event_tolerance >= 0.0 && self.event_tolerance.is_finite();
         found.unless(time, "event_tolerance", self.event_tolerance, "at least 0 s");
-        self.check_output(&mut found);
+        self.check_output(shape, &mut found);
         found.0
     }
 
-    fn check_output(&self, found: &mut Problems) {
+    /// The least that time can be told to go on by, s: sixteen units of its rounding.
+    pub(crate) fn least_step(&self) -> f64 {
+        16.0 * f64::EPSILON * self.start.abs().max(self.end.abs())
+    }
+
+    fn check_output(&self, shape: Shape, found: &mut Problems) {
         match &self.output {
-            Output::Every(s) => {
-                let sensible = *s > 0.0 && (self.end - self.start) / s < MOST_OUTPUTS;
-                found.unless(sensible, "output", s, "a length of time greater than zero, s, and no more than 1e9 records");
-            }
+            Output::Every(s) => self.check_every(*s, shape, found),
             Output::At(times) => {
                 let inside = |t: f64| t >= self.start && t <= self.end;
                 let early = times.windows(2).find(|w| w[0] >= w[1] || w[1].is_nan()).map(|w| w[1]);
                 let bad = times.iter().copied().find(|t| !inside(*t)).or(early);
-                let expected = format!("times from start = {} to end = {}, each later than the one before", self.start, self.end);
-                found.unless(bad.is_none(), "output", format!("{} among the times", bad.unwrap_or(0.0)), &expected);
+                let (start, end) = (Plain(self.start), Plain(self.end));
+                let expected = format!("times from start = {start} to end = {end}, each later than the one before");
+                found.unless_told(bad.is_none(), "output", || format!("{} among the times", Plain(bad.unwrap_or(0.0))), &expected);
             }
             Output::Steps | Output::Ends => {}
         }
     }
+
+    /// Records that time can tell apart, and that there is room for.
+    fn check_every(&self, every: f64, shape: Shape, found: &mut Problems) {
+        let length = self.end - self.start;
+        if !(every > 0.0 && length > 0.0 && length.is_finite()) {
+            return found.unless(every > 0.0, "output", every, "a length of time greater than zero, s");
+        }
+        // t, q, v, τ, five energies, momentum
+        let each = (1 + shape.nq + 2 * shape.nv + 5 + 6) as f64;
+        let (rounding, room) = (self.least_step(), length * each / MOST_RECORDED);
+        let right = if rounding > room {
+            format!("at least {rounding:.1e} s, sixteen units of rounding of the time")
+        } else {
+            format!("at least {} s, for no more than {MOST_RECORDED:e} numbers in all, {each} a record", short(room))
+        };
+        found.unless(every >= rounding.max(room), "output", every, &right);
+    }
+}
+
+/// To four digits.
+pub(crate) fn short(x: f64) -> Plain {
+    Plain(format!("{x:.3e}").parse().unwrap_or(x))
 }
 
 struct Problems(Vec<SettingError>);
 
 impl Problems {
-    fn unless(&mut self, right: bool, key: &'static str, found: impl fmt::Display, would_be: &str) {
+    fn unless(&mut self, right: bool, key: &'static str, found: f64, would_be: &str) {
+        self.unless_told(right, key, || Plain(found).to_string(), would_be);
+    }
+
+    fn unless_told(&mut self, right: bool, key: &'static str, found: impl FnOnce() -> String, would_be: &str) {
         if !right {
-            self.0.push(SettingError { key, found: found.to_string(), right: would_be.into() });
+            self.0.push(SettingError { key, found: found(), right: would_be.into() });
         }
     }
 }
@@ -214,11 +249,25 @@ mod tests {
     fn a_step_that_the_time_cannot_take_is_refused() {
         let shape = Shape { nq: 1, nv: 1, frames: 1, links: 1 };
         let at = |start: f64, end: f64| {
-            let settings = Settings { integrator: IntegratorId::rk4, step: Some(0.25), start, end, ..Settings::default() };
+            let settings =
+                Settings { integrator: IntegratorId::rk4, step: Some(0.25), start, end, output: Output::Ends, ..Settings::default() };
             settings.problems(shape).iter().map(|p| p.key).collect::<Vec<_>>()
         };
         // Near 1e15 s the time is a multiple of 1/8 s, near 1e12 s of 1/8192 s.
         assert_eq!([at(1e15, 1e15 + 4.0), at(1e12, 1e12 + 4.0)], [vec!["step"], vec![]]);
+    }
+
+    /// So many numbers as there is room for, whatever the robot; and no two records at one time.
+    #[test]
+    fn records_are_as_many_as_there_is_room_and_time_for() {
+        let told = |nv: usize, start: f64, every: f64| {
+            let settings = Settings { start, end: start + 10.0, output: Output::Every(every), ..Settings::default() };
+            let problems = settings.problems(Shape { nq: nv, nv, frames: 1, links: 1 });
+            problems.first().map(ToString::to_string).unwrap_or_default()
+        };
+        assert_eq!(told(1, 0.0, 2e-7), "");
+        assert_eq!(told(100, 0.0, 2e-7), "output = 2e-7: at least 3.12e-6 s, for no more than 1e9 numbers in all, 312 a record");
+        assert_eq!(told(1, 1e9, 1e-6), "output = 1e-6: at least 3.6e-6 s, sixteen units of rounding of the time");
     }
 
     #[test]
@@ -245,6 +294,7 @@ mod tests {
             ("output", Settings { output: Output::At(vec![0.5, 1.5]), ..right.clone() }),
             ("output", Settings { output: Output::At(vec![1.5, 2.5]), ..right.clone() }),
             ("output", Settings { output: Output::Every(1e-10), ..right.clone() }),
+            ("output", Settings { output: Output::Every(f64::NAN), ..right.clone() }),
         ];
         for (key, settings) in wrong {
             let found: Vec<_> = settings.problems(shape).iter().map(|p| p.key).collect();

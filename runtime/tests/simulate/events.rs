@@ -289,6 +289,20 @@ fn a_coordinate_leaves_its_limits_at_both_ends() {
     }
 }
 
+/// What files have for no bound at all is one, as good as none.
+#[test]
+fn the_largest_numbers_are_bounds() {
+    let robot = slider();
+    for bounds in [(-f64::MAX, f64::MAX), (-1.0, f64::MAX), (-f64::MAX, 0.5)] {
+        let mut limit = [Event::limit("limit", 0, bounds.0, bounds.1)];
+        let mut simulation = Simulation::new(&robot, to(IntegratorId::dopri5, 1.0, 1e-6)).unwrap();
+        let motion = simulation.run(&[0.0], &[1.0], &mut NoTorque, &mut limit).unwrap();
+        let expected: &[f64] = if bounds.1 == 0.5 { &[0.5] } else { &[] };
+        assert_eq!(motion.events.len(), expected.len(), "{bounds:?}: {:?}", motion.events);
+        assert!(motion.events.iter().zip(expected).all(|(hit, t)| (hit.t - t).abs() < 1e-9), "{bounds:?}: {:?}", motion.events);
+    }
+}
+
 #[test]
 fn an_event_about_a_number_that_there_is_not_is_an_error_that_names_it() {
     let robot = one_joint("prismatic", 0.0);

@@ -3,9 +3,10 @@
 use std::f64::consts::{PI, TAU};
 
 use articulated::simulate::{
-    Constant, Control, Event, Hold, Impact, IntegratorId, NoTorque, Pd, SimulateError, Simulation, StateError, Stiffness, integrators,
+    Constant, Control, Event, Hold, Impact, IntegratorId, NoTorque, Pd, Settings, SimulateError, Simulation, StateError, Stiffness,
+    integrators,
 };
-use articulated::{Base, Dynamics, FunctionError};
+use articulated::{Base, Dynamics, FunctionError, load_bytes};
 
 use crate::robots::{chain, free, handle, model, slider, stepping, to};
 
@@ -36,6 +37,42 @@ fn what_cannot_be_simulated_is_said_at_once() {
         assert!(t <= 0.52 && t > 0.49, "{id}: {error}");
         assert!(error.to_string().ends_with(" s tau[0] (joint `joint`) is not finite"), "{id}: {error}");
     }
+}
+
+/// A robot that nothing can move stands still, whatever would drive it.
+#[test]
+fn a_robot_without_a_joint_stands_still() {
+    let robot = load_bytes("still.urdf", b"<robot name='still'><link name='base'/></robot>", Base::Fixed).unwrap();
+    for row in integrators() {
+        let settings = if row.adaptive { to(row.id, 1.0, 1e-6) } else { stepping(row.id, 1.0, 0.1) };
+        let mut drive = |_: f64, _: &[f64], _: &[f64], _: &mut [f64]| {};
+        let motion = Simulation::new(&robot, settings).unwrap().run(&[], &[], &mut drive, &mut []).unwrap();
+        assert_eq!(motion.t, [0.0, 1.0], "{}", row.name);
+    }
+}
+
+/// Samples that time cannot tell apart, or that are more than a motion may have steps.
+#[test]
+fn a_period_that_a_motion_cannot_have_is_an_error_that_says_which_it_can() {
+    let refused = |start: f64, period: f64| {
+        let settings = Settings { start, end: start + 1.0, max_steps: 1000, ..to(IntegratorId::dopri5, 1.0, 1e-6) };
+        let mut drive = Hold::new(NoTorque, period).unwrap();
+        Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[0.0], &mut drive, &mut []).map(drop).map_err(|e| e.to_string())
+    };
+    let told = |right: &str| Err(right.to_owned());
+    assert_eq!(
+        refused(0.0, 1e-20),
+        told("period = 1e-20 cannot be used; it should be at least 3.6e-15 s, sixteen units of rounding of the time")
+    );
+    assert_eq!(
+        refused(0.0, 1e-4),
+        told("period = 0.0001 cannot be used; it should be at least 0.001 s, for no more samples than max_steps = 1000")
+    );
+    assert_eq!(
+        refused(1e9, 1e-8),
+        told("period = 1e-8 cannot be used; it should be at least 3.6e-6 s, sixteen units of rounding of the time")
+    );
+    assert_eq!(refused(0.0, 2e-3), Ok(()));
 }
 
 #[test]

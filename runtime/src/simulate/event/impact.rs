@@ -63,7 +63,7 @@ impl<'r, R: Dynamics<f64>> Impact<'r, R> {
         let nv = self.row.len();
         check_length("v", v.len(), nv)?;
         StateError::none(
-            (!ball.is_finite()).then_some(StateError::Value { what: "ball", found: ball, right: "a speed, m/s" }).into_iter(),
+            (!ball.is_finite()).then_some(StateError::Value { what: "ball", found: ball, right: "a speed, m/s".into() }).into_iter(),
         )?;
         self.points.point(q, self.point)?;
         let [x, y, z] = self.points.turned(self.point);

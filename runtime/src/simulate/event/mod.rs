@@ -102,7 +102,8 @@ impl<'a> Event<'a> {
         let g = move |_: f64, q: &[f64], _: &[f64]| {
             let x = number(q, i);
             match (lower.is_finite(), upper.is_finite()) {
-                (true, true) => (x - lower) * (upper - x) / (upper - lower),
+                // Halves: what lies between the two may be more than a number can say.
+                (true, true) => (x - lower) * (((upper - x) / 2.0) / (upper / 2.0 - lower / 2.0)),
                 (true, false) => x - lower,
                 _ => upper - x,
             }
@@ -165,7 +166,7 @@ fn length(normal: [f64; 3]) -> f64 {
 
 /// A number that is not finite, or not otherwise `fit`.
 fn value(what: &'static str, found: f64, right: &'static str, fit: bool) -> Option<StateError> {
-    (!fit || !found.is_finite()).then_some(StateError::Value { what, found, right })
+    (!fit || !found.is_finite()).then_some(StateError::Value { what, found, right: right.into() })
 }
 
 /// What is wrong with a point of a frame and a normal of this length.

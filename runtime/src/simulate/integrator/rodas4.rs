@@ -160,7 +160,7 @@ impl Rodas4 {
         let (first, inverse) = self.derivatives.split_at_mut(2 * nv * nv);
         let response =
             |row: usize, column: &[f64]| -> f64 { inverse[row * nv..(row + 1) * nv].iter().zip(column).map(|(m, t)| m * t).sum() };
-        for (column, tau) in self.feedback.chunks_exact(nv).enumerate() {
+        for (column, tau) in self.feedback.chunks_exact(nv.max(1)).enumerate() {
             for row in 0..nv {
                 let part = response(row, tau);
                 match column {
