@@ -4,10 +4,12 @@
 use std::collections::HashSet;
 use std::fmt;
 
-use articulated_core::description::{Base, Description, EditError};
+use articulated_core::description::{Base, Description, EditError, PrincipalMoments};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
-use articulated_urdf::{Kind, Problem, Problems, Reading, Subject, Unused};
+use articulated_core::suggest::Suggester;
+pub use articulated_urdf::MOST_SNAPPED;
+use articulated_urdf::{Kind, Problem, Problems, Reading, SNAP_EXPECTED, Subject, Unused, can_snap};
 
 use crate::request::Appended;
 use crate::{Error, Options, Request};
@@ -100,6 +102,7 @@ pub(crate) fn read_with_shafts(request: &Request) -> Result<(Reading, Vec<Vec<Ap
     editing.let_go();
     editing.warn_of_limits();
     editing.warn_of_loads();
+    editing.warn_of_moments();
     editing.leave_what_is_used();
     if editing.refusals.is_empty() { Ok((editing.reading, springs)) } else { Err(Error::Edits { refusals: editing.refusals }) }
 }
@@ -123,16 +126,13 @@ pub fn choose_frames(request: &Request, model: Model<f64>) -> Result<Model<f64>,
     })
 }
 
-/// The largest [`Options::snap_angles`], rad: an angle that is farther from a multiple of π/2 was not meant to be one.
-pub const MOST_SNAPPED: f64 = 0.5;
-
 /// Whether the numbers among the choices can be. Errors: all that cannot.
 fn numbers(options: &Options) -> Result<(), Error> {
     let wrong = |key, found, expected| Error::Number { key, found, expected };
     let gravity = options.gravity.iter().any(|x| !x.is_finite());
     let gravity = gravity.then(|| wrong("gravity", format!("{:?}", options.gravity), "three finite numbers in m/s²"));
-    let snapped = options.snap_angles.filter(|x| !(0.0..=MOST_SNAPPED).contains(x));
-    let snapped = snapped.map(|x| wrong("snap_angles", x.to_string(), "0 to 0.5 rad"));
+    let snapped = options.snap_angles.filter(|x| !can_snap(*x));
+    let snapped = snapped.map(|x| wrong("snap_angles", x.to_string(), SNAP_EXPECTED));
     Error::of(gravity.into_iter().chain(snapped).collect()).map_or(Ok(()), Err)
 }
 
@@ -176,14 +176,19 @@ impl Editing<'_> {
 
     fn check_frames(&mut self) {
         let Some(frames) = &self.request.options.frames else { return };
+        let links = &self.reading.description.links;
+        let names: HashSet<&str> = links.iter().map(|l| l.name.as_str()).collect();
+        let (mut seen, mut suggester) = (HashSet::new(), Suggester::default());
+        let mut refused = Vec::new();
         for (i, name) in frames.iter().enumerate() {
-            let result = match self.reading.description.link_or_nearest(name) {
-                Err(error) => Err(Reason::Edit(error)),
-                Ok(_) if frames[..i].contains(name) => Err(Reason::FrameTwice(name.clone())),
-                Ok(_) => Ok(()),
-            };
-            self.take(Edit::Frame(i), result);
+            if !names.contains(name.as_str()) {
+                let nearest = suggester.nearest(name, links.iter().map(|l| l.name.as_str())).map(str::to_owned);
+                refused.push((i, Reason::Edit(EditError::UnknownLink { name: name.clone(), nearest })));
+            } else if !seen.insert(name) {
+                refused.push((i, Reason::FrameTwice(name.clone())));
+            }
         }
+        refused.into_iter().for_each(|(i, reason)| self.take(Edit::Frame(i), Err(reason)));
     }
 
     /// Mass behind a shaft moves, and so does what the shaft has taken for its own.
@@ -232,6 +237,23 @@ impl Editing<'_> {
             expected: "a link that moves: here it plays no part in the dynamics".into(),
         });
         self.reading.warnings.extend(loads.collect::<Vec<_>>());
+    }
+
+    /// An inertia of a load that no body has is odd, and used, as that of a link is.
+    fn warn_of_moments(&mut self) {
+        let odd = self.request.options.payloads.iter().filter_map(|load| {
+            let moments = PrincipalMoments::of(load.inertia);
+            moments.miss_triangle().then(|| Problem {
+                file: self.request.file.clone(),
+                line: None,
+                subject: Subject::Link(load.link.clone()),
+                kind: Kind::InertiaTriangle,
+                field: "payload".into(),
+                found: moments.to_string(),
+                expected: format!("{}; used as asked for", PrincipalMoments::TRIANGLE),
+            })
+        });
+        self.reading.warnings.extend(odd);
     }
 
     /// Numbers of the URDF that an effect has taken are used.
@@ -297,6 +319,16 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_tolerance_of_angles_is_above_nothing() {
+        for (tolerance, found) in [(0.0, "0"), (MOST_SNAPPED * 2.0, "1"), (f64::NAN, "NaN")] {
+            let mut request = request();
+            request.options.snap_angles = Some(tolerance);
+            let expected = "expected a finite number above 0, at most 0.5 rad; leave it out to snap none";
+            assert_eq!(read(&request).unwrap_err().to_string(), format!("snap_angles: found {found}, {expected}"));
+        }
+    }
+
     fn refused(request: &Request) -> Vec<Edit> {
         match read(request) {
             Err(Error::Edits { refusals }) => refusals.into_iter().map(|r| r.edit).collect(),
@@ -348,6 +380,22 @@ mod tests {
         assert_eq!(warned(&|o| (o.base, o.payloads) = (Base::Floating, vec![load("base", 1.0)])), 0);
     }
 
+    #[test]
+    fn a_load_that_misses_the_triangle_inequality_is_told_of_and_used_as_a_links_inertia_is() {
+        let told = |inertia: [f64; 6]| {
+            let mut request = request();
+            request.options.payloads.push(Payload { link: "tip".into(), mass: 1.0, inertia, ..Payload::default() });
+            let warnings = read(&request).unwrap().warnings.into_iter().filter(|w| w.field == "payload");
+            warnings.map(|w| (w.kind, w.found, w.expected)).collect::<Vec<_>>()
+        };
+        let expected = "none greater than the other two together (triangle inequality); used as asked for";
+        let of = |found: &str| vec![(Kind::InertiaTriangle, format!("the principal moments {found} kg·m²"), expected.to_owned())];
+        assert_eq!(told([1.0, 0.0, 0.0, 1.0, 0.0, 3.0]), of("1.000e0, 1.000e0, 3.000e0"));
+        // The moments 0, 1 − 0.0009 and 1 + 0.0009.
+        assert_eq!(told([0.0, 0.0, 0.0, 1.0, 0.0009, 1.0]), of("0, 9.991e-1, 1.001e0"));
+        assert_eq!(told([0.0, 0.0, 0.0, 1.0, 1e-7, 1.0]), []);
+    }
+
     /// A hand and, fixed to it, a tip and a lamp.
     fn club() -> Request {
         let fixed = |link: &str| {
@@ -380,6 +428,19 @@ mod tests {
         let mut request = request();
         request.options.frames = Some(["tip", "base", "tap", "tip"].map(String::from).to_vec());
         assert_eq!(refused(&request), [Edit::Frame(2), Edit::Frame(3)]);
+    }
+
+    #[test]
+    fn very_many_frames_that_there_are_not_are_told_soon_and_the_first_with_what_was_meant() {
+        let mut request = request();
+        let links: String = (0..5000).map(|k| format!("<link name='link_{k:05}'/>")).collect();
+        let joint = |k| format!("<joint name='j{k}' type='fixed'><parent link='tip'/><child link='link_{k:05}'/></joint>");
+        let robot = robot("arm").replace("</robot>", &(links + &(0..5000).map(joint).collect::<String>() + "</robot>"));
+        request.urdf = robot.into_bytes();
+        request.options.frames = Some((0..5000).map(|k| format!("lynk_{k:05}")).collect());
+        let Err(Error::Edits { refusals }) = read(&request) else { panic!("frames that there are not") };
+        let meant = |r: &Refusal| matches!(&r.reason, Reason::Edit(EditError::UnknownLink { nearest: Some(_), .. }));
+        assert_eq!((refusals.len(), meant(&refusals[0]), meant(&refusals[4999])), (5000, true, false));
     }
 
     #[test]

@@ -9,6 +9,8 @@
 //! The ten are the inertial parameters m, m·c, and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz about the origin of the link's frame, in its axes: all of dynamics is linear
 //! in them.
 
+use std::collections::HashMap;
+
 use articulated_core::Scalar;
 use articulated_core::algorithm::PARAMETERS;
 use articulated_core::description::Description;
@@ -46,60 +48,99 @@ pub struct Parameter {
 
 /// Reads the list, and takes out of the description what will be an input.
 pub(crate) fn parse(list: &[String], description: &mut Description, model: &Model<f64>) -> Result<Vec<Parameter>, Error> {
+    let mut robot = Robot::of(description, model);
     let mut parameters: Vec<Parameter> = Vec::new();
+    let mut identifiers: HashMap<String, usize> = HashMap::new();
     for text in list {
+        let wrong = |reason: String| Error::Parameter { found: text.trim().into(), reason };
         let at = parameters.last().map_or(0, |p| p.at + p.nominal.len());
-        let parameter = one(text, at, description, model)?;
-        if let Some(other) = parameters.iter().find(|p| identifier(&p.name) == identifier(&parameter.name)) {
-            let reason = match other.what == parameter.what {
+        let parameter = robot.one(text, at).map_err(wrong)?;
+        let name = identifier(&parameter.name);
+        if let Some(other) = identifiers.get(&name).map(|k| &parameters[*k]) {
+            return Err(wrong(match other.what == parameter.what {
                 true => "is there twice, expected once".into(),
-                false => format!("is {} in Rust, as the {} is", identifier(&other.name), other.what),
-            };
-            return Err(Error::Parameter { found: text.trim().into(), reason });
+                false => format!("is {name} in Rust, as the {} is", other.what),
+            }));
         }
+        identifiers.insert(name, parameters.len());
         parameters.push(parameter);
     }
     Ok(parameters)
 }
 
-fn one(text: &str, at: usize, description: &mut Description, model: &Model<f64>) -> Result<Parameter, Error> {
-    let wrong = |reason: String| Error::Parameter { found: text.trim().into(), reason };
-    let expected = || wrong("expected payload(link), inertia(link) or origin(joint)".into());
-    let (kind, rest) = text.split_once('(').ok_or_else(expected)?;
-    let name = rest.trim_end().strip_suffix(')').ok_or_else(expected)?.trim();
-    let name = name.strip_prefix('"').and_then(|n| n.strip_suffix('"')).unwrap_or(name);
-    let kind = KINDS.iter().find(|(k, _)| *k == kind.trim()).ok_or_else(expected)?.1;
-    if kind == Kind::Origin {
-        return origin(name, at, description, model).map_err(wrong);
-    }
-    let Some(link) = description.links.iter_mut().find(|l| l.name == name) else {
-        let near = nearest(name, model.frames.iter().map(|f| f.name.as_str())).map(|n| format!(", did you mean {n:?}?"));
-        return Err(wrong(format!("there is no link {name:?}{}", near.unwrap_or_default())));
-    };
-    let frame = model.frames.iter().find(|f| f.name == name).ok_or_else(|| wrong("the link is no frame".into()))?;
-    // The link itself is left without what becomes an input.
-    let own = if kind == Kind::Inertia { link.inertial.take() } else { None };
-    let nominal = own.map_or([0.0; PARAMETERS], |own| own.spatial_inertia().parameters());
-    let what = match kind {
-        Kind::Inertia => format!("inertial parameters of link {name:?}"),
-        _ => format!("inertial parameters of a payload on link {name:?}"),
-    };
-    let name = format!("{name}_{}", if kind == Kind::Inertia { "inertia" } else { "payload" });
-    Ok(Parameter { what, name, at, nominal: nominal.to_vec(), kind, body: frame.body, frame: frame.placement })
+/// The robot whose constants they are, with its names.
+struct Robot<'a> {
+    description: &'a mut Description,
+    model: &'a Model<f64>,
+    links: HashMap<String, usize>,
+    joints: HashMap<String, usize>,
+    frames: HashMap<String, usize>,
+    /// The first body of each joint: a planar or universal joint has several.
+    bodies: HashMap<String, usize>,
 }
 
-fn origin(name: &str, at: usize, description: &Description, model: &Model<f64>) -> Result<Parameter, String> {
-    let Some(joint) = description.joints.iter().find(|j| j.name == name) else {
-        let near = nearest(name, description.joints.iter().map(|j| j.name.as_str())).map(|n| format!(", did you mean {n:?}?"));
-        return Err(format!("there is no joint {name:?}{}", near.unwrap_or_default()));
-    };
-    // The first body of the joint: a planar or universal joint has several.
-    let body = model.bodies.iter().skip(1).position(|b| b.name == name).map(|k| k + 1);
-    let body = body.ok_or_else(|| format!("joint {name:?} does not move; only the origin of a moving joint can stay an input"))?;
-    let parent = &description.links[joint.parent].name;
-    let frame = model.frames.iter().find(|f| f.name == *parent).ok_or_else(|| format!("link {parent:?} is no frame"))?;
-    let (what, nominal) = (format!("origin of joint {name:?} in its parent link, m"), joint.origin.xyz.to_vec());
-    Ok(Parameter { what, name: format!("{name}_origin"), at, nominal, kind: Kind::Origin, body, frame: frame.placement })
+impl<'a> Robot<'a> {
+    fn of(description: &'a mut Description, model: &'a Model<f64>) -> Self {
+        let links = indices(description.links.iter().map(|l| &l.name));
+        let joints = indices(description.joints.iter().map(|j| &j.name));
+        let frames = indices(model.frames.iter().map(|f| &f.name));
+        let mut bodies = indices(model.bodies.iter().skip(1).map(|b| &b.name));
+        bodies.values_mut().for_each(|k| *k += 1);
+        Self { description, model, links, joints, frames, bodies }
+    }
+
+    fn one(&mut self, text: &str, at: usize) -> Result<Parameter, String> {
+        let expected = || "expected payload(link), inertia(link) or origin(joint)".to_owned();
+        let (kind, rest) = text.split_once('(').ok_or_else(expected)?;
+        let name = rest.trim_end().strip_suffix(')').ok_or_else(expected)?.trim();
+        let name = name.strip_prefix('"').and_then(|n| n.strip_suffix('"')).unwrap_or(name);
+        match KINDS.iter().find(|(k, _)| *k == kind.trim()).ok_or_else(expected)?.1 {
+            Kind::Origin => self.origin(name, at),
+            kind => self.mass(kind, name, at),
+        }
+    }
+
+    fn mass(&mut self, kind: Kind, name: &str, at: usize) -> Result<Parameter, String> {
+        let Some(&link) = self.links.get(name) else {
+            return Err(format!("there is no link {name:?}{}", meant(name, self.model.frames.iter().map(|f| &f.name))));
+        };
+        let frame = self.frames.get(name).map(|k| &self.model.frames[*k]).ok_or_else(|| "the link is no frame".to_owned())?;
+        // The link itself is left without what becomes an input.
+        let own = if kind == Kind::Inertia { self.description.links[link].inertial.take() } else { None };
+        let nominal = own.map_or([0.0; PARAMETERS], |own| own.spatial_inertia().parameters());
+        let what = match kind {
+            Kind::Inertia => format!("inertial parameters of link {name:?}"),
+            _ => format!("inertial parameters of a payload on link {name:?}"),
+        };
+        let name = format!("{name}_{}", if kind == Kind::Inertia { "inertia" } else { "payload" });
+        Ok(Parameter { what, name, at, nominal: nominal.to_vec(), kind, body: frame.body, frame: frame.placement })
+    }
+
+    fn origin(&self, name: &str, at: usize) -> Result<Parameter, String> {
+        let Some(joint) = self.joints.get(name).map(|k| &self.description.joints[*k]) else {
+            return Err(format!("there is no joint {name:?}{}", meant(name, self.description.joints.iter().map(|j| &j.name))));
+        };
+        let body = self.bodies.get(name).copied();
+        let body = body.ok_or_else(|| format!("joint {name:?} does not move; only the origin of a moving joint can stay an input"))?;
+        let parent = &self.description.links[joint.parent].name;
+        let frame = self.frames.get(parent).map(|k| &self.model.frames[*k]).ok_or_else(|| format!("link {parent:?} is no frame"))?;
+        let (what, nominal) = (format!("origin of joint {name:?} in its parent link, m"), joint.origin.xyz.to_vec());
+        Ok(Parameter { what, name: format!("{name}_origin"), at, nominal, kind: Kind::Origin, body, frame: frame.placement })
+    }
+}
+
+/// Index of each name; the first, where there are several.
+fn indices<'a>(names: impl Iterator<Item = &'a String>) -> HashMap<String, usize> {
+    let mut indices = HashMap::new();
+    names.enumerate().for_each(|(k, name)| {
+        indices.entry(name.clone()).or_insert(k);
+    });
+    indices
+}
+
+/// `, did you mean "upper"?`, or nothing.
+fn meant<'a>(name: &str, names: impl Iterator<Item = &'a String>) -> String {
+    nearest(name, names.map(String::as_str)).map(|n| format!(", did you mean {n:?}?")).unwrap_or_default()
 }
 
 impl Parameter {
@@ -203,6 +244,24 @@ mod tests {
             assert!((twice - with).abs() < 1e-12 * (1.0 + twice.abs()), "{twice} {with}");
         }
         assert_eq!(read(&request, &["payload(tool)"]).1[0].nominal, [0.0; PARAMETERS]);
+    }
+
+    #[test]
+    fn what_there_is_not_is_told_with_what_was_meant() {
+        let request = robot(["0 0 0", "2", "0 0 0", "0 0 0"]);
+        let mut description = crate::read(&request).unwrap().description;
+        let model = crate::model(&request, &description).unwrap();
+        let mut told = |one: &str| parse(&[one.to_owned()], &mut description, &model).map(|_| ()).unwrap_err().to_string();
+        for (one, said) in [
+            ("payload(tol)", "there is no link \"tol\", did you mean \"tool\"?"),
+            ("inertia(slide)", "there is no link \"slide\""),
+            ("origin(slid)", "there is no joint \"slid\", did you mean \"slide\"?"),
+            ("origin(grip)", "joint \"grip\" does not move; only the origin of a moving joint can stay an input"),
+            ("mass(tool)", "expected payload(link), inertia(link) or origin(joint)"),
+            ("payload(tool", "expected payload(link), inertia(link) or origin(joint)"),
+        ] {
+            assert_eq!(told(one), format!("parameters: `{one}`: {said}"));
+        }
     }
 
     #[test]

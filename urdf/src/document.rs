@@ -3,17 +3,15 @@
 use roxmltree::{Document, Error};
 
 use crate::element::Tag;
+use crate::file::MOST_BYTES;
 use crate::lines::{Lines, line_of};
 use crate::log::{Log, Place};
 use crate::markup;
 use crate::problem::{Kind, Subject, quote};
 
-/// Larger files are refused: a robot of 100 000 links stays well below.
-const MOST_BYTES: usize = 64 << 20;
-
 /// The text of the file, prepared for a strict XML reader; see [`markup::prepare`]. Lines are where they were.
 pub(crate) fn text(bytes: &[u8], log: &mut Log) -> Option<String> {
-    if bytes.len() > MOST_BYTES {
+    if bytes.len() as u64 > MOST_BYTES {
         let found = format!("{} bytes", bytes.len());
         log.error(&Place::DOCUMENT, Kind::TooLarge, found, format!("at most {MOST_BYTES} bytes"));
         return None;

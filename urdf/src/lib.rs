@@ -18,7 +18,7 @@
 //!
 //! The way of a file: document (bytes → XML) → links and joints (checked numbers, with their lines) → tree
 //! (names, rings, roots, mimics) → bridge (a plain document that `urdf-rs` reads, compared with what was found here) →
-//! [`Description`]. Other files are never opened, and no input makes the reader panic, hang or overflow its stack.
+//! [`Description`]. [`read`] opens no file ([`read_file`] does), and no input makes it panic, hang or overflow its stack.
 //!
 //! # Beyond the format
 //!
@@ -36,8 +36,8 @@ mod base;
 mod bridge;
 mod document;
 mod draft;
-mod eigen;
 mod element;
+mod file;
 mod frame;
 mod inertia;
 mod joints;
@@ -51,14 +51,17 @@ mod number;
 mod plain;
 mod problem;
 mod robot;
+mod snap;
 mod tree;
 mod unused;
 mod xacro;
 
 use articulated_core::description::{Base, Description};
 
+pub use file::{MOST_BYTES, read_at_most, read_file};
 use log::Log;
 pub use problem::{Kind, Problem, Problems, Subject};
+pub use snap::{MOST_SNAPPED, SNAP_EXPECTED, can_snap};
 pub use unused::Unused;
 
 /// How to read.
@@ -70,8 +73,8 @@ pub struct Options {
     pub base: Base,
     /// Makes an inertia that is not positive semi-definite a warning instead of an error.
     pub allow_unphysical_inertia: bool,
-    /// Replaces an angle of an `<origin>` that is within this many rad of a multiple of π/2 by that multiple.
-    /// `None` leaves every number as written.
+    /// Replaces an angle of an `<origin>` that is within this many rad of a multiple of π/2 by that multiple: above 0, at most [`MOST_SNAPPED`];
+    /// anything else is an error. `None` leaves every number as written.
     pub snap_angles: Option<f64>,
 }
 
@@ -99,6 +102,7 @@ pub struct Reading {
 /// is the double nearest to its spelling. Errors: all of the file's at once, at most 1000.
 pub fn read(bytes: &[u8], options: &Options) -> Result<Reading, Problems> {
     let mut log = Log::new(options.file.clone());
+    snap::check(options.snap_angles, &mut log);
     match read_into(bytes, options, &mut log) {
         Some(description) if log.errors.is_empty() => Ok(log.reading(description)),
         _ => Err(log.problems()),

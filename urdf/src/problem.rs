@@ -127,10 +127,14 @@ pub enum Kind {
     Negative,
     /// A tag or attribute that nobody knows, but nearly one that matters.
     Misspelt,
+    /// A link or a joint that does not stand directly inside the robot.
+    Misplaced,
     /// Mass on what a fixed base holds.
     UnusedInertia,
     /// An angle was replaced by a multiple of π/2, as asked for.
     Snapped,
+    /// [`Options::snap_angles`](crate::Options::snap_angles) that cannot be.
+    SnapAngles,
     /// More problems than are listed.
     More,
     /// The two readers of this crate disagree: a mistake of the crate, not of the file.

@@ -72,6 +72,7 @@ pub(crate) fn rest(tag: &Tag<'_>, tags: &[&str], attributes: &[&str], log: &mut 
         let why = KNOWN.iter().find(|(within, known, _)| *within == parent && *known == name);
         match why {
             Some((_, _, why)) => log.unused(&child, name, *why),
+            None if name == "link" || name == "joint" => misplaced(&child.place(&format!("<{name}>")), &name, &parent, log),
             None => unknown(&child.place(&format!("<{name}>")), name.clone(), &name, tags, log),
         }
     }
@@ -90,6 +91,12 @@ fn rest_of_attributes(tag: &Tag<'_>, used: &[&str], log: &mut Log) {
             None => unknown(&tag.place(&what), what.clone(), &name, used, log),
         }
     }
+}
+
+fn misplaced(place: &Place<'_>, name: &str, parent: &str, log: &mut Log) {
+    log.unused_at(place.line, place.subject, name.to_owned(), "in no place where it counts");
+    let expected = format!("it directly inside <robot>, where alone it counts: is a </{parent}> missing?");
+    log.warning(place, Kind::Misplaced, format!("one inside <{parent}>"), expected);
 }
 
 fn unknown(place: &Place<'_>, what: String, name: &str, used: &[&str], log: &mut Log) {

@@ -282,6 +282,7 @@ fn what_looks_wrong_is_a_warning_and_used_as_written() {
         ("<limit lower=\"-1\" upper=\"1\" effort=\"10\" velocity=\"2\"/>", "", Kind::LimitMissing, "swing", 31),
         ("damping=\"0.5\"", "damping=\"-0.5\"", Kind::Negative, "swing", 36),
         ("<link name=\"hook\"/>", "<link name=\"hook\"><inertal/></link>", Kind::Misspelt, "hook", 17),
+        ("<link name=\"hook\"/>", "<link name=\"hook\"><joint name=\"swing\"/></link>", Kind::Misplaced, "hook", 17),
         ("effort=\"100\"", "effort=\"100\" efort=\"1\"", Kind::Misspelt, "travel", 29),
         ("<robot ", "<robot version=\"7\" ", Kind::Version, "", 2),
         ("<child link=\"hook\"/>", "<child link=\"hook\"/><origin rpy=\"0 -90 0\"/>", Kind::MoreThanATurn, "swing", 33),

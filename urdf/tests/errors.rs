@@ -2,7 +2,7 @@
 
 mod corpus;
 
-use articulated_urdf::{Kind, Options, Subject, read};
+use articulated_urdf::{Kind, MOST_SNAPPED, Options, Subject, read};
 use corpus::{CRANE, as_kept, crane, only_error, options, refused, refused_bytes};
 
 /// One mistake: what is replaced by what; the kind and line of the error; words of the message.
@@ -271,6 +271,19 @@ fn an_inertia_may_be_unphysical_where_that_is_asked_for() {
     assert_eq!(reading.warnings.len(), 1);
     assert_eq!(reading.warnings[0].kind, Kind::InertiaNotPositive);
     assert_eq!(reading.description.links[1].inertial.unwrap().inertia[5], -31.0);
+}
+
+#[test]
+fn a_tolerance_of_angles_that_cannot_be_is_told_with_the_rest() {
+    for (tolerance, found) in [(0.0, "0"), (-1e-9, "-0.000000001"), (0.6, "0.6"), (f64::NAN, "NaN"), (f64::INFINITY, "inf")] {
+        let asked = Options { snap_angles: Some(tolerance), ..options() };
+        let error = read(CRANE.as_bytes(), &asked).unwrap_err().to_string();
+        let expected = "expected a finite number above 0, at most 0.5 rad; leave it out to snap none";
+        assert_eq!(error, format!("error: crane.urdf: snap_angles: found {found}, {expected}"));
+        let problems = read(crane("0 0 12", "0 0 x").as_bytes(), &asked).unwrap_err();
+        assert_eq!(problems.errors.iter().map(|e| e.kind).collect::<Vec<_>>(), [Kind::SnapAngles, Kind::NotANumber]);
+    }
+    assert!([1e-300, MOST_SNAPPED].into_iter().all(|x| read(CRANE.as_bytes(), &Options { snap_angles: Some(x), ..options() }).is_ok()));
 }
 
 #[test]

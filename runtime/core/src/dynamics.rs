@@ -45,7 +45,7 @@ macro_rules! argument {
 }
 
 macro_rules! methods {
-    ($($name:ident($($argument:ident),*) -> [$($dim:ident $(($n:literal))?),*] $unit:literal, $needs:ident, $regrouped:literal,
+    ($($name:ident($($argument:ident),*) -> [$($dim:ident $(($n:literal))?),*] $unit:literal, $group:ident, $needs:ident, $regrouped:literal,
         $summary:literal, $source:literal $(, by $ways:tt)? $(, columns $unsolved:ident)? $(, forms $forms:tt)?;)*) => {
         /// A robot's dynamics. Code written over this trait runs on generated robots and on a [`Model`] alike.
         ///

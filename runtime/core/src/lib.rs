@@ -13,6 +13,7 @@
 extern crate alloc;
 
 pub mod dual;
+pub mod eigen;
 pub mod running;
 pub mod scalar;
 pub mod spatial;

@@ -100,52 +100,50 @@ impl<'a> Resolving<'a> {
 
     /// Whether everything that is named is there and moves.
     fn known_names(&self, row: &Effect, asked: &[&Asked], log: &mut Log) {
-        let description = self.robot.description;
-        let Description { joints, links, .. } = description;
         for one in asked {
             let Selector::Named(name) = &one.on else { continue };
-            let place = |kind| (one.place, one.key.as_str(), kind);
             match row.on {
-                On::Joint => match joints.iter().find(|j| j.name == *name) {
-                    None => {
-                        let names = joints.iter().filter(|j| moves(description, j)).map(|j| j.name.as_str());
-                        log.unknown(
-                            place(Kind::UnknownName),
-                            ("a joint that there is not".into(), name),
-                            "a joint of the robot that moves",
-                            names,
-                        );
-                    }
-                    Some(joint) if !moves(description, joint) && one.says.is_some() => {
-                        let found = if joint.kind == JointKind::Fixed { "a fixed joint" } else { "a joint that is locked" };
-                        log.error(one.place, &one.key, Kind::Robot, found, "a joint that moves");
-                    }
-                    Some(joint) if one.says.is_some() && !has_room(row, joint.kind) => {
-                        let found = format!("a {} joint, which has no coordinate of its own for each degree of freedom", joint.kind.name());
-                        log.error(one.place, &one.key, Kind::Robot, found, "another joint");
-                    }
-                    Some(joint) if one.says.is_some() && row.id == EffectId::motor && joint.mimic.is_some() => {
-                        log.error(
-                            one.place,
-                            &one.key,
-                            Kind::Robot,
-                            "a joint that follows another",
-                            "the joint that it follows: that is what a motor drives",
-                        );
-                    }
-                    Some(_) => {}
-                },
-                On::Link => match links.iter().position(|l| l.name == *name) {
-                    None => {
-                        let names = links.iter().map(|l| l.name.as_str());
-                        log.unknown(place(Kind::UnknownName), ("a link that there is not".into(), name), "a link of the robot", names);
-                    }
-                    Some(link) if self.still[link] && one.says.is_some() => {
-                        log.error(one.place, &one.key, Kind::Robot, "a link that is fixed to the base", "a link that moves");
-                    }
-                    Some(_) => {}
-                },
+                On::Joint => self.known_joint(row, one, name, log),
+                On::Link => self.known_link(one, name, log),
             }
+        }
+    }
+
+    fn known_joint(&self, row: &Effect, one: &Asked, name: &str, log: &mut Log) {
+        let description = self.robot.description;
+        let Some(joint) = description.joints.iter().find(|j| j.name == name) else {
+            let place = (one.place, one.key.as_str(), Kind::UnknownName);
+            let names = description.joints.iter().filter(|j| moves(description, j)).map(|j| j.name.as_str());
+            log.unknown(place, ("a joint that there is not".into(), name), "a joint of the robot that moves", names);
+            return;
+        };
+        let (found, expected) = match joint.kind {
+            _ if one.says.is_none() => return,
+            JointKind::Fixed => ("a fixed joint".to_owned(), "a joint that moves"),
+            _ if !moves(description, joint) => ("a joint that is locked".to_owned(), "a joint that moves"),
+            kind if !has_room(row, kind) => {
+                (format!("a {} joint, which has no coordinate of its own for each degree of freedom", kind.name()), "another joint")
+            }
+            _ if row.id == EffectId::motor && joint.mimic.is_some() => {
+                ("a joint that follows another".to_owned(), "the joint that it follows: that is what a motor drives")
+            }
+            _ => return,
+        };
+        log.error(one.place, &one.key, Kind::Robot, found, expected);
+    }
+
+    fn known_link(&self, one: &Asked, name: &str, log: &mut Log) {
+        let links = &self.robot.description.links;
+        match links.iter().position(|l| l.name == name) {
+            None => {
+                let place = (one.place, one.key.as_str(), Kind::UnknownName);
+                let names = links.iter().map(|l| l.name.as_str());
+                log.unknown(place, ("a link that there is not".into(), name), "a link of the robot", names);
+            }
+            Some(link) if self.still[link] && one.says.is_some() => {
+                log.error(one.place, &one.key, Kind::Robot, "a link that is fixed to the base", "a link that moves");
+            }
+            Some(_) => {}
         }
     }
 

@@ -237,7 +237,7 @@ fn payloads_that_cannot_be_are_refused() {
         (Payload { mass: -1.0, ..good.clone() }, "found -1 kg"),
         (Payload { mass: f64::INFINITY, ..good.clone() }, "mass"),
         (Payload { center_of_mass: [0.0, f64::NAN, 0.0], ..good.clone() }, "centre of mass"),
-        (Payload { inertia: [1.0, 0.0, 0.0, 1.0, 0.0, 3.0], ..good.clone() }, "inertia: found [1.0"),
+        (Payload { inertia: [1.0, 0.0, 0.0, 1.0, 0.0, -3.0], ..good.clone() }, "inertia: found [1.0"),
         (Payload { inertia: [1.0, 0.0, 0.0, 1.0, 0.0, 1.0], mass: 0.0, ..good.clone() }, "with mass"),
     ];
     for (payload, words) in bad {

@@ -125,6 +125,26 @@ fn joints_that_move_no_mass_are_found() {
     });
 }
 
+/// A joint that follows another backwards leaves its body where it was: what mass that has nothing moves.
+#[test]
+fn a_follower_that_undoes_its_leader_moves_no_mass() {
+    for (kind, multiplier) in [("prismatic", -1.0), ("revolute", -1.0), ("prismatic", -0.5), ("revolute", 1.0)] {
+        let joint = |name: &str, parent: &str, child: &str, mimic: &str| {
+            format!(
+                "<joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{child}'/><axis xyz='0 1 0'/>{mimic}
+                <limit lower='-3' upper='3' effort='1' velocity='1'/></joint>"
+            )
+        };
+        let mimic = format!("<mimic joint='first' multiplier='{multiplier}' offset='0.1'/>");
+        let joints = joint("first", "base", "middle", "") + &joint("second", "middle", "tip", &mimic);
+        let body = "<inertial><origin xyz='0 0 0'/><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial>";
+        let urdf = format!("<robot name='r'><link name='base'/><link name='middle'/><link name='tip'>{body}</link>{joints}</robot>");
+        let model = articulated::load_bytes("r.urdf", urdf.as_bytes(), Base::Fixed).unwrap();
+        let undone = multiplier == -1.0;
+        assert_eq!(model.massless_joints(), if undone { vec![1] } else { vec![] }, "{kind} {multiplier}");
+    }
+}
+
 /// A rod that hangs in a ball joint and points along one of its axes does not feel that turn, though it feels the other two.
 #[test]
 fn a_rod_in_a_ball_joint_can_turn_about_itself() {

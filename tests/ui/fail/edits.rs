@@ -23,7 +23,7 @@ articulated::robot! {
         urdf = "urdf/three.urdf",
         append = [{ urdf = "urdf/three.urdf", at = tool }, { urdf = "urdf/gripper.urdf", at = toll }, { urdf = "urdf/broken.urdf", at = tool }],
         lock = { close = 0.0 },
-        payload = { link = fore, mass = 1, inertia = [1, 0, 0, 1, 0, 3] },
+        payload = { link = fore, mass = 1, inertia = [1, 0, 0, 1, 0, -3] },
     }
 }
 

@@ -47,7 +47,9 @@ pub use momentum::{
     centroidal_momentum_matrix, centroidal_momentum_rate,
 };
 pub use operational_space::{operational_space_inertia, operational_space_inertia_inverse};
-pub use registry::{Argument, Dim, Form, Function, FunctionError, Needs, Shape, Way, check_count, check_length, exactly, exactly_rows};
+pub use registry::{
+    Argument, Dim, Form, Function, FunctionError, Group, Needs, Shape, Way, check_count, check_length, exactly, exactly_rows,
+};
 pub use regressor::{PARAMETERS, kinetic_energy_regressor, potential_energy_regressor, torque_regressor};
 pub use rnea::{bias_forces, gravity_torque, inverse_dynamics, inverse_dynamics_with_wrenches, joint_wrenches, static_torque};
 pub use table::{FunctionId, function, functions};

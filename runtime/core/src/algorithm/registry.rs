@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::{FunctionId, Workspace};
+use super::{FunctionId, Workspace, functions};
 use crate::Scalar;
 use crate::model::Model;
 
@@ -178,6 +178,84 @@ pub struct Way<S: 'static> {
     pub(super) run: Run<S>,
 }
 
+/// A group of functions: for lists that people read, and to ask for them by one word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    /// Of frames.
+    Kinematics,
+    /// Torques, accelerations and the mass matrix.
+    Dynamics,
+    /// Of placements and dynamics.
+    Derivatives,
+    /// With energy and the centre of mass.
+    Momentum,
+    /// Of torques and energy.
+    Regressors,
+    /// Λ and its inverse.
+    OperationalSpace,
+    /// What a scene's effects do.
+    Effects,
+    /// Steps, differences and draws.
+    Configurations,
+}
+
+impl Group {
+    /// All of them, in the order in which they are listed.
+    pub const ALL: [Self; 8] = [
+        Self::Kinematics,
+        Self::Dynamics,
+        Self::Derivatives,
+        Self::Momentum,
+        Self::Regressors,
+        Self::OperationalSpace,
+        Self::Effects,
+        Self::Configurations,
+    ];
+
+    /// Its name in lists of functions.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Kinematics => "kinematics",
+            Self::Dynamics => "dynamics",
+            Self::Derivatives => "derivatives",
+            Self::Momentum => "momentum",
+            Self::Regressors => "regressors",
+            Self::OperationalSpace => "operational_space",
+            Self::Effects => "effects",
+            Self::Configurations => "configurations",
+        }
+    }
+
+    /// The group of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|group| group.name() == name)
+    }
+
+    /// What is in it.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Kinematics => "Kinematics of frames",
+            Self::Dynamics => "Dynamics",
+            Self::Derivatives => "Derivatives",
+            Self::Momentum => "Energy, centre of mass and momentum",
+            Self::Regressors => "Regressors",
+            Self::OperationalSpace => "Operational space",
+            Self::Effects => "Effects of a scene",
+            Self::Configurations => "Configurations",
+        }
+    }
+
+    /// The group of a function.
+    pub fn of(function: FunctionId) -> Self {
+        function.row::<f64>().group
+    }
+
+    /// Names of its functions, in the table's order.
+    pub fn functions(self) -> impl Iterator<Item = &'static str> {
+        functions::<f64>().iter().filter(move |f| f.group == self).map(|f| f.name)
+    }
+}
+
 /// A form of generated code that not every function takes. The first two keep the results and are taken where they cost less.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
@@ -207,6 +285,8 @@ pub struct Function<S: 'static> {
     pub gives: &'static [Dim],
     /// The units of what it gives, and what the dimensions stand for.
     pub unit: &'static str,
+    /// Its group in lists.
+    pub group: Group,
     /// What the robot must be like.
     pub needs: Needs,
     /// Whether it asks for nothing but joint torques and what follows from them, so that mass may be moved along joints that cannot feel it, and

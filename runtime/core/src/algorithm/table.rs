@@ -3,7 +3,7 @@
 //! Adding a function: its algorithm in a file, its row here. A row is
 //!
 //! ```text
-//! name(arguments) -> [dimensions] "units", needs, regrouped?, "what it is", "algorithm and source";
+//! name(arguments) -> [dimensions] "units", group, needs, regrouped?, "what it is", "algorithm and source";
 //! ```
 //!
 //! with `by` and a list of ways where there is more than one (its name, where it can be had, its least cost, its algorithm, and in whose axes if not the usual), `columns` where there is a part of it before M X = B is solved, and `forms` that generated code may take.
@@ -21,154 +21,154 @@ use crate::model::Model;
 macro_rules! for_each_function {
     ($then:ident) => {
         $then! {
-            placements(q) -> [Frames, Of(12)] "rotation row by row, then position in m, in the base frame", Nothing, false,
+            placements(q) -> [Frames, Of(12)] "rotation row by row, then position in m, in the base frame", Kinematics, Nothing, false,
                 "placements of all frames in the base frame", "forward kinematics; Featherstone 2008, §4.4";
-            twists_body(q, v) -> [Frames, Of(6)] "[ω; v], rad/s and m/s", Nothing, false,
+            twists_body(q, v) -> [Frames, Of(6)] "[ω; v], rad/s and m/s", Kinematics, Nothing, false,
                 "twists of all frames, in their own axes about their own origins", "outward sweep; Lynch & Park 2017, §8.3";
-            twists_world(q, v) -> [Frames, Of(6)] "[ω; v], rad/s and m/s", Nothing, false,
+            twists_world(q, v) -> [Frames, Of(6)] "[ω; v], rad/s and m/s", Kinematics, Nothing, false,
                 "twists of all frames, in base axes about the base frame's origin", "outward sweep; Lynch & Park 2017, §8.3";
-            twists_world_aligned(q, v) -> [Frames, Of(6)] "[ω; ṗ], rad/s and m/s", Nothing, false,
+            twists_world_aligned(q, v) -> [Frames, Of(6)] "[ω; ṗ], rad/s and m/s", Kinematics, Nothing, false,
                 "twists of all frames, in base axes about their own origins", "outward sweep; Lynch & Park 2017, §8.3";
-            accelerations_body(q, v, a) -> [Frames, Of(6)] "rad/s² and m/s²", Nothing, false,
+            accelerations_body(q, v, a) -> [Frames, Of(6)] "rad/s² and m/s²", Kinematics, Nothing, false,
                 "time derivatives of twists_body: spatial accelerations in body axes, gravity not added",
                 "outward sweep; Featherstone 2008, §2.11";
-            accelerations_world(q, v, a) -> [Frames, Of(6)] "rad/s² and m/s²", Nothing, false,
+            accelerations_world(q, v, a) -> [Frames, Of(6)] "rad/s² and m/s²", Kinematics, Nothing, false,
                 "time derivatives of twists_world: spatial accelerations in base axes, gravity not added",
                 "outward sweep; Featherstone 2008, §2.11";
-            accelerations_world_aligned(q, v, a) -> [Frames, Of(6)] "[ω̇; p̈], rad/s² and m/s²", Nothing, false,
+            accelerations_world_aligned(q, v, a) -> [Frames, Of(6)] "[ω̇; p̈], rad/s² and m/s²", Kinematics, Nothing, false,
                 "time derivatives of twists_world_aligned: the true accelerations of the origins, gravity not added",
                 "outward sweep; Featherstone 2008, §2.11";
-            jacobians_body(q) -> [Frames, Of(6), Nv] "rows [ω; v]", Nothing, false,
+            jacobians_body(q) -> [Frames, Of(6), Nv] "rows [ω; v]", Kinematics, Nothing, false,
                 "Jacobians of all frames: twists_body = J v", "columns Ad S; Lynch & Park 2017, §5.1";
-            jacobians_world(q) -> [Frames, Of(6), Nv] "rows [ω; v]", Nothing, false,
+            jacobians_world(q) -> [Frames, Of(6), Nv] "rows [ω; v]", Kinematics, Nothing, false,
                 "Jacobians of all frames: twists_world = J v", "columns Ad S; Lynch & Park 2017, §5.1";
-            jacobians_world_aligned(q) -> [Frames, Of(6), Nv] "rows [ω; ṗ]", Nothing, false,
+            jacobians_world_aligned(q) -> [Frames, Of(6), Nv] "rows [ω; ṗ]", Kinematics, Nothing, false,
                 "Jacobians of all frames: twists_world_aligned = J v", "columns Ad S; Lynch & Park 2017, §5.1";
-            jacobian_rates_body(q, v) -> [Frames, Of(6), Nv] "1/s and m/s", Nothing, false,
+            jacobian_rates_body(q, v) -> [Frames, Of(6), Nv] "1/s and m/s", Kinematics, Nothing, false,
                 "dJ/dt of jacobians_body", "columns ad V S; Featherstone 2008, §2.9";
-            jacobian_rates_world(q, v) -> [Frames, Of(6), Nv] "1/s and m/s", Nothing, false,
+            jacobian_rates_world(q, v) -> [Frames, Of(6), Nv] "1/s and m/s", Kinematics, Nothing, false,
                 "dJ/dt of jacobians_world", "columns ad V S; Featherstone 2008, §2.9";
-            jacobian_rates_world_aligned(q, v) -> [Frames, Of(6), Nv] "1/s and m/s", Nothing, false,
+            jacobian_rates_world_aligned(q, v) -> [Frames, Of(6), Nv] "1/s and m/s", Kinematics, Nothing, false,
                 "dJ/dt of jacobians_world_aligned", "columns ad V S; Featherstone 2008, §2.9";
-            bias_accelerations_body(q, v) -> [Frames, Of(6)] "rad/s² and m/s²", Nothing, false,
+            bias_accelerations_body(q, v) -> [Frames, Of(6)] "rad/s² and m/s²", Kinematics, Nothing, false,
                 "dJ/dt·v of jacobians_body: accelerations at a = 0", "outward sweep; Featherstone 2008, §2.11";
-            bias_accelerations_world(q, v) -> [Frames, Of(6)] "rad/s² and m/s²", Nothing, false,
+            bias_accelerations_world(q, v) -> [Frames, Of(6)] "rad/s² and m/s²", Kinematics, Nothing, false,
                 "dJ/dt·v of jacobians_world: accelerations at a = 0", "outward sweep; Featherstone 2008, §2.11";
-            bias_accelerations_world_aligned(q, v) -> [Frames, Of(6)] "rad/s² and m/s²", Nothing, false,
+            bias_accelerations_world_aligned(q, v) -> [Frames, Of(6)] "rad/s² and m/s²", Kinematics, Nothing, false,
                 "dJ/dt·v of jacobians_world_aligned: accelerations at a = 0", "outward sweep; Featherstone 2008, §2.11";
-            placement_derivatives(q) -> [Frames, Of(12), Nv] "of rotation row by row, then position; 1 and m a unit step", Nothing, false,
+            placement_derivatives(q) -> [Frames, Of(12), Nv] "of rotation row by row, then position; 1 and m a unit step", Derivatives, Nothing, false,
                 "∂(placements)/∂q in the tangent space", "columns [s]×R and s × p; Lynch & Park 2017, §5.1";
-            inverse_dynamics(q, v, a) -> [Nv] "N·m|N", Nothing, true,
+            inverse_dynamics(q, v, a) -> [Nv] "N·m|N", Dynamics, Nothing, true,
                 "τ = M(q)·a + h(q, v), gravity included", "RNEA; Featherstone 2008, Table 5.1",
                 forms [MassLent, RatesByAxes];
-            inverse_dynamics_with_wrenches(q, v, a, wrenches) -> [Nv] "N·m|N", Nothing, true,
+            inverse_dynamics_with_wrenches(q, v, a, wrenches) -> [Nv] "N·m|N", Dynamics, Nothing, true,
                 "τ = M(q)·a + h(q, v) − Σ Jᵀw, with external wrenches w on the frames", "RNEA; Featherstone 2008, Table 5.1",
                 forms [MassLent, RatesByAxes];
-            joint_wrenches(q, v, a) -> [Links, Of(6)] "[m; f], N·m and N, in axes of the link about its origin", Nothing, false,
+            joint_wrenches(q, v, a) -> [Links, Of(6)] "[m; f], N·m and N, in axes of the link about its origin", Dynamics, Nothing, false,
                 "the wrench that each joint passes to its child link", "RNEA; Featherstone 2008, Table 5.1",
                 forms [RatesByAxes];
-            bias_forces(q, v) -> [Nv] "N·m|N", Nothing, true,
+            bias_forces(q, v) -> [Nv] "N·m|N", Dynamics, Nothing, true,
                 "h(q, v) = τ at a = 0: Coriolis, centrifugal and gravity forces", "RNEA; Featherstone 2008, Table 5.1",
                 forms [MassLent, RatesByAxes];
-            gravity_torque(q) -> [Nv] "N·m|N", Nothing, true,
+            gravity_torque(q) -> [Nv] "N·m|N", Dynamics, Nothing, true,
                 "g(q) = τ at v = a = 0: what holds the robot still", "RNEA; Featherstone 2008, Table 5.1";
-            static_torque(q, wrenches) -> [Nv] "N·m|N", Nothing, true,
+            static_torque(q, wrenches) -> [Nv] "N·m|N", Dynamics, Nothing, true,
                 "g(q) − Σ Jᵀw: what holds the robot still under external wrenches w on the frames", "RNEA; Featherstone 2008, Table 5.1";
-            mass_matrix(q) -> [Nv, Nv] "kg·m²|kg·m|kg, symmetric", Nothing, true,
+            mass_matrix(q) -> [Nv, Nv] "kg·m²|kg·m|kg, symmetric", Dynamics, Nothing, true,
                 "M(q)", "CRBA; Featherstone 2008, Table 6.2",
                 forms [FromTheLast];
-            coriolis_matrix(q, v) -> [Nv, Nv] "N·m·s|N·s", Nothing, true,
+            coriolis_matrix(q, v) -> [Nv, Nv] "N·m·s|N·s", Dynamics, Nothing, true,
                 "C(q, v) with C v + g = h, and Ṁ − 2C skew: that of the Christoffel symbols",
                 "Echeandia & Wensing, J. Comput. Nonlinear Dyn. 16, 2021",
                 by ["", always, nothing, coriolis_matrix; "the axes of the first body", near_the_middle, nothing, coriolis_matrix in axes_of_first_bodies];
-            forward_dynamics(q, v, tau) -> [Nv] "rad/s²|m/s²", MassMatrix, true,
+            forward_dynamics(q, v, tau) -> [Nv] "rad/s²|m/s²", Dynamics, MassMatrix, true,
                 "a = M(q)⁻¹·(τ − h(q, v))", "ABA, or RNEA, CRBA and M = Lᵀ D L; Featherstone 2008, Table 7.1 and §6.5",
                 by ["ABA", untied, nothing, articulated_body; "LTDL", always, factorization, forward_dynamics],
                 forms [MassLent, RatesByAxes];
-            forward_dynamics_with_wrenches(q, v, tau, wrenches) -> [Nv] "rad/s²|m/s²", MassMatrix, true,
+            forward_dynamics_with_wrenches(q, v, tau, wrenches) -> [Nv] "rad/s²|m/s²", Dynamics, MassMatrix, true,
                 "a = M(q)⁻¹·(τ + Σ Jᵀw − h(q, v)), with external wrenches w on the frames",
                 "ABA, or RNEA, CRBA and M = Lᵀ D L; Featherstone 2008, Table 7.1 and §6.5",
                 by ["ABA", untied, nothing, articulated_body_with_wrenches; "LTDL", always, factorization, forward_dynamics_with_wrenches],
                 forms [MassLent, RatesByAxes];
-            mass_matrix_inverse(q) -> [Nv, Nv] "1/(kg·m²)|…, symmetric", MassMatrix, true,
+            mass_matrix_inverse(q) -> [Nv, Nv] "1/(kg·m²)|…, symmetric", Dynamics, MassMatrix, true,
                 "M(q)⁻¹", "M = Lᵀ D L; Featherstone 2008, §6.5",
                 forms [FromTheLast];
-            solve_mass_matrix(q, tau) -> [Nv] "rad/s²|m/s²", MassMatrix, true,
+            solve_mass_matrix(q, tau) -> [Nv] "rad/s²|m/s²", Dynamics, MassMatrix, true,
                 "M(q)⁻¹·τ, without M⁻¹", "ABA at rest, or M = Lᵀ D L; Featherstone 2008, Table 7.1 and §6.5",
                 by ["ABA", untied, nothing, solve_by_articulated_body; "LTDL", always, factorization, solve_mass_matrix];
-            kinetic_energy(q, v) -> [] "J", Nothing, true,
+            kinetic_energy(q, v) -> [] "J", Momentum, Nothing, true,
                 "T = ½ Σ Vᵀ G V = ½ vᵀ M v of the moving links", "RNEA at rest; Featherstone 2008, §2.12 and Table 5.1";
-            potential_energy(q) -> [] "J, zero at the base frame's origin", Nothing, false,
+            potential_energy(q) -> [] "J, zero at the base frame's origin", Momentum, Nothing, false,
                 "U = −Σ m gᵀc of the moving links", "outward sweep; Featherstone 2008, §2.12";
-            center_of_mass(q) -> [Of(3)] "m, base axes", Mass, false,
+            center_of_mass(q) -> [Of(3)] "m, base axes", Momentum, Mass, false,
                 "centre of mass of the moving links", "outward sweep";
-            center_of_mass_velocity(q, v) -> [Of(3)] "m/s, base axes", Mass, false,
+            center_of_mass_velocity(q, v) -> [Of(3)] "m/s, base axes", Momentum, Mass, false,
                 "velocity of the centre of mass of the moving links", "outward sweep";
-            center_of_mass_acceleration(q, v, a) -> [Of(3)] "m/s², base axes", Mass, false,
+            center_of_mass_acceleration(q, v, a) -> [Of(3)] "m/s², base axes", Momentum, Mass, false,
                 "acceleration of the centre of mass of the moving links, gravity not added", "outward sweep",
                 forms [RatesByAxes];
-            center_of_mass_jacobian(q) -> [Of(3), Nv] "m|1, base axes", Mass, false,
+            center_of_mass_jacobian(q) -> [Of(3), Nv] "m|1, base axes", Momentum, Mass, false,
                 "J with center_of_mass_velocity = J v", "composite masses; Orin, Goswami & Lee, Auton. Robots 35, 2013";
-            centroidal_momentum(q, v) -> [Of(6)] "[k; l], N·m·s and N·s, base axes", Mass, false,
+            centroidal_momentum(q, v) -> [Of(6)] "[k; l], N·m·s and N·s, base axes", Momentum, Mass, false,
                 "momentum of the moving links about their centre of mass", "Orin, Goswami & Lee, Auton. Robots 35, 2013";
-            centroidal_momentum_matrix(q) -> [Of(6), Nv] "base axes", Mass, false,
+            centroidal_momentum_matrix(q) -> [Of(6), Nv] "base axes", Momentum, Mass, false,
                 "A with centroidal_momentum = A v", "composite inertias; Orin, Goswami & Lee, Auton. Robots 35, 2013";
-            centroidal_momentum_rate(q, v, a) -> [Of(6)] "[k̇; l̇], N·m and N, base axes", Mass, false,
+            centroidal_momentum_rate(q, v, a) -> [Of(6)] "[k̇; l̇], N·m and N, base axes", Momentum, Mass, false,
                 "d/dt of centroidal_momentum = A a + Ȧ v", "Newton and Euler; Orin, Goswami & Lee, Auton. Robots 35, 2013",
                 forms [RatesByAxes];
-            inverse_dynamics_derivatives(q, v, a) -> [Of(3), Nv, Nv] "∂τ/∂q, ∂τ/∂v, ∂τ/∂a = M; rows τ", Nothing, true,
+            inverse_dynamics_derivatives(q, v, a) -> [Of(3), Nv, Nv] "∂τ/∂q, ∂τ/∂v, ∂τ/∂a = M; rows τ", Derivatives, Nothing, true,
                 "first derivatives of inverse_dynamics; q in the tangent space",
                 "Singh, Russell & Wensing, IEEE RA-L 7, 2022; Carpentier & Mansard, RSS 2018",
                 by ["", always, nothing, inverse_dynamics_derivatives; "the axes of the first body", near_the_middle, nothing, inverse_dynamics_derivatives in axes_of_first_bodies],
                 forms [JointsInLoops];
             inverse_dynamics_derivatives_with_wrenches(q, v, a, wrenches) -> [Of(3), Nv, Nv]
-                "∂τ/∂q, ∂τ/∂v, ∂τ/∂a = M; rows τ", Nothing, true,
+                "∂τ/∂q, ∂τ/∂v, ∂τ/∂a = M; rows τ", Derivatives, Nothing, true,
                 "first derivatives of inverse_dynamics_with_wrenches; q in the tangent space, wrenches constant in their reference",
                 "Singh, Russell & Wensing, IEEE RA-L 7, 2022",
                 by ["", always, nothing, inverse_dynamics_derivatives_with_wrenches; "the axes of the first body", near_the_middle, nothing, inverse_dynamics_derivatives_with_wrenches in axes_of_first_bodies];
-            forward_dynamics_derivatives(q, v, tau) -> [Of(3), Nv, Nv] "∂a/∂q, ∂a/∂v, ∂a/∂τ = M⁻¹; rows a", MassMatrix, true,
+            forward_dynamics_derivatives(q, v, tau) -> [Of(3), Nv, Nv] "∂a/∂q, ∂a/∂v, ∂a/∂τ = M⁻¹; rows a", Derivatives, MassMatrix, true,
                 "first derivatives of forward_dynamics; q in the tangent space",
                 "−M⁻¹ ∂(inverse dynamics); Carpentier & Mansard, RSS 2018",
                 by ["", always, nothing, forward_dynamics_derivatives; "the axes of the first body", near_the_middle, nothing, forward_dynamics_derivatives in axes_of_first_bodies], columns unsolved_derivatives,
                 forms [RatesByAxes];
             forward_dynamics_derivatives_with_wrenches(q, v, tau, wrenches) -> [Of(3), Nv, Nv]
-                "∂a/∂q, ∂a/∂v, ∂a/∂τ = M⁻¹; rows a", MassMatrix, true,
+                "∂a/∂q, ∂a/∂v, ∂a/∂τ = M⁻¹; rows a", Derivatives, MassMatrix, true,
                 "first derivatives of forward_dynamics_with_wrenches; q in the tangent space, wrenches constant in their reference",
                 "−M⁻¹ ∂(inverse dynamics); Carpentier & Mansard, RSS 2018",
                 by ["", always, nothing, forward_dynamics_derivatives_with_wrenches; "the axes of the first body", near_the_middle, nothing, forward_dynamics_derivatives_with_wrenches in axes_of_first_bodies], columns unsolved_derivatives_with_wrenches,
                 forms [RatesByAxes];
-            static_torque_derivative(q, wrenches) -> [Nv, Nv] "N·m|N a unit step, rows τ", Nothing, true,
+            static_torque_derivative(q, wrenches) -> [Nv, Nv] "N·m|N a unit step, rows τ", Derivatives, Nothing, true,
                 "∂(static_torque)/∂q in the tangent space, wrenches constant in their reference",
                 "Singh, Russell & Wensing, IEEE RA-L 7, 2022",
                 by ["", always, nothing, static_torque_derivative; "the axes of the first body", near_the_middle, nothing, static_torque_derivative in axes_of_first_bodies];
             torque_regressor(q, v, a) -> [Nv, Links, Of(10)] "per m, m c, I_xx I_xy I_xz I_yy I_yz I_zz about the link's origin",
-                Nothing, false,
+                Regressors, Nothing, false,
                 "Y with inverse_dynamics = Y π, π the inertial parameters of the moving links in their axes",
                 "virtual power; Atkeson, An & Hollerbach, Int. J. Robot. Res. 5, 1986";
             kinetic_energy_regressor(q, v) -> [Links, Of(10)] "per m, m c, I_xx I_xy I_xz I_yy I_yz I_zz about the link's origin",
-                Nothing, false,
+                Regressors, Nothing, false,
                 "y with kinetic_energy = yᵀπ", "Gautier & Khalil, IEEE ICRA 1988";
             potential_energy_regressor(q) -> [Links, Of(10)] "per m, m c, I_xx I_xy I_xz I_yy I_yz I_zz about the link's origin",
-                Nothing, false,
+                Regressors, Nothing, false,
                 "y with potential_energy = yᵀπ", "Gautier & Khalil, IEEE ICRA 1988";
-            operational_space_inertia(q) -> [Frames, Of(6), Of(6)] "kg·m²|kg·m|kg, symmetric", FreeFrames, true,
+            operational_space_inertia(q) -> [Frames, Of(6), Of(6)] "kg·m²|kg·m|kg, symmetric", OperationalSpace, FreeFrames, true,
                 "Λ = (J M⁻¹ Jᵀ)⁻¹ of each frame by itself, J that of jacobians_world_aligned",
                 "M = Lᵀ D L; Khatib, IEEE J. Robot. Autom. 3, 1987";
-            operational_space_inertia_inverse(q) -> [Frames, Of(6), Of(6)] "1/(kg·m²)|…, symmetric", MassMatrix, true,
+            operational_space_inertia_inverse(q) -> [Frames, Of(6), Of(6)] "1/(kg·m²)|…, symmetric", OperationalSpace, MassMatrix, true,
                 "Λ⁻¹ = J M⁻¹ Jᵀ of each frame by itself, J that of jacobians_world_aligned",
                 "M = Lᵀ D L; Khatib, IEEE J. Robot. Autom. 3, 1987";
-            effect_forces(q, v) -> [Nv] "N·m|N", Nothing, false,
+            effect_forces(q, v) -> [Nv] "N·m|N", Effects, Nothing, false,
                 "generalised forces of all effects but gravity, inertia and motors; zero without a scene",
                 "each effect's law";
-            dissipation(q, v) -> [] "W", Nothing, false,
+            dissipation(q, v) -> [] "W", Effects, Nothing, false,
                 "power of the effects that are not conservative: d(T + U)/dt = vᵀτ + this", "each effect's law";
-            motor_torques(v, tau) -> [Nv] "N·m|N", Nothing, false,
+            motor_torques(v, tau) -> [Nv] "N·m|N", Effects, Nothing, false,
                 "what motors make of the torques that they are asked for; forward dynamics takes tau so", "each motor's law";
-            integrate(q, step) -> [Nq] "rad|m|unit quaternion", Nothing, false,
+            integrate(q, step) -> [Nq] "rad|m|unit quaternion", Configurations, Nothing, false,
                 "q ⊕ step: along the step for a unit of time, on the manifold", "exponential of SE(3); Lynch & Park 2017, §3.3";
-            difference(q, target) -> [Nv] "rad|m", Nothing, false,
+            difference(q, target) -> [Nv] "rad|m", Configurations, Nothing, false,
                 "target ⊖ q: the step with q ⊕ step = target", "logarithm of SE(3); Lynch & Park 2017, §3.3";
-            random_configuration(uniform) -> [Nq] "rad|m|unit quaternion", Nothing, false,
+            random_configuration(uniform) -> [Nq] "rad|m|unit quaternion", Configurations, Nothing, false,
                 "a configuration at random within limits, ±π rad and ±1 m where there are none, rotations uniform",
                 "Shoemake, Graphics Gems III, 1992";
         }
@@ -240,7 +240,7 @@ macro_rules! unsolved {
 }
 
 macro_rules! rows {
-    ($($name:ident($($argument:ident),*) -> [$($dim:ident $(($n:literal))?),*] $unit:literal, $needs:ident, $regrouped:literal,
+    ($($name:ident($($argument:ident),*) -> [$($dim:ident $(($n:literal))?),*] $unit:literal, $group:ident, $needs:ident, $regrouped:literal,
         $summary:literal, $source:literal $(, by $ways:tt)? $(, columns $unsolved:ident)? $(, forms [$($form:ident),*])?;)*) => {
         /// The functions by number: each variant is called as its function is.
         #[allow(non_camel_case_types)]
@@ -268,6 +268,7 @@ macro_rules! rows {
                     takes: &[$(argument!($argument)),*],
                     gives: &[$(Dim::$dim $(($n))?),*],
                     unit: $unit,
+                    group: Group::$group,
                     needs: Needs::$needs,
                     regrouped: $regrouped,
                     ways: ways!($name, ($($argument),*) $(, $ways)?),

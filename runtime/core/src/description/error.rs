@@ -77,7 +77,7 @@ pub enum EditError {
         /// m.
         found: [f64; 3],
     },
-    /// A payload's inertia is one that no body has, or one without mass.
+    /// A payload's inertia has a moment below zero or is not finite, or there is one without mass.
     Inertia {
         /// The link that was to carry it.
         link: String,
@@ -135,8 +135,8 @@ impl fmt::Display for EditError {
             }
             Self::Inertia { link, found } => write!(
                 f,
-                "load on link {link:?}: inertia: found {found:?} kg·m², expected xx, xy, xz, yy, yz, zz of a body with mass: no principal \
-                 moment negative or greater than the other two together"
+                "load on link {link:?}: inertia: found {found:?} kg·m², expected xx, xy, xz, yy, yz, zz of a body with mass: finite, and no principal \
+                 moment negative"
             ),
             Self::ShaftNotFixed { joint, kind } => {
                 write!(f, "shaft at joint {joint:?}: found a {} joint, expected a fixed one, whose rigid offset is to bend", kind.name())

@@ -7,6 +7,7 @@
 
 mod edit;
 mod error;
+mod moments;
 mod shaft;
 
 use alloc::string::String;
@@ -14,6 +15,7 @@ use alloc::vec::Vec;
 
 pub use edit::Payload;
 pub use error::EditError;
+pub use moments::PrincipalMoments;
 pub use shaft::Shaft;
 
 /// A tree of links and joints. Indices into `links` and `joints` follow the order of the file.

@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 
 use super::{Applied, BodyEffect, Effect, EffectId, JointEffect, On};
 use crate::joint::Joint;
-use crate::model::Model;
+use crate::model::{Frame, Model};
 use crate::spatial::{Placement, from_rpy};
 use crate::suggest::nearest;
 
@@ -126,41 +126,53 @@ impl Model<f64> {
 
     /// Whether there is what an effect of nothing would be on.
     fn has(&self, one: &Applied) -> Result<(), Fault> {
-        let mut other = self.clone();
-        if one.effect.row().on == On::Joint { other.put_on_joint(one) } else { other.put_on_link(one) }
+        match one.effect.row().on {
+            On::Joint => self.joint_for(one).map(|_| ()),
+            On::Link => self.link_for(one).map(|_| ()),
+        }
     }
 
     fn put_on_joint(&mut self, one: &Applied) -> Result<(), Fault> {
-        let bodies: Vec<usize> = self.outward().filter(|&i| self.bodies[i].name == one.on).collect();
-        if bodies.is_empty() {
-            return Err(Fault::Unknown { on: On::Joint, nearest: nearest(&one.on, self.bodies.iter().skip(1).map(|b| b.name.as_str())) });
-        }
-        for i in bodies {
+        for i in self.joint_for(one)? {
             let body = &mut self.bodies[i];
-            if body.effects.joint.iter().any(|e| e.effect == one.effect) {
-                return Err(Fault::Twice);
-            }
-            if matches!(body.joint, Joint::Spherical | Joint::Floating) && one.effect.row().needs_coordinate() {
-                return Err(Fault::NoCoordinate);
-            }
             let on = |freedom| JointEffect { effect: one.effect, freedom, parameters: one.parameters.clone() };
             body.effects.joint.extend((0..body.joint.nv()).map(on));
         }
         Ok(())
     }
 
-    fn put_on_link(&mut self, one: &Applied) -> Result<(), Fault> {
-        let Some(frame) = self.frames.iter().find(|f| f.name == one.on) else {
-            return Err(Fault::Unknown { on: On::Link, nearest: nearest(&one.on, self.frames.iter().map(|f| f.name.as_str())) });
-        };
-        if frame.body == 0 {
-            return Err(Fault::Still);
+    /// The bodies of the joint that it is to be on.
+    fn joint_for(&self, one: &Applied) -> Result<Vec<usize>, Fault> {
+        let bodies: Vec<usize> = self.outward().filter(|&i| self.bodies[i].name == one.on).collect();
+        if bodies.is_empty() {
+            return Err(Fault::Unknown { on: On::Joint, nearest: nearest(&one.on, self.bodies.iter().skip(1).map(|b| b.name.as_str())) });
         }
+        for body in bodies.iter().map(|&i| &self.bodies[i]) {
+            if body.effects.joint.iter().any(|e| e.effect == one.effect) {
+                return Err(Fault::Twice);
+            }
+            if matches!(body.joint, Joint::Spherical | Joint::Floating) && one.effect.row().needs_coordinate() {
+                return Err(Fault::NoCoordinate);
+            }
+        }
+        Ok(bodies)
+    }
+
+    fn put_on_link(&mut self, one: &Applied) -> Result<(), Fault> {
+        let frame = self.link_for(one)?;
         let at = Placement { rotation: from_rpy(one.at.rpy), position: Vector3::from(one.at.xyz) };
         let (body, placement) = (frame.body, frame.placement.compose(&at));
         let parameters = normalised(one.effect, &one.parameters);
         self.bodies[body].effects.body.push(BodyEffect { effect: one.effect, placement, parameters });
         Ok(())
+    }
+
+    /// The frame of the link that it is to be on.
+    fn link_for(&self, one: &Applied) -> Result<&Frame<f64>, Fault> {
+        let Some(frame) = self.frames.iter().find(|f| f.name == one.on) else {
+            return Err(Fault::Unknown { on: On::Link, nearest: nearest(&one.on, self.frames.iter().map(|f| f.name.as_str())) });
+        };
+        if frame.body == 0 { Err(Fault::Still) } else { Ok(frame) }
     }
 }
 
@@ -204,5 +216,53 @@ fn check(one: &Applied) -> Result<(), Fault> {
     match row.broken(p).and_then(|(field, own)| Some((field.name, own, field.rule?.expected))) {
         Some((field, own, expected)) => wrong(field, own, expected.into()),
         None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec;
+
+    use super::*;
+    use crate::description::{Base, Description, Joint, JointKind, Link, Origin};
+
+    /// A carriage on a rail, a ball that hangs on it, and a lamp on the base.
+    fn robot() -> Model<f64> {
+        let link = |name: &str| Link { name: name.into(), inertial: None };
+        let joint = |name: &str, kind, child| Joint { name: name.into(), kind, child, axis: [1.0, 0.0, 0.0], ..Joint::default() };
+        let joints = vec![
+            joint("slide", JointKind::Prismatic, 1),
+            Joint { parent: 1, ..joint("hang", JointKind::Spherical, 2) },
+            joint("glue", JointKind::Fixed, 3),
+        ];
+        let links = ["rail", "carriage", "ball", "lamp"].map(link).to_vec();
+        Model::new(&Description { name: "robot".into(), links, joints }, Base::Fixed).unwrap()
+    }
+
+    fn on(effect: EffectId, on: &str, parameters: &[f64]) -> Applied {
+        Applied { effect, on: on.into(), at: Origin::default(), parameters: parameters.to_vec() }
+    }
+
+    #[test]
+    fn an_effect_of_nothing_is_refused_where_one_that_does_something_is_and_left_out_elsewhere() {
+        let robot = robot().with_effects(&[on(EffectId::damping, "slide", &[1.0])]).unwrap();
+        let acts = |effect: EffectId, name: &str, number: f64| {
+            let mut parameters = vec![0.0; effect.row().len()];
+            parameters[0] = number;
+            let with = robot.clone().with_effects(&[on(effect, name, &parameters)]);
+            with.map(|with| with.bodies.iter().map(|b| b.effects.kinds().len()).sum::<usize>()).map_err(|errors| errors.0[0].fault.clone())
+        };
+        let cases = [
+            (EffectId::spring, ["slide", "slid", "hang", "glue", "ball"]),
+            (EffectId::damping, ["slide", "slid", "hang", "glue", "ball"]),
+            (EffectId::drag, ["carriage", "carriag", "ball", "rail", "lamp"]),
+        ];
+        for (effect, names) in cases {
+            for name in names {
+                let [nothing, something] = [0.0, 2.0].map(|number| acts(effect, name, number));
+                assert_eq!(nothing.clone().err(), something.clone().err(), "{effect:?} on {name}");
+                assert!(nothing.is_err() || nothing == Ok(1) && something.is_ok_and(|n| n > 1), "{effect:?} on {name}");
+            }
+        }
     }
 }

@@ -102,6 +102,8 @@ struct Builder<'a> {
     seats: Vec<Option<Seat>>,
     /// The body of each moving joint.
     body_of: Vec<Option<usize>>,
+    /// For each joint that follows another, what it moves by.
+    leads: Vec<Option<Mimic>>,
     model: Model<f64>,
 }
 
@@ -135,7 +137,7 @@ impl<'a> Builder<'a> {
             nv: 0,
         };
         let (links, joints) = (description.links.len(), description.joints.len());
-        Self { description, children, seats: vec![None; links], body_of: vec![None; joints], model }
+        Self { description, children, seats: vec![None; links], body_of: vec![None; joints], leads: leads(&description.joints), model }
     }
 
     fn add_root(&mut self, root: usize, base: Base) {
@@ -199,22 +201,14 @@ impl<'a> Builder<'a> {
 
     /// The coordinates at which a joint is locked, because it is or because one that it follows is.
     fn locked_at(&self, index: usize) -> Result<Option<Vec<f64>>, ModelError> {
-        let joints = &self.description.joints;
-        let (mut at, mut multiplier, mut offset) = (index, 1.0, 0.0);
-        for _ in 0..=joints.len() {
-            let Some(joint) = joints.get(at) else { break };
-            if let Some(coordinates) = &joint.locked {
-                let (found, kind) = (coordinates.len(), joint.kind);
-                if found != kind.sizes().0 || coordinates.iter().any(|x| !x.is_finite()) {
-                    return Err(ModelError::BadLock { joint: joint.name.clone(), kind, found });
-                }
-                let own = at == index;
-                return Ok(Some(coordinates.iter().map(|x| if own { *x } else { multiplier * x + offset }).collect()));
-            }
-            let Some(mimic) = &joint.mimic else { break };
-            (at, multiplier, offset) = (mimic.joint, multiplier * mimic.multiplier, multiplier * mimic.offset + offset);
+        let (joints, lead) = (&self.description.joints, self.leads[index]);
+        let joint = &joints[lead.map_or(index, |lead| lead.joint)];
+        let Some(coordinates) = &joint.locked else { return Ok(None) };
+        let (found, kind) = (coordinates.len(), joint.kind);
+        if found != kind.sizes().0 || coordinates.iter().any(|x| !x.is_finite()) {
+            return Err(ModelError::BadLock { joint: joint.name.clone(), kind, found });
         }
-        Ok(None)
+        Ok(Some(coordinates.iter().map(|x| lead.map_or(*x, |lead| lead.multiplier * x + lead.offset)).collect()))
     }
 
     fn push_joint(&mut self, name: &str, kind: JointKind, limit: Option<description::Limit>) -> Coordinates<f64> {
@@ -280,33 +274,60 @@ impl<'a> Builder<'a> {
         placements.for_each(|x| x.rotation = nearest_rotation(&x.rotation));
     }
 
-    /// Resolves a chain of joints that follow each other down to a coordinate.
+    /// The coordinate that a follower moves by. The joint that it follows has to move, and so, as each follower is asked, do all down to the last.
     fn follow(&self, follower: usize, mimic: &Mimic) -> Option<Coordinates<f64>> {
         let joints = &self.description.joints;
-        let (mut leader, mut multiplier, mut offset) = (mimic.joint, mimic.multiplier, mimic.offset);
-        for _ in 0..joints.len() {
-            let joint = joints.get(leader).filter(|_| leader != follower)?;
-            let body = &self.model.bodies[self.body_of[leader]?];
-            match &joint.mimic {
-                None if joint.kind.sizes() == (1, 1) => {
-                    let Coordinates { q, v, .. } = body.coordinates;
-                    let pitch = per_radian(&joints[follower]);
-                    return Some(Coordinates { q, v, mimic: Some(Follow { multiplier, offset }), pitch, ..AT_ZERO });
-                }
-                None => return None,
-                // multiplier · (m q + o) + offset
-                Some(next) => {
-                    (leader, multiplier, offset) = (next.joint, multiplier * next.multiplier, multiplier * next.offset + offset);
-                }
-            }
-        }
-        None
+        let lead = self.leads[follower]?;
+        self.body_of[mimic.joint]?;
+        let body = self.body_of[lead.joint].filter(|_| joints[lead.joint].kind.sizes() == (1, 1))?;
+        let Coordinates { q, v, .. } = self.model.bodies[body].coordinates;
+        let mimic = Some(Follow { multiplier: lead.multiplier, offset: lead.offset });
+        Some(Coordinates { q, v, mimic, pitch: per_radian(&joints[follower]), ..AT_ZERO })
     }
 
     fn not_a_tree(&self) -> ModelError {
         let lost = self.description.links.iter().zip(&self.seats).filter(|(_, seat)| seat.is_none());
         ModelError::NotATree { unreached: lost.map(|(link, _)| link.name.clone()).collect() }
     }
+}
+
+/// So many leaders are walked through one by one, in whose order multipliers are multiplied; what is behind them is taken as it was found.
+const WALKED: usize = 16;
+
+/// For each joint that follows another, what it moves by: the joint at the end of its chain, which follows none or is locked. `None` where a chain has no end, and for joints that follow
+/// none. Work grows as the number of joints does, however long the chains are.
+fn leads(joints: &[description::Joint]) -> Vec<Option<Mimic>> {
+    let (mut leads, mut seen) = (vec![None; joints.len()], vec![false; joints.len()]);
+    for start in 0..joints.len() {
+        let (mut chain, mut at) = (Vec::new(), start);
+        while let Some(mimic) = joints.get(at).and_then(followed).filter(|_| !seen[at]) {
+            seen[at] = true;
+            chain.push((at, mimic));
+            at = mimic.joint;
+        }
+        for (joint, mimic) in chain.into_iter().rev() {
+            leads[joint] = lead(joints, &leads, mimic);
+        }
+    }
+    leads
+}
+
+/// What is moved by at the end of the chain that begins with `first`; of its joints beyond the first few, `known` says it already.
+fn lead(joints: &[description::Joint], known: &[Option<Mimic>], first: Mimic) -> Option<Mimic> {
+    let (mut lead, mut walked) = (first, 0);
+    while let Some(own) = followed(joints.get(lead.joint)?) {
+        let next = if walked < WALKED { own } else { known[lead.joint]? };
+        // multiplier · (m q + o) + offset
+        let (multiplier, offset) = (lead.multiplier * next.multiplier, lead.multiplier * next.offset + lead.offset);
+        lead = Mimic { joint: next.joint, multiplier, offset };
+        walked += 1;
+    }
+    Some(lead)
+}
+
+/// How a joint follows another; a locked one stands by itself.
+fn followed(joint: &description::Joint) -> Option<Mimic> {
+    joint.mimic.filter(|_| joint.locked.is_none())
 }
 
 const AT_ZERO: Coordinates<f64> = Coordinates { q: 0, v: 0, mimic: None, pitch: 0.0, from: Angle { sin: 0.0, cos: 1.0 }, turns: 1.0 };
@@ -372,5 +393,60 @@ impl Inertial {
         let [xx, xy, xz, yy, yz, zz] = self.inertia;
         let central = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
         SpatialInertia::from_central(self.mass, central, &placement(&self.origin))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Joints that follow those of these indices.
+    fn joints(leaders: &[Option<usize>]) -> Vec<description::Joint> {
+        let follow = |(k, joint): (usize, usize)| Mimic { joint, multiplier: 1.0 + 0.3 / (k + 3) as f64, offset: 0.1 * k as f64 - 0.7 };
+        let joint =
+            |(k, leader): (usize, &Option<usize>)| description::Joint { mimic: leader.map(|l| follow((k, l))), ..Default::default() };
+        leaders.iter().enumerate().map(joint).collect()
+    }
+
+    /// From leader to leader, in their order.
+    fn walked(joints: &[description::Joint], start: usize) -> (f64, f64) {
+        let (mut at, mut multiplier, mut offset) = (start, 1.0, 0.0);
+        while let Some(next) = joints[at].mimic {
+            (at, multiplier, offset) = (next.joint, multiplier * next.multiplier, multiplier * next.offset + offset);
+        }
+        (multiplier, offset)
+    }
+
+    #[test]
+    fn a_chain_of_followers_is_what_walking_through_it_gives_and_to_the_bit_where_it_is_short() {
+        let chain: Vec<Option<usize>> = (0..200_usize).map(|k| k.checked_sub(1)).collect();
+        let joints = joints(&chain);
+        for (k, found) in leads(&joints).into_iter().enumerate().skip(1) {
+            let (found, (multiplier, offset)) = (found.unwrap(), walked(&joints, k));
+            let far = [found.multiplier / multiplier - 1.0, found.offset / offset - 1.0];
+            assert!(found.joint == 0 && far.iter().all(|x| x.abs() < if k < WALKED { f64::MIN_POSITIVE } else { 1e-13 }), "{k}: {far:?}");
+        }
+    }
+
+    #[test]
+    fn the_order_of_the_file_does_not_count() {
+        let count = 100;
+        let backward: Vec<Option<usize>> = (0..count).map(|k| Some(k + 1).filter(|k| *k < count)).collect();
+        let found = leads(&joints(&backward));
+        assert!(found[..count - 1].iter().all(|lead| lead.is_some_and(|lead| lead.joint == count - 1)) && found[count - 1].is_none());
+    }
+
+    #[test]
+    fn a_chain_ends_at_a_locked_joint_and_rings_and_joints_that_are_not_there_end_none() {
+        let mut ring: Vec<Option<usize>> = (0..50).map(|k| Some((k + 1) % 50)).collect();
+        ring.extend([Some(7), Some(50), None, Some(52), Some(1000)]);
+        let mut joints = joints(&ring);
+        let found = leads(&joints);
+        let ends = |found: &[Option<Mimic>]| (0..55).filter_map(|k| Some((k, found[k]?.joint))).collect::<Vec<_>>();
+        assert_eq!(ends(&found), [(53, 52)]);
+        joints[20].locked = Some(vec![0.5]);
+        let found = ends(&leads(&joints));
+        assert_eq!(found.len(), 52);
+        assert!(found.iter().all(|(joint, end)| *end == if *joint == 53 { 52 } else { 20 }), "{found:?}");
     }
 }

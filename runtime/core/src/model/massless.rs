@@ -68,8 +68,9 @@ impl Model<f64> {
             let felt = body.joint.feels(own) || turns_rotors(body);
             // Added mass need not be felt along every axis: numbers tell.
             let added = has_added_mass(body);
-            // Of several degrees of freedom some may be felt and others not: a point mass turns freely.
-            moves.push((i, felt && body.joint.nv() == 1, felt || added || outside));
+            // Of several degrees of freedom some may be felt and others not: a point mass turns freely. What follows another may undo what that does.
+            let sure = felt && body.joint.nv() == 1 && body.coordinates.mimic.is_none();
+            moves.push((i, sure, felt || added || outside));
             beyond[body.parent] |= outside || added || *own != SpatialInertia::zero();
         }
         moves

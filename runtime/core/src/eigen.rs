@@ -1,8 +1,8 @@
-//! Eigenvalues of a symmetric 3×3 matrix, by Jacobi's rotations.
+//! Eigenvalues of a symmetric 3×3 matrix, by Jacobi's rotations: the principal moments of a rotational inertia.
 
 /// Eigenvalues in rising order of the symmetric matrix xx, xy, xz, yy, yz, zz. Backward error of some 1e-15 of the
-/// largest entry, whatever the scale of the entries. Golub & Van Loan, *Matrix Computations*, §8.5.
-pub(crate) fn eigenvalues(m: [f64; 6]) -> [f64; 3] {
+/// largest entry, whatever the scale of the entries, which have to be finite. Golub & Van Loan, *Matrix Computations*, §8.5.
+pub fn eigenvalues(m: [f64; 6]) -> [f64; 3] {
     let scale = m.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     if scale == 0.0 {
         return [0.0; 3];
@@ -16,7 +16,7 @@ pub(crate) fn eigenvalues(m: [f64; 6]) -> [f64; 3] {
         }
     }
     let mut values = [a[0][0] * scale, a[1][1] * scale, a[2][2] * scale];
-    values.sort_by(f64::total_cmp);
+    values.sort_unstable_by(f64::total_cmp);
     values
 }
 
@@ -27,8 +27,8 @@ fn rotate(a: &mut [[f64; 3]; 3], p: usize, q: usize) {
     }
     // t = tan θ, the smaller root of t² + 2τt − 1 = 0
     let tau = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-    let t = 1.0_f64.copysign(tau) / (tau.abs() + tau.hypot(1.0));
-    let c = 1.0 / t.hypot(1.0);
+    let t = 1.0_f64.copysign(tau) / (tau.abs() + libm::hypot(tau, 1.0));
+    let c = 1.0 / libm::hypot(t, 1.0);
     let s = t * c;
     let r = 3 - p - q;
     let apq = a[p][q];
@@ -53,7 +53,7 @@ mod tests {
         let det = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
         let values = eigenvalues(m);
         let size = values.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-        let worst = values.map(|l| (((l - trace) * l + minors) * l - det).abs() / size.powi(3));
+        let worst = values.map(|l| (((l - trace) * l + minors) * l - det).abs() / (size * size * size));
         worst.into_iter().fold(0.0, f64::max)
     }
 
