@@ -1,11 +1,11 @@
 //! From an invocation to a module.
 
 use std::env;
-use std::fs;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
 use articulated_codegen::scene::articulated_scene::{Robot, Scene, SceneErrors};
+use articulated_codegen::urdf::{MOST_BYTES, read_file};
 use articulated_codegen::{Options, Request, scene};
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
@@ -149,7 +149,7 @@ impl Files {
         let wrong = |reason: &str| Error::new(span, format!("{name}: {reason}"));
         let root = env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
         let path = root.join(name);
-        let bytes = fs::read(&path).map_err(|error| match error.kind() {
+        let bytes = read_file(&path, MOST_BYTES).map_err(|error| match error.kind() {
             ErrorKind::NotFound => wrong("there is no such file, seen from the folder of Cargo.toml"),
             _ => wrong(&error.to_string()),
         })?;

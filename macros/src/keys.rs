@@ -1,6 +1,7 @@
 //! The keys of an invocation: one row each.
 
-use articulated_codegen::{Base, Level, MOST_SNAPPED, Real, Reference};
+use articulated_codegen::urdf::{SNAP_EXPECTED, can_snap};
+use articulated_codegen::{Base, Level, Real, Reference};
 use proc_macro2::{TokenStream, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{Parse, ParseStream};
@@ -96,7 +97,7 @@ pub(crate) const KEYS: &[Key<Settings>] = &[
     Key {
         name: "snap_angles",
         required: false,
-        expected: "a positive number of radians up to 0.5, as 1e-9",
+        expected: SNAP_EXPECTED,
         read: |s, value| angle(value).map(|angle| s.snap_angles = Some(angle)),
     },
     Key {
@@ -219,7 +220,7 @@ fn rename(value: ParseStream) -> Result<Vec<Renaming>> {
 
 fn angle(value: ParseStream) -> Result<f64> {
     let Number(angle) = value.parse()?;
-    if angle > 0.0 && angle <= MOST_SNAPPED { Ok(angle) } else { Err(value.error("too large, or not positive")) }
+    if can_snap(angle) { Ok(angle) } else { Err(value.error("too large, or not positive")) }
 }
 
 /// A path that means the same inside the generated module as outside of it.

@@ -43,7 +43,7 @@ mod tree;
 ///         append = { urdf = "gripper.urdf", at = tool, prefix = "left_" }, // another robot; or a list of them; also `xyz`, `rpy`
 ///         rename = { "a-b" = A_MINUS_B },                // names in Rust for names of the URDF
 ///         allow_unphysical_inertia = false,              // true: principal moments below zero are accepted
-///         snap_angles = 1e-9,                            // rad: angles this near to a multiple of π/2 are taken as that; absent: none
+///         snap_angles = 1e-9,                            // rad, above 0, at most 0.5: angles this near to a multiple of π/2 are taken as that; absent: none
 ///         limbs = true,                                  // branches that are alike at once, one a lane of a vector, and joints in loops, where that is cheaper
 ///         batch = [],                                    // [f64, f32]: functions of many states at once too, in modules batch_f64, batch_f32
 ///         level = f64,                                   // how accurate: also f32, f32_f64, compensated + two, double_double, f64 + fast_10 + no_fma, …

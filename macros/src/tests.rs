@@ -191,10 +191,22 @@ fn a_number_with_a_unit_behind_it_is_refused() {
         "effects = { damping = { elbow = 1.5f32 } }",
         "snap_angles = 1u8",
         "snap_angles = 2",
+        "snap_angles = 0",
+        "snap_angles = 0.0",
     ] {
         assert!(refused(entry), "{entry}");
     }
     assert!(!refused("lock = { elbow = 0.5f64 }, gravity = [0, 0, -9.81_f64]"));
+}
+
+#[test]
+fn of_a_file_larger_than_any_robot_nothing_is_read() {
+    let file = std::env::temp_dir().join(format!("articulated-vast-{}.urdf", std::process::id()));
+    std::fs::File::create(&file).unwrap().set_len(1 << 40).unwrap();
+    let name = file.to_str().unwrap();
+    let out = expand(quote!(mod arm { urdf = #name })).to_string();
+    std::fs::remove_file(&file).unwrap();
+    assert!(out.contains(&format!("{name}: found 1099511627776 bytes, expected at most 67108864 bytes")), "{out}");
 }
 
 #[test]

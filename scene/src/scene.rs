@@ -1,10 +1,10 @@
 //! A scene, and the keys at its top.
 
 use articulated_core::description::Base;
-use articulated_core::effect::Range;
 use articulated_core::lanes::Real;
 use articulated_core::level::Level;
 use articulated_core::spatial::Reference;
+use articulated_urdf::{SNAP_EXPECTED, can_snap};
 
 use crate::control::{self, Control};
 use crate::document;
@@ -17,7 +17,7 @@ use crate::log::Log;
 use crate::shaft::ShaftAsked;
 use crate::simulation::{self, Simulation};
 use crate::table::{Row, Spot};
-use crate::tree::{At, Node};
+use crate::tree::{At, Node, Value};
 
 /// A scene as its file has it: names are not looked up yet, files not opened.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -154,6 +154,10 @@ impl Scene {
         spot.read(KEYS, self, log);
         if let (Some(robot), Some(_)) = (spot.get("robot"), spot.get("urdf")) {
             robot.clash(log, "robot and urdf", "one of them");
+        }
+        let period = spot.get("control").and_then(|control| control.get("period"));
+        if let (Some(simulation), Some(period), Some(spot)) = (&self.simulation, self.control.period, period) {
+            simulation.check_period(period, &spot, log);
         }
     }
 }
@@ -300,8 +304,8 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         required: false,
         value: "number, rad",
         default: "never",
-        what: "take angles this near to a multiple of π/2 as that, above 0, at most 0.5",
-        read: |s, spot, log| s.code.snap_angles = spot.within(log, Range { at_most: 0.5, ..Range::POSITIVE }),
+        what: "take angles this near to a multiple of π/2 as that, above 0, at most 0.5 rad; leave it out to snap none",
+        read: |s, spot, log| s.code.snap_angles = snap_angles(spot, log),
     },
     Row {
         name: "limbs",
@@ -376,6 +380,16 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         read: |s, spot, log| s.impact = impact::read(spot, log),
     },
 ];
+
+/// The bound is that of the reader of URDFs.
+fn snap_angles(spot: &Spot<'_>, log: &mut Log) -> Option<f64> {
+    match spot.node.value {
+        Value::Number(x) if can_snap(x) => return Some(x),
+        Value::Number(x) => spot.bad(log, format!("{x:?}"), SNAP_EXPECTED),
+        _ => spot.wrong(log, SNAP_EXPECTED),
+    }
+    None
+}
 
 /// Each type once.
 fn batch(spot: &Spot<'_>, log: &mut Log) -> Option<Vec<Real>> {

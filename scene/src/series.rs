@@ -1,6 +1,6 @@
 //! Tables over time: in a file of numbers between commas, or in the scene itself.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use articulated_core::effect::Range;
@@ -90,7 +90,7 @@ impl Source {
         self.check_rows(&|i| format!("{key}.rows[{i}]"), log);
     }
 
-    /// Each column is there once.
+    /// Each column is there once, by its name; other names of one place only the robot shows, see [`Source::places`].
     fn check_columns(&self, key: &dyn Fn(usize) -> String, log: &mut Log) {
         let mut seen = HashSet::new();
         for (i, name) in self.columns.iter().enumerate().filter(|(_, name)| !seen.insert(name.as_str())) {
@@ -220,10 +220,25 @@ impl Source {
         (log.count() == before).then_some(row)
     }
 
-    /// Where the numbers of each column go.
+    /// Where the numbers of each column go: each to a place of its own.
     fn places(&self, model: &Model<f64>, side: Side, key: &Key, log: &mut Log) -> Vec<Option<usize>> {
         let column = |(i, name): (usize, &String)| place_of(name, model, side, (at(&self.column_places, i), &key(i)), log);
-        self.columns.iter().enumerate().map(column).collect()
+        let places: Vec<Option<usize>> = self.columns.iter().enumerate().map(column).collect();
+        self.check_places(&places, key, log);
+        places
+    }
+
+    /// No two columns go to one place under two names, as `elbow` and `elbow[0]`.
+    fn check_places(&self, places: &[Option<usize>], key: &Key, log: &mut Log) {
+        let (mut names, mut taken) = (HashSet::new(), HashMap::new());
+        for (i, (name, place)) in self.columns.iter().zip(places).enumerate() {
+            // A name that is there twice is told by `check_columns`.
+            let (Some(place), true) = (place, names.insert(name)) else { continue };
+            if let Some(before) = taken.insert(place, name) {
+                let found = format!("the column {}, which is {} again", quote(name), quote(before));
+                log.error(at(&self.column_places, i), &key(i), Kind::Together, found, "each once");
+            }
+        }
     }
 
     /// The columns in the places of their joints; `keys`: those of a column and of a row.

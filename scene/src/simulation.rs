@@ -207,8 +207,8 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         required: false,
         value: "number, s",
         default: "1e-12",
-        what: "how exactly events are found, above 0",
-        read: |x, s, log| set(&mut x.event_tolerance, s.positive(log)),
+        what: "how exactly events are found, at least 0",
+        read: |x, s, log| set(&mut x.event_tolerance, s.not_negative(log)),
     },
     Row {
         name: "stiffness",
@@ -239,6 +239,24 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Option<Simulation> {
     (log.count() == before).then_some(simulation)
 }
 
+impl Simulation {
+    /// The least that time can be told to go on by, s: sixteen units of its rounding.
+    fn least_step(&self) -> f64 {
+        16.0 * f64::EPSILON * self.start.abs().max(self.end.abs())
+    }
+
+    /// A sample ends a step: samples that time can tell apart, and no more than there may be steps.
+    pub(crate) fn check_period(&self, period: f64, spot: &Spot<'_>, log: &mut Log) {
+        let (least, shortest) = (self.least_step(), (self.end - self.start) / self.max_steps as f64);
+        if period < least {
+            spot.clash(log, format!("{period:?}"), format!("at least {least:.1e} s, sixteen units of rounding of the time"));
+        } else if period < shortest {
+            let most = self.max_steps;
+            spot.clash(log, format!("{period:?}"), format!("at least {shortest:.1e} s, for no more samples than max_steps = {most}"));
+        }
+    }
+}
+
 /// What numbers have to be together.
 fn check(x: &Simulation, spot: &Spot<'_>, log: &mut Log) {
     let key = |name: &str| spot.get(name);
@@ -260,18 +278,19 @@ fn check(x: &Simulation, spot: &Spot<'_>, log: &mut Log) {
     if let (true, Some(spot)) = (x.rtol == 0.0 && x.atol == 0.0, key("rtol")) {
         spot.clash(log, "rtol and atol both 0", "one of them above 0");
     }
-    if let (true, Some(spot)) = (x.max_step <= x.min_step, key("max_step")) {
-        spot.clash(log, format!("{:?}, not above min_step, {:?}", x.max_step, x.min_step), "a longer step");
+    if let (true, Some(spot)) = (x.max_step < x.min_step, key("max_step")) {
+        spot.clash(log, format!("{:?}, less than min_step, {:?}", x.max_step, x.min_step), "at least that");
     }
-    let least = 16.0 * f64::EPSILON * start.abs().max(end.abs());
+    let least = x.least_step();
     if let (Some(step), Some(spot)) = (x.step.filter(|step| *step < least), key("step")) {
         spot.clash(log, format!("{step:?}"), format!("at least {least:.1e} s, sixteen units of rounding of the time"));
     }
-    if let (Output::Every(every), Some(spot)) = (&x.output, key("output"))
+    if let (Output::Every(every), Some(spot)) = (&x.output, key("output").or(key("end")))
         && end > start
         && (end - start) / every >= MOST_RECORDS
     {
-        spot.clash(log, format!("{every:?}, so {MOST_RECORDS:e} records or more"), "a longer time from one to the next");
+        let found = format!("a record every {every:?} s up to {end:?} s, so {MOST_RECORDS:e} or more");
+        spot.clash(log, found, "output: a longer time from one to the next");
     }
     if let (Output::At(times), Some(spot)) = (&x.output, key("output")) {
         let outside = times.iter().find(|t| *t < start || *t > end);
@@ -320,8 +339,13 @@ fn events(spot: &Spot<'_>, log: &mut Log) -> Vec<Watched> {
         spot.wrong(log, "a list of events, as [\"limits\"]");
         return Vec::new();
     };
-    let mut events: Vec<Watched> = list.iter().filter_map(|item| item.word(log, WATCHED)).collect();
-    events.dedup();
+    let mut events: Vec<Watched> = Vec::new();
+    for item in &list {
+        match item.word(log, WATCHED) {
+            Some(event) if events.contains(&event) => item.clash(log, format!("{:?} once more", event.name()), "each of them once"),
+            event => events.extend(event),
+        }
+    }
     events
 }
 

@@ -191,9 +191,32 @@ fn settings_that_the_library_would_refuse_are_told_with_their_lines() {
     );
     assert_eq!(
         one("[simulation]\nend = 1\noutput = 1e-10"),
-        "s.toml:3: simulation.output: found 1e-10, so 1e9 records or more, expected a longer time from one to the next"
+        "s.toml:3: simulation.output: found a record every 1e-10 s up to 1.0 s, so 1e9 or more, expected output: a longer time from one to the next"
     );
-    assert_eq!(one("snap_angles = 0.6"), "s.toml:1: snap_angles: found 0.6, expected a finite number above 0, at most 0.5");
+    assert_eq!(
+        one("[simulation]\nend = 1e8"),
+        "s.toml:2: simulation.end: found a record every 0.01 s up to 100000000.0 s, so 1e9 or more, expected output: a longer time from one to the next"
+    );
+    assert_eq!(
+        one("[simulation]\nend = 1\nevents = [\"limits\", \"stick_slip\", \"limits\"]"),
+        "s.toml:3: simulation.events[2]: found \"limits\" once more, expected each of them once"
+    );
+    let sampled =
+        |period: &str| one(&format!("[control]\nkind = \"pd\"\nkp = 1\nperiod = {period}\n[simulation]\nend = 1\nmax_steps = 1000"));
+    assert_eq!(
+        sampled("1e-20"),
+        "s.toml:4: control.period: found 1e-20, expected at least 3.6e-15 s, sixteen units of rounding of the time"
+    );
+    assert_eq!(
+        sampled("1e-4"),
+        "s.toml:4: control.period: found 0.0001, expected at least 1.0e-3 s, for no more samples than max_steps = 1000"
+    );
+    assert!(Scene::read("s.toml", "[simulation]\nend = 1\nmin_step = 1e-3\nmax_step = 1e-3\nevent_tolerance = 0").is_ok());
+    for (value, found) in [("0.6", "0.6"), ("0", "0.0"), ("-1e-9", "-1e-9"), ("nan", "NaN"), ("true", "true")] {
+        let expected = "expected a finite number above 0, at most 0.5 rad; leave it out to snap none";
+        assert_eq!(one(&format!("snap_angles = {value}")), format!("s.toml:1: snap_angles: found {found}, {expected}"));
+    }
+    assert!(Scene::read("s.toml", "snap_angles = 0.5").is_ok());
 }
 
 #[test]
@@ -367,9 +390,45 @@ fn all_that_is_wrong_with_a_csv_is_told_of_its_lines() {
             "6: found the time -1.0 after 0.0, expected times in order",
         ],
     );
+    told("t,elbow,elbow[0]\n0,1,2\n", &["1: found the column \"elbow[0]\", which is \"elbow\" again, expected each once"]);
+    told(
+        "t,elbow[0],elbow,elbow\n0,1,2,3\n",
+        &[
+            "1: found the column \"elbow\" twice, expected each once",
+            "1: found the column \"elbow\", which is \"elbow[0]\" again, expected each once",
+        ],
+    );
     told("x,elbow\n0,1\n", &["1: found \"x\" as the first column, expected t"]);
     told("t,elbow\n", &[&format!(" found no rows, expected lines of numbers: the time and one for {each}")]);
     told("\n", &[" found nothing, expected a first line that names the columns, t and joints"]);
+}
+
+#[test]
+fn a_number_of_a_joint_has_one_column_whatever_its_names() {
+    let ball = "<link name='hand'/><joint name='ball' type='spherical'><parent link='tip'/><child link='hand'/></joint></robot>";
+    let urdf = ARM.replace("</robot>", ball);
+    let told = |keys: &str, columns: [&str; 3]| {
+        let rows = "rows = [[0, 0, 0, 1]]";
+        against(&urdf, &format!("[control]\n{keys}\ncolumns = [\n\"{}\"]\n{rows}", columns.join("\",\n\"")))
+    };
+    let twice = |line: usize, column: usize, names: [&str; 2]| {
+        let [first, again] = names;
+        format!("s.toml:{line}: control.columns[{column}]: found the column {again:?}, which is {first:?} again, expected each once")
+    };
+    let [table, pd] = ["kind = \"table\"", "kind = \"pd\"\nkp = 1\nkd = 1"];
+    assert_eq!(told(table, ["shoulder", "elbow", "shoulder[0]"]), [twice(6, 2, ["shoulder", "shoulder[0]"])]);
+    assert_eq!(
+        told(table, ["ball[0]", "ball[00]", "ball[+0]"]),
+        [twice(5, 1, ["ball[0]", "ball[00]"]), twice(6, 2, ["ball[00]", "ball[+0]"])]
+    );
+    assert_eq!(told(pd, ["ball[00]", "ball[0]", "ball[3]"]), [twice(7, 1, ["ball[00]", "ball[0]"])]);
+    for (keys, columns) in [
+        (table, ["shoulder[0]", "elbow", "ball[0]"]),
+        (table, ["ball[0]", "ball[1]", "ball[2]"]),
+        (pd, ["shoulder", "elbow[0]", "ball[3]"]),
+    ] {
+        assert_eq!(told(keys, columns), [""; 0]);
+    }
 }
 
 #[test]
