@@ -56,7 +56,7 @@ impl Build {
         let name = path.as_ref().display().to_string();
         let file = from_root(path.as_ref());
         let mut build = Self::new("");
-        let read = read(&file).and_then(|bytes| Ok(Scene::read_bytes(&name, &bytes)?));
+        let read = scene::bytes(&file).and_then(|bytes| Ok(Scene::read_bytes(&name, &bytes)?));
         if let Ok(found) = &read {
             scene::fill(&mut build.request.options, found);
             for other in std::mem::take(&mut build.request.options.append) {
@@ -92,7 +92,7 @@ impl Build {
         self
     }
 
-    /// Angles of the URDF that are this near to a multiple of π/2, rad, are that: some exporters write 1.5708.
+    /// Angles of the URDF that are this near to a multiple of π/2, rad, above 0, at most [`MOST_SNAPPED`](crate::MOST_SNAPPED), are that: some exporters write 1.5708.
     #[must_use]
     pub fn snap_angles(mut self, tolerance: f64) -> Self {
         self.request.options.snap_angles = Some(tolerance);
@@ -273,9 +273,9 @@ impl Build {
                 "urdf; a bundled robot is known to the command line alone: give its URDF with Build::urdf",
             ));
         }
-        request.urdf = read(&self.path)?;
+        request.urdf = scene::bytes(&self.path)?;
         for (path, other) in &self.append {
-            request.options.append.push(Appended { urdf: read(path)?, ..other.clone() });
+            request.options.append.push(Appended { urdf: scene::bytes(path)?, ..other.clone() });
         }
         if let Some(scene) = scene {
             scene::settle(&mut request, scene).map_err(|error| scene::placed(error, scene))?;
@@ -315,10 +315,6 @@ fn for_cargo(error: &Error) -> String {
 /// A path as seen from the crate's folder.
 fn from_root(path: &Path) -> PathBuf {
     std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default().join(path)
-}
-
-fn read(path: &Path) -> Result<Vec<u8>, Error> {
-    fs::read(path).map_err(|e| Error::File { file: path.display().to_string(), reason: e.to_string() })
 }
 
 #[cfg(test)]

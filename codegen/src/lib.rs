@@ -148,7 +148,7 @@ fn wanted(request: &Request, model: &Model<f64>, massless: &[String]) -> Result<
     let mut wanted: Vec<Wanted> = Vec::new();
     for text in &request.options.functions {
         let function = Wanted::parse(text)?;
-        function.check(model.shape())?;
+        function.check(model)?;
         function.parts.iter().try_for_each(|part| defined(&request.file, model, massless, part.function))?;
         let same_type = |f: &Wanted| f.group().is_some() && f.group() == function.group();
         let into = |f: &Wanted, other: &Wanted| {
@@ -170,8 +170,8 @@ fn wanted(request: &Request, model: &Model<f64>, massless: &[String]) -> Result<
 pub fn check_names(request: &Request, description: &Description, whole: &Model<f64>) -> Result<(), Error> {
     let names = |request: &Request| {
         parameters::parse(&request.options.parameters, &mut description.clone(), whole)?;
-        let shape = choose_frames(request, whole.clone())?.shape();
-        request.options.functions.iter().try_for_each(|text| Wanted::parse(text)?.check(shape))
+        let model = choose_frames(request, whole.clone())?;
+        request.options.functions.iter().try_for_each(|text| Wanted::parse(text)?.check(&model))
     };
     faults::all(&request.settled(), names)
 }

@@ -51,7 +51,7 @@ pub struct Options {
     pub effects: Vec<Applied>,
     /// Accept inertias with a principal moment below zero, with a warning. (Moments of which one exceeds the sum of the others are accepted with a warning anyway.)
     pub allow_unphysical_inertia: bool,
-    /// Take angles this near (rad, up to [`crate::MOST_SNAPPED`]) to a multiple of π/2 as that multiple; every one is reported. `None`: never.
+    /// Take angles this near (rad, above 0, at most [`crate::MOST_SNAPPED`]) to a multiple of π/2 as that multiple; every one is reported. `None`: never.
     pub snap_angles: Option<f64>,
     /// Rust names to use instead of those made from the URDF's names: (name in the URDF, name in Rust).
     pub rename: Vec<(String, String)>,

@@ -2,16 +2,16 @@
 
 mod place;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use articulated_core::description::Base;
 use articulated_core::model::Model;
 use articulated_scene::{Edited, Resolved, Robot};
+use articulated_urdf::{MOST_BYTES, read_file};
 
 pub use articulated_scene::{self, Scene};
-pub(crate) use place::no_robot;
 pub use place::placed;
+pub(crate) use place::{no_robot, unreadable};
 
 use place::in_its_place;
 
@@ -54,7 +54,8 @@ pub fn open_in(mut scene: Scene, folder: &Path, bundled: Bundled<'_>) -> Result<
         Robot::Urdf(name) => {
             let path = folder.join(name);
             files.push(path.clone());
-            (path.display().to_string(), bytes(&path)?, Base::Fixed)
+            let urdf = bytes(&path).map_err(|error| unreadable(&scene, scene.code.places.robot, "urdf", &error))?;
+            (path.display().to_string(), urdf, Base::Fixed)
         }
         Robot::Bundled(name) => match bundled(name) {
             Some((urdf, base)) => (format!("{name}.urdf"), urdf.as_bytes().to_vec(), base),
@@ -66,7 +67,7 @@ pub fn open_in(mut scene: Scene, folder: &Path, bundled: Bundled<'_>) -> Result<
     };
     let append = scene.code.append.iter().map(|other| {
         files.push(PathBuf::from(&other.urdf));
-        bytes(Path::new(&other.urdf))
+        bytes(Path::new(&other.urdf)).map_err(|error| unreadable(&scene, other.place, "append.urdf", &error))
     });
     let append = append.collect::<Result<Vec<_>, _>>()?;
     Ok(Prepared { files, ..prepare(scene, &file, urdf, base, append)? })
@@ -180,8 +181,9 @@ pub fn beside(scene: &str, name: &str) -> String {
     folder.map_or_else(|| name.to_owned(), |folder| folder.join(name).display().to_string())
 }
 
-fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
-    fs::read(path).map_err(|e| Error::File { file: path.display().to_string(), reason: e.to_string() })
+/// The bytes of a scene or a URDF, no more than a URDF may have.
+pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
+    read_file(path, MOST_BYTES).map_err(|e| Error::File { file: path.display().to_string(), reason: e.to_string() })
 }
 
 #[cfg(test)]
@@ -378,7 +380,29 @@ mod tests {
     #[test]
     fn a_scene_takes_the_angles_that_a_request_takes() {
         let read = |most: f64| Scene::read("s.toml", &format!("snap_angles = {most}")).is_ok();
-        assert!(read(crate::edit::MOST_SNAPPED) && !read(crate::edit::MOST_SNAPPED * 1.01));
+        assert!(read(crate::edit::MOST_SNAPPED) && !read(crate::edit::MOST_SNAPPED * 1.01) && !read(0.0));
+    }
+
+    /// A scene may name any file, and a device never ends.
+    #[test]
+    fn of_files_larger_than_any_robot_nothing_is_read() {
+        let folder = std::env::temp_dir().join(format!("articulated-vast-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let path = |name: &str| folder.join(name);
+        std::fs::File::create(path("vast")).unwrap().set_len(1 << 40).unwrap();
+        std::fs::write(path("arm.urdf"), ARM).unwrap();
+        std::fs::write(path("of.toml"), "urdf = 'vast'").unwrap();
+        std::fs::write(path("with.toml"), "urdf = 'arm.urdf'\nappend = { urdf = 'vast', at = 'fore', prefix = 'x' }").unwrap();
+        let opened = ["vast", "of.toml", "with.toml"].map(|name| open(&path(name), &|_| None).map(drop).map_err(|e| e.to_string()));
+        let built =
+            [crate::Build::new(path("vast")), crate::Build::scene(path("vast"))].map(|b| b.generate().map(drop).map_err(|e| e.to_string()));
+        std::fs::remove_dir_all(&folder).unwrap();
+        let told = format!("{}: found 1099511627776 bytes, expected at most 67108864 bytes", path("vast").display());
+        let [scene, of, with] = opened;
+        [scene].into_iter().chain(built).for_each(|result| assert_eq!(result, Err(told.clone())));
+        let (of, with) = (of.unwrap_err(), with.unwrap_err());
+        assert!(of.contains(&format!("of.toml:1: urdf: {told}")), "{of}");
+        assert!(with.contains(&format!("with.toml:2: append.urdf: {told}")), "{with}");
     }
 
     #[test]

@@ -35,7 +35,9 @@ pub(super) fn in_its_place(error: &Error, scene: &Scene) -> Option<Vec<SceneErro
     let refused = |at, key: &str, found| vec![refused(scene, at, key.to_owned(), found)];
     let whole = error.to_string();
     match error {
-        Error::Edits { refusals } => refusals.iter().map(|refusal| place(refusal, scene)).collect(),
+        Error::Edits { refusals } => {
+            refusals.iter().map(|refusal| place(refusal, scene)).collect::<Option<Vec<_>>>().map(|each| each.concat())
+        }
         Error::UnknownFunction { found, .. } => function(found).map(|at| refused(at, "functions", whole)),
         // They begin with their key.
         Error::Wanted { found: name, .. } | Error::SameName { name } => function(name).map(|at| refused(at, "", whole)),
@@ -64,7 +66,7 @@ fn refused(scene: &Scene, at: At, key: String, found: String) -> SceneError {
 }
 
 /// `None`: it is not the scene's.
-fn place(refusal: &Refusal, scene: &Scene) -> Option<SceneError> {
+fn place(refusal: &Refusal, scene: &Scene) -> Option<Vec<SceneError>> {
     let code = &scene.code;
     let (at, key) = match refusal.edit {
         Edit::Append(i) => (code.append.get(i)?.place, "append".to_owned()),
@@ -77,11 +79,11 @@ fn place(refusal: &Refusal, scene: &Scene) -> Option<SceneError> {
         }
     };
     let found = match &refusal.reason {
-        Reason::Edit(error) => error.to_string(),
-        Reason::Urdf(problems) => problems.to_string(),
-        Reason::FrameTwice(name) => format!("{name:?} is listed twice"),
+        Reason::Edit(error) => vec![error.to_string()],
+        Reason::Urdf(problems) => problems.errors.iter().map(ToString::to_string).collect(),
+        Reason::FrameTwice(name) => vec![format!("{name:?} is listed twice")],
     };
-    Some(refused(scene, at, key, found))
+    Some(found.into_iter().map(|found| refused(scene, at, key.clone(), found)).collect())
 }
 
 /// Whether a frame was refused because of this link: others may stand in place of the scene's.
@@ -90,6 +92,11 @@ fn is_about(reason: &Reason, link: &str) -> bool {
         Reason::Edit(EditError::UnknownLink { name, .. }) | Reason::FrameTwice(name) => name == link,
         _ => false,
     }
+}
+
+/// A file that the scene names cannot be had.
+pub(crate) fn unreadable(scene: &Scene, at: At, key: &str, error: &Error) -> Error {
+    SceneErrors { errors: vec![refused(scene, at, key.to_owned(), error.to_string())] }.into()
 }
 
 /// The scene has no robot that could be had.
