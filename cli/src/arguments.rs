@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
-use articulated_codegen::{Level, MOST_SNAPPED};
+use articulated_codegen::Level;
 use articulated_core::algorithm::function;
 use articulated_core::lanes::Real;
+use articulated_urdf::{SNAP_EXPECTED, can_snap};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::accuracy::arguments::AccuracyArguments;
@@ -151,7 +152,7 @@ pub(crate) struct RobotArguments {
     /// Take inertias with a moment below zero, with a warning (moments of which one exceeds the sum of the others always are)
     #[arg(long)]
     pub(crate) allow_unphysical_inertia: bool,
-    /// Take an angle of the file within TOL rad of a multiple of π/2 as that multiple
+    /// Take an angle of the file within TOL rad of a multiple of π/2 as that multiple: above 0, at most 0.5 [default: none is]
     #[arg(long, value_name = "TOL", value_parser = tolerance)]
     pub(crate) snap_angles: Option<f64>,
     /// Another name in Rust for a joint or link, where two would be one there; again for each
@@ -352,8 +353,7 @@ fn joints(text: &str) -> Result<usize, String> {
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {
-    let x: f64 = text.parse().map_err(|_| "expected a number of rad".to_owned())?;
-    if (0.0..=MOST_SNAPPED).contains(&x) { Ok(x) } else { Err("expected 0 to 0.5 rad".into()) }
+    text.parse().ok().filter(|x| can_snap(*x)).ok_or_else(|| format!("expected {SNAP_EXPECTED}"))
 }
 
 /// `name=RUST_NAME`; the name in the file may hold such a sign too.

@@ -1,5 +1,6 @@
 //! Why a command ended without doing what was asked, and the status it ends with.
 
+use articulated_codegen::{Reason, Refusal};
 use articulated_scene::SceneErrors;
 use serde::Serialize;
 
@@ -98,7 +99,7 @@ impl From<articulated_codegen::Error> for Failure {
         match error {
             articulated_codegen::Error::Several { errors } => Self::of(errors.into_iter().map(Self::from)),
             articulated_codegen::Error::Urdf(problems) => Self::input(problems.errors.iter().map(ToString::to_string)),
-            articulated_codegen::Error::Edits { refusals } => Self::input(refusals.iter().flat_map(|r| lines(&r.to_string()))),
+            articulated_codegen::Error::Edits { refusals } => Self::input(refusals.iter().flat_map(refused)),
             articulated_codegen::Error::Scene(errors) => errors.into(),
             articulated_codegen::Error::UnknownFunction { .. } => Self::usage(error.to_string()),
             other => Self::input([other.to_string()]),
@@ -114,6 +115,14 @@ pub(crate) fn undefined(error: articulated_codegen::Error) -> Result<String, art
         NoMass { .. } => Ok("nothing that moves has mass".into()),
         BoundFrames { frames, .. } => Ok(format!("fewer than six degrees of freedom carry {}", frames.join(", "))),
         other => Err(other),
+    }
+}
+
+/// A line for each thing that is wrong with an edit.
+fn refused(refusal: &Refusal) -> Vec<String> {
+    match &refusal.reason {
+        Reason::Urdf(problems) => problems.errors.iter().map(ToString::to_string).collect(),
+        _ => lines(&refusal.to_string()),
     }
 }
 

@@ -1,13 +1,12 @@
 //! The robot that a command is about: a bundled one by its name, a URDF by its path, or that of a scene, with its edits and effects.
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use articulated_codegen::scene::{self, Scene};
 use articulated_codegen::{Appended, Error, Generated, Options, Request, Sines, choose_frames, generate, nearest};
 use articulated_core::description::Base;
 use articulated_core::model::Model;
-use articulated_urdf::{Problem, Reading};
+use articulated_urdf::{MOST_BYTES, Problem, Reading, read_at_most};
 
 use crate::arguments::{RobotArguments, names_in_rust};
 use crate::console;
@@ -18,9 +17,6 @@ use crate::failure::Failure;
 pub(crate) fn named(file: &str, scene: Option<&str>) -> String {
     scene.map_or_else(|| file.to_owned(), |scene| format!("{file} of {scene}"))
 }
-
-/// A little more than the reader accepts, so that it is the reader who refuses.
-const MOST_BYTES: u64 = (64 << 20) + 1;
 
 /// A robot's document and how to read it.
 #[derive(Clone, Debug)]
@@ -229,15 +225,9 @@ fn document(name: &str) -> Result<(String, Vec<u8>), Failure> {
     }
 }
 
-/// The bytes of a file; `-` is the standard input.
+/// The bytes of a file, no more than a URDF may have; `-` is the standard input.
 pub(crate) fn read_bytes(name: &str) -> std::io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    if name == "-" {
-        std::io::stdin().lock().take(MOST_BYTES).read_to_end(&mut bytes)?;
-    } else {
-        std::fs::File::open(name)?.take(MOST_BYTES).read_to_end(&mut bytes)?;
-    }
-    Ok(bytes)
+    if name == "-" { read_at_most(std::io::stdin().lock(), MOST_BYTES) } else { articulated_urdf::read_file(name.as_ref(), MOST_BYTES) }
 }
 
 fn read_file(name: &str) -> Result<Vec<u8>, Failure> {

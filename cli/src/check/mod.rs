@@ -1,7 +1,6 @@
 //! `articulated check`.
 
 mod base;
-mod inertia;
 mod report;
 mod text;
 
@@ -38,6 +37,12 @@ fn examine(robot: &Robot, functions: &[String]) -> Report {
             report.unused.extend(reading.unused.iter().map(ToString::to_string));
             describe(robot, &reading, &mut report);
         }
+    }
+    // Joints may be locked beside the scene: its motion is that of the scene alone.
+    match robot.scene.as_deref().map(crate::simulate::motion::look_over) {
+        Some(Ok(odd)) => report.warnings.extend(odd.into_iter().map(Diagnostic::plain)),
+        Some(Err(failure)) => report.errors.extend(failure.lines.into_iter().map(Diagnostic::plain)),
+        None => {}
     }
     if report.errors.is_empty() {
         functions.iter().for_each(|f| check_function(robot, f, &mut report));

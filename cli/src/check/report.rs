@@ -1,12 +1,12 @@
 //! What there is to say of a robot, as data.
 
 use articulated_core::description::{Description, JointKind, Link};
+use articulated_core::eigen::eigenvalues;
 use articulated_core::model::{FLOATING_BASE, Model};
 use articulated_urdf::Problem;
 use serde::Serialize;
 
 use super::base::Base;
-use super::inertia::principal_moments;
 use crate::robot::Robot;
 
 /// Beyond this many bodies some questions are left unasked: no robot, and quadratic work.
@@ -176,7 +176,7 @@ fn link_row(k: usize, link: &Link, model: &Model<f64>) -> LinkRow {
         moves_with: (body != 0).then(|| model.bodies[body].name.clone()),
         mass: link.inertial.map_or(0.0, |i| i.mass),
         centre_of_mass: link.inertial.map(|i| i.origin.xyz),
-        principal_moments: link.inertial.map(|i| principal_moments(i.inertia)),
+        principal_moments: link.inertial.map(|i| eigenvalues(i.inertia)),
     }
 }
 

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::base::{Base, BaseRow, Felt};
 use super::report::{JointRow, LinkRow, Report};
+use crate::robot::named;
 use crate::table::{Table, counted, freedom, number, plain};
 
 pub(super) fn text(report: &Report) -> String {
@@ -20,9 +21,13 @@ pub(super) fn text(report: &Report) -> String {
         body(&mut out, report);
     }
     if !report.usable {
-        let _ = writeln!(out, "{}: not usable", plain(&report.file));
+        let _ = writeln!(out, "{}: not usable", plain(&subject(report)));
     }
     out
+}
+
+fn subject(report: &Report) -> String {
+    named(&report.file, report.scene.as_deref())
 }
 
 fn body(out: &mut String, report: &Report) {
@@ -59,7 +64,7 @@ fn body(out: &mut String, report: &Report) {
         let _ = writeln!(out, "{function} can be generated.");
     }
     if report.usable {
-        let _ = writeln!(out, "{}: usable", plain(&report.file));
+        let _ = writeln!(out, "{}: usable", plain(&subject(report)));
     }
 }
 

@@ -67,23 +67,25 @@ fn functions(names: &[String]) -> Vec<&'static Function<f64>> {
 
 /// The states of the file; all functions must find their arguments in all of them.
 fn read_states(file: &str, model: &Model<f64>, functions: &[&'static Function<f64>]) -> Result<states::States, Failure> {
-    let bytes = read_bytes(file).map_err(|e| Failure::input([format!("{file}: {e}")]))?;
-    let states = states::read(&bytes, model).map_err(|lines| Failure::input(lines.into_iter().map(|l| format!("{file}: {l}"))))?;
-    let mut missing = Vec::new();
-    for (k, state) in states.states.iter().enumerate() {
+    let wrong = |lines: Vec<String>| Failure::input(lines.into_iter().map(|line| format!("{file}: {line}")));
+    let bytes = read_bytes(file).map_err(|e| wrong(vec![e.to_string()]))?;
+    let states = states::read(&bytes, model).map_err(wrong)?;
+    let missing = missing(&states.states, model, functions);
+    if missing.is_empty() { Ok(states) } else { Err(wrong(states::listed(missing))) }
+}
+
+/// The arguments that functions do not find, a line each.
+fn missing(states: &[State], model: &Model<f64>, functions: &[&'static Function<f64>]) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (k, state) in states.iter().enumerate() {
         for f in functions {
             if let Err(argument) = state.arguments(f) {
-                let name = argument.name();
-                missing.push(format!(
-                    "{file}: states[{k}]: {name}: found nothing, expected {}: {} takes {name}",
-                    counted(argument.len(model.shape()), "number"),
-                    f.name
-                ));
+                let (name, count) = (argument.name(), counted(argument.len(model.shape()), "number"));
+                lines.push(format!("states[{k}]: {name}: found nothing, expected {count}: {} takes {name}", f.name));
             }
         }
     }
-    missing.truncate(100);
-    if missing.is_empty() { Ok(states) } else { Err(Failure::input(missing)) }
+    lines
 }
 
 /// Compiled code, or none with a note of the reason if generic results will do.

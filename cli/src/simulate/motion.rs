@@ -11,6 +11,7 @@ use articulated_scene::{Controller, Watched, When};
 
 use super::drive::Drive;
 use super::recording::{Happening, Recording};
+use super::settings;
 use super::stage::Stage;
 use super::watched::{self, Watch};
 use crate::console::{self, Progress};
@@ -41,12 +42,30 @@ pub(crate) struct Begin {
 
 /// Start and control as the scene has them. Errors: all that do not fit the robot, and tables that cannot be read.
 pub(crate) fn begin(stage: &Stage) -> Result<Begin, Failure> {
+    let begin = begin_quietly(stage)?;
+    beyond_limits(stage, &begin.q).iter().for_each(|line| console::warn(line));
+    Ok(begin)
+}
+
+fn begin_quietly(stage: &Stage) -> Result<Begin, Failure> {
     let scene = &stage.prepared.scene;
     let start = scene.start(&stage.model).map_err(Failure::from);
     let controller = scene.controller(&stage.model, &mut |file| stage.file(file)).map_err(Failure::from);
     let ((q, v), controller) = Failure::both(start, controller)?;
-    beyond_limits(stage, &q).iter().for_each(|line| console::warn(line));
     Ok(Begin { q, v, controller })
+}
+
+/// What is odd about a scene's motion. Errors: all that it would not begin for.
+pub(crate) fn look_over(scene: &str) -> Result<Vec<String>, Failure> {
+    let (stage, _) = Stage::open(scene)?;
+    let settings = stage.prepared.scene.simulation.as_ref().map(settings::from_scene);
+    let settings = settings.map_or(Ok(()), |settings| {
+        let problems = settings.problems(stage.model.shape());
+        let told = Failure::input(problems.iter().map(|problem| format!("{}: {problem}", stage.prepared.scene.file)));
+        if problems.is_empty() { in_time(&stage, &settings) } else { Err(told) }
+    });
+    let (begin, ()) = Failure::both(begin_quietly(&stage), settings)?;
+    Ok(beyond_limits(&stage, &begin.q))
 }
 
 /// A start beyond a joint's limits is odd, and used.

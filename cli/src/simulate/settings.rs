@@ -25,7 +25,7 @@ pub(super) fn of(stage: &Stage, arguments: &SimulateArguments) -> Result<Setting
         settings.output = Output::Every(every);
     }
     let problems = settings.problems(stage.model.shape());
-    let told = |p: &SettingError| if looked_at && p.key == "output" { too_many(&settings, file) } else { told(p, a, file) };
+    let told = |p: &SettingError| if looked_at && p.key == "output" { too_many(p, file) } else { told(p, a, file) };
     if problems.is_empty() { Ok(settings) } else { Err(Failure::input(problems.iter().map(told))) }
 }
 
@@ -60,12 +60,10 @@ fn choose_steps(settings: &mut Settings, a: &SimulateArguments, file: &str) -> R
 const LOOKED_AT: f64 = 0.01;
 
 /// Neither the scene nor an option has said how often to record.
-fn too_many(settings: &Settings, file: &str) -> String {
-    let length = settings.end - settings.start;
+fn too_many(problem: &SettingError, file: &str) -> String {
+    let right = &problem.right;
     format!(
-        "{file}: output = \"ends\" is recorded every {LOOKED_AT} s where a folder is written: found {:.0e} records to the end, expected fewer than 1e9: --every, s, with more than {}",
-        length / LOOKED_AT,
-        length * 1e-9
+        "{file}: output = \"ends\" is recorded every {LOOKED_AT} s where a folder is written, found no --every, s, expected one: {right}"
     )
 }
 
@@ -84,7 +82,8 @@ fn told(problem: &SettingError, a: &SimulateArguments, file: &str) -> String {
     }
 }
 
-fn from_scene(s: &Simulation) -> Settings {
+/// The settings that a scene says.
+pub(super) fn from_scene(s: &Simulation) -> Settings {
     let output = match &s.output {
         Recorded::Every(seconds) => Output::Every(*seconds),
         Recorded::At(times) => Output::At(times.clone()),

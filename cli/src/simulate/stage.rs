@@ -8,9 +8,13 @@ use articulated_core::description::{Base, Description};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
 use articulated_scene::Robot;
+use articulated_urdf::read_file;
 
 use crate::console;
 use crate::failure::Failure;
+
+/// No table of control is larger, bytes: ten million rows, of which none has more, of 400 each.
+const MOST_OF_TABLE: u64 = 4 << 30;
 
 /// A scene, its robot, and the model of both.
 pub(crate) struct Stage {
@@ -39,13 +43,20 @@ impl Stage {
         )]))
     }
 
-    /// The scene that a word of the command line names: a file, or a bundled one.
+    /// The scene that a word of the command line names: a file, or a bundled one. What is odd about its robot is told.
     pub(crate) fn find(name: &str) -> Result<Self, Failure> {
+        let (stage, odd) = Self::open(name)?;
+        odd.iter().for_each(|line| console::warn(line));
+        Ok(stage)
+    }
+
+    /// The same, with what is odd about its robot.
+    pub(crate) fn open(name: &str) -> Result<(Self, Vec<String>), Failure> {
         let path = Path::new(name);
-        let bundled = articulated_models::scene(name).filter(|_| !path.is_file());
+        let bundled = articulated_models::scene(name.strip_suffix(".toml").unwrap_or(name)).filter(|_| !path.is_file());
         let (prepared, folder) = match bundled {
             Some(bundled) => {
-                let scene = Scene::read(&format!("{name}.toml"), bundled.toml).map_err(Error::from)?;
+                let scene = Scene::read(&format!("{}.toml", bundled.name), bundled.toml).map_err(Error::from)?;
                 (scene::open_in(scene, Path::new(""), BUNDLED)?, PathBuf::new())
             }
             None if path.is_file() && path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf")) => {
@@ -59,14 +70,14 @@ impl Stage {
         Self::new(name, prepared, folder)
     }
 
-    fn new(name: String, mut prepared: Prepared, folder: PathBuf) -> Result<Self, Failure> {
+    fn new(name: String, mut prepared: Prepared, folder: PathBuf) -> Result<(Self, Vec<String>), Failure> {
         prepared.request.options.frames = None;
         let reading = articulated_codegen::read(&prepared.request)?;
         // Bundled robots are odd on purpose.
         let odd = reading.warnings.iter().filter(|_| !matches!(prepared.scene.robot, Robot::Bundled(_)));
-        odd.chain(&reading.snapped).for_each(|w| console::warn(&w.to_string()));
+        let odd = odd.chain(&reading.snapped).map(ToString::to_string).collect();
         let model = articulated_codegen::model(&prepared.request, &reading.description)?;
-        Ok(Self { name, prepared, description: reading.description, model, folder })
+        Ok((Self { name, prepared, description: reading.description, model, folder }, odd))
     }
 
     pub(crate) fn base(&self) -> Base {
@@ -86,7 +97,10 @@ impl Stage {
     /// The text of a file that the scene names.
     pub(crate) fn file(&self, name: &str) -> Result<String, String> {
         let path = self.folder.join(name);
-        std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))
+        let wrong = |reason: String| format!("{}: {reason}", path.display());
+        let bytes = read_file(&path, MOST_OF_TABLE).map_err(|e| wrong(e.to_string()))?;
+        let not_text = |at: usize| wrong(format!("byte {at}: found no UTF-8, expected a CSV"));
+        String::from_utf8(bytes).map_err(|e| not_text(e.utf8_error().valid_up_to()))
     }
 }
 

@@ -5,6 +5,7 @@ use std::rc::Rc;
 
 use articulated::Dynamics;
 use articulated::simulate::{Action, Direction, Event, Hit, Impact, SimulateError};
+use articulated_core::description::JointKind;
 use articulated_core::effect::{EffectId, JointEffect};
 use articulated_core::model::Body;
 use articulated_scene::{Watched, When};
@@ -87,8 +88,7 @@ impl<'a> Watch<'a> {
     fn limits(&mut self, stage: &Stage) {
         for (at, body) in freedoms(stage) {
             let own = effect_of(body, at.freedom, EffectId::limit).map(|e| (e.parameters[0], e.parameters[1]));
-            let joint = || stage.model.joints.iter().find(|joint| joint.q == (at.q, 1));
-            let Some(bounds) = own.or_else(|| joint()?.limit.map(|l| (l.lower, l.upper))) else { continue };
+            let Some(bounds) = own.or_else(|| of_the_file(stage, body)) else { continue };
             let (lower, upper) = at.of_the_coordinate(bounds);
             if lower.is_finite() || upper.is_finite() {
                 let event = Event::limit(body.name.clone(), at.q, lower, upper).direction(Direction::Either);
@@ -192,6 +192,12 @@ fn freedoms(stage: &Stage) -> impl Iterator<Item = (Freedom, &Body<f64>)> {
         let one = move |freedom| (Freedom { freedom, q: at.q + freedom, v: at.v + freedom, multiplier, offset }, body);
         (0..body.joint.nv()).filter(move |_| multiplier != 0.0).map(one)
     })
+}
+
+/// The bounds that the file gives a joint of one degree of freedom, those of one that follows another too.
+fn of_the_file(stage: &Stage, body: &Body<f64>) -> Option<(f64, f64)> {
+    let joint = stage.description.joints.iter().find(|joint| joint.name == body.name && body.joint.nv() == 1)?;
+    joint.limit.filter(|_| joint.kind != JointKind::Continuous).map(|l| (l.lower, l.upper))
 }
 
 /// The effect on a degree of freedom of a body's joint.

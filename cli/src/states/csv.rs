@@ -29,7 +29,7 @@ pub(super) fn read(text: &str, found: &mut Found<'_>) {
     }
     for record in reader.records() {
         match record {
-            Ok(record) => row(&record, &columns, found),
+            Ok(record) => row(&record, line(&record, text), &columns, found),
             Err(error) => found.errors.push(format!("not CSV: {error}")),
         }
     }
@@ -76,8 +76,14 @@ fn repeated(columns: &[Option<Column>], found: &mut Found<'_>) {
     }
 }
 
-fn row(record: &StringRecord, columns: &[Option<Column>], found: &mut Found<'_>) {
-    let line = record.position().map_or(0, csv::Position::line);
+/// Where a record begins, behind the empty lines that the reader counts to it.
+fn line(record: &StringRecord, text: &str) -> usize {
+    let Some(position) = record.position() else { return 0 };
+    let from = text.as_bytes().get(position.byte() as usize..).unwrap_or_default();
+    position.line() as usize + from.iter().take_while(|byte| b"\r\n".contains(byte)).filter(|byte| **byte == b'\n').count()
+}
+
+fn row(record: &StringRecord, line: usize, columns: &[Option<Column>], found: &mut Found<'_>) {
     let mut gatherings: Vec<Gathering> = Vec::new();
     let before = found.errors.len();
     for (column, text) in columns.iter().flatten().zip(record) {
@@ -154,6 +160,7 @@ mod tests {
         let said = |text: String| read(text.as_bytes(), &model).unwrap_err().join("\n");
         assert!(said(format!("q.{a},q.{b}\n1,nan\n")).contains("line 2: q: joint"));
         assert!(said(format!("q.{a},q.{b}\n1,x\n")).contains("found \"x\""));
+        assert!(said(format!("q.{a},q.{b}\n\n1,2\n\r\n\n1,x")).contains("line 6: q"));
         assert!(said(format!("q.{a}\n1\n")).contains("found nothing"));
         assert!(said(format!("q.{a},q.{a}\n1,1\n")).contains("twice"));
         assert!(said(format!("q.{a}x,q.{b}\n1,1\n")).contains("did you mean"));

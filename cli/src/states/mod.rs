@@ -11,6 +11,7 @@ use articulated_core::description::JointKind;
 use articulated_core::model::{JointInfo, Model};
 
 pub use random::{SplitMix64, random};
+pub(crate) use read::listed;
 pub use read::{States, read};
 
 /// One state: a vector for each argument that is known of it, laid out as the functions take it.

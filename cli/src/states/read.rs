@@ -137,13 +137,16 @@ impl Found<'_> {
         if self.errors.is_empty() {
             return Ok(States { states: self.states, warnings: self.warnings });
         }
-        let more = self.errors.len().saturating_sub(MOST);
-        self.errors.truncate(MOST);
-        if more > 0 {
-            self.errors.push(format!("and {more} more"));
-        }
-        Err(self.errors)
+        Err(listed(self.errors))
     }
+}
+
+/// The first of many errors, and how many more there are.
+pub(crate) fn listed(mut errors: Vec<String>) -> Vec<String> {
+    let more = errors.len().saturating_sub(MOST);
+    errors.truncate(MOST);
+    errors.extend((more > 0).then(|| format!("and {more} more")));
+    errors
 }
 
 /// All names, or the first of many.

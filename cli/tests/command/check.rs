@@ -122,10 +122,63 @@ fn a_snapped_angle_is_told() {
 }
 
 #[test]
+fn a_tolerance_of_angles_is_above_nothing() {
+    for tolerance in ["0", "0.6", "nan", "much"] {
+        let ended = run(&["check", "panda_like", "--snap-angles", tolerance]);
+        assert_eq!(ended.status, 2, "{tolerance}");
+        let expected = "expected a finite number above 0, at most 0.5 rad; leave it out to snap none";
+        assert!(ended.err.contains(tolerance) && ended.err.contains(expected), "{}", ended.err);
+    }
+}
+
+/// What a simulation would not begin for is wrong with the scene, whoever looks at it.
+#[test]
+fn a_scene_is_usable_if_its_motion_can_begin() {
+    let table = File::new("table.csv", b"t,nobody\n0,1\n");
+    let simulation = "[simulation]\nend = 1.0\n";
+    for (text, told) in [
+        ("[control]\nkind = \"table\"\nfile = \"no_such.csv\"\n".to_owned(), "which cannot be read"),
+        (format!("[control]\nkind = \"table\"\nfile = {:?}\n", table.name()), "nobody"),
+        (
+            "[impact]\nlink = \"lower_rod\"\nnormal = [1, 0, 0]\nmass = 0.1\nrestitution = 0.5\ntime = 5.0\n".to_owned(),
+            "impact.time: found 5.0",
+        ),
+    ] {
+        let scene = File::new("motion.toml", format!("robot = \"double_pendulum\"\n{simulation}{text}").as_bytes());
+        let checked = run(&["check", scene.name()]);
+        assert!(checked.status == 1 && checked.out.contains(told), "{text}: {}{}", checked.out, checked.err);
+        assert!(checked.out.contains(&format!("of {}: not usable", scene.name())), "{}", checked.out);
+    }
+    let far = File::new("far.toml", format!("robot = \"panda_like\"\n[initial]\nq = {{ joint_1 = 9.0 }}\n{simulation}").as_bytes());
+    let checked = run(&["check", far.name()]);
+    assert!(checked.status == 0 && checked.out.contains("initial.q.joint_1: found 9, beyond its limits"), "{}{}", checked.out, checked.err);
+}
+
+#[test]
 fn an_unknown_name_is_guessed() {
     let wrong = run(&["check", "panda_lik"]);
     assert_eq!(wrong.status, 1);
     assert!(wrong.err.contains("error") && wrong.err.contains("did you mean \"panda_like\"?"), "{}", wrong.err);
+}
+
+#[test]
+fn of_files_larger_than_may_be_nothing_is_read_and_sizes_are_told() {
+    let vast = File::new("vast.csv", b"");
+    std::fs::File::create(vast.name()).unwrap().set_len(1 << 40).unwrap();
+    let scene = |keys: &str| File::new("s.toml", format!("robot = 'simple_pendulum'\nsimulation = {{ end = 1 }}\n{keys}").as_bytes());
+    let table = scene(&format!("control = {{ kind = 'table', file = {:?} }}", vast.name()));
+    let append = scene(&format!("append = {{ urdf = {:?}, at = 'bob', prefix = 'x' }}", vast.name()));
+    let cases = [
+        (&["check", vast.name()][..], 64 << 20),
+        (&["check", append.name()], 64 << 20),
+        (&["eval", "simple_pendulum", "--function", "bias_forces", "--states", vast.name()], 64 << 20),
+        (&["simulate", table.name()], 4_u64 << 30),
+    ];
+    for (words, most) in cases {
+        let ended = run(words);
+        let told = format!("found 1099511627776 bytes, expected at most {most} bytes");
+        assert!(ended.status == 1 && ended.err.contains(vast.name()) && ended.err.contains(&told), "{words:?}: {}", ended.err);
+    }
 }
 
 #[test]

@@ -112,6 +112,22 @@ fn mistakes_name_the_state_and_the_joint() {
     assert_eq!(run(&["eval", "simple_pendulum", "--function", "inverse_dynamics", "--states", "/no/such/file"]).status, 1);
 }
 
+/// Whether the reader of states or the functions find that something is missing.
+#[test]
+fn of_many_mistakes_the_first_hundred_are_told_and_how_many_more_there_are() {
+    for (state, mistake) in [(r#"{"q": [0.1]}"#, "v: found nothing"), (r#"{"q": [0.1], "v": [1, 2]}"#, "v: found 2 numbers")] {
+        let told = |count: usize| {
+            let text = format!("[{}]", vec![state; count].join(","));
+            let ended = run_with(&["eval", "simple_pendulum", "--function", "bias_forces", "--states", "-"], text.as_bytes());
+            assert_eq!(ended.status, 1);
+            (ended.err.matches(mistake).count(), ended.err.lines().last().unwrap().to_owned())
+        };
+        assert_eq!(told(500), (100, "error: -: and 400 more".to_owned()));
+        let (count, last) = told(100);
+        assert!(count == 100 && last.contains("states[99]: v"), "{last}");
+    }
+}
+
 #[test]
 fn the_examples_of_the_help_run_as_they_are_printed() {
     let help = run(&["eval", "--help"]).out;

@@ -41,6 +41,29 @@ fn joints_that_follow_come_to_their_limits_and_stick() {
     assert!((time - expected).abs() < 1e-3, "{time} {expected}");
 }
 
+/// Bounds of the file are those of the joint that they are of, not of the one that it follows.
+#[test]
+fn a_follower_has_its_own_bounds_in_the_file() {
+    let bounds = |upper: &str| match upper {
+        "" => String::new(),
+        upper => format!("<limit lower='-1' upper='{upper}' effort='1' velocity='1'/>"),
+    };
+    let told_of = |upper: &str| {
+        let kind = if upper.is_empty() { "continuous" } else { "revolute" };
+        let follower = format!(
+            "<joint name='y' type='{kind}'><parent link='g'/><child link='b'/><axis xyz='1 0 0'/>{}<mimic joint='x' multiplier='2'/></joint>",
+            bounds(upper)
+        );
+        let scene = "initial = { v = { x = 10.0 } }\ngravity = [0, 0, 0]\n[simulation]\nend = 1.0\nevents = [\"limits\"]\n";
+        let summary = simulated(&format!("{LEADER}{follower}"), 1.0, scene);
+        let times = summary["events"].as_array().unwrap().iter().map(|e| (e["time"].as_f64().unwrap() * 1e6).round());
+        told(&summary).into_iter().zip(times).collect::<Vec<_>>()
+    };
+    let leader = ("x reaches its limit".to_owned(), 9e5);
+    assert_eq!(told_of("10"), [("y reaches its limit".to_owned(), 5e5), leader.clone()]);
+    assert_eq!(told_of(""), [leader]);
+}
+
 /// Both angles of a universal joint have the bounds of its effect.
 #[test]
 fn universal_joints_come_to_their_limits() {
