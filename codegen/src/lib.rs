@@ -33,7 +33,7 @@ use articulated_core::Scalar;
 use articulated_core::algorithm::{Function, Needs, functions};
 use articulated_core::description::Description;
 use articulated_core::model::Model;
-use articulated_urdf::{Problem, Reading, Unused};
+use articulated_urdf::{Kind, Problem, Reading, Subject, Unused};
 use function_groups::Group;
 
 pub use articulated_core as core;
@@ -130,7 +130,7 @@ fn types_of_batch(types: &[Real]) -> Result<(), Error> {
 pub fn generate(request: &Request) -> Result<Generated, Error> {
     let request = &*request.settled();
     let Plan { reading, model, parameters, wanted, names } = faults::all(request, plan)?;
-    let Reading { warnings, unused, snapped, .. } = reading;
+    let Reading { mut warnings, unused, snapped, .. } = reading;
     let mut ledger = Ledger::default();
     let mut programs = Vec::new();
     for function in wanted {
@@ -138,9 +138,27 @@ pub fn generate(request: &Request) -> Result<Generated, Error> {
         ledger.functions.push(program.entry.clone());
         programs.push(program);
     }
+    warnings.extend(ledger.functions.iter().filter_map(|entry| long_code(&request.file, entry)));
     let source = emit::module(request, &model, &names, &programs, &parameters, &unused) + &emit::warnings(&warnings);
     let graphs = programs.into_iter().map(|p| if p.columns.is_some() { graph::Graph::default() } else { p.graph }).collect();
     Ok(Generated { source, model, parameters, level: request.options.level, ledger, graphs, warnings, unused, snapped })
+}
+
+/// So many instructions, straight-line code beyond which is of little use: a compiler takes minutes for it, and loops over joints are faster.
+const LONG: u64 = 400_000;
+
+/// What is odd about a function that is as long.
+fn long_code(file: &str, entry: &ledger::Entry) -> Option<Problem> {
+    let instructions = entry.emitted().instructions();
+    (instructions > LONG).then(|| Problem {
+        file: file.to_owned(),
+        line: None,
+        subject: Subject::Document,
+        kind: Kind::LongCode,
+        field: entry.function.clone(),
+        found: format!("{instructions} instructions, for which a compiler takes minutes"),
+        expected: "the library's function of the same name, a loop over the joints, for a robot like this".to_owned(),
+    })
 }
 
 /// The functions that the request names.

@@ -133,6 +133,8 @@ pub enum Kind {
     UnusedInertia,
     /// An angle was replaced by a multiple of π/2, as asked for.
     Snapped,
+    /// Generated code that a compiler takes minutes for: of the robot, not of the file.
+    LongCode,
     /// [`Options::snap_angles`](crate::Options::snap_angles) that cannot be.
     SnapAngles,
     /// More problems than are listed.

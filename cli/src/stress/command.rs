@@ -12,7 +12,7 @@ use super::{levels, own, text};
 use crate::arguments::{Format, RobotArguments};
 use crate::console::{self, Progress};
 use crate::failure::{Failure, OK};
-use crate::robot::{Robot, read_bytes};
+use crate::robot::{Robot, note_of_parameters, read_bytes};
 use crate::states;
 use crate::stress::arguments::StressArguments;
 
@@ -96,7 +96,9 @@ fn of_robot(arguments: &StressArguments, name: &str) -> Result<Found, Failure> {
         Some(file) => given(&robot, file)?,
         None => Vec::new(),
     };
-    own::rows(&robot, &given, &of_robots(arguments))
+    let mut found = own::rows(&robot, &given, &of_robots(arguments))?;
+    found.notes.extend(note_of_parameters(&robot.options));
+    Ok(found)
 }
 
 /// The states of a file; what a state does not give is zero.

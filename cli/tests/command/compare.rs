@@ -307,6 +307,8 @@ fn parameters_of_a_scene_are_constants_where_its_functions_are_called() {
         assert_eq!(ended.status, 0, "{words:?}: {}", ended.err);
         assert!(ended.out.contains("parameters: payload(pole_rod): constants here"), "{words:?}: {}", ended.out);
     }
+    let out = run(&["stress", scene.name(), "--format", "json"]).out;
+    assert!(out.contains("parameters: payload(pole_rod): constants here"), "{out}");
 }
 
 /// The frames that these commands choose are the tips: the name of another link is in order.

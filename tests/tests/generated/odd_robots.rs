@@ -25,10 +25,35 @@ fn a_robot_that_cannot_move_is_generated_and_compiles() {
 /// --config profile.dev.package.articulated-codegen.opt-level=0 -- --nocapture a_chain_of_a_thousand`.
 #[test]
 fn a_chain_of_a_thousand_joints_is_generated() {
-    use std::fmt::Write;
     let n = 1000;
+    let request = chain(n, "inverse_dynamics");
+    let start = Instant::now();
+    let generated = generate(&request).unwrap();
+    let operations = generated.ledger.functions[0].emitted().instructions();
+    println!("1000 joints: {operations} instructions generated in {:.1?}", start.elapsed());
+    assert_eq!(generated.model.nv, n);
+    // Linear in the joints: no more a joint than some three hundred instructions.
+    assert!(operations < 300_000, "{operations}");
+    assert!(generated.warnings.is_empty(), "{:?}", generated.warnings);
+}
+
+/// A matrix has n² numbers, and each is written out: nobody should learn that from a compiler that does not end.
+#[test]
+fn code_that_is_too_long_to_be_of_use_is_a_warning() {
+    let generated = generate(&chain(400, "mass_matrix")).unwrap();
+    let told: Vec<String> = generated.warnings.iter().map(ToString::to_string).collect();
+    let instructions = generated.ledger.functions[0].emitted().instructions();
+    assert!(
+        told.len() == 1 && told[0].starts_with(&format!("chain.urdf: mass_matrix: found {instructions} instructions, for which")),
+        "{told:?}"
+    );
+}
+
+/// A serial chain of so many joints, and one function of it.
+fn chain(joints: usize, function: &str) -> Request {
+    use std::fmt::Write;
     let mut urdf = String::from("<robot name='chain'><link name='l0'/>");
-    for k in 1..=n {
+    for k in 1..=joints {
         let axis = ["1 0 0", "0 1 0", "0 0 1"][k % 3];
         let _ = write!(
             urdf,
@@ -38,14 +63,8 @@ fn a_chain_of_a_thousand_joints_is_generated() {
         );
     }
     let mut request = Request::new("chain.urdf", urdf + "</robot>");
-    request.options.functions = vec!["inverse_dynamics".into()];
-    let start = Instant::now();
-    let generated = generate(&request).unwrap();
-    let operations = generated.ledger.functions[0].emitted().instructions();
-    println!("1000 joints: {operations} instructions generated in {:.1?}", start.elapsed());
-    assert_eq!(generated.model.nv, n);
-    // Linear in the joints: no more a joint than some three hundred instructions.
-    assert!(operations < 300_000, "{operations}");
+    request.options.functions = vec![function.into()];
+    request
 }
 
 /// Slides alone: no Coriolis force, and a large matrix of nothing, which compiles without a warning.
