@@ -10,7 +10,6 @@ use super::{Control, SimulateError};
 pub(crate) struct Curve<'a, R: Dynamics<f64>> {
     pub(crate) method: &'a mut dyn Method<R>,
     pub(crate) start: Start<'a>,
-    pub(crate) h: f64,
     pub(crate) end: &'a [f64],
     pub(crate) point: &'a mut Point,
 }
@@ -33,19 +32,19 @@ impl Point {
 impl<R: Dynamics<f64>> Curve<'_, R> {
     /// Computes what the curve needs.
     pub(crate) fn prepare(&mut self, system: &mut System<R>, control: &mut dyn Control) -> Result<(), SimulateError> {
-        self.method.prepare(system, control, self.start, self.h, self.end)
+        self.method.prepare(system, control, self.start, self.end)
     }
 
     /// The point at t + θ·h; at the ends the ends themselves.
     pub(crate) fn at(&mut self, system: &mut System<R>, theta: f64) -> Result<&Point, SimulateError> {
         let Point { t, y, q } = &mut *self.point;
-        *t = self.start.t + theta * self.h;
+        *t = self.start.t + theta * self.start.h;
         if theta <= 0.0 {
             y.copy_from_slice(self.start.y);
         } else if theta >= 1.0 {
             y.copy_from_slice(self.end);
         } else {
-            self.method.between(theta, self.start, self.h, self.end, y);
+            self.method.between(theta, self.start, self.end, y);
         }
         system.configuration(&y[..system.manifold.nv], q)?;
         Ok(self.point)

@@ -53,15 +53,15 @@ impl<R: Dynamics<f64>> Method<R> for Dop853 {
         system: &mut System<R>,
         control: &mut dyn Control,
         start: Start,
-        h: f64,
         end: &mut [f64],
         norm: &Norm,
     ) -> Result<Error, SimulateError> {
+        let h = start.h;
         self.ready = false;
         let k = &mut self.stages;
-        k.begin(start, h);
+        k.begin(start);
         for i in 1..=LAST {
-            k.stage(system, control, (start, h), i, C[i - 1], A[i - 1])?;
+            k.stage(system, control, start, i, C[i - 1], A[i - 1])?;
             if i == LAST - 1 {
                 self.twelfth.copy_from_slice(k.argument());
             }
@@ -78,13 +78,14 @@ impl<R: Dynamics<f64>> Method<R> for Dop853 {
         Some(self.stages.k(LAST))
     }
 
-    fn prepare(&mut self, system: &mut System<R>, control: &mut dyn Control, start: Start, h: f64, _: &[f64]) -> Result<(), SimulateError> {
+    fn prepare(&mut self, system: &mut System<R>, control: &mut dyn Control, start: Start, _: &[f64]) -> Result<(), SimulateError> {
+        let h = start.h;
         if self.ready {
             return Ok(());
         }
         let k = &mut self.stages;
         for i in LAST + 1..16 {
-            k.stage(system, control, (start, h), i, C[i - 1], A[i - 1])?;
+            k.stage(system, control, start, i, C[i - 1], A[i - 1])?;
         }
         for (row, d) in self.curve.iter_mut().zip(&D) {
             row.iter_mut().enumerate().for_each(|(i, out)| *out = h * k.sum(d, i));
@@ -93,7 +94,8 @@ impl<R: Dynamics<f64>> Method<R> for Dop853 {
         Ok(())
     }
 
-    fn between(&self, s: f64, start: Start, h: f64, end: &[f64], out: &mut [f64]) {
+    fn between(&self, s: f64, start: Start, end: &[f64], out: &mut [f64]) {
+        let h = start.h;
         let (k, [c3, c4, c5, c6], r) = (&self.stages, &self.curve, 1.0 - s);
         let (first, last) = (k.k(0), k.k(LAST));
         for (i, out) in out.iter_mut().enumerate() {

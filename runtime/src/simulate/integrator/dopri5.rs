@@ -57,14 +57,14 @@ impl<R: Dynamics<f64>> Method<R> for Dopri5 {
         system: &mut System<R>,
         control: &mut dyn Control,
         start: Start,
-        h: f64,
         end: &mut [f64],
         norm: &Norm,
     ) -> Result<Error, SimulateError> {
+        let h = start.h;
         let k = &mut self.stages;
-        k.begin(start, h);
+        k.begin(start);
         for i in 0..6 {
-            k.stage(system, control, (start, h), i + 1, C[i], A[i])?;
+            k.stage(system, control, start, i + 1, C[i], A[i])?;
             if i == 4 {
                 self.sixth.copy_from_slice(k.argument());
             }
@@ -77,11 +77,12 @@ impl<R: Dynamics<f64>> Method<R> for Dopri5 {
         Some(self.stages.k(6))
     }
 
-    fn prepare(&mut self, _: &mut System<R>, _: &mut dyn Control, _: Start, _: f64, _: &[f64]) -> Result<(), SimulateError> {
+    fn prepare(&mut self, _: &mut System<R>, _: &mut dyn Control, _: Start, _: &[f64]) -> Result<(), SimulateError> {
         Ok(())
     }
 
-    fn between(&self, s: f64, start: Start, h: f64, end: &[f64], out: &mut [f64]) {
+    fn between(&self, s: f64, start: Start, end: &[f64], out: &mut [f64]) {
+        let h = start.h;
         let k = &self.stages;
         for (i, out) in out.iter_mut().enumerate() {
             let way = end[i] - start.y[i];

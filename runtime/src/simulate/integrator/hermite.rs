@@ -34,10 +34,11 @@ impl Hermite {
         &mut self,
         system: &mut System<R>,
         control: &mut dyn Control,
-        (start, h): (Start, f64),
+        start: Start,
         end: &[f64],
         known: bool,
     ) -> Result<(), SimulateError> {
+        let h = start.h;
         if self.ready {
             return Ok(());
         }
@@ -68,19 +69,13 @@ macro_rules! hand_on_to_hermite {
             self.curve.last()
         }
 
-        fn prepare(
-            &mut self,
-            system: &mut System<R>,
-            control: &mut dyn Control,
-            start: Start,
-            h: f64,
-            end: &[f64],
-        ) -> Result<(), SimulateError> {
+        fn prepare(&mut self, system: &mut System<R>, control: &mut dyn Control, start: Start, end: &[f64]) -> Result<(), SimulateError> {
             let known = Method::<R>::wants_rate(self);
-            self.curve.prepare(system, control, (start, h), end, known)
+            self.curve.prepare(system, control, start, end, known)
         }
 
-        fn between(&self, theta: f64, start: Start, h: f64, end: &[f64], out: &mut [f64]) {
+        fn between(&self, theta: f64, start: Start, end: &[f64], out: &mut [f64]) {
+            let h = start.h;
             self.curve.between(theta, start.y, h, end, out);
         }
     };

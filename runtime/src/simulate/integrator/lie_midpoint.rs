@@ -47,6 +47,45 @@ fn largest(x: impl Iterator<Item = f64>) -> f64 {
     x.fold(0.0, |most, x| if x.is_nan() { f64::NAN } else { x.abs().max(most) })
 }
 
+impl LieMidpoint {
+    /// The acceleration in the middle of the step, by rounds of substitution.
+    fn solve<R: Dynamics<f64>>(&mut self, system: &mut System<R>, control: &mut dyn Control, start: Start) -> Result<(), SimulateError> {
+        let (h, nv, middle) = (start.h, system.nv(), start.t + 0.5 * start.h);
+        let v = &start.y[nv..2 * nv];
+        let mut before = f64::INFINITY;
+        for _ in 0..MOST_ROUNDS {
+            self.place_middle(system, v, h);
+            system.rate(control, middle, &self.middle, &mut self.rate)?;
+            system.counts.iterations += 1;
+            let found = &self.rate[nv..2 * nv];
+            if found.iter().any(|a| !a.is_finite()) {
+                let first = if before.is_finite() { None } else { system.not_finite(middle, "acceleration", found) };
+                return Err(first.unwrap_or(SimulateError::NoConvergence { t: start.t, step: h }));
+            }
+            let change = h * largest(found.iter().zip(&self.acceleration).map(|(a, b)| a - b));
+            let size = largest(v.iter().copied()).max(h * largest(found.iter().copied()));
+            self.acceleration.copy_from_slice(found);
+            // Down to rounding, or as near as it goes.
+            if change <= f64::EPSILON * size || (change >= before && change <= 64.0 * f64::EPSILON * size) {
+                self.place_middle(system, v, h);
+                return Ok(());
+            }
+            before = change;
+        }
+        Err(SimulateError::NoConvergence { t: start.t, step: h })
+    }
+
+    /// The step and its middle, as the acceleration has them.
+    fn place_middle<R: Dynamics<f64>>(&mut self, system: &System<R>, v: &[f64], h: f64) {
+        let nv = v.len();
+        let mean = &mut self.middle[nv..2 * nv];
+        mean.iter_mut().zip(v).zip(&self.acceleration).for_each(|((mean, v), a)| *mean = v + 0.5 * h * a);
+        self.step.iter_mut().zip(mean).for_each(|(step, mean)| *step = h * *mean);
+        system.manifold.cayley(&mut self.step);
+        self.middle[..nv].iter_mut().zip(&self.step).for_each(|(u, s)| *u = 0.5 * s);
+    }
+}
+
 impl<R: Dynamics<f64>> Method<R> for LieMidpoint {
     fn reset(&mut self) {
         self.acceleration.fill(0.0);
@@ -57,10 +96,10 @@ impl<R: Dynamics<f64>> Method<R> for LieMidpoint {
         system: &mut System<R>,
         control: &mut dyn Control,
         start: Start,
-        h: f64,
         end: &mut [f64],
         _: &Norm,
     ) -> Result<Error, SimulateError> {
+        let h = start.h;
         self.curve.forget();
         let nv = system.nv();
         let v = &start.y[nv..2 * nv];
@@ -68,36 +107,7 @@ impl<R: Dynamics<f64>> Method<R> for LieMidpoint {
         if let Some(error) = system.turns_too_far((start.t, h), v, PI) {
             return Err(error);
         }
-        let (mut before, mut solved) = (f64::INFINITY, false);
-        for _ in 0..MOST_ROUNDS {
-            let mean = &mut self.middle[nv..2 * nv];
-            mean.iter_mut().zip(v).zip(&self.acceleration).for_each(|((mean, v), a)| *mean = v + 0.5 * h * a);
-            self.step.iter_mut().zip(mean).for_each(|(step, mean)| *step = h * *mean);
-            system.manifold.cayley(&mut self.step);
-            self.middle[..nv].iter_mut().zip(&self.step).for_each(|(u, s)| *u = 0.5 * s);
-            if solved {
-                break;
-            }
-            system.rate(control, start.t + 0.5 * h, &self.middle, &mut self.rate)?;
-            system.counts.iterations += 1;
-            let found = &self.rate[nv..2 * nv];
-            let change = h * largest(found.iter().zip(&self.acceleration).map(|(a, b)| a - b));
-            let size = largest(v.iter().copied()).max(h * largest(found.iter().copied()));
-            if found.iter().any(|a| !a.is_finite()) {
-                let diverged = SimulateError::NoConvergence { t: start.t, step: h };
-                let first = if before.is_finite() { None } else { system.not_finite(start.t + 0.5 * h, "acceleration", found) };
-                self.acceleration.fill(0.0);
-                return Err(first.unwrap_or(diverged));
-            }
-            self.acceleration.copy_from_slice(found);
-            // Down to rounding, or as near as it goes.
-            solved = change <= f64::EPSILON * size || (change >= before && change <= 64.0 * f64::EPSILON * size);
-            before = change;
-        }
-        if !solved {
-            self.acceleration.fill(0.0);
-            return Err(SimulateError::NoConvergence { t: start.t, step: h });
-        }
+        self.solve(system, control, start).inspect_err(|_| self.acceleration.fill(0.0))?;
         end[..nv].copy_from_slice(&self.step);
         let rates = self.acceleration.iter().chain(&self.rate[2 * nv..]);
         end[nv..].iter_mut().zip(&start.y[nv..]).zip(rates).for_each(|((end, y), rate)| *end = y + h * rate);

@@ -18,10 +18,11 @@ use super::step_control::{Controller, Error, Norm};
 use super::system::System;
 use super::{Control, IntegratorId, SimulateError};
 
-/// Where a step begins: time, y with u = 0, and dy/dt there (not of those that say they do not want it).
+/// Where a step begins, time, y with u = 0 and dy/dt (not of those that say they do not want it), and its length h.
 #[derive(Clone, Copy)]
 pub(crate) struct Start<'a> {
     pub(crate) t: f64,
+    pub(crate) h: f64,
     pub(crate) y: &'a [f64],
     pub(crate) f: &'a [f64],
 }
@@ -31,13 +32,12 @@ pub(crate) trait Method<R: Dynamics<f64>> {
     /// Another motion begins.
     fn reset(&mut self) {}
 
-    /// One step of length h from `start` to `end`; its error in `norm` if the method estimates one, else zero.
+    /// One step from `start` to `end`; its error in `norm` if the method estimates one, else zero.
     fn step(
         &mut self,
         system: &mut System<R>,
         control: &mut dyn Control,
         start: Start,
-        h: f64,
         end: &mut [f64],
         norm: &Norm,
     ) -> Result<Error, SimulateError>;
@@ -53,22 +53,15 @@ pub(crate) trait Method<R: Dynamics<f64>> {
     }
 
     /// What remains to be done of a step that is accepted.
-    fn finish(&mut self, _: &mut System<R>, _: &mut dyn Control, _: Start, _: f64, _: &mut [f64]) -> Result<(), SimulateError> {
+    fn finish(&mut self, _: &mut System<R>, _: &mut dyn Control, _: Start, _: &mut [f64]) -> Result<(), SimulateError> {
         Ok(())
     }
 
     /// Makes ready for [`Method::between`] on the last step.
-    fn prepare(
-        &mut self,
-        system: &mut System<R>,
-        control: &mut dyn Control,
-        start: Start,
-        h: f64,
-        end: &[f64],
-    ) -> Result<(), SimulateError>;
+    fn prepare(&mut self, system: &mut System<R>, control: &mut dyn Control, start: Start, end: &[f64]) -> Result<(), SimulateError>;
 
     /// y at t + θ·h of the last step, θ from 0 to 1.
-    fn between(&self, theta: f64, start: Start, h: f64, end: &[f64], out: &mut [f64]);
+    fn between(&self, theta: f64, start: Start, end: &[f64], out: &mut [f64]);
 
     /// How it chooses steps, if it can.
     fn controller(&self) -> Option<Controller> {

@@ -26,16 +26,16 @@ impl<R: Dynamics<f64>> Method<R> for Rk4 {
         system: &mut System<R>,
         control: &mut dyn Control,
         start: Start,
-        h: f64,
         end: &mut [f64],
         _: &Norm,
     ) -> Result<Error, SimulateError> {
+        let h = start.h;
         self.curve.forget();
         let k = &mut self.stages;
-        k.begin(start, h);
-        k.stage(system, control, (start, h), 1, 0.5, &[0.5])?;
-        k.stage(system, control, (start, h), 2, 0.5, &[0.0, 0.5])?;
-        k.stage(system, control, (start, h), 3, 1.0, &[0.0, 0.0, 1.0])?;
+        k.begin(start);
+        k.stage(system, control, start, 1, 0.5, &[0.5])?;
+        k.stage(system, control, start, 2, 0.5, &[0.0, 0.5])?;
+        k.stage(system, control, start, 3, 1.0, &[0.0, 0.0, 1.0])?;
         k.combine(start.y, h, &[1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0], end);
         Ok(Error { size: 0.0, index: 0 })
     }

@@ -173,7 +173,8 @@ impl Rodas4 {
     }
 
     /// Factorises 1/(hγ) − ∂a/∂v − ∂a/∂q (1/(hγ) − ∂u̇/∂u)⁻¹.
-    fn factorize<R: Dynamics<f64>>(&mut self, system: &mut System<R>, start: Start, h: f64) -> Result<(), SimulateError> {
+    fn factorize<R: Dynamics<f64>>(&mut self, system: &mut System<R>, start: Start) -> Result<(), SimulateError> {
+        let h = start.h;
         let (nv, g) = (self.nv, 1.0 / (h * GAMMA));
         let singular = SimulateError::Singular { t: start.t, step: h };
         for (free, inverse) in system.manifold.free.iter().zip(&mut self.inverses) {
@@ -197,6 +198,36 @@ impl Rodas4 {
         }
         system.counts.factorizations += 1;
         if self.lu.factorize() { Ok(()) } else { Err(singular) }
+    }
+
+    /// Where stage i is, and the rate there.
+    fn begin_stage<R: Dynamics<f64>>(
+        &mut self,
+        i: usize,
+        system: &mut System<R>,
+        control: &mut dyn Control,
+        start: Start,
+    ) -> Result<(), SimulateError> {
+        let nv = self.nv;
+        for m in 0..2 * nv {
+            self.argument[m] = start.y[m] + self.combine(A[i], m);
+        }
+        self.argument[2 * nv..].copy_from_slice(&start.y[2 * nv..]);
+        if i == 0 {
+            self.f.copy_from_slice(start.f);
+            return Ok(());
+        }
+        system.rate(control, start.t + NODES[i] * start.h, &self.argument, &mut self.f)
+    }
+
+    /// (1/(hγ) − J) k_i = f + Σ c_ij k_j / h + h γ_i ∂f/∂t
+    fn end_stage(&mut self, i: usize, free: &[Free], h: f64) {
+        let (nv, n) = (self.nv, self.f.len());
+        for m in 0..2 * nv {
+            let drift = if m < nv { 0.0 } else { self.drift[m - nv] };
+            self.k[i * n + m] = self.f[m] + self.combine(C[i], m) / h + h * TIME[i] * drift;
+        }
+        self.solve(free, i, h);
     }
 
     /// k ← (1/(hγ) − J)⁻¹ k of stage i.
@@ -250,7 +281,6 @@ impl<R: Dynamics<f64>> Method<R> for Rodas4 {
         system: &mut System<R>,
         control: &mut dyn Control,
         start: Start,
-        h: f64,
         end: &mut [f64],
         norm: &Norm,
     ) -> Result<Error, SimulateError> {
@@ -261,25 +291,13 @@ impl<R: Dynamics<f64>> Method<R> for Rodas4 {
             self.differentiate(system, control, start)?;
             self.at = here;
         }
-        self.factorize(system, start, h)?;
+        self.factorize(system, start)?;
         for i in 0..6 {
-            for m in 0..2 * nv {
-                self.argument[m] = start.y[m] + self.combine(A[i], m);
-            }
-            self.argument[2 * nv..].copy_from_slice(&start.y[2 * nv..]);
-            if i == 0 {
-                self.f.copy_from_slice(start.f);
-            } else {
-                system.rate(control, start.t + NODES[i] * h, &self.argument, &mut self.f)?;
-            }
+            self.begin_stage(i, system, control, start)?;
             if i == 5 {
                 end.copy_from_slice(&self.argument);
             }
-            for m in 0..2 * nv {
-                let drift = if m < nv { 0.0 } else { self.drift[m - nv] };
-                self.k[i * n + m] = self.f[m] + self.combine(C[i], m) / h + h * TIME[i] * drift;
-            }
-            self.solve(&system.manifold.free, i, h);
+            self.end_stage(i, &system.manifold.free, start.h);
         }
         let last = &self.k[5 * n..5 * n + 2 * nv];
         end.iter_mut().zip(last).for_each(|(end, k)| *end += k);
@@ -291,17 +309,11 @@ impl<R: Dynamics<f64>> Method<R> for Rodas4 {
         Ok(norm.of(|i| self.k[5 * n + i], end))
     }
 
-    fn finish(
-        &mut self,
-        system: &mut System<R>,
-        control: &mut dyn Control,
-        start: Start,
-        h: f64,
-        end: &mut [f64],
-    ) -> Result<(), SimulateError> {
+    fn finish(&mut self, system: &mut System<R>, control: &mut dyn Control, start: Start, end: &mut [f64]) -> Result<(), SimulateError> {
+        let h = start.h;
         let mut y = std::mem::take(&mut self.argument);
         for (node, s) in [0.5 - OUTER, 0.5, 0.5 + OUTER].into_iter().enumerate() {
-            Method::<R>::between(self, s, start, h, end, &mut y);
+            Method::<R>::between(self, s, start, end, &mut y);
             let powers = system.power(control, start.t + s * h, &y)?;
             (self.powers[0][node], self.powers[1][node]) = (powers[0], powers[1]);
         }
@@ -312,11 +324,12 @@ impl<R: Dynamics<f64>> Method<R> for Rodas4 {
         Ok(())
     }
 
-    fn prepare(&mut self, _: &mut System<R>, _: &mut dyn Control, _: Start, _: f64, _: &[f64]) -> Result<(), SimulateError> {
+    fn prepare(&mut self, _: &mut System<R>, _: &mut dyn Control, _: Start, _: &[f64]) -> Result<(), SimulateError> {
         Ok(())
     }
 
-    fn between(&self, s: f64, start: Start, h: f64, end: &[f64], out: &mut [f64]) {
+    fn between(&self, s: f64, start: Start, end: &[f64], out: &mut [f64]) {
+        let h = start.h;
         let (nv, r) = (self.nv, 1.0 - s);
         let [first, second] = &self.curve;
         for i in 0..2 * nv {

@@ -34,10 +34,10 @@ impl<R: Dynamics<f64>> Method<R> for SemiImplicitEuler {
         system: &mut System<R>,
         _: &mut dyn Control,
         start: Start,
-        h: f64,
         end: &mut [f64],
         _: &Norm,
     ) -> Result<Error, SimulateError> {
+        let h = start.h;
         self.curve.forget();
         let nv = system.nv();
         self.fastest.reset(SUSPICIOUS / h);

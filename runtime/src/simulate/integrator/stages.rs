@@ -39,7 +39,8 @@ impl Stages {
     }
 
     /// The first slope of a step of length h is known.
-    pub(super) fn begin(&mut self, start: Start, h: f64) {
+    pub(super) fn begin(&mut self, start: Start) {
+        let h = start.h;
         self.k[..self.n].copy_from_slice(start.f);
         self.argument.copy_from_slice(start.y);
         self.fastest.reset(SUSPICIOUS / h);
@@ -56,11 +57,12 @@ impl Stages {
         &mut self,
         system: &mut System<R>,
         control: &mut dyn Control,
-        (start, h): (Start, f64),
+        start: Start,
         i: usize,
         c: f64,
         a: &[f64],
     ) -> Result<(), SimulateError> {
+        let h = start.h;
         std::mem::swap(&mut self.argument, &mut self.before);
         let mut argument = std::mem::take(&mut self.argument);
         self.combine(start.y, h, a, &mut argument);

@@ -14,8 +14,7 @@ macro_rules! curve {
     ($of:ident, $t:ident) => {
         Curve {
             method: &mut *$of.method,
-            start: Start { t: $of.t, y: &$of.y, f: &$of.f },
-            h: $t - $of.t,
+            start: Start { t: $of.t, h: $t - $of.t, y: &$of.y, f: &$of.f },
             end: &$of.end,
             point: &mut $of.point,
         }

@@ -325,14 +325,14 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             } else {
                 free
             };
-            let start = Start { t: self.t, y: &self.y, f: &self.f };
-            let error = match self.method.step(&mut self.system, run.control, start, h, &mut self.end, &self.norm) {
+            let start = Start { t: self.t, h, y: &self.y, f: &self.f };
+            let error = match self.method.step(&mut self.system, run.control, start, &mut self.end, &self.norm) {
                 // Another step has another matrix.
                 Err(SimulateError::Singular { .. }) if h > 2.0 * least => Error { size: f64::NAN, index: 0 },
                 result => result?,
             };
             if let Some(factor) = controller.accept(error.size) {
-                self.method.finish(&mut self.system, run.control, start, h, &mut self.end)?;
+                self.method.finish(&mut self.system, run.control, start, &mut self.end)?;
                 run.h = if h < free { free.max(h * factor) } else { h * factor };
                 run.controller = Some(controller);
                 return Ok(if h == left { until } else { self.t + h });
@@ -369,10 +369,10 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         let h = self.settings.step.unwrap_or(run.h);
         let next = begin + (made + 1) as f64 * h;
         let t = if next < until - 1e-9 * h { next } else { until };
-        let start = Start { t: self.t, y: &self.y, f: &self.f };
         let h = t - self.t;
-        self.method.step(&mut self.system, run.control, start, h, &mut self.end, &self.norm)?;
-        self.method.finish(&mut self.system, run.control, start, h, &mut self.end)?;
+        let start = Start { t: self.t, h, y: &self.y, f: &self.f };
+        self.method.step(&mut self.system, run.control, start, &mut self.end, &self.norm)?;
+        self.method.finish(&mut self.system, run.control, start, &mut self.end)?;
         let bad = self.not_finite();
         let explicit = !self.settings.integrator.row().implicit && self.system.counts.stiff_at.is_none();
         if explicit && (bad.is_some() || self.stability.suspects(self.system.counts.steps, h * self.method.fastest().map_or(0.0, |f| f.0)))
