@@ -99,20 +99,14 @@ impl Stability {
         &mut self,
         system: &mut System<R>,
         control: &mut dyn Control,
-        (t, y, f): (f64, &[f64], &[f64]),
+        at: (f64, &[f64], &[f64]),
         rounds: usize,
     ) -> Result<Option<Pair>, SimulateError> {
         let n = 2 * system.nv();
         if n == 0 {
             return Ok(None);
         }
-        // What was fast is looked at again; a little of everything, in numbers without a pattern, lets in what has become fast.
-        let size = norm(&self.z[0][..n]);
-        let kept = if self.fresh || !(size > 0.0 && size.is_finite()) { 0.0 } else { 1.0 / size };
-        let other = if kept > 0.0 { 1e-2 } else { 1.0 };
-        for (i, z) in self.z[0][..n].iter_mut().enumerate() {
-            *z = if kept > 0.0 { *z * kept } else { 0.0 } + other * (1.5 + (i as f64 * 2.399_963).sin());
-        }
+        self.begin(n);
         let mut before: Option<Pair> = None;
         for _ in 0..rounds {
             let size = norm(&self.z[0][..n]);
@@ -120,17 +114,8 @@ impl Stability {
                 return Ok(before);
             }
             self.z[0][..n].iter_mut().for_each(|z| *z /= size);
-            for step in 0..2 {
-                let (from, to) = self.z.split_at_mut(step + 1);
-                let (from, to) = (&from[step], &mut to[0]);
-                let by = 1e-7 * (1.0 + norm(&y[..n])) / norm(&from[..n]).max(1e-300);
-                self.at.copy_from_slice(y);
-                self.at[..n].iter_mut().zip(from).for_each(|(y, z)| *y += by * z);
-                system.rate(control, t, &self.at, to)?;
-                system.counts.evaluations -= 1;
-                system.counts.checks += 1;
-                to[..n].iter_mut().zip(f).for_each(|(rate, f)| *rate = (*rate - f) / by);
-            }
+            self.drive(system, control, at, 0)?;
+            self.drive(system, control, at, 1)?;
             let Some(pair) = fit(&self.z[0][..n], &self.z[1][..n], &self.z[2][..n]) else { return Ok(before) };
             let settled = before.is_some_and(|b| (b.rate - pair.rate).abs() <= 0.01 * pair.rate);
             before = Some(pair);
@@ -141,6 +126,37 @@ impl Stability {
             }
         }
         Ok(before)
+    }
+
+    /// What was fast is looked at again; a little of everything, in numbers without a pattern, lets in what has become fast.
+    fn begin(&mut self, n: usize) {
+        let size = norm(&self.z[0][..n]);
+        let kept = if self.fresh || !(size > 0.0 && size.is_finite()) { 0.0 } else { 1.0 / size };
+        let other = if kept > 0.0 { 1e-2 } else { 1.0 };
+        for (i, z) in self.z[0][..n].iter_mut().enumerate() {
+            *z = if kept > 0.0 { *z * kept } else { 0.0 } + other * (1.5 + (i as f64 * 2.399_963).sin());
+        }
+    }
+
+    /// z_{k+1} = J z_k by a difference of rates, at the time t, the state y and its rate f.
+    fn drive<R: Dynamics<f64>>(
+        &mut self,
+        system: &mut System<R>,
+        control: &mut dyn Control,
+        (t, y, f): (f64, &[f64], &[f64]),
+        k: usize,
+    ) -> Result<(), SimulateError> {
+        let n = 2 * system.nv();
+        let (from, to) = self.z.split_at_mut(k + 1);
+        let (from, to) = (&from[k], &mut to[0]);
+        let by = 1e-7 * (1.0 + norm(&y[..n])) / norm(&from[..n]).max(1e-300);
+        self.at.copy_from_slice(y);
+        self.at[..n].iter_mut().zip(from).for_each(|(y, z)| *y += by * z);
+        system.rate(control, t, &self.at, to)?;
+        system.counts.evaluations -= 1;
+        system.counts.checks += 1;
+        to[..n].iter_mut().zip(f).for_each(|(rate, f)| *rate = (*rate - f) / by);
+        Ok(())
     }
 }
 

@@ -75,36 +75,43 @@ impl Watch {
         }
         let mut search = Search { events, system, curve, tolerance };
         for e in 0..count {
-            let (mut side, mut from) = (self.side[e], 0);
-            for place in 0..PLACES.len() {
-                let g = |place: usize| self.values[place * count + e];
-                // Where the step begins, it is known on which side: rounding may say otherwise.
-                let now = if place == 0 && side != 0.0 { side } else { sign(g(place)) };
-                if now != 0.0 && side != 0.0 && now != side {
-                    let theta = search.zero(e, (PLACES[from], side), (PLACES[place], now))?;
-                    push(&mut self.zeros, search.events, e, theta, now);
-                } else if place >= 2 && now != 0.0 && [1, 2].iter().all(|k| sign(g(place - k)) == now) {
-                    let [a, b, c] = [g(place - 2), g(place - 1), g(place)].map(f64::abs);
-                    let beyond = if b < a && b <= c { search.beyond(e, (PLACES[place - 2], PLACES[place]), now)? } else { None };
-                    if let Some(middle) = beyond {
-                        let first = search.zero(e, (PLACES[place - 2], now), (middle, -now))?;
-                        let second = search.zero(e, (middle, -now), (PLACES[place], now))?;
-                        push(&mut self.zeros, search.events, e, first, -now);
-                        push(&mut self.zeros, search.events, e, second, now);
-                    }
-                }
-                if now != 0.0 {
-                    (side, from) = (now, place);
-                }
-            }
-            // What was at zero before does not come to it.
-            let [before, end] = [2, 1].map(|back| self.values[(PLACES.len() - back) * count + e]);
-            if last && side != 0.0 && end == 0.0 && before != 0.0 {
-                push(&mut self.zeros, search.events, e, 1.0, -side);
-            }
-            self.side[e] = side;
+            self.zeros_of(e, &mut search, last)?;
         }
         self.zeros.sort_unstable_by(|a, b| a.theta.total_cmp(&b.theta).then(a.event.cmp(&b.event)));
+        Ok(())
+    }
+
+    /// Those of one event, between the places at which its function is known.
+    fn zeros_of<R: Dynamics<f64>>(&mut self, e: usize, search: &mut Search<R>, last: bool) -> Result<(), SimulateError> {
+        let count = search.events.len();
+        let (mut side, mut from) = (self.side[e], 0);
+        for place in 0..PLACES.len() {
+            let g = |place: usize| self.values[place * count + e];
+            // Where the step begins, it is known on which side: rounding may say otherwise.
+            let now = if place == 0 && side != 0.0 { side } else { sign(g(place)) };
+            if now != 0.0 && side != 0.0 && now != side {
+                let theta = search.zero(e, (PLACES[from], side), (PLACES[place], now))?;
+                push(&mut self.zeros, search.events, e, theta, now);
+            } else if place >= 2 && now != 0.0 && [1, 2].iter().all(|k| sign(g(place - k)) == now) {
+                let [a, b, c] = [g(place - 2), g(place - 1), g(place)].map(f64::abs);
+                let beyond = if b < a && b <= c { search.beyond(e, (PLACES[place - 2], PLACES[place]), now)? } else { None };
+                if let Some(middle) = beyond {
+                    let first = search.zero(e, (PLACES[place - 2], now), (middle, -now))?;
+                    let second = search.zero(e, (middle, -now), (PLACES[place], now))?;
+                    push(&mut self.zeros, search.events, e, first, -now);
+                    push(&mut self.zeros, search.events, e, second, now);
+                }
+            }
+            if now != 0.0 {
+                (side, from) = (now, place);
+            }
+        }
+        // What was at zero before does not come to it.
+        let [before, end] = [2, 1].map(|back| self.values[(PLACES.len() - back) * count + e]);
+        if last && side != 0.0 && end == 0.0 && before != 0.0 {
+            push(&mut self.zeros, search.events, e, 1.0, -side);
+        }
+        self.side[e] = side;
         Ok(())
     }
 }
