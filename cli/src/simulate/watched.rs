@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::rc::Rc;
 
 use articulated::Dynamics;
-use articulated::simulate::{Action, Direction, Event, Hit, Impact, SimulateError};
+use articulated::simulate::{Action, ContactPoint, Direction, Event, Hit, Impact, SimulateError};
 use articulated_core::description::JointKind;
 use articulated_core::effect::{EffectId, JointEffect};
 use articulated_core::model::Body;
@@ -103,9 +103,9 @@ impl<'a> Watch<'a> {
     {
         for a in stage.effects_of(EffectId::contact) {
             let Some(frame) = frames.iter().position(|f| *f == a.on) else { continue };
-            let normal = three(field(a, "normal"));
+            let at = ContactPoint { frame, point: a.at.xyz, normal: three(field(a, "normal")) };
             let (radius, height) = (field(a, "radius")[0], field(a, "height")[0]);
-            let event = Event::contact(a.on.clone(), robot, frame, a.at.xyz, radius, normal, height)?.direction(Direction::Either);
+            let event = Event::contact(a.on.clone(), robot, at, radius, height)?.direction(Direction::Either);
             self.push(event, format!("{} leaves the ground", a.on), format!("{} touches the ground", a.on));
         }
         Ok(())
@@ -126,7 +126,8 @@ impl<'a> Watch<'a> {
     {
         let Some(ball) = &stage.prepared.scene.impact else { return Ok(()) };
         let Some(frame) = frames.iter().position(|f| *f == ball.link) else { return Ok(()) };
-        let mut blow = Impact::new(robot, frame, ball.point, ball.normal, ball.mass, ball.restitution)?;
+        let at = ContactPoint { frame, point: ball.point, normal: ball.normal };
+        let mut blow = Impact::new(robot, at, ball.mass, ball.restitution)?;
         let (over, stop, speed, done) = (self.over.clone(), ball.stop, ball.ball_speed, Rc::new(Cell::new(false)));
         let (got, missed, mass, was) = (self.ball.clone(), self.missed.clone(), ball.mass, done.clone());
         let map = move |_: f64, q: &mut [f64], v: &mut [f64]| {

@@ -39,7 +39,7 @@ mod system;
 pub use articulated_core::integrator::{Integrator, IntegratorId, integrator, integrators, meant};
 pub use control::{Constant, Control, Dependence, Hold, NoTorque, Pd, TableError, TableErrors, TorqueTable};
 pub use error::{SimulateError, StateError};
-pub use event::{Action, Direction, Event, Impact, Map, Struck};
+pub use event::{Action, ContactPoint, Direction, Event, Impact, Map, Struck};
 pub use recording::{Counts, Ended, Hit, Recording};
 pub use settings::{Output, SettingError, Settings, Stiffness};
 pub use simulation::Simulation;

@@ -3,7 +3,7 @@
 use articulated::simulate::{Event, Impact, IntegratorId, NoTorque, SimulateError, Simulation, StateError};
 use articulated::{Base, Dynamics, FunctionError};
 
-use crate::robots::{chain, model, to};
+use crate::robots::{at, chain, model, to};
 
 #[test]
 fn a_blow_hands_over_what_the_ball_and_the_mass_behind_the_point_say() {
@@ -11,7 +11,7 @@ fn a_blow_hands_over_what_the_ball_and_the_mass_behind_the_point_say() {
     let q = [0.4, -0.7, 0.5];
     let (robot, mut v) = (chain::Robot, [1.0, 0.5, -1.5]);
     let generic = model("chain", Base::Fixed);
-    let mut impact = Impact::new(&generic, 3, [0.0, 0.02, -0.4], [0.3, -0.5, 0.2], ball, restitution).unwrap();
+    let mut impact = Impact::new(&generic, at(3, [0.0, 0.02, -0.4], [0.3, -0.5, 0.2]), ball, restitution).unwrap();
     // So that they approach.
     let approach = impact.strike(&q, &mut v.clone(), 0.0).unwrap().approach;
     v.iter_mut().for_each(|v| *v *= approach.signum());
@@ -37,7 +37,7 @@ fn a_blow_hands_over_what_the_ball_and_the_mass_behind_the_point_say() {
 #[test]
 fn an_event_that_strikes_gives_the_speed_of_the_ball() {
     let robot = model("chain", Base::Fixed);
-    let blow = || Impact::new(&robot, 3, [0.0, 0.02, -0.4], [0.3, -0.5, 0.2], 0.046, 0.78).unwrap();
+    let blow = || Impact::new(&robot, at(3, [0.0, 0.02, -0.4], [0.3, -0.5, 0.2]), 0.046, 0.78).unwrap();
     let (q, v) = ([0.4, -0.7, 0.5], [1.0, 0.5, -1.5]);
     let sign = blow().strike(&q, &mut v.clone(), 0.0).unwrap().approach.signum();
     let v = v.map(|v| v * sign);
@@ -62,7 +62,7 @@ fn an_event_that_strikes_gives_the_speed_of_the_ball() {
         ([1.0; 3], 1.0, 1.1, "restitution"),
         ([1.0; 3], 1.0, -0.1, "restitution"),
     ] {
-        let Err(SimulateError::State(all)) = Impact::new(&robot, 3, [0.0; 3], normal, mass, restitution) else { panic!("{what}") };
+        let Err(SimulateError::State(all)) = Impact::new(&robot, at(3, [0.0; 3], normal), mass, restitution) else { panic!("{what}") };
         assert!(matches!(all[..], [StateError::Value { what: found, .. }] if found == what), "{all:?}");
     }
 }
@@ -72,7 +72,7 @@ fn all_that_is_wrong_with_a_blow_or_a_contact_is_said_at_once() {
     let robot = model("chain", Base::Fixed);
     let frames = format!("there is no frame 99: the robot has {}, the first is 0", robot.frames.len());
     let told = |error: Option<SimulateError>| error.unwrap().to_string().lines().map(str::to_owned).collect::<Vec<_>>();
-    let blow = Impact::new(&robot, 99, [0.0, f64::NAN, 0.0], [0.0; 3], -1.0, 3.0).err();
+    let blow = Impact::new(&robot, at(99, [0.0, f64::NAN, 0.0], [0.0; 3]), -1.0, 3.0).err();
     let normal = "length of the normal = 0 cannot be used; it should be finite, greater than 0";
     let point = "y of the point = NaN cannot be used; it should be finite, m";
     let expected = [
@@ -83,10 +83,10 @@ fn all_that_is_wrong_with_a_blow_or_a_contact_is_said_at_once() {
         "restitution = 3 cannot be used; it should be from 0 to 1",
     ];
     assert_eq!(told(blow), expected);
-    let contact = Event::contact("foot", &robot, 99, [0.0, f64::NAN, 0.0], f64::INFINITY, [0.0; 3], f64::NAN).err();
+    let contact = Event::contact("foot", &robot, at(99, [0.0, f64::NAN, 0.0], [0.0; 3]), f64::INFINITY, f64::NAN).err();
     let radius = "radius = inf cannot be used; it should be finite, m";
     assert_eq!(told(contact), [&frames, point, normal, radius, "height = NaN cannot be used; it should be finite, m"]);
     let next = robot.frames.len();
-    assert!(Impact::new(&robot, next - 1, [0.0; 3], [0.0, 0.0, 1.0], 1.0, 0.5).is_ok());
-    assert!(Impact::new(&robot, next, [0.0; 3], [0.0, 0.0, 1.0], 1.0, 0.5).is_err());
+    assert!(Impact::new(&robot, at(next - 1, [0.0; 3], [0.0, 0.0, 1.0]), 1.0, 0.5).is_ok());
+    assert!(Impact::new(&robot, at(next, [0.0; 3], [0.0, 0.0, 1.0]), 1.0, 0.5).is_err());
 }

@@ -8,7 +8,7 @@ use articulated::simulate::{
 };
 use articulated::{Base, Origin, load_bytes};
 
-use crate::robots::{chain, handle, model, one_joint, slider, stepping, to};
+use crate::robots::{at, chain, handle, model, one_joint, slider, stepping, to};
 
 const G: f64 = 9.81;
 
@@ -187,7 +187,7 @@ fn a_body_that_slides_to_rest_sticks_when_friction_says() {
 fn a_contact_is_made_where_the_sphere_touches_the_plane() {
     let robot = model("ball", Base::Fixed);
     let normal = [0.0, 0.6, 0.8];
-    let contact = Event::contact("touch", &robot, 1, [0.0, 0.1, 0.0], 0.05, normal.map(|n| 3.0 * n), 0.2).unwrap().action(Action::Stop);
+    let contact = Event::contact("touch", &robot, at(1, [0.0, 0.1, 0.0], normal.map(|n| 3.0 * n)), 0.05, 0.2).unwrap().action(Action::Stop);
     let mut simulation = Simulation::new(&robot, to(IntegratorId::dopri5, 1.0, 1e-9)).unwrap();
     let motion = simulation.run(&[1.0], &[0.0], &mut NoTorque, &mut [contact]).unwrap();
     let height = (0.2 + 0.05 - 0.6 * 0.1) / 0.8;

@@ -8,7 +8,7 @@ use articulated::simulate::{
 };
 use articulated::{Base, Dynamics, FunctionError, load_bytes};
 
-use crate::robots::{chain, free, handle, model, slider, stepping, to};
+use crate::robots::{at, chain, free, handle, model, slider, stepping, to};
 
 #[test]
 fn what_cannot_be_simulated_is_said_at_once() {
@@ -201,6 +201,6 @@ fn what_a_controller_or_a_ball_says_is_looked_at() {
         assert!(run(Odd(None, kink)).unwrap().counts.steps < 100);
     }
     let wide = model("planar", Base::Fixed);
-    let mut blow = Impact::new(&wide, 0, [0.0; 3], [1.0, 0.0, 0.0], 1.0, 1.0).unwrap();
+    let mut blow = Impact::new(&wide, at(0, [0.0; 3], [1.0, 0.0, 0.0]), 1.0, 1.0).unwrap();
     assert!(blow.strike(&[0.1; 2], &mut [0.0; 2], f64::NAN).is_err());
 }

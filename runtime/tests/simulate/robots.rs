@@ -1,6 +1,6 @@
 //! Small robots, generated and generic, and the means to run them.
 
-use articulated::simulate::{IntegratorId, NoTorque, Output, Recording, Settings, SimulateError, Simulation};
+use articulated::simulate::{ContactPoint, IntegratorId, NoTorque, Output, Recording, Settings, SimulateError, Simulation};
 use articulated::{Base, Dynamics, Model, load_bytes};
 
 macro_rules! generated {
@@ -47,6 +47,11 @@ pub(crate) fn one_joint(kind: &str, off: f64) -> Model<f64> {
         1.0 - off * off
     );
     load_bytes("one", text.as_bytes(), Base::Fixed).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A point of a frame, and a normal.
+pub(crate) fn at(frame: usize, point: [f64; 3], normal: [f64; 3]) -> ContactPoint {
+    ContactPoint { frame, point, normal }
 }
 
 /// Settings with both tolerances alike and no output but the ends.

@@ -3,7 +3,7 @@
 use articulated_core::algorithm::check_length;
 use articulated_core::dynamics::Dynamics;
 
-use super::{Action, Points, length, value, wrong_place};
+use super::{Action, ContactPoint, Points, length, value, wrong_place};
 use crate::simulate::{SimulateError, StateError};
 
 /// A blow along a normal, without friction:
@@ -42,13 +42,13 @@ pub struct Struck {
 }
 
 impl<'r, R: Dynamics<f64>> Impact<'r, R> {
-    /// `frame`: number of the frame among the robot's; `point`: in the frame, m; `normal`: in base axes, from the point towards the ball; the ball's mass, kg;
-    /// the coefficient of restitution, from 0 to 1. Errors: all numbers that cannot be used, at once.
-    pub fn new(robot: &'r R, frame: usize, point: [f64; 3], normal: [f64; 3], mass: f64, restitution: f64) -> Result<Self, SimulateError> {
+    /// At a point whose normal leads to the ball; the ball's mass, kg; the coefficient of restitution, from 0 to 1. Errors: all numbers that cannot be used, at once.
+    pub fn new(robot: &'r R, at: ContactPoint, mass: f64, restitution: f64) -> Result<Self, SimulateError> {
+        let ContactPoint { frame, point, normal } = at;
         let length = length(normal);
         let wrong_mass = value("mass of the ball", mass, "finite, greater than 0, kg", mass > 0.0);
         let wrong_restitution = value("restitution", restitution, "from 0 to 1", (0.0..=1.0).contains(&restitution));
-        StateError::none(wrong_place(robot, frame, point, length).chain(wrong_mass).chain(wrong_restitution))?;
+        StateError::none(wrong_place(robot, &at).chain(wrong_mass).chain(wrong_restitution))?;
         let (points, shape) = (Points::new(robot, frame)?, robot.shape());
         let (nv, vectors) = (shape.nv, || vec![0.0; shape.nv]);
         let jacobians = vec![0.0; 6 * nv * shape.frames];

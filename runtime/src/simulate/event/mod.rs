@@ -42,6 +42,17 @@ pub enum Action<'a> {
     Map(Box<Map<'a>>),
 }
 
+/// A point of the robot that touches something, and the direction in which it does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactPoint {
+    /// Number of its frame among the robot's.
+    pub frame: usize,
+    /// Where it is in the frame, m.
+    pub point: [f64; 3],
+    /// Normal of what it touches, in axes of the base frame, of any length but zero.
+    pub normal: [f64; 3],
+}
+
 /// Something that happens where g(t, q, v) goes through zero.
 ///
 /// g is looked at eleven times a step on the integrator's curve: at its ends, and between so closely that a zero between two of them is found where g changes its
@@ -131,26 +142,24 @@ impl<'a> Event<'a> {
         beyond.into_iter().chain(bounds)
     }
 
-    /// A sphere about a point of a frame touches the plane nᵀx = height of the base frame: its distance falls through zero.
+    /// A sphere of this radius, m, about a point touches the plane nᵀx = height, m, of the base frame, n its normal made of length one: its distance falls through zero.
     ///
-    /// `frame`: number of the frame among the robot's; `point`: in the frame, m; radius, m; `normal`: in base axes, of any length but zero. The robot needs the function
-    /// `placements`. Errors: all numbers that cannot be used, at once.
+    /// The robot needs the function `placements`. Errors: all numbers that cannot be used, at once.
     pub fn contact<R: Dynamics<f64>>(
         name: impl Into<String>,
         robot: &'a R,
-        frame: usize,
-        point: [f64; 3],
+        at: ContactPoint,
         radius: f64,
-        normal: [f64; 3],
         height: f64,
     ) -> Result<Self, SimulateError>
     where
         R::Workspace: 'a,
     {
+        let ContactPoint { frame, point, normal } = at;
         let length = length(normal);
         let finite = [("radius", radius, "finite, m"), ("height", height, "finite, m")];
         let values = finite.map(|(what, found, right)| value(what, found, right, true));
-        StateError::none(wrong_place(robot, frame, point, length).chain(values.into_iter().flatten()))?;
+        StateError::none(wrong_place(robot, &at).chain(values.into_iter().flatten()))?;
         let mut place = Points::new(robot, frame)?;
         let g = move |_: f64, q: &[f64], _: &[f64]| match place.point(q, point) {
             Ok(x) => x.iter().zip(normal).map(|(x, n)| x * n).sum::<f64>() / length - height - radius,
@@ -169,11 +178,11 @@ fn value(what: &'static str, found: f64, right: &'static str, fit: bool) -> Opti
     (!fit || !found.is_finite()).then_some(StateError::Value { what, found, right: right.into() })
 }
 
-/// What is wrong with a point of a frame and a normal of this length.
-fn wrong_place<R: Dynamics<f64>>(robot: &R, frame: usize, point: [f64; 3], length: f64) -> impl Iterator<Item = StateError> {
-    let frames = robot.shape().frames;
-    let frame = (frame >= frames).then_some(StateError::Frame { index: frame, frames });
-    let point = ["x of the point", "y of the point", "z of the point"].into_iter().zip(point);
+/// What is wrong with it for this robot.
+fn wrong_place<R: Dynamics<f64>>(robot: &R, at: &ContactPoint) -> impl Iterator<Item = StateError> {
+    let (frames, length) = (robot.shape().frames, length(at.normal));
+    let frame = (at.frame >= frames).then_some(StateError::Frame { index: at.frame, frames });
+    let point = ["x of the point", "y of the point", "z of the point"].into_iter().zip(at.point);
     let point = point.filter_map(|(what, x)| value(what, x, "finite, m", true));
     let normal = value("length of the normal", length, "finite, greater than 0", length > 0.0);
     frame.into_iter().chain(point).chain(normal)
