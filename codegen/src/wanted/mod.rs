@@ -7,11 +7,14 @@
 //! fast = inverse_dynamics(q = sin_cos)                   sines and cosines of q are an argument too, for callers that have them
 //! ```
 
-use std::borrow::Cow;
+mod constant;
 
 use articulated_core::algorithm::{Argument, Dim, Function};
-use articulated_core::description::JointKind;
-use articulated_core::model::{JointInfo, Model};
+use articulated_core::model::Model;
+
+pub use constant::Constant;
+
+use constant::{constant, entries};
 
 use crate::{Error, Sym, function};
 
@@ -33,15 +36,6 @@ pub struct Part {
     pub constants: Vec<(Argument, Constant)>,
     /// Whether the caller gives the sines and cosines of q.
     pub sines: bool,
-}
-
-/// The value of an argument that is a constant.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Constant {
-    /// Every number of it is this.
-    All(f64),
-    /// Its numbers, row by row.
-    Each(Vec<f64>),
 }
 
 impl Wanted {
@@ -120,43 +114,9 @@ impl Wanted {
 
     /// Whether constants are right for a robot: as many numbers as it takes, and quaternions that are some.
     pub fn check(&self, model: &Model<f64>) -> Result<(), Error> {
-        let shape = model.shape();
-        for (argument, constant) in self.parts.iter().flat_map(|p| &p.constants) {
-            let (name, expected) = (argument.name(), argument.len(shape));
-            let wrong = |what: String| Err(Error::Wanted { found: self.name.clone(), reason: format!("constant {name}: {what}") });
-            let numbers = constant.numbers(expected);
-            if numbers.len() != expected {
-                return wrong(format!("found {} numbers, expected {expected}", numbers.len()));
-            }
-            let configuration = matches!(argument, Argument::Q | Argument::Target);
-            if let Some((joint, norm)) = model.joints.iter().filter(|_| configuration).find_map(|joint| not_unit(joint, &numbers)) {
-                return wrong(format!(
-                    "joint {joint:?}: found a quaternion of norm {norm}, expected 1 within {NORM:e}, or 0, which does not turn"
-                ));
-            }
-        }
-        Ok(())
-    }
-}
-
-/// How far the norm of a constant quaternion may be from 1: results are off by twice that.
-const NORM: f64 = 1e-9;
-
-/// The joint and the norm of its quaternion, if it has one that is no rotation. That of zeros does not turn.
-fn not_unit<'a>(joint: &'a JointInfo, q: &[f64]) -> Option<(&'a str, f64)> {
-    let end = joint.q.0 + joint.q.1;
-    let quaternion = matches!(joint.kind, JointKind::Floating | JointKind::Spherical).then(|| &q[end - 4..end])?;
-    let norm = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
-    (norm != 0.0 && (norm - 1.0).abs() > NORM).then_some((joint.name.as_str(), norm))
-}
-
-impl Constant {
-    /// The numbers of an argument of so many.
-    fn numbers(&self, count: usize) -> Cow<'_, [f64]> {
-        match self {
-            Self::All(x) => vec![*x; count].into(),
-            Self::Each(numbers) => numbers.into(),
-        }
+        let mut constants = self.parts.iter().flat_map(|p| &p.constants);
+        let wrong = |reason| Error::Wanted { found: self.name.clone(), reason };
+        constants.try_for_each(|(argument, constant)| constant.fits(*argument, model)).map_err(wrong)
     }
 }
 
@@ -198,49 +158,9 @@ impl Part {
     }
 }
 
-impl Constant {
-    /// Its number `k`.
-    pub fn at(&self, k: usize) -> f64 {
-        match self {
-            Self::All(x) => *x,
-            Self::Each(numbers) => numbers[k],
-        }
-    }
-}
-
 /// `q = sin_cos`
 fn is_sines(entry: &str) -> bool {
     entry.split_once('=').is_some_and(|(name, value)| (name.trim(), value.trim()) == ("q", "sin_cos"))
-}
-
-fn constant(text: &str, function: &Function<Sym>, wrong: &dyn Fn(String) -> Error) -> Result<(Argument, Constant), Error> {
-    let takes: Vec<&str> = function.takes.iter().map(|a| a.name()).collect();
-    let expected = || {
-        let (found, name, takes) = (text.trim(), function.name, takes.join(", "));
-        format!("`{found}`: expected a constant as in {name}(q = 0) or {name}(q = [0, 0]); {name} takes {takes}")
-    };
-    let (name, value) = text.split_once('=').ok_or_else(|| wrong(expected()))?;
-    let argument = function.takes.iter().find(|a| a.name() == name.trim()).ok_or_else(|| wrong(expected()))?;
-    let number = |x: &str| number(x).ok_or_else(|| wrong(expected()));
-    let value = value.trim();
-    let constant = match value.strip_prefix('[').and_then(|v| v.strip_suffix(']')) {
-        None => Constant::All(number(value)?),
-        Some(list) => Constant::Each(entries(list.split(',').collect()).into_iter().map(number).collect::<Result<_, _>>()?),
-    };
-    Ok((*argument, constant))
-}
-
-/// A finite number; its sign may stand apart, as in the text of the macro's tokens.
-fn number(text: &str) -> Option<f64> {
-    let text = text.trim();
-    let (sign, digits) = text.split_at(text.len() - text.strip_prefix(['-', '+']).unwrap_or(text).len());
-    format!("{sign}{}", digits.trim_start()).parse().ok().filter(|x: &f64| x.is_finite())
-}
-
-/// The entries of a list without the last if that is empty: there may be a comma behind each.
-fn entries(mut pieces: Vec<&str>) -> Vec<&str> {
-    pieces.pop_if(|last| last.trim().is_empty());
-    pieces
 }
 
 /// The text before and after the first `mark` that is in no brackets.
@@ -312,29 +232,6 @@ mod tests {
     }
 
     #[test]
-    fn a_sign_may_stand_apart_and_a_comma_last() {
-        let constant =
-            |text: &str| Wanted::parse(&format!("x = inverse_dynamics({text})")).unwrap().parts[0].constant(Argument::A).cloned();
-        assert_eq!(["a = - 1.5", "a=+ 2e-3 ,", "a = -\n1"].map(constant), [-1.5, 2e-3, -1.0].map(|x| Some(Constant::All(x))));
-        let list = [("a = [ - 1 , + 2.5,\n- 3e1, ],", vec![-1.0, 2.5, -30.0]), ("a = []", Vec::new()), ("", Vec::new())];
-        list.into_iter().for_each(|(text, numbers)| assert_eq!(constant(text), (!text.is_empty()).then_some(Constant::Each(numbers))));
-    }
-
-    #[test]
-    fn numbers_are_not_put_together_and_entries_not_left_out() {
-        let numbers = ["1 2", "- - 1", "-+1", "1 e3", "1. 5", "-", "[0 1, 3]", "[,0,,0,]", "[0,,1]", "[,]", "[0,,]", "[0, - ]", ""];
-        for number in numbers {
-            let told = Wanted::parse(&format!("x = inverse_dynamics(v = {number}, a = 0)")).err().map(|e| e.to_string());
-            let told = told.unwrap_or_else(|| panic!("{number}"));
-            assert!(told.contains(&format!("`{}`: expected a constant as in", format!("v = {number}").trim())), "{told}");
-        }
-        for arguments in [",", ", v = 0", "v = 0,, a = 0", "v = 0,,"] {
-            let told = Wanted::parse(&format!("x = inverse_dynamics({arguments})")).err().map(|e| e.to_string());
-            assert!(told.is_some_and(|told| told.contains("``: expected a constant as in")), "{arguments}");
-        }
-    }
-
-    #[test]
     fn sines_are_one_argument_more() {
         let wanted = Wanted::parse("fast = inverse_dynamics(q = sin_cos, a = 0)").unwrap();
         assert_eq!(wanted.arguments(), [Argument::Q, Argument::V, Argument::SinCos]);
@@ -352,37 +249,6 @@ mod tests {
         let is = |text: &str| Wanted::parse(text).unwrap().as_function().is_some();
         assert!(is("inverse_dynamics") && is(" inverse_dynamics = inverse_dynamics( ) "));
         assert!(!is("inverse_dynamics(a = 0)") && !is("other = inverse_dynamics"));
-    }
-
-    #[test]
-    fn a_constant_has_as_many_numbers_as_the_argument() {
-        let wanted = Wanted::parse("slow = inverse_dynamics(v = 0, a = [0, 1])").unwrap();
-        let right = |joints: usize| wanted.check(&chain(&vec!["continuous"; joints])).is_ok();
-        assert_eq!([1, 2, 3].map(right), [false, true, false]);
-    }
-
-    /// A quaternion of another norm is no rotation; zeros stand for none.
-    #[test]
-    fn a_constant_configuration_has_quaternions_that_turn() {
-        let told = |q: &str| Wanted::parse(&format!("x = placements(q = {q})")).unwrap().check(&chain(&["continuous", "spherical"]));
-        for q in ["0", "[1, 0, 0, 0, 1]", "[2, 0.6, 0, 0, -0.8]", "[7, 0, 0, 0, 0]"] {
-            assert!(told(q).is_ok(), "{q}");
-        }
-        let text = told("1").unwrap_err().to_string();
-        assert!(text.contains("constant q: joint \"j1\": found a quaternion of norm 2, expected 1 within 1e-9"), "{text}");
-        assert!(told("[0, 0, 0, 0, 0.999]").is_err());
-        let rates = Wanted::parse("x = inverse_dynamics(v = 1, a = 0)").unwrap();
-        assert!(rates.check(&chain(&["spherical"])).is_ok());
-    }
-
-    /// Joints of these kinds, one on the other.
-    fn chain(kinds: &[&str]) -> Model<f64> {
-        let joint = |(i, kind): (usize, &&str)| {
-            format!("<link name='l{}'/><joint name='j{i}' type='{kind}'><parent link='l{i}'/><child link='l{}'/></joint>", i + 1, i + 1)
-        };
-        let joints: String = kinds.iter().enumerate().map(joint).collect();
-        let request = crate::Request::new("chain.urdf", format!("<robot name='chain'><link name='l0'/>{joints}</robot>"));
-        crate::model(&request, &crate::read(&request).unwrap().description).unwrap()
     }
 
     #[test]
