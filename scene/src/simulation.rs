@@ -1,6 +1,6 @@
 //! `[simulation]`: from when to when, by which integrator, how exactly, and what is recorded.
 
-use articulated_core::integrator::{IntegratorId, integrators, meant};
+use articulated_core::integrator::{IntegratorId, integrators, least_step, meant};
 
 use crate::error::Kind;
 use crate::log::Log;
@@ -240,14 +240,9 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Option<Simulation> {
 }
 
 impl Simulation {
-    /// The least that time can be told to go on by, s: sixteen units of its rounding.
-    fn least_step(&self) -> f64 {
-        16.0 * f64::EPSILON * self.start.abs().max(self.end.abs())
-    }
-
     /// A sample ends a step: samples that time can tell apart, and no more than there may be steps.
     pub(crate) fn check_period(&self, period: f64, spot: &Spot<'_>, log: &mut Log) {
-        let (least, shortest) = (self.least_step(), (self.end - self.start) / self.max_steps as f64);
+        let (least, shortest) = (least_step(self.start, self.end), (self.end - self.start) / self.max_steps as f64);
         if period < least {
             spot.clash(log, format!("{period:?}"), format!("at least {least:.1e} s, sixteen units of rounding of the time"));
         } else if period < shortest {
@@ -281,7 +276,7 @@ fn check(x: &Simulation, spot: &Spot<'_>, log: &mut Log) {
     if let (true, Some(spot)) = (x.max_step < x.min_step, key("max_step")) {
         spot.clash(log, format!("{:?}, less than min_step, {:?}", x.max_step, x.min_step), "at least that");
     }
-    let least = x.least_step();
+    let least = least_step(*start, *end);
     if let (Some(step), Some(spot)) = (x.step.filter(|step| *step < least), key("step")) {
         spot.clash(log, format!("{step:?}"), format!("at least {least:.1e} s, sixteen units of rounding of the time"));
     }

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use articulated_core::algorithm::Shape;
+use articulated_core::integrator::least_step;
 
 use super::IntegratorId;
 use super::error::Plain;
@@ -155,9 +156,9 @@ impl Settings {
         found.0
     }
 
-    /// The least that time can be told to go on by, s: sixteen units of its rounding.
+    /// The least that time can be told to go on by, s.
     pub(crate) fn least_step(&self) -> f64 {
-        16.0 * f64::EPSILON * self.start.abs().max(self.end.abs())
+        least_step(self.start, self.end)
     }
 
     fn check_output(&self, shape: Shape, found: &mut Problems) {

@@ -8,6 +8,7 @@ use core::fmt;
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::leaders::leads;
 use super::{Body, FLOATING_BASE, Frame, GRAVITY, JointInfo, Model, Rates};
 use crate::description::{self, Base, Description, Inertial, JointKind, Mimic, Origin};
 use crate::effect::Effects;
@@ -291,45 +292,6 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// So many leaders are walked through one by one, in whose order multipliers are multiplied; what is behind them is taken as it was found.
-const WALKED: usize = 16;
-
-/// For each joint that follows another, what it moves by: the joint at the end of its chain, which follows none or is locked. `None` where a chain has no end, and for joints that follow
-/// none. Work grows as the number of joints does, however long the chains are.
-fn leads(joints: &[description::Joint]) -> Vec<Option<Mimic>> {
-    let (mut leads, mut seen) = (vec![None; joints.len()], vec![false; joints.len()]);
-    for start in 0..joints.len() {
-        let (mut chain, mut at) = (Vec::new(), start);
-        while let Some(mimic) = joints.get(at).and_then(followed).filter(|_| !seen[at]) {
-            seen[at] = true;
-            chain.push((at, mimic));
-            at = mimic.joint;
-        }
-        for (joint, mimic) in chain.into_iter().rev() {
-            leads[joint] = lead(joints, &leads, mimic);
-        }
-    }
-    leads
-}
-
-/// What is moved by at the end of the chain that begins with `first`; of its joints beyond the first few, `known` says it already.
-fn lead(joints: &[description::Joint], known: &[Option<Mimic>], first: Mimic) -> Option<Mimic> {
-    let (mut lead, mut walked) = (first, 0);
-    while let Some(own) = followed(joints.get(lead.joint)?) {
-        let next = if walked < WALKED { own } else { known[lead.joint]? };
-        // multiplier · (m q + o) + offset
-        let (multiplier, offset) = (lead.multiplier * next.multiplier, lead.multiplier * next.offset + lead.offset);
-        lead = Mimic { joint: next.joint, multiplier, offset };
-        walked += 1;
-    }
-    Some(lead)
-}
-
-/// How a joint follows another; a locked one stands by itself.
-fn followed(joint: &description::Joint) -> Option<Mimic> {
-    joint.mimic.filter(|_| joint.locked.is_none())
-}
-
 const AT_ZERO: Coordinates<f64> = Coordinates { q: 0, v: 0, mimic: None, pitch: 0.0, from: Angle { sin: 0.0, cos: 1.0 }, turns: 1.0 };
 
 /// An elementary joint as part of a joint of the file.
@@ -393,60 +355,5 @@ impl Inertial {
         let [xx, xy, xz, yy, yz, zz] = self.inertia;
         let central = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
         SpatialInertia::from_central(self.mass, central, &placement(&self.origin))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Joints that follow those of these indices.
-    fn joints(leaders: &[Option<usize>]) -> Vec<description::Joint> {
-        let follow = |(k, joint): (usize, usize)| Mimic { joint, multiplier: 1.0 + 0.3 / (k + 3) as f64, offset: 0.1 * k as f64 - 0.7 };
-        let joint =
-            |(k, leader): (usize, &Option<usize>)| description::Joint { mimic: leader.map(|l| follow((k, l))), ..Default::default() };
-        leaders.iter().enumerate().map(joint).collect()
-    }
-
-    /// From leader to leader, in their order.
-    fn walked(joints: &[description::Joint], start: usize) -> (f64, f64) {
-        let (mut at, mut multiplier, mut offset) = (start, 1.0, 0.0);
-        while let Some(next) = joints[at].mimic {
-            (at, multiplier, offset) = (next.joint, multiplier * next.multiplier, multiplier * next.offset + offset);
-        }
-        (multiplier, offset)
-    }
-
-    #[test]
-    fn a_chain_of_followers_is_what_walking_through_it_gives_and_to_the_bit_where_it_is_short() {
-        let chain: Vec<Option<usize>> = (0..200_usize).map(|k| k.checked_sub(1)).collect();
-        let joints = joints(&chain);
-        for (k, found) in leads(&joints).into_iter().enumerate().skip(1) {
-            let (found, (multiplier, offset)) = (found.unwrap(), walked(&joints, k));
-            let far = [found.multiplier / multiplier - 1.0, found.offset / offset - 1.0];
-            assert!(found.joint == 0 && far.iter().all(|x| x.abs() < if k < WALKED { f64::MIN_POSITIVE } else { 1e-13 }), "{k}: {far:?}");
-        }
-    }
-
-    #[test]
-    fn the_order_of_the_file_does_not_count() {
-        let count = 100;
-        let backward: Vec<Option<usize>> = (0..count).map(|k| Some(k + 1).filter(|k| *k < count)).collect();
-        let found = leads(&joints(&backward));
-        assert!(found[..count - 1].iter().all(|lead| lead.is_some_and(|lead| lead.joint == count - 1)) && found[count - 1].is_none());
-    }
-
-    #[test]
-    fn a_chain_ends_at_a_locked_joint_and_rings_and_joints_that_are_not_there_end_none() {
-        let mut ring: Vec<Option<usize>> = (0..50).map(|k| Some((k + 1) % 50)).collect();
-        ring.extend([Some(7), Some(50), None, Some(52), Some(1000)]);
-        let mut joints = joints(&ring);
-        let found = leads(&joints);
-        let ends = |found: &[Option<Mimic>]| (0..55).filter_map(|k| Some((k, found[k]?.joint))).collect::<Vec<_>>();
-        assert_eq!(ends(&found), [(53, 52)]);
-        joints[20].locked = Some(vec![0.5]);
-        let found = ends(&leads(&joints));
-        assert_eq!(found.len(), 52);
-        assert!(found.iter().all(|(joint, end)| *end == if *joint == 53 { 52 } else { 20 }), "{found:?}");
     }
 }

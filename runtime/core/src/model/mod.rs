@@ -2,6 +2,7 @@
 
 mod axes;
 mod build;
+mod leaders;
 mod lent;
 mod limbs;
 mod massless;
