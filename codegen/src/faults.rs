@@ -135,9 +135,13 @@ mod tests {
             "x = no_such_2 + mass_matrix",
             "placements",
             "mass_matrix = placements",
+            "placements = placements(q = 0)",
         ];
         let told = told(|o| o.functions = list.map(String::from).to_vec());
-        each_once(&told, &["function `no_such`", "b = 0", "function `no_such_2`", "`mass_matrix`"]);
+        each_once(
+            &told,
+            &["function `no_such`", "b = 0", "function `no_such_2`", "what another function is called", "two are called `placements`"],
+        );
     }
 
     #[test]

@@ -9,7 +9,7 @@
 
 mod constant;
 
-use articulated_core::algorithm::{Argument, Dim, Function};
+use articulated_core::algorithm::{Argument, Dim, Function, functions};
 use articulated_core::model::Model;
 
 pub use constant::Constant;
@@ -84,6 +84,10 @@ impl Wanted {
         let plain = name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
         if !plain || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
             return Some("is not a valid name for a Rust function: expected lower case letters, digits and _");
+        }
+        let is_another = |f: &Function<Sym>| f.name == name && !self.parts.iter().any(|part| part.function.id == f.id);
+        if functions::<Sym>().iter().any(is_another) {
+            return Some("is what another function is called: expected a name of its own");
         }
         // The type of several results is called as they are: `self_` would be `Self`.
         if is_keyword(name) || name.trim_end_matches('_') == "self" {
@@ -247,6 +251,7 @@ mod tests {
     #[test]
     fn only_what_stands_as_it_is_in_the_table_is_a_function_of_it() {
         let is = |text: &str| Wanted::parse(text).unwrap().as_function().is_some();
+        assert!(Wanted::parse("inverse_dynamics = inverse_dynamics(a = 0)").is_ok());
         assert!(is("inverse_dynamics") && is(" inverse_dynamics = inverse_dynamics( ) "));
         assert!(!is("inverse_dynamics(a = 0)") && !is("other = inverse_dynamics"));
     }
@@ -322,6 +327,8 @@ mod tests {
             ("robot = mass_matrix", "generated module"),
             ("q = mass_matrix", "arguments or results"),
             ("mass_matrix = mass_matrix + placements", "arguments or results"),
+            ("mass_matrix = gravity_torque", "what another function is called"),
+            ("mass_matrix = gravity_torque + placements", "what another function is called"),
             ("out = mass_matrix", "generated module"),
             ("shelf = mass_matrix + placements", "generated module"),
             ("multiply_add = mass_matrix + placements", "generated module"),

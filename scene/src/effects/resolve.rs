@@ -1,9 +1,9 @@
 //! Effects against a robot: names looked up, `*` spread over joints and links, numbers taken from the URDF, defaults filled in.
 
-use articulated_core::description::{Base, Description, JointKind, Origin};
+use articulated_core::description::{Base, Description, Joint, JointKind, Origin};
 use articulated_urdf::{Subject, Unused};
 
-use super::still::{moves, still};
+use super::still::{moving, still};
 use super::{Asked, Numbers, Selector, urdf};
 use crate::error::{Kind, SceneError, SceneErrors, bare};
 use crate::log::Log;
@@ -43,8 +43,8 @@ impl Scene {
     /// The effects on `robot`. Errors: joints and links that there are not, or that do not move; numbers that are missing; all of them.
     pub fn resolve(&self, robot: &Edited<'_>) -> Result<Resolved, SceneErrors> {
         let mut log = Log::new(&self.file);
-        let mut at_work =
-            Resolving { scene: self, robot, still: still(robot.description, robot.base), resolved: Resolved::default(), used: Vec::new() };
+        let (still, moving) = (still(robot.description, robot.base), moving(robot.description));
+        let mut at_work = Resolving { scene: self, robot, still, moving, resolved: Resolved::default(), used: Vec::new() };
         at_work.known_impact(&mut log);
         for row in effects() {
             at_work.effect(row, &mut log);
@@ -75,6 +75,8 @@ struct Resolving<'a> {
     robot: &'a Edited<'a>,
     /// Links fixed to the base.
     still: Vec<bool>,
+    /// Joints that let their links move.
+    moving: Vec<bool>,
     resolved: Resolved,
     /// (joint, tag) of the URDF that is used.
     used: Vec<(String, &'static str)>,
@@ -98,6 +100,11 @@ impl<'a> Resolving<'a> {
         }
     }
 
+    fn moving_joints(&self) -> impl Iterator<Item = &'a Joint> + use<'a> {
+        let moving = self.moving.clone();
+        self.robot.description.joints.iter().zip(moving).filter(|(_, moving)| *moving).map(|(joint, _)| joint)
+    }
+
     /// Whether everything that is named is there and moves.
     fn known_names(&self, row: &Effect, asked: &[&Asked], log: &mut Log) {
         for one in asked {
@@ -110,17 +117,18 @@ impl<'a> Resolving<'a> {
     }
 
     fn known_joint(&self, row: &Effect, one: &Asked, name: &str, log: &mut Log) {
-        let description = self.robot.description;
-        let Some(joint) = description.joints.iter().find(|j| j.name == name) else {
+        let joints = &self.robot.description.joints;
+        let Some(at) = joints.iter().position(|j| j.name == name) else {
             let place = (one.place, one.key.as_str(), Kind::UnknownName);
-            let names = description.joints.iter().filter(|j| moves(description, j)).map(|j| j.name.as_str());
+            let names = self.moving_joints().map(|j| j.name.as_str());
             log.unknown(place, ("a joint that there is not".into(), name), "a joint of the robot that moves", names);
             return;
         };
+        let joint = &joints[at];
         let (found, expected) = match joint.kind {
             _ if one.says.is_none() => return,
             JointKind::Fixed => ("a fixed joint".to_owned(), "a joint that moves"),
-            _ if !moves(description, joint) => ("a joint that is locked".to_owned(), "a joint that moves"),
+            _ if !self.moving[at] => ("a joint that is locked".to_owned(), "a joint that moves"),
             kind if !has_room(row, kind) => {
                 (format!("a {} joint, which has no coordinate of its own for each degree of freedom", kind.name()), "another joint")
             }
@@ -165,8 +173,7 @@ impl<'a> Resolving<'a> {
 
     fn on_joints(&mut self, row: &'static Effect, asked: &[&'a Asked], log: &mut Log) {
         let all = asked.iter().find(|a| a.on == Selector::All).copied();
-        let description = self.robot.description;
-        for joint in description.joints.iter().filter(|j| moves(description, j) && has_room(row, j.kind)) {
+        for joint in self.moving_joints().filter(|j| has_room(row, j.kind)) {
             if let Some((one, place, key)) = self.of_shaft(row.id, &joint.name) {
                 self.put(row, one, (place, key), &vec![None; row.fields.len()]);
             }
@@ -211,7 +218,7 @@ impl<'a> Resolving<'a> {
     }
 
     /// Whether what is asked for on all joints is meant for this one too.
-    fn is_spread_over(&self, effect: EffectId, joint: &articulated_core::description::Joint) -> bool {
+    fn is_spread_over(&self, effect: EffectId, joint: &Joint) -> bool {
         let of_shaft = self.robot.shafts.iter().flatten().any(|a| a.on == joint.name);
         // What a joint that follows another does is not asked of it.
         let follows = effect == EffectId::motor && joint.mimic.is_some();
@@ -259,7 +266,7 @@ impl<'a> Resolving<'a> {
         let used = |joint: &str, tag: &str| self.used.iter().any(|(j, t)| j == joint && *t == tag);
         let unused = self.robot.unused.iter().filter(|u| !matches!(&u.subject, Subject::Joint(name) if used(name, &u.tag)));
         let mut ignored: Vec<Unused> = unused.cloned().collect();
-        for joint in self.robot.description.joints.iter().filter(|j| moves(self.robot.description, j)) {
+        for joint in self.moving_joints() {
             let bounds = [("limit lower", "limit"), ("limit upper", "limit"), ("limit effort", "motor"), ("limit velocity", "motor")];
             for (tag, effect) in bounds {
                 if urdf::number(joint, tag).is_some() && !used(&joint.name, tag) {

@@ -2,20 +2,29 @@
 
 use articulated_core::description::{Base, Description, Joint, JointKind};
 
-/// Whether the joint lets its child move: it is not fixed, not locked, and does not follow one that is locked.
-pub(crate) fn moves(description: &Description, joint: &Joint) -> bool {
-    let mut joint = joint;
-    // A chain of joints that follow each other is no longer than there are joints.
-    for _ in 0..=description.joints.len() {
-        if joint.kind == JointKind::Fixed || joint.locked.is_some() {
-            return false;
+/// For each joint, whether it lets its child move: it is not fixed, not locked, and does not follow one that is. A chain of followers without an end lets it.
+pub(crate) fn moving(description: &Description) -> Vec<bool> {
+    let joints = &description.joints;
+    let (mut moving, mut seen) = (vec![true; joints.len()], vec![false; joints.len()]);
+    for start in 0..joints.len() {
+        let (mut chain, mut next) = (Vec::new(), Some(start));
+        while let Some(at) = next.filter(|at| !seen[*at]) {
+            seen[at] = true;
+            chain.push(at);
+            moving[at] = joints[at].kind != JointKind::Fixed && joints[at].locked.is_none();
+            next = leader(joints, at).filter(|_| moving[at]);
         }
-        match joint.mimic.and_then(|mimic| description.joints.get(mimic.joint)) {
-            Some(leader) => joint = leader,
-            None => return true,
+        // The last of them first: what it follows was seen before.
+        for at in chain.into_iter().rev() {
+            moving[at] &= leader(joints, at).is_none_or(|leader| moving[leader]);
         }
     }
-    true
+    moving
+}
+
+/// The joint that this one follows.
+fn leader(joints: &[Joint], at: usize) -> Option<usize> {
+    joints[at].mimic.map(|mimic| mimic.joint).filter(|leader| *leader < joints.len())
 }
 
 /// For each link, whether it is fixed to the base.
@@ -25,8 +34,10 @@ pub fn still(description: &Description, base: Base) -> Vec<bool> {
         return still;
     }
     let mut fixed = vec![Vec::new(); description.links.len()];
-    for joint in description.joints.iter().filter(|j| j.parent < still.len() && !moves(description, j)) {
-        fixed[joint.parent].push(joint.child);
+    for (joint, moves) in description.joints.iter().zip(moving(description)) {
+        if joint.parent < still.len() && !moves {
+            fixed[joint.parent].push(joint.child);
+        }
     }
     let mut open: Vec<usize> = description.root().into_iter().collect();
     while let Some(link) = open.pop() {
@@ -36,4 +47,30 @@ pub fn still(description: &Description, base: Base) -> Vec<bool> {
         }
     }
     still
+}
+
+#[cfg(test)]
+mod tests {
+    use articulated_core::description::Mimic;
+
+    use super::*;
+
+    #[test]
+    fn what_follows_a_joint_that_does_not_move_does_not_move_however_long_the_chain_and_rings_move() {
+        let count = 20_000;
+        let follow = |joint| Some(Mimic { joint, multiplier: 1.0, offset: 0.0 });
+        let mut joints: Vec<Joint> =
+            (0..count).map(|k| Joint { kind: JointKind::Revolute, mimic: follow(k + 1), ..Joint::default() }).collect();
+        joints[count - 1].mimic = None;
+        let of = |joints: &[Joint]| moving(&Description { joints: joints.to_vec(), ..Description::default() });
+        assert_eq!(of(&joints), vec![true; count]);
+        joints[count / 2].locked = Some(vec![0.0]);
+        let expected: Vec<bool> = (0..count).map(|k| k > count / 2).collect();
+        assert_eq!(of(&joints), expected);
+        (joints[count / 2].locked, joints[count / 2].kind) = (None, JointKind::Fixed);
+        assert_eq!(of(&joints), expected);
+        joints[count / 2].kind = JointKind::Revolute;
+        (joints[count - 1].mimic, joints[7].mimic) = (follow(3), follow(count));
+        assert_eq!(of(&joints), vec![true; count]);
+    }
 }

@@ -5,6 +5,7 @@
 
 mod floating;
 mod helical;
+#[cfg(feature = "alloc")]
 mod mount;
 mod prismatic;
 mod revolute;
@@ -12,6 +13,7 @@ mod spherical;
 
 pub use floating::Floating;
 pub use helical::Helical;
+#[cfg(feature = "alloc")]
 pub(crate) use mount::Mount;
 pub use prismatic::Prismatic;
 pub use revolute::Revolute;

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Angle, Coordinates, JointLaw};
+use super::{Coordinates, JointLaw};
 use crate::Scalar;
 use crate::spatial::{ArticulatedInertia, Motion, Placement, SpatialInertia, Twist, Wrench, turned_about_z};
 
@@ -13,9 +13,10 @@ pub struct Revolute<S> {
     cos: S,
 }
 
+#[cfg(feature = "alloc")]
 impl<S> Revolute<S> {
     /// At this angle.
-    pub(crate) fn of(angle: Angle<S>) -> Self {
+    pub(crate) fn of(angle: super::Angle<S>) -> Self {
         Self { sin: angle.sin, cos: angle.cos }
     }
 }
