@@ -1,6 +1,6 @@
 //! Why a command ended without doing what was asked, and the status it ends with.
 
-use articulated_codegen::{Reason, Refusal};
+use articulated_codegen::{Reason, Refusal, RobotError};
 use articulated_scene::SceneErrors;
 use serde::Serialize;
 
@@ -94,13 +94,23 @@ impl From<SceneErrors> for Failure {
     }
 }
 
+impl From<RobotError> for Failure {
+    fn from(error: RobotError) -> Self {
+        match error {
+            RobotError::Several { errors } => Self::of(errors.into_iter().map(Self::from)),
+            RobotError::Urdf(problems) => Self::input(problems.errors.iter().map(ToString::to_string)),
+            RobotError::Edits { refusals } => Self::input(refusals.iter().flat_map(refused)),
+            RobotError::Scene(errors) => errors.into(),
+            other => Self::input([other.to_string()]),
+        }
+    }
+}
+
 impl From<articulated_codegen::Error> for Failure {
     fn from(error: articulated_codegen::Error) -> Self {
         match error {
             articulated_codegen::Error::Several { errors } => Self::of(errors.into_iter().map(Self::from)),
-            articulated_codegen::Error::Urdf(problems) => Self::input(problems.errors.iter().map(ToString::to_string)),
-            articulated_codegen::Error::Edits { refusals } => Self::input(refusals.iter().flat_map(refused)),
-            articulated_codegen::Error::Scene(errors) => errors.into(),
+            articulated_codegen::Error::Robot(error) => error.into(),
             articulated_codegen::Error::UnknownFunction { .. } => Self::usage(error.to_string()),
             other => Self::input([other.to_string()]),
         }

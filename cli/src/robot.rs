@@ -51,10 +51,11 @@ impl Robot {
             (_, true) => Base::Fixed,
             _ => base,
         };
-        let mut options = Options { base, ..Options::default() };
-        options.gravity = arguments.gravity.map_or(options.gravity, |g| g.0);
-        options.allow_unphysical_inertia = arguments.allow_unphysical_inertia;
-        options.snap_angles = arguments.snap_angles;
+        let mut options = Options::default();
+        options.robot.base = base;
+        options.robot.gravity = arguments.gravity.map_or(options.robot.gravity, |g| g.0);
+        options.robot.allow_unphysical_inertia = arguments.allow_unphysical_inertia;
+        options.robot.snap_angles = arguments.snap_angles;
         options.rename.clone_from(&arguments.rename);
         edit(&mut options, &arguments.edits)?;
         let files = path.iter().cloned().chain(appended(&arguments.edits)).collect();
@@ -72,20 +73,20 @@ impl Robot {
         let bundled = matches!(prepared.scene.robot, articulated_scene::Robot::Bundled(_));
         let mut request = prepared.request;
         let options = &mut request.options;
-        options.base = match (arguments.floating, arguments.fixed) {
+        options.robot.base = match (arguments.floating, arguments.fixed) {
             (true, _) => Base::Floating,
             (_, true) => Base::Fixed,
-            _ => options.base,
+            _ => options.robot.base,
         };
-        options.gravity = arguments.gravity.map_or(options.gravity, |g| g.0);
-        options.allow_unphysical_inertia |= arguments.allow_unphysical_inertia;
-        options.snap_angles = arguments.snap_angles.or(options.snap_angles);
+        options.robot.gravity = arguments.gravity.map_or(options.robot.gravity, |g| g.0);
+        options.robot.allow_unphysical_inertia |= arguments.allow_unphysical_inertia;
+        options.robot.snap_angles = arguments.snap_angles.or(options.robot.snap_angles);
         arguments.rename.iter().for_each(|(from, to)| options.set_name(from, to));
         edit(options, &arguments.edits)?;
         // The scene's effects on all joints are those of the robot as it is now.
-        let resolved = scene::resolve(&request, &prepared.scene).map_err(|error| scene::placed(error, &prepared.scene))?;
+        let resolved = prepared.scene.effects_on(&request.robot()).map_err(|error| error.placed(&prepared.scene))?;
         let Request { urdf, file, mut options } = request;
-        options.effects = resolved.effects;
+        options.robot.effects = resolved.effects;
         let files = prepared.files.into_iter().chain(appended(&arguments.edits)).collect();
         Ok(Self { file, scene: Some(name.to_owned()), urdf, options, path: None, bundled, files })
     }
@@ -105,9 +106,9 @@ impl Robot {
     /// The robot with these frames.
     pub(crate) fn with(mut self, arguments: &FrameArguments) -> Self {
         if !arguments.frames.is_empty() {
-            self.options.frames = Some(arguments.frames.clone());
+            self.options.robot.frames = Some(arguments.frames.clone());
         }
-        self.options.wrench_reference = arguments.wrenches_in.unwrap_or(self.options.wrench_reference);
+        self.options.robot.wrench_reference = arguments.wrenches_in.unwrap_or(self.options.robot.wrench_reference);
         self
     }
 
@@ -161,7 +162,7 @@ impl Robot {
 
     /// Whether the base floats.
     pub(crate) fn floating(&self) -> bool {
-        self.options.base == Base::Floating
+        self.options.robot.base == Base::Floating
     }
 
     /// The base in a word.
@@ -178,7 +179,12 @@ impl Robot {
     /// A file with the document, for those who read files: the robot's own, or one in `folder`. There is none of an edited robot.
     pub(crate) fn file_in(&self, folder: &Path) -> std::io::Result<PathBuf> {
         let o = &self.options;
-        if !(o.append.is_empty() && o.payloads.is_empty() && o.lock.is_empty() && o.shafts.is_empty() && o.effects.is_empty()) {
+        if !(o.robot.append.is_empty()
+            && o.robot.payloads.is_empty()
+            && o.robot.lock.is_empty()
+            && o.robot.shafts.is_empty()
+            && o.robot.effects.is_empty())
+        {
             return Err(std::io::Error::other(
                 "peers read the file, which knows nothing of --append, --payload, --lock and the effects of scenes: leave out one or the other",
             ));
@@ -204,10 +210,10 @@ pub(crate) fn note_of_parameters(options: &Options) -> Option<String> {
 fn edit(options: &mut Options, edits: &Edits) -> Result<(), Failure> {
     for other in &edits.append {
         let (file, urdf) = document(&other.file)?;
-        options.append.push(Appended { urdf, file, at: other.at.clone(), prefix: other.prefix.clone(), origin: other.origin });
+        options.robot.append.push(Appended { urdf, file, at: other.at.clone(), prefix: other.prefix.clone(), origin: other.origin });
     }
-    options.payloads.extend(edits.payload.iter().cloned());
-    options.lock.extend(edits.lock.iter().map(|lock| (lock.joint.clone(), lock.at.clone())));
+    options.robot.payloads.extend(edits.payload.iter().cloned());
+    options.robot.lock.extend(edits.lock.iter().map(|lock| (lock.joint.clone(), lock.at.clone())));
     Ok(())
 }
 

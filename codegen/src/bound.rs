@@ -70,7 +70,7 @@ mod tests {
             "robot",
             format!("<robot name='robot'><link name='trunk'/>{}{}</robot>", joint("a", "revolute", limit), joint("b", "continuous", "")),
         );
-        request.options.base = Base::Floating;
+        request.options.robot.base = Base::Floating;
         let mut model = crate::model(&request, &crate::read(&request).unwrap().description).unwrap();
         for argument in [Argument::Q, Argument::Target] {
             let found: Vec<(f64, f64)> = (0..9).map(|k| in_box(&model, argument, k)).collect();

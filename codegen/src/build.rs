@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use articulated_scene::{Robot, Scene};
+use articulated_scene::{Robot, RobotError, Scene, beside, read_robot_file};
 
 use crate::cache::Cache;
 use crate::{Appended, Base, Error, Generated, Origin, Payload, Reference, Request, generate, scene};
@@ -56,15 +56,15 @@ impl Build {
         let name = path.as_ref().display().to_string();
         let file = from_root(path.as_ref());
         let mut build = Self::new("");
-        let read = scene::bytes(&file).and_then(|bytes| Ok(Scene::read_bytes(&name, &bytes)?));
+        let read = read_robot_file(&file).and_then(|bytes| Ok(Scene::read_bytes(&name, &bytes)?)).map_err(Error::from);
         if let Ok(found) = &read {
             scene::fill(&mut build.request.options, found);
-            for other in std::mem::take(&mut build.request.options.append) {
-                let file = scene::beside(&name, &other.file);
+            for other in std::mem::take(&mut build.request.options.robot.append) {
+                let file = beside(&name, &other.file);
                 build.append.push((from_root(Path::new(&file)), Appended { file, ..other }));
             }
             if let Robot::Urdf(urdf) = &found.robot {
-                build = build.urdf(scene::beside(&name, urdf));
+                build = build.urdf(beside(&name, urdf));
             }
         }
         Self { scene: Some((file, read)), ..build }
@@ -81,28 +81,28 @@ impl Build {
     /// A floating base.
     #[must_use]
     pub fn floating(mut self) -> Self {
-        self.request.options.base = Base::Floating;
+        self.request.options.robot.base = Base::Floating;
         self
     }
 
     /// A fixed base, whatever a scene says.
     #[must_use]
     pub fn fixed(mut self) -> Self {
-        self.request.options.base = Base::Fixed;
+        self.request.options.robot.base = Base::Fixed;
         self
     }
 
     /// Angles of the URDF that are this near to a multiple of π/2, rad, above 0, at most [`MOST_SNAPPED`](crate::MOST_SNAPPED), are that: some exporters write 1.5708.
     #[must_use]
     pub fn snap_angles(mut self, tolerance: f64) -> Self {
-        self.request.options.snap_angles = Some(tolerance);
+        self.request.options.robot.snap_angles = Some(tolerance);
         self
     }
 
     /// Inertia that no body can have is used as it is written, with a warning.
     #[must_use]
     pub fn allow_unphysical_inertia(mut self) -> Self {
-        self.request.options.allow_unphysical_inertia = true;
+        self.request.options.robot.allow_unphysical_inertia = true;
         self
     }
 
@@ -116,7 +116,7 @@ impl Build {
     /// Gravity in the base frame, m/s².
     #[must_use]
     pub fn gravity(mut self, gravity: [f64; 3]) -> Self {
-        self.request.options.gravity = gravity;
+        self.request.options.robot.gravity = gravity;
         self
     }
 
@@ -137,28 +137,28 @@ impl Build {
     /// The links whose frames the functions of frames give.
     #[must_use]
     pub fn frames<N: Into<String>>(mut self, names: impl IntoIterator<Item = N>) -> Self {
-        self.request.options.frames = Some(names.into_iter().map(Into::into).collect());
+        self.request.options.robot.frames = Some(names.into_iter().map(Into::into).collect());
         self
     }
 
     /// What the wrenches that functions take refer to.
     #[must_use]
     pub fn wrenches_in(mut self, reference: Reference) -> Self {
-        self.request.options.wrench_reference = reference;
+        self.request.options.robot.wrench_reference = reference;
         self
     }
 
     /// Locks a joint at these coordinates, as many as it has: rad or m, a quaternion as x, y, z, w. Joints that follow it stop with it.
     #[must_use]
     pub fn lock(mut self, joint: impl Into<String>, at: impl Into<Vec<f64>>) -> Self {
-        self.request.options.lock.push((joint.into(), at.into()));
+        self.request.options.robot.lock.push((joint.into(), at.into()));
         self
     }
 
     /// Attaches a load to a link.
     #[must_use]
     pub fn payload(mut self, payload: Payload) -> Self {
-        self.request.options.payloads.push(payload);
+        self.request.options.robot.payloads.push(payload);
         self
     }
 
@@ -255,7 +255,7 @@ impl Build {
         cache.iter().for_each(Cache::forget);
         // An unchanged file keeps its date, so that nothing is compiled again.
         if !fs::read_to_string(&path).is_ok_and(|old| old == generated.source) {
-            let failed = |e: std::io::Error| Error::File { file: path.display().to_string(), reason: e.to_string() };
+            let failed = |e: std::io::Error| RobotError::File { file: path.display().to_string(), reason: e.to_string() };
             fs::write(&path, &generated.source).map_err(failed)?;
         }
         cache.iter().for_each(|cache| cache.remember(&warnings));
@@ -267,15 +267,12 @@ impl Build {
         let mut request = self.request.clone();
         let scene = self.scene.as_ref().map(|(_, scene)| scene.as_ref().map_err(Clone::clone)).transpose()?;
         if let Some(scene) = scene.filter(|_| request.file.is_empty()) {
-            return Err(scene::no_robot(
-                scene,
-                "no URDF",
-                "urdf; a bundled robot is known to the command line alone: give its URDF with Build::urdf",
-            ));
+            let expected = "urdf; a bundled robot is known to the command line alone: give its URDF with Build::urdf";
+            return Err(scene.without_robot("no URDF", expected).into());
         }
-        request.urdf = scene::bytes(&self.path)?;
+        request.urdf = read_robot_file(&self.path)?;
         for (path, other) in &self.append {
-            request.options.append.push(Appended { urdf: scene::bytes(path)?, ..other.clone() });
+            request.options.robot.append.push(Appended { urdf: read_robot_file(path)?, ..other.clone() });
         }
         if let Some(scene) = scene {
             scene::settle(&mut request, scene).map_err(|error| scene::placed(error, scene))?;
@@ -297,10 +294,8 @@ fn file_in(folder: &Path, name: &str) -> Result<PathBuf, Error> {
     if Path::new(name).file_name().is_some_and(|file| file == name) {
         return Ok(folder.join(format!("{name}.rs")));
     }
-    Err(Error::File {
-        file: name.into(),
-        reason: "found something else than a plain file name, expected one, without folders and `.rs`, as \"arm\"".into(),
-    })
+    let reason = "found something else than a plain file name, expected one, without folders and `.rs`, as \"arm\"".into();
+    Err(RobotError::File { file: name.into(), reason }.into())
 }
 
 /// An error as a build script tells it to cargo, which says itself that it is one; with the warnings that come with it.
@@ -361,15 +356,15 @@ mod tests {
         (expected.runtime, expected.limbs, expected.forbid_unsafe, expected.no_std) = (None, false, true, true);
         assert_eq!(of(build.clone().standalone().limbs(false).forbid_unsafe().no_std()), expected);
         let mut expected = plain.clone();
-        (expected.base, expected.snap_angles, expected.allow_unphysical_inertia) = (Base::Fixed, Some(1e-6), true);
+        (expected.robot.base, expected.robot.snap_angles, expected.robot.allow_unphysical_inertia) = (Base::Fixed, Some(1e-6), true);
         expected.rename = vec![("a-b".into(), "A_MINUS_B".into())];
         let all = build.clone().floating().fixed().snap_angles(1e-6).allow_unphysical_inertia().rename("a-b", "A_MINUS_B");
         assert_eq!(of(all.clone()), expected);
         expected.rename = vec![("c".into(), "C".into()), ("a-b".into(), "D".into())];
         assert_eq!(of(all.rename("c", "C").rename("a-b", "D")), expected);
         let both = of(build.clone().append(&hand, "tip", "left_", Origin::default()));
-        assert_eq!(both.append[0].urdf, fs::read(&hand).unwrap());
-        assert_eq!((both.append[0].at.as_str(), both.append[0].prefix.as_str()), ("tip", "left_"));
+        assert_eq!(both.robot.append[0].urdf, fs::read(&hand).unwrap());
+        assert_eq!((both.robot.append[0].at.as_str(), both.robot.append[0].prefix.as_str()), ("tip", "left_"));
         assert!(build.append(folder.join("none.urdf"), "tip", "left_", Origin::default()).request().is_err());
         fs::remove_dir_all(folder).unwrap();
     }
@@ -399,7 +394,7 @@ mod tests {
         let build = Build::scene(&scene);
         let error = build.request().unwrap_err().to_string();
         assert!(error.contains("Build::urdf"), "{error}");
-        assert_eq!(build.urdf(folder.join("arm.urdf")).request().unwrap().options.gravity, [0.0; 3]);
+        assert_eq!(build.urdf(folder.join("arm.urdf")).request().unwrap().options.robot.gravity, [0.0; 3]);
         fs::remove_dir_all(folder).unwrap();
     }
 

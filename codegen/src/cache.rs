@@ -55,7 +55,7 @@ impl Cache {
 /// Everything that the output follows from. Lengths stand before what they are the lengths of, so that no key is the beginning of another.
 fn key(request: &Request, generator: &str) -> Vec<u8> {
     let (mut options, mut urdfs) = (request.options.clone(), vec![request.urdf.clone()]);
-    urdfs.extend(options.append.iter_mut().map(|other| std::mem::take(&mut other.urdf)));
+    urdfs.extend(options.robot.append.iter_mut().map(|other| std::mem::take(&mut other.urdf)));
     let lengths: Vec<usize> = urdfs.iter().map(Vec::len).collect();
     let mut head = format!("articulated {}, {generator}\n", env!("CARGO_PKG_VERSION"));
     let _ = writeln!(head, "{:?} {options:?} {lengths:?}", request.file);
@@ -79,8 +79,8 @@ mod tests {
 
     fn request() -> Request {
         let mut request = Request::new("arm.urdf", "<robot/>");
-        request.options.append.push(Appended { urdf: "<robot>ab</robot>".into(), ..Appended::default() });
-        request.options.append.push(Appended { urdf: "c".into(), ..Appended::default() });
+        request.options.robot.append.push(Appended { urdf: "<robot>ab</robot>".into(), ..Appended::default() });
+        request.options.robot.append.push(Appended { urdf: "c".into(), ..Appended::default() });
         request
     }
 
@@ -117,17 +117,17 @@ mod tests {
         let changes: [fn(&mut Request); 10] = [
             |r| r.urdf.push(b' '),
             |r| r.file.push('2'),
-            |r| r.options.base = Base::Floating,
-            |r| r.options.gravity[0] = -0.0,
+            |r| r.options.robot.base = Base::Floating,
+            |r| r.options.robot.gravity[0] = -0.0,
             |r| r.options.functions.push("mass_matrix".into()),
-            |r| r.options.payloads.push(Payload { link: "tool".into(), mass: 1.0, ..Payload::default() }),
-            |r| r.options.lock.push(("elbow".into(), vec![0.1])),
-            |r| r.options.append[1].urdf.push(b'd'),
-            |r| r.options.append[1].urdf[0] = b'd',
+            |r| r.options.robot.payloads.push(Payload { link: "tool".into(), mass: 1.0, ..Payload::default() }),
+            |r| r.options.robot.lock.push(("elbow".into(), vec![0.1])),
+            |r| r.options.robot.append[1].urdf.push(b'd'),
+            |r| r.options.robot.append[1].urdf[0] = b'd',
             |r| {
                 // The same bytes, divided in another way.
-                let moved = r.options.append[0].urdf.pop().unwrap();
-                r.options.append[1].urdf.insert(0, moved);
+                let moved = r.options.robot.append[0].urdf.pop().unwrap();
+                r.options.robot.append[1].urdf.insert(0, moved);
             },
         ];
         let plain = key(&request(), "g");

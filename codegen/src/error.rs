@@ -1,54 +1,14 @@
 //! Why nothing was generated.
 
-use articulated_core::effect::EffectError;
-use articulated_core::model::ModelError;
-use articulated_scene::SceneErrors;
-use articulated_urdf::Problems;
+use articulated_scene::{RobotError, SceneErrors};
 use thiserror::Error;
-
-use crate::edit::Refusal;
 
 /// Everything that can be wrong with a request, as data first and a sentence second.
 #[derive(Clone, Debug, Error)]
 pub enum Error {
-    /// The document is not a usable URDF.
+    /// The robot cannot be had as it is asked for.
     #[error("{0}")]
-    Urdf(#[from] Problems),
-    /// The robot is not one that the algorithms know.
-    #[error("{file}: {error}")]
-    Model {
-        /// The file.
-        file: String,
-        /// What is wrong.
-        error: ModelError,
-    },
-    /// Effects that cannot be had; all of them.
-    #[error("{}", errors.iter().map(|e| format!("{file}: {e}")).collect::<Vec<_>>().join("\n"))]
-    Effects {
-        /// The file of the robot.
-        file: String,
-        /// One for each effect.
-        errors: Vec<EffectError>,
-    },
-    /// A scene that is wrong, or does not fit its robot; everything that is.
-    #[error("{0}")]
-    Scene(#[from] SceneErrors),
-    /// Edits of the robot that cannot be made; all of them.
-    #[error("{}", refusals.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
-    Edits {
-        /// One for each edit.
-        refusals: Vec<Refusal>,
-    },
-    /// A choice whose number cannot be.
-    #[error("{key}: found {found}, expected {expected}")]
-    Number {
-        /// The choice, as a scene calls it.
-        key: &'static str,
-        /// The number.
-        found: String,
-        /// What is wanted.
-        expected: &'static str,
-    },
+    Robot(#[from] RobotError),
     /// A type of numbers that is asked for twice.
     #[error("batch: found a type that is there twice, {found}, expected each once")]
     BatchTwice {
@@ -157,14 +117,6 @@ pub enum Error {
         /// Two at least, none of them several again.
         errors: Vec<Error>,
     },
-    /// A file that could not be read or written.
-    #[error("{file}: {reason}")]
-    File {
-        /// The file.
-        file: String,
-        /// What the system said.
-        reason: String,
-    },
 }
 
 impl Error {
@@ -178,7 +130,14 @@ impl Error {
     pub fn into_each(self) -> Vec<Error> {
         match self {
             Self::Several { errors } => errors,
+            Self::Robot(RobotError::Several { errors }) => errors.into_iter().map(Self::Robot).collect(),
             one => vec![one],
         }
+    }
+}
+
+impl From<SceneErrors> for Error {
+    fn from(errors: SceneErrors) -> Self {
+        Self::Robot(errors.into())
     }
 }

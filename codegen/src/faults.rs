@@ -1,40 +1,13 @@
 //! Everything that is wrong with a request, not only the first of it: what was refused is left out, and the rest tried again.
 
+use articulated_scene::Tried;
+
 use crate::function_groups::Group;
-use crate::{Edit, Error, Options, Refusal, Request};
-
-/// More than these are not looked for.
-const MOST: usize = 100;
-
-/// What came of an attempt, and of those after it.
-pub(crate) struct Tried<T> {
-    /// What the last attempt gave; `None` where there was nothing more to leave out.
-    pub(crate) value: Option<T>,
-    /// What was refused, in the order in which it was found.
-    pub(crate) errors: Vec<Error>,
-    /// The request without it.
-    pub(crate) rest: Request,
-}
+use crate::{Error, Options, Request};
 
 /// Attempts the request, and again without what was refused, until nothing is or nothing can be left out.
-pub(crate) fn tried<T>(request: &Request, attempt: impl Fn(&Request) -> Result<T, Error>) -> Tried<T> {
-    let mut tried = Tried { value: None, errors: Vec::new(), rest: request.clone() };
-    while tried.errors.len() < MOST {
-        match attempt(&tried.rest) {
-            Ok(value) => {
-                tried.value = Some(value);
-                break;
-            }
-            Err(error) => {
-                let goes_on = leave_out(&error, &mut tried.rest.options);
-                tried.errors.push(error);
-                if !goes_on {
-                    break;
-                }
-            }
-        }
-    }
-    tried
+pub(crate) fn tried<T>(request: &Request, attempt: impl Fn(&Request) -> Result<T, Error>) -> Tried<Request, T, Error> {
+    articulated_scene::tried(request, attempt, |error, request| leave_out(error, &mut request.options))
 }
 
 /// The value of an attempt of which nothing was refused, or all that was.
@@ -66,8 +39,6 @@ fn leave_out(error: &Error, options: &mut Options) -> bool {
                 options.functions.remove(at);
             }
         }
-        Error::Number { key: "gravity", .. } => options.gravity = [0.0; 3],
-        Error::Number { .. } => options.snap_angles = None,
         Error::BatchTwice { found } => options.batch.retain(|real| real.name() != *found),
         Error::Parameter { found, .. } => options.parameters.retain(|p| p.trim() != found),
         Error::Rename { from, to, .. } => options.rename.retain(|(f, t)| (f, t) != (from, to)),
@@ -76,31 +47,15 @@ fn leave_out(error: &Error, options: &mut Options) -> bool {
             options.rename.retain(|(from, _)| from != second);
             options.rename.push((second.clone(), format!("{ident}__{count}")));
         }
-        Error::Edits { refusals } => leave_out_edits(refusals, options),
+        Error::Robot(error) => {
+            articulated_scene::leave_out(error, &mut options.robot);
+        }
         Error::Several { errors } => errors.iter().for_each(|error| {
             leave_out(error, options);
         }),
-        Error::Effects { errors, .. } => retain(&mut options.effects, |i| errors.iter().all(|e| e.index != i)),
         _ => {}
     }
     *options != before
-}
-
-/// All those that were refused. Without a robot that was to be appended there is no going on: others may name what it has.
-fn leave_out_edits(refusals: &[Refusal], options: &mut Options) {
-    let refused = |edit: Edit| refusals.iter().any(|refusal| refusal.edit == edit);
-    if refusals.iter().any(|refusal| matches!(refusal.edit, Edit::Append(_))) {
-        return;
-    }
-    retain(&mut options.payloads, |i| !refused(Edit::Payload(i)));
-    retain(&mut options.shafts, |i| !refused(Edit::Shaft(i)));
-    retain(&mut options.lock, |i| !refused(Edit::Lock(i)));
-    options.frames.iter_mut().for_each(|frames| retain(frames, |i| !refused(Edit::Frame(i))));
-}
-
-fn retain<T>(list: &mut Vec<T>, keep: impl Fn(usize) -> bool) {
-    let mut index = 0..;
-    list.retain(|_| index.next().is_some_and(&keep));
 }
 
 #[cfg(test)]
@@ -147,8 +102,8 @@ mod tests {
     #[test]
     fn numbers_that_cannot_be_are_told_once_and_with_all_else() {
         let told = told(|o| {
-            o.gravity = [0.0, f64::NAN, 0.0];
-            o.snap_angles = Some(2.0);
+            o.robot.gravity = [0.0, f64::NAN, 0.0];
+            o.robot.snap_angles = Some(2.0);
             o.functions = vec!["no_such".into()];
         });
         each_once(&told, &["gravity: found [0.0, NaN, 0.0], expected", "snap_angles: found 2, expected", "`no_such`"]);
@@ -195,10 +150,10 @@ mod tests {
             &["\"x\"", "\"y\""],
         );
         let edits = told(|o| {
-            o.lock = [("a", 0.0), ("hinge", 0.0), ("b", 0.0)].map(|(name, at)| (name.to_owned(), vec![at])).to_vec();
-            o.frames = Some(["tip-1", "c", "tip-1"].map(String::from).to_vec());
+            o.robot.lock = [("a", 0.0), ("hinge", 0.0), ("b", 0.0)].map(|(name, at)| (name.to_owned(), vec![at])).to_vec();
+            o.robot.frames = Some(["tip-1", "c", "tip-1"].map(String::from).to_vec());
             o.functions = vec!["no_such".into()];
-            o.shafts =
+            o.robot.shafts =
                 ["d", "e"].map(|joint| crate::Shaft { joint: joint.into(), segments: 1, stiffness: 1.0, ..Default::default() }).to_vec();
             o.rename.clear();
         });
@@ -214,14 +169,14 @@ mod tests {
             parameters: vec![0.1],
         };
         let effects = told(|o| {
-            o.effects = ["hinge", "a", "hinge", "b"].map(damping).to_vec();
+            o.robot.effects = ["hinge", "a", "hinge", "b"].map(damping).to_vec();
             o.functions = vec!["no_such".into()];
         });
         each_once(&effects, &["\"a\"", "given twice", "\"b\"", "`no_such`"]);
         let appended = told(|o| {
             let urdf = ARM.replace("'tip", "'top").into_bytes();
-            o.append.push(crate::Appended { urdf, file: "hand.urdf".into(), at: "nowhere".into(), ..Default::default() });
-            o.payloads.push(crate::Payload { link: "tip-1".into(), mass: -1.0, ..Default::default() });
+            o.robot.append.push(crate::Appended { urdf, file: "hand.urdf".into(), at: "nowhere".into(), ..Default::default() });
+            o.robot.payloads.push(crate::Payload { link: "tip-1".into(), mass: -1.0, ..Default::default() });
         });
         each_once(&appended, &["append: ", "payload: "]);
     }

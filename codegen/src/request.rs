@@ -2,15 +2,15 @@
 
 use std::borrow::Cow;
 
-use articulated_core::description::{Base, Origin, Payload, Shaft};
-use articulated_core::effect::Applied;
+use articulated_core::description::Description;
 use articulated_core::lanes::Real;
 use articulated_core::level::Level;
-use articulated_core::model::GRAVITY;
-use articulated_core::spatial::Reference;
+use articulated_core::model::Model;
+use articulated_scene::{RobotAsked, RobotOptions};
+use articulated_urdf::Reading;
 
 use crate::emit::is_name;
-use crate::{function_groups, model, read};
+use crate::{Error, function_groups};
 
 /// A robot's document and what to make of it. Macro, build script and command line all fill one of these.
 #[derive(Clone, Debug)]
@@ -26,33 +26,13 @@ pub struct Request {
 /// The choices that a scene, the macro's keys, or the command line's flags make.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// Whether the root link is fixed.
-    pub base: Base,
-    /// Gravity in the base frame, m/s².
-    pub gravity: [f64; 3],
+    /// The robot: its base, its edits, its frames, its effects.
+    pub robot: RobotOptions,
     /// The functions wanted, each as [`crate::Wanted::parse`] reads it: a name of [`articulated_core::algorithm::functions`], or
     /// `name = first + second(a = 0)`.
     pub functions: Vec<String>,
     /// Constants of the model that stay inputs: `payload(link)`, `inertia(link)`, `origin(joint)`.
     pub parameters: Vec<String>,
-    /// Names of the links whose frames the functions of frames give, in this order; `None`: all of them, in the order of the file.
-    pub frames: Option<Vec<String>>,
-    /// What the wrenches that functions take refer to.
-    pub wrench_reference: Reference,
-    /// Robots to append, one after the other.
-    pub append: Vec<Appended>,
-    /// Loads to attach; to links of appended robots too.
-    pub payloads: Vec<Payload>,
-    /// Fixed joints whose rigid offsets bend, see [`shaft`](articulated_core::description::Description::shaft). Their springs and dampings have to be among the effects.
-    pub shafts: Vec<Shaft>,
-    /// Joints to lock and their coordinates, see [`lock`](articulated_core::description::Description::lock); joints of appended robots too.
-    pub lock: Vec<(String, Vec<f64>)>,
-    /// What the robot is subject to besides gravity; on joints and links of appended robots too.
-    pub effects: Vec<Applied>,
-    /// Accept inertias with a principal moment below zero, with a warning. (Moments of which one exceeds the sum of the others are accepted with a warning anyway.)
-    pub allow_unphysical_inertia: bool,
-    /// Take angles this near (rad, above 0, at most [`crate::MOST_SNAPPED`]) to a multiple of π/2 as that multiple; every one is reported. `None`: never.
-    pub snap_angles: Option<f64>,
     /// Rust names to use instead of those made from the URDF's names: (name in the URDF, name in Rust).
     pub rename: Vec<(String, String)>,
     /// Compute limbs that are alike at once, one a lane of a vector, and derivatives of large trees in loops over their joints, four at a time, where that is cheaper.
@@ -71,37 +51,12 @@ pub struct Options {
     pub stages: bool,
 }
 
-/// Another robot, a gripper say, to be fixed to a link. Its links and joints get a prefix before their names.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Appended {
-    /// The URDF's bytes.
-    pub urdf: Vec<u8>,
-    /// The file's name, for messages and for the header of the generated file; not opened.
-    pub file: String,
-    /// The link that carries it.
-    pub at: String,
-    /// What stands before its names.
-    pub prefix: String,
-    /// Its root in the frame of that link.
-    pub origin: Origin,
-}
-
 impl Default for Options {
     fn default() -> Self {
         Self {
-            base: Base::Fixed,
-            gravity: GRAVITY,
+            robot: RobotOptions::default(),
             functions: vec!["placements".into(), "inverse_dynamics".into()],
             parameters: Vec::new(),
-            frames: None,
-            wrench_reference: Reference::Body,
-            append: Vec::new(),
-            payloads: Vec::new(),
-            shafts: Vec::new(),
-            lock: Vec::new(),
-            effects: Vec::new(),
-            allow_unphysical_inertia: false,
-            snap_angles: None,
             rename: Vec::new(),
             limbs: true,
             batch: Vec::new(),
@@ -128,12 +83,17 @@ impl Request {
         Self { urdf: urdf.into(), file: file.into(), options: Options::default() }
     }
 
+    /// The robot that it is about.
+    pub fn robot(&self) -> RobotAsked<'_> {
+        RobotAsked { file: &self.file, urdf: &self.urdf, options: &self.options.robot }
+    }
+
     /// Takes the frames that a program chose by itself. Names in Rust of links that are none of these are in order then, and not used: they are left out.
     pub fn set_frames(&mut self, frames: &[String]) {
         let unused = if self.options.rename.is_empty() { Vec::new() } else { self.links_without_a_joint() };
         let is_left_out = |(from, to): &(String, String)| is_name(to) && unused.contains(from) && !frames.contains(from);
         self.options.rename.retain(|names| !is_left_out(names));
-        self.options.frames = Some(frames.to_vec());
+        self.options.robot.frames = Some(frames.to_vec());
     }
 
     /// Links of which no joint that moves has the name; none of a robot that cannot be had.
@@ -160,6 +120,21 @@ impl Request {
     }
 }
 
+/// Reads the request's robot and edits it. Errors: everything that is wrong with the document, or else everything that is wrong with the edits.
+pub fn read(request: &Request) -> Result<Reading, Error> {
+    Ok(request.robot().read()?)
+}
+
+/// The model of what was [read](read()), see [`RobotAsked::model`].
+pub fn model(request: &Request, description: &Description) -> Result<Model<f64>, Error> {
+    Ok(request.robot().model(description)?)
+}
+
+/// The model with the frames that the request asks for.
+pub fn choose_frames(request: &Request, model: Model<f64>) -> Result<Model<f64>, Error> {
+    Ok(request.robot().choose_frames(model)?)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -174,7 +149,7 @@ mod tests {
             let mut request = Request::new("arm.urdf", ARM);
             request.options.set_name(from, to);
             request.set_frames(&["tip".into()]);
-            assert_eq!(request.options.frames.as_deref(), Some(&["tip".to_owned()][..]));
+            assert_eq!(request.options.robot.frames.as_deref(), Some(&["tip".to_owned()][..]));
             crate::generate(&request).map(|generated| generated.source).map_err(|error| error.to_string())
         };
         assert!(["fore", "tip"].iter().all(|name| told(name, "OTHER").unwrap().contains("pub const OTHER: usize = 0;")));

@@ -208,7 +208,7 @@ mod tests {
         let limited = joints.replace("type='revolute'>", "type='revolute'><limit effort='1' velocity='1' lower='-1' upper='1'/>");
         let mut request = Request::new("arm", format!("<robot name='arm'>{links}{limited}</robot>"));
         let drag = drag.then(|| Applied { effect: EffectId::drag, on: "tool".into(), at: Origin::default(), parameters: vec![0.7] });
-        request.options.effects.extend(drag);
+        request.options.robot.effects.extend(drag);
         crate::model(&request, &crate::read(&request).unwrap().description).unwrap()
     }
 

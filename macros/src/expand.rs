@@ -62,12 +62,12 @@ impl Asked {
         let mut options = Options::default();
         scene.iter().for_each(|scene| scene::fill(&mut options, scene));
         let seen_from = settings.scene.as_ref().map(LitStr::value).unwrap_or_default();
-        options.append.iter_mut().for_each(|other| other.file = scene::beside(&seen_from, &other.file));
+        options.robot.append.iter_mut().for_each(|other| other.file = scene::beside(&seen_from, &other.file));
         let mut options = settings.options(options);
         let (file, robot) = robot(settings, scene.as_ref(), &seen_from, errors)?;
         let urdf = errors.take(files.read(&file, robot));
         let mut complete = urdf.is_some();
-        for (i, other) in options.append.iter_mut().enumerate() {
+        for (i, other) in options.robot.append.iter_mut().enumerate() {
             let span = settings.append.as_ref().and_then(|all| all.get(i)?.urdf.as_ref()).map_or(robot, LitStr::span);
             let bytes = errors.take(files.read(&other.file, span));
             complete &= bytes.is_some();

@@ -2,7 +2,7 @@
 
 use articulated_codegen::core::description::EditError;
 use articulated_codegen::scene::articulated_scene::SceneError;
-use articulated_codegen::{Edit, Error, Reason, Refusal, mentions};
+use articulated_codegen::{Edit, Error, Reason, Refusal, RobotError, mentions};
 use proc_macro2::Span;
 use syn::LitStr;
 
@@ -14,9 +14,7 @@ pub(crate) fn at_its_word(error: &Error, settings: &Settings, robot: Span) -> sy
     let renamed = |name: &String| settings.rename.iter().flatten().find(|r| r.from.text == *name);
     let span = match error {
         Error::Several { errors } => return all(errors.iter().map(|error| at_its_word(error, settings, robot)), error, robot),
-        Error::Scene(errors) => return all(errors.errors.iter().map(|error| in_scene(error, settings, robot)), errors, robot),
-        Error::Urdf(problems) => return each(problems, robot),
-        Error::Edits { refusals } => return all(refusals.iter().map(|refusal| refused(refusal, settings, robot)), error, robot),
+        Error::Robot(error) => return of_the_robot(error, settings, robot),
         Error::UnknownFunction { found: function, .. }
         | Error::Singular { function, .. }
         | Error::BoundFrames { function, .. }
@@ -29,6 +27,17 @@ pub(crate) fn at_its_word(error: &Error, settings: &Settings, robot: Span) -> sy
         _ => None,
     };
     syn::Error::new(span.unwrap_or(robot), error)
+}
+
+/// The same of the robot as it is asked for.
+fn of_the_robot(error: &RobotError, settings: &Settings, robot: Span) -> syn::Error {
+    match error {
+        RobotError::Several { errors } => all(errors.iter().map(|error| of_the_robot(error, settings, robot)), error, robot),
+        RobotError::Scene(errors) => all(errors.errors.iter().map(|error| in_scene(error, settings, robot)), errors, robot),
+        RobotError::Urdf(problems) => each(problems, robot),
+        RobotError::Edits { refusals } => all(refusals.iter().map(|refusal| refused(refusal, settings, robot)), error, robot),
+        _ => syn::Error::new(robot, error),
+    }
 }
 
 /// A mistake in the scene, at the scene; one in `effects`, at its word.

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use articulated_codegen::function_groups::Group;
 use articulated_codegen::scene::articulated_scene::Node;
-use articulated_codegen::{Base, Level, Options, Real, Reference, Wanted};
+use articulated_codegen::{Base, Level, Options, Real, Reference, RobotOptions, Wanted};
 use proc_macro2::Span;
 use syn::{Error, Ident, LitStr, Path};
 
@@ -74,21 +74,11 @@ impl Settings {
 
     /// The request's options: what is said, and `rest` where nothing is. Robots to append have no bytes yet.
     pub(crate) fn options(&self, rest: Options) -> Options {
-        let names = |names: &Vec<Name>| names.iter().map(|name| name.text.clone()).collect();
-        let locked = |lock: &Lock| Some((lock.joint.text.clone(), lock.at.clone()));
         let renamed = |r: &Renaming| Some((r.from.text.clone(), r.to.to_string()));
         Options {
-            base: self.base.unwrap_or(rest.base),
-            gravity: self.gravity.unwrap_or(rest.gravity),
+            robot: self.robot(rest.robot),
             functions: self.functions.as_ref().map_or(rest.functions, |entries| texts(entries)),
             parameters: self.parameters.as_ref().map_or(rest.parameters, |entries| texts(entries)),
-            frames: self.frames.as_ref().map(names).or(rest.frames),
-            wrench_reference: self.wrench_reference.unwrap_or(rest.wrench_reference),
-            append: or(self.append.as_ref(), Other::appended, rest.append),
-            payloads: or(self.payloads.as_ref(), Load::payload, rest.payloads),
-            lock: or(self.lock.as_ref(), locked, rest.lock),
-            allow_unphysical_inertia: self.allow_unphysical_inertia.unwrap_or(rest.allow_unphysical_inertia),
-            snap_angles: self.snap_angles.or(rest.snap_angles),
             rename: or(self.rename.as_ref(), renamed, rest.rename),
             limbs: self.limbs.unwrap_or(rest.limbs),
             batch: self.batch.clone().unwrap_or(rest.batch),
@@ -97,6 +87,22 @@ impl Settings {
             no_std: self.no_std.unwrap_or(rest.no_std),
             stages: false,
             runtime: (!self.standalone).then(|| self.runtime.as_ref().map_or("::articulated".into(), spelled)),
+        }
+    }
+
+    fn robot(&self, rest: RobotOptions) -> RobotOptions {
+        let names = |names: &Vec<Name>| names.iter().map(|name| name.text.clone()).collect();
+        let locked = |lock: &Lock| Some((lock.joint.text.clone(), lock.at.clone()));
+        RobotOptions {
+            base: self.base.unwrap_or(rest.base),
+            gravity: self.gravity.unwrap_or(rest.gravity),
+            frames: self.frames.as_ref().map(names).or(rest.frames),
+            wrench_reference: self.wrench_reference.unwrap_or(rest.wrench_reference),
+            append: or(self.append.as_ref(), Other::appended, rest.append),
+            payloads: or(self.payloads.as_ref(), Load::payload, rest.payloads),
+            lock: or(self.lock.as_ref(), locked, rest.lock),
+            allow_unphysical_inertia: self.allow_unphysical_inertia.unwrap_or(rest.allow_unphysical_inertia),
+            snap_angles: self.snap_angles.or(rest.snap_angles),
             ..rest
         }
     }

@@ -25,11 +25,11 @@ fn macro_build_script_and_library_give_the_same_tokens() {
     let build = rename.iter().fold(build.snap_angles(1e-9), |build, (from, to)| build.rename(from, to)).generate().unwrap();
 
     let mut request = Request::new(URDF, std::fs::read(URDF).unwrap());
-    request.options.base = Base::Floating;
-    request.options.gravity = [0.0, 1.5, -9.0];
+    request.options.robot.base = Base::Floating;
+    request.options.robot.gravity = [0.0, 1.5, -9.0];
     request.options.functions = vec!["gravity_torque".into(), "placements".into()];
     request.options.rename = rename.to_vec();
-    request.options.snap_angles = Some(1e-9);
+    request.options.robot.snap_angles = Some(1e-9);
     request.options.runtime = Some("::articulated".into());
     assert_eq!(generate(&request).unwrap().source, build.source);
 
@@ -167,8 +167,8 @@ fn effects_in_the_invocation_are_those_of_a_scene() {
     let mut request = Request::new(urdf, std::fs::read(urdf).unwrap());
     request.options.functions = vec!["effect_forces".into()];
     request.options.runtime = Some("::articulated".into());
-    request.options.effects = articulated_codegen::scene::resolve(&request, &Scene::read("s", scene).unwrap()).unwrap().effects;
-    assert_eq!(request.options.effects.len(), 2 + 1 + 3);
+    request.options.robot.effects = Scene::read("s", scene).unwrap().effects_on(&request.robot()).unwrap().effects;
+    assert_eq!(request.options.robot.effects.len(), 2 + 1 + 3);
     let tokens = generate(&request).unwrap().tokens();
     assert_eq!(quote!(#(#items)*).to_string(), syn::parse2::<syn::File>(tokens).unwrap().to_token_stream().to_string());
 }
@@ -213,8 +213,8 @@ fn of_a_file_larger_than_any_robot_nothing_is_read() {
 fn empty_lists_stand_in_place_of_those_of_the_scene_too() {
     let file = "../tests/ui/scenes/three.toml";
     let empty = |o: &mut articulated_codegen::Options| {
-        (o.payloads, o.parameters, o.batch) = (Vec::new(), Vec::new(), Vec::new());
-        (o.lock, o.rename) = (Vec::new(), Vec::new());
+        (o.robot.payloads, o.parameters, o.batch) = (Vec::new(), Vec::new(), Vec::new());
+        (o.robot.lock, o.rename) = (Vec::new(), Vec::new());
     };
     let build = Build::scene(file).options(empty).generate().unwrap();
     assert!(!build.source.contains("Payload: "));

@@ -11,8 +11,8 @@
 //! ```
 //!
 //! The way of a scene: text → tree (tables and numbers with their lines) → [`Scene`] (checked, by tables of keys) → against a robot:
-//! [`Scene::resolve`] (effects with all their numbers), [`Scene::start`] and [`Scene::controller`] (vectors). No input makes the reader panic or
-//! hang. The keys are listed in `docs/scenes.md`.
+//! [`Scene::resolve`] (effects with all their numbers), [`Scene::start`] and [`Scene::controller`] (vectors). [`open`] reads the files that a scene names, and [`Opened::settle`] edits the
+//! robot and gives its model and effects. No input makes the reader panic or hang. The keys are listed in `docs/scenes.md`.
 
 mod control;
 mod document;
@@ -24,6 +24,7 @@ mod initial;
 mod log;
 pub mod manual;
 mod report;
+mod robot;
 mod scene;
 mod series;
 mod shaft;
@@ -38,6 +39,10 @@ pub use error::{Kind, SceneError, SceneErrors};
 pub use impact::{Impact, When};
 pub use initial::{BaseState, Coordinates, Initial, Named};
 pub use report::{EffectOff, EffectOn, Number, Report, Why};
+pub use robot::{
+    Appended, Attempt, Bundled, Edit, Opened, Reason, Refusal, RobotAsked, RobotError, RobotOptions, Settled, Tried, beside, by_places,
+    leave_out, open, open_in, read_robot_file, tried,
+};
 pub use scene::{Code, Places, Robot, Scene};
 pub use series::{Reader, Series, Source};
 pub use shaft::ShaftAsked;

@@ -93,7 +93,7 @@ fn code_is_made_of_any_numbers_or_an_error() {
         let text = mutated(robot.urdf, &mut Random::new(1000 + seed));
         let mut request = Request::new("hostile.urdf", text);
         request.options.functions = vec!["inverse_dynamics".into(), "forward_dynamics".into()];
-        request.options.allow_unphysical_inertia = true;
+        request.options.robot.allow_unphysical_inertia = true;
         if let Ok(generated) = generate(&request) {
             let _ = generated.tokens();
             made += 1;

@@ -14,10 +14,10 @@ use articulated_tests::golden;
 fn request(name: &str) -> Request {
     let robot = articulated_models::robot(name).unwrap();
     let mut request = Request::new(format!("../models/urdf/{name}.urdf"), robot.urdf);
-    request.options.base = robot.base;
+    request.options.robot.base = robot.base;
     let model = &Case::bundled(robot).model;
     let tip = model.frames.last().expect("it has links");
-    request.options.frames = Some(vec![tip.name.clone()]);
+    request.options.robot.frames = Some(vec![tip.name.clone()]);
     let has = |f: &&Function<f64>| f.needs != Needs::FreeFrames || model.freedoms_of(tip.body).len() >= 6;
     request.options.functions = functions::<f64>().iter().filter(has).map(|f| f.name.into()).collect();
     request
@@ -80,8 +80,8 @@ fn a_build_script_gives_the_same_source() {
         let mut request = request(name);
         request.options.runtime = Some("::articulated".into());
         let mut build = Build::new(format!("../models/urdf/{name}.urdf")).functions(request.options.functions.clone());
-        build = build.frames(request.options.frames.clone().expect("one"));
-        if request.options.base == Base::Floating {
+        build = build.frames(request.options.robot.frames.clone().expect("one"));
+        if request.options.robot.base == Base::Floating {
             build = build.floating();
         }
         assert_eq!(build.generate().unwrap().source, generate(&request).unwrap().source, "{name}");

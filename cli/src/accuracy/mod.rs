@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: &AccuracyArguments, format: Format) -> Result<(), F
     let mut robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
     let reading = robot.read()?;
     robot.warn_of(reading.warnings.iter().chain(&reading.snapped));
-    if robot.options.frames.is_none() {
+    if robot.options.robot.frames.is_none() {
         let tips = Tips::of(&reading.description, &robot.whole_model(&reading)?);
         robot = robot.on(tips.all());
     }

@@ -4,7 +4,7 @@ mod base;
 mod report;
 mod text;
 
-use articulated_codegen::Error;
+use articulated_codegen::{Error, RobotError};
 use articulated_urdf::Reading;
 
 use crate::arguments::{CheckArguments, Format};
@@ -27,7 +27,7 @@ pub(crate) fn run(arguments: &CheckArguments, format: Format) -> Result<u8, Fail
 fn examine(robot: &Robot, functions: &[String]) -> Report {
     let mut report = Report::new(robot);
     match robot.read() {
-        Err(Error::Urdf(problems)) => {
+        Err(Error::Robot(RobotError::Urdf(problems))) => {
             report.errors.extend(problems.errors.iter().map(Diagnostic::of));
             report.warnings.extend(problems.warnings.iter().map(Diagnostic::of));
         }

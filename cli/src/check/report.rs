@@ -121,7 +121,7 @@ impl Report {
             usable: false,
             robot: None,
             base: robot.base(),
-            gravity: robot.options.gravity,
+            gravity: robot.options.robot.gravity,
             errors: Vec::new(),
             warnings: Vec::new(),
             unused: Vec::new(),

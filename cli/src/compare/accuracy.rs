@@ -41,7 +41,7 @@ pub(crate) enum Against {
 
 impl Against {
     pub(crate) fn of(options: &Options) -> Self {
-        if options.effects.is_empty() { Self::Textbook } else { Self::Library }
+        if options.robot.effects.is_empty() { Self::Textbook } else { Self::Library }
     }
 }
 
@@ -97,9 +97,9 @@ impl Reference {
         if self.against() == Against::Library {
             return Some(Exact::Library(Box::new(model.cast())));
         }
-        let textbook = Textbook::<Big>::new(&self.description, self.options.base, self.options.gravity).ok()?;
+        let textbook = Textbook::<Big>::new(&self.description, self.options.robot.base, self.options.robot.gravity).ok()?;
         let names: Vec<&str> = model.frames.iter().map(|f| f.name.as_str()).collect();
-        Some(Exact::Textbook(Box::new(textbook.with_frames(&names).ok()?.with_wrenches_in(self.options.wrench_reference))))
+        Some(Exact::Textbook(Box::new(textbook.with_frames(&names).ok()?.with_wrenches_in(self.options.robot.wrench_reference))))
     }
 }
 

@@ -53,7 +53,7 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
         console::warn("this command was built without optimisation: times of generic code, and of the generation, mean little");
     }
     let whole = robot.whole_model(&reading)?;
-    let tips = robot.options.frames.is_none().then(|| Tips::of(&reading.description, &whole));
+    let tips = robot.options.robot.frames.is_none().then(|| Tips::of(&reading.description, &whole));
     let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
     let mut report = Report::new(&robot, &whole, tips.as_ref(), arguments, &rustc);
     let folder = Folder::new().map_err(|e| Failure::tool(&e))?;

@@ -222,14 +222,14 @@ fn fastest<'a>(peers: impl Iterator<Item = &'a PeerReport>) -> Option<&'a PeerRe
 
 impl Report {
     pub(super) fn new(robot: &Robot, model: &Model<f64>, tips: Option<&Tips>, arguments: &CompareArguments, rustc: &Rustc) -> Self {
-        let chosen = robot.options.frames.clone();
+        let chosen = robot.options.robot.frames.clone();
         Self {
             frames_chosen: chosen.is_some(),
             frames: chosen.unwrap_or_else(|| tips.map_or_else(Vec::new, |t| t.all().to_vec())),
             robot: robot.file.clone(),
             scene: robot.scene.clone(),
             base: robot.base(),
-            gravity: robot.options.gravity,
+            gravity: robot.options.robot.gravity,
             joints: model.joints.len(),
             degrees_of_freedom: model.nv,
             states: arguments.states,

@@ -41,7 +41,7 @@ const STATES: usize = 64;
 /// The functions that are defined without effects, and those that are not.
 pub(super) fn parts(stage: &Stage, functions: &[String]) -> Result<Vec<Part>, Failure> {
     let mut bare = stage.prepared.request.clone();
-    bare.options.effects.clear();
+    bare.options.robot.effects.clear();
     let model = articulated_codegen::model(&bare, &stage.description)?;
     let massless = massless(&model);
     let part = |variants| Part { variants, functions: Vec::new(), why: Vec::new() };
@@ -59,13 +59,13 @@ pub(super) fn parts(stage: &Stage, functions: &[String]) -> Result<Vec<Part>, Fa
 }
 
 fn variant(stage: &Stage, what: &str, effects: Vec<Applied>) -> Variant {
-    let gravity = stage.prepared.request.options.gravity;
+    let gravity = stage.prepared.request.options.robot.gravity;
     Variant { what: what.to_owned(), places: effects.len(), effects, gravity, against: FIRST }
 }
 
 /// The scene without effects, the same without gravity, with each effect, and with all.
 fn variants(stage: &Stage) -> Vec<Variant> {
-    let (all, gravity) = (stage.effects(), stage.prepared.request.options.gravity);
+    let (all, gravity) = (stage.effects(), stage.prepared.request.options.robot.gravity);
     let variant = |what: &str, effects: Vec<Applied>| variant(stage, what, effects);
     let mut variants = vec![variant("", Vec::new())];
     if gravity != [0.0; 3] {
@@ -94,8 +94,8 @@ impl Part {
         let made = parallel::map(&self.variants, |variant| {
             let mut request = stage.prepared.request.clone();
             let o = &mut request.options;
-            (o.effects, o.gravity) = (variant.effects.clone(), variant.gravity);
-            (o.functions, o.frames, o.runtime, o.stages) = (self.functions.clone(), None, None, false);
+            (o.robot.effects, o.robot.gravity) = (variant.effects.clone(), variant.gravity);
+            (o.functions, o.robot.frames, o.runtime, o.stages) = (self.functions.clone(), None, None, false);
             (o.parameters, o.batch) = (Vec::new(), Vec::new());
             progress.doing(format!("generation: {}", variant.what));
             let made = generate_code(&request);

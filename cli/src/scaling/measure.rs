@@ -32,7 +32,7 @@ pub(super) fn measure(
     request.options.functions = vec![function.name.to_owned()];
     // Of functions of frames, the tip's.
     if function.takes.iter().flat_map(|a| a.dims()).chain(function.gives).any(|dim| *dim == Dim::Frames) {
-        request.options.frames = Some(vec![format!("link_{joints}")]);
+        request.options.robot.frames = Some(vec![format!("link_{joints}")]);
     }
     let start = Instant::now();
     let generated = generate(&request)?;

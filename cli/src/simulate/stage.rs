@@ -71,7 +71,7 @@ impl Stage {
     }
 
     fn new(name: String, mut prepared: Prepared, folder: PathBuf) -> Result<(Self, Vec<String>), Failure> {
-        prepared.request.options.frames = None;
+        prepared.request.options.robot.frames = None;
         let reading = articulated_codegen::read(&prepared.request)?;
         // Bundled robots are odd on purpose.
         let odd = reading.warnings.iter().filter(|_| !matches!(prepared.scene.robot, Robot::Bundled(_)));
@@ -81,12 +81,12 @@ impl Stage {
     }
 
     pub(crate) fn base(&self) -> Base {
-        self.prepared.request.options.base
+        self.prepared.request.options.robot.base
     }
 
     /// The effects that are on.
     pub(crate) fn effects(&self) -> &[Applied] {
-        &self.prepared.request.options.effects
+        &self.prepared.request.options.robot.effects
     }
 
     /// Those of one kind.

@@ -7,7 +7,7 @@ fn the_source_is_that_of_the_library() {
     for name in ["cart_pole", "gripper_arm", "quadruped"] {
         let robot = articulated_models::robot(name).unwrap();
         let mut request = Request::new(format!("{name}.urdf"), robot.urdf);
-        request.options.base = robot.base;
+        request.options.robot.base = robot.base;
         let made = run(&["generate", name]);
         assert_eq!(made.status, 0);
         assert!(made.out == generate(&request).unwrap().source, "{name}");
@@ -19,7 +19,7 @@ fn flags_arrive_in_the_request() {
     let robot = articulated_models::robot("cart_pole").unwrap();
     let mut request = Request::new("cart_pole.urdf", robot.urdf);
     request.options.functions = vec!["gravity_torque".into(), "bias_forces".into()];
-    request.options.gravity = [0.0, -1.5, 2.0];
+    request.options.robot.gravity = [0.0, -1.5, 2.0];
     request.options.runtime = Some("::articulated".into());
     let source = generate(&request).unwrap().source;
     let words =
@@ -44,7 +44,7 @@ fn limbs_are_each_for_itself_where_asked_for() {
     assert!(lanes(&together.out) && !lanes(&apart.out), "{}", apart.out);
     let robot = articulated_models::robot("quadruped").unwrap();
     let mut request = Request::new("quadruped.urdf", robot.urdf);
-    (request.options.base, request.options.limbs) = (robot.base, false);
+    (request.options.robot.base, request.options.limbs) = (robot.base, false);
     request.options.functions = vec!["inverse_dynamics".into()];
     assert!(apart.out == generate(&request).unwrap().source);
 }

@@ -13,8 +13,8 @@ use crate::{Level, Request};
 /// Origin, contract, and what of the URDF is not used, as comments.
 pub(super) fn header(out: &mut String, request: &Request, model: &Model<f64>, unused: &[Unused]) {
     let o = &request.options;
-    let [x, y, z] = o.gravity;
-    let base = if o.base == Base::Fixed { "fixed" } else { "floating" };
+    let [x, y, z] = o.robot.gravity;
+    let base = if o.robot.base == Base::Fixed { "fixed" } else { "floating" };
     let mut line = |text: &str| {
         let _ = writeln!(out, "// {}", printable(text));
     };
@@ -51,29 +51,29 @@ pub(super) fn header(out: &mut String, request: &Request, model: &Model<f64>, un
 fn edits(request: &Request) -> Vec<String> {
     let o = &request.options;
     let mut lines = Vec::new();
-    for other in &o.append {
+    for other in &o.robot.append {
         let Origin { xyz, rpy } = other.origin;
         let from = format!("{} (FNV-1a {:016x})", other.file, fnv(&other.urdf));
         lines.push(format!("Appended: {from} on link {:?}, prefix {:?}, xyz {xyz:?} m, rpy {rpy:?} rad.", other.at, other.prefix));
     }
-    for p in &o.payloads {
+    for p in &o.robot.payloads {
         let inertia = if p.inertia == [0.0; 6] { "a point".into() } else { format!("inertia {:?} kg·m²", p.inertia) };
         lines.push(format!("Payload: {:?} kg on link {:?}, centre of mass {:?} m, {inertia}.", p.mass, p.link, p.center_of_mass));
     }
-    for shaft in &o.shafts {
+    for shaft in &o.robot.shafts {
         lines.push(format!("Bends: {} of fixed joint {:?}.", pieces(shaft.segments), shaft.joint));
     }
-    for (joint, at) in &o.lock {
+    for (joint, at) in &o.robot.lock {
         lines.push(format!("Locked: joint {joint:?} at {at:?}."));
     }
-    for e in &o.effects {
+    for e in &o.robot.effects {
         let Origin { xyz, rpy } = e.at;
         let at = if e.at == Origin::default() { String::new() } else { format!(" at xyz {xyz:?} m, rpy {rpy:?} rad") };
         lines.push(format!("Effect: {} on {:?}{at}: {}.", e.effect.name(), e.on, numbers(e)));
     }
     lines.extend((!o.parameters.is_empty()).then(|| format!("Inputs of the model: {}.", o.parameters.join(", "))));
-    lines.extend(o.frames.as_ref().map(|frames| format!("Frames: {}.", frames.join(", "))));
-    lines.extend((o.wrench_reference != Reference::Body).then(|| format!("Wrenches in: {}.", o.wrench_reference.name())));
+    lines.extend(o.robot.frames.as_ref().map(|frames| format!("Frames: {}.", frames.join(", "))));
+    lines.extend((o.robot.wrench_reference != Reference::Body).then(|| format!("Wrenches in: {}.", o.robot.wrench_reference.name())));
     lines
 }
 

@@ -140,7 +140,7 @@ mod tests {
             );
         }
         let mut request = Request::new("tree", urdf + "</robot>");
-        request.options.base = base;
+        request.options.robot.base = base;
         crate::model(&request, &crate::read(&request).unwrap().description).unwrap()
     }
 

@@ -75,7 +75,7 @@ mod tests {
         joint(&mut urdf, "hand", "revolute", "arm", seed);
         urdf += "</robot>";
         let mut request = Request::new("walker", urdf);
-        request.options.base = if legs == 2 { Base::Fixed } else { Base::Floating };
+        request.options.robot.base = if legs == 2 { Base::Fixed } else { Base::Floating };
         crate::model(&request, &crate::read(&request).unwrap().description).unwrap()
     }
 

@@ -6,19 +6,15 @@ use std::path::{Path, PathBuf};
 
 use articulated_core::description::Base;
 use articulated_core::model::Model;
-use articulated_scene::{Edited, Resolved, Robot};
-use articulated_urdf::{MOST_BYTES, read_file};
+use articulated_scene::{Attempt, Opened, Resolved, Tried};
 
-pub use articulated_scene::{self, Scene};
+pub use articulated_scene::{self, Bundled, Scene, beside};
 pub use place::placed;
-pub(crate) use place::{no_robot, unreadable};
 
 use place::in_its_place;
 
-use crate::edit::{choose_frames, model, read, read_with_shafts};
-use crate::faults::{Tried, tried};
-use crate::request::Appended;
-use crate::{Error, Options, Request, check_identifiers, check_names, plan};
+use crate::faults::tried;
+use crate::{Error, Options, Request, check_identifiers, check_names, choose_frames, plan};
 
 /// A scene and the request that it amounts to.
 #[derive(Clone, Debug)]
@@ -33,77 +29,46 @@ pub struct Prepared {
     pub files: Vec<PathBuf>,
 }
 
-/// A bundled robot's URDF and the base that it is meant for, by its name.
-pub type Bundled<'a> = &'a dyn Fn(&str) -> Option<(&'static str, Base)>;
-
 /// The scene at `path` with its robot. Files that it names are seen from its folder.
 pub fn open(path: &Path, bundled: Bundled<'_>) -> Result<Prepared, Error> {
-    let file = path.display().to_string();
-    let scene = Scene::read_bytes(&file, &bytes(path)?)?;
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let mut prepared = open_in(scene, folder, bundled)?;
-    prepared.files.insert(0, path.to_owned());
-    Ok(prepared)
+    prepared(articulated_scene::open(path, bundled)?)
 }
 
 /// A scene that was read, with its robot. Files that it names are seen from `folder`.
-pub fn open_in(mut scene: Scene, folder: &Path, bundled: Bundled<'_>) -> Result<Prepared, Error> {
-    scene.code.append.iter_mut().for_each(|other| other.urdf = folder.join(&other.urdf).display().to_string());
-    let mut files = Vec::new();
-    let (file, urdf, base) = match &scene.robot {
-        Robot::Urdf(name) => {
-            let path = folder.join(name);
-            files.push(path.clone());
-            let urdf = bytes(&path).map_err(|error| unreadable(&scene, scene.code.places.robot, "urdf", &error))?;
-            (path.display().to_string(), urdf, Base::Fixed)
-        }
-        Robot::Bundled(name) => match bundled(name) {
-            Some((urdf, base)) => (format!("{name}.urdf"), urdf.as_bytes().to_vec(), base),
-            None => {
-                return Err(no_robot(&scene, "a bundled robot that there is not", &format!("the name of a bundled robot, not {name:?}")));
-            }
-        },
-        Robot::Given => return Err(no_robot(&scene, "no robot", "robot, or urdf")),
-    };
-    let append = scene.code.append.iter().map(|other| {
-        files.push(PathBuf::from(&other.urdf));
-        bytes(Path::new(&other.urdf)).map_err(|error| unreadable(&scene, other.place, "append.urdf", &error))
-    });
-    let append = append.collect::<Result<Vec<_>, _>>()?;
-    Ok(Prepared { files, ..prepare(scene, &file, urdf, base, append)? })
+pub fn open_in(scene: Scene, folder: &Path, bundled: Bundled<'_>) -> Result<Prepared, Error> {
+    prepared(articulated_scene::open_in(scene, folder, bundled)?)
 }
 
 /// The request of a scene for the robot in `urdf`; `append` are the documents that it appends. Nothing is opened. `base` is taken where the scene does not say.
 /// Errors: everything that is wrong with the document, or else everything of the scene that does not fit the robot, tables of control in files apart.
 pub fn prepare(scene: Scene, file: &str, urdf: Vec<u8>, base: Base, append: Vec<Vec<u8>>) -> Result<Prepared, Error> {
+    prepared(Opened::new(scene, file, urdf, base, append))
+}
+
+fn prepared(opened: Opened) -> Result<Prepared, Error> {
+    let Attempt { robot, resolved, errors, rest } = opened.attempt();
+    let mut errors: Vec<Error> = errors.into_iter().map(Error::from).collect();
+    let Opened { scene, file, urdf, options, files } = opened;
     let mut request = Request::new(file, urdf);
-    request.options.base = base;
     fill(&mut request.options, &scene);
-    request.options.append.iter_mut().zip(append).for_each(|(other, urdf)| other.urdf = urdf);
-    let named = |request: &Request| {
-        let description = read(request)?.description;
-        let model = model(request, &description)?;
-        check_names(request, &description, &model)?;
-        Ok(model)
-    };
-    let Tried { value, mut errors, rest } = tried(&request, named);
-    let resolved = effects(&request, &rest, &scene, &mut errors);
-    if let Some(model) = value {
-        errors.extend(renamings((&request, &rest), &model, &scene));
-        errors.extend(scene.fits(&model).err().map(Error::from));
+    request.options.robot = rest;
+    if let Some((reading, model)) = robot {
+        errors.extend(check_names(&request, &reading.description, &model).err());
+        let frames_are_known = options.frames == request.options.robot.frames;
+        errors.extend(renamings(&request, frames_are_known, &model, &scene));
     }
     if let Some(error) = Error::of(errors) {
         return Err(placed(error, &scene));
     }
-    request.options.effects.clone_from(&resolved.effects);
-    Ok(Prepared { scene, request, resolved, files: Vec::new() })
+    request.options.robot.effects.clone_from(&resolved.effects);
+    Ok(Prepared { scene, request, resolved, files })
 }
 
 /// What is wrong with the scene's names in Rust; those that come of themselves matter only to who writes Rust.
-fn renamings((request, rest): (&Request, &Request), whole: &Model<f64>, scene: &Scene) -> Vec<Error> {
+fn renamings(rest: &Request, frames_are_known: bool, whole: &Model<f64>, scene: &Scene) -> Vec<Error> {
     // Where a frame was refused, it is not known which links were meant to be one.
     let whole = whole.clone();
-    let model = if rest.options.frames == request.options.frames { choose_frames(rest, whole) } else { Ok(whole) };
+    let model = if frames_are_known { choose_frames(rest, whole) } else { Ok(whole) };
     let names = model.and_then(|model| check_identifiers(rest, &model));
     let errors = names.err().map(Error::into_each).unwrap_or_default();
     errors.into_iter().filter(|error| in_its_place(error, scene).is_some()).collect()
@@ -113,43 +78,25 @@ fn renamings((request, rest): (&Request, &Request), whole: &Model<f64>, scene: &
 /// with effects by their places in the scene.
 pub fn settle(request: &mut Request, scene: &Scene) -> Result<Resolved, Error> {
     let Tried { mut errors, rest, .. } = tried(request, |request| plan(request).map(drop));
-    let resolved = effects(request, &rest, scene, &mut errors);
+    let resolved = scene.effects_of_rest(&request.options.robot, &rest.robot(), !errors.is_empty());
+    let resolved = resolved.unwrap_or_else(|error| {
+        errors.extend(error.map(Error::from));
+        Resolved::default()
+    });
     if let Some(error) = Error::of(errors) {
         return Err(error);
     }
-    request.options.effects.splice(..0, resolved.effects.iter().cloned());
+    request.options.robot.effects.splice(..0, resolved.effects.iter().cloned());
     Ok(resolved)
-}
-
-/// The scene's effects on what of the request was not refused; none, and an error at least, where there are none to be had.
-fn effects(request: &Request, rest: &Request, scene: &Scene, errors: &mut Vec<Error>) -> Resolved {
-    // Springs go with the shafts one by one: where one was refused, others would get its own.
-    if rest.options.shafts != request.options.shafts {
-        return Resolved::default();
-    }
-    resolve(rest, scene).unwrap_or_else(|error| {
-        // All that the robot itself is refused for was told already.
-        errors.extend(Some(error).filter(|error| errors.is_empty() || matches!(error, Error::Scene(_))));
-        Resolved::default()
-    })
 }
 
 /// Writes what the scene says into the options: all but the effects, which need the robot, and the documents of the robots to append.
 pub fn fill(options: &mut Options, scene: &Scene) {
     let code = scene.code.clone();
     let put = |said: Option<bool>, into: &mut bool| *into = said.unwrap_or(*into);
-    options.base = scene.base.unwrap_or(options.base);
-    options.gravity = scene.gravity.unwrap_or(options.gravity);
+    scene.fill_robot(&mut options.robot);
     options.functions = code.functions.unwrap_or(std::mem::take(&mut options.functions));
     options.parameters = code.parameters.unwrap_or_default();
-    options.frames = code.frames;
-    options.wrench_reference = code.wrenches_in.unwrap_or_default();
-    options.append = code.append.into_iter().map(appended).collect();
-    options.payloads = code.payload.into_iter().map(|load| load.payload).collect();
-    options.shafts = scene.shafts.iter().map(|asked| asked.shaft.clone()).collect();
-    options.lock = code.lock.into_iter().map(|lock| (lock.joint, lock.at)).collect();
-    put(code.allow_unphysical_inertia, &mut options.allow_unphysical_inertia);
-    options.snap_angles = code.snap_angles;
     options.rename = code.rename;
     put(code.limbs, &mut options.limbs);
     options.batch = code.batch.unwrap_or_default();
@@ -157,40 +104,11 @@ pub fn fill(options: &mut Options, scene: &Scene) {
     put(code.forbid_unsafe, &mut options.forbid_unsafe);
 }
 
-fn appended(other: articulated_scene::Append) -> Appended {
-    Appended { urdf: Vec::new(), file: other.urdf, at: other.link, prefix: other.prefix, origin: other.origin }
-}
-
-/// The scene's effects on the robot of the request. Errors: those of [`crate::read`] as they are; what is wrong with the effects by their places in the scene.
-pub fn resolve(request: &Request, scene: &Scene) -> Result<Resolved, Error> {
-    let (reading, shafts) = read_with_shafts(request)?;
-    let robot = Edited { description: &reading.description, base: request.options.base, unused: &reading.unused, shafts: &shafts };
-    let resolved = scene.resolve(&robot)?;
-    let mut with_effects = Request { urdf: Vec::new(), file: request.file.clone(), options: request.options.clone() };
-    with_effects.options.effects.clone_from(&resolved.effects);
-    match model(&with_effects, &reading.description) {
-        Err(Error::Effects { errors, .. }) => Err(resolved.place(&scene.file, &errors).into()),
-        Err(error) => Err(error),
-        Ok(_) => Ok(resolved),
-    }
-}
-
-/// A file that a scene names, as seen from where the scene is seen.
-pub fn beside(scene: &str, name: &str) -> String {
-    let folder = Path::new(scene).parent().filter(|folder| *folder != Path::new(""));
-    folder.map_or_else(|| name.to_owned(), |folder| folder.join(name).display().to_string())
-}
-
-/// The bytes of a scene or a URDF, no more than a URDF may have.
-pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
-    read_file(path, MOST_BYTES).map_err(|e| Error::File { file: path.display().to_string(), reason: e.to_string() })
-}
-
 #[cfg(test)]
 mod tests {
     use articulated_core::description::Shaft;
     use articulated_core::effect::EffectId;
-    use articulated_scene::Why;
+    use articulated_scene::{RobotError, Why};
 
     use super::*;
 
@@ -342,7 +260,7 @@ mod tests {
         assert!(["elbo", "no_such", "b = 0", "nowhere", "shouder", "elbw"].iter().all(|key| told.contains(key)), "{told}");
         // A robot that cannot be read comes first, and alone.
         let told = prepare(scene, "arm.urdf", ARM.replace("parent link=\"base\"", "parent link=\"bse\"").into(), Base::Fixed, Vec::new());
-        assert!(matches!(told, Err(Error::Urdf(_))), "{told:?}");
+        assert!(matches!(told, Err(Error::Robot(RobotError::Urdf(_)))), "{told:?}");
     }
 
     /// A build script's own functions, frames and names stand in place of the scene's.
@@ -356,7 +274,7 @@ mod tests {
             placed(settle(&mut request, &scene).unwrap_err(), &scene).to_string()
         };
         assert!(told("functions = ['mass_matrix']", &|o| o.functions = vec!["no_such".into()]).starts_with("unknown function `no_such`"));
-        assert!(told("frames = ['fore']", &|o| o.frames = Some(vec!["none".into()])).starts_with("arm.urdf: frames: "));
+        assert!(told("frames = ['fore']", &|o| o.robot.frames = Some(vec!["none".into()])).starts_with("arm.urdf: frames: "));
         assert!(told("rename = { fore = 'X' }", &|o| o.rename = vec![("none".into(), "X".into())]).starts_with("arm.urdf: rename "));
     }
 
@@ -380,7 +298,7 @@ mod tests {
     #[test]
     fn a_scene_takes_the_angles_that_a_request_takes() {
         let read = |most: f64| Scene::read("s.toml", &format!("snap_angles = {most}")).is_ok();
-        assert!(read(crate::edit::MOST_SNAPPED) && !read(crate::edit::MOST_SNAPPED * 1.01) && !read(0.0));
+        assert!(read(crate::MOST_SNAPPED) && !read(crate::MOST_SNAPPED * 1.01) && !read(0.0));
     }
 
     /// A scene may name any file, and a device never ends.
@@ -422,7 +340,7 @@ mod tests {
         let settled = |more: Option<Shaft>| {
             let mut request = Request::new("arm.urdf", urdf.clone());
             fill(&mut request.options, &scene);
-            request.options.shafts.extend(more);
+            request.options.robot.shafts.extend(more);
             settle(&mut request, &scene).unwrap_or_else(|e| panic!("{e}")).effects
         };
         let alone = settled(None);

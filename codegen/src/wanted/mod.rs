@@ -274,7 +274,7 @@ mod tests {
         let source = |robot: &str, change: &dyn Fn(&mut Options)| {
             let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/urdf");
             let mut request = Request::new(robot, std::fs::read(format!("{folder}/{robot}.urdf")).unwrap());
-            request.options.base = if robot == "panda_like" { Base::Fixed } else { Base::Floating };
+            request.options.robot.base = if robot == "panda_like" { Base::Fixed } else { Base::Floating };
             request.options.functions = ["forward_dynamics", "inverse_dynamics_derivatives", "integrate"].map(str::to_owned).into();
             change(&mut request.options);
             generate(&request).unwrap().source

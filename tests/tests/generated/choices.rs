@@ -262,7 +262,7 @@ fn one_wheel_of_four_may_be_out_of_balance() {
     }
     let sines = |urdf: &str| {
         let mut request = Request::new("rover.urdf", urdf);
-        (request.options.base, request.options.functions) = (Base::Floating, vec!["inverse_dynamics".into()]);
+        (request.options.robot.base, request.options.functions) = (Base::Floating, vec!["inverse_dynamics".into()]);
         let entry = &generate(&request).unwrap().ledger.functions[0];
         (entry.lanes, entry.emitted().trigonometric())
     };
@@ -274,7 +274,7 @@ fn one_wheel_of_four_may_be_out_of_balance() {
 fn limbs_go_into_lanes_where_that_costs_less() {
     let lanes = |limbs: bool, forbid_unsafe: bool| {
         let mut request = Request::new("walker.urdf", include_str!("../../robots/walker.urdf"));
-        (request.options.base, request.options.limbs, request.options.forbid_unsafe) = (Base::Floating, limbs, forbid_unsafe);
+        (request.options.robot.base, request.options.limbs, request.options.forbid_unsafe) = (Base::Floating, limbs, forbid_unsafe);
         request.options.functions = vec!["inverse_dynamics".into(), "integrate".into()];
         generate(&request).unwrap().ledger.functions.iter().map(|e| e.lanes).collect::<Vec<_>>()
     };
@@ -285,7 +285,7 @@ fn limbs_go_into_lanes_where_that_costs_less() {
 fn costs(robot: &str, functions: &[&str]) -> Vec<(u64, u64)> {
     let robot = articulated_models::robot(robot).unwrap();
     let mut request = Request::new(robot.name, robot.urdf);
-    request.options.base = robot.base;
+    request.options.robot.base = robot.base;
     request.options.functions = functions.iter().map(|f| (*f).to_owned()).collect();
     let ledger = generate(&request).unwrap().ledger;
     ledger.functions.iter().map(|e| (e.emitted().instructions(), e.emitted().trigonometric())).collect()
@@ -312,7 +312,7 @@ fn forward_dynamics_goes_the_way_that_costs_least() {
     let ways = |robot: &str| {
         let robot = articulated_models::robot(robot).unwrap();
         let mut request = Request::new(robot.name, robot.urdf);
-        (request.options.base, request.options.functions) = (robot.base, vec!["forward_dynamics".into()]);
+        (request.options.robot.base, request.options.functions) = (robot.base, vec!["forward_dynamics".into()]);
         generate(&request).unwrap().ledger.functions[0].ways.clone()
     };
     // Short arms, a tree, and a robot with a joint that follows, which no recursion along a branch can invert.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use articulated_codegen::{Applied, Generated, Options, Request, generate};
+use articulated_codegen::{Applied, Generated, Options, Request, RobotOptions, generate};
 use articulated_core::description::Base;
 use articulated_core::effect::{EffectId, On, effects};
 use articulated_tests::case::{State, read};
@@ -40,7 +40,7 @@ fn all_of(effect: EffectId, names: &[&str], parameters: &[f64]) -> Vec<Applied> 
 }
 
 fn subject(name: &str, urdf: &str, base: Base, effects: Vec<Applied>) -> Robot {
-    let options = Options { effects, ..Options::default() };
+    let options = Options { robot: RobotOptions { effects, ..RobotOptions::default() }, ..Options::default() };
     with(name.into(), urdf, base, false, options, |f| FUNCTIONS.contains(&f))
 }
 
@@ -117,7 +117,7 @@ const JOINTS: [&str; 3] = ["yaw", "elbow", "wrist"];
 fn subset(k: usize) -> Robot {
     let on = ON_JOINTS.iter().enumerate().filter(|(bit, _)| k >> bit & 1 == 1);
     let effects = on.flat_map(|(_, (effect, parameters))| all_of(*effect, &JOINTS, parameters)).collect();
-    let options = Options { effects, ..Options::default() };
+    let options = Options { robot: RobotOptions { effects, ..RobotOptions::default() }, ..Options::default() };
     with(format!("subset_{k}"), ARM, Base::Fixed, false, options, |f| matches!(f, "inverse_dynamics" | "forward_dynamics" | "mass_matrix"))
 }
 
@@ -164,7 +164,7 @@ fn every_subset_of_effects_builds_and_costs_what_the_ledger_says() {
 fn an_effect_that_is_off_costs_nothing() {
     let module = |effects: Vec<Applied>| {
         let mut request = Request::new("arm.urdf", ARM);
-        request.options.effects = effects;
+        request.options.robot.effects = effects;
         request.options.functions = FUNCTIONS.map(String::from).to_vec();
         generate(&request).expect("an arm").tokens().to_string()
     };

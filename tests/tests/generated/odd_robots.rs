@@ -110,10 +110,10 @@ fn gravity_and_base_are_the_requests() {
     let mut request = Request::new("double_pendulum.urdf", urdf);
     request.options.functions = vec!["gravity_torque".into()];
     let standing = generate(&request).unwrap();
-    request.options.gravity = [0.0; 3];
+    request.options.robot.gravity = [0.0; 3];
     let weightless = generate(&request).unwrap();
     assert_eq!(weightless.ledger.functions[0].emitted().instructions(), 0, "no gravity, no operation");
-    request.options.base = Base::Floating;
+    request.options.robot.base = Base::Floating;
     let floating = generate(&request).unwrap();
     assert_eq!((standing.model.nv, floating.model.nv), (2, 8));
     let program = Program::build(&[("weightless", &weightless), ("standing", &standing)], &["-C", "opt-level=0"]);
@@ -126,7 +126,7 @@ fn gravity_and_base_are_the_requests() {
 fn a_long_function_compiles_with_names_for_debuggers() {
     let robot = articulated_models::robot("golfer").expect("a bundled robot");
     let mut request = Request::new("golfer.urdf", robot.urdf);
-    request.options.base = robot.base;
+    request.options.robot.base = robot.base;
     request.options.functions = vec!["coriolis_matrix".into()];
     let generated = generate(&request).expect("a robot");
     assert!(generated.ledger.functions[0].emitted().instructions() > 2900);
@@ -157,7 +157,7 @@ fn a_group_without_a_joint_is_generated_and_compiles() {
         }
     }
     let mut request = Request::new("hands.urdf", urdf + "</robot>");
-    request.options.base = Base::Floating;
+    request.options.robot.base = Base::Floating;
     request.options.functions = vec!["inverse_dynamics_derivatives".into()];
     let generated = generate(&request).unwrap();
     assert!(generated.source.contains("static TREE: [Group; GROUPS]"), "no loops over joints");

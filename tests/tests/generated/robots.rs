@@ -65,13 +65,14 @@ fn robot(name: String, urdf: &str, base: Base, singular: bool) -> Robot {
 pub(crate) fn with(name: String, urdf: &str, base: Base, singular: bool, options: Options, wanted: impl Fn(&str) -> bool) -> Robot {
     let mut case = Case::new(name.clone(), read(urdf), base);
     let frames = frames(&case.model);
-    case.model = case.model.with_effects(&options.effects).expect("effects that can be had");
+    case.model = case.model.with_effects(&options.robot.effects).expect("effects that can be had");
     let mut request = Request::new(format!("{name}.urdf"), urdf);
-    request.options = Options { base, ..options };
+    request.options = options;
+    request.options.robot.base = base;
     request.options.functions =
         functions::<f64>().iter().filter(|f| wanted(f.name) && has(&case.model, &frames, f, singular)).map(|f| f.name.into()).collect();
-    let generated = generate(&Request { options: Options { frames: Some(frames.clone()), ..request.options }, ..request });
-    let generated = generated.unwrap_or_else(|e| panic!("{name}: {e}"));
+    request.options.robot.frames = Some(frames.clone());
+    let generated = generate(&request).unwrap_or_else(|e| panic!("{name}: {e}"));
     case.model = case.model.with_frames(&frames).expect("its own frames");
     Robot { case, generated, name }
 }

@@ -13,7 +13,7 @@ const FUNCTION: &str = "inverse_dynamics";
 fn generated(robot: &str, level: Level) -> Generated {
     let bundled = articulated_models::robot(robot).unwrap();
     let mut request = Request::new(format!("{robot}.urdf"), bundled.urdf);
-    request.options.base = bundled.base;
+    request.options.robot.base = bundled.base;
     request.options.functions = vec![FUNCTION.into()];
     request.options.level = level;
     generate(&request).unwrap()

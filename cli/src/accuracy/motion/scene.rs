@@ -29,7 +29,7 @@ fn subject(stage: &Stage) -> Result<Subject, Failure> {
     let Begin { q, v, controller } = motion::begin(stage)?;
     let span = scene.simulation.as_ref().map_or((Settings::default().start, Settings::default().end), |s| (s.start, s.end));
     let options = &stage.prepared.request.options;
-    let inside = options.gravity == [0.0; 3] && options.effects.is_empty() && !pushes_base(&controller);
+    let inside = options.robot.gravity == [0.0; 3] && options.robot.effects.is_empty() && !pushes_base(&controller);
     Ok(Subject {
         model: stage.model.clone(),
         q,
@@ -37,7 +37,7 @@ fn subject(stage: &Stage) -> Result<Subject, Failure> {
         control: (controller, scene.control.period),
         start: span.0,
         seconds: span.1 - span.0,
-        free: options.base == Base::Floating && inside,
+        free: options.robot.base == Base::Floating && inside,
     })
 }
 

@@ -101,9 +101,9 @@ fn astray(who: &str) -> Failure {
 pub(crate) fn unknown_to_peers(stage: &Stage) -> Vec<&'static str> {
     let (o, scene) = (&stage.prepared.request.options, &stage.prepared.scene);
     let asked = [
-        (!o.effects.is_empty(), "effects"),
-        (!o.shafts.is_empty(), "effects.shaft"),
-        (!(o.append.is_empty() && o.payloads.is_empty() && o.lock.is_empty()), "append, payload or lock"),
+        (!o.robot.effects.is_empty(), "effects"),
+        (!o.robot.shafts.is_empty(), "effects.shaft"),
+        (!(o.robot.append.is_empty() && o.robot.payloads.is_empty() && o.robot.lock.is_empty()), "append, payload or lock"),
         (scene.control.drive != articulated_scene::Drive::None, "control"),
         (scene.impact.is_some(), "impact"),
     ];

@@ -57,7 +57,7 @@ impl Peer {
     fn open(stage: &Stage, library: &Library, urdf: &Path, start: (&[f64], &[f64]), seconds: f64) -> Result<Option<Self>, String> {
         let opened = Native::open(&library.path)?;
         let engine = library.engine.clone().or_else(|| opened.peer_name()).ok_or("it has no function peer_name")?;
-        let gravity = stage.prepared.request.options.gravity;
+        let gravity = stage.prepared.request.options.robot.gravity;
         if !opened.simulates() {
             return Ok(None);
         }

@@ -1,4 +1,4 @@
-//! The robot that a request asks for: read, other robots appended, payloads attached, shafts made to bend, joints locked, frames chosen; in this order, so that a payload may
+//! The robot that is asked for: read, other robots appended, payloads attached, shafts made to bend, joints locked, frames chosen; in this order, so that a payload may
 //! hang on an appended robot, and a lock may hold its joints.
 
 use std::collections::HashSet;
@@ -8,24 +8,24 @@ use articulated_core::description::{Base, Description, EditError, PrincipalMomen
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
 use articulated_core::suggest::Suggester;
-pub use articulated_urdf::MOST_SNAPPED;
 use articulated_urdf::{Kind, Problem, Problems, Reading, SNAP_EXPECTED, Subject, Unused, can_snap};
 
-use crate::request::Appended;
-use crate::{Error, Options, Request};
+use super::error::RobotError;
+use super::options::{Appended, RobotAsked, RobotOptions};
+use crate::effects::still;
 
-/// One edit of a request.
+/// One edit of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edit {
-    /// An index into [`append`](crate::Options::append).
+    /// An index into [`append`](super::RobotOptions::append).
     Append(usize),
-    /// An index into [`payloads`](crate::Options::payloads).
+    /// An index into [`payloads`](super::RobotOptions::payloads).
     Payload(usize),
-    /// An index into [`shafts`](crate::Options::shafts).
+    /// An index into [`shafts`](super::RobotOptions::shafts).
     Shaft(usize),
-    /// An index into [`lock`](crate::Options::lock).
+    /// An index into [`lock`](super::RobotOptions::lock).
     Lock(usize),
-    /// An index into [`frames`](crate::Options::frames).
+    /// An index into [`frames`](super::RobotOptions::frames).
     Frame(usize),
 }
 
@@ -68,85 +68,82 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// Reads the request's robot and edits it. Everything that is wrong with the document, or else everything that is wrong with the edits.
-pub fn read(request: &Request) -> Result<Reading, Error> {
-    read_with_shafts(request).map(|(reading, _)| reading)
-}
+impl RobotAsked<'_> {
+    /// Reads the robot and edits it. Everything that is wrong with the document, or else everything that is wrong with the edits.
+    pub fn read(&self) -> Result<Reading, RobotError> {
+        self.read_with_shafts().map(|(reading, _)| reading)
+    }
 
-/// As [`read`], with the springs and dampings of each shaft.
-pub(crate) fn read_with_shafts(request: &Request) -> Result<(Reading, Vec<Vec<Applied>>), Error> {
-    numbers(&request.options)?;
-    let mut editing = Editing { request, reading: articulated_urdf::read(&request.urdf, &reader_options(request))?, refusals: Vec::new() };
-    let mut springs = Vec::new();
-    let options = &request.options;
-    options.append.iter().enumerate().for_each(|(i, other)| editing.append(i, other));
-    let appended = editing.refusals.is_empty();
-    for (i, payload) in options.payloads.iter().enumerate() {
-        let result = editing.reading.description.attach(payload).map(|_| ());
-        editing.take(Edit::Payload(i), result.map_err(Reason::Edit));
+    /// As [`read`](Self::read), with the springs and dampings of each shaft.
+    pub fn read_with_shafts(&self) -> Result<(Reading, Vec<Vec<Applied>>), RobotError> {
+        let options = self.options;
+        numbers(options)?;
+        let reading = articulated_urdf::read(self.urdf, &self.reader_options())?;
+        let mut editing = Editing { asked: *self, reading, refusals: Vec::new() };
+        let mut springs = Vec::new();
+        options.append.iter().enumerate().for_each(|(i, other)| editing.append(i, other));
+        let appended = editing.refusals.is_empty();
+        for (i, payload) in options.payloads.iter().enumerate() {
+            let result = editing.reading.description.attach(payload).map(|_| ());
+            editing.take(Edit::Payload(i), result.map_err(Reason::Edit));
+        }
+        for (i, shaft) in options.shafts.iter().enumerate() {
+            let result = editing.reading.description.shaft(shaft).map(|own| springs.push(own));
+            editing.take(Edit::Shaft(i), result.map_err(Reason::Edit));
+        }
+        for (i, (joint, at)) in options.lock.iter().enumerate() {
+            let result = editing.reading.description.lock(joint, at);
+            editing.take(Edit::Lock(i), result.map_err(Reason::Edit));
+        }
+        editing.check_frames();
+        if !appended {
+            editing.forget_the_unknown();
+        }
+        editing.warn();
+        if editing.refusals.is_empty() { Ok((editing.reading, springs)) } else { Err(RobotError::Edits { refusals: editing.refusals }) }
     }
-    for (i, shaft) in options.shafts.iter().enumerate() {
-        let result = editing.reading.description.shaft(shaft).map(|own| springs.push(own));
-        editing.take(Edit::Shaft(i), result.map_err(Reason::Edit));
-    }
-    for (i, (joint, at)) in options.lock.iter().enumerate() {
-        let result = editing.reading.description.lock(joint, at);
-        editing.take(Edit::Lock(i), result.map_err(Reason::Edit));
-    }
-    editing.check_frames();
-    if !appended {
-        // What an appended robot would have had is not unknown.
-        let unknown = |r: &Refusal| matches!(r.reason, Reason::Edit(EditError::UnknownLink { .. } | EditError::UnknownJoint { .. }));
-        editing.refusals.retain(|r| matches!(r.edit, Edit::Append(_)) || !unknown(r));
-    }
-    editing.let_go();
-    editing.warn_of_limits();
-    editing.warn_of_loads();
-    editing.warn_of_moments();
-    editing.leave_what_is_used();
-    if editing.refusals.is_empty() { Ok((editing.reading, springs)) } else { Err(Error::Edits { refusals: editing.refusals }) }
-}
 
-/// The model of what was [read](read()), under the gravity, with the effects and with the reference of wrenches that the request asks for, and with a frame for every link.
-pub fn model(request: &Request, description: &Description) -> Result<Model<f64>, Error> {
-    let options = &request.options;
-    let model = Model::new(description, options.base).map_err(|error| Error::Model { file: request.file.clone(), error })?;
-    let model = model.with_gravity(options.gravity).with_wrenches_in(options.wrench_reference);
-    model.with_effects(&options.effects).map_err(|errors| Error::Effects { file: request.file.clone(), errors: errors.0 })
-}
+    /// The model of what was [read](Self::read), under the gravity, with the effects and with the reference of wrenches that are asked for, and with a frame for every link.
+    pub fn model(&self, description: &Description) -> Result<Model<f64>, RobotError> {
+        let options = self.options;
+        let model = Model::new(description, options.base).map_err(|error| RobotError::Model { file: self.file.to_owned(), error })?;
+        let model = model.with_gravity(options.gravity).with_wrenches_in(options.wrench_reference);
+        model.with_effects(&options.effects).map_err(|errors| RobotError::Effects { file: self.file.to_owned(), errors: errors.0 })
+    }
 
-/// The model with the frames that the request asks for.
-pub fn choose_frames(request: &Request, model: Model<f64>) -> Result<Model<f64>, Error> {
-    let Some(names) = &request.options.frames else { return Ok(model) };
-    model.with_frames(names).map_err(|error| {
-        let is = |n: &String| matches!(&error, EditError::UnknownLink { name, .. } if n == name);
-        let at = names.iter().position(is).unwrap_or_default();
-        let reason = Reason::Edit(error);
-        Error::Edits { refusals: vec![Refusal { file: request.file.clone(), edit: Edit::Frame(at), reason }] }
-    })
+    /// The model with the frames that are asked for.
+    pub fn choose_frames(&self, model: Model<f64>) -> Result<Model<f64>, RobotError> {
+        let Some(names) = &self.options.frames else { return Ok(model) };
+        model.with_frames(names).map_err(|error| {
+            let is = |n: &String| matches!(&error, EditError::UnknownLink { name, .. } if n == name);
+            let at = names.iter().position(is).unwrap_or_default();
+            let reason = Reason::Edit(error);
+            RobotError::Edits { refusals: vec![Refusal { file: self.file.to_owned(), edit: Edit::Frame(at), reason }] }
+        })
+    }
+
+    fn reader_options(&self) -> articulated_urdf::Options {
+        articulated_urdf::Options {
+            file: self.file.to_owned(),
+            base: self.options.base,
+            allow_unphysical_inertia: self.options.allow_unphysical_inertia,
+            snap_angles: self.options.snap_angles,
+        }
+    }
 }
 
 /// Whether the numbers among the choices can be. Errors: all that cannot.
-fn numbers(options: &Options) -> Result<(), Error> {
-    let wrong = |key, found, expected| Error::Number { key, found, expected };
+fn numbers(options: &RobotOptions) -> Result<(), RobotError> {
+    let wrong = |key, found, expected| RobotError::Number { key, found, expected };
     let gravity = options.gravity.iter().any(|x| !x.is_finite());
     let gravity = gravity.then(|| wrong("gravity", format!("{:?}", options.gravity), "three finite numbers in m/s²"));
     let snapped = options.snap_angles.filter(|x| !can_snap(*x));
     let snapped = snapped.map(|x| wrong("snap_angles", x.to_string(), SNAP_EXPECTED));
-    Error::of(gravity.into_iter().chain(snapped).collect()).map_or(Ok(()), Err)
-}
-
-fn reader_options(request: &Request) -> articulated_urdf::Options {
-    articulated_urdf::Options {
-        file: request.file.clone(),
-        base: request.options.base,
-        allow_unphysical_inertia: request.options.allow_unphysical_inertia,
-        snap_angles: request.options.snap_angles,
-    }
+    RobotError::of(gravity.into_iter().chain(snapped).collect()).map_or(Ok(()), Err)
 }
 
 struct Editing<'a> {
-    request: &'a Request,
+    asked: RobotAsked<'a>,
     reading: Reading,
     refusals: Vec<Refusal>,
 }
@@ -154,13 +151,13 @@ struct Editing<'a> {
 impl Editing<'_> {
     fn take(&mut self, edit: Edit, result: Result<(), Reason>) {
         if let Err(reason) = result {
-            self.refusals.push(Refusal { file: self.request.file.clone(), edit, reason });
+            self.refusals.push(Refusal { file: self.asked.file.to_owned(), edit, reason });
         }
     }
 
     fn append(&mut self, index: usize, other: &Appended) {
         // Its root moves with the link that carries it.
-        let options = articulated_urdf::Options { file: other.file.clone(), base: Base::Floating, ..reader_options(self.request) };
+        let options = articulated_urdf::Options { file: other.file.clone(), base: Base::Floating, ..self.asked.reader_options() };
         let result = match articulated_urdf::read(&other.urdf, &options) {
             Err(problems) => Err(Reason::Urdf(problems)),
             Ok(reading) => {
@@ -175,7 +172,7 @@ impl Editing<'_> {
     }
 
     fn check_frames(&mut self) {
-        let Some(frames) = &self.request.options.frames else { return };
+        let Some(frames) = &self.asked.options.frames else { return };
         let links = &self.reading.description.links;
         let names: HashSet<&str> = links.iter().map(|l| l.name.as_str()).collect();
         let (mut seen, mut suggester) = (HashSet::new(), Suggester::default());
@@ -191,13 +188,28 @@ impl Editing<'_> {
         refused.into_iter().for_each(|(i, reason)| self.take(Edit::Frame(i), Err(reason)));
     }
 
+    /// What an appended robot would have had is not unknown.
+    fn forget_the_unknown(&mut self) {
+        let unknown = |r: &Refusal| matches!(r.reason, Reason::Edit(EditError::UnknownLink { .. } | EditError::UnknownJoint { .. }));
+        self.refusals.retain(|r| matches!(r.edit, Edit::Append(_)) || !unknown(r));
+    }
+
+    /// What is odd about the edits, or no more so because of them.
+    fn warn(&mut self) {
+        self.let_go();
+        self.warn_of_limits();
+        self.warn_of_loads();
+        self.warn_of_moments();
+        self.leave_what_is_used();
+    }
+
     /// Mass behind a shaft moves, and so does what the shaft has taken for its own.
     fn let_go(&mut self) {
-        if self.request.options.shafts.is_empty() {
+        if self.asked.options.shafts.is_empty() {
             return;
         }
         let description = &self.reading.description;
-        let still = articulated_scene::still(description, self.request.options.base);
+        let still = still(description, self.asked.options.base);
         let held = description.links.iter().zip(still).filter(|(link, still)| *still && link.inertial.is_some());
         let held: HashSet<String> = held.map(|(link, _)| link.name.clone()).collect();
         self.reading.release(|link| !held.contains(link));
@@ -205,12 +217,12 @@ impl Editing<'_> {
 
     /// A lock beyond the joint's limits is odd, and used.
     fn warn_of_limits(&mut self) {
-        let joints = self.request.options.lock.iter().filter_map(|(name, at)| {
+        let joints = self.asked.options.lock.iter().filter_map(|(name, at)| {
             let joint = self.reading.description.joints.iter().find(|j| j.name == *name)?;
             let limit = joint.limit.filter(|_| joint.locked.is_some())?;
             let &[at] = at.as_slice() else { return None };
             (at < limit.lower || limit.upper < at).then(|| Problem {
-                file: self.request.file.clone(),
+                file: self.asked.file.to_owned(),
                 line: None,
                 subject: Subject::Joint(name.clone()),
                 kind: Kind::BeyondLimit,
@@ -224,11 +236,11 @@ impl Editing<'_> {
 
     /// A load on what the base holds is odd, and of no account.
     fn warn_of_loads(&mut self) {
-        let (options, description) = (&self.request.options, &self.reading.description);
-        let still = articulated_scene::still(description, options.base);
+        let (options, description) = (&self.asked.options, &self.reading.description);
+        let still = still(description, options.base);
         let held = |link: &str| description.links.iter().zip(&still).any(|(l, still)| l.name == link && *still);
         let loads = options.payloads.iter().filter(|load| load.mass != 0.0 && held(&load.link)).map(|load| Problem {
-            file: self.request.file.clone(),
+            file: self.asked.file.to_owned(),
             line: None,
             subject: Subject::Link(load.link.clone()),
             kind: Kind::UnusedInertia,
@@ -241,10 +253,10 @@ impl Editing<'_> {
 
     /// An inertia of a load that no body has is odd, and used, as that of a link is.
     fn warn_of_moments(&mut self) {
-        let odd = self.request.options.payloads.iter().filter_map(|load| {
+        let odd = self.asked.options.payloads.iter().filter_map(|load| {
             let moments = PrincipalMoments::of(load.inertia);
             moments.miss_triangle().then(|| Problem {
-                file: self.request.file.clone(),
+                file: self.asked.file.to_owned(),
                 line: None,
                 subject: Subject::Link(load.link.clone()),
                 kind: Kind::InertiaTriangle,
@@ -269,7 +281,7 @@ impl Editing<'_> {
                 _ => None,
             });
             let is = |e: &Applied| taken.is_some_and(|(id, x)| e.effect == id && e.on == *name && e.parameters.first() == Some(&x));
-            self.request.options.effects.iter().any(is)
+            self.asked.options.effects.iter().any(is)
         };
         unused.retain(|u| !used(u));
     }
@@ -288,6 +300,7 @@ fn renamed(unused: Unused, prefix: &str) -> Unused {
 #[cfg(test)]
 mod tests {
     use articulated_core::description::{Origin, Payload, Shaft};
+    use articulated_urdf::MOST_SNAPPED;
 
     use super::*;
 
@@ -303,10 +316,21 @@ mod tests {
         )
     }
 
-    fn request() -> Request {
-        let mut request = Request::new("arm.urdf", robot("arm"));
-        request.options.snap_angles = Some(1e-6);
-        request
+    fn asked() -> Own {
+        let mut asked = Own { file: "arm.urdf", urdf: robot("arm"), options: RobotOptions::default() };
+        asked.options.snap_angles = Some(1e-6);
+        asked
+    }
+
+    /// What is asked, with its document.
+    struct Own {
+        file: &'static str,
+        urdf: String,
+        options: RobotOptions,
+    }
+
+    fn read(own: &Own) -> Result<Reading, RobotError> {
+        RobotAsked { file: own.file, urdf: own.urdf.as_bytes(), options: &own.options }.read()
     }
 
     fn appended(at: &str) -> Appended {
@@ -322,26 +346,26 @@ mod tests {
     #[test]
     fn a_tolerance_of_angles_is_above_nothing() {
         for (tolerance, found) in [(0.0, "0"), (MOST_SNAPPED * 2.0, "1"), (f64::NAN, "NaN")] {
-            let mut request = request();
-            request.options.snap_angles = Some(tolerance);
+            let mut asked = asked();
+            asked.options.snap_angles = Some(tolerance);
             let expected = "expected a finite number above 0, at most 0.5 rad; leave it out to snap none";
-            assert_eq!(read(&request).unwrap_err().to_string(), format!("snap_angles: found {found}, {expected}"));
+            assert_eq!(read(&asked).unwrap_err().to_string(), format!("snap_angles: found {found}, {expected}"));
         }
     }
 
-    fn refused(request: &Request) -> Vec<Edit> {
-        match read(request) {
-            Err(Error::Edits { refusals }) => refusals.into_iter().map(|r| r.edit).collect(),
+    fn refused(asked: &Own) -> Vec<Edit> {
+        match read(asked) {
+            Err(RobotError::Edits { refusals }) => refusals.into_iter().map(|r| r.edit).collect(),
             other => panic!("{other:?}"),
         }
     }
 
     #[test]
     fn what_is_said_of_an_appended_robot_is_said_of_the_whole() {
-        let alone = read(&request()).unwrap();
-        let mut request = request();
-        request.options.append.push(appended("tip"));
-        let both = read(&request).unwrap();
+        let alone = read(&asked()).unwrap();
+        let mut asked = asked();
+        asked.options.append.push(appended("tip"));
+        let both = read(&asked).unwrap();
         let hand = |problems: &[Problem]| problems.iter().filter(|p| p.file == "hand.urdf").count();
         assert_eq!((hand(&both.snapped), both.snapped.len()), (alone.snapped.len(), 2 * alone.snapped.len()));
         assert_eq!(both.warnings.len() - hand(&both.warnings), alone.warnings.len());
@@ -356,23 +380,23 @@ mod tests {
     #[test]
     fn a_lock_is_told_of_where_it_is_beyond_a_bound() {
         for (at, beyond) in [(-1.5, true), (-1.0, false), (0.0, false), (2.0, false), (2.5, true)] {
-            let mut request = request();
-            request.options.lock.push(("hinge".into(), vec![at]));
-            let warnings = read(&request).unwrap().warnings;
+            let mut asked = asked();
+            asked.options.lock.push(("hinge".into(), vec![at]));
+            let warnings = read(&asked).unwrap().warnings;
             assert_eq!(warnings.iter().any(|w| w.kind == Kind::BeyondLimit), beyond, "{at}");
         }
     }
 
     #[test]
     fn a_load_is_told_of_where_the_base_holds_it() {
-        let warned = |change: &dyn Fn(&mut Options)| {
-            let mut request = request();
-            change(&mut request.options);
-            read(&request).unwrap().warnings.iter().filter(|w| w.field == "payload").count()
+        let warned = |change: &dyn Fn(&mut RobotOptions)| {
+            let mut asked = asked();
+            change(&mut asked.options);
+            read(&asked).unwrap().warnings.iter().filter(|w| w.field == "payload").count()
         };
         let load = |link: &str, mass: f64| Payload { link: link.into(), mass, ..Payload::default() };
         assert_eq!(warned(&|o| o.payloads.extend([load("base", 1.0), load("tip", 1.0), load("base", 0.0)])), 1);
-        let locked = |o: &mut Options| {
+        let locked = |o: &mut RobotOptions| {
             o.payloads.push(load("tip", 1.0));
             o.lock.push(("hinge".into(), vec![0.0]));
         };
@@ -383,9 +407,9 @@ mod tests {
     #[test]
     fn a_load_that_misses_the_triangle_inequality_is_told_of_and_used_as_a_links_inertia_is() {
         let told = |inertia: [f64; 6]| {
-            let mut request = request();
-            request.options.payloads.push(Payload { link: "tip".into(), mass: 1.0, inertia, ..Payload::default() });
-            let warnings = read(&request).unwrap().warnings.into_iter().filter(|w| w.field == "payload");
+            let mut asked = asked();
+            asked.options.payloads.push(Payload { link: "tip".into(), mass: 1.0, inertia, ..Payload::default() });
+            let warnings = read(&asked).unwrap().warnings.into_iter().filter(|w| w.field == "payload");
             warnings.map(|w| (w.kind, w.found, w.expected)).collect::<Vec<_>>()
         };
         let expected = "none greater than the other two together (triangle inequality); used as asked for";
@@ -397,22 +421,23 @@ mod tests {
     }
 
     /// A hand and, fixed to it, a tip and a lamp.
-    fn club() -> Request {
+    fn club() -> Own {
         let fixed = |link: &str| {
             format!(
                 "<link name='{link}'>{LINK}</link><joint name='to_{link}' type='fixed'><parent link='hand'/><child link='{link}'/>
                 <origin xyz='1 0 0'/></joint>"
             )
         };
-        Request::new("club.urdf", format!("<robot name='club'><link name='hand'>{LINK}</link>{}{}</robot>", fixed("tip"), fixed("lamp")))
+        let urdf = format!("<robot name='club'><link name='hand'>{LINK}</link>{}{}</robot>", fixed("tip"), fixed("lamp"));
+        Own { file: "club.urdf", urdf, options: RobotOptions::default() }
     }
 
     #[test]
     fn mass_that_a_shaft_carries_or_takes_is_not_held_by_the_base() {
         let held = |shaft: Option<Shaft>| {
-            let mut request = club();
-            request.options.shafts.extend(shaft);
-            let Reading { warnings, unused, .. } = read(&request).unwrap();
+            let mut asked = club();
+            asked.options.shafts.extend(shaft);
+            let Reading { warnings, unused, .. } = read(&asked).unwrap();
             let found: Vec<String> = warnings.into_iter().filter(|w| w.kind == Kind::UnusedInertia).map(|w| w.found).collect();
             (found, unused.iter().filter(|u| u.tag == "inertial").count())
         };
@@ -425,36 +450,36 @@ mod tests {
 
     #[test]
     fn each_frame_is_listed_once_and_is_a_link() {
-        let mut request = request();
-        request.options.frames = Some(["tip", "base", "tap", "tip"].map(String::from).to_vec());
-        assert_eq!(refused(&request), [Edit::Frame(2), Edit::Frame(3)]);
+        let mut asked = asked();
+        asked.options.frames = Some(["tip", "base", "tap", "tip"].map(String::from).to_vec());
+        assert_eq!(refused(&asked), [Edit::Frame(2), Edit::Frame(3)]);
     }
 
     #[test]
     fn very_many_frames_that_there_are_not_are_told_soon_and_the_first_with_what_was_meant() {
-        let mut request = request();
+        let mut asked = asked();
         let links: String = (0..5000).map(|k| format!("<link name='link_{k:05}'/>")).collect();
         let joint = |k| format!("<joint name='j{k}' type='fixed'><parent link='tip'/><child link='link_{k:05}'/></joint>");
         let robot = robot("arm").replace("</robot>", &(links + &(0..5000).map(joint).collect::<String>() + "</robot>"));
-        request.urdf = robot.into_bytes();
-        request.options.frames = Some((0..5000).map(|k| format!("lynk_{k:05}")).collect());
-        let Err(Error::Edits { refusals }) = read(&request) else { panic!("frames that there are not") };
+        asked.urdf = robot;
+        asked.options.frames = Some((0..5000).map(|k| format!("lynk_{k:05}")).collect());
+        let Err(RobotError::Edits { refusals }) = read(&asked) else { panic!("frames that there are not") };
         let meant = |r: &Refusal| matches!(&r.reason, Reason::Edit(EditError::UnknownLink { nearest: Some(_), .. }));
         assert_eq!((refusals.len(), meant(&refusals[0]), meant(&refusals[4999])), (5000, true, false));
     }
 
     #[test]
     fn where_a_robot_cannot_be_appended_its_names_are_not_unknown() {
-        let mut request = request();
-        request.options.append.push(appended("top"));
-        request.options.payloads.push(Payload { link: "left_tip".into(), mass: 1.0, ..Payload::default() });
-        request.options.payloads.push(Payload { link: "tip".into(), mass: -1.0, ..Payload::default() });
-        request.options.lock.push(("left_hinge".into(), vec![0.0]));
-        request.options.frames = Some(vec!["left_tip".into()]);
-        assert_eq!(refused(&request), [Edit::Append(0), Edit::Payload(1)]);
-        request.options.append[0].at = "tip".into();
-        assert_eq!(refused(&request), [Edit::Payload(1)]);
-        request.options.append.clear();
-        assert_eq!(refused(&request), [Edit::Payload(0), Edit::Payload(1), Edit::Lock(0), Edit::Frame(0)]);
+        let mut asked = asked();
+        asked.options.append.push(appended("top"));
+        asked.options.payloads.push(Payload { link: "left_tip".into(), mass: 1.0, ..Payload::default() });
+        asked.options.payloads.push(Payload { link: "tip".into(), mass: -1.0, ..Payload::default() });
+        asked.options.lock.push(("left_hinge".into(), vec![0.0]));
+        asked.options.frames = Some(vec!["left_tip".into()]);
+        assert_eq!(refused(&asked), [Edit::Append(0), Edit::Payload(1)]);
+        asked.options.append[0].at = "tip".into();
+        assert_eq!(refused(&asked), [Edit::Payload(1)]);
+        asked.options.append.clear();
+        assert_eq!(refused(&asked), [Edit::Payload(0), Edit::Payload(1), Edit::Lock(0), Edit::Frame(0)]);
     }
 }
