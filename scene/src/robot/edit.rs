@@ -4,15 +4,14 @@
 use std::collections::HashSet;
 use std::fmt;
 
-use articulated_core::description::{Base, Description, EditError, PrincipalMoments};
-use articulated_core::effect::{Applied, EffectId};
+use articulated_core::description::{Base, Description, EditError};
+use articulated_core::effect::Applied;
 use articulated_core::model::Model;
 use articulated_core::suggest::Suggester;
-use articulated_urdf::{Kind, Problem, Problems, Reading, SNAP_EXPECTED, Subject, Unused, can_snap};
+use articulated_urdf::{Problems, Reading, SNAP_EXPECTED, Subject, Unused, can_snap};
 
 use super::error::RobotError;
 use super::options::{Appended, RobotAsked, RobotOptions};
-use crate::effects::still;
 
 /// One edit of a robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -142,9 +141,10 @@ fn numbers(options: &RobotOptions) -> Result<(), RobotError> {
     RobotError::of(gravity.into_iter().chain(snapped).collect()).map_or(Ok(()), Err)
 }
 
-struct Editing<'a> {
-    asked: RobotAsked<'a>,
-    reading: Reading,
+/// A robot while it is edited.
+pub(super) struct Editing<'a> {
+    pub(super) asked: RobotAsked<'a>,
+    pub(super) reading: Reading,
     refusals: Vec<Refusal>,
 }
 
@@ -193,98 +193,6 @@ impl Editing<'_> {
         let unknown = |r: &Refusal| matches!(r.reason, Reason::Edit(EditError::UnknownLink { .. } | EditError::UnknownJoint { .. }));
         self.refusals.retain(|r| matches!(r.edit, Edit::Append(_)) || !unknown(r));
     }
-
-    /// What is odd about the edits, or no more so because of them.
-    fn warn(&mut self) {
-        self.let_go();
-        self.warn_of_limits();
-        self.warn_of_loads();
-        self.warn_of_moments();
-        self.leave_what_is_used();
-    }
-
-    /// Mass behind a shaft moves, and so does what the shaft has taken for its own.
-    fn let_go(&mut self) {
-        if self.asked.options.shafts.is_empty() {
-            return;
-        }
-        let description = &self.reading.description;
-        let still = still(description, self.asked.options.base);
-        let held = description.links.iter().zip(still).filter(|(link, still)| *still && link.inertial.is_some());
-        let held: HashSet<String> = held.map(|(link, _)| link.name.clone()).collect();
-        self.reading.release(|link| !held.contains(link));
-    }
-
-    /// A lock beyond the joint's limits is odd, and used.
-    fn warn_of_limits(&mut self) {
-        let joints = self.asked.options.lock.iter().filter_map(|(name, at)| {
-            let joint = self.reading.description.joints.iter().find(|j| j.name == *name)?;
-            let limit = joint.limit.filter(|_| joint.locked.is_some())?;
-            let &[at] = at.as_slice() else { return None };
-            (at < limit.lower || limit.upper < at).then(|| Problem {
-                file: self.asked.file.to_owned(),
-                line: None,
-                subject: Subject::Joint(name.clone()),
-                kind: Kind::BeyondLimit,
-                field: "lock".into(),
-                found: format!("{at}, beyond its limits"),
-                expected: format!("{} to {}; used as asked for", limit.lower, limit.upper),
-            })
-        });
-        self.reading.warnings.extend(joints.collect::<Vec<_>>());
-    }
-
-    /// A load on what the base holds is odd, and of no account.
-    fn warn_of_loads(&mut self) {
-        let (options, description) = (&self.asked.options, &self.reading.description);
-        let still = still(description, options.base);
-        let held = |link: &str| description.links.iter().zip(&still).any(|(l, still)| l.name == link && *still);
-        let loads = options.payloads.iter().filter(|load| load.mass != 0.0 && held(&load.link)).map(|load| Problem {
-            file: self.asked.file.to_owned(),
-            line: None,
-            subject: Subject::Link(load.link.clone()),
-            kind: Kind::UnusedInertia,
-            field: "payload".into(),
-            found: format!("{} kg on a link that a fixed base holds", load.mass),
-            expected: "a link that moves: here it plays no part in the dynamics".into(),
-        });
-        self.reading.warnings.extend(loads.collect::<Vec<_>>());
-    }
-
-    /// An inertia of a load that no body has is odd, and used, as that of a link is.
-    fn warn_of_moments(&mut self) {
-        let odd = self.asked.options.payloads.iter().filter_map(|load| {
-            let moments = PrincipalMoments::of(load.inertia);
-            moments.miss_triangle().then(|| Problem {
-                file: self.asked.file.to_owned(),
-                line: None,
-                subject: Subject::Link(load.link.clone()),
-                kind: Kind::InertiaTriangle,
-                field: "payload".into(),
-                found: moments.to_string(),
-                expected: format!("{}; used as asked for", PrincipalMoments::TRIANGLE),
-            })
-        });
-        self.reading.warnings.extend(odd);
-    }
-
-    /// Numbers of the URDF that an effect has taken are used.
-    fn leave_what_is_used(&mut self) {
-        let Reading { description, unused, .. } = &mut self.reading;
-        let used = |u: &Unused| {
-            let Subject::Joint(name) = &u.subject else { return false };
-            let dynamics = description.joints.iter().find(|j| j.name == *name).and_then(|j| j.dynamics.as_ref());
-            // The first number of each.
-            let taken = dynamics.and_then(|d| match u.tag.as_str() {
-                "dynamics damping" => Some((EffectId::damping, d.damping)),
-                "dynamics friction" => Some((EffectId::friction, d.friction)),
-                _ => None,
-            });
-            let is = |e: &Applied| taken.is_some_and(|(id, x)| e.effect == id && e.on == *name && e.parameters.first() == Some(&x));
-            self.asked.options.effects.iter().any(is)
-        };
-        unused.retain(|u| !used(u));
-    }
 }
 
 /// What is not used of an appended robot, under its new names.
@@ -300,7 +208,7 @@ fn renamed(unused: Unused, prefix: &str) -> Unused {
 #[cfg(test)]
 mod tests {
     use articulated_core::description::{Origin, Payload, Shaft};
-    use articulated_urdf::MOST_SNAPPED;
+    use articulated_urdf::{Kind, MOST_SNAPPED, Problem};
 
     use super::*;
 

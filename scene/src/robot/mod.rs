@@ -6,6 +6,7 @@
 mod edit;
 mod error;
 mod faults;
+mod odd;
 mod open;
 mod options;
 mod place;
