@@ -1,6 +1,7 @@
 //! Why a command ended without doing what was asked, and the status it ends with.
 
 use articulated_codegen::{Reason, Refusal, RobotError};
+use articulated_motion::MotionErrors;
 use articulated_scene::SceneErrors;
 use serde::Serialize;
 
@@ -103,6 +104,12 @@ impl From<RobotError> for Failure {
             RobotError::Scene(errors) => errors.into(),
             other => Self::input([other.to_string()]),
         }
+    }
+}
+
+impl From<MotionErrors> for Failure {
+    fn from(all: MotionErrors) -> Self {
+        Self::input(all.errors.iter().map(ToString::to_string))
     }
 }
 

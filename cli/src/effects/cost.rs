@@ -40,12 +40,12 @@ const STATES: usize = 64;
 
 /// The functions that are defined without effects, and those that are not.
 pub(super) fn parts(stage: &Stage, functions: &[String]) -> Result<Vec<Part>, Failure> {
-    let mut bare = stage.prepared.request.clone();
+    let mut bare = stage.request.clone();
     bare.options.robot.effects.clear();
     let model = articulated_codegen::model(&bare, &stage.description)?;
     let massless = massless(&model);
     let part = |variants| Part { variants, functions: Vec::new(), why: Vec::new() };
-    let mut parts = [part(variants(stage)), part(vec![variant(stage, "", stage.effects().to_vec())])];
+    let mut parts = [part(variants(stage)), part(vec![variant(stage, "", stage.effects.clone())])];
     for name in functions {
         let why = match defined(&bare.file, &model, &massless, articulated_codegen::function(name)?) {
             Err(error @ Error::Singular { .. }) => Some(undefined(error)?),
@@ -59,13 +59,13 @@ pub(super) fn parts(stage: &Stage, functions: &[String]) -> Result<Vec<Part>, Fa
 }
 
 fn variant(stage: &Stage, what: &str, effects: Vec<Applied>) -> Variant {
-    let gravity = stage.prepared.request.options.robot.gravity;
+    let gravity = stage.request.options.robot.gravity;
     Variant { what: what.to_owned(), places: effects.len(), effects, gravity, against: FIRST }
 }
 
 /// The scene without effects, the same without gravity, with each effect, and with all.
 fn variants(stage: &Stage) -> Vec<Variant> {
-    let (all, gravity) = (stage.effects(), stage.prepared.request.options.robot.gravity);
+    let (all, gravity) = (&stage.effects, stage.request.options.robot.gravity);
     let variant = |what: &str, effects: Vec<Applied>| variant(stage, what, effects);
     let mut variants = vec![variant("", Vec::new())];
     if gravity != [0.0; 3] {
@@ -92,7 +92,7 @@ impl Part {
     /// The code of all functions, of each variant.
     pub(super) fn generate(&self, stage: &Stage, progress: &Progress) -> Result<Vec<Generated>, Failure> {
         let made = parallel::map(&self.variants, |variant| {
-            let mut request = stage.prepared.request.clone();
+            let mut request = stage.request.clone();
             let o = &mut request.options;
             (o.robot.effects, o.robot.gravity) = (variant.effects.clone(), variant.gravity);
             (o.functions, o.robot.frames, o.runtime, o.stages) = (self.functions.clone(), None, None, false);

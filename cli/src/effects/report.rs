@@ -126,7 +126,7 @@ impl Cost {
 
 impl Report {
     pub(super) fn of(stage: &Stage) -> Self {
-        let told = &stage.prepared.resolved.report;
+        let told = &stage.report;
         let law = |name: &str| effects().iter().find(|e| e.name == name).map_or("", |e| e.what);
         let on = told.on.iter().map(|e| On {
             effect: e.effect.name(),

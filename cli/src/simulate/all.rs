@@ -54,8 +54,7 @@ fn row(name: &'static str, arguments: &SimulateArguments, rustc: &Rustc) -> Resu
     let robot = Straight::build(rustc, &generated).map_err(|e| Failure::tool(&e))?;
     let quiet = Progress::hidden();
     let fast = motion::run(&stage, &begin, (&robot, &frames), &settings, &quiet)?;
-    let all: Vec<String> = stage.model.frames.iter().map(|f| f.name.clone()).collect();
-    let slow = motion::run(&stage, &begin, (&stage.model, &all), &settings, &quiet)?;
+    let slow = motion::run(&stage, &begin, (&stage.model, &stage.frame_names()), &settings, &quiet)?;
     let (fast, slow) = (Summary::new(&stage, &fast, &settings, "generated"), Summary::new(&stage, &slow, &settings, "generic"));
     if let Some(error) = fast.error.or(slow.error) {
         return Err(Failure::input([format!("{name}: {error}")]));

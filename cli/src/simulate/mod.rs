@@ -5,7 +5,6 @@ mod all;
 pub(crate) mod arguments;
 mod columns;
 mod csv;
-pub(crate) mod drive;
 pub(crate) mod motion;
 mod page;
 mod parquet;
@@ -16,22 +15,22 @@ pub(crate) mod stage;
 mod straight;
 mod summary;
 mod text;
-mod watched;
 
 use std::path::Path;
 
 use articulated::simulate::Settings;
 use articulated_core::algorithm::FunctionId;
 use articulated_core::effect::EffectId;
+use articulated_motion::{Begin, field};
 
 use crate::arguments::Format;
 use crate::compiled::Rustc;
 use crate::console::{self, Progress};
 use crate::failure::{Failure, INPUT, OK};
 use arguments::SimulateArguments;
-use motion::{Begin, Motion};
+use motion::Motion;
 use page::Setting;
-use stage::{Stage, field};
+use stage::Stage;
 use straight::Straight;
 use summary::Summary;
 
@@ -62,12 +61,12 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
         Format::Json => crate::json(&summary),
     })?;
     if let Some(odd) = summary.energy.out_of_balance() {
-        console::warn(&format!("{}: {odd}", stage.prepared.scene.file));
+        console::warn(&format!("{}: {odd}", stage.scene.file));
     }
     Ok(match &motion.error {
         None => OK,
         Some(error) => {
-            console::error(&format!("{}: {error}", stage.prepared.scene.file));
+            console::error(&format!("{}: {error}", stage.scene.file));
             INPUT
         }
     })
@@ -95,13 +94,12 @@ fn by_generic_code(stage: &Stage, begin: &Begin, settings: &Settings, progress: 
     if cfg!(debug_assertions) {
         console::warn("this command was built without optimisation: its speed means little");
     }
-    let frames: Vec<String> = stage.model.frames.iter().map(|f| f.name.clone()).collect();
-    motion::run(stage, begin, (&stage.model, &frames), settings, progress)
+    motion::run(stage, begin, (&stage.model, &stage.frame_names()), settings, progress)
 }
 
 /// Whether torques determine accelerations at all. What generated code would be refused for, generic code is.
 fn solvable(stage: &Stage) -> Result<(), Failure> {
-    let (file, model) = (&stage.prepared.request.file, &stage.model);
+    let (file, model) = (&stage.request.file, &stage.model);
     Ok(articulated_codegen::defined(file, model, &articulated_codegen::massless(model), FunctionId::forward_dynamics.row::<f64>())?)
 }
 

@@ -1,7 +1,7 @@
 //! How a scene is simulated: what it says itself, and what the command line says instead.
 
-use articulated::simulate::{Output, SettingError, Settings, Stiffness, integrator};
-use articulated_scene::{Output as Recorded, Simulation, Stiffness as Stiff};
+use articulated::simulate::{Output, SettingError, Settings, integrator};
+use articulated_motion::settings as said;
 
 use super::arguments::SimulateArguments;
 use super::stage::Stage;
@@ -9,11 +9,11 @@ use crate::failure::Failure;
 
 /// The settings, or why there are none.
 pub(super) fn of(stage: &Stage, arguments: &SimulateArguments) -> Result<Settings, Failure> {
-    let (scene, file) = (stage.prepared.scene.simulation.as_ref(), &stage.prepared.scene.file);
+    let (scene, file) = (stage.scene.simulation.as_ref(), &stage.scene.file);
     if scene.is_none() && arguments.end.is_none() {
         return Err(Failure::input([format!("{file}: simulation: found nothing, expected [simulation] with `end`, s, or --end here")]));
     }
-    let mut settings = from_scene(&scene.cloned().unwrap_or_default());
+    let mut settings = scene.map(said).unwrap_or_default();
     let a = arguments;
     settings.end = a.end.unwrap_or(settings.end);
     settings.rtol = a.rtol.unwrap_or(settings.rtol);
@@ -79,44 +79,5 @@ fn told(problem: &SettingError, a: &SimulateArguments, file: &str) -> String {
     match options.iter().find(|(key, _, given)| *key == problem.key && *given) {
         Some((_, option, _)) => format!("--{option}: found {}, expected {}", problem.found, problem.right),
         None => format!("{file}: {problem}"),
-    }
-}
-
-/// The settings that a scene says.
-pub(super) fn from_scene(s: &Simulation) -> Settings {
-    let output = match &s.output {
-        Recorded::Every(seconds) => Output::Every(*seconds),
-        Recorded::At(times) => Output::At(times.clone()),
-        Recorded::Steps => Output::Steps,
-        Recorded::Ends => Output::Ends,
-    };
-    Settings {
-        integrator: s.integrator,
-        start: s.start,
-        end: s.end,
-        step: s.step,
-        rtol: s.rtol,
-        atol: s.atol,
-        min_step: s.min_step,
-        max_step: s.max_step,
-        first_step: s.first_step,
-        max_steps: s.max_steps,
-        output,
-        event_tolerance: s.event_tolerance,
-        stiffness: match s.stiffness {
-            Stiff::Refuse => Stiffness::Refuse,
-            Stiff::Note => Stiffness::Note,
-        },
-        ..Settings::default()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn defaults_of_scenes_are_those_of_the_library() {
-        assert_eq!(from_scene(&Simulation::default()), Settings::default());
     }
 }

@@ -1,31 +1,33 @@
 //! A scene with its robot: what `simulate` and `effects` are about.
 
+use std::ops::Deref;
 use std::path::{Path, PathBuf};
 
 use articulated_codegen::scene::{self, Bundled, Prepared, Scene};
-use articulated_codegen::{Error, nearest};
-use articulated_core::description::{Base, Description};
-use articulated_core::effect::{Applied, EffectId};
-use articulated_core::model::Model;
-use articulated_scene::Robot;
-use articulated_urdf::read_file;
+use articulated_codegen::{Error, Request, nearest};
+use articulated_core::description::Base;
+use articulated_scene::{Report, Robot};
 
 use crate::console;
 use crate::failure::Failure;
 
-/// No table of control is larger, bytes: ten million rows, of which none has more, of 400 each.
-const MOST_OF_TABLE: u64 = 4 << 30;
-
-/// A scene, its robot, and the model of both.
+/// A scene with its robot, as it moves, and what the command has to know besides.
 pub(crate) struct Stage {
     /// Of the scene, without folder and ending.
     pub(crate) name: String,
-    pub(crate) prepared: Prepared,
-    /// The robot as edited.
-    pub(crate) description: Description,
-    /// With the scene's effects, and a frame for each link.
-    pub(crate) model: Model<f64>,
-    folder: PathBuf,
+    /// What code of the robot is generated from.
+    pub(crate) request: Request,
+    /// What of the effects is on, off and not used.
+    pub(crate) report: Report,
+    stage: articulated_motion::Stage,
+}
+
+impl Deref for Stage {
+    type Target = articulated_motion::Stage;
+
+    fn deref(&self) -> &Self::Target {
+        &self.stage
+    }
 }
 
 const BUNDLED: Bundled<'static> = &|name| articulated_models::robot(name).map(|r| (r.urdf, r.base));
@@ -33,13 +35,13 @@ const BUNDLED: Bundled<'static> = &|name| articulated_models::robot(name).map(|r
 impl Stage {
     /// Refuses a level whose functions take `f32`, which what calls them here has not.
     pub(crate) fn is_of_doubles(&self) -> Result<(), Failure> {
-        let level = self.prepared.request.options.level;
+        let level = self.request.options.level;
         if !level.is_single() {
             return Ok(());
         }
         Err(Failure::input([format!(
             "{}: level: found {level}, expected one whose functions take f64, as states here are",
-            self.prepared.scene.file
+            self.scene.file
         )]))
     }
 
@@ -70,50 +72,22 @@ impl Stage {
         Self::new(name, prepared, folder)
     }
 
-    fn new(name: String, mut prepared: Prepared, folder: PathBuf) -> Result<(Self, Vec<String>), Failure> {
-        prepared.request.options.robot.frames = None;
-        let reading = articulated_codegen::read(&prepared.request)?;
+    fn new(name: String, prepared: Prepared, folder: PathBuf) -> Result<(Self, Vec<String>), Failure> {
+        let Prepared { scene, mut request, resolved, .. } = prepared;
+        request.options.robot.frames = None;
+        let reading = articulated_codegen::read(&request)?;
         // Bundled robots are odd on purpose.
-        let odd = reading.warnings.iter().filter(|_| !matches!(prepared.scene.robot, Robot::Bundled(_)));
+        let odd = reading.warnings.iter().filter(|_| !matches!(scene.robot, Robot::Bundled(_)));
         let odd = odd.chain(&reading.snapped).map(ToString::to_string).collect();
-        let model = articulated_codegen::model(&prepared.request, &reading.description)?;
-        Ok((Self { name, prepared, description: reading.description, model, folder }, odd))
+        let model = articulated_codegen::model(&request, &reading.description)?;
+        let effects = request.options.robot.effects.clone();
+        let stage = articulated_motion::Stage::new(scene, reading.description, model, effects).in_folder(folder);
+        Ok((Self { name, request, report: resolved.report, stage }, odd))
     }
 
     pub(crate) fn base(&self) -> Base {
-        self.prepared.request.options.robot.base
+        self.request.options.robot.base
     }
-
-    /// The effects that are on.
-    pub(crate) fn effects(&self) -> &[Applied] {
-        &self.prepared.request.options.robot.effects
-    }
-
-    /// Those of one kind.
-    pub(crate) fn effects_of(&self, effect: EffectId) -> impl Iterator<Item = &Applied> {
-        self.effects().iter().filter(move |a| a.effect == effect)
-    }
-
-    /// The text of a file that the scene names.
-    pub(crate) fn file(&self, name: &str) -> Result<String, String> {
-        let path = self.folder.join(name);
-        let wrong = |reason: String| format!("{}: {reason}", path.display());
-        let bytes = read_file(&path, MOST_OF_TABLE).map_err(|e| wrong(e.to_string()))?;
-        let not_text = |at: usize| wrong(format!("byte {at}: found no UTF-8, expected a CSV"));
-        String::from_utf8(bytes).map_err(|e| not_text(e.utf8_error().valid_up_to()))
-    }
-}
-
-/// The numbers of a field of an effect.
-pub(crate) fn field<'a>(applied: &'a Applied, name: &str) -> &'a [f64] {
-    let mut start = 0;
-    for f in applied.effect.row().fields {
-        if f.name == name {
-            return applied.parameters.get(start..start + f.len).unwrap_or(&[]);
-        }
-        start += f.len;
-    }
-    &[]
 }
 
 fn unknown(name: &str) -> Failure {

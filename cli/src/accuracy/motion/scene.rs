@@ -2,11 +2,12 @@
 
 use articulated::simulate::Settings;
 use articulated_core::description::Base;
+use articulated_motion::Begin;
 use articulated_scene::{Aim, Controller};
 
 use super::subject::Subject;
 use crate::failure::Failure;
-use crate::simulate::motion::{self, Begin};
+use crate::simulate::motion;
 use crate::simulate::stage::Stage;
 use crate::table::counted;
 
@@ -18,7 +19,7 @@ pub(super) fn find(name: &str) -> Result<(Stage, Subject), Failure> {
 }
 
 fn subject(stage: &Stage) -> Result<Subject, Failure> {
-    let scene = &stage.prepared.scene;
+    let scene = &stage.scene;
     if scene.impact.is_some() {
         let line = format!(
             "{}: impact: found a blow, expected none for accuracy --simulate: when it falls is read off a curve between steps, and that has another order than the steps",
@@ -28,7 +29,7 @@ fn subject(stage: &Stage) -> Result<Subject, Failure> {
     }
     let Begin { q, v, controller } = motion::begin(stage)?;
     let span = scene.simulation.as_ref().map_or((Settings::default().start, Settings::default().end), |s| (s.start, s.end));
-    let options = &stage.prepared.request.options;
+    let options = &stage.request.options;
     let inside = options.robot.gravity == [0.0; 3] && options.robot.effects.is_empty() && !pushes_base(&controller);
     Ok(Subject {
         model: stage.model.clone(),

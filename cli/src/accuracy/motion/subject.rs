@@ -6,9 +6,8 @@ use articulated::simulate::{IntegratorId, Output, Settings, Simulation, Stiffnes
 use articulated_core::algorithm::{FunctionId, Workspace};
 use articulated_core::dynamics::Dynamics;
 use articulated_core::model::Model;
+use articulated_motion::Drive;
 use articulated_scene::Controller;
-
-use crate::simulate::drive::Drive;
 
 /// A run that takes more steps is given up.
 const MOST: u64 = 1_000_000;
@@ -72,7 +71,7 @@ pub(super) fn run(subject: &Subject, id: IntegratorId, how: How) -> Option<End> 
     }
     let mut simulation = Simulation::new(&subject.model, settings).ok()?;
     let (controller, period) = subject.control.clone();
-    let mut control = Drive::new(&subject.model, controller, period);
+    let mut control = Drive::new(&subject.model, controller, period).ok()?;
     let clock = Instant::now();
     let r = simulation.run(&subject.q, &subject.v, &mut control, &mut []).ok()?;
     let wall = clock.elapsed().as_secs_f64();

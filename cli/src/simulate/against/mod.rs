@@ -10,8 +10,9 @@ use std::path::Path;
 use std::time::Instant;
 
 use articulated::simulate::{IntegratorId, Settings};
+use articulated_motion::Begin;
 
-use super::motion::{self, Begin};
+use super::motion;
 use super::stage::Stage;
 use super::straight::Straight;
 use crate::arguments::Format;
@@ -87,7 +88,7 @@ pub(super) fn run(stage: &Stage, begin: &Begin, settings: &Settings, file: &Path
 
 /// Whether the scene has nothing that peers do not know.
 fn known_to_peers(stage: &Stage) -> Result<(), Failure> {
-    let file = &stage.prepared.scene.file;
+    let file = &stage.scene.file;
     let told = |what| format!("{file}: found {what}, expected none for --against: peers know the robot's file and its gravity only");
     let lines: Vec<String> = unknown_to_peers(stage).into_iter().map(told).collect();
     if lines.is_empty() { Ok(()) } else { Err(Failure::input(lines)) }
@@ -99,7 +100,7 @@ fn astray(who: &str) -> Failure {
 
 /// What a scene has that peers do not know: they are told the robot's file and gravity, and nothing else.
 pub(crate) fn unknown_to_peers(stage: &Stage) -> Vec<&'static str> {
-    let (o, scene) = (&stage.prepared.request.options, &stage.prepared.scene);
+    let (o, scene) = (&stage.request.options, &stage.scene);
     let asked = [
         (!o.robot.effects.is_empty(), "effects"),
         (!o.robot.shafts.is_empty(), "effects.shaft"),

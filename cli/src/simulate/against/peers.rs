@@ -34,7 +34,7 @@ pub(crate) fn open(
     seconds: f64,
 ) -> Result<(Vec<Peer>, Vec<String>), Failure> {
     let urdf = folder.join("robot.urdf");
-    std::fs::write(&urdf, &stage.prepared.request.urdf).map_err(|e| Failure::tool(&e))?;
+    std::fs::write(&urdf, &stage.request.urdf).map_err(|e| Failure::tool(&e))?;
     let (mut peers, mut notes) = (Vec::new(), Vec::new());
     for library in libraries {
         match Peer::open(stage, library, &urdf, start, seconds) {
@@ -57,7 +57,7 @@ impl Peer {
     fn open(stage: &Stage, library: &Library, urdf: &Path, start: (&[f64], &[f64]), seconds: f64) -> Result<Option<Self>, String> {
         let opened = Native::open(&library.path)?;
         let engine = library.engine.clone().or_else(|| opened.peer_name()).ok_or("it has no function peer_name")?;
-        let gravity = stage.prepared.request.options.robot.gravity;
+        let gravity = stage.request.options.robot.gravity;
         if !opened.simulates() {
             return Ok(None);
         }

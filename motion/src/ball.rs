@@ -1,0 +1,84 @@
+//! The ball of a scene: one ball, one blow.
+
+use std::cell::Cell;
+use std::rc::Rc;
+
+use articulated::Dynamics;
+use articulated::simulate::{Action, ContactPoint, Direction, Event, Impact, SimulateError};
+use articulated_scene::{Impact as Asked, When};
+
+/// What has become of the ball.
+#[derive(Debug, Default)]
+pub(crate) struct Ball {
+    /// Its turn has come.
+    gone: Cell<bool>,
+    /// The motion ends with it.
+    pub(crate) ends: Cell<bool>,
+    /// Its turn came when nothing moved towards it.
+    pub(crate) missed: Cell<bool>,
+    /// Kinetic energy that it got, J, once its turn has come.
+    pub(crate) energy: Cell<Option<f64>>,
+}
+
+impl Ball {
+    /// It lies where it was.
+    pub(crate) fn put_back(&self) {
+        [&self.gone, &self.ends, &self.missed].into_iter().for_each(|cell| cell.set(false));
+        self.energy.set(None);
+    }
+
+    /// The event that it is hit, by the frame of this number. What is where the ball is at the start passes it there.
+    pub(crate) fn event<'a, R: Dynamics<f64>>(
+        self: &Rc<Self>,
+        asked: &Asked,
+        robot: &'a R,
+        frame: usize,
+        start: f64,
+    ) -> Result<Event<'a>, SimulateError>
+    where
+        R::Workspace: 'a,
+    {
+        let action = self.blow(asked, robot, frame)?;
+        let before = move |t: f64, g: f64| if g == 0.0 && t <= start { -f64::MIN_POSITIVE } else { g };
+        let event = match asked.when {
+            When::Time(at) => Event::new(asked.link.clone(), move |t, _, _| before(t, t - at)),
+            When::Ball(place) => {
+                let (mut ws, mut out) = (robot.workspace(), vec![0.0; 12 * robot.shape().frames]);
+                let (point, n, ball) = (asked.point, asked.normal, self.clone());
+                // n·(p − ball) with p = x + R r
+                Event::new(asked.link.clone(), move |t, q: &[f64], _| match robot.placements(&mut ws, q, &mut out) {
+                    // Nobody looks for a ball that is gone.
+                    _ if ball.gone.get() => -1.0,
+                    Ok(()) => {
+                        let x = &out[12 * frame..][..12];
+                        let p = |k: usize| x[9 + k] + (0..3).map(|c| x[3 * k + c] * point[c]).sum::<f64>();
+                        before(t, (0..3).map(|k| n[k] * (p(k) - place[k])).sum())
+                    }
+                    Err(_) => f64::NAN, // it was tried when the blow was made
+                })
+            }
+        };
+        Ok(event.direction(Direction::Rising).action(action))
+    }
+
+    /// What is done when its turn has come.
+    fn blow<'a, R: Dynamics<f64>>(self: &Rc<Self>, asked: &Asked, robot: &'a R, frame: usize) -> Result<Action<'a>, SimulateError>
+    where
+        R::Workspace: 'a,
+    {
+        let at = ContactPoint { frame, point: asked.point, normal: asked.normal };
+        let mut blow = Impact::new(robot, at, asked.mass, asked.restitution)?;
+        let (ball, stop, speed, mass) = (self.clone(), asked.stop, asked.ball_speed, asked.mass);
+        Ok(Action::Map(Box::new(move |_, q, v| {
+            if ball.gone.replace(true) {
+                return Ok(None);
+            }
+            ball.ends.set(stop);
+            let struck = blow.strike(q, v, speed)?;
+            ball.missed.set(struck.impulse == 0.0);
+            let after = struck.ball_speed;
+            ball.energy.set(Some(0.5 * mass * (after * after - speed * speed)));
+            Ok(Some(after))
+        })))
+    }
+}

@@ -1,0 +1,215 @@
+//! Why a scene does not move: data first, then a sentence.
+
+use std::fmt;
+
+use articulated::FunctionError;
+use articulated::simulate::{SettingError, SimulateError, StateError};
+use articulated_scene::{SceneError, SceneErrors};
+
+/// All that keeps a scene from moving.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MotionErrors {
+    /// In the order in which they were found, each once; never empty.
+    pub errors: Vec<MotionError>,
+}
+
+/// One thing that keeps a scene from moving.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MotionError {
+    /// The scene's file, as it was called when it was read.
+    pub file: String,
+    /// What is wrong.
+    pub fault: Fault,
+}
+
+/// What keeps a scene from moving.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Fault {
+    /// The start or the control does not fit the robot, or a table cannot be read.
+    Scene(SceneError),
+    /// The scene has no `[simulation]`: it does not say when its motion ends.
+    NoSimulation,
+    /// A setting that cannot be used.
+    Setting(SettingError),
+    /// The ball is hit at a time at which nothing moves.
+    Time {
+        /// When the scene has it hit, s.
+        found: f64,
+        /// The first time of the motion, s.
+        start: f64,
+        /// Its last time, s; nothing is hit there.
+        end: f64,
+    },
+    /// The robot has not as many coordinates, or degrees of freedom, as that of the scene.
+    Shape {
+        /// `coordinates` or `degrees of freedom`.
+        what: &'static str,
+        /// How many the robot has.
+        found: usize,
+        /// How many that of the scene has.
+        expected: usize,
+    },
+    /// There are not as many names of frames as the robot has frames.
+    Frames {
+        /// How many names there are.
+        found: usize,
+        /// How many frames.
+        expected: usize,
+    },
+    /// The robot calls a frame otherwise.
+    FrameName {
+        /// Number of the frame, from 0.
+        index: usize,
+        /// The name that was given for it.
+        found: String,
+        /// What the robot calls it.
+        expected: String,
+    },
+    /// The robot does not give a frame that an event is about.
+    NoFrame {
+        /// What needs it: `effects.contact` or `impact.link`.
+        key: &'static str,
+        /// The link that the frame is of.
+        link: String,
+        /// The frames that the robot gives.
+        frames: Vec<String>,
+    },
+    /// The robot has not a function that the motion needs.
+    Function(FunctionError),
+    /// What is wrong with the state at the start, with control or with an event.
+    State(StateError),
+    /// Another reason why a simulation could not begin.
+    Simulation(SimulateError),
+}
+
+impl MotionErrors {
+    /// These, each once.
+    fn of(all: impl IntoIterator<Item = MotionError>) -> Self {
+        let mut errors: Vec<MotionError> = Vec::new();
+        for error in all {
+            if !errors.contains(&error) {
+                errors.push(error);
+            }
+        }
+        Self { errors }
+    }
+
+    /// Nothing is wrong, or all of this.
+    pub(crate) fn none(file: &str, faults: impl IntoIterator<Item = Fault>) -> Result<(), Self> {
+        let all = Self::of(faults.into_iter().map(|fault| MotionError::new(file, fault)));
+        if all.errors.is_empty() { Ok(()) } else { Err(all) }
+    }
+
+    /// This alone.
+    pub(crate) fn one(file: &str, fault: Fault) -> Self {
+        Self { errors: vec![MotionError::new(file, fault)] }
+    }
+
+    /// What a simulation was refused for.
+    pub(crate) fn refused(file: &str, error: SimulateError) -> Self {
+        Self::of(Fault::of(error).into_iter().map(|fault| MotionError::new(file, fault)))
+    }
+
+    /// Both values, or what is wrong with either.
+    pub(crate) fn both<A, B>(a: Result<A, Self>, b: Result<B, Self>) -> Result<(A, B), Self> {
+        match (a, b) {
+            (Ok(a), Ok(b)) => Ok((a, b)),
+            (a, b) => Err(Self::of(a.err().into_iter().chain(b.err()).flat_map(|all| all.errors))),
+        }
+    }
+}
+
+impl MotionError {
+    /// What is wrong with a scene itself may be wrong in a file that it names.
+    fn new(file: &str, fault: Fault) -> Self {
+        let file = if let Fault::Scene(error) = &fault { &error.file } else { file };
+        Self { file: file.to_owned(), fault }
+    }
+}
+
+impl Fault {
+    /// The faults that an error of the simulation stands for, one by one; never none.
+    pub(crate) fn of(error: SimulateError) -> Vec<Self> {
+        match error {
+            SimulateError::Settings(all) if !all.is_empty() => all.into_iter().map(Self::Setting).collect(),
+            SimulateError::State(all) if !all.is_empty() => all.into_iter().map(Self::State).collect(),
+            SimulateError::Function(error) => vec![Self::Function(error)],
+            other => vec![Self::Simulation(other)],
+        }
+    }
+}
+
+impl From<SceneErrors> for MotionErrors {
+    fn from(all: SceneErrors) -> Self {
+        let placed = |error: SceneError| MotionError { file: error.file.clone(), fault: Fault::Scene(error) };
+        Self { errors: all.errors.into_iter().map(placed).collect() }
+    }
+}
+
+impl fmt::Display for MotionErrors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, error) in self.errors.iter().enumerate() {
+            write!(f, "{}{error}", if i == 0 { "" } else { "\n" })?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for MotionErrors {}
+
+impl fmt::Display for MotionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.fault {
+            // With its file, and the line there.
+            Fault::Scene(error) => error.fmt(f),
+            fault => write!(f, "{}: {fault}", self.file),
+        }
+    }
+}
+
+impl std::error::Error for MotionError {}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Scene(error) => f.write_str(&error.message()),
+            Self::NoSimulation => f.write_str("simulation: found nothing, expected [simulation] with `end`, s"),
+            Self::Setting(error) => error.fmt(f),
+            Self::Time { found, start, end } => {
+                write!(f, "impact.time: found {found:?}, expected a time from {start:?} s on and before {end:?} s")
+            }
+            Self::Shape { what, found, expected } => {
+                write!(f, "robot: found {found} {what}, expected {expected}: it is another robot than the scene's")
+            }
+            Self::Frames { found, expected } => {
+                write!(f, "frames: found {found} names, expected {expected}: one for each frame of the robot, in its order")
+            }
+            Self::FrameName { index, found, expected } => {
+                write!(f, "frames[{index}]: found {found:?}, expected {expected:?}, as the robot calls it")
+            }
+            Self::NoFrame { key, link, frames } => {
+                write!(f, "{key}: found a robot that gives no frame of {link:?}, expected that among its frames ({})", Listed(frames))
+            }
+            Self::Function(error) => error.fmt(f),
+            Self::State(error) => error.fmt(f),
+            Self::Simulation(error) => error.fmt(f),
+        }
+    }
+}
+
+/// Names, as many as can be read.
+struct Listed<'a>(&'a [String]);
+
+impl fmt::Display for Listed<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const MOST: usize = 8;
+        if self.0.is_empty() {
+            return f.write_str("it has none");
+        }
+        let shown: Vec<&str> = self.0.iter().take(MOST).map(String::as_str).collect();
+        let more = self.0.len().saturating_sub(MOST);
+        write!(f, "{}", shown.join(", "))?;
+        if more > 0 { write!(f, " and {more} more") } else { Ok(()) }
+    }
+}

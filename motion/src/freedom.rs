@@ -1,0 +1,63 @@
+//! Degrees of freedom with the bounds and the friction of their joints, those of joints that follow others too.
+
+use articulated_core::description::JointKind;
+use articulated_core::effect::{EffectId, JointEffect};
+use articulated_core::model::Body;
+
+use crate::stage::Stage;
+
+/// A degree of freedom: which of its joint's, the coordinate and the rate that it moves with, and how: its own coordinate is multiplier · that + offset.
+pub(crate) struct Freedom<'s> {
+    /// The body that the joint carries; it has the joint's name.
+    pub(crate) body: &'s Body<f64>,
+    freedom: usize,
+    pub(crate) q: usize,
+    pub(crate) v: usize,
+    pub(crate) multiplier: f64,
+    offset: f64,
+}
+
+impl Stage {
+    /// All degrees of freedom, those of joints that follow others too. A quaternion's have no coordinates: they are no place of bounds.
+    pub(crate) fn freedoms(&self) -> impl Iterator<Item = Freedom<'_>> {
+        self.model.bodies.iter().skip(1).flat_map(|body| {
+            let (at, follow) = (&body.coordinates, body.coordinates.mimic);
+            let (multiplier, offset) = follow.map_or((1.0, 0.0), |f| (f.multiplier, f.offset));
+            let one = move |freedom| Freedom { body, freedom, q: at.q + freedom, v: at.v + freedom, multiplier, offset };
+            (0..body.joint.nv()).filter(move |_| multiplier != 0.0).map(one)
+        })
+    }
+
+    /// Bounds of the coordinate that a degree of freedom moves with: those of the effect if its joint has it, else those of the file; rad or m.
+    pub(crate) fn bounds(&self, at: &Freedom<'_>) -> Option<(f64, f64)> {
+        let own = match at.effect(EffectId::limit).map(|limit| limit.parameters.as_slice()) {
+            Some([lower, upper, ..]) => Some((*lower, *upper)),
+            _ => None,
+        };
+        own.or_else(|| self.of_the_file(at.body)).map(|bounds| at.of_the_coordinate(bounds))
+    }
+
+    /// The bounds that the file gives a joint of one degree of freedom, those of one that follows another too.
+    fn of_the_file(&self, body: &Body<f64>) -> Option<(f64, f64)> {
+        let joint = self.description.joints.iter().find(|joint| joint.name == body.name && body.joint.nv() == 1)?;
+        joint.limit.filter(|_| joint.kind != JointKind::Continuous).map(|l| (l.lower, l.upper))
+    }
+}
+
+impl<'s> Freedom<'s> {
+    /// The joint's name.
+    pub(crate) fn joint(&self) -> &'s str {
+        &self.body.name
+    }
+
+    /// The effect of this kind that is on it.
+    pub(crate) fn effect(&self, effect: EffectId) -> Option<&'s JointEffect<f64>> {
+        self.body.effects.joint.iter().find(|e| e.effect == effect && e.freedom == self.freedom)
+    }
+
+    /// Bounds of its own coordinate as those of the coordinate that it moves with.
+    fn of_the_coordinate(&self, (lower, upper): (f64, f64)) -> (f64, f64) {
+        let [a, b] = [lower, upper].map(|x| (x - self.offset) / self.multiplier);
+        if self.multiplier < 0.0 { (b, a) } else { (a, b) }
+    }
+}

@@ -1,0 +1,66 @@
+//! A scene's motion in a program: its start, its control, its events, moved by any robot.
+//!
+//! A [`Stage`] is a scene with its robot. It moves on anything that has dynamics: the generic model, and generated robots.
+//!
+//! ```
+//! use articulated::urdf::{self, Options};
+//! use articulated::{Base, Model};
+//! use articulated_motion::{Ending, Scene, Stage};
+//! use articulated_scene::Edited;
+//!
+//! const URDF: &str = r#"<robot name="pendulum"><link name="base"/>
+//!   <link name="bob"><inertial><origin xyz="0 0 -1"/><mass value="1"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>
+//!   <joint name="hinge" type="revolute"><parent link="base"/><child link="bob"/><axis xyz="0 1 0"/>
+//!     <limit lower="-1.5" upper="0.5" effort="9" velocity="9"/></joint></robot>"#;
+//! const SCENE: &str = r#"
+//!   initial = { q = { hinge = -1.0 } }
+//!   effects = { damping = { hinge = 0.1 } }
+//!   control = { kind = "pd", target = { hinge = 1.0 }, kp = 20.0, kd = 2.0 }
+//!   simulation = { end = 5.0, events = ["limits"] }
+//! "#;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let scene = Scene::read("swing.toml", SCENE)?;
+//! let robot = urdf::read(URDF.as_bytes(), &Options::default())?;
+//! let effects = scene.resolve(&Edited { description: &robot.description, base: Base::Fixed, unused: &robot.unused, shafts: &[] })?.effects;
+//! let model = Model::new(&robot.description, Base::Fixed)?.with_effects(&effects)?;
+//!
+//! let stage = Stage::new(scene, robot.description, model, effects);
+//! let swing = stage.run(&stage.model, &stage.frame_names())?;
+//!
+//! assert_eq!((swing.ending, swing.reached, swing.error), (Ending::AtEnd, 5.0, None));
+//! assert_eq!(swing.happenings[0].what, "hinge reaches its limit");
+//! let last = swing.recording.len() - 1;
+//! // It rests where kp (target − q) = m g l sin q.
+//! let q = swing.recording.q_at(last)[0];
+//! assert!((20.0 * (1.0 - q) - 9.81 * q.sin()).abs() < 1e-3);
+//! # Ok(()) }
+//! ```
+//!
+//! Step by step: [`Stage::begin`] is the state and the control that it starts with, [`Stage::settings`] how it is simulated, [`Stage::motion`] all that put together with
+//! a robot, and [`Motion::run`] runs it, as often as one likes. A robot that is generated for a scene needs the functions of [`Stage::functions`] and the frames of
+//! [`Stage::frames`]. For a simulation of one's own there are the parts: [`Drive`] is the scene's control, and [`Watch`] has its events and their words. Everything that
+//! keeps a scene from moving is told at once, as [`MotionErrors`].
+//!
+//! Conventions are those of [`articulated`]: SI units and radians; q and v in the order of the robot.
+
+mod ball;
+mod begin;
+mod drive;
+mod error;
+mod freedom;
+mod motion;
+mod needs;
+mod settings;
+mod stage;
+mod watch;
+
+pub use articulated::simulate::{Counts, Recording, Settings, SimulateError};
+pub use articulated_scene::{Controller, Scene};
+pub use begin::{Begin, Beyond};
+pub use drive::Drive;
+pub use error::{Fault, MotionError, MotionErrors};
+pub use motion::{Ending, Happening, Motion, Outcome};
+pub use settings::settings;
+pub use stage::{Stage, field};
+pub use watch::{Watch, Without};

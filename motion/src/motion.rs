@@ -1,0 +1,162 @@
+//! A scene's motion: robot, state, control and events put together, and run.
+
+use std::fmt;
+use std::time::{Duration, Instant};
+
+use articulated::Dynamics;
+use articulated::simulate::{Counts, Ended, Hit, Recording, Settings, SimulateError, Simulation};
+
+use crate::begin::Begin;
+use crate::drive::Drive;
+use crate::error::MotionErrors;
+use crate::stage::Stage;
+use crate::watch::{Watch, Without};
+
+/// A scene on a robot, with all the room that its simulation needs. It may be run again and again.
+pub struct Motion<'a, R: Dynamics<f64>> {
+    stage: &'a Stage,
+    robot: &'a R,
+    watch: Watch<'a>,
+    simulation: Simulation<'a, R>,
+}
+
+/// What came of a motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// The motion at the times of output, with what was done ([`Recording::counts`]); where an error ended it, what was up to there.
+    pub recording: Recording,
+    /// What happened on the way, in the order of time: one for each of [`Recording::events`].
+    pub happenings: Vec<Happening>,
+    /// How it ended.
+    pub ending: Ending,
+    /// The time that was reached, s.
+    pub reached: f64,
+    /// Kinetic energy that the ball of the scene's impact got, J, if its turn came.
+    pub ball: Option<f64>,
+    /// Why it did not go on to its end.
+    pub error: Option<SimulateError>,
+    /// How long the run took, by the clock of the machine.
+    pub wall: Duration,
+}
+
+/// Something that happened, at its time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Happening {
+    /// When, s.
+    pub t: f64,
+    /// What, in a few words.
+    pub what: String,
+    /// Of the ball's turn, its speed along the normal after it, m/s.
+    pub ball_speed: Option<f64>,
+}
+
+/// How a motion ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Ending {
+    /// At its last time.
+    AtEnd,
+    /// By a blow with which the scene ends.
+    ByBlow,
+    /// Who followed it wanted no more.
+    ByFollower,
+    /// By an error.
+    ByError,
+}
+
+impl Stage {
+    /// The scene on a robot, to be simulated so; `frames` are the names of the robot's frames in its order: `FRAME_NAMES` of a generated module, [`Stage::frame_names`] of
+    /// the model. Errors: a robot that is another than the scene's, or has not the frames and functions that the scene needs (see [`Stage::frames`],
+    /// [`Stage::functions`]); settings that cannot be used; all of it.
+    pub fn motion<'a, R: Dynamics<f64>, S: AsRef<str>>(
+        &'a self,
+        robot: &'a R,
+        frames: &[S],
+        settings: Settings,
+    ) -> Result<Motion<'a, R>, MotionErrors>
+    where
+        R::Workspace: 'a,
+    {
+        let file = &self.scene.file;
+        let mut faults = self.faults_of(&settings);
+        faults.extend(self.foreign(robot, frames));
+        faults.extend(self.lacking(robot, settings.integrator));
+        let watch = Watch::new(self, robot, frames, settings.start);
+        let simulation = Simulation::new(robot, settings).map_err(|e| MotionErrors::refused(file, e));
+        let (_, (watch, simulation)) = MotionErrors::both(MotionErrors::none(file, faults), MotionErrors::both(watch, simulation))?;
+        Ok(Motion { stage: self, robot, watch, simulation })
+    }
+
+    /// The scene on a robot from its start to its end, all as the scene says: the simplest way. Errors: as [`Stage::settings`], [`Stage::motion`] and
+    /// [`Stage::begin`], all of them; an error on the way is in [`Outcome::error`].
+    pub fn run<R: Dynamics<f64>, S: AsRef<str>>(&self, robot: &R, frames: &[S]) -> Result<Outcome, MotionErrors> {
+        let motion = self.settings().and_then(|settings| self.motion(robot, frames, settings));
+        let (mut motion, begin) = MotionErrors::both(motion, self.begin())?;
+        motion.run(&begin, &mut |_, _| true)
+    }
+}
+
+impl<R: Dynamics<f64>> Motion<'_, R> {
+    /// Sorts of events that the scene looks for and has nothing of.
+    pub fn without(&self) -> &[Without] {
+        &self.watch.without
+    }
+
+    /// The settings.
+    pub fn settings(&self) -> &Settings {
+        self.simulation.settings()
+    }
+
+    /// From the start to the end, to the blow that ends it, or to an error, which is part of what came of it. `follow` is told the time, s, and the counts after
+    /// each step, and may say false to end it. Errors: a state, or a control, that does not fit the robot: nothing was done.
+    pub fn run(&mut self, begin: &Begin, follow: &mut dyn FnMut(f64, &Counts) -> bool) -> Result<Outcome, MotionErrors> {
+        let refused = |e: SimulateError| MotionErrors::refused(&self.stage.scene.file, e);
+        let mut drive = Drive::new(self.robot, begin.controller.clone(), self.stage.scene.control.period).map_err(refused)?;
+        self.watch.reset();
+        let (ball, mut reached) = (self.watch.ball(), self.simulation.settings().start);
+        let mut recording = self.simulation.recording();
+        let mut after_step = |t: f64, counts: &Counts| {
+            reached = t;
+            follow(t, counts) && !ball.ends.get()
+        };
+        let clock = Instant::now();
+        let result = self.simulation.run_into(&begin.q, &begin.v, &mut drive, &mut self.watch.events, &mut recording, &mut after_step);
+        let wall = clock.elapsed();
+        let error = match result {
+            Ok(()) => None,
+            // Nothing was done yet.
+            Err(e @ (SimulateError::Settings(_) | SimulateError::State(_) | SimulateError::Function(_))) => return Err(refused(e)),
+            Err(e) => Some(e),
+        };
+        let ending = Ending::of(recording.ended, self.watch.is_over());
+        let reached = match ending {
+            Ending::AtEnd => self.simulation.settings().end,
+            _ => recording.t.last().map_or(reached, |t| t.max(reached)),
+        };
+        let told = |hit: &Hit| Happening { t: hit.t, what: self.watch.words(hit), ball_speed: hit.value };
+        let happenings = recording.events.iter().map(told).collect();
+        Ok(Outcome { recording, happenings, ending, reached, ball: self.watch.ball_energy(), error, wall })
+    }
+}
+
+impl Ending {
+    /// A blow ends a motion by who watches it.
+    fn of(ended: Ended, blow: bool) -> Self {
+        match ended {
+            Ended::Not => Self::ByError,
+            Ended::AtEnd => Self::AtEnd,
+            Ended::ByWatcher if !blow => Self::ByFollower,
+            Ended::ByWatcher | Ended::ByEvent(_) => Self::ByBlow,
+        }
+    }
+}
+
+impl fmt::Display for Ending {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::AtEnd => "at its end",
+            Self::ByBlow => "by an event",
+            Self::ByFollower => "by who followed it",
+            Self::ByError => "by an error",
+        })
+    }
+}

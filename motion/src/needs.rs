@@ -1,0 +1,105 @@
+//! What a robot must have to be moved by a scene.
+
+use articulated::simulate::IntegratorId;
+use articulated::{Dynamics, FunctionError, FunctionId};
+use articulated_core::description::JointKind;
+use articulated_core::effect::EffectId;
+use articulated_scene::{Drive, Watched};
+
+use crate::error::Fault;
+use crate::stage::Stage;
+
+impl Stage {
+    /// The links whose frames the scene's events need, each once: all that a robot that is generated for this motion has to give.
+    pub fn frames(&self) -> Vec<String> {
+        let mut all: Vec<String> = self.framed().map(|(_, link)| link.to_owned()).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// Names of the functions to generate for this motion, each once: those that it needs with this integrator, and those that its recording tells of
+    /// energies, losses and momentum by. A robot that has none of the latter moves as well, and [`Recording::missing`](articulated::simulate::Recording::missing) has their names.
+    pub fn functions(&self, integrator: IntegratorId) -> Vec<&'static str> {
+        let mut functions: Vec<&str> = integrator.row().needs.iter().map(|f| f.name()).collect();
+        functions.extend(["kinetic_energy", "potential_energy"]);
+        if self.model.moving_mass() > 0.0 {
+            functions.push("centroidal_momentum");
+        }
+        if !self.effects.is_empty() {
+            functions.extend(["dissipation", "motor_torques"]);
+        }
+        let turns = |kind: JointKind| matches!(kind, JointKind::Floating | JointKind::Spherical);
+        if self.model.joints.iter().any(|j| turns(j.kind)) {
+            functions.push("integrate");
+        }
+        functions.push("difference");
+        if self.framed().next().is_some() {
+            functions.push("placements");
+        }
+        if self.scene.impact.is_some() {
+            functions.extend(["jacobians_world_aligned", "solve_mass_matrix"]);
+        }
+        functions
+    }
+
+    /// Who needs a frame, and of which link.
+    pub(crate) fn framed(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        let contacts = self.effects_of(EffectId::contact).filter(|_| self.looked_for().contains(&Watched::Contacts));
+        let contacts = contacts.map(|a| ("effects.contact", a.on.as_str()));
+        contacts.chain(self.scene.impact.iter().map(|impact| ("impact.link", impact.link.as_str())))
+    }
+
+    /// What the scene looks for on the way.
+    pub(crate) fn looked_for(&self) -> &[Watched] {
+        self.scene.simulation.as_ref().map_or(&[], |s| &s.events)
+    }
+
+    /// Functions without which the motion does not begin.
+    fn required(&self, integrator: IntegratorId) -> Vec<FunctionId> {
+        let mut functions = integrator.row().needs.to_vec();
+        if self.model.nq != self.model.nv {
+            functions.push(FunctionId::integrate);
+        }
+        if matches!(self.scene.control.drive, Drive::Pd { .. }) {
+            functions.push(FunctionId::difference);
+        }
+        if self.framed().next().is_some() {
+            functions.push(FunctionId::placements);
+        }
+        if self.scene.impact.is_some() {
+            functions.extend([FunctionId::jacobians_world_aligned, FunctionId::solve_mass_matrix]);
+        }
+        functions
+    }
+
+    /// What this robot lacks.
+    pub(crate) fn lacking<R: Dynamics<f64>>(&self, robot: &R, integrator: IntegratorId) -> impl Iterator<Item = Fault> {
+        let mut ws = robot.workspace();
+        self.required(integrator).into_iter().filter_map(move |function| tried(robot, &mut ws, function).err().map(Fault::Function))
+    }
+
+    /// What is wrong with a robot, and with the names of its frames in its order: it is another than the scene's.
+    pub(crate) fn foreign<R: Dynamics<f64>, S: AsRef<str>>(&self, robot: &R, frames: &[S]) -> Vec<Fault> {
+        let (own, shape) = (self.model.shape(), robot.shape());
+        let counts = [("coordinates", shape.nq, own.nq), ("degrees of freedom", shape.nv, own.nv)];
+        let counts = counts.into_iter().filter(|(_, found, expected)| found != expected);
+        let mut faults: Vec<Fault> = counts.map(|(what, found, expected)| Fault::Shape { what, found, expected }).collect();
+        if frames.len() != shape.frames {
+            faults.push(Fault::Frames { found: frames.len(), expected: shape.frames });
+            return faults;
+        }
+        let names = frames.iter().enumerate().filter_map(|(k, name)| Some((k, name.as_ref(), robot.frame_name(k)?)));
+        let otherwise = names.filter(|(_, name, own)| name != own);
+        faults.extend(otherwise.map(|(index, name, own)| Fault::FrameName { index, found: name.to_owned(), expected: own.to_owned() }));
+        faults
+    }
+}
+
+/// Whether a robot has a function, asked at a state that is none.
+pub(crate) fn tried<R: Dynamics<f64>>(robot: &R, ws: &mut R::Workspace, function: FunctionId) -> Result<(), FunctionError> {
+    let (row, shape) = (function.row::<f64>(), robot.shape());
+    let arguments: Vec<Vec<f64>> = row.takes.iter().map(|argument| vec![0.5; argument.len(shape)]).collect();
+    let arguments: Vec<&[f64]> = arguments.iter().map(Vec::as_slice).collect();
+    robot.call(function, ws, &arguments, &mut vec![0.0; row.len(shape)])
+}

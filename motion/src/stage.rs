@@ -1,0 +1,80 @@
+//! A scene with its robot.
+
+use std::path::{Path, PathBuf};
+
+use articulated_core::description::Description;
+use articulated_core::effect::{Applied, EffectId};
+use articulated_core::model::Model;
+use articulated_scene::Scene;
+use articulated_urdf::read_file;
+
+/// No table of control is larger, bytes: ten million rows, of which none has more, of 400 each.
+const MOST_OF_TABLE: u64 = 4 << 30;
+
+/// A scene with its robot as the scene leaves it.
+#[derive(Clone, Debug)]
+pub struct Stage {
+    /// The scene.
+    pub scene: Scene,
+    /// The robot as the scene edits it.
+    pub description: Description,
+    /// The model of that, under the scene's gravity, with the scene's effects and a frame for each link.
+    pub model: Model<f64>,
+    /// The effects that are on: those that the model has.
+    pub effects: Vec<Applied>,
+    folder: PathBuf,
+}
+
+/// How a stage is had.
+impl Stage {
+    /// Of parts that belong together: `model` is that of `description` and has `effects`, which [`Scene::resolve`] gives. Files that the scene names are seen from the
+    /// folder in which the program runs, see [`Stage::in_folder`].
+    pub fn new(scene: Scene, description: Description, model: Model<f64>, effects: Vec<Applied>) -> Self {
+        Self { scene, description, model, effects, folder: PathBuf::new() }
+    }
+
+    /// Files that the scene names are seen from this folder: that of the scene's file.
+    #[must_use]
+    pub fn in_folder(mut self, folder: impl Into<PathBuf>) -> Self {
+        self.folder = folder.into();
+        self
+    }
+}
+
+impl Stage {
+    /// The folder from which files are seen that the scene names.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The text of a file that the scene names: a table over time. Errors: one that cannot be read, is larger than any table (4 GiB), or is no text in UTF-8.
+    pub fn file(&self, name: &str) -> Result<String, String> {
+        let path = self.folder.join(name);
+        let wrong = |reason: String| format!("{}: {reason}", path.display());
+        let bytes = read_file(&path, MOST_OF_TABLE).map_err(|e| wrong(e.to_string()))?;
+        let not_text = |at: usize| wrong(format!("byte {at}: found no UTF-8, expected a CSV"));
+        String::from_utf8(bytes).map_err(|e| not_text(e.utf8_error().valid_up_to()))
+    }
+
+    /// The effects of one kind.
+    pub fn effects_of(&self, effect: EffectId) -> impl Iterator<Item = &Applied> {
+        self.effects.iter().filter(move |a| a.effect == effect)
+    }
+
+    /// Names of the frames that [`Stage::model`] gives, in its order.
+    pub fn frame_names(&self) -> Vec<&str> {
+        self.model.frames.iter().map(|frame| frame.name.as_str()).collect()
+    }
+}
+
+/// The numbers of a field of an effect, by the field's name; none where the effect has no such field, or not as many numbers as it should.
+pub fn field<'a>(applied: &'a Applied, name: &str) -> &'a [f64] {
+    let mut start = 0;
+    for f in applied.effect.row().fields {
+        if f.name == name {
+            return applied.parameters.get(start..start + f.len).unwrap_or(&[]);
+        }
+        start += f.len;
+    }
+    &[]
+}

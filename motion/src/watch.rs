@@ -1,0 +1,176 @@
+//! What a scene looks out for: limits, contacts, dry friction, and a ball.
+
+use std::fmt;
+use std::rc::Rc;
+
+use articulated::Dynamics;
+use articulated::simulate::{ContactPoint, Direction, Event, Hit};
+use articulated_core::effect::{Applied, EffectId};
+use articulated_scene::Watched;
+
+use crate::ball::Ball;
+use crate::error::{Fault, MotionErrors};
+use crate::stage::{Stage, field};
+
+/// Events of a scene on a robot, and how each of them reads.
+pub struct Watch<'a> {
+    /// The events, for a simulation. Others may be put behind them.
+    pub events: Vec<Event<'a>>,
+    /// Sorts that the scene looks for and has nothing of.
+    pub without: Vec<Without>,
+    /// Where its function rises through zero, where it falls; of a ball, when it is hit and when it is not.
+    words: Vec<[String; 2]>,
+    ball: Rc<Ball>,
+}
+
+/// A sort of event that a scene looks for and that cannot happen: odd, and no mistake, since effects come and go.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Without {
+    /// The scene's file.
+    pub file: String,
+    /// What it looks for.
+    pub what: Watched,
+}
+
+impl<'a> Watch<'a> {
+    /// What the scene asks for on a robot; `frames` are the names of its frames in its order, and `start` is the first time of the motion, s. Errors: frames that
+    /// events need and that are not among them, functions that the robot has not, numbers that cannot be used; all of them.
+    pub fn new<R: Dynamics<f64>, S: AsRef<str>>(stage: &Stage, robot: &'a R, frames: &[S], start: f64) -> Result<Self, MotionErrors>
+    where
+        R::Workspace: 'a,
+    {
+        let mut watch = Self { events: Vec::new(), without: Vec::new(), words: Vec::new(), ball: Rc::default() };
+        let mut faults = Vec::new();
+        for what in stage.looked_for() {
+            let before = (watch.events.len(), faults.len());
+            match what {
+                Watched::Limits => watch.limits(stage),
+                Watched::Contacts => watch.contacts(stage, robot, frames, &mut faults),
+                Watched::StickSlip => watch.stick_slip(stage),
+            }
+            if (watch.events.len(), faults.len()) == before {
+                watch.without.push(Without { file: stage.scene.file.clone(), what: *what });
+            }
+        }
+        watch.hit(stage, robot, frames, start, &mut faults);
+        MotionErrors::none(&stage.scene.file, faults)?;
+        Ok(watch)
+    }
+
+    /// What happened, in words; an event that was put behind those of the scene has its name.
+    pub fn words(&self, hit: &Hit) -> String {
+        let Some([rising, falling]) = self.words.get(hit.event) else { return hit.name.to_string() };
+        match hit.value {
+            // Of the ball, which is all that has a value.
+            Some(speed) => format!("{} {speed:.4} m/s", if self.ball.missed.get() { falling } else { rising }),
+            None => if hit.direction == Direction::Falling { falling } else { rising }.clone(),
+        }
+    }
+
+    /// Whether the ball was hit and the motion ends with that: who runs the simulation asks after each step.
+    pub fn is_over(&self) -> bool {
+        self.ball.ends.get()
+    }
+
+    /// Kinetic energy that the ball got, J, once its turn has come.
+    pub fn ball_energy(&self) -> Option<f64> {
+        self.ball.energy.get()
+    }
+
+    /// As if nothing had happened, for one more motion.
+    pub fn reset(&mut self) {
+        self.ball.put_back();
+    }
+
+    /// As [`Watch::is_over`], while a simulation has the events.
+    pub(crate) fn ball(&self) -> Rc<Ball> {
+        self.ball.clone()
+    }
+
+    fn push(&mut self, event: Event<'a>, rising: String, falling: String) {
+        self.events.push(event);
+        self.words.push([rising, falling]);
+    }
+
+    /// The bounds of the effect if a joint has it, else those of the file.
+    fn limits(&mut self, stage: &Stage) {
+        for at in stage.freedoms() {
+            let (name, Some((lower, upper))) = (at.joint(), stage.bounds(&at)) else { continue };
+            if lower.is_finite() || upper.is_finite() {
+                let event = Event::limit(name, at.q, lower, upper).direction(Direction::Either);
+                self.push(event, format!("{name} comes back from its limit"), format!("{name} reaches its limit"));
+            }
+        }
+    }
+
+    fn contacts<R: Dynamics<f64>, S: AsRef<str>>(&mut self, stage: &Stage, robot: &'a R, frames: &[S], faults: &mut Vec<Fault>)
+    where
+        R::Workspace: 'a,
+    {
+        for a in stage.effects_of(EffectId::contact) {
+            let frame = match frame_of("effects.contact", &a.on, frames) {
+                Ok(frame) => frame,
+                Err(fault) => {
+                    faults.push(fault);
+                    continue;
+                }
+            };
+            let at = ContactPoint { frame, point: a.at.xyz, normal: field(a, "normal").try_into().unwrap_or([f64::NAN; 3]) };
+            match Event::contact(a.on.clone(), robot, at, number(a, "radius"), number(a, "height")) {
+                Ok(event) => {
+                    let event = event.direction(Direction::Either);
+                    self.push(event, format!("{} leaves the ground", a.on), format!("{} touches the ground", a.on));
+                }
+                Err(error) => faults.extend(Fault::of(error)),
+            }
+        }
+    }
+
+    fn stick_slip(&mut self, stage: &Stage) {
+        for at in stage.freedoms() {
+            let Some([_, speed, ..]) = at.effect(EffectId::friction).map(|friction| friction.parameters.as_slice()) else { continue };
+            let (name, event) = (at.joint(), Event::stick_slip(at.joint(), at.v, speed / at.multiplier.abs()));
+            self.push(event, format!("{name} slips"), format!("{name} sticks"));
+        }
+    }
+
+    fn hit<R: Dynamics<f64>, S: AsRef<str>>(&mut self, stage: &Stage, robot: &'a R, frames: &[S], start: f64, faults: &mut Vec<Fault>)
+    where
+        R::Workspace: 'a,
+    {
+        let Some(asked) = &stage.scene.impact else { return };
+        let event = frame_of("impact.link", &asked.link, frames)
+            .map_err(|fault| vec![fault])
+            .and_then(|frame| self.ball.event(asked, robot, frame, start).map_err(Fault::of));
+        let hits = format!("{} hits the ball, which leaves at", asked.link);
+        let misses = format!("{} is not moving towards the ball, which keeps", asked.link);
+        match event {
+            Ok(event) => self.push(event, hits, misses),
+            Err(all) => faults.extend(all),
+        }
+    }
+}
+
+/// The number of a link's frame.
+fn frame_of<S: AsRef<str>>(key: &'static str, link: &str, frames: &[S]) -> Result<usize, Fault> {
+    let names = || frames.iter().map(AsRef::as_ref);
+    let missing = || Fault::NoFrame { key, link: link.to_owned(), frames: names().map(str::to_owned).collect() };
+    names().position(|name| name == link).ok_or_else(missing)
+}
+
+/// A field of one number; one that is not there is none.
+fn number(applied: &Applied, name: &str) -> f64 {
+    field(applied, name).first().copied().unwrap_or(f64::NAN)
+}
+
+impl fmt::Display for Without {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let expected = match self.what {
+            Watched::Limits => "a joint with bounds",
+            Watched::Contacts => "an effect contact of the scene",
+            Watched::StickSlip => "an effect friction of the scene",
+        };
+        let (file, name) = (&self.file, self.what.name());
+        write!(f, "{file}: simulation.events: found {name:?}, expected {expected}; nothing to look for")
+    }
+}
