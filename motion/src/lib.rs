@@ -16,7 +16,7 @@
 //!   initial = { q = { hinge = -1.0 } }
 //!   effects = { damping = { hinge = 0.1 } }
 //!   control = { kind = "pd", target = { hinge = 1.0 }, kp = 20.0, kd = 2.0 }
-//!   simulation = { end = 5.0, events = ["limits"] }
+//!   simulation = { end = 12.0, events = ["limits"] }
 //! "#;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -28,7 +28,7 @@
 //! let stage = Stage::new(scene, robot.description, model, effects);
 //! let swing = stage.run(&stage.model, &stage.frame_names())?;
 //!
-//! assert_eq!((swing.ending, swing.reached, swing.error), (Ending::AtEnd, 5.0, None));
+//! assert_eq!((swing.ending, swing.reached, swing.error), (Ending::AtEnd, 12.0, None));
 //! assert_eq!(swing.happenings[0].what, "hinge reaches its limit");
 //! let last = swing.recording.len() - 1;
 //! // It rests where kp (target − q) = m g l sin q.

@@ -1,0 +1,81 @@
+//! Scenes against simulations that are put together by hand.
+
+use articulated::Dynamics;
+use articulated::simulate::{Constant, IntegratorId, Output, Settings, Simulation, TorqueTable};
+use articulated_core::algorithm::Workspace;
+
+use super::{ARM, CART, moved, stage};
+
+#[test]
+fn a_scene_moves_as_a_simulation_put_together_by_hand_to_the_bit() {
+    let scene = "
+        gravity = [0.0, 0.0, -3.7]
+        initial = { q = { shoulder = 0.7, wrist = [0.0, 0.6, 0.0, 0.8] }, v = { elbow = -1.5, wrist = [0.1, 0.2, 0.3] } }
+        control = { kind = 'pd', target = { shoulder = -0.2, elbow = 0.1 }, kp = { shoulder = 40.0, elbow = 15.0, wrist = 2.0 }, kd = 0.9, torque = { elbow = 0.25 } }
+        simulation = { start = 0.5, end = 1.75, integrator = 'dop853', rtol = 1e-8, atol = 1e-10, max_step = 0.05, output = 0.125 }";
+    let stage = stage(scene, ARM);
+    let found = moved(&stage).recording;
+
+    let settings = Settings {
+        integrator: IntegratorId::dop853,
+        start: 0.5,
+        end: 1.75,
+        rtol: 1e-8,
+        atol: 1e-10,
+        max_step: 0.05,
+        output: Output::Every(0.125),
+        ..Settings::default()
+    };
+    let robot = articulated::load_bytes("arm.urdf", ARM.as_bytes(), articulated::Base::Fixed).unwrap().with_gravity([0.0, 0.0, -3.7]);
+    let (target, kp) = ([-0.2, 0.1, 0.0, 0.0, 0.0, 1.0], [40.0, 15.0, 2.0, 2.0, 2.0]);
+    let (torque, kd) = ([0.0, 0.25, 0.0, 0.0, 0.0], 0.9);
+    let (mut ws, mut error) = (Workspace::new(&robot), vec![0.0; 5]);
+    let mut control = |_: f64, q: &[f64], v: &[f64], tau: &mut [f64]| {
+        robot.difference(&mut ws, q, &target, &mut error).unwrap();
+        (0..5).for_each(|i| tau[i] = kp[i] * error[i] + kd * (0.0 - v[i]) + torque[i]);
+    };
+    let (q, v) = ([0.7, 0.0, 0.0, 0.6, 0.0, 0.8], [0.0, -1.5, 0.1, 0.2, 0.3]);
+    let expected = Simulation::new(&robot, settings).unwrap().run(&q, &v, &mut control, &mut []).unwrap();
+
+    assert!(expected.len() == 11 && (expected.q_at(0)[0] - expected.q_at(10)[0]).abs() > 0.1);
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn given_torques_and_tables_are_those_of_the_library() {
+    let settings = || Settings { end: 1.5, ..Settings::default() };
+    let run = |control: &mut dyn articulated::simulate::Control| {
+        let robot = articulated::load_bytes("cart.urdf", CART.as_bytes(), articulated::Base::Fixed).unwrap();
+        Simulation::new(&robot, settings()).unwrap().run(&[0.0], &[0.0], control, &mut []).unwrap()
+    };
+    let found = moved(&stage("control = { kind = 'torque', torque = 0.75 }\nsimulation = { end = 1.5 }", CART)).recording;
+    assert_eq!(found, run(&mut Constant::new(vec![0.75])));
+    let rows = "columns = ['slide'], rows = [[0.0, 1.0], [0.3, -2.0], [1.0, 0.5]]";
+    let found = moved(&stage(&format!("control = {{ kind = 'table', {rows} }}\nsimulation = {{ end = 1.5 }}"), CART)).recording;
+    let mut table = TorqueTable::new(vec![0.0, 0.3, 1.0], vec![1.0, -2.0, 0.5], 1).unwrap();
+    let expected = run(&mut table);
+    let far = found.q.iter().zip(&expected.q).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+    assert!(found.t == expected.t && far < 1e-14, "{far:e}");
+}
+
+#[test]
+fn a_table_in_a_file_of_the_folder_is_one_in_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("way.csv"), "t,slide\n0,0.1\n0.5,0.4\n1,-0.2\n").unwrap();
+    let scene = |source: &str| format!("control = {{ kind = 'pd', kp = 30, kd = 4, {source} }}\nsimulation = {{ end = 1.0 }}");
+    let of_file = stage(&scene("file = 'way.csv'"), CART).in_folder(folder.path());
+    let inline = stage(&scene("columns = ['slide'], rows = [[0.0, 0.1], [0.5, 0.4], [1.0, -0.2]]"), CART);
+    let (found, expected) = (moved(&of_file).recording, moved(&inline).recording);
+    assert_eq!(found, expected);
+    // At the first row: kp (0.1 − 0) + kd (0.3/0.5 − 0).
+    assert!((found.tau_at(0)[0] - (30.0 * 0.1 + 4.0 * 0.6)).abs() < 1e-12, "{:?}", found.tau_at(0));
+}
+
+#[test]
+fn a_sampled_controller_holds_its_torques() {
+    let scene = "control = { kind = 'pd', target = { slide = 0.4 }, kp = 30, period = 0.1 }\nsimulation = { end = 0.3, output = 0.05 }";
+    let r = moved(&stage(scene, CART)).recording;
+    // The record at a sample is of the torques before it.
+    assert_eq!(r.tau[..3], [12.0; 3]);
+    assert!(r.tau[3] < 12.0 && r.tau[3] == r.tau[4] && r.tau[5] < r.tau[4], "{:?}", r.tau);
+}

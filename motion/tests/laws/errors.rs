@@ -1,0 +1,162 @@
+//! What keeps a scene from moving is told, all of it at once.
+
+use articulated::simulate::{Settings, StateError};
+use articulated::{Dynamics, FunctionError};
+use articulated_models::panda_like;
+use articulated_motion::{Begin, Controller, Fault, MotionErrors, Stage};
+use articulated_scene::{Aim, Series};
+
+use super::{ARM, CART, stage};
+
+fn lines(errors: &MotionErrors) -> Vec<String> {
+    errors.to_string().lines().map(str::to_owned).collect()
+}
+
+/// Of a stage that does not move on a robot.
+fn refused<R: Dynamics<f64>>(stage: &Stage, robot: &R, frames: &[&str]) -> Vec<Fault> {
+    stage.run(robot, frames).unwrap_err().errors.into_iter().map(|e| e.fault).collect()
+}
+
+const TOUCHING: &str = "effects = { contact = { hand = { radius = 0.05, stiffness = 1e4, damping = 0.1, friction = 0.5 }, fore = { radius = 0.1, stiffness = 1e4, damping = 0.1, friction = 0.5 } } }
+    impact = { link = 'upper', normal = [1, 0, 0], mass = 1, restitution = 1, time = 0.1 }
+    simulation = { end = 1.0, events = ['contacts'] }";
+
+#[test]
+fn frames_that_events_need_and_the_robot_has_not_are_told_together() {
+    let stage = stage(TOUCHING, ARM);
+    let robot = stage.model.clone().with_frames(&["fore"]).unwrap();
+    let missing = |key, link: &str| Fault::NoFrame { key, link: link.into(), frames: vec!["fore".into()] };
+    assert_eq!(refused(&stage, &robot, &["fore"]), [missing("effects.contact", "hand"), missing("impact.link", "upper")]);
+    let told = r#"s.toml: impact.link: found a robot that gives no frame of "upper", expected that among its frames (fore)"#;
+    assert_eq!(lines(&stage.run(&robot, &["fore"]).unwrap_err())[1], told);
+    assert_eq!(stage.frames(), ["fore", "hand", "upper"]);
+    let robot = stage.model.clone().with_frames(&["upper", "hand", "fore"]).unwrap();
+    assert!(stage.run(&robot, &["upper", "hand", "fore"]).is_ok());
+}
+
+#[test]
+fn contacts_that_nobody_looks_for_need_no_frames() {
+    let stage = stage(
+        "effects = { contact = { hand = { radius = 0.05, stiffness = 1e4, damping = 0.1, friction = 0.5 } } }\nsimulation = { end = 0.1 }",
+        ARM,
+    );
+    let robot = stage.model.clone().with_frames::<&str>(&[]).unwrap();
+    assert!(stage.frames().is_empty() && stage.run::<_, &str>(&robot, &[]).is_ok());
+}
+
+#[test]
+fn names_of_frames_are_those_of_the_robot_in_its_order() {
+    let stage = stage(TOUCHING, ARM);
+    let robot = stage.model.clone().with_frames(&["upper", "hand", "fore"]).unwrap();
+    let name = |index, found: &str, expected: &str| Fault::FrameName { index, found: found.into(), expected: expected.into() };
+    assert_eq!(refused(&stage, &robot, &["hand", "upper", "fore"]), [name(0, "hand", "upper"), name(1, "upper", "hand")]);
+    assert_eq!(refused(&stage, &robot, &["upper", "hand"])[0], Fault::Frames { found: 2, expected: 3 });
+}
+
+#[test]
+fn functions_that_the_robot_has_not_are_told_together() {
+    let scene = "control = { kind = 'pd', kp = 1.0 }
+        impact = { link = 'link_7', normal = [1, 0, 0], mass = 1, restitution = 1, time = 0.1 }
+        simulation = { end = 1.0, integrator = 'rodas4' }";
+    let stage = stage(scene, articulated_models::robot("panda_like").unwrap().urdf);
+    let lacks = |function| Fault::Function(FunctionError::NotGenerated { function });
+    let functions = ["forward_dynamics_derivatives", "difference", "jacobians_world_aligned", "solve_mass_matrix"].map(lacks);
+    assert_eq!(refused(&stage, &panda_like::Robot, &panda_like::FRAME_NAMES), functions);
+    let told = lines(&stage.run(&panda_like::Robot, &panda_like::FRAME_NAMES).unwrap_err());
+    assert_eq!(told[1], "s.toml: this robot was generated without difference: add it to `functions`");
+}
+
+/// The scene's control may be another than that which the motion is begun with.
+#[test]
+fn a_controller_that_the_robot_has_not_the_functions_for_is_refused() {
+    let stage = stage("simulation = { end = 0.1 }", articulated_models::robot("panda_like").unwrap().urdf);
+    let mut motion = stage.motion(&panda_like::Robot, &panda_like::FRAME_NAMES, stage.settings().unwrap()).unwrap();
+    let zeros = || vec![0.0; 7];
+    let controller = Controller::Pd { target: Aim::Still(zeros()), kp: zeros(), kd: zeros(), torque: zeros() };
+    let begin = Begin { controller, ..stage.begin().unwrap() };
+    let told = motion.run(&begin, &mut |_, _| true).unwrap_err();
+    assert_eq!(told.errors[0].fault, Fault::Function(FunctionError::NotGenerated { function: "difference" }));
+    let begin = Begin { controller: Controller::Torque(zeros()), ..begin };
+    assert!(motion.run(&begin, &mut |_, _| true).is_ok());
+}
+
+#[test]
+fn another_robot_than_the_scenes_is_refused() {
+    let (stage, cart) = (stage(TOUCHING, ARM), stage("", CART));
+    let shape = |what, expected| Fault::Shape { what, found: 1, expected };
+    let found = refused(&stage, &cart.model, &cart.frame_names());
+    assert!(found.contains(&shape("coordinates", 6)) && found.contains(&shape("degrees of freedom", 5)), "{found:?}");
+}
+
+#[test]
+fn all_that_is_wrong_with_a_scene_is_told_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "initial = { q = { sholder = 1 }, v = { elbow = [1, 2] } }\ncontrol = { kind = 'table', file = 'no.csv' }";
+    let told = lines(&stage(scene, ARM).in_folder(folder.path()).run::<_, &str>(&stage("", ARM).model, &[]).unwrap_err());
+    assert_eq!(told.len(), 4, "{told:#?}");
+    assert_eq!(told[0], "s.toml: simulation: found nothing, expected [simulation] with `end`, s");
+    let parts = [("s.toml:1: initial.q.sholder: ", "shoulder"), ("s.toml:1: initial.v.elbow: ", "2 numbers"), ("s.toml:2: ", "no.csv")];
+    for (line, (start, part)) in told[1..].iter().zip(parts) {
+        assert!(line.starts_with(start) && line.contains(part), "{line}");
+    }
+}
+
+#[test]
+fn tables_that_are_no_text_are_not_read() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("odd.csv"), b"t,slide\n0,\xff\n").unwrap();
+    let vast = std::fs::File::create(folder.path().join("vast.csv")).unwrap();
+    vast.set_len((4 << 30) + 1).unwrap();
+    let begun = |file: &str| {
+        let stage = stage(&format!("control = {{ kind = 'table', file = '{file}' }}"), CART).in_folder(folder.path());
+        stage.begin().unwrap_err().to_string()
+    };
+    let (odd, vast) = (begun("odd.csv"), begun("vast.csv"));
+    assert!(odd.starts_with("s.toml:1: ") && odd.contains("odd.csv: byte 10: found no UTF-8, expected a CSV"), "{odd}");
+    assert!(vast.contains("vast.csv: found 4294967297 bytes, expected at most 4294967296 bytes"), "{vast}");
+}
+
+#[test]
+fn settings_that_cannot_be_used_are_told_together() {
+    let stage =
+        stage("simulation = { end = 1.0 }\nimpact = { link = 'cart', normal = [1, 0, 0], mass = 1, restitution = 1, time = 1.5 }", CART);
+    let settings = stage.settings().unwrap();
+    let in_time = Fault::Time { found: 1.5, start: 0.0, end: 1.0 };
+    assert_eq!(stage.check(&settings).unwrap_err().errors[0].fault, in_time);
+    let told = "s.toml: impact.time: found 1.5, expected a time from 0.0 s on and before 1.0 s";
+    assert_eq!(stage.motion(&stage.model, &stage.frame_names(), settings.clone()).err().unwrap().to_string(), told);
+    assert!(stage.check(&Settings { end: 2.0, ..settings.clone() }).is_ok());
+    let wrong = Settings { rtol: 2.0, end: -1.0, ..settings };
+    let errors = stage.motion(&stage.model, &stage.frame_names(), wrong).err().unwrap();
+    assert_eq!(errors.errors.len(), 2, "{errors}");
+    assert!(lines(&errors)[0].starts_with("s.toml: end = -1: "), "{errors}");
+}
+
+#[test]
+fn a_begin_that_does_not_fit_the_robot_is_refused() {
+    let stage = stage("simulation = { end = 0.1 }", ARM);
+    let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
+    let begin = stage.begin().unwrap();
+    let mut told =
+        |begin: &Begin| -> Vec<Fault> { motion.run(begin, &mut |_, _| true).unwrap_err().errors.into_iter().map(|e| e.fault).collect() };
+    let length = |vector, found, expected| Fault::State(StateError::Length { vector, found, expected });
+    assert_eq!(told(&Begin { q: vec![0.0], v: vec![], ..begin.clone() }), [length("q", 1, 6), length("v", 0, 5)]);
+    let torque = Begin { controller: Controller::Torque(vec![]), ..begin.clone() };
+    assert_eq!(told(&torque), [length("control.torque", 0, 5)]);
+    let series = Series { times: vec![0.0, 1.0], rows: vec![vec![0.0; 2]], hold: false };
+    let pd = Controller::Pd { target: Aim::Moving(series), kp: vec![], kd: vec![0.0; 5], torque: vec![0.0; 5] };
+    let expected = [length("control.kp", 0, 5), length("control.rows", 1, 2), length("a row of control.rows", 2, 6)];
+    assert_eq!(told(&Begin { controller: pd, ..begin.clone() }), expected);
+    let nowhere = Begin { q: [0.0, f64::NAN].into_iter().chain([0.0; 3]).chain([1.0]).collect(), ..begin };
+    assert!(matches!(&told(&nowhere)[..], [Fault::State(StateError::NotFinite { vector: "q", index: 1, .. })]));
+}
+
+#[test]
+fn a_start_beyond_its_limits_is_odd_and_used() {
+    let stage = stage("initial = { q = { shoulder = 1.75, elbow = -1.0 } }\nsimulation = { end = 0.1 }", ARM);
+    let begin = stage.begin().unwrap();
+    let [beyond] = &stage.beyond(&begin.q)[..] else { panic!("one joint") };
+    assert_eq!((beyond.joint.as_str(), beyond.found, beyond.lower, beyond.upper), ("shoulder", 1.75, -1.5, 1.5));
+    let told = "s.toml: initial.q.shoulder: found 1.75, beyond its limits, expected -1.5 to 1.5; used as asked for";
+    assert_eq!((beyond.to_string().as_str(), begin.q[0]), (told, 1.75));
+}

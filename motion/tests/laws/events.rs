@@ -1,0 +1,117 @@
+//! What happens on the way, and how it reads.
+
+use articulated::simulate::Ended;
+use articulated_motion::{Ending, Without};
+use articulated_scene::Watched;
+
+use super::{ARM, CART, moved, stage, words};
+
+/// A cart of 2 kg at 3 m/s hits a ball of 0.5 kg at rest 0.6 m ahead; e = 0.8.
+const BLOW: &str = "gravity = [0, 0, 0]
+    initial = { v = { slide = 3.0 } }
+    simulation = { end = 1.0, rtol = 1e-10, atol = 1e-12, events = ['limits'] }
+    [impact]
+    link = 'cart'
+    normal = [2.0, 0.0, 0.0]
+    mass = 0.5
+    restitution = 0.8
+    ball = [0.6, 0.0, 0.0]\n";
+
+/// (1 + e) v m/(m + m_b), m/s.
+const BALL: f64 = 1.8 * 3.0 * 2.0 / 2.5;
+
+#[test]
+fn a_blow_and_a_limit_are_found_and_told() {
+    let outcome = moved(&stage(BLOW, CART));
+    assert_eq!(words(&outcome), ["cart hits the ball, which leaves at 4.3200 m/s", "slide reaches its limit"]);
+    let after = 3.0 - 0.5 * BALL / 2.0;
+    for (happening, t) in outcome.happenings.iter().zip([0.2, 0.2 + 0.3 / after]) {
+        assert!((happening.t - t).abs() < 1e-9, "{happening:?} {t}");
+    }
+    let speeds: Vec<Option<f64>> = outcome.happenings.iter().map(|h| h.ball_speed).collect();
+    assert!((speeds[0].unwrap() - BALL).abs() < 1e-9 && speeds[1].is_none(), "{speeds:?}");
+    let energy = 0.5 * 0.5 * BALL * BALL;
+    assert!((outcome.ball.unwrap() - energy).abs() < 1e-8, "{:?} {energy}", outcome.ball);
+    assert_eq!((outcome.ending, outcome.reached, outcome.error), (Ending::AtEnd, 1.0, None));
+}
+
+#[test]
+fn a_motion_stops_where_a_blow_ends_it() {
+    let stage = stage(&format!("{BLOW}stop = true\n"), CART);
+    let outcome = moved(&stage);
+    assert_eq!((outcome.ending, outcome.ending.to_string().as_str()), (Ending::ByBlow, "by an event"));
+    assert!((outcome.reached - 0.2).abs() < 1e-9 && outcome.error.is_none(), "{}", outcome.reached);
+    assert_eq!(words(&outcome), ["cart hits the ball, which leaves at 4.3200 m/s"]);
+    assert!(outcome.recording.t.iter().all(|t| *t <= outcome.reached + 1e-12));
+}
+
+#[test]
+fn a_motion_runs_again_as_it_ran_before() {
+    let stage = stage(&format!("{BLOW}stop = true\n"), CART);
+    let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
+    let begin = stage.begin().unwrap();
+    let [mut first, mut again] = [(); 2].map(|()| motion.run(&begin, &mut |_, _| true).unwrap());
+    (first.wall, again.wall) = Default::default();
+    assert_eq!(first, again);
+    // Who goes the other way never meets the ball: nothing is left of the blow before.
+    let away = articulated_motion::Begin { v: vec![-1.0], ..begin };
+    let outcome = motion.run(&away, &mut |_, _| true).unwrap();
+    assert_eq!((outcome.ball, outcome.ending, words(&outcome)), (None, Ending::AtEnd, vec!["slide reaches its limit"]));
+}
+
+#[test]
+fn who_follows_it_may_end_it() {
+    let stage = stage("initial = { v = { slide = 0.1 } }\nsimulation = { end = 1.0, step = 0.01, integrator = 'rk4' }", CART);
+    let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
+    let mut told = Vec::new();
+    let mut follow = |t: f64, counts: &articulated_motion::Counts| {
+        told.push((t, counts.steps));
+        counts.steps < 25
+    };
+    let outcome = motion.run(&stage.begin().unwrap(), &mut follow).unwrap();
+    assert_eq!((outcome.ending, outcome.recording.ended, told.len()), (Ending::ByFollower, Ended::ByWatcher, 25));
+    assert!((outcome.reached - 0.25).abs() < 1e-12 && told[24].0 == outcome.reached, "{}", outcome.reached);
+}
+
+#[test]
+fn a_ball_that_nothing_moves_towards_keeps_its_speed() {
+    let scene = BLOW.replace("ball = [0.6, 0.0, 0.0]", "time = 0.25\nball_speed = 7.5");
+    let outcome = moved(&stage(&scene, CART));
+    assert_eq!(words(&outcome)[0], "cart is not moving towards the ball, which keeps 7.5000 m/s");
+    assert!(outcome.ball == Some(0.0) && (outcome.happenings[0].t - 0.25).abs() < 1e-9, "{outcome:?}");
+}
+
+#[test]
+fn contacts_and_sticking_are_found_and_told() {
+    let fall = "initial = { q = { shoulder = 1.2 } }
+        effects = { contact = { hand = { radius = 0.05, stiffness = 1e4, damping = 1.0, friction = 0.5, height = 0.12 } } }
+        simulation = { end = 1.0, integrator = 'rodas4', events = ['contacts'] }";
+    let outcome = moved(&stage(fall, ARM));
+    assert_eq!(words(&outcome)[..2], ["hand touches the ground", "hand leaves the ground"]);
+    // Friction of 2 N stops 2 kg at 0.5 m/s after half a second.
+    let slide = "initial = { v = { slide = 0.5 } }
+        effects = { friction = { slide = { friction = 2.0, speed = 1e-4 } } }
+        simulation = { end = 1.0, integrator = 'rodas4', events = ['stick_slip'] }";
+    let outcome = moved(&stage(slide, CART));
+    assert_eq!(words(&outcome), ["slide sticks"]);
+    assert!((outcome.happenings[0].t - 0.5).abs() < 1e-3, "{:?}", outcome.happenings);
+}
+
+#[test]
+fn sorts_of_events_that_cannot_happen_are_told() {
+    let stage = stage("simulation = { end = 0.1, events = ['contacts', 'limits', 'stick_slip'] }", CART);
+    let motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
+    let expected = [Watched::Contacts, Watched::StickSlip].map(|what| Without { file: "s.toml".into(), what });
+    assert_eq!(motion.without(), expected);
+    let told = r#"s.toml: simulation.events: found "contacts", expected an effect contact of the scene; nothing to look for"#;
+    assert_eq!(motion.without()[0].to_string(), told);
+}
+
+#[test]
+fn an_error_on_the_way_leaves_what_was_up_to_there() {
+    let scene = "initial = { v = { slide = 1.0 } }
+        simulation = { end = 1.0, integrator = 'rk4', step = 0.01, max_steps = 30, output = 'steps' }";
+    let outcome = moved(&stage(scene, CART));
+    assert_eq!((outcome.ending, outcome.recording.len()), (Ending::ByError, 31));
+    assert!(outcome.error.unwrap().to_string().starts_with("30 steps were made") && (outcome.reached - 0.3).abs() < 1e-12);
+}
