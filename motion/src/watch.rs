@@ -108,12 +108,9 @@ impl<'a> Watch<'a> {
         R::Workspace: 'a,
     {
         for a in stage.effects_of(EffectId::contact) {
-            let frame = match frame_of("effects.contact", &a.on, frames) {
-                Ok(frame) => frame,
-                Err(fault) => {
-                    faults.push(fault);
-                    continue;
-                }
+            let Some(frame) = frame_of(&a.on, frames) else {
+                faults.push(no_frame("effects.contact", &a.on, frames));
+                continue;
             };
             let at = ContactPoint { frame, point: a.at.xyz, normal: field(a, "normal").try_into().unwrap_or([f64::NAN; 3]) };
             match Event::contact(a.on.clone(), robot, at, number(a, "radius"), number(a, "height")) {
@@ -139,23 +136,24 @@ impl<'a> Watch<'a> {
         R::Workspace: 'a,
     {
         let Some(asked) = &stage.scene.impact else { return };
-        let event = frame_of("impact.link", &asked.link, frames)
-            .map_err(|fault| vec![fault])
-            .and_then(|frame| self.ball.event(asked, robot, frame, start).map_err(Fault::of));
+        let Some(frame) = frame_of(&asked.link, frames) else { return faults.push(no_frame("impact.link", &asked.link, frames)) };
         let hits = format!("{} hits the ball, which leaves at", asked.link);
         let misses = format!("{} is not moving towards the ball, which keeps", asked.link);
-        match event {
+        match self.ball.event(asked, robot, frame, start) {
             Ok(event) => self.push(event, hits, misses),
-            Err(all) => faults.extend(all),
+            Err(error) => faults.extend(Fault::of(error)),
         }
     }
 }
 
 /// The number of a link's frame.
-fn frame_of<S: AsRef<str>>(key: &'static str, link: &str, frames: &[S]) -> Result<usize, Fault> {
-    let names = || frames.iter().map(AsRef::as_ref);
-    let missing = || Fault::NoFrame { key, link: link.to_owned(), frames: names().map(str::to_owned).collect() };
-    names().position(|name| name == link).ok_or_else(missing)
+fn frame_of<S: AsRef<str>>(link: &str, frames: &[S]) -> Option<usize> {
+    frames.iter().position(|name| name.as_ref() == link)
+}
+
+/// There is no frame of a link that an event is about.
+fn no_frame<S: AsRef<str>>(key: &'static str, link: &str, frames: &[S]) -> Fault {
+    Fault::NoFrame { key, link: link.to_owned(), frames: frames.iter().map(|name| name.as_ref().to_owned()).collect() }
 }
 
 /// A field of one number; one that is not there is none.
