@@ -64,11 +64,11 @@ impl Robot {
 
     /// The robot of a scene: a file, or a bundled one. What the arguments say stands in place of what the scene says; edits come after the scene's.
     fn of_scene(name: &str, arguments: &RobotArguments) -> Result<Self, Failure> {
-        let robot = |name: &str| articulated_models::robot(name).map(|r| (r.urdf, r.base));
+        let robots = known_by_name();
         let bundled = name.strip_suffix(".toml").and_then(articulated_models::scene).filter(|_| !Path::new(name).exists());
         let prepared = match bundled {
-            Some(bundled) => scene::open_in(Scene::read(name, bundled.toml).map_err(Error::from)?, Path::new(""), &robot)?,
-            None => scene::open(Path::new(name), &robot)?,
+            Some(bundled) => scene::open_in(Scene::read(name, bundled.toml).map_err(Error::from)?, Path::new(""), &robots)?,
+            None => scene::open(Path::new(name), &robots)?,
         };
         let bundled = matches!(prepared.scene.robot, articulated_scene::Robot::Bundled(_));
         let mut request = prepared.request;
@@ -204,6 +204,11 @@ impl Robot {
 pub(crate) fn note_of_parameters(options: &Options) -> Option<String> {
     let list = options.parameters.join(", ");
     (!list.is_empty()).then(|| format!("parameters: {list}: constants here, with the numbers of the robot's description"))
+}
+
+/// The robots that scenes may call by name.
+pub(crate) fn known_by_name() -> Vec<scene::Bundled<'static>> {
+    articulated_models::ROBOTS.iter().map(|robot| scene::Bundled { name: robot.name, urdf: robot.urdf, base: robot.base }).collect()
 }
 
 /// The edits, with the documents of the robots to append.

@@ -129,7 +129,7 @@ fn a_scene_gives_the_same_tokens_by_macro_build_script_and_request() {
     ] {
         assert!(build.source.contains(words), "{words} in {}", build.source.lines().take(30).collect::<Vec<_>>().join("\n"));
     }
-    let mut opened = articulated_codegen::scene::open(std::path::Path::new(file), &|_| None).unwrap().request;
+    let mut opened = articulated_codegen::scene::open(std::path::Path::new(file), &[]).unwrap().request;
     opened.options.runtime = Some("::articulated".into());
     assert_eq!(generate(&opened).unwrap().source, build.source);
 

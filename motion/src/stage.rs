@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use articulated_core::description::Description;
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
-use articulated_scene::Scene;
-use articulated_urdf::read_file;
+use articulated_scene::{Opened, Report, RobotError, Scene, Settled};
+use articulated_urdf::{Problem, Reading, read_file};
 
 /// No table of control is larger, bytes: ten million rows, of which none has more, of 400 each.
 const MOST_OF_TABLE: u64 = 4 << 30;
@@ -22,15 +22,35 @@ pub struct Stage {
     pub model: Model<f64>,
     /// The effects that are on: those that the model has.
     pub effects: Vec<Applied>,
+    /// What of the effects is on and off, and what of the robot's document is not used.
+    pub report: Report,
+    /// What is odd about the robot, and used as it is written or as the scene asks.
+    pub warnings: Vec<Problem>,
     folder: PathBuf,
 }
 
 /// How a stage is had.
 impl Stage {
-    /// Of parts that belong together: `model` is that of `description` and has `effects`, which [`Scene::resolve`] gives. Files that the scene names are seen from the
+    /// The scene at `path` with the robot of the URDF that it names. Errors: all that is wrong with the scene, or else with the robot, or else all of the scene that does not fit it.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, RobotError> {
+        let path = path.as_ref();
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Ok(Self::of(articulated_scene::open(path, &[])?)?.in_folder(folder))
+    }
+
+    /// Of a scene whose files are read, or of one for which a program has the documents itself ([`Opened::new`]). Errors: as [`Stage::open`].
+    pub fn of(opened: Opened) -> Result<Self, RobotError> {
+        let Settled { reading, model, resolved } = opened.settle()?;
+        let Reading { description, mut warnings, snapped, .. } = reading;
+        warnings.extend(snapped);
+        let stage = Self::new(opened.scene, description, model, resolved.effects);
+        Ok(Self { warnings, report: resolved.report, ..stage })
+    }
+
+    /// Of parts that belong together: `model` is that of `description` and has `effects`, which [`Scene::resolve`] gives; with nothing to report. Files that the scene names are seen from the
     /// folder in which the program runs, see [`Stage::in_folder`].
     pub fn new(scene: Scene, description: Description, model: Model<f64>, effects: Vec<Applied>) -> Self {
-        Self { scene, description, model, effects, folder: PathBuf::new() }
+        Self { scene, description, model, effects, report: Report::default(), warnings: Vec::new(), folder: PathBuf::new() }
     }
 
     /// Files that the scene names are seen from this folder: that of the scene's file.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use articulated_core::description::Base;
 use articulated_core::effect::EffectId;
-use articulated_scene::{Opened, RobotError, Scene, open, open_in};
+use articulated_scene::{Bundled, Opened, RobotError, Scene, open, open_in};
 
 const LINK: &str = r#"<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>"#;
 
@@ -102,28 +102,31 @@ fn files_are_seen_from_the_scenes_folder_and_those_that_are_not_there_are_told_a
     std::fs::write(path("alone.toml"), "\nurdf = 'no.urdf'").unwrap();
     std::fs::write(path("robot.toml"), "robot = 'arm'").unwrap();
     std::fs::write(path("nothing.toml"), "").unwrap();
-    let none: &dyn Fn(&str) -> Option<(&'static str, Base)> = &|_| None;
     let [whole, alone, robot, nothing, nowhere] =
-        ["whole.toml", "alone.toml", "robot.toml", "nothing.toml", "nowhere.toml"].map(|name| open(&path(name), none));
+        ["whole.toml", "alone.toml", "robot.toml", "nothing.toml", "nowhere.toml"].map(|name| open(&path(name), &[]));
     std::fs::remove_dir_all(&folder).unwrap();
     let whole = whole.unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(whole.files, ["whole.toml", "arm.urdf", "finger.urdf"].map(path));
     assert_eq!(whole.settle().unwrap().model.nv, 2);
     let told = |result: Result<Opened, RobotError>| result.unwrap_err().to_string();
     assert!(told(alone).starts_with(&format!("{}:2: urdf: {}: ", path("alone.toml").display(), path("no.urdf").display())));
-    assert!(told(robot).contains("robot.toml:1: robot: found a bundled robot that there is not"));
+    assert!(
+        told(robot)
+            .contains("robot.toml:1: robot: found \"arm\", a robot that there is not, expected urdf: no robot is known by name here")
+    );
     assert!(told(nothing).contains("nothing.toml: found no robot, expected robot, or urdf"));
     assert!(told(nowhere).starts_with(&format!("{}: ", path("nowhere.toml").display())));
 }
 
 #[test]
-fn a_bundled_robot_stands_on_its_own_base_unless_the_scene_says_another() {
-    let bundled: &dyn Fn(&str) -> Option<(&'static str, Base)> = &|name| {
-        (name == "stone").then_some(("<robot name='stone'><link name='stone'><inertial><mass value='2'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link></robot>", Base::Floating))
-    };
+fn a_bundled_robot_stands_on_its_own_base_unless_the_scene_says_another_and_of_others_the_nearest_is_told() {
+    let urdf = format!("<robot name='stone'><link name='stone'>{LINK}</link></robot>");
+    let bundled = [Bundled { name: "stone", urdf: &urdf, base: Base::Floating }];
     let nv = |text: &str| {
-        let scene = Scene::read("s.toml", text).unwrap();
-        open_in(scene, Path::new(""), bundled).unwrap().settle().map(|settled| settled.model.nv).unwrap()
+        let opened = open_in(Scene::read("s.toml", text).unwrap(), Path::new(""), &bundled)?;
+        opened.settle().map(|settled| settled.model.nv)
     };
-    assert_eq!([nv("robot = 'stone'"), nv("robot = 'stone'\nbase = 'fixed'")], [6, 0]);
+    assert_eq!([nv("robot = 'stone'"), nv("robot = 'stone'\nbase = 'fixed'")].map(Result::unwrap), [6, 0]);
+    let told = nv("\nrobot = 'stne'").unwrap_err().to_string();
+    assert_eq!(told, "s.toml:2: robot: found \"stne\", a robot that there is not, expected one of stone; did you mean \"stone\"?");
 }

@@ -3,13 +3,14 @@
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
 
-use articulated_codegen::scene::{self, Bundled, Prepared, Scene};
+use articulated_codegen::scene::{self, Prepared, Scene};
 use articulated_codegen::{Error, Request, nearest};
 use articulated_core::description::Base;
 use articulated_scene::{Report, Robot};
 
 use crate::console;
 use crate::failure::Failure;
+use crate::robot::known_by_name;
 
 /// A scene with its robot, as it moves, and what the command has to know besides.
 pub(crate) struct Stage {
@@ -29,8 +30,6 @@ impl Deref for Stage {
         &self.stage
     }
 }
-
-const BUNDLED: Bundled<'static> = &|name| articulated_models::robot(name).map(|r| (r.urdf, r.base));
 
 impl Stage {
     /// Refuses a level whose functions take `f32`, which what calls them here has not.
@@ -59,13 +58,13 @@ impl Stage {
         let (prepared, folder) = match bundled {
             Some(bundled) => {
                 let scene = Scene::read(&format!("{}.toml", bundled.name), bundled.toml).map_err(Error::from)?;
-                (scene::open_in(scene, Path::new(""), BUNDLED)?, PathBuf::new())
+                (scene::open_in(scene, Path::new(""), &known_by_name())?, PathBuf::new())
             }
             None if path.is_file() && path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf")) => {
                 let expected = format!("a scene, a TOML file with urdf = {name:?} in it");
                 return Err(Failure::input([format!("{name}: found a URDF, expected {expected}")]));
             }
-            None if path.exists() => (scene::open(path, BUNDLED)?, path.parent().map(Path::to_owned).unwrap_or_default()),
+            None if path.exists() => (scene::open(path, &known_by_name())?, path.parent().map(Path::to_owned).unwrap_or_default()),
             None => return Err(unknown(name)),
         };
         let name = path.file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned());

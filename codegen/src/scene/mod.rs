@@ -29,13 +29,13 @@ pub struct Prepared {
     pub files: Vec<PathBuf>,
 }
 
-/// The scene at `path` with its robot. Files that it names are seen from its folder.
-pub fn open(path: &Path, bundled: Bundled<'_>) -> Result<Prepared, Error> {
+/// The scene at `path` with its robot; `bundled` are those that it may call by name. Files that it names are seen from its folder.
+pub fn open(path: &Path, bundled: &[Bundled<'_>]) -> Result<Prepared, Error> {
     prepared(articulated_scene::open(path, bundled)?)
 }
 
-/// A scene that was read, with its robot. Files that it names are seen from `folder`.
-pub fn open_in(scene: Scene, folder: &Path, bundled: Bundled<'_>) -> Result<Prepared, Error> {
+/// A scene that was read, with its robot; `bundled` are those that it may call by name. Files that it names are seen from `folder`.
+pub fn open_in(scene: Scene, folder: &Path, bundled: &[Bundled<'_>]) -> Result<Prepared, Error> {
     prepared(articulated_scene::open_in(scene, folder, bundled)?)
 }
 
@@ -311,7 +311,7 @@ mod tests {
         std::fs::write(path("arm.urdf"), ARM).unwrap();
         std::fs::write(path("of.toml"), "urdf = 'vast'").unwrap();
         std::fs::write(path("with.toml"), "urdf = 'arm.urdf'\nappend = { urdf = 'vast', at = 'fore', prefix = 'x' }").unwrap();
-        let opened = ["vast", "of.toml", "with.toml"].map(|name| open(&path(name), &|_| None).map(drop).map_err(|e| e.to_string()));
+        let opened = ["vast", "of.toml", "with.toml"].map(|name| open(&path(name), &[]).map(drop).map_err(|e| e.to_string()));
         let built =
             [crate::Build::new(path("vast")), crate::Build::scene(path("vast"))].map(|b| b.generate().map(drop).map_err(|e| e.to_string()));
         std::fs::remove_dir_all(&folder).unwrap();

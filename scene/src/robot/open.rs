@@ -14,8 +14,16 @@ use crate::edits::Append;
 use crate::effects::{Edited, Resolved};
 use crate::scene::{Robot, Scene};
 
-/// A bundled robot's URDF and the base that it is meant for, by its name.
-pub type Bundled<'a> = &'a dyn Fn(&str) -> Option<(&'static str, Base)>;
+/// A robot that scenes may call by its name.
+#[derive(Clone, Copy, Debug)]
+pub struct Bundled<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// Its URDF.
+    pub urdf: &'a str,
+    /// The base that it is meant for.
+    pub base: Base,
+}
 
 /// A scene with the documents that it names.
 #[derive(Clone, Debug)]
@@ -56,8 +64,8 @@ pub struct Attempt {
     pub rest: RobotOptions,
 }
 
-/// The scene at `path` with its robot's documents. Files that it names are seen from its folder.
-pub fn open(path: &Path, bundled: Bundled<'_>) -> Result<Opened, RobotError> {
+/// The scene at `path` with its robot's documents; `bundled` are the robots that it may call by name. Files that it names are seen from its folder.
+pub fn open(path: &Path, bundled: &[Bundled<'_>]) -> Result<Opened, RobotError> {
     let file = path.display().to_string();
     let scene = Scene::read_bytes(&file, &read_robot_file(path)?)?;
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -66,8 +74,8 @@ pub fn open(path: &Path, bundled: Bundled<'_>) -> Result<Opened, RobotError> {
     Ok(opened)
 }
 
-/// A scene that was read, with its robot's documents. Files that it names are seen from `folder`.
-pub fn open_in(mut scene: Scene, folder: &Path, bundled: Bundled<'_>) -> Result<Opened, RobotError> {
+/// A scene that was read, with its robot's documents; `bundled` are the robots that it may call by name. Files that it names are seen from `folder`.
+pub fn open_in(mut scene: Scene, folder: &Path, bundled: &[Bundled<'_>]) -> Result<Opened, RobotError> {
     scene.code.append.iter_mut().for_each(|other| other.urdf = folder.join(&other.urdf).display().to_string());
     let mut files = Vec::new();
     let (file, urdf, base) = match &scene.robot {
@@ -77,12 +85,9 @@ pub fn open_in(mut scene: Scene, folder: &Path, bundled: Bundled<'_>) -> Result<
             let urdf = read_robot_file(&path).map_err(|error| scene.unreadable(scene.code.places.robot, "urdf", &error))?;
             (path.display().to_string(), urdf, Base::Fixed)
         }
-        Robot::Bundled(name) => match bundled(name) {
-            Some((urdf, base)) => (format!("{name}.urdf"), urdf.as_bytes().to_vec(), base),
-            None => {
-                let expected = format!("the name of a bundled robot, not {name:?}");
-                return Err(scene.without_robot("a bundled robot that there is not", &expected).into());
-            }
+        Robot::Bundled(name) => match bundled.iter().find(|one| one.name == name) {
+            Some(one) => (format!("{name}.urdf"), one.urdf.as_bytes().to_vec(), one.base),
+            None => return Err(scene.unknown_robot(name, bundled).into()),
         },
         Robot::Given => return Err(scene.without_robot("no robot", "robot, or urdf").into()),
     };

@@ -1,9 +1,11 @@
 //! What was refused of a robot, at the places of the scene that asks for it.
 
 use articulated_core::description::EditError;
+use articulated_core::suggest::nearest;
 
 use super::edit::{Edit, Reason, Refusal};
 use super::error::RobotError;
+use super::open::Bundled;
 use crate::error::{Kind, SceneError, SceneErrors};
 use crate::scene::{Robot, Scene};
 use crate::tree::At;
@@ -81,6 +83,16 @@ impl Scene {
     /// A file that the scene names cannot be had.
     pub(super) fn unreadable(&self, at: At, key: &str, error: &RobotError) -> RobotError {
         SceneErrors { errors: vec![self.refused(at, key, error.to_string())] }.into()
+    }
+
+    /// The scene calls its robot by a name that nobody knows.
+    pub(super) fn unknown_robot(&self, name: &str, bundled: &[Bundled<'_>]) -> SceneErrors {
+        let names: Vec<&str> = bundled.iter().map(|one| one.name).collect();
+        let expected =
+            if names.is_empty() { "urdf: no robot is known by name here".to_owned() } else { format!("one of {}", names.join(", ")) };
+        let mut all = self.without_robot(&format!("{name:?}, a robot that there is not"), &expected);
+        all.errors[0].nearest = nearest(name, names.into_iter());
+        all
     }
 
     /// The scene has no robot that could be had.
