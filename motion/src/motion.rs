@@ -112,11 +112,11 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
         let refused = |e: SimulateError| MotionErrors::refused(&self.stage.scene.file, e);
         let mut drive = Drive::new(self.robot, begin.controller.clone(), self.stage.scene.control.period).map_err(refused)?;
         self.watch.reset();
-        let (ball, mut reached) = (self.watch.ball(), self.simulation.settings().start);
+        let (over, mut reached) = (self.watch.over(), self.simulation.settings().start);
         let mut recording = self.simulation.recording();
         let mut after_step = |t: f64, counts: &Counts| {
             reached = t;
-            follow(t, counts) && !ball.ends.get()
+            follow(t, counts) && !over()
         };
         let clock = Instant::now();
         let result = self.simulation.run_into(&begin.q, &begin.v, &mut drive, &mut self.watch.events, &mut recording, &mut after_step);
@@ -127,7 +127,7 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
             Err(e @ (SimulateError::Settings(_) | SimulateError::State(_) | SimulateError::Function(_))) => return Err(refused(e)),
             Err(e) => Some(e),
         };
-        let ending = Ending::of(recording.ended, self.watch.is_over());
+        let ending = Ending::of(recording.ended, over());
         let reached = match ending {
             Ending::AtEnd => self.simulation.settings().end,
             _ => recording.t.last().map_or(reached, |t| t.max(reached)),

@@ -21,6 +21,7 @@ pub fn settings(s: &Simulation) -> Settings {
         step: s.step,
         rtol: s.rtol,
         atol: s.atol,
+        atol_each: Vec::new(),
         min_step: s.min_step,
         max_step: s.max_step,
         first_step: s.first_step,
@@ -31,7 +32,6 @@ pub fn settings(s: &Simulation) -> Settings {
             Stiff::Refuse => Stiffness::Refuse,
             Stiff::Note => Stiffness::Note,
         },
-        ..Settings::default()
     }
 }
 
@@ -63,10 +63,46 @@ impl Stage {
 
 #[cfg(test)]
 mod tests {
+    use articulated::simulate::IntegratorId;
+    use articulated_scene::Scene;
+
     use super::*;
 
     #[test]
     fn defaults_of_scenes_are_those_of_the_library() {
         assert_eq!(settings(&Simulation::default()), Settings::default());
+    }
+
+    fn said(keys: &str) -> Settings {
+        let scene = Scene::read("s.toml", &format!("[simulation]\n{keys}")).unwrap_or_else(|e| panic!("{e}"));
+        settings(&scene.simulation.unwrap())
+    }
+
+    #[test]
+    fn every_key_of_a_scene_is_a_setting() {
+        let keys =
+            "start = 0.5\nend = 2.5\nintegrator = 'rodas4'\nrtol = 1e-4\natol = 1e-5\nmin_step = 1e-7\nmax_step = 0.25\nfirst_step = 1e-3
+            max_steps = 77\noutput = [0.75, 1.5]\nevent_tolerance = 1e-6\nstiffness = 'note'";
+        let expected = Settings {
+            integrator: IntegratorId::rodas4,
+            start: 0.5,
+            end: 2.5,
+            step: None,
+            rtol: 1e-4,
+            atol: 1e-5,
+            atol_each: Vec::new(),
+            min_step: 1e-7,
+            max_step: 0.25,
+            first_step: Some(1e-3),
+            max_steps: 77,
+            output: Output::At(vec![0.75, 1.5]),
+            event_tolerance: 1e-6,
+            stiffness: Stiffness::Note,
+        };
+        assert_eq!(said(keys), expected);
+        assert_eq!(said("end = 1\nstep = 0.125").step, Some(0.125));
+        for (word, output) in [("0.5", Output::Every(0.5)), ("'steps'", Output::Steps), ("'ends'", Output::Ends)] {
+            assert_eq!(said(&format!("end = 1\noutput = {word}")).output, output);
+        }
     }
 }

@@ -67,9 +67,11 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Whether the ball was hit and the motion ends with that: who runs the simulation asks after each step.
-    pub fn is_over(&self) -> bool {
-        self.ball.ends.get()
+    /// What tells whether the ball was hit and the motion ends with that: who runs a simulation asks it after each step. It is apart from the watch, whose events the
+    /// simulation has meanwhile.
+    pub fn over(&self) -> impl Fn() -> bool + use<> {
+        let ball = self.ball.clone();
+        move || ball.ends.get()
     }
 
     /// Kinetic energy that the ball got, J, once its turn has come.
@@ -80,11 +82,6 @@ impl<'a> Watch<'a> {
     /// As if nothing had happened, for one more motion.
     pub fn reset(&mut self) {
         self.ball.put_back();
-    }
-
-    /// As [`Watch::is_over`], while a simulation has the events.
-    pub(crate) fn ball(&self) -> Rc<Ball> {
-        self.ball.clone()
     }
 
     fn push(&mut self, event: Event<'a>, rising: String, falling: String) {

@@ -1,8 +1,10 @@
 //! Scenes against simulations that are put together by hand.
 
 use articulated::Dynamics;
-use articulated::simulate::{Constant, IntegratorId, Output, Settings, Simulation, TorqueTable};
+use articulated::simulate::{Constant, Event, IntegratorId, Output, Settings, Simulation, TorqueTable};
 use articulated_core::algorithm::Workspace;
+
+use articulated_motion::{Drive, Watch, settings};
 
 use super::{ARM, CART, moved, stage};
 
@@ -78,4 +80,23 @@ fn a_sampled_controller_holds_its_torques() {
     // The record at a sample is of the torques before it.
     assert_eq!(r.tau[..3], [12.0; 3]);
     assert!(r.tau[3] < 12.0 && r.tau[3] == r.tau[4] && r.tau[5] < r.tau[4], "{:?}", r.tau);
+}
+
+/// Drive and watch are for a simulation of one's own too, which may look for more.
+#[test]
+fn the_parts_put_together_move_as_the_whole() {
+    let stage = stage(include_str!("arm.toml").replace("restitution", "stop = true\nrestitution").as_str(), ARM);
+    let whole = moved(&stage);
+    let (robot, settings) = (&stage.model, settings(stage.scene.simulation.as_ref().unwrap()));
+    let begin = stage.begin().unwrap();
+    let mut drive = Drive::new(robot, begin.controller, None).unwrap();
+    let mut watch = Watch::new(&stage, robot, &stage.frame_names(), settings.start).unwrap();
+    watch.events.push(Event::new("half way", |_, q, _| q[0] - 0.5));
+    let mut simulation = Simulation::new(robot, settings).unwrap();
+    let (mut recording, over) = (simulation.recording(), watch.over());
+    simulation.run_into(&begin.q, &begin.v, &mut drive, &mut watch.events, &mut recording, &mut |_, _| !over()).unwrap();
+    let words: Vec<String> = recording.events.iter().map(|hit| watch.words(hit)).collect();
+    assert!(over() && watch.ball_energy() == whole.ball && words.iter().any(|what| what == "half way"), "{words:?}");
+    let scenes: Vec<&str> = words.iter().map(String::as_str).filter(|what| *what != "half way").collect();
+    assert_eq!((scenes, &recording.q, &recording.v), (super::words(&whole), &whole.recording.q, &whole.recording.v));
 }

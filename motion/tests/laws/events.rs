@@ -82,6 +82,30 @@ fn a_ball_that_nothing_moves_towards_keeps_its_speed() {
 }
 
 #[test]
+fn what_is_where_the_ball_is_at_the_start_hits_it_there() {
+    let outcome = moved(&stage(&BLOW.replace("0.6", "0.0"), CART));
+    assert_eq!((words(&outcome)[0], outcome.happenings.len()), ("cart hits the ball, which leaves at 4.3200 m/s", 2));
+    assert!(outcome.happenings[0].t < 1e-9, "{outcome:?}");
+    let away = moved(&stage(&BLOW.replace("0.6", "0.0").replace("slide = 3.0", "slide = -0.1"), CART));
+    assert!(away.happenings.is_empty() && away.ball.is_none(), "{away:?}");
+}
+
+/// y = 0.25 − 2 x comes to its lower bound, −1, at x = 0.625, and to its upper, 0.75, at x = −0.25.
+#[test]
+fn a_joint_that_follows_has_bounds_of_its_own() {
+    let follower = "<link name='b'/><joint name='y' type='prismatic'><parent link='rail'/><child link='b'/><axis xyz='1 0 0'/>
+        <limit lower='-1' upper='0.75' effort='1' velocity='1'/><mimic joint='slide' multiplier='-2' offset='0.25'/></joint></robot>";
+    let urdf = CART.replace("</robot>", follower);
+    for (v, at) in [(1.25, 0.5), (-0.5, 0.5)] {
+        let scene =
+            format!("gravity = [0, 0, 0]\ninitial = {{ v = {{ slide = {v} }} }}\nsimulation = {{ end = 0.6, events = ['limits'] }}");
+        let outcome = moved(&stage(&scene, &urdf));
+        assert_eq!(words(&outcome), ["y reaches its limit"]);
+        assert!((outcome.happenings[0].t - at).abs() < 1e-9, "{:?}", outcome.happenings);
+    }
+}
+
+#[test]
 fn contacts_and_sticking_are_found_and_told() {
     let fall = "initial = { q = { shoulder = 1.2 } }
         effects = { contact = { hand = { radius = 0.05, stiffness = 1e4, damping = 1.0, friction = 0.5, height = 0.12 } } }
