@@ -3,16 +3,14 @@
 //! A [`Stage`] is a scene with its robot. It moves on anything that has dynamics: the generic model, and generated robots.
 //!
 //! ```
-//! use articulated::urdf::{self, Options};
-//! use articulated::{Base, Model};
-//! use articulated_motion::{Ending, Scene, Stage};
-//! use articulated_scene::Edited;
+//! use articulated_motion::{Ending, Stage};
 //!
 //! const URDF: &str = r#"<robot name="pendulum"><link name="base"/>
 //!   <link name="bob"><inertial><origin xyz="0 0 -1"/><mass value="1"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>
 //!   <joint name="hinge" type="revolute"><parent link="base"/><child link="bob"/><axis xyz="0 1 0"/>
 //!     <limit lower="-1.5" upper="0.5" effort="9" velocity="9"/></joint></robot>"#;
 //! const SCENE: &str = r#"
+//!   urdf = "pendulum.urdf"
 //!   initial = { q = { hinge = -1.0 } }
 //!   effects = { damping = { hinge = 0.1 } }
 //!   control = { kind = "pd", target = { hinge = 1.0 }, kp = 20.0, kd = 2.0 }
@@ -20,12 +18,14 @@
 //! "#;
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let scene = Scene::read("swing.toml", SCENE)?;
-//! let robot = urdf::read(URDF.as_bytes(), &Options::default())?;
-//! let effects = scene.resolve(&Edited { description: &robot.description, base: Base::Fixed, unused: &robot.unused, shafts: &[] })?.effects;
-//! let model = Model::new(&robot.description, Base::Fixed)?.with_effects(&effects)?;
-//!
-//! let stage = Stage::new(scene, robot.description, model, effects);
+//! # let folder = std::env::temp_dir().join(format!("articulated-swing-{}", std::process::id()));
+//! # std::fs::create_dir_all(&folder)?;
+//! # let path = folder.join("swing.toml");
+//! # std::fs::write(folder.join("pendulum.urdf"), URDF)?;
+//! # std::fs::write(&path, SCENE)?;
+//! let stage = Stage::open(&path)?;
+//! # std::fs::remove_dir_all(&folder)?;
+//! stage.warnings.iter().for_each(|odd| eprintln!("{odd}"));
 //! let swing = stage.run(&stage.model, &stage.frame_names())?;
 //!
 //! assert_eq!((swing.ending, swing.reached, swing.error), (Ending::AtEnd, 12.0, None));

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use articulated_codegen::scene::{self, Prepared, Scene};
 use articulated_codegen::{Error, Request, nearest};
 use articulated_core::description::Base;
-use articulated_scene::{Report, Robot};
+use articulated_scene::Robot;
 
 use crate::console;
 use crate::failure::Failure;
@@ -18,8 +18,6 @@ pub(crate) struct Stage {
     pub(crate) name: String,
     /// What code of the robot is generated from.
     pub(crate) request: Request,
-    /// What of the effects is on, off and not used.
-    pub(crate) report: Report,
     stage: articulated_motion::Stage,
 }
 
@@ -80,8 +78,9 @@ impl Stage {
         let odd = odd.chain(&reading.snapped).map(ToString::to_string).collect();
         let model = articulated_codegen::model(&request, &reading.description)?;
         let effects = request.options.robot.effects.clone();
-        let stage = articulated_motion::Stage::new(scene, reading.description, model, effects).in_folder(folder);
-        Ok((Self { name, request, report: resolved.report, stage }, odd))
+        let mut stage = articulated_motion::Stage::new(scene, reading.description, model, effects).in_folder(folder);
+        stage.report = resolved.report;
+        Ok((Self { name, request, stage }, odd))
     }
 
     pub(crate) fn base(&self) -> Base {

@@ -3,7 +3,7 @@
 use articulated::simulate::{Settings, StateError};
 use articulated::{Dynamics, FunctionError};
 use articulated_models::panda_like;
-use articulated_motion::{Begin, Controller, Fault, MotionErrors, Stage};
+use articulated_motion::{Begin, Controller, Fault, MotionErrors, Scene, Stage};
 use articulated_scene::{Aim, Series};
 
 use super::{ARM, CART, stage};
@@ -92,7 +92,10 @@ fn another_robot_than_the_scenes_is_refused() {
 fn all_that_is_wrong_with_a_scene_is_told_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let scene = "initial = { q = { sholder = 1 }, v = { elbow = [1, 2] } }\ncontrol = { kind = 'table', file = 'no.csv' }";
-    let told = lines(&stage(scene, ARM).in_folder(folder.path()).run::<_, &str>(&stage("", ARM).model, &[]).unwrap_err());
+    // Nobody has held the scene against its robot yet.
+    let Stage { description, model, .. } = stage("", ARM);
+    let unheld = Stage::new(Scene::read("s.toml", scene).unwrap(), description, model.clone(), Vec::new());
+    let told = lines(&unheld.in_folder(folder.path()).run::<_, &str>(&model, &[]).unwrap_err());
     assert_eq!(told.len(), 4, "{told:#?}");
     assert_eq!(told[0], "s.toml: simulation: found nothing, expected [simulation] with `end`, s");
     let parts = [("s.toml:1: initial.q.sholder: ", "shoulder"), ("s.toml:1: initial.v.elbow: ", "2 numbers"), ("s.toml:2: ", "no.csv")];

@@ -4,11 +4,11 @@ mod by_hand;
 mod errors;
 mod events;
 mod generated;
+mod opened;
 
-use articulated::urdf::{Options, read};
-use articulated::{Base, Model};
+use articulated::Base;
 use articulated_motion::{Outcome, Scene, Stage};
-use articulated_scene::Edited;
+use articulated_scene::Opened;
 
 /// An arm of two hinges, with a hand on a ball joint.
 const ARM: &str = include_str!("arm.urdf");
@@ -19,16 +19,11 @@ const CART: &str = r#"<robot name="cart"><link name="rail"/>
     <joint name="slide" type="prismatic"><parent link="rail"/><child link="cart"/><axis xyz="1 0 0"/>
       <limit lower="-0.5" upper="0.9" effort="9" velocity="9"/></joint></robot>"#;
 
-/// A scene, called `s.toml`, with a robot that it does not edit.
+/// A scene, called `s.toml`, with its robot.
 fn stage(scene: &str, urdf: &str) -> Stage {
     let scene = Scene::read("s.toml", scene).unwrap_or_else(|e| panic!("{e}"));
-    let robot = read(urdf.as_bytes(), &Options::default()).unwrap();
-    let base = scene.base.unwrap_or(Base::Fixed);
-    let edited = Edited { description: &robot.description, base, unused: &robot.unused, shafts: &[] };
-    let effects = scene.resolve(&edited).unwrap_or_else(|e| panic!("{e}")).effects;
-    let model = Model::new(&robot.description, base).unwrap();
-    let model = model.with_gravity(scene.gravity.unwrap_or([0.0, 0.0, -9.81])).with_effects(&effects).unwrap();
-    Stage::new(scene, robot.description, model, effects)
+    let opened = Opened::new(scene, "robot.urdf", urdf.into(), Base::Fixed, Vec::new());
+    Stage::of(opened).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Moved by the generic model.

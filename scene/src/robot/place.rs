@@ -91,7 +91,7 @@ impl Scene {
         let expected =
             if names.is_empty() { "urdf: no robot is known by name here".to_owned() } else { format!("one of {}", names.join(", ")) };
         let mut all = self.without_robot(&format!("{name:?}, a robot that there is not"), &expected);
-        all.errors[0].nearest = nearest(name, names.into_iter());
+        all.errors[0].nearest = nearest(name, names);
         all
     }
 
