@@ -1,10 +1,11 @@
 //! Any bytes are a scene or an error, soon, and never a panic.
 
 use std::fs;
+use std::path::Path;
 
 use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link};
 use articulated_core::model::Model;
-use articulated_scene::{Edited, Scene};
+use articulated_scene::{Bundled, Edited, Scene, open_in};
 
 /// Numbers for the mutations: xorshift, after Marsaglia 2003.
 struct Random(u64);
@@ -45,6 +46,20 @@ fn robot() -> Description {
     }
 }
 
+/// Robots that scenes name: names and documents.
+fn robots() -> Vec<(String, String)> {
+    let files = fs::read_dir("../models/urdf").unwrap().map(|file| file.unwrap().path());
+    let urdfs = files.filter(|path| path.extension().is_some_and(|ending| ending == "urdf"));
+    urdfs.map(|path| (path.file_stem().unwrap().to_str().unwrap().to_owned(), fs::read_to_string(&path).unwrap())).collect()
+}
+
+/// Reads it, and has it edit its robot: a robot, or mistakes of which each is told.
+fn settles(bytes: &[u8], bundled: &[Bundled<'_>]) -> bool {
+    let Ok(scene) = Scene::read_bytes("s.toml", bytes) else { return false };
+    let settled = open_in(scene, Path::new("nowhere"), bundled).and_then(|opened| opened.settle());
+    settled.map_err(|error| assert!(!error.to_string().is_empty())).is_ok()
+}
+
 /// Reads it, and if it reads, looks its names up.
 fn try_out(bytes: &[u8], description: &Description, model: &Model<f64>) -> bool {
     let Ok(scene) =
@@ -82,7 +97,9 @@ fn mutations_of_scenes_are_scenes_or_errors() {
         b"-0.0",
         b"\"off\"",
     ];
-    let mut read = 0;
+    let robots = robots();
+    let bundled: Vec<Bundled<'_>> = robots.iter().map(|(name, urdf)| Bundled { name, urdf, base: Base::Floating }).collect();
+    let (mut read, mut settled) = (0, 0);
     for round in 0..1500 {
         let mut bytes = corpus[round % corpus.len()].clone();
         for _ in 0..1 + random.below(3) {
@@ -106,9 +123,10 @@ fn mutations_of_scenes_are_scenes_or_errors() {
             }
         }
         read += usize::from(try_out(&bytes, &description, &model));
+        settled += usize::from(settles(&bytes, &bundled));
     }
-    // Some survive: the names are looked up too.
-    assert!(read > 20, "{read}");
+    // Some survive: the names are looked up too, and robots are had.
+    assert!(read > 20 && settled > 20, "{read}, {settled}");
 }
 
 #[test]
