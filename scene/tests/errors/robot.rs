@@ -1,0 +1,167 @@
+//! What only the robot, or a table beside the scene, shows to be wrong.
+
+use articulated_core::description::Base;
+use articulated_core::model::Model;
+use articulated_scene::{Edited, Scene};
+
+const ARM: &str = r#"<robot name="arm">
+  <link name="world"/><link name="upper"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+  <link name="lower"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link><link name="tip"/>
+  <joint name="shoulder" type="continuous"><parent link="world"/><child link="upper"/><axis xyz="0 1 0"/><dynamics damping="0.3"/></joint>
+  <joint name="elbow" type="revolute"><parent link="upper"/><child link="lower"/><axis xyz="0 1 0"/>
+    <limit lower="-1" upper="2" effort="5" velocity="3"/></joint>
+  <joint name="tool" type="fixed"><parent link="lower"/><child link="tip"/></joint></robot>"#;
+
+/// What is said of a scene that reads, against the arm.
+fn against_the_arm(text: &str) -> Vec<String> {
+    against(ARM, text)
+}
+
+fn against(urdf: &str, text: &str) -> Vec<String> {
+    let scene = Scene::read("s.toml", text).unwrap();
+    let reading = articulated_urdf::read(urdf.as_bytes(), &articulated_urdf::Options::default()).unwrap();
+    let robot = Edited { description: &reading.description, base: Base::Fixed, unused: &reading.unused, shafts: &[] };
+    let model = Model::new(&reading.description, Base::Fixed).unwrap();
+    let mut errors: Vec<_> = scene.resolve(&robot).err().into_iter().flat_map(|e| e.errors).collect();
+    errors.extend(scene.start(&model).err().into_iter().flat_map(|e| e.errors));
+    errors.extend(scene.controller(&model, &mut |_| Err("there is no such file".into())).err().into_iter().flat_map(|e| e.errors));
+    errors.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn names_that_the_robot_does_not_have_are_told_with_the_nearest() {
+    let cases = [
+        (
+            "[effects.damping]\nelbwo = 1",
+            "s.toml:2: effects.damping.elbwo: found a joint that there is not, expected a joint of the robot that moves; did you mean \"elbow\"?",
+        ),
+        (
+            "[effects.drag]\nlowr = 1",
+            "s.toml:2: effects.drag.lowr: found a link that there is not, expected a link of the robot; did you mean \"lower\"?",
+        ),
+        ("[effects.drag]\nworld = 1", "s.toml:2: effects.drag.world: found a link that is fixed to the base, expected a link that moves"),
+        ("[effects.damping]\ntool = 1", "s.toml:2: effects.damping.tool: found a fixed joint, expected a joint that moves"),
+        (
+            "[effects.damping]\nelbow = \"urdf\"",
+            "s.toml:2: effects.damping.elbow: found no damping for joint \"elbow\", whose URDF has no <dynamics damping>, expected damping, N·m·s/rad|N·s/m",
+        ),
+        (
+            "[effects.limit.shoulder]\nlower = 1",
+            "s.toml:1: effects.limit.shoulder: found no upper for joint \"shoulder\", expected upper, rad|m",
+        ),
+        (
+            "[initial]\nq = { elbo = 1 }",
+            "s.toml:2: initial.q.elbo: found a joint that is not there, or is locked, expected a joint that moves; did you mean \
+             \"elbow\"?",
+        ),
+        ("[initial]\nq = [1, 2, 3]", "s.toml:2: initial.q: found 3 numbers, expected 2 numbers for this robot"),
+        ("[initial]\nv = { elbow = [1, 2] }", "s.toml:2: initial.v.elbow: found 2 numbers, expected one number for a revolute joint"),
+        (
+            "[initial]\nbase = { xyz = [0, 0, 1] }",
+            "s.toml:2: initial.base: found a base that is fixed, expected base = \"floating\", or no initial.base",
+        ),
+        (
+            "[control]\nkind = \"table\"\nfile = \"t.csv\"",
+            "s.toml:3: control.file: found \"t.csv\", which cannot be read (there is no such file), expected a CSV with a first line that names its \
+             columns",
+        ),
+        (
+            "[impact]\nlink = \"tipp\"\nnormal = [1, 0, 0]\nmass = 1\nrestitution = 1\ntime = 0",
+            "s.toml:2: impact.link: found a link that there is not, expected a link of the robot; did you mean \"tip\"?",
+        ),
+    ];
+    for (text, expected) in cases {
+        assert_eq!(against_the_arm(text), [expected]);
+    }
+}
+
+#[test]
+fn all_that_is_wrong_with_a_csv_is_told_of_its_lines() {
+    let scene = Scene::read("there/s.toml", "\n[control]\nkind = \"table\"\nfile = \"t.csv\"").unwrap();
+    let model = Model::new(&articulated_urdf::read(ARM.as_bytes(), &Default::default()).unwrap().description, Base::Fixed).unwrap();
+    let read = |text: &str| {
+        let (result, text) = (scene.controller(&model, &mut |_| Ok(text.to_owned())), text.len());
+        result.map(|_| text).map_err(|e| e.errors.iter().map(|e| e.to_string().replace('\\', "/")).collect::<Vec<_>>())
+    };
+    let told = |text: &str, expected: &[&str]| {
+        let expected: Vec<String> = expected.iter().map(|line| format!("there/t.csv:{line}")).collect();
+        assert_eq!(read(text), Err(expected), "{text}");
+    };
+    assert!(read("\u{feff}time, \"elbow\",shoulder\n\n0,1,2\n").is_ok(), "a byte order mark, as spreadsheets write it");
+    assert!(read("\"t\",\"elbow\"\n\"0\",\" 1.5 \"\n1,2\n").is_ok(), "quotation marks");
+    told(
+        "t,elbow\n\"0\",\"one\"\n1,\"\n",
+        &["2: elbow: found \"one\", expected a finite number", "3: elbow: found \"\"\", expected a finite number"],
+    );
+    told("t\n0\n1\n", &["1: found a single column, expected columns of joints that move after t: shoulder, elbow"]);
+    let each = "each of the columns";
+    told(
+        "t,elbo,shoulder,shoulder\n0,1,2,3\n\n1,one,2,inf\n2,3\n-1,0,0,0\n",
+        &[
+            "1: found the column \"shoulder\" twice, expected each once",
+            "1: found the column \"elbo\", expected a joint that moves, as elbow, or one of its numbers, as ball[0]; did you mean \"elbow\"?",
+            "4: elbo: found \"one\", expected a finite number",
+            "4: shoulder: found \"inf\", expected a finite number",
+            &format!("5: found 2 numbers, expected 4 numbers: the time and one for {each}"),
+            "6: found the time -1.0 after 0.0, expected times in order",
+        ],
+    );
+    told("t,elbow,elbow[0]\n0,1,2\n", &["1: found the column \"elbow[0]\", which is \"elbow\" again, expected each once"]);
+    told(
+        "t,elbow[0],elbow,elbow\n0,1,2,3\n",
+        &[
+            "1: found the column \"elbow\" twice, expected each once",
+            "1: found the column \"elbow\", which is \"elbow[0]\" again, expected each once",
+        ],
+    );
+    told("x,elbow\n0,1\n", &["1: found \"x\" as the first column, expected t"]);
+    told("t,elbow\n", &[&format!(" found no rows, expected lines of numbers: the time and one for {each}")]);
+    told("\n", &[" found nothing, expected a first line that names the columns, t and joints"]);
+}
+
+#[test]
+fn a_number_of_a_joint_has_one_column_whatever_its_names() {
+    let ball = "<link name='hand'/><joint name='ball' type='spherical'><parent link='tip'/><child link='hand'/></joint></robot>";
+    let urdf = ARM.replace("</robot>", ball);
+    let told = |keys: &str, columns: [&str; 3]| {
+        let rows = "rows = [[0, 0, 0, 1]]";
+        against(&urdf, &format!("[control]\n{keys}\ncolumns = [\n\"{}\"]\n{rows}", columns.join("\",\n\"")))
+    };
+    let twice = |line: usize, column: usize, names: [&str; 2]| {
+        let [first, again] = names;
+        format!("s.toml:{line}: control.columns[{column}]: found the column {again:?}, which is {first:?} again, expected each once")
+    };
+    let [table, pd] = ["kind = \"table\"", "kind = \"pd\"\nkp = 1\nkd = 1"];
+    assert_eq!(told(table, ["shoulder", "elbow", "shoulder[0]"]), [twice(6, 2, ["shoulder", "shoulder[0]"])]);
+    assert_eq!(
+        told(table, ["ball[0]", "ball[00]", "ball[+0]"]),
+        [twice(5, 1, ["ball[0]", "ball[00]"]), twice(6, 2, ["ball[00]", "ball[+0]"])]
+    );
+    assert_eq!(told(pd, ["ball[00]", "ball[0]", "ball[3]"]), [twice(7, 1, ["ball[00]", "ball[0]"])]);
+    for (keys, columns) in [
+        (table, ["shoulder[0]", "elbow", "ball[0]"]),
+        (table, ["ball[0]", "ball[1]", "ball[2]"]),
+        (pd, ["shoulder", "elbow[0]", "ball[3]"]),
+    ] {
+        assert_eq!(told(keys, columns), [""; 0]);
+    }
+}
+
+#[test]
+fn a_joint_that_follows_another_has_neither_motor_nor_coordinates() {
+    let follower = ARM.replace("</robot>", FOLLOWER);
+    let told = |text: &str| against(&follower, text);
+    let expected = "expected the joint that it follows: that is what a motor drives";
+    assert_eq!(
+        told("[effects.motor]\nfinger = { torque = 1, speed = 1 }"),
+        [format!("s.toml:2: effects.motor.finger: found a joint that follows another, {expected}")]
+    );
+    assert_eq!(told("[effects.motor]\n\"*\" = { torque = 1, speed = 1 }\nfinger = \"off\""), Vec::<String>::new());
+    assert_eq!(
+        told("[initial]\nq = { finger = 1 }"),
+        ["s.toml:2: initial.q.finger: found a joint that follows another, expected the joint that it follows, whose coordinates it has"]
+    );
+}
+
+const FOLLOWER: &str = "<link name='finger'/><joint name='finger' type='continuous'><parent link='tip'/><child link='finger'/>\
+    <mimic joint='elbow'/></joint></robot>";
