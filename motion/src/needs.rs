@@ -2,7 +2,6 @@
 
 use articulated::simulate::IntegratorId;
 use articulated::{Dynamics, FunctionError, FunctionId};
-use articulated_core::description::JointKind;
 use articulated_core::effect::EffectId;
 use articulated_scene::{Drive, Watched};
 
@@ -21,26 +20,15 @@ impl Stage {
     /// Names of the functions to generate for this motion, each once: those that it needs with this integrator, and those that its recording tells of
     /// energies, losses and momentum by. A robot that has none of the latter moves as well, and [`Recording::missing`](articulated::simulate::Recording::missing) has their names.
     pub fn functions(&self, integrator: IntegratorId) -> Vec<&'static str> {
-        let mut functions: Vec<&str> = integrator.row().needs.iter().map(|f| f.name()).collect();
-        functions.extend(["kinetic_energy", "potential_energy"]);
+        let mut functions = self.required(integrator);
+        functions.extend([FunctionId::kinetic_energy, FunctionId::potential_energy]);
         if self.model.moving_mass() > 0.0 {
-            functions.push("centroidal_momentum");
+            functions.push(FunctionId::centroidal_momentum);
         }
         if !self.effects.is_empty() {
-            functions.extend(["dissipation", "motor_torques"]);
+            functions.extend([FunctionId::dissipation, FunctionId::motor_torques]);
         }
-        let turns = |kind: JointKind| matches!(kind, JointKind::Floating | JointKind::Spherical);
-        if self.model.joints.iter().any(|j| turns(j.kind)) {
-            functions.push("integrate");
-        }
-        functions.push("difference");
-        if self.framed().next().is_some() {
-            functions.push("placements");
-        }
-        if self.scene.impact.is_some() {
-            functions.extend(["jacobians_world_aligned", "solve_mass_matrix"]);
-        }
-        functions
+        functions.into_iter().map(FunctionId::name).collect()
     }
 
     /// Who needs a frame, and of which link.

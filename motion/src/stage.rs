@@ -62,11 +62,6 @@ impl Stage {
 }
 
 impl Stage {
-    /// The folder from which files are seen that the scene names.
-    pub fn folder(&self) -> &Path {
-        &self.folder
-    }
-
     /// The text of a file that the scene names: a table over time. Errors: one that cannot be read, is larger than any table (4 GiB), or is no text in UTF-8.
     pub fn file(&self, name: &str) -> Result<String, String> {
         let path = self.folder.join(name);

@@ -21,16 +21,16 @@ fn a_robot_is_generated_with_what_the_scene_needs() {
     assert_eq!(stage.frames(), arm::FRAME_NAMES);
     let functions = [
         "forward_dynamics",
-        "kinetic_energy",
-        "potential_energy",
-        "centroidal_momentum",
-        "dissipation",
-        "motor_torques",
         "integrate",
         "difference",
         "placements",
         "jacobians_world_aligned",
         "solve_mass_matrix",
+        "kinetic_energy",
+        "potential_energy",
+        "centroidal_momentum",
+        "dissipation",
+        "motor_torques",
     ];
     assert_eq!(stage.functions(IntegratorId::dopri5), functions);
 }

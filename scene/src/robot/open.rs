@@ -167,8 +167,8 @@ impl Scene {
         let (reading, shafts) = asked.read_with_shafts()?;
         let robot = Edited { description: &reading.description, base: asked.options.base, unused: &reading.unused, shafts: &shafts };
         let resolved = self.resolve(&robot)?;
-        let options = RobotOptions { effects: resolved.effects.clone(), append: Vec::new(), ..asked.options.clone() };
-        match (RobotAsked { urdf: &[], options: &options, ..*asked }).model(&reading.description) {
+        let options = RobotOptions { effects: resolved.effects.clone(), ..asked.options.clone() };
+        match (RobotAsked { options: &options, ..*asked }).model(&reading.description) {
             Err(RobotError::Effects { errors, .. }) => Err(resolved.place(&self.file, &errors).into()),
             Err(error) => Err(error),
             Ok(_) => Ok(resolved),
