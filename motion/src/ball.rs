@@ -16,7 +16,7 @@ pub(crate) struct Ball {
     pub(crate) ends: Cell<bool>,
     /// Its turn came when nothing moved towards it.
     pub(crate) missed: Cell<bool>,
-    /// Kinetic energy that it got, J, once its turn has come.
+    /// Kinetic energy that it got, J, once it is hit.
     pub(crate) energy: Cell<Option<f64>>,
 }
 
@@ -33,32 +33,30 @@ impl Ball {
         asked: &Asked,
         robot: &'a R,
         frame: usize,
-        start: f64,
     ) -> Result<Event<'a>, SimulateError>
     where
         R::Workspace: 'a,
     {
         let action = self.blow(asked, robot, frame)?;
-        let before = move |t: f64, g: f64| if g == 0.0 && t <= start { -f64::MIN_POSITIVE } else { g };
         let event = match asked.when {
-            When::Time(at) => Event::new(asked.link.clone(), move |t, _, _| before(t, t - at)),
+            When::Time(at) => Event::new(asked.link.clone(), move |t, _, _| t - at),
             When::Ball(place) => {
                 let (mut ws, mut out) = (robot.workspace(), vec![0.0; 12 * robot.shape().frames]);
                 let (point, n, ball) = (asked.point, asked.normal, self.clone());
                 // n·(p − ball) with p = x + R r
-                Event::new(asked.link.clone(), move |t, q: &[f64], _| match robot.placements(&mut ws, q, &mut out) {
+                Event::new(asked.link.clone(), move |_, q: &[f64], _| match robot.placements(&mut ws, q, &mut out) {
                     // Nobody looks for a ball that is gone.
                     _ if ball.gone.get() => -1.0,
                     Ok(()) => {
                         let x = &out[12 * frame..][..12];
                         let p = |k: usize| x[9 + k] + (0..3).map(|c| x[3 * k + c] * point[c]).sum::<f64>();
-                        before(t, (0..3).map(|k| n[k] * (p(k) - place[k])).sum())
+                        (0..3).map(|k| n[k] * (p(k) - place[k])).sum()
                     }
                     Err(_) => f64::NAN, // it was tried when the blow was made
                 })
             }
         };
-        Ok(event.direction(Direction::Rising).action(action))
+        Ok(event.direction(Direction::Rising).arriving(Direction::Rising).action(action))
     }
 
     /// What is done when its turn has come.
@@ -73,11 +71,12 @@ impl Ball {
             if ball.gone.replace(true) {
                 return Ok(None);
             }
-            ball.ends.set(stop);
             let struck = blow.strike(q, v, speed)?;
             ball.missed.set(struck.impulse == 0.0);
+            ball.ends.set(stop && struck.impulse != 0.0);
             let after = struck.ball_speed;
-            ball.energy.set(Some(0.5 * mass * (after * after - speed * speed)));
+            let energy = 0.5 * mass * (after * after - speed * speed);
+            ball.energy.set(Some(energy).filter(|_| !ball.missed.get()));
             Ok(Some(after))
         })))
     }

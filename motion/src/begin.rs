@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use articulated_core::model::JointInfo;
 use articulated_scene::Controller;
 
 use crate::error::MotionErrors;
+use crate::freedom::Freedom;
 use crate::stage::Stage;
 
 /// The state that a motion starts from, and what drives it.
@@ -43,15 +43,14 @@ impl Stage {
         Ok(Begin { q, v, controller })
     }
 
-    /// The joints of one coordinate that are beyond their limits at q `[nq]`, where a motion starts.
+    /// The joints of one coordinate that are beyond the limits of the file at q `[nq]`, where a motion starts; those that follow others too.
     pub fn beyond(&self, q: &[f64]) -> Vec<Beyond> {
-        let beyond = |joint: &JointInfo| {
-            let (limit, found) = (joint.limit?, *q.get(joint.q.0).filter(|_| joint.q.1 == 1)?);
-            let (lower, upper) = (limit.lower, limit.upper);
-            let beyond = || Beyond { file: self.scene.file.clone(), joint: joint.name.clone(), found, lower, upper };
+        let beyond = |at: Freedom<'_>| {
+            let ((lower, upper), found) = (self.of_the_file(at.body)?, at.own(*q.get(at.q)?));
+            let beyond = || Beyond { file: self.scene.file.clone(), joint: at.joint().to_owned(), found, lower, upper };
             (found < lower || found > upper).then(beyond)
         };
-        self.model.joints.iter().filter_map(beyond).collect()
+        self.freedoms().filter_map(beyond).collect()
     }
 }
 

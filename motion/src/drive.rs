@@ -26,11 +26,11 @@ pub struct Drive<'r, R: Dynamics<f64>> {
 }
 
 impl<'r, R: Dynamics<f64>> Drive<'r, R> {
-    /// A controller, and the time between its samples, s, if it is sampled. Errors: all vectors that are not as long as the robot's; or else a function that the
+    /// A controller, and the time between its samples, s, if it is sampled. Errors: all vectors that are not as long as the robot's, tables out of order; or else a function that the
     /// robot has not: control of kind `pd` needs `difference`, and for joints that turn freely and targets that move `integrate`.
     pub fn new(robot: &'r R, controller: Controller, period: Option<f64>) -> Result<Self, SimulateError> {
         let shape = robot.shape();
-        let wrong = wrong_lengths(&controller, shape);
+        let wrong = wrong_vectors(&controller, shape);
         if !wrong.is_empty() {
             return Err(SimulateError::State(wrong));
         }
@@ -129,8 +129,8 @@ fn needed(controller: &Controller, shape: Shape) -> &'static [FunctionId] {
     }
 }
 
-/// The vectors that are not as long as they have to be.
-fn wrong_lengths(controller: &Controller, Shape { nq, nv, .. }: Shape) -> Vec<StateError> {
+/// The vectors that are not as long as they have to be, and what else is wrong with those over time.
+fn wrong_vectors(controller: &Controller, Shape { nq, nv, .. }: Shape) -> Vec<StateError> {
     match controller {
         Controller::None => Vec::new(),
         Controller::Torque(torque) => wrong_length("control.torque", torque.len(), nv).into_iter().collect(),
@@ -146,11 +146,16 @@ fn wrong_lengths(controller: &Controller, Shape { nq, nv, .. }: Shape) -> Vec<St
     }
 }
 
-/// Of a table: a row for each time, and the first row that has not as many numbers as there are.
+/// Of a table: one row at least, and one for each time; the first time that is not after the one before; the first row that has not as many numbers as there are, and the first number that is none.
 fn wrong_series(series: &Series, width: usize) -> impl Iterator<Item = StateError> {
-    let count = wrong_length("control.rows", series.rows.len(), series.times.len());
-    let row = series.rows.iter().find_map(|row| wrong_length("a row of control.rows", row.len(), width));
-    count.into_iter().chain(row)
+    let Series { times, rows, .. } = series;
+    let count = wrong_length("control.rows", rows.len(), times.len().max(1));
+    let is_late = |k: usize| times[k].is_finite() && (k == 0 || times[k] > times[k - 1]);
+    let time = (0..times.len()).find(|&k| !is_late(k)).map(|k| ("a time of control.rows", times[k], "finite, after the one before"));
+    let number = rows.iter().flatten().find(|x| !x.is_finite()).map(|x| ("a number of control.rows", *x, "finite"));
+    let row = rows.iter().find_map(|row| wrong_length("a row of control.rows", row.len(), width));
+    let value = |(what, found, right): (&'static str, f64, &str)| StateError::Value { what, found, right: right.into() };
+    count.into_iter().chain(row).chain(time.map(value)).chain(number.map(value))
 }
 
 fn wrong_length(vector: &'static str, found: usize, expected: usize) -> Option<StateError> {

@@ -38,7 +38,7 @@ impl Stage {
     }
 
     /// The bounds that the file gives a joint of one degree of freedom, those of one that follows another too.
-    fn of_the_file(&self, body: &Body<f64>) -> Option<(f64, f64)> {
+    pub(crate) fn of_the_file(&self, body: &Body<f64>) -> Option<(f64, f64)> {
         let joint = self.description.joints.iter().find(|joint| joint.name == body.name && body.joint.nv() == 1)?;
         joint.limit.filter(|_| joint.kind != JointKind::Continuous).map(|l| (l.lower, l.upper))
     }
@@ -53,6 +53,11 @@ impl<'s> Freedom<'s> {
     /// The effect of this kind that is on it.
     pub(crate) fn effect(&self, effect: EffectId) -> Option<&'s JointEffect<f64>> {
         self.body.effects.joint.iter().find(|e| e.effect == effect && e.freedom == self.freedom)
+    }
+
+    /// Its own coordinate, where that which it moves with is `q`.
+    pub(crate) fn own(&self, q: f64) -> f64 {
+        self.multiplier * q + self.offset
     }
 
     /// Bounds of its own coordinate as those of the coordinate that it moves with.

@@ -80,7 +80,7 @@ impl Stage {
         let mut faults = self.faults_of(&settings);
         faults.extend(self.foreign(robot, frames));
         faults.extend(self.lacking(robot, settings.integrator));
-        let watch = Watch::new(self, robot, frames, settings.start);
+        let watch = Watch::new(self, robot, frames);
         let simulation = Simulation::new(robot, settings).map_err(|e| MotionErrors::refused(file, e));
         let (_, (watch, simulation)) = MotionErrors::both(MotionErrors::none(file, faults), MotionErrors::both(watch, simulation))?;
         Ok(Motion { stage: self, robot, watch, simulation })

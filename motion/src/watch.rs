@@ -33,9 +33,9 @@ pub struct Without {
 }
 
 impl<'a> Watch<'a> {
-    /// What the scene asks for on a robot; `frames` are the names of its frames in its order, and `start` is the first time of the motion, s. Errors: frames that
+    /// What the scene asks for on a robot; `frames` are the names of its frames in its order. Errors: frames that
     /// events need and that are not among them, functions that the robot has not, numbers that cannot be used; all of them.
-    pub fn new<R: Dynamics<f64>, S: AsRef<str>>(stage: &Stage, robot: &'a R, frames: &[S], start: f64) -> Result<Self, MotionErrors>
+    pub fn new<R: Dynamics<f64>, S: AsRef<str>>(stage: &Stage, robot: &'a R, frames: &[S]) -> Result<Self, MotionErrors>
     where
         R::Workspace: 'a,
     {
@@ -52,7 +52,7 @@ impl<'a> Watch<'a> {
                 watch.without.push(Without { file: stage.scene.file.clone(), what: *what });
             }
         }
-        watch.hit(stage, robot, frames, start, &mut faults);
+        watch.hit(stage, robot, frames, &mut faults);
         MotionErrors::none(&stage.scene.file, faults)?;
         Ok(watch)
     }
@@ -74,7 +74,7 @@ impl<'a> Watch<'a> {
         move || ball.ends.get()
     }
 
-    /// Kinetic energy that the ball got, J, once its turn has come.
+    /// Kinetic energy that the ball got, J, once it is hit.
     pub fn ball_energy(&self) -> Option<f64> {
         self.ball.energy.get()
     }
@@ -128,7 +128,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    fn hit<R: Dynamics<f64>, S: AsRef<str>>(&mut self, stage: &Stage, robot: &'a R, frames: &[S], start: f64, faults: &mut Vec<Fault>)
+    fn hit<R: Dynamics<f64>, S: AsRef<str>>(&mut self, stage: &Stage, robot: &'a R, frames: &[S], faults: &mut Vec<Fault>)
     where
         R::Workspace: 'a,
     {
@@ -136,7 +136,7 @@ impl<'a> Watch<'a> {
         let Some(frame) = frame_of(&asked.link, frames) else { return faults.push(no_frame("impact.link", &asked.link, frames)) };
         let hits = format!("{} hits the ball, which leaves at", asked.link);
         let misses = format!("{} is not moving towards the ball, which keeps", asked.link);
-        match self.ball.event(asked, robot, frame, start) {
+        match self.ball.event(asked, robot, frame) {
             Ok(event) => self.push(event, hits, misses),
             Err(error) => faults.extend(Fault::of(error)),
         }

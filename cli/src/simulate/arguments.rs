@@ -21,7 +21,7 @@ pub(crate) struct SimulateArguments {
     /// The last time, s, instead of the scene's
     #[arg(long, value_name = "SECONDS", value_parser = time, allow_negative_numbers = true)]
     pub(crate) end: Option<f64>,
-    /// The integrator, instead of the scene's
+    /// The integrator, instead of the scene's; one that chooses its steps takes none of the scene's
     #[arg(long, value_name = "NAME", value_parser = integrator)]
     pub(crate) integrator: Option<String>,
     /// Fixed steps of this length, s

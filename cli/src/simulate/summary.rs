@@ -32,7 +32,7 @@ pub(super) struct Summary {
     pub(super) momentum: Momentum,
     pub(super) counts: Done,
     pub(super) events: Vec<Happening>,
-    /// Whether the ball of the scene's impact was reached; `None` where there is none.
+    /// Whether the ball of the scene's impact was reached and hit; `None` where there is none.
     pub(super) ball_reached: Option<bool>,
     /// Its speed along the normal once its turn came.
     pub(super) ball_speed_m_per_s: Option<f64>,

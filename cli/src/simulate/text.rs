@@ -101,7 +101,7 @@ fn table(s: &Summary) -> Table {
     }
     row("events", none(), s.events.len().to_string(), "");
     if s.ball_reached == Some(false) {
-        row("  the ball", none(), "not reached".into(), "");
+        row("  the ball", none(), "not hit".into(), "");
     }
     row("wall time", none(), number(s.wall_s), "s");
     row("simulated seconds a second", none(), number(s.simulated_s_per_wall_s), "");

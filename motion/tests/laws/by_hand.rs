@@ -4,7 +4,8 @@ use articulated::Dynamics;
 use articulated::simulate::{Constant, Event, IntegratorId, Output, Settings, Simulation, TorqueTable};
 use articulated_core::algorithm::Workspace;
 
-use articulated_motion::{Drive, Watch, settings};
+use articulated_motion::{Begin, Drive, Watch, settings};
+use articulated_scene::{Controller, Series};
 
 use super::{ARM, CART, moved, stage};
 
@@ -74,6 +75,29 @@ fn a_table_in_a_file_of_the_folder_is_one_in_the_scene() {
 }
 
 #[test]
+fn a_table_out_of_order_is_refused() {
+    let stage = stage("simulation = { end = 1.0 }", CART);
+    let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
+    let mut told = |times: &[f64], rows: &[f64]| {
+        let series = Series { times: times.to_vec(), rows: rows.iter().map(|x| vec![*x]).collect(), hold: false };
+        let begin = Begin { controller: Controller::Table(series), ..stage.begin().unwrap() };
+        motion.run(&begin, &mut |_, _| true).map(drop).map_err(|e| e.to_string())
+    };
+    assert_eq!(told(&[0.0, 1.0], &[1.0, 2.0]), Ok(()));
+    for (times, rows, wrong) in [
+        (&[1.0, 0.5][..], &[1.0, 2.0][..], "a time of control.rows = 0.5"),
+        (&[1.0, 1.0], &[1.0, 2.0], "a time of control.rows = 1"),
+        (&[0.0, f64::INFINITY], &[1.0, 2.0], "a time of control.rows = inf"),
+        (&[f64::NAN, 1.0], &[1.0, 2.0], "a time of control.rows = NaN"),
+        (&[0.0, 1.0], &[1.0, f64::NAN], "a number of control.rows = NaN"),
+        (&[], &[], "control.rows"),
+    ] {
+        let told = told(times, rows).unwrap_err();
+        assert!(told.contains(wrong), "{told}");
+    }
+}
+
+#[test]
 fn a_sampled_controller_holds_its_torques() {
     let scene = "control = { kind = 'pd', target = { slide = 0.4 }, kp = 30, period = 0.1 }\nsimulation = { end = 0.3, output = 0.05 }";
     let r = moved(&stage(scene, CART)).recording;
@@ -90,7 +114,7 @@ fn the_parts_put_together_move_as_the_whole() {
     let (robot, settings) = (&stage.model, settings(stage.scene.simulation.as_ref().unwrap()));
     let begin = stage.begin().unwrap();
     let mut drive = Drive::new(robot, begin.controller, None).unwrap();
-    let mut watch = Watch::new(&stage, robot, &stage.frame_names(), settings.start).unwrap();
+    let mut watch = Watch::new(&stage, robot, &stage.frame_names()).unwrap();
     watch.events.push(Event::new("half way", |_, q, _| q[0] - 0.5));
     let mut simulation = Simulation::new(robot, settings).unwrap();
     let (mut recording, over) = (simulation.recording(), watch.over());

@@ -75,10 +75,12 @@ fn who_follows_it_may_end_it() {
 
 #[test]
 fn a_ball_that_nothing_moves_towards_keeps_its_speed() {
-    let scene = BLOW.replace("ball = [0.6, 0.0, 0.0]", "time = 0.25\nball_speed = 7.5");
+    let scene = BLOW.replace("ball = [0.6, 0.0, 0.0]", "time = 0.25\nball_speed = 7.5") + "stop = true\n";
     let outcome = moved(&stage(&scene, CART));
     assert_eq!(words(&outcome)[0], "cart is not moving towards the ball, which keeps 7.5000 m/s");
-    assert!(outcome.ball == Some(0.0) && (outcome.happenings[0].t - 0.25).abs() < 1e-9, "{outcome:?}");
+    assert!(outcome.ball.is_none() && (outcome.happenings[0].t - 0.25).abs() < 1e-9, "{outcome:?}");
+    // That hits nothing, and so ends nothing.
+    assert_eq!((outcome.ending, outcome.reached), (Ending::AtEnd, 1.0));
 }
 
 #[test]
@@ -88,6 +90,20 @@ fn what_is_where_the_ball_is_at_the_start_hits_it_there() {
     assert!(outcome.happenings[0].t < 1e-9, "{outcome:?}");
     let away = moved(&stage(&BLOW.replace("0.6", "0.0").replace("slide = 3.0", "slide = -0.1"), CART));
     assert!(away.happenings.is_empty() && away.ball.is_none(), "{away:?}");
+}
+
+/// At its bound to the last bit at the start.
+#[test]
+fn who_begins_at_a_limit_and_goes_beyond_reaches_it() {
+    let scene = |v: f64| {
+        format!(
+            "gravity = [0, 0, 0]\ninitial = {{ q = {{ slide = 0.5 }}, v = {{ slide = {v} }} }}\nsimulation = {{ end = 0.1, events = ['limits'] }}"
+        )
+    };
+    let urdf = CART.replace("upper=\"0.9\"", "upper=\"0.5\"");
+    let [beyond, back] = [1.0, -1.0].map(|v| moved(&stage(&scene(v), &urdf)));
+    assert_eq!(words(&beyond), ["slide reaches its limit"]);
+    assert!(beyond.happenings[0].t < 1e-9 && back.happenings.is_empty(), "{beyond:?} {back:?}");
 }
 
 /// y = 0.25 − 2 x comes to its lower bound, −1, at x = 0.625, and to its upper, 0.75, at x = −0.25.
@@ -103,6 +119,10 @@ fn a_joint_that_follows_has_bounds_of_its_own() {
         assert_eq!(words(&outcome), ["y reaches its limit"]);
         assert!((outcome.happenings[0].t - at).abs() < 1e-9, "{:?}", outcome.happenings);
     }
+    let stage = stage("", &urdf);
+    let told = |x: f64| stage.beyond(&[x]).iter().map(ToString::to_string).collect::<Vec<_>>();
+    assert_eq!(told(0.75), ["s.toml: initial.q.y: found -1.25, beyond its limits, expected -1 to 0.75; used as asked for"]);
+    assert_eq!((told(0.25).len(), told(1.0).len()), (0, 2));
 }
 
 #[test]

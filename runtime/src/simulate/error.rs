@@ -47,6 +47,8 @@ pub enum SimulateError {
         index: usize,
         /// Name of the joint that it belongs to, where the robot can tell.
         joint: Option<String>,
+        /// The shortest step that the settings allow, s, where that is what is in the way, and not what time can tell apart.
+        least: Option<f64>,
     },
     /// More steps than allowed.
     TooManySteps {
@@ -263,6 +265,11 @@ impl SimulateError {
     /// What happened there, if it is about how a step was made.
     fn of_a_step(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::StepTooSmall { step, what, index, joint, least: Some(least), .. } => write!(
+                f,
+                "the tolerances ask for a step of {step:.3e} s, {what}[{index}]{} most of all, shorter than min_step = {least:.3e} s: a shorter min_step, or looser tolerances",
+                of_joints(joint)
+            ),
             Self::StepTooSmall { step, what, index, joint, .. } => write!(
                 f,
                 "the tolerances ask for a step of {step:.3e} s, {what}[{index}]{} most of all: is there a jump in what moves the robot, or are rtol and atol below rounding?",

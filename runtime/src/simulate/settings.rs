@@ -147,6 +147,8 @@ impl Settings {
         found.unless(self.min_step >= 0.0 && self.min_step.is_finite(), "min_step", self.min_step, "finite, at least 0 s");
         let longest = self.max_step > 0.0 && self.max_step >= self.min_step;
         found.unless(longest, "max_step", self.max_step, "greater than 0 s and at least min_step");
+        let told = format!("at least {least:.1e} s, sixteen units of rounding of the time");
+        found.unless(!longest || self.max_step >= least || !least.is_finite(), "max_step", self.max_step, &told);
         let first = self.first_step;
         found.unless(first.is_none_or(positive), "first_step", first.unwrap_or(0.0), "a length of time greater than zero, s");
         found.unless(self.max_steps > 0, "max_steps", self.max_steps as f64, "at least 1");

@@ -149,6 +149,40 @@ fn a_ball_that_bounces_ever_faster_is_an_error_that_names_the_event() {
     assert!((t - end).abs() < 1e-9 && event == "floor", "{t} {end}");
 }
 
+/// A map that leaves a ball at rest on the floor, which does not hold it, and a ball that lies there from the start on: neither falls through unnoticed.
+#[test]
+fn what_lies_at_zero_and_goes_on_is_an_event() {
+    let robot = one_joint("prismatic", 0.0);
+    let floor = |restitution: f64| {
+        Event::new("floor", |_, q: &[f64], _: &[f64]| q[0]).direction(Direction::Falling).action(Action::Map(Box::new(move |_, _, v| {
+            v[0] *= -restitution;
+            Ok(None)
+        })))
+    };
+    let fall = |event: Event, height: f64| {
+        let mut simulation = Simulation::new(&robot, to(IntegratorId::dopri5, 5.0, 1e-9)).unwrap();
+        simulation.run(&[height], &[0.0], &mut NoTorque, &mut [event]).map(|motion| motion.events).map_err(|e| e.to_string())
+    };
+    for event in [floor(0.0), floor(1e-9)] {
+        let told = fall(event, 1.0).unwrap_err();
+        assert!(told.starts_with("at t = 0.4515") && told.contains("`floor` happens again and again"), "{told}");
+    }
+    // A section on which a motion begins is none of its returns, unless it is said that it arrives there.
+    let section = || Event::new("section", |_, q: &[f64], _: &[f64]| q[0]).direction(Direction::Falling);
+    assert_eq!(fall(section(), 0.0).unwrap(), []);
+    let arrived = fall(section().arriving(Direction::Falling), 0.0).unwrap();
+    assert!(arrived.len() == 1 && arrived[0].t < 1e-9 && arrived[0].direction == Direction::Falling, "{arrived:?}");
+    let limit = fall(Event::limit("limit", 0, 0.0, f64::INFINITY).action(Action::Stop), 0.0).unwrap();
+    assert!(limit.len() == 1 && limit[0].t < 1e-9, "{limit:?}");
+    let ball = model("ball", Base::Fixed);
+    let touch = Event::contact("touch", &ball, at(1, [0.0; 3], [0.0, 0.0, 1e-200]), 0.25, 0.0).unwrap();
+    let motion =
+        Simulation::new(&ball, to(IntegratorId::dopri5, 1.0, 1e-9)).unwrap().run(&[0.25], &[0.0], &mut NoTorque, &mut [touch]).unwrap();
+    // Where it is known to 1e-17 m: ½ g t² is as much.
+    assert!(motion.events.len() == 1 && motion.events[0].t < 1e-8, "{:?}", motion.events);
+    assert!(motion.counts.smallest_step > 0.0, "{:?}", motion.counts);
+}
+
 /// The ball is above for 2√(2·δ/g), far less than a step, and both times are found.
 #[test]
 fn a_pair_of_zeros_within_a_step_is_not_stepped_over() {

@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use articulated::simulate::{
-    Constant, Control, Event, Hold, Impact, IntegratorId, NoTorque, Pd, Settings, SimulateError, Simulation, StateError, Stiffness,
+    Constant, Control, Event, Hold, Impact, IntegratorId, NoTorque, Output, Pd, Settings, SimulateError, Simulation, StateError, Stiffness,
     integrators,
 };
 use articulated::{Base, Dynamics, FunctionError, load_bytes};
@@ -49,6 +49,21 @@ fn a_robot_without_a_joint_stands_still() {
         let motion = Simulation::new(&robot, settings).unwrap().run(&[], &[], &mut drive, &mut []).unwrap();
         assert_eq!(motion.t, [0.0, 1.0], "{}", row.name);
     }
+}
+
+/// A longest step that time cannot tell from none, and a shortest one that the tolerances need shorter.
+#[test]
+fn bounds_of_steps_are_kept_or_told() {
+    let far = Settings { start: 1.7e9, end: 1.7e9 + 0.01, max_step: 1e-6, ..to(IntegratorId::dopri5, 1.0, 1e-6) };
+    let told = Simulation::new(&slider(), far).map(drop).unwrap_err().to_string();
+    assert_eq!(told, "max_step = 1e-6: at least 6.0e-6 s, sixteen units of rounding of the time");
+    let some = Settings { min_step: 0.3, first_step: Some(0.3), output: Output::Steps, ..to(IntegratorId::dopri5, 0.5, 1e-6) };
+    let motion = Simulation::new(&slider(), some).unwrap().run(&[0.0], &[0.0], &mut NoTorque, &mut []).unwrap();
+    assert!(motion.counts.largest_step >= 0.3 && motion.t.len() <= 3, "{:?}", motion.t);
+    let mut jerk = |t: f64, _: &[f64], _: &[f64], tau: &mut [f64]| tau[0] = 1e6 * (1e3 * t).sin();
+    let some = Settings { min_step: 0.1, ..to(IntegratorId::dopri5, 0.5, 1e-9) };
+    let told = Simulation::new(&slider(), some).unwrap().run(&[0.0], &[0.0], &mut jerk, &mut []).map(drop).unwrap_err().to_string();
+    assert!(told.contains("shorter than min_step = 1.000e-1 s"), "{told}");
 }
 
 /// Samples that time cannot tell apart, or that are more than a motion may have steps.

@@ -65,6 +65,8 @@ pub struct Event<'a> {
     /// Lower and upper bound, where nothing is between them.
     inverted: Option<(f64, f64)>,
     pub(crate) direction: Direction,
+    /// Which way it goes if it is at zero where a motion begins, or where another event maps the state; none: it is told from there on.
+    pub(crate) arriving: Option<Direction>,
     pub(crate) action: Action<'a>,
     pub(crate) function: Box<Function<'a>>,
 }
@@ -84,6 +86,7 @@ impl<'a> Event<'a> {
             about: None,
             inverted: None,
             direction: Direction::Either,
+            arriving: None,
             action: Action::Record,
             function: Box::new(g),
         }
@@ -93,6 +96,14 @@ impl<'a> Event<'a> {
     #[must_use]
     pub fn direction(mut self, direction: Direction) -> Self {
         self.direction = direction;
+        self
+    }
+
+    /// What is exactly at zero where the motion begins goes through it this way, if it goes on so: it comes from the other side. Without this such a zero is no event, whichever way it is
+    /// left: a motion may begin on a section that it is to return to. [`Event::limit`] and [`Event::contact`] arrive falling.
+    #[must_use]
+    pub fn arriving(mut self, direction: Direction) -> Self {
+        self.arriving = Some(direction);
         self
     }
 
@@ -121,7 +132,7 @@ impl<'a> Event<'a> {
         };
         // Not a number is no bound.
         let inverted = if lower < upper { None } else { Some((lower, upper)) };
-        Self { about: Some(About::Coordinate(i)), inverted, ..Self::new(name, g).direction(Direction::Falling) }
+        Self { about: Some(About::Coordinate(i)), inverted, ..Self::new(name, g).falling() }
     }
 
     /// Rate i of v begins or ceases to slip: |v| passes the speed at which the friction law is smoothed. Rising: it slips; falling: it sticks.
@@ -165,12 +176,18 @@ impl<'a> Event<'a> {
             Ok(x) => x.iter().zip(normal).map(|(x, n)| x * n).sum::<f64>() / length - height - radius,
             Err(_) => f64::NAN, // it was tried when this was made
         };
-        Ok(Self::new(name, g).direction(Direction::Falling))
+        Ok(Self::new(name, g).falling())
+    }
+
+    /// Its distance from something is g.
+    fn falling(self) -> Self {
+        self.direction(Direction::Falling).arriving(Direction::Falling)
     }
 }
 
+/// Of any vector: squares of its numbers may be more or less than a number can say.
 fn length(normal: [f64; 3]) -> f64 {
-    normal.iter().map(|n| n * n).sum::<f64>().sqrt()
+    normal.iter().fold(0.0_f64, |length, n| length.hypot(*n))
 }
 
 /// A number that is not finite, or not otherwise `fit`.

@@ -7,7 +7,7 @@ use crate::simulate::curve::Curve;
 use crate::simulate::event::watch::Zero;
 use crate::simulate::integrator::Start;
 use crate::simulate::step_control::rounding;
-use crate::simulate::{Action, Event, Hit, SimulateError, StateError};
+use crate::simulate::{Action, Direction, Event, Hit, SimulateError, StateError};
 
 /// The curve of the step from the state to `$t`: of the parts of a simulation that it takes, so that others stay free.
 macro_rules! curve {
@@ -123,15 +123,17 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         Ok(true)
     }
 
-    /// On which side of zero each event is from here on; of those that have just happened, where it is a moment later, unless a map has taken it away from zero.
+    /// On which side of zero each event is from here on; of those that have just happened, where it is a moment later, unless a map has taken it away from zero. What a map leaves at rest at zero
+    /// is where it came from: it happens again if it goes on.
     pub(super) fn take_sides(&mut self, run: &mut Run) -> Result<(), SimulateError> {
         const MOMENT: f64 = 1e-9;
         let nv = self.shape.nv;
         for e in 0..run.events.len() {
             let here = (run.events[e].function)(self.t, &self.system.origin, &self.y[nv..2 * nv]);
             let mut value = here;
-            let fired = run.recording.events[run.cut..].iter().any(|hit| hit.event == e);
-            if fired || here == 0.0 {
+            let fired = run.recording.events[run.cut..].iter().find(|hit| hit.event == e).map(|hit| hit.direction);
+            let arriving = run.events[e].arriving.filter(|_| here == 0.0);
+            if fired.is_some() || here == 0.0 {
                 let step = self.point.y.as_mut_slice();
                 step[..nv].iter_mut().zip(&self.y[nv..2 * nv]).for_each(|(u, v)| *u = MOMENT * v);
                 self.system.configuration(&step[..nv], &mut self.point.q)?;
@@ -142,8 +144,22 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
                 let away = here.abs() > (2.0 * self.watch.left(e)).max(change.abs());
                 value = if away { here } else { change };
             }
+            value = match (fired, arriving) {
+                (Some(direction), _) if value == 0.0 => before(direction),
+                (None, Some(direction)) => before(direction),
+                _ => value,
+            };
             self.watch.set_side(e, value);
         }
         Ok(())
+    }
+}
+
+/// The side from which a function goes this way.
+fn before(direction: Direction) -> f64 {
+    match direction {
+        Direction::Rising => -1.0,
+        Direction::Falling => 1.0,
+        Direction::Either => 0.0,
     }
 }

@@ -316,11 +316,11 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         loop {
             let left = until - self.t;
             let least = self.settings.min_step.max(rounding(self.t));
-            let free = run.h.clamp(least, self.settings.max_step);
-            // The last steps of a stretch are made alike.
+            let free = run.h.min(self.settings.max_step).max(least);
+            // The last steps of a stretch are made alike, where halves are not too short.
             let h = if free >= 0.999 * left {
                 left
-            } else if free > 0.5 * left {
+            } else if free > 0.5 * left && 0.5 * left >= least {
                 0.5 * left
             } else {
                 free
@@ -354,7 +354,8 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         }
         let nv = self.shape.nv;
         let (what, index) = if index < nv { (STEP, index) } else { ("v", index - nv) };
-        SimulateError::StepTooSmall { t: self.t, step, what, index, joint: joint(self.system.robot, index) }
+        let least = Some(self.settings.min_step).filter(|least| *least > rounding(self.t));
+        SimulateError::StepTooSmall { t: self.t, step, what, index, joint: joint(self.system.robot, index), least }
     }
 
     /// What of the end of the step is not finite.
@@ -391,7 +392,10 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         let counts = &mut self.system.counts;
         counts.steps += 1;
         counts.largest_step = counts.largest_step.max(h);
-        counts.smallest_step = counts.smallest_step.min(h);
+        // What happens where a motion begins cuts its first step off at once.
+        if h > 0.0 {
+            counts.smallest_step = counts.smallest_step.min(h);
+        }
     }
 
     /// The end of the step becomes the state.
