@@ -235,19 +235,12 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Control {
     let mut keys = Keys::default();
     let before = log.count();
     spot.read(KEYS, &mut keys, log);
+    let right = log.right(&spot.key, KEYS.iter().map(|row| row.name), before);
+    if right.contains(&"kind") && spot.get("kind").is_some() {
+        check(&keys, spot, &right, log);
+    }
     if log.count() > before {
         return Control::default();
-    }
-    let of_sort = OF_SORT.iter().find(|(sort, _)| *sort == keys.kind).map_or(&[][..], |(_, keys)| keys);
-    let word = SORTS.iter().find(|(_, sort)| *sort == keys.kind).map_or("", |(word, _)| word);
-    for row in KEYS.iter().filter(|row| row.name != "kind" && !of_sort.contains(&row.name)) {
-        if let Some(there) = spot.get(row.name) {
-            there.clash(log, format!("a key that control of kind {word:?} does not have"), listed(of_sort));
-        }
-    }
-    let over_time = ["file", "columns", "rows", "interpolation"].iter().any(|key| spot.get(key).is_some());
-    if keys.kind == Sort::Table || (keys.kind == Sort::Pd && over_time) {
-        check_source(&keys, spot, log);
     }
     let Keys { kind, torque, target, kp, kd, source, period } = keys;
     let moving = source.file.is_some() || !source.rows.is_empty();
@@ -261,22 +254,32 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Control {
     Control { drive, period }
 }
 
-fn listed(keys: &[&str]) -> String {
-    if keys.is_empty() { "no other key".into() } else { format!("one of {}", keys.join(", ")) }
+/// Whether the keys are those of the kind; of a table, what is `right` of it.
+fn check(keys: &Keys, spot: &Spot<'_>, right: &[&str], log: &mut Log) {
+    let of_sort = OF_SORT.iter().find(|(sort, _)| *sort == keys.kind).map_or(&[][..], |(_, keys)| keys);
+    let word = SORTS.iter().find(|(_, sort)| *sort == keys.kind).map_or("", |(word, _)| word);
+    for row in KEYS.iter().filter(|row| row.name != "kind" && !of_sort.contains(&row.name)) {
+        if let Some(there) = spot.get(row.name) {
+            there.clash(log, format!("a key that control of kind {word:?} does not have"), listed(of_sort));
+        }
+    }
+    let is_there = |key: &str| spot.get(key).is_some();
+    let over_time = ["file", "columns", "rows", "interpolation"].into_iter().any(is_there);
+    if keys.kind == Sort::Table || (keys.kind == Sort::Pd && over_time) {
+        match (is_there("file"), is_there("rows") || is_there("columns")) {
+            (true, true) => spot.clash(log, "a file and rows", "one of them"),
+            (false, false) => spot.clash(log, "neither file nor rows", "one of them"),
+            (false, true) => keys.source.check(&spot.key, right, log),
+            (true, false) => {}
+        }
+        if keys.kind == Sort::Pd && is_there("target") {
+            spot.clash(log, "a target and a table of targets", "one of them");
+        }
+    }
 }
 
-fn check_source(keys: &Keys, spot: &Spot<'_>, log: &mut Log) {
-    let source = &keys.source;
-    let inline = !source.rows.is_empty() || !source.columns.is_empty();
-    match (&source.file, inline) {
-        (Some(_), true) => spot.clash(log, "a file and rows", "one of them"),
-        (None, false) => spot.clash(log, "neither file nor rows", "one of them"),
-        (None, true) => source.check(&spot.key, log),
-        (Some(_), false) => {}
-    }
-    if keys.target.is_some() {
-        spot.clash(log, "a target and a table of targets", "one of them");
-    }
+fn listed(keys: &[&str]) -> String {
+    if keys.is_empty() { "no other key".into() } else { format!("one of {}", keys.join(", ")) }
 }
 
 fn rows(spot: &Spot<'_>, log: &mut Log) -> Vec<Vec<f64>> {
@@ -293,7 +296,7 @@ fn per_joint(spot: &Spot<'_>, range: Range, log: &mut Log) -> PerJoint {
     match &spot.node.value {
         Value::Number(_) => PerJoint::Same(spot.within(log, range).unwrap_or_default()),
         Value::Table(_) => {
-            let rest = spot.get("*").map_or(Some(0.0), |all| all.number(log)).unwrap_or_default();
+            let rest = spot.get("*").map_or(0.0, |all| same(&all, log));
             let Coordinates::Named(mut named) = values(spot, log) else { return PerJoint::default() };
             named.retain(|one| one.joint != "*");
             all_within(spot, range, log);
@@ -307,6 +310,15 @@ fn per_joint(spot: &Spot<'_>, range: Range, log: &mut Log) -> PerJoint {
             spot.wrong(log, "a number, a list of numbers, or a table of joints, as { \"*\" = 10, elbow = 20 }");
             PerJoint::default()
         }
+    }
+}
+
+/// The number for all joints. What else is wrong with it is told by who reads the numbers, which may be lists there.
+fn same(spot: &Spot<'_>, log: &mut Log) -> f64 {
+    match spot.node.value {
+        Value::Number(x) => x,
+        Value::List(_) => spot.number(log).unwrap_or_default(),
+        _ => 0.0,
     }
 }
 
@@ -404,5 +416,6 @@ fn put(one: &Named, key: &str, model: &Model<f64>, all: &mut [f64], log: &mut Lo
 }
 
 fn wrong_count(log: &mut Log, at: At, key: &str, found: usize, expected: usize) {
-    log.error(at, key, Kind::Number, counted(found), format!("one number, or {}", counted(expected)));
+    let expected = if expected == 1 { counted(1) } else { format!("one number, or {}", counted(expected)) };
+    log.error(at, key, Kind::Number, counted(found), expected);
 }

@@ -18,9 +18,13 @@ pub(crate) fn parse(text: &str, log: &mut Log) -> Option<Node> {
     }
     let lines = Lines::of(text);
     let (table, errors) = DeTable::parse_recoverable(text);
-    for error in &errors {
+    let told = errors.iter().map(|error| {
         let at = error.span().map_or(At::Nowhere, |span| lines.at(span.start));
-        let message = error.message().lines().next().unwrap_or_default().to_owned();
+        (at, error.message().lines().next().unwrap_or_default())
+    });
+    let mut told: Vec<(At, &str)> = told.collect();
+    told.dedup();
+    for (at, message) in told {
         log.error(at, "", Kind::Syntax, format!("what is not TOML ({message})"), "");
     }
     errors.is_empty().then(|| Node { at: At::Line(1), value: Value::Table(entries(table.get_ref(), &lines)) })
@@ -47,11 +51,18 @@ fn node(value: &Spanned<DeValue<'_>>, at: At, lines: &Lines) -> Node {
         DeValue::Float(x) => Value::Number(x.as_str().replace('_', "").parse().unwrap_or(f64::NAN)),
         DeValue::Boolean(b) => Value::Bool(*b),
         DeValue::Datetime(date) => Value::Other(format!("the date {date}")),
-        DeValue::Array(list) => return Node { at: own, value: Value::List(list.iter().map(|item| node(item, own, lines)).collect()) },
+        DeValue::Array(list) => {
+            return Node { at: own, value: Value::List(list.iter().map(|one| node(one, item(one, own, lines), lines)).collect()) };
+        }
         // A table under a header begins where its header does, or at its first key.
         DeValue::Table(table) => return Node { at, value: Value::Table(entries(table, lines)) },
     };
     Node { at: own, value }
+}
+
+/// The place of an item of a list that begins at `list`.
+fn item(value: &Spanned<DeValue<'_>>, list: At, lines: &Lines) -> At {
+    lines.at(value.span().start).max(list)
 }
 
 /// The double nearest to an integer of any length.

@@ -6,7 +6,7 @@ use crate::edits::name;
 use crate::log::Log;
 use crate::simulation::set;
 use crate::table::{Row, Spot};
-use crate::tree::At;
+use crate::tree::{At, Value};
 
 /// A ball at rest and the link that hits it: an instantaneous impact along the normal, without friction.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -139,7 +139,9 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Option<Impact> {
     match (spot.get("ball"), spot.get("time")) {
         (Some(_), Some(time)) => time.clash(log, "ball and time", "one of them"),
         // One of them may be misspelt.
-        (None, None) if log.unknown_keys(before)[1] => spot.clash(log, "neither ball nor time", "one of them, to say when the ball is hit"),
+        (None, None) if matches!(spot.node.value, Value::Table(_)) && !log.has_unknown_key(before) => {
+            spot.clash(log, "neither ball nor time", "one of them, to say when the ball is hit")
+        }
         _ => {}
     }
     (log.count() == before).then_some(impact)

@@ -69,10 +69,19 @@ impl Log {
         }
     }
 
-    /// Of the errors from number `before` on, whether keys that there are not are all of them, and whether they are none.
-    pub(crate) fn unknown_keys(&self, before: usize) -> [bool; 2] {
-        let mut unknown = self.errors.get(before..).unwrap_or_default().iter().map(|e| e.kind == Kind::UnknownKey);
-        [unknown.clone().all(|is| is) && self.more == 0, !unknown.any(|is| is)]
+    /// Whether keys that there are not are among the errors from number `before` on.
+    pub(crate) fn has_unknown_key(&self, before: usize) -> bool {
+        self.errors.get(before..).unwrap_or_default().iter().any(|e| e.kind == Kind::UnknownKey)
+    }
+
+    /// Of these keys of a table those of which nothing is wrong, by the errors from number `before` on.
+    pub(crate) fn right<'k>(&self, table: &str, keys: impl IntoIterator<Item = &'k str>, before: usize) -> Vec<&'k str> {
+        let errors = self.errors.get(before..).unwrap_or_default();
+        let is_of = |found: &str, key: &str| {
+            let below = found.strip_prefix(table).and_then(|rest| rest.strip_prefix('.')?.strip_prefix(key));
+            below.is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+        };
+        keys.into_iter().filter(|key| self.more == 0 && !errors.iter().any(|e| is_of(&e.key, key))).collect()
     }
 
     /// How many errors there are.

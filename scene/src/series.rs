@@ -75,9 +75,10 @@ const MOST_LISTED: usize = 10;
 const ROW: &str = "the time and one for each of the columns";
 
 impl Source {
-    /// What can be told of rows in the scene without the robot.
-    pub(crate) fn check(&self, key: &str, log: &mut Log) {
-        let missing = match (self.columns.is_empty(), self.rows.is_empty()) {
+    /// What can be told of rows in the scene without the robot, of the keys that are `right` by themselves.
+    pub(crate) fn check(&self, key: &str, right: &[&str], log: &mut Log) {
+        let [columns, rows] = ["columns", "rows"].map(|name| right.contains(&name));
+        let missing = match (columns && self.columns.is_empty(), rows && self.rows.is_empty()) {
             (_, true) => Some((self.place, "columns without rows", "rows: the time and a number for each column")),
             (true, false) => Some((at(&self.row_places, 0), "rows without columns", "columns: the names of the numbers after the time")),
             _ => None,
@@ -86,8 +87,16 @@ impl Source {
             log.error(at, key, Kind::MissingKey, found, expected);
             return;
         }
-        self.check_columns(&|i| format!("{key}.columns[{i}]"), log);
-        self.check_rows(&|i| format!("{key}.rows[{i}]"), log);
+        let row = |i: usize| format!("{key}.rows[{i}]");
+        if columns {
+            self.check_columns(&|i| format!("{key}.columns[{i}]"), log);
+        }
+        if rows && columns {
+            self.check_widths(&row, log);
+        }
+        if rows {
+            self.check_order(&row, log);
+        }
     }
 
     /// Each column is there once, by its name; other names of one place only the robot shows, see [`Source::places`].
@@ -98,13 +107,17 @@ impl Source {
         }
     }
 
-    /// Each row has all its numbers, and they are in order.
-    fn check_rows(&self, key: &dyn Fn(usize) -> String, log: &mut Log) {
+    /// Each row has all its numbers.
+    fn check_widths(&self, key: &dyn Fn(usize) -> String, log: &mut Log) {
         let width = self.columns.len() + 1;
         for (i, row) in self.rows.iter().enumerate().filter(|(_, row)| row.len() != width) {
             let expected = format!("{}: {ROW}", counted(width));
             log.error(at(&self.row_places, i), &key(i), Kind::Together, counted(row.len()), expected);
         }
+    }
+
+    /// Rows are in order.
+    fn check_order(&self, key: &dyn Fn(usize) -> String, log: &mut Log) {
         for i in 1..self.rows.len() {
             if let ([before, ..], [time, ..]) = (&self.rows[i - 1][..], &self.rows[i][..])
                 && time <= before
@@ -143,7 +156,8 @@ impl Source {
         let mut own = Log::new(&folder.join(file).display().to_string());
         let source = self.lines(file, text, (model, side), &mut own);
         source.check_columns(&|_| String::new(), &mut own);
-        source.check_rows(&|_| String::new(), &mut own);
+        source.check_widths(&|_| String::new(), &mut own);
+        source.check_order(&|_| String::new(), &mut own);
         let series = if own.count() == 0 {
             source.placed(model, side, [&|_| String::new(); 2], &mut own)
         } else {
@@ -174,7 +188,7 @@ impl Source {
 
     /// The names of the columns.
     fn head(&mut self, (at, text): (At, &str), (model, side): (&Model<f64>, Side), log: &mut Log) {
-        let mut names = fields(text).map(str::to_owned);
+        let mut names = fields(text).into_iter();
         let first = names.next().unwrap_or_default();
         if !["t", "time"].contains(&first.as_str()) {
             log.error(at, "", Kind::Word, format!("{} as the first column", quote(&first)), "t");
@@ -203,7 +217,7 @@ impl Source {
 
     /// The numbers of a line of a CSV.
     fn row(&self, text: &str, at: At, log: &mut Log) -> Option<Vec<f64>> {
-        let words: Vec<&str> = fields(text).map(str::trim).collect();
+        let words = fields(text);
         let width = self.columns.len() + 1;
         let before = log.count();
         if words.len() != width {
@@ -214,7 +228,7 @@ impl Source {
         for (name, word) in names.zip(words) {
             match word.parse::<f64>() {
                 Ok(x) if x.is_finite() => row.push(x),
-                _ => log.error(at, &bare(name), Kind::Number, quote(word), Range::ALL.to_string()),
+                _ => log.error(at, &bare(name), Kind::Number, quote(&word), Range::ALL.to_string()),
             }
         }
         (log.count() == before).then_some(row)
@@ -263,9 +277,38 @@ impl Source {
     }
 }
 
-/// What stands between the commas of a line, without the quotation marks around it.
-fn fields(line: &str) -> impl Iterator<Item = &str> {
-    line.split(',').map(str::trim).map(|word| word.strip_prefix('"').and_then(|word| word.strip_suffix('"')).unwrap_or(word))
+/// What stands between the commas of a line, without the blanks around it; in quotation marks there may be commas too, and two marks are one (RFC 4180).
+fn fields(line: &str) -> Vec<String> {
+    let (mut fields, mut rest) = (Vec::new(), Some(line));
+    while let Some(text) = rest {
+        let (field, after) = quoted(text).unwrap_or_else(|| up_to_comma(text));
+        fields.push(field);
+        rest = after;
+    }
+    fields
+}
+
+/// A field, and what is behind its comma, if there is one.
+type Field<'a> = (String, Option<&'a str>);
+
+fn up_to_comma(text: &str) -> Field<'_> {
+    let (field, rest) = text.split_once(',').map_or((text, None), |(field, rest)| (field, Some(rest)));
+    (field.trim().to_owned(), rest)
+}
+
+/// A field that begins with a mark, if another one ends it.
+fn quoted(text: &str) -> Option<Field<'_>> {
+    let (mut field, mut rest) = (String::new(), text.trim_start().strip_prefix('"')?);
+    loop {
+        let (inside, after) = rest.split_once('"')?;
+        field += inside;
+        let Some(more) = after.strip_prefix('"') else {
+            let (tail, rest) = up_to_comma(after);
+            return Some(((field + &tail).trim().to_owned(), rest));
+        };
+        field.push('"');
+        rest = more;
+    }
 }
 
 /// The columns that a robot has.
@@ -331,6 +374,19 @@ mod tests {
         let model = Model::new(&description, articulated_core::description::Base::Fixed).unwrap();
         assert_eq!(listed(&model, Side::Q), "j0[0] to j0[3], j1, j2, j3, j4, j5, j6, j7, j8, j9 and 2 more");
         assert!(listed(&model, Side::V).starts_with("j0[0] to j0[2], j1"));
+    }
+
+    #[test]
+    fn fields_in_quotation_marks_may_have_commas_and_marks() {
+        assert_eq!(fields("t, elbow ,\"a,b \"\"q\"\"\", \"wrist\""), ["t", "elbow", "a,b \"q\"", "wrist"]);
+        assert_eq!(
+            (fields(""), fields("1,"), fields("\"\",2")),
+            (vec![String::new()], vec!["1".into(), String::new()], vec![String::new(), "2".into()])
+        );
+        assert_eq!(
+            (fields("\"open,2"), fields("a\"b,\"c\"d")),
+            (vec!["\"open".to_owned(), "2".into()], vec!["a\"b".to_owned(), "cd".into()])
+        );
     }
 
     #[test]

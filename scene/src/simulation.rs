@@ -159,7 +159,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         required: false,
         value: "number, s",
         default: "what the clock can tell",
-        what: "no step by tolerance is shorter, at least 0",
+        what: "no step by tolerance is shorter, but for what is left of a stretch, at least 0",
         read: |x, s, log| set(&mut x.min_step, s.not_negative(log)),
     },
     Row {
@@ -231,11 +231,8 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Option<Simulation> {
     let mut simulation = Simulation::default();
     let before = log.count();
     spot.read(KEYS, &mut simulation, log);
-    // What numbers have to be together is known where each is right.
-    let [keys_alone, _] = log.unknown_keys(before);
-    if keys_alone {
-        check(&simulation, spot, log);
-    }
+    let right = log.right(&spot.key, KEYS.iter().map(|row| row.name), before);
+    check(&simulation, spot, &right, log);
     (log.count() == before).then_some(simulation)
 }
 
@@ -252,42 +249,56 @@ impl Simulation {
     }
 }
 
-/// What numbers have to be together.
-fn check(x: &Simulation, spot: &Spot<'_>, log: &mut Log) {
+/// What numbers have to be together, each where what it is about is `right`.
+fn check(x: &Simulation, spot: &Spot<'_>, right: &[&str], log: &mut Log) {
     let key = |name: &str| spot.get(name);
+    let right = |names: &[&str]| names.iter().all(|name| right.contains(name));
     let Simulation { start, end, .. } = x;
-    if end <= start
+    if right(&["start", "end"])
+        && end <= start
         && let Some(spot) = key("end")
     {
         spot.clash(log, format!("{end:?}, not after the start, {start:?}"), format!("a time above {start:?} s"));
     }
-    if x.step.is_none() && !x.integrator.row().adaptive {
+    if right(&["step", "integrator"]) && x.step.is_none() && !x.integrator.row().adaptive {
         let (name, at) = (x.integrator.name(), key("integrator").map_or(spot.at, |s| s.at));
         log.error(at, &spot.key, Kind::MissingKey, format!("no step for {name:?}"), "step: the length of its steps, s");
     }
-    if x.step.is_some() {
+    if key("step").is_some() {
         for spot in ["min_step", "max_step", "first_step", "rtol", "atol"].into_iter().filter_map(key) {
             spot.clash(log, "a fixed step and what is for steps by tolerance", "no step, or no such key");
         }
     }
-    if let (true, Some(spot)) = (x.rtol == 0.0 && x.atol == 0.0, key("rtol")) {
+    if let (true, Some(spot)) = (right(&["rtol", "atol"]) && x.rtol == 0.0 && x.atol == 0.0, key("rtol")) {
         spot.clash(log, "rtol and atol both 0", "one of them above 0");
     }
-    if let (true, Some(spot)) = (x.max_step < x.min_step, key("max_step")) {
+    if let (true, Some(spot)) = (right(&["min_step", "max_step"]) && x.max_step < x.min_step, key("max_step")) {
         spot.clash(log, format!("{:?}, less than min_step, {:?}", x.max_step, x.min_step), "at least that");
     }
-    let least = least_step(*start, *end);
-    if let (Some(step), Some(spot)) = (x.step.filter(|step| *step < least), key("step")) {
-        spot.clash(log, format!("{step:?}"), format!("at least {least:.1e} s, sixteen units of rounding of the time"));
+    if right(&["start", "end"]) {
+        let least = least_step(*start, *end);
+        for (name, step) in [("step", x.step), ("max_step", Some(x.max_step))] {
+            if let (true, Some(step), Some(spot)) = (right(&[name]), step.filter(|step| *step < least), key(name)) {
+                spot.clash(log, format!("{step:?}"), format!("at least {least:.1e} s, sixteen units of rounding of the time"));
+            }
+        }
     }
-    if let (Output::Every(every), Some(spot)) = (&x.output, key("output").or(key("end")))
+    if right(&["start", "end", "output"]) {
+        check_output(x, spot, log);
+    }
+}
+
+/// Times of output against the start and the end.
+fn check_output(x: &Simulation, spot: &Spot<'_>, log: &mut Log) {
+    let Simulation { start, end, .. } = x;
+    if let (Output::Every(every), Some(spot)) = (&x.output, spot.get("output").or(spot.get("end")))
         && end > start
         && (end - start) / every >= MOST_RECORDS
     {
         let found = format!("a record every {every:?} s up to {end:?} s, so {MOST_RECORDS:e} or more");
         spot.clash(log, found, "output: a longer time from one to the next");
     }
-    if let (Output::At(times), Some(spot)) = (&x.output, key("output")) {
+    if let (Output::At(times), Some(spot)) = (&x.output, spot.get("output")) {
         let outside = times.iter().find(|t| *t < start || *t > end);
         let back = times.windows(2).find(|w| w[1] <= w[0]);
         match (outside, back) {

@@ -285,16 +285,20 @@ fn has_room(row: &Effect, kind: JointKind) -> bool {
     !(ball && row.needs_coordinate())
 }
 
-/// All numbers: of the first layer that says or takes them from the URDF, otherwise the defaults. The name of a field for which there are none.
+/// All numbers: of the first layer that says or takes them from the URDF, otherwise the defaults. The name of a field for which there are none. `layers`: what is said of a joint by its name, and
+/// of all; what is to be had from the URDF by name is not left out, so that no other says it.
 fn fill(row: &'static Effect, layers: &[Option<&Numbers>], number: &dyn Fn(&str) -> Option<f64>) -> Result<Vec<Filled>, &'static str> {
     let of = |i: usize, field: &'static articulated_core::effect::Field| {
-        for layer in layers.iter().flatten() {
+        for (k, layer) in layers.iter().enumerate().filter_map(|(k, layer)| Some((k, (*layer)?))) {
             if let Some(numbers) = &layer.fields[i] {
                 return Ok((numbers.clone(), None));
             }
             let tag = urdf::tag(row.id, field.name).filter(|_| layer.from_urdf);
             if let Some((tag, x)) = tag.and_then(|tag| Some((tag, number(tag)?))) {
                 return Ok((vec![x], Some(tag)));
+            }
+            if k == 0 && tag.is_some() && field.default.is_none() {
+                return Err(field.name);
             }
         }
         field.default.map(|x| (x.to_vec(), None)).ok_or(field.name)

@@ -167,7 +167,16 @@ fn what_would_be_passed_over_is_told() {
 fn one_mistake_of_a_table_does_not_hide_another() {
     let told = |text: &str| wrong(text).len();
     assert_eq!(told("[simulation]\nend = -1\nsteps = 3"), 2);
-    assert_eq!(told("[simulation]\nend = -1\nstep = -1"), 1);
+    assert_eq!(told("[simulation]\nend = -1\nstep = -1"), 2);
+    assert_eq!(told("[simulation]\nend = 'x'\nrtol = 0\natol = 0\nmin_step = 2\nmax_step = 1\nevents = 3"), 4);
+    assert_eq!(told("[simulation]\nend = 1\nrtol = 2\nmax_step = 1e-300\noutput = [0.5, 0.2]"), 3);
+    assert_eq!(
+        told("[control]\nkind = 'table'\ninterpolation = 'cubic'\nperiod = 0\nkp = 1\ncolumns = ['a', 'a']\nrows = [[0, 1, 2], [0, 1]]"),
+        6
+    );
+    assert_eq!(told("[control]\nkind = 'pd'\nkp = 'x'\nfile = 'a.csv'\nrows = [[0]]\ntarget = [1]"), 3);
+    assert_eq!(told("[control]\nkp = 1\ntorque = 'x'"), 2);
+    assert_eq!(wrong("impact = 1"), ["s.toml:1: impact: found 1.0, expected a table"]);
     let ball = "[impact]\nlink = \"tip\"\nnormal = [1, 0, 0]\nrestitution = 1\n";
     assert_eq!([told(&format!("{ball}mass = -0.5")), told(&format!("{ball}mass = 1\nbal = [0, 0, 0]"))], [2, 1]);
 }
@@ -270,6 +279,16 @@ fn no_gain_is_negative() {
 }
 
 #[test]
+fn items_of_lists_have_their_own_lines() {
+    let headers = "[[payload]]\nlink = 'a'\nmass = 1\n\n[[payload]]\nlink = 'a'\n[[effects.contact.a]]\nradius = 1\n\n[[effects.contact.a]]\nradius = -1";
+    let line = |error: &String| error.split(": found").next().unwrap_or_default().to_owned();
+    let told: Vec<String> = wrong(headers).iter().map(line).collect();
+    assert_eq!(told, ["s.toml:5: payload[1]", "s.toml:11: effects.contact.a[1].radius"]);
+    let listed = "payload = [\n  { link = 'a', mass = 1 },\n  { link = 'a' },\n]";
+    assert_eq!(wrong(listed).iter().map(line).collect::<Vec<_>>(), ["s.toml:3: payload[1]"]);
+}
+
+#[test]
 fn what_is_not_toml_is_told() {
     assert_eq!(one("robot = \"a\"\nurdf = \"b\""), "s.toml:1: robot: found robot and urdf, expected one of them");
     assert!(one("a = ").starts_with("s.toml:1: found what is not TOML ("));
@@ -282,7 +301,7 @@ fn what_is_not_toml_is_told() {
 fn all_mistakes_of_a_scene_are_told_at_once_in_the_order_of_the_file() {
     let errors = wrong("bse = 1\ngravity = 1\n[effects.damping]\na = -1\nb = nan\n[simulation]\nend = 0\nstep = -1\n[nothing]\n");
     let lines: Vec<&str> = errors.iter().map(|e| e.split_whitespace().next().unwrap()).collect();
-    assert_eq!(lines, ["s.toml:1:", "s.toml:2:", "s.toml:4:", "s.toml:5:", "s.toml:8:", "s.toml:9:"]);
+    assert_eq!(lines, ["s.toml:1:", "s.toml:2:", "s.toml:4:", "s.toml:5:", "s.toml:7:", "s.toml:8:", "s.toml:9:"]);
     let many = wrong(&(0..3000).map(|i| format!("key_{i} = 1\n")).collect::<String>());
     assert_eq!(many.len(), 1001);
     assert_eq!(many[1000], "s.toml: found 2000 more errors, not listed");

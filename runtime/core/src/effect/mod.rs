@@ -296,7 +296,7 @@ effects! {
     Joint drive motor false "τ clipped to the torque–speed line of a motor behind a gear, less (1 − η) |τ| v/√(v² + s²)"
         "Hughes & Drury, Electric Motors and Drives, 2013, ch. 3";
     Link wrench drag false "−c |v| v at a point" "Newton 1687; Batchelor 1967, §5.11";
-    Link wrench box_drag false "for each axis −c_i |v_i| v_i − b_i v_i and −C_i |ω_i| ω_i − B_i ω_i" "Batchelor 1967, §5.11, §4.9";
+    Link wrench box_drag false "for each axis −c_i |v_i| v_i − b v_i and −C_i |ω_i| ω_i − B ω_i" "Batchelor 1967, §5.11, §4.9";
     Link wrench buoyancy true "−ρ V g at the centre of the displaced volume" "Archimedes; Fossen 2011, §4.1";
     Link added added_mass true "[m; f] += G V̇ + V ×* G V: fluid that is at rest without the link, moved along" "Fossen 2011, §6.3; Lamb 1932, §124";
     Link wrench contact false "a sphere on the plane nᵀx = h: k x max(0, 1 + c ẋ) along n, and −μ F v_t/√(v_t² + s²)"
@@ -402,15 +402,22 @@ fn smooth_sign<S: Scalar>(v: S, s: S) -> S {
     v / (v * v + s * s).sqrt()
 }
 
-/// max(0, x).
+/// max(0, x); not a number of what is none.
 #[inline(always)]
 fn ramp<S: Scalar>(x: S) -> S {
-    S::select(x.positive(), x, S::zero())
+    S::select((-x).positive(), S::zero(), x)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A stop that nobody knows to be reached says so.
+    #[test]
+    fn a_ramp_rises_from_zero_and_of_no_number_is_none() {
+        assert_eq!([-2.0, -0.0, 0.0, 3.0, f64::INFINITY, f64::NEG_INFINITY].map(ramp), [0.0, 0.0, 0.0, 3.0, f64::INFINITY, 0.0]);
+        assert!(ramp(f64::NAN).is_nan());
+    }
 
     #[test]
     fn rows_stand_in_the_order_of_their_numbers() {
