@@ -15,9 +15,10 @@ ensure() { # a component of the toolchain that a minimal installation may lack
     cargo "$1" --version >/dev/null 2>&1 || rustup component add "$2"
 }
 
-no_std() { # core on its own: without std, and without allocation
+alone() { # core without std, and without allocation; the reader without a second one
     cargo check --quiet -p articulated-core --no-default-features
     cargo check --quiet -p articulated-core --no-default-features --features alloc
+    cargo clippy --quiet -p articulated-urdf -- -D warnings
 }
 
 documentation() {
@@ -41,7 +42,7 @@ ensure clippy clippy
 
 step cargo fmt --all --check
 step cargo clippy --quiet --workspace --all-targets -- -D warnings
-step no_std
+step alone
 step cargo test --workspace
 step arm
 step documentation

@@ -3,7 +3,9 @@
 use articulated_codegen::{Reason, Refusal, RobotError};
 use articulated_motion::MotionErrors;
 use articulated_scene::SceneErrors;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
+
+use crate::diagnostic::Diagnostic;
 
 /// Everything went well.
 pub const OK: u8 = 0;
@@ -32,11 +34,16 @@ Exit status:
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Failure {
     pub(crate) status: u8,
-    #[serde(rename = "errors")]
+    #[serde(rename = "errors", serialize_with = "as_diagnostics")]
     pub(crate) lines: Vec<String>,
     /// Whether a report was printed: as JSON it is all there is to print.
     #[serde(skip)]
     pub(crate) reported: bool,
+}
+
+/// As in the report of `check`.
+fn as_diagnostics<S: Serializer>(lines: &[String], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(lines.iter().cloned().map(Diagnostic::plain))
 }
 
 impl Failure {

@@ -25,7 +25,7 @@ struct Function {
     depth: u32,
 }
 
-/// Writes the source to where it is wanted.
+/// Writes the source to where it is wanted; as JSON the report is printed in any case.
 pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), Failure> {
     types_of_batch(&arguments.batch)?;
     let robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
@@ -50,15 +50,14 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
     request.options.runtime = arguments.runtime.clone().filter(|_| !arguments.standalone);
     let generated = generate(&request)?;
     robot.warn_of(generated.warnings.iter().chain(&generated.snapped));
-    let text = match format {
-        Format::Text => generated.source.clone(),
-        Format::Json => json(&generated),
-    };
-    match &arguments.output {
-        None => console::print(&text)?,
-        Some(path) => std::fs::write(path, text).map_err(|e| Failure::input([format!("{}: {e}", path.display())]))?,
+    if let Some(path) = &arguments.output {
+        std::fs::write(path, &generated.source).map_err(|e| Failure::input([format!("{}: {e}", path.display())]))?;
     }
-    Ok(())
+    match (format, &arguments.output) {
+        (Format::Json, _) => console::print(&json(&generated)),
+        (Format::Text, None) => console::print(&generated.source),
+        (Format::Text, Some(_)) => Ok(()),
+    }
 }
 
 fn json(generated: &Generated) -> String {

@@ -1,7 +1,6 @@
 //! The command `articulated`, as a library: what it does, and what the tests of the workspace share with it.
 //!
-//! For tests: [`precise::Big`], a scalar of 96 digits; [`magnitude::Magnitude`], the scale of rounding errors; [`states`], states at random and
-//! from files; [`compiled::Compiled`], generated source as functions that can be called; [`scaling::chain::chain`], robots of any length.
+//! For tests: [`states`], states at random and from files; [`compiled::Compiled`], generated source as functions that can be called; [`scaling::chain::chain`], robots of any length.
 
 mod accuracy;
 mod arguments;
@@ -9,6 +8,7 @@ mod check;
 mod compare;
 pub mod compiled;
 mod console;
+mod diagnostic;
 mod edits;
 mod effects;
 mod eval;
@@ -17,11 +17,9 @@ mod folder;
 mod functions;
 mod generate;
 mod ledger;
-pub mod magnitude;
 mod names;
 mod native;
 mod parallel;
-pub mod precise;
 mod robot;
 pub mod scaling;
 mod shape;

@@ -4,7 +4,7 @@ use articulated_codegen::scene::Scene;
 use articulated_codegen::{Base, Build, Origin, Payload, Reference, Request, generate};
 use proc_macro2::TokenStream;
 use quote::{ToTokens, quote};
-use syn::{Item, ItemMod, parse_quote};
+use syn::{Item, ItemMod};
 
 use crate::expand::expand;
 
@@ -104,8 +104,8 @@ fn standalone_code_names_no_crate() {
 fn attributes_and_visibility_are_the_modules() {
     let urdf = "../tests/ui/urdf/arm.urdf";
     let module = module(quote!(#[doc = "An arm."] #[cfg(all())] pub(crate) mod arm { urdf = #urdf }));
-    assert_eq!(module.attrs[1..], [parse_quote!(#[doc = "An arm."]), parse_quote!(#[cfg(all())])]);
-    assert_eq!(module.vis, parse_quote!(pub(crate)));
+    let (attributes, visibility) = (&module.attrs[1..], &module.vis);
+    assert_eq!(quote!(#(#attributes)* #visibility).to_string(), quote!(#[doc = "An arm."] #[cfg(all())] pub(crate)).to_string());
 }
 
 #[test]
@@ -150,6 +150,21 @@ fn what_the_invocation_says_stands_in_place_of_what_the_scene_says() {
         items(module(quote!(mod arm { scene = #file, base = floating, gravity = [0, 0, -1.62], functions = [gravity_torque] })));
     items.truncate(items.len() - 3);
     assert_eq!(quote!(#(#items)*).to_string(), syn::parse2::<syn::File>(build.tokens()).unwrap().to_token_stream().to_string());
+}
+
+/// With effects too, and beside a scene.
+#[test]
+fn groups_of_functions_stand_for_the_same_everywhere() {
+    let text = |module: ItemMod| quote!(#module).to_string();
+    let (file, urdf) = ("../tests/ui/scenes/three.toml", "../tests/ui/urdf/three.urdf");
+    let own = text(module(quote!(mod arm { scene = #file, functions = [effects, gravity_torque] })));
+    let names = quote!(effect_forces, dissipation, motor_torques, gravity_torque);
+    assert_eq!(own, text(module(quote!(mod arm { scene = #file, functions = [#names] }))));
+    let build = Build::scene(file).functions(["effects", "gravity_torque"]).generate().unwrap();
+    assert!(own.contains("fn dissipation ") && build.source.contains("fn dissipation("));
+    let effects = quote!(effects = { damping = { "*" = 0.1 } });
+    let own = text(module(quote!(mod arm { urdf = #urdf, functions = [effects], #effects })));
+    assert_eq!(own, text(module(quote!(mod arm { urdf = #urdf, functions = [effect_forces, dissipation, motor_torques], #effects }))));
 }
 
 #[test]

@@ -1,9 +1,8 @@
 //! Yardsticks for rounding errors.
 
-use articulated_cli::magnitude::scales;
-use articulated_cli::precise::Big;
 use articulated_core::Scalar;
 use articulated_core::algorithm::function;
+use articulated_reference::{Big, scales};
 
 use crate::case::{Case, State, inverse_dynamics};
 use crate::virtual_power::Motions;

@@ -3,29 +3,19 @@
 use articulated_core::description::JointKind;
 
 use crate::draft::Draft;
-use crate::log::{Log, Place};
-use crate::problem::{Kind, Subject};
-use crate::tree::{List, Tree};
+use crate::log::Log;
+use crate::problem::Subject;
+use crate::tree::Tree;
 use crate::{Reading, Unused};
 
 const TAG: &str = "inertial";
 const WHY: &str = "the base is fixed, and this link with it";
 
-/// Reports the mass of the root link and of the links that are fixed to it.
+/// Reports the mass of the root link and of the links that are fixed to it. Any robot's base has some: that is nothing to be warned of.
 pub(crate) fn report(draft: &Draft, tree: &Tree, log: &mut Log) {
-    let heavy = held(draft, tree).into_iter().filter(|link| has_mass(draft, *link));
-    let held: Vec<(u32, Subject)> = heavy.map(|link| (draft.links[link].line, draft.links[link].subject())).collect();
-    let Some((line, first)) = held.first() else { return };
-    held.iter().for_each(|(line, subject)| log.unused_at(Some(*line), subject, TAG.to_owned(), WHY));
-    let place = Place { line: Some(*line), subject: first, field: TAG };
-    let found = found(held.iter().map(|(_, subject)| subject));
-    log.warning(&place, Kind::UnusedInertia, found, "none there: it plays no part in the dynamics");
-}
-
-fn found<'a>(links: impl Iterator<Item = &'a Subject>) -> String {
-    let mut names = List::default();
-    links.for_each(|link| names.push(link));
-    format!("mass that a fixed base holds ({})", names.text())
+    for link in held(draft, tree).into_iter().filter(|link| has_mass(draft, *link)) {
+        log.unused_at(Some(draft.links[link].line), &draft.links[link].subject(), TAG.to_owned(), WHY);
+    }
 }
 
 impl Reading {
@@ -33,16 +23,6 @@ impl Reading {
     pub fn release(&mut self, go: impl Fn(&str) -> bool) {
         let of_held = |u: &Unused| u.tag == TAG && u.why == WHY;
         self.unused.retain(|u| !(of_held(u) && matches!(&u.subject, Subject::Link(name) if go(name))));
-        let held: Vec<&Unused> = self.unused.iter().filter(|u| of_held(u)).collect();
-        self.warnings.retain_mut(|warning| {
-            if warning.kind != Kind::UnusedInertia || warning.field != TAG {
-                return true;
-            }
-            let Some(first) = held.first() else { return false };
-            (warning.line, warning.subject) = (first.line, first.subject.clone());
-            warning.found = found(held.iter().map(|u| &u.subject));
-            true
-        });
     }
 }
 

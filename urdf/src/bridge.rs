@@ -1,4 +1,4 @@
-//! From `urdf-rs`'s robot to a [`Description`], and a comparison with what this crate found itself.
+//! From `urdf-rs`'s robot to a [`Description`], which has to be what this crate found itself.
 
 use articulated_core::description::{Description, Inertial, Joint, JointDynamics, JointKind, Limit, Link, Mimic, Origin};
 use urdf_rs::{JointType, Pose, Robot};
@@ -9,9 +9,8 @@ use crate::plain::{self, Piece};
 use crate::problem::Kind;
 use crate::tree::Tree;
 
-/// The robot as `urdf-rs` reads it from the plain documents. An internal error, if it differs from the draft.
-pub(crate) fn describe(draft: &Draft, tree: &Tree, leaders: &[Option<usize>], log: &mut Log) -> Option<Description> {
-    let expected = described(draft, tree, leaders)?;
+/// An internal error, if the robot that `urdf-rs` reads from the plain documents is not the one that was `found`.
+pub(crate) fn compare(found: &Description, draft: &Draft, tree: &Tree, leaders: &[Option<usize>], log: &mut Log) {
     let mut description = Description { name: draft.name.clone(), ..Description::default() };
     for piece in plain::pieces(draft, tree, leaders) {
         let robot = match urdf_rs::read_from_string(&piece.text) {
@@ -22,43 +21,14 @@ pub(crate) fn describe(draft: &Draft, tree: &Tree, leaders: &[Option<usize>], lo
             return internal("a robot of another shape read by urdf-rs".to_owned(), log);
         }
     }
-    match description == expected {
-        true => Some(description),
-        false => internal("another robot read by urdf-rs".to_owned(), log),
+    if description != *found {
+        internal("another robot read by urdf-rs".to_owned(), log);
     }
 }
 
-fn internal(found: String, log: &mut Log) -> Option<Description> {
+fn internal(found: String, log: &mut Log) {
     let expected = "two readers that agree; this is a mistake of articulated-urdf: please report it";
     log.error(&Place::DOCUMENT, Kind::Internal, found, expected);
-    None
-}
-
-/// The description that the draft amounts to.
-fn described(draft: &Draft, tree: &Tree, leaders: &[Option<usize>]) -> Option<Description> {
-    let links = draft.links.iter().map(|link| Some(Link { name: link.name.clone()?, inertial: link.inertial }));
-    let joints = draft.joints.iter().enumerate().map(|(i, joint)| {
-        let mimic = joint.mimic.as_ref().zip(leaders[i]).map(|(mimic, leader)| Mimic {
-            joint: leader,
-            multiplier: mimic.multiplier.unwrap_or(1.0),
-            offset: mimic.offset.unwrap_or(0.0),
-        });
-        Some(Joint {
-            name: joint.name.clone()?,
-            kind: joint.kind?,
-            parent: tree.parent[i],
-            child: tree.child[i],
-            origin: joint.origin,
-            axis: joint.axis,
-            second_axis: joint.second_axis,
-            pitch: joint.pitch,
-            locked: None,
-            mimic,
-            limit: joint.limit,
-            dynamics: joint.dynamics,
-        })
-    });
-    Some(Description { name: draft.name.clone(), links: links.collect::<Option<_>>()?, joints: joints.collect::<Option<_>>()? })
 }
 
 /// Adds what `urdf-rs` read from a piece. The names are the draft's: the piece has indices in their place.

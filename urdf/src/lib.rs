@@ -17,8 +17,8 @@
 //! ```
 //!
 //! The way of a file: document (bytes → XML) → links and joints (checked numbers, with their lines) → tree
-//! (names, rings, roots, mimics) → bridge (a plain document that `urdf-rs` reads, compared with what was found here) →
-//! [`Description`]. [`read`] opens no file ([`read_file`] does), and no input makes it panic, hang or overflow its stack.
+//! (names, rings, roots, mimics) → [`Description`]; with the feature `second-reader` → bridge (a plain document that `urdf-rs` reads has to give the same).
+//! [`read`] opens no file ([`read_file`] does), and no input makes it panic, hang or overflow its stack.
 //!
 //! # Beyond the format
 //!
@@ -33,7 +33,9 @@
 //! A joint mimics and is mimicked if it has one coordinate: `helical` does, the other two do not.
 
 mod base;
+#[cfg(feature = "second-reader")]
 mod bridge;
+mod described;
 mod document;
 mod draft;
 mod element;
@@ -48,6 +50,7 @@ mod log;
 mod markup;
 mod mimic;
 mod number;
+#[cfg(feature = "second-reader")]
 mod plain;
 mod problem;
 mod robot;
@@ -117,7 +120,10 @@ fn read_into(bytes: &[u8], options: &Options, log: &mut Log) -> Option<Descripti
     if options.base == Base::Fixed {
         base::report(&draft, &tree, log);
     }
-    bridge::describe(&draft, &tree, &leaders, log)
+    let description = described::described(&draft, &tree, &leaders)?;
+    #[cfg(feature = "second-reader")]
+    bridge::compare(&description, &draft, &tree, &leaders, log);
+    Some(description)
 }
 
 fn draft(bytes: &[u8], options: &Options, log: &mut Log) -> Option<draft::Draft> {

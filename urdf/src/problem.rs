@@ -127,9 +127,11 @@ pub enum Kind {
     Negative,
     /// A tag or attribute that nobody knows, but nearly one that matters.
     Misspelt,
+    /// A tag or attribute that nobody knows.
+    Unknown,
     /// A link or a joint that does not stand directly inside the robot.
     Misplaced,
-    /// Mass on what a fixed base holds.
+    /// A load on what a fixed base holds.
     UnusedInertia,
     /// An angle was replaced by a multiple of π/2, as asked for.
     Snapped,

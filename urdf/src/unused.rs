@@ -44,6 +44,9 @@ const KNOWN: &[(&str, &str, &str)] = &[
     ("robot", "ros2_control", "settings of a controller"),
     ("robot", "sensor", "sensors play no part in the dynamics"),
     ("robot", "frame", "an extension that is not used"),
+    ("robot", "mujoco", "settings of a simulator"),
+    ("robot", "plugin", "settings of a simulator"),
+    ("robot", "disable_collisions", "collisions are not looked for"),
     ("link", "visual", APPEARANCE),
     ("link", "collision", "contact geometry is given by the scene"),
     ("link", "contact", "contact parameters are given by the scene"),
@@ -100,8 +103,13 @@ fn misplaced(place: &Place<'_>, name: &str, parent: &str, log: &mut Log) {
 }
 
 fn unknown(place: &Place<'_>, what: String, name: &str, used: &[&str], log: &mut Log) {
+    const FOUND: &str = "what is not known and not used";
     log.unused_at(place.line, place.subject, what, "not known");
-    if let Some(near) = Suggester::default().misspelt(name, used.iter().copied()) {
-        log.warning(place, Kind::Misspelt, "what is not known and not used", format!("{near}, perhaps"));
+    // What has a prefix is somebody's extension, and meant for them.
+    let listed = || if used.is_empty() { "nothing of its own".to_owned() } else { format!("nothing but {}", used.join(", ")) };
+    match Suggester::default().misspelt(name, used.iter().copied()) {
+        Some(near) => log.warning(place, Kind::Misspelt, FOUND, format!("{near}, perhaps")),
+        None if name.contains(':') => {}
+        None => log.warning(place, Kind::Unknown, FOUND, listed()),
     }
 }

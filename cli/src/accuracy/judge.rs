@@ -8,10 +8,9 @@ use articulated_codegen::{Generated, Level, bound};
 use articulated_core::Scalar;
 use articulated_core::algorithm::Function;
 use articulated_core::model::Model;
+use articulated_reference::{Big, Exact, ROUNDOFF, scales};
 
-use crate::compare::accuracy::{Exact, above_residues, backward, exact, inverse_of, largest, singular};
-use crate::magnitude::{ROUNDOFF, scales};
-use crate::precise::Big;
+use crate::compare::accuracy::{above_residues, backward, exact, inverse_of, largest, singular};
 use crate::worse::worse;
 
 /// What one state says of one contender.

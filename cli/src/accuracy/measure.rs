@@ -5,6 +5,7 @@ use std::time::Duration;
 use articulated_codegen::{Generated, Level};
 use articulated_core::algorithm::{Function, function};
 use articulated_core::model::Model;
+use articulated_reference::{BITS, Big};
 
 use super::contender::Contender;
 use super::judge::{self, Found, Verdict};
@@ -22,7 +23,6 @@ use crate::console::Progress;
 use crate::failure::Failure;
 use crate::folder::Folder;
 use crate::parallel;
-use crate::precise::{BITS, Big};
 use crate::robot::Robot;
 
 /// A level's library.

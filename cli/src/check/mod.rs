@@ -9,9 +9,10 @@ use articulated_urdf::Reading;
 
 use crate::arguments::{CheckArguments, Format};
 use crate::console;
+use crate::diagnostic::Diagnostic;
 use crate::failure::Failure;
 use crate::robot::Robot;
-use report::{Diagnostic, Report};
+use report::Report;
 
 /// Prints all that there is to say; an error of the input is part of that and goes where the rest goes.
 pub(crate) fn run(arguments: &CheckArguments, format: Format) -> Result<u8, Failure> {

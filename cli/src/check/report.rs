@@ -3,10 +3,10 @@
 use articulated_core::description::{Description, JointKind, Link};
 use articulated_core::eigen::eigenvalues;
 use articulated_core::model::{FLOATING_BASE, Model};
-use articulated_urdf::Problem;
 use serde::Serialize;
 
 use super::base::Base;
+use crate::diagnostic::Diagnostic;
 use crate::robot::Robot;
 
 /// Beyond this many bodies some questions are left unasked: no robot, and quadratic work.
@@ -31,15 +31,6 @@ pub(super) struct Report {
     pub(super) base_parameters: Option<Base>,
     /// Functions that can be generated, of those asked for.
     pub(super) functions: Vec<String>,
-}
-
-/// An error or a warning.
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct Diagnostic {
-    pub(super) line: Option<u32>,
-    pub(super) subject: Option<String>,
-    pub(super) field: Option<String>,
-    pub(super) message: String,
 }
 
 #[derive(Clone, Copy, Debug, Default, Serialize)]
@@ -95,22 +86,6 @@ pub(super) struct MimicRow {
     pub(super) joint: String,
     pub(super) multiplier: f64,
     pub(super) offset: f64,
-}
-
-impl Diagnostic {
-    pub(super) fn of(problem: &Problem) -> Self {
-        use articulated_urdf::Subject::Document;
-        Self {
-            line: problem.line,
-            subject: (problem.subject != Document).then(|| problem.subject.to_string()),
-            field: (!problem.field.is_empty()).then(|| problem.field.clone()),
-            message: problem.to_string(),
-        }
-    }
-
-    pub(super) fn plain(message: String) -> Self {
-        Self { line: None, subject: None, field: None, message }
-    }
 }
 
 impl Report {

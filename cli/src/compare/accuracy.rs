@@ -5,15 +5,13 @@
 
 use articulated_codegen::Options;
 use articulated_core::Scalar;
-use articulated_core::algorithm::textbook::Textbook;
 use articulated_core::algorithm::{Argument, Function, FunctionId, Workspace};
 use articulated_core::description::Description;
 use articulated_core::model::Model;
+use articulated_reference::{Big, Exact, ROUNDOFF, scales, scales_of_generated, where_suspect};
 use serde::Serialize;
 
 use super::contender::Contender;
-use crate::magnitude::{ROUNDOFF, scales, scales_of_generated, where_suspect};
-use crate::precise::Big;
 use crate::robot::note_of_parameters;
 use crate::states::quaternions;
 use crate::worse::worse;
@@ -45,29 +43,6 @@ impl Against {
     }
 }
 
-/// What results are held to.
-pub(crate) enum Exact {
-    /// The textbook's form on the numbers of the URDF.
-    Textbook(Box<Textbook<Big>>),
-    /// The generic library on the numbers of the model, with its effects.
-    Library(Box<Model<Big>>),
-}
-
-impl Exact {
-    /// The result of a function; `None` where it is not to be had.
-    fn call(&self, name: &str, arguments: &[&[Big]]) -> Option<Vec<Big>> {
-        match self {
-            Self::Textbook(textbook) => textbook.call(name, arguments)?.ok(),
-            Self::Library(model) => {
-                let row = articulated_core::algorithm::function::<Big>(name)?;
-                let mut out = vec![Big::from_f64(0.0); row.len(model.shape())];
-                row.call(model, &mut Workspace::new(model), arguments, &mut out).ok()?;
-                Some(out)
-            }
-        }
-    }
-}
-
 /// A robot as the reference takes it.
 #[derive(Clone, Debug)]
 pub(crate) struct Reference {
@@ -95,11 +70,9 @@ impl Reference {
     /// With the frames and effects of the model.
     pub(crate) fn exact(&self, model: &Model<f64>) -> Option<Exact> {
         if self.against() == Against::Library {
-            return Some(Exact::Library(Box::new(model.cast())));
+            return Some(Exact::library(model));
         }
-        let textbook = Textbook::<Big>::new(&self.description, self.options.robot.base, self.options.robot.gravity).ok()?;
-        let names: Vec<&str> = model.frames.iter().map(|f| f.name.as_str()).collect();
-        Some(Exact::Textbook(Box::new(textbook.with_frames(&names).ok()?.with_wrenches_in(self.options.robot.wrench_reference))))
+        Exact::textbook(&self.description, self.options.robot.base, self.options.robot.gravity).ok()?.with_frames_of(model)
     }
 }
 
@@ -205,7 +178,7 @@ pub(crate) fn backward(reference: &Exact, model: &Model<f64>, inverse: &str, sta
 
 /// What the reference gives. A double's quaternion has a norm of one to 16 digits only, and what the rest does is nobody's error: it is of norm one here.
 pub(crate) fn exact(reference: &Exact, model: &Model<f64>, function: &str, state: &[&[f64]]) -> Option<Vec<Big>> {
-    let takes = articulated_core::algorithm::function::<f64>(function)?.takes;
+    let row = articulated_core::algorithm::function::<f64>(function)?;
     let precise = |(argument, x): (&Argument, &&[f64])| {
         let mut x: Vec<Big> = x.iter().map(|x| Big::from_f64(*x)).collect();
         if matches!(argument, Argument::Q | Argument::Target) {
@@ -213,9 +186,9 @@ pub(crate) fn exact(reference: &Exact, model: &Model<f64>, function: &str, state
         }
         x
     };
-    let arguments: Vec<Vec<Big>> = takes.iter().zip(state).map(precise).collect();
+    let arguments: Vec<Vec<Big>> = row.takes.iter().zip(state).map(precise).collect();
     let arguments: Vec<&[Big]> = arguments.iter().map(Vec::as_slice).collect();
-    reference.call(function, &arguments)
+    reference.call(row.id, &arguments)
 }
 
 fn normalise(quaternion: &mut [Big]) {
@@ -253,7 +226,7 @@ mod tests {
         let robot = articulated_models::robot("simple_pendulum").unwrap();
         let description = articulated_urdf::read(robot.urdf.as_bytes(), &articulated_urdf::Options::default()).unwrap().description;
         let model = Model::new(&description, robot.base).unwrap();
-        let textbook = Exact::Textbook(Box::new(Textbook::new(&description, robot.base, [0.0, 0.0, -9.81]).unwrap()));
+        let textbook = Exact::textbook(&description, robot.base, [0.0, 0.0, -9.81]).unwrap();
         // 1.001 kg·m² · a + 9.81 N·m · sin q = τ
         let (q, tau) = (0.5_f64, 3.0);
         let a = (tau - 9.81 * q.sin()) / 1.001;

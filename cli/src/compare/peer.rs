@@ -5,10 +5,10 @@ use std::path::Path;
 use articulated_core::algorithm::{Argument, Dim, Function, Shape};
 use articulated_core::model::{JointInfo, Model};
 use articulated_core::spatial::Reference;
+use articulated_reference::scales;
 
 use super::contender::Contender;
 use super::manifest::{Code, Cost, Library};
-use crate::magnitude::scales;
 use crate::native::{Native, NativePeer};
 use crate::robot::Robot;
 use crate::states::quaternions;

@@ -2,8 +2,10 @@
 
 use std::borrow::Cow;
 
+use articulated_codegen::function_groups::Group;
 use articulated_core::algorithm::Dim;
 use articulated_core::model::Model;
+use articulated_reference::BITS;
 use serde::Serialize;
 
 use super::accuracy::{Against, Errors};
@@ -16,11 +18,9 @@ use super::timing::{self, Summary};
 use crate::arguments::CompareArguments;
 use crate::compiled::{Rustc, Target};
 use crate::ledger::{Stage, stages};
-use crate::precise::BITS;
 use crate::robot::Robot;
 use crate::tips::Tips;
 use crate::units::Units;
-use articulated_codegen::function_groups::Group;
 
 const CALL: &str = "ns a call";
 const STATE: &str = "ns a state";

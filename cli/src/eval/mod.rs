@@ -7,12 +7,12 @@ mod text;
 
 use articulated_core::algorithm::{Function, Workspace, function};
 use articulated_core::model::Model;
+use articulated_reference::{scales, scales_of_generated, where_suspect};
 
 use crate::arguments::{EvalArguments, Format};
 use crate::compiled::{CompileError, Compiled, Rustc, Target};
 use crate::console;
 use crate::failure::{Failure, OK};
-use crate::magnitude::{scales, scales_of_generated, where_suspect};
 use crate::names;
 use crate::robot::{Robot, note_of_parameters, read_bytes};
 use crate::states::{self, State};

@@ -2,12 +2,12 @@
 
 use articulated_core::algorithm::Function;
 use articulated_core::model::Model;
+use articulated_reference::ROUNDOFF;
 use serde_json::{Value, json};
 
 use super::BOUND;
 use super::layout::labelled;
 use crate::effects::sorts;
-use crate::magnitude::ROUNDOFF;
 use crate::robot::Robot;
 use crate::worse::worse;
 
@@ -139,7 +139,7 @@ impl Report {
 #[cfg(test)]
 mod tests {
     use super::Difference;
-    use crate::magnitude::ROUNDOFF;
+    use articulated_reference::ROUNDOFF;
 
     #[test]
     fn what_is_no_number_is_the_largest_difference() {

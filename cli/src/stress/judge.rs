@@ -11,14 +11,13 @@
 //! so they do in every robot of a user's ([`Case::by_terms`]).
 
 use articulated_core::algorithm::checked::{Factor, Singular};
-use articulated_core::algorithm::{FunctionId, Workspace, articulated_body, checked_forward_dynamics};
+use articulated_core::algorithm::{FunctionId, Workspace, checked_forward_dynamics};
 use articulated_core::model::Model;
+use articulated_reference::{Big, Exact, is_plain, scales};
 
 use super::condition::{condition, diagonal, norm, sensitivity};
 use super::machine::{Machine, cast, exact, wide, widened};
 use super::row::{Case, Row};
-use crate::magnitude::{is_plain, scales};
-use crate::precise::Big;
 use crate::table::counted;
 use crate::worse::worse;
 
@@ -172,7 +171,7 @@ impl<'a, F: Machine> Judge<'a, F> {
         factor.solve(&mut x);
         let difference: Vec<[f64; 2]> = Big::scope(|| {
             let [q, tau] = [&q, &tau].map(|x| cast::<Big>(&widened(x)));
-            let expected = call(FunctionId::solve_mass_matrix, &exact(&self.model), &[q, tau]);
+            let expected = called(&exact(&self.model), FunctionId::solve_mass_matrix, &[q, tau]);
             expected.iter().zip(&x).map(|(e, x)| [e.error_of(x.to_f64(), 1.0), e.to_f64()]).collect()
         });
         let (m, one) = (self.wide_mass_matrix(state), vec![1.0; x.len()]);
@@ -228,7 +227,7 @@ impl<'a, F: Machine> Judge<'a, F> {
         Big::scope(|| {
             let model = exact(&self.model);
             let [q, v, precise] = [&q, &v, &a].map(|x| cast::<Big>(x));
-            let needed = call(FunctionId::inverse_dynamics, &model, &[q.clone(), v.clone(), precise]);
+            let needed = called(&model, FunctionId::inverse_dynamics, &[q.clone(), v.clone(), precise]);
             let backward = needed.iter().enumerate().map(|(i, t)| off(*t, F::from_f64(driven[i]), scale(i))).fold(0.0, worse);
             [backward, forward_error(&model, [&q, &v, &cast(&tau)], &a) / F::ROUNDOFF]
         })
@@ -252,7 +251,7 @@ pub fn exact_error<F: Machine>(function: FunctionId, model: &Model<f64>, given: 
     let Some(scale) = scale(function, model, &slices) else { return f64::NAN };
     Big::scope(|| {
         let given: Vec<Vec<Big>> = given.iter().map(|x| cast(x)).collect();
-        let expected = call(function, &exact(model), &given);
+        let expected = called(&exact(model), function, &given);
         expected.iter().zip(found).zip(&scale).map(|((e, f), s)| off(*e, *f, *s)).fold(0.0, worse)
     })
 }
@@ -263,13 +262,9 @@ pub fn scale(function: FunctionId, model: &Model<f64>, arguments: &[&[f64]]) -> 
 }
 
 /// max |a − a_exact| / max |a_exact|.
-fn forward_error(model: &Model<Big>, [q, v, tau]: [&[Big]; 3], a: &[f64]) -> f64 {
-    let mut expected = cast::<Big>(&vec![0.0; a.len()]);
-    if model.bodies.iter().any(|b| b.coordinates.mimic.is_some()) {
-        articulated_core::algorithm::forward_dynamics(model, &mut Workspace::new(model), q, v, tau, &mut expected);
-    } else {
-        articulated_body(model, &mut Workspace::new(model), q, v, tau, &mut expected);
-    }
+fn forward_error(model: &Exact, state: [&[Big]; 3], a: &[f64]) -> f64 {
+    let by_table = || called(model, FunctionId::forward_dynamics, &state.map(<[Big]>::to_vec));
+    let expected = model.articulated_body(state).unwrap_or_else(by_table);
     let size = expected.iter().map(|x| x.to_f64().abs()).fold(0.0, worse);
     let far = expected.iter().zip(a).map(|(e, f)| e.error_of(*f, 1.0)).fold(0.0, worse);
     if far == 0.0 { 0.0 } else { far / size }
@@ -287,4 +282,10 @@ pub fn call<S: articulated_core::Scalar>(function: FunctionId, model: &Model<S>,
     let mut out = vec![S::zero(); row.len(model.shape())];
     row.call(model, &mut Workspace::new(model), &arguments, &mut out).expect("arguments of the lengths that the model says");
     out
+}
+
+/// The same of a robot in many digits.
+pub fn called(robot: &Exact, function: FunctionId, arguments: &[Vec<Big>]) -> Vec<Big> {
+    let arguments: Vec<&[Big]> = arguments.iter().map(Vec::as_slice).collect();
+    robot.call(function, &arguments).expect("arguments of the lengths that the robot says")
 }

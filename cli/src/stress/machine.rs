@@ -2,8 +2,7 @@
 
 use articulated_core::Scalar;
 use articulated_core::model::Model;
-
-use crate::precise::Big;
+use articulated_reference::Exact;
 
 /// `f64` or `f32`.
 pub trait Machine: Scalar<Mask = bool> {
@@ -59,8 +58,8 @@ pub fn convert<S: Scalar, T: Scalar>(model: &Model<S>, to: impl Fn(S) -> T + Cop
 }
 
 /// As it is, in many digits.
-pub fn exact<F: Machine>(model: &Model<F>) -> Model<Big> {
-    convert(model, |x| Big::from_f64(x.to_f64()))
+pub fn exact<F: Machine>(model: &Model<F>) -> Exact {
+    Exact::library(&wide(model))
 }
 
 /// As it is, in double precision.

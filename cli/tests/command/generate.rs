@@ -31,6 +31,9 @@ fn flags_arrive_in_the_request() {
     assert!(std::fs::read_to_string(&file.path).unwrap() == source);
     let json = run(&[&words[..], &["--format", "json"]].concat()).json();
     assert_eq!(json["source"], source);
+    // A file to compile is one in any case.
+    let both = run(&[&words[..], &["-o", file.name(), "--format", "json"]].concat()).json();
+    assert_eq!((&both["source"], std::fs::read_to_string(file.name()).unwrap().as_str()), (&json["source"], source.as_str()));
     assert_eq!(json["functions"][0]["stages"][0]["stage"], "asked");
 }
 
@@ -97,10 +100,10 @@ fn functions_may_be_put_together_and_have_constants() {
 
 #[test]
 fn warnings_are_on_the_other_stream_and_errors_are_status_1() {
-    let arm = File::new("arm.urdf", articulated_models::robot("gripper_arm").unwrap().urdf.as_bytes());
+    let odd = articulated_models::robot("gripper_arm").unwrap().urdf.replacen("<robot ", "<robot unit=\"mm\" ", 1);
+    let arm = File::new("arm.urdf", odd.as_bytes());
     let made = run(&["generate", arm.name(), "--standalone"]);
     assert!(made.err.lines().all(|l| l.contains("warning")) && !made.err.is_empty(), "{}", made.err);
-    // Bundled robots are odd on purpose.
     assert_eq!(run(&["generate", "gripper_arm"]).err, "");
     let file = File::new("bad.urdf", b"<robot name='r'/>");
     let refused = run(&["generate", file.name()]);

@@ -128,7 +128,7 @@ fn a_failure_is_json_too_where_that_was_asked_for() {
     let failed = run(&["eval", "no_such_robot", "--function", "mass_matrix", "--states", "-", "--format", "json"]);
     let (json, status) = (failed.json(), failed.status);
     assert_eq!((json["status"].as_i64(), status), (Some(1), 1));
-    let told = json["errors"][0].as_str().unwrap();
+    let told = json["errors"][0]["message"].as_str().unwrap();
     assert!(told.contains("no_such_robot") && failed.err.contains(told), "{}", failed.err);
     assert_eq!(run(&["eval", "no_such_robot", "--function", "mass_matrix", "--states", "-"]).out, "");
 }
@@ -141,7 +141,7 @@ fn a_command_line_that_cannot_be_read_is_told_as_data_too() {
         let ended = run(words);
         let told = ended.json();
         assert_eq!((ended.status, told["status"].as_u64()), (2, Some(2)), "{}", ended.out);
-        let error = told["errors"][0].as_str().unwrap();
+        let error = told["errors"][0]["message"].as_str().unwrap();
         assert!(error.starts_with("invalid value '") && ended.err.contains(error), "{error}");
     }
     assert_eq!(run(&["check", "panda_like", "--gravity", "1"]).out, "");
@@ -150,6 +150,6 @@ fn a_command_line_that_cannot_be_read_is_told_as_data_too() {
     for (words, what) in missing {
         let told = run(&[words, &["--format", "json"]].concat()).json();
         let expected = format!("the following required arguments were not provided: {what}");
-        assert_eq!(told["errors"], serde_json::json!([expected]), "{words:?}");
+        assert_eq!(told["errors"], serde_json::json!([{ "line": null, "subject": null, "field": null, "message": expected }]), "{words:?}");
     }
 }

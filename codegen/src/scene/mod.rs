@@ -77,7 +77,7 @@ fn renamings(rest: &Request, frames_are_known: bool, whole: &Model<f64>, scene: 
 /// Puts the scene's effects before those of the request. Errors: everything that is wrong with the document, or else with the request and the effects; what is wrong
 /// with effects by their places in the scene.
 pub fn settle(request: &mut Request, scene: &Scene) -> Result<Resolved, Error> {
-    let Tried { mut errors, rest, .. } = tried(request, |request| plan(request).map(drop));
+    let Tried { mut errors, rest, .. } = tried(&request.settled(), |request| plan(request).map(drop));
     let resolved = scene.effects_of_rest(&request.options.robot, &rest.robot(), !errors.is_empty());
     let resolved = resolved.unwrap_or_else(|error| {
         errors.extend(error.map(Error::from));

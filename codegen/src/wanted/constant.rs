@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use articulated_core::algorithm::{Argument, Function};
+use articulated_core::algorithm::{Argument, Function, FunctionId};
 use articulated_core::description::JointKind;
 use articulated_core::model::{JointInfo, Model};
 
@@ -26,20 +26,20 @@ impl Constant {
         }
     }
 
-    /// Whether it is right for a robot: as many numbers as the argument has, and quaternions that are some. Errors: what is wrong, in words.
-    pub(super) fn fits(&self, argument: Argument, model: &Model<f64>) -> Result<(), String> {
+    /// Whether it is right for a function of a robot: as many numbers as the argument has, and quaternions that are some. That of zeros does not turn, but where it is what is turned. Errors:
+    /// what is wrong, in words.
+    pub(super) fn fits(&self, function: FunctionId, argument: Argument, model: &Model<f64>) -> Result<(), String> {
         let (name, expected) = (argument.name(), argument.len(model.shape()));
         let numbers = self.numbers(expected);
         if numbers.len() != expected {
             return Err(format!("constant {name}: found {} numbers, expected {expected}", numbers.len()));
         }
         let configuration = matches!(argument, Argument::Q | Argument::Target);
-        let told = |(joint, norm)| {
-            format!(
-                "constant {name}: joint {joint:?}: found a quaternion of norm {norm}, expected 1 within {NORM:e}, or 0, which does not turn"
-            )
-        };
-        let wrong = model.joints.iter().filter(|_| configuration).find_map(|joint| not_unit(joint, &numbers));
+        let zeros = !matches!(function, FunctionId::integrate | FunctionId::difference);
+        let or = if zeros { ", or 0, which does not turn" } else { "" };
+        let told =
+            |(joint, norm)| format!("constant {name}: joint {joint:?}: found a quaternion of norm {norm}, expected 1 within {NORM:e}{or}");
+        let wrong = model.joints.iter().filter(|_| configuration).find_map(|joint| not_unit(joint, &numbers, zeros));
         wrong.map_or(Ok(()), |found| Err(told(found)))
     }
 
@@ -55,12 +55,12 @@ impl Constant {
 /// How far the norm of a constant quaternion may be from 1: results are off by twice that.
 const NORM: f64 = 1e-9;
 
-/// The joint and the norm of its quaternion, if it has one that is no rotation. That of zeros does not turn.
-fn not_unit<'a>(joint: &'a JointInfo, q: &[f64]) -> Option<(&'a str, f64)> {
+/// The joint and the norm of its quaternion, if it has one that is no rotation; `zeros` may stand for one that does not turn.
+fn not_unit<'a>(joint: &'a JointInfo, q: &[f64], zeros: bool) -> Option<(&'a str, f64)> {
     let end = joint.q.0 + joint.q.1;
     let quaternion = matches!(joint.kind, JointKind::Floating | JointKind::Spherical).then(|| &q[end - 4..end])?;
     let norm = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
-    (norm != 0.0 && (norm - 1.0).abs() > NORM).then_some((joint.name.as_str(), norm))
+    (!(zeros && norm == 0.0) && (norm - 1.0).abs() > NORM).then_some((joint.name.as_str(), norm))
 }
 
 /// `q = 0` or `q = [0, 0]`
@@ -139,6 +139,16 @@ mod tests {
         let text = told("1").unwrap_err().to_string();
         assert!(text.contains("constant q: joint \"j1\": found a quaternion of norm 2, expected 1 within 1e-9"), "{text}");
         assert!(told("[0, 0, 0, 0, 0.999]").is_err());
+        // What turns a configuration on, or compares two, has to have one.
+        for text in [
+            "x = integrate(q = 0)",
+            "x = difference(q = 0)",
+            "x = difference(target = [0, 0, 0, 0, 0])",
+            "x = inverse_dynamics(q = 0, a = 0) + integrate(q = 0)",
+        ] {
+            let told = Wanted::parse(text).unwrap().check(&chain(&["continuous", "spherical"])).unwrap_err().to_string();
+            assert!(told.ends_with("joint \"j1\": found a quaternion of norm 0, expected 1 within 1e-9"), "{told}");
+        }
         let rates = Wanted::parse("x = inverse_dynamics(v = 1, a = 0)").unwrap();
         assert!(rates.check(&chain(&["spherical"])).is_ok());
     }

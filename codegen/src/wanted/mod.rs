@@ -118,9 +118,10 @@ impl Wanted {
 
     /// Whether constants are right for a robot: as many numbers as it takes, and quaternions that are some.
     pub fn check(&self, model: &Model<f64>) -> Result<(), Error> {
-        let mut constants = self.parts.iter().flat_map(|p| &p.constants);
+        let mut constants =
+            self.parts.iter().flat_map(|p| p.constants.iter().map(move |(argument, constant)| (p.function.id, argument, constant)));
         let wrong = |reason| Error::Wanted { found: self.name.clone(), reason };
-        constants.try_for_each(|(argument, constant)| constant.fits(*argument, model)).map_err(wrong)
+        constants.try_for_each(|(function, argument, constant)| constant.fits(function, *argument, model)).map_err(wrong)
     }
 }
 

@@ -11,9 +11,8 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 use articulated_core::Scalar;
 use num_traits::{One, Zero};
 
-pub(crate) use norms::{is_plain, norms};
-pub(crate) use scales::where_suspect;
-pub use scales::{scales, scales_of_generated};
+pub use norms::{is_plain, norms};
+pub use scales::{scales, scales_of_generated, where_suspect};
 
 /// A value together with the sum of the magnitudes of the terms that it was summed from.
 ///

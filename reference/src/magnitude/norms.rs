@@ -9,7 +9,7 @@ use articulated_core::model::{Body, Model};
 use articulated_core::nalgebra::Vector3;
 
 /// Of a function's results; none for those of other functions, none with effects, whose terms are not in it, and none where joints follow others, whose angles are sums themselves.
-pub(crate) fn norms(function: FunctionId, model: &Model<f64>, arguments: &[&[f64]]) -> Vec<f64> {
+pub fn norms(function: FunctionId, model: &Model<f64>, arguments: &[&[f64]]) -> Vec<f64> {
     let n = model.nv;
     if !is_plain(model) {
         return Vec::new();
@@ -26,7 +26,7 @@ pub(crate) fn norms(function: FunctionId, model: &Model<f64>, arguments: &[&[f64
 }
 
 /// Whether no joint follows another, and nothing acts but gravity.
-pub(crate) fn is_plain(model: &Model<f64>) -> bool {
+pub fn is_plain(model: &Model<f64>) -> bool {
     model.bodies.iter().all(|body| body.coordinates.mimic.is_none() && body.effects.joint.is_empty() && body.effects.body.is_empty())
 }
 

@@ -40,7 +40,7 @@ pub fn scales_of_generated(model: &Model<f64>, name: &str, arguments: &[&[f64]])
 }
 
 /// The scales of a result: those of generated code for numbers that are suspect by their own, and no others.
-pub(crate) fn where_suspect(own: &[f64], moved: &[f64], is_suspect: impl Fn(usize, f64) -> bool) -> Vec<f64> {
+pub fn where_suspect(own: &[f64], moved: &[f64], is_suspect: impl Fn(usize, f64) -> bool) -> Vec<f64> {
     own.iter().zip(moved).enumerate().map(|(k, (own, moved))| if is_suspect(k, *own) { *moved } else { *own }).collect()
 }
 

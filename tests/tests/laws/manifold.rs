@@ -2,7 +2,6 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use articulated_cli::precise::Big;
 use articulated_core::Scalar;
 use articulated_core::algorithm::neutral;
 use articulated_core::description::{JointKind, Limit};
@@ -10,6 +9,7 @@ use articulated_core::dual::Dual;
 use articulated_core::model::{JointInfo, Model};
 use articulated_core::spatial::screw::Quaternion;
 use articulated_core::spatial::{Vector3, rotate};
+use articulated_reference::Big;
 use articulated_tests::case::{Case, cast, for_each_bundled, for_each_tree};
 use articulated_tests::measure::U;
 use articulated_tests::random::Random;

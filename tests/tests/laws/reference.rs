@@ -1,9 +1,9 @@
 //! The algorithms against two others that they share no formula with.
 
-use articulated_cli::precise::Big;
 use articulated_core::Scalar;
 use articulated_core::algorithm::textbook::Textbook;
 use articulated_core::algorithm::{Needs, Workspace, functions};
+use articulated_reference::Big;
 use articulated_tests::case::{Case, State, cast, for_each_bundled, for_each_tree, placements};
 use articulated_tests::measure::{arguments, distance, distance_from, scale, torque_scale};
 use articulated_tests::random::Random;

@@ -1,7 +1,7 @@
 //! The sines and cosines that generated code takes, against 96 digits.
 
-use articulated_cli::precise::Big;
 use articulated_core::Scalar;
+use articulated_reference::Big;
 use articulated_tests::random::Random;
 
 /// Modules of lanes, as generated code has them.

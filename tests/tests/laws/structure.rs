@@ -1,11 +1,11 @@
 //! What every equation of motion M(q)·a + h(q, v) = τ is made of.
 
-use articulated_cli::precise::Big;
 use articulated_core::Scalar;
 use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, Origin};
 use articulated_core::model::Model;
 use articulated_core::model::pass::model_passes;
 use articulated_core::monitor::orthonormality;
+use articulated_reference::Big;
 use articulated_tests::case::{Case, State, for_each_bundled, for_each_tree, inverse_dynamics, mass_matrix, placements};
 use articulated_tests::measure::{U, arguments, distance, error, plus, scale, torque_scale};
 use articulated_tests::random::Random;

@@ -1,13 +1,13 @@
 //! Every function of the table, in each of its ways, is what the textbook says. What the textbook's functions are to each
 //! other, and with that those of the library, is held in [`super::textbook`].
 
-use articulated_cli::precise::Big;
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Argument, Function, FunctionId, Needs, Workspace, functions};
 use articulated_core::joint::{Angle, Joint};
 use articulated_core::model::pass::model_passes;
 use articulated_core::model::{Body, Model, Rates, Unturned};
 use articulated_core::spatial::{Matrix3, Reference, SpatialInertia, Vector3, to_z_axis};
+use articulated_reference::Big;
 use articulated_tests::case::{Case, State, cast, for_each_tree};
 use articulated_tests::random_tree::Flavour;
 use num_traits::Zero;

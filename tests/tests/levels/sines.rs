@@ -1,7 +1,7 @@
 //! Sines and cosines of the levels against 96 digits.
 
-use articulated_cli::precise::Big;
 use articulated_core::Scalar;
+use articulated_reference::Big;
 use articulated_tests::random::Random;
 
 macro_rules! texts {

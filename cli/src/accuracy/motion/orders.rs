@@ -6,12 +6,12 @@
 
 use articulated::simulate::{Integrator, IntegratorId, integrators};
 use articulated_core::Scalar;
+use articulated_reference::Big;
 
 use super::dop853_digits::A;
 use super::scene::find;
 use super::subject::{How, State, Subject, difference};
 use super::sweep::{Curve, Sample, curve, reference, slope};
-use crate::precise::Big;
 
 /// A motion of the pendulum: rad, rad/s, s.
 #[derive(Clone, Copy)]

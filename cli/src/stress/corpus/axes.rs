@@ -1,13 +1,12 @@
 //! Axes and frames that coincide, nearly coincide, or are not of length one.
 
 use articulated_core::algorithm::FunctionId;
-use articulated_core::algorithm::textbook::Textbook;
 use articulated_core::description::{Base, Description, JointKind, Origin};
 use articulated_core::model::Model;
+use articulated_reference::{Big, Exact};
 
 use super::Effort;
-use crate::precise::Big;
-use crate::stress::judge::{BACKWARD, Ends, Judge, State, call, scale};
+use crate::stress::judge::{BACKWARD, Ends, Judge, State, call, called, scale};
 use crate::stress::machine::{Machine, cast};
 use crate::stress::robots::{Body, Builder, built, state, states};
 use crate::stress::row::{Case, Row};
@@ -104,9 +103,8 @@ pub(super) fn from_textbook(robot: &Description, plain: &Model<f64>, model: &Mod
     let slices: Vec<&[f64]> = arguments.iter().map(Vec::as_slice).collect();
     let Some(scale) = scale(FunctionId::inverse_dynamics, plain, &slices) else { return f64::NAN };
     Big::scope(|| {
-        let Ok(book) = Textbook::<Big>::new(robot, Base::Fixed, articulated_core::model::GRAVITY) else { return f64::NAN };
-        let [q, v, a] = arguments.each_ref().map(|x| cast::<Big>(x));
-        let expected = book.inverse_dynamics(&q, &v, &a);
+        let Ok(book) = Exact::textbook(robot, Base::Fixed, articulated_core::model::GRAVITY) else { return f64::NAN };
+        let expected = called(&book, FunctionId::inverse_dynamics, &arguments.each_ref().map(|x| cast::<Big>(x)));
         let off = |((e, f), s): ((&Big, &f64), &f64)| e.error_of(*f, f64::ROUNDOFF * s);
         expected.iter().zip(&found).zip(&scale).map(off).fold(0.0, worse)
     })

@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 use articulated_core::Scalar;
 use articulated_core::spatial::screw::{HalfAngle, Quaternion, exp_rotation, log_rotation};
 use articulated_core::spatial::{Twist, Vector3};
+use articulated_reference::Big;
 
 use super::Effort;
-use crate::precise::Big;
 use crate::stress::row::{Case, Row};
 use crate::worse::worse;
 

@@ -9,9 +9,9 @@ use articulated_core::model::Model;
 use articulated_core::monitor::{orthonormality, quaternion_norms};
 use articulated_core::spatial::screw::{Quaternion, exp_rotation};
 use articulated_core::spatial::{Matrix3, Placement, Vector3};
+use articulated_reference::Big;
 
 use super::Effort;
-use crate::precise::Big;
 use crate::states::SplitMix64;
 use crate::stress::judge::{BACKWARD, Ends, Judge, State, call};
 use crate::stress::robots::{Body, Builder, built, normalise, state, states};

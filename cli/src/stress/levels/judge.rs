@@ -5,12 +5,11 @@ use articulated_codegen::{Arithmetic, Sines, bound};
 use articulated_core::Scalar;
 use articulated_core::algorithm::FunctionId;
 use articulated_core::model::Model;
+use articulated_reference::{Big, Magnitude, norms, scales};
 
 use super::Made;
 use super::contract::Contract;
-use crate::magnitude::{Magnitude, norms, scales};
-use crate::precise::Big;
-use crate::stress::judge::{Judge, State, call, scale};
+use crate::stress::judge::{Judge, State, call, called, scale};
 use crate::stress::machine::{cast, exact};
 use crate::stress::row::{Case, Row};
 use crate::worse::worse;
@@ -111,7 +110,7 @@ impl Judged<'_> {
         let norms = self.norms(self.function, &slices)?;
         Some(Big::scope(|| {
             let given: Vec<Vec<Big>> = arguments.iter().map(|x| cast(x)).collect();
-            let expected = call(self.function, &exact(self.model), &given);
+            let expected = called(&exact(self.model), self.function, &given);
             let one = |(k, e): (usize, &Big)| self.contract.part(e.error_of(found[k], 1.0), e.to_f64(), sums[k], norms[k]);
             expected.iter().enumerate().map(one).fold(0.0, worse)
         }))
@@ -133,7 +132,7 @@ impl Judged<'_> {
         let moved = |m: &[f64], i: usize| (0..n).map(|k| (m[i * n + k] * a[k]).abs()).sum::<f64>();
         Some(Big::scope(|| {
             let [q, v, precise] = [q, v, &a].map(|x| cast::<Big>(x));
-            let needed = call(FunctionId::inverse_dynamics, &exact(self.model), &[q, v, precise]);
+            let needed = called(&exact(self.model), FunctionId::inverse_dynamics, &[q, v, precise]);
             let one = |(i, t): (usize, &Big)| {
                 let sum = moved(&size_m, i) + size_h[i].abs() + driven[i].abs();
                 self.contract.part(t.error_of(driven[i], 1.0), moved(&m, i), sum, moved(&norms_m, i) + norms_h[i] + driven[i].abs())

@@ -82,7 +82,7 @@ impl Model<f64> {
     /// Joints are ordered depth-first, in the order of the file among the children of a link. Body frames are the link frames turned so that
     /// the joint's axis is z.
     pub fn new(description: &Description, base: Base) -> Result<Self, ModelError> {
-        if base == Base::Floating && description.joints.iter().any(|j| j.name == FLOATING_BASE) {
+        if description.joints.iter().any(|j| j.name == FLOATING_BASE) {
             return Err(ModelError::NamedAsBase);
         }
         let mut builder = Builder::new(description);

@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 
-use articulated_cli::precise::Big;
 use articulated_core::Scalar;
 use articulated_core::dual::Dual;
 use articulated_core::spatial::screw::HalfAngle;
+use articulated_reference::Big;
 use articulated_tests::measure::U;
 use articulated_tests::random::Random;
 

@@ -2,13 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use articulated_cli::precise::Big;
 use articulated_core::dual::Dual;
 use articulated_core::nalgebra::{Matrix6, SMatrix, Vector6};
 use articulated_core::spatial::screw::{
     Quaternion, cross_matrix, exp_rotation, left_jacobian, left_jacobian_inverse, right_jacobian, right_jacobian_inverse,
 };
 use articulated_core::spatial::{Placement, Twist, Vector3};
+use articulated_reference::Big;
 use articulated_tests::measure::U;
 use articulated_tests::random::Random;
 

@@ -2,11 +2,11 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use articulated_cli::precise::Big;
 use articulated_core::Scalar;
 use articulated_core::dual::Dual;
 use articulated_core::spatial::screw::{Quaternion, exp_rotation, log_rotation};
 use articulated_core::spatial::{Matrix3, Placement, Twist, Vector3};
+use articulated_reference::Big;
 use articulated_tests::measure::U;
 use articulated_tests::random::Random;
 

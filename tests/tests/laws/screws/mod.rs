@@ -7,11 +7,11 @@ mod logarithms;
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use articulated_cli::precise::Big;
 use articulated_core::Scalar;
 use articulated_core::dual::Dual;
 use articulated_core::nalgebra::{SMatrix, Vector6};
 use articulated_core::spatial::{Twist, Vector3};
+use articulated_reference::Big;
 use articulated_tests::measure::U;
 use articulated_tests::random::Random;
 

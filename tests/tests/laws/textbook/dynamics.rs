@@ -1,8 +1,8 @@
 //! Forces and what they do.
 
-use articulated_cli::precise::Big;
 use articulated_core::Scalar;
 use articulated_core::algorithm::Argument;
+use articulated_reference::Big;
 use articulated_tests::random_tree::Flavour;
 use num_traits::Zero;
 

@@ -4,11 +4,11 @@ mod dynamics;
 mod motion;
 mod sums;
 
-use articulated_cli::precise::Big;
 use articulated_core::Scalar;
 use articulated_core::algorithm::textbook::Textbook;
 use articulated_core::algorithm::{Argument, Needs, functions};
 use articulated_core::spatial::Reference;
+use articulated_reference::Big;
 use articulated_tests::case::{Case, State, cast, for_each_tree};
 use articulated_tests::random_tree::Flavour;
 use num_traits::{One, Zero};

@@ -1,7 +1,7 @@
 //! Placements and what moves along them.
 
-use articulated_cli::precise::Big;
 use articulated_core::algorithm::Argument;
+use articulated_reference::Big;
 use num_traits::{One, Zero};
 
 use super::{EXACT, NEARLY, REFERENCES, SMALL, apply, call, dot, for_each_scene, named, plus, same, times};

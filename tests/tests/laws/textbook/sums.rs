@@ -1,7 +1,7 @@
 //! What is a sum over links: energies, momentum, regressors.
 
-use articulated_cli::precise::Big;
 use articulated_core::algorithm::Argument;
+use articulated_reference::Big;
 use num_traits::Zero;
 
 use super::{EXACT, NEARLY, REGULAR, SMALL, apply, dot, for_each_scene, plus, same, times};

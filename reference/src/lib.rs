@@ -1,0 +1,13 @@
+//! What results are held to: [`Big`], a scalar of 96 digits, and robots in it, [`Exact`]; [`Magnitude`], a scalar that has the scale of rounding errors, and these [`scales`].
+//!
+//! A crate of its own, as every algorithm is compiled here once more for each of these scalars: who asks [`Exact`] and [`scales`] compiles none of them again.
+
+mod big;
+mod exact;
+mod magnitude;
+#[cfg(test)]
+mod samples;
+
+pub use big::{BITS, Big};
+pub use exact::Exact;
+pub use magnitude::{Magnitude, ROUNDOFF, is_plain, norms, scales, scales_of_generated, where_suspect};
