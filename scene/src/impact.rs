@@ -140,7 +140,7 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Option<Impact> {
         (Some(_), Some(time)) => time.clash(log, "ball and time", "one of them"),
         // One of them may be misspelt.
         (None, None) if matches!(spot.node.value, Value::Table(_)) && !log.has_unknown_key(before) => {
-            spot.clash(log, "neither ball nor time", "one of them, to say when the ball is hit")
+            spot.clash(log, "neither ball nor time", "one of them, to say when the ball is hit");
         }
         _ => {}
     }
