@@ -28,6 +28,12 @@ impl Stage {
         })
     }
 
+    /// What events of a degree of freedom are called: its joint, with a number where that has several.
+    pub(crate) fn name_of(&self, at: &Freedom<'_>) -> String {
+        let several = self.model.joints.iter().find(|joint| joint.name == at.joint() && joint.v.1 > 1);
+        several.map_or_else(|| at.joint().to_owned(), |joint| format!("{}[{}]", joint.name, at.v - joint.v.0))
+    }
+
     /// Bounds of the coordinate that a degree of freedom moves with: those of the effect if its joint has it, else those of the file; rad or m.
     pub(crate) fn bounds(&self, at: &Freedom<'_>) -> Option<(f64, f64)> {
         let own = match at.effect(EffectId::limit).map(|limit| limit.parameters.as_slice()) {

@@ -67,8 +67,11 @@ impl Stage {
         let path = self.folder.join(name);
         let wrong = |reason: String| format!("{}: {reason}", path.display());
         let bytes = read_file(&path, MOST_OF_TABLE).map_err(|e| wrong(e.to_string()))?;
-        let not_text = |at: usize| wrong(format!("byte {at}: found no UTF-8, expected a CSV"));
-        String::from_utf8(bytes).map_err(|e| not_text(e.utf8_error().valid_up_to()))
+        String::from_utf8(bytes).map_err(|e| {
+            let before = &e.as_bytes()[..e.utf8_error().valid_up_to()];
+            let line = before.iter().filter(|byte| **byte == b'\n').count() + 1;
+            wrong(format!("line {line}: found bytes that are not UTF-8, expected a CSV"))
+        })
     }
 
     /// The effects of one kind.

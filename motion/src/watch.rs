@@ -92,9 +92,9 @@ impl<'a> Watch<'a> {
     /// The bounds of the effect if a joint has it, else those of the file.
     fn limits(&mut self, stage: &Stage) {
         for at in stage.freedoms() {
-            let (name, Some((lower, upper))) = (at.joint(), stage.bounds(&at)) else { continue };
+            let (name, Some((lower, upper))) = (stage.name_of(&at), stage.bounds(&at)) else { continue };
             if lower.is_finite() || upper.is_finite() {
-                let event = Event::limit(name, at.q, lower, upper).direction(Direction::Either);
+                let event = Event::limit(name.as_str(), at.q, lower, upper).direction(Direction::Either);
                 self.push(event, format!("{name} comes back from its limit"), format!("{name} reaches its limit"));
             }
         }
@@ -123,7 +123,8 @@ impl<'a> Watch<'a> {
     fn stick_slip(&mut self, stage: &Stage) {
         for at in stage.freedoms() {
             let Some([_, speed, ..]) = at.effect(EffectId::friction).map(|friction| friction.parameters.as_slice()) else { continue };
-            let (name, event) = (at.joint(), Event::stick_slip(at.joint(), at.v, speed / at.multiplier.abs()));
+            let name = stage.name_of(&at);
+            let event = Event::stick_slip(name.as_str(), at.v, speed / at.multiplier.abs());
             self.push(event, format!("{name} slips"), format!("{name} sticks"));
         }
     }

@@ -77,13 +77,28 @@ fn kind(tag: &Tag<'_>, log: &mut Log) -> Option<JointKind> {
     let kind = KINDS.into_iter().find(|kind| kind.name() == name);
     if kind.is_none() {
         let names = KINDS.map(JointKind::name);
-        let hint = hint(nearest(name, names).as_deref());
+        let hint = hint(elsewhere(name).map(str::to_owned).or_else(|| nearest(name, names)).as_deref());
         let [before @ .., last] = names;
         let expected = format!("{} or {last}{hint}", before.join(", "));
         let place = Place { line: Some(line), ..tag.place("type") };
         log.error(&place, Kind::UnknownJointType, format!("the type {}", quote(name)), expected);
     }
     kind
+}
+
+/// What a joint that is called so in other formats is here.
+fn elsewhere(name: &str) -> Option<&'static str> {
+    let kind = match name.to_lowercase().as_str() {
+        "hinge" | "rotary" | "rotational" | "pin" => JointKind::Revolute,
+        "slide" | "slider" | "linear" | "translational" => JointKind::Prismatic,
+        "weld" | "rigid" | "static" => JointKind::Fixed,
+        "ball" => JointKind::Spherical,
+        "screw" => JointKind::Helical,
+        "cardan" | "hooke" => JointKind::Universal,
+        "free" | "freeflyer" => JointKind::Floating,
+        _ => return None,
+    };
+    Some(kind.name())
 }
 
 fn reference(joint: &Tag<'_>, which: &str, log: &mut Log) -> Option<Reference> {

@@ -47,7 +47,14 @@ const MISTAKES: &[Mistake] = &[
     ("type=\"continuous\"", "", Kind::MissingAttribute, 19, &["slew", "type"]),
     ("type=\"continuous\"", "type=\"continous\"", Kind::UnknownJointType, 19, &["slew", "type", "continous", "mean \"continuous\""]),
     ("type=\"continuous\"", "type=\"Continuous\"", Kind::UnknownJointType, 19, &["slew", "type"]),
-    ("type=\"continuous\"", "type=\"ball\"", Kind::UnknownJointType, 19, &["slew", "ball", "spherical, helical or universal"]),
+    (
+        "type=\"continuous\"",
+        "type=\"ball\"",
+        Kind::UnknownJointType,
+        19,
+        &["slew", "ball", "spherical, helical or universal", "mean \"spherical\""],
+    ),
+    ("type=\"continuous\"", "type=\"Hinge\"", Kind::UnknownJointType, 19, &["slew", "Hinge", "mean \"revolute\""]),
     ("type=\"continuous\"", "type=\"sperical\"", Kind::UnknownJointType, 19, &["slew", "sperical", "mean \"spherical\""]),
     ("type=\"continuous\"", "type=\"helicall\"", Kind::UnknownJointType, 19, &["slew", "mean \"helical\""]),
     // Extensions.

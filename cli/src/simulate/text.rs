@@ -80,7 +80,7 @@ fn table(s: &Summary) -> Table {
     }
     row("largest imbalance", none(), number(e.largest_imbalance), "J");
     row("  over the largest energy moved", none(), number(e.relative_imbalance), "");
-    let length = |p: &[f64]| number(p.iter().map(|x| x * x).sum::<f64>().sqrt());
+    let length = |p: &[f64]| number(p.iter().fold(0.0_f64, |length, x| length.hypot(*x)));
     row("angular momentum about the centre of mass", length(&p.start[..3]), length(&p.end[..3]), "kg·m²/s");
     row("  largest change", none(), number(p.largest_change_angular), "kg·m²/s");
     row("linear momentum", length(&p.start[3..]), length(&p.end[3..]), "kg·m/s");

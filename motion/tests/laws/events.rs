@@ -141,6 +141,17 @@ fn contacts_and_sticking_are_found_and_told() {
     assert!((outcome.happenings[0].t - 0.5).abs() < 1e-3, "{:?}", outcome.happenings);
 }
 
+/// A puck of 2 kg, held back by 2 N along each axis: each of its numbers stops by itself.
+#[test]
+fn numbers_of_one_joint_are_told_apart() {
+    let puck = CART.replace("prismatic", "planar").replace("<axis xyz=\"1 0 0\"/>", "<axis xyz=\"0 0 1\"/>");
+    let scene = "gravity = [0, 0, 0]
+        initial = { v = { slide = [0.5, 0.25, 0.0] } }
+        effects = { friction = { slide = { friction = 2.0, speed = 1e-4 } } }
+        simulation = { end = 1.0, integrator = 'rodas4', events = ['stick_slip'] }";
+    assert_eq!(words(&moved(&stage(scene, &puck))), ["slide[1] sticks", "slide[0] sticks"]);
+}
+
 #[test]
 fn sorts_of_events_that_cannot_happen_are_told() {
     let stage = stage("simulation = { end = 0.1, events = ['contacts', 'limits', 'stick_slip'] }", CART);
