@@ -72,7 +72,7 @@ fn universal_joints_come_to_their_limits() {
     let scene = "initial = { v = { u = [0.0, 1.0] } }\ngravity = [0, 0, 0]\n[effects]
         limit = { u = { lower = -0.3, upper = 0.3, stiffness = 1e3 } }\n[simulation]\nend = 0.5\nevents = [\"limits\"]\n";
     let summary = simulated(joints, 1.0, scene);
-    assert_eq!(told(&summary)[0], "u reaches its limit");
+    assert_eq!(told(&summary)[0], "u[1] reaches its limit");
     assert!((summary["events"][0]["time"].as_f64().unwrap() - 0.3).abs() < 1e-6, "{}", summary["events"]);
 }
 
