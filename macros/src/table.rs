@@ -99,8 +99,8 @@ impl<T> Table<'_, T> {
 
     fn unknown(&self, key: &Ident) -> Error {
         let nearest = nearest(&key.to_string(), self.keys.iter().map(|row| row.name));
-        let meant = nearest.map(|n| format!(", did you mean `{n}`?")).unwrap_or_default();
-        Error::new(key.span(), format!("unknown key `{key}`{meant}; there are: {}", self.listed()))
+        let meant = nearest.map(|n| format!("did you mean `{n}`? ")).unwrap_or_default();
+        Error::new(key.span(), format!("unknown key `{key}`, {meant}there are: {}", self.listed()))
     }
 
     fn listed(&self) -> String {

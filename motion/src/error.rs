@@ -26,21 +26,12 @@ pub struct MotionError {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Fault {
-    /// The start or the control does not fit the robot, or a table cannot be read.
+    /// The start or the control does not fit the robot, a table cannot be read, or the ball is hit at a time at which nothing moves.
     Scene(SceneError),
     /// The scene has no `[simulation]`: it does not say when its motion ends.
     NoSimulation,
     /// A setting that cannot be used.
     Setting(SettingError),
-    /// The ball is hit at a time at which nothing moves.
-    Time {
-        /// When the scene has it hit, s.
-        found: f64,
-        /// The first time of the motion, s.
-        start: f64,
-        /// Its last time, s; nothing is hit there.
-        end: f64,
-    },
     /// The robot has not as many coordinates, or degrees of freedom, as that of the scene.
     Shape {
         /// `coordinates` or `degrees of freedom`.
@@ -176,9 +167,6 @@ impl fmt::Display for Fault {
             Self::Scene(error) => f.write_str(&error.message()),
             Self::NoSimulation => f.write_str("simulation: found nothing, expected [simulation] with `end`, s"),
             Self::Setting(error) => error.fmt(f),
-            Self::Time { found, start, end } => {
-                write!(f, "impact.time: found {found:?}, expected a time from {start:?} s on and before {end:?} s")
-            }
             Self::Shape { what, found, expected } => {
                 write!(f, "robot: found {found} {what}, expected {expected}: it is another robot than the scene's")
             }

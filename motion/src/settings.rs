@@ -1,7 +1,7 @@
 //! How a scene is simulated, as it says itself.
 
 use articulated::simulate::{Output, Settings, Stiffness};
-use articulated_scene::{Output as Recorded, Simulation, Stiffness as Stiff, When};
+use articulated_scene::{Kind, Output as Recorded, SceneError, Simulation, Stiffness as Stiff, When};
 
 use crate::error::{Fault, MotionErrors};
 use crate::stage::Stage;
@@ -54,10 +54,18 @@ impl Stage {
 
     /// Whether the ball is hit while the robot moves.
     fn in_time(&self, &Settings { start, end, .. }: &Settings) -> Option<Fault> {
-        match self.scene.impact.as_ref()?.when {
-            When::Time(found) if found < start || found >= end => Some(Fault::Time { found, start, end }),
-            _ => None,
-        }
+        let impact = self.scene.impact.as_ref()?;
+        let When::Time(found) = impact.when else { return None };
+        let told = || SceneError {
+            file: self.scene.file.clone(),
+            at: impact.when_place,
+            key: "impact.time".to_owned(),
+            kind: Kind::Together,
+            found: format!("{found:?}"),
+            expected: format!("a time from {start:?} s on and before {end:?} s"),
+            nearest: None,
+        };
+        (found < start || found >= end).then(|| Fault::Scene(told()))
     }
 }
 

@@ -29,6 +29,8 @@ pub struct Impact {
     pub stop: bool,
     /// Where the scene names the link.
     pub place: At,
+    /// Where it says when.
+    pub when_place: At,
 }
 
 /// When the ball is hit.
@@ -112,7 +114,10 @@ pub(crate) const KEYS: &[Row<Impact>] = &[
         value: "3 numbers, m",
         default: "this or `time` has to be given",
         what: "the ball's place in the base frame: it is hit when the point passes the plane through it, forward along the normal",
-        read: |x, s, log| set(&mut x.when, s.numbers(log).map(When::Ball)),
+        read: |x, s, log| {
+            x.when_place = s.at;
+            set(&mut x.when, s.numbers(log).map(When::Ball));
+        },
     },
     Row {
         name: "time",
@@ -120,7 +125,10 @@ pub(crate) const KEYS: &[Row<Impact>] = &[
         value: "number, s",
         default: "this or `ball` has to be given",
         what: "when the ball is hit, wherever the point is then: from the start on, before the end",
-        read: |x, s, log| set(&mut x.when, s.number(log).map(When::Time)),
+        read: |x, s, log| {
+            x.when_place = s.at;
+            set(&mut x.when, s.number(log).map(When::Time));
+        },
     },
     Row {
         name: "stop",

@@ -78,7 +78,7 @@ fn renamings(rest: &Request, frames_are_known: bool, whole: &Model<f64>, scene: 
 /// with effects by their places in the scene.
 pub fn settle(request: &mut Request, scene: &Scene) -> Result<Resolved, Error> {
     let Tried { mut errors, rest, .. } = tried(&request.settled(), |request| plan(request).map(drop));
-    let resolved = scene.effects_of_rest(&request.options.robot, &rest.robot(), !errors.is_empty());
+    let resolved = scene.effects_of_rest(&rest.robot(), !errors.is_empty());
     let resolved = resolved.unwrap_or_else(|error| {
         errors.extend(error.map(Error::from));
         Resolved::default()
@@ -377,6 +377,11 @@ mod tests {
             let found = wrong(scene);
             assert!(found.starts_with(told) && found.lines().count() == 1, "{found}");
         }
+        let beside = wrong(
+            "[effects]\ndamping = { elbow_1 = 1, elbo = 1 }\nshaft = { elbow = { segments = 1, stiffness = 1 } }\n[initial]\nq = { elbow_1 = 1, sholder = 1 }",
+        );
+        let told = ["s.toml:2: effects.damping.elbo: ", "s.toml:3: effects.shaft.elbow: ", "s.toml:5: initial.q.sholder: "];
+        assert!(beside.lines().count() == told.len() && beside.lines().zip(told).all(|(line, told)| line.starts_with(told)), "{beside}");
         let shaft = wrong("[effects.shaft.elbow]\nsegments = 1\nstiffness = 1");
         assert_eq!(
             shaft,

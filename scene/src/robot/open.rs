@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use articulated_core::description::Base;
+use articulated_core::description::{Base, Shaft};
 use articulated_core::effect::EffectErrors;
 use articulated_core::model::Model;
 use articulated_urdf::{MOST_BYTES, Reading, read_file};
@@ -12,6 +12,7 @@ use super::faults::{Tried, leave_out, tried};
 use super::options::{Appended, RobotAsked, RobotOptions};
 use crate::edits::Append;
 use crate::effects::{Edited, Resolved};
+use crate::error::{Kind, SceneError, SceneErrors};
 use crate::scene::{Robot, Scene};
 
 /// A robot that scenes may call by its name.
@@ -136,12 +137,14 @@ impl Opened {
             Ok((reading, model))
         };
         let Tried { value: robot, mut errors, rest } = tried(&self.options, whole, leave_out);
-        let resolved = self.scene.effects_of_rest(&self.options, &RobotAsked { options: &rest, ..self.asked() }, !errors.is_empty());
+        let resolved = self.scene.effects_of_rest(&RobotAsked { options: &rest, ..self.asked() }, !errors.is_empty());
         let resolved = resolved.unwrap_or_else(|error| {
             errors.extend(error);
             Resolved::default()
         });
-        errors.extend(robot.iter().filter_map(|(_, model)| self.scene.fits(model).err()).map(RobotError::from));
+        let (_, refused) = self.scene.without_refused_shafts(&rest.shafts);
+        let unfit = robot.iter().filter_map(|(_, model)| beside_shafts(self.scene.fits(model).err()?, &refused));
+        errors.extend(unfit.map(RobotError::from));
         Attempt { robot, resolved, errors, rest }
     }
 }
@@ -175,15 +178,33 @@ impl Scene {
         }
     }
 
-    /// The scene's effects on `rest`, what of the robot that is `asked` for was not refused. Errors: `None` where there are none to be had and that was told before: `told`.
-    pub fn effects_of_rest(&self, asked: &RobotOptions, rest: &RobotAsked<'_>, told: bool) -> Result<Resolved, Option<RobotError>> {
-        // Springs go with the shafts one by one: where one was refused, others would get its own.
-        if rest.options.shafts != asked.shafts {
-            return Err(None);
-        }
-        // All that the robot itself is refused for was told already.
-        self.effects_on(rest).map_err(|error| Some(error).filter(|error| !told || matches!(error, RobotError::Scene(_))))
+    /// The scene's effects on `rest`, what of the robot that was asked for was not refused. Errors: `None` where there are none to be had and that was told before: `told`.
+    pub fn effects_of_rest(&self, rest: &RobotAsked<'_>, told: bool) -> Result<Resolved, Option<RobotError>> {
+        let (scene, refused) = self.without_refused_shafts(&rest.options.shafts);
+        scene.effects_on(rest).map_err(|error| match error {
+            RobotError::Scene(errors) => beside_shafts(errors, &refused).map(RobotError::from),
+            // All that the robot itself is refused for was told already.
+            error => Some(error).filter(|_| !told),
+        })
     }
+
+    /// The scene with those of its shafts that are `left`, in their order, for springs go with the shafts one by one; and the joints of the others.
+    fn without_refused_shafts(&self, left: &[Shaft]) -> (Self, Vec<String>) {
+        let (mut scene, mut refused, mut left) = (self.clone(), Vec::new(), left.iter().peekable());
+        scene.shafts.retain(|asked| {
+            let is_left = left.next_if(|shaft| **shaft == asked.shaft).is_some();
+            refused.extend((!is_left).then(|| asked.shaft.joint.clone()));
+            is_left
+        });
+        (scene, refused)
+    }
+}
+
+/// What is not about joints and links that only a `refused` shaft would have brought.
+fn beside_shafts(SceneErrors { mut errors }: SceneErrors, refused: &[String]) -> Option<SceneErrors> {
+    let is_of_shaft = |error: &SceneError| refused.iter().any(|joint| error.key.contains(&format!("{joint}_")));
+    errors.retain(|error| error.kind != Kind::UnknownName || !is_of_shaft(error));
+    (!errors.is_empty()).then_some(SceneErrors { errors })
 }
 
 fn appended(other: Append) -> Appended {
