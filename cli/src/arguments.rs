@@ -57,6 +57,7 @@ pub(crate) enum Command {
         "articulated generate arm.urdf --functions inverse_dynamics,forward_dynamics --batch f64,f32 -o src/arm.rs",
         "articulated generate arm.urdf --functions 'hold = gravity_torque + jacobians_body, bias = inverse_dynamics(a = 0)'",
         "articulated generate arm.urdf --functions 'still=inverse_dynamics(v=0,a=0)' --parameters 'payload(tool)'",
+        "articulated generate arm.toml --functions motion --runtime ::articulated -o src/arm.rs",
         "articulated generate arm.urdf --level double_double -o src/arm_exact.rs",
         "articulated generate arm.urdf --frames tool,camera --lock wrist=0 --payload tool=1.2@0,0,0.1:1e-3,0,0,1e-3,0,1e-3",
         "articulated generate arm.urdf --append gripper.urdf@tool --append gripper.urdf@tool:second_:0,0,0.2,0,0,1.5",
@@ -187,7 +188,7 @@ pub(crate) struct GenerateArguments {
     pub(crate) robot: RobotArguments,
     #[command(flatten)]
     pub(crate) frames: FrameArguments,
-    /// The functions wanted, groups of them, or name = first + second(a = 0) [default: placements,inverse_dynamics]
+    /// The functions wanted, groups of them, name = first + second(a = 0), or motion: all that the motion of a scene calls [default: placements,inverse_dynamics]
     #[arg(long, alias = "function", value_name = "NAMES", value_parser = wanted)]
     pub(crate) functions: Vec<Names>,
     /// Constants of the model that stay inputs: payload(LINK), inertia(LINK), origin(JOINT)

@@ -3,7 +3,7 @@
 use articulated_codegen::{Wanted, nearest};
 use articulated_core::algorithm::{function, functions};
 
-use articulated_codegen::function_groups::Group;
+use articulated_codegen::function_groups::{Group, MOTION};
 
 /// The functions that one word of the command line names.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -14,10 +14,11 @@ pub(crate) fn known(text: &str) -> Result<Names, String> {
     each(text, &known_one)
 }
 
-/// As [`known`], and functions as the generator reads them: `name = first + second(a = 0)`.
+/// As [`known`], and what the generator reads: `name = first + second(a = 0)`, and `motion` of a scene.
 pub(crate) fn wanted(text: &str) -> Result<Names, String> {
     each(text, &|entry| match entry.contains(['=', '+', '(']) {
         true => Wanted::parse(entry).map(|_| vec![entry.to_owned()]).map_err(|e| e.to_string()),
+        false if entry == MOTION => Ok(vec![entry.to_owned()]),
         false => known_one(entry),
     })
 }

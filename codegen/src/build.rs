@@ -120,7 +120,7 @@ impl Build {
         self
     }
 
-    /// The functions wanted.
+    /// The functions wanted: names, groups, `name = first + second(a = 0)`; beside a scene `motion`, for all that its motion calls.
     #[must_use]
     pub fn functions<N: Into<String>>(mut self, names: impl IntoIterator<Item = N>) -> Self {
         self.request.options.functions = names.into_iter().map(Into::into).collect();

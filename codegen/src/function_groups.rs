@@ -2,12 +2,16 @@
 
 pub use articulated_core::algorithm::Group;
 
-/// The same list with each group's functions in the place of its name, and each entry once.
-pub(crate) fn expanded(list: &[String]) -> Vec<String> {
+/// The word for all functions that the motion of a scene calls.
+pub const MOTION: &str = "motion";
+
+/// The same list with each group's functions in the place of its name, those of `motion` in the place of that, and each entry once.
+pub(crate) fn expanded(list: &[String], motion: &[String]) -> Vec<String> {
     let mut all: Vec<String> = Vec::new();
     for entry in list {
         let names: Vec<String> = match Group::named(entry) {
             Some(group) => group.functions().map(str::to_owned).collect(),
+            None if entry == MOTION && !motion.is_empty() => motion.to_vec(),
             None => vec![entry.clone()],
         };
         for name in names {
@@ -38,7 +42,11 @@ mod tests {
 
     #[test]
     fn a_group_stands_for_its_functions_and_what_is_asked_for_twice_is_there_once() {
-        let list = ["dissipation", "operational_space", "dissipation", "operational_space_inertia", "x = effects"].map(str::to_owned);
-        assert_eq!(expanded(&list), ["dissipation", "operational_space_inertia", "operational_space_inertia_inverse", "x = effects"]);
+        let owned = |list: &[&str]| -> Vec<String> { list.iter().map(|name| (*name).to_owned()).collect() };
+        let list = owned(&["dissipation", "operational_space", "dissipation", "operational_space_inertia", "x = effects"]);
+        assert_eq!(expanded(&list, &[]), ["dissipation", "operational_space_inertia", "operational_space_inertia_inverse", "x = effects"]);
+        let of_a_scene = owned(&["forward_dynamics", "integrate"]);
+        assert_eq!(expanded(&owned(&["integrate", "motion"]), &of_a_scene), ["integrate", "forward_dynamics"]);
+        assert_eq!(expanded(&owned(&["motion"]), &[]), ["motion"]);
     }
 }

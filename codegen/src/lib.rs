@@ -230,6 +230,10 @@ pub fn defined<S: Scalar>(file: &str, model: &Model<f64>, massless: &[String], f
 /// The function called `name`, or the error that names the nearest.
 pub fn function(name: &str) -> Result<&'static Function<Sym>, Error> {
     articulated_core::algorithm::function(name).ok_or_else(|| {
+        if name == function_groups::MOTION {
+            let reason = "it stands for what the motion of a scene calls, by itself in a list: found no scene with [simulation]".into();
+            return Error::Wanted { found: name.into(), reason };
+        }
         // In a sum of functions a group is none of them.
         let groups = Group::ALL.map(Group::name).into_iter().filter(|_| Group::named(name).is_none());
         let known: Vec<String> = functions::<Sym>().iter().map(|f| f.name).chain(groups).map(str::to_owned).collect();

@@ -31,6 +31,8 @@ pub struct Options {
     /// The functions wanted, each as [`crate::Wanted::parse`] reads it: a name of [`articulated_core::algorithm::functions`], or
     /// `name = first + second(a = 0)`.
     pub functions: Vec<String>,
+    /// What the word `motion` stands for among them: the functions that the motion of a scene calls, and none without such a scene.
+    pub motion: Vec<String>,
     /// Constants of the model that stay inputs: `payload(link)`, `inertia(link)`, `origin(joint)`.
     pub parameters: Vec<String>,
     /// Rust names to use instead of those made from the URDF's names: (name in the URDF, name in Rust).
@@ -56,6 +58,7 @@ impl Default for Options {
         Self {
             robot: RobotOptions::default(),
             functions: vec!["placements".into(), "inverse_dynamics".into()],
+            motion: Vec::new(),
             parameters: Vec::new(),
             rename: Vec::new(),
             limbs: true,
@@ -106,7 +109,7 @@ impl Request {
 
     /// The request with what follows from its choices: functions in the place of groups; without `std` nobody can ask what the processor has, nor call for a multiply-add.
     pub(crate) fn settled(&self) -> Cow<'_, Self> {
-        let functions = function_groups::expanded(&self.options.functions);
+        let functions = function_groups::expanded(&self.options.functions, &self.options.motion);
         if !self.options.no_std && functions == self.options.functions {
             return Cow::Borrowed(self);
         }

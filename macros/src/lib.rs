@@ -56,7 +56,8 @@ mod tree;
 /// ```
 ///
 /// The values above are the defaults, but for `urdf`, `scene`, `effects`, `rename`, `snap_angles`, the last two functions, and those from `parameters` to `append`. Names of links and joints
-/// are words or stand in quotation marks. Robots are appended first, then payloads attached, then joints locked. The module has one function for each name in `functions`,
+/// are words or stand in quotation marks. Robots are appended first, then payloads attached, then joints locked. The module has one function for each name in `functions`
+/// (for each of a group that is named there; beside a scene, `motion` stands for all that its motion calls),
 /// constants for sizes, names, limits and the neutral configuration, modules of indices (`joint`, `q_index`, `v_index`, `frame`), and `Robot`, a value that
 /// implements `articulated::Dynamics`. What looks odd in the URDF is listed in its constant `WARNINGS`. It is compiled
 /// again when a URDF or the scene changes. With `parameters` every function takes their numbers as the last of its inputs, before `out` where it has that; the constant `PARAMETERS` has those of the URDF, the

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use articulated_codegen::function_groups::Group;
+use articulated_codegen::function_groups::{Group, MOTION};
 use articulated_codegen::scene::articulated_scene::Node;
 use articulated_codegen::{Base, Level, Options, Real, Reference, RobotOptions, Wanted};
 use proc_macro2::Span;
@@ -62,7 +62,8 @@ impl Settings {
         self.payloads.iter_mut().for_each(|loads| loads.retain(|load| load.payload().is_some()));
         self.append.iter_mut().for_each(|others| others.retain(|other| other.appended().is_some()));
         if let Some(functions) = &mut self.functions {
-            functions.retain(|entry| errors.take(known(entry)).is_some());
+            let has_scene = self.scene.is_some();
+            functions.retain(|entry| has_scene && entry.text.trim() == MOTION || errors.take(known(entry)).is_some());
         }
         let mut seen = BTreeSet::new();
         let renamings = self.rename.iter_mut();
@@ -78,6 +79,7 @@ impl Settings {
         Options {
             robot: self.robot(rest.robot),
             functions: self.functions.as_ref().map_or(rest.functions, |entries| texts(entries)),
+            motion: rest.motion,
             parameters: self.parameters.as_ref().map_or(rest.parameters, |entries| texts(entries)),
             rename: or(self.rename.as_ref(), renamed, rest.rename),
             limbs: self.limbs.unwrap_or(rest.limbs),

@@ -162,6 +162,11 @@ fn groups_of_functions_stand_for_the_same_everywhere() {
     assert_eq!(own, text(module(quote!(mod arm { scene = #file, functions = [#names] }))));
     let build = Build::scene(file).functions(["effects", "gravity_torque"]).generate().unwrap();
     assert!(own.contains("fn dissipation ") && build.source.contains("fn dissipation("));
+    let moved = text(module(quote!(mod arm { scene = #file, functions = [motion, bias_forces] })));
+    let names = quote!(forward_dynamics, integrate, kinetic_energy, potential_energy, centroidal_momentum, dissipation, motor_torques);
+    assert_eq!(moved, text(module(quote!(mod arm { scene = #file, functions = [#names, bias_forces] }))));
+    let build = Build::scene(file).functions(["motion"]).generate().unwrap();
+    assert!(build.source.contains("fn forward_dynamics(") && build.source.contains("fn centroidal_momentum("));
     let effects = quote!(effects = { damping = { "*" = 0.1 } });
     let own = text(module(quote!(mod arm { urdf = #urdf, functions = [effects], #effects })));
     assert_eq!(own, text(module(quote!(mod arm { urdf = #urdf, functions = [effect_forces, dissipation, motor_torques], #effects }))));

@@ -3,7 +3,7 @@
 use articulated::simulate::IntegratorId;
 use articulated::{Dynamics, FunctionError, FunctionId};
 use articulated_core::effect::EffectId;
-use articulated_scene::{Drive, Watched};
+use articulated_scene::Watched;
 
 use crate::error::Fault;
 use crate::stage::Stage;
@@ -17,18 +17,15 @@ impl Stage {
         all
     }
 
-    /// Names of the functions to generate for this motion, each once: those that it needs with this integrator, and those that its recording tells of
+    /// Names of the functions to generate for this motion, each once, of those for which the word `motion` stands in lists of functions ([`Scene::calls`](articulated_scene::Scene::calls)): those that it needs with this integrator, and those that its recording tells of
     /// energies, losses and momentum by. A robot that has none of the latter moves as well, and [`Recording::missing`](articulated::simulate::Recording::missing) has their names.
     pub fn functions(&self, integrator: IntegratorId) -> Vec<&'static str> {
-        let mut functions = self.required(integrator);
-        functions.extend([FunctionId::kinetic_energy, FunctionId::potential_energy]);
-        if self.model.moving_mass() > 0.0 {
-            functions.push(FunctionId::centroidal_momentum);
-        }
-        if !self.effects.is_empty() {
-            functions.extend([FunctionId::dissipation, FunctionId::motor_torques]);
-        }
-        functions.into_iter().map(FunctionId::name).collect()
+        let told = self.scene.calls_with(integrator).told.into_iter().filter(|function| match function {
+            FunctionId::centroidal_momentum => self.model.moving_mass() > 0.0,
+            FunctionId::dissipation | FunctionId::motor_torques => !self.effects.is_empty(),
+            _ => true,
+        });
+        self.required(integrator).into_iter().chain(told).map(FunctionId::name).collect()
     }
 
     /// Who needs a frame, and of which link.
@@ -45,19 +42,12 @@ impl Stage {
 
     /// Functions without which the motion does not begin.
     fn required(&self, integrator: IntegratorId) -> Vec<FunctionId> {
-        let mut functions = integrator.row().needs.to_vec();
-        if self.model.nq != self.model.nv {
-            functions.push(FunctionId::integrate);
-        }
-        if matches!(self.scene.control.drive, Drive::Pd { .. }) {
-            functions.push(FunctionId::difference);
-        }
-        if self.framed().next().is_some() {
-            functions.push(FunctionId::placements);
-        }
-        if self.scene.impact.is_some() {
-            functions.extend([FunctionId::jacobians_world_aligned, FunctionId::solve_mass_matrix]);
-        }
+        let mut functions = self.scene.calls_with(integrator).required;
+        functions.retain(|function| match function {
+            FunctionId::integrate => self.model.nq != self.model.nv,
+            FunctionId::placements => self.framed().next().is_some(),
+            _ => true,
+        });
         functions
     }
 

@@ -14,6 +14,7 @@
 //! [`Scene::resolve`] (effects with all their numbers), [`Scene::start`] and [`Scene::controller`] (vectors). [`open`] reads the files that a scene names, and [`Opened::settle`] edits the
 //! robot and gives its model and effects. No input makes the reader panic or hang. The keys are listed in `docs/scenes.md`.
 
+mod calls;
 mod control;
 mod document;
 mod edits;
@@ -32,6 +33,7 @@ mod simulation;
 mod table;
 mod tree;
 
+pub use calls::Calls;
 pub use control::{Aim, Control, Controller, Drive, PerJoint, Target};
 pub use edits::{Append, Load, Lock};
 pub use effects::{Asked, Edited, Numbers, Resolved, Selector, still};

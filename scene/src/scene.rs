@@ -220,7 +220,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         required: false,
         value: "texts",
         default: "those of the macro",
-        what: "the functions to generate, as the macro's key has them",
+        what: "the functions to generate, as the macro's key has them; `\"motion\"` for all that the motion calls",
         read: |s, spot, log| {
             s.code.functions = spot.texts(log, "a list of functions, as [\"placements\", \"bias = inverse_dynamics(a = 0)\"]");
             s.code.places.functions = edits::places(spot);

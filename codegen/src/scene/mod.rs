@@ -96,6 +96,7 @@ pub fn fill(options: &mut Options, scene: &Scene) {
     let put = |said: Option<bool>, into: &mut bool| *into = said.unwrap_or(*into);
     scene.fill_robot(&mut options.robot);
     options.functions = code.functions.unwrap_or(std::mem::take(&mut options.functions));
+    options.motion = scene.calls().names().map(str::to_owned).collect();
     options.parameters = code.parameters.unwrap_or_default();
     options.rename = code.rename;
     put(code.limbs, &mut options.limbs);
@@ -361,6 +362,7 @@ mod tests {
         assert_eq!(wrong("\nlock = { elbo = 1 }"), "s.toml:2: lock.elbo: the robot has no joint \"elbo\", did you mean \"elbow\"?");
         let named = [
             ("\nfunctions = ['mass_matrix',\n 'no_such']", "s.toml:3: functions: unknown function `no_such`"),
+            ("functions = ['bias_forces',\n'motion']", "s.toml:2: functions: `motion`: it stands for what the motion of a scene calls"),
             ("\nfunctions = ['x = inverse_dynamics(b = 0)']", "s.toml:2: functions: `x = inverse_dynamics(b = 0)`: "),
             ("parameters = [\n'payload(for)']", "s.toml:2: parameters: `payload(for)`: "),
             ("frames = ['fore',\n'upper',\n'for']", "s.toml:3: frames: the robot has no link \"for\", did you mean \"fore\"?"),

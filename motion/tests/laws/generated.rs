@@ -9,8 +9,7 @@ const SCENE: &str = include_str!("arm.toml");
 articulated::robot! {
     mod arm {
         scene = "tests/laws/arm.toml",
-        functions = [forward_dynamics, kinetic_energy, potential_energy, centroidal_momentum, dissipation, motor_torques, integrate, difference,
-            placements, jacobians_world_aligned, solve_mass_matrix],
+        functions = [motion],
         frames = [hand],
     }
 }
