@@ -206,7 +206,7 @@ const KEYWORDS: &str = "as async await break const continue crate dyn else enum 
 const KEPT: &str = "fma trig joint frame link q_index v_index parameter parameters robot out";
 
 /// Types that generated code uses, which the type of several results cannot be.
-const KEPT_TYPES: &str = "Bits Block Bodies Chunk F Far Float Fma Four Fraction Group Held Kept Lanes LengthError Line M Matrix MultiplyAdd N Numbers Own Pair Path Plain Real Robot Root S Shelf \
+const KEPT_TYPES: &str = "Bits Block Bodies Chunk F Far Float Fma Four Fraction Group Held Kept Lanes LengthError Line M Matrix MultiplyAdd N Numbers Own Pair Path Plain Real Robot Root Rows S Shelf \
                           Spread Sums T Three Turned V Workspace";
 
 /// The type of an array of these dimensions in generated code, of numbers of this type.

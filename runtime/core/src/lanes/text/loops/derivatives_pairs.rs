@@ -108,7 +108,7 @@ macro_rules! pairings {
         $(#[$features])?
         #[inline]
         fn before(bodies: &Bodies, pair: &Pair, own: &[Own; OWN], out: &mut [f64; 3 * MATRIX]) {
-            let (block, others, path) = meeting(bodies, pair);
+            let ((block, others, path), rows) = (meeting(bodies, pair), rows(own));
             // G S about the origins of the others.
             let arm = minus(plus(of_each(&block.points, own), path), read(&others.points));
             let (force, turning) = (of_each(&block.x[3..], own), of_each(&block.x[6..], own));
@@ -120,15 +120,15 @@ macro_rules! pairings {
             }
             let by_q = dot_and(moment, three(&curl), dot_and(force, three(&curl[3..]), dot(turning, three(&drift))));
             let twice = dot_and(moment, three(&drift), dot(force, three(&drift[3..])));
-            put(by_q, own, out, 0);
-            put(fmadd(twice, k(2.0), dot(turning, three(&axis))), own, out, MATRIX);
-            put(by_a, own, out, 2 * MATRIX);
+            put(by_q, rows, out, 0);
+            put(fmadd(twice, k(2.0), dot(turning, three(&axis))), rows, out, 1);
+            put(by_a, rows, out, 2);
         }
 
         $(#[$features])?
         #[inline]
         fn beyond(bodies: &Bodies, pair: &Pair, own: &[Own; OWN], out: &mut [f64; 3 * MATRIX]) {
-            let (block, others, path) = meeting(bodies, pair);
+            let ((block, others, path), rows) = (meeting(bodies, pair), rows(own));
             // S about the origins of the others.
             let arm = minus(read(&others.points), minus(of_each(&block.points, own), path));
             let angular = of_each(&block.axis, own);
@@ -138,7 +138,7 @@ macro_rules! pairings {
             }
             let x: [V; 21] = read(&others.x);
             for (matrix, at) in [9, 15, 0].into_iter().enumerate() {
-                put(dot_and(linear, three(&x[at + 3..]), dot(angular, three(&x[at..]))), own, out, matrix * MATRIX);
+                put(dot_and(linear, three(&x[at + 3..]), dot(angular, three(&x[at..]))), rows, out, matrix);
             }
         }
 
@@ -172,11 +172,19 @@ macro_rules! narrow {
             k(x.numbers()[own[0].lane as usize % 4])
         }
 
-        /// A joint's row, so far behind its place.
+        /// A joint's rows: each is looked at by itself.
+        type Rows<'a> = &'a [Own; OWN];
+
+        #[inline]
+        fn rows(own: &[Own; OWN]) -> Rows<'_> {
+            own
+        }
+
+        /// A joint's row, into one of the matrices.
         $(#[$features])?
         #[inline]
-        fn put(x: V, own: &[Own; OWN], out: &mut [f64; 3 * MATRIX], behind: usize) {
-            mix(x, own[0].which, out, own[0].place as usize + behind);
+        fn put(x: V, own: Rows<'_>, out: &mut [f64; 3 * MATRIX], matrix: usize) {
+            mix(x, own[0].which, out, own[0].place as usize + matrix * MATRIX);
         }
 
         /// The lanes asked for, into the matrices. Not a vector selected by a mask: compilers make a masked store of that, which takes a processor without AVX-512 a dozen cycles.
