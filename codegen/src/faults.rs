@@ -100,6 +100,13 @@ mod tests {
     }
 
     #[test]
+    fn functions_that_nobody_knows_are_told_of_a_robot_that_cannot_be_read_too() {
+        let mut request = Request::new("arm.urdf", ARM.replace("mass value='1'", "mass value='one'"));
+        request.options.functions = ["no_such", "mass_matrix", "x = inverse_dynamics(b = 0)"].map(String::from).to_vec();
+        each_once(&generate(&request).unwrap_err().to_string(), &["`no_such`", "b = 0", "mass value"]);
+    }
+
+    #[test]
     fn numbers_that_cannot_be_are_told_once_and_with_all_else() {
         let told = told(|o| {
             o.robot.gravity = [0.0, f64::NAN, 0.0];

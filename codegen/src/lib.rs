@@ -105,7 +105,9 @@ struct Plan {
 /// Everything that comes before programs are made.
 fn plan(request: &Request) -> Result<Plan, Error> {
     let options = &request.options;
+    // What needs no robot comes first, to be told of one that cannot be read too.
     types_of_batch(&options.batch)?;
+    options.functions.iter().try_for_each(|text| Wanted::parse(text).map(drop))?;
     let mut reading = read(request)?;
     let whole = model(request, &reading.description)?;
     if whole.nv > MOST_FREEDOMS {
@@ -126,7 +128,7 @@ fn types_of_batch(types: &[Real]) -> Result<(), Error> {
     twice.map_or(Ok(()), |(_, real)| Err(Error::BatchTwice { found: real.name() }))
 }
 
-/// Generates the code that `request` asks for. Pure: nothing is read or written. Errors: everything that is wrong with the document, or else with the request.
+/// Generates the code that `request` asks for. Pure: nothing is read or written. Errors: everything that is wrong with the document and what of the request can be told without it, or else everything that is wrong with the request.
 pub fn generate(request: &Request) -> Result<Generated, Error> {
     let request = &*request.settled();
     let Plan { reading, model, parameters, wanted, names } = faults::all(request, plan)?;

@@ -57,7 +57,7 @@ pub struct Settled {
 pub struct Attempt {
     /// The robot without what was refused, with its model, which has no effects; `None`: there is none to be had.
     pub robot: Option<(Reading, Model<f64>)>,
-    /// The scene's effects; none where one was refused.
+    /// The scene's effects; none where one of them was refused, and those of refused shafts left out.
     pub resolved: Resolved,
     /// Everything that is wrong with the document, or else everything of the scene that does not fit the robot, tables of control in files apart.
     pub errors: Vec<RobotError>,
