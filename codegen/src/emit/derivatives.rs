@@ -122,7 +122,7 @@ impl Tables<'_> {
         }
     }
 
-    /// What joints of a block have to do with the same others, two by two.
+    /// What joints of a block have to do with the same others, two by two; of the same two one after the other.
     fn twos(&self, pairs: &[Pair]) -> Vec<String> {
         let mut meetings: Vec<(_, Vec<&Pair>)> = Vec::new();
         for pair in pairs {
@@ -132,8 +132,9 @@ impl Tables<'_> {
                 None => meetings.push((meeting, vec![pair])),
             }
         }
-        let twos = meetings.iter().flat_map(|(meeting, own)| own.chunks(2).map(move |two| (meeting, two)));
-        let written = twos.map(|((at, path, others), two)| {
+        let mut twos: Vec<_> = meetings.iter().flat_map(|(meeting, own)| own.chunks(2).map(move |two| (meeting, two))).collect();
+        twos.sort_by_key(|(meeting, two)| (meeting.0, two.iter().map(|pair| self.groups.turned(pair.own).1).collect::<Vec<_>>()));
+        let written = twos.into_iter().map(|((at, path, others), two)| {
             let second = two.get(1).map_or_else(|| "Own { lane: 0, which: 0, place: 0 }".into(), |pair| self.own(pair));
             format!("Pair {{ at: {at}, path: {path}, others: {others}, own: [{}, {second}] }}", self.own(two[0]))
         });

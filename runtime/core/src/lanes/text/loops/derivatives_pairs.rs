@@ -85,34 +85,29 @@ macro_rules! rooted {
 /// What joints have to do with one another, into the matrices: as many of two joints at once as have room, each with four others.
 macro_rules! pairings {
     ($(#[$features:meta])?) => {
-        /// Rows of joints with themselves and with those before them, and with those beyond them.
+        /// What joints bring along to meet those before them: their origins, and of G S force, turning and moment.
         $(#[$features])?
-        #[inline(never)]
-        fn pairs(bodies: &Bodies, out: &mut [f64; 3 * MATRIX]) {
-            for pair in BEFORE.iter() {
-                for own in pair.own.as_chunks().0 {
-                    if own[0].which != 0 {
-                        before(bodies, pair, own, out);
-                    }
-                }
-            }
-            for pair in BEYOND.iter() {
-                for own in pair.own.as_chunks().0 {
-                    if own[0].which != 0 {
-                        beyond(bodies, pair, own, out);
-                    }
-                }
-            }
+        #[inline]
+        fn acting(bodies: &Bodies, pair: &Pair, own: &[Own; OWN]) -> [[V; 3]; 4] {
+            let Block { points, x, .. } = &bodies.blocks[pair.at as usize];
+            [of_each(points, own), of_each(&x[3..], own), of_each(&x[6..], own), of_each(x, own)]
+        }
+
+        /// What joints bring along to meet those beyond them: their origins, and S.
+        $(#[$features])?
+        #[inline]
+        fn moving(bodies: &Bodies, pair: &Pair, own: &[Own; OWN]) -> [[V; 3]; 3] {
+            let Block { points, axis, .. } = &bodies.blocks[pair.at as usize];
+            [of_each(points, own), of_each(axis, own), if SLIDES { of_each(&axis[3..], own) } else { [k(0.0); 3] }]
         }
 
         $(#[$features])?
         #[inline]
-        fn before(bodies: &Bodies, pair: &Pair, own: &[Own; OWN], out: &mut [f64; 3 * MATRIX]) {
-            let ((block, others, path), rows) = (meeting(bodies, pair), rows(own));
+        fn before(bodies: &Bodies, pair: &Pair, own: &[Own; OWN], [points, force, turning, moment]: [[V; 3]; 4], out: &mut [f64; 3 * MATRIX]) {
+            let ((others, path), rows) = (meeting(bodies, pair), rows(own));
             // G S about the origins of the others.
-            let arm = minus(plus(of_each(&block.points, own), path), read(&others.points));
-            let (force, turning) = (of_each(&block.x[3..], own), of_each(&block.x[6..], own));
-            let moment = cross_and(arm, force, of_each(&block.x, own));
+            let arm = minus(plus(points, path), read(&others.points));
+            let moment = cross_and(arm, force, moment);
             let (axis, drift, curl): ([V; 6], [V; 6], [V; 6]) = (read(&others.axis), read(&others.drift), read(&others.curl));
             let mut by_a = dot(moment, three(&axis));
             if SLIDES {
@@ -127,14 +122,13 @@ macro_rules! pairings {
 
         $(#[$features])?
         #[inline]
-        fn beyond(bodies: &Bodies, pair: &Pair, own: &[Own; OWN], out: &mut [f64; 3 * MATRIX]) {
-            let ((block, others, path), rows) = (meeting(bodies, pair), rows(own));
+        fn beyond(bodies: &Bodies, pair: &Pair, own: &[Own; OWN], [points, angular, slide]: [[V; 3]; 3], out: &mut [f64; 3 * MATRIX]) {
+            let ((others, path), rows) = (meeting(bodies, pair), rows(own));
             // S about the origins of the others.
-            let arm = minus(read(&others.points), minus(of_each(&block.points, own), path));
-            let angular = of_each(&block.axis, own);
+            let arm = minus(read(&others.points), minus(points, path));
             let mut linear = cross(angular, arm);
             if SLIDES {
-                linear = plus(linear, of_each(&block.axis[3..], own));
+                linear = plus(linear, slide);
             }
             let x: [V; 21] = read(&others.x);
             for (matrix, at) in [9, 15, 0].into_iter().enumerate() {
@@ -142,12 +136,12 @@ macro_rules! pairings {
             }
         }
 
-        /// The block of the two, that of the others, and the path between the first joints of their chunks.
+        /// The block of the others, and the path between the first joints of their chunks.
         $(#[$features])?
         #[inline]
-        fn meeting<'a>(bodies: &'a Bodies, pair: &Pair) -> (&'a Block, &'a Block, [V; 3]) {
+        fn meeting<'a>(bodies: &'a Bodies, pair: &Pair) -> (&'a Block, [V; 3]) {
             let path = &bodies.paths[pair.path as usize];
-            (&bodies.blocks[pair.at as usize], &bodies.blocks[pair.others as usize], [k(path[0]), k(path[1]), k(path[2])])
+            (&bodies.blocks[pair.others as usize], [k(path[0]), k(path[1]), k(path[2])])
         }
 
         /// Three numbers of each of the two, in all of its lanes.
@@ -164,6 +158,26 @@ macro_rules! narrow {
     ($(#[$features:meta])?) => {
         /// Of two joints, one at a time.
         const OWN: usize = 1;
+
+        /// Rows of joints with themselves and with those before them, and with those beyond them. What a joint brings along is read for each pair anew: sixteen registers do not hold it.
+        $(#[$features])?
+        #[inline(never)]
+        fn pairs(bodies: &Bodies, out: &mut [f64; 3 * MATRIX]) {
+            for pair in BEFORE.iter() {
+                for own in pair.own.as_chunks().0 {
+                    if own[0].which != 0 {
+                        before(bodies, pair, own, acting(bodies, pair, own), out);
+                    }
+                }
+            }
+            for pair in BEYOND.iter() {
+                for own in pair.own.as_chunks().0 {
+                    if own[0].which != 0 {
+                        beyond(bodies, pair, own, moving(bodies, pair, own), out);
+                    }
+                }
+            }
+        }
 
         /// A joint's number in all lanes.
         $(#[$features])?

@@ -20,6 +20,29 @@ mod wide {
     vectors!(#[target_feature(enable = "avx512vl,avx2,fma")]);
     pairings!(#[target_feature(enable = "avx512vl,avx2,fma")]);
 
+    /// Rows of joints with themselves and with those before them, and with those beyond them. Pairs of the same two follow one another, and what these bring along stays in registers.
+    #[target_feature(enable = "avx512vl,avx2,fma")]
+    #[inline(never)]
+    fn pairs(bodies: &Bodies, out: &mut [f64; 3 * MATRIX]) {
+        for some in BEFORE.chunk_by(same_two) {
+            let own = acting(bodies, &some[0], &some[0].own);
+            for pair in some {
+                before(bodies, pair, &pair.own, own, out);
+            }
+        }
+        for some in BEYOND.chunk_by(same_two) {
+            let own = moving(bodies, &some[0], &some[0].own);
+            for pair in some {
+                beyond(bodies, pair, &pair.own, own, out);
+            }
+        }
+    }
+
+    #[inline]
+    fn same_two(one: &Pair, other: &Pair) -> bool {
+        (one.at, one.own[0].lane, one.own[1].lane) == (other.at, other.own[0].lane, other.own[1].lane)
+    }
+
     /// Four numbers for both joints.
     #[target_feature(enable = "avx512vl,avx2,fma")]
     #[inline]
