@@ -150,7 +150,8 @@ fn main(robots: &[(&str, &Generated)]) -> String {
     }
     out += TAIL;
     for (robot, _) in robots {
-        let _ = writeln!(out, "mod {robot};");
+        // As in a crate that has other things under the names of the prelude.
+        let _ = writeln!(out, "#[no_implicit_prelude]\nmod {robot};");
     }
     out
 }

@@ -131,7 +131,7 @@ macro_rules! pairings {
                 linear = plus(linear, slide);
             }
             let x: [V; 21] = read(&others.x);
-            for (matrix, at) in [9, 15, 0].into_iter().enumerate() {
+            for (matrix, &at) in [9, 15, 0].iter().enumerate() {
                 put(dot_and(linear, three(&x[at + 3..]), dot(angular, three(&x[at..]))), rows, out, matrix);
             }
         }

@@ -61,20 +61,20 @@ mod wide {
     }
 
     /// Two joints whose rows lie inside a matrix. To look at that before each store instead of once for three takes a twentieth of all.
-    #[derive(Clone, Copy)]
+    #[derive(::core::clone::Clone, ::core::marker::Copy)]
     struct Rows<'a>(&'a [Own; OWN]);
 
     #[inline]
     fn rows(own: &[Own; OWN]) -> Rows<'_> {
         let [one, other] = own;
-        assert!(lies_in(MATRIX, one.place as usize, one.which) && lies_in(MATRIX, other.place as usize, other.which));
+        ::core::assert!(lies_in(MATRIX, one.place as usize, one.which) && lies_in(MATRIX, other.place as usize, other.which));
         Rows(own)
     }
 
     /// Whether the lanes asked for are among so many numbers.
     #[inline]
     fn lies_in(numbers: usize, place: usize, which: u16) -> bool {
-        place <= numbers - 4 || which >> numbers.saturating_sub(place).min(4) == 0
+        place <= numbers - 4 || which >> ::core::cmp::min(numbers.saturating_sub(place), 4) == 0
     }
 
     /// The joints' rows, into one of the matrices.
@@ -92,7 +92,7 @@ mod wide {
     #[target_feature(enable = "avx512vl,avx2,fma")]
     #[inline]
     fn mix_four(x: __m256d, which: u16, out: &mut [f64; 3 * MATRIX], place: usize) {
-        assert!(lies_in(3 * MATRIX, place, which));
+        ::core::assert!(lies_in(3 * MATRIX, place, which));
         // SAFETY: lanes that are not asked for are not written, wherever they are; those that are lie inside, as was just asserted.
         unsafe { store_some(out.as_mut_ptr().wrapping_add(place), which as u8, x) }
     }
