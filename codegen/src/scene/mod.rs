@@ -380,9 +380,9 @@ mod tests {
             assert!(found.starts_with(told) && found.lines().count() == 1, "{found}");
         }
         let beside = wrong(
-            "[effects]\ndamping = { elbow_1 = 1, elbo = 1 }\nshaft = { elbow = { segments = 1, stiffness = 1 } }\n[initial]\nq = { elbow_1 = 1, sholder = 1 }",
+            "[effects]\ndamping = { elbow_1 = 1, elbow_x = 1 }\nshaft = { elbow = { segments = 1, stiffness = 1 } }\n[initial]\nq = { elbow_1 = 1, sholder = 1 }",
         );
-        let told = ["s.toml:2: effects.damping.elbo: ", "s.toml:3: effects.shaft.elbow: ", "s.toml:5: initial.q.sholder: "];
+        let told = ["s.toml:2: effects.damping.elbow_x: ", "s.toml:3: effects.shaft.elbow: ", "s.toml:5: initial.q.sholder: "];
         assert!(beside.lines().count() == told.len() && beside.lines().zip(told).all(|(line, told)| line.starts_with(told)), "{beside}");
         let shaft = wrong("[effects.shaft.elbow]\nsegments = 1\nstiffness = 1");
         assert_eq!(
