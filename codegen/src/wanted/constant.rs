@@ -35,7 +35,7 @@ impl Constant {
             return Err(format!("constant {name}: found {} numbers, expected {expected}", numbers.len()));
         }
         let configuration = matches!(argument, Argument::Q | Argument::Target);
-        let zeros = !matches!(function, FunctionId::integrate | FunctionId::difference);
+        let zeros = !matches!(function, FunctionId::integrate | FunctionId::difference | FunctionId::difference_derivatives);
         let or = if zeros { ", or 0, which does not turn" } else { "" };
         let told =
             |(joint, norm)| format!("constant {name}: joint {joint:?}: found a quaternion of norm {norm}, expected 1 within {NORM:e}{or}");

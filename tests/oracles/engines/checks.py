@@ -103,6 +103,11 @@ def errors(engine, state, out):
     again = engine.integrate(q, engine.difference(q, target))
     check("difference", abs(placement_of(engine, target)), abs(placement_of(engine, again)))
     check("integrate", placement_of(engine, engine.integrate(engine.integrate(q, step), -step)), placement_of(engine, q))
+    end, apart = engine.integrate(q, step), numpy.eye(engine.nv)
+    by_step = numpy.stack([slope(lambda t: engine.difference(end, engine.integrate(q, step + t * e))) for e in apart], axis=-1)
+    check("integrate_derivatives", [tangent(engine, q, lambda q: engine.difference(end, engine.integrate(q, step))), by_step])
+    by_q, by_target = tangent(engine, q, lambda q: engine.difference(q, target)), tangent(engine, target, lambda t: engine.difference(q, t))
+    check("difference_derivatives", [by_q, by_target])
     return found
 
 

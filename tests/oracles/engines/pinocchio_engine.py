@@ -128,11 +128,21 @@ class Engine:
         return self.ours(pin.integrate(self.model, self.full(q), self.G @ step))
 
     def difference(self, q, target):
-        full, d = pin.difference(self.model, self.full(q), self.full(target)), numpy.zeros(self.nv)
+        return self.leaders() @ pin.difference(self.model, self.full(q), self.full(target))
+
+    def integrate_derivatives(self, q, step):
+        return [self.leaders() @ J @ self.G for J in pin.dIntegrate(self.model, self.full(q), self.G @ step)]
+
+    def difference_derivatives(self, q, target):
+        return [self.leaders() @ J @ self.G for J in pin.dDifference(self.model, self.full(q), self.full(target))]
+
+    def leaders(self):
+        """Takes Pinocchio's rates to ours: those of joints that follow nobody."""
+        P = numpy.zeros((self.nv, self.model.nv))
         for e, _, _, v, nv in self._parts():
             for k in range(nv if e.leads else 0):
-                d[e.v + (SWAP[k] if nv == 6 else k)] = full[v + k]
-        return d
+                P[e.v + (SWAP[k] if nv == 6 else k), v + k] = 1.0
+        return P
 
     # ---- dynamics, with v, a and tau ours
 

@@ -10,7 +10,8 @@ def results(engine, state):
     """name -> array, for all functions that are defined in this state. `state`: q v a tau wrenches step target frames
     wrench_reference."""
     q, v, a, tau, step, target = (numpy.array(state[key]) for key in ("q", "v", "a", "tau", "step", "target"))
-    out = {"integrate": engine.integrate(q, step), "difference": engine.difference(q, target)}
+    out = {"integrate": engine.integrate(q, step), "difference": engine.difference(q, target),
+           "integrate_derivatives": engine.integrate_derivatives(q, step), "difference_derivatives": engine.difference_derivatives(q, target)}
     out.update(of_frames(engine, q, v, a, state["frames"]))
     out.update(of_dynamics(engine, q, v, a, tau))
     out.update(of_wrenches(engine, q, v, a, tau, state))

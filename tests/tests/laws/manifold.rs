@@ -170,6 +170,34 @@ fn steps_and_differences_in_double_precision_are_those_in_many_digits() {
     });
 }
 
+/// From no turn to nearly a whole one, and differences up to half a turn; a mixed joint's entries grow with the way.
+#[test]
+fn derivatives_of_steps_and_differences_in_double_precision_are_those_in_many_digits() {
+    for_each_tree(25, Flavour::ANY, |case, random| {
+        let state = case.state(random);
+        let sizes = [1.0, 1e-3, 1e-9, 1e-200, 0.0];
+        let steps = sizes.map(|size| scaled(&state.step, size));
+        let targets = [0.0, 1e-9, 1e-3, 1.0, 3.0].map(|angle| turned_away(case, random, &state.q, &state.target, angle));
+        let apart = |name: &str, given: &[&[f64]]| {
+            let exact: Vec<Vec<Big>> = given.iter().map(|x| cast(x)).collect();
+            let exact: Vec<&[Big]> = exact.iter().map(Vec::as_slice).collect();
+            let expected = case.call::<Big>(name, &exact);
+            case.call::<f64>(name, given).iter().zip(&expected).map(|(f, e)| e.error_of(*f, U)).fold(0.0, f64::max)
+        };
+        Big::scope(|| {
+            for step in &steps {
+                let way = 1.0 + step.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+                let far = apart("integrate_derivatives", &[step]) / way;
+                assert!(far <= 4.0, "{far} u");
+            }
+            for target in targets.iter().chain([&state.target]) {
+                let far = apart("difference_derivatives", &[&state.q, target]) / reach(&case.model, &state.q, target);
+                assert!(far <= 6.0, "{far} u");
+            }
+        });
+    });
+}
+
 /// A turn or two metres from the bound that there is.
 #[test]
 fn a_limit_that_is_open_on_one_side_is_kept_on_the_other() {

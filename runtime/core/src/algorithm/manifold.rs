@@ -26,7 +26,7 @@ pub fn integrate<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, q: &[S], ste
         match joint.kind {
             JointKind::Floating => {
                 let (position, rotation) = placement(q);
-                let (turn, shift) = Twist { angular: three(step), linear: three(&step[3..]) }.exp_parts();
+                let (turn, shift) = six(step).exp_parts();
                 // p + R J_l(ω) v, R exp ω
                 put(out, &(position + rotate(&rotation.to_rotation(), shift)));
                 put_quaternion(&mut out[3..], &rotation.product(&turn));
@@ -49,14 +49,11 @@ pub fn difference<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, q: &[S], ta
         let (q, target, out) = (&q[range(joint.q)], &target[range(joint.q)], &mut out[range(joint.v)]);
         match joint.kind {
             JointKind::Floating => {
-                let ((from, rotation), (to, other)) = (placement(q), placement(target));
-                // log of T⁻¹ T_target
-                let way = rotate_back(&rotation.to_rotation(), to - from);
-                let step = Twist::log_of_parts(&rotation.conjugate().product(&other), way);
+                let step = way_between(q, target);
                 put(out, &step.angular);
                 put(&mut out[3..], &step.linear);
             }
-            JointKind::Spherical => put(out, &quaternion(q).conjugate().product(&quaternion(target)).log()),
+            JointKind::Spherical => put(out, &turn_between(q, target)),
             _ => plain(out, q, target, |q, target| target - q),
         }
     }
@@ -102,7 +99,7 @@ pub fn neutral<S: Scalar>(model: &Model<S>, out: &mut [S]) {
     }
 }
 
-fn range((first, n): (usize, usize)) -> core::ops::Range<usize> {
+pub(super) fn range((first, n): (usize, usize)) -> core::ops::Range<usize> {
     first..first + n
 }
 
@@ -110,12 +107,29 @@ fn plain<S: Scalar>(out: &mut [S], a: &[S], b: &[S], f: impl Fn(S, S) -> S) {
     out.iter_mut().zip(a).zip(b).for_each(|((out, a), b)| *out = f(*a, *b));
 }
 
-fn three<S: Scalar>(x: &[S]) -> Vector3<S> {
+pub(super) fn three<S: Scalar>(x: &[S]) -> Vector3<S> {
     Vector3::new(x[0], x[1], x[2])
 }
 
 fn quaternion<S: Scalar>(x: &[S]) -> Quaternion<S> {
     Quaternion::from_array([x[0], x[1], x[2], x[3]])
+}
+
+/// A floating joint's step.
+pub(super) fn six<S: Scalar>(step: &[S]) -> Twist<S> {
+    Twist { angular: three(step), linear: three(&step[3..]) }
+}
+
+/// log of T⁻¹ T_target, of a floating joint.
+pub(super) fn way_between<S: Scalar>(q: &[S], target: &[S]) -> Twist<S> {
+    let ((from, rotation), (to, other)) = (placement(q), placement(target));
+    let way = rotate_back(&rotation.to_rotation(), to - from);
+    Twist::log_of_parts(&rotation.conjugate().product(&other), way)
+}
+
+/// log of R⁻¹ R_target, of a spherical joint.
+pub(super) fn turn_between<S: Scalar>(q: &[S], target: &[S]) -> Vector3<S> {
+    quaternion(q).conjugate().product(&quaternion(target)).log()
 }
 
 /// Position and rotation of a floating joint.

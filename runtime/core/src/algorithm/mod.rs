@@ -13,6 +13,7 @@ mod frames;
 mod kinematics;
 pub(crate) mod ltdl;
 mod manifold;
+mod manifold_derivatives;
 mod momentum;
 mod operational_space;
 mod registry;
@@ -42,6 +43,7 @@ pub use frames::{
 };
 pub use kinematics::placements;
 pub use manifold::{difference, integrate, neutral, random_configuration};
+pub use manifold_derivatives::{difference_derivatives, integrate_derivatives};
 pub use momentum::{
     center_of_mass, center_of_mass_acceleration, center_of_mass_jacobian, center_of_mass_velocity, centroidal_momentum,
     centroidal_momentum_matrix, centroidal_momentum_rate,

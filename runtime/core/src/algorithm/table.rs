@@ -168,6 +168,12 @@ macro_rules! for_each_function {
                 "q ⊕ step: along the step for a unit of time, on the manifold", "exponential of SE(3); Lynch & Park 2017, §3.3";
             difference(q, target) -> [Nv] "rad|m", Configurations, Nothing, false,
                 "target ⊖ q: the step with q ⊕ step = target", "logarithm of SE(3); Lynch & Park 2017, §3.3";
+            integrate_derivatives(step) -> [Of(2), Nv, Nv] "1|m, rows a step where it ends", Configurations, Nothing, false,
+                "∂(q ⊕ step)/∂q, ∂(q ⊕ step)/∂step, the same for every q; q in the tangent space",
+                "Ad and J_r of SE(3); Barfoot 2017, §7.1.5";
+            difference_derivatives(q, target) -> [Of(2), Nv, Nv] "1|m, rows the difference", Configurations, Nothing, false,
+                "∂(target ⊖ q)/∂q, ∂(target ⊖ q)/∂target; both in the tangent space",
+                "J_l⁻¹ and J_r⁻¹ of SE(3); Barfoot 2017, §7.1.5";
             random_configuration(uniform) -> [Nq] "rad|m|unit quaternion", Configurations, Nothing, false,
                 "a configuration at random within limits, ±π rad and ±1 m where there are none, rotations uniform",
                 "Shoemake, Graphics Gems III, 1992";

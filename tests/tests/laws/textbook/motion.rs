@@ -4,7 +4,7 @@ use articulated_core::algorithm::Argument;
 use articulated_reference::Big;
 use num_traits::{One, Zero};
 
-use super::{EXACT, NEARLY, REFERENCES, SMALL, apply, call, dot, for_each_scene, named, plus, same, times};
+use super::{EXACT, NEARLY, REFERENCES, SMALL, STEP, apply, call, dot, for_each_scene, minus, named, plus, same, times};
 
 #[test]
 fn twists_are_jacobians_times_rates_and_accelerations_their_rates() {
@@ -79,6 +79,34 @@ fn a_step_and_a_difference_undo_each_other() {
         let twice = book.integrate(&book.integrate(q, &half), &half);
         same("q ⊕ s/2 ⊕ s/2", &twice, &stepped, EXACT);
     });
+}
+
+/// What a small change δ of an argument makes of a step's end e, as the step δ' with e ⊕ δ' where it gets to; and of a difference.
+#[test]
+fn derivatives_of_steps_and_differences_are_those_of_differences() {
+    for_each_scene(25, SMALL, |_, scene| {
+        let book = &scene.book;
+        let [q, target, step, v] = [Argument::Q, Argument::Target, Argument::Step, Argument::V].map(|a| scene.given(a));
+        let end = book.integrate(q, step);
+        let moved = |q: &[Big], h: f64| book.integrate(q, &times(h, v));
+        let slope = |f: &dyn Fn(f64) -> Vec<Big>| times(0.5 / STEP, &minus(&f(STEP), &f(-STEP)));
+        let by_q = slope(&|h| book.difference(&end, &book.integrate(&moved(q, h), step)));
+        let by_step = slope(&|h| book.difference(&end, &book.integrate(q, &plus(step, &times(h, v)))));
+        let [found_q, found_step] = both(&scene.call("integrate_derivatives", &[step]), v);
+        same("∂(q ⊕ s)/∂q", &found_q, &by_q, NEARLY);
+        same("∂(q ⊕ s)/∂s", &found_step, &by_step, NEARLY);
+        let by_q = slope(&|h| book.difference(&moved(q, h), target));
+        let by_target = slope(&|h| book.difference(q, &moved(target, h)));
+        let [found_q, found_target] = both(&scene.call("difference_derivatives", &[q, target]), v);
+        same("∂(t ⊖ q)/∂q", &found_q, &by_q, NEARLY);
+        same("∂(t ⊖ q)/∂t", &found_target, &by_target, NEARLY);
+    });
+}
+
+/// Two matrices times a direction.
+fn both(matrices: &[Big], v: &[Big]) -> [Vec<Big>; 2] {
+    let (first, second) = matrices.split_at(v.len() * v.len());
+    [first, second].map(|matrix| apply(matrix, v, v.len()))
 }
 
 #[test]

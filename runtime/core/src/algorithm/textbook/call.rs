@@ -87,6 +87,8 @@ impl<S: Scalar> Textbook<S> {
             "motor_torques" => x[1].to_vec(),
             "integrate" => self.integrate(q, x[1]),
             "difference" => self.difference(q, x[1]),
+            "integrate_derivatives" => self.integrate_derivatives(q),
+            "difference_derivatives" => self.difference_derivatives(q, x[1]),
             "random_configuration" => self.random_configuration(q),
             _ => return None,
         })

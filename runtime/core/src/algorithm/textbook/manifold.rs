@@ -16,10 +16,10 @@ use crate::spatial::from_quaternion;
 type Pose<S> = ([S; 4], Vector3<S>);
 
 /// Halvings of a step before its series, and doublings after.
-const HALVINGS: u32 = 6;
+pub(super) const HALVINGS: u32 = 6;
 
 /// Terms of a series in a step of less than one: 1/72! is 10⁻¹⁰⁴.
-const TERMS: u32 = 72;
+pub(super) const TERMS: u32 = 72;
 
 impl<S: Scalar> Textbook<S> {
     /// q ⊕ step, `[nq]`: T·exp(step) for joints that turn freely, q + step for others.
@@ -81,11 +81,11 @@ impl<S: Scalar> Textbook<S> {
 }
 
 /// A joint's numbers in a vector.
-fn part<S>(x: &[S], (at, n): (usize, usize)) -> &[S] {
+pub(super) fn part<S>(x: &[S], (at, n): (usize, usize)) -> &[S] {
     &x[at..][..n]
 }
 
-fn three<S: Scalar>(x: &[S]) -> Vector3<S> {
+pub(super) fn three<S: Scalar>(x: &[S]) -> Vector3<S> {
     Vector3::new(x[0], x[1], x[2])
 }
 
@@ -130,7 +130,7 @@ fn mean_rotation<S: Scalar>(omega: Vector3<S>) -> Matrix3<S> {
 }
 
 /// By cofactors.
-fn inverse<S: Scalar>(m: &Matrix3<S>) -> Matrix3<S> {
+pub(super) fn inverse<S: Scalar>(m: &Matrix3<S>) -> Matrix3<S> {
     let (a, b, c) = (m.column(0).into_owned(), m.column(1).into_owned(), m.column(2).into_owned());
     let rows = [b.cross(&c), c.cross(&a), a.cross(&b)];
     let determinant = a.dot(&rows[0]);

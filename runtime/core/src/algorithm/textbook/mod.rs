@@ -13,6 +13,7 @@ mod energy;
 mod joint;
 mod kinematics;
 mod manifold;
+mod manifold_derivatives;
 mod matrix;
 mod momentum;
 mod regressor;
