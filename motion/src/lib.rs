@@ -42,6 +42,40 @@
 //! [`Stage::frames`]. For a simulation of one's own there are the parts: [`Drive`] is the scene's control, and [`Watch`] has its events and their words. Everything that
 //! keeps a scene from moving is told at once, as [`MotionErrors`].
 //!
+//! Many motions go over the cores: what they share, a [`Stage`], a robot and a [`Begin`], may be looked at by all threads, and each makes a [`Motion`] of its own, once.
+//!
+//! ```
+//! # use articulated_motion::{Begin, MotionErrors, Stage};
+//! /// Where the first joint ends from each of these starts, rad.
+//! fn ends(stage: &Stage, starts: &[Begin], threads: usize) -> Result<Vec<f64>, MotionErrors> {
+//!     let some = |starts: &[Begin]| -> Result<Vec<f64>, MotionErrors> {
+//!         let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings()?)?;
+//!         let end = |begin| motion.run(begin, &mut |_, _| true).map(|o| o.recording.q_at(o.recording.len() - 1)[0]);
+//!         starts.iter().map(end).collect()
+//!     };
+//!     let share = starts.len().div_ceil(threads).max(1);
+//!     std::thread::scope(|scope| {
+//!         let running: Vec<_> = starts.chunks(share).map(|part| scope.spawn(move || some(part))).collect();
+//!         running.into_iter().try_fold(Vec::new(), |all, thread| Ok([all, thread.join().expect("no motion panics")?].concat()))
+//!     })
+//! }
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let folder = std::env::temp_dir().join(format!("articulated-threads-{}", std::process::id()));
+//! # std::fs::create_dir_all(&folder)?;
+//! # let urdf = r#"<robot name="p"><link name="base"/><link name="bob"><inertial><origin xyz="0 0 -1"/><mass value="1"/>
+//! #   <inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>
+//! #   <joint name="hinge" type="continuous"><parent link="base"/><child link="bob"/><axis xyz="0 1 0"/></joint></robot>"#;
+//! # std::fs::write(folder.join("p.urdf"), urdf)?;
+//! # std::fs::write(folder.join("s.toml"), "urdf = 'p.urdf'\nsimulation = { end = 0.5 }")?;
+//! # let stage = Stage::open(folder.join("s.toml"))?;
+//! # std::fs::remove_dir_all(&folder)?;
+//! # let begin = stage.begin()?;
+//! # let starts: Vec<Begin> = (0..7).map(|k| Begin { q: vec![0.1 * f64::from(k)], ..begin.clone() }).collect();
+//! # assert_eq!(ends(&stage, &starts, 2)?, ends(&stage, &starts, 1)?);
+//! # assert_eq!(ends(&stage, &starts, 9)?.len(), 7);
+//! # Ok(()) }
+//! ```
+//!
 //! Conventions are those of [`articulated`]: SI units and radians; q and v in the order of the robot.
 
 mod ball;
