@@ -411,5 +411,5 @@ fn level(spot: &Spot<'_>, log: &mut Log) -> Option<Level> {
     let expected = "a level of accuracy, as \"f64\", \"f32\", \"compensated + two\", \"double_double\" or \"f64 + fast_10 + no_fma\"";
     let text = spot.text(log, expected)?;
     let level = text.split_whitespace().collect::<String>().parse::<Level>();
-    level.map_err(|error| log.error(spot.node.at, &spot.key, Kind::Word, format!("{} ({error})", quote(text)), expected)).ok()
+    level.map_err(|error| log.error(spot.node.at, &spot.key, Kind::Word, quote(text), error.expected)).ok()
 }
