@@ -138,7 +138,7 @@ pub(crate) enum Command {
 /// Which robot, and how to read it.
 #[derive(Args, Debug)]
 pub(crate) struct RobotArguments {
-    /// A bundled robot's name, the path of a URDF or of a scene (.toml), or - for a URDF on the standard input
+    /// A bundled robot's or scene's name (a robot's first), the path of a URDF or of a scene (.toml), or - for a URDF on the standard input
     #[arg(value_name = "ROBOT")]
     pub(crate) robot: String,
     /// The root link moves freely (bundled robots know their own base)

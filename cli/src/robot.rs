@@ -42,6 +42,9 @@ impl Robot {
         if name.ends_with(".toml") {
             return Self::of_scene(name, arguments);
         }
+        if is_scene_alone(name) {
+            return Self::of_scene(&format!("{name}.toml"), arguments);
+        }
         let (file, urdf) = document(name)?;
         let bundled = articulated_models::robot(name);
         let base = bundled.map_or(Base::Fixed, |b| b.base);
@@ -220,6 +223,11 @@ fn edit(options: &mut Options, edits: &Edits) -> Result<(), Failure> {
     options.robot.payloads.extend(edits.payload.iter().cloned());
     options.robot.lock.extend(edits.lock.iter().map(|lock| (lock.joint.clone(), lock.at.clone())));
     Ok(())
+}
+
+/// Whether it names a bundled scene, and neither a robot nor a file.
+fn is_scene_alone(name: &str) -> bool {
+    articulated_models::scene(name).is_some() && articulated_models::robot(name).is_none() && !Path::new(name).exists()
 }
 
 /// The files of the robots to append.
