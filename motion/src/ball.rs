@@ -72,8 +72,9 @@ impl Ball {
                 return Ok(None);
             }
             let struck = blow.strike(q, v, speed)?;
-            ball.missed.set(struck.impulse == 0.0);
-            ball.ends.set(stop && struck.impulse != 0.0);
+            let missed = struck.approach <= 0.0;
+            ball.missed.set(missed);
+            ball.ends.set(stop && !missed);
             let after = struck.ball_speed;
             let energy = 0.5 * mass * (after * after - speed * speed);
             ball.energy.set(Some(energy).filter(|_| !ball.missed.get()));

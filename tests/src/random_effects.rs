@@ -28,11 +28,15 @@ pub fn random_effects(random: &mut Random, model: &Model<f64>, wanted: impl Fn(E
     applied
 }
 
-/// A spring needs a coordinate for each degree of freedom.
+/// A spring needs a coordinate for each degree of freedom; a motor drives no joint that follows another.
 fn can_have(model: &Model<f64>, effect: EffectId, i: usize) -> bool {
     let ball = |i: usize| matches!(model.bodies[i].joint, Joint::Spherical | Joint::Floating);
     let follows = model.bodies[i].coordinates.mimic.is_some();
-    !matches!(effect, EffectId::spring | EffectId::limit) || !ball(i) && !follows
+    match effect {
+        EffectId::spring | EffectId::limit => !ball(i) && !follows,
+        EffectId::motor => !follows,
+        _ => true,
+    }
 }
 
 /// Numbers that make the effect felt.

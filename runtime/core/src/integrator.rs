@@ -62,7 +62,7 @@ integrators! {
     /// Velocities first, then configurations with the new velocities.
     semi_implicit_euler {
         order: 1, adaptive: false, implicit: false,
-        what_for: "one evaluation a step, no drift of energy without damping: games, sketches, comparison",
+        what_for: "one evaluation a step, energy bounded where the mass matrix is constant: games, sketches, comparison",
         elsewhere: "euler expliciteuler forwardeuler symplecticeuler",
         source: "Hairer, Lubich & Wanner, Geometric Numerical Integration, 2006, (I.1.9)",
         needs: EXPLICIT

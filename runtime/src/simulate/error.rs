@@ -243,7 +243,10 @@ impl fmt::Display for SimulateError {
             Self::Function(e) => e.fmt(f),
             Self::TooManySteps { t, steps } => {
                 let t = Plain(*t);
-                write!(f, "{steps} steps were made by t = {t} s: looser tolerances, rodas4 if the motion is stiff, or a greater max_steps")
+                write!(
+                    f,
+                    "{steps} steps were made by t = {t} s: a longer step or looser tolerances, rodas4 if the motion is stiff, or a greater max_steps"
+                )
             }
             Self::NotFinite { t, .. }
             | Self::NoMass { t, .. }

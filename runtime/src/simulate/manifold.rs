@@ -94,6 +94,23 @@ impl Manifold {
         u: &[f64],
         out: &mut [f64],
     ) -> Result<(), FunctionError> {
+        if u.iter().all(|u| *u == 0.0) {
+            // To the last bit where it is: a quaternion that is normalised again may move by a rounding.
+            out.copy_from_slice(q);
+            return Ok(());
+        }
+        self.integrate(robot, ws, q, u, out)
+    }
+
+    /// The same with quaternions of norm one for no step too.
+    pub(crate) fn integrate<R: Dynamics<f64>>(
+        &self,
+        robot: &R,
+        ws: &mut R::Workspace,
+        q: &[f64],
+        u: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), FunctionError> {
         if self.is_flat() {
             out.iter_mut().zip(q).zip(u).for_each(|((out, q), u)| *out = q + u);
             return Ok(());

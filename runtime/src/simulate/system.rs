@@ -117,6 +117,13 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
         self.manifold.step(self.robot, &mut self.ws, &self.origin, u, &mut self.q)
     }
 
+    /// Quaternions of norm one, by a step of no length.
+    pub(crate) fn normalise_origin(&mut self, still: &[f64]) -> Result<(), FunctionError> {
+        self.manifold.integrate(self.robot, &mut self.ws, &self.origin, still, &mut self.q)?;
+        std::mem::swap(&mut self.origin, &mut self.q);
+        Ok(())
+    }
+
     /// vᵀτ of what the motors give, and the power of the effects, at the configuration and torques of the last evaluation.
     fn powers(&mut self, v: &[f64]) -> [f64; 2] {
         let work = |tau: &[f64]| tau.iter().zip(v).map(|(tau, v)| tau * v).sum();

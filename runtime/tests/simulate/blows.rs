@@ -3,7 +3,7 @@
 use articulated::simulate::{Event, Impact, IntegratorId, NoTorque, SimulateError, Simulation, StateError};
 use articulated::{Base, Dynamics, FunctionError};
 
-use crate::robots::{at, chain, model, to};
+use crate::robots::{at, chain, model, slider, to};
 
 #[test]
 fn a_blow_hands_over_what_the_ball_and_the_mass_behind_the_point_say() {
@@ -31,6 +31,17 @@ fn a_blow_hands_over_what_the_ball_and_the_mass_behind_the_point_say() {
     // Newton's law: what is left of the speed towards each other, reversed.
     let after = impact.strike(&q, &mut v, struck.ball_speed).unwrap();
     assert!((after.approach + restitution * approach).abs() < 1e-14 && after.impulse == 0.0);
+}
+
+/// A ball of next to no mass leaves at (1 + e) times the speed of the point.
+#[test]
+fn a_ball_of_no_weight_to_speak_of_is_struck() {
+    let robot = slider();
+    for mass in [1e-3, 1e-300, 1e-310, f64::from_bits(1)] {
+        let mut v = [1.0];
+        let struck = Impact::new(&robot, at(1, [0.0; 3], [0.0, 0.0, 1.0]), mass, 0.5).unwrap().strike(&[0.0], &mut v, 0.0).unwrap();
+        assert!((struck.ball_speed - 1.5 / (1.0 + mass)).abs() < 1e-15 && struck.approach == 1.0, "{mass:e}: {struck:?}");
+    }
 }
 
 /// What an event that strikes records is the ball's speed, and the motion goes on with what is left; what cannot strike is refused.

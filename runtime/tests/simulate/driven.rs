@@ -115,6 +115,27 @@ fn a_step_that_ends_at_a_jump_is_made_with_the_torques_before_it() {
     }
 }
 
+/// Far from the zero of time as near it, and steps by tolerance are no shorter there.
+#[test]
+fn a_jump_late_in_time_is_a_jump() {
+    struct Late;
+    impl Control for Late {
+        fn torques(&mut self, t: f64, _: &[f64], _: &[f64], tau: &mut [f64]) {
+            tau[0] = if t < 1e6 + 0.5 { 0.0 } else { 200.0 };
+        }
+        fn next_kink(&self, t: f64) -> f64 {
+            if t < 1e6 + 0.5 { 1e6 + 0.5 } else { f64::INFINITY }
+        }
+    }
+    for adaptive in [false, true] {
+        let settings = if adaptive { to(IntegratorId::rodas4, 1e6 + 1.0, 1e-6) } else { stepping(IntegratorId::rodas4, 1e6 + 1.0, 0.01) };
+        let settings = Settings { start: 1e6, max_step: 0.01, ..settings };
+        let motion = Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[0.0], &mut Late, &mut []).unwrap();
+        assert!((motion.v[1] - 100.0).abs() < 1e-7, "{}", motion.v[1]);
+        assert!(motion.counts.steps < 150, "{}", motion.counts.steps);
+    }
+}
+
 #[test]
 fn a_controller_brings_a_robot_to_its_target_whatever_integrates_it() {
     let (q, v) = ([0.4, -0.7, 0.5], [0.0; 3]);

@@ -241,6 +241,44 @@ fn events_that_are_only_recorded_change_nothing() {
     assert_eq!((plain.q, plain.v), (watched.q, watched.v));
 }
 
+/// Nor does one that never happens: a body that floats takes no other turn for being looked at.
+#[test]
+fn what_is_looked_for_does_not_move_a_body_that_floats() {
+    let robot = model("satellite", Base::Floating);
+    let (mut q, v): (Vec<f64>, Vec<f64>) = (vec![0.0; robot.nq], (0..robot.nv).map(|k| 1.0 - 0.2 * k as f64).collect());
+    articulated_core::algorithm::neutral(&robot, &mut q);
+    for row in integrators() {
+        let settings = Settings { output: Output::Steps, ..stepping(row.id, 1.0, 0.013) };
+        let mut simulation = Simulation::new(&robot, settings).unwrap();
+        let plain = simulation.run(&q, &v, &mut NoTorque, &mut []).unwrap();
+        let watched = simulation.run(&q, &v, &mut NoTorque, &mut [Event::new("never", |_, _, _| 1.0)]).unwrap();
+        assert_eq!((plain.q, plain.v), (watched.q, watched.v), "{}", row.name);
+    }
+}
+
+/// In whatever order they stand.
+#[test]
+fn what_is_recorded_where_another_event_maps_happens_once() {
+    let robot = one_joint("prismatic", 0.0);
+    for factor in [0.5, -0.8] {
+        for row in integrators() {
+            let record = || Event::new("record", |_, q: &[f64], _: &[f64]| q[0]);
+            let map = || {
+                record().direction(Direction::Falling).action(Action::Map(Box::new(move |_, _, v| {
+                    v[0] *= factor;
+                    Ok(None)
+                })))
+            };
+            for mut events in [[record(), map()], [map(), record()]] {
+                let mut simulation = Simulation::new(&robot, any(row.id, 0.5)).unwrap();
+                let motion = simulation.run(&[1.0], &[0.0], &mut NoTorque, &mut events).unwrap();
+                let told: Vec<_> = motion.events.iter().map(|hit| hit.direction).collect();
+                assert_eq!(told, [Direction::Falling; 2], "{}, {factor}: {:?}", row.name, motion.events);
+            }
+        }
+    }
+}
+
 /// In the order of time, whatever that of their list, and where one maps the state, the others of its time happen with it.
 #[test]
 fn events_of_one_step_happen_in_order() {
@@ -404,6 +442,45 @@ fn a_stop_at_a_time_of_output_is_recorded_once() {
         let settings = Settings { output: Output::Every(0.1), ..to(IntegratorId::dopri5, 2.0, 1e-9) };
         let motion = Simulation::new(&still, settings).unwrap().run(&[0.0], &[1.0], &mut NoTorque, &mut stop).unwrap();
         assert!(motion.t.windows(2).all(|w| w[1] > w[0] + 0.05) && motion.t.len() == k as usize + 1, "{k}: {:?}", motion.t);
+    }
+}
+
+/// Where a map and a stop come at a time of output, the state that the map made is the last record, and no record is earlier than one before it.
+#[test]
+fn what_a_map_made_before_a_stop_is_recorded() {
+    let robot = slider();
+    let now = || Event::new("now", |t: f64, _: &[f64], _: &[f64]| t - 0.3);
+    for (row, output) in integrators().iter().flat_map(|row| [Output::Every(0.1), Output::Steps, Output::Ends].map(|output| (row, output)))
+    {
+        let settings = Settings { output, ..any(row.id, 0.5) };
+        let map = now().action(Action::Map(Box::new(|_, _, v| {
+            v[0] += 1.0;
+            Ok(None)
+        })));
+        let mut events = [map, now().action(Action::Stop)];
+        let motion = Simulation::new(&robot, settings).unwrap().run(&[0.0], &[1.0], &mut NoTorque, &mut events).unwrap();
+        let (last, name) = (motion.len() - 1, row.name);
+        assert_eq!((motion.ended, motion.events.len()), (Ended::ByEvent(1), 2), "{name}");
+        assert_eq!((motion.v_at(last)[0], motion.v_at(last - 1)[0]), (2.0, 1.0), "{name}: {:?} {:?}", motion.t, motion.v);
+        assert!(motion.t.windows(2).all(|w| w[0] <= w[1]) && (motion.t[last] - 0.3).abs() < 1e-12, "{name}: {:?}", motion.t);
+        assert_eq!(motion.v.iter().filter(|v| **v == 2.0).count(), 1, "{name}: {:?}", motion.v);
+    }
+}
+
+#[test]
+fn one_who_watches_is_told_of_every_step() {
+    let robot = slider();
+    let stop = |at: f64| Event::new("stop", move |t: f64, _: &[f64], _: &[f64]| t - at).action(Action::Stop);
+    for (at, expected) in [(2.0, 4), (0.6, 3)] {
+        let mut simulation = Simulation::new(&robot, stepping(IntegratorId::rk4, 1.0, 0.25)).unwrap();
+        let (mut recording, mut told) = (simulation.recording(), Vec::new());
+        let mut watch = |_: f64, counts: &articulated::simulate::Counts| {
+            told.push(counts.steps);
+            true
+        };
+        simulation.run_into(&[0.0], &[1.0], &mut NoTorque, &mut [stop(at)], &mut recording, &mut watch).unwrap();
+        assert_eq!(told, (1..=expected).collect::<Vec<u64>>());
+        assert_eq!(recording.counts.steps, expected);
     }
 }
 

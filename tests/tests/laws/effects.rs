@@ -256,7 +256,7 @@ fn effects_that_cannot_be_had_are_refused() {
         "found 0 parameters, expected 1",
         "above the lower bound",
         "at most 1",
-        "no link of this name",
+        "no frame of this name",
         "fixed to the base",
         "a direction",
         "semidefinite",
@@ -293,6 +293,12 @@ fn effects_that_are_half_right_are_refused_too() {
     };
     assert!(told(on(EffectId::added_mass, &coupled(2.5))).contains("semidefinite"));
     assert!(arm.clone().with_effects(&[on(EffectId::added_mass, &coupled(2.4))]).is_ok());
+    // A motor drives a joint that others follow.
+    let gripper = Case::bundled(articulated_models::robot("gripper_arm").expect("a bundled robot")).model;
+    let follower = gripper.bodies.iter().find(|body| body.coordinates.mimic.is_some()).expect("one that follows").name.clone();
+    let motor = Applied { on: follower, ..on(EffectId::motor, &[5.0, 2.0, 1.0, 1.0, 1e-3]) };
+    let refused = gripper.with_effects(&[motor]).expect_err("a motor on one that follows")[0].to_string();
+    assert!(refused.contains("the joint follows another"), "{refused}");
     let mut far = on(EffectId::drag, &[1.0]);
     far.at.xyz[1] = f64::INFINITY;
     assert!(told(far).contains("xyz or rpy: found inf"));

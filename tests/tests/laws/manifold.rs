@@ -212,6 +212,19 @@ fn a_limit_that_is_open_on_one_side_is_kept_on_the_other() {
     }
 }
 
+/// Bounds whose difference is beyond the range of numbers.
+#[test]
+fn limits_as_wide_as_numbers_are_kept() {
+    let mut case = Case::bundled(articulated_models::robot("cart_pole").unwrap());
+    let rail = case.model.joints.iter_mut().find(|j| j.kind == JointKind::Prismatic).unwrap();
+    rail.limit = Some(Limit { lower: -1e308, upper: 1.7e308, effort: 1.0, velocity: 1.0 });
+    let at = rail.q.0;
+    for (u, expected) in [(0.0, -1e308), (0.5, 0.35e308), (0.25, -0.325e308)] {
+        let drawn = case.call("random_configuration", &[&vec![u; case.model.nq]])[at];
+        assert!((drawn / expected - 1.0).abs() < 1e-15, "{u}: {drawn:e}");
+    }
+}
+
 /// URDF gives bounds of a continuous joint no meaning: it turns all the way round, whatever is written there.
 #[test]
 fn a_continuous_joint_has_no_limits() {

@@ -160,10 +160,11 @@ fn bounds(limit: Option<Limit>, most: f64) -> (f64, f64) {
     }
 }
 
-/// lower + u·(upper − lower), which rounding must not take beyond the upper bound.
+/// lower + u·(upper − lower), which rounding must not take beyond the upper bound; where that difference is beyond the range of numbers, from its parts.
 fn between<S: Scalar>(lower: f64, upper: f64, u: S) -> S {
+    let apart = (upper - lower).is_finite();
     let [lower, upper] = [lower, upper].map(S::from_f64);
-    let x = lower + u * (upper - lower);
+    let x = if apart { lower + u * (upper - lower) } else { lower * (S::one() - u) + upper * u };
     S::select((x - upper).positive(), upper, x)
 }
 

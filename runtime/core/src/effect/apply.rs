@@ -37,6 +37,8 @@ pub enum Fault {
     },
     /// The same effect is on this joint already.
     Twice,
+    /// A motor drives a joint that others follow, not one that follows.
+    Follows,
     /// The link is fixed to the base: nothing feels it.
     Still,
     /// The joint has no single coordinate for the law.
@@ -66,10 +68,19 @@ impl fmt::Display for EffectError {
         write!(f, "{} on {kind} {on:?}: ", effect.name)?;
         match &self.fault {
             Fault::Unknown { on, nearest } => {
-                write!(f, "there is no {}", if *on == On::Joint { "joint of this name that moves" } else { "link of this name" })?;
+                write!(
+                    f,
+                    "there is no {}",
+                    if *on == On::Joint {
+                        "joint of this name that moves"
+                    } else {
+                        "frame of this name (every link has one until frames are chosen: effects go first)"
+                    }
+                )?;
                 nearest.iter().try_for_each(|n| write!(f, "; the nearest is {n:?}"))
             }
             Fault::Twice => write!(f, "given twice: expected one for a joint"),
+            Fault::Follows => write!(f, "the joint follows another: expected the joint that it follows, which is what a motor drives"),
             Fault::Still => write!(f, "the link is fixed to the base, nothing would feel it: expected a link that moves"),
             Fault::NoCoordinate => {
                 write!(f, "the law needs a coordinate for each degree of freedom, which a ball or a free joint does not have")
@@ -153,6 +164,9 @@ impl Model<f64> {
             }
             if matches!(body.joint, Joint::Spherical | Joint::Floating) && one.effect.row().needs_coordinate() {
                 return Err(Fault::NoCoordinate);
+            }
+            if one.effect == EffectId::motor && body.coordinates.mimic.is_some() {
+                return Err(Fault::Follows);
             }
         }
         Ok(bodies)

@@ -9,7 +9,7 @@ use crate::simulate::{SimulateError, StateError};
 /// A blow along a normal, without friction:
 ///
 /// ```text
-/// p = (1 + e)·(v_n − v_b)/(nᵀ J M⁻¹ Jᵀ n + 1/m_b)      v += −M⁻¹ Jᵀ n p      v_b += p/m_b
+/// p = (1 + e)·(v_n − v_b)·m_b/(m_b·nᵀ J M⁻¹ Jᵀ n + 1)      v += −M⁻¹ Jᵀ n p      v_b += p/m_b
 /// ```
 ///
 /// with v_n = nᵀ J v, the velocity of the point along n, and J its translational Jacobian: Newton's law of restitution with the momentum of the whole robot,
@@ -79,9 +79,11 @@ impl<'r, R: Dynamics<f64>> Impact<'r, R> {
         robot.solve_mass_matrix(&mut self.points.ws, q, &self.row, &mut self.response)?;
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let (inverse, approach) = (dot(&self.row, &self.response), dot(&self.row, v) - ball);
-        let impulse = (1.0 + self.restitution) * approach.max(0.0) / (inverse + 1.0 / self.mass);
+        // p/m_b, for balls of next to no mass too.
+        let gain = (1.0 + self.restitution) * approach.max(0.0) / (inverse * self.mass + 1.0);
+        let impulse = gain * self.mass;
         v.iter_mut().zip(&self.response).for_each(|(v, r)| *v -= r * impulse);
-        Ok(Struck { ball_speed: ball + impulse / self.mass, impulse, effective_mass: 1.0 / inverse, approach })
+        Ok(Struck { ball_speed: ball + gain, impulse, effective_mass: 1.0 / inverse, approach })
     }
 
     /// The blow against a ball at rest, as what is done at an event; the ball's speed, m/s, is what the map gives.

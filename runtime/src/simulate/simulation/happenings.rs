@@ -41,7 +41,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         let mut curve = curve!(self, t);
         curve.prepare(&mut self.system, run.control)?;
         self.watch.scan(run.events, &mut self.system, &mut curve, (tolerance, t >= self.settings.end))?;
-        let (mut cut, mut outcome) = (1.0, Outcome::GoOn);
+        let (mut cut, mut outcome, first) = (1.0, Outcome::GoOn, run.recording.events.len());
         for &Zero { theta, event, direction } in &self.watch.zeros {
             // What happens at the same time as the first that cuts the step short happens too; the rest is found again, if it still comes.
             if !matches!(outcome, Outcome::GoOn) && theta > cut + tolerance {
@@ -55,7 +55,9 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
                 (Action::Map(_), _) => Outcome::Mapped,
             };
             if matches!(outcome, Outcome::GoOn) {
-                (cut, run.cut) = (theta, run.recording.events.len() - 1);
+                cut = theta;
+                // So does what was found a moment before it.
+                run.cut = first + self.watch.zeros.iter().take_while(|zero| zero.theta < cut - tolerance).count();
             }
             outcome = next;
         }

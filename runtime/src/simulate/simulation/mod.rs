@@ -219,10 +219,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
     fn renormalise(&mut self) -> Result<(), SimulateError> {
         let nv = self.shape.nv;
         self.y[..nv].fill(0.0);
-        if !self.system.manifold.is_flat() {
-            self.system.move_origin(&self.y[..nv])?;
-        }
-        Ok(())
+        Ok(self.system.normalise_origin(&self.y[..nv])?)
     }
 
     fn steps(&mut self, run: &mut Run, watch: &mut dyn FnMut(f64, &Counts) -> bool) -> Result<Ended, SimulateError> {
@@ -240,8 +237,11 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             if self.system.counts.steps + self.system.counts.rejected >= self.settings.max_steps {
                 return Err(SimulateError::TooManySteps { t: self.t, steps: self.settings.max_steps });
             }
-            if run.controller.is_some() {
-                self.norm.begin(&self.system, &self.y);
+            match run.controller {
+                Some(_) => self.norm.begin(&self.system, &self.y),
+                // The implicit ones know better themselves.
+                None if !self.settings.integrator.row().implicit => self.check_turn(run)?,
+                None => {}
             }
             self.check_stability(run)?;
             let t = self.step(run)?;
@@ -249,23 +249,27 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             let h = stop - self.t;
             self.count_step(h);
             self.check_stiffness(run, h)?;
-            let whole = matches!(outcome, Outcome::GoOn);
-            self.advance(run, stop, whole)?;
-            if self.settings.output == Output::Steps || matches!(outcome, Outcome::Stopped(_)) {
-                self.record_end(run)?;
-            }
-            match outcome {
-                Outcome::Stopped(event) => return Ok(Ended::ByEvent(event)),
-                Outcome::GoOn if self.t >= self.settings.end => return Ok(Ended::AtEnd),
-                Outcome::GoOn | Outcome::Mapped => {}
-            }
-            let (at_end, goes_on) = (self.t >= self.settings.end, watch(self.t, &self.system.counts));
-            if at_end || !goes_on {
+            let mapped = self.advance(run, stop, matches!(outcome, Outcome::GoOn))?;
+            let goes_on = watch(self.t, &self.system.counts);
+            let ended = self.ended(&outcome, goes_on);
+            if ended.is_some() || self.settings.output == Output::Steps {
                 // What a map made of a state stands beside what was there before.
-                if matches!(outcome, Outcome::Mapped) { self.record_here(run) } else { self.record_end(run) }?;
-                return Ok(if goes_on { Ended::AtEnd } else { Ended::ByWatcher });
+                if mapped { self.record_here(run) } else { self.record_end(run) }?;
+            }
+            if let Some(ended) = ended {
+                return Ok(ended);
             }
             debug_assert!(self.y[..nv].iter().all(|u| *u == 0.0));
+        }
+    }
+
+    /// Whether a step with this outcome was the last, which who watches has let go on or not.
+    fn ended(&self, outcome: &Outcome, goes_on: bool) -> Option<Ended> {
+        match outcome {
+            Outcome::Stopped(event) => Some(Ended::ByEvent(*event)),
+            Outcome::GoOn if self.t >= self.settings.end => Some(Ended::AtEnd),
+            _ if !goes_on => Some(Ended::ByWatcher),
+            _ => (self.t >= self.settings.end).then_some(Ended::AtEnd),
         }
     }
 
@@ -388,6 +392,12 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         Ok(t)
     }
 
+    /// No step may turn a joint by as much as a whole turn, which charts cannot tell from none.
+    fn check_turn(&self, run: &Run) -> Result<(), SimulateError> {
+        let (nv, h) = (self.shape.nv, self.settings.step.unwrap_or(run.h).min(self.stretch_end(run) - self.t));
+        self.system.turns_too_far((self.t, h), &self.y[nv..2 * nv], TAU).map_or(Ok(()), Err)
+    }
+
     fn count_step(&mut self, h: f64) {
         let counts = &mut self.system.counts;
         counts.steps += 1;
@@ -398,8 +408,8 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         }
     }
 
-    /// The end of the step becomes the state.
-    fn advance(&mut self, run: &mut Run, t: f64, whole: bool) -> Result<(), SimulateError> {
+    /// The end of the step becomes the state. Whether a map has changed it then.
+    fn advance(&mut self, run: &mut Run, t: f64, whole: bool) -> Result<bool, SimulateError> {
         let nv = self.shape.nv;
         let until = self.stretch_end(run);
         self.system.move_origin(&self.end[..nv])?;
@@ -429,11 +439,12 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         if mapped {
             self.take_sides(run)?;
         }
-        Ok(())
+        Ok(mapped)
     }
 
     fn record_here(&mut self, run: &mut Run) -> Result<(), SimulateError> {
-        self.point.t = self.t;
+        // An output may be later by a rounding.
+        self.point.t = run.recording.t.last().map_or(self.t, |last| last.max(self.t));
         self.point.y.copy_from_slice(&self.y);
         self.point.q.copy_from_slice(&self.system.origin);
         self.known.record(&mut self.system, run.control, &self.point, run.recording)
