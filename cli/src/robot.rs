@@ -39,11 +39,8 @@ impl Robot {
     pub(crate) fn find(arguments: &RobotArguments) -> Result<Self, Failure> {
         names_in_rust(&arguments.rename)?;
         let name = arguments.robot.as_str();
-        if name.ends_with(".toml") {
+        if name.ends_with(".toml") || is_scene_alone(name) {
             return Self::of_scene(name, arguments);
-        }
-        if is_scene_alone(name) {
-            return Self::of_scene(&format!("{name}.toml"), arguments);
         }
         let (file, urdf) = document(name)?;
         let bundled = articulated_models::robot(name);
@@ -68,9 +65,9 @@ impl Robot {
     /// The robot of a scene: a file, or a bundled one. What the arguments say stands in place of what the scene says; edits come after the scene's.
     fn of_scene(name: &str, arguments: &RobotArguments) -> Result<Self, Failure> {
         let robots = known_by_name();
-        let bundled = name.strip_suffix(".toml").and_then(articulated_models::scene).filter(|_| !Path::new(name).exists());
-        let prepared = match bundled {
-            Some(bundled) => scene::open_in(Scene::read(name, bundled.toml).map_err(Error::from)?, Path::new(""), &robots)?,
+        let prepared = match articulated_models::scene(name).filter(|_| is_scene_alone(name)) {
+            Some(bundled) => scene::open_in(Scene::read(&bundled.file(), bundled.toml).map_err(Error::from)?, Path::new(""), &robots)?,
+            None if !Path::new(name).exists() => return Err(no_scene(name)),
             None => scene::open(Path::new(name), &robots)?,
         };
         let bundled = matches!(prepared.scene.robot, articulated_scene::Robot::Bundled(_));
@@ -223,6 +220,13 @@ fn edit(options: &mut Options, edits: &Edits) -> Result<(), Failure> {
     options.robot.payloads.extend(edits.payload.iter().cloned());
     options.robot.lock.extend(edits.lock.iter().map(|lock| (lock.joint.clone(), lock.at.clone())));
     Ok(())
+}
+
+/// A path of a scene that there is not: with the bundled one of this name, which is called without an ending.
+fn no_scene(name: &str) -> Failure {
+    let bundled = name.strip_suffix(".toml").filter(|stem| articulated_models::scene(stem).is_some());
+    let hint = bundled.map(|stem| format!("; the bundled scene is {stem:?}")).unwrap_or_default();
+    Failure::input([format!("{name}: found no such file{hint}")])
 }
 
 /// Whether it names a bundled scene, and neither a robot nor a file.

@@ -60,6 +60,11 @@ pub struct BundledScene {
 }
 
 impl BundledScene {
+    /// What errors call its file.
+    pub fn file(&self) -> String {
+        format!("{}.toml", self.name)
+    }
+
     /// What it is, in a line: the scene's own first line.
     pub fn summary(&self) -> &'static str {
         let line = self.toml.lines().next().unwrap_or_default();

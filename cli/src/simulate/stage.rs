@@ -52,10 +52,10 @@ impl Stage {
     /// The same, with what is odd about its robot.
     pub(crate) fn open(name: &str) -> Result<(Self, Vec<String>), Failure> {
         let path = Path::new(name);
-        let bundled = articulated_models::scene(name.strip_suffix(".toml").unwrap_or(name)).filter(|_| !path.is_file());
+        let bundled = articulated_models::scene(name).filter(|_| !path.is_file());
         let (prepared, folder) = match bundled {
             Some(bundled) => {
-                let scene = Scene::read(&format!("{}.toml", bundled.name), bundled.toml).map_err(Error::from)?;
+                let scene = Scene::read(&bundled.file(), bundled.toml).map_err(Error::from)?;
                 (scene::open_in(scene, Path::new(""), &known_by_name())?, PathBuf::new())
             }
             None if path.is_file() && path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf")) => {
@@ -90,7 +90,7 @@ impl Stage {
 
 fn unknown(name: &str) -> Failure {
     let names = || articulated_models::SCENES.iter().map(|s| s.name);
-    let near = nearest(name, names()).map(|n| format!("; did you mean {n:?}?")).unwrap_or_default();
+    let near = nearest(name.strip_suffix(".toml").unwrap_or(name), names()).map(|n| format!("; did you mean {n:?}?")).unwrap_or_default();
     let robot = if articulated_models::robot(name).is_some() { "; that is a robot, and a scene says what to do with it" } else { "" };
     let known = names().collect::<Vec<_>>().join(", ");
     Failure::input([format!("{name}: found neither a file nor a bundled scene{robot}{near} (bundled: {known})")])

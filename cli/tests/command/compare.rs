@@ -287,9 +287,9 @@ fn an_interrupted_command_leaves_no_files_behind() {
 /// The textbook's form knows no effects: it would call right results wrong.
 #[test]
 fn a_scene_with_effects_is_held_to_the_library_and_that_is_said() {
-    let json = run(&["compare", "underwater_arm.toml", "--functions", "gravity_torque", "--repetitions", "31", "--format", "json"]).json();
+    let json = run(&["compare", "underwater_arm", "--functions", "gravity_torque", "--repetitions", "31", "--format", "json"]).json();
     assert!(json["notes"].to_string().contains("knows no effects") && json["reference"] == "library", "{}", json["notes"]);
-    assert_eq!((json["robot"].as_str(), json["scene"].as_str()), (Some("ur5_like.urdf"), Some("underwater_arm.toml")));
+    assert_eq!((json["robot"].as_str(), json["scene"].as_str()), (Some("ur5_like.urdf"), Some("underwater_arm")));
     let errors = &json["functions"][0]["errors"];
     let found = ["generated", "generic"].map(|who| errors[who].as_f64().unwrap());
     assert!(found.iter().all(|units| (0.0..16.0).contains(units)) && found[0] > 0.0, "{errors}");

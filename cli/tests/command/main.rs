@@ -101,8 +101,13 @@ fn a_robot_may_be_that_of_a_scene_and_help_says_so() {
         assert!(help.lines().any(|l| l.contains("URDF") && l.contains("(.toml)")), "{help}");
     }
     for command in ["check", "functions", "stress"] {
-        let ended = run(&[command, "pendulum.toml"]);
+        let ended = run(&[command, "pendulum"]);
         assert!(ended.status == 0 && ended.out.contains("pendulum"), "{command}: {}", ended.err);
+    }
+    // A path is a path: no other robot stands in for a file that is not there.
+    for command in ["check", "generate", "simulate", "effects", "stress"] {
+        let ended = run(&[command, "pendulum.toml"]);
+        assert!(ended.status == 1 && ended.err.contains("pendulum.toml: found n") && ended.err.contains("\"pendulum\""), "{command}: {}", ended.err);
     }
 }
 

@@ -70,7 +70,7 @@ fn what_cancels_to_nothing_is_measured_by_its_terms() {
 /// Magnitudes of terms have those of effects among them: stops are stiff, and far beyond them forces are large.
 #[test]
 fn a_scene_with_effects_is_within_its_limits() {
-    let ended = run(&["stress", "arm.toml"]);
+    let ended = run(&["stress", "arm"]);
     assert_eq!(ended.status, 0, "{}", ended.out);
 }
 
@@ -109,6 +109,6 @@ fn motors_and_drag_are_within_their_limits() {
     }
     let ended = run(&["compare", scene.name(), "--functions", "forward_dynamics", "--repetitions", "31"]);
     assert_eq!(ended.status, 0, "{}{}", ended.out, ended.err);
-    let ended = run(&["stress", "underwater_arm.toml", "--generated", "--levels", "f64"]);
+    let ended = run(&["stress", "underwater_arm", "--generated", "--levels", "f64"]);
     assert_eq!(ended.status, 0, "{}{}", ended.out, ended.err);
 }
