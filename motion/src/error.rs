@@ -66,6 +66,13 @@ pub enum Fault {
         /// The frames that the robot gives.
         frames: Vec<String>,
     },
+    /// The robot accelerates otherwise than the scene's.
+    Dynamics {
+        /// Largest difference of the torques that the accelerations take, N·m or N.
+        apart: f64,
+        /// The largest of these torques, N·m or N.
+        largest: f64,
+    },
     /// The robot has not a function that the motion needs.
     Function(FunctionError),
     /// What is wrong with the state at the start, with control or with an event.
@@ -179,6 +186,11 @@ impl fmt::Display for Fault {
             Self::NoFrame { key, link, frames } => {
                 write!(f, "{key}: found a robot that gives no frame of {link:?}, expected that among its frames ({})", Listed(frames))
             }
+            Self::Dynamics { apart, largest } => write!(
+                f,
+                "robot: found accelerations that take torques {apart:.3e} N·m or N from those of the scene's robot, of {largest:.3e}, expected a robot with the scene's \
+                 gravity, effects and edits (made from the scene, not from its URDF); `Stage::motion` moves another all the same"
+            ),
             Self::Function(error) => error.fmt(f),
             Self::State(error) => error.fmt(f),
             Self::Simulation(error) => error.fmt(f),

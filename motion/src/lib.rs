@@ -85,6 +85,7 @@ mod error;
 mod freedom;
 mod motion;
 mod needs;
+mod same;
 mod settings;
 mod stage;
 mod watch;

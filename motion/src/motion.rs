@@ -8,7 +8,7 @@ use articulated::simulate::{Counts, Ended, Hit, Recording, Settings, SimulateErr
 
 use crate::begin::Begin;
 use crate::drive::Drive;
-use crate::error::MotionErrors;
+use crate::error::{Fault, MotionErrors};
 use crate::stage::Stage;
 use crate::watch::{Watch, Without};
 
@@ -87,10 +87,13 @@ impl Stage {
     }
 
     /// The scene on a robot from its start to its end, all as the scene says: the simplest way. Errors: as [`Stage::settings`], [`Stage::motion`] and
-    /// [`Stage::begin`], all of them; an error on the way is in [`Outcome::error`].
+    /// [`Stage::begin`], all of them; then a robot that accelerates otherwise than the scene's, as one does that was made from its URDF alone, without the scene's gravity and effects
+    /// (to move such a one on purpose there is [`Stage::motion`]). An error on the way is in [`Outcome::error`].
     pub fn run<R: Dynamics<f64>, S: AsRef<str>>(&self, robot: &R, frames: &[S]) -> Result<Outcome, MotionErrors> {
         let motion = self.settings().and_then(|settings| self.motion(robot, frames, settings));
         let (mut motion, begin) = MotionErrors::both(motion, self.begin())?;
+        let another = self.another(robot, &begin).unwrap_or_else(|error| Some(Fault::Function(error)));
+        MotionErrors::none(&self.scene.file, another)?;
         motion.run(&begin, &mut |_, _| true)
     }
 }

@@ -228,9 +228,7 @@ fn base_parameters_are_counted_and_listed() {
 
 #[test]
 fn effects_are_no_inertial_parameters_and_what_they_take_of_the_file_is_used() {
-    for (scene, robot) in
-        [("arm", "panda_like"), ("underwater_arm", "ur5_like")]
-    {
+    for (scene, robot) in [("arm", "panda_like"), ("underwater_arm", "ur5_like")] {
         let felt = |name: &str| run(&["check", name, "--format", "json"]).json()["base_parameters"]["identifiable"].as_u64().unwrap();
         assert_eq!(felt(scene), felt(robot), "{scene}");
     }

@@ -107,7 +107,11 @@ fn a_robot_may_be_that_of_a_scene_and_help_says_so() {
     // A path is a path: no other robot stands in for a file that is not there.
     for command in ["check", "generate", "simulate", "effects", "stress"] {
         let ended = run(&[command, "pendulum.toml"]);
-        assert!(ended.status == 1 && ended.err.contains("pendulum.toml: found n") && ended.err.contains("\"pendulum\""), "{command}: {}", ended.err);
+        assert!(
+            ended.status == 1 && ended.err.contains("pendulum.toml: found n") && ended.err.contains("\"pendulum\""),
+            "{command}: {}",
+            ended.err
+        );
     }
 }
 

@@ -14,7 +14,7 @@ fn lines(errors: &MotionErrors) -> Vec<String> {
 
 /// Of a stage that does not move on a robot.
 fn refused<R: Dynamics<f64>>(stage: &Stage, robot: &R, frames: &[&str]) -> Vec<Fault> {
-    stage.run(robot, frames).unwrap_err().errors.into_iter().map(|e| e.fault).collect()
+    stage.run(robot, frames).err().unwrap_or_else(|| panic!("moved with {:?}", stage.effects)).errors.into_iter().map(|e| e.fault).collect()
 }
 
 const TOUCHING: &str = "effects = { contact = { hand = { radius = 0.05, stiffness = 1e4, damping = 0.1, friction = 0.5 }, fore = { radius = 0.1, stiffness = 1e4, damping = 0.1, friction = 0.5 } } }
@@ -32,6 +32,31 @@ fn frames_that_events_need_and_the_robot_has_not_are_told_together() {
     assert_eq!(stage.frames(), ["fore", "hand", "upper"]);
     let robot = stage.model.clone().with_frames(&["upper", "hand", "fore"]).unwrap();
     assert!(stage.run(&robot, &["upper", "hand", "fore"]).is_ok());
+}
+
+/// A robot of the same joints that was made from the URDF alone, or under other gravity; who wants it so takes it in parts.
+#[test]
+fn a_robot_without_the_effects_or_the_gravity_of_the_scene_is_another() {
+    let pull = "gravity = [0, 0, -1.62]\n";
+    let scenes = [
+        "effects = { damping = { shoulder = 0.1 } }",
+        "effects = { friction = { elbow = 0.2 } }",
+        "effects = { armature = { elbow = 0.3 } }",
+        "effects = { limit = { elbow = { lower = -1.2, upper = 1.2, stiffness = 100.0 } } }",
+        "effects = { contact = { hand = { radius = 0.05, height = 0.3, stiffness = 1e4, damping = 0.1, friction = 0.5 } } }",
+        "effects = { motor = { shoulder = { torque = 0.5, speed = 100.0 } } }",
+        pull,
+    ];
+    let plain = stage("simulation = { end = 0.01 }", ARM);
+    assert!(plain.run(&plain.model, &plain.frame_names()).is_ok());
+    for text in scenes {
+        let stage = stage(&format!("{text}\nsimulation = {{ end = 0.01 }}"), ARM);
+        assert!(stage.run(&stage.model, &stage.frame_names()).is_ok(), "{text}");
+        let told = refused(&stage, &plain.model, &plain.frame_names());
+        assert!(matches!(told[..], [Fault::Dynamics { .. }]), "{text}: {told:?}");
+        let mut motion = stage.motion(&plain.model, &plain.frame_names(), stage.settings().unwrap()).unwrap();
+        assert!(motion.run(&stage.begin().unwrap(), &mut |_, _| true).is_ok(), "{text}");
+    }
 }
 
 #[test]

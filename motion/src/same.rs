@@ -1,0 +1,50 @@
+//! Whether a robot moves as a scene's does.
+//!
+//! Accelerations of both in a few states, as the torques that they take: those of an ill-conditioned robot may differ where its torques do not.
+
+use articulated::{Dynamics, FunctionError, FunctionId, Model};
+
+use crate::begin::Begin;
+use crate::error::Fault;
+use crate::stage::Stage;
+
+/// How far torques may be apart, relative to the largest of them: more than any level of accuracy, less than any effect that is felt.
+const ALIKE: f64 = 1e-3;
+
+/// How far from the start joints are, rad and m, at most, where accelerations are compared: there, and on both sides, so that stops and the ground are felt.
+const AWAY: [f64; 3] = [0.0, 8.0, -8.0];
+
+impl Stage {
+    /// A robot that was made with other effects, other gravity or other masses than the scene's.
+    pub(crate) fn another<R: Dynamics<f64>>(&self, robot: &R, begin: &Begin) -> Result<Option<Fault>, FunctionError> {
+        for away in AWAY {
+            let pattern: Vec<f64> = (0..self.model.nv).map(|k| 1.0 - 0.15 * (k % 4) as f64).collect();
+            let step: Vec<f64> = pattern.iter().map(|x| away * x).collect();
+            let v: Vec<f64> = begin.v.iter().zip(&pattern).map(|(v, x)| v + 0.5 * x).collect();
+            let mut q = vec![0.0; self.model.nq];
+            self.model.integrate(&mut self.model.workspace(), &begin.q, &step, &mut q)?;
+            let a = [accelerations(&self.model, &q, &v, &pattern)?, accelerations(robot, &q, &v, &pattern)?];
+            if let Some((apart, largest)) = apart(&self.model, &q, &v, &a)?.filter(|(apart, largest)| *apart > ALIKE * largest) {
+                return Ok(Some(Fault::Dynamics { apart, largest }));
+            }
+        }
+        Ok(None)
+    }
+}
+
+fn accelerations<R: Dynamics<f64>>(robot: &R, q: &[f64], v: &[f64], tau: &[f64]) -> Result<Vec<f64>, FunctionError> {
+    let mut a = vec![0.0; v.len()];
+    robot.call(FunctionId::forward_dynamics, &mut robot.workspace(), &[q, v, tau], &mut a).map(|()| a)
+}
+
+/// The largest difference of the torques that two accelerations take, and the largest of these torques and of those at rest in this motion; nothing where they are no numbers.
+fn apart(model: &Model<f64>, q: &[f64], v: &[f64], [expected, found]: &[Vec<f64>; 2]) -> Result<Option<(f64, f64)>, FunctionError> {
+    let torques = |a: &[f64]| -> Result<Vec<f64>, FunctionError> {
+        let mut tau = vec![0.0; v.len()];
+        model.inverse_dynamics(&mut model.workspace(), q, v, a, &mut tau).map(|()| tau)
+    };
+    let (expected, found, bias) = (torques(expected)?, torques(found)?, torques(&vec![0.0; v.len()])?);
+    let apart = expected.iter().zip(&found).fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+    let largest = expected.iter().chain(&found).chain(&bias).fold(0.0, |most: f64, x| most.max(x.abs()));
+    Ok((expected.iter().chain(&found).all(|x| x.is_finite()) && largest.is_finite()).then_some((apart, largest)))
+}
