@@ -1,7 +1,9 @@
 //! The build-script interface.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use articulated_scene::{Robot, RobotError, Scene, beside, read_robot_file};
 
@@ -228,14 +230,20 @@ impl Build {
 
     /// Generates and writes `$OUT_DIR/<name>.rs`, and tells cargo what the result depends on. For build scripts.
     ///
-    /// If the last run wrote the file for the same request, and the build script is the same program, nothing is generated and nothing written: the file keeps its date.
+    /// If the last run wrote the file for the same request, and the build script is the same program, nothing is generated and nothing written: the file keeps its date. An error where
+    /// this run has written a file of this name already, which would be lost.
     pub fn try_write(&self, name: &str) -> Result<Written, Error> {
         let files = self.scene.iter().map(|(path, _)| path).chain([&self.path]).chain(self.append.iter().map(|(path, _)| path));
         for path in files.filter(|path| !path.as_os_str().is_empty()) {
             println!("cargo::rerun-if-changed={}", path.display());
         }
         let folder = std::env::var_os("OUT_DIR").map(PathBuf::from).unwrap_or_default();
-        let written = self.write_in(&folder, name)?;
+        let file = folder.join(name);
+        if !names_written().insert(file.clone()) {
+            let reason = "found a name that this build script has written already, expected one for each robot".into();
+            return Err(RobotError::File { file: name.into(), reason }.into());
+        }
+        let written = self.write_in(&folder, name).inspect_err(|_| _ = names_written().remove(&file))?;
         for warning in &written.warnings {
             println!("cargo::warning={warning}");
         }
@@ -289,6 +297,12 @@ impl Build {
     }
 }
 
+/// What this build script has written, to keep a second robot from taking the place of a first.
+fn names_written() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    static WRITTEN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+    WRITTEN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// `name`.rs in the folder. Errors: a name that is none of a file, or of one elsewhere.
 fn file_in(folder: &Path, name: &str) -> Result<PathBuf, Error> {
     if Path::new(name).file_name().is_some_and(|file| file == name) {
@@ -340,6 +354,16 @@ mod tests {
         for ((kind, line), (of, text)) in told.iter().zip(expected) {
             assert!(kind.ends_with(of) && line.contains(text) && !line.contains(&format!("{of}: ")), "{kind} {line}");
         }
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn a_second_robot_does_not_take_the_place_of_a_first() {
+        let folder = folder("twice");
+        let build = Build::new(folder.join("arm.urdf")).functions(["gravity_torque"]);
+        names_written().insert(std::env::var_os("OUT_DIR").map(PathBuf::from).unwrap_or_default().join("taken"));
+        let told = build.try_write("taken").unwrap_err().to_string();
+        assert!(told.contains("taken: ") && told.contains("written already"), "{told}");
         fs::remove_dir_all(folder).unwrap();
     }
 
