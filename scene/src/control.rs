@@ -150,7 +150,7 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
     Row {
         name: "torque",
         required: false,
-        value: "number, numbers, or table: joint = number; N·m, N",
+        value: "number, numbers, or table: joint = number, or numbers where it has several; N·m, N",
         default: "0",
         what: "`torque`, `pd`: the torques",
         read: |x, s, log| x.torque = per_joint(s, Range::ALL, log),
@@ -166,7 +166,7 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
     Row {
         name: "kp",
         required: false,
-        value: "number, numbers, or table: joint = number; N·m/rad, N/m",
+        value: "number, numbers, or table: joint = number, for all that it has, or numbers; N·m/rad, N/m",
         default: "0",
         what: "`pd`: gain of the position, at least 0",
         read: |x, s, log| x.kp = per_joint(s, Range::NOT_NEGATIVE, log),
@@ -174,7 +174,7 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
     Row {
         name: "kd",
         required: false,
-        value: "number, numbers, or table: joint = number; N·m·s/rad, N·s/m",
+        value: "number, numbers, or table: joint = number, for all that it has, or numbers; N·m·s/rad, N·s/m",
         default: "0",
         what: "`pd`: gain of the rate, at least 0",
         read: |x, s, log| x.kd = per_joint(s, Range::NOT_NEGATIVE, log),
@@ -347,12 +347,12 @@ impl Scene {
         let vector = |from: &PerJoint, key: &str, log: &mut Log| self.vector(from, key, model, log);
         match &self.control.drive {
             Drive::None => Controller::None,
-            Drive::Torque(torque) => Controller::Torque(vector(torque, "control.torque", log)),
+            Drive::Torque(torque) => Controller::Torque(vector(torque, TORQUE, log)),
             Drive::Table(source) => Controller::Table(source.series(model, Side::V, read, log)),
             Drive::Pd { target, kp, kd, torque } => Controller::Pd {
                 kp: vector(kp, "control.kp", log),
                 kd: vector(kd, "control.kd", log),
-                torque: vector(torque, "control.torque", log),
+                torque: vector(torque, TORQUE, log),
                 target: match target {
                     Target::Still(target) => {
                         let mut q = neutral(model);
@@ -376,7 +376,7 @@ impl Scene {
         log.result(())
     }
 
-    /// `[nv]`. A single number for a joint of several degrees of freedom is for all of them.
+    /// `[nv]`. A gain, one number, of a joint of several degrees of freedom is for all of them; torques are asked for one by one.
     fn vector(&self, from: &PerJoint, key: &str, model: &Model<f64>, log: &mut Log) -> Vec<f64> {
         let mut all = vec![0.0; model.nv];
         match from {
@@ -385,7 +385,7 @@ impl Scene {
             PerJoint::Named { rest, named } => {
                 self.spread(*rest, model, &mut all);
                 let Coordinates::Named(named) = named else { return all };
-                named.iter().for_each(|one| put(one, key, model, &mut all, log));
+                named.iter().for_each(|one| put(one, (key, key != TORQUE), model, &mut all, log));
             }
         }
         all
@@ -401,7 +401,10 @@ impl Scene {
     }
 }
 
-fn put(one: &Named, key: &str, model: &Model<f64>, all: &mut [f64], log: &mut Log) {
+/// The key of torques; others have gains, of which one may be for all degrees of freedom of a joint.
+const TORQUE: &str = "control.torque";
+
+fn put(one: &Named, (key, alike): (&str, bool), model: &Model<f64>, all: &mut [f64], log: &mut Log) {
     let key = format!("{key}.{}", crate::error::bare(&one.joint));
     let Some(joint) = model.joints.iter().find(|j| j.name == one.joint) else {
         no_joint(log, one.place, &key, &one.joint, model);
@@ -409,13 +412,13 @@ fn put(one: &Named, key: &str, model: &Model<f64>, all: &mut [f64], log: &mut Lo
     };
     let (first, count) = joint.v;
     match *one.values.as_slice() {
-        [x] => all[first..first + count].fill(x),
+        [x] if alike || count == 1 => all[first..first + count].fill(x),
         ref values if values.len() == count => all[first..first + count].copy_from_slice(values),
-        ref values => wrong_count(log, one.place, &key, values.len(), count),
+        ref values => wrong_count(log, one.place, &key, values.len(), (count, alike)),
     }
 }
 
-fn wrong_count(log: &mut Log, at: At, key: &str, found: usize, expected: usize) {
-    let expected = if expected == 1 { counted(1) } else { format!("one number, or {}", counted(expected)) };
+fn wrong_count(log: &mut Log, at: At, key: &str, found: usize, (expected, alike): (usize, bool)) {
+    let expected = if expected == 1 || !alike { counted(expected) } else { format!("one number, or {}", counted(expected)) };
     log.error(at, key, Kind::Number, counted(found), expected);
 }

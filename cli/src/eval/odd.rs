@@ -20,9 +20,11 @@ pub(super) fn results(functions: &[FunctionReport], states: &[State], model: &Mo
             lines.push(format!("{file}: states[{k}]: {inverse}: {why}"));
         }
         for f in functions {
-            let of = |x: &Option<Vec<f64>>| x.as_ref()?.iter().position(|x| !x.is_finite());
-            if let Some(at) = of(&f.outcomes[k].generic).or_else(|| of(&f.outcomes[k].generated)) {
-                lines.push(format!("{file}: states[{k}]: {}: number {at} of the result is not finite", f.function.name));
+            let both = [&f.outcomes[k].generic, &f.outcomes[k].generated];
+            let found = both.into_iter().flatten().map(|out| not_finite(out)).find(|found| !found.is_empty());
+            if let [first, others @ ..] = &found.unwrap_or_default()[..] {
+                let others = if others.is_empty() { String::new() } else { format!(", nor are {} others", others.len()) };
+                lines.push(format!("{file}: states[{k}]: {}: number {first} of the result is not finite{others}", f.function.name));
             }
         }
     }
@@ -30,6 +32,11 @@ pub(super) fn results(functions: &[FunctionReport], states: &[State], model: &Mo
     lines.truncate(MOST);
     lines.extend((more > 0).then(|| format!("{file}: {more} more results that are not finite, or of a singular mass matrix")));
     lines
+}
+
+/// Which of these numbers are none.
+fn not_finite(out: &[f64]) -> Vec<usize> {
+    (0..out.len()).filter(|&at| !out[at].is_finite()).collect()
 }
 
 /// Why solutions with the mass matrix at these coordinates say nothing.

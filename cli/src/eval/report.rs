@@ -52,7 +52,8 @@ impl Difference {
     /// The largest difference of two results in one state.
     pub(super) fn largest(state: usize, a: &[f64], b: &[f64], scale: &[f64]) -> Self {
         let mut worst = Self { state, absolute: 0.0, units: 0.0 };
-        for (k, (a, b)) in a.iter().zip(b).enumerate() {
+        // Where neither is a number there is nothing to compare: that is told of the state.
+        for (k, (a, b)) in a.iter().zip(b).enumerate().filter(|(_, (a, b))| a.is_finite() || b.is_finite()) {
             let absolute = (a - b).abs();
             let units = if absolute == 0.0 { 0.0 } else { absolute / (ROUNDOFF * scale.get(k).copied().unwrap_or(0.0)) };
             worst.absolute = worse(worst.absolute, absolute);
@@ -151,5 +152,6 @@ mod tests {
         assert_eq!(Difference::larger(Some(small), broken).unwrap().state, 1);
         assert!(Difference::larger(Some(broken), small).unwrap().units.is_nan());
         assert_eq!(Difference::largest(0, &[0.0], &[0.0], &[0.0]).units, 0.0);
+        assert_eq!(Difference::largest(0, &[f64::NAN, f64::INFINITY], &[f64::NAN, f64::NAN], &scale).units, 0.0);
     }
 }
