@@ -2,11 +2,13 @@
 
 use std::fmt;
 
+use articulated::Dynamics;
+use articulated_core::effect::{Applied, EffectId};
 use articulated_scene::Controller;
 
 use crate::error::MotionErrors;
 use crate::freedom::Freedom;
-use crate::stage::Stage;
+use crate::stage::{Stage, field};
 
 /// The state that a motion starts from, and what drives it.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,6 +53,46 @@ impl Stage {
             (found < lower || found > upper).then(beyond)
         };
         self.freedoms().filter_map(beyond).collect()
+    }
+}
+
+/// A contact that starts with its sphere's centre under the plane: odd, since it springs up with all that is stored there, and used as asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sunk {
+    /// The scene's file.
+    pub file: String,
+    /// The link.
+    pub link: String,
+    /// How far the centre is under the plane, m.
+    pub depth: f64,
+}
+
+impl Stage {
+    /// Spheres whose centres are under their planes at the coordinates q `[nq]`.
+    pub fn sunk(&self, q: &[f64]) -> Vec<Sunk> {
+        let mut places = vec![0.0; 12 * self.model.frames.len()];
+        if self.model.placements(&mut self.model.workspace(), q, &mut places).is_err() {
+            return Vec::new();
+        }
+        let sunk = |contact: &Applied| {
+            let frame = self.model.frames.iter().position(|frame| frame.name == contact.on)?;
+            let (x, r, normal) = (&places[12 * frame..][..12], contact.at.xyz, field(contact, "normal"));
+            let centre = |k: usize| x[9 + k] + (0..3).map(|c| x[3 * k + c] * r[c]).sum::<f64>();
+            let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
+            let depth = field(contact, "height").first()? - (0..3).map(|k| normal[k] / length * centre(k)).sum::<f64>();
+            (depth > 0.0).then(|| Sunk { file: self.scene.file.clone(), link: contact.on.clone(), depth })
+        };
+        self.effects_of(EffectId::contact).filter_map(sunk).collect()
+    }
+}
+
+impl fmt::Display for Sunk {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { file, link, depth } = self;
+        write!(
+            f,
+            "{file}: effects.contact.{link}: found the centre of the sphere {depth} m under the plane at the start, expected it above (by height, normal or initial.q); used as asked for"
+        )
     }
 }
 

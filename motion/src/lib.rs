@@ -92,7 +92,7 @@ mod watch;
 
 pub use articulated::simulate::{Counts, Recording, Settings, SimulateError};
 pub use articulated_scene::{Controller, Scene};
-pub use begin::{Begin, Beyond};
+pub use begin::{Begin, Beyond, Sunk};
 pub use drive::Drive;
 pub use error::{Fault, MotionError, MotionErrors};
 pub use motion::{Ending, Happening, Motion, Outcome};

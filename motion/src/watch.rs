@@ -30,6 +30,8 @@ pub struct Without {
     pub file: String,
     /// What it looks for.
     pub what: Watched,
+    /// The joint of which there is nothing to look for: the file's lower bound is not below the upper one, as where `<limit>` has none. None where no joint or link has something.
+    pub joint: Option<String>,
 }
 
 impl<'a> Watch<'a> {
@@ -42,14 +44,14 @@ impl<'a> Watch<'a> {
         let mut watch = Self { events: Vec::new(), without: Vec::new(), words: Vec::new(), ball: Rc::default() };
         let mut faults = Vec::new();
         for what in stage.looked_for() {
-            let before = (watch.events.len(), faults.len());
+            let before = (watch.events.len(), faults.len(), watch.without.len());
             match what {
                 Watched::Limits => watch.limits(stage),
                 Watched::Contacts => watch.contacts(stage, robot, frames, &mut faults),
                 Watched::StickSlip => watch.stick_slip(stage),
             }
-            if (watch.events.len(), faults.len()) == before {
-                watch.without.push(Without { file: stage.scene.file.clone(), what: *what });
+            if (watch.events.len(), faults.len(), watch.without.len()) == before {
+                watch.without.push(Without { file: stage.scene.file.clone(), what: *what, joint: None });
             }
         }
         watch.hit(stage, robot, frames, &mut faults);
@@ -93,6 +95,10 @@ impl<'a> Watch<'a> {
     fn limits(&mut self, stage: &Stage) {
         for at in stage.freedoms() {
             let (name, Some((lower, upper))) = (stage.name_of(&at), stage.bounds(&at)) else { continue };
+            if lower >= upper {
+                self.without.push(Without { file: stage.scene.file.clone(), what: Watched::Limits, joint: Some(name) });
+                continue;
+            }
             if lower.is_finite() || upper.is_finite() {
                 let event = Event::limit(name.as_str(), at.q, lower, upper).direction(Direction::Either);
                 self.push(event, format!("{name} comes back from its limit"), format!("{name} reaches its limit"));
@@ -104,7 +110,7 @@ impl<'a> Watch<'a> {
     where
         R::Workspace: 'a,
     {
-        for a in stage.effects_of(EffectId::contact) {
+        for (name, a) in contacts_by_name(stage) {
             let Some(frame) = frame_of(&a.on, frames) else {
                 faults.push(no_frame("effects.contact", &a.on, frames));
                 continue;
@@ -113,7 +119,7 @@ impl<'a> Watch<'a> {
             match Event::contact(a.on.clone(), robot, at, number(a, "radius"), number(a, "height")) {
                 Ok(event) => {
                     let event = event.direction(Direction::Either);
-                    self.push(event, format!("{} leaves the ground", a.on), format!("{} touches the ground", a.on));
+                    self.push(event, format!("{name} leaves the ground"), format!("{name} touches the ground"));
                 }
                 Err(error) => faults.extend(Fault::of(error)),
             }
@@ -144,6 +150,19 @@ impl<'a> Watch<'a> {
     }
 }
 
+/// The contacts, by their links; those of a link that has several by their numbers too.
+fn contacts_by_name(stage: &Stage) -> impl Iterator<Item = (String, &Applied)> {
+    let on = |link: &str| stage.effects_of(EffectId::contact).filter(|a| a.on == link).count();
+    stage.effects_of(EffectId::contact).enumerate().map(move |(k, a)| {
+        let before = stage.effects_of(EffectId::contact).take(k).filter(|other| other.on == a.on).count();
+        let name = match on(&a.on) {
+            1 => a.on.clone(),
+            several => format!("{} (contact {} of {several})", a.on, before + 1),
+        };
+        (name, a)
+    })
+}
+
 /// The number of a link's frame.
 fn frame_of<S: AsRef<str>>(link: &str, frames: &[S]) -> Option<usize> {
     frames.iter().position(|name| name.as_ref() == link)
@@ -161,6 +180,13 @@ fn number(applied: &Applied, name: &str) -> f64 {
 
 impl fmt::Display for Without {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(joint) = &self.joint {
+            let (file, name) = (&self.file, self.what.name());
+            return write!(
+                f,
+                "{file}: simulation.events: {name:?}: found joint {joint:?} without a lower bound below the upper one, expected one; not looked for"
+            );
+        }
         let expected = match self.what {
             Watched::Limits => "a joint with bounds",
             Watched::Contacts => "an effect contact of the scene",

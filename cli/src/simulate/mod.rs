@@ -19,7 +19,6 @@ mod text;
 use std::path::Path;
 
 use articulated::simulate::Settings;
-use articulated_core::algorithm::FunctionId;
 use articulated_core::effect::EffectId;
 use articulated_motion::{Begin, field};
 
@@ -43,7 +42,7 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     if let Some(file) = &arguments.against {
         return against::run(&stage, &begin, &settings, file, format).map(|()| OK);
     }
-    solvable(&stage)?;
+    motion::solvable(&stage)?;
     arguments.output.as_deref().map(room).transpose()?;
     let progress = Progress::of_whole(format!("{}: motion", stage.name));
     let (motion, code) = match arguments.generated {
@@ -95,12 +94,6 @@ fn by_generic_code(stage: &Stage, begin: &Begin, settings: &Settings, progress: 
         console::warn("this command was built without optimisation: its speed means little");
     }
     motion::run(stage, begin, (&stage.model, &stage.frame_names()), settings, progress)
-}
-
-/// Whether torques determine accelerations at all. What generated code would be refused for, generic code is.
-fn solvable(stage: &Stage) -> Result<(), Failure> {
-    let (file, model) = (&stage.request.file, &stage.model);
-    Ok(articulated_codegen::defined(file, model, &articulated_codegen::massless(model), FunctionId::forward_dynamics.row::<f64>())?)
 }
 
 fn unwritable(path: &Path, error: &std::io::Error) -> Failure {

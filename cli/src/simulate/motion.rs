@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use articulated::Dynamics;
 use articulated::simulate::{Counts, IntegratorId, Recording as Run, Settings};
+use articulated::{Dynamics, FunctionId};
 use articulated_codegen::Generated;
 use articulated_motion::{Begin, Ending, Happening as Happened, Outcome};
 
@@ -25,22 +25,44 @@ pub(super) struct Motion {
     pub(super) ball: Option<f64>,
     /// Why it did not go on to its end.
     pub(super) error: Option<String>,
+    /// What is odd about its start and what it looks out for.
+    pub(super) warnings: Vec<String>,
+}
+
+/// What is odd about the state at the start.
+fn odd(stage: &Stage, begin: &Begin) -> Vec<String> {
+    let beyond = stage.beyond(&begin.q).iter().map(ToString::to_string).collect::<Vec<_>>();
+    beyond.into_iter().chain(stage.sunk(&begin.q).iter().map(ToString::to_string)).collect()
 }
 
 /// Start and control as the scene has them, with a warning of what is odd. Errors: all that do not fit the robot, and tables that cannot be read.
 pub(crate) fn begin(stage: &Stage) -> Result<Begin, Failure> {
     let begin = stage.begin()?;
-    stage.beyond(&begin.q).iter().for_each(|beyond| console::warn(&beyond.to_string()));
+    odd(stage, &begin).iter().for_each(|line| console::warn(line));
     Ok(begin)
 }
 
 /// What is odd about a scene's motion. Errors: all that it would not begin for.
 pub(crate) fn look_over(scene: &str) -> Result<Vec<String>, Failure> {
-    let (stage, _) = Stage::open(scene)?;
-    // Who simulates a scene without settings gives its end.
-    let settings = stage.scene.simulation.as_ref().map_or(Ok(()), |s| stage.check(&articulated_motion::settings(s)));
-    let (begin, ()) = Failure::both(stage.begin().map_err(Failure::from), settings.map_err(Failure::from))?;
-    Ok(stage.beyond(&begin.q).iter().map(ToString::to_string).collect())
+    let stage = Stage::open(scene)?;
+    let (begin, without) = Failure::both(stage.begin().map_err(Failure::from), looked_for(&stage))?;
+    Ok(odd(&stage, &begin).into_iter().chain(without).collect())
+}
+
+/// What the scene looks for and has not. Errors: all that its motion would not begin for but its start; who simulates a scene without settings gives its end.
+fn looked_for(stage: &Stage) -> Result<Vec<String>, Failure> {
+    if stage.scene.simulation.is_none() {
+        return Ok(Vec::new());
+    }
+    let motion = stage.settings().and_then(|settings| stage.motion(&stage.model, &stage.frame_names(), settings));
+    let (motion, ()) = Failure::both(motion.map_err(Failure::from), solvable(stage))?;
+    Ok(motion.without().iter().map(ToString::to_string).collect())
+}
+
+/// Whether torques determine accelerations at all. What generated code would be refused for, generic code is.
+pub(super) fn solvable(stage: &Stage) -> Result<(), Failure> {
+    let (file, model) = (&stage.request.file, &stage.model);
+    Ok(articulated_codegen::defined(file, model, &articulated_codegen::massless(model), FunctionId::forward_dynamics.row::<f64>())?)
 }
 
 /// Runs it on a robot whose functions give these frames.
@@ -52,7 +74,8 @@ pub(super) fn run<R: Dynamics<f64>, S: AsRef<str>>(
     progress: &Progress,
 ) -> Result<Motion, Failure> {
     let mut motion = stage.motion(robot, frames, settings.clone())?;
-    motion.without().iter().for_each(|what| console::warn(&what.to_string()));
+    let without: Vec<String> = motion.without().iter().map(ToString::to_string).collect();
+    without.iter().for_each(|line| console::warn(line));
     let (length, mut looked) = (settings.end - settings.start, 0_u64);
     let outcome = motion.run(begin, &mut |t, counts| {
         // The bar is for people: often enough, and no burden.
@@ -64,7 +87,8 @@ pub(super) fn run<R: Dynamics<f64>, S: AsRef<str>>(
     })?;
     let Outcome { recording, happenings, ending, reached, ball, error, wall } = outcome;
     let (counts, error) = (recording.counts, error.map(|e| e.to_string()));
-    Ok(Motion { recording: told(stage, recording, happenings), counts, reached, ending, wall, ball, error })
+    let warnings = odd(stage, begin).into_iter().chain(without).collect();
+    Ok(Motion { recording: told(stage, recording, happenings), counts, reached, ending, wall, ball, error, warnings })
 }
 
 /// The library's recording with names.

@@ -18,6 +18,8 @@ pub(crate) struct Stage {
     pub(crate) name: String,
     /// What code of the robot is generated from.
     pub(crate) request: Request,
+    /// What is odd about the robot.
+    pub(crate) odd: Vec<String>,
     stage: articulated_motion::Stage,
 }
 
@@ -44,13 +46,13 @@ impl Stage {
 
     /// The scene that a word of the command line names: a file, or a bundled one. What is odd about its robot is told.
     pub(crate) fn find(name: &str) -> Result<Self, Failure> {
-        let (stage, odd) = Self::open(name)?;
-        odd.iter().for_each(|line| console::warn(line));
+        let stage = Self::open(name)?;
+        stage.odd.iter().for_each(|line| console::warn(line));
         Ok(stage)
     }
 
-    /// The same, with what is odd about its robot.
-    pub(crate) fn open(name: &str) -> Result<(Self, Vec<String>), Failure> {
+    /// The same, and nothing is told.
+    pub(crate) fn open(name: &str) -> Result<Self, Failure> {
         let path = Path::new(name);
         let bundled = articulated_models::scene(name).filter(|_| !path.is_file());
         let (prepared, folder) = match bundled {
@@ -69,7 +71,7 @@ impl Stage {
         Self::new(name, prepared, folder)
     }
 
-    fn new(name: String, prepared: Prepared, folder: PathBuf) -> Result<(Self, Vec<String>), Failure> {
+    fn new(name: String, prepared: Prepared, folder: PathBuf) -> Result<Self, Failure> {
         let Prepared { scene, mut request, resolved, .. } = prepared;
         request.options.robot.frames = None;
         let reading = articulated_codegen::read(&request)?;
@@ -80,7 +82,7 @@ impl Stage {
         let effects = request.options.robot.effects.clone();
         let mut stage = articulated_motion::Stage::new(scene, reading.description, model, effects).in_folder(folder);
         stage.report = resolved.report;
-        Ok((Self { name, request, stage }, odd))
+        Ok(Self { name, request, odd, stage })
     }
 
     pub(crate) fn base(&self) -> Base {

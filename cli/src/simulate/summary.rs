@@ -38,6 +38,8 @@ pub(super) struct Summary {
     pub(super) ball_speed_m_per_s: Option<f64>,
     pub(super) wall_s: f64,
     pub(super) simulated_s_per_wall_s: f64,
+    /// What is odd about the robot, the start, what is looked for, and the balance of energy.
+    pub(super) warnings: Vec<String>,
     /// Written into the folder.
     pub(super) files: Vec<String>,
     /// Pictures that are not, since all that they would show is zero throughout.
@@ -127,9 +129,16 @@ impl Summary {
             ball_speed_m_per_s: r.events.iter().find_map(|e| e.ball_speed_m_per_s),
             wall_s: wall,
             simulated_s_per_wall_s: (motion.reached - settings.start) / wall.max(1e-9),
+            warnings: stage.odd.iter().chain(&motion.warnings).cloned().collect(),
             files: Vec::new(),
             pictures_left_out: Vec::new(),
         }
+        .with_balance(&stage.scene.file)
+    }
+
+    fn with_balance(mut self, file: &str) -> Self {
+        self.warnings.extend(self.energy.out_of_balance().map(|odd| format!("{file}: {odd}")));
+        self
     }
 }
 

@@ -226,6 +226,30 @@ fn base_parameters_are_counted_and_listed() {
     assert!(text.out.contains("torques determine 43"), "{}", text.out);
 }
 
+/// What `simulate` would refuse, and what it would warn of.
+#[test]
+fn a_scene_whose_motion_would_be_refused_is_not_usable() {
+    let inertia = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial>";
+    let arm = |hand: &str| {
+        let links = format!("<link name='a'/><link name='b'>{inertia}</link><link name='c'>{hand}</link>");
+        let joint = |name, parent, child| {
+            format!("<joint name='{name}' type='continuous'><parent link='{parent}'/><child link='{child}'/><axis xyz='0 1 0'/></joint>")
+        };
+        File::new("arm.urdf", format!("<robot name='arm'>{links}{}{}</robot>", joint("j", "a", "b"), joint("k", "b", "c")).as_bytes())
+    };
+    let checked = |urdf: &File, rest: &str| {
+        let scene = File::new("s.toml", format!("urdf = {:?}\n{rest}", urdf.name()).as_bytes());
+        let ended = run(&["check", scene.name(), "--format", "json"]);
+        (ended.status, run(&["simulate", scene.name()]).status, ended.json())
+    };
+    let (checks, moves, json) = checked(&arm(""), "simulation = { end = 0.01 }");
+    assert_eq!((checks, moves, json["usable"].as_bool()), (1, 1, Some(false)));
+    assert!(json["errors"].to_string().contains("forward_dynamics is not defined"), "{}", json["errors"]);
+    let (checks, moves, json) = checked(&arm(inertia), "simulation = { end = 0.01, events = ['contacts', 'limits'] }");
+    assert_eq!((checks, moves), (0, 0));
+    assert_eq!(json["warnings"].to_string().matches("nothing to look for").count(), 2, "{}", json["warnings"]);
+}
+
 #[test]
 fn effects_are_no_inertial_parameters_and_what_they_take_of_the_file_is_used() {
     for (scene, robot) in [("arm", "panda_like"), ("underwater_arm", "ur5_like")] {

@@ -156,10 +156,43 @@ fn numbers_of_one_joint_are_told_apart() {
 fn sorts_of_events_that_cannot_happen_are_told() {
     let stage = stage("simulation = { end = 0.1, events = ['contacts', 'limits', 'stick_slip'] }", CART);
     let motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
-    let expected = [Watched::Contacts, Watched::StickSlip].map(|what| Without { file: "s.toml".into(), what });
+    let expected = [Watched::Contacts, Watched::StickSlip].map(|what| Without { file: "s.toml".into(), what, joint: None });
     assert_eq!(motion.without(), expected);
     let told = r#"s.toml: simulation.events: found "contacts", expected an effect contact of the scene; nothing to look for"#;
     assert_eq!(motion.without()[0].to_string(), told);
+}
+
+/// A `<limit>` of effort and velocity alone, which says 0 and 0.
+#[test]
+fn joints_whose_bounds_nothing_is_between_are_told_and_left_out() {
+    let urdf = CART.replace("lower=\"-0.5\" upper=\"0.9\" ", "");
+    let stage = stage("simulation = { end = 0.1, events = ['limits'] }", &urdf);
+    let motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
+    let told: Vec<String> = motion.without().iter().map(ToString::to_string).collect();
+    assert!(told.len() == 1 && told[0].contains("found joint \"slide\" without a lower bound below"), "{told:?}");
+    assert!(moved(&stage).happenings.is_empty());
+}
+
+#[test]
+fn contacts_of_one_link_are_told_apart() {
+    let ball = "radius = 0.1, stiffness = 10.0, damping = 0.1, friction = 0.5, normal = [-1, 0, 0]";
+    let scene = format!(
+        "gravity = [0, 0, 0]\ninitial = {{ v = {{ slide = 1.0 }} }}\nsimulation = {{ end = 0.5, events = ['contacts'] }}
+        effects.contact.cart = [{{ {ball}, height = -0.3 }}, {{ {ball}, height = -0.4 }}]"
+    );
+    let told = moved(&stage(&scene, CART));
+    assert_eq!(words(&told)[..2], ["cart (contact 1 of 2) touches the ground", "cart (contact 2 of 2) touches the ground"]);
+}
+
+#[test]
+fn a_sphere_that_starts_with_its_centre_under_the_plane_is_told() {
+    let of = |height: f64| {
+        let stage = stage(&format!("effects.contact.cart = {{ radius = 0.1, stiffness = 1e3, damping = 0.1, friction = 0.5, height = {height} }}"), CART);
+        stage.sunk(&[0.0]).iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    assert_eq!(of(0.0), Vec::<String>::new());
+    let told = of(0.25);
+    assert!(told.len() == 1 && told[0].contains("effects.contact.cart: found the centre of the sphere 0.25 m under the plane"), "{told:?}");
 }
 
 #[test]

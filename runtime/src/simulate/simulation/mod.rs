@@ -252,7 +252,9 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             let mapped = self.advance(run, stop, matches!(outcome, Outcome::GoOn))?;
             let goes_on = watch(self.t, &self.system.counts);
             let ended = self.ended(&outcome, goes_on);
-            if ended.is_some() || self.settings.output == Output::Steps {
+            // The end that was asked for is recorded if it was asked for.
+            let early = ended.is_some_and(|ended| mapped || ended != Ended::AtEnd);
+            if early || self.settings.output == Output::Steps {
                 // What a map made of a state stands beside what was there before.
                 if mapped { self.record_here(run) } else { self.record_end(run) }?;
             }
