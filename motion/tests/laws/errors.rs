@@ -59,6 +59,18 @@ fn a_robot_without_the_effects_or_the_gravity_of_the_scene_is_another() {
     }
 }
 
+/// A gain may be one for all that a joint has; a torque is not the same about every axis by chance.
+#[test]
+fn torques_of_a_ball_are_three() {
+    let arm = stage("simulation = { end = 0.1 }", ARM);
+    let told = |torque: &str| {
+        let text = format!("control = {{ kind = 'torque', torque = {{ wrist = {torque} }} }}");
+        Scene::read("s.toml", &text).unwrap().controller(&arm.model, &mut |_| Err(String::new())).map_err(|e| e.to_string())
+    };
+    assert_eq!(told("2").unwrap_err(), "s.toml:1: control.torque.wrist: found one number, expected 3 numbers");
+    assert_eq!(told("[1, 2, 3]"), Ok(Controller::Torque(vec![0.0, 0.0, 1.0, 2.0, 3.0])));
+}
+
 #[test]
 fn contacts_that_nobody_looks_for_need_no_frames() {
     let stage = stage(

@@ -187,7 +187,10 @@ fn contacts_of_one_link_are_told_apart() {
 #[test]
 fn a_sphere_that_starts_with_its_centre_under_the_plane_is_told() {
     let of = |height: f64| {
-        let stage = stage(&format!("effects.contact.cart = {{ radius = 0.1, stiffness = 1e3, damping = 0.1, friction = 0.5, height = {height} }}"), CART);
+        let stage = stage(
+            &format!("effects.contact.cart = {{ radius = 0.1, stiffness = 1e3, damping = 0.1, friction = 0.5, height = {height} }}"),
+            CART,
+        );
         stage.sunk(&[0.0]).iter().map(ToString::to_string).collect::<Vec<_>>()
     };
     assert_eq!(of(0.0), Vec::<String>::new());

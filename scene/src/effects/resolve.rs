@@ -12,6 +12,7 @@ use crate::scene::Scene;
 use crate::shaft;
 use crate::tree::At;
 use articulated_core::effect::{Applied, Effect, EffectError, EffectId, On, effects};
+use articulated_core::model::FLOATING_BASE;
 
 /// A robot as the scene's edits left it.
 #[derive(Clone, Copy, Debug)]
@@ -119,6 +120,10 @@ impl<'a> Resolving<'a> {
     fn known_joint(&self, row: &Effect, one: &Asked, name: &str, log: &mut Log) {
         let joints = &self.robot.description.joints;
         let Some(at) = joints.iter().position(|j| j.name == name) else {
+            if name == FLOATING_BASE && self.robot.base == Base::Floating {
+                log.error(one.place, &one.key, Kind::Robot, "the floating base", "a joint: effects on joints do not act on the base");
+                return;
+            }
             let place = (one.place, one.key.as_str(), Kind::UnknownName);
             let names = self.moving_joints().map(|j| j.name.as_str());
             log.unknown(place, ("a joint that there is not".into(), name), "a joint of the robot that moves", names);

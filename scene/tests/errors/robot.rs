@@ -28,6 +28,17 @@ fn against(urdf: &str, text: &str) -> Vec<String> {
     errors.iter().map(ToString::to_string).collect()
 }
 
+/// Its joint has a name, which states and torques know.
+#[test]
+fn effects_on_joints_are_not_on_a_floating_base() {
+    let scene = Scene::read("s.toml", "[effects.damping]\n__floating_base__ = 1").unwrap();
+    let reading = articulated_urdf::read(ARM.as_bytes(), &articulated_urdf::Options::default()).unwrap();
+    let robot = Edited { description: &reading.description, base: Base::Floating, unused: &reading.unused, shafts: &[] };
+    let told =
+        "s.toml:2: effects.damping.__floating_base__: found the floating base, expected a joint: effects on joints do not act on the base";
+    assert_eq!(scene.resolve(&robot).unwrap_err().to_string(), told);
+}
+
 #[test]
 fn names_that_the_robot_does_not_have_are_told_with_the_nearest() {
     let cases = [
