@@ -29,7 +29,7 @@ pub use articulated_core::algorithm::{
 pub use articulated_core::description::{self, Base, Description, EditError, JointKind, Limit, Origin, Payload};
 pub use articulated_core::dynamics::Dynamics;
 pub use articulated_core::model::{self, JointRow, Model, ModelError};
-pub use articulated_core::{Scalar, effect, monitor, spatial};
+pub use articulated_core::{Scalar, effect, monitor, nalgebra, spatial};
 
 #[cfg(feature = "macros")]
 pub use articulated_macros::robot;

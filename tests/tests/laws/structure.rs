@@ -160,6 +160,8 @@ fn a_rod_in_a_ball_joint_can_turn_about_itself() {
         assert_eq!(mass_matrix(&model, &[0.1, 0.7, -0.1, 0.7]).row(axis).amax(), 0.0);
         assert_eq!(model.massless_joints(), [1]);
         assert!(ball([1.0, 0.0, 0.0, 1.0, 0.0, 1.0]).massless_joints().is_empty());
+        // No body has this, but what it resists is not nothing.
+        assert!(ball([-1e-3, 0.0, 0.0, 1.0, 0.0, 1.0]).massless_joints().is_empty());
     }
 }
 
