@@ -299,6 +299,13 @@ fn effects_that_are_half_right_are_refused_too() {
     let motor = Applied { on: follower, ..on(EffectId::motor, &[5.0, 2.0, 1.0, 1.0, 1e-3]) };
     let refused = gripper.with_effects(&[motor]).expect_err("a motor on one that follows")[0].to_string();
     assert!(refused.contains("the joint follows another"), "{refused}");
+    // Each of the numbers that is wrong.
+    let bad = on(EffectId::contact, &[-1.0, -2.0, 0.0, 0.5, 1e-2, 0.0, 0.0, 1.0, f64::NAN]);
+    let all = arm.clone().with_effects(&[bad]).expect_err("three wrong numbers").to_string();
+    assert!(
+        all.lines().count() == 3 && ["radius: found -1", "stiffness: found -2", "height: found NaN"].iter().all(|x| all.contains(x)),
+        "{all}"
+    );
     let mut far = on(EffectId::drag, &[1.0]);
     far.at.xyz[1] = f64::INFINITY;
     assert!(told(far).contains("xyz or rpy: found inf"));

@@ -1,6 +1,7 @@
 //! Effects put on the bodies of a model.
 
 use alloc::string::{String, ToString};
+use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt;
 
@@ -123,16 +124,22 @@ impl Model<f64> {
     pub fn with_effects(mut self, applied: &[Applied]) -> Result<Self, EffectErrors> {
         let mut errors = Vec::new();
         for (index, one) in applied.iter().enumerate() {
-            let put = check(one).and_then(|()| match one.effect.row().on {
-                _ if one.effect.row().is_nothing(&one.parameters) => self.has(one),
-                On::Joint => self.put_on_joint(one),
-                On::Link => self.put_on_link(one),
-            });
-            if let Err(fault) = put {
-                errors.push(EffectError { index, effect: one.effect, on: one.on.clone(), fault });
+            let mut faults = check(one);
+            if faults.is_empty() {
+                faults.extend(self.put(one).err());
             }
+            let told = |fault| EffectError { index, effect: one.effect, on: one.on.clone(), fault };
+            errors.extend(faults.into_iter().map(told));
         }
         if errors.is_empty() { Ok(self) } else { Err(EffectErrors(errors)) }
+    }
+
+    fn put(&mut self, one: &Applied) -> Result<(), Fault> {
+        match one.effect.row().on {
+            _ if one.effect.row().is_nothing(&one.parameters) => self.has(one),
+            On::Joint => self.put_on_joint(one),
+            On::Link => self.put_on_link(one),
+        }
     }
 
     /// Whether there is what an effect of nothing would be on.
@@ -208,34 +215,30 @@ fn start(effect: &Effect, name: &str) -> usize {
     effect.fields.iter().take_while(|f| f.name != name).map(|f| f.len).sum()
 }
 
-/// Whether the numbers are what the fields want, and what they must be together.
-fn check(one: &Applied) -> Result<(), Fault> {
+/// What of the numbers is not what the fields want, or not what they must be together.
+fn check(one: &Applied) -> Vec<Fault> {
     let (row, p) = (one.effect.row(), &one.parameters);
     if p.len() != row.len() {
-        return Err(Fault::Length { found: p.len(), expected: row.len() });
+        return vec![Fault::Length { found: p.len(), expected: row.len() }];
     }
-    let wrong = |field: &'static str, found: &[f64], expected: String| Err(Fault::Number { field, found: found.to_vec(), expected });
-    let mut rest = p.as_slice();
+    let wrong = |field: &'static str, found: &[f64], expected: String| Fault::Number { field, found: found.to_vec(), expected };
+    let (mut faults, mut rest) = (Vec::new(), p.as_slice());
     for field in row.fields {
         let (own, others) = rest.split_at(field.len);
-        if let Some(x) = own.iter().find(|x| !field.range.has(**x)) {
-            return wrong(field.name, &[*x], field.range.to_string());
-        }
+        let beyond = own.iter().find(|x| !field.range.has(**x));
+        faults.extend(beyond.map(|x| wrong(field.name, &[*x], field.range.to_string())));
         rest = others;
     }
-    let mut frame = one.at.xyz.iter().chain(&one.at.rpy);
-    if let Some(x) = frame.find(|x| !x.is_finite()) {
-        return wrong("xyz or rpy", &[*x], "finite numbers".into());
-    }
-    match row.broken(p).and_then(|(field, own)| Some((field.name, own, field.rule?.expected))) {
-        Some((field, own, expected)) => wrong(field, own, expected.into()),
-        None => Ok(()),
-    }
+    let unbounded = one.at.xyz.iter().chain(&one.at.rpy).find(|x| !x.is_finite());
+    faults.extend(unbounded.map(|x| wrong("xyz or rpy", &[*x], "finite numbers".into())));
+    // What numbers must be together is asked of numbers that may be.
+    let broken = row.broken(p).filter(|_| faults.is_empty()).and_then(|(field, own)| Some((field.name, own, field.rule?.expected)));
+    faults.extend(broken.map(|(field, own, expected)| wrong(field, own, expected.into())));
+    faults
 }
 
 #[cfg(test)]
 mod tests {
-    use alloc::vec;
 
     use super::*;
     use crate::description::{Base, Description, Joint, JointKind, Link, Origin};
