@@ -5,6 +5,7 @@ use articulated_motion::settings as said;
 
 use super::arguments::SimulateArguments;
 use super::stage::Stage;
+use crate::console;
 use crate::failure::Failure;
 
 /// The settings, or why there are none.
@@ -26,7 +27,23 @@ pub(super) fn of(stage: &Stage, arguments: &SimulateArguments) -> Result<Setting
     }
     let problems = settings.problems(stage.model.shape());
     let told = |p: &SettingError| if looked_at && p.key == "output" { too_many(p, file) } else { told(p, a, file) };
-    if problems.is_empty() { Ok(settings) } else { Err(Failure::input(problems.iter().map(told))) }
+    if !problems.is_empty() {
+        return Err(Failure::input(problems.iter().map(told)));
+    }
+    too_many_steps(&settings).iter().for_each(|odd| console::warn(&format!("{file}: {odd}")));
+    Ok(settings)
+}
+
+/// Fixed steps of which a motion makes less than it needs to its end, unless an event ends it before.
+fn too_many_steps(settings: &Settings) -> Option<String> {
+    let (step, most) = (settings.step?, settings.max_steps);
+    let (steps, reached) = ((settings.end - settings.start) / step, settings.start + step * most as f64);
+    let told = || {
+        format!(
+            "simulation.step: found {step:?} s, {steps:.1e} steps to the end, of which max_steps = {most} are made, up to t = {reached} s; expected longer steps, or a greater max_steps"
+        )
+    };
+    (steps > most as f64 * (1.0 + 1e-9)).then(told)
 }
 
 /// The integrator and what chooses its steps. Errors: an option that has no part in it, and steps that nothing chooses.

@@ -193,6 +193,18 @@ fn what_cannot_be_found_or_run_is_said() {
 }
 
 #[test]
+fn steps_that_do_not_reach_the_end_are_told_before_they_are_made() {
+    let scene =
+        |most: u32| format!("robot = \"simple_pendulum\"\n[simulation]\nend = 1\nintegrator = \"rk4\"\nstep = 0.01\nmax_steps = {most}\n");
+    for (most, status) in [(30, 1), (100, 0)] {
+        let file = File::new("short.toml", scene(most).as_bytes());
+        let ended = run(&["simulate", file.name()]);
+        let told = ended.err.contains("1.0e2 steps to the end, of which max_steps = 30 are made, up to t = 0.3 s");
+        assert_eq!((ended.status, told), (status, status == 1), "{}", ended.err);
+    }
+}
+
+#[test]
 fn a_step_that_is_not_stable_is_refused_and_what_was_up_to_then_is_there() {
     let text = "robot = \"simple_pendulum\"\n[effects.damping]\n\"*\" = 5e3\n[initial]\nv = [1.0]\n[simulation]\nend = 1\nintegrator = \"rk4\"\nstep = 0.01\n";
     let (file, folder) = (File::new("stiff.toml", text.as_bytes()), tempfile::tempdir().unwrap());
