@@ -29,7 +29,7 @@
 //! let swing = stage.run(&stage.model, &stage.frame_names())?;
 //!
 //! assert_eq!((swing.ending, swing.reached, swing.error), (Ending::AtEnd, 12.0, None));
-//! assert_eq!(swing.happenings[0].what, "hinge reaches its limit");
+//! assert_eq!(swing.happenings[0].what, "hinge reaches its upper limit");
 //! let last = swing.recording.len() - 1;
 //! // It rests where kp (target − q) = m g l sin q.
 //! let q = swing.recording.q_at(last)[0];

@@ -99,9 +99,13 @@ impl<'a> Watch<'a> {
                 self.without.push(Without { file: stage.scene.file.clone(), what: Watched::Limits, joint: Some(name) });
                 continue;
             }
-            if lower.is_finite() || upper.is_finite() {
-                let event = Event::limit(name.as_str(), at.q, lower, upper).direction(Direction::Either);
-                self.push(event, format!("{name} comes back from its limit"), format!("{name} reaches its limit"));
+            // A joint that follows another the other way round is at its own upper bound where that is at the lower.
+            let names = if at.multiplier < 0.0 { ["upper", "lower"] } else { ["lower", "upper"] };
+            for (which, (lower, upper)) in names.into_iter().zip([(lower, f64::INFINITY), (f64::NEG_INFINITY, upper)]) {
+                if lower.is_finite() || upper.is_finite() {
+                    let event = Event::limit(name.as_str(), at.q, lower, upper).direction(Direction::Either);
+                    self.push(event, format!("{name} comes back from its {which} limit"), format!("{name} reaches its {which} limit"));
+                }
             }
         }
     }

@@ -33,7 +33,7 @@ fn joints_that_follow_come_to_their_limits_and_stick() {
         limit = { y = { lower = -1.0, upper = 1.0, stiffness = 1e3 } }\n[simulation]\nend = 1.0\nevents = [\"limits\", \"stick_slip\"]\n";
     let summary = simulated(&format!("{LEADER}{follower}"), 1.0, scene);
     let events = told(&summary);
-    assert_eq!(events[0], "y reaches its limit", "{events:?}");
+    assert_eq!(events[0], "y reaches its lower limit", "{events:?}");
     assert!(events.contains(&"y sticks".to_owned()) && events.iter().all(|what| what.starts_with("y ")), "{events:?}");
     // y = −1 at x = 0.75; friction of 1 N at y slows x by 2 N of an inertia of 1 + 4 kg.
     let expected = (1.0 - (1.0_f64 - 2.0 * 0.4 * 0.75).sqrt()) / 0.4;
@@ -59,8 +59,8 @@ fn a_follower_has_its_own_bounds_in_the_file() {
         let times = summary["events"].as_array().unwrap().iter().map(|e| (e["time"].as_f64().unwrap() * 1e6).round());
         told(&summary).into_iter().zip(times).collect::<Vec<_>>()
     };
-    let leader = ("x reaches its limit".to_owned(), 9e5);
-    assert_eq!(told_of("10"), [("y reaches its limit".to_owned(), 5e5), leader.clone()]);
+    let leader = ("x reaches its upper limit".to_owned(), 9e5);
+    assert_eq!(told_of("10"), [("y reaches its upper limit".to_owned(), 5e5), leader.clone()]);
     assert_eq!(told_of(""), [leader]);
 }
 
@@ -72,7 +72,7 @@ fn universal_joints_come_to_their_limits() {
     let scene = "initial = { v = { u = [0.0, 1.0] } }\ngravity = [0, 0, 0]\n[effects]
         limit = { u = { lower = -0.3, upper = 0.3, stiffness = 1e3 } }\n[simulation]\nend = 0.5\nevents = [\"limits\"]\n";
     let summary = simulated(joints, 1.0, scene);
-    assert_eq!(told(&summary)[0], "u[1] reaches its limit");
+    assert_eq!(told(&summary)[0], "u[1] reaches its upper limit");
     assert!((summary["events"][0]["time"].as_f64().unwrap() - 0.3).abs() < 1e-6, "{}", summary["events"]);
 }
 

@@ -23,7 +23,7 @@ const BALL: f64 = 1.8 * 3.0 * 2.0 / 2.5;
 #[test]
 fn a_blow_and_a_limit_are_found_and_told() {
     let outcome = moved(&stage(BLOW, CART));
-    assert_eq!(words(&outcome), ["cart hits the ball, which leaves at 4.3200 m/s", "slide reaches its limit"]);
+    assert_eq!(words(&outcome), ["cart hits the ball, which leaves at 4.3200 m/s", "slide reaches its upper limit"]);
     let after = 3.0 - 0.5 * BALL / 2.0;
     for (happening, t) in outcome.happenings.iter().zip([0.2, 0.2 + 0.3 / after]) {
         assert!((happening.t - t).abs() < 1e-9, "{happening:?} {t}");
@@ -56,7 +56,7 @@ fn a_motion_runs_again_as_it_ran_before() {
     // Who goes the other way never meets the ball: nothing is left of the blow before.
     let away = articulated_motion::Begin { v: vec![-1.0], ..begin };
     let outcome = motion.run(&away, &mut |_, _| true).unwrap();
-    assert_eq!((outcome.ball, outcome.ending, words(&outcome)), (None, Ending::AtEnd, vec!["slide reaches its limit"]));
+    assert_eq!((outcome.ball, outcome.ending, words(&outcome)), (None, Ending::AtEnd, vec!["slide reaches its lower limit"]));
 }
 
 #[test]
@@ -102,7 +102,7 @@ fn who_begins_at_a_limit_and_goes_beyond_reaches_it() {
     };
     let urdf = CART.replace("upper=\"0.9\"", "upper=\"0.5\"");
     let [beyond, back] = [1.0, -1.0].map(|v| moved(&stage(&scene(v), &urdf)));
-    assert_eq!(words(&beyond), ["slide reaches its limit"]);
+    assert_eq!(words(&beyond), ["slide reaches its upper limit"]);
     assert!(beyond.happenings[0].t < 1e-9 && back.happenings.is_empty(), "{beyond:?} {back:?}");
 }
 
@@ -112,11 +112,11 @@ fn a_joint_that_follows_has_bounds_of_its_own() {
     let follower = "<link name='b'/><joint name='y' type='prismatic'><parent link='rail'/><child link='b'/><axis xyz='1 0 0'/>
         <limit lower='-1' upper='0.75' effort='1' velocity='1'/><mimic joint='slide' multiplier='-2' offset='0.25'/></joint></robot>";
     let urdf = CART.replace("</robot>", follower);
-    for (v, at) in [(1.25, 0.5), (-0.5, 0.5)] {
+    for (v, at, which) in [(1.25, 0.5, "lower"), (-0.5, 0.5, "upper")] {
         let scene =
             format!("gravity = [0, 0, 0]\ninitial = {{ v = {{ slide = {v} }} }}\nsimulation = {{ end = 0.6, events = ['limits'] }}");
         let outcome = moved(&stage(&scene, &urdf));
-        assert_eq!(words(&outcome), ["y reaches its limit"]);
+        assert_eq!(words(&outcome), [format!("y reaches its {which} limit")]);
         assert!((outcome.happenings[0].t - at).abs() < 1e-9, "{:?}", outcome.happenings);
     }
     let stage = stage("", &urdf);
