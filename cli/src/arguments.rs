@@ -275,7 +275,7 @@ pub(crate) struct CompareArguments {
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
     /// The largest error that is right, in units of 2⁻⁵³ of the sum of the magnitudes of the terms
-    #[arg(long, value_name = "UNITS", default_value_t = 64.0, value_parser = units)]
+    #[arg(long, value_name = "UNITS", default_value_t = 64.0, value_parser = units, allow_hyphen_values = true)]
     pub(crate) bound: f64,
 }
 

@@ -29,9 +29,7 @@ struct Function {
 pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), Failure> {
     types_of_batch(&arguments.batch)?;
     let robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
-    if let Some(path) = arguments.output.as_ref().filter(|path| robot.was_read_from(path)) {
-        return Err(Failure::usage(format!("--output {}: found a file that the robot is read from, expected another", path.display())));
-    }
+    robot.keeps_its_files("--output", arguments.output.as_deref())?;
     let mut request = robot.whole_request(&crate::names::flat(&arguments.functions));
     if arguments.functions.is_empty() {
         request.options.functions.clone_from(&robot.options.functions);

@@ -170,10 +170,15 @@ impl Robot {
         if self.floating() { "floating" } else { "fixed" }
     }
 
-    /// Whether writing to this path would replace a file that the robot was read from.
-    pub(crate) fn was_read_from(&self, path: &Path) -> bool {
-        let Ok(path) = path.canonicalize() else { return false };
-        self.files.iter().any(|file| file.canonicalize().is_ok_and(|file| file == path))
+    /// Refuses an option whose path is a file that the robot was read from, and would be replaced.
+    pub(crate) fn keeps_its_files(&self, option: &str, path: Option<&Path>) -> Result<(), Failure> {
+        let Some(Ok(found)) = path.map(Path::canonicalize) else { return Ok(()) };
+        match path.filter(|_| self.files.iter().any(|file| file.canonicalize().is_ok_and(|file| file == found))) {
+            Some(path) => {
+                Err(Failure::usage(format!("{option} {}: found a file that the robot is read from, expected another", path.display())))
+            }
+            None => Ok(()),
+        }
     }
 
     /// A file with the document, for those who read files: the robot's own, or one in `folder`. There is none of an edited robot.

@@ -94,7 +94,10 @@ fn what_overflows_or_is_not_a_number_is_an_error_too() {
     let (mut ws, mut a) = (Workspace::new(&model), [0.0; 3]);
     let mut solve = |q: f64, tau: f64| algorithm::checked_forward_dynamics(&model, &mut ws, &[q, 0.3, 0.1], &[0.0; 3], &[tau; 3], &mut a);
     assert_eq!(solve(0.2, 1e308).unwrap_err().measure, Measure::Finite);
-    assert!(solve(0.2, f64::NAN).is_err() && solve(f64::NAN, 1.0).is_err() && solve(f64::INFINITY, 1.0).is_err());
+    for (q, tau) in [(0.2, f64::NAN), (f64::NAN, 1.0), (f64::INFINITY, 1.0)] {
+        let told = solve(q, tau).unwrap_err().to_string();
+        assert!(told.contains("is not a number") && !told.contains("singular"), "{told}");
+    }
     assert!(solve(0.2, 1.0).is_ok());
 }
 

@@ -57,7 +57,8 @@ fn report_leader(follower: &DraftJoint, mimic: &DraftMimic, leader: &DraftJoint,
 
 fn report_unknown(follower: &DraftJoint, mimic: &DraftMimic, joints: &[DraftJoint], suggester: &mut Suggester, log: &mut Log) {
     let name = &mimic.leader.name;
-    let hint = hint(suggester.nearest(name, joints.iter().filter_map(|j| j.name.as_deref())));
+    let others = joints.iter().filter_map(|j| j.name.as_deref()).filter(|other| Some(*other) != follower.name.as_deref());
+    let hint = hint(suggester.nearest(name, others));
     let found = format!("{}, which is not a joint of this file", quote(name));
     error(follower, mimic, Kind::UnknownLeader, found, &format!("the name of a joint{hint}"), log);
 }

@@ -40,6 +40,12 @@ fn one(function: &'static str, points: &[Point], wish: f64) -> Advice {
     }
 }
 
+/// The functions of which nothing measured is accurate enough, in a sentence.
+pub(super) fn short(report: &Report, wish: f64) -> Option<String> {
+    let names: Vec<&str> = all(report, wish).iter().filter(|a| a.level.is_none()).map(|a| a.function).collect();
+    (!names.is_empty()).then(|| format!("nothing measured is accurate to {wish:e}: {}", names.join(", ")))
+}
+
 /// In sentences.
 pub(super) fn text(report: &Report, wish: f64) -> String {
     let mut out = String::new();

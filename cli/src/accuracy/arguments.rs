@@ -61,11 +61,11 @@ pub(crate) struct AccuracyArguments {
     /// Measure integrators instead, on the motion of a scene: ROBOT is a scene's file, or the name of a bundled scene
     #[arg(long, conflicts_with_all = OF_FUNCTIONS)]
     pub(crate) simulate: bool,
-    /// Only name the cheapest level of each function whose largest error is no larger than --error
+    /// Only name the cheapest level of each function whose largest error is no larger than --error (exit status 4 if one has none)
     #[arg(long, requires = "error")]
     pub(crate) advise: bool,
     /// The largest error that is right, relative to the sum of the magnitudes of the terms; of a motion rad, m, and those a second
-    #[arg(long, value_name = "ERROR", value_parser = wish, requires = "advise")]
+    #[arg(long, value_name = "ERROR", value_parser = wish, requires = "advise", allow_hyphen_values = true)]
     pub(crate) error: Option<f64>,
 }
 

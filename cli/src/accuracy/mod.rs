@@ -71,7 +71,11 @@ pub(crate) fn run(arguments: &AccuracyArguments, format: Format) -> Result<(), F
         (_, _, Format::Json) => crate::json(&report),
     })?;
     // What took minutes to measure is told even if the files cannot be written.
-    arguments.output.as_ref().map_or(Ok(()), |folder| write(folder, &report)).map_err(Failure::after_report)
+    arguments.output.as_ref().map_or(Ok(()), |folder| write(folder, &report)).map_err(Failure::after_report)?;
+    match arguments.error.filter(|_| arguments.advise).and_then(|wish| advise::short(&report, wish)) {
+        None => Ok(()),
+        Some(line) => Err(Failure::bound_of_report(line)),
+    }
 }
 
 /// All files of a report.

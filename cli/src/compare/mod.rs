@@ -46,6 +46,7 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
     types_of_batch(&arguments.batch)?;
     let mut robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
     robot.has_a_level_of_rounding()?;
+    robot.keeps_its_files("--chart", arguments.chart.as_deref())?;
     robot.options.forbid_unsafe |= arguments.forbid_unsafe;
     let reading = robot.read()?;
     robot.warn_of(reading.warnings.iter().chain(&reading.snapped));

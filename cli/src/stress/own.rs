@@ -79,7 +79,8 @@ fn sets(model: &Model<f64>, given: &[State]) -> Vec<Set> {
     let bound = |upper: bool| {
         let mut s = alike(0.0);
         for joint in model.joints.iter().filter(|j| j.q.1 == 1) {
-            s[0].q[joint.q.0] = joint.limit.map_or(0.0, |l| if upper { l.upper } else { l.lower });
+            // An open bound is no place to stand.
+            s[0].q[joint.q.0] = joint.limit.map_or(0.0, |l| if upper { l.upper } else { l.lower }).clamp(-1e3, 1e3);
         }
         s
     };

@@ -52,6 +52,29 @@ fn what_would_be_ignored_is_status_2() {
         let ended = run(&[&["accuracy", "--simulate", "pendulum"], words].concat());
         assert!(ended.status == 2 && ended.err.contains("cannot be used with"), "{words:?}: {}", ended.err);
     }
+    for (error, status) in [("1e-9", 0), ("1e-30", 4)] {
+        let words = [
+            "accuracy",
+            "simple_pendulum",
+            "--functions",
+            "inverse_dynamics",
+            "--levels",
+            "f64",
+            "--repetitions",
+            "1",
+            "--advise",
+            "--error",
+            error,
+        ];
+        let ended = run(&words);
+        assert_eq!(
+            (ended.status, ended.err.contains("nothing measured is accurate to 1e-30")),
+            (status, status == 4),
+            "{}{}",
+            ended.out,
+            ended.err
+        );
+    }
     let ended = run(&["accuracy", "simple_pendulum", "--error", "1e-9"]);
     assert!(ended.status == 2 && ended.err.contains("--advise"), "{}", ended.err);
 }

@@ -130,6 +130,8 @@ fn a_robot_is_not_replaced_by_its_code() {
         let refused = run(&[&["generate"], words].concat());
         assert!(refused.status == 2 && refused.err.contains("found a file that the robot is read from"), "{words:?}: {}", refused.err);
     }
+    let refused = run(&["compare", file.name(), "--functions", "gravity_torque", "--chart", file.name()]);
+    assert!(refused.status == 2 && refused.err.contains("--chart") && refused.err.contains("read from"), "{}", refused.err);
     assert_eq!(std::fs::read_to_string(&file.path).unwrap(), urdf);
     assert!(std::fs::read_to_string(&scene.path).unwrap().starts_with("urdf"));
 }

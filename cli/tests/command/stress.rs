@@ -16,6 +16,20 @@ fn a_chapter_is_a_table_and_its_rows_are_in_the_json() {
     assert_eq!(run(&["stress", "--chapters", "screw"]).status, 2);
 }
 
+/// Bounds that are open are no place to stand: URDF 1.2 has infinite ones where none are written.
+#[test]
+fn limits_that_are_open_or_far_away_are_within_their_limits() {
+    for limit in ["", " lower='-1'", " lower='-1.7e308' upper='1.7e308'"] {
+        let urdf = format!(
+            "<robot name='r' version='1.2'><link name='b'/><link name='l'><inertial><origin xyz='0.1 0 0.1'/><mass value='1'/>
+            <inertia ixx='0.1' ixy='0' ixz='0' iyy='0.1' iyz='0' izz='0.1'/></inertial></link>
+            <joint name='j' type='revolute'><parent link='b'/><child link='l'/><axis xyz='0 1 0'/><limit{limit} effort='1' velocity='1'/></joint></robot>"
+        );
+        let ended = run_with(&["stress", "-"], urdf.as_bytes());
+        assert_eq!(ended.status, 0, "{limit}: {}{}", ended.out, ended.err);
+    }
+}
+
 /// A robot whose joint moves nothing is judged by what it has.
 #[test]
 fn a_robot_of_ones_own_is_judged_and_watched() {

@@ -204,6 +204,30 @@ fn inertia_in_all_directions_is_no_number_where_a_frame_cannot_move_in_all() {
     }
 }
 
+/// Six joints of which one follows another are five degrees of freedom.
+#[test]
+fn inertia_in_all_directions_is_no_number_where_joints_follow_others() {
+    let chain = |follows: bool| {
+        let of = |k: usize| {
+            let axis = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]][k % 3];
+            let mimic = (follows && k == 3).then_some(Mimic { joint: 0, multiplier: 0.7, offset: 0.1 });
+            let origin = Origin { xyz: [0.1, 0.2, 0.3], rpy: [0.0; 3] };
+            Joint { axis, mimic, origin, ..joint(&format!("j{k}"), JointKind::Revolute, k, k + 1) }
+        };
+        let mut robot = tree(7, (0..6).map(of).collect());
+        robot
+            .links
+            .iter_mut()
+            .for_each(|l| l.inertial = Some(Inertial { origin: Origin::default(), mass: 1.0, inertia: [0.1, 0.0, 0.0, 0.1, 0.0, 0.1] }));
+        Model::new(&robot, Base::Fixed).unwrap().with_frames(&["l6"]).unwrap()
+    };
+    for follows in [false, true] {
+        let (model, mut out) = (chain(follows), vec![0.0; 36]);
+        model.operational_space_inertia(&mut model.workspace(), &[0.3, 0.4, 0.2, 0.5, 0.1, 0.6][..model.nq], &mut out).unwrap();
+        assert!(out.iter().all(|x| x.is_nan() == follows), "{follows}: {out:?}");
+    }
+}
+
 #[test]
 fn a_lock_has_as_many_coordinates_as_the_joint_all_finite() {
     use JointKind::{Fixed, Planar, Revolute, Spherical};

@@ -212,6 +212,23 @@ fn a_limit_that_is_open_on_one_side_is_kept_on_the_other() {
     }
 }
 
+/// The textbook has the same rule, of bounds that are open or the wrong way round.
+#[test]
+fn the_textbook_draws_within_the_same_limits() {
+    let mut case = Case::bundled(articulated_models::robot("cart_pole").unwrap());
+    let open = f64::INFINITY;
+    for (lower, upper) in [(-1.0, open), (-open, 1.0), (-open, open), (1.0, -1.0), (-1.0, 2.0)] {
+        let limit = Some(Limit { lower, upper, effort: 1.0, velocity: 1.0 });
+        case.model.joints.iter_mut().for_each(|j| j.limit = limit);
+        case.description.joints.iter_mut().for_each(|j| j.limit = limit);
+        case.description.joints.iter_mut().filter(|j| j.kind == JointKind::Continuous).for_each(|j| j.kind = JointKind::Revolute);
+        let uniform = vec![0.25; case.model.nq];
+        let (found, expected) =
+            (case.call::<f64>("random_configuration", &[&uniform]), case.textbook::<f64>().random_configuration(&uniform));
+        assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-15 * 8.0), "{lower} {upper}: {found:?} {expected:?}");
+    }
+}
+
 /// Bounds whose difference is beyond the range of numbers.
 #[test]
 fn limits_as_wide_as_numbers_are_kept() {

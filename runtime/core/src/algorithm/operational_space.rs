@@ -38,12 +38,18 @@ pub fn operational_space_inertia<S: Scalar>(model: &Model<S>, ws: &mut Workspace
     }
 }
 
-/// At most so many degrees of freedom move body `i`: where joints follow others there are fewer.
+/// How many degrees of freedom move body `i`, up to six: joints that follow others have none of their own.
 fn freedoms_before<S: Scalar>(model: &Model<S>, mut i: usize) -> usize {
-    let mut count = 0;
+    let (mut found, mut count) = ([0; 6], 0);
     while i != 0 {
-        count += model.bodies[i].joint.nv();
-        i = model.bodies[i].parent;
+        let body = &model.bodies[i];
+        for freedom in body.coordinates.v..body.coordinates.v + body.joint.nv() {
+            if count < 6 && !found[..count].contains(&freedom) {
+                found[count] = freedom;
+                count += 1;
+            }
+        }
+        i = body.parent;
     }
     count
 }

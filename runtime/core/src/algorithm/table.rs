@@ -78,7 +78,7 @@ macro_rules! for_each_function {
                 "M(q)", "CRBA; Featherstone 2008, Table 6.2",
                 forms [FromTheLast];
             coriolis_matrix(q, v) -> [Nv, Nv] "N·m·s|N·s", Dynamics, Nothing, true,
-                "C(q, v) with C v + g = h, and Ṁ − 2C skew: that of the Christoffel symbols",
+                "C(q, v) of the links alone, with C v + g = h without effects, and Ṁ − 2C skew: that of the Christoffel symbols",
                 "Echeandia & Wensing, J. Comput. Nonlinear Dyn. 16, 2021",
                 by ["", always, nothing, coriolis_matrix; "the axes of the first body", near_the_middle, nothing, coriolis_matrix in axes_of_first_bodies];
             forward_dynamics(q, v, tau) -> [Nv] "rad/s²|m/s²", Dynamics, MassMatrix, true,
@@ -143,14 +143,14 @@ macro_rules! for_each_function {
                 by ["", always, nothing, static_torque_derivative; "the axes of the first body", near_the_middle, nothing, static_torque_derivative in axes_of_first_bodies];
             torque_regressor(q, v, a) -> [Nv, Links, Of(10)] "per m, m c, I_xx I_xy I_xz I_yy I_yz I_zz about the link's origin",
                 Regressors, Nothing, false,
-                "Y with inverse_dynamics = Y π, π the inertial parameters of the moving links in their axes",
+                "Y with inverse_dynamics = Y π without effects, π the inertial parameters of the moving links in their axes",
                 "virtual power; Atkeson, An & Hollerbach, Int. J. Robot. Res. 5, 1986";
             kinetic_energy_regressor(q, v) -> [Links, Of(10)] "per m, m c, I_xx I_xy I_xz I_yy I_yz I_zz about the link's origin",
                 Regressors, Nothing, false,
-                "y with kinetic_energy = yᵀπ", "Gautier & Khalil, IEEE ICRA 1988";
+                "y with kinetic_energy = yᵀπ without effects", "Gautier & Khalil, IEEE ICRA 1988";
             potential_energy_regressor(q) -> [Links, Of(10)] "per m, m c, I_xx I_xy I_xz I_yy I_yz I_zz about the link's origin",
                 Regressors, Nothing, false,
-                "y with potential_energy = yᵀπ", "Gautier & Khalil, IEEE ICRA 1988";
+                "y with potential_energy = yᵀπ without effects", "Gautier & Khalil, IEEE ICRA 1988";
             operational_space_inertia(q) -> [Frames, Of(6), Of(6)] "kg·m²|kg·m|kg, symmetric", OperationalSpace, FreeFrames, true,
                 "Λ = (J M⁻¹ Jᵀ)⁻¹ of each frame by itself, J that of jacobians_world_aligned",
                 "M = Lᵀ D L; Khatib, IEEE J. Robot. Autom. 3, 1987";

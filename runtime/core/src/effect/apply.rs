@@ -13,7 +13,7 @@ use crate::model::{Frame, Model};
 use crate::spatial::{Placement, from_rpy};
 use crate::suggest::nearest;
 
-/// Why an effect cannot be had. The first that is found of each effect that was asked for.
+/// Why an effect cannot be had: one thing that is wrong with it, of which there may be several.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EffectError {
     /// Its place in the list.

@@ -16,7 +16,7 @@ use crate::joint::{Angle, Coordinates, Follow, Joint, JointLaw};
 use crate::spatial::{Placement, Reference, SpatialInertia, from_rpy, nearest_rotation, to_z_axis};
 use crate::with_pose;
 
-/// Why a description is not a model. A description that the URDF reader accepted gives none of these.
+/// Why a description is not a model. Of a description that the URDF reader accepted: numbers that are too large together ([`Self::TooLarge`]), and a joint of the name of a floating base's.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ModelError {
     /// A joint locked at coordinates of another number than it has, or at one that is not finite.

@@ -63,7 +63,11 @@ impl<S: Scalar> fmt::Display for Singular<S> {
         } else {
             write!(f, "joint {joint:?} (degree of freedom {freedom}): ")?;
         }
+        // What is not a number is not itself.
+        #[allow(clippy::eq_op)]
+        let no_number = found != found;
         match measure {
+            _ if no_number => write!(f, "q, v or tau is not a number, or something overflows on the way"),
             Measure::Pivot => {
                 write!(f, "the mass matrix is singular: of this pivot {found:?} of its terms is left, expected {least:?} or more")
             }

@@ -8,7 +8,7 @@ use super::Textbook;
 use super::joint::product;
 use super::matrix::cross_matrix;
 use crate::Scalar;
-use crate::description::JointKind;
+use crate::description::{JointKind, Limit};
 use crate::model::JointInfo;
 use crate::spatial::from_quaternion;
 
@@ -57,15 +57,25 @@ impl<S: Scalar> Textbook<S> {
         self.joints.iter().flat_map(one).collect()
     }
 
-    /// From numbers uniform in [0, 1), `[nq]`: within limits, ±π and ±1 m where there are none; of a rotation's four the first three count.
+    /// From numbers uniform in [0, 1), `[nq]`: within limits, a turn or 2 m from the other where one is open, ±π and ±1 m where both are or there are none; of a rotation's four the first three count.
     pub fn random_configuration(&self, uniform: &[S]) -> Vec<S> {
         let pi = S::zero().atan2(-S::one());
         let between = |u: S, lower: S, upper: S| lower + (upper - lower) * u;
+        let within = |u: S, limit: &Limit, turns: bool| {
+            let round = if turns { pi + pi } else { S::from_f64(2.0) };
+            let [a, b] = [limit.lower.min(limit.upper), limit.lower.max(limit.upper)];
+            match (a.is_finite(), b.is_finite()) {
+                (true, true) => between(u, S::from_f64(a), S::from_f64(b)),
+                (true, false) => between(u, S::from_f64(a), S::from_f64(a) + round),
+                (false, true) => between(u, S::from_f64(b) - round, S::from_f64(b)),
+                (false, false) => between(u, -round, round) * S::from_f64(0.5),
+            }
+        };
         let (angle, length) = (|u: S| between(u, -pi, pi), |u: S| between(u, -S::one(), S::one()));
         let one = |joint: &JointInfo| {
             let u = part(uniform, joint.q);
             match (joint.kind, &joint.limit) {
-                (_, Some(limit)) => u.iter().map(|&u| between(u, S::from_f64(limit.lower), S::from_f64(limit.upper))).collect(),
+                (kind, Some(limit)) => u.iter().map(|&u| within(u, limit, kind != JointKind::Prismatic)).collect(),
                 (JointKind::Prismatic, None) => alloc::vec![length(u[0])],
                 (JointKind::Planar, None) => alloc::vec![length(u[0]), length(u[1]), angle(u[2])],
                 (JointKind::Spherical, None) => rotation(u).to_vec(),

@@ -55,7 +55,7 @@ impl<S: Scalar> Quaternion<S> {
         self.vector.dot(&self.vector) + self.scalar * self.scalar
     }
 
-    /// q/|q|, for q not zero. Its norm is off by at most 2u.
+    /// q/|q|, for |q| whose square is a number: from 1e-150 to 1e150. Its norm is off by at most 2u.
     #[inline(always)]
     #[must_use]
     pub fn normalised(&self) -> Self {
@@ -72,7 +72,7 @@ impl<S: Scalar> Quaternion<S> {
         Self { vector: omega * (S::from_f64(0.5) * half.sinc()), scalar: half.cosine() }
     }
 
-    /// The rotation vector, rad, of length θ ≤ π: the one that [`Self::exp`] takes back to q or −q. The norm need not be one, only not zero.
+    /// The rotation vector, rad, of length θ ≤ π: the one that [`Self::exp`] takes back to q or −q. The norm need not be one, only from 1e-150 to 1e150.
     ///
     /// θ = 2 atan2(|v|, w) with the sign of q that has w > 0: a few u from θ = 0 to π, relative to θ. At w = 0, half a turn, the first component
     /// of the axis that is not zero is positive.
