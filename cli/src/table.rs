@@ -69,9 +69,16 @@ impl Table {
     }
 }
 
-/// How many columns of a terminal a text takes: marks on the letter before take none.
+/// How many columns of a terminal a text takes: marks on the letter before take none, wide letters of East Asia and pictures two (Unicode Standard Annex 11, its large blocks).
 fn columns(text: &str) -> usize {
-    text.chars().filter(|c| !('\u{300}'..='\u{36f}').contains(c)).count()
+    let one = |c: char| match c {
+        '\u{300}'..='\u{36f}' => 0,
+        '\u{1100}'..='\u{115f}' | '\u{2e80}'..='\u{a4cf}' | '\u{ac00}'..='\u{d7a3}' | '\u{f900}'..='\u{faff}' => 2,
+        '\u{fe30}'..='\u{fe4f}' | '\u{ff00}'..='\u{ff60}' | '\u{ffe0}'..='\u{ffe6}' => 2,
+        '\u{1f300}'..='\u{1faff}' | '\u{20000}'..='\u{3fffd}' => 2,
+        _ => 1,
+    };
+    text.chars().map(one).sum()
 }
 
 /// How many columns prose takes.
@@ -160,6 +167,8 @@ mod tests {
         table.heading("a heading that is longer than the table");
         table.row(["q̈", "1"]);
         assert_eq!(table.text(), "   n\na heading that is longer than the table\nq̈  1\n");
+        table.row(["手", "2"]);
+        assert_eq!(table.text(), "    n\na heading that is longer than the table\nq̈   1\n手  2\n");
     }
 
     #[test]
