@@ -19,8 +19,15 @@ pub(crate) fn all<T>(request: &Request, attempt: impl Fn(&Request) -> Result<T, 
     })
 }
 
+/// Which of the entries of a list of functions an error is about that calls it by this name: the last that is called so, or else the last that has a function of this name in it.
+pub fn entry_of<'a>(entries: impl IntoIterator<Item = &'a str>, name: &str) -> Option<usize> {
+    let entries: Vec<&str> = entries.into_iter().collect();
+    let called = |entry: &&str| entry.trim() == name || entry.split(['=', '(', '+']).next().is_some_and(|own| own.trim() == name);
+    entries.iter().rposition(called).or_else(|| entries.iter().rposition(|entry| mentions(entry, name)))
+}
+
 /// Whether an entry is the function, or its group, or has it in it.
-pub fn mentions(entry: &str, function: &str) -> bool {
+fn mentions(entry: &str, function: &str) -> bool {
     let of_group = Group::named(entry.trim()).is_some_and(|group| group.functions().any(|f| f == function));
     entry.trim() == function || of_group || entry.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == function)
 }
@@ -35,7 +42,7 @@ fn leave_out(error: &Error, options: &mut Options) -> bool {
         | Error::NoMass { function, .. }
         | Error::Wanted { found: function, .. }
         | Error::SameName { name: function } => {
-            if let Some(at) = options.functions.iter().rposition(|f| mentions(f, function)) {
+            if let Some(at) = entry_of(options.functions.iter().map(String::as_str), function) {
                 options.functions.remove(at);
             }
         }
@@ -97,6 +104,20 @@ mod tests {
             &told,
             &["function `no_such`", "b = 0", "function `no_such_2`", "what another function is called", "two are called `placements`"],
         );
+    }
+
+    /// Whatever other entries have the name in them, as a part of a sum or an argument.
+    #[test]
+    fn each_entry_s_own_mistake_is_told_once() {
+        let constant = |name: &str| format!("`{name}`: constant q");
+        for (list, names) in [
+            (["placements(q = [0, 1])", "x = gravity_torque(q = [0, 1]) + placements"], ["placements", "x"]),
+            (["v = placements(q = [0, 1])", "x = bias_forces(v = [0], q = [0, 1])"], ["v", "x"]),
+            (["placements(q = [0, 1])", "x = placements(q = [1, 2, 3])"], ["placements", "x"]),
+        ] {
+            let told = told(|o| o.functions = list.map(String::from).to_vec());
+            each_once(&told, &[&constant(names[0]), &constant(names[1])]);
+        }
     }
 
     #[test]

@@ -49,7 +49,7 @@ pub use build::{Build, Written};
 pub use checked::checked_cost;
 pub use emit::identifier;
 pub use error::Error;
-pub use faults::mentions;
+pub use faults::entry_of;
 pub use ledger::Ledger;
 pub use parameters::Parameter;
 pub use request::{Options, Request, choose_frames, model, read};
@@ -141,7 +141,7 @@ pub fn generate(request: &Request) -> Result<Generated, Error> {
         programs.push(program);
     }
     warnings.extend(ledger.functions.iter().filter_map(|entry| long_code(&request.file, entry)));
-    let source = emit::module(request, &model, &names, &programs, &parameters, &unused) + &emit::warnings(&warnings);
+    let source = emit::module(request, &model, &names, &programs, &parameters, &unused, &snapped) + &emit::warnings(&warnings);
     let graphs = programs.into_iter().map(|p| if p.columns.is_some() { graph::Graph::default() } else { p.graph }).collect();
     Ok(Generated { source, model, parameters, level: request.options.level, ledger, graphs, warnings, unused, snapped })
 }

@@ -2,7 +2,7 @@
 
 use articulated_codegen::core::description::EditError;
 use articulated_codegen::scene::articulated_scene::SceneError;
-use articulated_codegen::{Edit, Error, Reason, Refusal, RobotError, mentions};
+use articulated_codegen::{Edit, Error, Reason, Refusal, RobotError, entry_of};
 use proc_macro2::Span;
 use syn::LitStr;
 
@@ -20,7 +20,10 @@ pub(crate) fn at_its_word(error: &Error, settings: &Settings, robot: Span) -> sy
         | Error::BoundFrames { function, .. }
         | Error::NoMass { function, .. }
         | Error::Wanted { found: function, .. }
-        | Error::SameName { name: function } => settings.functions.iter().flatten().rfind(|e| mentions(&e.text, function)).map(|e| e.span),
+        | Error::SameName { name: function } => {
+            let entries: Vec<_> = settings.functions.iter().flatten().collect();
+            entry_of(entries.iter().map(|e| e.text.as_str()), function).map(|at| entries[at].span)
+        }
         Error::Parameter { found, .. } => settings.parameters.iter().flatten().rfind(|e| e.text.trim() == *found).map(|e| e.span),
         Error::Rename { from, .. } => renamed(from).map(|r| r.from.span),
         Error::NameClash { first, second, .. } => renamed(second).or_else(|| renamed(first)).map(|r| r.to.span()),

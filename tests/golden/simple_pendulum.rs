@@ -91,7 +91,7 @@ pub fn placements_into(q: &[f64; NQ], out: &mut [[f64; 12]; FRAMES]) {
 }
 
 /// Puts the result into `out`.
-#[allow(unsafe_code, unused_unsafe, clippy::all, clippy::pedantic)]
+#[allow(unsafe_code, unused_unsafe, unused_results, clippy::all, clippy::pedantic)]
 fn placements_fill(q: &[f64; NQ], out: &mut ::core::mem::MaybeUninit<[[f64; 12]; FRAMES]>) {
     let _ = q;
     let x2 = q[0];
@@ -110,7 +110,7 @@ fn placements_fill(q: &[f64; NQ], out: &mut ::core::mem::MaybeUninit<[[f64; 12];
 ///
 /// RNEA; Featherstone 2008, Table 5.1.
 /// 2 multiplications + 1 addition in 2 instructions (multiply-adds counted once), 1 sine or cosine, depth 3.
-#[allow(unsafe_code, unused_unsafe, clippy::all, clippy::pedantic)]
+#[allow(unsafe_code, unused_unsafe, unused_results, clippy::all, clippy::pedantic)]
 pub fn inverse_dynamics(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV]) -> [f64; NV] {
     let _ = q;
     let _ = v;
@@ -159,7 +159,7 @@ trait Fma {
 /// In one instruction, and with one rounding, or in two.
 struct MultiplyAdd<const FUSED: bool>;
 
-#[allow(clippy::all, clippy::pedantic)]
+#[allow(unused_results, clippy::all, clippy::pedantic)]
 impl<const FUSED: bool> Fma for MultiplyAdd<FUSED> {
     const FUSED: bool = FUSED;
 
@@ -177,7 +177,7 @@ type F = MultiplyAdd<FUSED>;
 #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::default::Default)]
 pub struct Robot;
 
-#[allow(clippy::all, clippy::pedantic)]
+#[allow(unused_qualifications, clippy::all, clippy::pedantic)]
 impl ::articulated::Dynamics<f64> for Robot {
     type Workspace = ();
     fn workspace(&self) {}

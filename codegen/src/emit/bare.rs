@@ -3,7 +3,7 @@
 const FLOAT: &str = "
 /// What `core` lacks of floating-point numbers, by the crate `libm`.
 #[allow(dead_code)]
-trait Float: Sized {
+trait Float: ::core::marker::Sized {
     fn mul_add(self, b: Self, c: Self) -> Self;
     fn sqrt(self) -> Self;
     fn sin_cos(self) -> (Self, Self);

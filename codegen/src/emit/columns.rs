@@ -41,7 +41,7 @@ impl<'a> Layout<'a> {
         let _ = writeln!(out, "/// M X = B for all columns of three matrices, by M = Lᵀ D L; Featherstone 2008, §6.5.");
         let _ = writeln!(
             out,
-            "#[allow(unsafe_code, unused_unsafe, dead_code, clippy::all, clippy::pedantic)]\nmod columns {{\n#[allow(unused_imports)]\nuse ::core::iter::Iterator;\n\nuse super::NV;\n"
+            "#[allow(unsafe_code, unused_unsafe, dead_code, unused_results, clippy::all, clippy::pedantic)]\nmod columns {{\n#[allow(unused_imports)]\nuse ::core::iter::Iterator;\n\nuse super::NV;\n"
         );
         let _ = writeln!(
             out,

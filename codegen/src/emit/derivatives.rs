@@ -18,7 +18,7 @@ pub(super) fn module(out: &mut String, groups: &Groups, model: &Model<f64>) {
     let _ = writeln!(out, "/// Derivatives of inverse dynamics, four joints at a time; Singh, Russell & Wensing 2022.");
     let _ = writeln!(
         out,
-        "#[allow(unsafe_code, unused_unsafe, unused_macros, dead_code, clippy::all, clippy::pedantic)]\nmod derivatives {{\n#[allow(unused_imports)]\nuse ::core::iter::Iterator;\n\nuse super::{{NQ, NV}};\n"
+        "#[allow(unsafe_code, unused_unsafe, unused_macros, dead_code, unused_results, clippy::all, clippy::pedantic)]\nmod derivatives {{\n#[allow(unused_imports)]\nuse ::core::iter::Iterator;\n\nuse super::{{NQ, NV}};\n"
     );
     let tables = Tables { groups, model };
     tables.constants(out);

@@ -74,7 +74,7 @@ pub(super) fn function(out: &mut String, program: &Program, context: Context) {
 /// The function's head, up to its first statement that computes.
 fn opening(out: &mut String, name: &str, signature: &Signature, context: Context) {
     let uses = if context.forbid_unsafe { "" } else { "unsafe_code, unused_unsafe, " };
-    let _ = writeln!(out, "#[allow({uses}clippy::all, clippy::pedantic)]");
+    let _ = writeln!(out, "#[allow({uses}unused_results, clippy::all, clippy::pedantic)]");
     let name = if signature.place == Place::Value { format!("pub fn {name}") } else { format!("fn {name}_fill") };
     let _ = writeln!(out, "{name}({}){} {{", signature.takes(), signature.returns());
     for input in &signature.inputs {

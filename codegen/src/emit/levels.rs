@@ -79,12 +79,12 @@ pub(super) fn sines(out: &mut String, text: &str, level: Level) {
 pub(super) fn module(out: &mut String, level: Level) {
     if let Some(text) = source(level) {
         let _ = writeln!(out, "/// The arithmetic of the level {level}.");
-        let _ = writeln!(out, "#[allow(dead_code, unreachable_pub, clippy::all, clippy::pedantic)]\nmod level {{\n{text}}}\n");
+        let _ = writeln!(out, "#[allow(dead_code, unreachable_pub, unused_results, clippy::all, clippy::pedantic)]\nmod level {{\n{text}}}\n");
     }
 }
 
 const CORRECT: &str = "\
-#[allow(clippy::all, clippy::pedantic)]
+#[allow(unused_results, clippy::all, clippy::pedantic)]
 mod trig {
     /// [sin x, cos x] of four angles, rad: the nearest there are.
     #[inline(always)]
@@ -98,7 +98,7 @@ mod trig {
 ";
 
 const SINGLE: &str = "\
-#[allow(clippy::all, clippy::pedantic)]
+#[allow(unused_results, clippy::all, clippy::pedantic)]
 mod trig {
     /// [sin x, cos x] of four angles, rad, by those of `f64`.
     #[inline(always)]

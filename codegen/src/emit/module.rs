@@ -5,7 +5,7 @@ use std::fmt::Write;
 use articulated_core::algorithm::{Dim, neutral};
 use articulated_core::description::Limit;
 use articulated_core::model::{FLOATING_BASE, JointInfo, Model};
-use articulated_urdf::Unused;
+use articulated_urdf::{Problem, Unused};
 
 use super::bare;
 use super::batch::{Batch, batches};
@@ -27,9 +27,10 @@ pub(crate) fn module(
     programs: &[Program],
     parameters: &[Parameter],
     unused: &[Unused],
+    snapped: &[Problem],
 ) -> String {
     let mut out = String::new();
-    header(&mut out, request, model, unused);
+    header(&mut out, request, model, (unused, snapped));
     constants(&mut out, model);
     indices(&mut out, model, names);
     inputs(&mut out, parameters);
@@ -145,7 +146,7 @@ fn robot(out: &mut String, request: &Request, model: &Model<f64>, programs: &[Pr
     } else {
         let _ = writeln!(out, "pub struct Robot;\n");
     }
-    let _ = writeln!(out, "#[allow(clippy::all, clippy::pedantic)]\nimpl {path}::Dynamics<{real}> for Robot {{");
+    let _ = writeln!(out, "#[allow(unused_qualifications, clippy::all, clippy::pedantic)]\nimpl {path}::Dynamics<{real}> for Robot {{");
     let _ = writeln!(out, "    type Workspace = ();\n    fn workspace(&self) {{}}");
     let _ = writeln!(out, "    fn shape(&self) -> {path}::Shape {{ {path}::Shape {{ nq: NQ, nv: NV, frames: FRAMES, links: LINKS }} }}");
     let _ = writeln!(out, "    fn name(&self) -> &str {{ NAME }}");
@@ -161,7 +162,8 @@ fn robot(out: &mut String, request: &Request, model: &Model<f64>, programs: &[Pr
     let _ = writeln!(out, "        match (function, arguments) {{");
     for function in programs.iter().filter_map(|p| p.wanted.as_function()) {
         let takes: Vec<_> = function.takes.iter().map(|a| (a.name(), a.dims())).collect();
-        arm(out, (path, real), function.name, &takes, function.gives, parameters);
+        let is_empty = function.len(model.shape()) == 0;
+        arm(out, (path, real), function.name, &takes, (function.gives, is_empty), parameters);
     }
     let has: Vec<String> =
         programs.iter().filter_map(|p| p.wanted.as_function()).map(|f| format!("{path}::FunctionId::{}", f.name)).collect();
@@ -192,8 +194,15 @@ fn names_by_number(out: &mut String, path: &str, model: &Model<f64>) {
     let _ = writeln!(out, "        {option}::Some({path}::JointRow {{ name: JOINT_NAMES[index], kind, q, v, limit }})\n    }}");
 }
 
-/// How one function is called through slices.
-fn arm(out: &mut String, (path, real): (&str, &str), name: &str, takes: &[(&str, &[Dim])], gives: &[Dim], parameters: bool) {
+/// How one function is called through slices. Of a robot without degrees of freedom there may be no numbers to give, and no rows of none.
+fn arm(
+    out: &mut String,
+    (path, real): (&str, &str),
+    name: &str,
+    takes: &[(&str, &[Dim])],
+    (gives, is_empty): (&[Dim], bool),
+    parameters: bool,
+) {
     let mut names: Vec<String> = takes.iter().map(|(name, _)| (*name).to_owned()).collect();
     let _ = writeln!(out, "            ({path}::FunctionId::{name}, &[{}]) => {{", names.join(", "));
     for (name, dims) in takes {
@@ -212,7 +221,9 @@ fn arm(out: &mut String, (path, real): (&str, &str), name: &str, takes: &[(&str,
         names.push("&self.parameters".into());
     }
     let names = names.join(", ");
-    let _ = if gives.is_empty() {
+    let _ = if is_empty {
+        writeln!(out, "                let _ = ({names},);")
+    } else if gives.is_empty() {
         writeln!(out, "                out[0] = self::{name}({names});")
     } else {
         let inner = gives.iter().skip(1).rev().map(|d| format!(".as_chunks_mut::<{d}>().0"));

@@ -109,7 +109,7 @@ fn lanes(out: &mut String, widths: &[usize], when: &When, forbid_unsafe: bool, l
             let line = if cfg.is_empty() { "" } else { "\n" };
             let _ = writeln!(
                 out,
-                "{cfg}{line}#[allow({lint}dead_code, unused_imports, unused_macros, unreachable_pub, clippy::all, clippy::pedantic)]"
+                "{cfg}{line}#[allow({lint}dead_code, unused_imports, unused_macros, unreachable_pub, trivial_numeric_casts, unused_results, clippy::all, clippy::pedantic)]"
             );
             let _ = writeln!(out, "mod {name}_f64x{width} {{\n{text}}}\n");
         }
@@ -150,7 +150,7 @@ trait Fma {
 /// In one instruction, and with one rounding, or in two.
 struct MultiplyAdd<const FUSED: bool>;
 
-#[allow(clippy::all, clippy::pedantic)]
+#[allow(unused_results, clippy::all, clippy::pedantic)]
 impl<const FUSED: bool> Fma for MultiplyAdd<FUSED> {
     const FUSED: bool = FUSED;
 
@@ -167,7 +167,7 @@ type F = MultiplyAdd<FUSED>;
 ";
 
 const SINES: &str = "\
-#[allow(unsafe_code, clippy::all, clippy::pedantic)]
+#[allow(unsafe_code, unused_results, clippy::all, clippy::pedantic)]
 mod trig {
     /// [sin x, cos x] of four angles, rad. Error at most 1 ulp.
     #[cfg(target_arch = \"x86_64\")]
@@ -201,7 +201,7 @@ mod trig {
 ";
 
 const PORTABLE_SINES: &str = "\
-#[allow(clippy::all, clippy::pedantic)]
+#[allow(unused_results, clippy::all, clippy::pedantic)]
 mod trig {
     /// [sin x, cos x] of four angles, rad. Error at most 1 ulp.
     #[inline(always)]

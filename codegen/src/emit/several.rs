@@ -28,7 +28,7 @@ pub(super) fn name(vectors: usize) -> &'static str {
 /// The module for vectors of so many lanes.
 pub(super) fn module(out: &mut String, width: usize) {
     let _ = writeln!(out, "/// Sines and cosines of several vectors of {width}: in wider ones where there are such.");
-    *out += "#[allow(unsafe_code, dead_code, unused_imports, unreachable_pub, clippy::all, clippy::pedantic)]\n";
+    *out += "#[allow(unsafe_code, dead_code, unused_imports, unreachable_pub, unused_results, clippy::all, clippy::pedantic)]\n";
     let _ = writeln!(out, "mod several_f64x{width} {{");
     block(out, "#[cfg(target_arch = \"x86_64\")]", "avx2", width, &avx2(width));
     for (cfg, set, features) in [

@@ -59,7 +59,7 @@ pub(super) fn module(out: &mut String) {
 const MODULE: &str = "\
 /// Where values wait while sixteen registers are full.
 #[cfg(all(target_arch = \"x86_64\", not(target_feature = \"avx512f\")))]
-#[allow(unsafe_code, clippy::all, clippy::pedantic)]
+#[allow(unsafe_code, unused_results, clippy::all, clippy::pedantic)]
 mod spills {
     /// Puts a value where it waits. Compilers look for two numbers to write at once, but not where that is volatile: it takes long, and gains nothing.
     #[inline(always)]

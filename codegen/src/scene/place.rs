@@ -3,7 +3,7 @@
 use articulated_scene::{At, Scene, SceneError, by_places};
 
 use crate::Error;
-use crate::faults::mentions;
+use crate::faults::entry_of;
 
 /// What the scene asks for and was refused, by its places in the scene; other errors as they are, after it.
 pub fn placed(error: Error, scene: &Scene) -> Error {
@@ -17,7 +17,10 @@ pub(super) fn in_its_place(error: &Error, scene: &Scene) -> Option<Vec<SceneErro
     let entry = |list: &Option<Vec<String>>, at: &[At], is: &dyn Fn(&str) -> bool| {
         list.as_ref()?.iter().rposition(|entry| is(entry)).map(|i| place_of(at, i))
     };
-    let function = |name: &str| entry(&code.functions, &places.functions, &|entry| mentions(entry, name));
+    let function = |name: &str| {
+        let at = entry_of(code.functions.as_ref()?.iter().map(String::as_str), name)?;
+        Some(place_of(&places.functions, at))
+    };
     let renaming = |from: &str| code.rename.iter().rposition(|(name, _)| name == from).map(|i| place_of(&places.rename, i));
     let refused = |at, key: &str, found| vec![scene.refused(at, key, found)];
     let whole = error.to_string();

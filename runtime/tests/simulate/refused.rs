@@ -7,6 +7,7 @@ use articulated::simulate::{
     integrators,
 };
 use articulated::{Base, Dynamics, FunctionError, load_bytes};
+use articulated_core::algorithm::{Workspace, functions};
 
 use crate::robots::{at, chain, free, handle, model, slider, stepping, to};
 
@@ -49,6 +50,35 @@ fn a_robot_without_a_joint_stands_still() {
         let motion = Simulation::new(&robot, settings).unwrap().run(&[], &[], &mut drive, &mut []).unwrap();
         assert_eq!(motion.t, [0.0, 1.0], "{}", row.name);
     }
+}
+
+articulated::robot! {
+    /// A base and nothing else.
+    mod still {
+        urdf = "tests/simulate/urdf/still.urdf",
+        functions = [placements, jacobians_body, mass_matrix, coriolis_matrix, gravity_torque, inverse_dynamics_derivatives, torque_regressor,
+            kinetic_energy, placement_derivatives, integrate, integrate_derivatives, difference_derivatives],
+    }
+}
+
+/// Of matrices without rows generated code gives what the library gives: nothing, and no panic.
+#[test]
+fn a_generated_robot_without_a_joint_answers_as_the_library_does() {
+    let (model, mut answered) = (model("still", Base::Fixed), 0);
+    for row in functions::<f64>() {
+        let arguments: Vec<Vec<f64>> = row.takes.iter().map(|argument| vec![0.5; argument.len(model.shape())]).collect();
+        let arguments: Vec<&[f64]> = arguments.iter().map(Vec::as_slice).collect();
+        let [mut found, mut expected] = [(); 2].map(|()| vec![f64::NAN; row.len(model.shape())]);
+        match still::Robot.call(row.id, &mut (), &arguments, &mut found) {
+            Err(error) => assert!(matches!(error, FunctionError::NotGenerated { .. }), "{error}"),
+            Ok(()) => {
+                model.call(row.id, &mut Workspace::new(&model), &arguments, &mut expected).unwrap();
+                assert_eq!(found, expected, "{}", row.name);
+                answered += 1;
+            }
+        }
+    }
+    assert_eq!(answered, 12);
 }
 
 /// A longest step that time cannot tell from none, and a shortest one that the tolerances need shorter.

@@ -81,7 +81,7 @@ fn module(out: &mut String, functions: &[Batch], real: Real, ways: &[Way], calle
         "/// The functions for many states at once, in `{real_name}`: a state a lane, in the widest instruction set that the processor has.\n///\n\
          /// States stand one after the other, or in blocks of {n} with each number of all states of a block together (`Lanes`), which is faster.\n\
          /// Sines and cosines are off by at most 1 ulp.\n\
-         #[allow({lint}unused_imports, unused_macros, unused_variables, dead_code, unreachable_pub, clippy::all, clippy::pedantic)]\n\
+         #[allow({lint}unused_imports, unused_macros, unused_variables, dead_code, unreachable_pub, trivial_numeric_casts, unused_results, clippy::all, clippy::pedantic)]\n\
          pub mod batch_{real_name} {{\n    use super::*;\n"
     );
     *out += &PUBLIC.replace("REAL", real_name).replace("BLOCK", &n.to_string());
