@@ -170,7 +170,8 @@ fn main(robots: &[(&str, &Generated)]) -> String {
     }
     out += TAIL;
     for (robot, generated) in robots {
-        let _ = writeln!(out, "#[no_implicit_prelude]\n#[deny(unused_results, trivial_numeric_casts, unused_qualifications)]\nmod {robot};");
+        let _ =
+            writeln!(out, "#[no_implicit_prelude]\n#[deny(unused_results, trivial_numeric_casts, unused_qualifications)]\nmod {robot};");
         reals(generated).into_iter().for_each(|r| out += &format!("leaf!({robot}::batch_{}::Lanes);\n", r.name()));
     }
     out

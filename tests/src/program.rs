@@ -151,7 +151,8 @@ fn main(robots: &[(&str, &Generated)]) -> String {
     out += TAIL;
     for (robot, _) in robots {
         // As in a crate that has other things under the names of the prelude.
-        let _ = writeln!(out, "#[no_implicit_prelude]\n#[deny(unused_results, trivial_numeric_casts, unused_qualifications)]\nmod {robot};");
+        let _ =
+            writeln!(out, "#[no_implicit_prelude]\n#[deny(unused_results, trivial_numeric_casts, unused_qualifications)]\nmod {robot};");
     }
     out
 }

@@ -79,7 +79,8 @@ pub(super) fn sines(out: &mut String, text: &str, level: Level) {
 pub(super) fn module(out: &mut String, level: Level) {
     if let Some(text) = source(level) {
         let _ = writeln!(out, "/// The arithmetic of the level {level}.");
-        let _ = writeln!(out, "#[allow(dead_code, unreachable_pub, unused_results, clippy::all, clippy::pedantic)]\nmod level {{\n{text}}}\n");
+        let _ =
+            writeln!(out, "#[allow(dead_code, unreachable_pub, unused_results, clippy::all, clippy::pedantic)]\nmod level {{\n{text}}}\n");
     }
 }
 
