@@ -8,7 +8,7 @@ use crate::begin::Begin;
 use crate::error::Fault;
 use crate::stage::Stage;
 
-/// How far torques may be apart, relative to the largest of them: more than any level of accuracy, less than any effect that is felt.
+/// How far torques may be apart, relative to the largest of them: more than any level of accuracy leaves. What acts less than that is not told.
 const ALIKE: f64 = 1e-3;
 
 /// How far from the start joints are, rad and m, at most, where accelerations are compared: there, and on both sides, so that stops and the ground are felt.
