@@ -3,6 +3,7 @@
 mod blows;
 mod closed_forms;
 mod driven;
+mod endings;
 mod events;
 mod orders;
 mod refused;

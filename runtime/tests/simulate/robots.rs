@@ -64,6 +64,11 @@ pub(crate) fn stepping(integrator: IntegratorId, end: f64, step: f64) -> Setting
     Settings { step: Some(step), ..to(integrator, end, 1e-6) }
 }
 
+/// Settings that every integrator can do, with a fixed step where there is no other.
+pub(crate) fn any(integrator: IntegratorId, end: f64) -> Settings {
+    if integrator.row().adaptive { to(integrator, end, 1e-10) } else { stepping(integrator, end, 0.03) }
+}
+
 /// A motion that nothing drives.
 pub(crate) fn free<R: Dynamics<f64>>(robot: &R, settings: &Settings, q: &[f64], v: &[f64]) -> Result<Recording, SimulateError> {
     Simulation::new(robot, settings.clone())?.run(q, v, &mut NoTorque, &mut [])

@@ -1,6 +1,7 @@
 //! A simulation: steps, outputs and events one after the other.
 
 mod happenings;
+mod records;
 mod stiffness;
 
 use std::f64::consts::TAU;
@@ -442,20 +443,5 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             self.take_sides(run)?;
         }
         Ok(mapped)
-    }
-
-    fn record_here(&mut self, run: &mut Run) -> Result<(), SimulateError> {
-        // An output may be later by a rounding.
-        self.point.t = run.recording.t.last().map_or(self.t, |last| last.max(self.t));
-        self.point.y.copy_from_slice(&self.y);
-        self.point.q.copy_from_slice(&self.system.origin);
-        self.known.record(&mut self.system, run.control, &self.point, run.recording)
-    }
-
-    /// As [`Self::record_here`], unless this time is recorded already, as that of an output that is a rounding away.
-    fn record_end(&mut self, run: &mut Run) -> Result<(), SimulateError> {
-        let near = if self.settings.output == Output::Steps { 0.0 } else { rounding(self.t) };
-        let recorded = run.recording.t.last().is_some_and(|t| (self.t - t).abs() <= near);
-        if recorded { Ok(()) } else { self.record_here(run) }
     }
 }
