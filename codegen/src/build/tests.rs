@@ -1,0 +1,135 @@
+//! What a build script is given, told and spared.
+
+use super::*;
+
+const ARM: &str = r#"<robot name="arm"><link name="base"/><link name="tip"><inertial><mass value="1"/>
+    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+    <joint name="hinge" type="revolute"><parent link="base"/><child link="tip"/><axis xyz="0 0 2"/><limit effort="1" velocity="1"/></joint></robot>"#;
+
+/// A folder of its own among temporary ones, with a robot in it.
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("articulated-{name}-{}", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    fs::write(folder.join("arm.urdf"), ARM).unwrap();
+    folder
+}
+
+#[test]
+fn cargo_is_told_each_error_on_a_line_and_once_that_it_is_one() {
+    let folder = folder("errors");
+    let path = folder.join("heavy.urdf");
+    fs::write(&path, ARM.replace("mass value=\"1\"", "mass value=\"-1\"").replace("effort=\"1\"", "effort=\"much\"")).unwrap();
+    let told = for_cargo(&Build::new(&path).try_write("heavy").unwrap_err());
+    let told: Vec<(&str, &str)> = told.lines().filter_map(|line| line.split_once('=')).collect();
+    let expected = [("error", "a negative mass, -1 kg"), ("error", "effort: found \"much\""), ("warning", "limit: found no bounds")];
+    assert_eq!(told.len(), expected.len(), "{told:?}");
+    for ((kind, line), (of, text)) in told.iter().zip(expected) {
+        assert!(kind.ends_with(of) && line.contains(text) && !line.contains(&format!("{of}: ")), "{kind} {line}");
+    }
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_second_robot_does_not_take_the_place_of_a_first() {
+    let folder = folder("twice");
+    let build = Build::new(folder.join("arm.urdf")).functions(["gravity_torque"]);
+    names_written().insert(std::env::var_os("OUT_DIR").map(PathBuf::from).unwrap_or_default().join("taken"));
+    let told = build.try_write("taken").unwrap_err().to_string();
+    assert!(told.contains("taken: ") && told.contains("written already"), "{told}");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn each_choice_arrives_in_the_request() {
+    let folder = folder("choices");
+    let hand = folder.join("hand.urdf");
+    fs::write(&hand, ARM.replace("mass value=\"1\"", "mass value=\"3\"")).unwrap();
+    let build = Build::new(folder.join("arm.urdf"));
+    let of = |build: Build| build.request().unwrap().options;
+    let plain = of(build.clone());
+    let mut expected = plain.clone();
+    assert_eq!(plain.runtime.as_deref(), Some("::articulated"));
+    (expected.runtime, expected.limbs, expected.forbid_unsafe, expected.no_std) = (None, false, true, true);
+    assert_eq!(of(build.clone().standalone().limbs(false).forbid_unsafe().no_std()), expected);
+    let mut expected = plain.clone();
+    (expected.robot.base, expected.robot.snap_angles, expected.robot.allow_unphysical_inertia) = (Base::Fixed, Some(1e-6), true);
+    expected.rename = vec![("a-b".into(), "A_MINUS_B".into())];
+    let all = build.clone().floating().fixed().snap_angles(1e-6).allow_unphysical_inertia().rename("a-b", "A_MINUS_B");
+    assert_eq!(of(all.clone()), expected);
+    expected.rename = vec![("c".into(), "C".into()), ("a-b".into(), "D".into())];
+    assert_eq!(of(all.rename("c", "C").rename("a-b", "D")), expected);
+    let both = of(build.clone().append(&hand, "tip", "left_", Origin::default()));
+    assert_eq!(both.robot.append[0].urdf, fs::read(&hand).unwrap());
+    assert_eq!((both.robot.append[0].at.as_str(), both.robot.append[0].prefix.as_str()), ("tip", "left_"));
+    assert!(build.append(folder.join("none.urdf"), "tip", "left_", Origin::default()).request().is_err());
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn each_name_is_a_file_of_its_own() {
+    let folder = folder("names");
+    let build = Build::new(folder.join("arm.urdf")).functions(["gravity_torque"]);
+    for name in ["arm", "arm.v2", "arm.v3"] {
+        let written = build.write_in(&folder, name).unwrap();
+        assert!(written.generated, "{name}");
+        assert_eq!(written.path, folder.join(format!("{name}.rs")));
+        assert!(!build.write_in(&folder, name).unwrap().generated, "{name}");
+    }
+    for name in ["", "..", "../arm", "robots/arm", "/"] {
+        let error = build.write_in(&folder, name).unwrap_err().to_string();
+        assert!(error.contains("expected one"), "{name}: {error}");
+    }
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_scene_without_a_robot_asks_for_one() {
+    let folder = folder("no-robot");
+    let scene = folder.join("still.toml");
+    fs::write(&scene, "gravity = [0, 0, 0]").unwrap();
+    let build = Build::scene(&scene);
+    let error = build.request().unwrap_err().to_string();
+    assert!(error.contains("Build::urdf"), "{error}");
+    assert_eq!(build.urdf(folder.join("arm.urdf")).request().unwrap().options.robot.gravity, [0.0; 3]);
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn what_is_said_beside_a_scene_stands_in_its_place() {
+    let folder = folder("beside");
+    let scene = folder.join("named.toml");
+    fs::write(&scene, "urdf = 'arm.urdf'\nfunctions = ['gravity_torque']\nrename = { tip = 'SCENE', base = 'GROUND' }").unwrap();
+    let build = Build::scene(&scene).rename("tip", "TCP").functions(["mass_matrix"]);
+    let source = build.generate().unwrap().source;
+    for (part, there) in [("TCP", true), ("GROUND", true), ("SCENE", false), ("fn mass_matrix(", true), ("fn gravity_torque(", false)] {
+        assert_eq!(source.contains(part), there, "{part}");
+    }
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn an_unchanged_request_generates_nothing_and_warns_all_the_same() {
+    let folder = folder("cache");
+    let build = Build::new(folder.join("arm.urdf")).functions(["gravity_torque"]);
+    let again = |build: &Build| build.write_in(&folder, "arm").unwrap();
+    let first = again(&build);
+    assert!(first.generated && !first.warnings.is_empty());
+    let date = || fs::metadata(folder.join("arm.rs")).unwrap().modified().unwrap();
+    let written = date();
+    assert_eq!(again(&build), Written { generated: false, ..first.clone() });
+    assert_eq!(date(), written);
+    // Another request, a file that somebody wrote to, a file that is gone, a robot that changed.
+    assert!(again(&build.clone().gravity([0.0; 3])).generated);
+    assert!(again(&build).generated);
+    fs::write(folder.join("arm.rs"), "").unwrap();
+    assert!(again(&build).generated);
+    fs::remove_file(folder.join("arm.rs")).unwrap();
+    assert!(again(&build).generated && !again(&build).generated);
+    fs::write(folder.join("arm.urdf"), ARM.replace("mass value=\"1\"", "mass value=\"2\"")).unwrap();
+    assert!(again(&build).generated && !again(&build).generated);
+    assert_eq!(fs::read_to_string(&first.path).unwrap(), build.generate().unwrap().source);
+    // A request that fails leaves the memory of what stands, and is not remembered.
+    assert!(build.clone().functions(["no_function"]).write_in(&folder, "arm").is_err());
+    assert!(!again(&build).generated);
+    fs::remove_dir_all(folder).unwrap();
+}
