@@ -20,6 +20,7 @@ pub(crate) fn origin(parent: &Tag<'_>, snap: Option<f64>, log: &mut Log) -> Orig
     let xyz = attribute_list(&tag, "xyz", log).unwrap_or_default();
     let rpy = attribute_list(&tag, "rpy", log).unwrap_or_default();
     warn_of_turns(&tag, rpy, log);
+    warn_of_lengths(&tag, xyz, log);
     Origin { xyz, rpy: snapped(rpy, snap, &tag, log) }
 }
 
@@ -30,6 +31,16 @@ fn warn_of_turns(tag: &Tag<'_>, rpy: [f64; 3], log: &mut Log) {
     if let Some(angle) = rpy.into_iter().find(|angle| angle.abs() > TURN) {
         let expected = "rad, of which 90° are 1.5707963267948966; used as written";
         log.warning(&tag.place("origin rpy"), Kind::MoreThanATurn, format!("{angle}, more than a turn"), expected);
+    }
+}
+
+/// So many metres and more from one frame to the next are written by mistake: millimetres, most often.
+const FAR: f64 = 100.0;
+
+fn warn_of_lengths(tag: &Tag<'_>, xyz: [f64; 3], log: &mut Log) {
+    if let Some(length) = xyz.into_iter().find(|length| length.abs() >= FAR) {
+        let expected = "m, of which 1 mm is 0.001; used as written";
+        log.warning(&tag.place("origin xyz"), Kind::Units, format!("{length} m, more than any link is long"), expected);
     }
 }
 

@@ -17,6 +17,20 @@ pub(crate) fn check(mass: Option<f64>, inertia: Option<[f64; 6]>, allow: bool, p
         log.warning(&place("inertial"), Kind::InertiaWithoutMass, found, "both or neither; used as written");
     }
     check_moments(inertia, allow, &place("inertia"), log);
+    check_units(mass, inertia, &place("inertia"), log);
+}
+
+/// A radius of gyration of so many metres and more is written by mistake: kg·mm² or g·mm², most often.
+const WIDE: f64 = 10.0;
+
+fn check_units(mass: Option<f64>, inertia: [f64; 6], place: &Place<'_>, log: &mut Log) {
+    let Some(mass) = mass.filter(|mass| *mass > 0.0) else { return };
+    let radius = (PrincipalMoments::of(inertia).greatest() / mass).sqrt();
+    if radius >= WIDE {
+        let expected = "kg·m², of which 1 kg·mm² is 1e-6 and 1 g·mm² is 1e-9; used as written";
+        let radius = if radius < 1e6 { format!("{radius:.1}") } else { format!("{radius:.1e}") };
+        log.warning(place, Kind::Units, format!("a radius of gyration of {radius} m, more than any link has"), expected);
+    }
 }
 
 fn check_moments(inertia: [f64; 6], allow: bool, place: &Place<'_>, log: &mut Log) {

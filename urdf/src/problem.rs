@@ -123,6 +123,8 @@ pub enum Kind {
     BeyondLimit,
     /// An angle of a frame that is more than a turn, or a bound that is many: degrees, most often.
     MoreThanATurn,
+    /// A length or an inertia beyond any robot's: in millimetres, most often.
+    Units,
     /// A bound or a coefficient below zero that has no such meaning.
     Negative,
     /// A tag or attribute that nobody knows, but nearly one that matters.

@@ -286,6 +286,8 @@ fn what_looks_wrong_is_a_warning_and_used_as_written() {
         ("effort=\"100\"", "effort=\"100\" efort=\"1\"", Kind::Misspelt, "travel", 29),
         ("<robot ", "<robot version=\"7\" ", Kind::Version, "", 2),
         ("<child link=\"hook\"/>", "<child link=\"hook\"/><origin rpy=\"0 -90 0\"/>", Kind::MoreThanATurn, "swing", 33),
+        ("<child link=\"hook\"/>", "<child link=\"hook\"/><origin xyz=\"0 0 -333\"/>", Kind::Units, "swing", 33),
+        ("value=\"40\"", "value=\"0.3\"", Kind::Units, "boom", 5),
         ("<limit lower=\"-1\" upper=\"1\"", "<limit lower=\"-180\" upper=\"1\"", Kind::MoreThanATurn, "swing", 35),
     ];
     let mut messages = Vec::new();

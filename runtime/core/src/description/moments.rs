@@ -38,6 +38,11 @@ impl PrincipalMoments {
         !self.are_negative() && c - a - b > TRIANGLE * self.size()
     }
 
+    /// The greatest of them, kg·m².
+    pub fn greatest(&self) -> f64 {
+        self.0[2]
+    }
+
     fn size(&self) -> f64 {
         let [a, _, c] = self.0;
         a.abs().max(c.abs())
