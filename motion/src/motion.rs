@@ -4,11 +4,12 @@ use std::fmt;
 use std::time::{Duration, Instant};
 
 use articulated::Dynamics;
-use articulated::simulate::{Counts, Ended, Hit, Recording, Settings, SimulateError, Simulation};
+use articulated::simulate::{Counts, Ended, Recording, Settings, SimulateError, Simulation};
 
 use crate::begin::Begin;
 use crate::drive::Drive;
 use crate::error::{Fault, MotionErrors};
+use crate::happening::Happening;
 use crate::stage::Stage;
 use crate::watch::{Watch, Without};
 
@@ -37,17 +38,6 @@ pub struct Outcome {
     pub error: Option<SimulateError>,
     /// How long the run took, by the clock of the machine.
     pub wall: Duration,
-}
-
-/// Something that happened, at its time.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Happening {
-    /// When, s.
-    pub t: f64,
-    /// What, in a few words.
-    pub what: String,
-    /// Of the ball's turn, its speed along the normal after it, m/s.
-    pub ball_speed: Option<f64>,
 }
 
 /// How a motion ended.
@@ -135,8 +125,7 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
             Ending::AtEnd => self.simulation.settings().end,
             _ => recording.t.last().map_or(reached, |t| t.max(reached)),
         };
-        let told = |hit: &Hit| Happening { t: hit.t, what: self.watch.words(hit), ball_speed: hit.value };
-        let happenings = recording.events.iter().map(told).collect();
+        let happenings = recording.events.iter().map(|hit| self.watch.happening(hit)).collect();
         Ok(Outcome { recording, happenings, ending, reached, ball: self.watch.ball_energy(), error, wall })
     }
 }

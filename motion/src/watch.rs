@@ -10,6 +10,7 @@ use articulated_scene::Watched;
 
 use crate::ball::Ball;
 use crate::error::{Fault, MotionErrors};
+use crate::happening::{About, Happening, Sort};
 use crate::stage::{Stage, field};
 
 /// Events of a scene on a robot, and how each of them reads.
@@ -18,8 +19,8 @@ pub struct Watch<'a> {
     pub events: Vec<Event<'a>>,
     /// Sorts that the scene looks for and has nothing of.
     pub without: Vec<Without>,
-    /// Where its function rises through zero, where it falls; of a ball, when it is hit and when it is not.
-    words: Vec<[String; 2]>,
+    /// What the first of them are, those of the scene.
+    about: Vec<(Sort, String)>,
     ball: Rc<Ball>,
 }
 
@@ -41,7 +42,7 @@ impl<'a> Watch<'a> {
     where
         R::Workspace: 'a,
     {
-        let mut watch = Self { events: Vec::new(), without: Vec::new(), words: Vec::new(), ball: Rc::default() };
+        let mut watch = Self { events: Vec::new(), without: Vec::new(), about: Vec::new(), ball: Rc::default() };
         let mut faults = Vec::new();
         for what in stage.looked_for() {
             let before = (watch.events.len(), faults.len(), watch.without.len());
@@ -59,14 +60,13 @@ impl<'a> Watch<'a> {
         Ok(watch)
     }
 
-    /// What happened, in words; an event that was put behind those of the scene has its name.
-    pub fn words(&self, hit: &Hit) -> String {
-        let Some([rising, falling]) = self.words.get(hit.event) else { return hit.name.to_string() };
-        match hit.value {
-            // Of the ball, which is all that has a value.
-            Some(speed) => format!("{} {speed:.4} m/s", if self.ball.missed.get() { falling } else { rising }),
-            None => if hit.direction == Direction::Falling { falling } else { rising }.clone(),
-        }
+    /// What happened; of an event that was put behind those of the scene, its name.
+    pub fn happening(&self, hit: &Hit) -> Happening {
+        let Some((sort, on)) = self.about.get(hit.event) else {
+            return Happening { t: hit.t, what: hit.name.to_string(), about: None, ball_speed: None };
+        };
+        let begins = if *sort == Sort::Ball { !self.ball.missed.get() } else { hit.direction == Direction::Falling };
+        Happening::of(hit.t, About { sort: *sort, on: on.clone(), begins }, hit.value)
     }
 
     /// What tells whether the ball was hit and the motion ends with that: who runs a simulation asks it after each step. It is apart from the watch, whose events the
@@ -86,9 +86,9 @@ impl<'a> Watch<'a> {
         self.ball.put_back();
     }
 
-    fn push(&mut self, event: Event<'a>, rising: String, falling: String) {
+    fn push(&mut self, event: Event<'a>, sort: Sort, on: &str) {
         self.events.push(event);
-        self.words.push([rising, falling]);
+        self.about.push((sort, on.to_owned()));
     }
 
     /// The bounds of the effect if a joint has it, else those of the file.
@@ -100,11 +100,14 @@ impl<'a> Watch<'a> {
                 continue;
             }
             // A joint that follows another the other way round is at its own upper bound where that is at the lower.
-            let names = if at.multiplier < 0.0 { ["upper", "lower"] } else { ["lower", "upper"] };
-            for (which, (lower, upper)) in names.into_iter().zip([(lower, f64::INFINITY), (f64::NEG_INFINITY, upper)]) {
+            let mut sorts = [Sort::LowerLimit, Sort::UpperLimit];
+            if at.multiplier < 0.0 {
+                sorts.reverse();
+            }
+            for (sort, (lower, upper)) in sorts.into_iter().zip([(lower, f64::INFINITY), (f64::NEG_INFINITY, upper)]) {
                 if lower.is_finite() || upper.is_finite() {
                     let event = Event::limit(name.as_str(), at.q, lower, upper).direction(Direction::Either);
-                    self.push(event, format!("{name} comes back from its {which} limit"), format!("{name} reaches its {which} limit"));
+                    self.push(event, sort, &name);
                 }
             }
         }
@@ -114,17 +117,14 @@ impl<'a> Watch<'a> {
     where
         R::Workspace: 'a,
     {
-        for (name, a) in contacts_by_name(stage) {
+        for (sort, a) in contacts(stage) {
             let Some(frame) = frame_of(&a.on, frames) else {
                 faults.push(no_frame("effects.contact", &a.on, frames));
                 continue;
             };
             let at = ContactPoint { frame, point: a.at.xyz, normal: field(a, "normal").try_into().unwrap_or([f64::NAN; 3]) };
             match Event::contact(a.on.clone(), robot, at, number(a, "radius"), number(a, "height")) {
-                Ok(event) => {
-                    let event = event.direction(Direction::Either);
-                    self.push(event, format!("{name} leaves the ground"), format!("{name} touches the ground"));
-                }
+                Ok(event) => self.push(event.direction(Direction::Either), sort, &a.on),
                 Err(error) => faults.extend(Fault::of(error)),
             }
         }
@@ -135,7 +135,7 @@ impl<'a> Watch<'a> {
             let Some([_, speed, ..]) = at.effect(EffectId::friction).map(|friction| friction.parameters.as_slice()) else { continue };
             let name = stage.name_of(&at);
             let event = Event::stick_slip(name.as_str(), at.v, speed / at.multiplier.abs());
-            self.push(event, format!("{name} slips"), format!("{name} sticks"));
+            self.push(event, Sort::StickSlip, &name);
         }
     }
 
@@ -145,25 +145,19 @@ impl<'a> Watch<'a> {
     {
         let Some(asked) = &stage.scene.impact else { return };
         let Some(frame) = frame_of(&asked.link, frames) else { return faults.push(no_frame("impact.link", &asked.link, frames)) };
-        let hits = format!("{} hits the ball, which leaves at", asked.link);
-        let misses = format!("{} is not moving towards the ball, which keeps", asked.link);
         match self.ball.event(asked, robot, frame) {
-            Ok(event) => self.push(event, hits, misses),
+            Ok(event) => self.push(event, Sort::Ball, &asked.link),
             Err(error) => faults.extend(Fault::of(error)),
         }
     }
 }
 
-/// The contacts, by their links; those of a link that has several by their numbers too.
-fn contacts_by_name(stage: &Stage) -> impl Iterator<Item = (String, &Applied)> {
-    let on = |link: &str| stage.effects_of(EffectId::contact).filter(|a| a.on == link).count();
-    stage.effects_of(EffectId::contact).enumerate().map(move |(k, a)| {
-        let before = stage.effects_of(EffectId::contact).take(k).filter(|other| other.on == a.on).count();
-        let name = match on(&a.on) {
-            1 => a.on.clone(),
-            several => format!("{} (contact {} of {several})", a.on, before + 1),
-        };
-        (name, a)
+/// The contacts, each with its number among those of its link.
+fn contacts(stage: &Stage) -> impl Iterator<Item = (Sort, &Applied)> {
+    let all = move || stage.effects_of(EffectId::contact);
+    all().enumerate().map(move |(k, a)| {
+        let number = 1 + all().take(k).filter(|other| other.on == a.on).count();
+        (Sort::Contact { number, of: all().filter(|other| other.on == a.on).count() }, a)
     })
 }
 

@@ -98,9 +98,8 @@ fn told(stage: &Stage, run: Run, happenings: Vec<Happened>) -> Recording {
     // Without mass there is no centre of it: rotors have no momentum here.
     let heavy = stage.model.moving_mass() > 0.0;
     let momentum = (0..n).map(|k| run.momentum_at(k).filter(|_| heavy).and_then(|p| p.try_into().ok()).unwrap_or_default()).collect();
-    let event = |h: Happened| Happening { time: h.t, what: h.what, ball_speed_m_per_s: h.ball_speed };
     Recording {
-        events: happenings.into_iter().map(event).collect(),
+        events: happenings.into_iter().map(Happening::from).collect(),
         t: run.t,
         q: run.q,
         v: run.v,

@@ -2,6 +2,7 @@
 
 use articulated_core::description::JointKind;
 use articulated_core::model::{FLOATING_BASE, JointInfo, Model};
+use articulated_motion::{Happening as Happened, Sort};
 use serde::Serialize;
 
 /// A coordinate or a rate: whose it is, and in what unit.
@@ -24,9 +25,36 @@ pub(crate) struct Happening {
     pub(crate) time: f64,
     /// What, in a few words.
     pub(crate) what: String,
+    /// The same for programs.
+    #[serde(flatten)]
+    pub(crate) about: Option<About>,
     /// Of the ball's turn, its speed along the normal after it, m/s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) ball_speed_m_per_s: Option<f64>,
+}
+
+/// What a program asks of an event.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct About {
+    /// `lower_limit`, `upper_limit`, `contact`, `stick_slip`, `ball`.
+    pub(crate) sort: &'static str,
+    /// The joint or the link.
+    pub(crate) on: String,
+    /// Whether it begins or ends.
+    pub(crate) begins: bool,
+    /// Which of the link's contacts, from 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) contact: Option<usize>,
+}
+
+impl From<Happened> for Happening {
+    fn from(h: Happened) -> Self {
+        let about = h.about.map(|a| {
+            let contact = if let Sort::Contact { number, .. } = a.sort { Some(number) } else { None };
+            About { sort: a.sort.name(), on: a.on, begins: a.begins, contact }
+        });
+        Self { time: h.t, what: h.what, about, ball_speed_m_per_s: h.ball_speed }
+    }
 }
 
 /// A motion at the times of its output. Vectors of vectors are one behind the other, one of each a time.
@@ -159,7 +187,7 @@ pub(crate) fn example(model: &Model<f64>, times: usize) -> Recording {
         r.from_events.push(0.0);
         r.momentum.push([t; 6]);
     }
-    r.events = vec![Happening { time: 0.035, what: "left_foot touches the ground".into(), ball_speed_m_per_s: None }];
+    r.events = vec![Happening { time: 0.035, what: "left_foot touches the ground".into(), about: None, ball_speed_m_per_s: None }];
     r
 }
 

@@ -208,7 +208,8 @@ fn field_of(field: &Field, spot: &Spot<'_>, log: &mut Log) -> Option<Vec<f64>> {
     if field.len == 1 {
         return number(field, spot, log).map(|x| vec![x]);
     }
-    let expected = format!("{} finite numbers, {}", field.len, field.unit);
+    let unit = if field.unit == "1" { String::new() } else { format!(", {}", field.unit) };
+    let expected = format!("{} finite numbers{unit}", field.len);
     let Some(items) = spot.list().filter(|list| list.len() == field.len) else {
         spot.wrong(log, expected);
         return None;
