@@ -6,6 +6,7 @@ use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 
 use tempfile::TempDir;
 
+use crate::children;
 use crate::failure::INTERRUPTED;
 
 /// Those there are.
@@ -43,8 +44,9 @@ fn folders() -> MutexGuard<'static, Vec<PathBuf>> {
     FOLDERS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes them and ends the process. The list stays locked, so that no other thread makes another.
+/// Ends compilers, removes the folders and ends the process. The lists stay locked, so that no other thread makes another of either.
 fn interrupted() {
+    let _children = children::kill();
     let folders = folders();
     for folder in folders.iter() {
         // A file that is still being written can keep a folder for a moment.

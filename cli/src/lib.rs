@@ -5,6 +5,7 @@
 mod accuracy;
 mod arguments;
 mod check;
+mod children;
 mod compare;
 pub mod compiled;
 mod console;

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
+use crate::children;
+
 /// A Rust compiler that was found, and the flags it gets.
 #[derive(Clone, Debug)]
 pub struct Rustc {
@@ -102,13 +104,13 @@ impl Rustc {
         if makes == Makes::Object {
             command.args(["--emit", "obj"]);
         }
-        let answer = command.arg("-o").arg(to).arg(source).output();
-        let answer = answer.map_err(|e| CompileError::NotFound { program: self.program.clone(), reason: e.to_string() })?;
+        let (status, said) = children::run(command.arg("-o").arg(to).arg(source))
+            .map_err(|e| CompileError::NotFound { program: self.program.clone(), reason: e.to_string() })?;
         let time = start.elapsed();
-        if answer.status.success() {
+        if status.success() {
             return Ok(time);
         }
-        let message: Vec<String> = String::from_utf8_lossy(&answer.stderr).lines().take(20).map(str::to_owned).collect();
+        let message: Vec<&str> = said.lines().take(20).collect();
         Err(CompileError::Refused { message: message.join("\n") })
     }
 }

@@ -284,6 +284,31 @@ fn an_interrupted_command_leaves_no_files_behind() {
     assert_eq!(files(), 0);
 }
 
+/// A compiler that takes a minute.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_command_ends_its_compilers() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    let (compiler, running) = (folder.path().join("slow"), folder.path().join("running"));
+    let script =
+        format!("#!/bin/sh\nif [ \"$1\" = --version ]; then echo slow; exit; fi\necho $$ >> {}\nexec sleep 60\n", running.display());
+    std::fs::write(&compiler, script).unwrap();
+    std::fs::set_permissions(&compiler, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let mut command = articulated(&["compare", "double_pendulum"]);
+    command.env("RUSTC", &compiler).stdout(std::process::Stdio::null()).stderr(std::process::Stdio::null());
+    let mut child = command.spawn().unwrap();
+    let started = || std::fs::read_to_string(&running).unwrap_or_default();
+    while !started().ends_with('\n') {
+        assert!(child.try_wait().unwrap().is_none(), "it ended before it compiled");
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let runs = |id: &str| Command::new("kill").args(["-0", id]).output().unwrap().status.success();
+    assert!(started().lines().all(|id| !runs(id)), "{}", started());
+}
+
 /// The textbook's form knows no effects: it would call right results wrong.
 #[test]
 fn a_scene_with_effects_is_held_to_the_library_and_that_is_said() {
