@@ -1,6 +1,7 @@
 //! The robot that a command is about: a bundled one by its name, a URDF by its path, or that of a scene, with its edits and effects.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use articulated_codegen::scene::{self, Scene};
 use articulated_codegen::{Appended, Error, Generated, Options, Request, Sines, choose_frames, generate, nearest};
@@ -253,9 +254,16 @@ fn document(name: &str) -> Result<(String, Vec<u8>), Failure> {
     }
 }
 
-/// The bytes of a file, no more than a URDF may have; `-` is the standard input.
+/// The bytes of a file, no more than a URDF may have; `-` is the standard input, which one file alone can come by.
 pub(crate) fn read_bytes(name: &str) -> std::io::Result<Vec<u8>> {
-    if name == "-" { read_at_most(std::io::stdin().lock(), MOST_BYTES) } else { articulated_urdf::read_file(name.as_ref(), MOST_BYTES) }
+    static TAKEN: AtomicBool = AtomicBool::new(false);
+    match name {
+        "-" if TAKEN.swap(true, Ordering::Relaxed) => {
+            Err(std::io::Error::other("the standard input is another file of this command already"))
+        }
+        "-" => read_at_most(std::io::stdin().lock(), MOST_BYTES),
+        name => articulated_urdf::read_file(name.as_ref(), MOST_BYTES),
+    }
 }
 
 fn read_file(name: &str) -> Result<Vec<u8>, Failure> {

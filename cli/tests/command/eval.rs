@@ -298,3 +298,10 @@ fn levels_that_are_less_exact_than_the_library_are_refused() {
     let ended = run(&["eval", scene.name(), "--function", "inverse_dynamics", "--states", states.name()]);
     assert_eq!(ended.status, 0, "{}", ended.err);
 }
+
+#[test]
+fn one_standard_input_is_not_two_files() {
+    let urdf = articulated_models::robot("simple_pendulum").unwrap().urdf;
+    let ended = run_with(&["eval", "-", "--function", "mass_matrix", "--states", "-"], urdf.as_bytes());
+    assert_eq!((ended.status, ended.err.as_str()), (1, "error: -: the standard input is another file of this command already\n"));
+}
