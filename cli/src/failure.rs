@@ -1,9 +1,9 @@
 //! Why a command ended without doing what was asked, and the status it ends with.
 
 use articulated_codegen::{Reason, Refusal, RobotError};
-use articulated_motion::MotionErrors;
+use articulated_motion::{Fault, MotionErrors};
 use articulated_scene::SceneErrors;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use crate::diagnostic::Diagnostic;
 
@@ -17,7 +17,7 @@ pub const USAGE: u8 = 2;
 pub const TOOL: u8 = 3;
 /// A comparison exceeded its bound.
 pub const BOUND: u8 = 4;
-/// Ctrl-C; what shells make of that signal.
+/// Ctrl-C; what shells make of that signal, as of others that end it.
 pub const INTERRUPTED: u8 = 130;
 
 /// What each status means, for people.
@@ -28,46 +28,40 @@ Exit status:
   2  the command line is wrong
   3  a tool (rustc) failed or was not found
   4  a comparison exceeded its bound
-  130  interrupted (Ctrl-C)";
+  130  interrupted (Ctrl-C; 129 and 143 by SIGHUP and SIGTERM)";
 
-/// A status and what to say, a line for each thing that is wrong.
+/// A status and what to say, an error for each thing that is wrong.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Failure {
     pub(crate) status: u8,
-    #[serde(rename = "errors", serialize_with = "as_diagnostics")]
-    pub(crate) lines: Vec<String>,
+    pub(crate) errors: Vec<Diagnostic>,
     /// Whether a report was printed: as JSON it is all there is to print.
     #[serde(skip)]
     pub(crate) reported: bool,
 }
 
-/// As in the report of `check`.
-fn as_diagnostics<S: Serializer>(lines: &[String], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(lines.iter().cloned().map(Diagnostic::plain))
-}
-
 impl Failure {
     /// The input is wrong.
-    pub(crate) fn input(lines: impl IntoIterator<Item = String>) -> Self {
-        Self { status: INPUT, lines: lines.into_iter().collect(), reported: false }
+    pub(crate) fn input(errors: impl IntoIterator<Item: Into<Diagnostic>>) -> Self {
+        Self { status: INPUT, errors: errors.into_iter().map(Into::into).collect(), reported: false }
     }
 
     /// The command line is wrong.
     pub(crate) fn usage(line: String) -> Self {
-        Self { status: USAGE, lines: vec![line], reported: false }
+        Self { status: USAGE, errors: vec![line.into()], reported: false }
     }
 
     /// A tool failed.
     pub(crate) fn tool(error: &impl ToString) -> Self {
-        Self { status: TOOL, lines: vec![error.to_string()], reported: false }
+        Self { status: TOOL, errors: vec![error.to_string().into()], reported: false }
     }
 
     /// All of them, with the gravest status: wrong input comes before a wrong command line, and both before a tool that fails.
     pub(crate) fn of(failures: impl IntoIterator<Item = Self>) -> Self {
-        let mut all = Self { status: BOUND, lines: Vec::new(), reported: false };
+        let mut all = Self { status: BOUND, errors: Vec::new(), reported: false };
         for failure in failures {
             all.status = all.status.min(failure.status);
-            all.lines.extend(failure.lines);
+            all.errors.extend(failure.errors);
         }
         all
     }
@@ -82,7 +76,7 @@ impl Failure {
 
     /// A comparison exceeded its bound.
     pub(crate) fn bound(line: String) -> Self {
-        Self { status: BOUND, lines: vec![line], reported: false }
+        Self { status: BOUND, errors: vec![line.into()], reported: false }
     }
 
     /// So does one in the report that was just printed.
@@ -98,7 +92,7 @@ impl Failure {
 
 impl From<SceneErrors> for Failure {
     fn from(all: SceneErrors) -> Self {
-        Self::input(all.errors.iter().map(ToString::to_string))
+        Self::input(all.errors.iter().map(Diagnostic::of_scene))
     }
 }
 
@@ -106,7 +100,7 @@ impl From<RobotError> for Failure {
     fn from(error: RobotError) -> Self {
         match error {
             RobotError::Several { errors } => Self::of(errors.into_iter().map(Self::from)),
-            RobotError::Urdf(problems) => Self::input(problems.errors.iter().map(ToString::to_string)),
+            RobotError::Urdf(problems) => Self::input(problems.errors.iter().map(Diagnostic::of)),
             RobotError::Edits { refusals } => Self::input(refusals.iter().flat_map(refused)),
             RobotError::Scene(errors) => errors.into(),
             other => Self::input([other.to_string()]),
@@ -116,7 +110,10 @@ impl From<RobotError> for Failure {
 
 impl From<MotionErrors> for Failure {
     fn from(all: MotionErrors) -> Self {
-        Self::input(all.errors.iter().map(ToString::to_string))
+        Self::input(all.errors.iter().map(|error| match &error.fault {
+            Fault::Scene(scene) => Diagnostic { message: error.to_string(), ..Diagnostic::of_scene(scene) },
+            _ => error.to_string().into(),
+        }))
     }
 }
 
@@ -142,14 +139,10 @@ pub(crate) fn undefined(error: articulated_codegen::Error) -> Result<String, art
     }
 }
 
-/// A line for each thing that is wrong with an edit.
-fn refused(refusal: &Refusal) -> Vec<String> {
+/// An error for each thing that is wrong with an edit.
+fn refused(refusal: &Refusal) -> Vec<Diagnostic> {
     match &refusal.reason {
-        Reason::Urdf(problems) => problems.errors.iter().map(ToString::to_string).collect(),
-        _ => lines(&refusal.to_string()),
+        Reason::Urdf(problems) => problems.errors.iter().map(Diagnostic::of).collect(),
+        _ => refusal.to_string().lines().map(|line| line.to_owned().into()).collect(),
     }
-}
-
-fn lines(text: &str) -> Vec<String> {
-    text.lines().map(str::to_owned).collect()
 }

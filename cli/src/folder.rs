@@ -7,7 +7,7 @@ use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 use tempfile::TempDir;
 
 use crate::children;
-use crate::failure::INTERRUPTED;
+use crate::interrupt;
 
 /// Those there are.
 static FOLDERS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
@@ -19,9 +19,8 @@ pub(crate) struct Folder(TempDir);
 impl Folder {
     /// An empty folder where temporary files belong.
     pub(crate) fn new() -> io::Result<Self> {
-        static HANDLER: Once = Once::new();
-        // Where no handler can be set, an interrupted command leaves its folders behind, and nothing else is amiss.
-        HANDLER.call_once(|| drop(ctrlc::set_handler(interrupted)));
+        static WATCH: Once = Once::new();
+        WATCH.call_once(|| interrupt::watch(interrupted));
         // Nothing can come between a folder and its place in the list.
         let mut folders = folders();
         let folder = tempfile::Builder::new().prefix("articulated").tempdir()?;
@@ -45,14 +44,14 @@ fn folders() -> MutexGuard<'static, Vec<PathBuf>> {
 }
 
 /// Ends compilers, removes the folders and ends the process. The lists stay locked, so that no other thread makes another of either.
-fn interrupted() {
+fn interrupted(status: i32) {
     let _children = children::kill();
     let folders = folders();
     for folder in folders.iter() {
         // A file that is still being written can keep a folder for a moment.
         let _ = (0..20).any(|_| std::fs::remove_dir_all(folder).is_ok() || !folder.exists() || wait());
     }
-    std::process::exit(INTERRUPTED.into());
+    std::process::exit(status);
 }
 
 /// Waits a moment; false.

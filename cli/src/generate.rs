@@ -7,6 +7,7 @@ use crate::arguments::{Format, GenerateArguments, types_of_batch};
 use crate::console;
 use crate::failure::Failure;
 use crate::ledger::{Stage, stages};
+use crate::output;
 use crate::robot::Robot;
 
 #[derive(Serialize)]
@@ -30,6 +31,7 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
     types_of_batch(&arguments.batch)?;
     let robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
     robot.keeps_its_files("--output", arguments.output.as_deref())?;
+    arguments.output.as_deref().map_or(Ok(()), |path| output::file("--output", path))?;
     let mut request = robot.whole_request(&crate::names::flat(&arguments.functions));
     if arguments.functions.is_empty() {
         request.options.functions.clone_from(&robot.options.functions);
@@ -49,7 +51,7 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
     let generated = generate(&request)?;
     robot.warn_of(generated.warnings.iter().chain(&generated.snapped));
     if let Some(path) = &arguments.output {
-        std::fs::write(path, &generated.source).map_err(|e| Failure::input([format!("{}: {e}", path.display())]))?;
+        output::write(path, &generated.source)?;
     }
     match (format, &arguments.output) {
         (Format::Json, _) => console::print(&json(&generated)),

@@ -17,9 +17,12 @@ pub mod failure;
 mod folder;
 mod functions;
 mod generate;
+mod interrupt;
 mod ledger;
+mod named_scene;
 mod names;
 mod native;
+mod output;
 mod parallel;
 mod robot;
 pub mod scaling;
@@ -56,7 +59,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     match dispatch(&arguments) {
         Ok(status) => status,
         Err(failure) => {
-            failure.lines.iter().for_each(|line| console::error(line));
+            failure.errors.iter().for_each(|error| console::error(&error.message));
             if arguments.format == Format::Json && !failure.reported {
                 // A reader that has gone away has nothing to be told.
                 let _ = console::print(&json(&failure));

@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use articulated_codegen::scene::{self, Scene};
 use articulated_codegen::{Appended, Error, Generated, Options, Request, Sines, choose_frames, generate, nearest};
 use articulated_core::description::Base;
 use articulated_core::model::Model;
@@ -13,6 +12,7 @@ use crate::arguments::{RobotArguments, names_in_rust};
 use crate::console;
 use crate::edits::{Edits, FrameArguments};
 use crate::failure::Failure;
+use crate::{named_scene, output};
 
 /// A robot's file as reports name it, with the scene that it is of.
 pub(crate) fn named(file: &str, scene: Option<&str>) -> String {
@@ -40,10 +40,11 @@ impl Robot {
     pub(crate) fn find(arguments: &RobotArguments) -> Result<Self, Failure> {
         names_in_rust(&arguments.rename)?;
         let name = arguments.robot.as_str();
-        if name.ends_with(".toml") || is_scene_alone(name) {
+        if named_scene::is_scene(name) {
             return Self::of_scene(name, arguments);
         }
-        let (file, urdf) = document(name)?;
+        let scenes: Vec<&str> = articulated_models::SCENES.iter().map(|scene| scene.name).collect();
+        let (file, urdf) = document(name, &scenes)?;
         let bundled = articulated_models::robot(name);
         let base = bundled.map_or(Base::Fixed, |b| b.base);
         let path = (bundled.is_none() && name != "-").then(|| PathBuf::from(name));
@@ -65,12 +66,7 @@ impl Robot {
 
     /// The robot of a scene: a file, or a bundled one. What the arguments say stands in place of what the scene says; edits come after the scene's.
     fn of_scene(name: &str, arguments: &RobotArguments) -> Result<Self, Failure> {
-        let robots = known_by_name();
-        let prepared = match articulated_models::scene(name).filter(|_| is_scene_alone(name)) {
-            Some(bundled) => scene::open_in(Scene::read(&bundled.file(), bundled.toml).map_err(Error::from)?, Path::new(""), &robots)?,
-            None if !Path::new(name).exists() => return Err(no_scene(name)),
-            None => scene::open(Path::new(name), &robots)?,
-        };
+        let (prepared, _) = named_scene::open(name)?;
         let bundled = matches!(prepared.scene.robot, articulated_scene::Robot::Bundled(_));
         let mut request = prepared.request;
         let options = &mut request.options;
@@ -173,8 +169,7 @@ impl Robot {
 
     /// Refuses an option whose path is a file that the robot was read from, and would be replaced.
     pub(crate) fn keeps_its_files(&self, option: &str, path: Option<&Path>) -> Result<(), Failure> {
-        let Some(Ok(found)) = path.map(Path::canonicalize) else { return Ok(()) };
-        match path.filter(|_| self.files.iter().any(|file| file.canonicalize().is_ok_and(|file| file == found))) {
+        match path.filter(|path| self.files.iter().any(|file| output::is_same(file, path))) {
             Some(path) => {
                 Err(Failure::usage(format!("{option} {}: found a file that the robot is read from, expected another", path.display())))
             }
@@ -212,15 +207,10 @@ pub(crate) fn note_of_parameters(options: &Options) -> Option<String> {
     (!list.is_empty()).then(|| format!("parameters: {list}: constants here, with the numbers of the robot's description"))
 }
 
-/// The robots that scenes may call by name.
-pub(crate) fn known_by_name() -> Vec<scene::Bundled<'static>> {
-    articulated_models::ROBOTS.iter().map(|robot| scene::Bundled { name: robot.name, urdf: robot.urdf, base: robot.base }).collect()
-}
-
 /// The edits, with the documents of the robots to append.
 fn edit(options: &mut Options, edits: &Edits) -> Result<(), Failure> {
     for other in &edits.append {
-        let (file, urdf) = document(&other.file)?;
+        let (file, urdf) = document(&other.file, &[])?;
         options.robot.append.push(Appended { urdf, file, at: other.at.clone(), prefix: other.prefix.clone(), origin: other.origin });
     }
     options.robot.payloads.extend(edits.payload.iter().cloned());
@@ -228,29 +218,17 @@ fn edit(options: &mut Options, edits: &Edits) -> Result<(), Failure> {
     Ok(())
 }
 
-/// A path of a scene that there is not: with the bundled one of this name, which is called without an ending.
-fn no_scene(name: &str) -> Failure {
-    let bundled = name.strip_suffix(".toml").filter(|stem| articulated_models::scene(stem).is_some());
-    let hint = bundled.map(|stem| format!("; the bundled scene is {stem:?}")).unwrap_or_default();
-    Failure::input([format!("{name}: found no such file{hint}")])
-}
-
-/// Whether it names a bundled scene, and neither a robot nor a file.
-fn is_scene_alone(name: &str) -> bool {
-    articulated_models::scene(name).is_some() && articulated_models::robot(name).is_none() && !Path::new(name).exists()
-}
-
 /// The files of the robots to append.
 fn appended(edits: &Edits) -> impl Iterator<Item = PathBuf> + '_ {
     edits.append.iter().map(|other| PathBuf::from(&other.file)).filter(|file| file.is_file())
 }
 
-/// A file's name for messages, and its bytes: of a bundled robot by its name, the standard input, or a file.
-fn document(name: &str) -> Result<(String, Vec<u8>), Failure> {
+/// A file's name for messages, and its bytes: of a bundled robot by its name, the standard input, or a file. `scenes` are names that would do as well.
+fn document(name: &str, scenes: &[&str]) -> Result<(String, Vec<u8>), Failure> {
     match articulated_models::robot(name) {
         Some(bundled) => Ok((format!("{name}.urdf"), bundled.urdf.as_bytes().to_vec())),
-        None if name == "-" => Ok(("<stdin>".to_owned(), read_file(name)?)),
-        None => Ok((name.to_owned(), read_file(name)?)),
+        None if name == "-" => Ok(("<stdin>".to_owned(), read_file(name, scenes)?)),
+        None => Ok((name.to_owned(), read_file(name, scenes)?)),
     }
 }
 
@@ -266,13 +244,13 @@ pub(crate) fn read_bytes(name: &str) -> std::io::Result<Vec<u8>> {
     }
 }
 
-fn read_file(name: &str) -> Result<Vec<u8>, Failure> {
+fn read_file(name: &str, scenes: &[&str]) -> Result<Vec<u8>, Failure> {
     read_bytes(name).map_err(|error| {
         if name == "-" || Path::new(name).exists() {
             return Failure::input([format!("{name}: cannot be read: {error}")]);
         }
         let names = || articulated_models::ROBOTS.iter().map(|r| r.name);
-        let near = nearest(name, names()).map(|n| format!("; did you mean {n:?}?")).unwrap_or_default();
+        let near = nearest(name, names().chain(scenes.iter().copied())).map(|n| format!("; did you mean {n:?}?")).unwrap_or_default();
         let known = names().collect::<Vec<_>>().join(", ");
         Failure::input([format!("{name}: found neither a file ({error}) nor a bundled robot{near} (bundled: {known})")])
     })

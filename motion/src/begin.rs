@@ -3,6 +3,7 @@
 use std::fmt;
 
 use articulated::Dynamics;
+use articulated_core::Plain;
 use articulated_core::effect::{Applied, EffectId};
 use articulated_scene::Controller;
 
@@ -98,7 +99,8 @@ impl fmt::Display for Sunk {
 
 impl fmt::Display for Beyond {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { file, joint, found, lower, upper } = self;
+        let Self { file, joint, .. } = self;
+        let [found, lower, upper] = [self.found, self.lower, self.upper].map(Plain);
         write!(f, "{file}: initial.q.{joint}: found {found}, beyond its limits, expected {lower} to {upper}; used as asked for")
     }
 }

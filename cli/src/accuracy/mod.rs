@@ -28,6 +28,7 @@ use crate::compiled::Rustc;
 use crate::console;
 use crate::failure::Failure;
 use crate::names;
+use crate::output;
 use crate::robot::Robot;
 use crate::tips::Tips;
 use report::Report;
@@ -61,6 +62,7 @@ pub(crate) fn run(arguments: &AccuracyArguments, format: Format) -> Result<(), F
             levels.push(level);
         }
     }
+    arguments.output.as_deref().map_or(Ok(()), |folder| output::folder("--output", folder))?;
     let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
     let reference = Reference::new(&reading.description, &robot.options);
     let report = measure::all(&robot, &reference, &rustc, &functions, &levels, arguments)?;
@@ -80,16 +82,11 @@ pub(crate) fn run(arguments: &AccuracyArguments, format: Format) -> Result<(), F
 
 /// All files of a report.
 fn write(folder: &Path, report: &Report) -> Result<(), Failure> {
-    let failed = |path: &Path, e: &dyn std::fmt::Display| Failure::input([format!("{}: {e}", path.display())]);
-    std::fs::create_dir_all(folder).map_err(|e| failed(folder, &e))?;
-    let put = |name: &str, bytes: &[u8]| {
-        let path = folder.join(name);
-        std::fs::write(&path, bytes).map_err(|e| failed(&path, &e))
-    };
+    let put = |name: &str, bytes: &[u8]| output::write(&folder.join(name), bytes);
     let diagrams = plot::diagrams(report);
     for (name, drawing) in &diagrams {
         put(&format!("{name}.svg"), plot::svg(drawing).as_bytes())?;
-        put(&format!("{name}.png"), &plot::png(drawing).map_err(|e| failed(folder, &e))?)?;
+        put(&format!("{name}.png"), &plot::png(drawing).map_err(|e| Failure::tool(&e))?)?;
     }
     put("accuracy.csv", csv::text(report).as_bytes())?;
     put("accuracy.json", crate::json(report).as_bytes())?;

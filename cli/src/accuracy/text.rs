@@ -20,7 +20,8 @@ pub(super) fn text(report: &Report) -> String {
         Against::Textbook => "the textbook's formulas on the URDF's numbers",
         Against::Library => "the generic library on the model's numbers",
     };
-    out + &wrapped(&EXPLAINED.replace("REFERENCE", reference))
+    let backward = if report.functions.iter().flat_map(|f| &f.points).any(|p| p.backward.is_some()) { BACKWARD } else { "" };
+    out + &wrapped(&EXPLAINED.replace("REFERENCE", reference).replace("BACKWARD", backward))
 }
 
 /// What was measured where.
@@ -53,11 +54,13 @@ const EXPLAINED: &str = "
 *: nothing measured is both faster and more accurate. Time: the median of a call; IQR: the distance of its quartiles.
 Errors are relative to the sum of the magnitudes of the terms: median, 99 % and largest over the random states, against REFERENCE.
 ulps: the same error in units of the last place of the result itself (of a double), large where terms cancel.
-backward: how far the torques that a solution needs are from those given, relative to the magnitudes of their terms.
-rounding: the error against the same formulas with the constants of the generated code; bound: what rounding can be at most on these states, guaranteed; reached: the largest \
+BACKWARDrounding: the error against the same formulas with the constants of the generated code; bound: what rounding can be at most on these states, guaranteed; reached: the largest \
 part of a bound that an error was that is finite; hard: the largest error on the hard states, overflow if one has no result: a number on the way is beyond the largest of the level.
 operations: additions, multiplications, divisions and roots of a call (a multiply-add is two; sines and cosines apart); code: machine code of the function alone.
 ";
+
+const BACKWARD: &str =
+    "backward: how far the torques that a solution needs are from those given, relative to the magnitudes of their terms.\n";
 
 fn table(f: &FunctionReport) -> Table {
     let backward = f.points.iter().any(|p| p.backward.is_some());

@@ -46,6 +46,14 @@ fn singles(seen: &Seen) -> Option<String> {
 
 fn doubled(seen: &Seen) -> Option<String> {
     let p = seen.at("double_double").filter(|p| off(p).is_finite() && seen.times(p) > 1.0)?;
+    if p.relative.largest < 2.0 * off(p) {
+        return Some(format!(
+            "double_double takes {:.0} times as long and is off by {:.1e}, where f64 is off by {:.1e}: what is left is the rounding of the result.",
+            seen.times(p),
+            p.relative.largest,
+            seen.plain.relative.largest
+        ));
+    }
     Some(format!(
         "double_double takes {:.0} times as long; what it computes is off by {:.1e} from its own formulas, but by {:.1e} from the URDF's numbers, where f64 is off by {:.1e}: \
          the constants of the model are doubles at every level, and that is what is left.",

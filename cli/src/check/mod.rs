@@ -32,7 +32,7 @@ fn examine(robot: &Robot, functions: &[String]) -> Report {
             report.errors.extend(problems.errors.iter().map(Diagnostic::of));
             report.warnings.extend(problems.warnings.iter().map(Diagnostic::of));
         }
-        Err(error) => report.errors.extend(Failure::from(error).lines.into_iter().map(Diagnostic::plain)),
+        Err(error) => report.errors.extend(Failure::from(error).errors),
         Ok(reading) => {
             report.warnings.extend(reading.warnings.iter().chain(&reading.snapped).map(Diagnostic::of));
             report.unused.extend(reading.unused.iter().map(ToString::to_string));
@@ -41,8 +41,8 @@ fn examine(robot: &Robot, functions: &[String]) -> Report {
     }
     // Joints may be locked beside the scene: its motion is that of the scene alone.
     match robot.scene.as_deref().map(crate::simulate::motion::look_over) {
-        Some(Ok(odd)) => report.warnings.extend(odd.into_iter().map(Diagnostic::plain)),
-        Some(Err(failure)) => report.errors.extend(failure.lines.into_iter().map(Diagnostic::plain)),
+        Some(Ok(odd)) => report.warnings.extend(odd.into_iter().map(Diagnostic::from)),
+        Some(Err(failure)) => report.errors.extend(failure.errors),
         None => {}
     }
     if report.errors.is_empty() {
@@ -62,16 +62,16 @@ fn describe(robot: &Robot, reading: &Reading, report: &mut Report) {
             // Names that are one in Rust are in the way of code alone.
             let (clashes, wrong): (Vec<Error>, _) =
                 told(articulated_codegen::check_identifiers(&request, &model)).partition(|e| matches!(e, Error::NameClash { .. }));
-            report.errors.extend(named.chain(wrong).flat_map(|e| Failure::from(e).lines).map(Diagnostic::plain));
-            report.warnings.extend(clashes.iter().map(|e| Diagnostic::plain(e.to_string())));
+            report.errors.extend(named.chain(wrong).flat_map(|e| Failure::from(e).errors));
+            report.warnings.extend(clashes.iter().map(|e| Diagnostic::from(e.to_string())));
         }
-        Err(failure) => report.errors.extend(failure.lines.into_iter().map(Diagnostic::plain)),
+        Err(failure) => report.errors.extend(failure.errors),
     }
 }
 
 fn check_function(robot: &Robot, function: &str, report: &mut Report) {
     match articulated_codegen::generate(&robot.whole_request(&[function.to_owned()])) {
         Ok(_) => report.functions.push(function.to_owned()),
-        Err(error) => report.errors.extend(Failure::from(error).lines.into_iter().map(Diagnostic::plain)),
+        Err(error) => report.errors.extend(Failure::from(error).errors),
     }
 }

@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::base::Base;
 use crate::diagnostic::Diagnostic;
 use crate::robot::Robot;
+use crate::units::Units;
 
 /// Beyond this many bodies some questions are left unasked: no robot, and quadratic work.
 const MANY: usize = 5000;
@@ -31,7 +32,23 @@ pub(super) struct Report {
     pub(super) base_parameters: Option<Base>,
     /// Functions that can be generated, of those asked for.
     pub(super) functions: Vec<String>,
+    pub(super) units: Units,
 }
+
+const UNITS: Units = Units(&[
+    ("gravity", "m/s²"),
+    ("totals.mass", "kg"),
+    ("totals.moving_mass", "kg"),
+    ("links[].mass", "kg"),
+    ("links[].centre_of_mass", "m"),
+    ("links[].principal_moments", "kg·m²"),
+    ("joints[].lower", "rad or m"),
+    ("joints[].upper", "rad or m"),
+    ("joints[].velocity", "rad/s or m/s"),
+    ("joints[].effort", "N·m or N"),
+    ("joints[].locked", "rad or m"),
+    ("joints[].carries", "kg"),
+]);
 
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub(super) struct Totals {
@@ -105,6 +122,7 @@ impl Report {
             joints: Vec::new(),
             base_parameters: None,
             functions: Vec::new(),
+            units: UNITS,
         }
     }
 
@@ -126,15 +144,16 @@ impl Report {
     }
 
     fn warn_of_massless_joints(&mut self, model: &Model<f64>) {
+        let file = &self.file;
         if model.bodies.len() > MANY {
-            return self.warnings.push(Diagnostic::plain(format!(
-                "more than {MANY} bodies: whether every joint has an inertia of its own was not looked at"
+            return self.warnings.push(Diagnostic::from(format!(
+                "{file}: more than {MANY} bodies: whether every joint has an inertia of its own was not looked at"
             )));
         }
         for body in model.massless_joints() {
             let name = &model.bodies[body].name;
             let message = format!(
-                "joint {name:?} has no inertia of its own: nothing behind it resists its motion, or another joint moves the same mass in the same way, \
+                "{file}: joint {name:?} has no inertia of its own: nothing behind it resists its motion, or another joint moves the same mass in the same way, \
                  so the mass matrix is singular, and forward dynamics is undefined for this robot; expected an inertia behind it, an armature, or one \
                  joint fewer"
             );

@@ -23,6 +23,7 @@ use crate::compiled::Rustc;
 use crate::console::{self, Progress};
 use crate::failure::{Failure, OK};
 use crate::folder::Folder;
+use crate::output;
 use crate::robot::Robot;
 use crate::tips::Tips;
 use crate::{names, parallel};
@@ -47,6 +48,7 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
     let mut robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
     robot.has_a_level_of_rounding()?;
     robot.keeps_its_files("--chart", arguments.chart.as_deref())?;
+    arguments.chart.as_deref().map_or(Ok(()), |path| output::file("--chart", path))?;
     robot.options.forbid_unsafe |= arguments.forbid_unsafe;
     let reading = robot.read()?;
     robot.warn_of(reading.warnings.iter().chain(&reading.snapped));
@@ -79,7 +81,7 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
     })?;
     // What took minutes to measure is told even if the drawing cannot be written.
     if let Some(file) = &arguments.chart {
-        std::fs::write(file, chart::svg(&report)).map_err(|e| Failure::input([format!("{}: {e}", file.display())]).after_report())?;
+        output::write(file, chart::svg(&report)).map_err(Failure::after_report)?;
     }
     match report.exceeded(arguments.bound, VARIANT_BOUND) {
         None => Ok(OK),

@@ -110,6 +110,7 @@ impl Rustc {
         if status.success() {
             return Ok(time);
         }
+        let said = if said.trim().is_empty() { format!("it said nothing and ended with {status}: perhaps memory was short") } else { said };
         let message: Vec<&str> = said.lines().take(20).collect();
         Err(CompileError::Refused { message: message.join("\n") })
     }

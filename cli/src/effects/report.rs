@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::compare::timing::Summary;
 use crate::simulate::stage::Stage;
+use crate::units::Units;
 
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Report {
@@ -25,7 +26,11 @@ pub(super) struct Report {
     pub(super) compiler: Option<String>,
     /// One for each function.
     pub(super) costs: Vec<Cost>,
+    pub(super) units: Units,
 }
+
+/// Of what does not say its own.
+const UNITS: Units = Units(&[("gravity", "m/s²")]);
 
 /// An effect on a joint or a link.
 #[derive(Clone, Debug, Serialize)]
@@ -151,6 +156,7 @@ impl Report {
             limbs: 1,
             compiler: None,
             costs: Vec::new(),
+            units: UNITS,
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use articulated_core::Plain;
 use articulated_core::model::Model;
 
 use super::BOUND;
@@ -11,7 +12,7 @@ use crate::robot::named;
 use crate::table::{Table, plain};
 
 pub(super) fn text(report: &Report, model: &Model<f64>) -> String {
-    let [x, y, z] = report.gravity;
+    let [x, y, z] = report.gravity.map(Plain);
     let effects = if report.effects.is_empty() { String::new() } else { format!("; with {}", report.effects.join(", ")) };
     let mut out =
         format!("{}, {} base, gravity ({x}, {y}, {z}) m/s²{effects}\n", plain(&named(&report.robot, report.scene.as_deref())), report.base);

@@ -15,6 +15,7 @@ use crate::compiled::{FILLER_INSTRUCTIONS, Rustc, Target};
 use crate::console::{self, Progress};
 use crate::failure::Failure;
 use crate::names;
+use crate::output;
 use crate::table::counted;
 use cold::Cold;
 use report::Report;
@@ -37,6 +38,7 @@ pub(crate) fn run(arguments: &ScalingArguments, format: Format) -> Result<(), Fa
     if cfg!(debug_assertions) {
         console::warn("this command was built without optimisation: times of generic code, and of the generation, mean little");
     }
+    arguments.chart.as_deref().map_or(Ok(()), |path| output::file("--chart", path))?;
     let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
     let mut report = Report {
         compiler: rustc.version.clone(),
@@ -69,12 +71,7 @@ pub(crate) fn run(arguments: &ScalingArguments, format: Format) -> Result<(), Fa
         Format::Text => text::text(&report),
     })?;
     // What took minutes to measure is told even if the drawing cannot be written.
-    match &arguments.chart {
-        None => Ok(()),
-        Some(path) => {
-            std::fs::write(path, plot::svg(&report)).map_err(|e| Failure::input([format!("{}: {e}", path.display())]).after_report())
-        }
-    }
+    arguments.chart.as_ref().map_or(Ok(()), |path| output::write(path, plot::svg(&report))).map_err(Failure::after_report)
 }
 
 /// Every function on every length that its result allows.

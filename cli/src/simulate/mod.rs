@@ -26,6 +26,7 @@ use crate::arguments::Format;
 use crate::compiled::Rustc;
 use crate::console::{self, Progress};
 use crate::failure::{Failure, INPUT, OK};
+use crate::output;
 use arguments::SimulateArguments;
 use motion::Motion;
 use page::Setting;
@@ -43,7 +44,7 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
         return against::run(&stage, &begin, &settings, file, format).map(|()| OK);
     }
     motion::solvable(&stage)?;
-    arguments.output.as_deref().map(room).transpose()?;
+    arguments.output.as_deref().map_or(Ok(()), |folder| output::folder("--output", folder))?;
     let progress = Progress::of_whole(format!("{}: motion", stage.name));
     let (motion, code) = match arguments.generated {
         true => (by_generated_code(&stage, &begin, &settings, &progress)?, "generated"),
@@ -71,15 +72,6 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     })
 }
 
-/// The folder that files go to, made if it is not there.
-fn room(folder: &Path) -> Result<(), Failure> {
-    if folder.is_file() {
-        let expected = "a folder, which is made if it is not there";
-        return Err(Failure::input([format!("-o {}: found a file, expected {expected}", folder.display())]));
-    }
-    std::fs::create_dir_all(folder).map_err(|e| unwritable(folder, &e))
-}
-
 fn by_generated_code(stage: &Stage, begin: &Begin, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
     let (generated, frames) = motion::generate(stage, settings.integrator)?;
     progress.doing(format!("{}: rustc", stage.name));
@@ -96,10 +88,6 @@ fn by_generic_code(stage: &Stage, begin: &Begin, settings: &Settings, progress: 
     motion::run(stage, begin, (&stage.model, &stage.frame_names()), settings, progress)
 }
 
-fn unwritable(path: &Path, error: &std::io::Error) -> Failure {
-    Failure::input([format!("{}: {error}", path.display())])
-}
-
 /// All files of a motion; their names go into the summary, which is the last of them.
 fn write(stage: &Stage, motion: &Motion, summary: &mut Summary, folder: &Path) -> Result<(), Failure> {
     let recording = &motion.recording;
@@ -108,9 +96,8 @@ fn write(stage: &Stage, motion: &Motion, summary: &mut Summary, folder: &Path) -
     summary.pictures_left_out = plot::PICTURES.into_iter().filter(|name| pictures.iter().all(|p| p.name != *name)).collect();
     clear(folder, &summary.pictures_left_out)?;
     let mut save = |name: &str, bytes: &[u8]| {
-        let path = folder.join(name);
         summary.files.push(name.to_owned());
-        std::fs::write(&path, bytes).map_err(|e| unwritable(&path, &e))
+        output::write(&folder.join(name), bytes)
     };
     let columns = columns::columns(recording);
     let csv = csv::text(&columns).map_err(|e| Failure::tool(&e))?;
@@ -122,15 +109,14 @@ fn write(stage: &Stage, motion: &Motion, summary: &mut Summary, folder: &Path) -
     }
     save("motion.html", page.as_bytes())?;
     summary.files.push("summary.json".to_owned());
-    let path = folder.join("summary.json");
-    std::fs::write(&path, crate::json(summary)).map_err(|e| unwritable(&path, &e))
+    output::write(&folder.join("summary.json"), crate::json(summary))
 }
 
 /// Removes pictures that are of an earlier motion.
 fn clear(folder: &Path, pictures: &[&str]) -> Result<(), Failure> {
     for path in pictures.iter().flat_map(|name| ["svg", "png"].map(|ending| folder.join(format!("{name}.{ending}")))) {
         match std::fs::remove_file(&path) {
-            Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(unwritable(&path, &e)),
+            Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(Failure::input([format!("{}: {e}", path.display())])),
             _ => {}
         }
     }

@@ -3,14 +3,14 @@
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
 
-use articulated_codegen::scene::{self, Prepared, Scene};
-use articulated_codegen::{Error, Request, nearest};
+use articulated_codegen::Request;
+use articulated_codegen::scene::Prepared;
 use articulated_core::description::Base;
 use articulated_scene::Robot;
 
 use crate::console;
 use crate::failure::Failure;
-use crate::robot::known_by_name;
+use crate::named_scene;
 
 /// A scene with its robot, as it moves, and what the command has to know besides.
 pub(crate) struct Stage {
@@ -53,21 +53,8 @@ impl Stage {
 
     /// The same, and nothing is told.
     pub(crate) fn open(name: &str) -> Result<Self, Failure> {
-        let path = Path::new(name);
-        let bundled = articulated_models::scene(name).filter(|_| !path.is_file());
-        let (prepared, folder) = match bundled {
-            Some(bundled) => {
-                let scene = Scene::read(&bundled.file(), bundled.toml).map_err(Error::from)?;
-                (scene::open_in(scene, Path::new(""), &known_by_name())?, PathBuf::new())
-            }
-            None if path.is_file() && path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf")) => {
-                let expected = format!("a scene, a TOML file with urdf = {name:?} in it");
-                return Err(Failure::input([format!("{name}: found a URDF, expected {expected}")]));
-            }
-            None if path.exists() => (scene::open(path, &known_by_name())?, path.parent().map(Path::to_owned).unwrap_or_default()),
-            None => return Err(unknown(name)),
-        };
-        let name = path.file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned());
+        let (prepared, folder) = named_scene::open(name)?;
+        let name = Path::new(name).file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned());
         Self::new(name, prepared, folder)
     }
 
@@ -88,12 +75,4 @@ impl Stage {
     pub(crate) fn base(&self) -> Base {
         self.request.options.robot.base
     }
-}
-
-fn unknown(name: &str) -> Failure {
-    let names = || articulated_models::SCENES.iter().map(|s| s.name);
-    let near = nearest(name.strip_suffix(".toml").unwrap_or(name), names()).map(|n| format!("; did you mean {n:?}?")).unwrap_or_default();
-    let robot = if articulated_models::robot(name).is_some() { "; that is a robot, and a scene says what to do with it" } else { "" };
-    let known = names().collect::<Vec<_>>().join(", ");
-    Failure::input([format!("{name}: found neither a file nor a bundled scene{robot}{near} (bundled: {known})")])
 }

@@ -7,6 +7,7 @@ use super::motion::Motion;
 use super::recording::{Happening, Recording};
 use super::stage::Stage;
 use crate::effects::sorts;
+use crate::units::Units;
 
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Summary {
@@ -44,7 +45,19 @@ pub(super) struct Summary {
     pub(super) files: Vec<String>,
     /// Pictures that are not, since all that they would show is zero throughout.
     pub(super) pictures_left_out: Vec<&'static str>,
+    pub(super) units: Units,
 }
+
+/// Of what does not say its own.
+const UNITS: Units = Units(&[
+    ("integrator.atol", "rad, m, and those a second"),
+    ("energy", "J; relative_imbalance a number"),
+    ("momentum.start", "three of kg·m²/s, about the centre of mass, and three of kg·m/s"),
+    ("momentum.end", "as at the start"),
+    ("momentum.largest_change_angular", "kg·m²/s"),
+    ("momentum.largest_change_linear", "kg·m/s"),
+    ("events[].time", "s"),
+]);
 
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Method {
@@ -132,6 +145,7 @@ impl Summary {
             warnings: stage.odd.iter().chain(&motion.warnings).cloned().collect(),
             files: Vec::new(),
             pictures_left_out: Vec::new(),
+            units: UNITS,
         }
         .with_balance(&stage.scene.file)
     }

@@ -13,19 +13,30 @@ fn advice_on_a_motion_is_json_too() {
         assert!(run["step"].is_number() != run["tolerance"].is_number(), "{run}");
     }
     assert_eq!(json.get("curves"), None);
+    let none = run(&["accuracy", "--simulate", "pendulum", "--advise", "--error", "1e-30", "--repetitions", "1"]);
+    assert!(none.status == 4 && none.out.contains("no run is accurate to 1e-30"), "{} {}", none.status, none.out);
 }
 
 #[test]
 fn files_that_cannot_be_written_do_not_cost_the_report() {
-    let file = File::new("taken", b"");
-    let folder = format!("{}/report", file.name());
+    let taken = tempfile::tempdir().unwrap();
+    for name in ["report.html", "integrators.html"] {
+        std::fs::create_dir(taken.path().join(name)).unwrap();
+    }
+    let folder = taken.path().to_str().unwrap().to_owned();
     let functions = ["simple_pendulum", "--functions", "gravity_torque", "--levels", "f64", "--states", "2"];
     let motion = ["--simulate", "pendulum"];
     for (words, list) in [(&functions[..], "functions"), (&motion[..], "curves")] {
         let words = [&["accuracy", "--repetitions", "1", "--format", "json", "--output", &folder], words].concat();
         let ended = run(&words);
-        assert!(ended.status == 1 && ended.err.contains(&format!("error: {folder}: ")), "{}", ended.err);
+        assert!(ended.status == 1 && ended.err.contains(&format!("error: {folder}/")), "{}", ended.err);
         assert!(ended.json()[list].as_array().is_some_and(|l| !l.is_empty()), "{}", ended.out);
+    }
+    // A folder that there cannot be is told before anything is measured.
+    let file = File::new("taken", b"");
+    for words in [&functions[..], &motion] {
+        let ended = run(&[&["accuracy", "--output", file.name()], words].concat());
+        assert!(ended.status == 1 && ended.out.is_empty() && ended.err.contains("found a file, expected a folder"), "{}", ended.err);
     }
 }
 

@@ -1,4 +1,4 @@
-use super::{File, run, run_with};
+use super::{File, articulated, end, run, run_with};
 
 const MASSLESS: &str = r#"<robot name="r"><link name="a"/><link name="b"/>
 <joint name="idle" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint></robot>"#;
@@ -268,4 +268,37 @@ fn effects_are_no_inertial_parameters_and_what_they_take_of_the_file_is_used() {
     assert_eq!(unused(""), [true, true]);
     assert_eq!(unused("effects.damping = \"urdf\""), [false, true]);
     assert_eq!(unused("effects.damping.j = 0.1"), [true, true]);
+}
+
+/// A folder or a file of that name is reached by `./`.
+#[test]
+fn a_bundled_name_is_the_bundled_one_wherever_it_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("pendulum")).unwrap();
+    std::fs::write(folder.path().join("golf_swing"), "robot = 3").unwrap();
+    let run_there = |words: &[&str]| {
+        let mut command = articulated(words);
+        command.current_dir(folder.path());
+        end(command, b"")
+    };
+    for words in [&["check", "pendulum"][..], &["check", "golf_swing"], &["simulate", "pendulum", "--end", "0.01"]] {
+        let ended = run_there(words);
+        assert_eq!(ended.status, 0, "{words:?}: {}", ended.err);
+    }
+    let own = run_there(&["simulate", "./golf_swing"]);
+    assert!(own.status == 1 && own.err.contains("./golf_swing:1: robot: found 3"), "{}", own.err);
+    let near = run(&["check", "golf_swng"]);
+    assert!(near.status == 1 && near.err.contains("did you mean \"golf_swing\"?"), "{}", near.err);
+    std::fs::write(folder.path().join("s.TOML"), "robot = \"cart_pole\"").unwrap();
+    assert_eq!(run_there(&["check", "s.TOML"]).status, 0);
+}
+
+#[test]
+fn errors_of_scenes_have_their_lines_in_json() {
+    let scene = File::new("wrong.toml", b"robot = \"cart_pole\"\ngravity = [0]\n[initial]\nq = 3\n");
+    for command in ["check", "simulate"] {
+        let errors = run(&[command, scene.name(), "--format", "json"]).json()["errors"].clone();
+        let at: Vec<_> = errors.as_array().unwrap().iter().map(|e| (e["line"].as_u64(), e["field"].as_str())).collect();
+        assert_eq!(at, [(Some(2), Some("gravity")), (Some(4), Some("initial.q"))], "{command}: {errors}");
+    }
 }

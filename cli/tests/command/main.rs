@@ -14,6 +14,7 @@ mod scaling;
 mod scenes;
 mod simulate;
 mod stress;
+mod units;
 
 use std::io::Write;
 use std::path::PathBuf;

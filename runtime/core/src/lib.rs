@@ -38,7 +38,11 @@ pub mod model;
 #[cfg(feature = "alloc")]
 pub mod monitor;
 #[cfg(feature = "alloc")]
+mod plain;
+#[cfg(feature = "alloc")]
 pub mod suggest;
 
 pub use nalgebra;
+#[cfg(feature = "alloc")]
+pub use plain::Plain;
 pub use scalar::Scalar;

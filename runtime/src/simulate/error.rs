@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use articulated_core::Plain;
 use articulated_core::algorithm::FunctionError;
 use articulated_core::algorithm::checked::Singular;
 use articulated_core::dynamics::Dynamics;
@@ -317,16 +318,6 @@ impl SimulateError {
             }
             _ => Ok(()),
         }
-    }
-}
-
-/// A number as people write it: with a power of ten where it is very small or very large.
-pub(crate) struct Plain(pub(crate) f64);
-
-impl fmt::Display for Plain {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let exact = format!("{:?}", self.0);
-        f.write_str(exact.strip_suffix(".0").unwrap_or(&exact))
     }
 }
 

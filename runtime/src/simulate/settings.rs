@@ -2,11 +2,11 @@
 
 use std::fmt;
 
+use articulated_core::Plain;
 use articulated_core::algorithm::Shape;
 use articulated_core::integrator::least_step;
 
 use super::IntegratorId;
-use super::error::Plain;
 
 /// What a simulation is asked for; keys are called as in scenes.
 #[derive(Clone, Debug, PartialEq)]

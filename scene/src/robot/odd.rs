@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use articulated_core::Plain;
 use articulated_core::description::PrincipalMoments;
 use articulated_core::effect::{Applied, EffectId};
 use articulated_urdf::{Kind, Problem, Reading, Subject, Unused};
@@ -43,8 +44,8 @@ impl Editing<'_> {
                 subject: Subject::Joint(name.clone()),
                 kind: Kind::BeyondLimit,
                 field: "lock".into(),
-                found: format!("{at}, beyond its limits"),
-                expected: format!("{} to {}; used as asked for", limit.lower, limit.upper),
+                found: format!("{}, beyond its limits", Plain(at)),
+                expected: format!("{} to {}; used as asked for", Plain(limit.lower), Plain(limit.upper)),
             })
         });
         self.reading.warnings.extend(joints.collect::<Vec<_>>());

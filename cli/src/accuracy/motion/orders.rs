@@ -233,5 +233,5 @@ fn a_controller_costs_no_order() {
 #[test]
 fn a_scene_with_a_blow_is_refused() {
     let refused = find("golf_swing").map(|_| ()).unwrap_err();
-    assert!(refused.lines[0].contains("impact: found a blow"), "{:?}", refused.lines);
+    assert!(refused.errors[0].message.contains("impact: found a blow"), "{:?}", refused.errors);
 }

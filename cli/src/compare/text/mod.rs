@@ -5,6 +5,8 @@ mod peers;
 
 use std::fmt::Write;
 
+use articulated_core::Plain;
+
 use super::accuracy::Against;
 use super::report::{FunctionReport, Report, VariantReport};
 use super::timing::Summary;
@@ -14,6 +16,7 @@ use crate::table::{Table, counted, freedom, plain, wrapped};
 
 pub(super) fn text(report: &Report) -> String {
     let mut out = head(report);
+    let stages = stages_of(report);
     for (title, table, legend) in [
         ("Time of a call: median, and quartiles' distance (IQR)".to_owned(), times(report), TIMES),
         (
@@ -32,7 +35,7 @@ pub(super) fn text(report: &Report) -> String {
         (
             "Multiplications and additions after each stage of the generator (the last: what is emitted)".to_owned(),
             operations(report),
-            STAGES,
+            &stages,
         ),
         (
             format!(
@@ -71,8 +74,32 @@ fn against(report: &Report) -> &'static str {
 }
 
 const ERRORS: &str = "forward: of the result; backward: of the torques that the result needs; states: on which they were looked at, without those where the function is singular";
-const STAGES: &str = "asked: by the algorithm; trace: zeros, ones and what is the same folded in; turn, regroup, slide, still: frames and masses moved to where numbers vanish; lent: mass in the body beyond a joint for torques, where numbers vanish for it; axes: rates by the second derivatives of joints' axes, not by ω̇; unturned: constants turned in place of vectors; unit: lengths in a unit in which a constant is one; \
-                      live: without what no result needs; factor: common factors multiplied once; partial: what several sums have added once; inside: what is added to sums over lanes in them; contract: sums as chains of multiply-adds; swept: once more without what no result needs";
+const STAGES: &[(&[&str], &str)] = &[
+    (&["asked"], "by the algorithm"),
+    (&["trace"], "zeros, ones and what is the same folded in"),
+    (&["turn", "regroup", "slide", "still"], "frames and masses moved to where numbers vanish"),
+    (&["lent"], "mass in the body beyond a joint for torques, where numbers vanish for it"),
+    (&["axes"], "rates by the second derivatives of joints' axes, not by ω̇"),
+    (&["unturned"], "constants turned in place of vectors"),
+    (&["unit"], "lengths in a unit in which a constant is one"),
+    (&["live"], "without what no result needs"),
+    (&["factor"], "common factors multiplied once"),
+    (&["partial"], "what several sums have added once"),
+    (&["inside"], "what is added to sums over lanes in them"),
+    (&["contract"], "sums as chains of multiply-adds"),
+    (&["swept"], "once more without what no result needs"),
+];
+
+/// What the stages are that the table has.
+fn stages_of(report: &Report) -> String {
+    let titles = titles(report);
+    let told = STAGES.iter().filter_map(|(names, what)| {
+        let names: Vec<&str> = names.iter().copied().filter(|name| titles.contains(name)).collect();
+        (!names.is_empty()).then(|| format!("{}: {what}", names.join(", ")))
+    });
+    told.collect::<Vec<_>>().join("; ")
+}
+
 const SIZES: &str = "depth: the longest chain of operations that wait for each other; way chosen: how it is computed, where there are several ways, by count (LTDL: by factors of the mass \
                      matrix; ABA: by the articulated-body algorithm)";
 
@@ -92,7 +119,7 @@ fn by_function(report: &Report, table: &mut Table, cells: impl Fn(&FunctionRepor
 }
 
 fn head(report: &Report) -> String {
-    let [x, y, z] = report.gravity;
+    let [x, y, z] = report.gravity.map(Plain);
     let mut out = format!(
         "{}, {} base: {}, {}; gravity ({x}, {y}, {z}) m/s²\n{} (seed {}), {} interleaved repetitions; {} {}\n",
         plain(&named(&report.robot, report.scene.as_deref())),

@@ -47,7 +47,7 @@ pub(super) fn chapter(effort: Effort, levels: &[Level]) -> Result<Vec<Row>, Fail
 
 /// Each robot at its level; or what a tool said, a line for each thing.
 pub fn rows(pairs: &[(&str, Description, Level)]) -> Result<Vec<Row>, Vec<String>> {
-    all(pairs).map_err(|failure| failure.lines)
+    all(pairs).map_err(|failure| failure.errors.into_iter().map(|error| error.message).collect())
 }
 
 fn all(pairs: &[(&str, Description, Level)]) -> Result<Vec<Row>, Failure> {

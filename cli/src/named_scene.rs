@@ -1,0 +1,47 @@
+//! Scenes by the words of a command line: a bundled one by its name, or a file.
+
+use std::path::{Path, PathBuf};
+
+use articulated_codegen::scene::{self, Bundled, Prepared, Scene};
+use articulated_codegen::{Error, nearest};
+
+use crate::failure::Failure;
+
+/// Whether a word is one where a robot is asked for too, whose names go before.
+pub(crate) fn is_scene(name: &str) -> bool {
+    let bundled = articulated_models::scene(name).is_some() && articulated_models::robot(name).is_none();
+    bundled || ends_with(name, "toml")
+}
+
+/// The scene, and the folder of its file. A bundled one goes before a file of its name, as a bundled robot does: `./name` is the file.
+pub(crate) fn open(name: &str) -> Result<(Prepared, PathBuf), Failure> {
+    if let Some(bundled) = articulated_models::scene(name) {
+        let scene = Scene::read(&bundled.file(), bundled.toml).map_err(Error::from)?;
+        return Ok((scene::open_in(scene, Path::new(""), &robots())?, PathBuf::new()));
+    }
+    let path = Path::new(name);
+    if !path.exists() {
+        return Err(unknown(name));
+    }
+    if path.is_file() && ends_with(name, "urdf") {
+        return Err(Failure::input([format!("{name}: found a URDF, expected a scene, a TOML file with urdf = {name:?} in it")]));
+    }
+    Ok((scene::open(path, &robots())?, path.parent().map(Path::to_owned).unwrap_or_default()))
+}
+
+fn ends_with(name: &str, ending: &str) -> bool {
+    Path::new(name).extension().is_some_and(|e| e.eq_ignore_ascii_case(ending))
+}
+
+/// The robots that scenes may call by name.
+fn robots() -> Vec<Bundled<'static>> {
+    articulated_models::ROBOTS.iter().map(|robot| Bundled { name: robot.name, urdf: robot.urdf, base: robot.base }).collect()
+}
+
+fn unknown(name: &str) -> Failure {
+    let names = || articulated_models::SCENES.iter().map(|s| s.name);
+    let near = nearest(name.strip_suffix(".toml").unwrap_or(name), names()).map(|n| format!("; did you mean {n:?}?")).unwrap_or_default();
+    let robot = if articulated_models::robot(name).is_some() { "; that is a robot, and a scene says what to do with it" } else { "" };
+    let known = names().collect::<Vec<_>>().join(", ");
+    Failure::input([format!("{name}: found neither a file nor a bundled scene{robot}{near} (bundled: {known})")])
+}
