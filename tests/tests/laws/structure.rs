@@ -125,6 +125,36 @@ fn joints_that_move_no_mass_are_found() {
     });
 }
 
+/// Two joints without mass of their own carry one that moves none, or one that only repeats another: those alone are named, not what carries them.
+#[test]
+fn joints_that_carry_a_massless_one_are_not_blamed() {
+    let body = |at: &str| {
+        format!(
+            "<inertial><origin xyz='{at}'/><mass value='2'/><inertia ixx='0.1' ixy='0' ixz='0' iyy='0.2' iyz='0' izz='0.15'/></inertial>"
+        )
+    };
+    let joint = |name: &str, parent: &str, child: &str, at: &str, axis: &str| {
+        format!(
+            "<joint name='{name}' type='continuous'><parent link='{parent}'/><child link='{child}'/><origin xyz='{at}'/><axis xyz='{axis}'/></joint>"
+        )
+    };
+    let arm = joint("one", "base", "bare", "0 0 0", "0 0 1")
+        + &joint("two", "bare", "empty", "0.5 0 0", "0 1 0")
+        + &joint("three", "empty", "tip", "0.5 0 0", "1 0 0");
+    let model = |more: &str| {
+        let links = format!("<link name='base'/><link name='bare'/><link name='empty'/><link name='tip'>{}</link>", body("0.2 0.1 0"));
+        articulated::load_bytes("r.urdf", format!("<robot name='r'>{links}{arm}{more}</robot>").as_bytes(), Base::Fixed).unwrap()
+    };
+    assert!(model("").massless_joints().is_empty());
+    let camera = joint("pan", "tip", "camera", "0 0 0.1", "0 1 0") + "<link name='camera'/>";
+    assert_eq!(model(&camera).massless_joints(), [4]);
+    // About one axis with the one before, with nothing between: of the two the inner is named.
+    let twice = joint("roll", "tip", "gap", "0 0 0.1", "0 1 0") + &joint("again", "gap", "tool", "0 0.1 0", "0 1 0");
+    let twice = twice + &format!("<link name='gap'/><link name='tool'>{}</link>", body("0 0 0.3"));
+    assert_eq!(model(&twice).massless_joints(), [4]);
+    assert_eq!(model(&(camera.replace("'camera'", "'lens'") + &twice)).massless_joints(), [4, 5]);
+}
+
 /// A joint that follows another backwards leaves its body where it was: what mass that has nothing moves.
 #[test]
 fn a_follower_that_undoes_its_leader_moves_no_mass() {

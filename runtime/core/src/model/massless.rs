@@ -2,13 +2,17 @@
 
 use alloc::vec;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use super::{Body, Model};
 use crate::algorithm::Workspace;
 use crate::algorithm::checked::least_pivot;
-use crate::effect::EffectId;
+use crate::effect::{EffectId, JointEffect};
 use crate::monitor::pivot_cancellation;
 use crate::spatial::SpatialInertia;
+
+/// So often joints are looked at anew with those found before held: a robot has few of them, and what none is gets an end.
+const LOOKS: usize = 64;
 
 impl Model<f64> {
     /// Indices of the bodies whose joint moves nothing that has mass, whatever the configuration: the mass matrix has a zero row there, and
@@ -20,29 +24,72 @@ impl Model<f64> {
     pub fn massless_joints(&self) -> Vec<usize> {
         let (mut carries, mut own) = (vec![false; self.nv], vec![false; self.nv]);
         for (i, felt, moves) in self.moves_mass() {
-            let at = self.bodies[i].coordinates.v;
-            carries[at] |= moves;
-            own[at] |= felt;
+            let at = self.own_freedoms(i);
+            carries[at.clone()].iter_mut().for_each(|carries| *carries |= moves);
+            own[at].iter_mut().for_each(|own| *own |= felt);
         }
-        let repeats = if own.contains(&false) { self.repeated() } else { vec![false; self.nv] };
+        let idle = || carries.iter().map(|moves| !moves).collect();
+        let repeats = if own.contains(&false) { self.repeated(idle()) } else { vec![false; self.nv] };
         let lost = |i: &usize| {
-            let at = &self.bodies[*i].coordinates;
-            let repeated = (at.v..at.v + self.bodies[*i].joint.nv()).any(|k| repeats[k]);
-            at.mimic.is_none() && (!carries[at.v] || !own[at.v] && repeated)
+            let mut freedoms = self.own_freedoms(*i);
+            self.bodies[*i].coordinates.mimic.is_none() && freedoms.any(|k| !carries[k] || !own[k] && repeats[k])
         };
         self.outward().filter(lost).collect()
     }
 
+    /// The degrees of freedom of a body's joint, or of that which it follows.
+    fn own_freedoms(&self, body: usize) -> Range<usize> {
+        let Body { coordinates: at, joint, .. } = &self.bodies[body];
+        at.v..at.v + joint.nv()
+    }
+
     /// For each degree of freedom, whether nothing is left of its pivot at two configurations that have nothing special: what is singular there is singular everywhere.
-    fn repeated(&self) -> Vec<bool> {
-        let (mut ws, mut left) = (Workspace::new(self), vec![1.0; self.nv]);
-        let mut lost = |seed: f64| {
-            pivot_cancellation(self, &mut ws, &self.configuration(seed), &mut left);
+    /// `idle` move nothing. Whatever is lost gets a rotor before the next look, so that no 0/0 of its reaches the joints that carry it.
+    fn repeated(&self, idle: Vec<bool>) -> Vec<bool> {
+        let (mut model, mut ws) = (self.clone(), Workspace::new(self));
+        let (mut lost, mut fresh) = (idle.clone(), idle);
+        for _ in 0..LOOKS {
+            model.turn_rotors(&fresh);
+            fresh = model.without_pivot(&mut ws);
+            if !fresh.contains(&true) {
+                break;
+            }
+            lost.iter_mut().zip(&fresh).for_each(|(lost, fresh)| *lost |= fresh);
+        }
+        lost
+    }
+
+    /// A rotor of 1 kg·m² (kg) for each of these degrees of freedom.
+    fn turn_rotors(&mut self, of: &[bool]) {
+        for body in self.bodies.iter_mut().skip(1).filter(|body| body.coordinates.mimic.is_none()) {
+            let own = &of[body.coordinates.v..][..body.joint.nv()];
+            let rotors = own.iter().enumerate().filter(|(_, has)| **has);
+            let rotors = rotors.map(|(freedom, _)| JointEffect { effect: EffectId::armature, freedom, parameters: vec![1.0, 1.0] });
+            body.effects.joint.extend(rotors);
+        }
+    }
+
+    /// The degrees of freedom of whose pivots nothing is left, of each branch the farthest out: what is left of others says little then.
+    fn without_pivot(&self, ws: &mut Workspace<f64>) -> Vec<bool> {
+        let mut left = vec![1.0; self.nv];
+        let mut gone = |seed: f64| {
+            pivot_cancellation(self, ws, &self.configuration(seed), &mut left);
             // A pivot below zero, of an inertia that no body has and somebody accepted, is not nothing.
             left.iter().map(|x| x.is_nan() || crate::Scalar::abs(*x) < least_pivot()).collect::<Vec<bool>>()
         };
-        let (first, second) = (lost(0.137), lost(0.731));
-        first.iter().zip(second).map(|(a, b)| *a && b).collect()
+        let (first, second) = (gone(0.137), gone(0.731));
+        let mut found: Vec<bool> = first.iter().zip(second).map(|(a, b)| *a && b).collect();
+        let mut beyond = vec![false; self.bodies.len()];
+        for i in self.inward() {
+            let body = &self.bodies[i];
+            // The coordinate of one that follows is that of its leader.
+            let own = if body.coordinates.mimic.is_some() { 0..0 } else { self.own_freedoms(i) };
+            if beyond[i] {
+                found[own.clone()].fill(false);
+            }
+            beyond[body.parent] |= beyond[i] || found[own].contains(&true);
+        }
+        found
     }
 
     /// A configuration without symmetries: multiples of the golden section, modulo 1.
