@@ -147,7 +147,7 @@ pub(crate) struct RobotArguments {
     /// The root link is fixed
     #[arg(long)]
     pub(crate) fixed: bool,
-    /// Gravity in the base frame, m/s² [default: 0,0,-9.81]
+    /// Gravity in the world frame, m/s² [default: 0,0,-9.81]
     #[arg(long, value_name = "X,Y,Z", value_parser = gravity, allow_hyphen_values = true)]
     pub(crate) gravity: Option<Gravity>,
     /// Take inertias with a moment below zero, with a warning (moments of which one exceeds the sum of the others always are)

@@ -115,7 +115,7 @@ impl Build {
         self
     }
 
-    /// Gravity in the base frame, m/s².
+    /// Gravity in the world frame, m/s².
     #[must_use]
     pub fn gravity(mut self, gravity: [f64; 3]) -> Self {
         self.request.options.robot.gravity = gravity;

@@ -28,7 +28,7 @@ mod tree;
 ///         scene = "scenes/panda.toml",                   // a robot with its edits and effects, see docs/scenes.md; the other keys stand in place of its own
 ///         effects = { damping = { "*" = 0.1 }, friction = urdf }, // what acts beside rigid bodies and gravity, as scenes have it
 ///         base = fixed,                                  // or floating
-///         gravity = [0.0, 0.0, -9.81],                   // m/s², in the base frame
+///         gravity = [0.0, 0.0, -9.81],                   // m/s², in the world frame
 ///         functions = [                                  // what to generate: names of `articulated::algorithm`, and
 ///             placements,
 ///             inverse_dynamics,

@@ -17,7 +17,7 @@ enum Form {
 }
 
 impl Exact {
-    /// The textbook's form on the numbers of the description, with a frame for each link; gravity in the base frame, m/s². It knows no effects. Errors: those of [`Model::new`].
+    /// The textbook's form on the numbers of the description, with a frame for each link; gravity in the world frame, m/s². It knows no effects. Errors: those of [`Model::new`].
     pub fn textbook(description: &Description, base: Base, gravity: [f64; 3]) -> Result<Self, ModelError> {
         Ok(Self(Form::Textbook(Box::new(Textbook::new(description, base, gravity)?))))
     }

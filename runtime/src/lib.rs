@@ -19,7 +19,7 @@
 //!
 //! Conventions: SI units and radians. Vectors of six are (angular; linear). Joints are ordered depth-first in the URDF's order; names are in [`Model::joints`]. A floating base comes
 //! first: of q its position and quaternion (x, y, z, w); of v, a and τ its [ω; v], the rates of these, and [m; f], all in its own axes. Matrices are given row by row. Gravity is
-//! (0, 0, −9.81) m/s² in the base frame unless [`Model::with_gravity`] says otherwise.
+//! (0, 0, −9.81) m/s² in the world frame unless [`Model::with_gravity`] says otherwise.
 #![cfg_attr(not(feature = "std"), no_std)]
 
 pub use articulated_core::algorithm::checked::{Factor, Singular, Solver, Unsolved, checked_forward_dynamics};

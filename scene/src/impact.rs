@@ -15,7 +15,7 @@ pub struct Impact {
     pub link: String,
     /// The point that hits, in the link's frame, m.
     pub point: [f64; 3],
-    /// The direction in which the ball goes, in the base frame; of any length but zero.
+    /// The direction in which the ball goes, in the world frame; of any length but zero.
     pub normal: [f64; 3],
     /// Mass of the ball, kg.
     pub mass: f64,
@@ -36,7 +36,7 @@ pub struct Impact {
 /// When the ball is hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum When {
-    /// When the point passes the plane through this place, in the base frame, m, whose normal is the impact's: n·(p − ball) rises through zero.
+    /// When the point passes the plane through this place, in the world frame, m, whose normal is the impact's: n·(p − ball) rises through zero.
     Ball([f64; 3]),
     /// At this time, s.
     Time(f64),
@@ -73,7 +73,7 @@ pub(crate) const KEYS: &[Row<Impact>] = &[
         required: true,
         value: "3 numbers",
         default: "",
-        what: "the direction in which the ball goes, in the base frame, of any length",
+        what: "the direction in which the ball goes, in the world frame, of any length",
         read: |x, s, log| {
             let normal = s.numbers(log);
             if normal == Some([0.0; 3]) {
@@ -113,7 +113,7 @@ pub(crate) const KEYS: &[Row<Impact>] = &[
         required: false,
         value: "3 numbers, m",
         default: "this or `time` has to be given",
-        what: "the ball's place in the base frame: it is hit when the point passes the plane through it, forward along the normal",
+        what: "the ball's place in the world frame: it is hit when the point passes the plane through it, forward along the normal",
         read: |x, s, log| {
             x.when_place = s.at;
             set(&mut x.when, s.numbers(log).map(When::Ball));

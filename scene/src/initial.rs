@@ -63,7 +63,7 @@ pub struct Named {
 /// Where a floating base is, and how it moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BaseState {
-    /// Its origin in the base frame, m.
+    /// Its origin in the world frame, m.
     pub xyz: [f64; 3],
     /// Its turn, x, y, z, w, of norm one.
     pub quaternion: [f64; 4],
@@ -124,7 +124,7 @@ pub(crate) const BASE: &[Row<BaseState>] = &[
         required: false,
         value: "3 numbers, m",
         default: "[0, 0, 0]",
-        what: "its origin in the base frame",
+        what: "its origin in the world frame",
         read: |b, s, log| b.xyz = s.numbers(log).unwrap_or_default(),
     },
     Row {

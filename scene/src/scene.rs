@@ -30,7 +30,7 @@ pub struct Scene {
     pub robot: Robot,
     /// The base; `None`: that which a bundled robot is meant for, fixed for others.
     pub base: Option<Base>,
-    /// Gravity in the base frame, m/s²; `None`: standard gravity.
+    /// Gravity in the world frame, m/s²; `None`: standard gravity.
     pub gravity: Option<[f64; 3]>,
     /// Edits of the robot, and what code to make of it.
     pub code: Code,
@@ -212,7 +212,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         required: false,
         value: "3 numbers, m/s²",
         default: "[0, 0, -9.81]",
-        what: "in the base frame",
+        what: "in the world frame",
         read: |s, spot, log| s.gravity = spot.numbers(log),
     },
     Row {

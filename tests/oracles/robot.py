@@ -51,7 +51,7 @@ class Robot:
     follows: dict  # joint name -> (index of coordinate, multiplier, offset), coordinates themselves included
 
     def moving_links(self, floating):
-        """Links that can move in the base frame. With a free base that is every link."""
+        """Links that can move in the world frame. With a free base that is every link."""
         moving = {self.root} if floating else set()
         for joint in self.visits:
             if joint.parent in moving or joint.kind != "fixed":

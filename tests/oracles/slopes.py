@@ -61,7 +61,7 @@ class Slopes:
 
 
 def whole(part, v):
-    """Of the moving links, in base axes: centre of mass, its velocity and acceleration, its Jacobian; momentum about it, its matrix, its
+    """Of the moving links, in world axes: centre of mass, its velocity and acceleration, its Jacobian; momentum about it, its matrix, its
     rate."""
     turn, omega, in_time = part["turn"], part["omega"], part["in_time"]
     total = sum(mass for mass, *_ in part["masses"])

@@ -19,7 +19,7 @@ pub struct Answers {
     pub engine: String,
     /// `fixed` or `floating`.
     pub base: String,
-    /// m/s², base frame.
+    /// m/s², world frame.
     pub gravity: [f64; 3],
     /// Names of the joints in the order of the coordinates.
     pub joints: Vec<String>,

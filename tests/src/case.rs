@@ -19,7 +19,7 @@ pub struct Case {
     pub description: Description,
     /// Fixed or floating.
     pub base: Base,
-    /// Gravity in the base frame, m/s².
+    /// Gravity in the world frame, m/s².
     pub gravity: [f64; 3],
     /// The generic model, before model passes.
     pub model: Model<f64>,

@@ -12,7 +12,7 @@ pub struct Fixture {
     pub robot: String,
     /// `fixed` or `floating`.
     pub base: String,
-    /// m/s², base frame.
+    /// m/s², world frame.
     pub gravity: [f64; 3],
     /// Names in the order of the coordinates.
     pub joints: Vec<String>,
@@ -41,7 +41,7 @@ pub struct Reference {
     pub torque_scale: Vec<f64>,
     /// T, J.
     pub kinetic_energy: f64,
-    /// U, J; 0 at the origin of the base frame.
+    /// U, J; 0 at the origin of the world frame.
     pub potential_energy: f64,
     /// For each link [R by rows, p]; in some states only.
     pub placements: Option<Vec<[f64; 12]>>,

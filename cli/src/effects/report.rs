@@ -13,7 +13,7 @@ pub(super) struct Report {
     pub(super) scene: String,
     pub(super) robot: String,
     pub(super) base: &'static str,
-    /// In the base frame, m/s².
+    /// In the world frame, m/s².
     pub(super) gravity: [f64; 3],
     pub(super) degrees_of_freedom: usize,
     pub(super) on: Vec<On>,

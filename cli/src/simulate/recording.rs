@@ -84,7 +84,7 @@ pub(crate) struct Recording {
     pub(crate) dissipated: Vec<f64>,
     /// Of events that map the state since the start, J: negative where they take energy, as a blow does.
     pub(crate) from_events: Vec<f64>,
-    /// Angular momentum about the centre of mass, then linear momentum, in axes of the base frame: kg·m²/s, kg·m/s.
+    /// Angular momentum about the centre of mass, then linear momentum, in axes of the world frame: kg·m²/s, kg·m/s.
     pub(crate) momentum: Vec<[f64; 6]>,
     /// In the order of their times.
     pub(crate) events: Vec<Happening>,

@@ -90,7 +90,7 @@ pub(super) struct Energy {
     pub(super) relative_imbalance: f64,
 }
 
-/// About the centre of mass, base axes: three of angular momentum, kg·m²/s, then three of linear momentum, kg·m/s.
+/// About the centre of mass, world axes: three of angular momentum, kg·m²/s, then three of linear momentum, kg·m/s.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(super) struct Momentum {
     pub(super) start: [f64; 6],

@@ -16,7 +16,7 @@ pub(crate) struct StressArguments {
     /// The root link is fixed
     #[arg(long, requires = "robot")]
     pub(crate) fixed: bool,
-    /// Gravity in the base frame, m/s² [default: 0,0,-9.81]
+    /// Gravity in the world frame, m/s² [default: 0,0,-9.81]
     #[arg(long, value_name = "X,Y,Z", value_parser = gravity, allow_hyphen_values = true, requires = "robot")]
     pub(crate) gravity: Option<Gravity>,
     /// Take inertias with a moment below zero

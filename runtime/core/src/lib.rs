@@ -4,7 +4,7 @@
 //! library; with a symbol it is the program that the generator writes out; with a big float it is the reference.
 //!
 //! Conventions: 6-vectors are (angular; linear); algorithms work in body coordinates; SI units and radians; gravity defaults to
-//! (0, 0, −9.81) m/s² in the base frame, which is the root link's frame (fixed base) or the frame it floats in.
+//! (0, 0, −9.81) m/s² in the world frame, which is the root link's frame (fixed base) or the frame it floats in.
 //!
 //! The crate is `no_std`. Models and algorithms need the feature `alloc`; `std` uses the platform's mathematics.
 #![cfg_attr(not(feature = "std"), no_std)]

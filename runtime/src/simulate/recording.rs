@@ -103,7 +103,7 @@ pub struct Recording {
     pub dissipated: Vec<f64>,
     /// Energy that the maps of events brought since the start, J: change of T + U, negative where they took some; empty for a robot without one of the two.
     pub from_events: Vec<f64>,
-    /// Momentum about the centre of mass [k; l], `[n][6]`, N·m·s and N·s, base axes; empty for a robot without the function.
+    /// Momentum about the centre of mass [k; l], `[n][6]`, N·m·s and N·s, world axes; empty for a robot without the function.
     pub momentum: Vec<f64>,
     /// Functions that the robot was generated without, so that there is nothing of them here.
     pub missing: Vec<&'static str>,

@@ -10,7 +10,7 @@ use articulated_core::spatial::Reference;
 pub struct RobotOptions {
     /// Whether the root link is fixed.
     pub base: Base,
-    /// Gravity in the base frame, m/s².
+    /// Gravity in the world frame, m/s².
     pub gravity: [f64; 3],
     /// Names of the links whose frames the functions of frames give, in this order; `None`: all of them, in the order of the file.
     pub frames: Option<Vec<String>>,

@@ -46,7 +46,7 @@ def joint_model(kind, axis, pitch):
 
 
 class Engine:
-    """A robot; `gravity` in the base frame."""
+    """A robot; `gravity` in the world frame."""
 
     def __init__(self, tree, floating, gravity):
         self.tree, self.floating = tree, floating

@@ -34,14 +34,14 @@ pub struct Motions<'a> {
 pub struct Energy<S> {
     /// T, J.
     pub kinetic: S,
-    /// U, J; 0 for mass at the origin of the base frame.
+    /// U, J; 0 for mass at the origin of the world frame.
     pub potential: S,
     /// d(T + U)/dt, W.
     pub power: S,
 }
 
 impl<'a> Motions<'a> {
-    /// Of a description that is a tree; gravity in the base frame, m/s².
+    /// Of a description that is a tree; gravity in the world frame, m/s².
     pub fn new(description: &'a Description, base: Base, gravity: [f64; 3]) -> Self {
         let mut this = Self { description, base, gravity, coordinates: Vec::new(), size: (0, 0) };
         if base == Base::Floating {
@@ -74,7 +74,7 @@ impl<'a> Motions<'a> {
         self.coordinates.iter().filter_map(|(j, ..)| j.map(|j| self.description.joints[j].name.as_str())).collect()
     }
 
-    /// [R | p] of every link in the base frame, in the order of the file, moving as q, v and a say.
+    /// [R | p] of every link in the world frame, in the order of the file, moving as q, v and a say.
     fn poses<S: Scalar>(&self, q: &[S], v: &[S], a: &[S]) -> Vec<Option<Pose<S>>> {
         let mut poses = vec![None; self.description.links.len()];
         let Some(root) = self.description.root() else { return poses };

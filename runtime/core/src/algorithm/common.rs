@@ -1,7 +1,7 @@
 //! The outward sweep in common axes, from which everything that pairs joints with joints is read.
 //!
 //! All bodies of a tree are expressed in the same axes, each about its own origin: to carry a wrench from body to body takes a cross product and no
-//! rotation, and no moment is ever taken about a far point, where it would cancel. The axes are those of the base frame, or ([`Axes::Tree`]) those of the body
+//! rotation, and no moment is ever taken about a far point, where it would cancel. The axes are those of the world frame, or ([`Axes::Tree`]) those of the body
 //! in the middle of the tree: the fewer joints lie between, the more zeros there are. Or those of its first body, where gravity is constant if its joint stands
 //! upright, and the axes of joints that are parallel to the next one are too. Dynamics do not depend on how fast the base moves either: where a tree
 //! hangs on a floating joint, its inertial frame moves with that joint's body.
@@ -16,7 +16,7 @@ use crate::{Scalar, with_pose};
 /// Which axes are common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Axes {
-    /// Those of the base frame.
+    /// Those of the world frame.
     Base,
     /// For each tree, those of the body in its center ([`Workspace::centers`]).
     Tree,

@@ -1,6 +1,6 @@
 //! Twists, accelerations and Jacobians of frames, in three references ([`Reference`]).
 //!
-//! All read the outward sweep in base axes ([`super::common`]): a column of a Jacobian is the motion subspace of one degree of freedom on the way from the frame to
+//! All read the outward sweep in world axes ([`super::common`]): a column of a Jacobian is the motion subspace of one degree of freedom on the way from the frame to
 //! the base, taken at another point and turned. Lynch & Park 2017, §5.1; Featherstone 2008, §2.9 and §2.11.
 
 use super::Workspace;
@@ -19,7 +19,7 @@ macro_rules! in_three_references {
             $name(model, ws, Reference::Body, $($argument,)* out);
         }
 
-        #[doc = concat!("As [`", stringify!($body), "`], in base axes about the base frame's origin.")]
+        #[doc = concat!("As [`", stringify!($body), "`], in world axes about the world frame's origin.")]
         ///
         /// # Panics
         /// Likewise.
@@ -27,7 +27,7 @@ macro_rules! in_three_references {
             $name(model, ws, Reference::World, $($argument,)* out);
         }
 
-        #[doc = concat!("As [`", stringify!($body), "`], in base axes about the frame's origin.")]
+        #[doc = concat!("As [`", stringify!($body), "`], in world axes about the frame's origin.")]
         ///
         /// # Panics
         /// Likewise.
@@ -44,7 +44,7 @@ in_three_references! {
     frame_twists, twists_body, twists_world, twists_world_aligned, (q, v);
 
     /// Time derivatives of the twists of all frames, rad/s² and m/s², gravity not added: spatial accelerations.
-    /// About the frame's origin in base axes: [ω̇; p̈], the true acceleration of the origin.
+    /// About the frame's origin in world axes: [ω̇; p̈], the true acceleration of the origin.
     ///
     /// q: `[nq]`; v, a: `[nv]`; out: `[frames][6]`.
     frame_accelerations, accelerations_body, accelerations_world, accelerations_world_aligned, (q, v, a);
@@ -54,8 +54,8 @@ in_three_references! {
     /// q: `[nq]`; v: `[nv]`; out: `[frames][6]`.
     frame_bias, bias_accelerations_body, bias_accelerations_world, bias_accelerations_world_aligned, (q, v);
 
-    /// Jacobians of all frames: twist = J v, with the six rows of the twist [ω; v] of the same reference (`_body`: own axes, own origin; `_world`: base axes, the base's
-    /// origin; `_world_aligned`: base axes, own origin) and a column for each degree of freedom.
+    /// Jacobians of all frames: twist = J v, with the six rows of the twist [ω; v] of the same reference (`_body`: own axes, own origin; `_world`: world axes, the world's
+    /// origin; `_world_aligned`: world axes, own origin) and a column for each degree of freedom.
     ///
     /// q: `[nq]`; out: `[frames][6][nv]`, 1 and m per rad, or m per m.
     frame_jacobians, jacobians_body, jacobians_world, jacobians_world_aligned, (q);
@@ -66,7 +66,7 @@ in_three_references! {
     frame_jacobian_rates, jacobian_rates_body, jacobian_rates_world, jacobian_rates_world_aligned, (q, v);
 }
 
-/// A frame in base axes: its placement in the base frame, and its origin from that of its body.
+/// A frame in world axes: its placement in the world frame, and its origin from that of its body.
 struct Place<S> {
     frame: Placement<S>,
     offset: Vector3<S>,
@@ -79,7 +79,7 @@ impl<S: Scalar> Place<S> {
         Self { frame: Placement { rotation: x.rotation, position: body.position + x.position }, offset: x.position }
     }
 
-    /// A twist that is in base axes about the frame's origin, in the axes and about the point of the reference.
+    /// A twist that is in world axes about the frame's origin, in the axes and about the point of the reference.
     fn refer(&self, x: Twist<S>, reference: Reference) -> Twist<S> {
         match reference {
             Reference::WorldAligned => x,
@@ -102,7 +102,7 @@ fn frame_twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, reference: R
     }
 }
 
-/// In base axes, about the frame's origin; zero for the base.
+/// In world axes, about the frame's origin; zero for the base.
 fn twist_of<S: Scalar>(ws: &Workspace<S>, frame: &Frame<S>, place: &Place<S>) -> Twist<S> {
     if frame.body == 0 { Twist::zero() } else { ws.common[frame.body].twist.at(place.offset) }
 }
@@ -140,7 +140,7 @@ fn frame_jacobians<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, reference
     }
 }
 
-/// The Jacobian of one frame, `[6][nv]`; after [`positions`] in base axes.
+/// The Jacobian of one frame, `[6][nv]`; after [`positions`] in world axes.
 pub(super) fn jacobian<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, frame: &Frame<S>, reference: Reference, out: &mut [S]) {
     let place = Place::new(ws, frame);
     columns(model, ws, frame.body, out, |c, d| place.refer(ws.columns[c].axis.at(d + place.offset), reference));

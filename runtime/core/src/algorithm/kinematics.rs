@@ -5,7 +5,7 @@ use super::wrenches::place_bodies;
 use crate::Scalar;
 use crate::model::Model;
 
-/// Placements of all frames (links of the file) in the base frame.
+/// Placements of all frames (links of the file) in the world frame.
 ///
 /// q: `[nq]` rad|m|quaternion; out: `[12 · frames]`, for each frame the rotation row by row, then the position in m.
 /// One outward sweep. Lynch & Park 2017, §4.1; Featherstone 2008, §4.4.

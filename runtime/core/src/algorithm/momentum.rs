@@ -11,7 +11,7 @@ use crate::Scalar;
 use crate::model::Model;
 use crate::spatial::{Vector3, Wrench, rotate};
 
-/// Centre of mass of the moving links, base axes.
+/// Centre of mass of the moving links, world axes.
 ///
 /// q: `[nq]`; out: `[3]` m. Links fixed to the base do not count. Without any mass the result is not finite.
 ///
@@ -23,7 +23,7 @@ pub fn center_of_mass<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S
     out.copy_from_slice((first + center).as_slice());
 }
 
-/// Velocity of the centre of mass, base axes.
+/// Velocity of the centre of mass, world axes.
 ///
 /// q: `[nq]`; v: `[nv]`; out: `[3]` m/s.
 ///
@@ -37,7 +37,7 @@ pub fn center_of_mass_velocity<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S
     out.copy_from_slice((at_the_roots(model, ws, center).force * inverse).as_slice());
 }
 
-/// Acceleration of the centre of mass, base axes, gravity not added.
+/// Acceleration of the centre of mass, world axes, gravity not added.
 ///
 /// q: `[nq]`; v, a: `[nv]`; out: `[3]` m/s².
 ///
@@ -49,7 +49,7 @@ pub fn center_of_mass_acceleration<S: Scalar>(model: &Model<S>, ws: &mut Workspa
     out.copy_from_slice((rate.force * inverse).as_slice());
 }
 
-/// J with ċ = J v, base axes.
+/// J with ċ = J v, world axes.
 ///
 /// q: `[nq]`; out: `[3][nv]`. The column of a degree of freedom is the momentum of all that it carries, over the whole mass.
 ///
@@ -63,7 +63,7 @@ pub fn center_of_mass_jacobian<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S
     composites(model, ws, |at, wrench, _| add(out, model.nv, at, &(wrench.force * inverse)));
 }
 
-/// Momentum [k; l] of the moving links about their centre of mass, base axes.
+/// Momentum [k; l] of the moving links about their centre of mass, world axes.
 ///
 /// q: `[nq]`; v: `[nv]`; out: `[6]` N·m·s and N·s.
 ///
@@ -76,7 +76,7 @@ pub fn centroidal_momentum<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q
     out.copy_from_slice(&at_the_roots(model, ws, center).to_array());
 }
 
-/// A with [k; l] = A v, base axes.
+/// A with [k; l] = A v, world axes.
 ///
 /// q: `[nq]`; out: `[6][nv]`.
 ///
@@ -94,7 +94,7 @@ pub fn centroidal_momentum_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspac
     });
 }
 
-/// d/dt [k; l], base axes: the wrench about the centre of mass that gravity, the base and the surroundings must exert together.
+/// d/dt [k; l], world axes: the wrench about the centre of mass that gravity, the base and the surroundings must exert together.
 ///
 /// q: `[nq]`; v, a: `[nv]`; out: `[6]` N·m and N.
 ///
@@ -105,7 +105,7 @@ pub fn centroidal_momentum_rate<S: Scalar>(model: &Model<S>, ws: &mut Workspace<
     out.copy_from_slice(&rate.to_array());
 }
 
-/// Positions of all bodies about the origin of the first, which it returns, in base axes: however far from the base a robot is, its momentum about its centre of mass has
+/// Positions of all bodies about the origin of the first, which it returns, in world axes: however far from the base a robot is, its momentum about its centre of mass has
 /// all its digits.
 fn places<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S]) -> Vector3<S> {
     positions(model, ws, Axes::Base, q);
@@ -136,7 +136,7 @@ fn generalised<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &
     ws.row = row;
 }
 
-/// The wrenches that the base passes to the bodies that hang on it, together, about `point` in base axes.
+/// The wrenches that the base passes to the bodies that hang on it, together, about `point` in world axes.
 fn at_the_roots<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, point: Vector3<S>) -> Wrench<S> {
     let one = |i: usize| {
         let (wrench, state) = (&ws.bodies[i].wrench, &ws.common[i]);

@@ -9,7 +9,7 @@ use crate::Scalar;
 use crate::model::{Frame, Model};
 use crate::spatial::Reference;
 
-/// Λ⁻¹ = J M⁻¹ Jᵀ of each frame by itself, J being the frame's Jacobian in base axes about its origin.
+/// Λ⁻¹ = J M⁻¹ Jᵀ of each frame by itself, J being the frame's Jacobian in world axes about its origin.
 ///
 /// q: `[nq]`; out: `[frames][6][6]`, symmetric.
 ///

@@ -21,19 +21,19 @@ use crate::model::Model;
 macro_rules! for_each_function {
     ($then:ident) => {
         $then! {
-            placements(q) -> [Frames, Of(12)] "rotation row by row, then position in m, in the base frame", Kinematics, Nothing, false,
-                "placements of all frames in the base frame", "forward kinematics; Featherstone 2008, §4.4";
+            placements(q) -> [Frames, Of(12)] "rotation row by row, then position in m, in the world frame", Kinematics, Nothing, false,
+                "placements of all frames in the world frame", "forward kinematics; Featherstone 2008, §4.4";
             twists_body(q, v) -> [Frames, Of(6)] "[ω; v], rad/s and m/s", Kinematics, Nothing, false,
                 "twists of all frames, in their own axes about their own origins", "outward sweep; Lynch & Park 2017, §8.3";
             twists_world(q, v) -> [Frames, Of(6)] "[ω; v], rad/s and m/s", Kinematics, Nothing, false,
-                "twists of all frames, in base axes about the base frame's origin", "outward sweep; Lynch & Park 2017, §8.3";
+                "twists of all frames, in world axes about the world frame's origin", "outward sweep; Lynch & Park 2017, §8.3";
             twists_world_aligned(q, v) -> [Frames, Of(6)] "[ω; ṗ], rad/s and m/s", Kinematics, Nothing, false,
-                "twists of all frames, in base axes about their own origins", "outward sweep; Lynch & Park 2017, §8.3";
+                "twists of all frames, in world axes about their own origins", "outward sweep; Lynch & Park 2017, §8.3";
             accelerations_body(q, v, a) -> [Frames, Of(6)] "rad/s² and m/s²", Kinematics, Nothing, false,
                 "time derivatives of twists_body: spatial accelerations in body axes, gravity not added",
                 "outward sweep; Featherstone 2008, §2.11";
             accelerations_world(q, v, a) -> [Frames, Of(6)] "rad/s² and m/s²", Kinematics, Nothing, false,
-                "time derivatives of twists_world: spatial accelerations in base axes, gravity not added",
+                "time derivatives of twists_world: spatial accelerations in world axes, gravity not added",
                 "outward sweep; Featherstone 2008, §2.11";
             accelerations_world_aligned(q, v, a) -> [Frames, Of(6)] "[ω̇; p̈], rad/s² and m/s²", Kinematics, Nothing, false,
                 "time derivatives of twists_world_aligned: the true accelerations of the origins, gravity not added",
@@ -98,22 +98,22 @@ macro_rules! for_each_function {
                 by ["ABA", untied, nothing, solve_by_articulated_body; "LTDL", always, factorization, solve_mass_matrix];
             kinetic_energy(q, v) -> [] "J", Momentum, Nothing, true,
                 "T = ½ Σ Vᵀ G V = ½ vᵀ M v of the moving links", "RNEA at rest; Featherstone 2008, §2.12 and Table 5.1";
-            potential_energy(q) -> [] "J, zero at the base frame's origin", Momentum, Nothing, false,
+            potential_energy(q) -> [] "J, zero at the world frame's origin", Momentum, Nothing, false,
                 "U = −Σ m gᵀc of the moving links", "outward sweep; Featherstone 2008, §2.12";
-            center_of_mass(q) -> [Of(3)] "m, base axes", Momentum, Mass, false,
+            center_of_mass(q) -> [Of(3)] "m, world axes", Momentum, Mass, false,
                 "centre of mass of the moving links", "outward sweep";
-            center_of_mass_velocity(q, v) -> [Of(3)] "m/s, base axes", Momentum, Mass, false,
+            center_of_mass_velocity(q, v) -> [Of(3)] "m/s, world axes", Momentum, Mass, false,
                 "velocity of the centre of mass of the moving links", "outward sweep";
-            center_of_mass_acceleration(q, v, a) -> [Of(3)] "m/s², base axes", Momentum, Mass, false,
+            center_of_mass_acceleration(q, v, a) -> [Of(3)] "m/s², world axes", Momentum, Mass, false,
                 "acceleration of the centre of mass of the moving links, gravity not added", "outward sweep",
                 forms [RatesByAxes];
-            center_of_mass_jacobian(q) -> [Of(3), Nv] "m|1, base axes", Momentum, Mass, false,
+            center_of_mass_jacobian(q) -> [Of(3), Nv] "m|1, world axes", Momentum, Mass, false,
                 "J with center_of_mass_velocity = J v", "composite masses; Orin, Goswami & Lee, Auton. Robots 35, 2013";
-            centroidal_momentum(q, v) -> [Of(6)] "[k; l], N·m·s and N·s, base axes", Momentum, Mass, false,
+            centroidal_momentum(q, v) -> [Of(6)] "[k; l], N·m·s and N·s, world axes", Momentum, Mass, false,
                 "momentum of the moving links about their centre of mass", "Orin, Goswami & Lee, Auton. Robots 35, 2013";
-            centroidal_momentum_matrix(q) -> [Of(6), Nv] "base axes", Momentum, Mass, false,
+            centroidal_momentum_matrix(q) -> [Of(6), Nv] "world axes", Momentum, Mass, false,
                 "A with centroidal_momentum = A v", "composite inertias; Orin, Goswami & Lee, Auton. Robots 35, 2013";
-            centroidal_momentum_rate(q, v, a) -> [Of(6)] "[k̇; l̇], N·m and N, base axes", Momentum, Mass, false,
+            centroidal_momentum_rate(q, v, a) -> [Of(6)] "[k̇; l̇], N·m and N, world axes", Momentum, Mass, false,
                 "d/dt of centroidal_momentum = A a + Ȧ v", "Newton and Euler; Orin, Goswami & Lee, Auton. Robots 35, 2013",
                 forms [RatesByAxes];
             inverse_dynamics_derivatives(q, v, a) -> [Of(3), Nv, Nv] "∂τ/∂q, ∂τ/∂v, ∂τ/∂a = M; rows τ", Derivatives, Nothing, true,

@@ -31,14 +31,14 @@ pub(super) fn each<S: Scalar>(
                 Wrench { moment: rotate(turn, given.moment), force: rotate(turn, given.force) }.shifted(frame.placement.position)
             }
             Reference::WorldAligned => back(given).shifted(frame.placement.position),
-            // The moment about the body's origin p is that about the base frame's, less p × f.
+            // The moment about the body's origin p is that about the world frame's, less p × f.
             Reference::World => back(given.shifted(-x_wb.position)),
         };
         add(ws, frame.body, &on_body);
     }
 }
 
-/// Placements of all bodies in the base frame.
+/// Placements of all bodies in the world frame.
 pub(super) fn place_bodies<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S]) {
     for i in model.outward() {
         let body = &model.bodies[i];

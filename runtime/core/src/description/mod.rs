@@ -189,10 +189,10 @@ pub struct JointDynamics {
 /// Whether the root link is the base or moves freely in it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Base {
-    /// The root link does not move; its frame is the base frame.
+    /// The root link does not move; its frame is the world frame.
     #[default]
     Fixed,
-    /// The root link has six degrees of freedom in the base frame.
+    /// The root link has six degrees of freedom in the world frame.
     Floating,
 }
 

@@ -10,11 +10,11 @@ pub(super) const FIELDS: &[Field] = &[
     Field::number("damping", "s/m", "what a unit speed into the plane adds to the force, in parts of it").at_least_zero(),
     Field::number("friction", "1", "coefficient of friction").at_least_zero(),
     Field::number("speed", "m/s", "sliding speed below which friction is smooth").smooth().or(&[1e-2]),
-    Field::number("normal", "1", "outward normal of the plane in the base frame, of any length")
+    Field::number("normal", "1", "outward normal of the plane in the world frame, of any length")
         .or(&[0.0, 0.0, 1.0])
         .of(3)
         .rule(|p| p[5..8] != [0.0; 3], "a direction: three numbers that are not all 0"),
-    Field::number("height", "m", "of the plane along its normal, from the base frame's origin").or(&[0.0]),
+    Field::number("height", "m", "of the plane along its normal, from the world frame's origin").or(&[0.0]),
 ];
 
 pub(super) struct Law;

@@ -9,11 +9,11 @@ use crate::spatial::{Placement, Twist, rotate};
 /// What the law of an effect on a frame may ask.
 #[derive(Clone, Copy, Debug)]
 pub struct Station<S> {
-    /// The frame in the base frame.
+    /// The frame in the world frame.
     pub placement: Placement<S>,
     /// Its motion, in its axes.
     pub twist: Twist<S>,
-    /// Gravity in the base frame, m/s².
+    /// Gravity in the world frame, m/s².
     pub gravity: Vector3<S>,
 }
 

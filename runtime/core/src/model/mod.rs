@@ -31,7 +31,7 @@ use crate::suggest::nearest;
 /// The name under which the joint of a floating base is listed.
 pub const FLOATING_BASE: &str = "__floating_base__";
 
-/// Standard gravity in the base frame, m/s².
+/// Standard gravity in the world frame, m/s².
 pub const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 
 /// A tree of bodies. Body 0 is the base; every other body hangs on its parent by one moving joint, parents before children.
@@ -42,7 +42,7 @@ pub const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 pub struct Model<S = f64> {
     /// The robot's name.
     pub name: String,
-    /// Gravity in the base frame, m/s².
+    /// Gravity in the world frame, m/s².
     pub gravity: Vector3<S>,
     /// What the wrenches that functions take refer to.
     pub wrench_reference: Reference,
@@ -210,7 +210,7 @@ impl<S: Scalar> Model<S> {
         self
     }
 
-    /// The same robot under another gravity, given in the base frame, m/s².
+    /// The same robot under another gravity, given in the world frame, m/s².
     #[must_use]
     pub fn with_gravity(mut self, gravity: [f64; 3]) -> Self {
         self.gravity = Vector3::from(gravity).map(S::from_f64);

@@ -6,9 +6,9 @@ pub enum Reference {
     /// Axes of the frame, about its origin.
     #[default]
     Body,
-    /// Axes of the base frame, about the base frame's origin; also called spatial.
+    /// Axes of the world frame, about the world frame's origin; also called spatial.
     World,
-    /// Axes of the base frame, about the frame's origin: [ω; ṗ].
+    /// Axes of the world frame, about the frame's origin: [ω; ṗ].
     WorldAligned,
 }
 

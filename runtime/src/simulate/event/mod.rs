@@ -49,7 +49,7 @@ pub struct ContactPoint {
     pub frame: usize,
     /// Where it is in the frame, m.
     pub point: [f64; 3],
-    /// Normal of what it touches, in axes of the base frame, of any length but zero.
+    /// Normal of what it touches, in axes of the world frame, of any length but zero.
     pub normal: [f64; 3],
 }
 
@@ -153,7 +153,7 @@ impl<'a> Event<'a> {
         beyond.into_iter().chain(bounds)
     }
 
-    /// A sphere of this radius, m, about a point touches the plane nᵀx = height, m, of the base frame, n its normal made of length one: its distance falls through zero.
+    /// A sphere of this radius, m, about a point touches the plane nᵀx = height, m, of the world frame, n its normal made of length one: its distance falls through zero.
     ///
     /// The robot needs the function `placements`. Errors: all numbers that cannot be used, at once.
     pub fn contact<R: Dynamics<f64>>(
@@ -227,7 +227,7 @@ impl<'r, R: Dynamics<f64>> Points<'r, R> {
         Ok(points)
     }
 
-    /// The point in the base frame, m.
+    /// The point in the world frame, m.
     fn point(&mut self, q: &[f64], point: [f64; 3]) -> Result<[f64; 3], SimulateError> {
         self.robot.placements(&mut self.ws, q, &mut self.placements)?;
         let x = &self.placements[12 * self.frame..12 * (self.frame + 1)];
@@ -235,7 +235,7 @@ impl<'r, R: Dynamics<f64>> Points<'r, R> {
         Ok([0, 1, 2].map(|k| x[9 + k] + turned[k]))
     }
 
-    /// From axes of the frame to axes of the base, as of the last call of `point`.
+    /// From axes of the frame to world axes, as of the last call of `point`.
     fn turned(&self, vector: [f64; 3]) -> [f64; 3] {
         turn(&self.placements[12 * self.frame..], vector)
     }

@@ -19,7 +19,7 @@ pub(super) use slopes::{on_bodies as body_slopes, on_joints as joint_slopes};
 /// What acts on the robot from outside while a recursion runs.
 #[derive(Clone, Copy)]
 pub(super) struct World<'a, S> {
-    /// In the base frame, m/s².
+    /// In the world frame, m/s².
     pub(super) gravity: Vector3<S>,
     /// Whether effects push and pull.
     pub(super) forces: bool,
@@ -75,7 +75,7 @@ fn on_body<S: Scalar>(effect: &BodyEffect<S>, w: &Wrench<S>) -> Wrench<S> {
     Wrench { moment: rotate(turn, w.moment), force: rotate(turn, w.force) }.shifted(effect.placement.position)
 }
 
-/// The station of an effect on body `i`, after sweeps in the base's axes.
+/// The station of an effect on body `i`, after sweeps in world axes.
 fn station_in_base<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, effect: &BodyEffect<S>) -> Station<S> {
     let state = &ws.common[i];
     let x_wb = Placement { rotation: state.rotation, position: state.position };
@@ -84,7 +84,7 @@ fn station_in_base<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, eff
     station(effect, &x_wb, &twist, model.gravity)
 }
 
-/// Placements and twists of all bodies in the base's axes.
+/// Placements and twists of all bodies in world axes.
 fn places<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S]) {
     positions(model, ws, Axes::Base, q);
     twists(model, ws, Axes::Base, v);
@@ -146,7 +146,7 @@ pub fn dissipation<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], 
     }
 }
 
-/// The energy that effects store, J; after [`positions`] in the base's axes.
+/// The energy that effects store, J; after [`positions`] in world axes.
 pub(super) fn energy<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S]) -> S {
     let mut sum = joints::energy(model, q);
     for i in model.outward() {

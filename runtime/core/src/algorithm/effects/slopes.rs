@@ -39,7 +39,7 @@ pub(in crate::algorithm) fn on_joints<S: Scalar>(
     }
 }
 
-/// The same of effects on bodies, after all sweeps in the base's axes; adds their wrenches to the bodies' forces.
+/// The same of effects on bodies, after all sweeps in world axes; adds their wrenches to the bodies' forces.
 pub(in crate::algorithm) fn on_bodies<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,

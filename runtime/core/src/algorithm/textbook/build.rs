@@ -14,7 +14,7 @@ use crate::model::{FLOATING_BASE, JointInfo, Model, ModelError};
 use crate::spatial::{Placement, Reference, from_rpy};
 
 impl<S: Scalar> Textbook<S> {
-    /// From a description; gravity in the base frame, m/s². Fails where [`Model::new`] fails.
+    /// From a description; gravity in the world frame, m/s². Fails where [`Model::new`] fails.
     pub fn new(description: &Description, base: Base, gravity: [f64; 3]) -> Result<Self, ModelError> {
         // The order and the places of coordinates are the interface's, so they are taken from the model; no number is.
         let model = Model::new(description, base)?;

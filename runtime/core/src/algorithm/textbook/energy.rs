@@ -10,7 +10,7 @@ use crate::Scalar;
 use crate::spatial::Reference;
 
 impl<S: Scalar> Textbook<S> {
-    /// Σ m and Σ m c in the base frame, of the links that move.
+    /// Σ m and Σ m c in the world frame, of the links that move.
     pub(super) fn masses(&self, q: &[S]) -> (S, Vector3<S>) {
         let poses = self.poses(q);
         let carried = self.bodies.iter().zip(&poses).filter(|(body, _)| body.carried);

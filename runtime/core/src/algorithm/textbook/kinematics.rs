@@ -15,7 +15,7 @@ use crate::spatial::{Placement, Reference};
 pub(super) type Columns<S> = Vec<Vector6<S>>;
 
 impl<S: Scalar> Textbook<S> {
-    /// T of every body in the base frame.
+    /// T of every body in the world frame.
     pub(super) fn poses(&self, q: &[S]) -> Vec<Placement<S>> {
         let mut poses: Vec<Placement<S>> = Vec::with_capacity(self.bodies.len());
         for body in &self.bodies {

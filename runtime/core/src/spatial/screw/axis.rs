@@ -62,7 +62,7 @@ fn unit_of<S: Scalar>(twist: &Twist<S>) -> S {
     S::select(small, size, S::select(large, size, S::one()))
 }
 
-/// Product of exponentials with screws in the base frame: e^{S_1 θ_1} ⋯ e^{S_n θ_n} M, where `home` is the placement M at θ = 0.
+/// Product of exponentials with screws in the world frame: e^{S_1 θ_1} ⋯ e^{S_n θ_n} M, where `home` is the placement M at θ = 0.
 ///
 /// The twists as the robot stands at θ = 0; θ rad or m. Lynch & Park 2017, (4.14).
 pub fn product_of_exponentials_in_space<S: Scalar>(joints: &[(Twist<S>, S)], home: &Placement<S>) -> Placement<S> {
