@@ -194,7 +194,7 @@ impl Build {
         self
     }
 
-    /// Whether branches that are alike may be computed at once, one a lane of a vector, where that is cheaper: so it is unless this says `false`.
+    /// Whether branches that are alike may be computed at once, one per lane of a vector, where that is cheaper: so it is unless this says `false`.
     #[must_use]
     pub fn limbs(mut self, at_once: bool) -> Self {
         self.request.options.limbs = at_once;

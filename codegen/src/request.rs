@@ -37,7 +37,7 @@ pub struct Options {
     pub parameters: Vec<String>,
     /// Rust names to use instead of those made from the URDF's names: (name in the URDF, name in Rust).
     pub rename: Vec<(String, String)>,
-    /// Compute limbs that are alike at once, one a lane of a vector, and derivatives of large trees in loops over their joints, four at a time, where that is cheaper.
+    /// Compute limbs that are alike at once, one per lane of a vector, and derivatives of large trees in loops over their joints, four at a time, where that is cheaper.
     pub limbs: bool,
     /// The types of numbers for which there are functions of many states at once too.
     pub batch: Vec<Real>,

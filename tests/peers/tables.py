@@ -129,7 +129,7 @@ def titles(robot, functions):
 
 
 def single(runs):
-    """ns a call, and ratios to the fastest."""
+    """ns per call, and ratios to the fastest."""
     for robot, own in runs.items():
         for title, f in zip(titles(robot, FUNCTIONS), FUNCTIONS):
             ours = median(own, lambda r: r.time(f, "generated"))
@@ -148,7 +148,7 @@ def ratios(one, many):
 
 
 def batches(runs):
-    """ns a state, and ratios to a call of Pinocchio's fastest build."""
+    """ns per state, and ratios to a call of Pinocchio's fastest build."""
     for robot, own in runs.items():
         for title, f in zip(titles(robot, BATCHES), BATCHES):
             kinds = [(numbers, layout) for numbers in ("f64", "f32") for layout in ("blocks", "states")]
@@ -190,9 +190,9 @@ def main():
         folder.mkdir(parents=True, exist_ok=True)
         one = all_runs(command, arguments.runs, folder, "one", ["--functions", ",".join(FUNCTIONS)])
         many = all_runs(command, arguments.runs, folder, "many", ["--functions", ",".join(BATCHES), "--batch", "f64,f32"])
-    table("ns a call", ["generated", "any processor", "generic", *ENGINES, *RATIOS], single(one))
+    table("ns per call", ["generated", "any processor", "generic", *ENGINES, *RATIOS], single(one))
     layouts = ["`f64` blocks", "`f64` states", "`f32` blocks", "`f32` states", "one at a time"]
-    table("ns a state", [*layouts, "Pinocchio / `f64` blocks", "Pinocchio / `f32` blocks"], batches(many))
+    table("ns per state", [*layouts, "Pinocchio / `f64` blocks", "Pinocchio / `f32` blocks"], batches(many))
     table("Pinocchio · fastest generated C; of many states, `f64` · `f32` blocks", [f"`{robot}`" for robot in ROBOTS], ratios(one, many))
     table("all four functions generated and compiled", ["by", "ours, s", "theirs, s", "theirs / ours"], making(one))
     return 0

@@ -30,7 +30,7 @@ pub(crate) struct DraftJoint {
     pub(crate) axis: [f64; 3],
     /// Of a universal joint; zero otherwise.
     pub(crate) second_axis: [f64; 3],
-    /// Of a helical joint, m a turn; zero otherwise.
+    /// Of a helical joint, m per revolution; zero otherwise.
     pub(crate) pitch: f64,
     pub(crate) mimic: Option<DraftMimic>,
     pub(crate) limit: Option<Limit>,

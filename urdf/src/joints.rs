@@ -199,7 +199,7 @@ fn pitch(joint: &Tag<'_>, log: &mut Log) -> Option<f64> {
     unused::rest(&tag, &[], &["pitch"], log);
     let pitch = number::required(&tag, "pitch", log)?;
     if pitch == 0.0 {
-        let expected = "metres a turn; without, the joint is revolute; used as written";
+        let expected = "metres per revolution; without, the joint is revolute; used as written";
         log.warning(&tag.place("thread pitch"), Kind::ZeroPitch, "zero", expected);
     }
     Some(pitch)

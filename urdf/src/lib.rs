@@ -26,7 +26,7 @@
 //!
 //! * `spherical`: any turn about the joint's origin. It has no axis.
 //! * `helical`: a screw. It turns about `<axis>`, within the bounds of `<limit>` in rad, and slides along it by
-//!   `<thread pitch="0.005"/>` metres a turn; negative for a left-handed thread, which has to be given. Zero is accepted with a warning.
+//!   `<thread pitch="0.005"/>` metres per revolution; negative for a left-handed thread, which has to be given. Zero is accepted with a warning.
 //! * `universal`: Cardan's joint. It turns about `<axis xyz="1 0 0"/>`, then about `<axis2 xyz="0 1 0"/>`, which the first has turned; both have to be
 //!   given, in the joint's frame, and not parallel.
 //!

@@ -54,7 +54,7 @@ pub(super) fn text(report: &Report, wish: f64) -> String {
             (Some(level), Some(ns), Some(error), _) => {
                 writeln!(
                     out,
-                    "{}: {level}, {ns:.0} ns a call, off by at most {error:.1e} in {}",
+                    "{}: {level}, {ns:.0} ns per call, off by at most {error:.1e} in {}",
                     a.function,
                     counted(report.states, "state")
                 )

@@ -169,7 +169,7 @@ impl One<'_> {
         FunctionReport { function: self.f.name, summary: self.f.summary, points, surprises }
     }
 
-    /// ns a call on the random states, of ours and then of theirs, in turns.
+    /// ns per call on the random states, of ours and then of theirs, in turns.
     fn times(&self, ours: &[(&Made, Contender)], theirs: &[(&Peer, Theirs)]) -> Vec<Vec<f64>> {
         let random = self.sets[0].iter().filter(|c| c.hard.is_none()).count();
         let slices: Vec<Vec<Vec<&[f64]>>> = ours.iter().map(|(_, c)| c.slices(random)).collect();

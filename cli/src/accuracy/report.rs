@@ -10,7 +10,7 @@ const MAGNITUDE: &str = "the sum of the magnitudes of the terms";
 
 /// Of all numbers that have one.
 pub(super) const UNITS: Units = Units(&[
-    ("functions[].points[].time", "ns a call"),
+    ("functions[].points[].time", "ns per call"),
     ("functions[].points[].relative", MAGNITUDE),
     ("functions[].points[].ulps", "the last place of the result as a double"),
     ("functions[].points[].rounding", MAGNITUDE),
@@ -71,7 +71,7 @@ pub(super) struct Point {
     pub(super) level: String,
     /// Whether it is a library of others.
     pub(super) peer: bool,
-    /// ns a call.
+    /// ns per call.
     pub(super) time: Summary,
     /// Of each state the largest error of a result, relative to the sum of the magnitudes of its terms; against [`Report::reference`].
     pub(super) relative: Spread,

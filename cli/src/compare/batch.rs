@@ -109,16 +109,16 @@ pub(super) struct Beside<'a> {
     pub(super) model: &'a Model<f64>,
     pub(super) states: &'a [Vec<&'a [f64]>],
     pub(super) generic: &'a Contender<'a>,
-    /// ns a call of generated code.
+    /// ns per call of generated code.
     pub(super) generated: &'a [f64],
-    /// Peers and ns a call of each.
+    /// Peers and ns per call of each.
     pub(super) peers: Vec<(&'a Peer, &'a [f64])>,
     /// Whether the results mean anything.
     pub(super) regular: bool,
 }
 
 impl Beside<'_> {
-    /// `time`: ns a state.
+    /// `time`: ns per state.
     pub(super) fn report(&self, many: &Many<'_>, time: &[f64]) -> BatchReport {
         let over = |(peer, own): &(&Peer, &[f64])| PeerOverBatch {
             peer: peer.name.clone(),

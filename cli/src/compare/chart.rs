@@ -114,7 +114,7 @@ impl Axis {
             middle,
             bottom + 34.0,
             "text-anchor=\"middle\" fill=\"#555555\"",
-            "ns a call, median; logarithmic: equal ratios are equal distances",
+            "ns per call, median; logarithmic: equal ratios are equal distances",
         );
     }
 }

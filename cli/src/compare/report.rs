@@ -22,8 +22,8 @@ use crate::robot::Robot;
 use crate::tips::Tips;
 use crate::units::Units;
 
-const CALL: &str = "ns a call";
-const STATE: &str = "ns a state";
+const CALL: &str = "ns per call";
+const STATE: &str = "ns per state";
 const RATIO: &str = "ratio";
 const MAGNITUDE: &str = "the sum of the magnitudes of the terms";
 const ROUNDING: &str = "2⁻⁵³ of the sum of the magnitudes of the terms";
@@ -157,7 +157,7 @@ pub(super) struct PeerReport {
 }
 
 impl PeerReport {
-    /// `times`: ns a call of the peer, of generated code and of generic code.
+    /// `times`: ns per call of the peer, of generated code and of generic code.
     pub(super) fn new(peer: &Peer, function: &str, [own, generated, generic]: [&[f64]; 3], largest_difference: Option<f64>) -> Self {
         Self {
             peer: peer.name.clone(),
@@ -173,7 +173,7 @@ impl PeerReport {
 }
 
 impl FunctionReport {
-    /// `times`: ns a call of generated code and of generic code.
+    /// `times`: ns per call of generated code and of generic code.
     pub(super) fn new(
         ready: &Prepared,
         times: [&[f64]; 2],

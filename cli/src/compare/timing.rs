@@ -34,7 +34,7 @@ pub(crate) struct Summary {
     pub(crate) upper_quartile: f64,
 }
 
-/// ns a state of each run in each repetition.
+/// ns per state of each run in each repetition.
 pub(crate) fn interleaved(runs: &mut [Run<'_>], repetitions: usize) -> Vec<Vec<f64>> {
     let rounds: Vec<usize> = runs.iter_mut().map(rounds_of_a_batch).collect();
     let mut times = vec![Vec::with_capacity(repetitions); runs.len()];

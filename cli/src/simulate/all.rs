@@ -24,7 +24,7 @@ struct Row {
     evaluations: u64,
     /// Largest imbalance of energy over the largest energy moved.
     relative_imbalance: f64,
-    /// Simulated seconds a second.
+    /// Simulated seconds per second.
     generated: f64,
     generic: f64,
 }
@@ -94,5 +94,8 @@ fn text(rows: &[Row]) -> String {
             [r.scene.to_owned(), r.effects.join(", "), r.degrees_of_freedom.to_string(), r.integrator.to_owned(), number(r.simulated_s)];
         table.row(head.into_iter().chain(counts).chain(speeds));
     }
-    format!("Simulated seconds a second of wall time, recording included, of generated code and of the generic library\n\n{}", table.text())
+    format!(
+        "Simulated seconds per second of wall time, recording included, of generated code and of the generic library\n\n{}",
+        table.text()
+    )
 }

@@ -104,7 +104,7 @@ fn table(s: &Summary) -> Table {
         row("  the ball", none(), "not hit".into(), "");
     }
     row("wall time", none(), number(s.wall_s), "s");
-    row("simulated seconds a second", none(), number(s.simulated_s_per_wall_s), "");
+    row("simulated seconds per second", none(), number(s.simulated_s_per_wall_s), "");
     table
 }
 

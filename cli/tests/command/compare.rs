@@ -11,7 +11,7 @@ fn a_report_has_everything() {
     assert_eq!(ended.status, 0, "{}", ended.err);
     let json = ended.json();
     assert_eq!(json["functions"].as_array().unwrap().len(), 2);
-    assert_eq!((&json["units"]["functions[].generated"], &json["units"]["gravity"]), (&"ns a call".into(), &"m/s²".into()));
+    assert_eq!((&json["units"]["functions[].generated"], &json["units"]["gravity"]), (&"ns per call".into(), &"m/s²".into()));
     assert_eq!(without_numbers(&json), Vec::<String>::new());
     for f in json["functions"].as_array().unwrap() {
         let number = |path: &str| f.pointer(path).and_then(serde_json::Value::as_f64).unwrap_or_else(|| panic!("{path}: {f}"));

@@ -19,7 +19,7 @@ fn chains_are_measured_and_drawn() {
     }
     assert_eq!(report["crossovers"].as_array().unwrap().len(), 2);
     assert_eq!(report["growth"][1]["to"], 4);
-    assert_eq!(report["units"]["points[].generated_cold"], "ns a call");
+    assert_eq!(report["units"]["points[].generated_cold"], "ns per call");
     let drawn = std::fs::read_to_string(chart).unwrap();
     assert_eq!(drawn.matches("<polyline").count(), 8);
     // Two points and one in the legend.

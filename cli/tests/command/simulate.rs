@@ -90,7 +90,8 @@ fn the_command_line_goes_before_the_scene() {
     let ended = run(&["simulate", "double_pendulum", "--end", "0.1", "--integrator", "rk4", "--step", "0.001", "--format", "json"]).json();
     assert_eq!((ended["integrator"]["name"].as_str(), ended["counts"]["steps"].as_u64()), (Some("rk4"), Some(100)));
     let text = run(&["simulate", "double_pendulum", "--end", "0.1"]).out;
-    for part in ["energy T + U", "largest imbalance", "rejected", "shortest step", "longest step", "simulated seconds a second", "kg·m²/s"]
+    for part in
+        ["energy T + U", "largest imbalance", "rejected", "shortest step", "longest step", "simulated seconds per second", "kg·m²/s"]
     {
         assert!(text.contains(part), "{text}");
     }

@@ -1,4 +1,4 @@
-//! M X = B for many columns, left a loop: four columns a vector, all vectors of a row in registers.
+//! M X = B for many columns, left a loop: four columns per vector, all vectors of a row in registers.
 //!
 //! Written out, the solution is two multiply-adds for each number of L and each column, which is most of the derivatives of forward dynamics. A function that leaves it a loop
 //! writes B and the factors of M = Lᵀ D L where the result is to be, which `columns` makes of them.

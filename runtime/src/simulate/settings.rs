@@ -190,7 +190,7 @@ impl Settings {
         let right = if rounding > room {
             format!("at least {rounding:.1e} s, sixteen units of rounding of the time")
         } else {
-            format!("at least {} s, for no more than {MOST_RECORDED:e} numbers in all, {each} a record", short(room))
+            format!("at least {} s, for no more than {MOST_RECORDED:e} numbers in all, {each} per record", short(room))
         };
         found.unless(every >= rounding.max(room), "output", every, &right);
     }
@@ -269,7 +269,7 @@ mod tests {
             problems.first().map(ToString::to_string).unwrap_or_default()
         };
         assert_eq!(told(1, 0.0, 2e-7), "");
-        assert_eq!(told(100, 0.0, 2e-7), "output = 2e-7: at least 3.12e-6 s, for no more than 1e9 numbers in all, 312 a record");
+        assert_eq!(told(100, 0.0, 2e-7), "output = 2e-7: at least 3.12e-6 s, for no more than 1e9 numbers in all, 312 per record");
         assert_eq!(told(1, 1e9, 1e-6), "output = 1e-6: at least 3.6e-6 s, sixteen units of rounding of the time");
     }
 

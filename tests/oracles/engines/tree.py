@@ -32,7 +32,7 @@ class Joint:
     rpy: list
     axis: list = field(default_factory=lambda: [1.0, 0.0, 0.0])
     second_axis: list = field(default_factory=lambda: [0.0] * 3)  # of a universal joint
-    pitch: float = 0.0  # of a helical joint, m a turn
+    pitch: float = 0.0  # of a helical joint, m per revolution
     mimic: list = None  # [leader, multiplier, offset]
     lower: float = math.nan
     upper: float = math.nan

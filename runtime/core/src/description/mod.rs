@@ -77,11 +77,11 @@ pub enum JointKind {
     /// the plane has the frame's x and y, for x its y and z, for y its z and x; for any other, the first two columns of
     /// [`crate::spatial::to_z_axis`].
     Planar,
-    /// Any turn about the joint's origin: a unit quaternion (x, y, z, w) and the angular velocity in axes of the child.
+    /// Any rotation about the joint's origin: a unit quaternion (x, y, z, w) and the angular velocity in axes of the child.
     Spherical,
-    /// A turn about the axis, within limits, that slides along it: `pitch` metres a turn. The coordinate is the angle.
+    /// A rotation about the axis, within limits, that slides along it: `pitch` metres per revolution. The coordinate is the angle.
     Helical,
-    /// A turn about `axis`, then one about `second_axis`, which the first has turned: Cardan's joint.
+    /// A rotation about `axis`, then one about `second_axis`, which the first has turned: Cardan's joint.
     Universal,
 }
 
