@@ -42,9 +42,9 @@ mod tree;
 ///         payload = { link = tool, mass = 1.2, center_of_mass = [0.0, 0.0, 0.1] }, // or a list of them; also `inertia` (six numbers), `name`
 ///         append = { urdf = "gripper.urdf", at = tool, prefix = "left_" }, // another robot; or a list of them; also `xyz`, `rpy`
 ///         rename = { "a-b" = A_MINUS_B },                // names in Rust for names of the URDF
-///         allow_unphysical_inertia = false,              // true: principal moments below zero are accepted
+///         allow_unphysical_inertia = false,              // true: negative principal moments are accepted, with a warning
 ///         snap_angles = 1e-9,                            // rad, above 0, at most 0.5: angles this near to a multiple of π/2 are taken as that; absent: none
-///         limbs = true,                                  // branches that are alike at once, one a lane of a vector, and joints in loops, where that is cheaper
+///         limbs = true,                                  // branches that are alike at once, one per lane of a vector, and joints in loops, where that is cheaper
 ///         batch = [],                                    // [f64, f32]: functions of many states at once too, in modules batch_f64, batch_f32
 ///         level = f64,                                   // how accurate: also f32, f32_f64, compensated + two, double_double, f64 + fast_10 + no_fma, …
 ///         forbid_unsafe = false,                         // true: no `unsafe` in the module; slower on x86-64: no limbs in lanes, no joints in loops, no choice of instructions

@@ -218,7 +218,7 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
         required: false,
         value: "`\"linear\"` or `\"hold\"`",
         default: "`\"linear\"`",
-        what: "`table`, `pd`: between rows (a quaternion by the shortest turn, at one rate); before the first and after the last the nearest row holds",
+        what: "`table`, `pd`: between rows (a quaternion by the shortest rotation, at one rate); before the first and after the last the nearest row holds",
         read: |x, s, log| set(&mut x.source.hold, s.word(log, &[("linear", false), ("hold", true)])),
     },
     Row {

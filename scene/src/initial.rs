@@ -24,7 +24,7 @@ pub struct Initial {
 /// Numbers of joints.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Coordinates {
-    /// 0; no turn for a quaternion.
+    /// 0; the identity for a quaternion.
     #[default]
     Neutral,
     /// All of them, in the order of the robot.
@@ -65,7 +65,7 @@ pub struct Named {
 pub struct BaseState {
     /// Its origin in the world frame, m.
     pub xyz: [f64; 3],
-    /// Its turn, x, y, z, w, of norm one.
+    /// Its orientation, x, y, z, w, of norm one.
     pub quaternion: [f64; 4],
     /// Angular velocity in its own axes, rad/s.
     pub angular: [f64; 3],
@@ -140,7 +140,7 @@ pub(crate) const BASE: &[Row<BaseState>] = &[
         required: false,
         value: "4 numbers, 1",
         default: "[0, 0, 0, 1]",
-        what: "its turn, x, y, z, w, of norm one; instead of `rpy`",
+        what: "its orientation, x, y, z, w, of norm one; instead of `rpy`",
         read: |b, s, log| b.quaternion = unit(s, log).unwrap_or(b.quaternion),
     },
     Row {

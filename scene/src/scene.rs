@@ -296,7 +296,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         required: false,
         value: "true or false",
         default: "false",
-        what: "accept inertias with a moment below zero; those of which one exceeds the sum of the others are accepted anyway, both with a warning",
+        what: "accept negative principal moments, with a warning (moments that break the triangle inequality always are)",
         read: |s, spot, log| s.code.allow_unphysical_inertia = spot.boolean(log),
     },
     Row {

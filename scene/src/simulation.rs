@@ -191,7 +191,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         required: false,
         value: "number, s; numbers, s; `\"steps\"` or `\"ends\"`",
         default: "0.01",
-        what: "how often the state is recorded, above 0 and less than 1e9 times, or when: the times, in order, after each step, at the ends",
+        what: "how often the state is recorded, above 0 and for at most 1e9 numbers in all (records times numbers per record), or when: the times, in order, after each step, at the ends",
         read: |x, s, log| set(&mut x.output, output(s, log)),
     },
     Row {

@@ -110,10 +110,7 @@ fn files_are_seen_from_the_scenes_folder_and_those_that_are_not_there_are_told_a
     assert_eq!(whole.settle().unwrap().model.nv, 2);
     let told = |result: Result<Opened, RobotError>| result.unwrap_err().to_string();
     assert!(told(alone).starts_with(&format!("{}:2: urdf: {}: ", path("alone.toml").display(), path("no.urdf").display())));
-    assert!(
-        told(robot)
-            .contains("robot.toml:1: robot: found \"arm\", a robot that there is not, expected urdf: no robot is known by name here")
-    );
+    assert!(told(robot).contains("robot.toml:1: robot: found \"arm\", no such robot, expected urdf: no robot is known by name here"));
     assert!(told(nothing).contains("nothing.toml: found no robot, expected robot, or urdf"));
     assert!(told(nowhere).starts_with(&format!("{}: ", path("nowhere.toml").display())));
 }
@@ -128,5 +125,5 @@ fn a_bundled_robot_stands_on_its_own_base_unless_the_scene_says_another_and_of_o
     };
     assert_eq!([nv("robot = 'stone'"), nv("robot = 'stone'\nbase = 'fixed'")].map(Result::unwrap), [6, 0]);
     let told = nv("\nrobot = 'stne'").unwrap_err().to_string();
-    assert_eq!(told, "s.toml:2: robot: found \"stne\", a robot that there is not, expected one of stone; did you mean \"stone\"?");
+    assert_eq!(told, "s.toml:2: robot: found \"stne\", no such robot, expected one of stone; did you mean \"stone\"?");
 }

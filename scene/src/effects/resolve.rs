@@ -126,7 +126,7 @@ impl<'a> Resolving<'a> {
             }
             let place = (one.place, one.key.as_str(), Kind::UnknownName);
             let names = self.moving_joints().map(|j| j.name.as_str());
-            log.unknown(place, ("a joint that there is not".into(), name), "a joint of the robot that moves", names);
+            log.unknown(place, ("no such joint".into(), name), "a joint of the robot that moves", names);
             return;
         };
         let joint = &joints[at];
@@ -151,7 +151,7 @@ impl<'a> Resolving<'a> {
             None => {
                 let place = (one.place, one.key.as_str(), Kind::UnknownName);
                 let names = links.iter().map(|l| l.name.as_str());
-                log.unknown(place, ("a link that there is not".into(), name), "a link of the robot", names);
+                log.unknown(place, ("no such link".into(), name), "a link of the robot", names);
             }
             Some(link) if self.still[link] && one.says.is_some() => {
                 log.error(one.place, &one.key, Kind::Robot, "a link that is fixed to the base", "a link that moves");
@@ -166,7 +166,7 @@ impl<'a> Resolving<'a> {
         match links.iter().position(|l| l.name == impact.link) {
             None => {
                 let place = (impact.place, "impact.link", Kind::UnknownName);
-                let found = ("a link that there is not".into(), impact.link.as_str());
+                let found = ("no such link".into(), impact.link.as_str());
                 log.unknown(place, found, "a link of the robot", links.iter().map(|l| l.name.as_str()));
             }
             Some(link) if self.still[link] => {

@@ -26,7 +26,7 @@ pub struct RobotOptions {
     pub lock: Vec<(String, Vec<f64>)>,
     /// What the robot is subject to besides gravity; on joints and links of appended robots too.
     pub effects: Vec<Applied>,
-    /// Accept inertias with a principal moment below zero, with a warning. (Moments of which one exceeds the sum of the others are accepted with a warning anyway.)
+    /// Accept negative principal moments, with a warning. (Moments that break the triangle inequality are always accepted with a warning.)
     pub allow_unphysical_inertia: bool,
     /// Take angles this near (rad, above 0, at most [`MOST_SNAPPED`](articulated_urdf::MOST_SNAPPED)) to a multiple of π/2 as that multiple; every one is reported. `None`: never.
     pub snap_angles: Option<f64>,

@@ -90,7 +90,7 @@ impl Scene {
         let names: Vec<&str> = bundled.iter().map(|one| one.name).collect();
         let expected =
             if names.is_empty() { "urdf: no robot is known by name here".to_owned() } else { format!("one of {}", names.join(", ")) };
-        let mut all = self.without_robot(&format!("{name:?}, a robot that there is not"), &expected);
+        let mut all = self.without_robot(&format!("{name:?}, no such robot"), &expected);
         all.errors[0].nearest = nearest(name, names);
         all
     }

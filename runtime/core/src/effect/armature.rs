@@ -5,7 +5,7 @@ use crate::Scalar;
 
 pub(super) const FIELDS: &[Field] = &[
     Field::number("inertia", "kg·m²|kg", "inertia of the rotor about its own axis").at_least_zero().factor(),
-    Field::number("gear", "1", "turns of the rotor a turn of the joint").or(&[1.0]).factor(),
+    Field::number("gear", "1", "revolutions of the rotor per revolution of the joint").or(&[1.0]).factor(),
 ];
 
 /// I n².

@@ -6,7 +6,7 @@ use crate::spatial::{Vector3, Wrench, rotate, rotate_back};
 
 pub(super) const FIELDS: &[Field] = &[
     Field::number("radius", "m", "of the sphere about the origin of the effect's frame").at_least_zero(),
-    Field::number("stiffness", "N/m", "force a unit of depth").at_least_zero().factor(),
+    Field::number("stiffness", "N/m", "force per unit of depth").at_least_zero().factor(),
     Field::number("damping", "s/m", "what a unit speed into the plane adds to the force, in parts of it").at_least_zero(),
     Field::number("friction", "1", "coefficient of friction").at_least_zero(),
     Field::number("speed", "m/s", "sliding speed below which friction is smooth").smooth().or(&[1e-2]),

@@ -6,7 +6,7 @@ use crate::Scalar;
 pub(super) const FIELDS: &[Field] = &[
     Field::number("lower", "rad|m", "lower bound"),
     Field::number("upper", "rad|m", "upper bound").rule(|p| p[0] < p[1], "a number above the lower bound"),
-    Field::number("stiffness", "N·m/rad|N/m", "torque a unit of depth").at_least_zero().factor(),
+    Field::number("stiffness", "N·m/rad|N/m", "torque per unit of depth").at_least_zero().factor(),
     Field::number("damping", "s/rad|s/m", "what a unit rate into the stop adds to the torque, in parts of it").at_least_zero().or(&[0.0]),
 ];
 

@@ -287,7 +287,7 @@ macro_rules! effects {
 }
 
 effects! {
-    Joint inertia armature true "M_ii += I n²: a rotor of inertia I behind a gear n, that turns about the joint's axis alone" "Featherstone 2008, §9.6";
+    Joint inertia armature true "M_ii += I n²: a rotor of inertia I behind a gear n, that rotates about the joint's axis alone" "Featherstone 2008, §9.6";
     Joint force damping false "−d v" "Rayleigh 1873";
     Joint force friction false "−μ v/√(v² + s²): Coulomb friction, smooth for rates below s" "Coulomb 1781; smoothed as in Hairer & Wanner 1996";
     Joint force spring true "−k (q − q₀)" "Hooke 1678";

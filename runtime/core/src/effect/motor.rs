@@ -6,7 +6,7 @@ use crate::Scalar;
 pub(super) const FIELDS: &[Field] = &[
     Field::number("torque", "N·m|N", "largest torque of the motor, at a standstill").positive(),
     Field::number("speed", "rad/s|m/s", "speed of the motor at which it has no torque left").positive(),
-    Field::number("gear", "1", "turns of the motor a turn of the joint").positive().or(&[1.0]),
+    Field::number("gear", "1", "revolutions of the motor per revolution of the joint").positive().or(&[1.0]),
     Field::number("efficiency", "1", "of the gear").positive().at_most(1.0).or(&[1.0]),
     Field::number("smooth", "rad/s|m/s", "rate of the joint below which the loss is smooth").smooth().or(&[1e-3]),
 ];

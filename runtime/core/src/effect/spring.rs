@@ -4,7 +4,7 @@ use super::{Field, Force};
 use crate::Scalar;
 
 pub(super) const FIELDS: &[Field] = &[
-    Field::number("stiffness", "N·m/rad|N/m", "torque a unit of the coordinate").at_least_zero().factor(),
+    Field::number("stiffness", "N·m/rad|N/m", "torque per unit of the coordinate").at_least_zero().factor(),
     Field::number("rest", "rad|m", "coordinate at which it is slack").or(&[0.0]),
 ];
 
