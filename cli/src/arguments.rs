@@ -150,7 +150,7 @@ pub(crate) struct RobotArguments {
     /// Gravity in the world frame, m/s² [default: 0,0,-9.81]
     #[arg(long, value_name = "X,Y,Z", value_parser = gravity, allow_hyphen_values = true)]
     pub(crate) gravity: Option<Gravity>,
-    /// Take inertias with a moment below zero, with a warning (moments of which one exceeds the sum of the others always are)
+    /// Accept negative principal moments, with a warning (moments that break the triangle inequality always are)
     #[arg(long)]
     pub(crate) allow_unphysical_inertia: bool,
     /// Take an angle of the file within TOL rad of a multiple of π/2 as that multiple: above 0, at most 0.5 [default: none is]
@@ -247,7 +247,7 @@ pub(crate) struct CompareArguments {
     pub(crate) robot: RobotArguments,
     #[command(flatten)]
     pub(crate) frames: FrameArguments,
-    /// The functions to compare, or groups of them [default: all that are defined for the robot, on the frames of its tips]
+    /// The functions to compare, or groups of them [default: all that are defined for the robot and take at most 20 000 instructions, on the frames of its tips]
     #[arg(long, alias = "function", value_name = "NAMES", value_parser = known)]
     pub(crate) functions: Vec<Names>,
     /// No `unsafe` in the generated code: shows what the vector instructions of the sines bring

@@ -23,7 +23,11 @@ pub(super) fn results(functions: &[FunctionReport], states: &[State], model: &Mo
             let both = [&f.outcomes[k].generic, &f.outcomes[k].generated];
             let found = both.into_iter().flatten().map(|out| not_finite(out)).find(|found| !found.is_empty());
             if let [first, others @ ..] = &found.unwrap_or_default()[..] {
-                let others = if others.is_empty() { String::new() } else { format!(", nor are {} others", others.len()) };
+                let others = match others.len() {
+                    0 => String::new(),
+                    1 => ", nor is 1 other".into(),
+                    n => format!(", nor are {n} others"),
+                };
                 lines.push(format!("{file}: states[{k}]: {}: number {first} of the result is not finite{others}", f.function.name));
             }
         }

@@ -13,7 +13,7 @@ Made by `articulated functions --markdown`; `articulated functions ROBOT…` mak
 
 The last columns are what generated code does in one call: multiplications+additions, and instructions, where a multiply-add counts once. Sines and
 cosines of the joints come on top. Where limbs or joints are computed side by side (most of quadruped and humanoid), an instruction on a vector counts
-once. Units \"a|b\": a for joints that turn, b for joints that slide. Functions of frames are generated for the tips of each robot: the links that move and that nothing hangs on.
+once. Units \"a|b\": a for joints that rotate, b for joints that slide. Functions of frames are generated for the tips of each robot: moving links that carry no other.
 
 ";
 

@@ -9,10 +9,10 @@ use crate::units::Units;
 
 /// Of all numbers that have one.
 pub(super) const UNITS: Units = Units(&[
-    ("points[].generated_hot", "ns a call"),
-    ("points[].generic_hot", "ns a call"),
-    ("points[].generated_cold", "ns a call"),
-    ("points[].generic_cold", "ns a call"),
+    ("points[].generated_hot", "ns per call"),
+    ("points[].generic_hot", "ns per call"),
+    ("points[].generated_cold", "ns per call"),
+    ("points[].generic_cold", "ns per call"),
     ("points[].difference", "the largest number of the result"),
     ("crossovers[].hot", "joints"),
     ("crossovers[].cold", "joints"),

@@ -39,13 +39,13 @@ pub(super) const COLUMNS: [(&str, &str); 12] = [
     ("generic, hot", "µs"),
     ("generated, cold", "µs"),
     ("generic, cold", "µs"),
-    ("generated, hot", "ns a joint"),
-    ("generated, cold", "ns a joint"),
-    ("instructions", "a joint"),
-    ("code", "bytes a joint"),
+    ("generated, hot", "ns per joint"),
+    ("generated, cold", "ns per joint"),
+    ("instructions", "per joint"),
+    ("code", "bytes per joint"),
     ("generation", "ms"),
     ("rustc", "s"),
-    ("rustc", "ms a joint"),
+    ("rustc", "ms per joint"),
 ];
 
 /// One row, as many as [`COLUMNS`].
@@ -83,16 +83,17 @@ fn three(x: f64) -> String {
 
 /// From which length on generic code is faster, as a sentence.
 pub(super) fn crossover(c: &Crossover) -> String {
-    let at = |n: Option<f64>| {
-        n.map_or_else(|| format!("at no length up to {}", c.up_to), |n| format!("from {} on", counted(n.round() as usize, "joint")))
+    let faster = |n: Option<f64>| match n {
+        None => format!("generated code is faster up to {}", counted(c.up_to, "joint")),
+        Some(n) => format!("generic code is faster from {} on", counted(n.round() as usize, "joint")),
     };
-    format!("{}: generic code is faster {} with hot caches, {} with cold ones", c.function, at(c.hot), at(c.cold))
+    format!("{}: with hot caches {}; with cold ones {}", c.function, faster(c.hot), faster(c.cold))
 }
 
 /// By how much a joint's costs grow, as a sentence.
 pub(super) fn growth(g: &Growth) -> String {
     format!(
-        "{}: from {} to {} a joint costs {:.1} times the time with hot caches, {:.1} times the generation, {:.1} times the compilation",
+        "{}: from {} to {}, time per joint with hot caches changes by a factor of {:.1}, generation by {:.1}, compilation by {:.1}",
         g.function,
         g.from,
         counted(g.to, "joint"),

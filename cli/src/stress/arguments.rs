@@ -7,7 +7,7 @@ use crate::arguments::{Gravity, gravity};
 
 #[derive(Args, Debug)]
 pub(crate) struct StressArguments {
-    /// A bundled robot's name, the path of a URDF or of a scene (.toml), or - for a URDF on the standard input [default: the corpus and all bundled robots]
+    /// A bundled robot's or scene's name (a robot's first), the path of a URDF or of a scene (.toml), or - for a URDF on the standard input [default: the corpus and all bundled robots]
     #[arg(value_name = "ROBOT")]
     pub(crate) robot: Option<String>,
     /// The root link moves freely (bundled robots know their own base)
@@ -19,7 +19,7 @@ pub(crate) struct StressArguments {
     /// Gravity in the world frame, m/s² [default: 0,0,-9.81]
     #[arg(long, value_name = "X,Y,Z", value_parser = gravity, allow_hyphen_values = true, requires = "robot")]
     pub(crate) gravity: Option<Gravity>,
-    /// Take inertias with a moment below zero
+    /// Accept negative principal moments
     #[arg(long, requires = "robot")]
     pub(crate) allow_unphysical_inertia: bool,
     /// A file of states of the robot in JSON or CSV, besides those at random and the hard ones

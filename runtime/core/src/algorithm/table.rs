@@ -137,7 +137,7 @@ macro_rules! for_each_function {
                 "−M⁻¹ ∂(inverse dynamics); Carpentier & Mansard, RSS 2018",
                 by ["", always, nothing, forward_dynamics_derivatives_with_wrenches; "the axes of the first body", near_the_middle, nothing, forward_dynamics_derivatives_with_wrenches in axes_of_first_bodies], columns unsolved_derivatives_with_wrenches,
                 forms [RatesByAxes];
-            static_torque_derivative(q, wrenches) -> [Nv, Nv] "N·m|N a unit step, rows τ", Derivatives, Nothing, true,
+            static_torque_derivative(q, wrenches) -> [Nv, Nv] "N·m|N per unit step, rows τ", Derivatives, Nothing, true,
                 "∂(static_torque)/∂q in the tangent space, wrenches constant in their reference",
                 "Singh, Russell & Wensing, IEEE RA-L 7, 2022",
                 by ["", always, nothing, static_torque_derivative; "the axes of the first body", near_the_middle, nothing, static_torque_derivative in axes_of_first_bodies];
@@ -163,12 +163,12 @@ macro_rules! for_each_function {
             dissipation(q, v) -> [] "W", Effects, Nothing, false,
                 "power of the effects that are not conservative: d(T + U)/dt = vᵀτ + this", "each effect's law";
             motor_torques(v, tau) -> [Nv] "N·m|N", Effects, Nothing, false,
-                "what motors make of the torques that they are asked for; forward dynamics takes tau so", "each motor's law";
+                "the torques that motors deliver when commanded tau; forward dynamics applies this itself", "each motor's law";
             integrate(q, step) -> [Nq] "rad|m|unit quaternion", Configurations, Nothing, false,
                 "q ⊕ step: along the step for a unit of time, on the manifold", "exponential of SE(3); Lynch & Park 2017, §3.3";
             difference(q, target) -> [Nv] "rad|m", Configurations, Nothing, false,
                 "target ⊖ q: the step with q ⊕ step = target", "logarithm of SE(3); Lynch & Park 2017, §3.3";
-            integrate_derivatives(step) -> [Of(2), Nv, Nv] "1|m, rows a step where it ends", Configurations, Nothing, false,
+            integrate_derivatives(step) -> [Of(2), Nv, Nv] "1|m, rows: the step where it ends", Configurations, Nothing, false,
                 "∂(q ⊕ step)/∂q, ∂(q ⊕ step)/∂step, the same for every q; q in the tangent space",
                 "Ad and J_r of SE(3); Barfoot 2017, §7.1.5";
             difference_derivatives(q, target) -> [Of(2), Nv, Nv] "1|m, rows the difference", Configurations, Nothing, false,
