@@ -161,7 +161,7 @@ fn both([a, b]: [Option<f64>; 2]) -> Option<[f64; 2]> {
     Some([a?, b?])
 }
 
-/// η = maxᵢ |ID_exact(q, v, a) − τ|ᵢ / (scale of ID + that of τ)ᵢ, in units of 2⁻⁵³, for the state (q, v, τ, …) and accelerations that were found; τ is what motors make of that of the state.
+/// η = maxᵢ |ID_exact(q, v, a) − τ|ᵢ / (scale of ID + that of τ)ᵢ, in units of 2⁻⁵³, for the state (q, v, τ, …) and accelerations that were found; τ is what the motors deliver when commanded that of the state.
 pub(crate) fn backward(reference: &Exact, model: &Model<f64>, inverse: &str, state: &[&[f64]], found: &[f64]) -> Option<f64> {
     let asked = [*state.get(1)?, *state.get(2)?];
     if found.iter().any(|x| !x.is_finite()) {

@@ -7,7 +7,7 @@
 //! η = max_i |ID_exact(q, v, a) − τ|_i / (|M| |a| + |h| + |τ|)_i
 //! ```
 //!
-//! with τ what motors make of the torques that are asked for. Where joints follow others, or effects act, M and h may be the rest of larger terms: then the sums of their magnitudes stand for |M| and |h|;
+//! with τ what the motors deliver. Where joints follow others, or effects act, terms of M and h may cancel: then the sums of their magnitudes stand for |M| and |h|;
 //! so they do in every robot of a user's ([`Case::by_terms`]).
 
 use articulated_core::algorithm::checked::{Factor, Singular};
