@@ -1,4 +1,4 @@
-//! Functions of many states at once: a state a lane, in the widest instruction set that the processor has.
+//! Functions of many states at once: one state per lane, in the widest instruction set that the processor has.
 //!
 //! ```text
 //! pub mod batch_f64
@@ -78,7 +78,7 @@ fn module(out: &mut String, functions: &[Batch], real: Real, ways: &[Way], calle
     let lint = if ways.len() == 1 { "" } else { "unsafe_code, unused_unsafe, " };
     let _ = writeln!(
         out,
-        "/// The functions for many states at once, in `{real_name}`: a state a lane, in the widest instruction set that the processor has.\n///\n\
+        "/// The functions for many states at once, in `{real_name}`: one state per lane, in the widest instruction set that the processor has.\n///\n\
          /// States stand one after the other, or in blocks of {n} with each number of all states of a block together (`Lanes`), which is faster.\n\
          /// Sines and cosines are off by at most 1 ulp.\n\
          #[allow({lint}unused_imports, unused_macros, unused_variables, dead_code, unreachable_pub, trivial_numeric_casts, unused_results, clippy::all, clippy::pedantic)]\n\

@@ -14,7 +14,7 @@
 //! `put_fours(a, b, c, d, to, [at; 4])` writes a, b, c, d of each lane at a place of its own, `put_twos` two of them, and `put_in_turn(a, b, c, to, at)` those of all lanes one behind the
 //! other, as `every_third(&[f64; 12]) -> [V; 3]` reads them. `across_of_four(a, b, c, d)` has the sums of the lanes of each in its lanes, `across_of_two(a, b)` those of two, twice.
 //!
-//! What [`tiles`] adds turns states that stand one after the other, `[[Real; N]; LANES]`, into vectors with a state a lane: `TILE` numbers of each at a time,
+//! What [`tiles`] adds turns states that stand one after the other, `[[Real; N]; LANES]`, into vectors with one state per lane: `TILE` numbers of each at a time,
 //! `columns(&states, at) -> [V; TILE]` and `rows([V; TILE], &mut states, at)`, with `at` + `TILE` ≤ N, or 0 where N is less.
 //!
 //! These are free functions of raw registers since methods and operators that are inlined into functions of other features take the compiler

@@ -167,7 +167,7 @@ impl<S: Scalar> Model<S> {
     }
 }
 
-/// What motors make of the torques that they are asked for.
+/// The torques that motors deliver when commanded.
 ///
 /// v: `[nv]`; tau: `[nv]` N·m|N, at the joints; out: `[nv]`. Joints without a motor get what is asked for.
 ///
