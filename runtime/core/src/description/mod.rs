@@ -11,6 +11,7 @@ mod moments;
 mod shaft;
 
 use alloc::string::String;
+use alloc::vec;
 use alloc::vec::Vec;
 
 pub use edit::Payload;
@@ -199,7 +200,11 @@ pub enum Base {
 impl Description {
     /// Index of the root link: the first that is no joint's child. `None` where there is none.
     pub fn root(&self) -> Option<usize> {
-        (0..self.links.len()).find(|&l| self.joints.iter().all(|j| j.child != l))
+        let mut is_child = vec![false; self.links.len()];
+        for joint in &self.joints {
+            is_child.get_mut(joint.child).into_iter().for_each(|is| *is = true);
+        }
+        is_child.iter().position(|is| !is)
     }
 
     /// Index of the link called `name`.
@@ -210,5 +215,25 @@ impl Description {
     /// Index of the joint called `name`.
     pub fn joint(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|j| j.name == name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_root_is_soon_found_wherever_it_is() {
+        let count = 100_000;
+        let robot = |child: fn(usize) -> usize| Description {
+            links: vec![Link::default(); count + 1],
+            joints: (0..count).map(|k| Joint { child: child(k), ..Joint::default() }).collect(),
+            ..Description::default()
+        };
+        assert_eq!(robot(|k| k).root(), Some(count));
+        assert_eq!(robot(|k| k + 1).root(), Some(0));
+        assert_eq!(robot(|k| k.max(1)).root(), Some(0));
+        // A child that is no link is nobody's.
+        assert_eq!(Description { joints: vec![Joint { child: 7, ..Joint::default() }], ..Description::default() }.root(), None);
     }
 }
