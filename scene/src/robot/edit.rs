@@ -4,7 +4,7 @@
 use std::collections::HashSet;
 use std::fmt;
 
-use articulated_core::description::{Base, Description, EditError};
+use articulated_core::description::{Base, Description, EditError, Editor};
 use articulated_core::effect::Applied;
 use articulated_core::model::Model;
 use articulated_core::suggest::Suggester;
@@ -79,21 +79,7 @@ impl RobotAsked<'_> {
         numbers(options)?;
         let reading = articulated_urdf::read(self.urdf, &self.reader_options())?;
         let mut editing = Editing { asked: *self, reading, refusals: Vec::new() };
-        let mut springs = Vec::new();
-        options.append.iter().enumerate().for_each(|(i, other)| editing.append(i, other));
-        let appended = editing.refusals.is_empty();
-        for (i, payload) in options.payloads.iter().enumerate() {
-            let result = editing.reading.description.attach(payload).map(|_| ());
-            editing.take(Edit::Payload(i), result.map_err(Reason::Edit));
-        }
-        for (i, shaft) in options.shafts.iter().enumerate() {
-            let result = editing.reading.description.shaft(shaft).map(|own| springs.push(own));
-            editing.take(Edit::Shaft(i), result.map_err(Reason::Edit));
-        }
-        for (i, (joint, at)) in options.lock.iter().enumerate() {
-            let result = editing.reading.description.lock(joint, at);
-            editing.take(Edit::Lock(i), result.map_err(Reason::Edit));
-        }
+        let (springs, appended) = editing.edit();
         editing.check_frames();
         if !appended {
             editing.forget_the_unknown();
@@ -149,19 +135,40 @@ pub(super) struct Editing<'a> {
 }
 
 impl Editing<'_> {
+    /// Makes all edits. Gives the springs and dampings of each shaft, and whether all that was to be appended is there.
+    fn edit(&mut self) -> (Vec<Vec<Applied>>, bool) {
+        let mut description = std::mem::take(&mut self.reading.description);
+        let mut editor = Editor::of(&mut description);
+        let (options, mut springs) = (self.asked.options, Vec::new());
+        options.append.iter().enumerate().for_each(|(i, other)| self.append(i, other, &mut editor));
+        let appended = self.refusals.is_empty();
+        for (i, payload) in options.payloads.iter().enumerate() {
+            self.take(Edit::Payload(i), editor.attach(payload).map(drop).map_err(Reason::Edit));
+        }
+        for (i, shaft) in options.shafts.iter().enumerate() {
+            let result = editor.shaft(shaft).map(|own| springs.push(own));
+            self.take(Edit::Shaft(i), result.map_err(Reason::Edit));
+        }
+        for (i, (joint, at)) in options.lock.iter().enumerate() {
+            self.take(Edit::Lock(i), editor.lock(joint, at).map_err(Reason::Edit));
+        }
+        self.reading.description = description;
+        (springs, appended)
+    }
+
     fn take(&mut self, edit: Edit, result: Result<(), Reason>) {
         if let Err(reason) = result {
             self.refusals.push(Refusal { file: self.asked.file.to_owned(), edit, reason });
         }
     }
 
-    fn append(&mut self, index: usize, other: &Appended) {
+    fn append(&mut self, index: usize, other: &Appended, editor: &mut Editor<'_>) {
         // Its root moves with the link that carries it.
         let options = articulated_urdf::Options { file: other.file.clone(), base: Base::Floating, ..self.asked.reader_options() };
         let result = match articulated_urdf::read(&other.urdf, &options) {
             Err(problems) => Err(Reason::Urdf(problems)),
             Ok(reading) => {
-                let result = self.reading.description.append(&other.at, &reading.description, &other.prefix, other.origin);
+                let result = editor.append(&other.at, &reading.description, &other.prefix, other.origin);
                 self.reading.warnings.extend(reading.warnings);
                 self.reading.snapped.extend(reading.snapped);
                 self.reading.unused.extend(reading.unused.into_iter().map(|u| renamed(u, &other.prefix)));

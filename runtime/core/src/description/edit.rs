@@ -6,10 +6,12 @@ use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
-use super::{Description, EditError, Inertial, Joint, JointKind, Link, Mimic, Origin, PrincipalMoments};
+use super::names::Names;
+use super::{Description, EditError, Inertial, Joint, JointKind, Link, Mimic, Origin, PrincipalMoments, Shaft};
+use crate::effect::Applied;
 use crate::model::FLOATING_BASE;
 use crate::scalar::Scalar;
-use crate::suggest::nearest;
+use crate::suggest::Suggester;
 
 /// A rigid load on a link.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -29,25 +31,61 @@ pub struct Payload {
 /// A quaternion's norm may be off by so much: four written digits. It is normalised.
 const NORM: f64 = 1e-3;
 
+/// A robot while it is edited. Its names are gathered once, so that thousands of edits are soon made.
+#[derive(Debug)]
+pub struct Editor<'a> {
+    pub(super) robot: &'a mut Description,
+    pub(super) names: Names,
+    pub(super) suggester: Suggester,
+}
+
 impl Description {
+    /// [`Editor::lock`], for one edit.
+    pub fn lock(&mut self, joint: &str, at: &[f64]) -> Result<(), EditError> {
+        Editor::of(self).lock(joint, at)
+    }
+
+    /// [`Editor::attach`], for one edit.
+    pub fn attach(&mut self, payload: &Payload) -> Result<String, EditError> {
+        Editor::of(self).attach(payload)
+    }
+
+    /// [`Editor::append`], for one edit.
+    pub fn append(&mut self, at_link: &str, other: &Self, prefix: &str, origin: Origin) -> Result<(), EditError> {
+        Editor::of(self).append(at_link, other, prefix, origin)
+    }
+
+    /// [`Editor::shaft`], for one edit.
+    pub fn shaft(&mut self, shaft: &Shaft) -> Result<Vec<Applied>, EditError> {
+        Editor::of(self).shaft(shaft)
+    }
+}
+
+impl<'a> Editor<'a> {
+    /// Of this robot.
+    pub fn of(robot: &'a mut Description) -> Self {
+        Self { names: Names::of(robot), robot, suggester: Suggester::default() }
+    }
+
     /// Locks the joint called `joint` at these coordinates, as many as its kind has (rad or m; a quaternion as x, y, z, w). Joints that follow
     /// it stop where it puts them. A locked joint has no place in q and v, and its links belong to the body that they are locked to.
     ///
     /// Refused: what does not exist, does not move or moves already no more; a follower (lock what it follows); the base (say that it is fixed); a
     /// wrong number of coordinates; a quaternion whose norm is not one within 10⁻³.
     pub fn lock(&mut self, joint: &str, at: &[f64]) -> Result<(), EditError> {
-        let Some(index) = self.joint(joint) else {
+        let Some(index) = self.names.joint(joint) else {
             return Err(match joint {
                 FLOATING_BASE => EditError::LockedBase,
-                _ => EditError::UnknownJoint { name: joint.into(), nearest: nearest(joint, self.joints.iter().map(|j| j.name.as_str())) },
+                _ => self.unknown_joint(joint, |_| true),
             });
         };
-        let found = &self.joints[index];
+        let joints = &mut self.robot.joints;
+        let found = &joints[index];
         let name = || joint.to_string();
         if found.kind == JointKind::Fixed {
             return Err(EditError::LockedFixed { joint: name() });
         }
-        if let Some(leader) = found.mimic.and_then(|mimic| self.joints.get(mimic.joint)) {
+        if let Some(leader) = found.mimic.and_then(|mimic| joints.get(mimic.joint)) {
             return Err(EditError::LockedFollower { joint: name(), leader: leader.name.clone() });
         }
         if found.locked.is_some() {
@@ -57,7 +95,7 @@ impl Description {
             return Err(EditError::Coordinates { joint: name(), kind: found.kind, found: at.to_vec() });
         }
         let at = normalised(found.kind, at).map_err(|norm| EditError::Quaternion { joint: name(), norm })?;
-        self.joints[index].locked = Some(at);
+        joints[index].locked = Some(at);
         Ok(())
     }
 
@@ -67,16 +105,16 @@ impl Description {
     /// Refused: a link that does not exist, a name that does, a mass or a principal moment below zero, numbers that are not finite, an inertia without mass. One whose principal moments
     /// [miss the triangle inequality](PrincipalMoments::miss_triangle) is used as it is given, as that of a link is.
     pub fn attach(&mut self, payload: &Payload) -> Result<String, EditError> {
-        let parent = self.link_or_nearest(&payload.link)?;
+        let parent = self.link(&payload.link)?;
         check_mass(payload)?;
         let name = match &payload.name {
-            Some(name) if self.has(name) => return Err(EditError::NamesTaken { names: [name.clone()].into() }),
+            Some(name) if self.names.has(name) => return Err(EditError::NamesTaken { names: [name.clone()].into() }),
             Some(name) => name.clone(),
-            None => self.free_name(&format!("{}_payload", payload.link)),
+            None => self.names.free(&format!("{}_payload", payload.link)),
         };
         let inertial = Inertial { origin: Origin::default(), mass: payload.mass, inertia: payload.inertia };
-        self.links.push(Link { name: name.clone(), inertial: Some(inertial) });
-        self.join(name.clone(), parent, self.links.len() - 1, Origin { xyz: payload.center_of_mass, ..Origin::default() });
+        let child = self.add_link(Link { name: name.clone(), inertial: Some(inertial) });
+        self.join(name.clone(), parent, child, Origin { xyz: payload.center_of_mass, ..Origin::default() });
         Ok(name)
     }
 
@@ -84,54 +122,64 @@ impl Description {
     /// `<prefix><root>_mount`, with a number if that is taken.
     ///
     /// Refused: a link that does not exist, a name that does, a robot without a root.
-    pub fn append(&mut self, at_link: &str, other: &Self, prefix: &str, origin: Origin) -> Result<(), EditError> {
-        let parent = self.link_or_nearest(at_link)?;
+    pub fn append(&mut self, at_link: &str, other: &Description, prefix: &str, origin: Origin) -> Result<(), EditError> {
+        let parent = self.link(at_link)?;
         let root = other.root().ok_or_else(|| EditError::NoRoot { robot: other.name.clone() })?;
         let named = |name: &String| format!("{prefix}{name}");
-        let links = other.links.iter().map(|l| named(&l.name)).filter(|name| self.link(name).is_some());
-        let joints = other.joints.iter().map(|j| named(&j.name)).filter(|name| self.joint(name).is_some());
+        let links = other.links.iter().map(|l| named(&l.name)).filter(|name| self.names.link(name).is_some());
+        let joints = other.joints.iter().map(|j| named(&j.name)).filter(|name| self.names.joint(name).is_some());
         let names: Vec<String> = links.chain(joints).collect();
         if !names.is_empty() {
             return Err(EditError::NamesTaken { names });
         }
-        let (first_link, first_joint) = (self.links.len(), self.joints.len());
-        self.links.extend(other.links.iter().map(|l| Link { name: named(&l.name), ..l.clone() }));
-        self.joints.extend(other.joints.iter().map(|j| Joint {
-            name: named(&j.name),
-            parent: j.parent + first_link,
-            child: j.child + first_link,
-            mimic: j.mimic.map(|m| Mimic { joint: m.joint + first_joint, ..m }),
-            ..j.clone()
-        }));
+        let (first_link, first_joint) = (self.robot.links.len(), self.robot.joints.len());
+        for link in &other.links {
+            self.add_link(Link { name: named(&link.name), ..link.clone() });
+        }
+        for joint in &other.joints {
+            self.add_joint(Joint {
+                name: named(&joint.name),
+                parent: joint.parent + first_link,
+                child: joint.child + first_link,
+                mimic: joint.mimic.map(|m| Mimic { joint: m.joint + first_joint, ..m }),
+                ..joint.clone()
+            });
+        }
         let root = first_link + root;
-        let name = self.free_name(&format!("{}_mount", self.links[root].name));
+        let name = self.names.free(&format!("{}_mount", self.robot.links[root].name));
         self.join(name, parent, root, origin);
         Ok(())
     }
 
+    /// Adds a link, and gives its index.
+    pub(super) fn add_link(&mut self, link: Link) -> usize {
+        let index = self.robot.links.len();
+        self.names.add_link(&link.name, index);
+        self.robot.links.push(link);
+        index
+    }
+
+    pub(super) fn add_joint(&mut self, joint: Joint) {
+        self.names.add_joint(&joint.name, self.robot.joints.len());
+        self.robot.joints.push(joint);
+    }
+
     fn join(&mut self, name: String, parent: usize, child: usize, origin: Origin) {
-        self.joints.push(Joint { name, parent, child, origin, axis: [1.0, 0.0, 0.0], ..Joint::default() });
+        self.add_joint(Joint { name, parent, child, origin, axis: [1.0, 0.0, 0.0], ..Joint::default() });
     }
 
     /// Index of the link called `name`, or the refusal that names the nearest.
-    pub fn link_or_nearest(&self, name: &str) -> Result<usize, EditError> {
-        let unknown = || EditError::UnknownLink { name: name.into(), nearest: nearest(name, self.links.iter().map(|l| l.name.as_str())) };
-        self.link(name).ok_or_else(unknown)
+    fn link(&mut self, name: &str) -> Result<usize, EditError> {
+        self.names.link(name).ok_or_else(|| {
+            let nearest = self.suggester.nearest(name, self.robot.links.iter().map(|l| l.name.as_str()));
+            EditError::UnknownLink { name: name.into(), nearest: nearest.map(String::from) }
+        })
     }
 
-    fn has(&self, name: &str) -> bool {
-        self.link(name).is_some() || self.joint(name).is_some()
-    }
-
-    /// `name`, or with the first number from 2 on that no link and no joint has.
-    fn free_name(&self, name: &str) -> String {
-        let mut free = name.to_string();
-        let mut number = 2;
-        while self.has(&free) {
-            free = format!("{name}_{number}");
-            number += 1;
-        }
-        free
+    /// The refusal that names the nearest of the joints that may be meant.
+    pub(super) fn unknown_joint(&mut self, name: &str, meant: impl Fn(&Joint) -> bool) -> EditError {
+        let names = self.robot.joints.iter().filter(|j| meant(j)).map(|j| j.name.as_str());
+        EditError::UnknownJoint { name: name.into(), nearest: self.suggester.nearest(name, names).map(String::from) }
     }
 }
 
@@ -175,6 +223,46 @@ fn can_be(inertia: [f64; 6], mass: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A base and a chain of `count` links on it, the root last.
+    fn chain(count: usize) -> Description {
+        let links = (0..=count).map(|k| Link { name: format!("link_{k}"), inertial: None }).collect();
+        let joint = |k| Joint { name: format!("joint_{k}"), kind: JointKind::Continuous, parent: k + 1, child: k, ..Joint::default() };
+        Description { name: "chain".into(), links, joints: (0..count).map(joint).collect() }
+    }
+
+    #[test]
+    fn thousands_of_edits_are_soon_made_and_numbered_one_after_the_other() {
+        let mut robot = chain(3);
+        let mut editor = Editor::of(&mut robot);
+        let payload = Payload { link: "link_0".into(), mass: 1.0, ..Payload::default() };
+        for number in 1..=20_000 {
+            let name = editor.attach(&payload).unwrap();
+            assert!(if number == 1 { name == "link_0_payload" } else { name == format!("link_0_payload_{number}") }, "{name}");
+        }
+        assert_eq!((robot.links.len(), robot.joints.len()), (20_004, 20_003));
+    }
+
+    #[test]
+    fn long_chains_are_soon_appended_wherever_their_root_is() {
+        let (mut robot, other) = (chain(20_000), chain(20_000));
+        assert_eq!(robot.root(), Some(20_000));
+        robot.append("link_0", &other, "other_", Origin::default()).unwrap();
+        assert_eq!((robot.root(), robot.link("other_link_20000")), (Some(20_000), Some(40_001)));
+        assert_eq!(robot.joints.last().map(|j| (j.name.as_str(), j.child)), Some(("other_link_20000_mount", 40_001)));
+    }
+
+    #[test]
+    fn of_thousands_of_names_that_there_are_not_the_first_are_told_with_what_was_meant() {
+        let mut robot = chain(2000);
+        let mut editor = Editor::of(&mut robot);
+        let mut meant = |k: usize| match editor.lock(&format!("jount_{k}"), &[0.0]) {
+            Err(EditError::UnknownJoint { nearest, .. }) => nearest.is_some(),
+            other => panic!("{other:?}"),
+        };
+        assert!(meant(0));
+        assert!((1..2000).filter(|k| meant(*k)).count() < 100);
+    }
 
     #[test]
     fn a_loads_inertia_is_finite_not_negative_and_not_without_mass() {

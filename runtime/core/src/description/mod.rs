@@ -3,18 +3,19 @@
 //! A [`Description`] is what a reader (URDF today) hands over and what [`crate::model::Model`] is built from. Frames follow
 //! the URDF: a joint's frame is placed in its parent link's frame by `origin`, and the child link's frame coincides with
 //! the joint's frame at zero. A moving joint's `axis` is expressed in the joint's frame. It can be edited first: [`Description::lock`],
-//! [`Description::attach`], [`Description::append`], [`Description::shaft`].
+//! [`Description::attach`], [`Description::append`], [`Description::shaft`]; many edits by one [`Editor`].
 
 mod edit;
 mod error;
 mod moments;
+mod names;
 mod shaft;
 
 use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
 
-pub use edit::Payload;
+pub use edit::{Editor, Payload};
 pub use error::EditError;
 pub use moments::PrincipalMoments;
 pub use shaft::Shaft;

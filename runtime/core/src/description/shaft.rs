@@ -4,10 +4,9 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use super::{Description, EditError, Inertial, Joint, JointKind, Link, Origin};
+use super::{EditError, Editor, Inertial, Joint, JointKind, Link, Origin};
 use crate::effect::{Applied, EffectId};
 use crate::scalar::Scalar;
-use crate::suggest::nearest;
 
 /// A fixed joint whose rigid offset bends: a straight uniform shaft, the same in both directions, that neither twists nor stretches.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -28,7 +27,7 @@ pub struct Shaft {
     pub end: Option<[f64; 3]>,
 }
 
-impl Description {
+impl Editor<'_> {
     /// Lets the offset of a fixed joint bend. n pieces of length ℓ bend in their middles, in universal joints called `<joint>_1` … `<joint>_n`, and are rigid beside that: rods
     /// `<joint>_rod_0` … `<joint>_rod_n` of lengths ½ℓ, ℓ, …, ℓ, ½ℓ, the first fixed to the link before the joint, the last to that behind it. Gives the springs, of stiffness
     /// E·I/ℓ, and the dampings of these joints. Deflections are those of a beam but for a part ¼/n² at a load on its end. Wittbrodt, Adamiec-Wójcik & Wojciech, Dynamics of
@@ -36,25 +35,26 @@ impl Description {
     ///
     /// Refused: a joint that does not exist or is not fixed, names that are taken, no pieces, a shaft without length or mass, numbers that are not finite.
     pub fn shaft(&mut self, shaft: &Shaft) -> Result<Vec<Applied>, EditError> {
-        let unknown = || nearest(&shaft.joint, self.joints.iter().filter(|j| j.kind == JointKind::Fixed).map(|j| j.name.as_str()));
-        let index = self.joint(&shaft.joint).ok_or_else(|| EditError::UnknownJoint { name: shaft.joint.clone(), nearest: unknown() })?;
-        let carrier = self.joints[index].parent;
-        if self.joints[index].kind != JointKind::Fixed {
-            return Err(EditError::ShaftNotFixed { joint: shaft.joint.clone(), kind: self.joints[index].kind });
+        let Some(index) = self.names.joint(&shaft.joint) else {
+            return Err(self.unknown_joint(&shaft.joint, |j| j.kind == JointKind::Fixed));
+        };
+        let Joint { kind, parent: carrier, origin, .. } = self.robot.joints[index];
+        if kind != JointKind::Fixed {
+            return Err(EditError::ShaftNotFixed { joint: shaft.joint.clone(), kind });
         }
-        let line = Line::of(shaft, self.joints[index].origin.xyz, self.links[carrier].inertial)?;
+        let line = Line::of(shaft, origin.xyz, self.robot.links[carrier].inertial)?;
         self.check_free(shaft)?;
         if shaft.mass.is_none() {
-            self.links[carrier].inertial = None;
+            self.robot.links[carrier].inertial = None;
         }
         self.bend(index, shaft, &line);
         Ok(line.springs(shaft))
     }
 
     fn check_free(&self, shaft: &Shaft) -> Result<(), EditError> {
-        let joints = (1..=shaft.segments).map(|k| format!("{}_{k}", shaft.joint)).filter(|name| self.joint(name).is_some());
-        let rods = (0..=shaft.segments).map(|k| format!("{}_rod_{k}", shaft.joint)).filter(|name| self.link(name).is_some());
-        let root = Some(format!("{}_rod_0", shaft.joint)).filter(|name| self.joint(name).is_some());
+        let joints = (1..=shaft.segments).map(|k| format!("{}_{k}", shaft.joint)).filter(|name| self.names.joint(name).is_some());
+        let rods = (0..=shaft.segments).map(|k| format!("{}_rod_{k}", shaft.joint)).filter(|name| self.names.link(name).is_some());
+        let root = Some(format!("{}_rod_0", shaft.joint)).filter(|name| self.names.joint(name).is_some());
         let names: Vec<String> = joints.chain(rods).chain(root).collect();
         if names.is_empty() { Ok(()) } else { Err(EditError::NamesTaken { names }) }
     }
@@ -62,22 +62,22 @@ impl Description {
     /// Puts the rods and their joints before the joint with this index.
     fn bend(&mut self, index: usize, shaft: &Shaft, line: &Line) {
         let mut last = line.start;
-        let mut parent = self.joints[index].parent;
+        let mut parent = self.robot.joints[index].parent;
         for k in 0..=shaft.segments {
             let at = line.joint(k, shaft.segments);
             let next = line.joint(k + 1, shaft.segments);
-            self.links.push(Link { name: format!("{}_rod_{k}", shaft.joint), inertial: Some(line.rod(minus(next, at))) });
-            let child = self.links.len() - 1;
+            let rod = Some(line.rod(minus(next, at)));
+            let child = self.add_link(Link { name: format!("{}_rod_{k}", shaft.joint), inertial: rod });
             let (name, kind) = match k {
                 0 => (format!("{}_rod_0", shaft.joint), JointKind::Fixed),
                 _ => (format!("{}_{k}", shaft.joint), JointKind::Universal),
             };
             let origin = Origin { xyz: if k == 0 { at } else { minus(at, last) }, ..Origin::default() };
             let [axis, second_axis] = line.axes;
-            self.joints.push(Joint { name, kind, parent, child, origin, axis, second_axis, ..Joint::default() });
+            self.add_joint(Joint { name, kind, parent, child, origin, axis, second_axis, ..Joint::default() });
             (parent, last) = (child, at);
         }
-        let joint = &mut self.joints[index];
+        let joint = &mut self.robot.joints[index];
         joint.parent = parent;
         joint.origin.xyz = minus(joint.origin.xyz, last);
     }

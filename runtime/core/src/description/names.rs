@@ -1,0 +1,83 @@
+//! Names that links and joints of a robot have, while it is edited.
+
+use alloc::collections::BTreeMap;
+use alloc::format;
+use alloc::string::{String, ToString};
+
+use super::Description;
+
+/// The indices of a robot's links and joints by their names.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Names {
+    links: BTreeMap<String, usize>,
+    joints: BTreeMap<String, usize>,
+    /// For names that were asked for and taken, the first number that may be free. Names are added only, so those below stay taken.
+    numbers: BTreeMap<String, usize>,
+}
+
+impl Names {
+    pub(super) fn of(robot: &Description) -> Self {
+        let mut names = Self::default();
+        robot.links.iter().enumerate().for_each(|(index, link)| names.add_link(&link.name, index));
+        robot.joints.iter().enumerate().for_each(|(index, joint)| names.add_joint(&joint.name, index));
+        names
+    }
+
+    /// Where several have one name, the first is found.
+    pub(super) fn add_link(&mut self, name: &str, index: usize) {
+        self.links.entry(name.to_string()).or_insert(index);
+    }
+
+    /// As [`Self::add_link`].
+    pub(super) fn add_joint(&mut self, name: &str, index: usize) {
+        self.joints.entry(name.to_string()).or_insert(index);
+    }
+
+    pub(super) fn link(&self, name: &str) -> Option<usize> {
+        self.links.get(name).copied()
+    }
+
+    pub(super) fn joint(&self, name: &str) -> Option<usize> {
+        self.joints.get(name).copied()
+    }
+
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.links.contains_key(name) || self.joints.contains_key(name)
+    }
+
+    /// `name`, or with the first number from 2 on that no link and no joint has.
+    pub(super) fn free(&mut self, name: &str) -> String {
+        if !self.has(name) {
+            return name.to_string();
+        }
+        let mut number = self.numbers.get(name).copied().unwrap_or(2);
+        let mut free = format!("{name}_{number}");
+        while self.has(&free) {
+            number += 1;
+            free = format!("{name}_{number}");
+        }
+        self.numbers.insert(name.to_string(), number);
+        free
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_free_name_has_the_first_number_that_none_has() {
+        let mut names = Names::default();
+        let taken = |names: &mut Names| {
+            let name = names.free("tip");
+            names.add_link(&name, 0);
+            name
+        };
+        assert_eq!([0; 2].map(|_| taken(&mut names)), ["tip", "tip_2"]);
+        names.add_joint("tip_3", 0);
+        names.add_link("tip_5", 0);
+        assert_eq!([0; 3].map(|_| taken(&mut names)), ["tip_4", "tip_6", "tip_7"]);
+        // What was not taken stays free.
+        assert_eq!([0; 2].map(|_| names.free("tip")), ["tip_8", "tip_8"]);
+    }
+}
