@@ -7,11 +7,11 @@ use core::fmt;
 
 use nalgebra::Vector3;
 
+use super::places::Places;
 use super::{Applied, BodyEffect, Effect, EffectId, JointEffect, On};
 use crate::joint::Joint;
-use crate::model::{Frame, Model};
+use crate::model::Model;
 use crate::spatial::{Placement, from_rpy};
-use crate::suggest::nearest;
 
 /// Why an effect cannot be had: one thing that is wrong with it, of which there may be several.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,11 +122,14 @@ impl Model<f64> {
     /// The same robot with these effects besides those that it has. Several on one link add up; one that does nothing ([`Effect::is_nothing`]) is left out. All that is wrong is told at
     /// once. The model must still have all its frames.
     pub fn with_effects(mut self, applied: &[Applied]) -> Result<Self, EffectErrors> {
-        let mut errors = Vec::new();
+        if applied.is_empty() {
+            return Ok(self);
+        }
+        let (mut places, mut errors) = (Places::of(&self), Vec::new());
         for (index, one) in applied.iter().enumerate() {
             let mut faults = check(one);
             if faults.is_empty() {
-                faults.extend(self.put(one).err());
+                faults.extend(self.put(one, &mut places).err());
             }
             let told = |fault| EffectError { index, effect: one.effect, on: one.on.clone(), fault };
             errors.extend(faults.into_iter().map(told));
@@ -134,37 +137,29 @@ impl Model<f64> {
         if errors.is_empty() { Ok(self) } else { Err(EffectErrors(errors)) }
     }
 
-    fn put(&mut self, one: &Applied) -> Result<(), Fault> {
+    fn put(&mut self, one: &Applied, places: &mut Places) -> Result<(), Fault> {
+        // One of nothing is left out, where there is what it would be on.
+        let is_nothing = one.effect.row().is_nothing(&one.parameters);
         match one.effect.row().on {
-            _ if one.effect.row().is_nothing(&one.parameters) => self.has(one),
-            On::Joint => self.put_on_joint(one),
-            On::Link => self.put_on_link(one),
-        }
-    }
-
-    /// Whether there is what an effect of nothing would be on.
-    fn has(&self, one: &Applied) -> Result<(), Fault> {
-        match one.effect.row().on {
-            On::Joint => self.joint_for(one).map(|_| ()),
-            On::Link => self.link_for(one).map(|_| ()),
-        }
-    }
-
-    fn put_on_joint(&mut self, one: &Applied) -> Result<(), Fault> {
-        for i in self.joint_for(one)? {
-            let body = &mut self.bodies[i];
-            let on = |freedom| JointEffect { effect: one.effect, freedom, parameters: one.parameters.clone() };
-            body.effects.joint.extend((0..body.joint.nv()).map(on));
+            On::Joint => {
+                let bodies = places.bodies(self, &one.on)?;
+                self.check_joint(bodies, one)?;
+                if !is_nothing {
+                    self.put_on_joint(bodies, one);
+                }
+            }
+            On::Link => {
+                let frame = places.frame(self, &one.on)?;
+                if !is_nothing {
+                    self.put_on_link(frame, one);
+                }
+            }
         }
         Ok(())
     }
 
-    /// The bodies of the joint that it is to be on.
-    fn joint_for(&self, one: &Applied) -> Result<Vec<usize>, Fault> {
-        let bodies: Vec<usize> = self.outward().filter(|&i| self.bodies[i].name == one.on).collect();
-        if bodies.is_empty() {
-            return Err(Fault::Unknown { on: On::Joint, nearest: nearest(&one.on, self.bodies.iter().skip(1).map(|b| b.name.as_str())) });
-        }
+    /// Whether the joint with these bodies can have the effect.
+    fn check_joint(&self, bodies: &[usize], one: &Applied) -> Result<(), Fault> {
         for body in bodies.iter().map(|&i| &self.bodies[i]) {
             if body.effects.joint.iter().any(|e| e.effect == one.effect) {
                 return Err(Fault::Twice);
@@ -176,24 +171,23 @@ impl Model<f64> {
                 return Err(Fault::Follows);
             }
         }
-        Ok(bodies)
+        Ok(())
     }
 
-    fn put_on_link(&mut self, one: &Applied) -> Result<(), Fault> {
-        let frame = self.link_for(one)?;
+    fn put_on_joint(&mut self, bodies: &[usize], one: &Applied) {
+        for &i in bodies {
+            let body = &mut self.bodies[i];
+            let on = |freedom| JointEffect { effect: one.effect, freedom, parameters: one.parameters.clone() };
+            body.effects.joint.extend((0..body.joint.nv()).map(on));
+        }
+    }
+
+    fn put_on_link(&mut self, frame: usize, one: &Applied) {
+        let frame = &self.frames[frame];
         let at = Placement { rotation: from_rpy(one.at.rpy), position: Vector3::from(one.at.xyz) };
         let (body, placement) = (frame.body, frame.placement.compose(&at));
         let parameters = normalised(one.effect, &one.parameters);
         self.bodies[body].effects.body.push(BodyEffect { effect: one.effect, placement, parameters });
-        Ok(())
-    }
-
-    /// The frame of the link that it is to be on.
-    fn link_for(&self, one: &Applied) -> Result<&Frame<f64>, Fault> {
-        let Some(frame) = self.frames.iter().find(|f| f.name == one.on) else {
-            return Err(Fault::Unknown { on: On::Link, nearest: nearest(&one.on, self.frames.iter().map(|f| f.name.as_str())) });
-        };
-        if frame.body == 0 { Err(Fault::Still) } else { Ok(frame) }
     }
 }
 
@@ -240,6 +234,8 @@ fn check(one: &Applied) -> Vec<Fault> {
 #[cfg(test)]
 mod tests {
 
+    use alloc::format;
+
     use super::*;
     use crate::description::{Base, Description, Joint, JointKind, Link, Origin};
 
@@ -258,6 +254,34 @@ mod tests {
 
     fn on(effect: EffectId, on: &str, parameters: &[f64]) -> Applied {
         Applied { effect, on: on.into(), at: Origin::default(), parameters: parameters.to_vec() }
+    }
+
+    #[test]
+    fn thousands_of_effects_are_soon_put_and_of_wrong_names_the_first_are_told_with_what_was_meant() {
+        let count = 10_000;
+        let links = (0..=count).map(|k| Link { name: format!("link_{k}"), inertial: None }).collect();
+        let joint = |k| Joint {
+            name: format!("joint_{k}"),
+            kind: JointKind::Continuous,
+            parent: k,
+            child: k + 1,
+            axis: [0.0, 0.0, 1.0],
+            ..Joint::default()
+        };
+        let joints = (0..count).map(joint).collect();
+        let chain = Model::new(&Description { name: "chain".into(), links, joints }, Base::Fixed).unwrap();
+        let each = |effect: EffectId, name: &str| -> Vec<Applied> {
+            let parameters = vec![1.0; effect.row().len()];
+            (1..count).map(|k| on(effect, &format!("{name}_{k}"), &parameters)).collect()
+        };
+        let all = [each(EffectId::damping, "joint"), each(EffectId::drag, "link")].concat();
+        let with = chain.clone().with_effects(&all).unwrap();
+        assert!((2..count).all(|i| with.bodies[i].effects.kinds().len() == 2));
+        for (effect, name) in [(EffectId::damping, "jount"), (EffectId::drag, "lunk")] {
+            let errors = chain.clone().with_effects(&each(effect, name)).unwrap_err().0;
+            let meant = |error: &EffectError| matches!(error.fault, Fault::Unknown { nearest: Some(_), .. });
+            assert_eq!((errors.len(), meant(&errors[0]), meant(&errors[count - 2])), (count - 1, true, false));
+        }
     }
 
     #[test]

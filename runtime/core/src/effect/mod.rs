@@ -16,6 +16,7 @@ mod drag;
 mod friction;
 mod limit;
 mod motor;
+mod places;
 mod range;
 mod spring;
 mod station;

@@ -1,0 +1,49 @@
+//! Where a model has what effects are to be on.
+
+use alloc::collections::BTreeMap;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use super::{Fault, On};
+use crate::model::Model;
+use crate::suggest::Suggester;
+
+/// The bodies of joints and the frames of links by their names, gathered once for all effects.
+pub(super) struct Places {
+    joints: BTreeMap<String, Vec<usize>>,
+    frames: BTreeMap<String, usize>,
+    suggester: Suggester,
+}
+
+impl Places {
+    pub(super) fn of(model: &Model<f64>) -> Self {
+        let (mut joints, mut frames) = (BTreeMap::<String, Vec<usize>>::new(), BTreeMap::new());
+        for i in model.outward() {
+            joints.entry(model.bodies[i].name.clone()).or_default().push(i);
+        }
+        for (k, frame) in model.frames.iter().enumerate() {
+            frames.entry(frame.name.clone()).or_insert(k);
+        }
+        Self { joints, frames, suggester: Suggester::default() }
+    }
+
+    /// The bodies of the joint of this name.
+    pub(super) fn bodies(&mut self, model: &Model<f64>, name: &str) -> Result<&[usize], Fault> {
+        match self.joints.get(name) {
+            Some(bodies) => Ok(bodies),
+            None => {
+                let nearest = self.suggester.nearest(name, model.bodies.iter().skip(1).map(|b| b.name.as_str()));
+                Err(Fault::Unknown { on: On::Joint, nearest: nearest.map(String::from) })
+            }
+        }
+    }
+
+    /// The frame of the link of this name, which moves.
+    pub(super) fn frame(&mut self, model: &Model<f64>, name: &str) -> Result<usize, Fault> {
+        let Some(&frame) = self.frames.get(name) else {
+            let nearest = self.suggester.nearest(name, model.frames.iter().map(|f| f.name.as_str()));
+            return Err(Fault::Unknown { on: On::Link, nearest: nearest.map(String::from) });
+        };
+        if model.frames[frame].body == 0 { Err(Fault::Still) } else { Ok(frame) }
+    }
+}
