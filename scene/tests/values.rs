@@ -1,10 +1,11 @@
 //! What scenes say, as numbers in the order of a robot.
 
-use articulated_core::description::{Base, Description};
+use articulated_core::description::{Base, Description, Joint, JointDynamics, JointKind, Link};
 use articulated_core::effect::EffectId;
 use articulated_core::model::{FLOATING_BASE, Model};
 use articulated_core::spatial::{from_quaternion, from_rpy};
 use articulated_scene::{Controller, Edited, Scene};
+use articulated_urdf::{Subject, Unused};
 
 /// Two hinges, the second of which has limits, damping and an effort; a ball; a slide that follows the first; a link without mass at its end.
 const ROBOT: &str = r#"<robot name="r">
@@ -64,6 +65,36 @@ fn on(text: &str) -> Vec<(EffectId, String, Vec<f64>)> {
     let edited = Edited { description: &description, base: Base::Fixed, unused: &[], shafts: &[] };
     let resolved = scene(text).resolve(&edited).unwrap_or_else(|e| panic!("{e:?}"));
     resolved.effects.into_iter().map(|a| (a.effect, a.on, a.parameters)).collect()
+}
+
+#[test]
+fn what_is_asked_of_ten_thousand_joints_and_links_is_soon_resolved() {
+    let count = 10_000;
+    let dynamics = Some(JointDynamics { damping: 0.5, friction: 0.0 });
+    let joint =
+        |k| Joint { name: format!("joint_{k}"), kind: JointKind::Continuous, parent: k, child: k + 1, dynamics, ..Joint::default() };
+    let description = Description {
+        links: (0..=count).map(|k| Link { name: format!("link_{k}"), inertial: None }).collect(),
+        joints: (0..count).map(joint).collect(),
+        ..Description::default()
+    };
+    let unused = |k| Unused {
+        line: None,
+        subject: Subject::Joint(format!("joint_{k}")),
+        tag: if k == 7 { "dynamics friction" } else { "dynamics damping" }.to_owned(),
+        why: String::new(),
+    };
+    let unused: Vec<Unused> = (0..count).map(unused).collect();
+    let robot = Edited { description: &description, base: Base::Fixed, unused: &unused, shafts: &[] };
+    let each = |what: &str, number: &str| (1..count).map(|k| format!("{what}_{k} = {number}\n")).collect::<String>();
+    let text = format!(
+        "[effects.damping]\n\"*\" = \"urdf\"\n[effects.friction]\n{}[effects.drag]\n{}",
+        each("joint", "0.1"),
+        each("link", "{ coefficient = 1 }")
+    );
+    let resolved = scene(&text).resolve(&robot).unwrap();
+    assert_eq!(resolved.effects.len(), count + 2 * (count - 1));
+    assert_eq!(resolved.report.ignored, [unused[7].clone()]);
 }
 
 #[test]

@@ -10,6 +10,7 @@
 //! stiffness = 1e5
 //! ```
 
+mod index;
 mod resolve;
 mod still;
 mod urdf;
@@ -26,6 +27,7 @@ use crate::table::Spot;
 use crate::tree::{At, Value};
 use articulated_core::effect::{Effect, EffectId, Field, On, effect, effects};
 
+pub(crate) use index::indices;
 pub use resolve::{Edited, Resolved};
 pub use still::still;
 pub(crate) use urdf::{offers, tag};

@@ -1,8 +1,11 @@
 //! Effects against a robot: names looked up, `*` spread over joints and links, numbers taken from the URDF, defaults filled in.
 
+use std::collections::HashSet;
+
 use articulated_core::description::{Base, Description, Joint, JointKind, Origin};
 use articulated_urdf::{Subject, Unused};
 
+use super::index::{Index, Named};
 use super::still::{moving, still};
 use super::{Asked, Numbers, Selector, urdf};
 use crate::error::{Kind, SceneError, SceneErrors, bare};
@@ -45,7 +48,8 @@ impl Scene {
     pub fn resolve(&self, robot: &Edited<'_>) -> Result<Resolved, SceneErrors> {
         let mut log = Log::new(&self.file);
         let (still, moving) = (still(robot.description, robot.base), moving(robot.description));
-        let mut at_work = Resolving { scene: self, robot, still, moving, resolved: Resolved::default(), used: Vec::new() };
+        let index = Index::of(robot, &self.shafts);
+        let mut at_work = Resolving { scene: self, robot, still, moving, index, resolved: Resolved::default(), used: HashSet::new() };
         at_work.known_impact(&mut log);
         for row in effects() {
             at_work.effect(row, &mut log);
@@ -78,9 +82,10 @@ struct Resolving<'a> {
     still: Vec<bool>,
     /// Joints that let their links move.
     moving: Vec<bool>,
+    index: Index<'a>,
     resolved: Resolved,
     /// (joint, tag) of the URDF that is used.
-    used: Vec<(String, &'static str)>,
+    used: HashSet<(&'a str, &'static str)>,
 }
 
 /// A field's numbers, and the tag of the URDF that they are from.
@@ -119,7 +124,7 @@ impl<'a> Resolving<'a> {
 
     fn known_joint(&self, row: &Effect, one: &Asked, name: &str, log: &mut Log) {
         let joints = &self.robot.description.joints;
-        let Some(at) = joints.iter().position(|j| j.name == name) else {
+        let Some(&at) = self.index.joints.get(name) else {
             if name == FLOATING_BASE && self.robot.base == Base::Floating {
                 log.error(one.place, &one.key, Kind::Robot, "the floating base", "a joint: effects on joints do not act on the base");
                 return;
@@ -147,13 +152,13 @@ impl<'a> Resolving<'a> {
 
     fn known_link(&self, one: &Asked, name: &str, log: &mut Log) {
         let links = &self.robot.description.links;
-        match links.iter().position(|l| l.name == name) {
+        match self.index.links.get(name) {
             None => {
                 let place = (one.place, one.key.as_str(), Kind::UnknownName);
                 let names = links.iter().map(|l| l.name.as_str());
                 log.unknown(place, ("no such link".into(), name), "a link of the robot", names);
             }
-            Some(link) if self.still[link] && one.says.is_some() => {
+            Some(&link) if self.still[link] && one.says.is_some() => {
                 log.error(one.place, &one.key, Kind::Robot, "a link that is fixed to the base", "a link that moves");
             }
             Some(_) => {}
@@ -163,13 +168,13 @@ impl<'a> Resolving<'a> {
     fn known_impact(&self, log: &mut Log) {
         let Some(impact) = &self.scene.impact else { return };
         let links = &self.robot.description.links;
-        match links.iter().position(|l| l.name == impact.link) {
+        match self.index.links.get(impact.link.as_str()) {
             None => {
                 let place = (impact.place, "impact.link", Kind::UnknownName);
                 let found = ("no such link".into(), impact.link.as_str());
                 log.unknown(place, found, "a link of the robot", links.iter().map(|l| l.name.as_str()));
             }
-            Some(link) if self.still[link] => {
+            Some(&link) if self.still[link] => {
                 log.error(impact.place, "impact.link", Kind::Robot, "a link that is fixed to the base", "a link that moves");
             }
             Some(_) => {}
@@ -177,12 +182,12 @@ impl<'a> Resolving<'a> {
     }
 
     fn on_joints(&mut self, row: &'static Effect, asked: &[&'a Asked], log: &mut Log) {
-        let all = asked.iter().find(|a| a.on == Selector::All).copied();
+        let (all, by_name) = (for_all(asked), Named::of(asked));
         for joint in self.moving_joints().filter(|j| has_room(row, j.kind)) {
             if let Some((one, place, key)) = self.of_shaft(row.id, &joint.name) {
                 self.put(row, one, (place, key), &vec![None; row.fields.len()]);
             }
-            let named = asked.iter().find(|a| a.on == Selector::Named(joint.name.clone())).copied();
+            let named = by_name.get(&joint.name).first().copied();
             let spread = all.filter(|_| self.is_spread_over(row.id, joint));
             let Some(one) = named.or(spread) else { continue };
             let layers = [named, all].map(|asked| asked.and_then(|a| a.says.as_ref()));
@@ -200,13 +205,13 @@ impl<'a> Resolving<'a> {
     }
 
     fn on_links(&mut self, row: &'static Effect, asked: &[&'a Asked], log: &mut Log) {
-        let all = asked.iter().find(|a| a.on == Selector::All).copied();
+        let (all, by_name) = (for_all(asked), Named::of(asked));
         let description = self.robot.description;
         for (i, link) in description.links.iter().enumerate() {
             if self.still[i] {
                 continue;
             }
-            let mut ones: Vec<&Asked> = asked.iter().filter(|a| a.on == Selector::Named(link.name.clone())).copied().collect();
+            let mut ones = by_name.get(&link.name).to_vec();
             let named = !ones.is_empty();
             let heavy = link.inertial.is_some_and(|inertial| inertial.mass > 0.0);
             ones.extend(all.filter(|_| !named && heavy));
@@ -224,7 +229,7 @@ impl<'a> Resolving<'a> {
 
     /// Whether what is asked for on all joints is meant for this one too.
     fn is_spread_over(&self, effect: EffectId, joint: &Joint) -> bool {
-        let of_shaft = self.robot.shafts.iter().flatten().any(|a| a.on == joint.name);
+        let of_shaft = self.index.of_shafts.contains(joint.name.as_str());
         // What a joint that follows another does is not asked of it.
         let follows = effect == EffectId::motor && joint.mimic.is_some();
         !of_shaft && !follows
@@ -232,18 +237,14 @@ impl<'a> Resolving<'a> {
 
     /// What a shaft puts on one of its joints.
     fn of_shaft(&self, effect: EffectId, joint: &str) -> Option<(Applied, At, String)> {
-        for (asked, applied) in self.scene.shafts.iter().zip(self.robot.shafts) {
-            if let Some(own) = applied.iter().find(|a| a.effect == effect && a.on == joint) {
-                return Some((own.clone(), asked.place, format!("effects.{}.{}", shaft::NAME, bare(&asked.shaft.joint))));
-            }
-        }
-        None
+        let (asked, own) = self.index.by_shafts.get(&(effect, joint))?;
+        Some(((*own).clone(), asked.place, format!("effects.{}.{}", shaft::NAME, bare(&asked.shaft.joint))))
     }
 
-    fn put_filled(&mut self, row: &'static Effect, on: &str, at: Origin, asked: &Asked, filled: &[Filled]) {
+    fn put_filled(&mut self, row: &'static Effect, on: &'a str, at: Origin, asked: &Asked, filled: &[Filled]) {
         let parameters: Vec<f64> = filled.iter().flat_map(|(numbers, _)| numbers.iter().copied()).collect();
         let tags: Vec<Option<&'static str>> = filled.iter().map(|(_, tag)| *tag).collect();
-        self.used.extend(tags.iter().flatten().map(|tag| (on.to_owned(), *tag)));
+        self.used.extend(tags.iter().flatten().map(|tag| (on, *tag)));
         if !row.is_nothing(&parameters) {
             self.put(row, Applied { effect: row.id, on: on.to_owned(), at, parameters }, (asked.place, asked.key.clone()), &tags);
         }
@@ -268,7 +269,7 @@ impl<'a> Resolving<'a> {
         if self.scene.shafts.is_empty() {
             self.resolved.report.off.push(EffectOff { effect: shaft::NAME, why: Why::NotAsked });
         }
-        let used = |joint: &str, tag: &str| self.used.iter().any(|(j, t)| j == joint && *t == tag);
+        let used = |joint: &str, tag: &str| self.used.contains(&(joint, tag));
         let unused = self.robot.unused.iter().filter(|u| !matches!(&u.subject, Subject::Joint(name) if used(name, &u.tag)));
         let mut ignored: Vec<Unused> = unused.cloned().collect();
         for joint in self.moving_joints() {
@@ -282,6 +283,11 @@ impl<'a> Resolving<'a> {
         }
         self.resolved.report.ignored = ignored;
     }
+}
+
+/// What is asked of all joints or links.
+fn for_all<'a>(asked: &[&'a Asked]) -> Option<&'a Asked> {
+    asked.iter().find(|a| a.on == Selector::All).copied()
 }
 
 /// Whether a joint of this kind has what the effect acts on.

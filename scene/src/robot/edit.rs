@@ -215,6 +215,7 @@ fn renamed(unused: Unused, prefix: &str) -> Unused {
 #[cfg(test)]
 mod tests {
     use articulated_core::description::{Origin, Payload, Shaft};
+    use articulated_core::effect::EffectId;
     use articulated_urdf::{Kind, MOST_SNAPPED, Problem};
 
     use super::*;
@@ -361,6 +362,29 @@ mod tests {
         assert_eq!(held(None), ["link \"hand\"", "link \"tip\"", "link \"lamp\""]);
         assert_eq!(held(shaft(Some(0.1))), ["link \"hand\"", "link \"lamp\""]);
         assert_eq!(held(shaft(None)), ["link \"lamp\""]);
+    }
+
+    #[test]
+    fn what_thousands_of_edits_and_effects_use_is_soon_found() {
+        let count = 5000;
+        let link = |k| format!("<link name='l{k}'>{LINK}</link>");
+        let joint = |k| {
+            format!(
+                "<joint name='j{k}' type='continuous'><parent link='tip'/><child link='l{k}'/><axis xyz='0 0 1'/>
+                <dynamics damping='0.5' friction='0.25'/></joint>"
+            )
+        };
+        let all: String = (0..count).map(link).chain((0..count).map(joint)).collect();
+        let mut asked = asked();
+        asked.urdf = robot("arm").replace("</robot>", &(all + "</robot>"));
+        let damping = |k| Applied { effect: EffectId::damping, on: format!("j{k}"), at: Origin::default(), parameters: vec![0.5] };
+        asked.options.effects = (1..count).map(damping).collect();
+        asked.options.lock = (0..count).map(|k| (format!("j{k}"), vec![0.0])).collect();
+        asked.options.payloads = vec![Payload { link: "l0".into(), mass: 1.0, ..Payload::default() }; count];
+        let reading = read(&asked).unwrap();
+        let left = |tag: &str| reading.unused.iter().filter(|u| u.tag == tag).map(|u| u.subject.to_string()).collect::<Vec<_>>();
+        assert_eq!((left("dynamics damping"), left("dynamics friction").len()), (vec!["joint \"j0\"".to_owned()], count));
+        assert_eq!(reading.warnings.iter().filter(|w| w.field == "payload").count(), 0);
     }
 
     #[test]

@@ -5,10 +5,10 @@ use std::collections::HashSet;
 use articulated_core::Plain;
 use articulated_core::description::PrincipalMoments;
 use articulated_core::effect::{Applied, EffectId};
-use articulated_urdf::{Kind, Problem, Reading, Subject, Unused};
+use articulated_urdf::{Kind, Problem, Reading, Subject};
 
 use super::edit::Editing;
-use crate::effects::still;
+use crate::effects::{indices, still};
 
 impl Editing<'_> {
     /// What is odd about the edits, or no more so because of them.
@@ -34,8 +34,10 @@ impl Editing<'_> {
 
     /// A lock beyond the joint's limits is odd, and used.
     fn warn_of_limits(&mut self) {
-        let joints = self.asked.options.lock.iter().filter_map(|(name, at)| {
-            let joint = self.reading.description.joints.iter().find(|j| j.name == *name)?;
+        let joints = &self.reading.description.joints;
+        let of_name = indices(joints.iter().map(|j| j.name.as_str()));
+        let problems = self.asked.options.lock.iter().filter_map(|(name, at)| {
+            let joint = &joints[*of_name.get(name.as_str())?];
             let limit = joint.limit.filter(|_| joint.locked.is_some())?;
             let &[at] = at.as_slice() else { return None };
             (at < limit.lower || limit.upper < at).then(|| Problem {
@@ -48,14 +50,15 @@ impl Editing<'_> {
                 expected: format!("{} to {}; used as asked for", Plain(limit.lower), Plain(limit.upper)),
             })
         });
-        self.reading.warnings.extend(joints.collect::<Vec<_>>());
+        self.reading.warnings.extend(problems.collect::<Vec<_>>());
     }
 
     /// A load on what the base holds is odd, and of no account.
     fn warn_of_loads(&mut self) {
         let (options, description) = (&self.asked.options, &self.reading.description);
         let still = still(description, options.base);
-        let held = |link: &str| description.links.iter().zip(&still).any(|(l, still)| l.name == link && *still);
+        let links = indices(description.links.iter().map(|l| l.name.as_str()));
+        let held = |link: &str| links.get(link).is_some_and(|at| still[*at]);
         let loads = options.payloads.iter().filter(|load| load.mass != 0.0 && held(&load.link)).map(|load| Problem {
             file: self.asked.file.to_owned(),
             line: None,
@@ -88,18 +91,19 @@ impl Editing<'_> {
     /// Numbers of the URDF that an effect has taken are used.
     fn leave_what_is_used(&mut self) {
         let Reading { description, unused, .. } = &mut self.reading;
-        let used = |u: &Unused| {
-            let Subject::Joint(name) = &u.subject else { return false };
-            let dynamics = description.joints.iter().find(|j| j.name == *name).and_then(|j| j.dynamics.as_ref());
+        let joints = indices(description.joints.iter().map(|j| j.name.as_str()));
+        let tag = |e: &Applied| {
+            let dynamics = description.joints[*joints.get(e.on.as_str())?].dynamics?;
             // The first number of each.
-            let taken = dynamics.and_then(|d| match u.tag.as_str() {
-                "dynamics damping" => Some((EffectId::damping, d.damping)),
-                "dynamics friction" => Some((EffectId::friction, d.friction)),
-                _ => None,
-            });
-            let is = |e: &Applied| taken.is_some_and(|(id, x)| e.effect == id && e.on == *name && e.parameters.first() == Some(&x));
-            self.asked.options.effects.iter().any(is)
+            let (tag, x) = match e.effect {
+                EffectId::damping => ("dynamics damping", dynamics.damping),
+                EffectId::friction => ("dynamics friction", dynamics.friction),
+                _ => return None,
+            };
+            (e.parameters.first() == Some(&x)).then_some(tag)
         };
-        unused.retain(|u| !used(u));
+        let effects = self.asked.options.effects.iter();
+        let used: HashSet<(&str, &str)> = effects.filter_map(|e| Some((e.on.as_str(), tag(e)?))).collect();
+        unused.retain(|u| !matches!(&u.subject, Subject::Joint(name) if used.contains(&(name.as_str(), u.tag.as_str()))));
     }
 }

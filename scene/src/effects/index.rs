@@ -1,0 +1,62 @@
+//! What of a robot and of a scene has which name, gathered once.
+
+use std::collections::{HashMap, HashSet};
+
+use articulated_core::effect::{Applied, EffectId};
+
+use super::resolve::Edited;
+use super::{Asked, Selector};
+use crate::shaft::ShaftAsked;
+
+/// Links, joints and shafts by their names.
+pub(super) struct Index<'a> {
+    pub(super) joints: HashMap<&'a str, usize>,
+    pub(super) links: HashMap<&'a str, usize>,
+    /// The joints of shafts.
+    pub(super) of_shafts: HashSet<&'a str>,
+    /// What shafts put on their joints.
+    pub(super) by_shafts: HashMap<(EffectId, &'a str), (&'a ShaftAsked, &'a Applied)>,
+}
+
+impl<'a> Index<'a> {
+    pub(super) fn of(robot: &Edited<'a>, shafts: &'a [ShaftAsked]) -> Self {
+        let mut by_shafts = HashMap::new();
+        for (asked, own) in shafts.iter().zip(robot.shafts).flat_map(|(asked, applied)| applied.iter().map(move |own| (asked, own))) {
+            by_shafts.entry((own.effect, own.on.as_str())).or_insert((asked, own));
+        }
+        Self {
+            joints: indices(robot.description.joints.iter().map(|j| j.name.as_str())),
+            links: indices(robot.description.links.iter().map(|l| l.name.as_str())),
+            of_shafts: robot.shafts.iter().flatten().map(|a| a.on.as_str()).collect(),
+            by_shafts,
+        }
+    }
+}
+
+/// Index of each name; the first, where there are several.
+pub(crate) fn indices<'a>(names: impl Iterator<Item = &'a str>) -> HashMap<&'a str, usize> {
+    let mut indices = HashMap::new();
+    names.enumerate().for_each(|(k, name)| {
+        indices.entry(name).or_insert(k);
+    });
+    indices
+}
+
+/// What is asked of joints or links by their names, in the order of the scene.
+pub(super) struct Named<'a>(HashMap<&'a str, Vec<&'a Asked>>);
+
+impl<'a> Named<'a> {
+    pub(super) fn of(asked: &[&'a Asked]) -> Self {
+        let mut by_name: HashMap<&str, Vec<&Asked>> = HashMap::new();
+        for &one in asked {
+            if let Selector::Named(name) = &one.on {
+                by_name.entry(name).or_default().push(one);
+            }
+        }
+        Self(by_name)
+    }
+
+    pub(super) fn get(&self, name: &str) -> &[&'a Asked] {
+        self.0.get(name).map_or(&[], Vec::as_slice)
+    }
+}
