@@ -35,6 +35,11 @@ fn mentions(entry: &str, function: &str) -> bool {
 /// Takes out of the options what `error` is about, or names it otherwise; whether there was such a thing.
 fn leave_out(error: &Error, options: &mut Options) -> bool {
     let before = options.clone();
+    take_out(error, options);
+    *options != before
+}
+
+fn take_out(error: &Error, options: &mut Options) {
     match error {
         Error::UnknownFunction { found: function, .. }
         | Error::Singular { function, .. }
@@ -57,12 +62,9 @@ fn leave_out(error: &Error, options: &mut Options) -> bool {
         Error::Robot(error) => {
             articulated_scene::leave_out(error, &mut options.robot);
         }
-        Error::Several { errors } => errors.iter().for_each(|error| {
-            leave_out(error, options);
-        }),
+        Error::Several { errors } => errors.iter().for_each(|error| take_out(error, options)),
         _ => {}
     }
-    *options != before
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Names of the URDF as names in Rust.
 
-use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
 
 use articulated_core::model::Model;
 
@@ -52,49 +53,59 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    /// Names for everything, or the first clash.
+    /// Names for everything. Errors: all renamings that cannot be, or else all clashes.
     pub(crate) fn new(model: &Model<f64>, request: &Request) -> Result<Self, Error> {
-        check_renames(model, request)?;
+        if let Some(error) = Error::of(wrong_renames(model, request)) {
+            return Err(error);
+        }
         let joints = model.joints.iter().map(|j| j.name.as_str());
         let frames = model.frames.iter().map(|f| f.name.as_str());
-        Ok(Self { joints: unique("joint", joints, request)?, frames: unique("link", frames, request)? })
+        let mut clashes = Vec::new();
+        let names = Self { joints: idents("joint", joints, request, &mut clashes), frames: idents("link", frames, request, &mut clashes) };
+        Error::of(clashes).map_or(Ok(names), Err)
     }
 }
 
-fn unique<'a>(kind: &'static str, names: impl Iterator<Item = &'a str>, request: &Request) -> Result<Vec<String>, Error> {
+/// The Rust names of all; those that another has already are among the clashes.
+fn idents<'a>(kind: &'static str, names: impl Iterator<Item = &'a str>, request: &Request, clashes: &mut Vec<Error>) -> Vec<String> {
     let mut seen: BTreeMap<String, &str> = BTreeMap::new();
-    let mut idents = Vec::new();
-    for name in names {
-        let renamed = request.options.rename.iter().find(|(from, _)| from == name);
-        let ident = renamed.map_or_else(|| identifier(name), |(_, to)| to.clone());
-        if let Some(first) = seen.insert(ident.clone(), name) {
-            let (first, second) = (first.to_owned(), name.to_owned());
-            return Err(Error::NameClash { file: request.file.clone(), kind, first, second, ident });
+    let renamed: BTreeMap<&str, &String> = request.options.rename.iter().map(|(from, to)| (from.as_str(), to)).collect();
+    let mut ident = |name: &'a str| {
+        let ident = renamed.get(name).map_or_else(|| identifier(name), |to| (*to).clone());
+        match seen.entry(ident.clone()) {
+            Entry::Vacant(free) => {
+                free.insert(name);
+            }
+            Entry::Occupied(first) => {
+                let (first, second) = ((*first.get()).to_owned(), name.to_owned());
+                clashes.push(Error::NameClash { file: request.file.clone(), kind, first, second, ident: ident.clone() });
+            }
         }
-        idents.push(ident);
-    }
-    Ok(idents)
+        ident
+    };
+    names.map(&mut ident).collect()
 }
 
-fn check_renames(model: &Model<f64>, request: &Request) -> Result<(), Error> {
-    let known = |name: &str| model.joints.iter().any(|j| j.name == name) || model.frames.iter().any(|f| f.name == name);
-    let rename = &request.options.rename;
-    let wrong = rename.iter().enumerate().find_map(|(k, (from, to))| {
+/// All renamings that cannot be, each once.
+fn wrong_renames(model: &Model<f64>, request: &Request) -> Vec<Error> {
+    let names: BTreeSet<&str> = model.joints.iter().map(|j| &*j.name).chain(model.frames.iter().map(|f| &*f.name)).collect();
+    let (mut seen, mut told, mut wrong) = (BTreeSet::new(), BTreeSet::new(), Vec::new());
+    for (from, to) in &request.options.rename {
+        let is_first = seen.insert(from);
         let reason = if !is_name(to) {
             "this is not an identifier of Rust"
-        } else if !known(from) {
+        } else if !names.contains(from.as_str()) {
             "no joint that moves and no link that is a frame has this name"
-        } else if rename[..k].iter().any(|(name, _)| name == from) {
+        } else if !is_first {
             "it is renamed twice, expected once"
         } else {
-            return None;
+            continue;
         };
-        Some((from, to, reason))
-    });
-    match wrong {
-        Some((from, to, reason)) => Err(Error::Rename { file: request.file.clone(), from: from.clone(), to: to.clone(), reason }),
-        None => Ok(()),
+        if told.insert((from, to)) {
+            wrong.push(Error::Rename { file: request.file.clone(), from: from.clone(), to: to.clone(), reason });
+        }
     }
+    wrong
 }
 
 #[cfg(test)]
@@ -136,6 +147,39 @@ mod tests {
         request.options.rename = vec![("tip 1".into(), "other".into())];
         let names = Names::new(&model, &request).unwrap();
         assert_eq!((names.joints.concat(), names.frames.join(" ")), ("BASE".into(), "BASE TIP_1 other".into()));
+    }
+
+    #[test]
+    fn all_clashes_and_all_wrong_renamings_are_told_at_once() {
+        let links = ["base", "a-x", "a x", "a.x", "b-x", "b x"].map(|name| format!("<link name='{name}'/>")).concat();
+        let joint = |(k, child): (usize, &str)| {
+            let joint = ["c-x", "c x", "d", "e", "f"][k];
+            format!("<joint name='{joint}' type='continuous'><parent link='base'/><child link='{child}'/></joint>")
+        };
+        let joints: String = ["a-x", "a x", "a.x", "b-x", "b x"].into_iter().enumerate().map(joint).collect();
+        let mut request = Request::new("arm.urdf", format!("<robot name='arm'>{links}{joints}</robot>"));
+        let model = crate::model(&request, &crate::read(&request).unwrap().description).unwrap();
+        let told = |request: &Request| Names::new(&model, request).map(drop).unwrap_err().into_each();
+        let pairs: Vec<_> = told(&request)
+            .into_iter()
+            .map(|error| match error {
+                Error::NameClash { kind, first, second, .. } => (kind, first, second),
+                other => panic!("{other}"),
+            })
+            .collect();
+        let clash = |kind, first: &str, second: &str| (kind, first.to_owned(), second.to_owned());
+        let links = [("a-x", "a x"), ("a-x", "a.x"), ("b-x", "b x")].map(|(first, second)| clash("link", first, second));
+        assert_eq!(pairs, [&[clash("joint", "c-x", "c x")][..], &links].concat());
+        let renamings = [("d", "D_1"), ("d", "D_2"), ("none", "X"), ("e", "fn"), ("d", "D_2")];
+        request.options.rename = renamings.map(|(from, to)| (from.into(), to.into())).to_vec();
+        let wrong: Vec<_> = told(&request)
+            .into_iter()
+            .map(|error| match error {
+                Error::Rename { from, to, .. } => (from, to),
+                other => panic!("{other}"),
+            })
+            .collect();
+        assert_eq!(wrong, request.options.rename[1..4]);
     }
 
     #[test]
