@@ -105,6 +105,9 @@ impl<'a> Robot<'a> {
             return Err(format!("there is no link {name:?}{}", meant(name, self.model.frames.iter().map(|f| &f.name))));
         };
         let frame = self.frames.get(name).map(|k| &self.model.frames[*k]).ok_or_else(|| "the link is no frame".to_owned())?;
+        if frame.body == 0 {
+            return Err(format!("link {name:?} is fixed to the base: no function depends on it"));
+        }
         // The link itself is left without what becomes an input.
         let own = if kind == Kind::Inertia { self.description.links[link].inertial.take() } else { None };
         let nominal = own.map_or([0.0; PARAMETERS], |own| own.spatial_inertia().parameters());
@@ -257,6 +260,8 @@ mod tests {
             ("inertia(slide)", "there is no link \"slide\""),
             ("origin(slid)", "there is no joint \"slid\", did you mean \"slide\"?"),
             ("origin(grip)", "joint \"grip\" does not move; only the origin of a moving joint can stay an input"),
+            ("payload(ground)", "link \"ground\" is fixed to the base: no function depends on it"),
+            ("inertia(rail)", "link \"rail\" is fixed to the base: no function depends on it"),
             ("mass(tool)", "expected payload(link), inertia(link) or origin(joint)"),
             ("payload(tool", "expected payload(link), inertia(link) or origin(joint)"),
         ] {
@@ -274,7 +279,7 @@ mod tests {
         assert_eq!(told, "parameters: `payload(\"tool\")`: is there twice, expected once");
         // Constants of Rust have one case.
         let mut request = request;
-        request.urdf = String::from_utf8(request.urdf).unwrap().replace("'rail'", "'TOOL'").into_bytes();
+        request.urdf = String::from_utf8(request.urdf).unwrap().replace("'table'", "'TOOL'").into_bytes();
         let mut description = crate::read(&request).unwrap().description;
         let model = crate::model(&request, &description).unwrap();
         let mut told = |list: [&str; 2]| parse(&list.map(String::from), &mut description, &model).err().map(|error| error.to_string());
