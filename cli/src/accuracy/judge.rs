@@ -85,8 +85,7 @@ fn one(
     let Some((_, by_graph)) = graphs.iter().find(|(k, _)| *k == key) else { return verdict };
     verdict.rounding = Some(ROUNDOFF * largest(by_graph, &found.result, scale));
     let given = |argument: usize, k: usize| (state[argument][k], 0.0);
-    if let Some(mut bounds) = bound::bounds(graph, level, &given) {
-        bounds.iter_mut().filter(|b| b.is_nan()).for_each(|b| *b = f64::INFINITY);
+    if let Some(bounds) = bound::bounds(graph, level, &given) {
         verdict.bound = Some(bounds.iter().zip(scale).map(|(b, s)| if *b == 0.0 { 0.0 } else { b / s }).fold(0.0, f64::max));
         // What has overflowed is beyond every bound, and no part of one.
         let finite = by_graph.iter().zip(&found.result).zip(&bounds).filter(|((_, f), _)| f.is_finite());

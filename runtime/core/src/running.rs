@@ -63,6 +63,10 @@ impl<const BITS: u32, const SINES: u32> Running<BITS, SINES> {
     /// The result of an operation: value and radius, and what the errors of its operands make.
     fn of(value: f64, radius: f64, error: f64) -> Self {
         let radius = up(radius + f64::EPSILON * value.abs());
+        // Nothing times what is not known.
+        if radius.is_nan() {
+            return Self::unknown();
+        }
         let error = if error.is_nan() { f64::INFINITY } else { error };
         let most = value.abs() + radius + error;
         Self { value, radius, error: up(error + power(BITS) * most + Self::TINY) }
@@ -382,6 +386,22 @@ mod tests {
         let rounded = f64::from((1.0_f64 / 3.0) as f32);
         assert!((rounded - 1.0 / 3.0).abs() <= double.rounded_to(24) && double.rounded_to(24) < 2.1e-8, "{:e}", double.rounded_to(24));
         assert!((double.rounded_to(53) - double.error) <= 4e-17);
+    }
+
+    #[test]
+    fn what_is_done_with_the_unknown_is_infinitely_wide_and_never_no_number() {
+        type Double = Running<53, 0>;
+        let unknown = Double::one() / Double::given(0.0, 0.1);
+        let [symmetric, huge, whole] = [Double::given(0.0, 0.5), Double::given(f64::INFINITY, 0.0), Double::given(2.0, 0.0)];
+        for x in [symmetric, huge, whole, unknown, Double { error: f64::INFINITY, ..whole }, Double { radius: f64::INFINITY, ..whole }] {
+            let results =
+                [unknown * x, x * unknown, huge * x, x - unknown, huge - x, x / huge, unknown / x, x.atan2(unknown), unknown.sqrt()];
+            for (k, result) in results.into_iter().chain([results[0] * x, results[0] - results[1]]).enumerate() {
+                assert!(!result.radius.is_nan() && !result.error.is_nan() && !result.rounded_to(24).is_nan(), "{k}: {x:?} {result:?}");
+            }
+        }
+        let product = unknown * symmetric;
+        assert_eq!((product.radius, product.error), (f64::INFINITY, f64::INFINITY));
     }
 
     #[test]
