@@ -23,11 +23,13 @@ pub fn checked_cost(model: &Model<f64>) -> [Entry; 2] {
     [entry(format!("forward_dynamics by {way}"), plain), entry(format!("checked_forward_dynamics by {way}"), checked)]
 }
 
+/// What forward dynamics takes.
+const ARGUMENTS: [Argument; 3] = [Argument::Q, Argument::V, Argument::Tau];
+
 /// Accelerations, and by how much the smallest pivot is beyond its least.
 fn traced(model: &Model<Sym>, follows: bool, looks: bool) -> Vec<Sym> {
     let shape = model.shape();
-    let [q, v, tau] = [(0, Argument::Q), (1, Argument::V), (2, Argument::Tau)]
-        .map(|(place, a)| (0..a.len(shape)).map(|k| Sym::input(place, k)).collect::<Vec<_>>());
+    let [q, v, tau] = [0, 1, 2].map(|place| (0..ARGUMENTS[place].len(shape)).map(|k| Sym::input(place, k)).collect::<Vec<_>>());
     let (mut ws, mut out) = (Workspace::new(model), vec![Sym::zero(); model.nv]);
     if follows {
         forward_dynamics(model, &mut ws, &q, &v, &tau, &mut out);
@@ -55,5 +57,5 @@ fn entry(function: String, traced: Graph) -> Entry {
         graph = pass::run(name, *pass, &graph);
         stages.push((name, graph.counts()));
     }
-    Entry { function, ways: Vec::new(), stages, depth: depth(&graph), lanes: 1, bounds: Vec::new() }
+    Entry { function, ways: Vec::new(), stages, depth: depth(&graph), lanes: 1, arguments: ARGUMENTS.to_vec() }
 }

@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use articulated_core::algorithm::Argument;
+
 use crate::graph::{Counts, Graph};
 
 /// The costs of all functions of one robot.
@@ -25,9 +27,8 @@ pub struct Entry {
     pub depth: u32,
     /// How many limbs that are alike, or joints in loops, are computed at once; 1 where each is computed for itself.
     pub lanes: usize,
-    /// How far each result can be off by rounding, guaranteed, wherever the arguments are in the box of [`in_box`](crate::bound::in_box); infinite where a divisor could be nothing there.
-    /// Empty without [`stages`](crate::Options::stages), and at levels that have no bound.
-    pub bounds: Vec<f64>,
+    /// What it takes, in order; constants of the model that stayed inputs come after them.
+    pub arguments: Vec<Argument>,
 }
 
 impl Entry {

@@ -88,6 +88,19 @@ impl Generated {
     pub fn tokens(&self) -> proc_macro2::TokenStream {
         self.source.parse().expect("the emitter writes Rust")
     }
+
+    /// How far each result of a function, by its place in the ledger, can be off by rounding, guaranteed, wherever the arguments are in the box of [`bound::in_box`]; infinite where a
+    /// divisor could be nothing there. `None` where there is no such function, where the source leaves a loop, and at levels that have no bound.
+    pub fn bounds_in_box(&self, place: usize) -> Option<Vec<f64>> {
+        let graph = self.graphs.get(place).filter(|graph| !graph.outputs.is_empty())?;
+        let arguments = &self.ledger.functions.get(place)?.arguments;
+        let nominal: Vec<f64> = self.parameters.iter().flat_map(|p| &p.nominal).copied().collect();
+        let input = |argument: usize, k: usize| match arguments.get(argument) {
+            Some(a) => bound::in_box(&self.model, *a, k),
+            None => (nominal[k], 0.0),
+        };
+        bound::bounds(graph, self.level, &input)
+    }
 }
 
 /// Degrees of freedom from which on no code is written: a workspace has room for a matrix of their number squared.

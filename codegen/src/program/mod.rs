@@ -8,7 +8,6 @@ mod subject;
 use articulated_core::model::Model;
 
 use crate::Options;
-use crate::bound::{bounds, in_box};
 use crate::graph::{Graph, Op};
 use crate::groups::Groups;
 use crate::ledger::Entry;
@@ -62,21 +61,8 @@ pub(crate) fn program(wanted: Wanted, model: &Model<f64>, parameters: &[Paramete
         looped::count(&mut entry, counts);
     } else if let Some(columns) = &columns {
         columns.count(&mut entry);
-    } else if options.stages {
-        entry.bounds = in_the_box(&wanted, &graph, model, parameters, options);
     }
     Program { wanted, graph, plain, entry, columns, groups: groups.map(|(groups, _)| groups) }
-}
-
-/// Guaranteed bounds of the results, for the ledger.
-fn in_the_box(wanted: &Wanted, graph: &Graph, model: &Model<f64>, parameters: &[Parameter], options: &Options) -> Vec<f64> {
-    let arguments = wanted.arguments();
-    let nominal: Vec<f64> = parameters.iter().flat_map(|p| &p.nominal).copied().collect();
-    let input = |argument: usize, k: usize| match arguments.get(argument) {
-        Some(a) => in_box(model, *a, k),
-        None => (nominal[k], 0.0),
-    };
-    bounds(graph, options.level, &input).unwrap_or_default()
 }
 
 /// Lanes cost what no count shows (values that come and go one by one): they must be cheaper by this.

@@ -41,8 +41,8 @@ impl Subject<'_> {
             graph = pass::run("from the last", pass::from_the_last, &graph);
         }
         let ways = choices.iter().flat_map(Choice::names).collect();
-        let entry =
-            Entry { function: wanted.name.clone(), ways, stages, depth: depth(&graph), lanes: graph.lanes().width, bounds: Vec::new() };
+        let arguments = wanted.arguments();
+        let entry = Entry { function: wanted.name.clone(), ways, stages, depth: depth(&graph), lanes: graph.lanes().width, arguments };
         (graph, entry)
     }
 
