@@ -1,6 +1,6 @@
 //! Guaranteed bounds on rounding errors of the functions that are emitted.
 
-use articulated_core::algorithm::Argument;
+use articulated_core::algorithm::{Argument, coordinate_box};
 use articulated_core::model::Model;
 use articulated_core::running::Running;
 
@@ -34,25 +34,23 @@ pub fn bounds(graph: &Graph, level: Level, input: &dyn Fn(usize, usize) -> (f64,
     })
 }
 
-/// What holds of all arguments in the box of the ledger's bounds: coordinates within their limits (angles without any, quaternions and the place of a floating base within ±1), everything
+/// What holds of all arguments in the box of [`Generated::bounds_in_box`](crate::Generated::bounds_in_box): coordinates in their boxes ([`coordinate_box`]), sines and cosines within ±1, everything
 /// else within ±2: (midpoint, radius) of element `index`.
 pub fn in_box(model: &Model<f64>, argument: Argument, index: usize) -> (f64, f64) {
     if !matches!(argument, Argument::Q | Argument::Target) {
         return if argument == Argument::SinCos { (0.0, 1.0) } else { (0.0, 2.0) };
     }
     let joint = model.joints.iter().find(|j| (j.q.0..j.q.0 + j.q.1).contains(&index));
-    match joint.and_then(|j| j.limit) {
-        Some(l) if (l.lower + l.upper).is_finite() => ((l.lower + l.upper) / 2.0, (l.upper - l.lower) / 2.0),
-        _ if joint.is_some_and(|j| j.q.1 > 1) => (0.0, 1.0),
-        _ => (0.0, std::f64::consts::PI),
-    }
+    let (lower, upper) = joint.map_or((0.0, 0.0), |j| coordinate_box(j, index - j.q.0));
+    // Halves: the sum may be beyond the range of numbers.
+    (0.5 * lower + 0.5 * upper, 0.5 * upper - 0.5 * lower)
 }
 
 #[cfg(test)]
 mod tests {
     use std::f64::consts::PI;
 
-    use articulated_core::description::Base;
+    use articulated_core::description::{Base, JointKind};
 
     use super::*;
     use crate::Request;
@@ -77,9 +75,22 @@ mod tests {
             assert_eq!(found, [[(0.0, 1.0); 7].as_slice(), &[(1.0, 2.0), (0.0, PI)]].concat());
         }
         assert_eq!([Argument::V, Argument::SinCos].map(|argument| in_box(&model, argument, 7)), [(0.0, 2.0), (0.0, 1.0)]);
-        // A bound on one side alone is none.
-        model.joints[1].limit.as_mut().unwrap().lower = f64::NEG_INFINITY;
-        assert_eq!(in_box(&model, Argument::Q, 7), (0.0, PI));
+        // A bound on one side alone has the other a turn away, and those written the wrong way round are the same.
+        for (lower, upper, expected) in [
+            (f64::NEG_INFINITY, 3.0, (3.0 - PI, PI)),
+            (3.0, -1.0, (1.0, 2.0)),
+            (-f64::MAX, f64::MAX, (0.0, f64::MAX)),
+            (1.0, f64::MAX, (0.5 * f64::MAX, 0.5 * f64::MAX)),
+        ] {
+            let limit = model.joints[1].limit.as_mut().unwrap();
+            (limit.lower, limit.upper) = (lower, upper);
+            assert_eq!(in_box(&model, Argument::Q, 7), expected);
+        }
+        // Lengths without limits are in ±1 m, and all angles of a joint that has several numbers in ±π.
+        model.joints[2].kind = JointKind::Prismatic;
+        assert_eq!(in_box(&model, Argument::Q, 8), (0.0, 1.0));
+        (model.joints[2].kind, model.joints[2].q.1) = (JointKind::Planar, 3);
+        assert_eq!([8, 9, 10].map(|k| in_box(&model, Argument::Q, k)), [(0.0, 1.0), (0.0, 1.0), (0.0, PI)]);
     }
 
     #[test]

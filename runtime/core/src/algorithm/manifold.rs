@@ -61,8 +61,8 @@ pub fn difference<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, q: &[S], ta
 
 /// A configuration from numbers in [0, 1): uniform if they are.
 ///
-/// uniform: `[nq]`, of the last of each quaternion's four no use is made; out: `[nq]` rad|m|quaternion. Within limits where there are some; a bound
-/// that is open is 2π or 2 m from the other; ±π and ±1 m where both are. Rotations uniform: Shoemake, *Uniform random rotations*, Graphics Gems III, 1992.
+/// uniform: `[nq]`, of the last of each quaternion's four no use is made; out: `[nq]` rad|m|quaternion. Coordinates in their boxes ([`coordinate_box`]).
+/// Rotations uniform: Shoemake, *Uniform random rotations*, Graphics Gems III, 1992.
 ///
 /// # Panics
 /// As [`integrate`].
@@ -75,9 +75,9 @@ pub fn random_configuration<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, u
                 put_quaternion(&mut out[3..], &rotation_from(&uniform[3..]));
             }
             JointKind::Spherical => put_quaternion(out, &rotation_from(uniform)),
-            kind => {
+            _ => {
                 for (k, (out, u)) in out.iter_mut().zip(uniform).enumerate() {
-                    let (lower, upper) = bounds(joint.limit, if is_length(kind, k) { 1.0 } else { PI });
+                    let (lower, upper) = coordinate_box(joint, k);
                     *out = between(lower, upper, *u);
                 }
             }
@@ -148,6 +148,15 @@ fn put_quaternion<S: Scalar>(out: &mut [S], q: &Quaternion<S>) {
 /// Whether coordinate k of a joint is in metres.
 fn is_length(kind: JointKind, k: usize) -> bool {
     kind == JointKind::Prismatic || kind == JointKind::Planar && k < 2
+}
+
+/// The box of coordinate `k` of a joint, its lower end first, rad or m: within limits where there are some, in whichever order they are written; a bound that is open is 2π or
+/// 2 m from the other, ±π and ±1 m where both are, as those of a sliding joint may be. Of a floating joint ±1 m, and ±1 for the numbers of a quaternion.
+pub fn coordinate_box(joint: &JointInfo, k: usize) -> (f64, f64) {
+    match joint.kind {
+        JointKind::Floating | JointKind::Spherical => (-1.0, 1.0),
+        kind => bounds(joint.limit, if is_length(kind, k) { 1.0 } else { PI }),
+    }
 }
 
 fn bounds(limit: Option<Limit>, most: f64) -> (f64, f64) {

@@ -42,7 +42,7 @@ pub use frames::{
     jacobians_world, jacobians_world_aligned, placement_derivatives, twists_body, twists_world, twists_world_aligned,
 };
 pub use kinematics::placements;
-pub use manifold::{difference, integrate, neutral, random_configuration};
+pub use manifold::{coordinate_box, difference, integrate, neutral, random_configuration};
 pub use manifold_derivatives::{difference_derivatives, integrate_derivatives};
 pub use momentum::{
     center_of_mass, center_of_mass_acceleration, center_of_mass_jacobian, center_of_mass_velocity, centroidal_momentum,
