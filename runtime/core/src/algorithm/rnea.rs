@@ -54,25 +54,49 @@ pub(super) fn momentum<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[
 pub(super) fn recursion<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S], world: &World<S>, tau: &mut [S]) {
     // V̇_0 = [0; −g]
     ws.bodies[0].motion.acceleration = -world.gravity;
+    let there = There::on(model);
     // A sweep for each, as one with both takes a quarter longer on numbers.
-    if model.bodies.iter().all(|body| body.rates == Rates::Angular) {
-        outward_sweep::<S, false>(model, ws, q, v, a);
-    } else {
+    if there.rates_by_axes {
         outward_sweep::<S, true>(model, ws, q, v, a);
+    } else {
+        outward_sweep::<S, false>(model, ws, q, v, a);
     }
     // F_i −= w
     wrenches::each(model, ws, q, world.wrenches, |ws, i, w| ws.bodies[i].wrench = ws.bodies[i].wrench - *w);
-    effects::push(model, ws, q, v, world);
+    if there.on_bodies {
+        effects::push(model, ws, q, v, world);
+    }
     tau.fill(S::zero());
     for i in model.inward() {
         let body = &model.bodies[i];
         with_pose!(ws.bodies[i].pose, p => inward(body, i, &p, ws, tau));
     }
-    if world.inertia {
+    if world.inertia && there.on_joints {
         effects::armature(model, a, tau);
     }
-    if world.forces {
+    if world.forces && there.on_joints {
         effects::resist(model, q, v, tau);
+    }
+}
+
+/// What a recursion has to do on a model, found in one look at its bodies: with one look for each, inverse dynamics takes a twentieth longer on numbers.
+#[derive(Default)]
+struct There {
+    rates_by_axes: bool,
+    on_bodies: bool,
+    on_joints: bool,
+}
+
+impl There {
+    #[inline(always)]
+    fn on<S>(model: &Model<S>) -> Self {
+        let mut there = Self::default();
+        for body in &model.bodies {
+            there.rates_by_axes |= body.rates != Rates::Angular;
+            there.on_bodies |= !body.effects.body.is_empty();
+            there.on_joints |= !body.effects.joint.is_empty();
+        }
+        there
     }
 }
 
