@@ -38,16 +38,17 @@ impl SplitMix64 {
 /// `count` states: configurations as [`random_configuration`] makes them, numbers in [0, 1) where that is asked for, all else in ±2.
 pub fn random(model: &Model<f64>, count: usize, seed: u64) -> Vec<State> {
     let mut numbers = SplitMix64::new(seed);
-    (0..count).map(|_| one(model, &mut numbers)).collect()
+    let mut workspace = Workspace::new(model);
+    (0..count).map(|_| one(model, &mut workspace, &mut numbers)).collect()
 }
 
-fn one(model: &Model<f64>, numbers: &mut SplitMix64) -> State {
+fn one(model: &Model<f64>, workspace: &mut Workspace<f64>, numbers: &mut SplitMix64) -> State {
     let mut state = State::default();
     for argument in Argument::ALL {
         let length = argument.len(model.shape());
         let mut draw = |lower, upper| (0..length).map(|_| numbers.uniform(lower, upper)).collect::<Vec<_>>();
         let vector = match argument {
-            Argument::Q | Argument::Target => configuration(model, &draw(0.0, 1.0)),
+            Argument::Q | Argument::Target => configuration(model, workspace, &draw(0.0, 1.0)),
             Argument::Uniform => draw(0.0, 1.0),
             _ => draw(-RATE, RATE),
         };
@@ -56,9 +57,9 @@ fn one(model: &Model<f64>, numbers: &mut SplitMix64) -> State {
     state
 }
 
-fn configuration(model: &Model<f64>, uniform: &[f64]) -> Vec<f64> {
+fn configuration(model: &Model<f64>, workspace: &mut Workspace<f64>, uniform: &[f64]) -> Vec<f64> {
     let mut q = vec![0.0; model.nq];
-    random_configuration(model, &mut Workspace::new(model), uniform, &mut q);
+    random_configuration(model, workspace, uniform, &mut q);
     q
 }
 
