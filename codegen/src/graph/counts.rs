@@ -32,11 +32,6 @@ impl Counts {
         [Op::MulAdd, Op::MulSub, Op::NegMulAdd, Op::NegMulSub].iter().map(|&op| self.of(op)).sum()
     }
 
-    /// Sign changes.
-    pub fn negations(&self) -> u64 {
-        self.of(Op::Neg)
-    }
-
     /// Sines and cosines.
     pub fn trigonometric(&self) -> u64 {
         self.of(Op::Sin) + self.of(Op::Cos)
