@@ -329,6 +329,11 @@ pub enum FunctionError {
         /// The function's name.
         function: &'static str,
     },
+    /// None of the function's ways applies to the robot.
+    NoWay {
+        /// The function's name.
+        function: &'static str,
+    },
 }
 
 impl fmt::Display for FunctionError {
@@ -338,6 +343,7 @@ impl fmt::Display for FunctionError {
             Self::Arguments { function, found, expected } => write!(f, "{function}: found {found} arguments, expected {expected}"),
             Self::Workspace => f.write_str("workspace: found that of another robot, expected one that this robot made"),
             Self::NotGenerated { function } => write!(f, "this robot was generated without {function}: add it to `functions`"),
+            Self::NoWay { function } => write!(f, "{function}: found no way to compute it for this robot"),
         }
     }
 }
@@ -374,9 +380,8 @@ impl<S: Scalar> Function<S> {
 
     /// Evaluates the function; `arguments` in the order of `takes`, `out` as `gives` says, row by row.
     pub fn call(&self, model: &Model<S>, ws: &mut Workspace<S>, arguments: &[&[S]], out: &mut [S]) -> Result<(), FunctionError> {
-        let way = self.ways.iter().find(|w| (w.applies)(model));
-        debug_assert!(way.is_some(), "{}: no way for this robot", self.name);
-        way.map_or(Ok(()), |way| self.call_by(way, model, ws, arguments, out))
+        let way = self.ways.iter().find(|w| (w.applies)(model)).ok_or(FunctionError::NoWay { function: self.name })?;
+        self.call_by(way, model, ws, arguments, out)
     }
 
     /// Evaluates the function in one of its ways.
@@ -425,4 +430,23 @@ pub fn exactly_rows<'a, const N: usize, const M: usize, S>(
     let (rows, rest) = slice.as_chunks::<M>();
     let rows = if rest.is_empty() { rows.try_into().ok() } else { None };
     rows.ok_or(FunctionError::Length { argument, found: slice.len(), expected: N * M })
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::string::ToString;
+    use alloc::vec::Vec;
+
+    use super::*;
+    use crate::description::{Base, Description, Link};
+
+    #[test]
+    fn a_function_without_a_way_is_told_and_gives_nothing() {
+        let robot = Description { links: Vec::from([Link::default()]), ..Description::default() };
+        let model = Model::<f64>::new(&robot, Base::Floating).unwrap();
+        let without = Function { ways: &[], unsolved: None, ..*super::super::function::<f64>("mass_matrix").unwrap() };
+        let found = without.call(&model, &mut Workspace::new(&model), &[&[0.0; 7]], &mut [0.0; 36]);
+        assert_eq!(found, Err(FunctionError::NoWay { function: "mass_matrix" }));
+        assert!(found.unwrap_err().to_string().starts_with("mass_matrix: found no way"));
+    }
 }
