@@ -1,4 +1,4 @@
-//! Functions of libraries that are opened at run time: the one module of the workspace that needs `unsafe`.
+//! Functions of libraries that are opened at run time: with [`batch`], the one module of the command that needs `unsafe`.
 //!
 //! A library runs whatever is in it. Two kinds are opened here: one that the command has just compiled from its own
 //! source, and peers that the user names. The signatures below are what both promise; nothing can check them.

@@ -1,4 +1,4 @@
-//! Watching an evaluation: functions for those who teach or debug. Nothing calls them, so they cost nothing where they are not asked for.
+//! Watching an evaluation: functions for those who teach or debug. No function of the table calls them, so they cost nothing where they are not asked for.
 //!
 //! | what | says | does not say |
 //! |---|---|---|
