@@ -34,6 +34,11 @@
 //! // It rests where kp (target − q) = m g l sin q.
 //! let q = swing.recording.q_at(last)[0];
 //! assert!((20.0 * (1.0 - q) - 9.81 * q.sin()).abs() < 1e-3);
+//!
+//! // A control of one's own in place of the scene's; in an articulated::simulate::Hold it is asked at a rate.
+//! let mut push = |t: f64, _q: &[f64], v: &[f64], tau: &mut [f64]| tau[0] = 2.0 * t.sin() - 0.5 * v[0];
+//! let pushed = stage.run_with(&stage.model, &stage.frame_names(), &mut push)?;
+//! assert_eq!((pushed.ending, pushed.error), (Ending::AtEnd, None));
 //! # Ok(()) }
 //! ```
 //!

@@ -4,7 +4,7 @@ use std::fmt;
 use std::time::{Duration, Instant};
 
 use articulated::Dynamics;
-use articulated::simulate::{Counts, Ended, Recording, Settings, SimulateError, Simulation};
+use articulated::simulate::{Control, Counts, Ended, Recording, Settings, SimulateError, Simulation};
 
 use crate::begin::Begin;
 use crate::drive::Drive;
@@ -80,11 +80,27 @@ impl Stage {
     /// [`Stage::begin`], all of them; then a robot that accelerates otherwise than the scene's, as one does that was made from its URDF alone, without the scene's gravity and effects
     /// (to move such a one on purpose there is [`Stage::motion`]). An error on the way is in [`Outcome::error`].
     pub fn run<R: Dynamics<f64>, S: AsRef<str>>(&self, robot: &R, frames: &[S]) -> Result<Outcome, MotionErrors> {
+        let (mut motion, begin) = self.ready(robot, frames)?;
+        motion.run(&begin, &mut |_, _| true)
+    }
+
+    /// As [`Stage::run`], by a control of one's own in place of the scene's.
+    pub fn run_with<R: Dynamics<f64>, S: AsRef<str>>(
+        &self,
+        robot: &R,
+        frames: &[S],
+        control: &mut dyn Control,
+    ) -> Result<Outcome, MotionErrors> {
+        let (mut motion, begin) = self.ready(robot, frames)?;
+        motion.run_with(&begin, control, &mut |_, _| true)
+    }
+
+    fn ready<'a, R: Dynamics<f64>, S: AsRef<str>>(&'a self, robot: &'a R, frames: &[S]) -> Result<(Motion<'a, R>, Begin), MotionErrors> {
         let motion = self.settings().and_then(|settings| self.motion(robot, frames, settings));
-        let (mut motion, begin) = MotionErrors::both(motion, self.begin())?;
+        let (motion, begin) = MotionErrors::both(motion, self.begin())?;
         let another = self.another(robot, &begin).unwrap_or_else(|error| Some(Fault::Function(error)));
         MotionErrors::none(&self.scene.file, another)?;
-        motion.run(&begin, &mut |_, _| true)
+        Ok((motion, begin))
     }
 }
 
@@ -102,8 +118,19 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
     /// From the start to the end, to the blow that ends it, or to an error, which is part of what came of it. `follow` is told the time, s, and the counts after
     /// each step, and may say false to end it. Errors: a state, or a control, that does not fit the robot: nothing was done.
     pub fn run(&mut self, begin: &Begin, follow: &mut dyn FnMut(f64, &Counts) -> bool) -> Result<Outcome, MotionErrors> {
+        let drive = Drive::new(self.robot, begin.controller.clone(), self.stage.scene.control.period);
+        let mut drive = drive.map_err(|e| MotionErrors::refused(&self.stage.scene.file, e))?;
+        self.run_with(begin, &mut drive, follow)
+    }
+
+    /// As [`Motion::run`], by a control of one's own in place of the scene's.
+    pub fn run_with(
+        &mut self,
+        begin: &Begin,
+        control: &mut dyn Control,
+        follow: &mut dyn FnMut(f64, &Counts) -> bool,
+    ) -> Result<Outcome, MotionErrors> {
         let refused = |e: SimulateError| MotionErrors::refused(&self.stage.scene.file, e);
-        let mut drive = Drive::new(self.robot, begin.controller.clone(), self.stage.scene.control.period).map_err(refused)?;
         self.watch.reset();
         let (over, mut reached) = (self.watch.over(), self.simulation.settings().start);
         let mut recording = self.simulation.recording();
@@ -112,7 +139,7 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
             follow(t, counts) && !over()
         };
         let clock = Instant::now();
-        let result = self.simulation.run_into(&begin.q, &begin.v, &mut drive, &mut self.watch.events, &mut recording, &mut after_step);
+        let result = self.simulation.run_into(&begin.q, &begin.v, control, &mut self.watch.events, &mut recording, &mut after_step);
         let wall = clock.elapsed();
         let error = match result {
             Ok(()) => None,

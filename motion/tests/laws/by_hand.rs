@@ -106,6 +106,24 @@ fn a_sampled_controller_holds_its_torques() {
     assert!(r.tau[3] < 12.0 && r.tau[3] == r.tau[4] && r.tau[5] < r.tau[4], "{:?}", r.tau);
 }
 
+/// The law of the scene's control by hand, sampled as that is; its events and its end are the scene's.
+#[test]
+fn a_control_of_ones_own_moves_the_scene() {
+    let scene =
+        |control: &str| format!("{control}\ninitial = {{ v = {{ slide = 0.5 }} }}\nsimulation = {{ end = 1.0, events = ['limits'] }}");
+    let of_scene = stage(&scene("control = { kind = 'pd', target = { slide = 1.5 }, kp = 30, kd = 2 }"), CART);
+    let without = stage(&scene(""), CART);
+    let mut law = |_: f64, q: &[f64], v: &[f64], tau: &mut [f64]| tau[0] = 30.0 * (1.5 - q[0]) + 2.0 * (0.0 - v[0]);
+    let own = without.run_with(&without.model, &without.frame_names(), &mut law).unwrap();
+    let expected = moved(&of_scene);
+    assert_eq!((&own.recording, super::words(&own)), (&expected.recording, super::words(&expected)));
+    assert_eq!(super::words(&own)[0], "slide reaches its upper limit");
+    // It stands in place of the scene's.
+    let instead =
+        of_scene.run_with(&of_scene.model, &of_scene.frame_names(), &mut |_: f64, _: &[f64], _: &[f64], _: &mut [f64]| {}).unwrap();
+    assert!(instead.recording.tau.iter().all(|tau| *tau == 0.0));
+}
+
 /// Drive and watch are for a simulation of one's own too, which may look for more.
 #[test]
 fn the_parts_put_together_move_as_the_whole() {
