@@ -252,6 +252,37 @@ pub fn function(name: &str) -> Result<&'static Function<Sym>, Error> {
         // In a sum of functions a group is none of them.
         let groups = Group::ALL.map(Group::name).into_iter().filter(|_| Group::named(name).is_none());
         let known: Vec<String> = functions::<Sym>().iter().map(|f| f.name).chain(groups).map(str::to_owned).collect();
-        Error::UnknownFunction { found: name.into(), nearest: nearest(name, known.iter().map(String::as_str)), known }
+        let elsewhere = ELSEWHERE.iter().find(|(theirs, _)| name.eq_ignore_ascii_case(theirs)).map(|(_, ours)| (*ours).to_owned());
+        Error::UnknownFunction { found: name.into(), nearest: elsewhere.or_else(|| nearest(name, known.iter().map(String::as_str))), known }
     })
+}
+
+/// What other libraries and textbooks call functions by, with our names.
+const ELSEWHERE: &[(&str, &str)] = &[
+    ("fk", "placements"),
+    ("forward_kinematics", "placements"),
+    ("id", "inverse_dynamics"),
+    ("rnea", "inverse_dynamics"),
+    ("nle", "bias_forces"),
+    ("crba", "mass_matrix"),
+    ("minv", "mass_matrix_inverse"),
+    ("fd", "forward_dynamics"),
+    ("aba", "forward_dynamics"),
+    ("com", "center_of_mass"),
+    ("ccrba", "centroidal_momentum_matrix"),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_other_libraries_lead_to_ours() {
+        for (theirs, ours) in ELSEWHERE {
+            assert!(function(ours).is_ok(), "{ours}");
+            let told = function(theirs).err().unwrap().to_string();
+            assert_eq!(told, format!("unknown function `{theirs}`, did you mean `{ours}`?"));
+        }
+        assert!(function("RNEA").err().unwrap().to_string().ends_with("did you mean `inverse_dynamics`?"));
+    }
 }
