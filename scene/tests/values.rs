@@ -128,3 +128,23 @@ fn what_is_asked_of_all_is_had_by_those_that_can() {
     assert_eq!(drag.iter().map(|m| m.1.as_str()).collect::<Vec<_>>(), ["a", "b", "c"]);
     assert_eq!(on("[effects.drag]\ntip = { coefficient = 2 }"), [named(EffectId::drag, "tip", &[2.0])]);
 }
+
+/// Written to fewer digits than there are.
+#[test]
+fn a_quaternion_that_is_nearly_of_norm_one_is_made_so() {
+    let (q, _) = scene("base = \"floating\"\n[initial.base]\nquaternion = [0, 0, 0, 1.0005]").start(&model(Base::Floating)).unwrap();
+    assert_eq!(q[3..7], [0.0, 0.0, 0.0, 1.0]);
+    let (q, _) = scene("base = \"floating\"\n[initial]\nq = [0, 0, 0, 0, 0, 0, 1.0005, 0.25, 0.5]").start(&model(Base::Floating)).unwrap();
+    assert_eq!(q[3..], [0.0, 0.0, 0.0, 1.0, 0.25, 0.5]);
+}
+
+/// A place that a name does not say is that of all; a name that says it has its own.
+#[test]
+fn what_is_asked_of_all_says_where_too() {
+    let text = "[effects.drag]\n\"*\" = { coefficient = 1, xyz = [0, 0, 0.1] }\na = { coefficient = 2 }\nb = { coefficient = 3, xyz = [0.5, 0, 0] }";
+    let description = robot();
+    let edited = Edited { description: &description, base: Base::Fixed, unused: &[], shafts: &[] };
+    let resolved = scene(text).resolve(&edited).unwrap_or_else(|e| panic!("{e:?}"));
+    let places: Vec<(&str, f64, [f64; 3])> = resolved.effects.iter().map(|a| (a.on.as_str(), a.parameters[0], a.at.xyz)).collect();
+    assert_eq!(places, [("a", 2.0, [0.0, 0.0, 0.1]), ("b", 3.0, [0.5, 0.0, 0.0]), ("c", 1.0, [0.0, 0.0, 0.1])]);
+}

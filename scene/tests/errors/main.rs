@@ -315,3 +315,20 @@ fn sorts_of_mistakes_are_data() {
         [Kind::UnknownKey, Kind::Type, Kind::Word, Kind::Number, Kind::Syntax]
     );
 }
+
+/// What may be at most so much may be just that.
+#[test]
+fn the_most_that_is_expected_is_taken() {
+    let taken = |text: &str| Scene::read("s.toml", text).map(drop).map_err(|e| e.to_string());
+    let sampled = "[control]\nkind = \"pd\"\nkp = 1\nperiod = 0.1\n[simulation]\nend = 1\nmax_steps = 10";
+    let steps = |most: u64| format!("[simulation]\nend = 1\nmax_steps = {most}");
+    let segments = |most: u64| format!("[effects.shaft.hosel]\nsegments = {most}\nstiffness = 1");
+    for text in [sampled, &steps(1), &steps(1 << 40), &segments(1), &segments(100)] {
+        assert_eq!(taken(text), Ok(()), "{text}");
+    }
+    assert_eq!(one(&segments(101)), "s.toml:2: effects.shaft.hosel.segments: found 101.0, expected a whole number from 1 to 100");
+    assert_eq!(
+        one(&steps(1 + (1 << 40))),
+        "s.toml:3: simulation.max_steps: found 1099511627777.0, expected a whole number from 1 to 1099511627776"
+    );
+}

@@ -176,3 +176,13 @@ fn a_joint_that_follows_another_has_neither_motor_nor_coordinates() {
 
 const FOLLOWER: &str = "<link name='finger'/><joint name='finger' type='continuous'><parent link='tip'/><child link='finger'/>\
     <mimic joint='elbow'/></joint></robot>";
+
+#[test]
+fn a_joint_has_as_many_columns_as_numbers() {
+    let urdf = "<robot name='r'><link name='base'/><link name='bob'/><joint name='ball' type='spherical'><parent link='base'/><child link='bob'/></joint></robot>";
+    let told =
+        |kind: &str, k: usize| against(urdf, &format!("[control]\nkind = \"{kind}\"\ncolumns = [\"ball[{k}]\"]\nrows = [[0, 1], [1, 1]]"));
+    let expected = "s.toml:3: control.columns[0]: found the column \"ball[3]\", expected a joint that moves, as elbow, or one of its numbers, as ball[0]";
+    assert_eq!((told("table", 2), told("table", 3)), (vec![], vec![expected.to_owned()]));
+    assert_eq!(told("table", 4).len(), 1);
+}
