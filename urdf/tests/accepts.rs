@@ -307,6 +307,19 @@ fn what_looks_wrong_is_a_warning_and_used_as_written() {
     assert_eq!((travel.lower, travel.upper), (4.0, 3.0));
 }
 
+/// Just above a turn, and from three turns in rad to three turns in degrees; bounds beyond stand for none.
+#[test]
+fn angles_are_taken_for_degrees_where_they_look_like_it() {
+    let told = |text: &str| accepted(text).warnings.iter().map(|w| w.kind).collect::<Vec<_>>();
+    let turned = |angle: &str| told(&crane("<child link=\"hook\"/>", &format!("<child link=\"hook\"/><origin rpy=\"0 {angle} 0\"/>")));
+    let bound = |upper: &str| told(&crane("<limit lower=\"-1\" upper=\"1\"", &format!("<limit lower=\"-1\" upper=\"{upper}\"")));
+    for angle in ["6.3", "-7", "1e4"] {
+        assert_eq!(turned(angle), [Kind::MoreThanATurn], "{angle}");
+    }
+    assert_eq!([bound("20"), bound("1080")], [[Kind::MoreThanATurn]; 2]);
+    assert_eq!([turned("6.28"), bound("19.9"), bound("1081"), bound("1e4")], [const { Vec::new() }; 4]);
+}
+
 #[test]
 fn mass_on_a_fixed_base_is_told_as_not_used() {
     let mass = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>";

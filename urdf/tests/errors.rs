@@ -169,6 +169,17 @@ fn a_ring_beside_the_tree_is_named() {
     assert!(error.found.contains("\"ab\"") && error.found.contains("\"ba\""), "{error}");
 }
 
+/// How many roots there are shows once the ring is gone.
+#[test]
+fn a_ring_beside_two_roots_is_the_one_error() {
+    let links: String = ["one", "two", "a", "b"].map(|name| format!("<link name='{name}'/>")).concat();
+    let joint = |[parent, child]: [&str; 2]| {
+        format!("<joint name='{parent}{child}' type='fixed'><parent link='{parent}'/><child link='{child}'/></joint>")
+    };
+    let error = only_error(&format!("<robot name='r'>{links}{}</robot>", [["a", "b"], ["b", "a"]].map(joint).concat()));
+    assert_eq!(error.kind, Kind::Ring, "{error}");
+}
+
 #[test]
 fn a_robot_that_is_a_ring_has_no_root() {
     let error =
