@@ -415,4 +415,20 @@ mod tests {
         assert_eq!((of(1.0, 0.0) / of(0.0, 0.1)).error, f64::INFINITY);
         assert!((1.0..1.0 + 1e-12).contains(&Scalar::sin_cos(of(3.0, 100.0)).0.radius));
     }
+
+    /// The change that an error makes is largest where the root is steepest.
+    #[test]
+    fn the_error_of_a_root_is_that_at_the_least_number_of_its_radius() {
+        let root = Running::<53, 0> { value: 1.0, radius: 0.9, error: 1e-10 }.sqrt();
+        let steepest = 1e-10 / (2.0 * libm::sqrt(0.1));
+        assert!(root.error >= steepest && root.error < 3.0 * steepest, "{root:?}");
+    }
+
+    /// Of two that are anywhere from −1 to 1, one may be meant and the other be taken.
+    #[test]
+    fn a_choice_that_is_not_certain_is_off_by_as_much_as_both_can_be_apart() {
+        let wide = Running::<53, 0>::given(0.0, 1.0);
+        let chosen = Running::select(wide.positive(), wide, wide);
+        assert!((1.0..1.001).contains(&chosen.radius) && (2.0..2.001).contains(&chosen.error), "{chosen:?}");
+    }
 }

@@ -53,4 +53,10 @@ mod tests {
             assert_eq!(is_positive_semidefinite(&leaning), size == 0.0, "{size}");
         }
     }
+
+    #[test]
+    fn a_mass_below_zero_is_forgiven_what_rounding_makes_of_it_and_no_more() {
+        let of = |least: f64| [&[1.0, 0.0, 0.0, 1.0, 0.0, 1.0], &[1.0, 0.0, 0.0, 1.0, 0.0, least][..], &[0.0; 9]].concat();
+        assert_eq!([0.0, -1e-10, -1e-8, -1e-5].map(|least| is_positive_semidefinite(&of(least))), [true, true, false, false]);
+    }
 }

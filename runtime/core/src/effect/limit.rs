@@ -27,3 +27,17 @@ impl Force for Law {
         S::from_f64(0.5) * p[2] * (below * below + above * above)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// However fast a body leaves, no stop pulls it.
+    #[test]
+    fn a_stop_pushes_and_never_pulls() {
+        let force = |q: f64, v: f64| Law::force(&[0.0, 1.0, 100.0, 1.0], q, v);
+        assert_eq!([0.5, -3.0, 3.0].map(|v| force(-0.25, v)), [12.5, 100.0, 0.0]);
+        assert_eq!([-0.5, 3.0, -3.0].map(|v| force(1.25, v)), [-12.5, -100.0, 0.0]);
+        assert_eq!([-3.0, 0.0, 3.0].map(|v| force(0.5, v)), [0.0; 3]);
+    }
+}

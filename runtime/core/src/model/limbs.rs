@@ -115,8 +115,8 @@ mod tests {
     use alloc::vec;
     use alloc::vec::Vec;
 
-    use crate::effect::Effects;
-    use crate::joint::{Angle, Coordinates, Joint};
+    use crate::effect::{EffectId, Effects, JointEffect};
+    use crate::joint::{Angle, Coordinates, Follow, Joint};
     use crate::model::{Body, Model, Rates};
     use crate::spatial::{Placement, Reference, SpatialInertia};
     use nalgebra::{Matrix3, Vector3};
@@ -178,6 +178,40 @@ mod tests {
         let mut model = tree(&[0, 1, 2, 1, 4]);
         model.bodies[5].coordinates.v = model.bodies[3].coordinates.v;
         assert_eq!(roots(&model, 2), []);
+    }
+
+    /// Whatever the others look like: what is outside may be the trunk, or another branch, to which all follow alike.
+    #[test]
+    fn a_branch_that_is_followed_from_outside_stands_alone() {
+        let mut model = tree(&[0, 1, 2, 1, 4]);
+        model.bodies[1].coordinates = model.bodies[3].coordinates;
+        assert_eq!(roots(&model, 2), []);
+        let mut model = tree(&[0, 1, 2, 1, 4, 1]);
+        assert_eq!(roots(&model, 2), [(vec![2, 4], 2)]);
+        model.bodies[3].coordinates = model.bodies[4].coordinates;
+        model.bodies[5].coordinates = model.bodies[6].coordinates;
+        assert_eq!(roots(&model, 2), []);
+    }
+
+    #[test]
+    fn another_effect_or_a_follower_within_makes_a_branch_stand_alone() {
+        let damped = |bodies: &[usize]| {
+            let mut model = tree(&[0, 1, 2, 1, 4]);
+            for &i in bodies {
+                model.bodies[i].effects.joint = vec![JointEffect { effect: EffectId::damping, freedom: 0, parameters: vec![i as f64] }];
+            }
+            roots(&model, 2)
+        };
+        assert_eq!((damped(&[3]), damped(&[3, 5])), (vec![], vec![(vec![2, 4], 2)]));
+        let followed = |bodies: &[usize]| {
+            let mut model = tree(&[0, 1, 2, 1, 4]);
+            for i in [3, 5] {
+                let mimic = bodies.contains(&i).then_some(Follow { multiplier: 2.0, offset: 0.5 });
+                model.bodies[i].coordinates = Coordinates { mimic, ..model.bodies[i - 1].coordinates };
+            }
+            roots(&model, 2)
+        };
+        assert_eq!((followed(&[3]), followed(&[3, 5])), (vec![], vec![(vec![2, 4], 2)]));
     }
 
     #[test]
