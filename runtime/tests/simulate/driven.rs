@@ -231,6 +231,19 @@ fn curves_know_the_time_of_their_slopes() {
     }
 }
 
+/// Of a force of fifth degree the way is of seventh, as the curve is.
+#[test]
+fn the_curve_of_dop853_is_of_order_seven() {
+    let mut growing = |t: f64, _: &[f64], _: &[f64], tau: &mut [f64]| tau[0] = t.powi(5);
+    let settings = Settings { output: Output::Every(0.1), ..stepping(IntegratorId::dop853, 1.0, 1.0) };
+    let motion = Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[0.0], &mut growing, &mut []).unwrap();
+    assert_eq!((motion.counts.steps, motion.len()), (1, 11));
+    for (k, t) in motion.t.iter().enumerate() {
+        let (q, v) = (motion.q[k] - t.powi(7) / 42.0, motion.v[k] - t.powi(6) / 6.0);
+        assert!(q.abs() < 1e-14 && v.abs() < 1e-14, "{t}: {q:e} {v:e}");
+    }
+}
+
 /// Records are where they were asked for: none twice, none left out, whatever rounding makes of the times.
 #[test]
 fn outputs_come_at_their_times() {
@@ -274,6 +287,53 @@ fn steps_keep_the_bounds_that_they_are_given() {
         let Err(SimulateError::StepTooSmall { t, step, joint, .. }) = run(1e-3, &mut jump) else { panic!("{id}") };
         assert!(t <= 0.05 && t > 0.04 && step < 1e-3 && joint.as_deref() == Some("joint"), "{id}: {t} {step} {joint:?}");
         assert_eq!(run(0.0, &mut jump), Ok(()), "{id}");
+    }
+}
+
+/// An end that is a rounding behind a step or a record is none of its own.
+#[test]
+fn what_rounding_leaves_before_the_end_is_no_step_and_no_record() {
+    let settings = Settings { output: Output::Every(0.1), ..stepping(IntegratorId::rk4, 0.3 + 1e-11, 0.1) };
+    let motion = free(&slider(), &settings, &[0.0], &[1.0]).unwrap();
+    assert_eq!((motion.counts.steps, motion.t.len(), motion.t[3]), (3, 4, 0.3 + 1e-11), "{:?}", motion.t);
+    let later = free(&slider(), &Settings { end: 0.3 + 1e-9, ..settings }, &[0.0], &[1.0]).unwrap();
+    assert_eq!((later.counts.steps, later.t.len()), (4, 5), "{:?}", later.t);
+}
+
+/// Kinks at 0.5 s and a moment later.
+struct Kinks;
+
+impl Control for Kinks {
+    fn torques(&mut self, _: f64, _: &[f64], _: &[f64], tau: &mut [f64]) {
+        tau[0] = 1.0;
+    }
+
+    fn next_kink(&self, t: f64) -> f64 {
+        [0.5, 0.5001].into_iter().find(|kink| *kink > t).unwrap_or(f64::INFINITY)
+    }
+}
+
+/// Steps that could be longer than half of what is left are halves, and one that a stretch is too short for says nothing about the next.
+#[test]
+fn steps_are_alike_where_stretches_are_not_whole_multiples_of_them() {
+    for id in [IntegratorId::dopri5, IntegratorId::dop853, IntegratorId::rodas4] {
+        let settings = Settings { first_step: Some(0.1), max_step: 0.1, ..to(id, 0.6, 1e-6) };
+        let mut held = Hold::new(NoTorque, 0.12).unwrap();
+        let counts = Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[1.0], &mut held, &mut []).unwrap().counts;
+        assert!(counts.steps == 10 && counts.smallest_step > 0.5 * counts.largest_step, "{id}: {counts:?}");
+        let settings = Settings { first_step: Some(0.25), max_step: 0.25, ..to(id, 1.5001, 1e-3) };
+        let counts = Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[0.0], &mut Kinks, &mut []).unwrap().counts;
+        assert!(counts.steps == 7 && counts.smallest_step < 2e-4, "{id}: {counts:?}");
+    }
+}
+
+/// From rest, where the state says nothing about its own size: a hundred of the steps of 1 µs that it was tried with.
+#[test]
+fn a_first_step_is_no_longer_than_a_hundred_trials() {
+    for id in [IntegratorId::dopri5, IntegratorId::dop853] {
+        let settings = Settings { output: Output::Steps, ..to(id, 1.0, 1e-6) };
+        let motion = Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[0.0], &mut Constant::new(vec![1.0]), &mut []).unwrap();
+        assert!((motion.t[1] - 1e-4).abs() < 1e-16, "{id}: {}", motion.t[1]);
     }
 }
 

@@ -195,6 +195,32 @@ fn a_pair_of_zeros_within_a_step_is_not_stepped_over() {
     }
 }
 
+/// In the middle between two of the places where a step is looked at, and so near to each other that only the least value leads to them.
+#[test]
+fn a_pair_of_zeros_is_found_wherever_it_is_in_a_step() {
+    let robot = slider();
+    for (middle, half) in [(0.4375, 0.01), (0.44, 0.001), (0.31, 1e-5)] {
+        let pair = Event::new("pair", move |t, _, _| (t - middle) * (t - middle) - half * half).direction(Direction::Either);
+        let mut simulation = Simulation::new(&robot, stepping(IntegratorId::rk4, 1.0, 1.0)).unwrap();
+        let motion = simulation.run(&[0.0], &[1.0], &mut NoTorque, &mut [pair]).unwrap();
+        let found: Vec<f64> = motion.events.iter().map(|hit| hit.t).collect();
+        assert!(found.len() == 2, "{middle}: {found:?}");
+        assert!((found[0] - (middle - half)).abs() < 1e-9 && (found[1] - (middle + half)).abs() < 1e-9, "{middle}: {found:?}");
+    }
+}
+
+/// What happens at one time again and again happens at many: pairs of maps are counted anew at each.
+#[test]
+fn two_maps_at_each_of_many_times_are_no_error() {
+    let map = |name| {
+        let keep = Action::Map(Box::new(|_: f64, _: &mut [f64], _: &mut [f64]| Ok(None)));
+        Event::new(name, |t: f64, _: &[f64], _: &[f64]| (100.0 * std::f64::consts::PI * t).cos()).action(keep)
+    };
+    let settings = stepping(IntegratorId::rk4, 1.2, 0.01);
+    let motion = Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[1.0], &mut NoTorque, &mut [map("one"), map("two")]).unwrap();
+    assert_eq!(motion.events.len(), 240);
+}
+
 #[test]
 fn a_body_that_slides_to_rest_sticks_when_friction_says() {
     let applied = Applied { effect: EffectId::friction, on: "joint".into(), at: Origin::default(), parameters: vec![2.0, 1e-3] };

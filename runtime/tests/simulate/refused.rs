@@ -118,6 +118,10 @@ fn a_period_that_a_motion_cannot_have_is_an_error_that_says_which_it_can() {
         told("period = 1e-8 cannot be used; it should be at least 3.6e-6 s, sixteen units of rounding of the time")
     );
     assert_eq!(refused(0.0, 2e-3), Ok(()));
+    // Just as many samples as there may be steps.
+    let just = Settings { max_steps: 10, ..stepping(IntegratorId::rk4, 1.0, 0.1) };
+    let motion = Simulation::new(&slider(), just).unwrap().run(&[0.0], &[0.0], &mut Hold::new(NoTorque, 0.1).unwrap(), &mut []);
+    assert_eq!(motion.map(|motion| motion.counts.steps), Ok(10));
 }
 
 #[test]
@@ -136,6 +140,18 @@ fn what_is_wrong_with_a_state_its_events_and_its_torques_is_said_at_once() {
         "tau has 2 numbers, expected 3".into(),
     ];
     assert_eq!(error.to_string().lines().collect::<Vec<_>>(), expected);
+}
+
+/// What rounding of six digits leaves of the norm is taken, and normalised.
+#[test]
+fn quaternions_have_norm_one_within_a_millionth() {
+    let started = |w: f64| free(&handle::Robot, &to(IntegratorId::dopri5, 0.1, 1e-6), &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, w], &[0.0; 6]);
+    for w in [1.0 + 1e-5, 1.0 - 1e-5, 0.0] {
+        let told = started(w).map(drop).unwrap_err();
+        let SimulateError::State(wrong) = &told else { panic!("{told}") };
+        assert!(matches!(wrong[..], [StateError::Quaternion { index: 3, norm, .. }] if norm == w), "{told}");
+    }
+    assert!([1.0 + 1e-7, 1.0 - 1e-7].into_iter().all(|w| started(w).unwrap().q_at(1)[6] == 1.0));
 }
 
 /// A coordinate's joint is found behind quaternions too.
