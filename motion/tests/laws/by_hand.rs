@@ -1,11 +1,11 @@
 //! Scenes against simulations that are put together by hand.
 
 use articulated::Dynamics;
-use articulated::simulate::{Constant, Event, IntegratorId, Output, Settings, Simulation, TorqueTable};
+use articulated::simulate::{Constant, Control, Dependence, Event, IntegratorId, Output, Settings, Simulation, TorqueTable};
 use articulated_core::algorithm::Workspace;
 
 use articulated_motion::{Begin, Drive, Watch, settings};
-use articulated_scene::{Controller, Series};
+use articulated_scene::{Aim, Controller, Series};
 
 use super::{ARM, CART, moved, stage};
 
@@ -94,6 +94,39 @@ fn a_table_out_of_order_is_refused() {
     ] {
         let told = told(times, rows).unwrap_err();
         assert!(told.contains(wrong), "{told}");
+    }
+}
+
+/// At a row the next kink is the next row, and behind the last there is none.
+#[test]
+fn every_row_of_a_table_is_a_kink() {
+    let stage = stage("", CART);
+    let series = Series { times: vec![0.25, 0.5, 1.0], rows: vec![vec![0.0], vec![1.0], vec![0.5]], hold: false };
+    let one = || vec![1.0];
+    for controller in
+        [Controller::Table(series.clone()), Controller::Pd { target: Aim::Moving(series), kp: one(), kd: one(), torque: one() }]
+    {
+        let drive = Drive::new(&stage.model, controller, None).unwrap();
+        let kinks = [-1.0, 0.0, 0.25, 0.3, 0.5, 0.75, 1.0, 2.0].map(|t| drive.next_kink(t));
+        assert_eq!(kinks, [0.25, 0.25, 0.5, 0.5, 1.0, 1.0, f64::INFINITY, f64::INFINITY]);
+    }
+}
+
+#[test]
+fn torques_depend_on_what_their_kind_says_and_on_nothing_while_they_are_held() {
+    let stage = stage("", CART);
+    let (one, series) = (|| vec![1.0], || Series { times: vec![0.0, 1.0], rows: vec![vec![0.0], vec![1.0]], hold: false });
+    let pd = |target| Controller::Pd { target, kp: one(), kd: one(), torque: one() };
+    for (controller, time, state) in [
+        (Controller::None, false, false),
+        (Controller::Torque(one()), false, false),
+        (Controller::Table(series()), true, false),
+        (pd(Aim::Still(one())), false, true),
+        (pd(Aim::Moving(series())), true, true),
+    ] {
+        let of = |period| Drive::new(&stage.model, controller.clone(), period).unwrap().depends_on();
+        assert_eq!(of(None), Dependence { time, state }, "{controller:?}");
+        assert_eq!(of(Some(0.1)), Dependence { time: false, state: false }, "{controller:?}");
     }
 }
 

@@ -59,6 +59,19 @@ fn a_robot_without_the_effects_or_the_gravity_of_the_scene_is_another() {
     }
 }
 
+/// More than any level of accuracy leaves of a torque, a thousandth, is another mass; less than that is not told.
+#[test]
+fn a_robot_of_another_mass_is_another() {
+    let stage = stage("simulation = { end = 0.01 }", CART);
+    let run = |mass: &str| {
+        let urdf = CART.replace("<mass value=\"2\"/>", &format!("<mass value=\"{mass}\"/>"));
+        let robot = articulated::load_bytes("cart.urdf", urdf.as_bytes(), articulated::Base::Fixed).unwrap();
+        stage.run(&robot, &stage.frame_names()).map(drop).map_err(|e| e.errors[0].fault.clone())
+    };
+    assert_eq!([run("2.0002"), run("1.9998")], [const { Ok(()) }; 2]);
+    assert!(["2.02", "1.98"].into_iter().all(|mass| matches!(run(mass), Err(Fault::Dynamics { .. }))));
+}
+
 /// A gain may be one for all that a joint has; a torque is not the same about every axis by chance.
 #[test]
 fn torques_of_a_ball_are_three() {
@@ -171,6 +184,21 @@ fn settings_that_cannot_be_used_are_told_together() {
     assert!(lines(&errors)[0].starts_with("s.toml: end = -1: "), "{errors}");
 }
 
+/// From the start on and before the end.
+#[test]
+fn a_ball_is_hit_while_the_robot_moves() {
+    let told = |time: &str| {
+        let ball = format!("impact = {{ link = 'cart', normal = [1, 0, 0], mass = 1, restitution = 1, time = {time} }}");
+        let stage = stage(&format!("simulation = {{ start = 0.5, end = 1.0 }}\n{ball}"), CART);
+        stage.check(&stage.settings().unwrap()).map_err(|e| e.to_string())
+    };
+    assert_eq!([told("0.5"), told("0.999")], [const { Ok(()) }; 2]);
+    for (time, found) in [("1", "1.0"), ("0.499", "0.499")] {
+        let expected = format!("s.toml:2: impact.time: found {found}, expected a time from 0.5 s on and before 1.0 s");
+        assert_eq!(told(time), Err(expected));
+    }
+}
+
 #[test]
 fn a_begin_that_does_not_fit_the_robot_is_refused() {
     let stage = stage("simulation = { end = 0.1 }", ARM);
@@ -198,4 +226,7 @@ fn a_start_beyond_its_limits_is_odd_and_used() {
     assert_eq!((beyond.joint.as_str(), beyond.found, beyond.lower, beyond.upper), ("shoulder", 1.75, -1.5, 1.5));
     let told = "s.toml: initial.q.shoulder: found 1.75, beyond its limits, expected -1.5 to 1.5; used as asked for";
     assert_eq!((beyond.to_string().as_str(), begin.q[0]), (told, 1.75));
+    // At a bound nothing is.
+    let beyond = |shoulder: f64, elbow: f64| stage.beyond(&[shoulder, elbow, 0.0, 0.0, 0.0, 1.0]).len();
+    assert_eq!([beyond(1.5, 0.3), beyond(-1.5, -2.0), beyond(1.5, 0.301), beyond(-1.501, -2.0)], [0, 0, 1, 1]);
 }

@@ -1,7 +1,7 @@
 //! What happens on the way, and how it reads.
 
 use articulated::simulate::Ended;
-use articulated_motion::{About, Ending, Outcome, Sort, Without};
+use articulated_motion::{About, Ending, Outcome, Sort, Watch, Without};
 use articulated_scene::Watched;
 
 use super::{ARM, CART, moved, stage, words};
@@ -94,6 +94,14 @@ fn a_ball_that_nothing_moves_towards_keeps_its_speed() {
 }
 
 #[test]
+fn who_is_as_fast_as_the_ball_does_not_hit_it() {
+    let scene = |speed: &str| BLOW.replace("ball = [0.6, 0.0, 0.0]", &format!("time = 0.25\nball_speed = {speed}"));
+    let [missed, hit] = ["3.0", "2.0"].map(|speed| moved(&stage(&scene(speed), CART)));
+    assert_eq!(words(&missed)[0], "cart is not moving towards the ball, which keeps 3.0000 m/s");
+    assert!(missed.ball.is_none() && hit.ball.is_some_and(|energy| energy > 0.0), "{missed:?} {hit:?}");
+}
+
+#[test]
 fn what_is_where_the_ball_is_at_the_start_hits_it_there() {
     let outcome = moved(&stage(&BLOW.replace("0.6", "0.0"), CART));
     assert_eq!((words(&outcome)[0], outcome.happenings.len()), ("cart hits the ball, which leaves at 4.3200 m/s", 2));
@@ -134,6 +142,18 @@ fn a_joint_that_follows_has_bounds_of_its_own() {
     let told = |x: f64| stage.beyond(&[x]).iter().map(ToString::to_string).collect::<Vec<_>>();
     assert_eq!(told(0.75), ["s.toml: initial.q.y: found -1.25, beyond its limits, expected -1 to 0.75; used as asked for"]);
     assert_eq!((told(0.25).len(), told(1.0).len()), (0, 2));
+}
+
+/// A joint that follows another zero times does not move: of its bounds and its friction there is nothing to look for, wherever it stands.
+#[test]
+fn a_joint_that_follows_and_stands_still_has_no_events() {
+    let follower = "<link name='b'/><joint name='y' type='prismatic'><parent link='rail'/><child link='b'/><axis xyz='1 0 0'/>
+        <limit lower='-1' upper='0.25' effort='1' velocity='1'/><mimic joint='slide' multiplier='0' offset='0.5'/></joint></robot>";
+    let scene = "effects = { friction = { y = { friction = 2.0, speed = 1e-4 } } }\nsimulation = { end = 0.1, events = ['stick_slip'] }";
+    let stage = stage(scene, &CART.replace("</robot>", follower));
+    let watch = Watch::new(&stage, &stage.model, &stage.frame_names()).unwrap();
+    assert_eq!(watch.without, [Without { file: "s.toml".into(), what: Watched::StickSlip, joint: None }]);
+    assert!(watch.events.is_empty() && stage.beyond(&[0.0]).is_empty());
 }
 
 #[test]
@@ -212,6 +232,18 @@ fn a_sphere_that_starts_with_its_centre_under_the_plane_is_told() {
     assert_eq!(of(0.0), Vec::<String>::new());
     let told = of(0.25);
     assert!(told.len() == 1 && told[0].contains("effects.contact.cart: found the centre of the sphere 0.25 m under the plane"), "{told:?}");
+}
+
+/// A normal is a direction; the height is counted in metres along it.
+#[test]
+fn how_far_a_sphere_is_under_the_plane_does_not_depend_on_the_length_of_the_normal() {
+    for normal in ["[0, 0, 1]", "[0, 0, 2]", "[0, 0, 0.1]"] {
+        let contact =
+            format!("radius = 0.1, stiffness = 1e3, damping = 0.1, friction = 0.5, normal = {normal}, height = 0.1, xyz = [0, 0, 0.09]");
+        let stage = stage(&format!("effects = {{ contact = {{ cart = {{ {contact} }} }} }}"), CART);
+        let [sunk] = &stage.sunk(&[0.0])[..] else { panic!("{normal}") };
+        assert!((sunk.depth - 0.01).abs() < 1e-15, "{normal}: {}", sunk.depth);
+    }
 }
 
 #[test]
