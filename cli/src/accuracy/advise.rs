@@ -85,6 +85,9 @@ mod tests {
         assert_eq!(level(1e-9).as_deref(), Some("f64"));
         assert_eq!(level(1e-15).as_deref(), Some("double_double"));
         assert_eq!(level(1e-30), None);
+        // As accurate as was wished for is enough.
+        let single = &report.functions[0].points.iter().find(|p| p.level == "f32").unwrap().relative;
+        assert_eq!(level(single.largest).as_deref(), Some("f32"));
         assert!(text(&report, 1e-30).contains("the most accurate is double_double"));
     }
 

@@ -319,4 +319,20 @@ mod tests {
             }
         }
     }
+
+    /// The axis of the second leans in the plane across the first, which is turned until that has a zero.
+    #[test]
+    fn a_joint_is_turned_by_the_angle_between_the_frames() {
+        assert!(base("ur5_like").joints.iter().all(|joint| joint.turned == 0.0));
+        let inertial = "<inertial><origin xyz='0.1 0.2 -0.1'/><mass value='1.5'/><inertia ixx='0.2' ixy='0.01' ixz='-0.02' iyy='0.3' iyz='0.03' izz='0.25'/></inertial>";
+        let links = ["base", "a", "b"].map(|name| format!("<link name='{name}'>{inertial}</link>")).concat();
+        let joints = [("first", "base", "a", "0 0 1"), ("second", "a", "b", "3 4 0")].map(|(name, parent, child, axis)| {
+            format!("<joint name='{name}' type='continuous'><parent link='{parent}'/><child link='{child}'/><axis xyz='{axis}'/></joint>")
+        });
+        let urdf = format!("<robot name='r'>{links}{}</robot>", joints.concat());
+        let turned = Base::of(&articulated::load_bytes("r.urdf", urdf.as_bytes(), Stand::Fixed).unwrap()).unwrap().joints[1].turned;
+        let leaning = 4.0_f64.atan2(3.0);
+        let expected = [leaning, leaning - std::f64::consts::FRAC_PI_2];
+        assert!(expected.iter().any(|angle| (turned - angle).abs() < 1e-14), "{turned}");
+    }
 }

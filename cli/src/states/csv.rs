@@ -168,4 +168,22 @@ mod tests {
         assert!(said(format!("p.{a}\n1\n")).contains("expected one of q"));
         assert!(said(String::new()).contains("no state"));
     }
+
+    #[test]
+    fn a_ball_has_four_numbers_of_q_and_three_of_v() {
+        let urdf = "<robot name='r'><link name='base'/><link name='bob'/>
+            <joint name='ball' type='spherical'><parent link='base'/><child link='bob'/></joint></robot>";
+        let model = articulated::load_bytes("r.urdf", urdf.as_bytes(), articulated_core::description::Base::Fixed).unwrap();
+        let told = |titles: &str| {
+            let row = vec!["0.5"; titles.split(',').count()].join(",");
+            read(format!("{titles}\n{row}\n").as_bytes(), &model).map(|found| found.states).map_err(|told| told.join("\n"))
+        };
+        let all = "q.ball[0],q.ball[1],q.ball[2],q.ball[3],v.ball[0],v.ball[1],v.ball[2]";
+        assert_eq!(told(all).unwrap()[0].get(Argument::Q), Some(&[0.5; 4][..]));
+        for (title, count, name) in [("q.ball[4]", 4, "q.ball"), ("q.ball", 4, "q.ball"), ("v.ball[3]", 3, "v.ball")] {
+            let expected = format!("column \"{title}\": this joint has {count} numbers here, expected `{name}[0]` and so on");
+            let found = told(&format!("{all},{title}")).unwrap_err();
+            assert!(found.contains(&expected), "{found}");
+        }
+    }
 }

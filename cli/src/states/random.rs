@@ -101,4 +101,13 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn a_quaternion_of_zeros_does_not_turn() {
+        let normal = |mut q: [f64; 4]| {
+            normalise(&mut q);
+            q
+        };
+        assert_eq!([normal([0.0; 4]), normal([0.0, 3.0, 0.0, 4.0])], [[0.0, 0.0, 0.0, 1.0], [0.0, 0.6, 0.0, 0.8]]);
+    }
 }

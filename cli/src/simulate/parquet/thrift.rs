@@ -117,5 +117,8 @@ mod tests {
         assert_eq!(bytes, [0x15, 1, 0x26, 2, 0x18, 2, b'a', b'b', 0x2c, 0x15, 0xac, 0x02, 0, 0x19, 0x25, 0, 2, 0]);
         let long = Struct::default().texts(1, &[""; 20]).end();
         assert_eq!(long[..3], [0x19, 0xf8, 20]);
+        // A length from 15 on has bytes of its own.
+        let list = |length: usize| Struct::default().i32s(1, &vec![0; length]).end();
+        assert_eq!((&list(14)[..3], &list(15)[..4]), (&[0x19, 0xe5, 0][..], &[0x19, 0xf5, 15, 0][..]));
     }
 }
