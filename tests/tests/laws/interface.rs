@@ -235,7 +235,8 @@ fn a_lock_has_as_many_coordinates_as_the_joint_all_finite() {
         let joint = Joint { locked: Some(at.to_vec()), ..joint("a", kind, 0, 1) };
         Model::new(&tree(2, vec![joint]), Base::Fixed)
     };
-    for (kind, at) in [(Revolute, &[0.0, 0.0][..]), (Revolute, &[]), (Planar, &[0.1]), (Spherical, &[0.0; 3]), (Revolute, &[f64::NAN])] {
+    let numbers = [&[0.0, 0.0][..], &[], &[f64::NAN], &[f64::INFINITY], &[f64::NEG_INFINITY]].map(|at| (Revolute, at));
+    for (kind, at) in numbers.into_iter().chain([(Planar, &[0.1][..]), (Spherical, &[0.0; 3])]) {
         let found = locked(kind, at);
         let message = found.as_ref().map_or_else(ToString::to_string, |_| String::new());
         assert!(message.contains("\"a\"") && message.contains(kind.name()), "{message}");

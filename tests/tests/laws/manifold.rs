@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use articulated_core::Scalar;
-use articulated_core::algorithm::neutral;
+use articulated_core::algorithm::{Workspace, neutral, random_configuration};
 use articulated_core::description::{JointKind, Limit};
 use articulated_core::dual::Dual;
 use articulated_core::model::{JointInfo, Model};
@@ -210,6 +210,20 @@ fn a_limit_that_is_open_on_one_side_is_kept_on_the_other() {
         assert_eq!(drawn(0.0), expected[0]);
         assert!((drawn(1.0 - U) - expected[1]).abs() <= 4.0 * U);
     }
+}
+
+/// A metre to either side along both axes, and half a turn.
+#[test]
+fn a_planar_joint_without_limits_is_drawn_in_metres_and_turns() {
+    let text = r#"<robot name="r"><link name="base"/><link name="puck"/>
+        <joint name="slide" type="planar"><parent link="base"/><child link="puck"/><axis xyz="0 0 1"/></joint></robot>"#;
+    let model = Model::new(&articulated_tests::case::read(text), articulated_core::description::Base::Fixed).unwrap();
+    let drawn = |u: f64| {
+        let mut q = [0.0; 3];
+        random_configuration(&model, &mut Workspace::new(&model), &[u; 3], &mut q);
+        q
+    };
+    assert_eq!([0.0, 0.5, 1.0].map(drawn), [[-1.0, -1.0, -PI], [0.0; 3], [1.0, 1.0, PI]]);
 }
 
 /// The textbook has the same rule, of bounds that are open or the wrong way round.
