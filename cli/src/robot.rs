@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use articulated_codegen::{Appended, Error, Generated, Options, Request, Sines, choose_frames, generate, nearest};
+use articulated_codegen::{Appended, Error, Generated, MOST_FREEDOMS, Options, Request, Sines, choose_frames, generate, nearest};
 use articulated_core::description::Base;
 use articulated_core::model::Model;
 use articulated_urdf::{MOST_BYTES, Problem, Reading, read_at_most};
@@ -199,6 +199,14 @@ impl Robot {
             }
         }
     }
+}
+
+/// Refuses a robot for whose mass matrix, which every workspace has, there is no room.
+pub(crate) fn has_room(file: &str, nv: usize) -> Result<(), Failure> {
+    if nv <= MOST_FREEDOMS {
+        return Ok(());
+    }
+    Err(Failure::input([format!("{file}: found {nv} degrees of freedom, expected at most {MOST_FREEDOMS} to compute with")]))
 }
 
 /// What a report says of a scene's parameters.

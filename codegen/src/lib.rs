@@ -104,7 +104,7 @@ impl Generated {
 }
 
 /// Degrees of freedom from which on no code is written: a workspace has room for a matrix of their number squared.
-const MOST_FREEDOMS: usize = 10_000;
+pub const MOST_FREEDOMS: usize = 10_000;
 
 /// What can be refused of a request, settled.
 struct Plan {

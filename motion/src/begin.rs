@@ -71,6 +71,9 @@ pub struct Sunk {
 impl Stage {
     /// Spheres whose centres are under their planes at the coordinates q `[nq]`.
     pub fn sunk(&self, q: &[f64]) -> Vec<Sunk> {
+        if self.effects_of(EffectId::contact).next().is_none() {
+            return Vec::new();
+        }
         let mut places = vec![0.0; 12 * self.model.frames.len()];
         if self.model.placements(&mut self.model.workspace(), q, &mut places).is_err() {
             return Vec::new();

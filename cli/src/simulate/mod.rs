@@ -27,6 +27,7 @@ use crate::compiled::Rustc;
 use crate::console::{self, Progress};
 use crate::failure::{Failure, INPUT, OK};
 use crate::output;
+use crate::robot::has_room;
 use arguments::SimulateArguments;
 use motion::Motion;
 use page::Setting;
@@ -38,6 +39,7 @@ use summary::Summary;
 pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, Failure> {
     let Some(scene) = &arguments.scene else { return all::run(arguments, format).map(|()| OK) };
     let stage = Stage::find(scene)?;
+    has_room(&stage.scene.file, stage.model.nv)?;
     let settings = settings::of(&stage, arguments);
     let (settings, begin) = Failure::both(settings, motion::begin(&stage))?;
     if let Some(file) = &arguments.against {
