@@ -63,13 +63,13 @@ fn a_robot_without_the_effects_or_the_gravity_of_the_scene_is_another() {
 #[test]
 fn a_robot_of_another_mass_is_another() {
     let stage = stage("simulation = { end = 0.01 }", CART);
-    let run = |mass: &str| {
+    let fault = |mass: &str| {
         let urdf = CART.replace("<mass value=\"2\"/>", &format!("<mass value=\"{mass}\"/>"));
         let robot = articulated::load_bytes("cart.urdf", urdf.as_bytes(), articulated::Base::Fixed).unwrap();
-        stage.run(&robot, &stage.frame_names()).map(drop).map_err(|e| e.errors[0].fault.clone())
+        stage.run(&robot, &stage.frame_names()).err().map(|e| e.errors[0].fault.clone())
     };
-    assert_eq!([run("2.0002"), run("1.9998")], [const { Ok(()) }; 2]);
-    assert!(["2.02", "1.98"].into_iter().all(|mass| matches!(run(mass), Err(Fault::Dynamics { .. }))));
+    assert_eq!([fault("2.0002"), fault("1.9998")], [None, None]);
+    assert!(["2.02", "1.98"].into_iter().all(|mass| matches!(fault(mass), Some(Fault::Dynamics { .. }))));
 }
 
 /// A gain may be one for all that a joint has; a torque is not the same about every axis by chance.
