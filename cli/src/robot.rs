@@ -134,6 +134,13 @@ impl Robot {
 
     /// As [`Robot::model`], with a frame for every link.
     pub(crate) fn whole_model(&self, reading: &Reading) -> Result<Model<f64>, Failure> {
+        let model = self.model_of_any_size(reading)?;
+        has_room(&self.file, model.nv)?;
+        Ok(model)
+    }
+
+    /// The same for who does not compute with it.
+    pub(crate) fn model_of_any_size(&self, reading: &Reading) -> Result<Model<f64>, Failure> {
         Ok(articulated_codegen::model(&self.request(&[]), &reading.description)?)
     }
 

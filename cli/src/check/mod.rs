@@ -53,7 +53,7 @@ fn examine(robot: &Robot, functions: &[String]) -> Report {
 }
 
 fn describe(robot: &Robot, reading: &Reading, report: &mut Report) {
-    match robot.whole_model(reading) {
+    match robot.model_of_any_size(reading) {
         Ok(model) => {
             report.describe(&reading.description, &model);
             let request = robot.whole_request(&robot.options.functions);

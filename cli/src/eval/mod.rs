@@ -14,7 +14,7 @@ use crate::compiled::{CompileError, Compiled, Rustc, Target};
 use crate::console;
 use crate::failure::{Failure, OK};
 use crate::names;
-use crate::robot::{Robot, has_room, note_of_parameters, read_bytes};
+use crate::robot::{Robot, note_of_parameters, read_bytes};
 use crate::states::{self, State};
 use crate::table::counted;
 use report::{Difference, FunctionReport, Outcome, Report};
@@ -29,7 +29,6 @@ pub(crate) fn run(arguments: &EvalArguments, format: Format) -> Result<u8, Failu
     let reading = robot.read()?;
     robot.warn_of(reading.warnings.iter().chain(&reading.snapped));
     let model = robot.model(&reading)?;
-    has_room(&robot.file, model.nv)?;
     let names = names::flat(&arguments.function);
     let functions = functions(&names);
     let states = read_states(&arguments.states, &model, &functions)?;

@@ -305,3 +305,25 @@ fn one_standard_input_is_not_two_files() {
     let ended = run_with(&["eval", "-", "--function", "mass_matrix", "--states", "-"], urdf.as_bytes());
     assert_eq!((ended.status, ended.err.as_str()), (1, "error: -: the standard input is another file of this command already\n"));
 }
+
+/// A workspace has room for a matrix of the number of degrees of freedom squared.
+#[test]
+fn a_robot_that_no_matrix_fits_is_refused() {
+    let link = |k: usize| {
+        format!("<link name='l{k}'/><joint name='j{k}' type='continuous'><parent link='l{}'/><child link='l{k}'/></joint>", k - 1)
+    };
+    let urdf = format!("<robot name='long'><link name='l0'/>{}</robot>", (1..=10_001).map(link).collect::<String>());
+    let file = File::new("long.urdf", urdf.as_bytes());
+    let scene = File::new("long.toml", format!("urdf = {:?}\nsimulation = {{ end = 0.1 }}", file.name()).as_bytes());
+    let states = ["--function", "gravity_torque", "--generic", "--states", "-"];
+    let words = [&["eval", file.name()][..], &states].concat();
+    for words in [&words[..], &["stress", file.name()], &["functions", file.name()], &["simulate", scene.name()], &["check", scene.name()]]
+    {
+        let ended = run(words);
+        let told = format!("{}{}", ended.out, ended.err);
+        assert!(
+            ended.status == 1 && told.contains("found 10001 degrees of freedom, expected at most 10000 to compute with"),
+            "{words:?}: {told}"
+        );
+    }
+}
