@@ -7,7 +7,7 @@
 //! hangs on a floating joint, its inertial frame moves with that joint's body.
 
 use super::Workspace;
-use super::workspace::CommonState;
+use super::workspace::{Column, CommonState};
 use crate::joint::{Joint, JointLaw};
 use crate::model::{Body, Model};
 use crate::spatial::{CoriolisInertia, Matrix3, Placement, Twist, Vector3, Wrench, rotate};
@@ -142,6 +142,23 @@ pub(super) fn forces<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
     for i in model.outward() {
         let state = &mut ws.common[i];
         state.force = state.inertia.apply(&state.acceleration) + state.coriolis.wrench(state.twist.angular);
+    }
+}
+
+/// Visits the columns on the way from body `i` to the base, each with how far a point is from the origin that the column is about: the point is `from` away from that of body `i`.
+#[inline(always)]
+pub(super) fn on_the_way<S: Scalar>(
+    model: &Model<S>,
+    ws: &Workspace<S>,
+    i: usize,
+    from: Vector3<S>,
+    mut visit: impl FnMut(&Column<S>, Vector3<S>),
+) {
+    let (mut j, mut d) = (i, from);
+    while j != 0 {
+        ws.columns_of(j).for_each(|c| visit(&ws.columns[c], d));
+        d += ws.common[j].shift;
+        j = model.bodies[j].parent;
     }
 }
 

@@ -12,7 +12,7 @@
 //! with the composites of k's body. Forward dynamics: Carpentier & Mansard, *RSS* 2018: ∂a = −M⁻¹ ∂(inverse dynamics at a).
 
 use super::Workspace;
-use super::common::{Axes, accelerations, coriolis, forces, inertias, positions, twists};
+use super::common::{Axes, accelerations, coriolis, forces, inertias, on_the_way, positions, twists};
 use super::crba::mass_matrix_in_common_axes;
 use super::effects;
 use super::ltdl::{factor, inverse, solve, solve_rows, way};
@@ -336,7 +336,7 @@ fn external<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], wrenche
     let mut frame = model.frames.iter().filter(|f| f.body != 0);
     wrenches::each(model, ws, q, wrenches, |ws, body, w| {
         let turn = ws.common[body].rotation;
-        let w = Wrench { moment: rotate(&turn, w.moment), force: rotate(&turn, w.force) };
+        let w = w.turned(&turn);
         ws.common[body].force = ws.common[body].force - w;
         let offset = frame.next().map_or_else(Vector3::zeros, |f| rotate(&turn, f.placement.position));
         if reference != Reference::Body {
@@ -348,19 +348,12 @@ fn external<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], wrenche
 /// For each pair (l, k) of columns on the way from `body` to the base, ∂τ_l/∂q_k −= S_lᵀ δ_k, with δ_k what a unit step of k does to the wrench, less what it
 /// would do if the wrench turned with the body, S_k ×* w. In space the wrench stays as it is, but for its moment if it moves along with the point at `offset`.
 fn put_right<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, body: usize, w: &Wrench<S>, offset: Option<Vector3<S>>, by_q: &mut [S]) {
-    let on_the_way = |visit: &mut dyn FnMut(usize, Twist<S>)| {
-        let (mut j, mut d) = (body, Vector3::zeros());
-        while j != 0 {
-            ws.columns_of(j).for_each(|c| visit(ws.columns[c].at, ws.columns[c].axis.at(d)));
-            d += ws.common[j].shift;
-            j = model.bodies[j].parent;
-        }
-    };
-    on_the_way(&mut |k, axis| {
+    on_the_way(model, ws, body, Vector3::zeros(), |column, d| {
+        let (k, axis) = (column.at, column.axis.at(d));
         let mut change = Wrench::zero() - axis.cross_wrench(w);
         if let Some(offset) = offset {
             change.moment += axis.at(offset).linear.cross(&w.force);
         }
-        on_the_way(&mut |l, other| by_q[l * model.nv + k] -= change.power(&other));
+        on_the_way(model, ws, body, Vector3::zeros(), |l, d| by_q[l.at * model.nv + k] -= change.power(&l.axis.at(d)));
     });
 }

@@ -4,10 +4,11 @@
 //! the base, taken at another point and turned. Lynch & Park 2017, §5.1; Featherstone 2008, §2.9 and §2.11.
 
 use super::Workspace;
-use super::common::{Axes, accelerations, positions, twists};
+use super::common::{Axes, accelerations, on_the_way, positions, twists};
+use super::workspace::Column;
 use crate::Scalar;
 use crate::model::{Frame, Model};
-use crate::spatial::{Placement, Reference, Twist, Vector3, rotate_back};
+use crate::spatial::{Placement, Reference, Twist, Vector3};
 
 macro_rules! in_three_references {
     ($($(#[$doc:meta])* $name:ident, $body:ident, $world:ident, $aligned:ident, ($($argument:ident),*);)*) => {$(
@@ -84,10 +85,7 @@ impl<S: Scalar> Place<S> {
         match reference {
             Reference::WorldAligned => x,
             Reference::World => x.at(-self.frame.position),
-            Reference::Body => {
-                let back = |v| rotate_back(&self.frame.rotation, v);
-                Twist { angular: back(x.angular), linear: back(x.linear) }
-            }
+            Reference::Body => x.turned_back(&self.frame.rotation),
         }
     }
 }
@@ -143,7 +141,7 @@ fn frame_jacobians<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, reference
 /// The Jacobian of one frame, `[6][nv]`; after [`positions`] in world axes.
 pub(super) fn jacobian<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, frame: &Frame<S>, reference: Reference, out: &mut [S]) {
     let place = Place::new(ws, frame);
-    columns(model, ws, frame.body, out, |c, d| place.refer(ws.columns[c].axis.at(d + place.offset), reference));
+    columns(model, ws, frame.body, out, |c, d| place.refer(c.axis.at(d + place.offset), reference));
 }
 
 fn frame_jacobian_rates<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, reference: Reference, q: &[S], v: &[S], out: &mut [S]) {
@@ -153,7 +151,7 @@ fn frame_jacobian_rates<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, refe
         let place = Place::new(ws, frame);
         let twist = twist_of(ws, frame, &place);
         columns(model, ws, frame.body, out, |c, d| {
-            let (axis, mut rate) = (ws.columns[c].axis.at(d + place.offset), ws.columns[c].rate.at(d + place.offset));
+            let (axis, mut rate) = (c.axis.at(d + place.offset), c.rate.at(d + place.offset));
             match reference {
                 Reference::World => {}
                 // The point moves: d/dt (s_v + s_ω × (p − o)) has s_ω × ṗ besides.
@@ -167,19 +165,19 @@ fn frame_jacobian_rates<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, refe
 }
 
 /// Fills `[6][nv]` with `column(c, d)` for every column c on the way from `body` to the base, d being the origin of `body` from that of the column's body.
-fn columns<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, body: usize, out: &mut [S], column: impl Fn(usize, Vector3<S>) -> Twist<S>) {
+fn columns<S: Scalar>(
+    model: &Model<S>,
+    ws: &Workspace<S>,
+    body: usize,
+    out: &mut [S],
+    column: impl Fn(&Column<S>, Vector3<S>) -> Twist<S>,
+) {
     out.fill(S::zero());
-    let (mut j, mut d) = (body, Vector3::zeros());
-    while j != 0 {
-        for c in ws.columns_of(j) {
-            let at = ws.columns[c].at;
-            for (row, x) in column(c, d).to_array().into_iter().enumerate() {
-                out[row * model.nv + at] += x;
-            }
+    on_the_way(model, ws, body, Vector3::zeros(), |c, d| {
+        for (row, x) in column(c, d).to_array().into_iter().enumerate() {
+            out[row * model.nv + c.at] += x;
         }
-        d += ws.common[j].shift;
-        j = model.bodies[j].parent;
-    }
+    });
 }
 
 /// ∂(placements)/∂q in the tangent space: for each of the twelve numbers of a frame a row.
@@ -194,18 +192,13 @@ pub fn placement_derivatives<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>,
     out.fill(S::zero());
     for (frame, out) in model.frames.iter().zip(out.chunks_exact_mut((12 * nv).max(1))) {
         let place = Place::new(ws, frame);
-        let (mut j, mut d) = (frame.body, place.offset);
-        while j != 0 {
-            for c in ws.columns_of(j) {
-                let (at, twist) = (ws.columns[c].at, ws.columns[c].axis.at(d));
-                for k in 0..3 {
-                    let turned = twist.angular.cross(&place.frame.rotation.column(k).into_owned());
-                    (0..3).for_each(|row| out[(3 * row + k) * nv + at] += turned[row]);
-                    out[(9 + k) * nv + at] += twist.linear[k];
-                }
+        on_the_way(model, ws, frame.body, place.offset, |column, d| {
+            let (at, twist) = (column.at, column.axis.at(d));
+            for k in 0..3 {
+                let turned = twist.angular.cross(&place.frame.rotation.column(k).into_owned());
+                (0..3).for_each(|row| out[(3 * row + k) * nv + at] += turned[row]);
+                out[(9 + k) * nv + at] += twist.linear[k];
             }
-            d += ws.common[j].shift;
-            j = model.bodies[j].parent;
-        }
+        });
     }
 }

@@ -140,8 +140,7 @@ fn generalised<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &
 fn at_the_roots<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, point: Vector3<S>) -> Wrench<S> {
     let one = |i: usize| {
         let (wrench, state) = (&ws.bodies[i].wrench, &ws.common[i]);
-        let turned = Wrench { moment: rotate(&state.rotation, wrench.moment), force: rotate(&state.rotation, wrench.force) };
-        turned.shifted(state.position - point)
+        wrench.turned(&state.rotation).shifted(state.position - point)
     };
     model.outward().filter(|&i| model.bodies[i].parent == 0).fold(Wrench::zero(), |sum, i| sum + one(i))
 }

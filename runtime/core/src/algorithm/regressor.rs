@@ -5,7 +5,7 @@
 //! *IEEE ICRA* 1988, 1026–1031.
 
 use super::Workspace;
-use super::common::{Axes, accelerations, positions, twists};
+use super::common::{Axes, accelerations, on_the_way, positions, twists};
 use crate::Scalar;
 use crate::model::Model;
 use crate::spatial::{Matrix3, Twist, Vector3, rate_matrix, rotate_back};
@@ -31,18 +31,11 @@ pub fn torque_regressor<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &
         let u = rate_matrix(back(state.twist.angular), back(state.acceleration.angular));
         // The true acceleration of the origin: spatial acceleration + ω × v.
         let acceleration = back(state.acceleration.linear + state.twist.angular.cross(&state.twist.linear));
-        let (mut j, mut d) = (i, Vector3::zeros());
-        while j != 0 {
-            for l in ws.columns_of(j) {
-                let axis = ws.columns[l].axis.at(d);
-                let axis = Twist { angular: back(axis.angular), linear: back(axis.linear) };
-                let entries = entries(&axis, &acceleration, &u);
-                let at = ws.columns[l].at * width + link * PARAMETERS;
-                out[at..at + PARAMETERS].iter_mut().zip(entries).for_each(|(out, x)| *out += x);
-            }
-            d += ws.common[j].shift;
-            j = model.bodies[j].parent;
-        }
+        on_the_way(model, ws, i, Vector3::zeros(), |column, d| {
+            let entries = entries(&column.axis.at(d).turned_back(&turn), &acceleration, &u);
+            let at = column.at * width + link * PARAMETERS;
+            out[at..at + PARAMETERS].iter_mut().zip(entries).for_each(|(out, x)| *out += x);
+        });
     }
 }
 
@@ -73,7 +66,7 @@ pub fn kinetic_energy_regressor<S: Scalar>(model: &Model<S>, ws: &mut Workspace<
     let half = S::from_f64(0.5);
     for (i, out) in model.links().zip(out.chunks_exact_mut(PARAMETERS)) {
         let turn = turn(model, ws, i);
-        let (w, v) = (rotate_back(&turn, ws.common[i].twist.angular), rotate_back(&turn, ws.common[i].twist.linear));
+        let Twist { angular: w, linear: v } = ws.common[i].twist.turned_back(&turn);
         // T = ½ m v² + v·(ω × h) + ½ ωᵀ I ω
         let first = v.cross(&w);
         out.copy_from_slice(&[

@@ -10,7 +10,7 @@ use super::effects::{self, World};
 use super::{Workspace, wrenches};
 use crate::joint::{JointLaw, Mount};
 use crate::model::{Body, Model, Rates};
-use crate::spatial::{Motion, Wrench, rate_matrix, rates_about, rotate, rotate_back};
+use crate::spatial::{Motion, rate_matrix, rates_about, rotate};
 use crate::{Scalar, with_pose};
 
 /// τ = M(q)·a + h(q, v), gravity included.
@@ -113,9 +113,7 @@ pub fn joint_wrenches<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S
     ws.row = tau;
     for (i, out) in model.links().zip(out.chunks_exact_mut(6)) {
         if let Some(link) = &model.bodies[i].link {
-            let wrench = &ws.bodies[i].wrench;
-            let in_link = Wrench { moment: rotate_back(link, wrench.moment), force: rotate_back(link, wrench.force) };
-            out.copy_from_slice(&in_link.to_array());
+            out.copy_from_slice(&ws.bodies[i].wrench.turned_back(link).to_array());
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::Workspace;
 use crate::joint::JointLaw;
 use crate::model::Model;
-use crate::spatial::{Reference, Vector3, Wrench, rotate, rotate_back};
+use crate::spatial::{Reference, Vector3, Wrench};
 use crate::{Scalar, with_pose};
 
 /// The wrenches of `[frames][6]` one by one, as (body, wrench on it in its axes about its origin), added up by `add`; none for an empty slice. Wrenches on the base are
@@ -24,15 +24,11 @@ pub(super) fn each<S: Scalar>(
     for (frame, w) in model.frames.iter().zip(wrenches.chunks_exact(6)).filter(|(f, _)| f.body != 0) {
         let given = Wrench { moment: Vector3::new(w[0], w[1], w[2]), force: Vector3::new(w[3], w[4], w[5]) };
         let x_wb = ws.placements[frame.body];
-        let back = |w: Wrench<S>| Wrench { moment: rotate_back(&x_wb.rotation, w.moment), force: rotate_back(&x_wb.rotation, w.force) };
         let on_body = match model.wrench_reference {
-            Reference::Body => {
-                let turn = &frame.placement.rotation;
-                Wrench { moment: rotate(turn, given.moment), force: rotate(turn, given.force) }.shifted(frame.placement.position)
-            }
-            Reference::WorldAligned => back(given).shifted(frame.placement.position),
+            Reference::Body => given.turned(&frame.placement.rotation).shifted(frame.placement.position),
+            Reference::WorldAligned => given.turned_back(&x_wb.rotation).shifted(frame.placement.position),
             // The moment about the body's origin p is that about the world frame's, less p × f.
-            Reference::World => back(given.shifted(-x_wb.position)),
+            Reference::World => given.shifted(-x_wb.position).turned_back(&x_wb.rotation),
         };
         add(ws, frame.body, &on_body);
     }

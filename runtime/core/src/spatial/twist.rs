@@ -1,8 +1,8 @@
 //! Twists.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
-use super::Wrench;
+use super::{Wrench, rotate, rotate_back};
 use crate::Scalar;
 
 /// A velocity [ω; v] of a body: angular velocity, rad/s, and velocity of the frame's origin, m/s, in axes of that frame.
@@ -38,6 +38,20 @@ impl<S: Scalar> Twist<S> {
     #[inline(always)]
     pub fn cross_wrench(&self, f: &Wrench<S>) -> Wrench<S> {
         Wrench { moment: self.angular.cross(&f.moment) + self.linear.cross(&f.force), force: self.angular.cross(&f.force) }
+    }
+
+    /// The same in other axes, to which `turn` takes vectors: R times each of both.
+    #[inline(always)]
+    #[must_use]
+    pub fn turned(&self, turn: &Matrix3<S>) -> Self {
+        Self { angular: rotate(turn, self.angular), linear: rotate(turn, self.linear) }
+    }
+
+    /// The same in axes from which `turn` takes vectors to those it is in: Rᵀ times each of both.
+    #[inline(always)]
+    #[must_use]
+    pub fn turned_back(&self, turn: &Matrix3<S>) -> Self {
+        Self { angular: rotate_back(turn, self.angular), linear: rotate_back(turn, self.linear) }
     }
 
     /// The twist times a number.

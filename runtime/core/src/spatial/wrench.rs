@@ -1,8 +1,8 @@
 //! Wrenches.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
-use super::Twist;
+use super::{Twist, rotate, rotate_back};
 use crate::Scalar;
 
 /// A force [m; f] on a body: moment about the frame's origin, N·m, and force, N, in axes of that frame.
@@ -36,6 +36,20 @@ impl<S: Scalar> Wrench<S> {
     #[must_use]
     pub fn shifted(&self, d: Vector3<S>) -> Self {
         Self { moment: self.moment + d.cross(&self.force), force: self.force }
+    }
+
+    /// The same in other axes, to which `turn` takes vectors: R times each of both.
+    #[inline(always)]
+    #[must_use]
+    pub fn turned(&self, turn: &Matrix3<S>) -> Self {
+        Self { moment: rotate(turn, self.moment), force: rotate(turn, self.force) }
+    }
+
+    /// The same in axes from which `turn` takes vectors to those it is in: Rᵀ times each of both.
+    #[inline(always)]
+    #[must_use]
+    pub fn turned_back(&self, turn: &Matrix3<S>) -> Self {
+        Self { moment: rotate_back(turn, self.moment), force: rotate_back(turn, self.force) }
     }
 
     /// The wrench times a number.

@@ -2,12 +2,12 @@
 
 use super::{World, any_on_bodies, on_body, station};
 use crate::algorithm::Workspace;
-use crate::algorithm::common::{Axes, positions};
+use crate::algorithm::common::{Axes, on_the_way, positions};
 use crate::algorithm::wrenches::place_bodies;
 use crate::effect::Law;
 use crate::joint::{JointLaw, Mount};
 use crate::model::Model;
-use crate::spatial::{ArticulatedInertia, Matrix3, Twist, Vector3, Wrench, rotate, rotate_back};
+use crate::spatial::{ArticulatedInertia, Matrix3, Twist, Vector3, Wrench, rotate_back};
 use crate::{Scalar, with_pose};
 
 /// Twists of all bodies in their own axes, into the common states; poses, origins and angular velocities are known.
@@ -127,23 +127,5 @@ pub(in crate::algorithm) fn add_inertia<S: Scalar>(model: &Model<S>, ws: &mut Wo
 /// The columns of body `i`'s Jacobian that are not zero, in its axes about its origin, each with its place in v.
 fn columns<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, mut visit: impl FnMut(usize, Twist<S>)) {
     let turn = &ws.common[i].rotation;
-    let (mut j, mut d) = (i, Vector3::zeros());
-    while j != 0 {
-        for c in ws.columns_of(j) {
-            let axis = ws.columns[c].axis.at(d);
-            visit(ws.columns[c].at, Twist { angular: rotate_back(turn, axis.angular), linear: rotate_back(turn, axis.linear) });
-        }
-        d += ws.common[j].shift;
-        j = model.bodies[j].parent;
-    }
-}
-
-/// An inertia in axes of the body, in those that the body's are turned to by `turn`.
-pub(super) fn in_common_axes<S: Scalar>(inertia: &ArticulatedInertia<S>, turn: &Matrix3<S>) -> ArticulatedInertia<S> {
-    inertia.turned(turn)
-}
-
-/// A wrench in axes of the body, likewise.
-pub(super) fn turned<S: Scalar>(w: &Wrench<S>, turn: &Matrix3<S>) -> Wrench<S> {
-    Wrench { moment: rotate(turn, w.moment), force: rotate(turn, w.force) }
+    on_the_way(model, ws, i, Vector3::zeros(), |column, d| visit(column.at, column.axis.at(d).turned_back(turn)));
 }

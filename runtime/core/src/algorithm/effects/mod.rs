@@ -10,7 +10,7 @@ use crate::Scalar;
 use crate::dual::Dual;
 use crate::effect::{BodyEffect, Law, Station};
 use crate::model::Model;
-use crate::spatial::{Placement, Twist, Vector3, Wrench, rotate, rotate_back};
+use crate::spatial::{Placement, Twist, Vector3, Wrench};
 
 pub(super) use bodies::{add_inertia, give_way, push};
 pub(super) use joints::{armature, armature_matrix, drive, driven_slopes, given, resist, rotor};
@@ -64,24 +64,19 @@ fn duals<S: Scalar>(p: &[S]) -> [Dual<S>; MOST] {
 /// The frame of an effect on a body that stands at `x_wb` and moves with `twist`, in the body's axes.
 fn station<S: Scalar>(effect: &BodyEffect<S>, x_wb: &Placement<S>, twist: &Twist<S>, gravity: Vector3<S>) -> Station<S> {
     let Placement { rotation, position } = &effect.placement;
-    let there = twist.at(*position);
-    let twist = Twist { angular: rotate_back(rotation, there.angular), linear: rotate_back(rotation, there.linear) };
-    Station { placement: x_wb.compose(&effect.placement), twist, gravity }
+    Station { placement: x_wb.compose(&effect.placement), twist: twist.at(*position).turned_back(rotation), gravity }
 }
 
 /// A wrench in the frame of an effect, in that of the body.
 fn on_body<S: Scalar>(effect: &BodyEffect<S>, w: &Wrench<S>) -> Wrench<S> {
-    let turn = &effect.placement.rotation;
-    Wrench { moment: rotate(turn, w.moment), force: rotate(turn, w.force) }.shifted(effect.placement.position)
+    w.turned(&effect.placement.rotation).shifted(effect.placement.position)
 }
 
 /// The station of an effect on body `i`, after sweeps in world axes.
 fn station_in_base<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, effect: &BodyEffect<S>) -> Station<S> {
     let state = &ws.common[i];
     let x_wb = Placement { rotation: state.rotation, position: state.position };
-    let back = |x: Vector3<S>| rotate_back(&state.rotation, x);
-    let twist = Twist { angular: back(state.twist.angular), linear: back(state.twist.linear) };
-    station(effect, &x_wb, &twist, model.gravity)
+    station(effect, &x_wb, &state.twist.turned_back(&state.rotation), model.gravity)
 }
 
 /// Placements and twists of all bodies in world axes.
@@ -111,8 +106,7 @@ pub fn effect_forces<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S]
                 total += on_body(effect, &wrench(&effect.parameters, &station_in_base(model, ws, i, effect)));
             }
         }
-        let turn = ws.common[i].rotation;
-        let mut w = Wrench { moment: rotate(&turn, total.moment), force: rotate(&turn, total.force) };
+        let mut w = total.turned(&ws.common[i].rotation);
         // τ = Jᵀ w
         let mut j = if model.bodies[i].effects.body.is_empty() { 0 } else { i };
         while j != 0 {

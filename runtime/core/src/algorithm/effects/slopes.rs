@@ -3,15 +3,14 @@
 //! For a small motion of a joint k on the way from body i to the base, in axes of the body (Singh, Russell & Wensing, *IEEE Robot. Autom. Lett.* 7, 2022):
 //! ∂V/∂q_k = ψ̇_k, ∂V̇/∂q_k = ψ̈_k − V × ψ̇_k, ∂V/∂v_k = S_k, ∂V̇/∂v_k = ψ̇_k + Ṡ_k − V × S_k.
 
-use super::bodies::{in_common_axes, turned};
 use super::{duals, joints, on_body, station_in_base};
 use crate::Scalar;
 use crate::algorithm::Workspace;
-use crate::algorithm::workspace::Column;
+use crate::algorithm::common::on_the_way;
 use crate::dual::Dual;
 use crate::effect::{BodyEffect, Law};
 use crate::model::Model;
-use crate::spatial::{ArticulatedInertia, Twist, Vector3, Wrench, rotate, rotate_back};
+use crate::spatial::{ArticulatedInertia, Twist, Vector3, Wrench, rotate};
 
 /// ∂τ/∂q, ∂τ/∂v and ∂τ/∂a of effects on joints; of `by_v` and `by_a` only where they are given.
 pub(in crate::algorithm) fn on_joints<S: Scalar>(
@@ -52,7 +51,7 @@ pub(in crate::algorithm) fn on_bodies<S: Scalar>(
                 Law::Wrench { .. } => pushed(model, ws, i, effect, by_q, others.as_mut().map(|(by_v, _)| &mut **by_v)),
                 Law::Added(inertia) => {
                     let own = inertia(&effect.parameters).moved(&effect.placement);
-                    let inertia = in_common_axes(&own, &ws.common[i].rotation);
+                    let inertia = own.turned(&ws.common[i].rotation);
                     carried_along(model, ws, i, &inertia, by_q, others.as_mut().map(|(v, a)| (&mut **v, &mut **a)));
                 }
                 _ => {}
@@ -73,22 +72,19 @@ fn pushed<S: Scalar>(
     let Law::Wrench { wrench, slope, .. } = effect.effect.law::<S>() else { return };
     let turn = ws.common[i].rotation;
     let at = station_in_base(model, ws, i, effect);
-    let w = turned(&on_body(effect, &wrench(&effect.parameters, &at)), &turn);
+    let w = on_body(effect, &wrench(&effect.parameters, &at)).turned(&turn);
     ws.common[i].force = ws.common[i].force - w;
     let p = &duals(&effect.parameters)[..effect.parameters.len()];
     let axes = turn * effect.placement.rotation;
     let offset = rotate(&turn, effect.placement.position);
     // A twist about the body's origin, in the effect's frame.
-    let there = |x: &Twist<S>| {
-        let x = x.at(offset);
-        Twist { angular: rotate_back(&axes, x.angular), linear: rotate_back(&axes, x.linear) }
-    };
+    let there = |x: &Twist<S>| x.at(offset).turned_back(&axes);
     let change = |step: &Twist<S>, of_twist: &Twist<S>| {
         let w = slope(p, &at.moved(&there(step), &there(of_twist)));
         let slope = |x: Vector3<Dual<S>>| x.map(|x| x.slope);
-        turned(&on_body(effect, &Wrench { moment: slope(w.moment), force: slope(w.force) }), &turn)
+        on_body(effect, &Wrench { moment: slope(w.moment), force: slope(w.force) }).turned(&turn)
     };
-    on_the_way(model, ws, i, |k, d| {
+    on_the_way(model, ws, i, Vector3::zeros(), |k, d| {
         let (axis, drift) = (k.axis.at(d), k.drift.at(d));
         subtract(model, ws, i, &change(&axis, &drift), k.at, by_q);
         if let Some(by_v) = &mut by_v {
@@ -117,7 +113,7 @@ fn carried_along<S: Scalar>(
         let turned = of_twist.cross_wrench(&momentum) + twist.cross_wrench(&inertia.apply(of_twist));
         Wrench::zero() - (inertia.apply(of_acceleration) + turned)
     };
-    on_the_way(model, ws, i, |k, d| {
+    on_the_way(model, ws, i, Vector3::zeros(), |k, d| {
         let (axis, drift) = (k.axis.at(d), k.drift.at(d));
         let curl = (k.curl + gravity.cross(&k.axis)).at(d);
         subtract(model, ws, i, &change(&drift, &(curl - twist.cross(&drift))), k.at, by_q);
@@ -129,17 +125,7 @@ fn carried_along<S: Scalar>(
     });
 }
 
-/// Visits the columns on the way from body `i` to the base, each with how far body `i`'s origin is from the one that it is about.
-fn on_the_way<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, mut visit: impl FnMut(&Column<S>, Vector3<S>)) {
-    let (mut j, mut d) = (i, Vector3::zeros());
-    while j != 0 {
-        ws.columns_of(j).for_each(|c| visit(&ws.columns[c], d));
-        d += ws.common[j].shift;
-        j = model.bodies[j].parent;
-    }
-}
-
 /// Subtracts S_lᵀ w from element (l, k) for each column l on the way.
 fn subtract<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, w: &Wrench<S>, k: usize, matrix: &mut [S]) {
-    on_the_way(model, ws, i, |l, d| matrix[l.at * model.nv + k] -= w.power(&l.axis.at(d)));
+    on_the_way(model, ws, i, Vector3::zeros(), |l, d| matrix[l.at * model.nv + k] -= w.power(&l.axis.at(d)));
 }
