@@ -10,16 +10,16 @@ pub struct Happening {
     /// What, in a few words; of an event that was put behind those of the scene, its name.
     pub what: String,
     /// What of the scene it was; nothing of such an event.
-    pub about: Option<About>,
+    pub about: Option<SceneEvent>,
     /// Of the ball's turn, its speed along the normal after it, m/s.
     pub ball_speed: Option<f64>,
 }
 
 /// An event of a scene.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub struct About {
-    /// What sort of event.
-    pub sort: Sort,
+pub struct SceneEvent {
+    /// Its kind.
+    pub kind: EventKind,
     /// Whose: a joint of one degree of freedom, a degree of freedom as `base[3]`, or a link.
     pub on: String,
     /// Whether what it is about begins: a limit is reached, the ground touched, the joint sticks, the ball is hit; or ends: the joint comes back, the link leaves the ground, the
@@ -27,10 +27,10 @@ pub struct About {
     pub begins: bool,
 }
 
-/// The sorts of events that a scene looks for.
+/// The kinds of events that a scene looks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
-pub enum Sort {
+pub enum EventKind {
     /// The lower bound of a joint.
     LowerLimit,
     /// The upper bound of a joint.
@@ -48,7 +48,7 @@ pub enum Sort {
     Ball,
 }
 
-impl Sort {
+impl EventKind {
     /// Its name in files: `lower_limit`, `upper_limit`, `contact`, `stick_slip`, `ball`.
     pub fn name(self) -> &'static str {
         match self {
@@ -61,30 +61,30 @@ impl Sort {
     }
 }
 
-impl fmt::Display for About {
+impl fmt::Display for SceneEvent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.on)?;
-        if let Sort::Contact { number, of: of @ 2.. } = self.sort {
+        if let EventKind::Contact { number, of: of @ 2.. } = self.kind {
             write!(f, " (contact {number} of {of})")?;
         }
-        f.write_str(match (self.sort, self.begins) {
-            (Sort::LowerLimit, true) => " reaches its lower limit",
-            (Sort::LowerLimit, false) => " comes back from its lower limit",
-            (Sort::UpperLimit, true) => " reaches its upper limit",
-            (Sort::UpperLimit, false) => " comes back from its upper limit",
-            (Sort::Contact { .. }, true) => " touches the ground",
-            (Sort::Contact { .. }, false) => " leaves the ground",
-            (Sort::StickSlip, true) => " sticks",
-            (Sort::StickSlip, false) => " slips",
-            (Sort::Ball, true) => " hits the ball",
-            (Sort::Ball, false) => " is not moving towards the ball",
+        f.write_str(match (self.kind, self.begins) {
+            (EventKind::LowerLimit, true) => " reaches its lower limit",
+            (EventKind::LowerLimit, false) => " comes back from its lower limit",
+            (EventKind::UpperLimit, true) => " reaches its upper limit",
+            (EventKind::UpperLimit, false) => " comes back from its upper limit",
+            (EventKind::Contact { .. }, true) => " touches the ground",
+            (EventKind::Contact { .. }, false) => " leaves the ground",
+            (EventKind::StickSlip, true) => " sticks",
+            (EventKind::StickSlip, false) => " slips",
+            (EventKind::Ball, true) => " hits the ball",
+            (EventKind::Ball, false) => " is not moving towards the ball",
         })
     }
 }
 
 impl Happening {
     /// An event of the scene, and the ball's speed after it.
-    pub(crate) fn of(t: f64, about: About, ball_speed: Option<f64>) -> Self {
+    pub(crate) fn of(t: f64, about: SceneEvent, ball_speed: Option<f64>) -> Self {
         let what = match (ball_speed, about.begins) {
             (Some(speed), true) => format!("{about}, which leaves at {speed:.4} m/s"),
             (Some(speed), false) => format!("{about}, which keeps {speed:.4} m/s"),

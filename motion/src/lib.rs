@@ -101,7 +101,7 @@ pub use articulated_scene::{Controller, Scene};
 pub use begin::{Begin, Beyond, Sunk};
 pub use drive::Drive;
 pub use error::{Fault, MotionError, MotionErrors};
-pub use happening::{About, Happening, Sort};
+pub use happening::{EventKind, Happening, SceneEvent};
 pub use motion::{Ending, Motion, Outcome};
 pub use settings::settings;
 pub use stage::{Stage, field};

@@ -10,7 +10,7 @@ use articulated_scene::Watched;
 
 use crate::ball::Ball;
 use crate::error::{Fault, MotionErrors};
-use crate::happening::{About, Happening, Sort};
+use crate::happening::{EventKind, Happening, SceneEvent};
 use crate::stage::{Stage, field};
 
 /// Events of a scene on a robot, and how each of them reads.
@@ -20,7 +20,7 @@ pub struct Watch<'a> {
     /// Sorts that the scene looks for and has nothing of.
     pub without: Vec<Without>,
     /// What the first of them are, those of the scene.
-    about: Vec<(Sort, String)>,
+    about: Vec<(EventKind, String)>,
     ball: Rc<Ball>,
 }
 
@@ -62,11 +62,11 @@ impl<'a> Watch<'a> {
 
     /// What happened; of an event that was put behind those of the scene, its name.
     pub fn happening(&self, hit: &Hit) -> Happening {
-        let Some((sort, on)) = self.about.get(hit.event) else {
+        let Some((kind, on)) = self.about.get(hit.event) else {
             return Happening { t: hit.t, what: hit.name.to_string(), about: None, ball_speed: None };
         };
-        let begins = if *sort == Sort::Ball { !self.ball.missed.get() } else { hit.direction == Direction::Falling };
-        Happening::of(hit.t, About { sort: *sort, on: on.clone(), begins }, hit.value)
+        let begins = if *kind == EventKind::Ball { !self.ball.missed.get() } else { hit.direction == Direction::Falling };
+        Happening::of(hit.t, SceneEvent { kind: *kind, on: on.clone(), begins }, hit.value)
     }
 
     /// What tells whether the ball was hit and the motion ends with that: who runs a simulation asks it after each step. It is apart from the watch, whose events the
@@ -86,9 +86,9 @@ impl<'a> Watch<'a> {
         self.ball.put_back();
     }
 
-    fn push(&mut self, event: Event<'a>, sort: Sort, on: &str) {
+    fn push(&mut self, event: Event<'a>, kind: EventKind, on: &str) {
         self.events.push(event);
-        self.about.push((sort, on.to_owned()));
+        self.about.push((kind, on.to_owned()));
     }
 
     /// The bounds of the effect if a joint has it, else those of the file.
@@ -100,14 +100,14 @@ impl<'a> Watch<'a> {
                 continue;
             }
             // A joint that follows another the other way round is at its own upper bound where that is at the lower.
-            let mut sorts = [Sort::LowerLimit, Sort::UpperLimit];
+            let mut kinds = [EventKind::LowerLimit, EventKind::UpperLimit];
             if at.multiplier < 0.0 {
-                sorts.reverse();
+                kinds.reverse();
             }
-            for (sort, (lower, upper)) in sorts.into_iter().zip([(lower, f64::INFINITY), (f64::NEG_INFINITY, upper)]) {
+            for (kind, (lower, upper)) in kinds.into_iter().zip([(lower, f64::INFINITY), (f64::NEG_INFINITY, upper)]) {
                 if lower.is_finite() || upper.is_finite() {
                     let event = Event::limit(name.as_str(), at.q, lower, upper).direction(Direction::Either);
-                    self.push(event, sort, &name);
+                    self.push(event, kind, &name);
                 }
             }
         }
@@ -117,14 +117,14 @@ impl<'a> Watch<'a> {
     where
         R::Workspace: 'a,
     {
-        for (sort, a) in contacts(stage) {
+        for (kind, a) in contacts(stage) {
             let Some(frame) = frame_of(&a.on, frames) else {
                 faults.push(no_frame("effects.contact", &a.on, frames));
                 continue;
             };
             let at = ContactPoint { frame, point: a.at.xyz, normal: field(a, "normal").try_into().unwrap_or([f64::NAN; 3]) };
             match Event::contact(a.on.clone(), robot, at, number(a, "radius"), number(a, "height")) {
-                Ok(event) => self.push(event.direction(Direction::Either), sort, &a.on),
+                Ok(event) => self.push(event.direction(Direction::Either), kind, &a.on),
                 Err(error) => faults.extend(Fault::of(error)),
             }
         }
@@ -135,7 +135,7 @@ impl<'a> Watch<'a> {
             let Some([_, speed, ..]) = at.effect(EffectId::friction).map(|friction| friction.parameters.as_slice()) else { continue };
             let name = stage.name_of(&at);
             let event = Event::stick_slip(name.as_str(), at.v, speed / at.multiplier.abs());
-            self.push(event, Sort::StickSlip, &name);
+            self.push(event, EventKind::StickSlip, &name);
         }
     }
 
@@ -146,18 +146,18 @@ impl<'a> Watch<'a> {
         let Some(asked) = &stage.scene.impact else { return };
         let Some(frame) = frame_of(&asked.link, frames) else { return faults.push(no_frame("impact.link", &asked.link, frames)) };
         match self.ball.event(asked, robot, frame) {
-            Ok(event) => self.push(event, Sort::Ball, &asked.link),
+            Ok(event) => self.push(event, EventKind::Ball, &asked.link),
             Err(error) => faults.extend(Fault::of(error)),
         }
     }
 }
 
 /// The contacts, each with its number among those of its link.
-fn contacts(stage: &Stage) -> impl Iterator<Item = (Sort, &Applied)> {
+fn contacts(stage: &Stage) -> impl Iterator<Item = (EventKind, &Applied)> {
     let all = move || stage.effects_of(EffectId::contact);
     all().enumerate().map(move |(k, a)| {
         let number = 1 + all().take(k).filter(|other| other.on == a.on).count();
-        (Sort::Contact { number, of: all().filter(|other| other.on == a.on).count() }, a)
+        (EventKind::Contact { number, of: all().filter(|other| other.on == a.on).count() }, a)
     })
 }
 

@@ -2,7 +2,7 @@
 
 use articulated_core::description::JointKind;
 use articulated_core::model::{FLOATING_BASE, JointInfo, Model};
-use articulated_motion::{Happening as Happened, Sort};
+use articulated_motion::{EventKind, Happening as Happened};
 use serde::Serialize;
 
 /// A coordinate or a rate: whose it is, and in what unit.
@@ -37,7 +37,7 @@ pub(crate) struct Happening {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct About {
     /// `lower_limit`, `upper_limit`, `contact`, `stick_slip`, `ball`.
-    pub(crate) sort: &'static str,
+    pub(crate) kind: &'static str,
     /// The joint or the link.
     pub(crate) on: String,
     /// Whether it begins or ends.
@@ -50,8 +50,8 @@ pub(crate) struct About {
 impl From<Happened> for Happening {
     fn from(h: Happened) -> Self {
         let about = h.about.map(|a| {
-            let contact = if let Sort::Contact { number, .. } = a.sort { Some(number) } else { None };
-            About { sort: a.sort.name(), on: a.on, begins: a.begins, contact }
+            let contact = if let EventKind::Contact { number, .. } = a.kind { Some(number) } else { None };
+            About { kind: a.kind.name(), on: a.on, begins: a.begins, contact }
         });
         Self { time: h.t, what: h.what, about, ball_speed_m_per_s: h.ball_speed }
     }

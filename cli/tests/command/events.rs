@@ -38,7 +38,7 @@ fn joints_that_follow_come_to_their_limits_and_stick() {
     // y = −1 at x = 0.75; friction of 1 N at y slows x by 2 N of an inertia of 1 + 4 kg.
     let expected = (1.0 - (1.0_f64 - 2.0 * 0.4 * 0.75).sqrt()) / 0.4;
     let first = &summary["events"][0];
-    assert_eq!((&first["sort"], &first["on"], &first["begins"]), (&"lower_limit".into(), &"y".into(), &true.into()));
+    assert_eq!((&first["kind"], &first["on"], &first["begins"]), (&"lower_limit".into(), &"y".into(), &true.into()));
     let time = first["time"].as_f64().unwrap();
     assert!((time - expected).abs() < 1e-3, "{time} {expected}");
 }

@@ -1,18 +1,18 @@
 //! What happens on the way, and how it reads.
 
 use articulated::simulate::Ended;
-use articulated_motion::{About, Ending, Outcome, Sort, Watch, Without};
+use articulated_motion::{Ending, EventKind, Outcome, SceneEvent, Watch, Without};
 use articulated_scene::Watched;
 
 use super::{ARM, CART, moved, stage, words};
 
 /// What the first two events are, for programs.
-fn about(outcome: &Outcome) -> [Option<About>; 2] {
+fn about(outcome: &Outcome) -> [Option<SceneEvent>; 2] {
     [0, 1].map(|k| outcome.happenings.get(k).and_then(|h| h.about.clone()))
 }
 
-fn is(sort: Sort, on: &str, begins: bool) -> Option<About> {
-    Some(About { sort, on: on.into(), begins })
+fn is(kind: EventKind, on: &str, begins: bool) -> Option<SceneEvent> {
+    Some(SceneEvent { kind, on: on.into(), begins })
 }
 
 /// A cart of 2 kg at 3 m/s hits a ball of 0.5 kg at rest 0.6 m ahead; e = 0.8.
@@ -33,7 +33,7 @@ const BALL: f64 = 1.8 * 3.0 * 2.0 / 2.5;
 fn a_blow_and_a_limit_are_found_and_told() {
     let outcome = moved(&stage(BLOW, CART));
     assert_eq!(words(&outcome), ["cart hits the ball, which leaves at 4.3200 m/s", "slide reaches its upper limit"]);
-    assert_eq!(about(&outcome), [is(Sort::Ball, "cart", true), is(Sort::UpperLimit, "slide", true)]);
+    assert_eq!(about(&outcome), [is(EventKind::Ball, "cart", true), is(EventKind::UpperLimit, "slide", true)]);
     let after = 3.0 - 0.5 * BALL / 2.0;
     for (happening, t) in outcome.happenings.iter().zip([0.2, 0.2 + 0.3 / after]) {
         assert!((happening.t - t).abs() < 1e-9, "{happening:?} {t}");
@@ -130,12 +130,12 @@ fn a_joint_that_follows_has_bounds_of_its_own() {
     let follower = "<link name='b'/><joint name='y' type='prismatic'><parent link='rail'/><child link='b'/><axis xyz='1 0 0'/>
         <limit lower='-1' upper='0.75' effort='1' velocity='1'/><mimic joint='slide' multiplier='-2' offset='0.25'/></joint></robot>";
     let urdf = CART.replace("</robot>", follower);
-    for (v, at, which, sort) in [(1.25, 0.5, "lower", Sort::LowerLimit), (-0.5, 0.5, "upper", Sort::UpperLimit)] {
+    for (v, at, which, kind) in [(1.25, 0.5, "lower", EventKind::LowerLimit), (-0.5, 0.5, "upper", EventKind::UpperLimit)] {
         let scene =
             format!("gravity = [0, 0, 0]\ninitial = {{ v = {{ slide = {v} }} }}\nsimulation = {{ end = 0.6, events = ['limits'] }}");
         let outcome = moved(&stage(&scene, &urdf));
         assert_eq!(words(&outcome), [format!("y reaches its {which} limit")]);
-        assert_eq!(about(&outcome), [is(sort, "y", true), None]);
+        assert_eq!(about(&outcome), [is(kind, "y", true), None]);
         assert!((outcome.happenings[0].t - at).abs() < 1e-9, "{:?}", outcome.happenings);
     }
     let stage = stage("", &urdf);
@@ -163,7 +163,7 @@ fn contacts_and_sticking_are_found_and_told() {
         simulation = { end = 1.0, integrator = 'rodas4', events = ['contacts'] }";
     let outcome = moved(&stage(fall, ARM));
     assert_eq!(words(&outcome)[..2], ["hand touches the ground", "hand leaves the ground"]);
-    let contact = |begins| is(Sort::Contact { number: 1, of: 1 }, "hand", begins);
+    let contact = |begins| is(EventKind::Contact { number: 1, of: 1 }, "hand", begins);
     assert_eq!(about(&outcome), [contact(true), contact(false)]);
     // Friction of 2 N stops 2 kg at 0.5 m/s after half a second.
     let slide = "initial = { v = { slide = 0.5 } }
@@ -184,7 +184,7 @@ fn numbers_of_one_joint_are_told_apart() {
         simulation = { end = 1.0, integrator = 'rodas4', events = ['stick_slip'] }";
     let outcome = moved(&stage(scene, &puck));
     assert_eq!(words(&outcome), ["slide[1] sticks", "slide[0] sticks"]);
-    assert_eq!(about(&outcome), ["slide[1]", "slide[0]"].map(|on| is(Sort::StickSlip, on, true)));
+    assert_eq!(about(&outcome), ["slide[1]", "slide[0]"].map(|on| is(EventKind::StickSlip, on, true)));
 }
 
 #[test]
@@ -217,7 +217,7 @@ fn contacts_of_one_link_are_told_apart() {
     );
     let told = moved(&stage(&scene, CART));
     assert_eq!(words(&told)[..2], ["cart (contact 1 of 2) touches the ground", "cart (contact 2 of 2) touches the ground"]);
-    assert_eq!(about(&told), [1, 2].map(|number| is(Sort::Contact { number, of: 2 }, "cart", true)));
+    assert_eq!(about(&told), [1, 2].map(|number| is(EventKind::Contact { number, of: 2 }, "cart", true)));
 }
 
 #[test]

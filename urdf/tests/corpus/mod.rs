@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::{env, fs};
 
-use articulated_core::description::Description;
+use articulated_core::description::{Description, Joint};
 use articulated_urdf::{Options, Problem, Problems, Reading, read};
 
 /// A crane: five links, joints of four types, no warnings.
@@ -58,4 +58,10 @@ pub(crate) fn as_kept(file: &str, messages: &[String]) {
         assert_eq!(message, kept, "{file}");
     }
     assert_eq!(messages.len(), kept.len(), "{file}");
+}
+
+/// The joint of this name in an accepted document.
+pub(crate) fn joint(text: &str, name: &str) -> Joint {
+    let description = described(text);
+    description.joints[description.joint(name).unwrap()].clone()
 }

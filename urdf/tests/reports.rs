@@ -1,0 +1,210 @@
+//! What the reader reports of documents that it accepts: warnings, and what is not used.
+
+mod corpus;
+
+use articulated_core::description::Base;
+use articulated_urdf::{Kind, Options, Reading, Subject, read};
+use corpus::{CRANE, accepted, crane, described, joint, options};
+
+/// A boom of these principal moments, in turn: what is said of its inertia.
+fn said_of(moments: [&str; 3]) -> Option<Kind> {
+    let [xx, yy, zz] = moments.map(|moment| format!("=\"{moment}\""));
+    let text = crane("ixx=\"2\" ixy=\"0.1\"", &format!("ixx{xx} ixy=\"0\"")).replace("iyy=\"30\"", &format!("iyy{yy}"));
+    let problems = match read(text.replace("izz=\"31\"", &format!("izz{zz}")).as_bytes(), &options()) {
+        Ok(reading) => reading.warnings,
+        Err(problems) => problems.errors,
+    };
+    problems.first().map(|problem| problem.kind)
+}
+
+/// Files print some six digits.
+#[test]
+fn moments_are_forgiven_what_rounding_makes_of_them_and_no_more() {
+    assert_eq!(said_of(["-5e-10", "1", "1"]), None);
+    assert_eq!(said_of(["-5e-9", "1", "1"]), Some(Kind::InertiaNotPositive));
+    assert_eq!(said_of(["1", "2.000001", "1"]), None);
+    assert_eq!(said_of(["1", "2.000004", "1"]), Some(Kind::InertiaTriangle));
+    // In any units.
+    assert_eq!(said_of(["-5e-29", "1e-20", "1e-20"]), Some(Kind::InertiaNotPositive));
+    assert_eq!(said_of(["-1", "-1", "-1"]), Some(Kind::InertiaNotPositive));
+}
+
+#[test]
+fn what_looks_wrong_is_a_warning_and_used_as_written() {
+    let cases = [
+        ("izz=\"31\"", "izz=\"33\"", Kind::InertiaTriangle, "boom", 5),
+        ("value=\"40\"", "value=\"0\"", Kind::InertiaWithoutMass, "boom", 5),
+        ("lower=\"0\"", "lower=\"4\"", Kind::LimitOrder, "travel", 29),
+        ("effort=\"100\"", "effort=\"-1\"", Kind::Negative, "travel", 29),
+        ("effort=\"100\"", "", Kind::LimitIncomplete, "travel", 29),
+        ("lower=\"0\" upper=\"3\"", "", Kind::LimitIncomplete, "travel", 29),
+        ("<limit lower=\"-1\" upper=\"1\" effort=\"10\" velocity=\"2\"/>", "", Kind::LimitMissing, "swing", 31),
+        ("damping=\"0.5\"", "damping=\"-0.5\"", Kind::Negative, "swing", 36),
+        ("<link name=\"hook\"/>", "<link name=\"hook\"><inertal/></link>", Kind::Misspelt, "hook", 17),
+        ("<link name=\"hook\"/>", "<link name=\"hook\"><joint name=\"swing\"/></link>", Kind::Misplaced, "hook", 17),
+        ("effort=\"100\"", "effort=\"100\" efort=\"1\"", Kind::Misspelt, "travel", 29),
+        ("<robot ", "<robot version=\"7\" ", Kind::Version, "", 2),
+        ("<child link=\"hook\"/>", "<child link=\"hook\"/><origin rpy=\"0 -90 0\"/>", Kind::MoreThanATurn, "swing", 33),
+        ("<child link=\"hook\"/>", "<child link=\"hook\"/><origin xyz=\"0 0 -333\"/>", Kind::Units, "swing", 33),
+        ("value=\"40\"", "value=\"0.3\"", Kind::Units, "boom", 5),
+        ("<limit lower=\"-1\" upper=\"1\"", "<limit lower=\"-180\" upper=\"1\"", Kind::MoreThanATurn, "swing", 35),
+    ];
+    let mut messages = Vec::new();
+    for (from, to, kind, name, line) in cases {
+        let warnings = accepted(&crane(from, to)).warnings;
+        let found: Vec<_> = warnings.iter().map(|w| (w.kind, w.line)).collect();
+        assert_eq!(found, [(kind, Some(line))], "{to}");
+        assert!(warnings[0].to_string().contains(name));
+        messages.push(warnings[0].to_string());
+    }
+    corpus::as_kept("warnings.txt", &messages);
+    let turned = ("<child link=\"hook\"/>", "<child link=\"hook\"/><origin rpy=\"6.283185307 0 -6.28319\"/>");
+    for (from, to) in [("effort=\"100\"", "effort=\"0\""), ("damping=\"0.5\"", "damping=\"0\""), turned] {
+        assert!(accepted(&crane(from, to)).warnings.is_empty(), "{to}");
+    }
+    let travel = joint(&crane("lower=\"0\"", "lower=\"4\""), "travel").limit.unwrap();
+    assert_eq!((travel.lower, travel.upper), (4.0, 3.0));
+}
+
+/// Just above a turn, and from three turns in rad to three turns in degrees; bounds beyond stand for none.
+#[test]
+fn angles_are_taken_for_degrees_where_they_look_like_it() {
+    let told = |text: &str| accepted(text).warnings.iter().map(|w| w.kind).collect::<Vec<_>>();
+    let turned = |angle: &str| told(&crane("<child link=\"hook\"/>", &format!("<child link=\"hook\"/><origin rpy=\"0 {angle} 0\"/>")));
+    let bound = |upper: &str| told(&crane("<limit lower=\"-1\" upper=\"1\"", &format!("<limit lower=\"-1\" upper=\"{upper}\"")));
+    for angle in ["6.3", "-7", "1e4"] {
+        assert_eq!(turned(angle), [Kind::MoreThanATurn], "{angle}");
+    }
+    assert_eq!([bound("20"), bound("1080")], [[Kind::MoreThanATurn]; 2]);
+    assert_eq!([turned("6.28"), bound("19.9"), bound("1081"), bound("1e4")], [const { Vec::new() }; 4]);
+}
+
+#[test]
+fn mass_on_a_fixed_base_is_told_as_not_used() {
+    let mass = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>";
+    let text = crane("<link name=\"tower\"/>", &format!("<link name=\"tower\">{mass}"))
+        .replace("<link name=\"lamp\"/>", &format!("<link name=\"lamp\">{mass}"));
+    let reading = accepted(&text);
+    let held = |reading: &Reading| {
+        let of_held = reading.unused.iter().filter(|u| u.tag == "inertial");
+        of_held.map(|u| u.subject.to_string()).collect::<Vec<_>>()
+    };
+    assert!(reading.warnings.is_empty());
+    assert_eq!(held(&reading), ["link \"tower\"", "link \"lamp\""]);
+    assert_eq!(reading.description.links[0].inertial.unwrap().mass, 1.0);
+    let mut edited = reading.clone();
+    edited.release(|link| link == "tower");
+    assert_eq!(held(&edited), ["link \"lamp\""]);
+    edited.release(|_| true);
+    assert!(held(&edited).is_empty());
+    let floating = read(text.as_bytes(), &Options { base: Base::Floating, ..options() }).unwrap();
+    assert!(floating.warnings.is_empty() && held(&floating).is_empty());
+}
+
+/// A point of mass, and inertia without mass, which has a warning of its own.
+#[test]
+fn a_mass_or_an_inertia_alone_on_a_fixed_base_is_told_and_zeros_are_not() {
+    let told = |mass: &str, moment: &str| {
+        let inertial = format!(
+            "<link name='tower'><inertial><mass value='{mass}'/>
+             <inertia ixx='{moment}' ixy='0' ixz='0' iyy='{moment}' iyz='0' izz='{moment}'/></inertial></link>"
+        );
+        accepted(&crane("<link name=\"tower\"/>", &inertial)).unused.iter().any(|u| u.tag == "inertial")
+    };
+    assert!(told("1", "0") && told("0", "1") && !told("0", "0"));
+}
+
+/// A number with a unit, an angle in degrees, a loop that is to be closed: another robot is meant than is read. Extensions of others are not.
+#[test]
+fn what_nobody_knows_is_warned_of() {
+    let told = |from: &str, to: &str| {
+        let reading = accepted(&crane(from, to));
+        assert!(reading.warnings.iter().all(|w| w.kind == Kind::Unknown), "{:?}", reading.warnings);
+        reading.warnings.iter().map(|w| w.to_string().split_once(": ").unwrap().1.to_owned()).collect::<Vec<_>>()
+    };
+    let hook = "<child link=\"hook\"/>";
+    let cases = [
+        (
+            hook,
+            "<child link=\"hook\"/><origin rpy_deg=\"90 0 0\"/>",
+            "origin rpy_deg: found what is not known and not used, expected nothing but xyz, rpy, quat_xyzw",
+        ),
+        (
+            "<dynamics ",
+            "<dynamics armature=\"1\" ",
+            "dynamics armature: found what is not known and not used, expected nothing but damping, friction",
+        ),
+    ];
+    for (from, to, expected) in cases {
+        let told = told(from, to);
+        assert!(told.len() == 1 && told[0].ends_with(expected), "{told:?}");
+    }
+    let end = told("</robot>", "<loop_joint name=\"l\"/><drake:joint name=\"d\"/><plugin/></robot>");
+    assert!(end.len() == 1 && end[0].contains("<loop_joint>: found what is not known"), "{end:?}");
+}
+
+#[test]
+fn declarations_of_prefixes_are_no_content() {
+    let reading = accepted(&crane("<robot ", "<robot xmlns='http://a' xmlns:xacro='http://b' "));
+    assert!(reading.unused.iter().all(|u| u.subject != Subject::Document), "{:?}", reading.unused);
+}
+
+const EXTENSIONS: &str = r#"
+  <transmission name="t"><joint name="slew"><x/></joint><actuator name="${motor}"/></transmission>
+  <gazebo reference="boom"><link name="ghost"/><sensor:x y:z="1"/></gazebo>
+  <ros2_control name="c" type="system"><joint name="slew"/></ros2_control>
+  <drake:joint name="d"/>
+  <material name="red"><color rgba="1 0 0 1"/></material>
+</robot>"#;
+
+#[test]
+fn extensions_are_no_part_of_the_tree_and_are_reported() {
+    let reading = accepted(&crane("</robot>", EXTENSIONS));
+    assert_eq!(reading.description, described(CRANE));
+    assert!(reading.warnings.is_empty());
+    let tags: Vec<(&str, Option<u32>)> =
+        reading.unused.iter().filter(|u| u.subject == Subject::Document).map(|u| (u.tag.as_str(), u.line)).collect();
+    let lines = [43, 44, 45, 46, 47].map(Some);
+    let names = ["transmission", "gazebo", "ros2_control", "drake:joint", "material"];
+    assert_eq!(tags, names.into_iter().zip(lines).collect::<Vec<_>>());
+}
+
+/// Text is no tag, and a tag that is text is none either.
+#[test]
+fn text_between_tags_is_reported() {
+    let reading = accepted(&crane("<link name=\"hook\"/>", "<![CDATA[<link name='ghost'/>]]><link name=\"hook\"> steel\n </link>"));
+    assert_eq!(reading.description, described(CRANE));
+    let told: Vec<String> =
+        reading.unused.iter().filter(|u| u.tag.starts_with("text")).map(|u| format!("{} {} {}", u.subject, u.tag, u.why)).collect();
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(
+        told.iter().any(|t| t.contains("<robot>") && t.contains("<link name='ghost'/>")) && told.iter().any(|t| t.contains("\"steel\"")),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn content_of_links_and_joints_that_is_not_used_is_reported() {
+    let text = crane(
+        "<link name=\"hook\"/>",
+        "<link name=\"hook\" type=\"steel\"><visual><geometry><mesh filename=\"/no/such/file.stl\"/></geometry></visual>
+         <collision/><odd/></link>",
+    )
+    .replace("<axis xyz=\"0 0 1\"/>", "<axis xyz=\"0 0 1\" frame=\"child\"/><calibration rising=\"x\"/><safety_controller/>");
+    let reading = accepted(&text);
+    let tags: Vec<String> = reading.unused.iter().map(|u| format!("{} {}", u.subject, u.tag)).collect();
+    for expected in [
+        "link \"hook\" link type",
+        "link \"hook\" visual",
+        "link \"hook\" collision",
+        "link \"hook\" <odd>",
+        "joint \"slew\" axis frame",
+        "joint \"slew\" calibration",
+        "joint \"slew\" safety_controller",
+        "joint \"swing\" dynamics damping",
+        "joint \"swing\" dynamics friction",
+    ] {
+        let expected = expected.replace(['<', '>'], "");
+        assert!(tags.contains(&expected), "{expected} in {tags:#?}");
+    }
+}
