@@ -4,22 +4,16 @@
 
 use libfuzzer_sys::fuzz_target;
 
-#[path = "../../macros/src/edits.rs"]
-mod edits;
 #[path = "../../macros/src/errors.rs"]
 mod errors;
 #[path = "../../macros/src/expand.rs"]
 mod expand;
 #[path = "../../macros/src/invocation.rs"]
 mod invocation;
-#[path = "../../macros/src/keys.rs"]
-mod keys;
 #[path = "../../macros/src/place.rs"]
 mod place;
 #[path = "../../macros/src/settings.rs"]
 mod settings;
-#[path = "../../macros/src/table.rs"]
-mod table;
 #[path = "../../macros/src/tree.rs"]
 mod tree;
 

@@ -20,11 +20,6 @@ impl Errors {
         result.map_err(|error| self.push(error)).ok()
     }
 
-    /// All of them as one.
-    pub(crate) fn into_error(self) -> Option<syn::Error> {
-        self.0
-    }
-
     /// As items that the compiler reports.
     pub(crate) fn into_items(self) -> TokenStream {
         self.0.map(syn::Error::into_compile_error).unwrap_or_default()

@@ -4,16 +4,14 @@ use std::env;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
-use articulated_codegen::scene::articulated_scene::{Robot, Scene, SceneErrors};
+use articulated_codegen::scene::articulated_scene::{At, Robot, Scene, SceneErrors};
 use articulated_codegen::urdf::{MOST_BYTES, read_file};
-use articulated_codegen::{Options, Request, scene};
-use proc_macro2::{Span, TokenStream};
+use articulated_codegen::{Request, scene};
+use proc_macro2::TokenStream;
 use quote::quote;
-use syn::{Error, LitStr, Result};
 
 use crate::errors::Errors;
 use crate::invocation::Invocation;
-use crate::place;
 use crate::settings::Settings;
 
 /// The module, or one with as much as could be made and the errors.
@@ -35,125 +33,115 @@ fn module(invocation: Invocation) -> TokenStream {
 
 /// The generated source and a mention of every file, by which the compiler knows that the module depends on them.
 fn contents(settings: &Settings, errors: &mut Errors) -> TokenStream {
-    let mut files = Files::default();
-    let asked = Asked::of(settings, &mut files, errors);
+    let mut reader = Reader { settings, errors, paths: Vec::new() };
+    let asked = reader.asked();
+    let paths = reader.paths;
     let source = asked.map(|asked| source(asked, settings, errors));
-    let paths = files.paths;
     quote! { #source #(const _: &[u8] = ::core::include_bytes!(#paths);)* }
 }
 
 /// What is to be generated.
 struct Asked {
     request: Request,
-    /// The scene, with the effects of the invocation in place of its own, if there are any.
+    /// The scene, with what the invocation says in the place of what it says itself.
     scene: Scene,
-    /// Where the robot's file is named.
-    robot: Span,
-}
-
-impl Asked {
-    /// Nothing, if a file is missing or the scene is broken.
-    fn of(settings: &Settings, files: &mut Files, errors: &mut Errors) -> Option<Self> {
-        let scene = match &settings.scene {
-            Some(name) => scene(name, settings, files, errors),
-            None => Some(Scene::default()),
-        };
-        let scene = with_effects(scene, settings, errors);
-        let mut options = Options::default();
-        scene.iter().for_each(|scene| scene::fill(&mut options, scene));
-        let seen_from = settings.scene.as_ref().map(LitStr::value).unwrap_or_default();
-        options.robot.append.iter_mut().for_each(|other| other.file = scene::beside(&seen_from, &other.file));
-        let mut options = settings.options(options);
-        let (file, robot) = robot(settings, scene.as_ref(), &seen_from, errors)?;
-        let urdf = errors.take(files.read(&file, robot));
-        let mut complete = urdf.is_some();
-        for (i, other) in options.robot.append.iter_mut().enumerate() {
-            let span = settings.append.as_ref().and_then(|all| all.get(i)?.urdf.as_ref()).map_or(robot, LitStr::span);
-            let bytes = errors.take(files.read(&other.file, span));
-            complete &= bytes.is_some();
-            other.urdf = bytes.unwrap_or_default();
-        }
-        let request = Request { urdf: urdf?, file, options };
-        Some(Self { request, scene: scene?, robot }).filter(|_| complete)
-    }
-}
-
-/// The scene that is named.
-fn scene(name: &LitStr, settings: &Settings, files: &mut Files, errors: &mut Errors) -> Option<Scene> {
-    let bytes = errors.take(files.read(&name.value(), name.span()))?;
-    scene_or_errors(Scene::read_bytes(&name.value(), &bytes), settings, name.span(), errors)
-}
-
-/// The scene with the effects that stand in the invocation.
-fn with_effects(scene: Option<Scene>, settings: &Settings, errors: &mut Errors) -> Option<Scene> {
-    let Some(effects) = &settings.effects else { return scene };
-    let own = scene_or_errors(Scene::of_effects("effects", effects), settings, Span::call_site(), errors)?;
-    scene.map(|scene| Scene { effects: own.effects, shafts: own.shafts, ..scene })
-}
-
-fn scene_or_errors(result: std::result::Result<Scene, SceneErrors>, settings: &Settings, span: Span, errors: &mut Errors) -> Option<Scene> {
-    let wrong = |SceneErrors { errors: all }: SceneErrors| all.iter().for_each(|error| errors.push(place::in_scene(error, settings, span)));
-    result.map_err(wrong).ok()
-}
-
-/// The robot's file, and where it is named.
-fn robot(settings: &Settings, scene: Option<&Scene>, seen_from: &str, errors: &mut Errors) -> Option<(String, Span)> {
-    if let Some(urdf) = &settings.urdf {
-        return Some((urdf.value(), urdf.span()));
-    }
-    let (named, scene) = (settings.scene.as_ref()?, scene?);
-    if let Robot::Urdf(urdf) = &scene.robot {
-        return Some((scene::beside(seen_from, urdf), named.span()));
-    }
-    let known = "a bundled robot is known to the command line alone";
-    errors.push(Error::new(named.span(), format!("{seen_from}: the scene names no URDF ({known}): give its path as `urdf`")));
-    None
 }
 
 /// The generated source, or nothing and every error.
-fn source(asked: Asked, settings: &Settings, errors: &mut Errors) -> TokenStream {
-    let Asked { mut request, scene, robot } = asked;
+fn source(Asked { mut request, scene }: Asked, settings: &Settings, errors: &mut Errors) -> TokenStream {
     let effects = if scene.has_effects() { scene::settle(&mut request, &scene).map(drop) } else { Ok(()) };
     match effects.and_then(|()| articulated_codegen::generate(&request)) {
         Ok(generated) => generated.tokens(),
         Err(error) => {
-            let error = scene::placed(error, &without_what_is_replaced(scene, settings));
-            errors.push(place::at_its_word(&error, settings, robot));
+            settings.at_their_words(error, &scene).into_iter().for_each(|error| errors.push(error));
             TokenStream::new()
         }
     }
 }
 
-/// The scene without lists in whose place the invocation has its own: what is wrong with those is not the scene's.
-fn without_what_is_replaced(mut scene: Scene, settings: &Settings) -> Scene {
-    let code = &mut scene.code;
-    code.functions.take_if(|_| settings.functions.is_some());
-    code.parameters.take_if(|_| settings.parameters.is_some());
-    code.frames.take_if(|_| settings.frames.is_some());
-    code.lock.retain(|_| settings.lock.is_none());
-    code.payload.retain(|_| settings.payloads.is_none());
-    code.append.retain(|_| settings.append.is_none());
-    code.rename.retain(|_| settings.rename.is_none());
-    scene
-}
-
-/// Files that were read.
-#[derive(Default)]
-struct Files {
+/// Reads the files of an invocation.
+struct Reader<'a> {
+    settings: &'a Settings,
+    errors: &'a mut Errors,
+    /// The files that were read.
     paths: Vec<String>,
 }
 
-impl Files {
-    /// The bytes of the file that `name`, which stands at `span`, names from the folder of the user's Cargo.toml.
-    fn read(&mut self, name: &str, span: Span) -> Result<Vec<u8>> {
-        let wrong = |reason: &str| Error::new(span, format!("{name}: {reason}"));
+impl Reader<'_> {
+    /// Nothing, if a file is missing or the scene's file is broken.
+    fn asked(&mut self) -> Option<Asked> {
+        let settings = self.settings;
+        let seen_from = settings.own.scene.as_ref().map_or("", |(name, _)| name);
+        let from_file = if settings.own.scene.is_some() { self.scene() } else { Some(Scene::default()) };
+        let is_whole = from_file.is_some();
+        let (scene, wrong) = from_file.unwrap_or_default().overlaid(&settings.rest, &Settings::own_names());
+        wrong.iter().for_each(|error| self.errors.push(settings.in_scene(error)));
+        let mut options = settings.own.options();
+        scene::fill(&mut options, &scene);
+        let file = if is_whole { self.robot(&scene)? } else { return None };
+        let urdf = self.file(&file, settings.at_robot(&scene));
+        let mut is_complete = true;
+        for (other, said) in options.robot.append.iter_mut().zip(&scene.code.append) {
+            other.file = from_cargo(seen_from, &said.urdf, said.place);
+            let bytes = self.file(&other.file, settings.here(said.place));
+            is_complete &= bytes.is_some();
+            other.urdf = bytes.unwrap_or_default();
+        }
+        let request = Request { urdf: urdf?, file, options };
+        is_complete.then_some(Asked { request, scene })
+    }
+
+    /// The scene that is named.
+    fn scene(&mut self) -> Option<Scene> {
+        let (name, at) = self.settings.own.scene.as_ref()?;
+        let bytes = self.file(name, *at)?;
+        let wrong = |SceneErrors { errors }: SceneErrors| errors.iter().for_each(|error| self.errors.push(self.settings.in_scene(error)));
+        Scene::read_bytes(name, &bytes).map_err(wrong).ok()
+    }
+
+    /// The robot's file.
+    fn robot(&mut self, scene: &Scene) -> Option<String> {
+        let (places, seen_from) = (&self.settings.places, self.settings.own.scene.as_ref());
+        match (&scene.robot, seen_from) {
+            (Robot::Urdf(urdf), _) => {
+                let seen_from = seen_from.map_or("", |(name, _)| name);
+                return Some(from_cargo(seen_from, urdf, scene.code.places.robot));
+            }
+            // Its value is wrong, which was told.
+            _ if self.settings.has("urdf") => {}
+            (_, Some((name, at))) => {
+                let known = "a bundled robot is known to the command line alone";
+                self.errors.push(places.error(*at, format!("{name}: the scene names no URDF ({known}): give its path as `urdf`")));
+            }
+            // So was a scene's name that cannot be read.
+            _ if self.settings.has("scene") => {}
+            (_, None) => {
+                let expected = "the path of a URDF from the folder of Cargo.toml, as \"robots/arm.urdf\", here or in a `scene`";
+                self.errors.push(places.error(At::Nowhere, format!("`urdf` is missing: expected {expected}")));
+            }
+        }
+        None
+    }
+
+    /// The bytes of the file that `name`, which stands at `at`, names from the folder of the user's Cargo.toml.
+    fn file(&mut self, name: &str, at: At) -> Option<Vec<u8>> {
+        let bytes = self.read(name).map_err(|reason| self.settings.places.error(at, format!("{name}: {reason}")));
+        self.errors.take(bytes)
+    }
+
+    fn read(&mut self, name: &str) -> Result<Vec<u8>, String> {
         let root = env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
         let path = root.join(name);
         let bytes = read_file(&path, MOST_BYTES).map_err(|error| match error.kind() {
-            ErrorKind::NotFound => wrong("there is no such file, seen from the folder of Cargo.toml"),
-            _ => wrong(&error.to_string()),
+            ErrorKind::NotFound => "there is no such file, seen from the folder of Cargo.toml".to_owned(),
+            _ => error.to_string(),
         })?;
-        self.paths.push(path.into_os_string().into_string().map_err(|_| wrong("the path of the package is not UTF-8"))?);
+        self.paths.push(path.into_os_string().into_string().map_err(|_| "the path of the package is not UTF-8")?);
         Ok(bytes)
     }
+}
+
+/// A file as seen from the folder of Cargo.toml: what the invocation names as it is, what the scene names from the scene's folder.
+fn from_cargo(scene: &str, name: &str, at: At) -> String {
+    if matches!(at, At::Word(_)) { name.to_owned() } else { scene::beside(scene, name) }
 }

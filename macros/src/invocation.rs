@@ -5,9 +5,7 @@ use syn::parse::{Parse, ParseStream};
 use syn::{Attribute, Error, Ident, Result, Token, Visibility, braced};
 
 use crate::errors::Errors;
-use crate::keys::KEYS;
 use crate::settings::Settings;
-use crate::table;
 
 /// One `robot! { … }`.
 pub(crate) struct Invocation {
@@ -27,8 +25,7 @@ impl Parse for Invocation {
         let content;
         braced!(content in input);
         let mut errors = Errors::default();
-        let mut settings: Settings = table::entries(&content, KEYS, name.span(), &mut errors);
-        settings.check(&mut errors);
+        let settings = Settings::read(content.parse()?, name.span(), &mut errors);
         let rest: TokenStream = input.parse()?;
         if !rest.is_empty() {
             errors.push(Error::new_spanned(rest, "one `robot!` makes one module"));

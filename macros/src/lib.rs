@@ -1,19 +1,16 @@
 //! The macro `robot!`: a thin shell around `articulated-codegen`.
 //!
 //! ```text
-//! invocation (tokens → settings) → expand (read the file, generate) → place (errors → spans)
+//! invocation (tokens → tree → settings) → expand (read the files, generate) → place (errors → words)
 //! ```
 
-mod edits;
 mod errors;
 mod expand;
 #[cfg(test)]
 mod hostile;
 mod invocation;
-mod keys;
 mod place;
 mod settings;
-mod table;
 #[cfg(test)]
 mod tests;
 mod tree;

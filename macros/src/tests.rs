@@ -261,3 +261,27 @@ fn a_group_of_functions_and_a_crate_without_std_are_asked_for_as_elsewhere() {
     assert!(build.source.contains("pub fn center_of_mass_jacobian(") && build.source.contains("libm::"));
     assert_eq!(quote!(#(#items)*).to_string(), syn::parse2::<syn::File>(build.tokens()).unwrap().to_token_stream().to_string());
 }
+
+#[test]
+fn an_expression_is_written_as_it_is_or_as_a_text() {
+    let urdf = "../tests/ui/urdf/three.urdf";
+    let word = module(quote!(mod arm { urdf = #urdf, functions = [hold = inverse_dynamics(v = 0, a = 0)], level = f64 + fast_10 }));
+    let text = module(quote!(mod arm { "urdf" = #urdf, functions = ["hold = inverse_dynamics(v = 0, a = 0)"], level = "f64 + fast_10" }));
+    assert_eq!(quote!(#word).to_string(), quote!(#text).to_string());
+    assert!(quote!(#word).to_string().contains("fn hold"));
+}
+
+#[test]
+fn of_what_cannot_be_read_each_is_told_and_the_rest_is_read() {
+    let told = |keys: &str| expand(format!("mod arm {{ urdf = \"../tests/ui/urdf/three.urdf\", {keys} }}").parse().unwrap()).to_string();
+    for (keys, words) in [
+        ("frames = [left foot]", &["names that are no words stand in quotation marks"][..]),
+        ("frames = [left-foot], lock = { left-foot = 1 }", &["names that are no words", "expected `=` after `left`"]),
+        ("base = floating functions = [mass_matrix], gravity = [0, 0]", &["expected `,`", "gravity: found a list of 2 numbers"]),
+        ("lock = { = 1, elbow 2 }, gravity = [0,, 0]", &["expected a name", "after `elbow`", "nothing before the comma"]),
+        ("parameters = [payload(nowhere)], crate = here, standalone = (true)", &["nowhere", "absolute path", "expected true or false"]),
+    ] {
+        let told = told(keys);
+        assert!(words.iter().all(|word| told.contains(word)) && !told.contains("is missing"), "{keys}: {words:?} in {told}");
+    }
+}

@@ -1,91 +1,213 @@
-//! Values written in the macro as scenes have them: `{ name = value, … }`, `[value, …]`, numbers, words.
+//! What stands in the macro's braces, as scenes have it: `key = value, …`. A value is a number, a word, a text, `[value, …]`, `{ name = value, … }`; of some keys it is
+//! an expression, which is a text here and others read: `hold = inverse_dynamics(v = 0)`.
+
+use std::collections::BTreeSet;
+use std::fmt::Display;
 
 use articulated_codegen::scene::articulated_scene::{At, Entry, Node, Value};
-use proc_macro2::Span;
+use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt;
-use syn::parse::ParseStream;
-use syn::{Ident, LitBool, LitStr, Result, Token, braced, bracketed, token};
+use syn::parse::{ParseStream, Parser};
+use syn::{Error, Ident, Lit, LitBool, LitStr, Result, Token};
 
-use crate::keys::signed;
+use crate::errors::Errors;
 
 /// Deeper values are not read: nothing in a scene is so deep.
 const DEEPEST: usize = 16;
 
-/// The spans of the words that places in a tree refer to.
-#[derive(Default)]
-pub(crate) struct Spans(Vec<Span>);
+/// Keys whose values, or the items of their lists, are expressions.
+const EXPRESSIONS: [&str; 4] = ["functions", "parameters", "level", "crate"];
 
-impl Spans {
-    fn at(&mut self, span: Span) -> At {
-        self.0.push(span);
-        At::Word(u32::try_from(self.0.len() - 1).unwrap_or(u32::MAX))
+/// The words that places in a tree refer to.
+pub(crate) struct Places {
+    words: Vec<TokenStream>,
+    /// What has no place is told here.
+    elsewhere: Span,
+}
+
+impl Places {
+    /// None yet.
+    pub(crate) fn new(elsewhere: Span) -> Self {
+        Self { words: Vec::new(), elsewhere }
     }
 
-    /// The span of a place.
-    pub(crate) fn of(&self, at: At) -> Option<Span> {
-        match at {
-            At::Word(index) => self.0.get(usize::try_from(index).ok()?).copied(),
-            _ => None,
+    fn at(&mut self, word: TokenStream) -> At {
+        self.words.push(word);
+        At::Word(u32::try_from(self.words.len() - 1).unwrap_or(u32::MAX))
+    }
+
+    /// What is wrong at a place.
+    pub(crate) fn error(&self, at: At, message: impl Display) -> Error {
+        let word = if let At::Word(index) = at { self.words.get(index as usize) } else { None };
+        word.map_or_else(|| Error::new(self.elsewhere, &message), |word| Error::new_spanned(word, &message))
+    }
+}
+
+/// A reader of tokens.
+pub(crate) struct Tree<'a> {
+    pub(crate) places: &'a mut Places,
+    /// What cannot be read is told here and left out.
+    pub(crate) errors: &'a mut Errors,
+    /// The keys that were found, those whose values cannot be read too.
+    pub(crate) keys: BTreeSet<String>,
+}
+
+/// How a value may be written.
+#[derive(Clone, Copy)]
+struct Form {
+    depth: usize,
+    is_expression: bool,
+}
+
+impl<'a> Tree<'a> {
+    pub(crate) fn new(places: &'a mut Places, errors: &'a mut Errors) -> Self {
+        Self { places, errors, keys: BTreeSet::new() }
+    }
+
+    /// The keys of an invocation with their values.
+    pub(crate) fn read(&mut self, tokens: TokenStream) -> Node {
+        let at = At::Nowhere;
+        Node { at, value: Value::Table(self.entries(tokens, 0)) }
+    }
+
+    fn entries(&mut self, tokens: TokenStream, depth: usize) -> Vec<Entry> {
+        let mut entries: Vec<Entry> = Vec::new();
+        for said in self.between_commas(tokens) {
+            let entry = self.entry(said, depth);
+            let Some(entry) = self.errors.take(entry) else { continue };
+            if entries.iter().any(|other| other.name == entry.name) {
+                self.errors.push(self.places.error(entry.at, format!("`{}` is given twice", entry.name)));
+            } else {
+                entries.push(entry);
+            }
+        }
+        entries
+    }
+
+    /// `name = value`
+    fn entry(&mut self, tokens: TokenStream, depth: usize) -> Result<Entry> {
+        let (word, name, value) = key.parse2(tokens)?;
+        self.keys.extend((depth == 0).then(|| name.clone()));
+        if value.is_empty() {
+            return Err(Error::new_spanned(word, format!("expected a value after `{name} =`")));
+        }
+        let form = Form { depth, is_expression: depth == 0 && EXPRESSIONS.contains(&name.as_str()) };
+        // Only in lists have expressions a name.
+        let mut pairs = value.clone().into_iter().zip(value.clone().into_iter().skip(1));
+        match pairs.find(|(_, next)| is(next, '=')) {
+            Some((before, _)) => Err(Error::new(before.span(), COMMA)),
+            None => Ok(Entry { name, at: self.places.at(word), node: self.node(value, form)? }),
         }
     }
-}
 
-/// One value.
-pub(crate) fn node(input: ParseStream, spans: &mut Spans) -> Result<Node> {
-    within(input, spans, 0)
-}
-
-fn within(input: ParseStream, spans: &mut Spans, depth: usize) -> Result<Node> {
-    let at = spans.at(input.span());
-    if depth > DEEPEST {
-        return Err(input.error("too deep"));
+    fn node(&mut self, tokens: TokenStream, form: Form) -> Result<Node> {
+        if form.depth > DEEPEST {
+            return Err(Error::new_spanned(tokens, "too deep"));
+        }
+        let at = self.places.at(tokens.clone());
+        Ok(Node { at, value: self.value(&tokens, form)? })
     }
-    let value = if input.peek(token::Brace) {
-        Value::Table(entries(input, spans, depth)?)
-    } else if input.peek(token::Bracket) {
-        Value::List(items(input, spans, depth)?)
-    } else if input.peek(LitStr) {
-        Value::Text(input.parse::<LitStr>()?.value())
-    } else if input.peek(LitBool) {
-        Value::Bool(input.parse::<LitBool>()?.value)
-    } else if input.peek(Ident::peek_any) {
-        Value::Text(Ident::parse_any(input)?.unraw().to_string())
-    } else {
-        // Finite or not: the scene's reader says what it has to be.
-        Value::Number(signed(input)?)
+
+    fn value(&mut self, tokens: &TokenStream, form: Form) -> Result<Value> {
+        let deeper = Form { depth: form.depth + 1, ..form };
+        match group(tokens) {
+            Some((Delimiter::Brace, entries)) => Ok(Value::Table(self.entries(entries, deeper.depth))),
+            Some((Delimiter::Bracket, items)) => Ok(Value::List(self.items(items, deeper))),
+            _ => scalar(tokens).map_or_else(|| several(tokens, form), Ok),
+        }
+    }
+
+    fn items(&mut self, tokens: TokenStream, form: Form) -> Vec<Node> {
+        let mut items = Vec::new();
+        for said in self.between_commas(tokens) {
+            let item = self.node(said, form);
+            items.extend(self.errors.take(item));
+        }
+        items
+    }
+
+    /// The tokens between commas; after the last comma there may be nothing.
+    fn between_commas(&mut self, tokens: TokenStream) -> Vec<TokenStream> {
+        let (mut all, mut said) = (Vec::new(), TokenStream::new());
+        for token in tokens {
+            if !is(&token, ',') {
+                said.extend([token]);
+            } else if said.is_empty() {
+                self.errors.push(Error::new(token.span(), "nothing before the comma"));
+            } else {
+                all.push(std::mem::take(&mut said));
+            }
+        }
+        all.extend(Some(said).filter(|rest| !rest.is_empty()));
+        all
+    }
+}
+
+const COMMA: &str = "expected `,`";
+
+fn is(token: &TokenTree, c: char) -> bool {
+    matches!(token, TokenTree::Punct(mark) if mark.as_char() == c)
+}
+
+/// A name as it is written, and what it is, and what stands behind the sign after it.
+fn key(input: ParseStream) -> Result<(TokenStream, String, TokenStream)> {
+    let word: TokenStream = input.parse::<TokenTree>()?.into();
+    let name = quoted.parse2(word.clone()).or_else(|_| plain.parse2(word.clone()));
+    let name = name.map_err(|_| Error::new_spanned(&word, "expected a name, as in `name = value`"))?;
+    input.parse::<Token![=]>().map_err(|error| Error::new(error.span(), format!("expected `=` after `{name}`")))?;
+    Ok((word, name, input.parse()?))
+}
+
+/// What brackets there are, if there is nothing beside them, and what is in them.
+fn group(tokens: &TokenStream) -> Option<(Delimiter, TokenStream)> {
+    let mut tokens = tokens.clone().into_iter();
+    match (tokens.next()?, tokens.next()) {
+        (TokenTree::Group(group), None) if group.delimiter() == Delimiter::None => self::group(&group.stream()),
+        (TokenTree::Group(group), None) => Some((group.delimiter(), group.stream())),
+        _ => None,
+    }
+}
+
+/// A text, `true` or `false`, a number, a word.
+fn scalar(tokens: &TokenStream) -> Option<Value> {
+    let text = |input: ParseStream| quoted(input).map(Value::Text);
+    let truth = |input: ParseStream| Ok(Value::Bool(input.parse::<LitBool>()?.value));
+    let number = |input: ParseStream| number(input).map(Value::Number);
+    let word = |input: ParseStream| plain(input).map(Value::Text);
+    let read = text.parse2(tokens.clone()).or_else(|_| truth.parse2(tokens.clone()));
+    read.or_else(|_| number.parse2(tokens.clone())).or_else(|_| word.parse2(tokens.clone())).ok()
+}
+
+fn quoted(input: ParseStream) -> Result<String> {
+    Ok(input.parse::<LitStr>()?.value())
+}
+
+fn plain(input: ParseStream) -> Result<String> {
+    Ok(Ident::parse_any(input)?.unraw().to_string())
+}
+
+/// A number, finite or not, with or without a sign. Units are not guessed from what stands behind it: `90deg` is none.
+fn number(input: ParseStream) -> Result<f64> {
+    let sign = if input.parse::<Option<Token![-]>>()?.is_some() { -1.0 } else { 1.0 };
+    let literal: Lit = input.parse()?;
+    let (number, suffix): (f64, &str) = match &literal {
+        Lit::Float(x) => (x.base10_parse()?, x.suffix()),
+        Lit::Int(x) => (x.base10_parse()?, x.suffix()),
+        _ => return Err(Error::new(literal.span(), "not a number")),
     };
-    Ok(Node { at, value })
+    if matches!(suffix, "" | "f64") { Ok(sign * number) } else { Err(Error::new(literal.span(), "a unit")) }
 }
 
-fn entries(input: ParseStream, spans: &mut Spans, depth: usize) -> Result<Vec<Entry>> {
-    let content;
-    braced!(content in input);
-    let mut entries: Vec<Entry> = Vec::new();
-    while !content.is_empty() {
-        let span = content.span();
-        let name = if content.peek(LitStr) { content.parse::<LitStr>()?.value() } else { Ident::parse_any(&content)?.unraw().to_string() };
-        if entries.iter().any(|entry| entry.name == name) {
-            return Err(syn::Error::new(span, "given twice"));
+/// What is none of these: an expression where one may stand, or else something to be refused.
+fn several(tokens: &TokenStream, form: Form) -> Result<Value> {
+    let mut each = tokens.clone().into_iter();
+    let (first, second) = (each.next(), each.next());
+    let begins = matches!(&first, Some(TokenTree::Ident(_))) || first.as_ref().is_some_and(|first| is(first, ':'));
+    match second {
+        _ if begins && form.is_expression => Ok(Value::Text(tokens.to_string())),
+        Some(second) if !first.is_some_and(|first| is(&first, '-')) => {
+            Err(Error::new(second.span(), format!("{COMMA}; names that are no words stand in quotation marks")))
         }
-        content.parse::<Token![=]>()?;
-        let at = spans.at(span);
-        entries.push(Entry { name, at, node: within(&content, spans, depth + 1)? });
-        comma(&content)?;
+        _ => Ok(Value::Other(format!("`{tokens}`"))),
     }
-    Ok(entries)
-}
-
-fn items(input: ParseStream, spans: &mut Spans, depth: usize) -> Result<Vec<Node>> {
-    let content;
-    bracketed!(content in input);
-    let mut items = Vec::new();
-    while !content.is_empty() {
-        items.push(within(&content, spans, depth + 1)?);
-        comma(&content)?;
-    }
-    Ok(items)
-}
-
-fn comma(content: ParseStream) -> Result<()> {
-    if content.is_empty() { Ok(()) } else { content.parse::<Token![,]>().map(|_| ()) }
 }

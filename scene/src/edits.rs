@@ -38,8 +38,10 @@ pub struct Append {
     pub prefix: String,
     /// Its root in the frame of that link.
     pub origin: Origin,
-    /// Where the scene says so.
+    /// Where the scene names its file.
     pub place: At,
+    /// Where the scene names the link.
+    pub link_place: At,
 }
 
 /// `{ joint = coordinates, … }`.
@@ -93,7 +95,7 @@ pub(crate) const LOAD: &[Row<Load>] = &[
         default: "",
         what: "the link that carries it",
         read: |l, s, log| {
-            l.place = s.at;
+            l.place = s.node.at;
             l.payload.link = name(s, log, "the name of a link").unwrap_or_default();
         },
     },
@@ -140,7 +142,7 @@ pub(crate) const APPEND: &[Row<Append>] = &[
         default: "",
         what: "its file, seen from the scene's folder",
         read: |a, s, log| {
-            a.place = s.at;
+            a.place = s.node.at;
             a.urdf = name(s, log, "the path of a URDF").unwrap_or_default();
         },
     },
@@ -150,7 +152,10 @@ pub(crate) const APPEND: &[Row<Append>] = &[
         value: "text",
         default: "",
         what: "the link that carries it",
-        read: |a, s, log| a.link = name(s, log, "the name of a link").unwrap_or_default(),
+        read: |a, s, log| {
+            a.link_place = s.node.at;
+            a.link = name(s, log, "the name of a link").unwrap_or_default();
+        },
     },
     Row {
         name: "prefix",

@@ -10,7 +10,7 @@ use crate::control::{self, Control};
 use crate::document;
 use crate::edits::{self, APPEND, Append, LOAD, Load, Lock};
 use crate::effects::{self, Asked};
-use crate::error::{Kind, SceneErrors, quote};
+use crate::error::{Kind, SceneError, SceneErrors, quote};
 use crate::impact::{self, Impact};
 use crate::initial::{self, Initial};
 use crate::log::Log;
@@ -135,13 +135,20 @@ impl Scene {
         }
     }
 
-    /// A scene of effects alone: those of the table `effects`, which did not come from a file. For the macro.
-    pub fn of_effects(file: &str, effects: &Node) -> Result<Self, SceneErrors> {
-        let mut log = Log::new(file);
-        let mut scene = Self { file: file.to_owned(), ..Self::default() };
-        let spot = Spot { node: effects, key: "effects".into(), at: effects.at };
-        effects::read(&mut scene, &spot, &mut log);
-        log.result(scene)
+    /// The scene with what a table says in the place of what it says itself, as far as nothing is wrong with it; and what is wrong. For the macro, which reads the keys `own` itself.
+    pub fn overlaid(mut self, said: &Node, own: &[&str]) -> (Self, Vec<SceneError>) {
+        let mut log = Log::new(&self.file);
+        let rows: Vec<&Row<Self>> = KEYS.iter().filter(|row| !OF_MOTION.contains(&row.name)).collect();
+        let spot = Spot::root(said);
+        for entry in spot.entries(&mut log, "a table") {
+            let value = spot.of(entry);
+            match rows.iter().find(|row| row.name == entry.name) {
+                Some(row) => (row.read)(&mut self, &value, &mut log),
+                None => value.unknown_key(&mut log, own.iter().copied().chain(rows.iter().map(|row| row.name))),
+            }
+        }
+        let wrong = log.result(()).err().map(|all| all.errors).unwrap_or_default();
+        (self, wrong)
     }
 
     /// Whether it asks for any effect.
@@ -167,6 +174,9 @@ const REALS: &[(&str, Real)] = &[("f64", Real::F64), ("f32", Real::F32)];
 const REFERENCES: &[(&str, Reference)] =
     &[("body", Reference::Body), ("world", Reference::World), ("world_aligned", Reference::WorldAligned)];
 
+/// Keys that say nothing of the code that is generated, and a robot that is known by its name, which only files have.
+const OF_MOTION: [&str; 6] = ["summary", "robot", "simulation", "initial", "control", "impact"];
+
 /// All keys at the top of a scene, in the order in which they are listed to people.
 pub(crate) const KEYS: &[Row<Scene>] = &[
     Row {
@@ -185,7 +195,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         what: "a bundled robot",
         read: |s, spot, log| {
             s.robot = edits::name(spot, log, "the name of a bundled robot").map_or(Robot::Given, Robot::Bundled);
-            s.code.places.robot = spot.at;
+            s.code.places.robot = spot.node.at;
         },
     },
     Row {
@@ -196,7 +206,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         what: "a URDF, seen from the scene's folder; instead of `robot`",
         read: |s, spot, log| {
             s.robot = edits::name(spot, log, "the path of a URDF").map_or(Robot::Given, Robot::Urdf);
-            s.code.places.robot = spot.at;
+            s.code.places.robot = spot.node.at;
         },
     },
     Row {

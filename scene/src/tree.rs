@@ -61,7 +61,7 @@ pub struct Entry {
 
 impl Value {
     /// What it is, for a message.
-    pub(crate) fn described(&self) -> String {
+    pub fn described(&self) -> String {
         match self {
             Self::Bool(b) => b.to_string(),
             Self::Number(x) => format!("{x:?}"),

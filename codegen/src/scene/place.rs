@@ -26,7 +26,10 @@ pub(super) fn in_its_place(error: &Error, scene: &Scene) -> Option<Vec<SceneErro
     let whole = error.to_string();
     match error {
         Error::Robot(error) => error.in_scene(scene),
-        Error::UnknownFunction { found, .. } => function(found).map(|at| refused(at, "functions", whole)),
+        Error::UnknownFunction { found: name, .. }
+        | Error::Singular { function: name, .. }
+        | Error::BoundFrames { function: name, .. }
+        | Error::NoMass { function: name, .. } => function(name).map(|at| refused(at, "functions", whole)),
         // They begin with their key.
         Error::Wanted { found: name, .. } | Error::SameName { name } => function(name).map(|at| refused(at, "", whole)),
         Error::Parameter { found, .. } => {

@@ -76,6 +76,7 @@ const ALL: &str = "*";
 
 /// Reads the table `effects` into the scene.
 pub(crate) fn read(scene: &mut Scene, spot: &Spot<'_>, log: &mut Log) {
+    (scene.effects, scene.shafts) = (Vec::new(), Vec::new());
     for entry in spot.entries(log, "a table of effects") {
         let value = spot.of(entry);
         if entry.name == shaft::NAME {

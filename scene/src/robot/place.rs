@@ -48,7 +48,11 @@ pub fn by_places<E: From<SceneErrors>>(errors: Vec<E>, in_scene: impl Fn(&E) -> 
 fn place(refusal: &Refusal, scene: &Scene) -> Option<Vec<SceneError>> {
     let code = &scene.code;
     let (at, key) = match refusal.edit {
-        Edit::Append(i) => (code.append.get(i)?.place, "append".to_owned()),
+        Edit::Append(i) => {
+            let is_about_link = matches!(refusal.reason, Reason::Edit(EditError::UnknownLink { .. }));
+            let other = code.append.get(i)?;
+            (if is_about_link { other.link_place } else { other.place }, "append".to_owned())
+        }
         Edit::Payload(i) => (code.payload.get(i)?.place, "payload".to_owned()),
         Edit::Shaft(i) => scene.shafts.get(i).map(|asked| (asked.place, format!("effects.shaft.{}", asked.shaft.joint)))?,
         Edit::Lock(i) => code.lock.get(i).map(|lock| (lock.place, format!("lock.{}", lock.joint)))?,
