@@ -6,10 +6,11 @@
 use super::effects::{self, World};
 use super::workspace::Column;
 use super::{Workspace, wrenches};
+use crate::Scalar;
+use crate::joint::with_pose;
 use crate::joint::{JointLaw, Mount};
 use crate::model::Model;
 use crate::spatial::{ArticulatedInertia, Matrix3, Motion, Twist, Vector3, rate_matrix, rotate};
-use crate::{Scalar, with_pose};
 
 /// a = M(q)⁻¹·(τ − h(q, v)), in a time that grows with the number of joints.
 ///

@@ -8,10 +8,11 @@
 
 use super::Workspace;
 use super::workspace::{Column, CommonState};
+use crate::Scalar;
+use crate::joint::with_pose;
 use crate::joint::{Joint, JointLaw};
 use crate::model::{Body, Model};
 use crate::spatial::{CoriolisInertia, Matrix3, Placement, Twist, Vector3, Wrench, rotate};
-use crate::{Scalar, with_pose};
 
 /// Which axes are common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

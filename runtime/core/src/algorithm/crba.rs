@@ -3,9 +3,10 @@
 use super::Workspace;
 use super::common::{Axes, inertias, positions};
 use super::effects;
+use crate::Scalar;
+use crate::joint::with_pose;
 use crate::joint::{JointLaw, Mount};
 use crate::model::Model;
-use crate::{Scalar, with_pose};
 
 /// M(q), the mass matrix.
 ///

@@ -8,10 +8,11 @@
 
 use super::effects::{self, World};
 use super::{Workspace, wrenches};
+use crate::Scalar;
+use crate::joint::with_pose;
 use crate::joint::{JointLaw, Mount};
 use crate::model::{Body, Model, Rates};
 use crate::spatial::{Motion, rate_matrix, rates_about, rotate};
-use crate::{Scalar, with_pose};
 
 /// τ = M(q)·a + h(q, v), gravity included.
 ///

@@ -1,10 +1,11 @@
 //! External wrenches on frames.
 
 use super::Workspace;
+use crate::Scalar;
 use crate::joint::JointLaw;
+use crate::joint::with_pose;
 use crate::model::Model;
 use crate::spatial::{Reference, Vector3, Wrench};
-use crate::{Scalar, with_pose};
 
 /// The wrenches of `[frames][6]` one by one, as (body, wrench on it in its axes about its origin), added up by `add`; none for an empty slice. Wrenches on the base are
 /// left out: nothing feels them.

@@ -22,6 +22,9 @@ fn six<S: Scalar>(x: &[S], at: usize) -> Twist<S> {
 }
 
 impl<S: Scalar> JointLaw<S> for Floating<S> {
+    const NQ: usize = 7;
+    const NV: usize = 6;
+
     #[inline(always)]
     fn at(at: &Coordinates<S>, q: &[S]) -> Self {
         let q = &q[at.q..at.q + 7];

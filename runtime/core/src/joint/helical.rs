@@ -15,6 +15,9 @@ pub struct Helical<S> {
 }
 
 impl<S: Scalar> JointLaw<S> for Helical<S> {
+    const NQ: usize = 1;
+    const NV: usize = 1;
+
     #[inline(always)]
     fn at(at: &Coordinates<S>, q: &[S]) -> Self {
         Self { turn: Revolute::at(at, q), slide: Prismatic::by(at.coordinate(q) * at.pitch), pitch: at.pitch }

@@ -1,7 +1,7 @@
 //! Joints, one file each: pose, motion and torque of one kind.
 //!
 //! In a [`crate::model::Model`] a joint with an axis turns about or slides along the z-axis of its frame; the model's builder chose the
-//! frames so, and composes planar and universal joints of these. Adding a joint: a file with a type that implements [`JointLaw`], and its row in [`Joint`], [`Pose`] and `with_pose!`.
+//! frames so, and composes planar and universal joints of these. Adding a joint: a file with a type that implements [`JointLaw`], and its row in `joints!`.
 
 mod floating;
 mod helical;
@@ -24,9 +24,87 @@ use nalgebra::{Matrix3, Vector3};
 use crate::Scalar;
 use crate::spatial::{ArticulatedInertia, Motion, Placement, SpatialInertia, Twist, Wrench};
 
-/// The kinds of moving joints of a model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Joint {
+/// From one row for each kind of joint all that branches on it.
+macro_rules! joints {
+    ($dollar:tt $($(#[$doc:meta])+ $kind:ident,)+) => {
+        /// The kinds of moving joints of a model.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Joint {
+            $($(#[$doc])+ $kind,)+
+        }
+
+        impl Joint {
+            /// Number of coordinates.
+            pub fn nq(self) -> usize {
+                match self {
+                    $(Self::$kind => <$kind<f64> as JointLaw<f64>>::NQ,)+
+                }
+            }
+
+            /// Number of degrees of freedom.
+            pub fn nv(self) -> usize {
+                match self {
+                    $(Self::$kind => <$kind<f64> as JointLaw<f64>>::NV,)+
+                }
+            }
+
+            /// As [`JointLaw::unfelt`].
+            pub fn unfelt<S: Scalar>(self, inertia: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
+                match self {
+                    $(Self::$kind => $kind::unfelt(inertia),)+
+                }
+            }
+
+            /// As [`JointLaw::feels`].
+            pub fn feels<S: Scalar>(self, inertia: &SpatialInertia<S>) -> bool {
+                match self {
+                    $(Self::$kind => $kind::feels(inertia),)+
+                }
+            }
+
+            /// The joint's pose at its coordinates in `q`.
+            #[inline(always)]
+            pub fn pose<S: Scalar>(self, at: &Coordinates<S>, q: &[S]) -> Pose<S> {
+                match self {
+                    $(Self::$kind => Pose::$kind($kind::at(at, q)),)+
+                }
+            }
+        }
+
+        /// A pose of any kind of joint, to be kept between sweeps.
+        #[derive(Clone, Copy, Debug)]
+        pub enum Pose<S> {
+            $(#[doc = concat!("See [`", stringify!($kind), "`].")] $kind($kind<S>),)+
+        }
+
+        impl<S: Scalar> Pose<S> {
+            /// Where the child is its joint frame.
+            pub fn identity() -> Self {
+                Self::Prismatic(Prismatic::by(S::zero()))
+            }
+
+            /// As [`JointLaw::freedom`].
+            #[inline(always)]
+            pub fn freedom(&self, k: usize) -> Option<usize> {
+                match self {
+                    $(Self::$kind(_) => $kind::<S>::freedom(k),)+
+                }
+            }
+        }
+
+        /// Runs one expression with the pose of the kind that it is: one branch for a whole step of an algorithm.
+        macro_rules! with_pose {
+            ($dollar pose:expr, $dollar p:ident => $dollar body:expr) => {
+                match $dollar pose {
+                    $($crate::joint::Pose::$kind($dollar p) => $dollar body,)+
+                }
+            };
+        }
+        pub(crate) use with_pose;
+    };
+}
+
+joints! { $
     /// Turns about z; revolute and continuous joints.
     Revolute,
     /// Slides along z.
@@ -37,60 +115,6 @@ pub enum Joint {
     Spherical,
     /// Moves freely: position and unit quaternion (x, y, z, w); rates are the body twist.
     Floating,
-}
-
-impl Joint {
-    /// Number of coordinates.
-    pub fn nq(self) -> usize {
-        match self {
-            Joint::Revolute | Joint::Prismatic | Joint::Helical => 1,
-            Joint::Spherical => 4,
-            Joint::Floating => 7,
-        }
-    }
-
-    /// Number of degrees of freedom.
-    pub fn nv(self) -> usize {
-        match self {
-            Joint::Revolute | Joint::Prismatic | Joint::Helical => 1,
-            Joint::Spherical => 3,
-            Joint::Floating => 6,
-        }
-    }
-
-    /// As [`JointLaw::unfelt`].
-    pub fn unfelt<S: Scalar>(self, inertia: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
-        match self {
-            Joint::Revolute => Revolute::unfelt(inertia),
-            Joint::Prismatic => Prismatic::unfelt(inertia),
-            Joint::Helical => Helical::unfelt(inertia),
-            Joint::Spherical => Spherical::unfelt(inertia),
-            Joint::Floating => Floating::unfelt(inertia),
-        }
-    }
-
-    /// As [`JointLaw::feels`].
-    pub fn feels<S: Scalar>(self, inertia: &SpatialInertia<S>) -> bool {
-        match self {
-            Joint::Revolute => Revolute::feels(inertia),
-            Joint::Prismatic => Prismatic::feels(inertia),
-            Joint::Helical => Helical::feels(inertia),
-            Joint::Spherical => Spherical::feels(inertia),
-            Joint::Floating => Floating::feels(inertia),
-        }
-    }
-
-    /// The joint's pose at its coordinates in `q`.
-    #[inline(always)]
-    pub fn pose<S: Scalar>(self, at: &Coordinates<S>, q: &[S]) -> Pose<S> {
-        match self {
-            Joint::Revolute => Pose::Revolute(Revolute::at(at, q)),
-            Joint::Prismatic => Pose::Prismatic(Prismatic::at(at, q)),
-            Joint::Helical => Pose::Helical(Helical::at(at, q)),
-            Joint::Spherical => Pose::Spherical(Spherical::at(at, q)),
-            Joint::Floating => Pose::Floating(Floating::at(at, q)),
-        }
-    }
 }
 
 /// Where a joint's numbers are in the vectors q and v, and how it follows another joint if it does.
@@ -205,6 +229,11 @@ impl<S: Scalar> Coordinates<S> {
 
 /// What an algorithm asks of a joint, at one pose. "Joint frame" is the frame fixed in the parent, "child" the one that moves.
 pub trait JointLaw<S: Scalar>: Copy {
+    /// Number of coordinates.
+    const NQ: usize;
+    /// Number of degrees of freedom.
+    const NV: usize;
+
     /// The pose at the joint's coordinates in `q`.
     fn at(at: &Coordinates<S>, q: &[S]) -> Self;
 
@@ -247,52 +276,4 @@ pub trait JointLaw<S: Scalar>: Copy {
 
     /// Whether the joint moves mass of a child of this inertia, alone in one of its directions at least.
     fn feels(inertia: &SpatialInertia<S>) -> bool;
-}
-
-/// A pose of any kind of joint, to be kept between sweeps.
-#[derive(Clone, Copy, Debug)]
-pub enum Pose<S> {
-    /// See [`Revolute`].
-    Revolute(Revolute<S>),
-    /// See [`Prismatic`].
-    Prismatic(Prismatic<S>),
-    /// See [`Helical`].
-    Helical(Helical<S>),
-    /// See [`Spherical`].
-    Spherical(Spherical<S>),
-    /// See [`Floating`].
-    Floating(Floating<S>),
-}
-
-impl<S: Scalar> Pose<S> {
-    /// Where the child is its joint frame.
-    pub fn identity() -> Self {
-        Self::Prismatic(Prismatic::by(S::zero()))
-    }
-
-    /// As [`JointLaw::freedom`].
-    #[inline(always)]
-    pub fn freedom(&self, k: usize) -> Option<usize> {
-        match self {
-            Self::Revolute(_) => Revolute::<S>::freedom(k),
-            Self::Prismatic(_) => Prismatic::<S>::freedom(k),
-            Self::Helical(_) => Helical::<S>::freedom(k),
-            Self::Spherical(_) => Spherical::<S>::freedom(k),
-            Self::Floating(_) => Floating::<S>::freedom(k),
-        }
-    }
-}
-
-/// Runs one expression with the pose of the kind that it is: one branch for a whole step of an algorithm.
-#[macro_export]
-macro_rules! with_pose {
-    ($pose:expr, $p:ident => $body:expr) => {
-        match $pose {
-            $crate::joint::Pose::Revolute($p) => $body,
-            $crate::joint::Pose::Prismatic($p) => $body,
-            $crate::joint::Pose::Helical($p) => $body,
-            $crate::joint::Pose::Spherical($p) => $body,
-            $crate::joint::Pose::Floating($p) => $body,
-        }
-    };
 }

@@ -31,6 +31,9 @@ impl<S: Scalar> Prismatic<S> {
 }
 
 impl<S: Scalar> JointLaw<S> for Prismatic<S> {
+    const NQ: usize = 1;
+    const NV: usize = 1;
+
     #[inline(always)]
     fn at(at: &Coordinates<S>, q: &[S]) -> Self {
         Self { shift: at.coordinate(q) }

@@ -22,6 +22,9 @@ impl<S> Revolute<S> {
 }
 
 impl<S: Scalar> JointLaw<S> for Revolute<S> {
+    const NQ: usize = 1;
+    const NV: usize = 1;
+
     #[inline(always)]
     fn at(at: &Coordinates<S>, q: &[S]) -> Self {
         let (sin, cos) = at.turned(q);

@@ -20,6 +20,9 @@ fn three<S: Scalar>(x: &[S], at: usize) -> Vector3<S> {
 }
 
 impl<S: Scalar> JointLaw<S> for Spherical<S> {
+    const NQ: usize = 4;
+    const NV: usize = 3;
+
     #[inline(always)]
     fn at(at: &Coordinates<S>, q: &[S]) -> Self {
         let q = &q[at.q..at.q + 4];

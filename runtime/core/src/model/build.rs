@@ -12,9 +12,9 @@ use super::leaders::leads;
 use super::{Body, FLOATING_BASE, Frame, GRAVITY, JointInfo, Model, Rates};
 use crate::description::{self, Base, Description, Inertial, JointKind, Mimic, Origin};
 use crate::effect::Effects;
+use crate::joint::with_pose;
 use crate::joint::{Angle, Coordinates, Follow, Joint, JointLaw};
 use crate::spatial::{Placement, Reference, SpatialInertia, from_rpy, nearest_rotation, to_z_axis};
-use crate::with_pose;
 
 /// Why a description is not a model. Of a description that the URDF reader accepted: numbers that are too large together ([`Self::TooLarge`]), and a joint of the name of a floating base's.
 #[derive(Clone, Debug, PartialEq)]

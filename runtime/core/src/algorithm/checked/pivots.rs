@@ -9,10 +9,11 @@ use super::super::aba::articulated_body_with_wrenches;
 use super::super::forward_dynamics::forward_dynamics_with_wrenches;
 use super::super::workspace::Column;
 use super::{Measure, Singular, finite, least_pivot};
+use crate::Scalar;
 use crate::joint::JointLaw;
+use crate::joint::with_pose;
 use crate::model::{Body, Model};
 use crate::spatial::{ArticulatedInertia, SpatialInertia, Twist, Wrench};
-use crate::{Scalar, with_pose};
 
 /// a = M(q)⁻¹·(τ − h(q, v)), or the joint at which M is singular to working precision.
 ///

@@ -1,14 +1,15 @@
 //! Effects on frames of bodies.
 
 use super::{World, any_on_bodies, on_body, station};
+use crate::Scalar;
 use crate::algorithm::Workspace;
 use crate::algorithm::common::{Axes, on_the_way, positions};
 use crate::algorithm::wrenches::place_bodies;
 use crate::effect::Law;
+use crate::joint::with_pose;
 use crate::joint::{JointLaw, Mount};
 use crate::model::Model;
 use crate::spatial::{ArticulatedInertia, Matrix3, Twist, Vector3, Wrench, rotate_back};
-use crate::{Scalar, with_pose};
 
 /// Twists of all bodies in their own axes, into the common states; poses, origins and angular velocities are known.
 fn body_twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, v: &[S]) {
