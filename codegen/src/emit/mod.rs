@@ -1,40 +1,16 @@
 //! From graphs to Rust.
+//!
+//! A module (`module`) has functions (`function`), which are statements (`statements`) that keep values in memory (`memory`) and write results (`written`); `batch` has functions of many states.
 
-mod across;
-mod apart;
-mod bare;
 mod batch;
-mod chunks;
-mod columns;
-mod derivatives;
-mod dialect;
-mod flat;
 mod function;
-mod header;
-mod levels;
-mod literal;
+mod memory;
 mod module;
-mod names;
-mod order;
-mod pairs;
-mod plain;
-mod registers;
-mod results;
-mod rows;
-mod sets;
-mod several;
-mod signature;
-mod spill;
-mod style;
-mod together;
-mod used;
-mod vector;
-mod warnings;
+mod statements;
 mod written;
-mod zeros;
 
-pub use names::identifier;
+pub use module::names::identifier;
 
 pub(crate) use module::module;
-pub(crate) use names::{Names, is_name};
-pub(crate) use warnings::warnings;
+pub(crate) use module::names::{Names, is_name};
+pub(crate) use module::warnings::warnings;

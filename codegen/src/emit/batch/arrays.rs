@@ -2,7 +2,7 @@
 
 use articulated_core::algorithm::{Dim, Shape};
 
-use super::super::signature::Signature;
+use crate::emit::function::signature::Signature;
 
 /// An argument or a result, one for each state.
 pub(super) struct Array {

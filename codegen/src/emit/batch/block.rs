@@ -1,8 +1,8 @@
 //! A graph as statements on a part of a block of states.
 
-use super::super::dialect::Dialect;
-use super::super::order::Angle;
-use super::super::vector::Vector;
+use crate::emit::statements::dialect::Dialect;
+use crate::emit::statements::order::Angle;
+use crate::emit::statements::vector::Vector;
 use crate::graph::{Node, NodeId, Op};
 
 /// Functions on vectors, to and from blocks.

@@ -2,7 +2,7 @@
 
 use articulated_core::lanes::Set;
 
-use super::super::sets::HAS_AVX2;
+use crate::emit::module::sets::HAS_AVX2;
 
 /// An instruction set as batches use it.
 pub(super) struct Way {

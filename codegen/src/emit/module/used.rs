@@ -1,0 +1,184 @@
+//! Functions of a module's text that others call: what nobody calls would be checked by each compiler all the same, and read by whoever reads the code.
+
+use std::cell::RefCell;
+use std::collections::{HashMap, HashSet};
+
+/// A text that calls functions, and which names were found in it.
+pub(crate) struct Caller {
+    text: String,
+    known: RefCell<HashMap<String, bool>>,
+}
+
+impl Caller {
+    pub(crate) fn new(text: impl Into<String>) -> Self {
+        Self { text: text.into(), known: RefCell::default() }
+    }
+
+    /// Whether the name stands in the text, as a word.
+    pub(crate) fn names(&self, name: &str) -> bool {
+        let alone = |at: usize| !self.text[..at].ends_with(in_word) && !self.text[at + name.len()..].starts_with(in_word);
+        let look = || self.text.match_indices(name).any(|(at, _)| alone(at));
+        *self.known.borrow_mut().entry(name.to_owned()).or_insert_with(look)
+    }
+}
+
+/// A function in a text: its name and its lines, attributes and comments above it included.
+struct Item<'a> {
+    name: &'a str,
+    first: usize,
+    last: usize,
+}
+
+/// The text without functions that the caller does not name, nor one that it names. Modules inside of it count as one with it.
+pub(crate) fn used(text: &str, caller: &Caller) -> String {
+    let lines: Vec<&str> = text.lines().collect();
+    let items = items(&lines);
+    let live = live(&lines, &items, items.iter().map(|item| item.name).filter(|name| caller.names(name)).collect());
+    let mut kept = vec![true; lines.len()];
+    items.iter().filter(|item| !live.contains(item.name)).for_each(|item| kept[item.first..=item.last].fill(false));
+    // Another name for a function that is not there any more.
+    let gone = |line: &str| renamed(line).is_some_and(|(name, _)| items.iter().any(|item| item.name == name) && !live.contains(name));
+    lines.iter().zip(&mut kept).filter(|(line, _)| gone(line)).for_each(|(_, kept)| *kept = false);
+    let rest: Vec<&str> = lines.iter().zip(kept).filter(|(_, kept)| *kept).map(|(line, _)| *line).collect();
+    without_gaps(&rest).iter().map(|line| format!("{line}\n")).collect()
+}
+
+/// The lines without blocks that hold nothing, and without empty lines at the ends of blocks or behind one another.
+fn without_gaps<'a>(lines: &[&'a str]) -> Vec<&'a str> {
+    let mut kept: Vec<&str> = Vec::new();
+    for line in lines {
+        if line.trim() == "}" && kept.last().is_some_and(|last| last.is_empty()) {
+            kept.pop();
+        }
+        let before = kept.last().copied().unwrap_or_default();
+        if line.trim() == "}" && before.ends_with("! {") {
+            kept.pop();
+        } else if !line.is_empty() || !(before.is_empty() || before.ends_with('{')) {
+            kept.push(line);
+        }
+    }
+    kept
+}
+
+/// Names of functions that are needed: the first ones, and whatever stands in the text of one that is needed.
+fn live<'a>(lines: &[&'a str], items: &[Item<'a>], first: Vec<&'a str>) -> HashSet<&'a str> {
+    let mut bodies: HashMap<&str, Vec<&'a str>> = HashMap::new();
+    for item in items {
+        bodies.entry(item.name).or_default().extend(lines[item.first..=item.last].iter().flat_map(|line| words(line)));
+    }
+    for (name, other) in lines.iter().filter_map(|line| renamed(line)) {
+        bodies.entry(other).or_default().push(name);
+    }
+    let mut live: HashSet<&str> = HashSet::new();
+    let mut open = first;
+    while let Some(name) = open.pop() {
+        if let Some(body) = bodies.get(name)
+            && live.insert(name)
+        {
+            open.extend(body);
+        }
+    }
+    live
+}
+
+/// The functions, in their order; one inside of another is part of it.
+fn items<'a>(lines: &[&'a str]) -> Vec<Item<'a>> {
+    let mut items: Vec<Item> = Vec::new();
+    let mut next = 0;
+    while next < lines.len() {
+        if let Some(name) = declared(lines[next]) {
+            let above =
+                lines[..next].iter().rev().take_while(|line| ["#[", "//"].iter().any(|mark| line.trim_start().starts_with(mark))).count();
+            let last = end(lines, next);
+            items.push(Item { name, first: next - above, last });
+            next = last;
+        }
+        next += 1;
+    }
+    items
+}
+
+/// The name of the function that begins in a line.
+fn declared(line: &str) -> Option<&str> {
+    let rest = line.trim_start();
+    let rest = rest.strip_prefix("pub(super) ").unwrap_or(rest);
+    let rest = rest.strip_prefix("extern \"C\" ").unwrap_or(rest);
+    words(rest.strip_prefix("fn ")?).next()
+}
+
+/// The line in which the braces that open from `first` on are closed.
+fn end(lines: &[&str], first: usize) -> usize {
+    let mut depth = 0;
+    for (k, line) in lines.iter().enumerate().skip(first) {
+        depth += line.matches('{').count();
+        depth -= line.matches('}').count().min(depth);
+        if depth == 0 && line.contains('}') {
+            return k;
+        }
+    }
+    lines.len() - 1
+}
+
+/// `use self::name as other;`
+fn renamed(line: &str) -> Option<(&str, &str)> {
+    line.trim().strip_prefix("use self::")?.strip_suffix(';')?.split_once(" as ")
+}
+
+fn in_word(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
+}
+
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c| !in_word(c)).filter(|word| !word.is_empty())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use articulated_core::lanes::{Real, Set, source};
+
+    const TEXT: &str = "\
+type V = f64;
+
+some! {
+    pub(super) fn a(x: V) -> V {
+        b(x)
+    }
+
+    // Of no use.
+    #[inline]
+    pub(super) extern \"C\" fn c(x: V) -> V {
+        if x > 0.0 { a(x) } else { x }
+    }
+}
+
+use self::d as b;
+
+fn d(x: V) -> V {
+    x
+}
+";
+
+    #[test]
+    fn what_is_called_stays_and_all_else_goes() {
+        let expected = TEXT.replace("\n    // Of no use.\n    #[inline]\n    pub(super) extern \"C\" fn c(x: V) -> V {\n        if x > 0.0 { a(x) } else { x }\n    }\n", "");
+        assert_eq!(used(TEXT, &Caller::new("x = a(y); // and not abc, nor _c")), expected);
+        assert_eq!(used(TEXT, &Caller::new("c(y)")), TEXT);
+        assert_eq!(used(TEXT, &Caller::new("abc, _a and a_")), "type V = f64;\n\n");
+    }
+
+    #[test]
+    fn all_functions_of_the_lanes_are_found() {
+        for set in [Set::Portable, Set::Sse2, Set::Avx2, Set::Neon] {
+            let text = source(set, Real::F64, 4).unwrap();
+            let lines: Vec<&str> = text.lines().collect();
+            let found = items(&lines);
+            let inside = lines.iter().filter(|line| line.contains("fn ") && !line.trim_start().starts_with("//")).count();
+            assert_eq!(found.len(), inside, "{set:?}");
+            let names: Vec<&str> = found.iter().map(|item| item.name).collect();
+            let lines_of = |text: &str| text.lines().filter(|line| !line.is_empty()).map(String::from).collect::<Vec<_>>();
+            assert_eq!(lines_of(&used(&text, &Caller::new(names.join(" ")))), lines_of(&text), "{set:?}");
+            assert!(used(&text, &Caller::new("{sin_cos}")).lines().count() < lines.len() * 3 / 4, "{set:?}");
+        }
+    }
+}
