@@ -217,6 +217,22 @@ EACH_BLOCKS            let whole = n / Lanes::LEN;
             let mut out_blocks = vec![mark_block; whole];
             batch::NAME_blocks(EACH_BLOCK&mut out_blocks).unwrap();
             same(\"blocks\", &of_blocks(&out_blocks), &in_blocks::<REAL, _>(&out, Lanes::LEN));
+            // States into blocks and back, however many; what fills the last block is its last state.
+            for len in 0..=2 * Lanes::LEN + 1 {
+                let states: Vec<[REAL; 3]> = (0..len).map(|i| [i as REAL, -1.0, 0.5 + i as REAL]).collect();
+                let mut packed = vec![[Lanes::ZERO; 3]; Lanes::blocks(len)];
+                Lanes::pack(&states, &mut packed).unwrap();
+                for (i, number) in packed.iter().flat_map(|block| (0..Lanes::LEN).map(|i| block[2].0[i])).enumerate() {
+                    assert_eq!(number, states[i.min(len - 1)][2]);
+                }
+                let mut back = vec![[MARK as REAL; 3]; len];
+                Lanes::unpack(&packed, &mut back).unwrap();
+                assert_eq!(back, states);
+                let (found, expected) = (packed.len() + 1, packed.len());
+                packed.push([Lanes::ZERO; 3]);
+                let wrong = Err(LengthError { argument: \"blocks\", found, expected });
+                assert_eq!([Lanes::pack(&states, &mut packed), Lanes::unpack(&packed, &mut back)], [wrong, wrong]);
+            }
             // A slice that is too short is refused, whichever it is, and nothing is written.
             (out, out_blocks) = (vec![mark; n], vec![mark_block; whole]);
 WRONG_LENGTHS            let written: Vec<f64> = numbers(&out).into_iter().chain(of_blocks(&out_blocks)).collect();

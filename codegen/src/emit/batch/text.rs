@@ -122,16 +122,47 @@ pub(super) const PUBLIC: &str = "\
         pub const LEN: usize = BLOCK;
         /// Zero in every state.
         pub const ZERO: Self = Self([0.0; BLOCK]);
+
+        /// How many blocks so many states take.
+        pub const fn blocks(states: usize) -> usize {
+            states.div_ceil(Self::LEN)
+        }
+
+        /// Puts states into blocks: number k of state `LEN`·b + i is `blocks[b][k].0[i]`. The last block is filled up with its last state.
+        ///
+        /// # Errors
+        /// If there are not [`Lanes::blocks`] of the states: nothing is written.
+        pub fn pack<const N: usize>(states: &[[REAL; N]], blocks: &mut [[Self; N]]) -> ::core::result::Result<(), LengthError> {
+            LengthError::unless(\"blocks\", blocks.len(), Self::blocks(states.len()))?;
+            for (states, block) in ::core::iter::Iterator::zip(states.chunks(Self::LEN), blocks) {
+                for (k, lanes) in ::core::iter::Iterator::enumerate(block.iter_mut()) {
+                    *lanes = Self(::core::array::from_fn(|i| states[if i < states.len() { i } else { states.len() - 1 }][k]));
+                }
+            }
+            ::core::result::Result::Ok(())
+        }
+
+        /// The way back: what of the blocks are states.
+        ///
+        /// # Errors
+        /// As [`Lanes::pack`].
+        pub fn unpack<const N: usize>(blocks: &[[Self; N]], states: &mut [[REAL; N]]) -> ::core::result::Result<(), LengthError> {
+            LengthError::unless(\"blocks\", blocks.len(), Self::blocks(states.len()))?;
+            for (i, state) in ::core::iter::Iterator::enumerate(states.iter_mut()) {
+                *state = ::core::array::from_fn(|k| blocks[i / Self::LEN][k].0[i % Self::LEN]);
+            }
+            ::core::result::Result::Ok(())
+        }
     }
 
-    /// Slices of different lengths.
+    /// Slices whose lengths do not go together.
     #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq, ::core::cmp::Eq)]
     pub struct LengthError {
         /// Which argument.
         pub argument: &'static str,
         /// How long it is.
         pub found: usize,
-        /// How long the first one is.
+        /// How long it has to be, by the first one.
         pub expected: usize,
     }
 
@@ -143,7 +174,7 @@ pub(super) const PUBLIC: &str = "\
 
     impl ::core::fmt::Display for LengthError {
         fn fmt(&self, f: &mut ::core::fmt::Formatter<'_>) -> ::core::fmt::Result {
-            ::core::write!(f, \"argument {}: found {} states, expected {} as in the first argument\", self.argument, self.found, self.expected)
+            ::core::write!(f, \"argument {}: found a length of {}, expected {}\", self.argument, self.found, self.expected)
         }
     }
 
