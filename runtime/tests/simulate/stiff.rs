@@ -1,7 +1,7 @@
 //! Stiff effects: implicit steps decay without a change of sign, explicit ones refuse and say which step they can take.
 
 use articulated::effect::{Applied, EffectId};
-use articulated::simulate::{IntegratorId, Output, Pd, Settings, SimulateError, Simulation, Stiffness};
+use articulated::simulate::{Hold, IntegratorId, NoTorque, Output, Pd, Settings, SimulateError, Simulation, Stiffness};
 use articulated::{Base, Model, Origin};
 
 use crate::robots::{apart, free, one_joint, stepping, to};
@@ -51,6 +51,23 @@ fn explicit_steps_beyond_stability_are_refused_with_the_one_that_is_not() {
             let motion = free(&robot, &stepping(integrator, 0.2, 0.97 * admissible), &[1e-3], &[0.1]).unwrap();
             assert!(motion.v.last().unwrap().abs() <= 1.5, "{integrator}: {motion:?}");
         }
+    }
+}
+
+/// What steps are made counts, and not what steps are asked for: none is longer than from sample to sample, or than the motion.
+#[test]
+fn steps_that_a_sample_or_the_end_cuts_short_are_not_refused() {
+    let robot = with(EffectId::damping, vec![100.0]);
+    for integrator in [IntegratorId::semi_implicit_euler, IntegratorId::rk4, IntegratorId::dopri5, IntegratorId::dop853] {
+        assert!(free(&robot, &stepping(integrator, 0.01, 1.0), &[0.0], &[1.0]).is_ok(), "{integrator}");
+        let mut hold = Hold::new(NoTorque, 0.01).unwrap();
+        let mut simulation = Simulation::new(&robot, stepping(integrator, 1.0, 0.1)).unwrap();
+        let motion = simulation.run(&[0.0], &[1.0], &mut hold, &mut []).unwrap();
+        assert!(motion.v.last().unwrap().abs() < 1e-20, "{integrator}: {motion:?}");
+        let mut slow = Hold::new(NoTorque, 0.07).unwrap();
+        let error = simulation.run(&[0.0], &[1.0], &mut slow, &mut []).unwrap_err();
+        let SimulateError::Unstable { step, .. } = error else { panic!("{integrator}: {error}") };
+        assert!((step - 0.07).abs() < 1e-12, "{integrator}: {step}");
     }
 }
 

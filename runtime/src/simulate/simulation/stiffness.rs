@@ -13,6 +13,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         if counts.stiff_at.is_some() || !self.stability.due(counts.steps, &self.y[nv..2 * nv]) {
             return Ok(());
         }
+        let h = self.longest_step(run, h);
         let here = (self.t, &self.y[..], &self.f[..]);
         let found = self.stability.exceeded(&mut self.system, run.control, &*self.method, here, h)?;
         self.refuse(h, found)
@@ -20,7 +21,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
 
     /// The same where the last step saw something fast, on its way.
     pub(super) fn check_suspect(&mut self, run: &mut Run) -> Result<(), SimulateError> {
-        let Some(h) = self.settings.step else { return Ok(()) };
+        let Some(h) = self.settings.step.map(|h| self.longest_step(run, h)) else { return Ok(()) };
         for place in 0..2 {
             let Some((rate, suspects)) = self.method.fastest() else { return Ok(()) };
             let suspect = suspects[place];
@@ -33,6 +34,11 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
             self.refuse(h, found)?;
         }
         Ok(())
+    }
+
+    /// A stretch of time that is shorter than the steps that are asked for is one step.
+    fn longest_step(&self, run: &Run, asked: f64) -> f64 {
+        asked.min(self.stretch_end(run) - run.stretch.0)
     }
 
     fn refuse(&mut self, h: f64, found: Option<(f64, f64)>) -> Result<(), SimulateError> {
