@@ -4,6 +4,7 @@ use std::cell::Cell;
 use std::rc::Rc;
 
 use articulated::Dynamics;
+use articulated::effect::unit;
 use articulated::simulate::{Action, ContactPoint, Direction, Event, Impact, SimulateError};
 use articulated_scene::{Impact as Asked, When};
 
@@ -42,7 +43,8 @@ impl Ball {
             When::Time(at) => Event::new(asked.link.clone(), move |t, _, _| t - at),
             When::Ball(place) => {
                 let (mut ws, mut out) = (robot.workspace(), vec![0.0; 12 * robot.shape().frames]);
-                let (point, n, ball) = (asked.point, asked.normal, self.clone());
+                // The blow was made with it, so it has a direction.
+                let (point, n, ball) = (asked.point, unit(asked.normal).unwrap_or(asked.normal), self.clone());
                 // n·(p − ball) with p = x + R r
                 Event::new(asked.link.clone(), move |_, q: &[f64], _| match robot.placements(&mut ws, q, &mut out) {
                     // Nobody looks for a ball that is gone.

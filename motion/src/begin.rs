@@ -4,7 +4,7 @@ use std::fmt;
 
 use articulated::Dynamics;
 use articulated_core::Plain;
-use articulated_core::effect::{Applied, EffectId};
+use articulated_core::effect::{Applied, EffectId, unit};
 use articulated_scene::Controller;
 
 use crate::error::MotionErrors;
@@ -80,10 +80,9 @@ impl Stage {
         }
         let sunk = |contact: &Applied| {
             let frame = self.model.frames.iter().position(|frame| frame.name == contact.on)?;
-            let (x, r, normal) = (&places[12 * frame..][..12], contact.at.xyz, field(contact, "normal"));
+            let (x, r, normal) = (&places[12 * frame..][..12], contact.at.xyz, unit(field(contact, "normal").try_into().ok()?)?);
             let centre = |k: usize| x[9 + k] + (0..3).map(|c| x[3 * k + c] * r[c]).sum::<f64>();
-            let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
-            let depth = field(contact, "height").first()? - (0..3).map(|k| normal[k] / length * centre(k)).sum::<f64>();
+            let depth = field(contact, "height").first()? - (0..3).map(|k| normal[k] * centre(k)).sum::<f64>();
             (depth > 0.0).then(|| Sunk { file: self.scene.file.clone(), link: contact.on.clone(), depth })
         };
         self.effects_of(EffectId::contact).filter_map(sunk).collect()

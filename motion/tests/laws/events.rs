@@ -46,6 +46,15 @@ fn a_blow_and_a_limit_are_found_and_told() {
 }
 
 #[test]
+fn a_blow_does_not_depend_on_the_length_of_its_normal() {
+    for normal in ["5e-324", "1e-200", "1.7e308"] {
+        let outcome = moved(&stage(&BLOW.replace("[2.0, 0.0", &format!("[{normal}, 0.0")), CART));
+        assert!((outcome.happenings[0].t - 0.2).abs() < 1e-9, "{normal}: {:?}", outcome.happenings[0]);
+        assert_eq!(words(&outcome)[0], "cart hits the ball, which leaves at 4.3200 m/s");
+    }
+}
+
+#[test]
 fn a_motion_stops_where_a_blow_ends_it() {
     let stage = stage(&format!("{BLOW}stop = true\n"), CART);
     let outcome = moved(&stage);
@@ -237,7 +246,7 @@ fn a_sphere_that_starts_with_its_centre_under_the_plane_is_told() {
 /// A normal is a direction; the height is counted in metres along it.
 #[test]
 fn how_far_a_sphere_is_under_the_plane_does_not_depend_on_the_length_of_the_normal() {
-    for normal in ["[0, 0, 1]", "[0, 0, 2]", "[0, 0, 0.1]"] {
+    for normal in ["[0, 0, 1]", "[0, 0, 2]", "[0, 0, 0.1]", "[0, 0, 1e-200]", "[0, 0, 1e200]"] {
         let contact =
             format!("radius = 0.1, stiffness = 1e3, damping = 0.1, friction = 0.5, normal = {normal}, height = 0.1, xyz = [0, 0, 0.09]");
         let stage = stage(&format!("effects = {{ contact = {{ cart = {{ {contact} }} }} }}"), CART);

@@ -101,3 +101,15 @@ fn all_that_is_wrong_with_a_blow_or_a_contact_is_said_at_once() {
     assert!(Impact::new(&robot, at(next - 1, [0.0; 3], [0.0, 0.0, 1.0]), 1.0, 0.5).is_ok());
     assert!(Impact::new(&robot, at(next, [0.0; 3], [0.0, 0.0, 1.0]), 1.0, 0.5).is_err());
 }
+
+/// Of such a normal no number says the length.
+#[test]
+fn a_contact_is_found_whatever_the_length_of_its_normal() {
+    let robot = model("ball", Base::Fixed);
+    let met = |length: f64| {
+        let contact = Event::contact("touch", &robot, at(1, [0.0; 3], [0.0, length, length]), 0.05, 0.2).unwrap();
+        let mut simulation = Simulation::new(&robot, to(IntegratorId::dopri5, 1.0, 1e-9)).unwrap();
+        simulation.run(&[1.0], &[0.0], &mut NoTorque, &mut [contact]).unwrap().events[0].t
+    };
+    assert_eq!([5e-324, 1e-310, f64::MAX].map(met), [met(1.0); 3]);
+}

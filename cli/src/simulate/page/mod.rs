@@ -7,6 +7,7 @@ mod track;
 use articulated_core::algorithm::FunctionError;
 use articulated_core::description::{Base, Description};
 use articulated_core::dynamics::Dynamics;
+use articulated_core::effect::unit;
 use articulated_core::model::Model;
 use articulated_core::spatial::Placement;
 use nalgebra::Vector3;
@@ -157,10 +158,10 @@ impl Space {
     fn of(figure: &Figure, placements: &[Placement<f64>], setting: &Setting<'_>) -> Self {
         let gravity = setting.model.gravity;
         let up = match setting.ground {
-            Some((normal, _)) => Vector3::from(normal).normalize(),
-            None if gravity.norm() > 0.0 => -gravity.normalize(),
-            None => Vector3::z(),
+            Some((normal, _)) => unit(normal),
+            None => unit((-gravity).into()),
         };
+        let up = up.map_or_else(Vector3::z, Vector3::from);
         let moving = figure.frames.len();
         let points: Vec<_> = (0..=moving).map(|body| figure.points(body)).collect();
         let still = points[0].iter().map(|(p, r)| (*p, *r));

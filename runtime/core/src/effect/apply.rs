@@ -197,9 +197,9 @@ fn normalised(effect: EffectId, parameters: &[f64]) -> Vec<f64> {
     if effect == EffectId::contact {
         let at = start(effect.row(), "normal");
         let normal = &mut parameters[at..at + 3];
-        let largest = normal.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        let length = largest * libm::sqrt(normal.iter().map(|x| x / largest * (x / largest)).sum());
-        normal.iter_mut().for_each(|x| *x /= length);
+        if let Some(unit) = super::unit([normal[0], normal[1], normal[2]]) {
+            normal.copy_from_slice(&unit);
+        }
     }
     parameters
 }
@@ -317,5 +317,8 @@ mod tests {
             effects[0].parameters[5..8].to_vec()
         };
         assert_eq!([normal([0.0, 3.0, 4.0]), normal([0.0, 3e-200, -4e-200])], [[0.0, 0.6, 0.8], [0.0, 0.6, -0.8]]);
+        // Of which no number says the length.
+        assert_eq!(normal([0.0, -f64::MAX, f64::MAX]), normal([0.0, -5e-324, 5e-324]));
+        assert_eq!(normal([0.0, -f64::MAX, f64::MAX]), normal([0.0, -1.0, 1.0]));
     }
 }

@@ -20,6 +20,7 @@ mod places;
 mod range;
 mod spring;
 mod station;
+mod unit;
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -28,6 +29,7 @@ use core::marker::PhantomData;
 pub use apply::{EffectError, EffectErrors, Fault};
 pub use range::{Range, Rule};
 pub use station::Station;
+pub use unit::unit;
 
 use crate::Scalar;
 use crate::description::Origin;

@@ -2,8 +2,9 @@
 
 use articulated_core::algorithm::check_length;
 use articulated_core::dynamics::Dynamics;
+use articulated_core::effect::unit;
 
-use super::{Action, ContactPoint, Points, length, value, wrong_place};
+use super::{Action, ContactPoint, Points, value, wrong_place};
 use crate::simulate::{SimulateError, StateError};
 
 /// A blow along a normal, without friction:
@@ -45,7 +46,6 @@ impl<'r, R: Dynamics<f64>> Impact<'r, R> {
     /// At a point whose normal leads to the ball; the ball's mass, kg; the coefficient of restitution, from 0 to 1. Errors: all numbers that cannot be used, at once.
     pub fn new(robot: &'r R, at: ContactPoint, mass: f64, restitution: f64) -> Result<Self, SimulateError> {
         let ContactPoint { frame, point, normal } = at;
-        let length = length(normal);
         let wrong_mass = value("mass of the ball", mass, "finite, greater than 0, kg", mass > 0.0);
         let wrong_restitution = value("restitution", restitution, "from 0 to 1", (0.0..=1.0).contains(&restitution));
         StateError::none(wrong_place(robot, &at).chain(wrong_mass).chain(wrong_restitution))?;
@@ -53,7 +53,7 @@ impl<'r, R: Dynamics<f64>> Impact<'r, R> {
         let (nv, vectors) = (shape.nv, || vec![0.0; shape.nv]);
         let jacobians = vec![0.0; 6 * nv * shape.frames];
         let (row, response) = (vectors(), vectors());
-        let mut impact = Self { points, point, normal: normal.map(|n| n / length), mass, restitution, jacobians, row, response };
+        let mut impact = Self { points, point, normal: unit(normal).unwrap_or(normal), mass, restitution, jacobians, row, response };
         impact.strike(&vec![0.5; shape.nq], &mut vectors(), 0.0)?;
         Ok(impact)
     }

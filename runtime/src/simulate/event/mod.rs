@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use articulated_core::algorithm::Shape;
 use articulated_core::dynamics::Dynamics;
+use articulated_core::effect::unit;
 
 pub use impact::{Impact, Struck};
 
@@ -167,13 +168,13 @@ impl<'a> Event<'a> {
         R::Workspace: 'a,
     {
         let ContactPoint { frame, point, normal } = at;
-        let length = length(normal);
         let finite = [("radius", radius, "finite, m"), ("height", height, "finite, m")];
         let values = finite.map(|(what, found, right)| value(what, found, right, true));
         StateError::none(wrong_place(robot, &at).chain(values.into_iter().flatten()))?;
+        let normal = unit(normal).unwrap_or(normal);
         let mut place = Points::new(robot, frame)?;
         let g = move |_: f64, q: &[f64], _: &[f64]| match place.point(q, point) {
-            Ok(x) => x.iter().zip(normal).map(|(x, n)| x * n).sum::<f64>() / length - height - radius,
+            Ok(x) => x.iter().zip(normal).map(|(x, n)| x * n).sum::<f64>() - height - radius,
             Err(_) => f64::NAN, // it was tried when this was made
         };
         Ok(Self::new(name, g).falling())
@@ -185,9 +186,9 @@ impl<'a> Event<'a> {
     }
 }
 
-/// Of any vector: squares of its numbers may be more or less than a number can say.
+/// To say what is wrong with a normal: its length, or 1 for one with a direction, whose length may be more than a number can say.
 fn length(normal: [f64; 3]) -> f64 {
-    normal.iter().fold(0.0_f64, |length, n| length.hypot(*n))
+    unit(normal).map_or_else(|| normal.iter().fold(0.0_f64, |length, n| length.hypot(*n)), |_| 1.0)
 }
 
 /// A number that is not finite, or not otherwise `fit`.
