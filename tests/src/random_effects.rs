@@ -3,7 +3,7 @@
 use articulated_core::description::Origin;
 use articulated_core::effect::{Applied, EffectId, On, effects};
 use articulated_core::joint::Joint;
-use articulated_core::model::Model;
+use articulated_core::model::{FLOATING_BASE, Model};
 
 use crate::random::Random;
 
@@ -33,6 +33,7 @@ fn can_have(model: &Model<f64>, effect: EffectId, i: usize) -> bool {
     let ball = |i: usize| matches!(model.bodies[i].joint, Joint::Spherical | Joint::Floating);
     let follows = model.bodies[i].coordinates.mimic.is_some();
     match effect {
+        _ if model.bodies[i].name == FLOATING_BASE => false,
         EffectId::spring | EffectId::limit => !ball(i) && !follows,
         EffectId::motor => !follows,
         _ => true,

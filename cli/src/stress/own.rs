@@ -153,9 +153,11 @@ fn watched(model: &Model<f64>, sets: &[Set]) -> Vec<Row> {
         // What comes after a pivot that is nothing is not a number.
         least = left.into_iter().enumerate().map(|(k, x)| (x, k)).fold(least, |a, b| if b.0 < a.0 { b } else { a });
     }
+    // A rotation is off by twice what the quaternion's norm² is.
+    let allowed = 4.0 * (depth + 1.0) * roundoff + 2.0 * quaternions(model).count() as f64 * norm;
     let distance = model.outward().map(|i| model.bodies[i].placement.position.norm()).fold(0.0, f64::max);
     let mut rows = vec![
-        case.row(format!("|RᵀR − 1| of placements, over 4Nu, N = {depth}"), turned / (4.0 * (depth + 1.0) * roundoff), 1.0, ""),
+        case.row(format!("|RᵀR − 1| of placements, over 4Nu and what quaternions are off, N = {depth}"), turned / allowed, 1.0, ""),
         case.row("|norm² − 1| of quaternions in q", norm / roundoff, 8.0, "u"),
         case.shown("a joint's moment over the largest of any body beyond", growth[0], ""),
         case.shown("a joint's force over the largest of any body beyond", growth[1], ""),

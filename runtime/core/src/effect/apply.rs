@@ -42,6 +42,8 @@ pub enum Fault {
     Follows,
     /// The link is fixed to the base: nothing feels it.
     Still,
+    /// A floating base has no joint to be damped, sprung or driven.
+    Base,
     /// The joint has no single coordinate for the law.
     NoCoordinate,
     /// A wrong number of parameters.
@@ -83,6 +85,9 @@ impl fmt::Display for EffectError {
             Fault::Twice => write!(f, "given twice: expected one for a joint"),
             Fault::Follows => write!(f, "the joint follows another: expected the joint that it follows, which is what a motor drives"),
             Fault::Still => write!(f, "the link is fixed to the base, nothing would feel it: expected a link that moves"),
+            Fault::Base => {
+                write!(f, "the floating base is no joint of the robot: expected one that is, or an effect on the link that floats")
+            }
             Fault::NoCoordinate => {
                 write!(f, "the law needs a coordinate for each degree of freedom, which a ball or a free joint does not have")
             }
@@ -282,6 +287,15 @@ mod tests {
             let meant = |error: &EffectError| matches!(error.fault, Fault::Unknown { nearest: Some(_), .. });
             assert_eq!((errors.len(), meant(&errors[0]), meant(&errors[count - 2])), (count - 1, true, false));
         }
+    }
+
+    #[test]
+    fn a_floating_base_has_no_joint_that_effects_are_on() {
+        let description = Description { name: "one".into(), links: vec![Link { name: "body".into(), inertial: None }], joints: Vec::new() };
+        let floating = Model::new(&description, Base::Floating).unwrap();
+        let errors = floating.with_effects(&[on(EffectId::damping, crate::model::FLOATING_BASE, &[1.0])]).unwrap_err();
+        assert_eq!(errors.0[0].fault, Fault::Base);
+        assert!(errors.to_string().contains("the floating base is no joint of the robot"));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use super::{Fault, On};
-use crate::model::Model;
+use crate::model::{FLOATING_BASE, Model};
 use crate::suggest::Suggester;
 
 /// The bodies of joints and the frames of links by their names, gathered once for all effects.
@@ -27,9 +27,10 @@ impl Places {
         Self { joints, frames, suggester: Suggester::default() }
     }
 
-    /// The bodies of the joint of this name.
+    /// The bodies of the joint of this name, which is not that of a floating base.
     pub(super) fn bodies(&mut self, model: &Model<f64>, name: &str) -> Result<&[usize], Fault> {
         match self.joints.get(name) {
+            Some(_) if name == FLOATING_BASE => Err(Fault::Base),
             Some(bodies) => Ok(bodies),
             None => {
                 let nearest = self.suggester.nearest(name, model.bodies.iter().skip(1).map(|b| b.name.as_str()));
