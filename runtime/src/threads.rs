@@ -2,12 +2,15 @@
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Slices with an element a state, read or written: `&[T]`, `&mut [T]`, and tuples of them.
+/// Slices with an element a state, or a block of states, read or written: `&[T]`, `&mut [T]`, and tuples of them.
 pub trait States: Sized + Send {
-    /// How many states there are; `None` if the slices of a tuple do not agree.
+    /// Whether an element is a block, which fills vectors by itself: one that begins a cache line, as the `Lanes` of generated modules do.
+    const BLOCKS: bool;
+
+    /// How many elements there are; `None` if the slices of a tuple do not agree.
     fn count(&self) -> Option<usize>;
 
-    /// The first `count` states, and the rest.
+    /// The first `count` elements, and the rest.
     ///
     /// # Panics
     /// If there are fewer.
@@ -15,6 +18,8 @@ pub trait States: Sized + Send {
 }
 
 impl<T: Sync> States for &[T] {
+    const BLOCKS: bool = align_of::<T>() >= LINE;
+
     fn count(&self) -> Option<usize> {
         Some(self.len())
     }
@@ -25,6 +30,8 @@ impl<T: Sync> States for &[T] {
 }
 
 impl<T: Send> States for &mut [T] {
+    const BLOCKS: bool = align_of::<T>() >= LINE;
+
     fn count(&self) -> Option<usize> {
         Some(self.len())
     }
@@ -38,6 +45,8 @@ macro_rules! tuples {
     ($($first:ident $($other:ident)*;)+) => { $(
         #[allow(non_snake_case)]
         impl<$first: States, $($other: States),*> States for ($first, $($other,)*) {
+            const BLOCKS: bool = $first::BLOCKS $(|| $other::BLOCKS)*;
+
             fn count(&self) -> Option<usize> {
                 let ($first, $($other,)*) = self;
                 let count = $first.count()?;
@@ -67,8 +76,11 @@ tuples! {
 /// The most states that are computed between two calls of the progress.
 const MOST: usize = 1024;
 
-/// Parts have a multiple of this many states, so that vectors are full: the states of a block of `f32`.
+/// Parts have a multiple of this many states, so that vectors are full: the states of a block of `f32`. Parts of blocks have any number of them.
 const BLOCK: usize = 16;
+
+/// Bytes of a cache line, at the start of which each number of a block is.
+const LINE: usize = 64;
 
 /// Computes many states by all threads of the current `rayon` pool: `function` on parts of the slices, at the same time.
 ///
@@ -90,7 +102,9 @@ const BLOCK: usize = 16;
 /// # Ok::<(), String>(())
 /// ```
 ///
-/// `progress` is told how many states are done, by whichever thread has just computed a part: every number once, but numbers of different threads may
+/// Blocks of states (`…_blocks` of a generated module) are parted between any two, and counted as blocks.
+///
+/// `progress` is told how many states (or blocks) are done, by whichever thread has just computed a part: every number once, but numbers of different threads may
 /// come in another order than they rise. The last part makes it the number of all states.
 ///
 /// # Errors
@@ -105,7 +119,7 @@ pub fn in_threads<S: States, E: Send>(
 ) -> Result<(), E> {
     let Some(count) = states.count() else { return function(states) };
     // Some parts for each thread, so that nobody waits long for the last.
-    let part = count.div_ceil(8 * rayon::current_num_threads()).next_multiple_of(BLOCK).min(MOST);
+    let part = count.div_ceil(8 * rayon::current_num_threads()).next_multiple_of(if S::BLOCKS { 1 } else { BLOCK }).min(MOST);
     Work { function, progress, done: AtomicUsize::new(0), part }.halve(states, count)
 }
 
@@ -131,5 +145,33 @@ impl<F: Sync, P: Fn(usize) + Sync> Work<F, P> {
         let (first, rest) = states.split(half);
         let (first, rest) = rayon::join(|| self.halve(first, half), || self.halve(rest, count - half));
         first.and(rest)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Clone, Copy)]
+    #[repr(align(64))]
+    struct Lanes([f32; 16]);
+
+    /// How many parts four threads get.
+    fn parts<S: States>(states: S) -> usize {
+        let count = AtomicUsize::new(0);
+        let function = |_| {
+            count.fetch_add(1, Ordering::Relaxed);
+            Ok::<(), ()>(())
+        };
+        rayon::ThreadPoolBuilder::new().num_threads(4).build().unwrap().install(|| in_threads(states, function, |_| ())).unwrap();
+        count.into_inner()
+    }
+
+    #[test]
+    fn a_part_is_one_block_or_sixteen_states() {
+        let (blocks, states, mut out) = ([[Lanes([0.5; 16]); 3]; 32], [[0.5_f32; 3]; 32], [Lanes([0.0; 16]); 32]);
+        assert_eq!((parts(&blocks[..]), parts((&states[..], &blocks[..], &mut out[..]))), (32, 32));
+        assert_eq!((parts(&states[..]), parts((&states[..], (&states[..], &states[..])))), (2, 2));
+        assert!(blocks[31][2].0[15] == 0.5);
     }
 }

@@ -90,8 +90,12 @@ fn blocks_and_single_numbers_go_the_same_way() {
     let (mut alone, mut out) = (vec![[batch_f32::Lanes::ZERO; 3]; 100], vec![[batch_f32::Lanes::ZERO; 3]; 100]);
     batch_f32::inverse_dynamics_blocks(&q, &v, &a, &mut alone).unwrap();
     let all = (&q[..], &v[..], &a[..], &mut out[..]);
-    pool(3).install(|| in_threads(all, |(q, v, a, out)| batch_f32::inverse_dynamics_blocks(q, v, a, out), |_| ())).unwrap();
+    let parts = Mutex::new(0);
+    let told = |_| *parts.lock().unwrap() += 1;
+    pool(3).install(|| in_threads(all, |(q, v, a, out)| batch_f32::inverse_dynamics_blocks(q, v, a, out), told)).unwrap();
     assert!(out == alone && out[99][2].0[15] != 0.0);
+    // A block is full by itself: parts need not be sixteen of them.
+    assert!(parts.into_inner().unwrap() >= 20);
 }
 
 #[test]
