@@ -156,6 +156,13 @@ impl<S: Scalar> Model<S> {
         coordinates.turns.is_zero() && inertia.is_round() && self.outward().all(|k| self.bodies[k].parent != i)
     }
 
+    /// The configuration of zeros, with quaternions that turn nothing, `[nq]`: what a generated module has as `NEUTRAL`.
+    pub fn neutral(&self) -> Vec<S> {
+        let mut q = alloc::vec![S::zero(); self.nq];
+        crate::algorithm::neutral(self, &mut q);
+        q
+    }
+
     /// Mass of the moving links, kg.
     pub fn moving_mass(&self) -> S {
         self.outward().fold(S::zero(), |sum, i| sum + self.bodies[i].inertia.mass)
