@@ -251,25 +251,57 @@ pub fn function(name: &str) -> Result<&'static Function<Sym>, Error> {
         }
         // In a sum of functions a group is none of them.
         let groups = Group::ALL.map(Group::name).into_iter().filter(|_| Group::named(name).is_none());
-        let known: Vec<String> = functions::<Sym>().iter().map(|f| f.name).chain(groups).map(str::to_owned).collect();
-        let elsewhere = ELSEWHERE.iter().find(|(theirs, _)| name.eq_ignore_ascii_case(theirs)).map(|(_, ours)| (*ours).to_owned());
-        Error::UnknownFunction { found: name.into(), nearest: elsewhere.or_else(|| nearest(name, known.iter().map(String::as_str))), known }
+        let known: Vec<&str> = functions::<Sym>().iter().map(|f| f.name).chain(groups).collect();
+        let nearest = meant(name, known.iter().copied());
+        Error::UnknownFunction { found: name.into(), nearest, known: known.into_iter().map(str::to_owned).collect() }
     })
 }
 
-/// What other libraries and textbooks call functions by, with our names.
+/// Which of the names is meant by one that is none of them: what other libraries call so, or the nearest.
+pub fn meant<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    let plain: String = name.chars().filter(|c| *c != '_').collect();
+    match ELSEWHERE.iter().find(|(theirs, _)| plain.eq_ignore_ascii_case(theirs)) {
+        Some((_, ours)) => (!ours.is_empty()).then(|| (*ours).to_owned()),
+        None => nearest(name, known),
+    }
+}
+
+/// What other libraries and textbooks call functions by, whatever the capitals and without `_`, with our names; nothing where we have no such function and the nearest name is of another.
 const ELSEWHERE: &[(&str, &str)] = &[
     ("fk", "placements"),
-    ("forward_kinematics", "placements"),
+    ("forwardkinematics", "placements"),
+    ("framesforwardkinematics", "placements"),
+    ("ik", ""),
+    ("inversekinematics", ""),
+    ("jacobian", "jacobians_body"),
+    ("framejacobian", "jacobians_body"),
+    ("getframejacobian", "jacobians_body"),
+    ("jdotv", "bias_accelerations_body"),
+    ("biasacceleration", "bias_accelerations_body"),
     ("id", "inverse_dynamics"),
     ("rnea", "inverse_dynamics"),
     ("nle", "bias_forces"),
+    ("nonlineareffects", "bias_forces"),
+    ("computegeneralizedgravity", "gravity_torque"),
     ("crba", "mass_matrix"),
+    ("computecoriolismatrix", "coriolis_matrix"),
     ("minv", "mass_matrix_inverse"),
+    ("minverse", "mass_matrix_inverse"),
+    ("computeminverse", "mass_matrix_inverse"),
     ("fd", "forward_dynamics"),
     ("aba", "forward_dynamics"),
+    ("rneaderivatives", "inverse_dynamics_derivatives"),
+    ("computerneaderivatives", "inverse_dynamics_derivatives"),
+    ("abaderivatives", "forward_dynamics_derivatives"),
+    ("computeabaderivatives", "forward_dynamics_derivatives"),
     ("com", "center_of_mass"),
+    ("jacobiancenterofmass", "center_of_mass_jacobian"),
     ("ccrba", "centroidal_momentum_matrix"),
+    ("dccrba", "centroidal_momentum_rate"),
+    ("jointtorqueregressor", "torque_regressor"),
+    ("computejointtorqueregressor", "torque_regressor"),
+    ("dintegrate", "integrate_derivatives"),
+    ("ddifference", "difference_derivatives"),
 ];
 
 #[cfg(test)]
@@ -279,10 +311,16 @@ mod tests {
     #[test]
     fn names_of_other_libraries_lead_to_ours() {
         for (theirs, ours) in ELSEWHERE {
-            assert!(function(ours).is_ok(), "{ours}");
             let told = function(theirs).err().unwrap().to_string();
-            assert_eq!(told, format!("unknown function `{theirs}`, did you mean `{ours}`?"));
+            if ours.is_empty() {
+                assert!(told.starts_with(&format!("unknown function `{theirs}`, there are: placements, ")), "{told}");
+            } else {
+                assert!(function(ours).is_ok(), "{ours}");
+                assert_eq!(told, format!("unknown function `{theirs}`, did you mean `{ours}`?"));
+            }
         }
+        assert!(function("nonLinearEffects").err().unwrap().to_string().ends_with("did you mean `bias_forces`?"));
+        assert!(function("forward_kinematics").err().unwrap().to_string().ends_with("did you mean `placements`?"));
         assert!(function("RNEA").err().unwrap().to_string().ends_with("did you mean `inverse_dynamics`?"));
     }
 }

@@ -67,8 +67,12 @@ fn not_unit<'a>(joint: &'a JointInfo, q: &[f64], zeros: bool) -> Option<(&'a str
 pub(super) fn constant(text: &str, function: &Function<Sym>, wrong: &dyn Fn(String) -> Error) -> Result<(Argument, Constant), Error> {
     let takes: Vec<&str> = function.takes.iter().map(|a| a.name()).collect();
     let expected = || {
-        let (found, name, takes) = (text.trim(), function.name, takes.join(", "));
-        format!("`{found}`: expected a constant as in {name}(q = 0) or {name}(q = [0, 0]); {name} takes {takes}")
+        let (found, name, first) = (text.trim(), function.name, takes[0]);
+        let sines = if function.takes.contains(&Argument::Q) { ", or its sines and cosines, q = sin_cos" } else { "" };
+        format!(
+            "`{found}`: expected a constant as in {name}({first} = 0) or {name}({first} = [0, 0]){sines}; {name} takes {}",
+            takes.join(", ")
+        )
     };
     let (name, value) = text.split_once('=').ok_or_else(|| wrong(expected()))?;
     let argument = function.takes.iter().find(|a| a.name() == name.trim()).ok_or_else(|| wrong(expected()))?;

@@ -340,7 +340,8 @@ mod tests {
             ("inverse_dynamics(v = 0, v = [1])", "given twice"),
             ("bias_forces(v = inf)", "expected a constant"),
             ("bias_forces(v = [0, NaN])", "expected a constant"),
-            ("random_configuration(q = sin_cos)", "expected a constant"),
+            ("random_configuration(q = sin_cos)", "expected a constant as in random_configuration(uniform = 0)"),
+            ("mass_matrix(q = sincos)", "or its sines and cosines, q = sin_cos; mass_matrix takes q"),
             ("1st = mass_matrix", "not a valid name"),
             ("_x = mass_matrix", "not a valid name"),
         ] {
