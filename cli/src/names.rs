@@ -1,6 +1,6 @@
 //! Lists of functions on the command line.
 
-use articulated_codegen::{Wanted, nearest};
+use articulated_codegen::{Wanted, meant};
 use articulated_core::algorithm::{function, functions};
 
 use articulated_codegen::function_groups::{Group, MOTION};
@@ -57,7 +57,7 @@ fn known_one(name: &str) -> Result<Vec<String>, String> {
         return Ok(group.functions().map(str::to_owned).collect());
     }
     let all = || functions::<f64>().iter().map(|f| f.name).chain(Group::ALL.map(Group::name));
-    let near = nearest(name, all()).map(|n| format!("did you mean {n}? ")).unwrap_or_default();
+    let near = meant(name, all()).map(|n| format!("did you mean {n}? ")).unwrap_or_default();
     let groups = Group::ALL.map(Group::name).join(", ");
     Err(format!("{near}there are the groups {groups}, and the functions that `articulated functions` lists"))
 }
@@ -74,6 +74,8 @@ mod tests {
     fn a_misspelt_function_is_guessed() {
         assert!(known("inverse_dynamic").unwrap_err().contains("did you mean inverse_dynamics?"));
         assert!(known("kinematic").unwrap_err().contains("did you mean kinematics?"));
+        assert!(known("rnea").unwrap_err().starts_with("did you mean inverse_dynamics?"));
+        assert!(known("inverse_kinematics").unwrap_err().starts_with("there are the groups"));
         assert!(known("x = mass_matrix").is_err() && wanted("x = mass_matrx").is_err());
     }
 
