@@ -3,8 +3,10 @@
 use std::fmt::Write;
 
 use super::report::{Footnotes, Report};
+use crate::shape;
 use crate::table::freedom;
 use articulated_codegen::function_groups::Group;
+use articulated_core::algorithm::Argument;
 
 const HEAD: &str = "\
 # All functions
@@ -17,11 +19,22 @@ once. Units \"a|b\": a for joints that rotate, b for joints that slide. Function
 
 ";
 
+const ARGUMENTS: &str = "\n## Arguments\n\n| argument | is |\n|---|---|\n";
+
 pub(super) fn markdown(report: &Report) -> String {
     let mut out = HEAD.to_owned();
     for r in &report.robots {
         let frames: Vec<String> = r.frames.iter().map(|f| format!("`{f}`")).collect();
         let _ = writeln!(out, "* {}: {} base, {}; tips {}", r.robot, r.base, freedom(r.degrees_of_freedom), frames.join(", "));
+    }
+    out += ARGUMENTS;
+    for argument in Argument::ALL.into_iter().chain([Argument::SinCos]) {
+        let asked = if argument == Argument::SinCos {
+            "; behind the others and before `parameters`, where a function is asked for with `q = sin_cos`"
+        } else {
+            ""
+        };
+        let _ = writeln!(out, "| `{}` | `{}` {}{asked} |", argument.name(), shape::dims(argument.dims()), cell(argument.unit()));
     }
     let mut footnotes = Footnotes::default();
     for group in Group::ALL {
