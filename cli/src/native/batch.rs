@@ -72,12 +72,15 @@ enum Entry {
 impl Native {
     /// The function `name`, which takes so many numbers of each state, or block of states, and writes `out` of each.
     pub(crate) fn batch_kernel(&self, name: &str, real: Real, arguments: &[usize], out: usize) -> Option<BatchKernel> {
-        let entry = match arguments.len() {
-            1 => Entry::One(self.symbol(name)?),
-            2 => Entry::Two(self.symbol(name)?),
-            3 => Entry::Three(self.symbol(name)?),
-            4 => Entry::Four(self.symbol(name)?),
-            _ => return None,
+        // SAFETY: compiled functions of many states take their arguments' arrays, the one of the result, and how many states there are.
+        let entry = unsafe {
+            match arguments.len() {
+                1 => Entry::One(self.symbol(name)?),
+                2 => Entry::Two(self.symbol(name)?),
+                3 => Entry::Three(self.symbol(name)?),
+                4 => Entry::Four(self.symbol(name)?),
+                _ => return None,
+            }
         };
         Some(BatchKernel { entry, real, arguments: arguments.to_vec(), out, _library: self.clone() })
     }
