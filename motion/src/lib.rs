@@ -103,6 +103,5 @@ pub use drive::Drive;
 pub use error::{Fault, MotionError, MotionErrors};
 pub use happening::{EventKind, Happening, SceneEvent};
 pub use motion::{Ending, Motion, Outcome};
-pub use settings::settings;
 pub use stage::{Stage, field};
 pub use watch::{Watch, Without};

@@ -26,7 +26,7 @@ impl Calls {
 impl Scene {
     /// What the scene's motion calls, with the integrator that it names; nothing without `[simulation]`.
     pub fn calls(&self) -> Calls {
-        self.simulation.as_ref().map(|simulation| self.calls_with(simulation.integrator)).unwrap_or_default()
+        self.simulation.as_ref().map(|simulation| self.calls_with(simulation.settings.integrator)).unwrap_or_default()
     }
 
     /// What the scene's motion calls, with this integrator.

@@ -33,6 +33,7 @@ mod simulation;
 mod table;
 mod tree;
 
+pub use articulated_core::settings::{Output, Settings, Stiffness};
 pub use calls::Calls;
 pub use control::{Aim, Control, Controller, Drive, PerJoint, Target};
 pub use edits::{Append, Load, Lock};
@@ -48,5 +49,5 @@ pub use robot::{
 pub use scene::{Code, Places, Robot, Scene};
 pub use series::{Reader, Series, Source};
 pub use shaft::ShaftAsked;
-pub use simulation::{Output, Simulation, Stiffness, Watched};
+pub use simulation::{Simulation, Watched};
 pub use tree::{At, Entry, Node, Value};

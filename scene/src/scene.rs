@@ -1,5 +1,6 @@
 //! A scene, and the keys at its top.
 
+use articulated_core::Plain;
 use articulated_core::description::Base;
 use articulated_core::lanes::Real;
 use articulated_core::level::Level;
@@ -163,8 +164,10 @@ impl Scene {
             robot.clash(log, "robot and urdf", "one of them");
         }
         let period = spot.get("control").and_then(|control| control.get("period"));
-        if let (Some(simulation), Some(period), Some(spot)) = (&self.simulation, self.control.period, period) {
-            simulation.check_period(period, &spot, log);
+        if let (Some(simulation), Some(period), Some(spot)) = (&self.simulation, self.control.period, period)
+            && let Some(right) = simulation.settings.wrong_period(period)
+        {
+            spot.clash(log, Plain(period).to_string(), right);
         }
     }
 }

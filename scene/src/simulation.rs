@@ -1,6 +1,10 @@
 //! `[simulation]`: from when to when, by which integrator, how exactly, and what is recorded.
 
-use articulated_core::integrator::{IntegratorId, integrators, least_step, meant};
+use std::iter;
+
+use articulated_core::algorithm::Shape;
+use articulated_core::integrator::{IntegratorId, integrators, meant};
+use articulated_core::settings::{Output, SettingError, Settings, Stiffness};
 
 use crate::error::Kind;
 use crate::log::Log;
@@ -8,49 +12,12 @@ use crate::table::{Row, Spot};
 use crate::tree::Value;
 
 /// How to simulate.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Simulation {
-    /// Time at the start, s.
-    pub start: f64,
-    /// Time at the end, s.
-    pub end: f64,
-    /// The integrator.
-    pub integrator: IntegratorId,
-    /// Steps of this length, s; `None`: chosen by the integrator, if it can.
-    pub step: Option<f64>,
-    /// Error of a step, in parts of the state.
-    pub rtol: f64,
-    /// Error of a step beside that, in units of the state.
-    pub atol: f64,
-    /// No step is shorter, s, but the last; 0: what the clock can tell.
-    pub min_step: f64,
-    /// No step is longer, s; infinite where the scene does not say.
-    pub max_step: f64,
-    /// The first step, s; `None`: chosen.
-    pub first_step: Option<f64>,
-    /// So many steps at most.
-    pub max_steps: u64,
-    /// When the state is recorded.
-    pub output: Output,
-    /// How exactly events are found, s.
-    pub event_tolerance: f64,
+    /// By what, from when to when, how exactly, and what is recorded.
+    pub settings: Settings,
     /// What is looked for on the way.
     pub events: Vec<Watched>,
-    /// What happens where an explicit integrator is outside its stable step.
-    pub stiffness: Stiffness,
-}
-
-/// When the state is recorded.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Output {
-    /// At the start and every so many seconds.
-    Every(f64),
-    /// At these times, s, in order.
-    At(Vec<f64>),
-    /// After each step.
-    Steps,
-    /// At the start and the end.
-    Ends,
 }
 
 /// What is looked for on the way.
@@ -64,16 +31,6 @@ pub enum Watched {
     StickSlip,
 }
 
-/// What happens where an explicit integrator is outside its stable step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Stiffness {
-    /// The simulation ends with an error that says so.
-    #[default]
-    Refuse,
-    /// It is noted.
-    Note,
-}
-
 impl Watched {
     /// Its name in scenes.
     pub fn name(self) -> &'static str {
@@ -84,27 +41,6 @@ impl Watched {
 const WATCHED: &[(&str, Watched)] = &[("limits", Watched::Limits), ("contacts", Watched::Contacts), ("stick_slip", Watched::StickSlip)];
 const STIFFNESS: &[(&str, Stiffness)] = &[("refuse", Stiffness::Refuse), ("note", Stiffness::Note)];
 
-impl Default for Simulation {
-    fn default() -> Self {
-        Self {
-            start: 0.0,
-            end: 1.0,
-            integrator: IntegratorId::dopri5,
-            step: None,
-            rtol: 1e-6,
-            atol: 1e-9,
-            min_step: 0.0,
-            max_step: f64::INFINITY,
-            first_step: None,
-            max_steps: 10_000_000,
-            output: Output::Every(0.01),
-            event_tolerance: 1e-12,
-            events: Vec::new(),
-            stiffness: Stiffness::Refuse,
-        }
-    }
-}
-
 pub(crate) const KEYS: &[Row<Simulation>] = &[
     Row {
         name: "start",
@@ -112,7 +48,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         value: "number, s",
         default: "0",
         what: "time at the start",
-        read: |x, s, log| set(&mut x.start, s.number(log)),
+        read: |x, s, log| set(&mut x.settings.start, s.any(log)),
     },
     Row {
         name: "end",
@@ -120,7 +56,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         value: "number, s",
         default: "",
         what: "time at the end, after the start",
-        read: |x, s, log| set(&mut x.end, s.number(log)),
+        read: |x, s, log| set(&mut x.settings.end, s.any(log)),
     },
     Row {
         name: "integrator",
@@ -128,7 +64,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         value: "`\"semi_implicit_euler\"`, `\"rk4\"`, `\"dopri5\"`, `\"dop853\"`, `\"rodas4\"` or `\"lie_midpoint\"`",
         default: "`\"dopri5\"`",
         what: "the integrator",
-        read: |x, s, log| set(&mut x.integrator, integrator(s, log)),
+        read: |x, s, log| set(&mut x.settings.integrator, integrator(s, log)),
     },
     Row {
         name: "step",
@@ -136,7 +72,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         value: "number, s",
         default: "chosen by the errors; has to be given for `semi_implicit_euler`, `rk4` and `lie_midpoint`",
         what: "length of all steps, above 0, and more than the time's rounding",
-        read: |x, s, log| x.step = s.positive(log),
+        read: |x, s, log| x.settings.step = s.any(log),
     },
     Row {
         name: "rtol",
@@ -144,7 +80,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         value: "number, 1",
         default: "1e-6",
         what: "error of a step, in parts of the state: 0, or at least 1e-15 and below 1",
-        read: |x, s, log| set(&mut x.rtol, part(s, log)),
+        read: |x, s, log| set(&mut x.settings.rtol, s.any(log)),
     },
     Row {
         name: "atol",
@@ -152,7 +88,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         value: "number, rad, m, rad/s, m/s",
         default: "1e-9",
         what: "error of a step beside that, at least 0; not 0 where `rtol` is",
-        read: |x, s, log| set(&mut x.atol, s.not_negative(log)),
+        read: |x, s, log| set(&mut x.settings.atol, s.any(log)),
     },
     Row {
         name: "min_step",
@@ -160,7 +96,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         value: "number, s",
         default: "what the clock can tell",
         what: "no step by tolerance is shorter, but for what is left of a stretch, at least 0",
-        read: |x, s, log| set(&mut x.min_step, s.not_negative(log)),
+        read: |x, s, log| set(&mut x.settings.min_step, s.any(log)),
     },
     Row {
         name: "max_step",
@@ -168,7 +104,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         value: "number, s",
         default: "no bound",
         what: "no step by tolerance is longer, above 0 and above `min_step`",
-        read: |x, s, log| set(&mut x.max_step, s.positive(log)),
+        read: |x, s, log| set(&mut x.settings.max_step, s.any(log)),
     },
     Row {
         name: "first_step",
@@ -176,7 +112,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         value: "number, s",
         default: "chosen",
         what: "the first step, by tolerance, above 0",
-        read: |x, s, log| x.first_step = s.positive(log),
+        read: |x, s, log| x.settings.first_step = s.any(log),
     },
     Row {
         name: "max_steps",
@@ -184,7 +120,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         value: "whole number, 1 to 1099511627776",
         default: "10000000",
         what: "more are not made",
-        read: |x, s, log| set(&mut x.max_steps, s.whole(log, 1, 1 << 40)),
+        read: |x, s, log| set(&mut x.settings.max_steps, s.whole(log, 1, 1 << 40)),
     },
     Row {
         name: "output",
@@ -192,7 +128,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         value: "number, s; numbers, s; `\"steps\"` or `\"ends\"`",
         default: "0.01",
         what: "how often the state is recorded, above 0 and for at most 1e9 numbers in all (records times numbers per record), or when: the times, in order, after each step, at the ends",
-        read: |x, s, log| set(&mut x.output, output(s, log)),
+        read: |x, s, log| set(&mut x.settings.output, output(s, log)),
     },
     Row {
         name: "events",
@@ -208,7 +144,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         value: "number, s",
         default: "1e-12",
         what: "how exactly events are found, at least 0",
-        read: |x, s, log| set(&mut x.event_tolerance, s.not_negative(log)),
+        read: |x, s, log| set(&mut x.settings.event_tolerance, s.any(log)),
     },
     Row {
         name: "stiffness",
@@ -216,7 +152,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         value: "`\"refuse\"` or `\"note\"`",
         default: "`\"refuse\"`",
         what: "what happens where an explicit integrator is outside its stable step; with steps by tolerance `\"refuse\"` ends a motion only where more than 20 000 such steps would be left",
-        read: |x, s, log| set(&mut x.stiffness, s.word(log, STIFFNESS)),
+        read: |x, s, log| set(&mut x.settings.stiffness, s.word(log, STIFFNESS)),
     },
 ];
 
@@ -232,96 +168,29 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Option<Simulation> {
     let before = log.count();
     spot.read(KEYS, &mut simulation, log);
     let right = log.right(&spot.key, KEYS.iter().map(|row| row.name), before);
-    check(&simulation, spot, &right, log);
+    check(&simulation.settings, spot, &right, log);
     (log.count() == before).then_some(simulation)
 }
 
-impl Simulation {
-    /// A sample ends a step: samples that time can tell apart, and no more than there may be steps.
-    pub(crate) fn check_period(&self, period: f64, spot: &Spot<'_>, log: &mut Log) {
-        let (least, shortest) = (least_step(self.start, self.end), (self.end - self.start) / self.max_steps as f64);
-        if period < least {
-            spot.clash(log, format!("{period:?}"), format!("at least {least:.1e} s, sixteen units of rounding of the time"));
-        } else if period < shortest {
-            let most = self.max_steps;
-            spot.clash(log, format!("{period:?}"), format!("at least {shortest:.1e} s, for no more samples than max_steps = {most}"));
+/// What the settings cannot be, each where all that it is about is `right`: at its key, or else at one with which it does not go.
+fn check(settings: &Settings, spot: &Spot<'_>, right: &[&str], log: &mut Log) {
+    for SettingError { key, with, found, right: expected } in settings.problems(ANY_ROBOT) {
+        let mut about = iter::once(&key).chain(with);
+        if about.clone().all(|key| right.contains(key)) {
+            let at = about.find_map(|key| spot.get(key)).map_or(spot.at, |there| there.at);
+            let kind = if with.is_empty() { Kind::Number } else { Kind::Together };
+            log.error(at, &format!("{}.{key}", spot.key), kind, found, expected);
         }
     }
-}
-
-/// What numbers have to be together, each where what it is about is `right`.
-fn check(x: &Simulation, spot: &Spot<'_>, right: &[&str], log: &mut Log) {
-    let key = |name: &str| spot.get(name);
-    let right = |names: &[&str]| names.iter().all(|name| right.contains(name));
-    let Simulation { start, end, .. } = x;
-    if right(&["start", "end"])
-        && end <= start
-        && let Some(spot) = key("end")
-    {
-        spot.clash(log, format!("{end:?}, not after the start, {start:?}"), format!("a time above {start:?} s"));
-    }
-    if right(&["step", "integrator"]) && x.step.is_none() && !x.integrator.row().adaptive {
-        let (name, at) = (x.integrator.name(), key("integrator").map_or(spot.at, |s| s.at));
-        log.error(at, &spot.key, Kind::MissingKey, format!("no step for {name:?}"), "step: the length of its steps, s");
-    }
-    if key("step").is_some() {
-        for spot in ["min_step", "max_step", "first_step", "rtol", "atol"].into_iter().filter_map(key) {
+    if spot.get("step").is_some() {
+        for spot in ["min_step", "max_step", "first_step", "rtol", "atol"].into_iter().filter_map(|key| spot.get(key)) {
             spot.clash(log, "a fixed step and what is for steps by tolerance", "no step, or no such key");
         }
     }
-    if let (true, Some(spot)) = (right(&["rtol", "atol"]) && x.rtol == 0.0 && x.atol == 0.0, key("rtol")) {
-        spot.clash(log, "rtol and atol both 0", "one of them above 0");
-    }
-    if let (true, Some(spot)) = (right(&["min_step", "max_step"]) && x.max_step < x.min_step, key("max_step")) {
-        spot.clash(log, format!("{:?}, less than min_step, {:?}", x.max_step, x.min_step), "at least that");
-    }
-    if right(&["start", "end"]) {
-        let least = least_step(*start, *end);
-        for (name, step) in [("step", x.step), ("max_step", Some(x.max_step))] {
-            if let (true, Some(step), Some(spot)) = (right(&[name]), step.filter(|step| *step < least), key(name)) {
-                spot.clash(log, format!("{step:?}"), format!("at least {least:.1e} s, sixteen units of rounding of the time"));
-            }
-        }
-    }
-    if right(&["start", "end", "output"]) {
-        check_output(x, spot, log);
-    }
 }
 
-/// Times of output against the start and the end.
-fn check_output(x: &Simulation, spot: &Spot<'_>, log: &mut Log) {
-    let Simulation { start, end, .. } = x;
-    if let (Output::Every(every), Some(spot)) = (&x.output, spot.get("output").or(spot.get("end")))
-        && end > start
-        && (end - start) / every >= MOST_RECORDS
-    {
-        let found = format!("a record every {every:?} s up to {end:?} s, so {MOST_RECORDS:e} or more");
-        spot.clash(log, found, "output: a longer time from one to the next");
-    }
-    if let (Output::At(times), Some(spot)) = (&x.output, spot.get("output")) {
-        let outside = times.iter().find(|t| *t < start || *t > end);
-        let back = times.windows(2).find(|w| w[1] <= w[0]);
-        match (outside, back) {
-            (Some(t), _) => spot.clash(log, format!("{t:?}"), format!("times from {start:?} s to {end:?} s")),
-            (_, Some(w)) => spot.clash(log, format!("{:?} after {:?}", w[1], w[0]), "times in order"),
-            _ => {}
-        }
-    }
-}
-
-/// So many times or more no state is recorded.
-const MOST_RECORDS: f64 = 1e9;
-
-/// A part of the state: nothing below 1e-15, which is rounding, but 0.
-fn part(spot: &Spot<'_>, log: &mut Log) -> Option<f64> {
-    let expected = "0, or at least 1e-15 and below 1";
-    match spot.node.value {
-        Value::Number(x) if x == 0.0 || (1e-15..1.0).contains(&x) => return Some(x),
-        Value::Number(x) => spot.bad(log, format!("{x:?}"), expected),
-        _ => spot.wrong(log, expected),
-    }
-    None
-}
+/// What is recorded of the smallest robot is recorded of every one.
+const ANY_ROBOT: Shape = Shape { nq: 0, nv: 0, frames: 0, links: 0 };
 
 fn integrator(spot: &Spot<'_>, log: &mut Log) -> Option<IntegratorId> {
     spot.word_like(log, &words(), |found| meant(found).map_or(found, |row| row.name))
@@ -336,7 +205,7 @@ fn output(spot: &Spot<'_>, log: &mut Log) -> Option<Output> {
     match &spot.node.value {
         Value::Text(_) => spot.word(log, &[("steps", 0), ("ends", 1)]).map(|i| [Output::Steps, Output::Ends][i].clone()),
         Value::List(_) => spot.some_numbers(log, "times, s").map(Output::At),
-        _ => spot.positive(log).map(Output::Every),
+        _ => spot.any(log).map(Output::Every),
     }
 }
 

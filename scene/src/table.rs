@@ -90,6 +90,17 @@ impl<'a> Spot<'a> {
         }
     }
 
+    /// A number, which is judged elsewhere.
+    pub(crate) fn any(&self, log: &mut Log) -> Option<f64> {
+        match self.node.value {
+            Value::Number(x) => Some(x),
+            _ => {
+                self.wrong(log, "a number");
+                None
+            }
+        }
+    }
+
     /// A finite number.
     pub(crate) fn number(&self, log: &mut Log) -> Option<f64> {
         self.within(log, Range::ALL)

@@ -2,9 +2,10 @@
 
 use articulated_core::description::{Base, Description, Joint, JointDynamics, JointKind, Link};
 use articulated_core::effect::EffectId;
+use articulated_core::integrator::IntegratorId;
 use articulated_core::model::{FLOATING_BASE, Model};
 use articulated_core::spatial::{from_quaternion, from_rpy};
-use articulated_scene::{Controller, Edited, Scene};
+use articulated_scene::{Controller, Edited, Output, Scene, Settings, Stiffness};
 use articulated_urdf::{Subject, Unused};
 
 /// Two hinges, the second of which has limits, damping and an effort; a ball; a slide that follows the first; a link without mass at its end.
@@ -147,4 +148,38 @@ fn what_is_asked_of_all_says_where_too() {
     let resolved = scene(text).resolve(&edited).unwrap_or_else(|e| panic!("{e:?}"));
     let places: Vec<(&str, f64, [f64; 3])> = resolved.effects.iter().map(|a| (a.on.as_str(), a.parameters[0], a.at.xyz)).collect();
     assert_eq!(places, [("a", 2.0, [0.0, 0.0, 0.1]), ("b", 3.0, [0.5, 0.0, 0.0]), ("c", 1.0, [0.0, 0.0, 0.1])]);
+}
+
+fn said(keys: &str) -> Settings {
+    scene(&format!("[simulation]\n{keys}")).simulation.unwrap().settings
+}
+
+/// And what no key says is as where nothing is said.
+#[test]
+fn every_key_of_a_scene_is_a_setting() {
+    let keys =
+        "start = 0.5\nend = 2.5\nintegrator = 'rodas4'\nrtol = 1e-4\natol = 1e-5\nmin_step = 1e-7\nmax_step = 0.25\nfirst_step = 1e-3
+        max_steps = 77\noutput = [0.75, 1.5]\nevent_tolerance = 1e-6\nstiffness = 'note'";
+    let expected = Settings {
+        integrator: IntegratorId::rodas4,
+        start: 0.5,
+        end: 2.5,
+        step: None,
+        rtol: 1e-4,
+        atol: 1e-5,
+        atol_each: Vec::new(),
+        min_step: 1e-7,
+        max_step: 0.25,
+        first_step: Some(1e-3),
+        max_steps: 77,
+        output: Output::At(vec![0.75, 1.5]),
+        event_tolerance: 1e-6,
+        stiffness: Stiffness::Note,
+    };
+    assert_eq!(said(keys), expected);
+    assert_eq!(said("end = 1\nstep = 0.125").step, Some(0.125));
+    for (word, output) in [("0.5", Output::Every(0.5)), ("'steps'", Output::Steps), ("'ends'", Output::Ends)] {
+        assert_eq!(said(&format!("end = 1\noutput = {word}")).output, output);
+    }
+    assert_eq!(said("end = 1"), Settings::default());
 }

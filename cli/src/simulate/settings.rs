@@ -1,7 +1,6 @@
 //! How a scene is simulated: what it says itself, and what the command line says instead.
 
 use articulated::simulate::{Output, SettingError, Settings, integrator};
-use articulated_motion::settings as said;
 
 use super::arguments::SimulateArguments;
 use super::stage::Stage;
@@ -14,7 +13,7 @@ pub(super) fn of(stage: &Stage, arguments: &SimulateArguments) -> Result<Setting
     if scene.is_none() && arguments.end.is_none() {
         return Err(Failure::input([format!("{file}: simulation: found nothing, expected [simulation] with `end`, s, or --end here")]));
     }
-    let mut settings = scene.map(said).unwrap_or_default();
+    let mut settings = scene.map(|s| s.settings.clone()).unwrap_or_default();
     let a = arguments;
     settings.end = a.end.unwrap_or(settings.end);
     settings.rtol = a.rtol.unwrap_or(settings.rtol);

@@ -182,8 +182,8 @@ fn what_cannot_be_found_or_run_is_said() {
     assert!(ended.status == 1 && ended.err.contains("found a file, expected a folder"), "{}", ended.err);
     // A scene may begin before 0 s. What the command line says is not the scene's mistake.
     for (words, told) in [
-        (["--end", "-1"], "--end: found -1, expected a finite time after start = 0"),
-        (["--end", "0"], "--end: found 0, expected a finite time after start = 0"),
+        (["--end", "-1"], "--end: found -1, expected a time after start = 0, s"),
+        (["--end", "0"], "--end: found 0, expected a time after start = 0, s"),
         (["--rtol", "-1"], "--rtol: found -1, expected 0, or at least"),
         (["--every", "1e-12"], "--every: found 1e-12, expected at least 9e-8 s, for no more than 1e9 numbers in all"),
     ] {

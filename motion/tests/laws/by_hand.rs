@@ -4,7 +4,7 @@ use articulated::Dynamics;
 use articulated::simulate::{Constant, Control, Dependence, Event, IntegratorId, Output, Settings, Simulation, TorqueTable};
 use articulated_core::algorithm::Workspace;
 
-use articulated_motion::{Begin, Drive, Watch, settings};
+use articulated_motion::{Begin, Drive, Watch};
 use articulated_scene::{Aim, Controller, Series};
 
 use super::{ARM, CART, moved, stage};
@@ -162,7 +162,7 @@ fn a_control_of_ones_own_moves_the_scene() {
 fn the_parts_put_together_move_as_the_whole() {
     let stage = stage(include_str!("arm.toml").replace("restitution", "stop = true\nrestitution").as_str(), ARM);
     let whole = moved(&stage);
-    let (robot, settings) = (&stage.model, settings(stage.scene.simulation.as_ref().unwrap()));
+    let (robot, settings) = (&stage.model, stage.settings().unwrap());
     let begin = stage.begin().unwrap();
     let mut drive = Drive::new(robot, begin.controller, None).unwrap();
     let mut watch = Watch::new(&stage, robot, &stage.frame_names()).unwrap();

@@ -181,7 +181,7 @@ fn settings_that_cannot_be_used_are_told_together() {
     let wrong = Settings { rtol: 2.0, end: -1.0, ..settings };
     let errors = stage.motion(&stage.model, &stage.frame_names(), wrong).err().unwrap();
     assert_eq!(errors.errors.len(), 2, "{errors}");
-    assert!(lines(&errors)[0].starts_with("s.toml: end = -1: "), "{errors}");
+    assert!(lines(&errors)[1].starts_with("s.toml: end = -1: "), "{errors}");
 }
 
 /// From the start on and before the end.

@@ -109,11 +109,6 @@ integrators! {
     }
 }
 
-/// The least that the time between these two, s, can be told to go on by, s: sixteen units of its rounding.
-pub fn least_step(start: f64, end: f64) -> f64 {
-    16.0 * f64::EPSILON * start.abs().max(end.abs())
-}
-
 /// All integrators, in the order in which they are listed to people.
 pub fn integrators() -> &'static [Integrator] {
     ROWS

@@ -40,6 +40,8 @@ pub mod monitor;
 #[cfg(feature = "alloc")]
 mod plain;
 #[cfg(feature = "alloc")]
+pub mod settings;
+#[cfg(feature = "alloc")]
 pub mod suggest;
 
 pub use nalgebra;

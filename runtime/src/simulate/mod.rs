@@ -30,18 +30,17 @@ mod integrator;
 mod manifold;
 mod output;
 mod recording;
-mod settings;
 mod simulation;
 mod stability;
 mod step_control;
 mod system;
 
 pub use articulated_core::integrator::{Integrator, IntegratorId, integrator, integrators, meant};
+pub use articulated_core::settings::{Output, SettingError, Settings, Stiffness};
 pub use control::{Constant, Control, Dependence, Hold, NoTorque, Pd, TableError, TableErrors, TorqueTable};
 pub use error::{SimulateError, StateError};
 pub use event::{Action, ContactPoint, Direction, Event, Impact, Map, Struck};
 pub use recording::{Counts, Ended, Hit, Recording};
-pub use settings::{Output, SettingError, Settings, Stiffness};
 pub use simulation::Simulation;
 
 /// The chapter's examples, compiled and run as documentation tests.

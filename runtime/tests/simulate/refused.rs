@@ -218,7 +218,7 @@ fn what_is_wrong_with_a_controller_is_called_as_its_arguments_are() {
     assert_eq!(all(error), expected);
     let error = Pd::new(&handle::Robot, vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0], vec![1.0; 6], vec![1.0; 6]).err();
     assert_eq!(all(error), "target[3..7] (joint `__floating_base__`) is a quaternion of norm 2; it should be 1");
-    assert_eq!(all(Hold::new(NoTorque, -1.0).err()), "period = -1 cannot be used; it should be a length of time greater than zero, s");
+    assert_eq!(all(Hold::new(NoTorque, -1.0).err()), "period = -1 cannot be used; it should be a finite number above 0, s");
 }
 
 /// A step of a joint that turns freely has an end: its coordinates repeat after a whole turn, and Cayley's map does not reach half of one.

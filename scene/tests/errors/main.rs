@@ -98,11 +98,8 @@ fn an_added_mass_that_gives_energy_is_told_of_the_numbers_that_are_written() {
 
 #[test]
 fn a_simulation_that_cannot_be_is_told() {
-    assert_eq!(
-        one("[simulation]\nstart = 2\nend = 1"),
-        "s.toml:3: simulation.end: found 1.0, not after the start, 2.0, expected a time above 2.0 s"
-    );
-    assert_eq!(one("[simulation]\nend = 1\nstep = 0"), "s.toml:3: simulation.step: found 0.0, expected a finite number above 0");
+    assert_eq!(one("[simulation]\nstart = 2\nend = 1"), "s.toml:3: simulation.end: found 1, expected a time after start = 2, s");
+    assert_eq!(one("[simulation]\nend = 1\nstep = 0"), "s.toml:3: simulation.step: found 0, expected a finite number above 0, s");
     assert_eq!(
         one("[simulation]\nend = 1\nintegrator = \"rk5\"\nstep = 0.1"),
         "s.toml:3: simulation.integrator: found \"rk5\", expected one of \"semi_implicit_euler\", \"rk4\", \"dopri5\", \"dop853\", \"rodas4\", \
@@ -110,7 +107,7 @@ fn a_simulation_that_cannot_be_is_told() {
     );
     assert_eq!(
         one("[simulation]\nend = 1\nintegrator = \"rk4\""),
-        "s.toml:3: simulation: found no step for \"rk4\", expected step: the length of its steps, s"
+        "s.toml:3: simulation.step: found nothing, expected the length of its steps, s: rk4 has no error estimate"
     );
     assert_eq!(
         one("[simulation]\nrtol = 1e-3"),
@@ -187,24 +184,24 @@ fn settings_that_the_library_would_refuse_are_told_with_their_lines() {
         let told = one(&format!("[simulation]\nend = 1\nrtol = {x}"));
         assert_eq!(told, format!("s.toml:3: simulation.rtol: found {found}, expected 0, or at least 1e-15 and below 1"));
     };
-    [("5", "5.0"), ("-1", "-1.0"), ("1", "1.0"), ("1e-16", "1e-16"), ("nan", "NaN")].iter().for_each(|(x, found)| part(x, found));
+    [("5", "5"), ("-1", "-1"), ("1", "1"), ("1e-16", "1e-16"), ("nan", "NaN")].iter().for_each(|(x, found)| part(x, found));
     assert!(Scene::read("s.toml", "[simulation]\nend = 1\nrtol = 0").is_ok());
     assert!(Scene::read("s.toml", "[simulation]\nend = 1\nrtol = 1e-15").is_ok());
     assert_eq!(
         one("[simulation]\nend = 1\natol = 0\nrtol = 0"),
-        "s.toml:4: simulation.rtol: found rtol and atol both 0, expected one of them above 0"
+        "s.toml:4: simulation.rtol: found 0, expected one of rtol and atol greater than 0"
     );
     assert_eq!(
-        one("[simulation]\nend = 1e6\nintegrator = \"rk4\"\nstep = 1e-10"),
+        one("[simulation]\nend = 1e6\nintegrator = \"rk4\"\nstep = 1e-10\noutput = \"ends\""),
         "s.toml:4: simulation.step: found 1e-10, expected at least 3.6e-9 s, sixteen units of rounding of the time"
     );
     assert_eq!(
         one("[simulation]\nend = 1\noutput = 1e-10"),
-        "s.toml:3: simulation.output: found a record every 1e-10 s up to 1.0 s, so 1e9 or more, expected output: a longer time from one to the next"
+        "s.toml:3: simulation.output: found 1e-10, expected at least 1.2e-8 s, for no more than 1e9 numbers in all, 12 per record"
     );
     assert_eq!(
         one("[simulation]\nend = 1e8"),
-        "s.toml:2: simulation.end: found a record every 0.01 s up to 100000000.0 s, so 1e9 or more, expected output: a longer time from one to the next"
+        "s.toml:2: simulation.output: found 0.01, expected at least 1.2 s, for no more than 1e9 numbers in all, 12 per record"
     );
     assert_eq!(
         one("[simulation]\nend = 1\nevents = [\"limits\", \"stick_slip\", \"limits\"]"),
@@ -218,7 +215,7 @@ fn settings_that_the_library_would_refuse_are_told_with_their_lines() {
     );
     assert_eq!(
         sampled("1e-4"),
-        "s.toml:4: control.period: found 0.0001, expected at least 1.0e-3 s, for no more samples than max_steps = 1000"
+        "s.toml:4: control.period: found 0.0001, expected at least 0.001 s, for no more samples than max_steps = 1000"
     );
     assert!(Scene::read("s.toml", "[simulation]\nend = 1\nmin_step = 1e-3\nmax_step = 1e-3\nevent_tolerance = 0").is_ok());
     for (value, found) in [("0.6", "0.6"), ("0", "0.0"), ("-1e-9", "-1e-9"), ("nan", "NaN"), ("true", "true")] {

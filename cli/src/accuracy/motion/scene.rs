@@ -28,7 +28,7 @@ fn subject(stage: &Stage) -> Result<Subject, Failure> {
         return Err(Failure::input([line]));
     }
     let Begin { q, v, controller } = motion::begin(stage)?;
-    let span = scene.simulation.as_ref().map_or((Settings::default().start, Settings::default().end), |s| (s.start, s.end));
+    let Settings { start, end, .. } = scene.simulation.as_ref().map_or_else(Settings::default, |s| s.settings.clone());
     let options = &stage.request.options;
     let inside = options.robot.gravity == [0.0; 3] && options.robot.effects.is_empty() && !pushes_base(&controller);
     Ok(Subject {
@@ -36,8 +36,8 @@ fn subject(stage: &Stage) -> Result<Subject, Failure> {
         q,
         v,
         control: (controller, scene.control.period),
-        start: span.0,
-        seconds: span.1 - span.0,
+        start,
+        seconds: end - start,
         free: options.robot.base == Base::Floating && inside,
     })
 }

@@ -3,8 +3,9 @@
 mod pd;
 mod torque_table;
 
-use super::settings::short;
-use super::{Settings, SimulateError, StateError};
+use articulated_core::effect::Range;
+
+use super::{SimulateError, StateError};
 
 pub use pd::Pd;
 pub use torque_table::{TableError, TableErrors, TorqueTable};
@@ -96,24 +97,9 @@ impl Control for Constant {
     }
 }
 
-/// What is wrong with a period.
-fn wrong_period(period: f64) -> Option<StateError> {
-    let wrong = !(period > 0.0 && period.is_finite());
-    wrong.then(|| StateError::Value { what: "period", found: period, right: "a length of time greater than zero, s".into() })
-}
-
-/// What is wrong with a period in a motion: a sample ends a step, and time goes on by its rounding at least.
-pub(crate) fn wrong_period_of(period: f64, settings: &Settings) -> Option<StateError> {
-    let value = |right| Some(StateError::Value { what: "period", found: period, right });
-    let (rounding, length, most) = (settings.least_step(), settings.end - settings.start, settings.max_steps);
-    match wrong_period(period) {
-        Some(wrong) => Some(wrong),
-        None if period < rounding => value(format!("at least {rounding:.1e} s, sixteen units of rounding of the time")),
-        None if length / period > most as f64 => {
-            value(format!("at least {} s, for no more samples than max_steps = {most}", short(length / most as f64)))
-        }
-        None => None,
-    }
+/// A period that is not what it has to be.
+pub(crate) fn wrong_period(period: f64, right: String) -> StateError {
+    StateError::Value { what: "period", found: period, right }
 }
 
 /// A controller sampled with a period: zero-order hold.
@@ -126,7 +112,8 @@ pub struct Hold<C> {
 impl<C: Control> Hold<C> {
     /// Samples every `period` seconds. Errors: a period that is no length of time.
     pub fn new(control: C, period: f64) -> Result<Self, SimulateError> {
-        StateError::none(wrong_period(period).into_iter())?;
+        let wrong = !Range::POSITIVE.has(period);
+        StateError::none(wrong.then(|| wrong_period(period, format!("{}, s", Range::POSITIVE))).into_iter())?;
         Ok(Self { control, period })
     }
 }

@@ -10,7 +10,7 @@ use articulated_core::algorithm::Shape;
 use articulated_core::dynamics::Dynamics;
 
 use self::stiffness::Held;
-use crate::simulate::control::wrong_period_of;
+use crate::simulate::control::wrong_period;
 use crate::simulate::curve::Point;
 use crate::simulate::error::joint;
 use crate::simulate::event::watch::Watch;
@@ -165,7 +165,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         let expected = self.shape.nv;
         let torques = control.count().filter(|n| *n != expected).map(|found| StateError::Length { vector: "tau", found, expected });
         let state = self.system.manifold.wrong_state(self.system.robot, q, v);
-        let period = control.period().and_then(|period| wrong_period_of(period, &self.settings));
+        let period = control.period().and_then(|period| Some(wrong_period(period, self.settings.wrong_period(period)?)));
         StateError::none(state.chain(events.iter().flat_map(|event| event.wrong(self.shape))).chain(torques).chain(period))?;
         self.begin(q, v)?;
         let mut run = Run {

@@ -1,12 +1,14 @@
-//! What a simulation is asked for.
+//! What a simulation is asked for. Scenes have the same keys, and what is checked here holds for both.
 
-use std::fmt;
+use alloc::format;
+use alloc::string::{String, ToString};
+use alloc::vec::Vec;
+use core::fmt;
 
-use articulated_core::Plain;
-use articulated_core::algorithm::Shape;
-use articulated_core::integrator::least_step;
-
-use super::IntegratorId;
+use crate::Plain;
+use crate::algorithm::Shape;
+use crate::effect::Range;
+use crate::integrator::IntegratorId;
 
 /// What a simulation is asked for; keys are called as in scenes.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,13 +20,13 @@ pub struct Settings {
     /// Last time, s; after `start`.
     pub end: f64,
     /// Fixed steps of this length, s, the last of a stretch shortened to end with it. `None`: steps are chosen by the tolerances, which only the integrators do that
-    /// are `adaptive` in [`super::integrators`].
+    /// are `adaptive` in [`crate::integrator::integrators`].
     pub step: Option<f64>,
     /// Relative tolerance of a step's error, coordinate by coordinate.
     pub rtol: f64,
     /// Absolute tolerance of a step's error: rad, m, and those a second.
     pub atol: f64,
-    /// Absolute tolerances one by one, `[2·nv]`: of the steps of q, then of v; empty: `atol` for all.
+    /// Absolute tolerances one by one, `[2·nv]`: of the steps of q, then of v; empty: `atol` for all. No key of a scene.
     pub atol_each: Vec<f64>,
     /// No step shorter than this, s, save the last of a stretch; 0: sixteen units of rounding of t.
     pub min_step: f64,
@@ -56,13 +58,13 @@ pub enum Output {
 }
 
 /// What to do where an explicit integrator meets a stiff motion.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Stiffness {
-    /// End with [`super::SimulateError::Unstable`], or with [`super::SimulateError::Stiff`] where more than 20 000 steps of the length that stability admits would be left to
+    /// End with `SimulateError::Unstable`, or with `SimulateError::Stiff` where more than 20 000 steps of the length that stability admits would be left to
     /// the end; where they are fewer, they are made, and the time is noted as by [`Self::Note`].
     #[default]
     Refuse,
-    /// Note the time in [`super::Counts::stiff_at`] and go on.
+    /// Note the time in `Counts::stiff_at` and go on.
     Note,
 }
 
@@ -92,6 +94,8 @@ impl Default for Settings {
 pub struct SettingError {
     /// Its key.
     pub key: &'static str,
+    /// The keys with which it does not go; none where it is wrong by itself.
+    pub with: &'static [&'static str],
     /// What it was.
     pub found: String,
     /// What would be right.
@@ -104,75 +108,118 @@ impl fmt::Display for SettingError {
     }
 }
 
-impl std::error::Error for SettingError {}
+impl core::error::Error for SettingError {}
 
 /// Most numbers that the records of `Output::Every` may have together: 8 GB.
 const MOST_RECORDED: f64 = 1e9;
 
+/// What goes by the times of a motion.
+const TIMES: &[&str] = &["end", "start"];
+
+/// A setting that is a number: its key, where it has to be, its unit, and it.
+type Number = (&'static str, Range, &'static str, fn(&Settings) -> Option<f64>);
+
+const NUMBERS: &[Number] = &[
+    ("start", Range::ALL, ", s", |s| Some(s.start)),
+    ("end", Range::ALL, ", s", |s| Some(s.end)),
+    ("step", Range::POSITIVE, ", s", |s| s.step),
+    ("atol", Range::NOT_NEGATIVE, "", |s| Some(s.atol)),
+    ("min_step", Range::NOT_NEGATIVE, ", s", |s| Some(s.min_step)),
+    ("max_step", Range::POSITIVE, ", s", |s| bounded(s.max_step)),
+    ("first_step", Range::POSITIVE, ", s", |s| s.first_step),
+    ("event_tolerance", Range::NOT_NEGATIVE, ", s", |s| Some(s.event_tolerance)),
+    ("output", Range::POSITIVE, ", s", |s| if let Output::Every(every) = s.output { bounded(every) } else { None }),
+];
+
+/// An infinite bound is none.
+fn bounded(x: f64) -> Option<f64> {
+    Some(x).filter(|x| *x != f64::INFINITY)
+}
+
 impl Settings {
-    /// Everything that is wrong with them for a robot of this shape.
+    /// Everything that is wrong with them for a robot of this shape, each key once. Of what goes with a key that is wrong nothing is said.
     pub fn problems(&self, shape: Shape) -> Vec<SettingError> {
         let mut found = Problems(Vec::new());
-        let positive = |x: f64| x > 0.0 && x.is_finite();
-        let least = self.least_step();
-        found.unless(self.start.is_finite(), "start", self.start, "a finite time, s");
-        found.unless(
-            self.end.is_finite() && self.end > self.start,
-            "end",
-            self.end,
-            &format!("a finite time after start = {}", Plain(self.start)),
-        );
-        if let Some(step) = self.step {
-            found.unless(positive(step), "step", step, "a length of time greater than zero, s");
-            let told = format!("at least {least:.1e} s, sixteen units of rounding of the time");
-            found.unless(!positive(step) || step >= least || !least.is_finite(), "step", step, &told);
-        } else if !self.integrator.row().adaptive {
-            found.unless_told(
-                false,
-                "step",
-                || "nothing".into(),
-                &format!("{} has no error estimate, so it needs a step, s", self.integrator),
-            );
+        for (key, range, unit, of) in NUMBERS {
+            if let Some(x) = of(self).filter(|x| !range.has(*x)) {
+                found.add((key, &[]), &Plain(x), format!("{range}{unit}"));
+            }
         }
-        let rtol = self.rtol == 0.0 || (self.rtol >= 1e-15 && self.rtol < 1.0);
-        found.unless(rtol, "rtol", self.rtol, "0, or at least 1e-15, below which is rounding, and less than 1");
-        let atol = self.atol >= 0.0 && self.atol.is_finite();
-        found.unless(atol, "atol", self.atol, "at least 0");
-        found.unless(!(rtol && atol) || self.rtol + self.atol > 0.0, "rtol", self.rtol, "one of rtol and atol greater than 0");
-        let each = &self.atol_each;
-        let lengths = [0, 2 * shape.nv].contains(&each.len());
-        found.unless_told(lengths, "atol_each", || format!("{} numbers", each.len()), &format!("{} numbers, or none", 2 * shape.nv));
-        let bad = each.iter().find(|x| !(**x >= 0.0 && x.is_finite()));
-        found.unless(bad.is_none(), "atol_each", bad.copied().unwrap_or(0.0), "each at least 0");
-        found.unless(self.min_step >= 0.0 && self.min_step.is_finite(), "min_step", self.min_step, "finite, at least 0 s");
-        let longest = self.max_step > 0.0 && self.max_step >= self.min_step;
-        found.unless(longest, "max_step", self.max_step, "greater than 0 s and at least min_step");
-        let told = format!("at least {least:.1e} s, sixteen units of rounding of the time");
-        found.unless(!longest || self.max_step >= least || !least.is_finite(), "max_step", self.max_step, &told);
-        let first = self.first_step;
-        found.unless(first.is_none_or(positive), "first_step", first.unwrap_or(0.0), "a length of time greater than zero, s");
-        found.unless(self.max_steps > 0, "max_steps", self.max_steps as f64, "at least 1");
-        let time = self.event_tolerance >= 0.0 && self.event_tolerance.is_finite();
-        found.unless(time, "event_tolerance", self.event_tolerance, "at least 0 s");
+        // Less than 1e-15 is rounding.
+        if !(self.rtol == 0.0 || (1e-15..1.0).contains(&self.rtol)) {
+            found.add(("rtol", &[]), &Plain(self.rtol), "0, or at least 1e-15 and below 1");
+        }
+        if self.max_steps == 0 {
+            found.add(("max_steps", &[]), &0, "at least 1");
+        }
+        self.check_each(shape, &mut found);
+        self.check_together(&mut found);
         self.check_output(shape, &mut found);
         found.0
     }
 
-    /// The least that time can be told to go on by, s.
-    pub(crate) fn least_step(&self) -> f64 {
-        least_step(self.start, self.end)
+    /// The least that time can be told to go on by, s: sixteen units of its rounding.
+    pub fn least_step(&self) -> f64 {
+        16.0 * f64::EPSILON * self.start.abs().max(self.end.abs())
+    }
+
+    /// What a time between samples of a controller, s, has to be, if it is not: samples end steps, so time has to tell them apart, and there are no more of them than steps.
+    pub fn wrong_period(&self, period: f64) -> Option<String> {
+        let (least, length, most) = (self.least_step(), self.end - self.start, self.max_steps);
+        if !Range::POSITIVE.has(period) {
+            Some(format!("{}, s", Range::POSITIVE))
+        } else if period < least {
+            Some(of_rounding(least))
+        } else {
+            let right = || format!("at least {} s, for no more samples than max_steps = {most}", short(length / most as f64));
+            (length / period > most as f64).then(right)
+        }
+    }
+
+    fn check_each(&self, shape: Shape, found: &mut Problems) {
+        let (each, right) = (&self.atol_each, 2 * shape.nv);
+        if ![0, right].contains(&each.len()) {
+            found.add(("atol_each", &[]), &format!("{} numbers", each.len()), format!("{right} numbers, or none"));
+        }
+        if let Some(bad) = each.iter().find(|x| !Range::NOT_NEGATIVE.has(**x)) {
+            found.add(("atol_each", &[]), &Plain(*bad), format!("each {}", Range::NOT_NEGATIVE));
+        }
+    }
+
+    fn check_together(&self, found: &mut Problems) {
+        let Self { start, end, min_step, max_step, integrator, .. } = *self;
+        if end <= start {
+            found.add(("end", &["start"]), &Plain(end), format!("a time after start = {}, s", Plain(start)));
+        }
+        if self.step.is_none() && !integrator.row().adaptive {
+            found.add(("step", &["integrator"]), &"nothing", format!("the length of its steps, s: {integrator} has no error estimate"));
+        }
+        if self.rtol + self.atol == 0.0 {
+            found.add(("rtol", &["atol"]), &0, "one of rtol and atol greater than 0");
+        }
+        if max_step < min_step {
+            found.add(("max_step", &["min_step"]), &Plain(max_step), format!("at least min_step = {}, s", Plain(min_step)));
+        }
+        let least = self.least_step();
+        for (key, step) in [("step", self.step), ("max_step", Some(max_step))] {
+            if let Some(step) = step.filter(|step| *step < least) {
+                found.add((key, TIMES), &Plain(step), of_rounding(least));
+            }
+        }
     }
 
     fn check_output(&self, shape: Shape, found: &mut Problems) {
         match &self.output {
             Output::Every(s) => self.check_every(*s, shape, found),
             Output::At(times) => {
-                let inside = |t: f64| t >= self.start && t <= self.end;
-                let early = times.windows(2).find(|w| w[0] >= w[1] || w[1].is_nan()).map(|w| w[1]);
-                let bad = times.iter().copied().find(|t| !inside(*t)).or(early);
-                let (start, end) = (Plain(self.start), Plain(self.end));
-                let expected = format!("times from start = {start} to end = {end}, each later than the one before");
-                found.unless_told(bad.is_none(), "output", || format!("{} among the times", Plain(bad.unwrap_or(0.0))), &expected);
+                let (start, end) = (self.start, self.end);
+                if let Some(outside) = times.iter().find(|t| !(start..=end).contains(*t)) {
+                    let right = format!("times from start = {} to end = {}", Plain(start), Plain(end));
+                    found.add(("output", TIMES), &format!("{} among the times", Plain(*outside)), right);
+                }
+                if let Some(w) = times.windows(2).find(|w| w[1] <= w[0]) {
+                    found.add(("output", &[]), &format!("{} after {}", Plain(w[1]), Plain(w[0])), "times in order");
+                }
             }
             Output::Steps | Output::Ends => {}
         }
@@ -180,44 +227,40 @@ impl Settings {
 
     /// Records that time can tell apart, and that there is room for.
     fn check_every(&self, every: f64, shape: Shape, found: &mut Problems) {
-        let length = self.end - self.start;
-        if !(every > 0.0 && length > 0.0 && length.is_finite()) {
-            return found.unless(every > 0.0, "output", every, "a length of time greater than zero, s");
-        }
         // t, q, v, τ, five energies, momentum
         let each = (1 + shape.nq + 2 * shape.nv + 5 + 6) as f64;
-        let (rounding, room) = (self.least_step(), length * each / MOST_RECORDED);
-        let right = if rounding > room {
-            format!("at least {rounding:.1e} s, sixteen units of rounding of the time")
-        } else {
-            format!("at least {} s, for no more than {MOST_RECORDED:e} numbers in all, {each} per record", short(room))
-        };
-        found.unless(every >= rounding.max(room), "output", every, &right);
+        let (rounding, room) = (self.least_step(), (self.end - self.start) * each / MOST_RECORDED);
+        if every < rounding.max(room) {
+            let of_room = || format!("at least {} s, for no more than {MOST_RECORDED:e} numbers in all, {each} per record", short(room));
+            found.add(("output", TIMES), &Plain(every), if rounding > room { of_rounding(rounding) } else { of_room() });
+        }
     }
 }
 
+fn of_rounding(least: f64) -> String {
+    format!("at least {least:.1e} s, sixteen units of rounding of the time")
+}
+
 /// To four digits.
-pub(crate) fn short(x: f64) -> Plain {
+fn short(x: f64) -> Plain {
     Plain(format!("{x:.3e}").parse().unwrap_or(x))
 }
 
 struct Problems(Vec<SettingError>);
 
 impl Problems {
-    fn unless(&mut self, right: bool, key: &'static str, found: f64, would_be: &str) {
-        self.unless_told(right, key, || Plain(found).to_string(), would_be);
-    }
-
-    fn unless_told(&mut self, right: bool, key: &'static str, found: impl FnOnce() -> String, would_be: &str) {
-        if !right {
-            self.0.push(SettingError { key, found: found(), right: would_be.into() });
+    /// One more, unless something is wrong already with what it is about.
+    fn add(&mut self, (key, with): (&'static str, &'static [&'static str]), found: &dyn fmt::Display, right: impl Into<String>) {
+        if !self.0.iter().any(|told| told.key == key || with.contains(&told.key)) {
+            self.0.push(SettingError { key, with, found: found.to_string(), right: right.into() });
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{IntegratorId, Output, Settings, Shape};
+    use super::*;
+    use alloc::vec;
 
     #[test]
     fn every_bad_setting_is_named_at_once() {
@@ -225,7 +268,7 @@ mod tests {
         assert_eq!(Settings::default().problems(shape), []);
         let bad = Settings {
             start: f64::NAN,
-            end: -1.0,
+            end: f64::INFINITY,
             step: Some(0.0),
             rtol: -1.0,
             atol: f64::INFINITY,
@@ -245,7 +288,7 @@ mod tests {
         let none = Settings { rtol: 0.0, atol: 0.0, ..Settings::default() };
         assert_eq!(none.problems(shape)[0].to_string(), "rtol = 0: one of rtol and atol greater than 0");
         let fixed = Settings { integrator: IntegratorId::rk4, ..Settings::default() };
-        assert_eq!(fixed.problems(shape)[0].to_string(), "step = nothing: rk4 has no error estimate, so it needs a step, s");
+        assert_eq!(fixed.problems(shape)[0].to_string(), "step = nothing: the length of its steps, s: rk4 has no error estimate");
     }
 
     #[test]
