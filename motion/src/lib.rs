@@ -85,7 +85,6 @@
 
 mod ball;
 mod begin;
-mod drive;
 mod error;
 mod freedom;
 mod happening;
@@ -96,10 +95,9 @@ mod settings;
 mod stage;
 mod watch;
 
-pub use articulated::simulate::{Counts, Recording, Settings, SimulateError};
-pub use articulated_scene::{Controller, Scene};
+pub use articulated::simulate::{Controller, Counts, Drive, Recording, Settings, SimulateError};
+pub use articulated_scene::Scene;
 pub use begin::{Begin, Beyond, Sunk};
-pub use drive::Drive;
 pub use error::{Fault, MotionError, MotionErrors};
 pub use happening::{EventKind, Happening, SceneEvent};
 pub use motion::{Ending, Motion, Outcome};

@@ -4,10 +4,9 @@ use std::fmt;
 use std::time::{Duration, Instant};
 
 use articulated::Dynamics;
-use articulated::simulate::{Control, Counts, Ended, Recording, Settings, SimulateError, Simulation};
+use articulated::simulate::{Control, Counts, Drive, Ended, Recording, Settings, SimulateError, Simulation};
 
 use crate::begin::Begin;
-use crate::drive::Drive;
 use crate::error::{Fault, MotionErrors};
 use crate::happening::Happening;
 use crate::stage::Stage;
@@ -118,7 +117,7 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
     /// From the start to the end, to the blow that ends it, or to an error, which is part of what came of it. `follow` is told the time, s, and the counts after
     /// each step, and may say false to end it. Errors: a state, or a control, that does not fit the robot: nothing was done.
     pub fn run(&mut self, begin: &Begin, follow: &mut dyn FnMut(f64, &Counts) -> bool) -> Result<Outcome, MotionErrors> {
-        let drive = Drive::new(self.robot, begin.controller.clone(), self.stage.scene.control.period);
+        let drive = Drive::new(self.robot, &begin.controller, self.stage.scene.control.period);
         let mut drive = drive.map_err(|e| MotionErrors::refused(&self.stage.scene.file, e))?;
         self.run_with(begin, &mut drive, follow)
     }

@@ -1,7 +1,7 @@
 //! What a robot must have to be moved by a scene.
 
 use articulated::simulate::IntegratorId;
-use articulated::{Dynamics, FunctionError, FunctionId};
+use articulated::{Dynamics, FunctionId};
 use articulated_core::effect::EffectId;
 use articulated_scene::Watched;
 
@@ -54,7 +54,7 @@ impl Stage {
     /// What this robot lacks.
     pub(crate) fn lacking<R: Dynamics<f64>>(&self, robot: &R, integrator: IntegratorId) -> impl Iterator<Item = Fault> {
         let mut ws = robot.workspace();
-        self.required(integrator).into_iter().filter_map(move |function| tried(robot, &mut ws, function).err().map(Fault::Function))
+        self.required(integrator).into_iter().filter_map(move |function| robot.tried(&mut ws, function).err().map(Fault::Function))
     }
 
     /// What is wrong with a robot, and with the names of its frames in its order: it is another than the scene's.
@@ -72,12 +72,4 @@ impl Stage {
         faults.extend(otherwise.map(|(index, name, own)| Fault::FrameName { index, found: name.to_owned(), expected: own.to_owned() }));
         faults
     }
-}
-
-/// Whether a robot has a function, asked at a state that is none.
-pub(crate) fn tried<R: Dynamics<f64>>(robot: &R, ws: &mut R::Workspace, function: FunctionId) -> Result<(), FunctionError> {
-    let (row, shape) = (function.row::<f64>(), robot.shape());
-    let arguments: Vec<Vec<f64>> = row.takes.iter().map(|argument| vec![0.5; argument.len(shape)]).collect();
-    let arguments: Vec<&[f64]> = arguments.iter().map(Vec::as_slice).collect();
-    robot.call(function, ws, &arguments, &mut vec![0.0; row.len(shape)])
 }

@@ -1,5 +1,6 @@
 //! `[control]`: what drives the joints.
 
+use articulated_core::control::{Aim, Controller};
 use articulated_core::effect::Range;
 use articulated_core::model::{FLOATING_BASE, Model};
 
@@ -8,7 +9,7 @@ use crate::error::{Kind, SceneErrors};
 use crate::initial::{Coordinates, Named, Side, counted, fill, neutral, no_joint, normalise, values};
 use crate::log::Log;
 use crate::scene::Scene;
-use crate::series::{Reader, Series, Source};
+use crate::series::{Reader, Source};
 use crate::simulation::set;
 use crate::table::{Row, Spot};
 use crate::tree::{At, Value};
@@ -74,37 +75,6 @@ impl Default for PerJoint {
     fn default() -> Self {
         Self::Same(0.0)
     }
-}
-
-/// A control whose names are looked up and whose files are read: vectors in the order of the robot.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Controller {
-    /// No torque.
-    None,
-    /// The same torques all the time, `[nv]`.
-    Torque(Vec<f64>),
-    /// Torques over time, `[nv]` a row.
-    Table(Series),
-    /// τ = kp (target ⊖ q) + kd (target' − v) + torque.
-    Pd {
-        /// Where to.
-        target: Aim,
-        /// `[nv]`, N·m/rad or N/m.
-        kp: Vec<f64>,
-        /// `[nv]`, N·m·s/rad or N·s/m.
-        kd: Vec<f64>,
-        /// `[nv]`, N·m or N.
-        torque: Vec<f64>,
-    },
-}
-
-/// What a controller aims at.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Aim {
-    /// Coordinates that do not change, `[nq]`.
-    Still(Vec<f64>),
-    /// Coordinates over time, `[nq]` a row.
-    Moving(Series),
 }
 
 /// The keys as they are read.

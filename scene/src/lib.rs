@@ -33,9 +33,10 @@ mod simulation;
 mod table;
 mod tree;
 
+pub use articulated_core::control::{Aim, Controller, Series};
 pub use articulated_core::settings::{Output, Settings, Stiffness};
 pub use calls::Calls;
-pub use control::{Aim, Control, Controller, Drive, PerJoint, Target};
+pub use control::{Control, Drive, PerJoint, Target};
 pub use edits::{Append, Load, Lock};
 pub use effects::{Asked, Edited, Numbers, Resolved, Selector, still};
 pub use error::{Kind, SceneError, SceneErrors};
@@ -47,7 +48,7 @@ pub use robot::{
     leave_out, open, open_in, read_robot_file, tried,
 };
 pub use scene::{Code, Places, Robot, Scene};
-pub use series::{Reader, Series, Source};
+pub use series::{Reader, Source};
 pub use shaft::ShaftAsked;
 pub use simulation::{Simulation, Watched};
 pub use tree::{At, Entry, Node, Value};

@@ -3,6 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
+use articulated_core::control::Series;
 use articulated_core::effect::Range;
 use articulated_core::model::{JointInfo, Model};
 
@@ -28,30 +29,6 @@ pub struct Source {
     pub column_places: Vec<At>,
     /// Where each row stands.
     pub row_places: Vec<At>,
-}
-
-/// Numbers over time.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Series {
-    /// Times in order, s.
-    pub times: Vec<f64>,
-    /// One row a time, each as long as q or v; quaternions have norm one.
-    pub rows: Vec<Vec<f64>>,
-    /// Each row holds until the next; otherwise linear between them.
-    pub hold: bool,
-}
-
-impl Series {
-    /// The numbers at the time `t`, each by itself (a quaternion is none between two rows); before the first row and after the last the nearest of them.
-    pub fn at(&self, t: f64, out: &mut [f64]) {
-        let next = self.times.partition_point(|x| *x <= t);
-        let before = next.saturating_sub(1);
-        let after = next.min(self.times.len().saturating_sub(1));
-        let (Some(a), Some(b)) = (self.rows.get(before), self.rows.get(after)) else { return };
-        let span = self.times[after] - self.times[before];
-        let part = if self.hold || span <= 0.0 { 0.0 } else { (t - self.times[before]) / span };
-        out.iter_mut().zip(a.iter().zip(b)).for_each(|(out, (a, b))| *out = a + part * (b - a));
-    }
 }
 
 /// Gives the text of a file by its name in the scene, or says why not.
@@ -387,17 +364,5 @@ mod tests {
             (fields("\"open,2"), fields("a\"b,\"c\"d")),
             (vec!["\"open".to_owned(), "2".into()], vec!["a\"b".to_owned(), "cd".into()])
         );
-    }
-
-    #[test]
-    fn numbers_are_linear_between_rows_or_held_and_hold_at_the_ends() {
-        let series = |hold| Series { times: vec![0.0, 1.0, 3.0], rows: vec![vec![1.0], vec![3.0], vec![-1.0]], hold };
-        let at = |hold, t| {
-            let mut out = [f64::NAN];
-            series(hold).at(t, &mut out);
-            out[0]
-        };
-        assert_eq!([-1.0, 0.0, 0.5, 1.0, 2.0, 3.0, 9.0].map(|t| at(false, t)), [1.0, 1.0, 2.0, 3.0, 1.0, -1.0, -1.0]);
-        assert_eq!([-1.0, 0.5, 1.0, 2.9, 3.0, 9.0].map(|t| at(true, t)), [1.0, 1.0, 3.0, 3.0, -1.0, -1.0]);
     }
 }

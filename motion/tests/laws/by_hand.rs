@@ -55,7 +55,7 @@ fn given_torques_and_tables_are_those_of_the_library() {
     assert_eq!(found, run(&mut Constant::new(vec![0.75])));
     let rows = "columns = ['slide'], rows = [[0.0, 1.0], [0.3, -2.0], [1.0, 0.5]]";
     let found = moved(&stage(&format!("control = {{ kind = 'table', {rows} }}\nsimulation = {{ end = 1.5 }}"), CART)).recording;
-    let mut table = TorqueTable::new(vec![0.0, 0.3, 1.0], vec![1.0, -2.0, 0.5], 1).unwrap();
+    let mut table = TorqueTable::new(vec![0.0, 0.3, 1.0], &[1.0, -2.0, 0.5], 1).unwrap();
     let expected = run(&mut table);
     let far = found.q.iter().zip(&expected.q).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
     assert!(found.t == expected.t && far < 1e-14, "{far:e}");
@@ -85,12 +85,12 @@ fn a_table_out_of_order_is_refused() {
     };
     assert_eq!(told(&[0.0, 1.0], &[1.0, 2.0]), Ok(()));
     for (times, rows, wrong) in [
-        (&[1.0, 0.5][..], &[1.0, 2.0][..], "a time of control.rows = 0.5"),
-        (&[1.0, 1.0], &[1.0, 2.0], "a time of control.rows = 1"),
-        (&[0.0, f64::INFINITY], &[1.0, 2.0], "a time of control.rows = inf"),
-        (&[f64::NAN, 1.0], &[1.0, 2.0], "a time of control.rows = NaN"),
-        (&[0.0, 1.0], &[1.0, f64::NAN], "a number of control.rows = NaN"),
-        (&[], &[], "control.rows"),
+        (&[1.0, 0.5][..], &[1.0, 2.0][..], "control.rows: row 1 of the table: t = 0.5 s is not after 1 s"),
+        (&[1.0, 1.0], &[1.0, 2.0], "control.rows: row 1 of the table: t = 1 s is not after 1 s"),
+        (&[0.0, f64::INFINITY], &[1.0, 2.0], "control.rows: row 1 of the table has a number that is not finite"),
+        (&[f64::NAN, 1.0], &[1.0, 2.0], "control.rows: row 0 of the table has a number that is not finite"),
+        (&[0.0, 1.0], &[1.0, f64::NAN], "control.rows: row 1 of the table has a number that is not finite"),
+        (&[], &[], "control.rows: the table has no row"),
     ] {
         let told = told(times, rows).unwrap_err();
         assert!(told.contains(wrong), "{told}");
@@ -106,7 +106,7 @@ fn every_row_of_a_table_is_a_kink() {
     for controller in
         [Controller::Table(series.clone()), Controller::Pd { target: Aim::Moving(series), kp: one(), kd: one(), torque: one() }]
     {
-        let drive = Drive::new(&stage.model, controller, None).unwrap();
+        let drive = Drive::new(&stage.model, &controller, None).unwrap();
         let kinks = [-1.0, 0.0, 0.25, 0.3, 0.5, 0.75, 1.0, 2.0].map(|t| drive.next_kink(t));
         assert_eq!(kinks, [0.25, 0.25, 0.5, 0.5, 1.0, 1.0, f64::INFINITY, f64::INFINITY]);
     }
@@ -124,7 +124,7 @@ fn torques_depend_on_what_their_kind_says_and_on_nothing_while_they_are_held() {
         (pd(Aim::Still(one())), false, true),
         (pd(Aim::Moving(series())), true, true),
     ] {
-        let of = |period| Drive::new(&stage.model, controller.clone(), period).unwrap().depends_on();
+        let of = |period| Drive::new(&stage.model, &controller, period).unwrap().depends_on();
         assert_eq!(of(None), Dependence { time, state }, "{controller:?}");
         assert_eq!(of(Some(0.1)), Dependence { time: false, state: false }, "{controller:?}");
     }
@@ -164,7 +164,7 @@ fn the_parts_put_together_move_as_the_whole() {
     let whole = moved(&stage);
     let (robot, settings) = (&stage.model, stage.settings().unwrap());
     let begin = stage.begin().unwrap();
-    let mut drive = Drive::new(robot, begin.controller, None).unwrap();
+    let mut drive = Drive::new(robot, &begin.controller, None).unwrap();
     let mut watch = Watch::new(&stage, robot, &stage.frame_names()).unwrap();
     watch.events.push(Event::new("half way", |_, q, _| q[0] - 0.5));
     let mut simulation = Simulation::new(robot, settings).unwrap();

@@ -1,6 +1,6 @@
 //! What keeps a scene from moving is told, all of it at once.
 
-use articulated::simulate::{Settings, StateError};
+use articulated::simulate::{Settings, StateError, TableError};
 use articulated::{Dynamics, FunctionError};
 use articulated_models::panda_like;
 use articulated_motion::{Begin, Controller, Fault, MotionErrors, Scene, Stage};
@@ -210,9 +210,14 @@ fn a_begin_that_does_not_fit_the_robot_is_refused() {
     assert_eq!(told(&Begin { q: vec![0.0], v: vec![], ..begin.clone() }), [length("q", 1, 6), length("v", 0, 5)]);
     let torque = Begin { controller: Controller::Torque(vec![]), ..begin.clone() };
     assert_eq!(told(&torque), [length("control.torque", 0, 5)]);
+    let table = |wrong| Fault::State(StateError::Table { table: "control.rows", wrong });
     let series = Series { times: vec![0.0, 1.0], rows: vec![vec![0.0; 2]], hold: false };
     let pd = Controller::Pd { target: Aim::Moving(series), kp: vec![], kd: vec![0.0; 5], torque: vec![0.0; 5] };
-    let expected = [length("control.kp", 0, 5), length("control.rows", 1, 2), length("a row of control.rows", 2, 6)];
+    let expected = [
+        table(TableError::Rows { found: 1, expected: 2 }),
+        table(TableError::Width { row: 0, found: 2, expected: 6 }),
+        length("control.kp", 0, 5),
+    ];
     assert_eq!(told(&Begin { controller: pd, ..begin.clone() }), expected);
     let nowhere = Begin { q: [0.0, f64::NAN].into_iter().chain([0.0; 3]).chain([1.0]).collect(), ..begin };
     assert!(matches!(&told(&nowhere)[..], [Fault::State(StateError::NotFinite { vector: "q", index: 1, .. })]));

@@ -1,8 +1,11 @@
 //! One interface to a robot's dynamics, whether it was generated or loaded at run time.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use crate::Scalar;
 use crate::algorithm::table::for_each_function;
-use crate::algorithm::{FunctionError, FunctionId, Shape, Workspace};
+use crate::algorithm::{Argument, FunctionError, FunctionId, Shape, Workspace};
 use crate::model::{JointInfo, JointRow, Model};
 
 /// A dimension, or dimensions, as they are indexed; a single number is an array of one.
@@ -100,6 +103,15 @@ macro_rules! methods {
 
             /// Any function by its number; `arguments` in its order.
             fn call(&self, function: FunctionId, ws: &mut Self::Workspace, arguments: &[&[S]], out: &mut [S]) -> Result<(), FunctionError>;
+
+            /// Whether the robot has a function, asked at a state that is none.
+            fn tried(&self, ws: &mut Self::Workspace, function: FunctionId) -> Result<(), FunctionError> {
+                let (row, shape) = (function.row::<S>(), self.shape());
+                let half = |argument: &Argument| vec![S::from_f64(0.5); argument.len(shape)];
+                let arguments: Vec<Vec<S>> = row.takes.iter().map(half).collect();
+                let arguments: Vec<&[S]> = arguments.iter().map(Vec::as_slice).collect();
+                self.call(function, ws, &arguments, &mut vec![S::zero(); row.len(shape)])
+            }
 
             $(
                 #[doc = concat!($summary, ".\n\n", $("* ", argument!($argument), "\n",)* "* out: `", dims!($($dim $(($n))?),*), "` ", $unit, ".")]

@@ -21,6 +21,8 @@ pub mod spatial;
 #[cfg(feature = "alloc")]
 pub mod algorithm;
 #[cfg(feature = "alloc")]
+pub mod control;
+#[cfg(feature = "alloc")]
 pub mod description;
 #[cfg(feature = "alloc")]
 pub mod dynamics;

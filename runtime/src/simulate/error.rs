@@ -5,9 +5,10 @@ use std::fmt;
 use articulated_core::Plain;
 use articulated_core::algorithm::FunctionError;
 use articulated_core::algorithm::checked::Singular;
+use articulated_core::control::Series;
 use articulated_core::dynamics::Dynamics;
 
-use super::{IntegratorId, SettingError};
+use super::{IntegratorId, SettingError, TableError};
 
 /// Why a simulation could not begin or did not go on.
 #[derive(Clone, Debug, PartialEq)]
@@ -141,6 +142,13 @@ pub enum StateError {
         /// Name of the joint that it belongs to, where the robot can tell.
         joint: Option<String>,
     },
+    /// A table over time, as a controller has it.
+    Table {
+        /// What it is called.
+        table: &'static str,
+        /// What is wrong with it.
+        wrong: TableError,
+    },
     /// A quaternion whose norm is not one to 1e-6.
     Quaternion {
         /// The vector.
@@ -208,6 +216,11 @@ impl StateError {
         Self::of(vector, x, robot.shape().nv, |freedom| joint(robot, freedom))
     }
 
+    /// What is wrong with a table of so many numbers a row.
+    pub(crate) fn of_table(table: &'static str, series: &Series, width: usize) -> impl Iterator<Item = Self> {
+        series.problems(width).into_iter().map(move |wrong| Self::Table { table, wrong })
+    }
+
     /// Nothing is wrong, or all that is.
     pub(crate) fn none(wrong: impl Iterator<Item = Self>) -> Result<(), SimulateError> {
         let wrong: Vec<Self> = wrong.collect();
@@ -223,6 +236,7 @@ impl fmt::Display for StateError {
             Self::Quaternion { vector, index, norm, joint } => {
                 write!(f, "{vector}[{index}..{}]{} is a quaternion of norm {norm}; it should be 1", index + 4, of_joints(joint))
             }
+            Self::Table { table, wrong } => write!(f, "{table}: {wrong}"),
             Self::Frame { index, frames } => write!(f, "there is no frame {index}: the robot has {frames}, the first is 0"),
             Self::Beyond { event, vector, index, length } => {
                 write!(f, "the event `{event}` is about {vector}[{index}], and {vector} has {length} numbers")

@@ -35,9 +35,10 @@ mod stability;
 mod step_control;
 mod system;
 
+pub use articulated_core::control::{Aim, Controller, Series, TableError};
 pub use articulated_core::integrator::{Integrator, IntegratorId, integrator, integrators, meant};
 pub use articulated_core::settings::{Output, SettingError, Settings, Stiffness};
-pub use control::{Constant, Control, Dependence, Hold, NoTorque, Pd, TableError, TableErrors, TorqueTable};
+pub use control::{Constant, Control, Dependence, Drive, Hold, NoTorque, Pd, TorqueTable};
 pub use error::{SimulateError, StateError};
 pub use event::{Action, ContactPoint, Direction, Event, Impact, Map, Struck};
 pub use recording::{Counts, Ended, Hit, Recording};

@@ -59,7 +59,7 @@ impl Control for Sampled {
 #[test]
 fn a_sampled_table_is_asked_at_samples_alone() {
     let rows = ([0.0, 0.3, 0.5, 0.55, 0.8], [0.0, 1.0, 2.0, 0.0, 0.2]);
-    let table = || TorqueTable::new(rows.0.to_vec(), rows.1.to_vec(), 1).unwrap();
+    let table = || TorqueTable::new(rows.0.to_vec(), &rows.1, 1).unwrap();
     let (mut q, mut v) = (0.3, -0.2);
     for k in 0..10 {
         let mut u = [0.0];
@@ -81,7 +81,7 @@ fn a_sampled_table_is_asked_at_samples_alone() {
 fn a_table_is_followed_through_its_kinks() {
     for id in [IntegratorId::dopri5, IntegratorId::rodas4, IntegratorId::rk4] {
         let settings = if id == IntegratorId::rk4 { stepping(id, 2.0, 0.3) } else { to(id, 2.0, 1e-3) };
-        let mut table = TorqueTable::new(vec![0.0, 0.7, 1.4], vec![0.0, 1.0, 0.0], 1).unwrap();
+        let mut table = TorqueTable::new(vec![0.0, 0.7, 1.4], &[0.0, 1.0, 0.0], 1).unwrap();
         let motion = Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[0.0], &mut table, &mut []).unwrap();
         // ∫ = 0.7, the centre at 0.7. Derivatives in time are differences where steps are linearly implicit.
         let bound = if id == IntegratorId::rodas4 { 1e-9 } else { 1e-14 };

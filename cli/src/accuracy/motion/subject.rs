@@ -70,8 +70,8 @@ pub(super) fn run(subject: &Subject, id: IntegratorId, how: How) -> Option<End> 
         How::Tolerance(t) => (settings.rtol, settings.atol) = (t, t),
     }
     let mut simulation = Simulation::new(&subject.model, settings).ok()?;
-    let (controller, period) = subject.control.clone();
-    let mut control = Drive::new(&subject.model, controller, period).ok()?;
+    let (controller, period) = &subject.control;
+    let mut control = Drive::new(&subject.model, controller, *period).ok()?;
     let clock = Instant::now();
     let r = simulation.run(&subject.q, &subject.v, &mut control, &mut []).ok()?;
     let wall = clock.elapsed().as_secs_f64();

@@ -1,5 +1,6 @@
 //! What moves the robot: torques as functions of time and state.
 
+mod drive;
 mod pd;
 mod torque_table;
 
@@ -7,8 +8,9 @@ use articulated_core::effect::Range;
 
 use super::{SimulateError, StateError};
 
+pub use drive::Drive;
 pub use pd::Pd;
-pub use torque_table::{TableError, TableErrors, TorqueTable};
+pub use torque_table::TorqueTable;
 
 /// What gives the torques, closed or open loop.
 ///

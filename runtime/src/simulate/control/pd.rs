@@ -1,66 +1,46 @@
 //! Proportional and derivative action about a target.
 
+use std::borrow::Cow;
+
+use articulated_core::control::{Aim, Controller};
 use articulated_core::dynamics::Dynamics;
 
-use super::{Control, Dependence};
-use crate::simulate::{SimulateError, StateError, manifold::Manifold};
+use super::{Control, Dependence, Drive};
+use crate::simulate::{SimulateError, StateError};
 
 /// τ = k_p·(target ⊖ q) + k_d·(rates − v), coordinate by coordinate; for a joint that turns freely the difference is a rotation vector.
 pub struct Pd<'r, R: Dynamics<f64>> {
     robot: &'r R,
-    ws: R::Workspace,
-    flat: bool,
-    target: Vec<f64>,
-    rates: Vec<f64>,
-    proportional: Vec<f64>,
-    derivative: Vec<f64>,
+    drive: Drive<'r, R>,
 }
 
 impl<'r, R: Dynamics<f64>> Pd<'r, R> {
     /// target: `[nq]`; gains: `[nv]`, N·m/rad|N/m and N·m·s/rad|N·s/m; all that is wrong with them is told at once. The robot needs the function `difference` if one of its coordinates is a quaternion.
     pub fn new(robot: &'r R, target: Vec<f64>, proportional: Vec<f64>, derivative: Vec<f64>) -> Result<Self, SimulateError> {
-        let (manifold, shape) = (Manifold::of(robot)?, robot.shape());
-        let rates = vec![0.0; shape.nv];
-        let gains = [("proportional gains", &proportional), ("derivative gains", &derivative)];
-        let gains = gains.into_iter().flat_map(|(vector, x)| StateError::of_freedoms(vector, x, robot));
-        StateError::none(manifold.wrong(robot, "target", &target).chain(gains))?;
-        let mut pd = Self { robot, ws: robot.workspace(), flat: manifold.is_flat(), target, rates, proportional, derivative };
-        let (q, mut out) = (pd.target.clone(), vec![0.0; shape.nv]);
-        pd.difference(&q, &mut out)?;
-        Ok(pd)
+        let torque = vec![0.0; robot.shape().nv];
+        let controller = Controller::Pd { target: Aim::Still(target), kp: proportional, kd: derivative, torque };
+        let names = ["target", "proportional gains", "derivative gains", "torque"];
+        Ok(Self { robot, drive: Drive::called(robot, Cow::Owned(controller), names)? })
     }
 
     /// The same with rates to follow, `[nv]` finite numbers.
     pub fn with_rates(mut self, rates: &[f64]) -> Result<Self, SimulateError> {
         StateError::none(StateError::of_freedoms("rates", rates, self.robot))?;
-        self.rates.copy_from_slice(rates);
+        self.drive.pursuit.rate.copy_from_slice(rates);
         Ok(self)
-    }
-
-    fn difference(&mut self, q: &[f64], out: &mut [f64]) -> Result<(), SimulateError> {
-        if self.flat {
-            out.iter_mut().zip(&self.target).zip(q).for_each(|((out, target), q)| *out = target - q);
-            return Ok(());
-        }
-        Ok(self.robot.difference(&mut self.ws, q, &self.target, out)?)
     }
 }
 
 impl<R: Dynamics<f64>> Control for Pd<'_, R> {
-    fn torques(&mut self, _: f64, q: &[f64], v: &[f64], tau: &mut [f64]) {
-        if self.difference(q, tau).is_err() {
-            tau.fill(f64::NAN); // it was tried when this was made
-        }
-        for (i, tau) in tau.iter_mut().enumerate() {
-            *tau = self.proportional[i] * *tau + self.derivative[i] * (self.rates[i] - v[i]);
-        }
+    fn torques(&mut self, t: f64, q: &[f64], v: &[f64], tau: &mut [f64]) {
+        self.drive.torques(t, q, v, tau);
     }
 
     fn count(&self) -> Option<usize> {
-        Some(self.rates.len())
+        self.drive.count()
     }
 
     fn depends_on(&self) -> Dependence {
-        Dependence { time: false, state: true }
+        self.drive.depends_on()
     }
 }

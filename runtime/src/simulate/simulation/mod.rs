@@ -112,11 +112,9 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
 
     /// Whether the robot has what the integrator needs.
     fn try_functions(&mut self) -> Result<(), SimulateError> {
-        let nv = self.shape.nv;
-        let (q, zero, mut out) = (vec![0.5; self.shape.nq], vec![0.0; nv], vec![0.0; 3 * nv * nv]);
+        let System { robot, ws, .. } = &mut self.system;
         for function in self.settings.integrator.row().needs {
-            let length = function.row::<f64>().len(self.shape);
-            self.system.robot.call(*function, &mut self.system.ws, &[&q, &zero, &zero], &mut out[..length])?;
+            robot.tried(ws, *function)?;
         }
         Ok(())
     }

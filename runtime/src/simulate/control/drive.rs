@@ -1,0 +1,171 @@
+//! Control that is given as data.
+
+use std::borrow::Cow;
+
+use articulated_core::algorithm::{FunctionError, FunctionId};
+use articulated_core::control::{Aim, Controller, Series};
+use articulated_core::dynamics::Dynamics;
+
+use super::{Control, Dependence};
+use crate::simulate::{SimulateError, StateError, manifold::Manifold};
+
+/// A controller on a robot.
+///
+/// ```text
+/// none      τ = 0
+/// torque    τ = the given one
+/// table     τ = that of the table at the time
+/// pd        τ = kp (target ⊖ q) + kd (target' − v) + torque
+/// ```
+pub struct Drive<'r, R: Dynamics<f64>> {
+    controller: Cow<'r, Controller>,
+    period: Option<f64>,
+    pub(super) pursuit: Pursuit<'r, R>,
+}
+
+/// How far a robot is from where it should be.
+pub(super) struct Pursuit<'r, R: Dynamics<f64>> {
+    robot: &'r R,
+    ws: R::Workspace,
+    target: Vec<f64>,
+    /// target ⊖ q.
+    error: Vec<f64>,
+    /// target', which is left as it is where the target stands still.
+    pub(super) rate: Vec<f64>,
+    step: Vec<f64>,
+}
+
+impl<'r, R: Dynamics<f64>> Drive<'r, R> {
+    /// A controller, and the time between its samples, s, if it is sampled. Errors: all vectors that do not fit the robot, and all that is wrong with tables; or else a function that
+    /// the robot has not: control of kind `pd` needs `difference`, and for joints that turn freely `integrate`.
+    pub fn new(robot: &'r R, controller: &'r Controller, period: Option<f64>) -> Result<Self, SimulateError> {
+        let names = ["control.target", "control.kp", "control.kd", "control.torque"];
+        let mut drive = Self::called(robot, Cow::Borrowed(controller), names)?;
+        if matches!(controller, Controller::Pd { .. }) {
+            robot.tried(&mut drive.pursuit.ws, FunctionId::difference)?;
+        }
+        Ok(Self { period, ..drive })
+    }
+
+    /// The same, whose target, gains and torques whoever gave them calls so.
+    pub(super) fn called(robot: &'r R, controller: Cow<'r, Controller>, names: [&'static str; 4]) -> Result<Self, SimulateError> {
+        StateError::none(wrong(&controller, robot, names)?.into_iter())?;
+        let mut pursuit = Pursuit::new(robot);
+        if matches!(*controller, Controller::Pd { .. }) && !pursuit.is_flat() {
+            robot.tried(&mut pursuit.ws, FunctionId::difference)?;
+        }
+        Ok(Self { controller, period: None, pursuit })
+    }
+}
+
+impl<'r, R: Dynamics<f64>> Pursuit<'r, R> {
+    fn new(robot: &'r R) -> Self {
+        let (shape, zeros) = (robot.shape(), || vec![0.0; robot.shape().nv]);
+        Self { robot, ws: robot.workspace(), target: vec![0.0; shape.nq], error: zeros(), rate: zeros(), step: zeros() }
+    }
+
+    /// Whether every coordinate is plain: each quaternion is one more than its rates.
+    fn is_flat(&self) -> bool {
+        self.target.len() == self.rate.len()
+    }
+
+    /// Error and rate at time t.
+    fn aim(&mut self, aim: &Aim, t: f64, q: &[f64]) -> Result<(), FunctionError> {
+        match aim {
+            Aim::Still(still) => self.target.copy_from_slice(still),
+            Aim::Moving(series) => self.follow(series, t)?,
+        }
+        difference(self.robot, &mut self.ws, q, &self.target, &mut self.error)
+    }
+
+    /// Target and rate at time t.
+    fn follow(&mut self, series: &Series, t: f64) -> Result<(), FunctionError> {
+        series.at(t, &mut self.target);
+        let Some(([since, span], [from, to])) = series.between(t) else {
+            self.rate.fill(0.0);
+            return Ok(());
+        };
+        difference(self.robot, &mut self.ws, from, to, &mut self.rate)?;
+        self.rate.iter_mut().for_each(|r| *r /= span);
+        // from ⊕ (t − t_from) target': the shortest way at a constant rate, which plain coordinates take anyway.
+        if !self.is_flat() {
+            self.step.iter_mut().zip(&self.rate).for_each(|(step, rate)| *step = since * rate);
+            self.robot.integrate(&mut self.ws, from, &self.step, &mut self.target)?;
+        }
+        Ok(())
+    }
+}
+
+/// target ⊖ q, for which a robot of plain coordinates needs no function.
+fn difference<R: Dynamics<f64>>(robot: &R, ws: &mut R::Workspace, q: &[f64], target: &[f64], out: &mut [f64]) -> Result<(), FunctionError> {
+    if q.len() != out.len() {
+        return robot.difference(ws, q, target, out);
+    }
+    out.iter_mut().zip(target).zip(q).for_each(|((out, target), q)| *out = target - q);
+    Ok(())
+}
+
+impl<R: Dynamics<f64>> Control for Drive<'_, R> {
+    fn torques(&mut self, t: f64, q: &[f64], v: &[f64], tau: &mut [f64]) {
+        match &*self.controller {
+            Controller::None => {}
+            Controller::Torque(given) => tau.copy_from_slice(given),
+            Controller::Table(series) => series.at(t, tau),
+            Controller::Pd { target, kp, kd, torque } => {
+                if self.pursuit.aim(target, t, q).is_err() {
+                    return tau.fill(f64::NAN); // its functions were tried when this was made
+                }
+                let Pursuit { error, rate, .. } = &self.pursuit;
+                for i in 0..tau.len() {
+                    tau[i] = kp[i] * error[i] + kd[i] * (rate[i] - v[i]) + torque[i];
+                }
+            }
+        }
+    }
+
+    fn period(&self) -> Option<f64> {
+        self.period
+    }
+
+    fn next_kink(&self, t: f64) -> f64 {
+        match &*self.controller {
+            Controller::Table(series) | Controller::Pd { target: Aim::Moving(series), .. } => series.next(t),
+            _ => f64::INFINITY,
+        }
+    }
+
+    fn count(&self) -> Option<usize> {
+        Some(self.pursuit.rate.len())
+    }
+
+    fn depends_on(&self) -> Dependence {
+        match &*self.controller {
+            _ if self.period.is_some() => Dependence::NOTHING,
+            Controller::None | Controller::Torque(_) => Dependence::NOTHING,
+            Controller::Table(_) => Dependence { time: true, state: false },
+            Controller::Pd { target, .. } => Dependence { time: matches!(target, Aim::Moving(_)), state: true },
+        }
+    }
+}
+
+/// What does not fit the robot, of vectors that are called so. Errors: a robot whose coordinates are not known.
+fn wrong<R: Dynamics<f64>>(
+    controller: &Controller,
+    robot: &R,
+    [target, kp, kd, torque]: [&'static str; 4],
+) -> Result<Vec<StateError>, FunctionError> {
+    Ok(match controller {
+        Controller::None => Vec::new(),
+        Controller::Torque(given) => StateError::of_freedoms(torque, given, robot).collect(),
+        Controller::Table(series) => StateError::of_table("control.rows", series, robot.shape().nv).collect(),
+        Controller::Pd { target: aim, kp: p, kd: d, torque: given } => {
+            let manifold = Manifold::of(robot)?;
+            let aim: Vec<StateError> = match aim {
+                Aim::Still(q) => manifold.wrong(robot, target, q).collect(),
+                Aim::Moving(series) => StateError::of_table("control.rows", series, robot.shape().nq).collect(),
+            };
+            let freedoms = [(kp, p), (kd, d), (torque, given)];
+            aim.into_iter().chain(freedoms.into_iter().flat_map(|(name, x)| StateError::of_freedoms(name, x, robot))).collect()
+        }
+    })
+}
