@@ -2,6 +2,7 @@
 
 use articulated_core::description::{Base, JointKind};
 use articulated_core::model::{FLOATING_BASE, Model};
+use articulated_core::spatial::normalise_given;
 
 use crate::edits::coordinates;
 use crate::error::{Kind, SceneErrors};
@@ -80,9 +81,6 @@ impl Default for BaseState {
         Self { xyz: [0.0; 3], quaternion: [0.0, 0.0, 0.0, 1.0], angular: [0.0; 3], linear: [0.0; 3], place: At::Nowhere }
     }
 }
-
-/// A quaternion's norm may be off by so much; it is normalised.
-const NORM: f64 = 1e-3;
 
 pub(crate) const KEYS: &[Row<Initial>] = &[
     Row {
@@ -207,13 +205,12 @@ fn from_rpy(rpy: [f64; 3]) -> [f64; 4] {
 }
 
 fn unit(spot: &Spot<'_>, log: &mut Log) -> Option<[f64; 4]> {
-    let quaternion: [f64; 4] = spot.numbers(log)?;
-    let norm = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
-    if (norm - 1.0).abs() > NORM {
+    let mut quaternion: [f64; 4] = spot.numbers(log)?;
+    if let Err(norm) = normalise_given(&mut quaternion) {
         spot.bad(log, format!("a quaternion of norm {norm:.4}"), "norm one, in the order x, y, z, w");
         return None;
     }
-    Some(quaternion.map(|x| x / norm))
+    Some(quaternion)
 }
 
 impl Scene {
@@ -308,13 +305,9 @@ pub(crate) fn no_joint(log: &mut Log, at: At, key: &str, name: &str, model: &Mod
 pub(crate) fn normalise(model: &Model<f64>, q: &mut [f64], (key, place): (&str, &dyn Fn(&str) -> At), log: &mut Log) {
     for joint in model.joints.iter().filter(|j| matches!(j.kind, JointKind::Spherical | JointKind::Floating)) {
         let end = joint.q.0 + joint.q.1;
-        let quaternion = &mut q[end - 4..end];
-        let norm = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if (norm - 1.0).abs() > NORM {
+        if let Err(norm) = normalise_given(&mut q[end - 4..end]) {
             let found = format!("a quaternion of norm {norm:.4} for joint {:?}", joint.name);
             log.error(place(&joint.name), key, Kind::Number, found, "norm one, in the order x, y, z, w");
-        } else {
-            quaternion.iter_mut().for_each(|x| *x /= norm);
         }
     }
 }

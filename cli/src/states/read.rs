@@ -3,14 +3,13 @@
 use articulated_codegen::nearest;
 use articulated_core::algorithm::Argument;
 use articulated_core::model::Model;
+use articulated_core::spatial::{NORM_TOLERANCE, given_norm};
 
 use super::random::normalise;
 use super::{Slot, State, csv, json, owner, quaternions, slots};
 use crate::table::counted;
 
-/// A quaternion may be off the unit norm by this much; it is then normalised.
-const NORM: f64 = 1e-6;
-/// Below this nothing is said about it: the rounding of the four numbers.
+/// Norms of quaternions so near to one are not spoken of: the rounding of the four numbers.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// At most this many errors are listed.
 const MOST: usize = 100;
@@ -76,13 +75,16 @@ impl Found<'_> {
     fn check_quaternions(&mut self, place: &str, q: &mut [f64]) {
         let model = self.model;
         for (joint, at) in quaternions(model) {
-            let norm = q[at..at + 4].iter().map(|x| x * x).sum::<f64>().sqrt();
-            let off = (norm - 1.0).abs();
-            if off.is_nan() || off > NORM {
-                self.error(place, format!("joint {:?}: found a quaternion of norm {norm}, expected 1 within {NORM:e}", joint.name));
-            } else if off > ROUNDING {
-                normalise(&mut q[at..at + 4]);
-                self.warnings.push(format!("{place}: joint {:?}: quaternion of norm {norm} was normalised", joint.name));
+            let (quaternion, name) = (&mut q[at..at + 4], &joint.name);
+            match given_norm(quaternion) {
+                Err(norm) => {
+                    self.error(place, format!("joint {name:?}: found a quaternion of norm {norm}, expected 1 within {NORM_TOLERANCE:e}"));
+                }
+                Ok(norm) if (norm - 1.0).abs() > ROUNDING => {
+                    normalise(quaternion);
+                    self.warnings.push(format!("{place}: joint {name:?}: quaternion of norm {norm} was normalised"));
+                }
+                Ok(_) => {}
             }
         }
     }

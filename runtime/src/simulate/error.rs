@@ -149,7 +149,7 @@ pub enum StateError {
         /// What is wrong with it.
         wrong: TableError,
     },
-    /// A quaternion whose norm is not one to 1e-6.
+    /// A quaternion whose norm is not one within [`NORM_TOLERANCE`](articulated_core::spatial::NORM_TOLERANCE).
     Quaternion {
         /// The vector.
         vector: &'static str,

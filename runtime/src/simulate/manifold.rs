@@ -17,7 +17,7 @@ use articulated_core::algorithm::FunctionError;
 use articulated_core::dynamics::Dynamics;
 use articulated_core::nalgebra::Matrix6;
 use articulated_core::spatial::screw::{cross_matrix, right_jacobian_inverse};
-use articulated_core::spatial::{Twist, Vector3};
+use articulated_core::spatial::{Twist, Vector3, given_norm};
 
 use super::StateError;
 use super::error::joint;
@@ -196,11 +196,11 @@ impl Manifold {
     /// What is wrong with a configuration, which whoever gave it calls `vector`.
     pub(crate) fn wrong<R: Dynamics<f64>>(&self, robot: &R, vector: &'static str, q: &[f64]) -> impl Iterator<Item = StateError> {
         let quaternion = move |free: &Free| {
-            let norm = q[free.quaternion()].iter().map(|x| x * x).sum::<f64>().sqrt();
-            let wrong = || StateError::Quaternion { vector, index: free.quaternion().start, norm, joint: joint(robot, free.v) };
-            ((norm - 1.0).abs() > 1e-6).then(wrong)
+            let norm = given_norm(&q[free.quaternion()]).err()?;
+            Some(StateError::Quaternion { vector, index: free.quaternion().start, norm, joint: joint(robot, free.v) })
         };
-        let quaternions = self.free.iter().filter(|_| q.len() == self.nq).filter_map(quaternion);
+        let quaternions =
+            self.free.iter().filter(|free| q.len() == self.nq && q[free.quaternion()].iter().all(|x| x.is_finite())).filter_map(quaternion);
         StateError::of(vector, q, self.nq, |i| joint(robot, self.freedom_of(i))).chain(quaternions)
     }
 

@@ -142,16 +142,16 @@ fn what_is_wrong_with_a_state_its_events_and_its_torques_is_said_at_once() {
     assert_eq!(error.to_string().lines().collect::<Vec<_>>(), expected);
 }
 
-/// What rounding of six digits leaves of the norm is taken, and normalised.
+/// What rounding to four digits leaves of the norm is taken, and normalised.
 #[test]
-fn quaternions_have_norm_one_within_a_millionth() {
+fn quaternions_have_norm_one_to_four_digits() {
     let started = |w: f64| free(&handle::Robot, &to(IntegratorId::dopri5, 0.1, 1e-6), &[0.0, 0.0, 0.0, 0.0, 0.0, 0.0, w], &[0.0; 6]);
-    for w in [1.0 + 1e-5, 1.0 - 1e-5, 0.0] {
+    for w in [1.01, 0.99, 0.0] {
         let told = started(w).map(drop).unwrap_err();
         let SimulateError::State(wrong) = &told else { panic!("{told}") };
         assert!(matches!(wrong[..], [StateError::Quaternion { index: 3, norm, .. }] if norm == w), "{told}");
     }
-    assert!([1.0 + 1e-7, 1.0 - 1e-7].into_iter().all(|w| started(w).unwrap().q_at(1)[6] == 1.0));
+    assert!([1.0005, 0.9995].into_iter().all(|w| started(w).unwrap().q_at(1)[6] == 1.0));
 }
 
 /// A coordinate's joint is found behind quaternions too.

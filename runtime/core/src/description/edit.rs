@@ -10,7 +10,7 @@ use super::names::Names;
 use super::{Description, EditError, Inertial, Joint, JointKind, Link, Mimic, Origin, PrincipalMoments, Shaft};
 use crate::effect::Applied;
 use crate::model::FLOATING_BASE;
-use crate::scalar::Scalar;
+use crate::spatial::normalise_given;
 use crate::suggest::Suggester;
 
 /// A rigid load on a link.
@@ -27,9 +27,6 @@ pub struct Payload {
     /// Rotational inertia about the centre of mass in axes of the carrying link: xx, xy, xz, yy, yz, zz, kg·m². Zeros: a point mass.
     pub inertia: [f64; 6],
 }
-
-/// A quaternion's norm may be off by so much: four written digits. It is normalised.
-const NORM: f64 = 1e-3;
 
 /// A robot while it is edited. Its names are gathered once, so that thousands of edits are soon made.
 #[derive(Debug)]
@@ -71,7 +68,7 @@ impl<'a> Editor<'a> {
     /// it stop where it puts them. A locked joint has no place in q and v, and its links belong to the body that they are locked to.
     ///
     /// Refused: what does not exist, does not move or moves already no more; a follower (lock what it follows); the base (say that it is fixed); a
-    /// wrong number of coordinates; a quaternion whose norm is not one within 10⁻³.
+    /// wrong number of coordinates; a quaternion whose norm is not one within [`NORM_TOLERANCE`](crate::spatial::NORM_TOLERANCE).
     pub fn lock(&mut self, joint: &str, at: &[f64]) -> Result<(), EditError> {
         let Some(index) = self.names.joint(joint) else {
             return Err(match joint {
@@ -191,12 +188,7 @@ fn normalised(kind: JointKind, at: &[f64]) -> Result<Vec<f64>, f64> {
         JointKind::Floating => 3,
         _ => return Ok(at),
     };
-    let quaternion = &mut at[first..];
-    let norm = Scalar::sqrt(quaternion.iter().map(|x| x * x).sum::<f64>());
-    if Scalar::abs(norm - 1.0) > NORM {
-        return Err(norm);
-    }
-    quaternion.iter_mut().for_each(|x| *x /= norm);
+    normalise_given(&mut at[first..])?;
     Ok(at)
 }
 

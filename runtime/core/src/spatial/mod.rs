@@ -4,6 +4,7 @@
 
 mod articulated;
 mod coriolis;
+mod given;
 mod inertia;
 mod motion;
 mod placement;
@@ -15,6 +16,7 @@ mod wrench;
 
 pub use articulated::ArticulatedInertia;
 pub use coriolis::CoriolisInertia;
+pub use given::{NORM_TOLERANCE, given_norm, normalise_given};
 pub use inertia::SpatialInertia;
 pub use motion::{Motion, rate_matrix, rates_about};
 pub use placement::Placement;
