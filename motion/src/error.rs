@@ -4,6 +4,7 @@ use std::fmt;
 
 use articulated::FunctionError;
 use articulated::simulate::{SettingError, SimulateError, StateError};
+use articulated_core::listed;
 use articulated_scene::{SceneError, SceneErrors};
 
 /// All that keeps a scene from moving.
@@ -184,7 +185,8 @@ impl fmt::Display for Fault {
                 write!(f, "frames[{index}]: found {found:?}, expected {expected:?}, as the robot calls it")
             }
             Self::NoFrame { key, link, frames } => {
-                write!(f, "{key}: found a robot that gives no frame of {link:?}, expected that among its frames ({})", Listed(frames))
+                let frames = if frames.is_empty() { "it has none".to_owned() } else { listed(frames) };
+                write!(f, "{key}: found a robot that gives no frame of {link:?}, expected that among its frames ({frames})")
             }
             Self::Dynamics { apart, largest } => write!(
                 f,
@@ -195,21 +197,5 @@ impl fmt::Display for Fault {
             Self::State(error) => error.fmt(f),
             Self::Simulation(error) => error.fmt(f),
         }
-    }
-}
-
-/// Names, as many as can be read.
-struct Listed<'a>(&'a [String]);
-
-impl fmt::Display for Listed<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        const MOST: usize = 8;
-        if self.0.is_empty() {
-            return f.write_str("it has none");
-        }
-        let shown: Vec<&str> = self.0.iter().take(MOST).map(String::as_str).collect();
-        let more = self.0.len().saturating_sub(MOST);
-        write!(f, "{}", shown.join(", "))?;
-        if more > 0 { write!(f, " and {more} more") } else { Ok(()) }
     }
 }

@@ -45,9 +45,6 @@ fn at(places: &[At], i: usize) -> At {
     places.get(i).copied().unwrap_or_default()
 }
 
-/// More columns than these are not listed.
-const MOST_LISTED: usize = 10;
-
 /// What a row has to have.
 const ROW: &str = "the time and one for each of the columns";
 
@@ -291,17 +288,11 @@ fn quoted(text: &str) -> Option<Field<'_>> {
 /// The columns that a robot has.
 fn listed(model: &Model<f64>, side: Side) -> String {
     let count = |j: &JointInfo| if side == Side::Q { j.q.1 } else { j.v.1 };
-    let mut names: Vec<String> = model
-        .joints
-        .iter()
-        .map(|j| match count(j) {
-            1 => j.name.clone(),
-            n => format!("{0}[0] to {0}[{1}]", j.name, n - 1),
-        })
-        .collect();
-    let more = names.len().saturating_sub(MOST_LISTED);
-    names.truncate(MOST_LISTED);
-    names.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() }
+    let name = |j: &JointInfo| match count(j) {
+        1 => j.name.clone(),
+        n => format!("{0}[0] to {0}[{1}]", j.name, n - 1),
+    };
+    articulated_core::listed(model.joints.iter().map(name))
 }
 
 /// The place of `joint` or `joint[k]`.
@@ -346,10 +337,10 @@ mod tests {
             let kind = if i == 0 { "spherical" } else { "continuous" };
             format!("<link name='l{i}'/><joint name='j{i}' type='{kind}'><parent link='base'/><child link='l{i}'/></joint>")
         };
-        let urdf = format!("<robot name='r'><link name='base'/>{}</robot>", (0..12).map(link).collect::<String>());
+        let urdf = format!("<robot name='r'><link name='base'/>{}</robot>", (0..14).map(link).collect::<String>());
         let description = articulated_urdf::read(urdf.as_bytes(), &Default::default()).unwrap().description;
         let model = Model::new(&description, articulated_core::description::Base::Fixed).unwrap();
-        assert_eq!(listed(&model, Side::Q), "j0[0] to j0[3], j1, j2, j3, j4, j5, j6, j7, j8, j9 and 2 more");
+        assert_eq!(listed(&model, Side::Q), "j0[0] to j0[3], j1, j2, j3, j4, j5, j6, j7, j8, j9, j10, j11 and 2 more");
         assert!(listed(&model, Side::V).starts_with("j0[0] to j0[2], j1"));
     }
 

@@ -53,6 +53,7 @@ mod number;
 #[cfg(feature = "second-reader")]
 mod plain;
 mod problem;
+mod ring;
 mod robot;
 mod snap;
 mod tree;

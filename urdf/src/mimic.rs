@@ -2,12 +2,13 @@
 
 use std::collections::HashMap;
 
+use articulated_core::listed;
 use articulated_core::suggest::Suggester;
 
 use crate::draft::{DraftJoint, DraftMimic, has_one_coordinate};
 use crate::log::{Log, Place};
 use crate::problem::{Kind, hint, quote};
-use crate::tree::List;
+use crate::ring::{around, rings};
 
 /// For each joint, the joint that it follows.
 pub(crate) fn leaders(joints: &[DraftJoint], log: &mut Log) -> Vec<Option<usize>> {
@@ -63,35 +64,16 @@ fn report_unknown(follower: &DraftJoint, mimic: &DraftMimic, joints: &[DraftJoin
     error(follower, mimic, Kind::UnknownLeader, found, &format!("the name of a joint{hint}"), log);
 }
 
-/// Walks from follower to leader; a walk that meets itself is a ring.
 fn report_rings(joints: &[DraftJoint], leaders: &[Option<usize>], log: &mut Log) {
-    let mut walk_of = vec![usize::MAX; joints.len()];
-    for start in 0..joints.len() {
-        let mut next = Some(start);
-        while let Some(here) = next.filter(|here| walk_of[*here] == usize::MAX) {
-            walk_of[here] = start;
-            next = leaders[here];
-        }
-        if let Some(here) = next.filter(|here| walk_of[*here] == start) {
-            report_ring(joints, leaders, here, log);
-        }
+    let leader = |joint: usize| leaders[joint];
+    for start in rings(joints.len(), leader) {
+        let Some(mimic) = &joints[start].mimic else { continue };
+        let found = if leader(start) == Some(start) {
+            "a joint that mimics itself".to_owned()
+        } else {
+            let names = around(start, leader).map(|joint| joints[joint].subject());
+            format!("a cycle of joints that mimic each other: {}", listed(names))
+        };
+        error(&joints[start], mimic, Kind::MimicRing, found, "a joint to follow that moves on its own", log);
     }
-}
-
-fn report_ring(joints: &[DraftJoint], leaders: &[Option<usize>], start: usize, log: &mut Log) {
-    let Some(mimic) = &joints[start].mimic else { return };
-    let mut names = List::default();
-    let mut here = start;
-    while let Some(leader) = leaders[here] {
-        names.push(&joints[here].subject());
-        here = leader;
-        if here == start {
-            break;
-        }
-    }
-    let found = match leaders[start] == Some(start) {
-        true => "a joint that mimics itself".to_owned(),
-        false => format!("a cycle of joints that mimic each other: {}", names.text()),
-    };
-    error(&joints[start], mimic, Kind::MimicRing, found, "a joint to follow that moves on its own", log);
 }

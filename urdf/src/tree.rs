@@ -2,14 +2,13 @@
 
 use std::collections::HashMap;
 
+use articulated_core::listed;
 use articulated_core::suggest::Suggester;
 
 use crate::draft::{Draft, DraftJoint, Reference};
 use crate::log::{Log, Place};
 use crate::problem::{Kind, Subject, hint, quote};
-
-/// More names than these are counted, not listed.
-const MOST_NAMES: usize = 8;
+use crate::ring::{around, rings};
 
 /// Which links each joint connects.
 pub(crate) struct Tree {
@@ -118,77 +117,28 @@ fn report_two_parents(draft: &Draft, link: usize, first: usize, second: usize, l
     log.error(&place, Kind::TwoParents, found, "a link that hangs on one joint");
 }
 
-/// Walks up from every link; a walk that meets itself is a ring. Returns how many there are.
+/// Returns how many rings there are.
 fn report_rings(draft: &Draft, ends: &Ends, above: &[Option<usize>], log: &mut Log) -> usize {
-    let mut walk_of = vec![usize::MAX; draft.links.len()];
-    let mut rings = 0;
-    for start in 0..draft.links.len() {
-        let mut link = Some(start);
-        while let Some(here) = link {
-            if walk_of[here] != usize::MAX {
-                break;
-            }
-            walk_of[here] = start;
-            link = above[here].and_then(|joint| ends.parent[joint]);
-        }
-        if let Some(here) = link.filter(|here| walk_of[*here] == start) {
-            rings += 1;
-            report_ring(draft, ends, above, here, log);
-        }
+    let parent = |link: usize| above[link].and_then(|joint| ends.parent[joint]);
+    let rings = rings(above.len(), parent);
+    for link in &rings {
+        let joints = around(*link, parent).filter_map(|link| Some(draft.joints[above[link]?].subject()));
+        let subject = draft.links[*link].subject();
+        let place = Place { line: Some(draft.links[*link].line), subject: &subject, field: "parent" };
+        log.error(&place, Kind::Ring, format!("a ring (loop) of {}", listed(joints)), "a tree with one root");
     }
-    rings
-}
-
-fn report_ring(draft: &Draft, ends: &Ends, above: &[Option<usize>], link: usize, log: &mut Log) {
-    let mut names = List::default();
-    let mut here = link;
-    while let Some(joint) = above[here] {
-        names.push(&draft.joints[joint].subject());
-        here = ends.parent[joint].unwrap_or(link);
-        if here == link {
-            break;
-        }
-    }
-    let subject = draft.links[link].subject();
-    let place = Place { line: Some(draft.links[link].line), subject: &subject, field: "parent" };
-    let found = format!("a ring (loop) of {}", names.text());
-    log.error(&place, Kind::Ring, found, "a tree with one root");
+    rings.len()
 }
 
 fn root(draft: &Draft, ends: &Ends, above: &[Option<usize>], rings: usize, log: &mut Log) -> Option<usize> {
     let roots: Vec<usize> = (0..above.len()).filter(|link| above[*link].is_none()).collect();
     // A name that is not known, or not unique, leaves a link without a parent: that has been said.
     if roots.len() > 1 && ends.complete && rings == 0 {
-        let mut names = List::default();
-        roots.iter().for_each(|root| names.push(&draft.links[*root].subject()));
+        let names = listed(roots.iter().map(|root| draft.links[*root].subject()));
         let subject = draft.links[roots[1]].subject();
         let place = Place { line: Some(draft.links[roots[1]].line), subject: &subject, field: "parent" };
-        let found = format!("{} roots (links without a parent): {}", roots.len(), names.text());
+        let found = format!("{} roots (links without a parent): {names}", roots.len());
         log.error(&place, Kind::SeveralRoots, found, "one root");
     }
     roots.first().copied()
-}
-
-/// The first few of many names.
-#[derive(Default)]
-pub(crate) struct List {
-    names: Vec<String>,
-    count: usize,
-}
-
-impl List {
-    pub(crate) fn push(&mut self, subject: &Subject) {
-        self.count += 1;
-        if self.names.len() < MOST_NAMES {
-            self.names.push(subject.to_string());
-        }
-    }
-
-    pub(crate) fn text(&self) -> String {
-        let names = self.names.join(", ");
-        match self.count - self.names.len() {
-            0 => names,
-            more => format!("{names} and {more} more"),
-        }
-    }
 }

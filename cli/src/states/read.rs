@@ -153,11 +153,7 @@ pub(crate) fn listed(mut errors: Vec<String>) -> Vec<String> {
 
 /// All names, or the first of many.
 fn there_are(slots: &[Slot<'_>]) -> String {
-    const SHOWN: usize = 12;
-    let names: Vec<&str> = slots.iter().take(SHOWN).map(|s| s.name).collect();
-    let more = slots.len().saturating_sub(SHOWN);
-    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    format!("; there are {}{more}", names.join(", "))
+    format!("; there are {}", articulated_core::listed(slots.iter().map(|s| s.name)))
 }
 
 fn hint(near: Option<String>) -> String {

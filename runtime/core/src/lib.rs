@@ -48,5 +48,5 @@ pub mod suggest;
 
 pub use nalgebra;
 #[cfg(feature = "alloc")]
-pub use plain::Plain;
+pub use plain::{MOST_LISTED, Plain, listed};
 pub use scalar::Scalar;

@@ -10,6 +10,7 @@ use core::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 use num_traits::{One, Zero};
 
 use crate::Scalar;
+use crate::scalar::two_to;
 
 /// A number x of which it is known that |x − value| ≤ radius, and that an evaluation in which each operation is off by at most 2^−`BITS` of its result is off
 /// from x by at most `error`. Sines: off by 2^(2−`BITS`) of their value if `SINES` is 0, by 10^−`SINES` and a rounding otherwise.
@@ -32,11 +33,6 @@ pub struct Outcome {
     certain: bool,
 }
 
-/// 2^−n.
-fn power(n: u32) -> f64 {
-    f64::from_bits(u64::from(1023 - n.min(1022)) << 52)
-}
-
 /// A little more than a sum of a few products has lost.
 fn up(x: f64) -> f64 {
     x * (1.0 + 64.0 * f64::EPSILON)
@@ -52,7 +48,7 @@ impl<const BITS: u32, const SINES: u32> Running<BITS, SINES> {
 
     /// The error after the result is rounded to so many bits.
     pub fn rounded_to(self, bits: u32) -> f64 {
-        up(self.error + power(bits) * (self.most() + self.error))
+        up(self.error + two_to(-(bits as i32)) * (self.most() + self.error))
     }
 
     /// |x| at most.
@@ -69,7 +65,7 @@ impl<const BITS: u32, const SINES: u32> Running<BITS, SINES> {
         }
         let error = if error.is_nan() { f64::INFINITY } else { error };
         let most = value.abs() + radius + error;
-        Self { value, radius, error: up(error + power(BITS) * most + Self::TINY) }
+        Self { value, radius, error: up(error + two_to(-(BITS as i32)) * most + Self::TINY) }
     }
 
     /// What is known of nothing.
@@ -82,7 +78,8 @@ impl<const BITS: u32, const SINES: u32> Running<BITS, SINES> {
         let (value, radius) = if self.radius < 1.0 { (value, self.radius) } else { (0.0, 1.0) };
         let error = self.error.min(2.0);
         let most = (value.abs() + radius + error).min(1.0);
-        let own = if SINES == 0 { 4.0 * power(BITS) * most } else { libm::pow(10.0, -f64::from(SINES)) + power(BITS) };
+        let own =
+            if SINES == 0 { 4.0 * two_to(-(BITS as i32)) * most } else { libm::pow(10.0, -f64::from(SINES)) + two_to(-(BITS as i32)) };
         Self { value, radius: up(radius + 2.0 * f64::EPSILON), error: up(error + own + Self::TINY) }
     }
 }
@@ -194,7 +191,7 @@ impl<const BITS: u32, const SINES: u32> Scalar for Running<BITS, SINES> {
     /// A constant: fewer bits than 53 round it.
     #[inline(never)]
     fn from_f64(x: f64) -> Self {
-        Self { value: x, radius: 0.0, error: if BITS < 53 { up(power(BITS) * x.abs()) } else { 0.0 } }
+        Self { value: x, radius: 0.0, error: if BITS < 53 { up(two_to(-(BITS as i32)) * x.abs()) } else { 0.0 } }
     }
 
     #[inline(never)]

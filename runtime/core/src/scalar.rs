@@ -57,6 +57,12 @@ pub trait Scalar:
     }
 }
 
+/// 2^n, of −1022 or more and 1023 or less; of a lesser n that of −1022.
+pub(crate) const fn two_to(n: i32) -> f64 {
+    let n = if n < -1022 { -1022 } else { n };
+    f64::from_bits(((1023 + n) as u64) << 52)
+}
+
 macro_rules! impl_float {
     ($t:ty, $sincos:path, $sqrt:path, $atan2:path) => {
         impl Scalar for $t {

@@ -2,11 +2,11 @@
 
 use std::fmt;
 
-use articulated_core::Plain;
 use articulated_core::algorithm::FunctionError;
 use articulated_core::algorithm::checked::Singular;
 use articulated_core::control::Series;
 use articulated_core::dynamics::Dynamics;
+use articulated_core::{Plain, listed};
 
 use super::{IntegratorId, SettingError, TableError};
 
@@ -318,7 +318,7 @@ impl SimulateError {
     fn of_a_state(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotFinite { what, index, names, .. } => {
-                let numbers = list(index.iter().map(|i| format!("[{i}]")));
+                let numbers = listed(index.iter().map(|i| format!("[{i}]")));
                 let names = if *what == "event" { of_names("event", names) } else { of_joints(names) };
                 write!(f, "{what}{numbers}{names} {} not finite", if index.len() > 1 { "are" } else { "is" })
             }
@@ -350,17 +350,8 @@ fn of_names<'a>(kind: &str, names: impl IntoIterator<Item = &'a String>) -> Stri
     match names.len() {
         0 => String::new(),
         1 => format!(" ({kind} {})", names[0]),
-        _ => format!(" ({kind}s {})", list(names.into_iter())),
+        _ => format!(" ({kind}s {})", listed(names)),
     }
-}
-
-/// Most of what a message lists one by one.
-const LISTED: usize = 8;
-
-fn list(all: impl ExactSizeIterator<Item = String>) -> String {
-    let more = all.len().saturating_sub(LISTED);
-    let shown = all.take(LISTED).collect::<Vec<_>>().join(", ");
-    if more > 0 { format!("{shown} and {more} more") } else { shown }
 }
 
 fn lines<T: fmt::Display>(f: &mut fmt::Formatter<'_>, all: &[T]) -> fmt::Result {

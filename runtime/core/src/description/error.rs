@@ -1,10 +1,12 @@
 //! Why an edit was refused.
 
+use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::fmt;
 
 use super::JointKind;
+use crate::{MOST_LISTED, listed};
 
 /// Why a [`Description`](super::Description) was not edited.
 #[derive(Clone, Debug, PartialEq)]
@@ -165,19 +167,10 @@ fn unknown(f: &mut fmt::Formatter<'_>, what: &str, name: &str, nearest: Option<&
     nearest.map_or(Ok(()), |near| write!(f, ", did you mean {near:?}?"))
 }
 
-/// More names than these are counted, not listed.
-const MOST_NAMES: usize = 8;
-
 fn taken(f: &mut fmt::Formatter<'_>, names: &[String]) -> fmt::Result {
     let plural = if names.len() == 1 { "name is" } else { "names are" };
-    write!(f, "{plural} taken: ")?;
-    for (i, name) in names.iter().take(MOST_NAMES).enumerate() {
-        write!(f, "{}{name:?}", if i == 0 { "" } else { ", " })?;
-    }
-    match names.len().saturating_sub(MOST_NAMES) {
-        0 => f.write_str("; give another name or prefix"),
-        more => write!(f, " and {more} more; give another prefix"),
-    }
+    let other = if names.len() > MOST_LISTED { "prefix" } else { "name or prefix" };
+    write!(f, "{plural} taken: {}; give another {other}", listed(names.iter().map(|name| format!("{name:?}"))))
 }
 
 #[cfg(test)]

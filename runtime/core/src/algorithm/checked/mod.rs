@@ -26,6 +26,7 @@ pub use pivots::{articulated_body_pivots, checked_forward_dynamics, checked_forw
 pub use solver::{Solver, Unsolved};
 
 use crate::Scalar;
+use crate::scalar::two_to;
 
 #[allow(unused_imports)]
 // Why: named in the documentation.
@@ -81,15 +82,6 @@ impl<S: Scalar> core::error::Error for Singular<S> {}
 /// 2¹⁰u, u = 2^−[`Scalar::BITS`]: a pivot of which less is left has fewer than ten bits that are right.
 pub fn least_pivot<S: Scalar>() -> S {
     S::from_f64(const { two_to(10 - S::BITS as i32) })
-}
-
-const fn two_to(n: i32) -> f64 {
-    let (mut power, mut k) = (1.0, 0);
-    while k < n.abs() {
-        power *= if n < 0 { 0.5 } else { 2.0 };
-        k += 1;
-    }
-    power
 }
 
 /// Whether a > b.

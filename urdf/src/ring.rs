@@ -1,0 +1,35 @@
+//! Rings, where each thing hangs on at most one other: links on their parents, joints on those that they follow.
+
+use std::iter;
+
+/// One of each ring among so many things: walks from each to what it hangs on, and a walk that meets itself is a ring.
+pub(crate) fn rings(count: usize, on: impl Fn(usize) -> Option<usize>) -> Vec<usize> {
+    let (mut walk_of, mut rings) = (vec![usize::MAX; count], Vec::new());
+    for start in 0..count {
+        let mut next = Some(start);
+        while let Some(here) = next.filter(|here| walk_of[*here] == usize::MAX) {
+            walk_of[here] = start;
+            next = on(here);
+        }
+        rings.extend(next.filter(|here| walk_of[*here] == start));
+    }
+    rings
+}
+
+/// All that are in the ring, from this one on.
+pub(crate) fn around(start: usize, on: impl Fn(usize) -> Option<usize>) -> impl Iterator<Item = usize> {
+    iter::successors(Some(start), move |here| on(*here).filter(|next| *next != start))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_ring_is_found_once() {
+        let hangs = [Some(1), Some(2), Some(0), Some(0), None, Some(5)];
+        let on = |k: usize| hangs[k];
+        assert_eq!(rings(hangs.len(), on), [0, 5]);
+        assert_eq!([0, 5].map(|k| around(k, on).collect::<Vec<_>>()), [vec![0, 1, 2], vec![5]]);
+    }
+}
