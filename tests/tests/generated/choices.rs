@@ -33,6 +33,7 @@ articulated::robot! {
         urdf = "robots/arm.urdf",
         functions = [inverse_dynamics, forward_dynamics, mass_matrix, potential_energy, placements],
         parameters = [payload(tool), inertia("fore"), origin(wrist)],
+        batch = [f64, f32],
     }
 }
 
@@ -384,6 +385,53 @@ fn parameters_that_are_the_urdfs_give_the_robot_of_the_urdf() {
 fn other_parameters_give_another_robot() {
     let (parameters, description) = changed();
     holds(&parameters, &description);
+}
+
+/// Of one state, of fewer and more than blocks have, and of none.
+#[test]
+fn states_of_a_batch_have_parameters_of_their_own_or_one_set_for_all() {
+    use tuned::batch_f64::{Lanes, LengthError};
+    type Parameters = [f64; tuned::PARAMETERS.len()];
+    let (changed, _) = changed();
+    for n in [0, 1, 2, 7, 8, 9, 17] {
+        let [q, v, a] = [1, 101, 211].map(|salt| states(n, salt));
+        let between =
+            |part: f64| -> Parameters { std::array::from_fn(|k| tuned::PARAMETERS[k] + part * (changed[k] - tuned::PARAMETERS[k])) };
+        let own: Vec<Parameters> = (0..n).map(|i| between(i as f64 / 16.0)).collect();
+        for parameters in [&own[..], &[changed]] {
+            let of = |i: usize| parameters[if parameters.len() == 1 { 0 } else { i }];
+            let (mut tau, mut energy) = (vec![[f64::NAN; 3]; n], vec![f64::NAN; n]);
+            tuned::batch_f64::inverse_dynamics(&q, &v, &a, parameters, &mut tau).unwrap();
+            tuned::batch_f64::potential_energy(&q, parameters, &mut energy).unwrap();
+            let mut blocks = vec![[Lanes::ZERO; 3]; Lanes::blocks(n)];
+            let [q_blocks, v_blocks, a_blocks] = [&q, &v, &a].map(|x| {
+                let mut packed = blocks.clone();
+                Lanes::pack(x, &mut packed).unwrap();
+                packed
+            });
+            let of_blocks: Vec<[Lanes; tuned::PARAMETERS.len()]> = if parameters.len() == 1 {
+                vec![parameters[0].map(|x| Lanes([x; Lanes::LEN]))]
+            } else {
+                let mut packed = vec![[Lanes::ZERO; tuned::PARAMETERS.len()]; blocks.len()];
+                Lanes::pack(parameters, &mut packed).unwrap();
+                packed
+            };
+            tuned::batch_f64::inverse_dynamics_blocks(&q_blocks, &v_blocks, &a_blocks, &of_blocks, &mut blocks).unwrap();
+            let mut unpacked = tau.clone();
+            Lanes::unpack(&blocks, &mut unpacked).unwrap();
+            assert_eq!(unpacked, tau);
+            for i in 0..n {
+                same(&tau[i], &tuned::inverse_dynamics(&q[i], &v[i], &a[i], &of(i)));
+                same(&[energy[i]], &[tuned::potential_energy(&q[i], &of(i))]);
+            }
+        }
+        let wrong = tuned::batch_f64::potential_energy(&q, &vec![changed; n + 2], &mut vec![0.0; n]);
+        assert_eq!(wrong, Err(LengthError { argument: "parameters", found: n + 2, expected: n }));
+    }
+    let single = tuned::PARAMETERS.map(|x| x as f32);
+    let mut energy = [0.0; 1];
+    tuned::batch_f32::potential_energy(&[Q.map(|x| x as f32)], &[single], &mut energy).unwrap();
+    assert!((f64::from(energy[0]) - tuned::potential_energy(&Q, &tuned::PARAMETERS)).abs() < 1e-5);
 }
 
 #[test]

@@ -7,31 +7,45 @@ use crate::emit::function::signature::Signature;
 /// An argument or a result, one for each state.
 pub(super) struct Array {
     pub(super) name: String,
-    dims: Vec<Dim>,
+    /// How long it is, and each of its elements, as expressions.
+    lengths: Vec<String>,
     /// How many numbers.
     pub(super) numbers: usize,
+    /// Whether one may do for all states.
+    pub(super) is_parameters: bool,
 }
 
 impl Array {
     fn new(name: &str, dims: &[Dim], sizes: Shape) -> Self {
-        Self { name: name.to_owned(), dims: dims.to_vec(), numbers: dims.iter().map(|d| d.len(sizes)).product() }
+        let lengths = dims.iter().map(Dim::to_string).collect();
+        Self { name: name.to_owned(), lengths, numbers: dims.iter().map(|d| d.len(sizes)).product(), is_parameters: false }
+    }
+
+    /// Of which there are some, if any: they are told by name.
+    fn parameters(name: &str) -> Self {
+        Self { name: name.to_owned(), lengths: vec!["PARAMETERS.len()".into()], numbers: 1, is_parameters: true }
     }
 
     /// How many numbers, as an expression.
     pub(super) fn len(&self) -> String {
-        let lengths: Vec<String> = self.dims.iter().map(Dim::to_string).collect();
-        if lengths.is_empty() { "1".into() } else { lengths.join(" * ") }
+        if self.lengths.is_empty() { "1".into() } else { self.lengths.join(" * ") }
     }
 
     /// Its type for one state or block.
     pub(super) fn nested(&self, of: &str) -> String {
-        self.dims.iter().rev().fold(of.to_owned(), |inner, dim| format!("[{inner}; {dim}]"))
+        self.lengths.iter().rev().fold(of.to_owned(), |inner, length| format!("[{inner}; {length}]"))
+    }
+
+    /// States in which it stands are put into its block, where not one does for all.
+    pub(super) fn gathered(&self, states: &str) -> String {
+        let gather = format!("gather({states}, &mut NAME_block);").replace("NAME", &self.name);
+        if self.is_parameters { format!("if {}.len() != 1 {{\n    {gather}\n}}\n", self.name) } else { gather + "\n" }
     }
 
     /// The slice of all states as a slice of flat arrays.
     pub(super) fn flat(&self, mutable: bool) -> String {
         let m = if mutable { "_mut" } else { "" };
-        match self.dims.len() {
+        match self.lengths.len() {
             0 => format!("{}.as_chunks{m}::<1>().0", self.name),
             1 => self.name.clone(),
             n => format!("{}{}.as_chunks{m}::<{{ {} }}>().0", self.name, format!(".as_flattened{m}()").repeat(n), self.len()),
@@ -41,7 +55,8 @@ impl Array {
 
 /// What a function takes.
 pub(super) fn inputs(signature: &Signature, sizes: Shape) -> Vec<Array> {
-    signature.wanted.arguments().iter().map(|a| Array::new(a.name(), a.dims(), sizes)).collect()
+    let own = signature.wanted.arguments().into_iter().map(|a| Array::new(a.name(), a.dims(), sizes));
+    own.chain(signature.inputs.iter().filter(|input| input.is_parameters()).map(|input| Array::parameters(input.name))).collect()
 }
 
 /// What it gives.
@@ -51,7 +66,8 @@ pub(super) fn results(signature: &Signature, sizes: Shape) -> Vec<Array> {
     parts.iter().map(|p| Array::new(name(p.function.name), p.function.gives, sizes)).collect()
 }
 
-/// A text for each array, with its name in the place of `NAME` and its number of numbers in that of `LEN`.
+/// A text for each array, with its name in the place of `NAME`, its number of numbers in that of `LEN`, and in that of `AT` where it is for block k.
 pub(super) fn each(arrays: &[Array], text: &str) -> String {
-    arrays.iter().map(|a| text.replace("NAME", &a.name).replace("LEN", &a.len())).collect()
+    let at = |a: &Array| if a.is_parameters { format!("if {}.len() == 1 {{ 0 }} else {{ k }}", a.name) } else { "k".to_owned() };
+    arrays.iter().map(|a| text.replace("AT", &at(a)).replace("NAME", &a.name).replace("LEN", &a.len())).collect()
 }

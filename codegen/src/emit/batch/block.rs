@@ -9,10 +9,9 @@ use crate::graph::{Node, NodeId, Op};
 pub(super) struct Block<'a>(pub(super) Vector<'a>);
 
 impl Dialect for Block<'_> {
-    /// Parameters are the same for all states.
     fn statement(&self, k: usize, node: &Node) -> Option<String> {
         let input = (node.op == Op::Input).then(|| &self.0.signature.inputs[node.args[0] as usize]);
-        match input.filter(|input| !input.is_parameters()) {
+        match input {
             Some(input) => Some(format!("    let x{k} = at(&{}, part);\n", input.flat(node.args[1] as usize))),
             None => self.0.statement(k, node),
         }

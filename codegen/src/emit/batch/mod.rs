@@ -100,7 +100,7 @@ impl Way {
         let text = used(&text, caller);
         let _ = writeln!(out, "#[cfg({})]\nmod {} {{\n    mod lanes {{\n{text}}}\n", self.cfg, self.module);
         // Functions of the robot could bear names of the lanes': its constants alone are let in.
-        let parameters = if functions.iter().any(|f| !f.parameters().0.is_empty()) { ", PARAMETERS" } else { "" };
+        let parameters = if functions.iter().any(|f| f.inputs().iter().any(|a| a.is_parameters)) { ", PARAMETERS" } else { "" };
         let _ = writeln!(
             out,
             "    use ::core::{{cmp::Ord, iter::Iterator}};\n\n    use self::lanes::*;\n    use super::{{Lanes, super::{{FRAMES, LINKS, NQ, NV{parameters}}}}};"
@@ -148,28 +148,21 @@ impl<'a> Batch<'a> {
         !self.results().is_empty()
     }
 
-    /// `parameters: &[f64; PARAMETERS.len()], ` and `parameters, ` where there are any: the same for all states.
-    fn parameters(&self) -> (&'static str, &'static str) {
-        let any = self.signature.inputs.iter().any(|i| i.is_parameters());
-        if any { ("parameters: &[f64; PARAMETERS.len()], ", "parameters, ") } else { ("", "") }
-    }
-
     /// The body, and what calls it for blocks and for states one after the other.
     fn body(&self, out: &mut String) {
         if !self.is_any() {
             return;
         }
         let (inputs, results, name) = (self.inputs(), self.results(), self.name());
-        let declared = |of: &str| {
-            let parameters = self.parameters().0;
-            each(&inputs, &format!("NAME: &{of}, ")) + parameters + &each(&results, &format!("NAME: &mut {of}, "))
-        };
-        let given = |input: &str, result: &str| each(&inputs, input) + self.parameters().1 + &each(&results, result);
+        let declared = |of: &str| each(&inputs, &format!("NAME: &{of}, ")) + &each(&results, &format!("NAME: &mut {of}, "));
+        let given = |input: &str, result: &str| each(&inputs, input) + &each(&results, result);
+        let gathered = |states: &str| -> String { inputs.iter().map(|a| a.gathered(&states.replace("NAME", &a.name))).collect() };
         self.blocks(out, &declared("[Lanes; { LEN }]"), &given("NAME, ", "NAME, "));
         let _ = writeln!(out, "macro_rules! {name}_in_batch {{\n    ($(#[$features:meta])?) => {{");
         let first = &results[0].name;
         let _ = writeln!(out, "    $(#[$features])?\n    pub(super) fn {name}_blocks({}) {{", declared("[[Lanes; { LEN }]]"));
-        let _ = writeln!(out, "        for k in 0..{first}.len() {{\n            {name}_block({});", given("&NAME[k], ", "&mut NAME[k], "));
+        let _ =
+            writeln!(out, "        for k in 0..{first}.len() {{\n            {name}_block({});", given("&NAME[AT], ", "&mut NAME[k], "));
         let _ = writeln!(out, "        }}\n    }}\n");
 
         let _ = writeln!(out, "    $(#[$features])?\n    pub(super) fn {name}_states({}) {{", declared("[[Real; { LEN }]]"));
@@ -177,12 +170,16 @@ impl<'a> Batch<'a> {
         *out += &each(&inputs, "        let mut NAME_block = [Lanes::ZERO; { LEN }];\n");
         *out += &each(&results, "        let mut NAME_block = [Lanes::ZERO; { LEN }];\n");
         let call = format!("            {name}_block({});\n", given("&NAME_block, ", "&mut NAME_block, "));
+        for shared in inputs.iter().filter(|a| a.is_parameters) {
+            let _ =
+                writeln!(out, "        if {0}.len() == 1 {{\n            gather(&filled({0}), &mut {0}_block);\n        }}", shared.name);
+        }
         *out += "        for k in 0..whole {\n";
-        *out += &each(&inputs, "            gather(&NAME.as_chunks().0[k], &mut NAME_block);\n");
+        *out += &gathered("&NAME.as_chunks().0[k]");
         *out += &call;
         *out += &each(&results, "            scatter(&NAME_block, &mut NAME.as_chunks_mut().0[k]);\n");
         let _ = writeln!(out, "        }}\n        if first < {first}.len() {{");
-        *out += &each(&inputs, "            gather(&filled(&NAME[first..]), &mut NAME_block);\n");
+        *out += &gathered("&filled(&NAME[first..])");
         *out += &call;
         *out += &each(&results, "            scatter_some(&NAME_block, &mut NAME[first..]);\n");
         *out += "        }\n    }\n    };\n}\n\n";
@@ -248,21 +245,24 @@ mod tests {
     use crate::{Request, generate};
 
     #[test]
-    fn parameters_are_the_same_for_all_states() {
+    fn parameters_are_those_of_each_state_or_one_set_for_all() {
         let urdf = "<robot name='arm'><link name='base'/><link name='tip'/>\
             <joint name='hinge' type='continuous'><parent link='base'/><child link='tip'/><axis xyz='0 1 0'/></joint></robot>";
         let mut request = Request::new("arm.urdf", urdf);
         request.options.functions = vec!["gravity_torque".into()];
         request.options.parameters = vec!["payload(tip)".into()];
-        request.options.batch = vec![Real::F64];
+        request.options.batch = vec![Real::F32];
         let source = generate(&request).unwrap().source;
         let (_, batch) = source.split_once("macro_rules! gravity_torque_in_block").unwrap();
-        assert!(
-            batch.contains("= at(&q[0], part);") && batch.contains("= k(parameters[1]);") && !batch.contains("at(&parameters"),
-            "{batch}"
-        );
-        assert!(batch.contains("gravity_torque_block(&q_block, parameters, &mut out_block, );"), "{batch}");
-        assert!(batch.contains("super::{FRAMES, LINKS, NQ, NV, PARAMETERS}"), "{batch}");
+        for words in [
+            "= at(&q[0], part);",
+            "= at(&parameters[1], part);",
+            "gravity_torque_block(&q[k], &parameters[if parameters.len() == 1 { 0 } else { k }], &mut out[k], );",
+            "parameters: &[[f32; PARAMETERS.len()]], out: &mut [[f32; NV]]",
+            "super::{FRAMES, LINKS, NQ, NV, PARAMETERS}",
+        ] {
+            assert!(batch.contains(words), "{words} in {batch}");
+        }
         request.options.parameters.clear();
         request.options.functions = vec!["mass_matrix".into()];
         assert!(!generate(&request).unwrap().source.contains("PARAMETERS}"));

@@ -31,7 +31,10 @@ impl Batch<'_> {
             "/// {}; for as many {what} as the first argument has. Each state's arguments and results are those of",
             parts.join("; ")
         );
-        let _ = writeln!(out, "/// [`{name}`](super::{name}()), with their units.\n///");
+        let one = if what == "states" { "set" } else { "block" };
+        let shared =
+            if self.inputs().iter().any(|a| a.is_parameters) { format!(" One {one} of parameters does for all.") } else { String::new() };
+        let _ = writeln!(out, "/// [`{name}`](super::{name}()), with their units.{shared}\n///");
         let _ = writeln!(out, "/// # Errors\n/// If another slice has another length: nothing is computed.");
     }
 
@@ -40,14 +43,21 @@ impl Batch<'_> {
         let one = |a: &Array, r: &str| format!("{}: {r}[{}]", a.name, a.nested(of));
         let inputs: String = inputs(&self.signature, self.sizes).iter().map(|a| one(a, "&") + ", ").collect();
         let results: Vec<String> = results(&self.signature, self.sizes).iter().map(|a| one(a, "&mut ")).collect();
-        inputs + self.parameters().0 + &results.join(", ")
+        inputs + &results.join(", ")
     }
 
     /// All slices have as many states as the first.
     fn lengths(&self, out: &mut String) {
-        let arrays: Vec<Array> = inputs(&self.signature, self.sizes).into_iter().chain(results(&self.signature, self.sizes)).collect();
-        for other in &arrays[1..] {
-            let _ = writeln!(out, "    LengthError::unless(\"{0}\", {0}.len(), {1}.len())?;", other.name, arrays[0].name);
+        let mut arrays: Vec<Array> = inputs(&self.signature, self.sizes).into_iter().chain(results(&self.signature, self.sizes)).collect();
+        arrays.sort_by_key(|array| array.is_parameters);
+        let first = &arrays[0].name;
+        for Array { name, is_parameters, .. } in &arrays[1..] {
+            let found = if *is_parameters {
+                format!("if {name}.len() == 1 {{ {first}.len() }} else {{ {name}.len() }}")
+            } else {
+                format!("{name}.len()")
+            };
+            let _ = writeln!(out, "    LengthError::unless(\"{name}\", {found}, {first}.len())?;");
         }
     }
 
@@ -55,7 +65,7 @@ impl Batch<'_> {
     fn calls(&self, out: &mut String, inner: &str, ways: &[Way]) {
         let inputs: String = self.inputs().iter().map(|a| a.flat(false) + ", ").collect();
         let results: Vec<String> = self.results().iter().map(|a| a.flat(true)).collect();
-        let call = format!("{inner}({inputs}{}{})", self.parameters().1, results.join(", "));
+        let call = format!("{inner}({inputs}{})", results.join(", "));
         for Way { module, cfg, asked, set, .. } in ways {
             let call = if *set == Set::Portable {
                 format!("{module}::{call};")
