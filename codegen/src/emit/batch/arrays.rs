@@ -38,8 +38,9 @@ impl Array {
 
     /// States in which it stands are put into its block, where not one does for all.
     pub(super) fn gathered(&self, states: &str) -> String {
-        let gather = format!("gather({states}, &mut NAME_block);").replace("NAME", &self.name);
-        if self.is_parameters { format!("if {}.len() != 1 {{\n    {gather}\n}}\n", self.name) } else { gather + "\n" }
+        let Self { name, is_parameters, .. } = self;
+        let gather = format!("            gather({states}, &mut {name}_block);\n");
+        if *is_parameters { format!("            if {name}.len() != 1 {{\n    {gather}            }}\n") } else { gather }
     }
 
     /// The slice of all states as a slice of flat arrays.
