@@ -144,7 +144,9 @@ fn types_of_batch(types: &[Real]) -> Result<(), Error> {
 /// Generates the code that `request` asks for. Pure: nothing is read or written. Errors: everything that is wrong with the document and what of the request can be told without it, or else everything that is wrong with the request.
 pub fn generate(request: &Request) -> Result<Generated, Error> {
     let request = &*request.settled();
-    let Plan { reading, model, parameters, wanted, names } = faults::all(request, plan)?;
+    let known = |request: &Request| Error::of(parameters::of_effects_that_are_off(&request.options)).map_or(Ok(()), Err);
+    let Plan { reading, model, parameters, wanted, names } =
+        faults::all(request, |request| plan(request).and_then(|plan| known(request).map(|()| plan)))?;
     let Reading { mut warnings, unused, snapped, .. } = reading;
     let mut ledger = Ledger::default();
     let mut programs = Vec::new();

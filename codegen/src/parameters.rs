@@ -4,6 +4,8 @@
 //! payload(link)      ten numbers, added to what the link has; nothing at first
 //! inertia(link)      ten numbers in the place of the link's own; the URDF's at first
 //! origin(joint)      three numbers in the place of the joint's origin xyz, m; the URDF's at first
+//! gravity            three numbers in the world frame, m/s²; those of the request at first
+//! damping(joint)     the numbers of an effect on a joint, any of those that are on; those of the request at first
 //! ```
 //!
 //! The ten are the inertial parameters m, m·c, and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz about the origin of the link's frame, in its axes: all of dynamics is linear
@@ -14,10 +16,11 @@ use std::collections::HashMap;
 use articulated_core::Scalar;
 use articulated_core::algorithm::PARAMETERS;
 use articulated_core::description::Description;
+use articulated_core::effect::{Applied, Effect, EffectId, On, effects};
 use articulated_core::model::Model;
 use articulated_core::spatial::{Placement, SpatialInertia, Vector3};
 
-use crate::{Error, Sym, identifier, nearest};
+use crate::{Error, Options, Sym, identifier, nearest};
 
 /// What stays an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,9 +28,16 @@ enum Kind {
     Payload,
     Inertia,
     Origin,
+    Gravity,
+    Effect(EffectId),
 }
 
+/// Those of a link or joint that need no effect.
 const KINDS: [(&str, Kind); 3] = [("payload", Kind::Payload), ("inertia", Kind::Inertia), ("origin", Kind::Origin)];
+
+const GRAVITY: &str = "gravity";
+
+const EXPECTED: &str = "expected payload(link), inertia(link), origin(joint), gravity, or an effect on a joint, as damping(joint)";
 
 /// One parameter of a robot.
 #[derive(Clone, Debug)]
@@ -68,6 +78,30 @@ pub(crate) fn parse(list: &[String], description: &mut Description, model: &Mode
     Ok(parameters)
 }
 
+/// What is wrong with the entries that are numbers of effects, all of which are known: those that are off.
+pub(crate) fn of_effects_that_are_off(options: &Options) -> Vec<Error> {
+    let off = |text: &String| {
+        let (kind, name) = parts(text)?;
+        let row = of_joints(kind)?;
+        let is_on = |one: &Applied| one.effect == row.id && one.on == name && !row.is_nothing(&one.parameters);
+        let reason = format!("{kind} is off on joint {name:?}; ask for it among `effects` with numbers that are not all 0");
+        (!options.robot.effects.iter().any(is_on)).then(|| Error::Parameter { found: text.trim().into(), reason })
+    };
+    options.parameters.iter().filter_map(off).collect()
+}
+
+/// `kind(name)`, or `kind("name")`.
+fn parts(text: &str) -> Option<(&str, &str)> {
+    let (kind, rest) = text.split_once('(')?;
+    let name = rest.trim_end().strip_suffix(')')?.trim();
+    Some((kind.trim(), name.strip_prefix('"').and_then(|n| n.strip_suffix('"')).unwrap_or(name)))
+}
+
+/// The effect on joints of this name.
+fn of_joints(name: &str) -> Option<&'static Effect> {
+    effects().iter().find(|row| row.name == name && row.on == On::Joint)
+}
+
 /// The robot whose constants they are, with its names.
 struct Robot<'a> {
     description: &'a mut Description,
@@ -90,14 +124,36 @@ impl<'a> Robot<'a> {
     }
 
     fn one(&mut self, text: &str, at: usize) -> Result<Parameter, String> {
-        let expected = || "expected payload(link), inertia(link) or origin(joint)".to_owned();
-        let (kind, rest) = text.split_once('(').ok_or_else(expected)?;
-        let name = rest.trim_end().strip_suffix(')').ok_or_else(expected)?.trim();
-        let name = name.strip_prefix('"').and_then(|n| n.strip_suffix('"')).unwrap_or(name);
-        match KINDS.iter().find(|(k, _)| *k == kind.trim()).ok_or_else(expected)?.1 {
-            Kind::Origin => self.origin(name, at),
-            kind => self.mass(kind, name, at),
+        if text.trim() == GRAVITY {
+            return Ok(self.gravity(at));
         }
+        let (kind, name) = parts(text).ok_or_else(|| EXPECTED.to_owned())?;
+        match (KINDS.iter().find(|(k, _)| *k == kind), of_joints(kind)) {
+            (Some((_, Kind::Origin)), _) => self.origin(name, at),
+            (Some((_, kind)), _) => self.mass(*kind, name, at),
+            (None, Some(row)) => self.effect(row, name, at),
+            (None, None) => Err(EXPECTED.to_owned()),
+        }
+    }
+
+    fn gravity(&self, at: usize) -> Parameter {
+        let what = "gravity in the world frame, m/s²".to_owned();
+        let nominal = self.model.gravity.as_slice().to_vec();
+        Parameter { what, name: GRAVITY.into(), at, nominal, kind: Kind::Gravity, body: 0, frame: Placement::identity() }
+    }
+
+    fn effect(&self, row: &Effect, name: &str, at: usize) -> Result<Parameter, String> {
+        let body = self.bodies.get(name).copied();
+        let body = body.ok_or_else(|| {
+            format!("there is no joint {name:?} that moves{}", meant(name, self.model.bodies.iter().skip(1).map(|body| &body.name)))
+        })?;
+        let on = self.model.bodies[body].effects.joint.iter().find(|on| on.effect == row.id);
+        // Effects may not be known yet, see `of_effects_that_are_off`.
+        let nominal = on.map_or_else(|| vec![0.0; row.len()], |on| on.parameters.clone());
+        let fields: Vec<String> = row.fields.iter().map(|field| format!("{} ({})", field.name, field.unit)).collect();
+        let what = format!("{} on joint {name:?}: {}", row.name, fields.join(", "));
+        let name = format!("{name}_{}", row.name);
+        Ok(Parameter { what, name, at, nominal, kind: Kind::Effect(row.id), body, frame: Placement::identity() })
     }
 
     fn mass(&mut self, kind: Kind, name: &str, at: usize) -> Result<Parameter, String> {
@@ -149,17 +205,25 @@ fn meant<'a>(name: &str, names: impl Iterator<Item = &'a String>) -> String {
 impl Parameter {
     /// Whether its numbers are the inertial parameters of something.
     pub(crate) fn is_inertial(&self) -> bool {
-        self.kind != Kind::Origin
+        matches!(self.kind, Kind::Payload | Kind::Inertia)
     }
 
     /// Puts the numbers that `input` gives into the model.
     pub(crate) fn put(&self, model: &mut Model<Sym>, input: impl Fn(usize) -> Sym) {
         let number = |k: usize| input(self.at + k);
         let frame = cast(&self.frame);
+        let vector = || Vector3::new(number(0), number(1), number(2));
         let body = &mut model.bodies[self.body];
         match self.kind {
-            Kind::Origin => body.placement.position = frame.transform(Vector3::new(number(0), number(1), number(2))),
+            Kind::Gravity => model.gravity = vector(),
+            Kind::Origin => body.placement.position = frame.transform(vector()),
             Kind::Payload | Kind::Inertia => body.inertia += SpatialInertia::from_parameters(std::array::from_fn(number)).moved(&frame),
+            Kind::Effect(id) => {
+                let joint = body.name.clone();
+                let bodies = model.bodies.iter_mut().filter(|body| body.name == joint);
+                let on = bodies.flat_map(|body| &mut body.effects.joint).filter(|on| on.effect == id);
+                on.for_each(|on| on.parameters = (0..self.nominal.len()).map(number).collect());
+            }
         }
     }
 }
@@ -231,6 +295,47 @@ mod tests {
         }
     }
 
+    /// On a joint of several bodies too.
+    #[test]
+    fn other_gravity_and_other_effects_are_those_of_a_request_that_asks_for_them() {
+        let robot = |gravity: [f64; 3], numbers: [f64; 5]| {
+            let mut request = robot(["0.1 0.5 -0.3", "2", "0.05 0.2 0.1", "0 0 0.4"]);
+            let on = |effect, on: &str, parameters: &[f64]| crate::Applied {
+                effect,
+                on: on.into(),
+                at: crate::Origin::default(),
+                parameters: parameters.to_vec(),
+            };
+            let [damping, loss, speed, inertia, ratio] = numbers;
+            request.options.robot.gravity = gravity;
+            request.options.robot.effects = vec![
+                on(EffectId::damping, "slide", &[damping]),
+                on(EffectId::friction, "shoulder", &[loss, speed]),
+                on(EffectId::armature, "shoulder", &[inertia, ratio]),
+            ];
+            request
+        };
+        let list = ["damping(slide)", "gravity", "friction(shoulder)", "armature(\"shoulder\")"];
+        let here = robot([0.0, 0.0, -9.81], [0.5, 0.2, 0.01, 0.03, 10.0]);
+        let there = robot([0.3, -1.6, 0.7], [1.5, 0.7, 0.2, 0.02, -30.0]);
+        let (model, parameters) = read(&here, &list);
+        assert_eq!(parameters[1].nominal, [0.0, 0.0, -9.81]);
+        let numbers: Vec<f64> = read(&there, &list).1.into_iter().flat_map(|p| p.nominal).collect();
+        let input = |argument: usize, k: usize| (argument * 5 + k * 3) as f64 * 0.37 % 1.9 - 0.8;
+        for name in ["inverse_dynamics", "forward_dynamics", "effect_forces", "potential_energy", "inverse_dynamics_derivatives"] {
+            let wanted = Wanted::parse(name).unwrap();
+            for passes in [0, usize::MAX] {
+                let choice = [Choice::plain(ways(&wanted.parts[0], &model)[0].0, passes)];
+                let found = trace(&wanted, &choice, &model, &parameters);
+                let expected = trace(&wanted, &choice, &read(&there, &[]).0, &[]);
+                let given = |argument: usize, k: usize| if argument == wanted.arguments().len() { numbers[k] } else { input(argument, k) };
+                for (found, expected) in found.evaluate(given).into_iter().zip(expected.evaluate(input)) {
+                    assert!((found - expected).abs() < 1e-11 * (1.0 + expected.abs()), "{name}: {found} {expected}");
+                }
+            }
+        }
+    }
+
     #[test]
     fn a_payload_is_added_to_what_the_link_has() {
         let request = robot(["0.1 0.5 -0.3", "2", "0.05 0.2 0.1", "0 0 0.4"]);
@@ -262,11 +367,31 @@ mod tests {
             ("origin(grip)", "joint \"grip\" does not move; only the origin of a moving joint can stay an input"),
             ("payload(ground)", "link \"ground\" is fixed to the base: no function depends on it"),
             ("inertia(rail)", "link \"rail\" is fixed to the base: no function depends on it"),
-            ("mass(tool)", "expected payload(link), inertia(link) or origin(joint)"),
-            ("payload(tool", "expected payload(link), inertia(link) or origin(joint)"),
+            ("mass(tool)", EXPECTED),
+            ("payload(tool", EXPECTED),
+            ("drag(tool)", EXPECTED),
+            ("damping(grip)", "there is no joint \"grip\" that moves"),
         ] {
             assert_eq!(told(one), format!("parameters: `{one}`: {said}"));
         }
+        let mut request = request;
+        request.options.parameters = ["damping(shoulder)", " friction(shoulder)", "gravity"].map(String::from).to_vec();
+        let friction = |loss: f64| Applied {
+            effect: EffectId::friction,
+            on: "shoulder".into(),
+            at: crate::Origin::default(),
+            parameters: vec![loss, 0.01],
+        };
+        request.options.robot.effects = vec![friction(0.0)];
+        let off = |kind: &str| {
+            format!(
+                "parameters: `{kind}(shoulder)`: {kind} is off on joint \"shoulder\"; ask for it among `effects` with numbers that are not all 0"
+            )
+        };
+        let told = |request: &Request| crate::generate(request).unwrap_err().to_string();
+        assert_eq!(told(&request), [off("damping"), off("friction")].join("\n"));
+        request.options.robot.effects = vec![friction(0.3)];
+        assert_eq!(told(&request), off("damping"));
     }
 
     #[test]

@@ -14,6 +14,7 @@ pub use place::placed;
 use place::in_its_place;
 
 use crate::faults::tried;
+use crate::parameters::of_effects_that_are_off;
 use crate::{Error, Options, Request, check_identifiers, check_names, choose_frames, plan};
 
 /// A scene and the request that it amounts to.
@@ -57,10 +58,13 @@ fn prepared(opened: Opened) -> Result<Prepared, Error> {
         let frames_are_known = options.frames == request.options.robot.frames;
         errors.extend(renamings(&request, frames_are_known, &model, &scene));
     }
+    if errors.is_empty() {
+        request.options.robot.effects.clone_from(&resolved.effects);
+        errors = of_effects_that_are_off(&request.options);
+    }
     if let Some(error) = Error::of(errors) {
         return Err(placed(error, &scene));
     }
-    request.options.robot.effects.clone_from(&resolved.effects);
     Ok(Prepared { scene, request, resolved, files })
 }
 

@@ -3,7 +3,8 @@
 use articulated::{Dynamics, Model};
 use articulated_codegen::{Error, Request, generate};
 use articulated_core::algorithm::{FunctionId, Workspace};
-use articulated_core::description::{Base, Description, Payload};
+use articulated_core::description::{Base, Description, Origin, Payload};
+use articulated_core::effect::{Applied, EffectId};
 use articulated_tests::case::read;
 
 articulated::robot! {
@@ -34,6 +35,16 @@ articulated::robot! {
         functions = [inverse_dynamics, forward_dynamics, mass_matrix, potential_energy, placements],
         parameters = [payload(tool), inertia("fore"), origin(wrist)],
         batch = [f64, f32],
+    }
+}
+
+articulated::robot! {
+    /// Gravity and a damper that are known only when it runs.
+    mod elsewhere {
+        urdf = "robots/arm.urdf",
+        functions = [inverse_dynamics],
+        effects = { damping = { elbow = 0.5, wrist = 0.1 } },
+        parameters = [gravity, damping(elbow)],
     }
 }
 
@@ -385,6 +396,23 @@ fn parameters_that_are_the_urdfs_give_the_robot_of_the_urdf() {
 fn other_parameters_give_another_robot() {
     let (parameters, description) = changed();
     holds(&parameters, &description);
+}
+
+#[test]
+fn gravity_and_numbers_of_effects_are_inputs_where_they_are_asked_for() {
+    assert_eq!(elsewhere::PARAMETERS, [0.0, 0.0, -9.81, 0.5]);
+    let mut parameters = elsewhere::PARAMETERS;
+    parameters[elsewhere::parameter::GRAVITY..][..3].copy_from_slice(&[0.4, -0.2, -1.62]);
+    parameters[elsewhere::parameter::ELBOW_DAMPING] = 2.0;
+    let damping =
+        |on: &str, number: f64| Applied { effect: EffectId::damping, on: on.into(), at: Origin::default(), parameters: vec![number] };
+    for (parameters, gravity, number) in [(elsewhere::PARAMETERS, [0.0, 0.0, -9.81], 0.5), (parameters, [0.4, -0.2, -1.62], 2.0)] {
+        let model = Model::new(&read(URDF), Base::Fixed).unwrap().with_gravity(gravity);
+        let model = model.with_effects(&[damping("elbow", number), damping("wrist", 0.1)]).unwrap();
+        let mut expected = [0.0; 3];
+        model.inverse_dynamics(&mut Workspace::new(&model), &Q, &V, &A, &mut expected).unwrap();
+        same(&elsewhere::inverse_dynamics(&Q, &V, &A, &parameters), &expected);
+    }
 }
 
 /// Of one state, of fewer and more than blocks have, and of none.

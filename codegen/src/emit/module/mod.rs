@@ -127,7 +127,7 @@ fn inputs(out: &mut String, parameters: &[Parameter]) {
         return;
     }
     let values: Vec<String> = parameters.iter().flat_map(|p| &p.nominal).map(|x| literal(*x)).collect();
-    let _ = writeln!(out, "/// The parameters as the URDF has them; [`parameter`] says where each begins.");
+    let _ = writeln!(out, "/// The parameters of the robot as it was asked for; [`parameter`] says where each begins.");
     if parameters.iter().any(Parameter::is_inertial) {
         let _ = writeln!(
             out,
