@@ -102,7 +102,7 @@ pub enum Error {
         function: String,
     },
     /// A function that needs frames which can move in all directions, on a robot where some cannot.
-    #[error("{file}: {function} is not defined: fewer than six degrees of freedom carry {}; choose others with `frames`", frames.join(", "))]
+    #[error("{file}: {function} is not defined: fewer than six degrees of freedom carry {}; {}", frames.join(", "), if *has_others { "choose others with `frames`" } else { "no link of this robot has six: take operational_space_inertia_inverse" })]
     BoundFrames {
         /// The file.
         file: String,
@@ -110,6 +110,8 @@ pub enum Error {
         function: String,
         /// The frames, each with how many carry it.
         frames: Vec<String>,
+        /// Whether any link of the robot has as many.
+        has_others: bool,
     },
     /// Several of these.
     #[error("{}", errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]

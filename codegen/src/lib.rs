@@ -241,7 +241,8 @@ pub fn defined<S: Scalar>(file: &str, model: &Model<f64>, massless: &[String], f
         Needs::FreeFrames => model.frames.iter().filter_map(bound).collect(),
         _ => Vec::new(),
     };
-    if frames.is_empty() { Ok(()) } else { Err(Error::BoundFrames { file, function: name, frames }) }
+    let has_others = model.outward().any(|i| model.freedoms_of(i).len() >= 6);
+    if frames.is_empty() { Ok(()) } else { Err(Error::BoundFrames { file, function: name, frames, has_others }) }
 }
 
 /// The function called `name`, or the error that names the nearest.
