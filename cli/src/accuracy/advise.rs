@@ -7,12 +7,39 @@ use serde::Serialize;
 
 use super::report::{Point, Report};
 use crate::table::counted;
+use crate::units::Units;
+
+/// Of all numbers that have one.
+pub(super) const UNITS: Units = Units(&[
+    ("wish", "the sum of the magnitudes of the terms"),
+    ("functions[].ns", "ns per call"),
+    ("functions[].error", "the sum of the magnitudes of the terms"),
+]);
+
+/// What to take for each function, as programs read it.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Whole<'a> {
+    robot: &'a str,
+    scene: Option<&'a str>,
+    base: &'static str,
+    states: usize,
+    seed: u64,
+    wish: f64,
+    units: Units,
+    functions: Vec<Advice>,
+}
+
+/// All of a report.
+pub(super) fn whole(report: &Report, wish: f64) -> Whole<'_> {
+    let Report { robot, scene, base, states, seed, .. } = report;
+    let functions = all(report, wish);
+    Whole { robot, scene: scene.as_deref(), base, states: *states, seed: *seed, wish, units: UNITS, functions }
+}
 
 /// What to take for one function.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Advice {
     function: &'static str,
-    wish: f64,
     /// None that was measured is accurate enough.
     level: Option<String>,
     ns: Option<f64>,
@@ -32,7 +59,6 @@ fn one(function: &'static str, points: &[Point], wish: f64) -> Advice {
     let best = own().min_by(|a, b| a.relative.largest.total_cmp(&b.relative.largest)).filter(|_| fit.is_none());
     Advice {
         function,
-        wish,
         level: fit.map(|p| p.level.clone()),
         ns: fit.map(|p| p.time.median),
         error: fit.map(|p| p.relative.largest),
@@ -89,6 +115,14 @@ mod tests {
         let single = &report.functions[0].points.iter().find(|p| p.level == "f32").unwrap().relative;
         assert_eq!(level(single.largest).as_deref(), Some("f32"));
         assert!(text(&report, 1e-30).contains("the most accurate is double_double"));
+    }
+
+    #[test]
+    fn programs_read_what_it_is_of_and_in_what_units() {
+        let report = example();
+        let json = serde_json::to_value(whole(&report, 1e-9)).unwrap();
+        assert!(crate::units::lead(UNITS, &json));
+        assert_eq!((&json["functions"][0]["level"], &json["wish"]), (&"f64".into(), &1e-9.into()));
     }
 
     #[test]

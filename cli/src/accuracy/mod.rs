@@ -68,7 +68,7 @@ pub(crate) fn run(arguments: &AccuracyArguments, format: Format) -> Result<(), F
     let report = measure::all(&robot, &reference, &rustc, &functions, &levels, arguments)?;
     console::print(&match (arguments.advise, arguments.error, format) {
         (true, Some(wish), Format::Text) => advise::text(&report, wish),
-        (true, Some(wish), Format::Json) => crate::json(&advise::all(&report, wish)),
+        (true, Some(wish), Format::Json) => crate::json(&advise::whole(&report, wish)),
         (_, _, Format::Text) => text::text(&report),
         (_, _, Format::Json) => crate::json(&report),
     })?;
