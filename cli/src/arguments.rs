@@ -191,7 +191,7 @@ pub(crate) struct GenerateArguments {
     /// The functions wanted, groups of them, name = first + second(a = 0), or motion: all that the motion of a scene calls [default: placements,inverse_dynamics]
     #[arg(long, alias = "function", value_name = "NAMES", value_parser = wanted)]
     pub(crate) functions: Vec<Names>,
-    /// Constants of the model that stay inputs: payload(LINK), inertia(LINK), origin(JOINT), gravity, and numbers of an effect on a joint, as damping(JOINT)
+    /// Constants of the model that stay inputs: payload(LINK), inertia(LINK), origin(JOINT), gravity, and numbers of an effect that is on, as damping(JOINT), contact(LINK)
     #[arg(long, value_name = "ENTRIES", value_delimiter = ',')]
     pub(crate) parameters: Vec<String>,
     /// The functions for many states at once too, in numbers of these types: f64, f32

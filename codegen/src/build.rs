@@ -129,7 +129,7 @@ impl Build {
         self
     }
 
-    /// Constants of the model that stay inputs: `payload(link)`, `inertia(link)`, `origin(joint)`, `gravity`, and numbers of an effect on a joint, as `damping(joint)`.
+    /// Constants of the model that stay inputs: `payload(link)`, `inertia(link)`, `origin(joint)`, `gravity`, and numbers of an effect that is on, as `damping(joint)`, `contact(link)`.
     #[must_use]
     pub fn parameters<N: Into<String>>(mut self, entries: impl IntoIterator<Item = N>) -> Self {
         self.request.options.parameters = entries.into_iter().map(Into::into).collect();

@@ -33,7 +33,7 @@ pub struct Options {
     pub functions: Vec<String>,
     /// What the word `motion` stands for among them: the functions that the motion of a scene calls, and none without such a scene.
     pub motion: Vec<String>,
-    /// Constants of the model that stay inputs: `payload(link)`, `inertia(link)`, `origin(joint)`, `gravity`, and numbers of an effect on a joint, as `damping(joint)`.
+    /// Constants of the model that stay inputs: `payload(link)`, `inertia(link)`, `origin(joint)`, `gravity`, and numbers of an effect that is on, as `damping(joint)`, `contact(link)`.
     pub parameters: Vec<String>,
     /// Rust names to use instead of those made from the URDF's names: (name in the URDF, name in Rust).
     pub rename: Vec<(String, String)>,

@@ -59,7 +59,7 @@ mod tree;
 /// implements `articulated::Dynamics`. What looks odd in the URDF is listed in its constant `WARNINGS`. It is compiled
 /// again when a URDF or the scene changes. With `parameters` every function takes their numbers as the last of its inputs, before `out` where it has that; the constant `PARAMETERS` has those of the URDF, the
 /// module `parameter` where each begins, and `Robot` holds its own; functions of many states take a set for each state, or one for all. `payload(link)` and `inertia(link)` are ten: m, m·c and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz
-/// about the origin of the link's frame in its axes, added to what the link has or in its place; `origin(joint)` is the joint's xyz in its parent link, m; `gravity` the three of gravity, m/s²; `damping(joint)`, `friction(joint)` and so on the numbers of an effect that is on there. A build script (`articulated_codegen::Build`) gives the same code, to read and to step through.
+/// about the origin of the link's frame in its axes, added to what the link has or in its place; `origin(joint)` is the joint's xyz in its parent link, m; `gravity` the three of gravity, m/s²; `damping(joint)`, `contact(link)` and so on the numbers of an effect that is on there. A build script (`articulated_codegen::Build`) gives the same code, to read and to step through.
 ///
 /// Errors: all that is wrong with the invocation and with the URDF at once, each at the word that it is about.
 #[proc_macro]

@@ -244,7 +244,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         required: false,
         value: "texts",
         default: "none",
-        what: "constants of the model that stay inputs: `\"payload(link)\"`, `\"inertia(link)\"`, `\"origin(joint)\"`, `\"gravity\"`, and numbers of an effect on a joint, as `\"damping(joint)\"`",
+        what: "constants of the model that stay inputs: `\"payload(link)\"`, `\"inertia(link)\"`, `\"origin(joint)\"`, `\"gravity\"`, and numbers of an effect that is on, as `\"damping(joint)\"`, `\"contact(link)\"`",
         read: |s, spot, log| {
             s.code.parameters = spot.texts(log, "a list of what stays an input, as [\"payload(tool)\"]");
             s.code.places.parameters = edits::places(spot);

@@ -263,7 +263,7 @@ mod tests {
         let (parameters, placement) = (vec![1.0], tree(&WALKER, Base::Floating).frames[0].placement);
         let joint = JointEffect { effect: EffectId::damping, freedom: 0, parameters: parameters.clone() };
         assert!(!has_groups(&|model| model.bodies[3].effects.joint.push(joint.clone())));
-        let body = BodyEffect { effect: EffectId::drag, placement, parameters };
+        let body = BodyEffect { effect: EffectId::drag, link: String::new(), placement, parameters };
         for k in [ROOT, 3] {
             assert!(!has_groups(&|model| model.bodies[k].effects.body.push(body.clone())));
         }

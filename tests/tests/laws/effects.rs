@@ -203,7 +203,8 @@ fn what_is_left_out_does_nothing_and_what_stays_does_something() {
             match row.on {
                 On::Joint => body.joint.push(JointEffect { effect: row.id, freedom: 0, parameters: parameters.clone() }),
                 On::Link => {
-                    body.body.push(BodyEffect { effect: row.id, placement: Placement::identity(), parameters: parameters.clone() });
+                    let (link, placement) = (String::new(), Placement::identity());
+                    body.body.push(BodyEffect { effect: row.id, link, placement, parameters: parameters.clone() });
                 }
             }
             let with = accelerations(&model);

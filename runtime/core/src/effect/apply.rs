@@ -192,7 +192,7 @@ impl Model<f64> {
         let at = Placement { rotation: from_rpy(one.at.rpy), position: Vector3::from(one.at.xyz) };
         let (body, placement) = (frame.body, frame.placement.compose(&at));
         let parameters = normalised(one.effect, &one.parameters);
-        self.bodies[body].effects.body.push(BodyEffect { effect: one.effect, placement, parameters });
+        self.bodies[body].effects.body.push(BodyEffect { effect: one.effect, link: one.on.clone(), placement, parameters });
     }
 }
 

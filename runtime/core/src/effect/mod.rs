@@ -372,6 +372,8 @@ pub struct JointEffect<S> {
 pub struct BodyEffect<S> {
     /// Which.
     pub effect: EffectId,
+    /// The link that it is on, one of those of the body.
+    pub link: String,
     /// Its frame in the body's frame.
     pub placement: Placement<S>,
     /// As the effect's fields say.
@@ -388,7 +390,10 @@ impl<S: Scalar> Effects<S> {
     pub fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> Effects<T> {
         let all = |p: &[S]| p.iter().map(|x| f(*x)).collect();
         let joint = |e: &JointEffect<S>| JointEffect { effect: e.effect, freedom: e.freedom, parameters: all(&e.parameters) };
-        let body = |e: &BodyEffect<S>| BodyEffect { effect: e.effect, placement: e.placement.map(f), parameters: all(&e.parameters) };
+        let body = |e: &BodyEffect<S>| {
+            let (effect, link, placement) = (e.effect, e.link.clone(), e.placement.map(f));
+            BodyEffect { effect, link, placement, parameters: all(&e.parameters) }
+        };
         Effects { joint: self.joint.iter().map(joint).collect(), body: self.body.iter().map(body).collect() }
     }
 

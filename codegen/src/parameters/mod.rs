@@ -1,0 +1,260 @@
+//! Constants of the model that stay inputs of the generated functions.
+//!
+//! ```text
+//! payload(link)      ten numbers, added to what the link has; nothing at first
+//! inertia(link)      ten numbers in the place of the link's own; the URDF's at first
+//! origin(joint)      three numbers in the place of the joint's origin xyz, m; the URDF's at first
+//! gravity            three numbers in the world frame, m/s²; those of the request at first
+//! damping(joint)     the numbers of an effect on a joint, any of those that are on; those of the request at first
+//! contact(link)      the same of an effect on a link, which is the only one of its kind there
+//! ```
+//!
+//! The ten are the inertial parameters m, m·c, and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz about the origin of the link's frame, in its axes: all of dynamics is linear
+//! in them.
+
+use std::collections::HashMap;
+
+use articulated_core::Scalar;
+use articulated_core::algorithm::PARAMETERS;
+use articulated_core::description::Description;
+use articulated_core::effect::{Applied, Effect, EffectId, On, effect};
+use articulated_core::model::Model;
+use articulated_core::spatial::{Placement, SpatialInertia, Vector3};
+
+use crate::{Error, Options, Sym, identifier, nearest};
+
+/// What stays an input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Payload,
+    Inertia,
+    Origin,
+    Gravity,
+    Effect(EffectId),
+}
+
+/// Those of a link or joint that need no effect.
+const KINDS: [(&str, Kind); 3] = [("payload", Kind::Payload), ("inertia", Kind::Inertia), ("origin", Kind::Origin)];
+
+const GRAVITY: &str = "gravity";
+
+const EXPECTED: &str =
+    "expected payload(link), inertia(link), origin(joint), gravity, or an effect that is on, as damping(joint) or contact(link)";
+
+/// One parameter of a robot.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    /// What it is, in words.
+    pub what: String,
+    /// Its name: of the link or joint, and its kind.
+    pub name: String,
+    /// First index among all numbers.
+    pub at: usize,
+    /// What the URDF says.
+    pub nominal: Vec<f64>,
+    kind: Kind,
+    /// The body that it changes, and the frame that it is given in, in that body or, for an origin, in the parent's.
+    body: usize,
+    frame: Placement<f64>,
+    /// The joint or link.
+    on: String,
+}
+
+/// Reads the list, and takes out of the description what will be an input.
+pub(crate) fn parse(list: &[String], description: &mut Description, model: &Model<f64>) -> Result<Vec<Parameter>, Error> {
+    let mut robot = Robot::of(description, model);
+    let mut parameters: Vec<Parameter> = Vec::new();
+    let mut identifiers: HashMap<String, usize> = HashMap::new();
+    for text in list {
+        let wrong = |reason: String| Error::Parameter { found: text.trim().into(), reason };
+        let at = parameters.last().map_or(0, |p| p.at + p.nominal.len());
+        let parameter = robot.one(text, at).map_err(wrong)?;
+        let name = identifier(&parameter.name);
+        if let Some(other) = identifiers.get(&name).map(|k| &parameters[*k]) {
+            return Err(wrong(match other.what == parameter.what {
+                true => "is there twice, expected once".into(),
+                false => format!("is {name} in Rust, as the {} is", other.what),
+            }));
+        }
+        identifiers.insert(name, parameters.len());
+        parameters.push(parameter);
+    }
+    Ok(parameters)
+}
+
+/// What is wrong with the entries that are numbers of effects, all of which are known: those that are off.
+pub(crate) fn of_effects_that_are_off(options: &Options) -> Vec<Error> {
+    let off = |text: &String| {
+        let (kind, name) = parts(text)?;
+        let row = effect(kind)?;
+        let is_on = |one: &Applied| one.effect == row.id && one.on == name && !row.is_nothing(&one.parameters);
+        let on = if row.on == On::Joint { "joint" } else { "link" };
+        let reason = format!("{kind} is off on {on} {name:?}; ask for it among `effects` with numbers that are not all 0");
+        (!options.robot.effects.iter().any(is_on)).then(|| Error::Parameter { found: text.trim().into(), reason })
+    };
+    options.parameters.iter().filter_map(off).collect()
+}
+
+/// `kind(name)`, or `kind("name")`.
+fn parts(text: &str) -> Option<(&str, &str)> {
+    let (kind, rest) = text.split_once('(')?;
+    let name = rest.trim_end().strip_suffix(')')?.trim();
+    Some((kind.trim(), name.strip_prefix('"').and_then(|n| n.strip_suffix('"')).unwrap_or(name)))
+}
+
+/// The robot whose constants they are, with its names.
+struct Robot<'a> {
+    description: &'a mut Description,
+    model: &'a Model<f64>,
+    links: HashMap<String, usize>,
+    joints: HashMap<String, usize>,
+    frames: HashMap<String, usize>,
+    /// The first body of each joint: a planar or universal joint has several.
+    bodies: HashMap<String, usize>,
+}
+
+impl<'a> Robot<'a> {
+    fn of(description: &'a mut Description, model: &'a Model<f64>) -> Self {
+        let links = indices(description.links.iter().map(|l| &l.name));
+        let joints = indices(description.joints.iter().map(|j| &j.name));
+        let frames = indices(model.frames.iter().map(|f| &f.name));
+        let mut bodies = indices(model.bodies.iter().skip(1).map(|b| &b.name));
+        bodies.values_mut().for_each(|k| *k += 1);
+        Self { description, model, links, joints, frames, bodies }
+    }
+
+    fn one(&mut self, text: &str, at: usize) -> Result<Parameter, String> {
+        if text.trim() == GRAVITY {
+            return Ok(self.gravity(at));
+        }
+        let (kind, name) = parts(text).ok_or_else(|| EXPECTED.to_owned())?;
+        match (KINDS.iter().find(|(k, _)| *k == kind), effect(kind)) {
+            (Some((_, Kind::Origin)), _) => self.origin(name, at),
+            (Some((_, kind)), _) => self.mass(*kind, name, at),
+            (None, Some(row)) => self.effect(row, name, at),
+            (None, None) => Err(EXPECTED.to_owned()),
+        }
+    }
+
+    fn gravity(&self, at: usize) -> Parameter {
+        let what = "gravity in the world frame, m/s²".to_owned();
+        let nominal = self.model.gravity.as_slice().to_vec();
+        Parameter { what, name: GRAVITY.into(), at, nominal, kind: Kind::Gravity, body: 0, frame: Placement::identity(), on: String::new() }
+    }
+
+    fn effect(&self, row: &Effect, name: &str, at: usize) -> Result<Parameter, String> {
+        let (kind, on, body) = match row.on {
+            On::Joint => ("joint", self.on_joint(row, name)?, self.bodies.get(name).copied()),
+            On::Link => ("link", self.on_link(row, name)?, self.frames.get(name).map(|k| self.model.frames[*k].body)),
+        };
+        // Effects may not be known yet, see `of_effects_that_are_off`.
+        let nominal = on.map_or_else(|| vec![0.0; row.len()], <[f64]>::to_vec);
+        let fields: Vec<String> = row.fields.iter().map(|field| format!("{} ({})", field.name, field.unit)).collect();
+        let what = format!("{} on {kind} {name:?}: {}", row.name, fields.join(", "));
+        let (body, frame, on) = (body.unwrap_or_default(), Placement::identity(), name.to_owned());
+        Ok(Parameter { what, name: format!("{name}_{}", row.name), at, nominal, kind: Kind::Effect(row.id), body, frame, on })
+    }
+
+    /// Its numbers, if it is on.
+    fn on_joint(&self, row: &Effect, name: &str) -> Result<Option<&[f64]>, String> {
+        let names = || self.model.bodies.iter().skip(1).map(|body| &body.name);
+        let body = self.bodies.get(name).ok_or_else(|| format!("there is no joint {name:?} that moves{}", meant(name, names())))?;
+        Ok(self.model.bodies[*body].effects.joint.iter().find(|on| on.effect == row.id).map(|on| on.parameters.as_slice()))
+    }
+
+    /// Its numbers, if it is on.
+    fn on_link(&self, row: &Effect, name: &str) -> Result<Option<&[f64]>, String> {
+        let frame = self.frames.get(name).map(|k| &self.model.frames[*k]).ok_or_else(|| self.no_link(name))?;
+        let mut on = self.model.bodies[frame.body].effects.body.iter().filter(|on| on.effect == row.id && on.link == name);
+        match (on.next(), on.count()) {
+            (first, 0) => Ok(first.map(|on| on.parameters.as_slice())),
+            (_, others) => Err(format!("there are {} on link {name:?}, expected one", others + 1)),
+        }
+    }
+
+    fn no_link(&self, name: &str) -> String {
+        format!("there is no link {name:?}{}", meant(name, self.model.frames.iter().map(|f| &f.name)))
+    }
+
+    fn mass(&mut self, kind: Kind, name: &str, at: usize) -> Result<Parameter, String> {
+        let Some(&link) = self.links.get(name) else {
+            return Err(self.no_link(name));
+        };
+        let frame = self.frames.get(name).map(|k| &self.model.frames[*k]).ok_or_else(|| "the link is no frame".to_owned())?;
+        if frame.body == 0 {
+            return Err(format!("link {name:?} is fixed to the base: no function depends on it"));
+        }
+        // The link itself is left without what becomes an input.
+        let own = if kind == Kind::Inertia { self.description.links[link].inertial.take() } else { None };
+        let nominal = own.map_or([0.0; PARAMETERS], |own| own.spatial_inertia().parameters());
+        let what = match kind {
+            Kind::Inertia => format!("inertial parameters of link {name:?}"),
+            _ => format!("inertial parameters of a payload on link {name:?}"),
+        };
+        let (on, nominal) = (name.to_owned(), nominal.to_vec());
+        let name = format!("{name}_{}", if kind == Kind::Inertia { "inertia" } else { "payload" });
+        Ok(Parameter { what, name, at, nominal, kind, body: frame.body, frame: frame.placement, on })
+    }
+
+    fn origin(&self, name: &str, at: usize) -> Result<Parameter, String> {
+        let Some(joint) = self.joints.get(name).map(|k| &self.description.joints[*k]) else {
+            return Err(format!("there is no joint {name:?}{}", meant(name, self.description.joints.iter().map(|j| &j.name))));
+        };
+        let body = self.bodies.get(name).copied();
+        let body = body.ok_or_else(|| format!("joint {name:?} does not move; only the origin of a moving joint can stay an input"))?;
+        let parent = &self.description.links[joint.parent].name;
+        let frame = self.frames.get(parent).map(|k| &self.model.frames[*k]).ok_or_else(|| format!("link {parent:?} is no frame"))?;
+        let (what, nominal) = (format!("origin of joint {name:?} in its parent link, m"), joint.origin.xyz.to_vec());
+        let on = name.to_owned();
+        Ok(Parameter { what, name: format!("{name}_origin"), at, nominal, kind: Kind::Origin, body, frame: frame.placement, on })
+    }
+}
+
+/// Index of each name; the first, where there are several.
+fn indices<'a>(names: impl Iterator<Item = &'a String>) -> HashMap<String, usize> {
+    let mut indices = HashMap::new();
+    names.enumerate().for_each(|(k, name)| {
+        indices.entry(name.clone()).or_insert(k);
+    });
+    indices
+}
+
+/// `, did you mean "upper"?`, or nothing.
+fn meant<'a>(name: &str, names: impl Iterator<Item = &'a String>) -> String {
+    nearest(name, names.map(String::as_str)).map(|n| format!(", did you mean {n:?}?")).unwrap_or_default()
+}
+
+impl Parameter {
+    /// Whether its numbers are the inertial parameters of something.
+    pub(crate) fn is_inertial(&self) -> bool {
+        matches!(self.kind, Kind::Payload | Kind::Inertia)
+    }
+
+    /// Puts the numbers that `input` gives into the model.
+    pub(crate) fn put(&self, model: &mut Model<Sym>, input: impl Fn(usize) -> Sym) {
+        let number = |k: usize| input(self.at + k);
+        let frame = cast(&self.frame);
+        let vector = || Vector3::new(number(0), number(1), number(2));
+        let body = &mut model.bodies[self.body];
+        match self.kind {
+            Kind::Gravity => model.gravity = vector(),
+            Kind::Origin => body.placement.position = frame.transform(vector()),
+            Kind::Payload | Kind::Inertia => body.inertia += SpatialInertia::from_parameters(std::array::from_fn(number)).moved(&frame),
+            Kind::Effect(id) => {
+                let numbers: Vec<Sym> = (0..self.nominal.len()).map(number).collect();
+                // A joint may have several bodies.
+                let joint = model.bodies.iter_mut().filter(|body| body.name == self.on).flat_map(|body| &mut body.effects.joint);
+                joint.filter(|on| on.effect == id).for_each(|on| on.parameters.clone_from(&numbers));
+                let link = model.bodies[self.body].effects.body.iter_mut();
+                link.filter(|on| on.effect == id && on.link == self.on).for_each(|on| on.parameters.clone_from(&numbers));
+            }
+        }
+    }
+}
+
+fn cast(x: &Placement<f64>) -> Placement<Sym> {
+    Placement { rotation: x.rotation.map(Sym::from_f64), position: x.position.map(Sym::from_f64) }
+}
+
+#[cfg(test)]
+mod tests;
