@@ -89,7 +89,10 @@ fn other_gravity_and_other_effects_are_those_of_a_request_that_asks_for_them() {
     let there = robot([0.3, -1.6, 0.7], [1.5, 0.7, 0.2, 0.02, -30.0]);
     let (model, parameters) = read(&here, &list);
     assert_eq!(parameters[1].nominal, [0.0, 0.0, -9.81]);
-    let numbers: Vec<f64> = read(&there, &list).1.into_iter().flat_map(|p| p.nominal).collect();
+    let mut numbers: Vec<f64> = read(&there, &list).1.into_iter().flat_map(|p| p.nominal).collect();
+    // The contact's normal, and the height behind it.
+    let n = numbers.len();
+    numbers[n - 4..n - 1].iter_mut().for_each(|x| *x *= 3.0);
     let input = |argument: usize, k: usize| (argument * 5 + k * 3) as f64 * 0.37 % 1.9 - 0.8;
     for name in ["inverse_dynamics", "forward_dynamics", "effect_forces", "potential_energy", "inverse_dynamics_derivatives"] {
         let wanted = Wanted::parse(name).unwrap();
