@@ -44,15 +44,28 @@ fn the_numbers_of_another_robot_make_it_that_robot() {
     const LIST: [&str; 3] = ["origin(slide)", "inertia(tool)", "origin(\"shoulder\")"];
     let here = robot(["0.1 0.5 -0.3", "2", "0.05 0.2 0.1", "0 0 0.4"]);
     let there = robot(["-0.4 0.2 0.7", "3.5", "-0.1 0.3 0.2", "0.6 -0.1 0.2"]);
-    let (model, parameters) = read(&here, &LIST);
-    let numbers: Vec<f64> = read(&there, &LIST).1.into_iter().flat_map(|p| p.nominal).collect();
-    let input = |argument: usize, k: usize| (argument * 5 + k * 3) as f64 * 0.37 % 1.9 - 0.8;
-    for name in ["inverse_dynamics", "placements", "potential_energy"] {
+    let numbers = nominal(&there, &LIST);
+    held(["inverse_dynamics", "placements", "potential_energy"], (&here, &LIST), &numbers, &there);
+}
+
+/// What a request's parameters are at first.
+fn nominal(request: &Request, list: &[&str]) -> Vec<f64> {
+    read(request, list).1.into_iter().flat_map(|p| p.nominal).collect()
+}
+
+fn input(argument: usize, k: usize) -> f64 {
+    (argument * 5 + k * 3) as f64 * 0.37 % 1.9 - 0.8
+}
+
+/// With these numbers in the place of its own, the one robot is the other, before passes and after.
+fn held<const N: usize>(functions: [&str; N], (here, list): (&Request, &[&str]), numbers: &[f64], there: &Request) {
+    let (model, parameters) = read(here, list);
+    for name in functions {
         let wanted = Wanted::parse(name).unwrap();
         for passes in [0, usize::MAX] {
             let choice = [Choice::plain(ways(&wanted.parts[0], &model)[0].0, passes)];
             let found = trace(&wanted, &choice, &model, &parameters);
-            let expected = trace(&wanted, &choice, &read(&there, &[]).0, &[]);
+            let expected = trace(&wanted, &choice, &read(there, &[]).0, &[]);
             let given = |argument: usize, k: usize| if argument == wanted.arguments().len() { numbers[k] } else { input(argument, k) };
             for (found, expected) in found.evaluate(given).into_iter().zip(expected.evaluate(input)) {
                 assert!((found - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{name}: {found} {expected}");
@@ -87,25 +100,13 @@ fn other_gravity_and_other_effects_are_those_of_a_request_that_asks_for_them() {
     let list = ["damping(slide)", "gravity", "friction(shoulder)", "armature(\"shoulder\")", "drag(tool)", "contact(arm)"];
     let here = robot([0.0, 0.0, -9.81], [0.5, 0.2, 0.01, 0.03, 10.0]);
     let there = robot([0.3, -1.6, 0.7], [1.5, 0.7, 0.2, 0.02, -30.0]);
-    let (model, parameters) = read(&here, &list);
-    assert_eq!(parameters[1].nominal, [0.0, 0.0, -9.81]);
-    let mut numbers: Vec<f64> = read(&there, &list).1.into_iter().flat_map(|p| p.nominal).collect();
+    assert_eq!(read(&here, &list).1[1].nominal, [0.0, 0.0, -9.81]);
+    let mut numbers = nominal(&there, &list);
     // The contact's normal, and the height behind it.
     let n = numbers.len();
     numbers[n - 4..n - 1].iter_mut().for_each(|x| *x *= 3.0);
-    let input = |argument: usize, k: usize| (argument * 5 + k * 3) as f64 * 0.37 % 1.9 - 0.8;
-    for name in ["inverse_dynamics", "forward_dynamics", "effect_forces", "potential_energy", "inverse_dynamics_derivatives"] {
-        let wanted = Wanted::parse(name).unwrap();
-        for passes in [0, usize::MAX] {
-            let choice = [Choice::plain(ways(&wanted.parts[0], &model)[0].0, passes)];
-            let found = trace(&wanted, &choice, &model, &parameters);
-            let expected = trace(&wanted, &choice, &read(&there, &[]).0, &[]);
-            let given = |argument: usize, k: usize| if argument == wanted.arguments().len() { numbers[k] } else { input(argument, k) };
-            for (found, expected) in found.evaluate(given).into_iter().zip(expected.evaluate(input)) {
-                assert!((found - expected).abs() < 1e-11 * (1.0 + expected.abs()), "{name}: {found} {expected}");
-            }
-        }
-    }
+    let functions = ["inverse_dynamics", "forward_dynamics", "effect_forces", "potential_energy", "inverse_dynamics_derivatives"];
+    held(functions, (&here, &list), &numbers, &there);
 }
 
 #[test]
@@ -113,7 +114,6 @@ fn a_payload_is_added_to_what_the_link_has() {
     let request = robot(["0.1 0.5 -0.3", "2", "0.05 0.2 0.1", "0 0 0.4"]);
     let own = read(&request, &["inertia(tool)"]).1.remove(0).nominal;
     let wanted = Wanted::parse("inverse_dynamics").unwrap();
-    let input = |argument: usize, k: usize| (argument * 5 + k * 3) as f64 * 0.37 % 1.9 - 0.8;
     let values = |list: &[&str], factor: f64| {
         let (model, parameters) = read(&request, list);
         let choice = [Choice::plain(ways(&wanted.parts[0], &model)[0].0, usize::MAX)];

@@ -7,5 +7,6 @@ mod equals_generic;
 mod limbs;
 mod odd_robots;
 mod oracles;
+mod parameters;
 mod robots;
 mod scenes;
