@@ -241,7 +241,7 @@ impl Parameter {
             Kind::Origin => body.placement.position = frame.transform(vector()),
             Kind::Payload | Kind::Inertia => body.inertia += SpatialInertia::from_parameters(std::array::from_fn(number)).moved(&frame),
             Kind::Effect(id) => {
-                let numbers = to_length_one(id.row(), (0..self.nominal.len()).map(number).collect());
+                let numbers = id.row().with_unit_normal((0..self.nominal.len()).map(number).collect());
                 // A joint may have several bodies.
                 let joint = model.bodies.iter_mut().filter(|body| body.name == self.on).flat_map(|body| &mut body.effects.joint);
                 joint.filter(|on| on.effect == id).for_each(|on| on.parameters.clone_from(&numbers));
@@ -250,20 +250,6 @@ impl Parameter {
             }
         }
     }
-}
-
-/// The numbers of an effect, in which a normal may have any length.
-fn to_length_one(row: &Effect, mut numbers: Vec<Sym>) -> Vec<Sym> {
-    let mut rest = numbers.as_mut_slice();
-    for field in row.fields {
-        let (own, others) = rest.split_at_mut(field.len);
-        if field.name == "normal" {
-            let length = own.iter().map(|x| *x * *x).fold(Sym::from_f64(0.0), |sum, square| sum + square).sqrt();
-            own.iter_mut().for_each(|x| *x = *x / length);
-        }
-        rest = others;
-    }
-    numbers
 }
 
 fn cast(x: &Placement<f64>) -> Placement<Sym> {

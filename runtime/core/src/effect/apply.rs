@@ -9,6 +9,7 @@ use nalgebra::Vector3;
 
 use super::places::Places;
 use super::{Applied, BodyEffect, Effect, EffectId, JointEffect, On};
+use crate::Scalar;
 use crate::joint::Joint;
 use crate::model::Model;
 use crate::spatial::{Placement, from_rpy};
@@ -191,27 +192,29 @@ impl Model<f64> {
         let frame = &self.frames[frame];
         let at = Placement { rotation: from_rpy(one.at.rpy), position: Vector3::from(one.at.xyz) };
         let (body, placement) = (frame.body, frame.placement.compose(&at));
-        let parameters = normalised(one.effect, &one.parameters);
+        let parameters = with_normal(one.effect.row(), one.parameters.clone(), |normal| super::unit(normal).unwrap_or(normal));
         self.bodies[body].effects.body.push(BodyEffect { effect: one.effect, link: one.on.clone(), placement, parameters });
     }
 }
 
-/// The normal of a plane to length 1.
-fn normalised(effect: EffectId, parameters: &[f64]) -> Vec<f64> {
-    let mut parameters = parameters.to_vec();
-    if effect == EffectId::contact {
-        let at = start(effect.row(), "normal");
+/// The numbers of an effect, with the normal of its plane, if it has one, as `unit` makes it.
+fn with_normal<S: Copy>(effect: &Effect, mut parameters: Vec<S>, unit: impl Fn([S; 3]) -> [S; 3]) -> Vec<S> {
+    if let Some(field) = effect.fields.iter().position(|field| field.name == "normal") {
+        let at: usize = effect.fields[..field].iter().map(|field| field.len).sum();
         let normal = &mut parameters[at..at + 3];
-        if let Some(unit) = super::unit([normal[0], normal[1], normal[2]]) {
-            normal.copy_from_slice(&unit);
-        }
+        normal.copy_from_slice(&unit([normal[0], normal[1], normal[2]]));
     }
     parameters
 }
 
-/// Place of the first number of a field.
-fn start(effect: &Effect, name: &str) -> usize {
-    effect.fields.iter().take_while(|f| f.name != name).map(|f| f.len).sum()
+impl Effect {
+    /// Numbers of the effect that are symbols, with the normal of its plane, if it has one, made of length one: as [`Model::with_effects`] does with numbers.
+    pub fn with_unit_normal<S: Scalar>(&self, parameters: Vec<S>) -> Vec<S> {
+        with_normal(self, parameters, |normal| {
+            let length = normal.iter().fold(S::zero(), |sum, x| sum + *x * *x).sqrt();
+            normal.map(|x| x / length)
+        })
+    }
 }
 
 /// What of the numbers is not what the fields want, or not what they must be together.

@@ -156,7 +156,7 @@ impl<S: Scalar> Model<S> {
         coordinates.turns.is_zero() && inertia.is_round() && self.outward().all(|k| self.bodies[k].parent != i)
     }
 
-    /// The configuration of zeros, with quaternions that turn nothing, `[nq]`: what a generated module has as `NEUTRAL`.
+    /// The configuration of zeros, with quaternions that turn nothing, `[nq]` rad|m|quaternion: what a generated module has as `NEUTRAL`.
     pub fn neutral(&self) -> Vec<S> {
         let mut q = alloc::vec![S::zero(); self.nq];
         crate::algorithm::neutral(self, &mut q);
