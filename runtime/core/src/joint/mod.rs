@@ -92,7 +92,8 @@ macro_rules! joints {
             }
         }
 
-        /// Runs one expression with the pose of the kind that it is: one branch for a whole step of an algorithm.
+        /// Runs one expression with the pose of the kind that it is: one branch for a whole step of an algorithm. Algorithms need allocation.
+        #[cfg(feature = "alloc")]
         macro_rules! with_pose {
             ($dollar pose:expr, $dollar p:ident => $dollar body:expr) => {
                 match $dollar pose {
@@ -100,6 +101,7 @@ macro_rules! joints {
                 }
             };
         }
+        #[cfg(feature = "alloc")]
         pub(crate) use with_pose;
     };
 }
