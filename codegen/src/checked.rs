@@ -17,7 +17,7 @@ use crate::sym::{self, Sym};
 /// The costs of forward dynamics by ABA, or by M = Lᵀ D L where joints follow others, and of the same with the smallest D/(Σ|terms|) held to its least.
 pub fn checked_cost(model: &Model<f64>) -> [Entry; 2] {
     let passed = model_passes::<f64>().iter().fold(model.clone(), |m, (_, pass, _)| pass(m));
-    let follows = model.bodies.iter().any(|b| b.coordinates.mimic.is_some());
+    let follows = model.has_followers();
     let way = if follows { "LTDL" } else { "ABA" };
     let [plain, checked] = [false, true].map(|looks| sym::trace(|| traced(&passed.cast(), follows, looks)));
     [entry(format!("forward_dynamics by {way}"), plain), entry(format!("checked_forward_dynamics by {way}"), checked)]

@@ -19,7 +19,9 @@ fn mass_matrix(model: &Model<f64>, q: &[f64]) -> Vec<f64> {
 fn a_solver_runs_on_whatever_has_dynamics() {
     fn solve<R: Dynamics>(robot: &R, [q, v, tau]: [&[f64]; 3]) -> (Vec<f64>, f64) {
         let mut a = vec![0.0; robot.shape().nv];
-        let left = Solver::new(robot.shape()).forward_dynamics(robot, &mut robot.workspace(), [q, v, tau], &mut a).unwrap();
+        let mut solver = Solver::new(robot.shape());
+        let left = solver.forward_dynamics(robot, &mut robot.workspace(), [q, v, tau], &mut a).unwrap();
+        assert!(solver.backward_error() <= 4.0 * f64::EPSILON, "{}", solver.backward_error());
         (a, left)
     }
     let model = Case::bundled(articulated_models::robot("panda_like").unwrap()).model;

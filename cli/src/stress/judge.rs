@@ -10,7 +10,7 @@
 //! with τ what the motors deliver. Where joints follow others, or effects act, terms of M and h may cancel: then the sums of their magnitudes stand for |M| and |h|;
 //! so they do in every robot of a user's ([`Case::by_terms`]).
 
-use articulated_core::algorithm::checked::{Factor, Singular};
+use articulated_core::algorithm::checked::{Factor, Singular, Solver};
 use articulated_core::algorithm::{FunctionId, Workspace, checked_forward_dynamics};
 use articulated_core::model::Model;
 use articulated_reference::{Big, Exact, is_plain, scales};
@@ -70,8 +70,10 @@ impl<'a, F: Machine> Judge<'a, F> {
         Self { case, wide: wide(&model), model }
     }
 
+    /// Right up to the limit; of one that is infinite, to be seen.
     fn row(&self, what: &str, measured: f64, limit: f64, unit: &'static str) -> Row {
-        self.case.row(format!("{what}, {}", F::NAME), measured, limit, unit)
+        let what = format!("{what}, {}", F::NAME);
+        if limit.is_finite() { self.case.row(what, measured, limit, unit) } else { self.case.shown(what, measured, unit) }
     }
 
     /// Inverse dynamics and mass matrix, and derivatives of small robots: forward errors over the sums of magnitudes of terms.
@@ -116,7 +118,7 @@ impl<'a, F: Machine> Judge<'a, F> {
         exact_error(function, &self.wide, &given, &found)
     }
 
-    /// Forward dynamics: backward errors by ABA and by LᵀDL, forward errors by LᵀDL, and how it ends.
+    /// Forward dynamics: backward errors by ABA, by LᵀDL and refined, forward errors by LᵀDL, and how it ends.
     pub fn solved(&self, states: &[State], ends: Ends, limit: f64) -> Vec<Row> {
         let mut rows = Vec::new();
         let outcomes: Vec<_> = states.iter().map(|s| self.checked(s)).collect();
@@ -132,6 +134,7 @@ impl<'a, F: Machine> Judge<'a, F> {
         let most = |k: usize| errors.iter().map(|e| e[k]).fold(0.0, worse);
         if !errors.is_empty() {
             rows.push(self.row("forward_dynamics by LTDL, η", most(0), limit, "u"));
+            rows.extend(self.refined(states));
             if is_plain(&self.wide) {
                 rows.push(self.row("solve_mass_matrix by LTDL, error over κ₂(M)", most(1), FORWARD, "u"));
             }
@@ -155,6 +158,19 @@ impl<'a, F: Machine> Judge<'a, F> {
         let mut a = vec![F::zero(); self.model.nv];
         let left = checked_forward_dynamics(&self.model, &mut Workspace::new(&self.model), &q, &v, &tau, &mut a)?;
         Ok((a, left.to_f64()))
+    }
+
+    /// The solver, which refines: η, where M is regular in this precision.
+    pub(super) fn refined(&self, states: &[State]) -> Option<Row> {
+        let eta = |s: &State| {
+            let [q, v, tau] = [&s.q, &s.v, &s.tau].map(|x| cast::<F>(x));
+            let mut a = vec![F::zero(); self.model.nv];
+            let mut solver = Solver::new(self.model.shape());
+            solver.forward_dynamics(&self.model, &mut Workspace::new(&self.model), [&q, &v, &tau], &mut a).ok()?;
+            Some(self.solution(&a, s)[0])
+        };
+        let most = states.iter().filter_map(eta).reduce(worse)?;
+        Some(self.row("forward_dynamics by Solver, refined, η", most, BACKWARD, "u"))
     }
 
     /// By LᵀDL, where M is regular in this precision: η of forward dynamics; errors of M⁻¹τ over κ₂ in units of u, of M as it is and of M scaled.

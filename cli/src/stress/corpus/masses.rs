@@ -23,6 +23,7 @@ pub(super) fn rows(_: Effort) -> Vec<Row> {
     rows.extend(tiny());
     rows.extend(thin_aligned());
     rows.extend(repeated());
+    rows.extend(nearly_repeated());
     rows
 }
 
@@ -137,4 +138,23 @@ fn repeated() -> Vec<Row> {
     rows.extend(Judge::<f32>::new(&case, &model).solved(&states, Ends::Singular("joint_2"), BACKWARD));
     rows.push(case.holds("massless_joints names it", model.massless_joints() == [2]));
     rows
+}
+
+/// The same with next to no mass between, on a slide: the two turn against each other a billion times as fast as anything else moves, and roundings of that reach the slide, which they
+/// do not move. Refined they do not.
+fn nearly_repeated() -> Vec<Row> {
+    let case = Case::new(
+        NAME,
+        "two coaxial joints with a link of a milligram between, on a slide",
+        "accelerations of 1e9 rad/s² that cancel, and a row of M in which they are not",
+    )
+    .by_terms();
+    let body = |mass: f64, center, radius: f64| Some(Body::of_radii(mass, center, [radius; 3]));
+    let model = Builder::new("nearly")
+        .link(None, JointKind::Prismatic, X, Origin::default(), body(1.0, [0.0; 3], 0.1))
+        .turn(X, [0.0; 3], body(1e-6, [0.0; 3], 0.01))
+        .turn(X, [0.0; 3], body(10.0, [0.0, 0.0, -0.2], 0.1))
+        .turn(Y, [0.2, -0.4, -0.4], body(10.0, [-0.4, 0.0, 0.0], 0.1))
+        .model();
+    Judge::<f64>::new(&case, &model).solved(&states(&model, 8, 18, 1.0), Ends::Solved, f64::INFINITY)
 }

@@ -305,7 +305,7 @@ fn factorization<S: Scalar>(model: &Model<S>) -> u64 {
 
 /// Whether no joint follows another: a follower ties branches together, and no recursion along one branch can invert M.
 fn untied<S: Scalar>(model: &Model<S>) -> bool {
-    model.bodies.iter().all(|b| b.coordinates.mimic.is_none())
+    !model.has_followers()
 }
 
 /// All functions, in the order in which they are listed to people.

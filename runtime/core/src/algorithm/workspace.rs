@@ -287,7 +287,7 @@ impl Centers {
 /// For each degree of freedom the number of the next one on the way to the base plus one; 0 where the base is next. The mass matrix is zero
 /// between degrees of freedom neither of which is on the other's way (Featherstone 2008, §6.5). Joints that follow others tie branches together: then all are one chain.
 pub(super) fn below<S: Scalar>(model: &Model<S>) -> Vec<usize> {
-    let tied = model.bodies.iter().any(|b| b.coordinates.mimic.is_some());
+    let tied = model.has_followers();
     let mut below: Vec<usize> = (0..model.nv).collect();
     for i in model.outward().filter(|_| !tied) {
         let (body, parent) = (&model.bodies[i], &model.bodies[model.bodies[i].parent]);

@@ -150,6 +150,11 @@ impl<S: Scalar> Model<S> {
         self.outward().filter(|&i| self.bodies[i].link.is_some())
     }
 
+    /// Whether a joint follows another.
+    pub fn has_followers(&self) -> bool {
+        self.bodies.iter().any(|b| b.coordinates.mimic.is_some())
+    }
+
     /// Whether body `i` is the same from all sides about its joint, carries nothing, and has a frame that does not turn ([`pass::still`]).
     pub(crate) fn is_round(&self, i: usize) -> bool {
         let Body { coordinates, inertia, .. } = &self.bodies[i];

@@ -12,7 +12,7 @@ use crate::model::Model;
 /// # Panics
 /// If a slice is shorter than stated.
 pub fn pivot_cancellation<S: Scalar<Mask = bool>>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
-    if model.bodies.iter().any(|b| b.coordinates.mimic.is_some()) {
+    if model.has_followers() {
         out.copy_from_slice(factored(model, ws, q).0.pivots());
         return;
     }

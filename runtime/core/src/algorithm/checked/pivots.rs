@@ -52,7 +52,7 @@ pub fn checked_forward_dynamics_with_wrenches<S: Scalar<Mask = bool>>(
     out: &mut [S],
 ) -> Result<S, Singular<S>> {
     let mut watch = Watch::new();
-    if model.bodies.iter().any(|b| b.coordinates.mimic.is_some()) {
+    if model.has_followers() {
         forward_dynamics_with_wrenches(model, ws, q, v, tau, wrenches, out);
         factored_pivots(model, ws, |freedom, left| watch.see(freedom, left));
     } else {

@@ -20,6 +20,8 @@ pub struct Solver<S = f64> {
     /// The torques that joints get.
     given: Vec<S>,
     factor: Factor<S>,
+    /// That of the last solution.
+    backward_error: S,
 }
 
 /// Why there are no accelerations.
@@ -45,12 +47,14 @@ impl<S: Scalar> core::error::Error for Unsolved<S> {}
 impl<S: Scalar<Mask = bool>> Solver<S> {
     /// For robots of this shape.
     pub fn new(shape: Shape) -> Self {
-        Self { matrix: vec![S::zero(); shape.nv * shape.nv], given: vec![S::zero(); shape.nv], factor: Factor::new(shape.nv) }
+        let zeros = |n| vec![S::zero(); n];
+        Self { matrix: zeros(shape.nv * shape.nv), given: zeros(shape.nv), factor: Factor::new(shape.nv), backward_error: S::zero() }
     }
 
-    /// a = M(q)⁻¹·(τ − h(q, v)), τ after motors; what is returned is the smallest D/(Σ|terms|) of all pivots.
+    /// a = M(q)⁻¹·(τ − h(q, v)), τ after motors, refined ([`Factor::refine`]); what is returned is the smallest D/(Σ|terms|) of all pivots.
     ///
     /// q: `[nq]`; v, tau, out: `[nv]`. Calls the robot's `bias_forces`, `mass_matrix` and, where it has motors, `motor_torques`, then eliminates: n³/3 operations at most.
+    /// The torques that the result needs are τ up to roundings of their terms, however far masses lie apart.
     ///
     /// # Errors
     /// [`Unsolved`]; `out` is of no meaning then.
@@ -76,11 +80,20 @@ impl<S: Scalar<Mask = bool>> Solver<S> {
         // Singular or not, all pivots are looked at.
         let _ = self.factor.factor(&self.matrix);
         // b = τ − h
-        out.iter_mut().zip(&self.given).for_each(|(b, tau)| *b = *tau - *b);
+        out.iter_mut().zip(&mut self.given).for_each(|(b, tau)| {
+            *b = *tau - *b;
+            *tau = *b;
+        });
         self.factor.solve(out);
+        self.backward_error = self.factor.refine(&self.matrix, &self.given, out);
         let mut watch = Watch::new();
         self.factor.pivots().iter().enumerate().rev().for_each(|(k, left)| watch.see(k, *left));
         watch.verdict(out, |k| robot.joint_of(k).unwrap_or_default().to_string()).map_err(Unsolved::Singular)
+    }
+
+    /// max_i |τ − h − M a|_i / (|M||a| + |τ − h|)_i of the last call, with M and h as they were computed: a few roundings, or M is next to singular.
+    pub fn backward_error(&self) -> S {
+        self.backward_error
     }
 
     /// The factor of M of the last call, for other right-hand sides and for [`Factor::condition`].
