@@ -16,6 +16,12 @@ const EVERY: u64 = 16;
 /// What a step may see of fast motion, |hλ| roughly, before it is reason to look.
 pub(crate) const SUSPICIOUS: f64 = 0.6;
 
+/// Growth in a step that is not refused: a pair is not known so well that its damping could be told from none.
+const SUFFERED: f64 = 1e-3;
+
+/// Growth in a step that is told to be stable: rounding.
+const TOLD: f64 = 1e-5;
+
 /// Rounds at most of a look that begins anew, and of one that confirms.
 const ROUNDS: usize = 40;
 
@@ -87,9 +93,9 @@ impl Stability {
         }
         self.fresh = false;
         let Some(pair) = found.filter(|pair| !stable(method, *pair, h)) else { return Ok(None) };
-        // The first step beyond |hλ| = 1 that is not stable bounds those that are.
+        // The first step beyond |hλ| = 1 that is not stable bounds those that are: of those that are told not even one that makes next to nothing grow, for how many there will be nobody knows.
         let mut admissible = (1.0 / pair.rate).min(h);
-        while admissible < h && stable(method, pair, 1.01 * admissible) {
+        while admissible < h && excess(method, pair, 1.01 * admissible) <= TOLD {
             admissible *= 1.01;
         }
         Ok(Some((admissible, pair.rate)))
@@ -161,9 +167,14 @@ impl Stability {
 }
 
 fn stable<R: Dynamics<f64>>(method: &dyn Method<R>, pair: Pair, h: f64) -> bool {
-    // Where |hλ| < 1 accuracy decides, and what grows by itself may grow.
+    // Where |hλ| < 1 accuracy decides.
+    h * pair.rate <= 1.0 || excess(method, pair, h) <= SUFFERED
+}
+
+/// By what part a step of length h makes the pair grow more than it does by itself, at least −1.
+fn excess<R: Dynamics<f64>>(method: &dyn Method<R>, pair: Pair, h: f64) -> f64 {
     let grows = roots(pair.a, pair.b).into_iter().map(|(re, _)| (h * re).exp()).fold(1.0, f64::max);
-    h * pair.rate <= 1.0 || method.amplification(pair.a, pair.b, h).is_none_or(|r| r <= 1.001 * grows)
+    method.amplification(pair.a, pair.b, h).map_or(-1.0, |r| r / grows - 1.0)
 }
 
 fn norm(x: &[f64]) -> f64 {

@@ -35,8 +35,10 @@ fn implicit_steps_of_any_length_decay_without_a_change_of_sign() {
 #[test]
 fn explicit_steps_beyond_stability_are_refused_with_the_one_that_is_not() {
     let rate = 1000.0;
-    let cases =
-        [(EffectId::damping, vec![rate], [2.0, 2.785, 3.307, 6.37]), (EffectId::spring, vec![rate * rate, 0.0], [2.0, 2.828, 1.0, 4.0])];
+    let cases = [
+        (EffectId::damping, vec![rate], [2.0, 2.785, 3.307, 6.394]),
+        (EffectId::spring, vec![rate * rate, 0.0], [2.0, 2.828, 0.997, 5.96]),
+    ];
     let explicit = [IntegratorId::semi_implicit_euler, IntegratorId::rk4, IntegratorId::dopri5, IntegratorId::dop853];
     for (effect, parameters, limits) in cases {
         let robot = with(effect, parameters);
@@ -46,10 +48,10 @@ fn explicit_steps_beyond_stability_are_refused_with_the_one_that_is_not() {
             println!("{integrator}, {effect:?}: {:.3}/rate", admissible * rate);
             assert_eq!(step, 0.05);
             assert!((found / rate - 1.0).abs() < 0.02, "{integrator}: {found} 1/s");
-            // On the imaginary axis some are stable a little further than can be told from rounding.
-            assert!(admissible * rate > 0.98 * limit && (effect == EffectId::spring || admissible * rate < 1.02 * limit), "{integrator}");
-            let motion = free(&robot, &stepping(integrator, 0.2, 0.97 * admissible), &[1e-3], &[0.1]).unwrap();
-            assert!(motion.v.last().unwrap().abs() <= 1.5, "{integrator}: {motion:?}");
+            // What grows by less than 1e-5 a step is as good as stable: an oscillation by dopri5, up to 1.02.
+            assert!((0.98..1.03).contains(&(admissible * rate / limit)), "{integrator}, {effect:?}: {admissible} s");
+            let motion = free(&robot, &stepping(integrator, 20.0, 0.97 * admissible), &[1e-3], &[0.1]).unwrap();
+            assert!((0..motion.len()).all(|i| motion.v[i].abs() <= 1.5), "{integrator}, {effect:?}: {motion:?}");
         }
     }
 }
@@ -113,7 +115,7 @@ fn a_motion_that_is_thrown_within_a_step_is_refused_at_the_rate_of_what_throws_i
 #[test]
 fn steps_chosen_by_tolerance_say_that_stability_holds_them() {
     let robot = with(EffectId::damping, vec![1e5]);
-    for (integrator, limit) in [(IntegratorId::dopri5, 3.307), (IntegratorId::dop853, 6.37)] {
+    for (integrator, limit) in [(IntegratorId::dopri5, 3.307), (IntegratorId::dop853, 6.394)] {
         let settings = to(integrator, 2.0, 1e-6);
         let error = free(&robot, &settings, &[0.0], &[1.0]).unwrap_err();
         let SimulateError::Stiff { t, step, left, .. } = error else { panic!("{integrator}: {error}") };
@@ -202,8 +204,12 @@ fn dry_friction_stops_a_body_and_does_not_turn_it_round() {
 #[test]
 fn steps_that_leap_over_dry_friction_are_refused() {
     let robot = with(EffectId::friction, vec![1.0, 1e-3]);
-    let explicit =
-        [(IntegratorId::semi_implicit_euler, 2.0), (IntegratorId::rk4, 2.785), (IntegratorId::dopri5, 3.307), (IntegratorId::dop853, 6.37)];
+    let explicit = [
+        (IntegratorId::semi_implicit_euler, 2.0),
+        (IntegratorId::rk4, 2.785),
+        (IntegratorId::dopri5, 3.307),
+        (IntegratorId::dop853, 6.394),
+    ];
     for (integrator, limit) in explicit {
         let mut h = 0.01;
         let motion = loop {

@@ -153,7 +153,7 @@ fn refuses_beyond(integrator: IntegratorId, z: f64, h: f64, motion: &Motion) -> 
         IntegratorId::semi_implicit_euler => 2.0,
         IntegratorId::rk4 => 2.785,
         IntegratorId::dopri5 => 3.307,
-        IntegratorId::dop853 => 6.37,
+        IntegratorId::dop853 => 6.394,
         IntegratorId::rodas4 | IntegratorId::lie_midpoint => f64::INFINITY,
     };
     match motion.run(integrator, Some(h)) {
