@@ -32,6 +32,18 @@ fn implicit_steps_of_any_length_decay_without_a_change_of_sign() {
     }
 }
 
+/// What damping has brought below the least normal number rests: each of a thousand steps leaves some third of the velocity.
+#[test]
+fn a_motion_that_dies_away_goes_on_to_its_end() {
+    let robot = with(EffectId::damping, vec![1000.0]);
+    for integrator in [IntegratorId::lie_midpoint, IntegratorId::rodas4, IntegratorId::rk4] {
+        let motion = free(&robot, &stepping(integrator, 1.0, 1e-3), &[0.0], &[1.0]).unwrap_or_else(|error| panic!("{integrator}: {error}"));
+        // v + d/m x stays.
+        assert!(motion.v.last().unwrap().abs() < 1e-300, "{integrator}: {motion:?}");
+        assert!((motion.q.last().unwrap() - 1e-3).abs() < 1e-16, "{integrator}: {motion:?}");
+    }
+}
+
 #[test]
 fn explicit_steps_beyond_stability_are_refused_with_the_one_that_is_not() {
     let rate = 1000.0;

@@ -65,8 +65,8 @@ impl LieMidpoint {
             let change = h * largest(found.iter().zip(&self.acceleration).map(|(a, b)| a - b));
             let size = largest(v.iter().copied()).max(h * largest(found.iter().copied()));
             self.acceleration.copy_from_slice(found);
-            // Down to rounding, or as near as it goes.
-            if change <= f64::EPSILON * size || (change >= before && change <= 64.0 * f64::EPSILON * size) {
+            // Down to rounding, or as near as it goes; of what has died away below the least normal number rounding is no small part.
+            if change <= (f64::EPSILON * size).max(f64::MIN_POSITIVE) || (change >= before && change <= 64.0 * f64::EPSILON * size) {
                 self.place_middle(system, v, h);
                 return Ok(());
             }
