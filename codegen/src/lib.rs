@@ -128,7 +128,7 @@ fn plan(request: &Request) -> Result<Plan, Error> {
     }
     // Mass that stays an input is mass all the same.
     let massless = massless(&whole);
-    let parameters = parameters::parse(&options.parameters, &mut reading.description, &whole)?;
+    let parameters = parameters::parse(&options.parameters, &options.rename, &mut reading.description, &whole)?;
     let model = choose_frames(request, if parameters.is_empty() { whole } else { model(request, &reading.description)? })?;
     let wanted = wanted(request, &model, &massless)?;
     let names = emit::Names::new(&model, request)?;
@@ -204,7 +204,7 @@ fn wanted(request: &Request, model: &Model<f64>, massless: &[String]) -> Result<
 /// Whether there are the functions, parameters and frames that the request names; `whole`: the model with a frame for every link. Errors: all that are not there.
 pub fn check_names(request: &Request, description: &Description, whole: &Model<f64>) -> Result<(), Error> {
     let names = |request: &Request| {
-        parameters::parse(&request.options.parameters, &mut description.clone(), whole)?;
+        parameters::parse(&request.options.parameters, &request.options.rename, &mut description.clone(), whole)?;
         let model = choose_frames(request, whole.clone())?;
         request.options.functions.iter().try_for_each(|text| Wanted::parse(text)?.check(&model))
     };

@@ -46,7 +46,7 @@ const EXPECTED: &str =
 pub struct Parameter {
     /// What it is, in words.
     pub what: String,
-    /// Its name: of the link or joint, and its kind.
+    /// Its name: of the link or joint, or what that is renamed to, and its kind.
     pub name: String,
     /// First index among all numbers.
     pub at: usize,
@@ -60,20 +60,28 @@ pub struct Parameter {
     on: String,
 }
 
-/// Reads the list, and takes out of the description what will be an input.
-pub(crate) fn parse(list: &[String], description: &mut Description, model: &Model<f64>) -> Result<Vec<Parameter>, Error> {
+/// Reads the list, and takes out of the description what will be an input. What is renamed in Rust is so here too.
+pub(crate) fn parse(
+    list: &[String],
+    rename: &[(String, String)],
+    description: &mut Description,
+    model: &Model<f64>,
+) -> Result<Vec<Parameter>, Error> {
     let mut robot = Robot::of(description, model);
     let mut parameters: Vec<Parameter> = Vec::new();
     let mut identifiers: HashMap<String, usize> = HashMap::new();
     for text in list {
         let wrong = |reason: String| Error::Parameter { found: text.trim().into(), reason };
         let at = parameters.last().map_or(0, |p| p.at + p.nominal.len());
-        let parameter = robot.one(text, at).map_err(wrong)?;
+        let mut parameter = robot.one(text, at).map_err(wrong)?;
+        if let Some((from, to)) = rename.iter().find(|(from, _)| *from == parameter.on) {
+            parameter.name = format!("{to}{}", &parameter.name[from.len()..]);
+        }
         let name = identifier(&parameter.name);
         if let Some(other) = identifiers.get(&name).map(|k| &parameters[*k]) {
             return Err(wrong(match other.what == parameter.what {
                 true => "is there twice, expected once".into(),
-                false => format!("is {name} in Rust, as the {} is", other.what),
+                false => format!("is {name} in Rust, as the {} is; give one another name with `rename`", other.what),
             }));
         }
         identifiers.insert(name, parameters.len());

@@ -35,7 +35,7 @@ fn read(request: &Request, list: &[&str]) -> (Model<f64>, Vec<Parameter>) {
     let mut description = crate::read(request).unwrap().description;
     let whole = crate::model(request, &description).unwrap();
     let list: Vec<String> = list.iter().map(|p| (*p).to_owned()).collect();
-    let parameters = parse(&list, &mut description, &whole).unwrap();
+    let parameters = parse(&list, &[], &mut description, &whole).unwrap();
     (crate::model(request, &description).unwrap(), parameters)
 }
 
@@ -131,7 +131,7 @@ fn what_there_is_not_is_told_with_what_was_meant() {
     let request = robot(["0 0 0", "2", "0 0 0", "0 0 0"]);
     let mut description = crate::read(&request).unwrap().description;
     let model = crate::model(&request, &description).unwrap();
-    let mut told = |one: &str| parse(&[one.to_owned()], &mut description, &model).map(|_| ()).unwrap_err().to_string();
+    let mut told = |one: &str| parse(&[one.to_owned()], &[], &mut description, &model).map(|_| ()).unwrap_err().to_string();
     for (one, said) in [
         ("payload(tol)", "there is no link \"tol\", did you mean \"tool\"?"),
         ("inertia(slide)", "there is no link \"slide\""),
@@ -178,14 +178,18 @@ fn two_that_have_one_name_in_rust_are_refused() {
     let mut description = crate::read(&request).unwrap().description;
     let model = crate::model(&request, &description).unwrap();
     let list = ["payload(tool)", "payload(\"tool\")"].map(String::from);
-    let told = parse(&list, &mut description, &model).map(|_| ()).unwrap_err().to_string();
+    let told = parse(&list, &[], &mut description, &model).map(|_| ()).unwrap_err().to_string();
     assert_eq!(told, "parameters: `payload(\"tool\")`: is there twice, expected once");
     // Constants of Rust have one case.
     let mut request = request;
     request.urdf = String::from_utf8(request.urdf).unwrap().replace("'table'", "'TOOL'").into_bytes();
     let mut description = crate::read(&request).unwrap().description;
     let model = crate::model(&request, &description).unwrap();
-    let mut told = |list: [&str; 2]| parse(&list.map(String::from), &mut description, &model).err().map(|error| error.to_string());
+    let mut told = |list: [&str; 2]| parse(&list.map(String::from), &[], &mut description, &model).err().map(|error| error.to_string());
     assert!(told(["payload(tool)", "payload(TOOL)"]).is_some_and(|told| told.contains("is TOOL_PAYLOAD in Rust, as the")));
     assert_eq!(told(["payload(tool)", "inertia(TOOL)"]), None);
+    // As of all constants of a joint or link, another name in Rust tells them apart.
+    let (list, rename) = (["payload(tool)", "payload(TOOL)", "gravity"].map(String::from), [("TOOL".to_owned(), "TABLE".to_owned())]);
+    let names = parse(&list, &rename, &mut description, &model).map(|all| all.iter().map(|p| identifier(&p.name)).collect::<Vec<_>>());
+    assert_eq!(names.unwrap(), ["TOOL_PAYLOAD", "TABLE_PAYLOAD", "GRAVITY"]);
 }
