@@ -137,7 +137,7 @@ impl Report {
             effect: e.effect.name(),
             law: law(e.effect.name()),
             on: e.on.clone(),
-            numbers: e.numbers.iter().map(|n| number(n, slides(stage, &e.on))).collect(),
+            numbers: e.numbers.iter().map(|n| number(n, kind(stage, &e.on))).collect(),
             line: e.place.line(),
         });
         Self {
@@ -161,12 +161,17 @@ impl Report {
     }
 }
 
-/// Units are those of a joint that turns or of one that slides.
-fn number(n: &articulated_scene::Number, slides: bool) -> Number {
+/// Units are those of a joint that turns or of one that slides; both, as in the manual, of one that does both.
+fn number(n: &articulated_scene::Number, kind: Option<JointKind>) -> Number {
     let (turning, sliding) = n.unit.split_once('|').unwrap_or((n.unit, n.unit));
-    Number { name: n.name, values: n.values.clone(), unit: if slides { sliding } else { turning }, from: n.from }
+    let unit = match kind {
+        Some(JointKind::Planar | JointKind::Floating) => n.unit,
+        Some(JointKind::Prismatic) => sliding,
+        _ => turning,
+    };
+    Number { name: n.name, values: n.values.clone(), unit, from: n.from }
 }
 
-fn slides(stage: &Stage, name: &str) -> bool {
-    stage.description.joint(name).is_some_and(|j| stage.description.joints[j].kind == JointKind::Prismatic)
+fn kind(stage: &Stage, joint: &str) -> Option<JointKind> {
+    stage.description.joint(joint).map(|j| stage.description.joints[j].kind)
 }

@@ -81,3 +81,34 @@ fn a_function_that_only_effects_define_is_told_with_all_of_them() {
     let none = run(&["effects", scene("damping = 0.2").name()]);
     assert!(none.status == 1 && none.err.contains("forward_dynamics is not defined"), "{}", none.err);
 }
+
+/// One number is of the slides and of the turns of a planar or a free joint: it is not told as that of an angle.
+#[test]
+fn numbers_have_the_units_of_what_their_joint_does() {
+    let joint = |name: &str, kind: &str, parent: &str, child: &str| {
+        format!(
+            "<link name='{child}'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>\
+             <joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{child}'/><axis xyz='0 0 1'/>\
+             <limit lower='-1' upper='1' effort='1' velocity='1'/></joint>"
+        )
+    };
+    let kinds = [("rail", "prismatic"), ("table", "planar"), ("hinge", "revolute"), ("air", "floating")];
+    let joints: Vec<String> =
+        kinds.iter().enumerate().map(|(k, (name, kind))| joint(name, kind, &format!("l{k}"), &format!("l{}", k + 1))).collect();
+    let urdf = format!("<robot name='r'><link name='l0'/>{}</robot>", joints.concat());
+    let urdf = File::new("r.urdf", urdf.as_bytes());
+    let scene = File::new(
+        "s.toml",
+        format!("urdf = {:?}\n[effects]\nspring = {{ \"*\" = {{ stiffness = 2.0 }} }}\ndamping = 0.1\n", urdf.name()).as_bytes(),
+    );
+    let report = run(&["effects", scene.name(), "--functions", "effect_forces", "--format", "json"]).json();
+    let units = |effect: &str, joint: &str| -> Vec<String> {
+        let is = |e: &&serde_json::Value| e["on"] == joint && e["effect"] == effect;
+        let on = report["on"].as_array().unwrap().iter().find(is).unwrap_or_else(|| panic!("{joint}: {report}"));
+        on["numbers"].as_array().unwrap().iter().map(|n| n["unit"].as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!(units("spring", "rail"), ["N/m", "m"]);
+    assert_eq!(units("spring", "hinge"), ["N·m/rad", "rad"]);
+    assert_eq!(units("spring", "table"), ["N·m/rad|N/m", "rad|m"]);
+    assert_eq!(units("damping", "air"), ["N·m·s/rad|N·s/m"]);
+}
