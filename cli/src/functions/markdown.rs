@@ -15,7 +15,8 @@ Made by `articulated functions --markdown`; `articulated functions ROBOT…` mak
 
 The last columns are what generated code does in one call: multiplications+additions, and instructions, where a multiply-add counts once. Sines and
 cosines of the joints come on top. Where limbs or joints are computed side by side (most of quadruped and humanoid), an instruction on a vector counts
-once. Units \"a|b\": a for joints that rotate, b for joints that slide. Functions of frames are generated for the tips of each robot: moving links that carry no other.
+once. Units \"a|b\": a for joints that rotate, b for joints that slide; \"a|b|c\" of a pair: a for two that rotate, b for one of each, c for two that slide. Functions of frames are generated for the tips of each
+robot: moving links that carry no other.
 
 ";
 

@@ -7,7 +7,7 @@ use crate::model::Model;
 
 /// C(q, v), with C v + g = h and Ṁ − 2C skew-symmetric.
 ///
-/// q: `[nq]`; v: `[nv]`; out: `[nv · nv]`, row by row, N·m·s|N·s. Of all matrices with these properties it is C = Σ Jᵀ (B J + G J̇), which is that of the
+/// q: `[nq]`; v: `[nv]`; out: `[nv · nv]`, row by row, N·m·s|N·s|N·s/m. Of all matrices with these properties it is C = Σ Jᵀ (B J + G J̇), which is that of the
 /// Christoffel symbols where rates are derivatives of coordinates. Echeandia & Wensing, *J. Comput. Nonlinear Dyn.* 16, 2021.
 ///
 /// # Panics

@@ -77,7 +77,7 @@ macro_rules! for_each_function {
             mass_matrix(q) -> [Nv, Nv] "kg·m²|kg·m|kg, symmetric", Dynamics, Nothing, true,
                 "M(q)", "CRBA; Featherstone 2008, Table 6.2",
                 forms [FromTheLast];
-            coriolis_matrix(q, v) -> [Nv, Nv] "N·m·s|N·s", Dynamics, Nothing, true,
+            coriolis_matrix(q, v) -> [Nv, Nv] "N·m·s|N·s|N·s/m", Dynamics, Nothing, true,
                 "C(q, v) of the links alone, with C v + g = h without effects, and Ṁ − 2C skew: that of the Christoffel symbols",
                 "Echeandia & Wensing, J. Comput. Nonlinear Dyn. 16, 2021",
                 by ["", always, nothing, coriolis_matrix; "the axes of the first body", near_the_middle, nothing, coriolis_matrix in axes_of_first_bodies];
