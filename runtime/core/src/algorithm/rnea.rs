@@ -143,7 +143,7 @@ pub fn bias_forces<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], 
     ws.zeros = zeros;
 }
 
-/// g(q) = τ at v = a = 0: what holds the robot still against gravity.
+/// g(q) = τ at v = a = 0: what holds the robot still against gravity and the effects that act at rest.
 ///
 /// q: `[nq]`; out: `[nv]` N·m|N.
 ///

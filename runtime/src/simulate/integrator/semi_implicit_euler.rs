@@ -1,4 +1,4 @@
-//! v_1 = v_0 + h·a(t_0, q_0, v_0), q_1 = q_0 ⊕ h·v_1: order 1, symplectic where forces depend on q alone.
+//! v_1 = v_0 + h·a(t_0, q_0, v_0), q_1 = q_0 ⊕ h·v_1: order 1, symplectic where the mass matrix is constant and forces are the slope of an energy of q.
 
 use articulated_core::dynamics::Dynamics;
 
