@@ -103,7 +103,7 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         required: false,
         value: "number, s",
         default: "no bound",
-        what: "no step by tolerance is longer, above 0 and above `min_step`",
+        what: "no step by tolerance is longer, above 0 and at least `min_step`",
         read: |x, s, log| set(&mut x.settings.max_step, s.any(log)),
     },
     Row {
