@@ -25,37 +25,63 @@ pub(super) struct Place {
 pub(super) struct Labels {
     within: Area,
     taken: Vec<Area>,
+    /// Lines from marks to names.
+    leaders: Vec<[Point; 2]>,
 }
 
 impl Labels {
     /// All names stand within this area, and beside what is taken.
     pub(super) fn new(within: Area, taken: Vec<Area>) -> Self {
-        Self { within, taken }
+        Self { within, taken, leaders: Vec::new() }
     }
 
-    /// Beside a mark, or the nearest free place from which a line leads to it. It is taken then.
+    /// Beside a mark, or the nearest free place from which a line leads to it, one that crosses no other if there is any. It is taken then.
     pub(super) fn place(&mut self, mark: Point, name: &str) -> Place {
         let free = |p: &Place| {
             let area = area(p, name);
             let clear = p.leader.is_none_or(|end| self.clear(mark, end));
             clear && self.holds(&area) && !self.taken.iter().any(|t| overlap(t, &area))
         };
-        let place = beside(mark).into_iter().chain(farther(mark)).find(free).unwrap_or(beside(mark)[0]);
+        let alone = |p: &Place| {
+            let around = self.leaders.iter().any(|line| through(*line, &area(p, name)));
+            !around && p.leader.is_none_or(|end| !self.leaders.iter().any(|line| cross([mark, end], *line)))
+        };
+        let all = || beside(mark).into_iter().chain(farther(mark)).filter(free);
+        let place = all().find(alone).or_else(|| all().next()).unwrap_or(beside(mark)[0]);
         self.taken.push(area(&place, name));
+        self.leaders.extend(place.leader.map(|end| [mark, end]));
         place
     }
 
     /// Whether the outer part of a line leads through nothing that is taken.
-    fn clear(&self, [x, y]: Point, end: Point) -> bool {
-        let on = |part: f64| [x + part * (end[0] - x), y + part * (end[1] - y)];
-        let inside = |[x, y]: Point| self.taken.iter().any(|t| (t[0]..=t[2]).contains(&x) && (t[1]..=t[3]).contains(&y));
-        !(4..=10).any(|k| inside(on(0.1 * f64::from(k))))
+    fn clear(&self, mark: Point, end: Point) -> bool {
+        let outer = [on([mark, end], 0.4), end];
+        !self.taken.iter().any(|t| through(outer, t))
     }
 
     fn holds(&self, [left, top, right, bottom]: &Area) -> bool {
         let [a, b, c, d] = self.within;
         *left >= a && *top >= b && *right <= c && *bottom <= d
     }
+}
+
+/// A point of a line, from 0 at its begin to 1 at its end.
+fn on([[x, y], end]: [Point; 2], part: f64) -> Point {
+    [x + part * (end[0] - x), y + part * (end[1] - y)]
+}
+
+/// Whether a line leads through an area, seen at eleven of its points.
+fn through(line: [Point; 2], area: &Area) -> bool {
+    let inside = |[x, y]: Point| (area[0]..=area[2]).contains(&x) && (area[1]..=area[3]).contains(&y);
+    (0..=10).any(|k| inside(on(line, 0.1 * f64::from(k))))
+}
+
+/// Whether two lines cross.
+fn cross(a: [Point; 2], b: [Point; 2]) -> bool {
+    // Twice the area of a triangle, positive where the point is on one side of the line.
+    let side = |[from, to]: [Point; 2], p: Point| (to[0] - from[0]) * (p[1] - from[1]) - (to[1] - from[1]) * (p[0] - from[0]);
+    let apart = |line, [p, q]: [Point; 2]| side(line, p) * side(line, q) < 0.0;
+    apart(a, b) && apart(b, a)
 }
 
 /// Right, left, and at the corners.
@@ -122,6 +148,18 @@ mod tests {
         assert!(!labels.clear([40.0, 50.0], [90.0, 50.0]) && labels.clear([40.0, 50.0], [90.0, 10.0]));
         // A line may begin within its own mark.
         assert!(labels.clear([78.0, 50.0], [100.0, 50.0]));
+    }
+
+    /// Two marks side by side under a crowd: the names go to their own sides.
+    #[test]
+    fn lines_do_not_cross() {
+        let marks = [[440.0, 360.0], [460.0, 360.0]];
+        let crowd = [[300.0, 320.0, 436.0, 380.0], [464.0, 320.0, 600.0, 380.0]];
+        let around = marks.iter().map(|[x, y]| [x - 4.0, y - 4.0, x + 4.0, y + 4.0]).chain(crowd).collect();
+        let mut labels = Labels::new([0.0, 0.0, 720.0, 400.0], around);
+        marks.iter().for_each(|m| _ = labels.place(*m, "double_double"));
+        let [a, b] = labels.leaders[..] else { panic!("{labels:?}") };
+        assert!(!cross(a, b) && cross([[0.0, 0.0], [2.0, 2.0]], [[0.0, 2.0], [2.0, 0.0]]), "{a:?} {b:?}");
     }
 
     #[test]
