@@ -86,18 +86,6 @@ struct DrawnMimic {
     offset: f64,
 }
 
-const KINDS: [JointKind; 9] = [
-    JointKind::Revolute,
-    JointKind::Continuous,
-    JointKind::Prismatic,
-    JointKind::Fixed,
-    JointKind::Floating,
-    JointKind::Planar,
-    JointKind::Spherical,
-    JointKind::Helical,
-    JointKind::Universal,
-];
-
 impl Drawn {
     fn description(&self, name: &str) -> Description {
         let link = |l: &DrawnLink| Link {
@@ -116,7 +104,7 @@ impl DrawnJoint {
     fn joint(&self) -> Joint {
         Joint {
             name: self.name.clone(),
-            kind: *KINDS.iter().find(|k| k.name() == self.kind).expect("a kind of joint"),
+            kind: *JointKind::ALL.iter().find(|k| k.name() == self.kind).expect("a kind of joint"),
             parent: self.parent,
             child: self.child,
             origin: Origin { xyz: self.xyz, rpy: self.rpy },

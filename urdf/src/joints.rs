@@ -10,19 +10,6 @@ use crate::number::{self, attribute, attribute_list};
 use crate::problem::{Kind, Subject, hint, quote};
 use crate::{Options, frame, limits, unused};
 
-/// The format's six, and three of this crate's own.
-const KINDS: [JointKind; 9] = [
-    JointKind::Revolute,
-    JointKind::Continuous,
-    JointKind::Prismatic,
-    JointKind::Fixed,
-    JointKind::Floating,
-    JointKind::Planar,
-    JointKind::Spherical,
-    JointKind::Helical,
-    JointKind::Universal,
-];
-
 const TAGS: [&str; 9] = ["origin", "parent", "child", "axis", "axis2", "thread", "limit", "dynamics", "mimic"];
 
 /// The axis of a joint that does not give one.
@@ -74,16 +61,23 @@ fn of_any_kind(tag: &Tag<'_>, open: bool, log: &mut Log) {
 
 fn kind(tag: &Tag<'_>, log: &mut Log) -> Option<JointKind> {
     let (name, line) = tag.required_attribute("type", log)?;
-    let kind = KINDS.into_iter().find(|kind| kind.name() == name);
+    let kind = JointKind::ALL.iter().copied().find(|kind| kind.name() == name);
     if kind.is_none() {
-        let names = KINDS.map(JointKind::name);
-        let hint = hint(elsewhere(name).map(str::to_owned).or_else(|| nearest(name, names)).as_deref());
-        let [before @ .., last] = names;
-        let expected = format!("{} or {last}{hint}", before.join(", "));
+        let hint = hint(elsewhere(name).map(str::to_owned).or_else(|| nearest(name, JointKind::ALL.iter().map(|k| k.name()))).as_deref());
+        let expected = format!("{}{hint}", kinds_with(|_| true));
         let place = Place { line: Some(line), ..tag.place("type") };
         log.error(&place, Kind::UnknownJointType, format!("the type {}", quote(name)), expected);
     }
     kind
+}
+
+/// The types of these kinds, listed: a, b or c.
+pub(crate) fn kinds_with(meant: impl Fn(JointKind) -> bool) -> String {
+    let names: Vec<&str> = JointKind::ALL.iter().filter(|kind| meant(**kind)).map(|kind| kind.name()).collect();
+    match names.as_slice() {
+        [before @ .., last] if !before.is_empty() => format!("{} or {last}", before.join(", ")),
+        names => names.concat(),
+    }
 }
 
 /// What a joint that is called so in other formats is here.

@@ -6,6 +6,7 @@ use articulated_core::listed;
 use articulated_core::suggest::Suggester;
 
 use crate::draft::{DraftJoint, DraftMimic, has_one_coordinate};
+use crate::joints::kinds_with;
 use crate::log::{Log, Place};
 use crate::problem::{Kind, hint, quote};
 use crate::ring::{around, rings};
@@ -43,16 +44,16 @@ fn error(follower: &DraftJoint, mimic: &DraftMimic, kind: Kind, found: String, e
 fn report_follower(follower: &DraftJoint, mimic: &DraftMimic, log: &mut Log) {
     if follower.kind.is_some_and(|kind| !has_one_coordinate(kind)) {
         let found = "a follower that does not have exactly one coordinate".to_owned();
-        let expected = "a revolute, continuous, prismatic or helical joint";
-        error(follower, mimic, Kind::FollowerCannotFollow, found, expected, log);
+        let expected = format!("a {} joint", kinds_with(has_one_coordinate));
+        error(follower, mimic, Kind::FollowerCannotFollow, found, &expected, log);
     }
 }
 
 fn report_leader(follower: &DraftJoint, mimic: &DraftMimic, leader: &DraftJoint, log: &mut Log) {
     if leader.kind.is_some_and(|kind| !has_one_coordinate(kind)) {
         let found = format!("{}, which does not have exactly one coordinate", quote(&mimic.leader.name));
-        let expected = "a revolute, continuous, prismatic or helical joint to follow";
-        error(follower, mimic, Kind::LeaderCannotLead, found, expected, log);
+        let expected = format!("a {} joint to follow", kinds_with(has_one_coordinate));
+        error(follower, mimic, Kind::LeaderCannotLead, found, &expected, log);
     }
 }
 

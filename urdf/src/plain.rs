@@ -43,7 +43,11 @@ struct Out(String);
 
 /// Whether a kind is this crate's own.
 pub(crate) fn is_unknown_to_urdf_rs(kind: JointKind) -> bool {
-    matches!(kind, JointKind::Helical | JointKind::Universal)
+    use JointKind::{Continuous, Fixed, Floating, Helical, Planar, Prismatic, Revolute, Spherical, Universal};
+    match kind {
+        Revolute | Continuous | Prismatic | Fixed | Floating | Planar | Spherical => false,
+        Helical | Universal => true,
+    }
 }
 
 /// `urdf-rs`'s name of a kind; that of a fixed joint stands in for those that it does not know.

@@ -20,10 +20,9 @@ fn a_description_written_as_a_urdf_is_read_as_it_was() {
 fn every_kind_of_thing_occurs() {
     let trees: Vec<_> = (0..120).map(|seed| random_tree(seed, Flavour::ANY)).collect();
     let joints = || trees.iter().flat_map(|t| &t.joints);
-    use JointKind::{Continuous, Fixed, Floating, Helical, Planar, Prismatic, Revolute, Spherical, Universal};
-    for kind in [Revolute, Continuous, Prismatic, Fixed, Floating, Planar, Spherical, Helical, Universal] {
+    for &kind in JointKind::ALL {
         assert!(joints().any(|j| j.kind == kind && j.locked.is_none()), "{kind:?}");
-        assert!(kind == Fixed || joints().any(|j| j.kind == kind && j.locked.is_some()), "{kind:?}, locked");
+        assert!(kind == JointKind::Fixed || joints().any(|j| j.kind == kind && j.locked.is_some()), "{kind:?}, locked");
     }
     assert!(
         trees.iter().any(|t| t.joints.iter().any(|j| j.mimic.is_some_and(|m| t.joints[m.joint].locked.is_some()))),

@@ -61,48 +61,54 @@ pub struct Origin {
     pub rpy: [f64; 3],
 }
 
-/// What a joint of the file lets move.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum JointKind {
+/// From one row for each kind of joint of a file, with its name in a URDF, the kinds and their list.
+macro_rules! joint_kinds {
+    ($($(#[$attribute:meta])+ $kind:ident $name:literal,)+) => {
+        /// What a joint of the file lets move.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        pub enum JointKind {
+            $($(#[$attribute])+ $kind,)+
+        }
+
+        impl JointKind {
+            /// All of them, in the order in which they are listed to people.
+            pub const ALL: &'static [Self] = &[$(Self::$kind),+];
+
+            /// Its name in a URDF.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$kind => $name,)+
+                }
+            }
+        }
+    };
+}
+
+joint_kinds! {
     /// A turn about the axis, within limits.
-    Revolute,
+    Revolute "revolute",
     /// A turn about the axis without limits; its coordinate is the plain angle.
-    Continuous,
+    Continuous "continuous",
     /// A translation along the axis.
-    Prismatic,
+    Prismatic "prismatic",
     /// No motion.
     #[default]
-    Fixed,
+    Fixed "fixed",
     /// Six degrees of freedom.
-    Floating,
+    Floating "floating",
     /// Two translations in the plane normal to the axis and a turn about it: (x, y, θ), rates along the axes of the joint frame. For the axis z
     /// the plane has the frame's x and y, for x its y and z, for y its z and x; for any other, the first two columns of
     /// [`crate::spatial::to_z_axis`].
-    Planar,
+    Planar "planar",
     /// Any rotation about the joint's origin: a unit quaternion (x, y, z, w) and the angular velocity in axes of the child.
-    Spherical,
+    Spherical "spherical",
     /// A rotation about the axis, within limits, that slides along it: `pitch` metres per revolution. The coordinate is the angle.
-    Helical,
+    Helical "helical",
     /// A rotation about `axis`, then one about `second_axis`, which the first has turned: Cardan's joint.
-    Universal,
+    Universal "universal",
 }
 
 impl JointKind {
-    /// Its name in a URDF.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Revolute => "revolute",
-            Self::Continuous => "continuous",
-            Self::Prismatic => "prismatic",
-            Self::Fixed => "fixed",
-            Self::Floating => "floating",
-            Self::Planar => "planar",
-            Self::Spherical => "spherical",
-            Self::Helical => "helical",
-            Self::Universal => "universal",
-        }
-    }
-
     /// Number of coordinates and number of degrees of freedom.
     pub fn sizes(self) -> (usize, usize) {
         match self {
