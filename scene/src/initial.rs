@@ -1,6 +1,7 @@
 //! `[initial]`: the state that a simulation starts from.
 
-use articulated_core::description::{Base, JointKind};
+use articulated_core::algorithm;
+use articulated_core::description::Base;
 use articulated_core::model::{FLOATING_BASE, Model};
 use articulated_core::spatial::normalise_given;
 
@@ -255,11 +256,7 @@ pub(crate) enum Side {
 /// q at which nothing is moved or turned, `[nq]`.
 pub(crate) fn neutral(model: &Model<f64>) -> Vec<f64> {
     let mut q = vec![0.0; model.nq];
-    for joint in &model.joints {
-        if matches!(joint.kind, JointKind::Spherical | JointKind::Floating) {
-            q[joint.q.0 + joint.q.1 - 1] = 1.0;
-        }
-    }
+    algorithm::neutral(model, &mut q);
     q
 }
 
@@ -303,9 +300,8 @@ pub(crate) fn no_joint(log: &mut Log, at: At, key: &str, name: &str, model: &Mod
 
 /// Quaternions to norm one; `place`: where those of a joint are given.
 pub(crate) fn normalise(model: &Model<f64>, q: &mut [f64], (key, place): (&str, &dyn Fn(&str) -> At), log: &mut Log) {
-    for joint in model.joints.iter().filter(|j| matches!(j.kind, JointKind::Spherical | JointKind::Floating)) {
-        let end = joint.q.0 + joint.q.1;
-        if let Err(norm) = normalise_given(&mut q[end - 4..end]) {
+    for (joint, quaternion) in model.joints.iter().filter_map(|j| Some((j, j.quaternion()?))) {
+        if let Err(norm) = normalise_given(&mut q[quaternion]) {
             let found = format!("a quaternion of norm {norm:.4} for joint {:?}", joint.name);
             log.error(place(&joint.name), key, Kind::Number, found, "norm one, in the order x, y, z, w");
         }

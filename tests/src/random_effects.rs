@@ -2,7 +2,6 @@
 
 use articulated_core::description::Origin;
 use articulated_core::effect::{Applied, EffectId, On, effects};
-use articulated_core::joint::Joint;
 use articulated_core::model::{FLOATING_BASE, Model};
 
 use crate::random::Random;
@@ -30,11 +29,11 @@ pub fn random_effects(random: &mut Random, model: &Model<f64>, wanted: impl Fn(E
 
 /// A spring needs a coordinate for each degree of freedom; a motor drives no joint that follows another.
 fn can_have(model: &Model<f64>, effect: EffectId, i: usize) -> bool {
-    let ball = |i: usize| matches!(model.bodies[i].joint, Joint::Spherical | Joint::Floating);
+    let ball = model.bodies[i].joint.quaternion().is_some();
     let follows = model.bodies[i].coordinates.mimic.is_some();
     match effect {
         _ if model.bodies[i].name == FLOATING_BASE => false,
-        EffectId::spring | EffectId::limit => !ball(i) && !follows,
+        _ if effect.row().needs_coordinate() => !ball && !follows,
         EffectId::motor => !follows,
         _ => true,
     }

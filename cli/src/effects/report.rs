@@ -1,6 +1,6 @@
 //! Effects of a scene as data.
 
-use articulated_core::description::JointKind;
+use articulated_core::description::{JointKind, Quantity};
 use articulated_core::effect::effects;
 use serde::Serialize;
 
@@ -164,9 +164,10 @@ impl Report {
 /// Units are those of a joint that turns or of one that slides; both, as in the manual, of one that does both.
 fn number(n: &articulated_scene::Number, kind: Option<JointKind>) -> Number {
     let (turning, sliding) = n.unit.split_once('|').unwrap_or((n.unit, n.unit));
-    let unit = match kind {
-        Some(JointKind::Planar | JointKind::Floating) => n.unit,
-        Some(JointKind::Prismatic) => sliding,
+    let has = |quantity| kind.is_some_and(|kind| kind.rates().contains(&quantity));
+    let unit = match (has(Quantity::Angle), has(Quantity::Length)) {
+        (true, true) => n.unit,
+        (false, true) => sliding,
         _ => turning,
     };
     Number { name: n.name, values: n.values.clone(), unit, from: n.from }

@@ -1,6 +1,6 @@
 //! A motion as its outputs need it: numbers at times, with the names and units of what they belong to.
 
-use articulated_core::description::JointKind;
+use articulated_core::description::{JointKind, Quantity};
 use articulated_core::model::{FLOATING_BASE, JointInfo, Model};
 use articulated_motion::{EventKind, Happening as Happened};
 use serde::Serialize;
@@ -93,15 +93,14 @@ pub(crate) struct Recording {
 impl Recording {
     /// Names and units for a robot, and no times yet.
     pub(crate) fn of(model: &Model<f64>) -> Self {
-        let each = |parts: fn(JointKind) -> Parts, count: fn(&JointInfo) -> usize| {
-            model.joints.iter().flat_map(|j| named(&j.name, count(j), parts(j.kind))).collect()
-        };
-        Self {
-            q_names: each(coordinates, |j| j.q.1),
-            v_names: each(rates, |j| j.v.1),
-            tau_names: each(torques, |j| j.v.1),
-            ..Self::default()
+        let mut out = Self::default();
+        for JointInfo { name, kind, .. } in &model.joints {
+            let parts = Parts::of(*kind);
+            out.q_names.extend(named(name, parts.coordinates, kind.coordinates(), ["rad", "m"]));
+            out.v_names.extend(named(name, parts.rates, kind.rates(), ["rad/s", "m/s"]));
+            out.tau_names.extend(named(name, parts.torques, kind.rates(), ["N·m", "N"]));
         }
+        out
     }
 
     /// Number of times.
@@ -127,45 +126,46 @@ impl Recording {
     }
 }
 
-/// What the numbers of a joint are called where it has several, and their units.
-type Parts = &'static [(&'static str, &'static str)];
+/// What the coordinates, the rates and the torques of a joint are called where it has several.
+struct Parts {
+    coordinates: &'static [&'static str],
+    rates: &'static [&'static str],
+    torques: &'static [&'static str],
+}
 
-fn named(joint: &str, count: usize, parts: Parts) -> Vec<Named> {
-    let name = |k: usize| if count == 1 { joint.to_owned() } else { format!("{joint}[{k}]") };
+impl Parts {
+    fn of(kind: JointKind) -> Self {
+        let alike = |names| Self { coordinates: names, rates: names, torques: names };
+        match kind {
+            JointKind::Fixed => alike(&[]),
+            JointKind::Revolute | JointKind::Continuous | JointKind::Prismatic | JointKind::Helical => alike(&[""]),
+            JointKind::Universal => alike(&["first", "second"]),
+            JointKind::Planar => alike(&["x", "y", "θ"]),
+            JointKind::Spherical => {
+                Self { coordinates: &["qx", "qy", "qz", "qw"], rates: &["ωx", "ωy", "ωz"], torques: &["mx", "my", "mz"] }
+            }
+            JointKind::Floating => Self {
+                coordinates: &["x", "y", "z", "qx", "qy", "qz", "qw"],
+                rates: &["ωx", "ωy", "ωz", "vx", "vy", "vz"],
+                torques: &["mx", "my", "mz", "fx", "fy", "fz"],
+            },
+        }
+    }
+}
+
+/// Numbers of a joint, by what they are called and what they are of; `units`: of a turn and of a way.
+fn named(joint: &str, parts: &[&str], of: &[Quantity], units: [&'static str; 2]) -> Vec<Named> {
+    let single = of.len() == 1;
+    let name = |k: usize| if single { joint.to_owned() } else { format!("{joint}[{k}]") };
     let base = joint == FLOATING_BASE;
     let shown = if base { "base" } else { joint };
-    let label = |part: &str| if count == 1 { shown.to_owned() } else { format!("{shown} {part}") };
-    (0..count).zip(parts).map(|(k, (part, unit))| Named { name: name(k), label: label(part), unit, base }).collect()
-}
-
-fn coordinates(kind: JointKind) -> Parts {
-    match kind {
-        JointKind::Prismatic => &[("", "m")],
-        JointKind::Planar => &[("x", "m"), ("y", "m"), ("θ", "rad")],
-        JointKind::Spherical => &[("qx", ""), ("qy", ""), ("qz", ""), ("qw", "")],
-        JointKind::Floating => &[("x", "m"), ("y", "m"), ("z", "m"), ("qx", ""), ("qy", ""), ("qz", ""), ("qw", "")],
-        _ => &[("first", "rad"), ("second", "rad")],
-    }
-}
-
-fn rates(kind: JointKind) -> Parts {
-    match kind {
-        JointKind::Prismatic => &[("", "m/s")],
-        JointKind::Planar => &[("x", "m/s"), ("y", "m/s"), ("θ", "rad/s")],
-        JointKind::Spherical => &[("ωx", "rad/s"), ("ωy", "rad/s"), ("ωz", "rad/s")],
-        JointKind::Floating => &[("ωx", "rad/s"), ("ωy", "rad/s"), ("ωz", "rad/s"), ("vx", "m/s"), ("vy", "m/s"), ("vz", "m/s")],
-        _ => &[("first", "rad/s"), ("second", "rad/s")],
-    }
-}
-
-fn torques(kind: JointKind) -> Parts {
-    match kind {
-        JointKind::Prismatic => &[("", "N")],
-        JointKind::Planar => &[("x", "N"), ("y", "N"), ("θ", "N·m")],
-        JointKind::Spherical => &[("mx", "N·m"), ("my", "N·m"), ("mz", "N·m")],
-        JointKind::Floating => &[("mx", "N·m"), ("my", "N·m"), ("mz", "N·m"), ("fx", "N"), ("fy", "N"), ("fz", "N")],
-        _ => &[("first", "N·m"), ("second", "N·m")],
-    }
+    let label = |part: &str| if single { shown.to_owned() } else { format!("{shown} {part}") };
+    let unit = |of: Quantity| match of {
+        Quantity::Angle => units[0],
+        Quantity::Length => units[1],
+        Quantity::Quaternion => "",
+    };
+    of.iter().zip(parts).enumerate().map(|(k, (of, part))| Named { name: name(k), label: label(part), unit: unit(*of), base }).collect()
 }
 
 /// A motion to test outputs with: that of a quadruped that falls and turns, without its physics.

@@ -7,7 +7,6 @@ mod read;
 mod unique;
 
 use articulated_core::algorithm::{Argument, Dim, Function};
-use articulated_core::description::JointKind;
 use articulated_core::model::{JointInfo, Model};
 
 pub use random::{SplitMix64, random};
@@ -69,9 +68,5 @@ pub(crate) fn owner(argument: Argument) -> &'static str {
 
 /// First indices in q of the unit quaternions, with the joints that have them.
 pub(crate) fn quaternions(model: &Model<f64>) -> impl Iterator<Item = (&JointInfo, usize)> {
-    model.joints.iter().filter_map(|j| match j.kind {
-        JointKind::Floating => Some((j, j.q.0 + 3)),
-        JointKind::Spherical => Some((j, j.q.0)),
-        _ => None,
-    })
+    model.joints.iter().filter_map(|j| Some((j, j.quaternion()?.start)))
 }

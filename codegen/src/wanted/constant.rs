@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 
 use articulated_core::algorithm::{Argument, Function, FunctionId};
-use articulated_core::description::JointKind;
 use articulated_core::model::{JointInfo, Model};
 
 use crate::{Error, Sym};
@@ -57,8 +56,7 @@ const NORM: f64 = 1e-9;
 
 /// The joint and the norm of its quaternion, if it has one that is no rotation; `zeros` may stand for one that does not turn.
 fn not_unit<'a>(joint: &'a JointInfo, q: &[f64], zeros: bool) -> Option<(&'a str, f64)> {
-    let end = joint.q.0 + joint.q.1;
-    let quaternion = matches!(joint.kind, JointKind::Floating | JointKind::Spherical).then(|| &q[end - 4..end])?;
+    let quaternion = &q[joint.quaternion()?];
     let norm = quaternion.iter().map(|x| x * x).sum::<f64>().sqrt();
     (!(zeros && norm == 0.0) && (norm - 1.0).abs() > NORM).then_some((joint.name.as_str(), norm))
 }

@@ -292,8 +292,7 @@ fn for_all<'a>(asked: &[&'a Asked]) -> Option<&'a Asked> {
 
 /// Whether a joint of this kind has what the effect acts on.
 fn has_room(row: &Effect, kind: JointKind) -> bool {
-    let ball = matches!(kind, JointKind::Spherical | JointKind::Floating);
-    !(ball && row.needs_coordinate())
+    kind.quaternion().is_none() || !row.needs_coordinate()
 }
 
 /// All numbers: of the first layer that says or takes them from the URDF, otherwise the defaults. The name of a field for which there are none. `layers`: what is said of a joint by its name, and

@@ -17,11 +17,7 @@ use articulated_tests::random_tree::Flavour;
 
 /// Where a joint's quaternion is in q, and its angular rates in v.
 fn quaternion_of(joint: &JointInfo) -> Option<(usize, usize)> {
-    match joint.kind {
-        JointKind::Spherical => Some((joint.q.0, joint.v.0)),
-        JointKind::Floating => Some((joint.q.0 + 3, joint.v.0)),
-        _ => None,
-    }
+    Some((joint.quaternion()?.start, joint.v.0))
 }
 
 fn quaternions(model: &Model<f64>) -> impl Iterator<Item = (usize, usize)> {

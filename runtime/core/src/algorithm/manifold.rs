@@ -8,7 +8,7 @@ use core::f64::consts::{PI, TAU};
 
 use super::Workspace;
 use crate::Scalar;
-use crate::description::{JointKind, Limit};
+use crate::description::{JointKind, Limit, Quantity};
 use crate::model::{JointInfo, Model};
 use crate::spatial::screw::Quaternion;
 use crate::spatial::{Twist, Vector3, rotate, rotate_back};
@@ -23,16 +23,16 @@ use crate::spatial::{Twist, Vector3, rotate, rotate_back};
 pub fn integrate<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, q: &[S], step: &[S], out: &mut [S]) {
     for joint in &model.joints {
         let (q, step, out) = (&q[range(joint.q)], &step[range(joint.v)], &mut out[range(joint.q)]);
-        match joint.kind {
-            JointKind::Floating => {
+        match Space::of(joint.kind) {
+            Space::Placements => {
                 let (position, rotation) = placement(q);
                 let (turn, shift) = six(step).exp_parts();
                 // p + R J_l(ω) v, R exp ω
                 put(out, &(position + rotate(&rotation.to_rotation(), shift)));
                 put_quaternion(&mut out[3..], &rotation.product(&turn));
             }
-            JointKind::Spherical => put_quaternion(out, &quaternion(q).product(&Quaternion::exp(three(step)))),
-            _ => plain(out, q, step, |q, step| q + step),
+            Space::Rotations => put_quaternion(out, &quaternion(q).product(&Quaternion::exp(three(step)))),
+            Space::Numbers => plain(out, q, step, |q, step| q + step),
         }
     }
 }
@@ -47,14 +47,14 @@ pub fn integrate<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, q: &[S], ste
 pub fn difference<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, q: &[S], target: &[S], out: &mut [S]) {
     for joint in &model.joints {
         let (q, target, out) = (&q[range(joint.q)], &target[range(joint.q)], &mut out[range(joint.v)]);
-        match joint.kind {
-            JointKind::Floating => {
+        match Space::of(joint.kind) {
+            Space::Placements => {
                 let step = way_between(q, target);
                 put(out, &step.angular);
                 put(&mut out[3..], &step.linear);
             }
-            JointKind::Spherical => put(out, &turn_between(q, target)),
-            _ => plain(out, q, target, |q, target| target - q),
+            Space::Rotations => put(out, &turn_between(q, target)),
+            Space::Numbers => plain(out, q, target, |q, target| target - q),
         }
     }
 }
@@ -69,13 +69,13 @@ pub fn difference<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, q: &[S], ta
 pub fn random_configuration<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, uniform: &[S], out: &mut [S]) {
     for joint in &model.joints {
         let (uniform, out) = (&uniform[range(joint.q)], &mut out[range(joint.q)]);
-        match joint.kind {
-            JointKind::Floating => {
+        match Space::of(joint.kind) {
+            Space::Placements => {
                 out.iter_mut().zip(&uniform[..3]).for_each(|(out, u)| *out = between(-1.0, 1.0, *u));
                 put_quaternion(&mut out[3..], &rotation_from(&uniform[3..]));
             }
-            JointKind::Spherical => put_quaternion(out, &rotation_from(uniform)),
-            _ => {
+            Space::Rotations => put_quaternion(out, &rotation_from(uniform)),
+            Space::Numbers => {
                 for (k, (out, u)) in out.iter_mut().zip(uniform).enumerate() {
                     let (lower, upper) = coordinate_box(joint, k);
                     *out = between(lower, upper, *u);
@@ -90,11 +90,31 @@ pub fn random_configuration<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, u
 /// # Panics
 /// If `out` is shorter than that.
 pub fn neutral<S: Scalar>(model: &Model<S>, out: &mut [S]) {
-    for JointInfo { kind, q, .. } in &model.joints {
-        let out = &mut out[range(*q)];
-        out.fill(S::zero());
-        if let (JointKind::Floating | JointKind::Spherical, Some(w)) = (kind, out.last_mut()) {
-            *w = S::one();
+    for joint in &model.joints {
+        out[range(joint.q)].fill(S::zero());
+        if let Some(quaternion) = joint.quaternion() {
+            out[quaternion.end - 1] = S::one();
+        }
+    }
+}
+
+/// What a joint's coordinates are points of.
+pub(super) enum Space {
+    /// Numbers, to which steps are added.
+    Numbers,
+    /// Rotations, as unit quaternions.
+    Rotations,
+    /// Placements, as positions and unit quaternions.
+    Placements,
+}
+
+impl Space {
+    pub(super) fn of(kind: JointKind) -> Self {
+        use JointKind::{Continuous, Fixed, Floating, Helical, Planar, Prismatic, Revolute, Spherical, Universal};
+        match kind {
+            Fixed | Revolute | Continuous | Prismatic | Helical | Universal | Planar => Self::Numbers,
+            Spherical => Self::Rotations,
+            Floating => Self::Placements,
         }
     }
 }
@@ -145,18 +165,13 @@ fn put_quaternion<S: Scalar>(out: &mut [S], q: &Quaternion<S>) {
     out[..4].copy_from_slice(&q.normalised().to_array());
 }
 
-/// Whether coordinate k of a joint is in metres.
-fn is_length(kind: JointKind, k: usize) -> bool {
-    kind == JointKind::Prismatic || kind == JointKind::Planar && k < 2
-}
-
 /// The box of coordinate `k` of a joint, its lower end first, rad or m: within limits where there are some, in whichever order they are written; a bound that is open is 2π or
 /// 2 m from the other, ±π and ±1 m where both are, as those of a sliding joint may be. Of a floating joint ±1 m, and ±1 for the numbers of a quaternion.
 pub fn coordinate_box(joint: &JointInfo, k: usize) -> (f64, f64) {
-    match joint.kind {
-        JointKind::Floating | JointKind::Spherical => (-1.0, 1.0),
-        kind => bounds(joint.limit, if is_length(kind, k) { 1.0 } else { PI }),
+    if joint.kind.quaternion().is_some() {
+        return (-1.0, 1.0);
     }
+    bounds(joint.limit, if joint.kind.coordinates().get(k) == Some(&Quantity::Length) { 1.0 } else { PI })
 }
 
 fn bounds(limit: Option<Limit>, most: f64) -> (f64, f64) {

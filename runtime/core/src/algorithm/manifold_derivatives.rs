@@ -13,9 +13,8 @@
 //! Barfoot 2017, §7.1.5; Solà, Deray & Atchuthan 2018, *A micro Lie theory for state estimation in robotics*, §III–IV.
 
 use super::Workspace;
-use super::manifold::{range, six, three, turn_between, way_between};
+use super::manifold::{Space, range, six, three, turn_between, way_between};
 use crate::Scalar;
-use crate::description::JointKind;
 use crate::model::{JointInfo, Model};
 use crate::spatial::screw::{Quaternion, left_jacobian_inverse, right_jacobian, right_jacobian_inverse};
 
@@ -30,18 +29,18 @@ pub fn integrate_derivatives<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, 
     let [by_q, by_step] = halves(out, model.nv);
     for joint in &model.joints {
         let s = &step[range(joint.v)];
-        match joint.kind {
-            JointKind::Floating => {
+        match Space::of(joint.kind) {
+            Space::Placements => {
                 let twist = six(s);
                 put(by_q, model.nv, joint, twist.times(-S::one()).exp().adjoint().as_slice());
                 put(by_step, model.nv, joint, twist.right_jacobian().as_slice());
             }
-            JointKind::Spherical => {
+            Space::Rotations => {
                 let omega = three(s);
                 put(by_q, model.nv, joint, Quaternion::exp(-omega).to_rotation().as_slice());
                 put(by_step, model.nv, joint, right_jacobian(omega).as_slice());
             }
-            _ => [&mut *by_q, &mut *by_step].into_iter().for_each(|block| diagonal(block, model.nv, joint, S::one())),
+            Space::Numbers => [&mut *by_q, &mut *by_step].into_iter().for_each(|block| diagonal(block, model.nv, joint, S::one())),
         }
     }
 }
@@ -57,18 +56,18 @@ pub fn difference_derivatives<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>,
     let [by_q, by_target] = halves(out, model.nv);
     for joint in &model.joints {
         let (q, target) = (&q[range(joint.q)], &target[range(joint.q)]);
-        match joint.kind {
-            JointKind::Floating => {
+        match Space::of(joint.kind) {
+            Space::Placements => {
                 let twist = way_between(q, target);
                 put(by_q, model.nv, joint, (-twist.left_jacobian_inverse()).as_slice());
                 put(by_target, model.nv, joint, twist.right_jacobian_inverse().as_slice());
             }
-            JointKind::Spherical => {
+            Space::Rotations => {
                 let omega = turn_between(q, target);
                 put(by_q, model.nv, joint, (-left_jacobian_inverse(omega)).as_slice());
                 put(by_target, model.nv, joint, right_jacobian_inverse(omega).as_slice());
             }
-            _ => {
+            Space::Numbers => {
                 diagonal(by_q, model.nv, joint, -S::one());
                 diagonal(by_target, model.nv, joint, S::one());
             }

@@ -183,12 +183,9 @@ impl<'a> Editor<'a> {
 /// The coordinates, a quaternion among them with norm one. Otherwise its norm.
 fn normalised(kind: JointKind, at: &[f64]) -> Result<Vec<f64>, f64> {
     let mut at = at.to_vec();
-    let first = match kind {
-        JointKind::Spherical => 0,
-        JointKind::Floating => 3,
-        _ => return Ok(at),
-    };
-    normalise_given(&mut at[first..])?;
+    if let Some(first) = kind.quaternion() {
+        normalise_given(&mut at[first..])?;
+    }
     Ok(at)
 }
 

@@ -108,17 +108,52 @@ joint_kinds! {
     Universal "universal",
 }
 
+/// What a coordinate or a rate of a joint counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// A turn, rad.
+    Angle,
+    /// A way, m.
+    Length,
+    /// One of the four numbers of a unit quaternion (x, y, z, w), which stand together. No rate is of this kind.
+    Quaternion,
+}
+
 impl JointKind {
+    /// What its coordinates are, in order.
+    pub fn coordinates(self) -> &'static [Quantity] {
+        use Quantity::{Angle, Length, Quaternion};
+        match self {
+            Self::Fixed => &[],
+            Self::Revolute | Self::Continuous | Self::Helical => &[Angle],
+            Self::Prismatic => &[Length],
+            Self::Universal => &[Angle, Angle],
+            Self::Planar => &[Length, Length, Angle],
+            Self::Spherical => &[Quaternion, Quaternion, Quaternion, Quaternion],
+            Self::Floating => &[Length, Length, Length, Quaternion, Quaternion, Quaternion, Quaternion],
+        }
+    }
+
+    /// What its rates are of, in order: those of a joint without a quaternion are the rates of its coordinates.
+    pub fn rates(self) -> &'static [Quantity] {
+        use Quantity::{Angle, Length};
+        match self {
+            Self::Fixed | Self::Revolute | Self::Continuous | Self::Prismatic | Self::Helical | Self::Universal | Self::Planar => {
+                self.coordinates()
+            }
+            Self::Spherical => &[Angle, Angle, Angle],
+            Self::Floating => &[Angle, Angle, Angle, Length, Length, Length],
+        }
+    }
+
     /// Number of coordinates and number of degrees of freedom.
     pub fn sizes(self) -> (usize, usize) {
-        match self {
-            Self::Fixed => (0, 0),
-            Self::Revolute | Self::Continuous | Self::Prismatic | Self::Helical => (1, 1),
-            Self::Universal => (2, 2),
-            Self::Planar => (3, 3),
-            Self::Spherical => (4, 3),
-            Self::Floating => (7, 6),
-        }
+        (self.coordinates().len(), self.rates().len())
+    }
+
+    /// Which of its coordinates is the first of a unit quaternion (x, y, z, w); `None`: its coordinates are plain numbers, one for each degree of freedom.
+    pub fn quaternion(self) -> Option<usize> {
+        self.coordinates().iter().position(|of| *of == Quantity::Quaternion)
     }
 
     /// Whether it moves along or about an axis.

@@ -10,7 +10,6 @@ use nalgebra::Vector3;
 use super::places::Places;
 use super::{Applied, BodyEffect, Effect, EffectId, JointEffect, On};
 use crate::Scalar;
-use crate::joint::Joint;
 use crate::model::Model;
 use crate::spatial::{Placement, from_rpy};
 
@@ -170,7 +169,7 @@ impl Model<f64> {
             if body.effects.joint.iter().any(|e| e.effect == one.effect) {
                 return Err(Fault::Twice);
             }
-            if matches!(body.joint, Joint::Spherical | Joint::Floating) && one.effect.row().needs_coordinate() {
+            if body.joint.quaternion().is_some() && one.effect.row().needs_coordinate() {
                 return Err(Fault::NoCoordinate);
             }
             if one.effect == EffectId::motor && body.coordinates.mimic.is_some() {

@@ -24,6 +24,7 @@ fn six<S: Scalar>(x: &[S], at: usize) -> Twist<S> {
 impl<S: Scalar> JointLaw<S> for Floating<S> {
     const NQ: usize = 7;
     const NV: usize = 6;
+    const QUATERNION: Option<usize> = Some(3);
 
     #[inline(always)]
     fn at(at: &Coordinates<S>, q: &[S]) -> Self {

@@ -17,6 +17,7 @@ pub struct Helical<S> {
 impl<S: Scalar> JointLaw<S> for Helical<S> {
     const NQ: usize = 1;
     const NV: usize = 1;
+    const QUATERNION: Option<usize> = None;
 
     #[inline(always)]
     fn at(at: &Coordinates<S>, q: &[S]) -> Self {

@@ -48,6 +48,13 @@ macro_rules! joints {
                 }
             }
 
+            /// As [`JointLaw::QUATERNION`].
+            pub fn quaternion(self) -> Option<usize> {
+                match self {
+                    $(Self::$kind => <$kind<f64> as JointLaw<f64>>::QUATERNION,)+
+                }
+            }
+
             /// As [`JointLaw::unfelt`].
             pub fn unfelt<S: Scalar>(self, inertia: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
                 match self {
@@ -235,6 +242,8 @@ pub trait JointLaw<S: Scalar>: Copy {
     const NQ: usize;
     /// Number of degrees of freedom.
     const NV: usize;
+    /// Which of the coordinates is the first of a unit quaternion (x, y, z, w), if there is one; otherwise each degree of freedom has a coordinate.
+    const QUATERNION: Option<usize>;
 
     /// The pose at the joint's coordinates in `q`.
     fn at(at: &Coordinates<S>, q: &[S]) -> Self;

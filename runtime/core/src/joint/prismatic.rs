@@ -33,6 +33,7 @@ impl<S: Scalar> Prismatic<S> {
 impl<S: Scalar> JointLaw<S> for Prismatic<S> {
     const NQ: usize = 1;
     const NV: usize = 1;
+    const QUATERNION: Option<usize> = None;
 
     #[inline(always)]
     fn at(at: &Coordinates<S>, q: &[S]) -> Self {

@@ -24,6 +24,7 @@ impl<S> Revolute<S> {
 impl<S: Scalar> JointLaw<S> for Revolute<S> {
     const NQ: usize = 1;
     const NV: usize = 1;
+    const QUATERNION: Option<usize> = None;
 
     #[inline(always)]
     fn at(at: &Coordinates<S>, q: &[S]) -> Self {

@@ -22,6 +22,7 @@ fn three<S: Scalar>(x: &[S], at: usize) -> Vector3<S> {
 impl<S: Scalar> JointLaw<S> for Spherical<S> {
     const NQ: usize = 4;
     const NV: usize = 3;
+    const QUATERNION: Option<usize> = Some(0);
 
     #[inline(always)]
     fn at(at: &Coordinates<S>, q: &[S]) -> Self {

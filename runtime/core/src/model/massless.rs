@@ -96,10 +96,10 @@ impl Model<f64> {
     fn configuration(&self, seed: f64) -> Vec<f64> {
         let mut q: Vec<f64> = (0..self.nq).map(|k| 0.1 + (seed + 0.618_033_988_749_895 * k as f64) % 1.0).collect();
         for body in self.bodies.iter().skip(1) {
-            let end = body.coordinates.q + body.joint.nq();
-            if body.joint.nq() > 1 {
-                let norm = crate::Scalar::sqrt(q[end - 4..end].iter().map(|x| x * x).sum::<f64>());
-                q[end - 4..end].iter_mut().for_each(|x| *x /= norm);
+            if let Some(first) = body.joint.quaternion() {
+                let quaternion = &mut q[body.coordinates.q + first..][..4];
+                let norm = crate::Scalar::sqrt(quaternion.iter().map(|x| x * x).sum::<f64>());
+                quaternion.iter_mut().for_each(|x| *x /= norm);
             }
         }
         q

@@ -126,6 +126,12 @@ pub struct JointRow<'a> {
 }
 
 impl JointInfo {
+    /// Where in q its unit quaternion (x, y, z, w) is, if it has one.
+    pub fn quaternion(&self) -> Option<core::ops::Range<usize>> {
+        let first = self.q.0 + self.kind.quaternion()?;
+        Some(first..first + 4)
+    }
+
     /// The same, with a limit in any case.
     pub fn row(&self) -> JointRow<'_> {
         JointRow { name: &self.name, kind: self.kind, q: self.q, v: self.v, limit: self.limit.unwrap_or(Limit::NONE) }

@@ -3,7 +3,6 @@
 use nalgebra::Matrix3;
 
 use crate::Scalar;
-use crate::joint::Joint;
 use crate::model::Model;
 
 /// The largest entry of |RᵀR − 1|. A product of N rotations, each good to a rounding, keeps it below 4Nu.
@@ -23,12 +22,7 @@ pub fn placement_orthonormality<S: Scalar<Mask = bool>>(placements: &[S], out: &
 ///
 /// Functions of the table take quaternions as they are: a norm 1 + ε turns into an error of some 2ε of the rotation. `integrate` normalises what it gives.
 pub fn quaternion_norms<'a, S: Scalar>(model: &'a Model<S>, q: &'a [S]) -> impl Iterator<Item = (usize, S)> + 'a {
-    let first = |joint: Joint, at: usize| match joint {
-        Joint::Spherical => Some(at),
-        Joint::Floating => Some(at + 3),
-        _ => None,
-    };
-    let all = model.bodies.iter().skip(1).filter_map(move |b| first(b.joint, b.coordinates.q));
+    let all = model.bodies.iter().skip(1).filter_map(|b| Some(b.coordinates.q + b.joint.quaternion()?));
     all.filter_map(move |at| Some((at, q.get(at..at + 4)?.iter().fold(-S::one(), |sum, x| sum + *x * *x))))
 }
 

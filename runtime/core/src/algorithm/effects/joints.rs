@@ -21,7 +21,12 @@ pub(super) struct Acting<'a, S> {
 impl<S: Scalar> Acting<'_, S> {
     /// Its own coordinate; of no meaning where the joint has none for each degree of freedom.
     pub(super) fn coordinate(&self, q: &[S]) -> S {
-        if self.body.joint.nq() == 1 { self.body.coordinates.coordinate(q) } else { S::zero() }
+        let at = &self.body.coordinates;
+        match self.body.joint.quaternion() {
+            Some(_) => S::zero(),
+            None if at.mimic.is_some() => at.coordinate(q),
+            None => q[at.q + self.effect.freedom],
+        }
     }
 
     /// Its own rate, or acceleration.
