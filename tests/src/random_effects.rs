@@ -1,7 +1,7 @@
 //! Effects at random.
 
 use articulated_core::description::Origin;
-use articulated_core::effect::{Applied, EffectId, On, effects};
+use articulated_core::effect::{Applied, EffectId, Enters, On, effects};
 use articulated_core::model::{FLOATING_BASE, Model};
 
 use crate::random::Random;
@@ -34,7 +34,7 @@ fn can_have(model: &Model<f64>, effect: EffectId, i: usize) -> bool {
     match effect {
         _ if model.bodies[i].name == FLOATING_BASE => false,
         _ if effect.row().needs_coordinate() => !ball && !follows,
-        EffectId::motor => !follows,
+        _ if effect.row().enters == Enters::Drive => !follows,
         _ => true,
     }
 }

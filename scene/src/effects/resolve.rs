@@ -14,7 +14,7 @@ use crate::report::{EffectOff, EffectOn, Number, Report, Why};
 use crate::scene::Scene;
 use crate::shaft;
 use crate::tree::At;
-use articulated_core::effect::{Applied, Effect, EffectError, EffectId, On, effects};
+use articulated_core::effect::{Applied, Effect, EffectError, EffectId, Enters, On, effects};
 use articulated_core::model::FLOATING_BASE;
 
 /// A robot as the scene's edits left it.
@@ -142,7 +142,7 @@ impl<'a> Resolving<'a> {
             kind if !has_room(row, kind) => {
                 (format!("a {} joint, which has no coordinate of its own for each degree of freedom", kind.name()), "another joint")
             }
-            _ if row.id == EffectId::motor && joint.mimic.is_some() => {
+            _ if row.enters == Enters::Drive && joint.mimic.is_some() => {
                 ("a joint that follows another".to_owned(), "the joint that it follows: that is what a motor drives")
             }
             _ => return,
@@ -231,7 +231,7 @@ impl<'a> Resolving<'a> {
     fn is_spread_over(&self, effect: EffectId, joint: &Joint) -> bool {
         let of_shaft = self.index.of_shafts.contains(joint.name.as_str());
         // What a joint that follows another does is not asked of it.
-        let follows = effect == EffectId::motor && joint.mimic.is_some();
+        let follows = effect.row().enters == Enters::Drive && joint.mimic.is_some();
         !of_shaft && !follows
     }
 

@@ -8,7 +8,7 @@ use super::resolve::Filled;
 
 /// Whether the format has numbers for this effect.
 pub(crate) fn offers(row: &Effect) -> bool {
-    matches!(row.id, EffectId::damping | EffectId::friction | EffectId::limit | EffectId::motor)
+    row.fields.iter().any(|field| tag(row.id, field.name).is_some())
 }
 
 /// The tag and attribute that a field is taken from.

@@ -8,7 +8,7 @@ use core::fmt;
 use nalgebra::Vector3;
 
 use super::places::Places;
-use super::{Applied, BodyEffect, Effect, EffectId, JointEffect, On};
+use super::{Applied, BodyEffect, Effect, EffectId, Enters, JointEffect, On};
 use crate::Scalar;
 use crate::model::Model;
 use crate::spatial::{Placement, from_rpy};
@@ -172,7 +172,7 @@ impl Model<f64> {
             if body.joint.quaternion().is_some() && one.effect.row().needs_coordinate() {
                 return Err(Fault::NoCoordinate);
             }
-            if one.effect == EffectId::motor && body.coordinates.mimic.is_some() {
+            if one.effect.row().enters == Enters::Drive && body.coordinates.mimic.is_some() {
                 return Err(Fault::Follows);
             }
         }

@@ -1,16 +1,12 @@
 //! Viscous damping.
 
-use super::{Field, Force};
+use super::Field;
 use crate::Scalar;
 
 pub(super) const FIELDS: &[Field] = &[Field::number("damping", "N·m·s/rad|N·s/m", "torque at the unit rate").at_least_zero().factor()];
 
-pub(super) struct Law;
-
-impl Force for Law {
-    // −d v
-    #[inline(always)]
-    fn force<S: Scalar>(p: &[S], _q: S, v: S) -> S {
-        -(p[0] * v)
-    }
+// −d v
+#[inline(always)]
+pub(super) fn force<S: Scalar>(p: &[S], v: S) -> S {
+    -(p[0] * v)
 }

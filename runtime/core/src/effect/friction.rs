@@ -1,6 +1,6 @@
 //! Coulomb friction.
 
-use super::{Field, Force, smooth_sign};
+use super::{Field, smooth_sign};
 use crate::Scalar;
 
 pub(super) const FIELDS: &[Field] = &[
@@ -8,12 +8,8 @@ pub(super) const FIELDS: &[Field] = &[
     Field::number("speed", "rad/s|m/s", "rate below which the law is smooth").smooth().or(&[1e-3]),
 ];
 
-pub(super) struct Law;
-
-impl Force for Law {
-    // −μ v/√(v² + s²)
-    #[inline(always)]
-    fn force<S: Scalar>(p: &[S], _q: S, v: S) -> S {
-        -(p[0] * smooth_sign(v, p[1]))
-    }
+// −μ v/√(v² + s²)
+#[inline(always)]
+pub(super) fn force<S: Scalar>(p: &[S], v: S) -> S {
+    -(p[0] * smooth_sign(v, p[1]))
 }

@@ -45,6 +45,33 @@ pub enum On {
     Link,
 }
 
+/// How an effect enters the equations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Enters {
+    /// As inertia of a degree of freedom, on the diagonal of the mass matrix.
+    Inertia,
+    /// As a force on a degree of freedom, by its rate.
+    ForceOfRate,
+    /// As a force on a degree of freedom, by its coordinate and its rate.
+    ForceOfCoordinate,
+    /// As what becomes of the torque that is asked for.
+    Drive,
+    /// As a wrench on a frame.
+    Wrench,
+    /// As inertia in a frame, of something that gravity does not act on.
+    Added,
+}
+
+impl Enters {
+    /// What such an effect acts on.
+    const fn on(self) -> On {
+        match self {
+            Self::Inertia | Self::ForceOfRate | Self::ForceOfCoordinate | Self::Drive => On::Joint,
+            Self::Wrench | Self::Added => On::Link,
+        }
+    }
+}
+
 /// A parameter of an effect: one number or several.
 #[derive(Clone, Copy, Debug)]
 pub struct Field {
@@ -132,6 +159,10 @@ pub struct Effect {
     pub name: &'static str,
     /// What it acts on.
     pub on: On,
+    /// How it does.
+    pub enters: Enters,
+    /// Whether no energy is lost or won.
+    pub conservative: bool,
     /// The law.
     pub what: &'static str,
     /// Where the law is from.
@@ -184,7 +215,7 @@ impl Effect {
 
     /// Whether a joint has to have a coordinate for each degree of freedom: the law is about it.
     pub fn needs_coordinate(&self) -> bool {
-        matches!(self.id, EffectId::spring | EffectId::limit)
+        self.enters == Enters::ForceOfCoordinate
     }
 }
 
@@ -201,14 +232,12 @@ pub struct Applied {
     pub parameters: Vec<f64>,
 }
 
-/// A law on a degree of freedom: the force at the coordinate q, rad|m, and the rate v.
+/// A law on a degree of freedom: the force at the coordinate q, rad|m, and the rate v. One of the rate alone is a function, and stores nothing.
 trait Force {
     fn force<S: Scalar>(p: &[S], q: S, v: S) -> S;
 
     /// The energy that it stores, J.
-    fn energy<S: Scalar>(_p: &[S], _q: S) -> S {
-        S::zero()
-    }
+    fn energy<S: Scalar>(p: &[S], q: S) -> S;
 }
 
 /// A law on a frame of a link: the wrench about the frame's origin, in its axes.
@@ -244,25 +273,33 @@ type OnFreedom<S> = fn(&[S], S, S) -> S;
 type AtStation<S, T> = fn(&[S], &Station<S>) -> T;
 
 macro_rules! law {
-    (inertia $file:ident) => {
+    (Inertia $file:ident) => {
         Law::Inertia($file::inertia)
     };
-    (force $file:ident) => {
+    (ForceOfRate $file:ident) => {
+        Law::Force {
+            force: |p, _, v| $file::force(p, v),
+            slope: |p, _, v| $file::force(p, v),
+            energy: |_, _| S::zero(),
+            rise: |_, _| Dual::constant(S::zero()),
+        }
+    };
+    (ForceOfCoordinate $file:ident) => {
         Law::Force { force: $file::Law::force, slope: $file::Law::force, energy: $file::Law::energy, rise: $file::Law::energy }
     };
-    (drive $file:ident) => {
+    (Drive $file:ident) => {
         Law::Drive { torque: $file::torque, slope: $file::torque }
     };
-    (wrench $file:ident) => {
+    (Wrench $file:ident) => {
         Law::Wrench { wrench: $file::Law::wrench, slope: $file::Law::wrench, energy: $file::Law::energy, rise: $file::Law::energy }
     };
-    (added $file:ident) => {
+    (Added $file:ident) => {
         Law::Added($file::inertia)
     };
 }
 
 macro_rules! effects {
-    ($($on:ident $law:ident $file:ident $conservative:literal $what:literal $source:literal;)*) => {
+    ($($enters:ident $file:ident $conservative:literal $what:literal $source:literal;)*) => {
         /// The effects by number: each variant is called as scenes call it.
         #[allow(non_camel_case_types)]
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -271,38 +308,40 @@ macro_rules! effects {
         }
 
         const ROWS: &[Effect] = &[$(
-            Effect { id: EffectId::$file, name: stringify!($file), on: On::$on, what: $what, source: $source, fields: $file::FIELDS },
+            Effect {
+                id: EffectId::$file,
+                name: stringify!($file),
+                on: Enters::$enters.on(),
+                enters: Enters::$enters,
+                conservative: $conservative,
+                what: $what,
+                source: $source,
+                fields: $file::FIELDS,
+            },
         )*];
-
-        impl EffectId {
-            /// Whether no energy is lost or won.
-            pub(crate) fn is_conservative(self) -> bool {
-                match self { $(Self::$file => $conservative,)* }
-            }
-        }
 
         struct Table<S>(PhantomData<S>);
 
         impl<S: Scalar> Table<S> {
-            const LAWS: &'static [Law<S>] = &[$(law!($law $file),)*];
+            const LAWS: &'static [Law<S>] = &[$(law!($enters $file),)*];
         }
     };
 }
 
 effects! {
-    Joint inertia armature true "M_ii += I n²: a rotor of inertia I behind a gear n, that rotates about the joint's axis alone" "Featherstone 2008, §9.6";
-    Joint force damping false "−d v" "Rayleigh 1873";
-    Joint force friction false "−μ v/√(v² + s²): Coulomb friction, smooth for rates below s" "Coulomb 1781; smoothed as in Hairer & Wanner 1996";
-    Joint force spring true "−k (q − q₀)" "Hooke 1678";
-    Joint force limit false "∓k x max(0, 1 + c ẋ) beyond a bound, x the depth: a stop that pushes and never pulls"
+    Inertia armature true "M_ii += I n²: a rotor of inertia I behind a gear n, that rotates about the joint's axis alone" "Featherstone 2008, §9.6";
+    ForceOfRate damping false "−d v" "Rayleigh 1873";
+    ForceOfRate friction false "−μ v/√(v² + s²): Coulomb friction, smooth for rates below s" "Coulomb 1781; smoothed as in Hairer & Wanner 1996";
+    ForceOfCoordinate spring true "−k (q − q₀)" "Hooke 1678";
+    ForceOfCoordinate limit false "∓k x max(0, 1 + c ẋ) beyond a bound, x the depth: a stop that pushes and never pulls"
         "Hunt & Crossley, J. Appl. Mech. 42, 1975";
-    Joint drive motor false "τ clipped to the torque–speed line of a motor behind a gear, less (1 − η) |τ| v/√(v² + s²)"
+    Drive motor false "τ clipped to the torque–speed line of a motor behind a gear, less (1 − η) |τ| v/√(v² + s²)"
         "Hughes & Drury, Electric Motors and Drives, 2013, ch. 3";
-    Link wrench drag false "−c |v| v at a point" "Newton 1687; Batchelor 1967, §5.11";
-    Link wrench box_drag false "for each axis −c_i |v_i| v_i − b v_i and −C_i |ω_i| ω_i − B ω_i" "Batchelor 1967, §5.11, §4.9";
-    Link wrench buoyancy true "−ρ V g at the centre of the displaced volume" "Archimedes; Fossen 2011, §4.1";
-    Link added added_mass true "[m; f] += G V̇ + V ×* G V: fluid that is at rest without the link, moved along" "Fossen 2011, §6.3; Lamb 1932, §124";
-    Link wrench contact false "a sphere on the plane nᵀx = h: k x max(0, 1 + c ẋ) along n, and −μ F v_t/√(v_t² + s²)"
+    Wrench drag false "−c |v| v at a point" "Newton 1687; Batchelor 1967, §5.11";
+    Wrench box_drag false "for each axis −c_i |v_i| v_i − b v_i and −C_i |ω_i| ω_i − B ω_i" "Batchelor 1967, §5.11, §4.9";
+    Wrench buoyancy true "−ρ V g at the centre of the displaced volume" "Archimedes; Fossen 2011, §4.1";
+    Added added_mass true "[m; f] += G V̇ + V ×* G V: fluid that is at rest without the link, moved along" "Fossen 2011, §6.3; Lamb 1932, §124";
+    Wrench contact false "a sphere on the plane nᵀx = h: k x max(0, 1 + c ẋ) along n, and −μ F v_t/√(v_t² + s²)"
         "Hunt & Crossley, J. Appl. Mech. 42, 1975";
 }
 

@@ -7,7 +7,7 @@ use core::ops::Range;
 use super::{Body, Model};
 use crate::algorithm::Workspace;
 use crate::algorithm::checked::least_pivot;
-use crate::effect::{EffectId, JointEffect};
+use crate::effect::{EffectId, Enters, JointEffect};
 use crate::monitor::pivot_cancellation;
 use crate::spatial::SpatialInertia;
 
@@ -126,11 +126,11 @@ impl Model<f64> {
 }
 
 fn has_added_mass(body: &Body<f64>) -> bool {
-    body.effects.body.iter().any(|e| e.effect == EffectId::added_mass)
+    body.effects.body.iter().any(|e| e.effect.row().enters == Enters::Added)
 }
 
 /// Whether every degree of freedom of the body's joint turns a rotor, which has inertia whatever hangs on it.
 fn turns_rotors(body: &Body<f64>) -> bool {
-    let rotor = |k: usize| body.effects.joint.iter().any(|e| e.effect == EffectId::armature && e.freedom == k);
+    let rotor = |k: usize| body.effects.joint.iter().any(|e| e.effect.row().enters == Enters::Inertia && e.freedom == k);
     (0..body.joint.nv()).all(rotor)
 }

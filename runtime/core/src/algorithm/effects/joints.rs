@@ -151,7 +151,7 @@ pub(in crate::algorithm) fn driven_slopes<S: Scalar>(model: &Model<S>, v: &[S], 
 /// The power of what is not conservative, W.
 pub(super) fn dissipation<S: Scalar>(model: &Model<S>, q: &[S], v: &[S]) -> S {
     let mut sum = S::zero();
-    for one in all(model).filter(|one| !one.effect.effect.is_conservative()) {
+    for one in all(model).filter(|one| !one.effect.effect.row().conservative) {
         if let Law::Force { force, rise, .. } = one.effect.effect.law::<S>() {
             let (q, v) = (one.coordinate(q), one.rate(v));
             let p = &duals(&one.effect.parameters)[..one.effect.parameters.len()];

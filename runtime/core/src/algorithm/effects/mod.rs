@@ -130,7 +130,7 @@ pub fn dissipation<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], 
     }
     places(model, ws, q, v);
     for i in model.outward() {
-        for effect in model.bodies[i].effects.body.iter().filter(|e| !e.effect.is_conservative()) {
+        for effect in model.bodies[i].effects.body.iter().filter(|e| !e.effect.row().conservative) {
             let Law::Wrench { wrench, rise, .. } = effect.effect.law::<S>() else { continue };
             let at = station_in_base(model, ws, i, effect);
             // ẇ = wᵀV + dE/dt
