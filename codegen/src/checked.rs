@@ -11,7 +11,7 @@ use num_traits::Zero;
 
 use crate::graph::Graph;
 use crate::ledger::{Entry, depth};
-use crate::pass::{self, GRAPH_PASSES};
+use crate::pass;
 use crate::sym::{self, Sym};
 
 /// The costs of forward dynamics by ABA, or by M = Lᵀ D L where joints follow others, and of the same with the smallest D/(Σ|terms|) held to its least.
@@ -52,10 +52,6 @@ fn traced(model: &Model<Sym>, follows: bool, looks: bool) -> Vec<Sym> {
 
 fn entry(function: String, traced: Graph) -> Entry {
     let mut stages = vec![("asked", traced.asked().clone()), ("trace", traced.counts())];
-    let mut graph = traced;
-    for (name, pass, _) in GRAPH_PASSES {
-        graph = pass::run(name, *pass, &graph);
-        stages.push((name, graph.counts()));
-    }
+    let graph = pass::run_all(traced, |name, graph| stages.push((name, graph.counts())));
     Entry { function, ways: Vec::new(), stages, depth: depth(&graph), lanes: 1, arguments: ARGUMENTS.to_vec() }
 }

@@ -3,8 +3,11 @@
 use std::borrow::Cow;
 
 use articulated_core::algorithm::Argument;
+use articulated_core::model::pass::model_passes;
 
 use crate::graph::{Counts, Graph};
+use crate::pass::GRAPH_PASSES;
+use crate::program::Choice;
 
 /// The costs of all functions of one robot.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -36,6 +39,17 @@ impl Entry {
     pub fn emitted(&self) -> &Counts {
         &self.stages[self.stages.len() - 1].1
     }
+}
+
+/// What is executed of a function that is left loops, as the ledger calls it.
+pub(crate) const LOOPS: &str = "loops";
+
+/// Every stage that an entry may have, in their order, and what it does.
+pub fn stages() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let first = [("asked", "by the algorithm"), ("trace", "zeros, ones and what is the same folded in")];
+    let model = model_passes::<f64>().iter().map(|(name, _, _)| (*name, "frames and masses moved to where numbers vanish"));
+    let graph = GRAPH_PASSES.iter().map(|row| (row.name, row.does));
+    first.into_iter().chain(model).chain(Choice::ADDED).chain(graph).chain([(LOOPS, "what is executed where joints are left loops")])
 }
 
 /// Longest chain of operations.

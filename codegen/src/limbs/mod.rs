@@ -24,8 +24,8 @@ mod tests {
     use num_traits::One;
 
     use super::*;
-    use crate::graph::{Counts, Graph, Op};
-    use crate::pass::GRAPH_PASSES;
+    use crate::graph::{Counts, Op};
+    use crate::pass::run_all_unchecked as passed;
     use crate::program::Choice;
     use crate::trace::{trace, trace_in_lanes, ways};
     use crate::{Request, Sym, Wanted, sym};
@@ -77,10 +77,6 @@ mod tests {
         let mut request = Request::new("walker", urdf);
         request.options.robot.base = if legs == 2 { Base::Fixed } else { Base::Floating };
         crate::model(&request, &crate::read(&request).unwrap().description).unwrap()
-    }
-
-    fn passed(graph: Graph) -> Graph {
-        GRAPH_PASSES.iter().fold(graph, |graph, (_, pass, _)| pass(&graph))
     }
 
     fn input(argument: usize, k: usize) -> f64 {

@@ -23,19 +23,62 @@ use crate::graph::{Graph, Node, NodeId};
 /// A pass over graphs.
 pub type GraphPass = fn(&Graph) -> Graph;
 
-/// The passes in order; each row: name, pass, and what holds after it.
-pub const GRAPH_PASSES: &[(&str, GraphPass, &str)] = &[
-    ("live", live, "every node is needed by an output"),
-    ("factor", factor, "no two products that only one sum uses have a factor in common there"),
-    ("partial", partial, "no two sums have two terms in common, where that saves an instruction"),
-    ("inside", inside, "what is added to a sum over lanes is in it, where that takes no instruction more"),
-    (
-        "contract",
-        contract,
-        "no sum is a term of one other sum; a product that only one or two sums use is part of multiply-adds, but for one a sum at most",
-    ),
-    ("swept", live, "every node is needed by an output again"),
+/// One row: a pass with its name.
+#[derive(Clone, Copy, Debug)]
+pub struct Row {
+    /// Its name in the ledger.
+    pub name: &'static str,
+    /// The pass.
+    pub pass: GraphPass,
+    /// What it does, for people who read the ledger.
+    pub does: &'static str,
+    /// What holds after it.
+    pub holds: &'static str,
+}
+
+/// The passes in order.
+pub const GRAPH_PASSES: &[Row] = &[
+    Row { name: "live", pass: live, does: "without what no result needs", holds: "every node is needed by an output" },
+    Row {
+        name: "factor",
+        pass: factor,
+        does: "common factors multiplied once",
+        holds: "no two products that only one sum uses have a factor in common there",
+    },
+    Row {
+        name: "partial",
+        pass: partial,
+        does: "what several sums have added once",
+        holds: "no two sums have two terms in common, where that saves an instruction",
+    },
+    Row {
+        name: "inside",
+        pass: inside,
+        does: "what is added to sums over lanes in them",
+        holds: "what is added to a sum over lanes is in it, where that takes no instruction more",
+    },
+    Row {
+        name: "contract",
+        pass: contract,
+        does: "sums as chains of multiply-adds",
+        holds: "no sum is a term of one other sum; a product that only one or two sums use is part of multiply-adds, but for one a sum at most",
+    },
+    Row { name: "swept", pass: live, does: "once more without what no result needs", holds: "every node is needed by an output again" },
 ];
+
+/// A graph after all passes in their order; `see` is shown what each leaves. In debug builds each is checked, as [`run`] does.
+pub(crate) fn run_all(graph: Graph, mut see: impl FnMut(&'static str, &Graph)) -> Graph {
+    GRAPH_PASSES.iter().fold(graph, |graph, row| {
+        let new = run(row.name, row.pass, &graph);
+        see(row.name, &new);
+        new
+    })
+}
+
+/// The same without checks, for graphs that are only counted.
+pub(crate) fn run_all_unchecked(graph: Graph) -> Graph {
+    GRAPH_PASSES.iter().fold(graph, |graph, row| (row.pass)(&graph))
+}
 
 /// Rebuilds a graph node by node: `rewrite(new, node, operands)` gives the new node for each old one that `keep` lets through.
 pub(crate) fn rebuild(old: &Graph, keep: impl Fn(usize) -> bool, mut rewrite: impl FnMut(&mut Graph, Node, &[NodeId]) -> NodeId) -> Graph {

@@ -29,8 +29,13 @@ impl Choice {
         Self { way, passes, unturned: None, unit: None, lent: false, axes: false }
     }
 
-    /// What a choice may add to a way and its model passes, as the ledger calls it.
-    pub(super) const ADDED: [&'static str; 4] = ["lent", "axes", "unturned", "unit"];
+    /// What a choice may add to a way and its model passes, as the ledger calls it, and what that does.
+    pub(crate) const ADDED: [(&'static str, &'static str); 4] = [
+        ("lent", "mass in the body beyond a joint for torques, where numbers vanish for it"),
+        ("axes", "rates by the second derivatives of joints' axes, not by ω̇"),
+        ("unturned", "constants turned in place of vectors"),
+        ("unit", "lengths in a unit in which a constant is one"),
+    ];
 
     /// Whether it has number `k` of these.
     pub(super) fn adds(&self, k: usize) -> bool {

@@ -9,7 +9,7 @@ use super::subject::Subject;
 use crate::Options;
 use crate::graph::{Counts, Op};
 use crate::groups::{self, Groups};
-use crate::ledger::Entry;
+use crate::ledger::{Entry, LOOPS};
 use crate::trace::applies;
 use crate::wanted::Wanted;
 
@@ -69,5 +69,5 @@ pub(super) fn groups(wanted: &Wanted, written: f64, subject: &Subject, options: 
 /// The entry of what is left loops, which cost this.
 pub(super) fn count(entry: &mut Entry, counts: &Counts) {
     (entry.ways, entry.lanes) = (vec!["joints in loops".into()], groups::LANES);
-    entry.stages.push(("loops", counts.clone()));
+    entry.stages.push((LOOPS, counts.clone()));
 }

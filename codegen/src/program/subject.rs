@@ -10,7 +10,7 @@ use crate::graph::{Counts, Graph};
 use crate::ledger::{Entry, depth};
 use crate::limbs::Alike;
 use crate::parameters::Parameter;
-use crate::pass::{self, GRAPH_PASSES};
+use crate::pass;
 use crate::sym::Sym;
 use crate::trace::{trace, trace_in_lanes};
 use crate::wanted::Wanted;
@@ -32,11 +32,8 @@ impl Subject<'_> {
         let choose = |part| unsolved.map_or_else(|| cheapest(part, self, all), |way| Choice::plain(way, all));
         let choices = by_axes(wanted, wanted.parts.iter().map(choose).collect(), self);
         let choices = in_the_best_unit(wanted, choices, self);
-        let (mut graph, mut stages) = self.traced(wanted, &choices, all);
-        for (name, pass, _) in GRAPH_PASSES {
-            graph = pass::run(name, *pass, &graph);
-            stages.push((name, graph.counts()));
-        }
+        let (traced, mut stages) = self.traced(wanted, &choices, all);
+        let mut graph = pass::run_all(traced, |name, graph| stages.push((name, graph.counts())));
         if wanted.parts.iter().all(|part| part.function.forms.contains(&Form::FromTheLast)) {
             graph = pass::run("from the last", pass::from_the_last, &graph);
         }
@@ -58,7 +55,7 @@ impl Subject<'_> {
             }
             stages.push((if passes == 0 { "trace" } else { model_passes::<Sym>()[passes - 1].0 }, graph.counts()));
         }
-        for (k, name) in Choice::ADDED.into_iter().enumerate() {
+        for (k, (name, _)) in Choice::ADDED.into_iter().enumerate() {
             if choices.iter().any(|c| c.adds(k)) {
                 graph = self.trace(wanted, &choices.iter().map(|c| c.with_first(k + 1)).collect::<Vec<_>>());
                 stages.push((name, graph.counts()));
@@ -76,7 +73,7 @@ impl Subject<'_> {
 
     /// What is traced, after all graph passes.
     pub(super) fn finished(&self, wanted: &Wanted, choices: &[Choice]) -> Graph {
-        GRAPH_PASSES.iter().fold(self.trace(wanted, choices), |graph, (_, pass, _)| pass(&graph))
+        pass::run_all_unchecked(self.trace(wanted, choices))
     }
 
     /// What choices cost, in instructions, and with each multiplication counted twice: cores have fewer multipliers than they have places for instructions.

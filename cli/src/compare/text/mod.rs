@@ -5,6 +5,7 @@ mod peers;
 
 use std::fmt::Write;
 
+use articulated_codegen::ledger::stages;
 use articulated_core::Plain;
 
 use super::accuracy::Against;
@@ -74,30 +75,17 @@ fn against(report: &Report) -> &'static str {
 }
 
 const ERRORS: &str = "forward: of the result; backward: of the torques that the result needs; states: on which they were looked at, without those where the function is singular";
-const STAGES: &[(&[&str], &str)] = &[
-    (&["asked"], "by the algorithm"),
-    (&["trace"], "zeros, ones and what is the same folded in"),
-    (&["turn", "regroup", "slide", "still"], "frames and masses moved to where numbers vanish"),
-    (&["lent"], "mass in the body beyond a joint for torques, where numbers vanish for it"),
-    (&["axes"], "rates by the second derivatives of joints' axes, not by ω̇"),
-    (&["unturned"], "constants turned in place of vectors"),
-    (&["unit"], "lengths in a unit in which a constant is one"),
-    (&["live"], "without what no result needs"),
-    (&["factor"], "common factors multiplied once"),
-    (&["partial"], "what several sums have added once"),
-    (&["inside"], "what is added to sums over lanes in them"),
-    (&["contract"], "sums as chains of multiply-adds"),
-    (&["swept"], "once more without what no result needs"),
-];
-
-/// What the stages are that the table has.
+/// What the stages are that the table has; those that do the same together.
 fn stages_of(report: &Report) -> String {
     let titles = titles(report);
-    let told = STAGES.iter().filter_map(|(names, what)| {
-        let names: Vec<&str> = names.iter().copied().filter(|name| titles.contains(name)).collect();
-        (!names.is_empty()).then(|| format!("{}: {what}", names.join(", ")))
-    });
-    told.collect::<Vec<_>>().join("; ")
+    let mut told: Vec<(Vec<&str>, &str)> = Vec::new();
+    for (name, does) in stages().filter(|(name, _)| titles.contains(name)) {
+        match told.last_mut() {
+            Some((names, same)) if *same == does => names.push(name),
+            _ => told.push((vec![name], does)),
+        }
+    }
+    told.iter().map(|(names, does)| format!("{}: {does}", names.join(", "))).collect::<Vec<_>>().join("; ")
 }
 
 const SIZES: &str = "depth: the longest chain of operations that wait for each other; way chosen: how it is computed, where there are several ways, by count (LTDL: by factors of the mass \
