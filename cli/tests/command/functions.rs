@@ -90,3 +90,14 @@ fn the_readmes_table_of_functions_is_up_to_date() {
     let changed = made.lines().zip(kept.lines()).find(|(a, b)| a != b);
     assert!(made == kept, "README.md: {changed:?}; run with UPDATE_GOLDEN=1");
 }
+
+/// What the README's first lines count.
+#[test]
+fn the_readme_counts_what_there_is() {
+    let readme = include_str!("../../../README.md");
+    let functions = articulated_core::algorithm::functions::<f64>().len();
+    assert!(readme.contains(&format!("[{functions} functions](#functions)")), "{functions} functions");
+    let numbers = ["Zero", "One", "Two", "Three", "Four", "Five", "Six", "Seven", "Eight", "Nine", "Ten", "Eleven", "Twelve"];
+    let integrators = articulated_core::integrator::integrators().len();
+    assert!(readme.contains(&format!("{} integrators move", numbers[integrators])), "{integrators} integrators");
+}

@@ -70,3 +70,16 @@ fn errors_on_a_floating_robot_with_a_ball_joint_fall_with_the_order() {
     // Derivatives of ten degrees of freedom are long to compile.
     slopes(&model("satellite", Base::Floating), &q, &v, 1.0, true);
 }
+
+/// Their tables are written by hand, since they say more.
+#[test]
+fn the_manuals_name_every_integrator_with_its_order() {
+    for (file, text) in
+        [("simulation.md", include_str!("../../../docs/simulation.md")), ("accuracy.md", include_str!("../../../docs/accuracy.md"))]
+    {
+        let rows = integrators().iter().map(|row| (row.name, row.order));
+        let named = |name: &str, order: u32| text.lines().any(|line| line.starts_with(&format!("| `{name}` | {order}")));
+        let missing: Vec<&str> = rows.filter(|(name, order)| !named(name, *order)).map(|(name, _)| name).collect();
+        assert!(missing.is_empty(), "docs/{file}: {missing:?}");
+    }
+}
