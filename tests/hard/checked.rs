@@ -69,6 +69,26 @@ fn a_solver_solves_with_what_motors_give() {
     }
 }
 
+/// Against ABA with the same wrenches.
+#[test]
+fn a_solver_solves_with_wrenches() {
+    let model = Case::bundled(articulated_models::robot("panda_like").unwrap()).model;
+    let mut ws = Workspace::new(&model);
+    for s in states(&model, 2, 5, 20.0) {
+        let wrenches: Vec<f64> = (0..6 * model.frames.len()).map(|k| (k as f64).sin()).collect();
+        let (mut a, mut b, mut free) = (vec![0.0; model.nv], vec![0.0; model.nv], vec![0.0; model.nv]);
+        algorithm::articulated_body_with_wrenches(&model, &mut ws, &s.q, &s.v, &s.tau, &wrenches, &mut a);
+        let (mut solver, given) = (Solver::new(Dynamics::shape(&model)), [&s.q[..], &s.v, &s.tau]);
+        solver.forward_dynamics_with_wrenches(&model, &mut ws, given, &wrenches, &mut b).unwrap();
+        solver.forward_dynamics(&model, &mut ws, given, &mut free).unwrap();
+        let size = a.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() <= 1e-11 * size), "{a:?} {b:?}");
+        assert!(a.iter().zip(&free).any(|(a, b)| (a - b).abs() > 1e-3 * size), "{a:?} {free:?}");
+        let wrong = solver.forward_dynamics_with_wrenches(&model, &mut ws, given, &wrenches[1..], &mut b);
+        assert!(matches!(wrong, Err(Unsolved::Function(_))));
+    }
+}
+
 #[test]
 fn an_error_names_the_joint_and_says_what_is_left() {
     let model = built(&rods(), Base::Fixed);

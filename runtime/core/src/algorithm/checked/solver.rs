@@ -22,6 +22,8 @@ pub struct Solver<S = f64> {
     factor: Factor<S>,
     /// That of the last solution.
     backward_error: S,
+    /// No acceleration.
+    zeros: Vec<S>,
 }
 
 /// Why there are no accelerations.
@@ -48,7 +50,13 @@ impl<S: Scalar<Mask = bool>> Solver<S> {
     /// For robots of this shape.
     pub fn new(shape: Shape) -> Self {
         let zeros = |n| vec![S::zero(); n];
-        Self { matrix: zeros(shape.nv * shape.nv), given: zeros(shape.nv), factor: Factor::new(shape.nv), backward_error: S::zero() }
+        Self {
+            matrix: zeros(shape.nv * shape.nv),
+            given: zeros(shape.nv),
+            factor: Factor::new(shape.nv),
+            backward_error: S::zero(),
+            zeros: zeros(shape.nv),
+        }
     }
 
     /// a = M(q)⁻¹·(τ − h(q, v)), τ after motors, refined ([`Factor::refine`]); what is returned is the smallest D/(Σ|terms|) of all pivots.
@@ -65,15 +73,48 @@ impl<S: Scalar<Mask = bool>> Solver<S> {
         [q, v, tau]: [&[S]; 3],
         out: &mut [S],
     ) -> Result<S, Unsolved<S>> {
+        self.solve(robot, ws, [q, v, tau], out, |ws, out| robot.bias_forces(ws, q, v, out))
+    }
+
+    /// As [`Solver::forward_dynamics`], with external wrenches on the frames: by the robot's `inverse_dynamics_with_wrenches` in place of its `bias_forces`.
+    ///
+    /// wrenches: `[frames][6]` N·m and N, in the reference that the robot takes them in.
+    ///
+    /// # Errors
+    /// As [`Solver::forward_dynamics`].
+    pub fn forward_dynamics_with_wrenches<R: Dynamics<S>>(
+        &mut self,
+        robot: &R,
+        ws: &mut R::Workspace,
+        [q, v, tau]: [&[S]; 3],
+        wrenches: &[S],
+        out: &mut [S],
+    ) -> Result<S, Unsolved<S>> {
+        let zeros = core::mem::take(&mut self.zeros);
+        let bias = |ws: &mut _, out: &mut _| robot.inverse_dynamics_with_wrenches(ws, q, v, &zeros, wrenches, out);
+        let left = self.solve(robot, ws, [q, v, tau], out, bias);
+        self.zeros = zeros;
+        left
+    }
+
+    /// M⁻¹(τ − h), h by `bias`.
+    fn solve<R: Dynamics<S>>(
+        &mut self,
+        robot: &R,
+        ws: &mut R::Workspace,
+        [q, v, tau]: [&[S]; 3],
+        out: &mut [S],
+        bias: impl FnOnce(&mut R::Workspace, &mut [S]) -> Result<(), FunctionError>,
+    ) -> Result<S, Unsolved<S>> {
         let n = self.factor.n;
-        let mut asked = || {
+        let asked = || {
             check_length("solver", n, robot.shape().nv)?;
             check_length("tau", tau.len(), n)?;
             self.given.copy_from_slice(tau);
             if robot.has_motors() {
                 robot.motor_torques(ws, v, tau, &mut self.given)?;
             }
-            robot.bias_forces(ws, q, v, out)?;
+            bias(ws, out)?;
             robot.mass_matrix(ws, q, &mut self.matrix)
         };
         asked().map_err(Unsolved::Function)?;
