@@ -6,11 +6,12 @@
 // Why: calling across a C interface has no safe form. What can be checked, the lengths of arrays, is checked before every call.
 
 mod batch;
+mod entry;
 mod kernel;
 mod peer;
 mod peer_kernel;
 
-use std::ffi::c_double;
+use std::ffi::c_void;
 use std::hint::black_box;
 use std::path::Path;
 use std::sync::Arc;
@@ -53,8 +54,10 @@ impl Native {
     }
 }
 
-type P = *const c_double;
-type O = *mut c_double;
+/// Where an array begins that is read.
+type P = *const c_void;
+/// Where one begins that is written.
+type O = *mut c_void;
 
 /// How long the arrays are that a function reads and the one that it writes.
 #[derive(Clone, Debug)]
@@ -73,17 +76,10 @@ impl Lengths {
 
 /// Where up to four arrays begin.
 fn begin(x: &[&[f64]]) -> [P; 4] {
-    std::array::from_fn(|k| x.get(k).map_or(std::ptr::null(), |x| x.as_ptr()))
+    std::array::from_fn(|k| x.get(k).map_or(std::ptr::null(), |x| x.as_ptr().cast()))
 }
 
-/// So many rounds through all states, with nothing around the calls that the clock would see: to look up where each state's arrays begin is not a part of a function, and a short
-/// one would wait for it.
-#[inline(always)]
-fn repeat(rounds: usize, states: &[Vec<&[f64]>], mut call: impl FnMut([P; 4])) {
-    let states: Vec<[P; 4]> = black_box(states.iter().map(|state| begin(state)).collect());
-    for _ in 0..rounds {
-        for state in &states {
-            call(*state);
-        }
-    }
+/// Where each state's arrays begin, found once, so that nothing but calls is in the loop: to look that up is not a part of a function, and a short one would wait for it.
+fn begins(states: &[Vec<&[f64]>]) -> Vec<[P; 4]> {
+    black_box(states.iter().map(|state| begin(state)).collect())
 }

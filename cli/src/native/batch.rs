@@ -1,11 +1,11 @@
 //! Functions of many states at once, and memory for their arguments.
 
-use std::ffi::c_void;
 use std::hint::black_box;
 
 use articulated_core::lanes::Real;
 
-use super::Native;
+use super::entry::OfStates;
+use super::{Native, P};
 
 /// Numbers of one type, at the start of a cache line.
 #[derive(Clone, Debug)]
@@ -48,40 +48,21 @@ impl Numbers {
     }
 }
 
-type P = *const c_void;
-type O = *mut c_void;
-
 /// A function on slices of so many states or blocks, with the numbers of each that it was promised to have. Keeps its library open.
 #[derive(Clone, Debug)]
 pub(crate) struct BatchKernel {
-    entry: Entry,
+    entry: OfStates,
     real: Real,
     arguments: Vec<usize>,
     out: usize,
     _library: Native,
 }
 
-#[derive(Clone, Copy, Debug)]
-enum Entry {
-    One(unsafe extern "C" fn(P, O, usize)),
-    Two(unsafe extern "C" fn(P, P, O, usize)),
-    Three(unsafe extern "C" fn(P, P, P, O, usize)),
-    Four(unsafe extern "C" fn(P, P, P, P, O, usize)),
-}
-
 impl Native {
     /// The function `name`, which takes so many numbers of each state, or block of states, and writes `out` of each.
     pub(crate) fn batch_kernel(&self, name: &str, real: Real, arguments: &[usize], out: usize) -> Option<BatchKernel> {
         // SAFETY: compiled functions of many states take their arguments' arrays, the one of the result, and how many states there are.
-        let entry = unsafe {
-            match arguments.len() {
-                1 => Entry::One(self.symbol(name)?),
-                2 => Entry::Two(self.symbol(name)?),
-                3 => Entry::Three(self.symbol(name)?),
-                4 => Entry::Four(self.symbol(name)?),
-                _ => return None,
-            }
-        };
+        let entry = unsafe { OfStates::open(self, name, arguments.len())? };
         Some(BatchKernel { entry, real, arguments: arguments.to_vec(), out, _library: self.clone() })
     }
 }
@@ -95,18 +76,8 @@ impl BatchKernel {
         let is = |numbers: &Numbers, each: usize| numbers.real == self.real && numbers.len == count * each;
         assert!(x.len() == self.arguments.len() && is(out, self.out));
         assert!(x.iter().zip(&self.arguments).all(|(x, each)| is(x, *each)));
-        let p = |k: usize| x[k].lines.as_ptr().cast();
-        let out: O = out.lines.as_mut_ptr().cast();
-        for _ in 0..rounds {
-            // SAFETY: the arrays have the type and the lengths that the library reads and writes, and it is open as long as the kernel lives.
-            unsafe {
-                match black_box(self.entry) {
-                    Entry::One(f) => f(p(0), out, count),
-                    Entry::Two(f) => f(p(0), p(1), out, count),
-                    Entry::Three(f) => f(p(0), p(1), p(2), out, count),
-                    Entry::Four(f) => f(p(0), p(1), p(2), p(3), out, count),
-                }
-            }
-        }
+        let arrays: [P; 4] = std::array::from_fn(|k| x.get(k).map_or(std::ptr::null(), |x| x.lines.as_ptr().cast()));
+        // SAFETY: the arrays have the type and the lengths that the library reads and writes, and it is open as long as the kernel lives.
+        unsafe { self.entry.run(rounds, black_box(&[arrays]), out.lines.as_mut_ptr().cast(), count) }
     }
 }

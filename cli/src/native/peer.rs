@@ -4,7 +4,7 @@ use std::ffi::{CStr, CString, c_char, c_double, c_int, c_void};
 use std::path::Path;
 use std::rc::Rc;
 
-use super::{Native, O, P};
+use super::Native;
 
 /// A robot, as the peer has it.
 pub(super) type H = *mut c_void;
@@ -25,7 +25,7 @@ pub(crate) struct NativePeer(pub(super) Rc<Opened>);
 
 #[derive(Debug)]
 pub(super) struct Opened {
-    native: Native,
+    pub(super) native: Native,
     pub(super) handle: H,
 }
 
@@ -149,7 +149,8 @@ impl NativePeer {
 
     /// Has the peer make so many steps from the state (q, v), which it replaces by the last one; `None` if it cannot or if it went astray.
     pub(crate) fn simulate(&self, method: &Stepping, q: &mut [f64], v: &mut [f64], step: f64, steps: usize) -> Option<()> {
-        type Simulate = unsafe extern "C" fn(H, c_int, P, P, c_double, c_int, O, O) -> c_int;
+        type Simulate =
+            unsafe extern "C" fn(H, c_int, *const c_double, *const c_double, c_double, c_int, *mut c_double, *mut c_double) -> c_int;
         // SAFETY: the type of the interface.
         let simulate: Simulate = unsafe { self.0.function("simulate")? };
         if self.number("nq") != Some(q.len()) || self.number("nv") != Some(v.len()) {
