@@ -1,6 +1,7 @@
 //! The algorithms, each written once over the scalar, and the table of the functions that they give.
 
 mod aba;
+pub(crate) mod argument;
 mod call;
 pub mod checked;
 mod common;
@@ -26,6 +27,7 @@ mod workspace;
 mod wrenches;
 
 pub use aba::{articulated_body, articulated_body_with_wrenches, solve_by_articulated_body};
+pub use argument::{Argument, Dim};
 pub use call::{FunctionError, check_count, check_length, exactly, exactly_rows};
 pub use checked::{checked_forward_dynamics, checked_forward_dynamics_with_wrenches};
 pub use coriolis::coriolis_matrix;
@@ -51,7 +53,7 @@ pub use momentum::{
     centroidal_momentum_matrix, centroidal_momentum_rate,
 };
 pub use operational_space::{operational_space_inertia, operational_space_inertia_inverse};
-pub use registry::{Argument, Dim, Form, Function, Group, Needs, Shape, Way};
+pub use registry::{Form, Function, Group, Needs, Shape, Way};
 pub use regressor::{PARAMETERS, kinetic_energy_regressor, potential_energy_regressor, torque_regressor};
 pub use rnea::{bias_forces, gravity_torque, inverse_dynamics, inverse_dynamics_with_wrenches, joint_wrenches, static_torque};
 pub use table::{FunctionId, function, functions};

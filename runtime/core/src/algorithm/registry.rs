@@ -1,8 +1,7 @@
 //! What a function of the table is: what it takes, what it gives, what it needs.
 
-use core::fmt;
-
-use super::{FunctionError, FunctionId, Workspace, check_count, check_length, functions};
+use super::argument::size;
+use super::{Argument, Dim, FunctionError, FunctionId, Workspace, check_count, check_length, functions};
 use crate::Scalar;
 use crate::model::Model;
 
@@ -29,125 +28,6 @@ impl<S: Scalar> Model<S> {
     /// The model's sizes.
     pub fn shape(&self) -> Shape {
         Shape { nq: self.nq, nv: self.nv, frames: self.frames.len(), links: self.links().count() }
-    }
-}
-
-/// One dimension of an array.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dim {
-    /// One for each coordinate.
-    Nq,
-    /// One for each degree of freedom.
-    Nv,
-    /// One for each frame.
-    Frames,
-    /// One for each moving link.
-    Links,
-    /// So many.
-    Of(usize),
-}
-
-impl Dim {
-    /// How many.
-    pub fn len(self, shape: Shape) -> usize {
-        match self {
-            Self::Nq => shape.nq,
-            Self::Nv => shape.nv,
-            Self::Frames => shape.frames,
-            Self::Links => shape.links,
-            Self::Of(n) => n,
-        }
-    }
-}
-
-impl fmt::Display for Dim {
-    /// The constant of generated code that is its length.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Nq => f.write_str("NQ"),
-            Self::Nv => f.write_str("NV"),
-            Self::Frames => f.write_str("FRAMES"),
-            Self::Links => f.write_str("LINKS"),
-            Self::Of(n) => write!(f, "{n}"),
-        }
-    }
-}
-
-/// How many numbers an array of these dimensions has.
-fn size(dims: &[Dim], shape: Shape) -> usize {
-    dims.iter().map(|d| d.len(shape)).product()
-}
-
-/// What a function takes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Argument {
-    /// q, `[nq]`: rad, m, or position and unit quaternion.
-    Q,
-    /// v, `[nv]`: rad/s, m/s, or body twist [ω; v].
-    V,
-    /// a = dv/dt, `[nv]`.
-    A,
-    /// τ, `[nv]`: N·m or N.
-    Tau,
-    /// Wrenches [m; f] on the frames, `[frames][6]`, N·m and N, as [`Model::wrench_reference`] says.
-    Wrenches,
-    /// A step in the tangent space, `[nv]`: rad, m, or twist times time.
-    Step,
-    /// A second configuration, `[nq]`.
-    Target,
-    /// Numbers in [0, 1), `[nq]`.
-    Uniform,
-    /// sin q and cos q of each coordinate, `[nq][2]`, for callers that have them: generated functions take it where they are asked to.
-    SinCos,
-}
-
-impl Argument {
-    /// All that functions of the table take.
-    pub const ALL: [Self; 8] = [Self::Q, Self::V, Self::A, Self::Tau, Self::Wrenches, Self::Step, Self::Target, Self::Uniform];
-
-    /// Its name in signatures and files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Q => "q",
-            Self::V => "v",
-            Self::A => "a",
-            Self::Tau => "tau",
-            Self::Wrenches => "wrenches",
-            Self::Step => "step",
-            Self::Target => "target",
-            Self::Uniform => "uniform",
-            Self::SinCos => "sines",
-        }
-    }
-
-    /// Its dimensions.
-    pub fn dims(self) -> &'static [Dim] {
-        match self {
-            Self::Q | Self::Target | Self::Uniform => &[Dim::Nq],
-            Self::V | Self::A | Self::Tau | Self::Step => &[Dim::Nv],
-            Self::Wrenches => &[Dim::Frames, Dim::Of(6)],
-            Self::SinCos => &[Dim::Nq, Dim::Of(2)],
-        }
-    }
-
-    /// How many numbers.
-    pub fn len(self, shape: Shape) -> usize {
-        size(self.dims(), shape)
-    }
-
-    /// Its units, for documentation.
-    pub fn unit(self) -> &'static str {
-        match self {
-            Self::Q => "rad|m|unit quaternion",
-            Self::V => "rad/s|m/s",
-            Self::A => "rad/s²|m/s²",
-            Self::Tau => "N·m|N",
-            Self::Wrenches => "[m; f] on each frame, N·m and N",
-            Self::Step => "rad|m, a small motion in the tangent space",
-            Self::Target => "rad|m|unit quaternion",
-            Self::Uniform => "each uniform in 0 to 1",
-            Self::SinCos => "[sin q, cos q] of each coordinate that is an angle; the others are not read",
-        }
     }
 }
 

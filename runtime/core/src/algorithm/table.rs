@@ -10,6 +10,7 @@
 
 use core::marker::PhantomData;
 
+use super::argument::argument;
 use super::workspace::near_the_middle;
 #[allow(clippy::wildcard_imports)]
 // Why: the rows name every algorithm there is.
@@ -182,33 +183,6 @@ macro_rules! for_each_function {
 }
 
 pub(crate) use for_each_function;
-
-macro_rules! argument {
-    (q) => {
-        Argument::Q
-    };
-    (v) => {
-        Argument::V
-    };
-    (a) => {
-        Argument::A
-    };
-    (tau) => {
-        Argument::Tau
-    };
-    (wrenches) => {
-        Argument::Wrenches
-    };
-    (step) => {
-        Argument::Step
-    };
-    (target) => {
-        Argument::Target
-    };
-    (uniform) => {
-        Argument::Uniform
-    };
-}
 
 macro_rules! ways {
     ($name:ident, $arguments:tt) => {

@@ -1,0 +1,133 @@
+//! What functions of the table take, and the dimensions of that and of what they give.
+
+use core::fmt;
+
+use super::Shape;
+#[cfg(doc)]
+use crate::model::Model;
+
+/// One dimension of an array.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dim {
+    /// One for each coordinate.
+    Nq,
+    /// One for each degree of freedom.
+    Nv,
+    /// One for each frame.
+    Frames,
+    /// One for each moving link.
+    Links,
+    /// So many.
+    Of(usize),
+}
+
+impl Dim {
+    /// How many.
+    pub fn len(self, shape: Shape) -> usize {
+        match self {
+            Self::Nq => shape.nq,
+            Self::Nv => shape.nv,
+            Self::Frames => shape.frames,
+            Self::Links => shape.links,
+            Self::Of(n) => n,
+        }
+    }
+}
+
+impl fmt::Display for Dim {
+    /// The constant of generated code that is its length.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Nq => f.write_str("NQ"),
+            Self::Nv => f.write_str("NV"),
+            Self::Frames => f.write_str("FRAMES"),
+            Self::Links => f.write_str("LINKS"),
+            Self::Of(n) => write!(f, "{n}"),
+        }
+    }
+}
+
+/// How many numbers an array of these dimensions has.
+pub(super) fn size(dims: &[Dim], shape: Shape) -> usize {
+    dims.iter().map(|d| d.len(shape)).product()
+}
+
+/// Hands all arguments to the macro `$then`: the variant of each, its name, its dimensions, and its units for documentation.
+macro_rules! for_each_argument {
+    ($then:ident) => {
+        $then! {
+            /// q, `[nq]`: rad, m, or position and unit quaternion.
+            Q q [Nq] "rad|m|unit quaternion";
+            /// v, `[nv]`: rad/s, m/s, or body twist [ω; v].
+            V v [Nv] "rad/s|m/s";
+            /// a = dv/dt, `[nv]`.
+            A a [Nv] "rad/s²|m/s²";
+            /// τ, `[nv]`: N·m or N.
+            Tau tau [Nv] "N·m|N";
+            /// Wrenches [m; f] on the frames, `[frames][6]`, N·m and N, as [`Model::wrench_reference`] says.
+            Wrenches wrenches [Frames, Of(6)] "[m; f] on each frame, N·m and N";
+            /// A step in the tangent space, `[nv]`: rad, m, or twist times time.
+            Step step [Nv] "rad|m, a small motion in the tangent space";
+            /// A second configuration, `[nq]`.
+            Target target [Nq] "rad|m|unit quaternion";
+            /// Numbers in [0, 1), `[nq]`.
+            Uniform uniform [Nq] "each uniform in 0 to 1";
+            /// sin q and cos q of each coordinate, `[nq][2]`, for callers that have them: generated functions take it where they are asked to.
+            SinCos sines [Nq, Of(2)] "[sin q, cos q] of each coordinate that is an angle; the others are not read";
+        }
+    };
+}
+
+pub(crate) use for_each_argument;
+
+macro_rules! arguments {
+    ($($(#[$doc:meta])* $variant:ident $name:ident [$($dim:ident $(($n:literal))?),*] $unit:literal;)*) => {
+        /// What a function takes.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum Argument {
+            $($(#[$doc])* $variant,)*
+        }
+
+        impl Argument {
+            /// Its name in signatures and files.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => stringify!($name),)*
+                }
+            }
+
+            /// Its dimensions.
+            pub fn dims(self) -> &'static [Dim] {
+                match self {
+                    $(Self::$variant => &[$(Dim::$dim $(($n))?),*],)*
+                }
+            }
+
+            /// Its units, for documentation.
+            pub fn unit(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $unit,)*
+                }
+            }
+        }
+
+        /// The argument of a name.
+        macro_rules! argument {
+            $(($name) => { Argument::$variant };)*
+        }
+    };
+}
+
+for_each_argument!(arguments);
+
+pub(super) use argument;
+
+impl Argument {
+    /// All that functions of the table take.
+    pub const ALL: [Self; 8] = [Self::Q, Self::V, Self::A, Self::Tau, Self::Wrenches, Self::Step, Self::Target, Self::Uniform];
+
+    /// How many numbers.
+    pub fn len(self, shape: Shape) -> usize {
+        size(self.dims(), shape)
+    }
+}
