@@ -2,7 +2,8 @@
 //!
 //! Each rule is exact in real arithmetic for finite values; those that are not exact in floating point only leave out a rounding.
 
-use super::{Graph, MOST, NodeId, Op, Value, apply};
+use super::evaluate::value;
+use super::{Graph, MOST, NodeId, Op, Value};
 
 /// The node for `op` on `x`, made as simple as its operands allow.
 pub(super) fn fold(g: &mut Graph, op: Op, x: &[NodeId]) -> NodeId {
@@ -26,12 +27,12 @@ fn constant_value(g: &Graph, op: Op, x: &[NodeId]) -> Option<Value> {
     if matches!(op, Op::Spread | Op::Across) {
         return None;
     }
-    let mut values = [[0.0; MOST]; 3];
-    for (value, id) in values.iter_mut().zip(x) {
-        *value = g.constant_value(*id)?;
+    let mut operands = [[0.0; MOST]; 3];
+    for (operand, id) in operands.iter_mut().zip(x) {
+        *operand = g.constant_value(*id)?;
     }
-    let value = apply(op, values);
-    value.iter().all(|y| y.is_finite()).then_some(value)
+    let found = std::array::from_fn(|k| value(op, operands.map(|x| x[k])));
+    found.iter().all(|y| y.is_finite()).then_some(found)
 }
 
 fn is(g: &Graph, x: NodeId, value: f64) -> bool {
@@ -241,19 +242,19 @@ mod tests {
         let mut pool = vec![x, y];
         pool.extend([0.0, 1.0, -1.0, 2.5, -0.5].map(|c| g.constant(c)));
         pool.extend(pool.clone().iter().flat_map(|&a| unary.map(|op| g.apply(op, &[a]))).collect::<Vec<_>>());
-        let value = |g: &mut Graph, id| {
+        let found = |g: &mut Graph, id| {
             g.outputs = vec![id];
             g.evaluate(at)[0]
         };
         for &a in &pool {
             for &b in &pool {
                 for op in ops {
-                    let (va, vb) = (value(&mut g, a), value(&mut g, b));
+                    let (va, vb) = (found(&mut g, a), found(&mut g, b));
                     if op == Op::Div && vb == 0.0 {
                         continue;
                     }
                     let id = g.apply(op, &[a, b]);
-                    let (got, expected) = (value(&mut g, id), (op.row().value)(va, vb, 0.0));
+                    let (got, expected) = (found(&mut g, id), value(op, [va, vb, 0.0]));
                     assert!((got - expected).abs() <= 4e-16 * expected.abs().max(1e-16), "{op:?} {va} {vb}: {got} {expected}");
                 }
             }

@@ -50,11 +50,6 @@ impl Node {
     }
 }
 
-/// An operation, lane by lane.
-fn apply(op: Op, x: [Value; 3]) -> Value {
-    std::array::from_fn(|k| (op.row().value)(x[0][k], x[1][k], x[2][k]))
-}
-
 /// A program: nodes, each after its operands, and the nodes that are its outputs.
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
@@ -194,47 +189,6 @@ impl Graph {
         let mut counts = Counts::default();
         self.nodes.iter().for_each(|n| counts.add(n.op, 1));
         counts
-    }
-
-    /// Evaluates the graph; `input(argument, index)` gives the inputs. Of results with several lanes, the first.
-    pub fn evaluate(&self, input: impl Fn(usize, usize) -> f64) -> Vec<f64> {
-        if self.lanes.width == 1 { self.evaluate_one(input) } else { self.evaluate_lanes(input) }
-    }
-
-    fn evaluate_one(&self, input: impl Fn(usize, usize) -> f64) -> Vec<f64> {
-        let mut values: Vec<f64> = Vec::with_capacity(self.nodes.len());
-        for node in &self.nodes {
-            let at = |k: usize| values.get(node.args[k] as usize).copied().unwrap_or(f64::NAN);
-            let value = match node.op {
-                Op::Constant => node.constant().unwrap_or(f64::NAN),
-                Op::Input => input(node.args[0] as usize, node.args[1] as usize),
-                op => (op.row().value)(at(0), at(1), at(2)),
-            };
-            values.push(value);
-        }
-        self.outputs.iter().map(|id| values[id.index()]).collect()
-    }
-
-    fn evaluate_lanes(&self, input: impl Fn(usize, usize) -> f64) -> Vec<f64> {
-        let mut values: Vec<Value> = Vec::with_capacity(self.nodes.len());
-        for node in &self.nodes {
-            let at = |k: usize| values.get(node.args[k] as usize).copied().unwrap_or([f64::NAN; MOST]);
-            let width = self.lanes.width;
-            let value = match node.op {
-                Op::Constant => [node.constant().unwrap_or(f64::NAN); MOST],
-                Op::Input => [input(node.args[0] as usize, node.args[1] as usize); MOST],
-                Op::LaneConstant => self.lanes.constant(node.args[0]),
-                Op::LaneInput => {
-                    let indices = self.lanes.input(node.args[1]);
-                    std::array::from_fn(|k| input(node.args[0] as usize, indices[k % width] as usize))
-                }
-                Op::Spread => [at(0)[at(1)[0] as usize]; MOST],
-                Op::Across => [at(0)[..width].iter().sum(); MOST],
-                op => apply(op, [at(0), at(1), at(2)]),
-            };
-            values.push(value);
-        }
-        self.outputs.iter().map(|id| values[id.index()][0]).collect()
     }
 
     /// Checks what every pass must keep: operands stand before their uses, and outputs exist.

@@ -59,8 +59,6 @@ pub struct Row {
     pub arity: usize,
     /// Whether a and b may be exchanged.
     pub commutes: bool,
-    /// Its value.
-    pub value: fn(f64, f64, f64) -> f64,
     /// What it costs, in floating-point instructions.
     pub cost: u32,
     /// After how many cycles its value is known, on a current processor.
@@ -73,12 +71,12 @@ pub struct Row {
 
 /// An operation's row: that of a number or an input, which costs nothing and is not written by name, as long as no more is said.
 const fn row(op: Op, name: &'static str) -> Row {
-    Row { op, name, arity: 0, commutes: false, value: |_, _, _| f64::NAN, cost: 0, latency: 0, rust: "", lanes: "" }
+    Row { op, name, arity: 0, commutes: false, cost: 0, latency: 0, rust: "", lanes: "" }
 }
 
 impl Row {
-    const fn of_operands(self, arity: usize, value: fn(f64, f64, f64) -> f64) -> Self {
-        Self { arity, value, ..self }
+    const fn of_operands(self, arity: usize) -> Self {
+        Self { arity, ..self }
     }
 
     const fn commuting(self) -> Self {
@@ -98,28 +96,25 @@ impl Row {
 pub const OPS: [Row; 21] = [
     row(Op::Constant, "constants"),
     row(Op::Input, "inputs"),
-    row(Op::Add, "add").of_operands(2, |a, b, _| a + b).commuting().takes(1, 4).written("{a} + {b}", "add"),
-    row(Op::Sub, "sub").of_operands(2, |a, b, _| a - b).takes(1, 4).written("{a} - {b}", "sub"),
-    row(Op::Mul, "mul").of_operands(2, |a, b, _| a * b).commuting().takes(1, 4).written("{a} * {b}", "mul"),
-    row(Op::Div, "div").of_operands(2, |a, b, _| a / b).takes(4, 13).written("{a} / {b}", "div"),
-    row(Op::Neg, "neg").of_operands(1, |a, _, _| -a).takes(1, 1).written("-{a}", "neg"),
-    row(Op::Sqrt, "sqrt").of_operands(1, |a, _, _| a.sqrt()).takes(4, 18).written("{a}.sqrt()", "sqrt"),
-    row(Op::Sin, "sin").of_operands(1, |a, _, _| a.sin()).takes(10, 60).written("{a}.sin()", ""),
-    row(Op::Cos, "cos").of_operands(1, |a, _, _| a.cos()).takes(10, 60).written("{a}.cos()", ""),
-    row(Op::Atan2, "atan2").of_operands(2, |a, b, _| a.atan2(b)).takes(20, 80).written("f64::atan2({a}, {b})", "atan2"),
-    row(Op::Positive, "compare").of_operands(1, |a, _, _| if a > 0.0 { 1.0 } else { 0.0 }).takes(1, 3).written("{a} > 0.0", "positive"),
-    row(Op::Select, "select")
-        .of_operands(3, |a, b, c| if a == 1.0 { b } else { c })
-        .takes(1, 2)
-        .written("if {a} { {b} } else { {c} }", "select"),
-    row(Op::MulAdd, "fma").of_operands(3, |a, b, c| a * b + c).commuting().takes(1, 4).written("F::fma({a}, {b}, {c})", "fmadd"),
-    row(Op::MulSub, "fma").of_operands(3, |a, b, c| a * b - c).commuting().takes(1, 4).written("F::fma({a}, {b}, -{c})", "fmsub"),
-    row(Op::NegMulAdd, "fma").of_operands(3, |a, b, c| c - a * b).commuting().takes(1, 4).written("F::fma(-{a}, {b}, {c})", "fnmadd"),
-    row(Op::NegMulSub, "fma").of_operands(3, |a, b, c| -(a * b) - c).commuting().takes(1, 4).written("F::fma(-{a}, {b}, -{c})", "fnmsub"),
+    row(Op::Add, "add").of_operands(2).commuting().takes(1, 4).written("{a} + {b}", "add"),
+    row(Op::Sub, "sub").of_operands(2).takes(1, 4).written("{a} - {b}", "sub"),
+    row(Op::Mul, "mul").of_operands(2).commuting().takes(1, 4).written("{a} * {b}", "mul"),
+    row(Op::Div, "div").of_operands(2).takes(4, 13).written("{a} / {b}", "div"),
+    row(Op::Neg, "neg").of_operands(1).takes(1, 1).written("-{a}", "neg"),
+    row(Op::Sqrt, "sqrt").of_operands(1).takes(4, 18).written("{a}.sqrt()", "sqrt"),
+    row(Op::Sin, "sin").of_operands(1).takes(10, 60).written("{a}.sin()", ""),
+    row(Op::Cos, "cos").of_operands(1).takes(10, 60).written("{a}.cos()", ""),
+    row(Op::Atan2, "atan2").of_operands(2).takes(20, 80).written("f64::atan2({a}, {b})", "atan2"),
+    row(Op::Positive, "compare").of_operands(1).takes(1, 3).written("{a} > 0.0", "positive"),
+    row(Op::Select, "select").of_operands(3).takes(1, 2).written("if {a} { {b} } else { {c} }", "select"),
+    row(Op::MulAdd, "fma").of_operands(3).commuting().takes(1, 4).written("F::fma({a}, {b}, {c})", "fmadd"),
+    row(Op::MulSub, "fma").of_operands(3).commuting().takes(1, 4).written("F::fma({a}, {b}, -{c})", "fmsub"),
+    row(Op::NegMulAdd, "fma").of_operands(3).commuting().takes(1, 4).written("F::fma(-{a}, {b}, {c})", "fnmadd"),
+    row(Op::NegMulSub, "fma").of_operands(3).commuting().takes(1, 4).written("F::fma(-{a}, {b}, -{c})", "fnmsub"),
     row(Op::LaneConstant, "lane constants"),
     row(Op::LaneInput, "lane inputs"),
-    row(Op::Spread, "spread").of_operands(2, |a, _, _| a).takes(1, 3).written("", "spread"),
-    row(Op::Across, "across").of_operands(1, |a, _, _| a).takes(4, 14).written("", "across"),
+    row(Op::Spread, "spread").of_operands(2).takes(1, 3).written("", "spread"),
+    row(Op::Across, "across").of_operands(1).takes(4, 14).written("", "across"),
 ];
 
 impl Op {
