@@ -163,6 +163,27 @@ pub(super) fn on_the_way<S: Scalar>(
     }
 }
 
+/// Visits the columns of body `i` and of those on the way to the base, with wrenches on `i` carried along: (whether it is of body `i`, wrenches, column).
+#[inline(always)]
+pub(super) fn carry<S: Scalar, const N: usize>(
+    model: &Model<S>,
+    ws: &Workspace<S>,
+    i: usize,
+    mut wrenches: [Wrench<S>; N],
+    mut visit: impl FnMut(bool, &[Wrench<S>; N], &Column<S>),
+) {
+    let mut j = i;
+    while j != 0 {
+        for l in ws.columns_of(j) {
+            visit(j == i, &wrenches, &ws.columns[l]);
+        }
+        for w in &mut wrenches {
+            *w = ws.common[j].hand_on(w);
+        }
+        j = model.bodies[j].parent;
+    }
+}
+
 /// Whether the inertial frame moves with the body.
 fn moves_along<S: Scalar>(body: &Body<S>, axes: Axes) -> bool {
     axes == Axes::Tree && body.parent == 0 && body.joint == Joint::Floating

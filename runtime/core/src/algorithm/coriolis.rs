@@ -1,7 +1,7 @@
 //! The Coriolis matrix.
 
 use super::Workspace;
-use super::common::{Axes, coriolis, inertias, positions, twists};
+use super::common::{Axes, carry, coriolis, inertias, positions, twists};
 use crate::Scalar;
 use crate::model::Model;
 
@@ -34,20 +34,14 @@ pub fn coriolis_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[
 fn row_and_column<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, k: usize, out: &mut [S]) {
     let (n, state, column) = (model.nv, &ws.common[i], &ws.columns[k]);
     // C_kl = S_kᵀ (B s_l + I Ṡ_l) = (Bᵀ S_k)·s_l + (I S_k)·Ṡ_l
-    let mut held = state.inertia.apply(&column.axis);
+    let held = state.inertia.apply(&column.axis);
     let turning = state.coriolis.transposed(&column.axis);
     // C_lk = S_lᵀ (B s_k + I Ṡ_k)
-    let mut drive = state.coriolis.wrench(column.axis.angular) + state.inertia.apply(&column.rate);
-    let mut j = i;
-    while j != 0 {
-        for l in ws.columns_of(j) {
-            let other = &ws.columns[l];
-            out[column.at * n + other.at] += turning.dot(&other.axis.angular) + held.power(&other.rate);
-            if j != i {
-                out[other.at * n + column.at] += drive.power(&other.axis);
-            }
+    let drive = state.coriolis.wrench(column.axis.angular) + state.inertia.apply(&column.rate);
+    carry(model, ws, i, [held, drive], |own, [held, drive], other| {
+        out[column.at * n + other.at] += turning.dot(&other.axis.angular) + held.power(&other.rate);
+        if !own {
+            out[other.at * n + column.at] += drive.power(&other.axis);
         }
-        (held, drive) = (ws.common[j].hand_on(&held), ws.common[j].hand_on(&drive));
-        j = model.bodies[j].parent;
-    }
+    });
 }

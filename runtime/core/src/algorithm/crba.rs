@@ -1,7 +1,7 @@
 //! Composite rigid body algorithm.
 
 use super::Workspace;
-use super::common::{Axes, inertias, positions};
+use super::common::{Axes, carry, inertias, positions};
 use super::effects;
 use crate::Scalar;
 use crate::joint::with_pose;
@@ -74,20 +74,19 @@ pub(super) fn mass_matrix_in_common_axes<S: Scalar>(model: &Model<S>, ws: &mut W
         let state = ws.common[i];
         for k in ws.columns_of(i) {
             // F = I_i S_k
-            let (at, mut wrench, mut j) = (ws.columns[k].at, state.inertia.apply(&ws.columns[k].axis), i);
-            while j != 0 {
+            let (at, wrench) = (ws.columns[k].at, state.inertia.apply(&ws.columns[k].axis));
+            carry(model, ws, i, [wrench], |own, [wrench], other| {
                 // Of two columns of one joint, once.
-                for l in ws.columns_of(j).filter(|&l| l <= k) {
-                    // M_kl = M_lk = S_lᵀ F
-                    let (other, inertia) = (ws.columns[l].at, wrench.power(&ws.columns[l].axis));
-                    out[at * n + other] += inertia;
-                    if l != k {
-                        out[other * n + at] += inertia;
-                    }
+                if own && other.at > at {
+                    return;
                 }
-                wrench = ws.common[j].hand_on(&wrench);
-                j = model.bodies[j].parent;
-            }
+                // M_kl = M_lk = S_lᵀ F
+                let inertia = wrench.power(&other.axis);
+                out[at * n + other.at] += inertia;
+                if !(own && other.at == at) {
+                    out[other.at * n + at] += inertia;
+                }
+            });
         }
         let parent = model.bodies[i].parent;
         if parent != 0 {

@@ -12,7 +12,7 @@
 //! with the composites of k's body. Forward dynamics: Carpentier & Mansard, *RSS* 2018: ∂a = −M⁻¹ ∂(inverse dynamics at a).
 
 use super::Workspace;
-use super::common::{Axes, accelerations, coriolis, forces, inertias, on_the_way, positions, twists};
+use super::common::{Axes, accelerations, carry, coriolis, forces, inertias, on_the_way, positions, twists};
 use super::crba::mass_matrix_in_common_axes;
 use super::effects;
 use super::ltdl::{factor, inverse, solve, solve_rows, way};
@@ -102,7 +102,7 @@ pub fn static_torque_derivative<S: Scalar>(model: &Model<S>, ws: &mut Workspace<
             let (state, column) = (&ws.common[i], &ws.columns[k]);
             let held = state.inertia.apply(&column.axis);
             let drive = state.inertia.apply(&column.curl) + column.axis.cross_wrench(&state.force);
-            pairs(model, ws, i, [held, drive], |own, [held, drive], other| {
+            carry(model, ws, i, [held, drive], |own, [held, drive], other| {
                 out[column.at * model.nv + other.at] += held.power(&other.curl);
                 if !own {
                     out[other.at * model.nv + column.at] += drive.power(&other.axis);
@@ -266,26 +266,6 @@ fn collect<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize) {
     }
 }
 
-/// Visits the columns of body `i` and of those on the way to the base, with wrenches on `i` carried along: (whether it is of body `i`, wrenches, column).
-fn pairs<S: Scalar, const N: usize>(
-    model: &Model<S>,
-    ws: &Workspace<S>,
-    i: usize,
-    mut wrenches: [Wrench<S>; N],
-    mut visit: impl FnMut(bool, &[Wrench<S>; N], &super::workspace::Column<S>),
-) {
-    let mut j = i;
-    while j != 0 {
-        for l in ws.columns_of(j) {
-            visit(j == i, &wrenches, &ws.columns[l]);
-        }
-        for w in &mut wrenches {
-            *w = ws.common[j].hand_on(w);
-        }
-        j = model.bodies[j].parent;
-    }
-}
-
 struct Matrices<'a, S> {
     by_q: &'a mut [S],
     by_v: &'a mut [S],
@@ -313,7 +293,7 @@ impl<S: Scalar> Matrices<'_, S> {
             false => twice_b(column.drift.angular) + state.inertia.apply(&column.curl) + column.axis.cross_wrench(&state.force),
         };
         let by_v = twice_b(column.axis.angular) + state.inertia.apply(&(column.drift + column.rate));
-        pairs(model, ws, i, [held, by_q, by_v], |own, [held, by_q, by_v], other| {
+        carry(model, ws, i, [held, by_q, by_v], |own, [held, by_q, by_v], other| {
             let (row, transposed) = (column.at * n + other.at, other.at * n + column.at);
             let inertia = held.power(&other.axis);
             self.by_a[row] += inertia;

@@ -5,7 +5,7 @@ mod joints;
 mod slopes;
 
 use super::Workspace;
-use super::common::{Axes, positions, twists};
+use super::common::{Axes, carry, positions, twists};
 use crate::Scalar;
 use crate::dual::Dual;
 use crate::effect::{BodyEffect, Law, Station};
@@ -106,13 +106,10 @@ pub fn effect_forces<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S]
                 total += on_body(effect, &wrench(&effect.parameters, &station_in_base(model, ws, i, effect)));
             }
         }
-        let mut w = total.turned(&ws.common[i].rotation);
-        // τ = Jᵀ w
-        let mut j = if model.bodies[i].effects.body.is_empty() { 0 } else { i };
-        while j != 0 {
-            ws.columns_of(j).for_each(|c| out[ws.columns[c].at] += w.power(&ws.columns[c].axis));
-            w = ws.common[j].hand_on(&w);
-            j = model.bodies[j].parent;
+        let w = total.turned(&ws.common[i].rotation);
+        if !model.bodies[i].effects.body.is_empty() {
+            // τ = Jᵀ w
+            carry(model, ws, i, [w], |_, [w], column| out[column.at] += w.power(&column.axis));
         }
     }
 }
