@@ -29,23 +29,21 @@ impl Choice {
         Self { way, passes, unturned: None, unit: None, lent: false, axes: false }
     }
 
-    /// What a choice may add to a way and its model passes, as the ledger calls it, and what that does.
-    pub(crate) const ADDED: [(&'static str, &'static str); 4] = [
-        ("lent", "mass in the body beyond a joint for torques, where numbers vanish for it"),
-        ("axes", "rates by the second derivatives of joints' axes, not by ω̇"),
-        ("unturned", "constants turned in place of vectors"),
-        ("unit", "lengths in a unit in which a constant is one"),
-    ];
-
-    /// Whether it has number `k` of these.
-    pub(super) fn adds(&self, k: usize) -> bool {
-        [self.lent, self.axes, self.unturned.is_some(), self.unit.is_some()][k]
+    /// Whether it adds this.
+    pub(super) fn adds(&self, what: Addition) -> bool {
+        match what {
+            Addition::Lent => self.lent,
+            Addition::Axes => self.axes,
+            Addition::Unturned => self.unturned.is_some(),
+            Addition::Unit => self.unit.is_some(),
+        }
     }
 
-    /// The same with no more of these than the first `n`.
-    pub(super) fn with_first(&self, n: usize) -> Self {
-        let (unturned, unit) = (self.unturned.filter(|_| n > 2), self.unit.filter(|_| n > 3));
-        Self { lent: self.lent && n > 0, axes: self.axes && n > 1, unturned, unit, ..*self }
+    /// The same with no more added than up to this.
+    pub(super) fn up_to(&self, last: Addition) -> Self {
+        let has = |what| what <= last && self.adds(what);
+        let (unturned, unit) = (self.unturned.filter(|_| has(Addition::Unturned)), self.unit.filter(|_| has(Addition::Unit)));
+        Self { lent: has(Addition::Lent), axes: has(Addition::Axes), unturned, unit, ..*self }
     }
 
     /// What it is called in the ledger.
@@ -60,6 +58,25 @@ impl Choice {
         let axes = if self.axes { "rates by axes" } else { "" };
         [self.way.name, lent, axes, unturned].into_iter().filter(|name| !name.is_empty()).map(Cow::Borrowed).chain(unit)
     }
+}
+
+/// What a choice may add to a way and its model passes, in the order in which the ledger counts it.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Addition {
+    Lent,
+    Axes,
+    Unturned,
+    Unit,
+}
+
+impl Addition {
+    /// All of them, as the ledger calls them, and what they do.
+    pub(crate) const ALL: [(Self, &'static str, &'static str); 4] = [
+        (Self::Lent, "lent", "mass in the body beyond a joint for torques, where numbers vanish for it"),
+        (Self::Axes, "axes", "rates by the second derivatives of joints' axes, not by ω̇"),
+        (Self::Unturned, "unturned", "constants turned in place of vectors"),
+        (Self::Unit, "unit", "lengths in a unit in which a constant is one"),
+    ];
 }
 
 fn to_four_digits(x: f64) -> f64 {

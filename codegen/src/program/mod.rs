@@ -17,7 +17,7 @@ use crate::pass;
 use crate::wanted::Wanted;
 use subject::Subject;
 
-pub(crate) use choice::Choice;
+pub(crate) use choice::{Addition, Choice};
 pub(crate) use looped::Columns;
 
 /// A function and what it became.

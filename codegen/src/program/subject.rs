@@ -4,7 +4,7 @@ use articulated_core::algorithm::{Form, Way};
 use articulated_core::model::Model;
 use articulated_core::model::pass::model_passes;
 
-use super::choice::Choice;
+use super::choice::{Addition, Choice};
 use super::choose::{by_axes, cheapest, in_the_best_unit};
 use crate::graph::{Counts, Graph};
 use crate::ledger::{Entry, depth};
@@ -55,9 +55,9 @@ impl Subject<'_> {
             }
             stages.push((if passes == 0 { "trace" } else { model_passes::<Sym>()[passes - 1].0 }, graph.counts()));
         }
-        for (k, (name, _)) in Choice::ADDED.into_iter().enumerate() {
-            if choices.iter().any(|c| c.adds(k)) {
-                graph = self.trace(wanted, &choices.iter().map(|c| c.with_first(k + 1)).collect::<Vec<_>>());
+        for (addition, name, _) in Addition::ALL {
+            if choices.iter().any(|c| c.adds(addition)) {
+                graph = self.trace(wanted, &choices.iter().map(|c| c.up_to(addition)).collect::<Vec<_>>());
                 stages.push((name, graph.counts()));
             }
         }
