@@ -363,8 +363,7 @@ impl Scene {
 
     /// The number for all joints that something could drive: not those of a shaft, nor a floating base.
     fn spread(&self, x: f64, model: &Model<f64>, all: &mut [f64]) {
-        let of_shaft =
-            |name: &str| self.shafts.iter().any(|asked| (1..=asked.shaft.segments).any(|k| name == format!("{}_{k}", asked.shaft.joint)));
+        let of_shaft = |name: &str| self.shafts.iter().any(|asked| (1..=asked.shaft.segments).any(|k| name == asked.shaft.bending(k)));
         for joint in model.joints.iter().filter(|j| j.name != FLOATING_BASE && !of_shaft(&j.name)) {
             all[joint.v.0..joint.v.0 + joint.v.1].fill(x);
         }

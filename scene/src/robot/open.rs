@@ -202,16 +202,10 @@ impl Scene {
 
 /// What is not about joints and links that only a `refused` shaft would have brought.
 fn beside_shafts(SceneErrors { mut errors }: SceneErrors, refused: &[String]) -> Option<SceneErrors> {
-    let is_of_shaft = |name: &str| refused.iter().any(|joint| is_piece(name, joint));
+    let is_of_shaft = |name: &str| refused.iter().any(|joint| Shaft::may_name(joint, name));
     let is_about_shaft = |error: &SceneError| error.key.split(['.', '[']).any(is_of_shaft);
     errors.retain(|error| error.kind != Kind::UnknownName || !is_about_shaft(error));
     (!errors.is_empty()).then_some(SceneErrors { errors })
-}
-
-/// Whether a shaft at this joint has a piece of this name: `<joint>_1`, `<joint>_rod_0`.
-fn is_piece(name: &str, joint: &str) -> bool {
-    let number = name.strip_prefix(joint).and_then(|rest| rest.strip_prefix('_')).map(|rest| rest.strip_prefix("rod_").unwrap_or(rest));
-    number.is_some_and(|number| !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit()))
 }
 
 fn appended(other: Append) -> Appended {

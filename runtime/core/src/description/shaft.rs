@@ -27,6 +27,24 @@ pub struct Shaft {
     pub end: Option<[f64; 3]>,
 }
 
+impl Shaft {
+    /// The name of the k-th joint that bends, from 1 to `segments`.
+    pub fn bending(&self, k: usize) -> String {
+        format!("{}_{k}", self.joint)
+    }
+
+    /// The name of the k-th rod, from 0 to `segments`; the first one's joint is called so too.
+    fn rod(&self, k: usize) -> String {
+        format!("{}_rod_{k}", self.joint)
+    }
+
+    /// Whether a shaft at this joint has a piece of this name, if it has enough of them.
+    pub fn may_name(joint: &str, name: &str) -> bool {
+        let number = name.strip_prefix(joint).and_then(|rest| rest.strip_prefix('_')).map(|rest| rest.strip_prefix("rod_").unwrap_or(rest));
+        number.is_some_and(|number| !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit()))
+    }
+}
+
 impl Editor<'_> {
     /// Lets the offset of a fixed joint bend. n pieces of length ℓ bend in their middles, in universal joints called `<joint>_1` … `<joint>_n`, and are rigid beside that: rods
     /// `<joint>_rod_0` … `<joint>_rod_n` of lengths ½ℓ, ℓ, …, ℓ, ½ℓ, the first fixed to the link before the joint, the last to that behind it. Gives the springs, of stiffness
@@ -52,9 +70,9 @@ impl Editor<'_> {
     }
 
     fn check_free(&self, shaft: &Shaft) -> Result<(), EditError> {
-        let joints = (1..=shaft.segments).map(|k| format!("{}_{k}", shaft.joint)).filter(|name| self.names.joint(name).is_some());
-        let rods = (0..=shaft.segments).map(|k| format!("{}_rod_{k}", shaft.joint)).filter(|name| self.names.link(name).is_some());
-        let root = Some(format!("{}_rod_0", shaft.joint)).filter(|name| self.names.joint(name).is_some());
+        let joints = (1..=shaft.segments).map(|k| shaft.bending(k)).filter(|name| self.names.joint(name).is_some());
+        let rods = (0..=shaft.segments).map(|k| shaft.rod(k)).filter(|name| self.names.link(name).is_some());
+        let root = Some(shaft.rod(0)).filter(|name| self.names.joint(name).is_some());
         let names: Vec<String> = joints.chain(rods).chain(root).collect();
         if names.is_empty() { Ok(()) } else { Err(EditError::NamesTaken { names }) }
     }
@@ -67,10 +85,10 @@ impl Editor<'_> {
             let at = line.joint(k, shaft.segments);
             let next = line.joint(k + 1, shaft.segments);
             let rod = Some(line.rod(minus(next, at)));
-            let child = self.add_link(Link { name: format!("{}_rod_{k}", shaft.joint), inertial: rod });
+            let child = self.add_link(Link { name: shaft.rod(k), inertial: rod });
             let (name, kind) = match k {
-                0 => (format!("{}_rod_0", shaft.joint), JointKind::Fixed),
-                _ => (format!("{}_{k}", shaft.joint), JointKind::Universal),
+                0 => (shaft.rod(0), JointKind::Fixed),
+                _ => (shaft.bending(k), JointKind::Universal),
             };
             let origin = Origin { xyz: if k == 0 { at } else { minus(at, last) }, ..Origin::default() };
             let [axis, second_axis] = line.axes;
@@ -136,7 +154,7 @@ impl Line {
     /// k = E·I/ℓ and d = k·damping on every joint.
     fn springs(&self, shaft: &Shaft) -> Vec<Applied> {
         let stiffness = shaft.stiffness * shaft.segments as f64 / self.length;
-        let on = |effect, k: usize, parameters| Applied { effect, on: format!("{}_{k}", shaft.joint), at: Origin::default(), parameters };
+        let on = |effect, k: usize, parameters| Applied { effect, on: shaft.bending(k), at: Origin::default(), parameters };
         let spring = |k| on(EffectId::spring, k, Vec::from([stiffness, 0.0]));
         let damping = |k| on(EffectId::damping, k, Vec::from([stiffness * shaft.damping]));
         let damped = (1..=shaft.segments).filter(|_| shaft.damping > 0.0).map(damping);
