@@ -16,7 +16,7 @@ use super::words;
 use crate::accuracy::arguments::AccuracyArguments;
 use crate::compare::accuracy::Reference;
 use crate::compare::manifest::{self, Library};
-use crate::compare::peer::Peer;
+use crate::compare::peer::{self, Peer};
 use crate::compare::timing::{self, Run};
 use crate::compiled::{Compiled, Rustc, Target};
 use crate::console::Progress;
@@ -53,7 +53,7 @@ pub(super) fn all(
     let model = &first.generated.model;
     let mut report = report(robot, reference, model, rustc, arguments);
     let folder = Folder::new().map_err(|e| Failure::tool(&e))?;
-    let peers = peers(robot, model, arguments, folder.path(), &mut report)?;
+    let peers = peer::open_all(libraries(arguments)?, robot, model, folder.path(), &mut report.notes)?;
     let sets = [false, true].map(|single| cases(model, arguments.states as usize, arguments.seed, single));
     report.hard_states = sets[0].iter().filter(|c| c.hard.is_some()).count();
     for name in functions {
@@ -103,30 +103,6 @@ fn report(robot: &Robot, reference: &Reference, model: &Model<f64>, rustc: &Rust
 /// The peer libraries that the command line names.
 pub(super) fn libraries(arguments: &AccuracyArguments) -> Result<Vec<Library>, Failure> {
     manifest::named(&arguments.peer, arguments.peers_manifest.as_deref())
-}
-
-/// The peers that read this robot; a note for each that does not.
-fn peers(
-    robot: &Robot,
-    model: &Model<f64>,
-    arguments: &AccuracyArguments,
-    folder: &std::path::Path,
-    report: &mut Report,
-) -> Result<Vec<Peer>, Failure> {
-    let libraries = libraries(arguments)?;
-    let mut peers = Vec::new();
-    if libraries.is_empty() {
-        return Ok(peers);
-    }
-    let urdf = robot.file_in(folder).map_err(|e| Failure::input([format!("{}: {e}", robot.file)]))?;
-    for library in libraries {
-        let label = library.name.clone().unwrap_or_else(|| library.path.display().to_string());
-        match Peer::open(library, &urdf, robot, model) {
-            Ok(peer) => peers.push(peer),
-            Err(reason) => report.notes.push(format!("peer {label} is left out: {reason}")),
-        }
-    }
-    Ok(peers)
 }
 
 /// One function and what it is measured on.

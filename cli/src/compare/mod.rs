@@ -98,18 +98,7 @@ fn open_peers(
     report: &mut Report,
 ) -> Result<Vec<Peer>, Failure> {
     let libraries = manifest::named(&arguments.peer, arguments.peers_manifest.as_deref())?;
-    let mut peers: Vec<Peer> = Vec::new();
-    if libraries.is_empty() {
-        return Ok(peers);
-    }
-    let urdf = robot.file_in(folder).map_err(|e| Failure::input([format!("{}: {e}", robot.file)]))?;
-    for library in libraries {
-        let label = library.name.clone().unwrap_or_else(|| library.path.display().to_string());
-        match Peer::open(library, &urdf, robot, model) {
-            Ok(peer) => peers.push(peer),
-            Err(reason) => report.notes.push(format!("peer {label} is left out: {reason}")),
-        }
-    }
+    let peers = peer::open_all(libraries, robot, model, folder, &mut report.notes)?;
     let told = |p: &Peer| PeerLibrary { peer: p.name.clone(), library: Library { robots: Vec::new(), ..p.library.clone() } };
     report.peers = peers.iter().map(told).collect();
     Ok(peers)

@@ -9,6 +9,7 @@ use articulated_reference::scales;
 
 use super::contender::Contender;
 use super::manifest::{Code, Cost, Library};
+use crate::failure::Failure;
 use crate::native::{Native, NativePeer};
 use crate::robot::Robot;
 use crate::states::quaternions;
@@ -31,6 +32,29 @@ pub(crate) struct Peer {
     v: Vec<usize>,
     /// Whether its joints are in the order of our links.
     links: bool,
+}
+
+/// The libraries that read this robot, from a file in `folder`; a note for each that does not.
+pub(crate) fn open_all(
+    libraries: Vec<Library>,
+    robot: &Robot,
+    model: &Model<f64>,
+    folder: &Path,
+    notes: &mut Vec<String>,
+) -> Result<Vec<Peer>, Failure> {
+    let mut peers = Vec::new();
+    if libraries.is_empty() {
+        return Ok(peers);
+    }
+    let urdf = robot.file_in(folder).map_err(|e| Failure::input([format!("{}: {e}", robot.file)]))?;
+    for library in libraries {
+        let label = library.name.clone().unwrap_or_else(|| library.path.display().to_string());
+        match Peer::open(library, &urdf, robot, model) {
+            Ok(peer) => peers.push(peer),
+            Err(reason) => notes.push(format!("peer {label} is left out: {reason}")),
+        }
+    }
+    Ok(peers)
 }
 
 impl Peer {
