@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+pub(crate) use articulated_urdf::quote;
+
 use crate::tree::At;
 
 /// All that is wrong with a scene.
@@ -91,20 +93,6 @@ impl SceneError {
 }
 
 impl std::error::Error for SceneError {}
-
-/// `text` in quotation marks, on one line, cut where it gets long.
-pub(crate) fn quote(text: &str) -> String {
-    const MOST: usize = 80;
-    let mut out = String::from('"');
-    for c in text.chars().take(MOST) {
-        match c {
-            c if c.is_control() => out.extend(c.escape_default()),
-            c => out.push(c),
-        }
-    }
-    out.push_str(if text.chars().nth(MOST).is_some() { "…\"" } else { "\"" });
-    out
-}
 
 /// A name as it stands in the way to a key.
 pub(crate) fn bare(name: &str) -> String {

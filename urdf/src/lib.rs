@@ -64,7 +64,7 @@ use articulated_core::description::{Base, Description};
 
 pub use file::{MOST_BYTES, read_at_most, read_file};
 use log::Log;
-pub use problem::{Kind, Problem, Problems, Subject};
+pub use problem::{Kind, Problem, Problems, Subject, quote};
 pub use snap::{MOST_SNAPPED, SNAP_EXPECTED, can_snap};
 pub use unused::Unused;
 

@@ -197,7 +197,7 @@ pub(crate) fn hint(meant: Option<&str>) -> String {
 }
 
 /// `text` in quotation marks, on one line, cut where it gets long.
-pub(crate) fn quote(text: &str) -> String {
+pub fn quote(text: &str) -> String {
     const MOST: usize = 80;
     let mut out = String::from('"');
     for c in text.chars().take(MOST) {
