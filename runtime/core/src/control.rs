@@ -167,4 +167,20 @@ mod tests {
         let series = Series { times: vec![0.0, 1.0], rows: vec![vec![1.0], vec![]], hold: false };
         assert_eq!(series.problems(1), [TableError::Width { row: 1, found: 0, expected: 1 }]);
     }
+
+    #[test]
+    fn a_table_that_cannot_be_followed_says_why() {
+        let problems = |times: &[f64], rows: &[f64]| {
+            Series { times: times.to_vec(), rows: rows.iter().map(|x| vec![*x]).collect(), hold: true }.problems(1)
+        };
+        assert_eq!(problems(&[0.0, 1.0], &[1.0, 2.0]), []);
+        assert_eq!(problems(&[], &[]), [TableError::Empty]);
+        assert_eq!(problems(&[0.0, 1.0], &[1.0]), [TableError::Rows { found: 1, expected: 2 }]);
+        assert_eq!(problems(&[0.0], &[1.0, 2.0]), [TableError::Rows { found: 2, expected: 1 }]);
+        assert_eq!(problems(&[0.0, f64::INFINITY], &[1.0, 2.0]), [TableError::NotFinite { row: 1 }]);
+        assert_eq!(problems(&[0.0, 1.0], &[f64::NAN, 2.0]), [TableError::NotFinite { row: 0 }]);
+        for found in [1.0, 0.5] {
+            assert_eq!(problems(&[0.0, 1.0, found], &[1.0; 3]), [TableError::Order { row: 2, found, before: 1.0 }]);
+        }
+    }
 }

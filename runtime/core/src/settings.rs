@@ -301,6 +301,13 @@ mod tests {
         };
         // Near 1e15 s the time is a multiple of 1/8 s, near 1e12 s of 1/8192 s.
         assert_eq!([at(1e15, 1e15 + 4.0), at(1e12, 1e12 + 4.0)], [vec!["step"], vec![]]);
+        // Of both ends the one that is farther from zero counts.
+        assert_eq!([at(-1e15, 4.0), at(-4.0, 1e15)], [vec!["step"], vec!["step"]]);
+        let settings = Settings { integrator: IntegratorId::rk4, ..Settings::default() };
+        let least = settings.least_step();
+        for (step, told) in [(least, 0), (0.999 * least, 1)] {
+            assert_eq!(Settings { step: Some(step), ..settings.clone() }.problems(shape).len(), told, "{step:e}");
+        }
     }
 
     /// So many numbers as there is room for, whatever the robot; and no two records at one time.
@@ -333,7 +340,12 @@ mod tests {
             ("min_step", Settings { min_step: f64::INFINITY, max_step: f64::INFINITY, ..right.clone() }),
             ("max_step", Settings { max_step: 1e-4, ..right.clone() }),
             ("rtol", Settings { rtol: 1e-16, ..right.clone() }),
+            ("rtol", Settings { rtol: 1.0, ..right.clone() }),
             ("rtol", Settings { rtol: 0.0, atol: 0.0, ..right.clone() }),
+            ("atol_each", Settings { atol_each: vec![1e-9, -1e-9], ..right.clone() }),
+            ("atol_each", Settings { atol_each: vec![1e-9, f64::INFINITY], ..right.clone() }),
+            ("end", Settings { end: 1.0, output: Output::Ends, ..right.clone() }),
+            ("end", Settings { end: f64::NAN, ..right.clone() }),
             ("event_tolerance", Settings { event_tolerance: -1e-12, ..right.clone() }),
             ("event_tolerance", Settings { event_tolerance: f64::INFINITY, ..right.clone() }),
             ("output", Settings { output: Output::At(vec![1.5, 1.5]), ..right.clone() }),
