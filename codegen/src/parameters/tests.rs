@@ -91,7 +91,10 @@ fn other_gravity_and_other_effects_are_those_of_a_request_that_asks_for_them() {
             on(EffectId::damping, "slide", &[damping]),
             on(EffectId::friction, "shoulder", &[loss, speed]),
             on(EffectId::armature, "shoulder", &[inertia, ratio]),
+            on(EffectId::damping, "shoulder", &[0.4]),
             on(EffectId::drag, "table", &[0.3]),
+            // On one body with what stays an input, and on one link with it.
+            on(EffectId::drag, "arm", &[0.6]),
             on(EffectId::drag, "tool", &[loss]),
             on(EffectId::contact, "arm", &[0.05, 1e3 * inertia, damping, loss, 0.01, 0.0, 0.6, 0.8, 9.0]),
         ];

@@ -107,7 +107,10 @@ fn who_is_as_fast_as_the_ball_does_not_hit_it() {
     let scene = |speed: &str| BLOW.replace("ball = [0.6, 0.0, 0.0]", &format!("time = 0.25\nball_speed = {speed}"));
     let [missed, hit] = ["3.0", "2.0"].map(|speed| moved(&stage(&scene(speed), CART)));
     assert_eq!(words(&missed)[0], "cart is not moving towards the ball, which keeps 3.0000 m/s");
-    assert!(missed.ball.is_none() && hit.ball.is_some_and(|energy| energy > 0.0), "{missed:?} {hit:?}");
+    // What it gets is on top of what it had: ½ m_b (v² − 2²), v = 2 + (1 + e) m/(m + m_b).
+    let after: f64 = 2.0 + 1.8 * 2.0 / 2.5;
+    let gets = 0.25 * (after * after - 4.0);
+    assert!(missed.ball.is_none() && hit.ball.is_some_and(|energy| (energy - gets).abs() < 1e-8), "{missed:?} {hit:?}");
 }
 
 #[test]
@@ -163,6 +166,22 @@ fn a_joint_that_follows_and_stands_still_has_no_events() {
     let watch = Watch::new(&stage, &stage.model, &stage.frame_names()).unwrap();
     assert_eq!(watch.without, [Without { file: "s.toml".into(), what: Watched::StickSlip, joint: None }]);
     assert!(watch.events.is_empty() && stage.beyond(&[0.0]).is_empty());
+}
+
+/// y = −2 x sticks below 0.1 m/s: x = 0.5 t − ½ t² below 0.05, from 0.45 s to 0.55 s.
+#[test]
+fn a_joint_that_follows_sticks_at_its_own_rate() {
+    let follower = "<link name='b'/><joint name='y' type='prismatic'><parent link='rail'/><child link='b'/><axis xyz='1 0 0'/>
+        <limit lower='-1' upper='1' effort='1' velocity='1'/><mimic joint='slide' multiplier='-2'/></joint></robot>";
+    let scene = "initial = { v = { slide = 0.5 } }
+        control = { kind = 'torque', torque = { slide = -2.0 } }
+        effects = { friction = { y = { friction = 1e-9, speed = 0.1 } } }
+        simulation = { end = 1.0, events = ['stick_slip'] }";
+    let outcome = moved(&stage(scene, &CART.replace("</robot>", follower)));
+    assert_eq!(words(&outcome), ["y sticks", "y slips"]);
+    for (happening, t) in outcome.happenings.iter().zip([0.45, 0.55]) {
+        assert!((happening.t - t).abs() < 1e-6, "{happening:?} {t}");
+    }
 }
 
 #[test]
@@ -224,7 +243,11 @@ fn contacts_of_one_link_are_told_apart() {
         "gravity = [0, 0, 0]\ninitial = {{ v = {{ slide = 1.0 }} }}\nsimulation = {{ end = 0.5, events = ['contacts'] }}
         effects.contact.cart = [{{ {ball}, height = -0.3 }}, {{ {ball}, height = -0.4 }}]"
     );
-    let told = moved(&stage(&scene, CART));
+    // Those of another link do not count.
+    let bumper = "<link name='bumper'/><joint name='glue' type='fixed'><parent link='cart'/><child link='bumper'/></joint></robot>";
+    let scene =
+        scene.replace("effects.contact.cart", &format!("effects.contact.bumper = {{ {ball}, height = -9 }}\n        effects.contact.cart"));
+    let told = moved(&stage(&scene, &CART.replace("</robot>", bumper)));
     assert_eq!(words(&told)[..2], ["cart (contact 1 of 2) touches the ground", "cart (contact 2 of 2) touches the ground"]);
     assert_eq!(about(&told), [1, 2].map(|number| is(EventKind::Contact { number, of: 2 }, "cart", true)));
 }
@@ -253,6 +276,10 @@ fn how_far_a_sphere_is_under_the_plane_does_not_depend_on_the_length_of_the_norm
         let [sunk] = &stage.sunk(&[0.0])[..] else { panic!("{normal}") };
         assert!((sunk.depth - 0.01).abs() < 1e-15, "{normal}: {}", sunk.depth);
     }
+    // 0.1 − (0.6·0.05 + 0.8·0.02)
+    let contact = "radius = 0.1, stiffness = 1e3, damping = 0.1, friction = 0.5, normal = [3, 0, 4], height = 0.1, xyz = [0.05, 0, 0.02]";
+    let stage = stage(&format!("effects = {{ contact = {{ cart = {{ {contact} }} }} }}"), CART);
+    assert!((stage.sunk(&[0.0])[0].depth - 0.054).abs() < 1e-15, "{:?}", stage.sunk(&[0.0]));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use articulated::simulate::IntegratorId;
 
-use super::{ARM, moved, stage, words};
+use super::{ARM, CART, moved, stage, words};
 
 const SCENE: &str = include_str!("arm.toml");
 
@@ -32,6 +32,26 @@ fn a_robot_is_generated_with_what_the_scene_needs() {
         "motor_torques",
     ];
     assert_eq!(stage.functions(IntegratorId::dopri5), functions);
+}
+
+/// Of what there is nothing of, nothing is told: momentum of no mass, losses of no effects. A link that two things need a frame of has one.
+#[test]
+fn a_robot_is_generated_without_what_the_scene_has_not() {
+    let told = |scene: &str, urdf: &str| {
+        let functions = stage(scene, urdf).functions(IntegratorId::dopri5);
+        ["centroidal_momentum", "dissipation", "motor_torques"].map(|name| functions.contains(&name))
+    };
+    let effects = "effects = { damping = { slide = { damping = 1.0 } } }";
+    assert_eq!(told(effects, CART), [true; 3]);
+    assert_eq!(told("", CART), [true, false, false]);
+    assert_eq!(told(effects, &CART.replace("<mass value=\"2\"/>", "<mass value=\"0\"/>")), [false, true, true]);
+    let hook = "<link name='hook'/><joint name='glue' type='fixed'><parent link='cart'/><child link='hook'/></joint></robot>";
+    let ball = "{ radius = 0.1, stiffness = 10.0, damping = 0.1, friction = 0.5 }";
+    let scene = format!(
+        "effects.contact = {{ cart = {ball}, hook = {ball} }}\nsimulation = {{ end = 1.0, events = ['contacts'] }}
+        impact = {{ link = 'cart', normal = [1, 0, 0], mass = 0.5, restitution = 0.8, time = 0.5 }}"
+    );
+    assert_eq!(stage(&scene, &CART.replace("</robot>", hook)).frames(), ["cart", "hook"]);
 }
 
 /// Bounds on coordinates and rates, rad and rad/s: 1e-13 until the hand touches the ground, by rounding; 1e-6 to the end, a thousand tolerances, as steps

@@ -194,7 +194,25 @@ fn fit(w0: &[f64], w1: &[f64], w2: &[f64]) -> Option<Pair> {
 
 #[cfg(test)]
 mod tests {
-    use super::fit;
+    use super::{EVERY, Stability, fit};
+
+    #[test]
+    fn a_look_is_due_now_and_then_and_where_the_motion_jumps() {
+        let mut stability = Stability::new(2);
+        // What begins from rest does not jump.
+        assert_eq!([0.0, 1.0, -8.0, 8.0].map(|v| stability.due(1, &[v, 0.0])), [false; 4]);
+        assert_eq!([-64.0, 513.0, 100.0].map(|v| stability.due(1, &[0.0, v])), [false, true, false]);
+        // Of what is no number nothing is kept.
+        assert_eq!([f64::NAN, f64::INFINITY, 5000.0].map(|v| stability.due(1, &[v, 1.0])), [true; 3]);
+        assert_eq!([EVERY - 1, EVERY, EVERY + 1, 3 * EVERY].map(|steps| stability.due(steps, &[1.0, 1.0])), [false, true, false, true]);
+    }
+
+    #[test]
+    fn what_a_step_saw_is_not_looked_at_twice_in_a_row_unless_it_is_much_faster() {
+        let mut stability = Stability::new(2);
+        let seen = [(1, 0.5), (1, 0.7), (2, 0.7), (3, 2.7), (4, 2.9), (5, 2.9), (3 + EVERY, 2.9), (4 + EVERY, 2.9)];
+        assert_eq!(seen.map(|(steps, seen)| stability.suspects(steps, seen)), [false, true, false, false, true, false, false, true]);
+    }
 
     #[test]
     fn a_pair_is_found_real_or_complex() {

@@ -361,6 +361,26 @@ fn a_motion_is_the_same_whatever_the_simulation_did_before() {
     }
 }
 
+/// Torques are zero when they come, at each sample too: what is added to them is added to nothing.
+#[test]
+fn torques_that_are_added_do_not_add_up() {
+    let settings = Settings { output: Output::Every(0.25), ..stepping(IntegratorId::rk4, 1.0, 0.05) };
+    let mut add = Hold::new(|_: f64, _: &[f64], _: &[f64], tau: &mut [f64]| tau[0] += 1.0, 0.25).unwrap();
+    let motion = Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[0.0], &mut add, &mut []).unwrap();
+    assert_eq!(motion.tau, [1.0; 5]);
+    assert!((motion.v[4] - 1.0).abs() < 1e-14, "{:?}", motion.v);
+}
+
+/// The rounds of an implicit step begin at the acceleration of the step before, and at none where a motion begins.
+#[test]
+fn rounds_are_as_many_as_without_a_motion_before() {
+    let robot = slider();
+    let mut simulation = Simulation::new(&robot, stepping(IntegratorId::lie_midpoint, 1.0, 0.1)).unwrap();
+    let mut rounds = |torque: f64| simulation.run(&[0.0], &[1.0], &mut Constant::new(vec![torque]), &mut []).unwrap().counts.iterations;
+    // Where it is the same all the way one round is enough to see that.
+    assert_eq!([3.0, 0.0, 3.0].map(&mut rounds), [11, 10, 11]);
+}
+
 /// τ = k_p·(target − q) + k_d·(rate − v): once under way, a body that is to follow a rate lags by what its own acceleration and friction ask for, which is nothing here.
 #[test]
 fn a_controller_with_rates_holds_them() {

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use articulated::simulate::{Action, Ended, Event, IntegratorId, NoTorque, Output, Settings, Simulation, integrators};
+use articulated::simulate::{Action, Ended, Event, IntegratorId, NoTorque, Output, Settings, SimulateError, Simulation, integrators};
 
 use crate::robots::{any, chain, one_joint, slider, stepping, to};
 
@@ -51,6 +51,34 @@ fn what_a_map_made_before_a_stop_is_recorded() {
         assert!(motion.t.windows(2).all(|w| w[0] <= w[1]) && (motion.t[last] - 0.3).abs() < 1e-12, "{name}: {:?}", motion.t);
         assert_eq!(motion.v.iter().filter(|v| **v == 2.0).count(), 1, "{name}: {:?}", motion.v);
     }
+}
+
+#[test]
+fn of_given_times_no_other_is_recorded_but_the_start() {
+    for row in integrators() {
+        for (times, expected) in [(vec![0.25], vec![0.0, 0.25]), (vec![0.25, 1.0], vec![0.0, 0.25, 1.0]), (vec![], vec![0.0])] {
+            let settings = Settings { output: Output::At(times), ..any(row.id, 1.0) };
+            let motion = Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[1.0], &mut NoTorque, &mut []).unwrap();
+            assert_eq!((motion.t, motion.ended), (expected, Ended::AtEnd), "{}", row.name);
+        }
+    }
+}
+
+/// Steps that are rejected count as those that are made, from the first to the last.
+#[test]
+fn a_motion_has_no_more_steps_than_it_may() {
+    let mut jerk = |t: f64, _: &[f64], _: &[f64], tau: &mut [f64]| tau[0] = if t > 0.3 { 1e3 * (50.0 * t).sin() } else { 0.0 };
+    let mut rejected = 0;
+    for max_steps in 1..40 {
+        let robot = slider();
+        let mut simulation = Simulation::new(&robot, Settings { max_steps, ..to(IntegratorId::dopri5, 2.0, 1e-9) }).unwrap();
+        let mut recording = simulation.recording();
+        let error = simulation.run_into(&[0.0], &[1.0], &mut jerk, &mut [], &mut recording, &mut |_, _| true).unwrap_err();
+        assert!(matches!(error, SimulateError::TooManySteps { steps, .. } if steps == max_steps), "{error}");
+        assert_eq!(recording.counts.steps + recording.counts.rejected, max_steps);
+        rejected += recording.counts.rejected;
+    }
+    assert!(rejected > 40, "{rejected}");
 }
 
 #[test]

@@ -1,9 +1,9 @@
 //! Each integrator has its order, on plain coordinates and where some are quaternions.
 
-use articulated::simulate::{IntegratorId, Recording, Simulation, integrators};
+use articulated::simulate::{IntegratorId, NoTorque, Output, Recording, Settings, Simulation, integrators};
 use articulated::{Base, Dynamics};
 
-use crate::robots::{apart, chain, model, satellite, stepping, to};
+use crate::robots::{apart, chain, model, satellite, slider, stepping, to};
 
 /// Driven by torques that depend on time and state, so that every derivative counts.
 fn driven<R: Dynamics<f64>>(robot: &R, settings: articulated::simulate::Settings, q: &[f64], v: &[f64]) -> Recording {
@@ -82,4 +82,19 @@ fn the_manuals_name_every_integrator_with_its_order() {
         let missing: Vec<&str> = rows.filter(|(name, order)| !named(name, *order)).map(|(name, _)| name).collect();
         assert!(missing.is_empty(), "docs/{file}: {missing:?}");
     }
+}
+
+/// Hairer, Nørsett & Wanner 1993, §II.4, by hand, of a body of 1 kg that nothing drives: with d_0 = |y|, d_1 = |f| in units of the tolerances h_0 = 0.01 d_0/d_1, and
+/// the step is (0.01/d_1)^(1/6), 100 h_0 at most; 1e-6 s where nothing moves.
+#[test]
+fn a_first_step_is_estimated_by_the_rates() {
+    let first = |(rtol, atol): (f64, f64), q: f64, v: f64| {
+        let settings = Settings { rtol, atol, output: Output::Steps, ..to(IntegratorId::dopri5, 10.0, 1e-6) };
+        Simulation::new(&slider(), settings).unwrap().run(&[q], &[v], &mut NoTorque, &mut []).unwrap().t[1]
+    };
+    let relative = first((1e-6, 0.0), 1.0, 1.0);
+    assert!((relative / (0.01 / (1e6 * 0.5_f64.sqrt())).powf(1.0 / 6.0) - 1.0).abs() < 1e-12, "{relative} s");
+    let absolute = first((0.0, 1.0), 0.0, 1e-3);
+    assert!((absolute - 1.0).abs() < 1e-12, "{absolute} s");
+    assert_eq!([first((1e-6, 1e-6), 0.0, 0.0), first((1e-6, 0.0), 0.0, 0.0)], [1e-6; 2]);
 }

@@ -96,6 +96,14 @@ fn bounds_of_steps_are_kept_or_told() {
     assert!(told.contains("shorter than min_step = 1.000e-1 s"), "{told}");
 }
 
+#[test]
+fn a_period_that_is_no_length_of_time_is_refused() {
+    for period in [0.0, -0.1, f64::NAN, f64::INFINITY] {
+        let told = Hold::new(NoTorque, period).map(drop).unwrap_err().to_string();
+        assert!(told.ends_with("cannot be used; it should be a finite number above 0, s"), "{told}");
+    }
+}
+
 /// Samples that time cannot tell apart, or that are more than a motion may have steps.
 #[test]
 fn a_period_that_a_motion_cannot_have_is_an_error_that_says_which_it_can() {

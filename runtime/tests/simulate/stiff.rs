@@ -60,6 +60,19 @@ fn a_motion_that_dies_away_goes_on_to_its_end() {
     }
 }
 
+/// a = −d (v_0 + ½ h a) by substitution: each round leaves ½ h d of the change before, more than there was beyond hd = 2, where in the end it overflows or does not.
+#[test]
+fn a_midpoint_that_substitution_does_not_find_is_told() {
+    for (z, is_found) in [(1.5, true), (3.0, false), (1e3, false)] {
+        let robot = with(EffectId::damping, vec![z / 0.01]);
+        let found = free(&robot, &stepping(IntegratorId::lie_midpoint, 0.01, 0.01), &[0.0], &[1.0]);
+        match found {
+            Ok(motion) => assert!(is_found && (motion.v.last().unwrap() - (2.0 - z) / (2.0 + z)).abs() < 1e-14, "hd = {z}: {motion:?}"),
+            Err(error) => assert!(!is_found && error == SimulateError::NoConvergence { t: 0.0, step: 0.01 }, "hd = {z}: {error}"),
+        }
+    }
+}
+
 #[test]
 fn explicit_steps_beyond_stability_are_refused_with_the_one_that_is_not() {
     let rate = 1000.0;
@@ -79,6 +92,16 @@ fn explicit_steps_beyond_stability_are_refused_with_the_one_that_is_not() {
             assert!((0..motion.len()).all(|i| motion.v[i].abs() <= 1.5), "{integrator}, {effect:?}: {motion:?}");
         }
     }
+}
+
+/// hλ = 2 e^(±2πi/3): in a step of rk4 1/√3 of it is left where the motion by itself would leave 1/e.
+#[test]
+fn a_damped_oscillation_that_a_step_damps_less_is_not_refused() {
+    let on = |effect, parameters| Applied { effect, on: "joint".into(), at: Origin::default(), parameters };
+    let effects = [on(EffectId::spring, vec![1e6, 0.0]), on(EffectId::damping, vec![1e3])];
+    let robot = one_joint("prismatic", 0.0).with_gravity([0.0; 3]).with_effects(&effects).unwrap();
+    let motion = free(&robot, &stepping(IntegratorId::rk4, 0.2, 2e-3), &[1e-3], &[0.0]).unwrap();
+    assert!(motion.q.last().unwrap().abs() < 1e-20, "{motion:?}");
 }
 
 /// What steps are made counts, and not what steps are asked for: none is longer than from sample to sample, or than the motion.
