@@ -99,10 +99,12 @@ pub fn scene(name: &str) -> Option<&'static BundledScene> {
 }
 
 /// The seven-axis arm, fixed base, written out by this crate's build script.
+#[cfg(feature = "generated")]
 pub mod panda_like {
     include!(concat!(env!("OUT_DIR"), "/panda_like.rs"));
 }
 
+#[cfg(feature = "generated")]
 articulated::robot! {
     /// The quadruped, floating base, written out by the macro.
     pub mod quadruped {
@@ -112,7 +114,7 @@ articulated::robot! {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "generated"))]
 mod tests {
     use articulated::Dynamics;
 

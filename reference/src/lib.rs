@@ -5,9 +5,11 @@
 mod big;
 mod exact;
 mod magnitude;
+mod random;
 #[cfg(test)]
 mod samples;
 
 pub use big::{BITS, Big};
 pub use exact::Exact;
 pub use magnitude::{Magnitude, ROUNDOFF, is_plain, norms, scales, scales_of_generated, where_suspect};
+pub use random::SplitMix64;

@@ -9,7 +9,8 @@ mod unique;
 use articulated_core::algorithm::{Argument, Dim, Function};
 use articulated_core::model::{JointInfo, Model};
 
-pub use random::{SplitMix64, random};
+pub use articulated_reference::SplitMix64;
+pub use random::random;
 pub(crate) use read::listed;
 pub use read::{States, read};
 

@@ -6,8 +6,8 @@ use articulated_core::Scalar;
 use articulated_core::dual::Dual;
 use articulated_core::spatial::screw::HalfAngle;
 use articulated_reference::Big;
-use articulated_tests::measure::U;
-use articulated_tests::random::Random;
+use articulated_test_support::measure::U;
+use articulated_test_support::random::Random;
 
 use super::angles;
 

@@ -4,10 +4,10 @@ use articulated_core::algorithm::FunctionId;
 use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link};
 use articulated_core::dynamics::Dynamics;
 use articulated_core::spatial::from_quaternion;
-use articulated_tests::case::{Case, State, for_each_tree, inverse_dynamics};
-use articulated_tests::measure::{distance, torque_scale};
-use articulated_tests::random_tree::{Flavour, random_tree};
-use articulated_tests::{random::Random, rigid};
+use articulated_test_support::case::{Case, State, for_each_tree, inverse_dynamics};
+use articulated_test_support::measure::{distance, torque_scale};
+use articulated_test_support::random_tree::{Flavour, random_tree};
+use articulated_test_support::{random::Random, rigid};
 use nalgebra::Vector3;
 
 /// Errors allowed, in units of u times the magnitude of the terms.

@@ -8,8 +8,8 @@ use articulated_core::model::pass::model_passes;
 use articulated_core::model::{Body, Model, Rates, Unturned};
 use articulated_core::spatial::{Matrix3, Reference, SpatialInertia, Vector3, to_z_axis};
 use articulated_reference::Big;
-use articulated_tests::case::{Case, State, cast, for_each_tree};
-use articulated_tests::random_tree::Flavour;
+use articulated_test_support::case::{Case, State, cast, for_each_tree};
+use articulated_test_support::random_tree::Flavour;
 use num_traits::Zero;
 
 /// What the library's constants allow, which are double precision however the rest is computed. Seen: 2·10⁻¹⁵.
@@ -85,7 +85,7 @@ fn every_function_in_every_way_is_the_textbooks() {
 fn operational_space_inertia_of_a_free_robot_is_the_textbooks() {
     let robot = articulated_models::robot("quadruped").expect("it is bundled");
     let case = Case::bundled(robot);
-    let state = case.state(&mut articulated_tests::random::Random::new(5));
+    let state = case.state(&mut articulated_test_support::random::Random::new(5));
     Big::scope(|| {
         let tip = [&case.model.frames.last().expect("it has links").name];
         let (model, book) =

@@ -2,11 +2,11 @@
 
 use articulated_core::description::{Base, Description, EditError, Inertial, JointKind, Link, Origin, Payload};
 use articulated_core::model::{FLOATING_BASE, JointInfo, Model};
-use articulated_tests::case::{Case, State, for_each_bundled, for_each_tree, inverse_dynamics, mass_matrix, placements, read};
-use articulated_tests::measure::{distance, scale, torque_scale};
-use articulated_tests::random::Random;
-use articulated_tests::random_tree::Flavour;
-use articulated_tests::virtual_power::Motions;
+use articulated_test_support::case::{Case, State, for_each_bundled, for_each_tree, inverse_dynamics, mass_matrix, placements, read};
+use articulated_test_support::measure::{distance, scale, torque_scale};
+use articulated_test_support::random::Random;
+use articulated_test_support::random_tree::Flavour;
+use articulated_test_support::virtual_power::Motions;
 
 /// Errors allowed, in units of u times the magnitude of the terms.
 const FEW: f64 = 16.0;

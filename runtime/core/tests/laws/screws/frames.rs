@@ -7,8 +7,8 @@ use articulated_core::nalgebra::Vector6;
 use articulated_core::spatial::screw::{Screw, product_of_exponentials_in_body, product_of_exponentials_in_space};
 use articulated_core::spatial::{Matrix3, Placement, Twist, Vector3, Wrench, from_rpy};
 use articulated_reference::Big;
-use articulated_tests::measure::U;
-use articulated_tests::random::Random;
+use articulated_test_support::measure::U;
+use articulated_test_support::random::Random;
 
 use super::{angles, far, moved, series, six, twist};
 

@@ -4,10 +4,10 @@ use articulated_core::Scalar;
 use articulated_core::algorithm::textbook::Textbook;
 use articulated_core::algorithm::{Needs, Workspace, functions};
 use articulated_reference::Big;
-use articulated_tests::case::{Case, State, cast, for_each_bundled, for_each_tree, placements};
-use articulated_tests::measure::{arguments, distance, distance_from, scale, torque_scale};
-use articulated_tests::random::Random;
-use articulated_tests::random_tree::Flavour;
+use articulated_test_support::case::{Case, State, cast, for_each_bundled, for_each_tree, placements};
+use articulated_test_support::measure::{arguments, distance, distance_from, scale, torque_scale};
+use articulated_test_support::random::Random;
+use articulated_test_support::random_tree::Flavour;
 
 /// Errors allowed, in units of u times the magnitude of the terms. Seen: 8 on 60 random trees.
 const FEW: f64 = 16.0;
@@ -96,7 +96,7 @@ fn virtual_power_holds(case: &Case, random: &mut Random) {
     let far = distance(
         &placements(&case.model, &state.q),
         &motions.placements(&state.q),
-        &articulated_tests::measure::scale(case, "placements", &state),
+        &articulated_test_support::measure::scale(case, "placements", &state),
     );
     assert!(far <= 2.0 * FEW, "placements: {far} units of roundoff");
 }

@@ -1,7 +1,7 @@
 //! Robots whose equations can be written on one line; the parameters stand in the headers of their URDF files.
 
-use articulated_tests::case::{Case, State};
-use articulated_tests::random::Random;
+use articulated_test_support::case::{Case, State};
+use articulated_test_support::random::Random;
 
 const G: f64 = 9.81;
 

@@ -7,8 +7,8 @@ use articulated_core::dual::Dual;
 use articulated_core::spatial::screw::{Quaternion, exp_rotation, log_rotation};
 use articulated_core::spatial::{Matrix3, Placement, Twist, Vector3};
 use articulated_reference::Big;
-use articulated_tests::measure::U;
-use articulated_tests::random::Random;
+use articulated_test_support::measure::U;
+use articulated_test_support::random::Random;
 
 use super::{along, angles, far, moved, six, turned, twist, vector};
 

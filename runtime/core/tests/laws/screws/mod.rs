@@ -12,8 +12,8 @@ use articulated_core::dual::Dual;
 use articulated_core::nalgebra::{SMatrix, Vector6};
 use articulated_core::spatial::{Twist, Vector3};
 use articulated_reference::Big;
-use articulated_tests::measure::U;
-use articulated_tests::random::Random;
+use articulated_test_support::measure::U;
+use articulated_test_support::random::Random;
 
 /// Angles over which every law here is tried: tiny, small, on both sides of each change from series to closed form, half a turn, and up to `most`.
 fn angles(random: &mut Random, count: usize, most: f64) -> Vec<f64> {

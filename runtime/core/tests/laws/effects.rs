@@ -7,10 +7,10 @@ use articulated_core::effect::{self, Applied, BodyEffect, EffectId, Enters, Join
 use articulated_core::model::Model;
 use articulated_core::model::pass::model_passes;
 use articulated_core::spatial::Placement;
-use articulated_tests::case::{Case, State, cast, for_each_tree};
-use articulated_tests::random::Random;
-use articulated_tests::random_effects::random_effects;
-use articulated_tests::random_tree::Flavour;
+use articulated_test_support::case::{Case, State, cast, for_each_tree};
+use articulated_test_support::random::Random;
+use articulated_test_support::random_effects::random_effects;
+use articulated_test_support::random_tree::Flavour;
 
 /// No followers: they have laws of their own, and the articulated-body algorithm does without.
 const FREE: Flavour = Flavour { mimic: false, ..Flavour::REGULAR };

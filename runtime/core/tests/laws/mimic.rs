@@ -2,9 +2,9 @@
 
 use articulated_core::description::Description;
 use articulated_core::model::JointInfo;
-use articulated_tests::case::{Case, State, for_each_tree, inverse_dynamics, placements};
-use articulated_tests::measure::{distance, scale, torque_scale};
-use articulated_tests::random_tree::Flavour;
+use articulated_test_support::case::{Case, State, for_each_tree, inverse_dynamics, placements};
+use articulated_test_support::measure::{distance, scale, torque_scale};
+use articulated_test_support::random_tree::Flavour;
 
 /// Errors allowed, in units of u times the magnitude of the terms.
 const FEW: f64 = 16.0;
@@ -71,7 +71,7 @@ fn a_follower_that_turns_back_keeps_the_tip_level() {
     let urdf = robot
         .urdf
         .replace("<child link=\"lower_rod\"/>", "<child link=\"lower_rod\"/><mimic joint=\"shoulder\" multiplier=\"-1\" offset=\"0\"/>");
-    let case = Case::new("parallel", articulated_tests::case::read(&urdf), robot.base);
+    let case = Case::new("parallel", articulated_test_support::case::read(&urdf), robot.base);
     assert_eq!(case.model.nv, 1);
     let state = State::new(vec![0.7], vec![1.1], vec![-0.4]);
     // The lower rod swings on a circle without turning: τ = (I1 + m1 l1²/4 + m2 l1²) a + (m1 l1/2 + m2 l1) g sin q

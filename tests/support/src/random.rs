@@ -1,6 +1,6 @@
 //! Pseudo-random numbers: the same for the same seed, on every machine.
 
-use articulated_cli::states::SplitMix64;
+use articulated_reference::SplitMix64;
 
 /// The command's generator, with what random trees need besides.
 #[derive(Clone, Debug)]

@@ -9,8 +9,8 @@ use articulated_core::spatial::screw::{
 };
 use articulated_core::spatial::{Placement, Twist, Vector3};
 use articulated_reference::Big;
-use articulated_tests::measure::U;
-use articulated_tests::random::Random;
+use articulated_test_support::measure::U;
+use articulated_test_support::random::Random;
 
 use super::{along, angles, far, moved, series, turned, twist, vector};
 

@@ -6,10 +6,10 @@ use articulated_core::model::Model;
 use articulated_core::model::pass::model_passes;
 use articulated_core::monitor::orthonormality;
 use articulated_reference::Big;
-use articulated_tests::case::{Case, State, for_each_bundled, for_each_tree, inverse_dynamics, mass_matrix, placements};
-use articulated_tests::measure::{U, arguments, distance, error, plus, scale, torque_scale};
-use articulated_tests::random::Random;
-use articulated_tests::random_tree::Flavour;
+use articulated_test_support::case::{Case, State, for_each_bundled, for_each_tree, inverse_dynamics, mass_matrix, placements, read};
+use articulated_test_support::measure::{U, arguments, distance, error, plus, scale, torque_scale};
+use articulated_test_support::random::Random;
+use articulated_test_support::random_tree::Flavour;
 
 /// Errors allowed, in units of u times the magnitude of the terms.
 const FEW: f64 = 16.0;
@@ -143,7 +143,7 @@ fn joints_that_carry_a_massless_one_are_not_blamed() {
         + &joint("three", "empty", "tip", "0.5 0 0", "1 0 0");
     let model = |more: &str| {
         let links = format!("<link name='base'/><link name='bare'/><link name='empty'/><link name='tip'>{}</link>", body("0.2 0.1 0"));
-        articulated::load_bytes("r.urdf", format!("<robot name='r'>{links}{arm}{more}</robot>").as_bytes(), Base::Fixed).unwrap()
+        Case::new("r", read(&format!("<robot name='r'>{links}{arm}{more}</robot>")), Base::Fixed).model
     };
     assert!(model("").massless_joints().is_empty());
     let camera = joint("pan", "tip", "camera", "0 0 0.1", "0 1 0") + "<link name='camera'/>";
@@ -169,7 +169,7 @@ fn a_follower_that_undoes_its_leader_moves_no_mass() {
         let joints = joint("first", "base", "middle", "") + &joint("second", "middle", "tip", &mimic);
         let body = "<inertial><origin xyz='0 0 0'/><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial>";
         let urdf = format!("<robot name='r'><link name='base'/><link name='middle'/><link name='tip'>{body}</link>{joints}</robot>");
-        let model = articulated::load_bytes("r.urdf", urdf.as_bytes(), Base::Fixed).unwrap();
+        let model = Case::new("r", read(&urdf), Base::Fixed).model;
         let undone = multiplier == -1.0;
         assert_eq!(model.massless_joints(), if undone { vec![1] } else { vec![] }, "{kind} {multiplier}");
     }

@@ -1,12 +1,10 @@
-//! Each effect against its formula on a body of which all is known, and against MuJoCo.
+//! Each effect against its formula on a body of which all is known.
 
 use articulated_core::algorithm::{Workspace, function};
 use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, Origin};
-use articulated_core::effect::{Applied, EffectId, effect};
+use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
 use articulated_core::model::pass::model_passes;
-use articulated_tests::case::Case;
-use serde::Deserialize;
 
 const MASS: f64 = 2.0;
 const INERTIA: f64 = 0.3;
@@ -243,64 +241,4 @@ fn added_mass_makes_a_massless_joint_move_something() {
     assert!(wet(2.0).massless_joints().is_empty());
     assert_near(call(&wet(2.0), "forward_dynamics", &[&[0.3], &[0.7], &[5.0]])[0], 2.5);
     assert_eq!(wet(0.0).massless_joints(), [1]);
-}
-
-#[derive(Deserialize)]
-struct Answers {
-    engine: String,
-    cases: Vec<Answer>,
-}
-
-/// One robot subject to some effects.
-#[derive(Deserialize)]
-struct Answer {
-    robot: String,
-    case: String,
-    gravity: [f64; 3],
-    joints: Vec<String>,
-    effects: Vec<Written>,
-    states: Vec<State>,
-}
-
-#[derive(Deserialize)]
-struct Written {
-    effect: String,
-    on: String,
-    xyz: [f64; 3],
-    rpy: [f64; 3],
-    parameters: Vec<f64>,
-}
-
-#[derive(Deserialize)]
-struct State {
-    q: Vec<f64>,
-    v: Vec<f64>,
-    tau: Vec<f64>,
-    a: Vec<f64>,
-}
-
-/// `tests/oracles/effects_fixtures.py` wrote the answers.
-#[test]
-fn accelerations_are_mujocos() {
-    let answers: Answers = serde_json::from_str(include_str!("../../fixtures/effects/mujoco.json")).expect("the fixture");
-    assert_eq!(answers.cases.len(), 12, "{}", answers.engine);
-    for answer in &answers.cases {
-        let case = Case::bundled(articulated_models::robot(&answer.robot).expect("a bundled robot")).with_gravity(answer.gravity);
-        assert!(case.model.joints.iter().map(|j| &j.name).eq(&answer.joints), "{}", answer.robot);
-        let applied = |w: &Written| Applied {
-            effect: effect(&w.effect).expect("a known effect").id,
-            on: w.on.clone(),
-            at: Origin { xyz: w.xyz, rpy: w.rpy },
-            parameters: w.parameters.clone(),
-        };
-        let effects: Vec<Applied> = answer.effects.iter().map(applied).collect();
-        let model = case.model.with_effects(&effects).expect("effects that can be had");
-        for state in &answer.states {
-            let found = call(&model, "forward_dynamics", &[&state.q, &state.v, &state.tau]);
-            let scale = state.a.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
-            for (f, e) in found.iter().zip(&state.a) {
-                assert!((f - e).abs() <= 1e-10 * scale, "{} {}: {f} instead of {e}", answer.robot, answer.case);
-            }
-        }
-    }
 }

@@ -10,10 +10,10 @@ use articulated_core::model::{JointInfo, Model};
 use articulated_core::spatial::screw::Quaternion;
 use articulated_core::spatial::{Vector3, rotate};
 use articulated_reference::Big;
-use articulated_tests::case::{Case, cast, for_each_bundled, for_each_tree};
-use articulated_tests::measure::U;
-use articulated_tests::random::Random;
-use articulated_tests::random_tree::Flavour;
+use articulated_test_support::case::{Case, cast, for_each_bundled, for_each_tree};
+use articulated_test_support::measure::U;
+use articulated_test_support::random::Random;
+use articulated_test_support::random_tree::Flavour;
 
 /// Where a joint's quaternion is in q, and its angular rates in v.
 fn quaternion_of(joint: &JointInfo) -> Option<(usize, usize)> {
@@ -213,7 +213,7 @@ fn a_limit_that_is_open_on_one_side_is_kept_on_the_other() {
 fn a_planar_joint_without_limits_is_drawn_in_metres_and_turns() {
     let text = r#"<robot name="r"><link name="base"/><link name="puck"/>
         <joint name="slide" type="planar"><parent link="base"/><child link="puck"/><axis xyz="0 0 1"/></joint></robot>"#;
-    let model = Model::new(&articulated_tests::case::read(text), articulated_core::description::Base::Fixed).unwrap();
+    let model = Model::new(&articulated_test_support::case::read(text), articulated_core::description::Base::Fixed).unwrap();
     let drawn = |u: f64| {
         let mut q = [0.0; 3];
         random_configuration(&model, &mut Workspace::new(&model), &[u; 3], &mut q);
@@ -258,7 +258,7 @@ fn a_continuous_joint_has_no_limits() {
     let text = r#"<robot name="r"><link name="base"/>
         <link name="arm"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
         <joint name="turn" type="continuous"><parent link="base"/><child link="arm"/><limit lower="-0.1" upper="0.2" effort="1" velocity="1"/></joint></robot>"#;
-    let mut robot = articulated_tests::case::read(text);
+    let mut robot = articulated_test_support::case::read(text);
     robot.joints[0].limit = Some(Limit { lower: -0.1, upper: 0.2, effort: 1.0, velocity: 1.0 });
     let model = Model::new(&robot, articulated_core::description::Base::Fixed).unwrap();
     assert_eq!(model.joints[0].limit, None);

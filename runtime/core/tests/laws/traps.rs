@@ -2,9 +2,9 @@
 //! this crate must tell them from the right one. A law that nobody has seen fail proves little.
 
 use articulated_core::description::{Base, Description, JointKind};
-use articulated_tests::case::{Case, State, read};
-use articulated_tests::random::Random;
-use articulated_tests::{measure, rigid};
+use articulated_test_support::case::{Case, State, read};
+use articulated_test_support::random::Random;
+use articulated_test_support::{measure, rigid};
 use nalgebra::{Matrix3, Matrix4, Matrix6, Vector3, Vector6};
 
 /// One way to get it wrong.
@@ -217,7 +217,7 @@ fn virtual_power_catches_every_trap() {
 fn composite_bodies_give_the_matrix_of_n_recursions_and_single_links_do_not() {
     let (case, chain) = arm();
     let state = case.state(&mut Random::new(13));
-    let expected = articulated_tests::case::mass_matrix(&case.model, &state.q);
+    let expected = articulated_test_support::case::mass_matrix(&case.model, &state.q);
     let gap = |m: &nalgebra::DMatrix<f64>| (m - &expected).amax() / expected.amax();
     assert!(gap(&chain.mass_matrix(&state.q, true)) < 1e-15);
     assert!(gap(&chain.mass_matrix(&state.q, false)) > 1e-2);

@@ -2,14 +2,14 @@
 
 use articulated_core::Scalar;
 use articulated_reference::Big;
-use articulated_tests::random::Random;
+use articulated_test_support::random::Random;
 
 /// Modules of lanes, as generated code has them.
 macro_rules! lanes {
     ($name:ident: $($file:literal)+) => {
         #[allow(dead_code, non_upper_case_globals, unreachable_pub, unsafe_code, unused_imports, unused_macros, clippy::all, clippy::pedantic)]
         mod $name {
-            $(include!(concat!("../../../runtime/core/src/lanes/text/", $file, ".rs"));)+
+            $(include!(concat!("../../src/lanes/text/", $file, ".rs"));)+
         }
     };
 }

@@ -3,7 +3,7 @@
 use articulated_core::description::{Base, Description, EditError, Inertial, Joint, JointKind, Link, Origin, Shaft};
 use articulated_core::effect::EffectId;
 use articulated_core::model::Model;
-use articulated_tests::case::{inverse_dynamics, mass_matrix, placements};
+use articulated_test_support::case::{inverse_dynamics, mass_matrix, placements};
 
 const LENGTH: f64 = 1.2;
 const STIFFNESS: f64 = 40.0;

@@ -1,10 +1,10 @@
 //! Energy: what torques do is what motion and height gain.
 
-use articulated_tests::case::{Case, State};
-use articulated_tests::case::{for_each_bundled, for_each_tree, inverse_dynamics, mass_matrix};
-use articulated_tests::measure::{U, torque_scale};
-use articulated_tests::random::Random;
-use articulated_tests::random_tree::Flavour;
+use articulated_test_support::case::{Case, State};
+use articulated_test_support::case::{for_each_bundled, for_each_tree, inverse_dynamics, mass_matrix};
+use articulated_test_support::measure::{U, torque_scale};
+use articulated_test_support::random::Random;
+use articulated_test_support::random_tree::Flavour;
 use nalgebra::DVector;
 
 /// Errors allowed, in units of u times the magnitude of the terms.

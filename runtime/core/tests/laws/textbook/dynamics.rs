@@ -3,7 +3,7 @@
 use articulated_core::Scalar;
 use articulated_core::algorithm::Argument;
 use articulated_reference::Big;
-use articulated_tests::random_tree::Flavour;
+use articulated_test_support::random_tree::Flavour;
 use num_traits::Zero;
 
 use super::{

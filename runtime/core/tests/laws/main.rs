@@ -1,0 +1,20 @@
+//! Laws of dynamics, held against the generic library on random trees. Each file is one family of laws.
+//!
+//! `cargo test -p articulated-core` runs them, and compiles neither the generator nor the command for it.
+
+mod closed_forms;
+mod edits;
+mod effects;
+mod effects_closed;
+mod energy;
+mod equivalence;
+mod manifold;
+mod mimic;
+mod reference;
+mod screws;
+mod shafts;
+mod sines;
+mod structure;
+mod table;
+mod textbook;
+mod traps;

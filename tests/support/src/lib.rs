@@ -1,0 +1,16 @@
+//! What the tests of the crates share.
+//!
+//! Laws need three things: robots at random ([`random_tree`], with [`random_effects`]), a right answer that shares no formula
+//! with the library ([`virtual_power`], and the textbook form in big floats), and a yardstick for rounding errors ([`measure`]).
+//!
+//! The crate depends on the core, the reference and the reader alone: the laws of the core are tests of the core.
+
+pub mod case;
+pub mod jet;
+pub mod measure;
+pub mod random;
+pub mod random_effects;
+pub mod random_limbs;
+pub mod random_tree;
+pub mod rigid;
+pub mod virtual_power;
