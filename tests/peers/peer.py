@@ -40,6 +40,9 @@ class Peer:
         arrays = [(ctypes.c_double * len(vector))(*vector) for vector in vectors]
         out = (ctypes.c_double * size)()
         getattr(self.library, f"peer_{function}")(self.handle, *arrays, out)
+        keeps = getattr(self.library, "peer_keeps", None)
+        if keeps and keeps(self.handle, function.encode()):
+            self.library.peer_read(self.handle, function.encode(), out)
         return list(out)
 
     def has(self, function):

@@ -1,5 +1,5 @@
-// The functions, by their names in the registry; part of pinocchio_peer.cpp. What is one row of numbers or [nv][nv] is written to the last
-// argument; what is larger stays in Pinocchio's data, and peer_read hands it out.
+// The functions, by their names in the registry; part of pinocchio_peer.cpp. What is one row of numbers, or the Coriolis
+// matrix, is written to the last argument; all else stays in Pinocchio's data, and peer_read hands it out.
 
 using In = const double *;
 
@@ -124,18 +124,23 @@ PEER_API void peer_static_torque(void * handle, In q, In wrenches, double * tau)
 
 // ---- matrices and forward dynamics; of symmetric matrices only the upper triangle is computed
 
-PEER_API void peer_mass_matrix(void * handle, In q, double * M)
+// Both stay in Pinocchio's data: to write out the lower triangle is no part of what is timed.
+PEER_API void peer_mass_matrix(void * handle, In q)
 {
   Peer & p = peer(handle);
   pin::crba(p.model, p.data, p.q(q));
-  INTO_MATRIX(M) = p.data.M.selfadjointView<Eigen::Upper>();
 }
 
-PEER_API void peer_mass_matrix_inverse(void * handle, In q, double * W)
+PEER_API void peer_mass_matrix_inverse(void * handle, In q)
 {
   Peer & p = peer(handle);
   pin::computeMinverse(p.model, p.data, p.q(q));
-  INTO_MATRIX(W) = p.data.Minv.selfadjointView<Eigen::Upper>();
+}
+
+PEER_API int peer_keeps(void *, const char * function)
+{
+  const std::string name = function;
+  return name == "mass_matrix" || name == "mass_matrix_inverse";
 }
 
 PEER_API void peer_coriolis_matrix(void * handle, In q, In v, double * C)

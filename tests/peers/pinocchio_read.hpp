@@ -98,6 +98,8 @@ const std::map<std::string, Read> & readers()
     std::map<std::string, Read> all = {
       {"placements", read_placements},
       {"joint_wrenches", read_joint_wrenches},
+      {"mass_matrix", [](Peer & p, Writer & w) { w.symmetric(p.data.M); }},
+      {"mass_matrix_inverse", [](Peer & p, Writer & w) { w.symmetric(p.data.Minv); }},
       {"inverse_dynamics_derivatives", read_inverse_slopes},
       {"inverse_dynamics_derivatives_with_wrenches", read_inverse_slopes},
       {"forward_dynamics_derivatives", read_forward_slopes},

@@ -59,15 +59,36 @@ impl<'a> Contender<'a> {
         out
     }
 
-    /// What the clock is held to: so many rounds through the states, or as many of them as are near.
+    /// Whether the result of a call is where the next call can wait for it.
+    pub(crate) fn can_wait(&self) -> bool {
+        self.out > 0
+            && match &self.way {
+                Way::Generated(_) | Way::Generic { .. } => true,
+                Way::Peer(kernel) => kernel.writes(),
+            }
+    }
+
+    /// What is timed: so many rounds through the states, or as many of the states as are near.
     pub(crate) fn run<'b>(&'b self, states: &'b [Vec<&'b [f64]>]) -> Run<'b> {
+        self.timed(states, Calls::Independent)
+    }
+
+    /// The same for calls that each wait for the result of the call before; [`can_wait`](Self::can_wait).
+    pub(crate) fn run_dependent<'b>(&'b self, states: &'b [Vec<&'b [f64]>]) -> Run<'b> {
+        self.timed(states, Calls::Dependent)
+    }
+
+    fn timed<'b>(&'b self, states: &'b [Vec<&'b [f64]>], calls: Calls) -> Run<'b> {
         let (states, mut room) = (near(states), Room::new(self.out));
         Run::new(states.len(), move |rounds| {
             let out = black_box(room.next());
-            match &self.way {
-                Way::Generated(kernel) => clock(|| kernel.repeat(rounds, states, out)),
-                Way::Peer(kernel) => clock(|| kernel.repeat(rounds, states, out)),
-                Way::Generic { function, model, workspace } => {
+            match (&self.way, calls) {
+                (Way::Generated(kernel), Calls::Independent) => clock(|| kernel.repeat(rounds, states, out)),
+                (Way::Generated(kernel), Calls::Dependent) => clock(|| kernel.repeat_waiting(rounds, states, out)),
+                (Way::Peer(kernel), Calls::Independent) => clock(|| kernel.repeat(rounds, states, out)),
+                (Way::Peer(kernel), Calls::Dependent) => clock(|| kernel.repeat_waiting(rounds, states, out)),
+                // A generic call is a hundred times as long as what a processor begins early.
+                (Way::Generic { function, model, workspace }, _) => {
                     let workspace = &mut workspace.borrow_mut();
                     clock(|| {
                         for state in std::iter::repeat_n(states, rounds).flatten() {
@@ -78,6 +99,15 @@ impl<'a> Contender<'a> {
             }
         })
     }
+}
+
+/// Whether each call waits for the result of the call before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Calls {
+    /// As a batch of states would call it: the processor may begin a call before the last one has ended.
+    Independent,
+    /// As a controller calls it: the next state follows from the last result.
+    Dependent,
 }
 
 /// Bytes of arguments that a round goes through at most, half of a small first-level cache: who calls a function has just made its arguments.

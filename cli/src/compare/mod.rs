@@ -154,8 +154,17 @@ fn measure(ready: &Prepared, peers: &[Peer], repetitions: usize) -> FunctionRepo
     let mut runs: Vec<timing::Run<'_>> = ours.map(|c| c.run(&arguments)).collect();
     runs.extend(batches.iter().map(Many::run));
     runs.extend(known.iter().zip(&theirs).map(|((_, c), x)| c.run(x)));
+    // Calls that wait for each other: of generated code first, then of each peer that writes its result.
+    let independent = runs.len();
+    runs.extend(generated.can_wait().then(|| generated.run_dependent(&arguments)));
+    runs.extend(known.iter().zip(&theirs).filter(|((_, c), _)| c.can_wait()).map(|((_, c), x)| c.run_dependent(x)));
     let times = timing::interleaved(&mut runs, repetitions);
     drop(runs);
+    let (times, waiting) = times.split_at(independent);
+    let mut waiting = waiting.iter().map(Vec::as_slice);
+    let mut waits = |contender: &Contender<'_>| contender.can_wait().then(|| waiting.next()).flatten();
+    let own_waiting = waits(&generated);
+    let peers_waiting: Vec<Option<&[f64]>> = known.iter().map(|(_, c)| waits(c)).collect();
     // Where the robot is singular nobody's result is right.
     let regular = ready.errors.is_none_or(|e| e.states > 0);
     let (own, rest) = times.split_at(2);
@@ -182,9 +191,9 @@ fn measure(ready: &Prepared, peers: &[Peer], repetitions: usize) -> FunctionRepo
             largest_difference: regular.then(difference).flatten(),
         }
     });
-    let peers = known.iter().zip(&theirs).zip(peer_times).map(|(((peer, contender), x), time)| {
+    let peers = known.iter().zip(&theirs).zip(peer_times.iter().zip(peers_waiting)).map(|(((peer, contender), x), (time, waiting))| {
         let difference = || peer.difference(f, model, &arguments, x, contender, &generic);
-        PeerReport::new(peer, f.name, [time, &own[0], &own[1]], regular.then(difference).flatten())
+        PeerReport::new(peer, f.name, [time, &own[0], &own[1]], waiting, regular.then(difference).flatten())
     });
-    FunctionReport::new(ready, [&own[0], &own[1]], variants.collect(), batches, peers.collect())
+    FunctionReport::new(ready, [&own[0], &own[1]], own_waiting, variants.collect(), batches, peers.collect())
 }

@@ -34,6 +34,7 @@ const UNITS: Units = Units(&[
     ("bound", ROUNDING),
     ("functions[].depth", "operations one after the other"),
     ("functions[].generated", CALL),
+    ("functions[].dependent", CALL),
     ("functions[].generic", CALL),
     ("functions[].generic_over_generated", RATIO),
     ("functions[].errors.generated", ROUNDING),
@@ -47,6 +48,7 @@ const UNITS: Units = Units(&[
     ("functions[].batches[].bound", MAGNITUDE),
     ("functions[].batches[].peers[].peer_over_batch", RATIO),
     ("functions[].peers[].time", CALL),
+    ("functions[].peers[].dependent", CALL),
     ("functions[].peers[].generic_over_peer", RATIO),
     ("functions[].peers[].generated_over_peer", RATIO),
     ("functions[].peers[].largest_difference", MAGNITUDE),
@@ -114,6 +116,8 @@ pub(super) struct FunctionReport {
     pub(super) compilation_seconds: f64,
     /// ns per call.
     pub(super) generated: Summary,
+    /// ns per call that waits for the result of the call before; none where there is no result.
+    pub(super) dependent: Option<Summary>,
     /// ns per call.
     pub(super) generic: Summary,
     pub(super) generic_over_generated: Summary,
@@ -146,6 +150,8 @@ pub(super) struct PeerReport {
     pub(super) engine: String,
     /// ns per call.
     pub(super) time: Summary,
+    /// ns per call that waits for the result of the call before; none where the peer keeps its result.
+    pub(super) dependent: Option<Summary>,
     pub(super) generic_over_peer: Summary,
     pub(super) generated_over_peer: Summary,
     /// Relative to the magnitude; `None` where the peer keeps its results to itself.
@@ -157,12 +163,19 @@ pub(super) struct PeerReport {
 }
 
 impl PeerReport {
-    /// `times`: ns per call of the peer, of generated code and of generic code.
-    pub(super) fn new(peer: &Peer, function: &str, [own, generated, generic]: [&[f64]; 3], largest_difference: Option<f64>) -> Self {
+    /// `times`: ns per call of the peer, of generated code and of generic code; `dependent`: ns per call of the peer that waits.
+    pub(super) fn new(
+        peer: &Peer,
+        function: &str,
+        [own, generated, generic]: [&[f64]; 3],
+        dependent: Option<&[f64]>,
+        largest_difference: Option<f64>,
+    ) -> Self {
         Self {
             peer: peer.name.clone(),
             engine: peer.engine().to_owned(),
             time: timing::summary(own),
+            dependent: dependent.map(timing::summary),
             generic_over_peer: timing::ratio(generic, own),
             generated_over_peer: timing::ratio(generated, own),
             largest_difference,
@@ -173,10 +186,11 @@ impl PeerReport {
 }
 
 impl FunctionReport {
-    /// `times`: ns per call of generated code and of generic code.
+    /// `times`: ns per call of generated code and of generic code; `dependent`: of generated code that waits.
     pub(super) fn new(
         ready: &Prepared,
         times: [&[f64]; 2],
+        dependent: Option<&[f64]>,
         variants: Vec<VariantReport>,
         batches: Vec<BatchReport>,
         peers: Vec<PeerReport>,
@@ -196,6 +210,7 @@ impl FunctionReport {
             generation_seconds: ready.generation.as_secs_f64(),
             compilation_seconds: ready.compiled.time.as_secs_f64(),
             generated: timing::summary(times[0]),
+            dependent: dependent.map(timing::summary),
             generic: timing::summary(times[1]),
             generic_over_generated: timing::ratio(times[1], times[0]),
             variants,

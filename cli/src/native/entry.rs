@@ -53,10 +53,64 @@ macro_rules! entry {
     };
 }
 
+/// For types of functions whose result the next call can wait for.
+macro_rules! waiting {
+    ($name:ident($($first:ident: $First:ty)?; $($rest:ident: $Rest:ty),*)) => {
+        impl $name {
+            /// The same, each call after the one before: its first array is a copy that waits for the result before (see [`Waiting`]).
+            ///
+            /// # Safety
+            /// As [`run`](Self::run); the function writes at least one number to the waiting call's result.
+            #[inline(always)]
+            pub(super) unsafe fn run_waiting(self, rounds: usize, states: &[[P; 4]], waiting: &mut Waiting, $($first: $First,)? $($rest: $Rest),*) {
+                // SAFETY: what this function asks for is what they ask for.
+                unsafe {
+                    match self {
+                        Self::One(f) => each(rounds, states, |[q, ..]| f($($first,)? waiting.after(q), $($rest),*)),
+                        Self::Two(f) => each(rounds, states, |[q, v, ..]| f($($first,)? waiting.after(q), v, $($rest),*)),
+                        Self::Three(f) => each(rounds, states, |[q, v, a, _]| f($($first,)? waiting.after(q), v, a, $($rest),*)),
+                        Self::Four(f) => each(rounds, states, |[q, v, a, w]| f($($first,)? waiting.after(q), v, a, w, $($rest),*)),
+                    }
+                }
+            }
+        }
+    };
+}
+
+/// Makes a call wait for the call before it: q + 0·(first + last number of the result), in an array of its own. A processor
+/// cannot begin the arithmetic of such a call early, as it does with calls that do not depend on each other.
+pub(super) struct Waiting {
+    q: Vec<f64>,
+    out: *const f64,
+    last: usize,
+}
+
+impl Waiting {
+    /// For arrays of `length` numbers and a result of `out` numbers, at least one, that is written where `result` points.
+    pub(super) fn new(length: usize, result: *const f64, out: usize) -> Self {
+        Self { q: vec![0.0; length], out: result, last: out - 1 }
+    }
+
+    /// # Safety
+    /// `q` points to as many numbers as were promised, and the result is as long as promised, and alive.
+    #[inline(always)]
+    unsafe fn after(&mut self, q: P) -> P {
+        // SAFETY: both are as long as promised; volatile reads, so that no compiler knows the numbers.
+        unsafe {
+            let wait = 0.0 * (self.out.read_volatile() + self.out.add(self.last).read_volatile());
+            std::ptr::copy_nonoverlapping(q.cast::<f64>(), self.q.as_mut_ptr(), self.q.len());
+            self.q.iter_mut().for_each(|x| *x += wait);
+        }
+        self.q.as_ptr().cast()
+    }
+}
+
 entry! {
     /// A function of one state, which the command has compiled.
     OfState(; out: O)
 }
+
+waiting!(OfState(; out: O));
 
 entry! {
     /// A function of so many states at once, which the command has compiled.
@@ -67,6 +121,8 @@ entry! {
     /// A peer's function of its robot that writes its result.
     Writing(robot: H; out: O)
 }
+
+waiting!(Writing(robot: H; out: O));
 
 entry! {
     /// A peer's function of its robot that keeps its result until it is asked for.

@@ -1,6 +1,6 @@
 //! Functions of one state in code that the command has compiled.
 
-use super::entry::OfState;
+use super::entry::{OfState, Waiting};
 use super::{Lengths, Native, begin, begins};
 
 /// A function on arrays of doubles, with the lengths it was promised to have. Keeps its library open.
@@ -46,5 +46,17 @@ impl Kernel {
         assert!(states.iter().all(|x| self.fits(x, out)));
         // SAFETY: as in `call`.
         unsafe { self.entry.run(rounds, &begins(states), out.as_mut_ptr().cast()) }
+    }
+
+    /// The same, each call after the result of the one before.
+    ///
+    /// # Panics
+    /// If a length is not the one promised.
+    pub(crate) fn repeat_waiting(&self, rounds: usize, states: &[Vec<&[f64]>], out: &mut [f64]) {
+        assert!(states.iter().all(|x| self.fits(x, out)));
+        out.fill(0.0);
+        let mut waiting = Waiting::new(self.lengths.arguments[0], out.as_ptr(), out.len());
+        // SAFETY: as in `call`; the result has at least one number, or `Waiting::new` panicked.
+        unsafe { self.entry.run_waiting(rounds, &begins(states), &mut waiting, out.as_mut_ptr().cast()) }
     }
 }

@@ -3,7 +3,7 @@
 use std::ffi::{CString, c_char, c_int};
 use std::rc::Rc;
 
-use super::entry::{Keeping, Writing};
+use super::entry::{Keeping, Waiting, Writing};
 use super::peer::{H, NativePeer, Opened};
 use super::{Lengths, O, P, begin, begins};
 
@@ -43,6 +43,9 @@ impl NativePeer {
     pub(crate) fn kernel(&self, function: &str, arguments: &[usize], out: usize, kept: bool) -> Option<PeerKernel> {
         let (robot, symbol) = (&self.0, format!("peer_{function}"));
         let told = CString::new(function).ok()?;
+        // SAFETY: the type of the interface.
+        let keeps: Option<extern "C" fn(H, *const c_char) -> c_int> = unsafe { robot.function("keeps") };
+        let kept = kept || keeps.is_some_and(|keeps| keeps(robot.handle, told.as_ptr()) != 0);
         // SAFETY: the type of the interface.
         let has: Option<extern "C" fn(H, *const c_char) -> c_int> = unsafe { robot.function("has") };
         if has.is_some_and(|has| has(robot.handle, told.as_ptr()) == 0) {
@@ -84,5 +87,23 @@ impl PeerKernel {
         assert!(states.iter().all(|x| self.lengths.fit(x, out)));
         // SAFETY: as in `call`.
         unsafe { self.entry.run(rounds, &begins(states), self.robot.handle, out.as_mut_ptr().cast()) }
+    }
+
+    /// The same, each call after the result of the one before.
+    ///
+    /// # Panics
+    /// If a length is not the one promised, or if the peer keeps its result ([`writes`](Self::writes)).
+    pub(crate) fn repeat_waiting(&self, rounds: usize, states: &[Vec<&[f64]>], out: &mut [f64]) {
+        assert!(states.iter().all(|x| self.lengths.fit(x, out)));
+        let Entry::Writing(entry) = self.entry else { panic!("a result that is kept cannot be waited for") };
+        out.fill(0.0);
+        let mut waiting = Waiting::new(self.lengths.arguments[0], out.as_ptr(), out.len());
+        // SAFETY: as in `call`; the result has at least one number, or `Waiting::new` panicked.
+        unsafe { entry.run_waiting(rounds, &begins(states), &mut waiting, self.robot.handle, out.as_mut_ptr().cast()) }
+    }
+
+    /// Whether the peer writes a result that the next call can wait for.
+    pub(crate) fn writes(&self) -> bool {
+        matches!(self.entry, Entry::Writing(_))
     }
 }

@@ -26,6 +26,7 @@ pub(super) fn text(report: &Report) -> String {
             batches::batches(report),
             BATCHES,
         ),
+        ("Time of a call that waits for the result of the call before it, and how many times our time others take".to_owned(), peers::dependent(report), DEPENDENT),
         ("The fastest build of each engine, by the letter of its build, and how many times our time it takes".to_owned(), peers::engines(report), ""),
         (format!("Time of a call in each build of other libraries{}", peers::letters(report)), peers::builds(report), ""),
         (
@@ -66,6 +67,8 @@ pub(super) fn text(report: &Report) -> String {
 const TIMES: &str = "generated: for this processor; any processor: the same source for any of its kind, where that is other code; generic: the library, for any robot";
 const BATCHES: &str = "blocks: 8 states (f32: 16) with each of their numbers side by side; states: one state after the other, to be turned first; \
                        generated/it: how many times its time a call of generated code takes";
+const DEPENDENT: &str = "as in a controller, where the next state follows from the last result: q + 0·(first + last number of the result); where calls do \
+                         not depend on each other, as above, a processor begins a call before the last one has ended; –: the result stays inside the library";
 /// What errors are against.
 fn against(report: &Report) -> &'static str {
     match report.reference {

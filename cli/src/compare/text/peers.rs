@@ -48,6 +48,24 @@ pub(super) fn engines(report: &Report) -> Table {
     table
 }
 
+/// Calls that wait for each other: ours, and the fastest build of each engine.
+pub(super) fn dependent(report: &Report) -> Table {
+    let engines = report.engines();
+    let titles = engines.iter().flat_map(|engine| [(*engine, "ns"), ("/ours", "ratio")]);
+    let own = [("function", ""), ("generated", "ns"), ("/independent", "ratio")];
+    let mut table = Table::new(own.into_iter().chain(titles));
+    by_function(report, &mut table, |f| {
+        let ours = f.dependent?.median;
+        let of = |engine: &&str| {
+            let times = f.peers.iter().filter(|p| p.engine == *engine).filter_map(|p| p.dependent);
+            let least = times.map(|t| t.median).min_by(f64::total_cmp);
+            least.map_or_else(|| ["–", "–"].map(str::to_owned), |ns| [nanoseconds(ns), times_of(ns / ours)])
+        };
+        Some([nanoseconds(ours), times_of(ours / f.generated.median)].into_iter().chain(engines.iter().flat_map(of)).collect())
+    });
+    table
+}
+
 /// All builds.
 pub(super) fn builds(report: &Report) -> Table {
     let names = names(report);
