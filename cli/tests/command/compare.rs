@@ -164,8 +164,24 @@ use std::ffi::{c_char, c_int, c_void};
 }
 "#;
 
+/// Beside that its mass matrix, which stays inside until it is read.
+const KEEPING: &str = r#"
+#[unsafe(no_mangle)] pub extern "C" fn peer_keeps(_: *mut c_void, _: *const c_char) -> c_int {
+    1
+}
+#[unsafe(no_mangle)] pub extern "C" fn peer_mass_matrix(_: *mut c_void, _: *const f64) {}
+#[unsafe(no_mangle)] pub unsafe extern "C" fn peer_read(_: *mut c_void, _: *const c_char, out: *mut f64) -> c_int {
+    unsafe { *out = 1.001 };
+    1
+}
+"#;
+
 fn peer(wrong: &str) -> File {
-    let source = File::new("peer.rs", PEER.replace("WRONG", wrong).as_bytes());
+    peer_of(&PEER.replace("WRONG", wrong))
+}
+
+fn peer_of(source: &str) -> File {
+    let source = File::new("peer.rs", source.as_bytes());
     let library = File::new("libpeer.so", b"");
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let words = ["--edition", "2024", "--crate-type", "cdylib", "-o", library.name(), source.name()];
@@ -195,6 +211,30 @@ fn a_peer_is_timed_and_must_agree() {
         // One document, and that is the report.
         assert!(format == "text" || ended.json()["functions"][0]["peers"][0]["largest_difference"].as_f64().unwrap() > 1e-9);
     }
+}
+
+#[test]
+fn calls_that_wait_for_each_other_are_timed_too() {
+    let library = peer("0.0");
+    let words = ["compare", "simple_pendulum", "--functions", "gravity_torque", "--peer", library.name()];
+    let json = run(&[&words[..], &SMALL[..], &["--format", "json"]].concat()).json();
+    let f = &json["functions"][0];
+    for time in [&f["dependent"], &f["peers"][0]["dependent"]] {
+        assert!(time["median"].as_f64().unwrap() > 0.0, "{f}");
+    }
+    let text = run(&[&words[..], &SMALL[..]].concat()).out;
+    assert!(text.contains("waits for the result of the call before it") && text.contains("/independent"), "{text}");
+}
+
+#[test]
+fn a_peer_may_keep_a_square_matrix_until_it_is_read() {
+    let library = peer_of(&(PEER.replace("WRONG", "0.0") + KEEPING));
+    let words = ["compare", "simple_pendulum", "--functions", "mass_matrix", "--format", "json", "--peer", library.name()];
+    let ended = run(&[&words[..], &SMALL[..]].concat());
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let peer = &ended.json()["functions"][0]["peers"][0];
+    assert!(peer["largest_difference"].as_f64().unwrap() < 1e-15, "{peer}");
+    assert!(peer["time"]["median"].as_f64().unwrap() > 0.0 && peer["dependent"].is_null(), "{peer}");
 }
 
 /// FNV-1a, by which a manifest knows a document.
