@@ -24,8 +24,32 @@ pub(crate) fn module(out: &mut String, groups: &Groups, model: &Model<f64>) {
     tables.constants(out);
     tables.tree(out);
     tables.pairs(out);
-    let _ = writeln!(out, "\n{DERIVATIVES}}}\n");
+    let _ = writeln!(out, "\n{ORDER}\n{DERIVATIVES}}}\n");
 }
+
+/// What the proof of the loops' `unsafe` takes from the tables, for the compiler to check.
+const ORDER: &str = "\
+// Parents are in groups before their children, or are the root; paths begin and end at joints.
+const _: () = {
+    let mut group = 0;
+    while group < GROUPS {
+        let Group { behind, parents, .. } = &TREE[group];
+        ::core::assert!(*behind == APART || *behind < group || *behind >= BLOCKS);
+        let mut lane = 0;
+        while lane < 4 {
+            let parent = parents[lane] as usize / 4;
+            ::core::assert!(parent < group || parent >= BLOCKS);
+            lane += 1;
+        }
+        group += 1;
+    }
+    let mut path = 0;
+    while path < STEPS {
+        ::core::assert!((PATHS[path].first as usize) < 4 * GROUPS && (PATHS[path].on as usize) < 4 * GROUPS);
+        path += 1;
+    }
+};
+";
 
 struct Tables<'a> {
     groups: &'a Groups,

@@ -231,6 +231,34 @@ macro_rules! trees {
                 pairs
             }
 
+            #[test]
+            fn sweeps_read_no_number_before_it_is_written() {
+                use super::portable_f64x4::*;
+                derivatives!();
+                narrow!();
+                let mut random = random(NV as u64 + 1);
+                let (q, v, a): ([f64; NQ], [f64; NV], [f64; NV]) = (from_fn(|_| random()), from_fn(|_| random()), from_fn(|_| random()));
+                let found = [0.0, f64::NAN].map(|unknown| {
+                    let mut out = [f64::NAN; 3 * MATRIX];
+                    derivatives_in(&mut Bodies::new(Block::filled(Held::new([unknown; 4]))), &q, &v, &a, &mut out);
+                    out.map(f64::to_bits)
+                });
+                assert_eq!(found[0], found[1]);
+                assert!(found[1].iter().all(|x| f64::from_bits(*x).is_finite()));
+            }
+
+            #[test]
+            fn lanes_lie_in_an_array_where_each_selected_one_does() {
+                for numbers in 0..9 {
+                    for place in 0..12 {
+                        for which in 0..16 {
+                            let expected = (0..4).all(|lane| which >> lane & 1 == 0 || place + lane < numbers);
+                            assert_eq!(lies_in(numbers, place, which), expected, "{numbers} {place} {which:04b}");
+                        }
+                    }
+                }
+            }
+
             /// With AVX2 alone, where the processor has it: what this is compiled for may have more.
             fn in_fours(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV]) -> Option<[f64; 3 * MATRIX]> {
                 #[cfg(target_arch = "x86_64")]

@@ -8,18 +8,22 @@ macro_rules! derivatives {
 
         $(#[$features])?
         fn derivatives(q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV], out: &mut [f64; 3 * MATRIX]) {
-            let mut bodies = Bodies { blocks: [UNKNOWN; BLOCKS], root: NOTHING, paths: [[0.0; 3]; 1 + STEPS] };
-            bodies.blocks[GROUPS..].fill(NOTHING);
+            derivatives_in(&mut Bodies::new(UNKNOWN), q, v, a, out);
+        }
+
+        $(#[$features])?
+        #[inline]
+        fn derivatives_in(bodies: &mut Bodies, q: &[f64; NQ], v: &[f64; NV], a: &[f64; NV], out: &mut [f64; 3 * MATRIX]) {
             let root = Root::new(q, v, a);
-            inputs(&mut bodies, &root, q, v, a);
-            places(&mut bodies);
-            motion(&mut bodies);
-            sums(&mut bodies);
-            wrenches(&mut bodies);
+            inputs(bodies, &root, q, v, a);
+            places(bodies);
+            motion(bodies);
+            sums(bodies);
+            wrenches(bodies);
             out.fill(0.0);
-            with_root(&bodies, &root, out);
-            pairs(&bodies, out);
-            root_alone(&bodies, &root, out);
+            with_root(bodies, &root, out);
+            pairs(bodies, out);
+            root_alone(bodies, &root, out);
         }
     };
 }

@@ -150,7 +150,9 @@ macro_rules! sweeps {
                 for (lane, slot) in group.parents.iter().enumerate() {
                     let (to, at) = (before.get_mut(*slot as usize / 4).unwrap_or(&mut bodies.root), *slot as usize % 4);
                     for (to, from) in to.x.iter_mut().zip(&handed) {
-                        to.numbers_mut()[at] += from[lane];
+                        let mut x = *to.numbers();
+                        x[at] += from[lane];
+                        to.write(x);
                     }
                 }
             }

@@ -80,36 +80,32 @@ const APART: usize = usize::MAX;
 /// Numbers of a matrix.
 const MATRIX: usize = NV * NV;
 
-/// A number of four joints that a sweep writes before anything reads it.
+/// A number of four joints. A sweep writes it before any sweep reads it.
 type Held = ::core::mem::MaybeUninit<Four>;
 
 /// Where four numbers stand.
 trait Numbers {
     fn numbers(&self) -> &Four;
-    fn numbers_mut(&mut self) -> &mut Four;
 }
 
 impl Numbers for Four {
     fn numbers(&self) -> &Four {
         self
     }
-
-    fn numbers_mut(&mut self) -> &mut Four {
-        self
-    }
 }
 
 impl Numbers for Held {
     fn numbers(&self) -> &Four {
-        // SAFETY: a block without joints is zeros. Of all others `inputs` writes the first numbers of `drift` and `curl`, which is what `places` reads of these; `places` writes all of `axis`,
-        // `shift` and `points` and x[..12] and x[24..], `motion` x[12..24] and the rest of `drift` and `curl`. Groups stand behind those of their parents, whose numbers are there when they are read;
-        // paths are read of joints behind `places`. From `sums` on everything has been written.
+        // SAFETY: blocks without joints are zeros, and so is the root's. In all others:
+        // * `inputs` writes the first two numbers of `drift` and the first three of `curl`. `places`
+        //   reads these and no others.
+        // * `places` writes all of `axis`, `shift` and `points`, x[..12] and x[24..]. `motion` writes
+        //   x[12..24] and the rest of `drift` and `curl`. Both read numbers of parents, which stand in
+        //   groups before their children: the tables are checked for that where they are written.
+        // * Paths are read after the loop of `places` over all groups.
+        // * `sums` writes all of `x` before it adds any of it to a parent. After `sums` nothing is
+        //   left unwritten.
         unsafe { self.assume_init_ref() }
-    }
-
-    fn numbers_mut(&mut self) -> &mut Four {
-        // SAFETY: as above.
-        unsafe { self.assume_init_mut() }
     }
 }
 
@@ -140,7 +136,7 @@ struct Bodies {
     paths: [[f64; 3]; 1 + STEPS],
 }
 
-/// Four joints of which nothing is known yet: 20 kB of zeros for a humanoid would take a tenth of the time.
+/// Four joints, not yet written: 20 kB of zeros for a humanoid would take a tenth of the time.
 const UNKNOWN: Block = Block::filled(Held::uninit());
 
 /// Zeros.
@@ -153,6 +149,22 @@ impl Block {
 }
 
 const BLOCKS: usize = GROUPS.next_multiple_of(4);
+
+impl Bodies {
+    /// Blocks of joints that hold `unknown`, and zeros.
+    fn new(unknown: Block) -> Self {
+        let mut bodies = Self { blocks: [unknown; BLOCKS], root: NOTHING, paths: [[0.0; 3]; 1 + STEPS] };
+        bodies.blocks[GROUPS..].fill(NOTHING);
+        bodies
+    }
+}
+
+/// Whether the lanes of a vector at `place` that `which` selects, a bit each, lie inside an array of so many numbers.
+#[inline]
+fn lies_in(numbers: usize, place: usize, which: u16) -> bool {
+    let room = numbers.saturating_sub(place);
+    room >= 4 || which >> room == 0
+}
 
 /// The root body's motion.
 struct Root {

@@ -71,12 +71,6 @@ mod wide {
         Rows(own)
     }
 
-    /// Whether the lanes asked for are among so many numbers.
-    #[inline]
-    fn lies_in(numbers: usize, place: usize, which: u16) -> bool {
-        place <= numbers - 4 || which >> ::core::cmp::min(numbers.saturating_sub(place), 4) == 0
-    }
-
     /// The joints' rows, into one of the matrices.
     #[target_feature(enable = "avx512vl,avx2,fma")]
     #[inline]
