@@ -159,6 +159,9 @@ pub(crate) struct RobotArguments {
     /// Another name in Rust for a joint or link, where two would be one there; again for each
     #[arg(long, value_name = "NAME=RUST_NAME", value_parser = renaming)]
     pub(crate) rename: Vec<(String, String)>,
+    /// How many MB of code all functions together may become; more is an error [default: 64, or what the scene says]
+    #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    pub(crate) max_code_size: Option<u64>,
     #[command(flatten)]
     pub(crate) edits: Edits,
 }
@@ -166,8 +169,17 @@ pub(crate) struct RobotArguments {
 impl RobotArguments {
     /// A robot as it is.
     pub(crate) fn plain(robot: &str, floating: bool) -> Self {
-        let (robot, edits) = (robot.to_owned(), Edits::default());
-        Self { robot, floating, fixed: false, gravity: None, allow_unphysical_inertia: false, snap_angles: None, rename: Vec::new(), edits }
+        Self {
+            robot: robot.to_owned(),
+            floating,
+            fixed: false,
+            gravity: None,
+            allow_unphysical_inertia: false,
+            snap_angles: None,
+            rename: Vec::new(),
+            max_code_size: None,
+            edits: Edits::default(),
+        }
     }
 }
 
@@ -287,6 +299,9 @@ pub(crate) struct FunctionsArguments {
     /// The root links of robots that are files move freely
     #[arg(long)]
     pub(crate) floating: bool,
+    /// How many MB of code a function may become; what is more is not defined [default: 64, or what the scene says]
+    #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    pub(crate) max_code_size: Option<u64>,
     /// As tables in Markdown, with a head and the meaning of each function
     #[arg(long, conflicts_with = "format")]
     pub(crate) markdown: bool,

@@ -130,11 +130,12 @@ impl From<articulated_codegen::Error> for Failure {
 
 /// Why a robot does not have a function, in a few words; the error itself if it is another.
 pub(crate) fn undefined(error: articulated_codegen::Error) -> Result<String, articulated_codegen::Error> {
-    use articulated_codegen::Error::{BoundFrames, NoMass, Singular};
+    use articulated_codegen::Error::{BoundFrames, NoMass, Singular, TooMuchCode};
     match error {
         Singular { joints, .. } => Ok(format!("no inertia of its own for joint {}", joints.join(", joint "))),
         NoMass { .. } => Ok("nothing that moves has mass".into()),
         BoundFrames { frames, .. } => Ok(format!("fewer than six degrees of freedom carry {}", frames.join(", "))),
+        TooMuchCode { found, most, .. } => Ok(format!("about {found} MB of code, more than {most} (--max-code-size)")),
         other => Err(other),
     }
 }

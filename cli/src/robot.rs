@@ -59,6 +59,7 @@ impl Robot {
         options.robot.allow_unphysical_inertia = arguments.allow_unphysical_inertia;
         options.robot.snap_angles = arguments.snap_angles;
         options.rename.clone_from(&arguments.rename);
+        options.max_code_size = arguments.max_code_size.unwrap_or(options.max_code_size);
         edit(&mut options, &arguments.edits)?;
         let files = path.iter().cloned().chain(appended(&arguments.edits)).collect();
         Ok(Self { file, scene: None, urdf, options, path, bundled: bundled.is_some(), files })
@@ -79,6 +80,7 @@ impl Robot {
         options.robot.allow_unphysical_inertia |= arguments.allow_unphysical_inertia;
         options.robot.snap_angles = arguments.snap_angles.or(options.robot.snap_angles);
         arguments.rename.iter().for_each(|(from, to)| options.set_name(from, to));
+        options.max_code_size = arguments.max_code_size.unwrap_or(options.max_code_size);
         edit(options, &arguments.edits)?;
         // The scene's effects on all joints are those of the robot as it is now.
         let resolved = prepared.scene.effects_on(&request.robot()).map_err(|error| error.placed(&prepared.scene))?;

@@ -216,6 +216,13 @@ impl Build {
         self
     }
 
+    /// How many megabytes (10⁶ bytes) of Rust all functions together may become, instead of [`MAX_CODE_SIZE`](crate::MAX_CODE_SIZE). More is an error.
+    #[must_use]
+    pub fn max_code_size(mut self, megabytes: u64) -> Self {
+        self.request.options.max_code_size = megabytes;
+        self
+    }
+
     /// Any other choice.
     #[must_use]
     pub fn options(mut self, change: impl FnOnce(&mut crate::Options)) -> Self {

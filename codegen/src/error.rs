@@ -45,6 +45,22 @@ pub enum Error {
         /// How many it may have.
         most: usize,
     },
+    /// A function whose code would be larger than the request allows.
+    #[error("{file}: {function}: found about {found} MB of code for {freedoms} degrees of freedom, expected at most {most} MB for all functions together; call the library's {}, a loop over the joints, or set `max_code_size` (`--max-code-size`) to more MB", library.join(", "))]
+    TooMuchCode {
+        /// The file.
+        file: String,
+        /// The function.
+        function: String,
+        /// What it consists of, as the generic library calls it.
+        library: Vec<&'static str>,
+        /// The robot's degrees of freedom.
+        freedoms: usize,
+        /// Predicted size of the function's source, MB.
+        found: u64,
+        /// The request's limit, MB.
+        most: u64,
+    },
     /// Two names of the URDF that are the same in Rust.
     #[error("{file}: {kind}s {first:?} and {second:?} are both `{ident}` in Rust; give one another name with `rename`")]
     NameClash {

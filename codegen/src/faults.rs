@@ -45,6 +45,7 @@ fn take_out(error: &Error, options: &mut Options) {
         | Error::Singular { function, .. }
         | Error::BoundFrames { function, .. }
         | Error::NoMass { function, .. }
+        | Error::TooMuchCode { function, .. }
         | Error::Wanted { found: function, .. }
         | Error::SameName { name: function } => {
             if let Some(at) = entry_of(options.functions.iter().map(String::as_str), function) {

@@ -24,6 +24,7 @@ pub mod pass;
 mod program;
 mod request;
 pub mod scene;
+mod size;
 mod sym;
 mod trace;
 mod wanted;
@@ -53,6 +54,7 @@ pub use faults::entry_of;
 pub use ledger::Ledger;
 pub use parameters::Parameter;
 pub use request::{Options, Request, choose_frames, model, read};
+pub use size::MAX_CODE_SIZE;
 pub use sym::Sym;
 pub use wanted::{Constant, Part, Wanted, is_keyword};
 
@@ -131,6 +133,7 @@ fn plan(request: &Request) -> Result<Plan, Error> {
     let parameters = parameters::parse(&options.parameters, &options.rename, &mut reading.description, &whole)?;
     let model = choose_frames(request, if parameters.is_empty() { whole } else { model(request, &reading.description)? })?;
     let wanted = wanted(request, &model, &massless)?;
+    size::within_limit(request, &model, &wanted)?;
     let names = emit::Names::new(&model, request)?;
     Ok(Plan { reading, model, parameters, wanted, names })
 }

@@ -47,6 +47,8 @@ pub struct Options {
     pub forbid_unsafe: bool,
     /// For crates without `std`: without `unsafe` and a runtime, no multiply-add, and what `core` lacks is called in the crate `libm`.
     pub no_std: bool,
+    /// How many megabytes (10⁶ bytes) of Rust all functions together may become, as predicted: see [`MAX_CODE_SIZE`](crate::MAX_CODE_SIZE), which is the default.
+    pub max_code_size: u64,
     /// Path of the runtime crate, to implement its trait `Dynamics`; `None`: the code depends on nothing but `core` and `std`.
     pub runtime: Option<String>,
     /// Whether the ledger has counts after each model pass: for each of them the functions are traced once more. The code is the same. Build scripts and the macro do without.
@@ -66,6 +68,7 @@ impl Default for Options {
             level: Level::default(),
             forbid_unsafe: false,
             no_std: false,
+            max_code_size: crate::MAX_CODE_SIZE,
             runtime: None,
             stages: true,
         }

@@ -45,6 +45,7 @@ mod tree;
 ///         batch = [],                                    // [f64, f32]: functions of many states at once too, in modules batch_f64, batch_f32
 ///         level = f64,                                   // how accurate: also f32, f32_f64, compensated + two, double_double, f64 + fast_10 + no_fma, …
 ///         forbid_unsafe = false,                         // true: no `unsafe` in the module; slower on x86-64: no limbs in lanes, no joints in loops, no choice of instructions
+///         max_code_size = 64,                            // MB of code that all functions together may become; more is an error
 ///         no_std = false,                                // true: for crates without `std`, which depend on the crate `libm`; without `unsafe`, multiply-adds and `Dynamics`
 ///         crate = ::articulated,                         // the path of this crate, if it has another name
 ///         standalone = false,                            // true: no implementation of `Dynamics`, no dependence on this crate

@@ -92,6 +92,8 @@ pub struct Code {
     pub level: Option<Level>,
     /// No `unsafe` in the generated code.
     pub forbid_unsafe: Option<bool>,
+    /// How much code the functions may become, MB.
+    pub max_code_size: Option<u64>,
     /// Where the scene says so.
     pub places: Places,
 }
@@ -351,6 +353,14 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         default: "false",
         what: "no `unsafe` in generated code",
         read: |s, spot, log| s.code.forbid_unsafe = spot.boolean(log),
+    },
+    Row {
+        name: "max_code_size",
+        required: false,
+        value: "whole number, MB",
+        default: "64",
+        what: "code that all functions together may become, 1 to 1000000; more is an error",
+        read: |s, spot, log| s.code.max_code_size = spot.whole(log, 1, 1_000_000),
     },
     Row {
         name: "effects",

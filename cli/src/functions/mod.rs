@@ -31,7 +31,7 @@ pub(crate) fn run(arguments: &FunctionsArguments, format: Format) -> Result<(), 
     let mut report = Report::default();
     let mut subjects = Vec::new();
     for name in names {
-        let (subject, row) = subject(name, arguments.floating)?;
+        let (subject, row) = subject(name, arguments)?;
         subjects.push(subject);
         report.robots.push(row);
     }
@@ -57,9 +57,10 @@ pub(crate) fn run(arguments: &FunctionsArguments, format: Format) -> Result<(), 
     })
 }
 
-fn subject(name: &str, floating: bool) -> Result<(Subject, RobotRow), Failure> {
+fn subject(name: &str, arguments: &FunctionsArguments) -> Result<(Subject, RobotRow), Failure> {
     let bundled = articulated_models::robot(name).is_some();
-    let robot = Robot::find(&RobotArguments::plain(name, floating && !bundled))?;
+    let plain = RobotArguments::plain(name, arguments.floating && !bundled);
+    let robot = Robot::find(&RobotArguments { max_code_size: arguments.max_code_size, ..plain })?;
     let reading = robot.read()?;
     reading.warnings.iter().filter(|_| !bundled).for_each(|w| console::warn(&w.to_string()));
     let model = robot.whole_model(&reading)?;

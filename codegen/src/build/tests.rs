@@ -50,7 +50,8 @@ fn each_choice_arrives_in_the_request() {
     let mut expected = plain.clone();
     assert_eq!(plain.runtime.as_deref(), Some("::articulated"));
     (expected.runtime, expected.limbs, expected.forbid_unsafe, expected.no_std) = (None, false, true, true);
-    assert_eq!(of(build.clone().standalone().limbs(false).forbid_unsafe().no_std()), expected);
+    expected.max_code_size = 200;
+    assert_eq!(of(build.clone().standalone().limbs(false).forbid_unsafe().no_std().max_code_size(200)), expected);
     let mut expected = plain.clone();
     (expected.robot.base, expected.robot.snap_angles, expected.robot.allow_unphysical_inertia) = (Base::Fixed, Some(1e-6), true);
     expected.rename = vec![("a-b".into(), "A_MINUS_B".into())];

@@ -5,7 +5,6 @@ use std::ops::RangeInclusive;
 use articulated_core::algorithm::Form;
 use articulated_core::model::Model;
 
-use super::subject::Subject;
 use crate::Options;
 use crate::graph::{Counts, Op};
 use crate::groups::{self, Groups};
@@ -25,10 +24,14 @@ const COLUMNS: RangeInclusive<usize> = 7..=60;
 
 /// What of a function is left a loop, if that is faster: it needs vectors.
 pub(super) fn columns(wanted: &Wanted, model: &Model<f64>, options: &Options) -> Option<Columns> {
-    let [part] = wanted.parts.as_slice() else { return None };
-    let unsolved = part.function.unsolved.as_ref()?;
-    let applies = COLUMNS.contains(&model.nv) && options.level.has_lanes() && !options.forbid_unsafe && applies(unsolved, model);
-    applies.then(|| Columns { ways: model.ways_to_base() })
+    has_columns(wanted, model, options).then(|| Columns { ways: model.ways_to_base() })
+}
+
+/// Whether the solution of M X = B is left a loop.
+pub(crate) fn has_columns(wanted: &Wanted, model: &Model<f64>, options: &Options) -> bool {
+    let [part] = wanted.parts.as_slice() else { return false };
+    let fits = COLUMNS.contains(&model.nv) && options.level.has_lanes() && !options.forbid_unsafe;
+    fits && part.function.unsolved.as_ref().is_some_and(|unsolved| applies(unsolved, model))
 }
 
 impl Columns {
@@ -58,11 +61,11 @@ const WRITTEN_OUT: f64 = 3500.0;
 const LOOPED: f64 = 0.95;
 
 /// Where joints stand, if a function that would be so many instructions is fewer as loops over them: these need vectors, and constants that are known.
-pub(super) fn groups(wanted: &Wanted, written: f64, subject: &Subject, options: &Options) -> Option<(Groups, Counts)> {
+pub(crate) fn groups(wanted: &Wanted, written: f64, model: &Model<f64>, options: &Options) -> Option<(Groups, Counts)> {
     let meant = written > WRITTEN_OUT && wanted.as_function().is_some_and(|f| f.forms.contains(&Form::JointsInLoops));
-    let can = options.limbs && options.level.has_lanes() && !options.forbid_unsafe && subject.parameters.is_empty();
-    let groups = (meant && can).then(|| Groups::of(subject.model)).flatten()?;
-    let counts = groups.counts(subject.model);
+    let can = options.limbs && options.level.has_lanes() && !options.forbid_unsafe && options.parameters.is_empty();
+    let groups = (meant && can).then(|| Groups::of(model)).flatten()?;
+    let counts = groups.counts(model);
     (counts.instructions() as f64 * LOOPED < written).then_some((groups, counts))
 }
 

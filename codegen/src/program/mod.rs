@@ -18,7 +18,7 @@ use crate::wanted::Wanted;
 use subject::Subject;
 
 pub(crate) use choice::{Addition, Choice};
-pub(crate) use looped::Columns;
+pub(crate) use looped::{Columns, groups, has_columns};
 
 /// A function and what it became.
 pub(crate) struct Program {
@@ -55,7 +55,7 @@ pub(crate) fn program(wanted: Wanted, model: &Model<f64>, parameters: &[Paramete
         }
     }
     let (mut graph, mut entry) = best;
-    let groups = looped::groups(&wanted, price(&graph), &subject, options);
+    let groups = looped::groups(&wanted, price(&graph), model, options);
     if let Some((_, counts)) = &groups {
         graph = Graph::default();
         looped::count(&mut entry, counts);

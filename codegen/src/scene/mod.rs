@@ -107,6 +107,7 @@ pub fn fill(options: &mut Options, scene: &Scene) {
     options.batch = code.batch.unwrap_or_default();
     options.level = code.level.unwrap_or(options.level);
     put(code.forbid_unsafe, &mut options.forbid_unsafe);
+    options.max_code_size = code.max_code_size.unwrap_or(options.max_code_size);
 }
 
 #[cfg(test)]

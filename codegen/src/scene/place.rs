@@ -29,7 +29,8 @@ pub(super) fn in_its_place(error: &Error, scene: &Scene) -> Option<Vec<SceneErro
         Error::UnknownFunction { found: name, .. }
         | Error::Singular { function: name, .. }
         | Error::BoundFrames { function: name, .. }
-        | Error::NoMass { function: name, .. } => function(name).map(|at| refused(at, "functions", whole)),
+        | Error::NoMass { function: name, .. }
+        | Error::TooMuchCode { function: name, .. } => function(name).map(|at| refused(at, "functions", whole)),
         // They begin with their key.
         Error::Wanted { found: name, .. } | Error::SameName { name } => function(name).map(|at| refused(at, "", whole)),
         Error::Parameter { found, .. } => {

@@ -1,0 +1,229 @@
+//! Predicted size of generated code, from the tree alone: it is known before anything is traced.
+//!
+//! A function with one number per joint grows as the chain does. One with a number per pair of joints grows as its
+//! square, and what inverts the mass matrix as its cube. A test compares predictions with what is generated.
+
+use articulated_core::model::Model;
+
+use crate::wanted::{Part, Wanted};
+use crate::{Error, Options, Request, program};
+
+/// So many megabytes (10⁶ bytes) of Rust are generated at most, unless a request has another limit. A compiler takes
+/// minutes and gigabytes of memory for more, and loops over joints are faster.
+pub const MAX_CODE_SIZE: u64 = 64;
+
+/// Bytes of source per instruction: 64 to 70 with one word of code each, measured on chains of 40 to 250 joints.
+const BYTES: f64 = 66.0;
+
+/// The same function for batches comes twice, in numbers and in vectors.
+const WITH_BATCH: f64 = 3.0;
+
+/// What of a tree decides how much code a function is.
+struct Tree {
+    bodies: f64,
+    frames: f64,
+    freedoms: f64,
+    /// Pairs of a degree of freedom and one on its way to the base, itself included.
+    pairs: f64,
+    /// Sum of the squares of the number of degrees of freedom on the way to the base, over all degrees of freedom.
+    squares: f64,
+    /// Pairs of a frame and a degree of freedom that moves it.
+    frame_pairs: f64,
+    /// As `squares`, over all frames.
+    frame_squares: f64,
+    /// Whether joints follow others: then forward dynamics takes the factors of the mass matrix.
+    has_followers: bool,
+}
+
+impl Tree {
+    fn of(model: &Model<f64>) -> Self {
+        let mut depths: Vec<f64> = Vec::with_capacity(model.bodies.len());
+        let (mut freedoms, mut pairs, mut squares) = (0.0, 0.0, 0.0);
+        for (i, body) in model.bodies.iter().enumerate() {
+            if i == 0 {
+                depths.push(0.0);
+                continue;
+            }
+            let (below, own) = (depths[body.parent], body.joint.nv());
+            for k in 1..=own {
+                let depth = below + k as f64;
+                (pairs, squares) = (pairs + depth, squares + depth * depth);
+            }
+            freedoms += own as f64;
+            depths.push(below + own as f64);
+        }
+        let of_frames = model.frames.iter().map(|frame| depths[frame.body]);
+        Self {
+            bodies: model.bodies.len() as f64,
+            frames: model.frames.len() as f64,
+            freedoms,
+            pairs,
+            squares,
+            frame_pairs: of_frames.clone().sum(),
+            frame_squares: of_frames.map(|depth| depth * depth).sum(),
+            has_followers: model.has_followers(),
+        }
+    }
+
+    /// Instructions of one function; `columns`: whether the solution of M X = B is left a loop.
+    fn instructions(&self, part: &Part, columns: bool) -> f64 {
+        let factors = 0.5 * self.squares;
+        let inverse = self.freedoms * self.pairs;
+        let own = match part.function.name {
+            "mass_matrix" => 20.0 * self.pairs,
+            "coriolis_matrix" => 30.0 * self.pairs,
+            "inverse_dynamics_derivatives" | "inverse_dynamics_derivatives_with_wrenches" => 55.0 * self.pairs,
+            "static_torque_derivative" => 15.0 * self.pairs,
+            "torque_regressor" => 70.0 * self.pairs,
+            "mass_matrix_inverse" => 20.0 * self.pairs + inverse,
+            "forward_dynamics_derivatives" | "forward_dynamics_derivatives_with_wrenches" => {
+                80.0 * self.pairs + if columns { factors } else { 5.0 * inverse }
+            }
+            "forward_dynamics" | "forward_dynamics_with_wrenches" | "solve_mass_matrix" if self.has_followers => {
+                20.0 * self.pairs + factors
+            }
+            "forward_dynamics" | "forward_dynamics_with_wrenches" | "solve_mass_matrix" => 150.0 * self.bodies,
+            "operational_space_inertia" | "operational_space_inertia_inverse" => 20.0 * self.pairs + factors + 12.0 * self.frame_squares,
+            "placement_derivatives" => 35.0 * self.frame_pairs,
+            "jacobians_body" => 30.0 * self.frame_pairs,
+            "jacobian_rates_body" => 55.0 * self.frame_pairs,
+            "jacobians_world" | "jacobians_world_aligned" | "jacobian_rates_world" | "jacobian_rates_world_aligned" => {
+                19.0 * self.frame_pairs
+            }
+            _ => 0.0,
+        };
+        let frames = if part.function.asks_for_frames() { self.frames } else { 0.0 };
+        own + 100.0 * self.bodies + 20.0 * frames
+    }
+}
+
+/// Megabytes of source that a function becomes. What is left loops over joints is small; batches have it written out.
+fn megabytes(wanted: &Wanted, model: &Model<f64>, tree: &Tree, options: &Options) -> f64 {
+    let alone = options.batch.is_empty();
+    let columns = alone && program::has_columns(wanted, model, options);
+    let instructions: f64 = wanted.parts.iter().map(|part| tree.instructions(part, columns)).sum();
+    if alone && program::groups(wanted, instructions, model, options).is_some() {
+        return 0.0;
+    }
+    instructions * BYTES * if alone { 1.0 } else { WITH_BATCH } / 1e6
+}
+
+/// Refuses a request for more code than its limit. Errors: one for each of the largest
+/// functions, without which the rest is within it.
+pub(crate) fn within_limit(request: &Request, model: &Model<f64>, wanted: &[Wanted]) -> Result<(), Error> {
+    let (options, tree) = (&request.options, Tree::of(model));
+    let mut sizes: Vec<(&Wanted, f64)> = wanted.iter().map(|w| (w, megabytes(w, model, &tree, options))).collect();
+    sizes.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let most = options.max_code_size as f64;
+    let mut rest: f64 = sizes.iter().map(|(_, size)| size).sum();
+    let mut errors = Vec::new();
+    for (wanted, size) in sizes {
+        if rest <= most {
+            break;
+        }
+        rest -= size;
+        errors.push(Error::TooMuchCode {
+            file: request.file.clone(),
+            function: wanted.name.clone(),
+            library: wanted.parts.iter().map(|part| part.function.name).collect(),
+            freedoms: model.nv,
+            found: size.ceil() as u64,
+            most: options.max_code_size,
+        });
+    }
+    Error::of(errors).map_or(Ok(()), Err)
+}
+
+#[cfg(test)]
+mod tests {
+    use articulated_core::algorithm::functions;
+    use articulated_core::description::Base;
+
+    use super::*;
+    use crate::{Real, Sym, generate};
+
+    /// A link with mass, and a joint of this type that holds it.
+    fn moved(name: usize, parent: usize, kind: &str) -> String {
+        format!(
+            "<link name='b{name}'><inertial><origin xyz='0.03 -0.01 0.04'/><mass value='0.4'/>\
+             <inertia ixx='0.004' ixy='0.0002' ixz='0' iyy='0.005' iyz='-0.0001' izz='0.003'/></inertial></link>\
+             <joint name='t{name}' type='{kind}'><parent link='b{parent}'/><child link='b{name}'/>\
+             <origin xyz='0.02 0.01 0.07' rpy='0.2 -0.1 0.4'/><axis xyz='1 2 2'/></joint>"
+        )
+    }
+
+    /// Joints with axes that meet no axis of coordinates, so many in a row from one link.
+    fn chain(joints: usize, row: usize, base: Base) -> Request {
+        let parent = |k: usize| if k % row == 1 { 0 } else { k - 1 };
+        let trunk = "<link name='b0'><inertial><mass value='2'/><inertia ixx='0.1' ixy='0' ixz='0' iyy='0.2' iyz='0' izz='0.15'/></inertial></link>";
+        let links: String = (1..=joints).map(|k| moved(k, parent(k), "continuous")).collect();
+        let mut request = Request::new("chain.urdf", format!("<robot name='chain'>{trunk}{links}</robot>"));
+        (request.options.stages, request.options.robot.base) = (false, base);
+        request
+    }
+
+    #[test]
+    fn predictions_are_what_is_generated_within_a_factor_of_two() {
+        for (mut request, batch) in
+            [(chain(24, 24, Base::Fixed), false), (chain(18, 6, Base::Floating), false), (chain(12, 12, Base::Fixed), true)]
+        {
+            request.options.limbs = false;
+            request.options.batch = if batch { vec![Real::F64] } else { Vec::new() };
+            let whole = crate::model(&request, &crate::read(&request).unwrap().description).unwrap();
+            for function in functions::<Sym>() {
+                request.options.functions = vec![function.name.to_owned()];
+                let Ok(generated) = generate(&request) else { continue };
+                let wanted = Wanted::plain(function);
+                let predicted = megabytes(&wanted, &whole, &Tree::of(&whole), &request.options);
+                let found = generated.source.len() as f64 / 1e6;
+                // What is small is never refused, and mostly helpers that all modules have.
+                assert!(found < predicted.max(0.5) * 2.0 && predicted < found.max(0.5) * 2.0, "{} {found} {predicted}", function.name);
+            }
+        }
+    }
+
+    #[test]
+    fn code_beyond_the_limit_is_refused_before_it_is_traced() {
+        let mut request = chain(1000, 1000, Base::Fixed);
+        request.options.functions =
+            ["inverse_dynamics", "mass_matrix", "other = coriolis_matrix", "forward_dynamics"].map(String::from).to_vec();
+        let start = std::time::Instant::now();
+        let error = generate(&request).unwrap_err();
+        assert!(start.elapsed().as_secs() < 5);
+        let told = |function: &str, library: &str, size: u64| {
+            format!(
+                "chain.urdf: {function}: found about {size} MB of code for 1000 degrees of freedom, expected at most 64 MB for all functions together; \
+                 call the library's {library}, a loop over the joints, or set `max_code_size` (`--max-code-size`) to more MB"
+            )
+        };
+        let expected = [told("other", "coriolis_matrix", 998), told("mass_matrix", "mass_matrix", 668)].join("\n");
+        assert_eq!(error.to_string(), expected);
+        request.options.functions.retain(|f| !f.contains("matrix"));
+        assert!(generate(&request).is_ok());
+    }
+
+    #[test]
+    fn the_limit_is_that_of_the_request_and_of_all_functions_together() {
+        let mut request = chain(40, 40, Base::Fixed);
+        request.options.functions = vec!["mass_matrix".into(), "coriolis_matrix".into()];
+        for (most, refused) in [(1, "coriolis_matrix"), (2, "coriolis_matrix"), (4, "")] {
+            request.options.max_code_size = most;
+            let told = generate(&request).map_or_else(|error| error.to_string(), |_| String::new());
+            assert!(told.contains(refused), "{told}");
+            assert_eq!(told.is_empty(), refused.is_empty(), "{told}");
+            assert_eq!(told.contains("mass_matrix"), most == 1, "{told}");
+        }
+    }
+
+    #[test]
+    fn derivatives_that_are_left_loops_do_not_reach_the_limit() {
+        let mut request = chain(240, 60, Base::Floating);
+        request.options.max_code_size = 10;
+        let model = crate::model(&request, &crate::read(&request).unwrap().description).unwrap();
+        let wanted = Wanted::plain(crate::function("inverse_dynamics_derivatives").unwrap());
+        for (limbs, batch, fits) in [(true, vec![], true), (false, vec![], false), (true, vec![Real::F64], false)] {
+            (request.options.limbs, request.options.batch) = (limbs, batch);
+            assert_eq!(within_limit(&request, &model, std::slice::from_ref(&wanted)).is_ok(), fits, "{limbs}");
+        }
+    }
+}
