@@ -135,7 +135,8 @@ fn inputs(out: &mut String, parameters: &[Parameter]) {
         );
     }
     let _ = writeln!(out, "{NUMBERS}\npub const PARAMETERS: [f64; {}] = [{}];", values.len(), values.join(", "));
-    let rows: Vec<_> = parameters.iter().map(|p| (super::identifier(&p.name), p.what.clone(), p.at)).collect();
+    let names = names::identifiers(parameters.iter().map(|p| p.name.as_str()));
+    let rows: Vec<_> = names.into_iter().zip(parameters).map(|(name, p)| (name, p.what.clone(), p.at)).collect();
     list(out, "parameter", "Index in [`PARAMETERS`] of the first number of each.", &rows);
 }
 

@@ -4,12 +4,15 @@ use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 
 use articulated_core::model::Model;
+use unicode_security::GeneralSecurityProfile;
+use unicode_security::confusable_detection::skeleton;
+use unicode_security::mixed_script::{AugmentedScriptSet, is_potential_mixed_script_confusable_char};
 
 use crate::{Error, Request, is_keyword};
 
 /// The constant's name for a name of the URDF: letters in upper case, everything that cannot be in an identifier as `_`, `_` in front of a
-/// digit. `shoulder pan-joint` is `SHOULDER_PAN_JOINT`, `1st-link` is `_1ST_LINK`. Letters beyond ASCII stay; where all of a crate's
-/// look like Latin ones, the compiler warns (`mixed_script_confusables`), which only the root of that crate can allow: there another name helps.
+/// digit. `shoulder pan-joint` is `SHOULDER_PAN_JOINT`, `1st-link` is `_1ST_LINK`. Letters beyond ASCII stay where the compiler takes
+/// them without a warning: it warns of a crate, and only the root of that crate could allow it. Other names are written by code points.
 pub fn identifier(name: &str) -> String {
     let upper: String = name.trim_matches('_').chars().flat_map(char::to_uppercase).collect();
     let mut ident: String = upper.chars().map(|c| if c == '_' || c.is_alphanumeric() { c } else { '_' }).collect();
@@ -17,7 +20,34 @@ pub fn identifier(name: &str) -> String {
         ident.insert(0, '_');
     }
     // An underscore alone is no name, and neither is what the compiler does not take for one.
-    if ident.chars().all(|c| c == '_') || !is_identifier(&ident) { ascii(name) } else { ident }
+    if ident.chars().all(|c| c == '_') || !is_identifier(&ident) || !passes_lints(&ident) { ascii(name) } else { ident }
+}
+
+/// Whether the compiler has no warning for an identifier that is alone in a crate: neither `uncommon_codepoints` nor
+/// `mixed_script_confusables`, and none of `confusable_idents` beside any in ASCII.
+fn passes_lints(ident: &str) -> bool {
+    let beyond = || ident.chars().filter(|c| !c.is_ascii());
+    let looks_ascii = skeleton(ident).all(|c| c.is_ascii());
+    let distinct: Vec<AugmentedScriptSet> =
+        beyond().filter(|c| !is_potential_mixed_script_confusable_char(*c)).chain(['A']).map(AugmentedScriptSet::for_char).collect();
+    // A script is safe where one of its letters looks like none of another script. Latin is.
+    let is_safe = |c: char| {
+        let own = AugmentedScriptSet::for_char(c);
+        let shared = |other: &AugmentedScriptSet| {
+            let mut both = own;
+            both.intersect_with(*other);
+            !both.is_empty() && !both.is_all()
+        };
+        own.is_all() || distinct.iter().any(shared)
+    };
+    ident.is_ascii() || !looks_ascii && ident.chars().all(GeneralSecurityProfile::identifier_allowed) && beyond().all(is_safe)
+}
+
+/// The identifiers that look like others among them.
+fn look_alikes<'a>(idents: impl Iterator<Item = &'a String>) -> BTreeSet<String> {
+    let mut alike: BTreeMap<String, BTreeSet<&String>> = BTreeMap::new();
+    idents.filter(|ident| !ident.is_ascii()).for_each(|ident| _ = alike.entry(skeleton(ident).collect()).or_default().insert(ident));
+    alike.into_values().filter(|idents| idents.len() > 1).flatten().cloned().collect()
 }
 
 /// A name of code points, where letters will not do.
@@ -60,18 +90,29 @@ impl Names {
         }
         let joints = model.joints.iter().map(|j| j.name.as_str());
         let frames = model.frames.iter().map(|f| f.name.as_str());
+        let plain: Vec<String> = joints.clone().chain(frames.clone()).map(identifier).collect();
+        let alike = look_alikes(plain.iter());
         let mut clashes = Vec::new();
-        let names = Self { joints: idents("joint", joints, request, &mut clashes), frames: idents("link", frames, request, &mut clashes) };
+        let names = Self {
+            joints: idents("joint", joints, request, &alike, &mut clashes),
+            frames: idents("link", frames, request, &alike, &mut clashes),
+        };
         Error::of(clashes).map_or(Ok(names), Err)
     }
 }
 
-/// The Rust names of all; those that another has already are among the clashes.
-fn idents<'a>(kind: &'static str, names: impl Iterator<Item = &'a str>, request: &Request, clashes: &mut Vec<Error>) -> Vec<String> {
+/// The Rust names of all, those that look like others written by code points; those that another has already are among the clashes.
+fn idents<'a>(
+    kind: &'static str,
+    names: impl Iterator<Item = &'a str>,
+    request: &Request,
+    alike: &BTreeSet<String>,
+    clashes: &mut Vec<Error>,
+) -> Vec<String> {
     let mut seen: BTreeMap<String, &str> = BTreeMap::new();
     let renamed: BTreeMap<&str, &String> = request.options.rename.iter().map(|(from, to)| (from.as_str(), to)).collect();
     let mut ident = |name: &'a str| {
-        let ident = renamed.get(name).map_or_else(|| identifier(name), |to| (*to).clone());
+        let ident = renamed.get(name).map_or_else(|| distinct(name, alike), |to| (*to).clone());
         match seen.entry(ident.clone()) {
             Entry::Vacant(free) => {
                 free.insert(name);
@@ -84,6 +125,19 @@ fn idents<'a>(kind: &'static str, names: impl Iterator<Item = &'a str>, request:
         ident
     };
     names.map(&mut ident).collect()
+}
+
+/// Names in Rust of all, those that look like others written by code points.
+pub(crate) fn identifiers<'a>(names: impl Iterator<Item = &'a str> + Clone) -> Vec<String> {
+    let plain: Vec<String> = names.clone().map(identifier).collect();
+    let alike = look_alikes(plain.iter());
+    names.map(|name| distinct(name, &alike)).collect()
+}
+
+/// The name in Rust, by code points where it looks like another.
+fn distinct(name: &str, alike: &BTreeSet<String>) -> String {
+    let ident = identifier(name);
+    if alike.contains(&ident) { ascii(name) } else { ident }
 }
 
 /// All renamings that cannot be, each once.
@@ -119,7 +173,19 @@ mod tests {
             ("1st-link", "_1ST_LINK"),
             ("type", "TYPE"),
             ("__floating_base__", "FLOATING_BASE"),
-            ("локоть", "ЛОКОТЬ"),
+            ("бедро", "БЕДРО"),
+            ("локоть", "_U43B_U43E_U43A_U43E_U442_U44C_"),
+            ("рука", "_U440_U443_U43A_U430_"),
+            ("рука robot", "_U440_U443_U43A_U430_U20_ROBOT"),
+            ("Λ", "_U39B_"),
+            ("ώμος", "ΏΜΟΣ"),
+            ("ömer", "ÖMER"),
+            ("肘", "肘"),
+            ("ひじ", "ひじ"),
+            ("팔꿈치", "팔꿈치"),
+            ("कोहनी", "कोहनी"),
+            ("ﬁnger", "FINGER"),
+            ("ａｒｍ", "_UFF41_UFF52_UFF4D_"),
             ("🤚", "_U1F91A_"),
             ("_", "_U5F_"),
             ("hand/tool0", "HAND_TOOL0"),
@@ -128,6 +194,62 @@ mod tests {
             assert_eq!(identifier(name), ident);
             assert!(is_identifier(ident), "{ident}");
         }
+    }
+
+    /// Each robot alone in a crate, as the lints are of a crate.
+    #[test]
+    fn the_compiler_warns_of_no_name() {
+        let folder = std::env::temp_dir().join(format!("articulated-names-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        for names in [
+            ["рука", "локоть"],
+            ["рука", "нос"],
+            ["орех", "ЗАЗ"],
+            ["рука левая", "left рука"],
+            ["αβγ", "Λ"],
+            ["ώμος", "ΑΒ"],
+            ["արմունկ", "օ"],
+            ["מרפק", "ס"],
+            ["كوع", "ه"],
+            ["कोहनी", "०"],
+            ["肘", "一"],
+            ["ひじ", "エ"],
+            ["カロ工", "ニ"],
+            ["팔꿈치", "ㅣ"],
+            ["ข้อศอก", "แ"],
+            ["ömer", "ﬁnger"],
+            ["ａｒｍ", "𝐚𝐫𝐦"],
+            ["əl", "ſ"],
+            ["ª", "Ǆ"],
+            ["e\u{301}x", "éx"],
+            ["ЛАЗ", "ЛA3"],
+            ["Л1О", "Л1O"],
+            ["土土", "士士"],
+            ["\u{202e}mra", "a\u{200d}b"],
+            ["🤚", "a\u{9b}31m"],
+        ] {
+            let link = |name: &str| format!("<link name='{name}'/>");
+            let joint = |name: &str, parent: &str| {
+                format!("<joint name='{name}' type='continuous'><parent link='{parent}'/><child link='{name}'/></joint>")
+            };
+            let urdf = format!(
+                "<robot name='arm'>{}{}{}{}{}</robot>",
+                link("base"),
+                link(names[0]),
+                link(names[1]),
+                joint(names[0], "base"),
+                joint(names[1], names[0])
+            );
+            let mut request = Request::new("arm.urdf", urdf);
+            request.options.parameters = names.iter().map(|name| format!("payload({name})")).collect();
+            let (file, out) = (folder.join("arm.rs"), folder.join("arm.rmeta"));
+            std::fs::write(&file, crate::generate(&request).unwrap_or_else(|error| panic!("{names:?}: {error}")).source).unwrap();
+            let mut rustc = std::process::Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()));
+            rustc.args(["--crate-type=lib", "--edition=2024", "--emit=metadata", "-Dwarnings", "-o"]).args([&out, &file]);
+            let done = rustc.output().unwrap();
+            assert!(done.status.success(), "{names:?}: {}", String::from_utf8_lossy(&done.stderr));
+        }
+        std::fs::remove_dir_all(folder).unwrap();
     }
 
     #[test]
