@@ -16,7 +16,7 @@ use std::ops::Range;
 use articulated_core::algorithm::FunctionError;
 use articulated_core::dynamics::Dynamics;
 use articulated_core::nalgebra::Matrix6;
-use articulated_core::spatial::screw::{cross_matrix, right_jacobian_inverse};
+use articulated_core::spatial::screw::{cross_matrix, exp_rotation, left_jacobian_inverse, right_jacobian_inverse};
 use articulated_core::spatial::{Twist, Vector3, given_norm};
 
 use super::StateError;
@@ -164,6 +164,28 @@ impl Manifold {
                 out[f.v + 3..f.v + 6].fill(three(q, f.q).norm());
             }
             at = (f.quaternion().end, f.v + f.rates());
+        }
+    }
+
+    /// Step vector u and velocity v at the end of a semi-implicit Euler step of length h, from velocity `v0` and acceleration `a` at its start.
+    ///
+    /// The velocity of the origin of a floating joint is stepped in axes that do not rotate, those of the joint at the start of the step:
+    ///
+    /// ```text
+    /// ω₁ = ω₀ + h ω̇      w = v₀ + h (v̇ + ω₀ × v₀)      q₁: rotated by exp(h ω₁), moved by h w      v₁ = exp(h ω₁)ᵀ w
+    /// ```
+    ///
+    /// v̇ + ω × v is the acceleration of the origin, which no constant velocity of the frame changes: such a velocity is kept to rounding (Galilean invariance). A
+    /// step of v in body axes instead multiplies it by √(1 + h² ω²).
+    pub(crate) fn semi_implicit_step(&self, v0: &[f64], a: &[f64], h: f64, u: &mut [f64], v: &mut [f64]) {
+        v.iter_mut().zip(v0).zip(a).for_each(|((v, v0), a)| *v = v0 + h * a);
+        u.iter_mut().zip(&*v).for_each(|(u, v)| *u = h * v);
+        for at in self.free.iter().filter(|free| free.moves).map(|free| free.v) {
+            let (rotation, spin) = (three(u, at), three(v0, at));
+            let w = three(v, at + 3) + spin.cross(&three(v0, at + 3)) * h;
+            // The translation of exp(u) is the left Jacobian of its rotation times the linear part of u.
+            u[at + 3..at + 6].copy_from_slice((left_jacobian_inverse(rotation) * w * h).as_slice());
+            v[at + 3..at + 6].copy_from_slice((exp_rotation(rotation).transpose() * w).as_slice());
         }
     }
 

@@ -5,6 +5,7 @@ mod closed_forms;
 mod driven;
 mod endings;
 mod events;
+mod free_flight;
 mod orders;
 mod refused;
 mod robots;

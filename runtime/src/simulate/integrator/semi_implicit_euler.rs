@@ -1,4 +1,6 @@
-//! v_1 = v_0 + h·a(t_0, q_0, v_0), q_1 = q_0 ⊕ h·v_1: order 1, symplectic where the mass matrix is constant and forces are the slope of an energy of q.
+//! v₁ = v₀ + h a(t₀, q₀, v₀), q₁ = q₀ ⊕ h v₁: order 1, symplectic where the mass matrix is constant and forces are the slope of an energy of q.
+//!
+//! The linear velocity of a floating joint is stepped in axes that do not rotate with it: [`Manifold::semi_implicit_step`](crate::simulate::manifold::Manifold::semi_implicit_step).
 
 use articulated_core::dynamics::Dynamics;
 
@@ -43,8 +45,9 @@ impl<R: Dynamics<f64>> Method<R> for SemiImplicitEuler {
         self.fastest.reset(SUSPICIOUS / h);
         self.fastest.compare([&self.before, start.y], [&self.rate, start.f]);
         let (u, rest) = end.split_at_mut(nv);
-        rest.iter_mut().zip(&start.y[nv..]).zip(&start.f[nv..]).for_each(|((end, y), f)| *end = y + h * f);
-        u.iter_mut().zip(&*rest).for_each(|(u, v)| *u = h * *v);
+        let (v, powers) = rest.split_at_mut(nv);
+        system.manifold.semi_implicit_step(&start.y[nv..2 * nv], &start.f[nv..2 * nv], h, u, v);
+        powers.iter_mut().zip(&start.y[2 * nv..]).zip(&start.f[2 * nv..]).for_each(|((end, y), f)| *end = y + h * f);
         // To first order q_0 is q_1 ⊕ (−u).
         self.before.copy_from_slice(start.y);
         self.before[..nv].iter_mut().zip(&*u).for_each(|(before, u)| *before = -*u);
