@@ -9,6 +9,16 @@ pub(crate) struct Draft {
     pub(crate) name: String,
     pub(crate) links: Vec<DraftLink>,
     pub(crate) joints: Vec<DraftJoint>,
+    /// Tags of other programs that look like joints and are not read.
+    pub(crate) passed_over: Vec<PassedOver>,
+}
+
+/// A tag that looks like a joint, as `<drake:joint>`.
+pub(crate) struct PassedOver {
+    pub(crate) line: u32,
+    pub(crate) tag: String,
+    /// Empty where it has none.
+    pub(crate) name: String,
 }
 
 pub(crate) struct DraftLink {

@@ -68,6 +68,22 @@ impl<'a> Tag<'a> {
         self.node.attributes()
     }
 
+    /// Names, values and lines of the attributes.
+    pub(crate) fn attributes_with_lines(&self) -> impl Iterator<Item = (&'a str, &'a str, u32)> + use<'a> {
+        let Tag { lines, node, .. } = *self;
+        node.attributes().map(move |a| (a.name(), a.value(), lines.at(a.range().start)))
+    }
+
+    /// Where the tag ends in the text.
+    pub(crate) fn end(&self) -> usize {
+        self.node.range().end
+    }
+
+    /// Where the tag begins in the text.
+    pub(crate) fn start(&self) -> usize {
+        self.node.range().start
+    }
+
     /// An attribute's value and line.
     pub(crate) fn attribute(&self, name: &str) -> Option<(&'a str, u32)> {
         let attribute = self.node.attribute_node(name)?;

@@ -1,27 +1,86 @@
 //! The tag `<origin>`.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use articulated_core::description::Origin;
 
 use crate::element::Tag;
-use crate::log::Log;
-use crate::number::attribute_list;
+use crate::log::{Log, Place};
+use crate::number::{attribute_list, silently};
 use crate::problem::{Kind, quote};
+use crate::robot::{Context, Version};
 use crate::unused;
 
 /// The `<origin>` inside a tag; no tag or attribute stands for zero.
-pub(crate) fn origin(parent: &Tag<'_>, snap: Option<f64>, log: &mut Log) -> Origin {
+pub(crate) fn origin(parent: &Tag<'_>, context: &Context<'_>, log: &mut Log) -> Origin {
     let Some(tag) = parent.only("origin", log) else {
         return Origin::default();
     };
-    refuse_quaternion(&tag, log);
     unused::rest(&tag, &[], &["xyz", "rpy", "quat_xyzw"], log);
     let xyz = attribute_list(&tag, "xyz", log).unwrap_or_default();
     let rpy = attribute_list(&tag, "rpy", log).unwrap_or_default();
     warn_of_turns(&tag, rpy, log);
     warn_of_lengths(&tag, xyz, log);
-    Origin { xyz, rpy: snapped(rpy, snap, &tag, log) }
+    let (rpy, field) = match quaternion(&tag, context.version, log) {
+        Some(quaternion) => (rpy_of(quaternion), "origin quat_xyzw"),
+        None => (rpy, "origin rpy"),
+    };
+    Origin { xyz, rpy: snapped(rpy, context.options.snap_angles, &tag.place(field), log) }
+}
+
+/// See [`Context::length`].
+pub(crate) fn longest(robot: &Tag<'_>) -> f64 {
+    let inside =
+        |tag: &Tag<'_>, name: &str| -> Vec<_> { tag.children().filter(|child| child.is(name)).map(|c| silently(&c, "xyz")).collect() };
+    let longest = robot.children().flat_map(|tag| {
+        let holders: Vec<_> = if tag.is("joint") { vec![tag] } else { tag.children().filter(|child| child.is("inertial")).collect() };
+        holders.into_iter().flat_map(|holder| inside(&holder, "origin")).collect::<Vec<_>>()
+    });
+    let longest = longest.flatten().map(|xyz: [f64; 3]| xyz.iter().fold(0.0, |most: f64, x| most.max(x.abs()))).fold(0.0, f64::max);
+    if longest == 0.0 { 1.0 } else { longest.min(1.0) }
+}
+
+/// A quaternion whose norm is off 1 by more is an error.
+const NORM: f64 = 1e-3;
+/// A quaternion whose norm is off 1 by more is a warning.
+const ROUNDED: f64 = 1e-6;
+
+/// The quaternion (x, y, z, w) that `quat_xyzw` gives, if it is right. It may be off unit length by rounding.
+fn quaternion(tag: &Tag<'_>, version: Version, log: &mut Log) -> Option<[f64; 4]> {
+    let quaternion = attribute_list::<4>(tag, "quat_xyzw", log);
+    let (text, _) = tag.attribute("quat_xyzw")?;
+    let place = tag.place("origin quat_xyzw");
+    if version < Version::V1_1 {
+        let expected = "rpy, or <robot version=\"1.1\">: older versions of the format have no quaternions";
+        log.error(&place, Kind::Unsupported, format!("a quaternion, {}", quote(text)), expected);
+        return None;
+    }
+    if tag.attribute("rpy").is_some() {
+        log.error(&place, Kind::TwoRotations, "a quaternion beside rpy", "one of both");
+        return None;
+    }
+    let quaternion = quaternion?;
+    let size = quaternion.iter().fold(0.0, |most: f64, x| most.max(x.abs())).max(f64::MIN_POSITIVE);
+    let norm = size * quaternion.iter().map(|x| (x / size) * (x / size)).sum::<f64>().sqrt();
+    let off = (norm - 1.0).abs();
+    if off > NORM {
+        log.error(&place, Kind::QuaternionNorm, format!("the norm {norm}"), format!("1, within {NORM}"));
+        return None;
+    }
+    if off > ROUNDED {
+        log.warning(&place, Kind::QuaternionNorm, format!("the norm {norm}"), format!("1, within {ROUNDED}; used as if it were 1"));
+    }
+    Some(quaternion)
+}
+
+/// Roll, pitch and yaw of a quaternion (x, y, z, w) of any length but zero. With r, p, y for half the angles:
+/// w + y = (cos p + sin p) cos(r − y), x − z = (cos p + sin p) sin(r − y), w − y = (cos p − sin p) cos(r + y),
+/// x + z = (cos p − sin p) sin(r + y). So nothing is lost near a pitch of ±π/2.
+fn rpy_of([x, y, z, w]: [f64; 4]) -> [f64; 3] {
+    let (plus, minus) = ((w + y).hypot(x - z), (w - y).hypot(x + z));
+    let (sum, difference) = ((x + z).atan2(w - y), (x - z).atan2(w + y));
+    let within = |angle: f64| if angle.abs() > PI { angle - TAU.copysign(angle) } else { angle };
+    [within(sum + difference), 2.0 * plus.atan2(minus) - FRAC_PI_2, within(sum - difference)]
 }
 
 /// So many rad and more are written by mistake: degrees, most often.
@@ -44,21 +103,13 @@ fn warn_of_lengths(tag: &Tag<'_>, xyz: [f64; 3], log: &mut Log) {
     }
 }
 
-/// Left out, it would be another robot.
-fn refuse_quaternion(tag: &Tag<'_>, log: &mut Log) {
-    if let Some((value, _)) = tag.attribute("quat_xyzw") {
-        let place = tag.place("origin quat_xyzw");
-        log.error(&place, Kind::Unsupported, format!("a quaternion, {}", quote(value)), "the rotation as rpy");
-    }
-}
-
-fn snapped(rpy: [f64; 3], snap: Option<f64>, tag: &Tag<'_>, log: &mut Log) -> [f64; 3] {
+fn snapped(rpy: [f64; 3], snap: Option<f64>, place: &Place<'_>, log: &mut Log) -> [f64; 3] {
     let Some(tolerance) = snap else {
         return rpy;
     };
     rpy.map(|angle| match right_angle(angle, tolerance) {
         Some((quarters, exact)) => {
-            log.snapped(&tag.place("origin rpy"), angle, &format!("{quarters}·π/2"));
+            log.snapped(place, angle, &format!("{quarters}·π/2"));
             exact
         }
         None => angle,
@@ -75,8 +126,6 @@ fn right_angle(angle: f64, tolerance: f64) -> Option<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::PI;
-
     use super::*;
 
     #[test]

@@ -4,9 +4,10 @@ use articulated_core::description::PrincipalMoments;
 
 use crate::log::{Log, Place};
 use crate::problem::Kind;
+use crate::robot::Context;
 
-/// Reports what cannot be, or looks wrong, of what there is. `allow`: an inertia that is not positive is a warning.
-pub(crate) fn check(mass: Option<f64>, inertia: Option<[f64; 6]>, allow: bool, place: &Place<'_>, log: &mut Log) {
+/// Reports a mass or an inertia that is impossible or looks wrong.
+pub(crate) fn check(mass: Option<f64>, inertia: Option<[f64; 6]>, context: &Context<'_>, place: &Place<'_>, log: &mut Log) {
     let place = |field| Place { field, ..*place };
     if let Some(mass) = mass.filter(|mass| *mass < 0.0) {
         log.error(&place("mass"), Kind::NegativeMass, format!("a negative mass, {mass} kg"), "a mass of zero or more");
@@ -16,7 +17,7 @@ pub(crate) fn check(mass: Option<f64>, inertia: Option<[f64; 6]>, allow: bool, p
         let found = "a mass of zero with a rotational inertia that is not";
         log.warning(&place("inertial"), Kind::InertiaWithoutMass, found, "both or neither; used as written");
     }
-    check_moments(inertia, allow, &place("inertia"), log);
+    check_moments(mass, inertia, context, &place("inertia"), log);
     check_units(mass, inertia, &place("inertia"), log);
 }
 
@@ -33,16 +34,29 @@ fn check_units(mass: Option<f64>, inertia: [f64; 6], place: &Place<'_>, log: &mu
     }
 }
 
-fn check_moments(inertia: [f64; 6], allow: bool, place: &Place<'_>, log: &mut Log) {
+/// A negative moment of at most so many times m·ℓ² is rounding: ℓ is [`Context::length`], from which the moment was shifted.
+/// Shipped files have up to 1e-19·m·(1 m)².
+const DUST: f64 = 1e-12;
+
+fn check_moments(mass: Option<f64>, inertia: [f64; 6], context: &Context<'_>, place: &Place<'_>, log: &mut Log) {
+    const EXPECTED: &str = "an inertia that is positive semi-definite";
     let moments = PrincipalMoments::of(inertia);
     if moments.are_negative() {
-        let expected = "an inertia that is positive semi-definite";
-        match allow {
-            true => log.warning(place, Kind::InertiaNotPositive, moments.to_string(), format!("{expected}; used as written")),
-            false => log.error(place, Kind::InertiaNotPositive, moments.to_string(), expected),
+        let is_dust = mass.is_some_and(|mass| -moments.least() <= DUST * mass * context.length * context.length);
+        let (found, kind) = (moments.to_string(), Kind::InertiaNotPositive);
+        if is_dust {
+            log.warning(place, kind, format!("{found}, negative by rounding alone"), format!("{EXPECTED}; used as written"));
+        } else if context.options.allow_unphysical_inertia {
+            log.warning(place, kind, found, format!("{EXPECTED}; used as written"));
+        } else {
+            log.error(place, kind, found, format!("{EXPECTED}; {ALLOW_UNPHYSICAL_INERTIA} accepts it as written"));
         }
     } else if moments.miss_triangle() {
         let expected = format!("{}; used as written", PrincipalMoments::TRIANGLE);
         log.warning(place, Kind::InertiaTriangle, moments.to_string(), expected);
     }
 }
+
+/// The option that accepts a negative principal moment, as the command, scenes and macro, and build scripts spell it.
+const ALLOW_UNPHYSICAL_INERTIA: &str =
+    "`--allow-unphysical-inertia` (key `allow_unphysical_inertia`, method `Build::allow_unphysical_inertia`)";

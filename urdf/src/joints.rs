@@ -8,7 +8,8 @@ use crate::element::Tag;
 use crate::log::{Log, Place};
 use crate::number::{self, attribute, attribute_list};
 use crate::problem::{Kind, Subject, hint, quote};
-use crate::{Options, frame, limits, unused};
+use crate::robot::{Context, Version};
+use crate::{frame, limits, unused, xacro};
 
 const TAGS: [&str; 9] = ["origin", "parent", "child", "axis", "axis2", "thread", "limit", "dynamics", "mimic"];
 
@@ -18,11 +19,12 @@ const DEFAULT_AXIS: [f64; 3] = [1.0, 0.0, 0.0];
 /// Components beyond cannot be squared: nothing is left of such an axis, or it overflows.
 const AXIS: std::ops::RangeInclusive<f64> = 1e-150..=1e150;
 
-/// A joint as it stands in the file. `open`: see [`limits::limit`].
-pub(crate) fn joint(tag: &Tag<'_>, open: bool, options: &Options, log: &mut Log) -> DraftJoint {
+/// A joint as the file writes it.
+pub(crate) fn joint(tag: &Tag<'_>, context: &Context<'_>, log: &mut Log) -> DraftJoint {
     let subject = Subject::Joint(tag.name_for_messages());
     let tag = tag.of(&subject);
     let name = tag.required_name("name", log);
+    name.iter().for_each(|name| unused::warn_of_blanks(&tag, name, log));
     unused::rest(&tag, &TAGS, &["name", "type"], log);
     let kind = kind(&tag, log);
     let mut joint = DraftJoint {
@@ -31,30 +33,30 @@ pub(crate) fn joint(tag: &Tag<'_>, open: bool, options: &Options, log: &mut Log)
         kind,
         parent: reference(&tag, "parent", log),
         child: reference(&tag, "child", log),
-        origin: frame::origin(&tag, options.snap_angles, log),
+        origin: frame::origin(&tag, context, log),
         axis: DEFAULT_AXIS,
         second_axis: [0.0; 3],
         pitch: 0.0,
-        mimic: mimic(&tag, log),
+        mimic: if kind == Some(JointKind::Fixed) { None } else { mimic(&tag, log) },
         limit: None,
         dynamics: None,
     };
     match kind {
-        Some(kind) => motion(&tag, kind, open, &mut joint, log),
-        None => of_any_kind(&tag, open, log),
+        Some(kind) => motion(&tag, kind, context.version, &mut joint, log),
+        None => of_any_kind(&tag, context.version, log),
     }
     joint
 }
 
 /// What is wrong with a joint whatever its type should be.
-fn of_any_kind(tag: &Tag<'_>, open: bool, log: &mut Log) {
+fn of_any_kind(tag: &Tag<'_>, version: Version, log: &mut Log) {
     for name in ["axis", "axis2"] {
         if let Some(given) = tag.only(name, log) {
             axis(&given, log);
         }
     }
     if tag.children().any(|child| child.is("limit")) {
-        limits::limit(tag, JointKind::Revolute, open, log);
+        limits::limit(tag, JointKind::Revolute, version, log);
     }
     limits::dynamics(tag, log);
 }
@@ -62,7 +64,7 @@ fn of_any_kind(tag: &Tag<'_>, open: bool, log: &mut Log) {
 fn kind(tag: &Tag<'_>, log: &mut Log) -> Option<JointKind> {
     let (name, line) = tag.required_attribute("type", log)?;
     let kind = JointKind::ALL.iter().copied().find(|kind| kind.name() == name);
-    if kind.is_none() {
+    if kind.is_none() && !xacro::is_expression(name) {
         let hint = hint(elsewhere(name).map(str::to_owned).or_else(|| nearest(name, JointKind::ALL.iter().map(|k| k.name()))).as_deref());
         let expected = format!("{}{hint}", kinds_with(|_| true));
         let place = Place { line: Some(line), ..tag.place("type") };
@@ -101,7 +103,7 @@ fn reference(joint: &Tag<'_>, which: &str, log: &mut Log) -> Option<Reference> {
     Some(Reference { name: tag.required_name("link", log)?, line: tag.line() })
 }
 
-fn motion(tag: &Tag<'_>, kind: JointKind, open: bool, joint: &mut DraftJoint, log: &mut Log) {
+fn motion(tag: &Tag<'_>, kind: JointKind, version: Version, joint: &mut DraftJoint, log: &mut Log) {
     match kind {
         JointKind::Universal => (joint.axis, joint.second_axis) = cross(tag, log),
         kind if kind.has_axis() => {
@@ -123,7 +125,7 @@ fn motion(tag: &Tag<'_>, kind: JointKind, open: bool, joint: &mut DraftJoint, lo
         joint.pitch = pitch(tag, log).unwrap_or_default();
     }
     if has_one_coordinate(kind) {
-        joint.limit = limits::limit(tag, kind, open, log);
+        joint.limit = limits::limit(tag, kind, version, log);
         joint.dynamics = limits::dynamics(tag, log);
     }
     let useless = [
@@ -133,6 +135,13 @@ fn motion(tag: &Tag<'_>, kind: JointKind, open: bool, joint: &mut DraftJoint, lo
         ("dynamics", !has_one_coordinate(kind)),
     ];
     useless.iter().filter(|(_, useless)| *useless).for_each(|(name, _)| report_useless(tag, name, log));
+    if kind == JointKind::Fixed
+        && let Some(mimic) = tag.only("mimic", log)
+    {
+        log.unused(&mimic, mimic.name(), "a fixed joint does not move");
+        let expected = "none: a fixed joint does not move, and follows no other; ignored";
+        log.warning(&mimic.place("mimic"), Kind::UnusedMimic, "<mimic> on a fixed joint", expected);
+    }
 }
 
 fn report_useless(joint: &Tag<'_>, name: &str, log: &mut Log) {
@@ -148,11 +157,24 @@ fn axis(tag: &Tag<'_>, log: &mut Log) -> Option<[f64; 3]> {
     let axis = attribute_list(tag, "xyz", log)?;
     let size = axis.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
     if AXIS.contains(&size) {
+        warn_of_length(tag, axis, size, log);
         return Some(axis);
     }
     let expected = if size == 0.0 { "a vector that is not zero" } else { "a vector of a length that can be squared, 1e-150 to 1e150" };
     log.error(&tag.place(&tag.name()), Kind::ZeroAxis, shown(axis), expected);
     None
+}
+
+/// An axis is printed with three digits at least.
+const UNIT_LENGTH: f64 = 1e-3;
+
+fn warn_of_length(tag: &Tag<'_>, axis: [f64; 3], size: f64, log: &mut Log) {
+    let length = size * axis.iter().map(|x| (x / size) * (x / size)).sum::<f64>().sqrt();
+    if (length - 1.0).abs() > UNIT_LENGTH {
+        let length = if (1e-3..1e6).contains(&length) { format!("{length:.4}") } else { format!("{length:.3e}") };
+        let expected = "a vector of length 1: the length of an axis has no meaning; only its direction is used";
+        log.warning(&tag.place(&tag.name()), Kind::AxisLength, format!("{} of length {length}", shown(axis)), expected);
+    }
 }
 
 fn shown([x, y, z]: [f64; 3]) -> String {

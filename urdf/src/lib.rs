@@ -47,6 +47,7 @@ mod limits;
 mod lines;
 mod links;
 mod log;
+mod lost;
 mod markup;
 mod mimic;
 mod number;
@@ -132,7 +133,7 @@ fn draft(bytes: &[u8], options: &Options, log: &mut Log) -> Option<draft::Draft>
     let lines = lines::Lines::of(&text);
     let document = document::parse(&text, &lines, log)?;
     let robot = document::robot(&document, &lines, log)?;
-    if xacro::is_left_over(&robot, log) {
+    if xacro::report(&robot, log) {
         return None;
     }
     Some(robot::draft(&robot, options, log))

@@ -9,12 +9,15 @@ use crate::element::Tag;
 use crate::log::Log;
 use crate::number::attribute;
 use crate::problem::Kind;
+use crate::robot::Version;
 use crate::unused;
 
 const BOUNDS: [&str; 2] = ["lower", "upper"];
 
-/// What the joint's `<limit>` says. `open`: bounds that are left out are infinite (URDF 1.2), not zero.
-pub(crate) fn limit(joint: &Tag<'_>, kind: JointKind, open: bool, log: &mut Log) -> Option<Limit> {
+/// What the joint's `<limit>` says.
+pub(crate) fn limit(joint: &Tag<'_>, kind: JointKind, version: Version, log: &mut Log) -> Option<Limit> {
+    // Bounds that are left out are infinite, not zero.
+    let open = version >= Version::V1_2;
     let Some(tag) = joint.only("limit", log) else {
         report_missing(joint, kind, log);
         return None;
@@ -56,6 +59,9 @@ fn bounds(tag: &Tag<'_>, open: bool, log: &mut Log) -> (f64, f64) {
     if lower > upper {
         let found = format!("lower {lower} above upper {upper}");
         log.warning(&tag.place("limit"), Kind::LimitOrder, found, "lower below upper; used as written");
+    } else if lower == upper && absent != [true, true] {
+        let expected = "lower below upper: such a joint cannot move; used as written";
+        log.warning(&tag.place("limit"), Kind::LimitEqual, format!("lower and upper both {lower}"), expected);
     }
     (lower, upper)
 }
@@ -75,6 +81,10 @@ fn positive(tag: &Tag<'_>, name: &str, open: bool, log: &mut Log) -> f64 {
     match attribute(tag, name, log) {
         Some(value) => {
             report_negative(tag, &field, value, log);
+            if value == 0.0 {
+                let expected = "a value above zero; leave it out where there is no limit; used as written";
+                log.warning(&tag.place(&field), Kind::LimitZero, "zero", expected);
+            }
             value
         }
         None if tag.attribute(name).is_none() && !open => {

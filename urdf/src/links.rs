@@ -5,29 +5,38 @@ use articulated_core::description::Inertial;
 use crate::draft::DraftLink;
 use crate::element::Tag;
 use crate::log::Log;
-use crate::problem::Subject;
-use crate::{Options, frame, inertia, number, unused};
+use crate::problem::{Kind, Subject};
+use crate::robot::Context;
+use crate::{frame, inertia, number, unused};
 
 /// A link with its mass properties.
-pub(crate) fn link(tag: &Tag<'_>, options: &Options, log: &mut Log) -> DraftLink {
+pub(crate) fn link(tag: &Tag<'_>, context: &Context<'_>, log: &mut Log) -> DraftLink {
     let subject = Subject::Link(tag.name_for_messages());
     let tag = tag.of(&subject);
     let name = tag.required_name("name", log);
+    name.iter().for_each(|name| unused::warn_of_blanks(&tag, name, log));
     unused::rest(&tag, &["inertial"], &["name"], log);
-    let inertial = tag.only("inertial", log).and_then(|tag| inertial(&tag, options, log));
+    let inertial = tag.only("inertial", log).and_then(|tag| inertial(&tag, context, log));
     DraftLink { name, line: tag.line(), inertial }
 }
 
-fn inertial(tag: &Tag<'_>, options: &Options, log: &mut Log) -> Option<Inertial> {
+fn inertial(tag: &Tag<'_>, context: &Context<'_>, log: &mut Log) -> Option<Inertial> {
     unused::rest(tag, &["origin", "mass", "inertia"], &[], log);
-    let origin = frame::origin(tag, options.snap_angles, log);
+    let origin = frame::origin(tag, context, log);
     let mass = mass(tag, log);
     let moments = moments(tag, log);
-    inertia::check(mass, moments, options.allow_unphysical_inertia, &tag.place("inertial"), log);
+    inertia::check(mass, moments, context, &tag.place("inertial"), log);
     Some(Inertial { origin, mass: mass?, inertia: moments? })
 }
 
 fn mass(inertial: &Tag<'_>, log: &mut Log) -> Option<f64> {
+    if let Some(density) = inertial.children().find(|child| child.is("density"))
+        && !inertial.children().any(|child| child.is("mass"))
+    {
+        let expected = "<mass> and <inertia>: <density> is an extension of Bullet, which is not read";
+        log.error(&density.place("mass"), Kind::MissingTag, "<density> alone", expected);
+        return None;
+    }
     let tag = inertial.required("mass", log)?;
     unused::rest(&tag, &[], &["value"], log);
     number::required(&tag, "value", log)

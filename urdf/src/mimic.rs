@@ -10,6 +10,7 @@ use crate::joints::kinds_with;
 use crate::log::{Log, Place};
 use crate::problem::{Kind, hint, quote};
 use crate::ring::{around, rings};
+use crate::xacro::is_expression;
 
 /// For each joint, the joint that it follows.
 pub(crate) fn leaders(joints: &[DraftJoint], log: &mut Log) -> Vec<Option<usize>> {
@@ -24,7 +25,11 @@ pub(crate) fn leaders(joints: &[DraftJoint], log: &mut Log) -> Vec<Option<usize>
             report_follower(follower, mimic, log);
             let leader = index.get(mimic.leader.name.as_str()).copied();
             match leader {
-                Some(leader) => report_leader(follower, mimic, &joints[leader], log),
+                Some(leader) => {
+                    report_leader(follower, mimic, &joints[leader], log);
+                    warn_of_motion(follower, mimic, &joints[leader], log);
+                }
+                None if is_expression(&mimic.leader.name) => {}
                 None => report_unknown(follower, mimic, joints, &mut suggester, log),
             }
             leader
@@ -54,6 +59,27 @@ fn report_leader(follower: &DraftJoint, mimic: &DraftMimic, leader: &DraftJoint,
         let found = format!("{}, which does not have exactly one coordinate", quote(&mimic.leader.name));
         let expected = format!("a {} joint to follow", kinds_with(has_one_coordinate));
         error(follower, mimic, Kind::LeaderCannotLead, found, &expected, log);
+    }
+}
+
+/// Warns of a follower that does not move, or moves beyond its limits.
+fn warn_of_motion(follower: &DraftJoint, mimic: &DraftMimic, leader: &DraftJoint, log: &mut Log) {
+    let subject = follower.subject();
+    let place = Place { line: Some(mimic.leader.line), subject: &subject, field: "mimic" };
+    let (multiplier, offset) = (mimic.multiplier.unwrap_or(1.0), mimic.offset.unwrap_or(0.0));
+    if multiplier == 0.0 {
+        let expected = "another number: with 0 the joint does not move; used as written";
+        return log.warning(&place, Kind::MimicZero, "the multiplier 0", expected);
+    }
+    let (Some(own), Some(led)) = (follower.limit, leader.limit) else { return };
+    let [a, b] = [led.lower, led.upper].map(|q| multiplier * q + offset);
+    let (least, most) = (a.min(b), a.max(b));
+    // Bounds are printed with some digits.
+    let slack = 1e-3 * (own.upper - own.lower).abs();
+    if led.lower <= led.upper && own.lower <= own.upper && (least < own.lower - slack || own.upper + slack < most) {
+        let found = format!("a range of {least:.4} to {most:.4}, as {} moves within its limits", leader.subject());
+        let expected = format!("a range within this joint's limits, {} to {}; used as written", own.lower, own.upper);
+        log.warning(&place, Kind::MimicRange, found, expected);
     }
 }
 

@@ -6,6 +6,7 @@
 use crate::element::Tag;
 use crate::log::{Log, Place};
 use crate::problem::{Kind, quote};
+use crate::xacro::is_expression;
 
 /// Why a word is not a number that can be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,6 +62,10 @@ fn checked<const N: usize>(value: &str, line: u32, tag: &Tag<'_>, name: &str, lo
         Ok(numbers) => return Some(numbers),
         Err(wrong) => wrong,
     };
+    // It has its own error.
+    if is_expression(value) {
+        return None;
+    }
     let field = format!("{} {name}", tag.name());
     let place = Place { line: Some(line), ..tag.place(&field) };
     match wrong {
@@ -76,6 +81,11 @@ fn checked<const N: usize>(value: &str, line: u32, tag: &Tag<'_>, name: &str, lo
 enum Wrong<'a> {
     Word(&'a str, Fault),
     Count(usize),
+}
+
+/// The `N` numbers in an attribute, if it is there and right; no error is reported.
+pub(crate) fn silently<const N: usize>(tag: &Tag<'_>, name: &str) -> Option<[f64; N]> {
+    list(tag.attribute(name)?.0).ok()
 }
 
 fn list<const N: usize>(value: &str) -> Result<[f64; N], Wrong<'_>> {

@@ -141,6 +141,30 @@ pub enum Kind {
     LongCode,
     /// [`Options::snap_angles`](crate::Options::snap_angles) that cannot be.
     SnapAngles,
+    /// `<mimic>` on a fixed joint.
+    UnusedMimic,
+    /// A follower with the multiplier 0.
+    MimicZero,
+    /// A follower that moves beyond its limits as its leader moves within its own.
+    MimicRange,
+    /// An axis that is not of length 1.
+    AxisLength,
+    /// A lower bound equal to the upper one.
+    LimitEqual,
+    /// A limit of effort or velocity that is zero.
+    LimitZero,
+    /// A name with leading or trailing blanks, or with characters that are not visible.
+    OddName,
+    /// A joint hangs on `world`, which the file does not declare.
+    UndeclaredWorld,
+    /// A quaternion whose norm is not 1.
+    QuaternionNorm,
+    /// Both `rpy` and `quat_xyzw`.
+    TwoRotations,
+    /// Dynamics that the file states where they are not read: closed loops, springs.
+    LostDynamics,
+    /// A number that no robot has: gravity or a coordinate.
+    BeyondSense,
     /// More problems than are listed.
     More,
     /// The two readers of this crate disagree: a mistake of the crate, not of the file.

@@ -9,6 +9,7 @@ use crate::draft::{Draft, DraftJoint, Reference};
 use crate::log::{Log, Place};
 use crate::problem::{Kind, Subject, hint, quote};
 use crate::ring::{around, rings};
+use crate::xacro::is_expression;
 
 /// Which links each joint connects.
 pub(crate) struct Tree {
@@ -84,7 +85,7 @@ impl LookUp<'_> {
     fn up(&mut self, joint: &DraftJoint, end: Option<&Reference>, field: &str, log: &mut Log) -> Option<usize> {
         let Reference { name, line } = end?;
         let index = self.links.get(name.as_str()).copied();
-        if index.is_none() {
+        if index.is_none() && !is_expression(name) {
             let names = self.draft.links.iter().filter_map(|l| l.name.as_deref());
             let hint = hint(self.suggester.nearest(name, names));
             let subject = joint.subject();
@@ -130,6 +131,19 @@ fn report_rings(draft: &Draft, ends: &Ends, above: &[Option<usize>], log: &mut L
     rings.len()
 }
 
+/// The tags that look like joints and are not read: what hangs on them is a root.
+fn passed_over(draft: &Draft) -> String {
+    let tags = draft.passed_over.iter().map(|tag| {
+        let name = if tag.name.is_empty() { String::new() } else { format!(" {}", quote(&tag.name)) };
+        format!("<{}>{name} in line {}", tag.tag, tag.line)
+    });
+    match draft.passed_over.as_slice() {
+        [] => String::new(),
+        [_] => format!("; {} is not read: write it as <joint>", listed(tags)),
+        _ => format!("; {} are not read: write them as <joint>", listed(tags)),
+    }
+}
+
 fn root(draft: &Draft, ends: &Ends, above: &[Option<usize>], rings: usize, log: &mut Log) -> Option<usize> {
     let roots: Vec<usize> = (0..above.len()).filter(|link| above[*link].is_none()).collect();
     // A name that is not known, or not unique, leaves a link without a parent: that has been said.
@@ -138,7 +152,7 @@ fn root(draft: &Draft, ends: &Ends, above: &[Option<usize>], rings: usize, log: 
         let subject = draft.links[roots[1]].subject();
         let place = Place { line: Some(draft.links[roots[1]].line), subject: &subject, field: "parent" };
         let found = format!("{} roots (links without a parent): {names}", roots.len());
-        log.error(&place, Kind::SeveralRoots, found, "one root");
+        log.error(&place, Kind::SeveralRoots, found, format!("one root{}", passed_over(draft)));
     }
     roots.first().copied()
 }

@@ -6,8 +6,8 @@ use articulated_core::suggest::Suggester;
 
 use crate::element::Tag;
 use crate::log::{Log, Place};
-use crate::markup;
-use crate::problem::{Kind, Subject};
+use crate::problem::{Kind, Subject, quote};
+use crate::{lost, markup};
 
 /// Content of the file that is not used.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +66,7 @@ pub(crate) fn rest(tag: &Tag<'_>, tags: &[&str], attributes: &[&str], log: &mut 
     rest_of_attributes(tag, attributes, log);
     if let Some((text, line)) = tag.text() {
         let shown: String = text.chars().take(SHOWN).collect();
-        let why = format!("text between tags says nothing of a robot: {}", crate::problem::quote(&markup::as_written(&shown)));
+        let why = format!("text between tags says nothing of a robot: {}", quote(&markup::as_written(&shown)));
         log.unused_at(Some(line), tag.subject(), format!("text in <{}>", tag.name()), why);
     }
     for child in tag.children().filter(|child| !tags.iter().any(|name| child.is(name))) {
@@ -74,7 +74,15 @@ pub(crate) fn rest(tag: &Tag<'_>, tags: &[&str], attributes: &[&str], log: &mut 
         let parent = tag.name();
         let why = KNOWN.iter().find(|(within, known, _)| *within == parent && *known == name);
         match why {
-            Some((_, _, why)) => log.unused(&child, name, *why),
+            Some((_, _, why)) => {
+                if lost::is_searched(&name) {
+                    lost::report(&child, log);
+                }
+                log.unused(&child, name, *why);
+            }
+            None if name != "link" && name != "joint" && (lost::report(&child, log) || around_links(&child, &name, log)) => {
+                log.unused(&child, name, "not known");
+            }
             None if name == "link" || name == "joint" => misplaced(&child.place(&format!("<{name}>")), &name, &parent, log),
             None => unknown(&child.place(&format!("<{name}>")), name.clone(), &name, tags, log),
         }
@@ -94,6 +102,38 @@ fn rest_of_attributes(tag: &Tag<'_>, used: &[&str], log: &mut Log) {
             None => unknown(&tag.place(&what), what.clone(), &name, used, log),
         }
     }
+}
+
+/// Whether an unknown tag has links or joints inside it, with a warning.
+fn around_links(tag: &Tag<'_>, name: &str, log: &mut Log) -> bool {
+    let count = |which: &str| tag.descendants().filter(|inner| inner.is(which) && inner.attribute("name").is_some()).count();
+    let (links, joints) = (count("link"), count("joint"));
+    // What has a prefix is an extension of another program.
+    if links + joints == 0 || name.contains(':') {
+        return false;
+    }
+    let found = format!("{links} links and {joints} joints inside <{name}>");
+    let expected = "links and joints directly inside <robot>: these are not read, and the dynamics are those without them";
+    log.warning(&tag.place(&format!("<{name}>")), Kind::Misplaced, found, expected);
+    true
+}
+
+/// Warns of a name that looks like another one: with blanks at its ends, or with characters that are not visible.
+pub(crate) fn warn_of_blanks(tag: &Tag<'_>, name: &str, log: &mut Log) {
+    let found = if name.trim() != name {
+        "a name with blanks at an end"
+    } else if name.chars().any(is_invisible) {
+        "a name with characters that are not visible"
+    } else {
+        return;
+    };
+    let expected = "a name of visible characters; used as written";
+    log.warning(&tag.place("name"), Kind::OddName, format!("{found}, {}", quote(name)), expected);
+}
+
+/// Control characters, and those that only change the direction or the joining of letters.
+fn is_invisible(c: char) -> bool {
+    c.is_control() || matches!(c, '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}')
 }
 
 fn misplaced(place: &Place<'_>, name: &str, parent: &str, log: &mut Log) {

@@ -1,42 +1,52 @@
-//! Files that still have to go through xacro.
+//! What xacro should have replaced.
 
 use crate::element::Tag;
-use crate::log::Log;
-use crate::problem::{Kind, quote};
+use crate::log::{Log, Place};
+use crate::problem::{Kind, Subject, quote};
 
-/// Whether macros are left over. Says so once: what else is wrong with such a file means nothing.
-pub(crate) fn is_left_over(robot: &Tag<'_>, log: &mut Log) -> bool {
-    let found = robot.children().find_map(|child| left_over_in(&child)).or_else(|| robot_name(robot));
-    let Some((tag, found)) = found else {
-        return false;
-    };
-    log.error(&tag.place("xacro"), Kind::Xacro, found, "an expanded file: run xacro first");
-    true
+const EXPECTED: &str = "an expanded file: run xacro first";
+
+/// Reports macros and expressions that are left over. Whether there are macros: without what they stand for, the rest of the file means nothing.
+pub(crate) fn report(robot: &Tag<'_>, log: &mut Log) -> bool {
+    report_expressions(robot, log);
+    let mut macros = false;
+    for child in robot.children() {
+        if is_macro(&child) {
+            macros |= report_macro(&child, log);
+        } else if child.is("link") || child.is("joint") {
+            let name = child.name_for_messages();
+            let subject = if child.is("link") { Subject::Link(name) } else { Subject::Joint(name) };
+            // Content of other tags (of plugins, say) is not used and may hold anything.
+            for tag in child.of(&subject).descendants() {
+                match is_macro(&tag) {
+                    true => macros |= report_macro(&tag, log),
+                    false => report_expressions(&tag, log),
+                }
+            }
+        }
+    }
+    macros
 }
 
-fn robot_name<'a>(robot: &Tag<'a>) -> Option<(Tag<'a>, String)> {
-    Some((*robot, expression(robot)?))
-}
-
-/// Content of other tags (of plugins, say) is not used and may hold anything.
-fn left_over_in<'a>(child: &Tag<'a>) -> Option<(Tag<'a>, String)> {
-    if is_macro(child) {
-        return Some((*child, format!("the tag <{}>", child.name())));
-    }
-    if !(child.is("link") || child.is("joint")) {
-        return None;
-    }
-    child.descendants().find_map(|tag| match is_macro(&tag) {
-        true => Some((tag, format!("the tag <{}>", tag.name()))),
-        false => Some((tag, expression(&tag)?)),
-    })
+/// Whether a value holds an expression, which has an error of its own.
+pub(crate) fn is_expression(value: &str) -> bool {
+    value.contains("${") || value.contains("$(")
 }
 
 fn is_macro(tag: &Tag<'_>) -> bool {
     tag.name().starts_with("xacro:")
 }
 
-fn expression(tag: &Tag<'_>) -> Option<String> {
-    let value = tag.attributes().map(|a| a.value()).find(|v| v.contains("${") || v.contains("$("))?;
-    Some(format!("the expression {}", quote(value)))
+fn report_macro(tag: &Tag<'_>, log: &mut Log) -> bool {
+    log.error(&tag.place("xacro"), Kind::Xacro, format!("the tag <{}>", tag.name()), EXPECTED);
+    true
+}
+
+/// Names of files are left out: meshes and textures play no part in the dynamics.
+fn report_expressions(tag: &Tag<'_>, log: &mut Log) {
+    for (name, value, line) in tag.attributes_with_lines().filter(|(name, value, _)| *name != "filename" && is_expression(value)) {
+        let field = format!("{} {name}", tag.name());
+        let place = Place { line: Some(line), ..tag.place(&field) };
+        log.error(&place, Kind::Xacro, format!("the xacro expression {}", quote(value)), EXPECTED);
+    }
 }

@@ -112,6 +112,159 @@ fn a_planar_joint_without_an_axis_moves_across_x_and_is_warned_of() {
     assert!(accepted(&slew("continuous", "")).warnings.iter().all(|w| w.kind != Kind::NoAxis));
 }
 
+/// A gripper that was welded: its joints are fixed, and still carry what they had when they moved.
+#[test]
+fn a_fixed_joint_with_a_left_over_mimic_is_a_fixed_joint() {
+    for leader in ["slew", "no_such_joint", "mount"] {
+        let tags = format!("<child link=\"lamp\"/><axis xyz='0 1 0'/><limit lower='0'/><mimic joint='{leader}' multiplier='x'/>");
+        let reading = accepted(&crane("<child link=\"lamp\"/>", &tags));
+        assert_eq!(reading.description, described(CRANE), "{leader}");
+        let of_mount = reading.unused.iter().filter(|u| u.subject == Subject::Joint("mount".into()));
+        assert_eq!(of_mount.map(|u| u.tag.as_str()).collect::<Vec<_>>(), ["axis", "limit", "mimic"]);
+        let warned: Vec<Kind> = reading.warnings.iter().map(|w| w.kind).collect();
+        assert_eq!(warned, [Kind::UnusedMimic]);
+    }
+}
+
+/// An inertia as `ixx ixy ixz iyy iyz izz` of a trolley of `mass`, whose centre is at `xyz`.
+fn trolley(mass: &str, xyz: &str, moments: [&str; 6]) -> String {
+    let [xx, xy, xz, yy, yz, zz] = moments;
+    let inertia = format!("<inertia ixx='{xx}' ixy='{xy}' ixz='{xz}' iyy='{yy}' iyz='{yz}' izz='{zz}'/>");
+    crane("<inertia ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.1\" iyz=\"0\" izz=\"0.1\"/>", &inertia)
+        .replace("<mass value=\"5\"/>", &format!("<origin xyz='{xyz}'/><mass value='{mass}'/>"))
+}
+
+/// Principal moments of ±3.1e-35 kg·m² on 1.2 kg, as exporters leave them; of −5.4e-20 on 0.5 kg; and of −3e-8 on a gram, which no rounding makes.
+#[test]
+fn a_moment_that_is_negative_by_rounding_is_a_warning() {
+    for (mass, moments) in [
+        ("1.2", ["0", "0", "3.1e-35", "0", "0", "0"]),
+        ("0.5", ["0", "5.4e-20", "0", "0", "0", "0"]),
+        ("0.5", ["-4e-13", "0", "0", "0", "0", "0"]),
+    ] {
+        let reading = accepted(&trolley(mass, "0.0185 -0.11 6.8e-18", moments));
+        let warned: Vec<Kind> = reading.warnings.iter().map(|w| w.kind).collect();
+        assert_eq!(warned, [Kind::InertiaNotPositive], "{mass} {moments:?}");
+        assert!(reading.warnings[0].to_string().contains("negative by rounding alone"), "{}", reading.warnings[0]);
+        let kept = reading.description.links[2].inertial.unwrap().inertia;
+        assert_eq!(kept, moments.map(|m| m.parse::<f64>().unwrap()));
+    }
+    for (mass, moments) in [
+        ("0.001", ["3e-8", "6e-8", "0", "3e-8", "0", "5e-8"]),
+        ("0.5", ["-6e-13", "0", "0", "0", "0", "0"]),
+        ("0", ["-1e-30", "0", "0", "0", "0", "0"]),
+    ] {
+        let problems = corpus::refused(&trolley(mass, "0.0185 -0.11 6.8e-18", moments));
+        assert_eq!(problems.errors.iter().map(|e| e.kind).collect::<Vec<_>>(), [Kind::InertiaNotPositive], "{mass} {moments:?}");
+    }
+}
+
+/// In a robot of a millimetre, rounding is a millionth of what it is in one of a metre.
+#[test]
+fn what_rounding_is_depends_on_the_size_of_the_robot() {
+    let tiny = |moment: &str| {
+        trolley("1", "0.001 0 0", [moment, "0", "0", "0", "0", "0"])
+            .replace("1.5 0 0.1", "1e-3 0 0")
+            .replace("0 0 12", "0 0 -1e-3")
+            .replace("ixx=\"2\" ixy=\"0.1\"", "ixx=\"40\" ixy=\"0.1\"")
+    };
+    assert!(read(tiny("-0.9e-18").as_bytes(), &options()).is_ok());
+    assert_eq!(corpus::only_error(&tiny("-1.1e-18")).kind, Kind::InertiaNotPositive);
+    // Without any length there is nothing to compare with but a metre.
+    let point = "<robot name='r'><link name='b'/><link name='c'><inertial><mass value='1'/>\
+        <inertia ixx='M' ixy='0' ixz='0' iyy='0' iyz='0' izz='0'/></inertial></link>\
+        <joint name='j' type='continuous'><parent link='b'/><child link='c'/></joint></robot>";
+    assert!(read(point.replace('M', "-0.9e-12").as_bytes(), &options()).is_ok());
+    assert_eq!(corpus::only_error(&point.replace('M', "-1.1e-12")).kind, Kind::InertiaNotPositive);
+}
+
+/// The rotation of roll, pitch and yaw, and that of a quaternion, each by its own textbook matrix.
+fn rotation_of_rpy([r, p, y]: [f64; 3]) -> [[f64; 3]; 3] {
+    let ((sr, cr), (sp, cp), (sy, cy)) = (r.sin_cos(), p.sin_cos(), y.sin_cos());
+    [
+        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+        [-sp, cp * sr, cp * cr],
+    ]
+}
+
+fn rotation_of_quaternion([x, y, z, w]: [f64; 4]) -> [[f64; 3]; 3] {
+    let n = x * x + y * y + z * z + w * w;
+    [
+        [n - 2.0 * (y * y + z * z), 2.0 * (x * y - z * w), 2.0 * (x * z + y * w)],
+        [2.0 * (x * y + z * w), n - 2.0 * (x * x + z * z), 2.0 * (y * z - x * w)],
+        [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), n - 2.0 * (x * x + y * y)],
+    ]
+    .map(|row| row.map(|entry| entry / n))
+}
+
+/// Random ones, and those near and at a pitch of ±π/2, where roll and yaw are one.
+#[test]
+fn a_quaternion_is_the_rotation_that_it_stands_for() {
+    let mut state = 1_u64;
+    let mut random = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    };
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let mut all =
+        vec![[half, 0.0, 0.0, half], [0.5, 0.5, 0.5, 0.5], [0.0, half, 0.0, half], [0.0, -half, 0.0, half], [0.0, 0.0, 0.0, -1.0]];
+    all.extend((0..200).map(|_| std::array::from_fn(|_| random())));
+    all.extend((0..200).map(|k| {
+        let tilt = 10.0_f64.powi(-(k % 17));
+        [tilt * random(), half + tilt * random(), tilt * random(), half * (1.0 + tilt * random())]
+    }));
+    for q in all {
+        let norm = q.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let q = q.map(|x| x / norm);
+        let text = crane("xyz=\"0 0 12\" rpy=\"0 0 0\"", &format!("quat_xyzw='{:?} {:?} {:?} {:?}'", q[0], q[1], q[2], q[3]));
+        let rpy = joint(&text.replace("<robot ", "<robot version='1.1' "), "slew").origin.rpy;
+        let (found, right) = (rotation_of_rpy(rpy), rotation_of_quaternion(q));
+        for (found, right) in found.iter().flatten().zip(right.iter().flatten()) {
+            assert!((found - right).abs() < 1e-15, "{q:?} {rpy:?}");
+        }
+        assert!(rpy.iter().all(|angle| angle.abs() <= std::f64::consts::PI), "{rpy:?}");
+    }
+}
+
+/// A quarter turn about x is the double π/2 itself, whatever digits of √½ are given; from 1.1 on.
+#[test]
+fn a_quarter_turn_as_a_quaternion_is_exact() {
+    for (version, half, warned) in [("1.1", "0.7071067811865476", 0), ("1.2", "0.70710678", 0), ("1.1", "0.707", 1)] {
+        let text = crane("xyz=\"0 0 12\" rpy=\"0 0 0\"", &format!("xyz='0 0 12' quat_xyzw='{half} 0 0 {half}'"));
+        let reading = accepted(&text.replace("<robot ", &format!("<robot version='{version}' ")));
+        assert_eq!(reading.description.joints[0].origin, Origin { xyz: [0.0, 0.0, 12.0], rpy: [FRAC_PI_2, 0.0, 0.0] }, "{half}");
+        let kinds: Vec<Kind> = reading.warnings.iter().map(|w| w.kind).collect();
+        assert_eq!(kinds, vec![Kind::QuaternionNorm; warned]);
+    }
+}
+
+#[test]
+fn expressions_of_xacro_in_names_of_files_play_no_part() {
+    let mesh = "<link name=\"hook\"><visual><geometry><mesh filename=\"file://$(find crane)/${name}.stl\"/></geometry></visual>\
+        <collision><geometry><mesh filename=\"$(arg folder)/hook.stl\"/></geometry></collision></link>";
+    assert_eq!(described(&crane("<link name=\"hook\"/>", mesh)), described(CRANE));
+}
+
+/// As others read it: a link `world` that joints hang on and no tag declares.
+#[test]
+fn world_is_added_where_joints_hang_on_it_and_no_link_is_called_so() {
+    let declared = CRANE.replace("\"tower\"", "\"world\"");
+    let text = declared.replace("  <link name=\"world\"/>\n", "");
+    let reading = accepted(&text);
+    let warned: Vec<(Kind, Option<u32>)> = reading.warnings.iter().map(|w| (w.kind, w.line)).collect();
+    assert_eq!(warned, [(Kind::UndeclaredWorld, Some(19))]);
+    let moved = declared
+        .replace("  <link name=\"world\"/>\n", "")
+        .replace("  <link name=\"lamp\"/>\n", "  <link name=\"lamp\"/>\n  <link name=\"world\"/>\n");
+    assert_eq!(reading.description, described(&moved));
+    // Another name stays a mistake, and so does a second root beside it.
+    let other = corpus::refused(&text.replace("\"world\"", "\"World\""));
+    assert_eq!(other.errors.iter().map(|e| e.kind).collect::<Vec<_>>(), [Kind::UnknownLink; 2], "{other}");
+    let second = text.replace("<link name=\"lamp\"/>", "<link name=\"lamp\"/><link name=\"stray\"/>");
+    assert_eq!(corpus::only_error(&second).kind, Kind::SeveralRoots);
+}
+
 /// The crane with a slew of another type and other tags in place of its axis.
 fn slew(kind: &str, tags: &str) -> String {
     crane("<axis xyz=\"0 0 1\"/>", tags).replace("\"continuous\"", &format!("\"{kind}\""))

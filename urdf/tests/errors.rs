@@ -32,13 +32,20 @@ const MISTAKES: &[Mistake] = &[
     ("0 1 0", "0 inf 0", Kind::NotFinite, 34, &["swing", "axis xyz"]),
     ("upper=\"3\"", "upper=\"three\"", Kind::NotANumber, 29, &["travel", "limit upper"]),
     ("damping=\"0.5\"", "damping=\"-\"", Kind::NotANumber, 36, &["swing", "dynamics damping"]),
-    ("\"0 0.1 0\"", "\"0 0.1 0\" quat_xyzw=\"0 0 0 1\"", Kind::Unsupported, 6, &["boom", "rpy"]),
+    ("\"0 0.1 0\"", "\"0 0.1 0\" quat_xyzw=\"0 0 0 1\"", Kind::Unsupported, 6, &["boom", "rpy", "<robot version=\"1.1\">"]),
     // Mass.
     ("value=\"40\"", "value=\"-40\"", Kind::NegativeMass, 5, &["boom", "negative", "mass"]),
     ("<mass value=\"40\"/>", "", Kind::MissingTag, 5, &["boom", "<mass>"]),
+    ("<mass value=\"40\"/>", "<density value=\"1000\"/>", Kind::MissingTag, 7, &["boom", "<density> is an extension", "<inertia>"]),
     ("<mass value=\"40\"/>", "<mass>40</mass>", Kind::MissingAttribute, 7, &["boom", "value"]),
     ("izz=\"31\"", "", Kind::MissingAttribute, 8, &["boom", "izz"]),
-    ("izz=\"31\"", "izz=\"-31\"", Kind::InertiaNotPositive, 5, &["boom", "inertia", "positive"]),
+    (
+        "izz=\"31\"",
+        "izz=\"-31\"",
+        Kind::InertiaNotPositive,
+        5,
+        &["boom", "inertia", "positive", "`--allow-unphysical-inertia`", "`allow_unphysical_inertia`", "Build::"],
+    ),
     ("ixy=\"0.1\"", "ixy=\"20\"", Kind::InertiaNotPositive, 5, &["boom", "inertia", "positive"]),
     ("<mass value=\"40\"/>", "<mass value=\"40\"/><mass value=\"4\"/>", Kind::DuplicateTag, 7, &["boom", "second <mass>"]),
     ("<mass value=\"5\"/>", "<mass value=\"5\"/><origin/><origin/>", Kind::DuplicateTag, 13, &["trolley", "second <origin>"]),
@@ -85,14 +92,15 @@ const MISTAKES: &[Mistake] = &[
     ("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"mount\"/>", Kind::LeaderCannotLead, 34, &["swing", "\"mount\""]),
     ("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic/>", Kind::MissingAttribute, 34, &["swing", "joint"]),
     ("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"slew\" offset=\"x\"/>", Kind::NotANumber, 34, &["swing", "offset"]),
-    ("<child link=\"lamp\"/>", "<child link=\"lamp\"/><mimic joint=\"slew\"/>", Kind::FollowerCannotFollow, 40, &["mount", "mimic"]),
     // The document.
     ("<robot name=\"crane\">", "<!DOCTYPE robot [<!ENTITY a \"b\">]><robot name=\"&a;\">", Kind::Doctype, 2, &["DOCTYPE"]),
     ("name=\"crane\"", "name=\"&crane;\"", Kind::Xml, 2, &["XML"]),
     ("</robot>", "", Kind::Xml, 43, &["XML"]),
     ("<child link=\"lamp\"/>", "<child link=\"lamp\">", Kind::Xml, 41, &["XML", "child"]),
     ("value=\"40\"", "value=\"40\" value=\"41\"", Kind::Xml, 7, &["XML", "value"]),
-    ("value=\"40\"", "value=\"${mass}\"", Kind::Xacro, 7, &["xacro", "${mass}"]),
+    ("value=\"40\"", "value=\"${mass}\"", Kind::Xacro, 7, &["link \"boom\": mass value:", "xacro", "${mass}"]),
+    ("type=\"continuous\"", "type=\"$(arg type)\"", Kind::Xacro, 19, &["joint \"slew\": joint type:"]),
+    ("<child link=\"lamp\"/>", "<child link=\"${lamp}\"/>", Kind::Xacro, 40, &["joint \"mount\": child link:"]),
     ("value=\"40\"", "value=\"$(arg mass)\"", Kind::Xacro, 7, &["xacro"]),
     ("<link name=\"lamp\"/>", "<xacro:lamp/>", Kind::Xacro, 18, &["xacro:lamp", "run xacro first"]),
 ];
@@ -155,6 +163,49 @@ fn of_very_many_roots_the_first_are_named_and_the_rest_counted() {
     let error = only_error(&crane("<link name=\"lamp\"/>", &format!("<link name=\"lamp\"/>{strays}")));
     assert_eq!(error.kind, Kind::SeveralRoots);
     assert!(error.found.starts_with("14 roots") && error.found.ends_with("link \"stray10\" and 2 more"), "{error}");
+}
+
+/// The example of other programs' joints: without the one that was passed over, nothing in the file has two roots.
+#[test]
+fn joints_of_other_programs_are_named_where_links_hang_on_nothing() {
+    let text = crane("<link name=\"lamp\"/>", "<link name=\"lamp\"/><link name=\"ball\"/>")
+        .replace("</robot>", "<drake:joint name='swivel' type='ball'><parent link='hook'/><child link='ball'/></drake:joint></robot>");
+    let problems = refused(&text);
+    assert_eq!(problems.errors.iter().map(|e| e.kind).collect::<Vec<_>>(), [Kind::SeveralRoots], "{problems}");
+    let message = problems.errors[0].to_string();
+    assert!(message.contains("one root; <drake:joint> \"swivel\" in line 42 is not read: write it as <joint>"), "{message}");
+    let two = text.replace("</robot>", "<a:joint><parent link='hook'/><child link='ball'/></a:joint></robot>");
+    let message = refused(&two).errors[0].to_string();
+    assert!(message.contains("<drake:joint> \"swivel\" in line 42, <a:joint> in line 42 are not read"), "{message}");
+}
+
+#[test]
+fn all_expressions_of_xacro_are_listed_with_the_other_mistakes() {
+    let text = crane("0 0 12\" rpy=\"0 0 0\"", "0 0 $(optenv Z 1)\" rpy=\"$(arg r) 0 0\"")
+        .replace("value=\"40\"", "value=\"${m}\"")
+        .replace("iyy=\"30\"", "iyy=\"bad\"");
+    let problems = refused(&text);
+    let fields: Vec<String> = problems.errors.iter().map(|e| format!("{} {}", e.subject, e.field)).collect();
+    let expected = ["link \"boom\" mass value", "joint \"slew\" origin xyz", "joint \"slew\" origin rpy", "link \"boom\" inertia iyy"];
+    assert_eq!(fields, expected, "{problems}");
+    assert_eq!(problems.errors.iter().filter(|e| e.kind == Kind::Xacro).count(), 3);
+}
+
+/// A norm of 1 within a thousandth; one rotation; a version that has quaternions.
+#[test]
+fn quaternions_that_are_wrong_are_refused() {
+    let turned = |version: &str, attributes: &str| {
+        let text = crane("xyz=\"0 0 12\" rpy=\"0 0 0\"", attributes).replace("<robot ", &format!("<robot version='{version}' "));
+        only_error(&text).kind
+    };
+    let unit = "quat_xyzw='0 0 0 1'";
+    assert_eq!(turned("1.0", unit), Kind::Unsupported);
+    assert_eq!(turned("1.1", &format!("{unit} rpy='0 0 0'")), Kind::TwoRotations);
+    for text in ["0 0 0 0", "0 0 0 1.0011", "0 0 0 0.9989", "1e200 0 0 1", "0.5 0.5 0.5 0"] {
+        assert_eq!(turned("1.1", &format!("quat_xyzw='{text}'")), Kind::QuaternionNorm, "{text}");
+    }
+    assert_eq!(turned("1.2", "quat_xyzw='0 0 1'"), Kind::WrongCount);
+    assert_eq!(turned("1.1", "quat_xyzw='0 0 0 nan'"), Kind::NotFinite);
 }
 
 #[test]

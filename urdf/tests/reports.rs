@@ -48,6 +48,18 @@ fn what_looks_wrong_is_a_warning_and_used_as_written() {
         ("<child link=\"hook\"/>", "<child link=\"hook\"/><origin xyz=\"0 0 -333\"/>", Kind::Units, "swing", 33),
         ("value=\"40\"", "value=\"0.3\"", Kind::Units, "boom", 5),
         ("<limit lower=\"-1\" upper=\"1\"", "<limit lower=\"-180\" upper=\"1\"", Kind::MoreThanATurn, "swing", 35),
+        ("xyz=\"0 1 0\"", "xyz=\"0 2 0\"", Kind::AxisLength, "swing", 34),
+        ("xyz=\"0 1 0\"", "xyz=\"0 0 1e-9\"", Kind::AxisLength, "swing", 34),
+        ("effort=\"100\"", "effort=\"0\"", Kind::LimitZero, "travel", 29),
+        ("velocity=\"0.5\"", "velocity=\"0\"", Kind::LimitZero, "travel", 29),
+        ("lower=\"0\" upper=\"3\"", "lower=\"3\" upper=\"3\"", Kind::LimitEqual, "travel", 29),
+        ("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"travel\" multiplier=\"0\"/>", Kind::MimicZero, "swing", 34),
+        ("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"travel\" offset=\"-1\"/>", Kind::MimicRange, "swing", 34),
+        ("<axis xyz=\"0 1 0\"/>", "<axis xyz=\"0 1 0\"/><mimic joint=\"travel\" multiplier=\"-0.5\"/>", Kind::MimicRange, "swing", 34),
+        ("<child link=\"lamp\"/>", "<child link=\"lamp\"/><mimic joint=\"slew\"/>", Kind::UnusedMimic, "mount", 40),
+        ("<robot name=\"crane\">", "<robot name=\"crane\u{202e}\">", Kind::OddName, "not visible", 2),
+        ("joint name=\"mount\"", "joint name=\" mount\"", Kind::OddName, "blanks at an end", 38),
+        ("joint name=\"mount\"", "joint name=\"mo&#10;unt\"", Kind::OddName, "not visible", 38),
     ];
     let mut messages = Vec::new();
     for (from, to, kind, name, line) in cases {
@@ -58,8 +70,14 @@ fn what_looks_wrong_is_a_warning_and_used_as_written() {
         messages.push(warnings[0].to_string());
     }
     corpus::as_kept("warnings.txt", &messages);
+    // Rounded digits of a unit vector; a follower that stays within its limits but for digits.
+    for axis in ["0.577 0.577 0.577", "0 0.7071 -0.7071", "0 -1 0"] {
+        assert!(accepted(&crane("0 1 0", axis)).warnings.is_empty(), "{axis}");
+    }
+    let follows = "<axis xyz=\"0 1 0\"/><mimic joint=\"travel\" multiplier=\"0.667\" offset=\"-1\"/>";
+    assert!(accepted(&crane("<axis xyz=\"0 1 0\"/>", follows)).warnings.is_empty());
     let turned = ("<child link=\"hook\"/>", "<child link=\"hook\"/><origin rpy=\"6.283185307 0 -6.28319\"/>");
-    for (from, to) in [("effort=\"100\"", "effort=\"0\""), ("damping=\"0.5\"", "damping=\"0\""), turned] {
+    for (from, to) in [("effort=\"100\"", "effort=\"1e-9\""), ("damping=\"0.5\"", "damping=\"0\""), turned] {
         assert!(accepted(&crane(from, to)).warnings.is_empty(), "{to}");
     }
     let travel = joint(&crane("lower=\"0\"", "lower=\"4\""), "travel").limit.unwrap();
@@ -139,8 +157,61 @@ fn what_nobody_knows_is_warned_of() {
         let told = told(from, to);
         assert!(told.len() == 1 && told[0].ends_with(expected), "{told:?}");
     }
-    let end = told("</robot>", "<loop_joint name=\"l\"/><drake:joint name=\"d\"/><plugin/></robot>");
-    assert!(end.len() == 1 && end[0].contains("<loop_joint>: found what is not known"), "{end:?}");
+    let end = told("</robot>", "<odd_joint name=\"l\"/><drake:joint name=\"d\"/><plugin/></robot>");
+    assert!(end.len() == 1 && end[0].contains("<odd_joint>: found what is not known"), "{end:?}");
+}
+
+/// Tags inside the robot, what the warning says of each, and how many there are.
+const LOST: &[(&str, &[&str])] = &[
+    (
+        "<loop_joint name='d' type='continuous'><link1 link='boom'/><link2 link='hook'/></loop_joint>",
+        &["<loop_joint>: found a closed loop or a constraint \"d\", expected a tree of joints"],
+    ),
+    (
+        "<gazebo><joint name='d' type='revolute'><parent>boom</parent><child>hook</child></joint></gazebo>",
+        &["<joint>: found a joint \"d\" inside <gazebo>, expected <joint> directly inside <robot>"],
+    ),
+    (
+        "<gazebo reference='swing'><springStiffness>30</springStiffness><springReference>0</springReference></gazebo>",
+        &["<springStiffness>: found a spring inside <gazebo reference=\"swing\">, expected `effects` of a scene"],
+    ),
+    ("<gazebo reference='hook'><turnGravityOff>true</turnGravityOff></gazebo>", &["found a link without gravity"]),
+    ("<gazebo reference='hook'><gravity>0</gravity></gazebo>", &["found a link without gravity"]),
+    ("<gazebo><joint><axis><mimic joint='slew'/></axis></joint></gazebo>", &["found a joint that follows another"]),
+    (
+        "<mujoco><equality><connect body1='hook'/></equality><tendon><spatial/></tendon></mujoco>",
+        &["<equality>: found a closed loop", "<tendon>: found a spring"],
+    ),
+    ("<drake:linear_bushing_rpy/>", &["<drake:linear_bushing_rpy>: found a closed loop"]),
+    ("<drake:ball_constraint/>", &["<drake:ball_constraint>: found a closed loop"]),
+    ("<drake:joint name='d' type='ball'><parent link='hook'/><child link='boom'/></drake:joint>", &["<drake:joint>: found a joint \"d\""]),
+    ("<group><link name='ghost'/><joint name='g'/></group>", &["<group>: found 1 links and 1 joints inside <group>"]),
+    // Not lost, or nothing.
+    ("<gazebo reference='swing'><springStiffness>0</springStiffness><implicitSpringDamper>1</implicitSpringDamper></gazebo>", &[]),
+    ("<gazebo><plugin name='p'><joint>swing</joint><joint name='swing'/></plugin><gravity>true</gravity></gazebo>", &[]),
+    ("<gazebo reference='hook'><kp>1e6</kp><turnGravityOff>false</turnGravityOff></gazebo>", &[]),
+    ("<transmission name='t'><joint name='slew'><stiffness>3</stiffness></joint></transmission>", &[]),
+    ("<a:group><link name='ghost'/></a:group>", &[]),
+];
+
+#[test]
+fn dynamics_that_are_stated_where_they_are_not_read_are_warned_of() {
+    for (tags, expected) in LOST {
+        let reading = accepted(&crane("</robot>", &format!("{tags}</robot>")));
+        assert_eq!(reading.description, described(CRANE));
+        let told: Vec<String> = reading.warnings.iter().map(ToString::to_string).collect();
+        assert_eq!(told.len(), expected.len(), "{tags}: {told:#?}");
+        for (told, expected) in told.iter().zip(*expected) {
+            assert!(told.starts_with("crane.urdf:42: ") && told.contains(expected), "{told}");
+        }
+    }
+    // Inside a joint and a link too.
+    let spring = accepted(&crane("<child link=\"hook\"/>", "<child link=\"hook\"/><drake:spring stiffness='3'/>"));
+    assert!(
+        spring.warnings.len() == 1 && spring.warnings[0].to_string().contains("joint \"swing\": <drake:spring>"),
+        "{:?}",
+        spring.warnings
+    );
 }
 
 #[test]

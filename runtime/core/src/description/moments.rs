@@ -38,6 +38,11 @@ impl PrincipalMoments {
         !self.are_negative() && c - a - b > TRIANGLE * self.size()
     }
 
+    /// The least of them, kg·m².
+    pub fn least(&self) -> f64 {
+        self.0[0]
+    }
+
     /// The greatest of them, kg·m².
     pub fn greatest(&self) -> f64 {
         self.0[2]
