@@ -111,6 +111,18 @@ mod tests {
     }
 
     #[test]
+    fn numbers_of_the_command_line_are_the_nearest_doubles() {
+        use crate::states::exact::{doubles, spellings};
+        for x in doubles() {
+            for text in spellings(x) {
+                assert_eq!(numbers(&text).unwrap()[0].to_bits(), x.to_bits(), "{text}");
+                let gravity = crate::arguments::gravity(&format!("{text},0,{text}")).unwrap().0;
+                assert_eq!(gravity.map(f64::to_bits), [x, 0.0, x].map(f64::to_bits), "{text}");
+            }
+        }
+    }
+
+    #[test]
     fn a_payload_is_a_link_a_mass_and_what_else_is_known() {
         let point = Payload { link: "tool".into(), mass: 1.2, ..Payload::default() };
         assert_eq!(payload("tool=1.2"), Ok(point.clone()));

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use articulated_codegen::{Appended, Error, Generated, MOST_FREEDOMS, Options, Request, Sines, choose_frames, generate, nearest};
 use articulated_core::description::Base;
 use articulated_core::model::Model;
-use articulated_urdf::{MOST_BYTES, Problem, Reading, read_at_most};
+use articulated_urdf::{MOST_BYTES, Problem, Reading, read_at_most, summary};
 
 use crate::arguments::{RobotArguments, names_in_rust};
 use crate::console;
@@ -119,9 +119,9 @@ impl Robot {
         self
     }
 
-    /// Warns of what is odd about it; not of what is odd about a bundled robot, which `check` tells all the same.
-    pub(crate) fn warn_of<'a>(&self, odd: impl Iterator<Item = &'a Problem>) {
-        odd.filter(|_| !self.bundled).for_each(|problem| console::warn(&problem.to_string()));
+    /// Prints these warnings, a line for each sort; for a bundled robot none, as `check` alone lists those.
+    pub(crate) fn warn_of<'a>(&self, warnings: impl Iterator<Item = &'a Problem>) {
+        summary(warnings.filter(|_| !self.bundled)).iter().for_each(|line| console::warn(line));
     }
 
     /// What the reader finds in the document, edited as asked for.

@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use articulated_scene::{Robot, RobotError, Scene, beside, read_robot_file};
+use articulated_urdf::summary;
 
 use crate::cache::Cache;
-use crate::{Appended, Base, Error, Generated, Origin, Payload, Reference, Request, generate, scene};
+use crate::{Appended, Base, Error, Generated, Origin, Payload, Real, Reference, Request, check_words, generate, scene};
 
 /// Generates a robot's code from a build script.
 ///
@@ -25,6 +26,31 @@ pub struct Build {
     append: Vec<(PathBuf, Appended)>,
     /// The scene, if there is one: its file, and what is in it or what is wrong with it.
     scene: Option<(PathBuf, Result<Scene, Error>)>,
+    /// What is wrong with the words of the calls.
+    wrong: Vec<Error>,
+}
+
+/// A type of numbers of [`Build::batch`]: a [`Real`], or its name, `"f64"` or `"f32"`.
+#[derive(Clone, Debug)]
+pub struct BatchType(Result<Real, Error>);
+
+impl From<Real> for BatchType {
+    fn from(real: Real) -> Self {
+        Self(Ok(real))
+    }
+}
+
+impl From<&str> for BatchType {
+    fn from(name: &str) -> Self {
+        let real = [Real::F64, Real::F32].into_iter().find(|real| real.name() == name);
+        Self(real.ok_or_else(|| Error::BatchUnknown { found: name.to_owned() }))
+    }
+}
+
+impl From<String> for BatchType {
+    fn from(name: String) -> Self {
+        Self::from(name.as_str())
+    }
 }
 
 /// What a build script wrote.
@@ -32,7 +58,7 @@ pub struct Build {
 pub struct Written {
     /// The file.
     pub path: PathBuf,
-    /// Things in the document that are odd but used as written.
+    /// What looks wrong in the document and was used as written: a line for each sort of warning.
     pub warnings: Vec<String>,
     /// Whether it was generated now; otherwise it stands from the last run, which had the same request.
     pub generated: bool,
@@ -44,7 +70,7 @@ impl Build {
         let path = path.as_ref();
         let mut request = Request::new(path.display().to_string(), []);
         request.options.runtime = Some("::articulated".into());
-        Self { path: from_root(path), request, append: Vec::new(), scene: None }
+        Self { path: from_root(path), request, append: Vec::new(), scene: None, wrong: Vec::new() }
     }
 
     /// For the scene at `path`, relative to the crate's folder. What is said after this stands in place of what the scene says; locks, loads and robots to append are added to its own. What is wrong with the scene is told when the code is
@@ -180,10 +206,18 @@ impl Build {
         self
     }
 
-    /// Functions of many states at once too, in numbers of these types: the modules `batch_f64` and `batch_f32`.
+    /// Functions of many states at once too, in numbers of these types, as `["f64", "f32"]` or [`Real`]s: the modules `batch_f64` and `batch_f32`.
+    /// A name that is none of a type is an error of the generation.
     #[must_use]
-    pub fn batch(mut self, reals: impl IntoIterator<Item = crate::Real>) -> Self {
-        self.request.options.batch = reals.into_iter().collect();
+    pub fn batch<R: Into<BatchType>>(mut self, reals: impl IntoIterator<Item = R>) -> Self {
+        self.wrong.retain(|error| !matches!(error, Error::BatchUnknown { .. }));
+        self.request.options.batch.clear();
+        for real in reals {
+            match real.into().0 {
+                Ok(real) => self.request.options.batch.push(real),
+                Err(error) => self.wrong.push(error),
+            }
+        }
         self
     }
 
@@ -266,7 +300,7 @@ impl Build {
             return Ok(Written { path, warnings, generated: false });
         }
         let generated = generate(&request)?;
-        let warnings: Vec<String> = generated.warnings.iter().map(ToString::to_string).collect();
+        let warnings = summary(&generated.warnings);
         cache.iter().for_each(Cache::forget);
         // An unchanged file keeps its date, so that nothing is compiled again.
         if !fs::read_to_string(&path).is_ok_and(|old| old == generated.source) {
@@ -285,9 +319,16 @@ impl Build {
             let expected = "urdf; a bundled robot is known to the command line alone: give its URDF with Build::urdf";
             return Err(scene.without_robot("no URDF", expected).into());
         }
-        request.urdf = read_robot_file(&self.path)?;
+        let mut wrong = self.wrong.clone();
+        let mut read = |path: &Path| read_robot_file(path).map_err(|error| wrong.push(error.into())).unwrap_or_default();
+        request.urdf = read(&self.path);
         for (path, other) in &self.append {
-            request.options.robot.append.push(Appended { urdf: read_robot_file(path)?, ..other.clone() });
+            request.options.robot.append.push(Appended { urdf: read(path), ..other.clone() });
+        }
+        if !wrong.is_empty() {
+            // Mistakes in the words of the request are mistakes without the robot too.
+            wrong.extend(check_words(&request).err());
+            return Err(Error::Several { errors: wrong });
         }
         if let Some(scene) = scene {
             scene::settle(&mut request, scene).map_err(|error| scene::placed(error, scene))?;

@@ -15,6 +15,12 @@ pub enum Error {
         /// The type.
         found: &'static str,
     },
+    /// A type of numbers that does not exist.
+    #[error("batch: found {found:?}, expected \"f64\" or \"f32\"")]
+    BatchUnknown {
+        /// The word found.
+        found: String,
+    },
     /// A function that does not exist.
     #[error("unknown function `{found}`, {}", nearest.as_ref().map_or_else(|| format!("there are: {}", known.join(", ")), |n| format!("did you mean `{n}`?")))]
     UnknownFunction {
@@ -62,7 +68,9 @@ pub enum Error {
         most: u64,
     },
     /// Two names of the URDF that are the same in Rust.
-    #[error("{file}: {kind}s {first:?} and {second:?} are both `{ident}` in Rust; give one another name with `rename`")]
+    #[error(
+        "{file}: {kind}s {first:?} and {second:?} are both `{ident}` in Rust; `--rename` (key `rename`, method `Build::rename`) gives one another name"
+    )]
     NameClash {
         /// The file.
         file: String,
@@ -118,7 +126,7 @@ pub enum Error {
         function: String,
     },
     /// A function that needs frames which can move in all directions, on a robot where some cannot.
-    #[error("{file}: {function} is not defined: fewer than six degrees of freedom carry {}; {}", frames.join(", "), if *has_others { "choose others with `frames`" } else { "no link of this robot has six: take operational_space_inertia_inverse" })]
+    #[error("{file}: {function} is not defined: fewer than six degrees of freedom carry {}; {}", frames.join(", "), if *has_others { "choose others with `--frames` (key `frames`, method `Build::frames`)" } else { "no link of this robot has six: take operational_space_inertia_inverse" })]
     BoundFrames {
         /// The file.
         file: String,

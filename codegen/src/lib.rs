@@ -46,7 +46,7 @@ pub use articulated_core::suggest::nearest;
 pub use articulated_scene::{Appended, Edit, Reason, Refusal, RobotError, RobotOptions};
 pub use articulated_urdf as urdf;
 pub use articulated_urdf::MOST_SNAPPED;
-pub use build::{Build, Written};
+pub use build::{BatchType, Build, Written};
 pub use checked::checked_cost;
 pub use emit::identifier;
 pub use error::Error;
@@ -121,8 +121,7 @@ struct Plan {
 fn plan(request: &Request) -> Result<Plan, Error> {
     let options = &request.options;
     // What needs no robot comes first, to be told of one that cannot be read too.
-    types_of_batch(&options.batch)?;
-    options.functions.iter().try_for_each(|text| Wanted::parse(text).map(drop))?;
+    words(options)?;
     let mut reading = read(request)?;
     let whole = model(request, &reading.description)?;
     if whole.nv > MOST_FREEDOMS {
@@ -136,6 +135,17 @@ fn plan(request: &Request) -> Result<Plan, Error> {
     size::within_limit(request, &model, &wanted)?;
     let names = emit::Names::new(&model, request)?;
     Ok(Plan { reading, model, parameters, wanted, names })
+}
+
+/// Whether the words of the options mean something, whatever the robot.
+fn words(options: &Options) -> Result<(), Error> {
+    types_of_batch(&options.batch)?;
+    options.functions.iter().try_for_each(|text| Wanted::parse(text).map(drop))
+}
+
+/// As [`generate`] for a robot whose file is missing. Errors: all that is wrong with the request whatever the robot, as functions that do not exist.
+pub fn check_words(request: &Request) -> Result<(), Error> {
+    faults::all(&request.settled(), |request| words(&request.options))
 }
 
 /// Whether each type is there once.

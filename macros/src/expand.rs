@@ -4,11 +4,11 @@ use std::env;
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
-use articulated_codegen::scene::articulated_scene::{At, Robot, Scene, SceneErrors};
-use articulated_codegen::urdf::{MOST_BYTES, read_file};
-use articulated_codegen::{Request, scene};
-use proc_macro2::TokenStream;
-use quote::quote;
+use articulated_codegen::scene::articulated_scene::{At, Robot, Scene, SceneErrors, nearest_file};
+use articulated_codegen::urdf::{MOST_BYTES, read_file, summary};
+use articulated_codegen::{Generated, Request, check_words, scene};
+use proc_macro2::{Span, TokenStream};
+use quote::{quote, quote_spanned};
 
 use crate::errors::Errors;
 use crate::invocation::Invocation;
@@ -26,9 +26,10 @@ fn module(invocation: Invocation) -> TokenStream {
     let Invocation { attributes, visibility, module, name, settings, mut errors } = invocation;
     let contents = contents(&settings, &mut errors);
     let errors = errors.into_items();
+    let doc = "\n\nThe module has the functions that its invocation lists. To get another function of `articulated::algorithm`, add it to `functions`.";
     // Lints about style are for code that somebody writes. First, so that the user's attributes have the last word.
     let allow = quote! { #[allow(clippy::all, clippy::pedantic, clippy::nursery, clippy::restriction)] };
-    quote! { #allow #(#attributes)* #visibility #module #name { #errors #contents } }
+    quote! { #allow #(#attributes)* #[doc = #doc] #visibility #module #name { #errors #contents } }
 }
 
 /// The generated source and a mention of every file, by which the compiler knows that the module depends on them.
@@ -51,12 +52,29 @@ struct Asked {
 fn source(Asked { mut request, scene }: Asked, settings: &Settings, errors: &mut Errors) -> TokenStream {
     let effects = if scene.has_effects() { scene::settle(&mut request, &scene).map(drop) } else { Ok(()) };
     match effects.and_then(|()| articulated_codegen::generate(&request)) {
-        Ok(generated) => generated.tokens(),
+        Ok(generated) => {
+            let (code, warnings) = (generated.tokens(), warnings(&generated, settings.places.span(settings.at_robot(&scene))));
+            quote! { #code #warnings }
+        }
         Err(error) => {
             settings.at_their_words(error, &scene).into_iter().for_each(|error| errors.push(error));
             TokenStream::new()
         }
     }
+}
+
+/// Items of which the compiler warns, one for each sort of warning: a macro has no other way to warn. `#[allow(deprecated)]` on the module silences them.
+fn warnings(generated: &Generated, at: Span) -> TokenStream {
+    let items = summary(&generated.warnings).into_iter().map(|line| {
+        quote_spanned! {at=>
+            const _: () = {
+                #[deprecated(note = #line)]
+                const ROBOT_WARNING: () = ();
+                ROBOT_WARNING
+            };
+        }
+    });
+    items.collect()
 }
 
 /// Reads the files of an invocation.
@@ -78,16 +96,21 @@ impl Reader<'_> {
         wrong.iter().for_each(|error| self.errors.push(settings.in_scene(error)));
         let mut options = settings.own.options();
         scene::fill(&mut options, &scene);
-        let file = if is_whole { self.robot(&scene)? } else { return None };
-        let urdf = self.file(&file, settings.at_robot(&scene));
-        let mut is_complete = true;
+        let file = if is_whole { self.robot(&scene).unwrap_or_default() } else { return None };
+        let urdf = if file.is_empty() { None } else { self.file(&file, settings.at_robot(&scene)) };
+        let mut is_complete = urdf.is_some();
         for (other, said) in options.robot.append.iter_mut().zip(&scene.code.append) {
             other.file = from_cargo(seen_from, &said.urdf, said.place);
             let bytes = self.file(&other.file, settings.here(said.place));
             is_complete &= bytes.is_some();
             other.urdf = bytes.unwrap_or_default();
         }
-        let request = Request { urdf: urdf?, file, options };
+        let request = Request { urdf: urdf.unwrap_or_default(), file, options };
+        if !is_complete {
+            // Mistakes in the words of the invocation are mistakes without the robot too.
+            let wrong = check_words(&request).err().map(|error| settings.at_their_words(error, &scene));
+            wrong.into_iter().flatten().for_each(|error| self.errors.push(error));
+        }
         is_complete.then_some(Asked { request, scene })
     }
 
@@ -133,7 +156,10 @@ impl Reader<'_> {
         let root = env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
         let path = root.join(name);
         let bytes = read_file(&path, MOST_BYTES).map_err(|error| match error.kind() {
-            ErrorKind::NotFound => "there is no such file, seen from the folder of Cargo.toml".to_owned(),
+            ErrorKind::NotFound => {
+                let near = nearest_file(&path).map(|name| format!("; did you mean {name:?}?")).unwrap_or_default();
+                format!("there is no such file, seen from the folder of Cargo.toml{near}")
+            }
             _ => error.to_string(),
         })?;
         self.paths.push(path.into_os_string().into_string().map_err(|_| "the path of the package is not UTF-8")?);

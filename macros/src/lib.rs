@@ -57,7 +57,8 @@ mod tree;
 /// are words or stand in quotation marks. Robots are appended first, then payloads attached, then joints locked. The module has one function for each name in `functions`
 /// (for each of a group that is named there; beside a scene, `motion` stands for all that its motion calls),
 /// constants for sizes, names, limits and the neutral configuration, modules of indices (`joint`, `q_index`, `v_index`, `frame`), and `Robot`, a value that
-/// implements `articulated::Dynamics`. What looks odd in the URDF is listed in its constant `WARNINGS`. It is compiled
+/// implements `articulated::Dynamics`. What looks wrong in the URDF is listed in its constant `WARNINGS`, and the compiler warns of it (as of a deprecated constant, for a macro
+/// has no other way; `#[allow(deprecated)]` on the module silences it). It is compiled
 /// again when a URDF or the scene changes. With `parameters` every function takes their numbers as the last of its inputs, before `out` where it has that; the constant `PARAMETERS` has those of the URDF, the
 /// module `parameter` where each begins, and `Robot` holds its own; functions of many states take a set for each state, or one for all. `payload(link)` and `inertia(link)` are ten: m, m·c and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz
 /// about the origin of the link's frame in its axes, added to what the link has or in its place; `origin(joint)` is the joint's xyz in its parent link, m; `gravity` the three of gravity, m/s²; `damping(joint)`, `contact(link)` and so on the numbers of an effect that is on there. A build script (`articulated_codegen::Build`) gives the same code, to read and to step through.

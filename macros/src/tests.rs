@@ -93,18 +93,60 @@ fn edits_are_those_of_the_build_script_and_every_file_is_mentioned() {
     assert_eq!(quote!(#(#items)*).to_string(), syn::parse2::<syn::File>(build.tokens()).unwrap().to_token_stream().to_string());
 }
 
+/// A warning is the use of a constant whose deprecation is the text.
+#[test]
+fn warnings_are_items_of_which_the_compiler_warns() {
+    let file = std::env::temp_dir().join(format!("articulated-odd-{}.urdf", std::process::id()));
+    let arm = std::fs::read_to_string("../tests/ui/urdf/arm.urdf").unwrap();
+    std::fs::write(&file, arm.replace("effort=\"10\"", "effort=\"0\"").replace("xyz=\"0 1 0\"", "xyz=\"0 3 0\"")).unwrap();
+    let name = file.to_str().unwrap();
+    let out = module(quote!(mod arm { urdf = #name })).to_token_stream().to_string();
+    std::fs::remove_file(&file).unwrap();
+    assert_eq!(out.matches("deprecated (note = ").count(), 2, "{out}");
+    assert!(out.contains("limit effort: found zero") && out.contains("of length 3.0000") && out.contains("(and 1 more: joint"), "{out}");
+    let sound = module(quote!(mod arm { urdf = "../tests/ui/urdf/arm.urdf" })).to_token_stream().to_string();
+    assert!(!sound.contains("deprecated"));
+}
+
+fn errors(text: &str) -> Vec<String> {
+    let out = expand(text.parse().unwrap()).to_string();
+    out.split("compile_error !").skip(1).map(|rest| rest.split("; }").next().unwrap_or_default().to_owned()).collect()
+}
+
+#[test]
+fn a_key_with_a_colon_is_one_mistake() {
+    let told = errors("mod arm { urdf: \"../tests/ui/urdf/arm.urdf\" }");
+    assert!(told.len() == 1 && told[0].contains("expected `=` after `urdf`"), "{told:?}");
+}
+
+#[test]
+fn a_missing_file_is_told_with_the_nearest_and_with_the_other_mistakes() {
+    let told = errors("mod arm { urdf = \"../tests/ui/urdf/amr.urdf\", functions = [mass_matrx, no_such], floating = true }").concat();
+    for part in ["did you mean \\\"arm.urdf\\\"?", "`mass_matrx`", "`no_such`", "base = \\\"floating\\\""] {
+        assert_eq!(told.matches(part).count(), 1, "{part} in {told}");
+    }
+}
+
+#[test]
+fn the_module_says_how_another_function_is_had() {
+    let out = module(quote!(mod arm { urdf = "../tests/ui/urdf/arm.urdf" })).to_token_stream().to_string();
+    assert!(out.contains("add it to `functions`"), "{out}");
+}
+
 #[test]
 fn standalone_code_names_no_crate() {
     let urdf = "../tests/ui/urdf/arm.urdf";
     let module = module(quote!(mod arm { urdf = #urdf, standalone = true }));
-    assert!(!module.to_token_stream().to_string().contains("articulated"));
+    let text = items(module).iter().map(|item| item.to_token_stream().to_string()).collect::<String>();
+    assert!(!text.contains("articulated"));
 }
 
 #[test]
 fn attributes_and_visibility_are_the_modules() {
     let urdf = "../tests/ui/urdf/arm.urdf";
     let module = module(quote!(#[doc = "An arm."] #[cfg(all())] pub(crate) mod arm { urdf = #urdf }));
-    let (attributes, visibility) = (&module.attrs[1..], &module.vis);
+    // Before them is what the macro allows, after them its own documentation.
+    let (attributes, visibility) = (&module.attrs[1..module.attrs.len() - 1], &module.vis);
     assert_eq!(quote!(#(#attributes)* #visibility).to_string(), quote!(#[doc = "An arm."] #[cfg(all())] pub(crate)).to_string());
 }
 

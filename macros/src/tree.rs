@@ -36,6 +36,12 @@ impl Places {
         At::Word(u32::try_from(self.words.len() - 1).unwrap_or(u32::MAX))
     }
 
+    /// Where an item that is made for a place is shown.
+    pub(crate) fn span(&self, at: At) -> Span {
+        let word = if let At::Word(index) = at { self.words.get(index as usize) } else { None };
+        word.and_then(|word| word.clone().into_iter().next()).map_or(self.elsewhere, |token| token.span())
+    }
+
     /// What is wrong at a place.
     pub(crate) fn error(&self, at: At, message: impl Display) -> Error {
         let word = if let At::Word(index) = at { self.words.get(index as usize) } else { None };
@@ -86,8 +92,11 @@ impl<'a> Tree<'a> {
 
     /// `name = value`
     fn entry(&mut self, tokens: TokenStream, depth: usize) -> Result<Entry> {
+        // A key without its sign is a key all the same: it is not missing too.
+        let first: TokenStream = tokens.clone().into_iter().take(1).collect();
+        let named = quoted.parse2(first.clone()).or_else(|_| plain.parse2(first));
+        self.keys.extend(named.ok().filter(|_| depth == 0));
         let (word, name, value) = key.parse2(tokens)?;
-        self.keys.extend((depth == 0).then(|| name.clone()));
         if value.is_empty() {
             return Err(Error::new_spanned(word, format!("expected a value after `{name} =`")));
         }
@@ -209,5 +218,25 @@ fn several(tokens: &TokenStream, form: Form) -> Result<Value> {
             Err(Error::new(second.span(), format!("{COMMA}; names that are no words stand in quotation marks")))
         }
         _ => Ok(Value::Other(format!("`{tokens}`"))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_tokens_are_the_nearest_doubles() {
+        let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
+        let doubles = std::iter::repeat_with(|| {
+            bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            f64::from_bits(bits)
+        });
+        for x in doubles.filter(|x| x.is_finite()).take(100_000) {
+            for text in [format!("{x:?}"), format!("{x:.16e}")] {
+                let tokens: TokenStream = text.parse().unwrap();
+                assert!(matches!(scalar(&tokens), Some(Value::Number(y)) if y.to_bits() == x.to_bits()), "{text}");
+            }
+        }
     }
 }

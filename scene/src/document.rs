@@ -89,3 +89,33 @@ impl Lines {
         At::Line(u32::try_from(self.starts.partition_point(|start| *start <= offset)).unwrap_or(u32::MAX))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 10⁵ doubles of any size, each in the shortest spelling and in 17 digits.
+    #[test]
+    fn toml_is_read_to_the_nearest_double() {
+        let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
+        let doubles = std::iter::repeat_with(|| {
+            bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            f64::from_bits(bits)
+        });
+        let doubles: Vec<f64> = doubles.filter(|x| x.is_finite()).take(100_000).collect();
+        let list = |spelling: fn(&f64) -> String| doubles.iter().map(spelling).collect::<Vec<_>>().join(",");
+        let text = format!("a = [{}]\nb = [{}]", list(|x| format!("{x:?}")), list(|x| format!("{x:.16e}")));
+        let mut log = Log::new("s.toml");
+        let Some(Node { value: Value::Table(entries), .. }) = parse(&text, &mut log) else { panic!("no table") };
+        for entry in entries {
+            let Value::List(list) = entry.node.value else { panic!("no list") };
+            assert_eq!(list.len(), doubles.len());
+            for (node, x) in list.iter().zip(&doubles) {
+                assert!(matches!(node.value, Value::Number(y) if y.to_bits() == x.to_bits()), "{x:e}: {:?}", node.value);
+            }
+        }
+        // Integers beyond 2⁵³ too, to the nearest double.
+        let Some(Node { value: Value::Table(entries), .. }) = parse("a = 9007199254740993", &mut log) else { panic!("no table") };
+        assert_eq!(entries[0].node.value, Value::Number(9_007_199_254_740_992.0));
+    }
+}

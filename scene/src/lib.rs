@@ -44,8 +44,8 @@ pub use impact::{Impact, When};
 pub use initial::{BaseState, Coordinates, Initial, Named};
 pub use report::{EffectOff, EffectOn, Number, Report, Why};
 pub use robot::{
-    Appended, Attempt, Bundled, Edit, Opened, Reason, Refusal, RobotAsked, RobotError, RobotOptions, Settled, Tried, beside, by_places,
-    leave_out, open, open_in, read_robot_file, tried,
+    Appended, Attempt, Bundled, Edit, Opened, Reason, Refusal, RobotAsked, RobotError, RobotOptions, Settled, Tried, beside, beyond_sense,
+    by_places, leave_out, nearest_file, open, open_in, read_robot_file, tried,
 };
 pub use scene::{Code, Places, Robot, Scene};
 pub use series::{Reader, Source};

@@ -332,6 +332,20 @@ mod tests {
     }
 
     #[test]
+    fn numbers_of_a_table_in_a_file_are_the_nearest_doubles() {
+        let (mut bits, mut log) = (0x9e37_79b9_7f4a_7c15_u64, Log::new("t.csv"));
+        let source = Source { columns: vec!["elbow".into()], ..Source::default() };
+        let doubles = std::iter::repeat_with(|| {
+            bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            f64::from_bits(bits)
+        });
+        for x in doubles.filter(|x| x.is_finite()).take(100_000) {
+            let row = source.row(&format!("{x:?},{x:.16e}"), At::Line(1), &mut log).unwrap();
+            assert_eq!([row[0].to_bits(), row[1].to_bits()], [x.to_bits(); 2], "{x:e}");
+        }
+    }
+
+    #[test]
     fn a_long_list_of_columns_is_cut() {
         let link = |i: usize| {
             let kind = if i == 0 { "spherical" } else { "continuous" };

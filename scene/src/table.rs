@@ -22,6 +22,15 @@ pub(crate) struct Row<T> {
     pub(crate) read: fn(&mut T, &Spot<'_>, &mut Log),
 }
 
+/// Keys that other programs have, and the one that is meant.
+const MEANT: [(&str, &str); 5] = [
+    ("floating", "base = \"floating\""),
+    ("floating_base", "base = \"floating\""),
+    ("free_flyer", "base = \"floating\""),
+    ("fixed", "base = \"fixed\""),
+    ("fixed_base", "base = \"fixed\""),
+];
+
 /// A value and the way to it.
 pub(crate) struct Spot<'a> {
     pub(crate) node: &'a Node,
@@ -246,14 +255,13 @@ impl<'a> Spot<'a> {
 
     /// There is no such key.
     pub(crate) fn unknown_key<'n>(&self, log: &mut Log, names: impl IntoIterator<Item = &'n str>) {
+        const FOUND: &str = "a key that is not known";
+        if let Some((_, meant)) = MEANT.iter().find(|(key, _)| *key == self.key) {
+            return log.error(self.at, &self.key, Kind::UnknownKey, FOUND, *meant);
+        }
         let names: Vec<&str> = names.into_iter().collect();
         let name = self.key.rsplit('.').next().unwrap_or_default();
-        log.unknown(
-            (self.at, &self.key, Kind::UnknownKey),
-            ("a key that is not known".into(), name),
-            format!("one of {}", names.join(", ")),
-            names,
-        );
+        log.unknown((self.at, &self.key, Kind::UnknownKey), (FOUND.into(), name), format!("one of {}", names.join(", ")), names);
     }
 
     /// One table, or a list of tables, each by the rows.

@@ -117,7 +117,7 @@ fn snapped(rpy: [f64; 3], snap: Option<f64>, place: &Place<'_>, log: &mut Log) -
 }
 
 /// The multiple of π/2 (and its double) that is within `tolerance` of `angle` and is not `angle` itself.
-fn right_angle(angle: f64, tolerance: f64) -> Option<(f64, f64)> {
+pub(crate) fn right_angle(angle: f64, tolerance: f64) -> Option<(f64, f64)> {
     let quarters = (angle / FRAC_PI_2).round();
     let exact = quarters * FRAC_PI_2;
     let near = (angle - exact).abs() <= tolerance && quarters.abs() <= 1e3;

@@ -57,6 +57,7 @@ mod problem;
 mod ring;
 mod robot;
 mod snap;
+mod summary;
 mod tree;
 mod unused;
 mod xacro;
@@ -66,7 +67,8 @@ use articulated_core::description::{Base, Description};
 pub use file::{MOST_BYTES, read_at_most, read_file};
 use log::Log;
 pub use problem::{Kind, Problem, Problems, Subject, quote};
-pub use snap::{MOST_SNAPPED, SNAP_EXPECTED, can_snap};
+pub use snap::{MOST_SNAPPED, SNAP_EXPECTED, can_snap, nearly_right_angles};
+pub use summary::{summary, summary_of_unused};
 pub use unused::Unused;
 
 /// How to read.

@@ -173,8 +173,8 @@ pub enum Kind {
 
 impl fmt::Display for Problems {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let errors = self.errors.iter().map(|p| ("error", p));
-        let warnings = self.warnings.iter().map(|p| ("warning", p));
+        let errors = self.errors.iter().map(|p| ("error", p.to_string()));
+        let warnings = crate::summary(&self.warnings).into_iter().map(|line| ("warning", line));
         for (i, (level, problem)) in errors.chain(warnings).enumerate() {
             let end = if i == 0 { "" } else { "\n" };
             write!(f, "{end}{level}: {problem}")?;

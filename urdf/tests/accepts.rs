@@ -56,6 +56,27 @@ fn numbers_are_read_to_the_last_bit() {
     }
 }
 
+/// 10⁵ doubles of any size in the origins of joints, in the shortest spelling and in 17 digits by turns.
+#[test]
+fn very_many_numbers_are_read_to_the_nearest_double() {
+    let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
+    let doubles = std::iter::repeat_with(|| {
+        bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        f64::from_bits(bits)
+    });
+    let doubles: Vec<f64> = doubles.filter(|x| x.is_finite()).take(100_002).collect();
+    let mut text = String::from("<robot name='r'><link name='w'/>");
+    for (k, six) in doubles.chunks(6).enumerate() {
+        let word = |i: usize| if i % 2 == k % 2 { format!("{:?}", six[i]) } else { format!("{:.16e}", six[i]) };
+        let words: Vec<String> = (0..6).map(word).collect();
+        text += &format!("<link name='l{k}'/><joint name='j{k}' type='fixed'><parent link='w'/><child link='l{k}'/>");
+        text += &format!("<origin xyz='{}' rpy='{}'/></joint>", words[..3].join(" "), words[3..].join(" "));
+    }
+    let description = described(&(text + "</robot>"));
+    let read = description.joints.iter().flat_map(|j| j.origin.xyz.into_iter().chain(j.origin.rpy));
+    assert!(read.map(f64::to_bits).eq(doubles.iter().map(|x| x.to_bits())));
+}
+
 #[test]
 fn joints_and_links_stand_in_any_order() {
     let start = CRANE.find("  <link name=\"tower\"").unwrap();

@@ -5,7 +5,7 @@ mod report;
 mod text;
 
 use articulated_codegen::{Error, RobotError};
-use articulated_urdf::Reading;
+use articulated_urdf::{Reading, nearly_right_angles};
 
 use crate::arguments::{CheckArguments, Format};
 use crate::console;
@@ -30,18 +30,19 @@ fn examine(robot: &Robot, functions: &[String]) -> Report {
     match robot.read() {
         Err(Error::Robot(RobotError::Urdf(problems))) => {
             report.errors.extend(problems.errors.iter().map(Diagnostic::of));
-            report.warnings.extend(problems.warnings.iter().map(Diagnostic::of));
+            report.warn_of(problems.warnings.iter());
         }
         Err(error) => report.errors.extend(Failure::from(error).errors),
         Ok(reading) => {
-            report.warnings.extend(reading.warnings.iter().chain(&reading.snapped).map(Diagnostic::of));
+            report.warn_of(reading.warnings.iter().chain(&reading.snapped));
+            warn_of_nearly_right_angles(robot, &reading, &mut report);
             report.unused.extend(reading.unused.iter().map(ToString::to_string));
             describe(robot, &reading, &mut report);
         }
     }
     // Joints may be locked beside the scene: its motion is that of the scene alone.
     match robot.scene.as_deref().map(crate::simulate::motion::look_over) {
-        Some(Ok(odd)) => report.warnings.extend(odd.into_iter().map(Diagnostic::from)),
+        Some(Ok(odd)) => odd.into_iter().for_each(|line| report.warn(Diagnostic::from(line))),
         Some(Err(failure)) => report.errors.extend(failure.errors),
         None => {}
     }
@@ -63,10 +64,23 @@ fn describe(robot: &Robot, reading: &Reading, report: &mut Report) {
             let (clashes, wrong): (Vec<Error>, _) =
                 told(articulated_codegen::check_identifiers(&request, &model)).partition(|e| matches!(e, Error::NameClash { .. }));
             report.errors.extend(named.chain(wrong).flat_map(|e| Failure::from(e).errors));
-            report.warnings.extend(clashes.iter().map(|e| Diagnostic::from(e.to_string())));
+            clashes.iter().for_each(|e| report.warn(Diagnostic::from(e.to_string())));
         }
         Err(failure) => report.errors.extend(failure.errors),
     }
+}
+
+/// Warns of angles that were printed with too few digits to be right angles: code without exact ones is 8 to 16 % slower.
+fn warn_of_nearly_right_angles(robot: &Robot, reading: &Reading, report: &mut Report) {
+    let near = nearly_right_angles(&reading.description);
+    let Some((first, angle)) = near.first() else { return };
+    let rest = if near.len() == 1 { String::new() } else { format!(" (and {} more)", near.len() - 1) };
+    let message = format!(
+        "{}: joint {first:?}: origin rpy: found {angle}, nearly a multiple of π/2{rest}, expected 1.5707963267948966 and the like: exact ones make \
+         code 8 to 16 % faster; `--snap-angles 1e-5` (key `snap_angles`, method `Build::snap_angles`) takes angles this near as exact",
+        robot.file
+    );
+    report.warn(Diagnostic { line: None, subject: Some(format!("joint {first:?}")), field: Some("origin rpy".into()), message });
 }
 
 fn check_function(robot: &Robot, function: &str, report: &mut Report) {

@@ -3,6 +3,7 @@
 use articulated_core::description::{Description, JointKind, Link};
 use articulated_core::eigen::eigenvalues;
 use articulated_core::model::{FLOATING_BASE, Model};
+use articulated_urdf::{Problem, summary};
 use serde::Serialize;
 
 use super::base::Base;
@@ -24,6 +25,9 @@ pub(super) struct Report {
     pub(super) gravity: [f64; 3],
     pub(super) errors: Vec<Diagnostic>,
     pub(super) warnings: Vec<Diagnostic>,
+    /// The same as text: a line for each sort.
+    #[serde(skip)]
+    pub(super) warning_lines: Vec<String>,
     pub(super) unused: Vec<String>,
     pub(super) totals: Totals,
     pub(super) links: Vec<LinkRow>,
@@ -116,6 +120,7 @@ impl Report {
             gravity: robot.options.robot.gravity,
             errors: Vec::new(),
             warnings: Vec::new(),
+            warning_lines: Vec::new(),
             unused: Vec::new(),
             totals: Totals::default(),
             links: Vec::new(),
@@ -124,6 +129,18 @@ impl Report {
             functions: Vec::new(),
             units: UNITS,
         }
+    }
+
+    /// Adds warnings of the reader.
+    pub(super) fn warn_of<'a>(&mut self, problems: impl Iterator<Item = &'a Problem> + Clone) {
+        self.warning_lines.extend(summary(problems.clone()));
+        self.warnings.extend(problems.map(Diagnostic::of));
+    }
+
+    /// Adds one warning.
+    pub(super) fn warn(&mut self, warning: Diagnostic) {
+        self.warning_lines.push(warning.message.clone());
+        self.warnings.push(warning);
     }
 
     /// Fills in what the robot is made of, and warns of joints without an inertia of their own.
@@ -144,9 +161,9 @@ impl Report {
     }
 
     fn warn_of_massless_joints(&mut self, model: &Model<f64>) {
-        let file = &self.file;
+        let file = self.file.clone();
         if model.bodies.len() > MANY {
-            return self.warnings.push(Diagnostic::from(format!(
+            return self.warn(Diagnostic::from(format!(
                 "{file}: more than {MANY} bodies: whether every joint has an inertia of its own was not looked at"
             )));
         }
@@ -158,7 +175,7 @@ impl Report {
                  joint fewer"
             );
             let subject = Some(format!("joint {name:?}"));
-            self.warnings.push(Diagnostic { line: None, subject, field: None, message });
+            self.warn(Diagnostic { line: None, subject, field: None, message });
         }
     }
 }

@@ -9,10 +9,11 @@ use crate::table::{Table, counted, freedom, number, plain};
 
 pub(super) fn text(report: &Report) -> String {
     let mut out = String::new();
-    for (level, list) in [("error", &report.errors), ("warning", &report.warnings)] {
-        for diagnostic in list {
-            let _ = writeln!(out, "{level}: {}", plain(&diagnostic.message));
-        }
+    for diagnostic in &report.errors {
+        let _ = writeln!(out, "error: {}", plain(&diagnostic.message));
+    }
+    for line in &report.warning_lines {
+        let _ = writeln!(out, "warning: {}", plain(line));
     }
     if report.robot.is_some() {
         if !out.is_empty() {

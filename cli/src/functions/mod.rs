@@ -62,7 +62,7 @@ fn subject(name: &str, arguments: &FunctionsArguments) -> Result<(Subject, Robot
     let plain = RobotArguments::plain(name, arguments.floating && !bundled);
     let robot = Robot::find(&RobotArguments { max_code_size: arguments.max_code_size, ..plain })?;
     let reading = robot.read()?;
-    reading.warnings.iter().filter(|_| !bundled).for_each(|w| console::warn(&w.to_string()));
+    articulated_urdf::summary(reading.warnings.iter().filter(|_| !bundled)).iter().for_each(|line| console::warn(line));
     let model = robot.whole_model(&reading)?;
     let tips = Tips::of(&reading.description, &model);
     let row = RobotRow {

@@ -29,6 +29,14 @@ mod tests {
     }
 
     #[test]
+    fn every_number_reads_back_as_the_same_double() {
+        let doubles = crate::states::exact::doubles();
+        let written = text(&[Column { title: "t".into(), unit: String::new(), values: doubles.clone() }]).unwrap();
+        let read: Vec<f64> = written.lines().skip(1).map(|line| line.parse().unwrap()).collect();
+        assert!(read.len() == doubles.len() && read.iter().zip(&doubles).all(|(a, b)| a.to_bits() == b.to_bits()));
+    }
+
+    #[test]
     fn a_row_a_time_and_a_column_a_name() {
         let written = text(&columns(&example(&bundled_model("quadruped"), 5))).unwrap();
         let lines: Vec<&str> = written.lines().collect();

@@ -6,6 +6,7 @@ use articulated::simulate::{Counts, IntegratorId, Recording as Run, Settings};
 use articulated::{Dynamics, FunctionId};
 use articulated_codegen::Generated;
 use articulated_motion::{Begin, Ending, Happening as Happened, Outcome};
+use articulated_scene::beyond_sense;
 
 use super::recording::{Happening, Recording};
 use super::stage::Stage;
@@ -33,7 +34,9 @@ pub(super) struct Motion {
 /// What is odd about the state at the start.
 fn odd(stage: &Stage, begin: &Begin) -> Vec<String> {
     let beyond = stage.beyond(&begin.q).iter().map(ToString::to_string).collect::<Vec<_>>();
-    beyond.into_iter().chain(stage.sunk(&begin.q).iter().map(ToString::to_string)).collect()
+    let file = &stage.scene.file;
+    let senseless = beyond_sense(&stage.model, &begin.q).into_iter().map(|line| format!("{file}: initial: {line}"));
+    beyond.into_iter().chain(senseless).chain(stage.sunk(&begin.q).iter().map(ToString::to_string)).collect()
 }
 
 /// Start and control as the scene has them, with a warning of what is odd. Errors: all that do not fit the robot, and tables that cannot be read.

@@ -7,6 +7,7 @@ use articulated_codegen::Request;
 use articulated_codegen::scene::Prepared;
 use articulated_core::description::Base;
 use articulated_scene::Robot;
+use articulated_urdf::summary;
 
 use crate::console;
 use crate::failure::Failure;
@@ -64,7 +65,7 @@ impl Stage {
         let reading = articulated_codegen::read(&request)?;
         // Bundled robots are odd on purpose.
         let odd = reading.warnings.iter().filter(|_| !matches!(scene.robot, Robot::Bundled(_)));
-        let odd = odd.chain(&reading.snapped).map(ToString::to_string).collect();
+        let odd = summary(odd.chain(&reading.snapped));
         let model = articulated_codegen::model(&request, &reading.description)?;
         let effects = request.options.robot.effects.clone();
         let mut stage = articulated_motion::Stage::new(scene, reading.description, model, effects).in_folder(folder);

@@ -1,6 +1,8 @@
 //! States of a robot: the arguments of its functions, from a file or at random.
 
 mod csv;
+#[cfg(test)]
+pub(crate) mod exact;
 mod json;
 mod random;
 mod read;

@@ -4,6 +4,7 @@ use articulated_codegen::nearest;
 use articulated_core::algorithm::Argument;
 use articulated_core::model::Model;
 use articulated_core::spatial::{NORM_TOLERANCE, given_norm};
+use articulated_scene::beyond_sense;
 
 use super::random::normalise;
 use super::{Slot, State, csv, json, owner, quaternions, slots};
@@ -27,7 +28,7 @@ pub struct States {
 pub fn read(bytes: &[u8], model: &Model<f64>) -> Result<States, Vec<String>> {
     let text = std::str::from_utf8(bytes).map_err(|e| vec![format!("byte {}: found no UTF-8, expected JSON or CSV", e.valid_up_to())])?;
     let text = text.trim_start_matches('\u{feff}');
-    let mut found = Found { model, errors: Vec::new(), warnings: Vec::new(), states: Vec::new() };
+    let mut found = Found { model, errors: Vec::new(), warnings: Vec::new(), states: Vec::new(), beyond: None };
     if text.trim_start().starts_with(['{', '[']) {
         json::read(text, &mut found);
     } else {
@@ -42,6 +43,8 @@ pub(super) struct Found<'a> {
     pub(super) errors: Vec<String>,
     warnings: Vec<String>,
     states: Vec<State>,
+    /// The first coordinate beyond any sense, and how many other states have one.
+    beyond: Option<(String, usize)>,
 }
 
 impl Found<'_> {
@@ -64,6 +67,11 @@ impl Found<'_> {
             Argument::Q | Argument::Target if bad.is_empty() => self.check_quaternions(place, &mut numbers),
             Argument::Uniform => self.check_uniform(place, &numbers),
             _ => {}
+        }
+        if argument == Argument::Q
+            && let Some(line) = beyond_sense(self.model, &numbers).first()
+        {
+            self.beyond.get_or_insert_with(|| (format!("{place}: {line}"), 0)).1 += 1;
         }
         state.set(argument, numbers);
     }
@@ -135,6 +143,9 @@ impl Found<'_> {
     fn finish(mut self) -> Result<States, Vec<String>> {
         if self.errors.is_empty() && self.states.is_empty() {
             self.errors.push("found no state, expected at least one".into());
+        }
+        if let Some((line, count)) = self.beyond {
+            self.warnings.push(if count > 1 { format!("{line} (and {} more states)", count - 1) } else { line });
         }
         if self.errors.is_empty() {
             return Ok(States { states: self.states, warnings: self.warnings });

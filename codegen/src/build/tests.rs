@@ -109,6 +109,30 @@ fn what_is_said_beside_a_scene_stands_in_its_place() {
 }
 
 #[test]
+fn types_of_a_batch_may_be_their_names() {
+    let build = Build::new("arm.urdf");
+    let types = |build: &Build| build.request.options.batch.clone();
+    let named = build.clone().batch(["f64", "f32"]);
+    assert_eq!(types(&named), types(&build.clone().batch([crate::Real::F64, crate::Real::F32])));
+    let folder = folder("batch");
+    let wrong = Build::new(folder.join("arm.urdf")).batch(["f46", "f32"]);
+    assert_eq!(wrong.generate().unwrap_err().to_string(), "batch: found \"f46\", expected \"f64\" or \"f32\"");
+    assert!(wrong.batch(["f32"]).generate().is_ok());
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn a_missing_file_is_told_with_the_nearest_and_with_the_other_mistakes() {
+    let folder = folder("missing");
+    let build = Build::new(folder.join("amr.urdf")).functions(["inverse_dynamic", "no_such"]).batch(["f16"]);
+    let told = build.generate().unwrap_err().to_string();
+    for part in ["did you mean \"arm.urdf\"?", "unknown function `inverse_dynamic`", "unknown function `no_such`", "batch: found \"f16\""] {
+        assert_eq!(told.lines().filter(|line| line.contains(part)).count(), 1, "{part} in {told}");
+    }
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
 fn an_unchanged_request_generates_nothing_and_warns_all_the_same() {
     let folder = folder("cache");
     let build = Build::new(folder.join("arm.urdf")).functions(["gravity_torque"]);

@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 const LONGEST: usize = 64;
 /// Pairs of letters that are compared at most, so that a file full of unknown names is still read quickly.
 const MOST_PAIRS: usize = 3_000_000;
-/// Fewer letters are not taken for the beginning of a name.
+/// Fewer letters are not taken for the beginning or the end of a name.
 const LEAST: usize = 3;
 
 /// Finds what was meant, with a bound on the work: one for a file, which makes no suggestions beyond it.
@@ -24,7 +24,8 @@ impl Default for Suggester {
 }
 
 impl Suggester {
-    /// The name that differs least from `wrong`, if by a third of its letters at most; or else the shortest that begins with it.
+    /// The name that differs least from `wrong`, if by a third of its letters at most; or else the shortest that begins with it; or else the
+    /// shortest that ends with it.
     pub fn nearest<'a>(&mut self, wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
         self.found(wrong, names).and_then(|(misspelt, begins)| misspelt.or(begins))
     }
@@ -41,7 +42,7 @@ impl Suggester {
             return None;
         }
         let most = (letters.len() / 3).max(1);
-        let (mut near, mut longer): (Option<(usize, &str)>, Option<&str>) = (None, None);
+        let (mut near, mut longer, mut ending): (Option<(usize, &str)>, Option<&str>, Option<&str>) = (None, None, None);
         for name in names.into_iter().filter(|name| name.len() <= 4 * LONGEST) {
             let other: Vec<char> = small(name).collect();
             self.left = self.left.checked_sub(letters.len() * other.len() + 1)?;
@@ -49,11 +50,16 @@ impl Suggester {
             if differs <= most && near.is_none_or(|(least, _)| differs < least) {
                 near = Some((differs, name));
             }
-            if letters.len() >= LEAST && other.starts_with(&letters) && longer.is_none_or(|so_far| name.len() < so_far.len()) {
-                longer = Some(name);
+            if letters.len() >= LEAST {
+                let shorter = |so_far: Option<&str>| so_far.is_none_or(|so_far| name.len() < so_far.len());
+                if other.starts_with(&letters) && shorter(longer) {
+                    longer = Some(name);
+                } else if other.ends_with(&letters) && shorter(ending) {
+                    ending = Some(name);
+                }
             }
         }
-        Some((near.map(|(_, name)| name), longer))
+        Some((near.map(|(_, name)| name), longer.or(ending)))
     }
 }
 
@@ -106,6 +112,14 @@ mod tests {
         assert_eq!(near("inverse_dyn").as_deref(), Some("inverse_dynamics"));
         assert_eq!(near("Jacobian").as_deref(), Some("jacobians_body"));
         assert_eq!(near("ja"), None);
+    }
+
+    #[test]
+    fn endings_are_found_where_no_beginning_is() {
+        let near = |wrong| nearest(wrong, ["left_panda_hand_tcp", "panda_hand_tcp", "panda_hand"]);
+        assert_eq!(near("hand_tcp").as_deref(), Some("panda_hand_tcp"));
+        assert_eq!(near("panda").as_deref(), Some("panda_hand"));
+        assert_eq!(near("cp"), None);
     }
 
     #[test]

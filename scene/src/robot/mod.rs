@@ -14,6 +14,7 @@ mod place;
 pub use edit::{Edit, Reason, Refusal};
 pub use error::RobotError;
 pub use faults::{Tried, leave_out, tried};
-pub use open::{Attempt, Bundled, Opened, Settled, beside, open, open_in, read_robot_file};
+pub use odd::beyond_sense;
+pub use open::{Attempt, Bundled, Opened, Settled, beside, nearest_file, open, open_in, read_robot_file};
 pub use options::{Appended, RobotAsked, RobotOptions};
 pub use place::by_places;

@@ -5,15 +5,36 @@ use std::collections::HashSet;
 use articulated_core::Plain;
 use articulated_core::description::PrincipalMoments;
 use articulated_core::effect::{Applied, EffectId};
+use articulated_core::model::Model;
 use articulated_urdf::{Kind, Problem, Reading, Subject};
 
 use super::edit::Editing;
 use crate::effects::{indices, still};
 
+/// The sun has 274 m/s².
+const MOST_GRAVITY: f64 = 1000.0;
+
+/// A coordinate, rad or m, beyond which double precision has fewer than ten digits of an angle left.
+const MOST_COORDINATE: f64 = 1e6;
+
+/// A warning for each joint of which a coordinate in `q`, rad or m, is beyond any sense: sines of such angles, and what follows from them, are rounding.
+pub fn beyond_sense(model: &Model<f64>, q: &[f64]) -> Vec<String> {
+    let joints = model.joints.iter().filter_map(|joint| {
+        let own = q.get(joint.q.0..joint.q.0 + joint.q.1)?;
+        let x = own.iter().find(|x| x.abs() > MOST_COORDINATE)?;
+        Some(format!(
+            "joint {:?}: found the coordinate {x:?}, expected at most 1e6 rad or m: beyond, rounding decides the results",
+            joint.name
+        ))
+    });
+    joints.collect()
+}
+
 impl Editing<'_> {
     /// What is odd about the edits, or no more so because of them.
     pub(super) fn warn(&mut self) {
         self.let_go();
+        self.warn_of_gravity();
         self.warn_of_limits();
         self.warn_of_loads();
         self.warn_of_moments();
@@ -30,6 +51,23 @@ impl Editing<'_> {
         let held = description.links.iter().zip(still).filter(|(link, still)| *still && link.inertial.is_some());
         let held: HashSet<String> = held.map(|(link, _)| link.name.clone()).collect();
         self.reading.release(|link| !held.contains(link));
+    }
+
+    /// Warns of a gravity that no place has.
+    fn warn_of_gravity(&mut self) {
+        let gravity = self.asked.options.gravity;
+        let size = gravity.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        if size > MOST_GRAVITY {
+            self.reading.warnings.push(Problem {
+                file: self.asked.file.to_owned(),
+                line: None,
+                subject: Subject::Document,
+                kind: Kind::BeyondSense,
+                field: "gravity".into(),
+                found: format!("{gravity:?} m/s², more than any star's"),
+                expected: "m/s², of which 9.81 are usual; used as written".into(),
+            });
+        }
     }
 
     /// A lock beyond the joint's limits is odd, and used.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use articulated_core::description::{Base, Shaft};
 use articulated_core::effect::EffectErrors;
 use articulated_core::model::Model;
+use articulated_core::suggest::nearest;
 use articulated_urdf::{MOST_BYTES, Reading, read_file};
 
 use super::error::RobotError;
@@ -220,5 +221,20 @@ pub fn beside(scene: &str, name: &str) -> String {
 
 /// The bytes of a scene or a URDF, no more than a URDF may have.
 pub fn read_robot_file(path: &Path) -> Result<Vec<u8>, RobotError> {
-    read_file(path, MOST_BYTES).map_err(|e| RobotError::File { file: path.display().to_string(), reason: e.to_string() })
+    read_file(path, MOST_BYTES).map_err(|e| {
+        let near = nearest_file(path).map(|name| format!("; did you mean {name:?}?")).unwrap_or_default();
+        RobotError::File { file: path.display().to_string(), reason: format!("{e}{near}") }
+    })
+}
+
+/// The name in the folder of `path` that is most like that of `path`, where there is no such file; none in a folder of very many.
+pub fn nearest_file(path: &Path) -> Option<String> {
+    const MOST_FILES: usize = 10_000;
+    if path.exists() {
+        return None;
+    }
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let names: Vec<String> =
+        std::fs::read_dir(folder).ok()?.take(MOST_FILES).filter_map(|e| e.ok()?.file_name().into_string().ok()).collect();
+    nearest(path.file_name()?.to_str()?, names.iter().map(String::as_str))
 }

@@ -106,6 +106,18 @@ mod tests {
     }
 
     #[test]
+    fn every_number_stands_in_the_file_with_all_its_bits() {
+        let doubles = crate::states::exact::doubles();
+        let file = bytes(&[column("t", &doubles)]);
+        // One page: the magic word, a header of 19 to 23 bytes, the doubles.
+        let first = doubles[0].to_le_bytes();
+        let start = file.windows(8).position(|w| w == first).unwrap();
+        assert!((4 + 17..4 + 24).contains(&start), "{start}");
+        let read = file[start..].chunks_exact(8).take(doubles.len()).map(|b| u64::from_le_bytes(b.try_into().unwrap()));
+        assert!(read.eq(doubles.iter().map(|x| x.to_bits())));
+    }
+
+    #[test]
     fn a_long_column_is_several_pages() {
         let values = vec![1.0; PAGE + 1];
         let file = bytes(&[column("t", &values)]);

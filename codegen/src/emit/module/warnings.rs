@@ -1,10 +1,10 @@
-//! What there is to say about the document, where the compiler has no way to say it.
+//! Warnings about the document, as a constant.
 
-use articulated_urdf::Problem;
+use articulated_urdf::{Problem, summary};
 
-/// The constant that lists what looks odd in the URDF: a macro cannot warn.
+/// The constant that lists what looks wrong in the URDF, a line for each sort of warning.
 pub(crate) fn warnings(warnings: &[Problem]) -> String {
-    let lines: Vec<String> = warnings.iter().map(Problem::to_string).collect();
+    let lines = summary(warnings);
     format!(
         "\n/// What looks odd in the URDF; its values were used as written.\npub const WARNINGS: [&str; {}] = {lines:?};\n",
         lines.len()

@@ -1,0 +1,10 @@
+//! What looks wrong in the URDF: a warning at the path, which a lint makes an error.
+#![deny(deprecated)]
+
+articulated::robot! {
+    pub mod arm {
+        urdf = "urdf/zero_effort.urdf",
+    }
+}
+
+fn main() {}
