@@ -91,6 +91,12 @@ class Engine:
     def inverse_dynamics(self, q, v, a):
         return self.G.T @ pin.rnea(self.model, self.data, self.configuration(q), self.G @ v, self.G @ a)
 
+    def forward_dynamics(self, q, v, tau):
+        """By Pinocchio's own algorithm; none where a joint follows another, for which it has none."""
+        if self.model.nv != self.nv:
+            return None
+        return numpy.linalg.solve(self.G, pin.aba(self.model, self.data, self.configuration(q), self.G @ v, numpy.linalg.solve(self.G.T, tau)))
+
     def mass_matrix(self, q):
         full = pin.crba(self.model, self.data, self.configuration(q))
         full = numpy.triu(full) + numpy.triu(full, 1).T

@@ -97,15 +97,37 @@ impl<'a> Tag<'a> {
         Place { line: Some(self.line()), subject: self.subject, field }
     }
 
-    /// The one tag of this name, if there is one.
+    /// The one tag of this name, if there is one. A second one is an error, or a warning where it says the same.
     pub(crate) fn only(&self, name: &str, log: &mut Log) -> Option<Tag<'a>> {
         let mut all = self.children().filter(|tag| tag.is(name));
         let first = all.next()?;
         for again in all {
-            let found = format!("a second <{name}> (the first is in line {})", first.line());
-            log.error(&again.place(name), Kind::DuplicateTag, found, format!("one <{name}> inside <{}>", self.name()));
+            let (place, kind, line) = (again.place(name), Kind::DuplicateTag, first.line());
+            let expected = format!("one <{name}> inside <{}>", self.name());
+            if again.says_the_same(&first) {
+                let found = format!("a second <{name}>, equal to the first in line {line}");
+                log.warning(&place, kind, found, format!("{expected}; used once"));
+            } else {
+                log.error(&place, kind, format!("a second <{name}> (the first is in line {line})"), expected);
+            }
         }
         Some(first)
+    }
+
+    /// Whether both have the same attributes, in any order, and the same tags and text inside.
+    fn says_the_same(&self, other: &Tag<'a>) -> bool {
+        let attributes = |tag: &Tag<'a>| {
+            let mut all: Vec<_> = tag.node.attributes().map(|a| (a.name(), a.value().trim())).collect();
+            all.sort_unstable();
+            all
+        };
+        let text = |tag: &Tag<'a>| tag.node.text().map(str::trim).unwrap_or_default().to_owned();
+        let (own, others): (Vec<_>, Vec<_>) = (self.children().collect(), other.children().collect());
+        self.node.tag_name() == other.node.tag_name()
+            && attributes(self) == attributes(other)
+            && text(self) == text(other)
+            && own.len() == others.len()
+            && own.iter().zip(&others).all(|(a, b)| a.says_the_same(b))
     }
 
     /// The one tag of this name, which has to be there.

@@ -29,6 +29,23 @@ fn moments_are_forgiven_what_rounding_makes_of_them_and_no_more() {
     assert_eq!(said_of(["-1", "-1", "-1"]), Some(Kind::InertiaNotPositive));
 }
 
+/// A published quadruped has a second `<axis>` like the first. Nothing is lost by reading it once.
+#[test]
+fn a_second_tag_that_says_the_same_is_a_warning() {
+    for (first, second) in [
+        ("<axis xyz=\"0 1 0\"/>", "<axis xyz=\" 0 1 0\"/>"),
+        ("<dynamics damping=\"0.5\" friction=\"0.1\"/>", "<dynamics friction=\"0.1\" damping=\"0.5\"></dynamics>"),
+        ("<child link=\"lamp\"/>", "<child link=\"lamp\"/>"),
+    ] {
+        let text = crane(first, &format!("{first}{second}"));
+        let reading = accepted(&text);
+        assert_eq!(reading.description, described(CRANE), "{second}");
+        let [warning] = &reading.warnings[..] else { panic!("{:?}", reading.warnings) };
+        assert_eq!(warning.kind, Kind::DuplicateTag, "{warning}");
+        assert!(warning.to_string().contains("equal to the first in line"), "{warning}");
+    }
+}
+
 #[test]
 fn what_looks_wrong_is_a_warning_and_used_as_written() {
     let cases = [
