@@ -49,5 +49,6 @@ step documentation
 step python3 models/urdf/generate.py --check
 step python3 tests/peers/chart.py --check
 step python3 tests/oracles/make.py --check
+step python3 tests/shipped/shipped.py --sample
 step readme_command
 printf '\nall checks passed in %d s\n' $SECONDS
