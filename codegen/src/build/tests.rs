@@ -21,7 +21,12 @@ fn cargo_is_told_each_error_on_a_line_and_once_that_it_is_one() {
     fs::write(&path, ARM.replace("mass value=\"1\"", "mass value=\"-1\"").replace("effort=\"1\"", "effort=\"much\"")).unwrap();
     let told = for_cargo(&Build::new(&path).try_write("heavy").unwrap_err());
     let told: Vec<(&str, &str)> = told.lines().filter_map(|line| line.split_once('=')).collect();
-    let expected = [("error", "a negative mass, -1 kg"), ("error", "effort: found \"much\""), ("warning", "limit: found no bounds")];
+    let expected = [
+        ("error", "a negative mass, -1 kg"),
+        ("error", "effort: found \"much\""),
+        ("warning", "axis: found (0.0 0.0 2.0) of length 2.0000"),
+        ("warning", "limit: found no bounds"),
+    ];
     assert_eq!(told.len(), expected.len(), "{told:?}");
     for ((kind, line), (of, text)) in told.iter().zip(expected) {
         assert!(kind.ends_with(of) && line.contains(text) && !line.contains(&format!("{of}: ")), "{kind} {line}");
