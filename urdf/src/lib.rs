@@ -20,6 +20,18 @@
 //! (names, rings, roots, mimics) → [`Description`]; with the feature `second-reader` → bridge (a plain document that `urdf-rs` reads has to give the same).
 //! [`read`] opens no file ([`read_file`] does), and no input makes it panic, hang or overflow its stack.
 //!
+//! # What files have that is accepted
+//!
+//! * `quat_xyzw` of an `<origin>`, from `<robot version="1.1">` on, in place of `rpy`. Its norm is 1 within 1e-3; off by more than 1e-6 it is a warning.
+//! * A fixed joint with `<mimic>`, `<axis>` or `<limit>`: not used; `<mimic>` with a warning.
+//! * A principal moment of inertia that is negative by rounding, at most 1e-12·m·ℓ², with a warning: ℓ is the longest distance from one frame of the
+//!   file to the next, at most 1 m. A moment further below zero is an error, unless [`Options::allow_unphysical_inertia`] is set.
+//! * Joints on a link `world` that the file does not declare, with a warning: the link is added, without mass.
+//! * Expressions of xacro in names of files (meshes, textures). Elsewhere each one is an error.
+//!
+//! What the file states about closed loops, springs, followers and gravity where it is not read (inside `<gazebo>`, under a prefix, `<loop_joint>`, links inside
+//! `<group>`) is a warning of the kind [`Kind::LostDynamics`] or [`Kind::Misplaced`].
+//!
 //! # Beyond the format
 //!
 //! Three types of joints are extensions, which other readers refuse or do not know:
@@ -78,7 +90,7 @@ pub struct Options {
     pub file: String,
     /// Whether the root link is the base or moves freely; decides only what is reported as unused.
     pub base: Base,
-    /// Makes an inertia that is not positive semi-definite a warning instead of an error.
+    /// Makes an inertia that is not positive semi-definite a warning instead of an error. One that is negative by rounding alone always is a warning.
     pub allow_unphysical_inertia: bool,
     /// Replaces an angle of an `<origin>` that is within this many rad of a multiple of π/2 by that multiple: above 0, at most [`MOST_SNAPPED`];
     /// anything else is an error. `None` leaves every number as written.

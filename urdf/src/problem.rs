@@ -220,13 +220,18 @@ pub(crate) fn hint(meant: Option<&str>) -> String {
     meant.map(|name| format!(" (did you mean {}?)", quote(name))).unwrap_or_default()
 }
 
-/// `text` in quotation marks, on one line, cut where it gets long.
+/// Control characters, and those that only change the direction or the joining of letters.
+pub(crate) fn is_invisible(c: char) -> bool {
+    c.is_control() || matches!(c, '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}')
+}
+
+/// `text` in quotation marks, on one line, cut where it gets long. Characters that are not visible are escaped.
 pub fn quote(text: &str) -> String {
     const MOST: usize = 80;
     let mut out = String::from('"');
     for c in text.chars().take(MOST) {
         match c {
-            c if c.is_control() => out.extend(c.escape_default()),
+            c if is_invisible(c) => out.extend(c.escape_default()),
             c => out.push(c),
         }
     }

@@ -6,7 +6,7 @@ use articulated_core::suggest::Suggester;
 
 use crate::element::Tag;
 use crate::log::{Log, Place};
-use crate::problem::{Kind, Subject, quote};
+use crate::problem::{Kind, Subject, is_invisible, quote};
 use crate::{lost, markup};
 
 /// Content of the file that is not used.
@@ -129,11 +129,6 @@ pub(crate) fn warn_of_blanks(tag: &Tag<'_>, name: &str, log: &mut Log) {
     };
     let expected = "a name of visible characters; used as written";
     log.warning(&tag.place("name"), Kind::OddName, format!("{found}, {}", quote(name)), expected);
-}
-
-/// Control characters, and those that only change the direction or the joining of letters.
-fn is_invisible(c: char) -> bool {
-    c.is_control() || matches!(c, '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{2069}' | '\u{feff}')
 }
 
 fn misplaced(place: &Place<'_>, name: &str, parent: &str, log: &mut Log) {

@@ -30,11 +30,12 @@ fn warnings_of_one_sort_are_one_line_with_a_count() {
     let hand = format!("<robot name='hand'><link name='base'/>{}</robot>", (0..28).map(finger).collect::<String>());
     let urdf = File::new("hand.urdf", hand.as_bytes());
     let scene = File::new("hand.toml", format!("urdf = {:?}\nsimulation = {{ end = 0.001 }}", urdf.name()).as_bytes());
+    let states = File::new("states.json", format!("[{{\"q\": {:?}}}]", [0.0; 28]).as_bytes());
     let sorts = ["limit effort: found zero", "axis: found (0.0 0.0 2.0) of length 2.0000"];
     for words in [
         &["check", urdf.name()][..],
         &["generate", urdf.name(), "--functions", "gravity_torque"],
-        &["eval", urdf.name(), "--function", "gravity_torque", "--random", "1"],
+        &["eval", urdf.name(), "--function", "gravity_torque", "--states", states.name(), "--generic"],
         &["simulate", scene.name()],
     ] {
         let ended = run(words);
@@ -167,7 +168,12 @@ fn names_that_are_one_in_rust_are_a_warning() {
 <joint name="w" type="fixed"><parent link="a"/><child link="b-b"/></joint><joint name="u" type="fixed"><parent link="a"/><child link="b_b"/></joint></robot>"#;
     let file = File::new("r.urdf", robot.as_bytes());
     let checked = run(&["check", file.name()]);
-    assert_eq!((checked.status, checked.lines_with("`B_B` in Rust; give one another name with `rename`")), (0, 2), "{}", checked.out);
+    assert_eq!(
+        (checked.status, checked.lines_with("`B_B` in Rust; `--rename` (key `rename`, method `Build::rename`) gives one another name")),
+        (0, 2),
+        "{}",
+        checked.out
+    );
     let renamed = run(&["check", file.name(), "--rename", "b-b=B", "--rename", "b b=B_1"]);
     assert_eq!((renamed.status, renamed.lines_with("rename")), (0, 0), "{}", renamed.out);
 }

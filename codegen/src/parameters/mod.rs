@@ -81,7 +81,10 @@ pub(crate) fn parse(
         if let Some(other) = identifiers.get(&name).map(|k| &parameters[*k]) {
             return Err(wrong(match other.what == parameter.what {
                 true => "is there twice, expected once".into(),
-                false => format!("is {name} in Rust, as the {} is; give one another name with `rename`", other.what),
+                false => format!(
+                    "is {name} in Rust, as the {} is; `--rename` (key `rename`, method `Build::rename`) gives one another name",
+                    other.what
+                ),
             }));
         }
         identifiers.insert(name, parameters.len());

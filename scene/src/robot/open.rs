@@ -227,14 +227,16 @@ pub fn read_robot_file(path: &Path) -> Result<Vec<u8>, RobotError> {
     })
 }
 
-/// The name in the folder of `path` that is most like that of `path`, where there is no such file; none in a folder of very many.
+/// The name in the folder of `path` that is most like that of `path` and has the same ending, where there is no such file; none in a folder of very many.
 pub fn nearest_file(path: &Path) -> Option<String> {
     const MOST_FILES: usize = 10_000;
     if path.exists() {
         return None;
     }
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    let names: Vec<String> =
-        std::fs::read_dir(folder).ok()?.take(MOST_FILES).filter_map(|e| e.ok()?.file_name().into_string().ok()).collect();
-    nearest(path.file_name()?.to_str()?, names.iter().map(String::as_str))
+    let files = std::fs::read_dir(folder).ok()?.take(MOST_FILES).filter_map(|entry| Some(PathBuf::from(entry.ok()?.file_name())));
+    let alike = files.filter(|file| file.extension() == path.extension());
+    let stems: Vec<String> = alike.filter_map(|file| Some(file.file_stem()?.to_str()?.to_owned())).collect();
+    let stem = nearest(path.file_stem()?.to_str()?, stems.iter().map(String::as_str))?;
+    Some(path.extension().and_then(|ending| ending.to_str()).map_or(stem.clone(), |ending| format!("{stem}.{ending}")))
 }
