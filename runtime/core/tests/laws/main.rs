@@ -10,6 +10,7 @@ mod energy;
 mod equivalence;
 mod manifold;
 mod mimic;
+mod pivots;
 mod reference;
 mod screws;
 mod shafts;
