@@ -17,6 +17,8 @@ pub const USAGE: u8 = 2;
 pub const TOOL: u8 = 3;
 /// A comparison exceeded its bound.
 pub const BOUND: u8 = 4;
+/// A motion ended, but outside its own tolerance: its balance of energy is not kept.
+pub const OUT_OF_TOLERANCE: u8 = 5;
 /// Ctrl-C; what shells make of that signal, as of others that end it.
 pub const INTERRUPTED: u8 = 130;
 
@@ -28,6 +30,7 @@ Exit status:
   2  the command line is wrong
   3  a tool (rustc) failed or was not found
   4  a comparison exceeded its bound
+  5  a motion ended, but outside its own tolerance: its balance of energy is not kept
   130  interrupted (Ctrl-C; 129 and 143 by SIGHUP and SIGTERM)";
 
 /// A status and what to say, an error for each thing that is wrong.

@@ -25,7 +25,7 @@ use articulated_motion::{Begin, field};
 use crate::arguments::Format;
 use crate::compiled::Rustc;
 use crate::console::{self, Progress};
-use crate::failure::{Failure, INPUT, OK};
+use crate::failure::{Failure, INPUT, OK, OUT_OF_TOLERANCE};
 use crate::output;
 use crate::robot::has_room;
 use arguments::SimulateArguments;
@@ -62,11 +62,12 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
         Format::Text => text::text(&summary),
         Format::Json => crate::json(&summary),
     })?;
-    if let Some(odd) = summary.energy.out_of_balance() {
+    if let Some(odd) = summary.out_of_balance() {
         console::warn(&format!("{}: {odd}", stage.scene.file));
     }
     Ok(match &motion.error {
-        None => OK,
+        None if summary.status == "ok" => OK,
+        None => OUT_OF_TOLERANCE,
         Some(error) => {
             console::error(&format!("{}: {error}", stage.scene.file));
             INPUT

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use articulated::simulate::{Counts, IntegratorId, Recording as Run, Settings};
+use articulated::simulate::{Balance, Counts, IntegratorId, Recording as Run, Settings};
 use articulated::{Dynamics, FunctionId};
 use articulated_codegen::Generated;
 use articulated_motion::{Begin, Ending, Happening as Happened, Outcome};
@@ -18,6 +18,8 @@ use crate::robot::has_room;
 pub(super) struct Motion {
     pub(super) recording: Recording,
     pub(super) counts: Counts,
+    /// Over all steps.
+    pub(super) balance: Balance,
     /// The time that was reached, s.
     pub(super) reached: f64,
     pub(super) ending: Ending,
@@ -91,9 +93,10 @@ pub(super) fn run<R: Dynamics<f64>, S: AsRef<str>>(
         true
     })?;
     let Outcome { recording, happenings, ending, reached, ball, error, wall } = outcome;
-    let (counts, error) = (recording.counts, error.map(|e| e.to_string()));
+    let (counts, balance) = (recording.counts, recording.balance.unwrap_or_default());
+    let error = error.map(|e| e.to_string());
     let warnings = odd(stage, begin).into_iter().chain(without).collect();
-    Ok(Motion { recording: told(stage, recording, happenings), counts, reached, ending, wall, ball, error, warnings })
+    Ok(Motion { recording: told(stage, recording, happenings), counts, balance, reached, ending, wall, ball, error, warnings })
 }
 
 /// The library's recording with names.

@@ -1,6 +1,6 @@
 //! What there is to say about a motion, as data.
 
-use articulated::simulate::{Counts, Settings};
+use articulated::simulate::{Balance, Counts, Settings};
 use serde::Serialize;
 
 use super::motion::Motion;
@@ -28,6 +28,8 @@ pub(super) struct Summary {
     /// The time of the last record: what energies and momentum are of at the end.
     pub(super) last_record_s: f64,
     pub(super) ended: String,
+    /// `ok`; `out_of_tolerance`: it ended, but its balance of energy is not kept; `error`.
+    pub(super) status: &'static str,
     pub(super) error: Option<String>,
     pub(super) energy: Energy,
     pub(super) momentum: Momentum,
@@ -84,9 +86,11 @@ pub(super) struct Energy {
     pub(super) from_events: f64,
     /// Kinetic energy that the ball of the scene's impact got, if it was hit.
     pub(super) ball: Option<f64>,
-    /// T + U − start − work − dissipated − from_events, the largest at any time of output.
+    /// T + U − start − work − dissipated − from_events, the largest after any step.
     pub(super) largest_imbalance: f64,
-    /// That over the largest kinetic energy, or what was done, lost or brought by events.
+    /// The largest kinetic energy, or what was done, lost or brought by events, after any step.
+    pub(super) largest_moved: f64,
+    /// The imbalance over that.
     pub(super) relative_imbalance: f64,
 }
 
@@ -133,8 +137,9 @@ impl Summary {
             asked_end_s: settings.end,
             last_record_s: last_record,
             ended: motion.ending.to_string(),
+            status: if motion.error.is_some() { "error" } else { "ok" },
             error: motion.error.clone(),
-            energy: Energy::of(r, motion.ball),
+            energy: Energy::of(r, &motion.balance, motion.ball),
             momentum: Momentum::of(r),
             counts: Done::of(&motion.counts, r.len()),
             events: r.events.clone(),
@@ -151,19 +156,17 @@ impl Summary {
     }
 
     fn with_balance(mut self, file: &str) -> Self {
-        self.warnings.extend(self.energy.out_of_balance().map(|odd| format!("{file}: {odd}")));
+        self.warnings.extend(self.out_of_balance().map(|odd| format!("{file}: {odd}")));
+        if self.status == "ok" && !self.energy.is_kept() {
+            self.status = "out_of_tolerance";
+        }
         self
     }
 }
 
 impl Energy {
-    fn of(r: &Recording, ball: Option<f64>) -> Self {
-        // What is no number is the largest of all.
-        let largest =
-            |all: &mut dyn Iterator<Item = f64>| all.fold(0.0_f64, |most, x| if x.abs() > most || x.is_nan() { x.abs() } else { most });
-        let (energy, imbalance) = (r.energy(), largest(&mut r.imbalance().into_iter()));
-        let scale =
-            [&r.kinetic, &r.work, &r.dissipated, &r.from_events].into_iter().map(|x| largest(&mut x.iter().copied())).fold(0.0, f64::max);
+    fn of(r: &Recording, balance: &Balance, ball: Option<f64>) -> Self {
+        let energy = r.energy();
         let at = |x: &[f64], last: bool| if last { x.last() } else { x.first() }.copied().unwrap_or(0.0);
         Self {
             start: at(&energy, false),
@@ -176,20 +179,38 @@ impl Energy {
             dissipated: at(&r.dissipated, true),
             from_events: at(&r.from_events, true),
             ball,
-            largest_imbalance: imbalance,
-            relative_imbalance: if scale == 0.0 { 0.0 } else { imbalance / scale },
+            largest_imbalance: balance.largest_imbalance,
+            largest_moved: balance.largest_moved,
+            relative_imbalance: balance.relative(),
         }
     }
 
-    /// What to say where energy came from nowhere, or went there, by more than can be an error of steps that are short enough.
+    /// Whether the balance of energy is kept well enough for the motion to be that of the scene.
+    fn is_kept(&self) -> bool {
+        self.relative_imbalance <= NOT_KEPT
+    }
+}
+
+/// Part of the largest energy moved that a motion may lack and still be that of the scene.
+const NOT_KEPT: f64 = 0.1;
+
+/// Part from which on steps chosen by tolerances deserve smaller tolerances.
+const LOOSE: f64 = 1e-4;
+
+impl Summary {
+    /// A warning if the balance of energy is not kept, or only loosely by steps that tolerances choose.
     pub(super) fn out_of_balance(&self) -> Option<String> {
-        let part = self.relative_imbalance;
+        let part = self.energy.relative_imbalance;
         if !part.is_finite() {
             return Some("energy is beyond the largest number: it says nothing of this motion".into());
         }
-        let parts = crate::table::number(part);
-        (part > 0.1).then(|| {
-            format!("the balance of energy lacks {parts} of the largest energy moved: the steps are too long for this motion, which is not that of the scene")
+        let lacks = format!("the balance of energy lacks {} of the largest energy moved", crate::table::number(part));
+        if !self.energy.is_kept() {
+            return Some(format!("{lacks}: the steps are too long, and this motion is not that of the scene"));
+        }
+        let loose = self.integrator.step_s.is_none() && part > LOOSE;
+        loose.then(|| {
+            format!("{lacks}, expected at most {LOOSE:e}: take smaller tolerances (rtol, atol), found rtol = {:e}", self.integrator.rtol)
         })
     }
 }

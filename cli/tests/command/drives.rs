@@ -100,23 +100,28 @@ fn a_motion_without_balance_of_energy_is_told() {
         "<joint name='j' type='revolute'><parent link='base'/><child link='body'/><axis xyz='0 0 1'/>\
          <limit lower='0' upper='9' effort='1' velocity='1'/></joint>",
     );
-    let told = |simulation: &str| {
+    let told = |simulation: &str, (status, word): (i32, &str)| {
         let text = format!(
             "urdf = {:?}\n[effects.limit]\nj = {{ from = \"urdf\", stiffness = 1e9, damping = 0 }}\n[initial]\nq = [1.0]\nv = [-3.0]\n\
              [simulation]\nend = 2.0\nintegrator = \"rodas4\"\n{simulation}\n",
             urdf.name()
         );
-        let ended = run(&["simulate", File::new("stop.toml", text.as_bytes()).name()]);
-        assert_eq!(ended.status, 0, "{}", ended.err);
+        let ended = run(&["simulate", File::new("stop.toml", text.as_bytes()).name(), "--format", "json"]);
+        assert_eq!((ended.status, ended.json()["status"].as_str()), (status, Some(word)), "{}", ended.err);
         ended.lines_with("the balance of energy lacks")
     };
-    assert_eq!([told("step = 1e-2"), told("rtol = 1e-9\natol = 1e-11")], [1, 0]);
+    let (lost, kept) = ((5, "out_of_tolerance"), (0, "ok"));
+    // The status is the same whatever is recorded.
+    for output in ["", "\noutput = \"ends\"", "\noutput = 0.001"] {
+        assert_eq!(told(&format!("step = 1e-2{output}"), lost), 1, "{output}");
+    }
+    assert_eq!(told("rtol = 1e-9\natol = 1e-11", kept), 0);
     let urdf = robot(
         "<joint name='j' type='prismatic'><parent link='base'/><child link='body'/><axis xyz='1 0 0'/><limit effort='1' velocity='1'/></joint>",
     );
     let text = format!("urdf = {:?}\n[initial]\nv = [1e200]\n[simulation]\nend = 0.1\n", urdf.name());
     let ended = run(&["simulate", File::new("huge.toml", text.as_bytes()).name(), "--format", "json"]);
     let odd = "energy is beyond the largest number";
-    assert!(ended.status == 0 && ended.err.contains(odd) && ended.json()["warnings"].to_string().contains(odd), "{}", ended.err);
+    assert!(ended.status == 5 && ended.err.contains(odd) && ended.json()["warnings"].to_string().contains(odd), "{}", ended.err);
     assert!(ended.json()["energy"]["largest_imbalance"].is_null());
 }

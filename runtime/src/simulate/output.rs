@@ -56,6 +56,10 @@ pub(crate) struct Known {
     tau: Vec<f64>,
     /// What the maps of events have brought since the start, J.
     pub(crate) from_events: f64,
+    /// Whether the balance of energy is taken after every step.
+    pub(crate) balance: bool,
+    /// T + U where the motion began, J.
+    at_start: f64,
 }
 
 impl Known {
@@ -70,6 +74,8 @@ impl Known {
             momentum: has(robot.centroidal_momentum(ws, &q, &v, &mut [0.0; 6])),
             tau: v,
             from_events: 0.0,
+            balance: false,
+            at_start: 0.0,
         }
     }
 
@@ -135,6 +141,29 @@ impl Known {
             system.robot.centroidal_momentum(&mut system.ws, q, v, &mut six)?;
             to.momentum.extend_from_slice(&six);
         }
+        Ok(())
+    }
+
+    /// Adds a state to the balance of energy, if that is requested; the first one is where the motion begins.
+    pub(crate) fn follow<R: Dynamics<f64>>(
+        &mut self,
+        system: &mut System<R>,
+        y: &[f64],
+        q: &[f64],
+        to: &mut Recording,
+    ) -> Result<(), FunctionError> {
+        if !(self.balance && self.kinetic && self.potential) {
+            return Ok(());
+        }
+        let nv = system.nv();
+        let (kinetic, potential) = self.energies(system, q, &y[nv..2 * nv])?;
+        let (kinetic, potential) = (kinetic.unwrap_or(0.0), potential.unwrap_or(0.0));
+        if to.balance.is_none() {
+            self.at_start = kinetic + potential;
+        }
+        let (work, dissipated) = (y[2 * nv], y[2 * nv + 1]);
+        let imbalance = kinetic + potential - self.at_start - work - dissipated - self.from_events;
+        to.balance.get_or_insert_default().add(imbalance, [kinetic, work, dissipated, self.from_events]);
         Ok(())
     }
 

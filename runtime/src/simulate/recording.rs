@@ -78,6 +78,29 @@ pub enum Ended {
     ByWatcher,
 }
 
+/// The balance of energy over all steps of a motion, whatever is recorded.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Balance {
+    /// Largest |T + U − (T + U at the start) − work − dissipated − from events| after any step, J.
+    pub largest_imbalance: f64,
+    /// Largest |T|, |work|, |dissipated| or |from events| after any step, J.
+    pub largest_moved: f64,
+}
+
+impl Balance {
+    /// Largest imbalance over the largest energy moved; 0 if nothing moved.
+    pub fn relative(&self) -> f64 {
+        if self.largest_moved == 0.0 { 0.0 } else { self.largest_imbalance / self.largest_moved }
+    }
+
+    /// One more state. A NaN is larger than every number.
+    pub(crate) fn add(&mut self, imbalance: f64, moved: [f64; 4]) {
+        let larger = |most: f64, x: f64| if x.abs() > most || x.is_nan() { x.abs() } else { most };
+        self.largest_imbalance = larger(self.largest_imbalance, imbalance);
+        self.largest_moved = moved.into_iter().fold(self.largest_moved, larger);
+    }
+}
+
 /// A motion at the times of output, row by row.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Recording {
@@ -109,6 +132,8 @@ pub struct Recording {
     pub missing: Vec<&'static str>,
     /// Events, in order.
     pub events: Vec<Hit>,
+    /// The balance of energy over all steps, if requested by [`Simulation::set_balance`](super::Simulation::set_balance) and the robot has both energies.
+    pub balance: Option<Balance>,
     /// What was done.
     pub counts: Counts,
     /// Why it ended.
@@ -176,6 +201,6 @@ impl Recording {
         columns.into_iter().for_each(Vec::clear);
         self.events.clear();
         self.missing.clear();
-        (self.counts, self.ended) = (Counts::default(), Ended::Not);
+        (self.counts, self.ended, self.balance) = (Counts::default(), Ended::Not, None);
     }
 }

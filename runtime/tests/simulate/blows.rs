@@ -1,7 +1,7 @@
 //! Blows: a ball that a robot strikes.
 
 use articulated::simulate::{Event, Impact, IntegratorId, NoTorque, SimulateError, Simulation, StateError};
-use articulated::{Base, Dynamics, FunctionError};
+use articulated::{Base, Dynamics, FunctionError, load_bytes};
 
 use crate::robots::{at, chain, model, slider, to};
 
@@ -31,6 +31,31 @@ fn a_blow_hands_over_what_the_ball_and_the_mass_behind_the_point_say() {
     // Newton's law: what is left of the speed towards each other, reversed.
     let after = impact.strike(&q, &mut v, struck.ball_speed).unwrap();
     assert!((after.approach + restitution * approach).abs() < 1e-14 && after.impulse == 0.0);
+}
+
+/// A free body, struck off its centre: 1/m_h = 1/m + (r × n)ᵀ I⁻¹ (r × n), with every component of r × n in play, and the momentum that it loses is that of the ball.
+#[test]
+fn a_blow_off_the_centre_turns_a_free_body() {
+    let text = r#"<robot name="box"><link name="box"><inertial><mass value="2"/>
+        <inertia ixx="0.3" ixy="0" ixz="0" iyy="0.5" iyz="0" izz="0.7"/></inertial></link></robot>"#;
+    let robot = load_bytes("box", text.as_bytes(), Base::Floating).unwrap();
+    let (mass, ball, moments) = (2.0, 0.4, [0.3, 0.5, 0.7]);
+    // A turn by 120° about (1, 1, 1) takes x to y, y to z and z to x.
+    let q = [1.0, 2.0, 3.0, 0.5, 0.5, 0.5, 0.5];
+    let (point, normal) = ([0.2, -0.3, 0.5], [2.0 / 7.0, 3.0 / 7.0, 6.0 / 7.0]);
+    // The normal in axes of the body.
+    let n = [normal[1], normal[2], normal[0]];
+    let arm = [point[1] * n[2] - point[2] * n[1], point[2] * n[0] - point[0] * n[2], point[0] * n[1] - point[1] * n[0]];
+    let inverse = 1.0 / mass + (0..3).map(|k| arm[k] * arm[k] / moments[k]).sum::<f64>();
+    let mut v = [0.0, 0.0, 0.0, 3.0 * n[0], 3.0 * n[1], 3.0 * n[2]];
+    let struck = Impact::new(&robot, at(0, point, normal), ball, 1.0).unwrap().strike(&q, &mut v, 0.0).unwrap();
+    assert!((struck.effective_mass * inverse - 1.0).abs() < 1e-14 && (struck.approach - 3.0).abs() < 1e-14, "{struck:?}");
+    let impulse = 2.0 * 3.0 / (inverse + 1.0 / ball);
+    assert!((struck.impulse - impulse).abs() < 1e-13, "{struck:?}");
+    for k in 0..3 {
+        assert!((v[k] + arm[k] / moments[k] * impulse).abs() < 1e-13, "ω[{k}] = {}", v[k]);
+        assert!((v[3 + k] - n[k] * (3.0 - impulse / mass)).abs() < 1e-13, "v[{k}] = {}", v[3 + k]);
+    }
 }
 
 /// A ball of next to no mass leaves at (1 + e) times the speed of the point.

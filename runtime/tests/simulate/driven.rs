@@ -4,11 +4,12 @@ use std::cell::RefCell;
 
 use articulated::effect::{Applied, EffectId};
 use articulated::simulate::{
-    Constant, Control, Event, Hold, IntegratorId, NoTorque, Output, Pd, Settings, SimulateError, Simulation, TorqueTable, integrators,
+    Action, Constant, Control, Event, Hold, IntegratorId, NoTorque, Output, Pd, Settings, SimulateError, Simulation, TorqueTable,
+    integrators,
 };
 use articulated::{Base, Dynamics, Origin};
 
-use crate::robots::{apart, chain, free, handle, model, satellite, slider, stepping, to};
+use crate::robots::{apart, chain, free, handle, model, one_joint, satellite, slider, stepping, to};
 
 /// q̈ = u between samples: the sums are exact, and the samples come when they must.
 #[test]
@@ -441,4 +442,40 @@ fn every_bundled_robot_keeps_its_energy() {
         println!("{name}: {lost:e}, {} steps", motion.counts.steps);
         assert!(lost.abs() < 1e-9, "{name}: {lost:e}");
     }
+}
+
+/// A servo of 1e7 N·m/rad moves far more energy between two records than is left at any of them: the balance is that of all steps, whatever is recorded.
+#[test]
+fn the_balance_of_energy_does_not_depend_on_what_is_recorded() {
+    let robot = one_joint("continuous", 0.3);
+    let balance = |output: Output, requested: bool| {
+        let mut pd = Pd::new(&robot, vec![0.4], vec![1e7], vec![2e3]).unwrap();
+        let settings = Settings { integrator: IntegratorId::rodas4, end: 1.0, output, ..Settings::default() };
+        let mut simulation = Simulation::new(&robot, settings).unwrap();
+        simulation.set_balance(requested);
+        simulation.run(&[0.0], &[0.0], &mut pd, &mut []).unwrap().balance
+    };
+    let all = [Output::Ends, Output::Every(0.01), Output::Every(0.0005), Output::Steps].map(|output| balance(output, true).unwrap());
+    assert!(all.iter().all(|b| *b == all[0]), "{all:?}");
+    // A spring of ½ kp 0.4² = 8e5 J moves it.
+    println!("{:?}, {:e}", all[0], all[0].relative());
+    assert!(all[0].largest_moved > 1e5 && all[0].relative() < 1e-4, "{:?}", all[0]);
+    assert_eq!(balance(Output::Ends, false), None);
+}
+
+/// Of a body that is thrown up and falls on a map that stops it: T, work and what events brought are known at the end, and nothing is lacking.
+#[test]
+fn the_balance_of_energy_counts_what_events_bring() {
+    let robot = one_joint("prismatic", 0.0);
+    let stop = Event::new("stop", |t, _: &[f64], _: &[f64]| t - 0.5).action(Action::Map(Box::new(|_, _, v| {
+        v[0] = 0.0;
+        Ok(None)
+    })));
+    let mut simulation = Simulation::new(&robot, to(IntegratorId::dopri5, 0.5, 1e-9)).unwrap();
+    simulation.set_balance(true);
+    let mut push = |_: f64, _: &[f64], _: &[f64], tau: &mut [f64]| tau[0] = 9.81 + 2.0;
+    let motion = simulation.run(&[0.0], &[0.0], &mut push, &mut [stop]).unwrap();
+    // 11.81 N over ½ 2 0.5² m.
+    let balance = motion.balance.unwrap();
+    assert!((balance.largest_moved - 11.81 * 0.25).abs() < 1e-8 && balance.largest_imbalance < 1e-8, "{balance:?}");
 }

@@ -271,3 +271,25 @@ fn steps_that_leap_over_dry_friction_are_refused() {
         );
     }
 }
+
+/// |P(ix)| − 1 of dopri5 is 5e-4 at x = 1.25 and 1.6e-3 at x = 1.4, P its polynomial: a growth of a thousandth in a step is the bound.
+#[test]
+fn an_oscillation_may_grow_by_a_thousandth_in_a_step() {
+    let robot = with(EffectId::spring, vec![1e6, 0.0]);
+    let run = |x: f64| free(&robot, &stepping(IntegratorId::dopri5, 0.1, x / 1000.0), &[1e-3], &[0.0]);
+    assert!(run(1.25).is_ok(), "{:?}", run(1.25));
+    assert!(matches!(run(1.4), Err(SimulateError::Unstable { .. })), "{:?}", run(1.4));
+}
+
+/// Hairer & Wanner 1996, §IV.2: looked for after a thousand steps, and told after fifteen that stability holds back.
+#[test]
+fn stiffness_is_told_after_fifteen_steps_that_it_holds_back() {
+    let robot = with(EffectId::damping, vec![1e5]);
+    for integrator in explicit().filter(|id| id.row().adaptive) {
+        let mut simulation = Simulation::new(&robot, to(integrator, 2.0, 1e-6)).unwrap();
+        let mut recording = simulation.recording();
+        let error = simulation.run_into(&[0.0], &[1.0], &mut NoTorque, &mut [], &mut recording, &mut |_, _| true).unwrap_err();
+        println!("{integrator}: {}", recording.counts.steps);
+        assert!(matches!(error, SimulateError::Stiff { .. }) && (1014..1050).contains(&recording.counts.steps), "{:?}", recording.counts);
+    }
+}

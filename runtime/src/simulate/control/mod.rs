@@ -62,6 +62,29 @@ impl<F: FnMut(f64, &[f64], &[f64], &mut [f64])> Control for F {
     }
 }
 
+/// A control by reference: [`Hold`] samples `&mut control as &mut dyn Control`, and the caller keeps the control. A mutable reference to a closure is a control anyway.
+impl Control for &mut (dyn Control + '_) {
+    fn torques(&mut self, t: f64, q: &[f64], v: &[f64], tau: &mut [f64]) {
+        (**self).torques(t, q, v, tau);
+    }
+
+    fn period(&self) -> Option<f64> {
+        (**self).period()
+    }
+
+    fn next_kink(&self, t: f64) -> f64 {
+        (**self).next_kink(t)
+    }
+
+    fn count(&self) -> Option<usize> {
+        (**self).count()
+    }
+
+    fn depends_on(&self) -> Dependence {
+        (**self).depends_on()
+    }
+}
+
 /// No torque.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct NoTorque;
@@ -105,6 +128,21 @@ pub(crate) fn wrong_period(period: f64, right: String) -> StateError {
 }
 
 /// A controller sampled with a period: zero-order hold.
+///
+/// At the start of a motion and every `period` seconds from there the control is called once, in the order of time, with the state at that time. Its torques are constant up
+/// to the next sample, no step reaches over a sample, and steps that are rejected call nothing: a control with a memory (a filter, an integral, a policy) works. Its own
+/// `period` and `next_kink` are ignored. A motion that is run in several stretches ([`Simulation::set_span`](super::Simulation::set_span)) samples again at the start of each stretch.
+///
+/// ```
+/// use articulated::simulate::{Control, Hold};
+/// let mut calls = 0;
+/// let mut count = |_t: f64, _q: &[f64], _v: &[f64], _tau: &mut [f64]| calls += 1;
+/// let mut hold = Hold::new(&mut count as &mut dyn Control, 0.01)?;
+/// assert_eq!(hold.period(), Some(0.01));
+/// hold.torques(0.0, &[0.0], &[0.0], &mut [0.0]);
+/// assert_eq!(calls, 1);
+/// # Ok::<(), articulated::simulate::SimulateError>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Hold<C> {
     control: C,

@@ -50,6 +50,8 @@ struct Run<'a, 'e> {
     controller: Option<Controller>,
     /// The step to try next, s.
     h: f64,
+    /// Of a sampled control: whether the next step is the first after a sample, and the step to try there, s, by the error of the last such step.
+    after_sample: (bool, f64),
     /// Where the present stretch began, and its steps so far.
     stretch: (f64, u64),
     samples: u64,
@@ -136,6 +138,11 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         Err(SimulateError::Settings(wrong))
     }
 
+    /// Requests [`Recording::balance`]: work, losses and energies compared after every step, for two more functions a step. Off unless requested.
+    pub fn set_balance(&mut self, requested: bool) {
+        self.known.balance = requested;
+    }
+
     /// Room for the records of one motion.
     pub fn recording(&self) -> Recording {
         self.known.recording(&self.system, &self.settings)
@@ -173,6 +180,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             times: Times::begin(),
             controller: if self.settings.step.is_none() { self.method.controller() } else { None },
             h: 0.0,
+            after_sample: (false, f64::INFINITY),
             stretch: (self.t, 0),
             samples: 0,
             cut: 0,
@@ -226,6 +234,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         self.sample(run);
         self.system.kink = run.next_kink(self.t);
         self.record_here(run)?;
+        self.follow_balance(run)?;
         self.watch.begin(run.events.len());
         self.take_sides(run)?;
         if self.method.wants_rate() {
@@ -249,6 +258,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             self.count_step(h);
             self.check_stiffness(run, h)?;
             let mapped = self.advance(run, stop, matches!(outcome, Outcome::GoOn))?;
+            self.follow_balance(run)?;
             let goes_on = watch(self.t, &self.system.counts);
             let ended = self.ended(&outcome, goes_on);
             // The end that was asked for is recorded if it was asked for.
@@ -284,6 +294,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         run.control.torques(self.t, &self.system.origin, &self.y[nv..2 * nv], &mut self.system.held);
         self.system.holds = true;
         run.samples += 1;
+        run.after_sample.0 = true;
     }
 
     /// When the next sample, kink or the end is, s.
@@ -318,6 +329,11 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
     fn step(&mut self, run: &mut Run) -> Result<f64, SimulateError> {
         let until = self.stretch_end(run);
         let Some(mut controller) = run.controller else { return self.fixed_step(run, until) };
+        // Torques jump at samples, and a step just after a jump is shorter than one before it: each kind of step has its own length.
+        let after_sample = std::mem::take(&mut run.after_sample.0);
+        if after_sample {
+            run.h = run.h.min(run.after_sample.1);
+        }
         loop {
             let left = until - self.t;
             let least = self.settings.min_step.max(rounding(self.t));
@@ -340,6 +356,9 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
                 self.method.finish(&mut self.system, run.control, start, &mut self.end)?;
                 run.h = if h < free { free.max(h * factor) } else { h * factor };
                 run.controller = Some(controller);
+                if after_sample {
+                    run.after_sample.1 = run.h;
+                }
                 return Ok(if h == left { until } else { self.t + h });
             }
             self.system.counts.rejected += 1;

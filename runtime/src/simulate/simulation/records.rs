@@ -16,6 +16,15 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         self.known.record(&mut self.system, run.control, &self.point, run.recording)
     }
 
+    /// Adds the state as it is to the balance of energy.
+    pub(super) fn follow_balance(&mut self, run: &mut Run) -> Result<(), SimulateError> {
+        if self.known.balance {
+            self.point.q.copy_from_slice(&self.system.origin);
+            self.known.follow(&mut self.system, &self.y, &self.point.q, run.recording)?;
+        }
+        Ok(())
+    }
+
     /// As [`Self::record_here`], unless this time is recorded already, as that of an output that is a rounding away.
     pub(super) fn record_end(&mut self, run: &mut Run) -> Result<(), SimulateError> {
         let near = if self.settings.output == Output::Steps { 0.0 } else { rounding(self.t) };
