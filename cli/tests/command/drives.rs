@@ -113,7 +113,8 @@ fn a_motion_without_balance_of_energy_is_told() {
     let (lost, kept) = ((5, "out_of_tolerance"), (0, "ok"));
     // The status is the same whatever is recorded.
     for output in ["", "\noutput = \"ends\"", "\noutput = 0.001"] {
-        assert_eq!(told(&format!("step = 1e-2{output}"), lost), 1, "{output}");
+        // In words and in the JSON.
+        assert_eq!(told(&format!("step = 1e-2{output}"), lost), 2, "{output}");
     }
     assert_eq!(told("rtol = 1e-9\natol = 1e-11", kept), 0);
     let urdf = robot(
