@@ -267,7 +267,9 @@ fn read_file(name: &str, scenes: &[&str]) -> Result<Vec<u8>, Failure> {
             return Failure::input([format!("{name}: cannot be read: {error}")]);
         }
         let names = || articulated_models::ROBOTS.iter().map(|r| r.name);
-        let near = nearest(name, names().chain(scenes.iter().copied())).map(|n| format!("; did you mean {n:?}?")).unwrap_or_default();
+        let bundled = || nearest(name, names().chain(scenes.iter().copied()));
+        let near =
+            articulated_scene::nearest_file(Path::new(name)).or_else(bundled).map(|n| format!("; did you mean {n:?}?")).unwrap_or_default();
         let known = names().collect::<Vec<_>>().join(", ");
         Failure::input([format!("{name}: found neither a file ({error}) nor a bundled robot{near} (bundled: {known})")])
     })

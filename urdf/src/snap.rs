@@ -44,9 +44,10 @@ mod tests {
     fn angles_that_are_nearly_right_are_listed_with_their_joints() {
         let joint = |name: &str, rpy| Joint { name: name.into(), origin: Origin { rpy, xyz: [0.0; 3] }, ..Joint::default() };
         let right = std::f64::consts::FRAC_PI_2;
-        let joints = vec![joint("a", [right, 0.0, -2.0 * right]), joint("b", [1.57079632679, 0.1, 0.0]), joint("c", [0.0, 3e-9, 1.5718])];
+        let printed: f64 = "1.57079632679".parse().unwrap();
+        let joints = vec![joint("a", [right, 0.0, -2.0 * right]), joint("b", [printed, 0.1, 0.0]), joint("c", [0.0, 3e-9, 1.5718])];
         let description = Description { joints, ..Description::default() };
-        assert_eq!(nearly_right_angles(&description), [("b", 1.57079632679), ("c", 3e-9)]);
+        assert_eq!(nearly_right_angles(&description), [("b", printed), ("c", 3e-9)]);
     }
 
     #[test]

@@ -198,6 +198,21 @@ mod tests {
     }
 
     #[test]
+    fn coordinates_beyond_any_sense_are_one_warning() {
+        let model = bundled_model("cart_pole");
+        let warnings = |text: &str| read(text.as_bytes(), &model).unwrap().warnings;
+        let told = warnings(r#"[{"q": [0, 1e15]}, {"q": [1e6, -1e6]}, {"q": [-2e6, 0], "v": [1e9, 0]}]"#);
+        assert_eq!(told.len(), 1, "{told:?}");
+        assert!(
+            told[0].starts_with("states[0]: q: joint")
+                && told[0].contains("found the coordinate 1000000000000000.0")
+                && told[0].ends_with("(and 1 more states)"),
+            "{told:?}"
+        );
+        assert!(warnings(r#"[{"q": [0, 1e6], "v": [1e9, 0]}]"#).is_empty());
+    }
+
+    #[test]
     fn a_quaternion_is_a_unit() {
         let state = |w: f64| {
             let mut q = vec![0.0; 19];

@@ -95,6 +95,14 @@ fn a_gravity_that_no_place_has_is_warned_of() {
     }
 }
 
+/// A name that is nearly that of a file is told with the file, and not with a bundled robot.
+#[test]
+fn a_file_that_is_not_there_is_told_with_the_nearest() {
+    let file = File::new("elbow.urdf", MASSLESS.as_bytes());
+    let ended = run(&["check", &file.name().replace("elbow", "elbwo")]);
+    assert!(ended.status == 1 && ended.err.contains("did you mean \"elbow.urdf\"?"), "{}", ended.err);
+}
+
 #[test]
 fn the_mass_table_adds_up() {
     let golfer = run(&["check", "golfer", "--format", "json"]).json();

@@ -327,3 +327,56 @@ fn a_robot_that_no_matrix_fits_is_refused() {
         );
     }
 }
+
+/// Files as they are shipped, against closed forms: a hinge about y through the origin has M = I_yy + m (x² + z²), summed over what it carries.
+#[test]
+fn robots_of_shipped_files_have_the_values_of_closed_forms() {
+    let body = |name: &str, mass: &str, at: &str, moments: [&str; 4]| {
+        let [xx, xz, yy, zz] = moments;
+        format!(
+            "<link name='{name}'><inertial><origin xyz='{at}'/><mass value='{mass}'/>
+             <inertia ixx='{xx}' ixy='0' ixz='{xz}' iyy='{yy}' iyz='0' izz='{zz}'/></inertial></link>"
+        )
+    };
+    let joint = |name: &str, kind: &str, ends: [&str; 2], rest: &str| {
+        format!("<joint name='{name}' type='{kind}'><parent link='{}'/><child link='{}'/>{rest}</joint>", ends[0], ends[1])
+    };
+    let value = |version: &str, parts: &[String], function: &str| {
+        let text = format!("<robot name='r' version='{version}'><link name='ground'/>{}</robot>", parts.concat());
+        let urdf = File::new("r.urdf", text.as_bytes());
+        let ended =
+            run_with(&["eval", urdf.name(), "--function", function, "--states", "-", "--generic", "--format", "json"], b"[{\"q\": [0]}]");
+        assert_eq!(ended.status, 0, "{}", ended.err);
+        let given = &ended.json()["functions"][0]["states"][0]["generic"];
+        let number = given.pointer("/hinge/hinge").or_else(|| given.get("hinge")).and_then(serde_json::Value::as_f64);
+        number.unwrap_or_else(|| panic!("{given}"))
+    };
+    let near = |found: f64, right: f64| assert!((found / right - 1.0).abs() < 1e-14, "{found} {right}");
+    // A fixed joint that kept its <mimic>: 0.02 + 1.5·0.2² + 0.001 + 0.25·(0.4² + 0.05²), and −9.81·(1.5·0.2 + 0.25·0.4).
+    let lamp = [
+        body("arm", "1.5", "0.2 0 0", ["0.01", "0", "0.02", "0.02"]),
+        body("lamp", "0.25", "0 0 0.05", ["0.001", "0", "0.001", "0.001"]),
+        joint("hinge", "continuous", ["ground", "arm"], "<axis xyz='0 1 0'/>"),
+        joint("bracket", "fixed", ["arm", "lamp"], "<origin xyz='0.4 0 0'/><mimic joint='hinge' multiplier='1' offset='0'/>"),
+    ];
+    near(value("1.0", &lamp, "mass_matrix"), 0.121625);
+    near(value("1.0", &lamp, "gravity_torque"), -3.924);
+    // A point mass whose inertia is rounding: 1.2·0.0185².
+    let point = [
+        body("bob", "1.2", "0.0185 -0.11 6.8e-18", ["0", "3.1e-35", "0", "0"]),
+        joint("hinge", "continuous", ["ground", "bob"], "<axis xyz='0 1 0'/>"),
+    ];
+    near(value("1.0", &point, "mass_matrix"), 1.2 * 0.0185 * 0.0185);
+    // A quarter turn about x as a quaternion: the axis z of the joint is −y of the ground, gravity pulls along −y of the joint: τ = m g x.
+    let turned = [
+        body("bob", "2", "0.3 0 0", ["0.01", "0", "0.01", "0.01"]),
+        joint(
+            "hinge",
+            "continuous",
+            ["ground", "bob"],
+            "<axis xyz='0 0 1'/><origin quat_xyzw='0.7071067811865476 0 0 0.7071067811865476'/>",
+        ),
+    ];
+    near(value("1.1", &turned, "gravity_torque"), 2.0 * 9.81 * 0.3);
+    near(value("1.1", &turned, "mass_matrix"), 0.01 + 2.0 * 0.3 * 0.3);
+}
