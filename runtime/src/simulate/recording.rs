@@ -95,7 +95,9 @@ impl Balance {
 
     /// One more state. A NaN is larger than every number.
     pub(crate) fn add(&mut self, imbalance: f64, moved: [f64; 4]) {
-        let larger = |most: f64, x: f64| if x.abs() > most || x.is_nan() { x.abs() } else { most };
+        fn larger(most: f64, x: f64) -> f64 {
+            if x.abs() > most || x.is_nan() { x.abs() } else { most }
+        }
         self.largest_imbalance = larger(self.largest_imbalance, imbalance);
         self.largest_moved = moved.into_iter().fold(self.largest_moved, larger);
     }

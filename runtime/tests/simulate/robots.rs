@@ -7,6 +7,8 @@ macro_rules! generated {
     ($($(#[$doc:meta])* $name:ident, $urdf:literal, $base:ident, $gravity:literal $(, $more:ident)?;)*) => {
         $(articulated::robot! {
             $(#[$doc])*
+            // Two have moments that break the triangle inequality, of which the macro warns.
+            #[allow(deprecated)]
             pub(crate) mod $name {
                 urdf = $urdf,
                 base = $base,
