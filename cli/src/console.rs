@@ -10,7 +10,7 @@ use crate::failure::Failure;
 /// Writes to the standard output. A reader that has gone away is not an error.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(harmless(text).as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::input([format!("standard output: {error}")])),
         _ => Ok(()),
     }
@@ -30,7 +30,35 @@ fn say(level: &str, colour: &str, text: &str) {
     let mut stream = std::io::stderr().lock();
     let coloured = stream.is_terminal() && std::env::var_os("NO_COLOR").is_none();
     let level = if coloured { format!("\x1b[1;{colour}m{level}\x1b[0m") } else { level.to_owned() };
-    let _ = writeln!(stream, "{level}: {text}");
+    let _ = writeln!(stream, "{level}: {}", harmless(text));
+}
+
+/// A text without characters that move the cursor or turn the direction of what follows: names of files and robots may have
+/// them. Ends of lines and tabs stay.
+pub(crate) fn harmless(text: &str) -> String {
+    let turns = |c: char| matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let is_harmful = |c: char| !matches!(c, '\n' | '\t') && (c.is_control() || turns(c));
+    if !text.contains(is_harmful) {
+        return text.to_owned();
+    }
+    text.chars().fold(String::with_capacity(text.len()), |mut out, c| {
+        if is_harmful(c) {
+            out.extend(c.escape_default())
+        } else {
+            out.push(c)
+        }
+        out
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::harmless;
+
+    #[test]
+    fn what_moves_the_cursor_or_turns_the_direction_is_escaped() {
+        assert_eq!(harmless("a\u{9b}31m\u{1b}[2J\u{202e}é\r\nб"), "a\\u{9b}31m\\u{1b}[2J\\u{202e}é\\r\nб");
+    }
 }
 
 /// A bar on the standard error stream, if that is a terminal; it goes away when dropped.

@@ -31,7 +31,7 @@ Exit status:
   3  a tool (rustc) failed or was not found
   4  a comparison exceeded its bound
   5  a motion ended, but outside its own tolerance: its balance of energy is not kept
-  130  interrupted (Ctrl-C; 129 and 143 by SIGHUP and SIGTERM)";
+  130  interrupted (Ctrl-C; 129, 131 and 143 by SIGHUP, SIGQUIT and SIGTERM)";
 
 /// A status and what to say, an error for each thing that is wrong.
 #[derive(Clone, Debug, Serialize)]

@@ -19,8 +19,7 @@ pub(crate) struct Folder(TempDir);
 impl Folder {
     /// An empty folder where temporary files belong.
     pub(crate) fn new() -> io::Result<Self> {
-        static WATCH: Once = Once::new();
-        WATCH.call_once(|| interrupt::watch(interrupted));
+        watch();
         // Nothing can come between a folder and its place in the list.
         let mut folders = folders();
         let folder = tempfile::Builder::new().prefix("articulated").tempdir()?;
@@ -37,6 +36,12 @@ impl Drop for Folder {
     fn drop(&mut self) {
         folders().retain(|path| path != self.0.path());
     }
+}
+
+/// Has folders removed and programs ended when the command is told to end.
+pub(crate) fn watch() {
+    static WATCH: Once = Once::new();
+    WATCH.call_once(|| interrupt::watch(interrupted));
 }
 
 fn folders() -> MutexGuard<'static, Vec<PathBuf>> {

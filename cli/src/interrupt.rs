@@ -6,8 +6,8 @@ use crate::failure::INTERRUPTED;
 /// ignored. Where nothing can be watched, an interrupted command leaves its folders behind, and nothing else is amiss.
 #[cfg(unix)]
 pub(crate) fn watch(end: fn(i32)) {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-    let heard = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| !is_ignored(*signal));
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
+    let heard = [SIGINT, SIGQUIT, SIGTERM, SIGHUP].into_iter().filter(|signal| !is_ignored(*signal));
     let Ok(mut signals) = signal_hook::iterator::Signals::new(heard) else { return };
     std::thread::spawn(move || signals.forever().next().into_iter().for_each(|signal| end(i32::from(INTERRUPTED) - SIGINT + signal)));
 }

@@ -48,6 +48,15 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     let arguments = match Arguments::try_parse_from(&words) {
         Ok(arguments) => arguments,
         Err(error) => {
+            if !error.use_stderr() {
+                return match console::print(&error.render().to_string()) {
+                    Ok(()) => OK,
+                    Err(failure) => {
+                        failure.errors.iter().for_each(|error| console::error(&error.message));
+                        failure.status
+                    }
+                };
+            }
             let _ = error.print();
             let status = u8::try_from(error.exit_code()).unwrap_or(USAGE);
             if status == USAGE && asks_for_json(&words) {

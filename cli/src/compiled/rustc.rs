@@ -1,6 +1,7 @@
 //! The Rust compiler, as the command calls it.
 
 use std::fmt;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -55,6 +56,11 @@ pub enum CompileError {
         /// The first lines of what it said.
         message: String,
     },
+    /// The compiler was ended before it was done: by a signal, or by the limit of its time.
+    Ended {
+        /// By what.
+        reason: String,
+    },
     /// The temporary folder could not be written.
     Folder(std::io::Error),
     /// The library that came out could not be loaded.
@@ -66,6 +72,7 @@ impl fmt::Display for CompileError {
         match self {
             Self::NotFound { program, reason } => write!(f, "no Rust compiler: {}: {reason}; install one or set RUSTC", program.display()),
             Self::Refused { message } => write!(f, "rustc refused the generated source: {message}"),
+            Self::Ended { reason } => write!(f, "rustc was ended: {reason}"),
             Self::Folder(error) => write!(f, "no temporary folder to compile in: {error}"),
             Self::Load(message) => write!(f, "the compiled library cannot be loaded: {message}"),
         }
@@ -74,16 +81,25 @@ impl fmt::Display for CompileError {
 
 impl std::error::Error for CompileError {}
 
+/// The variable that limits the time of a compiler, s.
+const LIMIT: &str = "ARTICULATED_RUSTC_SECONDS";
+
+/// How long a compiler may take: an hour, unless the user sets another limit.
+fn limit() -> Duration {
+    let seconds = std::env::var(LIMIT).ok().and_then(|text| text.parse().ok()).filter(|seconds| *seconds > 0);
+    Duration::from_secs(seconds.unwrap_or(3600))
+}
+
 impl Rustc {
     /// The compiler that the variable `RUSTC` names, or `rustc`.
     pub fn find() -> Result<Self, CompileError> {
         let program = std::env::var_os("RUSTC").map_or_else(|| PathBuf::from("rustc"), PathBuf::from);
         let missing = |reason: String| CompileError::NotFound { program: program.clone(), reason };
-        let answer = Command::new(&program).arg("--version").output().map_err(|e| missing(e.to_string()))?;
+        let answer = children::run(Command::new(&program).arg("--version"), limit()).map_err(|e| missing(e.to_string()))?;
         if !answer.status.success() {
             return Err(missing(answer.status.to_string()));
         }
-        let version = String::from_utf8_lossy(&answer.stdout).trim().to_owned();
+        let version = answer.output.trim().to_owned();
         Ok(Self { program, version })
     }
 
@@ -104,11 +120,17 @@ impl Rustc {
         if makes == Makes::Object {
             command.args(["--emit", "obj"]);
         }
-        let (status, said) = children::run(command.arg("-o").arg(to).arg(source))
-            .map_err(|e| CompileError::NotFound { program: self.program.clone(), reason: e.to_string() })?;
+        let failed = |e: std::io::Error| match e.kind() {
+            ErrorKind::TimedOut => CompileError::Ended { reason: format!("{e}; {LIMIT} sets another limit, s") },
+            _ => CompileError::NotFound { program: self.program.clone(), reason: e.to_string() },
+        };
+        let children::Ended { status, errors: said, .. } = children::run(command.arg("-o").arg(to).arg(source), limit()).map_err(failed)?;
         let time = start.elapsed();
         if status.success() {
             return Ok(time);
+        }
+        if status.code().is_none() {
+            return Err(CompileError::Ended { reason: format!("{status}: perhaps memory was short") });
         }
         let said = if said.trim().is_empty() { format!("it said nothing and ended with {status}: perhaps memory was short") } else { said };
         let message: Vec<&str> = said.lines().take(20).collect();

@@ -99,7 +99,7 @@ fn compile(robot: &Robot, names: &[String], needed: bool, report: &mut Report) -
             report.compiler = Some(format!("{} {}", rustc.version, Rustc::flags(Target::Own).join(" ")));
             Ok(Some(compiled))
         }
-        Err(error @ CompileError::NotFound { .. }) if !needed => {
+        Err(error @ (CompileError::NotFound { .. } | CompileError::Folder(_))) if !needed => {
             let note = format!("{error}; generic results only");
             drop(progress);
             console::warn(&note);
