@@ -43,22 +43,12 @@ pub(crate) fn harmless(text: &str) -> String {
     }
     text.chars().fold(String::with_capacity(text.len()), |mut out, c| {
         if is_harmful(c) {
-            out.extend(c.escape_default())
+            out.extend(c.escape_default());
         } else {
-            out.push(c)
+            out.push(c);
         }
         out
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::harmless;
-
-    #[test]
-    fn what_moves_the_cursor_or_turns_the_direction_is_escaped() {
-        assert_eq!(harmless("a\u{9b}31m\u{1b}[2J\u{202e}é\r\nб"), "a\\u{9b}31m\\u{1b}[2J\\u{202e}é\\r\nб");
-    }
 }
 
 /// A bar on the standard error stream, if that is a terminal; it goes away when dropped.
@@ -109,5 +99,15 @@ impl Progress {
 impl Drop for Progress {
     fn drop(&mut self) {
         self.0.finish_and_clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::harmless;
+
+    #[test]
+    fn what_moves_the_cursor_or_turns_the_direction_is_escaped() {
+        assert_eq!(harmless("a\u{9b}31m\u{1b}[2J\u{202e}é\r\nб"), "a\\u{9b}31m\\u{1b}[2J\\u{202e}é\\r\nб");
     }
 }
