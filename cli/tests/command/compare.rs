@@ -359,19 +359,67 @@ fn an_interrupted_command_ends_its_compilers() {
     assert!(started().lines().all(|id| !runs(id)), "{}", started());
 }
 
+/// A compiler that is this script.
+#[cfg(unix)]
+fn compiler(folder: &std::path::Path, script: &str) -> std::path::PathBuf {
+    use std::os::unix::fs::PermissionsExt;
+    let compiler = folder.join("compiler");
+    std::fs::write(&compiler, format!("#!/bin/sh\n{script}\n")).unwrap();
+    std::fs::set_permissions(&compiler, std::fs::Permissions::from_mode(0o755)).unwrap();
+    compiler
+}
+
 /// As where memory is short.
 #[cfg(unix)]
 #[test]
-fn a_compiler_that_says_nothing_is_told_by_how_it_ended() {
-    use std::os::unix::fs::PermissionsExt;
+fn a_compiler_that_a_signal_ends_is_reported_as_that() {
     let folder = tempfile::tempdir().unwrap();
-    let compiler = folder.path().join("killed");
-    std::fs::write(&compiler, "#!/bin/sh\n[ \"$1\" = --version ] && echo killed && exit\nkill -9 $$\n").unwrap();
-    std::fs::set_permissions(&compiler, std::fs::Permissions::from_mode(0o755)).unwrap();
     let mut command = articulated(&["compare", "double_pendulum", "--functions", "mass_matrix"]);
-    command.env("RUSTC", &compiler);
+    command.env("RUSTC", compiler(folder.path(), "[ \"$1\" = --version ] && echo killed && exit\nkill -9 $$"));
     let ended = super::end(command, b"");
-    assert!(ended.status == 3 && ended.err.contains("ended with signal: 9"), "{} {}", ended.status, ended.err);
+    assert!(ended.status == 3 && ended.err.contains("rustc was ended: signal: 9"), "{} {}", ended.status, ended.err);
+}
+
+/// Whether the process whose number a script wrote into `file` runs. One that has ended and waits for its parent does not.
+#[cfg(unix)]
+fn runs(file: &std::path::Path) -> bool {
+    let id = std::fs::read_to_string(file).unwrap();
+    let state = Command::new("ps").args(["-o", "stat=", "-p", id.trim()]).output().unwrap();
+    !matches!(state.stdout.first(), None | Some(b'Z'))
+}
+
+#[cfg(unix)]
+#[test]
+fn a_compiler_that_hangs_is_ended_with_all_that_it_started() {
+    let folder = tempfile::tempdir().unwrap();
+    let id = folder.path().join("id");
+    let hang = format!("sleep 1000 & echo $! > {}; wait", id.display());
+    for script in [hang.clone(), format!("[ \"$1\" = --version ] && echo slow && exit\n{hang}")] {
+        let mut command = articulated(&["compare", "double_pendulum", "--functions", "mass_matrix"]);
+        command.env("RUSTC", compiler(folder.path(), &script)).env("ARTICULATED_RUSTC_SECONDS", "1");
+        let ended = super::end(command, b"");
+        assert!(ended.status == 3 && ended.err.contains("found no end within 1 s"), "{} {}", ended.status, ended.err);
+        assert!(!runs(&id));
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_compiler_asked_for_its_version_ends_with_the_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let id = folder.path().join("id");
+    let script = format!("sleep 1000 & echo $! > {0}.new; mv {0}.new {0}; wait", id.display());
+    for (signal, status) in [("-QUIT", 131), ("-TERM", 143)] {
+        let _ = std::fs::remove_file(&id);
+        let mut command = articulated(&["compare", "double_pendulum", "--functions", "mass_matrix"]);
+        let mut child = command.env("RUSTC", compiler(folder.path(), &script)).spawn().unwrap();
+        while !id.exists() {
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
+        assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
+        assert_eq!(child.wait().unwrap().code(), Some(status));
+        assert!(!runs(&id));
+    }
 }
 
 /// The textbook's form knows no effects: it would call right results wrong.

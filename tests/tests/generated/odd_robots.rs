@@ -40,7 +40,9 @@ fn a_chain_of_a_thousand_joints_is_generated() {
 /// A matrix has n² numbers, and each is written out: nobody should learn that from a compiler that does not end.
 #[test]
 fn code_that_is_too_long_to_be_of_use_is_a_warning() {
-    let generated = generate(&chain(400, "mass_matrix")).unwrap();
+    let mut request = chain(400, "mass_matrix");
+    request.options.max_code_size = 1000;
+    let generated = generate(&request).unwrap();
     let told: Vec<String> = generated.warnings.iter().map(ToString::to_string).collect();
     let instructions = generated.ledger.functions[0].emitted().instructions();
     assert!(
