@@ -38,7 +38,7 @@ impl Drop for Folder {
     }
 }
 
-/// Has folders removed and programs ended when the command is told to end.
+/// Installs the signal handler that removes temporary folders and ends child programs.
 pub(crate) fn watch() {
     static WATCH: Once = Once::new();
     WATCH.call_once(|| interrupt::watch(interrupted));

@@ -95,7 +95,7 @@ fn a_gravity_that_no_place_has_is_warned_of() {
     }
 }
 
-/// A name that is nearly that of a file is told with the file, and not with a bundled robot.
+/// For a misspelt file name the error suggests the nearest file, not a bundled robot.
 #[test]
 fn a_file_that_is_not_there_is_told_with_the_nearest() {
     let file = File::new("elbow.urdf", MASSLESS.as_bytes());
