@@ -70,7 +70,9 @@ impl Stage {
         faults.extend(self.foreign(robot, frames));
         faults.extend(self.lacking(robot, settings.integrator));
         let watch = Watch::new(self, robot, frames);
-        let simulation = Simulation::new(robot, settings).map(with_balance).map_err(|e| MotionErrors::refused(file, e));
+        let simulation = Simulation::new(robot, settings);
+        // A motion of a scene is judged by its balance of energy.
+        let simulation = simulation.map(Simulation::with_energy_balance).map_err(|e| MotionErrors::refused(file, e));
         let (_, (watch, simulation)) = MotionErrors::both(MotionErrors::none(file, faults), MotionErrors::both(watch, simulation))?;
         Ok(Motion { stage: self, robot, watch, simulation })
     }
@@ -154,12 +156,6 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
         let happenings = recording.events.iter().map(|hit| self.watch.happening(hit)).collect();
         Ok(Outcome { recording, happenings, ending, reached, ball: self.watch.ball_energy(), error, wall })
     }
-}
-
-/// A motion of a scene is judged by its balance of energy.
-fn with_balance<R: Dynamics<f64>>(mut simulation: Simulation<'_, R>) -> Simulation<'_, R> {
-    simulation.set_balance(true);
-    simulation
 }
 
 impl Ending {

@@ -44,7 +44,7 @@ fn robot() -> Model<f64> {
 fn motion(robot: &Model<f64>, integrator: IntegratorId, end: f64, sampled: bool) -> (u64, u64, usize) {
     let step = (!integrator.row().adaptive).then_some(2e-3);
     let settings = Settings { integrator, end, step, rtol: 1e-7, output: Output::Every(0.02), ..Settings::default() };
-    let mut simulation = Simulation::new(robot, settings).unwrap();
+    let mut simulation = Simulation::new(robot, settings).unwrap().with_energy_balance();
     let q = [0.3, -0.2, 0.5, 0.5, -0.5, 0.5, 0.5, 0.7, 0.1, 0.7, -0.1, 0.7];
     let v = [1.8, -1.5, 2.0, 0.3, -0.2, 0.5, 0.4, 0.1, -0.1, 0.1];
     let pd = Pd::new(robot, q.to_vec(), vec![0.1; 10], vec![0.1; 10]).unwrap();

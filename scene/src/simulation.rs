@@ -39,7 +39,7 @@ impl Watched {
 }
 
 const WATCHED: &[(&str, Watched)] = &[("limits", Watched::Limits), ("contacts", Watched::Contacts), ("stick_slip", Watched::StickSlip)];
-const STIFFNESS: &[(&str, Stiffness)] = &[("refuse", Stiffness::Refuse), ("note", Stiffness::Note)];
+const STIFFNESS: &[(&str, Stiffness)] = &[("refuse", Stiffness::Refuse), ("note", Stiffness::Note), ("ignore", Stiffness::Ignore)];
 
 pub(crate) const KEYS: &[Row<Simulation>] = &[
     Row {
@@ -149,9 +149,9 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
     Row {
         name: "stiffness",
         required: false,
-        value: "`\"refuse\"` or `\"note\"`",
+        value: "`\"refuse\"`, `\"note\"` or `\"ignore\"`",
         default: "`\"refuse\"`",
-        what: "what happens where an explicit integrator is outside its stable step; with steps by tolerance `\"refuse\"` ends a motion only where more than 20 000 such steps would be left",
+        what: "what happens where an explicit integrator is outside its stable step; with steps by tolerance `\"refuse\"` ends a motion only where more than 20 000 such steps would be left; `\"ignore\"` does not look",
         read: |x, s, log| set(&mut x.settings.stiffness, s.word(log, STIFFNESS)),
     },
 ];

@@ -39,8 +39,7 @@ fn a_scene_moves_as_a_simulation_put_together_by_hand_to_the_bit() {
     };
     let (q, v) = ([0.7, 0.0, 0.0, 0.6, 0.0, 0.8], [0.0, -1.5, 0.1, 0.2, 0.3]);
     // A scene requests the balance of energy.
-    let mut simulation = Simulation::new(&robot, settings).unwrap();
-    simulation.set_balance(true);
+    let mut simulation = Simulation::new(&robot, settings).unwrap().with_energy_balance();
     let expected = simulation.run(&q, &v, &mut control, &mut []).unwrap();
 
     assert!(expected.len() == 11 && (expected.q_at(0)[0] - expected.q_at(10)[0]).abs() > 0.1);
@@ -52,8 +51,7 @@ fn given_torques_and_tables_are_those_of_the_library() {
     let settings = || Settings { end: 1.5, ..Settings::default() };
     let run = |control: &mut dyn articulated::simulate::Control| {
         let robot = articulated::load_bytes("cart.urdf", CART.as_bytes(), articulated::Base::Fixed).unwrap();
-        let mut simulation = Simulation::new(&robot, settings()).unwrap();
-        simulation.set_balance(true);
+        let mut simulation = Simulation::new(&robot, settings()).unwrap().with_energy_balance();
         simulation.run(&[0.0], &[0.0], control, &mut []).unwrap()
     };
     let found = moved(&stage("control = { kind = 'torque', torque = 0.75 }\nsimulation = { end = 1.5 }", CART)).recording;

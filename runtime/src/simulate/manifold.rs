@@ -123,7 +123,10 @@ impl Manifold {
         out.copy_from_slice(v);
         for free in &self.free {
             let (omega, at) = (three(u, free.v), free.v);
-            if omega.norm_squared() >= TAU * TAU {
+            let turn = omega.norm_squared();
+            if turn < SMALL_TURN {
+                small_turn_rates(free, u, v, turn, out);
+            } else if turn.is_nan() || turn >= TAU * TAU {
                 out[at..at + free.rates()].fill(f64::NAN);
             } else if free.moves {
                 let rate = Twist { angular: omega, linear: three(u, at + 3) }.right_jacobian_inverse()
@@ -184,8 +187,9 @@ impl Manifold {
             let (rotation, spin) = (three(u, at), three(v0, at));
             let w = three(v, at + 3) + spin.cross(&three(v0, at + 3)) * h;
             // The translation of exp(u) is the left Jacobian of its rotation times the linear part of u.
-            u[at + 3..at + 6].copy_from_slice((left_jacobian_inverse(rotation) * w * h).as_slice());
-            v[at + 3..at + 6].copy_from_slice((exp_rotation(rotation).transpose() * w).as_slice());
+            let (along, turned) = carried(rotation, w);
+            u[at + 3..at + 6].copy_from_slice((along * h).as_slice());
+            v[at + 3..at + 6].copy_from_slice(turned.as_slice());
         }
     }
 
@@ -232,6 +236,55 @@ impl Manifold {
     }
 }
 
+/// J_l(ω)⁻¹ w and exp(ω)ᵀ w.
+fn carried(omega: Vector3<f64>, w: Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
+    let x = omega.norm_squared();
+    if x.is_nan() || x >= SMALL_TURN {
+        return (left_jacobian_inverse(omega) * w, exp_rotation(omega).transpose() * w);
+    }
+    // 1 − ½ [ω] + ε [ω]² and 1 − sin θ/θ [ω] + (1 − cos θ)/θ² [ω]², in powers of x = θ².
+    let once = omega.cross(&w);
+    let twice = omega.cross(&once);
+    let epsilon = 1.0 / 12.0 + x * (1.0 / 720.0 + x * (1.0 / 30_240.0 + x * (1.0 / 1_209_600.0 + x / 47_900_160.0)));
+    let sinc = 1.0 - x / 6.0 * (1.0 - x / 20.0 * (1.0 - x / 42.0 * (1.0 - x / 72.0)));
+    let versine = 0.5 - x / 24.0 * (1.0 - x / 30.0 * (1.0 - x / 56.0 * (1.0 - x / 90.0)));
+    (w - once * 0.5 + twice * epsilon, w - once * sinc + twice * versine)
+}
+
+/// Up to this θ² the rates come from a series in brackets, which is shorter than the closed form.
+const SMALL_TURN: f64 = 0.01;
+
+/// u̇ = v + ½ [u, v] + Σ B_2k/(2k)! [u, [u, … v]] of 2k brackets (Munthe-Kaas 1998): as many as count at θ², which is below [`SMALL_TURN`].
+fn small_turn_rates(free: &Free, u: &[f64], v: &[f64], turn: f64, out: &mut [f64]) {
+    const COEFFICIENTS: [f64; 4] = [1.0 / 12.0, -1.0 / 720.0, 1.0 / 30_240.0, -1.0 / 1_209_600.0];
+    let at = free.v;
+    if u[at..at + free.rates()].iter().all(|u| *u == 0.0) {
+        return;
+    }
+    let linear = |x: &[f64]| if free.moves { three(x, at + 3) } else { Vector3::zeros() };
+    let (omega, along) = (three(u, at), linear(u));
+    let bracket = |(w, l): (Vector3<f64>, Vector3<f64>)| (omega.cross(&w), omega.cross(&l) + along.cross(&w));
+    let mut term = bracket((three(v, at), linear(v)));
+    let mut sum = (term.0 * 0.5, term.1 * 0.5);
+    // Brackets grow by θ, and once by the linear part: twice its power is left of it.
+    let mut size = 1.0;
+    for coefficient in COEFFICIENTS {
+        term = bracket(term);
+        sum = (sum.0 + term.0 * coefficient, sum.1 + term.1 * coefficient);
+        size *= turn;
+        if size * turn < 1e-13 {
+            break;
+        }
+        term = bracket(term);
+    }
+    for k in 0..3 {
+        out[at + k] += sum.0[k];
+        if free.moves {
+            out[at + 3 + k] += sum.1[k];
+        }
+    }
+}
+
 /// Which coordinates a turn or shift along rate `v` changes.
 fn moved<R: Dynamics<f64>>(robot: &R, v: usize) -> Result<Range<usize>, FunctionError> {
     let (shape, mut ws) = (robot.shape(), robot.workspace());
@@ -272,7 +325,7 @@ fn arc(x: f64) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::{Free, Manifold, TAU, arc};
+    use super::{Free, Manifold, TAU, Vector3, arc, carried, exp_rotation, left_jacobian_inverse};
 
     /// A slide, a floating joint, a hinge, a ball joint.
     fn mixed() -> Manifold {
@@ -303,6 +356,44 @@ mod tests {
                 u[at + 1] = turn;
                 mixed().rates(&u, &[0.5; 11], &mut out);
                 assert!((0..11).all(|i| out[i].is_finite() == (known || !rates.contains(&i))), "{turn}: {out:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_a_small_turn_carries_is_that_of_the_closed_form() {
+        let (axis, w) = (Vector3::new(0.6, -0.48, 0.64), Vector3::new(0.3, -2.0, 1.1));
+        for turn in [0.0, 1e-9, 1e-5, 1e-3, 0.02, 0.0999, 0.1001, 2.0] {
+            let (along, turned) = carried(axis * turn, w);
+            assert!((along - left_jacobian_inverse(axis * turn) * w).norm() < 1e-15, "{turn}");
+            assert!((turned - exp_rotation(axis * turn).transpose() * w).norm() < 2e-15, "{turn}");
+        }
+    }
+
+    /// Against the closed form, from turns of nothing to the largest that the series takes, with steps that move far.
+    #[test]
+    fn rates_of_small_turns_are_those_of_the_closed_form() {
+        use articulated_core::nalgebra::Vector6;
+        use articulated_core::spatial::Twist;
+        use articulated_core::spatial::screw::right_jacobian_inverse;
+        let v: [f64; 11] = std::array::from_fn(|i| (1.0 + 2.7 * i as f64).sin());
+        for turn in [0.0, 1e-12, 1e-8, 1e-5, 1e-3, 0.02, 0.0999, 0.1001] {
+            for far in [0.0, 0.1, 10.0] {
+                let axis = Vector3::new(0.6, -0.48, 0.64);
+                let along = Vector3::new(0.3, 0.5, -0.7) * far;
+                let mut u = [0.0; 11];
+                for k in 0..3 {
+                    (u[1 + k], u[4 + k], u[8 + k]) = (turn * axis[k], along[k], turn * axis[k]);
+                }
+                let mut out = [0.0; 11];
+                mixed().rates(&u, &v, &mut out);
+                let twist = Twist { angular: axis * turn, linear: along };
+                let free = twist.right_jacobian_inverse() * Vector6::from_column_slice(&v[1..7]);
+                let ball = right_jacobian_inverse(axis * turn) * Vector3::from_column_slice(&v[8..11]);
+                for (k, exact) in free.iter().chain(ball.iter()).enumerate() {
+                    let found = out[if k < 6 { 1 + k } else { 2 + k }];
+                    assert!((found - exact).abs() < 2e-15 * (1.0 + far), "{turn} {far} {k}: {found} {exact}");
+                }
             }
         }
     }

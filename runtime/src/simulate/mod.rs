@@ -13,7 +13,7 @@
 //!   <joint name="hinge" type="continuous"><parent link="base"/><child link="bob"/><axis xyz="0 1 0"/></joint></robot>"#;
 //! let robot = load_bytes("pendulum.urdf", urdf.as_bytes(), Base::Fixed)?;
 //! let settings = Settings { integrator: IntegratorId::dop853, end: 10.0, rtol: 1e-10, atol: 1e-10, ..Settings::default() };
-//! let motion = Simulation::new(&robot, settings)?.run(&[1.0], &[0.0], &mut NoTorque, &mut [])?;
+//! let motion = Simulation::new(&robot, settings)?.with_energy_balance().run(&[1.0], &[0.0], &mut NoTorque, &mut [])?;
 //! let last = motion.len() - 1;
 //! assert!(motion.imbalance(last).is_some_and(|joules| joules.abs() < 1e-8));
 //! # Ok(()) }

@@ -90,8 +90,8 @@ impl Known {
             tau: room(true, nv),
             kinetic: room(self.kinetic, 1),
             potential: room(self.potential, 1),
-            work: room(true, 1),
-            dissipated: room(true, 1),
+            work: room(system.follows_work, 1),
+            dissipated: room(system.follows_work, 1),
             from_events: room(self.kinetic && self.potential, 1),
             momentum: room(self.momentum, 6),
             events: Vec::with_capacity(16),
@@ -130,8 +130,10 @@ impl Known {
         to.q.extend_from_slice(q);
         to.v.extend_from_slice(v);
         to.tau.extend_from_slice(&self.tau);
-        to.work.push(point.y[2 * nv]);
-        to.dissipated.push(point.y[2 * nv + 1]);
+        if system.follows_work {
+            to.work.push(point.y[2 * nv]);
+            to.dissipated.push(point.y[2 * nv + 1]);
+        }
         let (kinetic, potential) = self.energies(system, q, v)?;
         to.kinetic.extend(kinetic);
         to.potential.extend(potential);

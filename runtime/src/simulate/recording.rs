@@ -122,9 +122,10 @@ pub struct Recording {
     pub kinetic: Vec<f64>,
     /// Potential energy, J; empty for a robot without the function.
     pub potential: Vec<f64>,
-    /// Work of the torques since the start, J: of those that the motors give, where there are some.
+    /// Work of the torques since the start, J: of those that the motors give, where there are some. Empty unless requested by
+    /// [`Simulation::with_energy_balance`](super::Simulation::with_energy_balance).
     pub work: Vec<f64>,
-    /// Energy of the effects that are not conservative since the start, J; negative where they took some.
+    /// Energy of the effects that are not conservative since the start, J; negative where they took some. Empty unless requested, as `work`.
     pub dissipated: Vec<f64>,
     /// Energy that the maps of events brought since the start, J: change of T + U, negative where they took some; empty for a robot without one of the two.
     pub from_events: Vec<f64>,
@@ -134,7 +135,7 @@ pub struct Recording {
     pub missing: Vec<&'static str>,
     /// Events, in order.
     pub events: Vec<Hit>,
-    /// The balance of energy over all steps, if requested by [`Simulation::set_balance`](super::Simulation::set_balance) and the robot has both energies.
+    /// The balance of energy over all steps, if requested by [`Simulation::with_energy_balance`](super::Simulation::with_energy_balance) and the robot has both energies.
     pub balance: Option<Balance>,
     /// What was done.
     pub counts: Counts,
@@ -181,9 +182,9 @@ impl Recording {
         Some(self.kinetic.get(i)? + self.potential.get(i)?)
     }
 
-    /// What the balance of energy lacks in record i, J: T + U − (T + U at the start) − work − dissipated − what events brought.
+    /// What the balance of energy lacks in record i, J: T + U − (T + U at the start) − work − dissipated − what events brought. `None` where one of them is not recorded.
     pub fn imbalance(&self, i: usize) -> Option<f64> {
-        Some(self.energy(i)? - self.energy(0)? - self.work[i] - self.dissipated[i] - self.from_events.get(i)?)
+        Some(self.energy(i)? - self.energy(0)? - self.work.get(i)? - self.dissipated.get(i)? - self.from_events.get(i)?)
     }
 
     /// Nothing, but the room.

@@ -10,8 +10,12 @@ use super::integrator::{Method, roots};
 use super::system::System;
 use super::{Control, SimulateError};
 
-/// Steps between two looks.
+/// Steps between two looks, and between looks that find nothing near.
 const EVERY: u64 = 16;
+const SELDOM: u64 = 256;
+
+/// |hλ| below which looks become seldom.
+const CALM: f64 = 0.5;
 
 /// What a step may see of fast motion, |hλ| roughly, before it is reason to look.
 pub(crate) const SUSPICIOUS: f64 = 0.6;
@@ -31,6 +35,9 @@ pub(crate) struct Stability {
     at: Vec<f64>,
     fresh: bool,
     largest: f64,
+    /// Steps to the next look, and the step of it.
+    interval: u64,
+    next: u64,
     wait: u64,
     /// What the step saw that was reason for the last look.
     seen: f64,
@@ -46,11 +53,21 @@ pub(crate) struct Pair {
 
 impl Stability {
     pub(crate) fn new(n: usize) -> Self {
-        Self { z: std::array::from_fn(|_| vec![0.0; n]), at: vec![0.0; n], fresh: true, largest: 0.0, wait: 0, seen: 0.0 }
+        Self {
+            z: std::array::from_fn(|_| vec![0.0; n]),
+            at: vec![0.0; n],
+            fresh: true,
+            largest: 0.0,
+            interval: EVERY,
+            next: 0,
+            wait: 0,
+            seen: 0.0,
+        }
     }
 
     pub(crate) fn reset(&mut self) {
         (self.fresh, self.largest, self.wait, self.seen) = (true, 0.0, 0, 0.0);
+        (self.interval, self.next) = (EVERY, 0);
     }
 
     /// The next look begins with everything.
@@ -65,7 +82,12 @@ impl Stability {
         if size.is_finite() {
             self.largest = self.largest.max(size);
         }
-        jumped || steps.is_multiple_of(EVERY)
+        let due = jumped || steps >= self.next;
+        if due {
+            self.interval = if jumped { EVERY } else { self.interval };
+            self.next = steps + self.interval;
+        }
+        due
     }
 
     /// Whether what a step saw of fast motion, |hλ| roughly, is reason to look; not twice in a row, unless it is much faster than what was looked at.
@@ -92,6 +114,8 @@ impl Stability {
             found = self.look(system, control, (t, y, f), ROUNDS)?;
         }
         self.fresh = false;
+        let calm = found.is_some_and(|pair| h * pair.rate < CALM);
+        self.interval = if calm { (2 * self.interval).min(SELDOM) } else { EVERY };
         let Some(pair) = found.filter(|pair| !stable(method, *pair, h)) else { return Ok(None) };
         // The first step beyond |hλ| = 1 that is not stable bounds those that are: of those that are told not even one that makes next to nothing grow, for how many there will be nobody knows.
         let mut admissible = (1.0 / pair.rate).min(h);
@@ -199,12 +223,13 @@ mod tests {
     #[test]
     fn a_look_is_due_now_and_then_and_where_the_motion_jumps() {
         let mut stability = Stability::new(2);
+        assert!(stability.due(0, &[0.0, 0.0]));
         // What begins from rest does not jump.
         assert_eq!([0.0, 1.0, -8.0, 8.0].map(|v| stability.due(1, &[v, 0.0])), [false; 4]);
         assert_eq!([-64.0, 513.0, 100.0].map(|v| stability.due(1, &[0.0, v])), [false, true, false]);
         // Of what is no number nothing is kept.
         assert_eq!([f64::NAN, f64::INFINITY, 5000.0].map(|v| stability.due(1, &[v, 1.0])), [true; 3]);
-        assert_eq!([EVERY - 1, EVERY, EVERY + 1, 3 * EVERY].map(|steps| stability.due(steps, &[1.0, 1.0])), [false, true, false, true]);
+        assert_eq!([EVERY, EVERY + 1, EVERY + 2, 3 * EVERY].map(|steps| stability.due(steps, &[1.0, 1.0])), [false, true, false, true]);
     }
 
     #[test]

@@ -31,6 +31,8 @@ pub(crate) struct System<'r, R: Dynamics<f64>> {
     pub(crate) no_torque: Option<(f64, usize)>,
     pub(crate) has_motors: bool,
     pub(crate) has_losses: bool,
+    /// Whether the last two numbers of y are integrated; they are zero otherwise.
+    pub(crate) follows_work: bool,
 }
 
 impl<'r, R: Dynamics<f64>> System<'r, R> {
@@ -52,6 +54,7 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
             no_torque: None,
             has_motors: false,
             has_losses: false,
+            follows_work: false,
         };
         let zero = vec![0.0; nv];
         system.has_motors = super::effects::motor_torques(robot, &mut system.ws, &zero, &zero, &mut system.applied);
@@ -126,6 +129,9 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
 
     /// vᵀτ of what the motors give, and the power of the effects, at the configuration and torques of the last evaluation.
     fn powers(&mut self, v: &[f64]) -> [f64; 2] {
+        if !self.follows_work {
+            return [0.0; 2];
+        }
         let work = |tau: &[f64]| tau.iter().zip(v).map(|(tau, v)| tau * v).sum();
         let given = if self.has_motors && super::effects::motor_torques(self.robot, &mut self.ws, v, &self.tau, &mut self.applied) {
             work(&self.applied)
@@ -138,8 +144,10 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
 
     /// Which of these numbers, one for each degree of freedom, are not finite.
     pub(crate) fn not_finite(&self, t: f64, what: &'static str, x: &[f64]) -> Option<SimulateError> {
-        let index: Vec<usize> = (0..x.len()).filter(|&i| !x[i].is_finite()).collect();
-        if index.is_empty() { None } else { Some(self.named(t, what, index)) }
+        if all_finite(x) {
+            return None;
+        }
+        Some(self.named(t, what, (0..x.len()).filter(|&i| !x[i].is_finite()).collect()))
     }
 
     /// Whether a step of h s at these rates turns a joint by `most` rad or more.
@@ -174,8 +182,16 @@ impl<'r, R: Dynamics<f64>> System<'r, R> {
     }
 }
 
+/// Whether every number is finite, without a branch for each.
+fn all_finite(x: &[f64]) -> bool {
+    x.iter().fold(true, |all, x| all & x.is_finite())
+}
+
 /// The time and the torque that is not finite, at a state that is.
 fn not_finite(t: f64, (q, v): (&[f64], &[f64]), tau: &[f64]) -> Option<(f64, usize)> {
+    if all_finite(tau) {
+        return None;
+    }
     let index = tau.iter().position(|x| !x.is_finite())?;
     q.iter().chain(v).all(|x| x.is_finite()).then_some((t, index))
 }

@@ -83,7 +83,7 @@ fn a_table_is_followed_through_its_kinks() {
     for id in [IntegratorId::dopri5, IntegratorId::rodas4, IntegratorId::rk4] {
         let settings = if id == IntegratorId::rk4 { stepping(id, 2.0, 0.3) } else { to(id, 2.0, 1e-3) };
         let mut table = TorqueTable::new(vec![0.0, 0.7, 1.4], &[0.0, 1.0, 0.0], 1).unwrap();
-        let motion = Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[0.0], &mut table, &mut []).unwrap();
+        let motion = Simulation::new(&slider(), settings).unwrap().with_energy_balance().run(&[0.0], &[0.0], &mut table, &mut []).unwrap();
         // ∫ = 0.7, the centre at 0.7. Derivatives in time are differences where steps are linearly implicit.
         let bound = if id == IntegratorId::rodas4 { 1e-9 } else { 1e-14 };
         assert!((motion.v[1] - 0.7).abs() < bound && (motion.q[1] - 0.7 * 1.3).abs() < bound, "{id}: {} {}", motion.v[1], motion.q[1]);
@@ -109,7 +109,7 @@ impl Control for Jump {
 fn a_step_that_ends_at_a_jump_is_made_with_the_torques_before_it() {
     for id in [IntegratorId::dopri5, IntegratorId::dop853, IntegratorId::rodas4, IntegratorId::rk4, IntegratorId::lie_midpoint] {
         let settings = if id.row().adaptive { to(id, 1.0, 1e-3) } else { stepping(id, 1.0, 0.3) };
-        let motion = Simulation::new(&slider(), settings).unwrap().run(&[0.0], &[0.0], &mut Jump, &mut []).unwrap();
+        let motion = Simulation::new(&slider(), settings).unwrap().with_energy_balance().run(&[0.0], &[0.0], &mut Jump, &mut []).unwrap();
         let (v, q) = (0.7 - 2.0 * 0.3, 0.5 * 0.49 + 0.7 * 0.3 - 0.09);
         assert!((motion.v[1] - v).abs() < 1e-14 && (motion.q[1] - q).abs() < 1e-14, "{id}: {} {}", motion.v[1], motion.q[1]);
         assert!((motion.work[1] - (0.5 * 0.49 - 2.0 * (q - 0.5 * 0.49))).abs() < 1e-13, "{id}: {}", motion.work[1]);
@@ -177,7 +177,11 @@ fn energy_is_accounted_for() {
             tau[0] = 1.2 * (4.0 * t).sin();
             tau[2] = -0.1 * v[2];
         };
-        let motion = Simulation::new(&robot, settings).unwrap().run(&[0.4, -0.7, 0.5], &[1.0, 0.5, -1.5], &mut control, &mut []).unwrap();
+        let motion = Simulation::new(&robot, settings)
+            .unwrap()
+            .with_energy_balance()
+            .run(&[0.4, -0.7, 0.5], &[1.0, 0.5, -1.5], &mut control, &mut [])
+            .unwrap();
         let worst = (0..motion.len()).map(|i| motion.imbalance(i).unwrap().abs()).fold(0.0, f64::max);
         let (work, lost) = (motion.work.last().unwrap(), motion.dissipated.last().unwrap());
         println!("{id}: {worst:e} J of {work} J and {lost} J");
@@ -451,8 +455,8 @@ fn the_balance_of_energy_does_not_depend_on_what_is_recorded() {
     let balance = |output: Output, requested: bool| {
         let mut pd = Pd::new(&robot, vec![0.4], vec![1e7], vec![2e3]).unwrap();
         let settings = Settings { integrator: IntegratorId::rodas4, end: 1.0, output, ..Settings::default() };
-        let mut simulation = Simulation::new(&robot, settings).unwrap();
-        simulation.set_balance(requested);
+        let simulation = Simulation::new(&robot, settings).unwrap();
+        let mut simulation = if requested { simulation.with_energy_balance() } else { simulation };
         simulation.run(&[0.0], &[0.0], &mut pd, &mut []).unwrap().balance
     };
     let all = [Output::Ends, Output::Every(0.01), Output::Every(0.0005), Output::Steps].map(|output| balance(output, true).unwrap());
@@ -471,8 +475,7 @@ fn the_balance_of_energy_counts_what_events_bring() {
         v[0] = 0.0;
         Ok(None)
     })));
-    let mut simulation = Simulation::new(&robot, to(IntegratorId::dopri5, 0.5, 1e-9)).unwrap();
-    simulation.set_balance(true);
+    let mut simulation = Simulation::new(&robot, to(IntegratorId::dopri5, 0.5, 1e-9)).unwrap().with_energy_balance();
     let mut push = |_: f64, _: &[f64], _: &[f64], tau: &mut [f64]| tau[0] = 9.81 + 2.0;
     let motion = simulation.run(&[0.0], &[0.0], &mut push, &mut [stop]).unwrap();
     // 11.81 N over ½ 2 0.5² m.

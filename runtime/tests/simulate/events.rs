@@ -45,7 +45,7 @@ fn what_a_map_takes_is_booked() {
                 Ok(None)
             })));
         let settings = Settings { output, ..to(IntegratorId::dopri5, 2.0, 1e-10) };
-        let mut simulation = Simulation::new(&robot, settings).unwrap();
+        let mut simulation = Simulation::new(&robot, settings).unwrap().with_energy_balance();
         let motion = simulation.run(&[1.0], &[0.0], &mut NoTorque, &mut [floor]).unwrap();
         let start = motion.energy(0).unwrap();
         assert!(motion.events.len() > 1 && start > 1.0, "{} events, {start} J", motion.events.len());

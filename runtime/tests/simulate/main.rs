@@ -9,4 +9,5 @@ mod free_flight;
 mod orders;
 mod refused;
 mod robots;
+mod stepping;
 mod stiff;

@@ -73,7 +73,7 @@ pub(crate) fn any(integrator: IntegratorId, end: f64) -> Settings {
 
 /// A motion that nothing drives.
 pub(crate) fn free<R: Dynamics<f64>>(robot: &R, settings: &Settings, q: &[f64], v: &[f64]) -> Result<Recording, SimulateError> {
-    Simulation::new(robot, settings.clone())?.run(q, v, &mut NoTorque, &mut [])
+    Simulation::new(robot, settings.clone())?.with_energy_balance().run(q, v, &mut NoTorque, &mut [])
 }
 
 /// Largest difference of the last states of two motions of the same robot, along the manifold.

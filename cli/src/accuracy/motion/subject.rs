@@ -69,7 +69,7 @@ pub(super) fn run(subject: &Subject, id: IntegratorId, how: How) -> Option<End> 
         How::Step(h) => settings.step = Some(h),
         How::Tolerance(t) => (settings.rtol, settings.atol) = (t, t),
     }
-    let mut simulation = Simulation::new(&subject.model, settings).ok()?;
+    let mut simulation = Simulation::new(&subject.model, settings).ok()?.with_energy_balance();
     let (controller, period) = &subject.control;
     let mut control = Drive::new(&subject.model, controller, *period).ok()?;
     let clock = Instant::now();

@@ -54,7 +54,7 @@ fn drift(robot: &Model<f64>, integrator: IntegratorId, end: f64) -> f64 {
     crate::states::quaternions(robot).for_each(|(_, at)| normalise(&mut q[at..at + 4]));
     let v: Vec<f64> = (0..robot.nv).map(|_| random.uniform(-1.0, 1.0)).collect();
     let settings = Settings { integrator, end, rtol: 1e-9, atol: 1e-9, output: Output::Every(0.1), ..Settings::default() };
-    let motion = Simulation::new(robot, settings).and_then(|mut s| s.run(&q, &v, &mut NoTorque, &mut []));
+    let motion = Simulation::new(robot, settings).and_then(|s| s.with_energy_balance().run(&q, &v, &mut NoTorque, &mut []));
     let Ok(motion) = motion else { return f64::NAN };
     unbalanced(&motion)
 }
@@ -70,7 +70,7 @@ fn kept(effort: Effort) -> Vec<Row> {
     let end = if effort == Effort::Full { 100.0 } else { 10.0 };
     let run = |robot: &Model<f64>, integrator, step, q: &[f64], v: &[f64]| {
         let settings = Settings { integrator, end, step: Some(step), output: Output::Steps, ..Settings::default() };
-        Simulation::new(robot, settings).and_then(|mut s| s.run(q, v, &mut NoTorque, &mut []))
+        Simulation::new(robot, settings).and_then(|s| s.with_energy_balance().run(q, v, &mut NoTorque, &mut []))
     };
     let case = Case::new(
         NAME,

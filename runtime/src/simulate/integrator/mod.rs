@@ -84,15 +84,15 @@ pub(crate) trait Method<R: Dynamics<f64>> {
     }
 }
 
-/// The integrator of this name, on this manifold; whether its steps are fixed.
-pub(crate) fn method<R: Dynamics<f64>>(id: IntegratorId, manifold: &Manifold, fixed: bool) -> Box<dyn Method<R>> {
+/// The integrator of this name, on this manifold; whether explicit ones look for motion that is too fast for their steps.
+pub(crate) fn method<R: Dynamics<f64>>(id: IntegratorId, manifold: &Manifold, looks: bool) -> Box<dyn Method<R>> {
     let nv = manifold.nv;
     let n = 2 * nv + 2;
     match id {
-        IntegratorId::semi_implicit_euler => Box::new(semi_implicit_euler::SemiImplicitEuler::new(n)),
-        IntegratorId::rk4 => Box::new(rk4::Rk4::new(n)),
-        IntegratorId::dopri5 => Box::new(dopri5::Dopri5::new(n, fixed)),
-        IntegratorId::dop853 => Box::new(dop853::Dop853::new(n, fixed)),
+        IntegratorId::semi_implicit_euler => Box::new(semi_implicit_euler::SemiImplicitEuler::new(n, looks)),
+        IntegratorId::rk4 => Box::new(rk4::Rk4::new(n, looks)),
+        IntegratorId::dopri5 => Box::new(dopri5::Dopri5::new(n, looks)),
+        IntegratorId::dop853 => Box::new(dop853::Dop853::new(n, looks)),
         IntegratorId::rodas4 => Box::new(rodas4::Rodas4::new(manifold)),
         IntegratorId::lie_midpoint => Box::new(lie_midpoint::LieMidpoint::new(nv)),
     }

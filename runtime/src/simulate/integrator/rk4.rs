@@ -15,8 +15,8 @@ pub(crate) struct Rk4 {
 }
 
 impl Rk4 {
-    pub(super) fn new(n: usize) -> Self {
-        Self { stages: Stages::new(n, 4, true), curve: Hermite::new(n) }
+    pub(super) fn new(n: usize, looks: bool) -> Self {
+        Self { stages: Stages::new(n, 4, looks), curve: Hermite::new(n) }
     }
 }
 

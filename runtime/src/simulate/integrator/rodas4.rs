@@ -313,6 +313,10 @@ impl<R: Dynamics<f64>> Method<R> for Rodas4 {
     }
 
     fn finish(&mut self, system: &mut System<R>, control: &mut dyn Control, start: Start, end: &mut [f64]) -> Result<(), SimulateError> {
+        if !system.follows_work {
+            end[2 * self.nv..].copy_from_slice(&start.y[2 * self.nv..]);
+            return Ok(());
+        }
         let h = start.h;
         let mut y = std::mem::take(&mut self.argument);
         for (node, s) in [0.5 - OUTER, 0.5, 0.5 + OUTER].into_iter().enumerate() {

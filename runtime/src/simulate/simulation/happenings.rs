@@ -57,7 +57,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
             if matches!(outcome, Outcome::GoOn) {
                 cut = theta;
                 // So does what was found a moment before it.
-                run.cut = first + self.watch.zeros.iter().take_while(|zero| zero.theta < cut - tolerance).count();
+                self.progress.cut = first + self.watch.zeros.iter().take_while(|zero| zero.theta < cut - tolerance).count();
             }
             outcome = next;
         }
@@ -67,9 +67,10 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
     /// Records what is asked for up to where the step to t is cut: a part of it, and a time.
     fn outputs(&mut self, run: &mut Run, t: f64, (cut, stop): (f64, f64)) -> Result<(), SimulateError> {
         let (start, h) = (self.t, t - self.t);
+        let Some(times) = &mut self.progress.times else { return Ok(()) };
         let mut curve = curve!(self, t);
         loop {
-            let next = run.times.next(&self.settings);
+            let next = times.next(&self.settings);
             if next > stop + rounding(stop) {
                 return Ok(());
             }
@@ -82,7 +83,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
                 curve.point.t = next;
                 self.known.record(&mut self.system, run.control, curve.point, run.recording)?;
             }
-            run.times.advance();
+            times.advance();
             if next >= self.settings.end {
                 return Ok(());
             }
@@ -92,11 +93,11 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
     /// Runs the maps of the events that cut the step short, if there are some.
     pub(super) fn map(&mut self, run: &mut Run) -> Result<bool, SimulateError> {
         let (mut mapped, nv) = (false, self.shape.nv);
-        for hit in &run.recording.events[run.cut..] {
+        for hit in &run.recording.events[self.progress.cut..] {
             let left = (run.events[hit.event].function)(self.t, &self.system.origin, &self.y[nv..2 * nv]);
             self.watch.set_left(hit.event, left);
         }
-        for hit in run.cut..run.recording.events.len() {
+        for hit in self.progress.cut..run.recording.events.len() {
             mapped |= self.map_by(run, hit)?;
         }
         Ok(mapped)
@@ -106,12 +107,12 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         let (nv, event) = (self.shape.nv, run.recording.events[hit].event);
         let Event { action: Action::Map(map), name, .. } = &mut run.events[event] else { return Ok(false) };
         // The same event again at the same time: it would never end. Others may happen at one time, but not for ever.
-        let again = self.t - run.last_map.1 <= 2.0 * self.settings.event_tolerance.max(rounding(self.t));
-        run.chatter = if again { run.chatter + 1 } else { 0 };
-        if again && (run.last_map.0 == event || run.chatter > 100) {
+        let again = self.t - self.progress.last_map.1 <= 2.0 * self.settings.event_tolerance.max(rounding(self.t));
+        self.progress.chatter = if again { self.progress.chatter + 1 } else { 0 };
+        if again && (self.progress.last_map.0 == event || self.progress.chatter > 100) {
             return Err(SimulateError::Chattering { t: self.t, event: name.to_string() });
         }
-        run.last_map = (event, self.t);
+        self.progress.last_map = (event, self.t);
         self.point.q.copy_from_slice(&self.system.origin);
         self.v.copy_from_slice(&self.y[nv..2 * nv]);
         let before = self.known.energy(&mut self.system, &self.point.q, &self.v)?;
@@ -133,7 +134,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         for e in 0..run.events.len() {
             let here = (run.events[e].function)(self.t, &self.system.origin, &self.y[nv..2 * nv]);
             let mut value = here;
-            let fired = run.recording.events[run.cut..].iter().find(|hit| hit.event == e).map(|hit| hit.direction);
+            let fired = run.recording.events[self.progress.cut..].iter().find(|hit| hit.event == e).map(|hit| hit.direction);
             let arriving = run.events[e].arriving.filter(|_| here == 0.0);
             if fired.is_some() || here == 0.0 {
                 let step = self.point.y.as_mut_slice();

@@ -2,6 +2,7 @@
 
 mod happenings;
 mod records;
+mod stepping;
 mod stiffness;
 
 use std::f64::consts::TAU;
@@ -19,7 +20,7 @@ use crate::simulate::output::{Known, Times};
 use crate::simulate::stability::Stability;
 use crate::simulate::step_control::{Controller, Error, Norm, first_step, rounding};
 use crate::simulate::system::System;
-use crate::simulate::{Control, Counts, Ended, Event, Output, Recording, Settings, SimulateError, StateError};
+use crate::simulate::{Control, Counts, Ended, Event, Output, Recording, Settings, SimulateError, StateError, Stiffness};
 
 /// A robot and all the room that its simulation needs; a step allocates nothing.
 pub struct Simulation<'r, R: Dynamics<f64>> {
@@ -31,6 +32,9 @@ pub struct Simulation<'r, R: Dynamics<f64>> {
     stability: Stability,
     watch: Watch,
     known: Known,
+    progress: Progress,
+    /// Room that steps one by one take in place of records.
+    unrecorded: Option<Box<Recording>>,
     /// State at the start of a step and its rate, in the step's chart; state at its end.
     t: f64,
     y: Vec<f64>,
@@ -41,12 +45,21 @@ pub struct Simulation<'r, R: Dynamics<f64>> {
     spare: Vec<f64>,
 }
 
-/// How far the run has got, beside the state.
+/// What a run is given: what drives the joints, what is looked for, and where records go.
 struct Run<'a, 'e> {
     control: &'a mut dyn Control,
     events: &'a mut [Event<'e>],
     recording: &'a mut Recording,
-    times: Times,
+}
+
+/// How far a motion has got, beside the state.
+struct Progress {
+    /// When to record; `None`: never.
+    times: Option<Times>,
+    /// The most steps, rejected ones included.
+    most_steps: u64,
+    /// Whether the first step is prepared.
+    started: bool,
     controller: Option<Controller>,
     /// The step to try next, s.
     h: f64,
@@ -54,6 +67,10 @@ struct Run<'a, 'e> {
     after_sample: (bool, f64),
     /// Where the present stretch began, and its steps so far.
     stretch: (f64, u64),
+    /// When the stretch ends, s: at the next sample, kink or the end.
+    until: f64,
+    /// Of a sampled control: the time between samples, s, and the samples so far.
+    period: Option<f64>,
     samples: u64,
     /// The first of the recorded events that cut the last step short.
     cut: usize,
@@ -63,11 +80,25 @@ struct Run<'a, 'e> {
     held: Held,
 }
 
-impl Run<'_, '_> {
-    /// The next kink or jump of the torques after t, s: where they are held from sample to sample there is none between. What a controller calls one and is not after t is none.
-    fn next_kink(&self, t: f64) -> f64 {
-        let kink = if self.control.period().is_some() { f64::INFINITY } else { self.control.next_kink(t) };
-        if kink > t { kink } else { f64::INFINITY }
+impl Progress {
+    /// A motion begins at this time, s.
+    fn begin(t: f64, controller: Option<Controller>, times: Option<Times>, most_steps: u64) -> Self {
+        Self {
+            times,
+            most_steps,
+            started: false,
+            controller,
+            h: 0.0,
+            after_sample: (false, f64::INFINITY),
+            stretch: (t, 0),
+            until: t,
+            period: None,
+            samples: 0,
+            cut: 0,
+            chatter: 0,
+            last_map: (0, f64::NEG_INFINITY),
+            held: Held::default(),
+        }
     }
 }
 
@@ -93,11 +124,13 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         let (n, nv) = (system.len(), shape.nv);
         let mut simulation = Self {
             shape,
-            method: method(settings.integrator, &system.manifold, settings.step.is_some()),
+            method: method(settings.integrator, &system.manifold, settings.step.is_some() && settings.stiffness != Stiffness::Ignore),
             norm: Norm::new(&settings, nv),
             stability: Stability::new(n),
             watch: Watch::default(),
             known: Known::of(&mut system),
+            progress: Progress::begin(settings.start, None, None, 0),
+            unrecorded: None,
             t: settings.start,
             y: vec![0.0; n],
             f: vec![0.0; n],
@@ -109,6 +142,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             settings,
         };
         simulation.try_functions()?;
+        simulation.begin_at_rest()?;
         Ok(simulation)
     }
 
@@ -138,9 +172,13 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         Err(SimulateError::Settings(wrong))
     }
 
-    /// Requests [`Recording::balance`]: work, losses and energies compared after every step, for two more functions a step. Off unless requested.
-    pub fn set_balance(&mut self, requested: bool) {
-        self.known.balance = requested;
+    /// Requests [`Recording::work`], [`Recording::dissipated`] and [`Recording::balance`]. They need the power of the motors and of the effects at every evaluation of the
+    /// dynamics, and both energies after every step. Without this request a step costs little more than its dynamics.
+    #[must_use]
+    pub fn with_energy_balance(mut self) -> Self {
+        self.system.follows_work = true;
+        self.known.balance = true;
+        self
     }
 
     /// Room for the records of one motion.
@@ -167,31 +205,25 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         watch: &mut dyn FnMut(f64, &Counts) -> bool,
     ) -> Result<(), SimulateError> {
         self.known.begin(&self.system, recording);
-        let expected = self.shape.nv;
-        let torques = control.count().filter(|n| *n != expected).map(|found| StateError::Length { vector: "tau", found, expected });
         let state = self.system.manifold.wrong_state(self.system.robot, q, v);
-        let period = control.period().and_then(|period| Some(wrong_period(period, self.settings.wrong_period(period)?)));
-        StateError::none(state.chain(events.iter().flat_map(|event| event.wrong(self.shape))).chain(torques).chain(period))?;
+        let events_wrong = events.iter().flat_map(|event| event.wrong(self.shape));
+        StateError::none(state.chain(events_wrong).chain(self.wrong_control(control)))?;
         self.begin(q, v)?;
-        let mut run = Run {
-            control,
-            events,
-            recording,
-            times: Times::begin(),
-            controller: if self.settings.step.is_none() { self.method.controller() } else { None },
-            h: 0.0,
-            after_sample: (false, f64::INFINITY),
-            stretch: (self.t, 0),
-            samples: 0,
-            cut: 0,
-            chatter: 0,
-            last_map: (0, f64::NEG_INFINITY),
-            held: Held::default(),
-        };
+        self.progress.times = Some(Times::begin());
+        self.progress.most_steps = self.settings.max_steps;
+        let mut run = Run { control, events, recording };
         let result = self.steps(&mut run, watch);
         run.recording.counts = self.system.counts;
         run.recording.ended = result.map_err(|error| self.blamed(error))?;
         Ok(())
+    }
+
+    /// What is wrong with a control for this robot and these settings.
+    fn wrong_control(&self, control: &dyn Control) -> impl Iterator<Item = StateError> {
+        let expected = self.shape.nv;
+        let torques = control.count().filter(|n| *n != expected).map(|found| StateError::Length { vector: "tau", found, expected });
+        let period = control.period().and_then(|period| Some(wrong_period(period, self.settings.wrong_period(period)?)));
+        torques.into_iter().chain(period)
     }
 
     /// Where a torque was no number, that is why nothing else is; where there is no mass to move, that is why there are no accelerations.
@@ -208,9 +240,20 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         }
     }
 
+    /// All coordinates 0, quaternions of no turn, and no velocity.
+    fn begin_at_rest(&mut self) -> Result<(), SimulateError> {
+        let (mut q, v) = (vec![0.0; self.shape.nq], vec![0.0; self.shape.nv]);
+        for free in &self.system.manifold.free {
+            q[free.quaternion().end - 1] = 1.0;
+        }
+        self.begin(&q, &v)
+    }
+
     fn begin(&mut self, q: &[f64], v: &[f64]) -> Result<(), SimulateError> {
         self.system.origin.copy_from_slice(q);
         self.system.counts = Counts::default();
+        let controller = if self.settings.step.is_none() { self.method.controller() } else { None };
+        self.progress = Progress::begin(self.settings.start, controller, None, u64::MAX);
         (self.system.holds, self.system.no_torque) = (false, None);
         self.known.from_events = 0.0;
         self.method.reset();
@@ -229,36 +272,29 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         Ok(self.system.normalise_origin(&self.y[..nv])?)
     }
 
-    fn steps(&mut self, run: &mut Run, watch: &mut dyn FnMut(f64, &Counts) -> bool) -> Result<Ended, SimulateError> {
-        let nv = self.shape.nv;
+    /// Everything that the first step needs.
+    fn prepare(&mut self, run: &mut Run) -> Result<(), SimulateError> {
+        self.progress.period = run.control.period();
         self.sample(run);
-        self.system.kink = run.next_kink(self.t);
-        self.record_here(run)?;
+        self.find_stretch_end(run);
+        if self.progress.times.is_some() {
+            self.record_here(run)?;
+        }
         self.follow_balance(run)?;
         self.watch.begin(run.events.len());
         self.take_sides(run)?;
         if self.method.wants_rate() {
             self.rate_here(run)?;
         }
-        run.h = self.first_step(run)?;
+        self.progress.h = self.first_step(run)?;
+        self.progress.started = true;
+        Ok(())
+    }
+
+    fn steps(&mut self, run: &mut Run, watch: &mut dyn FnMut(f64, &Counts) -> bool) -> Result<Ended, SimulateError> {
+        self.prepare(run)?;
         loop {
-            if self.system.counts.steps + self.system.counts.rejected >= self.settings.max_steps {
-                return Err(SimulateError::TooManySteps { t: self.t, steps: self.settings.max_steps });
-            }
-            match run.controller {
-                Some(_) => self.norm.begin(&self.system, &self.y),
-                // The implicit ones know better themselves.
-                None if !self.settings.integrator.row().implicit => self.check_turn(run)?,
-                None => {}
-            }
-            self.check_stability(run)?;
-            let t = self.step(run)?;
-            let (stop, outcome) = self.look(run, t)?;
-            let h = stop - self.t;
-            self.count_step(h);
-            self.check_stiffness(run, h)?;
-            let mapped = self.advance(run, stop, matches!(outcome, Outcome::GoOn))?;
-            self.follow_balance(run)?;
+            let (outcome, mapped) = self.one_step(run)?;
             let goes_on = watch(self.t, &self.system.counts);
             let ended = self.ended(&outcome, goes_on);
             // The end that was asked for is recorded if it was asked for.
@@ -270,8 +306,34 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             if let Some(ended) = ended {
                 return Ok(ended);
             }
-            debug_assert!(self.y[..nv].iter().all(|u| *u == 0.0));
         }
+    }
+
+    /// One step, up to its end or to the first event that cuts it short. What came of it, and whether an event has mapped the state.
+    fn one_step(&mut self, run: &mut Run) -> Result<(Outcome, bool), SimulateError> {
+        self.check_count()?;
+        match self.progress.controller {
+            Some(_) => self.norm.begin(&self.system, &self.y),
+            // The implicit ones know better themselves.
+            None if !self.settings.integrator.row().implicit => self.check_turn()?,
+            None => {}
+        }
+        self.check_stability(run)?;
+        let t = self.make_step(run)?;
+        let (stop, outcome) = self.look(run, t)?;
+        let h = stop - self.t;
+        self.count_step(h);
+        self.check_stiffness(h)?;
+        let mapped = self.advance(run, stop, matches!(outcome, Outcome::GoOn))?;
+        self.follow_balance(run)?;
+        debug_assert!(self.y[..self.shape.nv].iter().all(|u| *u == 0.0));
+        Ok((outcome, mapped))
+    }
+
+    fn check_count(&self) -> Result<(), SimulateError> {
+        let Counts { steps, rejected, .. } = self.system.counts;
+        let steps = if steps + rejected >= self.progress.most_steps { self.progress.most_steps } else { return Ok(()) };
+        Err(SimulateError::TooManySteps { t: self.t, steps })
     }
 
     /// Whether a step with this outcome was the last, which who watches has let go on or not.
@@ -286,23 +348,26 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
 
     /// The state is at the end of a stretch where a controller is sampled.
     fn sample(&mut self, run: &mut Run) {
-        if run.control.period().is_none() {
+        if self.progress.period.is_none() {
             return;
         }
         let nv = self.shape.nv;
         self.system.held.fill(0.0);
         run.control.torques(self.t, &self.system.origin, &self.y[nv..2 * nv], &mut self.system.held);
         self.system.holds = true;
-        run.samples += 1;
-        run.after_sample.0 = true;
+        self.progress.samples += 1;
+        self.progress.after_sample.0 = true;
     }
 
-    /// When the next sample, kink or the end is, s.
-    fn stretch_end(&self, run: &Run) -> f64 {
-        let sample = run.control.period().map_or(f64::INFINITY, |p| self.settings.start + run.samples as f64 * p);
-        let next = sample.min(self.system.kink).min(self.settings.end);
+    /// Finds the next sample or kink, or the end. Where torques are held from sample to sample there is no kink between; a kink that is not after t is none.
+    fn find_stretch_end(&mut self, run: &Run) {
+        let sample = self.progress.period.map(|period| self.settings.start + self.progress.samples as f64 * period);
+        let kink = if sample.is_some() { f64::INFINITY } else { run.control.next_kink(self.t) };
+        self.system.kink = if kink > self.t { kink } else { f64::INFINITY };
+        let next = sample.unwrap_or(f64::INFINITY).min(self.system.kink).min(self.settings.end);
         // A stretch shorter than rounding is none.
-        if next - self.t <= rounding(self.t) { next.max(self.t + rounding(self.t)).min(self.settings.end) } else { next }
+        let least = self.t + rounding(self.t);
+        self.progress.until = if next <= least { next.max(least).min(self.settings.end) } else { next };
     }
 
     fn rate_here(&mut self, run: &mut Run) -> Result<(), SimulateError> {
@@ -326,18 +391,18 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
     }
 
     /// Makes a step that is accepted, to `end`; gives the time where it ends, s.
-    fn step(&mut self, run: &mut Run) -> Result<f64, SimulateError> {
-        let until = self.stretch_end(run);
-        let Some(mut controller) = run.controller else { return self.fixed_step(run, until) };
+    fn make_step(&mut self, run: &mut Run) -> Result<f64, SimulateError> {
+        let until = self.progress.until;
+        let Some(mut controller) = self.progress.controller else { return self.fixed_step(run, until) };
         // Torques jump at samples, and a step just after a jump is shorter than one before it: each kind of step has its own length.
-        let after_sample = std::mem::take(&mut run.after_sample.0);
+        let after_sample = std::mem::take(&mut self.progress.after_sample.0);
         if after_sample {
-            run.h = run.h.min(run.after_sample.1);
+            self.progress.h = self.progress.h.min(self.progress.after_sample.1);
         }
         loop {
             let left = until - self.t;
             let least = self.settings.min_step.max(rounding(self.t));
-            let free = run.h.min(self.settings.max_step).max(least);
+            let free = self.progress.h.min(self.settings.max_step).max(least);
             // The last steps of a stretch are made alike, where halves are not too short.
             let h = if free >= 0.999 * left {
                 left
@@ -354,21 +419,19 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             };
             if let Some(factor) = controller.accept(error.size) {
                 self.method.finish(&mut self.system, run.control, start, &mut self.end)?;
-                run.h = if h < free { free.max(h * factor) } else { h * factor };
-                run.controller = Some(controller);
+                self.progress.h = if h < free { free.max(h * factor) } else { h * factor };
+                self.progress.controller = Some(controller);
                 if after_sample {
-                    run.after_sample.1 = run.h;
+                    self.progress.after_sample.1 = self.progress.h;
                 }
                 return Ok(if h == left { until } else { self.t + h });
             }
             self.system.counts.rejected += 1;
-            run.h = h * controller.again(error.size);
-            if run.h < least {
-                return Err(self.too_small(error.size, run.h, error.index));
+            self.progress.h = h * controller.again(error.size);
+            if self.progress.h < least {
+                return Err(self.too_small(error.size, self.progress.h, error.index));
             }
-            if self.system.counts.steps + self.system.counts.rejected >= self.settings.max_steps {
-                return Err(SimulateError::TooManySteps { t: self.t, steps: self.settings.max_steps });
-            }
+            self.check_count()?;
         }
     }
 
@@ -390,8 +453,8 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
 
     /// The next of the equal steps of a stretch.
     fn fixed_step(&mut self, run: &mut Run, until: f64) -> Result<f64, SimulateError> {
-        let (begin, made) = run.stretch;
-        let h = self.settings.step.unwrap_or(run.h);
+        let (begin, made) = self.progress.stretch;
+        let h = self.settings.step.unwrap_or(self.progress.h);
         let next = begin + (made + 1) as f64 * h;
         let t = if next < until - 1e-9 * h { next } else { until };
         let h = t - self.t;
@@ -399,7 +462,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         self.method.step(&mut self.system, run.control, start, &mut self.end, &self.norm)?;
         self.method.finish(&mut self.system, run.control, start, &mut self.end)?;
         let bad = self.not_finite();
-        let explicit = !self.settings.integrator.row().implicit && self.system.counts.stiff_at.is_none();
+        let explicit = self.looks_for_stiffness() && !self.settings.integrator.row().implicit;
         if explicit && (bad.is_some() || self.stability.suspects(self.system.counts.steps, h * self.method.fastest().map_or(0.0, |f| f.0)))
         {
             self.check_suspect(run)?;
@@ -408,13 +471,13 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             let v = &self.y[self.shape.nv..2 * self.shape.nv];
             return Err(self.system.turns_too_far((self.t, h), v, TAU).unwrap_or(bad));
         }
-        run.stretch.1 += 1;
+        self.progress.stretch.1 += 1;
         Ok(t)
     }
 
     /// No step may turn a joint by as much as a whole turn, which charts cannot tell from none.
-    fn check_turn(&self, run: &Run) -> Result<(), SimulateError> {
-        let (nv, h) = (self.shape.nv, self.settings.step.unwrap_or(run.h).min(self.stretch_end(run) - self.t));
+    fn check_turn(&self) -> Result<(), SimulateError> {
+        let (nv, h) = (self.shape.nv, self.settings.step.unwrap_or(self.progress.h).min(self.progress.until - self.t));
         self.system.turns_too_far((self.t, h), &self.y[nv..2 * nv], TAU).map_or(Ok(()), Err)
     }
 
@@ -431,20 +494,19 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
     /// The end of the step becomes the state. Whether a map has changed it then.
     fn advance(&mut self, run: &mut Run, t: f64, whole: bool) -> Result<bool, SimulateError> {
         let nv = self.shape.nv;
-        let until = self.stretch_end(run);
+        let until = self.progress.until;
         self.system.move_origin(&self.end[..nv])?;
         self.y.copy_from_slice(&self.end);
         self.y[..nv].fill(0.0);
         self.t = t;
         self.system.no_torque = None;
-        self.system.kink = run.next_kink(t);
-        let sampled = run.control.period().is_some() && t >= until && until < self.settings.end;
-        if sampled {
+        if self.progress.period.is_some() && t >= until && until < self.settings.end {
             self.sample(run);
         }
+        self.find_stretch_end(run);
         let mapped = if whole { false } else { self.map(run)? };
         if t >= until || !whole {
-            run.stretch = (t, 0);
+            self.progress.stretch = (t, 0);
         }
         match self.method.last_rate() {
             _ if !self.method.wants_rate() => {}

@@ -10,18 +10,23 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
     pub(super) fn check_stability(&mut self, run: &mut Run) -> Result<(), SimulateError> {
         let (nv, counts) = (self.shape.nv, &self.system.counts);
         let Some(h) = self.settings.step.filter(|_| !self.settings.integrator.row().implicit) else { return Ok(()) };
-        if counts.stiff_at.is_some() || !self.stability.due(counts.steps, &self.y[nv..2 * nv]) {
+        if !self.looks_for_stiffness() || !self.stability.due(counts.steps, &self.y[nv..2 * nv]) {
             return Ok(());
         }
-        let h = self.longest_step(run, h);
+        let h = self.longest_step(h);
         let here = (self.t, &self.y[..], &self.f[..]);
         let found = self.stability.exceeded(&mut self.system, run.control, &*self.method, here, h)?;
         self.refuse(h, found)
     }
 
+    /// Whether a step that is not stable is still news, and not to be ignored.
+    pub(super) fn looks_for_stiffness(&self) -> bool {
+        self.settings.stiffness != Stiffness::Ignore && self.system.counts.stiff_at.is_none()
+    }
+
     /// The same where the last step saw something fast, on its way.
     pub(super) fn check_suspect(&mut self, run: &mut Run) -> Result<(), SimulateError> {
-        let Some(h) = self.settings.step.map(|h| self.longest_step(run, h)) else { return Ok(()) };
+        let Some(h) = self.settings.step.map(|h| self.longest_step(h)) else { return Ok(()) };
         for place in 0..2 {
             let Some((rate, suspects)) = self.method.fastest() else { return Ok(()) };
             let suspect = suspects[place];
@@ -37,8 +42,8 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
     }
 
     /// A stretch of time that is shorter than the steps that are asked for is one step.
-    fn longest_step(&self, run: &Run, asked: f64) -> f64 {
-        asked.min(self.stretch_end(run) - run.stretch.0)
+    fn longest_step(&self, asked: f64) -> f64 {
+        asked.min(self.progress.until - self.progress.stretch.0)
     }
 
     fn refuse(&mut self, h: f64, found: Option<(f64, f64)>) -> Result<(), SimulateError> {
@@ -56,20 +61,21 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
     }
 
     /// Hairer & Wanner 1996, §IV.2: fifteen steps held back by stability, with no six between that are not; looked for every thousand steps.
-    pub(super) fn check_stiffness(&mut self, run: &mut Run, h: f64) -> Result<(), SimulateError> {
-        let due = self.system.counts.steps.is_multiple_of(1000) || run.held.steps > 0;
-        if run.controller.is_none() || !due {
+    pub(super) fn check_stiffness(&mut self, h: f64) -> Result<(), SimulateError> {
+        let due =
+            self.settings.stiffness != Stiffness::Ignore && (self.system.counts.steps.is_multiple_of(1000) || self.progress.held.steps > 0);
+        if self.progress.controller.is_none() || !due {
             return Ok(());
         }
         let Some((found, most)) = self.method.stiffness(h, &self.end) else { return Ok(()) };
-        if run.held.steps == 0 {
-            run.held.since = (self.t, self.tries() - 1);
+        if self.progress.held.steps == 0 {
+            self.progress.held.since = (self.t, self.tries() - 1);
         }
-        run.held.count(found > most);
-        if run.held.steps < 15 {
+        self.progress.held.count(found > most);
+        if self.progress.held.steps < 15 {
             return Ok(());
         }
-        let (since, before) = std::mem::take(&mut run.held).since;
+        let (since, before) = std::mem::take(&mut self.progress.held).since;
         let t = self.t + h;
         let step = (t - since) / (self.tries() - before) as f64;
         let left = (self.settings.end - t) / step;
