@@ -90,6 +90,11 @@ impl Progress {
         self.0.set_message(what);
     }
 
+    /// A warning above the bar.
+    pub(crate) fn warn(&self, text: &str) {
+        self.0.suspend(|| warn(text));
+    }
+
     /// One more step is done.
     pub(crate) fn step(&self) {
         self.0.inc(1);

@@ -33,6 +33,17 @@ pub enum Fault {
     NoSimulation,
     /// A setting that cannot be used.
     Setting(SettingError),
+    /// A smoothing speed of friction or contact that the tolerance of velocities does not resolve.
+    Speed {
+        /// Its key in the scene.
+        key: String,
+        /// The speed, rad/s or m/s.
+        found: f64,
+        /// The least that the tolerance resolves, rad/s or m/s.
+        expected: f64,
+        /// The absolute tolerance, rad/s or m/s.
+        atol: f64,
+    },
     /// The robot has not as many coordinates, or degrees of freedom, as that of the scene.
     Shape {
         /// `coordinates` or `degrees of freedom`.
@@ -175,6 +186,10 @@ impl fmt::Display for Fault {
             Self::Scene(error) => f.write_str(&error.message()),
             Self::NoSimulation => f.write_str("simulation: found nothing, expected [simulation] with `end`, s"),
             Self::Setting(error) => error.fmt(f),
+            Self::Speed { key, found, expected, atol } => write!(
+                f,
+                "{key}: found {found:e}, expected at least {expected:e}, ten times simulation.atol = {atol:e}: a larger `speed`, or a smaller `atol`"
+            ),
             Self::Shape { what, found, expected } => {
                 write!(f, "robot: found {found} {what}, expected {expected}: it is another robot than the scene's")
             }

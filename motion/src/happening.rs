@@ -22,8 +22,8 @@ pub struct SceneEvent {
     pub kind: EventKind,
     /// Whose: a joint of one degree of freedom, a degree of freedom as `base[3]`, or a link.
     pub on: String,
-    /// Whether what it is about begins: a limit is reached, the ground touched, the joint sticks, the ball is hit; or ends: the joint comes back, the link leaves the ground, the
-    /// joint slips. The ball's turn comes once: not hit is nothing that moved towards it.
+    /// Whether what it is about begins: a limit is reached, the ground touched, the joint stops sliding, the ball is hit; or ends: the joint comes back, the link leaves the ground, the
+    /// joint starts to slide ([`SLIDING`](articulated::simulate::SLIDING)). The ball's turn comes once: not hit is nothing that moved towards it.
     pub begins: bool,
 }
 
@@ -74,8 +74,8 @@ impl fmt::Display for SceneEvent {
             (EventKind::UpperLimit, false) => " comes back from its upper limit",
             (EventKind::Contact { .. }, true) => " touches the ground",
             (EventKind::Contact { .. }, false) => " leaves the ground",
-            (EventKind::StickSlip, true) => " sticks",
-            (EventKind::StickSlip, false) => " slips",
+            (EventKind::StickSlip, true) => " stops sliding",
+            (EventKind::StickSlip, false) => " starts to slide",
             (EventKind::Ball, true) => " hits the ball",
             (EventKind::Ball, false) => " is not moving towards the ball",
         })

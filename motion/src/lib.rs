@@ -85,6 +85,7 @@
 
 mod ball;
 mod begin;
+mod creep;
 mod error;
 mod freedom;
 mod happening;
@@ -98,6 +99,7 @@ mod watch;
 pub use articulated::simulate::{Controller, Counts, Drive, Recording, Settings, SimulateError};
 pub use articulated_scene::Scene;
 pub use begin::{Begin, Beyond, Sunk};
+pub use creep::Creep;
 pub use error::{Fault, MotionError, MotionErrors};
 pub use happening::{EventKind, Happening, SceneEvent};
 pub use motion::{Ending, Motion, Outcome};

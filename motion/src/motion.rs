@@ -7,6 +7,7 @@ use articulated::Dynamics;
 use articulated::simulate::{Control, Counts, Drive, Ended, Recording, Settings, SimulateError, Simulation};
 
 use crate::begin::Begin;
+use crate::creep::Creep;
 use crate::error::{Fault, MotionErrors};
 use crate::happening::Happening;
 use crate::stage::Stage;
@@ -27,6 +28,8 @@ pub struct Outcome {
     pub recording: Recording,
     /// What happened on the way, in the order of time: one for each of [`Recording::events`].
     pub happenings: Vec<Happening>,
+    /// What smoothed friction did not hold, and how far it crept ([`Stage::creep`]).
+    pub creep: Vec<Creep>,
     /// How it ended.
     pub ending: Ending,
     /// The time that was reached, s.
@@ -116,6 +119,19 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
         self.simulation.settings()
     }
 
+    /// Makes the first step from the start and throws it away. Errors: a state, or a control, that does not fit the robot. What keeps the robot from moving is the result,
+    /// as [`Outcome::error`] would be of a run.
+    pub fn first_step(&mut self, begin: &Begin) -> Result<Option<SimulateError>, MotionErrors> {
+        let refused = |e: SimulateError| MotionErrors::refused(&self.stage.scene.file, e);
+        let mut drive = Drive::new(self.robot, &begin.controller, self.stage.scene.control.period).map_err(refused)?;
+        self.simulation.start(&begin.q, &begin.v).map_err(refused)?;
+        match self.simulation.step(&mut drive) {
+            Ok(_) => Ok(None),
+            Err(e @ (SimulateError::Settings(_) | SimulateError::State(_) | SimulateError::Function(_))) => Err(refused(e)),
+            Err(e) => Ok(Some(e)),
+        }
+    }
+
     /// From the start to the end, to the blow that ends it, or to an error, which is part of what came of it. `follow` is told the time, s, and the counts after
     /// each step, and may say false to end it. Errors: a state, or a control, that does not fit the robot: nothing was done.
     pub fn run(&mut self, begin: &Begin, follow: &mut dyn FnMut(f64, &Counts) -> bool) -> Result<Outcome, MotionErrors> {
@@ -154,7 +170,8 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
             _ => recording.t.last().map_or(reached, |t| t.max(reached)),
         };
         let happenings = recording.events.iter().map(|hit| self.watch.happening(hit)).collect();
-        Ok(Outcome { recording, happenings, ending, reached, ball: self.watch.ball_energy(), error, wall })
+        let creep = self.stage.creep(&recording);
+        Ok(Outcome { recording, happenings, creep, ending, reached, ball: self.watch.ball_energy(), error, wall })
     }
 }
 

@@ -1,10 +1,14 @@
 //! How a scene is simulated, as it says itself.
 
 use articulated::simulate::Settings;
+use articulated_core::effect::{Applied, EffectId};
 use articulated_scene::{Kind, SceneError, When};
 
 use crate::error::{Fault, MotionErrors};
-use crate::stage::Stage;
+use crate::stage::{Stage, field};
+
+/// A smoothing speed is at least this many times the absolute tolerance of velocities.
+const RESOLVED: f64 = 10.0;
 
 impl Stage {
     /// The settings that the scene says. Errors: a scene without `[simulation]`.
@@ -13,15 +17,32 @@ impl Stage {
         Ok(simulation.settings.clone())
     }
 
-    /// Whether the scene can be simulated so. Errors: all settings that its robot cannot be simulated by, or else a ball that is hit while nothing moves.
+    /// Whether the scene can be simulated so. Errors: all settings that its robot cannot be simulated by, or else a ball that is hit while nothing moves and smoothing speeds
+    /// that the tolerances do not resolve.
     pub fn check(&self, settings: &Settings) -> Result<(), MotionErrors> {
         MotionErrors::none(&self.scene.file, self.faults_of(settings))
     }
 
     pub(crate) fn faults_of(&self, settings: &Settings) -> Vec<Fault> {
         let problems: Vec<Fault> = settings.problems(self.model.shape()).into_iter().map(Fault::Setting).collect();
-        // Of times that are none nothing is to be said.
-        if problems.is_empty() { self.in_time(settings).into_iter().collect() } else { problems }
+        if !problems.is_empty() {
+            // Of times that are none nothing is to be said.
+            return problems;
+        }
+        self.in_time(settings).into_iter().chain(self.unresolved_speeds(settings)).collect()
+    }
+
+    /// Smoothing speeds of friction and contact that the tolerance of velocities does not resolve: steps by tolerance would never end.
+    fn unresolved_speeds(&self, settings: &Settings) -> Vec<Fault> {
+        let expected = RESOLVED * settings.atol;
+        let smoothed = self.effects.iter().filter(|applied| matches!(applied.effect, EffectId::friction | EffectId::contact));
+        let speeds = smoothed.filter_map(|applied| Some((applied, *field(applied, "speed").first()?)));
+        let unresolved = speeds.filter(|(_, speed)| settings.step.is_none() && *speed < expected);
+        let fault = |(applied, found): (&Applied, f64)| {
+            let key = format!("effects.{}.{}.speed", applied.effect.row().name, applied.on);
+            Fault::Speed { key, found, expected, atol: settings.atol }
+        };
+        unresolved.map(fault).collect()
     }
 
     /// Whether the ball is hit while the robot moves.

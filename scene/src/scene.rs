@@ -2,6 +2,8 @@
 
 use articulated_core::Plain;
 use articulated_core::description::Base;
+use articulated_core::effect::EffectId;
+use articulated_core::integrator::IntegratorId;
 use articulated_core::lanes::Real;
 use articulated_core::level::Level;
 use articulated_core::spatial::Reference;
@@ -150,6 +152,7 @@ impl Scene {
                 None => value.unknown_key(&mut log, own.iter().copied().chain(rows.iter().map(|row| row.name))),
             }
         }
+        self.choose_integrator();
         let wrong = log.result(()).err().map(|all| all.errors).unwrap_or_default();
         (self, wrong)
     }
@@ -159,9 +162,23 @@ impl Scene {
         !(self.effects.is_empty() && self.shafts.is_empty())
     }
 
+    /// The integrator of a motion that names none: `rodas4` where smoothed friction or contact makes it stiff, else `dopri5`.
+    pub fn default_integrator(&self) -> IntegratorId {
+        let stiff = |asked: &Asked| matches!(asked.effect, EffectId::friction | EffectId::contact) && asked.says.is_some();
+        if self.effects.iter().any(stiff) { IntegratorId::rodas4 } else { IntegratorId::dopri5 }
+    }
+
+    fn choose_integrator(&mut self) {
+        let integrator = self.default_integrator();
+        if let Some(simulation) = self.simulation.as_mut().filter(|simulation| !simulation.names_integrator) {
+            simulation.settings.integrator = integrator;
+        }
+    }
+
     fn fill(&mut self, root: &Node, log: &mut Log) {
         let spot = Spot::root(root);
         spot.read(KEYS, self, log);
+        self.choose_integrator();
         if let (Some(robot), Some(_)) = (spot.get("robot"), spot.get("urdf")) {
             robot.clash(log, "robot and urdf", "one of them");
         }

@@ -18,6 +18,8 @@ pub struct Simulation {
     pub settings: Settings,
     /// What is looked for on the way.
     pub events: Vec<Watched>,
+    /// Whether the scene names its integrator. [`Scene::default_integrator`](crate::Scene::default_integrator) is taken otherwise.
+    pub names_integrator: bool,
 }
 
 /// What is looked for on the way.
@@ -62,9 +64,12 @@ pub(crate) const KEYS: &[Row<Simulation>] = &[
         name: "integrator",
         required: false,
         value: "`\"semi_implicit_euler\"`, `\"rk4\"`, `\"dopri5\"`, `\"dop853\"`, `\"rodas4\"` or `\"lie_midpoint\"`",
-        default: "`\"dopri5\"`",
+        default: "`\"rodas4\"` with an effect `friction` or `contact`, else `\"dopri5\"`",
         what: "the integrator",
-        read: |x, s, log| set(&mut x.settings.integrator, integrator(s, log)),
+        read: |x, s, log| {
+            x.names_integrator = true;
+            set(&mut x.settings.integrator, integrator(s, log));
+        },
     },
     Row {
         name: "step",

@@ -15,6 +15,7 @@ pub(crate) mod stage;
 mod straight;
 mod summary;
 mod text;
+mod watch;
 
 use std::path::Path;
 

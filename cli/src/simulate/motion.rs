@@ -5,11 +5,12 @@ use std::time::Duration;
 use articulated::simulate::{Balance, Counts, IntegratorId, Recording as Run, Settings};
 use articulated::{Dynamics, FunctionId};
 use articulated_codegen::Generated;
-use articulated_motion::{Begin, Ending, Happening as Happened, Outcome};
+use articulated_motion::{Begin, Creep, Ending, Happening as Happened, Outcome};
 use articulated_scene::beyond_sense;
 
 use super::recording::{Happening, Recording};
 use super::stage::Stage;
+use super::watch::Watch;
 use crate::console::{self, Progress};
 use crate::failure::Failure;
 use crate::robot::has_room;
@@ -20,6 +21,8 @@ pub(super) struct Motion {
     pub(super) counts: Counts,
     /// Over all steps.
     pub(super) balance: Balance,
+    /// What smoothed friction did not hold.
+    pub(super) creep: Vec<Creep>,
     /// The time that was reached, s.
     pub(super) reached: f64,
     pub(super) ending: Ending,
@@ -48,10 +51,16 @@ pub(crate) fn begin(stage: &Stage) -> Result<Begin, Failure> {
     Ok(begin)
 }
 
-/// What is odd about a scene's motion. Errors: all that it would not begin for.
+/// What is odd about a scene's motion. Errors: all that it would not begin for, or else what its first step ends with.
 pub(crate) fn look_over(scene: &str) -> Result<Vec<String>, Failure> {
     let stage = Stage::open(scene)?;
     let (begin, without) = Failure::both(stage.begin().map_err(Failure::from), looked_for(&stage))?;
+    if stage.scene.simulation.is_some() {
+        let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings()?)?;
+        if let Some(error) = motion.first_step(&begin)? {
+            return Err(Failure::input([format!("{}: the motion ends with its first step: {error}", stage.scene.file)]));
+        }
+    }
     Ok(odd(&stage, &begin).into_iter().chain(without).collect())
 }
 
@@ -83,20 +92,16 @@ pub(super) fn run<R: Dynamics<f64>, S: AsRef<str>>(
     let mut motion = stage.motion(robot, frames, settings.clone())?;
     let without: Vec<String> = motion.without().iter().map(ToString::to_string).collect();
     without.iter().for_each(|line| console::warn(line));
-    let (length, mut looked) = (settings.end - settings.start, 0_u64);
+    let mut watch = Watch::new(stage, settings, progress);
     let outcome = motion.run(begin, &mut |t, counts| {
-        // The bar is for people: often enough, and no burden.
-        if counts.steps >= looked + 256 {
-            looked = counts.steps;
-            progress.at((t - settings.start) / length);
-        }
+        watch.look(t, counts);
         true
     })?;
-    let Outcome { recording, happenings, ending, reached, ball, error, wall } = outcome;
+    let Outcome { recording, happenings, creep, ending, reached, ball, error, wall } = outcome;
     let (counts, balance) = (recording.counts, recording.balance.unwrap_or_default());
     let error = error.map(|e| e.to_string());
     let warnings = odd(stage, begin).into_iter().chain(without).collect();
-    Ok(Motion { recording: told(stage, recording, happenings), counts, balance, reached, ending, wall, ball, error, warnings })
+    Ok(Motion { recording: told(stage, recording, happenings), counts, balance, creep, reached, ending, wall, ball, error, warnings })
 }
 
 /// The library's recording with names.

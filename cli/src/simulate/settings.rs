@@ -13,7 +13,8 @@ pub(super) fn of(stage: &Stage, arguments: &SimulateArguments) -> Result<Setting
     if scene.is_none() && arguments.end.is_none() {
         return Err(Failure::input([format!("{file}: simulation: found nothing, expected [simulation] with `end`, s, or --end here")]));
     }
-    let mut settings = scene.map(|s| s.settings.clone()).unwrap_or_default();
+    let integrator = stage.scene.default_integrator();
+    let mut settings = scene.map_or_else(|| Settings { integrator, ..Settings::default() }, |s| s.settings.clone());
     let a = arguments;
     settings.end = a.end.unwrap_or(settings.end);
     settings.rtol = a.rtol.unwrap_or(settings.rtol);

@@ -1,6 +1,8 @@
 //! What there is to say about a motion, as data.
 
+use articulated::Dynamics;
 use articulated::simulate::{Balance, Counts, Settings};
+use articulated_motion::Creep;
 use serde::Serialize;
 
 use super::motion::Motion;
@@ -34,6 +36,8 @@ pub(super) struct Summary {
     pub(super) energy: Energy,
     pub(super) momentum: Momentum,
     pub(super) counts: Done,
+    /// What smoothed friction did not hold: of contacts and of joints the one that crept furthest.
+    pub(super) creep: Vec<Crept>,
     pub(super) events: Vec<Happening>,
     /// Whether the ball of the scene's impact was reached and hit; `None` where there is none.
     pub(super) ball_reached: Option<bool>,
@@ -58,6 +62,7 @@ const UNITS: Units = Units(&[
     ("momentum.end", "as at the start"),
     ("momentum.largest_change_angular", "kg·m²/s"),
     ("momentum.largest_change_linear", "kg·m/s"),
+    ("creep[].way", "m of a contact; rad or m of a joint"),
     ("events[].time", "s"),
 ]);
 
@@ -104,6 +109,24 @@ pub(super) struct Momentum {
     pub(super) largest_change_linear: f64,
 }
 
+/// A contact or a joint that crept while smoothed friction should have held it.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Crept {
+    /// `contact` or `friction`.
+    pub(super) effect: &'static str,
+    /// The link or the joint.
+    pub(super) on: String,
+    pub(super) way: f64,
+    /// How long it crept.
+    pub(super) time_s: f64,
+}
+
+impl Crept {
+    fn of(creep: &Creep) -> Self {
+        Self { effect: creep.effect.row().name, on: creep.on.clone(), way: creep.way, time_s: creep.time }
+    }
+}
+
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Done {
     pub(super) steps: u64,
@@ -116,6 +139,8 @@ pub(super) struct Done {
     pub(super) largest_step_s: f64,
     /// Where stiffness was noted.
     pub(super) stiff_at_s: Option<f64>,
+    /// The joint whose error limits most steps, where they are chosen by tolerances.
+    pub(super) limited_by: Option<String>,
     pub(super) records: usize,
 }
 
@@ -141,7 +166,8 @@ impl Summary {
             error: motion.error.clone(),
             energy: Energy::of(r, &motion.balance, motion.ball),
             momentum: Momentum::of(r),
-            counts: Done::of(&motion.counts, r.len()),
+            counts: Done::of(stage, &motion.counts, r.len()),
+            creep: motion.creep.iter().map(Crept::of).collect(),
             events: r.events.clone(),
             ball_reached: stage.scene.impact.as_ref().map(|_| motion.ball.is_some()),
             ball_speed_m_per_s: r.events.iter().find_map(|e| e.ball_speed_m_per_s),
@@ -227,7 +253,7 @@ impl Momentum {
 }
 
 impl Done {
-    fn of(c: &Counts, records: usize) -> Self {
+    fn of(stage: &Stage, c: &Counts, records: usize) -> Self {
         Self {
             steps: c.steps,
             rejected_steps: c.rejected,
@@ -236,7 +262,14 @@ impl Done {
             smallest_step_s: Some(c.smallest_step).filter(|s| s.is_finite()),
             largest_step_s: c.largest_step,
             stiff_at_s: c.stiff_at,
+            limited_by: c.limited_by.and_then(|index| joint_of(stage, index)),
             records,
         }
     }
+}
+
+/// The joint that a number of a step belongs to: steps of q first, then v.
+pub(super) fn joint_of(stage: &Stage, number: usize) -> Option<String> {
+    let freedom = number % stage.model.nv.max(1);
+    Dynamics::joint_of(&stage.model, freedom).filter(|name| !name.is_empty()).map(str::to_owned)
 }

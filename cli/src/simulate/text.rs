@@ -85,6 +85,11 @@ fn table(s: &Summary) -> Table {
     row("  largest change", none(), number(p.largest_change_angular), "kg·m²/s");
     row("linear momentum", length(&p.start[3..]), length(&p.end[3..]), "kg·m/s");
     row("  largest change", none(), number(p.largest_change_linear), "kg·m/s");
+    for crept in &s.creep {
+        let unit = if crept.effect == "contact" { "m" } else { "rad, m" };
+        row(&format!("creep of {} at {}", crept.effect, plain(&crept.on)), none(), number(crept.way), unit);
+        row("  while it should be held", none(), number(crept.time_s), "s");
+    }
     if last != "end" {
         row("in all", none(), none(), "");
     }
@@ -95,6 +100,9 @@ fn table(s: &Summary) -> Table {
     row("evaluations of forward dynamics", none(), c.evaluations.to_string(), "");
     if c.derivatives > 0 {
         row("  of its derivatives", none(), c.derivatives.to_string(), "");
+    }
+    if let Some(joint) = &c.limited_by {
+        row("  limited most by joint", none(), plain(joint).to_string(), "");
     }
     if let Some(t) = c.stiff_at_s {
         row("stiff from", none(), number(t), "s");

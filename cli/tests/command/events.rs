@@ -34,7 +34,7 @@ fn joints_that_follow_come_to_their_limits_and_stick() {
     let summary = simulated(&format!("{LEADER}{follower}"), 1.0, scene);
     let events = told(&summary);
     assert_eq!(events[0], "y reaches its lower limit", "{events:?}");
-    assert!(events.contains(&"y sticks".to_owned()) && events.iter().all(|what| what.starts_with("y ")), "{events:?}");
+    assert!(events.contains(&"y stops sliding".to_owned()) && events.iter().all(|what| what.starts_with("y ")), "{events:?}");
     // y = −1 at x = 0.75; friction of 1 N at y slows x by 2 N of an inertia of 1 + 4 kg.
     let expected = (1.0 - (1.0_f64 - 2.0 * 0.4 * 0.75).sqrt()) / 0.4;
     let first = &summary["events"][0];

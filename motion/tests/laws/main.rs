@@ -3,6 +3,7 @@
 mod by_hand;
 mod errors;
 mod events;
+mod friction;
 mod generated;
 mod opened;
 

@@ -59,6 +59,17 @@ pub enum SimulateError {
         /// Steps made, rejected ones included.
         steps: u64,
     },
+    /// The tolerances ask for steps so short that the end would take far more steps than are allowed.
+    NoProgress {
+        /// Time, s.
+        t: f64,
+        /// The mean step, s.
+        step: f64,
+        /// How many of these there would be to the end, rejected ones among them.
+        left: f64,
+        /// The number whose error limits most steps: its vector (the step of q, or v), its index there, and the name of its joint, where the robot can tell.
+        limiting: Option<(&'static str, usize, Option<String>)>,
+    },
     /// The step of an explicit integrator is longer than it is stable at.
     Unstable {
         /// The integrator.
@@ -268,6 +279,7 @@ impl fmt::Display for SimulateError {
             | Self::StepTooSmall { t, .. }
             | Self::Unstable { t, .. }
             | Self::Stiff { t, .. }
+            | Self::NoProgress { t, .. }
             | Self::NoConvergence { t, .. }
             | Self::Singular { t, .. }
             | Self::Turn { t, .. }
@@ -301,6 +313,13 @@ impl SimulateError {
                 f,
                 "the motion is stiff: {integrator} is held to steps of {step:.3e} s by stability, {left:.1e} of them to the end. Take rodas4, or go on with stiffness = \"note\" (Stiffness::Note in Rust)"
             ),
+            Self::NoProgress { step, left, limiting, .. } => {
+                write!(f, "the motion makes no progress: steps of {step:.1e} s, {left:.1e} of them to the end")?;
+                if let Some((what, index, joint)) = limiting {
+                    write!(f, ", limited by {what}[{index}]{}", of_joints(joint))?;
+                }
+                f.write_str(". Is a `speed` of friction or contact, or a tolerance, too small, or does a sampled control make a light joint oscillate?")
+            }
             Self::NoConvergence { step, .. } => write!(f, "the equations of a step of {step:.3e} s were not solved: a shorter step"),
             Self::Singular { step, .. } => write!(f, "the matrix of a step of {step:.3e} s is singular: another step"),
             Self::Turn { step, turn, most, joint, .. } => {

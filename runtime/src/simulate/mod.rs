@@ -40,7 +40,7 @@ pub use articulated_core::integrator::{Integrator, IntegratorId, integrator, int
 pub use articulated_core::settings::{Output, SettingError, Settings, Stiffness};
 pub use control::{Constant, Control, Dependence, Drive, Hold, NoTorque, Pd, TorqueTable};
 pub use error::{SimulateError, StateError};
-pub use event::{Action, ContactPoint, Direction, Event, Impact, Map, Struck};
+pub use event::{Action, ContactPoint, Direction, Event, Impact, Map, SLIDING, Struck};
 pub use recording::{Balance, Counts, Ended, Hit, Recording};
 pub use simulation::Simulation;
 

@@ -29,6 +29,8 @@ pub struct Counts {
     pub smallest_step: f64,
     /// When an explicit integrator was first held back by stiffness, s.
     pub stiff_at: Option<f64>,
+    /// Of steps that tolerances choose: which of the 2·nv numbers of a step (step of q, then v) had the largest error in most steps so far, where one had it in more than half of them.
+    pub limited_by: Option<usize>,
 }
 
 impl Default for Counts {
@@ -45,6 +47,7 @@ impl Default for Counts {
             largest_step: 0.0,
             smallest_step: f64::INFINITY,
             stiff_at: None,
+            limited_by: None,
         }
     }
 }

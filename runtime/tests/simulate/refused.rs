@@ -274,3 +274,21 @@ fn what_a_controller_or_a_ball_says_is_looked_at() {
     let mut blow = Impact::new(&wide, at(0, [0.0; 3], [1.0, 0.0, 0.0]), 1.0, 1.0).unwrap();
     assert!(blow.strike(&[0.1; 2], &mut [0.0; 2], f64::NAN).is_err());
 }
+
+/// 1e6 rad/s for 10 s in steps that resolve it: more than a hundred times the steps that are allowed.
+#[test]
+fn a_motion_that_makes_no_progress_is_ended_early_and_names_the_joint() {
+    let robot = slider();
+    let mut spring = |_: f64, q: &[f64], _: &[f64], tau: &mut [f64]| tau[0] = -1e12 * q[0];
+    let settings = Settings { max_steps: 20_000, end: 10.0, output: Output::Ends, ..Settings::default() };
+    let mut simulation = Simulation::new(&robot, settings).unwrap();
+    let mut recording = simulation.recording();
+    let error = simulation.run_into(&[1e-3], &[0.0], &mut spring, &mut [], &mut recording, &mut |_, _| true).unwrap_err();
+    let SimulateError::NoProgress { step, left, ref limiting, .. } = error else { panic!("{error}") };
+    assert!(step > 1e-8 && step < 1e-5 && left > 2e6 && left * step > 9.0 && left * step < 11.0, "{error}");
+    assert!(limiting.as_ref().is_some_and(|(_, index, joint)| *index == 0 && joint.as_deref() == Some("joint")), "{error}");
+    assert!(recording.counts.steps < 14_000 && error.to_string().contains("(joint `joint`)"), "{error}");
+    // One that ends within its steps goes on.
+    let settings = Settings { max_steps: 20_000, end: 1e-3, output: Output::Ends, ..Settings::default() };
+    Simulation::new(&robot, settings).unwrap().run(&[1e-3], &[0.0], &mut spring, &mut []).unwrap();
+}

@@ -9,7 +9,7 @@ pub(super) const FIELDS: &[Field] = &[
     Field::number("stiffness", "N/m", "force per unit of depth").at_least_zero().factor(),
     Field::number("damping", "s/m", "what a unit speed into the plane adds to the force, in parts of it").at_least_zero(),
     Field::number("friction", "1", "coefficient of friction").at_least_zero(),
-    Field::number("speed", "m/s", "sliding speed below which friction is smooth").smooth().or(&[1e-2]),
+    Field::number("speed", "m/s", "sliding speed below which friction is smooth").smooth().or(&[1e-5]),
     Field::number("normal", "1", "outward normal of the plane in the world frame, of any length")
         .or(&[0.0, 0.0, 1.0])
         .of(3)

@@ -5,7 +5,7 @@ use crate::Scalar;
 
 pub(super) const FIELDS: &[Field] = &[
     Field::number("friction", "N·m|N", "torque of sliding").at_least_zero().factor(),
-    Field::number("speed", "rad/s|m/s", "rate below which the law is smooth").smooth().or(&[1e-3]),
+    Field::number("speed", "rad/s|m/s", "rate below which the law is smooth").smooth().or(&[1e-5]),
 ];
 
 // −μ v/√(v² + s²)

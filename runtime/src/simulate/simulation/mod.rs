@@ -1,6 +1,7 @@
 //! A simulation: steps, outputs and events one after the other.
 
 mod happenings;
+mod pace;
 mod records;
 mod stepping;
 mod stiffness;
@@ -10,10 +11,10 @@ use std::f64::consts::TAU;
 use articulated_core::algorithm::Shape;
 use articulated_core::dynamics::Dynamics;
 
+use self::pace::Pace;
 use self::stiffness::Held;
 use crate::simulate::control::wrong_period;
 use crate::simulate::curve::Point;
-use crate::simulate::error::joint;
 use crate::simulate::event::watch::Watch;
 use crate::simulate::integrator::{Method, Start, method};
 use crate::simulate::output::{Known, Times};
@@ -78,6 +79,7 @@ struct Progress {
     /// The last event that mapped the state, and when.
     last_map: (usize, f64),
     held: Held,
+    pace: Pace,
 }
 
 impl Progress {
@@ -98,6 +100,7 @@ impl Progress {
             chatter: 0,
             last_map: (0, f64::NEG_INFINITY),
             held: Held::default(),
+            pace: Pace::begin(t),
         }
     }
 }
@@ -312,6 +315,9 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
     /// One step, up to its end or to the first event that cuts it short. What came of it, and whether an event has mapped the state.
     fn one_step(&mut self, run: &mut Run) -> Result<(Outcome, bool), SimulateError> {
         self.check_count()?;
+        if self.progress.controller.is_some() {
+            self.check_pace()?;
+        }
         match self.progress.controller {
             Some(_) => self.norm.begin(&self.system, &self.y),
             // The implicit ones know better themselves.
@@ -417,6 +423,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
                 Err(SimulateError::Singular { .. }) if h > 2.0 * least => Error { size: f64::NAN, index: 0 },
                 result => result?,
             };
+            self.progress.pace.vote(error.index);
             if let Some(factor) = controller.accept(error.size) {
                 self.method.finish(&mut self.system, run.control, start, &mut self.end)?;
                 self.progress.h = if h < free { free.max(h * factor) } else { h * factor };
@@ -439,10 +446,9 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         if let Some(wrong) = self.not_finite().filter(|_| error.is_nan()) {
             return wrong;
         }
-        let nv = self.shape.nv;
-        let (what, index) = if index < nv { (STEP, index) } else { ("v", index - nv) };
+        let (what, index, joint) = self.number(index);
         let least = Some(self.settings.min_step).filter(|least| *least > rounding(self.t));
-        SimulateError::StepTooSmall { t: self.t, step, what, index, joint: joint(self.system.robot, index), least }
+        SimulateError::StepTooSmall { t: self.t, step, what, index, joint, least }
     }
 
     /// What of the end of the step is not finite.
@@ -484,6 +490,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
     fn count_step(&mut self, h: f64) {
         let counts = &mut self.system.counts;
         counts.steps += 1;
+        counts.limited_by = self.progress.pace.limiting();
         counts.largest_step = counts.largest_step.max(h);
         // What happens where a motion begins cuts its first step off at once.
         if h > 0.0 {

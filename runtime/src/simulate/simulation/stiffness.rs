@@ -87,7 +87,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
     }
 
     /// Steps, rejected ones among them.
-    fn tries(&self) -> u64 {
+    pub(super) fn tries(&self) -> u64 {
         self.system.counts.steps + self.system.counts.rejected
     }
 }
