@@ -14,7 +14,7 @@ const PATIENCE: Duration = Duration::from_secs(8);
 const LONG: Duration = Duration::from_secs(30);
 
 /// Steps between two looks at the clock.
-const EVERY: u64 = 256;
+const EVERY: u64 = 16;
 
 pub(super) struct Watch<'a> {
     stage: &'a Stage,

@@ -98,3 +98,44 @@ fn links_that_a_motion_does_not_need_may_be_renamed() {
     let ended = run(&["simulate", scene.name(), "--generated"]);
     assert_eq!(ended.status, 0, "{}", ended.err);
 }
+
+/// A ball joint at 10 rad/s would turn by more than π in a step of 1 s: `check` says so, as the run does.
+#[test]
+fn check_makes_the_first_step_of_a_motion() {
+    let urdf = File::new(
+        "ball.urdf",
+        b"<robot name='r'><link name='g'/><link name='a'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>
+        <joint name='ball' type='spherical'><parent link='g'/><child link='a'/></joint></robot>",
+    );
+    for (step, status) in [(1.0, 1), (0.01, 0)] {
+        let scene = format!(
+            "urdf = {:?}\ngravity = [0, 0, 0]\ninitial = {{ v = {{ ball = [0.0, 0.0, 10.0] }} }}
+            simulation = {{ end = 2.0, integrator = 'lie_midpoint', step = {step} }}",
+            urdf.name()
+        );
+        let scene = File::new("scene.toml", scene.as_bytes());
+        let (checked, ran) = (run(&["check", scene.name()]), run(&["simulate", scene.name()]));
+        assert_eq!((checked.status, ran.status), (status, status), "{}{}", checked.out, checked.err);
+        if status == 1 {
+            let told = "at t = 0 s a step of 1.000e0 s turns by 10.000 rad (joint `ball`)";
+            assert!(checked.out.contains(told) && checked.out.contains("the motion ends with its first step"), "{}", checked.out);
+            assert!(ran.err.contains(told), "{}", ran.err);
+        }
+    }
+}
+
+/// A link of 2 kg that 6 N·m of friction hold against 4.905 N·m: 26 steps, no event, and 0.142 mrad of creep in 10 s.
+#[test]
+fn what_friction_holds_is_told_with_its_creep() {
+    let joint = "<joint name='s' type='revolute'><parent link='g'/><child link='a'/><axis xyz='0 1 0'/><origin xyz='0 0 0'/>
+        <limit lower='-1.2' upper='1.2' effort='40' velocity='3'/></joint>
+        <joint name='f' type='fixed'><parent link='a'/><child link='b'/><origin xyz='0.5 0 0'/></joint>";
+    // b of 1 kg at 0.5 m.
+    let summary = simulated(joint, 1.0, "effects = { friction = { s = 6.0 } }\n[simulation]\nend = 10.0\nevents = [\"stick_slip\"]\n");
+    assert!(told(&summary).is_empty() && summary["counts"]["steps"].as_u64().unwrap() < 60, "{summary}");
+    let (creep, x) = (&summary["creep"][0], 9.81 * 0.5 / 6.0_f64);
+    assert_eq!((&creep["effect"], &creep["on"]), (&"friction".into(), &"s".into()));
+    let expected = 10.0 * 1e-5 * x / (1.0 - x * x).sqrt();
+    assert!((creep["way"].as_f64().unwrap() / expected - 1.0).abs() < 2e-3, "{creep} {expected}");
+    assert_eq!(summary["integrator"]["name"], "rodas4");
+}

@@ -127,3 +127,41 @@ fn the_first_step_shows_what_a_run_would_end_with() {
         }
     }
 }
+
+/// Scenes at random: integrators, steps, effects and starts that are wild now and then. What the first step accepts a run does not refuse at its start.
+#[test]
+fn what_the_first_step_accepts_is_not_refused_at_the_start() {
+    let mut state = 7_u64;
+    let mut random = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let (mut accepted, mut refused) = (0, 0);
+    for _ in 0..150 {
+        let mut size = |from: f64, to: f64| 10_f64.powf(from + (to - from) * random());
+        let integrator = ["rodas4", "dopri5", "dop853", "rk4", "semi_implicit_euler", "lie_midpoint"][(size(0.0, 1.0) * 0.6) as usize % 6];
+        let fixed = ["rk4", "semi_implicit_euler", "lie_midpoint"].contains(&integrator);
+        let step = if fixed { format!(", step = {:e}", size(-4.0, 0.0)) } else { String::new() };
+        let scene = format!(
+            "effects = {{ damping = {{ s = {:e} }}, spring = {{ s = {:e} }}, friction = {{ s = {{ friction = {:e}, speed = {:e} }} }} }}
+            initial = {{ v = {{ s = {:e} }} }}
+            simulation = {{ end = 0.01, max_steps = 2000, integrator = '{integrator}'{step} }}",
+            size(-3.0, 8.0),
+            size(-3.0, 12.0),
+            size(-3.0, 3.0),
+            size(-7.0, 0.0),
+            size(-3.0, 6.0)
+        );
+        let stage = stage(&scene, STICTION);
+        let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
+        let begin = stage.begin().unwrap();
+        let first = motion.first_step(&begin).unwrap();
+        let outcome = motion.run(&begin, &mut |_, _| true).unwrap();
+        match first {
+            Some(error) => assert_eq!(outcome.error, Some(error), "{scene}"),
+            None => assert!(outcome.error.is_none() || outcome.reached > 0.0, "{:?}: {scene}", outcome.error),
+        }
+        if outcome.recording.counts.steps > 0 { accepted += 1 } else { refused += 1 }
+    }
+    assert!(accepted > 30 && refused > 10, "{accepted} {refused}");
+}
