@@ -85,7 +85,7 @@ impl Robot {
         // The scene's effects on all joints are those of the robot as it is now.
         let resolved = prepared.scene.effects_on(&request.robot()).map_err(|error| error.placed(&prepared.scene))?;
         let Request { urdf, file, mut options } = request;
-        options.robot.effects = resolved.effects;
+        (options.robot.effects, options.robot.warnings) = (resolved.effects, resolved.warnings);
         let files = prepared.files.into_iter().chain(appended(&arguments.edits)).collect();
         Ok(Self { file, scene: Some(name.to_owned()), urdf, options, path: None, bundled, files })
     }

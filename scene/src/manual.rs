@@ -50,9 +50,7 @@ fn ways(effect: &Effect) -> String {
     if crate::effects::shorthand(effect) {
         ways.push(format!("number: `{}`", effect.fields[0].name));
     }
-    if crate::effects::offers(effect) {
-        ways.push("`\"urdf\"`".to_owned());
-    }
+    ways.extend(crate::effects::sources(effect).map(|word| format!("`\"{word}\"`")));
     ways.push("`\"off\"`".to_owned());
     ways.join(", ")
 }
@@ -63,6 +61,7 @@ fn fields() -> String {
     for effect in effects() {
         for field in effect.fields {
             let default = match field.default {
+                None if crate::effects::is_of_shape(effect, field.name) => "has to be given; `\"collision\"`: that of the shape".to_owned(),
                 None => crate::effects::tag(effect.id, field.name)
                     .map_or("has to be given".to_owned(), |tag| format!("has to be given; `\"urdf\"`: {tag}")),
                 Some([x]) => format!("{x:?}"),

@@ -31,7 +31,7 @@ fn corpus() -> Vec<Vec<u8>> {
 /// A robot that a scene may name things of.
 fn robot() -> Description {
     let body = Inertial { origin: Default::default(), mass: 1.0, inertia: [1.0, 0.0, 0.0, 1.0, 0.0, 1.0] };
-    let link = |name: &str| Link { name: name.into(), inertial: Some(body) };
+    let link = |name: &str| Link { name: name.into(), inertial: Some(body), ..Link::default() };
     let joint =
         |name: &str, kind, parent, child| Joint { name: name.into(), kind, parent, child, axis: [0.0, 0.0, 1.0], ..Joint::default() };
     Description {

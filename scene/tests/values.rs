@@ -75,7 +75,7 @@ fn what_is_asked_of_ten_thousand_joints_and_links_is_soon_resolved() {
     let joint =
         |k| Joint { name: format!("joint_{k}"), kind: JointKind::Continuous, parent: k, child: k + 1, dynamics, ..Joint::default() };
     let description = Description {
-        links: (0..=count).map(|k| Link { name: format!("link_{k}"), inertial: None }).collect(),
+        links: (0..=count).map(|k| Link { name: format!("link_{k}"), ..Link::default() }).collect(),
         joints: (0..count).map(joint).collect(),
         ..Description::default()
     };

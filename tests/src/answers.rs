@@ -91,6 +91,7 @@ impl Drawn {
         let link = |l: &DrawnLink| Link {
             name: l.name.clone(),
             inertial: Some(Inertial { origin: Origin { xyz: l.xyz, rpy: l.rpy }, mass: l.mass, inertia: l.inertia }),
+            ..Link::default()
         };
         Description {
             name: name.to_owned(),

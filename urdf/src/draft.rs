@@ -1,6 +1,6 @@
 //! What was found in the file, before names are looked up.
 
-use articulated_core::description::{Inertial, JointDynamics, JointKind, Limit, Origin};
+use articulated_core::description::{Collision, Inertial, JointDynamics, JointKind, Limit, Origin};
 
 use crate::problem::Subject;
 
@@ -26,6 +26,7 @@ pub(crate) struct DraftLink {
     pub(crate) name: Option<String>,
     pub(crate) line: u32,
     pub(crate) inertial: Option<Inertial>,
+    pub(crate) collision: Vec<Collision>,
 }
 
 pub(crate) struct DraftJoint {

@@ -27,6 +27,7 @@
 //! * A principal moment of inertia that is negative by rounding, at most 1e-12·m·ℓ², with a warning: ℓ is the longest distance from one frame of the
 //!   file to the next, at most 1 m. A moment further below zero is an error, unless [`Options::allow_unphysical_inertia`] is set.
 //! * Joints on a link `world` that the file does not declare, with a warning: the link is added, without mass.
+//! * `<collision>` that cannot be read, with a warning: a scene that asks for contact of it is refused.
 //! * Expressions of xacro in names of files (meshes, textures). Elsewhere each one is an error.
 //!
 //! What the file states about closed loops, springs, followers and gravity where it is not read (inside `<gazebo>`, under a prefix, `<loop_joint>`, links inside
@@ -47,6 +48,7 @@
 mod base;
 #[cfg(feature = "second-reader")]
 mod bridge;
+mod collision;
 mod described;
 mod document;
 mod draft;

@@ -7,9 +7,9 @@ use crate::element::Tag;
 use crate::log::Log;
 use crate::problem::{Kind, Subject};
 use crate::robot::Context;
-use crate::{frame, inertia, number, unused};
+use crate::{collision, frame, inertia, number, unused};
 
-/// A link with its mass properties.
+/// A link with its mass properties and its collision geometry.
 pub(crate) fn link(tag: &Tag<'_>, context: &Context<'_>, log: &mut Log) -> DraftLink {
     let subject = Subject::Link(tag.name_for_messages());
     let tag = tag.of(&subject);
@@ -17,7 +17,7 @@ pub(crate) fn link(tag: &Tag<'_>, context: &Context<'_>, log: &mut Log) -> Draft
     name.iter().for_each(|name| unused::warn_of_blanks(&tag, name, log));
     unused::rest(&tag, &["inertial"], &["name"], log);
     let inertial = tag.only("inertial", log).and_then(|tag| inertial(&tag, context, log));
-    DraftLink { name, line: tag.line(), inertial }
+    DraftLink { name, line: tag.line(), inertial, collision: collision::all(&tag, context, log) }
 }
 
 fn inertial(tag: &Tag<'_>, context: &Context<'_>, log: &mut Log) -> Option<Inertial> {

@@ -42,6 +42,36 @@ impl Log {
         Self { file, ..Self::default() }
     }
 
+    /// An empty one for a part of the same file.
+    pub(crate) fn apart(&self) -> Self {
+        Self::new(self.file.clone())
+    }
+
+    /// Takes what was found of a part. What are errors there are warnings here, each with `rest` behind what is expected.
+    pub(crate) fn take_as_warnings(&mut self, part: Self, rest: &str) {
+        let errors = part.errors.into_iter().map(|mut error| {
+            error.expected.push_str(rest);
+            error
+        });
+        for warning in errors.chain(part.warnings) {
+            if self.warnings.len() < MOST {
+                self.warnings.push(warning);
+            } else {
+                self.more_warnings += 1;
+            }
+        }
+        for unused in part.unused {
+            if self.unused.len() < MOST_UNUSED {
+                self.unused.push(unused);
+            } else {
+                self.more_unused += 1;
+            }
+        }
+        self.more_warnings += part.more_errors + part.more_warnings;
+        self.more_unused += part.more_unused;
+        self.snapped.extend(part.snapped);
+    }
+
     fn problem(&self, place: &Place<'_>, kind: Kind, found: String, expected: String) -> Problem {
         Problem {
             file: self.file.clone(),

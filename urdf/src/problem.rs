@@ -163,6 +163,10 @@ pub enum Kind {
     TwoRotations,
     /// Dynamics that the file states where they are not read: closed loops, springs.
     LostDynamics,
+    /// Contact asked of collision geometry that makes none: a mesh, or nothing.
+    NoContact,
+    /// Contact asked of collision geometry of which a part makes none: a mesh beside other shapes.
+    PartOfContact,
     /// A number that no robot has: gravity or a coordinate.
     BeyondSense,
     /// More problems than are listed.

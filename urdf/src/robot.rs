@@ -70,7 +70,7 @@ fn declare_world(draft: &mut Draft, log: &mut Log) {
     let place = Place { line: Some(line), subject: &subject, field: "parent" };
     let found = format!("{}, which is not a link of this file", quote(WORLD));
     log.warning(&place, Kind::UndeclaredWorld, found, "<link name=\"world\"/>; added as a link without mass");
-    draft.links.push(DraftLink { name: Some(WORLD.to_owned()), line, inertial: None });
+    draft.links.push(DraftLink { name: Some(WORLD.to_owned()), line, inertial: None, collision: Vec::new() });
 }
 
 fn version(robot: &Tag<'_>, log: &mut Log) -> Version {

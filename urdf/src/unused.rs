@@ -48,7 +48,13 @@ const KNOWN: &[(&str, &str, &str)] = &[
     ("robot", "plugin", "settings of a simulator"),
     ("robot", "disable_collisions", "collisions are not looked for"),
     ("link", "visual", APPEARANCE),
-    ("link", "collision", "contact geometry is given by the scene"),
+    ("link", "collision", "no effect of a scene takes it (`contact` with `from = \"collision\"` does)"),
+    ("collision", "material", APPEARANCE),
+    ("collision", "contact_coefficients", "contact parameters are given by the scene"),
+    ("collision", "surface", "contact parameters are given by the scene"),
+    ("collision", "concave", "settings of a simulator"),
+    ("collision", "group", "settings of a simulator"),
+    ("collision", "verbose", "settings of a simulator"),
     ("link", "contact", "contact parameters are given by the scene"),
     ("link", "self_collision_checking", "collisions are not looked for"),
     ("joint", "safety_controller", "settings of a controller"),
@@ -63,12 +69,7 @@ const SHOWN: usize = 40;
 
 /// Reports the tags, the attributes and the text inside `tag` other than those that are used.
 pub(crate) fn rest(tag: &Tag<'_>, tags: &[&str], attributes: &[&str], log: &mut Log) {
-    rest_of_attributes(tag, attributes, log);
-    if let Some((text, line)) = tag.text() {
-        let shown: String = text.chars().take(SHOWN).collect();
-        let why = format!("text between tags says nothing of a robot: {}", quote(&markup::as_written(&shown)));
-        log.unused_at(Some(line), tag.subject(), format!("text in <{}>", tag.name()), why);
-    }
+    beside_tags(tag, attributes, log);
     for child in tag.children().filter(|child| !tags.iter().any(|name| child.is(name))) {
         let name = child.name();
         let parent = tag.name();
@@ -86,6 +87,16 @@ pub(crate) fn rest(tag: &Tag<'_>, tags: &[&str], attributes: &[&str], log: &mut 
             None if name == "link" || name == "joint" => misplaced(&child.place(&format!("<{name}>")), &name, &parent, log),
             None => unknown(&child.place(&format!("<{name}>")), name.clone(), &name, tags, log),
         }
+    }
+}
+
+/// Reports the attributes other than those that are used, and the text.
+pub(crate) fn beside_tags(tag: &Tag<'_>, attributes: &[&str], log: &mut Log) {
+    rest_of_attributes(tag, attributes, log);
+    if let Some((text, line)) = tag.text() {
+        let shown: String = text.chars().take(SHOWN).collect();
+        let why = format!("text between tags says nothing of a robot: {}", quote(&markup::as_written(&shown)));
+        log.unused_at(Some(line), tag.subject(), format!("text in <{}>", tag.name()), why);
     }
 }
 

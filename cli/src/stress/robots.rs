@@ -41,7 +41,7 @@ impl Body {
 impl Builder {
     /// A robot of a base without mass.
     pub fn new(name: &str) -> Self {
-        let base = Link { name: "base".into(), inertial: None };
+        let base = Link { name: "base".into(), ..Link::default() };
         Self(Description { name: name.into(), links: vec![base], joints: vec![] })
     }
 
@@ -49,7 +49,7 @@ impl Builder {
     pub fn link(mut self, on: Option<usize>, kind: JointKind, axis: [f64; 3], origin: Origin, body: Option<Body>) -> Self {
         let child = self.0.links.len();
         let inertial = body.map(|b| Inertial { origin: Origin { xyz: b.center, rpy: b.rpy }, mass: b.mass, inertia: b.inertia });
-        self.0.links.push(Link { name: format!("link_{child}"), inertial });
+        self.0.links.push(Link { name: format!("link_{child}"), inertial, ..Link::default() });
         let parent = on.unwrap_or(child - 1);
         let second_axis = if kind == JointKind::Universal { [axis[1], axis[2], axis[0]] } else { [0.0; 3] };
         self.0.joints.push(Joint { name: format!("joint_{child}"), kind, parent, child, origin, axis, second_axis, ..Joint::default() });

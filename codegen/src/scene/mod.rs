@@ -60,6 +60,7 @@ fn prepared(opened: Opened) -> Result<Prepared, Error> {
     }
     if errors.is_empty() {
         request.options.robot.effects.clone_from(&resolved.effects);
+        request.options.robot.warnings.clone_from(&resolved.warnings);
         errors = of_effects_that_are_off(&request.options);
     }
     if let Some(error) = Error::of(errors) {
@@ -91,6 +92,7 @@ pub fn settle(request: &mut Request, scene: &Scene) -> Result<Resolved, Error> {
         return Err(error);
     }
     request.options.robot.effects.splice(..0, resolved.effects.iter().cloned());
+    request.options.robot.warnings.extend(resolved.warnings.iter().cloned());
     Ok(resolved)
 }
 

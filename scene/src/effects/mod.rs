@@ -10,6 +10,7 @@
 //! stiffness = 1e5
 //! ```
 
+mod collision;
 mod index;
 mod resolve;
 mod still;
@@ -27,10 +28,11 @@ use crate::table::Spot;
 use crate::tree::{At, Value};
 use articulated_core::effect::{Effect, EffectId, Field, On, effect, effects};
 
+pub(crate) use collision::is_of_shape;
 pub(crate) use index::indices;
 pub use resolve::{Edited, Resolved};
 pub use still::still;
-pub(crate) use urdf::{offers, tag};
+pub(crate) use urdf::{sources, tag};
 
 /// One line of effects.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,6 +63,8 @@ pub enum Selector {
 pub struct Numbers {
     /// What is left out is taken from the URDF, where that has it.
     pub from_urdf: bool,
+    /// Points and radii are those of the link's collision geometry.
+    pub from_collision: bool,
     /// The effect's frame in the link's frame.
     pub at: Option<Origin>,
     /// One for each of the effect's fields.
@@ -109,6 +113,9 @@ fn on(row: &'static Effect, selector: &Selector, spot: &Spot<'_>, log: &mut Log)
         Value::Text(word) if word == "urdf" && urdf::offers(row) => {
             vec![asked(Some(Numbers { from_urdf: true, ..empty(row) }), spot)]
         }
+        Value::Text(word) if word == collision::WORD && collision::offers(row) => {
+            vec![asked(Some(Numbers { from_collision: true, ..empty(row) }), spot)]
+        }
         Value::Text(word) => {
             wrong_word(row, word, spot, log);
             Vec::new()
@@ -136,7 +143,7 @@ fn on(row: &'static Effect, selector: &Selector, spot: &Spot<'_>, log: &mut Log)
 }
 
 fn empty(row: &Effect) -> Numbers {
-    Numbers { from_urdf: false, at: None, fields: vec![None; row.fields.len()] }
+    Numbers { fields: vec![None; row.fields.len()], ..Numbers::default() }
 }
 
 /// Whether one number says it all: that of the first field.
@@ -152,16 +159,13 @@ fn expected(row: &Effect) -> String {
     }
     let required: Vec<&str> = row.fields.iter().filter(|f| f.default.is_none()).map(|f| f.name).collect();
     ways.push(format!("a table with {}", required.join(", ")));
-    if urdf::offers(row) {
-        ways.push("\"urdf\"".into());
-    }
+    ways.extend(sources(row).map(|word| format!("\"{word}\"")));
     format!("{} or \"off\"", ways.join(", "))
 }
 
 fn wrong_word(row: &Effect, word: &str, spot: &Spot<'_>, log: &mut Log) {
-    let words = ["off", "urdf"].into_iter().filter(|word| *word == "off" || urdf::offers(row));
-    let found = if word == "urdf" { "\"urdf\", which has no numbers for it".into() } else { quote(word) };
-    log.unknown((spot.node.at, &spot.key, Kind::Word), (found, word), expected(row), words);
+    let words = ["off"].into_iter().chain(sources(row));
+    log.unknown((spot.node.at, &spot.key, Kind::Word), (told(word), word), expected(row), words);
 }
 
 /// The numbers of a table.
@@ -173,11 +177,17 @@ fn table(row: &'static Effect, spot: &Spot<'_>, log: &mut Log) -> Numbers {
         let field = row.fields.iter().position(|f| f.name == entry.name);
         match (field, entry.name.as_str()) {
             (Some(i), _) => numbers.fields[i] = field_of(&row.fields[i], &value, log),
-            (None, FROM) => numbers.from_urdf = from(row, &value, log),
+            (None, FROM) => match from(row, &value, log) {
+                Some(collision::WORD) => numbers.from_collision = true,
+                word => numbers.from_urdf = word.is_some(),
+            },
             (None, "xyz") if row.on == On::Link => numbers.at.get_or_insert_default().xyz = value.numbers(log).unwrap_or_default(),
             (None, "rpy") if row.on == On::Link => numbers.at.get_or_insert_default().rpy = value.numbers(log).unwrap_or_default(),
             _ => value.unknown_key(log, keys(row)),
         }
+    }
+    if numbers.from_collision {
+        collision::refuse_own_points(spot, log);
     }
     if log.count() == before {
         check(row, &numbers, spot, log);
@@ -189,22 +199,31 @@ fn table(row: &'static Effect, spot: &Spot<'_>, log: &mut Log) -> Numbers {
 fn keys(row: &'static Effect) -> impl Iterator<Item = &'static str> {
     let own = row.fields.iter().map(|f| f.name);
     let frame = FRAME.into_iter().filter(|_| row.on == On::Link);
-    own.chain(frame).chain(Some(FROM).filter(|_| urdf::offers(row)))
+    own.chain(frame).chain(Some(FROM).filter(|_| sources(row).next().is_some()))
 }
 
-fn from(row: &Effect, spot: &Spot<'_>, log: &mut Log) -> bool {
-    match &spot.node.value {
-        Value::Text(word) if word == "urdf" && urdf::offers(row) => true,
-        Value::Text(word) => {
-            let found = if word == "urdf" { "\"urdf\", which has no numbers for it".into() } else { quote(word) };
-            log.error(spot.node.at, &spot.key, Kind::Word, found, if urdf::offers(row) { "\"urdf\"" } else { "numbers" });
-            false
-        }
-        _ => {
-            spot.wrong(log, "\"urdf\"");
-            false
-        }
+/// Where the numbers come from that are not given.
+fn from(row: &Effect, spot: &Spot<'_>, log: &mut Log) -> Option<&'static str> {
+    let expected = sources(row).next().map_or("numbers".into(), |word| format!("\"{word}\""));
+    let Value::Text(word) = &spot.node.value else {
+        spot.wrong(log, expected);
+        return None;
+    };
+    let source = sources(row).find(|source| *source == word.as_str());
+    if source.is_none() {
+        log.error(spot.node.at, &spot.key, Kind::Word, told(word), expected);
     }
+    source
+}
+
+/// A word for a source of numbers that an effect does not have.
+fn told(word: &str) -> String {
+    let why = match word {
+        "urdf" => ", which has no numbers for it",
+        collision::WORD => ", which has no geometry for it",
+        _ => "",
+    };
+    format!("{}{why}", quote(word))
 }
 
 fn field_of(field: &Field, spot: &Spot<'_>, log: &mut Log) -> Option<Vec<f64>> {

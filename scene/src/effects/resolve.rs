@@ -3,11 +3,11 @@
 use std::collections::HashSet;
 
 use articulated_core::description::{Base, Description, Joint, JointKind, Origin};
-use articulated_urdf::{Subject, Unused};
+use articulated_urdf::{Problem, Subject, Unused};
 
 use super::index::{Index, Named};
 use super::still::{moving, still};
-use super::{Asked, Numbers, Selector, urdf};
+use super::{Asked, Numbers, Selector, collision, urdf};
 use crate::error::{Kind, SceneError, SceneErrors, bare};
 use crate::log::Log;
 use crate::report::{EffectOff, EffectOn, Number, Report, Why};
@@ -41,6 +41,8 @@ pub struct Resolved {
     pub keys: Vec<String>,
     /// What is on, off and not used.
     pub report: Report,
+    /// What is odd about them.
+    pub warnings: Vec<Problem>,
 }
 
 impl Scene {
@@ -75,16 +77,16 @@ impl Resolved {
     }
 }
 
-struct Resolving<'a> {
-    scene: &'a Scene,
-    robot: &'a Edited<'a>,
+pub(super) struct Resolving<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) robot: &'a Edited<'a>,
     /// Links fixed to the base.
     still: Vec<bool>,
     /// Joints that let their links move.
     moving: Vec<bool>,
     index: Index<'a>,
-    resolved: Resolved,
-    /// (joint, tag) of the URDF that is used.
+    pub(super) resolved: Resolved,
+    /// (joint or link, tag) of the URDF that is used.
     used: HashSet<(&'a str, &'static str)>,
 }
 
@@ -102,6 +104,7 @@ impl<'a> Resolving<'a> {
             On::Link => self.on_links(row, &asked, log),
         }
         if self.resolved.effects.len() == before {
+            self.warn_of_no_geometry(&asked);
             self.resolved.report.off.push(EffectOff { effect: row.name, why: why(&asked) });
         }
     }
@@ -214,10 +217,16 @@ impl<'a> Resolving<'a> {
             let mut ones = by_name.get(&link.name).to_vec();
             let named = !ones.is_empty();
             let heavy = link.inertial.is_some_and(|inertial| inertial.mass > 0.0);
-            ones.extend(all.filter(|_| !named && heavy));
+            let is_meant = |one: &Asked| if collision::is_asked(one) { !link.collision.is_empty() } else { heavy };
+            // Of a list for all links each counts.
+            ones.extend(asked.iter().filter(|one| !named && one.on == Selector::All && is_meant(one)));
             for one in ones {
                 let Some(says) = &one.says else { continue };
                 let rest = all.filter(|_| named).and_then(|a| a.says.as_ref());
+                if collision::is_taken(row, says, rest) {
+                    self.of_collision(row, link, one, rest, log);
+                    continue;
+                }
                 let at = says.at.or(rest.and_then(|r| r.at)).unwrap_or_default();
                 match fill(row, &[Some(says), rest], &|_| None) {
                     Ok(filled) => self.put_filled(row, &link.name, at, one, &filled),
@@ -241,7 +250,7 @@ impl<'a> Resolving<'a> {
         Some(((*own).clone(), asked.place, format!("effects.{}.{}", shaft::NAME, bare(&asked.shaft.joint))))
     }
 
-    fn put_filled(&mut self, row: &'static Effect, on: &'a str, at: Origin, asked: &Asked, filled: &[Filled]) {
+    pub(super) fn put_filled(&mut self, row: &'static Effect, on: &'a str, at: Origin, asked: &Asked, filled: &[Filled]) {
         let parameters: Vec<f64> = filled.iter().flat_map(|(numbers, _)| numbers.iter().copied()).collect();
         let tags: Vec<Option<&'static str>> = filled.iter().map(|(_, tag)| *tag).collect();
         self.used.extend(tags.iter().flatten().map(|tag| (on, *tag)));
@@ -250,14 +259,17 @@ impl<'a> Resolving<'a> {
         }
     }
 
-    fn put(&mut self, row: &'static Effect, one: Applied, (place, key): (At, String), tags: &[Option<&'static str>]) {
+    pub(super) fn put(&mut self, row: &'static Effect, one: Applied, (place, key): (At, String), tags: &[Option<&'static str>]) {
         let mut rest = one.parameters.as_slice();
         let mut number = |(field, from): (&articulated_core::effect::Field, &Option<&'static str>)| {
             let (own, others) = rest.split_at(field.len.min(rest.len()));
             rest = others;
             Number { name: field.name, values: own.to_vec(), unit: field.unit, from: *from }
         };
-        let numbers = row.fields.iter().zip(tags).map(&mut number).collect();
+        let mut numbers: Vec<Number> = row.fields.iter().zip(tags).map(&mut number).collect();
+        if tags.contains(&Some(collision::WORD)) {
+            numbers.push(Number { name: "xyz", values: one.at.xyz.to_vec(), unit: "m", from: Some(collision::WORD) });
+        }
         self.resolved.report.on.push(EffectOn { effect: row.id, on: one.on.clone(), numbers, place });
         self.resolved.effects.push(one);
         self.resolved.places.push(place);
@@ -270,7 +282,8 @@ impl<'a> Resolving<'a> {
             self.resolved.report.off.push(EffectOff { effect: shaft::NAME, why: Why::NotAsked });
         }
         let used = |joint: &str, tag: &str| self.used.contains(&(joint, tag));
-        let unused = self.robot.unused.iter().filter(|u| !matches!(&u.subject, Subject::Joint(name) if used(name, &u.tag)));
+        let is_used = |u: &Unused| matches!(&u.subject, Subject::Joint(name) | Subject::Link(name) if used(name, &u.tag));
+        let unused = self.robot.unused.iter().filter(|u| !is_used(u));
         let mut ignored: Vec<Unused> = unused.cloned().collect();
         for joint in self.moving_joints() {
             let bounds = [("limit lower", "limit"), ("limit upper", "limit"), ("limit effort", "motor"), ("limit velocity", "motor")];
@@ -297,7 +310,11 @@ fn has_room(row: &Effect, kind: JointKind) -> bool {
 
 /// All numbers: of the first layer that says or takes them from the URDF, otherwise the defaults. The name of a field for which there are none. `layers`: what is said of a joint by its name, and
 /// of all; what is to be had from the URDF by name is not left out, so that no other says it.
-fn fill(row: &'static Effect, layers: &[Option<&Numbers>], number: &dyn Fn(&str) -> Option<f64>) -> Result<Vec<Filled>, &'static str> {
+pub(super) fn fill(
+    row: &'static Effect,
+    layers: &[Option<&Numbers>],
+    number: &dyn Fn(&str) -> Option<f64>,
+) -> Result<Vec<Filled>, &'static str> {
     let of = |i: usize, field: &'static articulated_core::effect::Field| {
         for (k, layer) in layers.iter().enumerate().filter_map(|(k, layer)| Some((k, (*layer)?))) {
             if let Some(numbers) = &layer.fields[i] {
@@ -316,7 +333,7 @@ fn fill(row: &'static Effect, layers: &[Option<&Numbers>], number: &dyn Fn(&str)
     row.fields.iter().enumerate().map(|(i, field)| of(i, field)).collect()
 }
 
-fn missing(row: &Effect, field: &str, one: &Asked, on: &str, log: &mut Log) {
+pub(super) fn missing(row: &Effect, field: &str, one: &Asked, on: &str, log: &mut Log) {
     let unit = row.fields.iter().find(|f| f.name == field).map_or("", |f| f.unit);
     let found = match urdf::tag(row.id, field).filter(|_| one.says.as_ref().is_some_and(|s| s.from_urdf)) {
         Some(tag) => format!("no {field} for {on}, whose URDF has no <{tag}>"),

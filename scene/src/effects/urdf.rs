@@ -4,11 +4,19 @@ use articulated_core::description::Joint;
 
 use articulated_core::effect::{Effect, EffectId};
 
+use super::collision;
 use super::resolve::Filled;
 
 /// Whether the format has numbers for this effect.
 pub(crate) fn offers(row: &Effect) -> bool {
     row.fields.iter().any(|field| tag(row.id, field.name).is_some())
+}
+
+/// The words for what an effect may take from the URDF.
+pub(crate) fn sources(row: &Effect) -> impl Iterator<Item = &'static str> {
+    let urdf = Some("urdf").filter(|_| offers(row));
+    let collision = Some(collision::WORD).filter(|_| collision::offers(row));
+    urdf.into_iter().chain(collision)
 }
 
 /// The tag and attribute that a field is taken from.

@@ -85,6 +85,7 @@ impl RobotAsked<'_> {
             editing.forget_the_unknown();
         }
         editing.warn();
+        editing.reading.warnings.extend(options.warnings.iter().cloned());
         if editing.refusals.is_empty() { Ok((editing.reading, springs)) } else { Err(RobotError::Edits { refusals: editing.refusals }) }
     }
 

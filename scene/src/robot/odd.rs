@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use articulated_core::Plain;
-use articulated_core::description::PrincipalMoments;
+use articulated_core::description::{Collision, ContactSphere, PrincipalMoments};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
 use articulated_urdf::{Kind, Problem, Reading, Subject};
@@ -126,8 +126,23 @@ impl Editing<'_> {
         self.reading.warnings.extend(odd);
     }
 
+    /// Collision geometry of links that have contact at its points is used.
+    fn leave_geometry_that_is_used(&mut self) {
+        let Reading { description, unused, .. } = &mut self.reading;
+        let links = indices(description.links.iter().map(|link| link.name.as_str()));
+        let is_of_shape = |e: &Applied| {
+            let spheres = links.get(e.on.as_str()).map(|at| &description.links[*at]).into_iter().flat_map(|link| &link.collision);
+            let is = |s: ContactSphere| s.center == e.at.xyz && e.parameters.first() == Some(&s.radius);
+            spheres.flat_map(Collision::contact_spheres).any(is)
+        };
+        let contacts = self.asked.options.effects.iter().filter(|e| e.effect == EffectId::contact);
+        let used: HashSet<&str> = contacts.filter(|e| is_of_shape(e)).map(|e| e.on.as_str()).collect();
+        unused.retain(|u| u.tag != "collision" || !matches!(&u.subject, Subject::Link(name) if used.contains(name.as_str())));
+    }
+
     /// Numbers of the URDF that an effect has taken are used.
     fn leave_what_is_used(&mut self) {
+        self.leave_geometry_that_is_used();
         let Reading { description, unused, .. } = &mut self.reading;
         let joints = indices(description.joints.iter().map(|j| j.name.as_str()));
         let tag = |e: &Applied| {

@@ -120,7 +120,8 @@ impl Opened {
     pub fn settle(&self) -> Result<Settled, RobotError> {
         let Attempt { robot, resolved, errors, .. } = self.attempt();
         match (RobotError::of(errors), robot) {
-            (None, Some((reading, model))) => {
+            (None, Some((mut reading, model))) => {
+                reading.warnings.extend(resolved.warnings.iter().cloned());
                 let refused = |errors: EffectErrors| RobotError::Effects { file: self.file.clone(), errors: errors.0 };
                 Ok(Settled { model: model.with_effects(&resolved.effects).map_err(refused)?, reading, resolved })
             }

@@ -4,6 +4,7 @@ use articulated_core::description::{Base, Origin, Payload, Shaft};
 use articulated_core::effect::Applied;
 use articulated_core::model::GRAVITY;
 use articulated_core::spatial::Reference;
+use articulated_urdf::Problem;
 
 /// The robot as it is wanted: base, gravity, edits, frames and effects.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +27,8 @@ pub struct RobotOptions {
     pub lock: Vec<(String, Vec<f64>)>,
     /// What the robot is subject to besides gravity; on joints and links of appended robots too.
     pub effects: Vec<Applied>,
+    /// What is odd about the effects ([`Resolved::warnings`](crate::Resolved::warnings)): told with the warnings of the robot's document.
+    pub warnings: Vec<Problem>,
     /// Accept negative principal moments, with a warning. (Moments that break the triangle inequality are always accepted with a warning.)
     pub allow_unphysical_inertia: bool,
     /// Take angles this near (rad, above 0, at most [`MOST_SNAPPED`](articulated_urdf::MOST_SNAPPED)) to a multiple of π/2 as that multiple; every one is reported. `None`: never.
@@ -70,6 +73,7 @@ impl Default for RobotOptions {
             shafts: Vec::new(),
             lock: Vec::new(),
             effects: Vec::new(),
+            warnings: Vec::new(),
             allow_unphysical_inertia: false,
             snap_angles: None,
         }

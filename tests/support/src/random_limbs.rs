@@ -76,7 +76,7 @@ fn one_joint(random: &mut Random, flavour: Flavour) -> Joint {
 }
 
 fn link(name: String, inertial: Option<Inertial>) -> Link {
-    Link { name, inertial }
+    Link { name, inertial, ..Link::default() }
 }
 
 /// Hangs a body on a link; the new link.

@@ -40,7 +40,8 @@ pub fn random_tree(seed: u64, flavour: Flavour) -> Description {
     let links = 1 + random.below(flavour.links);
     let chain = random.chance(0.3);
     let mut description = Description { name: format!("tree_{seed}"), ..Description::default() };
-    description.links = (0..links).map(|k| Link { name: format!("link_{k}"), inertial: inertial(random, flavour) }).collect();
+    description.links =
+        (0..links).map(|k| Link { name: format!("link_{k}"), inertial: inertial(random, flavour), ..Link::default() }).collect();
     description.joints = (1..links)
         .map(|child| {
             let parent = if chain { child - 1 } else { child - 1 - random.below(child.min(3)) };

@@ -150,7 +150,7 @@ fn no_value_makes_an_algorithm_panic() {
 }
 
 fn link(name: &str) -> Link {
-    Link { name: name.into(), inertial: None }
+    Link { name: name.into(), ..Link::default() }
 }
 
 fn joint(name: &str, kind: JointKind, parent: usize, child: usize) -> Joint {
@@ -303,7 +303,11 @@ fn multipliers_that_overflow_are_an_error_that_names_the_joint() {
 #[test]
 fn a_single_link_goes_through_everything() {
     let body = Inertial { origin: Origin::default(), mass: 2.0, inertia: [0.1, 0.0, 0.0, 0.1, 0.0, 0.1] };
-    let one = Description { name: "stone".into(), links: vec![Link { name: "stone".into(), inertial: Some(body) }], joints: vec![] };
+    let one = Description {
+        name: "stone".into(),
+        links: vec![Link { name: "stone".into(), inertial: Some(body), ..Link::default() }],
+        joints: vec![],
+    };
     let fixed = Case::new("stone", one.clone(), Base::Fixed);
     assert_eq!((fixed.model.nq, fixed.model.nv, fixed.model.frames.len()), (0, 0, 1));
     assert_eq!(inverse_dynamics(&fixed.model, &[], &[], &[]), Vec::<f64>::new());

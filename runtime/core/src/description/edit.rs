@@ -110,7 +110,7 @@ impl<'a> Editor<'a> {
             None => self.names.free(&format!("{}_payload", payload.link)),
         };
         let inertial = Inertial { origin: Origin::default(), mass: payload.mass, inertia: payload.inertia };
-        let child = self.add_link(Link { name: name.clone(), inertial: Some(inertial) });
+        let child = self.add_link(Link { name: name.clone(), inertial: Some(inertial), ..Link::default() });
         self.join(name.clone(), parent, child, Origin { xyz: payload.center_of_mass, ..Origin::default() });
         Ok(name)
     }
@@ -215,7 +215,7 @@ mod tests {
 
     /// A base and a chain of `count` links on it, the root last.
     fn chain(count: usize) -> Description {
-        let links = (0..=count).map(|k| Link { name: format!("link_{k}"), inertial: None }).collect();
+        let links = (0..=count).map(|k| Link { name: format!("link_{k}"), ..Link::default() }).collect();
         let joint = |k| Joint { name: format!("joint_{k}"), kind: JointKind::Continuous, parent: k + 1, child: k, ..Joint::default() };
         Description { name: "chain".into(), links, joints: (0..count).map(joint).collect() }
     }

@@ -5,6 +5,7 @@
 //! the joint's frame at zero. A moving joint's `axis` is expressed in the joint's frame. It can be edited first: [`Description::lock`],
 //! [`Description::attach`], [`Description::append`], [`Description::shaft`]; many edits by one [`Editor`].
 
+mod collision;
 mod edit;
 mod error;
 mod moments;
@@ -15,6 +16,7 @@ use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
 
+pub use collision::{Collision, CollisionShape, ContactSphere, RIM_POINTS};
 pub use edit::{Editor, Payload};
 pub use error::EditError;
 pub use moments::PrincipalMoments;
@@ -38,6 +40,8 @@ pub struct Link {
     pub name: String,
     /// Mass properties; `None` is a link without mass.
     pub inertial: Option<Inertial>,
+    /// Collision geometry in the order of the file: of no account for the dynamics, unless effects are made of it.
+    pub collision: Vec<Collision>,
 }
 
 /// Mass, centre of mass and rotational inertia of a link.

@@ -85,7 +85,7 @@ impl Editor<'_> {
             let at = line.joint(k, shaft.segments);
             let next = line.joint(k + 1, shaft.segments);
             let rod = Some(line.rod(minus(next, at)));
-            let child = self.add_link(Link { name: shaft.rod(k), inertial: rod });
+            let child = self.add_link(Link { name: shaft.rod(k), inertial: rod, ..Link::default() });
             let (name, kind) = match k {
                 0 => (shaft.rod(0), JointKind::Fixed),
                 _ => (shaft.bending(k), JointKind::Universal),

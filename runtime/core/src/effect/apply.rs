@@ -248,7 +248,7 @@ mod tests {
 
     /// A carriage on a rail, a ball that hangs on it, and a lamp on the base.
     fn robot() -> Model<f64> {
-        let link = |name: &str| Link { name: name.into(), inertial: None };
+        let link = |name: &str| Link { name: name.into(), ..Link::default() };
         let joint = |name: &str, kind, child| Joint { name: name.into(), kind, child, axis: [1.0, 0.0, 0.0], ..Joint::default() };
         let joints = vec![
             joint("slide", JointKind::Prismatic, 1),
@@ -266,7 +266,7 @@ mod tests {
     #[test]
     fn thousands_of_effects_are_soon_put_and_of_wrong_names_the_first_are_told_with_what_was_meant() {
         let count = 10_000;
-        let links = (0..=count).map(|k| Link { name: format!("link_{k}"), inertial: None }).collect();
+        let links = (0..=count).map(|k| Link { name: format!("link_{k}"), ..Link::default() }).collect();
         let joint = |k| Joint {
             name: format!("joint_{k}"),
             kind: JointKind::Continuous,
@@ -293,7 +293,8 @@ mod tests {
 
     #[test]
     fn a_floating_base_has_no_joint_that_effects_are_on() {
-        let description = Description { name: "one".into(), links: vec![Link { name: "body".into(), inertial: None }], joints: Vec::new() };
+        let description =
+            Description { name: "one".into(), links: vec![Link { name: "body".into(), ..Link::default() }], joints: Vec::new() };
         let floating = Model::new(&description, Base::Floating).unwrap();
         let errors = floating.with_effects(&[on(EffectId::damping, crate::model::FLOATING_BASE, &[1.0])]).unwrap_err();
         assert_eq!(errors.0[0].fault, Fault::Base);

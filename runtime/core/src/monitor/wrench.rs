@@ -61,7 +61,7 @@ mod tests {
     fn moments_are_measured_by_moments_and_forces_by_forces() {
         let at = |x: f64| Origin { xyz: [x, 0.0, 0.0], ..Origin::default() };
         let inertial = Some(Inertial { origin: at(4.0), mass: 1.0, inertia: [1.0, 0.0, 0.0, 1.0, 0.0, 1.0] });
-        let link = |k: usize| Link { name: k.to_string(), inertial: inertial.filter(|_| k > 0) };
+        let link = |k: usize| Link { name: k.to_string(), inertial: inertial.filter(|_| k > 0), ..Link::default() };
         let hinge = Joint { kind: JointKind::Revolute, axis: [0.0, 1.0, 0.0], ..Joint::default() };
         let joint =
             |k: usize| Joint { name: k.to_string(), parent: k, child: k + 1, origin: at(if k > 0 { 8.0 } else { 0.0 }), ..hinge.clone() };

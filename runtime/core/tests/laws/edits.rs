@@ -256,7 +256,7 @@ fn robots_that_clash_are_refused_with_every_name() {
     assert!(matches!(refused(&mut arm, |r| r.append("tip", &read(GRIPPER), "", MOUNT)), EditError::UnknownLink { .. }));
     let nothing = Description { name: "nothing".into(), ..Description::default() };
     assert!(matches!(refused(&mut arm, |r| r.append("fore", &nothing, "", MOUNT)), EditError::NoRoot { .. }));
-    let tool = Description { links: vec![Link { name: "tool".into(), inertial: None }], ..Description::default() };
+    let tool = Description { links: vec![Link { name: "tool".into(), ..Link::default() }], ..Description::default() };
     arm.append("fore", &tool, "", MOUNT).unwrap();
 }
 

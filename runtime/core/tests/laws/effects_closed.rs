@@ -15,6 +15,7 @@ fn slide() -> Model<f64> {
     let link = |name: &str, mass: Option<f64>| Link {
         name: name.into(),
         inertial: mass.map(|mass| Inertial { origin: Origin::default(), mass, inertia: [INERTIA, 0.0, 0.0, INERTIA, 0.0, INERTIA] }),
+        ..Link::default()
     };
     let joint = Joint { name: "slide".into(), kind: JointKind::Prismatic, parent: 0, child: 1, axis: [1.0, 0.0, 0.0], ..Joint::default() };
     let description = Description { name: "slide".into(), links: vec![link("base", None), link("cart", Some(MASS))], joints: vec![joint] };
@@ -24,8 +25,11 @@ fn slide() -> Model<f64> {
 /// A ball of 2 kg that moves freely.
 fn ball() -> Model<f64> {
     let inertial = Inertial { origin: Origin::default(), mass: MASS, inertia: [INERTIA, 0.0, 0.0, INERTIA, 0.0, INERTIA] };
-    let description =
-        Description { name: "ball".into(), links: vec![Link { name: "ball".into(), inertial: Some(inertial) }], joints: vec![] };
+    let description = Description {
+        name: "ball".into(),
+        links: vec![Link { name: "ball".into(), inertial: Some(inertial), ..Link::default() }],
+        joints: vec![],
+    };
     Model::new(&description, Base::Floating).expect("a ball")
 }
 
@@ -58,7 +62,7 @@ fn armature_is_mass_behind_a_gear() {
 /// A wheel's frame need not turn with it, since it is the same from all sides; with a float on its rim it is not.
 #[test]
 fn a_round_wheel_turns_the_float_on_its_rim() {
-    let link = |name: &str, inertial: Option<Inertial>| Link { name: name.into(), inertial };
+    let link = |name: &str, inertial: Option<Inertial>| Link { name: name.into(), inertial, ..Link::default() };
     let round = Inertial { origin: Origin::default(), mass: MASS, inertia: [INERTIA, 0.0, 0.0, INERTIA, 0.0, INERTIA] };
     let joint = Joint { name: "axle".into(), kind: JointKind::Continuous, parent: 0, child: 1, axis: [0.0, 1.0, 0.0], ..Joint::default() };
     let description =

@@ -198,7 +198,11 @@ fn a_free_body_obeys_newton_and_euler() {
         inertia: [0.03, 0.0, 0.0, 0.04, 0.0, 0.05],
         ..Inertial { origin: Default::default(), mass: 0.0, inertia: [0.0; 6] }
     };
-    let tree = Description { name: "body".into(), links: vec![Link { name: "body".into(), inertial: Some(inertial) }], joints: vec![] };
+    let tree = Description {
+        name: "body".into(),
+        links: vec![Link { name: "body".into(), inertial: Some(inertial), ..Link::default() }],
+        joints: vec![],
+    };
     let case = Case::new("body", tree, Base::Floating);
     let state = case.state(&mut Random::new(5));
     let three = |x: &[f64], at: usize| Vector3::new(x[at], x[at + 1], x[at + 2]);

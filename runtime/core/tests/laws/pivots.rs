@@ -8,7 +8,7 @@ use articulated_core::model::Model;
 /// A body whose three moments about its frame's origin are equal.
 fn ball(name: &str, mass: f64, moment: f64) -> Link {
     let inertia = [moment, 0.0, 0.0, moment, 0.0, moment];
-    Link { name: name.into(), inertial: Some(Inertial { origin: Origin::default(), mass, inertia }) }
+    Link { name: name.into(), inertial: Some(Inertial { origin: Origin::default(), mass, inertia }), ..Link::default() }
 }
 
 fn hinge(name: &str, parent: usize, child: usize, x: f64) -> Joint {

@@ -13,6 +13,7 @@ fn rod(along: [f64; 3], head: f64) -> Description {
     let link = |name: &str, mass: f64| Link {
         name: name.into(),
         inertial: (mass > 0.0).then(|| Inertial { origin: Origin::default(), mass, inertia: [0.0; 6] }),
+        ..Link::default()
     };
     let joint =
         Joint { name: "hosel".into(), parent: 0, child: 1, origin: Origin { xyz: along, rpy: [0.1, 0.2, 0.3] }, ..Joint::default() };

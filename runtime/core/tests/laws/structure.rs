@@ -179,7 +179,7 @@ fn a_follower_that_undoes_its_leader_moves_no_mass() {
 #[test]
 fn a_rod_in_a_ball_joint_can_turn_about_itself() {
     for (axis, inertia) in [(0, [0.0, 0.0, 0.0, 1.0, 0.0, 1.0]), (1, [1.0, 0.0, 0.0, 0.0, 0.0, 1.0]), (2, [1.0, 0.0, 0.0, 1.0, 0.0, 0.0])] {
-        let link = |name: &str, inertial| Link { name: name.into(), inertial };
+        let link = |name: &str, inertial| Link { name: name.into(), inertial, ..Link::default() };
         let rod = |inertia| Some(Inertial { origin: Origin::default(), mass: 1.0, inertia });
         let ball = |inertia| {
             let joint = Joint { name: "ball".into(), kind: JointKind::Spherical, parent: 0, child: 1, ..Joint::default() };

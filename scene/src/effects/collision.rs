@@ -1,0 +1,116 @@
+//! Contact of the collision geometry that a URDF has.
+
+use articulated_core::description::{Collision, CollisionShape, Link, Origin};
+use articulated_core::effect::{Effect, EffectId};
+use articulated_urdf::{Kind as Odd, Problem, Subject};
+
+use super::resolve::{Resolving, fill, missing};
+use super::{Asked, FRAME, Numbers, Selector};
+use crate::error::Kind;
+use crate::log::Log;
+use crate::table::Spot;
+
+/// The word for it.
+pub(super) const WORD: &str = "collision";
+
+/// The field that a shape gives.
+const RADIUS: &str = "radius";
+
+/// Whether points of this effect may be those of collision geometry.
+pub(super) fn offers(row: &Effect) -> bool {
+    row.id == EffectId::contact
+}
+
+/// Whether the field of an effect is taken from collision geometry.
+pub(crate) fn is_of_shape(row: &Effect, field: &str) -> bool {
+    offers(row) && field == RADIUS
+}
+
+/// Refuses points of the scene's own beside those of the geometry.
+pub(super) fn refuse_own_points(spot: &Spot<'_>, log: &mut Log) {
+    for own in [RADIUS].into_iter().chain(FRAME).filter_map(|key| spot.get(key)) {
+        let name = own.key.rsplit('.').next().unwrap_or_default();
+        own.clash(log, format!("{name} beside from = \"{WORD}\""), "one of both: the shapes of the robot's file give radii and places");
+    }
+}
+
+/// Whether the geometry is asked for.
+pub(super) fn is_asked(one: &Asked) -> bool {
+    one.says.as_ref().is_some_and(|says| says.from_collision)
+}
+
+/// Whether a link's contact is that of its geometry: it is said of the link, or of all links and the link's own entry has no point.
+pub(super) fn is_taken(row: &Effect, says: &Numbers, rest: Option<&Numbers>) -> bool {
+    let has_radius = || row.fields.iter().zip(&says.fields).any(|(field, own)| field.name == RADIUS && own.is_some());
+    says.from_collision || (rest.is_some_and(|rest| rest.from_collision) && says.at.is_none() && !has_radius())
+}
+
+impl<'a> Resolving<'a> {
+    /// The contact of a link's collision geometry, a sphere or point each.
+    pub(super) fn of_collision(&mut self, row: &'static Effect, link: &'a Link, one: &Asked, rest: Option<&Numbers>, log: &mut Log) {
+        let unread = link.collision.iter().filter_map(|piece| match &piece.shape {
+            CollisionShape::Unread { why } => Some(why),
+            _ => None,
+        });
+        let before = log.count();
+        for why in unread {
+            let found = format!("collision geometry of link {:?} that cannot be read: {why}", link.name);
+            log.error(one.place, &one.key, Kind::Robot, found, "geometry that can be read, or \"off\" for this link");
+        }
+        if log.count() > before {
+            return;
+        }
+        let spheres: Vec<_> = link.collision.iter().flat_map(Collision::contact_spheres).collect();
+        let meshes = link.collision.iter().filter(|piece| matches!(piece.shape, CollisionShape::Mesh { .. })).count();
+        match (&one.on, spheres.is_empty()) {
+            (Selector::Named(name), true) => {
+                let what = if meshes > 0 { "only meshes as collision geometry, which make no contact" } else { "no collision geometry" };
+                let expected = "a box, cylinder, sphere or capsule in <collision>, or contact with `radius`";
+                return log.error(one.place, &one.key, Kind::Robot, format!("link {name:?} with {what}"), expected);
+            }
+            (Selector::All, true) => self.warn_of_contact(one, link, Odd::NoContact, "only meshes as collision geometry"),
+            (_, false) if meshes > 0 => self.warn_of_contact(one, link, Odd::PartOfContact, "a mesh beside other collision geometry"),
+            _ => {}
+        }
+        let Some(says) = &one.says else { return };
+        let radius = row.fields.iter().position(|field| field.name == RADIUS);
+        for sphere in spheres {
+            let mut says = says.clone();
+            radius.and_then(|at| says.fields.get_mut(at)).into_iter().for_each(|own| *own = Some(vec![sphere.radius]));
+            match fill(row, &[Some(&says), rest], &|_| None) {
+                Ok(mut filled) => {
+                    radius.and_then(|at| filled.get_mut(at)).into_iter().for_each(|(_, tag)| *tag = Some(WORD));
+                    self.put_filled(row, &link.name, Origin { xyz: sphere.center, ..Origin::default() }, one, &filled);
+                }
+                // It lacks for each of the points.
+                Err(field) => return missing(row, field, one, &format!("link {:?}", link.name), log),
+            }
+        }
+    }
+
+    fn warn_of_contact(&mut self, one: &Asked, link: &Link, kind: Odd, found: &str) {
+        let expected = "a box, cylinder, sphere or capsule: meshes are not read and make no contact";
+        self.warn(one, Subject::Link(link.name.clone()), kind, found, expected);
+    }
+
+    /// Warns where contact of the geometry of all links comes to nothing since there is none.
+    pub(super) fn warn_of_no_geometry(&mut self, asked: &[&Asked]) {
+        let Some(one) = asked.iter().find(|one| one.on == Selector::All && is_asked(one)) else { return };
+        if self.robot.description.links.iter().all(|link| link.collision.is_empty()) {
+            let expected = "links with <collision>: nothing touches the ground";
+            self.warn(one, Subject::Document, Odd::NoContact, "a robot without collision geometry", expected);
+        }
+    }
+
+    fn warn(&mut self, one: &Asked, subject: Subject, kind: Odd, found: &str, expected: &str) {
+        self.resolved.warnings.push(Problem {
+            file: self.scene.file.clone(),
+            line: one.place.line(),
+            subject,
+            kind,
+            field: one.key.clone(),
+            found: found.to_owned(),
+            expected: expected.to_owned(),
+        });
+    }
+}
