@@ -41,7 +41,8 @@ fn odd(stage: &Stage, begin: &Begin) -> Vec<String> {
     let beyond = stage.beyond(&begin.q).iter().map(ToString::to_string).collect::<Vec<_>>();
     let file = &stage.scene.file;
     let senseless = beyond_sense(&stage.model, &begin.q).into_iter().map(|line| format!("{file}: initial: {line}"));
-    beyond.into_iter().chain(senseless).chain(stage.sunk(&begin.q).iter().map(ToString::to_string)).collect()
+    let sunk = stage.sunk(&begin.q).iter().map(ToString::to_string).collect::<Vec<_>>();
+    beyond.into_iter().chain(senseless).chain(sunk).chain(stage.warning_of_penetrations_at_start(&begin.q)).collect()
 }
 
 /// Start and control as the scene has them, with a warning of what is odd. Errors: all that do not fit the robot, and tables that cannot be read.
@@ -100,7 +101,9 @@ pub(super) fn run<R: Dynamics<f64>, S: AsRef<str>>(
     let Outcome { recording, happenings, creep, ending, reached, ball, error, wall } = outcome;
     let (counts, balance) = (recording.counts, recording.balance.unwrap_or_default());
     let error = error.map(|e| e.to_string());
-    let warnings = odd(stage, begin).into_iter().chain(without).collect();
+    let penetrations = stage.warning_of_penetrations(&recording.t, &recording.q);
+    penetrations.iter().for_each(|line| console::warn(line));
+    let warnings = odd(stage, begin).into_iter().chain(without).chain(penetrations).collect();
     Ok(Motion { recording: told(stage, recording, happenings), counts, balance, creep, reached, ending, wall, ball, error, warnings })
 }
 

@@ -1,6 +1,7 @@
 //! What a scene's motion in a program has to be.
 
 mod by_hand;
+mod collision;
 mod errors;
 mod events;
 mod friction;
