@@ -57,7 +57,8 @@ impl Stage {
     }
 }
 
-/// A contact that starts with its sphere's centre under the plane: odd, since it springs up with all that is stored there, and used as asked for.
+/// A contact that starts with its sphere's centre under the plane: odd, since it springs up with all that is stored there, and used as asked for. A point, of radius 0, is one only where it
+/// pushes with more than the robot weighs: it stands below the plane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sunk {
     /// The scene's file.
@@ -78,12 +79,15 @@ impl Stage {
         if self.model.placements(&mut self.model.workspace(), q, &mut places).is_err() {
             return Vec::new();
         }
+        let weight = self.model.moving_mass() * self.model.gravity.norm();
         let sunk = |contact: &Applied| {
             let frame = self.model.frames.iter().position(|frame| frame.name == contact.on)?;
             let (x, r, normal) = (&places[12 * frame..][..12], contact.at.xyz, unit(field(contact, "normal").try_into().ok()?)?);
             let centre = |k: usize| x[9 + k] + (0..3).map(|c| x[3 * k + c] * r[c]).sum::<f64>();
             let depth = field(contact, "height").first()? - (0..3).map(|k| normal[k] * centre(k)).sum::<f64>();
-            (depth > 0.0).then(|| Sunk { file: self.scene.file.clone(), link: contact.on.clone(), depth })
+            // A point at rest pushes with no more than the weight.
+            let stands = *field(contact, "radius").first()? == 0.0 && field(contact, "stiffness").first()? * depth <= weight;
+            (depth > 0.0 && !stands).then(|| Sunk { file: self.scene.file.clone(), link: contact.on.clone(), depth })
         };
         self.effects_of(EffectId::contact).filter_map(sunk).collect()
     }

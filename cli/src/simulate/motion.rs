@@ -5,7 +5,7 @@ use std::time::Duration;
 use articulated::simulate::{Balance, Counts, IntegratorId, Recording as Run, Settings};
 use articulated::{Dynamics, FunctionId};
 use articulated_codegen::Generated;
-use articulated_motion::{Begin, Creep, Ending, Happening as Happened, Outcome};
+use articulated_motion::{Begin, Creep, Ending, Happening as Happened, Outcome, Sunk};
 use articulated_scene::beyond_sense;
 
 use super::recording::{Happening, Recording};
@@ -41,8 +41,15 @@ fn odd(stage: &Stage, begin: &Begin) -> Vec<String> {
     let beyond = stage.beyond(&begin.q).iter().map(ToString::to_string).collect::<Vec<_>>();
     let file = &stage.scene.file;
     let senseless = beyond_sense(&stage.model, &begin.q).into_iter().map(|line| format!("{file}: initial: {line}"));
-    let sunk = stage.sunk(&begin.q).iter().map(ToString::to_string).collect::<Vec<_>>();
+    let sunk = summary_of_sunk(&stage.sunk(&begin.q));
     beyond.into_iter().chain(senseless).chain(sunk).chain(stage.warning_of_penetrations_at_start(&begin.q)).collect()
+}
+
+/// The deepest contact that starts under its plane, and how many more there are.
+fn summary_of_sunk(sunk: &[Sunk]) -> Option<String> {
+    let deepest = sunk.iter().max_by(|a, b| a.depth.total_cmp(&b.depth))?;
+    let more = if sunk.len() == 1 { String::new() } else { format!(" (and {} more, less deep)", sunk.len() - 1) };
+    Some(format!("{deepest}{more}"))
 }
 
 /// Start and control as the scene has them, with a warning of what is odd. Errors: all that do not fit the robot, and tables that cannot be read.

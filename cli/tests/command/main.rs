@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod check;
+mod collision;
 mod compare;
 mod drives;
 mod edits;

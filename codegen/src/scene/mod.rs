@@ -174,6 +174,32 @@ mod tests {
         assert_eq!(source(one), source(other));
     }
 
+    /// Contact of geometry is that of the points that the geometry has.
+    #[test]
+    fn contact_of_collision_geometry_is_that_of_its_points() {
+        let law = "stiffness = 100, damping = 1, friction = 0.5";
+        let shape = format!("[effects]\ncontact = {{ '*' = {{ from = 'collision', {law} }} }}");
+        assert_eq!(source(&shape), source(&format!("[effects]\ncontact = {{ fore = {{ radius = 1, {law} }} }}")));
+        let unused = |scene: &str| {
+            let prepared = prepared(scene);
+            let reading = crate::read(&prepared.request).unwrap();
+            [prepared.resolved.report.ignored, reading.unused].map(|list| list.iter().filter(|u| u.tag == "collision").count())
+        };
+        assert_eq!((unused(""), unused(&shape)), ([1, 1], [0, 0]));
+        // What makes no contact is told of all generated code.
+        let mesh = ARM.replace("<sphere radius=\"1\"/>", "<mesh filename=\"fore.stl\"/>");
+        let scene = Scene::read("s.toml", &shape).unwrap();
+        let prepared = prepare(scene.clone(), "arm.urdf", mesh.clone().into(), Base::Fixed, Vec::new()).unwrap();
+        let mut request = Request::new("arm.urdf", mesh);
+        fill(&mut request.options, &scene);
+        settle(&mut request, &scene).unwrap();
+        for request in [prepared.request, request] {
+            let warnings = crate::generate(&request).unwrap().warnings;
+            let told = warnings.iter().filter(|w| w.to_string().contains("link \"fore\": effects.contact.\"*\": found only meshes"));
+            assert_eq!(told.count(), 1, "{warnings:?}");
+        }
+    }
+
     #[test]
     fn what_the_urdf_says_of_effects_is_used_or_reported() {
         let ignored = |scene: &str| -> Vec<String> {

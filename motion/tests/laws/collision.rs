@@ -1,5 +1,6 @@
 //! Contact of collision geometry, and links that fall through the ground.
 
+use articulated::Dynamics;
 use articulated_core::effect::EffectId;
 
 use super::{Outcome, Stage, moved, stage};
@@ -71,6 +72,57 @@ fn points_of_geometry_are_those_that_could_be_written_out() {
         [CONTACT.to_owned(), [by_hand(-0.25), by_hand(0.25)].concat()].map(|effects| stage(&fall(from, &effects), &body(capsule)));
     assert_eq!(shapes.effects, points.effects);
     assert_eq!(moved(&shapes).recording.q, moved(&points).recording.q);
+}
+
+articulated::robot! {
+    mod crawler {
+        scene = "tests/laws/crawler.toml",
+        functions = [motion],
+    }
+}
+
+articulated::robot! {
+    mod inline {
+        urdf = "tests/laws/crawler.urdf",
+        base = floating,
+        effects = { contact = { from = collision, stiffness = 1e4, damping = 0.5, friction = 0.6 } },
+        functions = [forward_dynamics],
+    }
+}
+
+/// Generated code has the same contact, from a scene's file and from the macro's own words: 8 corners, a capsule and a ball fixed to its link, 16 points on rims.
+#[test]
+fn a_generated_robot_touches_the_ground_as_the_generic_one_does() {
+    let stage = stage(include_str!("crawler.toml"), include_str!("crawler.urdf"));
+    let of = |link: &str| stage.effects_of(EffectId::contact).filter(|a| a.on == link).count();
+    assert_eq!(["trunk", "arm", "nose", "wheel"].map(of), [8, 2, 1, 16]);
+    let (generic, generated) = (moved(&stage), stage.run(&crawler::Robot, &crawler::FRAME_NAMES).unwrap());
+    let (a, b) = (&generic.recording, &generated.recording);
+    assert_eq!((a.len(), &a.t), (21, &b.t));
+    let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+    // A hundred tolerances for places and ten thousand for rates: steps over contacts that begin are not smooth.
+    assert!(apart(&a.q, &b.q) < 1e-7 && apart(&a.v, &b.v) < 1e-5, "{:e} {:e}", apart(&a.q, &b.q), apart(&a.v, &b.v));
+    // Deep in the ground, with speed, where most of the points push.
+    let (q, v) = (a.q_at(20), a.v_at(20));
+    let mut low = q.to_vec();
+    low[2] -= 0.1;
+    let (mut of_model, mut ws) = (vec![0.0; v.len()], stage.model.workspace());
+    stage.model.forward_dynamics(&mut ws, &low, v, &vec![0.0; v.len()], &mut of_model).unwrap();
+    let taken = inline::forward_dynamics(low[..].try_into().unwrap(), v.try_into().unwrap(), &[0.0; inline::NV]);
+    let scale = of_model.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    assert!(scale > 100.0 && apart(&of_model, &taken) < 1e-11 * scale, "{:e} of {scale:e}", apart(&of_model, &taken));
+}
+
+/// A point that stands on the plane is below it, by no more than its weight presses it in; then it is not told.
+#[test]
+fn a_point_that_rests_in_the_plane_is_not_odd() {
+    let plate = body("<collision><geometry><box size='0.4 0.3 0.2'/></geometry></collision>");
+    let sunk = |z: f64| {
+        let stage = stage(&fall(&format!("xyz = [0, 0, {z}]"), CONTACT), &plate);
+        stage.sunk(&stage.begin().unwrap().q).len()
+    };
+    let one = 2.0 * G / 1e4;
+    assert_eq!((sunk(0.1 - 0.25 * one), sunk(0.1 - 0.99 * one), sunk(0.1 - 1.01 * one)), (0, 0, 4));
 }
 
 /// A leg whose foot alone has contact, under a trunk that nothing but springs would hold: a trunk of 0.4 m, a foot of 0.2 m, a shin of 0.5 m.

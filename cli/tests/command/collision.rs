@@ -1,0 +1,75 @@
+//! Contact of collision geometry, and what falls through the ground, as the command tells it.
+
+use crate::{File, run};
+
+/// A trunk on a leg of which the foot alone is asked for contact: it falls to its side and its trunk through the floor.
+const ROBOT: &str = "<robot name='r'><link name='trunk'><inertial><mass value='5'/><inertia ixx='0.1' ixy='0' ixz='0' iyy='0.1' iyz='0' izz='0.1'/></inertial>
+    <collision><geometry><box size='0.4 0.2 0.2'/></geometry></collision></link>
+  <link name='foot'><inertial><mass value='0.5'/><inertia ixx='0.01' ixy='0' ixz='0' iyy='0.01' iyz='0' izz='0.01'/></inertial>
+    <collision><geometry><sphere radius='0.05'/></geometry></collision></link>
+  <link name='hand'><inertial><mass value='0.1'/><inertia ixx='0.001' ixy='0' ixz='0' iyy='0.001' iyz='0' izz='0.001'/></inertial>
+    <collision><geometry><mesh filename='hand.stl'/></geometry></collision></link>
+  <joint name='hip' type='continuous'><parent link='trunk'/><child link='foot'/><origin xyz='0 0 -0.5'/><axis xyz='0 1 0'/></joint>
+  <joint name='wrist' type='continuous'><parent link='trunk'/><child link='hand'/><origin xyz='0 0 0.2'/><axis xyz='0 1 0'/></joint></robot>";
+
+fn scene(urdf: &File, z: f64, effects: &str) -> File {
+    let text = format!(
+        "urdf = {:?}\nbase = 'floating'\n[initial]\nbase = {{ xyz = [0, 0, {z}], rpy = [0.2, 0, 0] }}\n[simulation]\nend = 1.5\nintegrator = 'rodas4'\n{effects}",
+        urdf.name()
+    );
+    File::new("fall.toml", text.as_bytes())
+}
+
+const FOOT: &str = "[effects.contact.foot]\nradius = 0.05\nstiffness = 1e4\ndamping = 1\nfriction = 0.5\n";
+const ALL: &str = "[effects.contact]\nfrom = 'collision'\nstiffness = 1e4\ndamping = 1\nfriction = 0.5\n";
+
+#[test]
+fn a_link_that_falls_through_the_ground_is_warned_of_by_simulate() {
+    let urdf = File::new("r.urdf", ROBOT.as_bytes());
+    let scene = scene(&urdf, 0.6, FOOT);
+    let ended = run(&["simulate", scene.name(), "--format", "json"]);
+    assert_eq!(ended.status, 0, "{}", ended.err);
+    let warnings = ended.json()["warnings"].clone();
+    let told: Vec<&str> =
+        warnings.as_array().unwrap().iter().map(|w| w.as_str().unwrap()).filter(|w| w.contains("below a contact plane")).collect();
+    let [told] = told[..] else { panic!("{warnings}") };
+    for part in ["found 2 links that go below", "\"trunk\" from t = ", "\"hand\" from t = ", " m deep at t = ", "`from = \"collision\"`"] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+    assert!(ended.err.contains(told), "{}", ended.err);
+    // It starts above: `check` has nothing to say.
+    assert!(!run(&["check", scene.name()]).out.contains("below a contact plane"));
+}
+
+#[test]
+fn a_start_below_the_ground_is_warned_of_by_check_and_simulate() {
+    let urdf = File::new("r.urdf", ROBOT.as_bytes());
+    let scene = scene(&urdf, -0.3, FOOT);
+    for ended in [run(&["check", scene.name()]), run(&["simulate", scene.name()])] {
+        let said = format!("{}{}", ended.out, ended.err);
+        assert!(
+            ended.status == 0 && said.contains("links below a contact plane at the start where no contact holds them: \"trunk\" ("),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn contact_of_geometry_keeps_the_robot_above_the_ground_and_names_meshes() {
+    let urdf = File::new("r.urdf", ROBOT.as_bytes());
+    let scene = scene(&urdf, 0.6, ALL);
+    let ended = run(&["simulate", scene.name(), "--format", "json"]);
+    let report = ended.json();
+    let warnings = report["warnings"].as_array().unwrap();
+    assert!(
+        ended.status == 0 && warnings.iter().any(|w| w.as_str().unwrap().contains("link \"hand\": effects.contact: found only meshes")),
+        "{report}"
+    );
+    assert!(warnings.iter().all(|w| !w.as_str().unwrap().contains("\"trunk\" from t")), "{report}");
+    let out = run(&["check", scene.name()]).out;
+    assert!(out.contains("link \"hand\": effects.contact: found only meshes"), "{out}");
+    assert_eq!(out.lines().filter(|line| line.contains("collision: no effect of a scene takes it")).count(), 1, "{out}");
+    // The head of generated code has it too.
+    let generated = run(&["generate", scene.name(), "--functions", "forward_dynamics"]);
+    assert!(generated.status == 0 && generated.out.contains("found only meshes"), "{}", generated.err);
+}
