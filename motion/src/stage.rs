@@ -1,12 +1,13 @@
 //! A scene with its robot.
 
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
 use articulated_core::description::Description;
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
 use articulated_scene::{Opened, Report, RobotError, Scene, Settled};
-use articulated_urdf::{Problem, Reading, read_file};
+use articulated_urdf::{Problem, Reading, open_file};
 
 /// No table of control is larger, bytes: ten million rows, of which none has more, of 400 each.
 const MOST_OF_TABLE: u64 = 4 << 30;
@@ -62,16 +63,12 @@ impl Stage {
 }
 
 impl Stage {
-    /// The text of a file that the scene names: a table over time. Errors: one that cannot be read, is larger than any table (4 GiB), or is no text in UTF-8.
-    pub fn file(&self, name: &str) -> Result<String, String> {
+    /// A file that the scene names, a table over time, to be read line by line. Errors: one that cannot be read, is no regular file, or is larger than any
+    /// table (4 GiB).
+    pub fn file(&self, name: &str) -> Result<Box<dyn BufRead>, String> {
         let path = self.folder.join(name);
-        let wrong = |reason: String| format!("{}: {reason}", path.display());
-        let bytes = read_file(&path, MOST_OF_TABLE).map_err(|e| wrong(e.to_string()))?;
-        String::from_utf8(bytes).map_err(|e| {
-            let before = &e.as_bytes()[..e.utf8_error().valid_up_to()];
-            let line = before.iter().filter(|byte| **byte == b'\n').count() + 1;
-            wrong(format!("line {line}: found bytes that are not UTF-8, expected a CSV"))
-        })
+        let file = open_file(&path, MOST_OF_TABLE).map_err(|e| format!("{}: {e}", path.display()))?;
+        Ok(Box::new(BufReader::new(file)))
     }
 
     /// The effects of one kind.

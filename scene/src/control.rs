@@ -154,7 +154,7 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
         required: false,
         value: "text",
         default: "none",
-        what: "`table`, `pd`: a CSV of at most 10 000 000 rows, seen from the scene's folder; its first line names the columns, the first of which is `t`, s; the others, at least one, are joints (`joint[k]` for the k-th number of one that has several)",
+        what: "`table`, `pd`: a CSV, a regular file of at most 10 000 000 rows, seen from the scene's folder; its first line names the columns, the first of which is `t`, s; the others, at least one, are joints (`joint[k]` for the k-th number of one that has several)",
         read: |x, s, log| {
             x.source.file = name(s, log, "the path of a CSV");
             x.source.place = s.at;

@@ -16,6 +16,7 @@
 
 mod calls;
 mod control;
+mod csv;
 mod document;
 mod edits;
 mod effects;

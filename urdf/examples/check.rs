@@ -16,7 +16,7 @@ fn main() -> ExitCode {
 
 fn check(file: &str, base: Base, unused: bool) -> bool {
     let options = Options { file: file.to_owned(), base, ..Options::default() };
-    let bytes = match std::fs::read(file) {
+    let bytes = match articulated_urdf::read_file(file.as_ref(), articulated_urdf::MOST_BYTES) {
         Ok(bytes) => bytes,
         Err(error) => {
             println!("error: {file}: {error}");

@@ -78,9 +78,9 @@ mod xacro;
 
 use articulated_core::description::{Base, Description};
 
-pub use file::{MOST_BYTES, read_at_most, read_file};
+pub use file::{AtMost, MOST_BYTES, open_file, read_at_most, read_file};
 use log::Log;
-pub use problem::{Kind, Problem, Problems, Subject, quote};
+pub use problem::{Kind, Problem, Problems, Subject, quote, quote_number};
 pub use snap::{MOST_SNAPPED, SNAP_EXPECTED, can_snap, nearly_right_angles};
 pub use summary::{summary, summary_of_unused};
 pub use unused::Unused;

@@ -231,14 +231,22 @@ pub(crate) fn is_invisible(c: char) -> bool {
 
 /// `text` in quotation marks, on one line, cut where it gets long. Characters that are not visible are escaped.
 pub fn quote(text: &str) -> String {
-    const MOST: usize = 80;
+    quoted(text, 80)
+}
+
+/// As [`quote`], of what should be a number: cut after as many characters as a double may need.
+pub fn quote_number(text: &str) -> String {
+    quoted(text, 24)
+}
+
+fn quoted(text: &str, most: usize) -> String {
     let mut out = String::from('"');
-    for c in text.chars().take(MOST) {
+    for c in text.chars().take(most) {
         match c {
             c if is_invisible(c) => out.extend(c.escape_default()),
             c => out.push(c),
         }
     }
-    out.push_str(if text.chars().nth(MOST).is_some() { "…\"" } else { "\"" });
+    out.push_str(if text.chars().nth(most).is_some() { "…\"" } else { "\"" });
     out
 }

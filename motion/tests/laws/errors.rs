@@ -158,15 +158,36 @@ fn all_that_is_wrong_with_a_scene_is_told_at_once() {
 fn tables_that_are_no_text_are_not_read() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("odd.csv"), b"t,slide\n0,\xff\n").unwrap();
-    let vast = std::fs::File::create(folder.path().join("vast.csv")).unwrap();
-    vast.set_len((4 << 30) + 1).unwrap();
+    for (name, length) in [("vast.csv", (4 << 30) + 1), ("hole.csv", 4 << 30)] {
+        std::fs::File::create(folder.path().join(name)).unwrap().set_len(length).unwrap();
+    }
     let begun = |file: &str| {
         let stage = stage(&format!("control = {{ kind = 'table', file = '{file}' }}"), CART).in_folder(folder.path());
         stage.begin().unwrap_err().to_string()
     };
-    let (odd, vast) = (begun("odd.csv"), begun("vast.csv"));
-    assert!(odd.starts_with("s.toml:1: ") && odd.contains("odd.csv: line 2: found bytes that are not UTF-8, expected a CSV"), "{odd}");
+    assert_eq!(begun("odd.csv"), "odd.csv:2: found bytes that are not UTF-8, expected a CSV");
+    let vast = begun("vast.csv");
     assert!(vast.contains("vast.csv: found 4294967297 bytes, expected at most 4294967296 bytes"), "{vast}");
+    assert!(begun("hole.csv").starts_with("hole.csv:1: found more than 1048576 bytes without an end of line, expected "));
+}
+
+/// Nobody writes to the pipe: whoever opened it would wait for ever.
+#[cfg(unix)]
+#[test]
+fn tables_are_regular_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("pipe.csv");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    std::os::unix::fs::symlink("/dev/zero", folder.path().join("zeros.csv")).unwrap();
+    std::fs::create_dir(folder.path().join("folder.csv")).unwrap();
+    for kind in ["kind = 'table'", "kind = 'pd', kp = 1.0"] {
+        for (file, found) in [("pipe.csv", "a pipe"), ("zeros.csv", "a device"), ("folder.csv", "a folder"), ("/dev/zero", "a device")] {
+            let stage = stage(&format!("control = {{ {kind}, file = '{file}' }}"), CART).in_folder(folder.path());
+            let told = stage.begin().unwrap_err().to_string();
+            let expected = format!("{file}: found {found}, expected a regular file), expected a CSV");
+            assert!(told.starts_with("s.toml:1: control.file: ") && told.contains(&expected), "{told}");
+        }
+    }
 }
 
 #[test]

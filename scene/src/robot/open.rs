@@ -78,7 +78,8 @@ pub fn open(path: &Path, bundled: &[Bundled<'_>]) -> Result<Opened, RobotError> 
 
 /// A scene that was read, with its robot's documents; `bundled` are the robots that it may call by name. Files that it names are seen from `folder`.
 pub fn open_in(mut scene: Scene, folder: &Path, bundled: &[Bundled<'_>]) -> Result<Opened, RobotError> {
-    scene.code.append.iter_mut().for_each(|other| other.urdf = folder.join(&other.urdf).display().to_string());
+    let appended: Vec<PathBuf> = scene.code.append.iter().map(|other| folder.join(&other.urdf)).collect();
+    scene.code.append.iter_mut().zip(&appended).for_each(|(other, path)| other.urdf = path.display().to_string());
     let mut files = Vec::new();
     let (file, urdf, base) = match &scene.robot {
         Robot::Urdf(name) => {
@@ -93,9 +94,10 @@ pub fn open_in(mut scene: Scene, folder: &Path, bundled: &[Bundled<'_>]) -> Resu
         },
         Robot::Given => return Err(scene.without_robot("no robot", "robot, or urdf").into()),
     };
-    let append = scene.code.append.iter().map(|other| {
-        files.push(PathBuf::from(&other.urdf));
-        read_robot_file(Path::new(&other.urdf)).map_err(|error| scene.unreadable(other.place, "append.urdf", &error))
+    let append = scene.code.append.iter().zip(appended).map(|(other, path)| {
+        let bytes = read_robot_file(&path);
+        files.push(path);
+        bytes.map_err(|error| scene.unreadable(other.place, "append.urdf", &error))
     });
     let append = append.collect::<Result<Vec<_>, _>>()?;
     Ok(Opened { files, ..Opened::new(scene, &file, urdf, base, append) })

@@ -91,7 +91,7 @@ fn all_that_is_wrong_with_a_csv_is_told_of_its_lines() {
     let scene = Scene::read("there/s.toml", "\n[control]\nkind = \"table\"\nfile = \"t.csv\"").unwrap();
     let model = Model::new(&articulated_urdf::read(ARM.as_bytes(), &Default::default()).unwrap().description, Base::Fixed).unwrap();
     let read = |text: &str| {
-        let (result, text) = (scene.controller(&model, &mut |_| Ok(text.to_owned())), text.len());
+        let (result, text) = (scene.controller(&model, &mut |_| Ok(Box::new(std::io::Cursor::new(text.to_owned())))), text.len());
         result.map(|_| text).map_err(|e| e.errors.iter().map(|e| e.to_string().replace('\\', "/")).collect::<Vec<_>>())
     };
     let told = |text: &str, expected: &[&str]| {

@@ -1,0 +1,347 @@
+//! A table over time in a CSV, read line by line: in memory are the numbers that are used, whatever else the file holds.
+
+use std::io::{BufRead, Read};
+
+use articulated_core::control::Series;
+use articulated_core::effect::Range;
+use articulated_core::model::Model;
+use articulated_urdf::quote_number;
+
+use crate::error::{Kind, bare};
+use crate::initial::{Side, counted, normalise};
+use crate::log::Log;
+use crate::series::{Places, ROW, Source, listed};
+use crate::tree::At;
+
+/// What bounds a table.
+#[derive(Clone, Copy)]
+struct Most {
+    /// Lines with numbers.
+    rows: usize,
+    /// Numbers of all rows together, as the robot has them: 2 GiB.
+    numbers: usize,
+    /// Bytes of a line.
+    line: u64,
+    /// Lines, empty ones too.
+    lines: u32,
+    /// Mistakes that are told before the rest is left alone.
+    wrong: usize,
+}
+
+const MOST: Most = Most { rows: 10_000_000, numbers: 1 << 28, line: 1 << 20, lines: 20_000_000, wrong: 100 };
+
+/// The table of a CSV for a robot; columns that are not there are neutral. What is wrong with it is told of its lines, and no more of them than the number
+/// or the name that is wrong; then the table is empty.
+pub(crate) fn read(from: Box<dyn BufRead>, hold: bool, robot: (&Model<f64>, Side), log: &mut Log) -> Series {
+    read_at_most(MOST, from, hold, robot, log)
+}
+
+fn read_at_most(most: Most, from: Box<dyn BufRead>, hold: bool, (model, side): (&Model<f64>, Side), log: &mut Log) -> Series {
+    let mut lines = Lines { from, count: 0, most };
+    let Some((at, head)) = lines.next(log) else {
+        if log.count() == 0 {
+            log.error(At::Nowhere, "", Kind::Syntax, "nothing", "a first line that names the columns, t and joints");
+        }
+        return Series::default();
+    };
+    let Some(columns) = columns(&head, at, (model, side), log) else { return Series::default() };
+    let source = Source { column_places: vec![at; columns.len()], columns, ..Source::default() };
+    source.check_columns(&|_| String::new(), log);
+    let places = source.places(model, side, &|_| String::new(), log);
+    let mut table =
+        Table { columns: &source.columns, places: &places, model, side, series: Series { hold, ..Series::default() }, last: None };
+    table.fill(&mut lines, most, log);
+    if table.last.is_none() && log.count() == 0 {
+        log.error(At::Nowhere, "", Kind::Syntax, "no rows", format!("lines of numbers: {ROW}"));
+    }
+    if log.count() == 0 { table.series } else { Series::default() }
+}
+
+/// The names of the columns after the time; none of what is no table.
+fn columns(text: &str, at: At, (model, side): (&Model<f64>, Side), log: &mut Log) -> Option<Vec<String>> {
+    let mut names = fields(text).into_iter();
+    let first = names.next().unwrap_or_default();
+    if !["t", "time"].contains(&first.as_str()) {
+        log.error(at, "", Kind::Word, format!("{} as the first column", quote_number(&first)), "t");
+        return None;
+    }
+    let columns: Vec<String> = names.collect();
+    if columns.is_empty() {
+        let expected = format!("columns of joints that move after t: {}", listed(model, side));
+        log.error(at, "", Kind::MissingKey, "a single column", expected);
+        return None;
+    }
+    Some(columns)
+}
+
+/// Rows as they are read.
+struct Table<'a> {
+    columns: &'a [String],
+    places: &'a Places,
+    model: &'a Model<f64>,
+    side: Side,
+    series: Series,
+    /// Time of the last row, s.
+    last: Option<f64>,
+}
+
+impl Table<'_> {
+    /// Takes the lines up to the end, to what bounds a table, or to so many mistakes that the rest is left alone.
+    fn fill(&mut self, lines: &mut Lines, most: Most, log: &mut Log) {
+        let neutral = self.places.neutral(self.model, self.side);
+        let rows = most.rows.min(most.numbers / neutral.len().max(1));
+        let mut count = 0;
+        while let Some((at, text)) = lines.next(log) {
+            count += 1;
+            if count > rows {
+                return log.error(at, "", Kind::Number, format!("row {count}"), format!("at most {rows} rows"));
+            }
+            if log.count() >= most.wrong {
+                let found = format!("{} mistakes above; from here on nothing is read", log.count());
+                return log.error(at, "", Kind::Syntax, found, "");
+            }
+            let Some(numbers) = self.row(&text, at, log) else { continue };
+            self.in_order(numbers[0], at, log);
+            let mut row = neutral.clone();
+            self.places.put(&numbers[1..], &mut row);
+            if self.side == Side::Q && self.places.are_all() {
+                normalise(self.model, &mut row, ("", &|_| at), log);
+            }
+            // Of a table that is wrong nothing is used.
+            if log.count() == 0 {
+                self.series.times.push(numbers[0]);
+                self.series.rows.push(row);
+            }
+        }
+    }
+
+    fn in_order(&mut self, time: f64, at: At, log: &mut Log) {
+        if let Some(before) = self.last.filter(|before| time <= *before) {
+            log.error(at, "", Kind::Together, format!("the time {time:?} after {before:?}"), "times in order");
+        }
+        self.last = Some(time);
+    }
+
+    /// The numbers of a line; none where one of them is wrong.
+    fn row(&self, text: &str, at: At, log: &mut Log) -> Option<Vec<f64>> {
+        let words = fields(text);
+        let width = self.columns.len() + 1;
+        if words.len() != width {
+            log.error(at, "", Kind::Together, counted(words.len()), format!("{}: {ROW}", counted(width)));
+            return None;
+        }
+        let before = log.count();
+        let names = std::iter::once("t").chain(self.columns.iter().map(String::as_str));
+        let mut row = Vec::with_capacity(width);
+        for (name, word) in names.zip(words) {
+            match word.parse::<f64>() {
+                Ok(x) if x.is_finite() => row.push(x),
+                _ => log.error(at, &bare(name), Kind::Number, quote_number(&word), Range::ALL.to_string()),
+            }
+        }
+        (log.count() == before).then_some(row)
+    }
+}
+
+/// The lines of a text that are not empty.
+struct Lines {
+    from: Box<dyn BufRead>,
+    count: u32,
+    most: Most,
+}
+
+impl Lines {
+    /// The next of them; none at the end, and none after one that is no text or too long, which is told.
+    fn next(&mut self, log: &mut Log) -> Option<(At, String)> {
+        loop {
+            self.count += 1;
+            let (at, most) = (At::Line(self.count), self.most);
+            let mut wrong = |kind, found: String, expected: String| {
+                log.error(at, "", kind, found, expected);
+                None
+            };
+            let mut line = Vec::new();
+            match self.from.by_ref().take(most.line + 1).read_until(b'\n', &mut line) {
+                Ok(0) => return None,
+                Ok(_) if self.count > most.lines => {
+                    return wrong(Kind::Syntax, "one line more".into(), format!("at most {} lines", most.lines));
+                }
+                Ok(length) if length as u64 > most.line => {
+                    let expected = format!("a line of a CSV, of at most {} bytes", most.line);
+                    return wrong(Kind::Syntax, format!("more than {} bytes without an end of line", most.line), expected);
+                }
+                Ok(_) => {}
+                Err(error) => return wrong(Kind::Syntax, format!("what cannot be read ({error})"), "a line of a CSV".into()),
+            }
+            let Ok(text) = String::from_utf8(line) else {
+                return wrong(Kind::Syntax, "bytes that are not UTF-8".into(), "a CSV".into());
+            };
+            // Spreadsheets write a byte order mark.
+            let text = match text.strip_prefix('\u{feff}') {
+                Some(rest) if self.count == 1 => rest.to_owned(),
+                _ => text,
+            };
+            if !text.trim().is_empty() {
+                return Some((at, text));
+            }
+        }
+    }
+}
+
+/// What stands between the commas of a line, without the blanks around it; in quotation marks there may be commas too, and two marks are one (RFC 4180).
+fn fields(line: &str) -> Vec<String> {
+    let (mut fields, mut rest) = (Vec::new(), Some(line));
+    while let Some(text) = rest {
+        let (field, after) = quoted(text).unwrap_or_else(|| up_to_comma(text));
+        fields.push(field);
+        rest = after;
+    }
+    fields
+}
+
+/// A field, and what is behind its comma, if there is one.
+type Field<'a> = (String, Option<&'a str>);
+
+fn up_to_comma(text: &str) -> Field<'_> {
+    let (field, rest) = text.split_once(',').map_or((text, None), |(field, rest)| (field, Some(rest)));
+    (field.trim().to_owned(), rest)
+}
+
+/// A field that begins with a mark, if another one ends it.
+fn quoted(text: &str) -> Option<Field<'_>> {
+    let (mut field, mut rest) = (String::new(), text.trim_start().strip_prefix('"')?);
+    loop {
+        let (inside, after) = rest.split_once('"')?;
+        field += inside;
+        let Some(more) = after.strip_prefix('"') else {
+            let (tail, rest) = up_to_comma(after);
+            return Some(((field + &tail).trim().to_owned(), rest));
+        };
+        field.push('"');
+        rest = more;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{Cursor, Error};
+
+    use articulated_core::description::Base;
+
+    use super::*;
+
+    const ARM: &str = "<robot name='r'><link name='base'/><link name='l'/>
+        <joint name='elbow' type='continuous'><parent link='base'/><child link='l'/></joint></robot>";
+
+    fn arm() -> Model<f64> {
+        let description = articulated_urdf::read(ARM.as_bytes(), &Default::default()).unwrap().description;
+        Model::new(&description, Base::Fixed).unwrap()
+    }
+
+    /// Read within bounds: the table, or all that is told.
+    fn read_within(most: Most, from: impl BufRead + 'static) -> Result<Series, String> {
+        let mut log = Log::new("t.csv");
+        let series = read_at_most(most, Box::new(from), false, (&arm(), Side::V), &mut log);
+        log.result(series).map_err(|e| e.to_string())
+    }
+
+    fn of_text(most: Most, text: &str) -> Result<Series, String> {
+        read_within(most, Cursor::new(text.to_owned()))
+    }
+
+    #[test]
+    fn what_goes_beyond_the_most_is_told_and_not_read() {
+        let table = |rows: usize| "t,elbow\n".to_owned() + &["0,1\n", "1,2\n", "2,3\n", "rubbish\n"][..rows].concat();
+        let few = Most { rows: 2, ..MOST };
+        assert_eq!(of_text(few, &table(2)).unwrap().times, [0.0, 1.0]);
+        let told = Err("t.csv:4: found row 3, expected at most 2 rows".to_owned());
+        assert_eq!((of_text(few, &table(3)), of_text(few, &table(4))), (told.clone(), told));
+        // This robot has one number a row.
+        let told = Err("t.csv:3: found row 2, expected at most 1 rows".to_owned());
+        assert_eq!(of_text(Most { numbers: 1, ..MOST }, &table(3)), told);
+        let told = Err("t.csv:4: found one line more, expected at most 3 lines".to_owned());
+        assert_eq!(of_text(Most { lines: 3, ..MOST }, "t,elbow\n\n\n\n\n"), told);
+    }
+
+    /// A device, a hole in a file: zeros without an end of line.
+    #[test]
+    fn what_has_no_lines_is_refused_after_one_of_them() {
+        let told = read_within(MOST, std::io::BufReader::new(std::io::repeat(0))).unwrap_err();
+        let expected = "t.csv:1: found more than 1048576 bytes without an end of line, expected a line of a CSV, of at most 1048576 bytes";
+        assert_eq!(told, expected);
+        let told = of_text(Most { line: 9, ..MOST }, "t,elbow\n0,1\n1,2000000").unwrap_err();
+        assert_eq!(told, "t.csv:3: found more than 9 bytes without an end of line, expected a line of a CSV, of at most 9 bytes");
+        assert_eq!(of_text(Most { line: 9, ..MOST }, "t,elbow\n0,1234567\n").unwrap_err().lines().count(), 1);
+        assert!(of_text(Most { line: 10, ..MOST }, "t,elbow\n0,1234567\n").is_ok());
+    }
+
+    /// Garbage that goes on and on is not read to its end.
+    #[test]
+    fn after_many_mistakes_the_rest_is_left_alone() {
+        struct Endless(u64);
+        impl Read for Endless {
+            fn read(&mut self, out: &mut [u8]) -> std::io::Result<usize> {
+                self.0 += out.len() as u64;
+                assert!(self.0 < 1 << 20, "reads on");
+                out.fill(b'x');
+                out.iter_mut().step_by(8).for_each(|byte| *byte = b'\n');
+                Ok(out.len())
+            }
+        }
+        let told = read_within(MOST, std::io::BufReader::new(Cursor::new("t,elbow\n").chain(Endless(0)))).unwrap_err();
+        assert_eq!(told.lines().count(), 101, "{told}");
+        assert!(told.ends_with("found 100 mistakes above; from here on nothing is read"), "{told}");
+    }
+
+    #[test]
+    fn no_more_of_a_file_is_told_than_the_number_that_is_wrong() {
+        let secret = "root:x:0:0:the administrator of this machine:/root:/bin/sh";
+        let told = of_text(MOST, &format!("{secret}\n{secret}\n")).unwrap_err();
+        assert_eq!(told, "t.csv:1: found \"root:x:0:0:the administr…\" as the first column, expected t");
+        let told = of_text(MOST, &format!("t,elbow\n{secret}\n0,\u{1b}[2J\u{202e}{secret}\n")).unwrap_err();
+        let expected = "t.csv:2: found one number, expected 2 numbers: the time and one for each of the columns
+t.csv:3: elbow: found \"\\u{1b}[2J\\u{202e}root:x:0:0:the admi…\", expected a finite number";
+        assert_eq!(told, expected);
+    }
+
+    #[test]
+    fn a_file_that_cannot_be_read_on_is_told_with_the_line() {
+        struct Broken;
+        impl Read for Broken {
+            fn read(&mut self, _: &mut [u8]) -> std::io::Result<usize> {
+                Err(Error::other("the disk is gone"))
+            }
+        }
+        let told = read_within(MOST, std::io::BufReader::new(Cursor::new("t,elbow\n0,1\n").chain(Broken))).unwrap_err();
+        assert_eq!(told, "t.csv:3: found what cannot be read (the disk is gone), expected a line of a CSV");
+        let told = read_within(MOST, Cursor::new(b"t,elbow\n0,\xff\n".to_vec())).unwrap_err();
+        assert_eq!(told, "t.csv:2: found bytes that are not UTF-8, expected a CSV");
+    }
+
+    #[test]
+    fn numbers_of_a_table_in_a_file_are_the_nearest_doubles() {
+        let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
+        let doubles = std::iter::repeat_with(|| {
+            bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            f64::from_bits(bits)
+        });
+        let doubles: Vec<f64> = doubles.filter(|x| x.is_finite()).take(100_000).collect();
+        let rows = doubles.iter().enumerate().map(|(k, x)| if k % 2 == 0 { format!("{k},{x:?}\n") } else { format!("{k},{x:.16e}\n") });
+        let series = of_text(MOST, &("t,elbow\n".to_owned() + &rows.collect::<String>())).unwrap();
+        assert_eq!(series.rows.len(), doubles.len());
+        series.rows.iter().zip(&doubles).for_each(|(row, x)| assert_eq!(row[0].to_bits(), x.to_bits(), "{x:e}"));
+    }
+
+    #[test]
+    fn fields_in_quotation_marks_may_have_commas_and_marks() {
+        assert_eq!(fields("t, elbow ,\"a,b \"\"q\"\"\", \"wrist\""), ["t", "elbow", "a,b \"q\"", "wrist"]);
+        assert_eq!(
+            (fields(""), fields("1,"), fields("\"\",2")),
+            (vec![String::new()], vec!["1".into(), String::new()], vec![String::new(), "2".into()])
+        );
+        assert_eq!(
+            (fields("\"open,2"), fields("a\"b,\"c\"d")),
+            (vec!["\"open".to_owned(), "2".into()], vec!["a\"b".to_owned(), "cd".into()])
+        );
+    }
+}
