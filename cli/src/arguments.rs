@@ -140,7 +140,7 @@ pub(crate) enum Command {
 pub(crate) struct RobotArguments {
     /// A bundled robot's or scene's name (a robot's first), the path of a URDF or of a scene (.toml), or - for a URDF on the standard input
     #[arg(value_name = "ROBOT")]
-    pub(crate) robot: String,
+    pub(crate) robot: PathBuf,
     /// The root link moves freely (bundled robots know their own base)
     #[arg(long, conflicts_with = "fixed")]
     pub(crate) floating: bool,
@@ -168,9 +168,9 @@ pub(crate) struct RobotArguments {
 
 impl RobotArguments {
     /// A robot as it is.
-    pub(crate) fn plain(robot: &str, floating: bool) -> Self {
+    pub(crate) fn plain(robot: impl Into<PathBuf>, floating: bool) -> Self {
         Self {
-            robot: robot.to_owned(),
+            robot: robot.into(),
             floating,
             fixed: false,
             gravity: None,
@@ -244,7 +244,7 @@ pub(crate) struct EvalArguments {
     pub(crate) function: Vec<Names>,
     /// A file of states in JSON or CSV; - is the standard input
     #[arg(long, value_name = "FILE")]
-    pub(crate) states: String,
+    pub(crate) states: PathBuf,
     /// By generated code only, compiled by rustc
     #[arg(long, conflicts_with = "generic")]
     pub(crate) generated: bool,
@@ -295,7 +295,7 @@ pub(crate) struct CompareArguments {
 pub(crate) struct FunctionsArguments {
     /// Bundled robots' names, or paths of URDF files or of scenes (.toml) [default: ur5_like panda_like quadruped humanoid]
     #[arg(value_name = "ROBOT")]
-    pub(crate) robots: Vec<String>,
+    pub(crate) robots: Vec<PathBuf>,
     /// The root links of robots that are files move freely
     #[arg(long)]
     pub(crate) floating: bool,

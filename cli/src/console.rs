@@ -6,6 +6,7 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::failure::Failure;
+use crate::table::{escaped, is_obeyed, plain};
 
 /// Writes to the standard output. A reader that has gone away is not an error.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
@@ -18,7 +19,12 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 
 /// A line `warning: …` on the standard error stream.
 pub(crate) fn warn(text: &str) {
-    say("warning", "33", text);
+    say("warning", "33", &plain(text));
+}
+
+/// A line `note: …` on the standard error stream.
+pub(crate) fn note(text: &str) {
+    say("note", "36", &plain(text));
 }
 
 /// A line `error: …` on the standard error stream.
@@ -33,22 +39,9 @@ fn say(level: &str, colour: &str, text: &str) {
     let _ = writeln!(stream, "{level}: {}", harmless(text));
 }
 
-/// A text without characters that move the cursor or turn the direction of what follows: names of files and robots may have
-/// them. Ends of lines and tabs stay.
+/// A text without what a terminal would obey: names of files and robots may have such characters. Ends of lines and tabs stay.
 pub(crate) fn harmless(text: &str) -> String {
-    let turns = |c: char| matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    let is_harmful = |c: char| !matches!(c, '\n' | '\t') && (c.is_control() || turns(c));
-    if !text.contains(is_harmful) {
-        return text.to_owned();
-    }
-    text.chars().fold(String::with_capacity(text.len()), |mut out, c| {
-        if is_harmful(c) {
-            out.extend(c.escape_default());
-        } else {
-            out.push(c);
-        }
-        out
-    })
+    escaped(text, |c| !matches!(c, '\n' | '\t') && is_obeyed(c))
 }
 
 /// A bar on the standard error stream, if that is a terminal; it goes away when dropped.

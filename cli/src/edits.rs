@@ -1,8 +1,12 @@
 //! Edits of a robot as words of the command line.
 
+use std::ffi::OsStr;
+use std::path::PathBuf;
+
 use articulated_core::description::{Origin, Payload};
 use articulated_core::spatial::Reference;
 use clap::Args;
+use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use crate::table::counted;
 
@@ -10,7 +14,7 @@ use crate::table::counted;
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct Edits {
     /// Append another robot on a link; may be given several times. The placement of its root in the frame of the link: 0 if left out
-    #[arg(long, value_name = "FILE@LINK[:PREFIX[:X,Y,Z[,ROLL,PITCH,YAW]]]", value_parser = appended)]
+    #[arg(long, value_name = "FILE@LINK[:PREFIX[:X,Y,Z[,ROLL,PITCH,YAW]]]", value_parser = OsStringValueParser::new().try_map(|text| appended(&text)))]
     pub(crate) append: Vec<Appended>,
     /// Attach a load, kg, to a link: its centre of mass in m, its inertia about that in kg·m²; may be given several times
     #[arg(long, value_name = "LINK=MASS[@X,Y,Z[:XX,XY,XZ,YY,YZ,ZZ]]", value_parser = payload)]
@@ -42,7 +46,7 @@ pub(crate) struct Lock {
 /// A robot to append, by its file or its bundled name.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Appended {
-    pub(crate) file: String,
+    pub(crate) file: PathBuf,
     pub(crate) at: String,
     pub(crate) prefix: String,
     pub(crate) origin: Origin,
@@ -69,15 +73,31 @@ fn payload(text: &str) -> Result<Payload, String> {
     Ok(Payload { link: link.to_owned(), name: None, mass, center_of_mass, inertia })
 }
 
-fn appended(text: &str) -> Result<Appended, String> {
-    let (file, rest) = text.rsplit_once('@').ok_or("expected FILE@LINK, as gripper.urdf@tool, or FILE@LINK:PREFIX")?;
+fn appended(text: &OsStr) -> Result<Appended, String> {
+    let (file, rest) = split(text).ok_or("expected FILE@LINK, as gripper.urdf@tool, or FILE@LINK:PREFIX")?;
     let mut parts = rest.splitn(3, ':');
     let [at, prefix] = [(); 2].map(|()| parts.next().unwrap_or_default().to_owned());
     let origin = parts.next().map_or_else(|| Ok(Origin::default()), origin)?;
-    if at.is_empty() || file.is_empty() {
+    if at.is_empty() || file.as_os_str().is_empty() {
         return Err("expected FILE@LINK, as gripper.urdf@tool".into());
     }
-    Ok(Appended { file: file.to_owned(), at, prefix, origin })
+    Ok(Appended { file, at, prefix, origin })
+}
+
+/// The file before the last `@`, and what is after it. A path need not be UTF-8, a name is.
+fn split(text: &OsStr) -> Option<(PathBuf, String)> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::ffi::OsStrExt;
+        let bytes = text.as_bytes();
+        let at = bytes.iter().rposition(|byte| *byte == b'@')?;
+        Some((OsStr::from_bytes(&bytes[..at]).into(), str::from_utf8(&bytes[at + 1..]).ok()?.to_owned()))
+    }
+    #[cfg(not(unix))]
+    {
+        let (file, rest) = text.to_str()?.rsplit_once('@')?;
+        Some((file.into(), rest.to_owned()))
+    }
 }
 
 fn origin(text: &str) -> Result<Origin, String> {
@@ -135,6 +155,7 @@ mod tests {
 
     #[test]
     fn an_appended_robot_is_a_file_a_link_and_what_else_is_known() {
+        let appended = |text: &str| super::appended(OsStr::new(text));
         let plain = Appended { file: "a@b/gripper.urdf".into(), at: "tool".into(), prefix: String::new(), origin: Origin::default() };
         assert_eq!(appended("a@b/gripper.urdf@tool"), Ok(plain.clone()));
         let placed = Appended { prefix: "left_".into(), origin: Origin { xyz: [0.0, 0.0, 0.1], rpy: [0.0, 0.0, 1.5] }, ..plain.clone() };

@@ -108,14 +108,35 @@ fn dispatch(arguments: &Arguments) -> Result<u8, Failure> {
     }
 }
 
-/// A report as JSON, indented, with a line's end.
+/// A report as JSON, indented, with a line's end. What of a name a terminal would obey is escaped as JSON has it.
 fn json(report: &impl serde::Serialize) -> String {
-    serde_json::to_string_pretty(report).map_or_else(|e| format!("{{\"error\": {:?}}}\n", e.to_string()), |text| text + "\n")
+    let text = serde_json::to_string_pretty(report).map_or_else(|e| format!("{{\"error\": {:?}}}\n", e.to_string()), |text| text + "\n");
+    // Outside of texts there are no other such characters than ends of lines.
+    let obeyed = |c: char| c != '\n' && table::is_obeyed(c);
+    if !text.contains(obeyed) {
+        return text;
+    }
+    text.chars().fold(String::with_capacity(text.len()), |mut out, c| {
+        if obeyed(c) {
+            out += &format!("\\u{:04x}", u32::from(c));
+        } else {
+            out.push(c);
+        }
+        out
+    })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::sentence;
+    use super::{json, sentence};
+
+    #[test]
+    fn json_has_nothing_that_a_terminal_obeys_and_reads_back() {
+        let name = "a\u{202e}b\u{9b}31m\u{7f}\nc\td";
+        let text = json(&[name]);
+        assert_eq!(text, "[\n  \"a\\u202eb\\u009b31m\\u007f\\nc\\td\"\n]\n");
+        assert_eq!(serde_json::from_str::<Vec<String>>(&text).unwrap(), [name]);
+    }
 
     #[test]
     fn a_sentence_has_its_list_and_no_advice() {

@@ -8,29 +8,29 @@ use articulated_codegen::{Error, nearest};
 use crate::failure::Failure;
 
 /// Whether a word is one where a robot is asked for too, whose names go before.
-pub(crate) fn is_scene(name: &str) -> bool {
-    let bundled = articulated_models::scene(name).is_some() && articulated_models::robot(name).is_none();
-    bundled || ends_with(name, "toml")
+pub(crate) fn is_scene(path: &Path) -> bool {
+    let is_bundled = |name| articulated_models::scene(name).is_some() && articulated_models::robot(name).is_none();
+    path.to_str().is_some_and(is_bundled) || ends_with(path, "toml")
 }
 
 /// The scene, and the folder of its file. A bundled one goes before a file of its name, as a bundled robot does: `./name` is the file.
-pub(crate) fn open(name: &str) -> Result<(Prepared, PathBuf), Failure> {
-    if let Some(bundled) = articulated_models::scene(name) {
+pub(crate) fn open(path: &Path) -> Result<(Prepared, PathBuf), Failure> {
+    if let Some(bundled) = path.to_str().and_then(articulated_models::scene) {
         let scene = Scene::read(&bundled.file(), bundled.toml).map_err(Error::from)?;
         return Ok((scene::open_in(scene, Path::new(""), &robots())?, PathBuf::new()));
     }
-    let path = Path::new(name);
+    let name = &path.to_string_lossy();
     if !path.exists() {
         return Err(unknown(name));
     }
-    if path.is_file() && ends_with(name, "urdf") {
+    if path.is_file() && ends_with(path, "urdf") {
         return Err(Failure::input([format!("{name}: found a URDF, expected a scene, a TOML file with urdf = {name:?} in it")]));
     }
     Ok((scene::open(path, &robots())?, path.parent().map(Path::to_owned).unwrap_or_default()))
 }
 
-fn ends_with(name: &str, ending: &str) -> bool {
-    Path::new(name).extension().is_some_and(|e| e.eq_ignore_ascii_case(ending))
+fn ends_with(path: &Path, ending: &str) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending))
 }
 
 /// The robots that scenes may call by name.

@@ -39,15 +39,15 @@ impl Robot {
     /// The robot that the arguments name.
     pub(crate) fn find(arguments: &RobotArguments) -> Result<Self, Failure> {
         names_in_rust(&arguments.rename)?;
-        let name = arguments.robot.as_str();
+        let name = arguments.robot.as_path();
         if named_scene::is_scene(name) {
             return Self::of_scene(name, arguments);
         }
         let scenes: Vec<&str> = articulated_models::SCENES.iter().map(|scene| scene.name).collect();
         let (file, urdf) = document(name, &scenes)?;
-        let bundled = articulated_models::robot(name);
+        let bundled = name.to_str().and_then(articulated_models::robot);
         let base = bundled.map_or(Base::Fixed, |b| b.base);
-        let path = (bundled.is_none() && name != "-").then(|| PathBuf::from(name));
+        let path = (bundled.is_none() && !is_standard_input(name)).then(|| name.to_owned());
         let base = match (arguments.floating, arguments.fixed) {
             (true, _) => Base::Floating,
             (_, true) => Base::Fixed,
@@ -66,7 +66,7 @@ impl Robot {
     }
 
     /// The robot of a scene: a file, or a bundled one. What the arguments say stands in place of what the scene says; edits come after the scene's.
-    fn of_scene(name: &str, arguments: &RobotArguments) -> Result<Self, Failure> {
+    fn of_scene(name: &Path, arguments: &RobotArguments) -> Result<Self, Failure> {
         let (prepared, _) = named_scene::open(name)?;
         let bundled = matches!(prepared.scene.robot, articulated_scene::Robot::Bundled(_));
         let mut request = prepared.request;
@@ -87,7 +87,7 @@ impl Robot {
         let Request { urdf, file, mut options } = request;
         (options.robot.effects, options.robot.warnings) = (resolved.effects, resolved.warnings);
         let files = prepared.files.into_iter().chain(appended(&arguments.edits)).collect();
-        Ok(Self { file, scene: Some(name.to_owned()), urdf, options, path: None, bundled, files })
+        Ok(Self { file, scene: Some(name.display().to_string()), urdf, options, path: None, bundled, files })
     }
 
     /// Refuses a scene's level whose results differ from the library's by more than rounding: what is held to those would fail as promised.
@@ -237,39 +237,43 @@ fn edit(options: &mut Options, edits: &Edits) -> Result<(), Failure> {
 
 /// The files of the robots to append.
 fn appended(edits: &Edits) -> impl Iterator<Item = PathBuf> + '_ {
-    edits.append.iter().map(|other| PathBuf::from(&other.file)).filter(|file| file.is_file())
+    edits.append.iter().map(|other| other.file.clone()).filter(|file| file.is_file())
 }
 
 /// A file's name for messages, and its bytes: of a bundled robot by its name, the standard input, or a file. `scenes` are names that would do as well.
-fn document(name: &str, scenes: &[&str]) -> Result<(String, Vec<u8>), Failure> {
-    match articulated_models::robot(name) {
-        Some(bundled) => Ok((format!("{name}.urdf"), bundled.urdf.as_bytes().to_vec())),
-        None if name == "-" => Ok(("<stdin>".to_owned(), read_file(name, scenes)?)),
-        None => Ok((name.to_owned(), read_file(name, scenes)?)),
+fn document(path: &Path, scenes: &[&str]) -> Result<(String, Vec<u8>), Failure> {
+    match path.to_str().and_then(articulated_models::robot) {
+        Some(bundled) => Ok((format!("{}.urdf", bundled.name), bundled.urdf.as_bytes().to_vec())),
+        None if is_standard_input(path) => Ok(("<stdin>".to_owned(), read_file(path, scenes)?)),
+        None => Ok((path.display().to_string(), read_file(path, scenes)?)),
     }
 }
 
-/// The bytes of a file, no more than a URDF may have; `-` is the standard input, which one file alone can come by.
-pub(crate) fn read_bytes(name: &str) -> std::io::Result<Vec<u8>> {
+fn is_standard_input(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// The bytes of a regular file, no more than a URDF may have; `-` is the standard input, which one file alone can come by.
+pub(crate) fn read_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
     static TAKEN: AtomicBool = AtomicBool::new(false);
-    match name {
-        "-" if TAKEN.swap(true, Ordering::Relaxed) => {
-            Err(std::io::Error::other("the standard input is another file of this command already"))
-        }
-        "-" => read_at_most(std::io::stdin().lock(), MOST_BYTES),
-        name => articulated_urdf::read_file(name.as_ref(), MOST_BYTES),
+    if !is_standard_input(path) {
+        return articulated_urdf::read_file(path, MOST_BYTES);
     }
+    if TAKEN.swap(true, Ordering::Relaxed) {
+        return Err(std::io::Error::other("the standard input is another file of this command already"));
+    }
+    read_at_most(std::io::stdin().lock(), MOST_BYTES)
 }
 
-fn read_file(name: &str, scenes: &[&str]) -> Result<Vec<u8>, Failure> {
-    read_bytes(name).map_err(|error| {
-        if name == "-" || Path::new(name).exists() {
+fn read_file(path: &Path, scenes: &[&str]) -> Result<Vec<u8>, Failure> {
+    read_bytes(path).map_err(|error| {
+        let name = path.to_string_lossy();
+        if is_standard_input(path) || path.exists() {
             return Failure::input([format!("{name}: cannot be read: {error}")]);
         }
         let names = || articulated_models::ROBOTS.iter().map(|r| r.name);
-        let bundled = || nearest(name, names().chain(scenes.iter().copied()));
-        let near =
-            articulated_scene::nearest_file(Path::new(name)).or_else(bundled).map(|n| format!("; did you mean {n:?}?")).unwrap_or_default();
+        let bundled = || nearest(&name, names().chain(scenes.iter().copied()));
+        let near = articulated_scene::nearest_file(path).or_else(bundled).map(|n| format!("; did you mean {n:?}?")).unwrap_or_default();
         let known = names().collect::<Vec<_>>().join(", ");
         Failure::input([format!("{name}: found neither a file ({error}) nor a bundled robot{near} (bundled: {known})")])
     })

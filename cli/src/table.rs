@@ -118,12 +118,29 @@ pub(crate) fn freedom(n: usize) -> String {
     counted(n, "degree") + " of freedom"
 }
 
-/// Text on one line, whatever a name contains.
+/// Whether a terminal obeys a character instead of showing it: it ends a line, moves the cursor, or turns the direction of what follows.
+pub(crate) fn is_obeyed(c: char) -> bool {
+    c.is_control() || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
+/// Text on one line, whatever a name contains: what a terminal would obey is escaped.
 pub(crate) fn plain(text: &str) -> String {
-    if !text.contains(char::is_control) {
+    escaped(text, is_obeyed)
+}
+
+/// The text with these characters escaped.
+pub(crate) fn escaped(text: &str, these: impl Fn(char) -> bool) -> String {
+    if !text.contains(&these) {
         return text.to_owned();
     }
-    text.chars().flat_map(|c| if c.is_control() { c.escape_default().collect::<Vec<_>>() } else { vec![c] }).collect()
+    text.chars().fold(String::with_capacity(text.len()), |mut out, c| {
+        if these(c) {
+            out.extend(c.escape_default());
+        } else {
+            out.push(c);
+        }
+        out
+    })
 }
 
 /// A number in at most six digits.
@@ -158,6 +175,7 @@ mod tests {
         table.row(["a", "1.5"]);
         table.row(["локоть", "10"]);
         table.row(["new\nline", "1"]);
+        assert_eq!(plain("a\u{202e}b\u{9b}\tc"), "a\\u{202e}b\\u{9b}\\tc");
         assert_eq!(table.text(), "name       mass\n             kg\na           1.5\nлокоть       10\nnew\\nline     1\n");
     }
 

@@ -4,6 +4,8 @@ mod base;
 mod report;
 mod text;
 
+use std::path::Path;
+
 use articulated_codegen::{Error, RobotError};
 use articulated_urdf::{Reading, nearly_right_angles};
 
@@ -17,7 +19,8 @@ use report::Report;
 /// Prints all that there is to say; an error of the input is part of that and goes where the rest goes.
 pub(crate) fn run(arguments: &CheckArguments, format: Format) -> Result<u8, Failure> {
     let robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
-    let report = examine(&robot, &crate::names::flat(&arguments.function));
+    let scene = robot.scene.is_some().then_some(arguments.robot.robot.as_path());
+    let report = examine(&robot, scene, &crate::names::flat(&arguments.function));
     console::print(&match format {
         Format::Text => text::text(&report),
         Format::Json => crate::json(&report),
@@ -25,7 +28,7 @@ pub(crate) fn run(arguments: &CheckArguments, format: Format) -> Result<u8, Fail
     Ok(if report.usable { crate::failure::OK } else { crate::failure::INPUT })
 }
 
-fn examine(robot: &Robot, functions: &[String]) -> Report {
+fn examine(robot: &Robot, scene: Option<&Path>, functions: &[String]) -> Report {
     let mut report = Report::new(robot);
     match robot.read() {
         Err(Error::Robot(RobotError::Urdf(problems))) => {
@@ -41,7 +44,7 @@ fn examine(robot: &Robot, functions: &[String]) -> Report {
         }
     }
     // Joints may be locked beside the scene: its motion is that of the scene alone.
-    match robot.scene.as_deref().map(crate::simulate::motion::look_over) {
+    match scene.map(crate::simulate::motion::look_over) {
         Some(Ok(odd)) => odd.into_iter().for_each(|line| report.warn(Diagnostic::from(line))),
         Some(Err(failure)) => report.errors.extend(failure.errors),
         None => {}

@@ -153,8 +153,8 @@ impl Report {
             joints: description.joints.len(),
             coordinates: model.nq,
             degrees_of_freedom: model.nv,
-            mass: self.links.iter().map(|l| l.mass).sum(),
-            moving_mass: model.bodies.iter().skip(1).map(|b| b.inertia.mass).sum(),
+            mass: self.links.iter().fold(0.0, |sum, l| sum + l.mass),
+            moving_mass: model.moving_mass(),
         };
         self.base_parameters = Base::of(model).map(|base| Base { merged_joints: merged(description, model), ..base });
         self.warn_of_massless_joints(model);

@@ -1,5 +1,7 @@
 //! The words of `articulated effects`.
 
+use std::path::PathBuf;
+
 use clap::Args;
 
 use crate::names::{Names, known};
@@ -8,7 +10,7 @@ use crate::names::{Names, known};
 pub(crate) struct EffectsArguments {
     /// A bundled scene's name, or the path of a scene
     #[arg(value_name = "SCENE")]
-    pub(crate) scene: String,
+    pub(crate) scene: PathBuf,
     /// The functions whose costs are told, or groups of them [default: inverse_dynamics,forward_dynamics]
     #[arg(long, alias = "function", value_name = "NAMES", value_parser = known)]
     pub(crate) functions: Vec<Names>,

@@ -5,6 +5,8 @@ mod odd;
 mod report;
 mod text;
 
+use std::path::Path;
+
 use articulated_core::algorithm::{Function, Workspace, function};
 use articulated_core::model::Model;
 use articulated_reference::{scales, scales_of_generated, where_suspect};
@@ -40,7 +42,7 @@ pub(crate) fn run(arguments: &EvalArguments, format: Format) -> Result<u8, Failu
     for f in &functions {
         report.functions.push(evaluate(f, &model, &states.states, compiled.as_ref(), arguments.generated));
     }
-    let odd = odd::results(&report.functions, &states.states, &model, &arguments.states);
+    let odd = odd::results(&report.functions, &states.states, &model, &arguments.states.to_string_lossy());
     odd.iter().for_each(|w| console::warn(w));
     report.warnings.extend(odd);
     console::print(&match format {
@@ -66,9 +68,10 @@ fn functions(names: &[String]) -> Vec<&'static Function<f64>> {
 }
 
 /// The states of the file; all functions must find their arguments in all of them.
-fn read_states(file: &str, model: &Model<f64>, functions: &[&'static Function<f64>]) -> Result<states::States, Failure> {
+fn read_states(path: &Path, model: &Model<f64>, functions: &[&'static Function<f64>]) -> Result<states::States, Failure> {
+    let file = path.display();
     let wrong = |lines: Vec<String>| Failure::input(lines.into_iter().map(|line| format!("{file}: {line}")));
-    let bytes = read_bytes(file).map_err(|e| wrong(vec![e.to_string()]))?;
+    let bytes = read_bytes(path).map_err(|e| wrong(vec![e.to_string()]))?;
     let states = states::read(&bytes, model).map_err(wrong)?;
     let missing = missing(&states.states, model, functions);
     if missing.is_empty() { Ok(states) } else { Err(wrong(states::listed(missing))) }

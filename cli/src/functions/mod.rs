@@ -4,6 +4,8 @@ mod markdown;
 mod report;
 mod text;
 
+use std::path::{Path, PathBuf};
+
 use articulated_codegen::function_groups;
 use articulated_core::algorithm::{Function, function};
 
@@ -26,7 +28,7 @@ struct Subject {
 
 /// Prints what there is and what it costs.
 pub(crate) fn run(arguments: &FunctionsArguments, format: Format) -> Result<(), Failure> {
-    let default: Vec<String> = ROBOTS.map(str::to_owned).to_vec();
+    let default: Vec<PathBuf> = ROBOTS.map(PathBuf::from).to_vec();
     let names = if arguments.robots.is_empty() { &default } else { &arguments.robots };
     let mut report = Report::default();
     let mut subjects = Vec::new();
@@ -57,16 +59,17 @@ pub(crate) fn run(arguments: &FunctionsArguments, format: Format) -> Result<(), 
     })
 }
 
-fn subject(name: &str, arguments: &FunctionsArguments) -> Result<(Subject, RobotRow), Failure> {
-    let bundled = articulated_models::robot(name).is_some();
-    let plain = RobotArguments::plain(name, arguments.floating && !bundled);
+fn subject(name: &Path, arguments: &FunctionsArguments) -> Result<(Subject, RobotRow), Failure> {
+    let bundled = name.to_str().and_then(articulated_models::robot);
+    let is_bundled = bundled.is_some();
+    let plain = RobotArguments::plain(name, arguments.floating && !is_bundled);
     let robot = Robot::find(&RobotArguments { max_code_size: arguments.max_code_size, ..plain })?;
     let reading = robot.read()?;
-    articulated_urdf::summary(reading.warnings.iter().filter(|_| !bundled)).iter().for_each(|line| console::warn(line));
+    articulated_urdf::summary(reading.warnings.iter().filter(|_| !is_bundled)).iter().for_each(|line| console::warn(line));
     let model = robot.whole_model(&reading)?;
     let tips = Tips::of(&reading.description, &model);
     let row = RobotRow {
-        robot: if bundled { name.to_owned() } else { model.name.clone() },
+        robot: bundled.map_or_else(|| model.name.clone(), |robot| robot.name.to_owned()),
         base: robot.base(),
         joints: model.joints.len(),
         degrees_of_freedom: model.nv,

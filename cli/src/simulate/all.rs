@@ -1,5 +1,7 @@
 //! `articulated simulate --all`: how fast each bundled scene is.
 
+use std::path::Path;
+
 use serde::Serialize;
 
 use super::arguments::SimulateArguments;
@@ -10,7 +12,7 @@ use super::{motion, settings};
 use crate::arguments::Format;
 use crate::compiled::Rustc;
 use crate::console::{self, Progress};
-use crate::failure::Failure;
+use crate::failure::{Failure, OK, OUT_OF_TOLERANCE};
 use crate::table::{Table, number};
 
 #[derive(Clone, Debug, Serialize)]
@@ -22,6 +24,8 @@ struct Row {
     simulated_s: f64,
     steps: u64,
     evaluations: u64,
+    /// `ok`, or `out_of_tolerance`: the balance of energy of one of the two runs is not kept.
+    status: &'static str,
     /// Largest imbalance of energy over the largest energy moved.
     relative_imbalance: f64,
     /// Simulated seconds per second.
@@ -29,8 +33,8 @@ struct Row {
     generic: f64,
 }
 
-/// Runs every bundled scene, by generated and by generic code, without writing anything.
-pub(super) fn run(arguments: &SimulateArguments, format: Format) -> Result<(), Failure> {
+/// Runs every bundled scene, by generated and by generic code, without writing anything. The status is that of the worst of them.
+pub(super) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, Failure> {
     let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
     let progress = Progress::new(articulated_models::SCENES.len());
     let mut rows = Vec::new();
@@ -43,11 +47,17 @@ pub(super) fn run(arguments: &SimulateArguments, format: Format) -> Result<(), F
     console::print(&match format {
         Format::Text => text(&rows),
         Format::Json => crate::json(&rows),
-    })
+    })?;
+    Ok(status(&rows))
+}
+
+/// What the command ends with: as of a single scene, if one of them ended outside its own tolerance.
+fn status(rows: &[Row]) -> u8 {
+    if rows.iter().all(|row| row.status == "ok") { OK } else { OUT_OF_TOLERANCE }
 }
 
 fn row(name: &'static str, arguments: &SimulateArguments, rustc: &Rustc) -> Result<Row, Failure> {
-    let stage = Stage::find(name)?;
+    let stage = Stage::find(Path::new(name))?;
     let settings = settings::of(&stage, arguments)?;
     let begin = motion::begin(&stage)?;
     let (generated, frames) = motion::generate(&stage, settings.integrator)?;
@@ -56,11 +66,17 @@ fn row(name: &'static str, arguments: &SimulateArguments, rustc: &Rustc) -> Resu
     let fast = motion::run(&stage, &begin, (&robot, &frames), &settings, &quiet)?;
     let slow = motion::run(&stage, &begin, (&stage.model, &stage.frame_names()), &settings, &quiet)?;
     let (fast, slow) = (Summary::new(&stage, &fast, &settings, "generated"), Summary::new(&stage, &slow, &settings, "generic"));
-    if let Some(error) = fast.error.or(slow.error) {
+    if let Some(error) = fast.error.as_ref().or(slow.error.as_ref()) {
         return Err(Failure::input([format!("{name}: {error}")]));
+    }
+    for (run, code) in [(&fast, "generated"), (&slow, "generic")] {
+        if let Some(odd) = run.out_of_balance() {
+            console::warn(&format!("{name}: {code} code: {odd}"));
+        }
     }
     Ok(Row {
         scene: name,
+        status: [fast.status, slow.status].into_iter().find(|status| *status != "ok").unwrap_or("ok"),
         degrees_of_freedom: fast.degrees_of_freedom,
         effects: fast.effects,
         integrator: fast.integrator.name,
@@ -98,4 +114,28 @@ fn text(rows: &[Row]) -> String {
         "Simulated seconds per second of wall time, recording included, of generated code and of the generic library\n\n{}",
         table.text()
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_scene_outside_its_tolerance_is_the_status_of_all() {
+        let row = |status| Row {
+            scene: "pendulum",
+            degrees_of_freedom: 1,
+            effects: Vec::new(),
+            integrator: "rk4",
+            simulated_s: 1.0,
+            steps: 1,
+            evaluations: 4,
+            status,
+            relative_imbalance: 0.0,
+            generated: 1.0,
+            generic: 1.0,
+        };
+        assert_eq!(status(&[row("ok"), row("ok")]), OK);
+        assert_eq!(status(&[row("ok"), row("out_of_tolerance"), row("ok")]), OUT_OF_TOLERANCE);
+    }
 }

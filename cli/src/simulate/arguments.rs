@@ -8,13 +8,16 @@ use clap::Args;
 pub(crate) struct SimulateArguments {
     /// A bundled scene's name, or the path of a scene
     #[arg(value_name = "SCENE", required_unless_present = "all")]
-    pub(crate) scene: Option<String>,
+    pub(crate) scene: Option<PathBuf>,
     /// Instead of one scene, how fast each bundled scene is, by generated and by generic code
     #[arg(long, conflicts_with_all = ["scene", "output", "generated", "against"])]
     pub(crate) all: bool,
     /// The folder to write to; it is made if it is not there
     #[arg(short, long, value_name = "FOLDER")]
     pub(crate) output: Option<PathBuf>,
+    /// How many MB recording.csv and recording.parquet may become together; more is refused before the motion begins [default: 1000]
+    #[arg(long, value_name = "MB", requires = "output", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    pub(crate) max_output_size: Option<u64>,
     /// By generated code, compiled by rustc, instead of generic code
     #[arg(long)]
     pub(crate) generated: bool,
@@ -37,7 +40,7 @@ pub(crate) struct SimulateArguments {
     /// peer libraries that take steps: one library, or a list of them. They are run: name only what you trust
     #[arg(long, value_name = "FILE", conflicts_with_all = ["output", "generated", "integrator", "step", "rtol", "atol", "every"])]
     pub(crate) against: Option<PathBuf>,
-    /// Record every so many seconds, instead of what the scene says
+    /// Record every so many seconds, instead of what the scene says (of a scene that records its ends only, nothing is drawn)
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) every: Option<f64>,
 }

@@ -1,6 +1,7 @@
 //! A recording as columns with titles and units, for files.
 
 use super::recording::{Named, Recording};
+use crate::table::plain;
 
 /// A column of a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,12 +13,12 @@ pub(super) struct Column {
 
 const MOMENTUM: [&str; 6] = ["angular.x", "angular.y", "angular.z", "linear.x", "linear.y", "linear.z"];
 
-/// `t`, `q.<joint>`, `v.<joint>`, `tau.<joint>`, the energies, and the momentum.
+/// `t`, `q.<joint>`, `v.<joint>`, `tau.<joint>`, the energies, and the momentum. What of a name a terminal would obey is escaped.
 pub(super) fn columns(r: &Recording) -> Vec<Column> {
     let one = |title: &str, unit: &str, values: Vec<f64>| Column { title: title.to_owned(), unit: unit.to_owned(), values };
     let mut all = vec![one("t", "s", r.t.clone())];
     for (letter, names, rows) in [("q", &r.q_names, &r.q), ("v", &r.v_names, &r.v), ("tau", &r.tau_names, &r.tau)] {
-        let column = |(k, n): (usize, &Named)| one(&format!("{letter}.{}", n.name), n.unit, r.series(names, rows, k));
+        let column = |(k, n): (usize, &Named)| one(&format!("{letter}.{}", plain(&n.name)), n.unit, r.series(names, rows, k));
         all.extend(names.iter().enumerate().map(column));
     }
     all.push(one("kinetic_energy", "J", r.kinetic.clone()));

@@ -11,6 +11,7 @@ mod parquet;
 pub(crate) mod plot;
 mod recording;
 mod settings;
+mod size;
 pub(crate) mod stage;
 mod straight;
 mod summary;
@@ -19,7 +20,7 @@ mod watch;
 
 use std::path::Path;
 
-use articulated::simulate::Settings;
+use articulated::simulate::{Output, Settings};
 use articulated_core::effect::EffectId;
 use articulated_motion::{Begin, field};
 
@@ -32,31 +33,36 @@ use crate::robot::has_room;
 use arguments::SimulateArguments;
 use motion::Motion;
 use page::Setting;
+use size::Size;
 use stage::Stage;
 use straight::Straight;
 use summary::Summary;
 
 /// Simulates and writes.
 pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, Failure> {
-    let Some(scene) = &arguments.scene else { return all::run(arguments, format).map(|()| OK) };
+    let Some(scene) = &arguments.scene else { return all::run(arguments, format) };
     let stage = Stage::find(scene)?;
     has_room(&stage.scene.file, stage.model.nv)?;
     let settings = settings::of(&stage, arguments);
-    let (settings, begin) = Failure::both(settings, motion::begin(&stage))?;
+    let (mut settings, begin) = Failure::both(settings, motion::begin(&stage))?;
     if let Some(file) = &arguments.against {
         return against::run(&stage, &begin, &settings, file, format).map(|()| OK);
     }
     motion::solvable(&stage)?;
+    let size = Size::look_ahead(stage.model.shape(), &mut settings, arguments)?;
     arguments.output.as_deref().map_or(Ok(()), |folder| output::folder("--output", folder))?;
     let progress = Progress::of_whole(format!("{}: motion", stage.name));
-    let (motion, code) = match arguments.generated {
+    let (mut motion, code) = match arguments.generated {
         true => (by_generated_code(&stage, &begin, &settings, &progress)?, "generated"),
         false => (by_generic_code(&stage, &begin, &settings, &progress)?, "generic"),
     };
+    if let (Some(error), Some(full)) = (&mut motion.error, size.and_then(|size| size.ended(motion.recording.len()))) {
+        *error += &format!("; {full}");
+    }
     let mut summary = Summary::new(&stage, &motion, &settings, code);
     if let Some(folder) = &arguments.output {
         progress.doing(format!("{}: files", stage.name));
-        write(&stage, &motion, &mut summary, folder)?;
+        write(&stage, &motion, &mut summary, (folder, settings.output == Output::Ends))?;
     }
     drop(progress);
     console::print(&match format {
@@ -92,13 +98,14 @@ fn by_generic_code(stage: &Stage, begin: &Begin, settings: &Settings, progress: 
     motion::run(stage, begin, (&stage.model, &stage.frame_names()), settings, progress)
 }
 
-/// All files of a motion; their names go into the summary, which is the last of them.
-fn write(stage: &Stage, motion: &Motion, summary: &mut Summary, folder: &Path) -> Result<(), Failure> {
+/// All files of a motion, of its ends alone without what draws it; their names go into the summary, which is the last of them.
+fn write(stage: &Stage, motion: &Motion, summary: &mut Summary, (folder, ends): (&Path, bool)) -> Result<(), Failure> {
     let recording = &motion.recording;
-    let page = page::html(recording, &setting(stage, summary)).map_err(|e| Failure::tool(&e))?;
-    let pictures = plot::pictures(recording, &stage.name).map_err(|e| Failure::tool(&e))?;
+    let drawn = if ends { None } else { Some(Drawn::of(stage, motion, summary)?) };
+    let pictures = drawn.as_ref().map_or(&[][..], |drawn| &drawn.pictures);
     summary.pictures_left_out = plot::PICTURES.into_iter().filter(|name| pictures.iter().all(|p| p.name != *name)).collect();
-    clear(folder, &summary.pictures_left_out)?;
+    summary.page_left_out = ends;
+    clear(folder, &summary.pictures_left_out, ends)?;
     let mut save = |name: &str, bytes: &[u8]| {
         summary.files.push(name.to_owned());
         output::write(&folder.join(name), bytes)
@@ -107,18 +114,37 @@ fn write(stage: &Stage, motion: &Motion, summary: &mut Summary, folder: &Path) -
     let csv = csv::text(&columns).map_err(|e| Failure::tool(&e))?;
     save("recording.csv", csv.as_bytes())?;
     save("recording.parquet", &parquet::bytes(&columns))?;
-    for picture in &pictures {
+    for picture in pictures {
         save(&format!("{}.svg", picture.name), picture.svg.as_bytes())?;
         save(&format!("{}.png", picture.name), &picture.png)?;
     }
-    save("motion.html", page.as_bytes())?;
+    if let Some(drawn) = &drawn {
+        save(PAGE, drawn.page.as_bytes())?;
+    }
     summary.files.push("summary.json".to_owned());
     output::write(&folder.join("summary.json"), crate::json(summary))
 }
 
-/// Removes pictures that are of an earlier motion.
-fn clear(folder: &Path, pictures: &[&str]) -> Result<(), Failure> {
-    for path in pictures.iter().flat_map(|name| ["svg", "png"].map(|ending| folder.join(format!("{name}.{ending}")))) {
+const PAGE: &str = "motion.html";
+
+/// What draws a motion.
+struct Drawn {
+    page: String,
+    pictures: Vec<plot::Picture>,
+}
+
+impl Drawn {
+    fn of(stage: &Stage, motion: &Motion, summary: &Summary) -> Result<Self, Failure> {
+        let page = page::html(&motion.recording, &setting(stage, summary)).map_err(|e| Failure::tool(&e))?;
+        let pictures = plot::pictures(&motion.recording, &stage.name).map_err(|e| Failure::tool(&e))?;
+        Ok(Self { page, pictures })
+    }
+}
+
+/// Removes pictures that are of an earlier motion, and its page.
+fn clear(folder: &Path, pictures: &[&str], page: bool) -> Result<(), Failure> {
+    let pictures = pictures.iter().flat_map(|name| ["svg", "png"].map(|ending| format!("{name}.{ending}")));
+    for path in pictures.chain(page.then(|| PAGE.to_owned())).map(|name| folder.join(name)) {
         match std::fs::remove_file(&path) {
             Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(Failure::input([format!("{}: {e}", path.display())])),
             _ => {}

@@ -1,5 +1,6 @@
 //! A scene's motion as the command runs it: with warnings, progress, and the names that its outputs need.
 
+use std::path::Path;
 use std::time::Duration;
 
 use articulated::simulate::{Balance, Counts, IntegratorId, Recording as Run, Settings};
@@ -60,7 +61,7 @@ pub(crate) fn begin(stage: &Stage) -> Result<Begin, Failure> {
 }
 
 /// What is odd about a scene's motion. Errors: all that it would not begin for, or else what its first step ends with.
-pub(crate) fn look_over(scene: &str) -> Result<Vec<String>, Failure> {
+pub(crate) fn look_over(scene: &Path) -> Result<Vec<String>, Failure> {
     let stage = Stage::open(scene)?;
     let (begin, without) = Failure::both(stage.begin().map_err(Failure::from), looked_for(&stage))?;
     if stage.scene.simulation.is_some() {

@@ -20,15 +20,10 @@ pub(super) fn of(stage: &Stage, arguments: &SimulateArguments) -> Result<Setting
     settings.rtol = a.rtol.unwrap_or(settings.rtol);
     settings.atol = a.atol.unwrap_or(settings.atol);
     choose_steps(&mut settings, a, file)?;
-    // Two states are no motion to look at.
-    let looked_at = a.every.is_none() && a.output.is_some() && settings.output == Output::Ends;
-    if let Some(every) = a.every.or(looked_at.then_some(LOOKED_AT)) {
-        settings.output = Output::Every(every);
-    }
+    settings.output = a.every.map_or(settings.output, Output::Every);
     let problems = settings.problems(stage.model.shape());
-    let told = |p: &SettingError| if looked_at && p.key == "output" { too_many(p, file) } else { told(p, a, file) };
     if !problems.is_empty() {
-        return Err(Failure::input(problems.iter().map(told)));
+        return Err(Failure::input(problems.iter().map(|p| told(p, a, file))));
     }
     too_many_steps(&settings).iter().for_each(|odd| console::warn(&format!("{file}: {odd}")));
     Ok(settings)
@@ -71,17 +66,6 @@ fn choose_steps(settings: &mut Settings, a: &SimulateArguments, file: &str) -> R
     };
     let lines: Vec<String> = tolerances.map(told).collect();
     if lines.is_empty() { Ok(()) } else { Err(Failure::input(lines)) }
-}
-
-/// Between records of a scene that asks for its ends only, where a folder is written, s.
-const LOOKED_AT: f64 = 0.01;
-
-/// Neither the scene nor an option has said how often to record.
-fn too_many(problem: &SettingError, file: &str) -> String {
-    let right = &problem.right;
-    format!(
-        "{file}: output = \"ends\" is recorded every {LOOKED_AT} s where a folder is written, found no --every, s, expected one: {right}"
-    )
 }
 
 /// A problem, of the option where that has said it, else of the scene.

@@ -46,16 +46,16 @@ impl Stage {
     }
 
     /// The scene that a word of the command line names: a file, or a bundled one. What is odd about its robot is told.
-    pub(crate) fn find(name: &str) -> Result<Self, Failure> {
+    pub(crate) fn find(name: &Path) -> Result<Self, Failure> {
         let stage = Self::open(name)?;
         stage.odd.iter().for_each(|line| console::warn(line));
         Ok(stage)
     }
 
     /// The same, and nothing is told.
-    pub(crate) fn open(name: &str) -> Result<Self, Failure> {
+    pub(crate) fn open(name: &Path) -> Result<Self, Failure> {
         let (prepared, folder) = named_scene::open(name)?;
-        let name = Path::new(name).file_stem().map_or_else(|| name.to_owned(), |stem| stem.to_string_lossy().into_owned());
+        let name = name.file_stem().unwrap_or(name.as_os_str()).to_string_lossy().into_owned();
         Self::new(name, prepared, folder)
     }
 

@@ -49,8 +49,10 @@ pub(super) struct Summary {
     pub(super) warnings: Vec<String>,
     /// Written into the folder.
     pub(super) files: Vec<String>,
-    /// Pictures that are not, since all that they would show is zero throughout.
+    /// Pictures that are not, since all that they would show is zero throughout, or since the ends alone are recorded.
     pub(super) pictures_left_out: Vec<&'static str>,
+    /// Whether the page is not either, since the ends alone are recorded.
+    pub(super) page_left_out: bool,
     pub(super) units: Units,
 }
 
@@ -176,6 +178,7 @@ impl Summary {
             warnings: stage.odd.iter().chain(&motion.warnings).cloned().collect(),
             files: Vec::new(),
             pictures_left_out: Vec::new(),
+            page_left_out: false,
             units: UNITS,
         }
         .with_balance(&stage.scene.file)

@@ -28,7 +28,9 @@ pub(super) fn text(s: &Summary) -> String {
     if !s.files.is_empty() {
         out += &format!("\nwritten: {}\n", s.files.join(", "));
     }
-    if !s.pictures_left_out.is_empty() {
+    if s.page_left_out {
+        out += "not written, since the ends alone are recorded (--every SECONDS records a motion): pictures, motion.html\n";
+    } else if !s.pictures_left_out.is_empty() {
         out += &format!("not written, since zero throughout: {}\n", s.pictures_left_out.join(", "));
     }
     out

@@ -1,5 +1,7 @@
 //! The words of `stress`.
 
+use std::path::PathBuf;
+
 use articulated_codegen::Level;
 use clap::Args;
 
@@ -9,7 +11,7 @@ use crate::arguments::{Gravity, gravity};
 pub(crate) struct StressArguments {
     /// A bundled robot's or scene's name (a robot's first), the path of a URDF or of a scene (.toml), or - for a URDF on the standard input [default: the corpus and all bundled robots]
     #[arg(value_name = "ROBOT")]
-    pub(crate) robot: Option<String>,
+    pub(crate) robot: Option<PathBuf>,
     /// The root link moves freely (bundled robots know their own base)
     #[arg(long, conflicts_with = "fixed", requires = "robot")]
     pub(crate) floating: bool,
@@ -24,7 +26,7 @@ pub(crate) struct StressArguments {
     pub(crate) allow_unphysical_inertia: bool,
     /// A file of states of the robot in JSON or CSV, besides those at random and the hard ones
     #[arg(long, value_name = "FILE", requires = "robot")]
-    pub(crate) states: Option<String>,
+    pub(crate) states: Option<PathBuf>,
     /// Generated code too, compiled by rustc
     #[arg(long)]
     pub(crate) generated: bool,

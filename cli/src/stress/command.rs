@@ -1,5 +1,7 @@
 //! The command itself: which rows, and the exit status.
 
+use std::path::Path;
+
 use articulated_codegen::Level;
 use articulated_core::algorithm::Argument;
 use serde::Serialize;
@@ -86,7 +88,7 @@ fn of_robots(arguments: &StressArguments) -> Vec<Level> {
     }
 }
 
-fn of_robot(arguments: &StressArguments, name: &str) -> Result<Found, Failure> {
+fn of_robot(arguments: &StressArguments, name: &Path) -> Result<Found, Failure> {
     let mut robot = RobotArguments::plain(name, arguments.floating);
     robot.fixed = arguments.fixed;
     robot.gravity = arguments.gravity;
@@ -102,9 +104,10 @@ fn of_robot(arguments: &StressArguments, name: &str) -> Result<Found, Failure> {
 }
 
 /// The states of a file; what a state does not give is zero.
-fn given(robot: &Robot, file: &str) -> Result<Vec<State>, Failure> {
+fn given(robot: &Robot, path: &Path) -> Result<Vec<State>, Failure> {
     let model = robot.whole_model(&robot.read()?)?;
-    let bytes = read_bytes(file).map_err(|e| Failure::input([format!("{file}: {e}")]))?;
+    let file = path.display();
+    let bytes = read_bytes(path).map_err(|e| Failure::input([format!("{file}: {e}")]))?;
     let read = states::read(&bytes, &model).map_err(|lines| Failure::input(lines.into_iter().map(|l| format!("{file}: {l}"))))?;
     read.warnings.iter().for_each(|w| console::warn(w));
     let one = |s: &states::State| {

@@ -11,6 +11,7 @@ mod eval;
 mod events;
 mod functions;
 mod generate;
+mod inputs;
 mod scaling;
 mod scenes;
 mod simulate;

@@ -234,13 +234,66 @@ fn what_is_told_of_the_end_is_told_with_its_time() {
     assert!(out.contains("from 0 s to 2 s, ended at its end\n") && !out.contains("last record"), "{out}");
 }
 
+/// The folder holds what the scene asks for: two records, and nothing that draws a motion, of an earlier one neither.
 #[test]
-fn records_that_nobody_asked_for_are_not_called_the_scene_s() {
-    let text = "robot = \"simple_pendulum\"\n[simulation]\nend = 1e7\noutput = \"ends\"\n";
-    let (file, folder) = (File::new("long.toml", text.as_bytes()), tempfile::tempdir().unwrap());
-    let ended = run(&["simulate", file.name(), "-o", folder.path().to_str().unwrap()]);
-    let told = "output = \"ends\" is recorded every 0.01 s where a folder is written, found no --every, s, expected one: at least 0.15 s, for no more than 1e9 numbers";
-    assert!(ended.status == 1 && ended.err.contains(told) && !ended.err.contains("output = 0.01"), "{}", ended.err);
+fn of_a_scene_of_its_ends_two_records_are_written() {
+    let text = "robot = \"simple_pendulum\"\n[initial]\nv = [1.0]\n[simulation]\nend = 0.5\noutput = \"ends\"\n";
+    let (file, folder) = (File::new("ends.toml", text.as_bytes()), tempfile::tempdir().unwrap());
+    let words = ["simulate", file.name(), "-o", folder.path().to_str().unwrap()];
+    let there = || {
+        let names = std::fs::read_dir(folder.path()).unwrap().map(|file| file.unwrap().file_name().into_string().unwrap());
+        let mut names: Vec<String> = names.collect();
+        names.sort();
+        names
+    };
+    assert_eq!(run(&[&words[..], &["--every", "0.1"]].concat()).status, 0);
+    assert!(there().contains(&"motion.html".to_owned()) && there().contains(&"energy.svg".to_owned()));
+    let ended = run(&words);
+    assert_eq!((ended.status, there()), (0, ["recording.csv", "recording.parquet", "summary.json"].map(str::to_owned).to_vec()));
+    let said = "not written, since the ends alone are recorded (--every SECONDS records a motion): pictures, motion.html\n";
+    assert!(ended.out.ends_with(said), "{}", ended.out);
+    let table = std::fs::read_to_string(folder.path().join("recording.csv")).unwrap();
+    let times: Vec<&str> = table.lines().skip(1).map(|line| line.split(',').next().unwrap()).collect();
+    assert_eq!(times, ["0.0", "0.5"]);
+    let summary: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(folder.path().join("summary.json")).unwrap()).unwrap();
+    assert_eq!((&summary["counts"]["records"], &summary["page_left_out"]), (&2.into(), &true.into()));
+    assert_eq!(summary["pictures_left_out"], serde_json::json!(["positions", "velocities", "torques", "energy"]));
+}
+
+/// A pendulum has 1 + 1 + 2 + 12 = 16 columns, so a row has 528 bytes at most.
+#[test]
+fn much_is_told_before_it_is_written_and_more_than_may_be_is_refused() {
+    let scene = |end: &str, output: &str| {
+        let text = format!("robot = \"simple_pendulum\"\n[initial]\nv = [1.0]\n[simulation]\nend = {end}\noutput = {output}\n");
+        File::new("much.toml", text.as_bytes())
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let out = out.to_str().unwrap();
+    let long = scene("1e6", "0.1");
+    let refused = run(&["simulate", long.name(), "-o", out]);
+    let told = format!(
+        "--output {out}: found 10000001 rows of 16 columns: up to 5280 MB, 1280 MB of them the Parquet file, expected at most 1000 MB: "
+    );
+    assert!(refused.status == 1 && refused.err.contains(&told) && refused.err.contains("--max-output-size"), "{}", refused.err);
+    assert!(!folder.path().join("out").exists());
+
+    // 20 001 rows are 10.6 MB, 18 001 are 9.5 MB.
+    for (end, expected) in [("2.0", 1), ("1.8", 0)] {
+        let file = scene(end, "0.0001");
+        let ended = run(&["simulate", file.name(), "-o", out]);
+        assert_eq!((ended.status, ended.lines_with("note: ")), (0, expected), "{}", ended.err);
+        assert_eq!(run(&["simulate", file.name(), "-o", out, "--max-output-size", "9"]).status, 1);
+    }
+
+    // Only the motion shows how many steps there are.
+    let steps = scene("1e4", "\"steps\"");
+    let ended = run(&["simulate", steps.name(), "-o", out, "--max-output-size", "1", "--rtol", "1e-9", "--atol", "1e-9"]);
+    assert!(ended.status == 1 && ended.err.contains("unless --max-output-size allows more than 1 MB"), "{}", ended.err);
+    let size = |name: &str| std::fs::metadata(folder.path().join("out").join(name)).unwrap().len();
+    let written = size("recording.csv") + size("recording.parquet");
+    assert!((500_000..1_010_000).contains(&written), "{written}");
+    assert_eq!(run(&["simulate", steps.name(), "--max-output-size", "1"]).status, 2, "an option of what is written");
 }
 
 /// A pendulum that hangs: nothing to draw of its angle and its rate.
@@ -303,4 +356,32 @@ fn tolerances_of_fixed_steps_are_refused() {
     let lines: Vec<&str> = ended.err.lines().filter(|line| line.contains("found a fixed step of 0.01 s (`step` in [simulation]")).collect();
     assert!(ended.status == 1 && lines.len() == 2, "{}", ended.err);
     assert_eq!(run(&["simulate", file.name(), "--integrator", "dopri5", "--rtol", "1e-3"]).status, 0);
+}
+
+/// A light body that tumbles fast about all three axes, and nothing acts on it: its energy stays as it is.
+#[test]
+fn energy_that_loose_tolerances_lose_is_warned_of() {
+    let urdf = "<robot name='top'><link name='top'><inertial><mass value='0.1'/>
+        <inertia ixx='1e-5' ixy='0' ixz='0' iyy='2e-5' iyz='0' izz='2.8e-5'/></inertial></link></robot>";
+    let scene = "urdf = \"top.urdf\"\nbase = \"floating\"\ngravity = [0, 0, 0]
+        [initial]\nbase = { angular = [300, 200, 250] }\n[simulation]\nend = 30\noutput = \"ends\"\n";
+    let file = File::new("top.toml", scene.as_bytes());
+    std::fs::write(file.path.with_extension("urdf"), urdf).unwrap();
+    for integrator in ["dopri5", "dop853"] {
+        let words = ["simulate", file.name(), "--integrator", integrator, "--format", "json"];
+        let told = |words: &[&str]| {
+            let ended = run(words);
+            let summary = ended.json();
+            let part = summary["energy"]["relative_imbalance"].as_f64().unwrap();
+            let lines: Vec<&str> = ended.err.lines().filter(|line| line.contains("the balance of energy lacks")).collect();
+            assert!(ended.status == 0 && summary["status"] == "ok" && lines.len() < 2, "{}", ended.err);
+            assert_eq!(summary["warnings"].to_string().contains("the balance of energy lacks"), lines.len() == 1);
+            (part, lines.first().map(|line| (*line).to_owned()))
+        };
+        let (part, warned) = told(&words);
+        let warned = warned.unwrap_or_else(|| panic!("{integrator}: {part:e}"));
+        assert!((1e-4..0.1).contains(&part) && warned.contains("take smaller tolerances (rtol, atol)"), "{integrator}: {part:e} {warned}");
+        let (part, warned) = told(&[&words[..], &["--rtol", "1e-9", "--atol", "1e-9"]].concat());
+        assert!(part < 1e-5 && warned.is_none(), "{integrator}: {part:e} {warned:?}");
+    }
 }

@@ -218,7 +218,7 @@ fn a_controller_costs_no_order() {
             SLOW.q, SLOW.seconds
         );
         std::fs::write(&path, scene).unwrap();
-        let (_, subject) = find(&path.to_string_lossy()).unwrap();
+        let (_, subject) = find(&path).unwrap();
         let (_, end, agreement) = reference(&subject).unwrap();
         let rk4 = IntegratorId::rk4.row();
         let how: Vec<How> = (0..7).map(|k| How::Step(SLOW.seconds / f64::from(8 << k))).collect();

@@ -1,5 +1,7 @@
 //! A scene as a motion to be measured.
 
+use std::path::Path;
+
 use articulated::simulate::Settings;
 use articulated_core::description::Base;
 use articulated_motion::Begin;
@@ -12,8 +14,8 @@ use crate::simulate::stage::Stage;
 use crate::table::counted;
 
 /// The scene that a word of the command line names, a file or a bundled one, and what moves in it.
-pub(super) fn find(name: &str) -> Result<(Stage, Subject), Failure> {
-    let stage = Stage::find(name)?;
+pub(super) fn find(name: impl AsRef<Path>) -> Result<(Stage, Subject), Failure> {
+    let stage = Stage::find(name.as_ref())?;
     let subject = subject(&stage)?;
     Ok((stage, subject))
 }

@@ -1,0 +1,148 @@
+//! How much is written into a folder: told before the motion begins where it is much, and refused where it is more than may be.
+
+use std::path::Path;
+
+use articulated::simulate::{Output, Settings};
+use articulated_core::algorithm::Shape;
+
+use super::arguments::SimulateArguments;
+use crate::console;
+use crate::failure::Failure;
+
+/// Bytes of a number: with its comma in the CSV at most, and in the Parquet file.
+const CSV: f64 = 25.0;
+const PARQUET: f64 = 8.0;
+
+/// From so many bytes on it is told.
+const MUCH: f64 = 1e7;
+
+/// MB that the table may have where no option says it.
+pub(super) const DEFAULT: u64 = 1000;
+
+/// What is written of a motion's records.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Size {
+    /// Numbers in a row.
+    columns: usize,
+    /// Rows that there is room for.
+    most: f64,
+    /// MB that there may be.
+    allowed: u64,
+}
+
+impl Size {
+    /// Of motions of a robot that records all that there is.
+    fn of(shape: Shape, allowed: u64) -> Self {
+        let columns = 1 + shape.nq + 2 * shape.nv + 6 + 6;
+        Self { columns, most: (allowed as f64 * 1e6 / Self::bytes(columns, 1.0)).floor(), allowed }
+    }
+
+    fn bytes(columns: usize, rows: f64) -> f64 {
+        rows * columns as f64 * (CSV + PARQUET)
+    }
+
+    /// So many rows, in words.
+    fn told(self, rows: f64) -> String {
+        let size = Self::bytes(self.columns, rows) / 1e6;
+        let of_parquet = rows * self.columns as f64 * PARQUET / 1e6;
+        format!("{rows} rows of {} columns: up to {size:.0} MB, {of_parquet:.0} MB of them the Parquet file", self.columns)
+    }
+
+    /// Looks ahead at what a motion would write into the folder that the arguments name. Of records whose number only the motion shows, no more are made than
+    /// there is room for. Errors: more than may be.
+    pub(super) fn look_ahead(shape: Shape, settings: &mut Settings, arguments: &SimulateArguments) -> Result<Option<Self>, Failure> {
+        let Some(folder) = &arguments.output else { return Ok(None) };
+        let size = Self::of(shape, arguments.max_output_size.unwrap_or(DEFAULT));
+        match rows(settings) {
+            Some(rows) if rows > size.most => return Err(Failure::input([size.refusal(folder, rows)])),
+            Some(rows) if Self::bytes(size.columns, rows) > MUCH => {
+                console::note(&format!("{}: {}", folder.display(), size.told(rows)));
+            }
+            Some(_) => {}
+            None => settings.max_steps = settings.max_steps.min((size.most as u64).max(2) - 1),
+        }
+        Ok(Some(size))
+    }
+
+    fn refusal(self, folder: &Path, rows: f64) -> String {
+        format!(
+            "--output {}: found {}, expected at most {} MB: record less often (--every, or `output` in [simulation]), or allow more by --max-output-size",
+            folder.display(),
+            self.told(rows),
+            self.allowed
+        )
+    }
+
+    /// Why a motion ended that has made so many records.
+    pub(super) fn ended(self, records: usize) -> Option<String> {
+        let full = records as f64 >= self.most;
+        full.then(|| {
+            format!("{}: there may be no more, unless --max-output-size allows more than {} MB", self.told(records as f64), self.allowed)
+        })
+    }
+}
+
+/// How many records a motion to its end has; `None`: one for each step, and steps by tolerance.
+fn rows(settings: &Settings) -> Option<f64> {
+    let length = settings.end - settings.start;
+    match (&settings.output, settings.step) {
+        (Output::Every(every), _) => Some((length / every).ceil() + 1.0),
+        (Output::At(times), _) => Some(times.len() as f64 + 1.0),
+        (Output::Ends, _) => Some(2.0),
+        (Output::Steps, Some(step)) => Some((length / step).ceil().min(settings.max_steps as f64) + 1.0),
+        (Output::Steps, None) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SHAPE: Shape = Shape { nq: 7, nv: 6, frames: 0, links: 1 };
+
+    fn arguments(size: Option<u64>) -> SimulateArguments {
+        use clap::Parser;
+        #[derive(Parser)]
+        struct Words {
+            #[command(flatten)]
+            all: SimulateArguments,
+        }
+        let mut words = vec!["simulate".to_owned(), "scene".to_owned(), "-o".to_owned(), "folder".to_owned()];
+        words.extend(size.map(|mb| format!("--max-output-size={mb}")));
+        Words::parse_from(words).all
+    }
+
+    #[test]
+    fn rows_are_those_that_the_motion_will_have() {
+        let settings = |output| Settings { start: 1.0, end: 3.0, output, ..Settings::default() };
+        assert_eq!(rows(&settings(Output::Every(0.01))), Some(201.0));
+        assert_eq!(rows(&settings(Output::Every(0.3))), Some(8.0));
+        assert_eq!(rows(&settings(Output::At(vec![1.5, 2.0]))), Some(3.0));
+        assert_eq!(rows(&settings(Output::Ends)), Some(2.0));
+        assert_eq!(rows(&settings(Output::Steps)), None);
+        assert_eq!(rows(&Settings { step: Some(0.5), ..settings(Output::Steps) }), Some(5.0));
+        assert_eq!(rows(&Settings { step: Some(1e-3), max_steps: 9, ..settings(Output::Steps) }), Some(10.0));
+    }
+
+    /// 1 + 7 + 2·6 + 12 = 32 columns of 33 bytes: a row is 1056 bytes, and 1 MB is 946 rows.
+    #[test]
+    fn a_motion_that_would_write_more_than_may_be_is_refused() {
+        let ahead = |rows: f64, size| {
+            let mut settings = Settings { end: rows - 1.0, output: Output::Every(1.0), ..Settings::default() };
+            Size::look_ahead(SHAPE, &mut settings, &arguments(size)).map_err(|failure| failure.errors[0].message.clone())
+        };
+        assert!(ahead(946.0, Some(1)).is_ok());
+        let told = ahead(947.0, Some(1)).unwrap_err();
+        let expected = "--output folder: found 947 rows of 32 columns: up to 1 MB, 0 MB of them the Parquet file, expected at most 1 MB: ";
+        assert!(told.starts_with(expected) && told.ends_with("or allow more by --max-output-size"), "{told}");
+        assert!(ahead(946_969.0, None).is_ok() && ahead(946_970.0, None).unwrap_err().contains("up to 1000 MB"));
+    }
+
+    #[test]
+    fn steps_by_tolerance_end_where_there_is_no_more_room() {
+        let mut settings = Settings { output: Output::Steps, ..Settings::default() };
+        let size = Size::look_ahead(SHAPE, &mut settings, &arguments(Some(1))).unwrap().unwrap();
+        assert_eq!((settings.max_steps, size.ended(945)), (945, None));
+        assert!(size.ended(946).is_some_and(|told| told.starts_with("946 rows of 32 columns: ")));
+    }
+}
