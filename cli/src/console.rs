@@ -29,7 +29,17 @@ pub(crate) fn note(text: &str) {
 
 /// A line `error: …` on the standard error stream.
 pub(crate) fn error(text: &str) {
+    say("error", "31", &plain(text));
+}
+
+/// The same, of what a tool has said in several lines.
+pub(crate) fn error_of_tool(text: &str) {
     say("error", "31", text);
+}
+
+/// What is wrong with the command line, as it is.
+pub(crate) fn refuse(text: &str) {
+    let _ = std::io::stderr().lock().write_all(harmless(text).as_bytes());
 }
 
 fn say(level: &str, colour: &str, text: &str) {

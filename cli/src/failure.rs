@@ -5,6 +5,7 @@ use articulated_motion::{Fault, MotionErrors};
 use articulated_scene::SceneErrors;
 use serde::Serialize;
 
+use crate::console;
 use crate::diagnostic::Diagnostic;
 
 /// Everything went well.
@@ -59,6 +60,12 @@ impl Failure {
         Self { status: TOOL, errors: vec![error.to_string().into()], reported: false }
     }
 
+    /// Says each of them on the standard error stream.
+    pub(crate) fn say(&self) {
+        let line = if self.status == TOOL { console::error_of_tool } else { console::error };
+        self.errors.iter().for_each(|error| line(&error.message));
+    }
+
     /// All of them, with the gravest status: wrong input comes before a wrong command line, and both before a tool that fails.
     pub(crate) fn of(failures: impl IntoIterator<Item = Self>) -> Self {
         let mut all = Self { status: BOUND, errors: Vec::new(), reported: false };
@@ -106,7 +113,7 @@ impl From<RobotError> for Failure {
             RobotError::Urdf(problems) => Self::input(problems.errors.iter().map(Diagnostic::of)),
             RobotError::Edits { refusals } => Self::input(refusals.iter().flat_map(refused)),
             RobotError::Scene(errors) => errors.into(),
-            other => Self::input([other.to_string()]),
+            other => Self::input(other.to_string().lines().map(str::to_owned)),
         }
     }
 }

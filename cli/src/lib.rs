@@ -52,12 +52,15 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
                 return match console::print(&error.render().to_string()) {
                     Ok(()) => OK,
                     Err(failure) => {
-                        failure.errors.iter().for_each(|error| console::error(&error.message));
+                        failure.say();
                         failure.status
                     }
                 };
             }
-            let _ = error.print();
+            match with_plain_words(&error.render().to_string(), &words) {
+                Some(text) => console::refuse(&text),
+                None => drop(error.print()),
+            }
             let status = u8::try_from(error.exit_code()).unwrap_or(USAGE);
             if status == USAGE && asks_for_json(&words) {
                 let _ = console::print(&json(&Failure::usage(sentence(&error.render().to_string()))));
@@ -68,7 +71,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     match dispatch(&arguments) {
         Ok(status) => status,
         Err(failure) => {
-            failure.errors.iter().for_each(|error| console::error(&error.message));
+            failure.say();
             if arguments.format == Format::Json && !failure.reported {
                 // A reader that has gone away has nothing to be told.
                 let _ = console::print(&json(&failure));
@@ -76,6 +79,14 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
             failure.status
         }
     }
+}
+
+/// What is wrong with the command line, with words escaped that have what a terminal would obey; none where no word has.
+fn with_plain_words(text: &str, words: &[OsString]) -> Option<String> {
+    let words: Vec<_> = words.iter().map(|word| word.to_string_lossy()).filter(|word| word.contains(table::is_obeyed)).collect();
+    // Of a word as `--option=value` the value alone is told.
+    let values = words.iter().flat_map(|word| [Some(&**word), word.split_once('=').map(|(_, value)| value)]).flatten();
+    (!words.is_empty()).then(|| values.fold(text.to_owned(), |text, word| text.replace(word, &table::plain(word))))
 }
 
 /// Of words that cannot be read, whether they ask for JSON.
@@ -128,7 +139,15 @@ fn json(report: &impl serde::Serialize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{json, sentence};
+    use super::{json, sentence, with_plain_words};
+
+    #[test]
+    fn words_of_the_command_line_end_no_lines() {
+        let words = ["articulated", "--level=a\nb\u{202e}", "c\td"].map(Into::into);
+        let told = with_plain_words("error: 'a\nb\u{202e}' and c\td\nUsage\n", &words);
+        assert_eq!(told.as_deref(), Some("error: 'a\\nb\\u{202e}' and c\\td\nUsage\n"));
+        assert_eq!(with_plain_words("error\n", &["check".into()]), None);
+    }
 
     #[test]
     fn json_has_nothing_that_a_terminal_obeys_and_reads_back() {

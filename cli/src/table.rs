@@ -13,7 +13,7 @@ pub(crate) struct Table {
 impl Table {
     /// Columns as (title, unit).
     pub(crate) fn new<T: Into<String>, U: Into<String>>(columns: impl IntoIterator<Item = (T, U)>) -> Self {
-        let (titles, units) = columns.into_iter().map(|(t, u)| (t.into(), u.into())).unzip();
+        let (titles, units) = columns.into_iter().map(|(t, u)| (plain(&t.into()), plain(&u.into()))).unzip();
         Self { head: [titles, units], rows: Vec::new(), left: 1, first: None }
     }
 

@@ -85,7 +85,7 @@ fn what_is_no_regular_file_is_refused_at_once() {
     let device = "found a device, expected a regular file";
     let refused = |words: &[&str], expected: &str| {
         let ended = run(words);
-        assert!(ended.status == 1 && ended.err.contains(expected), "{words:?}: {}", ended.err);
+        assert!(ended.status == 1 && ended.lines_with(expected) == 1, "{words:?}: {}{}", ended.out, ended.err);
     };
     refused(&["check", &at("pipe.urdf")], pipe);
     refused(&["check", "/dev/zero"], device);
@@ -143,7 +143,7 @@ fn names_end_no_lines_and_move_no_cursor() {
     let out = file.path.with_file_name("out");
     let out = out.to_str().unwrap();
     let frame = "fore\nFAKE: \u{202e}\u{9b}";
-    let commands: [&[&str]; 16] = [
+    let commands: [&[&str]; 20] = [
         &["check", file.name()],
         &["check", &massless],
         &["check", file.name(), "--frames", frame],
@@ -160,6 +160,10 @@ fn names_end_no_lines_and_move_no_cursor() {
         &["simulate", &moves, "-o", out],
         &["simulate", &hits],
         &["stress", file.name()],
+        &["check", frame],
+        &["simulate", frame],
+        &["check", file.name(), "--function", frame],
+        &["generate", file.name(), "--parameters", &format!("payload({frame})")],
     ];
     for words in commands {
         let ended = run(words);

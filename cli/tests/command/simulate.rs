@@ -359,29 +359,48 @@ fn tolerances_of_fixed_steps_are_refused() {
 }
 
 /// A light body that tumbles fast about all three axes, and nothing acts on it: its energy stays as it is.
-#[test]
-fn energy_that_loose_tolerances_lose_is_warned_of() {
+fn tumbling_body_warns(integrator: &str) {
     let urdf = "<robot name='top'><link name='top'><inertial><mass value='0.1'/>
         <inertia ixx='1e-5' ixy='0' ixz='0' iyy='2e-5' iyz='0' izz='2.8e-5'/></inertial></link></robot>";
     let scene = "urdf = \"top.urdf\"\nbase = \"floating\"\ngravity = [0, 0, 0]
-        [initial]\nbase = { angular = [300, 200, 250] }\n[simulation]\nend = 30\noutput = \"ends\"\n";
+        [initial]\nbase = { angular = [300, 200, 250] }\n[simulation]\nend = 9\noutput = \"ends\"\n";
     let file = File::new("top.toml", scene.as_bytes());
     std::fs::write(file.path.with_extension("urdf"), urdf).unwrap();
-    for integrator in ["dopri5", "dop853"] {
+    let told = |tolerances: &[&str]| {
         let words = ["simulate", file.name(), "--integrator", integrator, "--format", "json"];
-        let told = |words: &[&str]| {
-            let ended = run(words);
-            let summary = ended.json();
-            let part = summary["energy"]["relative_imbalance"].as_f64().unwrap();
-            let lines: Vec<&str> = ended.err.lines().filter(|line| line.contains("the balance of energy lacks")).collect();
-            assert!(ended.status == 0 && summary["status"] == "ok" && lines.len() < 2, "{}", ended.err);
-            assert_eq!(summary["warnings"].to_string().contains("the balance of energy lacks"), lines.len() == 1);
-            (part, lines.first().map(|line| (*line).to_owned()))
-        };
-        let (part, warned) = told(&words);
-        let warned = warned.unwrap_or_else(|| panic!("{integrator}: {part:e}"));
-        assert!((1e-4..0.1).contains(&part) && warned.contains("take smaller tolerances (rtol, atol)"), "{integrator}: {part:e} {warned}");
-        let (part, warned) = told(&[&words[..], &["--rtol", "1e-9", "--atol", "1e-9"]].concat());
-        assert!(part < 1e-5 && warned.is_none(), "{integrator}: {part:e} {warned:?}");
+        let ended = run(&[&words[..], tolerances].concat());
+        let summary = ended.json();
+        let lines: Vec<&str> = ended.err.lines().filter(|line| line.contains("the balance of energy lacks")).collect();
+        assert!(ended.status == 0 && summary["status"] == "ok" && lines.len() < 2, "{}", ended.err);
+        assert_eq!(summary["warnings"].to_string().contains("the balance of energy lacks"), lines.len() == 1);
+        (summary["energy"]["relative_imbalance"].as_f64().unwrap(), lines.first().map(|line| (*line).to_owned()))
+    };
+    let (part, warned) = told(&[]);
+    let warned = warned.unwrap_or_else(|| panic!("{integrator}: {part:e}"));
+    assert!((1e-4..0.1).contains(&part) && warned.contains("take smaller tolerances (rtol, atol)"), "{integrator}: {part:e} {warned}");
+    let (part, warned) = told(&["--rtol", "1e-7", "--atol", "1e-9"]);
+    assert!(part < 5e-5 && warned.is_none(), "{integrator}: {part:e} {warned:?}");
+}
+
+#[test]
+fn energy_that_dopri5_loses_by_loose_tolerances_is_warned_of() {
+    tumbling_body_warns("dopri5");
+}
+
+#[test]
+fn energy_that_dop853_loses_by_loose_tolerances_is_warned_of() {
+    tumbling_body_warns("dop853");
+}
+
+/// Steps that are too long for the golfer's shaft, and for no other scene.
+#[test]
+fn one_bundled_scene_outside_its_tolerance_is_the_status_of_all() {
+    let ended = run(&["simulate", "--all", "--end", "0.04", "--integrator", "rodas4", "--step", "0.04", "--format", "json"]);
+    let rows = ended.json();
+    let rows = rows.as_array().unwrap();
+    let outside: Vec<&str> = rows.iter().filter(|row| row["status"] != "ok").map(|row| row["scene"].as_str().unwrap()).collect();
+    assert_eq!((ended.status, rows.len(), outside), (5, articulated_models::SCENES.len(), vec!["golf_swing"]), "{}", ended.err);
+    for code in ["generated", "generic"] {
+        assert_eq!(ended.lines_with(&format!("golf_swing: {code} code: the balance of energy lacks 0.275")), 1, "{}", ended.err);
     }
 }
