@@ -40,6 +40,15 @@ F * symbol(const char * name)
   return reinterpret_cast<F *>(found);
 }
 
+// A function of the peer's robot: what peer_entry says, or peer_<name>.
+template<typename F>
+F * function(void * peer, const std::string & name)
+{
+  using Entry = const void * (void *, const char *);
+  auto * entry = reinterpret_cast<Entry *>(dlsym(library, "peer_entry"));
+  return entry ? reinterpret_cast<F *>(const_cast<void *>(entry(peer, name.c_str()))) : symbol<F>(("peer_" + name).c_str());
+}
+
 template<typename Call>
 double nanoseconds(Call call)
 {
@@ -99,7 +108,10 @@ int main(int count, char ** words)
   }
   std::vector<double> out(nv * nv);
   auto * has = reinterpret_cast<int (*)(void *, const char *)>(dlsym(library, "peer_has"));
-  const auto there = [&](const char * name) { return dlsym(library, (std::string("peer_") + name).c_str()) && (!has || has(peer, name)); };
+  const bool told = dlsym(library, "peer_entry");
+  const auto there = [&](const char * name) {
+    return (told || dlsym(library, (std::string("peer_") + name).c_str())) && (!has || has(peer, name));
+  };
   if (count > 4)
   {
     for (int word = 4; word < count; ++word)
@@ -107,10 +119,10 @@ int main(int count, char ** words)
       if (!there(words[word]))
         continue;
       // Functions that keep their results leave the last argument alone.
-      const std::string name = std::string("peer_") + words[word];
-      auto * one = symbol<void(void *, const double *, double *)>(name.c_str());
-      auto * three = symbol<void(void *, const double *, const double *, const double *, double *)>(name.c_str());
-      const bool lone = name == "peer_mass_matrix";
+      const std::string name = words[word];
+      auto * one = function<void(void *, const double *, double *)>(peer, name);
+      auto * three = function<void(void *, const double *, const double *, const double *, double *)>(peer, name);
+      const bool lone = name == "mass_matrix";
       const auto all = [&] {
         for (int i = 0; i < STATES; ++i)
           lone ? one(peer, q[i].data(), out.data()) : three(peer, q[i].data(), v[i].data(), a[i].data(), out.data());
@@ -123,9 +135,9 @@ int main(int count, char ** words)
     }
     return 0;
   }
-  auto * id = symbol<void(void *, const double *, const double *, const double *, double *)>("peer_inverse_dynamics");
-  auto * fd = symbol<void(void *, const double *, const double *, const double *, double *)>("peer_forward_dynamics");
-  auto * mass = symbol<void(void *, const double *, double *)>("peer_mass_matrix");
+  auto * id = function<void(void *, const double *, const double *, const double *, double *)>(peer, "inverse_dynamics");
+  auto * fd = function<void(void *, const double *, const double *, const double *, double *)>(peer, "forward_dynamics");
+  auto * mass = function<void(void *, const double *, double *)>(peer, "mass_matrix");
   using Kept = void(void *, const double *, const double *, const double *);
   std::printf("%s\n", symbol<const char *(void)>("peer_name")());
   std::printf("  nv %d: inverse dynamics %.0f", nv, nanoseconds([&](int i) { id(peer, q[i].data(), v[i].data(), a[i].data(), out.data()); }));
@@ -133,13 +145,13 @@ int main(int count, char ** words)
   std::printf(", mass matrix %.0f", nanoseconds([&](int i) { mass(peer, q[i].data(), out.data()); }));
   if (there("placements"))
   {
-    auto * placements = symbol<void(void *, const double *)>("peer_placements");
+    auto * placements = function<void(void *, const double *)>(peer, "placements");
     std::printf(", placements %.0f", nanoseconds([&](int i) { placements(peer, q[i].data()); }));
   }
   for (const std::string name : {"inverse_dynamics_derivatives", "forward_dynamics_derivatives"})
     if (there(name.c_str()))
     {
-      auto * slopes = symbol<Kept>(("peer_" + name).c_str());
+      auto * slopes = function<Kept>(peer, name);
       std::printf(", %s %.0f", name.c_str(), nanoseconds([&](int i) { slopes(peer, q[i].data(), v[i].data(), a[i].data()); }));
     }
   std::printf(" ns\n");

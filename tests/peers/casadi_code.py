@@ -208,15 +208,24 @@ class Robot:
         return casadi.substitute(x, self.drift, SX.zeros(6))
 
     def functions(self):
-        """name -> (arguments, what makes the outputs, all dense); what several need is made once, for the first."""
+        """name -> (arguments, what makes the outputs); what several need is made once, for the first. Rows of numbers are dense, matrices have no zeros, and
+        symmetric ones no lower triangle."""
         q, v, a, tau = self.q, self.v, self.a, self.tau
         return {
-            "inverse_dynamics": ([q, v, a], lambda: [self._settled(self._torque)]),
-            "mass_matrix": ([q], lambda: [self._settled(self._mass)]),
-            "forward_dynamics": ([q, v, tau], lambda: [self._forward]),
-            "inverse_dynamics_derivatives": ([q, v, a], lambda: self._slopes),
-            "forward_dynamics_derivatives": ([q, v, tau], self._forward_slopes),
+            "inverse_dynamics": ([q, v, a], lambda: [casadi.densify(self._settled(self._torque))]),
+            "mass_matrix": ([q], lambda: [upper(self._settled(self._mass))]),
+            "forward_dynamics": ([q, v, tau], lambda: [casadi.densify(self._forward)]),
+            "inverse_dynamics_derivatives": ([q, v, a], lambda: matrices(*self._slopes)),
+            "forward_dynamics_derivatives": ([q, v, tau], lambda: matrices(*self._forward_slopes())),
         }
+
+
+def upper(M):
+    return casadi.sparsify(casadi.triu(M))
+
+
+def matrices(by_q, by_v, symmetric):
+    return [casadi.sparsify(by_q), casadi.sparsify(by_v), upper(symmetric)]
 
 
 def motion(angular, linear):

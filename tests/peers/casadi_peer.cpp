@@ -1,9 +1,9 @@
-// Code that CasADi generated for some robots, behind the C interface of a peer (README.md). The table of robots is written by casadi_build.py.
+// Code that CasADi generated for some robots, behind the C interface of a peer (README.md). The table of robots is written by casadi_build.py, and so
+// is an entry for each function: CasADi's code is inlined there, so that whoever calls it calls nothing else.
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -16,19 +16,26 @@
 namespace
 {
 
-using Code = int (*)(const double **, double **, long long *, double *, int);
-
 struct Joint
 {
   const char * name;
   int iq, iv, nq, nv;
 };
 
-// one function of one robot, with the length of its work array
-struct Entry
+// One output of a function that keeps its result: where each of its numbers stands in the registry's layout.
+struct Output
 {
-  Code code;
-  int work;
+  int base; // numbers of the outputs before it there
+  bool symmetric; // its lower triangle is the upper one's
+  std::vector<int> places;
+};
+
+// One function of one robot. `outputs`: none of what is written to the last argument.
+struct Function
+{
+  const void * entry;
+  int work; // length of its work array
+  std::vector<Output> outputs;
 };
 
 struct Robot
@@ -37,69 +44,46 @@ struct Robot
   bool floating;
   int nq, nv;
   std::vector<Joint> joints;
-  std::map<std::string, Entry> functions;
+  std::map<std::string, Function> functions;
 };
 
 } // namespace
 
 #include "casadi_robots.inc"
 
-// name, number of arguments: results of one row of numbers, or [nv][nv] by rows
-#define PLAIN_FUNCTIONS(F) \
-  F(inverse_dynamics, 3) F(mass_matrix, 1) F(forward_dynamics, 3) F(bias_forces, 2) F(gravity_torque, 1) F(mass_matrix_inverse, 1) \
-  F(solve_mass_matrix, 2) F(coriolis_matrix, 2) F(kinetic_energy, 2) F(potential_energy, 1) F(center_of_mass, 1) \
-  F(center_of_mass_velocity, 2) F(center_of_mass_acceleration, 3) F(centroidal_momentum, 2) F(centroidal_momentum_rate, 3)
-
-// what stays inside until it is asked for
-#define KEPT_FUNCTIONS(F) \
-  F(inverse_dynamics_derivatives, 3) F(forward_dynamics_derivatives, 3) F(center_of_mass_jacobian, 1) F(centroidal_momentum_matrix, 1)
-
 namespace
 {
 
-enum Name
-{
-#define NAME(name, takes) NAME_##name,
-  PLAIN_FUNCTIONS(NAME) KEPT_FUNCTIONS(NAME) NAMES
-};
-
-const char * const names[] = {
-#define TEXT(name, takes) #name,
-  PLAIN_FUNCTIONS(TEXT) KEPT_FUNCTIONS(TEXT)
-};
-
+// What entries get as their first argument: it begins as casadi_build.py's `struct head` does.
 struct Peer
 {
+  std::array<double *, 3> results;
+  double * work;
   const Robot & robot;
-  std::array<Entry, NAMES> entries{};
-  std::vector<double> work, kept; // of derivatives three square matrices by columns, else as it is read
+  std::vector<double> numbers, room;
 
   explicit Peer(const Robot & r)
   : robot(r)
-  , kept(std::max(3 * r.nv, 6) * r.nv)
   {
-    int longest = 0;
-    for (int i = 0; i < NAMES; ++i)
+    std::size_t longest = 6 * r.nv;
+    int most = 0;
+    for (const auto & function : r.functions)
     {
-      const auto found = robot.functions.find(names[i]);
-      if (found == robot.functions.end())
-        continue;
-      entries[i] = found->second;
-      longest = std::max(longest, entries[i].work);
+      most = std::max(most, function.second.work);
+      for (const Output & output : function.second.outputs)
+        longest = std::max(longest, output.places.size());
     }
-    work.resize(longest);
+    numbers.resize(results.size() * longest);
+    room.resize(most);
+    for (std::size_t k = 0; k < results.size(); ++k)
+      results[k] = numbers.data() + k * longest;
+    work = room.data();
   }
 
-  void call(Name name, std::array<const double *, 3> arguments, double * out)
+  const Function * function(const char * name) const
   {
-    entries[name].code(arguments.data(), &out, nullptr, work.data(), 0);
-  }
-
-  void keep(Name name, std::array<const double *, 3> arguments)
-  {
-    const int n = robot.nv * robot.nv;
-    double * results[] = {kept.data(), kept.data() + n, kept.data() + 2 * n};
-    entries[name].code(arguments.data(), results, nullptr, work.data(), 0);
+    const auto found = robot.functions.find(name);
+    return found == robot.functions.end() ? nullptr : &found->second;
   }
 };
 
@@ -143,41 +127,39 @@ PEER_API int peer_joint_nq(void * handle, int i) { return peer(handle).robot.joi
 PEER_API int peer_joint_nv(void * handle, int i) { return peer(handle).robot.joints[i].nv; }
 
 // whether the robot has code for it
-PEER_API int peer_has(void * handle, const char * function)
+PEER_API int peer_has(void * handle, const char * function) { return peer(handle).function(function) != nullptr; }
+
+PEER_API const void * peer_entry(void * handle, const char * function)
 {
-  return peer(handle).robot.functions.count(function) != 0;
+  const Function * found = peer(handle).function(function);
+  return found ? found->entry : nullptr;
 }
 
-#define TAKES_1 const double * x
-#define TAKES_2 TAKES_1, const double * y
-#define TAKES_3 TAKES_2, const double * z
-#define GIVEN_1 {x, nullptr, nullptr}
-#define GIVEN_2 {x, y, nullptr}
-#define GIVEN_3 {x, y, z}
-
-#define PLAIN(name, takes) \
-  PEER_API void peer_##name(void * handle, TAKES_##takes, double * out) { peer(handle).call(NAME_##name, GIVEN_##takes, out); }
-#define KEPT(name, takes) \
-  PEER_API void peer_##name(void * handle, TAKES_##takes) { peer(handle).keep(NAME_##name, GIVEN_##takes); }
-
-PLAIN_FUNCTIONS(PLAIN)
-KEPT_FUNCTIONS(KEPT)
+PEER_API int peer_keeps(void * handle, const char * function)
+{
+  const Function * found = peer(handle).function(function);
+  return found && !found->outputs.empty();
+}
 
 PEER_API int peer_read(void * handle, const char * function, double * out)
 {
   Peer & p = peer(handle);
+  const Function * found = p.function(function);
+  if (!found || found->outputs.empty())
+    return 0;
   const int n = p.robot.nv;
-  if (!peer_has(handle, function))
-    return 0;
-  const int rows = !std::strcmp(function, "center_of_mass_jacobian") ? 3 : !std::strcmp(function, "centroidal_momentum_matrix") ? 6 : 0;
-  std::copy_n(p.kept.data(), rows * n, out);
-  if (rows)
-    return 1;
-  if (!std::strstr(function, "derivatives"))
-    return 0;
-  for (int k = 0; k < 3; ++k)
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j)
-        *out++ = p.kept[(k * n + j) * n + i];
+  for (std::size_t k = 0; k < found->outputs.size(); ++k)
+  {
+    const Output & output = found->outputs[k];
+    const int end = k + 1 < found->outputs.size() ? found->outputs[k + 1].base : output.base;
+    std::fill(out + output.base, out + std::max(end, output.base + (output.symmetric ? n * n : 0)), 0.0);
+    for (std::size_t i = 0; i < output.places.size(); ++i)
+    {
+      const int place = output.places[i];
+      out[output.base + place] = p.results[k][i];
+      if (output.symmetric)
+        out[output.base + place % n * n + place / n] = p.results[k][i];
+    }
+  }
   return 1;
 }

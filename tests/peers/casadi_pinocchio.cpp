@@ -2,7 +2,7 @@
 // and what that took is printed as JSON. The wheel of Pinocchio has the headers that this needs, though no pinocchio.casadi. Functions of more
 // operations than MOST are left out.
 //
-//     casadi_pinocchio FOLDER ROBOT URDF fixed|floating MOST
+//     casadi_pinocchio FOLDER ROBOT URDF fixed|floating MOST [FUNCTION...]
 
 #include <pinocchio/autodiff/casadi.hpp>
 
@@ -23,6 +23,7 @@
 #include <exception>
 #include <functional>
 #include <iostream>
+#include <set>
 
 namespace
 {
@@ -80,14 +81,17 @@ SX plain(const Eigen::MatrixBase<M> & m)
   return SX::reshape(densify(SX::vertcat(all)), m.rows(), m.cols());
 }
 
-// the lower triangle is the upper one's
+// without zeros
+template<typename M>
+SX sparse(const Eigen::MatrixBase<M> & m)
+{
+  return SX::sparsify(plain(m));
+}
+
+// its upper triangle
 SX symmetric(const Matrix & m)
 {
-  Matrix whole = m;
-  for (Eigen::Index i = 0; i < m.rows(); ++i)
-    for (Eigen::Index j = 0; j < i; ++j)
-      whole(i, j) = m(j, i);
-  return plain(whole);
+  return SX::sparsify(SX::triu(plain(m)));
 }
 
 // by rows, (linear; angular) turned to (angular; linear)
@@ -149,13 +153,13 @@ struct Robot
   Outputs inverse_slopes(Data & d) const
   {
     pin::computeRNEADerivatives(model, d, q, v, a);
-    return {plain(d.dtau_dq), plain(d.dtau_dv), symmetric(d.M)};
+    return {sparse(d.dtau_dq), sparse(d.dtau_dv), symmetric(d.M)};
   }
 
   Outputs forward_slopes(Data & d) const
   {
     pin::computeABADerivatives(model, d, q, v, tau);
-    return {plain(d.ddq_dq), plain(d.ddq_dv), symmetric(d.Minv)};
+    return {sparse(d.ddq_dq), sparse(d.ddq_dv), symmetric(d.Minv)};
   }
 
   std::vector<Task> tasks() const
@@ -208,6 +212,22 @@ double seconds_since(Clock::time_point start)
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+// of each output its rows, its columns, and those of each number that is there
+std::string outputs(const ::casadi::Function & code)
+{
+  std::ostringstream out;
+  for (int k = 0; k < static_cast<int>(code.n_out()); ++k)
+  {
+    const ::casadi::Sparsity & there = code.sparsity_out(k);
+    const std::vector<::casadi::casadi_int> rows = there.get_row(), columns = there.get_col();
+    out << (k ? ", " : "") << "[" << there.size1() << ", " << there.size2() << ", [";
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      out << (i ? ", " : "") << "[" << rows[i] << ", " << columns[i] << "]";
+    out << "]]";
+  }
+  return out.str();
+}
+
 // The C code in the folder; what it cost, as JSON, or nothing if there are more operations than `most`. What other ways would have cost does not
 // count. `before`: seconds that are this function's too.
 std::string generate(const Robot & robot, const Task & task, const std::string & folder, const std::string & symbol, int most, double before)
@@ -233,7 +253,8 @@ std::string generate(const Robot & robot, const Task & task, const std::string &
   file.generate(folder + "/");
   took += before + seconds_since(start);
   std::ostringstream out;
-  out << "\"" << task.function << "\": {\"work\": " << best.sz_w() << ", \"operations\": " << fewest << ", \"generation_seconds\": " << took << "}";
+  out << "\"" << task.function << "\": {\"work\": " << best.sz_w() << ", \"takes\": " << best.n_in() << ", \"outputs\": [" << outputs(best)
+      << "], \"operations\": " << fewest << ", \"generation_seconds\": " << took << "}";
   return out.str();
 }
 
@@ -251,8 +272,9 @@ std::string joints(const Model & model)
 int main(int count, char ** words)
 try
 {
-  if (count != 6)
-    throw std::runtime_error("casadi_pinocchio FOLDER ROBOT URDF fixed|floating MOST");
+  if (count < 6)
+    throw std::runtime_error("casadi_pinocchio FOLDER ROBOT URDF fixed|floating MOST [FUNCTION...]");
+  const std::set<std::string> wanted(words + 6, words + count);
   const std::string folder = words[1], name = words[2];
   const auto start = Clock::now();
   const Robot robot(read(words[3], std::string(words[4]) == "floating").first);
@@ -261,6 +283,8 @@ try
   const char * separator = "";
   for (const Task & task : robot.tasks())
   {
+    if (!wanted.empty() && !wanted.count(task.function))
+      continue;
     const std::string made = generate(robot, task, folder, name + "_" + task.function, std::stoi(words[5]), before);
     if (!made.empty())
       std::cout << separator << made;

@@ -47,7 +47,12 @@ def make(entry, file):
     return {"compilation_seconds": took}
 
 
-def generate(folder, name, floating, urdf, most):
-    """A C file for each function. The robot, and what each function took."""
-    words = [folder.parent / NAME, folder, name, urdf, "floating" if floating else "fixed", most]
+def takes(robot):
+    """All of them."""
+    return True
+
+
+def generate(folder, robot, wanted, most):
+    """A C file for each function, or for those that are wanted. The robot, and what each function took."""
+    words = [folder.parent / NAME, folder, robot.name, robot.urdf, robot.base, most, *wanted]
     return json.loads(subprocess.run([str(word) for word in words], capture_output=True, text=True, check=True).stdout)

@@ -20,18 +20,23 @@ def prepare(out):
     """Nothing has to be built."""
 
 
-def generate(folder, name, floating, urdf, most):
-    """A C file for each function. The robot, and what each function took. Derivatives of a humanoid are 290 000 operations, which takes minutes to see."""
+def takes(robot):
+    """Of real robots arms only: of longer ones the templates' code is the faster one."""
+    return not robot.floating
+
+
+def generate(folder, robot, wanted, most):
+    """A C file for each function, or for those that are wanted. The robot, and what each function took. Derivatives of a humanoid are 290 000 operations, which takes minutes to see."""
     import casadi
     from casadi_code import Robot
 
     start = time.perf_counter()
-    robot, functions = Robot(urdf, floating), {}
-    for function, (arguments, outputs) in robot.functions().items():
-        if function.endswith("derivatives") and robot.nv > 30:
+    read, functions = Robot(robot.urdf, robot.floating), {}
+    for function, (arguments, outputs) in read.functions().items():
+        if (function.endswith("derivatives") and read.nv > 30) or (wanted and function not in wanted):
             continue
-        symbol = f"{name}_{function}"
-        code = casadi.Function(symbol, arguments, [casadi.densify(x) for x in outputs()], {"cse": True})
+        symbol = f"{robot.name}_{function}"
+        code = casadi.Function(symbol, arguments, outputs(), {"cse": True})
         if operations(code) > most:
             continue
         file = casadi.CodeGenerator(f"{symbol}_code.c")
@@ -39,9 +44,15 @@ def generate(folder, name, floating, urdf, most):
         file.generate(f"{folder}/")
         # The first function pays for reading the robot, and each for what it is the first to need.
         now = time.perf_counter()
-        functions[function] = {"work": code.sz_w(), "operations": operations(code), "generation_seconds": now - start}
+        functions[function] = {"work": code.sz_w(), "takes": len(arguments), "outputs": [pattern(code.sparsity_out(k)) for k in range(code.n_out())],
+                               "operations": operations(code), "generation_seconds": now - start}
         start = now
-    return {"nq": robot.nq, "nv": robot.nv, "joints": robot.joints, "functions": functions}
+    return {"nq": read.nq, "nv": read.nv, "joints": read.joints, "functions": functions}
+
+
+def pattern(sparsity):
+    """Rows, columns, and those of each number that is there."""
+    return [*sparsity.shape, list(zip(*sparsity.get_triplet()))]
 
 
 def operations(code):

@@ -1,6 +1,7 @@
 //! The list of peer libraries that their build script writes.
 
 use std::collections::BTreeMap;
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -20,6 +21,9 @@ pub(crate) struct Library {
     pub(crate) flags: Option<String>,
     /// `f32` if it computes in single precision.
     pub(crate) element: Option<String>,
+    /// How many states a call computes, if that is not one: number k of state i at k·lanes + i of each array.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) lanes: Option<NonZeroUsize>,
     /// Machine code of all of it.
     pub(crate) text_bytes: Option<u64>,
     /// Of all of it.

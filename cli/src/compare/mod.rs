@@ -4,6 +4,7 @@ pub(crate) mod accuracy;
 mod batch;
 mod chart;
 pub(crate) mod contender;
+mod lanes;
 mod making;
 pub(crate) mod manifest;
 pub(crate) mod peer;
@@ -30,6 +31,7 @@ use crate::{names, parallel};
 use accuracy::Reference;
 use batch::{Beside, Many};
 use contender::Contender;
+use lanes::Lanes;
 use making::Making;
 use manifest::Library;
 use peer::Peer;
@@ -150,10 +152,13 @@ fn measure(ready: &Prepared, peers: &[Peer], repetitions: usize) -> FunctionRepo
     let theirs: Vec<Vec<Vec<Vec<f64>>>> = known.iter().map(|(p, _)| arguments.iter().map(|x| p.arguments(f, model, x)).collect()).collect();
     let theirs: Vec<Vec<Vec<&[f64]>>> =
         theirs.iter().map(|states| states.iter().map(|x| x.iter().map(Vec::as_slice).collect()).collect()).collect();
+    let in_lanes: Vec<Lanes> =
+        if batches.is_empty() { Vec::new() } else { peers.iter().filter_map(|p| Lanes::of(p, f, model, &arguments)).collect() };
     let ours = [&generated, &generic].into_iter().chain(&variants);
     let mut runs: Vec<timing::Run<'_>> = ours.map(|c| c.run(&arguments)).collect();
     runs.extend(batches.iter().map(Many::run));
     runs.extend(known.iter().zip(&theirs).map(|((_, c), x)| c.run(x)));
+    runs.extend(in_lanes.iter().map(Lanes::run));
     // Calls that wait for each other: of generated code first, then of each peer that writes its result.
     let independent = runs.len();
     runs.extend(generated.can_wait().then(|| generated.run_dependent(&arguments)));
@@ -169,7 +174,8 @@ fn measure(ready: &Prepared, peers: &[Peer], repetitions: usize) -> FunctionRepo
     let regular = ready.errors.is_none_or(|e| e.states > 0);
     let (own, rest) = times.split_at(2);
     let (other, rest) = rest.split_at(variants.len());
-    let (of_many, peer_times) = rest.split_at(batches.len());
+    let (of_many, rest) = rest.split_at(batches.len());
+    let (peer_times, lanes_times) = rest.split_at(known.len());
     let beside = Beside {
         function: f,
         model,
@@ -195,5 +201,9 @@ fn measure(ready: &Prepared, peers: &[Peer], repetitions: usize) -> FunctionRepo
         let difference = || peer.difference(f, model, &arguments, x, contender, &generic);
         PeerReport::new(peer, f.name, [time, &own[0], &own[1]], waiting, regular.then(difference).flatten())
     });
-    FunctionReport::new(ready, [&own[0], &own[1]], own_waiting, variants.collect(), batches, peers.collect())
+    let in_lanes = in_lanes.iter().zip(lanes_times).map(|(lanes, time)| {
+        let difference = || lanes.difference(f, model, &arguments, &generic);
+        lanes.report(time, regular.then(difference).flatten())
+    });
+    FunctionReport::new(ready, [&own[0], &own[1]], own_waiting, variants.collect(), batches, peers.collect(), in_lanes.collect())
 }

@@ -10,7 +10,7 @@ use articulated_reference::scales;
 use super::contender::Contender;
 use super::manifest::{Code, Cost, Library};
 use crate::failure::Failure;
-use crate::native::{Native, NativePeer};
+use crate::native::{Native, NativePeer, PeerKernel};
 use crate::robot::Robot;
 use crate::states::quaternions;
 use crate::table::counted;
@@ -79,17 +79,28 @@ impl Peer {
         self.code.as_ref()?.functions.get(function)
     }
 
-    /// The peer's own function of this name, if it has it and means the same by it.
+    /// The peer's own function of this name, if it has it, means the same by it, and computes one state a call.
     pub(crate) fn contender(&self, function: &Function<f64>, model: &Model<f64>) -> Option<Contender<'static>> {
+        let out = function.len(model.shape());
+        self.library.lanes.is_none().then(|| Some(Contender::peer(self.kernel(function, model, 1)?, out)))?
+    }
+
+    /// The same of a peer that computes several states a call, and how many; of results that it writes out.
+    pub(super) fn in_lanes(&self, function: &Function<f64>, model: &Model<f64>) -> Option<(PeerKernel, usize)> {
+        let lanes = self.library.lanes?.get();
+        let kernel = self.kernel(function, model, lanes)?;
+        kernel.writes().then_some((kernel, lanes))
+    }
+
+    fn kernel(&self, function: &Function<f64>, model: &Model<f64>, states: usize) -> Option<PeerKernel> {
         let has = |dim: Dim| function.takes.iter().flat_map(|a| a.dims()).chain(function.gives).any(|d| *d == dim);
         let wrenches = !function.takes.contains(&Argument::Wrenches) || model.wrench_reference == Reference::Body;
         let told = (!has(Dim::Frames) || self.has_frames(model)) && (!has(Dim::Links) || self.links);
         if !wrenches || !told {
             return None;
         }
-        let lengths: Vec<usize> = function.takes.iter().map(|a| a.len(model.shape())).collect();
-        let out = function.len(model.shape());
-        Some(Contender::peer(self.native.kernel(function.name, &lengths, out, is_kept(function.gives))?, out))
+        let lengths: Vec<usize> = function.takes.iter().map(|a| states * a.len(model.shape())).collect();
+        self.native.kernel(function.name, &lengths, states * function.len(model.shape()), is_kept(function.gives))
     }
 
     /// Whether the peer's frames are the model's, in its order; they are made so if the peer lets them be chosen.

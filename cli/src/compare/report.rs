@@ -10,6 +10,7 @@ use serde::Serialize;
 
 use super::accuracy::{Against, Errors};
 use super::batch::BatchReport;
+use super::lanes::LanesReport;
 use super::making::Making;
 use super::manifest::{Cost, Library};
 use super::peer::Peer;
@@ -53,6 +54,9 @@ const UNITS: Units = Units(&[
     ("functions[].peers[].generated_over_peer", RATIO),
     ("functions[].peers[].largest_difference", MAGNITUDE),
     ("functions[].peers[].bound", MAGNITUDE),
+    ("functions[].peers_in_lanes[].time", STATE),
+    ("functions[].peers_in_lanes[].largest_difference", MAGNITUDE),
+    ("functions[].peers_in_lanes[].bound", MAGNITUDE),
     ("making[].peers[].peer_over_ours", RATIO),
 ]);
 
@@ -126,6 +130,8 @@ pub(super) struct FunctionReport {
     /// Of many states at once, if that was asked for.
     pub(super) batches: Vec<BatchReport>,
     pub(super) peers: Vec<PeerReport>,
+    /// Of peers that compute several states a call, where batches were asked for.
+    pub(super) peers_in_lanes: Vec<LanesReport>,
     /// In units of 2⁻⁵³ of the magnitude; `None` where there is no reference for the function.
     pub(super) errors: Option<Errors>,
 }
@@ -194,6 +200,7 @@ impl FunctionReport {
         variants: Vec<VariantReport>,
         batches: Vec<BatchReport>,
         peers: Vec<PeerReport>,
+        peers_in_lanes: Vec<LanesReport>,
     ) -> Self {
         let (f, entry) = (ready.function, &ready.entry);
         let dims = f.takes.iter().flat_map(|a| a.dims()).chain(f.gives);
@@ -216,6 +223,7 @@ impl FunctionReport {
             variants,
             batches,
             peers,
+            peers_in_lanes,
             errors: ready.errors,
         }
     }
@@ -284,10 +292,12 @@ impl Report {
             let ours = wrong.map(|(side, e)| format!("{}: the error of {side} code is {e:.1} units, more than {bound}", f.function));
             let variants = f.variants.iter().map(|v| (format!("code for {}", v.variant), v.largest_difference, other_bound));
             let peers = f.peers.iter().map(|p| (format!("peer {}", p.peer), p.largest_difference, p.bound));
+            let lanes = f.peers_in_lanes.iter().map(|p| (format!("peer {}", p.peer), p.largest_difference, p.bound));
             let batches = f.batches.iter().map(|b| (format!("batch of {} in {}", b.numbers, b.layout), b.largest_difference, b.bound));
             let far = variants
                 .chain(batches)
                 .chain(peers)
+                .chain(lanes)
                 .filter_map(|(who, d, bound)| Some((who, d?, bound)))
                 .find(|(_, d, bound)| beyond(*d, *bound));
             ours.or(far.map(|(who, d, bound)| format!("{}: {who} differs by {d:.1e} of the magnitude, more than {bound:e}", f.function)))

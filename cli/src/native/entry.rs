@@ -1,5 +1,7 @@
 //! Types of functions by how many arrays they read: from one to four.
 
+use std::mem::transmute;
+
 use super::peer::H;
 use super::{Native, O, P};
 
@@ -21,13 +23,25 @@ macro_rules! entry {
             /// # Safety
             /// By its library's interface it takes that many arrays, and beside them what this type says.
             pub(super) unsafe fn open(library: &Native, symbol: &str, arrays: usize) -> Option<Self> {
-                // SAFETY: what this function asks for is what it asks for.
+                // SAFETY: a function's address is a pointer; the rest is what this function asks for.
+                unsafe { Self::at(library.symbol::<P>(symbol)?, arrays) }
+            }
+
+            /// The function at this address, which takes so many arrays.
+            ///
+            /// # Safety
+            /// As [`open`](Self::open); the address is null or that of such a function.
+            pub(super) unsafe fn at(address: P, arrays: usize) -> Option<Self> {
+                if address.is_null() {
+                    return None;
+                }
+                // SAFETY: what this function asks for: the address has the type that it gets here.
                 unsafe {
                     Some(match arrays {
-                        1 => Self::One(library.symbol(symbol)?),
-                        2 => Self::Two(library.symbol(symbol)?),
-                        3 => Self::Three(library.symbol(symbol)?),
-                        4 => Self::Four(library.symbol(symbol)?),
+                        1 => Self::One(transmute::<P, _>(address)),
+                        2 => Self::Two(transmute::<P, _>(address)),
+                        3 => Self::Three(transmute::<P, _>(address)),
+                        4 => Self::Four(transmute::<P, _>(address)),
                         _ => return None,
                     })
                 }

@@ -51,11 +51,15 @@ impl NativePeer {
         if has.is_some_and(|has| has(robot.handle, told.as_ptr()) == 0) {
             return None;
         }
-        // SAFETY: by the interface a function takes the arrays of its arguments, and one for its result where it does not keep it.
+        // SAFETY: the type of the interface.
+        let at: Option<extern "C" fn(H, *const c_char) -> P> = unsafe { robot.function("entry") };
+        // SAFETY: by the interface a function takes the arrays of its arguments, and one for its result where it does not keep it, whether it is known by its name or by its address.
         let entry = unsafe {
-            match kept {
-                false => Entry::Writing(Writing::open(&robot.native, &symbol, arguments.len())?),
-                true => Entry::Keeping(Keeping::open(&robot.native, &symbol, arguments.len())?),
+            match (kept, at.map(|at| at(robot.handle, told.as_ptr()))) {
+                (false, None) => Entry::Writing(Writing::open(&robot.native, &symbol, arguments.len())?),
+                (true, None) => Entry::Keeping(Keeping::open(&robot.native, &symbol, arguments.len())?),
+                (false, Some(address)) => Entry::Writing(Writing::at(address, arguments.len())?),
+                (true, Some(address)) => Entry::Keeping(Keeping::at(address, arguments.len())?),
             }
         };
         let lengths = Lengths { arguments: arguments.to_vec(), out };

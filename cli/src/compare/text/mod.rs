@@ -26,6 +26,7 @@ pub(super) fn text(report: &Report) -> String {
             batches::batches(report),
             BATCHES,
         ),
+        ("Time of a state in code of others that computes several states a call".to_owned(), peers::in_lanes(report), ""),
         ("Time of a call that waits for the result of the call before it, and how many times our time others take".to_owned(), peers::dependent(report), DEPENDENT),
         ("The fastest build of each engine, by the letter of its build, and how many times our time it takes".to_owned(), peers::engines(report), ""),
         (format!("Time of a call in each build of other libraries{}", peers::letters(report)), peers::builds(report), ""),
