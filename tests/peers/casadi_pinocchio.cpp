@@ -219,7 +219,7 @@ std::string outputs(const ::casadi::Function & code)
   for (int k = 0; k < static_cast<int>(code.n_out()); ++k)
   {
     const ::casadi::Sparsity & there = code.sparsity_out(k);
-    const std::vector<::casadi::casadi_int> rows = there.get_row(), columns = there.get_col();
+    const auto rows = there.get_row(), columns = there.get_col();
     out << (k ? ", " : "") << "[" << there.size1() << ", " << there.size2() << ", [";
     for (std::size_t i = 0; i < rows.size(); ++i)
       out << (i ? ", " : "") << "[" << rows[i] << ", " << columns[i] << "]";

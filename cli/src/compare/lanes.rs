@@ -78,7 +78,8 @@ impl<'a> Lanes<'a> {
             .iter()
             .map(|call| self.kernel.call(call, out.numbers_mut()).then(|| out.numbers().to_vec()))
             .collect::<Option<_>>()?;
-        let result = |state: usize| (0..self.out).map(|k| results[state / self.lanes][k * self.lanes + state % self.lanes]).collect::<Vec<f64>>();
+        let result =
+            |state: usize| (0..self.out).map(|k| results[state / self.lanes][k * self.lanes + state % self.lanes]).collect::<Vec<f64>>();
         peer::difference(f, model, states, generic, |k, ours| Some(self.peer.in_our_order(&result(k), ours, f, model)))
     }
 

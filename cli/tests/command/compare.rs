@@ -176,6 +176,19 @@ const KEEPING: &str = r#"
 }
 "#;
 
+/// A pendulum's torque by an address that the peer hands out, of four states a call; the last lane is wrong by WRONG.
+const IN_LANES: &str = r#"
+unsafe extern "C" fn torques(h: *mut c_void, q: *const f64, tau: *mut f64) {
+    for k in 0..4 {
+        unsafe { *tau.add(k) = *h.cast::<f64>() * (*q.add(k)).sin() + if k == 3 { WRONG } else { 0.0 } }
+    }
+}
+#[unsafe(no_mangle)] pub unsafe extern "C" fn peer_entry(_: *mut c_void, name: *const c_char) -> *const c_void {
+    let known = unsafe { std::ffi::CStr::from_ptr(name) } == c"gravity_torque";
+    if known { torques as *const c_void } else { std::ptr::null() }
+}
+"#;
+
 fn peer(wrong: &str) -> File {
     peer_of(&PEER.replace("WRONG", wrong))
 }
@@ -294,6 +307,34 @@ fn states_of_many_are_timed_beside_the_others_and_must_agree() {
     }
     let text = run(&words).out;
     assert!(text.contains("where many are computed at once") && text.contains("by heart/it"), "{text}");
+}
+
+#[test]
+fn a_peer_may_compute_several_states_a_call() {
+    for (wrong, status) in [("0.0", 0), ("1e-6", 4)] {
+        // The function that is known by its name is wrong: it must not be called.
+        let library = peer_of(&(PEER.replace("WRONG", "1.0") + &IN_LANES.replace("WRONG", wrong)));
+        let entry = serde_json::json!([{"name": "four", "path": library.name(), "engine": "by heart", "lanes": 4}]);
+        let manifest = File::new("peers.json", entry.to_string().as_bytes());
+        let words = ["compare", "simple_pendulum", "--functions", "gravity_torque,inverse_dynamics", "--peers-manifest", manifest.name()];
+        // Not a multiple of a call's states.
+        let batch = ["--batch", "f64", "--states", "13", "--repetitions", "31"];
+        let ended = run(&[&words[..], &batch[..], &["--format", "json"]].concat());
+        assert_eq!(ended.status, status, "{}", ended.err);
+        let json = ended.json();
+        let [first, second] = [0, 1].map(|f| json["functions"][f].clone());
+        let own = &first["peers_in_lanes"][0];
+        assert!(first["peers"].as_array().unwrap().is_empty() && second["peers_in_lanes"].as_array().unwrap().is_empty(), "{json}");
+        assert_eq!((&own["peer"], &own["lanes"]), (&"four".into(), &4.into()));
+        assert!(own["time"]["median"].as_f64().unwrap() > 0.0, "{own}");
+        assert_eq!(own["largest_difference"].as_f64().unwrap() < 1e-15, status == 0, "{own}");
+        assert!(status == 0 || ended.err.contains("peer four differs"), "{}", ended.err);
+        let text = run(&[&words[..], &batch[..]].concat()).out;
+        assert!(text.contains("computes several states a call") && text.contains("four"), "{text}");
+        // Without batches it has no part.
+        let json = run(&[&words[..], &SMALL[..], &["--format", "json"]].concat()).json();
+        assert!(json["functions"][0]["peers_in_lanes"].as_array().unwrap().is_empty());
+    }
 }
 
 #[test]

@@ -68,7 +68,14 @@ pub(super) fn dependent(report: &Report) -> Table {
 
 /// Peers that compute several states a call: a row for each function and build.
 pub(super) fn in_lanes(report: &Report) -> Table {
-    let titles = [("function", ""), ("peer", ""), ("states a call", ""), ("a state", "ns"), ("it/f64 blocks", "ratio"), ("largest difference", "of magnitude")];
+    let titles = [
+        ("function", ""),
+        ("peer", ""),
+        ("states a call", ""),
+        ("a state", "ns"),
+        ("it/f64 blocks", "ratio"),
+        ("largest difference", "of magnitude"),
+    ];
     let mut table = Table::new(titles).left(2);
     for (f, p) in report.functions.iter().flat_map(|f| f.peers_in_lanes.iter().map(move |p| (f, p))) {
         let ours = f.batches.iter().find(|b| b.numbers == "f64" && b.layout == "blocks").map(|b| p.time.median / b.time.median);
