@@ -47,6 +47,7 @@ step cargo test --workspace
 step arm
 step documentation
 step python3 models/urdf/generate.py --check
+step python3 tests/peers/tables.py --check
 step python3 tests/peers/chart.py --check
 step python3 tests/oracles/make.py --check
 step python3 tests/shipped/shipped.py --sample

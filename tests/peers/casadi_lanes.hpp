@@ -15,7 +15,7 @@ using Whole = long long __attribute__((vector_size(8 * LANES)));
 #define INLINE inline __attribute__((always_inline))
 
 // What a C++ compiler takes for a number where CasADi writes one.
-struct alignas(8) Real
+struct Real
 {
   Numbers x;
 

@@ -6,8 +6,10 @@
 """
 
 import argparse
+import json
 import sys
 
+import rendered
 from environment import REPOSITORY
 
 README = REPOSITORY / "README.md"
@@ -19,11 +21,16 @@ BARS = [
     ("Pinocchio", lambda row: row["Pinocchio / generated"], "#d9822b"),
     ("MuJoCo", lambda row: row["MuJoCo"] and row["MuJoCo"] / row["generated"], "#7a5195"),
 ]
-MACHINE = "One core of an Intel Xeon (Granite Rapids by its caches), sines and cosines inside; of each its fastest build"
 
 WIDTH, MARGIN, TOP = 900, 16, 92
 BAR, BETWEEN, TITLE = 13, 8, 26
 LABELS, NUMBERS = 120, 34
+
+
+def machine():
+    """What the table was measured on, by the record that it is made of."""
+    processor = json.loads((rendered.PLACE / rendered.named()).read_text())["processor"]
+    return f"One core, {processor}; sines and cosines inside; of each its fastest build"
 
 
 def number(cell):
@@ -96,7 +103,7 @@ def chart():
         'font-family="DejaVu Sans, Verdana, Arial, sans-serif" font-size="12">',
         '<rect width="100%" height="100%" fill="white"/>',
         text(MARGIN, 26, "How many times as long as generated code others take", ' font-size="16" font-weight="bold"'),
-        text(MARGIN, 46, MACHINE, ' fill="#555555"'),
+        text(MARGIN, 46, machine(), ' fill="#555555"'),
     ]
     x = MARGIN
     for name, _, colour in [*BARS, ("generated: 1", None, "#1b6ca8")]:

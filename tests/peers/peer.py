@@ -60,8 +60,8 @@ class Peer:
         """The result of one lane, another one each time; the others have other states."""
         self.turn, lane = (self.turn + 1) % self.lanes, self.turn
         spread = lambda vector: [x * (1 if k == lane else 0.9 - 0.1 * k) for x in vector for k in range(self.lanes)]
-        arrays = [(ctypes.c_double * (self.lanes * len(vector)))(*spread(vector)) for vector in vectors]
-        out = (ctypes.c_double * (self.lanes * size))()
+        arrays = [aligned(spread(vector)) for vector in vectors]
+        out = aligned([0.0] * (self.lanes * size))
         self.entry(function)(self.handle, *arrays, out)
         return list(out)[lane :: self.lanes]
 
@@ -94,6 +94,15 @@ class Peer:
 
     def close(self):
         self.library.peer_close(self.handle)
+
+
+def aligned(numbers):
+    """An array from the start of a cache line."""
+    line, size = 64, ctypes.sizeof(ctypes.c_double)
+    room = (ctypes.c_char * (line + size * len(numbers)))()
+    array = (ctypes.c_double * len(numbers)).from_buffer(room, -ctypes.addressof(room) % line)
+    array[:] = numbers
+    return array
 
 
 def against(library, path):

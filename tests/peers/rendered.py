@@ -188,9 +188,9 @@ def fast(record):
     f = "inverse_dynamics"
     took = listed(f"{what[name]} in {shown(median(record.function(name, f)['generated']))} ns" for name in names)
     over = [listed(times(record.over(name, f, e)) for name in names) for e in RATIOS.values()]
+    article = "an" if record.made["processor"][0] in "AEIOU" else "a"
     return (f"Inverse dynamics of {took}, sines and cosines included: {over[0]} times as fast as Pinocchio's fastest build and {over[1]} times as fast as the "
-            f"fastest C code by CasADi, measured side by side on one core of an Intel or AMD {record.made['processor']} machine").replace(
-                "an Intel or AMD ", "an " if record.made["processor"][0] in "AEIOU" else "a ")
+            f"fastest C code by CasADi, measured side by side on one core of {article} {record.made['processor']}")
 
 
 def machine(record, file):
