@@ -5,6 +5,7 @@
     python3 tests/peers/build.py                     build what is missing or out of date, write target/peers/peers.json
     python3 tests/peers/build.py --install-clang     the same, after apt-get install of the newest clang (Debian, as root)
     python3 tests/peers/build.py --only WORD...      the same, of the peers whose names contain one of these words
+    python3 tests/peers/build.py --jobs 2            two builds at a time; their times of compilation are those of a busy machine
     python3 tests/peers/build.py --again             build what is up to date too, for its times: on an idle machine
     python3 tests/peers/build.py --check [FILE...]   compare every function of every peer with tests/fixtures, and with *.ref.json files
     python3 tests/peers/build.py --bench FILE[:floating]...   nanoseconds per call for the robots of these URDFs
@@ -14,6 +15,7 @@ Makes a virtual environment with the wheels of pin, cmeel-eigen, casadi and mujo
 """
 
 import argparse
+import concurrent.futures
 import json
 import os
 import subprocess
@@ -33,8 +35,8 @@ MANIFEST = OUT / "peers.json"
 REFUSED = 3  # bench_peer's status where the peer does not read the robot
 
 
-def build(words, again):
-    """Every peer, or those whose names contain one of the words; what else was built before stays in the manifest."""
+def build(words, again, jobs):
+    """Every peer, or those whose names contain one of the words, so many at a time; what else was built before stays in the manifest."""
     wanted = lambda peer: not words or any(word in peer["name"] for word in words)
     found = list(environment.compilers())
     if not found:
@@ -46,13 +48,10 @@ def build(words, again):
         for stamp in (*code, *(Path(peer["path"]).with_suffix(".stamp") for _, peer in plans if wanted(peer))):
             stamp.unlink(missing_ok=True)
     before = {entry["name"]: entry for entry in json.loads(MANIFEST.read_text())} if MANIFEST.exists() else {}
-    peers = []
-    for module, peer in plans:
-        if wanted(peer):
-            peers.append(module.build(peer, OUT))
-        elif peer["name"] in before:
-            peers.append(before[peer["name"]])
-        MANIFEST.with_suffix(".new").write_text(json.dumps(peers, indent=2) + "\n")
+    with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
+        built = [pool.submit(module.build, peer, OUT) if wanted(peer) else before.get(peer["name"]) for module, peer in plans]
+        peers = [entry.result() if isinstance(entry, concurrent.futures.Future) else entry for entry in built if entry]
+    MANIFEST.with_suffix(".new").write_text(json.dumps(peers, indent=2) + "\n")
     os.replace(MANIFEST.with_suffix(".new"), MANIFEST)
     return peers
 
@@ -75,6 +74,7 @@ def main():
     parser.add_argument("--install-clang", action="store_true", help="apt-get install the newest clang first")
     parser.add_argument("--only", nargs="+", metavar="WORD", help="peers whose names contain one of these")
     parser.add_argument("--again", action="store_true", help="build what is up to date too")
+    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="so many builds at a time, each of up to 6 GB: not for times of compilation")
     parser.add_argument("--check", nargs="*", metavar="FILE", help="*.ref.json files besides tests/fixtures; mimic joints must be free in them")
     parser.add_argument("--bench", nargs="+", metavar="URDF[:floating]")
     parser.add_argument("--callgrind", nargs="+", metavar="URDF[:floating]")
@@ -90,7 +90,7 @@ def main():
 
         callgrind.table(arguments.callgrind, OUT)
         return 0
-    peers = build(arguments.only, arguments.again)
+    peers = build(arguments.only, arguments.again, max(1, arguments.jobs))
     if (arguments.all or arguments.check is not None) and not peers_module.check(peers, arguments.check or []):
         return 1
     if arguments.bench:

@@ -1,6 +1,7 @@
 """Generates C with CasADi for some robots, one file a function, and builds peers of it: of the textbook's recursions, and of Pinocchio's templates."""
 
 import json
+import threading
 from importlib import metadata
 
 import casadi_templates
@@ -10,6 +11,7 @@ import robots
 from environment import FAST, HERE, NATIVE, c_compiler, machine
 
 GENERATORS = (casadi_textbook, casadi_templates)
+GENERATING = threading.Lock()
 MOST = 60_000  # operations of a function: the compilers' time grows with more than their number
 
 
@@ -44,6 +46,12 @@ def sources(generator):
 
 
 def generate(generator, out):
+    """Once, however many builds ask for it at a time."""
+    with GENERATING:
+        return generated(generator, out)
+
+
+def generated(generator, out):
     """A C file for each function, and what each took; kept until a source changes."""
     folder = out / generator.FOLDER
     folder.mkdir(exist_ok=True)

@@ -16,6 +16,7 @@ these. Takes some six minutes a run and, for cargo's part, five more.
 
 import argparse
 import json
+import shlex
 import sys
 import tempfile
 from pathlib import Path
@@ -36,7 +37,7 @@ def main():
     parser.add_argument("--no-cargo", action="store_true", help="leave out how long cargo takes")
     parser.add_argument("--keep", type=Path, metavar="FOLDER", help="where the answers of `compare` are kept, and not asked for again [default: nowhere]")
     parser.add_argument("--out", type=Path, metavar="FILE", help="where the record goes [default: docs/speed/<date>-<processor>.json]")
-    parser.add_argument("--articulated", metavar="PATH", help="the command [default: built by cargo]")
+    parser.add_argument("--articulated", metavar="COMMAND", help="the command, in words: 'taskset -c 1 target/release/articulated' [default: built by cargo]")
     arguments = parser.parse_args()
     if arguments.check:
         return check()
@@ -64,7 +65,7 @@ def measure(arguments, parser):
         parser.error(f"--robots: no {', '.join(unknown)}; expected some of {', '.join(robots.ALL)}")
     if not record.MANIFEST.exists():
         raise SystemExit(f"{record.MANIFEST.relative_to(REPOSITORY)} is not there: python3 tests/peers/build.py --all")
-    command = [arguments.articulated] if arguments.articulated else ["cargo", "run", "--quiet", "--release", "-p", "articulated-cli", "--"]
+    command = shlex.split(arguments.articulated) if arguments.articulated else ["cargo", "run", "--quiet", "--release", "-p", "articulated-cli", "--"]
     with tempfile.TemporaryDirectory() as scratch:
         folder = arguments.keep or Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)

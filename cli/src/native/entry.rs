@@ -38,10 +38,10 @@ macro_rules! entry {
                 // SAFETY: what this function asks for: the address has the type that it gets here.
                 unsafe {
                     Some(match arrays {
-                        1 => Self::One(transmute::<P, _>(address)),
-                        2 => Self::Two(transmute::<P, _>(address)),
-                        3 => Self::Three(transmute::<P, _>(address)),
-                        4 => Self::Four(transmute::<P, _>(address)),
+                        1 => Self::One(transmute::<P, unsafe extern "C" fn($($First,)? P, $($Rest),*)>(address)),
+                        2 => Self::Two(transmute::<P, unsafe extern "C" fn($($First,)? P, P, $($Rest),*)>(address)),
+                        3 => Self::Three(transmute::<P, unsafe extern "C" fn($($First,)? P, P, P, $($Rest),*)>(address)),
+                        4 => Self::Four(transmute::<P, unsafe extern "C" fn($($First,)? P, P, P, P, $($Rest),*)>(address)),
                         _ => return None,
                     })
                 }
