@@ -2,6 +2,8 @@
 
 use articulated::Dynamics;
 use articulated::simulate::{Balance, Counts, Settings};
+use articulated_core::description::JointKind;
+use articulated_core::effect::EffectId;
 use articulated_motion::Creep;
 use serde::Serialize;
 
@@ -64,7 +66,6 @@ const UNITS: Units = Units(&[
     ("momentum.end", "as at the start"),
     ("momentum.largest_change_angular", "kg·m²/s"),
     ("momentum.largest_change_linear", "kg·m/s"),
-    ("creep[].way", "m of a contact; rad or m of a joint"),
     ("events[].time", "s"),
 ]);
 
@@ -119,13 +120,23 @@ pub(super) struct Crept {
     /// The link or the joint.
     pub(super) on: String,
     pub(super) way: f64,
+    /// Of the way: `m`, or `rad` of a joint that rotates.
+    pub(super) unit: &'static str,
     /// How long it crept.
     pub(super) time_s: f64,
 }
 
 impl Crept {
-    fn of(creep: &Creep) -> Self {
-        Self { effect: creep.effect.row().name, on: creep.on.clone(), way: creep.way, time_s: creep.time }
+    fn of(stage: &Stage, creep: &Creep) -> Self {
+        // A degree of freedom of a planar joint, as `puck[2]`, has the name of its joint before the bracket.
+        let joint = |name: &str| stage.description.joints.iter().find(|joint| joint.name == name).map(|joint| joint.kind);
+        let name = creep.on.split_once('[').map_or(creep.on.as_str(), |(name, _)| name);
+        let unit = match (creep.effect, joint(&creep.on).or_else(|| joint(name))) {
+            (EffectId::contact, _) | (_, Some(JointKind::Prismatic)) => "m",
+            (_, Some(JointKind::Planar | JointKind::Floating)) => "rad, m",
+            _ => "rad",
+        };
+        Self { effect: creep.effect.row().name, on: creep.on.clone(), way: creep.way, unit, time_s: creep.time }
     }
 }
 
@@ -169,7 +180,7 @@ impl Summary {
             energy: Energy::of(r, &motion.balance, motion.ball),
             momentum: Momentum::of(r),
             counts: Done::of(stage, &motion.counts, r.len()),
-            creep: motion.creep.iter().map(Crept::of).collect(),
+            creep: motion.creep.iter().map(|creep| Crept::of(stage, creep)).collect(),
             events: r.events.clone(),
             ball_reached: stage.scene.impact.as_ref().map(|_| motion.ball.is_some()),
             ball_speed_m_per_s: r.events.iter().find_map(|e| e.ball_speed_m_per_s),

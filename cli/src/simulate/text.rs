@@ -88,8 +88,7 @@ fn table(s: &Summary) -> Table {
     row("linear momentum", length(&p.start[3..]), length(&p.end[3..]), "kg·m/s");
     row("  largest change", none(), number(p.largest_change_linear), "kg·m/s");
     for crept in &s.creep {
-        let unit = if crept.effect == "contact" { "m" } else { "rad, m" };
-        row(&format!("creep of {} at {}", crept.effect, plain(&crept.on)), none(), number(crept.way), unit);
+        row(&format!("creep of {} at {}", crept.effect, plain(&crept.on)), none(), number(crept.way), crept.unit);
         row("  while it should be held", none(), number(crept.time_s), "s");
     }
     if last != "end" {
