@@ -49,7 +49,8 @@ fn say(level: &str, colour: &str, text: &str) {
     let _ = writeln!(stream, "{level}: {}", harmless(text));
 }
 
-/// A text without what a terminal would obey: names of files and robots may have such characters. Ends of lines and tabs stay.
+/// A text without what a terminal would obey: names of files and robots may have such characters.
+/// Ends of lines and tabs stay.
 pub(crate) fn harmless(text: &str) -> String {
     escaped(text, |c| !matches!(c, '\n' | '\t') && is_obeyed(c))
 }

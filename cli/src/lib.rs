@@ -81,7 +81,8 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     }
 }
 
-/// What is wrong with the command line, with words escaped that have what a terminal would obey; none where no word has.
+/// What is wrong with the command line, with words escaped that have what a terminal would obey;
+/// none where no word has.
 fn with_plain_words(text: &str, words: &[OsString]) -> Option<String> {
     let words: Vec<_> = words.iter().map(|word| word.to_string_lossy()).filter(|word| word.contains(table::is_obeyed)).collect();
     // Of a word as `--option=value` the value alone is told.
@@ -119,7 +120,8 @@ fn dispatch(arguments: &Arguments) -> Result<u8, Failure> {
     }
 }
 
-/// A report as JSON, indented, with a line's end. What of a name a terminal would obey is escaped as JSON has it.
+/// A report as JSON, indented, with a line's end. What of a name a terminal would obey is escaped
+/// as JSON has it.
 fn json(report: &impl serde::Serialize) -> String {
     let text = serde_json::to_string_pretty(report).map_or_else(|e| format!("{{\"error\": {:?}}}\n", e.to_string()), |text| text + "\n");
     // Outside of texts there are no other such characters than ends of lines.

@@ -118,7 +118,8 @@ pub(crate) fn freedom(n: usize) -> String {
     counted(n, "degree") + " of freedom"
 }
 
-/// Whether a terminal obeys a character instead of showing it: it ends a line, moves the cursor, or turns the direction of what follows.
+/// Whether a terminal obeys a character instead of showing it: it ends a line, moves the cursor, or
+/// turns the direction of what follows.
 pub(crate) fn is_obeyed(c: char) -> bool {
     c.is_control() || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }

@@ -4,8 +4,10 @@
 //! cargo run --release -p articulated-models --example step_cost
 //! ```
 //!
-//! Each row times four loops in turn, over the same robot, control and steps: `by hand` calls the generated functions directly, `step` is [`Simulation::step`], `run` is
-//! [`Simulation::run_into`] that records its ends, and `with energies` is the same with [`Simulation::with_energy_balance`]. Figures are medians over rounds, in ns a step.
+//! Each row times four loops in turn, over the same robot, control and steps: `by hand` calls the
+//! generated functions directly, `step` is [`Simulation::step`], `run` is [`Simulation::run_into`]
+//! that records its ends, and `with energies` is the same with [`Simulation::with_energy_balance`].
+//! Figures are medians over rounds, in ns a step.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -74,7 +76,8 @@ macro_rules! by_hand {
                     v = add(&v, STEP, &acceleration(&q, &v));
                     q = place(&q, &v.map(|v| STEP * v));
                 } else {
-                    // The classical Runge-Kutta method; u̇ = v to first order in u, which is less work than the exact chart of the library.
+                    // The classical Runge-Kutta method; u̇ = v to first order in u, which is less
+                    // work than the exact chart of the library.
                     let (v1, a1) = (v, acceleration(&q, &v));
                     let v2 = add(&v, 0.5 * STEP, &a1);
                     let a2 = acceleration(&place(&q, &v1.map(|v| 0.5 * STEP * v)), &v2);

@@ -57,7 +57,8 @@ impl Stage {
     }
 }
 
-/// A contact that starts with its sphere's centre under the plane: odd, since it springs up with all that is stored there, and used as asked for. A point, of radius 0, is one only where it
+/// A contact that starts with its sphere's centre under the plane: odd, since it springs up with
+/// all that is stored there, and used as asked for. A point, of radius 0, is one only where it
 /// pushes with more than the robot weighs: it stands below the plane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sunk {

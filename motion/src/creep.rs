@@ -21,10 +21,13 @@ pub struct Creep {
 }
 
 impl Stage {
-    /// The contact and the joint with dry friction that crept furthest in a motion of the scene, of each kind at most one.
+    /// The contact and the joint with dry friction that crept furthest in a motion of the scene, of
+    /// each kind at most one.
     ///
-    /// It is judged by the records: from one to the next a contact creeps if it presses at both and its point moves along the plane, and a joint creeps if it moves, slower than
-    /// [`SLIDING`] times the smoothing speed of its friction. With few records there is little to judge by: nothing is found then.
+    /// It is judged by the records: from one to the next a contact creeps if it presses at both and
+    /// its point moves along the plane, and a joint creeps if it moves, slower than [`SLIDING`]
+    /// times the smoothing speed of its friction. With few records there is little to judge by:
+    /// nothing is found then.
     pub fn creep(&self, recording: &Recording) -> Vec<Creep> {
         [self.creep_of_contacts(recording), self.creep_of_joints(recording)].into_iter().flatten().collect()
     }
@@ -107,7 +110,8 @@ impl Contact {
         })
     }
 
-    /// The centre of the sphere in the world frame, m, where it presses. A sphere that rolls without slipping moves its centre: that counts as a way here.
+    /// The centre of the sphere in the world frame, m, where it presses. A sphere that rolls
+    /// without slipping moves its centre: that counts as a way here.
     fn pressed_at(&self, places: &[f64]) -> Option<[f64; 3]> {
         let x = places.get(12 * self.frame..12 * (self.frame + 1))?;
         let centre = [0, 1, 2].map(|k| x[9 + k] + (0..3).map(|c| x[3 * k + c] * self.point[c]).sum::<f64>());

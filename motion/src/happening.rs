@@ -22,8 +22,10 @@ pub struct SceneEvent {
     pub kind: EventKind,
     /// Whose: a joint of one degree of freedom, a degree of freedom as `base[3]`, or a link.
     pub on: String,
-    /// Whether what it is about begins: a limit is reached, the ground touched, the joint stops sliding, the ball is hit; or ends: the joint comes back, the link leaves the ground, the
-    /// joint starts to slide ([`SLIDING`](articulated::simulate::SLIDING)). The ball's turn comes once: not hit is nothing that moved towards it.
+    /// Whether what it is about begins: a limit is reached, the ground touched, the joint stops
+    /// sliding, the ball is hit; or ends: the joint comes back, the link leaves the ground, the
+    /// joint starts to slide ([`SLIDING`](articulated::simulate::SLIDING)). The ball's turn comes
+    /// once: not hit is nothing that moved towards it.
     pub begins: bool,
 }
 

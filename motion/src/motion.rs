@@ -119,8 +119,9 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
         self.simulation.settings()
     }
 
-    /// Makes the first step from the start and throws it away. Errors: a state, or a control, that does not fit the robot. What keeps the robot from moving is the result,
-    /// as [`Outcome::error`] would be of a run.
+    /// Makes the first step from the start and throws it away. Errors: a state, or a control, that
+    /// does not fit the robot. What keeps the robot from moving is the result, as
+    /// [`Outcome::error`] would be of a run.
     pub fn first_step(&mut self, begin: &Begin) -> Result<Option<SimulateError>, MotionErrors> {
         let refused = |e: SimulateError| MotionErrors::refused(&self.stage.scene.file, e);
         let mut drive = Drive::new(self.robot, &begin.controller, self.stage.scene.control.period).map_err(refused)?;

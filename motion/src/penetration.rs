@@ -22,7 +22,8 @@ pub struct Penetration {
     pub at: f64,
 }
 
-/// Geometry may be deeper than contact by so much of its size: points of contact are seldom exactly on it.
+/// Geometry may be deeper than contact by so much of its size: points of contact are seldom exactly
+/// on it.
 const BESIDE: f64 = 0.05;
 
 /// So many links are named.
@@ -50,9 +51,11 @@ struct Touch {
 }
 
 impl Stage {
-    /// Links with collision geometry that are below a plane of contact by more than the contacts of their body, and a twentieth of their size: nothing holds them there. `t`, s, and `q`,
-    /// `[t.len() · nq]`, are the times and states to look at: of a start, or of a [`Recording`](articulated::simulate::Recording). Of meshes, which are not read, the link's centre of mass counts.
-    /// The deepest comes first; none where the scene has no contact.
+    /// Links with collision geometry that are below a plane of contact by more than the contacts of
+    /// their body, and a twentieth of their size: nothing holds them there. `t`, s, and `q`,
+    /// `[t.len() · nq]`, are the times and states to look at: of a start, or of a
+    /// [`Recording`](articulated::simulate::Recording). Of meshes, which are not read, the link's
+    /// centre of mass counts. The deepest comes first; none where the scene has no contact.
     pub fn penetrations(&self, t: &[f64], q: &[f64]) -> Vec<Penetration> {
         let touches = self.touches();
         let mut planes: Vec<Plane> = Vec::new();
@@ -99,7 +102,9 @@ impl Stage {
         ))
     }
 
-    /// A warning of links that went below a plane in a motion with these times, s, and states, `[t.len() · nq]`. Those that were there from the start on are left out unless they sank much deeper.
+    /// A warning of links that went below a plane in a motion with these times, s, and states,
+    /// `[t.len() · nq]`. Those that were there from the start on are left out unless they sank much
+    /// deeper.
     pub fn warning_of_penetrations(&self, t: &[f64], q: &[f64]) -> Option<String> {
         let (first, start) = (t.first()?, q.get(..self.model.nq)?);
         let at_start = self.penetrations(&[*first], start);

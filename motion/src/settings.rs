@@ -17,8 +17,9 @@ impl Stage {
         Ok(simulation.settings.clone())
     }
 
-    /// Whether the scene can be simulated so. Errors: all settings that its robot cannot be simulated by, or else a ball that is hit while nothing moves and smoothing speeds
-    /// that the tolerances do not resolve.
+    /// Whether the scene can be simulated so. Errors: all settings that its robot cannot be
+    /// simulated by, or else a ball that is hit while nothing moves and smoothing speeds that the
+    /// tolerances do not resolve.
     pub fn check(&self, settings: &Settings) -> Result<(), MotionErrors> {
         MotionErrors::none(&self.scene.file, self.faults_of(settings))
     }
@@ -32,7 +33,8 @@ impl Stage {
         self.in_time(settings).into_iter().chain(self.unresolved_speeds(settings)).collect()
     }
 
-    /// Smoothing speeds of friction and contact that the tolerance of velocities does not resolve: steps by tolerance would never end.
+    /// Smoothing speeds of friction and contact that the tolerance of velocities does not resolve:
+    /// steps by tolerance would never end.
     fn unresolved_speeds(&self, settings: &Settings) -> Vec<Fault> {
         let expected = RESOLVED * settings.atol;
         let smoothed = self.effects.iter().filter(|applied| matches!(applied.effect, EffectId::friction | EffectId::contact));

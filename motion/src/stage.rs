@@ -63,8 +63,8 @@ impl Stage {
 }
 
 impl Stage {
-    /// A file that the scene names, a table over time, to be read line by line. Errors: one that cannot be read, is no regular file, or is larger than any
-    /// table (4 GiB).
+    /// A file that the scene names, a table over time, to be read line by line. Errors: one that
+    /// cannot be read, is no regular file, or is larger than any table (4 GiB).
     pub fn file(&self, name: &str) -> Result<Box<dyn BufRead>, String> {
         let path = self.folder.join(name);
         let file = open_file(&path, MOST_OF_TABLE).map_err(|e| format!("{}: {e}", path.display()))?;

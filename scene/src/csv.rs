@@ -1,4 +1,5 @@
-//! A table over time in a CSV, read line by line: in memory are the numbers that are used, whatever else the file holds.
+//! A table over time in a CSV, read line by line: in memory are the numbers that are used, whatever
+//! else the file holds.
 
 use std::io::{BufRead, Read};
 
@@ -30,8 +31,9 @@ struct Most {
 
 const MOST: Most = Most { rows: 10_000_000, numbers: 1 << 28, line: 1 << 20, lines: 20_000_000, wrong: 100 };
 
-/// The table of a CSV for a robot; columns that are not there are neutral. What is wrong with it is told of its lines, and no more of them than the number
-/// or the name that is wrong; then the table is empty.
+/// The table of a CSV for a robot; columns that are not there are neutral. What is wrong with it is
+/// told of its lines, and no more of them than the number or the name that is wrong; then the table
+/// is empty.
 pub(crate) fn read(from: Box<dyn BufRead>, hold: bool, robot: (&Model<f64>, Side), log: &mut Log) -> Series {
     read_at_most(MOST, from, hold, robot, log)
 }
@@ -86,7 +88,8 @@ struct Table<'a> {
 }
 
 impl Table<'_> {
-    /// Takes the lines up to the end, to what bounds a table, or to so many mistakes that the rest is left alone.
+    /// Takes the lines up to the end, to what bounds a table, or to so many mistakes that the rest
+    /// is left alone.
     fn fill(&mut self, lines: &mut Lines, most: Most, log: &mut Log) {
         let neutral = self.places.neutral(self.model, self.side);
         let rows = most.rows.min(most.numbers / neutral.len().max(1));
@@ -151,7 +154,8 @@ struct Lines {
 }
 
 impl Lines {
-    /// The next of them; none at the end, and none after one that is no text or too long, which is told.
+    /// The next of them; none at the end, and none after one that is no text or too long, which is
+    /// told.
     fn next(&mut self, log: &mut Log) -> Option<(At, String)> {
         loop {
             self.count += 1;
@@ -188,7 +192,8 @@ impl Lines {
     }
 }
 
-/// What stands between the commas of a line, without the blanks around it; in quotation marks there may be commas too, and two marks are one (RFC 4180).
+/// What stands between the commas of a line, without the blanks around it; in quotation marks there
+/// may be commas too, and two marks are one (RFC 4180).
 fn fields(line: &str) -> Vec<String> {
     let (mut fields, mut rest) = (Vec::new(), Some(line));
     while let Some(text) = rest {

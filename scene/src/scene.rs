@@ -162,7 +162,8 @@ impl Scene {
         !(self.effects.is_empty() && self.shafts.is_empty())
     }
 
-    /// The integrator of a motion that names none: `rodas4` where smoothed friction or contact makes it stiff, else `dopri5`.
+    /// The integrator of a motion that names none: `rodas4` where smoothed friction or contact
+    /// makes it stiff, else `dopri5`.
     pub fn default_integrator(&self) -> IntegratorId {
         let stiff = |asked: &Asked| matches!(asked.effect, EffectId::friction | EffectId::contact) && asked.says.is_some();
         if self.effects.iter().any(stiff) { IntegratorId::rodas4 } else { IntegratorId::dopri5 }

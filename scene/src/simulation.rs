@@ -18,7 +18,8 @@ pub struct Simulation {
     pub settings: Settings,
     /// What is looked for on the way.
     pub events: Vec<Watched>,
-    /// Whether the scene names its integrator. [`Scene::default_integrator`](crate::Scene::default_integrator) is taken otherwise.
+    /// Whether the scene names its integrator.
+    /// [`Scene::default_integrator`](crate::Scene::default_integrator) is taken otherwise.
     pub names_integrator: bool,
 }
 

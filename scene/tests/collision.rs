@@ -5,7 +5,8 @@ use articulated_core::effect::{Applied, EffectId};
 use articulated_scene::{Edited, Kind, Resolved, Scene, SceneErrors, Why};
 use articulated_urdf::{Kind as Odd, Options, Reading, Subject, read};
 
-/// A trunk that is a box with a ball; a shin with a capsule, and a sole without mass fixed to it that is a plate; a hand of a mesh, and one of a mesh and a ball; a bare link.
+/// A trunk that is a box with a ball; a shin with a capsule, and a sole without mass fixed to it
+/// that is a plate; a hand of a mesh, and one of a mesh and a ball; a bare link.
 const ROBOT: &str = r#"<robot name="r">
   <link name="trunk"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
     <collision><origin xyz="0 0 0.5"/><geometry><box size="2 4 6"/></geometry></collision>

@@ -1,4 +1,5 @@
-//! The tag `<collision>`: the dynamics need none of it, so that what is wrong with it is a warning here, and an error where a scene asks for it.
+//! The tag `<collision>`: the dynamics need none of it, so that what is wrong with it is a warning
+//! here, and an error where a scene asks for it.
 
 use articulated_core::description::{Collision, CollisionShape};
 

@@ -1,4 +1,5 @@
-//! Files that are read: regular ones only, and no more of them than may be. A device never ends, and who opens a pipe waits for somebody to write to it.
+//! Files that are read: regular ones only, and no more of them than may be. A device never ends,
+//! and who opens a pipe waits for somebody to write to it.
 
 use std::fs::{File, FileType};
 use std::io::{Error, ErrorKind, Read, Result};
@@ -17,8 +18,10 @@ pub fn read_file(path: &Path, most: u64) -> Result<Vec<u8>> {
     all(open_file(path, most)?)
 }
 
-/// The regular file at `path`, or the one that a link there leads to, to be read bit by bit. Errors: those of the system; a pipe, a device, a socket or a
-/// folder, none of which is opened; and a file of more than `most` bytes, at once where its size says so, else from the reader. They do not name the file.
+/// The regular file at `path`, or the one that a link there leads to, to be read bit by bit.
+/// Errors: those of the system; a pipe, a device, a socket or a folder, none of which is opened;
+/// and a file of more than `most` bytes, at once where its size says so, else from the reader. They
+/// do not name the file.
 ///
 /// ```
 /// let error = articulated_urdf::open_file("src".as_ref(), 3).err().unwrap();

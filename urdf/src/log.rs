@@ -47,7 +47,8 @@ impl Log {
         Self::new(self.file.clone())
     }
 
-    /// Takes what was found of a part. What are errors there are warnings here, each with `rest` behind what is expected.
+    /// Takes what was found of a part. What are errors there are warnings here, each with `rest`
+    /// behind what is expected.
     pub(crate) fn take_as_warnings(&mut self, part: Self, rest: &str) {
         let errors = part.errors.into_iter().map(|mut error| {
             error.expected.push_str(rest);

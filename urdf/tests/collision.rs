@@ -69,7 +69,8 @@ const WRONG: &[(&str, Kind, &str, &[&str])] = &[
     ("<origin xyz='0 0'/><geometry><sphere radius='1'/></geometry>", Kind::WrongCount, "origin xyz", &["2 numbers"]),
 ];
 
-/// A file that is sound but for its collision geometry is read as before; what is wrong is kept for who asks for contact.
+/// A file that is sound but for its collision geometry is read as before; what is wrong is kept for
+/// who asks for contact.
 #[test]
 fn geometry_that_cannot_be_read_is_a_warning_and_says_why() {
     for (text, kind, field, parts) in WRONG {

@@ -37,7 +37,8 @@ pub(super) struct Lanes<'a> {
 }
 
 impl<'a> Lanes<'a> {
-    /// `None` of a peer that computes one state a call, or does not have the function. A last block that is not full has the last state again and again.
+    /// `None` of a peer that computes one state a call, or does not have the function. A last block
+    /// that is not full has the last state again and again.
     pub(super) fn of(peer: &'a Peer, f: &Function<f64>, model: &Model<f64>, states: &[Vec<&[f64]>]) -> Option<Self> {
         let (kernel, lanes) = peer.in_lanes(f, model)?;
         let theirs: Vec<Vec<Vec<f64>>> = states.iter().map(|x| peer.arguments(f, model, x)).collect();

@@ -21,7 +21,8 @@ pub(crate) struct Library {
     pub(crate) flags: Option<String>,
     /// `f32` if it computes in single precision.
     pub(crate) element: Option<String>,
-    /// How many states a call computes, if that is not one: number k of state i at k·lanes + i of each array.
+    /// How many states a call computes, if that is not one: number k of state i at k·lanes + i of
+    /// each array.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) lanes: Option<NonZeroUsize>,
     /// Machine code of all of it.

@@ -79,13 +79,15 @@ impl Peer {
         self.code.as_ref()?.functions.get(function)
     }
 
-    /// The peer's own function of this name, if it has it, means the same by it, and computes one state a call.
+    /// The peer's own function of this name, if it has it, means the same by it, and computes one
+    /// state a call.
     pub(crate) fn contender(&self, function: &Function<f64>, model: &Model<f64>) -> Option<Contender<'static>> {
         let out = function.len(model.shape());
         self.library.lanes.is_none().then(|| Some(Contender::peer(self.kernel(function, model, 1)?, out)))?
     }
 
-    /// The same of a peer that computes several states a call, and how many; of results that it writes out.
+    /// The same of a peer that computes several states a call, and how many; of results that it
+    /// writes out.
     pub(super) fn in_lanes(&self, function: &Function<f64>, model: &Model<f64>) -> Option<(PeerKernel, usize)> {
         let lanes = self.library.lanes?.get();
         let kernel = self.kernel(function, model, lanes)?;

@@ -33,7 +33,8 @@ struct Row {
     generic: f64,
 }
 
-/// Runs every bundled scene, by generated and by generic code, without writing anything. The status is that of the worst of them.
+/// Runs every bundled scene, by generated and by generic code, without writing anything. The status
+/// is that of the worst of them.
 pub(super) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, Failure> {
     let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
     let progress = Progress::new(articulated_models::SCENES.len());

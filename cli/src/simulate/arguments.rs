@@ -15,7 +15,8 @@ pub(crate) struct SimulateArguments {
     /// The folder to write to; it is made if it is not there
     #[arg(short, long, value_name = "FOLDER")]
     pub(crate) output: Option<PathBuf>,
-    /// How many MB recording.csv and recording.parquet may become together; more is refused before the motion begins [default: 1000]
+    /// How many MB recording.csv and recording.parquet may become together; more is refused before
+    /// the motion begins [default: 1000]
     #[arg(long, value_name = "MB", requires = "output", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub(crate) max_output_size: Option<u64>,
     /// By generated code, compiled by rustc, instead of generic code
@@ -40,7 +41,8 @@ pub(crate) struct SimulateArguments {
     /// peer libraries that take steps: one library, or a list of them. They are run: name only what you trust
     #[arg(long, value_name = "FILE", conflicts_with_all = ["output", "generated", "integrator", "step", "rtol", "atol", "every"])]
     pub(crate) against: Option<PathBuf>,
-    /// Record every so many seconds, instead of what the scene says (of a scene that records its ends only, nothing is drawn)
+    /// Record every so many seconds, instead of what the scene says (of a scene that records its
+    /// ends only, nothing is drawn)
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) every: Option<f64>,
 }

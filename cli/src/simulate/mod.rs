@@ -98,7 +98,8 @@ fn by_generic_code(stage: &Stage, begin: &Begin, settings: &Settings, progress: 
     motion::run(stage, begin, (&stage.model, &stage.frame_names()), settings, progress)
 }
 
-/// All files of a motion, of its ends alone without what draws it; their names go into the summary, which is the last of them.
+/// All files of a motion, of its ends alone without what draws it; their names go into the summary,
+/// which is the last of them.
 fn write(stage: &Stage, motion: &Motion, summary: &mut Summary, (folder, ends): (&Path, bool)) -> Result<(), Failure> {
     let recording = &motion.recording;
     let drawn = if ends { None } else { Some(Drawn::of(stage, motion, summary)?) };

@@ -1,4 +1,5 @@
-//! How much is written into a folder: told before the motion begins where it is much, and refused where it is more than may be.
+//! How much is written into a folder: told before the motion begins where it is much, and refused
+//! where it is more than may be.
 
 use std::path::Path;
 
@@ -48,8 +49,9 @@ impl Size {
         format!("{rows} rows of {} columns: up to {size:.0} MB, {of_parquet:.0} MB of them the Parquet file", self.columns)
     }
 
-    /// Looks ahead at what a motion would write into the folder that the arguments name. Of records whose number only the motion shows, no more are made than
-    /// there is room for. Errors: more than may be.
+    /// Looks ahead at what a motion would write into the folder that the arguments name. Of records
+    /// whose number only the motion shows, no more are made than there is room for. Errors: more
+    /// than may be.
     pub(super) fn look_ahead(shape: Shape, settings: &mut Settings, arguments: &SimulateArguments) -> Result<Option<Self>, Failure> {
         let Some(folder) = &arguments.output else { return Ok(None) };
         let size = Self::of(shape, arguments.max_output_size.unwrap_or(DEFAULT));

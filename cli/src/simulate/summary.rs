@@ -51,7 +51,8 @@ pub(super) struct Summary {
     pub(super) warnings: Vec<String>,
     /// Written into the folder.
     pub(super) files: Vec<String>,
-    /// Pictures that are not, since all that they would show is zero throughout, or since the ends alone are recorded.
+    /// Pictures that are not, since all that they would show is zero throughout, or since the ends
+    /// alone are recorded.
     pub(super) pictures_left_out: Vec<&'static str>,
     /// Whether the page is not either, since the ends alone are recorded.
     pub(super) page_left_out: bool,
@@ -128,7 +129,8 @@ pub(super) struct Crept {
 
 impl Crept {
     fn of(stage: &Stage, creep: &Creep) -> Self {
-        // A degree of freedom of a planar joint, as `puck[2]`, has the name of its joint before the bracket.
+        // A degree of freedom of a planar joint, as `puck[2]`, has the name of its joint before the
+        // bracket.
         let joint = |name: &str| stage.description.joints.iter().find(|joint| joint.name == name).map(|joint| joint.kind);
         let name = creep.on.split_once('[').map_or(creep.on.as_str(), |(name, _)| name);
         let unit = match (creep.effect, joint(&creep.on).or_else(|| joint(name))) {

@@ -176,7 +176,8 @@ const KEEPING: &str = r#"
 }
 "#;
 
-/// A pendulum's torque by an address that the peer hands out, of four states a call; the last lane is wrong by WRONG.
+/// A pendulum's torque by an address that the peer hands out, of four states a call; the last lane
+/// is wrong by WRONG.
 const IN_LANES: &str = r#"
 unsafe extern "C" fn torques(h: *mut c_void, q: *const f64, tau: *mut f64) {
     for k in 0..4 {

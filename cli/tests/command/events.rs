@@ -99,7 +99,8 @@ fn links_that_a_motion_does_not_need_may_be_renamed() {
     assert_eq!(ended.status, 0, "{}", ended.err);
 }
 
-/// A ball joint at 10 rad/s would turn by more than π in a step of 1 s: `check` says so, as the run does.
+/// A ball joint at 10 rad/s would turn by more than π in a step of 1 s: `check` says so, as the run
+/// does.
 #[test]
 fn check_makes_the_first_step_of_a_motion() {
     let urdf = File::new(
@@ -124,7 +125,8 @@ fn check_makes_the_first_step_of_a_motion() {
     }
 }
 
-/// A link of 2 kg that 6 N·m of friction hold against 4.905 N·m: 26 steps, no event, and 0.142 mrad of creep in 10 s.
+/// A link of 2 kg that 6 N·m of friction hold against 4.905 N·m: 26 steps, no event, and 0.142 mrad
+/// of creep in 10 s.
 #[test]
 fn what_friction_holds_is_told_with_its_creep() {
     let joint = "<joint name='s' type='revolute'><parent link='g'/><child link='a'/><axis xyz='0 1 0'/><origin xyz='0 0 0'/>

@@ -1,4 +1,5 @@
-//! Files and names as they come: paths that are not UTF-8, what is no regular file, names with characters that a terminal obeys.
+//! Files and names as they come: paths that are not UTF-8, what is no regular file, names with
+//! characters that a terminal obeys.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -105,7 +106,8 @@ fn what_is_no_regular_file_is_refused_at_once() {
     refused(&["simulate", "chain", "--against", &at("pipe.json")], pipe);
 }
 
-/// A name that ends a line and says something on the next, turns the direction of what follows, and sets a colour.
+/// A name that ends a line and says something on the next, turns the direction of what follows, and
+/// sets a colour.
 const EVIL: &str = "&#10;FAKE: all is well&#x202e;&#x9b;31m";
 
 /// Neither stream, and no file, has the name's characters as they are.

@@ -234,7 +234,8 @@ fn what_is_told_of_the_end_is_told_with_its_time() {
     assert!(out.contains("from 0 s to 2 s, ended at its end\n") && !out.contains("last record"), "{out}");
 }
 
-/// The folder holds what the scene asks for: two records, and nothing that draws a motion, of an earlier one neither.
+/// The folder holds what the scene asks for: two records, and nothing that draws a motion, of an
+/// earlier one neither.
 #[test]
 fn of_a_scene_of_its_ends_two_records_are_written() {
     let text = "robot = \"simple_pendulum\"\n[initial]\nv = [1.0]\n[simulation]\nend = 0.5\noutput = \"ends\"\n";
@@ -358,7 +359,8 @@ fn tolerances_of_fixed_steps_are_refused() {
     assert_eq!(run(&["simulate", file.name(), "--integrator", "dopri5", "--rtol", "1e-3"]).status, 0);
 }
 
-/// A light body that tumbles fast about all three axes, and nothing acts on it: its energy stays as it is.
+/// A light body that tumbles fast about all three axes, and nothing acts on it: its energy stays as
+/// it is.
 fn tumbling_body_warns(integrator: &str) {
     let urdf = "<robot name='top'><link name='top'><inertial><mass value='0.1'/>
         <inertia ixx='1e-5' ixy='0' ixz='0' iyy='2e-5' iyz='0' izz='2.8e-5'/></inertial></link></robot>";

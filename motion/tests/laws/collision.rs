@@ -36,7 +36,8 @@ fn rest(collision: &str, from: &str) -> f64 {
     height(&outcome)
 }
 
-/// m g = n k x: four corners of a box, two ends of a lying capsule, one sphere, eight points of a rim, two edges of a lying cylinder.
+/// m g = n k x: four corners of a box, two ends of a lying capsule, one sphere, eight points of a
+/// rim, two edges of a lying cylinder.
 #[test]
 fn a_body_at_rest_sinks_in_by_its_weight_over_the_stiffness_of_what_it_stands_on() {
     let sunk = |points: f64| 2.0 * G / (points * 1e4);
@@ -90,7 +91,8 @@ articulated::robot! {
     }
 }
 
-/// Generated code has the same contact, from a scene's file and from the macro's own words: 8 corners, a capsule and a ball fixed to its link, 16 points on rims.
+/// Generated code has the same contact, from a scene's file and from the macro's own words: 8
+/// corners, a capsule and a ball fixed to its link, 16 points on rims.
 #[test]
 fn a_generated_robot_touches_the_ground_as_the_generic_one_does() {
     let stage = stage(include_str!("crawler.toml"), include_str!("crawler.urdf"));
@@ -100,7 +102,8 @@ fn a_generated_robot_touches_the_ground_as_the_generic_one_does() {
     let (a, b) = (&generic.recording, &generated.recording);
     assert_eq!((a.len(), &a.t), (21, &b.t));
     let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
-    // A hundred tolerances for places and ten thousand for rates: steps over contacts that begin are not smooth.
+    // A hundred tolerances for places and ten thousand for rates: steps over contacts that begin
+    // are not smooth.
     assert!(apart(&a.q, &b.q) < 1e-7 && apart(&a.v, &b.v) < 1e-5, "{:e} {:e}", apart(&a.q, &b.q), apart(&a.v, &b.v));
     // Deep in the ground, with speed, where most of the points push.
     let (q, v) = (a.q_at(20), a.v_at(20));
@@ -113,7 +116,8 @@ fn a_generated_robot_touches_the_ground_as_the_generic_one_does() {
     assert!(scale > 100.0 && apart(&of_model, &taken) < 1e-11 * scale, "{:e} of {scale:e}", apart(&of_model, &taken));
 }
 
-/// A point that stands on the plane is below it, by no more than its weight presses it in; then it is not told.
+/// A point that stands on the plane is below it, by no more than its weight presses it in; then it
+/// is not told.
 #[test]
 fn a_point_that_rests_in_the_plane_is_not_odd() {
     let plate = body("<collision><geometry><box size='0.4 0.3 0.2'/></geometry></collision>");
@@ -125,7 +129,8 @@ fn a_point_that_rests_in_the_plane_is_not_odd() {
     assert_eq!((sunk(0.1 - 0.25 * one), sunk(0.1 - 0.99 * one), sunk(0.1 - 1.01 * one)), (0, 0, 4));
 }
 
-/// A leg whose foot alone has contact, under a trunk that nothing but springs would hold: a trunk of 0.4 m, a foot of 0.2 m, a shin of 0.5 m.
+/// A leg whose foot alone has contact, under a trunk that nothing but springs would hold: a trunk
+/// of 0.4 m, a foot of 0.2 m, a shin of 0.5 m.
 fn hopper(trunk: &str) -> String {
     format!(
         "<robot name='r'><link name='trunk'><inertial><mass value='5'/><inertia ixx='0.1' ixy='0' ixz='0' iyy='0.1' iyz='0' izz='0.1'/></inertial>
@@ -212,7 +217,8 @@ fn a_start_below_the_plane_is_told() {
 /// What the base holds does not fall.
 #[test]
 fn what_does_not_move_is_not_told() {
-    // The trunk is the base, which reaches 0.1 m below the world frame; the plane is above all of the robot.
+    // The trunk is the base, which reaches 0.1 m below the world frame; the plane is above all of
+    // the robot.
     let scene = format!("[simulation]\nend = 1.0\n{FEET}").replace("friction = 0.5", "friction = 0.5\nheight = 0.3");
     assert_eq!(told_at(&stage(&scene, &hopper(BOX))), None);
     let scene = scene.replace("effects.contact.foot", "effects.contact.shin").replace("-0.04", "-0.54");

@@ -168,7 +168,8 @@ fn a_joint_that_follows_and_stands_still_has_no_events() {
     assert!(watch.events.is_empty() && stage.beyond(&[0.0]).is_empty());
 }
 
-/// y = −2 x stops sliding below ten times 0.01 m/s: x = 0.5 t − ½ t² below 0.05, from 0.45 s to 0.55 s.
+/// y = −2 x stops sliding below ten times 0.01 m/s: x = 0.5 t − ½ t² below 0.05, from 0.45 s to
+/// 0.55 s.
 #[test]
 fn a_joint_that_follows_slides_at_its_own_rate() {
     let follower = "<link name='b'/><joint name='y' type='prismatic'><parent link='rail'/><child link='b'/><axis xyz='1 0 0'/>

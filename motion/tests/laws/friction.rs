@@ -5,7 +5,8 @@ use articulated_core::effect::EffectId;
 
 use super::{CART, moved, stage, words};
 
-/// A link of 2 kg whose centre is 0.25 m from a hinge with 6 N·m of dry friction: gravity needs 4.905 N·m.
+/// A link of 2 kg whose centre is 0.25 m from a hinge with 6 N·m of dry friction: gravity needs
+/// 4.905 N·m.
 const STICTION: &str = r#"<robot name="arm"><link name="root"/>
     <joint name="s" type="revolute"><parent link="root"/><child link="u"/><axis xyz="0 1 0"/>
       <limit lower="-1.2" upper="1.2" effort="40" velocity="3"/><dynamics damping="0.1" friction="6"/></joint>
@@ -128,7 +129,8 @@ fn the_first_step_shows_what_a_run_would_end_with() {
     }
 }
 
-/// Scenes at random: integrators, steps, effects and starts that are wild now and then. What the first step accepts a run does not refuse at its start.
+/// Scenes at random: integrators, steps, effects and starts that are wild now and then. What the
+/// first step accepts a run does not refuse at its start.
 #[test]
 fn what_the_first_step_accepts_is_not_refused_at_the_start() {
     let mut state = 7_u64;

@@ -66,7 +66,8 @@ pub enum Stiffness {
     Refuse,
     /// Note the time in `Counts::stiff_at` and go on.
     Note,
-    /// Never look, and spend no evaluation on it: for loops that know their step to be stable. A motion that is not stable ends where its numbers are not finite.
+    /// Never look, and spend no evaluation on it: for loops that know their step to be stable. A
+    /// motion that is not stable ends where its numbers are not finite.
     Ignore,
 }
 

@@ -67,7 +67,8 @@ pub enum SimulateError {
         step: f64,
         /// How many of these there would be to the end, rejected ones among them.
         left: f64,
-        /// The number whose error limits most steps: its vector (the step of q, or v), its index there, and the name of its joint, where the robot can tell.
+        /// The number whose error limits most steps: its vector (the step of q, or v), its index
+        /// there, and the name of its joint, where the robot can tell.
         limiting: Option<(&'static str, usize, Option<String>)>,
     },
     /// The step of an explicit integrator is longer than it is stable at.

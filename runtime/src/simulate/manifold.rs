@@ -254,7 +254,8 @@ fn carried(omega: Vector3<f64>, w: Vector3<f64>) -> (Vector3<f64>, Vector3<f64>)
 /// Up to this θ² the rates come from a series in brackets, which is shorter than the closed form.
 const SMALL_TURN: f64 = 0.01;
 
-/// u̇ = v + ½ [u, v] + Σ B_2k/(2k)! [u, [u, … v]] of 2k brackets (Munthe-Kaas 1998): as many as count at θ², which is below [`SMALL_TURN`].
+/// u̇ = v + ½ [u, v] + Σ B_2k/(2k)! [u, [u, … v]] of 2k brackets (Munthe-Kaas 1998): as many as
+/// count at θ², which is below [`SMALL_TURN`].
 fn small_turn_rates(free: &Free, u: &[f64], v: &[f64], turn: f64, out: &mut [f64]) {
     const COEFFICIENTS: [f64; 4] = [1.0 / 12.0, -1.0 / 720.0, 1.0 / 30_240.0, -1.0 / 1_209_600.0];
     let at = free.v;
@@ -370,7 +371,8 @@ mod tests {
         }
     }
 
-    /// Against the closed form, from turns of nothing to the largest that the series takes, with steps that move far.
+    /// Against the closed form, from turns of nothing to the largest that the series takes, with
+    /// steps that move far.
     #[test]
     fn rates_of_small_turns_are_those_of_the_closed_form() {
         use articulated_core::nalgebra::Vector6;

@@ -29,7 +29,8 @@ pub struct Counts {
     pub smallest_step: f64,
     /// When an explicit integrator was first held back by stiffness, s.
     pub stiff_at: Option<f64>,
-    /// Of steps that tolerances choose: which of the 2·nv numbers of a step (step of q, then v) had the largest error in most steps so far, where one had it in more than half of them.
+    /// Of steps that tolerances choose: which of the 2·nv numbers of a step (step of q, then v) had
+    /// the largest error in most steps so far, where one had it in more than half of them.
     pub limited_by: Option<usize>,
 }
 
@@ -125,10 +126,12 @@ pub struct Recording {
     pub kinetic: Vec<f64>,
     /// Potential energy, J; empty for a robot without the function.
     pub potential: Vec<f64>,
-    /// Work of the torques since the start, J: of those that the motors give, where there are some. Empty unless requested by
+    /// Work of the torques since the start, J: of those that the motors give, where there are some.
+    /// Empty unless requested by
     /// [`Simulation::with_energy_balance`](super::Simulation::with_energy_balance).
     pub work: Vec<f64>,
-    /// Energy of the effects that are not conservative since the start, J; negative where they took some. Empty unless requested, as `work`.
+    /// Energy of the effects that are not conservative since the start, J; negative where they took
+    /// some. Empty unless requested, as `work`.
     pub dissipated: Vec<f64>,
     /// Energy that the maps of events brought since the start, J: change of T + U, negative where they took some; empty for a robot without one of the two.
     pub from_events: Vec<f64>,
@@ -138,7 +141,9 @@ pub struct Recording {
     pub missing: Vec<&'static str>,
     /// Events, in order.
     pub events: Vec<Hit>,
-    /// The balance of energy over all steps, if requested by [`Simulation::with_energy_balance`](super::Simulation::with_energy_balance) and the robot has both energies.
+    /// The balance of energy over all steps, if requested by
+    /// [`Simulation::with_energy_balance`](super::Simulation::with_energy_balance) and the robot
+    /// has both energies.
     pub balance: Option<Balance>,
     /// What was done.
     pub counts: Counts,
@@ -185,7 +190,8 @@ impl Recording {
         Some(self.kinetic.get(i)? + self.potential.get(i)?)
     }
 
-    /// What the balance of energy lacks in record i, J: T + U − (T + U at the start) − work − dissipated − what events brought. `None` where one of them is not recorded.
+    /// What the balance of energy lacks in record i, J: T + U − (T + U at the start) − work −
+    /// dissipated − what events brought. `None` where one of them is not recorded.
     pub fn imbalance(&self, i: usize) -> Option<f64> {
         Some(self.energy(i)? - self.energy(0)? - self.work.get(i)? - self.dissipated.get(i)? - self.from_events.get(i)?)
     }

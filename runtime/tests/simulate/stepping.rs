@@ -7,7 +7,8 @@ use articulated::simulate::{
 
 use crate::robots::{any, chain, model, satellite, slider, stepping, to};
 
-/// The same steps as those of a run, to the last bit: for every integrator, with a control that is sampled or not.
+/// The same steps as those of a run, to the last bit: for every integrator, with a control that is
+/// sampled or not.
 #[test]
 fn steps_one_by_one_are_those_of_a_run() {
     let robot = model("satellite", articulated::Base::Floating);
@@ -78,7 +79,8 @@ fn work_and_the_balance_are_there_on_request_alone() {
     assert!(with.work[1].abs() > 1e-3 && with.imbalance(1).is_some_and(|joules| joules.abs() < 1e-7) && with.balance.is_some());
 }
 
-/// A spring of 1e4 1/s², steps of 25 ms: rk4 is unstable beyond 2.8/100 s, semi-implicit Euler beyond 2/100 s.
+/// A spring of 1e4 1/s², steps of 25 ms: rk4 is unstable beyond 2.8/100 s, semi-implicit Euler
+/// beyond 2/100 s.
 #[test]
 fn stability_is_not_looked_for_where_it_is_ignored() {
     let robot = slider();
@@ -93,7 +95,8 @@ fn stability_is_not_looked_for_where_it_is_ignored() {
     assert!(ignored.q[1].abs() > 1e3, "{:?}", ignored.q);
 }
 
-/// What looks for stability every 16 steps looks seldom where the motion is slow: at most every 256 steps.
+/// What looks for stability every 16 steps looks seldom where the motion is slow: at most every 256
+/// steps.
 #[test]
 fn a_slow_motion_is_looked_at_seldom() {
     let settings = stepping(IntegratorId::rk4, 4.0, 1e-3);

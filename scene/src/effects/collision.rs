@@ -39,7 +39,8 @@ pub(super) fn is_asked(one: &Asked) -> bool {
     one.says.as_ref().is_some_and(|says| says.from_collision)
 }
 
-/// Whether a link's contact is that of its geometry: it is said of the link, or of all links and the link's own entry has no point.
+/// Whether a link's contact is that of its geometry: it is said of the link, or of all links and
+/// the link's own entry has no point.
 pub(super) fn is_taken(row: &Effect, says: &Numbers, rest: Option<&Numbers>) -> bool {
     let has_radius = || row.fields.iter().zip(&says.fields).any(|(field, own)| field.name == RADIUS && own.is_some());
     says.from_collision || (rest.is_some_and(|rest| rest.from_collision) && says.at.is_none() && !has_radius())

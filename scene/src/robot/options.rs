@@ -27,7 +27,8 @@ pub struct RobotOptions {
     pub lock: Vec<(String, Vec<f64>)>,
     /// What the robot is subject to besides gravity; on joints and links of appended robots too.
     pub effects: Vec<Applied>,
-    /// What is odd about the effects ([`Resolved::warnings`](crate::Resolved::warnings)): told with the warnings of the robot's document.
+    /// What is odd about the effects ([`Resolved::warnings`](crate::Resolved::warnings)): told with
+    /// the warnings of the robot's document.
     pub warnings: Vec<Problem>,
     /// Accept negative principal moments, with a warning. (Moments that break the triangle inequality are always accepted with a warning.)
     pub allow_unphysical_inertia: bool,

@@ -45,7 +45,8 @@ pub(super) struct Batch<'a> {
     graph: &'a Graph,
     /// Whether it may be said here what waits in memory.
     may_spill: bool,
-    /// Operations of the function of one state, where that is straight-line code with the numbers and sines of `f64` batches. Limbs in lanes are one operation.
+    /// Operations of the function of one state, where that is straight-line code with the numbers
+    /// and sines of `f64` batches. Limbs in lanes are one operation.
     operations_of_one: Option<u64>,
 }
 
@@ -62,10 +63,12 @@ const AVX2_LANES: usize = 4;
 /// A sine or cosine takes as long as so many operations.
 const SINE: u64 = 10;
 
-/// To turn two numbers of a result from blocks into states takes as long as a block saves on so many operations (AVX-512, Emerald Rapids).
+/// To turn two numbers of a result from blocks into states takes as long as a block saves on so
+/// many operations (AVX-512, Emerald Rapids).
 const TWO_NUMBERS: u64 = 5;
 
-/// A result of which more than three fifths are computed is dense: to store it takes the function of one state as long.
+/// A result of which more than three fifths are computed is dense: to store it takes the function
+/// of one state as long.
 const DENSE: (usize, usize) = (3, 5);
 
 /// How many states a block has, whatever the instruction set: a cache line of each number.
@@ -146,8 +149,10 @@ impl<'a> Batch<'a> {
         Self { signature, sizes: context.sizes, graph, may_spill, operations_of_one }
     }
 
-    /// Whether states one after the other are faster by the function of one state, called for each of them. A block saves time for each operation, but its results have to be turned into states, which
-    /// costs time for each number: also for zeros and for the other half of a symmetric matrix, which the function of one state only stores.
+    /// Whether states one after the other are faster by the function of one state, called for each
+    /// of them. A block saves time for each operation, but its results have to be turned into
+    /// states, which costs time for each number: also for zeros and for the other half of a
+    /// symmetric matrix, which the function of one state only stores.
     fn is_faster_one_by_one(&self, real: Real) -> bool {
         let (results, outputs) = (self.results(), &self.graph.outputs);
         let has_one = results.len() == 1 && self.signature.has_into() && self.inputs().iter().all(|a| !a.is_parameters);
@@ -272,7 +277,8 @@ mod tests {
     use super::*;
     use crate::{Request, generate};
 
-    /// The mass matrix of two arms side by side is half zeros; its block of results would take longer to turn than to compute.
+    /// The mass matrix of two arms side by side is half zeros; its block of results would take
+    /// longer to turn than to compute.
     #[test]
     fn sparse_results_are_computed_state_by_state_in_doubles() {
         let arm = |name: &str| {

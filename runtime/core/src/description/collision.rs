@@ -67,8 +67,10 @@ pub struct ContactSphere {
 pub const RIM_POINTS: usize = 8;
 
 impl Collision {
-    /// The spheres that touch a plane for the shape, in the link's frame: of a sphere itself, of a box its 8 corners, of a capsule the two balls at its ends, of a cylinder [`RIM_POINTS`] points
-    /// on each rim, the lower one first. Corners that fall together, as those of a plate, are one. None of a mesh, or of what could not be read.
+    /// The spheres that touch a plane for the shape, in the link's frame: of a sphere itself, of a
+    /// box its 8 corners, of a capsule the two balls at its ends, of a cylinder [`RIM_POINTS`]
+    /// points on each rim, the lower one first. Corners that fall together, as those of a plate,
+    /// are one. None of a mesh, or of what could not be read.
     pub fn contact_spheres(&self) -> Vec<ContactSphere> {
         let (radius, points) = match &self.shape {
             CollisionShape::Sphere { radius } => (*radius, [[0.0; 3]].into()),

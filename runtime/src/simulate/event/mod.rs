@@ -13,7 +13,8 @@ pub use impact::{Impact, Struck};
 
 use super::{SimulateError, StateError};
 
-/// A joint slides from this many times the smoothing speed s of its friction on: there μ v/√(v² + s²) is 0.995 of sliding friction μ.
+/// A joint slides from this many times the smoothing speed s of its friction on: there μ v/√(v² +
+/// s²) is 0.995 of sliding friction μ.
 pub const SLIDING: f64 = 10.0;
 
 /// Which way an event's function goes through zero.
@@ -139,8 +140,9 @@ impl<'a> Event<'a> {
         Self { about: Some(About::Coordinate(i)), inverted, ..Self::new(name, g).falling() }
     }
 
-    /// Rate i of v starts to slide (rising) or stops sliding (falling): |v| passes [`SLIDING`] times the speed at which the friction law is smoothed. Below that
-    /// the joint creeps under its load.
+    /// Rate i of v starts to slide (rising) or stops sliding (falling): |v| passes [`SLIDING`]
+    /// times the speed at which the friction law is smoothed. Below that the joint creeps under its
+    /// load.
     pub fn stick_slip(name: impl Into<String>, i: usize, speed: f64) -> Self {
         Self { about: Some(About::Rate(i)), ..Self::new(name, move |_, _, v: &[f64]| number(v, i).abs() - SLIDING * speed) }
     }

@@ -84,7 +84,8 @@ pub(crate) trait Method<R: Dynamics<f64>> {
     }
 }
 
-/// The integrator of this name, on this manifold; whether explicit ones look for motion that is too fast for their steps.
+/// The integrator of this name, on this manifold; whether explicit ones look for motion that is too
+/// fast for their steps.
 pub(crate) fn method<R: Dynamics<f64>>(id: IntegratorId, manifold: &Manifold, looks: bool) -> Box<dyn Method<R>> {
     let nv = manifold.nv;
     let n = 2 * nv + 2;

@@ -175,8 +175,10 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         Err(SimulateError::Settings(wrong))
     }
 
-    /// Requests [`Recording::work`], [`Recording::dissipated`] and [`Recording::balance`]. They need the power of the motors and of the effects at every evaluation of the
-    /// dynamics, and both energies after every step. Without this request a step costs little more than its dynamics.
+    /// Requests [`Recording::work`], [`Recording::dissipated`] and [`Recording::balance`]. They
+    /// need the power of the motors and of the effects at every evaluation of the dynamics, and
+    /// both energies after every step. Without this request a step costs little more than its
+    /// dynamics.
     #[must_use]
     pub fn with_energy_balance(mut self) -> Self {
         self.system.follows_work = true;
@@ -312,7 +314,8 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         }
     }
 
-    /// One step, up to its end or to the first event that cuts it short. What came of it, and whether an event has mapped the state.
+    /// One step, up to its end or to the first event that cuts it short. What came of it, and
+    /// whether an event has mapped the state.
     fn one_step(&mut self, run: &mut Run) -> Result<(Outcome, bool), SimulateError> {
         self.check_count()?;
         if self.progress.controller.is_some() {
@@ -365,7 +368,8 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         self.progress.after_sample.0 = true;
     }
 
-    /// Finds the next sample or kink, or the end. Where torques are held from sample to sample there is no kink between; a kink that is not after t is none.
+    /// Finds the next sample or kink, or the end. Where torques are held from sample to sample
+    /// there is no kink between; a kink that is not after t is none.
     fn find_stretch_end(&mut self, run: &Run) {
         let sample = self.progress.period.map(|period| self.settings.start + self.progress.samples as f64 * period);
         let kink = if sample.is_some() { f64::INFINITY } else { run.control.next_kink(self.t) };

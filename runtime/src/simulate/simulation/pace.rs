@@ -18,7 +18,8 @@ const HOPELESS: f64 = 100.0;
 /// The pace of steps that tolerances choose.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pace {
-    /// The number that limits most tries, if one limits more than half of them, and its lead (Boyer & Moore 1991).
+    /// The number that limits most tries, if one limits more than half of them, and its lead (Boyer
+    /// & Moore 1991).
     limiting: (usize, u64),
     /// Time, s, and tries at the last look.
     since: (f64, u64),

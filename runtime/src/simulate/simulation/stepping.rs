@@ -6,7 +6,8 @@ use super::{Run, Simulation};
 use crate::simulate::{Control, Counts, SimulateError, StateError};
 
 impl<R: Dynamics<f64>> Simulation<'_, R> {
-    /// Puts the robot at q `[nq]` and v `[nv]` at the start time, for [`Simulation::step`]. Errors: all that is wrong with the state.
+    /// Puts the robot at q `[nq]` and v `[nv]` at the start time, for [`Simulation::step`]. Errors:
+    /// all that is wrong with the state.
     ///
     /// ```
     /// use articulated::simulate::{IntegratorId, NoTorque, Settings, Simulation};
@@ -34,11 +35,15 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         self.begin(q, v)
     }
 
-    /// One step of the integrator from the present state. Returns `false` once the end time of the settings is reached; then nothing moves any more.
+    /// One step of the integrator from the present state. Returns `false` once the end time of the
+    /// settings is reached; then nothing moves any more.
     ///
-    /// The step is that of a run: of length [`Settings::step`](super::super::Settings::step) or chosen by the tolerances, and cut where a sampled control is sampled. Nothing
-    /// is recorded, no event is looked for, and [`Settings::max_steps`](super::super::Settings::max_steps) is ignored. Nothing is allocated after the first step. Before the first
-    /// call of [`Simulation::start`] all coordinates are 0 and the robot rests. Errors: as [`Simulation::run`]; the state is then that before the step.
+    /// The step is that of a run: of length [`Settings::step`](super::super::Settings::step) or
+    /// chosen by the tolerances, and cut where a sampled control is sampled. Nothing is recorded,
+    /// no event is looked for, and [`Settings::max_steps`](super::super::Settings::max_steps) is
+    /// ignored. Nothing is allocated after the first step. Before the first call of
+    /// [`Simulation::start`] all coordinates are 0 and the robot rests. Errors: as
+    /// [`Simulation::run`]; the state is then that before the step.
     pub fn step(&mut self, control: &mut dyn Control) -> Result<bool, SimulateError> {
         if self.t >= self.settings.end {
             return Ok(false);

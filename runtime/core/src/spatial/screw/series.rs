@@ -81,7 +81,8 @@ impl Series {
         k - 1
     }
 
-    /// The same, from a table for the scalars of 53 and 24 bits: to count anew would take longer than to sum.
+    /// The same, from a table for the scalars of 53 and 24 bits: to count anew would take longer
+    /// than to sum.
     #[inline(always)]
     const fn count(self, bits: u32) -> u32 {
         match bits {
