@@ -19,7 +19,8 @@ pub(crate) struct Ended {
     pub(crate) errors: String,
 }
 
-/// Runs a program to its end. Errors: it cannot be started, or takes longer than `limit` and is ended with all that it started.
+/// Runs a program to its end. Errors: it cannot be started, or takes longer than `limit` and is
+/// ended with all that it started.
 pub(crate) fn run(command: &mut Command, limit: Duration) -> io::Result<Ended> {
     folder::watch();
     in_own_group(command);
@@ -91,7 +92,8 @@ fn end_group(child: &Child) {
         fn kill(process: i32, signal: i32) -> i32;
     }
     if let Ok(group) = i32::try_from(child.id()) {
-        // SAFETY: the call has no conditions. The child leads the group and has not been waited for, so that no other group has its number.
+        // SAFETY: the call has no conditions. The child leads the group and has not been waited
+        // for, so that no other group has its number.
         unsafe { kill(-group, 9) };
     }
 }

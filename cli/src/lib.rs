@@ -85,7 +85,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
 /// none where no word has.
 fn with_plain_words(text: &str, words: &[OsString]) -> Option<String> {
     let words: Vec<_> = words.iter().map(|word| word.to_string_lossy()).filter(|word| word.contains(table::is_obeyed)).collect();
-    // Of a word as `--option=value` the value alone is told.
+    // The message contains only the value of a word such as `--option=value`.
     let values = words.iter().flat_map(|word| [Some(&**word), word.split_once('=').map(|(_, value)| value)]).flatten();
     (!words.is_empty()).then(|| values.fold(text.to_owned(), |text, word| text.replace(word, &table::plain(word))))
 }

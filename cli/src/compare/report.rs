@@ -130,7 +130,7 @@ pub(super) struct FunctionReport {
     /// Of many states at once, if that was asked for.
     pub(super) batches: Vec<BatchReport>,
     pub(super) peers: Vec<PeerReport>,
-    /// Of peers that compute several states a call, where batches were asked for.
+    /// Times of peers that compute several states a call; empty unless batches are requested.
     pub(super) peers_in_lanes: Vec<LanesReport>,
     /// In units of 2⁻⁵³ of the magnitude; `None` where there is no reference for the function.
     pub(super) errors: Option<Errors>,

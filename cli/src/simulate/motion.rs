@@ -60,8 +60,8 @@ pub(crate) fn begin(stage: &Stage) -> Result<Begin, Failure> {
     Ok(begin)
 }
 
-/// What is odd about a scene's motion. Errors: all that it would not begin for, or else what its
-/// first step ends with.
+/// The warnings about a scene's motion. Errors: everything that keeps the motion from starting, or
+/// else the error of its first step.
 pub(crate) fn look_over(scene: &Path) -> Result<Vec<String>, Failure> {
     let stage = Stage::open(scene)?;
     let (begin, without) = Failure::both(stage.begin().map_err(Failure::from), looked_for(&stage))?;

@@ -14,7 +14,7 @@ use crate::failure::Failure;
 const CSV: f64 = 25.0;
 const PARQUET: f64 = 8.0;
 
-/// From so many bytes on it is told.
+/// The command announces a size of this many bytes or more.
 const MUCH: f64 = 1e7;
 
 /// MB that the table may have where no option says it.

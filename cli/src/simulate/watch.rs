@@ -33,7 +33,7 @@ impl<'a> Watch<'a> {
     /// After a step, to the time t, s.
     pub(super) fn look(&mut self, t: f64, counts: &Counts) {
         let tries = counts.steps + counts.rejected;
-        // The bar is for people: often enough, and no burden.
+        // The bar moves once every few steps, so that it costs next to nothing.
         if tries < self.looked + EVERY {
             return;
         }

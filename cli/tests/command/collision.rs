@@ -1,9 +1,10 @@
-//! Contact of collision geometry, and what falls through the ground, as the command tells it.
+//! Contact from collision geometry, and the command's warnings about links that fall through the
+//! ground.
 
 use crate::{File, run};
 
-/// A trunk on a leg of which the foot alone is asked for contact: it falls to its side and its
-/// trunk through the floor.
+/// A trunk on a leg. Only the foot has contact, so the robot falls to its side and its trunk falls
+/// through the floor.
 const ROBOT: &str = "<robot name='r'><link name='trunk'><inertial><mass value='5'/><inertia ixx='0.1' ixy='0' ixz='0' iyy='0.1' iyz='0' izz='0.1'/></inertial>
     <collision><geometry><box size='0.4 0.2 0.2'/></geometry></collision></link>
   <link name='foot'><inertial><mass value='0.5'/><inertia ixx='0.01' ixy='0' ixz='0' iyy='0.01' iyz='0' izz='0.01'/></inertial>

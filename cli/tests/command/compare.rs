@@ -422,7 +422,8 @@ fn a_compiler_that_a_signal_ends_is_reported_as_that() {
     assert!(ended.status == 3 && ended.err.contains("rustc was ended: signal: 9"), "{} {}", ended.status, ended.err);
 }
 
-/// Whether the process whose number a script wrote into `file` runs. One that has ended and waits for its parent does not.
+/// Whether the process whose number a script wrote into `file` runs. One that has ended and waits
+/// for its parent does not.
 #[cfg(unix)]
 fn runs(file: &std::path::Path) -> bool {
     let id = std::fs::read_to_string(file).unwrap();

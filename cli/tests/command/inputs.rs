@@ -62,7 +62,7 @@ fn paths_need_not_be_utf_8() {
     assert!(told.status == 1 && told.err.contains("no\u{fffd}.urdf: found neither a file"), "{}", told.err);
 }
 
-/// Nobody writes to the pipe: whoever opened it would wait for ever.
+/// Nothing writes to the pipe: a program that opens it waits forever.
 #[cfg(unix)]
 #[test]
 fn what_is_no_regular_file_is_refused_at_once() {

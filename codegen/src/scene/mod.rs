@@ -186,7 +186,7 @@ mod tests {
             [prepared.resolved.report.ignored, reading.unused].map(|list| list.iter().filter(|u| u.tag == "collision").count())
         };
         assert_eq!((unused(""), unused(&shape)), ([1, 1], [0, 0]));
-        // What makes no contact is told of all generated code.
+        // All generated code gets the warnings about links that make no contact.
         let mesh = ARM.replace("<sphere radius=\"1\"/>", "<mesh filename=\"fore.stl\"/>");
         let scene = Scene::read("s.toml", &shape).unwrap();
         let prepared = prepare(scene.clone(), "arm.urdf", mesh.clone().into(), Base::Fixed, Vec::new()).unwrap();

@@ -171,7 +171,7 @@ fn tables_that_are_no_text_are_not_read() {
     assert!(begun("hole.csv").starts_with("hole.csv:1: found more than 1048576 bytes without an end of line, expected "));
 }
 
-/// Nobody writes to the pipe: whoever opened it would wait for ever.
+/// Nothing writes to the pipe: a program that opens it waits forever.
 #[cfg(unix)]
 #[test]
 fn tables_are_regular_files() {

@@ -78,7 +78,7 @@ fn carried(body: &Body<f64>, parent: &Norms, q: &[f64], v: &[f64], a: &[f64]) ->
         Joint::Floating => Vector3::from_column_slice(&q[at.q..at.q + 3]).norm(),
         Joint::Revolute | Joint::Spherical => 0.0,
     };
-    // The base stands still: how far a body is from it is of no account, since nothing is computed from that.
+    // The base stands still: no result depends on how far a body is from it.
     let arm = if body.parent == 0 { 0.0 } else { body.placement.position.norm() + moved };
     let spin = parent.spin + turn;
     let spin_rate = parent.spin_rate + parent.spin * turn + turn_rate;

@@ -91,7 +91,7 @@ impl Editing<'_> {
         self.reading.warnings.extend(problems.collect::<Vec<_>>());
     }
 
-    /// A load on what the base holds is odd, and of no account.
+    /// Warns of a load on a link that the base holds: it has no effect.
     fn warn_of_loads(&mut self) {
         let (options, description) = (&self.asked.options, &self.reading.description);
         let still = still(description, options.base);

@@ -40,7 +40,7 @@ pub struct Link {
     pub name: String,
     /// Mass properties; `None` is a link without mass.
     pub inertial: Option<Inertial>,
-    /// Collision geometry in the order of the file: of no account for the dynamics, unless effects
+    /// Collision geometry in the order of the file. The dynamics do not use it, unless effects
     /// are made of it.
     pub collision: Vec<Collision>,
 }
