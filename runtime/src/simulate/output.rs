@@ -56,8 +56,6 @@ pub(crate) struct Known {
     tau: Vec<f64>,
     /// What the maps of events have brought since the start, J.
     pub(crate) from_events: f64,
-    /// Whether the balance of energy is taken after every step.
-    pub(crate) balance: bool,
     /// T + U where the motion began, J.
     at_start: f64,
 }
@@ -74,7 +72,6 @@ impl Known {
             momentum: has(robot.centroidal_momentum(ws, &q, &v, &mut [0.0; 6])),
             tau: v,
             from_events: 0.0,
-            balance: false,
             at_start: 0.0,
         }
     }
@@ -154,7 +151,7 @@ impl Known {
         q: &[f64],
         to: &mut Recording,
     ) -> Result<(), FunctionError> {
-        if !(self.balance && self.kinetic && self.potential) {
+        if !(system.follows_work && self.kinetic && self.potential) {
             return Ok(());
         }
         let nv = system.nv();

@@ -182,7 +182,6 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
     #[must_use]
     pub fn with_energy_balance(mut self) -> Self {
         self.system.follows_work = true;
-        self.known.balance = true;
         self
     }
 

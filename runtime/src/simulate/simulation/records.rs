@@ -18,7 +18,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
 
     /// Adds the state as it is to the balance of energy.
     pub(super) fn follow_balance(&mut self, run: &mut Run) -> Result<(), SimulateError> {
-        if self.known.balance && self.progress.times.is_some() {
+        if self.system.follows_work && self.progress.times.is_some() {
             self.point.q.copy_from_slice(&self.system.origin);
             self.known.follow(&mut self.system, &self.y, &self.point.q, run.recording)?;
         }
