@@ -15,10 +15,12 @@ mod public;
 mod text;
 mod ways;
 
+use std::collections::HashSet;
 use std::fmt::Write;
 
 use articulated_core::algorithm::Shape;
 use articulated_core::lanes::{Real, Set, source, tiles};
+use articulated_core::level::Level;
 
 use self::arrays::{Array, each, inputs, results};
 use self::block::Block;
@@ -32,7 +34,7 @@ use crate::emit::module::used::{Caller, used};
 use crate::emit::statements::dialect::Dialect;
 use crate::emit::statements::flat::flat;
 use crate::emit::statements::vector::Vector;
-use crate::graph::Graph;
+use crate::graph::{Graph, NodeId};
 use crate::program::Program;
 
 /// A function as batches have it.
@@ -43,6 +45,9 @@ pub(super) struct Batch<'a> {
     graph: &'a Graph,
     /// Whether it may be said here what waits in memory.
     may_spill: bool,
+    /// Operations of the function of one state, where that is straight-line code with the numbers
+    /// and sines of `f64` batches. Limbs in lanes are one operation.
+    operations_of_one: Option<u64>,
 }
 
 /// Statements of a piece of a long body.
@@ -54,6 +59,17 @@ const CUT_FROM: usize = 20_000;
 
 /// Vectors of AVX2 are as long as so many `f64`.
 const AVX2_LANES: usize = 4;
+
+/// A sine or cosine takes as long as so many operations.
+const SINE: u64 = 10;
+
+/// To turn two numbers of a result from blocks into states takes as long as a block saves on so
+/// many operations (AVX-512, Emerald Rapids).
+const TWO_NUMBERS: u64 = 5;
+
+/// A result of which more than three fifths are computed is dense: to store it takes the function
+/// of one state as long.
+const DENSE: (usize, usize) = (3, 5);
 
 /// How many states a block has, whatever the instruction set: a cache line of each number.
 fn states_of_block(real: Real) -> usize {
@@ -88,7 +104,7 @@ fn module(out: &mut String, functions: &[Batch], real: Real, ways: &[Way], calle
     for way in ways {
         way.module(out, functions, real, caller);
     }
-    functions.iter().for_each(|f| f.public(out, real_name, ways));
+    functions.iter().for_each(|f| f.public(out, real, ways));
     let _ = writeln!(out, "}}\n");
 }
 
@@ -126,7 +142,24 @@ impl<'a> Batch<'a> {
     pub(super) fn of(program: &'a Program, context: Context) -> Self {
         let graph = &program.plain;
         let may_spill = !context.forbid_unsafe && graph.nodes().len() >= spill::FROM;
-        Self { signature: Signature::of(&program.wanted, context.sizes, context.parameters), sizes: context.sizes, graph, may_spill }
+        let signature = Signature::of(&program.wanted, context.sizes, context.parameters);
+        let is_straight = program.columns.is_none() && program.groups.is_none() && context.level == Level::default();
+        let counts = program.graph.counts();
+        let operations_of_one = is_straight.then(|| counts.instructions() + SINE * counts.trigonometric());
+        Self { signature, sizes: context.sizes, graph, may_spill, operations_of_one }
+    }
+
+    /// Whether states one after the other are faster by the function of one state, called for each
+    /// of them. A block saves time for each operation, but its results have to be turned into
+    /// states, which costs time for each number: also for zeros and for the other half of a
+    /// symmetric matrix, which the function of one state only stores.
+    fn is_faster_one_by_one(&self, real: Real) -> bool {
+        let (results, outputs) = (self.results(), &self.graph.outputs);
+        let has_one = results.len() == 1 && self.signature.has_into() && self.inputs().iter().all(|a| !a.is_parameters);
+        let Some(operations) = self.operations_of_one.filter(|_| has_one && real == Real::F64) else { return false };
+        let numbers = outputs.len();
+        let computed: HashSet<NodeId> = outputs.iter().copied().filter(|id| self.graph.constant_value(*id).is_none()).collect();
+        DENSE.1 * computed.len() <= DENSE.0 * numbers && 2 * operations < TWO_NUMBERS * numbers as u64
     }
 
     fn name(&self) -> &str {
@@ -243,6 +276,32 @@ impl<'a> Batch<'a> {
 mod tests {
     use super::*;
     use crate::{Request, generate};
+
+    /// The mass matrix of two arms side by side is half zeros; its block of results would take
+    /// longer to turn than to compute.
+    #[test]
+    fn sparse_results_are_computed_state_by_state_in_doubles() {
+        let arm = |name: &str| {
+            let link = |k: usize| {
+                let parent = if k == 0 { "base".to_owned() } else { format!("{name}{}", k - 1) };
+                format!(
+                    "<link name='{name}{k}'><inertial><origin xyz='0.1 0 0.2'/><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>
+                    <joint name='{name}_{k}' type='continuous'><parent link='{parent}'/><child link='{name}{k}'/><axis xyz='0 1 0'/></joint>"
+                )
+            };
+            (0..3).map(link).collect::<String>()
+        };
+        let urdf = format!("<robot name='two'><link name='base'/>{}{}{}{}</robot>", arm("a"), arm("b"), arm("c"), arm("d"));
+        let mut request = Request::new("two.urdf", urdf);
+        request.options.functions = vec!["mass_matrix".into(), "forward_dynamics".into()];
+        request.options.batch = vec![Real::F64, Real::F32];
+        let source = generate(&request).unwrap().source;
+        let (_, doubles) = source.split_once("pub mod batch_f64").unwrap();
+        let (doubles, singles) = doubles.split_once("pub mod batch_f32").unwrap();
+        assert!(doubles.contains("super::mass_matrix_into(&q[k], &mut out[k]);") && !singles.contains("super::mass_matrix_into"));
+        assert!(!source.contains("super::forward_dynamics_into"));
+        assert!(doubles.contains("mass_matrix_blocks(q") && doubles.contains("forward_dynamics_states("));
+    }
 
     #[test]
     fn parameters_are_those_of_each_state_or_one_set_for_all() {

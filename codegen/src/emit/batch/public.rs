@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use articulated_core::lanes::Set;
+use articulated_core::lanes::{Real, Set};
 
 use super::Batch;
 use super::arrays::{Array, inputs, results};
@@ -10,13 +10,15 @@ use super::ways::Way;
 
 impl Batch<'_> {
     /// The function for states one after the other, and the one for blocks.
-    pub(super) fn public(&self, out: &mut String, real: &str, ways: &[Way]) {
+    pub(super) fn public(&self, out: &mut String, real: Real, ways: &[Way]) {
         let name = self.name();
-        for (suffix, inner, of, what) in [("", "states", real, "states"), ("_blocks", "blocks", "Lanes", "blocks")] {
+        for (suffix, inner, of, what) in [("", "states", real.name(), "states"), ("_blocks", "blocks", "Lanes", "blocks")] {
             self.document(out, what);
             let _ = writeln!(out, "pub fn {name}{suffix}({}) -> ::core::result::Result<(), LengthError> {{", self.declared(of));
             self.lengths(out);
-            if self.is_any() {
+            if suffix.is_empty() && self.is_faster_one_by_one(real) {
+                self.one_by_one(out);
+            } else if self.is_any() {
                 self.calls(out, &format!("{name}_{inner}"), ways);
             }
             let _ = writeln!(out, "    #[allow(unreachable_code)]\n    ::core::result::Result::Ok(())\n}}\n");
@@ -59,6 +61,14 @@ impl Batch<'_> {
             };
             let _ = writeln!(out, "    LengthError::unless(\"{name}\", {found}, {first}.len())?;");
         }
+    }
+
+    /// The function of one state, state by state.
+    fn one_by_one(&self, out: &mut String) {
+        let (name, first) = (self.name(), self.results()[0].name.clone());
+        let inputs: String = inputs(&self.signature, self.sizes).iter().map(|a| format!("&{}[k], ", a.name)).collect();
+        let _ = writeln!(out, "    // Turning blocks of results into states would take longer than vectors save.");
+        let _ = writeln!(out, "    for k in 0..{first}.len() {{\n        super::{name}_into({inputs}&mut {first}[k]);\n    }}");
     }
 
     /// The call in the first instruction set that there is.
