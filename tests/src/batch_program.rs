@@ -135,7 +135,14 @@ fn same(what: &str, a: &[f64], b: &[f64]) {
     assert_eq!(bits(a), bits(b), \"{what}\");
 }
 
-/// Stands where nothing was written.
+/// The largest difference is 64 units of roundoff of the largest number.
+fn near(what: &str, a: &[f64], b: &[f64]) {
+    let scale = a.iter().fold(0.0, |max: f64, x| max.max(x.abs()));
+    assert_eq!(a.len(), b.len());
+    assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 64.0 * f64::EPSILON * scale), \"{what}\");
+}
+
+/// Marks what is not written.
 const MARK: f64 = -7.5;
 
 #[allow(unused)]
@@ -165,7 +172,7 @@ fn main(robots: &[(&str, &Generated)]) -> String {
     };
     for (robot, generated) in robots {
         for function in generated.ledger.functions.iter().map(|e| &e.function) {
-            reals(generated).into_iter().for_each(|real| laws(&mut out, robot, function, real.name()));
+            reals(generated).into_iter().for_each(|real| laws(&mut out, robot, function, real, generated));
         }
     }
     out += TAIL;
@@ -178,10 +185,13 @@ fn main(robots: &[(&str, &Generated)]) -> String {
 }
 
 /// The laws for one function, as an arm.
-fn laws(out: &mut String, robot: &str, name: &str, real: &str) {
+fn laws(out: &mut String, robot: &str, name: &str, real: Real, generated: &Generated) {
     let takes: Vec<&str> = function::<f64>(name).expect("a function of the registry").takes.iter().map(|a| a.name()).collect();
     let each = |text: &str| takes.iter().map(|a| text.replace("ARG", a)).collect::<String>();
+    let agree = if is_state_by_state(&generated.source, name, real) { STATE_BY_STATE } else { SAME_BLOCKS };
     let text = LAWS
+        .replace("BLOCKS_AGREE", agree)
+        .replace("EACH_STATE", &each("&ARG[k], "))
         .replace("EACH_VECTOR", &each("            let mut ARG = Vec::new();\n"))
         .replace("EACH_PUSH", &each("                ARG.push(Nest::<REAL>::nest(&mut || next() as REAL));\n"))
         .replace(
@@ -192,7 +202,15 @@ fn laws(out: &mut String, robot: &str, name: &str, real: &str) {
         .replace("EACH_BLOCK", &each("&ARG_blocks, "))
         .replace("EACH", &each("&ARG, "))
         .replace("WRONG_LENGTHS", &wrong_lengths(&takes));
-    *out += &text.replace("ROBOT", robot).replace("NAME", name).replace("REAL", real);
+    *out += &text.replace("ROBOT", robot).replace("NAME", name).replace("REAL", real.name());
+}
+
+/// Whether the batch calls the function of one state for each state.
+#[must_use]
+pub fn is_state_by_state(source: &str, name: &str, real: Real) -> bool {
+    let batch = source.split_once(&format!("pub mod batch_{}", real.name())).map_or("", |(_, batch)| batch);
+    let batch = batch.split("pub mod batch_").next().unwrap_or("");
+    batch.contains(&format!(" {name}_into("))
 }
 
 const LAWS: &str = "\
@@ -216,7 +234,7 @@ EACH_BLOCKS            let whole = n / Lanes::LEN;
             let mark_block = Nest::<Lanes>::nest(&mut || Lanes([MARK as REAL; Lanes::LEN]));
             let mut out_blocks = vec![mark_block; whole];
             batch::NAME_blocks(EACH_BLOCK&mut out_blocks).unwrap();
-            same(\"blocks\", &of_blocks(&out_blocks), &in_blocks::<REAL, _>(&out, Lanes::LEN));
+            BLOCKS_AGREE
             // States into blocks and back, however many; what fills the last block is its last state.
             for len in 0..=2 * Lanes::LEN + 1 {
                 let states: Vec<[REAL; 3]> = (0..len).map(|i| [i as REAL, -1.0, 0.5 + i as REAL]).collect();
@@ -239,6 +257,18 @@ WRONG_LENGTHS            let written: Vec<f64> = numbers(&out).into_iter().chain
             assert!(written.iter().all(|x| *x == MARK));
         }
 ";
+
+/// Blocks give what states one after the other give, to the bit.
+const SAME_BLOCKS: &str = "same(\"blocks\", &of_blocks(&out_blocks), &in_blocks::<REAL, _>(&out, Lanes::LEN));";
+
+/// States give what the function of one state gives, to the bit. Blocks round differently.
+const STATE_BY_STATE: &str = "\
+let mut singles = vec![mark; n];
+            for (k, out) in singles.iter_mut().enumerate() {
+                ROBOT::NAME_into(EACH_STATE&mut *out);
+            }
+            same(\"state by state\", &numbers(&out), &numbers(&singles));
+            near(\"blocks\", &of_blocks(&out_blocks), &in_blocks::<REAL, _>(&out, Lanes::LEN));";
 
 /// Calls with one slice cut.
 fn wrong_lengths(takes: &[&str]) -> String {

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use articulated_codegen::{Generated, Options, Real};
 use articulated_core::description::Base;
-use articulated_tests::batch_program::{BatchProgram, STATES};
+use articulated_tests::batch_program::{BatchProgram, STATES, is_state_by_state};
 use articulated_tests::case::State;
 use articulated_tests::machine::{is_arm, is_x86_64};
 use articulated_tests::measure::{arguments, error};
@@ -120,8 +120,10 @@ fn unit(real: Real) -> f64 {
 /// The largest error that is allowed, in unit roundoffs of the type. Seen: 3.4.
 const ALLOWED: f64 = 8.0;
 
-/// And each program holds its functions to the laws of batches: blocks give what states one after the other give, to the bit; so does every number of states; slices of
-/// different lengths are refused and nothing is written.
+/// And each program holds its functions to the laws of batches. Blocks give what states one after
+/// the other give, to the bit; where states are computed one by one, they have the bits of the
+/// single function instead. So does every number of states. Slices of different lengths are refused
+/// and nothing is written.
 #[test]
 fn batches_give_what_the_generic_library_gives() {
     for way in WAYS.iter() {
@@ -150,12 +152,20 @@ fn a_long_function_has_a_text_for_sixteen_registers_where_unsafe_is_allowed() {
 }
 
 #[test]
+fn sparse_and_symmetric_results_are_computed_state_by_state_in_doubles() {
+    let is_any = |real| ROBOTS[0].iter().any(|r| r.functions().any(|name| is_state_by_state(&r.generated.source, name, real)));
+    assert_eq!([Real::F64, Real::F32].map(is_any), [true, false]);
+}
+
+#[test]
 fn instruction_sets_that_round_alike_agree_to_the_bit() {
     let [fused, split]: [Vec<&Way>; 2] = [true, false].map(|fused| WAYS.iter().filter(|w| w.fused == fused).collect());
     for pair in fused.windows(2).chain(split.windows(2)) {
         for (robot, real) in pair[0].robots.iter().flat_map(|r| [(r, Real::F64), (r, Real::F32)]) {
             let states = states(robot);
-            for name in robot.functions() {
+            // A function of one state that is safe may compute limbs one after the other.
+            let is_of_blocks = |name: &&str| !is_state_by_state(&robot.generated.source, name, real);
+            for name in robot.functions().filter(is_of_blocks) {
                 let [a, b] = [pair[0], pair[1]].map(|way| bits(&run(way, robot, name, real, &states)));
                 assert!(a == b, "{name} of {} {real:?}: {} is not {}", robot.name, pair[0].set, pair[1].set);
             }

@@ -68,7 +68,7 @@ impl Batch<'_> {
         let (name, first) = (self.name(), self.results()[0].name.clone());
         let inputs: String = inputs(&self.signature, self.sizes).iter().map(|a| format!("&{}[k], ", a.name)).collect();
         let _ = writeln!(out, "    // Turning blocks of results into states would take longer than vectors save.");
-        let _ = writeln!(out, "    for k in 0..{first}.len() {{\n        super::{name}_into({inputs}&mut {first}[k]);\n    }}");
+        let _ = writeln!(out, "    for k in 0..{first}.len() {{\n        {name}_into({inputs}&mut {first}[k]);\n    }}");
     }
 
     /// The call in the first instruction set that there is.
