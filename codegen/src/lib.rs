@@ -11,7 +11,6 @@ pub mod bound;
 mod build;
 mod cache;
 mod checked;
-mod emit;
 mod error;
 mod faults;
 pub mod function_groups;
@@ -19,6 +18,7 @@ pub mod graph;
 mod groups;
 pub mod ledger;
 mod limbs;
+pub mod lir;
 mod parameters;
 pub mod pass;
 mod program;
@@ -26,6 +26,7 @@ mod request;
 pub mod scene;
 mod size;
 mod sym;
+mod target;
 mod trace;
 mod wanted;
 
@@ -48,7 +49,6 @@ pub use articulated_urdf as urdf;
 pub use articulated_urdf::MOST_SNAPPED;
 pub use build::{BatchType, Build, Written};
 pub use checked::checked_cost;
-pub use emit::identifier;
 pub use error::Error;
 pub use faults::entry_of;
 pub use ledger::Ledger;
@@ -56,6 +56,7 @@ pub use parameters::Parameter;
 pub use request::{Options, Request, choose_frames, model, read};
 pub use size::MAX_CODE_SIZE;
 pub use sym::Sym;
+pub use target::rust::identifier;
 pub use wanted::{Constant, Part, Wanted, is_keyword};
 
 /// What was generated, and what there is to say about it.
@@ -114,7 +115,7 @@ struct Plan {
     model: Model<f64>,
     parameters: Vec<Parameter>,
     wanted: Vec<Wanted>,
-    names: emit::Names,
+    names: target::rust::Names,
 }
 
 /// Everything that comes before programs are made.
@@ -133,7 +134,7 @@ fn plan(request: &Request) -> Result<Plan, Error> {
     let model = choose_frames(request, if parameters.is_empty() { whole } else { model(request, &reading.description)? })?;
     let wanted = wanted(request, &model, &massless)?;
     size::within_limit(request, &model, &wanted)?;
-    let names = emit::Names::new(&model, request)?;
+    let names = target::rust::Names::new(&model, request)?;
     Ok(Plan { reading, model, parameters, wanted, names })
 }
 
@@ -169,7 +170,15 @@ pub fn generate(request: &Request) -> Result<Generated, Error> {
         programs.push(program);
     }
     warnings.extend(ledger.functions.iter().filter_map(|entry| long_code(&request.file, entry)));
-    let source = emit::module(request, &model, &names, &programs, &parameters, &unused, &snapped) + &emit::warnings(&warnings);
+    let can = lir::function::Capabilities {
+        level: request.options.level,
+        raw_memory: !request.options.forbid_unsafe,
+        states: !request.options.batch.is_empty(),
+    };
+    let functions: Vec<lir::function::Function> =
+        programs.iter().map(|p| lir::function::Function::of(p, model.shape(), !parameters.is_empty(), can)).collect();
+    let source =
+        target::rust::module(request, &model, &names, &functions, &parameters, &unused, &snapped) + &target::rust::warnings(&warnings);
     let graphs = programs.into_iter().map(|p| if p.columns.is_some() { graph::Graph::default() } else { p.graph }).collect();
     Ok(Generated { source, model, parameters, level: request.options.level, ledger, graphs, warnings, unused, snapped })
 }
@@ -226,7 +235,7 @@ pub fn check_names(request: &Request, description: &Description, whole: &Model<f
 
 /// Whether all joints and links have names of their own in Rust. Errors: all names of which two are the same, and renamings that cannot be.
 pub fn check_identifiers(request: &Request, model: &Model<f64>) -> Result<(), Error> {
-    faults::all(request, |request| emit::Names::new(model, request).map(drop))
+    faults::all(request, |request| target::rust::Names::new(model, request).map(drop))
 }
 
 /// The names of the joints that have no inertia of their own.

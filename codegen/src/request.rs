@@ -9,7 +9,7 @@ use articulated_core::model::Model;
 use articulated_scene::{RobotAsked, RobotOptions};
 use articulated_urdf::Reading;
 
-use crate::emit::is_name;
+use crate::target::rust::is_name;
 use crate::{Error, function_groups};
 
 /// A robot's document and what to make of it. Macro, build script and command line all fill one of these.

@@ -5,7 +5,7 @@ use articulated_core::Scalar;
 use super::{Graph, MOST, Node, NodeId, Op};
 
 /// The value of an operation on numbers. Leaves, and what takes lanes together, are none: they give what they are given.
-pub(super) fn value<S: Scalar>(op: Op, [a, b, c]: [S; 3]) -> S {
+pub(crate) fn value<S: Scalar>(op: Op, [a, b, c]: [S; 3]) -> S {
     match op {
         Op::Add => a + b,
         Op::Sub => a - b,

@@ -41,7 +41,7 @@ impl Lanes {
     }
 
     /// The number of a lane constant.
-    pub(super) fn add_constant(&mut self, x: Value) -> u32 {
+    pub(crate) fn add_constant(&mut self, x: Value) -> u32 {
         let next = self.constants.len() as u32;
         let number = *self.places.entry(x.map(f64::to_bits)).or_insert(next);
         if number == next {
@@ -51,7 +51,7 @@ impl Lanes {
     }
 
     /// The number of a lane input.
-    pub(super) fn add_input(&mut self, indices: &[usize]) -> u32 {
+    pub(crate) fn add_input(&mut self, indices: &[usize]) -> u32 {
         let padded = std::array::from_fn(|k| *indices.get(k).unwrap_or(&indices[0]) as u32);
         match self.inputs.iter().position(|i| *i == padded) {
             Some(number) => number as u32,

@@ -8,6 +8,7 @@ mod op;
 mod table;
 
 pub use counts::Counts;
+pub(crate) use evaluate::value as operation;
 pub use lanes::{Lanes, MOST, Value};
 pub use op::{OPS, Op, Row};
 

@@ -63,15 +63,11 @@ pub struct Row {
     pub cost: u32,
     /// After how many cycles its value is known, on a current processor.
     pub latency: u32,
-    /// How it is written in Rust, with {a}, {b}, {c} for the operands.
-    pub rust: &'static str,
-    /// The function that does it in all lanes of a vector, see [`articulated_core::lanes`].
-    pub lanes: &'static str,
 }
 
-/// An operation's row: that of a number or an input, which costs nothing and is not written by name, as long as no more is said.
+/// An operation's row. By default it is a number or an input, which costs nothing.
 const fn row(op: Op, name: &'static str) -> Row {
-    Row { op, name, arity: 0, commutes: false, cost: 0, latency: 0, rust: "", lanes: "" }
+    Row { op, name, arity: 0, commutes: false, cost: 0, latency: 0 }
 }
 
 impl Row {
@@ -86,35 +82,31 @@ impl Row {
     const fn takes(self, cost: u32, latency: u32) -> Self {
         Self { cost, latency, ..self }
     }
-
-    const fn written(self, rust: &'static str, lanes: &'static str) -> Self {
-        Self { rust, lanes, ..self }
-    }
 }
 
 /// All operations, in the order of [`Op`].
 pub const OPS: [Row; 21] = [
     row(Op::Constant, "constants"),
     row(Op::Input, "inputs"),
-    row(Op::Add, "add").of_operands(2).commuting().takes(1, 4).written("{a} + {b}", "add"),
-    row(Op::Sub, "sub").of_operands(2).takes(1, 4).written("{a} - {b}", "sub"),
-    row(Op::Mul, "mul").of_operands(2).commuting().takes(1, 4).written("{a} * {b}", "mul"),
-    row(Op::Div, "div").of_operands(2).takes(4, 13).written("{a} / {b}", "div"),
-    row(Op::Neg, "neg").of_operands(1).takes(1, 1).written("-{a}", "neg"),
-    row(Op::Sqrt, "sqrt").of_operands(1).takes(4, 18).written("{a}.sqrt()", "sqrt"),
-    row(Op::Sin, "sin").of_operands(1).takes(10, 60).written("{a}.sin()", ""),
-    row(Op::Cos, "cos").of_operands(1).takes(10, 60).written("{a}.cos()", ""),
-    row(Op::Atan2, "atan2").of_operands(2).takes(20, 80).written("f64::atan2({a}, {b})", "atan2"),
-    row(Op::Positive, "compare").of_operands(1).takes(1, 3).written("{a} > 0.0", "positive"),
-    row(Op::Select, "select").of_operands(3).takes(1, 2).written("if {a} { {b} } else { {c} }", "select"),
-    row(Op::MulAdd, "fma").of_operands(3).commuting().takes(1, 4).written("F::fma({a}, {b}, {c})", "fmadd"),
-    row(Op::MulSub, "fma").of_operands(3).commuting().takes(1, 4).written("F::fma({a}, {b}, -{c})", "fmsub"),
-    row(Op::NegMulAdd, "fma").of_operands(3).commuting().takes(1, 4).written("F::fma(-{a}, {b}, {c})", "fnmadd"),
-    row(Op::NegMulSub, "fma").of_operands(3).commuting().takes(1, 4).written("F::fma(-{a}, {b}, -{c})", "fnmsub"),
+    row(Op::Add, "add").of_operands(2).commuting().takes(1, 4),
+    row(Op::Sub, "sub").of_operands(2).takes(1, 4),
+    row(Op::Mul, "mul").of_operands(2).commuting().takes(1, 4),
+    row(Op::Div, "div").of_operands(2).takes(4, 13),
+    row(Op::Neg, "neg").of_operands(1).takes(1, 1),
+    row(Op::Sqrt, "sqrt").of_operands(1).takes(4, 18),
+    row(Op::Sin, "sin").of_operands(1).takes(10, 60),
+    row(Op::Cos, "cos").of_operands(1).takes(10, 60),
+    row(Op::Atan2, "atan2").of_operands(2).takes(20, 80),
+    row(Op::Positive, "compare").of_operands(1).takes(1, 3),
+    row(Op::Select, "select").of_operands(3).takes(1, 2),
+    row(Op::MulAdd, "fma").of_operands(3).commuting().takes(1, 4),
+    row(Op::MulSub, "fma").of_operands(3).commuting().takes(1, 4),
+    row(Op::NegMulAdd, "fma").of_operands(3).commuting().takes(1, 4),
+    row(Op::NegMulSub, "fma").of_operands(3).commuting().takes(1, 4),
     row(Op::LaneConstant, "lane constants"),
     row(Op::LaneInput, "lane inputs"),
-    row(Op::Spread, "spread").of_operands(2).takes(1, 3).written("", "spread"),
-    row(Op::Across, "across").of_operands(1).takes(4, 14).written("", "across"),
+    row(Op::Spread, "spread").of_operands(2).takes(1, 3),
+    row(Op::Across, "across").of_operands(1).takes(4, 14),
 ];
 
 impl Op {

@@ -1,0 +1,298 @@
+//! A function of a module: what it takes and gives, and its bodies. Everything that a target may choose is decided here,
+//! by its [`Capabilities`], and nothing while it prints.
+
+use articulated_core::algorithm::{Dim, Shape};
+
+use crate::graph::Graph;
+use crate::groups::Groups;
+use crate::ledger::Entry;
+use crate::lir::lower::{Lowering, Sines};
+use crate::lir::pass::alias_barrier;
+use crate::lir::pass::outline::outline;
+use crate::lir::pass::pair_stores::pair_stores;
+use crate::lir::pass::rows::WIDTH;
+use crate::lir::pass::spill::{self, spill};
+use crate::lir::{Array, Body, Stmt, Ty};
+use crate::program::{Columns, Program};
+use crate::wanted::Wanted;
+use crate::{Arithmetic, Level};
+
+/// What a target can do.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Capabilities {
+    /// How accurate functions are.
+    pub(crate) level: Level,
+    /// Whether a function can write into memory that holds no value yet, and name the slots in which values wait.
+    pub(crate) raw_memory: bool,
+    /// Whether there are functions of many states.
+    pub(crate) states: bool,
+}
+
+/// What a function takes.
+#[derive(Clone, Debug)]
+pub(crate) struct Argument {
+    pub(crate) name: &'static str,
+    /// None for the parameters.
+    pub(crate) dims: Vec<Dim>,
+}
+
+impl Argument {
+    /// Whether it is the parameters.
+    pub(crate) fn is_parameters(&self) -> bool {
+        self.dims.is_empty()
+    }
+}
+
+/// How the result leaves a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Ending {
+    /// It is made of all its numbers at the end.
+    Value,
+    /// The same, written to memory that the caller hands in.
+    Written,
+    /// In rows of four lanes, as soon as they are known, to memory that may hold no value yet.
+    Rows,
+    /// Number by number as they are made, over whatever the memory holds.
+    Filled,
+}
+
+/// A function.
+pub(crate) struct Function<'a> {
+    pub(crate) spec: &'a Wanted,
+    pub(crate) entry: &'a Entry,
+    pub(crate) arguments: Vec<Argument>,
+    /// How long each dimension is.
+    pub(crate) shape: Shape,
+    /// The arrays of the result, one for each part.
+    pub(crate) results: Vec<Array>,
+    pub(crate) ending: Ending,
+    pub(crate) body: Body,
+    /// Whether the body is in several pieces.
+    pub(crate) is_outlined: bool,
+    /// The body with spill slots, for x86-64 without AVX-512.
+    pub(crate) few_registers: Option<Body>,
+    /// The solution for many right-hand sides, which is left a loop behind the body.
+    pub(crate) columns: Option<&'a Columns>,
+    /// Blocks of joints whose loops are the function; the body is empty then.
+    pub(crate) groups: Option<&'a Groups>,
+    /// Operations of the body, and its sines and cosines.
+    pub(crate) operations: (u64, u64),
+    /// The function of many states.
+    pub(crate) states: Option<States>,
+}
+
+/// The function of many states.
+pub(crate) struct States {
+    pub(crate) body: Body,
+    /// The body with spill slots, for x86-64 without AVX-512.
+    pub(crate) few_registers: Option<Body>,
+}
+
+/// A function of states is cut into pieces from this many nodes on.
+const CUT_STATES_FROM: usize = 20_000;
+
+/// Statements of a piece.
+const LENGTH: usize = 200;
+
+/// From this many nodes on a function is cut: below, one piece is faster to run and as fast to compile.
+const CUT_FROM: usize = 4500;
+
+/// The same of plain numbers beside a loop over columns: from here on pieces are as fast as one, and those of a seven-axis
+/// arm faster.
+const CUT_BESIDE_COLUMNS_FROM: usize = 2000;
+
+/// The same of sums of two doubles, of which each node is a score of instructions.
+const CUT_PAIRS_FROM: usize = 400;
+
+/// From this many results and nodes on each result is written as soon as it is made: kept until the end, they would fill
+/// the registers. Of a small function the compiler makes more where they come together.
+const WRITE_FROM: (usize, usize) = (32, 700);
+
+/// From this many angles on it is faster to compute their sines together.
+const TOGETHER_FROM: usize = 3;
+
+impl<'a> Function<'a> {
+    /// Lowers a program.
+    pub(crate) fn of(program: &'a Program, shape: Shape, has_parameters: bool, can: Capabilities) -> Self {
+        let Program { wanted: spec, graph, entry, .. } = program;
+        let mut arguments: Vec<Argument> = spec.arguments().iter().map(|a| Argument { name: a.name(), dims: a.dims().to_vec() }).collect();
+        if has_parameters {
+            arguments.push(Argument { name: "parameters", dims: Vec::new() });
+        }
+        let (columns, groups) = (program.columns.as_ref(), program.groups.as_ref());
+        let plan = Plan { graph, spec, shape, can, columns, is_outlined: is_long(graph, columns.is_some(), can.level) };
+        let ending = plan.ending();
+        let counts = graph.counts();
+        Self {
+            spec,
+            entry,
+            arguments,
+            shape,
+            results: results(spec, shape),
+            ending,
+            body: plan.body(ending, plan.is_outlined, false),
+            is_outlined: plan.is_outlined,
+            few_registers: groups.is_none().then(|| plan.few_registers(ending)).flatten(),
+            columns,
+            groups,
+            operations: (counts.instructions(), counts.trigonometric()),
+            states: can.states.then(|| plan.states(&program.plain)),
+        }
+    }
+
+    /// Whether the values are vectors.
+    pub(crate) fn in_lanes(&self) -> bool {
+        matches!(self.body.ty, Ty::Vector(_))
+    }
+}
+
+/// The arrays of the result, one for each part.
+fn results(spec: &Wanted, shape: Shape) -> Vec<Array> {
+    let mut start = 0;
+    let mut array = |lengths: Vec<usize>| {
+        let array = Array { start, lengths };
+        start += array.numbers();
+        array
+    };
+    spec.parts.iter().map(|part| array(part.function.gives.iter().map(|d| d.len(shape)).collect())).collect()
+}
+
+/// The same, each part as one array of numbers.
+fn flat(results: &[Array]) -> Vec<Array> {
+    results.iter().map(|array| Array { start: array.start, lengths: vec![array.numbers()] }).collect()
+}
+
+/// Whether a function is cut into pieces.
+fn is_long(graph: &Graph, columns: bool, level: Level) -> bool {
+    let nodes = graph.nodes().len();
+    let from = if columns && graph.lanes().width == 1 { CUT_BESIDE_COLUMNS_FROM } else { CUT_FROM };
+    nodes >= from || level.of_two() && nodes >= CUT_PAIRS_FROM
+}
+
+/// What decides how a program is lowered.
+struct Plan<'a> {
+    graph: &'a Graph,
+    spec: &'a Wanted,
+    shape: Shape,
+    can: Capabilities,
+    columns: Option<&'a Columns>,
+    is_outlined: bool,
+}
+
+impl Plan<'_> {
+    fn ending(&self) -> Ending {
+        let (graph, raw_memory) = (self.graph, self.can.raw_memory);
+        let (results, nodes) = (graph.outputs.len(), graph.nodes().len());
+        match results {
+            2.. if graph.lanes().width == WIDTH && raw_memory && nodes < CUT_FROM && self.columns.is_none() => Ending::Rows,
+            _ if results >= WRITE_FROM.0 && nodes >= WRITE_FROM.1 || self.columns.is_some() => Ending::Filled,
+            0 | 1 => Ending::Value,
+            _ if !raw_memory || self.is_outlined => Ending::Value,
+            _ => Ending::Written,
+        }
+    }
+
+    fn ty(&self) -> Ty {
+        match (self.graph.lanes().width, self.can.level.arithmetic) {
+            (1, _) if self.can.level.of_two() => Ty::Pair,
+            (1, Arithmetic::Single) => Ty::F32,
+            (1, _) => Ty::F64,
+            (width, _) => Ty::Vector(width),
+        }
+    }
+
+    fn sines(&self) -> Sines {
+        let level = self.can.level;
+        match self.graph.lanes().width {
+            // Two are those of the standard library.
+            1 if level.fused
+                && level.sines == crate::Sines::Ulp
+                && matches!(level.arithmetic, Arithmetic::Double | Arithmetic::SingleByDouble) =>
+            {
+                Sines { together: 4, are_powers_of_two: false, from: TOGETHER_FROM }
+            }
+            1 => Sines { together: 4, are_powers_of_two: false, from: 0 },
+            width => Sines { together: 8 / width, are_powers_of_two: true, from: 0 },
+        }
+    }
+
+    /// The body; `outlined`: in pieces; `spills`: with spill slots.
+    fn body(&self, ending: Ending, outlined: bool, spills: bool) -> Body {
+        let (graph, ty) = (self.graph, self.ty());
+        let mut results = results(self.spec, self.shape);
+        let is_matrix = matches!(results.as_slice(), [one] if one.lengths.len() > 1);
+        let barrier =
+            is_matrix && ending == Ending::Filled && alias_barrier::pays(graph) || is_matrix && outlined && alias_barrier::pays(graph);
+        // A compiler takes long to check the second index of a matrix.
+        if is_matrix && outlined || barrier {
+            results = flat(&results);
+        }
+        let is_read = |at| self.columns.is_none_or(|columns| columns.reads(at));
+        // What loops compute is not stored here, and neither are zeros of a result that begins as zeros.
+        let is_partial = self.columns.is_some() || graph.outputs.is_empty() || outlined && ending != Ending::Filled;
+        let lowering = Lowering { graph, ty, sines: self.sines(), results: &results };
+        let stores = || lowering.stores_as_made(|at| ending == Ending::Filled && is_read(at), barrier);
+        let mut lanes = graph.lanes().clone();
+        let (mut pieces, kept) = match ending {
+            _ if outlined => outline(stores(), LENGTH),
+            Ending::Filled => outline(stores(), usize::MAX),
+            Ending::Rows => {
+                let (statements, more) = lowering.stores_in_rows();
+                lanes = more;
+                (vec![statements], 0)
+            }
+            Ending::Value | Ending::Written => (vec![lowering.results_at_end()], 0),
+        };
+        if ending == Ending::Filled && !outlined && ty == Ty::Vector(2) {
+            pieces = pieces.into_iter().map(|piece| pair_stores(piece, &results)).collect();
+        }
+        let mut slots = None;
+        if spills && let [piece] = pieces.as_mut_slice() {
+            let (statements, found) = spill(std::mem::take(piece), ty);
+            (*piece, slots) = (statements, Some(found));
+        }
+        verified(Body { ty, lanes, results, pieces, kept, slots, barrier, is_partial })
+    }
+
+    /// The body with spill slots, if they are read often enough.
+    fn few_registers(&self, ending: Ending) -> Option<Body> {
+        let nodes = self.graph.nodes().len();
+        let fits = (spill::FROM..CUT_FROM).contains(&nodes);
+        let can = self.can.raw_memory && !self.can.level.of_two() && self.can.level.fused;
+        let body = (fits && can).then(|| self.body(ending, false, true))?;
+        spill::pays(&body.pieces[0], matches!(body.ty, Ty::Vector(_))).then_some(body)
+    }
+
+    /// The function of many states, of this graph.
+    fn states(&self, graph: &Graph) -> States {
+        let results = flat(&results(self.spec, self.shape));
+        let nodes = graph.nodes().len();
+        let length = if nodes < CUT_STATES_FROM { usize::MAX } else { LENGTH };
+        let sines = Sines { together: 1, are_powers_of_two: true, from: 0 };
+        let statements = Lowering { graph, ty: Ty::States, sines, results: &results }.stores_as_made(|_| true, false);
+        let (pieces, kept) = outline(statements, length);
+        let body = |pieces: Vec<Vec<Stmt>>, slots| {
+            let (lanes, results) = (graph.lanes().clone(), results.clone());
+            verified(Body { ty: Ty::States, lanes, results, pieces, kept, slots, barrier: false, is_partial: false })
+        };
+        let spilled = match pieces.as_slice() {
+            [piece] if self.can.raw_memory && nodes >= spill::FROM => Some(spill(piece.clone(), Ty::States)),
+            _ => None,
+        };
+        let few_registers = spilled.filter(|(piece, _)| spill::pays(piece, true)).map(|(piece, slots)| body(vec![piece], Some(slots)));
+        States { body: body(pieces, None), few_registers }
+    }
+}
+
+/// The body, which debug builds verify.
+fn verified(body: Body) -> Body {
+    if cfg!(debug_assertions)
+        && let Err(what) = crate::lir::verify(&body)
+    {
+        panic!("{what}");
+    }
+    body
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,152 @@
+//! What must hold of a body.
+
+use std::collections::HashSet;
+
+use super::{Body, Expr, Operand, Stmt, Temp};
+use crate::graph::Op;
+
+/// Checks that every operand is defined before its use and once, that masks are what comparisons give and selections
+/// take, that slots are written before they are read, and that every number of the result is written once.
+///
+/// # Errors
+/// The first statement that breaks a rule, and the rule.
+pub fn verify(body: &Body) -> Result<(), String> {
+    let mut known = Known::default();
+    let mut written: HashSet<usize> = HashSet::new();
+    for (piece, statements) in body.pieces.iter().enumerate() {
+        // A piece is a function of its own: it sees kept values only.
+        (known.values, known.masks, known.slots) = Default::default();
+        for (at, statement) in statements.iter().enumerate() {
+            let wrong = |what: String| format!("piece {piece}, statement {at} ({statement:?}): {what}");
+            known.take(statement).map_err(wrong)?;
+            for place in statement.writes() {
+                if !written.insert(place) {
+                    return Err(wrong(format!("number {place} of the result is stored twice")));
+                }
+            }
+        }
+    }
+    let numbers: usize = body.results.iter().map(super::Array::numbers).sum();
+    match (0..numbers).find(|place| !written.contains(place)) {
+        Some(place) if !body.is_partial => Err(format!("number {place} of the result is not stored")),
+        _ if written.iter().any(|place| *place >= numbers) => Err(format!("a number beyond the {numbers} of the result is stored")),
+        _ => Ok(()),
+    }
+}
+
+/// What is defined up to a statement.
+#[derive(Default)]
+struct Known {
+    values: HashSet<Temp>,
+    masks: HashSet<Temp>,
+    slots: HashSet<super::Slot>,
+    kept: HashSet<usize>,
+}
+
+impl Known {
+    fn take(&mut self, statement: &Stmt) -> Result<(), String> {
+        if let Stmt::Let(_, Expr::Op(Op::Select, [mask, a, b])) = statement {
+            match mask {
+                Operand::Temp(temp) if self.masks.contains(temp) => {}
+                _ => return Err("its first operand is no mask".to_owned()),
+            }
+            [a, b].into_iter().try_for_each(|operand| self.value(operand))?;
+        } else {
+            let mut found = Ok(());
+            statement.operands(|operand| found = found.clone().and_then(|()| self.value(operand)));
+            found?;
+        }
+        match statement {
+            Stmt::Recall(_, slot) if !self.kept.contains(slot) => return Err("nothing was kept there".to_owned()),
+            Stmt::Load(_, slot) if !self.slots.contains(slot) => return Err("nothing was spilled there".to_owned()),
+            Stmt::Keep(slot, _) => _ = self.kept.insert(*slot),
+            Stmt::Spill(slot, _) => _ = self.slots.insert(*slot),
+            _ => {}
+        }
+        let mut defined = Vec::new();
+        statement.defines(|temp| defined.push(temp));
+        for temp in defined {
+            let values = if statement.compares() { &mut self.masks } else { &mut self.values };
+            if !values.insert(temp) {
+                return Err(format!("{temp:?} is defined twice"));
+            }
+        }
+        Ok(())
+    }
+
+    fn value(&self, operand: &Operand) -> Result<(), String> {
+        match operand {
+            Operand::Temp(temp) if !self.values.contains(temp) => Err(format!("{temp:?} is not defined, or is a mask")),
+            Operand::Slot(slot) if !self.slots.contains(slot) => Err(format!("{slot:?} is read and was not written")),
+            _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graph::Lanes;
+    use crate::lir::{Array, Number, Slot, Store, Ty};
+
+    fn body(statements: Vec<Stmt>) -> Body {
+        let results = vec![Array { start: 0, lengths: vec![2] }];
+        Body {
+            ty: Ty::F64,
+            lanes: Lanes::default(),
+            results,
+            pieces: vec![statements],
+            kept: 0,
+            slots: None,
+            barrier: false,
+            is_partial: false,
+        }
+    }
+
+    fn number(id: usize) -> Number {
+        Number { of: Operand::Temp(Temp::of(id)), lane: 0 }
+    }
+
+    fn right() -> Vec<Stmt> {
+        let [x, y, z] = [0, 1, 2].map(|id| Operand::Temp(Temp::of(id)));
+        let zero = Operand::Constant(0.0);
+        let slot = Slot { is_far: false, number: 0 };
+        vec![
+            Stmt::Let(Temp::of(0), Expr::Input { argument: 0, index: 0 }),
+            Stmt::Let(Temp::of(1), Expr::Op(Op::Positive, [x, zero, zero])),
+            Stmt::Spill(slot, Temp::of(0)),
+            Stmt::Let(Temp::of(2), Expr::Op(Op::Select, [y, Operand::Slot(slot), zero])),
+            Stmt::Let(Temp::of(3), Expr::Op(Op::Add, [z, x, zero])),
+            Stmt::Store(Store::One(0, number(3))),
+            Stmt::Result(1, number(2)),
+        ]
+    }
+
+    #[test]
+    fn a_body_in_order_is_right() {
+        assert_eq!(verify(&body(right())), Ok(()));
+    }
+
+    #[test]
+    fn every_rule_that_is_broken_is_found() {
+        let without = |k: usize| {
+            let mut statements = right();
+            statements.remove(k);
+            verify(&body(statements)).unwrap_err()
+        };
+        assert!(without(0).contains("is not defined") && without(1).contains("no mask") && without(2).contains("was not written"));
+        assert!(without(5).contains("number 0 of the result is not stored"));
+        let mut twice = right();
+        twice.push(Stmt::Result(0, number(0)));
+        assert!(verify(&body(twice)).unwrap_err().contains("stored twice"));
+        let mut mask = right();
+        mask[5] = Stmt::Store(Store::One(0, number(1)));
+        assert!(verify(&body(mask)).unwrap_err().contains("is a mask"));
+        let mut again = right();
+        again.insert(1, again[0].clone());
+        assert!(verify(&body(again)).unwrap_err().contains("defined twice"));
+        let mut beyond = right();
+        beyond.push(Stmt::Result(2, number(0)));
+        assert!(verify(&body(beyond)).unwrap_err().contains("beyond"));
+    }
+}

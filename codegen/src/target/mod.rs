@@ -1,0 +1,3 @@
+//! Languages: each prints functions of the intermediate representation.
+
+pub(crate) mod rust;

@@ -1,0 +1,53 @@
+//! The instruction sets of batches.
+
+use articulated_core::lanes::Set;
+
+use crate::target::rust::module::sets::HAS_AVX2;
+
+/// An instruction set as batches use it.
+pub(super) struct Way {
+    pub(super) module: &'static str,
+    pub(super) set: Set,
+    /// Bytes of a vector.
+    pub(super) bytes: usize,
+    /// Where it is compiled.
+    pub(super) cfg: &'static str,
+    /// What is asked of the processor; for one that all processors have that it is compiled for, nothing.
+    pub(super) asked: &'static str,
+}
+
+macro_rules! avx512 {
+    () => {
+        "all(target_feature = \"avx512f\", target_feature = \"avx512dq\", target_feature = \"avx2\", target_feature = \"fma\")"
+    };
+}
+
+macro_rules! avx2 {
+    () => {
+        "all(target_feature = \"avx2\", target_feature = \"fma\")"
+    };
+}
+
+/// The widest first.
+pub(super) const WAYS: [Way; 5] = [
+    Way {
+        module: "avx512",
+        set: Set::Avx512,
+        bytes: 64,
+        cfg: "target_arch = \"x86_64\"",
+        asked: "::std::is_x86_feature_detected!(\"avx512f\") && ::std::is_x86_feature_detected!(\"avx512dq\") && ::std::is_x86_feature_detected!(\"avx2\") && ::std::is_x86_feature_detected!(\"fma\")",
+    },
+    Way { module: "avx2", set: Set::Avx2, bytes: 32, cfg: concat!("all(target_arch = \"x86_64\", not(", avx512!(), "))"), asked: HAS_AVX2 },
+    Way { module: "sse2", set: Set::Sse2, bytes: 16, cfg: concat!("all(target_arch = \"x86_64\", not(", avx2!(), "))"), asked: "true" },
+    Way { module: "neon", set: Set::Neon, bytes: 16, cfg: "target_arch = \"aarch64\"", asked: "true" },
+    Way {
+        module: "portable",
+        set: Set::Portable,
+        bytes: 64,
+        cfg: "not(any(target_arch = \"x86_64\", target_arch = \"aarch64\"))",
+        asked: "true",
+    },
+];
+
+/// Without `unsafe`.
+pub(super) const SAFE: [Way; 1] = [Way { module: "portable", set: Set::Portable, bytes: 64, cfg: "all()", asked: "true" }];

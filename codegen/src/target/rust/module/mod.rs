@@ -1,0 +1,245 @@
+//! The module of one robot.
+
+pub(crate) mod bare;
+pub(crate) mod header;
+pub(crate) mod names;
+pub(crate) mod sets;
+pub(crate) mod style;
+pub(crate) mod used;
+pub(crate) mod warnings;
+
+use std::fmt::Write;
+
+use articulated_core::algorithm::{Dim, neutral};
+use articulated_core::description::Limit;
+use articulated_core::model::{FLOATING_BASE, JointInfo, Model};
+use articulated_urdf::{Problem, Unused};
+
+use crate::lir::function::Function;
+use crate::target::rust::batch::{Batch, batches};
+use crate::target::rust::function::levels::real;
+use crate::target::rust::function::{Context, function};
+use crate::target::rust::literal::literal;
+use crate::target::rust::module::header::header;
+use crate::target::rust::module::names::Names;
+use crate::target::rust::module::sets::support;
+use crate::target::rust::spills;
+use crate::{Parameter, Request};
+
+/// The contents of the module.
+pub(crate) fn module(
+    request: &Request,
+    model: &Model<f64>,
+    names: &Names,
+    functions: &[Function],
+    parameters: &[Parameter],
+    unused: &[Unused],
+    snapped: &[Problem],
+) -> String {
+    let mut out = String::new();
+    header(&mut out, request, model, (unused, snapped));
+    constants(&mut out, model);
+    indices(&mut out, model, names);
+    inputs(&mut out, parameters);
+    let (forbid_unsafe, level) = (request.options.forbid_unsafe, request.options.level);
+    let context = Context { parameters: !parameters.is_empty(), forbid_unsafe, level };
+    functions.iter().for_each(|f| function(&mut out, f, context));
+    support(&mut out, model, functions, forbid_unsafe, level);
+    let of_many: Vec<Batch> = functions.iter().filter_map(|f| Batch::of(f, level)).collect();
+    batches(&mut out, &of_many, &request.options.batch, forbid_unsafe);
+    if functions.iter().any(spills::is_used) {
+        out += spills::MODULE;
+    }
+    robot(&mut out, request, model, functions, !parameters.is_empty());
+    let names: Vec<&str> = functions.iter().map(|f| f.spec.name.as_str()).collect();
+    let out = style::allowed(out, &names);
+    if request.options.no_std { bare::without_std(&out) } else { out }
+}
+
+/// Stands before constants with numbers of the file, which are what they are: also 3.14, and 6.283185307179586.
+const NUMBERS: &str = "#[allow(clippy::all, clippy::pedantic)]";
+
+fn constants(out: &mut String, model: &Model<f64>) {
+    let joints: Vec<&str> = model.joints.iter().map(|j| j.name.as_str()).collect();
+    let frames: Vec<&str> = model.frames.iter().map(|f| f.name.as_str()).collect();
+    let _ = writeln!(out, "/// The robot's name.\npub const NAME: &str = {:?};", model.name);
+    let floats = model.joints.first().is_some_and(|joint| joint.name == FLOATING_BASE);
+    let of_base = |text: &'static str| if floats { text } else { "" };
+    let q = of_base(" First the base's position, m, and quaternion x, y, z, w.");
+    let v = of_base(" First the base's six: angular, then linear, in its own axes; of τ moment, then force.");
+    let _ = writeln!(out, "/// Number of coordinates: the length of q.{q}\npub const NQ: usize = {};", model.nq);
+    let _ = writeln!(out, "/// Number of degrees of freedom: the length of v, a and τ.{v}\npub const NV: usize = {};", model.nv);
+    let _ = writeln!(out, "/// Number of degrees of freedom.\npub const DOF: usize = NV;");
+    let _ = writeln!(out, "/// Number of joints that are coordinates.\npub const JOINTS: usize = {};", joints.len());
+    let links: Vec<&str> = model.links().map(|i| model.bodies[i].name.as_str()).collect();
+    let _ = writeln!(out, "/// Number of frames: links of the file, or those chosen.\npub const FRAMES: usize = {};", frames.len());
+    let _ = writeln!(out, "/// Number of moving links, one for each joint that moves.\npub const LINKS: usize = {};", links.len());
+    let _ =
+        writeln!(out, "/// Names of the joints, in the order of their coordinates.\npub const JOINT_NAMES: [&str; JOINTS] = {joints:?};");
+    let _ = writeln!(out, "/// Names of the frames.\npub const FRAME_NAMES: [&str; FRAMES] = {frames:?};");
+    let _ = writeln!(out, "/// For each moving link, the joint that carries it.\npub const LINK_JOINTS: [&str; LINKS] = {links:?};");
+    // As many as the joint has of each, in q or in v.
+    let each = |count: fn(&JointInfo) -> usize, of: fn(&Limit) -> f64, none: f64| -> Vec<f64> {
+        model.joints.iter().flat_map(|j| vec![j.limit.as_ref().map_or(none, of); count(j)]).collect()
+    };
+    let mut rest = vec![0.0; model.nq];
+    neutral(model, &mut rest);
+    let rows = [
+        ("NEUTRAL", "NQ", "Where all coordinates are zero, and no quaternion turns.", rest),
+        (
+            "Q_LOWER",
+            "NQ",
+            "Lower bounds of the coordinates, rad or m; −∞ where there is none.",
+            each(|j| j.q.1, |l| l.lower, f64::NEG_INFINITY),
+        ),
+        ("Q_UPPER", "NQ", "Upper bounds of the coordinates, rad or m; ∞ where there is none.", each(|j| j.q.1, |l| l.upper, f64::INFINITY)),
+        ("V_LIMIT", "NV", "Largest rates, rad/s or m/s; ∞ where none is given.", each(|j| j.v.1, |l| l.velocity, f64::INFINITY)),
+        ("TAU_LIMIT", "NV", "Largest torques and forces, N·m or N; ∞ where none is given.", each(|j| j.v.1, |l| l.effort, f64::INFINITY)),
+    ];
+    for (name, length, doc, values) in rows {
+        let values: Vec<String> = values.into_iter().map(literal).collect();
+        let _ = writeln!(out, "/// {doc}\n{NUMBERS}\npub const {name}: [f64; {length}] = [{}];", values.join(", "));
+    }
+}
+
+fn indices(out: &mut String, model: &Model<f64>, names: &Names) {
+    let joint = |value: fn(usize, &JointInfo) -> usize| {
+        let rows = names.joints.iter().zip(&model.joints).enumerate();
+        rows.map(|(k, (ident, j))| (ident.clone(), format!("{} joint {:?}", j.kind.name(), j.name), value(k, j))).collect::<Vec<_>>()
+    };
+    list(out, "joint", "Indices into [`JOINT_NAMES`].", &joint(|k, _| k));
+    list(out, "q_index", "Index in q of each joint's first coordinate.", &joint(|_, j| j.q.0));
+    list(out, "v_index", "Index in v, a and τ of each joint's first degree of freedom.", &joint(|_, j| j.v.0));
+    let frames = names.frames.iter().zip(&model.frames).enumerate();
+    let frames: Vec<_> = frames.map(|(k, (ident, f))| (ident.clone(), format!("link {:?}", f.name), k)).collect();
+    list(out, "frame", "Indices into [`FRAME_NAMES`].", &frames);
+}
+
+fn list(out: &mut String, module: &str, doc: &str, rows: &[(String, String, usize)]) {
+    let _ = writeln!(out, "/// {doc}\npub mod {module} {{");
+    for (ident, doc, value) in rows {
+        let _ = writeln!(out, "    /// The {doc}.\n    {}pub const {ident}: usize = {value};", style::of_constant(ident));
+    }
+    let _ = writeln!(out, "}}\n");
+}
+
+/// What of the model stayed an input.
+fn inputs(out: &mut String, parameters: &[Parameter]) {
+    if parameters.is_empty() {
+        return;
+    }
+    let values: Vec<String> = parameters.iter().flat_map(|p| &p.nominal).map(|x| literal(*x)).collect();
+    let _ = writeln!(out, "/// The parameters of the robot as it was asked for; [`parameter`] says where each begins.");
+    if parameters.iter().any(Parameter::is_inertial) {
+        let _ = writeln!(
+            out,
+            "///\n/// Inertial parameters: m, m·c and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz, about the origin and in axes of the link; kg, kg·m, kg·m²."
+        );
+    }
+    let _ = writeln!(out, "{NUMBERS}\npub const PARAMETERS: [f64; {}] = [{}];", values.len(), values.join(", "));
+    let names = names::identifiers(parameters.iter().map(|p| p.name.as_str()));
+    let rows: Vec<_> = names.into_iter().zip(parameters).map(|(name, p)| (name, p.what.clone(), p.at)).collect();
+    list(out, "parameter", "Index in [`PARAMETERS`] of the first number of each.", &rows);
+}
+
+/// The type that stands for the robot where code is written over the trait `Dynamics`.
+fn robot(out: &mut String, request: &Request, model: &Model<f64>, functions: &[Function], parameters: bool) {
+    let Some(path) = &request.options.runtime else { return };
+    let real = real(request.options.level);
+    let default = if parameters { "" } else { ", ::core::default::Default" };
+    let _ = writeln!(out, "/// The robot as a value, for code over the trait `Dynamics`.");
+    let _ = writeln!(out, "#[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug{default})]");
+    if parameters {
+        let _ = writeln!(out, "pub struct Robot {{\n    /// As [`PARAMETERS`].\n    pub parameters: [f64; PARAMETERS.len()],\n}}\n");
+        let _ = writeln!(out, "impl ::core::default::Default for Robot {{");
+        let _ = writeln!(out, "    fn default() -> Self {{ Self {{ parameters: PARAMETERS }} }}\n}}\n");
+    } else {
+        let _ = writeln!(out, "pub struct Robot;\n");
+    }
+    let _ = writeln!(out, "#[allow(unused_qualifications, clippy::all, clippy::pedantic)]\nimpl {path}::Dynamics<{real}> for Robot {{");
+    let _ = writeln!(out, "    type Workspace = ();\n    fn workspace(&self) {{}}");
+    let _ = writeln!(out, "    fn shape(&self) -> {path}::Shape {{ {path}::Shape {{ nq: NQ, nv: NV, frames: FRAMES, links: LINKS }} }}");
+    let _ = writeln!(out, "    fn name(&self) -> &str {{ NAME }}");
+    names_by_number(out, path, model);
+    if model.has_motors() {
+        let _ = writeln!(out, "    fn has_motors(&self) -> bool {{ true }}");
+    }
+    let _ = writeln!(out, "    #[inline]");
+    let _ = writeln!(
+        out,
+        "    fn call(&self, function: {path}::FunctionId, _: &mut (), arguments: &[&[{real}]], out: &mut [{real}]) -> ::core::result::Result<(), {path}::FunctionError> {{"
+    );
+    let _ = writeln!(out, "        match (function, arguments) {{");
+    for function in functions.iter().filter_map(|f| f.spec.as_function()) {
+        let takes: Vec<_> = function.takes.iter().map(|a| (a.name(), a.dims())).collect();
+        let is_empty = function.len(model.shape()) == 0;
+        arm(out, (path, real), function.name, &takes, (function.gives, is_empty), parameters);
+    }
+    let has: Vec<String> =
+        functions.iter().filter_map(|f| f.spec.as_function()).map(|f| format!("{path}::FunctionId::{}", f.name)).collect();
+    let _ = writeln!(
+        out,
+        "            _ => ::core::result::Result::Err({path}::FunctionError::of_call(function, arguments.len(), &[{}])),",
+        has.join(", ")
+    );
+    let _ = writeln!(out, "        }}\n    }}\n}}");
+}
+
+/// The joints and frames by their numbers.
+fn names_by_number(out: &mut String, path: &str, model: &Model<f64>) {
+    let option = "::core::option::Option";
+    let _ = writeln!(out, "    fn frame_name(&self, frame: usize) -> {option}<&str> {{ FRAME_NAMES.get(frame).copied() }}");
+    let _ = writeln!(out, "    fn joint(&self, index: usize) -> {option}<{path}::JointRow<'_>> {{");
+    if model.joints.is_empty() {
+        let _ = writeln!(out, "        let _ = index;\n        {option}::None\n    }}");
+        return;
+    }
+    let _ = writeln!(out, "        let (kind, q, v) = match index {{");
+    for (k, joint) in model.joints.iter().enumerate() {
+        let _ = writeln!(out, "            {k} => ({path}::JointKind::{:?}, {:?}, {:?}),", joint.kind, joint.q, joint.v);
+    }
+    let _ = writeln!(out, "            _ => return {option}::None,\n        }};");
+    let limit = "lower: Q_LOWER[q.0], upper: Q_UPPER[q.0], effort: TAU_LIMIT[v.0], velocity: V_LIMIT[v.0]";
+    let _ = writeln!(out, "        let limit = {path}::Limit {{ {limit} }};");
+    let _ = writeln!(out, "        {option}::Some({path}::JointRow {{ name: JOINT_NAMES[index], kind, q, v, limit }})\n    }}");
+}
+
+/// How one function is called through slices. Of a robot without degrees of freedom there may be no numbers to give, and no rows of none.
+fn arm(
+    out: &mut String,
+    (path, real): (&str, &str),
+    name: &str,
+    takes: &[(&str, &[Dim])],
+    (gives, is_empty): (&[Dim], bool),
+    parameters: bool,
+) {
+    let mut names: Vec<String> = takes.iter().map(|(name, _)| (*name).to_owned()).collect();
+    let _ = writeln!(out, "            ({path}::FunctionId::{name}, &[{}]) => {{", names.join(", "));
+    for (name, dims) in takes {
+        let _ = match dims {
+            [length, Dim::Of(width)] => {
+                writeln!(out, "                let {name} = {path}::exactly_rows::<{length}, {width}, {real}>({name:?}, {name})?;")
+            }
+            [length, ..] => writeln!(out, "                let {name} = {path}::exactly::<{length}, {real}>({name:?}, {name})?;"),
+            [] => Ok(()),
+        };
+    }
+    let lengths: Vec<String> = gives.iter().map(Dim::to_string).collect();
+    let length = if lengths.is_empty() { "1".to_owned() } else { lengths.join(" * ") };
+    let _ = writeln!(out, "                {path}::check_length(\"out\", out.len(), {length})?;");
+    if parameters {
+        names.push("&self.parameters".into());
+    }
+    let names = names.join(", ");
+    let _ = if is_empty {
+        writeln!(out, "                let _ = ({names},);")
+    } else if gives.is_empty() {
+        writeln!(out, "                out[0] = self::{name}({names});")
+    } else {
+        let inner = gives.iter().skip(1).rev().map(|d| format!(".as_chunks_mut::<{d}>().0"));
+        let rows = format!("out{}", inner.collect::<String>());
+        let _ = writeln!(out, "                if let ::core::result::Result::Ok(out) = ::core::convert::TryInto::try_into({rows}) {{");
+        writeln!(out, "                    self::{name}_into({names}, out);\n                }}")
+    };
+    let _ = writeln!(out, "                ::core::result::Result::Ok(())\n            }}");
+}

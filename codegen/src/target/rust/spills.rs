@@ -1,0 +1,84 @@
+//! Spill slots in Rust.
+
+use std::fmt::Write;
+
+use crate::lir::Slots;
+use crate::lir::function::Function;
+
+/// Stands before what is for processors with sixteen registers, and before what is for others.
+pub(crate) const FEW_REGISTERS: &str = "#[cfg(all(target_arch = \"x86_64\", not(target_feature = \"avx512f\")))]";
+pub(crate) const MORE_REGISTERS: &str = "#[cfg(not(all(target_arch = \"x86_64\", not(target_feature = \"avx512f\"))))]";
+
+/// Whether a function has slots.
+pub(crate) fn is_used(function: &Function) -> bool {
+    function.few_registers.is_some() || function.states.as_ref().is_some_and(|states| states.few_registers.is_some())
+}
+
+/// The statements of a function of which there are both.
+pub(crate) fn by_registers(few: &str, more: &str) -> String {
+    format!("    {FEW_REGISTERS}\n    return {{\n{few}    }};\n    {MORE_REGISTERS}\n    return {{\n{more}    }};\n")
+}
+
+/// The module that the statements call.
+pub(crate) const MODULE: &str = "\
+/// Where values wait while sixteen registers are full.
+#[cfg(all(target_arch = \"x86_64\", not(target_feature = \"avx512f\")))]
+#[allow(unsafe_code, unused_results, clippy::all, clippy::pedantic)]
+mod spills {
+    /// Puts a value where it waits. Compilers look for two numbers to write at once, but not where that is volatile: it takes long, and gains nothing.
+    #[inline(always)]
+    pub(super) unsafe fn spill<T>(place: *mut T, x: T) {
+        // SAFETY: the caller has a place there.
+        unsafe { place.write_volatile(x) }
+    }
+}
+
+";
+
+/// What stands behind the statements, and behind what is made of them.
+pub(crate) const END: &str = "    }\n";
+
+/// What stands before the statements: the slots, and pointers of which compilers do not know where they lead.
+pub(crate) fn beginning(out: &mut String, slots: &Slots, ty: &str) {
+    *out += "    // There are sixteen registers: this says what waits in memory, and where.\n    use ::core::hint::black_box as hidden;\n";
+    *out += "    use self::spills::spill;\n";
+    if slots.far > 0 {
+        room(out, ("far", "Far"), slots.far, "Far", ty);
+        *out += "    let far = hidden(far.as_mut_ptr());\n";
+    }
+    let shelves = slots.near.div_ceil(slots.per_shelf);
+    if shelves > 0 {
+        room(out, ("shelves", "Shelf"), slots.per_shelf, &format!("[Shelf; {shelves}]"), ty);
+        *out += "    let shelves: *mut Shelf = shelves.as_mut_ptr().cast();\n";
+    }
+    for k in (0..shelves).step_by(2) {
+        // Of the second of two, which is where the first ends.
+        let behind = (k + 1).min(shelves - 1);
+        let _ = writeln!(out, "    let s{behind} = hidden(shelves.wrapping_add({behind}));");
+        if behind > k {
+            let _ = writeln!(out, "    let s{k} = s{behind}.wrapping_sub(1);");
+        }
+    }
+    *out += "    // SAFETY: what waits is written to its place before it is read there.\n    unsafe {\n";
+}
+
+/// Room for what is made of a struct of so many slots.
+fn room(out: &mut String, (name, place): (&str, &str), slots: usize, made: &str, ty: &str) {
+    let fields: Vec<String> = (0..slots).map(|k| format!("m{k}: {ty}")).collect();
+    let _ = writeln!(out, "    #[allow(dead_code)]\n    struct {place} {{ {} }}", fields.join(", "));
+    let _ = writeln!(out, "    let mut {name} = ::core::mem::MaybeUninit::<{made}>::uninit();");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_shelves_lie_around_a_pointer() {
+        let mut text = String::new();
+        beginning(&mut text, &Slots { near: 25, per_shelf: 4, far: 0 }, "V");
+        assert!(text.contains("struct Shelf { m0: V, m1: V, m2: V, m3: V }") && text.contains("MaybeUninit::<[Shelf; 7]>"), "{text}");
+        assert!(text.contains("    let s5 = hidden(shelves.wrapping_add(5));\n    let s4 = s5.wrapping_sub(1);\n    let s6 = hidden(shelves.wrapping_add(6));\n"));
+        assert!(!text.contains("far"), "{text}");
+    }
+}
