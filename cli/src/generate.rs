@@ -41,13 +41,13 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
         request.options.parameters.clone_from(&arguments.parameters);
     }
     if !arguments.batch.is_empty() {
-        request.options.batch.clone_from(&arguments.batch);
+        request.options.rust_mut().batch.clone_from(&arguments.batch);
     }
     request.options.limbs &= !arguments.no_limbs;
-    request.options.forbid_unsafe |= arguments.forbid_unsafe;
-    request.options.no_std = arguments.no_std;
+    request.options.rust_mut().forbid_unsafe |= arguments.forbid_unsafe;
+    request.options.rust_mut().no_std = arguments.no_std;
     request.options.level = arguments.level.unwrap_or(request.options.level);
-    request.options.runtime = arguments.runtime.clone().filter(|_| !arguments.standalone);
+    request.options.rust_mut().runtime = arguments.runtime.clone().filter(|_| !arguments.standalone);
     let generated = generate(&request)?;
     robot.warn_of(generated.warnings.iter().chain(&generated.snapped));
     if let Some(path) = &arguments.output {

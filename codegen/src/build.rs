@@ -69,7 +69,7 @@ impl Build {
     pub fn new(path: impl AsRef<Path>) -> Self {
         let path = path.as_ref();
         let mut request = Request::new(path.display().to_string(), []);
-        request.options.runtime = Some("::articulated".into());
+        request.options.rust_mut().runtime = Some("::articulated".into());
         Self { path: from_root(path), request, append: Vec::new(), scene: None, wrong: Vec::new() }
     }
 
@@ -202,7 +202,7 @@ impl Build {
     /// Code that depends on nothing but `core` and `std`: no implementation of the trait `Dynamics`.
     #[must_use]
     pub fn standalone(mut self) -> Self {
-        self.request.options.runtime = None;
+        self.request.options.rust_mut().runtime = None;
         self
     }
 
@@ -211,10 +211,10 @@ impl Build {
     #[must_use]
     pub fn batch<R: Into<BatchType>>(mut self, reals: impl IntoIterator<Item = R>) -> Self {
         self.wrong.retain(|error| !matches!(error, Error::BatchUnknown { .. }));
-        self.request.options.batch.clear();
+        self.request.options.rust_mut().batch.clear();
         for real in reals {
             match real.into().0 {
-                Ok(real) => self.request.options.batch.push(real),
+                Ok(real) => self.request.options.rust_mut().batch.push(real),
                 Err(error) => self.wrong.push(error),
             }
         }
@@ -238,7 +238,7 @@ impl Build {
     /// No `unsafe` in the generated code, for crates that forbid it: no limbs in lanes, no joints in loops, and no choice of instructions when it runs.
     #[must_use]
     pub fn forbid_unsafe(mut self) -> Self {
-        self.request.options.forbid_unsafe = true;
+        self.request.options.rust_mut().forbid_unsafe = true;
         self
     }
 
@@ -246,7 +246,7 @@ impl Build {
     /// Without `unsafe`, multiply-adds and an implementation of the trait `Dynamics`, whatever was chosen.
     #[must_use]
     pub fn no_std(mut self) -> Self {
-        self.request.options.no_std = true;
+        self.request.options.rust_mut().no_std = true;
         self
     }
 

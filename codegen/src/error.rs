@@ -15,6 +15,22 @@ pub enum Error {
         /// The type.
         found: &'static str,
     },
+    /// A level that a target does not have.
+    #[error("level: found {found}, expected for target {target:?}: {expected}")]
+    LevelOfTarget {
+        /// The target.
+        target: &'static str,
+        /// The level.
+        found: String,
+        /// The levels that it has.
+        expected: &'static str,
+    },
+    /// A prefix that is no name.
+    #[error("prefix: found {found:?}, expected a letter of ASCII, then letters, digits and _")]
+    Prefix {
+        /// The prefix.
+        found: String,
+    },
     /// A type of numbers that does not exist.
     #[error("batch: found {found:?}, expected \"f64\" or \"f32\"")]
     BatchUnknown {

@@ -52,7 +52,9 @@ fn take_out(error: &Error, options: &mut Options) {
                 options.functions.remove(at);
             }
         }
-        Error::BatchTwice { found } => options.batch.retain(|real| real.name() != *found),
+        Error::BatchTwice { found } => options.rust_mut().batch.retain(|real| real.name() != *found),
+        Error::LevelOfTarget { .. } => options.level = crate::Level::default(),
+        Error::Prefix { .. } => options.target = crate::Target::default(),
         Error::Parameter { found, .. } => options.parameters.retain(|p| p.trim() != found),
         Error::Rename { from, to, .. } => options.rename.retain(|(f, t)| (f, t) != (from, to)),
         Error::NameClash { second, ident, .. } => {
@@ -143,7 +145,7 @@ mod tests {
     #[test]
     fn a_type_of_numbers_that_is_there_twice_is_told_once_and_with_all_else() {
         let told = told(|o| {
-            o.batch = [crate::Real::F32, crate::Real::F64, crate::Real::F32, crate::Real::F32].to_vec();
+            o.rust_mut().batch = [crate::Real::F32, crate::Real::F64, crate::Real::F32, crate::Real::F32].to_vec();
             o.functions = vec!["no_such".into()];
         });
         each_once(&told, &["batch: found a type that is there twice, f32, expected each once", "`no_such`"]);

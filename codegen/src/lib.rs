@@ -26,7 +26,7 @@ mod request;
 pub mod scene;
 mod size;
 mod sym;
-mod target;
+pub mod target;
 mod trace;
 mod wanted;
 
@@ -56,14 +56,17 @@ pub use parameters::Parameter;
 pub use request::{Options, Request, choose_frames, model, read};
 pub use size::MAX_CODE_SIZE;
 pub use sym::Sym;
-pub use target::rust::identifier;
+pub use target::{COptions, File, RustOptions, Target, identifier};
 pub use wanted::{Constant, Part, Wanted, is_keyword};
 
 /// What was generated, and what there is to say about it.
 #[derive(Clone, Debug)]
 pub struct Generated {
-    /// The contents of a module: Rust, formatted, with comments. The same request always gives the same bytes.
+    /// The last of the files: in Rust the contents of a module, in C the source behind the header. The same request always
+    /// gives the same bytes.
     pub source: String,
+    /// All files of the target.
+    pub files: Vec<File>,
     /// The model as it was read, before model passes.
     pub model: Model<f64>,
     /// Constants of the model that stayed inputs.
@@ -115,7 +118,6 @@ struct Plan {
     model: Model<f64>,
     parameters: Vec<Parameter>,
     wanted: Vec<Wanted>,
-    names: target::rust::Names,
 }
 
 /// Everything that comes before programs are made.
@@ -134,13 +136,13 @@ fn plan(request: &Request) -> Result<Plan, Error> {
     let model = choose_frames(request, if parameters.is_empty() { whole } else { model(request, &reading.description)? })?;
     let wanted = wanted(request, &model, &massless)?;
     size::within_limit(request, &model, &wanted)?;
-    let names = target::rust::Names::new(&model, request)?;
-    Ok(Plan { reading, model, parameters, wanted, names })
+    options.target.check_names(&model, request)?;
+    Ok(Plan { reading, model, parameters, wanted })
 }
 
 /// Whether the words of the options mean something, whatever the robot.
 fn words(options: &Options) -> Result<(), Error> {
-    types_of_batch(&options.batch)?;
+    options.target.check(options)?;
     options.functions.iter().try_for_each(|text| Wanted::parse(text).map(drop))
 }
 
@@ -149,38 +151,36 @@ pub fn check_words(request: &Request) -> Result<(), Error> {
     faults::all(&request.settled(), |request| words(&request.options))
 }
 
-/// Whether each type is there once.
-fn types_of_batch(types: &[Real]) -> Result<(), Error> {
-    let twice = types.iter().enumerate().find(|(k, real)| types[..*k].contains(real));
-    twice.map_or(Ok(()), |(_, real)| Err(Error::BatchTwice { found: real.name() }))
-}
-
 /// Generates the code that `request` asks for. Pure: nothing is read or written. Errors: everything that is wrong with the document and what of the request can be told without it, or else everything that is wrong with the request.
 pub fn generate(request: &Request) -> Result<Generated, Error> {
     let request = &*request.settled();
     let known = |request: &Request| Error::of(parameters::of_effects_that_are_off(&request.options)).map_or(Ok(()), Err);
-    let Plan { reading, model, parameters, wanted, names } =
+    let Plan { reading, model, parameters, wanted } =
         faults::all(request, |request| plan(request).and_then(|plan| known(request).map(|()| plan)))?;
     let Reading { mut warnings, unused, snapped, .. } = reading;
+    let can = request.options.target.capabilities(&request.options);
     let mut ledger = Ledger::default();
     let mut programs = Vec::new();
     for function in wanted {
-        let program = program::program(function, &model, &parameters, &request.options);
+        let program = program::program(function, &model, &parameters, &request.options, can);
         ledger.functions.push(program.entry.clone());
         programs.push(program);
     }
     warnings.extend(ledger.functions.iter().filter_map(|entry| long_code(&request.file, entry)));
-    let can = lir::function::Capabilities {
-        level: request.options.level,
-        raw_memory: !request.options.forbid_unsafe,
-        states: !request.options.batch.is_empty(),
+    let functions = programs.iter().map(|p| lir::function::Function::of(p, model.shape(), !parameters.is_empty(), can)).collect();
+    let module = target::Module {
+        request,
+        model: &model,
+        functions,
+        parameters: &parameters,
+        unused: &unused,
+        snapped: &snapped,
+        warnings: &warnings,
     };
-    let functions: Vec<lir::function::Function> =
-        programs.iter().map(|p| lir::function::Function::of(p, model.shape(), !parameters.is_empty(), can)).collect();
-    let source =
-        target::rust::module(request, &model, &names, &functions, &parameters, &unused, &snapped) + &target::rust::warnings(&warnings);
+    let files = request.options.target.print(&module);
     let graphs = programs.into_iter().map(|p| if p.columns.is_some() { graph::Graph::default() } else { p.graph }).collect();
-    Ok(Generated { source, model, parameters, level: request.options.level, ledger, graphs, warnings, unused, snapped })
+    let source = files.last().map(|file| file.text.clone()).unwrap_or_default();
+    Ok(Generated { source, files, model, parameters, level: request.options.level, ledger, graphs, warnings, unused, snapped })
 }
 
 /// So many instructions, straight-line code beyond which is of little use: a compiler takes minutes for it, and loops over joints are faster.
@@ -235,7 +235,7 @@ pub fn check_names(request: &Request, description: &Description, whole: &Model<f
 
 /// Whether all joints and links have names of their own in Rust. Errors: all names of which two are the same, and renamings that cannot be.
 pub fn check_identifiers(request: &Request, model: &Model<f64>) -> Result<(), Error> {
-    faults::all(request, |request| target::rust::Names::new(model, request).map(drop))
+    faults::all(request, |request| request.options.target.check_names(model, request))
 }
 
 /// The names of the joints that have no inertia of their own.

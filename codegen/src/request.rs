@@ -3,13 +3,13 @@
 use std::borrow::Cow;
 
 use articulated_core::description::Description;
-use articulated_core::lanes::Real;
 use articulated_core::level::Level;
 use articulated_core::model::Model;
 use articulated_scene::{RobotAsked, RobotOptions};
 use articulated_urdf::Reading;
 
 use crate::target::rust::is_name;
+use crate::target::{RustOptions, Target};
 use crate::{Error, function_groups};
 
 /// A robot's document and what to make of it. Macro, build script and command line all fill one of these.
@@ -35,22 +35,17 @@ pub struct Options {
     pub motion: Vec<String>,
     /// Constants of the model that stay inputs: `payload(link)`, `inertia(link)`, `origin(joint)`, `gravity`, and numbers of an effect that is on, as `damping(joint)`, `contact(link)`.
     pub parameters: Vec<String>,
-    /// Rust names to use instead of those made from the URDF's names: (name in the URDF, name in Rust).
+    /// Names to use in generated code instead of those made from the robot's names: (name in the file, name in code).
     pub rename: Vec<(String, String)>,
     /// Compute limbs that are alike at once, one per lane of a vector, and derivatives of large trees in loops over their joints, four at a time, where that is cheaper.
     pub limbs: bool,
-    /// The types of numbers for which there are functions of many states at once too.
-    pub batch: Vec<Real>,
-    /// How accurate the functions are. Functions of many states at once are what their type of numbers is.
+    /// How accurate the functions are. Functions of many states at once have the accuracy of their type of numbers.
     pub level: Level,
-    /// No `unsafe` in the generated code, for crates that forbid it: on x86-64 sines and cosines take a little longer, and long functions without AVX-512 up to twice as long.
-    pub forbid_unsafe: bool,
-    /// For crates without `std`: without `unsafe` and a runtime, no multiply-add, and what `core` lacks is called in the crate `libm`.
-    pub no_std: bool,
-    /// How many megabytes (10⁶ bytes) of Rust all functions together may become, as predicted: see [`MAX_CODE_SIZE`](crate::MAX_CODE_SIZE), which is the default.
+    /// How many megabytes (10⁶ bytes) of code all functions together may become, as predicted: see
+    /// [`MAX_CODE_SIZE`](crate::MAX_CODE_SIZE), which is the default.
     pub max_code_size: u64,
-    /// Path of the runtime crate, to implement its trait `Dynamics`; `None`: the code depends on nothing but `core` and `std`.
-    pub runtime: Option<String>,
+    /// The language, with its own choices.
+    pub target: Target,
     /// Whether the ledger has counts after each model pass: for each of them the functions are traced once more. The code is the same. Build scripts and the macro do without.
     pub stages: bool,
 }
@@ -64,18 +59,33 @@ impl Default for Options {
             parameters: Vec::new(),
             rename: Vec::new(),
             limbs: true,
-            batch: Vec::new(),
             level: Level::default(),
-            forbid_unsafe: false,
-            no_std: false,
             max_code_size: crate::MAX_CODE_SIZE,
-            runtime: None,
+            target: Target::default(),
             stages: true,
         }
     }
 }
 
 impl Options {
+    /// The choices for Rust; the default ones if the language is another.
+    #[must_use]
+    pub fn rust(&self) -> &RustOptions {
+        static DEFAULT: RustOptions = RustOptions { batch: Vec::new(), forbid_unsafe: false, no_std: false, runtime: None };
+        if let Target::Rust(rust) = &self.target { rust } else { &DEFAULT }
+    }
+
+    /// The choices for Rust, which becomes the language if it is not.
+    pub fn rust_mut(&mut self) -> &mut RustOptions {
+        if !matches!(self.target, Target::Rust(_)) {
+            self.target = Target::default();
+        }
+        match &mut self.target {
+            Target::Rust(rust) => rust,
+            other => unreachable!("{} was replaced by Rust", other.name()),
+        }
+    }
+
     /// Another name in Rust for a joint or link, in place of one that it had.
     pub fn set_name(&mut self, from: &str, to: &str) {
         self.rename.retain(|(name, _)| name != from);
@@ -110,17 +120,20 @@ impl Request {
         whole.frames.iter().map(|frame| frame.name.clone()).filter(|name| !is_joint(name)).collect()
     }
 
-    /// The request with what follows from its choices: functions in the place of groups; without `std` nobody can ask what the processor has, nor call for a multiply-add.
+    /// The request with what follows from its choices: functions in the place of groups; without `std` a function can neither
+    /// ask what the processor has nor call a multiply-add.
     pub(crate) fn settled(&self) -> Cow<'_, Self> {
         let functions = function_groups::expanded(&self.options.functions, &self.options.motion);
-        if !self.options.no_std && functions == self.options.functions {
+        if !self.options.rust().no_std && functions == self.options.functions {
             return Cow::Borrowed(self);
         }
         let mut request = self.clone();
         let options = &mut request.options;
         options.functions = functions;
-        if options.no_std {
-            (options.forbid_unsafe, options.level.fused, options.runtime) = (true, false, None);
+        if options.rust().no_std {
+            options.level.fused = false;
+            let rust = options.rust_mut();
+            (rust.forbid_unsafe, rust.runtime) = (true, None);
         }
         Cow::Owned(request)
     }
@@ -169,11 +182,11 @@ mod tests {
     #[test]
     fn without_std_there_is_nothing_that_needs_it_and_all_else_stays() {
         let mut request = Request::new("robot", "");
-        request.options.runtime = Some("::articulated".into());
+        request.options.rust_mut().runtime = Some("::articulated".into());
         assert_eq!(request.settled().options, request.options);
-        request.options.no_std = true;
+        request.options.rust_mut().no_std = true;
         let mut expected = request.options.clone();
-        (expected.forbid_unsafe, expected.level.fused, expected.runtime) = (true, false, None);
+        (expected.rust_mut().forbid_unsafe, expected.level.fused, expected.rust_mut().runtime) = (true, false, None);
         assert!(request.options.level.fused);
         assert_eq!(request.settled().options, expected);
     }

@@ -99,10 +99,11 @@ impl Tree {
 
 /// Megabytes of source that a function becomes. What is left loops over joints is small; batches have it written out.
 fn megabytes(wanted: &Wanted, model: &Model<f64>, tree: &Tree, options: &Options) -> f64 {
-    let alone = options.batch.is_empty();
-    let columns = alone && program::has_columns(wanted, model, options);
+    let can = options.target.capabilities(options);
+    let alone = !can.states;
+    let columns = alone && program::has_columns(wanted, model, can);
     let instructions: f64 = wanted.parts.iter().map(|part| tree.instructions(part, columns)).sum();
-    if alone && program::groups(wanted, instructions, model, options).is_some() {
+    if alone && program::groups(wanted, instructions, model, options, can).is_some() {
         return 0.0;
     }
     instructions * BYTES * if alone { 1.0 } else { WITH_BATCH } / 1e6
@@ -168,7 +169,7 @@ mod tests {
             [(chain(24, 24, Base::Fixed), false), (chain(18, 6, Base::Floating), false), (chain(12, 12, Base::Fixed), true)]
         {
             request.options.limbs = false;
-            request.options.batch = if batch { vec![Real::F64] } else { Vec::new() };
+            request.options.rust_mut().batch = if batch { vec![Real::F64] } else { Vec::new() };
             let whole = crate::model(&request, &crate::read(&request).unwrap().description).unwrap();
             for function in functions::<Sym>() {
                 request.options.functions = vec![function.name.to_owned()];
@@ -222,7 +223,7 @@ mod tests {
         let model = crate::model(&request, &crate::read(&request).unwrap().description).unwrap();
         let wanted = Wanted::plain(crate::function("inverse_dynamics_derivatives").unwrap());
         for (limbs, batch, fits) in [(true, vec![], true), (false, vec![], false), (true, vec![Real::F64], false)] {
-            (request.options.limbs, request.options.batch) = (limbs, batch);
+            (request.options.limbs, request.options.rust_mut().batch) = (limbs, batch);
             assert_eq!(within_limit(&request, &model, std::slice::from_ref(&wanted)).is_ok(), fits, "{limbs}");
         }
     }

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use articulated_codegen::Options;
 use articulated_codegen::scene::articulated_scene::{At, Node, Value};
+use articulated_codegen::{Options, RustOptions, Target};
 use proc_macro2::{Span, TokenStream};
 use syn::Path;
 use syn::parse::Parser;
@@ -92,7 +92,8 @@ impl Own {
     /// Options in which nothing is said but by these keys.
     pub(crate) fn options(&self) -> Options {
         let runtime = || self.runtime.as_ref().map_or("::articulated".into(), |(path, _)| path.clone());
-        Options { no_std: self.no_std, runtime: (!self.standalone).then(runtime), stages: false, ..Options::default() }
+        let rust = RustOptions { no_std: self.no_std, runtime: (!self.standalone).then(runtime), ..RustOptions::default() };
+        Options { target: Target::Rust(rust), stages: false, ..Options::default() }
     }
 }
 

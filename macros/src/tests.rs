@@ -30,7 +30,7 @@ fn macro_build_script_and_library_give_the_same_tokens() {
     request.options.functions = vec!["gravity_torque".into(), "placements".into()];
     request.options.rename = rename.to_vec();
     request.options.robot.snap_angles = Some(1e-9);
-    request.options.runtime = Some("::articulated".into());
+    request.options.rust_mut().runtime = Some("::articulated".into());
     assert_eq!(generate(&request).unwrap().source, build.source);
 
     let mut items = items(module(quote! {
@@ -172,7 +172,7 @@ fn a_scene_gives_the_same_tokens_by_macro_build_script_and_request() {
         assert!(build.source.contains(words), "{words} in {}", build.source.lines().take(30).collect::<Vec<_>>().join("\n"));
     }
     let mut opened = articulated_codegen::scene::open(std::path::Path::new(file), &[]).unwrap().request;
-    opened.options.runtime = Some("::articulated".into());
+    opened.options.rust_mut().runtime = Some("::articulated".into());
     assert_eq!(generate(&opened).unwrap().source, build.source);
 
     let mut items = items(module(quote!(mod arm { scene = #file })));
@@ -228,7 +228,7 @@ fn effects_in_the_invocation_are_those_of_a_scene() {
     let scene = "[effects]\ndamping = { '*' = 0.1, elbow = 'off' }\nlimit = { from = 'urdf', stiffness = 1000 }\n[effects.spring.wrist]\nstiffness = 2\nrest = -0.5";
     let mut request = Request::new(urdf, std::fs::read(urdf).unwrap());
     request.options.functions = vec!["effect_forces".into()];
-    request.options.runtime = Some("::articulated".into());
+    request.options.rust_mut().runtime = Some("::articulated".into());
     request.options.robot.effects = Scene::read("s", scene).unwrap().effects_on(&request.robot()).unwrap().effects;
     assert_eq!(request.options.robot.effects.len(), 2 + 1 + 3);
     let tokens = generate(&request).unwrap().tokens();
@@ -275,7 +275,7 @@ fn of_a_file_larger_than_any_robot_nothing_is_read() {
 fn empty_lists_stand_in_place_of_those_of_the_scene_too() {
     let file = "../tests/ui/scenes/three.toml";
     let empty = |o: &mut articulated_codegen::Options| {
-        (o.robot.payloads, o.parameters, o.batch) = (Vec::new(), Vec::new(), Vec::new());
+        (o.robot.payloads, o.parameters, o.rust_mut().batch) = (Vec::new(), Vec::new(), Vec::new());
         (o.robot.lock, o.rename) = (Vec::new(), Vec::new());
     };
     let build = Build::scene(file).options(empty).generate().unwrap();

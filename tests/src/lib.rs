@@ -7,6 +7,7 @@ pub use articulated_test_support::{case, jet, measure, random, random_effects, r
 
 pub mod answers;
 pub mod batch_program;
+pub mod c_program;
 pub mod fixture;
 pub mod golden;
 pub mod machine;

@@ -46,6 +46,11 @@ impl Program {
         Self { file, time: start.elapsed(), _folder: folder }
     }
 
+    /// A program that was compiled in this folder.
+    pub(crate) fn compiled(file: PathBuf, time: Duration, folder: tempfile::TempDir) -> Self {
+        Self { file, time, _folder: folder }
+    }
+
     /// Results of one function for many states: each a list of arguments in the registry's order.
     ///
     /// # Panics

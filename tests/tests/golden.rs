@@ -30,7 +30,7 @@ fn generated(name: &str) -> Generated {
 #[test]
 fn the_module_of_a_pendulum() {
     let mut request = Request::new("simple_pendulum.urdf", articulated_models::robot("simple_pendulum").unwrap().urdf);
-    request.options.runtime = Some("::articulated".into());
+    request.options.rust_mut().runtime = Some("::articulated".into());
     golden::check("simple_pendulum.rs", &generate(&request).unwrap().source);
 }
 
@@ -78,14 +78,14 @@ fn the_same_request_gives_the_same_bytes() {
 fn a_build_script_gives_the_same_source() {
     for name in ["simple_pendulum", "quadruped"] {
         let mut request = request(name);
-        request.options.runtime = Some("::articulated".into());
+        request.options.rust_mut().runtime = Some("::articulated".into());
         let mut build = Build::new(format!("../models/urdf/{name}.urdf")).functions(request.options.functions.clone());
         build = build.frames(request.options.robot.frames.clone().expect("one"));
         if request.options.robot.base == Base::Floating {
             build = build.floating();
         }
         assert_eq!(build.generate().unwrap().source, generate(&request).unwrap().source, "{name}");
-        request.options.runtime = None;
+        request.options.rust_mut().runtime = None;
         assert_eq!(build.standalone().generate().unwrap().source, generate(&request).unwrap().source, "{name}");
     }
 }

@@ -51,7 +51,7 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
     robot.has_a_level_of_rounding()?;
     robot.keeps_its_files("--chart", arguments.chart.as_deref())?;
     arguments.chart.as_deref().map_or(Ok(()), |path| output::file("--chart", path))?;
-    robot.options.forbid_unsafe |= arguments.forbid_unsafe;
+    robot.options.rust_mut().forbid_unsafe |= arguments.forbid_unsafe;
     let reading = robot.read()?;
     robot.warn_of(reading.warnings.iter().chain(&reading.snapped));
     if cfg!(debug_assertions) {

@@ -88,7 +88,7 @@ impl Plan {
     /// The function of many states.
     fn batches(&self, robot: &Robot, function: &Function<f64>) -> Result<CompiledBatches, Unready> {
         let mut robot = robot.clone();
-        robot.options.batch.clone_from(&self.batch);
+        robot.options.rust_mut().batch.clone_from(&self.batch);
         let generated = robot.generate(&[function.name.to_owned()])?;
         Ok(CompiledBatches::build(&self.rustc, &generated, &self.batch).map_err(|e| Failure::tool(&e))?)
     }

@@ -95,8 +95,8 @@ impl Part {
             let mut request = stage.request.clone();
             let o = &mut request.options;
             (o.robot.effects, o.robot.gravity) = (variant.effects.clone(), variant.gravity);
-            (o.functions, o.robot.frames, o.runtime, o.stages) = (self.functions.clone(), None, None, false);
-            (o.parameters, o.batch) = (Vec::new(), Vec::new());
+            (o.functions, o.robot.frames, o.rust_mut().runtime, o.stages) = (self.functions.clone(), None, None, false);
+            (o.parameters, o.rust_mut().batch) = (Vec::new(), Vec::new());
             progress.doing(format!("generation: {}", variant.what));
             let made = generate_code(&request);
             progress.step();

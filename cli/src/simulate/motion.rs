@@ -146,7 +146,7 @@ pub(super) fn generate(stage: &Stage, integrator: IntegratorId) -> Result<(Gener
     let mut request = stage.request.clone();
     request.options.functions = stage.functions(integrator).into_iter().map(str::to_owned).collect();
     request.set_frames(&frames);
-    (request.options.runtime, request.options.stages) = (None, false);
-    (request.options.parameters, request.options.batch) = (Vec::new(), Vec::new());
+    (request.options.rust_mut().runtime, request.options.stages) = (None, false);
+    (request.options.parameters, request.options.rust_mut().batch) = (Vec::new(), Vec::new());
     Ok((articulated_codegen::generate(&request)?, frames))
 }

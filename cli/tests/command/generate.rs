@@ -20,7 +20,7 @@ fn flags_arrive_in_the_request() {
     let mut request = Request::new("cart_pole.urdf", robot.urdf);
     request.options.functions = vec!["gravity_torque".into(), "bias_forces".into()];
     request.options.robot.gravity = [0.0, -1.5, 2.0];
-    request.options.runtime = Some("::articulated".into());
+    request.options.rust_mut().runtime = Some("::articulated".into());
     let source = generate(&request).unwrap().source;
     let words =
         ["generate", "cart_pole", "--functions", "gravity_torque,bias_forces", "--gravity", "0,-1.5,2", "--runtime", "::articulated"];

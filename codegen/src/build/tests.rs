@@ -53,8 +53,9 @@ fn each_choice_arrives_in_the_request() {
     let of = |build: Build| build.request().unwrap().options;
     let plain = of(build.clone());
     let mut expected = plain.clone();
-    assert_eq!(plain.runtime.as_deref(), Some("::articulated"));
-    (expected.runtime, expected.limbs, expected.forbid_unsafe, expected.no_std) = (None, false, true, true);
+    assert_eq!(plain.rust().runtime.as_deref(), Some("::articulated"));
+    (expected.rust_mut().runtime, expected.limbs, expected.rust_mut().forbid_unsafe, expected.rust_mut().no_std) =
+        (None, false, true, true);
     expected.max_code_size = 200;
     assert_eq!(of(build.clone().standalone().limbs(false).forbid_unsafe().no_std().max_code_size(200)), expected);
     let mut expected = plain.clone();
@@ -116,7 +117,7 @@ fn what_is_said_beside_a_scene_stands_in_its_place() {
 #[test]
 fn types_of_a_batch_may_be_their_names() {
     let build = Build::new("arm.urdf");
-    let types = |build: &Build| build.request.options.batch.clone();
+    let types = |build: &Build| build.request.options.rust().batch.clone();
     let named = build.clone().batch(["f64", "f32"]);
     assert_eq!(types(&named), types(&build.clone().batch([crate::Real::F64, crate::Real::F32])));
     let folder = folder("batch");

@@ -22,6 +22,8 @@ use crate::{Arithmetic, Level};
 pub(crate) struct Capabilities {
     /// How accurate functions are.
     pub(crate) level: Level,
+    /// Whether values may be vectors.
+    pub(crate) vectors: bool,
     /// Whether a function can write into memory that holds no value yet, and name the slots in which values wait.
     pub(crate) raw_memory: bool,
     /// Whether there are functions of many states.

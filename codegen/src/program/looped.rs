@@ -9,6 +9,7 @@ use crate::Options;
 use crate::graph::{Counts, Op};
 use crate::groups::{self, Groups};
 use crate::ledger::{Entry, LOOPS};
+use crate::lir::function::Capabilities;
 use crate::trace::applies;
 use crate::wanted::Wanted;
 
@@ -23,14 +24,14 @@ pub(crate) struct Columns {
 const COLUMNS: RangeInclusive<usize> = 7..=60;
 
 /// What of a function is left a loop, if that is faster: it needs vectors.
-pub(super) fn columns(wanted: &Wanted, model: &Model<f64>, options: &Options) -> Option<Columns> {
-    has_columns(wanted, model, options).then(|| Columns { ways: model.ways_to_base() })
+pub(super) fn columns(wanted: &Wanted, model: &Model<f64>, can: Capabilities) -> Option<Columns> {
+    has_columns(wanted, model, can).then(|| Columns { ways: model.ways_to_base() })
 }
 
 /// Whether the solution of M X = B is left a loop.
-pub(crate) fn has_columns(wanted: &Wanted, model: &Model<f64>, options: &Options) -> bool {
+pub(crate) fn has_columns(wanted: &Wanted, model: &Model<f64>, can: Capabilities) -> bool {
     let [part] = wanted.parts.as_slice() else { return false };
-    let fits = COLUMNS.contains(&model.nv) && options.level.has_lanes() && !options.forbid_unsafe;
+    let fits = COLUMNS.contains(&model.nv) && can.vectors;
     fits && part.function.unsolved.as_ref().is_some_and(|unsolved| applies(unsolved, model))
 }
 
@@ -61,10 +62,10 @@ const WRITTEN_OUT: f64 = 3500.0;
 const LOOPED: f64 = 0.95;
 
 /// Where joints stand, if a function that would be so many instructions is fewer as loops over them: these need vectors, and constants that are known.
-pub(crate) fn groups(wanted: &Wanted, written: f64, model: &Model<f64>, options: &Options) -> Option<(Groups, Counts)> {
+pub(crate) fn groups(wanted: &Wanted, written: f64, model: &Model<f64>, options: &Options, can: Capabilities) -> Option<(Groups, Counts)> {
     let meant = written > WRITTEN_OUT && wanted.as_function().is_some_and(|f| f.forms.contains(&Form::JointsInLoops));
-    let can = options.limbs && options.level.has_lanes() && !options.forbid_unsafe && options.parameters.is_empty();
-    let groups = (meant && can).then(|| Groups::of(model)).flatten()?;
+    let fits = options.limbs && can.vectors && options.parameters.is_empty();
+    let groups = (meant && fits).then(|| Groups::of(model)).flatten()?;
     let counts = groups.counts(model);
     (counts.instructions() as f64 * LOOPED < written).then_some((groups, counts))
 }

@@ -12,6 +12,7 @@ use crate::graph::{Graph, Op};
 use crate::groups::Groups;
 use crate::ledger::Entry;
 use crate::limbs::Alike;
+use crate::lir::function::Capabilities;
 use crate::parameters::Parameter;
 use crate::pass;
 use crate::wanted::Wanted;
@@ -34,10 +35,10 @@ pub(crate) struct Program {
 }
 
 /// A function by the cheapest of its ways, limbs that are alike in lanes if that is cheaper.
-pub(crate) fn program(wanted: Wanted, model: &Model<f64>, parameters: &[Parameter], options: &Options) -> Program {
+pub(crate) fn program(wanted: Wanted, model: &Model<f64>, parameters: &[Parameter], options: &Options, can: Capabilities) -> Program {
     let subject = Subject { model, parameters, stages: options.stages, alike: None };
-    let columns = looped::columns(&wanted, model, options);
-    let whole = (columns.is_none() || !options.batch.is_empty()).then(|| subject.made(&wanted, None));
+    let columns = looped::columns(&wanted, model, can);
+    let whole = (columns.is_none() || can.states).then(|| subject.made(&wanted, None));
     let unsolved = columns.as_ref().and(wanted.parts[0].function.unsolved.as_ref());
     let mut best = match &whole {
         Some(whole) if unsolved.is_none() => whole.clone(),
@@ -45,7 +46,7 @@ pub(crate) fn program(wanted: Wanted, model: &Model<f64>, parameters: &[Paramete
     };
     let plain = whole.map_or_else(Graph::default, |(graph, _)| graph);
     // Limbs need the vector instructions; constants that stay inputs differ from limb to limb.
-    if options.limbs && options.level.has_lanes() && !options.forbid_unsafe && parameters.is_empty() {
+    if options.limbs && can.vectors && parameters.is_empty() {
         for width in [4, 2] {
             let Some(alike) = Alike::of(model, width) else { continue };
             let other = Subject { alike: Some(alike), ..subject }.made(&wanted, unsolved);
@@ -55,7 +56,7 @@ pub(crate) fn program(wanted: Wanted, model: &Model<f64>, parameters: &[Paramete
         }
     }
     let (mut graph, mut entry) = best;
-    let groups = looped::groups(&wanted, price(&graph), model, options);
+    let groups = looped::groups(&wanted, price(&graph), model, options, can);
     if let Some((_, counts)) = &groups {
         graph = Graph::default();
         looped::count(&mut entry, counts);

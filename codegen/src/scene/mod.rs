@@ -106,9 +106,9 @@ pub fn fill(options: &mut Options, scene: &Scene) {
     options.parameters = code.parameters.unwrap_or_default();
     options.rename = code.rename;
     put(code.limbs, &mut options.limbs);
-    options.batch = code.batch.unwrap_or_default();
+    options.rust_mut().batch = code.batch.unwrap_or_default();
     options.level = code.level.unwrap_or(options.level);
-    put(code.forbid_unsafe, &mut options.forbid_unsafe);
+    put(code.forbid_unsafe, &mut options.rust_mut().forbid_unsafe);
     options.max_code_size = code.max_code_size.unwrap_or(options.max_code_size);
 }
 

@@ -283,13 +283,16 @@ mod tests {
         let level = |name: &'static str| move |o: &mut Options| o.level = name.parse().unwrap();
         let sources = [
             source("humanoid", &|_| {}),
-            source("quadruped", &|o| (o.batch, o.runtime) = (vec![Real::F64, Real::F32], Some("::articulated".into()))),
+            source("quadruped", &|o| {
+                *o.rust_mut() =
+                    crate::RustOptions { batch: vec![Real::F64, Real::F32], runtime: Some("::articulated".into()), ..Default::default() }
+            }),
             source("panda_like", &|_| {}),
             source("panda_like", &level("f32")),
             source("panda_like", &level("compensated + two")),
             source("panda_like", &level("f64 + correct")),
             source("panda_like", &level("double_double")),
-            source("panda_like", &|o| o.no_std = true),
+            source("panda_like", &|o| o.rust_mut().no_std = true),
         ];
         let mut free = Vec::new();
         for source in &sources {

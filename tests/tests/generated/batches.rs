@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use articulated_codegen::{Generated, Options, Real};
+use articulated_codegen::{Generated, Options, Real, RustOptions, Target};
 use articulated_core::description::Base;
 use articulated_tests::batch_program::{BatchProgram, STATES, is_state_by_state};
 use articulated_tests::case::State;
@@ -38,7 +38,10 @@ const LONG: [&str; 2] = ["coriolis_matrix", "inverse_dynamics_derivatives"];
 /// instruction set. What is computed is what single evaluation computes, which is tested on many robots.
 fn robots(forbid_unsafe: bool) -> Vec<Robot> {
     let robot = |name: &str, urdf: &str, base: Base, functions: &[&str]| {
-        let options = Options { batch: vec![Real::F64, Real::F32], forbid_unsafe, ..Options::default() };
+        let options = Options {
+            target: Target::Rust(RustOptions { batch: vec![Real::F64, Real::F32], forbid_unsafe, ..RustOptions::default() }),
+            ..Options::default()
+        };
         with(name.into(), urdf, base, false, options, |name| functions.contains(&name))
     };
     let [gripper, seven_axes] = ["gripper_arm", "panda_like"].map(|name| articulated_models::robot(name).expect("a bundled robot").urdf);

@@ -265,7 +265,8 @@ fn one_wheel_of_four_may_be_out_of_balance() {
 fn limbs_go_into_lanes_where_that_costs_less() {
     let lanes = |limbs: bool, forbid_unsafe: bool| {
         let mut request = Request::new("walker.urdf", include_str!("../../robots/walker.urdf"));
-        (request.options.robot.base, request.options.limbs, request.options.forbid_unsafe) = (Base::Floating, limbs, forbid_unsafe);
+        (request.options.robot.base, request.options.limbs, request.options.rust_mut().forbid_unsafe) =
+            (Base::Floating, limbs, forbid_unsafe);
         request.options.functions = vec!["inverse_dynamics".into(), "integrate".into()];
         generate(&request).unwrap().ledger.functions.iter().map(|e| e.lanes).collect::<Vec<_>>()
     };

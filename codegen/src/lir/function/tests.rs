@@ -50,16 +50,9 @@ fn every_body_computes_what_its_graph_does() {
             for (limbs, level, raw_memory) in
                 [(true, Level::default(), true), (false, "f32".parse().unwrap(), true), (false, "compensated".parse().unwrap(), false)]
             {
-                let options = Options {
-                    limbs,
-                    level,
-                    forbid_unsafe: !raw_memory,
-                    stages: false,
-                    batch: vec![crate::Real::F64],
-                    ..Options::default()
-                };
-                let program = program::program(Wanted::plain(function), &model, &[], &options);
-                let can = Capabilities { level, raw_memory, states: true };
+                let options = Options { limbs, level, stages: false, ..Options::default() };
+                let can = Capabilities { level, vectors: raw_memory && level.has_lanes(), raw_memory, states: true };
+                let program = program::program(Wanted::plain(function), &model, &[], &options, can);
                 let lowered = Function::of(&program, model.shape(), false, can);
                 let mut all = vec![(&lowered.body, &program.graph)];
                 all.extend(lowered.few_registers.as_ref().map(|body| (body, &program.graph)));

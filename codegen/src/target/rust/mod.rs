@@ -13,8 +13,45 @@ mod several;
 mod spills;
 mod statements;
 
-pub use module::names::identifier;
+use articulated_core::lanes::Real;
 
-pub(crate) use module::module;
+use crate::lir::function::Capabilities;
+use crate::target::{File, Module};
+use crate::{Error, Options};
+
+pub use module::names::identifier;
 pub(crate) use module::names::{Names, is_name};
-pub(crate) use module::warnings::warnings;
+
+/// Choices for Rust.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RustOptions {
+    /// The types of numbers for which there are functions of many states at once too.
+    pub batch: Vec<Real>,
+    /// No `unsafe` in the generated code, for crates that forbid it: on x86-64 sines and cosines take a little longer, and
+    /// long functions without AVX-512 up to twice as long.
+    pub forbid_unsafe: bool,
+    /// For crates without `std`: without `unsafe` and a runtime, no multiply-add, and square roots, arctangents and sines
+    /// of large angles are those of the crate `libm`.
+    pub no_std: bool,
+    /// Path of the runtime crate, to implement its trait `Dynamics`; `None`: the code depends on nothing but `core` and
+    /// `std`.
+    pub runtime: Option<String>,
+}
+
+/// Vectors and raw memory, unless `unsafe` is forbidden.
+pub(super) fn capabilities(options: &Options, rust: &RustOptions) -> Capabilities {
+    let raw_memory = !rust.forbid_unsafe;
+    Capabilities { level: options.level, vectors: raw_memory && options.level.has_lanes(), raw_memory, states: !rust.batch.is_empty() }
+}
+
+/// Whether each type of batches is there once.
+pub(super) fn check(rust: &RustOptions) -> Result<(), Error> {
+    let twice = rust.batch.iter().enumerate().find(|(k, real)| rust.batch[..*k].contains(real));
+    twice.map_or(Ok(()), |(_, real)| Err(Error::BatchTwice { found: real.name() }))
+}
+
+/// One file.
+pub(super) fn print(module: &Module, rust: &RustOptions) -> Vec<File> {
+    let text = module::module(module, rust) + &module::warnings::warnings(module.warnings);
+    vec![File { name: "robot.rs".into(), text }]
+}

@@ -271,7 +271,7 @@ mod tests {
         let urdf = format!("<robot name='two'><link name='base'/>{}{}{}{}</robot>", arm("a"), arm("b"), arm("c"), arm("d"));
         let mut request = Request::new("two.urdf", urdf);
         request.options.functions = vec!["mass_matrix".into(), "forward_dynamics".into()];
-        request.options.batch = vec![Real::F64, Real::F32];
+        request.options.rust_mut().batch = vec![Real::F64, Real::F32];
         let source = generate(&request).unwrap().source;
         let (_, doubles) = source.split_once("pub mod batch_f64").unwrap();
         let (doubles, singles) = doubles.split_once("pub mod batch_f32").unwrap();
@@ -287,7 +287,7 @@ mod tests {
         let mut request = Request::new("arm.urdf", urdf);
         request.options.functions = vec!["gravity_torque".into()];
         request.options.parameters = vec!["payload(tip)".into()];
-        request.options.batch = vec![Real::F32];
+        request.options.rust_mut().batch = vec![Real::F32];
         let source = generate(&request).unwrap().source;
         let (_, batch) = source.split_once("macro_rules! gravity_torque_in_block").unwrap();
         for words in [

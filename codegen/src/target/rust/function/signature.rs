@@ -241,7 +241,7 @@ mod tests {
         let wanted = Wanted::parse(text).unwrap();
         let entry = Entry { function: text.into(), ways: Vec::new(), stages: Vec::new(), depth: 0, lanes: 1, arguments: Vec::new() };
         let program = Program { wanted, graph: Graph::default(), plain: Graph::default(), entry, columns: None, groups: None };
-        let can = Capabilities { level: Level::default(), raw_memory: true, states: false };
+        let can = Capabilities { level: Level::default(), vectors: true, raw_memory: true, states: false };
         let mut function = Function::of(&program, shape, false, can);
         function.ending = ending;
         work(&Signature::of(&function, "f64"))

@@ -8,10 +8,17 @@ use articulated_core::model::Model;
 use articulated_core::spatial::Reference;
 use articulated_urdf::{Problem, Unused, summary, summary_of_unused};
 
+use crate::target::rust::RustOptions;
 use crate::{Level, Request};
 
 /// Origin, contract, and what of the URDF is not used, as comments.
-pub(crate) fn header(out: &mut String, request: &Request, model: &Model<f64>, (unused, snapped): (&[Unused], &[Problem])) {
+pub(crate) fn header(
+    out: &mut String,
+    request: &Request,
+    model: &Model<f64>,
+    (unused, snapped): (&[Unused], &[Problem]),
+    rust: &RustOptions,
+) {
     let o = &request.options;
     let [x, y, z] = o.robot.gravity;
     let base = if o.robot.base == Base::Fixed { "fixed" } else { "floating" };
@@ -35,7 +42,7 @@ pub(crate) fn header(out: &mut String, request: &Request, model: &Model<f64>, (u
         line(&format!("Level {}. Contract: SI units and radians; no allocation, no panic.", o.level));
         o.level.contract().iter().for_each(|text| line(&format!("  {text}")));
     }
-    if o.no_std {
+    if rust.no_std {
         line("For crates without std: square roots, arctangents and sines of large angles are those of the crate libm.");
     }
     first_of(&mut line, "Understood in the URDF and not used:", &summary_of_unused(unused), ": `articulated check` lists them all.");

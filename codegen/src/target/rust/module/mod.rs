@@ -13,9 +13,11 @@ use std::fmt::Write;
 use articulated_core::algorithm::{Dim, neutral};
 use articulated_core::description::Limit;
 use articulated_core::model::{FLOATING_BASE, JointInfo, Model};
-use articulated_urdf::{Problem, Unused};
 
+use crate::Parameter;
 use crate::lir::function::Function;
+use crate::target::Module;
+use crate::target::rust::RustOptions;
 use crate::target::rust::batch::{Batch, batches};
 use crate::target::rust::function::levels::real;
 use crate::target::rust::function::{Context, function};
@@ -24,36 +26,30 @@ use crate::target::rust::module::header::header;
 use crate::target::rust::module::names::Names;
 use crate::target::rust::module::sets::support;
 use crate::target::rust::spills;
-use crate::{Parameter, Request};
 
 /// The contents of the module.
-pub(crate) fn module(
-    request: &Request,
-    model: &Model<f64>,
-    names: &Names,
-    functions: &[Function],
-    parameters: &[Parameter],
-    unused: &[Unused],
-    snapped: &[Problem],
-) -> String {
+pub(crate) fn module(module: &Module, rust: &RustOptions) -> String {
+    let Module { request, model, functions, parameters, unused, snapped, .. } = module;
     let mut out = String::new();
-    header(&mut out, request, model, (unused, snapped));
+    header(&mut out, request, model, (unused, snapped), rust);
     constants(&mut out, model);
-    indices(&mut out, model, names);
+    indices(&mut out, model, &Names::of(model, request));
     inputs(&mut out, parameters);
-    let (forbid_unsafe, level) = (request.options.forbid_unsafe, request.options.level);
+    let (forbid_unsafe, level) = (rust.forbid_unsafe, request.options.level);
     let context = Context { parameters: !parameters.is_empty(), forbid_unsafe, level };
     functions.iter().for_each(|f| function(&mut out, f, context));
     support(&mut out, model, functions, forbid_unsafe, level);
     let of_many: Vec<Batch> = functions.iter().filter_map(|f| Batch::of(f, level)).collect();
-    batches(&mut out, &of_many, &request.options.batch, forbid_unsafe);
+    batches(&mut out, &of_many, &rust.batch, forbid_unsafe);
     if functions.iter().any(spills::is_used) {
         out += spills::MODULE;
     }
-    robot(&mut out, request, model, functions, !parameters.is_empty());
+    if let Some(path) = &rust.runtime {
+        robot(&mut out, (path, real(level)), model, functions, !parameters.is_empty());
+    }
     let names: Vec<&str> = functions.iter().map(|f| f.spec.name.as_str()).collect();
     let out = style::allowed(out, &names);
-    if request.options.no_std { bare::without_std(&out) } else { out }
+    if rust.no_std { bare::without_std(&out) } else { out }
 }
 
 /// Stands before constants with numbers of the file, which are what they are: also 3.14, and 6.283185307179586.
@@ -143,9 +139,7 @@ fn inputs(out: &mut String, parameters: &[Parameter]) {
 }
 
 /// The type that stands for the robot where code is written over the trait `Dynamics`.
-fn robot(out: &mut String, request: &Request, model: &Model<f64>, functions: &[Function], parameters: bool) {
-    let Some(path) = &request.options.runtime else { return };
-    let real = real(request.options.level);
+fn robot(out: &mut String, (path, real): (&str, &str), model: &Model<f64>, functions: &[Function], parameters: bool) {
     let default = if parameters { "" } else { ", ::core::default::Default" };
     let _ = writeln!(out, "/// The robot as a value, for code over the trait `Dynamics`.");
     let _ = writeln!(out, "#[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug{default})]");

@@ -88,6 +88,16 @@ impl Names {
         if let Some(error) = Error::of(wrong_renames(model, request)) {
             return Err(error);
         }
+        let (names, clashes) = Self::and_clashes(model, request);
+        Error::of(clashes).map_or(Ok(names), Err)
+    }
+
+    /// Names for everything, of a request whose names were checked.
+    pub(crate) fn of(model: &Model<f64>, request: &Request) -> Self {
+        Self::and_clashes(model, request).0
+    }
+
+    fn and_clashes(model: &Model<f64>, request: &Request) -> (Self, Vec<Error>) {
         let joints = model.joints.iter().map(|j| j.name.as_str());
         let frames = model.frames.iter().map(|f| f.name.as_str());
         let plain: Vec<String> = joints.clone().chain(frames.clone()).map(identifier).collect();
@@ -97,7 +107,7 @@ impl Names {
             joints: idents("joint", joints, request, &alike, &mut clashes),
             frames: idents("link", frames, request, &alike, &mut clashes),
         };
-        Error::of(clashes).map_or(Ok(names), Err)
+        (names, clashes)
     }
 }
 
