@@ -208,9 +208,8 @@ fn wanted(request: &Request, model: &Model<f64>, massless: &[String]) -> Result<
         function.check(model)?;
         function.parts.iter().try_for_each(|part| defined(&request.file, model, massless, part.function))?;
         let same_type = |f: &Wanted| f.group().is_some() && f.group() == function.group();
-        let into = |f: &Wanted, other: &Wanted| {
-            ["_into", "_fill", "_blocks"].iter().any(|form| f.name.strip_suffix(form) == Some(other.name.as_str()))
-        };
+        let into =
+            |f: &Wanted, other: &Wanted| ["_into", "_blocks"].iter().any(|form| f.name.strip_suffix(form) == Some(other.name.as_str()));
         if wanted.iter().any(|f| f.name == function.name || same_type(f) || into(&function, f)) {
             return Err(Error::SameName { name: function.name });
         }

@@ -21,10 +21,11 @@ impl Sizes {
     pub(super) fn function(&self, name: &str, symbol: &str) -> Option<u64> {
         let own = self.0.iter().find(|(n, _)| n == symbol)?.1;
         // A mangled path holds each name with its length in front.
-        let mut paths = ["", "_into", "_fill"].map(|form| format!("5robot{}{name}{form}", name.len() + form.len())).to_vec();
-        // The loop over columns, where there is one, and loops over joints.
-        paths.push("5robot7columns".into());
-        paths.extend((name == "inverse_dynamics_derivatives").then(|| "5robot11derivatives".into()));
+        let mut paths = ["", "_into"].map(|form| format!("5robot{}{name}{form}", name.len() + form.len())).to_vec();
+        // The private module has the body, the loop over columns, where there is one, and loops over joints.
+        let inside = |item: &str| format!("5robot14implementation{}{item}", item.len());
+        paths.extend([inside(name), inside("columns")]);
+        paths.extend((name == "inverse_dynamics_derivatives").then(|| inside("derivatives")));
         let outside = self.0.iter().filter(|(n, _)| paths.iter().any(|path| n.contains(path)));
         Some(own + outside.map(|(_, bytes)| bytes).sum::<u64>())
     }
@@ -39,7 +40,7 @@ mod tests {
         let symbol = |name: &str, bytes| (name.to_owned(), bytes);
         let sizes = Sizes(vec![
             symbol("articulated_placements", 100),
-            symbol("_RNvNvNtCs1_9generated5robot10placements6part_0", 20),
+            symbol("_RNvNvNtNtCs1_9generated5robot14implementation10placements6part_0", 20),
             symbol("_RNvNtCs1_9generated5robot16inverse_dynamics", 3),
         ]);
         assert_eq!(sizes.function("placements", "articulated_placements"), Some(120));
@@ -51,7 +52,7 @@ mod tests {
         let symbol = |name: &str, bytes| (name.to_owned(), bytes);
         let sizes = Sizes(vec![
             symbol("articulated_inverse_dynamics_derivatives", 10),
-            symbol("_RNvNvNtNtCs1_9generated5robot11derivatives6chosen5pairs", 200),
+            symbol("_RNvNvNtNtNtCs1_9generated5robot14implementation11derivatives6chosen5pairs", 200),
             symbol("articulated_mass_matrix", 100),
         ]);
         assert_eq!(sizes.function("inverse_dynamics_derivatives", "articulated_inverse_dynamics_derivatives"), Some(210));

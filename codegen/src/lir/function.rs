@@ -123,7 +123,8 @@ impl<'a> Function<'a> {
         }
         let (columns, groups) = (program.columns.as_ref(), program.groups.as_ref());
         let plan = Plan { graph, spec, shape, can, columns, is_outlined: is_long(graph, columns.is_some(), can.level) };
-        let ending = plan.ending();
+        // Loops write into the memory of the caller; there is no body.
+        let (ending, of_body) = if groups.is_some() { (Ending::Filled, Ending::Value) } else { (plan.ending(), plan.ending()) };
         let counts = graph.counts();
         Self {
             spec,
@@ -132,7 +133,7 @@ impl<'a> Function<'a> {
             shape,
             results: results(spec, shape),
             ending,
-            body: plan.body(ending, plan.is_outlined, false),
+            body: plan.body(of_body, plan.is_outlined, false),
             is_outlined: plan.is_outlined,
             few_registers: groups.is_none().then(|| plan.few_registers(ending)).flatten(),
             columns,

@@ -9,9 +9,11 @@ mod derivatives;
 mod function;
 mod literal;
 mod module;
+mod requirements;
 mod several;
 mod spills;
 mod statements;
+mod tree_shake;
 
 use articulated_core::lanes::Real;
 
@@ -52,6 +54,5 @@ pub(super) fn check(rust: &RustOptions) -> Result<(), Error> {
 
 /// One file.
 pub(super) fn print(module: &Module, rust: &RustOptions) -> Vec<File> {
-    let text = module::module(module, rust) + &module::warnings::warnings(module.warnings);
-    vec![File { name: "robot.rs".into(), text }]
+    vec![File { name: "robot.rs".into(), text: module::module(module, rust) }]
 }

@@ -21,14 +21,14 @@ pub(crate) fn by_registers(few: &str, more: &str) -> String {
 
 /// The module that the statements call.
 pub(crate) const MODULE: &str = "\
-/// Where values wait while sixteen registers are full.
+/// Spill slots for 16-register x86-64.
 #[cfg(all(target_arch = \"x86_64\", not(target_feature = \"avx512f\")))]
 #[allow(unsafe_code, unused_results, clippy::all, clippy::pedantic)]
 mod spills {
-    /// Puts a value where it waits. Compilers look for two numbers to write at once, but not where that is volatile: it takes long, and gains nothing.
+    /// Writes a spill slot. The write is volatile so that compilers do not look for pairs: that takes long, and gains nothing.
     #[inline(always)]
     pub(super) unsafe fn spill<T>(place: *mut T, x: T) {
-        // SAFETY: the caller has a place there.
+        // SAFETY: the caller owns the slot.
         unsafe { place.write_volatile(x) }
     }
 }
@@ -40,7 +40,7 @@ pub(crate) const END: &str = "    }\n";
 
 /// What stands before the statements: the slots, and pointers of which compilers do not know where they lead.
 pub(crate) fn beginning(out: &mut String, slots: &Slots, ty: &str) {
-    *out += "    // There are sixteen registers: this says what waits in memory, and where.\n    use ::core::hint::black_box as hidden;\n";
+    *out += "    // Explicit spill slots for 16-register x86-64.\n    use ::core::hint::black_box as hidden;\n";
     *out += "    use self::spills::spill;\n";
     if slots.far > 0 {
         room(out, ("far", "Far"), slots.far, "Far", ty);
@@ -59,7 +59,7 @@ pub(crate) fn beginning(out: &mut String, slots: &Slots, ty: &str) {
             let _ = writeln!(out, "    let s{k} = s{behind}.wrapping_sub(1);");
         }
     }
-    *out += "    // SAFETY: what waits is written to its place before it is read there.\n    unsafe {\n";
+    *out += "    // SAFETY: each slot is written before it is read.\n    unsafe {\n";
 }
 
 /// Room for what is made of a struct of so many slots.

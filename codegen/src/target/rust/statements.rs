@@ -380,7 +380,7 @@ fn barrier_place(at: usize) -> String {
 }
 
 /// The function that does an operation on all lanes, or on sums of two numbers.
-fn function(op: Op) -> &'static str {
+pub(crate) fn function(op: Op) -> &'static str {
     match op {
         Op::Add => "add",
         Op::Sub => "sub",

@@ -7,7 +7,7 @@
 //!     mod avx512, avx2, …        the same body in each instruction set
 //! ```
 //!
-//! A long body has a second text for AVX2, which says what waits in memory while sixteen registers are full ([`super::spill`]).
+//! A long body has a second text for AVX2, with spill slots for sixteen registers ([`super::spills`]).
 
 mod arrays;
 mod public;
@@ -24,10 +24,12 @@ use self::ways::{SAFE, WAYS, Way};
 use crate::Level;
 use crate::lir::Body;
 use crate::lir::function::{Function, States};
+use crate::target::rust::RustOptions;
 use crate::target::rust::function::body::{beginning, kept_types, nothing_kept};
-use crate::target::rust::module::used::{Caller, used};
+use crate::target::rust::requirements::Requirements;
 use crate::target::rust::spills;
 use crate::target::rust::statements::{Place, Printer, ty};
+use crate::target::rust::tree_shake::tree_shake;
 
 /// A function as batches have it.
 pub(crate) struct Batch<'a> {
@@ -53,43 +55,49 @@ fn states_of_block(real: Real) -> usize {
 }
 
 /// The modules of batches.
-pub(crate) fn batches(out: &mut String, functions: &[Batch], reals: &[Real], forbid_unsafe: bool) {
-    if reals.is_empty() {
+pub(crate) fn batches(out: &mut String, functions: &[Batch], rust: &RustOptions) {
+    if rust.batch.is_empty() {
         return;
     }
     functions.iter().for_each(|f| f.body(out));
     *out += SUPPORT;
-    let caller = Caller::new(out.as_str());
-    for real in reals {
-        module(out, functions, *real, if forbid_unsafe { &SAFE } else { &WAYS }, &caller);
+    let mut calls = Requirements::default();
+    calls.add_helper(SUPPORT);
+    for Batch { states, .. } in functions {
+        calls.add_body(&states.body);
+        states.few_registers.iter().for_each(|body| calls.add_body(body));
+    }
+    for real in &rust.batch {
+        module(out, functions, *real, if rust.forbid_unsafe { &SAFE } else { &WAYS }, (rust.no_std, &calls));
     }
 }
 
-fn module(out: &mut String, functions: &[Batch], real: Real, ways: &[Way], caller: &Caller) {
+fn module(out: &mut String, functions: &[Batch], real: Real, ways: &[Way], helpers: (bool, &Requirements)) {
     let (real_name, n) = (real.name(), states_of_block(real));
     let lint = if ways.len() == 1 { "" } else { "unsafe_code, unused_unsafe, " };
     let _ = writeln!(
         out,
         "/// The functions for many states at once, in `{real_name}`: one state per lane, in the widest instruction set that the processor has.\n///\n\
-         /// States stand one after the other, or in blocks of {n} with each number of all states of a block together (`Lanes`), which is faster.\n\
+         /// States are one after the other, or in blocks of {n} with each number of all states of a block together (`Lanes`), which is faster.\n\
          /// Sines and cosines are off by at most 1 ulp.\n\
          #[allow({lint}unused_imports, unused_macros, unused_variables, dead_code, unreachable_pub, trivial_numeric_casts, unused_results, clippy::all, clippy::pedantic)]\n\
          pub mod batch_{real_name} {{\n    use super::*;\n"
     );
     *out += &PUBLIC.replace("REAL", real_name).replace("BLOCK", &n.to_string());
     for way in ways {
-        way.module(out, functions, real, caller);
+        way.module(out, functions, real, helpers);
     }
     functions.iter().for_each(|f| f.public(out, real, ways));
     let _ = writeln!(out, "}}\n");
 }
 
 impl Way {
-    fn module(&self, out: &mut String, functions: &[Batch], real: Real, caller: &Caller) {
+    fn module(&self, out: &mut String, functions: &[Batch], real: Real, (no_std, calls): (bool, &Requirements)) {
         let (features, width) = (self.set.features(), self.bytes / real.bytes());
         let attribute = if features.is_empty() { String::new() } else { format!("#[target_feature(enable = \"{features}\")]") };
         let text: String = [source, tiles].iter().filter_map(|text| text(self.set, real, width)).collect();
-        let text = used(&text, caller);
+        let float = if no_std { "use super::super::super::Float;\n\n" } else { "" };
+        let text = float.to_owned() + &tree_shake(&text, calls);
         let _ = writeln!(out, "#[cfg({})]\nmod {} {{\n    mod lanes {{\n{text}}}\n", self.cfg, self.module);
         // Functions of the robot could bear names of the lanes': its constants alone are let in.
         let parameters = if functions.iter().any(|f| f.inputs().iter().any(|a| a.is_parameters)) { ", PARAMETERS" } else { "" };

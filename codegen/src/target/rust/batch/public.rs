@@ -36,8 +36,8 @@ impl Batch<'_> {
         let one = if what == "states" { "set" } else { "block" };
         let shared =
             if self.inputs().iter().any(|a| a.is_parameters) { format!(" One {one} of parameters does for all.") } else { String::new() };
-        let _ = writeln!(out, "/// [`{name}`](super::{name}()), with their units.{shared}\n///");
-        let _ = writeln!(out, "/// # Errors\n/// If another slice has another length: nothing is computed.");
+        let _ = writeln!(out, "/// [`{name}`](super::super::{name}()), with their units.{shared}\n///");
+        let _ = writeln!(out, "/// # Errors\n/// If a slice has another length than the first: nothing is computed.");
     }
 
     /// Arguments and results with their types.
@@ -67,8 +67,8 @@ impl Batch<'_> {
     fn one_by_one(&self, out: &mut String) {
         let (name, first) = (self.name(), self.results()[0].name.clone());
         let inputs: String = inputs(self.function).iter().map(|a| format!("&{}[k], ", a.name)).collect();
-        let _ = writeln!(out, "    // Turning blocks of results into states would take longer than vectors save.");
-        let _ = writeln!(out, "    for k in 0..{first}.len() {{\n        {name}_into({inputs}&mut {first}[k]);\n    }}");
+        let _ = writeln!(out, "    // To transpose blocks of results into states takes longer than vectors save.");
+        let _ = writeln!(out, "    for k in 0..{first}.len() {{\n        super::super::{name}_into({inputs}&mut {first}[k]);\n    }}");
     }
 
     /// The call in the first instruction set that there is.

@@ -1,6 +1,6 @@
 //! What generated batches have besides bodies.
 
-/// What bodies need besides the arithmetic.
+/// Helpers of batch bodies.
 pub(super) const SUPPORT: &str = "\
 macro_rules! batch_support {
     ($(#[$features:meta])?) => {
@@ -43,7 +43,7 @@ macro_rules! batch_support {
             }
         }
 
-        /// The way back.
+        /// A block as states one after the other.
         $(#[$features])?
         #[inline]
         fn scatter<const N: usize>(block: &[Lanes; N], states: &mut [[Real; N]; Lanes::LEN]) {
@@ -75,7 +75,7 @@ macro_rules! batch_support {
             }
         }
 
-        /// The way back.
+        /// Numbers `first` and on of some states of a block.
         $(#[$features])?
         #[inline]
         fn tile<const N: usize, const T: usize>(block: &[Lanes; N], first: usize, part: usize) -> [[Real; STATES]; T] {
@@ -86,7 +86,7 @@ macro_rules! batch_support {
             tile
         }
 
-        /// The last states, and the very last again until there are enough.
+        /// The last states. The very last fills the block.
         #[inline(never)]
         fn filled<const N: usize>(states: &[[Real; N]]) -> [[Real; N]; Lanes::LEN] {
             let mut filled = [[0.0; N]; Lanes::LEN];
@@ -96,7 +96,7 @@ macro_rules! batch_support {
             filled
         }
 
-        /// The states of a block that are wanted.
+        /// The first states of a block.
         #[inline(never)]
         fn scatter_some<const N: usize>(block: &[Lanes; N], states: &mut [[Real; N]]) {
             for (lane, state) in states.iter_mut().enumerate() {
@@ -118,17 +118,17 @@ pub(super) const PUBLIC: &str = "\
     pub struct Lanes(pub [REAL; BLOCK]);
 
     impl Lanes {
-        /// How many states a block has.
+        /// Number of states of a block.
         pub const LEN: usize = BLOCK;
         /// Zero in every state.
         pub const ZERO: Self = Self([0.0; BLOCK]);
 
-        /// How many blocks so many states take.
+        /// Number of blocks for so many states.
         pub const fn blocks(states: usize) -> usize {
             states.div_ceil(Self::LEN)
         }
 
-        /// Puts states into blocks: number k of state `LEN`·b + i is `blocks[b][k].0[i]`. The last block is filled up with its last state.
+        /// Packs states into blocks: number k of state `LEN`·b + i is `blocks[b][k].0[i]`. The last block is filled up with its last state.
         ///
         /// # Errors
         /// If there are not [`Lanes::blocks`] of the states: nothing is written.
@@ -142,7 +142,7 @@ pub(super) const PUBLIC: &str = "\
             ::core::result::Result::Ok(())
         }
 
-        /// The way back: what of the blocks are states.
+        /// The states of the blocks, without what fills the last block.
         ///
         /// # Errors
         /// As [`Lanes::pack`].
@@ -155,14 +155,14 @@ pub(super) const PUBLIC: &str = "\
         }
     }
 
-    /// Slices whose lengths do not go together.
+    /// Slices of different lengths.
     #[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq, ::core::cmp::Eq)]
     pub struct LengthError {
-        /// Which argument.
+        /// The argument.
         pub argument: &'static str,
-        /// How long it is.
+        /// Its length.
         pub found: usize,
-        /// How long it has to be, by the first one.
+        /// The length that it must have, which follows from the first argument.
         pub expected: usize,
     }
 

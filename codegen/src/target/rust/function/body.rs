@@ -32,7 +32,8 @@ pub(crate) fn body(out: &mut String, body: &Body, signature: &Signature, level: 
     let is_raw = signature.function.ending == Ending::Rows;
     if is_raw {
         for (name, place, length) in &rooms {
-            let _ = writeln!(out, "    // SAFETY: room for as many numbers, which need not be there yet.");
+            let _ =
+                writeln!(out, "    // SAFETY: the memory has room for so many numbers, and `MaybeUninit` allows that there are none yet.");
             let _ = writeln!(out, "    let {name} = unsafe {{ &mut *{place}.cast::<[::core::mem::MaybeUninit<f64>; {length}]>() }};");
         }
     }
@@ -80,7 +81,7 @@ fn barrier_pointers(out: &mut String, numbers: usize, nests: usize) {
     let _ = writeln!(
         out,
         "    let ::core::option::Option::Some(even) = ::core::cell::Cell::from_mut(out{slice}).as_slice_of_cells().first_chunk::<{numbers}>() else {{ ::core::unreachable!() }};\n    \
-         // The same, but compilers do not know: they would look for vectors, and take longer.\n    \
+         // The same pointer, hidden from the compiler: it would look for vectors, which takes long and gains nothing.\n    \
          let odd = ::core::hint::black_box(even);\n    \
          let _ = (even, odd);"
     );
@@ -90,7 +91,7 @@ fn barrier_pointers(out: &mut String, numbers: usize, nests: usize) {
 /// them. Arrays of arrays are one array to them: to check further indices takes a compiler long.
 pub(crate) fn pieces(out: &mut String, body: &Body, signature: &Signature, level: Level) {
     let is_flat = signature.nests().is_some();
-    let gives = if is_flat { signature.gives_flat() } else { signature.gives() };
+    let gives = if is_flat { signature.gives_flat() } else { signature.gives_inside() };
     let places = |at: usize| if is_flat { Place { array: "out".into(), index: Some(at) } } else { signature.place(at) };
     let printer = Printer { body, arguments: &signature.function.arguments, level, places: &places, is_raw: false };
     kept_types(out, "Kept", body);
@@ -118,7 +119,7 @@ pub(crate) fn pieces(out: &mut String, body: &Body, signature: &Signature, level
 fn calls(out: &mut String, signature: &Signature, pieces: usize) {
     let filled = signature.function.ending == Ending::Filled;
     if !filled {
-        let _ = writeln!(out, "    let mut out = {};", signature.nothing());
+        let _ = writeln!(out, "    let mut out = {};", signature.nothing_inside());
     }
     let place = if let Some(nests) = signature.nests() {
         let all = format!("out{}.first_chunk_mut()", ".as_flattened_mut()".repeat(nests));

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use articulated_core::level::source;
 
+use crate::target::rust::module::bare;
 use crate::{Arithmetic, Level, Sines};
 
 /// The type of arguments and results.
@@ -29,7 +30,9 @@ pub(crate) fn has_vectors(level: Level) -> bool {
 }
 
 /// The module that has sines of four angles: `text` of doubles to an ulp.
-pub(crate) fn sines(out: &mut String, text: &str, level: Level) {
+pub(crate) fn sines(out: &mut String, text: &str, level: Level, no_std: bool) {
+    let import = bare::import(no_std);
+    let text = &text.replace("mod trig {\n", &format!("mod trig {{\n{import}"));
     let what = match level.sines {
         Sines::Fast7 => "|error| ≤ 1e-7",
         Sines::Fast10 => "|error| ≤ 1e-10",
@@ -50,11 +53,14 @@ pub(crate) fn sines(out: &mut String, text: &str, level: Level) {
 }
 
 /// The module of the arithmetic, where there is one.
-pub(crate) fn module(out: &mut String, level: Level) {
+pub(crate) fn module(out: &mut String, level: Level, no_std: bool) {
+    let import = bare::import(no_std);
     if let Some(text) = source(level) {
         let _ = writeln!(out, "/// The arithmetic of the level {level}.");
-        let _ =
-            writeln!(out, "#[allow(dead_code, unreachable_pub, unused_results, clippy::all, clippy::pedantic)]\nmod level {{\n{text}}}\n");
+        let _ = writeln!(
+            out,
+            "#[allow(dead_code, unreachable_pub, unused_results, clippy::all, clippy::pedantic)]\nmod level {{\n{import}{text}}}\n"
+        );
     }
 }
 

@@ -13,7 +13,7 @@ use crate::lir::function::{Ending, Function};
 use crate::lir::{Body, Expr, Stmt};
 use crate::target::rust::function::body::{body, pieces};
 use crate::target::rust::function::signature::Signature;
-use crate::target::rust::module::sets;
+use crate::target::rust::module::{sets, style};
 use crate::target::rust::several;
 use crate::target::rust::spills;
 use levels::real;
@@ -33,36 +33,61 @@ impl Context {
     }
 }
 
+/// The text of a module: what users see, and the private module behind it.
+#[derive(Default)]
+pub(crate) struct Text {
+    pub(crate) public: String,
+    pub(crate) implementation: String,
+}
+
+/// The name of the private module. It has the bodies of functions and all their helpers, so that none of these takes a name
+/// from the user.
+pub(crate) const IMPLEMENTATION: &str = "implementation";
+
 /// The function's source, with its documentation and, where it gives several results, the type that holds them.
-pub(crate) fn function(out: &mut String, function: &Function, context: Context) {
+pub(crate) fn function(text: &mut Text, function: &Function, context: Context) {
     let signature = Signature::of(function, real(context.level));
-    signature.results_type(out);
+    let Text { public, implementation } = text;
+    signature.results_type(public);
+    document(public, &signature, context);
+    value_form(public, &signature);
+    if signature.has_into() {
+        into_form(public, &signature);
+    }
+    inner(implementation, &signature, context);
+}
+
+/// The function in the private module.
+fn inner(out: &mut String, signature: &Signature, context: Context) {
+    let (function, takes, returns) = (signature.function, signature.takes(), signature.returns());
+    let _ = writeln!(out, "pub(super) fn {}({takes}){returns} {{", signature.name());
     if function.groups.is_some() {
-        return loops(out, &signature, context);
+        let _ = writeln!(out, "    derivatives::inverse_dynamics_derivatives({});\n}}\n", signature.names_and("out"));
+        return;
+    }
+    if function.columns.is_some() {
+        // The body has several ends.
+        let _ = writeln!(out, "    before_columns({});\n    columns::columns(out);\n", signature.handed());
+        let _ = writeln!(out, "    fn before_columns({takes}){returns} {{");
+    }
+    for argument in &function.arguments {
+        let _ = writeln!(out, "    let _ = {};", argument.name);
     }
     let (in_lanes, few) = (function.in_lanes(), function.few_registers.as_ref());
     if in_lanes || function.is_outlined {
-        *out += &if few.is_some() { format!("{}\n", spills::MORE_REGISTERS) } else { String::new() };
-        body_macro(out, &function.body, &signature, context.level);
+        *out += &if few.is_some() { format!("    {}\n", spills::MORE_REGISTERS) } else { String::new() };
+        body_macro(out, &function.body, signature, context.level);
     }
     if let Some(few) = few.filter(|_| in_lanes) {
-        let _ = writeln!(out, "{}", spills::FEW_REGISTERS);
-        body_macro(out, few, &signature, context.level);
-        *out += "\n";
+        let _ = writeln!(out, "    {}", spills::FEW_REGISTERS);
+        body_macro(out, few, signature, context.level);
     }
-    document(out, &signature, context);
-    if function.ending != Ending::Value {
-        value_form(out, &signature);
-        into_form(out, &signature);
-        *out += "/// Puts the result into `out`.\n";
-    }
-    opening(out, &signature, context);
     if in_lanes {
-        lanes_calls(out, &signature);
+        lanes_calls(out, signature);
     } else {
         let text = |body: &Body| {
             let mut text = String::new();
-            calls(&mut text, body, &signature, context);
+            calls(&mut text, body, signature, context);
             text
         };
         *out += &match few {
@@ -70,74 +95,71 @@ pub(crate) fn function(out: &mut String, function: &Function, context: Context) 
             None => text(&function.body),
         };
     }
+    *out += if function.columns.is_some() { "    }\n" } else { "" };
     let _ = writeln!(out, "}}\n");
-    if function.ending == Ending::Value && signature.has_into() {
-        into_form(out, &signature);
-    }
 }
 
-/// The function's head, up to its first statement that computes.
-fn opening(out: &mut String, signature: &Signature, context: Context) {
-    let (name, uses) = (signature.name(), if context.forbid_unsafe { "" } else { "unsafe_code, unused_unsafe, " });
-    let _ = writeln!(out, "#[allow({uses}unused_results, clippy::all, clippy::pedantic)]");
-    let name = if signature.function.ending == Ending::Value { format!("pub fn {name}") } else { format!("fn {name}_fill") };
-    let _ = writeln!(out, "{name}({}){} {{", signature.takes(), signature.returns());
-    for argument in &signature.function.arguments {
-        let _ = writeln!(out, "    let _ = {};", argument.name);
-    }
-}
-
-/// The function that loops compute, of a module of their own.
-fn loops(out: &mut String, signature: &Signature, context: Context) {
-    document(out, signature, context);
-    let (name, arguments, gives) = (signature.name(), signature.arguments(), signature.gives());
-    let _ = writeln!(out, "#[inline]\npub fn {name}({arguments}) -> {gives} {{\n    let mut out = {};", signature.nothing());
-    let _ = writeln!(out, "    {name}_into({});\n    out\n}}\n", signature.names_and("&mut out"));
-    let _ = writeln!(out, "/// As [`{name}`], into `out`, whatever that holds.");
-    let takes = signature.arguments_and(&format!("out: &mut {gives}"));
-    let handed = signature.names_and("out");
-    let _ = writeln!(out, "pub fn {name}_into({takes}) {{\n    derivatives::inverse_dynamics_derivatives({handed});\n}}\n");
-}
-
-/// The function as a value, where its body writes into what it is handed.
+/// The function as a value.
 fn value_form(out: &mut String, signature: &Signature) {
-    let (name, arguments, gives) = (signature.name(), signature.arguments(), signature.gives());
+    let (name, function) = (signature.name(), signature.function);
+    *out += &allowed(signature, name);
+    *out += "#[inline]\n";
+    head(out, &format!("pub fn {name}"), &signature.argument_list(), &format!(" -> {}", signature.gives()));
     let handed = signature.names_and("&mut out");
-    let _ = writeln!(out, "{}#[inline]\npub fn {name}({arguments}) -> {gives} {{", allowed(signature));
-    let _ = if is_written(signature) {
-        let _ = writeln!(out, "    let mut out = ::core::mem::MaybeUninit::uninit();\n    {name}_fill({handed});");
-        writeln!(out, "    // SAFETY: it was just written, all of it.\n    unsafe {{ out.assume_init() }}\n}}\n")
-    } else {
-        writeln!(out, "    let mut out = {};\n    {name}_into({handed});\n    out\n}}\n", signature.nothing())
-    };
-}
-
-/// The function that writes into what the caller has: a copy costs as much as a third of a function.
-fn into_form(out: &mut String, signature: &Signature) {
-    let (name, names, gives) = (signature.name(), signature.names(), signature.gives());
-    let _ = writeln!(out, "/// As [`{name}`], into `out`, whatever that holds.\n{}#[inline]", allowed(signature));
-    let _ = writeln!(out, "pub fn {name}_into({}) {{", signature.arguments_and(&format!("out: &mut {gives}")));
-    let _ = match signature.function.ending {
-        Ending::Value => writeln!(out, "    *out = {name}({names});\n}}\n"),
+    let _ = match function.ending {
+        _ if function.groups.is_some() => writeln!(out, "    let mut out = {};\n    {name}_into({handed});\n    out", signature.nothing()),
+        Ending::Value => writeln!(out, "    {IMPLEMENTATION}::{name}({})", signature.names()),
         Ending::Written | Ending::Rows => {
-            let _ = writeln!(out, "    // SAFETY: nothing is read there, and what is written is a value.");
-            let handed = signature.names_and("unsafe { &mut *::core::ptr::from_mut(out).cast() }");
-            writeln!(out, "    {name}_fill({handed});\n}}\n")
+            let _ = writeln!(out, "    let mut out = ::core::mem::MaybeUninit::uninit();\n    {IMPLEMENTATION}::{name}({handed});");
+            writeln!(out, "    // SAFETY: the function has written all of it.\n    unsafe {{ out.assume_init() }}")
         }
-        Ending::Filled => {
-            let _ = writeln!(out, "    {name}_fill({});", signature.names_and("out"));
-            writeln!(out, "{}}}\n", if signature.function.columns.is_some() { "    columns::columns(out);\n" } else { "" })
-        }
+        Ending::Filled => writeln!(out, "    let mut out = {};\n    {name}_into({handed});\n    out", signature.nothing()),
     };
+    *out += "}\n\n";
 }
 
-fn allowed(signature: &Signature) -> &'static str {
-    if is_written(signature) { "#[allow(unsafe_code)]\n" } else { "" }
+/// The function that writes into the caller's memory: a copy costs as much as a third of a function.
+fn into_form(out: &mut String, signature: &Signature) {
+    let (name, gives, function) = (signature.name(), signature.gives(), signature.function);
+    let into = format!("{name}_into");
+    let _ = writeln!(out, "/// As [`{name}`], into `out` (overwritten).");
+    *out += &allowed(signature, &into);
+    *out += "#[inline]\n";
+    let mut list = signature.argument_list();
+    list.push(format!("out: &mut {gives}"));
+    head(out, &format!("pub fn {into}"), &list, "");
+    let handed = signature.names_and("out");
+    let _ = match function.ending {
+        _ if function.groups.is_some() => writeln!(out, "    {IMPLEMENTATION}::{name}({handed});"),
+        Ending::Value => writeln!(out, "    *out = {name}({});", signature.names()),
+        Ending::Written | Ending::Rows => {
+            let _ = writeln!(out, "    // SAFETY: the function reads nothing there, and writes a value.");
+            let _ = writeln!(out, "    let out = unsafe {{ &mut *::core::ptr::from_mut(out).cast() }};");
+            writeln!(out, "    {IMPLEMENTATION}::{name}({handed});")
+        }
+        Ending::Filled => writeln!(out, "    {IMPLEMENTATION}::{name}({handed});"),
+    };
+    *out += "}\n\n";
 }
 
-/// Whether the result is written to memory that holds no value yet.
-fn is_written(signature: &Signature) -> bool {
-    matches!(signature.function.ending, Ending::Written | Ending::Rows)
+/// The first line of a function, or several where one would be longer than 100 columns.
+pub(crate) fn head(out: &mut String, before: &str, arguments: &[String], returns: &str) {
+    let line = format!("{before}({}){returns} {{", arguments.join(", "));
+    if line.chars().count() <= 100 {
+        let _ = writeln!(out, "{line}");
+    } else {
+        let list: String = arguments.iter().map(|argument| format!("    {argument},\n")).collect();
+        let _ = writeln!(out, "{before}(\n{list}){returns} {{");
+    }
+}
+
+/// The lints that a public function would break.
+fn allowed(signature: &Signature, name: &str) -> String {
+    let is_unsafe = matches!(signature.function.ending, Ending::Written | Ending::Rows) && signature.function.groups.is_none();
+    let mut lints = Vec::new();
+    lints.extend(is_unsafe.then_some("unsafe_code"));
+    lints.extend(style::is_odd(name).then_some("non_snake_case"));
+    if lints.is_empty() { String::new() } else { format!("#[allow({})]\n", lints.join(", ")) }
 }
 
 /// Whether the function profits from an instruction set that not every processor has.
@@ -180,14 +202,17 @@ fn chosen(out: &mut String, body: &Body, signature: &Signature, level: Level) {
         out,
         "        #[target_feature(enable = \"avx2,fma\")]\n        fn fused({takes}){returns} {{\n            body::<{fused}>({names})\n        }}"
     );
-    let _ = writeln!(out, "        // SAFETY: the processor was just asked for both.\n        return unsafe {{ fused({names}) }};\n    }}");
+    let _ = writeln!(
+        out,
+        "        // SAFETY: the processor has both, as was just checked.\n        return unsafe {{ fused({names}) }};\n    }}"
+    );
     let _ = writeln!(out, "    body::<{own}>({names})");
 }
 
 /// The body as a macro: it is compiled for several instruction sets.
 fn body_macro(out: &mut String, body: &Body, signature: &Signature, level: Level) {
-    let (takes, returns, name) = (signature.takes(), signature.returns(), signature.name());
-    let _ = writeln!(out, "macro_rules! {name}_body {{\n    ($(#[$features:meta])?) => {{");
+    let (takes, returns) = (signature.takes(), signature.returns());
+    let _ = writeln!(out, "macro_rules! whole {{\n    ($(#[$features:meta])?) => {{");
     if signature.function.is_outlined && body.slots.is_none() {
         pieces(out, body, signature, level);
     } else {
@@ -203,31 +228,33 @@ fn body_macro(out: &mut String, body: &Body, signature: &Signature, level: Level
 
 /// The call of a long body of plain arithmetic.
 fn long_calls(out: &mut String, signature: &Signature, context: Context) {
-    let (names, name) = (signature.handed(), signature.name());
+    let names = signature.handed();
     levels::imports(out, context.level);
     if context.chooses() {
         let _ = writeln!(out, "    {}\n    if {} {{", sets::NOT_COMPILED_FOR_AVX2, sets::HAS_AVX2);
         let fused = if context.level.of_two() { "const FUSED: bool = true" } else { "type F = MultiplyAdd<true>" };
-        let _ = writeln!(out, "        {fused};\n        {name}_body!(#[target_feature(enable = \"avx2,fma\")]);");
-        let _ =
-            writeln!(out, "        // SAFETY: the processor was just asked for both.\n        return unsafe {{ whole({names}) }};\n    }}");
+        let _ = writeln!(out, "        {fused};\n        whole!(#[target_feature(enable = \"avx2,fma\")]);");
+        let _ = writeln!(
+            out,
+            "        // SAFETY: the processor has both, as was just checked.\n        return unsafe {{ whole({names}) }};\n    }}"
+        );
     }
-    let _ = writeln!(out, "    {name}_body!();\n    whole({names})");
+    let _ = writeln!(out, "    whole!();\n    whole({names})");
 }
 
 /// The call of the body for the best instruction set there is.
 fn lanes_calls(out: &mut String, signature: &Signature) {
-    let (names, name, body) = (signature.handed(), signature.name(), &signature.function.body);
+    let (names, body) = (signature.handed(), &signature.function.body);
     let (width, several) = (body.ty.lanes(), several::is_used(body));
     let mut block = |cfg: &str, set: &str, features: &str, calls: &str| {
         let several = if several { format!("\n        use self::several_f64x{width}::{set}::*;") } else { String::new() };
         let _ = writeln!(
             out,
-            "    {cfg}\n    {{\n        use self::{set}_f64x{width}::*;{several}\n        {name}_body!({features});\n{calls}    }}"
+            "    {cfg}\n    {{\n        use self::{set}_f64x{width}::*;{several}\n        whole!({features});\n{calls}    }}"
         );
     };
     let calls = format!(
-        "        {}\n        if {} {{\n            // SAFETY: the processor was just asked for both.\n            return unsafe {{ whole({names}) }};\n        }}\n        \
+        "        {}\n        if {} {{\n            // SAFETY: the processor has both, as was just checked.\n            return unsafe {{ whole({names}) }};\n        }}\n        \
          {}\n        // SAFETY: this is compiled for processors with both.\n        return unsafe {{ whole({names}) }};\n",
         sets::NOT_COMPILED_FOR_AVX2,
         sets::HAS_AVX2,
@@ -261,7 +288,7 @@ fn document(out: &mut String, signature: &Signature, context: Context) {
     let by = match entry.ways.join(", ") {
         ways if ways.is_empty() => ways,
         _ if groups.is_some() => "In loops over joints: ".into(),
-        ways => format!("By {ways}, the cheapest for this robot; "),
+        ways => format!("Strategy: {ways} (the cheapest for this robot). "),
     };
     let c = entry.emitted();
     let _ = writeln!(
@@ -286,10 +313,9 @@ fn form(function: &Function) -> String {
     if function.groups.is_some() {
         return format!(", each of {} joints at once", entry.lanes);
     }
-    let lanes = if entry.lanes > 1 { format!("; limbs that are alike in {} lanes", entry.lanes) } else { String::new() };
-    let pieces = if function.is_outlined { "; in pieces, so that it is compiled in less time" } else { "" };
-    let spills =
-        if function.few_registers.is_some() { "; for x86-64 without AVX-512 in one piece that says what waits in memory" } else { "" };
+    let lanes = if entry.lanes > 1 { format!("; isomorphic limbs in {} lanes", entry.lanes) } else { String::new() };
+    let pieces = if function.is_outlined { "; in several pieces, which compile faster" } else { "" };
+    let spills = if function.few_registers.is_some() { "; with explicit spills on x86-64 without AVX-512" } else { "" };
     format!(", depth {}{lanes}{pieces}{spills}", entry.depth)
 }
 

@@ -44,11 +44,16 @@ impl<'a> Signature<'a> {
 
     /// `q: &[f64; NQ], v: &[f64; NV]`
     pub(crate) fn arguments(&self) -> String {
+        self.argument_list().join(", ")
+    }
+
+    /// The same, one by one.
+    pub(crate) fn argument_list(&self) -> Vec<String> {
         let declared = |a: &Argument| {
             let ty = if a.is_parameters() { "[f64; PARAMETERS.len()]".into() } else { self.array(&a.dims) };
             format!("{}: &{ty}", a.name)
         };
-        self.function.arguments.iter().map(declared).collect::<Vec<_>>().join(", ")
+        self.function.arguments.iter().map(declared).collect()
     }
 
     /// `q, v`
@@ -68,7 +73,7 @@ impl<'a> Signature<'a> {
 
     /// What a body takes: the arguments, and where the result goes if it goes there.
     pub(crate) fn takes(&self) -> String {
-        let gives = self.gives();
+        let gives = self.gives_inside();
         match self.function.ending {
             Ending::Value => self.arguments(),
             Ending::Written | Ending::Rows => self.arguments_and(&format!("out: &mut ::core::mem::MaybeUninit<{gives}>")),
@@ -83,7 +88,7 @@ impl<'a> Signature<'a> {
 
     /// What a body returns.
     pub(crate) fn returns(&self) -> String {
-        if self.function.ending == Ending::Value { format!(" -> {}", self.gives()) } else { String::new() }
+        if self.function.ending == Ending::Value { format!(" -> {}", self.gives_inside()) } else { String::new() }
     }
 
     /// Whether there is a form that writes into what the caller has: wherever the result is more than a number.
@@ -102,6 +107,15 @@ impl<'a> Signature<'a> {
         self.group.clone().unwrap_or_else(|| self.array(self.function.spec.parts[0].function.gives))
     }
 
+    /// The same, in the private module.
+    pub(crate) fn gives_inside(&self) -> String {
+        self.group_inside().unwrap_or_else(|| self.gives())
+    }
+
+    fn group_inside(&self) -> Option<String> {
+        self.group.as_ref().map(|name| format!("super::{name}"))
+    }
+
     /// The type of the result as one array of numbers.
     pub(crate) fn gives_flat(&self) -> String {
         let numbers: usize = self.function.results.iter().map(crate::lir::Array::numbers).sum();
@@ -111,8 +125,8 @@ impl<'a> Signature<'a> {
     /// Writes the type that holds the results of a group.
     pub(crate) fn results_type(&self, out: &mut String) {
         let Some(name) = &self.group else { return };
-        let _ = writeln!(out, "/// What [`{}`] gives.", self.name());
-        let _ = writeln!(out, "#[derive(::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq)]");
+        let _ = writeln!(out, "/// Results of [`{}`].", self.name());
+        let _ = writeln!(out, "#[derive(\n    ::core::clone::Clone, ::core::marker::Copy, ::core::fmt::Debug, ::core::cmp::PartialEq,\n)]");
         let _ = writeln!(out, "pub struct {name} {{");
         for part in &self.function.spec.parts {
             let f = part.function;
@@ -155,7 +169,7 @@ impl<'a> Signature<'a> {
             let value = if is_sparse(own) { sparse(out, name, own, lengths) } else { nested(own, lengths) };
             results.push((name, value));
         }
-        let value = match &self.group {
+        let value = match &self.group_inside() {
             None => results.into_iter().map(|(_, value)| value).collect(),
             Some(name) => {
                 let fields: Vec<String> = results.iter().map(|(field, value)| format!("        {field}: {value},\n")).collect();
@@ -181,8 +195,17 @@ impl<'a> Signature<'a> {
 
     /// A result of zeros.
     pub(crate) fn nothing(&self) -> String {
+        self.zeros(self.group.as_deref())
+    }
+
+    /// The same, in the private module.
+    pub(crate) fn nothing_inside(&self) -> String {
+        self.zeros(self.group_inside().as_deref())
+    }
+
+    fn zeros(&self, group: Option<&str>) -> String {
         let parts = self.function.spec.parts.iter().zip(self.function.results.iter());
-        match &self.group {
+        match group {
             None => parts.map(|(_, array)| zeros(&array.lengths)).collect(),
             Some(name) => {
                 let fields: Vec<String> = parts.map(|(part, array)| format!("{}: {}", part.function.name, zeros(&array.lengths))).collect();
@@ -274,7 +297,7 @@ mod tests {
         let both = end("both = mass_matrix + gravity_torque", Ending::Written, &[values, sparse(9, 2)].concat());
         let torque = "[0.0, x1, 0.0, x3, 0.0, x5, 0.0, x7, 0.0]";
         let fields = format!("        mass_matrix: mass_matrix,\n        gravity_torque: {torque},\n");
-        assert_eq!(both, format!("    let mut mass_matrix = {zeros};\n{puts}    out.write(Both {{\n{fields}    }});\n"));
+        assert_eq!(both, format!("    let mut mass_matrix = {zeros};\n{puts}    out.write(super::Both {{\n{fields}    }});\n"));
         // A number that is assigned needs no brackets.
         let negative = [&[Some("(-2.0)".to_owned())], &vec![None; 80][..]].concat();
         let into = end("mass_matrix", Ending::Written, &negative);

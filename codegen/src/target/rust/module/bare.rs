@@ -31,25 +31,13 @@ impl Float for REAL {
 }
 ";
 
-/// The source with these names in scope, in each of its modules.
-pub(crate) fn without_std(source: &str) -> String {
-    let mut out = String::new();
-    for line in source.lines() {
-        out.extend([line, "\n"]);
-        if opens_module(line) {
-            let indent = line.len() - line.trim_start().len() + 4;
-            out += &format!("{:indent$}#[allow(unused_imports)]\n{:indent$}use super::Float;\n\n", "", "");
-        }
-    }
-    out += FLOAT;
-    for (real, suffix) in [("f64", ""), ("f32", "f")] {
-        out += &OF.replace("REAL", real).replace("SUFFIX", suffix);
-    }
-    out
+/// The text of these names.
+pub(crate) fn float() -> String {
+    let of = |(real, suffix): (&str, &str)| OF.replace("REAL", real).replace("SUFFIX", suffix);
+    FLOAT.to_owned() + &[("f64", ""), ("f32", "f")].map(of).concat()
 }
 
-fn opens_module(line: &str) -> bool {
-    let line = line.trim_start();
-    let line = line.strip_prefix("pub ").or_else(|| line.strip_prefix("pub(super) ")).unwrap_or(line);
-    line.starts_with("mod ") && line.ends_with('{')
+/// What a module of the private one imports where it may need them.
+pub(crate) fn import(no_std: bool) -> &'static str {
+    if no_std { "#[allow(unused_imports)]\nuse super::Float;\n\n" } else { "" }
 }

@@ -5,7 +5,6 @@ pub(crate) mod header;
 pub(crate) mod names;
 pub(crate) mod sets;
 pub(crate) mod style;
-pub(crate) mod used;
 pub(crate) mod warnings;
 
 use std::fmt::Write;
@@ -20,7 +19,7 @@ use crate::target::Module;
 use crate::target::rust::RustOptions;
 use crate::target::rust::batch::{Batch, batches};
 use crate::target::rust::function::levels::real;
-use crate::target::rust::function::{Context, function};
+use crate::target::rust::function::{Context, IMPLEMENTATION, Text, function};
 use crate::target::rust::literal::literal;
 use crate::target::rust::module::header::header;
 use crate::target::rust::module::names::Names;
@@ -29,27 +28,44 @@ use crate::target::rust::spills;
 
 /// The contents of the module.
 pub(crate) fn module(module: &Module, rust: &RustOptions) -> String {
-    let Module { request, model, functions, parameters, unused, snapped, .. } = module;
-    let mut out = String::new();
-    header(&mut out, request, model, (unused, snapped), rust);
-    constants(&mut out, model);
-    indices(&mut out, model, &Names::of(model, request));
-    inputs(&mut out, parameters);
+    let Module { request, model, functions, parameters, unused, snapped, warnings } = module;
+    let mut text = Text::default();
+    header(&mut text.public, request, model, (unused, snapped), rust);
+    constants(&mut text.public, model);
+    indices(&mut text.public, model, &Names::of(model, request));
+    inputs(&mut text.public, parameters);
     let (forbid_unsafe, level) = (rust.forbid_unsafe, request.options.level);
     let context = Context { parameters: !parameters.is_empty(), forbid_unsafe, level };
-    functions.iter().for_each(|f| function(&mut out, f, context));
-    support(&mut out, model, functions, forbid_unsafe, level);
+    functions.iter().for_each(|f| function(&mut text, f, context));
+    support(&mut text.implementation, model, functions, (forbid_unsafe, rust.no_std), level);
     let of_many: Vec<Batch> = functions.iter().filter_map(|f| Batch::of(f, level)).collect();
-    batches(&mut out, &of_many, &rust.batch, forbid_unsafe);
+    batches(&mut text.implementation, &of_many, rust);
     if functions.iter().any(spills::is_used) {
-        out += spills::MODULE;
+        text.implementation += spills::MODULE;
+    }
+    if rust.no_std {
+        text.implementation += &bare::float();
+    }
+    let Text { public: mut out, implementation } = text;
+    for real in &rust.batch {
+        let _ = writeln!(out, "pub use self::{IMPLEMENTATION}::batch_{};\n", real.name());
     }
     if let Some(path) = &rust.runtime {
         robot(&mut out, (path, real(level)), model, functions, !parameters.is_empty());
+        out.push('\n');
     }
-    let names: Vec<&str> = functions.iter().map(|f| f.spec.name.as_str()).collect();
-    let out = style::allowed(out, &names);
-    if rust.no_std { bare::without_std(&out) } else { out }
+    out += &warnings::warnings(warnings);
+    out.push('\n');
+    let parameters = if parameters.is_empty() { "" } else { ", PARAMETERS" };
+    let lint = if forbid_unsafe { "" } else { "unsafe_code, unused_unsafe, " };
+    let _ = write!(
+        out,
+        "/// Bodies of the functions, and what they call.\n#[cfg_attr(rustfmt, rustfmt_skip)]\n\
+         #[allow({lint}dead_code, non_snake_case, unreachable_pub, unused_imports, unused_results, clippy::all, clippy::pedantic)]\n\
+         mod {IMPLEMENTATION} {{\nuse super::{{FRAMES, LINKS, NQ, NV{parameters}}};\n\n{}\n}}\n",
+        implementation.trim_end()
+    );
+    out
 }
 
 /// Stands before constants with numbers of the file, which are what they are: also 3.14, and 6.283185307179586.
@@ -70,10 +86,13 @@ fn constants(out: &mut String, model: &Model<f64>) {
     let links: Vec<&str> = model.links().map(|i| model.bodies[i].name.as_str()).collect();
     let _ = writeln!(out, "/// Number of frames: links of the file, or those chosen.\npub const FRAMES: usize = {};", frames.len());
     let _ = writeln!(out, "/// Number of moving links, one for each joint that moves.\npub const LINKS: usize = {};", links.len());
-    let _ =
-        writeln!(out, "/// Names of the joints, in the order of their coordinates.\npub const JOINT_NAMES: [&str; JOINTS] = {joints:?};");
-    let _ = writeln!(out, "/// Names of the frames.\npub const FRAME_NAMES: [&str; FRAMES] = {frames:?};");
-    let _ = writeln!(out, "/// For each moving link, the joint that carries it.\npub const LINK_JOINTS: [&str; LINKS] = {links:?};");
+    for (doc, name, length, names) in [
+        ("Names of the joints, in the order of their coordinates.", "JOINT_NAMES", "JOINTS", joints),
+        ("Names of the frames.", "FRAME_NAMES", "FRAMES", frames),
+        ("For each moving link, the joint that carries it.", "LINK_JOINTS", "LINKS", links),
+    ] {
+        constant(out, doc, &format!("pub const {name}: [&str; {length}] = {names:?};"));
+    }
     // As many as the joint has of each, in q or in v.
     let each = |count: fn(&JointInfo) -> usize, of: fn(&Limit) -> f64, none: f64| -> Vec<f64> {
         model.joints.iter().flat_map(|j| vec![j.limit.as_ref().map_or(none, of); count(j)]).collect()
@@ -81,7 +100,7 @@ fn constants(out: &mut String, model: &Model<f64>) {
     let mut rest = vec![0.0; model.nq];
     neutral(model, &mut rest);
     let rows = [
-        ("NEUTRAL", "NQ", "Where all coordinates are zero, and no quaternion turns.", rest),
+        ("NEUTRAL", "NQ", "The neutral configuration: coordinates are zero, quaternions are the identity.", rest),
         (
             "Q_LOWER",
             "NQ",
@@ -94,8 +113,14 @@ fn constants(out: &mut String, model: &Model<f64>) {
     ];
     for (name, length, doc, values) in rows {
         let values: Vec<String> = values.into_iter().map(literal).collect();
-        let _ = writeln!(out, "/// {doc}\n{NUMBERS}\npub const {name}: [f64; {length}] = [{}];", values.join(", "));
+        constant(out, doc, &format!("{NUMBERS}\npub const {name}: [f64; {length}] = [{}];", values.join(", ")));
     }
+}
+
+/// A constant, which stays one line however long it is.
+fn constant(out: &mut String, doc: &str, line: &str) {
+    let is_long = line.lines().any(|line| line.chars().count() > 80);
+    let _ = writeln!(out, "/// {doc}\n{}{line}", if is_long { "#[cfg_attr(rustfmt, rustfmt_skip)]\n" } else { "" });
 }
 
 fn indices(out: &mut String, model: &Model<f64>, names: &Names) {
@@ -112,6 +137,10 @@ fn indices(out: &mut String, model: &Model<f64>, names: &Names) {
 }
 
 fn list(out: &mut String, module: &str, doc: &str, rows: &[(String, String, usize)]) {
+    if rows.is_empty() {
+        let _ = writeln!(out, "/// {doc}\npub mod {module} {{}}\n");
+        return;
+    }
     let _ = writeln!(out, "/// {doc}\npub mod {module} {{");
     for (ident, doc, value) in rows {
         let _ = writeln!(out, "    /// The {doc}.\n    {}pub const {ident}: usize = {value};", style::of_constant(ident));
@@ -125,14 +154,19 @@ fn inputs(out: &mut String, parameters: &[Parameter]) {
         return;
     }
     let values: Vec<String> = parameters.iter().flat_map(|p| &p.nominal).map(|x| literal(*x)).collect();
-    let _ = writeln!(out, "/// The parameters of the robot as it was asked for; [`parameter`] says where each begins.");
+    let _ = writeln!(out, "/// Nominal values of the parameters; [`parameter`] has the index at which each begins.");
     if parameters.iter().any(Parameter::is_inertial) {
         let _ = writeln!(
             out,
             "///\n/// Inertial parameters: m, m·c and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz, about the origin and in axes of the link; kg, kg·m, kg·m²."
         );
     }
-    let _ = writeln!(out, "{NUMBERS}\npub const PARAMETERS: [f64; {}] = [{}];", values.len(), values.join(", "));
+    let _ = writeln!(
+        out,
+        "#[cfg_attr(rustfmt, rustfmt_skip)]\n{NUMBERS}\npub const PARAMETERS: [f64; {}] = [{}];",
+        values.len(),
+        values.join(", ")
+    );
     let names = names::identifiers(parameters.iter().map(|p| p.name.as_str()));
     let rows: Vec<_> = names.into_iter().zip(parameters).map(|(name, p)| (name, p.what.clone(), p.at)).collect();
     list(out, "parameter", "Index in [`PARAMETERS`] of the first number of each.", &rows);
@@ -146,11 +180,15 @@ fn robot(out: &mut String, (path, real): (&str, &str), model: &Model<f64>, funct
     if parameters {
         let _ = writeln!(out, "pub struct Robot {{\n    /// As [`PARAMETERS`].\n    pub parameters: [f64; PARAMETERS.len()],\n}}\n");
         let _ = writeln!(out, "impl ::core::default::Default for Robot {{");
-        let _ = writeln!(out, "    fn default() -> Self {{ Self {{ parameters: PARAMETERS }} }}\n}}\n");
+        let _ =
+            writeln!(out, "    fn default() -> Self {{\n        Self {{\n            parameters: PARAMETERS,\n        }}\n    }}\n}}\n");
     } else {
         let _ = writeln!(out, "pub struct Robot;\n");
     }
-    let _ = writeln!(out, "#[allow(unused_qualifications, clippy::all, clippy::pedantic)]\nimpl {path}::Dynamics<{real}> for Robot {{");
+    let _ = writeln!(
+        out,
+        "#[cfg_attr(rustfmt, rustfmt_skip)]\n#[allow(unused_qualifications, clippy::all, clippy::pedantic)]\nimpl {path}::Dynamics<{real}> for Robot {{"
+    );
     let _ = writeln!(out, "    type Workspace = ();\n    fn workspace(&self) {{}}");
     let _ = writeln!(out, "    fn shape(&self) -> {path}::Shape {{ {path}::Shape {{ nq: NQ, nv: NV, frames: FRAMES, links: LINKS }} }}");
     let _ = writeln!(out, "    fn name(&self) -> &str {{ NAME }}");
@@ -236,4 +274,75 @@ fn arm(
         writeln!(out, "                    self::{name}_into({names}, out);\n                }}")
     };
     let _ = writeln!(out, "                ::core::result::Result::Ok(())\n            }}");
+}
+
+#[cfg(test)]
+mod tests {
+    use articulated_core::description::Base;
+
+    use crate::{Options, Real, Request, RustOptions, generate};
+
+    /// Names of helpers, of modules and of their types, each as a function or as the type of several results.
+    const FUNCTIONS: &str = "add mul fma trig k lanes lane sin_cos store put body whole fused spill at gather scatter implementation \
+                             piece_0 columns derivatives four joint frame half robot links float few drop clone";
+    const TYPES: &str = "f fma multiply_add v m t n lanes group kept shelf far line float block option vec result string";
+
+    fn source(robot: &str, change: &dyn Fn(&mut Options)) -> String {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/urdf");
+        let mut request = Request::new(robot, std::fs::read(format!("{folder}/{robot}.urdf")).unwrap());
+        request.options.robot.base = if robot == "ur5_like" { Base::Fixed } else { Base::Floating };
+        let functions = FUNCTIONS.split_whitespace().map(|name| format!("{name} = inverse_dynamics(v = 0)"));
+        let types = TYPES.split_whitespace().map(|name| format!("{name}_ = gravity_torque + kinetic_energy"));
+        let more = ["forward_dynamics", "integrate", "forward_dynamics_derivatives", "odd__name = mass_matrix"].map(str::to_owned);
+        request.options.functions = functions.chain(types).chain(more).collect();
+        change(&mut request.options);
+        generate(&request).unwrap_or_else(|error| panic!("{error}")).source
+    }
+
+    /// As in a crate that has other things under the names of the prelude, with the lints that rustc has.
+    #[test]
+    fn no_name_of_a_user_is_taken_and_no_lint_is_broken() {
+        let folder = std::env::temp_dir().join(format!("articulated-kept-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let (file, out) = (folder.join("robot.rs"), folder.join("robot.rmeta"));
+        let rust = |options: RustOptions| move |o: &mut Options| *o.rust_mut() = options.clone();
+        let level = |name: &'static str| move |o: &mut Options| o.level = name.parse().unwrap();
+        let of_many = RustOptions { batch: vec![Real::F64, Real::F32], ..RustOptions::default() };
+        let sources = [
+            source("quadruped", &|_| {}),
+            source("quadruped", &rust(of_many.clone())),
+            source("ur5_like", &rust(RustOptions { forbid_unsafe: true, ..of_many })),
+            source("ur5_like", &level("f32")),
+            source("ur5_like", &level("compensated + two")),
+            source("ur5_like", &level("f64 + correct")),
+            source("ur5_like", &level("double_double")),
+        ];
+        for text in sources {
+            let text = format!(
+                "#![no_implicit_prelude]\n#![deny(warnings, unused_results, trivial_numeric_casts, unused_qualifications)]\n{text}"
+            );
+            std::fs::write(&file, text).unwrap();
+            let mut rustc = std::process::Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()));
+            rustc.args(["--crate-type=lib", "--edition=2024", "--emit=metadata", "-o"]).args([&out, &file]);
+            let done = rustc.output().unwrap();
+            assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr).chars().take(4000).collect::<String>());
+        }
+        std::fs::remove_dir_all(folder).unwrap();
+    }
+
+    /// Users may format the files that they keep.
+    #[test]
+    fn rustfmt_leaves_generated_code_as_it_is() {
+        let folder = std::env::temp_dir().join(format!("articulated-format-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let file = folder.join("robot.rs");
+        let rust = RustOptions { batch: vec![Real::F64], runtime: Some("::articulated".into()), ..RustOptions::default() };
+        let inputs = |o: &mut Options| (o.parameters, *o.rust_mut()) = (vec!["gravity".into()], rust.clone());
+        for text in [source("quadruped", &|_| {}), source("ur5_like", &inputs)] {
+            std::fs::write(&file, text).unwrap();
+            let done = std::process::Command::new("rustfmt").args(["--check", "--edition=2024"]).arg(&file).output().unwrap();
+            assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stdout).chars().take(4000).collect::<String>());
+        }
+        std::fs::remove_dir_all(folder).unwrap();
+    }
 }

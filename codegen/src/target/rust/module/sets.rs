@@ -12,8 +12,10 @@ use crate::target::rust::columns::Layout;
 use crate::target::rust::derivatives;
 use crate::target::rust::function::levels;
 use crate::target::rust::function::{has_batch, needs_choice};
-use crate::target::rust::module::used::{Caller, used};
+use crate::target::rust::module::bare;
+use crate::target::rust::requirements::Requirements;
 use crate::target::rust::several;
+use crate::target::rust::tree_shake::tree_shake;
 
 /// Whether the processor has AVX2 and FMA.
 pub(crate) const HAS_AVX2: &str = "::std::is_x86_feature_detected!(\"avx2\") && ::std::is_x86_feature_detected!(\"fma\")";
@@ -41,7 +43,13 @@ const MAY_LACK_AVX2: &str = "#[cfg(not(all(target_arch = \"x86_64\", target_feat
 pub(crate) const OTHERS: &str = "#[cfg(not(any(target_arch = \"aarch64\", target_arch = \"x86_64\")))]";
 
 /// What the functions call: multiply-adds, sines, lanes.
-pub(crate) fn support(out: &mut String, model: &Model<f64>, functions: &[Function], forbid_unsafe: bool, level: Level) {
+pub(crate) fn support(out: &mut String, model: &Model<f64>, functions: &[Function], (forbid_unsafe, no_std): (bool, bool), level: Level) {
+    let mut calls = Requirements::default();
+    functions.iter().for_each(|f| {
+        calls.add_body(&f.body);
+        f.few_registers.iter().for_each(|body| calls.add_body(body));
+    });
+    let before = out.len();
     let plain = || functions.iter().filter(|f| !f.in_lanes());
     if plain().any(|f| needs_choice(f, level)) {
         *out += if level.fused { FUSED } else { NOT_FUSED };
@@ -51,9 +59,9 @@ pub(crate) fn support(out: &mut String, model: &Model<f64>, functions: &[Functio
     let sines = any && levels::has_vectors(level);
     let portable = forbid_unsafe || !level.fused;
     if any {
-        levels::sines(out, if portable { PORTABLE_SINES } else { SINES }, level);
+        levels::sines(out, if portable { PORTABLE_SINES } else { SINES }, level, no_std);
     }
-    levels::module(out, level);
+    levels::module(out, level, no_std);
     let mut when = When { portable: OTHERS, eight: COMPILED_FOR_AVX512_BESIDE_AVX2 };
     let mut widths: Vec<usize> = functions.iter().map(|f| f.body.ty.lanes()).filter(|w| *w > 1).collect();
     // Vectors of which there is more than one, in those of the widest registers.
@@ -81,7 +89,9 @@ pub(crate) fn support(out: &mut String, model: &Model<f64>, functions: &[Functio
     widths.sort_unstable();
     widths.dedup();
     if !widths.is_empty() {
-        lanes(out, &widths, &when, portable, level);
+        // Helpers call others.
+        calls.add_helper(&out[before..]);
+        lanes(out, &widths, &when, (portable, no_std), level, &calls);
     }
 }
 
@@ -92,8 +102,7 @@ struct When {
 }
 
 /// The modules of lanes in these widths: what is called in `out` of them.
-fn lanes(out: &mut String, widths: &[usize], when: &When, forbid_unsafe: bool, level: Level) {
-    let caller = Caller::new(out.as_str());
+fn lanes(out: &mut String, widths: &[usize], when: &When, (forbid_unsafe, no_std): (bool, bool), level: Level, calls: &Requirements) {
     let sets: &[(Set, &str, &str)] = if forbid_unsafe { &SETS[..1] } else { &SETS };
     let lint = if forbid_unsafe { "" } else { "unsafe_code, " };
     for width in widths {
@@ -101,7 +110,7 @@ fn lanes(out: &mut String, widths: &[usize], when: &When, forbid_unsafe: bool, l
             // Eight are for AVX-512 alone, and that for eight.
             let text = source(*set, Real::F64, *width).filter(|_| (*set == Set::Avx512) == (*width == 8));
             let Some(text) = text.map(|text| with_sines(&text, level)) else { continue };
-            let text = used(&text, &caller);
+            let text = bare::import(no_std).to_owned() + &tree_shake(&text, calls);
             let _ = writeln!(out, "/// Arithmetic and sines of {width} numbers at once.");
             let cfg = match set {
                 Set::Portable => when.portable.to_owned(),
@@ -162,7 +171,7 @@ impl<const FUSED: bool> Fma for MultiplyAdd<FUSED> {
     }
 }
 
-/// Unless a function says otherwise.
+/// The default.
 #[allow(dead_code)]
 type F = MultiplyAdd<FUSED>;
 

@@ -6,7 +6,7 @@ use articulated_urdf::{Problem, summary};
 pub(crate) fn warnings(warnings: &[Problem]) -> String {
     let lines = summary(warnings);
     format!(
-        "\n/// What looks odd in the URDF; its values were used as written.\npub const WARNINGS: [&str; {}] = {lines:?};\n",
+        "/// Warnings about the robot's file; its values are used as written.\n#[cfg_attr(rustfmt, rustfmt_skip)]\npub const WARNINGS: [&str; {}] = {lines:?};\n",
         lines.len()
     )
 }

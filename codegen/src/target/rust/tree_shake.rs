@@ -1,26 +1,10 @@
-//! Functions of a module's text that others call: what nobody calls would be checked by each compiler all the same, and read by whoever reads the code.
+//! Helpers without the functions that nothing calls: each compiler would check them all the same, and users read them.
+//!
+//! The texts are those of [`articulated_core::lanes`] and its like, in which functions are items of a known form.
 
-use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
 
-/// A text that calls functions, and which names were found in it.
-pub(crate) struct Caller {
-    text: String,
-    known: RefCell<HashMap<String, bool>>,
-}
-
-impl Caller {
-    pub(crate) fn new(text: impl Into<String>) -> Self {
-        Self { text: text.into(), known: RefCell::default() }
-    }
-
-    /// Whether the name stands in the text, as a word.
-    pub(crate) fn names(&self, name: &str) -> bool {
-        let alone = |at: usize| !self.text[..at].ends_with(in_word) && !self.text[at + name.len()..].starts_with(in_word);
-        let look = || self.text.match_indices(name).any(|(at, _)| alone(at));
-        *self.known.borrow_mut().entry(name.to_owned()).or_insert_with(look)
-    }
-}
+use crate::target::rust::requirements::Requirements;
 
 /// A function in a text: its name and its lines, attributes and comments above it included.
 struct Item<'a> {
@@ -29,11 +13,12 @@ struct Item<'a> {
     last: usize,
 }
 
-/// The text without functions that the caller does not name, nor one that it names. Modules inside of it count as one with it.
-pub(crate) fn used(text: &str, caller: &Caller) -> String {
+/// The text of helpers without functions that are neither called nor needed by one that is. Modules inside of it count as
+/// one with it.
+pub(crate) fn tree_shake(text: &str, calls: &Requirements) -> String {
     let lines: Vec<&str> = text.lines().collect();
     let items = items(&lines);
-    let live = live(&lines, &items, items.iter().map(|item| item.name).filter(|name| caller.names(name)).collect());
+    let live = live(&lines, &items, items.iter().map(|item| item.name).filter(|name| calls.has(name)).collect());
     let mut kept = vec![true; lines.len()];
     items.iter().filter(|item| !live.contains(item.name)).for_each(|item| kept[item.first..=item.last].fill(false));
     // Another name for a function that is not there any more.
@@ -137,6 +122,12 @@ mod tests {
     use super::*;
     use articulated_core::lanes::{Real, Set, source};
 
+    fn calls(text: &str) -> Requirements {
+        let mut calls = Requirements::default();
+        calls.add_helper(text);
+        calls
+    }
+
     const TEXT: &str = "\
 type V = f64;
 
@@ -162,9 +153,9 @@ fn d(x: V) -> V {
     #[test]
     fn what_is_called_stays_and_all_else_goes() {
         let expected = TEXT.replace("\n    // Of no use.\n    #[inline]\n    pub(super) extern \"C\" fn c(x: V) -> V {\n        if x > 0.0 { a(x) } else { x }\n    }\n", "");
-        assert_eq!(used(TEXT, &Caller::new("x = a(y); // and not abc, nor _c")), expected);
-        assert_eq!(used(TEXT, &Caller::new("c(y)")), TEXT);
-        assert_eq!(used(TEXT, &Caller::new("abc, _a and a_")), "type V = f64;\n\n");
+        assert_eq!(tree_shake(TEXT, &calls("x = a(y); // and not abc, nor _c")), expected);
+        assert_eq!(tree_shake(TEXT, &calls("c(y)")), TEXT);
+        assert_eq!(tree_shake(TEXT, &calls("abc, _a and a_")), "type V = f64;\n\n");
     }
 
     #[test]
@@ -177,8 +168,8 @@ fn d(x: V) -> V {
             assert_eq!(found.len(), inside, "{set:?}");
             let names: Vec<&str> = found.iter().map(|item| item.name).collect();
             let lines_of = |text: &str| text.lines().filter(|line| !line.is_empty()).map(String::from).collect::<Vec<_>>();
-            assert_eq!(lines_of(&used(&text, &Caller::new(names.join(" ")))), lines_of(&text), "{set:?}");
-            assert!(used(&text, &Caller::new("{sin_cos}")).lines().count() < lines.len() * 3 / 4, "{set:?}");
+            assert_eq!(lines_of(&tree_shake(&text, &calls(&names.join(" ")))), lines_of(&text), "{set:?}");
+            assert!(tree_shake(&text, &calls("{sin_cos}")).lines().count() < lines.len() * 3 / 4, "{set:?}");
         }
     }
 }
