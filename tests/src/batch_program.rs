@@ -210,7 +210,7 @@ fn laws(out: &mut String, robot: &str, name: &str, real: Real, generated: &Gener
 pub fn is_state_by_state(source: &str, name: &str, real: Real) -> bool {
     let batch = source.split_once(&format!("pub mod batch_{}", real.name())).map_or("", |(_, batch)| batch);
     let batch = batch.split("pub mod batch_").next().unwrap_or("");
-    batch.contains(&format!(" {name}_into("))
+    batch.contains(&format!("super::super::{name}_into("))
 }
 
 const LAWS: &str = "\

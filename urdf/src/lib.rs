@@ -18,6 +18,7 @@
 //!
 //! The way of a file: document (bytes → XML) → links and joints (checked numbers, with their lines) → tree
 //! (names, rings, roots, mimics) → [`Description`]; with the feature `second-reader` → bridge (a plain document that `urdf-rs` reads has to give the same).
+//! With the feature `urdf-rs`, `from_urdf_rs` and `to_urdf_rs` convert from and to `urdf_rs::Robot`. [`write`] is the reverse of [`read`].
 //! [`read`] opens no file ([`read_file`] does), and no input makes it panic, hang or overflow its stack.
 //!
 //! # What files have that is accepted
@@ -74,16 +75,22 @@ mod snap;
 mod summary;
 mod tree;
 mod unused;
+#[cfg(feature = "urdf-rs")]
+mod urdf_rs;
+mod write;
 mod xacro;
 
 use articulated_core::description::{Base, Description};
 
+#[cfg(feature = "urdf-rs")]
+pub use self::urdf_rs::{ConversionError, from_urdf_rs, to_urdf_rs};
 pub use file::{AtMost, MOST_BYTES, open_file, read_at_most, read_file};
 use log::Log;
 pub use problem::{Kind, Problem, Problems, Subject, quote, quote_number};
 pub use snap::{MOST_SNAPPED, SNAP_EXPECTED, can_snap, nearly_right_angles};
 pub use summary::{summary, summary_of_unused};
 pub use unused::Unused;
+pub use write::write;
 
 /// How to read.
 #[derive(Clone, Debug)]

@@ -13,6 +13,5 @@ pub mod own;
 pub mod robots;
 pub mod row;
 mod text;
-pub mod urdf_text;
 
 pub(crate) use command::run;

@@ -10,7 +10,7 @@ use articulated_tests::machine::{is_arm, is_x86_64};
 use articulated_tests::measure::{arguments, error};
 use articulated_tests::random::Random;
 use articulated_tests::random_tree::{Flavour, random_tree};
-use articulated_tests::urdf_text::urdf_text;
+use articulated_tests::urdf_text;
 
 use crate::robots::{Robot, with};
 

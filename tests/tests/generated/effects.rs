@@ -12,7 +12,7 @@ use articulated_tests::program::Program;
 use articulated_tests::random::Random;
 use articulated_tests::random_effects::random_effects;
 use articulated_tests::random_tree::{Flavour, random_tree};
-use articulated_tests::urdf_text::urdf_text;
+use articulated_tests::urdf_text;
 
 use crate::robots::{Robot, with};
 

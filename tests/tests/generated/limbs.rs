@@ -1,10 +1,10 @@
 //! Limbs that are alike, mirrored, nearly alike or of different lengths: whatever goes into lanes or loops compiles, and is right.
 
-use articulated_cli::stress::urdf_text::urdf_text;
 use articulated_codegen::{Generated, Options};
 use articulated_core::description::Base;
 use articulated_tests::program::Program;
 use articulated_tests::random_limbs::random_limbs;
+use articulated_tests::urdf_text;
 
 use crate::equals_generic::compare;
 use crate::robots::{Robot, with};

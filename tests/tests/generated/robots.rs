@@ -2,7 +2,6 @@
 
 use std::sync::LazyLock;
 
-use articulated_cli::stress::urdf_text::urdf_text;
 use articulated_codegen::{Generated, Options, Request, generate};
 use articulated_core::algorithm::{Function, Needs, functions};
 use articulated_core::description::Base;
@@ -10,6 +9,7 @@ use articulated_core::model::{Frame, Model};
 use articulated_tests::case::{Case, read};
 use articulated_tests::program::Program;
 use articulated_tests::random_tree::{Flavour, random_tree};
+use articulated_tests::urdf_text;
 
 /// A robot, generic and generated.
 pub(crate) struct Robot {

@@ -1,9 +1,9 @@
 //! The random trees themselves: they reach what they should, and go through the reader unchanged.
 
-use articulated_cli::stress::urdf_text::urdf_text;
 use articulated_core::description::JointKind;
 use articulated_tests::case::{for_each_tree, read};
 use articulated_tests::random_tree::{Flavour, random_tree};
+use articulated_tests::urdf_text;
 
 #[test]
 fn a_description_written_as_a_urdf_is_read_as_it_was() {

@@ -8,7 +8,6 @@ use crate::compiled::{Compiled, Rustc};
 use crate::failure::Failure;
 use crate::stress::judge::State;
 use crate::stress::machine::{cast, widened};
-use crate::stress::urdf_text::urdf_text;
 
 /// What was generated, and what came of it.
 #[derive(Debug)]
@@ -27,7 +26,7 @@ impl Made {
 
     /// Of a description, with these functions.
     pub(super) fn of_description(name: &str, robot: &Description, level: Level, functions: &[FunctionId]) -> Result<Self, Failure> {
-        let mut request = Request::new(format!("{name}.urdf"), urdf_text(robot));
+        let mut request = Request::new(format!("{name}.urdf"), articulated_urdf::write(robot));
         request.options.functions = functions.iter().map(|f| f.name().to_owned()).collect();
         request.options.level = level;
         request.options.stages = false;
