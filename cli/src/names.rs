@@ -1,6 +1,6 @@
 //! Lists of functions on the command line.
 
-use articulated_codegen::{Wanted, meant};
+use articulated_codegen::{FunctionSpec, meant};
 use articulated_core::algorithm::{function, functions};
 
 use articulated_codegen::function_groups::{Group, MOTION};
@@ -17,7 +17,7 @@ pub(crate) fn known(text: &str) -> Result<Names, String> {
 /// As [`known`], and what the generator reads: `name = first + second(a = 0)`, and `motion` of a scene.
 pub(crate) fn wanted(text: &str) -> Result<Names, String> {
     each(text, &|entry| match entry.contains(['=', '+', '(']) {
-        true => Wanted::parse(entry).map(|_| vec![entry.to_owned()]).map_err(|e| e.to_string()),
+        true => FunctionSpec::parse(entry).map(|_| vec![entry.to_owned()]).map_err(|e| e.to_string()),
         false if entry == MOTION => Ok(vec![entry.to_owned()]),
         false => known_one(entry),
     })

@@ -113,7 +113,7 @@ pub enum Error {
     },
     /// An entry of the list of functions that cannot be read, or does not fit the robot.
     #[error("functions: `{found}`: {reason}")]
-    Wanted {
+    FunctionSpec {
         /// The entry.
         found: String,
         /// What is wrong.

@@ -46,7 +46,7 @@ fn take_out(error: &Error, options: &mut Options) {
         | Error::BoundFrames { function, .. }
         | Error::NoMass { function, .. }
         | Error::TooMuchCode { function, .. }
-        | Error::Wanted { found: function, .. }
+        | Error::FunctionSpec { found: function, .. }
         | Error::SameName { name: function } => {
             if let Some(at) = entry_of(options.functions.iter().map(String::as_str), function) {
                 options.functions.remove(at);

@@ -7,7 +7,7 @@ use articulated_core::model::pass::model_passes;
 
 use crate::graph::{Counts, Graph};
 use crate::pass::GRAPH_PASSES;
-use crate::program::Addition;
+use crate::program::Transform;
 
 /// The costs of all functions of one robot.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -49,7 +49,7 @@ pub fn stages() -> impl Iterator<Item = (&'static str, &'static str)> {
     let first = [("asked", "by the algorithm"), ("trace", "zeros, ones and what is the same folded in")];
     let model = model_passes::<f64>().iter().map(|(name, _, _)| (*name, "frames and masses moved to where numbers vanish"));
     let graph = GRAPH_PASSES.iter().map(|row| (row.name, row.does));
-    let added = Addition::ALL.map(|(_, name, does)| (name, does));
+    let added = Transform::ALL.map(|(_, name, does)| (name, does));
     first.into_iter().chain(model).chain(added).chain(graph).chain([(LOOPS, "what is executed where joints are left loops")])
 }
 

@@ -15,7 +15,7 @@ mod error;
 mod faults;
 pub mod function_groups;
 pub mod graph;
-mod groups;
+mod joint_blocks;
 pub mod ledger;
 mod limbs;
 pub mod lir;
@@ -25,10 +25,10 @@ mod program;
 mod request;
 pub mod scene;
 mod size;
+mod spec;
 mod sym;
 pub mod target;
 mod trace;
-mod wanted;
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Function, Needs, functions};
@@ -55,9 +55,9 @@ pub use ledger::Ledger;
 pub use parameters::Parameter;
 pub use request::{Options, Request, choose_frames, model, read};
 pub use size::MAX_CODE_SIZE;
+pub use spec::{Constant, FunctionSpec, FunctionTerm, is_keyword};
 pub use sym::Sym;
 pub use target::{COptions, File, RustOptions, Target, identifier};
-pub use wanted::{Constant, Part, Wanted, is_keyword};
 
 /// What was generated, and what there is to say about it.
 #[derive(Clone, Debug)]
@@ -117,7 +117,7 @@ struct Plan {
     reading: Reading,
     model: Model<f64>,
     parameters: Vec<Parameter>,
-    wanted: Vec<Wanted>,
+    wanted: Vec<FunctionSpec>,
 }
 
 /// Everything that comes before programs are made.
@@ -143,7 +143,7 @@ fn plan(request: &Request) -> Result<Plan, Error> {
 /// Whether the words of the options mean something, whatever the robot.
 fn words(options: &Options) -> Result<(), Error> {
     options.target.check(options)?;
-    options.functions.iter().try_for_each(|text| Wanted::parse(text).map(drop))
+    options.functions.iter().try_for_each(|text| FunctionSpec::parse(text).map(drop))
 }
 
 /// As [`generate`] for a robot whose file is missing. Errors: all that is wrong with the request whatever the robot, as functions that do not exist.
@@ -201,15 +201,16 @@ fn long_code(file: &str, entry: &ledger::Entry) -> Option<Problem> {
 }
 
 /// The functions that the request names.
-fn wanted(request: &Request, model: &Model<f64>, massless: &[String]) -> Result<Vec<Wanted>, Error> {
-    let mut wanted: Vec<Wanted> = Vec::new();
+fn wanted(request: &Request, model: &Model<f64>, massless: &[String]) -> Result<Vec<FunctionSpec>, Error> {
+    let mut wanted: Vec<FunctionSpec> = Vec::new();
     for text in &request.options.functions {
-        let function = Wanted::parse(text)?;
+        let function = FunctionSpec::parse(text)?;
         function.check(model)?;
         function.parts.iter().try_for_each(|part| defined(&request.file, model, massless, part.function))?;
-        let same_type = |f: &Wanted| f.group().is_some() && f.group() == function.group();
-        let into =
-            |f: &Wanted, other: &Wanted| ["_into", "_blocks"].iter().any(|form| f.name.strip_suffix(form) == Some(other.name.as_str()));
+        let same_type = |f: &FunctionSpec| f.group().is_some() && f.group() == function.group();
+        let into = |f: &FunctionSpec, other: &FunctionSpec| {
+            ["_into", "_blocks"].iter().any(|form| f.name.strip_suffix(form) == Some(other.name.as_str()))
+        };
         if wanted.iter().any(|f| f.name == function.name || same_type(f) || into(&function, f)) {
             return Err(Error::SameName { name: function.name });
         }
@@ -227,7 +228,7 @@ pub fn check_names(request: &Request, description: &Description, whole: &Model<f
     let names = |request: &Request| {
         parameters::parse(&request.options.parameters, &request.options.rename, &mut description.clone(), whole)?;
         let model = choose_frames(request, whole.clone())?;
-        request.options.functions.iter().try_for_each(|text| Wanted::parse(text)?.check(&model))
+        request.options.functions.iter().try_for_each(|text| FunctionSpec::parse(text)?.check(&model))
     };
     faults::all(&request.settled(), names)
 }
@@ -271,7 +272,7 @@ pub fn function(name: &str) -> Result<&'static Function<Sym>, Error> {
     articulated_core::algorithm::function(name).ok_or_else(|| {
         if name == function_groups::MOTION {
             let reason = "it stands for what the motion of a scene calls, by itself in a list: found no scene with [simulation]".into();
-            return Error::Wanted { found: name.into(), reason };
+            return Error::FunctionSpec { found: name.into(), reason };
         }
         // In a sum of functions a group is none of them.
         let groups = Group::ALL.map(Group::name).into_iter().filter(|_| Group::named(name).is_none());

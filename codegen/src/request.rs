@@ -28,7 +28,7 @@ pub struct Request {
 pub struct Options {
     /// The robot: its base, its edits, its frames, its effects.
     pub robot: RobotOptions,
-    /// The functions wanted, each as [`crate::Wanted::parse`] reads it: a name of [`articulated_core::algorithm::functions`], or
+    /// The functions wanted, each as [`crate::FunctionSpec::parse`] reads it: a name of [`articulated_core::algorithm::functions`], or
     /// `name = first + second(a = 0)`.
     pub functions: Vec<String>,
     /// What the word `motion` stands for among them: the functions that the motion of a scene calls, and none without such a scene.

@@ -5,7 +5,7 @@
 
 use articulated_core::model::Model;
 
-use crate::wanted::{Part, Wanted};
+use crate::spec::{FunctionSpec, FunctionTerm};
 use crate::{Error, Options, Request, program};
 
 /// So many megabytes (10⁶ bytes) of Rust are generated at most, unless a request has another limit. A compiler takes
@@ -66,7 +66,7 @@ impl Tree {
     }
 
     /// Instructions of one function; `columns`: whether the solution of M X = B is left a loop.
-    fn instructions(&self, part: &Part, columns: bool) -> f64 {
+    fn instructions(&self, part: &FunctionTerm, columns: bool) -> f64 {
         let factors = 0.5 * self.squares;
         let inverse = self.freedoms * self.pairs;
         let own = match part.function.name {
@@ -98,7 +98,7 @@ impl Tree {
 }
 
 /// Megabytes of source that a function becomes. What is left loops over joints is small; batches have it written out.
-fn megabytes(wanted: &Wanted, model: &Model<f64>, tree: &Tree, options: &Options) -> f64 {
+fn megabytes(wanted: &FunctionSpec, model: &Model<f64>, tree: &Tree, options: &Options) -> f64 {
     let can = options.target.capabilities(options);
     let alone = !can.states;
     let columns = alone && program::has_columns(wanted, model, can);
@@ -111,9 +111,9 @@ fn megabytes(wanted: &Wanted, model: &Model<f64>, tree: &Tree, options: &Options
 
 /// Refuses a request for more code than its limit. Errors: one for each of the largest
 /// functions, without which the rest is within it.
-pub(crate) fn within_limit(request: &Request, model: &Model<f64>, wanted: &[Wanted]) -> Result<(), Error> {
+pub(crate) fn within_limit(request: &Request, model: &Model<f64>, wanted: &[FunctionSpec]) -> Result<(), Error> {
     let (options, tree) = (&request.options, Tree::of(model));
-    let mut sizes: Vec<(&Wanted, f64)> = wanted.iter().map(|w| (w, megabytes(w, model, &tree, options))).collect();
+    let mut sizes: Vec<(&FunctionSpec, f64)> = wanted.iter().map(|w| (w, megabytes(w, model, &tree, options))).collect();
     sizes.sort_by(|a, b| b.1.total_cmp(&a.1));
     let most = options.max_code_size as f64;
     let mut rest: f64 = sizes.iter().map(|(_, size)| size).sum();
@@ -174,7 +174,7 @@ mod tests {
             for function in functions::<Sym>() {
                 request.options.functions = vec![function.name.to_owned()];
                 let Ok(generated) = generate(&request) else { continue };
-                let wanted = Wanted::plain(function);
+                let wanted = FunctionSpec::plain(function);
                 let predicted = megabytes(&wanted, &whole, &Tree::of(&whole), &request.options);
                 let found = generated.source.len() as f64 / 1e6;
                 // What is small is never refused, and mostly helpers that all modules have.
@@ -221,7 +221,7 @@ mod tests {
         let mut request = chain(240, 60, Base::Floating);
         request.options.max_code_size = 10;
         let model = crate::model(&request, &crate::read(&request).unwrap().description).unwrap();
-        let wanted = Wanted::plain(crate::function("inverse_dynamics_derivatives").unwrap());
+        let wanted = FunctionSpec::plain(crate::function("inverse_dynamics_derivatives").unwrap());
         for (limbs, batch, fits) in [(true, vec![], true), (false, vec![], false), (true, vec![Real::F64], false)] {
             (request.options.limbs, request.options.rust_mut().batch) = (limbs, batch);
             assert_eq!(within_limit(&request, &model, std::slice::from_ref(&wanted)).is_ok(), fits, "{limbs}");

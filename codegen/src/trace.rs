@@ -9,15 +9,15 @@ use articulated_core::model::{Model, Unturned};
 use num_traits::Zero;
 
 use crate::graph::{Graph, Op};
-use crate::limbs::{Alike, Constants, pack};
+use crate::limbs::{Constants, IsomorphicLimbs, pack};
 use crate::parameters::Parameter;
 use crate::pass::{copy, live, rebuild};
-use crate::program::Choice;
+use crate::program::Strategy;
+use crate::spec::{FunctionSpec, FunctionTerm};
 use crate::sym::{self, Sym};
-use crate::wanted::{Part, Wanted};
 
 /// The graph of a function on `model`: its argument k is argument k of the graph, parameters come after the last; the results of the parts one after the other.
-pub(crate) fn trace(wanted: &Wanted, choices: &[Choice], model: &Model<f64>, parameters: &[Parameter]) -> Graph {
+pub(crate) fn trace(wanted: &FunctionSpec, choices: &[Strategy], model: &Model<f64>, parameters: &[Parameter]) -> Graph {
     let arguments = wanted.arguments();
     let graph = sym::trace(|| {
         let with_inputs = (!parameters.is_empty()).then(|| {
@@ -25,7 +25,7 @@ pub(crate) fn trace(wanted: &Wanted, choices: &[Choice], model: &Model<f64>, par
             parameters.iter().for_each(|p| p.put(&mut symbolic, |k| Sym::input(arguments.len(), k)));
             symbolic
         });
-        let run = |(part, choice): (&Part, &Choice)| {
+        let run = |(part, choice): (&FunctionTerm, &Strategy)| {
             // Where all is numbers, passes go over numbers, which is sooner done.
             let symbolic = with_inputs.as_ref().map_or_else(|| passed(part, choice, model).cast(), |m| passed(part, choice, m));
             run(part, choice, &symbolic, &arguments)
@@ -56,11 +56,11 @@ fn sines_given(graph: Graph, arguments: &[Argument]) -> Graph {
 }
 
 /// The same with branches that are alike in lanes.
-pub(crate) fn trace_in_lanes(wanted: &Wanted, choices: &[Choice], model: &Model<f64>, alike: &Alike) -> Graph {
+pub(crate) fn trace_in_lanes(wanted: &FunctionSpec, choices: &[Strategy], model: &Model<f64>, alike: &IsomorphicLimbs) -> Graph {
     let arguments = wanted.arguments();
     let mut constants = Constants::new(arguments.len());
     let graph = sym::trace(|| {
-        let mut run = |(part, choice): (&Part, &Choice)| {
+        let mut run = |(part, choice): (&FunctionTerm, &Strategy)| {
             let symbolic = alike.symbolic(&passed(part, choice, model), &mut constants);
             run(part, choice, &symbolic, &arguments)
         };
@@ -71,7 +71,7 @@ pub(crate) fn trace_in_lanes(wanted: &Wanted, choices: &[Choice], model: &Model<
 }
 
 /// The model after the passes that are chosen.
-fn passed<S: Scalar>(part: &Part, choice: &Choice, model: &Model<S>) -> Model<S> {
+fn passed<S: Scalar>(part: &FunctionTerm, choice: &Strategy, model: &Model<S>) -> Model<S> {
     let mut model = model.clone();
     if !part.function.asks_for_frames() {
         model.frames.clear();
@@ -84,7 +84,7 @@ fn passed<S: Scalar>(part: &Part, choice: &Choice, model: &Model<S>) -> Model<S>
 }
 
 /// Which bodies need not turn, on the model after all passes, as the function does not ask where they are.
-pub(crate) fn unturnable(part: &Part, model: &Model<f64>) -> Vec<Unturned> {
+pub(crate) fn unturnable(part: &FunctionTerm, model: &Model<f64>) -> Vec<Unturned> {
     if indifferent(part, model) { finished(part, model).unturnable() } else { Vec::new() }
 }
 
@@ -92,25 +92,25 @@ pub(crate) fn unturnable(part: &Part, model: &Model<f64>) -> Vec<Unturned> {
 const UNITS: RangeInclusive<f64> = 1e-3..=1e3;
 
 /// Units of length that may spare multiplications, on the model that is chosen, as the function does not ask for lengths: neither frames nor joints that slide.
-pub(crate) fn units(part: &Part, choice: &Choice, model: &Model<f64>) -> Vec<f64> {
+pub(crate) fn units(part: &FunctionTerm, choice: &Strategy, model: &Model<f64>) -> Vec<f64> {
     let fits = indifferent(part, model) && model.only_turns();
-    let mut units = if fits { passed(part, &Choice { unit: None, ..*choice }, model).units() } else { Vec::new() };
+    let mut units = if fits { passed(part, &Strategy { unit: None, ..*choice }, model).units() } else { Vec::new() };
     units.retain(|metres| UNITS.contains(metres) && *metres != 1.0);
     units
 }
 
 /// Whether a function is the same in whatever axes and units bodies are, as neither it nor an effect asks where they are.
-fn indifferent(part: &Part, model: &Model<f64>) -> bool {
+fn indifferent(part: &FunctionTerm, model: &Model<f64>) -> bool {
     let free = part.function.regrouped && !part.function.asks_for_frames() && part.function.takes.contains(&Argument::Q);
     free && model.bodies.iter().all(|b| b.effects.body.is_empty())
 }
 
 /// The model after all passes.
-fn finished(part: &Part, model: &Model<f64>) -> Model<f64> {
-    passed(part, &Choice::plain(&part.function.ways[0], usize::MAX), model)
+fn finished(part: &FunctionTerm, model: &Model<f64>) -> Model<f64> {
+    passed(part, &Strategy::plain(&part.function.ways[0], usize::MAX), model)
 }
 
-fn run(part: &Part, choice: &Choice, model: &Model<Sym>, arguments: &[Argument]) -> Vec<Sym> {
+fn run(part: &FunctionTerm, choice: &Strategy, model: &Model<Sym>, arguments: &[Argument]) -> Vec<Sym> {
     let shape = model.shape();
     let vector = |argument: &Argument| -> Vec<Sym> {
         let place = arguments.iter().position(|a| a == argument);
@@ -145,7 +145,7 @@ pub(crate) fn applies(way: &Way<Sym>, model: &Model<f64>) -> bool {
 }
 
 /// The ways of a function that can be had for the model, and what each costs at least; the least first.
-pub(crate) fn ways(part: &Part, model: &Model<f64>) -> Vec<(&'static Way<Sym>, u64)> {
+pub(crate) fn ways(part: &FunctionTerm, model: &Model<f64>) -> Vec<(&'static Way<Sym>, u64)> {
     if let [one] = part.function.ways {
         return vec![(one, 0)];
     }
@@ -221,8 +221,8 @@ mod tests {
     }
 
     /// The functions that a model without a free frame has, by themselves.
-    fn all() -> impl Iterator<Item = Wanted> {
-        functions::<Sym>().iter().filter(|f| f.needs != Needs::FreeFrames).map(Wanted::plain)
+    fn all() -> impl Iterator<Item = FunctionSpec> {
+        functions::<Sym>().iter().filter(|f| f.needs != Needs::FreeFrames).map(FunctionSpec::plain)
     }
 
     #[test]
@@ -234,17 +234,21 @@ mod tests {
                 let part = &wanted.parts[0];
                 let all = ways(part, &model);
                 let values = |choice| trace(&wanted, &[choice], &model, &[]).evaluate(input);
-                let expected = values(Choice::plain(all[0].0, 0));
+                let expected = values(Strategy::plain(all[0].0, 0));
                 let unturned: Vec<Option<Unturned>> = [None].into_iter().chain(unturnable(part, &model).into_iter().map(Some)).collect();
                 for (way, _) in all {
                     for passes in 1..=model_passes::<Sym>().len() {
-                        close(&values(Choice::plain(way, passes)), &expected, &format!("{} by {}, {passes} passes", wanted.name, way.name));
+                        close(
+                            &values(Strategy::plain(way, passes)),
+                            &expected,
+                            &format!("{} by {}, {passes} passes", wanted.name, way.name),
+                        );
                     }
                     let inertias_and_rates = [(false, false), (true, false), (false, true), (true, true)];
                     for (&unturned, (lent, axes)) in unturned.iter().flat_map(|unturned| inertias_and_rates.map(|both| (unturned, both))) {
-                        let choice = Choice { unturned, lent, axes, ..Choice::plain(way, usize::MAX) };
+                        let choice = Strategy { unturned, lent, axes, ..Strategy::plain(way, usize::MAX) };
                         for unit in once(None).chain(units(part, &choice, &model).into_iter().map(Some)) {
-                            let choice = Choice { unit, ..choice };
+                            let choice = Strategy { unit, ..choice };
                             close(
                                 &values(choice),
                                 &expected,
@@ -279,8 +283,8 @@ mod tests {
         let model = arm("", false);
         let plain = all().filter(|wanted| wanted.arguments().contains(&Argument::Q));
         for wanted in plain {
-            let given = Wanted::parse(&format!("{}(q = sin_cos)", wanted.name)).unwrap();
-            let choice = [Choice::plain(ways(&wanted.parts[0], &model)[0].0, usize::MAX)];
+            let given = FunctionSpec::parse(&format!("{}(q = sin_cos)", wanted.name)).unwrap();
+            let choice = [Strategy::plain(ways(&wanted.parts[0], &model)[0].0, usize::MAX)];
             let sines = given.arguments().len() - 1;
             let with = |argument: usize, k: usize| {
                 let (sin, cos) = input(0, k / 2).sin_cos();

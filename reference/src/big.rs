@@ -6,7 +6,7 @@ use std::cell::RefCell;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use articulated_core::Scalar;
-use astro_float::{BigFloat, Consts, RoundingMode, Sign};
+use astro_float_num::{BigFloat, Consts, RoundingMode, Sign};
 use num_traits::{One, Zero};
 
 /// Bits of every number.
@@ -59,7 +59,7 @@ impl Big {
     pub fn parse(decimal: &str) -> Self {
         with(|arena| {
             let Arena { numbers: _, constants } = arena;
-            let parsed = constants.as_mut().map(|c| BigFloat::parse(decimal, astro_float::Radix::Dec, BITS, ROUNDING, c));
+            let parsed = constants.as_mut().map(|c| BigFloat::parse(decimal, astro_float_num::Radix::Dec, BITS, ROUNDING, c));
             keep(arena, parsed.unwrap_or_else(|| BigFloat::nan(None)))
         })
     }

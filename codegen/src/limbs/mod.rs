@@ -7,11 +7,11 @@
 //! The whole robot is traced, so that the algorithms know nothing of lanes. What differs between branches are then different inputs and different
 //! constants, which stay symbols while tracing, and so each branch leaves the same trace; [`pack`] lays one on the other.
 
-mod alike;
-mod pack;
+mod isomorphic;
+mod vectorize;
 
-pub(crate) use alike::{Alike, Constants};
-pub(crate) use pack::pack;
+pub(crate) use isomorphic::{Constants, IsomorphicLimbs};
+pub(crate) use vectorize::pack;
 
 #[cfg(test)]
 mod tests {
@@ -26,9 +26,9 @@ mod tests {
     use super::*;
     use crate::graph::{Counts, Op};
     use crate::pass::run_all_unchecked as passed;
-    use crate::program::Choice;
+    use crate::program::Strategy;
     use crate::trace::{trace, trace_in_lanes, ways};
-    use crate::{Request, Sym, Wanted, sym};
+    use crate::{FunctionSpec, Request, Sym, sym};
 
     /// A number that looks random, in (−1, 1).
     fn number(seed: &mut u64) -> f64 {
@@ -85,13 +85,13 @@ mod tests {
 
     /// Every function that any robot has, in every way: (name, counts of the plain graph, counts in lanes); values must agree.
     fn all(model: &Model<f64>, width: usize) -> Vec<(&'static str, Counts, Counts)> {
-        let alike = Alike::of(model, width).unwrap();
+        let alike = IsomorphicLimbs::of(model, width).unwrap();
         let mut counts = Vec::new();
         let all = functions::<Sym>().iter().filter(|f| f.needs != Needs::FreeFrames).map(|f| (f.name, f.name));
         for (name, text) in all.chain([("inverse_dynamics", "quick = inverse_dynamics(q = sin_cos)")]) {
-            let wanted = Wanted::parse(text).unwrap();
+            let wanted = FunctionSpec::parse(text).unwrap();
             for (way, _) in ways(&wanted.parts[0], model) {
-                let choice = [Choice::plain(way, usize::MAX)];
+                let choice = [Strategy::plain(way, usize::MAX)];
                 let plain = passed(trace(&wanted, &choice, model, &[]));
                 let lanes = passed(trace_in_lanes(&wanted, &choice, model, &alike));
                 lanes.verify().unwrap();
@@ -120,8 +120,8 @@ mod tests {
         let mut model = walker(4, &mut 7);
         let third = model.limbs(4)[0].roots[2];
         model.frames.retain(|frame| frame.body != third);
-        let (alike, wanted) = (Alike::of(&model, 4).unwrap(), Wanted::parse("placements").unwrap());
-        let choice = [Choice::plain(ways(&wanted.parts[0], &model)[0].0, usize::MAX)];
+        let (alike, wanted) = (IsomorphicLimbs::of(&model, 4).unwrap(), FunctionSpec::parse("placements").unwrap());
+        let choice = [Strategy::plain(ways(&wanted.parts[0], &model)[0].0, usize::MAX)];
         let [plain, lanes] = [trace(&wanted, &choice, &model, &[]), trace_in_lanes(&wanted, &choice, &model, &alike)];
         for (a, b) in plain.evaluate(input).into_iter().zip(lanes.evaluate(input)) {
             assert!((a - b).abs() <= 1e-12 * (1.0 + a.abs()), "{a} {b}");
@@ -132,7 +132,7 @@ mod tests {
     #[test]
     fn limbs_whose_terms_were_added_before_are_one_sum_over_lanes_with_the_others() {
         let model = walker(4, &mut 7);
-        let alike = Alike::of(&model, 4).unwrap();
+        let alike = IsomorphicLimbs::of(&model, 4).unwrap();
         let hips: Vec<usize> = model.limbs(4)[0].roots.iter().map(|&i| model.bodies[i].coordinates.q).collect();
         for before in 0..16 {
             let plain = sym::trace(|| {
@@ -155,7 +155,7 @@ mod tests {
     #[test]
     fn a_sum_over_the_lanes_keeps_the_sign_of_each() {
         let model = walker(4, &mut 7);
-        let alike = Alike::of(&model, 4).unwrap();
+        let alike = IsomorphicLimbs::of(&model, 4).unwrap();
         let hips: Vec<usize> = model.limbs(4)[0].roots.iter().map(|&i| model.bodies[i].coordinates.q).collect();
         for signs in 0..16 {
             let plain = sym::trace(|| {

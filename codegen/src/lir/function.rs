@@ -4,7 +4,7 @@
 use articulated_core::algorithm::{Dim, Shape};
 
 use crate::graph::Graph;
-use crate::groups::Groups;
+use crate::joint_blocks::Groups;
 use crate::ledger::Entry;
 use crate::lir::lower::{Lowering, Sines};
 use crate::lir::pass::alias_barrier;
@@ -13,8 +13,8 @@ use crate::lir::pass::pair_stores::pair_stores;
 use crate::lir::pass::rows::WIDTH;
 use crate::lir::pass::spill::{self, spill};
 use crate::lir::{Array, Body, Stmt, Ty};
-use crate::program::{Columns, Program};
-use crate::wanted::Wanted;
+use crate::program::{MultiRhsSolve, Program};
+use crate::spec::FunctionSpec;
 use crate::{Arithmetic, Level};
 
 /// What a target can do.
@@ -60,7 +60,7 @@ pub(crate) enum Ending {
 
 /// A function.
 pub(crate) struct Function<'a> {
-    pub(crate) spec: &'a Wanted,
+    pub(crate) spec: &'a FunctionSpec,
     pub(crate) entry: &'a Entry,
     pub(crate) arguments: Vec<Argument>,
     /// How long each dimension is.
@@ -74,7 +74,7 @@ pub(crate) struct Function<'a> {
     /// The body with spill slots, for x86-64 without AVX-512.
     pub(crate) few_registers: Option<Body>,
     /// The solution for many right-hand sides, which is left a loop behind the body.
-    pub(crate) columns: Option<&'a Columns>,
+    pub(crate) columns: Option<&'a MultiRhsSolve>,
     /// Blocks of joints whose loops are the function; the body is empty then.
     pub(crate) groups: Option<&'a Groups>,
     /// Operations of the body, and its sines and cosines.
@@ -150,7 +150,7 @@ impl<'a> Function<'a> {
 }
 
 /// The arrays of the result, one for each part.
-fn results(spec: &Wanted, shape: Shape) -> Vec<Array> {
+fn results(spec: &FunctionSpec, shape: Shape) -> Vec<Array> {
     let mut start = 0;
     let mut array = |lengths: Vec<usize>| {
         let array = Array { start, lengths };
@@ -175,10 +175,10 @@ fn is_long(graph: &Graph, columns: bool, level: Level) -> bool {
 /// What decides how a program is lowered.
 struct Plan<'a> {
     graph: &'a Graph,
-    spec: &'a Wanted,
+    spec: &'a FunctionSpec,
     shape: Shape,
     can: Capabilities,
-    columns: Option<&'a Columns>,
+    columns: Option<&'a MultiRhsSolve>,
     is_outlined: bool,
 }
 

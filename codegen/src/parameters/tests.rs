@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::Request;
-use crate::program::Choice;
+use crate::program::Strategy;
+use crate::spec::FunctionSpec;
 use crate::trace::{trace, ways};
-use crate::wanted::Wanted;
 
 /// A table that slides and turns in a plane, and on it an arm with a tool; these numbers are the robot's.
 fn robot([origin, mass, com, shoulder]: [&str; 4]) -> Request {
@@ -61,9 +61,9 @@ fn input(argument: usize, k: usize) -> f64 {
 fn held<const N: usize>(functions: [&str; N], (here, list): (&Request, &[&str]), numbers: &[f64], there: &Request) {
     let (model, parameters) = read(here, list);
     for name in functions {
-        let wanted = Wanted::parse(name).unwrap();
+        let wanted = FunctionSpec::parse(name).unwrap();
         for passes in [0, usize::MAX] {
-            let choice = [Choice::plain(ways(&wanted.parts[0], &model)[0].0, passes)];
+            let choice = [Strategy::plain(ways(&wanted.parts[0], &model)[0].0, passes)];
             let found = trace(&wanted, &choice, &model, &parameters);
             let expected = trace(&wanted, &choice, &read(there, &[]).0, &[]);
             let given = |argument: usize, k: usize| if argument == wanted.arguments().len() { numbers[k] } else { input(argument, k) };
@@ -116,10 +116,10 @@ fn other_gravity_and_other_effects_are_those_of_a_request_that_asks_for_them() {
 fn a_payload_is_added_to_what_the_link_has() {
     let request = robot(["0.1 0.5 -0.3", "2", "0.05 0.2 0.1", "0 0 0.4"]);
     let own = read(&request, &["inertia(tool)"]).1.remove(0).nominal;
-    let wanted = Wanted::parse("inverse_dynamics").unwrap();
+    let wanted = FunctionSpec::parse("inverse_dynamics").unwrap();
     let values = |list: &[&str], factor: f64| {
         let (model, parameters) = read(&request, list);
-        let choice = [Choice::plain(ways(&wanted.parts[0], &model)[0].0, usize::MAX)];
+        let choice = [Strategy::plain(ways(&wanted.parts[0], &model)[0].0, usize::MAX)];
         trace(&wanted, &choice, &model, &parameters)
             .evaluate(|argument, k| if argument == 3 { factor * own[k] } else { input(argument, k) })
     };

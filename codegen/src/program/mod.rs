@@ -1,43 +1,43 @@
 //! One function, from its algorithms to the graph that is emitted.
 
-mod choice;
-mod choose;
-mod looped;
-mod subject;
+mod candidate;
+mod rolled;
+mod search;
+mod strategy;
 
 use articulated_core::model::Model;
 
 use crate::Options;
 use crate::graph::{Graph, Op};
-use crate::groups::Groups;
+use crate::joint_blocks::Groups;
 use crate::ledger::Entry;
-use crate::limbs::Alike;
+use crate::limbs::IsomorphicLimbs;
 use crate::lir::function::Capabilities;
 use crate::parameters::Parameter;
 use crate::pass;
-use crate::wanted::Wanted;
-use subject::Subject;
+use crate::spec::FunctionSpec;
+use candidate::Candidate;
 
-pub(crate) use choice::{Addition, Choice};
-pub(crate) use looped::{Columns, groups, has_columns};
+pub(crate) use rolled::{MultiRhsSolve, groups, has_columns};
+pub(crate) use strategy::{Strategy, Transform};
 
 /// A function and what it became.
 pub(crate) struct Program {
-    pub(crate) wanted: Wanted,
+    pub(crate) wanted: FunctionSpec,
     pub(crate) graph: Graph,
     /// The graph with each limb for itself: what a batch runs, a state a lane.
     pub(crate) plain: Graph,
     pub(crate) entry: Entry,
     /// What is left a loop. Then `graph` is what comes before.
-    pub(crate) columns: Option<Columns>,
+    pub(crate) columns: Option<MultiRhsSolve>,
     /// Where joints stand if all of it is left loops over them. Then `graph` is empty.
     pub(crate) groups: Option<Groups>,
 }
 
 /// A function by the cheapest of its ways, limbs that are alike in lanes if that is cheaper.
-pub(crate) fn program(wanted: Wanted, model: &Model<f64>, parameters: &[Parameter], options: &Options, can: Capabilities) -> Program {
-    let subject = Subject { model, parameters, stages: options.stages, alike: None };
-    let columns = looped::columns(&wanted, model, can);
+pub(crate) fn program(wanted: FunctionSpec, model: &Model<f64>, parameters: &[Parameter], options: &Options, can: Capabilities) -> Program {
+    let subject = Candidate { model, parameters, stages: options.stages, alike: None };
+    let columns = rolled::columns(&wanted, model, can);
     let whole = (columns.is_none() || can.states).then(|| subject.made(&wanted, None));
     let unsolved = columns.as_ref().and(wanted.parts[0].function.unsolved.as_ref());
     let mut best = match &whole {
@@ -48,18 +48,18 @@ pub(crate) fn program(wanted: Wanted, model: &Model<f64>, parameters: &[Paramete
     // Limbs need the vector instructions; constants that stay inputs differ from limb to limb.
     if options.limbs && can.vectors && parameters.is_empty() {
         for width in [4, 2] {
-            let Some(alike) = Alike::of(model, width) else { continue };
-            let other = Subject { alike: Some(alike), ..subject }.made(&wanted, unsolved);
+            let Some(alike) = IsomorphicLimbs::of(model, width) else { continue };
+            let other = Candidate { alike: Some(alike), ..subject }.made(&wanted, unsolved);
             if price(&other.0) * WORTH < price(&best.0) {
                 best = other;
             }
         }
     }
     let (mut graph, mut entry) = best;
-    let groups = looped::groups(&wanted, price(&graph), model, options, can);
+    let groups = rolled::groups(&wanted, price(&graph), model, options, can);
     if let Some((_, counts)) = &groups {
         graph = Graph::default();
-        looped::count(&mut entry, counts);
+        rolled::count(&mut entry, counts);
     } else if let Some(columns) = &columns {
         columns.count(&mut entry);
     }

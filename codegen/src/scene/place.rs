@@ -32,7 +32,7 @@ pub(super) fn in_its_place(error: &Error, scene: &Scene) -> Option<Vec<SceneErro
         | Error::NoMass { function: name, .. }
         | Error::TooMuchCode { function: name, .. } => function(name).map(|at| refused(at, "functions", whole)),
         // They begin with their key.
-        Error::Wanted { found: name, .. } | Error::SameName { name } => function(name).map(|at| refused(at, "", whole)),
+        Error::FunctionSpec { found: name, .. } | Error::SameName { name } => function(name).map(|at| refused(at, "", whole)),
         Error::Parameter { found, .. } => {
             entry(&code.parameters, &places.parameters, &|entry| entry.trim() == found).map(|at| refused(at, "", whole))
         }

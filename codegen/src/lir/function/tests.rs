@@ -52,7 +52,7 @@ fn every_body_computes_what_its_graph_does() {
             {
                 let options = Options { limbs, level, stages: false, ..Options::default() };
                 let can = Capabilities { level, vectors: raw_memory && level.has_lanes(), raw_memory, states: true };
-                let program = program::program(Wanted::plain(function), &model, &[], &options, can);
+                let program = program::program(FunctionSpec::plain(function), &model, &[], &options, can);
                 let lowered = Function::of(&program, model.shape(), false, can);
                 let mut all = vec![(&lowered.body, &program.graph)];
                 all.extend(lowered.few_registers.as_ref().map(|body| (body, &program.graph)));

@@ -179,7 +179,7 @@ impl Source<'_> {
                 self.array(&format!("const {outside}"), a.name, &a.dims, function)
             }
         };
-        let result = |(name, part): (&&str, &crate::Part)| self.array(outside, name, part.function.gives, function);
+        let result = |(name, part): (&&str, &crate::FunctionTerm)| self.array(outside, name, part.function.gives, function);
         function.arguments.iter().map(argument).chain(results.iter().zip(&function.spec.parts).map(result)).collect()
     }
 

@@ -9,7 +9,7 @@ use std::fmt::Write;
 
 use articulated_core::lanes::COLUMNS;
 
-use crate::program::Columns;
+use crate::program::MultiRhsSolve;
 
 /// Columns of a vector, and vectors of a row of one matrix with which all three matrices are solved for at once: with fewer, one after the other is faster (up to a tenth of the whole function), with
 /// more, the vectors of a row are more than there are registers, or slower on one processor (five of eight: Emerald Rapids 8 %) than they are faster on another (Zen 5: 3 %).
@@ -17,11 +17,11 @@ const ALL_AT_ONCE: [(usize, std::ops::RangeInclusive<usize>); 2] = [(4, 3..=5), 
 
 /// How columns are laid out.
 pub(crate) struct Layout<'a> {
-    columns: &'a Columns,
+    columns: &'a MultiRhsSolve,
 }
 
 impl<'a> Layout<'a> {
-    pub(crate) fn of(columns: &'a Columns) -> Self {
+    pub(crate) fn of(columns: &'a MultiRhsSolve) -> Self {
         Self { columns }
     }
 
@@ -66,7 +66,7 @@ mod tests {
     #[test]
     fn each_row_has_its_columns_and_each_column_its_rows() {
         // A fork: two ways of different lengths to one base.
-        let columns = Columns { ways: vec![vec![], vec![0], vec![1, 0], vec![0], vec![3, 0]] };
+        let columns = MultiRhsSolve { ways: vec![vec![], vec![0], vec![1, 0], vec![0], vec![3, 0]] };
         let mut out = String::new();
         Layout::of(&columns).module(&mut out);
         let table = |name: &str| -> String {
@@ -78,7 +78,7 @@ mod tests {
         assert!(out.contains("const TOGETHER: [usize; 2] = [1, 3];"));
         // All three matrices where each has three to five vectors of four, and up to three of eight.
         for (n, together) in [(8, [1, 3]), (9, [3, 3]), (20, [3, 3]), (21, [1, 3]), (24, [1, 3]), (25, [1, 1])] {
-            assert_eq!(Layout::of(&Columns { ways: vec![vec![]; n] }).together(), together, "{n}");
+            assert_eq!(Layout::of(&MultiRhsSolve { ways: vec![vec![]; n] }).together(), together, "{n}");
         }
     }
 }

@@ -10,7 +10,7 @@ use articulated_core::lanes::DERIVATIVES;
 use articulated_core::model::{Body, Model};
 use articulated_core::spatial::Matrix3;
 
-use crate::groups::{Chunk, Groups, LANES, Pair, Path, ROOT};
+use crate::joint_blocks::{Chunk, Groups, LANES, Pair, Path, ROOT};
 use crate::target::rust::literal::literal;
 
 /// The module of loops and their tables, and the function `inverse_dynamics_derivatives` in it.

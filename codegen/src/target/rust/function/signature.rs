@@ -5,10 +5,10 @@ use std::fmt::Write;
 use articulated_core::algorithm::Dim;
 
 use crate::lir::function::{Argument, Ending, Function};
+use crate::spec::array_of;
 use crate::target::rust::function::results::{index, is_sparse, nested, zeros};
 use crate::target::rust::literal::bare;
 use crate::target::rust::statements::Place;
-use crate::wanted::array_of;
 
 /// A list and what comes last: a function whose arguments are all constants has no other.
 fn joined(list: &str, last: &str) -> String {
@@ -183,7 +183,7 @@ impl<'a> Signature<'a> {
     /// numbers.
     pub(crate) fn rooms(&self) -> Vec<(String, String, usize)> {
         let parts = self.function.spec.parts.iter().zip(self.function.results.iter());
-        let room = |(part, array): (&crate::Part, &crate::lir::Array)| {
+        let room = |(part, array): (&crate::FunctionTerm, &crate::lir::Array)| {
             let name = part.function.name;
             match &self.group {
                 None => ("out".to_owned(), "out.as_mut_ptr()".to_owned(), array.numbers()),
@@ -256,12 +256,12 @@ mod tests {
     use crate::ledger::Entry;
     use crate::lir::function::Capabilities;
     use crate::program::Program;
-    use crate::wanted::Wanted;
+    use crate::spec::FunctionSpec;
 
     const SHAPE: Shape = Shape { nq: 9, nv: 9, frames: 0, links: 0 };
 
     fn with<T>(text: &str, shape: Shape, ending: Ending, work: impl FnOnce(&Signature) -> T) -> T {
-        let wanted = Wanted::parse(text).unwrap();
+        let wanted = FunctionSpec::parse(text).unwrap();
         let entry = Entry { function: text.into(), ways: Vec::new(), stages: Vec::new(), depth: 0, lanes: 1, arguments: Vec::new() };
         let program = Program { wanted, graph: Graph::default(), plain: Graph::default(), entry, columns: None, groups: None };
         let can = Capabilities { level: Level::default(), vectors: true, raw_memory: true, states: false };

@@ -20,16 +20,16 @@ use crate::{Error, Sym, function};
 
 /// One function to generate.
 #[derive(Clone)]
-pub struct Wanted {
+pub struct FunctionSpec {
     /// Its name in Rust.
     pub name: String,
     /// The functions of the table that it consists of; a function of several gives a struct with a field for each.
-    pub parts: Vec<Part>,
+    pub parts: Vec<FunctionTerm>,
 }
 
 /// A function of the table, with arguments that are constants.
 #[derive(Clone)]
-pub struct Part {
+pub struct FunctionTerm {
     /// The function.
     pub function: &'static Function<Sym>,
     /// What is given up.
@@ -38,22 +38,22 @@ pub struct Part {
     pub sines: bool,
 }
 
-impl Wanted {
+impl FunctionSpec {
     /// The function of the table by itself.
     pub fn plain(function: &'static Function<Sym>) -> Self {
-        Self { name: function.name.into(), parts: vec![Part { function, constants: Vec::new(), sines: false }] }
+        Self { name: function.name.into(), parts: vec![FunctionTerm { function, constants: Vec::new(), sines: false }] }
     }
 
     /// Reads one entry of a list of functions.
     pub fn parse(text: &str) -> Result<Self, Error> {
-        let wrong = |reason: String| Error::Wanted { found: text.trim().into(), reason };
+        let wrong = |reason: String| Error::FunctionSpec { found: text.trim().into(), reason };
         let (name, rest) = match split_outside(text, '=') {
             Some((name, rest)) => (Some(name.trim()), rest),
             None => (None, text),
         };
         let mut parts = Vec::new();
         for part in all_outside(rest, '+') {
-            parts.push(Part::parse(part.trim(), &wrong)?);
+            parts.push(FunctionTerm::parse(part.trim(), &wrong)?);
         }
         let name = match (name, parts.as_slice()) {
             (Some(name), _) => name,
@@ -120,12 +120,12 @@ impl Wanted {
     pub fn check(&self, model: &Model<f64>) -> Result<(), Error> {
         let mut constants =
             self.parts.iter().flat_map(|p| p.constants.iter().map(move |(argument, constant)| (p.function.id, argument, constant)));
-        let wrong = |reason| Error::Wanted { found: self.name.clone(), reason };
+        let wrong = |reason| Error::FunctionSpec { found: self.name.clone(), reason };
         constants.try_for_each(|(function, argument, constant)| constant.fits(function, *argument, model)).map_err(wrong)
     }
 }
 
-impl Part {
+impl FunctionTerm {
     fn parse(text: &str, wrong: &dyn Fn(String) -> Error) -> Result<Self, Error> {
         let (name, arguments) = match text.split_once('(') {
             None => (text, None),
@@ -219,14 +219,14 @@ mod tests {
 
     #[test]
     fn a_name_alone_is_the_function() {
-        let wanted = Wanted::parse("inverse_dynamics").unwrap();
+        let wanted = FunctionSpec::parse("inverse_dynamics").unwrap();
         assert_eq!(wanted.as_function().map(|f| f.name), Some("inverse_dynamics"));
         assert_eq!(wanted.arguments(), [Argument::Q, Argument::V, Argument::A]);
     }
 
     #[test]
     fn constants_are_no_arguments() {
-        let wanted = Wanted::parse("slow = inverse_dynamics(v = 0, a = [0, -1.5 , 2])").unwrap();
+        let wanted = FunctionSpec::parse("slow = inverse_dynamics(v = 0, a = [0, -1.5 , 2])").unwrap();
         assert_eq!((wanted.name.as_str(), wanted.arguments()), ("slow", vec![Argument::Q]));
         assert_eq!(wanted.parts[0].constant(Argument::A), Some(&Constant::Each(vec![0.0, -1.5, 2.0])));
         assert!(wanted.as_function().is_none());
@@ -234,28 +234,28 @@ mod tests {
 
     #[test]
     fn sines_are_one_argument_more() {
-        let wanted = Wanted::parse("fast = inverse_dynamics(q = sin_cos, a = 0)").unwrap();
+        let wanted = FunctionSpec::parse("fast = inverse_dynamics(q = sin_cos, a = 0)").unwrap();
         assert_eq!(wanted.arguments(), [Argument::Q, Argument::V, Argument::SinCos]);
-        assert!(Wanted::parse("inverse_dynamics(q = sin_cos)").unwrap().as_function().is_none());
+        assert!(FunctionSpec::parse("inverse_dynamics(q = sin_cos)").unwrap().as_function().is_none());
     }
 
     #[test]
     fn a_group_takes_what_any_part_takes() {
-        let wanted = Wanted::parse("all = mass_matrix + inverse_dynamics(a = 0)").unwrap();
+        let wanted = FunctionSpec::parse("all = mass_matrix + inverse_dynamics(a = 0)").unwrap();
         assert_eq!(wanted.arguments(), [Argument::Q, Argument::V]);
     }
 
     #[test]
     fn only_what_stands_as_it_is_in_the_table_is_a_function_of_it() {
-        let is = |text: &str| Wanted::parse(text).unwrap().as_function().is_some();
-        assert!(Wanted::parse("inverse_dynamics = inverse_dynamics(a = 0)").is_ok());
+        let is = |text: &str| FunctionSpec::parse(text).unwrap().as_function().is_some();
+        assert!(FunctionSpec::parse("inverse_dynamics = inverse_dynamics(a = 0)").is_ok());
         assert!(is("inverse_dynamics") && is(" inverse_dynamics = inverse_dynamics( ) "));
         assert!(!is("inverse_dynamics(a = 0)") && !is("other = inverse_dynamics"));
     }
 
     #[test]
     fn the_type_of_several_results_is_called_as_the_function() {
-        let group = |text: &str| Wanted::parse(text).unwrap().group();
+        let group = |text: &str| FunctionSpec::parse(text).unwrap().group();
         assert_eq!(group("one__step_2_ = mass_matrix + placements").as_deref(), Some("OneStep2"));
         assert_eq!(group("step = mass_matrix"), None);
     }
@@ -295,7 +295,7 @@ mod tests {
             ("1st = mass_matrix", "not a valid name"),
             ("_x = mass_matrix", "not a valid name"),
         ] {
-            let error = Wanted::parse(text).err().map(|e| e.to_string()).unwrap_or_default();
+            let error = FunctionSpec::parse(text).err().map(|e| e.to_string()).unwrap_or_default();
             assert!(error.contains(part), "{text}: {error}");
         }
     }

@@ -11,7 +11,7 @@ use crate::graph::{MOST, Value};
 use crate::sym::Sym;
 
 /// The branches of a robot that go into lanes.
-pub(crate) struct Alike {
+pub(crate) struct IsomorphicLimbs {
     pub(crate) width: usize,
     limbs: Vec<Limbs>,
     q: Indices,
@@ -22,7 +22,7 @@ pub(crate) struct Alike {
 /// For each index of a vector that belongs to a limb, the indices that go with it, one a lane.
 type Indices = HashMap<usize, Vec<usize>>;
 
-impl Alike {
+impl IsomorphicLimbs {
     /// The branches in so many lanes; `None` where there are none.
     pub(crate) fn of(model: &Model<f64>, width: usize) -> Option<Self> {
         let limbs = model.limbs(width);

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use articulated_core::algorithm::Argument;
 
-use super::{Alike, Constants};
+use super::{Constants, IsomorphicLimbs};
 use crate::graph::{Graph, MOST, Node, NodeId, Op};
 
 /// Where the value of a scalar node is in the new graph.
@@ -41,7 +41,7 @@ const MANY: usize = 1000;
 
 /// Lays the trace of a whole robot together: an operation on values of one lane is the same operation on all lanes, made once, wherever they come from. Sums
 /// over all lanes become one sum of vectors, added across at the end. The outputs are in lane 0.
-pub(crate) fn pack(graph: &Graph, arguments: &[Argument], alike: &Alike, constants: &Constants) -> Graph {
+pub(crate) fn pack(graph: &Graph, arguments: &[Argument], alike: &IsomorphicLimbs, constants: &Constants) -> Graph {
     let mut packer = Packer { graph, new: Graph::in_lanes(alike.width), at: Vec::with_capacity(graph.nodes().len()) };
     for node in graph.nodes() {
         let at = match node.op {
@@ -92,7 +92,7 @@ struct Packer<'a> {
 }
 
 impl Packer<'_> {
-    fn input(&mut self, node: &Node, arguments: &[Argument], alike: &Alike) -> At {
+    fn input(&mut self, node: &Node, arguments: &[Argument], alike: &IsomorphicLimbs) -> At {
         let (argument, index) = (node.args[0] as usize, node.args[1] as usize);
         match arguments.get(argument).and_then(|a| alike.lanes(*a, index)) {
             Some((indices, lane)) => At::Lane(self.new.lane_input(argument, &indices), lane),

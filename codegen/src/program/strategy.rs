@@ -9,7 +9,7 @@ use crate::sym::Sym;
 
 /// How to compute a part.
 #[derive(Clone, Copy)]
-pub(crate) struct Choice {
+pub(crate) struct Strategy {
     pub(crate) way: &'static Way<Sym>,
     /// How many model passes to take.
     pub(crate) passes: usize,
@@ -23,27 +23,27 @@ pub(crate) struct Choice {
     pub(crate) axes: bool,
 }
 
-impl Choice {
+impl Strategy {
     /// A way after so many model passes, with all frames turning and lengths in metres.
     pub(crate) fn plain(way: &'static Way<Sym>, passes: usize) -> Self {
         Self { way, passes, unturned: None, unit: None, lent: false, axes: false }
     }
 
     /// Whether it adds this.
-    pub(super) fn adds(&self, what: Addition) -> bool {
+    pub(super) fn adds(&self, what: Transform) -> bool {
         match what {
-            Addition::Lent => self.lent,
-            Addition::Axes => self.axes,
-            Addition::Unturned => self.unturned.is_some(),
-            Addition::Unit => self.unit.is_some(),
+            Transform::Lent => self.lent,
+            Transform::Axes => self.axes,
+            Transform::Unturned => self.unturned.is_some(),
+            Transform::Unit => self.unit.is_some(),
         }
     }
 
     /// The same with no more added than up to this.
-    pub(super) fn up_to(&self, last: Addition) -> Self {
+    pub(super) fn up_to(&self, last: Transform) -> Self {
         let has = |what| what <= last && self.adds(what);
-        let (unturned, unit) = (self.unturned.filter(|_| has(Addition::Unturned)), self.unit.filter(|_| has(Addition::Unit)));
-        Self { lent: has(Addition::Lent), axes: has(Addition::Axes), unturned, unit, ..*self }
+        let (unturned, unit) = (self.unturned.filter(|_| has(Transform::Unturned)), self.unit.filter(|_| has(Transform::Unit)));
+        Self { lent: has(Transform::Lent), axes: has(Transform::Axes), unturned, unit, ..*self }
     }
 
     /// What it is called in the ledger.
@@ -62,14 +62,14 @@ impl Choice {
 
 /// What a choice may add to a way and its model passes, in the order in which the ledger counts it.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Addition {
+pub(crate) enum Transform {
     Lent,
     Axes,
     Unturned,
     Unit,
 }
 
-impl Addition {
+impl Transform {
     /// All of them, as the ledger calls them, and what they do.
     pub(crate) const ALL: [(Self, &'static str, &'static str); 4] = [
         (Self::Lent, "lent", "mass in the body beyond a joint for torques, where numbers vanish for it"),

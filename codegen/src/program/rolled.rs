@@ -7,14 +7,14 @@ use articulated_core::model::Model;
 
 use crate::Options;
 use crate::graph::{Counts, Op};
-use crate::groups::{self, Groups};
+use crate::joint_blocks::{self, Groups};
 use crate::ledger::{Entry, LOOPS};
 use crate::lir::function::Capabilities;
+use crate::spec::FunctionSpec;
 use crate::trace::applies;
-use crate::wanted::Wanted;
 
 /// The solution of M X = B column by column, which is the same for each.
-pub(crate) struct Columns {
+pub(crate) struct MultiRhsSolve {
     /// For each row of L, where it has numbers before the diagonal.
     pub(crate) ways: Vec<Vec<usize>>,
 }
@@ -24,18 +24,18 @@ pub(crate) struct Columns {
 const COLUMNS: RangeInclusive<usize> = 7..=60;
 
 /// What of a function is left a loop, if that is faster: it needs vectors.
-pub(super) fn columns(wanted: &Wanted, model: &Model<f64>, can: Capabilities) -> Option<Columns> {
-    has_columns(wanted, model, can).then(|| Columns { ways: model.ways_to_base() })
+pub(super) fn columns(wanted: &FunctionSpec, model: &Model<f64>, can: Capabilities) -> Option<MultiRhsSolve> {
+    has_columns(wanted, model, can).then(|| MultiRhsSolve { ways: model.ways_to_base() })
 }
 
 /// Whether the solution of M X = B is left a loop.
-pub(crate) fn has_columns(wanted: &Wanted, model: &Model<f64>, can: Capabilities) -> bool {
+pub(crate) fn has_columns(wanted: &FunctionSpec, model: &Model<f64>, can: Capabilities) -> bool {
     let [part] = wanted.parts.as_slice() else { return false };
     let fits = COLUMNS.contains(&model.nv) && can.vectors;
     fits && part.function.unsolved.as_ref().is_some_and(|unsolved| applies(unsolved, model))
 }
 
-impl Columns {
+impl MultiRhsSolve {
     /// Whether the loop reads number `k` of the three matrices: both B, and of the factors what is on the diagonal or on a way.
     pub(crate) fn reads(&self, k: usize) -> bool {
         let n = self.ways.len();
@@ -62,7 +62,13 @@ const WRITTEN_OUT: f64 = 3500.0;
 const LOOPED: f64 = 0.95;
 
 /// Where joints stand, if a function that would be so many instructions is fewer as loops over them: these need vectors, and constants that are known.
-pub(crate) fn groups(wanted: &Wanted, written: f64, model: &Model<f64>, options: &Options, can: Capabilities) -> Option<(Groups, Counts)> {
+pub(crate) fn groups(
+    wanted: &FunctionSpec,
+    written: f64,
+    model: &Model<f64>,
+    options: &Options,
+    can: Capabilities,
+) -> Option<(Groups, Counts)> {
     let meant = written > WRITTEN_OUT && wanted.as_function().is_some_and(|f| f.forms.contains(&Form::JointsInLoops));
     let fits = options.limbs && can.vectors && options.parameters.is_empty();
     let groups = (meant && fits).then(|| Groups::of(model)).flatten()?;
@@ -72,6 +78,6 @@ pub(crate) fn groups(wanted: &Wanted, written: f64, model: &Model<f64>, options:
 
 /// The entry of what is left loops, which cost this.
 pub(super) fn count(entry: &mut Entry, counts: &Counts) {
-    (entry.ways, entry.lanes) = (vec!["joints in loops".into()], groups::LANES);
+    (entry.ways, entry.lanes) = (vec!["joints in loops".into()], joint_blocks::LANES);
     entry.stages.push((LOOPS, counts.clone()));
 }

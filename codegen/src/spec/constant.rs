@@ -99,12 +99,12 @@ pub(super) fn entries(mut pieces: Vec<&str>) -> Vec<&str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Wanted;
+    use crate::FunctionSpec;
 
     #[test]
     fn a_sign_may_stand_apart_and_a_comma_last() {
         let constant =
-            |text: &str| Wanted::parse(&format!("x = inverse_dynamics({text})")).unwrap().parts[0].constant(Argument::A).cloned();
+            |text: &str| FunctionSpec::parse(&format!("x = inverse_dynamics({text})")).unwrap().parts[0].constant(Argument::A).cloned();
         assert_eq!(["a = - 1.5", "a=+ 2e-3 ,", "a = -\n1"].map(constant), [-1.5, 2e-3, -1.0].map(|x| Some(Constant::All(x))));
         let list = [("a = [ - 1 , + 2.5,\n- 3e1, ],", vec![-1.0, 2.5, -30.0]), ("a = []", Vec::new()), ("", Vec::new())];
         list.into_iter().for_each(|(text, numbers)| assert_eq!(constant(text), (!text.is_empty()).then_some(Constant::Each(numbers))));
@@ -114,19 +114,19 @@ mod tests {
     fn numbers_are_not_put_together_and_entries_not_left_out() {
         let numbers = ["1 2", "- - 1", "-+1", "1 e3", "1. 5", "-", "[0 1, 3]", "[,0,,0,]", "[0,,1]", "[,]", "[0,,]", "[0, - ]", ""];
         for number in numbers {
-            let told = Wanted::parse(&format!("x = inverse_dynamics(v = {number}, a = 0)")).err().map(|e| e.to_string());
+            let told = FunctionSpec::parse(&format!("x = inverse_dynamics(v = {number}, a = 0)")).err().map(|e| e.to_string());
             let told = told.unwrap_or_else(|| panic!("{number}"));
             assert!(told.contains(&format!("`{}`: expected a constant as in", format!("v = {number}").trim())), "{told}");
         }
         for arguments in [",", ", v = 0", "v = 0,, a = 0", "v = 0,,"] {
-            let told = Wanted::parse(&format!("x = inverse_dynamics({arguments})")).err().map(|e| e.to_string());
+            let told = FunctionSpec::parse(&format!("x = inverse_dynamics({arguments})")).err().map(|e| e.to_string());
             assert!(told.is_some_and(|told| told.contains("``: expected a constant as in")), "{arguments}");
         }
     }
 
     #[test]
     fn a_constant_has_as_many_numbers_as_the_argument() {
-        let wanted = Wanted::parse("slow = inverse_dynamics(v = 0, a = [0, 1])").unwrap();
+        let wanted = FunctionSpec::parse("slow = inverse_dynamics(v = 0, a = [0, 1])").unwrap();
         let right = |joints: usize| wanted.check(&chain(&vec!["continuous"; joints])).is_ok();
         assert_eq!([1, 2, 3].map(right), [false, true, false]);
     }
@@ -134,7 +134,7 @@ mod tests {
     /// A quaternion of another norm is no rotation; zeros stand for none.
     #[test]
     fn a_constant_configuration_has_quaternions_that_turn() {
-        let told = |q: &str| Wanted::parse(&format!("x = placements(q = {q})")).unwrap().check(&chain(&["continuous", "spherical"]));
+        let told = |q: &str| FunctionSpec::parse(&format!("x = placements(q = {q})")).unwrap().check(&chain(&["continuous", "spherical"]));
         for q in ["0", "[1, 0, 0, 0, 1]", "[2, 0.6, 0, 0, -0.8]", "[7, 0, 0, 0, 0]"] {
             assert!(told(q).is_ok(), "{q}");
         }
@@ -149,10 +149,10 @@ mod tests {
             "x = difference(target = [0, 0, 0, 0, 0])",
             "x = inverse_dynamics(q = 0, a = 0) + integrate(q = 0)",
         ] {
-            let told = Wanted::parse(text).unwrap().check(&chain(&["continuous", "spherical"])).unwrap_err().to_string();
+            let told = FunctionSpec::parse(text).unwrap().check(&chain(&["continuous", "spherical"])).unwrap_err().to_string();
             assert!(told.ends_with("joint \"j1\": found a quaternion of norm 0, expected 1 within 1e-9"), "{told}");
         }
-        let rates = Wanted::parse("x = inverse_dynamics(v = 1, a = 0)").unwrap();
+        let rates = FunctionSpec::parse("x = inverse_dynamics(v = 1, a = 0)").unwrap();
         assert!(rates.check(&chain(&["spherical"])).is_ok());
     }
 
