@@ -7,7 +7,7 @@ use articulated_core::model::pass::model_passes;
 
 use crate::graph::{Counts, Graph};
 use crate::pass::GRAPH_PASSES;
-use crate::program::Transform;
+use crate::program::strategy::Transform;
 
 /// The costs of all functions of one robot.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -10,6 +10,7 @@
 pub mod bound;
 mod build;
 mod cache;
+mod capabilities;
 mod checked;
 mod error;
 mod faults;

@@ -3,6 +3,7 @@
 
 use articulated_core::algorithm::{Dim, Shape};
 
+use crate::capabilities::Capabilities;
 use crate::graph::Graph;
 use crate::joint_blocks::Groups;
 use crate::ledger::Entry;
@@ -16,19 +17,6 @@ use crate::lir::{Array, Body, Stmt, Ty};
 use crate::program::{MultiRhsSolve, Program};
 use crate::spec::FunctionSpec;
 use crate::{Arithmetic, Level};
-
-/// What a target can do.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Capabilities {
-    /// How accurate functions are.
-    pub(crate) level: Level,
-    /// Whether values may be vectors.
-    pub(crate) vectors: bool,
-    /// Whether a function can write into memory that holds no value yet, and name the slots in which values wait.
-    pub(crate) raw_memory: bool,
-    /// Whether there are functions of many states.
-    pub(crate) states: bool,
-}
 
 /// What a function takes.
 #[derive(Clone, Debug)]

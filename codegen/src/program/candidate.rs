@@ -1,19 +1,20 @@
-//! What a function is traced on, and what it costs there.
+//! What a function is traced on, what it costs there, and the strategies that cost least.
+
+use std::iter::once;
 
 use articulated_core::algorithm::{Form, Way};
-use articulated_core::model::Model;
 use articulated_core::model::pass::model_passes;
+use articulated_core::model::{Model, Unturned};
 
-use super::search::{by_axes, cheapest, in_the_best_unit};
 use super::strategy::{Strategy, Transform};
 use crate::graph::{Counts, Graph};
 use crate::ledger::{Entry, depth};
 use crate::limbs::IsomorphicLimbs;
 use crate::parameters::Parameter;
 use crate::pass;
-use crate::spec::FunctionSpec;
+use crate::spec::{FunctionSpec, FunctionTerm};
 use crate::sym::Sym;
-use crate::trace::{trace, trace_in_lanes};
+use crate::trace::{trace, trace_in_lanes, units, unturnable, ways};
 
 /// What a function is traced on.
 pub(super) struct Candidate<'a> {
@@ -82,4 +83,86 @@ impl Candidate<'_> {
         let cost = pass::cost(&graph);
         (cost, u64::from(cost) + graph.counts().multiplications())
     }
+}
+
+/// What costs more than this is not tried with frames that do not turn or mass that is lent: it would gain a hundredth, and takes long to trace.
+const UNTURNED_TO: u32 = 2500;
+
+/// Nor is any function of a robot with more bodies than this, nor with another unit of length: to find out what it costs is to trace it twice.
+const UNTURNED_BODIES: usize = 64;
+
+/// The way that costs least once the graph passes are done. With parameters, model passes may cost more than they save: then they are not taken.
+pub(super) fn cheapest(part: &FunctionTerm, subject: &Candidate, all: usize) -> Strategy {
+    let few = if subject.parameters.is_empty() { all..=all } else { 0..=all };
+    let ways = ways(part, subject.model);
+    let tried = subject.parameters.is_empty() && subject.model.bodies.len() <= UNTURNED_BODIES;
+    let unturned = if tried { unturnable(part, subject.model) } else { Vec::new() };
+    let unturned: Vec<Option<Unturned>> = once(None).chain(unturned.into_iter().map(Some)).collect();
+    let lending: &[bool] = if tried && part.function.forms.contains(&Form::MassLent) { &[false, true] } else { &[false] };
+    let forms = || unturned.iter().flat_map(|&unturned| lending.iter().map(move |&lent| (unturned, lent)));
+    let of = |way, passes| forms().map(move |(unturned, lent)| Strategy { unturned, lent, ..Strategy::plain(way, passes) });
+    let candidates: Vec<(Strategy, u64)> =
+        ways.iter().flat_map(|(way, least)| few.clone().flat_map(move |passes| of(*way, passes)).map(|c| (c, *least))).collect();
+    if let [(one, _)] = candidates.as_slice() {
+        return *one;
+    }
+    let alone = FunctionSpec { name: String::new(), parts: vec![part.clone()] };
+    let mut best: Option<(Strategy, u32)> = None;
+    for (choice, least) in candidates {
+        // A way whose least is more than another's cost is not tried: the factorisation of a long chain grows with the cube of its length.
+        if best.is_some_and(|(_, cost)| least > u64::from(cost) || (choice.unturned.is_some() || choice.lent) && cost > UNTURNED_TO) {
+            continue;
+        }
+        let cost = cost(&alone, choice, subject);
+        if best.is_none_or(|(_, other)| cost < other) {
+            best = Some((choice, cost));
+        }
+    }
+    best.map_or(Strategy::plain(&part.function.ways[0], all), |(choice, _)| choice)
+}
+
+fn cost(wanted: &FunctionSpec, choice: Strategy, subject: &Candidate) -> u32 {
+    pass::cost(&subject.finished(wanted, &[choice]))
+}
+
+/// The choices with rates by axes, if that takes fewer multiplications and no more instructions; of robots with many bodies, which take long to trace, without trying.
+pub(super) fn by_axes(wanted: &FunctionSpec, choices: Vec<Strategy>, subject: &Candidate) -> Vec<Strategy> {
+    let turns = |part: &FunctionTerm| part.function.forms.contains(&Form::RatesByAxes);
+    if !wanted.parts.iter().any(turns) {
+        return choices;
+    }
+    let with: Vec<Strategy> = wanted.parts.iter().zip(&choices).map(|(part, choice)| Strategy { axes: turns(part), ..*choice }).collect();
+    let better = || {
+        let ((cost, price), (other_cost, other_price)) = (subject.price(wanted, &with), subject.price(wanted, &choices));
+        cost <= other_cost && price < other_price
+    };
+    if subject.model.bodies.len() > UNTURNED_BODIES || better() { with } else { choices }
+}
+
+/// So many instructions are traced at most to find the best unit of length: of a long function fewer are tried.
+const TRIED: usize = 20_000;
+
+/// The choices with lengths in the unit that costs least: where a constant is one, what it multiplies is only added.
+pub(super) fn in_the_best_unit(wanted: &FunctionSpec, choices: Vec<Strategy>, subject: &Candidate) -> Vec<Strategy> {
+    if !subject.parameters.is_empty() || subject.model.bodies.len() > UNTURNED_BODIES {
+        return choices;
+    }
+    let units: Vec<Vec<f64>> = wanted.parts.iter().zip(&choices).map(|(part, choice)| units(part, choice, subject.model)).collect();
+    let with = |metres: f64| -> Vec<Strategy> {
+        let one = |(choice, units): (&Strategy, &Vec<f64>)| Strategy { unit: units.contains(&metres).then_some(metres), ..*choice };
+        choices.iter().zip(&units).map(one).collect()
+    };
+    let Some(most) = units.iter().max_by_key(|units| units.len()).filter(|units| !units.is_empty()) else { return choices };
+    let (cost, mut least) = subject.price(wanted, &choices);
+    if cost > UNTURNED_TO {
+        return choices;
+    }
+    let mut best = choices.clone();
+    for other in most.iter().take(TRIED / (cost as usize).max(1)).map(|&metres| with(metres)) {
+        let (_, price) = subject.price(wanted, &other);
+        if price < least {
+            (least, best) = (price, other);
+        }
+    }
+    best
 }

@@ -2,24 +2,23 @@
 
 mod candidate;
 mod rolled;
-mod search;
-mod strategy;
+pub(crate) mod strategy;
 
 use articulated_core::model::Model;
 
 use crate::Options;
+use crate::capabilities::Capabilities;
 use crate::graph::{Graph, Op};
 use crate::joint_blocks::Groups;
 use crate::ledger::Entry;
 use crate::limbs::IsomorphicLimbs;
-use crate::lir::function::Capabilities;
 use crate::parameters::Parameter;
 use crate::pass;
 use crate::spec::FunctionSpec;
 use candidate::Candidate;
 
 pub(crate) use rolled::{MultiRhsSolve, groups, has_columns};
-pub(crate) use strategy::{Strategy, Transform};
+pub(crate) use strategy::Strategy;
 
 /// A function and what it became.
 pub(crate) struct Program {

@@ -6,10 +6,10 @@ use articulated_core::algorithm::Form;
 use articulated_core::model::Model;
 
 use crate::Options;
+use crate::capabilities::Capabilities;
 use crate::graph::{Counts, Op};
 use crate::joint_blocks::{self, Groups};
 use crate::ledger::{Entry, LOOPS};
-use crate::lir::function::Capabilities;
 use crate::spec::FunctionSpec;
 use crate::trace::applies;
 

@@ -7,7 +7,8 @@ pub(crate) mod rust;
 use articulated_core::model::Model;
 use articulated_urdf::{Problem, Unused};
 
-use crate::lir::function::{Capabilities, Function};
+use crate::capabilities::Capabilities;
+use crate::lir::function::Function;
 use crate::{Error, Options, Parameter, Request};
 
 pub use c::COptions;

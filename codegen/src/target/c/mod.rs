@@ -9,7 +9,8 @@ use std::fmt::Write;
 use articulated_core::algorithm::Dim;
 use articulated_core::model::Model;
 
-use crate::lir::function::{Argument, Capabilities, Ending, Function};
+use crate::capabilities::Capabilities;
+use crate::lir::function::{Argument, Ending, Function};
 use crate::target::{File, Module};
 use crate::{Arithmetic, Error, Level, Options, Sines};
 use statements::{Printer, Reals};

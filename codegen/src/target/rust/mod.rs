@@ -7,6 +7,7 @@ mod batch;
 mod columns;
 mod derivatives;
 mod function;
+mod instructions;
 mod literal;
 mod module;
 mod requirements;
@@ -17,7 +18,7 @@ mod tree_shake;
 
 use articulated_core::lanes::Real;
 
-use crate::lir::function::Capabilities;
+use crate::capabilities::Capabilities;
 use crate::target::{File, Module};
 use crate::{Error, Options};
 

@@ -8,12 +8,12 @@ pub(crate) mod signature;
 use std::fmt::Write;
 
 use crate::Level;
-use crate::graph::Op;
+use crate::lir::Body;
 use crate::lir::function::{Ending, Function};
-use crate::lir::{Body, Expr, Stmt};
 use crate::target::rust::function::body::{body, pieces};
 use crate::target::rust::function::signature::Signature;
-use crate::target::rust::module::{sets, style};
+use crate::target::rust::instructions::{self, needs_choice};
+use crate::target::rust::module::style;
 use crate::target::rust::several;
 use crate::target::rust::spills;
 use levels::real;
@@ -162,17 +162,6 @@ fn allowed(signature: &Signature, name: &str) -> String {
     if lints.is_empty() { String::new() } else { format!("#[allow({})]\n", lints.join(", ")) }
 }
 
-/// Whether the function profits from an instruction set that not every processor has.
-pub(crate) fn needs_choice(function: &Function, level: Level) -> bool {
-    let fuses = |s: &Stmt| matches!(s, Stmt::Let(_, Expr::Op(Op::MulAdd | Op::MulSub | Op::NegMulAdd | Op::NegMulSub, _)));
-    !function.in_lanes() && (function.body.pieces.iter().flatten().any(fuses) || has_batch(&function.body) || level.of_two())
-}
-
-/// Whether sines of several angles are computed together.
-pub(crate) fn has_batch(body: &Body) -> bool {
-    body.pieces.iter().flatten().any(|s| matches!(s, Stmt::SinCos { alone: false, .. }))
-}
-
 /// A body of plain arithmetic, in pieces or one, and its call.
 fn calls(out: &mut String, body: &Body, signature: &Signature, context: Context) {
     if body.pieces.len() > 1 || signature.function.is_outlined && body.slots.is_none() {
@@ -196,8 +185,8 @@ fn chosen(out: &mut String, body: &Body, signature: &Signature, level: Level) {
     }
     levels::imports(out, level);
     self::body(out, body, signature, level);
-    let _ = writeln!(out, "    }}\n    {}", sets::NOT_COMPILED_FOR_AVX2);
-    let _ = writeln!(out, "    if {} {{", sets::HAS_AVX2);
+    let _ = writeln!(out, "    }}\n    {}", instructions::NOT_COMPILED_FOR_AVX2);
+    let _ = writeln!(out, "    if {} {{", instructions::HAS_AVX2);
     let _ = writeln!(
         out,
         "        #[target_feature(enable = \"avx2,fma\")]\n        fn fused({takes}){returns} {{\n            body::<{fused}>({names})\n        }}"
@@ -231,7 +220,7 @@ fn long_calls(out: &mut String, signature: &Signature, context: Context) {
     let names = signature.handed();
     levels::imports(out, context.level);
     if context.chooses() {
-        let _ = writeln!(out, "    {}\n    if {} {{", sets::NOT_COMPILED_FOR_AVX2, sets::HAS_AVX2);
+        let _ = writeln!(out, "    {}\n    if {} {{", instructions::NOT_COMPILED_FOR_AVX2, instructions::HAS_AVX2);
         let fused = if context.level.of_two() { "const FUSED: bool = true" } else { "type F = MultiplyAdd<true>" };
         let _ = writeln!(out, "        {fused};\n        whole!(#[target_feature(enable = \"avx2,fma\")]);");
         let _ = writeln!(
@@ -256,16 +245,16 @@ fn lanes_calls(out: &mut String, signature: &Signature) {
     let calls = format!(
         "        {}\n        if {} {{\n            // SAFETY: the processor has both, as was just checked.\n            return unsafe {{ whole({names}) }};\n        }}\n        \
          {}\n        // SAFETY: this is compiled for processors with both.\n        return unsafe {{ whole({names}) }};\n",
-        sets::NOT_COMPILED_FOR_AVX2,
-        sets::HAS_AVX2,
-        sets::COMPILED_FOR_AVX2,
+        instructions::NOT_COMPILED_FOR_AVX2,
+        instructions::HAS_AVX2,
+        instructions::COMPILED_FOR_AVX2,
     );
     block("#[cfg(target_arch = \"x86_64\")]", "avx2", "#[target_feature(enable = \"avx2,fma\")]", &calls);
     let calls = format!("        // SAFETY: every x86-64 processor has it.\n        return unsafe {{ whole({names}) }};\n");
-    block(sets::NOT_COMPILED_FOR_AVX2, "sse2", "#[target_feature(enable = \"sse2,fxsr\")]", &calls);
+    block(instructions::NOT_COMPILED_FOR_AVX2, "sse2", "#[target_feature(enable = \"sse2,fxsr\")]", &calls);
     let calls = format!("        // SAFETY: every 64-bit Arm processor has it.\n        return unsafe {{ whole({names}) }};\n");
     block("#[cfg(target_arch = \"aarch64\")]", "neon", "#[target_feature(enable = \"neon\")]", &calls);
-    block(sets::OTHERS, "portable", "", &format!("        whole({names})\n"));
+    block(instructions::OTHERS, "portable", "", &format!("        whole({names})\n"));
 }
 
 fn document(out: &mut String, signature: &Signature, context: Context) {

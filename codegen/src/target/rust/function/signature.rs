@@ -252,9 +252,9 @@ mod tests {
 
     use super::*;
     use crate::Level;
+    use crate::capabilities::Capabilities;
     use crate::graph::Graph;
     use crate::ledger::Entry;
-    use crate::lir::function::Capabilities;
     use crate::program::Program;
     use crate::spec::FunctionSpec;
 

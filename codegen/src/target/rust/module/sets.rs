@@ -11,36 +11,13 @@ use crate::lir::function::Function;
 use crate::target::rust::columns::Layout;
 use crate::target::rust::derivatives;
 use crate::target::rust::function::levels;
-use crate::target::rust::function::{has_batch, needs_choice};
+use crate::target::rust::instructions::{
+    COMPILED_FOR_AVX512, COMPILED_FOR_AVX512_BESIDE_AVX2, MAY_LACK_AVX2, NOT_COMPILED_FOR_AVX2, OTHERS, has_batch, needs_choice,
+};
 use crate::target::rust::module::bare;
 use crate::target::rust::requirements::Requirements;
 use crate::target::rust::several;
 use crate::target::rust::tree_shake::tree_shake;
-
-/// Whether the processor has AVX2 and FMA.
-pub(crate) const HAS_AVX2: &str = "::std::is_x86_feature_detected!(\"avx2\") && ::std::is_x86_feature_detected!(\"fma\")";
-
-/// Stands before what is for x86-64 alone, and there for builds that may run without AVX2.
-pub(crate) const NOT_COMPILED_FOR_AVX2: &str =
-    "#[cfg(all(target_arch = \"x86_64\", not(all(target_feature = \"avx2\", target_feature = \"fma\"))))]";
-
-/// Stands before what is for builds that run with AVX2 and FMA alone.
-pub(crate) const COMPILED_FOR_AVX2: &str = "#[cfg(all(target_feature = \"avx2\", target_feature = \"fma\"))]";
-
-/// What holds of builds that run with AVX-512 alone.
-const COMPILED_FOR_AVX512: &str =
-    "all(target_arch = \"x86_64\", target_feature = \"avx512dq\", target_feature = \"avx512vl\", target_feature = \"avx512vbmi2\")";
-
-/// What holds of those of them on which a few vectors of eight among vectors of four cost nothing: AMD's, which alone have SSE4a. Intel's do without one of their two ports for vectors of four
-/// until some time after a vector of eight.
-pub(crate) const COMPILED_FOR_AVX512_BESIDE_AVX2: &str = "all(target_arch = \"x86_64\", target_feature = \"avx512dq\", target_feature = \"avx512vl\", \
-                                                         target_feature = \"avx512vbmi2\", target_feature = \"sse4a\")";
-
-/// Stands before what is for builds that may run without AVX2, on whatever processor.
-const MAY_LACK_AVX2: &str = "#[cfg(not(all(target_arch = \"x86_64\", target_feature = \"avx2\", target_feature = \"fma\")))]";
-
-/// Stands before what is for processors other than x86-64 and 64-bit Arm.
-pub(crate) const OTHERS: &str = "#[cfg(not(any(target_arch = \"aarch64\", target_arch = \"x86_64\")))]";
 
 /// What the functions call: multiply-adds, sines, lanes.
 pub(crate) fn support(out: &mut String, model: &Model<f64>, functions: &[Function], (forbid_unsafe, no_std): (bool, bool), level: Level) {
