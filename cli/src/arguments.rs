@@ -49,7 +49,7 @@ pub(crate) enum Command {
         "articulated check panda_like --format json",
     ]))]
     Check(CheckArguments),
-    /// Writes a robot's dynamics out as Rust
+    /// Writes a robot's dynamics out as Rust or C
     #[command(after_help = examples(&[
         "articulated generate panda_like",
         "articulated generate arm.urdf --functions placements,inverse_dynamics -o src/arm.rs",
@@ -59,6 +59,7 @@ pub(crate) enum Command {
         "articulated generate arm.urdf --functions 'still=inverse_dynamics(v=0,a=0)' --parameters 'payload(tool)'",
         "articulated generate arm.toml --functions motion --runtime ::articulated -o src/arm.rs",
         "articulated generate arm.urdf --level double_double -o src/arm_exact.rs",
+        "articulated generate arm.urdf --target c -o firmware/arm",
         "articulated generate arm.urdf --frames tool,camera --lock wrist=0 --payload tool=1.2@0,0,0.1:1e-3,0,0,1e-3,0,1e-3",
         "articulated generate arm.urdf --append gripper.urdf@tool --append gripper.urdf@tool:second_:0,0,0.2,0,0,1.5",
     ]))]
@@ -194,6 +195,15 @@ pub(crate) struct CheckArguments {
     pub(crate) function: Vec<Names>,
 }
 
+/// A language to generate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Language {
+    /// Rust
+    Rust,
+    /// C99
+    C,
+}
+
 #[derive(Args, Debug)]
 pub(crate) struct GenerateArguments {
     #[command(flatten)]
@@ -209,7 +219,13 @@ pub(crate) struct GenerateArguments {
     /// The functions for many states at once too, in numbers of these types: f64, f32
     #[arg(long, value_name = "TYPES", value_delimiter = ',', value_parser = real)]
     pub(crate) batch: Vec<Real>,
-    /// The file to write instead of the standard output
+    /// The language. C is C99 for numbers alone: a header and a source
+    #[arg(long, value_enum, default_value_t = Language::Rust)]
+    pub(crate) target: Language,
+    /// The prefix of all names in C [default: the robot's name]
+    #[arg(long, value_name = "PREFIX")]
+    pub(crate) prefix: Option<String>,
+    /// The file to write instead of the standard output; for C the folder
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
     /// Code that depends on nothing but core and std (this is the default)

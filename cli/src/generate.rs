@@ -1,9 +1,11 @@
 //! `articulated generate`.
 
-use articulated_codegen::{Generated, generate};
+use std::path::Path;
+
+use articulated_codegen::{COptions, Generated, Options, Target, generate};
 use serde::Serialize;
 
-use crate::arguments::{Format, GenerateArguments, types_of_batch};
+use crate::arguments::{Format, GenerateArguments, Language, types_of_batch};
 use crate::console;
 use crate::failure::Failure;
 use crate::ledger::{Stage, stages};
@@ -13,10 +15,17 @@ use crate::robot::Robot;
 #[derive(Serialize)]
 struct Report {
     source: String,
+    files: Vec<File>,
     warnings: Vec<String>,
     snapped: Vec<String>,
     unused: Vec<String>,
     functions: Vec<Function>,
+}
+
+#[derive(Serialize)]
+struct File {
+    name: String,
+    text: String,
 }
 
 #[derive(Serialize)]
@@ -31,7 +40,11 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
     types_of_batch(&arguments.batch)?;
     let robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
     robot.keeps_its_files("--output", arguments.output.as_deref())?;
-    arguments.output.as_deref().map_or(Ok(()), |path| output::file("--output", path))?;
+    match (arguments.target, arguments.output.as_deref()) {
+        (Language::Rust, Some(path)) => output::file("--output", path)?,
+        (Language::C, Some(path)) => output::folder("--output", path)?,
+        (_, None) => {}
+    }
     let mut request = robot.whole_request(&crate::names::flat(&arguments.functions));
     if arguments.functions.is_empty() {
         request.options.functions.clone_from(&robot.options.functions);
@@ -44,20 +57,52 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
         request.options.rust_mut().batch.clone_from(&arguments.batch);
     }
     request.options.limbs &= !arguments.no_limbs;
-    request.options.rust_mut().forbid_unsafe |= arguments.forbid_unsafe;
-    request.options.rust_mut().no_std = arguments.no_std;
     request.options.level = arguments.level.unwrap_or(request.options.level);
-    request.options.rust_mut().runtime = arguments.runtime.clone().filter(|_| !arguments.standalone);
+    target(arguments, &mut request.options)?;
     let generated = generate(&request)?;
     robot.warn_of(generated.warnings.iter().chain(&generated.snapped));
     if let Some(path) = &arguments.output {
-        output::write(path, &generated.source)?;
+        write(arguments.target, path, &generated)?;
     }
     match (format, &arguments.output) {
         (Format::Json, _) => console::print(&json(&generated)),
-        (Format::Text, None) => console::print(&generated.source),
+        (Format::Text, None) => console::print(&generated.files.iter().map(|file| file.text.as_str()).collect::<String>()),
         (Format::Text, Some(_)) => Ok(()),
     }
+}
+
+/// The language and its choices. Errors: choices of the other one, of the command line or of the scene.
+fn target(arguments: &GenerateArguments, options: &mut Options) -> Result<(), Failure> {
+    if arguments.target == Language::Rust {
+        let rust = options.rust_mut();
+        rust.forbid_unsafe |= arguments.forbid_unsafe;
+        rust.no_std = arguments.no_std;
+        rust.runtime = arguments.runtime.clone().filter(|_| !arguments.standalone);
+        let expected = "--target c beside it, or no --prefix";
+        return arguments.prefix.as_ref().map_or(Ok(()), |prefix| Err(Failure::usage(format!("--prefix {prefix}: expected {expected}"))));
+    }
+    let of_rust = [
+        ("--batch, or `batch` in the scene", !options.rust().batch.is_empty()),
+        ("--standalone", arguments.standalone),
+        ("--forbid-unsafe", arguments.forbid_unsafe),
+        ("--no-std", arguments.no_std),
+        ("--runtime", arguments.runtime.is_some()),
+    ];
+    let found: Vec<&str> = of_rust.into_iter().filter_map(|(name, is_there)| is_there.then_some(name)).collect();
+    if !found.is_empty() {
+        return Err(Failure::usage(format!("--target c: found {}, which are for Rust alone", found.join(", "))));
+    }
+    options.target = Target::C(COptions { prefix: arguments.prefix.clone() });
+    Ok(())
+}
+
+/// Writes the file, or all files into a folder.
+fn write(language: Language, path: &Path, generated: &Generated) -> Result<(), Failure> {
+    if language == Language::Rust {
+        return output::write(path, &generated.source);
+    }
+    output::folder("--output", path)?;
+    generated.files.iter().try_for_each(|file| output::write(&path.join(&file.name), &file.text))
 }
 
 fn json(generated: &Generated) -> String {
@@ -65,6 +110,7 @@ fn json(generated: &Generated) -> String {
     let function = |e: &articulated_codegen::ledger::Entry| Function { function: e.function.clone(), stages: stages(e), depth: e.depth };
     crate::json(&Report {
         source: generated.source.clone(),
+        files: generated.files.iter().map(|file| File { name: file.name.clone(), text: file.text.clone() }).collect(),
         warnings: lines(&generated.warnings),
         snapped: lines(&generated.snapped),
         unused: generated.unused.iter().map(ToString::to_string).collect(),

@@ -38,6 +38,28 @@ fn flags_arrive_in_the_request() {
 }
 
 #[test]
+fn c_is_a_header_and_a_source_in_a_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("arm");
+    let words = ["generate", "cart_pole", "--functions", "inverse_dynamics", "--target", "c"];
+    let made = run(&[&words[..], &["-o", path.to_str().unwrap()]].concat());
+    assert_eq!((made.status, made.out.as_str()), (0, ""), "{}", made.err);
+    let [header, source] = ["cart_pole.h", "cart_pole.c"].map(|name| std::fs::read_to_string(path.join(name)).unwrap());
+    assert!(header.contains("void cart_pole_inverse_dynamics(") && source.contains("#include \"cart_pole.h\""));
+    assert!(run(&words).out == header + &source);
+    assert!(run(&[&words[..], &["--prefix", "my"]].concat()).out.contains("void my_inverse_dynamics("));
+    for (more, told) in [
+        (&["--no-std", "--batch", "f64"][..], "--target c: found --batch, or `batch` in the scene, --no-std, which are for Rust alone"),
+        (&["--level", "double_double"], "level: found double_double, expected for target \"c\": f64, f32 or f32_f64"),
+        (&["--prefix", "1st"], "prefix: found \"1st\""),
+    ] {
+        let made = run(&[&words[..], more].concat());
+        assert!(made.status != 0 && made.err.contains(told), "{}", made.err);
+    }
+    assert!(run(&["generate", "cart_pole", "--prefix", "my"]).err.contains("--prefix my: expected --target c beside it"));
+}
+
+#[test]
 fn limbs_are_each_for_itself_where_asked_for() {
     let words = ["generate", "quadruped", "--functions", "inverse_dynamics"];
     let (together, apart) = (run(&words), run(&[&words[..], &["--no-limbs"]].concat()));
