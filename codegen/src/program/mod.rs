@@ -36,19 +36,20 @@ pub(crate) struct Program {
 /// A function by the cheapest of its ways, limbs that are alike in lanes if that is cheaper.
 pub(crate) fn program(wanted: FunctionSpec, model: &Model<f64>, parameters: &[Parameter], options: &Options, can: Capabilities) -> Program {
     let subject = Candidate { model, parameters, stages: options.stages, alike: None };
-    let columns = rolled::columns(&wanted, model, can);
-    let whole = (columns.is_none() || can.states).then(|| subject.made(&wanted, None));
-    let unsolved = columns.as_ref().and(wanted.parts[0].function.unsolved.as_ref());
+    let reduced = wanted.reduced();
+    let columns = rolled::columns(&reduced, model, can);
+    let whole = (columns.is_none() || can.states).then(|| subject.made(&reduced, None));
+    let unsolved = columns.as_ref().and(reduced.parts[0].function.unsolved.as_ref());
     let mut best = match &whole {
         Some(whole) if unsolved.is_none() => whole.clone(),
-        _ => subject.made(&wanted, unsolved),
+        _ => subject.made(&reduced, unsolved),
     };
     let plain = whole.map_or_else(Graph::default, |(graph, _)| graph);
     // Limbs need the vector instructions; constants that stay inputs differ from limb to limb.
     if options.limbs && can.vectors && parameters.is_empty() {
         for width in [4, 2] {
             let Some(alike) = IsomorphicLimbs::of(model, width) else { continue };
-            let other = Candidate { alike: Some(alike), ..subject }.made(&wanted, unsolved);
+            let other = Candidate { alike: Some(alike), ..subject }.made(&reduced, unsolved);
             if price(&other.0) * WORTH < price(&best.0) {
                 best = other;
             }

@@ -17,6 +17,14 @@ pub enum Constant {
 }
 
 impl Constant {
+    /// Whether all its numbers are zero.
+    pub(super) fn is_zero(&self) -> bool {
+        match self {
+            Self::All(x) => *x == 0.0,
+            Self::Each(numbers) => numbers.iter().all(|x| *x == 0.0),
+        }
+    }
+
     /// Its number `k`.
     pub fn at(&self, k: usize) -> f64 {
         match self {

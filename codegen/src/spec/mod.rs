@@ -116,6 +116,11 @@ impl FunctionSpec {
         }
     }
 
+    /// The same function with terms that are computed as others: what is fixed at zero costs nothing then.
+    pub(crate) fn reduced(&self) -> Self {
+        Self { name: self.name.clone(), parts: self.parts.iter().map(FunctionTerm::reduced).collect() }
+    }
+
     /// Whether constants are right for a robot: as many numbers as it takes, and quaternions that are some.
     pub fn check(&self, model: &Model<f64>) -> Result<(), Error> {
         let mut constants =
@@ -157,11 +162,39 @@ impl FunctionTerm {
         Ok(Self { function, constants, sines })
     }
 
+    /// The term that gives the same and takes none of the arguments that are fixed at zero, as far as there is one.
+    fn reduced(&self) -> Self {
+        let is_zero = |argument: &Argument| self.constant(*argument).is_some_and(Constant::is_zero);
+        let preset = PRESETS.iter().find(|(general, zeros, _)| *general == self.function.name && zeros.iter().all(is_zero));
+        let Some((function, zeros)) = preset.and_then(|(_, zeros, name)| Some((function(name).ok()?, zeros))) else {
+            return self.clone();
+        };
+        let constants = self.constants.iter().filter(|(argument, _)| !zeros.contains(argument)).cloned().collect();
+        Self { function, constants, sines: self.sines }.reduced()
+    }
+
     /// The constant in the place of an argument.
     pub fn constant(&self, argument: Argument) -> Option<&Constant> {
         self.constants.iter().find(|(a, _)| *a == argument).map(|(_, c)| c)
     }
 }
+
+/// Functions, arguments of theirs that are zero, and the function that they are then; of several the one with most zeros
+/// first.
+const PRESETS: &[(&str, &[Argument], &str)] = &[
+    ("inverse_dynamics_with_wrenches", &[Argument::Wrenches], "inverse_dynamics"),
+    ("inverse_dynamics_with_wrenches", &[Argument::V, Argument::A], "static_torque"),
+    ("inverse_dynamics", &[Argument::V, Argument::A], "gravity_torque"),
+    ("inverse_dynamics", &[Argument::A], "bias_forces"),
+    ("bias_forces", &[Argument::V], "gravity_torque"),
+    ("static_torque", &[Argument::Wrenches], "gravity_torque"),
+    ("forward_dynamics_with_wrenches", &[Argument::Wrenches], "forward_dynamics"),
+    ("inverse_dynamics_derivatives_with_wrenches", &[Argument::Wrenches], "inverse_dynamics_derivatives"),
+    ("forward_dynamics_derivatives_with_wrenches", &[Argument::Wrenches], "forward_dynamics_derivatives"),
+    ("accelerations_body", &[Argument::A], "bias_accelerations_body"),
+    ("accelerations_world", &[Argument::A], "bias_accelerations_world"),
+    ("accelerations_world_aligned", &[Argument::A], "bias_accelerations_world_aligned"),
+];
 
 /// `q = sin_cos`
 fn is_sines(entry: &str) -> bool {
@@ -230,6 +263,40 @@ mod tests {
         assert_eq!((wanted.name.as_str(), wanted.arguments()), ("slow", vec![Argument::Q]));
         assert_eq!(wanted.parts[0].constant(Argument::A), Some(&Constant::Each(vec![0.0, -1.5, 2.0])));
         assert!(wanted.as_function().is_none());
+    }
+
+    /// A preset exists, gives the same array, takes what is left, and costs what it costs by itself.
+    #[test]
+    fn what_is_fixed_at_zero_costs_nothing() {
+        let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/urdf/ur5_like.urdf");
+        let mut request = crate::Request::new("ur5_like", std::fs::read(robot).unwrap());
+        for (k, (general, zeros, preset)) in PRESETS.iter().enumerate() {
+            let (row, other) = (function(general).unwrap(), function(preset).unwrap());
+            let left: Vec<Argument> = row.takes.iter().copied().filter(|a| !zeros.contains(a)).collect();
+            assert_eq!((row.gives, left.as_slice()), (other.gives, other.takes), "{general}");
+            let fixed: Vec<String> = zeros.iter().map(|a| format!("{} = 0", a.name())).collect();
+            request.options.functions.extend([format!("own_{k} = {general}({})", fixed.join(", ")), format!("plain_{k} = {preset}")]);
+        }
+        request.options.functions.push("all = inverse_dynamics_with_wrenches(v = 0, a = [0, 0, 0, 0, 0, 0], wrenches = 0)".into());
+        request.options.functions.push("torque = gravity_torque".into());
+        request.options.functions.retain(|f| f.contains('='));
+        let generated = crate::generate(&request).unwrap();
+        for pair in generated.ledger.functions.chunks(2) {
+            assert_eq!(pair[0].emitted(), pair[1].emitted(), "{} and {}", pair[0].function, pair[1].function);
+        }
+        // And it is the same function: the general algorithm gives its values.
+        let model = &generated.model;
+        let values = |text: &str| {
+            let wanted = FunctionSpec::parse(text).unwrap();
+            let way = crate::trace::ways(&wanted.parts[0], model)[0].0;
+            let graph = crate::trace::trace(&wanted, &[crate::program::Strategy::plain(way, 0)], model, &[]);
+            graph.evaluate(|argument, k| 0.3 - 0.1 * argument as f64 + 0.07 * k as f64)
+        };
+        for pair in request.options.functions.chunks(2) {
+            let [general, preset] = [&pair[0], &pair[1]].map(|text| values(text));
+            let scale = preset.iter().fold(1.0, |max: f64, x| max.max(x.abs()));
+            assert!(general.iter().zip(&preset).all(|(a, b)| (a - b).abs() < 1e-12 * scale), "{pair:?}");
+        }
     }
 
     #[test]
