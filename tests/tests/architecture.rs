@@ -26,13 +26,13 @@ const CIRCLES: [(&str, usize); 10] = [
     ("articulated-core", 0),
     ("articulated-reference", 1),
     ("articulated-urdf", 2),
-    ("articulated-scene", 3),
+    ("articulated-scene", 2),
     ("articulated-codegen", 0),
     ("articulated-macros", 0),
     ("articulated", 1),
     ("articulated-motion", 0),
     ("articulated-models", 0),
-    ("articulated-cli", 9),
+    ("articulated-cli", 7),
 ];
 
 fn root() -> PathBuf {

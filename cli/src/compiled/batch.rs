@@ -6,44 +6,10 @@ use articulated_codegen::Generated;
 use articulated_core::algorithm::{Function, function};
 use articulated_core::lanes::Real;
 
+use super::Library;
 use super::rustc::{CompileError, Rustc, Target};
-use super::{Library, wrapper};
+use super::wrapper::{self, Layout};
 use crate::native::BatchKernel;
-
-/// How states are laid out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Layout {
-    /// One after the other.
-    States,
-    /// In blocks, with each number of all states of a block together.
-    Blocks,
-}
-
-impl Layout {
-    pub(crate) const ALL: [Self; 2] = [Self::Blocks, Self::States];
-
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::States => "states",
-            Self::Blocks => "blocks",
-        }
-    }
-
-    /// How many states the library takes as one.
-    pub(crate) fn states(self, real: Real) -> usize {
-        match self {
-            Self::States => 1,
-            Self::Blocks => 64 / real.bytes(),
-        }
-    }
-
-    pub(super) fn suffix(self) -> &'static str {
-        match self {
-            Self::States => "",
-            Self::Blocks => "_blocks",
-        }
-    }
-}
 
 /// A function in one type and layout.
 #[derive(Clone, Debug)]

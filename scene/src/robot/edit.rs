@@ -2,70 +2,15 @@
 //! hang on an appended robot, and a lock may hold its joints.
 
 use std::collections::HashSet;
-use std::fmt;
 
 use articulated_core::description::{Base, Description, EditError, Editor};
 use articulated_core::effect::Applied;
 use articulated_core::model::Model;
 use articulated_core::suggest::Suggester;
-use articulated_urdf::{Problems, Reading, SNAP_EXPECTED, Subject, Unused, can_snap};
+use articulated_urdf::{Reading, SNAP_EXPECTED, Subject, Unused, can_snap};
 
-use super::error::RobotError;
+use super::error::{Edit, Reason, Refusal, RobotError};
 use super::options::{Appended, RobotAsked, RobotOptions};
-
-/// One edit of a robot.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Edit {
-    /// An index into [`append`](super::RobotOptions::append).
-    Append(usize),
-    /// An index into [`payloads`](super::RobotOptions::payloads).
-    Payload(usize),
-    /// An index into [`shafts`](super::RobotOptions::shafts).
-    Shaft(usize),
-    /// An index into [`lock`](super::RobotOptions::lock).
-    Lock(usize),
-    /// An index into [`frames`](super::RobotOptions::frames).
-    Frame(usize),
-}
-
-/// Why an edit cannot be made.
-#[derive(Clone, Debug)]
-pub enum Reason {
-    /// The document of the robot to be appended is not a usable URDF.
-    Urdf(Problems),
-    /// What it names or asks for is not there, or not possible.
-    Edit(EditError),
-    /// A frame listed twice.
-    FrameTwice(String),
-}
-
-/// An edit that cannot be made.
-#[derive(Clone, Debug)]
-pub struct Refusal {
-    /// The file of the robot that was to be edited.
-    pub file: String,
-    /// Which edit.
-    pub edit: Edit,
-    /// Why not.
-    pub reason: Reason,
-}
-
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let what = match self.edit {
-            Edit::Append(_) => "append",
-            Edit::Payload(_) => "payload",
-            Edit::Shaft(_) => "shaft",
-            Edit::Lock(_) => "lock",
-            Edit::Frame(_) => "frames",
-        };
-        match &self.reason {
-            Reason::Urdf(problems) => problems.fmt(f),
-            Reason::Edit(error) => write!(f, "{}: {what}: {error}", self.file),
-            Reason::FrameTwice(name) => write!(f, "{}: {what}: {name:?} is listed twice", self.file),
-        }
-    }
-}
 
 impl RobotAsked<'_> {
     /// Reads the robot and edits it. Everything that is wrong with the document, or else everything that is wrong with the edits.

@@ -2,12 +2,66 @@
 
 use std::fmt;
 
+use articulated_core::description::EditError;
 use articulated_core::effect::EffectError;
 use articulated_core::model::ModelError;
 use articulated_urdf::Problems;
 
-use super::edit::Refusal;
 use crate::error::SceneErrors;
+
+/// One edit of a robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edit {
+    /// An index into [`append`](super::RobotOptions::append).
+    Append(usize),
+    /// An index into [`payloads`](super::RobotOptions::payloads).
+    Payload(usize),
+    /// An index into [`shafts`](super::RobotOptions::shafts).
+    Shaft(usize),
+    /// An index into [`lock`](super::RobotOptions::lock).
+    Lock(usize),
+    /// An index into [`frames`](super::RobotOptions::frames).
+    Frame(usize),
+}
+
+/// Why an edit cannot be made.
+#[derive(Clone, Debug)]
+pub enum Reason {
+    /// The document of the robot to be appended is not a usable URDF.
+    Urdf(Problems),
+    /// What it names or asks for is not there, or not possible.
+    Edit(EditError),
+    /// A frame listed twice.
+    FrameTwice(String),
+}
+
+/// An edit that cannot be made.
+#[derive(Clone, Debug)]
+pub struct Refusal {
+    /// The file of the robot that was to be edited.
+    pub file: String,
+    /// Which edit.
+    pub edit: Edit,
+    /// Why not.
+    pub reason: Reason,
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let what = match self.edit {
+            Edit::Append(_) => "append",
+            Edit::Payload(_) => "payload",
+            Edit::Shaft(_) => "shaft",
+            Edit::Lock(_) => "lock",
+            Edit::Frame(_) => "frames",
+        };
+        match &self.reason {
+            Reason::Urdf(problems) => problems.fmt(f),
+            Reason::Edit(error) => write!(f, "{}: {what}: {error}", self.file),
+            Reason::FrameTwice(name) => write!(f, "{}: {what}: {name:?} is listed twice", self.file),
+        }
+    }
+}
 
 /// Everything that can be wrong with a robot as it is asked for, as data first and a sentence second.
 #[derive(Clone, Debug)]

@@ -1,7 +1,7 @@
 //! Everything that is wrong with what is asked, not only the first of it: what was refused is left out, and the rest tried again.
 
-use super::edit::{Edit, Refusal};
 use super::error::RobotError;
+use super::error::{Edit, Refusal};
 use super::options::RobotOptions;
 
 /// More than these are not looked for.

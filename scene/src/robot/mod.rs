@@ -11,8 +11,7 @@ mod open;
 mod options;
 mod place;
 
-pub use edit::{Edit, Reason, Refusal};
-pub use error::RobotError;
+pub use error::{Edit, Reason, Refusal, RobotError};
 pub use faults::{Tried, leave_out, tried};
 pub use odd::beyond_sense;
 pub use open::{Attempt, Bundled, Opened, Settled, beside, nearest_file, open, open_in, read_robot_file};

@@ -3,8 +3,8 @@
 use articulated_core::description::EditError;
 use articulated_core::suggest::nearest;
 
-use super::edit::{Edit, Reason, Refusal};
 use super::error::RobotError;
+use super::error::{Edit, Reason, Refusal};
 use super::open::Bundled;
 use crate::error::{Kind, SceneError, SceneErrors};
 use crate::scene::{Robot, Scene};

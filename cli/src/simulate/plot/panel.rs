@@ -3,14 +3,8 @@
 use super::axis::Axis;
 use super::clock::Clock;
 use super::drawing::{Anchor, Drawing, Point};
+pub(super) use super::stroke::{COLOURS, Curve};
 use super::stroke::{Stroke, strokes};
-
-/// A curve and its name.
-#[derive(Clone, Debug)]
-pub(super) struct Curve {
-    pub(super) name: String,
-    pub(super) values: Vec<f64>,
-}
 
 /// What a panel shows.
 #[derive(Clone, Debug)]
@@ -38,9 +32,6 @@ const GREY: &str = "#555555";
 const GRID: &str = "#e2e2e2";
 const EVENT: &str = "#9a9a9a";
 
-/// Told apart by people who do not see all colours, on screen and in print; at most so many curves share a field.
-pub(super) const COLOURS: [&str; 8] = ["#1b6ca8", "#d9822b", "#3f8f5b", "#c2453f", "#7a5195", "#b59f00", "#36a9bf", "#555555"];
-
 /// Draws a panel with its corner at a place.
 pub(super) fn draw(out: &mut Drawing, panel: &Panel, clock: &Clock, [x0, y0]: Point) {
     let (left, right, top, bottom) = (x0 + LEFT, x0 + WIDTH - RIGHT, y0 + TOP, y0 + HEIGHT - BOTTOM);
@@ -52,7 +43,7 @@ pub(super) fn draw(out: &mut Drawing, panel: &Panel, clock: &Clock, [x0, y0]: Po
     for &e in clock.events.iter().filter(|e| (time.range[0]..=time.range[1]).contains(*e)) {
         out.path(vec![[time.at(e), top], [time.at(e), bottom]], EVENT, 0.8, true);
     }
-    let strokes = strokes(panel, &value, right - left);
+    let strokes = strokes(&panel.curves, &value, right - left);
     for (curve, stroke) in panel.curves.iter().zip(&strokes) {
         for points in thinned(&clock.t, &curve.values, &time, &value) {
             out.line(points, stroke.colour, stroke.width, stroke.dash);

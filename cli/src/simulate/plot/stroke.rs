@@ -2,7 +2,16 @@
 
 use super::axis::Axis;
 use super::drawing::Dash;
-use super::panel::{COLOURS, Panel};
+
+/// A curve and its name.
+#[derive(Clone, Debug)]
+pub(super) struct Curve {
+    pub(super) name: String,
+    pub(super) values: Vec<f64>,
+}
+
+/// Told apart by people who do not see all colours, on screen and in print; at most so many curves share a field.
+pub(super) const COLOURS: [&str; 8] = ["#1b6ca8", "#d9822b", "#3f8f5b", "#c2453f", "#7a5195", "#b59f00", "#36a9bf", "#555555"];
 
 /// The look of a curve.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,24 +33,24 @@ const THIN: f64 = 0.5;
 
 /// Of the curves of a panel, over a field of this width in points: those that oscillate too often to be told apart are thinner; of those that lie on each other all
 /// but the first are dashed, the later the shorter.
-pub(super) fn strokes(panel: &Panel, value: &Axis, width: f64) -> Vec<Stroke> {
-    let first = firsts(panel, value);
+pub(super) fn strokes(curves: &[Curve], value: &Axis, width: f64) -> Vec<Stroke> {
+    let first = firsts(curves, value);
     let alike = |k: usize| first.iter().filter(|f| **f == first[k]).count();
     let before = |k: usize| first[..k].iter().filter(|f| **f == first[k]).count();
     let dash = |k: usize| {
         let (all, over) = (alike(k) as f64, before(k) as f64);
         (over > 0.0).then_some([SHOWN * (all - over), SHOWN * over])
     };
-    let line = |k: usize| (WIDTH * width / (WAVE * waves(&panel.curves[k].values, value))).clamp(THIN, WIDTH);
+    let line = |k: usize| (WIDTH * width / (WAVE * waves(&curves[k].values, value))).clamp(THIN, WIDTH);
     (0..first.len()).map(|k| Stroke { colour: COLOURS[k % COLOURS.len()], width: line(k), dash: dash(k) }).collect()
 }
 
 /// For each curve the first that lies where it does.
-fn firsts(panel: &Panel, value: &Axis) -> Vec<usize> {
+fn firsts(curves: &[Curve], value: &Axis) -> Vec<usize> {
     let same = |a: f64, b: f64| (a.is_nan() && b.is_nan()) || (value.at(a) - value.at(b)).abs() < APART;
     let mut out: Vec<usize> = Vec::new();
-    for (k, curve) in panel.curves.iter().enumerate() {
-        let on = |other: &usize| panel.curves[*other].values.iter().zip(&curve.values).all(|(a, b)| same(*a, *b));
+    for (k, curve) in curves.iter().enumerate() {
+        let on = |other: &usize| curves[*other].values.iter().zip(&curve.values).all(|(a, b)| same(*a, *b));
         out.push((0..k).filter(|j| out[*j] == *j).find(on).unwrap_or(k));
     }
     out
@@ -66,13 +75,12 @@ fn waves(values: &[f64], value: &Axis) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::panel::Curve;
     use super::*;
 
     fn drawn(curves: Vec<Vec<f64>>) -> Vec<Stroke> {
         let value = Axis::around(curves.iter().flatten().copied(), [200.0, 0.0], 4.0);
-        let curves = curves.into_iter().map(|values| Curve { name: String::new(), values }).collect();
-        strokes(&Panel { title: String::new(), curves }, &value, 400.0)
+        let curves: Vec<Curve> = curves.into_iter().map(|values| Curve { name: String::new(), values }).collect();
+        strokes(&curves, &value, 400.0)
     }
 
     #[test]
