@@ -37,6 +37,12 @@ pub(crate) fn error_of_tool(text: &str) {
     say("error", "31", text);
 }
 
+/// Each error of a failure.
+pub(crate) fn failed(failure: &Failure) {
+    let line = if failure.is_of_tool() { error_of_tool } else { error };
+    failure.messages().for_each(line);
+}
+
 /// What is wrong with the command line, as it is.
 pub(crate) fn refuse(text: &str) {
     let _ = std::io::stderr().lock().write_all(harmless(text).as_bytes());

@@ -5,7 +5,6 @@ use articulated_motion::{Fault, MotionErrors};
 use articulated_scene::SceneErrors;
 use serde::Serialize;
 
-use crate::console;
 use crate::diagnostic::Diagnostic;
 
 /// Everything went well.
@@ -60,10 +59,14 @@ impl Failure {
         Self { status: TOOL, errors: vec![error.to_string().into()], reported: false }
     }
 
-    /// Says each of them on the standard error stream.
-    pub(crate) fn say(&self) {
-        let line = if self.status == TOOL { console::error_of_tool } else { console::error };
-        self.errors.iter().for_each(|error| line(&error.message));
+    /// The message of each of them.
+    pub(crate) fn messages(&self) -> impl Iterator<Item = &str> {
+        self.errors.iter().map(|error| error.message.as_str())
+    }
+
+    /// Whether a tool failed.
+    pub(crate) fn is_of_tool(&self) -> bool {
+        self.status == TOOL
     }
 
     /// All of them, with the gravest status: wrong input comes before a wrong command line, and both before a tool that fails.

@@ -52,7 +52,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
                 return match console::print(&error.render().to_string()) {
                     Ok(()) => OK,
                     Err(failure) => {
-                        failure.say();
+                        console::failed(&failure);
                         failure.status
                     }
                 };
@@ -71,7 +71,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     match dispatch(&arguments) {
         Ok(status) => status,
         Err(failure) => {
-            failure.say();
+            console::failed(&failure);
             if arguments.format == Format::Json && !failure.reported {
                 // A reader that has gone away has nothing to be told.
                 let _ = console::print(&json(&failure));

@@ -25,14 +25,14 @@ const LAYERS: [(&str, &str); 10] = [
 const CIRCLES: [(&str, usize); 10] = [
     ("articulated-core", 0),
     ("articulated-reference", 1),
-    ("articulated-urdf", 2),
+    ("articulated-urdf", 1),
     ("articulated-scene", 2),
     ("articulated-codegen", 0),
     ("articulated-macros", 0),
     ("articulated", 1),
     ("articulated-motion", 0),
     ("articulated-models", 0),
-    ("articulated-cli", 7),
+    ("articulated-cli", 4),
 ];
 
 fn root() -> PathBuf {

@@ -17,6 +17,13 @@ pub(crate) struct Tag<'a> {
     subject: &'a Subject,
 }
 
+impl Log {
+    /// Reports a tag that is not used.
+    pub(crate) fn unused(&mut self, tag: &Tag<'_>, what: String, why: impl Into<String>) {
+        self.unused_at(Some(tag.line()), tag.subject(), what, why);
+    }
+}
+
 impl<'a> Tag<'a> {
     pub(crate) fn new(node: Node<'a, 'a>, lines: &'a Lines, subject: &'a Subject) -> Self {
         Self { node, lines, subject }

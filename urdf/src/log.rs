@@ -2,7 +2,6 @@
 
 use articulated_core::description::Description;
 
-use crate::element::Tag;
 use crate::problem::{Kind, Problem, Problems, Subject};
 use crate::{Reading, Unused};
 
@@ -104,10 +103,6 @@ impl Log {
     pub(crate) fn snapped(&mut self, place: &Place<'_>, found: f64, replaced_by: &str) {
         let problem = self.problem(place, Kind::Snapped, format!("{found}"), format!("{replaced_by}, which was used"));
         self.snapped.push(problem);
-    }
-
-    pub(crate) fn unused(&mut self, tag: &Tag<'_>, what: String, why: impl Into<String>) {
-        self.unused_at(Some(tag.line()), tag.subject(), what, why);
     }
 
     pub(crate) fn unused_at(&mut self, line: Option<u32>, subject: &Subject, tag: String, why: impl Into<String>) {

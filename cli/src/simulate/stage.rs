@@ -3,6 +3,7 @@
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
 
+use articulated::Dynamics;
 use articulated_codegen::Request;
 use articulated_codegen::scene::Prepared;
 use articulated_core::description::Base;
@@ -76,4 +77,10 @@ impl Stage {
     pub(crate) fn base(&self) -> Base {
         self.request.options.robot.base
     }
+}
+
+/// The joint that a number of a step belongs to: steps of q first, then v.
+pub(super) fn joint_of(stage: &Stage, number: usize) -> Option<String> {
+    let freedom = number % stage.model.nv.max(1);
+    Dynamics::joint_of(&stage.model, freedom).filter(|name| !name.is_empty()).map(str::to_owned)
 }

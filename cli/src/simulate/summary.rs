@@ -1,6 +1,5 @@
 //! What there is to say about a motion, as data.
 
-use articulated::Dynamics;
 use articulated::simulate::{Balance, Counts, Settings};
 use articulated_core::description::JointKind;
 use articulated_core::effect::EffectId;
@@ -9,7 +8,7 @@ use serde::Serialize;
 
 use super::motion::Motion;
 use super::recording::{Happening, Recording};
-use super::stage::Stage;
+use super::stage::{Stage, joint_of};
 use crate::effects::sorts;
 use crate::units::Units;
 
@@ -282,10 +281,4 @@ impl Done {
             records,
         }
     }
-}
-
-/// The joint that a number of a step belongs to: steps of q first, then v.
-pub(super) fn joint_of(stage: &Stage, number: usize) -> Option<String> {
-    let freedom = number % stage.model.nv.max(1);
-    Dynamics::joint_of(&stage.model, freedom).filter(|name| !name.is_empty()).map(str::to_owned)
 }

@@ -4,8 +4,7 @@ use std::time::{Duration, Instant};
 
 use articulated::simulate::{Counts, Settings};
 
-use super::stage::Stage;
-use super::summary::joint_of;
+use super::stage::{Stage, joint_of};
 use crate::console::Progress;
 use crate::table::number;
 

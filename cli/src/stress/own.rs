@@ -7,7 +7,7 @@ use articulated_core::monitor::{
     ADJOINT_LIMIT, adjoint_condition, pivot_cancellation, placement_orthonormality, quaternion_norms, scaled_condition, wrench_growth,
 };
 
-use super::judge::{BACKWARD, Ends, Judge, State, call};
+use super::judge::{BACKWARD, DERIVATIVES, Ends, Judge, State, call};
 use super::levels::{self, Made};
 use super::machine::Machine;
 use super::robots::{state, states};
@@ -19,9 +19,6 @@ use crate::worse::worse;
 
 /// The chapter of robots.
 pub const NAME: &str = "robots";
-
-/// Robots of more degrees of freedom than this are judged without derivatives: 96 digits of a cube of it take minutes.
-pub(super) const DERIVATIVES: usize = 12;
 
 const TAU: f64 = 20.0;
 

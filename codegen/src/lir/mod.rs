@@ -252,7 +252,8 @@ pub struct Body {
     pub kept: usize,
     /// Its spill slots, if it spills by itself.
     pub slots: Option<Slots>,
-    /// Whether numbers that lie side by side in the result must not look so to a compiler (see [`pass::alias_barrier`]).
+    /// Whether numbers that lie side by side in the result must not look so to a compiler: `lir/pass/alias_barrier.rs`
+    /// says why.
     pub barrier: bool,
     /// Whether not all numbers of the result are stored: the others are zero from the start, or a loop that follows
     /// computes them.

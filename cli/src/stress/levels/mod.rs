@@ -9,8 +9,7 @@ use articulated_core::algorithm::FunctionId;
 use articulated_core::description::{Base, Description};
 
 use super::corpus::Effort;
-use super::judge::State;
-use super::own::DERIVATIVES;
+use super::judge::{DERIVATIVES, State};
 use super::robots::{built, hard, states};
 use super::row::{Case, Row};
 use crate::failure::Failure;
