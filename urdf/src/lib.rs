@@ -18,7 +18,7 @@
 //!
 //! The way of a file: document (bytes → XML) → links and joints (checked numbers, with their lines) → tree
 //! (names, rings, roots, mimics) → [`Description`]; with the feature `second-reader` → bridge (a plain document that `urdf-rs` reads has to give the same).
-//! With the feature `urdf-rs`, `from_urdf_rs` and `to_urdf_rs` convert from and to `urdf_rs::Robot`. [`write`] is the reverse of [`read`].
+//! With the feature `urdf-rs`, `from_urdf_rs` and `to_urdf_rs` convert from and to `urdf_rs::Robot`. [`write()`] is the reverse of [`read`].
 //! [`read`] opens no file ([`read_file`] does), and no input makes it panic, hang or overflow its stack.
 //!
 //! # What files have that is accepted
