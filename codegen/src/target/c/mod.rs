@@ -146,7 +146,7 @@ impl Source<'_> {
             let _ = writeln!(out, " * @param {name} {}: {}", self.lengths(part.function.gives), part.function.unit);
         }
         let c = function.entry.emitted();
-        let _ = writeln!(out, " * {} operations, {} sines and cosines.\n */", c.instructions(), c.trigonometric());
+        let _ = writeln!(out, " * Operations: {}; sines and cosines: {}.\n */", c.instructions(), c.trigonometric());
     }
 
     /// The names of the results.
