@@ -71,7 +71,8 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
     }
 }
 
-/// The language and its choices. Errors: choices of the other one, of the command line or of the scene.
+/// The language and its choices. Errors: choices of the other one, of the command line or of the
+/// scene.
 fn target(arguments: &GenerateArguments, options: &mut Options) -> Result<(), Failure> {
     if arguments.target == Language::Rust {
         let rust = options.rust_mut();
@@ -83,6 +84,7 @@ fn target(arguments: &GenerateArguments, options: &mut Options) -> Result<(), Fa
     }
     let of_rust = [
         ("--batch, or `batch` in the scene", !options.rust().batch.is_empty()),
+        ("--rename, or `rename` in the scene", !options.rename.is_empty()),
         ("--standalone", arguments.standalone),
         ("--forbid-unsafe", arguments.forbid_unsafe),
         ("--no-std", arguments.no_std),

@@ -9,7 +9,8 @@ pub(crate) struct Capabilities {
     pub(crate) level: Level,
     /// Whether values may be vectors.
     pub(crate) vectors: bool,
-    /// Whether a function can write into memory that holds no value yet, and name the slots in which values wait.
+    /// Whether a function can write into memory that holds no value yet, and name the slots in
+    /// which values wait.
     pub(crate) raw_memory: bool,
     /// Whether there are functions of many states.
     pub(crate) states: bool,

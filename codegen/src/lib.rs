@@ -63,8 +63,8 @@ pub use target::{COptions, File, RustOptions, Target, identifier};
 /// What was generated, and what there is to say about it.
 #[derive(Clone, Debug)]
 pub struct Generated {
-    /// The last of the files: in Rust the contents of a module, in C the source behind the header. The same request always
-    /// gives the same bytes.
+    /// The last of the files: in Rust the contents of a module, in C the source behind the header.
+    /// The same request always gives the same bytes.
     pub source: String,
     /// All files of the target.
     pub files: Vec<File>,
@@ -91,9 +91,9 @@ impl Generated {
     /// The source as tokens.
     ///
     /// # Panics
-    /// If the source was changed into something that is not Rust.
+    /// If the target is not Rust, or the source was changed into something that is not.
     pub fn tokens(&self) -> proc_macro2::TokenStream {
-        self.source.parse().expect("the emitter writes Rust")
+        self.source.parse().expect("the target is Rust")
     }
 
     /// How far each result of a function, by its place in the ledger, can be off by rounding, guaranteed, wherever the arguments are in the box of [`bound::in_box`]; infinite where a

@@ -8,8 +8,8 @@ use articulated_core::model::Model;
 use articulated_scene::{RobotAsked, RobotOptions};
 use articulated_urdf::Reading;
 
+use crate::target::Target;
 use crate::target::rust::is_name;
-use crate::target::{RustOptions, Target};
 use crate::{Error, function_groups};
 
 /// A robot's document and what to make of it. Macro, build script and command line all fill one of these.
@@ -28,18 +28,20 @@ pub struct Request {
 pub struct Options {
     /// The robot: its base, its edits, its frames, its effects.
     pub robot: RobotOptions,
-    /// The functions wanted, each as [`crate::FunctionSpec::parse`] reads it: a name of [`articulated_core::algorithm::functions`], or
-    /// `name = first + second(a = 0)`.
+    /// The functions wanted, each as [`crate::FunctionSpec::parse`] reads it: a name of
+    /// [`articulated_core::algorithm::functions`], or `name = first + second(a = 0)`.
     pub functions: Vec<String>,
     /// What the word `motion` stands for among them: the functions that the motion of a scene calls, and none without such a scene.
     pub motion: Vec<String>,
     /// Constants of the model that stay inputs: `payload(link)`, `inertia(link)`, `origin(joint)`, `gravity`, and numbers of an effect that is on, as `damping(joint)`, `contact(link)`.
     pub parameters: Vec<String>,
-    /// Names to use in generated code instead of those made from the robot's names: (name in the file, name in code).
+    /// Names to use in generated code instead of those made from the robot's names: (name in the
+    /// file, name in code).
     pub rename: Vec<(String, String)>,
     /// Compute limbs that are alike at once, one per lane of a vector, and derivatives of large trees in loops over their joints, four at a time, where that is cheaper.
     pub limbs: bool,
-    /// How accurate the functions are. Functions of many states at once have the accuracy of their type of numbers.
+    /// How accurate the functions are. Functions of many states at once have the accuracy of their
+    /// type of numbers.
     pub level: Level,
     /// How many megabytes (10⁶ bytes) of code all functions together may become, as predicted: see
     /// [`MAX_CODE_SIZE`](crate::MAX_CODE_SIZE), which is the default.
@@ -68,24 +70,6 @@ impl Default for Options {
 }
 
 impl Options {
-    /// The choices for Rust; the default ones if the language is another.
-    #[must_use]
-    pub fn rust(&self) -> &RustOptions {
-        static DEFAULT: RustOptions = RustOptions { batch: Vec::new(), forbid_unsafe: false, no_std: false, runtime: None };
-        if let Target::Rust(rust) = &self.target { rust } else { &DEFAULT }
-    }
-
-    /// The choices for Rust, which becomes the language if it is not.
-    pub fn rust_mut(&mut self) -> &mut RustOptions {
-        if !matches!(self.target, Target::Rust(_)) {
-            self.target = Target::default();
-        }
-        match &mut self.target {
-            Target::Rust(rust) => rust,
-            other => unreachable!("{} was replaced by Rust", other.name()),
-        }
-    }
-
     /// Another name in Rust for a joint or link, in place of one that it had.
     pub fn set_name(&mut self, from: &str, to: &str) {
         self.rename.retain(|(name, _)| name != from);
@@ -120,8 +104,8 @@ impl Request {
         whole.frames.iter().map(|frame| frame.name.clone()).filter(|name| !is_joint(name)).collect()
     }
 
-    /// The request with what follows from its choices: functions in the place of groups; without `std` a function can neither
-    /// ask what the processor has nor call a multiply-add.
+    /// The request with what follows from its choices: functions in the place of groups; without
+    /// `std` a function can neither ask what the processor has nor call a multiply-add.
     pub(crate) fn settled(&self) -> Cow<'_, Self> {
         let functions = function_groups::expanded(&self.options.functions, &self.options.motion);
         if !self.options.rust().no_std && functions == self.options.functions {

@@ -1,4 +1,5 @@
-//! Generated C as a program: compiled by the system's compiler as strict C99, fed with states, and asked for results.
+//! Runs generated C. The system's compiler compiles it as strict C99; the program reads states and
+//! writes results.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -15,7 +16,8 @@ fn compiler() -> Command {
     Command::new(std::env::var_os("CC").unwrap_or_else(|| "cc".into()))
 }
 
-/// Every warning is an error; products and sums are rounded one after the other, as the interpreter does.
+/// Every warning is an error; products and sums are rounded one after the other, as the interpreter
+/// does.
 const FLAGS: [&str; 7] = ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-O1", "-ffp-contract=off"];
 
 /// Compiles the C of several robots, whose names are their prefixes, as one program.

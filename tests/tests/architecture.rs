@@ -1,7 +1,8 @@
-//! How the code is laid out: arrows between crates point downward, and files import each other in no more circles than
-//! are known.
+//! How the code is laid out: arrows between crates point downward, and files import each other in
+//! no more circles than are known.
 //!
-//! `cargo test -p articulated-tests --test architecture -- --nocapture` prints the graph of crates and all circles.
+//! `cargo test -p articulated-tests --test architecture -- --nocapture` prints the graph of crates
+//! and all circles.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

@@ -27,8 +27,8 @@ impl fmt::Display for ConversionError {
 
 impl std::error::Error for ConversionError {}
 
-/// The robot that `urdf-rs` has read, checked as a file would be. `urdf-rs` does not tell a link without `<inertial>` from
-/// one whose mass and inertia are zero.
+/// The robot that `urdf-rs` has read, checked as a file would be. `urdf-rs` does not tell a link
+/// without `<inertial>` from one whose mass and inertia are zero.
 ///
 /// # Errors
 /// Every mistake of the robot.

@@ -49,7 +49,8 @@ struct Loaded {
 }
 
 impl Compiled {
-    /// Compiles and loads. The source has to be generated without a runtime (`options.rust().runtime` is `None`).
+    /// Compiles and loads. The source has to be generated without a runtime
+    /// (`options.rust().runtime` is `None`).
     pub fn build(rustc: &Rustc, generated: &Generated) -> Result<Self, CompileError> {
         Self::build_for(Target::Own, rustc, generated)
     }

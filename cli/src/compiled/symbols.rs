@@ -22,7 +22,8 @@ impl Sizes {
         let own = self.0.iter().find(|(n, _)| n == symbol)?.1;
         // A mangled path holds each name with its length in front.
         let mut paths = ["", "_into"].map(|form| format!("5robot{}{name}{form}", name.len() + form.len())).to_vec();
-        // The private module has the body, the loop over columns, where there is one, and loops over joints.
+        // The private module has the body, the loop over columns, where there is one, and loops
+        // over joints.
         let inside = |item: &str| format!("5robot14implementation{}{item}", item.len());
         paths.extend([inside(name), inside("columns")]);
         paths.extend((name == "inverse_dynamics_derivatives").then(|| inside("derivatives")));

@@ -21,7 +21,8 @@ use super::row::{Case, Row};
 use crate::table::counted;
 use crate::worse::worse;
 
-/// Robots of more degrees of freedom than this are judged without derivatives: 96 digits of a cube of it take minutes.
+/// Robots of more degrees of freedom than this are judged without derivatives: 96 digits of a cube
+/// of it take minutes.
 pub(super) const DERIVATIVES: usize = 12;
 
 /// η allowed, and errors allowed of what is not solved for, in units of u times the magnitude of the terms.

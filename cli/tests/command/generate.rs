@@ -50,6 +50,7 @@ fn c_is_a_header_and_a_source_in_a_folder() {
     assert!(run(&[&words[..], &["--prefix", "my"]].concat()).out.contains("void my_inverse_dynamics("));
     for (more, told) in [
         (&["--no-std", "--batch", "f64"][..], "--target c: found --batch, or `batch` in the scene, --no-std, which are for Rust alone"),
+        (&["--rename", "slide=S"], "--target c: found --rename, or `rename` in the scene, which are for Rust alone"),
         (&["--level", "double_double"], "level: found double_double, expected for target \"c\": f64, f32 or f32_f64"),
         (&["--prefix", "1st"], "prefix: found \"1st\""),
     ] {

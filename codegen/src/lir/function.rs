@@ -1,5 +1,5 @@
-//! A function of a module: what it takes and gives, and its bodies. Everything that a target may choose is decided here,
-//! by its [`Capabilities`], and nothing while it prints.
+//! A function of a module: what it takes and gives, and its bodies. Everything that a target may
+//! choose is decided here, by its [`Capabilities`], and nothing while it prints.
 
 use articulated_core::algorithm::{Dim, Shape};
 
@@ -84,18 +84,20 @@ const CUT_STATES_FROM: usize = 20_000;
 /// Statements of a piece.
 const LENGTH: usize = 200;
 
-/// From this many nodes on a function is cut: below, one piece is faster to run and as fast to compile.
+/// From this many nodes on a function is cut: below, one piece is faster to run and as fast to
+/// compile.
 const CUT_FROM: usize = 4500;
 
-/// The same of plain numbers beside a loop over columns: from here on pieces are as fast as one, and those of a seven-axis
-/// arm faster.
+/// The same of plain numbers beside a loop over columns: from here on pieces are as fast as one,
+/// and those of a seven-axis arm faster.
 const CUT_BESIDE_COLUMNS_FROM: usize = 2000;
 
 /// The same of sums of two doubles, of which each node is a score of instructions.
 const CUT_PAIRS_FROM: usize = 400;
 
-/// From this many results and nodes on each result is written as soon as it is made: kept until the end, they would fill
-/// the registers. Of a small function the compiler makes more where they come together.
+/// From this many results and nodes on each result is written as soon as it is made: kept until the
+/// end, they would fill the registers. Of a small function the compiler makes more where they come
+/// together.
 const WRITE_FROM: (usize, usize) = (32, 700);
 
 /// From this many angles on it is faster to compute their sines together.
@@ -219,7 +221,8 @@ impl Plan<'_> {
             results = flat(&results);
         }
         let is_read = |at| self.columns.is_none_or(|columns| columns.reads(at));
-        // What loops compute is not stored here, and neither are zeros of a result that begins as zeros.
+        // What loops compute is not stored here, and neither are zeros of a result that begins as
+        // zeros.
         let is_partial = self.columns.is_some() || graph.outputs.is_empty() || outlined && ending != Ending::Filled;
         let lowering = Lowering { graph, ty, sines: self.sines(), results: &results };
         let stores = || lowering.stores_as_made(|at| ending == Ending::Filled && is_read(at), barrier);

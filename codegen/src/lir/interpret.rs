@@ -5,8 +5,9 @@ use std::collections::HashMap;
 use super::{Body, Expr, Number, Operand, Slot, Stmt, Store, Temp};
 use crate::graph::{MOST, Op, Value, operation};
 
-/// The numbers of the result, and NaN where a partial body stores none; `input(argument, index)` gives the inputs. Every
-/// number is an `f64`, whatever the body's type, and a multiply-add is a product and a sum.
+/// The numbers of the result, and NaN where a partial body stores none; `input(argument, index)`
+/// gives the inputs. Every number is an `f64`, whatever the body's type, and a multiply-add is a
+/// product and a sum.
 ///
 /// # Panics
 /// If the body breaks a rule of [`super::verify`].

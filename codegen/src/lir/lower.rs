@@ -13,7 +13,8 @@ use crate::lir::{Angle, Array, Expr, Number, Operand, Rows, Stmt, Store, Temp, T
 pub(crate) struct Sines {
     /// How many angles go together.
     pub(crate) together: usize,
-    /// Whether there are functions of one, two and four angles only, and not one of up to `together`.
+    /// Whether there are functions of one, two and four angles only, and not one of up to
+    /// `together`.
     pub(crate) are_powers_of_two: bool,
     /// From this many angles on they are computed together.
     pub(crate) from: usize,
@@ -36,8 +37,8 @@ impl Lowering<'_> {
         statements
     }
 
-    /// Each number of the result is stored as soon as it is known; zeros between the definitions, as far as they are
-    /// `read`. Of states all numbers are stored with their definitions.
+    /// Each number of the result is stored as soon as it is known; zeros between the definitions,
+    /// as far as they are `read`. Of states all numbers are stored with their definitions.
     pub(crate) fn stores_as_made(&self, is_read: impl Fn(usize) -> bool, barrier: bool) -> Vec<Stmt> {
         let definitions = self.definitions();
         let mut defined: HashMap<Temp, usize> = HashMap::new();
@@ -79,10 +80,10 @@ impl Lowering<'_> {
         out
     }
 
-    /// Stores of what lies side by side in the result: constants first, half of them before the sines and half between
-    /// and behind them, so that the stores fill the time in which nothing else can be done; then each group as soon as
-    /// the last of its numbers is known. For vectors of four lanes.
-    /// Also returns the lane constants, which may be more than those of the graph.
+    /// Stores of what lies side by side in the result: constants first, half of them before the
+    /// sines and half between and behind them, so that the stores fill the time in which nothing
+    /// else can be done; then each group as soon as the last of its numbers is known. For vectors
+    /// of four lanes. Also returns the lane constants, which may be more than those of the graph.
     pub(crate) fn stores_in_rows(&self) -> (Vec<Stmt>, Lanes) {
         let cells: Vec<Cell> = self.graph.outputs.iter().map(|&output| Cell::of(self.graph, output)).collect();
         let all = self.results.iter().flat_map(|array| {
@@ -95,7 +96,8 @@ impl Lowering<'_> {
         (writer.statements(), lanes)
     }
 
-    /// The definitions of all values that have a name: of each node, and of sines of several angles.
+    /// The definitions of all values that have a name: of each node, and of sines of several
+    /// angles.
     fn definitions(&self) -> Vec<Vec<Stmt>> {
         let inner = inner(self.graph);
         let mut units = Vec::with_capacity(self.graph.nodes().len());
@@ -177,7 +179,8 @@ impl Lowering<'_> {
     }
 }
 
-/// Whether a statement is repeated wherever its value is needed: inputs, and comparisons, whose values are no numbers.
+/// Whether a statement is repeated wherever its value is needed: inputs, and comparisons, whose
+/// values are no numbers.
 pub(crate) fn is_light(statement: &Stmt) -> bool {
     statement.compares() || matches!(statement, Stmt::Let(_, Expr::Input { .. } | Expr::LaneInput { .. }))
 }
@@ -188,8 +191,9 @@ fn defined_in(statements: &[Stmt]) -> Vec<Temp> {
     all
 }
 
-/// Angles that are known at once, as they lie in memory, so that neighbours are one load; or backwards where more are
-/// needed in that order, since the last lane is known last. Computed angles come after them, as they are needed.
+/// Angles that are known at once, as they lie in memory, so that neighbours are one load; or
+/// backwards where more are needed in that order, since the last lane is known last. Computed
+/// angles come after them, as they are needed.
 fn in_order(needed: &[super::order::Angle], graph: &Graph) -> Vec<super::order::Angle> {
     let place = |angle: &super::order::Angle| {
         let node = graph.node(angle.angle);
@@ -204,7 +208,8 @@ fn in_order(needed: &[super::order::Angle], graph: &Graph) -> Vec<super::order::
     angles
 }
 
-/// The nodes that need a name: those that others use. A lane of a vector does not where it is a result.
+/// The nodes that need a name: those that others use. A lane of a vector does not where it is a
+/// result.
 fn inner(graph: &Graph) -> Vec<bool> {
     let mut inner = vec![false; graph.nodes().len()];
     graph.nodes().iter().flat_map(Node::operands).for_each(|o| inner[o.index()] = true);
@@ -326,8 +331,8 @@ impl<'a, 'b> RowWriter<'a, 'b> {
     }
 }
 
-/// Three vectors of inputs that are read together: the first, second and third numbers of each lane, where the lanes lie
-/// one after the other.
+/// Three vectors of inputs that are read together: the first, second and third numbers of each
+/// lane, where the lanes lie one after the other.
 struct Three {
     dst: [Temp; 3],
     argument: u32,
@@ -350,8 +355,8 @@ fn thirds(graph: &Graph) -> Vec<Three> {
     inputs.iter().filter_map(three).collect()
 }
 
-/// Sums over the lanes of several vectors that are results and nothing else. Up to four are added up together, which
-/// takes half as many instructions as one after the other.
+/// Sums over the lanes of several vectors that are results and nothing else. Up to four are added
+/// up together, which takes half as many instructions as one after the other.
 struct Sums {
     sets: Vec<Vec<usize>>,
     /// The set of a node, and its lane there.
@@ -361,7 +366,8 @@ struct Sums {
 }
 
 impl Sums {
-    /// In the order of results, so that those of a set lie side by side. A sum that is left over is made alone.
+    /// In the order of results, so that those of a set lie side by side. A sum that is left over is
+    /// made alone.
     fn of(graph: &Graph) -> Self {
         let mut used = vec![false; graph.nodes().len()];
         graph.nodes().iter().flat_map(|node| node.operands()).for_each(|o| used[o.index()] = true);
@@ -381,7 +387,8 @@ impl Sums {
         self.places.get(&node).map_or(&[], |(set, _)| &self.sets[*set])
     }
 
-    /// The value that holds a sum, and its lane there. A sum that is made alone has its own, and lane 0.
+    /// The value that holds a sum, and its lane there. A sum that is made alone has its own, and
+    /// lane 0.
     fn place(&self, node: usize) -> (Temp, usize) {
         self.places.get(&node).map_or_else(|| (Temp::of(node), 0), |(set, lane)| (Temp::of(self.first + set), *lane))
     }

@@ -8,9 +8,11 @@
 //!
 //! * LIR knows no robot and no language. A target knows no graph.
 //! * No pass reads text. Printing comes last.
-//! * [`verify`] holds before and after each pass: every operand is defined before its use, masks are
+//! * [`verify`] holds before and after each pass: every operand is defined before its use, masks
+//!   are
 //!   used as masks only, and every number of the result is stored once.
-//! * [`interpret`](interpret::interpret) computes a body: before and after each pass it gives the same numbers.
+//! * [`interpret`](interpret::interpret) computes a body: before and after each pass it gives the
+//!   same numbers.
 
 pub(crate) mod function;
 pub mod interpret;
@@ -68,7 +70,8 @@ impl Temp {
 /// A spill slot: memory in which a value waits while the registers are full.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Slot {
-    /// Whether it is rarely used. Slots that are often used lie where an instruction reaches them by one byte.
+    /// Whether it is rarely used. Slots that are often used lie where an instruction reaches them
+    /// by one byte.
     pub is_far: bool,
     /// Its number among those.
     pub number: usize,
@@ -177,14 +180,16 @@ pub enum Store {
 pub enum Stmt {
     /// Defines a value.
     Let(Temp, Expr),
-    /// Sines and cosines of several angles at once. `alone`: so few that each is computed by itself.
+    /// Sines and cosines of several angles at once. `alone`: so few that each is computed by
+    /// itself.
     SinCos {
         /// The angles.
         angles: Vec<Angle>,
         /// Whether there are too few to compute them together.
         alone: bool,
     },
-    /// Twelve elements of an argument as three vectors of four lanes: vector k has elements k, k + 3, k + 6, k + 9.
+    /// Twelve elements of an argument as three vectors of four lanes: vector k has elements k, k +
+    /// 3, k + 6, k + 9.
     Thirds {
         /// The three vectors.
         dst: [Temp; 3],
@@ -252,16 +257,17 @@ pub struct Body {
     pub kept: usize,
     /// Its spill slots, if it spills by itself.
     pub slots: Option<Slots>,
-    /// Whether numbers that lie side by side in the result must not look so to a compiler: `lir/pass/alias_barrier.rs`
-    /// says why.
+    /// Whether numbers that lie side by side in the result must not look so to a compiler:
+    /// `lir/pass/alias_barrier.rs` says why.
     pub barrier: bool,
-    /// Whether not all numbers of the result are stored: the others are zero from the start, or a loop that follows
-    /// computes them.
+    /// Whether not all numbers of the result are stored: the others are zero from the start, or a
+    /// loop that follows computes them.
     pub is_partial: bool,
 }
 
 impl Body {
-    /// How many different values are stored in the result: constants and copies of the same value are not computed.
+    /// How many different values are stored in the result: constants and copies of the same value
+    /// are not computed.
     pub(crate) fn computed(&self) -> usize {
         let mut values = std::collections::HashSet::new();
         for statement in self.pieces.iter().flatten() {

@@ -19,8 +19,8 @@ pub(crate) struct Angle {
     pub(crate) cos: Option<usize>,
 }
 
-/// All nodes as steps. A batch comes as soon as its angles are known: first the nodes that they need, then the batch, then
-/// the rest in its order.
+/// All nodes as steps. A batch comes as soon as its angles are known: first the nodes that they
+/// need, then the batch, then the rest in its order.
 pub(crate) fn order(graph: &Graph) -> Vec<Step> {
     let stages = stages(graph);
     let last = stages.iter().copied().max().unwrap_or(0);

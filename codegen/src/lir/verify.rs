@@ -5,8 +5,9 @@ use std::collections::HashSet;
 use super::{Body, Expr, Operand, Stmt, Temp};
 use crate::graph::Op;
 
-/// Checks that every operand is defined before its use and once, that masks are what comparisons give and selections
-/// take, that slots are written before they are read, and that every number of the result is written once.
+/// Checks that every operand is defined before its use and once, that masks are what comparisons
+/// give and selections take, that slots are written before they are read, and that every number of
+/// the result is written once.
 ///
 /// # Errors
 /// The first statement that breaks a rule, and the rule.

@@ -27,7 +27,8 @@ pub(super) struct Candidate<'a> {
 }
 
 impl Candidate<'_> {
-    /// The graph of a function by the choices that cost least, or of what comes before a loop, and what became of it on the way.
+    /// The graph of a function by the choices that cost least, or of what comes before a loop, and
+    /// what became of it on the way.
     pub(super) fn made(&self, wanted: &FunctionSpec, unsolved: Option<&'static Way<Sym>>) -> (Graph, Entry) {
         let all = model_passes::<Sym>().len();
         let choose = |part| unsolved.map_or_else(|| cheapest(part, self, all), |way| Strategy::plain(way, all));
@@ -44,7 +45,8 @@ impl Candidate<'_> {
         (graph, entry)
     }
 
-    /// The graph as it is traced, and its counts after each model pass, `all` of them, and each addition that a choice has.
+    /// The graph as it is traced, and its counts after each model pass, `all` of them, and each
+    /// addition that a choice has.
     fn traced(&self, wanted: &FunctionSpec, choices: &[Strategy], all: usize) -> (Graph, Vec<(&'static str, Counts)>) {
         let mut graph = Graph::default();
         let mut stages: Vec<(&'static str, Counts)> = Vec::new();
@@ -77,7 +79,8 @@ impl Candidate<'_> {
         pass::run_all_unchecked(self.trace(wanted, choices))
     }
 
-    /// What choices cost, in instructions, and with each multiplication counted twice: cores have fewer multipliers than they have places for instructions.
+    /// What choices cost, in instructions, and with each multiplication counted twice: cores have
+    /// fewer multipliers than they have places for instructions.
     pub(super) fn price(&self, wanted: &FunctionSpec, choices: &[Strategy]) -> (u32, u64) {
         let graph = self.finished(wanted, choices);
         let cost = pass::cost(&graph);
@@ -85,13 +88,16 @@ impl Candidate<'_> {
     }
 }
 
-/// What costs more than this is not tried with frames that do not turn or mass that is lent: it would gain a hundredth, and takes long to trace.
+/// What costs more than this is not tried with frames that do not turn or mass that is lent: it
+/// would gain a hundredth, and takes long to trace.
 const UNTURNED_TO: u32 = 2500;
 
-/// Nor is any function of a robot with more bodies than this, nor with another unit of length: to find out what it costs is to trace it twice.
+/// Nor is any function of a robot with more bodies than this, nor with another unit of length: to
+/// find out what it costs is to trace it twice.
 const UNTURNED_BODIES: usize = 64;
 
-/// The way that costs least once the graph passes are done. With parameters, model passes may cost more than they save: then they are not taken.
+/// The way that costs least once the graph passes are done. With parameters, model passes may cost
+/// more than they save: then they are not taken.
 pub(super) fn cheapest(part: &FunctionTerm, subject: &Candidate, all: usize) -> Strategy {
     let few = if subject.parameters.is_empty() { all..=all } else { 0..=all };
     let ways = ways(part, subject.model);
@@ -109,7 +115,8 @@ pub(super) fn cheapest(part: &FunctionTerm, subject: &Candidate, all: usize) -> 
     let alone = FunctionSpec { name: String::new(), parts: vec![part.clone()] };
     let mut best: Option<(Strategy, u32)> = None;
     for (choice, least) in candidates {
-        // A way whose least is more than another's cost is not tried: the factorisation of a long chain grows with the cube of its length.
+        // A way whose least is more than another's cost is not tried: the factorisation of a long
+        // chain grows with the cube of its length.
         if best.is_some_and(|(_, cost)| least > u64::from(cost) || (choice.unturned.is_some() || choice.lent) && cost > UNTURNED_TO) {
             continue;
         }
@@ -125,7 +132,8 @@ fn cost(wanted: &FunctionSpec, choice: Strategy, subject: &Candidate) -> u32 {
     pass::cost(&subject.finished(wanted, &[choice]))
 }
 
-/// The choices with rates by axes, if that takes fewer multiplications and no more instructions; of robots with many bodies, which take long to trace, without trying.
+/// The choices with rates by axes, if that takes fewer multiplications and no more instructions; of
+/// robots with many bodies, which take long to trace, without trying.
 pub(super) fn by_axes(wanted: &FunctionSpec, choices: Vec<Strategy>, subject: &Candidate) -> Vec<Strategy> {
     let turns = |part: &FunctionTerm| part.function.forms.contains(&Form::RatesByAxes);
     if !wanted.parts.iter().any(turns) {
@@ -139,10 +147,12 @@ pub(super) fn by_axes(wanted: &FunctionSpec, choices: Vec<Strategy>, subject: &C
     if subject.model.bodies.len() > UNTURNED_BODIES || better() { with } else { choices }
 }
 
-/// So many instructions are traced at most to find the best unit of length: of a long function fewer are tried.
+/// So many instructions are traced at most to find the best unit of length: of a long function
+/// fewer are tried.
 const TRIED: usize = 20_000;
 
-/// The choices with lengths in the unit that costs least: where a constant is one, what it multiplies is only added.
+/// The choices with lengths in the unit that costs least: where a constant is one, what it
+/// multiplies is only added.
 pub(super) fn in_the_best_unit(wanted: &FunctionSpec, choices: Vec<Strategy>, subject: &Candidate) -> Vec<Strategy> {
     if !subject.parameters.is_empty() || subject.model.bodies.len() > UNTURNED_BODIES {
         return choices;

@@ -116,7 +116,8 @@ impl FunctionSpec {
         }
     }
 
-    /// The same function with terms that are computed as others: what is fixed at zero costs nothing then.
+    /// The same function with terms that are computed as others: what is fixed at zero costs
+    /// nothing then.
     pub(crate) fn reduced(&self) -> Self {
         Self { name: self.name.clone(), parts: self.parts.iter().map(FunctionTerm::reduced).collect() }
     }
@@ -162,7 +163,8 @@ impl FunctionTerm {
         Ok(Self { function, constants, sines })
     }
 
-    /// The term that gives the same and takes none of the arguments that are fixed at zero, as far as there is one.
+    /// The term that gives the same and takes none of the arguments that are fixed at zero, as far
+    /// as there is one.
     fn reduced(&self) -> Self {
         let is_zero = |argument: &Argument| self.constant(*argument).is_some_and(Constant::is_zero);
         let preset = PRESETS.iter().find(|(general, zeros, _)| *general == self.function.name && zeros.iter().all(is_zero));
@@ -179,8 +181,8 @@ impl FunctionTerm {
     }
 }
 
-/// Functions, arguments of theirs that are zero, and the function that they are then; of several the one with most zeros
-/// first.
+/// Functions, arguments of theirs that are zero, and the function that they are then; of several
+/// the one with most zeros first.
 const PRESETS: &[(&str, &[Argument], &str)] = &[
     ("inverse_dynamics_with_wrenches", &[Argument::Wrenches], "inverse_dynamics"),
     ("inverse_dynamics_with_wrenches", &[Argument::V, Argument::A], "static_torque"),
@@ -265,7 +267,8 @@ mod tests {
         assert!(wanted.as_function().is_none());
     }
 
-    /// A preset exists, gives the same array, takes what is left, and costs what it costs by itself.
+    /// A preset exists, gives the same array, takes what is left, and costs what it costs by
+    /// itself.
     #[test]
     fn what_is_fixed_at_zero_costs_nothing() {
         let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/urdf/ur5_like.urdf");

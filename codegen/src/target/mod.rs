@@ -1,5 +1,5 @@
-//! The languages that code is generated in. Each has a folder, which prints functions of the intermediate representation,
-//! and a row here.
+//! The languages that code is generated in. Each has a folder, which prints functions of the
+//! intermediate representation, and a row here.
 
 pub(crate) mod c;
 pub(crate) mod rust;

@@ -8,11 +8,10 @@ use articulated_tests::batch_program::{BatchProgram, STATES, is_state_by_state};
 use articulated_tests::case::State;
 use articulated_tests::machine::{is_arm, is_x86_64};
 use articulated_tests::measure::{arguments, error};
-use articulated_tests::random::Random;
 use articulated_tests::random_tree::{Flavour, random_tree};
 use articulated_tests::urdf_text;
 
-use crate::robots::{Robot, with};
+use crate::robots::{Robot, single_states, with};
 
 /// Functions of every kind of argument and result.
 const FUNCTIONS: [&str; 13] = [
@@ -97,18 +96,6 @@ static WAYS: LazyLock<Vec<Way>> = LazyLock::new(|| {
     sets.into_iter().filter_map(way).collect()
 });
 
-/// States whose numbers are numbers of 32 bits.
-fn states(robot: &Robot) -> Vec<State> {
-    let mut random = Random::new(29);
-    let short = |x: &mut Vec<f64>| x.iter_mut().for_each(|x| *x = f64::from(*x as f32));
-    let one = |_| {
-        let mut s = robot.case.state(&mut random);
-        [&mut s.q, &mut s.v, &mut s.a, &mut s.tau, &mut s.wrenches, &mut s.step, &mut s.target, &mut s.uniform].into_iter().for_each(short);
-        s
-    };
-    (0..STATES).map(one).collect()
-}
-
 /// What a program says.
 fn run(way: &Way, robot: &Robot, name: &str, real: Real, states: &[State]) -> Vec<Vec<f64>> {
     let given: Vec<Vec<&[f64]>> = states.iter().map(|s| arguments(name, s)).collect();
@@ -131,7 +118,7 @@ const ALLOWED: f64 = 8.0;
 fn batches_give_what_the_generic_library_gives() {
     for way in WAYS.iter() {
         for (robot, real) in way.robots.iter().flat_map(|r| [(r, Real::F64), (r, Real::F32)]) {
-            let states = states(robot);
+            let states = single_states(robot, STATES);
             let mut worst = (0.0, "");
             for name in robot.functions() {
                 for (state, found) in states.iter().zip(run(way, robot, name, real, &states)) {
@@ -165,7 +152,7 @@ fn instruction_sets_that_round_alike_agree_to_the_bit() {
     let [fused, split]: [Vec<&Way>; 2] = [true, false].map(|fused| WAYS.iter().filter(|w| w.fused == fused).collect());
     for pair in fused.windows(2).chain(split.windows(2)) {
         for (robot, real) in pair[0].robots.iter().flat_map(|r| [(r, Real::F64), (r, Real::F32)]) {
-            let states = states(robot);
+            let states = single_states(robot, STATES);
             // A function of one state that is safe may compute limbs one after the other.
             let is_of_blocks = |name: &&str| !is_state_by_state(&robot.generated.source, name, real);
             for name in robot.functions().filter(is_of_blocks) {
@@ -185,7 +172,7 @@ fn bits(numbers: &[Vec<f64>]) -> Vec<u64> {
 fn a_state_takes_no_notice_of_its_neighbours() {
     for way in WAYS.iter() {
         let robot = &way.robots[0];
-        let good = states(robot);
+        let good = single_states(robot, STATES);
         for real in [Real::F64, Real::F32] {
             let mut mixed = good.clone();
             for (state, x) in mixed.iter_mut().step_by(3).zip([f64::NAN, f64::INFINITY, 1e15, -3e5].into_iter().cycle()) {

@@ -6,20 +6,18 @@ use articulated_codegen::{COptions, Options, Target, generate};
 use articulated_core::algorithm::{Shape, functions};
 use articulated_core::description::Base;
 use articulated_tests::c_program;
-use articulated_tests::case::State;
 use articulated_tests::measure::{arguments, error};
 use articulated_tests::program::Program;
-use articulated_tests::random::Random;
 use articulated_tests::random_tree::{Flavour, random_tree};
 use articulated_tests::urdf_text;
 
-use crate::robots::{Robot, with};
+use crate::robots::{Robot, single_states, with};
 
 /// Functions so long that they are cut into pieces.
 const LONG: [&str; 2] = ["coriolis_matrix", "mass_matrix_inverse"];
 
-/// An arm in each level, every kind of joint on a floating base, limbs, joints that follow others, long functions, and a
-/// link alone.
+/// An arm in each level, every kind of joint on a floating base, limbs, joints that follow others,
+/// long functions, and a link alone.
 static ROBOTS: LazyLock<Vec<Robot>> = LazyLock::new(|| {
     let robot = |name: &str, urdf: &str, base: Base, level: &str, wanted: &dyn Fn(&str) -> bool| {
         let target = Target::C(COptions { prefix: Some(name.to_owned()) });
@@ -52,25 +50,13 @@ static PROGRAM: LazyLock<Program> = LazyLock::new(|| {
 
 const STATES: usize = 8;
 
-/// States whose numbers are numbers of 32 bits too.
-fn states(robot: &Robot) -> Vec<State> {
-    let mut random = Random::new(29);
-    let short = |x: &mut Vec<f64>| x.iter_mut().for_each(|x| *x = f64::from(*x as f32));
-    let one = |_| {
-        let mut s = robot.case.state(&mut random);
-        [&mut s.q, &mut s.v, &mut s.a, &mut s.tau, &mut s.wrenches, &mut s.step, &mut s.target, &mut s.uniform].into_iter().for_each(short);
-        s
-    };
-    (0..STATES).map(one).collect()
-}
-
 #[test]
 fn c_gives_what_the_generic_library_gives() {
     for robot in ROBOTS.iter() {
         let single = robot.generated.level.is_single();
         // In doubles 14 units of roundoff were seen, in singles 40.
         let (unit, allowed) = if single { (f64::from(f32::EPSILON) / f64::EPSILON, 128.0) } else { (1.0, 64.0) };
-        let states = states(robot);
+        let states = single_states(robot, STATES);
         let mut worst = (0.0, "");
         for name in robot.functions() {
             let given: Vec<Vec<&[f64]>> = states.iter().map(|s| arguments(name, s)).collect();
@@ -84,11 +70,12 @@ fn c_gives_what_the_generic_library_gives() {
     }
 }
 
-/// With products and sums rounded one after the other, only sines of the two mathematical libraries may differ.
+/// With products and sums rounded one after the other, only sines of the two mathematical libraries
+/// may differ.
 #[test]
 fn c_computes_what_the_graph_does() {
     for robot in ROBOTS.iter().filter(|r| !r.generated.level.is_single()) {
-        let states = states(robot);
+        let states = single_states(robot, STATES);
         for (name, graph) in robot.functions().zip(&robot.generated.graphs) {
             let given: Vec<Vec<&[f64]>> = states.iter().map(|s| arguments(name, s)).collect();
             for (given, found) in given.iter().zip(PROGRAM.run(&robot.name, name, &given)) {

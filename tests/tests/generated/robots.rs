@@ -6,8 +6,9 @@ use articulated_codegen::{Generated, Options, Request, generate};
 use articulated_core::algorithm::{Function, Needs, functions};
 use articulated_core::description::Base;
 use articulated_core::model::{Frame, Model};
-use articulated_tests::case::{Case, read};
+use articulated_tests::case::{Case, State, read};
 use articulated_tests::program::Program;
+use articulated_tests::random::Random;
 use articulated_tests::random_tree::{Flavour, random_tree};
 use articulated_tests::urdf_text;
 
@@ -75,6 +76,18 @@ pub(crate) fn with(name: String, urdf: &str, base: Base, singular: bool, options
     let generated = generate(&request).unwrap_or_else(|e| panic!("{name}: {e}"));
     case.model = case.model.with_frames(&frames).expect("its own frames");
     Robot { case, generated, name }
+}
+
+/// So many random states whose numbers are `f32`, exactly.
+pub(crate) fn single_states(robot: &Robot, count: usize) -> Vec<State> {
+    let mut random = Random::new(29);
+    let short = |x: &mut Vec<f64>| x.iter_mut().for_each(|x| *x = f64::from(*x as f32));
+    let one = |_| {
+        let mut s = robot.case.state(&mut random);
+        [&mut s.q, &mut s.v, &mut s.a, &mut s.tau, &mut s.wrenches, &mut s.step, &mut s.target, &mut s.uniform].into_iter().for_each(short);
+        s
+    };
+    (0..count).map(one).collect()
 }
 
 /// The last frame, and the one in the middle.

@@ -10,7 +10,8 @@ pub(super) struct Curve {
     pub(super) values: Vec<f64>,
 }
 
-/// Told apart by people who do not see all colours, on screen and in print; at most so many curves share a field.
+/// Colours of curves. Readers with colour blindness can distinguish them, on screen and in print.
+/// A panel has at most so many curves.
 pub(super) const COLOURS: [&str; 8] = ["#1b6ca8", "#d9822b", "#3f8f5b", "#c2453f", "#7a5195", "#b59f00", "#36a9bf", "#555555"];
 
 /// The look of a curve.

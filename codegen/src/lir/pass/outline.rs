@@ -1,16 +1,17 @@
-//! A long function as several short ones, one after the other: compilers take time that grows faster than a function's
-//! length, and spill more.
+//! A long function as several short ones, one after the other: compilers take time that grows
+//! faster than a function's length, and spill more.
 //!
-//! What one piece makes and a later one needs is kept in a struct, in which a place is used again once its value is not
-//! needed any more. Inputs are read where they are needed, and results are written where they are made.
+//! What one piece makes and a later one needs is kept in a struct, in which a place is used again
+//! once its value is not needed any more. Inputs are read where they are needed, and results are
+//! written where they are made.
 
 use std::collections::HashMap;
 
 use crate::lir::lower::is_light;
 use crate::lir::{Stmt, Temp};
 
-/// The statements in pieces of so many that compute, and how many values are kept between them. Inputs and comparisons
-/// move to their first use in each piece.
+/// The statements in pieces of so many that compute, and how many values are kept between them.
+/// Inputs and comparisons move to their first use in each piece.
 pub(crate) fn outline(statements: Vec<Stmt>, length: usize) -> (Vec<Vec<Stmt>>, usize) {
     let mut light: HashMap<Temp, Stmt> = HashMap::new();
     let mut rest = Vec::with_capacity(statements.len());
@@ -100,8 +101,8 @@ struct Slots {
 const NOWHERE: usize = usize::MAX;
 
 impl Slots {
-    /// A slot for piece `c` to write to, and not beside another: of neighbours a compiler would look for vectors to make
-    /// them from.
+    /// A slot for piece `c` to write to, and not beside another: of neighbours a compiler would
+    /// look for vectors to make them from.
     fn take(&mut self, c: usize) -> usize {
         let beside = |slot: usize| [slot.wrapping_sub(1), slot + 1].into_iter().any(|k| self.written.get(k) == Some(&c));
         let found = self.free.iter().rposition(|&slot| !beside(slot));

@@ -1,16 +1,18 @@
 //! Results that lie side by side and are made soon after one another, by one store.
 //!
-//! A processor stores once a cycle, and large matrices are mostly stores: the mass matrix of a humanoid takes a tenth
-//! less time.
+//! A processor stores once a cycle, and large matrices are mostly stores: the mass matrix of a
+//! humanoid takes a tenth less time.
 
 use std::collections::BTreeMap;
 
 use crate::lir::{Array, Number, Stmt, Store};
 
-/// Two results go together if at most so many statements lie between them: longer kept, they would fill the registers.
+/// Two results go together if at most so many statements lie between them: longer kept, they would
+/// fill the registers.
 const APART: usize = 100;
 
-/// The statements with stores of columns 2j and 2j + 1 of a row of a matrix as one, where the second was.
+/// The statements with stores of columns 2j and 2j + 1 of a row of a matrix as one, where the
+/// second was.
 pub(crate) fn pair_stores(statements: Vec<Stmt>, results: &[Array]) -> Vec<Stmt> {
     let mut made: BTreeMap<usize, (usize, Number)> = BTreeMap::new();
     for (n, statement) in statements.iter().enumerate() {

@@ -1,11 +1,12 @@
-//! Which values are in registers at each step, and which wait in memory: the one that is needed last makes room
-//! (L. A. Belady, "A study of replacement algorithms for a virtual-storage computer", IBM Systems Journal 5 (2), 1966).
+//! Which values are in registers at each step, and which wait in memory: the one that is needed
+//! last makes room (L. A. Belady, "A study of replacement algorithms for a virtual-storage
+//! computer", IBM Systems Journal 5 (2), 1966).
 
 /// Values that are held in registers. Intermediate results of an instruction have the other two.
 const REGISTERS: usize = 14;
 
-/// A value that is needed again within so many steps is loaded into a register. Others are read from memory where they are
-/// needed.
+/// A value that is needed again within so many steps is loaded into a register. Others are read
+/// from memory where they are needed.
 const SOON: usize = 8;
 
 /// What a step needs and makes: values by their numbers.

@@ -1,5 +1,6 @@
-//! Which numbers of a result are stored together: the lanes of vectors of four, transposed so that neighbours in the
-//! result are written by one store. A processor stores once a cycle, whatever the width.
+//! Which numbers of a result are stored together: the lanes of vectors of four, transposed so that
+//! neighbours in the result are written by one store. A processor stores once a cycle, whatever the
+//! width.
 
 use std::collections::BTreeMap;
 

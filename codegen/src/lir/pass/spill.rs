@@ -1,23 +1,25 @@
 //! Spill slots for x86-64 without AVX-512, which has sixteen registers.
 //!
-//! In a long function half of a compiler's instructions only move values out of registers and back, nine and ten bytes
-//! each, since they name places far from the end of the stack: more than such a processor keeps decoded. Here values wait
-//! on shelves that an instruction reaches by one byte: two of 128 bytes behind each pointer, since that byte has a sign.
-//! Values that wait long are not worth those bytes, and are in one struct for all.
+//! In a long function half of a compiler's instructions only move values out of registers and back,
+//! nine and ten bytes each, since they name places far from the end of the stack: more than such a
+//! processor keeps decoded. Here values wait on shelves that an instruction reaches by one byte:
+//! two of 128 bytes behind each pointer, since that byte has a sign. Values that wait long are not
+//! worth those bytes, and are in one struct for all.
 //!
-//! A target hides from its compiler where the pointers lead, so that a value is read there where [`Plan`] says.
+//! A target hides from its compiler where the pointers lead, so that a value is read there where
+//! [`Plan`] says.
 
 use std::collections::{HashMap, VecDeque};
 
 use super::registers::{Plan, Step, Uses};
 use crate::lir::{Angle, Expr, Operand, Slot, Slots, Stmt, Temp, Ty};
 
-/// From this many nodes on, some 12 kB. Below, a processor keeps the code decoded whatever waits, if nothing else runs on
-/// its core, and compilers know better how long an instruction takes.
+/// From this many nodes on, some 12 kB. Below, a processor keeps the code decoded whatever waits,
+/// if nothing else runs on its core, and compilers know better how long an instruction takes.
 pub(crate) const FROM: usize = 1000;
 
-/// So many times must a hundred statements read a slot, of one number each or in lanes: where it is less, compilers do
-/// as well.
+/// So many times must a hundred statements read a slot, of one number each or in lanes: where it is
+/// less, compilers do as well.
 const READS: [usize; 2] = [26, 18];
 
 /// A value that is needed once in so many steps, or less often, does not wait on a shelf.
@@ -90,7 +92,8 @@ fn step(statement: &Stmt, ty: Ty) -> Step {
     let mut used = all.clone();
     used.sort_unstable();
     used.dedup();
-    // A constant is in memory already, a value that is used twice has to be loaded, and so has one that stands alone.
+    // A constant is in memory already, a value that is used twice has to be loaded, and so has one
+    // that stands alone.
     let is_computed = matches!(statement, Stmt::Let(_, Expr::Op(..)) | Stmt::SinCos { .. } | Stmt::SumLanes(..));
     let once = |k: &usize| all.iter().filter(|other| *other == k).count() == 1;
     let foldable = if !is_computed || all.len() < 2 || has_constant { Vec::new() } else { all.iter().copied().filter(once).collect() };
@@ -171,8 +174,8 @@ mod tests {
         Operand::Temp(Temp::of(id))
     }
 
-    /// So many inputs, and multiply-adds of the first with each of the others from the last one on, so that all are
-    /// needed until the end.
+    /// So many inputs, and multiply-adds of the first with each of the others from the last one on,
+    /// so that all are needed until the end.
     fn long(n: usize) -> Vec<Stmt> {
         let inputs = (0..n).map(|k| Stmt::Let(Temp::of(k), Expr::Input { argument: 0, index: k as u32 }));
         let sums = (1..n).map(|k| {

@@ -1,15 +1,17 @@
-//! Zeros of large results: a few side by side by one statement each, between the statements that compute.
+//! Zeros of large results: a few side by side by one statement each, between the statements that
+//! compute.
 //!
-//! To fill a whole matrix beforehand takes as long as a third of the humanoid's mass matrix, since a processor does
-//! nothing else meanwhile. Single stores have time while sums wait for their terms.
+//! To fill a whole matrix beforehand takes as long as a third of the humanoid's mass matrix, since
+//! a processor does nothing else meanwhile. Single stores have time while sums wait for their
+//! terms.
 
 use crate::lir::{Array, Number, Operand, Stmt, Store};
 
 /// So many numbers at once are written in place. More would be a call.
 const MOST: usize = 16;
 
-/// The statements that write the zeros of a result, runs of them within a row. `barrier`: one by one, since neighbours
-/// are stored through different pointers.
+/// The statements that write the zeros of a result, runs of them within a row. `barrier`: one by
+/// one, since neighbours are stored through different pointers.
 pub(crate) fn zeros(results: &[Array], is_zero: impl Fn(usize) -> bool, barrier: bool) -> Vec<Stmt> {
     let mut runs: Vec<(usize, usize)> = Vec::new();
     for array in results {

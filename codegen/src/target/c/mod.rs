@@ -1,6 +1,7 @@
 //! C99: a header and a source, for numbers alone. The source needs nothing but `math.h`.
 //!
-//! Arrays are flat, row by row. Functions and constants begin with a prefix, by default the robot's name.
+//! Arrays are flat, row by row. Functions and constants begin with a prefix, by default the robot's
+//! name.
 
 mod statements;
 

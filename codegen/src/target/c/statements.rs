@@ -51,7 +51,7 @@ impl Printer<'_> {
                 let _ = self.store(out, *at, &numbers[0]);
                 self.store(out, at + 1, &numbers[1])
             }
-            // Vectors and spill slots are not asked for.
+            // The capabilities of C have neither vectors nor spill slots.
             Stmt::Thirds { .. }
             | Stmt::SumLanes(..)
             | Stmt::Spill(..)

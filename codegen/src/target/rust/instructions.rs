@@ -19,7 +19,8 @@ pub(crate) const COMPILED_FOR_AVX2: &str = "#[cfg(all(target_feature = \"avx2\",
 pub(crate) const COMPILED_FOR_AVX512: &str =
     "all(target_arch = \"x86_64\", target_feature = \"avx512dq\", target_feature = \"avx512vl\", target_feature = \"avx512vbmi2\")";
 
-/// What holds of those of them on which a few vectors of eight among vectors of four cost nothing: AMD's, which alone have SSE4a. Intel's do without one of their two ports for vectors of four
+/// What holds of those of them on which a few vectors of eight among vectors of four cost nothing:
+/// AMD's, which alone have SSE4a. Intel's do without one of their two ports for vectors of four
 /// until some time after a vector of eight.
 pub(crate) const COMPILED_FOR_AVX512_BESIDE_AVX2: &str = "all(target_arch = \"x86_64\", target_feature = \"avx512dq\", target_feature = \"avx512vl\", \
                                                          target_feature = \"avx512vbmi2\", target_feature = \"sse4a\")";

@@ -1,7 +1,7 @@
 //! Rust.
 //!
-//! A module (`module`) has functions (`function`), which are statements (`statements`); `batch` has functions of many
-//! states, `spills` the memory in which values wait.
+//! A module (`module`) has functions (`function`), which are statements (`statements`); `batch` has
+//! functions of many states, `spills` the memory in which values wait.
 
 mod batch;
 mod columns;
@@ -19,7 +19,7 @@ mod tree_shake;
 use articulated_core::lanes::Real;
 
 use crate::capabilities::Capabilities;
-use crate::target::{File, Module};
+use crate::target::{File, Module, Target};
 use crate::{Error, Options};
 
 pub use module::names::identifier;
@@ -30,15 +30,35 @@ pub(crate) use module::names::{Names, is_name};
 pub struct RustOptions {
     /// The types of numbers for which there are functions of many states at once too.
     pub batch: Vec<Real>,
-    /// No `unsafe` in the generated code, for crates that forbid it: on x86-64 sines and cosines take a little longer, and
-    /// long functions without AVX-512 up to twice as long.
+    /// No `unsafe` in the generated code, for crates that forbid it: on x86-64 sines and cosines
+    /// take a little longer, and long functions without AVX-512 up to twice as long.
     pub forbid_unsafe: bool,
-    /// For crates without `std`: without `unsafe` and a runtime, no multiply-add, and square roots, arctangents and sines
-    /// of large angles are those of the crate `libm`.
+    /// For crates without `std`: without `unsafe` and a runtime, no multiply-add, and square roots,
+    /// arctangents and sines of large angles are those of the crate `libm`.
     pub no_std: bool,
-    /// Path of the runtime crate, to implement its trait `Dynamics`; `None`: the code depends on nothing but `core` and
-    /// `std`.
+    /// Path of the runtime crate, to implement its trait `Dynamics`; `None`: the code depends on
+    /// nothing but `core` and `std`.
     pub runtime: Option<String>,
+}
+
+impl Options {
+    /// The choices for Rust; the default ones if the language is another.
+    #[must_use]
+    pub fn rust(&self) -> &RustOptions {
+        static DEFAULT: RustOptions = RustOptions { batch: Vec::new(), forbid_unsafe: false, no_std: false, runtime: None };
+        if let Target::Rust(rust) = &self.target { rust } else { &DEFAULT }
+    }
+
+    /// The choices for Rust, which becomes the language if it is not.
+    pub fn rust_mut(&mut self) -> &mut RustOptions {
+        if !matches!(self.target, Target::Rust(_)) {
+            self.target = Target::default();
+        }
+        match &mut self.target {
+            Target::Rust(rust) => rust,
+            other => unreachable!("{} was replaced by Rust", other.name()),
+        }
+    }
 }
 
 /// Vectors and raw memory, unless `unsafe` is forbidden.

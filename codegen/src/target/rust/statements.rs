@@ -14,9 +14,9 @@ pub(crate) const ZERO: &str = "0.0";
 
 /// From this many names on they are declared before the statements.
 ///
-/// To a compiler that keeps track of names for debuggers, what follows a `let` is inside of it, and some thousands inside
-/// of one another are more than its stack holds. Their type is declared with them: the time to infer it grows as the
-/// square of their number.
+/// To a compiler that keeps track of names for debuggers, what follows a `let` is inside of it, and
+/// some thousands inside of one another are more than its stack holds. Their type is declared with
+/// them: the time to infer it grows as the square of their number.
 const HOISTED_FROM: usize = 1000;
 
 /// How many names one `let` declares.

@@ -1,6 +1,8 @@
-//! Helpers without the functions that nothing calls: each compiler would check them all the same, and users read them.
+//! Helpers without the functions that nothing calls: each compiler would check them all the same,
+//! and users read them.
 //!
-//! The texts are those of [`articulated_core::lanes`] and its like, in which functions are items of a known form.
+//! The texts are those of [`articulated_core::lanes`] and its like, in which functions are items of
+//! a known form.
 
 use std::collections::{HashMap, HashSet};
 
@@ -13,8 +15,8 @@ struct Item<'a> {
     last: usize,
 }
 
-/// The text of helpers without functions that are neither called nor needed by one that is. Modules inside of it count as
-/// one with it.
+/// The text of helpers without functions that are neither called nor needed by one that is. Modules
+/// inside of it count as one with it.
 pub(crate) fn tree_shake(text: &str, calls: &Requirements) -> String {
     let lines: Vec<&str> = text.lines().collect();
     let items = items(&lines);

@@ -9,8 +9,9 @@ use crate::target::rust::function::signature::Signature;
 use crate::target::rust::spills;
 use crate::target::rust::statements::{FIELDS, Place, Printer, ty};
 
-/// Has the compiler lay the function's frame at the start of a cache line. Vectors that it keeps there lie across two lines otherwise, wherever the stack happens to begin so:
-/// a function takes up to a seventh longer.
+/// Has the compiler lay the function's frame at the start of a cache line. Vectors that it keeps
+/// there lie across two lines otherwise, wherever the stack happens to begin so: a function takes
+/// up to a seventh longer.
 const ALIGNED: &str = "    {
         // Vectors in this frame lie in one cache line each.
         #[repr(align(64))]
@@ -87,8 +88,9 @@ fn barrier_pointers(out: &mut String, numbers: usize, nests: usize) {
     );
 }
 
-/// The pieces as functions `piece_0`, …, each for the features that the macro around it is given, and `whole`, which calls
-/// them. Arrays of arrays are one array to them: to check further indices takes a compiler long.
+/// The pieces as functions `piece_0`, …, each for the features that the macro around it is given,
+/// and `whole`, which calls them. Arrays of arrays are one array to them: to check further indices
+/// takes a compiler long.
 pub(crate) fn pieces(out: &mut String, body: &Body, signature: &Signature, level: Level) {
     let is_flat = signature.nests().is_some();
     let gives = if is_flat { signature.gives_flat() } else { signature.gives_inside() };

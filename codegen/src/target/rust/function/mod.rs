@@ -40,11 +40,12 @@ pub(crate) struct Text {
     pub(crate) implementation: String,
 }
 
-/// The name of the private module. It has the bodies of functions and all their helpers, so that none of these takes a name
-/// from the user.
+/// The name of the private module. It has the bodies of functions and all their helpers, so that
+/// none of these takes a name from the user.
 pub(crate) const IMPLEMENTATION: &str = "implementation";
 
-/// The function's source, with its documentation and, where it gives several results, the type that holds them.
+/// The function's source, with its documentation and, where it gives several results, the type that
+/// holds them.
 pub(crate) fn function(text: &mut Text, function: &Function, context: Context) {
     let signature = Signature::of(function, real(context.level));
     let Text { public, implementation } = text;
@@ -118,7 +119,8 @@ fn value_form(out: &mut String, signature: &Signature) {
     *out += "}\n\n";
 }
 
-/// The function that writes into the caller's memory: a copy costs as much as a third of a function.
+/// The function that writes into the caller's memory: a copy costs as much as a third of a
+/// function.
 fn into_form(out: &mut String, signature: &Signature) {
     let (name, gives, function) = (signature.name(), signature.gives(), signature.function);
     let into = format!("{name}_into");
@@ -174,7 +176,8 @@ fn calls(out: &mut String, body: &Body, signature: &Signature, context: Context)
     }
 }
 
-/// Plain arithmetic, with fused multiply-add where the processor has it: compiled for it, or found to be so.
+/// Plain arithmetic, with fused multiply-add where the processor has it: compiled for it, or found
+/// to be so.
 fn chosen(out: &mut String, body: &Body, signature: &Signature, level: Level) {
     let (takes, names, returns) = (signature.takes(), signature.handed(), signature.returns());
     let (generic, own, fused) =

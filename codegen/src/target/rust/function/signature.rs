@@ -91,12 +91,14 @@ impl<'a> Signature<'a> {
         if self.function.ending == Ending::Value { format!(" -> {}", self.gives_inside()) } else { String::new() }
     }
 
-    /// Whether there is a form that writes into what the caller has: wherever the result is more than a number.
+    /// Whether there is a form that writes into what the caller has: wherever the result is more
+    /// than a number.
     pub(crate) fn has_into(&self) -> bool {
         self.group.is_some() || !self.function.spec.parts[0].function.gives.is_empty()
     }
 
-    /// How many times the elements of the result are arrays themselves, where it is one array of arrays.
+    /// How many times the elements of the result are arrays themselves, where it is one array of
+    /// arrays.
     pub(crate) fn nests(&self) -> Option<usize> {
         let nests = self.function.spec.parts[0].function.gives.len().checked_sub(1)?;
         (nests > 0 && self.group.is_none()).then_some(nests)
@@ -179,8 +181,8 @@ impl<'a> Signature<'a> {
         let _ = if is_written { writeln!(out, "    out.write({value});") } else { writeln!(out, "    {value}") };
     }
 
-    /// The array in which each part of a result is that is written where nothing is yet: a name, a pointer to it, how many
-    /// numbers.
+    /// The array in which each part of a result is that is written where nothing is yet: a name, a
+    /// pointer to it, how many numbers.
     pub(crate) fn rooms(&self) -> Vec<(String, String, usize)> {
         let parts = self.function.spec.parts.iter().zip(self.function.results.iter());
         let room = |(part, array): (&crate::FunctionTerm, &crate::lir::Array)| {
@@ -230,8 +232,8 @@ impl<'a> Signature<'a> {
     }
 }
 
-/// An array of zeros, into which other numbers are put one by one: for the compiler far less than to write every zero out.
-/// Returns its name.
+/// An array of zeros, into which other numbers are put one by one: for the compiler far less than
+/// to write every zero out. Returns its name.
 fn sparse(out: &mut String, name: &str, values: &[Option<String>], lengths: &[usize]) -> String {
     let mutable = if values.iter().any(Option::is_some) { "mut " } else { "" };
     let _ = writeln!(out, "    let {mutable}{name} = {};", zeros(lengths));

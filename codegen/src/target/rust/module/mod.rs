@@ -282,7 +282,8 @@ mod tests {
 
     use crate::{Options, Real, Request, RustOptions, generate};
 
-    /// Names of helpers, of modules and of their types, each as a function or as the type of several results.
+    /// Names of helpers, of modules and of their types, each as a function or as the type of
+    /// several results.
     const FUNCTIONS: &str = "add mul fma trig k lanes lane sin_cos store put body whole fused spill at gather scatter implementation \
                              piece_0 columns derivatives four joint frame half robot links float few drop clone";
     const TYPES: &str = "f fma multiply_add v m t n lanes group kept shelf far line float block option vec result string";
@@ -299,7 +300,8 @@ mod tests {
         generate(&request).unwrap_or_else(|error| panic!("{error}")).source
     }
 
-    /// As in a crate that has other things under the names of the prelude, with the lints that rustc has.
+    /// As in a crate that has other things under the names of the prelude, with the lints that
+    /// rustc has.
     #[test]
     fn no_name_of_a_user_is_taken_and_no_lint_is_broken() {
         let folder = std::env::temp_dir().join(format!("articulated-kept-{}", std::process::id()));
