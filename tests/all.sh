@@ -18,7 +18,7 @@ ensure() { # a component of the toolchain that a minimal installation may lack
 alone() { # core without std, and without allocation; the reader without a second one
     cargo check --quiet -p articulated-core --no-default-features
     cargo check --quiet -p articulated-core --no-default-features --features alloc
-    cargo clippy --quiet -p articulated-urdf -- -D warnings
+    cargo clippy --quiet -p articulated-formats -- -D warnings
 }
 
 documentation() {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use articulated_codegen::Level;
 use articulated_core::algorithm::function;
 use articulated_core::lanes::Real;
-use articulated_urdf::{SNAP_EXPECTED, can_snap};
+use articulated_formats::{SNAP_EXPECTED, can_snap};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::accuracy::arguments::AccuracyArguments;

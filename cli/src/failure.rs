@@ -1,8 +1,7 @@
 //! Why a command ended without doing what was asked, and the status it ends with.
 
-use articulated_codegen::{Reason, Refusal, RobotError};
+use articulated_core::diagnostic::{self, Code, Diagnostics};
 use articulated_motion::{Fault, MotionErrors};
-use articulated_scene::SceneErrors;
 use serde::Serialize;
 
 use crate::diagnostic::Diagnostic;
@@ -103,60 +102,34 @@ impl Failure {
     }
 }
 
-impl From<SceneErrors> for Failure {
-    fn from(all: SceneErrors) -> Self {
-        Self::input(all.errors.iter().map(Diagnostic::of_scene))
+impl From<Diagnostics> for Failure {
+    fn from(all: Diagnostics) -> Self {
+        Self::of(all.errors.iter().map(|finding| Self::from(finding.clone())))
     }
 }
 
-impl From<RobotError> for Failure {
-    fn from(error: RobotError) -> Self {
-        match error {
-            RobotError::Several { errors } => Self::of(errors.into_iter().map(Self::from)),
-            RobotError::Urdf(problems) => Self::input(problems.errors.iter().map(Diagnostic::of)),
-            RobotError::Edits { refusals } => Self::input(refusals.iter().flat_map(refused)),
-            RobotError::Scene(errors) => errors.into(),
-            other => Self::input(other.to_string().lines().map(str::to_owned)),
-        }
+impl From<diagnostic::Diagnostic> for Failure {
+    /// A function that does not exist is an error of the command line, unless a file names it.
+    fn from(finding: diagnostic::Diagnostic) -> Self {
+        let is_usage = finding.code == Code::UnknownFunction && finding.line().is_none();
+        let status = if is_usage { USAGE } else { INPUT };
+        Self { status, errors: vec![Diagnostic::of(&finding)], reported: false }
     }
 }
 
 impl From<MotionErrors> for Failure {
     fn from(all: MotionErrors) -> Self {
         Self::input(all.errors.iter().map(|error| match &error.fault {
-            Fault::Scene(scene) => Diagnostic { message: error.to_string(), ..Diagnostic::of_scene(scene) },
+            Fault::Scene(finding) => Diagnostic::of(finding),
             _ => error.to_string().into(),
         }))
     }
 }
 
-impl From<articulated_codegen::Error> for Failure {
-    fn from(error: articulated_codegen::Error) -> Self {
-        match error {
-            articulated_codegen::Error::Several { errors } => Self::of(errors.into_iter().map(Self::from)),
-            articulated_codegen::Error::Robot(error) => error.into(),
-            articulated_codegen::Error::UnknownFunction { .. } => Self::usage(error.to_string()),
-            other => Self::input([other.to_string()]),
-        }
-    }
-}
-
-/// Why a robot does not have a function, in a few words; the error itself if it is another.
-pub(crate) fn undefined(error: articulated_codegen::Error) -> Result<String, articulated_codegen::Error> {
-    use articulated_codegen::Error::{BoundFrames, NoMass, Singular, TooMuchCode};
-    match error {
-        Singular { joints, .. } => Ok(format!("no inertia of its own for joint {}", joints.join(", joint "))),
-        NoMass { .. } => Ok("nothing that moves has mass".into()),
-        BoundFrames { frames, .. } => Ok(format!("fewer than six degrees of freedom carry {}", frames.join(", "))),
-        TooMuchCode { found, most, .. } => Ok(format!("about {found} MB of code, more than {most} (--max-code-size)")),
-        other => Err(other),
-    }
-}
-
-/// An error for each thing that is wrong with an edit.
-fn refused(refusal: &Refusal) -> Vec<Diagnostic> {
-    match &refusal.reason {
-        Reason::Urdf(problems) => problems.errors.iter().map(Diagnostic::of).collect(),
-        _ => refusal.to_string().lines().map(|line| line.to_owned().into()).collect(),
+/// What a robot lacks for a function, in a few words; the findings if something else is wrong.
+pub(crate) fn undefined(findings: Diagnostics) -> Result<String, Diagnostics> {
+    match articulated_codegen::undefined(&findings) {
+        Some(why) => Ok(why.to_owned()),
+        None => Err(findings),
     }
 }

@@ -51,7 +51,7 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
     }
     // What is not said is the scene's, if there is one.
     if !arguments.parameters.is_empty() {
-        request.options.parameters.clone_from(&arguments.parameters);
+        request.options.parameters = arguments.parameters.iter().cloned().map(Into::into).collect();
     }
     if !arguments.batch.is_empty() {
         request.options.rust_mut().batch.clone_from(&arguments.batch);
@@ -108,7 +108,7 @@ fn write(language: Language, path: &Path, generated: &Generated) -> Result<(), F
 }
 
 fn json(generated: &Generated) -> String {
-    let lines = |problems: &[articulated_urdf::Problem]| problems.iter().map(ToString::to_string).collect();
+    let lines = |problems: &[articulated_core::diagnostic::Diagnostic]| problems.iter().map(ToString::to_string).collect();
     let function = |e: &articulated_codegen::ledger::Entry| Function { function: e.function.clone(), stages: stages(e), depth: e.depth };
     crate::json(&Report {
         source: generated.source.clone(),

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use articulated_codegen::nearest;
 use articulated_codegen::scene::{self, Bundled, Prepared, Scene};
-use articulated_codegen::{Error, nearest};
 
 use crate::failure::Failure;
 
@@ -16,7 +16,7 @@ pub(crate) fn is_scene(path: &Path) -> bool {
 /// The scene, and the folder of its file. A bundled one goes before a file of its name, as a bundled robot does: `./name` is the file.
 pub(crate) fn open(path: &Path) -> Result<(Prepared, PathBuf), Failure> {
     if let Some(bundled) = path.to_str().and_then(articulated_models::scene) {
-        let scene = Scene::read(&bundled.file(), bundled.toml).map_err(Error::from)?;
+        let scene = Scene::read(&bundled.file(), bundled.toml)?;
         return Ok((scene::open_in(scene, Path::new(""), &robots())?, PathBuf::new()));
     }
     let name = &path.to_string_lossy();
@@ -35,7 +35,7 @@ fn ends_with(path: &Path, ending: &str) -> bool {
 
 /// The robots that scenes may call by name.
 fn robots() -> Vec<Bundled<'static>> {
-    articulated_models::ROBOTS.iter().map(|robot| Bundled { name: robot.name, urdf: robot.urdf, base: robot.base }).collect()
+    articulated_models::ROBOTS.iter().map(|robot| Bundled { name: robot.name, document: robot.urdf, base: robot.base }).collect()
 }
 
 fn unknown(name: &str) -> Failure {

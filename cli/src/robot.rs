@@ -3,10 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use articulated_codegen::{Appended, Error, Generated, MOST_FREEDOMS, Options, Request, Sines, choose_frames, generate, nearest};
+use articulated_codegen::scene::Scene;
+use articulated_codegen::{Appended, Generated, MOST_FREEDOMS, Options, Request, Sines, generate, nearest};
 use articulated_core::description::Base;
+use articulated_core::diagnostic::{Diagnostic, Diagnostics, summary, values};
 use articulated_core::model::Model;
-use articulated_urdf::{MOST_BYTES, Problem, Reading, read_at_most, summary};
+use articulated_formats::{MOST_BYTES, nearest_file, read_at_most};
+use articulated_scene::BuiltRobot;
 
 use crate::arguments::{RobotArguments, names_in_rust};
 use crate::console;
@@ -26,8 +29,10 @@ pub(crate) struct Robot {
     pub(crate) file: String,
     /// The scene that it is of.
     pub(crate) scene: Option<String>,
-    pub(crate) urdf: Vec<u8>,
+    pub(crate) document: Vec<u8>,
     pub(crate) options: Options,
+    /// The scene with its effects.
+    effects: Option<Scene>,
     path: Option<PathBuf>,
     /// Bundled robots are odd on purpose.
     bundled: bool,
@@ -44,7 +49,7 @@ impl Robot {
             return Self::of_scene(name, arguments);
         }
         let scenes: Vec<&str> = articulated_models::SCENES.iter().map(|scene| scene.name).collect();
-        let (file, urdf) = document(name, &scenes)?;
+        let (file, document) = document(name, &scenes)?;
         let bundled = name.to_str().and_then(articulated_models::robot);
         let base = bundled.map_or(Base::Fixed, |b| b.base);
         let path = (bundled.is_none() && !is_standard_input(name)).then(|| name.to_owned());
@@ -58,11 +63,11 @@ impl Robot {
         options.robot.gravity = arguments.gravity.map_or(options.robot.gravity, |g| g.0);
         options.robot.allow_unphysical_inertia = arguments.allow_unphysical_inertia;
         options.robot.snap_angles = arguments.snap_angles;
-        options.rename.clone_from(&arguments.rename);
+        options.rename = arguments.rename.iter().cloned().map(Into::into).collect();
         options.max_code_size = arguments.max_code_size.unwrap_or(options.max_code_size);
         edit(&mut options, &arguments.edits)?;
         let files = path.iter().cloned().chain(appended(&arguments.edits)).collect();
-        Ok(Self { file, scene: None, urdf, options, path, bundled: bundled.is_some(), files })
+        Ok(Self { file, scene: None, document, options, effects: None, path, bundled: bundled.is_some(), files })
     }
 
     /// The robot of a scene: a file, or a bundled one. What the arguments say stands in place of what the scene says; edits come after the scene's.
@@ -83,11 +88,9 @@ impl Robot {
         options.max_code_size = arguments.max_code_size.unwrap_or(options.max_code_size);
         edit(options, &arguments.edits)?;
         // The scene's effects on all joints are those of the robot as it is now.
-        let resolved = prepared.scene.effects_on(&request.robot()).map_err(|error| error.placed(&prepared.scene))?;
-        let Request { urdf, file, mut options } = request;
-        (options.robot.effects, options.robot.warnings) = (resolved.effects, resolved.warnings);
+        let Request { document, file, options, scene } = request;
         let files = prepared.files.into_iter().chain(appended(&arguments.edits)).collect();
-        Ok(Self { file, scene: Some(name.display().to_string()), urdf, options, path: None, bundled, files })
+        Ok(Self { file, scene: Some(name.display().to_string()), document, options, effects: scene, path: None, bundled, files })
     }
 
     /// Refuses a scene's level whose results differ from the library's by more than rounding: what is held to those would fail as promised.
@@ -105,7 +108,7 @@ impl Robot {
     /// The robot with these frames.
     pub(crate) fn with(mut self, arguments: &FrameArguments) -> Self {
         if !arguments.frames.is_empty() {
-            self.options.robot.frames = Some(arguments.frames.clone());
+            self.options.robot.set_frames(arguments.frames.iter().cloned());
         }
         self.options.robot.wrench_reference = arguments.wrenches_in.unwrap_or(self.options.robot.wrench_reference);
         self
@@ -113,44 +116,38 @@ impl Robot {
 
     /// The robot with the frames of these links, which the command chose by itself.
     pub(crate) fn on(mut self, frames: &[String]) -> Self {
-        let mut request = self.whole_request(&self.options.functions);
+        let mut request = self.whole_request(&values(&self.options.functions));
         request.set_frames(frames);
         self.options = request.options;
         self
     }
 
     /// Prints these warnings, a line for each sort; for a bundled robot none, as `check` alone lists those.
-    pub(crate) fn warn_of<'a>(&self, warnings: impl Iterator<Item = &'a Problem>) {
+    pub(crate) fn warn_of<'a>(&self, warnings: impl Iterator<Item = &'a Diagnostic>) {
         summary(warnings.filter(|_| !self.bundled)).iter().for_each(|line| console::warn(line));
     }
 
-    /// What the reader finds in the document, edited as asked for.
-    pub(crate) fn read(&self) -> Result<Reading, Error> {
-        articulated_codegen::read(&self.request(&[]))
+    /// The robot, edited as requested, with its model.
+    pub(crate) fn read(&self) -> Result<BuiltRobot, Diagnostics> {
+        self.request(&[]).build_robot()
     }
 
-    /// The model of what was read, under the gravity asked for, with the frames asked for.
-    pub(crate) fn model(&self, reading: &Reading) -> Result<Model<f64>, Failure> {
-        Ok(choose_frames(&self.request(&[]), self.whole_model(reading)?)?)
+    /// The model with the frames of the request.
+    pub(crate) fn model(&self, robot: &BuiltRobot) -> Result<Model<f64>, Failure> {
+        Ok(robot.framed(self.whole_model(robot)?))
     }
 
     /// As [`Robot::model`], with a frame for every link.
-    pub(crate) fn whole_model(&self, reading: &Reading) -> Result<Model<f64>, Failure> {
-        let model = self.model_of_any_size(reading)?;
-        has_room(&self.file, model.nv)?;
-        Ok(model)
-    }
-
-    /// The same for who does not compute with it.
-    pub(crate) fn model_of_any_size(&self, reading: &Reading) -> Result<Model<f64>, Failure> {
-        Ok(articulated_codegen::model(&self.request(&[]), &reading.description)?)
+    pub(crate) fn whole_model(&self, robot: &BuiltRobot) -> Result<Model<f64>, Failure> {
+        has_room(&self.file, robot.model.nv)?;
+        Ok(robot.model.clone())
     }
 
     /// The request for these functions, without a runtime, for who writes their code or tells what it costs.
     pub(crate) fn whole_request(&self, functions: &[String]) -> Request {
-        let mut request = Request::new(self.file.clone(), self.urdf.clone());
+        let mut request = Request { scene: self.effects.clone(), ..Request::new(self.file.clone(), self.document.clone()) };
         request.options = self.options.clone();
-        request.options.functions = functions.to_vec();
+        request.options.functions = functions.iter().cloned().map(Into::into).collect();
         request
     }
 
@@ -162,7 +159,7 @@ impl Robot {
     }
 
     /// The code of these functions, for who calls them.
-    pub(crate) fn generate(&self, functions: &[String]) -> Result<Generated, Error> {
+    pub(crate) fn generate(&self, functions: &[String]) -> Result<Generated, Diagnostics> {
         generate(&self.request(functions))
     }
 
@@ -193,7 +190,7 @@ impl Robot {
             && o.robot.payloads.is_empty()
             && o.robot.lock.is_empty()
             && o.robot.shafts.is_empty()
-            && o.robot.effects.is_empty())
+            && self.effects.as_ref().is_none_or(|scene| !scene.has_effects()))
         {
             return Err(std::io::Error::other(
                 "peers read the file, which knows nothing of --append, --payload, --lock and the effects of scenes: leave out one or the other",
@@ -203,7 +200,7 @@ impl Robot {
             Some(path) if path.is_file() => Ok(path.clone()),
             _ => {
                 let path = folder.join("robot.urdf");
-                std::fs::write(&path, &self.urdf)?;
+                std::fs::write(&path, &self.document)?;
                 Ok(path)
             }
         }
@@ -220,18 +217,19 @@ pub(crate) fn has_room(file: &str, nv: usize) -> Result<(), Failure> {
 
 /// What a report says of a scene's parameters.
 pub(crate) fn note_of_parameters(options: &Options) -> Option<String> {
-    let list = options.parameters.join(", ");
+    let list = values(&options.parameters).join(", ");
     (!list.is_empty()).then(|| format!("parameters: {list}: constants here, with the numbers of the robot's description"))
 }
 
 /// The edits, with the documents of the robots to append.
 fn edit(options: &mut Options, edits: &Edits) -> Result<(), Failure> {
     for other in &edits.append {
-        let (file, urdf) = document(&other.file, &[])?;
-        options.robot.append.push(Appended { urdf, file, at: other.at.clone(), prefix: other.prefix.clone(), origin: other.origin });
+        let (file, document) = document(&other.file, &[])?;
+        let (file, at) = (file.into(), other.at.clone().into());
+        options.robot.append.push(Appended { document, file, at, prefix: other.prefix.clone(), origin: other.origin });
     }
-    options.robot.payloads.extend(edits.payload.iter().cloned());
-    options.robot.lock.extend(edits.lock.iter().map(|lock| (lock.joint.clone(), lock.at.clone())));
+    options.robot.payloads.extend(edits.payload.iter().cloned().map(Into::into));
+    options.robot.lock.extend(edits.lock.iter().map(|lock| (lock.joint.clone(), lock.at.clone()).into()));
     Ok(())
 }
 
@@ -258,7 +256,7 @@ fn is_standard_input(path: &Path) -> bool {
 pub(crate) fn read_bytes(path: &Path) -> std::io::Result<Vec<u8>> {
     static TAKEN: AtomicBool = AtomicBool::new(false);
     if !is_standard_input(path) {
-        return articulated_urdf::read_file(path, MOST_BYTES);
+        return articulated_formats::read_file(path, MOST_BYTES);
     }
     if TAKEN.swap(true, Ordering::Relaxed) {
         return Err(std::io::Error::other("the standard input is another file of this command already"));
@@ -274,7 +272,7 @@ fn read_file(path: &Path, scenes: &[&str]) -> Result<Vec<u8>, Failure> {
         }
         let names = || articulated_models::ROBOTS.iter().map(|r| r.name);
         let bundled = || nearest(&name, names().chain(scenes.iter().copied()));
-        let near = articulated_scene::nearest_file(path).or_else(bundled).map(|n| format!("; did you mean {n:?}?")).unwrap_or_default();
+        let near = nearest_file(path).or_else(bundled).map(|n| format!("; did you mean {n:?}?")).unwrap_or_default();
         let known = names().collect::<Vec<_>>().join(", ");
         Failure::input([format!("{name}: found neither a file ({error}) nor a bundled robot{near} (bundled: {known})")])
     })
@@ -284,6 +282,6 @@ fn read_file(path: &Path, scenes: &[&str]) -> Result<Vec<u8>, Failure> {
 #[cfg(test)]
 pub(crate) fn bundled_model(name: &str) -> Model<f64> {
     let robot = articulated_models::robot(name).unwrap();
-    let options = articulated_urdf::Options { base: robot.base, ..articulated_urdf::Options::default() };
-    Model::new(&articulated_urdf::read(robot.urdf.as_bytes(), &options).unwrap().description, robot.base).unwrap()
+    let options = articulated_formats::Options { base: robot.base, ..articulated_formats::Options::default() };
+    Model::new(&articulated_formats::read(robot.urdf.as_bytes(), &options).unwrap().description, robot.base).unwrap()
 }

@@ -48,8 +48,8 @@ mod tests {
 
     fn tips(name: &str) -> Tips {
         let robot = articulated_models::robot(name).unwrap();
-        let options = articulated_urdf::Options { base: robot.base, ..articulated_urdf::Options::default() };
-        let description = articulated_urdf::read(robot.urdf.as_bytes(), &options).unwrap().description;
+        let options = articulated_formats::Options { base: robot.base, ..articulated_formats::Options::default() };
+        let description = articulated_formats::read(robot.urdf.as_bytes(), &options).unwrap().description;
         Tips::of(&description, &Model::new(&description, robot.base).unwrap())
     }
 

@@ -69,7 +69,7 @@ mod tests {
             format!("<robot name='robot'><link name='trunk'/>{}{}</robot>", joint("a", "revolute", limit), joint("b", "continuous", "")),
         );
         request.options.robot.base = Base::Floating;
-        let mut model = crate::model(&request, &crate::read(&request).unwrap().description).unwrap();
+        let mut model = request.build_robot().unwrap().model;
         for argument in [Argument::Q, Argument::Target] {
             let found: Vec<(f64, f64)> = (0..9).map(|k| in_box(&model, argument, k)).collect();
             assert_eq!(found, [[(0.0, 1.0); 7].as_slice(), &[(1.0, 2.0), (0.0, PI)]].concat());

@@ -5,11 +5,11 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use articulated_scene::{Robot, RobotError, Scene, beside, read_robot_file};
-use articulated_urdf::summary;
+use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Span, Spanned, summary};
+use articulated_scene::{Loader, Robot, beside};
 
 use crate::cache::Cache;
-use crate::{Appended, Base, Error, Generated, Origin, Payload, Real, Reference, Request, check_words, generate, scene};
+use crate::{Appended, Base, Generated, Origin, Payload, Real, Reference, Request, check_words, generate, scene};
 
 /// Generates a robot's code from a build script.
 ///
@@ -20,19 +20,19 @@ use crate::{Appended, Base, Error, Generated, Origin, Payload, Real, Reference, 
 /// and in the crate: `#[allow(dead_code)] mod arm { include!(concat!(env!("OUT_DIR"), "/arm.rs")); }`.
 #[derive(Clone, Debug)]
 pub struct Build {
-    path: PathBuf,
+    /// The request, without its documents.
     request: Request,
-    /// Paths of the robots to append, and the rest of what there is to say of each.
-    append: Vec<(PathBuf, Appended)>,
-    /// The scene, if there is one: its file, and what is in it or what is wrong with it.
-    scene: Option<(PathBuf, Result<Scene, Error>)>,
-    /// What is wrong with the words of the calls.
-    wrong: Vec<Error>,
+    /// The place that names the robot's file, if a scene does.
+    robot: Span,
+    /// The scene's file, if there is one.
+    scene: Option<String>,
+    /// Findings about the words of the calls, and about the scene.
+    findings: Diagnostics,
 }
 
 /// A type of numbers of [`Build::batch`]: a [`Real`], or its name, `"f64"` or `"f32"`.
 #[derive(Clone, Debug)]
-pub struct BatchType(Result<Real, Error>);
+pub struct BatchType(Result<Real, String>);
 
 impl From<Real> for BatchType {
     fn from(real: Real) -> Self {
@@ -43,7 +43,7 @@ impl From<Real> for BatchType {
 impl From<&str> for BatchType {
     fn from(name: &str) -> Self {
         let real = [Real::F64, Real::F32].into_iter().find(|real| real.name() == name);
-        Self(real.ok_or_else(|| Error::BatchUnknown { found: name.to_owned() }))
+        Self(real.ok_or_else(|| name.to_owned()))
     }
 }
 
@@ -67,14 +67,14 @@ pub struct Written {
 impl Build {
     /// For the URDF at `path`, relative to the crate's folder.
     pub fn new(path: impl AsRef<Path>) -> Self {
-        let path = path.as_ref();
-        let mut request = Request::new(path.display().to_string(), []);
+        let mut request = Request::new(path.as_ref().display().to_string(), []);
         request.options.rust_mut().runtime = Some("::articulated".into());
-        Self { path: from_root(path), request, append: Vec::new(), scene: None, wrong: Vec::new() }
+        Self { request, robot: Span::default(), scene: None, findings: Diagnostics::default() }
     }
 
-    /// For the scene at `path`, relative to the crate's folder. What is said after this stands in place of what the scene says; locks, loads and robots to append are added to its own. What is wrong with the scene is told when the code is
-    /// generated.
+    /// For the scene at `path`, relative to the crate's folder. Later calls replace what the scene
+    /// says; locks, loads and robots to append are added to the scene's. Effects act on the robot as
+    /// it is generated.
     ///
     /// ```no_run
     /// // build.rs
@@ -82,27 +82,28 @@ impl Build {
     /// ```
     pub fn scene(path: impl AsRef<Path>) -> Self {
         let name = path.as_ref().display().to_string();
-        let file = from_root(path.as_ref());
         let mut build = Self::new("");
-        let read = read_robot_file(&file).and_then(|bytes| Ok(Scene::read_bytes(&name, &bytes)?)).map_err(Error::from);
-        if let Ok(found) = &read {
-            scene::fill(&mut build.request.options, found);
-            for other in std::mem::take(&mut build.request.options.robot.append) {
-                let file = beside(&name, &other.file);
-                build.append.push((from_root(Path::new(&file)), Appended { file, ..other }));
+        let scene = loader().scene(&name, &Span::default(), &mut build.findings);
+        if let Some(found) = scene {
+            scene::fill(&mut build.request.options, &found);
+            for other in &mut build.request.options.robot.append {
+                other.file.value = beside(&name, &other.file);
             }
-            if let Robot::Urdf(urdf) = &found.robot {
-                build = build.urdf(beside(&name, urdf));
+            if let Robot::File(file) = &found.robot {
+                build.request.file = beside(&name, file);
+                build.robot = Span { file: name.clone(), at: found.code.places.robot };
             }
+            build.request.scene = Some(found);
         }
-        Self { scene: Some((file, read)), ..build }
+        Self { scene: Some(name), ..build }
     }
 
-    /// The robot, if the scene does not say where it is to be had: the URDF at `path`, relative to the crate's folder.
+    /// The robot, if the scene does not name its file, or another one: the URDF at `path`, relative to
+    /// the crate's folder.
     #[must_use]
     pub fn urdf(mut self, path: impl AsRef<Path>) -> Self {
         self.request.file = path.as_ref().display().to_string();
-        self.path = from_root(path.as_ref());
+        self.robot = Span::default();
         self
     }
 
@@ -151,21 +152,21 @@ impl Build {
     /// The functions wanted: names, groups, `name = first + second(a = 0)`; beside a scene `motion`, for all that its motion calls.
     #[must_use]
     pub fn functions<N: Into<String>>(mut self, names: impl IntoIterator<Item = N>) -> Self {
-        self.request.options.functions = names.into_iter().map(Into::into).collect();
+        self.request.options.functions = names.into_iter().map(|name| name.into().into()).collect();
         self
     }
 
     /// Constants of the model that stay inputs: `payload(link)`, `inertia(link)`, `origin(joint)`, `gravity`, and numbers of an effect that is on, as `damping(joint)`, `contact(link)`.
     #[must_use]
     pub fn parameters<N: Into<String>>(mut self, entries: impl IntoIterator<Item = N>) -> Self {
-        self.request.options.parameters = entries.into_iter().map(Into::into).collect();
+        self.request.options.parameters = entries.into_iter().map(|entry| entry.into().into()).collect();
         self
     }
 
     /// The links whose frames the functions of frames give.
     #[must_use]
     pub fn frames<N: Into<String>>(mut self, names: impl IntoIterator<Item = N>) -> Self {
-        self.request.options.robot.frames = Some(names.into_iter().map(Into::into).collect());
+        self.request.options.robot.set_frames(names);
         self
     }
 
@@ -179,23 +180,23 @@ impl Build {
     /// Locks a joint at these coordinates, as many as it has: rad or m, a quaternion as x, y, z, w. Joints that follow it stop with it.
     #[must_use]
     pub fn lock(mut self, joint: impl Into<String>, at: impl Into<Vec<f64>>) -> Self {
-        self.request.options.robot.lock.push((joint.into(), at.into()));
+        self.request.options.robot.lock.push((joint.into(), at.into()).into());
         self
     }
 
     /// Attaches a load to a link.
     #[must_use]
     pub fn payload(mut self, payload: Payload) -> Self {
-        self.request.options.robot.payloads.push(payload);
+        self.request.options.robot.payloads.push(payload.into());
         self
     }
 
     /// Appends the robot of the URDF at `path`, relative to the crate's folder: its root at `origin` in the frame of the link `at`, `prefix` before its names.
     #[must_use]
     pub fn append(mut self, path: impl AsRef<Path>, at: impl Into<String>, prefix: impl Into<String>, origin: Origin) -> Self {
-        let path = path.as_ref();
-        let file = path.display().to_string();
-        self.append.push((from_root(path), Appended { urdf: Vec::new(), file, at: at.into(), prefix: prefix.into(), origin }));
+        let file = Spanned::from(path.as_ref().display().to_string());
+        let other = Appended { document: Vec::new(), file, at: at.into().into(), prefix: prefix.into(), origin };
+        self.request.options.robot.append.push(other);
         self
     }
 
@@ -210,12 +211,15 @@ impl Build {
     /// A name that is none of a type is an error of the generation.
     #[must_use]
     pub fn batch<R: Into<BatchType>>(mut self, reals: impl IntoIterator<Item = R>) -> Self {
-        self.wrong.retain(|error| !matches!(error, Error::BatchUnknown { .. }));
+        self.findings.errors.retain(|error| error.code != Code::Batch);
         self.request.options.rust_mut().batch.clear();
         for real in reals {
             match real.into().0 {
                 Ok(real) => self.request.options.rust_mut().batch.push(real),
-                Err(error) => self.wrong.push(error),
+                Err(name) => {
+                    let place = (At::Nowhere, "batch");
+                    self.findings.push(Diagnostic::error("", place, Code::Batch, format!("{name:?}"), "\"f64\" or \"f32\""));
+                }
             }
         }
         self
@@ -265,7 +269,7 @@ impl Build {
     }
 
     /// Reads the URDF, and those to append, and generates. Nothing is written or printed.
-    pub fn generate(&self) -> Result<Generated, Error> {
+    pub fn generate(&self) -> Result<Generated, Diagnostics> {
         generate(&self.request()?)
     }
 
@@ -273,16 +277,16 @@ impl Build {
     ///
     /// If the last run wrote the file for the same request, and the build script is the same program, nothing is generated and nothing written: the file keeps its date. An error where
     /// this run has written a file of this name already, which would be lost.
-    pub fn try_write(&self, name: &str) -> Result<Written, Error> {
-        let files = self.scene.iter().map(|(path, _)| path).chain([&self.path]).chain(self.append.iter().map(|(path, _)| path));
-        for path in files.filter(|path| !path.as_os_str().is_empty()) {
-            println!("cargo::rerun-if-changed={}", path.display());
+    pub fn try_write(&self, name: &str) -> Result<Written, Diagnostics> {
+        let appended = self.request.options.robot.append.iter().map(|other| &other.file.value);
+        let files = self.scene.iter().chain([&self.request.file]).chain(appended);
+        for file in files.filter(|file| !file.is_empty()) {
+            println!("cargo::rerun-if-changed={}", from_root(Path::new(file)).display());
         }
         let folder = std::env::var_os("OUT_DIR").map(PathBuf::from).unwrap_or_default();
         let file = folder.join(name);
         if !names_written().insert(file.clone()) {
-            let reason = "found a name that this build script has written already, expected one for each robot".into();
-            return Err(RobotError::File { file: name.into(), reason }.into());
+            return Err(file_error(name, "found a name that this build script has written already, expected one for each robot"));
         }
         let written = self.write_in(&folder, name).inspect_err(|_| _ = names_written().remove(&file))?;
         for warning in &written.warnings {
@@ -291,7 +295,7 @@ impl Build {
         Ok(written)
     }
 
-    fn write_in(&self, folder: &Path, name: &str) -> Result<Written, Error> {
+    fn write_in(&self, folder: &Path, name: &str) -> Result<Written, Diagnostics> {
         let mut request = self.request()?;
         request.options.stages = false;
         let path = file_in(folder, name)?;
@@ -304,36 +308,31 @@ impl Build {
         cache.iter().for_each(Cache::forget);
         // An unchanged file keeps its date, so that nothing is compiled again.
         if !fs::read_to_string(&path).is_ok_and(|old| old == generated.source) {
-            let failed = |e: std::io::Error| RobotError::File { file: path.display().to_string(), reason: e.to_string() };
-            fs::write(&path, &generated.source).map_err(failed)?;
+            fs::write(&path, &generated.source).map_err(|e| file_error(&path.display().to_string(), e.to_string()))?;
         }
         cache.iter().for_each(|cache| cache.remember(&warnings));
         Ok(Written { path, warnings, generated: true })
     }
 
     /// The request, with the files read.
-    fn request(&self) -> Result<Request, Error> {
-        let mut request = self.request.clone();
-        let scene = self.scene.as_ref().map(|(_, scene)| scene.as_ref().map_err(Clone::clone)).transpose()?;
-        if let Some(scene) = scene.filter(|_| request.file.is_empty()) {
-            let expected = "urdf; a bundled robot is known to the command line alone: give its URDF with Build::urdf";
-            return Err(scene.without_robot("no URDF", expected).into());
+    fn request(&self) -> Result<Request, Diagnostics> {
+        let (mut request, mut log, mut loader) = (self.request.clone(), self.findings.clone(), loader());
+        match (&request.scene, request.file.as_str()) {
+            (Some(scene), "") => log.push(
+                scene.without_robot("no URDF", "urdf; a bundled robot is known to the command line alone: give its URDF with Build::urdf"),
+            ),
+            (None, "") => {}
+            (_, file) => request.document = loader.read(file, &self.robot, "urdf", &mut log).unwrap_or_default(),
         }
-        let mut wrong = self.wrong.clone();
-        let mut read = |path: &Path| read_robot_file(path).map_err(|error| wrong.push(error.into())).unwrap_or_default();
-        request.urdf = read(&self.path);
-        for (path, other) in &self.append {
-            request.options.robot.append.push(Appended { urdf: read(path), ..other.clone() });
+        for other in &mut request.options.robot.append {
+            let span = other.file.span.clone().unwrap_or_default();
+            other.document = loader.read(&other.file, &span, "append.urdf", &mut log).unwrap_or_default();
         }
-        if !wrong.is_empty() {
+        if !log.is_ok() {
             // Mistakes in the words of the request are mistakes without the robot too.
-            wrong.extend(check_words(&request).err());
-            return Err(Error::Several { errors: wrong });
+            check_words(&request, &mut log);
         }
-        if let Some(scene) = scene {
-            scene::settle(&mut request, scene).map_err(|error| scene::placed(error, scene))?;
-        }
-        Ok(request)
+        log.result(request)
     }
 
     /// As [`Build::try_write`]; on an error prints it for cargo and ends the build script with status 1.
@@ -352,21 +351,27 @@ fn names_written() -> MutexGuard<'static, BTreeSet<PathBuf>> {
 }
 
 /// `name`.rs in the folder. Errors: a name that is none of a file, or of one elsewhere.
-fn file_in(folder: &Path, name: &str) -> Result<PathBuf, Error> {
+fn file_in(folder: &Path, name: &str) -> Result<PathBuf, Diagnostics> {
     if Path::new(name).file_name().is_some_and(|file| file == name) {
         return Ok(folder.join(format!("{name}.rs")));
     }
-    let reason = "found something else than a plain file name, expected one, without folders and `.rs`, as \"arm\"".into();
-    Err(RobotError::File { file: name.into(), reason }.into())
+    Err(file_error(name, "found something else than a plain file name, expected one, without folders and `.rs`, as \"arm\""))
 }
 
-/// An error as a build script tells it to cargo, which says itself that it is one; with the warnings that come with it.
-fn for_cargo(error: &Error) -> String {
-    let told = |line: &str| match line.strip_prefix("warning: ") {
-        Some(warning) => format!("cargo::warning={warning}\n"),
-        None => format!("cargo::error={}\n", line.strip_prefix("error: ").unwrap_or(line)),
-    };
-    error.to_string().lines().map(told).collect()
+/// A file that cannot be written.
+fn file_error(name: &str, reason: impl Into<String>) -> Diagnostics {
+    Diagnostic::refusal(name, &Place::DOCUMENT, Code::File, reason).into()
+}
+
+/// Files of the crate that the build script belongs to.
+fn loader() -> Loader<'static> {
+    Loader { root: from_root(Path::new("")), ..Loader::default() }
+}
+
+/// Findings in the words by which a build script reports them to cargo.
+fn for_cargo(findings: &Diagnostics) -> String {
+    let errors = findings.errors.iter().map(|error| format!("cargo::error={error}\n"));
+    errors.chain(summary(&findings.warnings).into_iter().map(|line| format!("cargo::warning={line}\n"))).collect()
 }
 
 /// A path as seen from the crate's folder.

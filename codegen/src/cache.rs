@@ -1,6 +1,6 @@
 //! What a build script wrote the last time, so that the same request generates nothing.
 //!
-//! Beside the output stands a file that holds, byte for byte, everything that the output follows from: which generator, all options, every URDF. There is no
+//! Beside the output stands a file that holds, byte for byte, everything that the output follows from: which generator, all options, every robot file. There is no
 //! hash that could collide. The generator is known by the program that it is part of, the build script: its length and the instant when it was linked, which is
 //! new whenever the generator or anything that it leans on was compiled again.
 
@@ -54,13 +54,15 @@ impl Cache {
 
 /// Everything that the output follows from. Lengths stand before what they are the lengths of, so that no key is the beginning of another.
 fn key(request: &Request, generator: &str) -> Vec<u8> {
-    let (mut options, mut urdfs) = (request.options.clone(), vec![request.urdf.clone()]);
-    urdfs.extend(options.robot.append.iter_mut().map(|other| std::mem::take(&mut other.urdf)));
-    let lengths: Vec<usize> = urdfs.iter().map(Vec::len).collect();
+    let (mut options, mut documents) = (request.options.clone(), vec![request.document.clone()]);
+    documents.extend(options.robot.append.iter_mut().map(|other| std::mem::take(&mut other.document)));
+    let lengths: Vec<usize> = documents.iter().map(Vec::len).collect();
     let mut head = format!("articulated {}, {generator}\n", env!("CARGO_PKG_VERSION"));
-    let _ = writeln!(head, "{:?} {options:?} {lengths:?}", request.file);
+    // Of the scene only what code follows from.
+    let scene = request.scene.as_ref().map(|scene| (&scene.effects, &scene.shafts, &scene.impact));
+    let _ = writeln!(head, "{:?} {options:?} {scene:?} {lengths:?}", request.file);
     let mut key = head.into_bytes();
-    urdfs.iter().for_each(|urdf| key.extend(urdf));
+    documents.iter().for_each(|document| key.extend(document));
     key.push(b'\n');
     key
 }
@@ -78,9 +80,9 @@ mod tests {
     use crate::{Appended, Base, Payload};
 
     fn request() -> Request {
-        let mut request = Request::new("arm.urdf", "<robot/>");
-        request.options.robot.append.push(Appended { urdf: "<robot>ab</robot>".into(), ..Appended::default() });
-        request.options.robot.append.push(Appended { urdf: "c".into(), ..Appended::default() });
+        let mut request = Request::new("arm.document", "<robot/>");
+        request.options.robot.append.push(Appended { document: "<robot>ab</robot>".into(), ..Appended::default() });
+        request.options.robot.append.push(Appended { document: "c".into(), ..Appended::default() });
         request
     }
 
@@ -115,19 +117,19 @@ mod tests {
     #[test]
     fn whatever_changes_the_output_changes_the_key() {
         let changes: [fn(&mut Request); 10] = [
-            |r| r.urdf.push(b' '),
+            |r| r.document.push(b' '),
             |r| r.file.push('2'),
             |r| r.options.robot.base = Base::Floating,
             |r| r.options.robot.gravity[0] = -0.0,
             |r| r.options.functions.push("mass_matrix".into()),
-            |r| r.options.robot.payloads.push(Payload { link: "tool".into(), mass: 1.0, ..Payload::default() }),
-            |r| r.options.robot.lock.push(("elbow".into(), vec![0.1])),
-            |r| r.options.robot.append[1].urdf.push(b'd'),
-            |r| r.options.robot.append[1].urdf[0] = b'd',
+            |r| r.options.robot.payloads.push(Payload { link: "tool".into(), mass: 1.0, ..Payload::default() }.into()),
+            |r| r.options.robot.lock.push(("elbow".to_owned(), vec![0.1]).into()),
+            |r| r.options.robot.append[1].document.push(b'd'),
+            |r| r.options.robot.append[1].document[0] = b'd',
             |r| {
                 // The same bytes, divided in another way.
-                let moved = r.options.robot.append[0].urdf.pop().unwrap();
-                r.options.robot.append[1].urdf.insert(0, moved);
+                let moved = r.options.robot.append[0].document.pop().unwrap();
+                r.options.robot.append[1].document.insert(0, moved);
             },
         ];
         let plain = key(&request(), "g");

@@ -1,22 +1,23 @@
 //! The functions of the table in groups: for lists that people read, and to ask for them by one word.
 
 pub use articulated_core::algorithm::Group;
+use articulated_core::diagnostic::Spanned;
 
 /// The word for all functions that the motion of a scene calls.
 pub const MOTION: &str = "motion";
 
 /// The same list with each group's functions in the place of its name, those of `motion` in the place of that, and each entry once.
-pub(crate) fn expanded(list: &[String], motion: &[String]) -> Vec<String> {
-    let mut all: Vec<String> = Vec::new();
+pub(crate) fn expanded(list: &[Spanned<String>], motion: &[String]) -> Vec<Spanned<String>> {
+    let mut all: Vec<Spanned<String>> = Vec::new();
     for entry in list {
         let names: Vec<String> = match Group::named(entry) {
             Some(group) => group.functions().map(str::to_owned).collect(),
-            None if entry == MOTION && !motion.is_empty() => motion.to_vec(),
-            None => vec![entry.clone()],
+            None if entry.value == MOTION && !motion.is_empty() => motion.to_vec(),
+            None => vec![entry.value.clone()],
         };
         for name in names {
-            if !all.contains(&name) {
-                all.push(name);
+            if !all.iter().any(|other| other.value == name) {
+                all.push(Spanned { value: name, span: entry.span.clone() });
             }
         }
     }
@@ -42,10 +43,13 @@ mod tests {
 
     #[test]
     fn a_group_stands_for_its_functions_and_what_is_asked_for_twice_is_there_once() {
-        let owned = |list: &[&str]| -> Vec<String> { list.iter().map(|name| (*name).to_owned()).collect() };
+        let owned = |list: &[&str]| -> Vec<Spanned<String>> { list.iter().map(|name| (*name).into()).collect() };
+        let expanded = |list: &[Spanned<String>], motion: &[String]| {
+            super::expanded(list, motion).into_iter().map(|name| name.value).collect::<Vec<_>>()
+        };
         let list = owned(&["dissipation", "operational_space", "dissipation", "operational_space_inertia", "x = effects"]);
         assert_eq!(expanded(&list, &[]), ["dissipation", "operational_space_inertia", "operational_space_inertia_inverse", "x = effects"]);
-        let of_a_scene = owned(&["forward_dynamics", "integrate"]);
+        let of_a_scene = ["forward_dynamics", "integrate"].map(str::to_owned);
         assert_eq!(expanded(&owned(&["integrate", "motion"]), &of_a_scene), ["integrate", "forward_dynamics"]);
         assert_eq!(expanded(&owned(&["motion"]), &[]), ["motion"]);
     }

@@ -12,8 +12,6 @@ mod build;
 mod cache;
 mod capabilities;
 mod checked;
-mod error;
-mod faults;
 pub mod function_groups;
 pub mod graph;
 mod joint_blocks;
@@ -22,6 +20,7 @@ mod limbs;
 pub mod lir;
 mod parameters;
 pub mod pass;
+mod plan;
 mod program;
 mod request;
 pub mod scene;
@@ -31,30 +30,31 @@ mod sym;
 pub mod target;
 mod trace;
 
-use articulated_core::Scalar;
-use articulated_core::algorithm::{Function, Needs, functions};
-use articulated_core::description::Description;
+use articulated_core::algorithm::{Function, functions};
+use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Unused};
 use articulated_core::model::Model;
-use articulated_urdf::{Kind, Problem, Reading, Subject, Unused};
+use articulated_formats::Reading;
+use articulated_scene::BuiltRobot;
 use function_groups::Group;
+use plan::Plan;
 
 pub use articulated_core as core;
 pub use articulated_core::description::{Base, Origin, Payload, Shaft};
+pub use articulated_core::diagnostic;
 pub use articulated_core::effect::Applied;
 pub use articulated_core::lanes::Real;
 pub use articulated_core::level::{Arithmetic, Level, LevelError, Sines};
 pub use articulated_core::spatial::Reference;
 pub use articulated_core::suggest::nearest;
-pub use articulated_scene::{Appended, Edit, Reason, Refusal, RobotError, RobotOptions};
-pub use articulated_urdf as urdf;
-pub use articulated_urdf::MOST_SNAPPED;
+pub use articulated_formats as formats;
+pub use articulated_formats::MOST_SNAPPED;
+pub use articulated_scene::{Appended, RobotOptions, RobotRequest};
 pub use build::{BatchType, Build, Written};
 pub use checked::checked_cost;
-pub use error::Error;
-pub use faults::entry_of;
 pub use ledger::Ledger;
 pub use parameters::Parameter;
-pub use request::{Options, Request, choose_frames, model, read};
+pub use plan::{MOST_FREEDOMS, check_names, check_words, defined, massless, undefined};
+pub use request::{Options, Request};
 pub use size::MAX_CODE_SIZE;
 pub use spec::{Constant, FunctionSpec, FunctionTerm, is_keyword};
 pub use sym::Sym;
@@ -80,11 +80,11 @@ pub struct Generated {
     /// ([`unsolved`](articulated_core::algorithm::Function::unsolved)): the graph is not all of it then.
     pub graphs: Vec<graph::Graph>,
     /// Things in the document that are odd but used as written.
-    pub warnings: Vec<Problem>,
+    pub warnings: Vec<Diagnostic>,
     /// Content that is understood but not used.
     pub unused: Vec<Unused>,
     /// Angles taken as multiples of π/2 because the request asked for it.
-    pub snapped: Vec<Problem>,
+    pub snapped: Vec<Diagnostic>,
 }
 
 impl Generated {
@@ -110,59 +110,23 @@ impl Generated {
     }
 }
 
-/// Degrees of freedom from which on no code is written: a workspace has room for a matrix of their number squared.
-pub const MOST_FREEDOMS: usize = 10_000;
-
-/// What can be refused of a request, settled.
-struct Plan {
-    reading: Reading,
-    model: Model<f64>,
-    parameters: Vec<Parameter>,
-    wanted: Vec<FunctionSpec>,
-}
-
-/// Everything that comes before programs are made.
-fn plan(request: &Request) -> Result<Plan, Error> {
-    let options = &request.options;
-    // What needs no robot comes first, to be told of one that cannot be read too.
-    words(options)?;
-    let mut reading = read(request)?;
-    let whole = model(request, &reading.description)?;
-    if whole.nv > MOST_FREEDOMS {
-        return Err(Error::TooLarge { file: request.file.clone(), found: whole.nv, most: MOST_FREEDOMS });
-    }
-    // Mass that stays an input is mass all the same.
-    let massless = massless(&whole);
-    let parameters = parameters::parse(&options.parameters, &options.rename, &mut reading.description, &whole)?;
-    let model = choose_frames(request, if parameters.is_empty() { whole } else { model(request, &reading.description)? })?;
-    let wanted = wanted(request, &model, &massless)?;
-    size::within_limit(request, &model, &wanted)?;
-    options.target.check_names(&model, request)?;
-    Ok(Plan { reading, model, parameters, wanted })
-}
-
-/// Whether the words of the options mean something, whatever the robot.
-fn words(options: &Options) -> Result<(), Error> {
-    options.target.check(options)?;
-    options.functions.iter().try_for_each(|text| FunctionSpec::parse(text).map(drop))
-}
-
-/// As [`generate`] for a robot whose file is missing. Errors: all that is wrong with the request whatever the robot, as functions that do not exist.
-pub fn check_words(request: &Request) -> Result<(), Error> {
-    faults::all(&request.settled(), |request| words(&request.options))
-}
-
-/// Generates the code that `request` asks for. Pure: nothing is read or written. Errors: everything that is wrong with the document and what of the request can be told without it, or else everything that is wrong with the request.
-pub fn generate(request: &Request) -> Result<Generated, Error> {
+/// Generates the code that `request` asks for. Pure: nothing is read or written.
+///
+/// # Errors
+/// Everything that is wrong with the document and what of the request needs no robot, or else
+/// everything that is wrong with the request.
+pub fn generate(request: &Request) -> Result<Generated, Diagnostics> {
     let request = &*request.settled();
-    let known = |request: &Request| Error::of(parameters::of_effects_that_are_off(&request.options)).map_or(Ok(()), Err);
-    let Plan { reading, model, parameters, wanted } =
-        faults::all(request, |request| plan(request).and_then(|plan| known(request).map(|()| plan)))?;
+    let mut log = Diagnostics::new(request.scene.as_ref().map_or(&request.file, |scene| &scene.file));
+    let Some(Plan { robot, model, parameters, functions }) = plan::plan(request, &mut log) else {
+        return Err(log.result(()).err().unwrap_or_default());
+    };
+    let BuiltRobot { reading, effects, .. } = robot;
     let Reading { mut warnings, unused, snapped, .. } = reading;
     let can = request.options.target.capabilities(&request.options);
     let mut ledger = Ledger::default();
     let mut programs = Vec::new();
-    for function in wanted {
+    for function in functions {
         let program = program::program(function, &model, &parameters, &request.options, can);
         ledger.functions.push(program.entry.clone());
         programs.push(program);
@@ -171,6 +135,7 @@ pub fn generate(request: &Request) -> Result<Generated, Error> {
     let functions = programs.iter().map(|p| lir::function::Function::of(p, model.shape(), !parameters.is_empty(), can)).collect();
     let module = target::Module {
         request,
+        effects: &effects,
         model: &model,
         functions,
         parameters: &parameters,
@@ -187,99 +152,32 @@ pub fn generate(request: &Request) -> Result<Generated, Error> {
 /// So many instructions, straight-line code beyond which is of little use: a compiler takes minutes for it, and loops over joints are faster.
 const LONG: u64 = 400_000;
 
-/// What is odd about a function that is as long.
-fn long_code(file: &str, entry: &ledger::Entry) -> Option<Problem> {
+/// The warning about a function that is as long.
+fn long_code(file: &str, entry: &ledger::Entry) -> Option<Diagnostic> {
     let instructions = entry.emitted().instructions();
-    (instructions > LONG).then(|| Problem {
-        file: file.to_owned(),
-        line: None,
-        subject: Subject::Document,
-        kind: Kind::LongCode,
-        field: entry.function.clone(),
-        found: format!("{instructions} instructions, for which a compiler takes minutes"),
-        expected: "the library's function of the same name, a loop over the joints, for a robot like this".to_owned(),
-    })
+    let found = format!("{instructions} instructions, for which a compiler takes minutes");
+    let expected = "the library's function of the same name, a loop over the joints, for a robot like this";
+    let warning = || Diagnostic::error(file, (Default::default(), &entry.function), Code::LongCode, found, expected).as_warning();
+    (instructions > LONG).then(warning)
 }
 
-/// The functions that the request names.
-fn wanted(request: &Request, model: &Model<f64>, massless: &[String]) -> Result<Vec<FunctionSpec>, Error> {
-    let mut wanted: Vec<FunctionSpec> = Vec::new();
-    for text in &request.options.functions {
-        let function = FunctionSpec::parse(text)?;
-        function.check(model)?;
-        function.parts.iter().try_for_each(|part| defined(&request.file, model, massless, part.function))?;
-        let same_type = |f: &FunctionSpec| f.group().is_some() && f.group() == function.group();
-        let into = |f: &FunctionSpec, other: &FunctionSpec| {
-            ["_into", "_blocks"].iter().any(|form| f.name.strip_suffix(form) == Some(other.name.as_str()))
-        };
-        if wanted.iter().any(|f| f.name == function.name || same_type(f) || into(&function, f)) {
-            return Err(Error::SameName { name: function.name });
-        }
-        // A form of this one has the name of the other.
-        if let Some(other) = wanted.iter().find(|f| into(f, &function)) {
-            return Err(Error::SameName { name: other.name.clone() });
-        }
-        wanted.push(function);
-    }
-    Ok(wanted)
-}
-
-/// Whether there are the functions, parameters and frames that the request names; `whole`: the model with a frame for every link. Errors: all that are not there.
-pub fn check_names(request: &Request, description: &Description, whole: &Model<f64>) -> Result<(), Error> {
-    let names = |request: &Request| {
-        parameters::parse(&request.options.parameters, &request.options.rename, &mut description.clone(), whole)?;
-        let model = choose_frames(request, whole.clone())?;
-        request.options.functions.iter().try_for_each(|text| FunctionSpec::parse(text)?.check(&model))
-    };
-    faults::all(&request.settled(), names)
-}
-
-/// Whether all joints and links have names of their own in Rust. Errors: all names of which two are the same, and renamings that cannot be.
-pub fn check_identifiers(request: &Request, model: &Model<f64>) -> Result<(), Error> {
-    faults::all(request, |request| request.options.target.check_names(model, request))
-}
-
-/// The names of the joints that have no inertia of their own.
-pub fn massless(model: &Model<f64>) -> Vec<String> {
-    let mut names: Vec<String> = model.massless_joints().into_iter().map(|i| model.bodies[i].name.clone()).collect();
-    // A joint of several degrees of freedom is several bodies, which follow one another.
-    names.dedup();
-    names
-}
-
-/// Whether the robot has what the function needs; `massless`: what [`massless`] gives of it.
-pub fn defined<S: Scalar>(file: &str, model: &Model<f64>, massless: &[String], function: &Function<S>) -> Result<(), Error> {
-    let (file, name) = (file.to_owned(), function.name.to_owned());
-    if function.needs == Needs::Mass && model.moving_mass() == 0.0 {
-        return Err(Error::NoMass { file, function: name });
-    }
-    if function.inverts_mass_matrix() && !massless.is_empty() {
-        return Err(Error::Singular { file, function: name, joints: massless.to_vec() });
-    }
-    let bound = |f: &articulated_core::model::Frame<f64>| {
-        let n = model.freedoms_of(f.body).len();
-        (n < 6).then(|| format!("link {:?} ({n})", f.name))
-    };
-    let frames: Vec<String> = match function.needs {
-        Needs::FreeFrames => model.frames.iter().filter_map(bound).collect(),
-        _ => Vec::new(),
-    };
-    let has_others = model.outward().any(|i| model.freedoms_of(i).len() >= 6);
-    if frames.is_empty() { Ok(()) } else { Err(Error::BoundFrames { file, function: name, frames, has_others }) }
-}
-
-/// The function called `name`, or the error that names the nearest.
-pub fn function(name: &str) -> Result<&'static Function<Sym>, Error> {
+/// The function called `name`.
+///
+/// # Errors
+/// One that names the nearest function.
+pub fn function(name: &str) -> Result<&'static Function<Sym>, Diagnostic> {
     articulated_core::algorithm::function(name).ok_or_else(|| {
         if name == function_groups::MOTION {
-            let reason = "it stands for what the motion of a scene calls, by itself in a list: found no scene with [simulation]".into();
-            return Error::FunctionSpec { found: name.into(), reason };
+            let sentence =
+                format!("`{name}`: it stands for what the motion of a scene calls, by itself in a list: found no scene with [simulation]");
+            return Diagnostic::refusal("", &Place::DOCUMENT, Code::FunctionSpec, sentence);
         }
         // In a sum of functions a group is none of them.
         let groups = Group::ALL.map(Group::name).into_iter().filter(|_| Group::named(name).is_none());
         let known: Vec<&str> = functions::<Sym>().iter().map(|f| f.name).chain(groups).collect();
         let nearest = meant(name, known.iter().copied());
-        Error::UnknownFunction { found: name.into(), nearest, known: known.into_iter().map(str::to_owned).collect() }
+        let rest = nearest.map_or_else(|| format!("there are: {}", known.join(", ")), |nearest| format!("did you mean `{nearest}`?"));
+        Diagnostic::refusal("", &Place::DOCUMENT, Code::UnknownFunction, format!("unknown function `{name}`, {rest}"))
     })
 }
 

@@ -2,23 +2,24 @@
 
 use std::borrow::Cow;
 
-use articulated_core::description::Description;
+use articulated_core::diagnostic::{Diagnostics, Spanned};
 use articulated_core::level::Level;
-use articulated_core::model::Model;
-use articulated_scene::{RobotAsked, RobotOptions};
-use articulated_urdf::Reading;
+use articulated_scene::{BuiltRobot, RobotOptions, RobotRequest, Scene};
 
+use crate::function_groups;
 use crate::target::Target;
 use crate::target::rust::is_name;
-use crate::{Error, function_groups};
 
 /// A robot's document and what to make of it. Macro, build script and command line all fill one of these.
 #[derive(Clone, Debug)]
 pub struct Request {
-    /// The URDF's bytes.
-    pub urdf: Vec<u8>,
+    /// The bytes of the robot's file.
+    pub document: Vec<u8>,
     /// The file's name, for messages and for the header of the generated file; not opened.
     pub file: String,
+    /// The scene whose effects act on the robot, if there is one. The options already contain what
+    /// else it says.
+    pub scene: Option<Scene>,
     /// What to make.
     pub options: Options,
 }
@@ -30,14 +31,14 @@ pub struct Options {
     pub robot: RobotOptions,
     /// The functions wanted, each as [`crate::FunctionSpec::parse`] reads it: a name of
     /// [`articulated_core::algorithm::functions`], or `name = first + second(a = 0)`.
-    pub functions: Vec<String>,
+    pub functions: Vec<Spanned<String>>,
     /// What the word `motion` stands for among them: the functions that the motion of a scene calls, and none without such a scene.
     pub motion: Vec<String>,
     /// Constants of the model that stay inputs: `payload(link)`, `inertia(link)`, `origin(joint)`, `gravity`, and numbers of an effect that is on, as `damping(joint)`, `contact(link)`.
-    pub parameters: Vec<String>,
+    pub parameters: Vec<Spanned<String>>,
     /// Names to use in generated code instead of those made from the robot's names: (name in the
     /// file, name in code).
-    pub rename: Vec<(String, String)>,
+    pub rename: Vec<Spanned<(String, String)>>,
     /// Compute limbs that are alike at once, one per lane of a vector, and derivatives of large trees in loops over their joints, four at a time, where that is cheaper.
     pub limbs: bool,
     /// How accurate the functions are. Functions of many states at once have the accuracy of their
@@ -72,20 +73,29 @@ impl Default for Options {
 impl Options {
     /// Another name in Rust for a joint or link, in place of one that it had.
     pub fn set_name(&mut self, from: &str, to: &str) {
-        self.rename.retain(|(name, _)| name != from);
-        self.rename.push((from.into(), to.into()));
+        self.rename.retain(|names| names.0 != from);
+        self.rename.push((from.to_owned(), to.to_owned()).into());
     }
 }
 
 impl Request {
     /// A request with default options: fixed base, standard gravity, `placements` and `inverse_dynamics`.
-    pub fn new(file: impl Into<String>, urdf: impl Into<Vec<u8>>) -> Self {
-        Self { urdf: urdf.into(), file: file.into(), options: Options::default() }
+    pub fn new(file: impl Into<String>, document: impl Into<Vec<u8>>) -> Self {
+        Self { document: document.into(), file: file.into(), scene: None, options: Options::default() }
     }
 
     /// The robot that it is about.
-    pub fn robot(&self) -> RobotAsked<'_> {
-        RobotAsked { file: &self.file, urdf: &self.urdf, options: &self.options.robot }
+    pub fn robot(&self) -> RobotRequest<'_> {
+        let scene = self.scene.as_ref();
+        RobotRequest { file: &self.file, document: &self.document, options: &self.options.robot, scene, checks_motion: false }
+    }
+
+    /// The robot that it is about, edited, with its model and effects.
+    ///
+    /// # Errors
+    /// All findings about the document, the edits and the effects, if one of them is an error.
+    pub fn build_robot(&self) -> Result<BuiltRobot, Diagnostics> {
+        self.robot().build()
     }
 
     /// Takes the frames that a program chose by itself. Names in Rust of links that are none of these are in order then, and not used: they are left out.
@@ -93,13 +103,12 @@ impl Request {
         let unused = if self.options.rename.is_empty() { Vec::new() } else { self.links_without_a_joint() };
         let is_left_out = |(from, to): &(String, String)| is_name(to) && unused.contains(from) && !frames.contains(from);
         self.options.rename.retain(|names| !is_left_out(names));
-        self.options.robot.frames = Some(frames.to_vec());
+        self.options.robot.set_frames(frames.iter().cloned());
     }
 
     /// Links of which no joint that moves has the name; none of a robot that cannot be had.
     fn links_without_a_joint(&self) -> Vec<String> {
-        let whole = read(self).and_then(|reading| model(self, &reading.description));
-        let Ok(whole) = whole else { return Vec::new() };
+        let Ok(BuiltRobot { model: whole, .. }) = self.build_robot() else { return Vec::new() };
         let is_joint = |name: &String| whole.joints.iter().any(|joint| joint.name == *name);
         whole.frames.iter().map(|frame| frame.name.clone()).filter(|name| !is_joint(name)).collect()
     }
@@ -123,21 +132,6 @@ impl Request {
     }
 }
 
-/// Reads the request's robot and edits it. Errors: everything that is wrong with the document, or else everything that is wrong with the edits.
-pub fn read(request: &Request) -> Result<Reading, Error> {
-    Ok(request.robot().read()?)
-}
-
-/// The model of what was [read](read()), see [`RobotAsked::model`].
-pub fn model(request: &Request, description: &Description) -> Result<Model<f64>, Error> {
-    Ok(request.robot().model(description)?)
-}
-
-/// The model with the frames that the request asks for.
-pub fn choose_frames(request: &Request, model: Model<f64>) -> Result<Model<f64>, Error> {
-    Ok(request.robot().choose_frames(model)?)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -152,7 +146,7 @@ mod tests {
             let mut request = Request::new("arm.urdf", ARM);
             request.options.set_name(from, to);
             request.set_frames(&["tip".into()]);
-            assert_eq!(request.options.robot.frames.as_deref(), Some(&["tip".to_owned()][..]));
+            assert_eq!(request.options.robot.frames.as_deref(), Some(&["tip".into()][..]));
             crate::generate(&request).map(|generated| generated.source).map_err(|error| error.to_string())
         };
         assert!(["fore", "tip"].iter().all(|name| told(name, "OTHER").unwrap().contains("pub const OTHER: usize = 0;")));

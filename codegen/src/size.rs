@@ -3,10 +3,12 @@
 //! A function with one number per joint grows as the chain does. One with a number per pair of joints grows as its
 //! square, and what inverts the mass matrix as its cube. A test compares predictions with what is generated.
 
+use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 use articulated_core::model::Model;
 
+use crate::plan::{Entry, placed};
 use crate::spec::{FunctionSpec, FunctionTerm};
-use crate::{Error, Options, Request, program};
+use crate::{Options, Request, program};
 
 /// So many megabytes (10⁶ bytes) of Rust are generated at most, unless a request has another limit. A compiler takes
 /// minutes and gigabytes of memory for more, and loops over joints are faster.
@@ -109,30 +111,30 @@ fn megabytes(wanted: &FunctionSpec, model: &Model<f64>, tree: &Tree, options: &O
     instructions * BYTES * if alone { 1.0 } else { WITH_BATCH } / 1e6
 }
 
-/// Refuses a request for more code than its limit. Errors: one for each of the largest
-/// functions, without which the rest is within it.
-pub(crate) fn within_limit(request: &Request, model: &Model<f64>, wanted: &[FunctionSpec]) -> Result<(), Error> {
+/// Reports a request for more code than its limit: an error for each of the largest functions,
+/// without which the rest is within it.
+pub(crate) fn within_limit(request: &Request, model: &Model<f64>, entries: &[Entry], log: &mut Diagnostics) {
     let (options, tree) = (&request.options, Tree::of(model));
-    let mut sizes: Vec<(&FunctionSpec, f64)> = wanted.iter().map(|w| (w, megabytes(w, model, &tree, options))).collect();
+    let mut sizes: Vec<(&Entry, f64)> = entries.iter().map(|entry| (entry, megabytes(&entry.1, model, &tree, options))).collect();
     sizes.sort_by(|a, b| b.1.total_cmp(&a.1));
     let most = options.max_code_size as f64;
     let mut rest: f64 = sizes.iter().map(|(_, size)| size).sum();
-    let mut errors = Vec::new();
-    for (wanted, size) in sizes {
+    for ((k, function), size) in sizes {
         if rest <= most {
             break;
         }
         rest -= size;
-        errors.push(Error::TooMuchCode {
-            file: request.file.clone(),
-            function: wanted.name.clone(),
-            library: wanted.parts.iter().map(|part| part.function.name).collect(),
-            freedoms: model.nv,
-            found: size.ceil() as u64,
-            most: options.max_code_size,
-        });
+        let library: Vec<&str> = function.parts.iter().map(|part| part.function.name).collect();
+        let found = format!("about {} MB of code for {} degrees of freedom", size.ceil() as u64, model.nv);
+        let expected = format!(
+            "at most {} MB for all functions together; call the library's {}, a loop over the joints, or allow more with `--max-code-size` \
+             (key `max_code_size`, method `Build::max_code_size`)",
+            options.max_code_size,
+            library.join(" and ")
+        );
+        let error = Diagnostic::error(&request.file, (Default::default(), &function.name), Code::TooMuchCode, found, expected);
+        log.push(placed(error, &options.functions[*k]));
     }
-    Error::of(errors).map_or(Ok(()), Err)
 }
 
 #[cfg(test)]
@@ -170,9 +172,9 @@ mod tests {
         {
             request.options.limbs = false;
             request.options.rust_mut().batch = if batch { vec![Real::F64] } else { Vec::new() };
-            let whole = crate::model(&request, &crate::read(&request).unwrap().description).unwrap();
+            let whole = request.build_robot().unwrap().model;
             for function in functions::<Sym>() {
-                request.options.functions = vec![function.name.to_owned()];
+                request.options.functions = vec![function.name.into()];
                 let Ok(generated) = generate(&request) else { continue };
                 let wanted = FunctionSpec::plain(function);
                 let predicted = megabytes(&wanted, &whole, &Tree::of(&whole), &request.options);
@@ -187,14 +189,15 @@ mod tests {
     fn code_beyond_the_limit_is_refused_before_it_is_traced() {
         let mut request = chain(1000, 1000, Base::Fixed);
         request.options.functions =
-            ["inverse_dynamics", "mass_matrix", "other = coriolis_matrix", "forward_dynamics"].map(String::from).to_vec();
+            ["inverse_dynamics", "mass_matrix", "other = coriolis_matrix", "forward_dynamics"].map(Into::into).to_vec();
         let start = std::time::Instant::now();
         let error = generate(&request).unwrap_err();
         assert!(start.elapsed().as_secs() < 5);
         let told = |function: &str, library: &str, size: u64| {
             format!(
                 "chain.urdf: {function}: found about {size} MB of code for 1000 degrees of freedom, expected at most 64 MB for all functions together; \
-                 call the library's {library}, a loop over the joints, or set `max_code_size` (`--max-code-size`) to more MB"
+                 call the library's {library}, a loop over the joints, or allow more with `--max-code-size` (key `max_code_size`, method \
+                 `Build::max_code_size`)"
             )
         };
         let expected = [told("other", "coriolis_matrix", 998), told("mass_matrix", "mass_matrix", 668)].join("\n");
@@ -220,11 +223,13 @@ mod tests {
     fn derivatives_that_are_left_loops_do_not_reach_the_limit() {
         let mut request = chain(240, 60, Base::Floating);
         request.options.max_code_size = 10;
-        let model = crate::model(&request, &crate::read(&request).unwrap().description).unwrap();
+        let model = request.build_robot().unwrap().model;
         let wanted = FunctionSpec::plain(crate::function("inverse_dynamics_derivatives").unwrap());
         for (limbs, batch, fits) in [(true, vec![], true), (false, vec![], false), (true, vec![Real::F64], false)] {
             (request.options.limbs, request.options.rust_mut().batch) = (limbs, batch);
-            assert_eq!(within_limit(&request, &model, std::slice::from_ref(&wanted)).is_ok(), fits, "{limbs}");
+            let mut log = Diagnostics::default();
+            within_limit(&request, &model, &[(0, wanted.clone())], &mut log);
+            assert_eq!(log.is_ok(), fits, "{limbs}");
         }
     }
 }

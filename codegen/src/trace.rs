@@ -209,7 +209,7 @@ mod tests {
         let mut request = Request::new("arm", format!("<robot name='arm'>{links}{limited}</robot>"));
         let drag = drag.then(|| Applied { effect: EffectId::drag, on: "tool".into(), at: Origin::default(), parameters: vec![0.7] });
         request.options.robot.effects.extend(drag);
-        crate::model(&request, &crate::read(&request).unwrap().description).unwrap()
+        request.build_robot().unwrap().model
     }
 
     fn input(argument: usize, k: usize) -> f64 {

@@ -6,7 +6,7 @@ use articulated_core::algorithm::{Workspace, checked_forward_dynamics, inverse_d
 use articulated_core::description::Base;
 use articulated_core::model::Model;
 use articulated_core::model::pass::model_passes;
-use articulated_urdf::{Options, read};
+use articulated_formats::{Options, read};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -1,7 +1,7 @@
 //! Any bytes are a robot or a list of mistakes.
 #![no_main]
 
-use articulated_urdf::{Options, read};
+use articulated_formats::{Options, read};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

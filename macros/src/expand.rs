@@ -1,13 +1,12 @@
 //! From an invocation to a module.
 
 use std::env;
-use std::io::ErrorKind;
 use std::path::PathBuf;
 
-use articulated_codegen::scene::articulated_scene::{At, Robot, Scene, SceneErrors, nearest_file};
-use articulated_codegen::urdf::{MOST_BYTES, read_file, summary};
+use articulated_codegen::diagnostic::{At, Code, Diagnostic, Diagnostics, Span, summary};
+use articulated_codegen::scene::articulated_scene::{Loader, Robot, Scene};
 use articulated_codegen::{Generated, Request, check_words, scene};
-use proc_macro2::{Span, TokenStream};
+use proc_macro2::{Span as Word, TokenStream};
 use quote::{quote, quote_spanned};
 
 use crate::errors::Errors;
@@ -34,37 +33,38 @@ fn module(invocation: Invocation) -> TokenStream {
 
 /// The generated source and a mention of every file, by which the compiler knows that the module depends on them.
 fn contents(settings: &Settings, errors: &mut Errors) -> TokenStream {
-    let mut reader = Reader { settings, errors, paths: Vec::new() };
-    let asked = reader.asked();
-    let paths = reader.paths;
-    let source = asked.map(|asked| source(asked, settings, errors));
+    let mut reader = Reader { settings, log: Diagnostics::default(), loader: loader() };
+    let (scene, request) = reader.request();
+    let Reader { mut log, loader, .. } = reader;
+    let source = request.map(|request| source(&request, &scene, settings, &mut log));
+    log.sort();
+    log.errors.iter().for_each(|finding| errors.push(settings.error(finding, &scene)));
+    let paths: Vec<String> = loader.files.iter().map(|path| path.display().to_string()).collect();
     quote! { #source #(const _: &[u8] = ::core::include_bytes!(#paths);)* }
 }
 
-/// What is to be generated.
-struct Asked {
-    request: Request,
-    /// The scene, with what the invocation says in the place of what it says itself.
-    scene: Scene,
+/// Files of the user's crate.
+fn loader() -> Loader<'static> {
+    let root = env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
+    Loader { root, seen_from: ", seen from the folder of Cargo.toml", ..Loader::default() }
 }
 
 /// The generated source, or nothing and every error.
-fn source(Asked { mut request, scene }: Asked, settings: &Settings, errors: &mut Errors) -> TokenStream {
-    let effects = if scene.has_effects() { scene::settle(&mut request, &scene).map(drop) } else { Ok(()) };
-    match effects.and_then(|()| articulated_codegen::generate(&request)) {
+fn source(request: &Request, scene: &Scene, settings: &Settings, log: &mut Diagnostics) -> TokenStream {
+    match articulated_codegen::generate(request) {
         Ok(generated) => {
-            let (code, warnings) = (generated.tokens(), warnings(&generated, settings.places.span(settings.at_robot(&scene))));
+            let (code, warnings) = (generated.tokens(), warnings(&generated, settings.places.span(settings.at_robot(scene))));
             quote! { #code #warnings }
         }
-        Err(error) => {
-            settings.at_their_words(error, &scene).into_iter().for_each(|error| errors.push(error));
+        Err(findings) => {
+            log.take(findings);
             TokenStream::new()
         }
     }
 }
 
 /// Items of which the compiler warns, one for each sort of warning: a macro has no other way to warn. `#[allow(deprecated)]` on the module silences them.
-fn warnings(generated: &Generated, at: Span) -> TokenStream {
+fn warnings(generated: &Generated, at: Word) -> TokenStream {
     let items = summary(&generated.warnings).into_iter().map(|line| {
         quote_spanned! {at=>
             const _: () = {
@@ -80,94 +80,81 @@ fn warnings(generated: &Generated, at: Span) -> TokenStream {
 /// Reads the files of an invocation.
 struct Reader<'a> {
     settings: &'a Settings,
-    errors: &'a mut Errors,
-    /// The files that were read.
-    paths: Vec<String>,
+    log: Diagnostics,
+    loader: Loader<'static>,
 }
 
 impl Reader<'_> {
-    /// Nothing, if a file is missing or the scene's file is broken.
-    fn asked(&mut self) -> Option<Asked> {
+    /// The scene, with what the invocation says in the place of what it says itself, and the request.
+    /// No request if a file is missing or the scene is wrong.
+    fn request(&mut self) -> (Scene, Option<Request>) {
         let settings = self.settings;
         let seen_from = settings.own.scene.as_ref().map_or("", |(name, _)| name);
-        let from_file = if settings.own.scene.is_some() { self.scene() } else { Some(Scene::default()) };
+        let from_file = match &settings.own.scene {
+            Some((name, at)) => self.loader.scene(name, &Span { file: name.clone(), at: *at }, &mut self.log),
+            None => Some(Scene::default()),
+        };
         let is_whole = from_file.is_some();
         let (scene, wrong) = from_file.unwrap_or_default().overlaid(&settings.rest, &Settings::own_names());
-        wrong.iter().for_each(|error| self.errors.push(settings.in_scene(error)));
+        self.log.extend(wrong);
         let mut options = settings.own.options();
         scene::fill(&mut options, &scene);
-        let file = if is_whole { self.robot(&scene).unwrap_or_default() } else { return None };
-        let urdf = if file.is_empty() { None } else { self.file(&file, settings.at_robot(&scene)) };
-        let mut is_complete = urdf.is_some();
-        for (other, said) in options.robot.append.iter_mut().zip(&scene.code.append) {
-            other.file = from_cargo(seen_from, &said.urdf, said.place);
-            let bytes = self.file(&other.file, settings.here(said.place));
-            is_complete &= bytes.is_some();
-            other.urdf = bytes.unwrap_or_default();
+        if !is_whole {
+            return (scene, None);
         }
-        let request = Request { urdf: urdf.unwrap_or_default(), file, options };
+        let robot = self.robot(seen_from, &scene);
+        let appended = self.loader.append(seen_from, &mut options.robot.append, &mut self.log);
+        let is_complete = robot.is_some() && appended;
+        let (file, document) = robot.unwrap_or_default();
+        let request = Request { document, file, scene: Some(scene.clone()), options };
         if !is_complete {
             // Mistakes in the words of the invocation are mistakes without the robot too.
-            let wrong = check_words(&request).err().map(|error| settings.at_their_words(error, &scene));
-            wrong.into_iter().flatten().for_each(|error| self.errors.push(error));
+            check_words(&request, &mut self.log);
         }
-        is_complete.then_some(Asked { request, scene })
+        (scene, is_complete.then_some(request))
     }
 
-    /// The scene that is named.
-    fn scene(&mut self) -> Option<Scene> {
-        let (name, at) = self.settings.own.scene.as_ref()?;
-        let bytes = self.file(name, *at)?;
-        let wrong = |SceneErrors { errors }: SceneErrors| errors.iter().for_each(|error| self.errors.push(self.settings.in_scene(error)));
-        Scene::read_bytes(name, &bytes).map_err(wrong).ok()
-    }
-
-    /// The robot's file.
-    fn robot(&mut self, scene: &Scene) -> Option<String> {
-        let (places, seen_from) = (&self.settings.places, self.settings.own.scene.as_ref());
-        match (&scene.robot, seen_from) {
-            (Robot::Urdf(urdf), _) => {
-                let seen_from = seen_from.map_or("", |(name, _)| name);
-                return Some(from_cargo(seen_from, urdf, scene.code.places.robot));
-            }
-            // Its value is wrong, which was told.
-            _ if self.settings.has("urdf") => {}
-            (_, Some((name, at))) => {
-                let known = "a bundled robot is known to the command line alone";
-                self.errors.push(places.error(*at, format!("{name}: the scene names no URDF ({known}): give its path as `urdf`")));
-            }
-            // So was a scene's name that cannot be read.
-            _ if self.settings.has("scene") => {}
-            (_, None) => {
-                let expected = "the path of a URDF from the folder of Cargo.toml, as \"robots/arm.urdf\", here or in a `scene`";
-                self.errors.push(places.error(At::Nowhere, format!("`urdf` is missing: expected {expected}")));
-            }
+    /// The name of the robot's file and its bytes.
+    fn robot(&mut self, seen_from: &str, scene: &Scene) -> Option<(String, Vec<u8>)> {
+        let settings = self.settings;
+        if scene.robot != Robot::Given {
+            return self.loader.robot(seen_from, scene, &mut self.log).map(|(file, document, _)| (file, document));
+        }
+        // A value that is wrong is reported already.
+        if !settings.has("urdf") {
+            self.log.push(match &settings.own.scene {
+                Some(_) => scene.without_robot("no robot", "urdf, here or in the scene"),
+                None if settings.has("scene") => return None,
+                None => Diagnostic::error(
+                    "",
+                    (At::Nowhere, "urdf"),
+                    Code::MissingKey,
+                    "nothing",
+                    "the path of a URDF from the folder of Cargo.toml, as \"robots/arm.urdf\", here or in a `scene`",
+                ),
+            });
         }
         None
     }
-
-    /// The bytes of the file that `name`, which stands at `at`, names from the folder of the user's Cargo.toml.
-    fn file(&mut self, name: &str, at: At) -> Option<Vec<u8>> {
-        let bytes = self.read(name).map_err(|reason| self.settings.places.error(at, format!("{name}: {reason}")));
-        self.errors.take(bytes)
-    }
-
-    fn read(&mut self, name: &str) -> Result<Vec<u8>, String> {
-        let root = env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
-        let path = root.join(name);
-        let bytes = read_file(&path, MOST_BYTES).map_err(|error| match error.kind() {
-            ErrorKind::NotFound => {
-                let near = nearest_file(&path).map(|name| format!("; did you mean {name:?}?")).unwrap_or_default();
-                format!("there is no such file, seen from the folder of Cargo.toml{near}")
-            }
-            _ => error.to_string(),
-        })?;
-        self.paths.push(path.into_os_string().into_string().map_err(|_| "the path of the package is not UTF-8")?);
-        Ok(bytes)
-    }
 }
 
-/// A file as seen from the folder of Cargo.toml: what the invocation names as it is, what the scene names from the scene's folder.
-fn from_cargo(scene: &str, name: &str, at: At) -> String {
-    if matches!(at, At::Word(_)) { name.to_owned() } else { scene::beside(scene, name) }
+impl Settings {
+    /// A finding at the word of the invocation that it is about; of a scene's file, where that is named; of another file, where the robot is named.
+    fn error(&self, finding: &Diagnostic, scene: &Scene) -> syn::Error {
+        match finding.span.at {
+            At::Word(_) => self.places.error(finding.span.at, finding.message()),
+            _ if finding.file() == scene.file => self.places.error(self.at_scene(), finding),
+            _ => self.places.error(self.at_robot(scene), finding),
+        }
+    }
+
+    /// Where the robot's file is named: in the invocation, or in the scene.
+    fn at_robot(&self, scene: &Scene) -> At {
+        let at = scene.code.places.robot;
+        if matches!(at, At::Word(_)) { at } else { self.at_scene() }
+    }
+
+    fn at_scene(&self) -> At {
+        self.own.scene.as_ref().map_or(At::Nowhere, |(_, at)| *at)
+    }
 }

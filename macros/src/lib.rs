@@ -9,7 +9,6 @@ mod expand;
 #[cfg(test)]
 mod hostile;
 mod invocation;
-mod place;
 mod settings;
 #[cfg(test)]
 mod tests;

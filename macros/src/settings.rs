@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use articulated_codegen::scene::articulated_scene::{At, Node, Value};
+use articulated_codegen::diagnostic::At;
+use articulated_codegen::scene::articulated_scene::{Node, Value};
 use articulated_codegen::{Options, RustOptions, Target};
 use proc_macro2::{Span, TokenStream};
 use syn::Path;

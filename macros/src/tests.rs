@@ -28,7 +28,7 @@ fn macro_build_script_and_library_give_the_same_tokens() {
     request.options.robot.base = Base::Floating;
     request.options.robot.gravity = [0.0, 1.5, -9.0];
     request.options.functions = vec!["gravity_torque".into(), "placements".into()];
-    request.options.rename = rename.to_vec();
+    request.options.rename = rename.iter().cloned().map(Into::into).collect();
     request.options.robot.snap_angles = Some(1e-9);
     request.options.rust_mut().runtime = Some("::articulated".into());
     assert_eq!(generate(&request).unwrap().source, build.source);
@@ -229,8 +229,8 @@ fn effects_in_the_invocation_are_those_of_a_scene() {
     let mut request = Request::new(urdf, std::fs::read(urdf).unwrap());
     request.options.functions = vec!["effect_forces".into()];
     request.options.rust_mut().runtime = Some("::articulated".into());
-    request.options.robot.effects = Scene::read("s", scene).unwrap().effects_on(&request.robot()).unwrap().effects;
-    assert_eq!(request.options.robot.effects.len(), 2 + 1 + 3);
+    request.scene = Some(Scene::read("s", scene).unwrap());
+    assert_eq!(request.build_robot().unwrap().effects.len(), 2 + 1 + 3);
     let tokens = generate(&request).unwrap().tokens();
     assert_eq!(quote!(#(#items)*).to_string(), syn::parse2::<syn::File>(tokens).unwrap().to_token_stream().to_string());
 }

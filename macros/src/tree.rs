@@ -4,7 +4,8 @@
 use std::collections::BTreeSet;
 use std::fmt::Display;
 
-use articulated_codegen::scene::articulated_scene::{At, Entry, Node, Value};
+use articulated_codegen::diagnostic::At;
+use articulated_codegen::scene::articulated_scene::{Entry, Node, Value};
 use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Parser};

@@ -169,10 +169,10 @@ mod tests {
             let scene = Scene::read(bundled.name, bundled.toml).unwrap_or_else(|e| panic!("{e}"));
             assert_eq!(scene.summary, bundled.summary());
             assert!(matches!(&scene.robot, Robot::Bundled(name) if robot(name).is_some()), "{}", bundled.name);
-            let robots: Vec<_> = ROBOTS.iter().map(|r| articulated_scene::Bundled { name: r.name, urdf: r.urdf, base: r.base }).collect();
+            let robots: Vec<_> =
+                ROBOTS.iter().map(|r| articulated_scene::Bundled { name: r.name, document: r.urdf, base: r.base }).collect();
             let prepared = open_in(scene, std::path::Path::new(""), &robots).unwrap_or_else(|e| panic!("{e}"));
-            let reading = articulated_codegen::read(&prepared.request).unwrap();
-            let model = articulated_codegen::model(&prepared.request, &reading.description).unwrap();
+            let model = prepared.robot.model;
             let (q, v) = prepared.scene.start(&model).unwrap_or_else(|e| panic!("{e}"));
             assert_eq!((q.len(), v.len()), (model.nq, model.nv), "{}", bundled.name);
             let controller =

@@ -513,7 +513,7 @@ def golfer():
 def spinning_top():
     r = Robot("spinning_top", 0.1, 3,
               "A symmetric top that turns about a point which does not move: upright at q = 0, axis z. Own design; all numbers are",
-              "chosen. Its joint is spherical, an extension of the format: see the crate articulated-urdf.",
+              "chosen. Its joint is spherical, an extension of the format: see the crate articulated-formats.",
               "m = 0.1 kg, a solid cylinder of radius 0.03 m and height 0.03 m, its centre l = 0.04 m above the point:",
               "I3 = m r^2 / 2 = 4.5e-5, I1 = m (3 r^2 + h^2) / 12 + m l^2 = 1.9e-4 kg m^2 about the point.",
               "Steady precession at the rate p and the angle t from the vertical, w3 the whole turn about the axis of the top:",

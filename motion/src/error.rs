@@ -4,8 +4,8 @@ use std::fmt;
 
 use articulated::FunctionError;
 use articulated::simulate::{SettingError, SimulateError, StateError};
+use articulated_core::diagnostic::{Diagnostic, Diagnostics};
 use articulated_core::listed;
-use articulated_scene::{SceneError, SceneErrors};
 
 /// All that keeps a scene from moving.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,7 +28,7 @@ pub struct MotionError {
 #[non_exhaustive]
 pub enum Fault {
     /// The start or the control does not fit the robot, a table cannot be read, or the ball is hit at a time at which nothing moves.
-    Scene(SceneError),
+    Scene(Diagnostic),
     /// The scene has no `[simulation]`: it does not say when its motion ends.
     NoSimulation,
     /// A setting that cannot be used.
@@ -133,7 +133,7 @@ impl MotionErrors {
 impl MotionError {
     /// What is wrong with a scene itself may be wrong in a file that it names.
     fn new(file: &str, fault: Fault) -> Self {
-        let file = if let Fault::Scene(error) = &fault { &error.file } else { file };
+        let file = if let Fault::Scene(error) = &fault { error.file() } else { file };
         Self { file: file.to_owned(), fault }
     }
 }
@@ -150,9 +150,9 @@ impl Fault {
     }
 }
 
-impl From<SceneErrors> for MotionErrors {
-    fn from(all: SceneErrors) -> Self {
-        let placed = |error: SceneError| MotionError { file: error.file.clone(), fault: Fault::Scene(error) };
+impl From<Diagnostics> for MotionErrors {
+    fn from(all: Diagnostics) -> Self {
+        let placed = |error: Diagnostic| MotionError { file: error.file().to_owned(), fault: Fault::Scene(error) };
         Self { errors: all.errors.into_iter().map(placed).collect() }
     }
 }

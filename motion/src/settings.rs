@@ -1,8 +1,9 @@
 //! How a scene is simulated, as it says itself.
 
 use articulated::simulate::Settings;
+use articulated_core::diagnostic::{Code, Diagnostic};
 use articulated_core::effect::{Applied, EffectId};
-use articulated_scene::{Kind, SceneError, When};
+use articulated_scene::When;
 
 use crate::error::{Fault, MotionErrors};
 use crate::stage::{Stage, field};
@@ -51,14 +52,9 @@ impl Stage {
     fn in_time(&self, &Settings { start, end, .. }: &Settings) -> Option<Fault> {
         let impact = self.scene.impact.as_ref()?;
         let When::Time(found) = impact.when else { return None };
-        let told = || SceneError {
-            file: self.scene.file.clone(),
-            at: impact.when_place,
-            key: "impact.time".to_owned(),
-            kind: Kind::Together,
-            found: format!("{found:?}"),
-            expected: format!("a time from {start:?} s on and before {end:?} s"),
-            nearest: None,
+        let told = || {
+            let (place, expected) = ((impact.when_place, "impact.time"), format!("a time from {start:?} s on and before {end:?} s"));
+            Diagnostic::error(&self.scene.file, place, Code::Together, format!("{found:?}"), expected)
         };
         (found < start || found >= end).then(|| Fault::Scene(told()))
     }

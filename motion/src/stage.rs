@@ -4,10 +4,11 @@ use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 
 use articulated_core::description::Description;
+use articulated_core::diagnostic::{Diagnostic, Diagnostics};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
-use articulated_scene::{Opened, Report, RobotError, Scene, Settled};
-use articulated_urdf::{Problem, Reading, open_file};
+use articulated_formats::{Reading, open_file};
+use articulated_scene::{BuiltRobot, Opened, Report, Scene};
 
 /// No table of control is larger, bytes: ten million rows, of which none has more, of 400 each.
 const MOST_OF_TABLE: u64 = 4 << 30;
@@ -26,22 +27,22 @@ pub struct Stage {
     /// What of the effects is on and off, and what of the robot's document is not used.
     pub report: Report,
     /// What is odd about the robot, and used as it is written or as the scene asks.
-    pub warnings: Vec<Problem>,
+    pub warnings: Vec<Diagnostic>,
     folder: PathBuf,
 }
 
 /// How a stage is had.
 impl Stage {
     /// The scene at `path` with the robot of the URDF that it names. Errors: all that is wrong with the scene, or else with the robot, or else all of the scene that does not fit it.
-    pub fn open(path: impl AsRef<Path>) -> Result<Self, RobotError> {
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, Diagnostics> {
         let path = path.as_ref();
         let folder = path.parent().unwrap_or(Path::new(""));
         Ok(Self::of(articulated_scene::open(path, &[])?)?.in_folder(folder))
     }
 
     /// Of a scene whose files are read, or of one for which a program has the documents itself ([`Opened::new`]). Errors: as [`Stage::open`].
-    pub fn of(opened: Opened) -> Result<Self, RobotError> {
-        let Settled { reading, model, resolved } = opened.settle()?;
+    pub fn of(opened: Opened) -> Result<Self, Diagnostics> {
+        let BuiltRobot { reading, model, resolved, .. } = opened.build()?;
         let Reading { description, mut warnings, snapped, .. } = reading;
         warnings.extend(snapped);
         let stage = Self::new(opened.scene, description, model, resolved.effects);

@@ -6,7 +6,7 @@ use articulated_core::model::Model;
 /// A robot that comes with the project, with the base that it is meant for.
 pub(crate) fn bundled(name: &str) -> Model<f64> {
     let robot = articulated_models::robot(name).expect("a bundled robot");
-    let reading = articulated_urdf::read(robot.urdf.as_bytes(), &articulated_urdf::Options::default()).expect("its URDF");
+    let reading = articulated_formats::read(robot.urdf.as_bytes(), &articulated_formats::Options::default()).expect("its URDF");
     Model::new(&reading.description, robot.base).expect("a model")
 }
 

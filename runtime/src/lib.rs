@@ -37,12 +37,12 @@ pub use articulated_macros::robot;
 #[cfg(feature = "std")]
 pub mod simulate;
 
-#[cfg(feature = "urdf")]
+#[cfg(feature = "formats")]
 mod load;
-/// The reader of URDFs, with its warnings and choices.
-#[cfg(feature = "urdf")]
-pub use articulated_urdf as urdf;
-#[cfg(feature = "urdf")]
+/// The readers of robot files, with their warnings and options.
+#[cfg(feature = "formats")]
+pub use articulated_formats as formats;
+#[cfg(feature = "formats")]
 pub use load::{LoadError, describe, describe_bytes, load, load_bytes};
 
 #[cfg(feature = "rayon")]

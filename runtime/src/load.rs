@@ -4,22 +4,23 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use articulated_core::description::{Base, Description};
+use articulated_core::diagnostic::Diagnostics;
 use articulated_core::model::{Model, ModelError};
-use articulated_urdf::{MOST_BYTES, Options, Problems, read, read_file};
+use articulated_formats::{Disk, MOST_BYTES, Options, read_file, read_with};
 
 /// Why a file is not a robot.
 #[derive(Debug)]
 pub enum LoadError {
-    /// The file cannot be read, or is larger than any URDF.
+    /// The file cannot be read, or is larger than any robot file.
     Io {
-        /// Which.
+        /// The file.
         file: PathBuf,
-        /// What the system said.
+        /// The reason.
         error: std::io::Error,
     },
-    /// The document is not a usable URDF; every error in it.
-    Urdf(Problems),
-    /// A robot of a kind that the algorithms do not know.
+    /// The document is not a usable robot; all findings about it.
+    Diagnostics(Diagnostics),
+    /// A robot that the algorithms do not accept.
     Model(ModelError),
 }
 
@@ -27,7 +28,7 @@ impl fmt::Display for LoadError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Io { file, error } => write!(f, "{}: {error}", file.display()),
-            Self::Urdf(e) => e.fmt(f),
+            Self::Diagnostics(e) => e.fmt(f),
             Self::Model(e) => e.fmt(f),
         }
     }
@@ -37,15 +38,15 @@ impl std::error::Error for LoadError {}
 
 /// The generic model of the URDF at `path`, with standard gravity.
 ///
-/// Every mistake of the file is an error. What is merely odd (an inertia that no body has, mass that a fixed base holds, …) is used as it is written, and not told here:
-/// [`urdf::read`](crate::urdf::read) tells it, and has choices besides.
+/// Every mistake of the file is an error. This function does not return warnings (an inertia that no
+/// body has, and so on): [`formats::read`](crate::formats::read) does, and has options.
 ///
 /// ```no_run
 /// # fn arm() -> Result<(), Box<dyn std::error::Error>> {
-/// use articulated::{Base, Model, urdf};
+/// use articulated::{Base, Model, formats};
 ///
-/// let options = urdf::Options { file: "arm.urdf".into(), ..urdf::Options::default() };
-/// let reading = urdf::read(&std::fs::read("arm.urdf")?, &options)?;
+/// let options = formats::Options { file: "arm.urdf".into(), ..formats::Options::default() };
+/// let reading = formats::read(&std::fs::read("arm.urdf")?, &options)?;
 /// for warning in &reading.warnings {
 ///     eprintln!("warning: {warning}");
 /// }
@@ -75,7 +76,7 @@ pub fn load_bytes(file: &str, bytes: &[u8], base: Base) -> Result<Model<f64>, Lo
 /// # Ok(()) }
 /// ```
 ///
-/// Warnings are not told, as [`load`] says.
+/// Warnings are not returned, as for [`load`].
 pub fn describe(path: impl AsRef<Path>) -> Result<Description, LoadError> {
     let path = path.as_ref();
     let bytes = read_file(path, MOST_BYTES).map_err(|error| LoadError::Io { file: path.to_owned(), error })?;
@@ -85,7 +86,7 @@ pub fn describe(path: impl AsRef<Path>) -> Result<Description, LoadError> {
 /// As [`describe`], of a URDF in memory; `file` is its name in messages.
 pub fn describe_bytes(file: &str, bytes: &[u8]) -> Result<Description, LoadError> {
     let options = Options { file: file.into(), ..Options::default() };
-    Ok(read(bytes, &options).map_err(LoadError::Urdf)?.description)
+    Ok(read_with(&Disk, bytes, &options).map_err(LoadError::Diagnostics)?.description)
 }
 
 #[cfg(test)]
@@ -110,9 +111,11 @@ mod tests {
 
     #[test]
     fn what_is_odd_and_what_is_wrong_can_be_had_one_by_one() {
-        let reading = crate::urdf::read(b"<robot name='r'><link name='a'/></robot>", &crate::urdf::Options::default()).unwrap();
+        let reading = crate::formats::read(b"<robot name='r'><link name='a'/></robot>", &crate::formats::Options::default()).unwrap();
         assert!(reading.warnings.is_empty() && reading.description.links.len() == 1);
-        let LoadError::Urdf(problems) = load_bytes("r.urdf", b"<robot/>", Base::Fixed).unwrap_err() else { panic!("not the reader's") };
-        assert!(problems.to_string().starts_with("error: r.urdf:1: "), "{problems}");
+        let LoadError::Diagnostics(findings) = load_bytes("r.urdf", b"<robot/>", Base::Fixed).unwrap_err() else {
+            panic!("not the reader's")
+        };
+        assert!(findings.to_string().starts_with("r.urdf:1: "), "{findings}");
     }
 }

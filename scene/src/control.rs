@@ -1,18 +1,17 @@
 //! `[control]`: what drives the joints.
 
 use articulated_core::control::{Aim, Controller};
+use articulated_core::diagnostic::{At, Code, Diagnostics};
 use articulated_core::effect::Range;
 use articulated_core::model::{FLOATING_BASE, Model};
 
 use crate::edits::{name, places};
-use crate::error::{Kind, SceneErrors};
 use crate::initial::{Coordinates, Named, Side, counted, fill, neutral, no_joint, normalise, values};
-use crate::log::Log;
 use crate::scene::Scene;
 use crate::series::{Reader, Source};
 use crate::simulation::set;
 use crate::table::{Row, Spot};
-use crate::tree::{At, Value};
+use crate::tree::Value;
 
 /// What drives the joints.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -201,7 +200,7 @@ pub(crate) const KEYS: &[Row<Keys>] = &[
     },
 ];
 
-pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Control {
+pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Control {
     let mut keys = Keys::default();
     let before = log.count();
     spot.read(KEYS, &mut keys, log);
@@ -225,7 +224,7 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Control {
 }
 
 /// Whether the keys are those of the kind; of a table, what is `right` of it.
-fn check(keys: &Keys, spot: &Spot<'_>, right: &[&str], log: &mut Log) {
+fn check(keys: &Keys, spot: &Spot<'_>, right: &[&str], log: &mut Diagnostics) {
     let of_sort = OF_SORT.iter().find(|(sort, _)| *sort == keys.kind).map_or(&[][..], |(_, keys)| keys);
     let word = SORTS.iter().find(|(_, sort)| *sort == keys.kind).map_or("", |(word, _)| word);
     for row in KEYS.iter().filter(|row| row.name != "kind" && !of_sort.contains(&row.name)) {
@@ -252,7 +251,7 @@ fn listed(keys: &[&str]) -> String {
     if keys.is_empty() { "no other key".into() } else { format!("one of {}", keys.join(", ")) }
 }
 
-fn rows(spot: &Spot<'_>, log: &mut Log) -> Vec<Vec<f64>> {
+fn rows(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Vec<f64>> {
     match spot.list() {
         Some(list) => list.iter().filter_map(|row| row.some_numbers(log, "a list of numbers: the time and one for each column")).collect(),
         None => {
@@ -262,7 +261,7 @@ fn rows(spot: &Spot<'_>, log: &mut Log) -> Vec<Vec<f64>> {
     }
 }
 
-fn per_joint(spot: &Spot<'_>, range: Range, log: &mut Log) -> PerJoint {
+fn per_joint(spot: &Spot<'_>, range: Range, log: &mut Diagnostics) -> PerJoint {
     match &spot.node.value {
         Value::Number(_) => PerJoint::Same(spot.within(log, range).unwrap_or_default()),
         Value::Table(_) => {
@@ -284,7 +283,7 @@ fn per_joint(spot: &Spot<'_>, range: Range, log: &mut Log) -> PerJoint {
 }
 
 /// The number for all joints. What else is wrong with it is told by who reads the numbers, which may be lists there.
-fn same(spot: &Spot<'_>, log: &mut Log) -> f64 {
+fn same(spot: &Spot<'_>, log: &mut Diagnostics) -> f64 {
     match spot.node.value {
         Value::Number(x) => x,
         Value::List(_) => spot.number(log).unwrap_or_default(),
@@ -293,7 +292,7 @@ fn same(spot: &Spot<'_>, log: &mut Log) -> f64 {
 }
 
 /// Every finite number is in the range; what else is wrong is told by who reads the numbers.
-fn all_within(spot: &Spot<'_>, range: Range, log: &mut Log) {
+fn all_within(spot: &Spot<'_>, range: Range, log: &mut Diagnostics) {
     match &spot.node.value {
         Value::Number(x) if x.is_finite() => {
             let _ = spot.within(log, range);
@@ -306,15 +305,15 @@ fn all_within(spot: &Spot<'_>, range: Range, log: &mut Log) {
 
 impl Scene {
     /// The control with names looked up and files read by `read`, which gets their names as the scene has them. Errors: all that do not fit the robot.
-    pub fn controller(&self, model: &Model<f64>, read: &mut Reader<'_>) -> Result<Controller, SceneErrors> {
-        let mut log = Log::new(&self.file);
+    pub fn controller(&self, model: &Model<f64>, read: &mut Reader<'_>) -> Result<Controller, Diagnostics> {
+        let mut log = Diagnostics::new(&self.file);
         let controller = self.controlled(model, Some(read), &mut log);
         log.result(controller)
     }
 
     /// Without `read` files are left alone.
-    fn controlled(&self, model: &Model<f64>, read: Option<&mut Reader<'_>>, log: &mut Log) -> Controller {
-        let vector = |from: &PerJoint, key: &str, log: &mut Log| self.vector(from, key, model, log);
+    fn controlled(&self, model: &Model<f64>, read: Option<&mut Reader<'_>>, log: &mut Diagnostics) -> Controller {
+        let vector = |from: &PerJoint, key: &str, log: &mut Diagnostics| self.vector(from, key, model, log);
         match &self.control.drive {
             Drive::None => Controller::None,
             Drive::Torque(torque) => Controller::Torque(vector(torque, TORQUE, log)),
@@ -339,15 +338,15 @@ impl Scene {
 
 impl Scene {
     /// Whether start and control fit the robot, as far as it can be told without opening a file. Errors: all that do not.
-    pub fn fits(&self, model: &Model<f64>) -> Result<(), SceneErrors> {
-        let mut log = Log::new(&self.file);
+    pub fn fits(&self, model: &Model<f64>) -> Result<(), Diagnostics> {
+        let mut log = Diagnostics::new(&self.file);
         self.started(model, &mut log);
         self.controlled(model, None, &mut log);
         log.result(())
     }
 
     /// `[nv]`. A gain, one number, of a joint of several degrees of freedom is for all of them; torques are asked for one by one.
-    fn vector(&self, from: &PerJoint, key: &str, model: &Model<f64>, log: &mut Log) -> Vec<f64> {
+    fn vector(&self, from: &PerJoint, key: &str, model: &Model<f64>, log: &mut Diagnostics) -> Vec<f64> {
         let mut all = vec![0.0; model.nv];
         match from {
             PerJoint::Same(x) => self.spread(*x, model, &mut all),
@@ -373,8 +372,8 @@ impl Scene {
 /// The key of torques; others have gains, of which one may be for all degrees of freedom of a joint.
 const TORQUE: &str = "control.torque";
 
-fn put(one: &Named, (key, alike): (&str, bool), model: &Model<f64>, all: &mut [f64], log: &mut Log) {
-    let key = format!("{key}.{}", crate::error::bare(&one.joint));
+fn put(one: &Named, (key, alike): (&str, bool), model: &Model<f64>, all: &mut [f64], log: &mut Diagnostics) {
+    let key = format!("{key}.{}", crate::table::bare(&one.joint));
     let Some(joint) = model.joints.iter().find(|j| j.name == one.joint) else {
         no_joint(log, one.place, &key, &one.joint, model);
         return;
@@ -387,7 +386,7 @@ fn put(one: &Named, (key, alike): (&str, bool), model: &Model<f64>, all: &mut [f
     }
 }
 
-fn wrong_count(log: &mut Log, at: At, key: &str, found: usize, (expected, alike): (usize, bool)) {
+fn wrong_count(log: &mut Diagnostics, at: At, key: &str, found: usize, (expected, alike): (usize, bool)) {
     let expected = if expected == 1 || !alike { counted(expected) } else { format!("one number, or {}", counted(expected)) };
-    log.error(at, key, Kind::Number, counted(found), expected);
+    log.error((at, key), Code::Number, counted(found), expected);
 }

@@ -1,18 +1,16 @@
 //! A table over time in a CSV, read line by line: in memory are the numbers that are used, whatever
 //! else the file holds.
 
+use crate::table::bare;
+use articulated_core::diagnostic::{At, Code, Diagnostics, quote_number};
 use std::io::{BufRead, Read};
 
 use articulated_core::control::Series;
 use articulated_core::effect::Range;
 use articulated_core::model::Model;
-use articulated_urdf::quote_number;
 
-use crate::error::{Kind, bare};
 use crate::initial::{Side, counted, normalise};
-use crate::log::Log;
 use crate::series::{Places, ROW, Source, listed};
-use crate::tree::At;
 
 /// What bounds a table.
 #[derive(Clone, Copy)]
@@ -34,15 +32,15 @@ const MOST: Most = Most { rows: 10_000_000, numbers: 1 << 28, line: 1 << 20, lin
 /// The table of a CSV for a robot; columns that are not there are neutral. What is wrong with it is
 /// told of its lines, and no more of them than the number or the name that is wrong; then the table
 /// is empty.
-pub(crate) fn read(from: Box<dyn BufRead>, hold: bool, robot: (&Model<f64>, Side), log: &mut Log) -> Series {
+pub(crate) fn read(from: Box<dyn BufRead>, hold: bool, robot: (&Model<f64>, Side), log: &mut Diagnostics) -> Series {
     read_at_most(MOST, from, hold, robot, log)
 }
 
-fn read_at_most(most: Most, from: Box<dyn BufRead>, hold: bool, (model, side): (&Model<f64>, Side), log: &mut Log) -> Series {
+fn read_at_most(most: Most, from: Box<dyn BufRead>, hold: bool, (model, side): (&Model<f64>, Side), log: &mut Diagnostics) -> Series {
     let mut lines = Lines { from, count: 0, most };
     let Some((at, head)) = lines.next(log) else {
         if log.count() == 0 {
-            log.error(At::Nowhere, "", Kind::Syntax, "nothing", "a first line that names the columns, t and joints");
+            log.error((At::Nowhere, ""), Code::Syntax, "nothing", "a first line that names the columns, t and joints");
         }
         return Series::default();
     };
@@ -54,23 +52,23 @@ fn read_at_most(most: Most, from: Box<dyn BufRead>, hold: bool, (model, side): (
         Table { columns: &source.columns, places: &places, model, side, series: Series { hold, ..Series::default() }, last: None };
     table.fill(&mut lines, most, log);
     if table.last.is_none() && log.count() == 0 {
-        log.error(At::Nowhere, "", Kind::Syntax, "no rows", format!("lines of numbers: {ROW}"));
+        log.error((At::Nowhere, ""), Code::Syntax, "no rows", format!("lines of numbers: {ROW}"));
     }
     if log.count() == 0 { table.series } else { Series::default() }
 }
 
 /// The names of the columns after the time; none of what is no table.
-fn columns(text: &str, at: At, (model, side): (&Model<f64>, Side), log: &mut Log) -> Option<Vec<String>> {
+fn columns(text: &str, at: At, (model, side): (&Model<f64>, Side), log: &mut Diagnostics) -> Option<Vec<String>> {
     let mut names = fields(text).into_iter();
     let first = names.next().unwrap_or_default();
     if !["t", "time"].contains(&first.as_str()) {
-        log.error(at, "", Kind::Word, format!("{} as the first column", quote_number(&first)), "t");
+        log.error((at, ""), Code::Word, format!("{} as the first column", quote_number(&first)), "t");
         return None;
     }
     let columns: Vec<String> = names.collect();
     if columns.is_empty() {
         let expected = format!("columns of joints that move after t: {}", listed(model, side));
-        log.error(at, "", Kind::MissingKey, "a single column", expected);
+        log.error((at, ""), Code::MissingKey, "a single column", expected);
         return None;
     }
     Some(columns)
@@ -90,18 +88,18 @@ struct Table<'a> {
 impl Table<'_> {
     /// Takes the lines up to the end, to what bounds a table, or to so many mistakes that the rest
     /// is left alone.
-    fn fill(&mut self, lines: &mut Lines, most: Most, log: &mut Log) {
+    fn fill(&mut self, lines: &mut Lines, most: Most, log: &mut Diagnostics) {
         let neutral = self.places.neutral(self.model, self.side);
         let rows = most.rows.min(most.numbers / neutral.len().max(1));
         let mut count = 0;
         while let Some((at, text)) = lines.next(log) {
             count += 1;
             if count > rows {
-                return log.error(at, "", Kind::Number, format!("row {count}"), format!("at most {rows} rows"));
+                return log.error((at, ""), Code::Number, format!("row {count}"), format!("at most {rows} rows"));
             }
             if log.count() >= most.wrong {
                 let found = format!("{} mistakes above; from here on nothing is read", log.count());
-                return log.error(at, "", Kind::Syntax, found, "");
+                return log.error((at, ""), Code::Syntax, found, "");
             }
             let Some(numbers) = self.row(&text, at, log) else { continue };
             self.in_order(numbers[0], at, log);
@@ -118,19 +116,19 @@ impl Table<'_> {
         }
     }
 
-    fn in_order(&mut self, time: f64, at: At, log: &mut Log) {
+    fn in_order(&mut self, time: f64, at: At, log: &mut Diagnostics) {
         if let Some(before) = self.last.filter(|before| time <= *before) {
-            log.error(at, "", Kind::Together, format!("the time {time:?} after {before:?}"), "times in order");
+            log.error((at, ""), Code::Together, format!("the time {time:?} after {before:?}"), "times in order");
         }
         self.last = Some(time);
     }
 
     /// The numbers of a line; none where one of them is wrong.
-    fn row(&self, text: &str, at: At, log: &mut Log) -> Option<Vec<f64>> {
+    fn row(&self, text: &str, at: At, log: &mut Diagnostics) -> Option<Vec<f64>> {
         let words = fields(text);
         let width = self.columns.len() + 1;
         if words.len() != width {
-            log.error(at, "", Kind::Together, counted(words.len()), format!("{}: {ROW}", counted(width)));
+            log.error((at, ""), Code::Together, counted(words.len()), format!("{}: {ROW}", counted(width)));
             return None;
         }
         let before = log.count();
@@ -139,7 +137,7 @@ impl Table<'_> {
         for (name, word) in names.zip(words) {
             match word.parse::<f64>() {
                 Ok(x) if x.is_finite() => row.push(x),
-                _ => log.error(at, &bare(name), Kind::Number, quote_number(&word), Range::ALL.to_string()),
+                _ => log.error((at, &bare(name)), Code::Number, quote_number(&word), Range::ALL.to_string()),
             }
         }
         (log.count() == before).then_some(row)
@@ -156,29 +154,29 @@ struct Lines {
 impl Lines {
     /// The next of them; none at the end, and none after one that is no text or too long, which is
     /// told.
-    fn next(&mut self, log: &mut Log) -> Option<(At, String)> {
+    fn next(&mut self, log: &mut Diagnostics) -> Option<(At, String)> {
         loop {
             self.count += 1;
-            let (at, most) = (At::Line(self.count), self.most);
+            let (at, most) = (At::line_of(self.count), self.most);
             let mut wrong = |kind, found: String, expected: String| {
-                log.error(at, "", kind, found, expected);
+                log.error((at, ""), kind, found, expected);
                 None
             };
             let mut line = Vec::new();
             match self.from.by_ref().take(most.line + 1).read_until(b'\n', &mut line) {
                 Ok(0) => return None,
                 Ok(_) if self.count > most.lines => {
-                    return wrong(Kind::Syntax, "one line more".into(), format!("at most {} lines", most.lines));
+                    return wrong(Code::Syntax, "one line more".into(), format!("at most {} lines", most.lines));
                 }
                 Ok(length) if length as u64 > most.line && !line.ends_with(b"\n") => {
                     let expected = format!("a line of a CSV, of at most {} bytes", most.line);
-                    return wrong(Kind::Syntax, format!("more than {} bytes without an end of line", most.line), expected);
+                    return wrong(Code::Syntax, format!("more than {} bytes without an end of line", most.line), expected);
                 }
                 Ok(_) => {}
-                Err(error) => return wrong(Kind::Syntax, format!("what cannot be read ({error})"), "a line of a CSV".into()),
+                Err(error) => return wrong(Code::Syntax, format!("what cannot be read ({error})"), "a line of a CSV".into()),
             }
             let Ok(text) = String::from_utf8(line) else {
-                return wrong(Kind::Syntax, "bytes that are not UTF-8".into(), "a CSV".into());
+                return wrong(Code::Syntax, "bytes that are not UTF-8".into(), "a CSV".into());
             };
             // Spreadsheets write a byte order mark.
             let text = match text.strip_prefix('\u{feff}') {
@@ -239,13 +237,13 @@ mod tests {
         <joint name='elbow' type='continuous'><parent link='base'/><child link='l'/></joint></robot>";
 
     fn arm() -> Model<f64> {
-        let description = articulated_urdf::read(ARM.as_bytes(), &Default::default()).unwrap().description;
+        let description = articulated_formats::read(ARM.as_bytes(), &Default::default()).unwrap().description;
         Model::new(&description, Base::Fixed).unwrap()
     }
 
     /// Read within bounds: the table, or all that is told.
     fn read_within(most: Most, from: impl BufRead + 'static) -> Result<Series, String> {
-        let mut log = Log::new("t.csv");
+        let mut log = Diagnostics::new("t.csv");
         let series = read_at_most(most, Box::new(from), false, (&arm(), Side::V), &mut log);
         log.result(series).map_err(|e| e.to_string())
     }

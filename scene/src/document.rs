@@ -1,19 +1,18 @@
 //! TOML to a tree.
 
+use articulated_core::diagnostic::{At, Code, Diagnostics};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::error::Kind;
-use crate::log::Log;
-use crate::tree::{At, Entry, Node, Value};
+use crate::tree::{Entry, Node, Value};
 
 /// No scene is larger, bytes: tables of torques included.
 const LARGEST: usize = 16 << 20;
 
 /// The file's table; nothing if it is not TOML.
-pub(crate) fn parse(text: &str, log: &mut Log) -> Option<Node> {
+pub(crate) fn parse(text: &str, log: &mut Diagnostics) -> Option<Node> {
     if text.len() > LARGEST {
-        log.error(At::Nowhere, "", Kind::Syntax, format!("{} bytes", text.len()), format!("a scene, of {LARGEST} bytes at most"));
+        log.error((At::Nowhere, ""), Code::Syntax, format!("{} bytes", text.len()), format!("a scene, of {LARGEST} bytes at most"));
         return None;
     }
     let lines = Lines::of(text);
@@ -25,12 +24,12 @@ pub(crate) fn parse(text: &str, log: &mut Log) -> Option<Node> {
     let mut told: Vec<(At, &str)> = told.collect();
     told.dedup();
     for (at, message) in told {
-        log.error(at, "", Kind::Syntax, format!("what is not TOML ({message})"), "");
+        log.error((at, ""), Code::Syntax, format!("what is not TOML ({message})"), "");
     }
-    errors.is_empty().then(|| Node { at: At::Line(1), value: Value::Table(entries(table.get_ref(), &lines)) })
+    errors.is_empty().then(|| Node { at: At::line_of(1), value: Value::Table(entries(table.get_ref(), &lines)) })
 }
 
-fn entries(table: &DeTable<'_>, lines: &Lines) -> Vec<Entry> {
+fn entries(table: &DeTable<'_>, lines: &Lines<'_>) -> Vec<Entry> {
     let mut entries: Vec<(usize, Entry)> = table
         .iter()
         .map(|(name, value)| {
@@ -43,7 +42,7 @@ fn entries(table: &DeTable<'_>, lines: &Lines) -> Vec<Entry> {
 }
 
 /// `at`: the place of the key; a value on another line has its own.
-fn node(value: &Spanned<DeValue<'_>>, at: At, lines: &Lines) -> Node {
+fn node(value: &Spanned<DeValue<'_>>, at: At, lines: &Lines<'_>) -> Node {
     let own = lines.at(value.span().start);
     let value = match value.get_ref() {
         DeValue::String(text) => Value::Text(text.to_string()),
@@ -61,7 +60,7 @@ fn node(value: &Spanned<DeValue<'_>>, at: At, lines: &Lines) -> Node {
 }
 
 /// The place of an item of a list that begins at `list`.
-fn item(value: &Spanned<DeValue<'_>>, list: At, lines: &Lines) -> At {
+fn item(value: &Spanned<DeValue<'_>>, list: At, lines: &Lines<'_>) -> At {
     lines.at(value.span().start).max(list)
 }
 
@@ -75,20 +74,32 @@ fn integer(digits: &str, radix: u32) -> f64 {
 }
 
 /// Where the lines of a text begin.
-struct Lines {
+struct Lines<'a> {
+    text: &'a str,
     starts: Vec<usize>,
 }
 
-impl Lines {
-    fn of(text: &str) -> Self {
+impl<'a> Lines<'a> {
+    fn of(text: &'a str) -> Self {
         let breaks = text.bytes().enumerate().filter(|(_, b)| *b == b'\n').map(|(i, _)| i + 1);
-        Self { starts: std::iter::once(0).chain(breaks).collect() }
+        Self { text, starts: std::iter::once(0).chain(breaks).collect() }
     }
 
+    /// The place of a byte.
     fn at(&self, offset: usize) -> At {
-        At::Line(u32::try_from(self.starts.partition_point(|start| *start <= offset)).unwrap_or(u32::MAX))
+        let line = self.starts.partition_point(|start| *start <= offset).max(1);
+        let start = self.starts[line - 1];
+        // A long line is not counted again for each of its numbers.
+        let column = match offset - start {
+            0..MOST_COLUMNS => self.text.get(start..offset).map_or(0, |text| text.chars().count() + 1),
+            _ => 0,
+        };
+        At::Text { line: u32::try_from(line).unwrap_or(u32::MAX), column: column as u32 }
     }
 }
+
+/// Columns beyond this are not counted, bytes.
+const MOST_COLUMNS: usize = 1000;
 
 #[cfg(test)]
 mod tests {
@@ -105,7 +116,7 @@ mod tests {
         let doubles: Vec<f64> = doubles.filter(|x| x.is_finite()).take(100_000).collect();
         let list = |spelling: fn(&f64) -> String| doubles.iter().map(spelling).collect::<Vec<_>>().join(",");
         let text = format!("a = [{}]\nb = [{}]", list(|x| format!("{x:?}")), list(|x| format!("{x:.16e}")));
-        let mut log = Log::new("s.toml");
+        let mut log = Diagnostics::new("s.toml");
         let Some(Node { value: Value::Table(entries), .. }) = parse(&text, &mut log) else { panic!("no table") };
         for entry in entries {
             let Value::List(list) = entry.node.value else { panic!("no list") };

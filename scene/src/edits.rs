@@ -1,11 +1,10 @@
 //! What a scene does to the robot before a model is made of it: joints locked, loads attached, robots appended, links renamed.
 
 use articulated_core::description::{Origin, Payload};
+use articulated_core::diagnostic::{At, Code, Diagnostics};
 
-use crate::error::Kind;
-use crate::log::Log;
 use crate::table::{Row, Spot};
-use crate::tree::{At, Value};
+use crate::tree::Value;
 
 /// A joint and where it is locked.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,8 +29,8 @@ pub struct Load {
 /// Another robot on a link.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Append {
-    /// Its URDF, relative to the scene's folder.
-    pub urdf: String,
+    /// Its file, relative to the scene's folder.
+    pub file: String,
     /// The link that carries it.
     pub link: String,
     /// What stands before its names.
@@ -45,7 +44,7 @@ pub struct Append {
 }
 
 /// `{ joint = coordinates, … }`.
-pub(crate) fn locks(spot: &Spot<'_>, log: &mut Log) -> Vec<Lock> {
+pub(crate) fn locks(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Lock> {
     let entries = spot.entries(log, "a table of joints, as { elbow = 0.5 }");
     let lock = |entry| {
         let value = spot.of(entry);
@@ -55,7 +54,7 @@ pub(crate) fn locks(spot: &Spot<'_>, log: &mut Log) -> Vec<Lock> {
 }
 
 /// One number or several.
-pub(crate) fn coordinates(spot: &Spot<'_>, log: &mut Log) -> Option<Vec<f64>> {
+pub(crate) fn coordinates(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Vec<f64>> {
     match spot.node.value {
         Value::List(_) => spot.some_numbers(log, "finite numbers"),
         _ => spot.number(log).map(|x| vec![x]),
@@ -63,7 +62,7 @@ pub(crate) fn coordinates(spot: &Spot<'_>, log: &mut Log) -> Option<Vec<f64>> {
 }
 
 /// `{ "name" = "NAME", … }`.
-pub(crate) fn renamings(spot: &Spot<'_>, log: &mut Log) -> Vec<(String, String)> {
+pub(crate) fn renamings(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<(String, String)> {
     let entries = spot.entries(log, "a table of names, as { \"a-b\" = \"A_MINUS_B\" }");
     entries.iter().filter_map(|e| Some((e.name.clone(), spot.of(e).text(log, "a name in Rust")?.to_owned()))).collect()
 }
@@ -78,10 +77,10 @@ pub(crate) fn places(spot: &Spot<'_>) -> Vec<At> {
 }
 
 /// A name that is not empty.
-pub(crate) fn name(spot: &Spot<'_>, log: &mut Log, what: &str) -> Option<String> {
+pub(crate) fn name(spot: &Spot<'_>, log: &mut Diagnostics, what: &str) -> Option<String> {
     let name = spot.text(log, what)?;
     if name.is_empty() {
-        log.error(spot.node.at, &spot.key, Kind::Word, "an empty text", what);
+        log.error((spot.node.at, &spot.key), Code::Word, "an empty text", what);
     }
     Some(name.to_owned())
 }
@@ -143,7 +142,7 @@ pub(crate) const APPEND: &[Row<Append>] = &[
         what: "its file, seen from the scene's folder",
         read: |a, s, log| {
             a.place = s.node.at;
-            a.urdf = name(s, log, "the path of a URDF").unwrap_or_default();
+            a.file = name(s, log, "the path of a URDF").unwrap_or_default();
         },
     },
     Row {

@@ -1,12 +1,12 @@
 //! `[impact]`: a ball that a link hits.
 
+use articulated_core::diagnostic::{At, Diagnostics};
 use articulated_core::effect::Range;
 
 use crate::edits::name;
-use crate::log::Log;
 use crate::simulation::set;
 use crate::table::{Row, Spot};
-use crate::tree::{At, Value};
+use crate::tree::Value;
 
 /// A ball at rest and the link that hits it: an instantaneous impact along the normal, without friction.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -140,7 +140,7 @@ pub(crate) const KEYS: &[Row<Impact>] = &[
     },
 ];
 
-pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Option<Impact> {
+pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Impact> {
     let mut impact = Impact::default();
     let before = log.count();
     spot.read(KEYS, &mut impact, log);

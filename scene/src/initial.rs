@@ -2,15 +2,14 @@
 
 use articulated_core::algorithm;
 use articulated_core::description::Base;
+use articulated_core::diagnostic::{At, Code, Diagnostics};
 use articulated_core::model::{FLOATING_BASE, Model};
 use articulated_core::spatial::normalise_given;
 
 use crate::edits::coordinates;
-use crate::error::{Kind, SceneErrors};
-use crate::log::Log;
 use crate::scene::Scene;
 use crate::table::{Row, Spot};
-use crate::tree::{At, Value};
+use crate::tree::Value;
 
 /// The state at the start.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -160,7 +159,7 @@ pub(crate) const BASE: &[Row<BaseState>] = &[
     },
 ];
 
-pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Initial {
+pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Initial {
     let mut initial = Initial::default();
     spot.read(KEYS, &mut initial, log);
     base_once(&initial.q, "q", &["xyz", "rpy", "quaternion"], spot, log);
@@ -169,7 +168,7 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Initial {
 }
 
 /// A list has the numbers of a floating base too, which `base` may not give beside it.
-fn base_once(coordinates: &Coordinates, key: &str, of_base: &[&str], initial: &Spot<'_>, log: &mut Log) {
+fn base_once(coordinates: &Coordinates, key: &str, of_base: &[&str], initial: &Spot<'_>, log: &mut Diagnostics) {
     let has_base = match coordinates {
         Coordinates::Neutral => false,
         Coordinates::All { .. } => true,
@@ -181,7 +180,7 @@ fn base_once(coordinates: &Coordinates, key: &str, of_base: &[&str], initial: &S
     }
 }
 
-pub(crate) fn values(spot: &Spot<'_>, log: &mut Log) -> Coordinates {
+pub(crate) fn values(spot: &Spot<'_>, log: &mut Diagnostics) -> Coordinates {
     match &spot.node.value {
         Value::List(_) => {
             spot.some_numbers(log, "numbers").map_or(Coordinates::Neutral, |values| Coordinates::All { values, place: spot.node.at })
@@ -205,7 +204,7 @@ fn from_rpy(rpy: [f64; 3]) -> [f64; 4] {
     [sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy, cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy]
 }
 
-fn unit(spot: &Spot<'_>, log: &mut Log) -> Option<[f64; 4]> {
+fn unit(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<[f64; 4]> {
     let mut quaternion: [f64; 4] = spot.numbers(log)?;
     if let Err(norm) = normalise_given(&mut quaternion) {
         spot.bad(log, format!("a quaternion of norm {norm:.4}"), "norm one, in the order x, y, z, w");
@@ -216,13 +215,13 @@ fn unit(spot: &Spot<'_>, log: &mut Log) -> Option<[f64; 4]> {
 
 impl Scene {
     /// The state at the start: q `[nq]`, v `[nv]`. Errors: joints that there are not, wrong numbers of coordinates, a base that does not float; all of them.
-    pub fn start(&self, model: &Model<f64>) -> Result<(Vec<f64>, Vec<f64>), SceneErrors> {
-        let mut log = Log::new(&self.file);
+    pub fn start(&self, model: &Model<f64>) -> Result<(Vec<f64>, Vec<f64>), Diagnostics> {
+        let mut log = Diagnostics::new(&self.file);
         let state = self.started(model, &mut log);
         log.result(state)
     }
 
-    pub(crate) fn started(&self, model: &Model<f64>, log: &mut Log) -> (Vec<f64>, Vec<f64>) {
+    pub(crate) fn started(&self, model: &Model<f64>, log: &mut Diagnostics) -> (Vec<f64>, Vec<f64>) {
         let mut q = neutral(model);
         let mut v = vec![0.0; model.nv];
         self.place_base(model, (&mut q, &mut v), log);
@@ -232,11 +231,11 @@ impl Scene {
         (q, v)
     }
 
-    fn place_base(&self, model: &Model<f64>, (q, v): (&mut [f64], &mut [f64]), log: &mut Log) {
+    fn place_base(&self, model: &Model<f64>, (q, v): (&mut [f64], &mut [f64]), log: &mut Diagnostics) {
         let Some(base) = &self.initial.base else { return };
         if model.joints.first().is_none_or(|j| j.name != FLOATING_BASE) {
             let fixed = if self.base == Some(Base::Floating) { "a robot without a floating base" } else { "a base that is fixed" };
-            log.error(base.place, "initial.base", Kind::Robot, fixed, "base = \"floating\", or no initial.base");
+            log.error((base.place, "initial.base"), Code::Robot, fixed, "base = \"floating\", or no initial.base");
             return;
         }
         q[..3].copy_from_slice(&base.xyz);
@@ -261,19 +260,19 @@ pub(crate) fn neutral(model: &Model<f64>) -> Vec<f64> {
 }
 
 /// Writes what the scene says into `into`, `[nq]` or `[nv]`.
-pub(crate) fn fill(from: &Coordinates, key: &str, model: &Model<f64>, side: Side, into: &mut [f64], log: &mut Log) {
+pub(crate) fn fill(from: &Coordinates, key: &str, model: &Model<f64>, side: Side, into: &mut [f64], log: &mut Diagnostics) {
     match from {
         Coordinates::Neutral => {}
         Coordinates::All { values, .. } if values.len() == into.len() => into.copy_from_slice(values),
         Coordinates::All { values, place } => {
-            log.error(*place, key, Kind::Number, counted(values.len()), format!("{} for this robot", counted(into.len())));
+            log.error((*place, key), Code::Number, counted(values.len()), format!("{} for this robot", counted(into.len())));
         }
         Coordinates::Named(named) => named.iter().for_each(|one| put(one, key, model, side, into, log)),
     }
 }
 
-fn put(one: &Named, key: &str, model: &Model<f64>, side: Side, into: &mut [f64], log: &mut Log) {
-    let key = format!("{key}.{}", crate::error::bare(&one.joint));
+fn put(one: &Named, key: &str, model: &Model<f64>, side: Side, into: &mut [f64], log: &mut Diagnostics) {
+    let key = format!("{key}.{}", crate::table::bare(&one.joint));
     let Some(joint) = model.joints.iter().find(|j| j.name == one.joint) else {
         no_joint(log, one.place, &key, &one.joint, model);
         return;
@@ -281,7 +280,9 @@ fn put(one: &Named, key: &str, model: &Model<f64>, side: Side, into: &mut [f64],
     let (first, count) = if side == Side::Q { joint.q } else { joint.v };
     match one.values.len() {
         found if found == count => into[first..first + count].copy_from_slice(&one.values),
-        found => log.error(one.place, &key, Kind::Number, counted(found), format!("{} for a {} joint", counted(count), joint.kind.name())),
+        found => {
+            log.error((one.place, &key), Code::Number, counted(found), format!("{} for a {} joint", counted(count), joint.kind.name()))
+        }
     }
 }
 
@@ -290,20 +291,20 @@ pub(crate) fn counted(n: usize) -> String {
 }
 
 /// There is no such joint that has coordinates.
-pub(crate) fn no_joint(log: &mut Log, at: At, key: &str, name: &str, model: &Model<f64>) {
+pub(crate) fn no_joint(log: &mut Diagnostics, at: At, key: &str, name: &str, model: &Model<f64>) {
     if model.bodies.iter().any(|body| body.name == name && body.coordinates.mimic.is_some()) {
-        return log.error(at, key, Kind::Robot, "a joint that follows another", "the joint that it follows, whose coordinates it has");
+        return log.error((at, key), Code::Robot, "a joint that follows another", "the joint that it follows, whose coordinates it has");
     }
     let names = model.joints.iter().map(|j| j.name.as_str());
-    log.unknown((at, key, Kind::UnknownName), ("a joint that is not there, or is locked".into(), name), "a joint that moves", names);
+    log.unknown(((at, key), Code::UnknownName), ("a joint that is not there, or is locked".into(), name), "a joint that moves", names);
 }
 
 /// Quaternions to norm one; `place`: where those of a joint are given.
-pub(crate) fn normalise(model: &Model<f64>, q: &mut [f64], (key, place): (&str, &dyn Fn(&str) -> At), log: &mut Log) {
+pub(crate) fn normalise(model: &Model<f64>, q: &mut [f64], (key, place): (&str, &dyn Fn(&str) -> At), log: &mut Diagnostics) {
     for (joint, quaternion) in model.joints.iter().filter_map(|j| Some((j, j.quaternion()?))) {
         if let Err(norm) = normalise_given(&mut q[quaternion]) {
             let found = format!("a quaternion of norm {norm:.4} for joint {:?}", joint.name);
-            log.error(place(&joint.name), key, Kind::Number, found, "norm one, in the order x, y, z, w");
+            log.error((place(&joint.name), key), Code::Number, found, "norm one, in the order x, y, z, w");
         }
     }
 }

@@ -11,8 +11,8 @@
 //! ```
 //!
 //! The way of a scene: text → tree (tables and numbers with their lines) → [`Scene`] (checked, by tables of keys) → against a robot:
-//! [`Scene::resolve`] (effects with all their numbers), [`Scene::start`] and [`Scene::controller`] (vectors). [`open`] reads the files that a scene names, and [`Opened::settle`] edits the
-//! robot and gives its model and effects. No input makes the reader panic or hang. The keys are listed in `docs/scenes.md`.
+//! [`Scene::resolve`] (effects with all their numbers), [`Scene::start`] and [`Scene::controller`] (vectors). [`open`] reads the files that a scene names, and [`Opened::build`] edits the
+//! robot and returns its model and effects. No input makes the reader panic or hang. The keys are listed in `docs/scenes.md`.
 
 mod calls;
 mod control;
@@ -20,10 +20,8 @@ mod csv;
 mod document;
 mod edits;
 mod effects;
-mod error;
 mod impact;
 mod initial;
-mod log;
 pub mod manual;
 mod report;
 mod robot;
@@ -40,16 +38,12 @@ pub use calls::Calls;
 pub use control::{Control, Drive, PerJoint, Target};
 pub use edits::{Append, Load, Lock};
 pub use effects::{Asked, Edited, Numbers, Resolved, Selector, still};
-pub use error::{Kind, SceneError, SceneErrors};
 pub use impact::{Impact, When};
 pub use initial::{BaseState, Coordinates, Initial, Named};
 pub use report::{EffectOff, EffectOn, Number, Report, Why};
-pub use robot::{
-    Appended, Attempt, Bundled, Edit, Opened, Reason, Refusal, RobotAsked, RobotError, RobotOptions, Settled, Tried, beside, beyond_sense,
-    by_places, leave_out, nearest_file, open, open_in, read_robot_file, tried,
-};
-pub use scene::{Code, Places, Robot, Scene};
+pub use robot::{Appended, BuiltRobot, Bundled, Loader, Opened, RobotOptions, RobotRequest, beside, beyond_sense, open, open_in};
+pub use scene::{CodeOptions, Places, Robot, Scene};
 pub use series::{Reader, Source};
 pub use shaft::ShaftAsked;
 pub use simulation::{Simulation, Watched};
-pub use tree::{At, Entry, Node, Value};
+pub use tree::{Entry, Node, Value};

@@ -1,10 +1,8 @@
 //! What of a scene is on, what is off, and what of the URDF is not used.
 
+use articulated_core::diagnostic::{At, Unused};
 use std::fmt;
 
-use articulated_urdf::Unused;
-
-use crate::tree::At;
 use articulated_core::effect::{EffectId, On};
 
 /// What of a scene is on, what is off, and what of the URDF is not used.

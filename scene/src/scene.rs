@@ -2,25 +2,24 @@
 
 use articulated_core::Plain;
 use articulated_core::description::Base;
+use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, quote};
 use articulated_core::effect::EffectId;
 use articulated_core::integrator::IntegratorId;
 use articulated_core::lanes::Real;
 use articulated_core::level::Level;
 use articulated_core::spatial::Reference;
-use articulated_urdf::{SNAP_EXPECTED, can_snap};
+use articulated_formats::{SNAP_EXPECTED, can_snap};
 
 use crate::control::{self, Control};
 use crate::document;
 use crate::edits::{self, APPEND, Append, LOAD, Load, Lock};
 use crate::effects::{self, Asked};
-use crate::error::{Kind, SceneError, SceneErrors, quote};
 use crate::impact::{self, Impact};
 use crate::initial::{self, Initial};
-use crate::log::Log;
 use crate::shaft::ShaftAsked;
 use crate::simulation::{self, Simulation};
 use crate::table::{Row, Spot};
-use crate::tree::{At, Node, Value};
+use crate::tree::{Node, Value};
 
 /// A scene as its file has it: names are not looked up yet, files not opened.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -36,7 +35,7 @@ pub struct Scene {
     /// Gravity in the world frame, m/s²; `None`: standard gravity.
     pub gravity: Option<[f64; 3]>,
     /// Edits of the robot, and what code to make of it.
-    pub code: Code,
+    pub code: CodeOptions,
     /// Effects, as they are asked for.
     pub effects: Vec<Asked>,
     /// Shafts that bend.
@@ -60,12 +59,12 @@ pub enum Robot {
     /// A bundled robot, by its name.
     Bundled(String),
     /// A URDF, relative to the scene's folder.
-    Urdf(String),
+    File(String),
 }
 
 /// Edits of the robot, and choices of the code that is generated for it. `None`: the default of the one who generates.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Code {
+pub struct CodeOptions {
     /// The functions wanted.
     pub functions: Option<Vec<String>>,
     /// Constants of the model that stay inputs.
@@ -117,8 +116,8 @@ pub struct Places {
 
 impl Scene {
     /// The scene in `text`; `file` is its name in messages and is not opened. Any text is a scene or an error; all errors at once.
-    pub fn read(file: &str, text: &str) -> Result<Self, SceneErrors> {
-        let mut log = Log::new(file);
+    pub fn read(file: &str, text: &str) -> Result<Self, Diagnostics> {
+        let mut log = Diagnostics::new(file);
         let mut scene = Self { file: file.to_owned(), ..Self::default() };
         if let Some(root) = document::parse(text, &mut log) {
             scene.fill(&root, &mut log);
@@ -127,22 +126,22 @@ impl Scene {
     }
 
     /// As [`Scene::read`], of bytes that may not even be text.
-    pub fn read_bytes(file: &str, bytes: &[u8]) -> Result<Self, SceneErrors> {
+    pub fn read_bytes(file: &str, bytes: &[u8]) -> Result<Self, Diagnostics> {
         match std::str::from_utf8(bytes) {
             Ok(text) => Self::read(file, text),
             Err(error) => {
                 let lines = bytes[..error.valid_up_to()].iter().filter(|b| **b == b'\n').count();
-                let at = At::Line(u32::try_from(lines + 1).unwrap_or(u32::MAX));
-                let mut log = Log::new(file);
-                log.error(at, "", Kind::Syntax, "bytes that are not UTF-8", "a TOML file");
+                let at = At::line_of(u32::try_from(lines + 1).unwrap_or(u32::MAX));
+                let mut log = Diagnostics::new(file);
+                log.error((at, ""), Code::Syntax, "bytes that are not UTF-8", "a TOML file");
                 log.result(Self::default())
             }
         }
     }
 
     /// The scene with what a table says in the place of what it says itself, as far as nothing is wrong with it; and what is wrong. For the macro, which reads the keys `own` itself.
-    pub fn overlaid(mut self, said: &Node, own: &[&str]) -> (Self, Vec<SceneError>) {
-        let mut log = Log::new(&self.file);
+    pub fn overlaid(mut self, said: &Node, own: &[&str]) -> (Self, Vec<Diagnostic>) {
+        let mut log = Diagnostics::new(&self.file);
         let rows: Vec<&Row<Self>> = KEYS.iter().filter(|row| !OF_MOTION.contains(&row.name)).collect();
         let spot = Spot::root(said);
         for entry in spot.entries(&mut log, "a table") {
@@ -176,7 +175,7 @@ impl Scene {
         }
     }
 
-    fn fill(&mut self, root: &Node, log: &mut Log) {
+    fn fill(&mut self, root: &Node, log: &mut Diagnostics) {
         let spot = Spot::root(root);
         spot.read(KEYS, self, log);
         self.choose_integrator();
@@ -228,7 +227,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
         default: "given by who uses the scene",
         what: "a URDF, seen from the scene's folder; instead of `robot`",
         read: |s, spot, log| {
-            s.robot = edits::name(spot, log, "the path of a URDF").map_or(Robot::Given, Robot::Urdf);
+            s.robot = edits::name(spot, log, "the path of a URDF").map_or(Robot::Given, Robot::File);
             s.code.places.robot = spot.node.at;
         },
     },
@@ -423,7 +422,7 @@ pub(crate) const KEYS: &[Row<Scene>] = &[
 ];
 
 /// The bound is that of the reader of URDFs.
-fn snap_angles(spot: &Spot<'_>, log: &mut Log) -> Option<f64> {
+fn snap_angles(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<f64> {
     match spot.node.value {
         Value::Number(x) if can_snap(x) => return Some(x),
         Value::Number(x) => spot.bad(log, format!("{x:?}"), SNAP_EXPECTED),
@@ -433,7 +432,7 @@ fn snap_angles(spot: &Spot<'_>, log: &mut Log) -> Option<f64> {
 }
 
 /// Each type once.
-fn batch(spot: &Spot<'_>, log: &mut Log) -> Option<Vec<Real>> {
+fn batch(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Vec<Real>> {
     let Some(list) = spot.list() else {
         spot.wrong(log, "a list of \"f64\", \"f32\"");
         return None;
@@ -448,9 +447,9 @@ fn batch(spot: &Spot<'_>, log: &mut Log) -> Option<Vec<Real>> {
     Some(reals)
 }
 
-fn level(spot: &Spot<'_>, log: &mut Log) -> Option<Level> {
+fn level(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Level> {
     let expected = "a level of accuracy, as \"f64\", \"f32\", \"compensated + two\", \"double_double\" or \"f64 + fast_10 + no_fma\"";
     let text = spot.text(log, expected)?;
     let level = text.split_whitespace().collect::<String>().parse::<Level>();
-    level.map_err(|error| log.error(spot.node.at, &spot.key, Kind::Word, quote(text), error.expected)).ok()
+    level.map_err(|error| log.error((spot.node.at, &spot.key), Code::Word, quote(text), error.expected)).ok()
 }

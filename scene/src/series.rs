@@ -1,5 +1,6 @@
 //! Tables over time: in a file of numbers between commas, or in the scene itself.
 
+use articulated_core::diagnostic::{At, Code, Diagnostics, quote};
 use std::collections::{HashMap, HashSet};
 use std::io::BufRead;
 use std::path::Path;
@@ -8,10 +9,7 @@ use articulated_core::control::Series;
 use articulated_core::model::{JointInfo, Model};
 
 use crate::csv;
-use crate::error::{Kind, quote};
 use crate::initial::{Side, counted, neutral, normalise};
-use crate::log::Log;
-use crate::tree::At;
 
 /// Where a table over time is to be had.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -48,7 +46,7 @@ pub(crate) const ROW: &str = "the time and one for each of the columns";
 
 impl Source {
     /// What can be told of rows in the scene without the robot, of the keys that are `right` by themselves.
-    pub(crate) fn check(&self, key: &str, right: &[&str], log: &mut Log) {
+    pub(crate) fn check(&self, key: &str, right: &[&str], log: &mut Diagnostics) {
         let [columns, rows] = ["columns", "rows"].map(|name| right.contains(&name));
         let missing = match (columns && self.columns.is_empty(), rows && self.rows.is_empty()) {
             (_, true) => Some((self.place, "columns without rows", "rows: the time and a number for each column")),
@@ -56,7 +54,7 @@ impl Source {
             _ => None,
         };
         if let Some((at, found, expected)) = missing {
-            log.error(at, key, Kind::MissingKey, found, expected);
+            log.error((at, key), Code::MissingKey, found, expected);
             return;
         }
         let row = |i: usize| format!("{key}.rows[{i}]");
@@ -72,32 +70,31 @@ impl Source {
     }
 
     /// Each column is there once, by its name; other names of one place only the robot shows, see [`Source::places`].
-    pub(crate) fn check_columns(&self, key: &dyn Fn(usize) -> String, log: &mut Log) {
+    pub(crate) fn check_columns(&self, key: &dyn Fn(usize) -> String, log: &mut Diagnostics) {
         let mut seen = HashSet::new();
         for (i, name) in self.columns.iter().enumerate().filter(|(_, name)| !seen.insert(name.as_str())) {
-            log.error(at(&self.column_places, i), &key(i), Kind::Together, format!("the column {} twice", quote(name)), "each once");
+            log.error((at(&self.column_places, i), &key(i)), Code::Together, format!("the column {} twice", quote(name)), "each once");
         }
     }
 
     /// Each row has all its numbers.
-    fn check_widths(&self, key: &dyn Fn(usize) -> String, log: &mut Log) {
+    fn check_widths(&self, key: &dyn Fn(usize) -> String, log: &mut Diagnostics) {
         let width = self.columns.len() + 1;
         for (i, row) in self.rows.iter().enumerate().filter(|(_, row)| row.len() != width) {
             let expected = format!("{}: {ROW}", counted(width));
-            log.error(at(&self.row_places, i), &key(i), Kind::Together, counted(row.len()), expected);
+            log.error((at(&self.row_places, i), &key(i)), Code::Together, counted(row.len()), expected);
         }
     }
 
     /// Rows are in order.
-    fn check_order(&self, key: &dyn Fn(usize) -> String, log: &mut Log) {
+    fn check_order(&self, key: &dyn Fn(usize) -> String, log: &mut Diagnostics) {
         for i in 1..self.rows.len() {
             if let ([before, ..], [time, ..]) = (&self.rows[i - 1][..], &self.rows[i][..])
                 && time <= before
             {
                 log.error(
-                    at(&self.row_places, i),
-                    &key(i),
-                    Kind::Together,
+                    (at(&self.row_places, i), &key(i)),
+                    Code::Together,
                     format!("the time {time:?} after {before:?}"),
                     "times in order",
                 );
@@ -106,7 +103,7 @@ impl Source {
     }
 
     /// The table for a robot; columns that are not there are neutral. Without `read` a file is left alone.
-    pub(crate) fn series(&self, model: &Model<f64>, side: Side, read: Option<&mut Reader<'_>>, log: &mut Log) -> Series {
+    pub(crate) fn series(&self, model: &Model<f64>, side: Side, read: Option<&mut Reader<'_>>, log: &mut Diagnostics) -> Series {
         let Some(file) = &self.file else {
             let keys: [&Key; 2] = [&|i| format!("control.columns[{i}]"), &|i| format!("control.rows[{i}]")];
             return self.placed(model, side, keys, log);
@@ -116,23 +113,23 @@ impl Source {
             Ok(from) => self.parsed(file, from, (model, side), log),
             Err(reason) => {
                 let found = format!("{}, which cannot be read ({reason})", quote(file));
-                log.error(self.place, "control.file", Kind::UnknownName, found, "a CSV with a first line that names its columns");
+                log.error((self.place, "control.file"), Code::UnknownName, found, "a CSV with a first line that names its columns");
                 Series::default()
             }
         }
     }
 
     /// The table of a CSV. What is wrong with it is told of its own lines.
-    fn parsed(&self, file: &str, from: Box<dyn BufRead>, robot: (&Model<f64>, Side), log: &mut Log) -> Series {
+    fn parsed(&self, file: &str, from: Box<dyn BufRead>, robot: (&Model<f64>, Side), log: &mut Diagnostics) -> Series {
         let folder = Path::new(log.file()).parent().unwrap_or(Path::new(""));
-        let mut own = Log::new(&folder.join(file).display().to_string());
+        let mut own = Diagnostics::new(&folder.join(file).display().to_string());
         let series = csv::read(from, self.hold, robot, &mut own);
         log.take(own);
         series
     }
 
     /// Where the numbers of each column go: each to a place of its own.
-    pub(crate) fn places(&self, model: &Model<f64>, side: Side, key: &Key, log: &mut Log) -> Places {
+    pub(crate) fn places(&self, model: &Model<f64>, side: Side, key: &Key, log: &mut Diagnostics) -> Places {
         let column = |(i, name): (usize, &String)| place_of(name, model, side, (at(&self.column_places, i), &key(i)), log);
         let places = Places(self.columns.iter().enumerate().map(column).collect());
         self.check_places(&places, key, log);
@@ -140,20 +137,20 @@ impl Source {
     }
 
     /// No two columns go to one place under two names, as `elbow` and `elbow[0]`.
-    fn check_places(&self, places: &Places, key: &Key, log: &mut Log) {
+    fn check_places(&self, places: &Places, key: &Key, log: &mut Diagnostics) {
         let (mut names, mut taken) = (HashSet::new(), HashMap::new());
         for (i, (name, place)) in self.columns.iter().zip(&places.0).enumerate() {
             // A name that is there twice is told by `check_columns`.
             let (Some(place), true) = (place, names.insert(name)) else { continue };
             if let Some(before) = taken.insert(place, name) {
                 let found = format!("the column {}, which is {} again", quote(name), quote(before));
-                log.error(at(&self.column_places, i), &key(i), Kind::Together, found, "each once");
+                log.error((at(&self.column_places, i), &key(i)), Code::Together, found, "each once");
             }
         }
     }
 
     /// The columns in the places of their joints; `keys`: those of a column and of a row.
-    fn placed(&self, model: &Model<f64>, side: Side, [column, key]: [&Key; 2], log: &mut Log) -> Series {
+    fn placed(&self, model: &Model<f64>, side: Side, [column, key]: [&Key; 2], log: &mut Diagnostics) -> Series {
         let places = self.places(model, side, column, log);
         let neutral = places.neutral(model, side);
         let row = |numbers: &Vec<f64>| {
@@ -205,7 +202,7 @@ pub(crate) fn listed(model: &Model<f64>, side: Side) -> String {
 }
 
 /// The place of `joint` or `joint[k]`.
-fn place_of(name: &str, model: &Model<f64>, side: Side, (at, key): (At, &str), log: &mut Log) -> Option<usize> {
+fn place_of(name: &str, model: &Model<f64>, side: Side, (at, key): (At, &str), log: &mut Diagnostics) -> Option<usize> {
     let range = |joint: &str| model.joints.iter().find(|j| j.name == joint).map(|j| if side == Side::Q { j.q } else { j.v });
     if let Some((first, 1)) = range(name) {
         return Some(first);
@@ -219,7 +216,7 @@ fn place_of(name: &str, model: &Model<f64>, side: Side, (at, key): (At, &str), l
     }
     let names = model.joints.iter().map(|j| j.name.as_str());
     let found = format!("the column {}", quote(name));
-    log.unknown((at, key, Kind::UnknownName), (found, name), "a joint that moves, as elbow, or one of its numbers, as ball[0]", names);
+    log.unknown(((at, key), Code::UnknownName), (found, name), "a joint that moves, as elbow, or one of its numbers, as ball[0]", names);
     None
 }
 
@@ -234,7 +231,7 @@ mod tests {
             format!("<link name='l{i}'/><joint name='j{i}' type='{kind}'><parent link='base'/><child link='l{i}'/></joint>")
         };
         let urdf = format!("<robot name='r'><link name='base'/>{}</robot>", (0..14).map(link).collect::<String>());
-        let description = articulated_urdf::read(urdf.as_bytes(), &Default::default()).unwrap().description;
+        let description = articulated_formats::read(urdf.as_bytes(), &Default::default()).unwrap().description;
         let model = Model::new(&description, articulated_core::description::Base::Fixed).unwrap();
         assert_eq!(listed(&model, Side::Q), "j0[0] to j0[3], j1, j2, j3, j4, j5, j6, j7, j8, j9, j10, j11 and 2 more");
         assert!(listed(&model, Side::V).starts_with("j0[0] to j0[2], j1"));

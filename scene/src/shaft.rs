@@ -1,11 +1,10 @@
 //! `[effects.shaft]`: shafts that bend.
 
 use articulated_core::description::Shaft;
+use articulated_core::diagnostic::{At, Diagnostics};
 
-use crate::log::Log;
 use crate::simulation::set;
 use crate::table::{Row, Spot};
-use crate::tree::At;
 
 /// Its name among the effects.
 pub(crate) const NAME: &str = "shaft";
@@ -74,7 +73,7 @@ pub(crate) const KEYS: &[Row<ShaftAsked>] = &[
 ];
 
 /// The shafts, one for each fixed joint.
-pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Vec<ShaftAsked> {
+pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<ShaftAsked> {
     let mut shafts = Vec::new();
     for entry in spot.entries(log, "a table of fixed joints") {
         let value = spot.of(entry);

@@ -1,13 +1,12 @@
 //! `[simulation]`: from when to when, by which integrator, how exactly, and what is recorded.
 
+use articulated_core::diagnostic::{Code, Diagnostics};
 use std::iter;
 
 use articulated_core::algorithm::Shape;
 use articulated_core::integrator::{IntegratorId, integrators, meant};
 use articulated_core::settings::{Output, SettingError, Settings, Stiffness};
 
-use crate::error::Kind;
-use crate::log::Log;
 use crate::table::{Row, Spot};
 use crate::tree::Value;
 
@@ -169,7 +168,7 @@ pub(crate) fn set<T>(into: &mut T, value: Option<T>) {
     }
 }
 
-pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Option<Simulation> {
+pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Simulation> {
     let mut simulation = Simulation::default();
     let before = log.count();
     spot.read(KEYS, &mut simulation, log);
@@ -179,13 +178,13 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Log) -> Option<Simulation> {
 }
 
 /// What the settings cannot be, each where all that it is about is `right`: at its key, or else at one with which it does not go.
-fn check(settings: &Settings, spot: &Spot<'_>, right: &[&str], log: &mut Log) {
+fn check(settings: &Settings, spot: &Spot<'_>, right: &[&str], log: &mut Diagnostics) {
     for SettingError { key, with, found, right: expected } in settings.problems(ANY_ROBOT) {
         let mut about = iter::once(&key).chain(with);
         if about.clone().all(|key| right.contains(key)) {
             let at = about.find_map(|key| spot.get(key)).map_or(spot.at, |there| there.at);
-            let kind = if with.is_empty() { Kind::Number } else { Kind::Together };
-            log.error(at, &format!("{}.{key}", spot.key), kind, found, expected);
+            let kind = if with.is_empty() { Code::Number } else { Code::Together };
+            log.error((at, &format!("{}.{key}", spot.key)), kind, found, expected);
         }
     }
     if spot.get("step").is_some() {
@@ -198,7 +197,7 @@ fn check(settings: &Settings, spot: &Spot<'_>, right: &[&str], log: &mut Log) {
 /// What is recorded of the smallest robot is recorded of every one.
 const ANY_ROBOT: Shape = Shape { nq: 0, nv: 0, frames: 0, links: 0 };
 
-fn integrator(spot: &Spot<'_>, log: &mut Log) -> Option<IntegratorId> {
+fn integrator(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<IntegratorId> {
     spot.word_like(log, &words(), |found| meant(found).map_or(found, |row| row.name))
 }
 
@@ -207,7 +206,7 @@ fn words() -> Vec<(&'static str, IntegratorId)> {
     integrators().iter().map(|row| (row.name, row.id)).collect()
 }
 
-fn output(spot: &Spot<'_>, log: &mut Log) -> Option<Output> {
+fn output(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Output> {
     match &spot.node.value {
         Value::Text(_) => spot.word(log, &[("steps", 0), ("ends", 1)]).map(|i| [Output::Steps, Output::Ends][i].clone()),
         Value::List(_) => spot.some_numbers(log, "times, s").map(Output::At),
@@ -215,7 +214,7 @@ fn output(spot: &Spot<'_>, log: &mut Log) -> Option<Output> {
     }
 }
 
-fn events(spot: &Spot<'_>, log: &mut Log) -> Vec<Watched> {
+fn events(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Watched> {
     let Some(list) = spot.list() else {
         spot.wrong(log, "a list of events, as [\"limits\"]");
         return Vec::new();

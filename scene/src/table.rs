@@ -1,10 +1,9 @@
 //! Tables of keys, one row each, from which scenes are read and their documentation is made; and the types of values.
 
+use articulated_core::diagnostic::{At, Code, Diagnostics, quote};
 use articulated_core::effect::Range;
 
-use crate::error::{Kind, bare, quote};
-use crate::log::Log;
-use crate::tree::{At, Entry, Node, Value};
+use crate::tree::{Entry, Node, Value};
 
 /// One key of a table that is read into a `T`.
 pub(crate) struct Row<T> {
@@ -19,7 +18,7 @@ pub(crate) struct Row<T> {
     /// What it means.
     pub(crate) what: &'static str,
     /// Reads the value.
-    pub(crate) read: fn(&mut T, &Spot<'_>, &mut Log),
+    pub(crate) read: fn(&mut T, &Spot<'_>, &mut Diagnostics),
 }
 
 /// Keys that other programs have, and the one that is meant.
@@ -58,22 +57,22 @@ impl<'a> Spot<'a> {
     }
 
     /// It is of another type.
-    pub(crate) fn wrong(&self, log: &mut Log, expected: impl Into<String>) {
-        log.error(self.node.at, &self.key, Kind::Type, self.node.value.described(), expected);
+    pub(crate) fn wrong(&self, log: &mut Diagnostics, expected: impl Into<String>) {
+        log.error((self.node.at, &self.key), Code::Type, self.node.value.described(), expected);
     }
 
     /// It is a number that may not stand here.
-    pub(crate) fn bad(&self, log: &mut Log, found: impl Into<String>, expected: impl Into<String>) {
-        log.error(self.node.at, &self.key, Kind::Number, found, expected);
+    pub(crate) fn bad(&self, log: &mut Diagnostics, found: impl Into<String>, expected: impl Into<String>) {
+        log.error((self.node.at, &self.key), Code::Number, found, expected);
     }
 
     /// It does not go with what else is there.
-    pub(crate) fn clash(&self, log: &mut Log, found: impl Into<String>, expected: impl Into<String>) {
-        log.error(self.at, &self.key, Kind::Together, found, expected);
+    pub(crate) fn clash(&self, log: &mut Diagnostics, found: impl Into<String>, expected: impl Into<String>) {
+        log.error((self.at, &self.key), Code::Together, found, expected);
     }
 
     /// The entries of a table.
-    pub(crate) fn entries(&self, log: &mut Log, expected: &str) -> &'a [Entry] {
+    pub(crate) fn entries(&self, log: &mut Diagnostics, expected: &str) -> &'a [Entry] {
         match &self.node.value {
             Value::Table(entries) => entries,
             _ => {
@@ -100,7 +99,7 @@ impl<'a> Spot<'a> {
     }
 
     /// A number, which is judged elsewhere.
-    pub(crate) fn any(&self, log: &mut Log) -> Option<f64> {
+    pub(crate) fn any(&self, log: &mut Diagnostics) -> Option<f64> {
         match self.node.value {
             Value::Number(x) => Some(x),
             _ => {
@@ -111,22 +110,22 @@ impl<'a> Spot<'a> {
     }
 
     /// A finite number.
-    pub(crate) fn number(&self, log: &mut Log) -> Option<f64> {
+    pub(crate) fn number(&self, log: &mut Diagnostics) -> Option<f64> {
         self.within(log, Range::ALL)
     }
 
     /// A finite number, at least zero.
-    pub(crate) fn not_negative(&self, log: &mut Log) -> Option<f64> {
+    pub(crate) fn not_negative(&self, log: &mut Diagnostics) -> Option<f64> {
         self.within(log, Range::NOT_NEGATIVE)
     }
 
     /// A finite number above zero.
-    pub(crate) fn positive(&self, log: &mut Log) -> Option<f64> {
+    pub(crate) fn positive(&self, log: &mut Diagnostics) -> Option<f64> {
         self.within(log, Range::POSITIVE)
     }
 
     /// A number of the range.
-    pub(crate) fn within(&self, log: &mut Log, range: Range) -> Option<f64> {
+    pub(crate) fn within(&self, log: &mut Diagnostics, range: Range) -> Option<f64> {
         match self.node.value {
             Value::Number(x) if range.has(x) => Some(x),
             Value::Number(x) => {
@@ -141,7 +140,7 @@ impl<'a> Spot<'a> {
     }
 
     /// A whole number from `least` to `most`.
-    pub(crate) fn whole(&self, log: &mut Log, least: u64, most: u64) -> Option<u64> {
+    pub(crate) fn whole(&self, log: &mut Diagnostics, least: u64, most: u64) -> Option<u64> {
         let expected = format!("a whole number from {least} to {most}");
         match self.node.value {
             Value::Number(x) if x.fract() == 0.0 && x >= least as f64 && x <= most as f64 => Some(x as u64),
@@ -157,7 +156,7 @@ impl<'a> Spot<'a> {
     }
 
     /// So many finite numbers.
-    pub(crate) fn numbers<const N: usize>(&self, log: &mut Log) -> Option<[f64; N]> {
+    pub(crate) fn numbers<const N: usize>(&self, log: &mut Diagnostics) -> Option<[f64; N]> {
         match self.some_numbers(log, &format!("a list of {N} finite numbers"))?.try_into() {
             Ok(numbers) => Some(numbers),
             Err(_) => {
@@ -168,7 +167,7 @@ impl<'a> Spot<'a> {
     }
 
     /// A list of finite numbers.
-    pub(crate) fn some_numbers(&self, log: &mut Log, expected: &str) -> Option<Vec<f64>> {
+    pub(crate) fn some_numbers(&self, log: &mut Diagnostics, expected: &str) -> Option<Vec<f64>> {
         let Some(list) = self.list() else {
             self.wrong(log, expected);
             return None;
@@ -179,7 +178,7 @@ impl<'a> Spot<'a> {
     }
 
     /// A text.
-    pub(crate) fn text(&self, log: &mut Log, expected: &str) -> Option<&'a str> {
+    pub(crate) fn text(&self, log: &mut Diagnostics, expected: &str) -> Option<&'a str> {
         match &self.node.value {
             Value::Text(text) => Some(text),
             _ => {
@@ -190,7 +189,7 @@ impl<'a> Spot<'a> {
     }
 
     /// A list of texts.
-    pub(crate) fn texts(&self, log: &mut Log, expected: &str) -> Option<Vec<String>> {
+    pub(crate) fn texts(&self, log: &mut Diagnostics, expected: &str) -> Option<Vec<String>> {
         let Some(list) = self.list() else {
             self.wrong(log, expected);
             return None;
@@ -201,7 +200,7 @@ impl<'a> Spot<'a> {
     }
 
     /// `true` or `false`.
-    pub(crate) fn boolean(&self, log: &mut Log) -> Option<bool> {
+    pub(crate) fn boolean(&self, log: &mut Diagnostics) -> Option<bool> {
         match self.node.value {
             Value::Bool(b) => Some(b),
             _ => {
@@ -212,24 +211,24 @@ impl<'a> Spot<'a> {
     }
 
     /// One of some words.
-    pub(crate) fn word<W: Copy>(&self, log: &mut Log, words: &[(&'static str, W)]) -> Option<W> {
+    pub(crate) fn word<W: Copy>(&self, log: &mut Diagnostics, words: &[(&'static str, W)]) -> Option<W> {
         self.word_like(log, words, |found| found)
     }
 
     /// One of some words; the one to suggest for another is that nearest to what `meant` makes of it.
-    pub(crate) fn word_like<W: Copy>(&self, log: &mut Log, words: &[(&'static str, W)], meant: impl Fn(&str) -> &str) -> Option<W> {
+    pub(crate) fn word_like<W: Copy>(&self, log: &mut Diagnostics, words: &[(&'static str, W)], meant: impl Fn(&str) -> &str) -> Option<W> {
         let listed = words.iter().map(|(word, _)| format!("{word:?}")).collect::<Vec<_>>().join(", ");
         let found = self.text(log, &format!("one of {listed}"))?;
         if let Some((_, meant)) = words.iter().find(|(word, _)| *word == found) {
             return Some(*meant);
         }
         let names = words.iter().map(|(word, _)| *word);
-        log.unknown((self.node.at, &self.key, Kind::Word), (quote(found), meant(found)), format!("one of {listed}"), names);
+        log.unknown(((self.node.at, &self.key), Code::Word), (quote(found), meant(found)), format!("one of {listed}"), names);
         None
     }
 
     /// The table, by its rows.
-    pub(crate) fn read<T>(&self, rows: &[Row<T>], into: &mut T, log: &mut Log) {
+    pub(crate) fn read<T>(&self, rows: &[Row<T>], into: &mut T, log: &mut Diagnostics) {
         let before = log.count();
         let entries = self.entries(log, "a table");
         if log.count() > before {
@@ -244,9 +243,8 @@ impl<'a> Spot<'a> {
         }
         for row in rows.iter().filter(|row| row.required && !entries.iter().any(|e| e.name == row.name)) {
             log.error(
-                self.at,
-                &self.key,
-                Kind::MissingKey,
+                (self.at, &self.key),
+                Code::MissingKey,
                 format!("no {}", row.name),
                 format!("{}: {}, {}", row.name, row.value, row.what),
             );
@@ -254,19 +252,19 @@ impl<'a> Spot<'a> {
     }
 
     /// There is no such key.
-    pub(crate) fn unknown_key<'n>(&self, log: &mut Log, names: impl IntoIterator<Item = &'n str>) {
+    pub(crate) fn unknown_key<'n>(&self, log: &mut Diagnostics, names: impl IntoIterator<Item = &'n str>) {
         const FOUND: &str = "a key that is not known";
         if let Some((_, meant)) = MEANT.iter().find(|(key, _)| *key == self.key) {
-            return log.error(self.at, &self.key, Kind::UnknownKey, FOUND, *meant);
+            return log.error((self.at, &self.key), Code::UnknownKey, FOUND, *meant);
         }
         let names: Vec<&str> = names.into_iter().collect();
         let name = self.key.rsplit('.').next().unwrap_or_default();
-        log.unknown((self.at, &self.key, Kind::UnknownKey), (FOUND.into(), name), format!("one of {}", names.join(", ")), names);
+        log.unknown(((self.at, &self.key), Code::UnknownKey), (FOUND.into(), name), format!("one of {}", names.join(", ")), names);
     }
 
     /// One table, or a list of tables, each by the rows.
-    pub(crate) fn tables<T: Default>(&self, rows: &[Row<T>], log: &mut Log) -> Vec<T> {
-        let one = |spot: &Spot<'_>, log: &mut Log| {
+    pub(crate) fn tables<T: Default>(&self, rows: &[Row<T>], log: &mut Diagnostics) -> Vec<T> {
+        let one = |spot: &Spot<'_>, log: &mut Diagnostics| {
             let before = log.count();
             let mut value = T::default();
             spot.read(rows, &mut value, log);
@@ -277,4 +275,10 @@ impl<'a> Spot<'a> {
             None => one(self, log).into_iter().collect(),
         }
     }
+}
+
+/// A name as a part of the path to a key.
+pub(crate) fn bare(name: &str) -> String {
+    let plain = !name.is_empty() && name.len() <= 80 && name.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-');
+    if plain { name.to_owned() } else { quote(name) }
 }

@@ -1,26 +1,6 @@
 //! A scene before it is understood: tables, lists, numbers and words, each with its place. TOML and the macro's tokens both become this.
 
-/// Where something stands.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum At {
-    /// Nowhere that could be named.
-    #[default]
-    Nowhere,
-    /// In this line of a file, from 1.
-    Line(u32),
-    /// At a word of the macro: the number that the macro gave it.
-    Word(u32),
-}
-
-impl At {
-    /// The line, if it stands in one.
-    pub fn line(self) -> Option<u32> {
-        match self {
-            Self::Line(line) => Some(line),
-            _ => None,
-        }
-    }
-}
+use articulated_core::diagnostic::{At, quote};
 
 /// A value and its place.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,7 +45,7 @@ impl Value {
         match self {
             Self::Bool(b) => b.to_string(),
             Self::Number(x) => format!("{x:?}"),
-            Self::Text(text) => format!("the text {}", crate::error::quote(text)),
+            Self::Text(text) => format!("the text {}", quote(text)),
             Self::List(list) => match list.iter().all(|n| matches!(n.value, Self::Number(_))) {
                 true if list.len() == 1 => "a list of one number".into(),
                 true if !list.is_empty() => format!("a list of {} numbers", list.len()),

@@ -1,9 +1,10 @@
 //! `contact.from = "collision"`: contact of the geometry that a robot's file has.
 
 use articulated_core::description::{Base, Collision};
+use articulated_core::diagnostic::{Code, Diagnostics, Subject};
 use articulated_core::effect::{Applied, EffectId};
-use articulated_scene::{Edited, Kind, Resolved, Scene, SceneErrors, Why};
-use articulated_urdf::{Kind as Odd, Options, Reading, Subject, read};
+use articulated_formats::{Options, Reading, read};
+use articulated_scene::{Edited, Resolved, Scene, Why};
 
 /// A trunk that is a box with a ball; a shin with a capsule, and a sole without mass fixed to it
 /// that is a plate; a hand of a mesh, and one of a mesh and a ball; a bare link.
@@ -31,7 +32,7 @@ fn reading(urdf: &str) -> Reading {
     read(urdf.as_bytes(), &Options { file: "r.urdf".into(), base: Base::Floating, ..Options::default() }).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn resolve_on(urdf: &str, text: &str, base: Base) -> Result<Resolved, SceneErrors> {
+fn resolve_on(urdf: &str, text: &str, base: Base) -> Result<Resolved, Diagnostics> {
     let reading = reading(urdf);
     let scene = Scene::read("s.toml", text).unwrap_or_else(|e| panic!("{e}"));
     scene.resolve(&Edited { description: &reading.description, base, unused: &reading.unused, shafts: &[] })
@@ -69,9 +70,9 @@ fn all_links_with_shapes_get_a_contact_for_each_of_their_points() {
     for one in &resolved.effects {
         assert_eq!((&one.parameters[1..], one.at.rpy), (&[1e4, 1.0, 0.5, 1e-5, 0.0, 0.0, 1.0, 0.25][..], [0.0; 3]));
     }
-    let told: Vec<(Odd, &Subject, Option<u32>)> = resolved.warnings.iter().map(|w| (w.kind, &w.subject, w.line)).collect();
+    let told: Vec<(Code, &Subject, Option<u32>)> = resolved.warnings.iter().map(|w| (w.code, &w.subject, w.line())).collect();
     let [hand, palm] = ["hand", "palm"].map(|name| Subject::Link(name.into()));
-    assert_eq!(told, [(Odd::NoContact, &hand, Some(1)), (Odd::PartOfContact, &palm, Some(1))]);
+    assert_eq!(told, [(Code::NoContact, &hand, Some(1)), (Code::PartOfContact, &palm, Some(1))]);
     assert!(
         resolved.warnings[0].to_string().starts_with("s.toml:1: link \"hand\": effects.contact: found only meshes"),
         "{:?}",
@@ -135,9 +136,9 @@ fn what_a_fixed_base_holds_touches_nothing() {
 fn points_of_ones_own_beside_those_of_the_geometry_are_refused() {
     let text = format!("[effects.contact.shin]\nfrom = 'collision'\n{LAW}radius = 1\nxyz = [0, 0, 0]\nrpy = [0, 0, 0]\n");
     let errors = Scene::read("s.toml", &text).unwrap_err().errors;
-    let told: Vec<(Kind, &str, Option<u32>)> = errors.iter().map(|e| (e.kind, e.key.as_str(), e.at.line())).collect();
+    let told: Vec<(Code, &str, Option<u32>)> = errors.iter().map(|e| (e.code, e.field.as_str(), e.line())).collect();
     let [radius, xyz, rpy] = ["radius", "xyz", "rpy"].map(|key| format!("effects.contact.shin.{key}"));
-    assert_eq!(told, [(Kind::Together, radius.as_str(), Some(6)), (Kind::Together, &xyz, Some(7)), (Kind::Together, &rpy, Some(8))]);
+    assert_eq!(told, [(Code::Together, radius.as_str(), Some(6)), (Code::Together, &xyz, Some(7)), (Code::Together, &rpy, Some(8))]);
     assert_eq!(
         errors[0].to_string(),
         "s.toml:6: effects.contact.shin.radius: found radius beside from = \"collision\", expected one of both: the shapes of the robot's file give radii and places"

@@ -56,7 +56,7 @@ fn robots() -> Vec<(String, String)> {
 /// Reads it, and has it edit its robot: a robot, or mistakes of which each is told.
 fn settles(bytes: &[u8], bundled: &[Bundled<'_>]) -> bool {
     let Ok(scene) = Scene::read_bytes("s.toml", bytes) else { return false };
-    let settled = open_in(scene, Path::new("nowhere"), bundled).and_then(|opened| opened.settle());
+    let settled = open_in(scene, Path::new("nowhere"), bundled).and_then(|opened| opened.build());
     settled.map_err(|error| assert!(!error.to_string().is_empty())).is_ok()
 }
 
@@ -98,7 +98,7 @@ fn mutations_of_scenes_are_scenes_or_errors() {
         b"\"off\"",
     ];
     let robots = robots();
-    let bundled: Vec<Bundled<'_>> = robots.iter().map(|(name, urdf)| Bundled { name, urdf, base: Base::Floating }).collect();
+    let bundled: Vec<Bundled<'_>> = robots.iter().map(|(name, urdf)| Bundled { name, document: urdf, base: Base::Floating }).collect();
     let (mut read, mut settled) = (0, 0);
     for round in 0..1500 {
         let mut bytes = corpus[round % corpus.len()].clone();

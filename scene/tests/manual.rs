@@ -56,7 +56,7 @@ fn the_manual_says_where_numbers_have_to_be() {
             let text = if header.is_empty() { format!("{key} = nan") } else { format!("[{header}]\n{key} = nan") };
             let errors = articulated_scene::Scene::read("s", &text).unwrap_err().errors;
             let error =
-                errors.iter().find(|e| e.key == format!("{header}.{key}").trim_start_matches('.')).unwrap_or_else(|| panic!("{text}"));
+                errors.iter().find(|e| e.field == format!("{header}.{key}").trim_start_matches('.')).unwrap_or_else(|| panic!("{text}"));
             let bounds = error.expected.trim_end_matches(", s").trim_start_matches("a finite number").trim_start_matches([',', ' ']);
             assert!(what.contains(bounds), "{text}: {} is not in {what}", error.expected);
             bounded += usize::from(!bounds.is_empty());

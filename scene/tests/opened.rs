@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use articulated_core::description::Base;
+use articulated_core::diagnostic::{Code, Diagnostics};
 use articulated_core::effect::EffectId;
-use articulated_scene::{Bundled, Opened, RobotError, Scene, open, open_in};
+use articulated_scene::{Bundled, Opened, Scene, open, open_in};
 
 const LINK: &str = r#"<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>"#;
 
@@ -40,7 +41,7 @@ fn opened(scene: &str, urdf: String) -> Opened {
 
 #[test]
 fn a_scenes_robot_is_edited_and_has_its_gravity_and_effects() {
-    let settled = opened(EDITED, arm()).settle().unwrap_or_else(|e| panic!("{e}"));
+    let settled = opened(EDITED, arm()).build().unwrap_or_else(|e| panic!("{e}"));
     let joints: Vec<&str> = settled.model.joints.iter().map(|j| j.name.as_str()).collect();
     assert_eq!(joints, ["shoulder", "left_bend"]);
     assert_eq!((settled.model.nv, settled.model.gravity), (2, [0.0, 0.0, -1.625].into()));
@@ -68,8 +69,7 @@ kind = \"pd\"
 kp = { elbw = 1 }
 kd = 1
 ";
-    let told = opened(scene, arm()).settle().unwrap_err();
-    assert!(matches!(told, RobotError::Scene(_)), "{told:?}");
+    let told = opened(scene, arm()).build().unwrap_err();
     let told = told.to_string();
     let expected = [
         "1: payload: the robot has no link \"too\", did you mean \"tool\"?",
@@ -87,8 +87,8 @@ kd = 1
 #[test]
 fn a_robot_that_cannot_be_read_is_told_alone() {
     let scene = "lock = { elbo = 0 }\n[effects]\ndamping = { shouder = 0.1 }\n";
-    let told = opened(scene, arm().replace("parent link=\"base\"", "parent link=\"bse\"")).settle();
-    assert!(matches!(told, Err(RobotError::Urdf(_))), "{told:?}");
+    let told = opened(scene, arm().replace("parent link=\"base\"", "parent link=\"bse\"")).build();
+    assert!(told.unwrap_err().errors.iter().all(|error| error.code == Code::UnknownLink && error.file() == "arm.urdf"));
 }
 
 #[test]
@@ -107,8 +107,8 @@ fn files_are_seen_from_the_scenes_folder_and_those_that_are_not_there_are_told_a
     std::fs::remove_dir_all(&folder).unwrap();
     let whole = whole.unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(whole.files, ["whole.toml", "arm.urdf", "finger.urdf"].map(path));
-    assert_eq!(whole.settle().unwrap().model.nv, 2);
-    let told = |result: Result<Opened, RobotError>| result.unwrap_err().to_string();
+    assert_eq!(whole.build().unwrap().model.nv, 2);
+    let told = |result: Result<Opened, Diagnostics>| result.unwrap_err().to_string();
     assert!(told(alone).starts_with(&format!("{}:2: urdf: {}: ", path("alone.toml").display(), path("no.urdf").display())));
     assert!(told(robot).contains("robot.toml:1: robot: found \"arm\", no such robot, expected urdf: no robot is known by name here"));
     assert!(told(nothing).contains("nothing.toml: found no robot, expected robot, or urdf"));
@@ -118,10 +118,10 @@ fn files_are_seen_from_the_scenes_folder_and_those_that_are_not_there_are_told_a
 #[test]
 fn a_bundled_robot_stands_on_its_own_base_unless_the_scene_says_another_and_of_others_the_nearest_is_told() {
     let urdf = format!("<robot name='stone'><link name='stone'>{LINK}</link></robot>");
-    let bundled = [Bundled { name: "stone", urdf: &urdf, base: Base::Floating }];
+    let bundled = [Bundled { name: "stone", document: &urdf, base: Base::Floating }];
     let nv = |text: &str| {
         let opened = open_in(Scene::read("s.toml", text).unwrap(), Path::new(""), &bundled)?;
-        opened.settle().map(|settled| settled.model.nv)
+        opened.build().map(|settled| settled.model.nv)
     };
     assert_eq!([nv("robot = 'stone'"), nv("robot = 'stone'\nbase = 'fixed'")].map(Result::unwrap), [6, 0]);
     let told = nv("\nrobot = 'stne'").unwrap_err().to_string();

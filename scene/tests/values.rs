@@ -1,12 +1,12 @@
 //! What scenes say, as numbers in the order of a robot.
 
 use articulated_core::description::{Base, Description, Joint, JointDynamics, JointKind, Link};
+use articulated_core::diagnostic::{Subject, Unused};
 use articulated_core::effect::EffectId;
 use articulated_core::integrator::IntegratorId;
 use articulated_core::model::{FLOATING_BASE, Model};
 use articulated_core::spatial::{from_quaternion, from_rpy};
 use articulated_scene::{Controller, Edited, Output, Scene, Settings, Stiffness};
-use articulated_urdf::{Subject, Unused};
 
 /// Two hinges, the second of which has limits, damping and an effort; a ball; a slide that follows the first; a link without mass at its end.
 const ROBOT: &str = r#"<robot name="r">
@@ -23,7 +23,7 @@ const ROBOT: &str = r#"<robot name="r">
 </robot>"#;
 
 fn robot() -> Description {
-    articulated_urdf::read(ROBOT.as_bytes(), &articulated_urdf::Options::default()).unwrap().description
+    articulated_formats::read(ROBOT.as_bytes(), &articulated_formats::Options::default()).unwrap().description
 }
 
 fn model(base: Base) -> Model<f64> {

@@ -5,8 +5,8 @@ use articulated_core::algorithm::{Workspace, checked_forward_dynamics, integrate
 use articulated_core::description::Base;
 use articulated_core::model::pass::model_passes;
 use articulated_core::model::{Model, ModelError};
+use articulated_formats::{Options, read};
 use articulated_tests::random::Random;
-use articulated_urdf::{Options, read};
 
 /// Numbers that files should not have, and some have.
 const NUMBERS: [&str; 16] = [

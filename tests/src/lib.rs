@@ -23,4 +23,4 @@ pub struct Readme;
 #[doc = include_str!("../../docs/conventions.md")]
 pub struct Recipes;
 
-pub use articulated_urdf::write as urdf_text;
+pub use articulated_formats::urdf::write as urdf_text;

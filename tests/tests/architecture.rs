@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 const LAYERS: [(&str, &str); 10] = [
     ("articulated-core", "runtime/core"),
     ("articulated-reference", "reference"),
-    ("articulated-urdf", "urdf"),
+    ("articulated-formats", "urdf"),
     ("articulated-scene", "scene"),
     ("articulated-codegen", "codegen"),
     ("articulated-macros", "macros"),
@@ -26,7 +26,7 @@ const LAYERS: [(&str, &str); 10] = [
 const CIRCLES: [(&str, usize); 10] = [
     ("articulated-core", 0),
     ("articulated-reference", 1),
-    ("articulated-urdf", 1),
+    ("articulated-formats", 1),
     ("articulated-scene", 2),
     ("articulated-codegen", 0),
     ("articulated-macros", 0),

@@ -7,6 +7,7 @@ use std::fmt::Write;
 use articulated_codegen::{Build, Generated, Request, checked_cost, generate};
 use articulated_core::algorithm::{Function, Needs, functions};
 use articulated_core::description::Base;
+use articulated_core::diagnostic::values;
 use articulated_models::ROBOTS;
 use articulated_tests::case::Case;
 use articulated_tests::golden;
@@ -17,7 +18,7 @@ fn request(name: &str) -> Request {
     request.options.robot.base = robot.base;
     let model = &Case::bundled(robot).model;
     let tip = model.frames.last().expect("it has links");
-    request.options.robot.frames = Some(vec![tip.name.clone()]);
+    request.options.robot.set_frames([tip.name.clone()]);
     let has = |f: &&Function<f64>| f.needs != Needs::FreeFrames || model.freedoms_of(tip.body).len() >= 6;
     request.options.functions = functions::<f64>().iter().filter(has).map(|f| f.name.into()).collect();
     request
@@ -79,8 +80,8 @@ fn a_build_script_gives_the_same_source() {
     for name in ["simple_pendulum", "quadruped"] {
         let mut request = request(name);
         request.options.rust_mut().runtime = Some("::articulated".into());
-        let mut build = Build::new(format!("../models/urdf/{name}.urdf")).functions(request.options.functions.clone());
-        build = build.frames(request.options.robot.frames.clone().expect("one"));
+        let mut build = Build::new(format!("../models/urdf/{name}.urdf")).functions(values(&request.options.functions));
+        build = build.frames(values(&request.options.robot.frames.clone().expect("one")));
         if request.options.robot.base == Base::Floating {
             build = build.floating();
         }
@@ -98,7 +99,7 @@ fn source_is_a_file_of_rust_and_the_same_as_its_tokens() {
         let names: Vec<String> =
             file.items.iter().filter_map(|i| if let syn::Item::Fn(f) = i { Some(f.sig.ident.to_string()) } else { None }).collect();
         let wanted = request(robot.name).options.functions;
-        assert!(wanted.iter().all(|f| names.contains(f)), "{}: {names:?}", robot.name);
+        assert!(wanted.iter().all(|f| names.contains(&f.value)), "{}: {names:?}", robot.name);
         syn::parse2::<syn::File>(generated.tokens()).unwrap_or_else(|e| panic!("{}: {e}", robot.name));
     }
 }

@@ -42,10 +42,11 @@ pub(crate) fn run(arguments: &AccuracyArguments, format: Format) -> Result<(), F
         return motion::run(arguments, format);
     }
     let mut robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
-    let reading = robot.read()?;
+    let built = robot.read()?;
+    let reading = &built.reading;
     robot.warn_of(reading.warnings.iter().chain(&reading.snapped));
     if robot.options.robot.frames.is_none() {
-        let tips = Tips::of(&reading.description, &robot.whole_model(&reading)?);
+        let tips = Tips::of(&reading.description, &robot.whole_model(&built)?);
         robot = robot.on(tips.all());
     }
     let chosen = names::flat(&arguments.functions);

@@ -6,8 +6,9 @@ mod text;
 
 use std::path::Path;
 
-use articulated_codegen::{Error, RobotError};
-use articulated_urdf::{Reading, nearly_right_angles};
+use articulated_core::diagnostic::{Code, Diagnostics, values};
+use articulated_formats::{Reading, nearly_right_angles};
+use articulated_scene::BuiltRobot;
 
 use crate::arguments::{CheckArguments, Format};
 use crate::console;
@@ -31,21 +32,21 @@ pub(crate) fn run(arguments: &CheckArguments, format: Format) -> Result<u8, Fail
 fn examine(robot: &Robot, scene: Option<&Path>, functions: &[String]) -> Report {
     let mut report = Report::new(robot);
     match robot.read() {
-        Err(Error::Robot(RobotError::Urdf(problems))) => {
-            report.errors.extend(problems.errors.iter().map(Diagnostic::of));
-            report.warn_of(problems.warnings.iter());
+        Err(findings) => {
+            report.errors.extend(findings.errors.iter().map(Diagnostic::of));
+            report.warn_of(findings.warnings.iter());
         }
-        Err(error) => report.errors.extend(Failure::from(error).errors),
-        Ok(reading) => {
+        Ok(built) => {
+            let reading = &built.reading;
             report.warn_of(reading.warnings.iter().chain(&reading.snapped));
-            warn_of_nearly_right_angles(robot, &reading, &mut report);
+            warn_of_nearly_right_angles(robot, reading, &mut report);
             report.unused.extend(reading.unused.iter().map(ToString::to_string));
-            describe(robot, &reading, &mut report);
+            describe(robot, &built, &mut report);
         }
     }
     // Joints may be locked beside the scene: its motion is that of the scene alone.
     match scene.map(crate::simulate::motion::look_over) {
-        Some(Ok(odd)) => odd.into_iter().for_each(|line| report.warn(Diagnostic::from(line))),
+        Some(Ok(odd)) => odd.into_iter().for_each(|line| report.warn(Diagnostic::from(line).as_warning())),
         Some(Err(failure)) => report.errors.extend(failure.errors),
         None => {}
     }
@@ -56,20 +57,17 @@ fn examine(robot: &Robot, scene: Option<&Path>, functions: &[String]) -> Report 
     report
 }
 
-fn describe(robot: &Robot, reading: &Reading, report: &mut Report) {
-    match robot.model_of_any_size(reading) {
-        Ok(model) => {
-            report.describe(&reading.description, &model);
-            let request = robot.whole_request(&robot.options.functions);
-            let told = |result: Result<(), Error>| result.err().into_iter().flat_map(Error::into_each);
-            let named = told(articulated_codegen::check_names(&request, &reading.description, &model));
-            // Names that are one in Rust are in the way of code alone.
-            let (clashes, wrong): (Vec<Error>, _) =
-                told(articulated_codegen::check_identifiers(&request, &model)).partition(|e| matches!(e, Error::NameClash { .. }));
-            report.errors.extend(named.chain(wrong).flat_map(|e| Failure::from(e).errors));
-            clashes.iter().for_each(|e| report.warn(Diagnostic::from(e.to_string())));
+fn describe(robot: &Robot, built: &BuiltRobot, report: &mut Report) {
+    report.describe(&built.reading.description, &built.model);
+    let request = robot.whole_request(&values(&robot.options.functions));
+    let mut findings = Diagnostics::new(&robot.file);
+    articulated_codegen::check_names(&request, built, &mut findings);
+    for finding in &findings.errors {
+        // Names that are one in code are in the way of code alone.
+        match finding.code {
+            Code::NameClash => report.warn(Diagnostic::of(finding).as_warning()),
+            _ => report.errors.push(Diagnostic::of(finding)),
         }
-        Err(failure) => report.errors.extend(failure.errors),
     }
 }
 
@@ -83,12 +81,12 @@ fn warn_of_nearly_right_angles(robot: &Robot, reading: &Reading, report: &mut Re
          code 8 to 16 % faster; `--snap-angles 1e-5` (key `snap_angles`, method `Build::snap_angles`) takes angles this near as exact",
         robot.file
     );
-    report.warn(Diagnostic { line: None, subject: Some(format!("joint {first:?}")), field: Some("origin rpy".into()), message });
+    report.warn(Diagnostic::warning_of_joint(&robot.file, first, Some("origin rpy"), message));
 }
 
 fn check_function(robot: &Robot, function: &str, report: &mut Report) {
     match articulated_codegen::generate(&robot.whole_request(&[function.to_owned()])) {
         Ok(_) => report.functions.push(function.to_owned()),
-        Err(error) => report.errors.extend(Failure::from(error).errors),
+        Err(findings) => report.errors.extend(findings.errors.iter().map(Diagnostic::of)),
     }
 }

@@ -1,9 +1,9 @@
 //! What there is to say of a robot, as data.
 
 use articulated_core::description::{Description, JointKind, Link};
+use articulated_core::diagnostic::{Diagnostic as Finding, summary};
 use articulated_core::eigen::eigenvalues;
 use articulated_core::model::{FLOATING_BASE, Model};
-use articulated_urdf::{Problem, summary};
 use serde::Serialize;
 
 use super::base::Base;
@@ -132,7 +132,7 @@ impl Report {
     }
 
     /// Adds warnings of the reader.
-    pub(super) fn warn_of<'a>(&mut self, problems: impl Iterator<Item = &'a Problem> + Clone) {
+    pub(super) fn warn_of<'a>(&mut self, problems: impl Iterator<Item = &'a Finding> + Clone) {
         self.warning_lines.extend(summary(problems.clone()));
         self.warnings.extend(problems.map(Diagnostic::of));
     }
@@ -163,9 +163,12 @@ impl Report {
     fn warn_of_massless_joints(&mut self, model: &Model<f64>) {
         let file = self.file.clone();
         if model.bodies.len() > MANY {
-            return self.warn(Diagnostic::from(format!(
-                "{file}: more than {MANY} bodies: whether every joint has an inertia of its own was not looked at"
-            )));
+            return self.warn(
+                Diagnostic::from(format!(
+                    "{file}: more than {MANY} bodies: whether every joint has an inertia of its own was not looked at"
+                ))
+                .as_warning(),
+            );
         }
         for body in model.massless_joints() {
             let name = &model.bodies[body].name;
@@ -174,8 +177,7 @@ impl Report {
                  so the mass matrix is singular, and forward dynamics is undefined for this robot; expected an inertia behind it, an armature, or one \
                  joint fewer"
             );
-            let subject = Some(format!("joint {name:?}"));
-            self.warn(Diagnostic { line: None, subject, field: None, message });
+            self.warn(Diagnostic::warning_of_joint(&file, name, None, message));
         }
     }
 }

@@ -224,7 +224,7 @@ mod tests {
     #[test]
     fn an_acceleration_is_judged_by_the_torques_it_needs() {
         let robot = articulated_models::robot("simple_pendulum").unwrap();
-        let description = articulated_urdf::read(robot.urdf.as_bytes(), &articulated_urdf::Options::default()).unwrap().description;
+        let description = articulated_formats::read(robot.urdf.as_bytes(), &articulated_formats::Options::default()).unwrap().description;
         let model = Model::new(&description, robot.base).unwrap();
         let textbook = Exact::textbook(&description, robot.base, [0.0, 0.0, -9.81]).unwrap();
         // 1.001 kg·m² · a + 9.81 N·m · sin q = τ

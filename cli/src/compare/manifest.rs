@@ -99,7 +99,7 @@ pub(crate) fn named(paths: &[PathBuf], manifest: Option<&Path>) -> Result<Vec<Li
 /// The libraries of a manifest: a list of objects with `path`, or an object with such a list as `peers`.
 pub(crate) fn read(file: &Path) -> Result<Vec<Library>, String> {
     let wrong = |e: &dyn std::fmt::Display| format!("{}: {e}", file.display());
-    let bytes = articulated_urdf::read_file(file, articulated_urdf::MOST_BYTES).map_err(|e| wrong(&e))?;
+    let bytes = articulated_formats::read_file(file, articulated_formats::MOST_BYTES).map_err(|e| wrong(&e))?;
     let value: Value = serde_json::from_slice(&bytes).map_err(|e| wrong(&e))?;
     let list = value.as_array().or_else(|| value.get("peers")?.as_array()).ok_or_else(|| wrong(&"found no list of peers"))?;
     list.iter().map(|entry| Library::deserialize(entry).map_err(|e| wrong(&format!("found a peer that is none: {e}")))).collect()

@@ -52,12 +52,13 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
     robot.keeps_its_files("--chart", arguments.chart.as_deref())?;
     arguments.chart.as_deref().map_or(Ok(()), |path| output::file("--chart", path))?;
     robot.options.rust_mut().forbid_unsafe |= arguments.forbid_unsafe;
-    let reading = robot.read()?;
+    let built = robot.read()?;
+    let reading = &built.reading;
     robot.warn_of(reading.warnings.iter().chain(&reading.snapped));
     if cfg!(debug_assertions) {
         console::warn("this command was built without optimisation: times of generic code, and of the generation, mean little");
     }
-    let whole = robot.whole_model(&reading)?;
+    let whole = robot.whole_model(&built)?;
     let tips = robot.options.robot.frames.is_none().then(|| Tips::of(&reading.description, &whole));
     let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
     let mut report = Report::new(&robot, &whole, tips.as_ref(), arguments, &rustc);

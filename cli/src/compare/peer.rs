@@ -65,7 +65,7 @@ impl Peer {
         let native = NativePeer::open(&opened, urdf, robot.floating(), robot.options.robot.gravity)?;
         let (q, v) = orders(&native, model)?;
         let links = model.links().enumerate().all(|(k, i)| native.joint_name(k).is_some_and(|name| name == model.bodies[i].name));
-        let code = library.code(&robot.urdf, robot.floating()).cloned();
+        let code = library.code(&robot.document, robot.floating()).cloned();
         Ok(Self { name, library, code, native, q, v, links })
     }
 

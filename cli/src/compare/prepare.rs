@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use articulated_codegen::ledger::Entry;
 use articulated_core::algorithm::Function;
+use articulated_core::diagnostic::Diagnostics;
 use articulated_core::lanes::Real;
 use articulated_core::model::Model;
 
@@ -106,9 +107,9 @@ pub(super) fn arguments<'a>(states: &'a [State], function: &Function<f64>) -> Ve
     states.iter().map(|s| s.arguments(function).unwrap_or_default()).collect()
 }
 
-impl From<articulated_codegen::Error> for Unready {
-    fn from(error: articulated_codegen::Error) -> Self {
-        match undefined(error) {
+impl From<Diagnostics> for Unready {
+    fn from(findings: Diagnostics) -> Self {
+        match undefined(findings) {
             Ok(why) => Self::Undefined(why),
             Err(other) => Self::Failed(other.into()),
         }

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use articulated_codegen::function_groups::Group;
 use articulated_core::algorithm::Dim;
+use articulated_core::diagnostic::values;
 use articulated_core::model::Model;
 use articulated_reference::BITS;
 use serde::Serialize;
@@ -245,7 +246,7 @@ fn fastest<'a>(peers: impl Iterator<Item = &'a PeerReport>) -> Option<&'a PeerRe
 
 impl Report {
     pub(super) fn new(robot: &Robot, model: &Model<f64>, tips: Option<&Tips>, arguments: &CompareArguments, rustc: &Rustc) -> Self {
-        let chosen = robot.options.robot.frames.clone();
+        let chosen = robot.options.robot.frames.as_deref().map(values);
         Self {
             frames_chosen: chosen.is_some(),
             frames: chosen.unwrap_or_else(|| tips.map_or_else(Vec::new, |t| t.all().to_vec())),

@@ -1,8 +1,9 @@
 //! What effects cost: code is generated without them, with each of them, and with all of them, and counted or timed.
 
 use articulated_codegen::graph::{Counts, Op};
-use articulated_codegen::{Error, Generated, defined, generate as generate_code, massless};
+use articulated_codegen::{Generated, defined, generate as generate_code, massless};
 use articulated_core::algorithm::function;
+use articulated_core::diagnostic::Code;
 use articulated_core::effect::{Applied, EffectId};
 
 use super::report::{Added, Cost, Counted, OnlyWith, Operations};
@@ -10,7 +11,7 @@ use crate::compare::contender::Contender;
 use crate::compare::timing::{self, Run};
 use crate::compiled::{Compiled, Rustc};
 use crate::console::Progress;
-use crate::failure::{Failure, undefined};
+use crate::failure::Failure;
 use crate::parallel;
 use crate::simulate::stage::Stage;
 use crate::states;
@@ -42,13 +43,13 @@ const STATES: usize = 64;
 pub(super) fn parts(stage: &Stage, functions: &[String]) -> Result<Vec<Part>, Failure> {
     let mut bare = stage.request.clone();
     bare.options.robot.effects.clear();
-    let model = articulated_codegen::model(&bare, &stage.description)?;
+    let model = bare.build_robot()?.model;
     let massless = massless(&model);
     let part = |variants| Part { variants, functions: Vec::new(), why: Vec::new() };
     let mut parts = [part(variants(stage)), part(vec![variant(stage, "", stage.effects.clone())])];
     for name in functions {
         let why = match defined(&bare.file, &model, &massless, articulated_codegen::function(name)?) {
-            Err(error @ Error::Singular { .. }) => Some(undefined(error)?),
+            Err(error) if error.code == Code::SingularMassMatrix => Some(error.found),
             _ => None,
         };
         let part = &mut parts[usize::from(why.is_some())];
@@ -95,7 +96,8 @@ impl Part {
             let mut request = stage.request.clone();
             let o = &mut request.options;
             (o.robot.effects, o.robot.gravity) = (variant.effects.clone(), variant.gravity);
-            (o.functions, o.robot.frames, o.rust_mut().runtime, o.stages) = (self.functions.clone(), None, None, false);
+            (o.functions, o.robot.frames, o.rust_mut().runtime, o.stages) =
+                (self.functions.iter().cloned().map(Into::into).collect(), None, None, false);
             (o.parameters, o.rust_mut().batch) = (Vec::new(), Vec::new());
             progress.doing(format!("generation: {}", variant.what));
             let made = generate_code(&request);

@@ -28,9 +28,10 @@ const BOUND: f64 = 128.0;
 pub(crate) fn run(arguments: &EvalArguments, format: Format) -> Result<u8, Failure> {
     let robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
     robot.has_a_level_of_rounding()?;
-    let reading = robot.read()?;
+    let built = robot.read()?;
+    let reading = &built.reading;
     robot.warn_of(reading.warnings.iter().chain(&reading.snapped));
-    let model = robot.model(&reading)?;
+    let model = robot.model(&built)?;
     let names = names::flat(&arguments.function);
     let functions = functions(&names);
     let states = read_states(&arguments.states, &model, &functions)?;

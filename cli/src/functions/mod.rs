@@ -64,9 +64,10 @@ fn subject(name: &Path, arguments: &FunctionsArguments) -> Result<(Subject, Robo
     let is_bundled = bundled.is_some();
     let plain = RobotArguments::plain(name, arguments.floating && !is_bundled);
     let robot = Robot::find(&RobotArguments { max_code_size: arguments.max_code_size, ..plain })?;
-    let reading = robot.read()?;
-    articulated_urdf::summary(reading.warnings.iter().filter(|_| !is_bundled)).iter().for_each(|line| console::warn(line));
-    let model = robot.whole_model(&reading)?;
+    let built = robot.read()?;
+    let reading = &built.reading;
+    articulated_core::diagnostic::summary(reading.warnings.iter().filter(|_| !is_bundled)).iter().for_each(|line| console::warn(line));
+    let model = robot.whole_model(&built)?;
     let tips = Tips::of(&reading.description, &model);
     let row = RobotRow {
         robot: bundled.map_or_else(|| model.name.clone(), |robot| robot.name.to_owned()),

@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn a_chain_is_a_robot_without_oddities() {
         for n in [1, 7, 100] {
-            let reading = articulated_codegen::read(&Request::new("chain.urdf", chain(n))).unwrap();
+            let reading = Request::new("chain.urdf", chain(n)).build_robot().unwrap().reading;
             assert_eq!((reading.description.joints.len(), reading.warnings.len(), reading.unused.len()), (n, 0, 0), "{:?}", reading.unused);
         }
     }

@@ -29,10 +29,10 @@ pub(super) fn measure(
     cold: &mut Cold,
 ) -> Result<Point, Failure> {
     let mut request = Request::new(format!("chain_{joints}.urdf"), chain(joints));
-    request.options.functions = vec![function.name.to_owned()];
+    request.options.functions = vec![function.name.into()];
     // Of functions of frames, the tip's.
     if function.takes.iter().flat_map(|a| a.dims()).chain(function.gives).any(|dim| *dim == Dim::Frames) {
-        request.options.robot.frames = Some(vec![format!("link_{joints}")]);
+        request.options.robot.set_frames([format!("link_{joints}")]);
     }
     let start = Instant::now();
     let generated = generate(&request)?;

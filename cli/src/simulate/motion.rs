@@ -144,7 +144,7 @@ pub(super) fn generate(stage: &Stage, integrator: IntegratorId) -> Result<(Gener
     stage.is_of_doubles()?;
     let frames = stage.frames();
     let mut request = stage.request.clone();
-    request.options.functions = stage.functions(integrator).into_iter().map(str::to_owned).collect();
+    request.options.functions = stage.functions(integrator).into_iter().map(Into::into).collect();
     request.set_frames(&frames);
     (request.options.rust_mut().runtime, request.options.stages) = (None, false);
     (request.options.parameters, request.options.rust_mut().batch) = (Vec::new(), Vec::new());

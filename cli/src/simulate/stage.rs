@@ -7,8 +7,8 @@ use articulated::Dynamics;
 use articulated_codegen::Request;
 use articulated_codegen::scene::Prepared;
 use articulated_core::description::Base;
-use articulated_scene::Robot;
-use articulated_urdf::summary;
+use articulated_core::diagnostic::summary;
+use articulated_scene::{BuiltRobot, Robot};
 
 use crate::console;
 use crate::failure::Failure;
@@ -61,14 +61,14 @@ impl Stage {
     }
 
     fn new(name: String, prepared: Prepared, folder: PathBuf) -> Result<Self, Failure> {
-        let Prepared { scene, mut request, resolved, .. } = prepared;
+        let Prepared { scene, mut request, robot, .. } = prepared;
+        let BuiltRobot { reading, model, resolved, effects, .. } = robot;
+        // Variants of the request replace its effects.
+        (request.scene, request.options.robot.effects) = (None, effects.clone());
         request.options.robot.frames = None;
-        let reading = articulated_codegen::read(&request)?;
         // Bundled robots are odd on purpose.
         let odd = reading.warnings.iter().filter(|_| !matches!(scene.robot, Robot::Bundled(_)));
         let odd = summary(odd.chain(&reading.snapped));
-        let model = articulated_codegen::model(&request, &reading.description)?;
-        let effects = request.options.robot.effects.clone();
         let mut stage = articulated_motion::Stage::new(scene, reading.description, model, effects).in_folder(folder);
         stage.report = resolved.report;
         Ok(Self { name, request, odd, stage })

@@ -12,7 +12,7 @@ use super::levels::{self, Made};
 use super::machine::Machine;
 use super::robots::{state, states};
 use super::row::{Case, Row};
-use crate::failure::{Failure, undefined};
+use crate::failure::Failure;
 use crate::robot::Robot;
 use crate::states::quaternions;
 use crate::worse::worse;
@@ -55,7 +55,7 @@ fn left_out(robot: &Robot, model: &Model<f64>, generated: &[Level]) -> Result<Ve
     let mut notes = Vec::new();
     for f in functions {
         if let Err(error) = articulated_codegen::defined(&robot.file, model, &massless, f.row::<f64>()) {
-            let note = format!("{} is left out: {}", f.name(), undefined(error)?);
+            let note = format!("{} is left out: {}", f.name(), error.found);
             if !notes.contains(&note) {
                 notes.push(note);
             }

@@ -60,13 +60,13 @@ fn each_choice_arrives_in_the_request() {
     assert_eq!(of(build.clone().standalone().limbs(false).forbid_unsafe().no_std().max_code_size(200)), expected);
     let mut expected = plain.clone();
     (expected.robot.base, expected.robot.snap_angles, expected.robot.allow_unphysical_inertia) = (Base::Fixed, Some(1e-6), true);
-    expected.rename = vec![("a-b".into(), "A_MINUS_B".into())];
+    expected.rename = vec![("a-b".to_owned(), "A_MINUS_B".to_owned()).into()];
     let all = build.clone().floating().fixed().snap_angles(1e-6).allow_unphysical_inertia().rename("a-b", "A_MINUS_B");
     assert_eq!(of(all.clone()), expected);
-    expected.rename = vec![("c".into(), "C".into()), ("a-b".into(), "D".into())];
+    expected.rename = vec![("c".to_owned(), "C".to_owned()).into(), ("a-b".to_owned(), "D".to_owned()).into()];
     assert_eq!(of(all.rename("c", "C").rename("a-b", "D")), expected);
     let both = of(build.clone().append(&hand, "tip", "left_", Origin::default()));
-    assert_eq!(both.robot.append[0].urdf, fs::read(&hand).unwrap());
+    assert_eq!(both.robot.append[0].document, fs::read(&hand).unwrap());
     assert_eq!((both.robot.append[0].at.as_str(), both.robot.append[0].prefix.as_str()), ("tip", "left_"));
     assert!(build.append(folder.join("none.urdf"), "tip", "left_", Origin::default()).request().is_err());
     fs::remove_dir_all(folder).unwrap();

@@ -141,7 +141,7 @@ mod tests {
         }
         let mut request = Request::new("tree", urdf + "</robot>");
         request.options.robot.base = base;
-        crate::model(&request, &crate::read(&request).unwrap().description).unwrap()
+        request.build_robot().unwrap().model
     }
 
     /// Two legs of three, and arms of two on a back of two.

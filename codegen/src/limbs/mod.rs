@@ -76,7 +76,7 @@ mod tests {
         urdf += "</robot>";
         let mut request = Request::new("walker", urdf);
         request.options.robot.base = if legs == 2 { Base::Fixed } else { Base::Floating };
-        crate::model(&request, &crate::read(&request).unwrap().description).unwrap()
+        request.build_robot().unwrap().model
     }
 
     fn input(argument: usize, k: usize) -> f64 {

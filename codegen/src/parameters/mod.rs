@@ -17,11 +17,14 @@ use std::collections::HashMap;
 use articulated_core::Scalar;
 use articulated_core::algorithm::PARAMETERS;
 use articulated_core::description::Description;
+use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 use articulated_core::effect::{Applied, Effect, EffectId, On, effect};
 use articulated_core::model::Model;
 use articulated_core::spatial::{Placement, SpatialInertia, Vector3};
+use articulated_scene::BuiltRobot;
 
-use crate::{Error, Options, Sym, identifier, nearest};
+use crate::plan::placed;
+use crate::{Options, Sym, identifier, nearest};
 
 /// What stays an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,50 +63,57 @@ pub struct Parameter {
     on: String,
 }
 
-/// Reads the list, and takes out of the description what will be an input. What is renamed in Rust is so here too.
-pub(crate) fn parse(
-    list: &[String],
-    rename: &[(String, String)],
-    description: &mut Description,
-    model: &Model<f64>,
-) -> Result<Vec<Parameter>, Error> {
-    let mut robot = Robot::of(description, model);
+/// The parameters of the list that can be read, taken out of the robot's description: they will be
+/// inputs. A joint or link that is renamed in code is renamed here too.
+pub(crate) fn parse(options: &Options, built: &mut BuiltRobot, log: &mut Diagnostics) -> Vec<Parameter> {
+    let mut robot = Robot::of(&mut built.reading.description, &built.model);
     let mut parameters: Vec<Parameter> = Vec::new();
     let mut identifiers: HashMap<String, usize> = HashMap::new();
-    for text in list {
-        let wrong = |reason: String| Error::Parameter { found: text.trim().into(), reason };
+    for text in &options.parameters {
+        let mut wrong = |reason: String| {
+            let sentence = format!("`{}`: {reason}", text.trim());
+            log.push(placed(Diagnostic::refusal("", (Default::default(), "parameters"), Code::Parameter, sentence), text));
+        };
         let at = parameters.last().map_or(0, |p| p.at + p.nominal.len());
-        let mut parameter = robot.one(text, at).map_err(wrong)?;
-        if let Some((from, to)) = rename.iter().find(|(from, _)| *from == parameter.on) {
+        let mut parameter = match robot.one(text, at) {
+            Ok(parameter) => parameter,
+            Err(reason) => {
+                wrong(reason);
+                continue;
+            }
+        };
+        if let Some(reason) = off(text, &built.effects) {
+            wrong(reason);
+            continue;
+        }
+        if let Some((from, to)) = options.rename.iter().map(|names| &names.value).find(|(from, _)| *from == parameter.on) {
             parameter.name = format!("{to}{}", &parameter.name[from.len()..]);
         }
         let name = identifier(&parameter.name);
         if let Some(other) = identifiers.get(&name).map(|k| &parameters[*k]) {
-            return Err(wrong(match other.what == parameter.what {
+            wrong(match other.what == parameter.what {
                 true => "is there twice, expected once".into(),
                 false => format!(
                     "is {name} in Rust, as the {} is; `--rename` (key `rename`, method `Build::rename`) gives one another name",
                     other.what
                 ),
-            }));
+            });
+            continue;
         }
         identifiers.insert(name, parameters.len());
         parameters.push(parameter);
     }
-    Ok(parameters)
+    parameters
 }
 
-/// What is wrong with the entries that are numbers of effects, all of which are known: those that are off.
-pub(crate) fn of_effects_that_are_off(options: &Options) -> Vec<Error> {
-    let off = |text: &String| {
-        let (kind, name) = parts(text)?;
-        let row = effect(kind)?;
-        let is_on = |one: &Applied| one.effect == row.id && one.on == name && !row.is_nothing(&one.parameters);
-        let on = if row.on == On::Joint { "joint" } else { "link" };
-        let reason = format!("{kind} is off on {on} {name:?}; ask for it among `effects` with numbers that are not all 0");
-        (!options.robot.effects.iter().any(is_on)).then(|| Error::Parameter { found: text.trim().into(), reason })
-    };
-    options.parameters.iter().filter_map(off).collect()
+/// Why an entry is not a parameter, if it names an effect that is off.
+fn off(text: &str, effects: &[Applied]) -> Option<String> {
+    let (kind, name) = parts(text)?;
+    let row = effect(kind)?;
+    let is_on = |one: &Applied| one.effect == row.id && one.on == name && !row.is_nothing(&one.parameters);
+    let on = if row.on == On::Joint { "joint" } else { "link" };
+    let reason = || format!("{kind} is off on {on} {name:?}; ask for it among `effects` with numbers that are not all 0");
+    (!effects.iter().any(is_on)).then(reason)
 }
 
 /// `kind(name)`, or `kind("name")`.
@@ -158,7 +168,7 @@ impl<'a> Robot<'a> {
             On::Joint => ("joint", self.on_joint(row, name)?, self.bodies.get(name).copied()),
             On::Link => ("link", self.on_link(row, name)?, self.frames.get(name).map(|k| self.model.frames[*k].body)),
         };
-        // Effects may not be known yet, see `of_effects_that_are_off`.
+        // An effect that is off is refused, see `off`.
         let nominal = on.map_or_else(|| vec![0.0; row.len()], <[f64]>::to_vec);
         let fields: Vec<String> = row.fields.iter().map(|field| format!("{} ({})", field.name, field.unit)).collect();
         let what = format!("{} on {kind} {name:?}: {}", row.name, fields.join(", "));

@@ -32,11 +32,18 @@ fn robot([origin, mass, com, shoulder]: [&str; 4]) -> Request {
 
 /// The model, with what stays an input taken out of it.
 fn read(request: &Request, list: &[&str]) -> (Model<f64>, Vec<Parameter>) {
-    let mut description = crate::read(request).unwrap().description;
-    let whole = crate::model(request, &description).unwrap();
-    let list: Vec<String> = list.iter().map(|p| (*p).to_owned()).collect();
-    let parameters = parse(&list, &[], &mut description, &whole).unwrap();
-    (crate::model(request, &description).unwrap(), parameters)
+    let mut robot = request.build_robot().unwrap();
+    let parameters = parsed(&mut robot, list, &[]).unwrap();
+    (request.robot().model_of(&robot).unwrap(), parameters)
+}
+
+/// The parameters of a list, or all that is wrong with it.
+fn parsed(robot: &mut BuiltRobot, list: &[&str], rename: &[(&str, &str)]) -> Result<Vec<Parameter>, String> {
+    let parameters = list.iter().map(|one| (*one).into()).collect();
+    let rename = rename.iter().map(|(from, to)| ((*from).to_owned(), (*to).to_owned()).into()).collect();
+    let mut log = Diagnostics::default();
+    let parameters = parse(&Options { parameters, rename, ..Options::default() }, robot, &mut log);
+    log.result(parameters).map_err(|findings| findings.to_string())
 }
 
 #[test]
@@ -132,9 +139,8 @@ fn a_payload_is_added_to_what_the_link_has() {
 #[test]
 fn what_there_is_not_is_told_with_what_was_meant() {
     let request = robot(["0 0 0", "2", "0 0 0", "0 0 0"]);
-    let mut description = crate::read(&request).unwrap().description;
-    let model = crate::model(&request, &description).unwrap();
-    let mut told = |one: &str| parse(&[one.to_owned()], &[], &mut description, &model).map(|_| ()).unwrap_err().to_string();
+    let mut robot = request.build_robot().unwrap();
+    let mut told = |one: &str| parsed(&mut robot, &[one], &[]).map(drop).unwrap_err();
     for (one, said) in [
         ("payload(tol)", "there is no link \"tol\", did you mean \"tool\"?"),
         ("inertia(slide)", "there is no link \"slide\""),
@@ -150,7 +156,7 @@ fn what_there_is_not_is_told_with_what_was_meant() {
         assert_eq!(told(one), format!("parameters: `{one}`: {said}"));
     }
     let mut request = request;
-    request.options.parameters = ["damping(shoulder)", " friction(shoulder)", "gravity"].map(String::from).to_vec();
+    request.options.parameters = ["damping(shoulder)", " friction(shoulder)", "gravity"].map(Into::into).to_vec();
     let friction = |loss: f64| Applied {
         effect: EffectId::friction,
         on: "shoulder".into(),
@@ -178,21 +184,18 @@ fn what_there_is_not_is_told_with_what_was_meant() {
 #[test]
 fn two_that_have_one_name_in_rust_are_refused() {
     let request = robot(["0 0 0", "2", "0 0 0", "0 0 0"]);
-    let mut description = crate::read(&request).unwrap().description;
-    let model = crate::model(&request, &description).unwrap();
-    let list = ["payload(tool)", "payload(\"tool\")"].map(String::from);
-    let told = parse(&list, &[], &mut description, &model).map(|_| ()).unwrap_err().to_string();
+    let list = ["payload(tool)", "payload(\"tool\")"];
+    let told = parsed(&mut request.build_robot().unwrap(), &list, &[]).map(drop).unwrap_err();
     assert_eq!(told, "parameters: `payload(\"tool\")`: is there twice, expected once");
     // Constants of Rust have one case.
     let mut request = request;
-    request.urdf = String::from_utf8(request.urdf).unwrap().replace("'table'", "'TOOL'").into_bytes();
-    let mut description = crate::read(&request).unwrap().description;
-    let model = crate::model(&request, &description).unwrap();
-    let mut told = |list: [&str; 2]| parse(&list.map(String::from), &[], &mut description, &model).err().map(|error| error.to_string());
+    request.document = String::from_utf8(request.document).unwrap().replace("'table'", "'TOOL'").into_bytes();
+    let mut robot = request.build_robot().unwrap();
+    let mut told = |list: [&str; 2]| parsed(&mut robot, &list, &[]).err();
     assert!(told(["payload(tool)", "payload(TOOL)"]).is_some_and(|told| told.contains("is TOOL_PAYLOAD in Rust, as the")));
     assert_eq!(told(["payload(tool)", "inertia(TOOL)"]), None);
     // As of all constants of a joint or link, another name in Rust tells them apart.
-    let (list, rename) = (["payload(tool)", "payload(TOOL)", "gravity"].map(String::from), [("TOOL".to_owned(), "TABLE".to_owned())]);
-    let names = parse(&list, &rename, &mut description, &model).map(|all| all.iter().map(|p| identifier(&p.name)).collect::<Vec<_>>());
+    let names = parsed(&mut robot, &["payload(tool)", "payload(TOOL)", "gravity"], &[("TOOL", "TABLE")]);
+    let names = names.map(|all| all.iter().map(|p| identifier(&p.name)).collect::<Vec<_>>());
     assert_eq!(names.unwrap(), ["TOOL_PAYLOAD", "TABLE_PAYLOAD", "GRAVITY"]);
 }

@@ -3,9 +3,10 @@
 use std::borrow::Cow;
 
 use articulated_core::algorithm::{Argument, Function, FunctionId};
+use articulated_core::diagnostic::Diagnostic;
 use articulated_core::model::{JointInfo, Model};
 
-use crate::{Error, Sym};
+use crate::Sym;
 
 /// The value of an argument that is a constant.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,7 +71,11 @@ fn not_unit<'a>(joint: &'a JointInfo, q: &[f64], zeros: bool) -> Option<(&'a str
 }
 
 /// `q = 0` or `q = [0, 0]`
-pub(super) fn constant(text: &str, function: &Function<Sym>, wrong: &dyn Fn(String) -> Error) -> Result<(Argument, Constant), Error> {
+pub(super) fn constant(
+    text: &str,
+    function: &Function<Sym>,
+    wrong: &dyn Fn(String) -> Diagnostic,
+) -> Result<(Argument, Constant), Diagnostic> {
     let takes: Vec<&str> = function.takes.iter().map(|a| a.name()).collect();
     let expected = || {
         let (found, name, first) = (text.trim(), function.name, takes[0]);
@@ -171,6 +176,6 @@ mod tests {
         };
         let joints: String = kinds.iter().enumerate().map(joint).collect();
         let request = crate::Request::new("chain.urdf", format!("<robot name='chain'><link name='l0'/>{joints}</robot>"));
-        crate::model(&request, &crate::read(&request).unwrap().description).unwrap()
+        request.build_robot().unwrap().model
     }
 }

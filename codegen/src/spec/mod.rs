@@ -10,13 +10,14 @@
 mod constant;
 
 use articulated_core::algorithm::{Argument, Dim, Function, functions};
+use articulated_core::diagnostic::{Code, Diagnostic};
 use articulated_core::model::Model;
 
 pub use constant::Constant;
 
 use constant::{constant, entries};
 
-use crate::{Error, Sym, function};
+use crate::{Sym, function};
 
 /// One function to generate.
 #[derive(Clone)]
@@ -38,6 +39,11 @@ pub struct FunctionTerm {
     pub sines: bool,
 }
 
+/// An entry of the list of functions that is wrong.
+fn wrong_entry(entry: &str, reason: &str) -> Diagnostic {
+    Diagnostic::refusal("", (Default::default(), "functions"), Code::FunctionSpec, format!("`{entry}`: {reason}"))
+}
+
 impl FunctionSpec {
     /// The function of the table by itself.
     pub fn plain(function: &'static Function<Sym>) -> Self {
@@ -45,8 +51,8 @@ impl FunctionSpec {
     }
 
     /// Reads one entry of a list of functions.
-    pub fn parse(text: &str) -> Result<Self, Error> {
-        let wrong = |reason: String| Error::FunctionSpec { found: text.trim().into(), reason };
+    pub fn parse(text: &str) -> Result<Self, Diagnostic> {
+        let wrong = |reason: String| wrong_entry(text.trim(), &reason);
         let (name, rest) = match split_outside(text, '=') {
             Some((name, rest)) => (Some(name.trim()), rest),
             None => (None, text),
@@ -123,16 +129,16 @@ impl FunctionSpec {
     }
 
     /// Whether constants are right for a robot: as many numbers as it takes, and quaternions that are some.
-    pub fn check(&self, model: &Model<f64>) -> Result<(), Error> {
+    pub fn check(&self, model: &Model<f64>) -> Result<(), Diagnostic> {
         let mut constants =
             self.parts.iter().flat_map(|p| p.constants.iter().map(move |(argument, constant)| (p.function.id, argument, constant)));
-        let wrong = |reason| Error::FunctionSpec { found: self.name.clone(), reason };
+        let wrong = |reason: String| wrong_entry(&self.name, &reason);
         constants.try_for_each(|(function, argument, constant)| constant.fits(function, *argument, model)).map_err(wrong)
     }
 }
 
 impl FunctionTerm {
-    fn parse(text: &str, wrong: &dyn Fn(String) -> Error) -> Result<Self, Error> {
+    fn parse(text: &str, wrong: &dyn Fn(String) -> Diagnostic) -> Result<Self, Diagnostic> {
         let (name, arguments) = match text.split_once('(') {
             None => (text, None),
             Some((name, rest)) => {
@@ -143,7 +149,7 @@ impl FunctionTerm {
         if name.is_empty() {
             return Err(wrong("expected a function, as in name = first + second(a = 0)".into()));
         }
-        let function = function(name)?;
+        let function = function(name).map_err(|error| Diagnostic { field: "functions".into(), ..error })?;
         let mut constants = Vec::new();
         let mut sines = false;
         for entry in arguments.into_iter().flat_map(|a| entries(all_outside(a, ','))) {
@@ -278,7 +284,10 @@ mod tests {
             let left: Vec<Argument> = row.takes.iter().copied().filter(|a| !zeros.contains(a)).collect();
             assert_eq!((row.gives, left.as_slice()), (other.gives, other.takes), "{general}");
             let fixed: Vec<String> = zeros.iter().map(|a| format!("{} = 0", a.name())).collect();
-            request.options.functions.extend([format!("own_{k} = {general}({})", fixed.join(", ")), format!("plain_{k} = {preset}")]);
+            request
+                .options
+                .functions
+                .extend([format!("own_{k} = {general}({})", fixed.join(", ")).into(), format!("plain_{k} = {preset}").into()]);
         }
         request.options.functions.push("all = inverse_dynamics_with_wrenches(v = 0, a = [0, 0, 0, 0, 0, 0], wrenches = 0)".into());
         request.options.functions.push("torque = gravity_torque".into());
@@ -296,7 +305,7 @@ mod tests {
             graph.evaluate(|argument, k| 0.3 - 0.1 * argument as f64 + 0.07 * k as f64)
         };
         for pair in request.options.functions.chunks(2) {
-            let [general, preset] = [&pair[0], &pair[1]].map(|text| values(text));
+            let [general, preset] = [&pair[0], &pair[1]].map(|text| values(&text.value));
             let scale = preset.iter().fold(1.0, |max: f64, x| max.max(x.abs()));
             assert!(general.iter().zip(&preset).all(|(a, b)| (a - b).abs() < 1e-12 * scale), "{pair:?}");
         }

@@ -4,12 +4,13 @@
 pub(crate) mod c;
 pub(crate) mod rust;
 
+use articulated_core::diagnostic::{Diagnostic, Diagnostics, Unused};
+use articulated_core::effect::Applied;
 use articulated_core::model::Model;
-use articulated_urdf::{Problem, Unused};
 
 use crate::capabilities::Capabilities;
 use crate::lir::function::Function;
-use crate::{Error, Options, Parameter, Request};
+use crate::{Options, Parameter, Request};
 
 pub use c::COptions;
 pub use rust::{RustOptions, identifier};
@@ -41,12 +42,14 @@ pub struct File {
 /// What a target prints.
 pub(crate) struct Module<'a> {
     pub(crate) request: &'a Request,
+    /// All effects: the scene's, then the request's.
+    pub(crate) effects: &'a [Applied],
     pub(crate) model: &'a Model<f64>,
     pub(crate) functions: Vec<Function<'a>>,
     pub(crate) parameters: &'a [Parameter],
     pub(crate) unused: &'a [Unused],
-    pub(crate) snapped: &'a [Problem],
-    pub(crate) warnings: &'a [Problem],
+    pub(crate) snapped: &'a [Diagnostic],
+    pub(crate) warnings: &'a [Diagnostic],
 }
 
 impl Target {
@@ -73,19 +76,19 @@ impl Target {
         }
     }
 
-    /// Whether the choices go together, whatever the robot.
-    pub(crate) fn check(&self, options: &Options) -> Result<(), Error> {
+    /// Reports choices that exclude each other, whatever the robot.
+    pub(crate) fn check(&self, options: &Options, log: &mut Diagnostics) {
         match self {
-            Self::Rust(rust) => rust::check(rust),
-            Self::C(c) => c::check(options, c),
+            Self::Rust(rust) => rust::check(rust, log),
+            Self::C(c) => c::check(options, c, log),
         }
     }
 
-    /// Whether the robot's names are names in this language. Errors: all that are not.
-    pub(crate) fn check_names(&self, model: &Model<f64>, request: &Request) -> Result<(), Error> {
+    /// Reports the robot's names that are not names in this language.
+    pub(crate) fn check_names(&self, model: &Model<f64>, request: &Request, log: &mut Diagnostics) {
         match self {
-            Self::Rust(_) => rust::Names::new(model, request).map(drop),
-            Self::C(_) => Ok(()),
+            Self::Rust(_) => rust::Names::check(model, request, log),
+            Self::C(_) => {}
         }
     }
 

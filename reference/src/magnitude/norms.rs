@@ -126,7 +126,7 @@ mod tests {
                     k - 1
                 );
             }
-            let reading = articulated_urdf::read((urdf + "</robot>").as_bytes(), &articulated_urdf::Options::default()).unwrap();
+            let reading = articulated_formats::read((urdf + "</robot>").as_bytes(), &articulated_formats::Options::default()).unwrap();
             Model::new(&reading.description, Base::Fixed).unwrap()
         };
         let over_the_largest = |n: usize| {

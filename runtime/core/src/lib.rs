@@ -25,6 +25,8 @@ pub mod control;
 #[cfg(feature = "alloc")]
 pub mod description;
 #[cfg(feature = "alloc")]
+pub mod diagnostic;
+#[cfg(feature = "alloc")]
 pub mod dynamics;
 #[cfg(feature = "alloc")]
 pub mod effect;

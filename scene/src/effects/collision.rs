@@ -1,13 +1,11 @@
 //! Contact of the collision geometry that a URDF has.
 
 use articulated_core::description::{Collision, CollisionShape, Link, Origin};
+use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Subject};
 use articulated_core::effect::{Effect, EffectId};
-use articulated_urdf::{Kind as Odd, Problem, Subject};
 
 use super::resolve::{Resolving, fill, missing};
 use super::{Asked, FRAME, Numbers, Selector};
-use crate::error::Kind;
-use crate::log::Log;
 use crate::table::Spot;
 
 /// The word for it.
@@ -27,7 +25,7 @@ pub(crate) fn is_of_shape(row: &Effect, field: &str) -> bool {
 }
 
 /// Refuses points of the scene's own beside those of the geometry.
-pub(super) fn refuse_own_points(spot: &Spot<'_>, log: &mut Log) {
+pub(super) fn refuse_own_points(spot: &Spot<'_>, log: &mut Diagnostics) {
     for own in [RADIUS].into_iter().chain(FRAME).filter_map(|key| spot.get(key)) {
         let name = own.key.rsplit('.').next().unwrap_or_default();
         own.clash(log, format!("{name} beside from = \"{WORD}\""), "one of both: the shapes of the robot's file give radii and places");
@@ -48,7 +46,14 @@ pub(super) fn is_taken(row: &Effect, says: &Numbers, rest: Option<&Numbers>) -> 
 
 impl<'a> Resolving<'a> {
     /// The contact of a link's collision geometry, a sphere or point each.
-    pub(super) fn of_collision(&mut self, row: &'static Effect, link: &'a Link, one: &Asked, rest: Option<&Numbers>, log: &mut Log) {
+    pub(super) fn of_collision(
+        &mut self,
+        row: &'static Effect,
+        link: &'a Link,
+        one: &Asked,
+        rest: Option<&Numbers>,
+        log: &mut Diagnostics,
+    ) {
         let unread = link.collision.iter().filter_map(|piece| match &piece.shape {
             CollisionShape::Unread { why } => Some(why),
             _ => None,
@@ -56,7 +61,7 @@ impl<'a> Resolving<'a> {
         let before = log.count();
         for why in unread {
             let found = format!("collision geometry of link {:?} that cannot be read: {why}", link.name);
-            log.error(one.place, &one.key, Kind::Robot, found, "geometry that can be read, or \"off\" for this link");
+            log.error((one.place, &one.key), Code::Robot, found, "geometry that can be read, or \"off\" for this link");
         }
         if log.count() > before {
             return;
@@ -67,10 +72,10 @@ impl<'a> Resolving<'a> {
             (Selector::Named(name), true) => {
                 let what = if meshes > 0 { "only meshes as collision geometry, which make no contact" } else { "no collision geometry" };
                 let expected = "a box, cylinder, sphere or capsule in <collision>, or contact with `radius`";
-                return log.error(one.place, &one.key, Kind::Robot, format!("link {name:?} with {what}"), expected);
+                return log.error((one.place, &one.key), Code::Robot, format!("link {name:?} with {what}"), expected);
             }
-            (Selector::All, true) => self.warn_of_contact(one, link, Odd::NoContact, "only meshes as collision geometry"),
-            (_, false) if meshes > 0 => self.warn_of_contact(one, link, Odd::PartOfContact, "a mesh beside other collision geometry"),
+            (Selector::All, true) => self.warn_of_contact(one, link, Code::NoContact, "only meshes as collision geometry"),
+            (_, false) if meshes > 0 => self.warn_of_contact(one, link, Code::PartOfContact, "a mesh beside other collision geometry"),
             _ => {}
         }
         let Some(says) = &one.says else { return };
@@ -89,7 +94,7 @@ impl<'a> Resolving<'a> {
         }
     }
 
-    fn warn_of_contact(&mut self, one: &Asked, link: &Link, kind: Odd, found: &str) {
+    fn warn_of_contact(&mut self, one: &Asked, link: &Link, kind: Code, found: &str) {
         let expected = "a box, cylinder, sphere or capsule: meshes are not read and make no contact";
         self.warn(one, Subject::Link(link.name.clone()), kind, found, expected);
     }
@@ -99,19 +104,12 @@ impl<'a> Resolving<'a> {
         let Some(one) = asked.iter().find(|one| one.on == Selector::All && is_asked(one)) else { return };
         if self.robot.description.links.iter().all(|link| link.collision.is_empty()) {
             let expected = "links with <collision>: nothing touches the ground";
-            self.warn(one, Subject::Document, Odd::NoContact, "a robot without collision geometry", expected);
+            self.warn(one, Subject::Document, Code::NoContact, "a robot without collision geometry", expected);
         }
     }
 
-    fn warn(&mut self, one: &Asked, subject: Subject, kind: Odd, found: &str, expected: &str) {
-        self.resolved.warnings.push(Problem {
-            file: self.scene.file.clone(),
-            line: one.place.line(),
-            subject,
-            kind,
-            field: one.key.clone(),
-            found: found.to_owned(),
-            expected: expected.to_owned(),
-        });
+    fn warn(&mut self, one: &Asked, subject: Subject, kind: Code, found: &str, expected: &str) {
+        let place = Place { at: one.place, subject: &subject, field: &one.key };
+        self.resolved.warnings.push(Diagnostic::error(&self.scene.file, &place, kind, found, expected).as_warning());
     }
 }

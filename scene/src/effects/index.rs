@@ -21,13 +21,15 @@ pub(super) struct Index<'a> {
 impl<'a> Index<'a> {
     pub(super) fn of(robot: &Edited<'a>, shafts: &'a [ShaftAsked]) -> Self {
         let mut by_shafts = HashMap::new();
-        for (asked, own) in shafts.iter().zip(robot.shafts).flat_map(|(asked, applied)| applied.iter().map(move |own| (asked, own))) {
+        for (asked, own) in
+            shafts.iter().zip(robot.shafts).flat_map(|(asked, applied)| applied.iter().flatten().map(move |own| (asked, own)))
+        {
             by_shafts.entry((own.effect, own.on.as_str())).or_insert((asked, own));
         }
         Self {
             joints: indices(robot.description.joints.iter().map(|j| j.name.as_str())),
             links: indices(robot.description.links.iter().map(|l| l.name.as_str())),
-            of_shafts: robot.shafts.iter().flatten().map(|a| a.on.as_str()).collect(),
+            of_shafts: robot.shafts.iter().flatten().flatten().map(|a| a.on.as_str()).collect(),
             by_shafts,
         }
     }

@@ -10,6 +10,7 @@
 //! stiffness = 1e5
 //! ```
 
+use articulated_core::diagnostic::{At, Code, Diagnostics, quote};
 mod collision;
 mod index;
 mod resolve;
@@ -20,12 +21,10 @@ use std::ops::Range;
 
 use articulated_core::description::Origin;
 
-use crate::error::{Kind, quote};
-use crate::log::Log;
 use crate::scene::Scene;
 use crate::shaft;
 use crate::table::Spot;
-use crate::tree::{At, Value};
+use crate::tree::Value;
 use articulated_core::effect::{Effect, EffectId, Field, On, effect, effects};
 
 pub(crate) use collision::is_of_shape;
@@ -79,7 +78,7 @@ const FROM: &str = "from";
 const ALL: &str = "*";
 
 /// Reads the table `effects` into the scene.
-pub(crate) fn read(scene: &mut Scene, spot: &Spot<'_>, log: &mut Log) {
+pub(crate) fn read(scene: &mut Scene, spot: &Spot<'_>, log: &mut Diagnostics) {
     (scene.effects, scene.shafts) = (Vec::new(), Vec::new());
     for entry in spot.entries(log, "a table of effects") {
         let value = spot.of(entry);
@@ -94,7 +93,7 @@ pub(crate) fn read(scene: &mut Scene, spot: &Spot<'_>, log: &mut Log) {
 }
 
 /// All that is asked for of one effect.
-fn asked(row: &'static Effect, spot: &Spot<'_>, log: &mut Log) -> Vec<Asked> {
+fn asked(row: &'static Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Asked> {
     let Value::Table(entries) = &spot.node.value else { return on(row, &Selector::All, spot, log) };
     // A table that says where its numbers come from is that of all joints.
     if spot.get(FROM).is_some_and(|from| matches!(from.node.value, Value::Text(_))) {
@@ -105,7 +104,7 @@ fn asked(row: &'static Effect, spot: &Spot<'_>, log: &mut Log) -> Vec<Asked> {
 }
 
 /// What is asked for on one joint or link: a number, a word, a table, or a list of tables for a link.
-fn on(row: &'static Effect, selector: &Selector, spot: &Spot<'_>, log: &mut Log) -> Vec<Asked> {
+fn on(row: &'static Effect, selector: &Selector, spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Asked> {
     let asked = |says, spot: &Spot<'_>| Asked { effect: row.id, on: selector.clone(), says, key: spot.key.clone(), place: spot.at };
     let before = log.count();
     let says = match &spot.node.value {
@@ -163,13 +162,13 @@ fn expected(row: &Effect) -> String {
     format!("{} or \"off\"", ways.join(", "))
 }
 
-fn wrong_word(row: &Effect, word: &str, spot: &Spot<'_>, log: &mut Log) {
+fn wrong_word(row: &Effect, word: &str, spot: &Spot<'_>, log: &mut Diagnostics) {
     let words = ["off"].into_iter().chain(sources(row));
-    log.unknown((spot.node.at, &spot.key, Kind::Word), (told(word), word), expected(row), words);
+    log.unknown(((spot.node.at, &spot.key), Code::Word), (told(word), word), expected(row), words);
 }
 
 /// The numbers of a table.
-fn table(row: &'static Effect, spot: &Spot<'_>, log: &mut Log) -> Numbers {
+fn table(row: &'static Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Numbers {
     let mut numbers = empty(row);
     let before = log.count();
     for entry in spot.entries(log, &expected(row)) {
@@ -203,7 +202,7 @@ fn keys(row: &'static Effect) -> impl Iterator<Item = &'static str> {
 }
 
 /// Where the numbers come from that are not given.
-fn from(row: &Effect, spot: &Spot<'_>, log: &mut Log) -> Option<&'static str> {
+fn from(row: &Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Option<&'static str> {
     let expected = sources(row).next().map_or("numbers".into(), |word| format!("\"{word}\""));
     let Value::Text(word) = &spot.node.value else {
         spot.wrong(log, expected);
@@ -211,7 +210,7 @@ fn from(row: &Effect, spot: &Spot<'_>, log: &mut Log) -> Option<&'static str> {
     };
     let source = sources(row).find(|source| *source == word.as_str());
     if source.is_none() {
-        log.error(spot.node.at, &spot.key, Kind::Word, told(word), expected);
+        log.error((spot.node.at, &spot.key), Code::Word, told(word), expected);
     }
     source
 }
@@ -226,7 +225,7 @@ fn told(word: &str) -> String {
     format!("{}{why}", quote(word))
 }
 
-fn field_of(field: &Field, spot: &Spot<'_>, log: &mut Log) -> Option<Vec<f64>> {
+fn field_of(field: &Field, spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Vec<f64>> {
     if field.len == 1 {
         return number(field, spot, log).map(|x| vec![x]);
     }
@@ -239,12 +238,12 @@ fn field_of(field: &Field, spot: &Spot<'_>, log: &mut Log) -> Option<Vec<f64>> {
     items.iter().map(|item| number(field, item, log)).collect()
 }
 
-fn number(field: &Field, spot: &Spot<'_>, log: &mut Log) -> Option<f64> {
+fn number(field: &Field, spot: &Spot<'_>, log: &mut Diagnostics) -> Option<f64> {
     spot.within(log, field.range)
 }
 
 /// What numbers have to be together. Where one is still to come, from the URDF or from what is said of all, the model looks at it.
-fn check(row: &'static Effect, numbers: &Numbers, spot: &Spot<'_>, log: &mut Log) {
+fn check(row: &'static Effect, numbers: &Numbers, spot: &Spot<'_>, log: &mut Diagnostics) {
     let given = |(i, field): (usize, &'static Field)| numbers.fields[i].as_deref().or(field.default);
     let Some(all) = row.fields.iter().enumerate().map(given).collect::<Option<Vec<&[f64]>>>().filter(|_| !numbers.from_urdf) else {
         return;

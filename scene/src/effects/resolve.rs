@@ -1,20 +1,18 @@
 //! Effects against a robot: names looked up, `*` spread over joints and links, numbers taken from the URDF, defaults filled in.
 
+use crate::table::bare;
+use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Subject, Unused};
 use std::collections::HashSet;
 
 use articulated_core::description::{Base, Description, Joint, JointKind, Origin};
-use articulated_urdf::{Problem, Subject, Unused};
 
 use super::index::{Index, Named};
 use super::still::{moving, still};
 use super::{Asked, Numbers, Selector, collision, urdf};
-use crate::error::{Kind, SceneError, SceneErrors, bare};
-use crate::log::Log;
 use crate::report::{EffectOff, EffectOn, Number, Report, Why};
 use crate::scene::Scene;
 use crate::shaft;
-use crate::tree::At;
-use articulated_core::effect::{Applied, Effect, EffectError, EffectId, Enters, On, effects};
+use articulated_core::effect::{Applied, Effect, EffectId, Enters, On, effects};
 use articulated_core::model::FLOATING_BASE;
 
 /// A robot as the scene's edits left it.
@@ -26,8 +24,8 @@ pub struct Edited<'a> {
     pub base: Base,
     /// What the reader of the URDF could not use.
     pub unused: &'a [Unused],
-    /// The springs and dampings of each of the scene's shafts.
-    pub shafts: &'a [Vec<Applied>],
+    /// The springs and dampings of each of the scene's shafts; `None` for a refused one.
+    pub shafts: &'a [Option<Vec<Applied>>],
 }
 
 /// Effects with all their numbers.
@@ -42,38 +40,31 @@ pub struct Resolved {
     /// What is on, off and not used.
     pub report: Report,
     /// What is odd about them.
-    pub warnings: Vec<Problem>,
+    pub warnings: Vec<Diagnostic>,
 }
 
 impl Scene {
-    /// The effects on `robot`. Errors: joints and links that there are not, or that do not move; numbers that are missing; all of them.
-    pub fn resolve(&self, robot: &Edited<'_>) -> Result<Resolved, SceneErrors> {
-        let mut log = Log::new(&self.file);
+    /// The effects on `robot`.
+    ///
+    /// # Errors
+    /// Joints and links that do not exist, or do not move; numbers that are missing; all of them.
+    pub fn resolve(&self, robot: &Edited<'_>) -> Result<Resolved, Diagnostics> {
+        let mut log = Diagnostics::new(&self.file);
+        let resolved = self.resolve_into(robot, &mut log);
+        log.result(resolved)
+    }
+
+    /// As [`resolve`](Self::resolve), without the effects that are wrong.
+    pub(crate) fn resolve_into(&self, robot: &Edited<'_>, log: &mut Diagnostics) -> Resolved {
         let (still, moving) = (still(robot.description, robot.base), moving(robot.description));
         let index = Index::of(robot, &self.shafts);
         let mut at_work = Resolving { scene: self, robot, still, moving, index, resolved: Resolved::default(), used: HashSet::new() };
-        at_work.known_impact(&mut log);
+        at_work.known_impact(log);
         for row in effects() {
-            at_work.effect(row, &mut log);
+            at_work.effect(row, log);
         }
         at_work.ignored();
-        log.result(at_work.resolved)
-    }
-}
-
-impl Resolved {
-    /// What a model said of [`effects`](Self::effects), with the lines of the scene that asked for them.
-    pub fn place(&self, file: &str, errors: &[EffectError]) -> SceneErrors {
-        let placed = |error: &EffectError| SceneError {
-            file: file.to_owned(),
-            at: self.places.get(error.index).copied().unwrap_or_default(),
-            key: self.keys.get(error.index).cloned().unwrap_or_default(),
-            kind: Kind::Refused,
-            found: error.to_string(),
-            expected: String::new(),
-            nearest: None,
-        };
-        SceneErrors { errors: errors.iter().map(placed).collect() }
+        at_work.resolved
     }
 }
 
@@ -94,7 +85,7 @@ pub(super) struct Resolving<'a> {
 pub(super) type Filled = (Vec<f64>, Option<&'static str>);
 
 impl<'a> Resolving<'a> {
-    fn effect(&mut self, row: &'static Effect, log: &mut Log) {
+    fn effect(&mut self, row: &'static Effect, log: &mut Diagnostics) {
         let scene = self.scene;
         let asked: Vec<&Asked> = scene.effects.iter().filter(|a| a.effect == row.id).collect();
         let before = self.resolved.effects.len();
@@ -115,7 +106,7 @@ impl<'a> Resolving<'a> {
     }
 
     /// Whether everything that is named is there and moves.
-    fn known_names(&self, row: &Effect, asked: &[&Asked], log: &mut Log) {
+    fn known_names(&self, row: &Effect, asked: &[&Asked], log: &mut Diagnostics) {
         for one in asked {
             let Selector::Named(name) = &one.on else { continue };
             match row.on {
@@ -125,14 +116,14 @@ impl<'a> Resolving<'a> {
         }
     }
 
-    fn known_joint(&self, row: &Effect, one: &Asked, name: &str, log: &mut Log) {
+    fn known_joint(&self, row: &Effect, one: &Asked, name: &str, log: &mut Diagnostics) {
         let joints = &self.robot.description.joints;
         let Some(&at) = self.index.joints.get(name) else {
             if name == FLOATING_BASE && self.robot.base == Base::Floating {
-                log.error(one.place, &one.key, Kind::Robot, "the floating base", "a joint: effects on joints do not act on the base");
+                log.error((one.place, &one.key), Code::Robot, "the floating base", "a joint: effects on joints do not act on the base");
                 return;
             }
-            let place = (one.place, one.key.as_str(), Kind::UnknownName);
+            let place = ((one.place, one.key.as_str()), Code::UnknownName);
             let names = self.moving_joints().map(|j| j.name.as_str());
             log.unknown(place, ("no such joint".into(), name), "a joint of the robot that moves", names);
             return;
@@ -150,41 +141,41 @@ impl<'a> Resolving<'a> {
             }
             _ => return,
         };
-        log.error(one.place, &one.key, Kind::Robot, found, expected);
+        log.error((one.place, &one.key), Code::Robot, found, expected);
     }
 
-    fn known_link(&self, one: &Asked, name: &str, log: &mut Log) {
+    fn known_link(&self, one: &Asked, name: &str, log: &mut Diagnostics) {
         let links = &self.robot.description.links;
         match self.index.links.get(name) {
             None => {
-                let place = (one.place, one.key.as_str(), Kind::UnknownName);
+                let place = ((one.place, one.key.as_str()), Code::UnknownName);
                 let names = links.iter().map(|l| l.name.as_str());
                 log.unknown(place, ("no such link".into(), name), "a link of the robot", names);
             }
             Some(&link) if self.still[link] && one.says.is_some() => {
-                log.error(one.place, &one.key, Kind::Robot, "a link that is fixed to the base", "a link that moves");
+                log.error((one.place, &one.key), Code::Robot, "a link that is fixed to the base", "a link that moves");
             }
             Some(_) => {}
         }
     }
 
-    fn known_impact(&self, log: &mut Log) {
+    fn known_impact(&self, log: &mut Diagnostics) {
         let Some(impact) = &self.scene.impact else { return };
         let links = &self.robot.description.links;
         match self.index.links.get(impact.link.as_str()) {
             None => {
-                let place = (impact.place, "impact.link", Kind::UnknownName);
+                let place = ((impact.place, "impact.link"), Code::UnknownName);
                 let found = ("no such link".into(), impact.link.as_str());
                 log.unknown(place, found, "a link of the robot", links.iter().map(|l| l.name.as_str()));
             }
             Some(&link) if self.still[link] => {
-                log.error(impact.place, "impact.link", Kind::Robot, "a link that is fixed to the base", "a link that moves");
+                log.error((impact.place, "impact.link"), Code::Robot, "a link that is fixed to the base", "a link that moves");
             }
             Some(_) => {}
         }
     }
 
-    fn on_joints(&mut self, row: &'static Effect, asked: &[&'a Asked], log: &mut Log) {
+    fn on_joints(&mut self, row: &'static Effect, asked: &[&'a Asked], log: &mut Diagnostics) {
         let (all, by_name) = (for_all(asked), Named::of(asked));
         for joint in self.moving_joints().filter(|j| has_room(row, j.kind)) {
             if let Some((one, place, key)) = self.of_shaft(row.id, &joint.name) {
@@ -207,7 +198,7 @@ impl<'a> Resolving<'a> {
         }
     }
 
-    fn on_links(&mut self, row: &'static Effect, asked: &[&'a Asked], log: &mut Log) {
+    fn on_links(&mut self, row: &'static Effect, asked: &[&'a Asked], log: &mut Diagnostics) {
         let (all, by_name) = (for_all(asked), Named::of(asked));
         let description = self.robot.description;
         for (i, link) in description.links.iter().enumerate() {
@@ -333,13 +324,13 @@ pub(super) fn fill(
     row.fields.iter().enumerate().map(|(i, field)| of(i, field)).collect()
 }
 
-pub(super) fn missing(row: &Effect, field: &str, one: &Asked, on: &str, log: &mut Log) {
+pub(super) fn missing(row: &Effect, field: &str, one: &Asked, on: &str, log: &mut Diagnostics) {
     let unit = row.fields.iter().find(|f| f.name == field).map_or("", |f| f.unit);
     let found = match urdf::tag(row.id, field).filter(|_| one.says.as_ref().is_some_and(|s| s.from_urdf)) {
         Some(tag) => format!("no {field} for {on}, whose URDF has no <{tag}>"),
         None => format!("no {field} for {on}"),
     };
-    log.error(one.place, &one.key, Kind::MissingKey, found, format!("{field}, {unit}"));
+    log.error((one.place, &one.key), Code::MissingKey, found, format!("{field}, {unit}"));
 }
 
 fn why(asked: &[&Asked]) -> Why {

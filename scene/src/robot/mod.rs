@@ -1,19 +1,15 @@
-//! The robot that a scene, or a request, asks for: its document read and edited, and the model of what comes out.
+//! The robot that a scene, or a request, asks for: its document read and edited, and its model.
 //!
-//! The way: [`RobotOptions`] (from a scene: [`crate::Scene::fill_robot`]) and a document make [`RobotAsked`] → [`RobotAsked::read`] (edited) → [`RobotAsked::model`].
-//! [`Opened`] does it for a scene and its files, and tells every mistake of both at once.
+//! [`Loader`] reads the files. [`RobotOptions`] (from a scene: [`crate::Scene::fill_robot`]) and a
+//! document make a [`RobotRequest`]; [`RobotRequest::build`] makes the robot and reports all findings
+//! at once.
 
-mod edit;
-mod error;
-mod faults;
-mod odd;
-mod open;
+mod build;
+mod load;
 mod options;
-mod place;
+mod warnings;
 
-pub use error::{Edit, Reason, Refusal, RobotError};
-pub use faults::{Tried, leave_out, tried};
-pub use odd::beyond_sense;
-pub use open::{Attempt, Bundled, Opened, Settled, beside, nearest_file, open, open_in, read_robot_file};
-pub use options::{Appended, RobotAsked, RobotOptions};
-pub use place::by_places;
+pub use build::BuiltRobot;
+pub use load::{Bundled, Loader, Opened, beside, open, open_in};
+pub use options::{Appended, RobotOptions, RobotRequest};
+pub use warnings::beyond_sense;

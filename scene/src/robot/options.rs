@@ -1,65 +1,83 @@
-//! What is asked of a robot before anything is computed.
+//! What is requested of a robot before anything is computed.
 
 use articulated_core::description::{Base, Origin, Payload, Shaft};
+use articulated_core::diagnostic::Spanned;
 use articulated_core::effect::Applied;
 use articulated_core::model::GRAVITY;
 use articulated_core::spatial::Reference;
-use articulated_urdf::Problem;
+use articulated_formats::Formats;
 
-/// The robot as it is wanted: base, gravity, edits, frames and effects.
+use crate::scene::Scene;
+
+/// The robot as requested: base, gravity, edits, frames and effects. An entry that a file gives
+/// carries its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RobotOptions {
     /// Whether the root link is fixed.
     pub base: Base,
     /// Gravity in the world frame, m/s².
     pub gravity: [f64; 3],
-    /// Names of the links whose frames the functions of frames give, in this order; `None`: all of them, in the order of the file.
-    pub frames: Option<Vec<String>>,
+    /// Names of the links whose frames the functions of frames return, in this order; `None`: all of
+    /// them, in the order of the file.
+    pub frames: Option<Vec<Spanned<String>>>,
     /// What the wrenches that functions take refer to.
     pub wrench_reference: Reference,
     /// Robots to append, one after the other.
     pub append: Vec<Appended>,
-    /// Loads to attach; to links of appended robots too.
-    pub payloads: Vec<Payload>,
-    /// Fixed joints whose rigid offsets bend, see [`shaft`](articulated_core::description::Description::shaft). Their springs and dampings have to be among the effects.
-    pub shafts: Vec<Shaft>,
-    /// Joints to lock and their coordinates, see [`lock`](articulated_core::description::Description::lock); joints of appended robots too.
-    pub lock: Vec<(String, Vec<f64>)>,
-    /// What the robot is subject to besides gravity; on joints and links of appended robots too.
+    /// Loads to attach; also to links of appended robots.
+    pub payloads: Vec<Spanned<Payload>>,
+    /// Fixed joints whose rigid offsets bend, see
+    /// [`shaft`](articulated_core::description::Description::shaft). Their springs and dampings have
+    /// to be among the effects. Those of the scene come first.
+    pub shafts: Vec<Spanned<Shaft>>,
+    /// Joints to lock and their coordinates, see
+    /// [`lock`](articulated_core::description::Description::lock); also joints of appended robots.
+    pub lock: Vec<Spanned<(String, Vec<f64>)>>,
+    /// What the robot is subject to besides gravity and the scene's effects; also on joints and links
+    /// of appended robots.
     pub effects: Vec<Applied>,
-    /// What is odd about the effects ([`Resolved::warnings`](crate::Resolved::warnings)): told with
-    /// the warnings of the robot's document.
-    pub warnings: Vec<Problem>,
-    /// Accept negative principal moments, with a warning. (Moments that break the triangle inequality are always accepted with a warning.)
+    /// Accept negative principal moments, with a warning. (Moments that violate the triangle
+    /// inequality are always accepted with a warning.)
     pub allow_unphysical_inertia: bool,
-    /// Take angles this near (rad, above 0, at most [`MOST_SNAPPED`](articulated_urdf::MOST_SNAPPED)) to a multiple of π/2 as that multiple; every one is reported. `None`: never.
+    /// Take angles this near (rad, above 0, at most
+    /// [`MOST_SNAPPED`](articulated_formats::MOST_SNAPPED)) to a multiple of π/2 as that multiple;
+    /// every one is reported. `None`: never.
     pub snap_angles: Option<f64>,
+    /// The formats of robot files.
+    pub formats: Formats,
 }
 
-/// Another robot, a gripper say, to be fixed to a link. Its links and joints get a prefix before their names.
+/// Another robot, such as a gripper, to be fixed to a link. Its links and joints get a prefix before
+/// their names.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Appended {
-    /// The URDF's bytes.
-    pub urdf: Vec<u8>,
-    /// The file's name, for messages and for the header of a generated file; not opened.
-    pub file: String,
+    /// The bytes of its file.
+    pub document: Vec<u8>,
+    /// The file's name, for messages and for the header of a generated file; with the place that
+    /// names it. Not opened.
+    pub file: Spanned<String>,
     /// The link that carries it.
-    pub at: String,
+    pub at: Spanned<String>,
     /// What stands before its names.
     pub prefix: String,
     /// Its root in the frame of that link.
     pub origin: Origin,
 }
 
-/// A robot's document and what is asked of it.
+/// A robot's document and what is requested of it.
 #[derive(Clone, Copy, Debug)]
-pub struct RobotAsked<'a> {
+pub struct RobotRequest<'a> {
     /// The file's name, for messages; not opened.
     pub file: &'a str,
-    /// The URDF's bytes.
-    pub urdf: &'a [u8],
-    /// What is asked.
+    /// The bytes of the file.
+    pub document: &'a [u8],
+    /// The request.
     pub options: &'a RobotOptions,
+    /// The scene with its effects, if there is one.
+    pub scene: Option<&'a Scene>,
+    /// Whether the scene's start and control have to fit the robot. They need not if there are edits
+    /// beside the scene's.
+    pub checks_motion: bool,
 }
 
 impl Default for RobotOptions {
@@ -74,9 +92,16 @@ impl Default for RobotOptions {
             shafts: Vec::new(),
             lock: Vec::new(),
             effects: Vec::new(),
-            warnings: Vec::new(),
             allow_unphysical_inertia: false,
             snap_angles: None,
+            formats: Formats::default(),
         }
+    }
+}
+
+impl RobotOptions {
+    /// Takes these frames instead, as a program chooses them.
+    pub fn set_frames<N: Into<String>>(&mut self, names: impl IntoIterator<Item = N>) {
+        self.frames = Some(names.into_iter().map(|name| name.into().into()).collect());
     }
 }

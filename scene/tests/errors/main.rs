@@ -2,7 +2,8 @@
 
 mod robot;
 
-use articulated_scene::{Kind, Scene};
+use articulated_core::diagnostic::Code;
+use articulated_scene::Scene;
 
 /// All messages.
 fn wrong(text: &str) -> Vec<String> {
@@ -229,8 +230,8 @@ fn settings_that_the_library_would_refuse_are_told_with_their_lines() {
 fn integrators_of_others_are_told_as_those_for_the_same_problems() {
     let nearest = |name: &str| {
         let errors = Scene::read("s.toml", &format!("[simulation]\nend = 1\nintegrator = {name:?}")).unwrap_err().errors;
-        assert_eq!((errors.len(), errors[0].kind), (1, Kind::Word), "{name}");
-        errors[0].nearest.clone()
+        assert_eq!((errors.len(), errors[0].code), (1, Code::Word), "{name}");
+        errors[0].hint.as_ref().map(|hint| hint.split('"').nth(1).unwrap_or_default().to_owned())
     };
     let meant = [
         ("dopri5", &["rk45", "RK45", "ode45", "Dormand-Prince", "Tsit5", "dopri"][..]),
@@ -301,15 +302,15 @@ fn all_mistakes_of_a_scene_are_told_at_once_in_the_order_of_the_file() {
     assert_eq!(lines, ["s.toml:1:", "s.toml:2:", "s.toml:4:", "s.toml:5:", "s.toml:7:", "s.toml:8:", "s.toml:9:"]);
     let many = wrong(&(0..3000).map(|i| format!("key_{i} = 1\n")).collect::<String>());
     assert_eq!(many.len(), 1001);
-    assert_eq!(many[1000], "s.toml: found 2000 more errors, not listed");
+    assert_eq!(many[1000], "s.toml: found 2000 more that are not listed");
 }
 
 #[test]
 fn sorts_of_mistakes_are_data() {
-    let kind = |text| Scene::read("s.toml", text).unwrap_err().errors[0].kind;
+    let kind = |text| Scene::read("s.toml", text).unwrap_err().errors[0].code;
     assert_eq!(
         [kind("a=1"), kind("base=1"), kind("base='x'"), kind("gravity=[nan,0,0]"), kind("=")],
-        [Kind::UnknownKey, Kind::Type, Kind::Word, Kind::Number, Kind::Syntax]
+        [Code::UnknownKey, Code::Type, Code::Word, Code::Number, Code::Syntax]
     );
 }
 

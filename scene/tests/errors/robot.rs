@@ -19,7 +19,7 @@ fn against_the_arm(text: &str) -> Vec<String> {
 
 fn against(urdf: &str, text: &str) -> Vec<String> {
     let scene = Scene::read("s.toml", text).unwrap();
-    let reading = articulated_urdf::read(urdf.as_bytes(), &articulated_urdf::Options::default()).unwrap();
+    let reading = articulated_formats::read(urdf.as_bytes(), &articulated_formats::Options::default()).unwrap();
     let robot = Edited { description: &reading.description, base: Base::Fixed, unused: &reading.unused, shafts: &[] };
     let model = Model::new(&reading.description, Base::Fixed).unwrap();
     let mut errors: Vec<_> = scene.resolve(&robot).err().into_iter().flat_map(|e| e.errors).collect();
@@ -32,7 +32,7 @@ fn against(urdf: &str, text: &str) -> Vec<String> {
 #[test]
 fn effects_on_joints_are_not_on_a_floating_base() {
     let scene = Scene::read("s.toml", "[effects.damping]\n__floating_base__ = 1").unwrap();
-    let reading = articulated_urdf::read(ARM.as_bytes(), &articulated_urdf::Options::default()).unwrap();
+    let reading = articulated_formats::read(ARM.as_bytes(), &articulated_formats::Options::default()).unwrap();
     let robot = Edited { description: &reading.description, base: Base::Floating, unused: &reading.unused, shafts: &[] };
     let told =
         "s.toml:2: effects.damping.__floating_base__: found the floating base, expected a joint: effects on joints do not act on the base";
@@ -89,7 +89,7 @@ fn names_that_the_robot_does_not_have_are_told_with_the_nearest() {
 #[test]
 fn all_that_is_wrong_with_a_csv_is_told_of_its_lines() {
     let scene = Scene::read("there/s.toml", "\n[control]\nkind = \"table\"\nfile = \"t.csv\"").unwrap();
-    let model = Model::new(&articulated_urdf::read(ARM.as_bytes(), &Default::default()).unwrap().description, Base::Fixed).unwrap();
+    let model = Model::new(&articulated_formats::read(ARM.as_bytes(), &Default::default()).unwrap().description, Base::Fixed).unwrap();
     let read = |text: &str| {
         let (result, text) = (scene.controller(&model, &mut |_| Ok(Box::new(std::io::Cursor::new(text.to_owned())))), text.len());
         result.map(|_| text).map_err(|e| e.errors.iter().map(|e| e.to_string().replace('\\', "/")).collect::<Vec<_>>())

@@ -187,7 +187,7 @@ pub fn mass_matrix(model: &Model<f64>, q: &[f64]) -> nalgebra::DMatrix<f64> {
 
 /// The description in a URDF that is known to be right.
 pub fn read(urdf: &str) -> Description {
-    articulated_urdf::read(urdf.as_bytes(), &articulated_urdf::Options::default()).expect("a sound URDF").description
+    articulated_formats::read(urdf.as_bytes(), &articulated_formats::Options::default()).expect("a sound URDF").description
 }
 
 /// Says which tree it was when the test fails.

@@ -174,7 +174,7 @@ fn an_effect_that_is_off_costs_nothing() {
     let module = |effects: Vec<Applied>| {
         let mut request = Request::new("arm.urdf", ARM);
         request.options.robot.effects = effects;
-        request.options.functions = FUNCTIONS.map(String::from).to_vec();
+        request.options.functions = FUNCTIONS.map(Into::into).to_vec();
         generate(&request).expect("an arm").tokens().to_string()
     };
     let bare = module(Vec::new());

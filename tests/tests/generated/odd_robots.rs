@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use articulated_codegen::function_groups::Group;
-use articulated_codegen::{Error, Request, generate};
+use articulated_codegen::{Request, generate};
 use articulated_core::algorithm::{Workspace, function, functions};
 use articulated_core::description::Base;
 use articulated_tests::program::Program;
@@ -101,9 +101,12 @@ fn a_robot_without_functions_compiles() {
 fn an_unknown_function_is_refused_with_the_nearest_and_all() {
     let mut request = Request::new("arm.urdf", articulated_models::robot("panda_like").unwrap().urdf);
     request.options.functions = vec!["inverse_dynamic".into()];
-    let Err(Error::UnknownFunction { found, nearest, known }) = generate(&request) else { panic!("it was accepted") };
-    assert_eq!((found.as_str(), nearest.as_deref()), ("inverse_dynamic", Some("inverse_dynamics")));
-    assert_eq!(known.len(), functions::<f64>().len() + Group::ALL.len());
+    let told = generate(&request).unwrap_err().to_string();
+    assert_eq!(told, "functions: unknown function `inverse_dynamic`, did you mean `inverse_dynamics`?");
+    request.options.functions = vec!["nothing_like_it".into()];
+    let told = generate(&request).unwrap_err().to_string();
+    let known = told.split_once("there are: ").expect("a list").1.split(", ").count();
+    assert_eq!(known, functions::<f64>().len() + Group::ALL.len());
 }
 
 #[test]

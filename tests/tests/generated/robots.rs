@@ -72,7 +72,7 @@ pub(crate) fn with(name: String, urdf: &str, base: Base, singular: bool, options
     request.options.robot.base = base;
     request.options.functions =
         functions::<f64>().iter().filter(|f| wanted(f.name) && has(&case.model, &frames, f, singular)).map(|f| f.name.into()).collect();
-    request.options.robot.frames = Some(frames.clone());
+    request.options.robot.set_frames(frames.iter().cloned());
     let generated = generate(&request).unwrap_or_else(|e| panic!("{name}: {e}"));
     case.model = case.model.with_frames(&frames).expect("its own frames");
     Robot { case, generated, name }

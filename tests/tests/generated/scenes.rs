@@ -2,7 +2,7 @@
 
 use articulated_codegen::scene::articulated_scene::Robot;
 use articulated_codegen::scene::{Scene, prepare};
-use articulated_codegen::{Generated, generate, model, read};
+use articulated_codegen::{Generated, generate};
 use articulated_core::algorithm::{Workspace, function};
 use articulated_core::model::Model;
 use articulated_tests::program::Program;
@@ -23,8 +23,8 @@ fn subject(scene: &articulated_models::BundledScene) -> (Generated, Model<f64>) 
     let Robot::Bundled(name) = read_scene.robot.clone() else { panic!("{}: of a bundled robot", scene.name) };
     let robot = articulated_models::robot(&name).expect("a bundled robot");
     let mut request = prepare(read_scene, &format!("{name}.urdf"), robot.urdf.into(), robot.base, Vec::new()).expect("a robot").request;
-    request.options.functions = FUNCTIONS.map(String::from).to_vec();
-    let generic = model(&request, &read(&request).expect("a robot").description).expect("a model");
+    request.options.functions = FUNCTIONS.map(Into::into).to_vec();
+    let generic = request.build_robot().expect("a robot").model;
     (generate(&request).expect("a module"), generic)
 }
 

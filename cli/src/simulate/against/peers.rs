@@ -34,7 +34,7 @@ pub(crate) fn open(
     seconds: f64,
 ) -> Result<(Vec<Peer>, Vec<String>), Failure> {
     let urdf = folder.join("robot.urdf");
-    std::fs::write(&urdf, &stage.request.urdf).map_err(|e| Failure::tool(&e))?;
+    std::fs::write(&urdf, &stage.request.document).map_err(|e| Failure::tool(&e))?;
     let (mut peers, mut notes) = (Vec::new(), Vec::new());
     for library in libraries {
         match Peer::open(stage, library, &urdf, start, seconds) {

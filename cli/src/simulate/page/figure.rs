@@ -188,8 +188,8 @@ mod tests {
 
     fn bundled(name: &str) -> (Description, Base) {
         let robot = articulated_models::robot(name).unwrap();
-        let options = articulated_urdf::Options { base: robot.base, ..articulated_urdf::Options::default() };
-        (articulated_urdf::read(robot.urdf.as_bytes(), &options).unwrap().description, robot.base)
+        let options = articulated_formats::Options { base: robot.base, ..articulated_formats::Options::default() };
+        (articulated_formats::read(robot.urdf.as_bytes(), &options).unwrap().description, robot.base)
     }
 
     #[test]

@@ -198,8 +198,8 @@ mod tests {
 
     fn page_of(robot: &str, recording: &Recording) -> String {
         let bundled = articulated_models::robot(robot).unwrap();
-        let options = articulated_urdf::Options { base: bundled.base, ..articulated_urdf::Options::default() };
-        let description = articulated_urdf::read(bundled.urdf.as_bytes(), &options).unwrap().description;
+        let options = articulated_formats::Options { base: bundled.base, ..articulated_formats::Options::default() };
+        let description = articulated_formats::read(bundled.urdf.as_bytes(), &options).unwrap().description;
         let model = bundled_model(robot);
         let setting = Setting {
             title: "</script><b>",

@@ -33,8 +33,8 @@ fn long(effort: Effort) -> Vec<Row> {
             format!("{} moving freely for {end} s", bundled.name),
             "nothing takes energy away, and errors of it add up; motions are chaotic",
         );
-        let options = articulated_urdf::Options { base: bundled.base, ..articulated_urdf::Options::default() };
-        let Ok(reading) = articulated_urdf::read(bundled.urdf.as_bytes(), &options) else { continue };
+        let options = articulated_formats::Options { base: bundled.base, ..articulated_formats::Options::default() };
+        let Ok(reading) = articulated_formats::read(bundled.urdf.as_bytes(), &options) else { continue };
         let robot = built(&reading.description, bundled.base);
         for row in integrators().iter().filter(|row| row.adaptive) {
             rows.push(case.row(

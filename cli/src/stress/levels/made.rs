@@ -26,8 +26,8 @@ impl Made {
 
     /// Of a description, with these functions.
     pub(super) fn of_description(name: &str, robot: &Description, level: Level, functions: &[FunctionId]) -> Result<Self, Failure> {
-        let mut request = Request::new(format!("{name}.urdf"), articulated_urdf::write(robot));
-        request.options.functions = functions.iter().map(|f| f.name().to_owned()).collect();
+        let mut request = Request::new(format!("{name}.urdf"), articulated_formats::urdf::write(robot));
+        request.options.functions = functions.iter().map(|f| f.name().into()).collect();
         request.options.level = level;
         request.options.stages = false;
         Self::of(generate(&request)?)

@@ -17,9 +17,9 @@ fn model(robot: &str, base: Base) -> Model<f64> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/urdf");
     let mut request = Request::new(robot, std::fs::read(format!("{folder}/{robot}.urdf")).unwrap());
     request.options.robot.base = base;
-    let whole = crate::model(&request, &crate::read(&request).unwrap().description).unwrap();
-    request.options.robot.frames = whole.frames.last().map(|frame| vec![frame.name.clone()]);
-    crate::choose_frames(&request, whole).unwrap()
+    let whole = request.build_robot().unwrap().model;
+    let tip = whole.frames.last().map(|frame| frame.name.clone());
+    whole.with_frames(&tip.into_iter().collect::<Vec<_>>()).unwrap()
 }
 
 /// A number for each element of an argument; quaternions of length one where there are any.

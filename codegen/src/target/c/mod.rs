@@ -8,12 +8,13 @@ mod statements;
 use std::fmt::Write;
 
 use articulated_core::algorithm::Dim;
+use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 use articulated_core::model::Model;
 
 use crate::capabilities::Capabilities;
 use crate::lir::function::{Argument, Ending, Function};
 use crate::target::{File, Module};
-use crate::{Arithmetic, Error, Level, Options, Sines};
+use crate::{Arithmetic, Level, Options, Sines};
 use statements::{Printer, Reals};
 
 /// Choices for C.
@@ -28,16 +29,16 @@ pub(super) fn capabilities(options: &Options) -> Capabilities {
     Capabilities { level: options.level, vectors: false, raw_memory: false, states: false }
 }
 
-/// Whether C has functions of this level, and whether the prefix is a name.
-pub(super) fn check(options: &Options, c: &COptions) -> Result<(), Error> {
+/// Reports a level that C does not have, and a prefix that is not a name.
+pub(super) fn check(options: &Options, c: &COptions, log: &mut Diagnostics) {
+    let mut error = |key, code, found, expected| log.push(Diagnostic::error("", (Default::default(), key), code, found, expected));
     let is_plain = matches!(options.level.arithmetic, Arithmetic::Double | Arithmetic::Single | Arithmetic::SingleByDouble);
     if !is_plain || options.level.sines != Sines::Ulp {
-        let expected = "f64, f32 or f32_f64, with the sines of the mathematical library";
-        return Err(Error::LevelOfTarget { target: "c", found: options.level.to_string(), expected });
+        let expected = "for target \"c\": f64, f32 or f32_f64, with the sines of the mathematical library";
+        error("level", Code::Level, options.level.to_string(), expected);
     }
-    match &c.prefix {
-        Some(prefix) if !is_identifier(prefix) => Err(Error::Prefix { found: prefix.clone() }),
-        _ => Ok(()),
+    if let Some(prefix) = c.prefix.as_ref().filter(|prefix| !is_identifier(prefix)) {
+        error("prefix", Code::Prefix, format!("{prefix:?}"), "a letter of ASCII, then letters, digits and _");
     }
 }
 

@@ -16,11 +16,12 @@ mod spills;
 mod statements;
 mod tree_shake;
 
+use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 use articulated_core::lanes::Real;
 
+use crate::Options;
 use crate::capabilities::Capabilities;
 use crate::target::{File, Module, Target};
-use crate::{Error, Options};
 
 pub use module::names::identifier;
 pub(crate) use module::names::{Names, is_name};
@@ -67,10 +68,15 @@ pub(super) fn capabilities(options: &Options, rust: &RustOptions) -> Capabilitie
     Capabilities { level: options.level, vectors: raw_memory && options.level.has_lanes(), raw_memory, states: !rust.batch.is_empty() }
 }
 
-/// Whether each type of batches is there once.
-pub(super) fn check(rust: &RustOptions) -> Result<(), Error> {
-    let twice = rust.batch.iter().enumerate().find(|(k, real)| rust.batch[..*k].contains(real));
-    twice.map_or(Ok(()), |(_, real)| Err(Error::BatchTwice { found: real.name() }))
+/// Reports a type of batches that is listed twice.
+pub(super) fn check(rust: &RustOptions, log: &mut Diagnostics) {
+    let twice = rust.batch.iter().enumerate().filter(|(k, real)| rust.batch[..*k].contains(real));
+    let mut twice: Vec<&Real> = twice.map(|(_, real)| real).collect();
+    twice.dedup();
+    for real in twice {
+        let found = format!("a type that is there twice, {}", real.name());
+        log.push(Diagnostic::error("", (Default::default(), "batch"), Code::Batch, found, "each once"));
+    }
 }
 
 /// One file.

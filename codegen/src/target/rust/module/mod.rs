@@ -28,9 +28,9 @@ use crate::target::rust::spills;
 
 /// The contents of the module.
 pub(crate) fn module(module: &Module, rust: &RustOptions) -> String {
-    let Module { request, model, functions, parameters, unused, snapped, warnings } = module;
+    let Module { request, model, functions, parameters, warnings, .. } = module;
     let mut text = Text::default();
-    header(&mut text.public, request, model, (unused, snapped), rust);
+    header(&mut text.public, module, rust);
     constants(&mut text.public, model);
     indices(&mut text.public, model, &Names::of(model, request));
     inputs(&mut text.public, parameters);
@@ -295,7 +295,7 @@ mod tests {
         let functions = FUNCTIONS.split_whitespace().map(|name| format!("{name} = inverse_dynamics(v = 0)"));
         let types = TYPES.split_whitespace().map(|name| format!("{name}_ = gravity_torque + kinetic_energy"));
         let more = ["forward_dynamics", "integrate", "forward_dynamics_derivatives", "odd__name = mass_matrix"].map(str::to_owned);
-        request.options.functions = functions.chain(types).chain(more).collect();
+        request.options.functions = functions.chain(types).chain(more).map(Into::into).collect();
         change(&mut request.options);
         generate(&request).unwrap_or_else(|error| panic!("{error}")).source
     }

@@ -3,12 +3,14 @@
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 
+use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Spanned};
 use articulated_core::model::Model;
 use unicode_security::GeneralSecurityProfile;
 use unicode_security::confusable_detection::skeleton;
 use unicode_security::mixed_script::{AugmentedScriptSet, is_potential_mixed_script_confusable_char};
 
-use crate::{Error, Request, is_keyword};
+use crate::plan::span_of;
+use crate::{Request, is_keyword};
 
 /// The constant's name for a name of the URDF: letters in upper case, everything that cannot be in an identifier as `_`, `_` in front of a
 /// digit. `shoulder pan-joint` is `SHOULDER_PAN_JOINT`, `1st-link` is `_1ST_LINK`. Letters beyond ASCII stay where the compiler takes
@@ -83,13 +85,10 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    /// Names for everything. Errors: all renamings that cannot be, or else all clashes.
-    pub(crate) fn new(model: &Model<f64>, request: &Request) -> Result<Self, Error> {
-        if let Some(error) = Error::of(wrong_renames(model, request)) {
-            return Err(error);
-        }
-        let (names, clashes) = Self::and_clashes(model, request);
-        Error::of(clashes).map_or(Ok(names), Err)
+    /// Reports all names for code that are not identifiers, and all that two have.
+    pub(crate) fn check(model: &Model<f64>, request: &Request, log: &mut Diagnostics) {
+        wrong_renames(model, request, log);
+        log.extend(Self::and_clashes(model, request).1);
     }
 
     /// Names for everything, of a request whose names were checked.
@@ -97,7 +96,7 @@ impl Names {
         Self::and_clashes(model, request).0
     }
 
-    fn and_clashes(model: &Model<f64>, request: &Request) -> (Self, Vec<Error>) {
+    fn and_clashes(model: &Model<f64>, request: &Request) -> (Self, Vec<Diagnostic>) {
         let joints = model.joints.iter().map(|j| j.name.as_str());
         let frames = model.frames.iter().map(|f| f.name.as_str());
         let plain: Vec<String> = joints.clone().chain(frames.clone()).map(identifier).collect();
@@ -117,10 +116,10 @@ fn idents<'a>(
     names: impl Iterator<Item = &'a str>,
     request: &Request,
     alike: &BTreeSet<String>,
-    clashes: &mut Vec<Error>,
+    clashes: &mut Vec<Diagnostic>,
 ) -> Vec<String> {
     let mut seen: BTreeMap<String, &str> = BTreeMap::new();
-    let renamed: BTreeMap<&str, &String> = request.options.rename.iter().map(|(from, to)| (from.as_str(), to)).collect();
+    let renamed: BTreeMap<&str, &String> = request.options.rename.iter().map(|names| (names.0.as_str(), &names.1)).collect();
     let mut ident = |name: &'a str| {
         let ident = renamed.get(name).map_or_else(|| distinct(name, alike), |to| (*to).clone());
         match seen.entry(ident.clone()) {
@@ -129,7 +128,7 @@ fn idents<'a>(
             }
             Entry::Occupied(first) => {
                 let (first, second) = ((*first.get()).to_owned(), name.to_owned());
-                clashes.push(Error::NameClash { file: request.file.clone(), kind, first, second, ident: ident.clone() });
+                clashes.push(clash(kind, [&first, &second], &ident, request));
             }
         }
         ident
@@ -150,11 +149,25 @@ fn distinct(name: &str, alike: &BTreeSet<String>) -> String {
     if alike.contains(&ident) { ascii(name) } else { ident }
 }
 
-/// All renamings that cannot be, each once.
-fn wrong_renames(model: &Model<f64>, request: &Request) -> Vec<Error> {
+/// Two names that become one: at the place where one of them is renamed, if a file does.
+fn clash(kind: &str, [first, second]: [&String; 2], ident: &str, request: &Request) -> Diagnostic {
+    let renamed = |name: &&String| request.options.rename.iter().rfind(|names| names.0 == **name && names.span.is_some());
+    let entry = [second, first].into_iter().find_map(|name| renamed(&name));
+    let both = format!("{kind}s {first:?} and {second:?} are both `{ident}` in Rust");
+    let (key, sentence) = match entry {
+        Some(entry) => (format!("rename.{}", entry.0), format!("{both}; give one another name")),
+        None => (String::new(), format!("{both}; `--rename` (key `rename`, method `Build::rename`) gives one another name")),
+    };
+    let span = span_of(entry, &request.file);
+    Diagnostic::refusal(&span.file, (span.at, &key), Code::NameClash, sentence)
+}
+
+/// Reports all renamings that cannot be, each once.
+fn wrong_renames(model: &Model<f64>, request: &Request, log: &mut Diagnostics) {
     let names: BTreeSet<&str> = model.joints.iter().map(|j| &*j.name).chain(model.frames.iter().map(|f| &*f.name)).collect();
-    let (mut seen, mut told, mut wrong) = (BTreeSet::new(), BTreeSet::new(), Vec::new());
-    for (from, to) in &request.options.rename {
+    let (mut seen, mut told) = (BTreeSet::new(), BTreeSet::new());
+    for entry in &request.options.rename {
+        let Spanned { value: (from, to), span } = entry;
         let is_first = seen.insert(from);
         let reason = if !is_name(to) {
             "this is not an identifier of Rust"
@@ -166,10 +179,14 @@ fn wrong_renames(model: &Model<f64>, request: &Request) -> Vec<Error> {
             continue;
         };
         if told.insert((from, to)) {
-            wrong.push(Error::Rename { file: request.file.clone(), from: from.clone(), to: to.clone(), reason });
+            let (key, sentence) = match span {
+                Some(_) => (format!("rename.{from}"), format!("to `{to}`: {reason}")),
+                None => (String::new(), format!("rename {from:?} to `{to}`: {reason}")),
+            };
+            let span = span_of(Some(entry), &request.file);
+            log.push(Diagnostic::refusal(&span.file, (span.at, &key), Code::Rename, sentence));
         }
     }
-    wrong
 }
 
 #[cfg(test)]
@@ -251,7 +268,7 @@ mod tests {
                 joint(names[1], names[0])
             );
             let mut request = Request::new("arm.urdf", urdf);
-            request.options.parameters = names.iter().map(|name| format!("payload({name})")).collect();
+            request.options.parameters = names.iter().map(|name| format!("payload({name})").into()).collect();
             let (file, out) = (folder.join("arm.rs"), folder.join("arm.rmeta"));
             std::fs::write(&file, crate::generate(&request).unwrap_or_else(|error| panic!("{names:?}: {error}")).source).unwrap();
             let mut rustc = std::process::Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()));
@@ -268,16 +285,20 @@ mod tests {
             <joint name='base' type='continuous'><parent link='base'/><child link='tip-1'/></joint>\
             <joint name='fixed' type='fixed'><parent link='base'/><child link='tip 1'/></joint></robot>";
         let mut request = Request::new("arm.urdf", urdf);
-        let model = crate::model(&request, &crate::read(&request).unwrap().description).unwrap();
-        let clash = Names::new(&model, &request);
-        assert!(matches!(&clash, Err(Error::NameClash { kind: "link", ident, .. }) if ident == "TIP_1"), "{clash:?}");
+        let model = request.build_robot().unwrap().model;
+        let told = |request: &Request| {
+            let mut log = Diagnostics::default();
+            Names::check(&model, request, &mut log);
+            log.to_string()
+        };
+        assert!(told(&request).starts_with("arm.urdf: links \"tip-1\" and \"tip 1\" are both `TIP_1` in Rust"), "{}", told(&request));
         for (from, to, fits) in [("tip 1", "other", true), ("tip 1", "BASE", false), ("fixed", "OTHER", false), ("tip 1", "fn", false)] {
-            request.options.rename = vec![(from.into(), to.into())];
-            assert_eq!(Names::new(&model, &request).is_ok(), fits, "{from} {to}");
+            request.options.rename = vec![(from.to_owned(), to.to_owned()).into()];
+            assert_eq!(told(&request).is_empty(), fits, "{from} {to}");
         }
         // A joint and a link may have one name.
-        request.options.rename = vec![("tip 1".into(), "other".into())];
-        let names = Names::new(&model, &request).unwrap();
+        request.options.rename = vec![("tip 1".to_owned(), "other".to_owned()).into()];
+        let names = Names::of(&model, &request);
         assert_eq!((names.joints.concat(), names.frames.join(" ")), ("BASE".into(), "BASE TIP_1 other".into()));
     }
 
@@ -290,28 +311,21 @@ mod tests {
         };
         let joints: String = ["a-x", "a x", "a.x", "b-x", "b x"].into_iter().enumerate().map(joint).collect();
         let mut request = Request::new("arm.urdf", format!("<robot name='arm'>{links}{joints}</robot>"));
-        let model = crate::model(&request, &crate::read(&request).unwrap().description).unwrap();
-        let told = |request: &Request| Names::new(&model, request).map(drop).unwrap_err().into_each();
-        let pairs: Vec<_> = told(&request)
-            .into_iter()
-            .map(|error| match error {
-                Error::NameClash { kind, first, second, .. } => (kind, first, second),
-                other => panic!("{other}"),
-            })
-            .collect();
-        let clash = |kind, first: &str, second: &str| (kind, first.to_owned(), second.to_owned());
-        let links = [("a-x", "a x"), ("a-x", "a.x"), ("b-x", "b x")].map(|(first, second)| clash("link", first, second));
-        assert_eq!(pairs, [&[clash("joint", "c-x", "c x")][..], &links].concat());
+        let model = request.build_robot().unwrap().model;
+        let told = |request: &Request, code: Code| {
+            let mut log = Diagnostics::default();
+            Names::check(&model, request, &mut log);
+            log.errors.into_iter().filter(|error| error.code == code).map(|error| error.found).collect::<Vec<_>>()
+        };
+        let found = told(&request, Code::NameClash);
+        let pairs = [("joint", "c-x", "c x"), ("link", "a-x", "a x"), ("link", "a-x", "a.x"), ("link", "b-x", "b x")];
+        let expected = pairs.map(|(kind, first, second)| format!("{kind}s {first:?} and {second:?} are both "));
+        assert!(found.len() == expected.len() && found.iter().zip(&expected).all(|(found, start)| found.starts_with(start)), "{found:?}");
         let renamings = [("d", "D_1"), ("d", "D_2"), ("none", "X"), ("e", "fn"), ("d", "D_2")];
-        request.options.rename = renamings.map(|(from, to)| (from.into(), to.into())).to_vec();
-        let wrong: Vec<_> = told(&request)
-            .into_iter()
-            .map(|error| match error {
-                Error::Rename { from, to, .. } => (from, to),
-                other => panic!("{other}"),
-            })
-            .collect();
-        assert_eq!(wrong, request.options.rename[1..4]);
+        request.options.rename = renamings.map(|(from, to)| (from.to_owned(), to.to_owned()).into()).to_vec();
+        let found = told(&request, Code::Rename);
+        let expected = renamings[1..4].iter().map(|(from, to)| format!("rename {from:?} to `{to}`: "));
+        assert!(found.len() == 3 && found.iter().zip(expected).all(|(found, start)| found.starts_with(&start)), "{found:?}");
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! Warnings about the document, as a constant.
 
-use articulated_urdf::{Problem, summary};
+use articulated_core::diagnostic::{Diagnostic, summary};
 
 /// The constant that lists what looks wrong in the URDF, a line for each sort of warning.
-pub(crate) fn warnings(warnings: &[Problem]) -> String {
+pub(crate) fn warnings(warnings: &[Diagnostic]) -> String {
     let lines = summary(warnings);
     format!(
         "/// Warnings about the robot's file; its values are used as written.\n#[cfg_attr(rustfmt, rustfmt_skip)]\npub const WARNINGS: [&str; {}] = {lines:?};\n",

@@ -1,0 +1,189 @@
+//! A request, checked: its robot, its parameters and its functions. All findings come from one pass,
+//! in which whatever is wrong is reported and left out.
+
+use articulated_core::Scalar;
+use articulated_core::algorithm::{Function, Needs};
+use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Span, Spanned};
+use articulated_core::model::Model;
+use articulated_scene::BuiltRobot;
+
+use crate::parameters::Parameter;
+use crate::spec::FunctionSpec;
+use crate::{Options, Request, parameters, size};
+
+/// Robots with more degrees of freedom get no code: a workspace has room for a matrix of their
+/// number squared.
+pub const MOST_FREEDOMS: usize = 10_000;
+
+/// A request without errors.
+pub(crate) struct Plan {
+    pub(crate) robot: BuiltRobot,
+    /// The model with the frames of the request, without what stays an input.
+    pub(crate) model: Model<f64>,
+    pub(crate) parameters: Vec<Parameter>,
+    pub(crate) functions: Vec<FunctionSpec>,
+}
+
+/// An entry of the list of functions that can be read, with its place in the list.
+pub(crate) type Entry = (usize, FunctionSpec);
+
+/// Checks everything that comes before programs are made. `None`: there is an error.
+pub(crate) fn plan(request: &Request, log: &mut Diagnostics) -> Option<Plan> {
+    let options = &request.options;
+    // What needs no robot comes first: it is reported also if the robot cannot be read.
+    let entries = words(options, log);
+    let mut robot = request.robot().build_into(log)?;
+    if robot.model.nv > MOST_FREEDOMS {
+        let expected = format!("at most {MOST_FREEDOMS} to write code for");
+        let found = format!("{} degrees of freedom", robot.model.nv);
+        log.push(Diagnostic::error(&request.file, &Place::DOCUMENT, Code::TooLarge, found, expected));
+        return None;
+    }
+    // Mass that stays an input is mass all the same.
+    let massless = massless(&robot.model);
+    let parameters = parameters::parse(options, &mut robot, log);
+    let model = robot.framed(match parameters.is_empty() {
+        true => robot.model.clone(),
+        // Without the inertias that became inputs.
+        false => request.robot().model_of(&robot).unwrap_or_else(|| robot.model.clone()),
+    });
+    let entries = fitting(request, &model, &massless, entries, log);
+    size::within_limit(request, &model, &entries, log);
+    options.target.check_names(&model, request, log);
+    let functions = entries.into_iter().map(|(_, function)| function).collect();
+    log.is_ok().then_some(Plan { robot, model, parameters, functions })
+}
+
+/// The functions that can be read. Reports the words of the options that mean nothing, whatever the
+/// robot.
+fn words(options: &Options, log: &mut Diagnostics) -> Vec<Entry> {
+    options.target.check(options, log);
+    let read = |(k, text): (usize, &Spanned<String>)| match FunctionSpec::parse(text) {
+        Ok(function) => Some((k, function)),
+        Err(error) => {
+            log.push(placed(error, text));
+            None
+        }
+    };
+    options.functions.iter().enumerate().filter_map(read).collect()
+}
+
+/// Reports all that is wrong with a request whatever the robot, as functions that do not exist: for
+/// requests whose robot cannot be read.
+pub fn check_words(request: &Request, log: &mut Diagnostics) {
+    words(&request.settled().options, log);
+}
+
+/// Reports the functions, parameters and names that a robot does not have.
+pub fn check_names(request: &Request, robot: &BuiltRobot, log: &mut Diagnostics) {
+    let request = &*request.settled();
+    let entries = words(&request.options, log);
+    parameters::parse(&request.options, &mut robot.clone(), log);
+    // If a frame is refused, the set of frames is not known.
+    let frames_are_known = robot.frames.as_ref().map(Vec::len) == request.options.robot.frames.as_ref().map(Vec::len);
+    let model = if frames_are_known { robot.framed(robot.model.clone()) } else { robot.model.clone() };
+    for (k, function) in &entries {
+        if let Err(error) = function.check(&model) {
+            log.push(placed(error, &request.options.functions[*k]));
+        }
+    }
+    request.options.target.check_names(&model, request, log);
+}
+
+/// A finding at the place of an entry, if a file gives it.
+pub(crate) fn placed<T>(finding: Diagnostic, entry: &Spanned<T>) -> Diagnostic {
+    let span = entry.span.clone().unwrap_or_else(|| finding.span.clone());
+    Diagnostic { span, ..finding }
+}
+
+/// The functions that the robot has, each with a name of its own.
+fn fitting(request: &Request, model: &Model<f64>, massless: &[String], entries: Vec<Entry>, log: &mut Diagnostics) -> Vec<Entry> {
+    let mut fitting: Vec<Entry> = Vec::new();
+    for (k, function) in entries {
+        let defined = || function.parts.iter().try_for_each(|part| defined(&request.file, model, massless, part.function));
+        let checked = function.check(model).and_then(|()| defined()).and_then(|()| own_name(&function, &fitting));
+        match checked {
+            Ok(()) => fitting.push((k, function)),
+            Err(error) => log.push(placed(error, &request.options.functions[k])),
+        }
+    }
+    fitting
+}
+
+/// Whether no other function, type of results or form of a function has the name.
+fn own_name(function: &FunctionSpec, others: &[Entry]) -> Result<(), Diagnostic> {
+    let same_type = |f: &FunctionSpec| f.group().is_some() && f.group() == function.group();
+    let is_form = |f: &FunctionSpec, other: &FunctionSpec| {
+        ["_into", "_blocks"].iter().any(|form| f.name.strip_suffix(form) == Some(other.name.as_str()))
+    };
+    let clash = others.iter().find_map(|(_, f)| {
+        let is_same = f.name == function.name || same_type(f) || is_form(function, f);
+        // A form of this one has the name of the other.
+        if is_same { Some(&function.name) } else { is_form(f, function).then_some(&f.name) }
+    });
+    clash.map_or(Ok(()), |name| {
+        let sentence = format!("two are called `{name}`; give one another name, as in other = {name}");
+        Err(Diagnostic::refusal("", (Default::default(), "functions"), Code::SameName, sentence))
+    })
+}
+
+/// The names of the joints that have no inertia of their own.
+pub fn massless(model: &Model<f64>) -> Vec<String> {
+    let mut names: Vec<String> = model.massless_joints().into_iter().map(|i| model.bodies[i].name.clone()).collect();
+    // A joint of several degrees of freedom is several bodies, which follow one another.
+    names.dedup();
+    names
+}
+
+/// Whether the robot has what the function needs; `massless`: the result of [`massless`] for it.
+///
+/// # Errors
+/// One that says in `found` what the robot lacks.
+pub fn defined<S: Scalar>(file: &str, model: &Model<f64>, massless: &[String], function: &Function<S>) -> Result<(), Diagnostic> {
+    let name = function.name;
+    let lacks = |code, found: String, expected: &str| Err(Diagnostic::error(file, (Default::default(), name), code, found, expected));
+    if function.needs == Needs::Mass && model.moving_mass() == 0.0 {
+        return lacks(Code::NoMass, "nothing that moves has mass".into(), "a link with mass that moves");
+    }
+    if function.inverts_mass_matrix() && !massless.is_empty() {
+        let found = format!("no inertia of its own for joint {}", massless.join(", joint "));
+        let expected = format!(
+            "a link behind it with an inertia, an armature, one joint fewer, or functions without {name}: nothing behind the joint resists \
+             its motion, or another joint moves the same mass in the same way, so the mass matrix is singular in every configuration"
+        );
+        return lacks(Code::SingularMassMatrix, found, &expected);
+    }
+    let bound = |f: &articulated_core::model::Frame<f64>| {
+        let n = model.freedoms_of(f.body).len();
+        (n < 6).then(|| format!("link {:?} ({n})", f.name))
+    };
+    let frames: Vec<String> = match function.needs {
+        Needs::FreeFrames => model.frames.iter().filter_map(bound).collect(),
+        _ => Vec::new(),
+    };
+    if frames.is_empty() {
+        return Ok(());
+    }
+    let expected = match model.outward().any(|i| model.freedoms_of(i).len() >= 6) {
+        true => {
+            "six for each frame; choose others with `--frames` (key `frames`, method `Build::frames`), or take operational_space_inertia_inverse"
+        }
+        false => "six for each frame, which no link of this robot has; take operational_space_inertia_inverse",
+    };
+    lacks(Code::BoundFrames, format!("fewer than six degrees of freedom carry {}", frames.join(", ")), expected)
+}
+
+/// What a robot lacks for a function, in a few words, if that alone is wrong.
+#[must_use]
+pub fn undefined(findings: &Diagnostics) -> Option<&str> {
+    let lacks = |d: &Diagnostic| matches!(d.code, Code::SingularMassMatrix | Code::NoMass | Code::BoundFrames | Code::TooMuchCode);
+    findings.errors.first().filter(|_| findings.errors.iter().all(lacks)).map(|first| first.found.as_str())
+}
+
+/// The place of an entry, or of the request's file.
+pub(crate) fn span_of<T>(entry: Option<&Spanned<T>>, file: &str) -> Span {
+    entry.and_then(|entry| entry.span.clone()).unwrap_or_else(|| Span { file: file.to_owned(), ..Span::default() })
+}
+
+#[cfg(test)]
+mod tests;

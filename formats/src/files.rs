@@ -1,0 +1,220 @@
+//! Files: regular ones only, of bounded size. A device never ends, and opening a pipe waits for a
+//! writer.
+
+use std::fs::{File, FileType};
+use std::io::{Error, ErrorKind, Read, Result};
+use std::path::{Path, PathBuf};
+
+use articulated_core::suggest::nearest;
+
+/// Where documents come from. Only the implementations of this trait open files of a robot or a
+/// scene.
+pub trait Sources {
+    /// The bytes of a file, at most [`MOST_BYTES`].
+    ///
+    /// # Errors
+    /// Those of the system, files that are not regular, and files that are too large. The error does
+    /// not name the file.
+    fn read(&self, path: &Path) -> Result<Vec<u8>>;
+
+    /// The name of a file beside `path` that is most like it, if there is no file of this name.
+    fn nearest(&self, _path: &Path) -> Option<String> {
+        None
+    }
+}
+
+/// The file system.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Disk;
+
+impl Sources for Disk {
+    fn read(&self, path: &Path) -> Result<Vec<u8>> {
+        read_file(path, MOST_BYTES)
+    }
+
+    fn nearest(&self, path: &Path) -> Option<String> {
+        nearest_file(path)
+    }
+}
+
+/// No files: each is refused.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoFiles;
+
+impl Sources for NoFiles {
+    fn read(&self, _path: &Path) -> Result<Vec<u8>> {
+        Err(Error::new(ErrorKind::NotFound, "found a document that includes another file, expected one without"))
+    }
+}
+
+/// The name in the folder of `path` that is most like that of `path` and has the same ending, if
+/// there is no such file; none in a folder of very many.
+#[must_use]
+pub fn nearest_file(path: &Path) -> Option<String> {
+    const MOST_FILES: usize = 10_000;
+    if path.exists() {
+        return None;
+    }
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let files = std::fs::read_dir(folder).ok()?.take(MOST_FILES).filter_map(|entry| Some(PathBuf::from(entry.ok()?.file_name())));
+    let alike = files.filter(|file| file.extension() == path.extension());
+    let stems: Vec<String> = alike.filter_map(|file| Some(file.file_stem()?.to_str()?.to_owned())).collect();
+    let stem = nearest(path.file_stem()?.to_str()?, stems.iter().map(String::as_str))?;
+    Some(path.extension().and_then(|ending| ending.to_str()).map_or(stem.clone(), |ending| format!("{stem}.{ending}")))
+}
+
+/// No robot file is larger, bytes: one of 100 000 links stays well below.
+pub const MOST_BYTES: u64 = 64 << 20;
+
+/// The bytes of the regular file at `path`, `most` at most. Errors: those of [`open_file`].
+///
+/// ```
+/// let error = articulated_formats::read_file("Cargo.toml".as_ref(), 3).unwrap_err();
+/// assert!(error.to_string().ends_with(" bytes, expected at most 3 bytes"));
+/// ```
+pub fn read_file(path: &Path, most: u64) -> Result<Vec<u8>> {
+    all(open_file(path, most)?)
+}
+
+/// The regular file at `path`, or the one that a link there leads to, to be read bit by bit.
+/// Errors: those of the system; a pipe, a device, a socket or a folder, none of which is opened;
+/// and a file of more than `most` bytes, at once where its size says so, else from the reader. They
+/// do not name the file.
+///
+/// ```
+/// let error = articulated_formats::open_file("src".as_ref(), 3).err().unwrap();
+/// assert_eq!(error.to_string(), "found a folder, expected a regular file");
+/// ```
+pub fn open_file(path: &Path, most: u64) -> Result<AtMost<File>> {
+    is_regular(std::fs::metadata(path)?.file_type())?;
+    let file = File::open(path)?;
+    // Another may stand there by now.
+    let data = file.metadata()?;
+    is_regular(data.file_type())?;
+    if data.len() > most { Err(too_large(&data.len().to_string(), most)) } else { Ok(AtMost::new(file, most)) }
+}
+
+/// As [`read_file`], of what has been opened already, as the standard input.
+pub fn read_at_most(from: impl Read, most: u64) -> Result<Vec<u8>> {
+    all(AtMost::new(from, most))
+}
+
+fn all(mut from: impl Read) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    from.read_to_end(&mut bytes).map(|_| bytes)
+}
+
+/// What is read, with an error where there are more bytes than may be.
+#[derive(Debug)]
+pub struct AtMost<R> {
+    from: R,
+    left: u64,
+    most: u64,
+}
+
+impl<R> AtMost<R> {
+    fn new(from: R, most: u64) -> Self {
+        Self { from, left: most, most }
+    }
+}
+
+impl<R: Read> Read for AtMost<R> {
+    fn read(&mut self, out: &mut [u8]) -> Result<usize> {
+        if self.left == 0 && !out.is_empty() {
+            return match self.from.read(&mut [0])? {
+                0 => Ok(0),
+                _ => Err(too_large(&format!("more than {}", self.most), self.most)),
+            };
+        }
+        let room = usize::try_from(self.left).unwrap_or(usize::MAX).min(out.len());
+        let count = self.from.read(&mut out[..room])?;
+        self.left -= count as u64;
+        Ok(count)
+    }
+}
+
+fn is_regular(kind: FileType) -> Result<()> {
+    if kind.is_file() {
+        return Ok(());
+    }
+    Err(Error::new(ErrorKind::InvalidInput, format!("found {}, expected a regular file", name(kind))))
+}
+
+fn name(kind: FileType) -> &'static str {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        let kinds =
+            [(kind.is_fifo(), "a pipe"), (kind.is_socket(), "a socket"), (kind.is_char_device() || kind.is_block_device(), "a device")];
+        if let Some((_, name)) = kinds.into_iter().find(|(is_it, _)| *is_it) {
+            return name;
+        }
+    }
+    if kind.is_dir() { "a folder" } else { "no file" }
+}
+
+fn too_large(found: &str, most: u64) -> Error {
+    Error::new(ErrorKind::FileTooLarge, format!("found {found} bytes, expected at most {most} bytes"))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{empty, repeat};
+
+    use super::*;
+
+    #[test]
+    fn what_is_no_larger_than_may_be_is_read_to_its_end() {
+        assert_eq!(read_at_most(&b"robot"[..], 5).unwrap(), b"robot");
+        assert_eq!(read_at_most(empty(), 0).unwrap(), b"");
+        assert_eq!(read_at_most(&b"robot"[..], u64::MAX).unwrap(), b"robot");
+    }
+
+    #[test]
+    fn what_never_ends_is_refused() {
+        let error = read_at_most(repeat(0), 9).unwrap_err();
+        assert_eq!(
+            (error.kind(), error.to_string().as_str()),
+            (ErrorKind::FileTooLarge, "found more than 9 bytes, expected at most 9 bytes")
+        );
+    }
+
+    #[test]
+    fn a_file_that_is_too_large_is_told_with_its_size() {
+        let this = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/files.rs");
+        let length = std::fs::metadata(&this).unwrap().len();
+        assert_eq!(read_file(&this, length).unwrap().len() as u64, length);
+        let error = read_file(&this, length - 1).unwrap_err().to_string();
+        assert_eq!(error, format!("found {length} bytes, expected at most {} bytes", length - 1));
+    }
+
+    /// Whoever opened the pipe would wait for ever: nobody writes to it.
+    #[cfg(unix)]
+    #[test]
+    fn what_is_no_regular_file_is_refused_at_once() {
+        let folder = std::env::temp_dir().join(format!("articulated-kinds-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let [pipe, socket, link] = ["pipe", "socket", "link"].map(|name| folder.join(name));
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        let _listening = std::os::unix::net::UnixListener::bind(&socket).unwrap();
+        std::os::unix::fs::symlink(&pipe, &link).unwrap();
+        let told = |path: &Path| {
+            let errors = [read_file(path, 9).unwrap_err(), open_file(path, 9).unwrap_err()].map(|e| e.to_string());
+            assert_eq!(errors[0], errors[1]);
+            errors[0].strip_suffix(", expected a regular file").unwrap_or_else(|| panic!("{errors:?}")).to_owned()
+        };
+        let found = [&folder, &pipe, &link, &socket, Path::new("/dev/zero"), Path::new("/dev/null")].map(told);
+        assert_eq!(found, ["found a folder", "found a pipe", "found a pipe", "found a socket", "found a device", "found a device"]);
+        std::fs::remove_dir_all(folder).unwrap();
+    }
+
+    /// As one that somebody writes to while it is read.
+    #[test]
+    fn a_file_that_grows_is_refused_where_it_gets_too_large() {
+        let mut reader = AtMost::new(&b"robots"[..], 5);
+        let mut first = [0; 4];
+        reader.read_exact(&mut first).unwrap();
+        assert_eq!(&first, b"robo");
+        assert_eq!(all(reader).unwrap_err().to_string(), "found more than 5 bytes, expected at most 5 bytes");
+    }
+}

@@ -1,0 +1,39 @@
+//! Readers of robot files: the bytes of a file become a [`Description`], or every mistake of the file at once.
+//!
+//! ```
+//! use articulated_formats::{Options, read};
+//!
+//! let bytes = br#"<robot name="door">
+//!   <link name="frame"/>
+//!   <link name="leaf"><inertial><mass value="8"/>
+//!     <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="0.2"/></inertial></link>
+//!   <joint name="hinge" type="continuous"><parent link="frame"/><child link="leaf"/><axis xyz="0 0 1"/></joint>
+//! </robot>"#;
+//! let reading = read(bytes, &Options::default()).unwrap();
+//! assert_eq!(reading.description.joints[0].axis, [0.0, 0.0, 1.0]);
+//!
+//! let diagnostics = read(b"<robot name='nothing'/>", &Options::default()).unwrap_err();
+//! assert!(diagnostics.to_string().contains("link"));
+//! ```
+//!
+//! Invariants:
+//!
+//! * A format is one module and one row of [`FORMATS`]. No other crate names a type of a format.
+//! * A reader reports all findings to one [`Diagnostics`] and continues as far as it can.
+//! * Only [`Sources`] open files. [`read`] opens none.
+
+mod files;
+mod format;
+mod reading;
+mod snap;
+pub mod urdf;
+
+#[cfg(doc)]
+use articulated_core::description::Description;
+#[cfg(doc)]
+use articulated_core::diagnostic::Diagnostics;
+
+pub use files::{AtMost, Disk, MOST_BYTES, NoFiles, Sources, nearest_file, open_file, read_at_most, read_file};
+pub use format::{FORMATS, Format, Formats, Input};
+pub use reading::{Options, Reading, read, read_with};
+pub use snap::{MOST_SNAPPED, SNAP_EXPECTED, can_snap, nearly_right_angles};

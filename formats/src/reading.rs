@@ -1,0 +1,85 @@
+//! How to read a document, and what comes of it.
+
+use articulated_core::description::{Base, Description};
+use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Subject, Unused, quote};
+
+use crate::{Formats, Input, NoFiles, Sources, snap};
+
+/// How to read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// The name of the file in messages. It is not opened.
+    pub file: String,
+    /// Whether the root link is the base or moves freely; decides only what is reported as unused.
+    pub base: Base,
+    /// Makes an inertia that is not positive semi-definite a warning instead of an error. One that
+    /// is negative by rounding alone always is a warning.
+    pub allow_unphysical_inertia: bool,
+    /// Replaces an angle of a frame that is within this many rad of a multiple of π/2 by that
+    /// multiple: above 0, at most [`MOST_SNAPPED`](crate::MOST_SNAPPED); any other number is an
+    /// error. `None` leaves every number as written.
+    pub snap_angles: Option<f64>,
+    /// The formats to choose from.
+    pub formats: Formats,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { file: "<robot>".into(), base: Base::Fixed, allow_unphysical_inertia: false, snap_angles: None, formats: Formats::default() }
+    }
+}
+
+/// A robot that was read, with the findings about its file.
+#[derive(Clone, Debug)]
+pub struct Reading {
+    /// The robot. A bound that the file leaves open is infinite: `lower` and `upper` of a continuous
+    /// joint, `effort` and `velocity` that are not given. `axis` is (1, 0, 0) and `limit` and
+    /// `dynamics` are `None` for joints that have no use for them.
+    pub description: Description,
+    /// What looks wrong; the values were used as written.
+    pub warnings: Vec<Diagnostic>,
+    /// What the file says and the description leaves out, or what only some scenes use.
+    pub unused: Vec<Unused>,
+    /// Every angle that was replaced because of [`Options::snap_angles`].
+    pub snapped: Vec<Diagnostic>,
+}
+
+impl Reading {
+    /// Withdraws findings about mass that the fixed base carries, of the links that an edit has let
+    /// `go`.
+    pub fn release(&mut self, go: impl Fn(&str) -> bool) {
+        self.unused.retain(|u| !(u.why == HELD && matches!(&u.subject, Subject::Link(name) if go(name))));
+    }
+}
+
+/// Why mass that the fixed base carries is not used.
+pub(crate) const HELD: &str = "the base is fixed, and this link with it";
+
+/// The robot in `bytes`; files that it includes are refused. Lengths in m, masses in kg, angles in
+/// rad. Exact: every number is the double nearest to its spelling.
+///
+/// # Errors
+/// All of the file's at once, at most 1000.
+pub fn read(bytes: &[u8], options: &Options) -> Result<Reading, Diagnostics> {
+    read_with(&NoFiles, bytes, options)
+}
+
+/// As [`read()`], with the files that the document includes.
+///
+/// # Errors
+/// All of the file's at once, at most 1000.
+pub fn read_with(sources: &dyn Sources, bytes: &[u8], options: &Options) -> Result<Reading, Diagnostics> {
+    let mut log = Diagnostics::new(&options.file);
+    snap::check(options.snap_angles, &mut log);
+    let Some(format) = options.formats.of(&options.file, bytes) else {
+        log.error(&Place::DOCUMENT, Code::Unsupported, quote(&options.file), "a robot; there are no formats to read it in");
+        return Err(log);
+    };
+    match format.read(&Input { bytes, options, sources }, &mut log) {
+        Some(description) if log.is_ok() => {
+            let Diagnostics { warnings, notes, unused, .. } = log.finished();
+            Ok(Reading { description, warnings, unused, snapped: notes })
+        }
+        _ => Err(log.finished()),
+    }
+}

@@ -1,0 +1,34 @@
+//! From a draft to a [`Description`].
+
+use articulated_core::description::{Description, Joint, Link, Mimic};
+
+use super::draft::Draft;
+use super::tree::Tree;
+
+/// The description that the draft amounts to; `None` where something of it is missing, which is an error already.
+pub(crate) fn described(draft: &Draft, tree: &Tree, leaders: &[Option<usize>]) -> Option<Description> {
+    let links =
+        draft.links.iter().map(|link| Some(Link { name: link.name.clone()?, inertial: link.inertial, collision: link.collision.clone() }));
+    let joints = draft.joints.iter().enumerate().map(|(i, joint)| {
+        let mimic = joint.mimic.as_ref().zip(leaders[i]).map(|(mimic, leader)| Mimic {
+            joint: leader,
+            multiplier: mimic.multiplier.unwrap_or(1.0),
+            offset: mimic.offset.unwrap_or(0.0),
+        });
+        Some(Joint {
+            name: joint.name.clone()?,
+            kind: joint.kind?,
+            parent: tree.parent[i],
+            child: tree.child[i],
+            origin: joint.origin,
+            axis: joint.axis,
+            second_axis: joint.second_axis,
+            pitch: joint.pitch,
+            locked: None,
+            mimic,
+            limit: joint.limit,
+            dynamics: joint.dynamics,
+        })
+    });
+    Some(Description { name: draft.name.clone(), links: links.collect::<Option<_>>()?, joints: joints.collect::<Option<_>>()? })
+}

@@ -1,0 +1,180 @@
+//! A tag of the document with its line and what it belongs to.
+
+use articulated_core::diagnostic::{At, Code, Diagnostics, Place, Subject};
+use roxmltree::{Attribute, Node};
+
+use super::lines::Lines;
+use super::markup;
+
+/// Longer names are refused: each message about a link or joint carries its name.
+const MOST_NAME: usize = 1024;
+
+#[derive(Clone, Copy)]
+pub(crate) struct Tag<'a> {
+    node: Node<'a, 'a>,
+    lines: &'a Lines<'a>,
+    subject: &'a Subject,
+}
+
+impl<'a> Tag<'a> {
+    pub(crate) fn new(node: Node<'a, 'a>, lines: &'a Lines<'a>, subject: &'a Subject) -> Self {
+        Self { node, lines, subject }
+    }
+
+    /// The same tag as part of a link or joint.
+    pub(crate) fn of<'b>(&self, subject: &'b Subject) -> Tag<'b>
+    where
+        'a: 'b,
+    {
+        Tag { node: self.node, lines: self.lines, subject }
+    }
+
+    pub(crate) fn subject(&self) -> &'a Subject {
+        self.subject
+    }
+
+    pub(crate) fn is(&self, name: &str) -> bool {
+        self.node.tag_name().name() == name
+    }
+
+    /// The tag's name as the file writes it.
+    pub(crate) fn name(&self) -> String {
+        markup::as_written(self.node.tag_name().name())
+    }
+
+    /// Its place in the file.
+    pub(crate) fn at(&self) -> At {
+        self.lines.at(self.node.range().start)
+    }
+
+    /// Reports that it is not used.
+    pub(crate) fn unused(&self, log: &mut Diagnostics, what: String, why: impl Into<String>) {
+        log.unused_at(self.at(), self.subject, what, why);
+    }
+
+    pub(crate) fn children(&self) -> impl Iterator<Item = Tag<'a>> + use<'a> {
+        let Tag { lines, subject, node } = *self;
+        node.children().filter(Node::is_element).map(move |node| Tag { node, lines, subject })
+    }
+
+    /// The first text that stands in it, and its line.
+    pub(crate) fn text(&self) -> Option<(&'a str, At)> {
+        let text = |node: Node<'a, 'a>| Some((node.text()?.trim(), self.lines.at(node.range().start)));
+        self.node.children().filter(Node::is_text).filter_map(text).find(|(text, _)| !text.is_empty())
+    }
+
+    /// This tag and all inside it.
+    pub(crate) fn descendants(&self) -> impl Iterator<Item = Tag<'a>> + use<'a> {
+        let Tag { lines, subject, node } = *self;
+        node.descendants().filter(Node::is_element).map(move |node| Tag { node, lines, subject })
+    }
+
+    pub(crate) fn attributes(&self) -> impl Iterator<Item = Attribute<'a, 'a>> + use<'a> {
+        self.node.attributes()
+    }
+
+    /// Names, values and lines of the attributes.
+    pub(crate) fn attributes_with_lines(&self) -> impl Iterator<Item = (&'a str, &'a str, At)> + use<'a> {
+        let Tag { lines, node, .. } = *self;
+        node.attributes().map(move |a| (a.name(), a.value(), lines.at(a.range().start)))
+    }
+
+    /// Where the tag ends in the text.
+    pub(crate) fn end(&self) -> usize {
+        self.node.range().end
+    }
+
+    /// Where the tag begins in the text.
+    pub(crate) fn start(&self) -> usize {
+        self.node.range().start
+    }
+
+    /// An attribute's value and line.
+    pub(crate) fn attribute(&self, name: &str) -> Option<(&'a str, At)> {
+        let attribute = self.node.attribute_node(name)?;
+        Some((attribute.value(), self.lines.at(attribute.range().start)))
+    }
+
+    pub(crate) fn place<'b>(&self, field: &'b str) -> Place<'b>
+    where
+        'a: 'b,
+    {
+        Place { at: self.at(), subject: self.subject, field }
+    }
+
+    /// The one tag of this name, if there is one. A second one is an error, or a warning where it says the same.
+    pub(crate) fn only(&self, name: &str, log: &mut Diagnostics) -> Option<Tag<'a>> {
+        let mut all = self.children().filter(|tag| tag.is(name));
+        let first = all.next()?;
+        for again in all {
+            let (place, kind, line) = (again.place(name), Code::DuplicateTag, first.at().line().unwrap_or_default());
+            let expected = format!("one <{name}> inside <{}>", self.name());
+            if again.says_the_same(&first) {
+                let found = format!("a second <{name}>, equal to the first in line {line}");
+                log.warning(&place, kind, found, format!("{expected}; used once"));
+            } else {
+                log.error(&place, kind, format!("a second <{name}> (the first is in line {line})"), expected);
+            }
+        }
+        Some(first)
+    }
+
+    /// Whether both have the same attributes, in any order, and the same tags and text inside.
+    fn says_the_same(&self, other: &Tag<'a>) -> bool {
+        let attributes = |tag: &Tag<'a>| {
+            let mut all: Vec<_> = tag.node.attributes().map(|a| (a.name(), a.value().trim())).collect();
+            all.sort_unstable();
+            all
+        };
+        let text = |tag: &Tag<'a>| tag.node.text().map(str::trim).unwrap_or_default().to_owned();
+        let (own, others): (Vec<_>, Vec<_>) = (self.children().collect(), other.children().collect());
+        self.node.tag_name() == other.node.tag_name()
+            && attributes(self) == attributes(other)
+            && text(self) == text(other)
+            && own.len() == others.len()
+            && own.iter().zip(&others).all(|(a, b)| a.says_the_same(b))
+    }
+
+    /// The one tag of this name, which has to be there.
+    pub(crate) fn required(&self, name: &str, log: &mut Diagnostics) -> Option<Tag<'a>> {
+        let tag = self.only(name, log);
+        if tag.is_none() {
+            let expected = format!("<{name}> inside <{}>", self.name());
+            log.error(&self.place(name), Code::MissingTag, "none", expected);
+        }
+        tag
+    }
+
+    /// An attribute that has to be there.
+    pub(crate) fn required_attribute(&self, name: &str, log: &mut Diagnostics) -> Option<(&'a str, At)> {
+        let value = self.attribute(name);
+        if value.is_none() {
+            let expected = format!("the attribute {name} in <{}>", self.name());
+            log.error(&self.place(name), Code::MissingAttribute, "none", expected);
+        }
+        value
+    }
+
+    /// An attribute that names something: there, and not empty.
+    pub(crate) fn required_name(&self, attribute: &str, log: &mut Diagnostics) -> Option<String> {
+        let (name, at) = self.required_attribute(attribute, log)?;
+        if name.trim().is_empty() {
+            let place = Place { at, ..self.place(attribute) };
+            log.error(&place, Code::EmptyName, "an empty name", "a name");
+            return None;
+        }
+        if name.len() > MOST_NAME {
+            let place = Place { at, ..self.place(attribute) };
+            let found = format!("a name of {} bytes", name.len());
+            log.error(&place, Code::TooLarge, found, format!("at most {MOST_NAME}"));
+            return None;
+        }
+        Some(name.to_owned())
+    }
+
+    /// The tag's name for messages: as much of it as there is, and as is sensible.
+    pub(crate) fn name_for_messages(&self) -> String {
+        let name = self.attribute("name").map_or("", |(name, _)| name);
+        name.chars().take(MOST_NAME / 4).collect()
+    }
+}

@@ -1,0 +1,42 @@
+//! From a position in a text to its line and column.
+
+use articulated_core::diagnostic::At;
+
+/// Where the lines of a text begin.
+pub(crate) struct Lines<'a> {
+    text: &'a str,
+    starts: Vec<usize>,
+}
+
+impl<'a> Lines<'a> {
+    pub(crate) fn of(text: &'a str) -> Self {
+        let starts = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
+        Self { text, starts }
+    }
+
+    /// The place of a byte.
+    pub(crate) fn at(&self, position: usize) -> At {
+        let line = self.starts.partition_point(|start| *start <= position).max(1);
+        let start = self.starts[line - 1];
+        // A line of many columns is not counted again for each of its tags.
+        let column = if position - start.min(position) > LONGEST { 0 } else { self.characters(start, position) + 1 };
+        At::Text { line: line as u32, column }
+    }
+
+    fn characters(&self, start: usize, end: usize) -> u32 {
+        self.text.get(start..end).map_or(0, |text| text.chars().count() as u32)
+    }
+
+    /// The last line.
+    pub(crate) fn last(&self) -> At {
+        At::line_of(self.starts.len() as u32)
+    }
+}
+
+/// Columns beyond this are not counted, bytes.
+const LONGEST: usize = 1000;
+
+/// The line of a byte of `bytes`, without an index.
+pub(crate) fn line_of(bytes: &[u8], position: usize) -> At {
+    At::line_of(bytes.iter().take(position).filter(|b| **b == b'\n').count() as u32 + 1)
+}

@@ -1,0 +1,89 @@
+//! Dynamics that a file states where they are not read: inside `<gazebo>`, under a prefix, in tags that the format does not have.
+
+use super::element::Tag;
+use super::markup;
+use articulated_core::diagnostic::{Code, Diagnostics, quote};
+
+/// Known tags of other programs that may state dynamics.
+const SEARCHED: [&str; 4] = ["gazebo", "mujoco", "plugin", "frame"];
+
+/// Whether a tag that is known and not used is searched for dynamics.
+pub(crate) fn is_searched(name: &str) -> bool {
+    SEARCHED.contains(&name)
+}
+
+/// Warns of all dynamics that `tag` and the tags inside it state. Whether there are some.
+pub(crate) fn report(tag: &Tag<'_>, log: &mut Diagnostics) -> bool {
+    // What is inside a tag that was reported belongs to it.
+    let (mut end, mut any) = (0, false);
+    for inner in tag.descendants() {
+        if inner.start() < end {
+            continue;
+        }
+        if let Some((what, expected)) = loss(&inner) {
+            let name = inner.attribute("name").map(|_| format!(" {}", quote(&inner.name_for_messages()))).unwrap_or_default();
+            let within = if inner.start() == tag.start() { String::new() } else { format!(" inside {}", shown(tag)) };
+            log.warning(&inner.place(&format!("<{}>", inner.name())), Code::LostDynamics, format!("{what}{name}{within}"), expected);
+            (end, any) = (inner.end(), true);
+        }
+    }
+    any
+}
+
+fn shown(tag: &Tag<'_>) -> String {
+    match tag.attribute("reference") {
+        Some((link, _)) => format!("<{} reference={}>", tag.name(), quote(link)),
+        None => format!("<{}>", tag.name()),
+    }
+}
+
+/// What a tag states that is lost, and what is expected in its place.
+fn loss(tag: &Tag<'_>) -> Option<(&'static str, &'static str)> {
+    const LOOPS: [&str; 5] = ["loopjoint", "closedloop", "kinematicloop", "equality", "bushing"];
+    let name = letters(tag);
+    let has = |words: &[&str]| words.iter().any(|word| name.contains(word));
+    if has(&LOOPS) || name.ends_with("constraint") {
+        return Some((
+            "a closed loop or a constraint",
+            "a tree of joints: it is not closed, and the dynamics are those of the tree without it",
+        ));
+    }
+    if is_joint(tag) {
+        return Some(("a joint", "<joint> directly inside <robot>: it is not read, and the dynamics are those without it"));
+    }
+    if (has(&["spring", "stiffness", "tendon"])) && !has(&["springreference", "implicitspring", "contact"]) && !is_off(tag) {
+        return Some(("a spring", "`effects` of a scene, which has springs: it is not read, and no such force acts"));
+    }
+    if name == "mimic" && tag.attribute("joint").is_some() {
+        return Some(("a joint that follows another", "<mimic> inside <joint>: it is not read, and the joint moves by itself"));
+    }
+    if (name == "turngravityoff" && is_on(tag)) || (name == "gravity" && is_off(tag)) {
+        return Some(("a link without gravity", "gravity on all links: it is not turned off"));
+    }
+    None
+}
+
+/// Whether a tag other than `<joint>` joins two links: a joint of another program.
+pub(crate) fn is_joint(tag: &Tag<'_>) -> bool {
+    let has = |name: &str| tag.children().any(|child| child.is(name));
+    letters(tag).ends_with("joint") && has("parent") && has("child")
+}
+
+/// The tag's name without its prefix, in small letters alone.
+fn letters(tag: &Tag<'_>) -> String {
+    let name = markup::as_written(&tag.name());
+    let name = name.rsplit(':').next().unwrap_or_default();
+    name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+}
+
+fn value<'a>(tag: &Tag<'a>) -> Option<&'a str> {
+    tag.attribute("value").map(|(value, _)| value.trim()).or_else(|| tag.text().map(|(text, _)| text))
+}
+
+fn is_off(tag: &Tag<'_>) -> bool {
+    value(tag).is_some_and(|value| value.eq_ignore_ascii_case("false") || value.parse() == Ok(0.0))
+}
+
+fn is_on(tag: &Tag<'_>) -> bool {
+    value(tag).is_some_and(|value| value.eq_ignore_ascii_case("true") || value == "1")
+}

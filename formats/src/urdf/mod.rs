@@ -1,0 +1,121 @@
+//! URDF: a strict reader.
+//!
+//! A file goes from document (bytes → XML) to links and joints (checked numbers with their places),
+//! then to a tree (names, cycles, roots, mimics), then to a [`Description`]. With the feature
+//! `second-reader`, `urdf-rs` reads a plain copy and has to find the same. With the feature `urdf-rs`,
+//! `from_urdf_rs` and `to_urdf_rs` convert from and to `urdf_rs::Robot`. [`write()`] is the reverse of
+//! the reader. No input makes it panic, hang or overflow its stack.
+//!
+//! # What files have that is accepted
+//!
+//! * `quat_xyzw` of an `<origin>`, from `<robot version="1.1">` on, in place of `rpy`. Its norm is 1 within 1e-3; off by more than 1e-6 it is a warning.
+//! * A fixed joint with `<mimic>`, `<axis>` or `<limit>`: not used; `<mimic>` with a warning.
+//! * A principal moment of inertia that is negative by rounding, at most 1e-12·m·ℓ², with a warning: ℓ is the longest distance from one frame of the
+//!   file to the next, at most 1 m. A moment further below zero is an error, unless [`Options::allow_unphysical_inertia`] is set.
+//! * Joints on a link `world` that the file does not declare, with a warning: the link is added, without mass.
+//! * `<collision>` that cannot be read, with a warning: a scene that asks for contact of it is refused.
+//! * Expressions of xacro in names of files (meshes, textures). Elsewhere each one is an error.
+//!
+//! What the file states about closed loops, springs, followers and gravity where it is not read (inside `<gazebo>`, under a prefix, `<loop_joint>`, links inside
+//! `<group>`) is a warning of the kind [`Code::LostDynamics`] or [`Code::Misplaced`].
+//!
+//! # Beyond the format
+//!
+//! Three types of joints are extensions, which other readers refuse or do not know:
+//!
+//! * `spherical`: any turn about the joint's origin. It has no axis.
+//! * `helical`: a screw. It turns about `<axis>`, within the bounds of `<limit>` in rad, and slides along it by
+//!   `<thread pitch="0.005"/>` metres per revolution; negative for a left-handed thread, which has to be given. Zero is accepted with a warning.
+//! * `universal`: Cardan's joint. It turns about `<axis xyz="1 0 0"/>`, then about `<axis2 xyz="0 1 0"/>`, which the first has turned; both have to be
+//!   given, in the joint's frame, and not parallel.
+//!
+//! A joint mimics and is mimicked if it has one coordinate: `helical` does, the other two do not.
+
+mod base;
+#[cfg(feature = "second-reader")]
+mod bridge;
+mod collision;
+#[cfg(feature = "urdf-rs")]
+mod conversion;
+mod described;
+mod document;
+mod draft;
+mod element;
+mod frame;
+mod inertia;
+mod joints;
+mod limits;
+mod lines;
+mod links;
+mod lost;
+mod markup;
+mod mimic;
+mod number;
+#[cfg(feature = "second-reader")]
+mod plain;
+mod ring;
+mod robot;
+mod tree;
+mod unused;
+mod write;
+mod xacro;
+
+use articulated_core::description::{Base, Description};
+#[cfg(doc)]
+use articulated_core::diagnostic::Code;
+use articulated_core::diagnostic::{Diagnostics, quote};
+
+#[cfg(feature = "urdf-rs")]
+pub use conversion::{ConversionError, from_urdf_rs, to_urdf_rs};
+pub(crate) use frame::right_angle;
+pub use write::write;
+
+use crate::{Format, Input, Options};
+
+/// The format of URDF files.
+#[derive(Clone, Copy, Debug)]
+pub struct Urdf;
+
+impl Format for Urdf {
+    fn name(&self) -> &'static str {
+        "urdf"
+    }
+
+    fn extensions(&self) -> &'static [&'static str] {
+        &["urdf"]
+    }
+
+    fn recognizes(&self, bytes: &[u8]) -> bool {
+        bytes.windows(6).any(|window| window == b"<robot")
+    }
+
+    fn read(&self, input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Description> {
+        let draft = draft(input.bytes, input.options, diagnostics)?;
+        let tree = tree::connect(&draft, diagnostics);
+        let leaders = mimic::leaders(&draft.joints, diagnostics);
+        let tree = tree.filter(|_| diagnostics.is_ok())?;
+        if input.options.base == Base::Fixed {
+            base::report(&draft, &tree, diagnostics);
+        }
+        let description = described::described(&draft, &tree, &leaders)?;
+        #[cfg(feature = "second-reader")]
+        bridge::compare(&description, &draft, &tree, &leaders, diagnostics);
+        Some(description)
+    }
+}
+
+fn draft(bytes: &[u8], options: &Options, log: &mut Diagnostics) -> Option<draft::Draft> {
+    let text = document::text(bytes, log)?;
+    let lines = lines::Lines::of(&text);
+    let document = document::parse(&text, &lines, log)?;
+    let robot = document::robot(&document, &lines, log)?;
+    if xacro::report(&robot, log) {
+        return None;
+    }
+    Some(robot::draft(&robot, options, log))
+}
+
+/// ` (did you mean "upper"?)`, or nothing.
+fn hint(meant: Option<&str>) -> String {
+    meant.map(|name| format!(" (did you mean {}?)", quote(name))).unwrap_or_default()
+}

@@ -1,0 +1,86 @@
+//! The tag `<robot>`: only its direct children are links and joints.
+
+use super::draft::{Draft, DraftLink, PassedOver};
+use super::element::Tag;
+use super::{frame, joints, links, lost, unused};
+use crate::Options;
+use articulated_core::diagnostic::{Code, Diagnostics, Place, quote};
+
+/// The version of the format that a file names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Version {
+    V1_0,
+    /// Adds `quat_xyzw`.
+    V1_1,
+    /// A bound that is left out is infinite; before, it is zero.
+    V1_2,
+}
+
+const VERSIONS: [(&str, Version); 4] = [("1", Version::V1_0), ("1.0", Version::V1_0), ("1.1", Version::V1_1), ("1.2", Version::V1_2)];
+
+/// What decides how a tag is read, beside the tag itself.
+pub(crate) struct Context<'a> {
+    pub(crate) options: &'a Options,
+    pub(crate) version: Version,
+    /// The longest distance from one frame to the next in the file, m; at most 1 m, and 1 m where all are zero.
+    pub(crate) length: f64,
+}
+
+/// All links and joints, with everything wrong about each of them reported.
+pub(crate) fn draft(robot: &Tag<'_>, options: &Options, log: &mut Diagnostics) -> Draft {
+    let name = robot.required_name("name", log).unwrap_or_default();
+    unused::warn_of_blanks(robot, &name, log);
+    unused::rest(robot, &["link", "joint"], &["name", "version"], log);
+    let context = Context { options, version: version(robot, log), length: frame::longest(robot) };
+    let mut draft = Draft { name, ..Draft::default() };
+    for tag in robot.children() {
+        if tag.is("link") {
+            draft.links.push(links::link(&tag, &context, log));
+        } else if tag.is("joint") {
+            draft.joints.push(joints::joint(&tag, &context, log));
+        } else if lost::is_joint(&tag) {
+            let name = tag.name_for_messages();
+            draft.passed_over.push(PassedOver { at: tag.at(), tag: tag.name(), name });
+        }
+    }
+    if draft.links.is_empty() {
+        log.error(&robot.place("link"), Code::NoLinks, "no link", "a robot with at least one link");
+    }
+    declare_world(&mut draft, log);
+    draft
+}
+
+/// The name of the link that other programs add where a joint hangs on it and no link has it.
+const WORLD: &str = "world";
+
+/// Adds the link `world`, if joints hang on it and the file does not declare it.
+fn declare_world(draft: &mut Draft, log: &mut Diagnostics) {
+    let is_world = |name: &str| name == WORLD;
+    if draft.links.iter().any(|link| link.name.as_deref().is_some_and(is_world))
+        || draft.joints.iter().any(|joint| joint.child.as_ref().is_some_and(|child| is_world(&child.name)))
+    {
+        return;
+    }
+    let Some((joint, parent)) =
+        draft.joints.iter().find_map(|joint| Some((joint, joint.parent.as_ref().filter(|parent| is_world(&parent.name))?)))
+    else {
+        return;
+    };
+    let (subject, at) = (joint.subject(), parent.at);
+    let place = Place { at, subject: &subject, field: "parent" };
+    let found = format!("{}, which is not a link of this file", quote(WORLD));
+    log.warning(&place, Code::UndeclaredWorld, found, "<link name=\"world\"/>; added as a link without mass");
+    draft.links.push(DraftLink { name: Some(WORLD.to_owned()), at, inertial: None, collision: Vec::new() });
+}
+
+fn version(robot: &Tag<'_>, log: &mut Diagnostics) -> Version {
+    let Some((given, _)) = robot.attribute("version") else {
+        return Version::V1_0;
+    };
+    let version = VERSIONS.iter().find(|(name, _)| *name == given.trim());
+    if version.is_none() {
+        let expected = "1.0, 1.1 or 1.2; read as 1.0";
+        log.warning(&robot.place("version"), Code::Version, quote(given.trim()), expected);
+    }
+    version.map_or(Version::V1_0, |(_, version)| *version)
+}

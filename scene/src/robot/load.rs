@@ -1,0 +1,272 @@
+//! The loader: a scene and a robot with all files that they name. The macro, the build script, the
+//! command and tests share it.
+
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use articulated_core::description::Base;
+use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Span, Spanned};
+use articulated_core::suggest::nearest;
+use articulated_formats::{Disk, Sources};
+
+use super::build::BuiltRobot;
+use super::options::{Appended, RobotOptions, RobotRequest};
+use crate::scene::{Robot, Scene};
+
+/// A robot that scenes may call by its name.
+#[derive(Clone, Copy, Debug)]
+pub struct Bundled<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// Its document.
+    pub document: &'a str,
+    /// The base that it is meant for.
+    pub base: Base,
+}
+
+/// Reads scenes and robots.
+#[derive(Clone)]
+pub struct Loader<'a> {
+    /// Where files come from.
+    pub sources: &'a dyn Sources,
+    /// The folder that names of files start from.
+    pub root: PathBuf,
+    /// The same in messages: `, seen from …`; empty for the folder in which the program runs.
+    pub seen_from: &'static str,
+    /// The robots that scenes may call by name.
+    pub bundled: &'a [Bundled<'a>],
+    /// The files that were read.
+    pub files: Vec<PathBuf>,
+}
+
+/// A scene with the documents that it names.
+#[derive(Clone, Debug)]
+pub struct Opened {
+    /// The scene.
+    pub scene: Scene,
+    /// The robot's file, for messages.
+    pub file: String,
+    /// The bytes of that file.
+    pub document: Vec<u8>,
+    /// What the scene requests of it; without the scene's effects, which need the robot.
+    pub options: RobotOptions,
+    /// The files that were read: the scene, the robot, and those appended.
+    pub files: Vec<PathBuf>,
+}
+
+/// The scene at `path` with its robot's documents; `bundled` are the robots that it may call by
+/// name. Files that it names are seen from its folder.
+///
+/// # Errors
+/// All findings, if one of them is an error.
+pub fn open(path: &Path, bundled: &[Bundled<'_>]) -> Result<Opened, Diagnostics> {
+    let mut log = Diagnostics::new(&path.display().to_string());
+    let mut loader = Loader { bundled, ..Loader::default() };
+    let scene = loader.scene(&path.display().to_string(), &Span::default(), &mut log);
+    let opened = scene.and_then(|scene| loader.open(scene, &mut log));
+    opened.ok_or_else(|| log.result(()).err().unwrap_or_default())
+}
+
+/// A scene that was read, with its robot's documents; `bundled` are the robots that it may call by
+/// name. Files that it names are seen from `folder`.
+///
+/// # Errors
+/// All findings, if one of them is an error.
+pub fn open_in(scene: Scene, folder: &Path, bundled: &[Bundled<'_>]) -> Result<Opened, Diagnostics> {
+    let mut log = Diagnostics::new(&scene.file);
+    let mut loader = Loader { bundled, ..Loader::default() };
+    // The scene's own name says nothing of its folder.
+    let opened = loader.open_from(&folder.join("scene").display().to_string(), scene, &mut log);
+    opened.ok_or_else(|| log.result(()).err().unwrap_or_default())
+}
+
+impl Default for Loader<'_> {
+    /// Of the file system, from the folder in which the program runs; no bundled robots.
+    fn default() -> Self {
+        Self { sources: &Disk, root: PathBuf::new(), seen_from: "", bundled: &[], files: Vec::new() }
+    }
+}
+
+impl Loader<'_> {
+    /// The bytes of a file. A finding is at the place that names the file, under the key there; with
+    /// no place, at the file itself.
+    pub fn read(&mut self, name: &str, span: &Span, key: &str, log: &mut Diagnostics) -> Option<Vec<u8>> {
+        let path = self.root.join(name);
+        match self.sources.read(&path) {
+            Ok(bytes) => {
+                self.files.push(path);
+                Some(bytes)
+            }
+            Err(error) => {
+                let near = self.sources.nearest(&path).map(|name| format!("did you mean {name:?}?"));
+                let reason = match error.kind() {
+                    ErrorKind::NotFound => format!("there is no such file{}", self.seen_from),
+                    _ => error.to_string(),
+                };
+                log.push(
+                    match *span == Span::default() {
+                        true => Diagnostic::refusal(name, &Default::default(), Code::File, reason),
+                        false => Diagnostic::refusal(&span.file, (span.at, key), Code::File, format!("{name}: {reason}")),
+                    }
+                    .with_hint(near),
+                );
+                None
+            }
+        }
+    }
+
+    /// The scene of this name, which `span` names.
+    pub fn scene(&mut self, name: &str, span: &Span, log: &mut Diagnostics) -> Option<Scene> {
+        let bytes = self.read(name, span, "scene", log)?;
+        Scene::read_bytes(name, &bytes).map_err(|findings| log.take(findings)).ok()
+    }
+
+    /// The documents that a scene names, seen from its folder. `None`: one of them is missing, and an
+    /// error says which.
+    pub fn open(&mut self, scene: Scene, log: &mut Diagnostics) -> Option<Opened> {
+        let seen_from = scene.file.clone();
+        self.open_from(&seen_from, scene, log)
+    }
+
+    fn open_from(&mut self, scene_file: &str, scene: Scene, log: &mut Diagnostics) -> Option<Opened> {
+        let robot = self.robot(scene_file, &scene, log);
+        let mut options = RobotOptions { base: robot.as_ref().map_or(Base::Fixed, |robot| robot.2), ..RobotOptions::default() };
+        scene.fill_robot(&mut options);
+        let appended = self.append(scene_file, &mut options.append, log);
+        let (file, document, _) = robot.filter(|_| appended)?;
+        Some(Opened { scene, file, document, options, files: self.files.clone() })
+    }
+
+    /// The name, the document and the base of a scene's robot.
+    pub fn robot(&mut self, scene_file: &str, scene: &Scene, log: &mut Diagnostics) -> Option<(String, Vec<u8>, Base)> {
+        match &scene.robot {
+            Robot::File(name) => {
+                let at = scene.code.places.robot;
+                let name = named_by(at, scene_file, name);
+                let document = self.read(&name, &Span { file: scene.file.clone(), at }, "urdf", log)?;
+                Some((name, document, Base::Fixed))
+            }
+            Robot::Bundled(name) => match self.bundled.iter().find(|one| one.name == name) {
+                Some(one) => Some((format!("{name}.urdf"), one.document.as_bytes().to_vec(), one.base)),
+                None => {
+                    log.push(self.unknown_robot(scene, name));
+                    None
+                }
+            },
+            Robot::Given => {
+                log.push(scene.without_robot("no robot", "robot, or urdf"));
+                None
+            }
+        }
+    }
+
+    /// Reads the robots to append, which are named as a scene of this name sees them. Whether all are
+    /// there.
+    pub fn append(&mut self, scene_file: &str, append: &mut [Appended], log: &mut Diagnostics) -> bool {
+        let mut all = true;
+        for other in append {
+            let span = other.file.span.clone().unwrap_or_default();
+            let name = named_by(span.at, scene_file, &other.file);
+            match self.read(&name, &span, "append.urdf", log) {
+                Some(document) => (other.document, other.file.value) = (document, name),
+                None => all = false,
+            }
+        }
+        all
+    }
+
+    fn unknown_robot(&self, scene: &Scene, name: &str) -> Diagnostic {
+        let names: Vec<&str> = self.bundled.iter().map(|one| one.name).collect();
+        let expected = match names.as_slice() {
+            [] => "urdf: no robot is known by name here".to_owned(),
+            names => format!("one of {}", names.join(", ")),
+        };
+        scene.without_robot(&format!("{name:?}, no such robot"), &expected).meant(nearest(name, names))
+    }
+}
+
+/// A file as the root sees it: one that an invocation names as it is, one that a scene names from
+/// the scene's folder.
+fn named_by(at: At, scene_file: &str, name: &str) -> String {
+    if matches!(at, At::Word(_)) { name.to_owned() } else { beside(scene_file, name) }
+}
+
+/// A file that a scene names, as seen from where the scene is seen.
+#[must_use]
+pub fn beside(scene: &str, name: &str) -> String {
+    let folder = Path::new(scene).parent().filter(|folder| *folder != Path::new(""));
+    folder.map_or_else(|| name.to_owned(), |folder| folder.join(name).display().to_string())
+}
+
+impl Opened {
+    /// A scene for the robot in `document`; `append` are the documents that it appends. Nothing is
+    /// opened. `base` applies where the scene gives none.
+    #[must_use]
+    pub fn new(scene: Scene, file: &str, document: Vec<u8>, base: Base, append: Vec<Vec<u8>>) -> Self {
+        let mut options = RobotOptions { base, ..RobotOptions::default() };
+        scene.fill_robot(&mut options);
+        options.append.iter_mut().zip(append).for_each(|(other, document)| other.document = document);
+        Self { scene, file: file.to_owned(), document, options, files: Vec::new() }
+    }
+
+    /// The robot as the scene requests it.
+    #[must_use]
+    pub fn robot(&self) -> RobotRequest<'_> {
+        RobotRequest { file: &self.file, document: &self.document, options: &self.options, scene: Some(&self.scene), checks_motion: true }
+    }
+
+    /// The robot as the scene leaves it.
+    ///
+    /// # Errors
+    /// All findings about the document, or else about the scene and the robot, by their places in the
+    /// scene; tables of control in files apart.
+    pub fn build(&self) -> Result<BuiltRobot, Diagnostics> {
+        self.robot().build()
+    }
+}
+
+impl Scene {
+    /// Writes into the options what the scene says of its robot: all but the effects, which need it,
+    /// and the documents of the robots to append.
+    pub fn fill_robot(&self, options: &mut RobotOptions) {
+        let (code, places) = (self.code.clone(), &self.code.places);
+        options.base = self.base.unwrap_or(options.base);
+        options.gravity = self.gravity.unwrap_or(options.gravity);
+        options.frames = code.frames.map(|names| self.spanned(names, &places.frames));
+        options.wrench_reference = code.wrenches_in.unwrap_or_default();
+        options.append = code
+            .append
+            .into_iter()
+            .map(|other| Appended {
+                document: Vec::new(),
+                file: self.span(other.file, other.place),
+                at: self.span(other.link, other.link_place),
+                prefix: other.prefix,
+                origin: other.origin,
+            })
+            .collect();
+        options.payloads = code.payload.into_iter().map(|load| self.span(load.payload, load.place)).collect();
+        options.shafts = self.shafts.iter().map(|asked| self.span(asked.shaft.clone(), asked.place)).collect();
+        options.lock = code.lock.into_iter().map(|lock| self.span((lock.joint, lock.at), lock.place)).collect();
+        options.allow_unphysical_inertia = code.allow_unphysical_inertia.unwrap_or(options.allow_unphysical_inertia);
+        options.snap_angles = code.snap_angles;
+    }
+
+    /// A value with its place in the scene.
+    fn span<T>(&self, value: T, at: At) -> Spanned<T> {
+        Spanned::new(value, &self.file, at)
+    }
+
+    /// Values with their places in the scene, one for each.
+    pub fn spanned<T>(&self, values: Vec<T>, places: &[At]) -> Vec<Spanned<T>> {
+        let at = |i: usize| places.get(i).copied().unwrap_or_default();
+        values.into_iter().enumerate().map(|(i, value)| self.span(value, at(i))).collect()
+    }
+
+    /// The finding that the scene has no robot.
+    #[must_use]
+    pub fn without_robot(&self, found: &str, expected: &str) -> Diagnostic {
+        let key = if self.robot == Robot::Given { "" } else { "robot" };
+        Diagnostic::error(&self.file, (self.code.places.robot, key), Code::UnknownName, found, expected)
+    }
+}

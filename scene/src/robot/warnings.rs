@@ -1,0 +1,166 @@
+//! Warnings that robot edits raise or clear.
+
+use std::collections::HashSet;
+
+use articulated_core::Plain;
+use articulated_core::description::{Collision, ContactSphere, PrincipalMoments};
+use articulated_core::diagnostic::{At, Code, Diagnostic, Place, Subject};
+use articulated_core::effect::{Applied, EffectId};
+use articulated_core::model::Model;
+use articulated_formats::Reading;
+
+use super::build::Editing;
+use crate::effects::{indices, still};
+
+/// The sun has 274 m/s².
+const MOST_GRAVITY: f64 = 1000.0;
+
+/// A coordinate, rad or m, beyond which double precision has fewer than ten digits of an angle left.
+const MOST_COORDINATE: f64 = 1e6;
+
+/// A warning for each joint of which a coordinate in `q`, rad or m, is beyond any sense: sines of such angles, and what follows from them, are rounding.
+pub fn beyond_sense(model: &Model<f64>, q: &[f64]) -> Vec<String> {
+    let joints = model.joints.iter().filter_map(|joint| {
+        let own = q.get(joint.q.0..joint.q.0 + joint.q.1)?;
+        let x = own.iter().find(|x| x.abs() > MOST_COORDINATE)?;
+        Some(format!(
+            "joint {:?}: found the coordinate {x:?}, expected at most 1e6 rad or m: beyond, rounding decides the results",
+            joint.name
+        ))
+    });
+    joints.collect()
+}
+
+/// A warning of a robot's edits.
+fn warning(file: &str, place: &Place<'_>, code: Code, found: String, expected: impl Into<String>) -> Diagnostic {
+    Diagnostic::error(file, place, code, found, expected).as_warning()
+}
+
+impl Editing<'_> {
+    /// What is odd about the edits, or no more so because of them.
+    pub(super) fn warn(&mut self, effects: &[Applied]) {
+        self.let_go();
+        self.warn_of_gravity();
+        self.warn_of_limits();
+        self.warn_of_loads();
+        self.warn_of_moments();
+        self.leave_what_is_used(effects);
+    }
+
+    /// Mass behind a shaft moves, and so does what the shaft has taken for its own.
+    fn let_go(&mut self) {
+        if self.request.options.shafts.is_empty() {
+            return;
+        }
+        let description = &self.reading.description;
+        let still = still(description, self.request.options.base);
+        let held = description.links.iter().zip(still).filter(|(link, still)| *still && link.inertial.is_some());
+        let held: HashSet<String> = held.map(|(link, _)| link.name.clone()).collect();
+        self.reading.release(|link| !held.contains(link));
+    }
+
+    /// Warns of a gravity that no place has.
+    fn warn_of_gravity(&mut self) {
+        let gravity = self.request.options.gravity;
+        let size = gravity.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        if size > MOST_GRAVITY {
+            self.reading.warnings.push(warning(
+                self.request.file,
+                &Place { at: At::Nowhere, subject: &Subject::Document, field: "gravity" },
+                Code::BeyondSense,
+                format!("{gravity:?} m/s², more than any star's"),
+                "m/s², of which 9.81 are usual; used as written",
+            ));
+        }
+    }
+
+    /// A lock beyond the joint's limits is odd, and used.
+    fn warn_of_limits(&mut self) {
+        let joints = &self.reading.description.joints;
+        let of_name = indices(joints.iter().map(|j| j.name.as_str()));
+        let problems = self.request.options.lock.iter().filter_map(|lock| {
+            let (name, at) = &lock.value;
+            let joint = &joints[*of_name.get(name.as_str())?];
+            let limit = joint.limit.filter(|_| joint.locked.is_some())?;
+            let &[at] = at.as_slice() else { return None };
+            (at < limit.lower || limit.upper < at).then(|| {
+                warning(
+                    self.request.file,
+                    &Place { at: At::Nowhere, subject: &Subject::Joint(name.clone()), field: "lock" },
+                    Code::BeyondLimit,
+                    format!("{}, beyond its limits", Plain(at)),
+                    format!("{} to {}; used as asked for", Plain(limit.lower), Plain(limit.upper)),
+                )
+            })
+        });
+        self.reading.warnings.extend(problems.collect::<Vec<_>>());
+    }
+
+    /// Warns of a load on a link that the base holds: it has no effect.
+    fn warn_of_loads(&mut self) {
+        let (options, description) = (&self.request.options, &self.reading.description);
+        let still = still(description, options.base);
+        let links = indices(description.links.iter().map(|l| l.name.as_str()));
+        let held = |link: &str| links.get(link).is_some_and(|at| still[*at]);
+        let loads = options.payloads.iter().filter(|load| load.mass != 0.0 && held(&load.link)).map(|load| {
+            warning(
+                self.request.file,
+                &Place { at: At::Nowhere, subject: &Subject::Link(load.link.clone()), field: "payload" },
+                Code::UnusedInertia,
+                format!("{} kg on a link that a fixed base holds", load.mass),
+                "a link that moves: here it plays no part in the dynamics",
+            )
+        });
+        self.reading.warnings.extend(loads.collect::<Vec<_>>());
+    }
+
+    /// An inertia of a load that no body has is odd, and used, as that of a link is.
+    fn warn_of_moments(&mut self) {
+        let odd = self.request.options.payloads.iter().filter_map(|load| {
+            let moments = PrincipalMoments::of(load.inertia);
+            moments.miss_triangle().then(|| {
+                warning(
+                    self.request.file,
+                    &Place { at: At::Nowhere, subject: &Subject::Link(load.link.clone()), field: "payload" },
+                    Code::InertiaTriangle,
+                    moments.to_string(),
+                    format!("{}; used as asked for", PrincipalMoments::TRIANGLE),
+                )
+            })
+        });
+        self.reading.warnings.extend(odd);
+    }
+
+    /// Collision geometry of links that have contact at its points is used.
+    fn leave_geometry_that_is_used(&mut self, effects: &[Applied]) {
+        let Reading { description, unused, .. } = &mut self.reading;
+        let links = indices(description.links.iter().map(|link| link.name.as_str()));
+        let is_of_shape = |e: &Applied| {
+            let spheres = links.get(e.on.as_str()).map(|at| &description.links[*at]).into_iter().flat_map(|link| &link.collision);
+            let is = |s: ContactSphere| s.center == e.at.xyz && e.parameters.first() == Some(&s.radius);
+            spheres.flat_map(Collision::contact_spheres).any(is)
+        };
+        let contacts = effects.iter().filter(|e| e.effect == EffectId::contact);
+        let used: HashSet<&str> = contacts.filter(|e| is_of_shape(e)).map(|e| e.on.as_str()).collect();
+        unused.retain(|u| u.tag != "collision" || !matches!(&u.subject, Subject::Link(name) if used.contains(name.as_str())));
+    }
+
+    /// Numbers of the URDF that an effect has taken are used.
+    fn leave_what_is_used(&mut self, effects: &[Applied]) {
+        self.leave_geometry_that_is_used(effects);
+        let Reading { description, unused, .. } = &mut self.reading;
+        let joints = indices(description.joints.iter().map(|j| j.name.as_str()));
+        let tag = |e: &Applied| {
+            let dynamics = description.joints[*joints.get(e.on.as_str())?].dynamics?;
+            // The first number of each.
+            let (tag, x) = match e.effect {
+                EffectId::damping => ("dynamics damping", dynamics.damping),
+                EffectId::friction => ("dynamics friction", dynamics.friction),
+                _ => return None,
+            };
+            (e.parameters.first() == Some(&x)).then_some(tag)
+        };
+        let used: HashSet<(&str, &str)> = effects.iter().filter_map(|e| Some((e.on.as_str(), tag(e)?))).collect();
+        unused.retain(|u| !matches!(&u.subject, Subject::Joint(name) if used.contains(&(name.as_str(), u.tag.as_str()))));
+    }
+}
