@@ -16,7 +16,6 @@ mod error;
 mod faults;
 pub mod function_groups;
 pub mod graph;
-mod joint_blocks;
 pub mod ledger;
 mod limbs;
 pub mod lir;
