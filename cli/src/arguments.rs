@@ -231,7 +231,7 @@ pub(crate) struct GenerateArguments {
     /// Code that depends on nothing but core and std (this is the default)
     #[arg(long, conflicts_with = "runtime")]
     pub(crate) standalone: bool,
-    /// Each limb for itself: no limbs that are alike in lanes, no joints in loops, also where that would be cheaper
+    /// Each limb for itself: no limbs that are alike in lanes, also where that would be cheaper
     #[arg(long)]
     pub(crate) no_limbs: bool,
     /// No `unsafe` in the generated code: on x86-64 sines take a little longer, and long functions without AVX-512 up to twice as long

@@ -239,7 +239,7 @@ impl Build {
         self
     }
 
-    /// No `unsafe` in the generated code, for crates that forbid it: no limbs in lanes, no joints in loops, and no choice of instructions when it runs.
+    /// No `unsafe` in the generated code, for crates that forbid it: no limbs in lanes, and no choice of instructions when it runs.
     #[must_use]
     pub fn forbid_unsafe(mut self) -> Self {
         self.request.options.rust_mut().forbid_unsafe = true;

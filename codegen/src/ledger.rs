@@ -24,11 +24,11 @@ pub struct Entry {
     /// The ways chosen by count, where the function can be computed in several.
     pub ways: Vec<Cow<'static, str>>,
     /// Counts after each stage: `asked` (what the algorithm asks for), `trace` (folded and shared), the same after each model
-    /// pass, with frames that do not turn (`unturned`) and lengths in another unit (`unit`) where that is chosen, then after each graph pass; `loops`, what is executed of a function that is left loops. Without [`stages`](crate::Options::stages) only the last of the model passes.
+    /// pass, with frames that do not turn (`unturned`) and lengths in another unit (`unit`) where that is chosen, then after each graph pass. Without [`stages`](crate::Options::stages) only the last of the model passes.
     pub stages: Vec<(&'static str, Counts)>,
-    /// Longest chain of operations from an input to an output; of what is left loops, where it is written out.
+    /// Longest chain of operations from an input to an output.
     pub depth: u32,
-    /// How many limbs that are alike, or joints in loops, are computed at once; 1 where each is computed for itself.
+    /// How many limbs that are alike are computed at once; 1 where each is computed for itself.
     pub lanes: usize,
     /// What it takes, in order; constants of the model that stayed inputs come after them.
     pub arguments: Vec<Argument>,
@@ -41,16 +41,13 @@ impl Entry {
     }
 }
 
-/// What is executed of a function that is left loops, as the ledger calls it.
-pub(crate) const LOOPS: &str = "loops";
-
 /// Every stage that an entry may have, in their order, and what it does.
 pub fn stages() -> impl Iterator<Item = (&'static str, &'static str)> {
     let first = [("asked", "by the algorithm"), ("trace", "zeros, ones and what is the same folded in")];
     let model = model_passes::<f64>().iter().map(|(name, _, _)| (*name, "frames and masses moved to where numbers vanish"));
     let graph = GRAPH_PASSES.iter().map(|row| (row.name, row.does));
     let added = Transform::ALL.map(|(_, name, does)| (name, does));
-    first.into_iter().chain(model).chain(added).chain(graph).chain([(LOOPS, "what is executed where joints are left loops")])
+    first.into_iter().chain(model).chain(added).chain(graph)
 }
 
 /// Longest chain of operations.

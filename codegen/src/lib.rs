@@ -14,7 +14,6 @@ mod capabilities;
 mod checked;
 pub mod function_groups;
 pub mod graph;
-mod joint_blocks;
 pub mod ledger;
 mod limbs;
 pub mod lir;

@@ -39,7 +39,7 @@ pub struct Options {
     /// Names to use in generated code instead of those made from the robot's names: (name in the
     /// file, name in code).
     pub rename: Vec<Spanned<(String, String)>>,
-    /// Compute limbs that are alike at once, one per lane of a vector, and derivatives of large trees in loops over their joints, four at a time, where that is cheaper.
+    /// Compute limbs that are alike at once, one per lane of a vector, where that is cheaper.
     pub limbs: bool,
     /// How accurate the functions are. Functions of many states at once have the accuracy of their
     /// type of numbers.

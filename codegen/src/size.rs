@@ -99,15 +99,12 @@ impl Tree {
     }
 }
 
-/// Megabytes of source that a function becomes. What is left loops over joints is small; batches have it written out.
+/// Megabytes of source that a function becomes.
 fn megabytes(wanted: &FunctionSpec, model: &Model<f64>, tree: &Tree, options: &Options) -> f64 {
     let can = options.target.capabilities(options);
     let alone = !can.states;
     let columns = alone && program::has_columns(wanted, model, can);
     let instructions: f64 = wanted.parts.iter().map(|part| tree.instructions(part, columns)).sum();
-    if alone && program::groups(wanted, instructions, model, options, can).is_some() {
-        return 0.0;
-    }
     instructions * BYTES * if alone { 1.0 } else { WITH_BATCH } / 1e6
 }
 
@@ -216,20 +213,6 @@ mod tests {
             assert!(told.contains(refused), "{told}");
             assert_eq!(told.is_empty(), refused.is_empty(), "{told}");
             assert_eq!(told.contains("mass_matrix"), most == 1, "{told}");
-        }
-    }
-
-    #[test]
-    fn derivatives_that_are_left_loops_do_not_reach_the_limit() {
-        let mut request = chain(240, 60, Base::Floating);
-        request.options.max_code_size = 10;
-        let model = request.build_robot().unwrap().model;
-        let wanted = FunctionSpec::plain(crate::function("inverse_dynamics_derivatives").unwrap());
-        for (limbs, batch, fits) in [(true, vec![], true), (false, vec![], false), (true, vec![Real::F64], false)] {
-            (request.options.limbs, request.options.rust_mut().batch) = (limbs, batch);
-            let mut log = Diagnostics::default();
-            within_limit(&request, &model, &[(0, wanted.clone())], &mut log);
-            assert_eq!(log.is_ok(), fits, "{limbs}");
         }
     }
 }

@@ -40,10 +40,10 @@ mod tree;
 ///         rename = { "a-b" = A_MINUS_B },                // names in Rust for names of the URDF
 ///         allow_unphysical_inertia = false,              // true: negative principal moments are accepted, with a warning
 ///         snap_angles = 1e-9,                            // rad, above 0, at most 0.5: angles this near to a multiple of π/2 are taken as that; absent: none
-///         limbs = true,                                  // branches that are alike at once, one per lane of a vector, and joints in loops, where that is cheaper
+///         limbs = true,                                  // branches that are alike at once, one per lane of a vector, where that is cheaper
 ///         batch = [],                                    // [f64, f32]: functions of many states at once too, in modules batch_f64, batch_f32
 ///         level = f64,                                   // how accurate: also f32, f32_f64, compensated + two, double_double, f64 + fast_10 + no_fma, …
-///         forbid_unsafe = false,                         // true: no `unsafe` in the module; slower on x86-64: no limbs in lanes, no joints in loops, no choice of instructions
+///         forbid_unsafe = false,                         // true: no `unsafe` in the module; slower on x86-64: no limbs in lanes, no choice of instructions
 ///         max_code_size = 64,                            // MB of code that all functions together may become; more is an error
 ///         no_std = false,                                // true: for crates without `std`, which depend on the crate `libm`; without `unsafe`, multiply-adds and `Dynamics`
 ///         crate = ::articulated,                         // the path of this crate, if it has another name

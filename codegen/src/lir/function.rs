@@ -5,7 +5,6 @@ use articulated_core::algorithm::{Dim, Shape};
 
 use crate::capabilities::Capabilities;
 use crate::graph::Graph;
-use crate::joint_blocks::Groups;
 use crate::ledger::Entry;
 use crate::lir::lower::{Lowering, Sines};
 use crate::lir::pass::alias_barrier;
@@ -63,8 +62,6 @@ pub(crate) struct Function<'a> {
     pub(crate) few_registers: Option<Body>,
     /// The solution for many right-hand sides, which is left a loop behind the body.
     pub(crate) columns: Option<&'a MultiRhsSolve>,
-    /// Blocks of joints whose loops are the function; the body is empty then.
-    pub(crate) groups: Option<&'a Groups>,
     /// Operations of the body, and its sines and cosines.
     pub(crate) operations: (u64, u64),
     /// The function of many states.
@@ -111,10 +108,9 @@ impl<'a> Function<'a> {
         if has_parameters {
             arguments.push(Argument { name: "parameters", dims: Vec::new() });
         }
-        let (columns, groups) = (program.columns.as_ref(), program.groups.as_ref());
+        let columns = program.columns.as_ref();
         let plan = Plan { graph, spec, shape, can, columns, is_outlined: is_long(graph, columns.is_some(), can.level) };
-        // Loops write into the memory of the caller; there is no body.
-        let (ending, of_body) = if groups.is_some() { (Ending::Filled, Ending::Value) } else { (plan.ending(), plan.ending()) };
+        let ending = plan.ending();
         let counts = graph.counts();
         Self {
             spec,
@@ -123,11 +119,10 @@ impl<'a> Function<'a> {
             shape,
             results: results(spec, shape),
             ending,
-            body: plan.body(of_body, plan.is_outlined, false),
+            body: plan.body(ending, plan.is_outlined, false),
             is_outlined: plan.is_outlined,
-            few_registers: groups.is_none().then(|| plan.few_registers(ending)).flatten(),
+            few_registers: plan.few_registers(ending),
             columns,
-            groups,
             operations: (counts.instructions(), counts.trigonometric()),
             states: can.states.then(|| plan.states(&program.plain)),
         }
@@ -223,7 +218,7 @@ impl Plan<'_> {
         let is_read = |at| self.columns.is_none_or(|columns| columns.reads(at));
         // What loops compute is not stored here, and neither are zeros of a result that begins as
         // zeros.
-        let is_partial = self.columns.is_some() || graph.outputs.is_empty() || outlined && ending != Ending::Filled;
+        let is_partial = self.columns.is_some() || outlined && ending != Ending::Filled;
         let lowering = Lowering { graph, ty, sines: self.sines(), results: &results };
         let stores = || lowering.stores_as_made(|at| ending == Ending::Filled && is_read(at), barrier);
         let mut lanes = graph.lanes().clone();

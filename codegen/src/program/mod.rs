@@ -1,7 +1,7 @@
 //! One function, from its algorithms to the graph that is emitted.
 
 mod candidate;
-mod rolled;
+mod columns;
 pub(crate) mod strategy;
 
 use articulated_core::model::Model;
@@ -9,7 +9,6 @@ use articulated_core::model::Model;
 use crate::Options;
 use crate::capabilities::Capabilities;
 use crate::graph::{Graph, Op};
-use crate::joint_blocks::Groups;
 use crate::ledger::Entry;
 use crate::limbs::IsomorphicLimbs;
 use crate::parameters::Parameter;
@@ -17,7 +16,7 @@ use crate::pass;
 use crate::spec::FunctionSpec;
 use candidate::Candidate;
 
-pub(crate) use rolled::{MultiRhsSolve, groups, has_columns};
+pub(crate) use columns::{MultiRhsSolve, has_columns};
 pub(crate) use strategy::Strategy;
 
 /// A function and what it became.
@@ -29,15 +28,13 @@ pub(crate) struct Program {
     pub(crate) entry: Entry,
     /// What is left a loop. Then `graph` is what comes before.
     pub(crate) columns: Option<MultiRhsSolve>,
-    /// Where joints stand if all of it is left loops over them. Then `graph` is empty.
-    pub(crate) groups: Option<Groups>,
 }
 
 /// A function by the cheapest of its ways, limbs that are alike in lanes if that is cheaper.
 pub(crate) fn program(wanted: FunctionSpec, model: &Model<f64>, parameters: &[Parameter], options: &Options, can: Capabilities) -> Program {
     let subject = Candidate { model, parameters, stages: options.stages, alike: None };
     let reduced = wanted.reduced();
-    let columns = rolled::columns(&reduced, model, can);
+    let columns = columns::columns(&reduced, model, can);
     let whole = (columns.is_none() || can.states).then(|| subject.made(&reduced, None));
     let unsolved = columns.as_ref().and(reduced.parts[0].function.unsolved.as_ref());
     let mut best = match &whole {
@@ -55,15 +52,11 @@ pub(crate) fn program(wanted: FunctionSpec, model: &Model<f64>, parameters: &[Pa
             }
         }
     }
-    let (mut graph, mut entry) = best;
-    let groups = rolled::groups(&wanted, price(&graph), model, options, can);
-    if let Some((_, counts)) = &groups {
-        graph = Graph::default();
-        rolled::count(&mut entry, counts);
-    } else if let Some(columns) = &columns {
+    let (graph, mut entry) = best;
+    if let Some(columns) = &columns {
         columns.count(&mut entry);
     }
-    Program { wanted, graph, plain, entry, columns, groups: groups.map(|(groups, _)| groups) }
+    Program { wanted, graph, plain, entry, columns }
 }
 
 /// Lanes cost what no count shows (values that come and go one by one): they must be cheaper by this.

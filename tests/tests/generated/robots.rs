@@ -41,16 +41,10 @@ pub(crate) static ROBOTS: LazyLock<Vec<Robot>> = LazyLock::new(|| {
     let stone = "<robot name='stone'><link name='stone'/></robot>";
     let walker = robot("walker".into(), include_str!("../../robots/walker.urdf"), Base::Floating, false);
     let strider = robot("strider".into(), include_str!("../../robots/strider.urdf"), Base::Floating, false);
-    let groves = GROVES.map(|(name, seed)| only_derivatives(name, &urdf_text(&random_tree(seed, GROVE)), Base::Floating));
     let humanoid = articulated_models::robot("humanoid").expect("it is bundled");
     let humanoid = only_derivatives("humanoid_derivatives", humanoid.urdf, humanoid.base);
-    bundled.chain(trees).chain(groves).chain([humanoid, walker, strider, robot("stone".into(), stone, Base::Fixed, false)]).collect()
+    bundled.chain(trees).chain([humanoid, walker, strider, robot("stone".into(), stone, Base::Fixed, false)]).collect()
 });
-
-/// Trees of revolute, prismatic and fixed joints, so many that derivatives are loops over joints: broad, with many branches, and deep.
-const GROVES: [(&str, u64); 3] = [("grove_0", 125), ("grove_1", 103), ("grove_2", 166)];
-
-const GROVE: Flavour = Flavour { massless: true, mimic: false, floating: false, fixed: true, every_kind: false, locked: false, links: 40 };
 
 fn only_derivatives(name: &str, urdf: &str, base: Base) -> Robot {
     with(name.into(), urdf, base, true, Options::default(), |name| name == "inverse_dynamics_derivatives")

@@ -5,7 +5,6 @@
 
 mod batch;
 mod columns;
-mod derivatives;
 mod function;
 mod instructions;
 mod literal;

@@ -145,8 +145,6 @@ pub enum Form {
     RatesByAxes,
     /// Statements from the last result on, not as they are traced: for matrices whose columns are carried side by side.
     FromTheLast,
-    /// Loops over joints where the whole would be long.
-    JointsInLoops,
 }
 
 /// One row: a function that any robot can have.

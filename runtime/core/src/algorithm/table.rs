@@ -120,8 +120,7 @@ macro_rules! for_each_function {
             inverse_dynamics_derivatives(q, v, a) -> [Of(3), Nv, Nv] "∂τ/∂q, ∂τ/∂v, ∂τ/∂a = M; rows τ", Derivatives, Nothing, true,
                 "first derivatives of inverse_dynamics; q in the tangent space",
                 "Singh, Russell & Wensing, IEEE RA-L 7, 2022; Carpentier & Mansard, RSS 2018",
-                by ["", always, nothing, inverse_dynamics_derivatives; "the axes of the first body", near_the_middle, nothing, inverse_dynamics_derivatives in axes_of_first_bodies],
-                forms [JointsInLoops];
+                by ["", always, nothing, inverse_dynamics_derivatives; "the axes of the first body", near_the_middle, nothing, inverse_dynamics_derivatives in axes_of_first_bodies];
             inverse_dynamics_derivatives_with_wrenches(q, v, a, wrenches) -> [Of(3), Nv, Nv]
                 "∂τ/∂q, ∂τ/∂v, ∂τ/∂a = M; rows τ", Derivatives, Nothing, true,
                 "first derivatives of inverse_dynamics_with_wrenches; q in the tangent space, wrenches constant in their reference",

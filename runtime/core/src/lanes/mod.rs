@@ -25,7 +25,7 @@
 //!
 //! [`COLUMNS`] is built on these with four f64.
 //!
-//! The texts: `registers` and `portable`, what a vector is and its arithmetic; `common`, what follows from that; `sines`; `results`, four lanes at places of their own; `tiles`; `loops`, algorithms that stay loops.
+//! The texts: `registers` and `portable`, what a vector is and its arithmetic; `common`, what follows from that; `sines`; `results`, four lanes at places of their own; `tiles`; `loops`, the solution for many right-hand sides.
 
 use alloc::format;
 use alloc::string::{String, ToString};
@@ -122,48 +122,6 @@ pub fn tiles(set: Set, real: Real, lanes: usize) -> Option<String> {
 /// * `NV`, and `TOGETHER`, how many matrices are solved for at once (3 or 1) in vectors of four columns and in vectors of eight;
 /// * `BEFORE` and `BEYOND`: `[&[(u16, u16)]; NV]`, for each row of L (each column) the column (the row) of each number and its place in `l`.
 pub const COLUMNS: &str = include_str!("text/loops/columns.rs");
-
-/// ∂τ/∂q, ∂τ/∂v and ∂τ/∂a of a tree on a floating joint, in loops over its joints, four at a time: what [`crate::algorithm::inverse_dynamics_derivatives`] gives, in the axes of the root
-/// body.
-///
-/// The text of a module that stands beside `portable_f64x4`, `avx2_f64x4` and `neon_f64x4`. Before it stand `NQ`, `NV`, and of types that it has
-/// * `GROUPS`, `TREE: [Group; GROUPS]`, `SLIDES`, whether there are prismatic joints, `ROOT: [f64; 10]`, the root body's m, h and Σ, `MASS`, that of all bodies, and `GRAVITY`;
-/// * `CHUNKS: [Chunk; _]`, `STEPS` and `PATHS: [Path; STEPS]`, a path behind those that it goes on from;
-/// * `BEFORE` and `BEYOND`: `[Pair; _]`, each joint with itself and those before it, and with those beyond it: joints of a block in twos.
-pub const DERIVATIVES: &str = concat!(
-    include_str!("text/loops/derivatives_tables.rs"),
-    include_str!("text/loops/derivatives_vectors.rs"),
-    include_str!("text/loops/derivatives_sweeps.rs"),
-    include_str!("text/loops/derivatives_pairs.rs"),
-    include_str!("text/loops/derivatives_wide.rs"),
-    include_str!("text/loops/derivatives.rs"),
-);
-
-/// What [`DERIVATIVES`] cost, in vectors of four numbers: additions, products, multiply-adds, signs and sines of one group, of one chunk, of a pair of each kind, and of what is done once.
-pub struct LoopCost {
-    groups: [u64; 5],
-    chunks: [u64; 5],
-    before: [u64; 5],
-    beyond: [u64; 5],
-    once: [u64; 5],
-}
-
-/// What [`DERIVATIVES`] cost where joints slide; without these, a few products less. A group that finds its parents in another's lanes adds up number by number.
-pub const DERIVATIVES_COST: LoopCost = LoopCost {
-    groups: [47, 110, 342, 25, 1],
-    chunks: [0, 6, 36, 0, 0],
-    before: [6, 4, 27, 0, 0],
-    beyond: [9, 6, 18, 0, 0],
-    once: [12, 54, 153, 24, 0],
-};
-
-impl LoopCost {
-    /// Of so many groups, chunks and pairs.
-    pub fn of(&self, groups: u64, chunks: u64, before: u64, beyond: u64) -> [u64; 5] {
-        let Self { groups: a, chunks: b, before: c, beyond: d, once } = self;
-        core::array::from_fn(|i| groups * a[i] + chunks * b[i] + before * c[i] + beyond * d[i] + once[i])
-    }
-}
 
 /// Modules' texts, which tests compile: common files in the order in which macros are needed.
 macro_rules! modules {

@@ -1,7 +1,6 @@
 //! Every lane of every function of every set that this processor has, against scalars.
 
 mod columns;
-mod derivatives;
 mod rows;
 mod sines;
 mod source;

@@ -134,7 +134,7 @@ impl<'a> Batch<'a> {
     /// symmetric matrix, which the function of one state only stores.
     fn is_faster_one_by_one(&self, real: Real) -> bool {
         let Self { function, level, .. } = self;
-        let is_straight = function.columns.is_none() && function.groups.is_none() && *level == Level::default();
+        let is_straight = function.columns.is_none() && *level == Level::default();
         let is_one_array = matches!(function.results.as_slice(), [array] if !array.lengths.is_empty());
         let has_one = is_straight && is_one_array && self.inputs().iter().all(|a| !a.is_parameters);
         let (operations, sines) = function.operations;

@@ -62,10 +62,6 @@ pub(crate) fn function(text: &mut Text, function: &Function, context: Context) {
 fn inner(out: &mut String, signature: &Signature, context: Context) {
     let (function, takes, returns) = (signature.function, signature.takes(), signature.returns());
     let _ = writeln!(out, "pub(super) fn {}({takes}){returns} {{", signature.name());
-    if function.groups.is_some() {
-        let _ = writeln!(out, "    derivatives::inverse_dynamics_derivatives({});\n}}\n", signature.names_and("out"));
-        return;
-    }
     if function.columns.is_some() {
         // The body has several ends.
         let _ = writeln!(out, "    before_columns({});\n    columns::columns(out);\n", signature.handed());
@@ -108,7 +104,6 @@ fn value_form(out: &mut String, signature: &Signature) {
     head(out, &format!("pub fn {name}"), &signature.argument_list(), &format!(" -> {}", signature.gives()));
     let handed = signature.names_and("&mut out");
     let _ = match function.ending {
-        _ if function.groups.is_some() => writeln!(out, "    let mut out = {};\n    {name}_into({handed});\n    out", signature.nothing()),
         Ending::Value => writeln!(out, "    {IMPLEMENTATION}::{name}({})", signature.names()),
         Ending::Written | Ending::Rows => {
             let _ = writeln!(out, "    let mut out = ::core::mem::MaybeUninit::uninit();\n    {IMPLEMENTATION}::{name}({handed});");
@@ -132,7 +127,6 @@ fn into_form(out: &mut String, signature: &Signature) {
     head(out, &format!("pub fn {into}"), &list, "");
     let handed = signature.names_and("out");
     let _ = match function.ending {
-        _ if function.groups.is_some() => writeln!(out, "    {IMPLEMENTATION}::{name}({handed});"),
         Ending::Value => writeln!(out, "    *out = {name}({});", signature.names()),
         Ending::Written | Ending::Rows => {
             let _ = writeln!(out, "    // SAFETY: the function reads nothing there, and writes a value.");
@@ -157,7 +151,7 @@ pub(crate) fn head(out: &mut String, before: &str, arguments: &[String], returns
 
 /// The lints that a public function would break.
 fn allowed(signature: &Signature, name: &str) -> String {
-    let is_unsafe = matches!(signature.function.ending, Ending::Written | Ending::Rows) && signature.function.groups.is_none();
+    let is_unsafe = matches!(signature.function.ending, Ending::Written | Ending::Rows);
     let mut lints = Vec::new();
     lints.extend(is_unsafe.then_some("unsafe_code"));
     lints.extend(style::is_odd(name).then_some("non_snake_case"));
@@ -261,7 +255,7 @@ fn lanes_calls(out: &mut String, signature: &Signature) {
 }
 
 fn document(out: &mut String, signature: &Signature, context: Context) {
-    let Function { spec, entry, groups, .. } = signature.function;
+    let Function { spec, entry, .. } = signature.function;
     for part in &spec.parts {
         let constants: Vec<String> = part.constants.iter().map(|(a, c)| format!("{} = {}", a.name(), shown(c))).collect();
         let at = if constants.is_empty() { String::new() } else { format!(", at {}", constants.join(", ")) };
@@ -279,7 +273,6 @@ fn document(out: &mut String, signature: &Signature, context: Context) {
     }
     let by = match entry.ways.join(", ") {
         ways if ways.is_empty() => ways,
-        _ if groups.is_some() => "In loops over joints: ".into(),
         ways => format!("Strategy: {ways} (the cheapest for this robot). "),
     };
     let c = entry.emitted();
@@ -302,9 +295,6 @@ fn counted(n: u64, [one, several]: [&str; 2]) -> String {
 /// What there is to say of a function's form.
 fn form(function: &Function) -> String {
     let entry = function.entry;
-    if function.groups.is_some() {
-        return format!(", each of {} joints at once", entry.lanes);
-    }
     let lanes = if entry.lanes > 1 { format!("; isomorphic limbs in {} lanes", entry.lanes) } else { String::new() };
     let pieces = if function.is_outlined { "; in several pieces, which compile faster" } else { "" };
     let spills = if function.few_registers.is_some() { "; with explicit spills on x86-64 without AVX-512" } else { "" };

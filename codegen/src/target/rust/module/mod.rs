@@ -37,7 +37,7 @@ pub(crate) fn module(module: &Module, rust: &RustOptions) -> String {
     let (forbid_unsafe, level) = (rust.forbid_unsafe, request.options.level);
     let context = Context { parameters: !parameters.is_empty(), forbid_unsafe, level };
     functions.iter().for_each(|f| function(&mut text, f, context));
-    support(&mut text.implementation, model, functions, (forbid_unsafe, rust.no_std), level);
+    support(&mut text.implementation, functions, (forbid_unsafe, rust.no_std), level);
     let of_many: Vec<Batch> = functions.iter().filter_map(|f| Batch::of(f, level)).collect();
     batches(&mut text.implementation, &of_many, rust);
     if functions.iter().any(spills::is_used) {

@@ -4,12 +4,10 @@ use std::fmt::Write;
 
 use articulated_core::lanes::{Real, Set, source};
 use articulated_core::level::with_sines;
-use articulated_core::model::Model;
 
 use crate::Level;
 use crate::lir::function::Function;
 use crate::target::rust::columns::Layout;
-use crate::target::rust::derivatives;
 use crate::target::rust::function::levels;
 use crate::target::rust::instructions::{
     COMPILED_FOR_AVX512, COMPILED_FOR_AVX512_BESIDE_AVX2, MAY_LACK_AVX2, NOT_COMPILED_FOR_AVX2, OTHERS, has_batch, needs_choice,
@@ -20,7 +18,7 @@ use crate::target::rust::several;
 use crate::target::rust::tree_shake::tree_shake;
 
 /// What the functions call: multiply-adds, sines, lanes.
-pub(crate) fn support(out: &mut String, model: &Model<f64>, functions: &[Function], (forbid_unsafe, no_std): (bool, bool), level: Level) {
+pub(crate) fn support(out: &mut String, functions: &[Function], (forbid_unsafe, no_std): (bool, bool), level: Level) {
     let mut calls = Requirements::default();
     functions.iter().for_each(|f| {
         calls.add_body(&f.body);
@@ -53,11 +51,6 @@ pub(crate) fn support(out: &mut String, model: &Model<f64>, functions: &[Functio
         when = When { portable: MAY_LACK_AVX2, eight: COMPILED_FOR_AVX512 };
         widths.push(4);
         widths.push(8);
-    }
-    if let Some(groups) = functions.iter().find_map(|f| f.groups) {
-        derivatives::module(out, groups, model);
-        when.portable = MAY_LACK_AVX2;
-        widths.push(4);
     }
     if sines {
         widths.push(4);

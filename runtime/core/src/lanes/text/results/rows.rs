@@ -27,11 +27,6 @@ four_functions! {
         [lanes([x[0], x[3], x[6], x[9]]), lanes([x[1], x[4], x[7], x[10]]), lanes([x[2], x[5], x[8], x[11]])]
     }
 
-    // Of four rows of four numbers the columns.
-    pub(super) fn turned_from([a, b, c, d]: [&[Real; LANES]; LANES]) -> [V; LANES] {
-        [lanes([a[0], b[0], c[0], d[0]]), lanes([a[1], b[1], c[1], d[1]]), lanes([a[2], b[2], c[2], d[2]]), lanes([a[3], b[3], c[3], d[3]])]
-    }
-
     // The sums of the lanes of each, added up as by `across`.
     pub(super) fn across_of_four(a: V, b: V, c: V, d: V) -> V {
         let sum = |[a, b, c, d]: [Real; LANES]| (a + b) + (c + d);

@@ -39,20 +39,6 @@ lane_functions! {
         [pairs::<0b1010>(ab, ac), pairs::<0b0101>(ab, bc), pairs::<0b1010>(ac, bc)]
     }
 
-    // Of four rows of four numbers the columns. Halves are put together as they are read: of whole rows, or of numbers, compilers make twice as many instructions.
-    pub(super) fn turned_from([a, b, c, d]: [&[Real; LANES]; LANES]) -> [V; LANES] {
-        use ::core::arch::x86_64::{
-            _mm_loadu_pd as load_half, _mm256_castpd128_pd256 as widened, _mm256_insertf128_pd as with_upper, _mm256_unpackhi_pd as odd,
-            _mm256_unpacklo_pd as even,
-        };
-        // SAFETY: two numbers are read of two.
-        let halves = |x: &[Real; LANES]| unsafe { [load_half(x[..2].as_ptr()), load_half(x[2..].as_ptr())] };
-        let ([a, e], [b, f], [c, g], [d, h]) = (halves(a), halves(b), halves(c), halves(d));
-        let beside = |x, y| with_upper::<1>(widened(x), y);
-        let (ac, bd, eg, fh) = (beside(a, c), beside(b, d), beside(e, g), beside(f, h));
-        [even(ac, bd), odd(ac, bd), even(eg, fh), odd(eg, fh)]
-    }
-
     // The sums of the lanes of each, added up as by `across`.
     pub(super) fn across_of_four(a: V, b: V, c: V, d: V) -> V {
         use ::core::arch::x86_64::{

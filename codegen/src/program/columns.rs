@@ -1,15 +1,12 @@
-//! What of a function is left a loop: the solution of M X = B column by column, or all of it joint by joint.
+//! What of a function is left a loop: the solution of M X = B column by column.
 
 use std::ops::RangeInclusive;
 
-use articulated_core::algorithm::Form;
 use articulated_core::model::Model;
 
-use crate::Options;
 use crate::capabilities::Capabilities;
-use crate::graph::{Counts, Op};
-use crate::joint_blocks::{self, Groups};
-use crate::ledger::{Entry, LOOPS};
+use crate::graph::Op;
+use crate::ledger::Entry;
 use crate::spec::FunctionSpec;
 use crate::trace::applies;
 
@@ -53,31 +50,4 @@ impl MultiRhsSolve {
         }
         entry.ways = vec!["columns in a loop".into()];
     }
-}
-
-/// What is fewer instructions than this is never left loops over joints: it is fetched as fast as it is executed, and does nothing that is not asked for.
-const WRITTEN_OUT: f64 = 3500.0;
-
-/// An instruction in loops takes this part of the time of one that is written out, or less.
-const LOOPED: f64 = 0.95;
-
-/// Where joints stand, if a function that would be so many instructions is fewer as loops over them: these need vectors, and constants that are known.
-pub(crate) fn groups(
-    wanted: &FunctionSpec,
-    written: f64,
-    model: &Model<f64>,
-    options: &Options,
-    can: Capabilities,
-) -> Option<(Groups, Counts)> {
-    let meant = written > WRITTEN_OUT && wanted.as_function().is_some_and(|f| f.forms.contains(&Form::JointsInLoops));
-    let fits = options.limbs && can.vectors && options.parameters.is_empty();
-    let groups = (meant && fits).then(|| Groups::of(model)).flatten()?;
-    let counts = groups.counts(model);
-    (counts.instructions() as f64 * LOOPED < written).then_some((groups, counts))
-}
-
-/// The entry of what is left loops, which cost this.
-pub(super) fn count(entry: &mut Entry, counts: &Counts) {
-    (entry.ways, entry.lanes) = (vec!["joints in loops".into()], joint_blocks::LANES);
-    entry.stages.push((LOOPS, counts.clone()));
 }
