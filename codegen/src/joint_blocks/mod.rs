@@ -32,8 +32,8 @@ impl Groups {
     pub(crate) fn of(model: &Model<f64>) -> Option<Self> {
         let bodies = &model.bodies;
         let root =
-            bodies.get(ROOT).is_some_and(|b| b.joint == Joint::Floating && b.parent == 0 && (b.coordinates.q, b.coordinates.v) == (0, 0));
-        let single = |joint| matches!(joint, Joint::Revolute | Joint::Prismatic);
+            bodies.get(ROOT).is_some_and(|b| b.joint.is_unconstrained() && b.parent == 0 && (b.coordinates.q, b.coordinates.v) == (0, 0));
+        let single = |joint: Joint| joint.is_rotation_about_axis() || joint.is_translation_along_axis();
         let fits = root
             && bodies.iter().skip(ROOT + 1).all(|b| single(b.joint) && b.parent >= ROOT)
             && bodies.iter().all(|b| b.coordinates.mimic.is_none() && b.effects.joint.is_empty() && b.effects.body.is_empty());

@@ -168,7 +168,7 @@ macro_rules! trees {
                     q: [7 + k as u16; 4],
                     v: [6 + k as u16; 4],
                     follows: first::<1>(&[f64::from(chunks().iter().all(|c| c[0] != k))])[0],
-                    slides: first::<1>(&[f64::from(body.joint == Joint::Prismatic)])[0],
+                    slides: first::<1>(&[f64::from(body.joint.moves_origin())])[0],
                     rotation: first(body.placement.rotation.transpose().as_slice()),
                     origin: first(body.placement.position.as_slice()),
                     mass: first::<1>(&[super::MASS])[0],
