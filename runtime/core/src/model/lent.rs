@@ -4,7 +4,8 @@ use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::pass::{counts_an_offset, give_to_parent, subtract, within};
+use super::pass::{counts_an_offset, within};
+use super::regroup::{regroup_body, subtract};
 use crate::Scalar;
 use crate::model::{Body, Model};
 use crate::spatial::SpatialInertia;
@@ -23,7 +24,7 @@ impl<S: Scalar> Model<S> {
         let mut model = self.clone();
         let handed_on = self.forces_handed_on();
         for i in self.inward() {
-            give_to_parent(&mut model, i);
+            regroup_body(&mut model, i);
             if let Some((child, parent)) = cheapest(&model, i, &handed_on, carried[i] + carried[i]) {
                 model.bodies[i].inertia = child;
                 model.bodies[self.bodies[i].parent].inertia = parent;

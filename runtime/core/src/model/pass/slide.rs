@@ -6,9 +6,8 @@ use alloc::vec::Vec;
 use nalgebra::Vector3;
 
 use super::places::{Places, offset, shifted};
-use super::regroup;
 use crate::Scalar;
-use crate::model::Model;
+use crate::model::{Model, regroup};
 
 /// Slides the frame of each revolute body along its axis, and shifts that of each prismatic body, so that the recursion of inverse dynamics has least
 /// to do.
