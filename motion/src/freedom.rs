@@ -1,6 +1,5 @@
 //! Degrees of freedom with the bounds and the friction of their joints, those of joints that follow others too.
 
-use articulated_core::description::JointKind;
 use articulated_core::effect::{EffectId, JointEffect};
 use articulated_core::model::Body;
 
@@ -46,7 +45,7 @@ impl Stage {
     /// The bounds that the file gives a joint of one degree of freedom, those of one that follows another too.
     pub(crate) fn of_the_file(&self, body: &Body<f64>) -> Option<(f64, f64)> {
         let joint = self.description.joints.iter().find(|joint| joint.name == body.name && body.joint.nv() == 1)?;
-        joint.limit.filter(|_| joint.kind != JointKind::Continuous).map(|l| (l.lower, l.upper))
+        joint.limit.filter(|_| joint.kind.has_bounds()).map(|l| (l.lower, l.upper))
     }
 }
 

@@ -1,7 +1,6 @@
 //! States that are hard: where angles, rates or configurations bring errors out.
 
 use articulated_core::algorithm::Argument;
-use articulated_core::description::JointKind;
 use articulated_core::model::{JointInfo, Model};
 
 use crate::states::{self, State};
@@ -66,7 +65,7 @@ fn angles(model: &Model<f64>, state: &mut State, change: impl Fn(&JointInfo, f64
 
 /// An angle of about this size, not a multiple of anything; a sliding joint stays.
 fn far(joint: &JointInfo, x: f64, size: f64) -> f64 {
-    if joint.kind == JointKind::Prismatic { x } else { size * (1.0 + x / 16.0) }
+    if joint.kind.is_linear() { x } else { size * (1.0 + x / 16.0) }
 }
 
 fn times(state: &mut State, arguments: &[Argument], factor: f64) {

@@ -51,7 +51,7 @@ impl Builder {
         let inertial = body.map(|b| Inertial { origin: Origin { xyz: b.center, rpy: b.rpy }, mass: b.mass, inertia: b.inertia });
         self.0.links.push(Link { name: format!("link_{child}"), inertial, ..Link::default() });
         let parent = on.unwrap_or(child - 1);
-        let second_axis = if kind == JointKind::Universal { [axis[1], axis[2], axis[0]] } else { [0.0; 3] };
+        let second_axis = if kind.has_second_axis() { [axis[1], axis[2], axis[0]] } else { [0.0; 3] };
         self.0.joints.push(Joint { name: format!("joint_{child}"), kind, parent, child, origin, axis, second_axis, ..Joint::default() });
         self
     }

@@ -23,7 +23,7 @@ fn has_mass(draft: &Draft, link: usize) -> bool {
 /// The root and all links that fixed joints tie to it, in the order of the walk.
 fn held(draft: &Draft, tree: &Tree) -> Vec<usize> {
     let mut below = vec![Vec::new(); draft.links.len()];
-    for (joint, _) in draft.joints.iter().enumerate().filter(|(_, j)| j.kind == Some(JointKind::Fixed)) {
+    for (joint, _) in draft.joints.iter().enumerate().filter(|(_, j)| j.kind.is_some_and(JointKind::is_fixed)) {
         below[tree.parent[joint]].push(tree.child[joint]);
     }
     let mut held = vec![tree.root];

@@ -37,7 +37,7 @@ pub(crate) fn joint(tag: &Tag<'_>, context: &Context<'_>, log: &mut Diagnostics)
         axis: DEFAULT_AXIS,
         second_axis: [0.0; 3],
         pitch: 0.0,
-        mimic: if kind == Some(JointKind::Fixed) { None } else { mimic(&tag, log) },
+        mimic: if kind.is_some_and(JointKind::is_fixed) { None } else { mimic(&tag, log) },
         limit: None,
         dynamics: None,
     };
@@ -121,7 +121,7 @@ fn motion(tag: &Tag<'_>, kind: JointKind, version: Version, joint: &mut DraftJoi
         }
         _ => report_useless(tag, "axis", log),
     }
-    if kind == JointKind::Helical {
+    if kind.has_pitch() {
         joint.pitch = pitch(tag, log).unwrap_or_default();
     }
     if has_one_coordinate(kind) {
@@ -129,13 +129,13 @@ fn motion(tag: &Tag<'_>, kind: JointKind, version: Version, joint: &mut DraftJoi
         joint.dynamics = limits::dynamics(tag, log);
     }
     let useless = [
-        ("axis2", kind != JointKind::Universal),
-        ("thread", kind != JointKind::Helical),
+        ("axis2", !kind.has_second_axis()),
+        ("thread", !kind.has_pitch()),
         ("limit", !has_one_coordinate(kind)),
         ("dynamics", !has_one_coordinate(kind)),
     ];
     useless.iter().filter(|(_, useless)| *useless).for_each(|(name, _)| report_useless(tag, name, log));
-    if kind == JointKind::Fixed
+    if kind.is_fixed()
         && let Some(mimic) = tag.only("mimic", log)
     {
         mimic.unused(log, mimic.name(), "a fixed joint does not move");

@@ -33,7 +33,7 @@ pub(crate) fn limit(joint: &Tag<'_>, kind: JointKind, version: Version, log: &mu
 }
 
 fn report_missing(joint: &Tag<'_>, kind: JointKind, log: &mut Diagnostics) {
-    if kind != JointKind::Continuous {
+    if kind.has_bounds() {
         let expected = "<limit> for a revolute, helical or prismatic joint; taken as without limits";
         log.warning(&joint.place("limit"), Code::LimitMissing, "none", expected);
     }

@@ -1,6 +1,6 @@
 //! What of a robot moves.
 
-use articulated_core::description::{Base, Description, Joint, JointKind};
+use articulated_core::description::{Base, Description, Joint};
 
 /// For each joint, whether it lets its child move: it is not fixed, not locked, and does not follow one that is. A chain of followers without an end lets it.
 pub(crate) fn moving(description: &Description) -> Vec<bool> {
@@ -11,7 +11,7 @@ pub(crate) fn moving(description: &Description) -> Vec<bool> {
         while let Some(at) = next.filter(|at| !seen[*at]) {
             seen[at] = true;
             chain.push(at);
-            moving[at] = joints[at].kind != JointKind::Fixed && joints[at].locked.is_none();
+            moving[at] = !joints[at].kind.is_fixed() && joints[at].locked.is_none();
             next = leader(joints, at).filter(|_| moving[at]);
         }
         // The last of them first: what it follows was seen before.
@@ -52,6 +52,8 @@ pub fn still(description: &Description, base: Base) -> Vec<bool> {
 #[cfg(test)]
 mod tests {
     use articulated_core::description::Mimic;
+
+    use articulated_core::description::JointKind;
 
     use super::*;
 

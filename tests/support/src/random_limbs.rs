@@ -91,7 +91,7 @@ fn attach(robot: &mut Description, name: &str, parent: usize, joint: Joint, body
 fn mirror(random: &mut Random, joint: &mut Joint, body: &mut Option<Inertial>) {
     let [point, turn] = [|[x, y, z]: [f64; 3]| [x, -y, z], |[x, y, z]: [f64; 3]| [-x, y, -z]];
     let place = |o: Origin| Origin { xyz: point(o.xyz), rpy: turn(o.rpy) };
-    let direction = |axis| if joint.kind == JointKind::Prismatic { point(axis) } else { turn(axis) };
+    let direction = |axis| if joint.kind.is_linear() { point(axis) } else { turn(axis) };
     let sign = if random.chance(0.5) { 1.0 } else { -1.0 };
     (joint.axis, joint.second_axis) = (direction(joint.axis).map(|x| sign * x + 0.0), direction(joint.second_axis).map(|x| x + 0.0));
     joint.origin = place(joint.origin);

@@ -1,6 +1,6 @@
 //! A robot as it is drawn: lines between joints, and for each link the box of even density that has its mass and inertia.
 
-use articulated_core::description::{Base, Description, Inertial, JointKind, Origin};
+use articulated_core::description::{Base, Description, Inertial, Origin};
 use articulated_core::model::{Frame, Model};
 use articulated_core::spatial::Placement;
 use nalgebra::{Matrix3, Rotation3, SymmetricEigen, Vector3};
@@ -71,7 +71,7 @@ impl Figure {
             if parent.body != child.body || start != end {
                 figure.sticks.push(Stick { from: parent.body, start, to: child.body, end });
             }
-            if joint.kind != JointKind::Fixed && joint.locked.is_none() {
+            if !joint.kind.is_fixed() && joint.locked.is_none() {
                 figure.joints.push(Mark { body: child.body, place: end, name: joint.name.clone() });
             }
         }
@@ -207,7 +207,7 @@ mod tests {
         for name in ["simple_pendulum", "gripper_arm", "quadruped", "humanoid"] {
             let (description, base) = bundled(name);
             let figure = Figure::of(&description, &bundled_model(name), base);
-            let moving = description.joints.iter().filter(|j| j.kind != JointKind::Fixed).count();
+            let moving = description.joints.iter().filter(|j| !j.kind.is_fixed()).count();
             assert_eq!(figure.joints.len(), moving, "{name}");
             assert_eq!(figure.frames.len(), moving + usize::from(base == Base::Floating), "{name}");
             assert_eq!(figure.boxes.len(), description.links.iter().filter(|l| l.inertial.is_some()).count(), "{name}");

@@ -9,8 +9,8 @@
 use super::Workspace;
 use super::workspace::{Column, CommonState};
 use crate::Scalar;
+use crate::joint::JointLaw;
 use crate::joint::with_pose;
-use crate::joint::{Joint, JointLaw};
 use crate::model::{Body, Model};
 use crate::spatial::{CoriolisInertia, Matrix3, Placement, Twist, Vector3, Wrench, rotate};
 
@@ -186,7 +186,7 @@ pub(super) fn carry<S: Scalar, const N: usize>(
 
 /// Whether the inertial frame moves with the body.
 fn moves_along<S: Scalar>(body: &Body<S>, axes: Axes) -> bool {
-    axes == Axes::Tree && body.parent == 0 && body.joint == Joint::Floating
+    axes == Axes::Tree && body.parent == 0 && body.joint.is_unconstrained()
 }
 
 impl<S: Scalar> CommonState<S> {

@@ -19,7 +19,6 @@ use super::ltdl::{factor, inverse, solve, solve_rows, way};
 use super::rnea::inverse_dynamics_with_wrenches;
 use super::wrenches;
 use crate::Scalar;
-use crate::joint::Joint;
 use crate::model::Model;
 use crate::spatial::{Reference, Twist, Vector3, Wrench, rotate};
 
@@ -247,7 +246,7 @@ fn curls<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
 /// V̇_λ × S. What hangs on the base by a revolute joint falls as the base does: then the product is taken before its factors are turned, and is nothing for a joint that stands upright.
 fn falling<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, k: usize, carried: &Twist<S>) -> Twist<S> {
     let body = &model.bodies[i];
-    if body.parent != 0 || body.joint != Joint::Revolute {
+    if body.parent != 0 || !body.joint.is_rotation_about_axis() {
         return carried.cross(&ws.columns[k].axis);
     }
     let product = body.placement.rotation.column(2).cross(&model.gravity);

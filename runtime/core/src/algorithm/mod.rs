@@ -2,6 +2,7 @@
 
 mod aba;
 pub(crate) mod argument;
+mod base_parameters;
 mod call;
 pub mod checked;
 mod common;
@@ -28,6 +29,7 @@ mod wrenches;
 
 pub use aba::{articulated_body, articulated_body_with_wrenches, solve_by_articulated_body};
 pub use argument::{Argument, Dim};
+pub use base_parameters::{BaseParameter, BodyParameters, Identifiability, base_parameters, identifiable_parameters};
 pub use call::{FunctionError, check_count, check_length, exactly, exactly_rows};
 pub use checked::{checked_forward_dynamics, checked_forward_dynamics_with_wrenches};
 pub use coriolis::coriolis_matrix;

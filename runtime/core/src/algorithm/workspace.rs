@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::Shape;
 use super::checked::Size;
 use crate::Scalar;
-use crate::joint::{Joint, Pose};
+use crate::joint::Pose;
 use crate::model::Model;
 use crate::spatial::{ArticulatedInertia, CoriolisInertia, Motion, Placement, SpatialInertia, Twist, Wrench};
 
@@ -266,7 +266,7 @@ const NEAR: usize = 4;
 pub(super) fn near_the_middle<S: Scalar>(model: &Model<S>) -> bool {
     let way = |i: usize| core::iter::successors(Some(i), |&i| Some(model.bodies[i].parent).filter(|p| *p != 0));
     let ways = || middles(model).into_iter().map(way);
-    let turns = |i: usize| model.bodies[i].joint == Joint::Revolute;
+    let turns = |i: usize| model.bodies[i].joint.is_rotation_about_axis();
     ways().any(|way| way.count() > 1) && ways().all(|way| way.clone().count() <= NEAR && way.into_iter().all(turns))
 }
 

@@ -79,7 +79,7 @@ impl<'a> Editor<'a> {
         let joints = &mut self.robot.joints;
         let found = &joints[index];
         let name = || joint.to_string();
-        if found.kind == JointKind::Fixed {
+        if found.kind.is_fixed() {
             return Err(EditError::LockedFixed { joint: name() });
         }
         if let Some(leader) = found.mimic.and_then(|mimic| joints.get(mimic.joint)) {

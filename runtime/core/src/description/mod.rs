@@ -161,6 +161,31 @@ impl JointKind {
         self.coordinates().iter().position(|of| *of == Quantity::Quaternion)
     }
 
+    /// Whether it lets nothing move.
+    pub fn is_fixed(self) -> bool {
+        self.rates().is_empty()
+    }
+
+    /// Whether it is a translation along an axis, so that its coordinate is a length.
+    pub fn is_linear(self) -> bool {
+        *self.coordinates() == [Quantity::Length]
+    }
+
+    /// Whether its coordinate may have bounds.
+    pub fn has_bounds(self) -> bool {
+        self != Self::Continuous
+    }
+
+    /// Whether it has a pitch, m per revolution.
+    pub fn has_pitch(self) -> bool {
+        self == Self::Helical
+    }
+
+    /// Whether it rotates about a second axis.
+    pub fn has_second_axis(self) -> bool {
+        self == Self::Universal
+    }
+
     /// Whether it moves along or about an axis.
     pub fn has_axis(self) -> bool {
         !matches!(self, Self::Fixed | Self::Floating | Self::Spherical)

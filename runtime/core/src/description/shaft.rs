@@ -54,10 +54,10 @@ impl Editor<'_> {
     /// Refused: a joint that does not exist or is not fixed, names that are taken, no pieces, a shaft without length or mass, numbers that are not finite.
     pub fn shaft(&mut self, shaft: &Shaft) -> Result<Vec<Applied>, EditError> {
         let Some(index) = self.names.joint(&shaft.joint) else {
-            return Err(self.unknown_joint(&shaft.joint, |j| j.kind == JointKind::Fixed));
+            return Err(self.unknown_joint(&shaft.joint, |j| j.kind.is_fixed()));
         };
         let Joint { kind, parent: carrier, origin, .. } = self.robot.joints[index];
-        if kind != JointKind::Fixed {
+        if !kind.is_fixed() {
             return Err(EditError::ShaftNotFixed { joint: shaft.joint.clone(), kind });
         }
         let line = Line::of(shaft, origin.xyz, self.robot.links[carrier].inertial)?;

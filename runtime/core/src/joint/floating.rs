@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Coordinates, JointLaw};
+use super::{Coordinates, Freedom, JointLaw};
 use crate::Scalar;
 use crate::spatial::{ArticulatedInertia, Motion, Placement, SpatialInertia, Twist, Wrench, from_quaternion, rotate, rotate_back};
 
@@ -25,6 +25,8 @@ impl<S: Scalar> JointLaw<S> for Floating<S> {
     const NQ: usize = 7;
     const NV: usize = 6;
     const QUATERNION: Option<usize> = Some(3);
+    const ROTATION: Freedom = Freedom::Free;
+    const TRANSLATION: Freedom = Freedom::Free;
 
     #[inline(always)]
     fn at(at: &Coordinates<S>, q: &[S]) -> Self {

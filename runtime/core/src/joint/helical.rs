@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Coordinates, JointLaw, Prismatic, Revolute};
+use super::{Coordinates, Freedom, JointLaw, Prismatic, Revolute};
 use crate::Scalar;
 use crate::spatial::{ArticulatedInertia, Matrix3, Motion, Placement, SpatialInertia, Twist, Wrench};
 
@@ -18,6 +18,8 @@ impl<S: Scalar> JointLaw<S> for Helical<S> {
     const NQ: usize = 1;
     const NV: usize = 1;
     const QUATERNION: Option<usize> = None;
+    const ROTATION: Freedom = Freedom::Axis;
+    const TRANSLATION: Freedom = Freedom::Axis;
 
     #[inline(always)]
     fn at(at: &Coordinates<S>, q: &[S]) -> Self {

@@ -55,6 +55,20 @@ macro_rules! joints {
                 }
             }
 
+            /// As [`JointLaw::ROTATION`].
+            pub const fn rotation(self) -> Freedom {
+                match self {
+                    $(Self::$kind => <$kind<f64> as JointLaw<f64>>::ROTATION,)+
+                }
+            }
+
+            /// As [`JointLaw::TRANSLATION`].
+            pub const fn translation(self) -> Freedom {
+                match self {
+                    $(Self::$kind => <$kind<f64> as JointLaw<f64>>::TRANSLATION,)+
+                }
+            }
+
             /// As [`JointLaw::unfelt`].
             pub fn unfelt<S: Scalar>(self, inertia: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
                 match self {
@@ -124,6 +138,43 @@ joints! { $
     Spherical,
     /// Moves freely: position and unit quaternion (x, y, z, w); rates are the body twist.
     Floating,
+}
+
+/// The directions in which a joint lets its child rotate or translate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Freedom {
+    /// None.
+    None,
+    /// About or along the joint's axis, z.
+    Axis,
+    /// All three.
+    Free,
+}
+
+impl Joint {
+    /// Whether the joint is a rotation about its axis and nothing else: the child's origin stays, and S = [e_z; 0].
+    #[inline(always)]
+    pub const fn is_rotation_about_axis(self) -> bool {
+        matches!((self.rotation(), self.translation()), (Freedom::Axis, Freedom::None))
+    }
+
+    /// Whether the joint is a translation along its axis and nothing else: S = [0; e_z].
+    #[inline(always)]
+    pub const fn is_translation_along_axis(self) -> bool {
+        matches!((self.rotation(), self.translation()), (Freedom::None, Freedom::Axis))
+    }
+
+    /// Whether the joint moves the child's origin in the parent, so that a coordinate, a rate or a force of it has a length in it.
+    #[inline(always)]
+    pub const fn moves_origin(self) -> bool {
+        !matches!(self.translation(), Freedom::None)
+    }
+
+    /// Whether the joint constrains nothing: six degrees of freedom.
+    #[inline(always)]
+    pub const fn is_unconstrained(self) -> bool {
+        matches!((self.rotation(), self.translation()), (Freedom::Free, Freedom::Free))
+    }
 }
 
 /// Where a joint's numbers are in the vectors q and v, and how it follows another joint if it does.
@@ -244,6 +295,10 @@ pub trait JointLaw<S: Scalar>: Copy {
     const NV: usize;
     /// Which of the coordinates is the first of a unit quaternion (x, y, z, w), if there is one; otherwise each degree of freedom has a coordinate.
     const QUATERNION: Option<usize>;
+    /// The directions in which the child rotates.
+    const ROTATION: Freedom;
+    /// The directions in which the child's origin moves; along the axis by the rotation where that is the only degree of freedom.
+    const TRANSLATION: Freedom;
 
     /// The pose at the joint's coordinates in `q`.
     fn at(at: &Coordinates<S>, q: &[S]) -> Self;

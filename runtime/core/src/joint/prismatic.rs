@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use super::{Coordinates, JointLaw};
+use super::{Coordinates, Freedom, JointLaw};
 use crate::Scalar;
 use crate::spatial::{ArticulatedInertia, Matrix3, Motion, Placement, SpatialInertia, Twist, Wrench};
 
@@ -34,6 +34,8 @@ impl<S: Scalar> JointLaw<S> for Prismatic<S> {
     const NQ: usize = 1;
     const NV: usize = 1;
     const QUATERNION: Option<usize> = None;
+    const ROTATION: Freedom = Freedom::None;
+    const TRANSLATION: Freedom = Freedom::Axis;
 
     #[inline(always)]
     fn at(at: &Coordinates<S>, q: &[S]) -> Self {

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Coordinates, JointLaw};
+use super::{Coordinates, Freedom, JointLaw};
 use crate::Scalar;
 use crate::spatial::{ArticulatedInertia, Motion, Placement, SpatialInertia, Twist, Wrench, turned_about_z};
 
@@ -25,6 +25,8 @@ impl<S: Scalar> JointLaw<S> for Revolute<S> {
     const NQ: usize = 1;
     const NV: usize = 1;
     const QUATERNION: Option<usize> = None;
+    const ROTATION: Freedom = Freedom::Axis;
+    const TRANSLATION: Freedom = Freedom::None;
 
     #[inline(always)]
     fn at(at: &Coordinates<S>, q: &[S]) -> Self {

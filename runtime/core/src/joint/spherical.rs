@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::{Coordinates, JointLaw};
+use super::{Coordinates, Freedom, JointLaw};
 use crate::Scalar;
 use crate::spatial::{ArticulatedInertia, Motion, Placement, SpatialInertia, Twist, Wrench, from_quaternion, rotate, rotate_back};
 
@@ -23,6 +23,8 @@ impl<S: Scalar> JointLaw<S> for Spherical<S> {
     const NQ: usize = 4;
     const NV: usize = 3;
     const QUATERNION: Option<usize> = Some(0);
+    const ROTATION: Freedom = Freedom::Free;
+    const TRANSLATION: Freedom = Freedom::None;
 
     #[inline(always)]
     fn at(at: &Coordinates<S>, q: &[S]) -> Self {

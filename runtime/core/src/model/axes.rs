@@ -1,7 +1,6 @@
 //! Bodies whose turning is carried outward by the acceleration of their joint's axis.
 
 use crate::Scalar;
-use crate::joint::Joint;
 use crate::model::Model;
 use crate::spatial::Vector3;
 
@@ -26,7 +25,7 @@ impl<S: Scalar> Model<S> {
     #[must_use]
     pub fn with_rates_by_axes(mut self) -> Self {
         for body in self.bodies.iter_mut().skip(1) {
-            let along = body.joint == Joint::Revolute && lies_along_one(&body.placement.rotation.column(2).into_owned());
+            let along = body.joint.is_rotation_about_axis() && lies_along_one(&body.placement.rotation.column(2).into_owned());
             let moments = &body.for_torques().second;
             let dense = [moments.m12, moments.m13, moments.m23].iter().filter(|x| !x.is_zero()).count() >= DENSE;
             body.rates = match along {

@@ -215,7 +215,7 @@ impl<'a> Builder<'a> {
     fn push_joint(&mut self, name: &str, kind: JointKind, limit: Option<description::Limit>) -> Coordinates<f64> {
         let model = &mut self.model;
         let coordinates = Coordinates { q: model.nq, v: model.nv, ..AT_ZERO };
-        let limit = limit.filter(|_| kind != JointKind::Continuous);
+        let limit = limit.filter(|_| kind.has_bounds());
         let (nq, nv) = kind.sizes();
         model.joints.push(JointInfo { name: name.to_string(), kind, q: (model.nq, nq), v: (model.nv, nv), limit });
         model.nq += nq;
@@ -334,7 +334,7 @@ fn stages(joint: &description::Joint) -> Vec<Stage> {
 
 /// m/rad of a helical joint; zero for others.
 fn per_radian(joint: &description::Joint) -> f64 {
-    if joint.kind == JointKind::Helical { joint.pitch / core::f64::consts::TAU } else { 0.0 }
+    if joint.kind.has_pitch() { joint.pitch / core::f64::consts::TAU } else { 0.0 }
 }
 
 fn turned(turn: Matrix3<f64>) -> Placement<f64> {

@@ -4,9 +4,9 @@ use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::pass::{counts_an_offset, give_to_parent, subtract, within};
+use super::pass::{counts_an_offset, within};
+use super::regroup::{regroup_body, subtract};
 use crate::Scalar;
-use crate::joint::Joint;
 use crate::model::{Body, Model};
 use crate::spatial::SpatialInertia;
 
@@ -24,7 +24,7 @@ impl<S: Scalar> Model<S> {
         let mut model = self.clone();
         let handed_on = self.forces_handed_on();
         for i in self.inward() {
-            give_to_parent(&mut model, i);
+            regroup_body(&mut model, i);
             if let Some((child, parent)) = cheapest(&model, i, &handed_on, carried[i] + carried[i]) {
                 model.bodies[i].inertia = child;
                 model.bodies[self.bodies[i].parent].inertia = parent;
@@ -41,7 +41,7 @@ impl<S: Scalar> Model<S> {
         let mut handed_on = vec![false; self.bodies.len()];
         for i in self.outward() {
             let Body { joint, parent, .. } = self.bodies[i];
-            handed_on[i] = joint != Joint::Revolute || parent != 0 && (handed_on[parent] || counts_an_offset(self, i));
+            handed_on[i] = !joint.is_rotation_about_axis() || parent != 0 && (handed_on[parent] || counts_an_offset(self, i));
         }
         handed_on
     }
@@ -49,9 +49,9 @@ impl<S: Scalar> Model<S> {
     /// Whether body `i` can be lent something: its parent carries nothing else, so that limbs that are alike stay so, and more of the parent than I_zz is felt.
     fn borrows(&self, i: usize) -> bool {
         let parent = self.bodies[i].parent;
-        let first = self.bodies[parent].parent == 0 && self.bodies[parent].joint == Joint::Revolute;
+        let first = self.bodies[parent].parent == 0 && self.bodies[parent].joint.is_rotation_about_axis();
         let alone = self.outward().filter(|&k| self.bodies[k].parent == parent).take(2).count() == 1;
-        self.bodies[i].joint == Joint::Revolute && parent != 0 && !first && alone
+        self.bodies[i].joint.is_rotation_about_axis() && parent != 0 && !first && alone
     }
 }
 

@@ -7,6 +7,7 @@ mod lent;
 mod limbs;
 mod massless;
 pub mod pass;
+mod regroup;
 mod unit;
 mod unturned;
 
@@ -19,6 +20,7 @@ use nalgebra::{Matrix3, Vector3};
 pub use axes::Rates;
 pub use build::ModelError;
 pub use limbs::Limbs;
+pub use regroup::{regroup, regroup_body, subtract};
 pub use unturned::Unturned;
 
 use crate::Scalar;

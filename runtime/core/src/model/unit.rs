@@ -5,7 +5,6 @@ use alloc::vec::Vec;
 use nalgebra::Vector3;
 
 use crate::Scalar;
-use crate::joint::Joint;
 use crate::model::Model;
 
 impl<S: Scalar> Model<S> {
@@ -33,7 +32,7 @@ impl<S: Scalar> Model<S> {
 
     /// Whether no joint slides, so that no coordinate, rate or force of a joint has a length in it.
     pub fn only_turns(&self) -> bool {
-        self.outward().all(|i| matches!(self.bodies[i].joint, Joint::Revolute | Joint::Spherical))
+        self.outward().all(|i| !self.bodies[i].joint.moves_origin())
     }
 }
 

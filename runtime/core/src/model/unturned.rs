@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 use nalgebra::Matrix3;
 
 use crate::Scalar;
-use crate::joint::{Angle, Joint, JointLaw, Revolute};
+use crate::joint::{Angle, JointLaw, Revolute};
 use crate::model::{Body, Model};
 
 /// Which revolute bodies have frames that do not turn.
@@ -67,7 +67,7 @@ impl<S: Scalar> Model<S> {
         self.outward().for_each(|i| stays[self.bodies[i].parent] = false);
         for i in self.outward() {
             let body = &self.bodies[i];
-            stays[i] &= body.joint == Joint::Revolute && !body.coordinates.turns.is_zero();
+            stays[i] &= body.joint.is_rotation_about_axis() && !body.coordinates.turns.is_zero();
             if self.continues(body) {
                 (stays[i], stays[body.parent]) = (true, true);
             }
@@ -78,7 +78,7 @@ impl<S: Scalar> Model<S> {
     /// Whether a body's joint is parallel to that of its parent, and its frame not turned against the parent's.
     fn continues(&self, body: &Body<S>) -> bool {
         let turn = &body.placement.rotation;
-        let plain = |joint| joint == Joint::Revolute;
-        body.parent != 0 && plain(body.joint) && plain(self.bodies[body.parent].joint) && *turn == Matrix3::identity()
+        let plain = |body: &Body<S>| body.joint.is_rotation_about_axis();
+        body.parent != 0 && plain(body) && plain(&self.bodies[body.parent]) && *turn == Matrix3::identity()
     }
 }

@@ -1,7 +1,7 @@
 //! Different descriptions of the same physics.
 
 use articulated_core::algorithm::FunctionId;
-use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link};
+use articulated_core::description::{Base, Description, Inertial, Joint, Link};
 use articulated_core::dynamics::Dynamics;
 use articulated_core::spatial::from_quaternion;
 use articulated_test_support::case::{Case, State, for_each_tree, inverse_dynamics};
@@ -16,7 +16,7 @@ const FEW: f64 = 16.0;
 /// The same tree with every link behind a fixed joint made part of the link that it is fixed to.
 fn lumped(tree: &Description) -> Description {
     let mut out = tree.clone();
-    while let Some(fixed) = out.joints.iter().position(|j| j.kind == JointKind::Fixed) {
+    while let Some(fixed) = out.joints.iter().position(|j| j.kind.is_fixed()) {
         let Joint { parent, child, origin, .. } = out.joints[fixed].clone();
         let carried = out.links[child].inertial.map(|body| rigid::carried(&origin, &body));
         out.links[parent].inertial = both(out.links[parent].inertial, carried);

@@ -302,7 +302,7 @@ fn angles_about_a_joints_own_axis_are_counted_with_its_own() {
     let fixed = |x: f64| x == 0.0 || x.abs() == 1.0;
     for_each_tree(40, Flavour::ANY, |case, _| {
         let passed = model_passes::<f64>().iter().fold(case.model.clone(), |m, (_, pass, _)| pass(m));
-        for body in passed.bodies.iter().skip(1).filter(|b| b.parent != 0 && b.joint == articulated_core::joint::Joint::Revolute) {
+        for body in passed.bodies.iter().skip(1).filter(|b| b.parent != 0 && b.joint.is_rotation_about_axis()) {
             let turn = &body.placement.rotation;
             let along_a_coordinate_axis = turn.column(2).iter().all(|x| fixed(*x));
             assert!(!along_a_coordinate_axis || turn.iter().all(|x| fixed(*x)), "{}: {turn}", body.name);

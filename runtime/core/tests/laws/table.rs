@@ -134,8 +134,9 @@ fn round_bodies_need_not_turn() {
     for_each_tree(12, SMALL, |case, random| {
         let state = case.state(random);
         let mut model = case.model.clone();
-        let last =
-            |model: &Model, i: usize| model.outward().all(|k| model.bodies[k].parent != i) && model.bodies[i].joint == Joint::Revolute;
+        let last = |model: &Model, i: usize| {
+            model.outward().all(|k| model.bodies[k].parent != i) && model.bodies[i].joint.is_rotation_about_axis()
+        };
         let round: Vec<usize> = model.outward().filter(|&i| last(&model, i)).collect();
         for &i in &round {
             let SpatialInertia { first, second, .. } = &mut model.bodies[i].inertia;
@@ -164,7 +165,7 @@ fn constants_may_be_turned_instead_of_vectors() {
         let mut model = case.model.clone();
         for i in model.outward() {
             let (body, parent) = (&model.bodies[i], &model.bodies[model.bodies[i].parent]);
-            let revolute = body.joint == Joint::Revolute && parent.joint == Joint::Revolute;
+            let revolute = body.joint.is_rotation_about_axis() && parent.joint.is_rotation_about_axis();
             // What a universal joint consists of has no mass between.
             if body.parent != 0 && revolute && parent.link.is_some() && random.below(3) > 0 {
                 model.bodies[i].placement.rotation = Matrix3::identity();
@@ -237,7 +238,8 @@ fn mass_at_a_joint_may_be_lent() {
             let model = model.cast::<Big>();
             let passed = model_passes::<Big>().iter().fold(Model { frames: Vec::new(), ..model.clone() }, |m, (_, pass, _)| pass(m));
             let lending = passed.lent(&model.carried());
-            let has_some = |body: &&Body<Big>| body.joint == Joint::Revolute && body.lent.as_ref().is_some_and(|i| i.mass.to_f64() != 0.0);
+            let has_some =
+                |body: &&Body<Big>| body.joint.is_rotation_about_axis() && body.lent.as_ref().is_some_and(|i| i.mass.to_f64() != 0.0);
             lent.set(lent.get() + lending.bodies.iter().filter(has_some).count());
             same_without_frames(case, &state, &lending, &model);
             if passed.only_turns() {
@@ -259,7 +261,7 @@ fn lengths_may_be_in_any_unit() {
         let state = case.state(random);
         let mut model = case.model.clone();
         for body in &mut model.bodies {
-            if matches!(body.joint, Joint::Prismatic | Joint::Helical) {
+            if body.joint.nv() == 1 && body.joint.moves_origin() {
                 (body.joint, body.coordinates.pitch) = (Joint::Revolute, 0.0);
             }
         }

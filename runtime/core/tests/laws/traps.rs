@@ -1,7 +1,7 @@
 //! Four mistakes that are common in pseudo-code of the recursion, each made on purpose in a small matrix form of it: the laws of
 //! this crate must tell them from the right one. A law that nobody has seen fail proves little.
 
-use articulated_core::description::{Base, Description, JointKind};
+use articulated_core::description::{Base, Description};
 use articulated_test_support::case::{Case, State, read};
 use articulated_test_support::random::Random;
 use articulated_test_support::{measure, rigid};
@@ -165,7 +165,7 @@ fn ad(v: &Vector6<f64>) -> Matrix6<f64> {
 /// The bundled six-axis arm without what is fixed to it: six turning joints in a row.
 fn arm() -> (Case, Chain) {
     let mut tree = read(articulated_models::robot("ur5_like").unwrap().urdf);
-    let fixed = tree.joints.iter().position(|j| j.kind == JointKind::Fixed).unwrap();
+    let fixed = tree.joints.iter().position(|j| j.kind.is_fixed()).unwrap();
     let tip = tree.joints.remove(fixed).child;
     assert_eq!((tip, tree.joints.len()), (tree.links.len() - 1, 6), "a flange listed last");
     tree.links.pop();

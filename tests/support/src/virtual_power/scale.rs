@@ -116,7 +116,7 @@ impl Motions<'_> {
     fn leader(&self, joint: usize) -> Option<(usize, f64)> {
         let it = &self.description.joints[joint];
         match &it.mimic {
-            _ if it.locked.is_some() || it.kind == JointKind::Fixed => None,
+            _ if it.locked.is_some() || it.kind.is_fixed() => None,
             None => Some((joint, 1.0)),
             Some(m) => self.leader(m.joint).map(|(end, multiplier)| (end, m.multiplier * multiplier)),
         }

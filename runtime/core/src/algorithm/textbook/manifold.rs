@@ -75,7 +75,7 @@ impl<S: Scalar> Textbook<S> {
         let one = |joint: &JointInfo| {
             let u = part(uniform, joint.q);
             match (joint.kind, &joint.limit) {
-                (kind, Some(limit)) => u.iter().map(|&u| within(u, limit, kind != JointKind::Prismatic)).collect(),
+                (kind, Some(limit)) => u.iter().map(|&u| within(u, limit, !kind.is_linear())).collect(),
                 (JointKind::Prismatic, None) => alloc::vec![length(u[0])],
                 (JointKind::Planar, None) => alloc::vec![length(u[0]), length(u[1]), angle(u[2])],
                 (JointKind::Spherical, None) => rotation(u).to_vec(),

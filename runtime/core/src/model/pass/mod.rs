@@ -1,7 +1,6 @@
 //! Model passes: `Model → Model`, keeping the physics.
 
 mod places;
-mod regroup;
 mod slide;
 mod still;
 mod turn;
@@ -9,15 +8,13 @@ mod zeros;
 
 use core::marker::PhantomData;
 
-pub use regroup::regroup;
-pub(super) use regroup::{give_to_parent, subtract};
 pub(super) use slide::counts_an_offset;
 pub use slide::slide;
 pub use still::still;
 pub use turn::turn;
 pub(super) use zeros::within;
 
-use super::Model;
+use super::{Model, regroup};
 use crate::Scalar;
 
 /// A pass over models.

@@ -7,7 +7,6 @@ use nalgebra::Vector3;
 
 use super::zeros::{or_zero, within};
 use crate::Scalar;
-use crate::joint::Joint;
 use crate::model::{Body, Model};
 use crate::spatial::{SpatialInertia, rotate, rotate_back};
 
@@ -43,17 +42,15 @@ impl<S: Scalar> Places<S> {
     }
 
     fn without_moments(&mut self, model: &Model<S>, i: usize) {
-        let (o, inertia) = (S::zero(), &model.bodies[i].inertia);
-        match model.bodies[i].joint {
+        let (o, joint, inertia) = (S::zero(), model.bodies[i].joint, &model.bodies[i].inertia);
+        if joint.is_rotation_about_axis() {
             // Σ_xz − h_x d = 0, Σ_yz − h_y d = 0
-            Joint::Revolute => {
-                for k in (0..2).filter(|&k| inertia.first[k] != o) {
-                    self.add(model, i, Vector3::new(o, o, inertia.second[(k, 2)] / inertia.first[k]));
-                }
+            for k in (0..2).filter(|&k| inertia.first[k] != o) {
+                self.add(model, i, Vector3::new(o, o, inertia.second[(k, 2)] / inertia.first[k]));
             }
+        } else if joint.is_translation_along_axis() && inertia.mass != o {
             // h − m d = 0
-            Joint::Prismatic if inertia.mass != o => self.add(model, i, inertia.first.map(|h| h / inertia.mass)),
-            _ => {}
+            self.add(model, i, inertia.first.map(|h| h / inertia.mass));
         }
     }
 
@@ -71,20 +68,23 @@ impl<S: Scalar> Places<S> {
         let z = x.rotation.column(2);
         for k in 0..self.all[parent].len() {
             let from = x.position - self.all[parent][k];
-            match model.bodies[i].joint {
-                Joint::Prismatic => self.add(model, i, -rotate_back(&x.rotation, from)),
-                _ => (0..3).filter(|&c| z[c] != o).for_each(|c| self.add(model, i, Vector3::new(o, o, -from[c] / z[c]))),
+            if model.bodies[i].joint.is_translation_along_axis() {
+                self.add(model, i, -rotate_back(&x.rotation, from));
+            } else {
+                (0..3).filter(|&c| z[c] != o).for_each(|c| self.add(model, i, Vector3::new(o, o, -from[c] / z[c])));
             }
         }
     }
 
     /// Adds a shift, or what of it the joint allows, if it is new and within reach.
     fn add(&mut self, model: &Model<S>, i: usize, shift: Vector3<S>) {
-        let o = S::zero();
-        let shift = match model.bodies[i].joint {
-            Joint::Revolute if i != 0 => Vector3::new(o, o, shift.z),
-            Joint::Prismatic => shift,
-            _ => return,
+        let (o, joint) = (S::zero(), model.bodies[i].joint);
+        let shift = if joint.is_rotation_about_axis() && i != 0 {
+            Vector3::new(o, o, shift.z)
+        } else if joint.is_translation_along_axis() {
+            shift
+        } else {
+            return;
         };
         let all = &mut self.all[i];
         let new = |other: &Vector3<S>| (0..3).any(|k| or_zero(shift[k] - other[k], shift[k].abs() + other[k].abs()) != o);

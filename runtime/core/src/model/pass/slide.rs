@@ -6,10 +6,8 @@ use alloc::vec::Vec;
 use nalgebra::Vector3;
 
 use super::places::{Places, offset, shifted};
-use super::regroup;
 use crate::Scalar;
-use crate::joint::Joint;
-use crate::model::Model;
+use crate::model::{Model, regroup};
 
 /// Slides the frame of each revolute body along its axis, and shifts that of each prismatic body, so that the recursion of inverse dynamics has least
 /// to do.
@@ -69,7 +67,7 @@ impl<'a, S: Scalar> Plan<'a, S> {
             for at in 0..places.all[parent].len() {
                 let numbers: Vec<u32> = places.all[i].iter().map(|shift| offsets(model, i, *shift, places.all[parent][at])).collect();
                 let cheapest =
-                    [false, true].map(|needed| cheapest(&costs[i], &numbers, needed || model.bodies[i].joint != Joint::Revolute));
+                    [false, true].map(|needed| cheapest(&costs[i], &numbers, needed || !model.bodies[i].joint.is_rotation_about_axis()));
                 costs[parent][at].iter_mut().zip(&cheapest).for_each(|(sum, (_, cost))| *sum += cost);
                 best[i].push(cheapest.map(|(choice, _)| choice));
             }
@@ -101,12 +99,15 @@ fn cheapest(costs: &[ByForce<u32>], numbers: &[u32], needed: bool) -> ((usize, b
 
 /// What the moments of body `i` cost at a place.
 fn standing<S: Scalar>(model: &Model<S>, i: usize, shift: Vector3<S>) -> u32 {
-    let inertia = shifted(&model.bodies[i].inertia, shift);
-    match model.bodies[i].joint {
-        _ if model.bodies[i].parent == 0 => 0,
-        Joint::Revolute => MOMENT * count(&[inertia.second.m13, inertia.second.m23]),
-        Joint::Prismatic => FIRST * count(inertia.first.as_slice()),
-        _ => 0,
+    let (joint, inertia) = (model.bodies[i].joint, shifted(&model.bodies[i].inertia, shift));
+    if model.bodies[i].parent == 0 {
+        0
+    } else if joint.is_rotation_about_axis() {
+        MOMENT * count(&[inertia.second.m13, inertia.second.m23])
+    } else if joint.is_translation_along_axis() {
+        FIRST * count(inertia.first.as_slice())
+    } else {
+        0
     }
 }
 
@@ -114,7 +115,7 @@ fn standing<S: Scalar>(model: &Model<S>, i: usize, shift: Vector3<S>) -> u32 {
 fn offsets<S: Scalar>(model: &Model<S>, i: usize, shift: Vector3<S>, parent: Vector3<S>) -> u32 {
     let body = &model.bodies[i];
     let below = &model.bodies[body.parent];
-    let steady = below.parent == 0 && below.joint == Joint::Revolute;
+    let steady = below.parent == 0 && below.joint.is_rotation_about_axis();
     let counted = if body.parent == 0 { 0 } else { 3 - usize::from(steady) };
     count(&offset(body, shift, parent).as_slice()[..counted])
 }

@@ -4,7 +4,6 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::zeros::or_zero;
 use crate::Scalar;
-use crate::joint::Joint;
 use crate::model::{Body, Model};
 use crate::spatial::SpatialInertia;
 
@@ -18,7 +17,7 @@ pub fn still<S: Scalar>(mut model: Model<S>) -> Model<S> {
     model.outward().for_each(|i| carries[model.bodies[i].parent] = true);
     model.frames.iter().for_each(|frame| carries[frame.body] = true);
     for (body, _) in model.bodies.iter_mut().zip(carries).skip(1).filter(|(_, carries)| !carries) {
-        if body.joint == Joint::Revolute && body.effects.body.is_empty() && made_round(body) {
+        if body.joint.is_rotation_about_axis() && body.effects.body.is_empty() && made_round(body) {
             body.coordinates.turns = S::zero();
         }
     }

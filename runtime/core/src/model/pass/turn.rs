@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::zeros::{or_zero, within};
 use crate::Scalar;
-use crate::joint::{Angle, Joint};
+use crate::joint::Angle;
 use crate::model::Model;
 use crate::spatial::{Placement, nearest_rotation, rotate_back};
 
@@ -22,7 +22,7 @@ pub fn turn<S: Scalar>(mut model: Model<S>) -> Model<S> {
     model.outward().for_each(|i| hanging[model.bodies[i].parent].bodies.push(i));
     model.frames.iter().enumerate().for_each(|(k, frame)| hanging[frame.body].frames.push(k));
     for i in model.outward() {
-        if model.bodies[i].joint != Joint::Revolute || !known(&model.bodies[i].placement.rotation) {
+        if !model.bodies[i].joint.is_rotation_about_axis() || !known(&model.bodies[i].placement.rotation) {
             continue;
         }
         let angle = best(&model, i, &hanging[i].bodies);
@@ -82,7 +82,7 @@ fn cost<S: Scalar>(model: &Model<S>, i: usize, angle: &Angle<S>, children: &[usi
     let own = FIRST * count(&[h.x, h.y]) + SECOND * count(&[s.m12, s.m13, s.m23]) + if is_quarter(angle) { 0 } else { ANGLE };
     children.iter().map(|&k| &model.bodies[k]).fold(own, |sum, child| {
         let (rotation, position) = (turned(&child.placement.rotation, angle), back(angle, child.placement.position));
-        let from_there = (child.joint == Joint::Revolute).then(|| plain(&rotation)).flatten();
+        let from_there = child.joint.is_rotation_about_axis().then(|| plain(&rotation)).flatten();
         let (rotation, angle) = from_there.unwrap_or((rotation, Angle::zero()));
         let numbers = rotation.iter().filter(|x| **x != S::zero() && **x != S::one() && **x != -S::one()).count() as u32;
         sum + ROTATION * numbers + OFFSET * count(position.as_slice()) + if is_quarter(&angle) { 0 } else { ANGLE }

@@ -1,24 +1,24 @@
-//! Base parameters: what a joint cannot feel goes to its parent.
+//! Regrouping of inertial parameters: what a joint cannot distinguish from its parent's.
 
 use crate::Scalar;
 use crate::model::{Body, Model};
 use crate::spatial::SpatialInertia;
 
-/// Moves inertial parameters along the joints that cannot feel them, from the tips inward.
+/// Moves the inertial parameters of each body that its joint cannot distinguish from the parent's to the parent, from the tips inward.
 ///
 /// Mass on the axis of a revolute joint moves with the parent whatever the angle: m, h_z and Σ_zz go there, and what is left has Σ_zz = 0 and no
 /// mass. A prismatic joint does not turn its body: Σ goes to the parent. A spherical joint's centre moves with the parent: m goes there. Exact for all joint torques and for the mass
 /// matrix (Khalil & Dombre, *Modeling, Identification and Control of Robots*, 2002, §9.4); placements do not change.
 pub fn regroup<S: Scalar>(mut model: Model<S>) -> Model<S> {
     for i in model.inward() {
-        give_to_parent(&mut model, i);
+        regroup_body(&mut model, i);
     }
     model.bodies[0].inertia = SpatialInertia::zero();
     model
 }
 
-/// Moves what the joint of body `i` cannot feel to its parent.
-pub(in crate::model) fn give_to_parent<S: Scalar>(model: &mut Model<S>, i: usize) {
+/// The same for the joint of body `i` alone.
+pub fn regroup_body<S: Scalar>(model: &mut Model<S>, i: usize) {
     let Body { joint, parent, placement, inertia, .. } = &model.bodies[i];
     let (parent, Some(given)) = (*parent, joint.unfelt(inertia)) else { return };
     let (kept, moved) = (subtract(*inertia, given), given.moved(placement));
@@ -26,7 +26,7 @@ pub(in crate::model) fn give_to_parent<S: Scalar>(model: &mut Model<S>, i: usize
     model.bodies[parent].inertia += moved;
 }
 
-/// a − b.
-pub(in crate::model) fn subtract<S: Scalar>(a: SpatialInertia<S>, b: SpatialInertia<S>) -> SpatialInertia<S> {
+/// a − b, of moments about one point in the same axes.
+pub fn subtract<S: Scalar>(a: SpatialInertia<S>, b: SpatialInertia<S>) -> SpatialInertia<S> {
     SpatialInertia { mass: a.mass - b.mass, first: a.first - b.first, second: a.second - b.second }
 }
