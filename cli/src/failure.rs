@@ -130,6 +130,19 @@ impl From<MotionErrors> for Failure {
     }
 }
 
+impl From<articulated_lab::error::Error> for Failure {
+    fn from(error: articulated_lab::error::Error) -> Self {
+        use articulated_lab::error::Error;
+        match error {
+            Error::Generator(error) => error.into(),
+            Error::Motion(errors) => errors.into(),
+            Error::Input(messages) => Self::input(messages),
+            Error::Tool(message) => Self::tool(&message),
+            Error::Bound(message) => Self::bound(message),
+        }
+    }
+}
+
 impl From<articulated_codegen::Error> for Failure {
     fn from(error: articulated_codegen::Error) -> Self {
         match error {
@@ -138,18 +151,6 @@ impl From<articulated_codegen::Error> for Failure {
             articulated_codegen::Error::UnknownFunction { .. } => Self::usage(error.to_string()),
             other => Self::input([other.to_string()]),
         }
-    }
-}
-
-/// Why a robot does not have a function, in a few words; the error itself if it is another.
-pub(crate) fn undefined(error: articulated_codegen::Error) -> Result<String, articulated_codegen::Error> {
-    use articulated_codegen::Error::{BoundFrames, NoMass, Singular, TooMuchCode};
-    match error {
-        Singular { joints, .. } => Ok(format!("no inertia of its own for joint {}", joints.join(", joint "))),
-        NoMass { .. } => Ok("nothing that moves has mass".into()),
-        BoundFrames { frames, .. } => Ok(format!("fewer than six degrees of freedom carry {}", frames.join(", "))),
-        TooMuchCode { found, most, .. } => Ok(format!("about {found} MB of code, more than {most} (--max-code-size)")),
-        other => Err(other),
     }
 }
 

@@ -11,8 +11,7 @@ use crate::arguments::Format;
 use crate::compiled::Rustc;
 use crate::console::{self, Progress};
 use crate::failure::Failure;
-use crate::names;
-use crate::simulate::stage::Stage;
+use crate::{named_scene, names};
 use arguments::EffectsArguments;
 use report::Report;
 
@@ -28,7 +27,7 @@ pub(crate) fn sorts(effects: &[Applied]) -> Vec<&'static str> {
 
 /// Prints what is on, off and not used, and what it costs.
 pub(crate) fn run(arguments: &EffectsArguments, format: Format) -> Result<(), Failure> {
-    let stage = Stage::find(&arguments.scene)?;
+    let stage = named_scene::stage(&arguments.scene)?;
     let mut functions = names::flat(&arguments.functions);
     if functions.is_empty() {
         functions = FUNCTIONS.map(str::to_owned).to_vec();

@@ -11,7 +11,9 @@ use articulated_core::algorithm::{Function, function};
 
 use crate::arguments::{Format, FunctionsArguments, RobotArguments};
 use crate::console::{self, Progress};
-use crate::failure::{Failure, undefined};
+use articulated_lab::error::undefined;
+
+use crate::failure::Failure;
 use crate::parallel;
 use crate::robot::Robot;
 use crate::tips::{FEW, Tips};

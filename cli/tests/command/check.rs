@@ -288,7 +288,7 @@ fn what_is_there_and_cannot_be_read_is_not_taken_for_a_name() {
 
 #[test]
 fn any_bytes_are_refused_with_an_error() {
-    let mut numbers = articulated_cli::states::SplitMix64::new(3);
+    let mut numbers = articulated_lab::states::SplitMix64::new(3);
     let pendulum = articulated_models::robot("simple_pendulum").unwrap().urdf.as_bytes();
     for round in 0..40 {
         let bytes: Vec<u8> = match round % 4 {
