@@ -7,7 +7,7 @@ use clap::{Parser, Subcommand};
 use crate::accuracy::AccuracyArguments;
 use crate::arguments::{CheckArguments, EvalArguments, Format, FunctionsArguments, GenerateArguments};
 use crate::compare::CompareArguments;
-use crate::effects::arguments::EffectsArguments;
+use crate::effects::EffectsArguments;
 use crate::failure::STATUSES;
 use crate::scaling::ScalingArguments;
 use crate::simulate::arguments::SimulateArguments;

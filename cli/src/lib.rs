@@ -26,7 +26,7 @@ mod stress;
 use std::ffi::OsString;
 
 use articulated_lab::json::json;
-use articulated_lab::{compiled, ledger, parallel, states, table, tips, worse};
+use articulated_lab::{compiled, ledger, parallel, states, table, tips};
 use clap::Parser;
 
 use arguments::Format;

@@ -1,6 +1,5 @@
 //! `articulated functions`.
 
-mod markdown;
 mod report;
 mod text;
 
@@ -56,7 +55,7 @@ pub(crate) fn run(arguments: &FunctionsArguments, format: Format) -> Result<(), 
     }
     console::print(&match format {
         Format::Json => crate::json(&report),
-        Format::Text if arguments.markdown => markdown::markdown(&report),
+        Format::Text if arguments.markdown => text::markdown(&report),
         Format::Text => text::text(&report),
     })
 }

@@ -126,8 +126,7 @@ fn write(stage: &Stage, motion: &Motion, summary: &mut Summary, (folder, ends): 
     };
     let columns = table::columns(recording);
     summary.columns = columns.iter().map(|c| Unit { column: c.title.clone(), unit: c.unit.clone() }).collect();
-    let csv = table::csv(&columns).map_err(|e| Failure::tool(&e))?;
-    save("recording.csv", csv.as_bytes())?;
+    save("recording.csv", table::csv(&columns).as_bytes())?;
     for picture in pictures {
         save(&format!("{}.svg", picture.name), picture.svg.as_bytes())?;
     }

@@ -30,4 +30,3 @@ pub mod straight;
 pub mod stress;
 pub mod table;
 pub mod tips;
-pub mod worse;

@@ -9,8 +9,7 @@ use articulated_reference::{BITS, Big};
 
 use super::contender::Contender;
 use super::judge::{self, Found, Verdict};
-use super::machine;
-use super::report::{FunctionReport, Point, Report, Settings, Spread, mark_front};
+use super::report::{FunctionReport, Point, Report, Settings, Spread, mark_front, processor};
 use super::states::{Case, cases};
 use super::words;
 use crate::compare::accuracy::Reference;
@@ -89,7 +88,7 @@ fn report(robot: &Robot, reference: &Reference, model: &Model<f64>, rustc: &Rust
         repetitions: settings.repetitions,
         reference: reference.against(),
         reference_bits: BITS,
-        processor: machine::processor(),
+        processor: processor(),
         compiler: rustc.version.clone(),
         flags: Rustc::flags(Target::Own).join(" "),
         version: env!("CARGO_PKG_VERSION"),

@@ -5,7 +5,6 @@ mod contender;
 mod csv;
 mod judge;
 mod labels;
-mod machine;
 mod measure;
 pub mod motion;
 mod page;

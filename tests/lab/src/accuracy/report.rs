@@ -150,6 +150,13 @@ pub(super) fn mark_front(points: &mut [Point]) {
     }
 }
 
+/// The processor's name for itself.
+pub(crate) fn processor() -> String {
+    let told = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = told.lines().find_map(|l| l.strip_prefix("model name")?.split_once(": ").map(|(_, name)| name.to_owned()));
+    name.unwrap_or_else(|| std::env::consts::ARCH.to_owned())
+}
+
 #[cfg(test)]
 pub(super) fn point(level: &str, ns: f64, error: f64) -> Point {
     let time = Summary { median: ns, lower_quartile: ns, upper_quartile: ns };

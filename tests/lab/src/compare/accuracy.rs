@@ -14,7 +14,6 @@ use serde::Serialize;
 use super::contender::Contender;
 use crate::robot::note_of_parameters;
 use crate::states::quaternions;
-use crate::worse::worse;
 
 /// The largest error of each, in units of 2⁻⁵³ of the sum of the magnitudes of the terms.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -201,6 +200,11 @@ pub(crate) fn largest(exact: &[Big], found: &[f64], scale: &[f64]) -> f64 {
     errors.fold(0.0, worse)
 }
 
+/// The larger of two errors, and not a number if either is not.
+pub fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a >= b { a } else { b }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -238,5 +242,12 @@ mod tests {
         let found = error(a * (1.0 + 1e-10));
         assert!((found / expected - 1.0).abs() < 0.01, "{found} {expected}");
         assert!(error(f64::NAN).is_nan());
+    }
+
+    #[test]
+    fn what_is_not_a_number_stays() {
+        assert_eq!((worse(1.0, 2.0), worse(2.0, 1.0)), (2.0, 2.0));
+        assert!(worse(f64::NAN, 1.0).is_nan() && worse(1.0, f64::NAN).is_nan());
+        assert!([0.0, f64::NAN, f64::INFINITY].into_iter().fold(0.0, worse).is_nan());
     }
 }

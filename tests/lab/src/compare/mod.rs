@@ -1,6 +1,6 @@
 //! Generated code against generic code and peers: operations, bytes, times and errors.
 
-pub(crate) mod accuracy;
+pub mod accuracy;
 mod batch;
 mod chart;
 pub mod contender;

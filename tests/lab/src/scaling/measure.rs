@@ -1,16 +1,16 @@
 //! One function on one chain.
 
+use std::hint::black_box;
 use std::time::Instant;
 
 use articulated_codegen::{Request, generate};
 use articulated_core::algorithm::{Dim, Function};
 
 use super::chain::chain;
-use super::cold::Cold;
 use super::report::Point;
 use crate::compare::contender::Contender;
 use crate::compare::timing::{self, Run};
-use crate::compiled::{Compiled, Rustc};
+use crate::compiled::{CompileError, Compiled, Filler, Rustc};
 use crate::error::Error;
 use crate::states::{self, State};
 use crate::table::counted;
@@ -90,4 +90,28 @@ fn chilled(contenders: &[Contender<'_>; 2], arguments: &[Vec<&[f64]>], repetitio
         }
     }
     times
+}
+
+/// More than the caches of a core and what it shares with its neighbours.
+pub(super) const BUFFER: usize = 64 << 20;
+
+const LINE: usize = 64;
+
+/// Data and code that take the place of whatever is in the caches.
+pub(super) struct Cold {
+    buffer: Vec<u8>,
+    filler: Filler,
+}
+
+impl Cold {
+    pub(super) fn new(rustc: &Rustc) -> Result<Self, CompileError> {
+        Ok(Self { buffer: vec![1; BUFFER], filler: Filler::build(rustc)? })
+    }
+
+    /// Writes to every line of the buffer, then runs the code.
+    pub(super) fn chill(&mut self) {
+        self.buffer.iter_mut().step_by(LINE).for_each(|x| *x = x.wrapping_add(1));
+        black_box(&mut self.buffer);
+        self.filler.run();
+    }
 }

@@ -1,7 +1,6 @@
 //! How costs grow with the robot: chains of different lengths.
 
 pub mod chain;
-mod cold;
 mod document;
 mod measure;
 mod plot;
@@ -16,7 +15,7 @@ use crate::compiled::{FILLER_INSTRUCTIONS, Rustc, Target};
 use crate::console::Progress;
 use crate::error::Error;
 use crate::table::counted;
-use cold::Cold;
+use measure::Cold;
 pub use report::Report;
 
 /// Lengths of chains, and the most numbers that a result may have: a matrix grows with the square of the chain, and so does all that it costs.
@@ -54,7 +53,7 @@ pub fn measure(settings: &Settings) -> Result<Report, Error> {
         optimised: !cfg!(debug_assertions),
         states: measure::STATES,
         repetitions: settings.repetitions,
-        buffer_bytes: cold::BUFFER,
+        buffer_bytes: measure::BUFFER,
         filler_instructions: FILLER_INSTRUCTIONS,
         units: report::UNITS,
         points: Vec::new(),

@@ -1,10 +1,11 @@
 //! `{"states": [{"q": [...], "v": {"joint": 0.1, ...}, "wrenches": {"link": [...]}}, ...]}`, or the list alone.
 
 use articulated_core::algorithm::Argument;
-use serde_json::{Map, Value};
+use serde_json::Value;
 
 use super::read::{Found, Gathering};
-use super::{State, owner, slots, unique};
+use super::unique::{self, Json};
+use super::{State, owner, slots};
 use crate::table::counted;
 
 pub(super) fn read(text: &str, found: &mut Found<'_>) {
@@ -14,12 +15,12 @@ pub(super) fn read(text: &str, found: &mut Found<'_>) {
         Err(error) => return found.errors.push(format!("not JSON: {error}")),
     };
     let list = match &value {
-        Value::Array(list) => Some(list),
-        Value::Object(object) => {
+        Json::List(list) => Some(list.as_slice()),
+        Json::Object(object) => {
             alone("states", object, found);
-            object.get("states").and_then(Value::as_array)
+            object.iter().find(|(key, _)| key == "states").and_then(|(_, value)| value.list())
         }
-        _ => None,
+        Json::Single(_) => None,
     };
     let Some(list) = list else {
         if !found.errors.is_empty() {
@@ -30,31 +31,31 @@ pub(super) fn read(text: &str, found: &mut Found<'_>) {
     for (k, entry) in list.iter().enumerate() {
         let place = format!("states[{k}]");
         match entry {
-            Value::Object(object) => state(&place, object, found),
+            Json::Object(object) => state(&place, object, found),
             other => found.error(&place, format!("found {}, expected an object", kind(other))),
         }
     }
 }
 
 /// An error for each key beside the one that there is.
-fn alone(known: &str, object: &Map<String, Value>, found: &mut Found<'_>) {
-    for key in object.keys().filter(|key| *key != known) {
+fn alone(known: &str, object: &[(String, Json)], found: &mut Found<'_>) {
+    for (key, _) in object.iter().filter(|(key, _)| key != known) {
         found.errors.push(format!("found the key {key:?}, expected {known:?} alone"));
     }
 }
 
-fn state(place: &str, object: &Map<String, Value>, found: &mut Found<'_>) {
+fn state(place: &str, object: &[(String, Json)], found: &mut Found<'_>) {
     let mut state = State::default();
     for (key, value) in object {
         let Some(argument) = found.argument(place, key) else { continue };
         let place = format!("{place}: {key}");
         match value {
-            Value::Array(list) => {
+            Json::List(list) => {
                 if let Some(numbers) = rows(&place, argument, list, found) {
                     found.take(&mut state, argument, &place, numbers);
                 }
             }
-            Value::Object(parts) => by_name(&place, argument, parts, &mut state, found),
+            Json::Object(parts) => by_name(&place, argument, parts, &mut state, found),
             other => found.error(&place, format!("found {}, expected a list or an object", kind(other))),
         }
     }
@@ -62,14 +63,14 @@ fn state(place: &str, object: &Map<String, Value>, found: &mut Found<'_>) {
 }
 
 /// The numbers of a list, or of a list of lists for an argument of two dimensions.
-fn rows(place: &str, argument: Argument, list: &[Value], found: &mut Found<'_>) -> Option<Vec<f64>> {
-    if argument.dims().len() < 2 || !list.iter().any(Value::is_array) {
+fn rows(place: &str, argument: Argument, list: &[Json], found: &mut Found<'_>) -> Option<Vec<f64>> {
+    if argument.dims().len() < 2 || !list.iter().any(|row| row.list().is_some()) {
         return numbers(place, list, found);
     }
     let width = argument.dims()[1].len(found.model.shape());
     let mut all = Vec::new();
     for (k, row) in list.iter().enumerate() {
-        let row = row.as_array().filter(|r| r.len() == width);
+        let row = row.list().filter(|r| r.len() == width);
         let Some(row) = row else {
             found.error(&format!("{place}[{k}]"), format!("expected a list of {}", counted(width, "number")));
             return None;
@@ -79,7 +80,7 @@ fn rows(place: &str, argument: Argument, list: &[Value], found: &mut Found<'_>) 
     Some(all)
 }
 
-fn by_name(place: &str, argument: Argument, parts: &Map<String, Value>, state: &mut State, found: &mut Found<'_>) {
+fn by_name(place: &str, argument: Argument, parts: &[(String, Json)], state: &mut State, found: &mut Found<'_>) {
     let before = found.errors.len();
     let slots = slots(argument, found.model);
     let mut gathering = Gathering::new(argument, found);
@@ -87,7 +88,7 @@ fn by_name(place: &str, argument: Argument, parts: &Map<String, Value>, state: &
         let Some(slot) = found.slot(place, argument, name).map(|k| &slots[k]) else { continue };
         let place = format!("{place}: {} {name:?}", owner(argument));
         let given = match value {
-            Value::Array(list) => numbers(&place, list, found),
+            Json::List(list) => numbers(&place, list, found),
             single => numbers(&place, std::slice::from_ref(single), found),
         };
         let Some(given) = given else { continue };
@@ -103,23 +104,21 @@ fn by_name(place: &str, argument: Argument, parts: &Map<String, Value>, state: &
     }
 }
 
-fn numbers(place: &str, list: &[Value], found: &mut Found<'_>) -> Option<Vec<f64>> {
-    let wrong: Vec<String> = list.iter().filter(|x| x.as_f64().is_none()).map(kind).collect();
+fn numbers(place: &str, list: &[Json], found: &mut Found<'_>) -> Option<Vec<f64>> {
+    let wrong: Vec<String> = list.iter().filter(|x| x.number().is_none()).map(kind).collect();
     if let Some(first) = wrong.first() {
         found.error(place, format!("found {first}, expected a number"));
         return None;
     }
-    Some(list.iter().filter_map(Value::as_f64).collect())
+    Some(list.iter().filter_map(Json::number).collect())
 }
 
-fn kind(value: &Value) -> String {
+fn kind(value: &Json) -> String {
     match value {
-        Value::Null => "null".into(),
-        Value::Bool(b) => b.to_string(),
-        Value::Number(n) => n.to_string(),
-        Value::String(s) => format!("{:?}", s.chars().take(40).collect::<String>()),
-        Value::Array(_) => "a list".into(),
-        Value::Object(_) => "an object".into(),
+        Json::Single(Value::String(s)) => format!("{:?}", s.chars().take(40).collect::<String>()),
+        Json::Single(other) => other.to_string(),
+        Json::List(_) => "a list".into(),
+        Json::Object(_) => "an object".into(),
     }
 }
 

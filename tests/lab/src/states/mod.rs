@@ -12,7 +12,8 @@ use articulated_core::model::{JointInfo, Model};
 
 pub use articulated_reference::SplitMix64;
 pub use random::random;
-pub use read::{States, listed, read};
+use read::Found;
+pub use read::{States, listed};
 
 /// One state: a vector for each argument that is known of it, laid out as the functions take it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -36,6 +37,19 @@ impl State {
         self.values.retain(|(a, _)| *a != argument);
         self.values.push((argument, vector));
     }
+}
+
+/// Reads states in JSON or CSV. Errors: all of the file's, a line each, with the state and the joint.
+pub fn read(bytes: &[u8], model: &Model<f64>) -> Result<States, Vec<String>> {
+    let text = std::str::from_utf8(bytes).map_err(|e| vec![format!("byte {}: found no UTF-8, expected JSON or CSV", e.valid_up_to())])?;
+    let text = text.trim_start_matches('\u{feff}');
+    let mut found = Found::new(model);
+    if text.trim_start().starts_with(['{', '[']) {
+        json::read(text, &mut found);
+    } else {
+        csv::read(text, &mut found);
+    }
+    found.finish()
 }
 
 /// Numbers of an argument that have a name: a joint's, or a frame's.

@@ -7,7 +7,7 @@ use articulated_core::spatial::{NORM_TOLERANCE, given_norm};
 use articulated_scene::beyond_sense;
 
 use super::random::normalise;
-use super::{Slot, State, csv, json, owner, quaternions, slots};
+use super::{Slot, State, owner, quaternions, slots};
 use crate::table::counted;
 
 /// Norms of quaternions so near to one are not spoken of: the rounding of the four numbers.
@@ -24,19 +24,6 @@ pub struct States {
     pub warnings: Vec<String>,
 }
 
-/// Reads states in JSON or CSV. Errors: all of the file's, a line each, with the state and the joint.
-pub fn read(bytes: &[u8], model: &Model<f64>) -> Result<States, Vec<String>> {
-    let text = std::str::from_utf8(bytes).map_err(|e| vec![format!("byte {}: found no UTF-8, expected JSON or CSV", e.valid_up_to())])?;
-    let text = text.trim_start_matches('\u{feff}');
-    let mut found = Found { model, errors: Vec::new(), warnings: Vec::new(), states: Vec::new(), beyond: None };
-    if text.trim_start().starts_with(['{', '[']) {
-        json::read(text, &mut found);
-    } else {
-        csv::read(text, &mut found);
-    }
-    found.finish()
-}
-
 /// What has been read so far.
 pub(super) struct Found<'a> {
     pub(super) model: &'a Model<f64>,
@@ -47,7 +34,11 @@ pub(super) struct Found<'a> {
     beyond: Option<(String, usize)>,
 }
 
-impl Found<'_> {
+impl<'a> Found<'a> {
+    pub(super) fn new(model: &'a Model<f64>) -> Self {
+        Self { model, errors: Vec::new(), warnings: Vec::new(), states: Vec::new(), beyond: None }
+    }
+
     pub(super) fn error(&mut self, place: &str, what: impl std::fmt::Display) {
         self.errors.push(format!("{place}: {what}"));
     }
@@ -140,7 +131,7 @@ impl Found<'_> {
         found
     }
 
-    fn finish(mut self) -> Result<States, Vec<String>> {
+    pub(super) fn finish(mut self) -> Result<States, Vec<String>> {
         if self.errors.is_empty() && self.states.is_empty() {
             self.errors.push("found no state, expected at least one".into());
         }

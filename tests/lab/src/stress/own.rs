@@ -12,10 +12,10 @@ use super::levels::{self, Made};
 use super::machine::Machine;
 use super::robots::{state, states};
 use super::row::{Case, Row};
+use crate::compare::accuracy::worse;
 use crate::error::{Error, undefined};
 use crate::robot::Robot;
 use crate::states::quaternions;
-use crate::worse::worse;
 
 /// The chapter of robots.
 pub const NAME: &str = "robots";

@@ -1,15 +1,12 @@
 //! Libraries that make steps of their own, as further curves: MuJoCo's Euler, implicitfast and RK4.
 
 use std::path::Path;
-use std::time::Instant;
 
-use super::subject::{End, How, State, Subject, drift};
-use super::sweep::{Curve, sample, samples, steps};
+use super::subject::Subject;
 use crate::against::peers::{Peer, open};
 use crate::against::unknown_to_peers;
 use crate::compare::manifest::Library;
 use crate::error::Error;
-use crate::native::Stepping;
 use crate::stage::Stage;
 
 /// Who there is, and why others are not.
@@ -39,20 +36,4 @@ impl Peers {
     pub(super) fn count(&self) -> usize {
         self.peers.iter().map(|p| p.methods().len()).sum()
     }
-}
-
-/// A peer's method over numbers of steps.
-pub(super) fn curve(subject: &Subject, peer: &Peer, method: &Stepping, reference: (&State, f64), repetitions: usize) -> Curve {
-    let how: Vec<usize> = steps().collect();
-    let samples = samples(&how, repetitions, &mut |n| {
-        let clock = Instant::now();
-        let state = peer.go(method, *n)?;
-        let wall = clock.elapsed().as_secs_f64();
-        let drift = drift(subject, &state);
-        let evaluations = u64::from(method.evaluations) * *n as u64;
-        let end = End { state, evaluations, wall, energy: drift.map(|d| d.0), momentum: drift.and_then(|d| d.1) };
-        Some(sample(subject, reference, How::Step(subject.seconds / *n as f64), &end))
-    });
-    let integrator = format!("{} {}", peer.engine(), method.name);
-    Curve::new(integrator, true, method.order, samples)
 }

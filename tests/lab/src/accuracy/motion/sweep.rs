@@ -1,16 +1,19 @@
 //! Every integrator over steps or tolerances of many decades, against a reference that two of them agree on.
 
 use std::path::PathBuf;
+use std::time::Instant;
 
 use articulated::simulate::{Integrator, IntegratorId, integrators};
 use serde::Serialize;
 
 use super::peers::Peers;
-use super::subject::{End, How, State, Subject, difference, extent, run};
-use crate::accuracy::machine;
+use super::subject::{End, How, State, Subject, difference, drift, extent, run};
+use crate::accuracy::report::processor;
+use crate::against::peers::Peer;
 use crate::console::Progress;
 use crate::error::Error;
 use crate::json::Units;
+use crate::native::Stepping;
 
 /// What is measured, and how.
 #[derive(Clone, Debug)]
@@ -134,7 +137,7 @@ pub(super) fn all(scene: &str, subject: &Subject, peers: &Peers, settings: &Sett
         references,
         agreement,
         extent: extent(subject, &end),
-        processor: machine::processor(),
+        processor: processor(),
         version: env!("CARGO_PKG_VERSION"),
         commit: settings.commit,
         units: UNITS,
@@ -156,7 +159,7 @@ pub(super) fn all(scene: &str, subject: &Subject, peers: &Peers, settings: &Sett
         for method in peer.methods() {
             progress.step();
             progress.doing(format!("{} {}", peer.engine(), method.name));
-            motion.curves.push(super::peers::curve(subject, peer, &method, (&end, agreement), repetitions));
+            motion.curves.push(curve_of_peer(subject, peer, &method, (&end, agreement), repetitions));
         }
     }
     Ok(motion)
@@ -273,6 +276,22 @@ fn power(points: &[(f64, f64)]) -> Option<f64> {
     let (x, y) = (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);
     let (xy, xx) = points.iter().fold((0.0, 0.0), |(xy, xx), p| (xy + (p.0 - x) * (p.1 - y), xx + (p.0 - x) * (p.0 - x)));
     (points.len() >= 3 && xx > 0.0).then(|| -xy / xx)
+}
+
+/// A peer's method over numbers of steps.
+fn curve_of_peer(subject: &Subject, peer: &Peer, method: &Stepping, reference: (&State, f64), repetitions: usize) -> Curve {
+    let how: Vec<usize> = steps().collect();
+    let samples = samples(&how, repetitions, &mut |n| {
+        let clock = Instant::now();
+        let state = peer.go(method, *n)?;
+        let wall = clock.elapsed().as_secs_f64();
+        let drift = drift(subject, &state);
+        let evaluations = u64::from(method.evaluations) * *n as u64;
+        let end = End { state, evaluations, wall, energy: drift.map(|d| d.0), momentum: drift.and_then(|d| d.1) };
+        Some(sample(subject, reference, How::Step(subject.seconds / *n as f64), &end))
+    });
+    let integrator = format!("{} {}", peer.engine(), method.name);
+    Curve::new(integrator, true, method.order, samples)
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! The measurements for people.
 
-mod batches;
 mod peers;
 
 use std::fmt::Write;
@@ -23,7 +22,7 @@ pub(super) fn text(report: &Report) -> String {
         (
             "Time of a state where many are computed at once, on one core, and how many times that of a call of others (of each engine its fastest build)"
                 .to_owned(),
-            batches::batches(report),
+            batches(report),
             BATCHES,
         ),
         ("Time of a state in code of others that computes several states a call".to_owned(), peers::in_lanes(report), ""),
@@ -289,4 +288,21 @@ fn times_of(x: f64) -> String {
 
 fn indent(text: &str) -> String {
     text.lines().fold(String::new(), |out, line| out + "  " + line + "\n")
+}
+
+/// A row for each function, type and layout.
+fn batches(report: &Report) -> Table {
+    let engines = report.engines();
+    let titles = [("function", ""), ("numbers", ""), ("layout", ""), ("a state", "ns"), ("IQR", "ns"), ("generated/it", "ratio")];
+    let peers = engines.iter().map(|engine| (format!("{engine}/it"), "ratio"));
+    let columns = titles.map(|(title, unit)| (title.to_owned(), unit)).into_iter().chain(peers);
+    let mut table = Table::new(columns.chain([("largest difference".to_owned(), "of magnitude")])).left(3);
+    for (f, b) in report.functions.iter().flat_map(|f| f.batches.iter().map(move |b| (f, b))) {
+        let mut cells = [f.function, b.numbers, b.layout].map(str::to_owned).to_vec();
+        cells.extend([nanoseconds(b.time.median), nanoseconds(spread(&b.time)), times_of(b.generated_over_batch.median)]);
+        cells.extend(engines.iter().map(|e| b.fastest_of(e).map_or_else(|| "–".into(), |p| times_of(p.peer_over_batch.median))));
+        cells.push(b.largest_difference.map_or_else(|| "not compared".into(), |d| format!("{d:.1e}")));
+        table.row(cells);
+    }
+    table
 }

@@ -6,11 +6,11 @@ use articulated_core::model::Model;
 use articulated_reference::{Big, Exact};
 
 use super::Effort;
+use crate::compare::accuracy::worse;
 use crate::stress::judge::{BACKWARD, Ends, Judge, State, call, called, scale};
 use crate::stress::machine::{Machine, cast};
 use crate::stress::robots::{Body, Builder, built, state, states};
 use crate::stress::row::{Case, Row};
-use crate::worse::worse;
 
 pub(super) const NAME: &str = "axes";
 

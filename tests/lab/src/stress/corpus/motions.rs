@@ -7,11 +7,11 @@ use articulated_core::description::{Base, JointKind, Origin};
 use articulated_core::model::Model;
 
 use super::Effort;
+use crate::compare::accuracy::worse;
 use crate::states::SplitMix64;
 use crate::stress::judge::call;
 use crate::stress::robots::{Body, Builder, built, chain, normalise};
 use crate::stress::row::{Case, Row};
-use crate::worse::worse;
 
 pub(super) const NAME: &str = "motions";
 

@@ -6,10 +6,10 @@ use articulated_core::model::pass::model_passes;
 
 use super::Effort;
 use super::axes::from_textbook;
+use crate::compare::accuracy::worse;
 use crate::stress::judge::{BACKWARD, State};
 use crate::stress::robots::{built, hard, states};
 use crate::stress::row::{Case, Row};
-use crate::worse::worse;
 
 pub(super) const NAME: &str = "passes";
 

@@ -8,8 +8,8 @@ use articulated_core::spatial::{Twist, Vector3};
 use articulated_reference::Big;
 
 use super::Effort;
+use crate::compare::accuracy::worse;
 use crate::stress::row::{Case, Row};
-use crate::worse::worse;
 
 pub(super) const NAME: &str = "screws";
 

@@ -6,9 +6,9 @@ use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
 
 use super::Effort;
+use crate::compare::accuracy::worse;
 use crate::stress::robots::{Body, Builder};
 use crate::stress::row::{Case, Row};
-use crate::worse::worse;
 
 pub(super) const NAME: &str = "stiff";
 

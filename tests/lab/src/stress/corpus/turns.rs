@@ -12,11 +12,11 @@ use articulated_core::spatial::{Matrix3, Placement, Vector3};
 use articulated_reference::Big;
 
 use super::Effort;
+use crate::compare::accuracy::worse;
 use crate::states::SplitMix64;
 use crate::stress::judge::{BACKWARD, Ends, Judge, State, call};
 use crate::stress::robots::{Body, Builder, built, normalise, state, states};
 use crate::stress::row::{Case, Row};
-use crate::worse::worse;
 
 pub(super) const NAME: &str = "turns";
 

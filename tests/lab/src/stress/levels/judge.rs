@@ -9,10 +9,10 @@ use articulated_reference::{Big, Magnitude, norms, scales};
 
 use super::Made;
 use super::contract::Contract;
+use crate::compare::accuracy::worse;
 use crate::stress::judge::{Judge, State, call, called, scale};
 use crate::stress::machine::{cast, exact};
 use crate::stress::row::{Case, Row};
-use crate::worse::worse;
 
 /// Of sums of two doubles: what is left beyond one rounding of the result, in units of 2⁻¹⁰⁰ of the terms.
 const SECOND_ORDER: f64 = 1.0;
