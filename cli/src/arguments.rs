@@ -1,33 +1,16 @@
-//! The command line.
+//! Arguments that several commands have, and their values.
 
 use std::path::PathBuf;
 
 use articulated_codegen::Level;
-use articulated_core::algorithm::function;
 use articulated_core::lanes::Real;
 use articulated_formats::{SNAP_EXPECTED, can_snap};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, ValueEnum};
 
-use crate::accuracy::arguments::AccuracyArguments;
 use crate::edits::{Edits, FrameArguments};
-use crate::effects::arguments::EffectsArguments;
-use crate::failure::{Failure, STATUSES};
+use crate::failure::Failure;
 use crate::names::{Names, known, wanted};
-use crate::simulate::arguments::SimulateArguments;
-use crate::stress::arguments::StressArguments;
 use crate::table::counted;
-use articulated_codegen::function_groups::Group;
-
-/// Robot dynamics, spelled out: checks a URDF, generates its straight-line code, evaluates it, compares it, and simulates it.
-#[derive(Debug, Parser)]
-#[command(name = "articulated", version, after_help = overview())]
-pub(crate) struct Arguments {
-    #[command(subcommand)]
-    pub(crate) command: Command,
-    /// How to print results
-    #[arg(long, global = true, value_enum, default_value_t = Format::Text)]
-    pub(crate) format: Format,
-}
 
 /// How to print.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -36,104 +19,6 @@ pub(crate) enum Format {
     Text,
     /// For programs
     Json,
-}
-
-#[derive(Debug, Subcommand)]
-pub(crate) enum Command {
-    /// Says all that is wrong with a robot, and what it is made of
-    #[command(after_help = examples(&[
-        "articulated check arm.urdf",
-        "articulated check --floating walker.urdf",
-        "articulated check arm.urdf --function inverse_dynamics",
-        "articulated check arm.urdf --append gripper.urdf@tool:left_ --payload left_palm=0.5@0,0,0.1 --lock elbow=0.5",
-        "articulated check panda_like --format json",
-    ]))]
-    Check(CheckArguments),
-    /// Writes a robot's dynamics out as Rust or C
-    #[command(after_help = examples(&[
-        "articulated generate panda_like",
-        "articulated generate arm.urdf --functions placements,inverse_dynamics -o src/arm.rs",
-        "articulated generate arm.urdf --runtime ::articulated -o src/arm.rs",
-        "articulated generate arm.urdf --functions inverse_dynamics,forward_dynamics --batch f64,f32 -o src/arm.rs",
-        "articulated generate arm.urdf --functions 'hold = gravity_torque + jacobians_body, bias = inverse_dynamics(a = 0)'",
-        "articulated generate arm.urdf --functions 'still=inverse_dynamics(v=0,a=0)' --parameters 'payload(tool)'",
-        "articulated generate arm.toml --functions motion --runtime ::articulated -o src/arm.rs",
-        "articulated generate arm.urdf --level double_double -o src/arm_exact.rs",
-        "articulated generate arm.urdf --target c -o firmware/arm",
-        "articulated generate arm.urdf --frames tool,camera --lock wrist=0 --payload tool=1.2@0,0,0.1:1e-3,0,0,1e-3,0,1e-3",
-        "articulated generate arm.urdf --append gripper.urdf@tool --append gripper.urdf@tool:second_:0,0,0.2,0,0,1.5",
-    ]))]
-    Generate(GenerateArguments),
-    /// Evaluates functions on a file of states, by generic and by generated code
-    #[command(after_help = examples(&[
-        "articulated eval simple_pendulum --function inverse_dynamics --states states.json",
-        "articulated eval simple_pendulum --function gravity_torque,placements --states states.csv --generic --format json",
-        "",
-        "states.json:  {\"states\": [{\"q\": [0.1], \"v\": {\"swing\": 0.2}, \"a\": [0], \"wrenches\": {\"bob\": [0, 0, 0, 0, 0, -5]}}]}",
-        "states.csv:   q.swing,v.swing,a.swing",
-        "              0.1,0.2,0",
-        "",
-        "Columns of a joint that has several numbers: q.hip[0],q.hip[1],…; a floating base is the joint __floating_base__",
-    ]))]
-    Eval(EvalArguments),
-    /// Measures generated code against generic code: operations, size, time, error
-    #[command(after_help = examples(&[
-        "articulated compare panda_like",
-        "articulated compare humanoid --functions inverse_dynamics --repetitions 101",
-        "articulated compare ur5_like --functions kinematics,derivatives --frames flange",
-        "articulated compare panda_like --functions inverse_dynamics --batch f64,f32",
-        "articulated compare arm.urdf --peer libpeer.so --format json",
-        "articulated compare quadruped --peers-manifest target/peers/peers.json --chart quadruped.svg",
-    ]))]
-    Compare(CompareArguments),
-    /// Measures what accuracy costs: error and time of each function at each level, and the cheapest that is accurate enough
-    #[command(after_help = examples(&[
-        "articulated accuracy panda_like",
-        "articulated accuracy arm.urdf --functions inverse_dynamics,mass_matrix --levels f32,f64,double_double --output accuracy",
-        "articulated accuracy panda_like --functions forward_dynamics --advise --error 1e-9",
-        "articulated accuracy --simulate pendulum --output integrators",
-        "articulated accuracy ur5_like --peers-manifest target/peers/peers.json --output accuracy",
-    ]))]
-    Accuracy(AccuracyArguments),
-    /// Lists all functions, and what they cost on some robots, on the frames of their tips
-    #[command(after_help = examples(&[
-        "articulated functions",
-        "articulated functions panda_like arm.urdf --format json",
-        "articulated functions --markdown > docs/functions.md",
-    ]))]
-    Functions(FunctionsArguments),
-    /// Measures how costs grow with the robot: chains of 7 to 125 joints (--all: to 1000), generated against generic code, hot and cold caches
-    #[command(after_help = examples(&[
-        "articulated scaling",
-        "articulated scaling --joints 7,30,100 --functions inverse_dynamics --chart scaling.svg",
-        "articulated scaling --all --markdown --chart docs/scaling.svg > docs/scaling.md",
-    ]))]
-    Scaling(ScalingArguments),
-    /// Measures hard cases: a corpus and the bundled robots, or a robot of yours; each with a limit that it has to keep
-    #[command(after_help = examples(&[
-        "articulated stress",
-        "articulated stress --chapters chains,screws --rows",
-        "articulated stress arm.urdf --states states.json",
-        "articulated stress arm.urdf --generated --format json",
-    ]))]
-    Stress(StressArguments),
-    /// Simulates a scene: a table of the motion, pictures, a page that plays it, and what became of energy and momentum
-    #[command(after_help = examples(&[
-        "articulated simulate double_pendulum",
-        "articulated simulate quadruped_drop -o drop              (then open drop/motion.html)",
-        "articulated simulate arm.toml -o arm --end 5 --integrator dop853 --rtol 1e-10",
-        "articulated simulate arm.toml --generated --format json",
-        "articulated simulate --all",
-        "articulated simulate chain --against target/peers/peers.json",
-    ]))]
-    Simulate(SimulateArguments),
-    /// Says which effects of a scene are on and off, what of the URDF is not used, and what each effect costs
-    #[command(after_help = examples(&[
-        "articulated effects golf_swing",
-        "articulated effects arm.toml --time",
-        "articulated effects arm.toml --functions forward_dynamics,mass_matrix --format json",
-    ]))]
-    Effects(EffectsArguments),
 }
 
 /// Which robot, and how to read it.
@@ -270,44 +155,6 @@ pub(crate) struct EvalArguments {
 }
 
 #[derive(Args, Debug)]
-pub(crate) struct CompareArguments {
-    #[command(flatten)]
-    pub(crate) robot: RobotArguments,
-    #[command(flatten)]
-    pub(crate) frames: FrameArguments,
-    /// The functions to compare, or groups of them [default: all that are defined for the robot and take at most 20 000 instructions, on the frames of its tips]
-    #[arg(long, alias = "function", value_name = "NAMES", value_parser = known)]
-    pub(crate) functions: Vec<Names>,
-    /// No `unsafe` in the generated code: shows what the vector instructions of the sines bring
-    #[arg(long)]
-    pub(crate) forbid_unsafe: bool,
-    /// Many states at once too, in numbers of these types: f64, f32
-    #[arg(long, value_name = "TYPES", value_delimiter = ',', value_parser = real)]
-    pub(crate) batch: Vec<Real>,
-    /// A peer library to time beside them; may be given several times. It is run: name only libraries that you trust
-    #[arg(long, value_name = "LIBRARY")]
-    pub(crate) peer: Vec<PathBuf>,
-    /// A list of peer libraries, as the peers' build script writes it
-    #[arg(long, value_name = "FILE")]
-    pub(crate) peers_manifest: Option<PathBuf>,
-    /// Draw the medians as dots on a logarithmic axis into this file, in SVG: of ours, and of the fastest build of each engine among the peers
-    #[arg(long, value_name = "FILE")]
-    pub(crate) chart: Option<PathBuf>,
-    /// How often each is timed, 31 times at least
-    #[arg(long, value_name = "N", default_value_t = 61, value_parser = clap::value_parser!(u32).range(31..=100_000))]
-    pub(crate) repetitions: u32,
-    /// How many random states they are judged on; one call at a time they are timed on the first of them, as many as keep arguments within 16 kB
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=100_000))]
-    pub(crate) states: u32,
-    /// Seed of the random states
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub(crate) seed: u64,
-    /// The largest error that is right, in units of 2⁻⁵³ of the sum of the magnitudes of the terms
-    #[arg(long, value_name = "UNITS", default_value_t = 64.0, value_parser = units, allow_hyphen_values = true)]
-    pub(crate) bound: f64,
-}
-
-#[derive(Args, Debug)]
 pub(crate) struct FunctionsArguments {
     /// Bundled robots' names, or paths of URDF files or of scenes (.toml) [default: ur5_like panda_like quadruped humanoid]
     #[arg(value_name = "ROBOT")]
@@ -323,28 +170,6 @@ pub(crate) struct FunctionsArguments {
     pub(crate) markdown: bool,
 }
 
-#[derive(Args, Debug)]
-pub(crate) struct ScalingArguments {
-    /// Numbers of joints [default: 7,14,30,60,125; with --all up to 1000]
-    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', value_parser = joints)]
-    pub(crate) joints: Vec<usize>,
-    /// The functions to measure, or groups of them [default: inverse_dynamics,mass_matrix,forward_dynamics]
-    #[arg(long, alias = "function", value_name = "NAMES", value_parser = known)]
-    pub(crate) functions: Vec<Names>,
-    /// All lengths: takes some minutes and some GB of memory, most of it for rustc
-    #[arg(long, conflicts_with = "joints")]
-    pub(crate) all: bool,
-    /// The file to draw the times to, as SVG
-    #[arg(long, value_name = "FILE")]
-    pub(crate) chart: Option<PathBuf>,
-    /// As a document in Markdown
-    #[arg(long, conflicts_with = "format")]
-    pub(crate) markdown: bool,
-    /// How often each is timed, 5 times at least
-    #[arg(long, value_name = "N", default_value_t = 31, value_parser = clap::value_parser!(u32).range(5..=100_000))]
-    pub(crate) repetitions: u32,
-}
-
 /// Three numbers in m/s².
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Gravity(pub(crate) [f64; 3]);
@@ -356,7 +181,7 @@ pub(crate) fn gravity(text: &str) -> Result<Gravity, String> {
     if three.iter().all(|x| x.is_finite()) { Ok(Gravity(three)) } else { Err("expected finite numbers".into()) }
 }
 
-fn real(text: &str) -> Result<Real, String> {
+pub(crate) fn real(text: &str) -> Result<Real, String> {
     let all = [Real::F64, Real::F32];
     all.into_iter().find(|r| r.name() == text.trim()).ok_or_else(|| "expected f64 or f32".into())
 }
@@ -380,10 +205,6 @@ pub(crate) fn names_in_rust(rename: &[(String, String)]) -> Result<(), Failure> 
     twice(rename, |a, b| a.0 == b.0).map_or(Ok(()), |second| Err(wrong(second)))
 }
 
-fn joints(text: &str) -> Result<usize, String> {
-    text.trim().parse().ok().filter(|n| (1..=2000).contains(n)).ok_or_else(|| "expected 1 to 2000 joints".into())
-}
-
 fn tolerance(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|x| can_snap(*x)).ok_or_else(|| format!("expected {SNAP_EXPECTED}"))
 }
@@ -392,10 +213,6 @@ fn tolerance(text: &str) -> Result<f64, String> {
 fn renaming(text: &str) -> Result<(String, String), String> {
     let (from, to) = text.rsplit_once('=').filter(|(from, _)| !from.is_empty()).ok_or("expected NAME=RUST_NAME, as in a-b=A_MINUS_B")?;
     Ok((from.to_owned(), to.trim().to_owned()))
-}
-
-fn units(text: &str) -> Result<f64, String> {
-    text.parse().ok().filter(|x: &f64| x.is_finite() && *x >= 0.0).ok_or_else(|| "expected a finite number, 0 or more".into())
 }
 
 /// A path as it stands in Rust: `::articulated`, `crate::dynamics`.
@@ -407,41 +224,14 @@ fn rust_path(text: &str) -> Result<String, String> {
     if path.split("::").enumerate().all(free) { Ok(text.to_owned()) } else { Err("expected a path of Rust such as ::articulated".into()) }
 }
 
-fn examples(lines: &[&str]) -> String {
-    let lines: String = lines.iter().map(|l| format!("  {l}\n")).collect();
-    format!("Examples:\n{lines}\n{STATUSES}")
-}
-
-fn overview() -> String {
-    let robots: String = articulated_models::ROBOTS.iter().map(|r| format!("  {:16} {}\n", r.name, r.summary)).collect();
-    let group = |g: Group| format!("  {}: {}\n", g.name(), g.title());
-    let one = |name: &'static str| function::<f64>(name).map(|f| format!("    {name:42} {}\n", f.summary)).unwrap_or_default();
-    let functions: String = Group::ALL.into_iter().map(|g| group(g) + &g.functions().map(one).collect::<String>()).collect();
-    let scenes: String = articulated_models::SCENES.iter().map(|s| format!("  {:16} {}\n", s.name, s.summary())).collect();
-    let functions = format!("Functions, in groups whose names stand for all of them:\n{functions}");
-    format!("Bundled robots:\n{robots}\nBundled scenes:\n{scenes}\n{functions}\n{STATUSES}")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn the_command_line_is_well_formed() {
-        use clap::CommandFactory;
-        Arguments::command().debug_assert();
-    }
-
-    #[test]
     fn gravity_is_three_finite_numbers() {
         assert_eq!(gravity("0, -9.81,1e0"), Ok(Gravity([0.0, -9.81, 1.0])));
         assert!(gravity("1,2").is_err() && gravity("1,2,nan").is_err() && gravity("").is_err());
-    }
-
-    #[test]
-    fn a_bound_is_a_finite_number() {
-        assert_eq!((units("0"), units("2.5e1")), (Ok(0.0), Ok(25.0)));
-        assert!(["nan", "inf", "-1", ""].iter().all(|text| units(text).is_err()));
     }
 
     #[test]

@@ -126,10 +126,15 @@ impl From<MotionErrors> for Failure {
     }
 }
 
-/// What a robot lacks for a function, in a few words; the findings if something else is wrong.
-pub(crate) fn undefined(findings: Diagnostics) -> Result<String, Diagnostics> {
-    match articulated_codegen::undefined(&findings) {
-        Some(why) => Ok(why.to_owned()),
-        None => Err(findings),
+impl From<articulated_lab::error::Error> for Failure {
+    fn from(error: articulated_lab::error::Error) -> Self {
+        use articulated_lab::error::Error;
+        match error {
+            Error::Findings(findings) => findings.into(),
+            Error::Motion(errors) => errors.into(),
+            Error::Input(messages) => Self::input(messages),
+            Error::Tool(message) => Self::tool(&message),
+            Error::Bound(message) => Self::bound(message),
+        }
     }
 }

@@ -1,45 +1,36 @@
-//! The command `articulated`, as a library: what it does, and what the tests of the workspace share with it.
-//!
-//! For tests: [`states`], states at random and from files; [`compiled::Compiled`], generated source as functions that can be called; [`scaling::chain::chain`], robots of any length.
+//! The command `articulated`, as a library: arguments, loading and reports. What it measures is in the library
+//! `articulated_lab`.
 
 mod accuracy;
 mod arguments;
 mod check;
-mod children;
+mod command_line;
 mod compare;
-pub mod compiled;
 mod console;
 mod diagnostic;
 mod edits;
 mod effects;
 mod eval;
 pub mod failure;
-mod folder;
 mod functions;
 mod generate;
-mod interrupt;
-mod ledger;
 mod named_scene;
 mod names;
-mod native;
 mod output;
-mod parallel;
 mod robot;
-pub mod scaling;
+mod scaling;
 mod shape;
 mod simulate;
-pub mod states;
-pub mod stress;
-mod table;
-mod tips;
-mod units;
-mod worse;
+mod stress;
 
 use std::ffi::OsString;
 
+use articulated_lab::json::json;
+use articulated_lab::{compiled, ledger, parallel, states, table, tips};
 use clap::Parser;
 
-use arguments::{Arguments, Command, Format};
+use arguments::Format;
+use command_line::{Arguments, Command};
 use failure::{Failure, OK, USAGE};
 
 /// Runs the command with these words, the program's own name first. The exit status: see [`failure`].
@@ -120,28 +111,9 @@ fn dispatch(arguments: &Arguments) -> Result<u8, Failure> {
     }
 }
 
-/// A report as JSON, indented, with a line's end. What of a name a terminal would obey is escaped
-/// as JSON has it.
-fn json(report: &impl serde::Serialize) -> String {
-    let text = serde_json::to_string_pretty(report).map_or_else(|e| format!("{{\"error\": {:?}}}\n", e.to_string()), |text| text + "\n");
-    // Outside of texts there are no other such characters than ends of lines.
-    let obeyed = |c: char| c != '\n' && table::is_obeyed(c);
-    if !text.contains(obeyed) {
-        return text;
-    }
-    text.chars().fold(String::with_capacity(text.len()), |mut out, c| {
-        if obeyed(c) {
-            out += &format!("\\u{:04x}", u32::from(c));
-        } else {
-            out.push(c);
-        }
-        out
-    })
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{json, sentence, with_plain_words};
+    use super::{sentence, with_plain_words};
 
     #[test]
     fn words_of_the_command_line_end_no_lines() {
@@ -149,14 +121,6 @@ mod tests {
         let told = with_plain_words("error: 'a\nb\u{202e}' and c\td\nUsage\n", &words);
         assert_eq!(told.as_deref(), Some("error: 'a\\nb\\u{202e}' and c\\td\nUsage\n"));
         assert_eq!(with_plain_words("error\n", &["check".into()]), None);
-    }
-
-    #[test]
-    fn json_has_nothing_that_a_terminal_obeys_and_reads_back() {
-        let name = "a\u{202e}b\u{9b}31m\u{7f}\nc\td";
-        let text = json(&[name]);
-        assert_eq!(text, "[\n  \"a\\u202eb\\u009b31m\\u007f\\nc\\td\"\n]\n");
-        assert_eq!(serde_json::from_str::<Vec<String>>(&text).unwrap(), [name]);
     }
 
     #[test]

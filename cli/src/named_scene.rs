@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use articulated_codegen::nearest;
 use articulated_codegen::scene::{self, Bundled, Prepared, Scene};
+use articulated_lab::stage::Stage;
 
+use crate::console;
 use crate::failure::Failure;
 
 /// Whether a word is one where a robot is asked for too, whose names go before.
@@ -27,6 +29,20 @@ pub(crate) fn open(path: &Path) -> Result<(Prepared, PathBuf), Failure> {
         return Err(Failure::input([format!("{name}: found a URDF, expected a scene, a TOML file with urdf = {name:?} in it")]));
     }
     Ok((scene::open(path, &robots())?, path.parent().map(Path::to_owned).unwrap_or_default()))
+}
+
+/// The scene with its robot. Warnings about the robot are printed.
+pub(crate) fn stage(path: &Path) -> Result<Stage, Failure> {
+    let stage = quiet_stage(path)?;
+    stage.odd.iter().for_each(|line| console::warn(line));
+    Ok(stage)
+}
+
+/// The same without warnings.
+pub(crate) fn quiet_stage(path: &Path) -> Result<Stage, Failure> {
+    let (prepared, folder) = open(path)?;
+    let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
+    Ok(Stage::new(name, prepared, folder)?)
 }
 
 fn ends_with(path: &Path, ending: &str) -> bool {

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
 
@@ -26,6 +26,18 @@ pub(crate) fn file(option: &str, path: &Path) -> Result<(), Failure> {
     }
 }
 
+/// Whether the file of `--chart` can be written: charts are SVG.
+pub(crate) fn chart(path: &Path) -> Result<(), Failure> {
+    let raster = ["png", "jpg", "jpeg", "pdf"];
+    match path.extension().and_then(|e| e.to_str()).filter(|e| raster.iter().any(|r| e.eq_ignore_ascii_case(r))) {
+        Some(ending) => Err(Failure::usage(format!(
+            "--chart {}: found a name that ends with .{ending}, expected .svg: charts are SVG; convert them with rsvg-convert or a browser",
+            path.display()
+        ))),
+        None => file("--chart", path),
+    }
+}
+
 /// Whether two paths lead to one file, by links of either sort.
 pub(crate) fn is_same(a: &Path, b: &Path) -> bool {
     matches!((identity(a), identity(b)), (Ok(a), Ok(b)) if a == b)
@@ -39,7 +51,7 @@ fn identity(path: &Path) -> io::Result<(u64, u64)> {
 }
 
 #[cfg(not(unix))]
-fn identity(path: &Path) -> io::Result<std::path::PathBuf> {
+fn identity(path: &Path) -> io::Result<PathBuf> {
     path.canonicalize()
 }
 
@@ -63,26 +75,30 @@ fn written(path: &Path, bytes: &[u8]) -> io::Result<()> {
         Err(_) => None,
     };
     let folder = target.parent().filter(|parent| *parent != Path::new("")).unwrap_or(Path::new("."));
-    let mut file = match as_others_are().tempfile_in(folder) {
-        Ok(file) => file,
+    let (beside, mut file) = match beside(folder) {
+        Ok(made) => made,
         // Where no file can be made, one that is there can be written all the same.
         Err(error) if error.kind() == io::ErrorKind::PermissionDenied && old.is_some() => return fs::write(target, bytes),
         Err(error) => return Err(error),
     };
-    file.write_all(bytes)?;
-    if let Some(permissions) = old {
-        file.as_file().set_permissions(permissions)?;
+    let written = file.write_all(bytes).and_then(|()| old.map_or(Ok(()), |permissions| file.set_permissions(permissions)));
+    let replaced = written.and_then(|()| fs::rename(&beside, target));
+    if replaced.is_err() {
+        let _ = fs::remove_file(&beside);
     }
-    file.persist(target).map(drop).map_err(|e| e.error)
+    replaced
 }
 
-/// A file with the permissions that new files have here, not those of a secret.
-fn as_others_are<'a, 'b>() -> tempfile::Builder<'a, 'b> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".articulated");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder
+/// A new file in a folder, with the permissions that new files have here.
+fn beside(folder: &Path) -> io::Result<(PathBuf, fs::File)> {
+    for number in 0_u32.. {
+        let path = folder.join(format!(".articulated{}_{number}", std::process::id()));
+        match fs::OpenOptions::new().write(true).create_new(true).open(&path) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            made => return made.map(|file| (path, file)),
+        }
+    }
+    Err(io::ErrorKind::AlreadyExists.into())
 }
 
 #[cfg(test)]

@@ -16,11 +16,7 @@ use crate::console;
 use crate::edits::{Edits, FrameArguments};
 use crate::failure::Failure;
 use crate::{named_scene, output};
-
-/// A robot's file as reports name it, with the scene that it is of.
-pub(crate) fn named(file: &str, scene: Option<&str>) -> String {
-    scene.map_or_else(|| file.to_owned(), |scene| format!("{file} of {scene}"))
-}
+pub(crate) use articulated_lab::robot::{named, note_of_parameters};
 
 /// A robot's document and how to read it.
 #[derive(Clone, Debug)]
@@ -183,27 +179,10 @@ impl Robot {
         }
     }
 
-    /// A file with the document, for those who read files: the robot's own, or one in `folder`. There is none of an edited robot.
-    pub(crate) fn file_in(&self, folder: &Path) -> std::io::Result<PathBuf> {
-        let o = &self.options;
-        if !(o.robot.append.is_empty()
-            && o.robot.payloads.is_empty()
-            && o.robot.lock.is_empty()
-            && o.robot.shafts.is_empty()
-            && self.effects.as_ref().is_none_or(|scene| !scene.has_effects()))
-        {
-            return Err(std::io::Error::other(
-                "peers read the file, which knows nothing of --append, --payload, --lock and the effects of scenes: leave out one or the other",
-            ));
-        }
-        match &self.path {
-            Some(path) if path.is_file() => Ok(path.clone()),
-            _ => {
-                let path = folder.join("robot.urdf");
-                std::fs::write(&path, &self.document)?;
-                Ok(path)
-            }
-        }
+    /// The robot as measurements take it.
+    pub(crate) fn loaded(&self) -> articulated_lab::robot::Robot {
+        let Self { file, scene, document, options, effects, path, .. } = self.clone();
+        articulated_lab::robot::Robot { file, scene, document, options, effects, path }
     }
 }
 
@@ -213,12 +192,6 @@ pub(crate) fn has_room(file: &str, nv: usize) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::input([format!("{file}: found {nv} degrees of freedom, expected at most {MOST_FREEDOMS} to compute with")]))
-}
-
-/// What a report says of a scene's parameters.
-pub(crate) fn note_of_parameters(options: &Options) -> Option<String> {
-    let list = values(&options.parameters).join(", ");
-    (!list.is_empty()).then(|| format!("parameters: {list}: constants here, with the numbers of the robot's description"))
 }
 
 /// The edits, with the documents of the robots to append.

@@ -83,7 +83,7 @@ impl Build {
     pub fn scene(path: impl AsRef<Path>) -> Self {
         let name = path.as_ref().display().to_string();
         let mut build = Self::new("");
-        let scene = loader().scene(&name, &Span::default(), &mut build.findings);
+        let scene = loader().scene(path.as_ref(), &Span::default(), &mut build.findings);
         if let Some(found) = scene {
             scene::fill(&mut build.request.options, &found);
             for other in &mut build.request.options.robot.append {
@@ -322,11 +322,11 @@ impl Build {
                 scene.without_robot("no URDF", "urdf; a bundled robot is known to the command line alone: give its URDF with Build::urdf"),
             ),
             (None, "") => {}
-            (_, file) => request.document = loader.read(file, &self.robot, "urdf", &mut log).unwrap_or_default(),
+            (_, file) => request.document = loader.read(file.as_ref(), &self.robot, "urdf", &mut log).unwrap_or_default(),
         }
         for other in &mut request.options.robot.append {
             let span = other.file.span.clone().unwrap_or_default();
-            other.document = loader.read(&other.file, &span, "append.urdf", &mut log).unwrap_or_default();
+            other.document = loader.read(other.file.value.as_ref(), &span, "append.urdf", &mut log).unwrap_or_default();
         }
         if !log.is_ok() {
             // Mistakes in the words of the request are mistakes without the robot too.

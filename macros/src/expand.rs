@@ -1,10 +1,10 @@
 //! From an invocation to a module.
 
 use std::env;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use articulated_codegen::diagnostic::{At, Code, Diagnostic, Diagnostics, Span, summary};
-use articulated_codegen::scene::articulated_scene::{Loader, Robot, Scene};
+use articulated_codegen::scene::articulated_scene::{Loader, Robot, Scene, folder_of};
 use articulated_codegen::{Generated, Request, check_words, scene};
 use proc_macro2::{Span as Word, TokenStream};
 use quote::{quote, quote_spanned};
@@ -89,9 +89,9 @@ impl Reader<'_> {
     /// No request if a file is missing or the scene is wrong.
     fn request(&mut self) -> (Scene, Option<Request>) {
         let settings = self.settings;
-        let seen_from = settings.own.scene.as_ref().map_or("", |(name, _)| name);
+        let folder = folder_of(settings.own.scene.as_ref().map_or("", |(name, _)| name).as_ref());
         let from_file = match &settings.own.scene {
-            Some((name, at)) => self.loader.scene(name, &Span { file: name.clone(), at: *at }, &mut self.log),
+            Some((name, at)) => self.loader.scene(name.as_ref(), &Span { file: name.clone(), at: *at }, &mut self.log),
             None => Some(Scene::default()),
         };
         let is_whole = from_file.is_some();
@@ -102,8 +102,8 @@ impl Reader<'_> {
         if !is_whole {
             return (scene, None);
         }
-        let robot = self.robot(seen_from, &scene);
-        let appended = self.loader.append(seen_from, &mut options.robot.append, &mut self.log);
+        let robot = self.robot(folder, &scene);
+        let appended = self.loader.append(folder, &mut options.robot.append, &mut self.log);
         let is_complete = robot.is_some() && appended;
         let (file, document) = robot.unwrap_or_default();
         let request = Request { document, file, scene: Some(scene.clone()), options };
@@ -115,10 +115,10 @@ impl Reader<'_> {
     }
 
     /// The name of the robot's file and its bytes.
-    fn robot(&mut self, seen_from: &str, scene: &Scene) -> Option<(String, Vec<u8>)> {
+    fn robot(&mut self, folder: &Path, scene: &Scene) -> Option<(String, Vec<u8>)> {
         let settings = self.settings;
         if scene.robot != Robot::Given {
-            return self.loader.robot(seen_from, scene, &mut self.log).map(|(file, document, _)| (file, document));
+            return self.loader.robot(folder, scene, &mut self.log).map(|(file, document, _)| (file, document));
         }
         // A value that is wrong is reported already.
         if !settings.has("urdf") {

@@ -41,7 +41,9 @@ pub use effects::{Asked, Edited, Numbers, Resolved, Selector, still};
 pub use impact::{Impact, When};
 pub use initial::{BaseState, Coordinates, Initial, Named};
 pub use report::{EffectOff, EffectOn, Number, Report, Why};
-pub use robot::{Appended, BuiltRobot, Bundled, Loader, Opened, RobotOptions, RobotRequest, beside, beyond_sense, open, open_in};
+pub use robot::{
+    Appended, BuiltRobot, Bundled, Loader, Opened, RobotOptions, RobotRequest, beside, beyond_sense, folder_of, open, open_in,
+};
 pub use scene::{CodeOptions, Places, Robot, Scene};
 pub use series::{Reader, Source};
 pub use shaft::ShaftAsked;

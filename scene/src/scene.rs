@@ -156,9 +156,9 @@ impl Scene {
         (self, wrong)
     }
 
-    /// Whether it asks for any effect.
+    /// Whether it asks for any effect that is not off.
     pub fn has_effects(&self) -> bool {
-        !(self.effects.is_empty() && self.shafts.is_empty())
+        self.effects.iter().any(|asked| asked.says.is_some()) || !self.shafts.is_empty()
     }
 
     /// The integrator of a motion that names none: `rodas4` where smoothed friction or contact

@@ -2,10 +2,10 @@
 
 use articulated::algorithm::checked::{Factor, Measure, Solver, Unsolved, least_pivot};
 use articulated::{Dynamics, Workspace, algorithm};
-use articulated_cli::stress::robots::{Shape, built, chain, rods, state, states};
 use articulated_core::description::{Base, JointKind, Mimic, Origin};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
+use articulated_lab::stress::robots::{Shape, built, chain, rods, state, states};
 use articulated_tests::case::Case;
 
 fn mass_matrix(model: &Model<f64>, q: &[f64]) -> Vec<f64> {

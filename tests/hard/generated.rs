@@ -1,9 +1,9 @@
 //! Generated code of the hard robots: errors within what its level promises.
 
-use articulated_cli::stress::levels::rows;
-use articulated_cli::stress::robots::hard;
 use articulated_codegen::Level;
 use articulated_core::description::Description;
+use articulated_lab::stress::levels::rows;
+use articulated_lab::stress::robots::hard;
 
 fn hold(pairs: &[(&str, Description, Level)]) {
     let rows = rows(pairs).unwrap_or_else(|e| panic!("{e:?}"));

@@ -5,8 +5,8 @@ mod generated;
 mod hostile;
 mod monitors;
 
-use articulated_cli::stress::corpus::{CHAPTERS, Effort};
-use articulated_cli::stress::row::Row;
+use articulated_lab::stress::corpus::{CHAPTERS, Effort};
+use articulated_lab::stress::row::Row;
 
 fn chapter(name: &str) {
     let (_, rows) = CHAPTERS.iter().find(|(n, _)| *n == name).expect("a chapter of the corpus");

@@ -1,9 +1,9 @@
 //! Monitors see what they are for.
 
-use articulated_cli::stress::robots::{Shape, built, chain, rods};
 use articulated_core::algorithm::{FunctionId, Workspace};
 use articulated_core::description::Base;
 use articulated_core::monitor::{pivot_cancellation, placement_orthonormality, quaternion_norms, scaled_condition, wrench_growth};
+use articulated_lab::stress::robots::{Shape, built, chain, rods};
 use articulated_tests::case::Case;
 
 /// A straight row of N alike rods at rest, level: the base's joint bears N weights, N² times the moment of half a rod.

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::base::Base;
 use crate::diagnostic::Diagnostic;
 use crate::robot::Robot;
-use crate::units::Units;
+use articulated_lab::json::Units;
 
 /// Beyond this many bodies some questions are left unasked: no robot, and quadratic work.
 const MANY: usize = 5000;

@@ -7,14 +7,15 @@ use articulated_core::diagnostic::Code;
 use articulated_core::effect::{Applied, EffectId};
 
 use super::report::{Added, Cost, Counted, OnlyWith, Operations};
-use crate::compare::contender::Contender;
-use crate::compare::timing::{self, Run};
 use crate::compiled::{Compiled, Rustc};
 use crate::console::Progress;
+use articulated_lab::compare::contender::Contender;
+use articulated_lab::compare::timing::{self, Run};
+
 use crate::failure::Failure;
 use crate::parallel;
-use crate::simulate::stage::Stage;
 use crate::states;
+use articulated_lab::stage::Stage;
 
 /// The scene with some of its effects.
 struct Variant {

@@ -1,20 +1,37 @@
 //! `articulated effects`.
 
-pub(crate) mod arguments;
 mod cost;
 mod report;
 mod text;
 
+use std::path::PathBuf;
+
 use articulated_core::effect::Applied;
+use clap::Args;
 
 use crate::arguments::Format;
 use crate::compiled::Rustc;
 use crate::console::{self, Progress};
 use crate::failure::Failure;
-use crate::names;
-use crate::simulate::stage::Stage;
-use arguments::EffectsArguments;
+use crate::named_scene;
+use crate::names::{self, Names, known};
 use report::Report;
+
+#[derive(Args, Debug)]
+pub(crate) struct EffectsArguments {
+    /// A bundled scene's name, or the path of a scene
+    #[arg(value_name = "SCENE")]
+    pub(crate) scene: PathBuf,
+    /// The functions whose costs are told, or groups of them [default: inverse_dynamics,forward_dynamics]
+    #[arg(long, alias = "function", value_name = "NAMES", value_parser = known)]
+    pub(crate) functions: Vec<Names>,
+    /// Nanoseconds too: everything is compiled by rustc and timed
+    #[arg(long)]
+    pub(crate) time: bool,
+    /// How often each is timed
+    #[arg(long, value_name = "N", default_value_t = 61, value_parser = clap::value_parser!(u32).range(5..=100_000))]
+    pub(crate) repetitions: u32,
+}
 
 /// What is told where nobody asks for others.
 const FUNCTIONS: [&str; 2] = ["inverse_dynamics", "forward_dynamics"];
@@ -28,7 +45,7 @@ pub(crate) fn sorts(effects: &[Applied]) -> Vec<&'static str> {
 
 /// Prints what is on, off and not used, and what it costs.
 pub(crate) fn run(arguments: &EffectsArguments, format: Format) -> Result<(), Failure> {
-    let stage = Stage::find(&arguments.scene)?;
+    let stage = named_scene::stage(&arguments.scene)?;
     let mut functions = names::flat(&arguments.functions);
     if functions.is_empty() {
         functions = FUNCTIONS.map(str::to_owned).to_vec();

@@ -4,9 +4,9 @@ use articulated_core::description::{JointKind, Quantity};
 use articulated_core::effect::effects;
 use serde::Serialize;
 
-use crate::compare::timing::Summary;
-use crate::simulate::stage::Stage;
-use crate::units::Units;
+use articulated_lab::compare::timing::Summary;
+use articulated_lab::json::Units;
+use articulated_lab::stage::Stage;
 
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Report {

@@ -2,7 +2,7 @@
 
 use articulated_core::algorithm::{Dim, Function};
 use articulated_core::model::{JointInfo, Model};
-use serde_json::{Map, Value, json};
+use serde::{Serialize, Serializer};
 
 /// The names along one dimension.
 struct Names {
@@ -36,24 +36,43 @@ impl Names {
 }
 
 /// A result with its names: objects by joint or link, a list where a joint has several numbers or where a dimension has no names.
-pub(super) fn labelled(function: &Function<f64>, out: &[f64], model: &Model<f64>) -> Value {
+pub(super) fn labelled(function: &Function<f64>, out: &[f64], model: &Model<f64>) -> Labelled {
     let names: Vec<Names> = function.gives.iter().map(|d| Names::of(*d, model)).collect();
     nested(&names, out)
 }
 
-fn nested(names: &[Names], out: &[f64]) -> Value {
-    let [first, rest @ ..] = names else { return out.first().map_or(Value::Null, |x| json!(x)) };
+/// Numbers with their names, as JSON.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Labelled {
+    Number(f64),
+    List(Vec<Labelled>),
+    /// In the order of the model.
+    Object(Vec<(String, Labelled)>),
+}
+
+impl Serialize for Labelled {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Number(x) => x.serialize(to),
+            Self::List(all) => all.serialize(to),
+            Self::Object(entries) => to.collect_map(entries.iter().map(|(name, value)| (name, value))),
+        }
+    }
+}
+
+fn nested(names: &[Names], out: &[f64]) -> Labelled {
+    let [first, rest @ ..] = names else { return Labelled::Number(out.first().copied().unwrap_or(f64::NAN)) };
     let width = rest.iter().map(|n| n.length).product::<usize>();
     let at = |k: usize| nested(rest, &out[k * width..][..width]);
-    let Some(parts) = &first.parts else { return (0..first.length).map(at).collect() };
-    let mut object = Map::new();
+    let Some(parts) = &first.parts else { return Labelled::List((0..first.length).map(at).collect()) };
+    let mut object = Vec::new();
     let mut next = 0;
     for (name, count) in parts {
-        let value = if *count == 1 { at(next) } else { (next..next + count).map(at).collect() };
-        object.insert(name.clone(), value);
+        let value = if *count == 1 { at(next) } else { Labelled::List((next..next + count).map(at).collect()) };
+        object.push((name.clone(), value));
         next += count;
     }
-    Value::Object(object)
+    Labelled::Object(object)
 }
 
 /// A result as a table: names of the rows, all dimensions but the last put together, and of the columns.

@@ -1,15 +1,16 @@
 //! Results as data.
 
 use articulated_core::algorithm::Function;
+use articulated_core::effect::Applied;
 use articulated_core::model::Model;
 use articulated_reference::ROUNDOFF;
-use serde_json::{Value, json};
+use serde::Serialize;
 
 use super::BOUND;
-use super::layout::labelled;
+use super::layout::{Labelled, labelled};
 use crate::effects::sorts;
 use crate::robot::Robot;
-use crate::worse::worse;
+use articulated_lab::compare::accuracy::worse;
 
 /// All results.
 pub(super) struct Report {
@@ -85,37 +86,72 @@ impl FunctionReport {
         self.largest.is_some_and(|d| d.exceeded())
     }
 
-    fn json(&self, model: &Model<f64>) -> Value {
+    fn json(&self, model: &Model<f64>) -> FunctionInJson {
         let labelled = |out: &Option<Vec<f64>>| out.as_ref().map(|x| labelled(self.function, x, model));
-        let states: Vec<Value> = self
-            .outcomes
-            .iter()
-            .map(|o| {
-                let both = [("generic", labelled(&o.generic)), ("generated", labelled(&o.generated))];
-                Value::Object(both.into_iter().filter_map(|(k, v)| Some((k.to_owned(), v?))).collect())
-            })
-            .collect();
-        let largest =
-            self.largest.map(|d| json!({"state": d.state, "absolute": d.absolute, "in_units_of_roundoff": d.units, "bound": BOUND}));
-        json!({
-            "function": self.function.name,
-            "summary": self.function.summary,
-            "gives": crate::shape::dims(self.function.gives),
-            "unit": self.function.unit,
-            "states": states,
-            "largest_difference": largest,
-        })
+        let outcome = |o: &Outcome| OutcomeInJson { generic: labelled(&o.generic), generated: labelled(&o.generated) };
+        FunctionInJson {
+            function: self.function.name,
+            summary: self.function.summary,
+            gives: crate::shape::dims(self.function.gives),
+            unit: self.function.unit,
+            states: self.outcomes.iter().map(outcome).collect(),
+            largest_difference: self.largest.map(|d| DifferenceInJson {
+                state: d.state,
+                absolute: d.absolute,
+                in_units_of_roundoff: d.units,
+                bound: BOUND,
+            }),
+        }
     }
 }
 
+/// All results with the names of joints and links.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct ReportInJson<'a> {
+    robot: &'a str,
+    scene: Option<&'a str>,
+    base: &'static str,
+    gravity: [f64; 3],
+    effects: &'a [&'static str],
+    compiler: Option<&'a str>,
+    warnings: &'a [String],
+    functions: Vec<FunctionInJson>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct FunctionInJson {
+    function: &'static str,
+    summary: &'static str,
+    gives: String,
+    unit: &'static str,
+    states: Vec<OutcomeInJson>,
+    largest_difference: Option<DifferenceInJson>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+struct OutcomeInJson {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    generic: Option<Labelled>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    generated: Option<Labelled>,
+}
+
+#[derive(Clone, Copy, Debug, Serialize)]
+struct DifferenceInJson {
+    state: usize,
+    absolute: f64,
+    in_units_of_roundoff: f64,
+    bound: f64,
+}
+
 impl Report {
-    pub(super) fn new(robot: &Robot, warnings: Vec<String>) -> Self {
+    pub(super) fn new(robot: &Robot, effects: &[Applied], warnings: Vec<String>) -> Self {
         Self {
             robot: robot.file.clone(),
             scene: robot.scene.clone(),
             base: robot.base(),
             gravity: robot.options.robot.gravity,
-            effects: sorts(&robot.options.robot.effects),
+            effects: sorts(effects),
             compiler: None,
             warnings,
             functions: Vec::new(),
@@ -123,17 +159,17 @@ impl Report {
     }
 
     /// With the names of joints and links.
-    pub(super) fn json(&self, model: &Model<f64>) -> Value {
-        json!({
-            "robot": self.robot,
-            "scene": self.scene,
-            "base": self.base,
-            "gravity": self.gravity,
-            "effects": self.effects,
-            "compiler": self.compiler,
-            "warnings": self.warnings,
-            "functions": self.functions.iter().map(|f| f.json(model)).collect::<Vec<_>>(),
-        })
+    pub(super) fn json(&self, model: &Model<f64>) -> ReportInJson<'_> {
+        ReportInJson {
+            robot: &self.robot,
+            scene: self.scene.as_deref(),
+            base: self.base,
+            gravity: self.gravity,
+            effects: &self.effects,
+            compiler: self.compiler.as_deref(),
+            warnings: &self.warnings,
+            functions: self.functions.iter().map(|f| f.json(model)).collect(),
+        }
     }
 }
 

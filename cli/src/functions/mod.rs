@@ -1,6 +1,5 @@
 //! `articulated functions`.
 
-mod markdown;
 mod report;
 mod text;
 
@@ -11,7 +10,9 @@ use articulated_core::algorithm::{Function, function};
 
 use crate::arguments::{Format, FunctionsArguments, RobotArguments};
 use crate::console::{self, Progress};
-use crate::failure::{Failure, undefined};
+use articulated_lab::error::undefined;
+
+use crate::failure::Failure;
 use crate::parallel;
 use crate::robot::Robot;
 use crate::tips::{FEW, Tips};
@@ -54,7 +55,7 @@ pub(crate) fn run(arguments: &FunctionsArguments, format: Format) -> Result<(), 
     }
     console::print(&match format {
         Format::Json => crate::json(&report),
-        Format::Text if arguments.markdown => markdown::markdown(&report),
+        Format::Text if arguments.markdown => text::markdown(&report),
         Format::Text => text::text(&report),
     })
 }

@@ -2,17 +2,18 @@
 
 use std::path::Path;
 
+use articulated_lab::compiled::Rustc;
+use articulated_lab::stage::Code;
+use articulated_lab::straight::Straight;
 use serde::Serialize;
 
 use super::arguments::SimulateArguments;
-use super::stage::Stage;
-use super::straight::Straight;
 use super::summary::Summary;
 use super::{motion, settings};
 use crate::arguments::Format;
-use crate::compiled::Rustc;
 use crate::console::{self, Progress};
 use crate::failure::{Failure, OK, OUT_OF_TOLERANCE};
+use crate::named_scene;
 use crate::table::{Table, number};
 
 #[derive(Clone, Debug, Serialize)]
@@ -58,14 +59,14 @@ fn status(rows: &[Row]) -> u8 {
 }
 
 fn row(name: &'static str, arguments: &SimulateArguments, rustc: &Rustc) -> Result<Row, Failure> {
-    let stage = Stage::find(Path::new(name))?;
+    let stage = named_scene::stage(Path::new(name))?;
     let settings = settings::of(&stage, arguments)?;
-    let begin = motion::begin(&stage)?;
-    let (generated, frames) = motion::generate(&stage, settings.integrator)?;
+    let begin = stage.start()?;
+    let (generated, frames) = stage.generate(settings.integrator)?;
     let robot = Straight::build(rustc, &generated).map_err(|e| Failure::tool(&e))?;
     let quiet = Progress::hidden();
-    let fast = motion::run(&stage, &begin, (&robot, &frames), &settings, &quiet)?;
-    let slow = motion::run(&stage, &begin, (&stage.model, &stage.frame_names()), &settings, &quiet)?;
+    let fast = motion::run(&stage, &begin, Code::Generated(&robot, &frames), &settings, &quiet)?;
+    let slow = motion::run(&stage, &begin, Code::Generic, &settings, &quiet)?;
     let (fast, slow) = (Summary::new(&stage, &fast, &settings, "generated"), Summary::new(&stage, &slow, &settings, "generic"));
     if let Some(error) = fast.error.as_ref().or(slow.error.as_ref()) {
         return Err(Failure::input([format!("{name}: {error}")]));

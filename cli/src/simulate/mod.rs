@@ -1,20 +1,16 @@
 //! `articulated simulate`.
 
-pub(crate) mod against;
 mod all;
 pub(crate) mod arguments;
-mod columns;
-mod csv;
+mod label;
 pub(crate) mod motion;
 mod page;
-mod parquet;
-pub(crate) mod plot;
+mod plot;
 mod recording;
 mod settings;
 mod size;
-pub(crate) mod stage;
-mod straight;
 mod summary;
+mod table;
 mod text;
 mod watch;
 
@@ -22,35 +18,41 @@ use std::path::Path;
 
 use articulated::simulate::{Output, Settings};
 use articulated_core::effect::EffectId;
+use articulated_lab::against;
+use articulated_lab::compiled::Rustc;
+use articulated_lab::stage::{Code, Stage};
+use articulated_lab::straight::Straight;
 use articulated_motion::{Begin, field};
 
 use crate::arguments::Format;
-use crate::compiled::Rustc;
 use crate::console::{self, Progress};
 use crate::failure::{Failure, INPUT, OK, OUT_OF_TOLERANCE};
-use crate::output;
 use crate::robot::has_room;
+use crate::{named_scene, output};
 use arguments::SimulateArguments;
 use motion::Motion;
 use page::Setting;
 use size::Size;
-use stage::Stage;
-use straight::Straight;
-use summary::Summary;
+use summary::{Summary, Unit};
 
 /// Simulates and writes.
 pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, Failure> {
     let Some(scene) = &arguments.scene else { return all::run(arguments, format) };
-    let stage = Stage::find(scene)?;
+    let stage = named_scene::stage(scene)?;
     has_room(&stage.scene.file, stage.model.nv)?;
     let settings = settings::of(&stage, arguments);
-    let (mut settings, begin) = Failure::both(settings, motion::begin(&stage))?;
+    let (mut settings, begin) = Failure::both(settings, stage.start().map_err(Failure::from))?;
     if let Some(file) = &arguments.against {
-        return against::run(&stage, &begin, &settings, file, format).map(|()| OK);
+        let report = against::measure(&stage, &begin, &settings, file)?;
+        console::print(&match format {
+            Format::Text => report.text(),
+            Format::Json => crate::json(&report),
+        })?;
+        return Ok(OK);
     }
     motion::solvable(&stage)?;
     let size = Size::look_ahead(stage.model.shape(), &mut settings, arguments)?;
-    arguments.output.as_deref().map_or(Ok(()), |folder| output::folder("--output", folder))?;
+    arguments.output.as_deref().map_or(Ok(()), folder)?;
     let progress = Progress::of_whole(format!("{}: motion", stage.name));
     let (mut motion, code) = match arguments.generated {
         true => (by_generated_code(&stage, &begin, &settings, &progress)?, "generated"),
@@ -82,20 +84,31 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     })
 }
 
+/// The folder of `--output`, made if it is not there. Errors: the name of a Parquet file.
+fn folder(path: &Path) -> Result<(), Failure> {
+    if path.extension().is_none_or(|e| !e.eq_ignore_ascii_case("parquet")) {
+        return output::folder("--output", path);
+    }
+    Err(Failure::usage(format!(
+        "--output {}: found the name of a Parquet file, expected a folder: recording.csv is written into it, and pandas or polars make Parquet of that",
+        path.display()
+    )))
+}
+
 fn by_generated_code(stage: &Stage, begin: &Begin, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
-    let (generated, frames) = motion::generate(stage, settings.integrator)?;
+    let (generated, frames) = stage.generate(settings.integrator)?;
     progress.doing(format!("{}: rustc", stage.name));
     let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
     let robot = Straight::build(&rustc, &generated).map_err(|e| Failure::tool(&e))?;
     progress.doing(format!("{}: motion", stage.name));
-    motion::run(stage, begin, (&robot, &frames), settings, progress)
+    motion::run(stage, begin, Code::Generated(&robot, &frames), settings, progress)
 }
 
 fn by_generic_code(stage: &Stage, begin: &Begin, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
     if cfg!(debug_assertions) {
         console::warn("this command was built without optimisation: its speed means little");
     }
-    motion::run(stage, begin, (&stage.model, &stage.frame_names()), settings, progress)
+    motion::run(stage, begin, Code::Generic, settings, progress)
 }
 
 /// All files of a motion, of its ends alone without what draws it; their names go into the summary,
@@ -111,13 +124,11 @@ fn write(stage: &Stage, motion: &Motion, summary: &mut Summary, (folder, ends): 
         summary.files.push(name.to_owned());
         output::write(&folder.join(name), bytes)
     };
-    let columns = columns::columns(recording);
-    let csv = csv::text(&columns).map_err(|e| Failure::tool(&e))?;
-    save("recording.csv", csv.as_bytes())?;
-    save("recording.parquet", &parquet::bytes(&columns))?;
+    let columns = table::columns(recording);
+    summary.columns = columns.iter().map(|c| Unit { column: c.title.clone(), unit: c.unit.clone() }).collect();
+    save("recording.csv", table::csv(&columns).as_bytes())?;
     for picture in pictures {
         save(&format!("{}.svg", picture.name), picture.svg.as_bytes())?;
-        save(&format!("{}.png", picture.name), &picture.png)?;
     }
     if let Some(drawn) = &drawn {
         save(PAGE, drawn.page.as_bytes())?;
@@ -137,14 +148,14 @@ struct Drawn {
 impl Drawn {
     fn of(stage: &Stage, motion: &Motion, summary: &Summary) -> Result<Self, Failure> {
         let page = page::html(&motion.recording, &setting(stage, summary)).map_err(|e| Failure::tool(&e))?;
-        let pictures = plot::pictures(&motion.recording, &stage.name).map_err(|e| Failure::tool(&e))?;
+        let pictures = plot::pictures(&motion.recording, &stage.name);
         Ok(Self { page, pictures })
     }
 }
 
-/// Removes pictures that are of an earlier motion, and its page.
+/// Removes pictures of an earlier motion, and its page.
 fn clear(folder: &Path, pictures: &[&str], page: bool) -> Result<(), Failure> {
-    let pictures = pictures.iter().flat_map(|name| ["svg", "png"].map(|ending| format!("{name}.{ending}")));
+    let pictures = pictures.iter().map(|name| format!("{name}.svg"));
     for path in pictures.chain(page.then(|| PAGE.to_owned())).map(|name| folder.join(name)) {
         match std::fs::remove_file(&path) {
             Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(Failure::input([format!("{}: {e}", path.display())])),

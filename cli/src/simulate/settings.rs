@@ -3,9 +3,9 @@
 use articulated::simulate::{Output, SettingError, Settings, integrator};
 
 use super::arguments::SimulateArguments;
-use super::stage::Stage;
 use crate::console;
 use crate::failure::Failure;
+use articulated_lab::stage::Stage;
 
 /// The settings, or why there are none.
 pub(super) fn of(stage: &Stage, arguments: &SimulateArguments) -> Result<Settings, Failure> {

@@ -10,9 +10,8 @@ use super::arguments::SimulateArguments;
 use crate::console;
 use crate::failure::Failure;
 
-/// Bytes of a number: with its comma in the CSV at most, and in the Parquet file.
-const CSV: f64 = 25.0;
-const PARQUET: f64 = 8.0;
+/// Bytes of a number with its comma, at most.
+const NUMBER: f64 = 25.0;
 
 /// The command announces a size of this many bytes or more.
 const MUCH: f64 = 1e7;
@@ -39,14 +38,13 @@ impl Size {
     }
 
     fn bytes(columns: usize, rows: f64) -> f64 {
-        rows * columns as f64 * (CSV + PARQUET)
+        rows * columns as f64 * NUMBER
     }
 
     /// So many rows, in words.
     fn told(self, rows: f64) -> String {
         let size = Self::bytes(self.columns, rows) / 1e6;
-        let of_parquet = rows * self.columns as f64 * PARQUET / 1e6;
-        format!("{rows} rows of {} columns: up to {size:.0} MB, {of_parquet:.0} MB of them the Parquet file", self.columns)
+        format!("{rows} rows of {} columns: up to {size:.0} MB", self.columns)
     }
 
     /// Looks ahead at what a motion would write into the folder that the arguments name. Of records
@@ -126,25 +124,25 @@ mod tests {
         assert_eq!(rows(&Settings { step: Some(1e-3), max_steps: 9, ..settings(Output::Steps) }), Some(10.0));
     }
 
-    /// 1 + 7 + 2·6 + 12 = 32 columns of 33 bytes: a row is 1056 bytes, and 1 MB is 946 rows.
+    /// 1 + 7 + 2·6 + 12 = 32 columns of 25 bytes: a row is 800 bytes, and 1 MB is 1250 rows.
     #[test]
     fn a_motion_that_would_write_more_than_may_be_is_refused() {
         let ahead = |rows: f64, size| {
             let mut settings = Settings { end: rows - 1.0, output: Output::Every(1.0), ..Settings::default() };
             Size::look_ahead(SHAPE, &mut settings, &arguments(size)).map_err(|failure| failure.errors[0].message.clone())
         };
-        assert!(ahead(946.0, Some(1)).is_ok());
-        let told = ahead(947.0, Some(1)).unwrap_err();
-        let expected = "--output folder: found 947 rows of 32 columns: up to 1 MB, 0 MB of them the Parquet file, expected at most 1 MB: ";
+        assert!(ahead(1250.0, Some(1)).is_ok());
+        let told = ahead(1251.0, Some(1)).unwrap_err();
+        let expected = "--output folder: found 1251 rows of 32 columns: up to 1 MB, expected at most 1 MB: ";
         assert!(told.starts_with(expected) && told.ends_with("or allow more by --max-output-size"), "{told}");
-        assert!(ahead(946_969.0, None).is_ok() && ahead(946_970.0, None).unwrap_err().contains("up to 1000 MB"));
+        assert!(ahead(1_250_000.0, None).is_ok() && ahead(1_250_001.0, None).unwrap_err().contains("up to 1000 MB"));
     }
 
     #[test]
     fn steps_by_tolerance_end_where_there_is_no_more_room() {
         let mut settings = Settings { output: Output::Steps, ..Settings::default() };
         let size = Size::look_ahead(SHAPE, &mut settings, &arguments(Some(1))).unwrap().unwrap();
-        assert_eq!((settings.max_steps, size.ended(945)), (945, None));
-        assert!(size.ended(946).is_some_and(|told| told.starts_with("946 rows of 32 columns: ")));
+        assert_eq!((settings.max_steps, size.ended(1249)), (1249, None));
+        assert!(size.ended(1250).is_some_and(|told| told.starts_with("1250 rows of 32 columns: ")));
     }
 }

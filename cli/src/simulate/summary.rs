@@ -8,9 +8,9 @@ use serde::Serialize;
 
 use super::motion::Motion;
 use super::recording::{Happening, Recording};
-use super::stage::{Stage, joint_of};
 use crate::effects::sorts;
-use crate::units::Units;
+use articulated_lab::json::Units;
+use articulated_lab::stage::{Stage, joint_of};
 
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Summary {
@@ -50,6 +50,9 @@ pub(super) struct Summary {
     pub(super) warnings: Vec<String>,
     /// Written into the folder.
     pub(super) files: Vec<String>,
+    /// The columns of the table among them, with their units.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub(super) columns: Vec<Unit>,
     /// Pictures that are not, since all that they would show is zero throughout, or since the ends
     /// alone are recorded.
     pub(super) pictures_left_out: Vec<&'static str>,
@@ -68,6 +71,14 @@ const UNITS: Units = Units(&[
     ("momentum.largest_change_linear", "kg·m/s"),
     ("events[].time", "s"),
 ]);
+
+/// A column of the table of a motion.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Unit {
+    pub(super) column: String,
+    /// Empty for a number without one.
+    pub(super) unit: String,
+}
 
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Method {
@@ -189,6 +200,7 @@ impl Summary {
             simulated_s_per_wall_s: (motion.reached - settings.start) / wall.max(1e-9),
             warnings: stage.odd.iter().chain(&motion.warnings).cloned().collect(),
             files: Vec::new(),
+            columns: Vec::new(),
             pictures_left_out: Vec::new(),
             page_left_out: false,
             units: UNITS,

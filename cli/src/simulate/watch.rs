@@ -4,9 +4,9 @@ use std::time::{Duration, Instant};
 
 use articulated::simulate::{Counts, Settings};
 
-use super::stage::{Stage, joint_of};
 use crate::console::Progress;
 use crate::table::number;
+use articulated_lab::stage::{Stage, joint_of};
 
 /// When to say that a motion is slow, and what is left of it then at least.
 const PATIENCE: Duration = Duration::from_secs(8);

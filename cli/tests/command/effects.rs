@@ -79,7 +79,7 @@ fn a_function_that_only_effects_define_is_told_with_all_of_them() {
     assert!(ended.status == 0 && ended.out.contains(said) && ended.out.contains("with all effects"), "{}{}", ended.out, ended.err);
     assert!(!ended.out.contains("without effects"), "{}", ended.out);
     let none = run(&["effects", scene("damping = 0.2").name()]);
-    assert!(none.status == 1 && none.err.contains("forward_dynamics is not defined"), "{}", none.err);
+    assert!(none.status == 1 && none.err.contains("forward_dynamics: found no inertia of its own for joint j, expected"), "{}", none.err);
 }
 
 /// One number is of the slides and of the turns of a planar or a free joint: it is not told as that of an angle.

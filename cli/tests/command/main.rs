@@ -162,6 +162,10 @@ fn a_command_line_that_cannot_be_read_is_told_as_data_too() {
     for (words, what) in missing {
         let told = run(&[words, &["--format", "json"]].concat()).json();
         let expected = format!("the following required arguments were not provided: {what}");
-        assert_eq!(told["errors"], serde_json::json!([{ "line": null, "subject": null, "field": null, "message": expected }]), "{words:?}");
+        let errors = told["errors"].as_array().unwrap();
+        let [error] = errors.as_slice() else { panic!("{words:?}: {errors:?}") };
+        assert_eq!((&error["severity"], &error["message"]), (&"error".into(), &expected.into()), "{words:?}");
+        let keys = ["code", "file", "line", "column", "subject", "field", "found", "expected", "hint"];
+        assert!(keys.iter().all(|key| error[key].is_null()), "{words:?}: {error}");
     }
 }

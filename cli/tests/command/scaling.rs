@@ -21,7 +21,8 @@ fn chains_are_measured_and_drawn() {
     assert_eq!(report["growth"][1]["to"], 4);
     assert_eq!(report["units"]["points[].generated_cold"], "ns per call");
     let drawn = std::fs::read_to_string(chart).unwrap();
-    assert_eq!(drawn.matches("<polyline").count(), 8);
+    // Each curve, and a piece of it in the legend.
+    assert_eq!(drawn.matches("stroke-width=\"2\"").count(), 8 * 2);
     // Two points and one in the legend.
     assert_eq!(drawn.matches("<circle").count(), 8 * 3);
     assert!(drawn.starts_with("<svg ") && drawn.ends_with("</svg>\n"));

@@ -62,8 +62,8 @@ pub struct Opened {
 pub fn open(path: &Path, bundled: &[Bundled<'_>]) -> Result<Opened, Diagnostics> {
     let mut log = Diagnostics::new(&path.display().to_string());
     let mut loader = Loader { bundled, ..Loader::default() };
-    let scene = loader.scene(&path.display().to_string(), &Span::default(), &mut log);
-    let opened = scene.and_then(|scene| loader.open(scene, &mut log));
+    let scene = loader.scene(path, &Span::default(), &mut log);
+    let opened = scene.and_then(|scene| loader.open(folder_of(path), scene, &mut log));
     opened.ok_or_else(|| log.result(()).err().unwrap_or_default())
 }
 
@@ -75,8 +75,7 @@ pub fn open(path: &Path, bundled: &[Bundled<'_>]) -> Result<Opened, Diagnostics>
 pub fn open_in(scene: Scene, folder: &Path, bundled: &[Bundled<'_>]) -> Result<Opened, Diagnostics> {
     let mut log = Diagnostics::new(&scene.file);
     let mut loader = Loader { bundled, ..Loader::default() };
-    // The scene's own name says nothing of its folder.
-    let opened = loader.open_from(&folder.join("scene").display().to_string(), scene, &mut log);
+    let opened = loader.open(folder, scene, &mut log);
     opened.ok_or_else(|| log.result(()).err().unwrap_or_default())
 }
 
@@ -90,22 +89,22 @@ impl Default for Loader<'_> {
 impl Loader<'_> {
     /// The bytes of a file. A finding is at the place that names the file, under the key there; with
     /// no place, at the file itself.
-    pub fn read(&mut self, name: &str, span: &Span, key: &str, log: &mut Diagnostics) -> Option<Vec<u8>> {
-        let path = self.root.join(name);
+    pub fn read(&mut self, name: &Path, span: &Span, key: &str, log: &mut Diagnostics) -> Option<Vec<u8>> {
+        let (path, name) = (self.root.join(name), name.display().to_string());
         match self.sources.read(&path) {
             Ok(bytes) => {
                 self.files.push(path);
                 Some(bytes)
             }
             Err(error) => {
-                let near = self.sources.nearest(&path).map(|name| format!("did you mean {name:?}?"));
+                let near = self.sources.nearest(&path).map(|near| format!("did you mean {near:?}?"));
                 let reason = match error.kind() {
                     ErrorKind::NotFound => format!("there is no such file{}", self.seen_from),
                     _ => error.to_string(),
                 };
                 log.push(
                     match *span == Span::default() {
-                        true => Diagnostic::refusal(name, &Default::default(), Code::File, reason),
+                        true => Diagnostic::refusal(&name, &Default::default(), Code::File, reason),
                         false => Diagnostic::refusal(&span.file, (span.at, key), Code::File, format!("{name}: {reason}")),
                     }
                     .with_hint(near),
@@ -116,35 +115,30 @@ impl Loader<'_> {
     }
 
     /// The scene of this name, which `span` names.
-    pub fn scene(&mut self, name: &str, span: &Span, log: &mut Diagnostics) -> Option<Scene> {
+    pub fn scene(&mut self, name: &Path, span: &Span, log: &mut Diagnostics) -> Option<Scene> {
         let bytes = self.read(name, span, "scene", log)?;
-        Scene::read_bytes(name, &bytes).map_err(|findings| log.take(findings)).ok()
+        Scene::read_bytes(&name.display().to_string(), &bytes).map_err(|findings| log.take(findings)).ok()
     }
 
     /// The documents that a scene names, seen from its folder. `None`: one of them is missing, and an
     /// error says which.
-    pub fn open(&mut self, scene: Scene, log: &mut Diagnostics) -> Option<Opened> {
-        let seen_from = scene.file.clone();
-        self.open_from(&seen_from, scene, log)
-    }
-
-    fn open_from(&mut self, scene_file: &str, scene: Scene, log: &mut Diagnostics) -> Option<Opened> {
-        let robot = self.robot(scene_file, &scene, log);
+    pub fn open(&mut self, folder: &Path, scene: Scene, log: &mut Diagnostics) -> Option<Opened> {
+        let robot = self.robot(folder, &scene, log);
         let mut options = RobotOptions { base: robot.as_ref().map_or(Base::Fixed, |robot| robot.2), ..RobotOptions::default() };
         scene.fill_robot(&mut options);
-        let appended = self.append(scene_file, &mut options.append, log);
+        let appended = self.append(folder, &mut options.append, log);
         let (file, document, _) = robot.filter(|_| appended)?;
         Some(Opened { scene, file, document, options, files: self.files.clone() })
     }
 
-    /// The name, the document and the base of a scene's robot.
-    pub fn robot(&mut self, scene_file: &str, scene: &Scene, log: &mut Diagnostics) -> Option<(String, Vec<u8>, Base)> {
+    /// The name, the document and the base of a scene's robot; `folder`: the scene's.
+    pub fn robot(&mut self, folder: &Path, scene: &Scene, log: &mut Diagnostics) -> Option<(String, Vec<u8>, Base)> {
         match &scene.robot {
             Robot::File(name) => {
                 let at = scene.code.places.robot;
-                let name = named_by(at, scene_file, name);
+                let name = seen_from(at, folder, name);
                 let document = self.read(&name, &Span { file: scene.file.clone(), at }, "urdf", log)?;
-                Some((name, document, Base::Fixed))
+                Some((name.display().to_string(), document, Base::Fixed))
             }
             Robot::Bundled(name) => match self.bundled.iter().find(|one| one.name == name) {
                 Some(one) => Some((format!("{name}.urdf"), one.document.as_bytes().to_vec(), one.base)),
@@ -160,15 +154,14 @@ impl Loader<'_> {
         }
     }
 
-    /// Reads the robots to append, which are named as a scene of this name sees them. Whether all are
-    /// there.
-    pub fn append(&mut self, scene_file: &str, append: &mut [Appended], log: &mut Diagnostics) -> bool {
+    /// Reads the robots to append; `folder`: the scene's. Whether all are there.
+    pub fn append(&mut self, folder: &Path, append: &mut [Appended], log: &mut Diagnostics) -> bool {
         let mut all = true;
         for other in append {
             let span = other.file.span.clone().unwrap_or_default();
-            let name = named_by(span.at, scene_file, &other.file);
+            let name = seen_from(span.at, folder, &other.file);
             match self.read(&name, &span, "append.urdf", log) {
-                Some(document) => (other.document, other.file.value) = (document, name),
+                Some(document) => (other.document, other.file.value) = (document, name.display().to_string()),
                 None => all = false,
             }
         }
@@ -187,8 +180,14 @@ impl Loader<'_> {
 
 /// A file as the root sees it: one that an invocation names as it is, one that a scene names from
 /// the scene's folder.
-fn named_by(at: At, scene_file: &str, name: &str) -> String {
-    if matches!(at, At::Word(_)) { name.to_owned() } else { beside(scene_file, name) }
+fn seen_from(at: At, folder: &Path, name: &str) -> PathBuf {
+    if matches!(at, At::Word(_)) { name.into() } else { folder.join(name) }
+}
+
+/// The folder of a file.
+#[must_use]
+pub fn folder_of(file: &Path) -> &Path {
+    file.parent().unwrap_or(Path::new(""))
 }
 
 /// A file that a scene names, as seen from where the scene is seen.

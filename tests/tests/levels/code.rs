@@ -1,11 +1,11 @@
 //! Generated code of every level, compiled and run.
 
-use articulated_cli::compiled::{Compiled, Rustc, Target};
-use articulated_cli::states;
 use articulated_codegen::{Arithmetic, Generated, Level, Request, bound, generate};
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Argument, function};
 use articulated_core::model::Model;
+use articulated_lab::compiled::{Compiled, Rustc, Target};
+use articulated_lab::states;
 use articulated_reference::Big;
 
 const FUNCTION: &str = "inverse_dynamics";

@@ -10,10 +10,10 @@ use articulated_core::dynamics::Dynamics;
 use articulated_core::effect::unit;
 use articulated_core::model::Model;
 use articulated_core::spatial::Placement;
+use articulated_lab::plot::escaped;
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::plot::svg::escaped;
 use super::recording::{Happening, Recording};
 use figure::Figure;
 use track::{Track, base64};

@@ -1,0 +1,149 @@
+//! The command line.
+
+use articulated_codegen::function_groups::Group;
+use articulated_core::algorithm::function;
+use clap::{Parser, Subcommand};
+
+use crate::accuracy::AccuracyArguments;
+use crate::arguments::{CheckArguments, EvalArguments, Format, FunctionsArguments, GenerateArguments};
+use crate::compare::CompareArguments;
+use crate::effects::EffectsArguments;
+use crate::failure::STATUSES;
+use crate::scaling::ScalingArguments;
+use crate::simulate::arguments::SimulateArguments;
+use crate::stress::StressArguments;
+
+/// Robot dynamics, spelled out: checks a URDF, generates its straight-line code, evaluates it, compares it, and simulates it.
+#[derive(Debug, Parser)]
+#[command(name = "articulated", version, after_help = overview())]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    /// How to print results
+    #[arg(long, global = true, value_enum, default_value_t = Format::Text)]
+    pub(crate) format: Format,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Says all that is wrong with a robot, and what it is made of
+    #[command(after_help = examples(&[
+        "articulated check arm.urdf",
+        "articulated check --floating walker.urdf",
+        "articulated check arm.urdf --function inverse_dynamics",
+        "articulated check arm.urdf --append gripper.urdf@tool:left_ --payload left_palm=0.5@0,0,0.1 --lock elbow=0.5",
+        "articulated check panda_like --format json",
+    ]))]
+    Check(CheckArguments),
+    /// Writes a robot's dynamics out as Rust or C
+    #[command(after_help = examples(&[
+        "articulated generate panda_like",
+        "articulated generate arm.urdf --functions placements,inverse_dynamics -o src/arm.rs",
+        "articulated generate arm.urdf --runtime ::articulated -o src/arm.rs",
+        "articulated generate arm.urdf --functions inverse_dynamics,forward_dynamics --batch f64,f32 -o src/arm.rs",
+        "articulated generate arm.urdf --functions 'hold = gravity_torque + jacobians_body, bias = inverse_dynamics(a = 0)'",
+        "articulated generate arm.urdf --functions 'still=inverse_dynamics(v=0,a=0)' --parameters 'payload(tool)'",
+        "articulated generate arm.toml --functions motion --runtime ::articulated -o src/arm.rs",
+        "articulated generate arm.urdf --level double_double -o src/arm_exact.rs",
+        "articulated generate arm.urdf --target c -o firmware/arm",
+        "articulated generate arm.urdf --frames tool,camera --lock wrist=0 --payload tool=1.2@0,0,0.1:1e-3,0,0,1e-3,0,1e-3",
+        "articulated generate arm.urdf --append gripper.urdf@tool --append gripper.urdf@tool:second_:0,0,0.2,0,0,1.5",
+    ]))]
+    Generate(GenerateArguments),
+    /// Evaluates functions on a file of states, by generic and by generated code
+    #[command(after_help = examples(&[
+        "articulated eval simple_pendulum --function inverse_dynamics --states states.json",
+        "articulated eval simple_pendulum --function gravity_torque,placements --states states.csv --generic --format json",
+        "",
+        "states.json:  {\"states\": [{\"q\": [0.1], \"v\": {\"swing\": 0.2}, \"a\": [0], \"wrenches\": {\"bob\": [0, 0, 0, 0, 0, -5]}}]}",
+        "states.csv:   q.swing,v.swing,a.swing",
+        "              0.1,0.2,0",
+        "",
+        "Columns of a joint that has several numbers: q.hip[0],q.hip[1],…; a floating base is the joint __floating_base__",
+    ]))]
+    Eval(EvalArguments),
+    /// Measures generated code against generic code: operations, size, time, error
+    #[command(after_help = examples(&[
+        "articulated compare panda_like",
+        "articulated compare humanoid --functions inverse_dynamics --repetitions 101",
+        "articulated compare ur5_like --functions kinematics,derivatives --frames flange",
+        "articulated compare panda_like --functions inverse_dynamics --batch f64,f32",
+        "articulated compare arm.urdf --peer libpeer.so --format json",
+        "articulated compare quadruped --peers-manifest target/peers/peers.json --chart quadruped.svg",
+    ]))]
+    Compare(CompareArguments),
+    /// Measures what accuracy costs: error and time of each function at each level, and the cheapest that is accurate enough
+    #[command(after_help = examples(&[
+        "articulated accuracy panda_like",
+        "articulated accuracy arm.urdf --functions inverse_dynamics,mass_matrix --levels f32,f64,double_double --output accuracy",
+        "articulated accuracy panda_like --functions forward_dynamics --advise --error 1e-9",
+        "articulated accuracy --simulate pendulum --output integrators",
+        "articulated accuracy ur5_like --peers-manifest target/peers/peers.json --output accuracy",
+    ]))]
+    Accuracy(AccuracyArguments),
+    /// Lists all functions, and what they cost on some robots, on the frames of their tips
+    #[command(after_help = examples(&[
+        "articulated functions",
+        "articulated functions panda_like arm.urdf --format json",
+        "articulated functions --markdown > docs/functions.md",
+    ]))]
+    Functions(FunctionsArguments),
+    /// Measures how costs grow with the robot: chains of 7 to 125 joints (--all: to 1000), generated against generic code, hot and cold caches
+    #[command(after_help = examples(&[
+        "articulated scaling",
+        "articulated scaling --joints 7,30,100 --functions inverse_dynamics --chart scaling.svg",
+        "articulated scaling --all --markdown --chart docs/scaling.svg > docs/scaling.md",
+    ]))]
+    Scaling(ScalingArguments),
+    /// Measures hard cases: a corpus and the bundled robots, or a robot of yours; each with a limit that it has to keep
+    #[command(after_help = examples(&[
+        "articulated stress",
+        "articulated stress --chapters chains,screws --rows",
+        "articulated stress arm.urdf --states states.json",
+        "articulated stress arm.urdf --generated --format json",
+    ]))]
+    Stress(StressArguments),
+    /// Simulates a scene: a table of the motion, pictures, a page that plays it, and what became of energy and momentum
+    #[command(after_help = examples(&[
+        "articulated simulate double_pendulum",
+        "articulated simulate quadruped_drop -o drop              (then open drop/motion.html)",
+        "articulated simulate arm.toml -o arm --end 5 --integrator dop853 --rtol 1e-10",
+        "articulated simulate arm.toml --generated --format json",
+        "articulated simulate --all",
+        "articulated simulate chain --against target/peers/peers.json",
+    ]))]
+    Simulate(SimulateArguments),
+    /// Says which effects of a scene are on and off, what of the URDF is not used, and what each effect costs
+    #[command(after_help = examples(&[
+        "articulated effects golf_swing",
+        "articulated effects arm.toml --time",
+        "articulated effects arm.toml --functions forward_dynamics,mass_matrix --format json",
+    ]))]
+    Effects(EffectsArguments),
+}
+
+fn examples(lines: &[&str]) -> String {
+    let lines: String = lines.iter().map(|l| format!("  {l}\n")).collect();
+    format!("Examples:\n{lines}\n{STATUSES}")
+}
+
+fn overview() -> String {
+    let robots: String = articulated_models::ROBOTS.iter().map(|r| format!("  {:16} {}\n", r.name, r.summary)).collect();
+    let group = |g: Group| format!("  {}: {}\n", g.name(), g.title());
+    let one = |name: &'static str| function::<f64>(name).map(|f| format!("    {name:42} {}\n", f.summary)).unwrap_or_default();
+    let functions: String = Group::ALL.into_iter().map(|g| group(g) + &g.functions().map(one).collect::<String>()).collect();
+    let scenes: String = articulated_models::SCENES.iter().map(|s| format!("  {:16} {}\n", s.name, s.summary())).collect();
+    let functions = format!("Functions, in groups whose names stand for all of them:\n{functions}");
+    format!("Bundled robots:\n{robots}\nBundled scenes:\n{scenes}\n{functions}\n{STATUSES}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_well_formed() {
+        use clap::CommandFactory;
+        Arguments::command().debug_assert();
+    }
+}

@@ -1,0 +1,122 @@
+//! Libraries that take steps of their own, behind the C interface of a peer.
+
+use std::path::Path;
+
+use articulated_core::description::Base;
+
+use super::Runner;
+use super::search::{self, Effort};
+use crate::compare::manifest::Library;
+use crate::compare::peer::orders;
+use crate::error::Error;
+use crate::native::{Native, NativePeer, Stepping};
+use crate::stage::Stage;
+
+/// A peer at the start of the motion.
+pub(crate) struct Peer {
+    engine: String,
+    native: NativePeer,
+    /// Our index of each of its coordinates and rates.
+    orders: (Vec<usize>, Vec<usize>),
+    start: (Vec<f64>, Vec<f64>),
+    length: f64,
+    /// By which it makes steps.
+    method: Stepping,
+    steps: usize,
+}
+
+/// Those of the libraries that make steps and read the robot, and why others do not. They start at (q, v), in our order, and go on for so many seconds.
+pub(crate) fn open(
+    stage: &Stage,
+    libraries: &[Library],
+    folder: &Path,
+    start: (&[f64], &[f64]),
+    seconds: f64,
+) -> Result<(Vec<Peer>, Vec<String>), Error> {
+    let urdf = folder.join("robot.urdf");
+    std::fs::write(&urdf, &stage.request.document).map_err(|e| Error::tool(&e))?;
+    let (mut peers, mut notes) = (Vec::new(), Vec::new());
+    for library in libraries {
+        match Peer::open(stage, library, &urdf, start, seconds) {
+            Ok(Some(peer)) => peers.push(peer),
+            Ok(None) => {}
+            Err(reason) => {
+                let name = library.name.clone().unwrap_or_else(|| library.path.display().to_string());
+                notes.push(format!("peer {name} is left out: {reason}"));
+            }
+        }
+    }
+    if peers.is_empty() {
+        notes.push("there is no peer that makes steps: see tests/peers for MuJoCo's".to_owned());
+    }
+    Ok((peers, notes))
+}
+
+impl Peer {
+    /// `None`: it is no engine of simulation.
+    fn open(stage: &Stage, library: &Library, urdf: &Path, start: (&[f64], &[f64]), seconds: f64) -> Result<Option<Self>, String> {
+        let opened = Native::open(&library.path)?;
+        let engine = library.engine.clone().or_else(|| opened.peer_name()).ok_or("it has no function peer_name")?;
+        let gravity = stage.request.options.robot.gravity;
+        if !opened.simulates() {
+            return Ok(None);
+        }
+        let native = NativePeer::open(&opened, urdf, stage.base() == Base::Floating, gravity)?;
+        let method = native.methods().into_iter().next().ok_or("it names no method")?;
+        let orders = orders(&native, &stage.model)?;
+        let pick = |x: &[f64], order: &[usize]| order.iter().map(|&k| x[k]).collect::<Vec<f64>>();
+        let start = (pick(start.0, &orders.0), pick(start.1, &orders.1));
+        Ok(Some(Self { engine, native, orders, start, length: seconds, method, steps: 0 }))
+    }
+
+    /// Whose it is.
+    pub(crate) fn engine(&self) -> &str {
+        &self.engine
+    }
+
+    /// By which it can make steps.
+    pub(crate) fn methods(&self) -> Vec<Stepping> {
+        self.native.methods()
+    }
+
+    /// Goes to the end in so many equal steps; q and v there in our order, or nothing if it went astray.
+    pub(crate) fn go(&self, method: &Stepping, steps: usize) -> Option<(Vec<f64>, Vec<f64>)> {
+        let (mut q, mut v) = self.start.clone();
+        self.native.simulate(method, &mut q, &mut v, self.length / steps as f64, steps)?;
+        let ours = |x: &[f64], order: &[usize]| {
+            let mut out = vec![0.0; x.len()];
+            order.iter().zip(x).for_each(|(&k, x)| out[k] = *x);
+            out
+        };
+        Some((ours(&q, &self.orders.0), ours(&v, &self.orders.1)))
+    }
+}
+
+impl Runner for Peer {
+    fn name(&self) -> String {
+        format!("{} {}", self.engine, self.method.name)
+    }
+
+    fn order(&self) -> u32 {
+        self.method.order
+    }
+
+    fn own(&self) -> bool {
+        false
+    }
+
+    fn effort(&self, level: usize) -> Option<Effort> {
+        search::steps(level)
+    }
+
+    fn run(&mut self, effort: Effort) -> Option<Vec<f64>> {
+        let Effort::Steps(steps) = effort else { return None };
+        self.steps = steps;
+        let (q, v) = self.go(&self.method, steps)?;
+        Some([q, v].concat())
+    }
+
+    fn spent(&self) -> (u64, u64) {
+        (self.steps as u64, u64::from(self.method.evaluations) * self.steps as u64)
+    }
+}

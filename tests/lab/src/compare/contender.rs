@@ -1,0 +1,151 @@
+//! Who is measured: something that computes a function of a robot.
+
+use std::cell::RefCell;
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use articulated_core::algorithm::{Function, Workspace};
+use articulated_core::model::Model;
+
+use super::timing::Run;
+use crate::compiled::Compiled;
+use crate::native::{Kernel, PeerKernel};
+
+/// One way to compute a function. What is timed is a run through all states, so that those that take several at once have their time a state too.
+pub struct Contender<'a> {
+    way: Way<'a>,
+    out: usize,
+}
+
+enum Way<'a> {
+    Generated(Kernel),
+    Peer(PeerKernel),
+    Generic { function: &'static Function<f64>, model: &'a Model<f64>, workspace: Box<RefCell<Workspace<f64>>> },
+}
+
+impl<'a> Contender<'a> {
+    /// Code of another library.
+    pub(crate) fn peer(kernel: PeerKernel, out: usize) -> Self {
+        Self { way: Way::Peer(kernel), out }
+    }
+
+    /// The compiled function.
+    pub fn generated(compiled: &Compiled, function: &Function<f64>) -> Self {
+        let kernel = compiled.kernel(function.name).expect("every function of a ledger was loaded");
+        Self { way: Way::Generated(kernel.clone()), out: function.len(compiled.shape()) }
+    }
+
+    /// The same algorithm at run time.
+    pub fn generic(model: &'a Model<f64>, function: &'static Function<f64>) -> Self {
+        let workspace = Box::new(RefCell::new(Workspace::new(model)));
+        Self { way: Way::Generic { function, model, workspace }, out: function.len(model.shape()) }
+    }
+
+    /// The result in one state; empty where a peer keeps it to itself.
+    pub fn call(&self, arguments: &[&[f64]]) -> Vec<f64> {
+        let mut out = vec![0.0; self.out];
+        match &self.way {
+            Way::Generated(kernel) => kernel.call(arguments, &mut out),
+            Way::Peer(kernel) => {
+                if !kernel.call(arguments, &mut out) {
+                    out.clear();
+                }
+            }
+            Way::Generic { function, model, workspace } => {
+                let called = function.call(model, &mut workspace.borrow_mut(), arguments, &mut out);
+                debug_assert!(called.is_ok(), "arguments were made to measure");
+            }
+        }
+        out
+    }
+
+    /// Whether the result of a call is where the next call can wait for it.
+    pub fn can_wait(&self) -> bool {
+        self.out > 0
+            && match &self.way {
+                Way::Generated(_) | Way::Generic { .. } => true,
+                Way::Peer(kernel) => kernel.writes(),
+            }
+    }
+
+    /// What is timed: so many rounds through the states, or as many of the states as are near.
+    pub fn run<'b>(&'b self, states: &'b [Vec<&'b [f64]>]) -> Run<'b> {
+        self.timed(states, Calls::Independent)
+    }
+
+    /// The same for calls that each wait for the result of the call before; [`can_wait`](Self::can_wait).
+    pub fn run_dependent<'b>(&'b self, states: &'b [Vec<&'b [f64]>]) -> Run<'b> {
+        self.timed(states, Calls::Dependent)
+    }
+
+    fn timed<'b>(&'b self, states: &'b [Vec<&'b [f64]>], calls: Calls) -> Run<'b> {
+        let (states, mut room) = (near(states), Room::new(self.out));
+        Run::new(states.len(), move |rounds| {
+            let out = black_box(room.next());
+            match (&self.way, calls) {
+                (Way::Generated(kernel), Calls::Independent) => clock(|| kernel.repeat(rounds, states, out)),
+                (Way::Generated(kernel), Calls::Dependent) => clock(|| kernel.repeat_waiting(rounds, states, out)),
+                (Way::Peer(kernel), Calls::Independent) => clock(|| kernel.repeat(rounds, states, out)),
+                (Way::Peer(kernel), Calls::Dependent) => clock(|| kernel.repeat_waiting(rounds, states, out)),
+                // A generic call is a hundred times as long as what a processor begins early.
+                (Way::Generic { function, model, workspace }, _) => {
+                    let workspace = &mut workspace.borrow_mut();
+                    clock(|| {
+                        for state in std::iter::repeat_n(states, rounds).flatten() {
+                            let _ = black_box(function.call(model, workspace, black_box(state), black_box(&mut *out)));
+                        }
+                    })
+                }
+            }
+        })
+    }
+}
+
+/// Whether each call waits for the result of the call before.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Calls {
+    /// As a batch of states would call it: the processor may begin a call before the last one has ended.
+    Independent,
+    /// As a controller calls it: the next state follows from the last result.
+    Dependent,
+}
+
+/// Bytes of arguments that a round goes through at most, half of a small first-level cache: who calls a function has just made its arguments.
+const NEAR: usize = 16 << 10;
+
+/// The first of the states, as many as are near.
+fn near<'s, 'x>(states: &'s [Vec<&'x [f64]>]) -> &'s [Vec<&'x [f64]>] {
+    let bytes = states.first().map_or(0, |x| x.iter().map(|x| size_of_val(*x)).sum::<usize>());
+    &states[..states.len().min((NEAR / bytes.max(1)).max(1))]
+}
+
+/// Where results go. A processor takes what it reads for what it has just written if the last twelve bits of both addresses agree, and waits: a function that writes much takes up to
+/// a third longer wherever its result happens to lie so. So the place moves from batch to batch, through a page.
+struct Room {
+    numbers: Vec<f64>,
+    out: usize,
+    turn: usize,
+}
+
+impl Room {
+    const PAGE: usize = 4096 / size_of::<f64>();
+    /// Some cache lines, and as many as there are in a page before a place comes again.
+    const STEP: usize = 5 * 64 / size_of::<f64>();
+
+    fn new(out: usize) -> Self {
+        Self { numbers: vec![0.0; out + Self::PAGE], out, turn: 0 }
+    }
+
+    /// The next place.
+    fn next(&mut self) -> &mut [f64] {
+        self.turn = (self.turn + Self::STEP) % Self::PAGE;
+        &mut self.numbers[self.turn..][..self.out]
+    }
+}
+
+/// How long it takes.
+pub(super) fn clock(batch: impl FnOnce()) -> Duration {
+    let start = Instant::now();
+    batch();
+    start.elapsed()
+}

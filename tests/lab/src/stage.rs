@@ -1,0 +1,175 @@
+//! A loaded scene with its robot: its start, its code, and its motion.
+
+use std::ops::Deref;
+use std::path::PathBuf;
+
+use articulated::Dynamics;
+use articulated::simulate::{Counts, IntegratorId, Settings};
+use articulated_codegen::scene::Prepared;
+use articulated_codegen::{Generated, Request};
+use articulated_core::description::Base;
+use articulated_core::diagnostic::summary;
+use articulated_motion::{Begin, MotionErrors, Outcome, Sunk};
+use articulated_scene::{BuiltRobot, Robot, beyond_sense};
+
+use crate::console;
+use crate::error::Error;
+use crate::straight::Straight;
+
+/// A scene with its robot, as it moves, and what the command has to know besides.
+pub struct Stage {
+    /// Of the scene, without folder and ending.
+    pub name: String,
+    /// What code of the robot is generated from.
+    pub request: Request,
+    /// What is odd about the robot.
+    pub odd: Vec<String>,
+    stage: articulated_motion::Stage,
+}
+
+impl Deref for Stage {
+    type Target = articulated_motion::Stage;
+
+    fn deref(&self) -> &Self::Target {
+        &self.stage
+    }
+}
+
+impl Stage {
+    /// Refuses a level whose functions take `f32`, which what calls them here has not.
+    pub fn is_of_doubles(&self) -> Result<(), Error> {
+        let level = self.request.options.level;
+        if !level.is_single() {
+            return Ok(());
+        }
+        Err(Error::input([format!("{}: level: found {level}, expected one whose functions take f64, as states here are", self.scene.file)]))
+    }
+
+    /// The stage of a scene that was read. `folder`: that of its file, for other files that it names.
+    pub fn new(name: String, prepared: Prepared, folder: PathBuf) -> Result<Self, Error> {
+        let Prepared { scene, mut request, robot, .. } = prepared;
+        let BuiltRobot { reading, model, resolved, effects, .. } = robot;
+        // Variants of the request replace its effects.
+        (request.scene, request.options.robot.effects) = (None, effects.clone());
+        request.options.robot.frames = None;
+        // Bundled robots are odd on purpose.
+        let odd = reading.warnings.iter().filter(|_| !matches!(scene.robot, Robot::Bundled(_)));
+        let odd = summary(odd.chain(&reading.snapped));
+        let mut stage = articulated_motion::Stage::new(scene, reading.description, model, effects).in_folder(folder);
+        stage.report = resolved.report;
+        Ok(Self { name, request, odd, stage })
+    }
+
+    /// Where the motion starts, and what controls it; warnings are printed. Errors: all that do not fit the
+    /// robot, and tables that cannot be read.
+    pub fn start(&self) -> Result<Begin, Error> {
+        let begin = self.begin()?;
+        self.warnings(&begin).iter().for_each(|line| console::warn(line));
+        Ok(begin)
+    }
+
+    /// Warnings about the state at the start.
+    pub fn warnings(&self, begin: &Begin) -> Vec<String> {
+        let beyond = self.beyond(&begin.q).iter().map(ToString::to_string).collect::<Vec<_>>();
+        let file = &self.scene.file;
+        let senseless = beyond_sense(&self.model, &begin.q).into_iter().map(|line| format!("{file}: initial: {line}"));
+        let sunk = summary_of_sunk(&self.sunk(&begin.q));
+        beyond.into_iter().chain(senseless).chain(sunk).chain(self.warning_of_penetrations_at_start(&begin.q)).collect()
+    }
+
+    /// The code that a simulation of the scene needs, and the frames that it gives.
+    pub fn generate(&self, integrator: IntegratorId) -> Result<(Generated, Vec<String>), Error> {
+        self.is_of_doubles()?;
+        let frames = self.frames();
+        let mut request = self.request.clone();
+        request.options.functions = self.functions(integrator).into_iter().map(Into::into).collect();
+        request.set_frames(&frames);
+        (request.options.rust_mut().runtime, request.options.stages) = (None, false);
+        (request.options.parameters, request.options.rust_mut().batch) = (Vec::new(), Vec::new());
+        Ok((articulated_codegen::generate(&request)?, frames))
+    }
+
+    /// Runs the motion, by generated code or by the generic library; `look` sees the time and the counts after
+    /// each step. The outcome, and what the scene looks for and the code has not.
+    pub fn run(
+        &self,
+        begin: &Begin,
+        code: Code<'_>,
+        settings: &Settings,
+        look: &mut dyn FnMut(f64, &Counts),
+    ) -> Result<(Outcome, Vec<String>), MotionErrors> {
+        match code {
+            Code::Generic => self.run_by(begin, (&self.model, &self.frame_names()), settings, look),
+            Code::Generated(robot, frames) => self.run_by(begin, (robot, frames), settings, look),
+        }
+    }
+
+    fn run_by<R: Dynamics<f64>, S: AsRef<str>>(
+        &self,
+        begin: &Begin,
+        (robot, frames): (&R, &[S]),
+        settings: &Settings,
+        look: &mut dyn FnMut(f64, &Counts),
+    ) -> Result<(Outcome, Vec<String>), MotionErrors> {
+        let mut motion = self.motion(robot, frames, settings.clone())?;
+        let without: Vec<String> = motion.without().iter().map(ToString::to_string).collect();
+        without.iter().for_each(|line| console::warn(line));
+        let outcome = motion.run(begin, &mut |t, counts| {
+            look(t, counts);
+            true
+        })?;
+        Ok((outcome, without))
+    }
+
+    /// Whether the base is fixed or floats.
+    pub fn base(&self) -> Base {
+        self.request.options.robot.base
+    }
+}
+
+/// What computes the functions of a motion.
+#[derive(Clone, Copy)]
+pub enum Code<'a> {
+    /// The generic library.
+    Generic,
+    /// Generated code, and the frames that it gives.
+    Generated(&'a Straight, &'a [String]),
+}
+
+/// The deepest contact that starts under its plane, and how many more there are.
+fn summary_of_sunk(sunk: &[Sunk]) -> Option<String> {
+    let deepest = sunk.iter().max_by(|a, b| a.depth.total_cmp(&b.depth))?;
+    let more = if sunk.len() == 1 { String::new() } else { format!(" (and {} more, less deep)", sunk.len() - 1) };
+    Some(format!("{deepest}{more}"))
+}
+
+/// The joint that a number of a step belongs to: steps of q first, then v.
+pub fn joint_of(stage: &Stage, number: usize) -> Option<String> {
+    let freedom = number % stage.model.nv.max(1);
+    Dynamics::joint_of(&stage.model, freedom).filter(|name| !name.is_empty()).map(str::to_owned)
+}
+
+/// The bundled robots, as scenes name them.
+#[cfg(test)]
+fn robots() -> Vec<articulated_codegen::scene::Bundled<'static>> {
+    let all = articulated_models::ROBOTS.iter();
+    all.map(|robot| articulated_codegen::scene::Bundled { name: robot.name, document: robot.urdf, base: robot.base }).collect()
+}
+
+/// A bundled scene.
+#[cfg(test)]
+pub(crate) fn bundled(name: &str) -> Stage {
+    use articulated_codegen::scene::{Scene, open_in};
+    let scene = articulated_models::scene(name).expect("a bundled scene");
+    let read = Scene::read(&scene.file(), scene.toml).expect("a scene that can be read");
+    let prepared = open_in(read, std::path::Path::new(""), &robots()).expect("a scene that can be opened");
+    Stage::new(name.to_owned(), prepared, PathBuf::new()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The scene of a file.
+#[cfg(test)]
+pub(crate) fn opened(path: &std::path::Path) -> Stage {
+    let prepared = articulated_codegen::scene::open(path, &robots()).expect("a scene that can be opened");
+    let folder = path.parent().expect("a folder").to_owned();
+    Stage::new(path.display().to_string(), prepared, folder).unwrap_or_else(|error| panic!("{error}"))
+}
