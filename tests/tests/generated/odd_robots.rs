@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use articulated_codegen::function_groups::Group;
 use articulated_codegen::{Request, generate};
-use articulated_core::algorithm::{Workspace, function, functions};
+use articulated_core::algorithm::functions;
 use articulated_core::description::Base;
 use articulated_tests::program::Program;
 

@@ -131,11 +131,10 @@ pub(crate) static ELSEWHERE: LazyLock<Program> = LazyLock::new(|| {
 });
 
 /// The robots of the first two.
-pub(crate) const ANYBODYS: [&str; 9] =
-    ["panda_like", "gripper_arm", "tree_1", "stone", LANES[0].0, LANES[1].0, LANES[2].0, LANES[3].0, LANES[4].0];
+pub(crate) const ANYBODYS: [&str; 7] = ["panda_like", "gripper_arm", "tree_1", "stone", LANES[0].0, LANES[1].0, LANES[2].0];
 
-/// Those with limbs or joints in lanes, and how many.
-pub(crate) const LANES: [(&str, usize); 5] = [("walker", 4), ("strider", 2), (GROVES[0].0, 4), (GROVES[1].0, 4), (GROVES[2].0, 4)];
+/// Those with limbs in lanes, and how many.
+pub(crate) const LANES: [(&str, usize); 3] = [("walker", 4), ("strider", 2), ("humanoid_derivatives", 2)];
 
 fn anybodys(robots: &[&str], how: &str, change: impl Fn(String) -> String) -> Program {
     let find = |name: &&str| ROBOTS.iter().find(|r| r.name == *name).expect("one of them");
