@@ -20,6 +20,7 @@ mod joint_blocks;
 pub mod ledger;
 mod limbs;
 pub mod lir;
+pub mod model_pass;
 mod parameters;
 pub mod pass;
 mod program;

@@ -1,6 +1,7 @@
 //! One function, from its algorithms to the graph that is emitted.
 
 mod candidate;
+mod forms;
 mod rolled;
 pub(crate) mod strategy;
 

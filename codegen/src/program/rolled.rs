@@ -2,9 +2,9 @@
 
 use std::ops::RangeInclusive;
 
-use articulated_core::algorithm::Form;
 use articulated_core::model::Model;
 
+use super::forms::Form;
 use crate::Options;
 use crate::capabilities::Capabilities;
 use crate::graph::{Counts, Op};
@@ -25,7 +25,7 @@ const COLUMNS: RangeInclusive<usize> = 7..=60;
 
 /// What of a function is left a loop, if that is faster: it needs vectors.
 pub(super) fn columns(wanted: &FunctionSpec, model: &Model<f64>, can: Capabilities) -> Option<MultiRhsSolve> {
-    has_columns(wanted, model, can).then(|| MultiRhsSolve { ways: model.ways_to_base() })
+    has_columns(wanted, model, can).then(|| MultiRhsSolve { ways: model.paths_to_root() })
 }
 
 /// Whether the solution of M X = B is left a loop.
@@ -69,7 +69,7 @@ pub(crate) fn groups(
     options: &Options,
     can: Capabilities,
 ) -> Option<(Groups, Counts)> {
-    let meant = written > WRITTEN_OUT && wanted.as_function().is_some_and(|f| f.forms.contains(&Form::JointsInLoops));
+    let meant = written > WRITTEN_OUT && wanted.as_function().is_some_and(|f| Form::JointsInLoops.fits(f.id));
     let fits = options.limbs && can.vectors && options.parameters.is_empty();
     let groups = (meant && fits).then(|| Groups::of(model)).flatten()?;
     let counts = groups.counts(model);

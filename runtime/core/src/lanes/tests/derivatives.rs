@@ -11,8 +11,8 @@ use super::super::neon_f64x4;
 use super::super::{DERIVATIVES_COST, portable_f64x4};
 use crate::algorithm::{Workspace, inverse_dynamics_derivatives as generic};
 use crate::effect::Effects;
-use crate::joint::{Angle, Coordinates, Joint};
-use crate::model::{Body, Model, Rates};
+use crate::joint::{Coordinates, Joint};
+use crate::model::{Body, Model};
 use crate::spatial::{Matrix3, Placement, Reference, SpatialInertia, Vector3, from_rpy};
 
 /// Random numbers from −1 to 1; Knuth's constants, TAOCP 2, 3.3.4.
@@ -35,10 +35,8 @@ fn body(parent: usize, joint: Joint, at: (usize, usize), random: &mut impl FnMut
         parent,
         placement,
         joint,
-        coordinates: Coordinates { q: at.0, v: at.1, mimic: None, pitch: 0.0, from: Angle::zero(), turns: 1.0 },
+        coordinates: Coordinates { q: at.0, v: at.1, mimic: None, pitch: 0.0 },
         inertia: SpatialInertia::from_central(MASS, Matrix3::from_diagonal(&Vector3::new(0.3, 0.2, 0.25)), &own),
-        lent: None,
-        rates: Rates::Angular,
         link: None,
         effects: Effects::none(),
     }
