@@ -4,19 +4,19 @@
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::checked::{articulated_body_pivots, factored_pivots, least_pivot};
-use articulated_core::algorithm::{Argument, Workspace, articulated_body, forward_dynamics};
+use articulated_core::algorithm::{Argument, articulated_body, forward_dynamics};
 use articulated_core::model::Model;
-use articulated_core::model::pass::model_passes;
 use num_traits::Zero;
 
 use crate::graph::Graph;
 use crate::ledger::{Entry, depth};
+use crate::model_pass::View;
 use crate::pass;
 use crate::sym::{self, Sym};
 
 /// The costs of forward dynamics by ABA, or by M = Lᵀ D L where joints follow others, and of the same with the smallest D/(Σ|terms|) held to its least.
 pub fn checked_cost(model: &Model<f64>) -> [Entry; 2] {
-    let passed = model_passes::<f64>().iter().fold(model.clone(), |m, (_, pass, _)| pass(m));
+    let passed = View::new(model.clone()).passed();
     let follows = model.has_followers();
     let way = if follows { "LTDL" } else { "ABA" };
     let [plain, checked] = [false, true].map(|looks| sym::trace(|| traced(&passed.cast(), follows, looks)));
@@ -27,10 +27,11 @@ pub fn checked_cost(model: &Model<f64>) -> [Entry; 2] {
 const ARGUMENTS: [Argument; 3] = [Argument::Q, Argument::V, Argument::Tau];
 
 /// Accelerations, and by how much the smallest pivot is beyond its least.
-fn traced(model: &Model<Sym>, follows: bool, looks: bool) -> Vec<Sym> {
+fn traced(view: &View<Sym>, follows: bool, looks: bool) -> Vec<Sym> {
+    let model = &view.model;
     let shape = model.shape();
     let [q, v, tau] = [0, 1, 2].map(|place| (0..ARGUMENTS[place].len(shape)).map(|k| Sym::input(place, k)).collect::<Vec<_>>());
-    let (mut ws, mut out) = (Workspace::new(model), vec![Sym::zero(); model.nv]);
+    let (mut ws, mut out) = (view.workspace(), vec![Sym::zero(); model.nv]);
     if follows {
         forward_dynamics(model, &mut ws, &q, &v, &tau, &mut out);
     } else {

@@ -3,9 +3,9 @@
 use std::borrow::Cow;
 
 use articulated_core::algorithm::Argument;
-use articulated_core::model::pass::model_passes;
 
 use crate::graph::{Counts, Graph};
+use crate::model_pass::model_passes;
 use crate::pass::GRAPH_PASSES;
 use crate::program::strategy::Transform;
 

@@ -17,6 +17,7 @@ pub mod graph;
 pub mod ledger;
 mod limbs;
 pub mod lir;
+pub mod model_pass;
 mod parameters;
 pub mod pass;
 mod plan;

@@ -3,13 +3,13 @@
 use std::ops::RangeInclusive;
 
 use articulated_core::Scalar;
-use articulated_core::algorithm::{Argument, Way, Workspace};
-use articulated_core::model::pass::model_passes;
-use articulated_core::model::{Model, Unturned};
+use articulated_core::algorithm::{Argument, Way};
+use articulated_core::model::Model;
 use num_traits::Zero;
 
 use crate::graph::{Graph, Op};
 use crate::limbs::{Constants, IsomorphicLimbs, pack};
+use crate::model_pass::{FoldedRotations, View, model_passes, no_joint_moves_origin};
 use crate::parameters::Parameter;
 use crate::pass::{copy, live, rebuild};
 use crate::program::Strategy;
@@ -70,22 +70,22 @@ pub(crate) fn trace_in_lanes(wanted: &FunctionSpec, choices: &[Strategy], model:
     pack(&live(&graph), &arguments, alike, &constants).asked_as(&graph)
 }
 
-/// The model after the passes that are chosen.
-fn passed<S: Scalar>(part: &FunctionTerm, choice: &Strategy, model: &Model<S>) -> Model<S> {
+/// The view of the model after the passes that are chosen.
+fn passed<S: Scalar>(part: &FunctionTerm, choice: &Strategy, model: &Model<S>) -> View<S> {
     let mut model = model.clone();
     if !part.function.asks_for_frames() {
         model.frames.clear();
     }
-    let (passes, lent) = if part.function.regrouped { (choice.passes, choice.lent) } else { (0, false) };
+    let (passes, shifted) = if part.function.regrouped { (choice.passes, choice.shifted) } else { (0, false) };
     let carried = model.carried();
-    let model = model_passes::<S>().iter().take(passes).fold(model, |model, (_, pass, _)| pass(model));
-    let model = if lent { model.lent(&carried) } else { model };
-    choice.unit.map(|metres| model.in_unit_of(S::from_f64(metres))).unwrap_or(model)
+    let view = model_passes::<S>().iter().take(passes).fold(View::new(model), |view, (_, pass, _)| pass(view));
+    let view = if shifted { view.with_shifted_masses(&carried) } else { view };
+    choice.unit.map(|metres| view.in_unit_of(S::from_f64(metres))).unwrap_or(view)
 }
 
-/// Which bodies need not turn, on the model after all passes, as the function does not ask where they are.
-pub(crate) fn unturnable(part: &FunctionTerm, model: &Model<f64>) -> Vec<Unturned> {
-    if indifferent(part, model) { finished(part, model).unturnable() } else { Vec::new() }
+/// Which rotations may be folded into constants after all passes, as the function does not need where bodies are.
+pub(crate) fn foldable_rotations(part: &FunctionTerm, model: &Model<f64>) -> Vec<FoldedRotations> {
+    if indifferent(part, model) { finished(part, model).foldable_rotations() } else { Vec::new() }
 }
 
 /// Units of other sizes, m, are not tried: constants would be far from one.
@@ -93,7 +93,7 @@ const UNITS: RangeInclusive<f64> = 1e-3..=1e3;
 
 /// Units of length that may spare multiplications, on the model that is chosen, as the function does not ask for lengths: neither frames nor joints that slide.
 pub(crate) fn units(part: &FunctionTerm, choice: &Strategy, model: &Model<f64>) -> Vec<f64> {
-    let fits = indifferent(part, model) && model.only_turns();
+    let fits = indifferent(part, model) && no_joint_moves_origin(model);
     let mut units = if fits { passed(part, &Strategy { unit: None, ..*choice }, model).units() } else { Vec::new() };
     units.retain(|metres| UNITS.contains(metres) && *metres != 1.0);
     units
@@ -106,12 +106,12 @@ fn indifferent(part: &FunctionTerm, model: &Model<f64>) -> bool {
 }
 
 /// The model after all passes.
-fn finished(part: &FunctionTerm, model: &Model<f64>) -> Model<f64> {
+fn finished(part: &FunctionTerm, model: &Model<f64>) -> View<f64> {
     passed(part, &Strategy::plain(&part.function.ways[0], usize::MAX), model)
 }
 
-fn run(part: &FunctionTerm, choice: &Strategy, model: &Model<Sym>, arguments: &[Argument]) -> Vec<Sym> {
-    let shape = model.shape();
+fn run(part: &FunctionTerm, choice: &Strategy, view: &View<Sym>, arguments: &[Argument]) -> Vec<Sym> {
+    let shape = view.model.shape();
     let vector = |argument: &Argument| -> Vec<Sym> {
         let place = arguments.iter().position(|a| a == argument);
         let symbol = |k: usize| match (part.constant(*argument), place) {
@@ -125,11 +125,11 @@ fn run(part: &FunctionTerm, choice: &Strategy, model: &Model<Sym>, arguments: &[
     let slices: Vec<&[Sym]> = vectors.iter().map(Vec::as_slice).collect();
     let mut out = vec![Sym::zero(); part.function.len(shape)];
     let q = part.function.takes.iter().position(|a| *a == Argument::Q);
-    let unturned = q.zip(choice.unturned).map(|(k, which)| model.unturned(slices[k], which));
-    let model = unturned.as_ref().unwrap_or(model);
-    let by_axes = choice.axes.then(|| model.clone().with_rates_by_axes());
-    let model = by_axes.as_ref().unwrap_or(model);
-    let called = part.function.call_by(choice.way, model, &mut Workspace::new(model), &slices, &mut out);
+    let folded = q.zip(choice.folded).map(|(k, which)| view.fold_rotations_into_constants(slices[k], which));
+    let view = folded.as_ref().unwrap_or(view);
+    let by_axes = choice.axes.then(|| view.clone().with_axis_accelerations());
+    let view = by_axes.as_ref().unwrap_or(view);
+    let called = view.call_by(part.function, choice.way, &slices, &mut out);
     debug_assert!(called.is_ok(), "arguments were made to measure");
     out
 }
@@ -229,13 +229,14 @@ mod tests {
     fn whatever_is_chosen_the_values_are_the_same() {
         let mut seen = 0;
         for (model, turns) in [(arm("", false), false), (arm("", true), false), (arm(FOLLOWER, false), false), (turning(FOLLOWER), true)] {
-            assert_eq!(model.only_turns(), turns);
+            assert_eq!(no_joint_moves_origin(&model), turns);
             for wanted in all() {
                 let part = &wanted.parts[0];
                 let all = ways(part, &model);
                 let values = |choice| trace(&wanted, &[choice], &model, &[]).evaluate(input);
                 let expected = values(Strategy::plain(all[0].0, 0));
-                let unturned: Vec<Option<Unturned>> = [None].into_iter().chain(unturnable(part, &model).into_iter().map(Some)).collect();
+                let folded: Vec<Option<FoldedRotations>> =
+                    [None].into_iter().chain(foldable_rotations(part, &model).into_iter().map(Some)).collect();
                 for (way, _) in all {
                     for passes in 1..=model_passes::<Sym>().len() {
                         close(
@@ -245,14 +246,14 @@ mod tests {
                         );
                     }
                     let inertias_and_rates = [(false, false), (true, false), (false, true), (true, true)];
-                    for (&unturned, (lent, axes)) in unturned.iter().flat_map(|unturned| inertias_and_rates.map(|both| (unturned, both))) {
-                        let choice = Strategy { unturned, lent, axes, ..Strategy::plain(way, usize::MAX) };
+                    for (&folded, (shifted, axes)) in folded.iter().flat_map(|folded| inertias_and_rates.map(|both| (folded, both))) {
+                        let choice = Strategy { folded, shifted, axes, ..Strategy::plain(way, usize::MAX) };
                         for unit in once(None).chain(units(part, &choice, &model).into_iter().map(Some)) {
                             let choice = Strategy { unit, ..choice };
                             close(
                                 &values(choice),
                                 &expected,
-                                &format!("{} by {}, {unturned:?}, {unit:?}, lent: {lent}, by axes: {axes}", wanted.name, way.name),
+                                &format!("{} by {}, {folded:?}, {unit:?}, shifted: {shifted}, by axes: {axes}", wanted.name, way.name),
                             );
                             seen += usize::from(unit.is_some());
                         }

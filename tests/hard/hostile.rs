@@ -1,9 +1,9 @@
 //! A robot that reads is a model, or an error that says what overflows; what is computed of it is finite or an error, and nothing panics, whatever the numbers.
 
+use articulated_codegen::model_pass::View;
 use articulated_codegen::{Request, generate};
 use articulated_core::algorithm::{Workspace, checked_forward_dynamics, integrate, inverse_dynamics, neutral};
 use articulated_core::description::Base;
-use articulated_core::model::pass::model_passes;
 use articulated_core::model::{Model, ModelError};
 use articulated_formats::{Options, read};
 use articulated_tests::random::Random;
@@ -59,12 +59,12 @@ fn answers(urdf: &str, seed: u64) -> bool {
             Err(e) => panic!("seed {seed}: {e}"),
         };
         let _ = model.massless_joints();
-        let passed = model_passes::<f64>().iter().fold(model.clone(), |m, (_, pass, _)| pass(m));
+        let passed = View::new(model.clone()).passed();
         let (mut at, mut q) = (vec![0.0; model.nq], vec![0.0; model.nq]);
         neutral(&model, &mut at);
         let (half, mut out) = (vec![0.5; model.nv], vec![0.0; model.nv]);
         integrate(&model, &mut Workspace::new(&model), &at, &half, &mut q);
-        inverse_dynamics(&passed, &mut Workspace::new(&passed), &q, &half, &half, &mut out);
+        inverse_dynamics(&passed.model, &mut passed.workspace(), &q, &half, &half, &mut out);
         let solved = checked_forward_dynamics(&model, &mut Workspace::new(&model), &q, &half, &half, &mut out);
         assert!(solved.is_err() || out.iter().all(|x| x.is_finite()), "seed {seed}: {out:?}");
     }

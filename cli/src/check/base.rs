@@ -1,8 +1,8 @@
 //! Base parameters: what joints can feel of the inertial parameters, and what model passes made of them.
 
+use articulated_codegen::model_pass::{View, drop_symmetric_rotation};
 use articulated_core::algorithm::{BaseParameter, BodyParameters, Identifiability, base_parameters, identifiable_parameters};
 use articulated_core::model::Model;
-use articulated_core::model::pass::{model_passes, still};
 use articulated_core::spatial::Placement;
 use serde::Serialize;
 
@@ -74,10 +74,10 @@ impl Base {
         if read.bodies.len() > MANY {
             return None;
         }
-        let passed = model_passes::<f64>().iter().fold(read.clone(), |model, (_, pass, _)| pass(model));
+        let passed = View::new(read.clone()).passed().model;
         let without_frames = Model { frames: Vec::new(), ..passed.clone() };
-        let stilled = still(without_frames);
-        let round = |i: usize| stilled.bodies[i].coordinates.turns == 0.0;
+        let bare = drop_symmetric_rotation(View::new(without_frames));
+        let round = |i: usize| !bare.rotates(i);
         let joints: Vec<BaseRow> = base_parameters(&passed).iter().map(|of| row(of, read, &passed, round(of.body))).collect();
         let (links, stages) = (read.links().count(), read.links().count() < joints.len());
         let all = || joints.iter().flat_map(|joint| &joint.parameters);

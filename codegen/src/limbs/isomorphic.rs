@@ -8,6 +8,7 @@ use articulated_core::algorithm::{Argument, Dim};
 use articulated_core::model::{Limbs, Model};
 
 use crate::graph::{MOST, Value};
+use crate::model_pass::View;
 use crate::sym::Sym;
 
 /// The branches of a robot that go into lanes.
@@ -62,21 +63,21 @@ impl IsomorphicLimbs {
         Some((together.iter().map(|i| i * width + k % width).collect(), lane))
     }
 
-    /// The model with a symbol for each constant that differs from limb to limb.
-    pub(crate) fn symbolic(&self, model: &Model<f64>, constants: &mut Constants) -> Model<Sym> {
-        let mut symbolic: Model<Sym> = model.cast();
+    /// The view with a symbol for each constant that differs from limb to limb.
+    pub(crate) fn symbolic(&self, view: &View<f64>, constants: &mut Constants) -> View<Sym> {
+        let (model, mut symbolic) = (&view.model, view.cast::<Sym>());
         for bodies in self.bodies() {
-            let numbers: Vec<Vec<f64>> = bodies.iter().map(|&i| recorded(|f| drop(model.bodies[i].map(f)))).collect();
+            let numbers: Vec<Vec<f64>> = bodies.iter().map(|&i| recorded(|f| drop(view.map_body(i, f)))).collect();
             for (lane, &i) in bodies.iter().enumerate() {
                 let symbols = constants.symbols(&numbers, lane);
-                symbolic.bodies[i] = model.bodies[i].map(|_| next(&symbols));
+                symbolic.set_body(i, view.map_body(i, |_| next(&symbols)));
             }
             let frames = frames_of(model, &bodies);
             for k in 0..frames[0].len() {
                 let numbers: Vec<Vec<f64>> = frames.iter().map(|f| recorded(|g| drop(model.frames[f[k]].map(g)))).collect();
                 for (lane, f) in frames.iter().enumerate() {
                     let symbols = constants.symbols(&numbers, lane);
-                    symbolic.frames[f[k]] = model.frames[f[k]].map(|_| next(&symbols));
+                    symbolic.model.frames[f[k]] = model.frames[f[k]].map(|_| next(&symbols));
                 }
             }
         }

@@ -2,19 +2,20 @@
 
 use std::iter::once;
 
-use articulated_core::algorithm::{Form, Way};
-use articulated_core::model::pass::model_passes;
-use articulated_core::model::{Model, Unturned};
+use articulated_core::algorithm::Way;
+use articulated_core::model::Model;
 
+use super::forms::Form;
 use super::strategy::{Strategy, Transform};
 use crate::graph::{Counts, Graph};
 use crate::ledger::{Entry, depth};
 use crate::limbs::IsomorphicLimbs;
+use crate::model_pass::{FoldedRotations, model_passes};
 use crate::parameters::Parameter;
 use crate::pass;
 use crate::spec::{FunctionSpec, FunctionTerm};
 use crate::sym::Sym;
-use crate::trace::{trace, trace_in_lanes, units, unturnable, ways};
+use crate::trace::{foldable_rotations, trace, trace_in_lanes, units, ways};
 
 /// What a function is traced on.
 pub(super) struct Candidate<'a> {
@@ -36,7 +37,7 @@ impl Candidate<'_> {
         let choices = in_the_best_unit(wanted, choices, self);
         let (traced, mut stages) = self.traced(wanted, &choices, all);
         let mut graph = pass::run_all(traced, |name, graph| stages.push((name, graph.counts())));
-        if wanted.parts.iter().all(|part| part.function.forms.contains(&Form::FromTheLast)) {
+        if wanted.parts.iter().all(|part| Form::FromTheLast.fits(part.function.id)) {
             graph = pass::run("from the last", pass::from_the_last, &graph);
         }
         let ways = choices.iter().flat_map(Strategy::names).collect();
@@ -88,25 +89,25 @@ impl Candidate<'_> {
     }
 }
 
-/// What costs more than this is not tried with frames that do not turn or mass that is lent: it
+/// What costs more than this is not tried with folded rotations or shifted masses: it
 /// would gain a hundredth, and takes long to trace.
-const UNTURNED_TO: u32 = 2500;
+const FOLDED_TO: u32 = 2500;
 
 /// Nor is any function of a robot with more bodies than this, nor with another unit of length: to
 /// find out what it costs is to trace it twice.
-const UNTURNED_BODIES: usize = 64;
+const FOLDED_BODIES: usize = 64;
 
 /// The way that costs least once the graph passes are done. With parameters, model passes may cost
 /// more than they save: then they are not taken.
 pub(super) fn cheapest(part: &FunctionTerm, subject: &Candidate, all: usize) -> Strategy {
     let few = if subject.parameters.is_empty() { all..=all } else { 0..=all };
     let ways = ways(part, subject.model);
-    let tried = subject.parameters.is_empty() && subject.model.bodies.len() <= UNTURNED_BODIES;
-    let unturned = if tried { unturnable(part, subject.model) } else { Vec::new() };
-    let unturned: Vec<Option<Unturned>> = once(None).chain(unturned.into_iter().map(Some)).collect();
-    let lending: &[bool] = if tried && part.function.forms.contains(&Form::MassLent) { &[false, true] } else { &[false] };
-    let forms = || unturned.iter().flat_map(|&unturned| lending.iter().map(move |&lent| (unturned, lent)));
-    let of = |way, passes| forms().map(move |(unturned, lent)| Strategy { unturned, lent, ..Strategy::plain(way, passes) });
+    let tried = subject.parameters.is_empty() && subject.model.bodies.len() <= FOLDED_BODIES;
+    let folded = if tried { foldable_rotations(part, subject.model) } else { Vec::new() };
+    let folded: Vec<Option<FoldedRotations>> = once(None).chain(folded.into_iter().map(Some)).collect();
+    let shifted: &[bool] = if tried && Form::ShiftedMasses.fits(part.function.id) { &[false, true] } else { &[false] };
+    let forms = || folded.iter().flat_map(|&folded| shifted.iter().map(move |&shifted| (folded, shifted)));
+    let of = |way, passes| forms().map(move |(folded, shifted)| Strategy { folded, shifted, ..Strategy::plain(way, passes) });
     let candidates: Vec<(Strategy, u64)> =
         ways.iter().flat_map(|(way, least)| few.clone().flat_map(move |passes| of(*way, passes)).map(|c| (c, *least))).collect();
     if let [(one, _)] = candidates.as_slice() {
@@ -117,7 +118,7 @@ pub(super) fn cheapest(part: &FunctionTerm, subject: &Candidate, all: usize) -> 
     for (choice, least) in candidates {
         // A way whose least is more than another's cost is not tried: the factorisation of a long
         // chain grows with the cube of its length.
-        if best.is_some_and(|(_, cost)| least > u64::from(cost) || (choice.unturned.is_some() || choice.lent) && cost > UNTURNED_TO) {
+        if best.is_some_and(|(_, cost)| least > u64::from(cost) || (choice.folded.is_some() || choice.shifted) && cost > FOLDED_TO) {
             continue;
         }
         let cost = cost(&alone, choice, subject);
@@ -135,7 +136,7 @@ fn cost(wanted: &FunctionSpec, choice: Strategy, subject: &Candidate) -> u32 {
 /// The choices with rates by axes, if that takes fewer multiplications and no more instructions; of
 /// robots with many bodies, which take long to trace, without trying.
 pub(super) fn by_axes(wanted: &FunctionSpec, choices: Vec<Strategy>, subject: &Candidate) -> Vec<Strategy> {
-    let turns = |part: &FunctionTerm| part.function.forms.contains(&Form::RatesByAxes);
+    let turns = |part: &FunctionTerm| Form::AxisAccelerations.fits(part.function.id);
     if !wanted.parts.iter().any(turns) {
         return choices;
     }
@@ -144,7 +145,7 @@ pub(super) fn by_axes(wanted: &FunctionSpec, choices: Vec<Strategy>, subject: &C
         let ((cost, price), (other_cost, other_price)) = (subject.price(wanted, &with), subject.price(wanted, &choices));
         cost <= other_cost && price < other_price
     };
-    if subject.model.bodies.len() > UNTURNED_BODIES || better() { with } else { choices }
+    if subject.model.bodies.len() > FOLDED_BODIES || better() { with } else { choices }
 }
 
 /// So many instructions are traced at most to find the best unit of length: of a long function
@@ -154,7 +155,7 @@ const TRIED: usize = 20_000;
 /// The choices with lengths in the unit that costs least: where a constant is one, what it
 /// multiplies is only added.
 pub(super) fn in_the_best_unit(wanted: &FunctionSpec, choices: Vec<Strategy>, subject: &Candidate) -> Vec<Strategy> {
-    if !subject.parameters.is_empty() || subject.model.bodies.len() > UNTURNED_BODIES {
+    if !subject.parameters.is_empty() || subject.model.bodies.len() > FOLDED_BODIES {
         return choices;
     }
     let units: Vec<Vec<f64>> = wanted.parts.iter().zip(&choices).map(|(part, choice)| units(part, choice, subject.model)).collect();
@@ -164,7 +165,7 @@ pub(super) fn in_the_best_unit(wanted: &FunctionSpec, choices: Vec<Strategy>, su
     };
     let Some(most) = units.iter().max_by_key(|units| units.len()).filter(|units| !units.is_empty()) else { return choices };
     let (cost, mut least) = subject.price(wanted, &choices);
-    if cost > UNTURNED_TO {
+    if cost > FOLDED_TO {
         return choices;
     }
     let mut best = choices.clone();

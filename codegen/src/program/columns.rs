@@ -22,7 +22,7 @@ const COLUMNS: RangeInclusive<usize> = 7..=60;
 
 /// What of a function is left a loop, if that is faster: it needs vectors.
 pub(super) fn columns(wanted: &FunctionSpec, model: &Model<f64>, can: Capabilities) -> Option<MultiRhsSolve> {
-    has_columns(wanted, model, can).then(|| MultiRhsSolve { ways: model.ways_to_base() })
+    has_columns(wanted, model, can).then(|| MultiRhsSolve { ways: model.paths_to_root() })
 }
 
 /// Whether the solution of M X = B is left a loop.

@@ -2,6 +2,7 @@
 
 mod candidate;
 mod columns;
+mod forms;
 pub(crate) mod strategy;
 
 use articulated_core::model::Model;

@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 
 use articulated_core::algorithm::Way;
-use articulated_core::model::Unturned;
 
+use crate::model_pass::FoldedRotations;
 use crate::sym::Sym;
 
 /// How to compute a part.
@@ -13,28 +13,28 @@ pub(crate) struct Strategy {
     pub(crate) way: &'static Way<Sym>,
     /// How many model passes to take.
     pub(crate) passes: usize,
-    /// Bodies whose frames do not turn.
-    pub(crate) unturned: Option<Unturned>,
+    /// Bodies whose rotations are folded into constants.
+    pub(crate) folded: Option<FoldedRotations>,
     /// The unit of length, m, if it is not the metre.
     pub(crate) unit: Option<f64>,
-    /// Whether bodies have other inertias for inverse dynamics ([`Model::lent`]).
-    pub(crate) lent: bool,
-    /// Whether bodies have their rates by the axes of their joints ([`Model::with_rates_by_axes`]).
+    /// Whether bodies have other inertias for inverse dynamics ([`View::with_shifted_masses`](crate::model_pass::View::with_shifted_masses)).
+    pub(crate) shifted: bool,
+    /// Whether bodies have their rates by the axes of their joints ([`View::with_axis_accelerations`](crate::model_pass::View::with_axis_accelerations)).
     pub(crate) axes: bool,
 }
 
 impl Strategy {
     /// A way after so many model passes, with all frames turning and lengths in metres.
     pub(crate) fn plain(way: &'static Way<Sym>, passes: usize) -> Self {
-        Self { way, passes, unturned: None, unit: None, lent: false, axes: false }
+        Self { way, passes, folded: None, unit: None, shifted: false, axes: false }
     }
 
     /// Whether it adds this.
     pub(super) fn adds(&self, what: Transform) -> bool {
         match what {
-            Transform::Lent => self.lent,
-            Transform::Axes => self.axes,
-            Transform::Unturned => self.unturned.is_some(),
+            Transform::ShiftedMasses => self.shifted,
+            Transform::AxisAccelerations => self.axes,
+            Transform::FoldedRotations => self.folded.is_some(),
             Transform::Unit => self.unit.is_some(),
         }
     }
@@ -42,39 +42,39 @@ impl Strategy {
     /// The same with no more added than up to this.
     pub(super) fn up_to(&self, last: Transform) -> Self {
         let has = |what| what <= last && self.adds(what);
-        let (unturned, unit) = (self.unturned.filter(|_| has(Transform::Unturned)), self.unit.filter(|_| has(Transform::Unit)));
-        Self { lent: has(Transform::Lent), axes: has(Transform::Axes), unturned, unit, ..*self }
+        let (folded, unit) = (self.folded.filter(|_| has(Transform::FoldedRotations)), self.unit.filter(|_| has(Transform::Unit)));
+        Self { shifted: has(Transform::ShiftedMasses), axes: has(Transform::AxisAccelerations), folded, unit, ..*self }
     }
 
     /// What it is called in the ledger.
     pub(crate) fn names(&self) -> impl Iterator<Item = Cow<'static, str>> {
-        let unturned = match self.unturned {
+        let folded = match self.folded {
             None => "",
-            Some(Unturned::Parallel) => "parallel joints unturned",
-            Some(Unturned::ParallelAndLast) => "parallel and last joints unturned",
+            Some(FoldedRotations::Parallel) => "parallel joints unturned",
+            Some(FoldedRotations::ParallelAndLast) => "parallel and last joints unturned",
         };
         let unit = self.unit.map(|metres| Cow::Owned(format!("lengths in {} m", to_four_digits(metres))));
-        let lent = if self.lent { "mass lent" } else { "" };
+        let shifted = if self.shifted { "mass lent" } else { "" };
         let axes = if self.axes { "rates by axes" } else { "" };
-        [self.way.name, lent, axes, unturned].into_iter().filter(|name| !name.is_empty()).map(Cow::Borrowed).chain(unit)
+        [self.way.name, shifted, axes, folded].into_iter().filter(|name| !name.is_empty()).map(Cow::Borrowed).chain(unit)
     }
 }
 
 /// What a choice may add to a way and its model passes, in the order in which the ledger counts it.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Transform {
-    Lent,
-    Axes,
-    Unturned,
+    ShiftedMasses,
+    AxisAccelerations,
+    FoldedRotations,
     Unit,
 }
 
 impl Transform {
     /// All of them, as the ledger calls them, and what they do.
     pub(crate) const ALL: [(Self, &'static str, &'static str); 4] = [
-        (Self::Lent, "lent", "mass in the body beyond a joint for torques, where numbers vanish for it"),
-        (Self::Axes, "axes", "rates by the second derivatives of joints' axes, not by ω̇"),
-        (Self::Unturned, "unturned", "constants turned in place of vectors"),
+        (Self::ShiftedMasses, "lent", "mass in the body beyond a joint for torques, where numbers vanish for it"),
+        (Self::AxisAccelerations, "axes", "rates by the second derivatives of joints' axes, not by ω̇"),
+        (Self::FoldedRotations, "unturned", "constants turned in place of vectors"),
         (Self::Unit, "unit", "lengths in a unit in which a constant is one"),
     ];
 }

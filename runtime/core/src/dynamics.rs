@@ -33,7 +33,7 @@ for_each_argument!(told_arguments);
 
 macro_rules! methods {
     ($($name:ident($($argument:ident),*) -> [$($dim:ident $(($n:literal))?),*] $unit:literal, $group:ident, $needs:ident, $regrouped:literal,
-        $summary:literal, $source:literal $(, by $ways:tt)? $(, columns $unsolved:ident)? $(, forms $forms:tt)?;)*) => {
+        $summary:literal, $source:literal $(, by $ways:tt)? $(, columns $unsolved:ident)?;)*) => {
         /// A robot's dynamics. Code written over this trait runs on generated robots and on a [`Model`] alike.
         ///
         /// Every function of the table is a method, with what it takes and gives; more on each is at the function of the same name in

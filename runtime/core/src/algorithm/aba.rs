@@ -1,9 +1,10 @@
 //! Articulated-body algorithm.
 //!
 //! Featherstone 2008, Table 7.1, in body axes with classical accelerations, as [`super::rnea`] has them: the bias acceleration of a joint and the bias wrench of
-//! a body then need no linear velocity. Effects are in [`super::effects`]: forces of those on joints count as torques, a rotor's inertia stands in the pivot. A joint with several degrees of freedom gives way in one after the other.
+//! a body then need no linear velocity. Effects are in [`super::effects`]: forces of those on joints count as torques, a rotor's inertia is part of the pivot. The degrees of freedom
+//! of one joint are eliminated one after the other.
 
-use super::effects::{self, World};
+use super::effects::{self, LoadCase};
 use super::workspace::Column;
 use super::{Workspace, wrenches};
 use crate::Scalar;
@@ -39,7 +40,7 @@ pub fn articulated_body_with_wrenches<S: Scalar>(
     wrenches: &[S],
     out: &mut [S],
 ) {
-    solve(model, ws, q, v, tau, &World::of(model, wrenches), out);
+    solve(model, ws, q, v, tau, &LoadCase::of(model, wrenches), out);
 }
 
 /// M(q)⁻¹·τ: forward dynamics at rest and without gravity.
@@ -49,25 +50,25 @@ pub fn articulated_body_with_wrenches<S: Scalar>(
 pub fn solve_by_articulated_body<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], tau: &[S], out: &mut [S]) {
     let mut rest = core::mem::take(&mut ws.row);
     rest.fill(S::zero());
-    solve(model, ws, q, &rest, tau, &World::empty(), out);
+    solve(model, ws, q, &rest, tau, &LoadCase::empty(), out);
     ws.row = rest;
 }
 
 /// Forward dynamics in a world.
-fn solve<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], tau: &[S], world: &World<S>, out: &mut [S]) {
+fn solve<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], tau: &[S], load: &LoadCase<S>, out: &mut [S]) {
     ws.set_poses(model, q);
     for i in model.outward() {
         velocity(model, ws, i, v);
     }
     // p_i −= w
-    wrenches::each(model, ws, q, world.wrenches, |ws, i, w| ws.bodies[i].wrench = ws.bodies[i].wrench - *w);
-    effects::give_way(model, ws, q, v, world);
-    let mut tau = effects::given(model, ws, q, v, tau, world);
+    wrenches::each(model, ws, q, load.wrenches, |ws, i, w| ws.bodies[i].wrench = ws.bodies[i].wrench - *w);
+    effects::articulate_body_effects(model, ws, q, v, load);
+    let mut tau = effects::input_torque(model, ws, q, v, tau, load);
     for i in model.inward() {
-        give_way(model, ws, i, &tau);
+        eliminate_joint(model, ws, i, &tau);
     }
     core::mem::swap(&mut ws.driven, &mut tau);
-    ws.common[0].acceleration = Twist { angular: Vector3::zeros(), linear: -world.gravity };
+    ws.common[0].acceleration = Twist { angular: Vector3::zeros(), linear: -load.gravity };
     for i in model.outward() {
         accelerate(model, ws, i, out);
     }
@@ -94,21 +95,21 @@ fn velocity<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, v: &[S
     ws.articulated[i] = ArticulatedInertia::rigid(&body.inertia);
 }
 
-/// Lets the joint of body `i` give way, and hands what is left to the parent.
-fn give_way<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, tau: &[S]) {
+/// Eliminates the joint of body `i`, and shifts the articulated inertia and the bias wrench that remain to the parent.
+fn eliminate_joint<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, tau: &[S]) {
     let pose = ws.bodies[i].pose;
     let (mut inertia, mut bias) = (ws.articulated[i], ws.bodies[i].wrench);
     for (k, c) in ws.columns_of(i).enumerate() {
         let column = &mut ws.columns[c];
         // U = I S;  D = SᵀU;  u = τ − Sᵀp
-        column.held = inertia.apply(&column.axis);
+        column.u = inertia.apply(&column.axis);
         let rotor = effects::rotor(model, i, k);
-        let pivot = column.held.power(&column.axis);
+        let pivot = column.u.power(&column.axis);
         column.inverse = S::one() / rotor.map_or(pivot, |rotor| pivot + rotor);
         column.residue = tau[column.at] - bias.power(&column.axis);
         // I −= U Uᵀ / D;  p += U u / D
-        inertia = inertia.giving_way(&column.held, column.inverse);
-        bias += column.held.times(column.residue * column.inverse);
+        inertia = inertia.eliminating(&column.u, column.inverse);
+        bias += column.u.times(column.residue * column.inverse);
         if let (Some(k), None) = (pose.freedom(k), rotor) {
             // I S = 0;  Sᵀp = τ
             inertia = inertia.without(k);
@@ -140,9 +141,9 @@ fn accelerate<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, out:
         Twist { angular: mount.outward(carried.angular) + motion.alpha, linear: mount.outward(carried.linear) + motion.acceleration }
     });
     for c in ws.columns_of(i).rev() {
-        let Column { at, axis, held, inverse, residue, .. } = ws.columns[c];
+        let Column { at, axis, u, inverse, residue, .. } = ws.columns[c];
         // q̈ = (u − Uᵀ a') / D;  a = a' + S q̈
-        out[at] = (residue - held.power(&acceleration)) * inverse;
+        out[at] = (residue - u.power(&acceleration)) * inverse;
         acceleration = acceleration + axis.times(out[at]);
     }
     ws.common[i].acceleration = acceleration;

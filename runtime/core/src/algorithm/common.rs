@@ -98,8 +98,8 @@ pub(super) fn twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, axes: A
         let alone = columns.len() == 1;
         for c in columns {
             let column = &mut ws.columns[c];
-            column.drift = carried.cross(&column.axis);
-            column.rate = if alone { column.drift } else { twist.cross(&column.axis) };
+            column.psi_dot = carried.cross(&column.axis);
+            column.s_dot = if alone { column.psi_dot } else { twist.cross(&column.axis) };
         }
         ws.common[i].carried_twist = carried;
         ws.common[i].twist = twist;
@@ -115,7 +115,7 @@ pub(super) fn accelerations<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, 
             parent => ws.common[parent].acceleration.at(ws.common[i].shift),
         };
         // V̇_i = V̇_λ + Σ S q̈ + Ṡ q̇
-        let term = |c: usize| ws.columns[c].axis.times(a[ws.columns[c].at]) + ws.columns[c].rate.times(v[ws.columns[c].at]);
+        let term = |c: usize| ws.columns[c].axis.times(a[ws.columns[c].at]) + ws.columns[c].s_dot.times(v[ws.columns[c].at]);
         let acceleration = ws.columns_of(i).fold(carried, |sum, c| sum + term(c));
         ws.common[i].carried_acceleration = carried;
         ws.common[i].acceleration = acceleration;
@@ -178,7 +178,7 @@ pub(super) fn carry<S: Scalar, const N: usize>(
             visit(j == i, &wrenches, &ws.columns[l]);
         }
         for w in &mut wrenches {
-            *w = ws.common[j].hand_on(w);
+            *w = ws.common[j].shift_to_parent(w);
         }
         j = model.bodies[j].parent;
     }
@@ -192,7 +192,7 @@ fn moves_along<S: Scalar>(body: &Body<S>, axes: Axes) -> bool {
 impl<S: Scalar> CommonState<S> {
     /// A wrench on this body, as one on its parent.
     #[inline(always)]
-    pub(super) fn hand_on(&self, wrench: &Wrench<S>) -> Wrench<S> {
+    pub(super) fn shift_to_parent(&self, wrench: &Wrench<S>) -> Wrench<S> {
         wrench.shifted(self.shift)
     }
 }

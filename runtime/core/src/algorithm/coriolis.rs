@@ -37,9 +37,9 @@ fn row_and_column<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, i: usize, k: u
     let held = state.inertia.apply(&column.axis);
     let turning = state.coriolis.transposed(&column.axis);
     // C_lk = S_lᵀ (B s_k + I Ṡ_k)
-    let drive = state.coriolis.wrench(column.axis.angular) + state.inertia.apply(&column.rate);
+    let drive = state.coriolis.wrench(column.axis.angular) + state.inertia.apply(&column.s_dot);
     carry(model, ws, i, [held, drive], |own, [held, drive], other| {
-        out[column.at * n + other.at] += turning.dot(&other.axis.angular) + held.power(&other.rate);
+        out[column.at * n + other.at] += turning.dot(&other.axis.angular) + held.power(&other.s_dot);
         if !own {
             out[other.at * n + column.at] += drive.power(&other.axis);
         }

@@ -36,14 +36,14 @@ fn joint<S: Scalar, P: JointLaw<S>>(model: &Model<S>, ws: &mut Workspace<S>, i: 
     let (at, dofs) = (&body.coordinates, body.joint.nv());
     for (k, c) in ws.columns_of(i).enumerate() {
         // F = I_i S_i,k
-        ws.columns[c].held = p.column(&ws.composite[i], k).scaled(at.rate_of_one());
+        ws.columns[c].u = p.column(&ws.composite[i], k).scaled(at.rate_of_one());
     }
     let all = ws.columns_from(i);
     for (c, column) in ws.columns[all].iter_mut().enumerate() {
         // M_cj = M_jc = S_jᵀ F
-        let (k, wrench) = (column.at, &mut column.held);
+        let (k, wrench) = (column.at, &mut column.u);
         for own in 0..dofs {
-            let (l, inertia) = (at.v + own, at.handed_on(p.torque(wrench, own)));
+            let (l, inertia) = (at.v + own, at.to_leader(p.torque(wrench, own)));
             out[k * n + l] += inertia;
             if c >= dofs {
                 out[l * n + k] += inertia;

@@ -15,7 +15,7 @@ use super::Workspace;
 use super::common::{Axes, accelerations, carry, coriolis, forces, inertias, on_the_way, positions, twists};
 use super::crba::mass_matrix_in_common_axes;
 use super::effects;
-use super::ltdl::{factor, inverse, solve, solve_rows, way};
+use super::ltdl::{factor, inverse, path_to_root, solve, solve_rows};
 use super::rnea::inverse_dynamics_with_wrenches;
 use super::wrenches;
 use crate::Scalar;
@@ -91,7 +91,7 @@ pub fn static_torque_derivative<S: Scalar>(model: &Model<S>, ws: &mut Workspace<
         let state = &mut ws.common[i];
         state.force = state.inertia.apply(&state.acceleration);
         for k in ws.columns_of(i) {
-            ws.columns[k].curl = falling(model, ws, i, k, &ws.common[i].carried_acceleration);
+            ws.columns[k].psi_ddot = falling(model, ws, i, k, &ws.common[i].carried_acceleration);
         }
     }
     external(model, ws, q, wrenches, out);
@@ -100,9 +100,9 @@ pub fn static_torque_derivative<S: Scalar>(model: &Model<S>, ws: &mut Workspace<
         for k in ws.columns_of(i) {
             let (state, column) = (&ws.common[i], &ws.columns[k]);
             let held = state.inertia.apply(&column.axis);
-            let drive = state.inertia.apply(&column.curl) + column.axis.cross_wrench(&state.force);
+            let drive = state.inertia.apply(&column.psi_ddot) + column.axis.cross_wrench(&state.force);
             carry(model, ws, i, [held, drive], |own, [held, drive], other| {
-                out[column.at * model.nv + other.at] += held.power(&other.curl);
+                out[column.at * model.nv + other.at] += held.power(&other.psi_ddot);
                 if !own {
                     out[other.at * model.nv + column.at] += drive.power(&other.axis);
                 }
@@ -142,10 +142,10 @@ pub fn forward_dynamics_derivatives_with_wrenches<S: Scalar>(
     // ∂a = −M⁻¹ ∂τ;  ∂a/∂τ = M⁻¹
     out[..2 * n].iter_mut().for_each(|x| *x = -*x);
     for out in out.chunks_exact_mut(n.max(1)).take(2) {
-        solve_rows(&matrix, &ws.below, out);
+        solve_rows(&matrix, &ws.parent_dof, out);
     }
     let by_tau = &mut out[2 * n..];
-    inverse(&matrix, &ws.below, by_tau);
+    inverse(&matrix, &ws.parent_dof, by_tau);
     effects::driven_slopes(model, v, tau, |i, _, slope| by_tau.iter_mut().skip(i).step_by(model.nv).for_each(|x| *x *= slope));
     ws.matrix = matrix;
 }
@@ -176,7 +176,7 @@ pub(super) fn unsolved_derivatives_with_wrenches<S: Scalar>(
     let factors = &mut out[2 * model.nv * model.nv..];
     factors.fill(S::zero());
     for k in 0..model.nv {
-        for i in core::iter::once(k).chain(way(&ws.below, k)) {
+        for i in core::iter::once(k).chain(path_to_root(&ws.parent_dof, k)) {
             factors[k * model.nv + i] = matrix[k * model.nv + i];
         }
     }
@@ -199,12 +199,12 @@ fn unsolved<S: Scalar>(
     inverse_dynamics_with_wrenches(model, ws, q, v, &zeros, wrenches, &mut a);
     ws.zeros = zeros;
     let mut driven = core::mem::take(&mut ws.driven);
-    effects::drive(model, v, tau, &mut driven);
+    effects::motor_torque(model, v, tau, &mut driven);
     a.iter_mut().zip(&driven).for_each(|(b, tau)| *b = *tau - *b);
     ws.driven = driven;
     mass_matrix_in_common_axes(model, ws, q, &mut matrix);
-    factor(&mut matrix, &ws.below);
-    solve(&matrix, &ws.below, &mut a);
+    factor(&mut matrix, &ws.parent_dof);
+    solve(&matrix, &ws.parent_dof, &mut a);
     inverse_dynamics_derivatives_with_wrenches(model, ws, q, v, &a, wrenches, out);
     ws.solution = a;
     effects::driven_slopes(model, v, tau, |i, by_v, _| out[n + i * model.nv + i] -= by_v);
@@ -226,7 +226,7 @@ fn still<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
     for i in model.outward() {
         ws.common[i].twist = Twist::zero();
         for k in ws.columns_of(i) {
-            (ws.columns[k].rate, ws.columns[k].drift) = (Twist::zero(), Twist::zero());
+            (ws.columns[k].s_dot, ws.columns[k].psi_dot) = (Twist::zero(), Twist::zero());
         }
     }
 }
@@ -238,7 +238,7 @@ fn curls<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>) {
         for k in ws.columns_of(i) {
             let falling = falling(model, ws, i, k, &acceleration);
             let column = &mut ws.columns[k];
-            column.curl = falling + twist.cross(&column.drift);
+            column.psi_ddot = falling + twist.cross(&column.psi_dot);
         }
     }
 }
@@ -261,7 +261,7 @@ fn collect<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize) {
         let to = &mut ws.common[parent];
         to.inertia += state.inertia.shifted(state.shift);
         to.coriolis += state.coriolis.shifted(state.shift);
-        to.force += state.hand_on(&state.force);
+        to.force += state.shift_to_parent(&state.force);
     }
 }
 
@@ -285,21 +285,20 @@ impl<S: Scalar> Matrices<'_, S> {
         let twice_b = |omega: Vector3<S>| state.coriolis.wrench(omega * two);
         let held = state.inertia.apply(&column.axis);
         let turning = state.coriolis.transposed(&column.axis.times(two));
-        // A round body is the same however it stands.
-        let round = model.is_round(i);
+        let round = ws.is_independent_of_angle(model, i);
         let by_q = match round {
             true => Wrench::zero(),
-            false => twice_b(column.drift.angular) + state.inertia.apply(&column.curl) + column.axis.cross_wrench(&state.force),
+            false => twice_b(column.psi_dot.angular) + state.inertia.apply(&column.psi_ddot) + column.axis.cross_wrench(&state.force),
         };
-        let by_v = twice_b(column.axis.angular) + state.inertia.apply(&(column.drift + column.rate));
+        let by_v = twice_b(column.axis.angular) + state.inertia.apply(&(column.psi_dot + column.s_dot));
         carry(model, ws, i, [held, by_q, by_v], |own, [held, by_q, by_v], other| {
             let (row, transposed) = (column.at * n + other.at, other.at * n + column.at);
             let inertia = held.power(&other.axis);
             self.by_a[row] += inertia;
             if !(own && round) {
-                self.by_q[row] += turning.dot(&other.drift.angular) + held.power(&other.curl);
+                self.by_q[row] += turning.dot(&other.psi_dot.angular) + held.power(&other.psi_ddot);
             }
-            self.by_v[row] += turning.dot(&other.axis.angular) + held.power(&(other.drift + other.rate));
+            self.by_v[row] += turning.dot(&other.axis.angular) + held.power(&(other.psi_dot + other.s_dot));
             if !own {
                 self.by_a[transposed] += inertia;
                 self.by_q[transposed] += by_q.power(&other.axis);

@@ -16,7 +16,7 @@ use crate::spatial::rotate;
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
 pub fn kinetic_energy<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
     let mut row = core::mem::take(&mut ws.row);
-    momentum(model, ws, q, v, &effects::World::empty(), &mut row);
+    momentum(model, ws, q, v, &effects::LoadCase::empty(), &mut row);
     out[0] = row.iter().zip(v).fold(S::zero(), |sum, (p, v)| sum + *p * *v) * S::from_f64(0.5);
     ws.row = row;
 }

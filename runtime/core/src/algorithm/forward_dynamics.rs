@@ -40,11 +40,11 @@ pub fn forward_dynamics_with_wrenches<S: Scalar>(
     ws.zeros = zeros;
     // b = τ − h
     let mut driven = core::mem::take(&mut ws.driven);
-    effects::drive(model, v, tau, &mut driven);
+    effects::motor_torque(model, v, tau, &mut driven);
     out.iter_mut().zip(&driven).for_each(|(b, tau)| *b = *tau - *b);
     ws.driven = driven;
     let matrix = factored(model, ws, q);
-    solve(&matrix, &ws.below, out);
+    solve(&matrix, &ws.parent_dof, out);
     ws.matrix = matrix;
 }
 
@@ -57,7 +57,7 @@ pub fn forward_dynamics_with_wrenches<S: Scalar>(
 pub fn solve_mass_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], tau: &[S], out: &mut [S]) {
     let matrix = factored(model, ws, q);
     out.copy_from_slice(tau);
-    solve(&matrix, &ws.below, out);
+    solve(&matrix, &ws.parent_dof, out);
     ws.matrix = matrix;
 }
 
@@ -69,7 +69,7 @@ pub fn solve_mass_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: 
 /// As [`forward_dynamics`].
 pub fn mass_matrix_inverse<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
     let matrix = factored(model, ws, q);
-    inverse(&matrix, &ws.below, out);
+    inverse(&matrix, &ws.parent_dof, out);
     ws.matrix = matrix;
 }
 
@@ -77,6 +77,6 @@ pub fn mass_matrix_inverse<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q
 pub(super) fn factored<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S]) -> alloc::vec::Vec<S> {
     let mut matrix = core::mem::take(&mut ws.matrix);
     mass_matrix(model, ws, q, &mut matrix);
-    factor(&mut matrix, &ws.below);
+    factor(&mut matrix, &ws.parent_dof);
     matrix
 }

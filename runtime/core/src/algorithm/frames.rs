@@ -151,7 +151,7 @@ fn frame_jacobian_rates<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, refe
         let place = Place::new(ws, frame);
         let twist = twist_of(ws, frame, &place);
         columns(model, ws, frame.body, out, |c, d| {
-            let (axis, mut rate) = (c.axis.at(d + place.offset), c.rate.at(d + place.offset));
+            let (axis, mut rate) = (c.axis.at(d + place.offset), c.s_dot.at(d + place.offset));
             match reference {
                 Reference::World => {}
                 // The point moves: d/dt (s_v + s_ω × (p − o)) has s_ω × ṗ besides.

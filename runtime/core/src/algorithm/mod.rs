@@ -11,6 +11,7 @@ mod crba;
 mod derivatives;
 mod effects;
 mod energy;
+mod formulation;
 mod forward_dynamics;
 mod frames;
 mod kinematics;
@@ -41,6 +42,7 @@ pub use derivatives::{
 use derivatives::{unsolved_derivatives, unsolved_derivatives_with_wrenches, without_motors};
 pub use effects::{dissipation, effect_forces, motor_torques};
 pub use energy::{kinetic_energy, potential_energy};
+pub use formulation::{AngularKinematics, Formulation, FrameRotation};
 pub use forward_dynamics::{forward_dynamics, forward_dynamics_with_wrenches, mass_matrix_inverse, solve_mass_matrix};
 pub use frames::{
     accelerations_body, accelerations_world, accelerations_world_aligned, bias_accelerations_body, bias_accelerations_world,
@@ -55,7 +57,7 @@ pub use momentum::{
     centroidal_momentum_matrix, centroidal_momentum_rate,
 };
 pub use operational_space::{operational_space_inertia, operational_space_inertia_inverse};
-pub use registry::{Form, Function, Group, Needs, Shape, Way};
+pub use registry::{Function, Group, Needs, Shape, Way};
 pub use regressor::{PARAMETERS, kinetic_energy_regressor, potential_energy_regressor, torque_regressor};
 pub use rnea::{bias_forces, gravity_torque, inverse_dynamics, inverse_dynamics_with_wrenches, joint_wrenches, static_torque};
 pub use table::{FunctionId, function, functions};

@@ -5,7 +5,7 @@
 
 use super::Workspace;
 use super::common::{Axes, inertias, positions};
-use super::effects::World;
+use super::effects::LoadCase;
 use super::rnea::{momentum, recursion};
 use crate::Scalar;
 use crate::model::Model;
@@ -132,7 +132,7 @@ fn center<S: Scalar>(model: &Model<S>, ws: &Workspace<S>) -> (S, Vector3<S>) {
 /// Leaves in each body the momentum of all that it carries, as the wrench that would bring it about in a unit of time.
 fn generalised<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S]) {
     let mut row = core::mem::take(&mut ws.row);
-    momentum(model, ws, q, v, &World::bare(), &mut row);
+    momentum(model, ws, q, v, &LoadCase::bare(), &mut row);
     ws.row = row;
 }
 
@@ -149,7 +149,7 @@ fn at_the_roots<S: Scalar>(model: &Model<S>, ws: &Workspace<S>, point: Vector3<S
 fn rate<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S]) -> (S, Wrench<S>) {
     places(model, ws, q);
     let mut row = core::mem::take(&mut ws.row);
-    recursion(model, ws, q, v, a, &World::bare(), &mut row);
+    recursion(model, ws, q, v, a, &LoadCase::bare(), &mut row);
     ws.row = row;
     let (inverse, center) = center(model, ws);
     (inverse, at_the_roots(model, ws, center))

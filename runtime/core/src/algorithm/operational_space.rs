@@ -61,7 +61,7 @@ fn inverse_of<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, matrix: &[S], 
     for a in 0..6 {
         // x = M⁻¹ J_aᵀ
         x.copy_from_slice(&rows[a * n..][..n]);
-        solve(matrix, &ws.below, &mut x);
+        solve(matrix, &ws.parent_dof, &mut x);
         for b in a..6 {
             let sum = x.iter().zip(&rows[b * n..]).fold(S::zero(), |sum, (x, j)| sum + *x * *j);
             (out[6 * a + b], out[6 * b + a]) = (sum, sum);

@@ -20,9 +20,9 @@ pub struct Shape {
 
 impl<S: Scalar> Model<S> {
     /// For each degree of freedom those on the way to the base, the next first: where row k of M and of the factors of M = Lᵀ D L has numbers before the diagonal.
-    pub fn ways_to_base(&self) -> alloc::vec::Vec<alloc::vec::Vec<usize>> {
-        let below = super::workspace::below(self);
-        (0..self.nv).map(|k| super::ltdl::way(&below, k).collect()).collect()
+    pub fn paths_to_root(&self) -> alloc::vec::Vec<alloc::vec::Vec<usize>> {
+        let parent_dof = super::workspace::parent_dof(self);
+        (0..self.nv).map(|k| super::ltdl::path_to_root(&parent_dof, k).collect()).collect()
     }
 
     /// The model's sizes.
@@ -136,17 +136,6 @@ impl Group {
     }
 }
 
-/// A form of generated code that not every function takes. The first two keep the results and are taken where they cost less.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
-    /// Mass at a joint in the body beyond it ([`Model::lent`]): for what has an inverse dynamics in it in which bodies turn, of which that takes numbers away.
-    MassLent,
-    /// Rates of bodies by the axes of their joints ([`Model::with_rates_by_axes`]): for what has bodies that turn while they move.
-    RatesByAxes,
-    /// Statements from the last result on, not as they are traced: for matrices whose columns are carried side by side.
-    FromTheLast,
-}
-
 /// One row: a function that any robot can have.
 pub struct Function<S: 'static> {
     /// Its number.
@@ -168,15 +157,13 @@ pub struct Function<S: 'static> {
     /// What the robot must be like.
     pub needs: Needs,
     /// Whether it asks for nothing but joint torques and what follows from them, so that mass may be moved along joints that cannot feel it, and
-    /// frames along their axes ([`crate::model::pass`]).
+    /// frames along their axes.
     pub regrouped: bool,
     /// Ways to compute it, from which the generator takes the cheapest; the first is what [`Function::call`] runs where it applies.
     pub ways: &'static [Way<S>],
     /// All of it but the solution of M X = −B for all columns of `[3][nv][nv]` numbers: two matrices B, and the factors of M = Lᵀ D L in the third, L below the diagonal and D⁻¹ on it;
-    /// the third X is M⁻¹. Generated code may leave what remains a loop.
+    /// the third X is M⁻¹. For callers that solve column by column by themselves.
     pub unsolved: Option<Way<S>>,
-    /// What else generated code may look like.
-    pub forms: &'static [Form],
 }
 
 impl<S: Scalar> Function<S> {

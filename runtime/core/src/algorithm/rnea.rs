@@ -3,15 +3,15 @@
 //! Two sweeps in body axes. Instead of spatial accelerations it carries ω, ω̇ and the classical acceleration of each origin, and
 //! applies them through U = [ω̇]× + [ω]×[ω]×, so that no linear velocity is ever formed (Luh, Walker & Paul, *ASME J. Dyn. Syst. Meas.
 //! Control* 102, 1980, 69–76; the rate matrix after Balafoutis & Patel, *Dynamic Analysis of Robot Manipulators*, 1991, ch. 4).
-//! Bodies may have U by the axis of their joint, which accelerates alike in both of its bodies, in place of ω̇ ([`crate::model::Rates`]).
+//! Bodies may have U by the axis of their joint, which accelerates alike in both of its bodies, in place of ω̇ ([`AngularKinematics`]).
 //! The plain matrix form is [`super::textbook`].
 
-use super::effects::{self, World};
-use super::{Workspace, wrenches};
+use super::effects::{self, LoadCase};
+use super::{AngularKinematics, Workspace, wrenches};
 use crate::Scalar;
 use crate::joint::with_pose;
 use crate::joint::{JointLaw, Mount};
-use crate::model::{Body, Model, Rates};
+use crate::model::{Body, Model};
 use crate::spatial::{Motion, rate_matrix, rates_about, rotate};
 
 /// τ = M(q)·a + h(q, v), gravity included.
@@ -40,64 +40,62 @@ pub fn inverse_dynamics_with_wrenches<S: Scalar>(
     wrenches: &[S],
     tau: &mut [S],
 ) {
-    recursion(model, ws, q, v, a, &World::of(model, wrenches), tau);
+    recursion(model, ws, q, v, a, &LoadCase::of(model, wrenches), tau);
 }
 
 /// M(q)·v, the generalised momentum: inverse dynamics of the acceleration v at rest and in an empty world.
-pub(super) fn momentum<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], world: &World<S>, out: &mut [S]) {
+pub(super) fn momentum<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], load: &LoadCase<S>, out: &mut [S]) {
     let zeros = core::mem::take(&mut ws.zeros);
-    recursion(model, ws, q, &zeros, v, world, out);
+    recursion(model, ws, q, &zeros, v, load, out);
     ws.zeros = zeros;
 }
 
 /// Inverse dynamics in a world.
 #[inline(always)]
-pub(super) fn recursion<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S], world: &World<S>, tau: &mut [S]) {
+pub(super) fn recursion<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S], load: &LoadCase<S>, tau: &mut [S]) {
     // V̇_0 = [0; −g]
-    ws.bodies[0].motion.acceleration = -world.gravity;
-    let there = There::on(model);
+    ws.bodies[0].motion.acceleration = -load.gravity;
+    let features = ModelFeatures::of(model);
     // A sweep for each, as one with both takes a quarter longer on numbers.
-    if there.rates_by_axes {
-        outward_sweep::<S, true>(model, ws, q, v, a);
-    } else {
+    if ws.formulation.kinematics.is_empty() && ws.formulation.torque_inertias.is_empty() {
         outward_sweep::<S, false>(model, ws, q, v, a);
+    } else {
+        outward_sweep::<S, true>(model, ws, q, v, a);
     }
     // F_i −= w
-    wrenches::each(model, ws, q, world.wrenches, |ws, i, w| ws.bodies[i].wrench = ws.bodies[i].wrench - *w);
-    if there.on_bodies {
-        effects::push(model, ws, q, v, world);
+    wrenches::each(model, ws, q, load.wrenches, |ws, i, w| ws.bodies[i].wrench = ws.bodies[i].wrench - *w);
+    if features.on_bodies {
+        effects::apply_body_wrenches(model, ws, q, v, load);
     }
     tau.fill(S::zero());
     for i in model.inward() {
         let body = &model.bodies[i];
         with_pose!(ws.bodies[i].pose, p => inward(body, i, &p, ws, tau));
     }
-    if world.inertia && there.on_joints {
+    if load.inertia && features.on_joints {
         effects::armature(model, a, tau);
     }
-    if world.forces && there.on_joints {
-        effects::resist(model, q, v, tau);
+    if load.forces && features.on_joints {
+        effects::apply_joint_forces(model, q, v, tau);
     }
 }
 
 /// What a recursion has to do on a model, found in one look at its bodies: with one look for each, inverse dynamics takes a twentieth longer on numbers.
 #[derive(Default)]
-struct There {
-    rates_by_axes: bool,
+struct ModelFeatures {
     on_bodies: bool,
     on_joints: bool,
 }
 
-impl There {
+impl ModelFeatures {
     #[inline(always)]
-    fn on<S>(model: &Model<S>) -> Self {
-        let mut there = Self::default();
+    fn of<S>(model: &Model<S>) -> Self {
+        let mut features = Self::default();
         for body in &model.bodies {
-            there.rates_by_axes |= body.rates != Rates::Angular;
-            there.on_bodies |= !body.effects.body.is_empty();
-            there.on_joints |= !body.effects.joint.is_empty();
+            features.on_bodies |= !body.effects.body.is_empty();
+            features.on_joints |= !body.effects.joint.is_empty();
         }
-        there
+        features
     }
 }
 
@@ -155,37 +153,40 @@ pub fn gravity_torque<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S
     ws.zeros = zeros;
 }
 
-/// Motion and own wrench of each body, with some rates by the axes of joints or with none.
-fn outward_sweep<S: Scalar, const BY_AXES: bool>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S]) {
+/// Motion and own wrench of each body, with the formulation's kinematics and inertias or with the default.
+fn outward_sweep<S: Scalar, const FORMULATED: bool>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S]) {
     ws.set_poses(model, q);
     for i in model.outward() {
         let body = &model.bodies[i];
-        with_pose!(ws.bodies[i].pose, p => outward::<S, _, BY_AXES>(body, i, p, ws, v, a));
+        with_pose!(ws.bodies[i].pose, p => outward::<S, _, FORMULATED>(body, i, p, ws, v, a));
     }
 }
 
 /// Motion and own wrench of body `i` from its parent's motion.
 #[inline(always)]
-fn outward<S: Scalar, P: JointLaw<S>, const BY_AXES: bool>(body: &Body<S>, i: usize, p: P, ws: &mut Workspace<S>, v: &[S], a: &[S]) {
+fn outward<S: Scalar, P: JointLaw<S>, const FORMULATED: bool>(body: &Body<S>, i: usize, p: P, ws: &mut Workspace<S>, v: &[S], a: &[S]) {
     let parent = &ws.bodies[body.parent];
     let mount = Mount::new(p, &body.placement);
     // r̈ = r̈_λ + U_λ p
     let carried = Motion { acceleration: parent.motion.acceleration + rotate(&parent.u, mount.origin), ..parent.motion };
     let mut motion = p.motion(carried, |vector| mount.outward(vector), &body.coordinates, v, a);
-    let u = if BY_AXES && body.rates != Rates::Angular {
+    let formulation = FORMULATED.then_some(&ws.formulation);
+    let kinematics = formulation.and_then(|f| f.kinematics.get(i).copied()).unwrap_or_default();
+    let u = if FORMULATED && kinematics != AngularKinematics::AngularAcceleration {
         // ë = U_λ e
         let axis = mount.outward(rotate(&parent.u, body.placement.rotation.column(2).into_owned()));
-        let (alpha, u) = rates_about(motion.omega, motion.alpha.z, axis, body.rates == Rates::AxisAndDiagonal);
+        let (alpha, u) = rates_about(motion.omega, motion.alpha.z, axis, kinematics == AngularKinematics::AxisAccelerationAndDiagonal);
         motion.alpha = alpha;
         u
     } else {
         rate_matrix(motion.omega, motion.alpha)
     };
+    let inertia = formulation.and_then(|f| f.torque_inertias.get(i)).unwrap_or(&body.inertia);
     let state = &mut ws.bodies[i];
     state.motion = motion;
     state.u = u;
     // F_i = [h × r̈ + ∫ r × (U r) dm;  m r̈ + U h]
-    state.wrench = body.for_torques().wrench(motion.acceleration, &u);
+    state.wrench = inertia.wrench(motion.acceleration, &u);
 }
 
 /// τ of joint `i`, and its wrench on to the parent.
@@ -194,7 +195,7 @@ fn inward<S: Scalar, P: JointLaw<S>>(body: &Body<S>, i: usize, p: &P, ws: &mut W
     let wrench = ws.bodies[i].wrench;
     // τ_i = S_iᵀ F_i
     for k in 0..body.joint.nv() {
-        tau[body.coordinates.v + k] += body.coordinates.handed_on(p.torque(&wrench, k));
+        tau[body.coordinates.v + k] += body.coordinates.to_leader(p.torque(&wrench, k));
     }
     if body.parent == 0 {
         return;

@@ -6,7 +6,7 @@
 //! name(arguments) -> [dimensions] "units", group, needs, regrouped?, "what it is", "algorithm and source";
 //! ```
 //!
-//! with `by` and a list of ways where there is more than one (its name, where it can be had, its least cost, its algorithm, and in whose axes if not the usual), `columns` where there is a part of it before M X = B is solved, and `forms` that generated code may take.
+//! with `by` and a list of ways where there is more than one (its name, where it can be had, its least cost, its algorithm, and in whose axes if not the usual) and `columns` where there is a part of it before M X = B is solved.
 
 use core::marker::PhantomData;
 
@@ -60,40 +60,32 @@ macro_rules! for_each_function {
             placement_derivatives(q) -> [Frames, Of(12), Nv] "of rotation row by row, then position; 1 and m a unit step", Derivatives, Nothing, false,
                 "∂(placements)/∂q in the tangent space", "columns [s]×R and s × p; Lynch & Park 2017, §5.1";
             inverse_dynamics(q, v, a) -> [Nv] "N·m|N", Dynamics, Nothing, true,
-                "τ = M(q)·a + h(q, v), gravity included", "RNEA; Featherstone 2008, Table 5.1",
-                forms [MassLent, RatesByAxes];
+                "τ = M(q)·a + h(q, v), gravity included", "RNEA; Featherstone 2008, Table 5.1";
             inverse_dynamics_with_wrenches(q, v, a, wrenches) -> [Nv] "N·m|N", Dynamics, Nothing, true,
-                "τ = M(q)·a + h(q, v) − Σ Jᵀw, with external wrenches w on the frames", "RNEA; Featherstone 2008, Table 5.1",
-                forms [MassLent, RatesByAxes];
+                "τ = M(q)·a + h(q, v) − Σ Jᵀw, with external wrenches w on the frames", "RNEA; Featherstone 2008, Table 5.1";
             joint_wrenches(q, v, a) -> [Links, Of(6)] "[m; f], N·m and N, in axes of the link about its origin", Dynamics, Nothing, false,
-                "the wrench that each joint passes to its child link", "RNEA; Featherstone 2008, Table 5.1",
-                forms [RatesByAxes];
+                "the wrench that each joint passes to its child link", "RNEA; Featherstone 2008, Table 5.1";
             bias_forces(q, v) -> [Nv] "N·m|N", Dynamics, Nothing, true,
-                "h(q, v) = τ at a = 0: Coriolis, centrifugal and gravity forces", "RNEA; Featherstone 2008, Table 5.1",
-                forms [MassLent, RatesByAxes];
+                "h(q, v) = τ at a = 0: Coriolis, centrifugal and gravity forces", "RNEA; Featherstone 2008, Table 5.1";
             gravity_torque(q) -> [Nv] "N·m|N", Dynamics, Nothing, true,
                 "g(q) = τ at v = a = 0: what holds the robot still", "RNEA; Featherstone 2008, Table 5.1";
             static_torque(q, wrenches) -> [Nv] "N·m|N", Dynamics, Nothing, true,
                 "g(q) − Σ Jᵀw: what holds the robot still under external wrenches w on the frames", "RNEA; Featherstone 2008, Table 5.1";
             mass_matrix(q) -> [Nv, Nv] "kg·m²|kg·m|kg, symmetric", Dynamics, Nothing, true,
-                "M(q)", "CRBA; Featherstone 2008, Table 6.2",
-                forms [FromTheLast];
+                "M(q)", "CRBA; Featherstone 2008, Table 6.2";
             coriolis_matrix(q, v) -> [Nv, Nv] "N·m·s|N·s|N·s/m", Dynamics, Nothing, true,
                 "C(q, v) of the links alone, with C v + g = h without effects, and Ṁ − 2C skew: that of the Christoffel symbols",
                 "Echeandia & Wensing, J. Comput. Nonlinear Dyn. 16, 2021",
                 by ["", always, nothing, coriolis_matrix; "the axes of the first body", near_the_middle, nothing, coriolis_matrix in axes_of_first_bodies];
             forward_dynamics(q, v, tau) -> [Nv] "rad/s²|m/s²", Dynamics, MassMatrix, true,
                 "a = M(q)⁻¹·(τ − h(q, v))", "ABA, or RNEA, CRBA and M = Lᵀ D L; Featherstone 2008, Table 7.1 and §6.5",
-                by ["ABA", untied, nothing, articulated_body; "LTDL", always, factorization, forward_dynamics],
-                forms [MassLent, RatesByAxes];
+                by ["ABA", untied, nothing, articulated_body; "LTDL", always, factorization, forward_dynamics];
             forward_dynamics_with_wrenches(q, v, tau, wrenches) -> [Nv] "rad/s²|m/s²", Dynamics, MassMatrix, true,
                 "a = M(q)⁻¹·(τ + Σ Jᵀw − h(q, v)), with external wrenches w on the frames",
                 "ABA, or RNEA, CRBA and M = Lᵀ D L; Featherstone 2008, Table 7.1 and §6.5",
-                by ["ABA", untied, nothing, articulated_body_with_wrenches; "LTDL", always, factorization, forward_dynamics_with_wrenches],
-                forms [MassLent, RatesByAxes];
+                by ["ABA", untied, nothing, articulated_body_with_wrenches; "LTDL", always, factorization, forward_dynamics_with_wrenches];
             mass_matrix_inverse(q) -> [Nv, Nv] "1/(kg·m²)|…, symmetric", Dynamics, MassMatrix, true,
-                "M(q)⁻¹", "M = Lᵀ D L; Featherstone 2008, §6.5",
-                forms [FromTheLast];
+                "M(q)⁻¹", "M = Lᵀ D L; Featherstone 2008, §6.5";
             solve_mass_matrix(q, tau) -> [Nv] "rad/s²|m/s²", Dynamics, MassMatrix, true,
                 "M(q)⁻¹·τ, without M⁻¹", "ABA at rest, or M = Lᵀ D L; Featherstone 2008, Table 7.1 and §6.5",
                 by ["ABA", untied, nothing, solve_by_articulated_body; "LTDL", always, factorization, solve_mass_matrix];
@@ -106,8 +98,7 @@ macro_rules! for_each_function {
             center_of_mass_velocity(q, v) -> [Of(3)] "m/s, world axes", Momentum, Mass, false,
                 "velocity of the centre of mass of the moving links", "outward sweep";
             center_of_mass_acceleration(q, v, a) -> [Of(3)] "m/s², world axes", Momentum, Mass, false,
-                "acceleration of the centre of mass of the moving links, gravity not added", "outward sweep",
-                forms [RatesByAxes];
+                "acceleration of the centre of mass of the moving links, gravity not added", "outward sweep";
             center_of_mass_jacobian(q) -> [Of(3), Nv] "m|1, world axes", Momentum, Mass, false,
                 "J with center_of_mass_velocity = J v", "composite masses; Orin, Goswami & Lee, Auton. Robots 35, 2013";
             centroidal_momentum(q, v) -> [Of(6)] "[k; l], N·m·s and N·s, world axes", Momentum, Mass, false,
@@ -115,8 +106,7 @@ macro_rules! for_each_function {
             centroidal_momentum_matrix(q) -> [Of(6), Nv] "world axes", Momentum, Mass, false,
                 "A with centroidal_momentum = A v", "composite inertias; Orin, Goswami & Lee, Auton. Robots 35, 2013";
             centroidal_momentum_rate(q, v, a) -> [Of(6)] "[k̇; l̇], N·m and N, world axes", Momentum, Mass, false,
-                "d/dt of centroidal_momentum = A a + Ȧ v", "Newton and Euler; Orin, Goswami & Lee, Auton. Robots 35, 2013",
-                forms [RatesByAxes];
+                "d/dt of centroidal_momentum = A a + Ȧ v", "Newton and Euler; Orin, Goswami & Lee, Auton. Robots 35, 2013";
             inverse_dynamics_derivatives(q, v, a) -> [Of(3), Nv, Nv] "∂τ/∂q, ∂τ/∂v, ∂τ/∂a = M; rows τ", Derivatives, Nothing, true,
                 "first derivatives of inverse_dynamics; q in the tangent space",
                 "Singh, Russell & Wensing, IEEE RA-L 7, 2022; Carpentier & Mansard, RSS 2018",
@@ -129,14 +119,12 @@ macro_rules! for_each_function {
             forward_dynamics_derivatives(q, v, tau) -> [Of(3), Nv, Nv] "∂a/∂q, ∂a/∂v, ∂a/∂τ = M⁻¹; rows a", Derivatives, MassMatrix, true,
                 "first derivatives of forward_dynamics; q in the tangent space",
                 "−M⁻¹ ∂(inverse dynamics); Carpentier & Mansard, RSS 2018",
-                by ["", always, nothing, forward_dynamics_derivatives; "the axes of the first body", near_the_middle, nothing, forward_dynamics_derivatives in axes_of_first_bodies], columns unsolved_derivatives,
-                forms [RatesByAxes];
+                by ["", always, nothing, forward_dynamics_derivatives; "the axes of the first body", near_the_middle, nothing, forward_dynamics_derivatives in axes_of_first_bodies], columns unsolved_derivatives;
             forward_dynamics_derivatives_with_wrenches(q, v, tau, wrenches) -> [Of(3), Nv, Nv]
                 "∂a/∂q, ∂a/∂v, ∂a/∂τ = M⁻¹; rows a", Derivatives, MassMatrix, true,
                 "first derivatives of forward_dynamics_with_wrenches; q in the tangent space, wrenches constant in their reference",
                 "−M⁻¹ ∂(inverse dynamics); Carpentier & Mansard, RSS 2018",
-                by ["", always, nothing, forward_dynamics_derivatives_with_wrenches; "the axes of the first body", near_the_middle, nothing, forward_dynamics_derivatives_with_wrenches in axes_of_first_bodies], columns unsolved_derivatives_with_wrenches,
-                forms [RatesByAxes];
+                by ["", always, nothing, forward_dynamics_derivatives_with_wrenches; "the axes of the first body", near_the_middle, nothing, forward_dynamics_derivatives_with_wrenches in axes_of_first_bodies], columns unsolved_derivatives_with_wrenches;
             static_torque_derivative(q, wrenches) -> [Nv, Nv] "N·m|N per unit step, rows τ", Derivatives, Nothing, true,
                 "∂(static_torque)/∂q in the tangent space, wrenches constant in their reference",
                 "Singh, Russell & Wensing, IEEE RA-L 7, 2022",
@@ -220,7 +208,7 @@ macro_rules! unsolved {
 
 macro_rules! rows {
     ($($name:ident($($argument:ident),*) -> [$($dim:ident $(($n:literal))?),*] $unit:literal, $group:ident, $needs:ident, $regrouped:literal,
-        $summary:literal, $source:literal $(, by $ways:tt)? $(, columns $unsolved:ident)? $(, forms [$($form:ident),*])?;)*) => {
+        $summary:literal, $source:literal $(, by $ways:tt)? $(, columns $unsolved:ident)?;)*) => {
         /// The functions by number: each variant is called as its function is.
         #[allow(non_camel_case_types)]
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -252,7 +240,6 @@ macro_rules! rows {
                     regrouped: $regrouped,
                     ways: ways!($name, ($($argument),*) $(, $ways)?),
                     unsolved: unsolved!(($($argument),*) $(, $unsolved)?),
-                    forms: &[$($(Form::$form),*)?],
                 },
             )*];
         }
@@ -273,7 +260,7 @@ fn nothing<S>(_: &Model<S>) -> u64 {
 
 /// Multiplications of M = Lᵀ D L.
 fn factorization<S: Scalar>(model: &Model<S>) -> u64 {
-    super::ltdl::multiplications(&super::workspace::below(model))
+    super::ltdl::multiplications(&super::workspace::parent_dof(model))
 }
 
 /// Whether no joint follows another: a follower ties branches together, and no recursion along one branch can invert M.

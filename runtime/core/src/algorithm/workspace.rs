@@ -6,11 +6,11 @@ use core::ops::Range;
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::Shape;
 use super::checked::Size;
+use super::{Formulation, Shape};
 use crate::Scalar;
 use crate::joint::Pose;
-use crate::model::Model;
+use crate::model::{Body, Model};
 use crate::spatial::{ArticulatedInertia, CoriolisInertia, Motion, Placement, SpatialInertia, Twist, Wrench};
 
 /// Room for one evaluation of any algorithm on one model: made once, used by every call, so that no call allocates.
@@ -44,7 +44,7 @@ pub struct Workspace<S> {
     /// One row of a matrix, `[nv]`.
     pub(super) row: Vec<S>,
     /// For each degree of freedom the next one on the way to the base, as [`below`] gives them.
-    pub(super) below: Vec<usize>,
+    pub(super) parent_dof: Vec<usize>,
     /// `[nv · nv]`.
     pub(super) matrix: Vec<S>,
     /// `[6 · nv]`.
@@ -53,6 +53,8 @@ pub struct Workspace<S> {
     pub(super) driven: Vec<S>,
     /// Accelerations that were solved for, `[nv]`.
     pub(super) solution: Vec<S>,
+    /// How the algorithms compute.
+    pub(super) formulation: Formulation<S>,
 }
 
 /// One body's quantities of the current evaluation, in its own axes.
@@ -105,13 +107,13 @@ pub(super) struct Column<S> {
     /// S.
     pub(super) axis: Twist<S>,
     /// ψ̇ = V_λ × S.
-    pub(super) drift: Twist<S>,
+    pub(super) psi_dot: Twist<S>,
     /// Ṡ = V_i × S.
-    pub(super) rate: Twist<S>,
+    pub(super) s_dot: Twist<S>,
     /// ψ̈ = V̇_λ × S + V_λ × ψ̇.
-    pub(super) curl: Twist<S>,
+    pub(super) psi_ddot: Twist<S>,
     /// Of the articulated-body sweep: I^A S, 1 / Sᵀ I^A S, and τ − Sᵀ p^A.
-    pub(super) held: Wrench<S>,
+    pub(super) u: Wrench<S>,
     pub(super) inverse: S,
     pub(super) residue: S,
 }
@@ -119,6 +121,11 @@ pub(super) struct Column<S> {
 impl<S: Scalar> Workspace<S> {
     /// A workspace for `model`.
     pub fn new(model: &Model<S>) -> Self {
+        Self::with_formulation(model, Formulation::default())
+    }
+
+    /// A workspace in which the algorithms compute as the formulation says.
+    pub fn with_formulation(model: &Model<S>, formulation: Formulation<S>) -> Self {
         let (n, nv) = (model.bodies.len(), model.nv);
         let mut first = vec![0];
         let mut columns = Vec::new();
@@ -148,11 +155,12 @@ impl<S: Scalar> Workspace<S> {
             first,
             end,
             row: vec![S::zero(); nv],
-            below: below(model),
+            parent_dof: parent_dof(model),
             matrix: vec![S::zero(); nv * nv],
             six_rows: vec![S::zero(); 6 * nv],
             driven: vec![S::zero(); nv],
             solution: vec![S::zero(); nv],
+            formulation,
         }
     }
 
@@ -179,9 +187,24 @@ impl<S: Scalar> Workspace<S> {
     /// The poses of all joints, at the coordinates in `q`: before the sweep that needs them, so that it need not wait for sines.
     #[inline(always)]
     pub(super) fn set_poses(&mut self, model: &Model<S>, q: &[S]) {
-        for (state, body) in self.bodies.iter_mut().zip(&model.bodies).skip(1) {
-            state.pose = body.joint.pose(&body.coordinates, q);
+        for (i, body) in model.bodies.iter().enumerate().skip(1) {
+            self.bodies[i].pose = self.pose(body, i, q);
         }
+    }
+
+    /// The pose of the joint of body `i`.
+    #[inline(always)]
+    pub(super) fn pose(&self, body: &Body<S>, i: usize, q: &[S]) -> Pose<S> {
+        match self.formulation.rotations.get(i) {
+            Some(rotation) if body.joint.is_rotation_about_axis() => Pose::rotation_about_axis(rotation.angle(&body.coordinates, q)),
+            _ => body.joint.pose(&body.coordinates, q),
+        }
+    }
+
+    /// Whether nothing depends on the angle of body `i`: its frame does not rotate, it is axisymmetric, and it carries no other.
+    pub(super) fn is_independent_of_angle(&self, model: &Model<S>, i: usize) -> bool {
+        let stays = self.formulation.rotations.get(i).is_some_and(|rotation| rotation.share.is_zero());
+        stays && model.bodies[i].inertia.is_axisymmetric() && model.outward().all(|k| model.bodies[k].parent != i)
     }
 
     /// The columns of the joint of body `i`, which is not the base.
@@ -233,7 +256,7 @@ impl<S: Scalar> CommonState<S> {
 impl<S: Scalar> Column<S> {
     fn zero(at: usize) -> Self {
         let o = Twist::zero();
-        Self { at, axis: o, drift: o, rate: o, curl: o, held: Wrench::zero(), inverse: S::zero(), residue: S::zero() }
+        Self { at, axis: o, psi_dot: o, s_dot: o, psi_ddot: o, u: Wrench::zero(), inverse: S::zero(), residue: S::zero() }
     }
 }
 
@@ -286,12 +309,12 @@ impl Centers {
 
 /// For each degree of freedom the number of the next one on the way to the base plus one; 0 where the base is next. The mass matrix is zero
 /// between degrees of freedom neither of which is on the other's way (Featherstone 2008, §6.5). Joints that follow others tie branches together: then all are one chain.
-pub(super) fn below<S: Scalar>(model: &Model<S>) -> Vec<usize> {
+pub(super) fn parent_dof<S: Scalar>(model: &Model<S>) -> Vec<usize> {
     let tied = model.has_followers();
-    let mut below: Vec<usize> = (0..model.nv).collect();
+    let mut parent_dof: Vec<usize> = (0..model.nv).collect();
     for i in model.outward().filter(|_| !tied) {
         let (body, parent) = (&model.bodies[i], &model.bodies[model.bodies[i].parent]);
-        below[body.coordinates.v] = if body.parent == 0 { 0 } else { parent.coordinates.v + parent.joint.nv() };
+        parent_dof[body.coordinates.v] = if body.parent == 0 { 0 } else { parent.coordinates.v + parent.joint.nv() };
     }
-    below
+    parent_dof
 }

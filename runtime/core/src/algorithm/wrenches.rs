@@ -41,6 +41,6 @@ pub(super) fn place_bodies<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q
         let body = &model.bodies[i];
         // T_i = T_λ · T_λj · T_j(q)
         let x_wj = ws.placements[body.parent].compose(&body.placement);
-        ws.placements[i] = with_pose!(body.joint.pose(&body.coordinates, q), p => p.compose(x_wj));
+        ws.placements[i] = with_pose!(ws.pose(body, i, q), p => p.compose(x_wj));
     }
 }

@@ -105,11 +105,11 @@ impl<S: Scalar> JointLaw<S> for Floating<S> {
         if k < 3 { wrench.moment[k] } else { wrench.force[k - 3] }
     }
 
-    fn unfelt(_: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
+    fn regroupable(_: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
         None
     }
 
-    fn feels(own: &SpatialInertia<S>) -> bool {
+    fn has_inertia(own: &SpatialInertia<S>) -> bool {
         *own != SpatialInertia::zero()
     }
 }

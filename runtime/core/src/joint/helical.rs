@@ -86,11 +86,11 @@ impl<S: Scalar> JointLaw<S> for Helical<S> {
         wrench.moment.z + self.pitch * wrench.force.z
     }
 
-    fn unfelt(_: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
+    fn regroupable(_: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
         None
     }
 
-    fn feels(own: &SpatialInertia<S>) -> bool {
-        Prismatic::feels(own) || Revolute::feels(own)
+    fn has_inertia(own: &SpatialInertia<S>) -> bool {
+        Prismatic::has_inertia(own) || Revolute::has_inertia(own)
     }
 }

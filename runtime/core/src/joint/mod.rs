@@ -69,17 +69,17 @@ macro_rules! joints {
                 }
             }
 
-            /// As [`JointLaw::unfelt`].
-            pub fn unfelt<S: Scalar>(self, inertia: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
+            /// As [`JointLaw::regroupable`].
+            pub fn regroupable<S: Scalar>(self, inertia: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
                 match self {
-                    $(Self::$kind => $kind::unfelt(inertia),)+
+                    $(Self::$kind => $kind::regroupable(inertia),)+
                 }
             }
 
-            /// As [`JointLaw::feels`].
-            pub fn feels<S: Scalar>(self, inertia: &SpatialInertia<S>) -> bool {
+            /// As [`JointLaw::has_inertia`].
+            pub fn has_inertia<S: Scalar>(self, inertia: &SpatialInertia<S>) -> bool {
                 match self {
-                    $(Self::$kind => $kind::feels(inertia),)+
+                    $(Self::$kind => $kind::has_inertia(inertia),)+
                 }
             }
 
@@ -102,6 +102,13 @@ macro_rules! joints {
             /// Where the child is its joint frame.
             pub fn identity() -> Self {
                 Self::Prismatic(Prismatic::by(S::zero()))
+            }
+
+            /// At this angle about the joint's axis.
+            #[cfg(feature = "alloc")]
+            #[inline(always)]
+            pub(crate) fn rotation_about_axis(angle: Angle<S>) -> Self {
+                Self::Revolute(Revolute::of(angle))
             }
 
             /// As [`JointLaw::freedom`].
@@ -188,10 +195,6 @@ pub struct Coordinates<S> {
     pub mimic: Option<Follow<S>>,
     /// How far a helical joint slides, m/rad; zero for every other.
     pub pitch: S,
-    /// Where the angle of a revolute joint is counted from: its frame is turned by q and this.
-    pub from: Angle<S>,
-    /// One; zero for a revolute joint whose body is the same from all sides and has a frame that stays while it turns ([`crate::model::pass::still`]).
-    pub turns: S,
 }
 
 /// A constant angle, by its sine and cosine.
@@ -246,17 +249,6 @@ impl<S: Scalar> Coordinates<S> {
         }
     }
 
-    /// Sine and cosine of the angle by which the frame of a revolute joint is turned; q: `[nq]`, rad.
-    #[inline(always)]
-    pub fn turned(&self, q: &[S]) -> (S, S) {
-        if self.turns.is_zero() {
-            return (S::zero(), S::one());
-        }
-        let turned = self.coordinate(q).sin_cos();
-        let (sin, cos) = if self.from.is_zero() { turned } else { self.from.plus(turned) };
-        if self.turns == S::one() { (sin, cos) } else { (sin * self.turns, S::one() + (cos - S::one()) * self.turns) }
-    }
-
     /// The joint's own single rate, or acceleration.
     #[inline(always)]
     pub fn rate(&self, v: &[S]) -> S {
@@ -274,7 +266,7 @@ impl<S: Scalar> Coordinates<S> {
 
     /// What the joint's own torque, N·m or N, is for the coordinate it moves with: power is the same, so τ_leader = multiplier · τ.
     #[inline(always)]
-    pub fn handed_on(&self, torque: S) -> S {
+    pub fn to_leader(&self, torque: S) -> S {
         self.rate_of_one().map_or(torque, |multiplier| torque * multiplier)
     }
 
@@ -282,8 +274,7 @@ impl<S: Scalar> Coordinates<S> {
     #[cfg(feature = "alloc")]
     pub(crate) fn map<T: Scalar>(&self, f: impl Fn(S) -> T) -> Coordinates<T> {
         let mimic = self.mimic.as_ref().map(|m| Follow { multiplier: f(m.multiplier), offset: f(m.offset) });
-        let from = Angle { sin: f(self.from.sin), cos: f(self.from.cos) };
-        Coordinates { q: self.q, v: self.v, mimic, pitch: f(self.pitch), from, turns: f(self.turns) }
+        Coordinates { q: self.q, v: self.v, mimic, pitch: f(self.pitch) }
     }
 }
 
@@ -337,9 +328,9 @@ pub trait JointLaw<S: Scalar>: Copy {
     /// S_kᵀ F: the joint's own torque k, N·m or N, for the wrench F on the child, in the child's frame.
     fn torque(&self, wrench: &Wrench<S>, k: usize) -> S;
 
-    /// What of the child's inertia, in its frame, no torque of the joint tells from the parent's; `None`: nothing.
-    fn unfelt(inertia: &SpatialInertia<S>) -> Option<SpatialInertia<S>>;
+    /// The part of the child's inertia, in its frame, that no torque of the joint distinguishes from the parent's; `None`: nothing.
+    fn regroupable(inertia: &SpatialInertia<S>) -> Option<SpatialInertia<S>>;
 
-    /// Whether the joint moves mass of a child of this inertia, alone in one of its directions at least.
-    fn feels(inertia: &SpatialInertia<S>) -> bool;
+    /// Whether the mass matrix of the joint alone is not zero in at least one of its directions, for a child of this inertia.
+    fn has_inertia(inertia: &SpatialInertia<S>) -> bool;
 }

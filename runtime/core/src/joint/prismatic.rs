@@ -107,11 +107,11 @@ impl<S: Scalar> JointLaw<S> for Prismatic<S> {
         wrench.force.z
     }
 
-    fn unfelt(own: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
+    fn regroupable(own: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
         Some(SpatialInertia { second: own.second, ..SpatialInertia::zero() })
     }
 
-    fn feels(own: &SpatialInertia<S>) -> bool {
+    fn has_inertia(own: &SpatialInertia<S>) -> bool {
         !own.mass.is_zero()
     }
 }

@@ -13,10 +13,10 @@ pub struct Revolute<S> {
     cos: S,
 }
 
-#[cfg(feature = "alloc")]
 impl<S> Revolute<S> {
     /// At this angle.
-    pub(crate) fn of(angle: super::Angle<S>) -> Self {
+    #[inline(always)]
+    pub fn of(angle: super::Angle<S>) -> Self {
         Self { sin: angle.sin, cos: angle.cos }
     }
 }
@@ -30,7 +30,7 @@ impl<S: Scalar> JointLaw<S> for Revolute<S> {
 
     #[inline(always)]
     fn at(at: &Coordinates<S>, q: &[S]) -> Self {
-        let (sin, cos) = at.turned(q);
+        let (sin, cos) = at.coordinate(q).sin_cos();
         Self { sin, cos }
     }
 
@@ -104,13 +104,13 @@ impl<S: Scalar> JointLaw<S> for Revolute<S> {
         wrench.moment.z
     }
 
-    fn unfelt(own: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
+    fn regroupable(own: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
         let o = S::zero();
         let second = Matrix3::from_diagonal(&Vector3::new(o, o, own.second.m33));
         Some(SpatialInertia { mass: own.mass, first: Vector3::new(o, o, own.first.z), second })
     }
 
-    fn feels(own: &SpatialInertia<S>) -> bool {
+    fn has_inertia(own: &SpatialInertia<S>) -> bool {
         // I_zz = Σ_xx + Σ_yy
         !(own.second.m11 + own.second.m22).is_zero()
     }

@@ -94,11 +94,11 @@ impl<S: Scalar> JointLaw<S> for Spherical<S> {
         wrench.moment[k]
     }
 
-    fn unfelt(own: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
+    fn regroupable(own: &SpatialInertia<S>) -> Option<SpatialInertia<S>> {
         Some(SpatialInertia { mass: own.mass, ..SpatialInertia::zero() })
     }
 
-    fn feels(own: &SpatialInertia<S>) -> bool {
+    fn has_inertia(own: &SpatialInertia<S>) -> bool {
         (0..3).all(|k| !own.rotational()[(k, k)].is_zero())
     }
 }

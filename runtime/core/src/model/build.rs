@@ -9,11 +9,11 @@ use core::fmt;
 use nalgebra::{Matrix3, Vector3};
 
 use super::leaders::leads;
-use super::{Body, FLOATING_BASE, Frame, GRAVITY, JointInfo, Model, Rates};
+use super::{Body, FLOATING_BASE, Frame, GRAVITY, JointInfo, Model};
 use crate::description::{self, Base, Description, Inertial, JointKind, Mimic, Origin};
 use crate::effect::Effects;
 use crate::joint::with_pose;
-use crate::joint::{Angle, Coordinates, Follow, Joint, JointLaw};
+use crate::joint::{Coordinates, Follow, Joint, JointLaw};
 use crate::spatial::{Placement, Reference, SpatialInertia, from_rpy, nearest_rotation, to_z_axis};
 
 /// Why a description is not a model. Of a description that the URDF reader accepted: numbers that are too large together ([`Self::TooLarge`]), and a joint of the name of a floating base's.
@@ -225,18 +225,7 @@ impl<'a> Builder<'a> {
 
     fn push_body(&mut self, name: String, parent: usize, placement: Placement<f64>, joint: Joint, coordinates: Coordinates<f64>) -> usize {
         let inertia = SpatialInertia::zero();
-        self.model.bodies.push(Body {
-            name,
-            parent,
-            placement,
-            joint,
-            coordinates,
-            inertia,
-            lent: None,
-            rates: Rates::Angular,
-            link: None,
-            effects: Effects::none(),
-        });
+        self.model.bodies.push(Body { name, parent, placement, joint, coordinates, inertia, link: None, effects: Effects::none() });
         self.model.bodies.len() - 1
     }
 
@@ -292,7 +281,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-const AT_ZERO: Coordinates<f64> = Coordinates { q: 0, v: 0, mimic: None, pitch: 0.0, from: Angle { sin: 0.0, cos: 1.0 }, turns: 1.0 };
+const AT_ZERO: Coordinates<f64> = Coordinates { q: 0, v: 0, mimic: None, pitch: 0.0 };
 
 /// An elementary joint as part of a joint of the file.
 struct Stage {

@@ -116,8 +116,8 @@ mod tests {
     use alloc::vec::Vec;
 
     use crate::effect::{EffectId, Effects, JointEffect};
-    use crate::joint::{Angle, Coordinates, Follow, Joint};
-    use crate::model::{Body, Model, Rates};
+    use crate::joint::{Coordinates, Follow, Joint};
+    use crate::model::{Body, Model};
     use crate::spatial::{Placement, Reference, SpatialInertia};
     use nalgebra::{Matrix3, Vector3};
 
@@ -128,17 +128,8 @@ mod tests {
             parent,
             placement: Placement { rotation: Matrix3::identity(), position: Vector3::new(i as f64, 0.0, 0.0) },
             joint: Joint::Revolute,
-            coordinates: Coordinates {
-                q: i.saturating_sub(1),
-                v: i.saturating_sub(1),
-                mimic: None,
-                pitch: 0.0,
-                from: Angle::zero(),
-                turns: 1.0,
-            },
+            coordinates: Coordinates { q: i.saturating_sub(1), v: i.saturating_sub(1), mimic: None, pitch: 0.0 },
             inertia: SpatialInertia::zero(),
-            lent: None,
-            rates: Rates::Angular,
             link: None,
             effects: Effects::none(),
         };

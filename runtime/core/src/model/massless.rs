@@ -113,7 +113,7 @@ impl Model<f64> {
         for i in self.inward() {
             let (body, outside) = (&self.bodies[i], beyond[i]);
             let own = &body.inertia;
-            let felt = body.joint.feels(own) || turns_rotors(body);
+            let felt = body.joint.has_inertia(own) || turns_rotors(body);
             // Added mass need not be felt along every axis: numbers tell.
             let added = has_added_mass(body);
             // Of several degrees of freedom some may be felt and others not: a point mass turns freely. What follows another may undo what that does.

@@ -1,27 +1,19 @@
 //! A robot made ready for the algorithms: bodies joined by moving joints, in depth-first order.
 
-mod axes;
 mod build;
 mod leaders;
-mod lent;
 mod limbs;
 mod massless;
-pub mod pass;
 mod regroup;
-mod unit;
-mod unturned;
 
-use alloc::boxed::Box;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 use nalgebra::{Matrix3, Vector3};
 
-pub use axes::Rates;
 pub use build::ModelError;
 pub use limbs::Limbs;
 pub use regroup::{regroup, regroup_body, subtract};
-pub use unturned::Unturned;
 
 use crate::Scalar;
 use crate::description::{EditError, JointKind, Limit};
@@ -75,12 +67,7 @@ pub struct Body<S> {
     pub coordinates: Coordinates<S>,
     /// Mass properties in the body's frame, everything that is fixed to the body included.
     pub inertia: SpatialInertia<S>,
-    /// What inverse dynamics takes in its place ([`Model::lent`]): the same for all torques, not for wrenches between bodies.
-    pub lent: Option<Box<SpatialInertia<S>>>,
-    /// What inverse dynamics finds the rates of its turning from ([`Model::with_rates_by_axes`]).
-    pub rates: Rates,
-    /// For the body of a joint's child link, the axes of that link in the body's, as a rotation; the origins are the same, until a pass slides the
-    /// body's. `None` for the base, and for the bodies without mass inside a planar or universal joint.
+    /// For the body of a joint's child link, the axes of that link in the body's, as a rotation; the origins are the same. `None` for the base, and for the bodies without mass inside a planar or universal joint.
     pub link: Option<Matrix3<S>>,
     /// What acts on it and on its joint besides.
     pub effects: Effects<S>,
@@ -161,12 +148,6 @@ impl<S: Scalar> Model<S> {
     /// Whether a joint follows another.
     pub fn has_followers(&self) -> bool {
         self.bodies.iter().any(|b| b.coordinates.mimic.is_some())
-    }
-
-    /// Whether body `i` is the same from all sides about its joint, carries nothing, and has a frame that does not turn ([`pass::still`]).
-    pub(crate) fn is_round(&self, i: usize) -> bool {
-        let Body { coordinates, inertia, .. } = &self.bodies[i];
-        coordinates.turns.is_zero() && inertia.is_round() && self.outward().all(|k| self.bodies[k].parent != i)
     }
 
     /// The configuration of zeros, with quaternions that turn nothing, `[nq]` rad|m|quaternion: what a generated module has as `NEUTRAL`.
@@ -256,12 +237,6 @@ impl Model<f64> {
 }
 
 impl<S: Scalar> Body<S> {
-    /// Mass properties for inverse dynamics.
-    #[inline(always)]
-    pub(crate) fn for_torques(&self) -> &SpatialInertia<S> {
-        self.lent.as_deref().unwrap_or(&self.inertia)
-    }
-
     /// The same body with `f` of each constant, always in the same order.
     pub fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> Body<T> {
         Body {
@@ -271,8 +246,6 @@ impl<S: Scalar> Body<S> {
             joint: self.joint,
             coordinates: self.coordinates.map(f),
             inertia: self.inertia.map(f),
-            lent: self.lent.as_ref().map(|lent| Box::new(lent.map(f))),
-            rates: self.rates,
             link: self.link.map(|r| r.map(f)),
             effects: self.effects.map(f),
         }

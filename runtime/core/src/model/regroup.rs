@@ -20,7 +20,7 @@ pub fn regroup<S: Scalar>(mut model: Model<S>) -> Model<S> {
 /// The same for the joint of body `i` alone.
 pub fn regroup_body<S: Scalar>(model: &mut Model<S>, i: usize) {
     let Body { joint, parent, placement, inertia, .. } = &model.bodies[i];
-    let (parent, Some(given)) = (*parent, joint.unfelt(inertia)) else { return };
+    let (parent, Some(given)) = (*parent, joint.regroupable(inertia)) else { return };
     let (kept, moved) = (subtract(*inertia, given), given.moved(placement));
     model.bodies[i].inertia = kept;
     model.bodies[parent].inertia += moved;

@@ -5,7 +5,7 @@ use nalgebra::Matrix3;
 use super::{Placement, SpatialInertia, Twist, Wrench, rotate, rotate_back, turned_about_z};
 use crate::Scalar;
 
-/// The inertia that a body shows while joints beyond it give way: the symmetric matrix [A B; Bᵀ C] on [ω̇; a] (Featherstone 2008, §7.1).
+/// The apparent inertia of a body with the joints beyond it free to move: the symmetric matrix [A B; Bᵀ C] on [ω̇; a] (Featherstone 2008, §7.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArticulatedInertia<S> {
     /// A, kg·m², symmetric.
@@ -41,10 +41,10 @@ impl<S: Scalar> ArticulatedInertia<S> {
         }
     }
 
-    /// What is left where one degree of freedom gives way: I − U Uᵀ / D, with U = I S and 1 / D = 1 / Sᵀ I S.
+    /// The inertia after one degree of freedom is eliminated: I − U Uᵀ / D, with U = I S and 1 / D = 1 / Sᵀ I S.
     #[inline(always)]
     #[must_use]
-    pub fn giving_way(&self, u: &Wrench<S>, inverse: S) -> Self {
+    pub fn eliminating(&self, u: &Wrench<S>, inverse: S) -> Self {
         let (m, f) = (u.moment * inverse, u.force * inverse);
         Self {
             angular: upper(self.angular - m * u.moment.transpose()),

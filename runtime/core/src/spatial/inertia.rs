@@ -82,20 +82,20 @@ impl<S: Scalar> SpatialInertia<S> {
     #[inline(always)]
     #[must_use]
     pub fn turned(&self, turn: &Matrix3<S>) -> Self {
-        let second = if self.is_round() { symmetric(self.turned_round(turn)) } else { turned(&self.second, turn) };
+        let second = if self.is_axisymmetric() { symmetric(self.turned_axisymmetric(turn)) } else { turned(&self.second, turn) };
         Self { mass: self.mass, first: rotate(turn, self.first), second }
     }
 
-    /// Whether the body is the same from all sides about z.
+    /// Whether the body is axisymmetric about z.
     #[inline(always)]
-    pub(crate) fn is_round(&self) -> bool {
+    pub fn is_axisymmetric(&self) -> bool {
         let (h, m) = (&self.first, &self.second);
         m.m11 == m.m22 && [m.m12, m.m13, m.m23, h.x, h.y].iter().all(S::is_zero)
     }
 
     /// R Σ Rᵀ where Σ = Σ_xx·1 + (Σ_zz − Σ_xx) e_z e_zᵀ.
     #[inline(always)]
-    fn turned_round(&self, turn: &Matrix3<S>) -> Matrix3<S> {
+    fn turned_axisymmetric(&self, turn: &Matrix3<S>) -> Matrix3<S> {
         let (m, z) = (&self.second, turn.column(2).into_owned());
         Matrix3::from_diagonal_element(m.m11) + z * (z * (m.m33 - m.m11)).transpose()
     }
@@ -122,7 +122,7 @@ impl<S: Scalar> SpatialInertia<S> {
 
     /// The same inertia in another scalar.
     #[cfg(feature = "alloc")]
-    pub(crate) fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> SpatialInertia<T> {
+    pub fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> SpatialInertia<T> {
         SpatialInertia { mass: f(self.mass), first: self.first.map(f), second: self.second.map(f) }
     }
 }

@@ -1,11 +1,10 @@
 //! Laws that hold whatever a robot is subject to: on random trees with random effects.
 
 use articulated_core::Scalar;
-use articulated_core::algorithm::{self as dynamics, Workspace, functions};
+use articulated_core::algorithm::{self as dynamics, Workspace};
 use articulated_core::dual::Dual;
 use articulated_core::effect::{self, Applied, BodyEffect, EffectId, Enters, JointEffect, On, effects};
 use articulated_core::model::Model;
-use articulated_core::model::pass::model_passes;
 use articulated_core::spatial::Placement;
 use articulated_test_support::case::{Case, State, cast, for_each_tree};
 use articulated_test_support::random::Random;
@@ -146,24 +145,6 @@ fn derivatives_are_those_of_duals() {
         let at_rest = by_duals(&model, "inverse_dynamics", [&q, &zero, &zero]);
         let found = call(&model, "static_torque_derivative", &[&q, &wrenches]);
         assert_near(&found, &at_rest[..found.len()], 1e-11, &format!("{} at rest", case.name));
-    });
-}
-
-#[test]
-fn passes_keep_what_joints_feel() {
-    for_each_tree(40, Flavour::REGULAR, |case, random| {
-        let (model, State { q, v, a, tau, .. }) = subject(case, random, |_| true);
-        let passed = model_passes::<f64>().iter().fold(model.clone(), |m, (_, pass, _)| pass(m));
-        for function in functions::<f64>().iter().filter(|f| f.regrouped) {
-            let arguments: &[&[f64]] = match function.name {
-                "inverse_dynamics" | "inverse_dynamics_derivatives" => &[&q, &v, &a],
-                "forward_dynamics" | "forward_dynamics_derivatives" => &[&q, &v, &tau],
-                "mass_matrix" | "gravity_torque" => &[&q],
-                "kinetic_energy" | "bias_forces" => &[&q, &v],
-                _ => continue,
-            };
-            assert_near(&call(&passed, function.name, arguments), &call(&model, function.name, arguments), 1e-9, function.name);
-        }
     });
 }
 

@@ -4,7 +4,6 @@ use articulated_core::algorithm::{Workspace, function};
 use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, Origin};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_core::model::Model;
-use articulated_core::model::pass::model_passes;
 
 const MASS: f64 = 2.0;
 const INERTIA: f64 = 0.3;
@@ -57,33 +56,6 @@ fn assert_near(found: f64, expected: f64) {
 #[test]
 fn armature_is_mass_behind_a_gear() {
     assert_near(slides(EffectId::armature, &[0.01, 20.0], 0.3, 0.7, 5.0), 5.0 / (MASS + 0.01 * 400.0));
-}
-
-/// A wheel's frame need not turn with it, since it is the same from all sides; with a float on its rim it is not.
-#[test]
-fn a_round_wheel_turns_the_float_on_its_rim() {
-    let link = |name: &str, inertial: Option<Inertial>| Link { name: name.into(), inertial, ..Link::default() };
-    let round = Inertial { origin: Origin::default(), mass: MASS, inertia: [INERTIA, 0.0, 0.0, INERTIA, 0.0, INERTIA] };
-    let joint = Joint { name: "axle".into(), kind: JointKind::Continuous, parent: 0, child: 1, axis: [0.0, 1.0, 0.0], ..Joint::default() };
-    let description =
-        Description { name: "wheel".into(), links: vec![link("base", None), link("wheel", Some(round))], joints: vec![joint] };
-    let wheel = Model::new(&description, Base::Fixed).expect("a wheel").with_gravity([0.0, 0.0, -G]);
-    // Without the frames of links, which nobody asks for here.
-    let passed = |model: &Model<f64>| {
-        let bare = Model { frames: Vec::new(), ..model.clone() };
-        model_passes::<f64>().iter().fold(bare, |m, (_, pass, _)| pass(m))
-    };
-    assert_eq!(passed(&wheel).bodies[1].coordinates.turns, 0.0);
-    let (volume, density, rim) = (0.002, 1000.0, 0.5);
-    let float = Applied { at: Origin { xyz: [rim, 0.0, 0.0], ..Origin::default() }, ..on(EffectId::buoyancy, "wheel", &[volume, density]) };
-    let floating = wheel.with_effects(&[float]).expect("a float");
-    for q in [0.0, 0.7, 2.0, -1.1_f64] {
-        // The lift is at (cos q, 0, −sin q) · rim.
-        let needed = rim * q.cos() * density * volume * G;
-        for model in [&floating, &passed(&floating)] {
-            assert_near(call(model, "inverse_dynamics", &[&[q], &[0.0], &[0.0]])[0], needed);
-        }
-    }
 }
 
 #[test]

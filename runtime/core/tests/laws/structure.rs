@@ -1,13 +1,9 @@
 //! What every equation of motion M(q)·a + h(q, v) = τ is made of.
 
-use articulated_core::Scalar;
 use articulated_core::description::{Base, Description, Inertial, Joint, JointKind, Link, Origin};
 use articulated_core::model::Model;
-use articulated_core::model::pass::model_passes;
-use articulated_core::monitor::orthonormality;
-use articulated_reference::Big;
-use articulated_test_support::case::{Case, State, for_each_bundled, for_each_tree, inverse_dynamics, mass_matrix, placements, read};
-use articulated_test_support::measure::{U, arguments, distance, error, plus, scale, torque_scale};
+use articulated_test_support::case::{Case, State, for_each_bundled, for_each_tree, inverse_dynamics, mass_matrix, read};
+use articulated_test_support::measure::{arguments, distance, error, plus, scale, torque_scale};
 use articulated_test_support::random::Random;
 use articulated_test_support::random_tree::Flavour;
 
@@ -195,57 +191,6 @@ fn a_rod_in_a_ball_joint_can_turn_about_itself() {
     }
 }
 
-fn passes_keep_the_physics(case: &Case, random: &mut Random) {
-    let state = case.state(random);
-    let torques = torque_scale(case, &state);
-    for (name, pass, _) in model_passes::<f64>() {
-        let passed = Case { model: pass(case.model.clone()), ..case.clone() };
-        let far = distance(&passed.inverse_dynamics(&state), &case.inverse_dynamics(&state), &torques);
-        assert!(far <= FEW, "{name}: {far} units of roundoff");
-        let far = distance(&placements(&passed.model, &state.q), &placements(&case.model, &state.q), &scale(case, "placements", &state));
-        assert!(far <= FEW, "{name}: placements: {far} units of roundoff");
-    }
-}
-
-#[test]
-fn model_passes_leave_torques_and_placements_as_they_are() {
-    for_each_tree(150, Flavour::ANY, passes_keep_the_physics);
-    for_each_bundled(passes_keep_the_physics);
-}
-
-/// A column that is too long by ε makes every lever that it turns too long, and moments of inertia by 2ε: those of several bodies add up.
-#[test]
-fn rotations_of_models_are_rotations_to_rounding_before_and_after_passes() {
-    for_each_tree(150, Flavour::WRITTEN, |case, _| {
-        let mut model = case.model.clone();
-        for (name, pass, _) in [("none", (|m| m) as fn(Model<f64>) -> Model<f64>, "")].iter().chain(model_passes::<f64>()) {
-            model = pass(model);
-            for body in &model.bodies {
-                let [fixed, from] = [body.placement.rotation, body.coordinates.from.rotation()];
-                let off = [fixed, from].map(|r| Big::scope(|| orthonormality(&r.map(Big::from_f64)).to_f64() / U));
-                assert!(off.iter().all(|off| *off <= 3.0), "{}: {} after {name}: {off:?} units of roundoff", case.name, body.name);
-            }
-        }
-    });
-}
-
-/// Base parameters: what a joint cannot feel is zero.
-#[test]
-fn regrouped_bodies_keep_only_what_their_joint_feels() {
-    use articulated_core::joint::Joint;
-    for_each_tree(40, Flavour::ANY, |case, _| {
-        let passed = model_passes::<f64>().iter().fold(case.model.clone(), |m, (_, pass, _)| pass(m));
-        for body in passed.bodies.iter().skip(1) {
-            let i = &body.inertia;
-            match body.joint {
-                Joint::Revolute => assert_eq!([i.mass, i.first.z, i.second.m33], [0.0; 3], "{}", body.name),
-                Joint::Prismatic => assert_eq!(i.second.amax(), 0.0, "{}", body.name),
-                Joint::Helical | Joint::Spherical | Joint::Floating => {}
-            }
-        }
-    });
-}
-
 #[test]
 fn joints_are_ordered_depth_first_as_the_file_lists_them() {
     for_each_tree(100, Flavour::ANY, |case, _| {
@@ -261,52 +206,6 @@ fn joints_are_ordered_depth_first_as_the_file_lists_them() {
         let links: Vec<&str> = case.description.links.iter().map(|l| l.name.as_str()).collect();
         let frames: Vec<&str> = case.model.frames.iter().map(|f| f.name.as_str()).collect();
         assert_eq!(frames, links);
-    });
-}
-
-/// The axes of a shoulder of three joints meet: slid there, its joints have no offsets, and no force has to be handed on.
-#[test]
-fn frames_slide_to_where_axes_meet() {
-    let case = Case::bundled(articulated_models::robot("panda_like").expect("it is bundled"));
-    let slid = model_passes::<f64>().iter().fold(case.model.clone(), |m, (_, pass, _)| pass(m));
-    let offset = |model: &articulated_core::model::Model, i: usize| model.bodies[i].placement.position.amax();
-    assert_eq!([2, 3].map(|i| offset(&slid, i)), [0.0; 2]);
-    assert!(offset(&case.model, 3) > 0.3);
-}
-
-/// Mass is lent where it takes numbers away, and never more than twice what a joint carries.
-#[test]
-fn mass_is_lent_where_that_is_worth_it() {
-    for (robot, joints) in [("ur5_like", 1), ("panda_like", 2), ("quadruped", 8)] {
-        let model = Case::bundled(articulated_models::robot(robot).expect("it is bundled")).model;
-        let carried = model.carried();
-        assert!((carried[0] - model.bodies.iter().map(|b| b.inertia.mass).sum::<f64>()).abs() < 1e-12);
-        let passed = model_passes::<f64>().iter().fold(model.clone(), |m, (_, pass, _)| pass(m));
-        let masses = |carried: &[f64]| -> Vec<(f64, f64)> {
-            let lent = passed.lent(carried);
-            let moving = lent.bodies.iter().zip(carried).filter(|(body, _)| body.parent != 0);
-            moving.map(|(body, carried)| (body.lent.as_ref().map_or(f64::NAN, |inertia| inertia.mass), *carried)).collect()
-        };
-        let lent = masses(&carried);
-        assert_eq!(lent.iter().filter(|(mass, _)| *mass != 0.0).count(), joints, "{robot}: {lent:?}");
-        assert!(lent.iter().all(|(mass, carried)| mass.abs() <= 2.0 * carried), "{robot}: {lent:?}");
-        let of_next_to_nothing = masses(&carried.iter().map(|mass| 0.1 * mass).collect::<Vec<_>>());
-        assert!(of_next_to_nothing.iter().all(|(mass, _)| *mass == 0.0), "{robot}: {of_next_to_nothing:?}");
-    }
-}
-
-/// A shoulder as files have it, its axis y and its frame pitched by nearly a right angle: the pitch is counted with the joint's angle, and no rotation is left but a
-/// change of axes.
-#[test]
-fn angles_about_a_joints_own_axis_are_counted_with_its_own() {
-    let fixed = |x: f64| x == 0.0 || x.abs() == 1.0;
-    for_each_tree(40, Flavour::ANY, |case, _| {
-        let passed = model_passes::<f64>().iter().fold(case.model.clone(), |m, (_, pass, _)| pass(m));
-        for body in passed.bodies.iter().skip(1).filter(|b| b.parent != 0 && b.joint.is_rotation_about_axis()) {
-            let turn = &body.placement.rotation;
-            let along_a_coordinate_axis = turn.column(2).iter().all(|x| fixed(*x));
-            assert!(!along_a_coordinate_axis || turn.iter().all(|x| fixed(*x)), "{}: {turn}", body.name);
-        }
     });
 }
 

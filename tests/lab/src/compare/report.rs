@@ -284,7 +284,7 @@ impl Report {
             repetitions: settings.repetitions,
             compiler: rustc.version.clone(),
             flags: Rustc::flags(Target::Own).join(" "),
-            reference: Against::of(&robot.options),
+            reference: Against::of(robot),
             reference_bits: BITS,
             bound: settings.bound,
             optimised: !cfg!(debug_assertions),

@@ -10,6 +10,7 @@
 //! with τ what the motors deliver. Where joints follow others, or effects act, terms of M and h may cancel: then the sums of their magnitudes stand for |M| and |h|;
 //! so they do in every robot of a user's ([`Case::by_terms`]).
 
+use articulated_codegen::model_pass::View;
 use articulated_core::algorithm::checked::{Factor, Singular, Solver};
 use articulated_core::algorithm::{FunctionId, Workspace, checked_forward_dynamics};
 use articulated_core::model::Model;
@@ -301,6 +302,15 @@ pub fn call<S: articulated_core::Scalar>(function: FunctionId, model: &Model<S>,
     let arguments: Vec<&[S]> = arguments.iter().map(Vec::as_slice).collect();
     let mut out = vec![S::zero(); row.len(model.shape())];
     row.call(model, &mut Workspace::new(model), &arguments, &mut out).expect("arguments of the lengths that the model says");
+    out
+}
+
+/// The same of a view of the generator.
+pub fn call_on_view(function: FunctionId, view: &View<f64>, arguments: &[Vec<f64>]) -> Vec<f64> {
+    let row = function.row::<f64>();
+    let arguments: Vec<&[f64]> = arguments.iter().map(Vec::as_slice).collect();
+    let mut out = vec![0.0; row.len(view.model.shape())];
+    row.call(&view.model, &mut view.workspace(), &arguments, &mut out).expect("arguments of the lengths that the model says");
     out
 }
 

@@ -114,9 +114,9 @@ pub fn articulated_body_pivots<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S
         let size = ws.sizes[i];
         let mut handed = Size::of_articulated(&ws.articulated[i]);
         for c in ws.columns_of(i) {
-            let Column { at, axis, held, inverse, .. } = ws.columns[c];
+            let Column { at, axis, u, inverse, .. } = ws.columns[c];
             see(at, part(S::one() / inverse, size.along(&axis)));
-            handed = handed.plus(&Size::of_product(&held, inverse));
+            handed = handed.plus(&Size::of_product(&u, inverse));
         }
         let Body { parent, placement, .. } = &model.bodies[i];
         let origin = with_pose!(ws.bodies[i].pose, p => p.origin(placement));
@@ -172,8 +172,8 @@ impl<S: Scalar> Size<S> {
     }
 
     /// U Uᵀ/D.
-    fn of_product(held: &Wrench<S>, inverse: S) -> Self {
-        let (m, f) = (sum(&held.moment), sum(&held.force));
+    fn of_product(u: &Wrench<S>, inverse: S) -> Self {
+        let (m, f) = (sum(&u.moment), sum(&u.force));
         let (by_m, by_f) = (m * inverse, f * inverse);
         Self { angular: by_m * m, coupling: by_m * f, linear: by_f * f }
     }

@@ -1,6 +1,6 @@
 //! Effects on frames of bodies.
 
-use super::{World, any_on_bodies, on_body, station};
+use super::{LoadCase, any_on_bodies, on_body, station};
 use crate::Scalar;
 use crate::algorithm::Workspace;
 use crate::algorithm::common::{Axes, on_the_way, positions};
@@ -32,31 +32,37 @@ fn body_twists<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, v: &[S]) {
 }
 
 /// F −= w of every effect, and F += G V̇ + V ×* G V of added mass, for the body's motion as it is (RNEA).
-pub(in crate::algorithm) fn push<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], world: &World<S>) {
+pub(in crate::algorithm) fn apply_body_wrenches<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], load: &LoadCase<S>) {
     if !any_on_bodies(model) {
         return;
     }
-    wrenches(model, ws, q, v, world);
-    if !world.inertia {
+    wrenches(model, ws, q, v, load);
+    if !load.inertia {
         return;
     }
     added(model, ws, |ws, i, inertia| {
         let (motion, twist) = (&ws.bodies[i].motion, &ws.common[i].twist);
-        let bias = bias_acceleration(ws, i, world.gravity);
+        let bias = bias_acceleration(ws, i, load.gravity);
         let acceleration = Twist { angular: motion.alpha, linear: motion.acceleration + bias };
         inertia.apply(&acceleration) + twist.cross_wrench(&momentum(inertia, twist))
     });
 }
 
 /// p −= w of every effect, and added mass in I and p (ABA).
-pub(in crate::algorithm) fn give_way<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], world: &World<S>) {
+pub(in crate::algorithm) fn articulate_body_effects<S: Scalar>(
+    model: &Model<S>,
+    ws: &mut Workspace<S>,
+    q: &[S],
+    v: &[S],
+    load: &LoadCase<S>,
+) {
     if !any_on_bodies(model) {
         return;
     }
-    wrenches(model, ws, q, v, world);
+    wrenches(model, ws, q, v, load);
     added(model, ws, |ws, i, inertia| {
         ws.articulated[i] += *inertia;
-        let bias = Twist { angular: Vector3::zeros(), linear: bias_acceleration(ws, i, world.gravity) };
+        let bias = Twist { angular: Vector3::zeros(), linear: bias_acceleration(ws, i, load.gravity) };
         let twist = &ws.common[i].twist;
         inertia.apply(&bias) + twist.cross_wrench(&momentum(inertia, twist))
     });
@@ -74,10 +80,10 @@ fn momentum<S: Scalar>(inertia: &ArticulatedInertia<S>, twist: &Twist<S>) -> Wre
 }
 
 /// Where bodies are and how they move, and what pushes them.
-fn wrenches<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], world: &World<S>) {
+fn wrenches<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], load: &LoadCase<S>) {
     place_bodies(model, ws, q);
     body_twists(model, ws, v);
-    for i in model.outward().filter(|_| world.forces) {
+    for i in model.outward().filter(|_| load.forces) {
         for effect in &model.bodies[i].effects.body {
             if let Law::Wrench { wrench, .. } = effect.effect.law::<S>() {
                 let at = station(effect, &ws.placements[i], &ws.common[i].twist, model.gravity);

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::{World, duals};
+use super::{LoadCase, duals};
 use crate::Scalar;
 use crate::algorithm::Workspace;
 use crate::dual::Dual;
@@ -64,7 +64,7 @@ pub(super) fn all<S: Scalar>(model: &Model<S>) -> impl Iterator<Item = Acting<'_
 
 /// τ −= the forces of effects on joints: what actuators have to do against them.
 #[inline(always)]
-pub(in crate::algorithm) fn resist<S: Scalar>(model: &Model<S>, q: &[S], v: &[S], tau: &mut [S]) {
+pub(in crate::algorithm) fn apply_joint_forces<S: Scalar>(model: &Model<S>, q: &[S], v: &[S], tau: &mut [S]) {
     for one in all(model) {
         if let Law::Force { force, .. } = one.effect.effect.law::<S>() {
             tau[one.at] -= one.torque(force(&one.effect.parameters, one.coordinate(q), one.rate(v)));
@@ -94,7 +94,7 @@ pub(in crate::algorithm) fn armature_matrix<S: Scalar>(model: &Model<S>, out: &m
 
 /// The torques that motors give.
 #[inline(always)]
-pub(in crate::algorithm) fn drive<S: Scalar>(model: &Model<S>, v: &[S], tau: &[S], out: &mut [S]) {
+pub(in crate::algorithm) fn motor_torque<S: Scalar>(model: &Model<S>, v: &[S], tau: &[S], out: &mut [S]) {
     out.copy_from_slice(tau);
     for one in all(model) {
         if let (Law::Drive { torque, .. }, None) = (one.effect.effect.law::<S>(), one.ratio) {
@@ -104,20 +104,20 @@ pub(in crate::algorithm) fn drive<S: Scalar>(model: &Model<S>, v: &[S], tau: &[S
 }
 
 /// The torques that joints feel: what motors give, and the forces of effects on joints. The vector is the workspace's, to be given back.
-pub(in crate::algorithm) fn given<S: Scalar>(
+pub(in crate::algorithm) fn input_torque<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,
     q: &[S],
     v: &[S],
     tau: &[S],
-    world: &World<S>,
+    load: &LoadCase<S>,
 ) -> Vec<S> {
     let mut driven = core::mem::take(&mut ws.driven);
-    if !world.forces {
+    if !load.forces {
         driven.copy_from_slice(tau);
         return driven;
     }
-    drive(model, v, tau, &mut driven);
+    motor_torque(model, v, tau, &mut driven);
     for one in all(model) {
         if let Law::Force { force, .. } = one.effect.effect.law::<S>() {
             driven[one.at] += one.torque(force(&one.effect.parameters, one.coordinate(q), one.rate(v)));

@@ -12,13 +12,13 @@ use crate::effect::{BodyEffect, Law, Station};
 use crate::model::Model;
 use crate::spatial::{Placement, Twist, Vector3, Wrench};
 
-pub(super) use bodies::{add_inertia, give_way, push};
-pub(super) use joints::{armature, armature_matrix, drive, driven_slopes, given, resist, rotor};
+pub(super) use bodies::{add_inertia, apply_body_wrenches, articulate_body_effects};
+pub(super) use joints::{apply_joint_forces, armature, armature_matrix, driven_slopes, input_torque, motor_torque, rotor};
 pub(super) use slopes::{on_bodies as body_slopes, on_joints as joint_slopes};
 
 /// What acts on the robot from outside while a recursion runs.
 #[derive(Clone, Copy)]
-pub(super) struct World<'a, S> {
+pub(super) struct LoadCase<'a, S> {
     /// In the world frame, m/s².
     pub(super) gravity: Vector3<S>,
     /// Whether effects push and pull.
@@ -29,7 +29,7 @@ pub(super) struct World<'a, S> {
     pub(super) wrenches: &'a [S],
 }
 
-impl<'a, S: Scalar> World<'a, S> {
+impl<'a, S: Scalar> LoadCase<'a, S> {
     /// The robot's own.
     pub(super) fn of(model: &Model<S>, wrenches: &'a [S]) -> Self {
         Self { gravity: model.gravity, forces: true, inertia: true, wrenches }
@@ -93,7 +93,7 @@ fn places<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S]) 
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
 pub fn effect_forces<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
     out.fill(S::zero());
-    resist(model, q, v, out);
+    apply_joint_forces(model, q, v, out);
     out.iter_mut().for_each(|x| *x = -*x);
     if !any_on_bodies(model) {
         return;
@@ -165,5 +165,5 @@ impl<S: Scalar> Model<S> {
 /// # Panics
 /// As [`effect_forces`].
 pub fn motor_torques<S: Scalar>(model: &Model<S>, _: &mut Workspace<S>, v: &[S], tau: &[S], out: &mut [S]) {
-    drive(model, v, tau, out);
+    motor_torque(model, v, tau, out);
 }

@@ -85,8 +85,8 @@ fn pushed<S: Scalar>(
         on_body(effect, &Wrench { moment: slope(w.moment), force: slope(w.force) }).turned(&turn)
     };
     on_the_way(model, ws, i, Vector3::zeros(), |k, d| {
-        let (axis, drift) = (k.axis.at(d), k.drift.at(d));
-        subtract(model, ws, i, &change(&axis, &drift), k.at, by_q);
+        let (axis, psi_dot) = (k.axis.at(d), k.psi_dot.at(d));
+        subtract(model, ws, i, &change(&axis, &psi_dot), k.at, by_q);
         if let Some(by_v) = &mut by_v {
             subtract(model, ws, i, &change(&Twist::zero(), &axis), k.at, by_v);
         }
@@ -114,11 +114,11 @@ fn carried_along<S: Scalar>(
         Wrench::zero() - (inertia.apply(of_acceleration) + turned)
     };
     on_the_way(model, ws, i, Vector3::zeros(), |k, d| {
-        let (axis, drift) = (k.axis.at(d), k.drift.at(d));
-        let curl = (k.curl + gravity.cross(&k.axis)).at(d);
-        subtract(model, ws, i, &change(&drift, &(curl - twist.cross(&drift))), k.at, by_q);
+        let (axis, psi_dot) = (k.axis.at(d), k.psi_dot.at(d));
+        let psi_ddot = (k.psi_ddot + gravity.cross(&k.axis)).at(d);
+        subtract(model, ws, i, &change(&psi_dot, &(psi_ddot - twist.cross(&psi_dot))), k.at, by_q);
         if let Some((by_v, by_a)) = &mut others {
-            let rate = drift + k.rate.at(d) - twist.cross(&axis);
+            let rate = psi_dot + k.s_dot.at(d) - twist.cross(&axis);
             subtract(model, ws, i, &change(&axis, &rate), k.at, by_v);
             subtract(model, ws, i, &change(&Twist::zero(), &axis), k.at, by_a);
         }

@@ -8,7 +8,7 @@ use super::super::portable_f64x4;
 #[cfg(target_arch = "x86_64")]
 #[allow(unused_imports, reason = "one or the other, as the processor has it")]
 use super::super::{avx2_f64x4, avx512_f64x8};
-use crate::algorithm::ltdl::{solve_rows, way};
+use crate::algorithm::ltdl::{path_to_root, solve_rows};
 
 /// Rows of numbers.
 type Table = Vec<&'static [u16]>;
@@ -16,7 +16,7 @@ type Table = Vec<&'static [u16]>;
 /// M, B and X in whole numbers and halves, too small to be rounded: every order of the sums and every instruction set gives the same.
 struct Sample {
     /// `[nv]`, next joint to the base, from 1; 0 at the base.
-    below: Vec<usize>,
+    parent_dof: Vec<usize>,
     /// `[nv][nv]`, L below the diagonal, D⁻¹ on it.
     l: Vec<f64>,
     /// `[3][nv][nv]`, the third the unit matrix.
@@ -29,25 +29,25 @@ impl Sample {
     /// Each joint stands on one of the `near` before it, the base being before the first.
     fn random(nv: usize, near: usize) -> Self {
         let mut random = random((100 * nv + near) as u64);
-        let below: Vec<usize> = (0..nv).map(|k| k - random(near.min(k + 1))).collect();
+        let parent_dof: Vec<usize> = (0..nv).map(|k| k - random(near.min(k + 1))).collect();
         let mut l = vec![f64::NAN; nv * nv];
         for k in 0..nv {
             l[k * nv + k] = [0.5, 1.0, 2.0, -3.0][random(4)];
-            way(&below, k).for_each(|i| l[k * nv + i] = [-2.0, -1.0, 1.0, 2.0][random(4)]);
+            path_to_root(&parent_dof, k).for_each(|i| l[k * nv + i] = [-2.0, -1.0, 1.0, 2.0][random(4)]);
         }
         let mut b: Vec<f64> = (0..2 * nv * nv).map(|_| random(19) as f64 - 9.0).collect();
         b.extend((0..nv * nv).map(|at| f64::from(at / nv == at % nv)));
         let mut x = b.clone();
         x[..2 * nv * nv].iter_mut().for_each(|x| *x = -*x);
-        x.chunks_mut(nv * nv).for_each(|x| solve_rows(&l, &below, x));
+        x.chunks_mut(nv * nv).for_each(|x| solve_rows(&l, &parent_dof, x));
         assert!(x.iter().all(|x| x.abs() < 2_f64.powi(48)), "numbers so large could be rounded");
-        Self { below, l, b, x }
+        Self { parent_dof, l, b, x }
     }
 
     /// Numbers of L: for each row their columns, and for each column their rows.
     fn tables(&self) -> [Table; 2] {
-        let mut tables = [(); 2].map(|()| vec![Vec::new(); self.below.len()]);
-        for (k, i) in (0..self.below.len()).flat_map(|k| way(&self.below, k).map(move |i| (k, i))) {
+        let mut tables = [(); 2].map(|()| vec![Vec::new(); self.parent_dof.len()]);
+        for (k, i) in (0..self.parent_dof.len()).flat_map(|k| path_to_root(&self.parent_dof, k).map(move |i| (k, i))) {
             tables[0][k].push(i as u16);
             tables[1][i].push(k as u16);
         }

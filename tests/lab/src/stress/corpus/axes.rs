@@ -1,5 +1,6 @@
 //! Axes and frames that coincide, nearly coincide, or are not of length one.
 
+use articulated_codegen::model_pass::View;
 use articulated_core::algorithm::FunctionId;
 use articulated_core::description::{Base, Description, JointKind, Origin};
 use articulated_core::model::Model;
@@ -7,7 +8,7 @@ use articulated_reference::{Big, Exact};
 
 use super::Effort;
 use crate::compare::accuracy::worse;
-use crate::stress::judge::{BACKWARD, Ends, Judge, State, call, called, scale};
+use crate::stress::judge::{BACKWARD, Ends, Judge, State, call_on_view, called, scale};
 use crate::stress::machine::{Machine, cast};
 use crate::stress::robots::{Body, Builder, built, state, states};
 use crate::stress::row::{Case, Row};
@@ -92,14 +93,14 @@ fn gimbal() -> Vec<Row> {
 fn textbook(case: &Case, robot: &Description, seed: u64) -> Row {
     let model = built(robot, Base::Fixed);
     let states = states(&model, 4, seed, 1.0);
-    let error = states.iter().map(|s| from_textbook(robot, &model, &model, s)).fold(0.0, worse);
+    let error = states.iter().map(|s| from_textbook(robot, &model, &View::new(model.clone()), s)).fold(0.0, worse);
     case.row("inverse_dynamics against the textbook's form, f64", error, BACKWARD, "u")
 }
 
 /// The largest error of inverse dynamics of a robot by one model, measured by the terms of another.
-pub(super) fn from_textbook(robot: &Description, plain: &Model<f64>, model: &Model<f64>, s: &State) -> f64 {
+pub(super) fn from_textbook(robot: &Description, plain: &Model<f64>, view: &View<f64>, s: &State) -> f64 {
     let arguments = [s.q.clone(), s.v.clone(), s.a.clone()];
-    let found = call(FunctionId::inverse_dynamics, model, &arguments);
+    let found = call_on_view(FunctionId::inverse_dynamics, view, &arguments);
     let slices: Vec<&[f64]> = arguments.iter().map(Vec::as_slice).collect();
     let Some(scale) = scale(FunctionId::inverse_dynamics, plain, &slices) else { return f64::NAN };
     Big::scope(|| {

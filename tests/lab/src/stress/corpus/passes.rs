@@ -1,8 +1,8 @@
 //! Simplification: what each model pass does to the error of inverse dynamics.
 
+use articulated_codegen::model_pass::{View, model_passes};
 use articulated_core::description::{Base, Description};
 use articulated_core::model::Model;
-use articulated_core::model::pass::model_passes;
 
 use super::Effort;
 use super::axes::from_textbook;
@@ -35,8 +35,8 @@ pub(super) fn rows(_: Effort) -> Vec<Row> {
 fn errors(robot: &Description) -> Vec<f64> {
     let plain = built(robot, Base::Fixed);
     let states = states(&plain, 3, 61, 1.0);
-    let mut errors = vec![error(robot, &plain, &plain, &states)];
-    let mut passed = plain.clone();
+    let mut passed = View::new(plain.clone());
+    let mut errors = vec![error(robot, &plain, &passed, &states)];
     for (_, pass, _) in model_passes::<f64>() {
         passed = pass(passed);
         errors.push(error(robot, &plain, &passed, &states));
@@ -44,6 +44,6 @@ fn errors(robot: &Description) -> Vec<f64> {
     errors
 }
 
-fn error(robot: &Description, plain: &Model<f64>, passed: &Model<f64>, states: &[State]) -> f64 {
+fn error(robot: &Description, plain: &Model<f64>, passed: &View<f64>, states: &[State]) -> f64 {
     states.iter().map(|s| from_textbook(robot, plain, passed, s)).fold(0.0, worse)
 }

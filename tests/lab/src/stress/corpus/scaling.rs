@@ -1,12 +1,11 @@
 //! Units: masses, lengths and times by powers of two.
 
+use articulated_codegen::model_pass::View;
 use articulated_core::algorithm::FunctionId;
 use articulated_core::description::{Base, Description};
-use articulated_core::model::Model;
-use articulated_core::model::pass::model_passes;
 
 use super::Effort;
-use crate::stress::judge::{State, call};
+use crate::stress::judge::{State, call_on_view};
 use crate::stress::robots::{built, mixed, states};
 use crate::stress::row::{Case, Row};
 
@@ -31,12 +30,17 @@ fn one([m, l, t]: [i32; 3]) -> Vec<Row> {
     let large = built(&scaled(&plain, m, l), Base::Fixed).with_gravity(gravity(l, t));
     let states = states(&small, 5, 31, 3.0);
     let functions = [FunctionId::inverse_dynamics, FunctionId::forward_dynamics, FunctionId::mass_matrix, FunctionId::kinetic_energy];
-    let alike = |f: FunctionId, a: &Model<f64>, b: &Model<f64>| states.iter().filter(|s| !same(f, a, b, s, powers)).count() as f64;
-    let passed = |m: &Model<f64>| model_passes::<f64>().iter().fold(m.clone(), |m, (_, pass, _)| pass(m));
-    let (small_passed, large_passed) = (passed(&small), passed(&large));
+    let alike = |f: FunctionId, a: &View<f64>, b: &View<f64>| states.iter().filter(|s| !same(f, a, b, s, powers)).count() as f64;
+    let [plain_small, plain_large] = [&small, &large].map(|m| View::new(m.clone()));
+    let [small_passed, large_passed] = [&plain_small, &plain_large].map(|view| view.clone().passed());
     let mut rows: Vec<Row> = Vec::new();
     for f in functions {
-        rows.push(case.row(format!("{}: states of 5 with another digit, f64", f.name()), alike(f, &small, &large), 0.0, "states"));
+        rows.push(case.row(
+            format!("{}: states of 5 with another digit, f64", f.name()),
+            alike(f, &plain_small, &plain_large),
+            0.0,
+            "states",
+        ));
         let after = alike(f, &small_passed, &large_passed);
         rows.push(case.row(format!("{} after all model passes: states of 5 with another digit, f64", f.name()), after, 0.0, "states"));
     }
@@ -61,8 +65,8 @@ fn scaled(plain: &Description, m: i32, l: i32) -> Description {
 }
 
 /// Whether a function gives the same digits of both.
-fn same(function: FunctionId, small: &Model<f64>, large: &Model<f64>, state: &State, [m, l, t]: [i32; 3]) -> bool {
-    let slides: Vec<i32> = small.joints.iter().map(|j| if j.kind.is_linear() { l } else { 0 }).collect();
+fn same(function: FunctionId, small: &View<f64>, large: &View<f64>, state: &State, [m, l, t]: [i32; 3]) -> bool {
+    let slides: Vec<i32> = small.model.joints.iter().map(|j| if j.kind.is_linear() { l } else { 0 }).collect();
     let units = |x: &[f64], per_time: i32| x.iter().zip(&slides).map(|(x, s)| x * two(s - per_time * t)).collect::<Vec<f64>>();
     let torque = |k: usize| m + 2 * l - 2 * t - slides[k];
     let tau: Vec<f64> = state.tau.iter().enumerate().map(|(k, x)| x * two(torque(k))).collect();
@@ -79,7 +83,7 @@ fn same(function: FunctionId, small: &Model<f64>, large: &Model<f64>, state: &St
         FunctionId::kinetic_energy => m + 2 * l - 2 * t,
         _ => m + 2 * l - slides[k / n] - slides[k % n],
     };
-    let first = call(function, small, &arguments(state.q.clone(), state.v.clone(), state.a.clone(), state.tau.clone()));
-    let second = call(function, large, &arguments(units(&state.q, 0), units(&state.v, 1), units(&state.a, 2), tau));
+    let first = call_on_view(function, small, &arguments(state.q.clone(), state.v.clone(), state.a.clone(), state.tau.clone()));
+    let second = call_on_view(function, large, &arguments(units(&state.q, 0), units(&state.v, 1), units(&state.a, 2), tau));
     first.iter().zip(&second).enumerate().all(|(k, (x, y))| x * two(unit(k)) == *y)
 }

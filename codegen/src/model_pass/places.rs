@@ -1,14 +1,10 @@
 //! Places on the axes of joints where something vanishes.
 
-use alloc::vec;
-use alloc::vec::Vec;
-
-use nalgebra::Vector3;
+use articulated_core::Scalar;
+use articulated_core::model::{Body, Model};
+use articulated_core::spatial::{SpatialInertia, Vector3, rotate, rotate_back};
 
 use super::zeros::{or_zero, within};
-use crate::Scalar;
-use crate::model::{Body, Model};
-use crate::spatial::{SpatialInertia, rotate, rotate_back};
 
 /// Most places of one body.
 const MOST: usize = 6;

@@ -1,31 +1,32 @@
-//! Frames of round bodies that stay while their bodies turn.
+//! Frames of axisymmetric bodies that stay while their bodies rotate.
 
-use nalgebra::{Matrix3, Vector3};
+use articulated_core::Scalar;
+use articulated_core::model::Body;
+use articulated_core::spatial::{Matrix3, SpatialInertia, Vector3};
 
+use super::view::View;
 use super::zeros::or_zero;
-use crate::Scalar;
-use crate::model::{Body, Model};
-use crate::spatial::SpatialInertia;
 
 /// Lets the frame of a revolute body stay as its joint's frame stands, if the body is the same from all sides about that axis and carries nothing.
 ///
 /// In a frame that does not turn with it such a body has constant moments as well, and what turns is ω alone: neither sine nor cosine of the angle is left, as
 /// of a wheel, of a propeller, or of the last link of many arms. For a model whose frames nobody asks for: a body that carries a frame is left alone, and so is one on which effects
 /// act. Exact for all joint torques.
-pub fn still<S: Scalar>(mut model: Model<S>) -> Model<S> {
-    let mut carries = alloc::vec![false; model.bodies.len()];
+pub fn drop_symmetric_rotation<S: Scalar>(view: View<S>) -> View<S> {
+    let View { mut model, mut formulation } = view;
+    let mut carries = vec![false; model.bodies.len()];
     model.outward().for_each(|i| carries[model.bodies[i].parent] = true);
     model.frames.iter().for_each(|frame| carries[frame.body] = true);
-    for (body, _) in model.bodies.iter_mut().zip(carries).skip(1).filter(|(_, carries)| !carries) {
-        if body.joint.is_rotation_about_axis() && body.effects.body.is_empty() && made_round(body) {
-            body.coordinates.turns = S::zero();
+    for (i, body) in model.bodies.iter_mut().enumerate().skip(1).filter(|(i, _)| !carries[*i]) {
+        if body.joint.is_rotation_about_axis() && body.effects.body.is_empty() && made_axisymmetric(body) {
+            formulation.rotations[i].share = S::zero();
         }
     }
-    model
+    View { model, formulation }
 }
 
 /// Whether a body is the same from all sides about its z-axis, but for rounding; that is then taken away.
-fn made_round<S: Scalar>(body: &mut Body<S>) -> bool {
+fn made_axisymmetric<S: Scalar>(body: &mut Body<S>) -> bool {
     let SpatialInertia { first, second, .. } = body.inertia;
     let size = second.m11.abs() + second.m22.abs();
     let across = [second.m12, second.m13, second.m23, second.m11 - second.m22].map(|x| or_zero(x, size));

@@ -1,15 +1,13 @@
 //! Frames turned about the axes of their joints, to where rotations have zeros.
 
-use alloc::vec;
-use alloc::vec::Vec;
+use articulated_core::Scalar;
+use articulated_core::algorithm::Formulation;
+use articulated_core::joint::Angle;
+use articulated_core::model::Model;
+use articulated_core::spatial::{Matrix3, Placement, Vector3, nearest_rotation, rotate_back};
 
-use nalgebra::{Matrix3, Vector3};
-
-use super::zeros::{or_zero, within};
-use crate::Scalar;
-use crate::joint::Angle;
-use crate::model::Model;
-use crate::spatial::{Placement, nearest_rotation, rotate_back};
+use super::view::View;
+use super::zeros::{count, or_zero, within};
 
 /// Turns the frame of each revolute body about its axis, so that the fixed rotations between joints have fewer numbers.
 ///
@@ -17,7 +15,8 @@ use crate::spatial::{Placement, nearest_rotation, rotate_back};
 /// followed by Rz(q + o), with R = R' Rz(o). So of a rotation given by three angles one is left, or none where the axis is a coordinate axis of its
 /// parent, and the constant o goes into the sine and cosine of q. A body is turned for its children too where that costs less. Exact for all joint
 /// torques; frames of links stay where they are in space.
-pub fn turn<S: Scalar>(mut model: Model<S>) -> Model<S> {
+pub fn turn<S: Scalar>(view: View<S>) -> View<S> {
+    let View { mut model, mut formulation } = view;
     let mut hanging = vec![Hanging::default(); model.bodies.len()];
     model.outward().for_each(|i| hanging[model.bodies[i].parent].bodies.push(i));
     model.frames.iter().enumerate().for_each(|(k, frame)| hanging[frame.body].frames.push(k));
@@ -31,10 +30,10 @@ pub fn turn<S: Scalar>(mut model: Model<S>) -> Model<S> {
         }
         // On the base only gravity is turned, and that once and for all.
         if model.bodies[i].parent != 0 {
-            count_from_there(&mut model, i);
+            count_from_there(&mut model, &mut formulation, i);
         }
     }
-    model
+    View { model, formulation }
 }
 
 /// What hangs on a body: other bodies, and frames of links.
@@ -110,12 +109,12 @@ fn turn_body<S: Scalar>(model: &mut Model<S>, i: usize, angle: &Angle<S>, hangin
 }
 
 /// Replaces the fixed rotation of body `i` by the plain one about the same axis, and counts the joint's angle from there.
-fn count_from_there<S: Scalar>(model: &mut Model<S>, i: usize) {
+fn count_from_there<S: Scalar>(model: &mut Model<S>, formulation: &mut Formulation<S>, i: usize) {
     let body = &mut model.bodies[i];
     body.placement.rotation = body.placement.rotation.map(tidy);
     if let Some((rotation, angle)) = plain(&body.placement.rotation) {
         body.placement.rotation = rotation;
-        body.coordinates.from = angle;
+        formulation.rotations[i].offset = angle;
     }
 }
 
@@ -150,10 +149,6 @@ fn tidy<S: Scalar>(x: S) -> S {
     let one = S::one();
     let near = |value: S| or_zero(x - value, one) == S::zero();
     [S::zero(), one, -one].into_iter().find(|value| near(*value)).unwrap_or(x)
-}
-
-fn count<S: Scalar>(x: &[S]) -> u32 {
-    x.iter().filter(|x| **x != S::zero()).count() as u32
 }
 
 /// Whether the numbers are known, and not symbols.

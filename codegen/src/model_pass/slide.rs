@@ -1,13 +1,12 @@
 //! Frames slid along the axes of their joints, to where offsets and moments vanish.
 
-use alloc::vec;
-use alloc::vec::Vec;
-
-use nalgebra::Vector3;
+use articulated_core::Scalar;
+use articulated_core::model::{Model, regroup};
+use articulated_core::spatial::Vector3;
 
 use super::places::{Places, offset, shifted};
-use crate::Scalar;
-use crate::model::{Model, regroup};
+use super::view::View;
+use super::zeros::count;
 
 /// Slides the frame of each revolute body along its axis, and shifts that of each prismatic body, so that the recursion of inverse dynamics has least
 /// to do.
@@ -16,10 +15,11 @@ use crate::model::{Model, regroup};
 /// a body's offset from its parent that is not zero, into Σ_xz and Σ_yz, and into a force that has to be handed on because there is an offset
 /// somewhere on its way to the base. Of the places where something vanishes the cheapest are taken, for all bodies together, from the tips inward. Exact for all joint
 /// torques; frames of links stay where they are in space. For a model that is regrouped, as it is then again.
-pub fn slide<S: Scalar>(mut model: Model<S>) -> Model<S> {
+pub fn slide<S: Scalar>(view: View<S>) -> View<S> {
+    let View { mut model, formulation } = view;
     let shifts = Plan::of(&model).shifts();
     if shifts.iter().all(|s| *s == Vector3::zeros()) {
-        return model;
+        return View { model, formulation };
     }
     for i in model.outward() {
         let position = offset(&model.bodies[i], shifts[i], shifts[model.bodies[i].parent]);
@@ -32,7 +32,7 @@ pub fn slide<S: Scalar>(mut model: Model<S>) -> Model<S> {
         frame.placement.position -= shifts[frame.body];
     }
     // A prismatic body that was shifted has Σ again.
-    regroup(model)
+    View { model: regroup(model), formulation }
 }
 
 /// Instructions for a number of an offset, for one of Σ_xz and Σ_yz, for one of h of a prismatic body, and for a force that is handed on.
@@ -90,9 +90,9 @@ impl<'a, S: Scalar> Plan<'a, S> {
 /// numbers of its offsets; `needed`: whether the force is handed on whatever the offset.
 fn cheapest(costs: &[ByForce<u32>], numbers: &[u32], needed: bool) -> ((usize, bool), u32) {
     let at = |(k, (cost, numbers)): (usize, (&ByForce<u32>, &u32))| {
-        let handed_on = needed || *numbers > 0;
-        let force = if handed_on { FORCE } else { 0 };
-        ((k, handed_on), cost[usize::from(handed_on)] + OFFSET * numbers + force)
+        let needs_force = needed || *numbers > 0;
+        let force = if needs_force { FORCE } else { 0 };
+        ((k, needs_force), cost[usize::from(needs_force)] + OFFSET * numbers + force)
     };
     costs.iter().zip(numbers).enumerate().map(at).min_by_key(|(_, cost)| *cost).unwrap_or_default()
 }
@@ -120,11 +120,7 @@ fn offsets<S: Scalar>(model: &Model<S>, i: usize, shift: Vector3<S>, parent: Vec
     count(&offset(body, shift, parent).as_slice()[..counted])
 }
 
-fn count<S: Scalar>(x: &[S]) -> u32 {
-    x.iter().filter(|x| **x != S::zero()).count() as u32
-}
-
 /// Whether inverse dynamics has to reckon with the lever of body `i`.
-pub(in crate::model) fn counts_an_offset<S: Scalar>(model: &Model<S>, i: usize) -> bool {
+pub(super) fn counts_an_offset<S: Scalar>(model: &Model<S>, i: usize) -> bool {
     offsets(model, i, Vector3::zeros(), Vector3::zeros()) > 0
 }

@@ -1,0 +1,84 @@
+//! Rotations of frames at a configuration, folded into the constants of their bodies.
+
+use articulated_core::Scalar;
+use articulated_core::joint::{Angle, JointLaw, Revolute};
+use articulated_core::model::{Body, Model};
+use articulated_core::spatial::Matrix3;
+
+use super::view::View;
+
+/// Which revolute bodies have frames that do not rotate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FoldedRotations {
+    /// Rows of bodies on parallel joints: each row has the axes in which it begins, and no vector has to be turned from one to the next, there and back.
+    Parallel,
+    /// These, and bodies that carry no other.
+    ParallelAndLast,
+}
+
+impl<S: Scalar> View<S> {
+    /// The view as it is at the configuration q, where the frames of these bodies stay, and their constants are rotated instead (offsets, moments of mass), by the sum of the angles.
+    ///
+    /// q: `[nq]` rad|m|quaternion. Joint torques, M(q) and whatever follows from them are those of the robot itself, at this q alone; frames are not kept, and effects on bodies must not be there.
+    ///
+    /// # Panics
+    /// If q is shorter than stated.
+    #[must_use]
+    pub fn fold_rotations_into_constants(&self, q: &[S], which: FoldedRotations) -> Self {
+        let mut view = self.clone();
+        view.model.frames.clear();
+        let stays = self.stays(which);
+        let mut folded: Vec<Angle<S>> = vec![Angle::zero(); self.model.bodies.len()];
+        for i in self.model.outward() {
+            let (from, to) = (&self.model.bodies[i], &mut view.model.bodies[i]);
+            let carried = folded[from.parent];
+            let in_row = stays[i] && stays[from.parent] && continues(&self.model, from);
+            to.placement.position = carried.rotation() * from.placement.position;
+            to.placement.rotation = if in_row { Matrix3::identity() } else { carried.rotation() * from.placement.rotation };
+            if stays[i] {
+                let own = self.formulation.rotations[i].angle(&from.coordinates, q);
+                let (sin, cos) = if in_row { carried.plus((own.sin, own.cos)) } else { (own.sin, own.cos) };
+                folded[i] = Angle { sin, cos };
+                view.formulation.rotations[i].share = S::zero();
+                let rotation = Revolute::of(folded[i]);
+                to.inertia = rotation.inertia_to_joint(&from.inertia);
+                if let Some(inertia) = view.formulation.torque_inertias.get_mut(i) {
+                    *inertia = rotation.inertia_to_joint(inertia);
+                }
+            }
+        }
+        view
+    }
+
+    /// What [`View::fold_rotations_into_constants`] has to choose from: nothing where no body is of the kind.
+    pub fn foldable_rotations(&self) -> Vec<FoldedRotations> {
+        let none = vec![false; self.model.bodies.len()];
+        let [parallel, all] = [FoldedRotations::Parallel, FoldedRotations::ParallelAndLast].map(|which| self.stays(which));
+        let mut choices = Vec::new();
+        choices.extend((parallel != none).then_some(FoldedRotations::Parallel));
+        choices.extend((all != parallel).then_some(FoldedRotations::ParallelAndLast));
+        choices
+    }
+
+    /// Whether the frame of each body stays.
+    fn stays(&self, which: FoldedRotations) -> Vec<bool> {
+        let (model, last) = (&self.model, which == FoldedRotations::ParallelAndLast);
+        let mut stays = vec![last; model.bodies.len()];
+        stays[0] = false;
+        model.outward().for_each(|i| stays[model.bodies[i].parent] = false);
+        for i in model.outward() {
+            let body = &model.bodies[i];
+            stays[i] &= body.joint.is_rotation_about_axis() && self.rotates(i);
+            if continues(model, body) {
+                (stays[i], stays[body.parent]) = (true, true);
+            }
+        }
+        stays
+    }
+}
+
+/// Whether a body's joint is parallel to that of its parent, and its frame not turned against the parent's.
+fn continues<S: Scalar>(model: &Model<S>, body: &Body<S>) -> bool {
+    let rotates = |body: &Body<S>| body.joint.is_rotation_about_axis();
+    body.parent != 0 && rotates(body) && rotates(&model.bodies[body.parent]) && body.placement.rotation == Matrix3::identity()
+}

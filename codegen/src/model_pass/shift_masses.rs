@@ -1,0 +1,95 @@
+//! Mass on the axes of joints, given back to the bodies beyond them where fewer numbers are left.
+
+use articulated_core::Scalar;
+use articulated_core::model::{Body, Model, regroup_body, subtract};
+use articulated_core::spatial::SpatialInertia;
+
+use super::slide::counts_an_offset;
+use super::view::View;
+use super::zeros::within;
+
+impl<S: Scalar> View<S> {
+    /// The view with inertias for inverse dynamics beside the model's ([`Formulation::torque_inertias`](articulated_core::algorithm::Formulation)).
+    ///
+    /// What regrouping gives to the parent of a revolute joint need not all stay there: wherever on the joint's axis a mass is, and in whichever of the two
+    /// bodies, the torques are the same. The mass with which the parent's h_x or h_y vanishes is shifted to the child, at its origin, where that takes fewer
+    /// instructions, from the tips inward; no more than twice what the joint carries ([`Model::carried`], kg, before regrouping), as greater masses would cost
+    /// digits. Mass matrices want bodies without mass, and keep their own. For a model that is regrouped.
+    ///
+    /// # Panics
+    /// If `carried` is not as long as there are bodies.
+    #[must_use]
+    pub fn with_shifted_masses(mut self, carried: &[S]) -> Self {
+        let mut model = self.model.clone();
+        let needs_force = forces_shifted_to_parents(&model);
+        for i in self.model.inward() {
+            regroup_body(&mut model, i);
+            if let Some((child, parent)) = cheapest(&model, i, &needs_force, carried[i] + carried[i]) {
+                model.bodies[i].inertia = child;
+                model.bodies[self.model.bodies[i].parent].inertia = parent;
+            }
+        }
+        self.formulation.torque_inertias = model.bodies.iter().map(|body| body.inertia).collect();
+        self
+    }
+}
+
+/// Whether inverse dynamics needs the force on each body, as there is a lever somewhere on its path to the root, or a joint that moves its origin.
+fn forces_shifted_to_parents<S: Scalar>(model: &Model<S>) -> Vec<bool> {
+    let mut needs_force = vec![false; model.bodies.len()];
+    for i in model.outward() {
+        let Body { joint, parent, .. } = model.bodies[i];
+        needs_force[i] = !joint.is_rotation_about_axis() || parent != 0 && (needs_force[parent] || counts_an_offset(model, i));
+    }
+    needs_force
+}
+
+/// Whether mass may move from the parent to body `i`: a single child only, so that isomorphic limbs stay isomorphic, and of the parent more than I_zz is felt.
+fn takes_mass<S: Scalar>(model: &Model<S>, i: usize) -> bool {
+    let parent = model.bodies[i].parent;
+    let first = model.bodies[parent].parent == 0 && model.bodies[parent].joint.is_rotation_about_axis();
+    let alone = model.outward().filter(|&k| model.bodies[k].parent == parent).take(2).count() == 1;
+    model.bodies[i].joint.is_rotation_about_axis() && parent != 0 && !first && alone
+}
+
+/// The inertias of a body and of its parent.
+type Pair<S> = (SpatialInertia<S>, SpatialInertia<S>);
+
+/// Those of body `i` and of its parent that take fewest instructions; `None` if these are what they have.
+fn cheapest<S: Scalar>(model: &Model<S>, i: usize, needs_force: &[bool], most: S) -> Option<Pair<S>> {
+    let (body, parent) = (&model.bodies[i], &model.bodies[model.bodies[i].parent]);
+    // The parent gives away what it can in turn.
+    let kept = |own: &SpatialInertia<S>| parent.joint.regroupable(own).map_or(*own, |given| subtract(*own, given));
+    let both = |(child, own): &Pair<S>| price(child, needs_force[i]) + price(&kept(own), needs_force[body.parent]);
+    let shifts = (0..2).filter(|_| takes_mass(model, i)).filter_map(|k| mass_shift(body, &parent.inertia, k, most));
+    let best = shifts.min_by_key(both)?;
+    (both(&best) < both(&(body.inertia, parent.inertia))).then_some(best)
+}
+
+/// The inertias of a body and of its parent, which has `own`, once the mass is shifted with which the parent's h_x or h_y vanishes; `None` if there is no such mass, or too great a one.
+fn mass_shift<S: Scalar>(body: &Body<S>, own: &SpatialInertia<S>, k: usize, most: S) -> Option<Pair<S>> {
+    let lever = body.placement.position;
+    if lever[k].is_zero() {
+        return None;
+    }
+    // h = m l
+    let shifted = SpatialInertia { mass: own.first[k] / lever[k], ..SpatialInertia::zero() };
+    if !within(shifted.mass.abs(), most) {
+        return None;
+    }
+    let (mut child, mut left) = (body.inertia, subtract(*own, shifted.moved(&body.placement)));
+    child += shifted;
+    left.first[k] = S::zero();
+    Some((child, left))
+}
+
+/// Instructions that the numbers of a body take in inverse dynamics, by whether the force on it is needed.
+fn price<S: Scalar>(inertia: &SpatialInertia<S>, needs_force: bool) -> usize {
+    let SpatialInertia { mass, first, second } = inertia;
+    let count = |numbers: &[S]| numbers.iter().filter(|x| !x.is_zero()).count();
+    // f = m a + U h, which takes a sum on U's diagonal; n = h × a + …
+    let (of_mass, of_first) = if needs_force { (3, 6) } else { (0, 2) };
+    let diagonal = 2 * count(&[second.m11, second.m22, second.m33]);
+    let off_diagonal = 4 * count(&[second.m12, second.m13, second.m23]);
+    of_mass * count(&[*mass]) + of_first * count(first.as_slice()) + diagonal + off_diagonal
+}

@@ -1,0 +1,55 @@
+//! The same robot with its lengths measured in another unit.
+
+use articulated_core::Scalar;
+use articulated_core::model::Model;
+use articulated_core::spatial::Vector3;
+
+use super::view::View;
+
+impl<S: Scalar> View<S> {
+    /// The view with lengths in a unit of `metres`: offsets and gravity divided by it, masses m times its square, moments h times it; second moments, kg·m², stay.
+    ///
+    /// Where no joint moves an origin ([`no_joint_moves_origin`]), torques, M(q), energies and what follows from them are those of the robot itself: lengths are
+    /// inside only. What is one in the unit takes no multiplication ([`View::units`]). Frames are not kept.
+    ///
+    /// # Panics
+    /// If an effect acts on a body: it would measure in metres still.
+    #[must_use]
+    pub fn in_unit_of(&self, metres: S) -> Self {
+        let mut view = self.clone();
+        let model = &mut view.model;
+        model.frames.clear();
+        model.gravity = model.gravity.map(|x| x / metres);
+        for body in &mut model.bodies {
+            assert!(body.effects.body.is_empty(), "an effect on {}", body.name);
+            body.placement.position = body.placement.position.map(|x| x / metres);
+        }
+        for inertia in model.bodies.iter_mut().map(|body| &mut body.inertia).chain(&mut view.formulation.torque_inertias) {
+            inertia.mass = inertia.mass * metres * metres;
+            inertia.first *= metres;
+        }
+        view
+    }
+}
+
+/// Whether no coordinate, rate or force of a joint has a length in it.
+pub fn no_joint_moves_origin<S: Scalar>(model: &Model<S>) -> bool {
+    model.outward().all(|i| !model.bodies[i].joint.moves_origin())
+}
+
+impl View<f64> {
+    /// Units of length, m, in which some constant is one: the lever of a joint on a moving body along an axis, gravity along one, a body's moment h along one, a mass. Each unit once, in this order.
+    pub fn units(&self) -> Vec<f64> {
+        let model = &self.model;
+        let levers = model.outward().map(|i| &model.bodies[i]).filter(|body| body.parent != 0).map(|body| body.placement.position);
+        let moments = model.outward().map(|i| self.torque_inertia(i).first.map(|h| 1.0 / h));
+        let masses = model.outward().map(|i| Vector3::x() / self.torque_inertia(i).mass.sqrt());
+        let mut units = Vec::new();
+        for unit in levers.chain([model.gravity]).chain(moments).chain(masses).flat_map(|v| [v.x, v.y, v.z]).map(f64::abs) {
+            if unit > 0.0 && unit.is_finite() && !units.contains(&unit) {
+                units.push(unit);
+            }
+        }
+        units
+    }
+}

@@ -1,0 +1,73 @@
+//! The generator's view of a robot.
+
+use articulated_core::Scalar;
+use articulated_core::algorithm::{Formulation, FrameRotation, Function, FunctionError, Way, Workspace};
+use articulated_core::model::{Body, Model};
+use articulated_core::spatial::SpatialInertia;
+
+/// A robot as the generator traces it.
+#[derive(Clone, Debug)]
+pub struct View<S> {
+    /// The model. With the rotations of the formulation it has the torques of the robot; by itself its revolute joints count their angles from elsewhere.
+    pub model: Model<S>,
+    /// How the algorithms compute on it.
+    pub formulation: Formulation<S>,
+}
+
+impl<S: Scalar> View<S> {
+    /// Of a model as it is.
+    pub fn new(model: Model<S>) -> Self {
+        let rotations = vec![FrameRotation::of_joint(); model.bodies.len()];
+        Self { model, formulation: Formulation { rotations, ..Formulation::default() } }
+    }
+
+    /// A workspace for calls of functions on the view's model.
+    pub fn workspace(&self) -> Workspace<S> {
+        Workspace::with_formulation(&self.model, self.formulation.clone())
+    }
+
+    /// Evaluates a function in one of its ways. Errors: as [`Function::call_by`].
+    pub fn call_by(&self, function: &Function<S>, way: &Way<S>, arguments: &[&[S]], out: &mut [S]) -> Result<(), FunctionError> {
+        function.call_by(way, &self.model, &mut self.workspace(), arguments, out)
+    }
+
+    /// What the view has of body `i`, with `f` of each constant, always in the same order.
+    pub(crate) fn map_body<T: Scalar>(&self, i: usize, f: impl Fn(S) -> T + Copy) -> BodyView<T> {
+        let body = self.model.bodies[i].map(f);
+        let rotation = self.formulation.rotations[i].map(f);
+        BodyView { body, rotation, torque_inertia: self.formulation.torque_inertias.get(i).map(|inertia| inertia.map(f)) }
+    }
+
+    /// Replaces what the view has of body `i`.
+    pub(crate) fn set_body(&mut self, i: usize, of: BodyView<S>) {
+        self.model.bodies[i] = of.body;
+        self.formulation.rotations[i] = of.rotation;
+        if let (Some(to), Some(inertia)) = (self.formulation.torque_inertias.get_mut(i), of.torque_inertia) {
+            *to = inertia;
+        }
+    }
+
+    /// Whether the frame of body `i` rotates with its joint.
+    pub fn rotates(&self, i: usize) -> bool {
+        !self.formulation.rotations[i].share.is_zero()
+    }
+
+    /// Mass properties of body `i` for inverse dynamics.
+    pub(super) fn torque_inertia(&self, i: usize) -> &SpatialInertia<S> {
+        self.formulation.torque_inertias.get(i).unwrap_or(&self.model.bodies[i].inertia)
+    }
+}
+
+/// What a view has of one body.
+pub(crate) struct BodyView<S> {
+    body: Body<S>,
+    rotation: FrameRotation<S>,
+    torque_inertia: Option<SpatialInertia<S>>,
+}
+
+impl View<f64> {
+    /// The same with constants in another scalar.
+    pub fn cast<T: Scalar>(&self) -> View<T> {
+        View { model: self.model.cast(), formulation: self.formulation.map(T::from_f64) }
+    }
+}
