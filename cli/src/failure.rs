@@ -58,11 +58,6 @@ impl Failure {
         Self { status: TOOL, errors: vec![error.to_string().into()], reported: false }
     }
 
-    /// The message of each of them.
-    pub(crate) fn messages(&self) -> impl Iterator<Item = &str> {
-        self.errors.iter().map(|error| error.message.as_str())
-    }
-
     /// Whether a tool failed.
     pub(crate) fn is_of_tool(&self) -> bool {
         self.status == TOOL

@@ -11,6 +11,7 @@ mod diagnostic;
 mod edits;
 mod effects;
 mod eval;
+mod excerpt;
 pub mod failure;
 mod functions;
 mod generate;

@@ -3,7 +3,7 @@
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Function, Needs};
-use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Span, Spanned};
+use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Spanned};
 use articulated_core::model::Model;
 use articulated_scene::BuiltRobot;
 
@@ -61,7 +61,7 @@ fn words(options: &Options, log: &mut Diagnostics) -> Vec<Entry> {
     let read = |(k, text): (usize, &Spanned<String>)| match FunctionSpec::parse(text) {
         Ok(function) => Some((k, function)),
         Err(error) => {
-            log.push(placed(error, text));
+            log.push(error.at(text));
             None
         }
     };
@@ -84,16 +84,10 @@ pub fn check_names(request: &Request, robot: &BuiltRobot, log: &mut Diagnostics)
     let model = if frames_are_known { robot.framed(robot.model.clone()) } else { robot.model.clone() };
     for (k, function) in &entries {
         if let Err(error) = function.check(&model) {
-            log.push(placed(error, &request.options.functions[*k]));
+            log.push(error.at(&request.options.functions[*k]));
         }
     }
     request.options.target.check_names(&model, request, log);
-}
-
-/// A finding at the place of an entry, if a file gives it.
-pub(crate) fn placed<T>(finding: Diagnostic, entry: &Spanned<T>) -> Diagnostic {
-    let span = entry.span.clone().unwrap_or_else(|| finding.span.clone());
-    Diagnostic { span, ..finding }
 }
 
 /// The functions that the robot has, each with a name of its own.
@@ -104,7 +98,7 @@ fn fitting(request: &Request, model: &Model<f64>, massless: &[String], entries: 
         let checked = function.check(model).and_then(|()| defined()).and_then(|()| own_name(&function, &fitting));
         match checked {
             Ok(()) => fitting.push((k, function)),
-            Err(error) => log.push(placed(error, &request.options.functions[k])),
+            Err(error) => log.push(error.at(&request.options.functions[k])),
         }
     }
     fitting
@@ -178,11 +172,6 @@ pub fn defined<S: Scalar>(file: &str, model: &Model<f64>, massless: &[String], f
 pub fn undefined(findings: &Diagnostics) -> Option<&str> {
     let lacks = |d: &Diagnostic| matches!(d.code, Code::SingularMassMatrix | Code::NoMass | Code::BoundFrames | Code::TooMuchCode);
     findings.errors.first().filter(|_| findings.errors.iter().all(lacks)).map(|first| first.found.as_str())
-}
-
-/// The place of an entry, or of the request's file.
-pub(crate) fn span_of<T>(entry: Option<&Spanned<T>>, file: &str) -> Span {
-    entry.and_then(|entry| entry.span.clone()).unwrap_or_else(|| Span { file: file.to_owned(), ..Span::default() })
 }
 
 #[cfg(test)]

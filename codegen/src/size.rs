@@ -6,7 +6,6 @@
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 use articulated_core::model::Model;
 
-use crate::plan::{Entry, placed};
 use crate::spec::{FunctionSpec, FunctionTerm};
 use crate::{Options, Request, program};
 
@@ -110,9 +109,10 @@ fn megabytes(wanted: &FunctionSpec, model: &Model<f64>, tree: &Tree, options: &O
 
 /// Reports a request for more code than its limit: an error for each of the largest functions,
 /// without which the rest is within it.
-pub(crate) fn within_limit(request: &Request, model: &Model<f64>, entries: &[Entry], log: &mut Diagnostics) {
+pub(crate) fn within_limit(request: &Request, model: &Model<f64>, entries: &[(usize, FunctionSpec)], log: &mut Diagnostics) {
     let (options, tree) = (&request.options, Tree::of(model));
-    let mut sizes: Vec<(&Entry, f64)> = entries.iter().map(|entry| (entry, megabytes(&entry.1, model, &tree, options))).collect();
+    let mut sizes: Vec<(&(usize, FunctionSpec), f64)> =
+        entries.iter().map(|entry| (entry, megabytes(&entry.1, model, &tree, options))).collect();
     sizes.sort_by(|a, b| b.1.total_cmp(&a.1));
     let most = options.max_code_size as f64;
     let mut rest: f64 = sizes.iter().map(|(_, size)| size).sum();
@@ -130,7 +130,7 @@ pub(crate) fn within_limit(request: &Request, model: &Model<f64>, entries: &[Ent
             library.join(" and ")
         );
         let error = Diagnostic::error(&request.file, (Default::default(), &function.name), Code::TooMuchCode, found, expected);
-        log.push(placed(error, &options.functions[*k]));
+        log.push(error.at(&options.functions[*k]));
     }
 }
 

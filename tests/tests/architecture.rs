@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 const LAYERS: [(&str, &str); 11] = [
     ("articulated-core", "runtime/core"),
     ("articulated-reference", "reference"),
-    ("articulated-formats", "urdf"),
+    ("articulated-formats", "formats"),
     ("articulated-scene", "scene"),
     ("articulated-codegen", "codegen"),
     ("articulated-macros", "macros"),

@@ -4,13 +4,15 @@ use std::fmt::Write;
 
 use super::base::{Base, BaseRow, Felt};
 use super::report::{JointRow, LinkRow, Report};
+use crate::excerpt::Excerpts;
 use crate::robot::named;
 use crate::table::{Table, counted, freedom, number, plain};
 
 pub(super) fn text(report: &Report) -> String {
-    let mut out = String::new();
+    let (mut out, mut excerpts) = (String::new(), Excerpts::default());
     for diagnostic in &report.errors {
         let _ = writeln!(out, "error: {}", plain(&diagnostic.message));
+        out.extend(excerpts.of(diagnostic));
     }
     for line in &report.warning_lines {
         let _ = writeln!(out, "warning: {}", plain(line));

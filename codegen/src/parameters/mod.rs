@@ -23,7 +23,6 @@ use articulated_core::model::Model;
 use articulated_core::spatial::{Placement, SpatialInertia, Vector3};
 use articulated_scene::BuiltRobot;
 
-use crate::plan::placed;
 use crate::{Options, Sym, identifier, nearest};
 
 /// What stays an input.
@@ -72,7 +71,7 @@ pub(crate) fn parse(options: &Options, built: &mut BuiltRobot, log: &mut Diagnos
     for text in &options.parameters {
         let mut wrong = |reason: String| {
             let sentence = format!("`{}`: {reason}", text.trim());
-            log.push(placed(Diagnostic::refusal("", (Default::default(), "parameters"), Code::Parameter, sentence), text));
+            log.push(Diagnostic::refusal("", (Default::default(), "parameters"), Code::Parameter, sentence).at(text));
         };
         let at = parameters.last().map_or(0, |p| p.at + p.nominal.len());
         let mut parameter = match robot.one(text, at) {

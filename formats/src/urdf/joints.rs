@@ -1,6 +1,6 @@
 //! The tag `<joint>`.
 
-use super::hint;
+use super::markup::hint;
 use articulated_core::description::JointKind;
 use articulated_core::diagnostic::{Code, Diagnostics, Place, Subject, quote};
 use articulated_core::suggest::nearest;

@@ -3,7 +3,7 @@
 //! It makes up for where a strict XML reader refuses what the common URDF readers accept (blank lines before the
 //! declaration, prefixes that nobody declared, `--` in a comment), and it bounds what an XML reader allocates.
 
-use articulated_core::diagnostic::Code;
+use articulated_core::diagnostic::{Code, quote};
 const MOST_DEPTH: usize = 256;
 const MOST_ATTRIBUTES: usize = 256;
 const MOST_TAGS: usize = 4 << 20;
@@ -15,6 +15,11 @@ const COLON: char = '\u{b7}';
 /// A name of the prepared text as the file writes it.
 pub(crate) fn as_written(name: &str) -> String {
     name.replace(COLON, ":")
+}
+
+/// ` (did you mean "upper"?)`, or nothing.
+pub(crate) fn hint(meant: Option<&str>) -> String {
+    meant.map(|name| format!(" (did you mean {}?)", quote(name))).unwrap_or_default()
 }
 
 /// Why a text is refused at first sight.

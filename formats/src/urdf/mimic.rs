@@ -1,6 +1,6 @@
 //! Which joint follows which.
 
-use super::hint;
+use super::markup::hint;
 use articulated_core::diagnostic::{Code, Diagnostics, Place, quote};
 use std::collections::HashMap;
 

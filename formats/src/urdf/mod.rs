@@ -63,7 +63,7 @@ mod xacro;
 use articulated_core::description::{Base, Description};
 #[cfg(doc)]
 use articulated_core::diagnostic::Code;
-use articulated_core::diagnostic::{Diagnostics, quote};
+use articulated_core::diagnostic::Diagnostics;
 
 #[cfg(feature = "urdf-rs")]
 pub use conversion::{ConversionError, from_urdf_rs, to_urdf_rs};
@@ -113,9 +113,4 @@ fn draft(bytes: &[u8], options: &Options, log: &mut Diagnostics) -> Option<draft
         return None;
     }
     Some(robot::draft(&robot, options, log))
-}
-
-/// ` (did you mean "upper"?)`, or nothing.
-fn hint(meant: Option<&str>) -> String {
-    meant.map(|name| format!(" (did you mean {}?)", quote(name))).unwrap_or_default()
 }

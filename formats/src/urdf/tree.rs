@@ -1,6 +1,6 @@
 //! Names become indices, and joints a tree. Nothing here recurses: chains may be as long as they like.
 
-use super::hint;
+use super::markup::hint;
 use articulated_core::diagnostic::{At, Code, Diagnostics, Place, Subject, quote};
 use std::collections::HashMap;
 

@@ -333,7 +333,7 @@ fn what_a_robot_cannot_have_is_said_when_it_is_built() {
     let is = |error: &Diagnostics, code: Code| error.errors.len() == 1 && error.errors[0].code == code;
     assert!(is(&error, Code::TooLarge) && error.to_string().contains("found 10001 degrees of freedom, expected at most 10000"), "{error}");
     let error = refusal(URDF, &asks(&["operational_space_inertia"]));
-    assert!(is(&error, Code::BoundFrames) && error.to_string().matches(" (").count() == 4 + 1, "{error}");
+    assert!(is(&error, Code::BoundFrames) && error.to_string().matches("link \"").count() == 4, "{error}");
     assert!(error.to_string().contains("link \"tool\" (3)"), "{error}");
     let error = refusal("<robot name='stone'><link name='stone'/></robot>", &asks(&["center_of_mass"]));
     assert!(is(&error, Code::NoMass), "{error}");

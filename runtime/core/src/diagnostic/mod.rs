@@ -201,6 +201,12 @@ impl Diagnostic {
         Self { severity: Severity::Warning, ..self }
     }
 
+    /// The same finding at the place of an entry, if a file gives it.
+    #[must_use]
+    pub fn at<T>(self, entry: &Spanned<T>) -> Self {
+        Self { span: entry.span.clone().unwrap_or(self.span), ..self }
+    }
+
     /// The same finding with a hint, if there is one.
     #[must_use]
     pub fn with_hint(self, hint: Option<String>) -> Self {

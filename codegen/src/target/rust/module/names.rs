@@ -3,13 +3,12 @@
 use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
 
-use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Spanned};
+use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Span, Spanned};
 use articulated_core::model::Model;
 use unicode_security::GeneralSecurityProfile;
 use unicode_security::confusable_detection::skeleton;
 use unicode_security::mixed_script::{AugmentedScriptSet, is_potential_mixed_script_confusable_char};
 
-use crate::plan::span_of;
 use crate::{Request, is_keyword};
 
 /// The constant's name for a name of the URDF: letters in upper case, everything that cannot be in an identifier as `_`, `_` in front of a
@@ -158,7 +157,7 @@ fn clash(kind: &str, [first, second]: [&String; 2], ident: &str, request: &Reque
         Some(entry) => (format!("rename.{}", entry.0), format!("{both}; give one another name")),
         None => (String::new(), format!("{both}; `--rename` (key `rename`, method `Build::rename`) gives one another name")),
     };
-    let span = span_of(entry, &request.file);
+    let span = entry.map_or_else(|| Span { file: request.file.clone(), ..Span::default() }, |entry| entry.span_or(&request.file));
     Diagnostic::refusal(&span.file, (span.at, &key), Code::NameClash, sentence)
 }
 
@@ -183,7 +182,7 @@ fn wrong_renames(model: &Model<f64>, request: &Request, log: &mut Diagnostics) {
                 Some(_) => (format!("rename.{from}"), format!("to `{to}`: {reason}")),
                 None => (String::new(), format!("rename {from:?} to `{to}`: {reason}")),
             };
-            let span = span_of(Some(entry), &request.file);
+            let span = entry.span_or(&request.file);
             log.push(Diagnostic::refusal(&span.file, (span.at, &key), Code::Rename, sentence));
         }
     }
