@@ -7,7 +7,7 @@ use articulated_core::description::Base;
 use articulated_scene::{Bundled, Scene, open_in};
 use libfuzzer_sys::fuzz_target;
 
-const ARM: Bundled<'static> = Bundled { name: "ur5_like", urdf: include_str!("../../models/urdf/ur5_like.urdf"), base: Base::Fixed };
+const ARM: Bundled<'static> = Bundled { name: "ur5_like", document: include_str!("../../models/urdf/ur5_like.urdf"), base: Base::Fixed };
 
 fuzz_target!(|bytes: &[u8]| {
     let scene = match Scene::read_bytes("scene.toml", bytes) {
