@@ -15,7 +15,7 @@ fuzz_target!(|bytes: &[u8]| {
         Err(errors) => return assert!(!errors.errors.is_empty() && !errors.to_string().is_empty()),
     };
     // Files that a scene names are nowhere.
-    if let Err(error) = open_in(scene, Path::new("nowhere"), &[ARM]).and_then(|opened| opened.settle()) {
+    if let Err(error) = open_in(scene, Path::new("nowhere"), &[ARM]).and_then(|opened| opened.build()) {
         assert!(!error.to_string().is_empty());
     }
 });
