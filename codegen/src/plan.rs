@@ -137,7 +137,7 @@ pub fn defined<S: Scalar>(file: &str, model: &Model<f64>, massless: &[String], f
     let name = function.name;
     let lacks = |code, found: String, expected: &str| Err(Diagnostic::error(file, (Default::default(), name), code, found, expected));
     if function.needs == Needs::Mass && model.moving_mass() == 0.0 {
-        return lacks(Code::NoMass, "nothing that moves has mass".into(), "a link with mass that moves");
+        return lacks(Code::NoMass, "no moving link with mass".into(), "a link with mass that moves");
     }
     if function.inverts_mass_matrix() && !massless.is_empty() {
         let found = format!("no inertia of its own for joint {}", massless.join(", joint "));
@@ -164,7 +164,7 @@ pub fn defined<S: Scalar>(file: &str, model: &Model<f64>, massless: &[String], f
         }
         false => "six for each frame, which no link of this robot has; take operational_space_inertia_inverse",
     };
-    lacks(Code::BoundFrames, format!("fewer than six degrees of freedom carry {}", frames.join(", ")), expected)
+    lacks(Code::BoundFrames, format!("fewer than six degrees of freedom for {}", frames.join(", ")), expected)
 }
 
 /// What a robot lacks for a function, in a few words, if that alone is wrong.

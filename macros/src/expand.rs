@@ -4,7 +4,7 @@ use std::env;
 use std::path::{Path, PathBuf};
 
 use articulated_codegen::diagnostic::{At, Code, Diagnostic, Diagnostics, Span, summary};
-use articulated_codegen::scene::articulated_scene::{Loader, Robot, Scene, folder_of};
+use articulated_codegen::scene::articulated_scene::{Loader, Robot, Scene, beside, folder_of};
 use articulated_codegen::{Generated, Request, check_words, scene};
 use proc_macro2::{Span as Word, TokenStream};
 use quote::{quote, quote_spanned};
@@ -144,7 +144,7 @@ impl Settings {
         match finding.span.at {
             At::Word(_) => self.places.error(finding.span.at, finding.message()),
             _ if finding.file() == scene.file => self.places.error(self.at_scene(), finding),
-            _ => self.places.error(self.at_robot(scene), finding),
+            _ => self.places.error(self.at_append(finding.file(), scene).unwrap_or_else(|| self.at_robot(scene)), finding),
         }
     }
 
@@ -152,6 +152,13 @@ impl Settings {
     fn at_robot(&self, scene: &Scene) -> At {
         let at = scene.code.places.robot;
         if matches!(at, At::Word(_)) { at } else { self.at_scene() }
+    }
+
+    /// Where a robot to append is named, in the invocation or in the scene.
+    fn at_append(&self, file: &str, scene: &Scene) -> Option<At> {
+        let is_named = |at: At, name: &str| file == name || !matches!(at, At::Word(_)) && file == beside(&scene.file, name);
+        let at = scene.code.append.iter().find(|other| is_named(other.place, &other.file))?.place;
+        Some(if matches!(at, At::Word(_)) { at } else { self.at_scene() })
     }
 
     fn at_scene(&self) -> At {

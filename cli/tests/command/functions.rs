@@ -26,7 +26,7 @@ fn every_function_has_its_cost_or_the_reason_why_not() {
     assert_eq!(text.status, 0, "{}", text.err);
     for part in [
         "not defined: no inertia of its own for joint turn",
-        "not defined: nothing that moves has mass",
+        "not defined: no moving link with mass",
         "not defined: fewer than six",
         "– (3)",
     ] {
