@@ -49,7 +49,7 @@ impl Diagnostic {
     }
 
     /// The same message as a warning.
-    pub(crate) fn as_warning(self) -> Self {
+    pub(crate) fn into_warning(self) -> Self {
         Self { severity: "warning", ..self }
     }
 }

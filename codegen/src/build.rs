@@ -360,7 +360,7 @@ fn file_in(folder: &Path, name: &str) -> Result<PathBuf, Diagnostics> {
 
 /// A file that cannot be written.
 fn file_error(name: &str, reason: impl Into<String>) -> Diagnostics {
-    Diagnostic::refusal(name, &Place::DOCUMENT, Code::File, reason).into()
+    Diagnostic::refusal(name, Place::DOCUMENT, Code::File, reason).into()
 }
 
 /// Files of the crate that the build script belongs to.

@@ -157,7 +157,7 @@ fn long_code(file: &str, entry: &ledger::Entry) -> Option<Diagnostic> {
     let instructions = entry.emitted().instructions();
     let found = format!("{instructions} instructions, for which a compiler takes minutes");
     let expected = "the library's function of the same name, a loop over the joints, for a robot like this";
-    let warning = || Diagnostic::error(file, (Default::default(), &entry.function), Code::LongCode, found, expected).as_warning();
+    let warning = || Diagnostic::error(file, (Default::default(), &entry.function), Code::LongCode, found, expected).into_warning();
     (instructions > LONG).then(warning)
 }
 
@@ -170,14 +170,14 @@ pub fn function(name: &str) -> Result<&'static Function<Sym>, Diagnostic> {
         if name == function_groups::MOTION {
             let sentence =
                 format!("`{name}`: it stands for what the motion of a scene calls, by itself in a list: found no scene with [simulation]");
-            return Diagnostic::refusal("", &Place::DOCUMENT, Code::FunctionSpec, sentence);
+            return Diagnostic::refusal("", Place::DOCUMENT, Code::FunctionSpec, sentence);
         }
         // In a sum of functions a group is none of them.
         let groups = Group::ALL.map(Group::name).into_iter().filter(|_| Group::named(name).is_none());
         let known: Vec<&str> = functions::<Sym>().iter().map(|f| f.name).chain(groups).collect();
         let nearest = meant(name, known.iter().copied());
         let rest = nearest.map_or_else(|| format!("there are: {}", known.join(", ")), |nearest| format!("did you mean `{nearest}`?"));
-        Diagnostic::refusal("", &Place::DOCUMENT, Code::UnknownFunction, format!("unknown function `{name}`, {rest}"))
+        Diagnostic::refusal("", Place::DOCUMENT, Code::UnknownFunction, format!("unknown function `{name}`, {rest}"))
     })
 }
 

@@ -36,7 +36,7 @@ pub(crate) fn plan(request: &Request, log: &mut Diagnostics) -> Option<Plan> {
     if robot.model.nv > MOST_FREEDOMS {
         let expected = format!("at most {MOST_FREEDOMS} to write code for");
         let found = format!("{} degrees of freedom", robot.model.nv);
-        log.push(Diagnostic::error(&request.file, &Place::DOCUMENT, Code::TooLarge, found, expected));
+        log.push(Diagnostic::error(&request.file, Place::DOCUMENT, Code::TooLarge, found, expected));
         return None;
     }
     // Mass that stays an input is mass all the same.

@@ -27,7 +27,7 @@ impl Format for Tiny {
         let table: Table = match text.parse() {
             Ok(table) => table,
             Err(error) => {
-                diagnostics.error(&Place::DOCUMENT, Code::Syntax, error.message(), "");
+                diagnostics.error(Place::DOCUMENT, Code::Syntax, error.message(), "");
                 return None;
             }
         };
@@ -42,7 +42,7 @@ impl Format for Tiny {
             let found = (end("parent"), end("child"));
             let (Some(parent), Some(child)) = found else {
                 let place = Place { at: At::Nowhere, subject: &Subject::Joint(name), field: "parent" };
-                diagnostics.error(&place, Code::UnknownLink, "a link that does not exist", "the name of a link");
+                diagnostics.error(place, Code::UnknownLink, "a link that does not exist", "the name of a link");
                 return None;
             };
             let origin = Origin { xyz: numbers(joint, "xyz"), ..Origin::default() };
@@ -67,7 +67,7 @@ fn read_link(link: &Table, diagnostics: &mut Diagnostics) -> Link {
     let mass = link.get("mass").and_then(Value::as_float);
     if mass.is_some_and(|mass| mass < 0.0) {
         let place = Place { at: At::Nowhere, subject: &Subject::Link(name.clone()), field: "mass" };
-        diagnostics.error(&place, Code::NegativeMass, "a negative mass", "a mass of at least 0 kg");
+        diagnostics.error(place, Code::NegativeMass, "a negative mass", "a mass of at least 0 kg");
     }
     let origin = Origin { xyz: numbers(link, "com"), ..Origin::default() };
     let inertial = mass.map(|mass| Inertial { origin, mass, inertia: numbers(link, "inertia") });

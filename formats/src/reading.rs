@@ -72,7 +72,7 @@ pub fn read_with(sources: &dyn Sources, bytes: &[u8], options: &Options) -> Resu
     let mut log = Diagnostics::new(&options.file);
     snap::check(options.snap_angles, &mut log);
     let Some(format) = options.formats.of(&options.file, bytes) else {
-        log.error(&Place::DOCUMENT, Code::Unsupported, quote(&options.file), "a robot; there are no formats to read it in");
+        log.error(Place::DOCUMENT, Code::Unsupported, quote(&options.file), "a robot; there are no formats to read it in");
         return Err(log);
     };
     match format.read(&Input { bytes, options, sources }, &mut log) {

@@ -20,7 +20,7 @@ pub fn can_snap(tolerance: f64) -> bool {
 pub(crate) fn check(asked: Option<f64>, log: &mut Diagnostics) {
     if let Some(tolerance) = asked.filter(|tolerance| !can_snap(*tolerance)) {
         let place = Place { field: "snap_angles", ..Place::DOCUMENT };
-        log.error(&place, Code::SnapAngles, format!("{tolerance}"), SNAP_EXPECTED);
+        log.error(place, Code::SnapAngles, format!("{tolerance}"), SNAP_EXPECTED);
     }
 }
 

@@ -281,7 +281,7 @@ fn put(one: &Named, key: &str, model: &Model<f64>, side: Side, into: &mut [f64],
     match one.values.len() {
         found if found == count => into[first..first + count].copy_from_slice(&one.values),
         found => {
-            log.error((one.place, &key), Code::Number, counted(found), format!("{} for a {} joint", counted(count), joint.kind.name()))
+            log.error((one.place, &key), Code::Number, counted(found), format!("{} for a {} joint", counted(count), joint.kind.name()));
         }
     }
 }

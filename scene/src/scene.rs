@@ -104,13 +104,13 @@ pub struct CodeOptions {
 pub struct Places {
     /// A bundled robot, or a URDF.
     pub robot: At,
-    /// Of [`Code::functions`].
+    /// Of [`CodeOptions::functions`].
     pub functions: Vec<At>,
-    /// Of [`Code::parameters`].
+    /// Of [`CodeOptions::parameters`].
     pub parameters: Vec<At>,
-    /// Of [`Code::frames`].
+    /// Of [`CodeOptions::frames`].
     pub frames: Vec<At>,
-    /// Of [`Code::rename`].
+    /// Of [`CodeOptions::rename`].
     pub rename: Vec<At>,
 }
 

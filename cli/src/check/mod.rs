@@ -46,7 +46,7 @@ fn examine(robot: &Robot, scene: Option<&Path>, functions: &[String]) -> Report 
     }
     // Joints may be locked beside the scene: its motion is that of the scene alone.
     match scene.map(crate::simulate::motion::look_over) {
-        Some(Ok(odd)) => odd.into_iter().for_each(|line| report.warn(Diagnostic::from(line).as_warning())),
+        Some(Ok(odd)) => odd.into_iter().for_each(|line| report.warn(Diagnostic::from(line).into_warning())),
         Some(Err(failure)) => report.errors.extend(failure.errors),
         None => {}
     }
@@ -65,7 +65,7 @@ fn describe(robot: &Robot, built: &BuiltRobot, report: &mut Report) {
     for finding in &findings.errors {
         // Names that are one in code are in the way of code alone.
         match finding.code {
-            Code::NameClash => report.warn(Diagnostic::of(finding).as_warning()),
+            Code::NameClash => report.warn(Diagnostic::of(finding).into_warning()),
             _ => report.errors.push(Diagnostic::of(finding)),
         }
     }

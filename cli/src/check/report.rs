@@ -167,7 +167,7 @@ impl Report {
                 Diagnostic::from(format!(
                     "{file}: more than {MANY} bodies: whether every joint has an inertia of its own was not looked at"
                 ))
-                .as_warning(),
+                .into_warning(),
             );
         }
         for body in model.massless_joints() {

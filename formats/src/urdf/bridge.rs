@@ -27,7 +27,7 @@ pub(crate) fn compare(found: &Description, draft: &Draft, tree: &Tree, leaders: 
 
 fn internal(found: String, log: &mut Diagnostics) {
     let expected = "two readers that agree; this is a mistake of articulated-formats: please report it";
-    log.error(&Place::DOCUMENT, Code::Internal, found, expected);
+    log.error(Place::DOCUMENT, Code::Internal, found, expected);
 }
 
 /// Adds what `urdf-rs` read from a piece. The names are the draft's: the piece has indices in their place.

@@ -50,12 +50,12 @@ fn shape(geometry: &Tag<'_>, log: &mut Diagnostics) -> Option<CollisionShape> {
             0 => (Code::MissingTag, "no shape".to_owned()),
             count => (Code::DuplicateTag, format!("{count} shapes")),
         };
-        log.error(&geometry.place("geometry"), kind, found, EXPECTED_SHAPE);
+        log.error(geometry.place("geometry"), kind, found, EXPECTED_SHAPE);
         return None;
     };
     let name = tag.name();
     let Some((_, attributes)) = SHAPES.iter().find(|(known, _)| *known == name) else {
-        log.error(&tag.place("geometry"), Code::Unsupported, format!("<{name}>"), EXPECTED_SHAPE);
+        log.error(tag.place("geometry"), Code::Unsupported, format!("<{name}>"), EXPECTED_SHAPE);
         return None;
     };
     unused::rest(&tag, &[], attributes, log);
@@ -77,7 +77,7 @@ fn sizes<const N: usize>(tag: &Tag<'_>, name: &str, log: &mut Diagnostics) -> Op
     let sizes = number::attribute_list(tag, name, log)?;
     if sizes.iter().any(|size| *size < 0.0) {
         let field = format!("{} {name}", tag.name());
-        log.error(&tag.place(&field), Code::Negative, format!("a negative size in {}", quote(text)), "sizes of at least 0 m");
+        log.error(tag.place(&field), Code::Negative, format!("a negative size in {}", quote(text)), "sizes of at least 0 m");
         return None;
     }
     Some(sizes)

@@ -12,7 +12,7 @@ use crate::files::MOST_BYTES;
 pub(crate) fn text(bytes: &[u8], log: &mut Diagnostics) -> Option<String> {
     if bytes.len() as u64 > MOST_BYTES {
         let found = format!("{} bytes", bytes.len());
-        log.error(&Place::DOCUMENT, Code::TooLarge, found, format!("at most {MOST_BYTES} bytes"));
+        log.error(Place::DOCUMENT, Code::TooLarge, found, format!("at most {MOST_BYTES} bytes"));
         return None;
     }
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
@@ -21,7 +21,7 @@ pub(crate) fn text(bytes: &[u8], log: &mut Diagnostics) -> Option<String> {
         Ok(text) => Some(text),
         Err(fault) => {
             let place = Place { at: line_of(bytes, fault.position), ..Place::DOCUMENT };
-            log.error(&place, fault.kind, fault.found, fault.expected);
+            log.error(place, fault.kind, fault.found, fault.expected);
             None
         }
     }
@@ -37,7 +37,7 @@ fn utf8<'a>(bytes: &'a [u8], log: &mut Diagnostics) -> Option<&'a str> {
         _ => format!("byte 0x{:02x}, which is not UTF-8", bytes.get(fault).copied().unwrap_or_default()),
     };
     let place = Place { at: line_of(bytes, fault), ..Place::DOCUMENT };
-    log.error(&place, Code::NotUtf8, found, "a file in the encoding UTF-8");
+    log.error(place, Code::NotUtf8, found, "a file in the encoding UTF-8");
     None
 }
 
@@ -50,7 +50,7 @@ pub(crate) fn parse<'a>(text: &'a str, lines: &Lines<'_>, log: &mut Diagnostics)
     let place = Place { at: line_of_fault(&fault, lines), field: "XML", ..Place::DOCUMENT };
     // The column is that of the prepared text: left out.
     let found = fault.to_string().replace(&format!(" at {}", fault.pos()), "");
-    log.error(&place, Code::Xml, markup::as_written(&found), "a well-formed XML document");
+    log.error(place, Code::Xml, markup::as_written(&found), "a well-formed XML document");
     None
 }
 
@@ -69,6 +69,6 @@ pub(crate) fn robot<'a>(document: &'a Document<'a>, lines: &'a Lines<'a>, log: &
     }
     let place = root.place("");
     let found = format!("the root element {}", quote(&root.name()));
-    log.error(&place, Code::NotARobot, found, "the root element <robot>");
+    log.error(place, Code::NotARobot, found, "the root element <robot>");
     None
 }

@@ -111,9 +111,9 @@ impl<'a> Tag<'a> {
             let expected = format!("one <{name}> inside <{}>", self.name());
             if again.says_the_same(&first) {
                 let found = format!("a second <{name}>, equal to the first in line {line}");
-                log.warning(&place, kind, found, format!("{expected}; used once"));
+                log.warning(place, kind, found, format!("{expected}; used once"));
             } else {
-                log.error(&place, kind, format!("a second <{name}> (the first is in line {line})"), expected);
+                log.error(place, kind, format!("a second <{name}> (the first is in line {line})"), expected);
             }
         }
         Some(first)
@@ -140,7 +140,7 @@ impl<'a> Tag<'a> {
         let tag = self.only(name, log);
         if tag.is_none() {
             let expected = format!("<{name}> inside <{}>", self.name());
-            log.error(&self.place(name), Code::MissingTag, "none", expected);
+            log.error(self.place(name), Code::MissingTag, "none", expected);
         }
         tag
     }
@@ -150,7 +150,7 @@ impl<'a> Tag<'a> {
         let value = self.attribute(name);
         if value.is_none() {
             let expected = format!("the attribute {name} in <{}>", self.name());
-            log.error(&self.place(name), Code::MissingAttribute, "none", expected);
+            log.error(self.place(name), Code::MissingAttribute, "none", expected);
         }
         value
     }
@@ -160,13 +160,13 @@ impl<'a> Tag<'a> {
         let (name, at) = self.required_attribute(attribute, log)?;
         if name.trim().is_empty() {
             let place = Place { at, ..self.place(attribute) };
-            log.error(&place, Code::EmptyName, "an empty name", "a name");
+            log.error(place, Code::EmptyName, "an empty name", "a name");
             return None;
         }
         if name.len() > MOST_NAME {
             let place = Place { at, ..self.place(attribute) };
             let found = format!("a name of {} bytes", name.len());
-            log.error(&place, Code::TooLarge, found, format!("at most {MOST_NAME}"));
+            log.error(place, Code::TooLarge, found, format!("at most {MOST_NAME}"));
             return None;
         }
         Some(name.to_owned())

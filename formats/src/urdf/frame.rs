@@ -51,11 +51,11 @@ fn quaternion(tag: &Tag<'_>, version: Version, log: &mut Diagnostics) -> Option<
     let place = tag.place("origin quat_xyzw");
     if version < Version::V1_1 {
         let expected = "rpy, or <robot version=\"1.1\">: older versions of the format have no quaternions";
-        log.error(&place, Code::Unsupported, format!("a quaternion, {}", quote(text)), expected);
+        log.error(place, Code::Unsupported, format!("a quaternion, {}", quote(text)), expected);
         return None;
     }
     if tag.attribute("rpy").is_some() {
-        log.error(&place, Code::TwoRotations, "a quaternion beside rpy", "one of both");
+        log.error(place, Code::TwoRotations, "a quaternion beside rpy", "one of both");
         return None;
     }
     let quaternion = quaternion?;
@@ -63,11 +63,11 @@ fn quaternion(tag: &Tag<'_>, version: Version, log: &mut Diagnostics) -> Option<
     let norm = size * quaternion.iter().map(|x| (x / size) * (x / size)).sum::<f64>().sqrt();
     let off = (norm - 1.0).abs();
     if off > NORM {
-        log.error(&place, Code::QuaternionNorm, format!("the norm {norm}"), format!("1, within {NORM}"));
+        log.error(place, Code::QuaternionNorm, format!("the norm {norm}"), format!("1, within {NORM}"));
         return None;
     }
     if off > ROUNDED {
-        log.warning(&place, Code::QuaternionNorm, format!("the norm {norm}"), format!("1, within {ROUNDED}; used as if it were 1"));
+        log.warning(place, Code::QuaternionNorm, format!("the norm {norm}"), format!("1, within {ROUNDED}; used as if it were 1"));
     }
     Some(quaternion)
 }
@@ -88,7 +88,7 @@ const TURN: f64 = 1.001 * TAU;
 fn warn_of_turns(tag: &Tag<'_>, rpy: [f64; 3], log: &mut Diagnostics) {
     if let Some(angle) = rpy.into_iter().find(|angle| angle.abs() > TURN) {
         let expected = "rad, of which 90° are 1.5707963267948966; used as written";
-        log.warning(&tag.place("origin rpy"), Code::MoreThanATurn, format!("{angle}, more than a turn"), expected);
+        log.warning(tag.place("origin rpy"), Code::MoreThanATurn, format!("{angle}, more than a turn"), expected);
     }
 }
 
@@ -98,7 +98,7 @@ const FAR: f64 = 100.0;
 fn warn_of_lengths(tag: &Tag<'_>, xyz: [f64; 3], log: &mut Diagnostics) {
     if let Some(length) = xyz.into_iter().find(|length| length.abs() >= FAR) {
         let expected = "m, of which 1 mm is 0.001; used as written";
-        log.warning(&tag.place("origin xyz"), Code::Units, format!("{length} m, more than any link is long"), expected);
+        log.warning(tag.place("origin xyz"), Code::Units, format!("{length} m, more than any link is long"), expected);
     }
 }
 

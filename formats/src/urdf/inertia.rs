@@ -9,12 +9,12 @@ use super::robot::Context;
 pub(crate) fn check(mass: Option<f64>, inertia: Option<[f64; 6]>, context: &Context<'_>, place: &Place<'_>, log: &mut Diagnostics) {
     let place = |field| Place { field, ..*place };
     if let Some(mass) = mass.filter(|mass| *mass < 0.0) {
-        log.error(&place("mass"), Code::NegativeMass, format!("a negative mass, {mass} kg"), "a mass of zero or more");
+        log.error(place("mass"), Code::NegativeMass, format!("a negative mass, {mass} kg"), "a mass of zero or more");
     }
     let Some(inertia) = inertia else { return };
     if mass == Some(0.0) && inertia.iter().any(|i| *i != 0.0) {
         let found = "a mass of zero with a rotational inertia that is not";
-        log.warning(&place("inertial"), Code::InertiaWithoutMass, found, "both or neither; used as written");
+        log.warning(place("inertial"), Code::InertiaWithoutMass, found, "both or neither; used as written");
     }
     check_moments(mass, inertia, context, &place("inertia"), log);
     check_units(mass, inertia, &place("inertia"), log);

@@ -68,7 +68,7 @@ fn kind(tag: &Tag<'_>, log: &mut Diagnostics) -> Option<JointKind> {
         let hint = hint(elsewhere(name).map(str::to_owned).or_else(|| nearest(name, JointKind::ALL.iter().map(|k| k.name()))).as_deref());
         let expected = format!("{}{hint}", kinds_with(|_| true));
         let place = Place { at, ..tag.place("type") };
-        log.error(&place, Code::UnknownJointType, format!("the type {}", quote(name)), expected);
+        log.error(place, Code::UnknownJointType, format!("the type {}", quote(name)), expected);
     }
     kind
 }
@@ -110,12 +110,7 @@ fn motion(tag: &Tag<'_>, kind: JointKind, version: Version, joint: &mut DraftJoi
             let given = tag.only("axis", log);
             if kind == JointKind::Planar && given.is_none() {
                 // Others take the joint's own x and y for the plane then.
-                log.warning(
-                    &tag.place("axis"),
-                    Code::NoAxis,
-                    "none",
-                    "the normal of the plane: without one it is x, and the plane y and z",
-                );
+                log.warning(tag.place("axis"), Code::NoAxis, "none", "the normal of the plane: without one it is x, and the plane y and z");
             }
             joint.axis = given.and_then(|tag| axis(&tag, log)).unwrap_or(DEFAULT_AXIS);
         }
@@ -140,7 +135,7 @@ fn motion(tag: &Tag<'_>, kind: JointKind, version: Version, joint: &mut DraftJoi
     {
         mimic.unused(log, mimic.name(), "a fixed joint does not move");
         let expected = "none: a fixed joint does not move, and follows no other; ignored";
-        log.warning(&mimic.place("mimic"), Code::UnusedMimic, "<mimic> on a fixed joint", expected);
+        log.warning(mimic.place("mimic"), Code::UnusedMimic, "<mimic> on a fixed joint", expected);
     }
 }
 
@@ -161,7 +156,7 @@ fn axis(tag: &Tag<'_>, log: &mut Diagnostics) -> Option<[f64; 3]> {
         return Some(axis);
     }
     let expected = if size == 0.0 { "a vector that is not zero" } else { "a vector of a length that can be squared, 1e-150 to 1e150" };
-    log.error(&tag.place(&tag.name()), Code::ZeroAxis, shown(axis), expected);
+    log.error(tag.place(&tag.name()), Code::ZeroAxis, shown(axis), expected);
     None
 }
 
@@ -173,7 +168,7 @@ fn warn_of_length(tag: &Tag<'_>, axis: [f64; 3], size: f64, log: &mut Diagnostic
     if (length - 1.0).abs() > UNIT_LENGTH {
         let length = if (1e-3..1e6).contains(&length) { format!("{length:.4}") } else { format!("{length:.3e}") };
         let expected = "a vector of length 1: the length of an axis has no meaning; only its direction is used";
-        log.warning(&tag.place(&tag.name()), Code::AxisLength, format!("{} of length {length}", shown(axis)), expected);
+        log.warning(tag.place(&tag.name()), Code::AxisLength, format!("{} of length {length}", shown(axis)), expected);
     }
 }
 
@@ -190,7 +185,7 @@ fn cross(joint: &Tag<'_>, log: &mut Diagnostics) -> ([f64; 3], [f64; 3]) {
     if sine(first, second) < PARALLEL {
         let found = format!("{}, along the first axis {}", shown(second), shown(first));
         let expected = "a second axis across the first; about one axis, the joint is revolute";
-        log.error(&joint.place("axis2"), Code::ParallelAxes, found, expected);
+        log.error(joint.place("axis2"), Code::ParallelAxes, found, expected);
     }
     (first, second)
 }
@@ -216,7 +211,7 @@ fn pitch(joint: &Tag<'_>, log: &mut Diagnostics) -> Option<f64> {
     let pitch = number::required(&tag, "pitch", log)?;
     if pitch == 0.0 {
         let expected = "metres per revolution; without, the joint is revolute; used as written";
-        log.warning(&tag.place("thread pitch"), Code::ZeroPitch, "zero", expected);
+        log.warning(tag.place("thread pitch"), Code::ZeroPitch, "zero", expected);
     }
     Some(pitch)
 }

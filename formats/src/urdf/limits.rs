@@ -35,7 +35,7 @@ pub(crate) fn limit(joint: &Tag<'_>, kind: JointKind, version: Version, log: &mu
 fn report_missing(joint: &Tag<'_>, kind: JointKind, log: &mut Diagnostics) {
     if kind.has_bounds() {
         let expected = "<limit> for a revolute, helical or prismatic joint; taken as without limits";
-        log.warning(&joint.place("limit"), Code::LimitMissing, "none", expected);
+        log.warning(joint.place("limit"), Code::LimitMissing, "none", expected);
     }
 }
 
@@ -51,16 +51,16 @@ fn bounds(tag: &Tag<'_>, open: bool, log: &mut Diagnostics) -> (f64, f64) {
     let absent = BOUNDS.map(|name| tag.attribute(name).is_none());
     if absent == [true, true] && !open {
         let expected = "lower and upper; taken as zero, as the format has it";
-        log.warning(&tag.place("limit"), Code::LimitIncomplete, "no bounds", expected);
+        log.warning(tag.place("limit"), Code::LimitIncomplete, "no bounds", expected);
     }
     let (lowest, highest) = if open { (f64::NEG_INFINITY, f64::INFINITY) } else { (0.0, 0.0) };
     let (lower, upper) = (lower.unwrap_or(lowest), upper.unwrap_or(highest));
     if lower > upper {
         let found = format!("lower {lower} above upper {upper}");
-        log.warning(&tag.place("limit"), Code::LimitOrder, found, "lower below upper; used as written");
+        log.warning(tag.place("limit"), Code::LimitOrder, found, "lower below upper; used as written");
     } else if lower == upper && absent != [true, true] {
         let expected = "lower below upper: such a joint cannot move; used as written";
-        log.warning(&tag.place("limit"), Code::LimitEqual, format!("lower and upper both {lower}"), expected);
+        log.warning(tag.place("limit"), Code::LimitEqual, format!("lower and upper both {lower}"), expected);
     }
     (lower, upper)
 }
@@ -71,7 +71,7 @@ const DEGREES: RangeInclusive<f64> = 20.0..=1080.0;
 fn warn_of_degrees(tag: &Tag<'_>, kind: JointKind, bound: f64, log: &mut Diagnostics) {
     if kind == JointKind::Revolute && DEGREES.contains(&bound) {
         let found = format!("a bound of {bound}, {:.1} turns", bound / TAU);
-        log.warning(&tag.place("limit"), Code::MoreThanATurn, found, "rad, of which 180° are 3.141592653589793; used as written");
+        log.warning(tag.place("limit"), Code::MoreThanATurn, found, "rad, of which 180° are 3.141592653589793; used as written");
     }
 }
 
@@ -82,12 +82,12 @@ fn positive(tag: &Tag<'_>, name: &str, open: bool, log: &mut Diagnostics) -> f64
             report_negative(tag, &field, value, log);
             if value == 0.0 {
                 let expected = "a value above zero; leave it out where there is no limit; used as written";
-                log.warning(&tag.place(&field), Code::LimitZero, "zero", expected);
+                log.warning(tag.place(&field), Code::LimitZero, "zero", expected);
             }
             value
         }
         None if tag.attribute(name).is_none() && !open => {
-            log.warning(&tag.place(&field), Code::LimitIncomplete, "none", "a value; taken as without limit");
+            log.warning(tag.place(&field), Code::LimitIncomplete, "none", "a value; taken as without limit");
             f64::INFINITY
         }
         None => f64::INFINITY,
@@ -97,7 +97,7 @@ fn positive(tag: &Tag<'_>, name: &str, open: bool, log: &mut Diagnostics) -> f64
 fn report_negative(tag: &Tag<'_>, field: &str, value: f64, log: &mut Diagnostics) {
     if value < 0.0 {
         let expected = "zero or more; used as written";
-        log.warning(&tag.place(field), Code::Negative, format!("a negative value, {value}"), expected);
+        log.warning(tag.place(field), Code::Negative, format!("a negative value, {value}"), expected);
     }
 }
 

@@ -33,7 +33,7 @@ fn mass(inertial: &Tag<'_>, log: &mut Diagnostics) -> Option<f64> {
         && !inertial.children().any(|child| child.is("mass"))
     {
         let expected = "<mass> and <inertia>: <density> is an extension of Bullet, which is not read";
-        log.error(&density.place("mass"), Code::MissingTag, "<density> alone", expected);
+        log.error(density.place("mass"), Code::MissingTag, "<density> alone", expected);
         return None;
     }
     let tag = inertial.required("mass", log)?;

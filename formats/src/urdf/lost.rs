@@ -23,7 +23,7 @@ pub(crate) fn report(tag: &Tag<'_>, log: &mut Diagnostics) -> bool {
         if let Some((what, expected)) = loss(&inner) {
             let name = inner.attribute("name").map(|_| format!(" {}", quote(&inner.name_for_messages()))).unwrap_or_default();
             let within = if inner.start() == tag.start() { String::new() } else { format!(" inside {}", shown(tag)) };
-            log.warning(&inner.place(&format!("<{}>", inner.name())), Code::LostDynamics, format!("{what}{name}{within}"), expected);
+            log.warning(inner.place(&format!("<{}>", inner.name())), Code::LostDynamics, format!("{what}{name}{within}"), expected);
             (end, any) = (inner.end(), true);
         }
     }

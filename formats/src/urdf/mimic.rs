@@ -43,7 +43,7 @@ pub(crate) fn leaders(joints: &[DraftJoint], log: &mut Diagnostics) -> Vec<Optio
 fn error(follower: &DraftJoint, mimic: &DraftMimic, kind: Code, found: String, expected: &str, log: &mut Diagnostics) {
     let subject = follower.subject();
     let place = Place { at: mimic.leader.at, subject: &subject, field: "mimic" };
-    log.error(&place, kind, found, expected);
+    log.error(place, kind, found, expected);
 }
 
 fn report_follower(follower: &DraftJoint, mimic: &DraftMimic, log: &mut Diagnostics) {
@@ -69,7 +69,7 @@ fn warn_of_motion(follower: &DraftJoint, mimic: &DraftMimic, leader: &DraftJoint
     let (multiplier, offset) = (mimic.multiplier.unwrap_or(1.0), mimic.offset.unwrap_or(0.0));
     if multiplier == 0.0 {
         let expected = "another number: with 0 the joint does not move; used as written";
-        return log.warning(&place, Code::MimicZero, "the multiplier 0", expected);
+        return log.warning(place, Code::MimicZero, "the multiplier 0", expected);
     }
     let (Some(own), Some(led)) = (follower.limit, leader.limit) else { return };
     let [a, b] = [led.lower, led.upper].map(|q| multiplier * q + offset);
@@ -79,7 +79,7 @@ fn warn_of_motion(follower: &DraftJoint, mimic: &DraftMimic, leader: &DraftJoint
     if led.lower <= led.upper && own.lower <= own.upper && (least < own.lower - slack || own.upper + slack < most) {
         let found = format!("a range of {least:.4} to {most:.4}, as {} moves within its limits", leader.subject());
         let expected = format!("a range within this joint's limits, {} to {}; used as written", own.lower, own.upper);
-        log.warning(&place, Code::MimicRange, found, expected);
+        log.warning(place, Code::MimicRange, found, expected);
     }
 }
 

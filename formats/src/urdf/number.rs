@@ -70,7 +70,7 @@ fn checked<const N: usize>(value: &str, at: At, tag: &Tag<'_>, name: &str, log: 
     match wrong {
         Wrong::Word(word, fault) => complain(fault, word, value, &place, log),
         Wrong::Count(count) => {
-            log.error(&place, Code::WrongCount, format!("{count} numbers in {}", quote(value)), expected_count(N));
+            log.error(place, Code::WrongCount, format!("{count} numbers in {}", quote(value)), expected_count(N));
         }
     }
     None

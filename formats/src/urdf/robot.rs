@@ -44,7 +44,7 @@ pub(crate) fn draft(robot: &Tag<'_>, options: &Options, log: &mut Diagnostics) -
         }
     }
     if draft.links.is_empty() {
-        log.error(&robot.place("link"), Code::NoLinks, "no link", "a robot with at least one link");
+        log.error(robot.place("link"), Code::NoLinks, "no link", "a robot with at least one link");
     }
     declare_world(&mut draft, log);
     draft
@@ -69,7 +69,7 @@ fn declare_world(draft: &mut Draft, log: &mut Diagnostics) {
     let (subject, at) = (joint.subject(), parent.at);
     let place = Place { at, subject: &subject, field: "parent" };
     let found = format!("{}, which is not a link of this file", quote(WORLD));
-    log.warning(&place, Code::UndeclaredWorld, found, "<link name=\"world\"/>; added as a link without mass");
+    log.warning(place, Code::UndeclaredWorld, found, "<link name=\"world\"/>; added as a link without mass");
     draft.links.push(DraftLink { name: Some(WORLD.to_owned()), at, inertial: None, collision: Vec::new() });
 }
 
@@ -80,7 +80,7 @@ fn version(robot: &Tag<'_>, log: &mut Diagnostics) -> Version {
     let version = VERSIONS.iter().find(|(name, _)| *name == given.trim());
     if version.is_none() {
         let expected = "1.0, 1.1 or 1.2; read as 1.0";
-        log.warning(&robot.place("version"), Code::Version, quote(given.trim()), expected);
+        log.warning(robot.place("version"), Code::Version, quote(given.trim()), expected);
     }
     version.map_or(Version::V1_0, |(_, version)| *version)
 }

@@ -57,7 +57,7 @@ fn unique_names<'a>(
             let subject = subject(name.to_owned());
             let place = Place { at, subject: &subject, field: "name" };
             let found = format!("a duplicate: line {} already has the name {}", line(places[first]), quote(name));
-            log.error(&place, Code::DuplicateName, found, "a name of its own");
+            log.error(place, Code::DuplicateName, found, "a name of its own");
         }
     }
     index
@@ -100,7 +100,7 @@ impl LookUp<'_> {
             let subject = joint.subject();
             let place = Place { at: *at, subject: &subject, field };
             let found = format!("{}, which is not a link of this file", quote(name));
-            log.error(&place, Code::UnknownLink, found, format!("the name of a link{hint}"));
+            log.error(place, Code::UnknownLink, found, format!("the name of a link{hint}"));
         }
         index
     }
@@ -124,7 +124,7 @@ fn report_two_parents(draft: &Draft, link: usize, first: usize, second: usize, l
     let place = Place { at: draft.joints[second].at, subject: &subject, field: "parent" };
     let [first, second] = [first, second].map(|joint| draft.joints[joint].subject());
     let found = format!("a second parent: it is the child of {first} and of {second}");
-    log.error(&place, Code::TwoParents, found, "a link that hangs on one joint");
+    log.error(place, Code::TwoParents, found, "a link that hangs on one joint");
 }
 
 /// Returns how many rings there are.
@@ -135,7 +135,7 @@ fn report_rings(draft: &Draft, ends: &Ends, above: &[Option<usize>], log: &mut D
         let joints = around(*link, parent).filter_map(|link| Some(draft.joints[above[link]?].subject()));
         let subject = draft.links[*link].subject();
         let place = Place { at: draft.links[*link].at, subject: &subject, field: "parent" };
-        log.error(&place, Code::Ring, format!("a ring (loop) of {}", listed(joints)), "a tree with one root");
+        log.error(place, Code::Ring, format!("a ring (loop) of {}", listed(joints)), "a tree with one root");
     }
     rings.len()
 }
@@ -161,7 +161,7 @@ fn root(draft: &Draft, ends: &Ends, above: &[Option<usize>], rings: usize, log: 
         let subject = draft.links[roots[1]].subject();
         let place = Place { at: draft.links[roots[1]].at, subject: &subject, field: "parent" };
         let found = format!("{} roots (links without a parent): {names}", roots.len());
-        log.error(&place, Code::SeveralRoots, found, format!("one root{}", passed_over(draft)));
+        log.error(place, Code::SeveralRoots, found, format!("one root{}", passed_over(draft)));
     }
     roots.first().copied()
 }

@@ -98,7 +98,7 @@ fn around_links(tag: &Tag<'_>, name: &str, log: &mut Diagnostics) -> bool {
     }
     let found = format!("{links} links and {joints} joints inside <{name}>");
     let expected = "links and joints directly inside <robot>: these are not read, and the dynamics are those without them";
-    log.warning(&tag.place(&format!("<{name}>")), Code::Misplaced, found, expected);
+    log.warning(tag.place(&format!("<{name}>")), Code::Misplaced, found, expected);
     true
 }
 
@@ -112,7 +112,7 @@ pub(crate) fn warn_of_blanks(tag: &Tag<'_>, name: &str, log: &mut Diagnostics) {
         return;
     };
     let expected = "a name of visible characters; used as written";
-    log.warning(&tag.place("name"), Code::OddName, format!("{found}, {}", quote(name)), expected);
+    log.warning(tag.place("name"), Code::OddName, format!("{found}, {}", quote(name)), expected);
 }
 
 fn misplaced(place: &Place<'_>, name: &str, parent: &str, log: &mut Diagnostics) {

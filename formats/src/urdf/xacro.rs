@@ -37,7 +37,7 @@ fn is_macro(tag: &Tag<'_>) -> bool {
 }
 
 fn report_macro(tag: &Tag<'_>, log: &mut Diagnostics) -> bool {
-    log.error(&tag.place("xacro"), Code::Xacro, format!("the tag <{}>", tag.name()), EXPECTED);
+    log.error(tag.place("xacro"), Code::Xacro, format!("the tag <{}>", tag.name()), EXPECTED);
     true
 }
 
@@ -46,6 +46,6 @@ fn report_expressions(tag: &Tag<'_>, log: &mut Diagnostics) {
     for (name, value, at) in tag.attributes_with_lines().filter(|(name, value, _)| *name != "filename" && is_expression(value)) {
         let field = format!("{} {name}", tag.name());
         let place = Place { at, ..tag.place(&field) };
-        log.error(&place, Code::Xacro, format!("the xacro expression {}", quote(value)), EXPECTED);
+        log.error(place, Code::Xacro, format!("the xacro expression {}", quote(value)), EXPECTED);
     }
 }

@@ -96,7 +96,7 @@ impl<'a> Resolving<'a> {
 
     fn warn_of_contact(&mut self, one: &Asked, link: &Link, kind: Code, found: &str) {
         let expected = "a box, cylinder, sphere or capsule: meshes are not read and make no contact";
-        self.warn(one, Subject::Link(link.name.clone()), kind, found, expected);
+        self.warn(one, &Subject::Link(link.name.clone()), kind, found, expected);
     }
 
     /// Warns where contact of the geometry of all links comes to nothing since there is none.
@@ -104,12 +104,12 @@ impl<'a> Resolving<'a> {
         let Some(one) = asked.iter().find(|one| one.on == Selector::All && is_asked(one)) else { return };
         if self.robot.description.links.iter().all(|link| link.collision.is_empty()) {
             let expected = "links with <collision>: nothing touches the ground";
-            self.warn(one, Subject::Document, Code::NoContact, "a robot without collision geometry", expected);
+            self.warn(one, &Subject::Document, Code::NoContact, "a robot without collision geometry", expected);
         }
     }
 
-    fn warn(&mut self, one: &Asked, subject: Subject, kind: Code, found: &str, expected: &str) {
-        let place = Place { at: one.place, subject: &subject, field: &one.key };
-        self.resolved.warnings.push(Diagnostic::error(&self.scene.file, &place, kind, found, expected).as_warning());
+    fn warn(&mut self, one: &Asked, subject: &Subject, kind: Code, found: &str, expected: &str) {
+        let place = Place { at: one.place, subject, field: &one.key };
+        self.resolved.warnings.push(Diagnostic::error(&self.scene.file, place, kind, found, expected).into_warning());
     }
 }

@@ -113,7 +113,7 @@ impl RobotRequest<'_> {
     }
 
     fn bare_model(&self, editing: &Editing<'_>, log: &mut Diagnostics) -> Option<Model<f64>> {
-        let refusal = |error: ModelError| Diagnostic::refusal(self.file, &Place::DOCUMENT, Code::Model, error.to_string());
+        let refusal = |error: ModelError| Diagnostic::refusal(self.file, Place::DOCUMENT, Code::Model, error.to_string());
         self.model(&editing.reading.description).map_err(|error| log.push(refusal(error))).ok()
     }
 
@@ -224,31 +224,31 @@ impl Editing<'_> {
         let appended = log.count() == before;
         for payload in &options.payloads {
             let at = Entry::of(payload, "payload");
-            self.take(at, editor.attach(payload).map(drop), log);
+            self.take(&at, editor.attach(payload).map(drop), log);
         }
         for shaft in &options.shafts {
             let at = Entry::named(shaft, format!("effects.shaft.{}", shaft.joint), "shaft");
             let result = editor.shaft(shaft);
             self.springs.push(result.as_ref().ok().cloned());
-            self.take(at, result.map(drop), log);
+            self.take(&at, result.map(drop), log);
         }
         for lock in &options.lock {
             let (joint, coordinates) = &lock.value;
             let at = Entry::named(lock, format!("lock.{joint}"), "lock");
-            self.take(at, editor.lock(joint, coordinates), log);
+            self.take(&at, editor.lock(joint, coordinates), log);
         }
         self.reading.description = description;
         appended
     }
 
-    fn refuse(&self, at: Entry<'_>, code: Code, sentence: String, log: &mut Diagnostics) {
+    fn refuse(&self, at: &Entry<'_>, code: Code, sentence: String, log: &mut Diagnostics) {
         log.push(match at.span {
             Some(span) => Diagnostic::refusal(&span.file, (span.at, at.key.0.as_str()), code, sentence),
             None => Diagnostic::refusal(self.request.file, (Default::default(), at.key.1), code, sentence),
         });
     }
 
-    fn take(&self, at: Entry<'_>, result: Result<(), EditError>, log: &mut Diagnostics) {
+    fn take(&self, at: &Entry<'_>, result: Result<(), EditError>, log: &mut Diagnostics) {
         if let Err(error) = result {
             let code = match &error {
                 EditError::UnknownLink { .. } => Code::UnknownLink,
@@ -274,7 +274,7 @@ impl Editing<'_> {
             Err(EditError::UnknownLink { .. }) => Entry::of(&other.at, "append"),
             _ => Entry::of(&other.file, "append"),
         };
-        self.take(at, result, log);
+        self.take(&at, result, log);
     }
 
     /// The frames that exist, each once.
@@ -287,11 +287,11 @@ impl Editing<'_> {
             let (name, at) = (&frame.value, Entry::of(frame, "frames"));
             if !names.contains(name.as_str()) {
                 let nearest = suggester.nearest(name, links.iter().map(|l| l.name.as_str())).map(str::to_owned);
-                self.take(at, Err(EditError::UnknownLink { name: name.clone(), nearest }), log);
+                self.take(&at, Err(EditError::UnknownLink { name: name.clone(), nearest }), log);
             } else if seen.insert(name) {
                 chosen.push(name.clone());
             } else {
-                self.refuse(at, Code::DuplicateName, format!("{name:?} is listed twice"), log);
+                self.refuse(&at, Code::DuplicateName, format!("{name:?} is listed twice"), log);
             }
         }
         self.frames = Some(chosen);

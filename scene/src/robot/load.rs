@@ -5,7 +5,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use articulated_core::description::Base;
-use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Span, Spanned};
+use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, Place, Span, Spanned};
 use articulated_core::suggest::nearest;
 use articulated_formats::{Disk, Sources};
 
@@ -104,7 +104,7 @@ impl Loader<'_> {
                 };
                 log.push(
                     match *span == Span::default() {
-                        true => Diagnostic::refusal(&name, &Default::default(), Code::File, reason),
+                        true => Diagnostic::refusal(&name, Place::DOCUMENT, Code::File, reason),
                         false => Diagnostic::refusal(&span.file, (span.at, key), Code::File, format!("{name}: {reason}")),
                     }
                     .with_hint(near),

@@ -33,7 +33,7 @@ pub fn beyond_sense(model: &Model<f64>, q: &[f64]) -> Vec<String> {
 
 /// A warning of a robot's edits.
 fn warning(file: &str, place: &Place<'_>, code: Code, found: String, expected: impl Into<String>) -> Diagnostic {
-    Diagnostic::error(file, place, code, found, expected).as_warning()
+    Diagnostic::error(file, place, code, found, expected).into_warning()
 }
 
 impl Editing<'_> {

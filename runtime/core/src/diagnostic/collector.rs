@@ -63,7 +63,7 @@ impl Diagnostics {
     /// Reports a warning at a place of the file.
     pub fn warning<'a>(&mut self, place: impl Into<Place<'a>>, code: Code, found: impl Into<String>, expected: impl Into<String>) {
         if self.warnings.len() < MOST {
-            self.warnings.push(Diagnostic::error(&self.file, place, code, found, expected).as_warning());
+            self.warnings.push(Diagnostic::error(&self.file, place, code, found, expected).into_warning());
         } else {
             self.more_warnings += 1;
         }
@@ -133,7 +133,7 @@ impl Diagnostics {
     pub fn take_as_warnings(&mut self, mut part: Self, rest: &str) {
         let errors = core::mem::take(&mut part.errors).into_iter().map(|mut error| {
             error.expected.push_str(rest);
-            error.as_warning()
+            error.into_warning()
         });
         part.warnings.splice(..0, errors);
         part.more_warnings += core::mem::take(&mut part.more_errors);
@@ -181,10 +181,10 @@ impl Diagnostics {
         let file = core::mem::take(&mut self.file);
         let more = |count: usize| {
             let found = format!("{count} more that are not listed");
-            (count > 0).then(|| Diagnostic::error(&file, &Place::DOCUMENT, Code::More, found, ""))
+            (count > 0).then(|| Diagnostic::error(&file, Place::DOCUMENT, Code::More, found, ""))
         };
         self.errors.extend(more(core::mem::take(&mut self.more_errors)));
-        self.warnings.extend(more(core::mem::take(&mut self.more_warnings)).map(Diagnostic::as_warning));
+        self.warnings.extend(more(core::mem::take(&mut self.more_warnings)).map(Diagnostic::into_warning));
         let unused = core::mem::take(&mut self.more_unused);
         if unused > 0 {
             self.unused.push(Unused {

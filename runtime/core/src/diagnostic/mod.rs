@@ -197,7 +197,7 @@ impl Diagnostic {
 
     /// The same finding as a warning.
     #[must_use]
-    pub fn as_warning(self) -> Self {
+    pub fn into_warning(self) -> Self {
         Self { severity: Severity::Warning, ..self }
     }
 

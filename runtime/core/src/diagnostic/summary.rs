@@ -17,7 +17,7 @@ use crate::listed;
 ///
 /// let joints = [0, 1, 2].map(|k| Subject::Joint(format!("j{k}")));
 /// let limit = |subject| Place { at: At::Nowhere, subject, field: "limit" };
-/// let warning = |s| Diagnostic::error("arm.urdf", &limit(s), Code::LimitMissing, "none", "bounds").as_warning();
+/// let warning = |s| Diagnostic::error("arm.urdf", &limit(s), Code::LimitMissing, "none", "bounds").into_warning();
 /// let warnings: Vec<Diagnostic> = joints.iter().map(warning).collect();
 /// let line = "arm.urdf: joint \"j0\": limit: found none, expected bounds (and 2 more: joint \"j1\", joint \"j2\")";
 /// assert_eq!(summary(&warnings), [line]);

@@ -272,7 +272,7 @@ impl<'a> Builder<'a> {
         let body = self.body_of[lead.joint].filter(|_| joints[lead.joint].kind.sizes() == (1, 1))?;
         let Coordinates { q, v, .. } = self.model.bodies[body].coordinates;
         let mimic = Some(Follow { multiplier: lead.multiplier, offset: lead.offset });
-        Some(Coordinates { q, v, mimic, pitch: per_radian(&joints[follower]), ..AT_ZERO })
+        Some(Coordinates { q, v, mimic, pitch: per_radian(&joints[follower]) })
     }
 
     fn not_a_tree(&self) -> ModelError {
