@@ -352,3 +352,6 @@ impl<T: fmt::Display> fmt::Display for Spanned<T> {
 pub fn values<T: Clone>(all: &[Spanned<T>]) -> Vec<T> {
     all.iter().map(|one| one.value.clone()).collect()
 }
+
+#[cfg(test)]
+mod tests;
