@@ -47,7 +47,7 @@ pub(crate) struct AccuracyArguments {
     /// The functions to measure, or groups of them [default: placements,inverse_dynamics,mass_matrix,forward_dynamics]
     #[arg(long, alias = "function", value_name = "NAMES", value_parser = known)]
     pub(crate) functions: Vec<Names>,
-    /// The levels to measure [default: all that are told apart]
+    /// The levels to measure [default: all that differ]
     #[arg(long, alias = "level", value_name = "LEVELS", value_delimiter = ',')]
     pub(crate) levels: Vec<Level>,
     /// How many states at random within the limits of the joints; the hard ones come beside them

@@ -84,7 +84,7 @@ pub(crate) fn run(arguments: &CompareArguments, format: Format) -> Result<u8, Fa
         Format::Text => report.text(),
         Format::Json => crate::json(&report),
     })?;
-    // What took minutes to measure is told even if the drawing cannot be written.
+    // The report is printed even if the drawing cannot be written: it took minutes to measure.
     if let Some(file) = &arguments.chart {
         output::write(file, report.chart()).map_err(Failure::after_report)?;
     }

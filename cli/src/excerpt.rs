@@ -36,8 +36,8 @@ fn text(file: &str) -> Option<String> {
     String::from_utf8(read_file(Path::new(file), MOST_BYTES).ok()?).ok()
 }
 
-/// A line with its number; below, carets from the column on to the end of a word, or below the whole
-/// line.
+/// A line with its number; below, carets from the column on to the end of a word, or below the
+/// whole line.
 fn excerpt(source: &str, line: usize, column: Option<usize>) -> String {
     let byte = |column: usize| source.char_indices().nth(column).map_or(source.len(), |(at, _)| at);
     let start = column.map_or_else(|| source.len() - source.trim_start().len(), |column| byte(column - 1));

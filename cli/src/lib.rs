@@ -1,5 +1,5 @@
-//! The command `articulated`, as a library: arguments, loading and reports. What it measures is in the library
-//! `articulated_lab`.
+//! The command `articulated`, as a library: arguments, loading and reports. What it measures is in
+//! the library `articulated_lab`.
 
 mod accuracy;
 mod arguments;

@@ -54,6 +54,6 @@ pub(crate) fn run(arguments: &ScalingArguments, format: Format) -> Result<(), Fa
         Format::Text if arguments.markdown => report.markdown(arguments.chart.as_deref()),
         Format::Text => report.text(),
     })?;
-    // What took minutes to measure is told even if the drawing cannot be written.
+    // The report is printed even if the drawing cannot be written: it took minutes to measure.
     arguments.chart.as_ref().map_or(Ok(()), |path| output::write(path, report.chart())).map_err(Failure::after_report)
 }

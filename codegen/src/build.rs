@@ -98,8 +98,8 @@ impl Build {
         Self { scene: Some(name), ..build }
     }
 
-    /// The robot, if the scene does not name its file, or another one: the URDF at `path`, relative to
-    /// the crate's folder.
+    /// The robot, if the scene does not name its file, or another one: the URDF at `path`, relative
+    /// to the crate's folder.
     #[must_use]
     pub fn urdf(mut self, path: impl AsRef<Path>) -> Self {
         self.request.file = path.as_ref().display().to_string();
@@ -239,7 +239,8 @@ impl Build {
         self
     }
 
-    /// No `unsafe` in the generated code, for crates that forbid it: no limbs in lanes, and no choice of instructions when it runs.
+    /// No `unsafe` in the generated code, for crates that forbid it: no limbs in lanes, and no
+    /// choice of instructions when it runs.
     #[must_use]
     pub fn forbid_unsafe(mut self) -> Self {
         self.request.options.rust_mut().forbid_unsafe = true;

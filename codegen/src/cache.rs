@@ -1,8 +1,10 @@
 //! What a build script wrote the last time, so that the same request generates nothing.
 //!
-//! Beside the output stands a file that holds, byte for byte, everything that the output follows from: which generator, all options, every robot file. There is no
-//! hash that could collide. The generator is known by the program that it is part of, the build script: its length and the instant when it was linked, which is
-//! new whenever the generator or anything that it leans on was compiled again.
+//! Beside the output stands a file that holds, byte for byte, everything that the output follows
+//! from: which generator, all options, every robot file. There is no hash that could collide. The
+//! generator is known by the program that it is part of, the build script: its length and the
+//! instant when it was linked, which is new whenever the generator or anything that it leans on was
+//! compiled again.
 
 use std::fmt::Write;
 use std::fs;

@@ -23,8 +23,10 @@ pub struct Entry {
     pub function: String,
     /// The ways chosen by count, where the function can be computed in several.
     pub ways: Vec<Cow<'static, str>>,
-    /// Counts after each stage: `asked` (what the algorithm asks for), `trace` (folded and shared), the same after each model
-    /// pass, with frames that do not turn (`unturned`) and lengths in another unit (`unit`) where that is chosen, then after each graph pass. Without [`stages`](crate::Options::stages) only the last of the model passes.
+    /// Counts after each stage: `asked` (what the algorithm asks for), `trace` (folded and shared),
+    /// the same after each model pass, with frames that do not turn (`unturned`) and lengths in
+    /// another unit (`unit`) where that is chosen, then after each graph pass. Without
+    /// [`stages`](crate::Options::stages) only the last of the model passes.
     pub stages: Vec<(&'static str, Counts)>,
     /// Longest chain of operations from an input to an output.
     pub depth: u32,

@@ -1,5 +1,5 @@
-//! A request, checked: its robot, its parameters and its functions. All findings come from one pass,
-//! in which whatever is wrong is reported and left out.
+//! A request, checked: its robot, its parameters and its functions. All findings come from one
+//! pass, in which whatever is wrong is reported and left out.
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Function, Needs};

@@ -32,7 +32,8 @@ pub fn open(path: &Path, bundled: &[Bundled<'_>]) -> Result<Prepared, Diagnostic
     prepared(open_files(path, bundled)?)
 }
 
-/// A scene that was read, with its robot; `bundled` are those that it may call by name. Files that it
+/// A scene that was read, with its robot; `bundled` are those that it may call by name. Files that
+/// it
 /// names are seen from `folder`.
 ///
 /// # Errors
@@ -45,7 +46,8 @@ pub fn open_in(scene: Scene, folder: &Path, bundled: &[Bundled<'_>]) -> Result<P
 /// Nothing is opened. `base` applies where the scene gives none.
 ///
 /// # Errors
-/// Everything that is wrong with the document, or else everything of the scene that does not fit the
+/// Everything that is wrong with the document, or else everything of the scene that does not fit
+/// the
 /// robot, tables of control in files apart.
 pub fn prepare(scene: Scene, file: &str, document: Vec<u8>, base: Base, append: Vec<Vec<u8>>) -> Result<Prepared, Diagnostics> {
     prepared(Opened::new(scene, file, document, base, append))
@@ -61,7 +63,7 @@ fn prepared(opened: Opened) -> Result<Prepared, Diagnostics> {
     if let Some(robot) = &robot {
         let mut names = log.apart();
         check_names(&request, robot, &mut names);
-        // Names in code that nobody gives concern only those who write code.
+        // Default names that clash concern only the targets that use them.
         names.errors.retain(|error| error.code != Code::NameClash || error.span.at != At::Nowhere);
         log.take(names);
     }

@@ -83,7 +83,8 @@ fn passed<S: Scalar>(part: &FunctionTerm, choice: &Strategy, model: &Model<S>) -
     choice.unit.map(|metres| view.in_unit_of(S::from_f64(metres))).unwrap_or(view)
 }
 
-/// Which rotations may be folded into constants after all passes, as the function does not need where bodies are.
+/// Which rotations may be folded into constants after all passes, as the function does not need
+/// where bodies are.
 pub(crate) fn foldable_rotations(part: &FunctionTerm, model: &Model<f64>) -> Vec<FoldedRotations> {
     if indifferent(part, model) { finished(part, model).foldable_rotations() } else { Vec::new() }
 }

@@ -1,4 +1,5 @@
-//! Model passes keep the physics: every function that allows them is the same on a view after them, in 96 digits where it matters.
+//! Model passes keep the physics: every function that allows them is the same on a view after them,
+//! in 96 digits where it matters.
 
 use articulated_codegen::model_pass::{FoldedRotations, ModelPass, View, model_passes, no_joint_moves_origin};
 use articulated_core::Scalar;
@@ -20,7 +21,8 @@ use num_traits::Zero;
 /// What the library's constants allow, which are double precision in any scalar. Seen: 2·10⁻¹⁵.
 const NEAR: f64 = 2e-14;
 
-/// The same for what is solved with the mass matrix, whose condition number comes in. Seen: 9·10⁻¹⁵.
+/// The same for what is solved with the mass matrix, whose condition number comes in. Seen:
+/// 9·10⁻¹⁵.
 const SOLVED: f64 = 2e-13;
 
 /// Errors allowed, in units of u times the magnitude of the terms.
@@ -107,7 +109,8 @@ fn same_without_frames(case: &Case, state: &State, one: &View<Big>, other: &Mode
     });
 }
 
-/// A robot's last bodies made round, and nobody asking for its frames: they stop turning, which changes nothing.
+/// The last bodies of a robot are axisymmetric and no frame is requested: their frames stop rotating, and no
+/// result changes.
 #[test]
 fn round_bodies_need_not_turn() {
     let seen = std::cell::Cell::new(0);
@@ -136,7 +139,8 @@ fn round_bodies_need_not_turn() {
     assert!(seen.get() > 10, "only {} round bodies", seen.get());
 }
 
-/// Rows of parallel joints, with other bodies before, between and behind them, in the axes in which they begin; and last bodies in those of their joints.
+/// Rows of parallel joints, with other bodies before, between and behind them, in the axes in which
+/// they begin; and last bodies in those of their joints.
 #[test]
 fn constants_may_be_turned_instead_of_vectors() {
     let (seen, kinds) = (std::cell::Cell::new(0), std::cell::RefCell::new(Vec::new()));
@@ -169,7 +173,8 @@ fn constants_may_be_turned_instead_of_vectors() {
     assert!(counts.0 > 12 && counts.1 > 5 && counts.2 > 5, "only {counts:?}");
 }
 
-/// The second derivative of a joint's axis tells as much as ω̇: no function is another, with the diagonal of U by it or not, whatever kinds of joints stand before and behind.
+/// The second derivative of a joint's axis tells as much as ω̇: no function is another, with the
+/// diagonal of U by it or not, whatever kinds of joints stand before and behind.
 #[test]
 fn rates_may_be_found_by_the_axes_of_joints() {
     const AXES: [[f64; 3]; 6] = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, -1.0, 0.0], [-1.0, 0.0, 0.0]];
@@ -178,9 +183,11 @@ fn rates_may_be_found_by_the_axes_of_joints() {
         let state = case.state(random);
         Big::scope(|| {
             let mut model = case.model.cast::<Big>();
-            // Mostly axes along axes, turned about themselves by any angle, and bodies with some of their products of inertia.
+            // Mostly axes along axes, turned about themselves by any angle, and bodies with some of
+            // their products of inertia.
             for i in model.outward() {
-                // What a universal joint consists of has no mass between: its axes stay as they are.
+                // What a universal joint consists of has no mass between: its axes stay as they
+                // are.
                 if random.below(4) == 0 || model.bodies[model.bodies[i].parent].link.is_none() {
                     continue;
                 }
@@ -206,7 +213,9 @@ fn rates_may_be_found_by_the_axes_of_joints() {
     assert!(counts.iter().all(|count| *count > 20), "only {counts:?}");
 }
 
-/// A mass at a joint may be in the body on either side, and inverse dynamics may have other inertias than mass matrices: torques, energies and accelerations are the same, in any unit and axes.
+/// A mass at a joint may be in the body on either side, and inverse dynamics may have other
+/// inertias than mass matrices: torques, energies and accelerations are the same, in any unit and
+/// axes.
 #[test]
 fn mass_at_a_joint_may_be_shifted() {
     let lent = std::cell::Cell::new(0);
@@ -237,7 +246,8 @@ fn mass_at_a_joint_may_be_shifted() {
     assert!(lent.get() > 10, "only {} bodies were given mass", lent.get());
 }
 
-/// Where all joints turn, no result has a length in it: it is the same in every unit, before model passes and after, with frames that do not turn too.
+/// Where all joints turn, no result has a length in it: it is the same in every unit, before model
+/// passes and after, with frames that do not turn too.
 #[test]
 fn lengths_may_be_in_any_unit() {
     let (seen, unturned) = (std::cell::Cell::new(0), std::cell::Cell::new(0));
@@ -311,7 +321,8 @@ fn model_passes_leave_torques_and_placements_as_they_are() {
     for_each_bundled(passes_keep_the_physics);
 }
 
-/// A column that is too long by ε makes every lever that it turns too long, and moments of inertia by 2ε: those of several bodies add up.
+/// A column that is too long by ε makes every lever that it turns too long, and moments of inertia
+/// by 2ε: those of several bodies add up.
 #[test]
 fn rotations_of_models_are_rotations_to_rounding_before_and_after_passes() {
     for_each_tree(150, Flavour::WRITTEN, |case, _| {
@@ -343,7 +354,8 @@ fn regrouped_bodies_keep_only_what_their_joint_feels() {
     });
 }
 
-/// The axes of a shoulder of three joints meet: slid there, its joints have no offsets, and no force has to be handed on.
+/// The axes of a shoulder of three joints meet: slid there, its joints have no offsets, and no
+/// force has to be handed on.
 #[test]
 fn frames_slide_to_where_axes_meet() {
     let case = Case::bundled(articulated_models::robot("panda_like").expect("it is bundled"));
@@ -374,8 +386,8 @@ fn mass_is_shifted_where_that_is_worth_it() {
     }
 }
 
-/// A shoulder as files have it, its axis y and its frame pitched by nearly a right angle: the pitch is counted with the joint's angle, and no rotation is left but a
-/// change of axes.
+/// A shoulder as files have it, its axis y and its frame pitched by nearly a right angle: the pitch
+/// is counted with the joint's angle, and no rotation is left but a change of axes.
 #[test]
 fn angles_about_a_joints_own_axis_are_counted_with_its_own() {
     let fixed = |x: f64| x == 0.0 || x.abs() == 1.0;
@@ -415,7 +427,8 @@ fn passes_keep_what_joints_feel() {
     });
 }
 
-/// A wheel's frame need not turn with it, since it is the same from all sides; with a float on its rim it is not.
+/// A wheel's frame need not turn with it, since it is the same from all sides; with a float on its
+/// rim it is not.
 #[test]
 fn a_round_wheel_turns_the_float_on_its_rim() {
     let link = |name: &str, inertial: Option<Inertial>| Link { name: name.into(), inertial, ..Link::default() };

@@ -13,7 +13,8 @@ pub trait Sources {
     /// The bytes of a file, at most [`MOST_BYTES`].
     ///
     /// # Errors
-    /// Those of the system, files that are not regular, and files that are too large. The error does
+    /// Those of the system, files that are not regular, and files that are too large. The error
+    /// does
     /// not name the file.
     fn read(&self, path: &Path) -> Result<Vec<u8>>;
 

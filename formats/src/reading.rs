@@ -32,9 +32,9 @@ impl Default for Options {
 /// A robot that was read, with the findings about its file.
 #[derive(Clone, Debug)]
 pub struct Reading {
-    /// The robot. A bound that the file leaves open is infinite: `lower` and `upper` of a continuous
-    /// joint, `effort` and `velocity` that are not given. `axis` is (1, 0, 0) and `limit` and
-    /// `dynamics` are `None` for joints that have no use for them.
+    /// The robot. A bound that the file leaves open is infinite: `lower` and `upper` of a
+    /// continuous joint, `effort` and `velocity` that are not given. `axis` is (1, 0, 0) and
+    /// `limit` and `dynamics` are `None` for joints that have no use for them.
     pub description: Description,
     /// What looks wrong; the values were used as written.
     pub warnings: Vec<Diagnostic>,

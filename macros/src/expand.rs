@@ -85,8 +85,8 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// The scene, with what the invocation says in the place of what it says itself, and the request.
-    /// No request if a file is missing or the scene is wrong.
+    /// The scene, with what the invocation says in the place of what it says itself, and the
+    /// request. No request if a file is missing or the scene is wrong.
     fn request(&mut self) -> (Scene, Option<Request>) {
         let settings = self.settings;
         let folder = folder_of(settings.own.scene.as_ref().map_or("", |(name, _)| name).as_ref());
@@ -139,7 +139,8 @@ impl Reader<'_> {
 }
 
 impl Settings {
-    /// A finding at the word of the invocation that it is about; of a scene's file, where that is named; of another file, where the robot is named.
+    /// A finding at the word of the invocation that it is about; of a scene's file, where that is
+    /// named; of another file, where the robot is named.
     fn error(&self, finding: &Diagnostic, scene: &Scene) -> syn::Error {
         match finding.span.at {
             At::Word(_) => self.places.error(finding.span.at, finding.message()),

@@ -15,7 +15,8 @@ pub(crate) struct SimulateArguments {
     /// The folder to write to; it is made if it is not there
     #[arg(short, long, value_name = "FOLDER")]
     pub(crate) output: Option<PathBuf>,
-    /// How many MB recording.csv may become; more is refused before the motion begins [default: 1000]
+    /// How many MB recording.csv may become; more is refused before the motion begins [default:
+    /// 1000]
     #[arg(long, value_name = "MB", requires = "output", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub(crate) max_output_size: Option<u64>,
     /// By generated code, compiled by rustc, instead of generic code

@@ -15,7 +15,8 @@ pub(super) struct Picture {
 /// More events than this are counted and not drawn: they would be all that is seen.
 const EVENTS: usize = 60;
 
-/// Of the largest number of a picture: what is no more than this throughout is rounding of it as a rule, and a line at zero beside it.
+/// Of the largest number of a picture: what is no more than this throughout is rounding of it as a
+/// rule, and a line at zero beside it.
 const UNSEEN: f64 = 1e-12;
 
 /// What there can be pictures of; of energy there always is one.
@@ -83,7 +84,8 @@ fn quantity(unit: &str) -> &'static str {
     }
 }
 
-/// Numbers of one unit share panels, those of the base apart; at most eight to a panel, and no panel is much emptier than another.
+/// Numbers of one unit share panels, those of the base apart; at most eight to a panel, and no
+/// panel is much emptier than another.
 fn panels(series: &[Series]) -> Vec<Panel> {
     let mut kinds: Vec<(bool, &str)> = Vec::new();
     for (n, _) in series {
@@ -198,7 +200,8 @@ fn legend(out: &mut Drawing, panel: &Panel, strokes: &[Stroke], events: bool, [x
     }
 }
 
-/// The curve's points, in pieces where it is not finite: of many that share a place along the axis, the first, the least, the most and the last.
+/// The curve's points, in pieces where it is not finite: of many that share a place along the axis,
+/// the first, the least, the most and the last.
 fn thinned(t: &[f64], values: &[f64], time: &Axis, value: &Axis) -> Vec<Vec<Point>> {
     let mut pieces: Vec<Vec<Point>> = Vec::new();
     let mut bin: Vec<Point> = Vec::new();
@@ -270,8 +273,9 @@ const WAVE: f64 = 12.0;
 const THICK: f64 = 1.5;
 const THIN: f64 = 0.5;
 
-/// Of the curves of a panel, over a field of this width in points: those that oscillate too often to be told apart are thinner; of those that lie on each other all
-/// but the first are dashed, the later the shorter.
+/// Of the curves of a panel, over a field of this width in points: those that oscillate too often
+/// to be told apart are thinner; of those that lie on each other all but the first are dashed, the
+/// later the shorter.
 fn strokes(curves: &[Curve], value: &Axis, width: f64) -> Vec<Stroke> {
     let first = firsts(curves, value);
     let alike = |k: usize| first.iter().filter(|f| **f == first[k]).count();
@@ -320,7 +324,8 @@ struct Clock {
     title: String,
 }
 
-/// Where times are so many lengths of the motion from 0, they are told from its start: numbers at ticks would be alike but for their last digits.
+/// A motion that starts this many of its lengths after 0 gets tick labels relative to its start. Otherwise
+/// all labels would be alike but for their last digits.
 const FAR: f64 = 1e4;
 
 impl Clock {

@@ -10,16 +10,20 @@ use super::view::View;
 /// Which revolute bodies have frames that do not rotate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FoldedRotations {
-    /// Rows of bodies on parallel joints: each row has the axes in which it begins, and no vector has to be turned from one to the next, there and back.
+    /// Rows of bodies on parallel joints: each row has the axes in which it begins, and no vector
+    /// has to be turned from one to the next, there and back.
     Parallel,
     /// These, and bodies that carry no other.
     ParallelAndLast,
 }
 
 impl<S: Scalar> View<S> {
-    /// The view as it is at the configuration q, where the frames of these bodies stay, and their constants are rotated instead (offsets, moments of mass), by the sum of the angles.
+    /// The view as it is at the configuration q, where the frames of these bodies stay, and their
+    /// constants are rotated instead (offsets, moments of mass), by the sum of the angles.
     ///
-    /// q: `[nq]` rad|m|quaternion. Joint torques, M(q) and whatever follows from them are those of the robot itself, at this q alone; frames are not kept, and effects on bodies must not be there.
+    /// q: `[nq]` rad|m|quaternion. Joint torques, M(q) and whatever follows from them are those of
+    /// the robot itself, at this q alone; frames are not kept, and effects on bodies must not be
+    /// there.
     ///
     /// # Panics
     /// If q is shorter than stated.
@@ -50,7 +54,8 @@ impl<S: Scalar> View<S> {
         view
     }
 
-    /// What [`View::fold_rotations_into_constants`] has to choose from: nothing where no body is of the kind.
+    /// What [`View::fold_rotations_into_constants`] has to choose from: nothing where no body is of
+    /// the kind.
     pub fn foldable_rotations(&self) -> Vec<FoldedRotations> {
         let none = vec![false; self.model.bodies.len()];
         let [parallel, all] = [FoldedRotations::Parallel, FoldedRotations::ParallelAndLast].map(|which| self.stays(which));
@@ -77,7 +82,8 @@ impl<S: Scalar> View<S> {
     }
 }
 
-/// Whether a body's joint is parallel to that of its parent, and its frame not turned against the parent's.
+/// Whether a body's joint is parallel to that of its parent, and its frame not turned against the
+/// parent's.
 fn continues<S: Scalar>(model: &Model<S>, body: &Body<S>) -> bool {
     let rotates = |body: &Body<S>| body.joint.is_rotation_about_axis();
     body.parent != 0 && rotates(body) && rotates(&model.bodies[body.parent]) && body.placement.rotation == Matrix3::identity()

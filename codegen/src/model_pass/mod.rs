@@ -1,8 +1,9 @@
 //! Model passes: the generator's view of a robot, and what it does to it before tracing.
 //!
-//! A [`View`] is a model and the [`Formulation`] that goes with it. Each pass keeps joint torques. The passes of [`model_passes`] are always taken, in order;
-//! the others where they cost less: [`View::with_shifted_masses`], [`View::with_axis_accelerations`], [`View::fold_rotations_into_constants`],
-//! [`View::in_unit_of`].
+//! A [`View`] is a model and the [`Formulation`] that goes with it. Each pass keeps joint torques.
+//! The passes of [`model_passes`] are always taken, in order; the others where they cost less:
+//! [`View::with_shifted_masses`], [`View::with_axis_accelerations`],
+//! [`View::fold_rotations_into_constants`], [`View::in_unit_of`].
 
 mod axis_acceleration;
 mod fold_rotations;
@@ -72,8 +73,10 @@ impl<S: Scalar> Table<S> {
     ];
 }
 
-/// The passes in order; each row: name, pass, and what holds after it. They keep joint torques, and where the frames of links are: functions of the table that
-/// need more are not [`Function::regrouped`]. For those that need no frames ([`Function::asks_for_frames`]) these may be taken away before.
+/// The passes in order; each row: name, pass, and what holds after it. They keep joint torques, and
+/// where the frames of links are: functions of the table that need more are not
+/// [`Function::regrouped`]. For those that need no frames ([`Function::asks_for_frames`]) these may
+/// be taken away before.
 pub fn model_passes<S: Scalar>() -> &'static [(&'static str, ModelPass<S>, &'static str)] {
     Table::<S>::ROWS
 }

@@ -9,12 +9,17 @@ use super::view::View;
 use super::zeros::within;
 
 impl<S: Scalar> View<S> {
-    /// The view with inertias for inverse dynamics beside the model's ([`Formulation::torque_inertias`](articulated_core::algorithm::Formulation)).
+    /// The view with inertias for inverse dynamics beside the model's
+    /// ([`Formulation::torque_inertias`](articulated_core::algorithm::Formulation)).
     ///
-    /// What regrouping gives to the parent of a revolute joint need not all stay there: wherever on the joint's axis a mass is, and in whichever of the two
-    /// bodies, the torques are the same. The mass with which the parent's h_x or h_y vanishes is shifted to the child, at its origin, where that takes fewer
-    /// instructions, from the tips inward; no more than twice what the joint carries ([`Model::carried`], kg, before regrouping), as greater masses would cost
-    /// digits. Mass matrices want bodies without mass, and keep their own. For a model that is regrouped.
+    /// What regrouping gives to the parent of a revolute joint need not all stay there: wherever on
+    /// the joint's axis a mass is, and in whichever of the two
+    /// bodies, the torques are the same. The mass with which the parent's h_x or h_y vanishes is
+    /// shifted to the child, at its origin, where that takes fewer
+    /// instructions, from the tips inward; no more than twice what the joint carries
+    /// ([`Model::carried`], kg, before regrouping), as greater masses would cost
+    /// digits. Mass matrices want bodies without mass, and keep their own. For a model that is
+    /// regrouped.
     ///
     /// # Panics
     /// If `carried` is not as long as there are bodies.
@@ -34,7 +39,8 @@ impl<S: Scalar> View<S> {
     }
 }
 
-/// Whether inverse dynamics needs the force on each body, as there is a lever somewhere on its path to the root, or a joint that moves its origin.
+/// Whether inverse dynamics needs the force on each body, as there is a lever somewhere on its path
+/// to the root, or a joint that moves its origin.
 fn forces_shifted_to_parents<S: Scalar>(model: &Model<S>) -> Vec<bool> {
     let mut needs_force = vec![false; model.bodies.len()];
     for i in model.outward() {
@@ -44,7 +50,8 @@ fn forces_shifted_to_parents<S: Scalar>(model: &Model<S>) -> Vec<bool> {
     needs_force
 }
 
-/// Whether mass may move from the parent to body `i`: a single child only, so that isomorphic limbs stay isomorphic, and of the parent more than I_zz is felt.
+/// Whether mass may move from the parent to body `i`: a single child only, so that isomorphic limbs
+/// stay isomorphic, and of the parent more than I_zz is felt.
 fn takes_mass<S: Scalar>(model: &Model<S>, i: usize) -> bool {
     let parent = model.bodies[i].parent;
     let first = model.bodies[parent].parent == 0 && model.bodies[parent].joint.is_rotation_about_axis();
@@ -55,7 +62,8 @@ fn takes_mass<S: Scalar>(model: &Model<S>, i: usize) -> bool {
 /// The inertias of a body and of its parent.
 type Pair<S> = (SpatialInertia<S>, SpatialInertia<S>);
 
-/// Those of body `i` and of its parent that take fewest instructions; `None` if these are what they have.
+/// Those of body `i` and of its parent that take fewest instructions; `None` if these are what they
+/// have.
 fn cheapest<S: Scalar>(model: &Model<S>, i: usize, needs_force: &[bool], most: S) -> Option<Pair<S>> {
     let (body, parent) = (&model.bodies[i], &model.bodies[model.bodies[i].parent]);
     // The parent gives away what it can in turn.
@@ -66,7 +74,8 @@ fn cheapest<S: Scalar>(model: &Model<S>, i: usize, needs_force: &[bool], most: S
     (both(&best) < both(&(body.inertia, parent.inertia))).then_some(best)
 }
 
-/// The inertias of a body and of its parent, which has `own`, once the mass is shifted with which the parent's h_x or h_y vanishes; `None` if there is no such mass, or too great a one.
+/// The inertias of a body and of its parent, which has `own`, once the mass is shifted with which
+/// the parent's h_x or h_y vanishes; `None` if there is no such mass, or too great a one.
 fn mass_shift<S: Scalar>(body: &Body<S>, own: &SpatialInertia<S>, k: usize, most: S) -> Option<Pair<S>> {
     let lever = body.placement.position;
     if lever[k].is_zero() {
@@ -83,7 +92,8 @@ fn mass_shift<S: Scalar>(body: &Body<S>, own: &SpatialInertia<S>, k: usize, most
     Some((child, left))
 }
 
-/// Instructions that the numbers of a body take in inverse dynamics, by whether the force on it is needed.
+/// Instructions that the numbers of a body take in inverse dynamics, by whether the force on it is
+/// needed.
 fn price<S: Scalar>(inertia: &SpatialInertia<S>, needs_force: bool) -> usize {
     let SpatialInertia { mass, first, second } = inertia;
     let count = |numbers: &[S]| numbers.iter().filter(|x| !x.is_zero()).count();

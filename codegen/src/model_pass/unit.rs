@@ -7,10 +7,13 @@ use articulated_core::spatial::Vector3;
 use super::view::View;
 
 impl<S: Scalar> View<S> {
-    /// The view with lengths in a unit of `metres`: offsets and gravity divided by it, masses m times its square, moments h times it; second moments, kg·m², stay.
+    /// The view with lengths in a unit of `metres`: offsets and gravity divided by it, masses m
+    /// times its square, moments h times it; second moments, kg·m², stay.
     ///
-    /// Where no joint moves an origin ([`no_joint_moves_origin`]), torques, M(q), energies and what follows from them are those of the robot itself: lengths are
-    /// inside only. What is one in the unit takes no multiplication ([`View::units`]). Frames are not kept.
+    /// Where no joint moves an origin ([`no_joint_moves_origin`]), torques, M(q), energies and what
+    /// follows from them are those of the robot itself: lengths are
+    /// inside only. What is one in the unit takes no multiplication ([`View::units`]). Frames are
+    /// not kept.
     ///
     /// # Panics
     /// If an effect acts on a body: it would measure in metres still.
@@ -38,7 +41,9 @@ pub fn no_joint_moves_origin<S: Scalar>(model: &Model<S>) -> bool {
 }
 
 impl View<f64> {
-    /// Units of length, m, in which some constant is one: the lever of a joint on a moving body along an axis, gravity along one, a body's moment h along one, a mass. Each unit once, in this order.
+    /// Units of length, m, in which some constant is one: the lever of a joint on a moving body
+    /// along an axis, gravity along one, a body's moment h along one, a mass. Each unit once, in
+    /// this order.
     pub fn units(&self) -> Vec<f64> {
         let model = &self.model;
         let levers = model.outward().map(|i| &model.bodies[i]).filter(|body| body.parent != 0).map(|body| body.placement.position);

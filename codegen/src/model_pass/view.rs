@@ -8,7 +8,8 @@ use articulated_core::spatial::SpatialInertia;
 /// A robot as the generator traces it.
 #[derive(Clone, Debug)]
 pub struct View<S> {
-    /// The model. With the rotations of the formulation it has the torques of the robot; by itself its revolute joints count their angles from elsewhere.
+    /// The model. With the rotations of the formulation it has the torques of the robot; by itself
+    /// its revolute joints count their angles from elsewhere.
     pub model: Model<S>,
     /// How the algorithms compute on it.
     pub formulation: Formulation<S>,

@@ -2,15 +2,19 @@
 
 use articulated_core::algorithm::FunctionId;
 
-/// A form of generated code that not every function takes. The first two keep the results and are taken where they cost less.
+/// A form of generated code that not every function takes. The first two keep the results and are
+/// taken where they cost less.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Form {
-    /// Masses shifted to the body beyond a joint ([`crate::model_pass::View::with_shifted_masses`]): for what has an inverse dynamics in it in which bodies
-    /// rotate, of which that takes numbers away.
+    /// Masses shifted to the body beyond a joint
+    /// ([`crate::model_pass::View::with_shifted_masses`]): for what has an inverse dynamics in it
+    /// in which bodies rotate, of which that takes numbers away.
     ShiftedMasses,
-    /// Rate matrices by the axes of joints ([`crate::model_pass::View::with_axis_accelerations`]): for what has bodies that rotate while they move.
+    /// Rate matrices by the axes of joints ([`crate::model_pass::View::with_axis_accelerations`]):
+    /// for what has bodies that rotate while they move.
     AxisAccelerations,
-    /// Statements from the last result on, not as they are traced: for matrices whose columns are carried side by side.
+    /// Statements from the last result on, not as they are traced: for matrices whose columns are
+    /// carried side by side.
     FromTheLast,
 }
 

@@ -17,9 +17,11 @@ pub(crate) struct Strategy {
     pub(crate) folded: Option<FoldedRotations>,
     /// The unit of length, m, if it is not the metre.
     pub(crate) unit: Option<f64>,
-    /// Whether bodies have other inertias for inverse dynamics ([`View::with_shifted_masses`](crate::model_pass::View::with_shifted_masses)).
+    /// Whether bodies have other inertias for inverse dynamics
+    /// ([`View::with_shifted_masses`](crate::model_pass::View::with_shifted_masses)).
     pub(crate) shifted: bool,
-    /// Whether bodies have their rates by the axes of their joints ([`View::with_axis_accelerations`](crate::model_pass::View::with_axis_accelerations)).
+    /// Whether bodies have their rates by the axes of their joints
+    /// ([`View::with_axis_accelerations`](crate::model_pass::View::with_axis_accelerations)).
     pub(crate) axes: bool,
 }
 

@@ -1,6 +1,6 @@
-//! A robot as requested: its document read, other robots appended, payloads attached, shafts made to
-//! bend, joints locked, frames chosen, then its model with all effects. The edits are made in this
-//! order, so that a payload may hang on an appended robot, and a lock may hold its joints.
+//! A robot as requested: its document read, other robots appended, payloads attached, shafts made
+//! to bend, joints locked, frames chosen, then its model with all effects. The edits are made in
+//! this order, so that a payload may hang on an appended robot, and a lock may hold its joints.
 //!
 //! Whatever is refused is reported and left out, and the rest goes on.
 
@@ -21,7 +21,8 @@ use crate::effects::{Edited, Resolved};
 pub struct BuiltRobot {
     /// The robot, edited, and what there is to say about its document and the edits.
     pub reading: Reading,
-    /// Its model with gravity, effects and the reference of wrenches, and with a frame for every link.
+    /// Its model with gravity, effects and the reference of wrenches, and with a frame for every
+    /// link.
     pub model: Model<f64>,
     /// The scene's effects, where the scene asks for them, and what is on, off and not used.
     pub resolved: Resolved,
@@ -56,8 +57,8 @@ impl RobotRequest<'_> {
         }
     }
 
-    /// As [`build`](Self::build), and reports to a collector. `None`: there is no robot, and an error
-    /// says why. What is refused is left out.
+    /// As [`build`](Self::build), and reports to a collector. `None`: there is no robot, and an
+    /// error says why. What is refused is left out.
     pub fn build_into(&self, log: &mut Diagnostics) -> Option<BuiltRobot> {
         self.check_numbers(log);
         let mut editing = self.edit(log)?;
@@ -319,7 +320,8 @@ mod tests {
     /// As no body is, which is a warning.
     const LINK: &str = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='3'/></inertial>";
 
-    /// A link that turns on another, between these bounds, with a colour that nobody uses; its axis is nearly that of z.
+    /// A link that turns on another, between these bounds, with a colour that nobody uses; its axis
+    /// is nearly that of z.
     fn robot(name: &str) -> String {
         format!(
             "<robot name='{name}'><link name='base'>{LINK}</link><link name='tip'>{LINK}<visual/></link>

@@ -87,8 +87,8 @@ impl Default for Loader<'_> {
 }
 
 impl Loader<'_> {
-    /// The bytes of a file. A finding is at the place that names the file, under the key there; with
-    /// no place, at the file itself.
+    /// The bytes of a file. A finding is at the place that names the file, under the key there;
+    /// with no place, at the file itself.
     pub fn read(&mut self, name: &Path, span: &Span, key: &str, log: &mut Diagnostics) -> Option<Vec<u8>> {
         let (path, name) = (self.root.join(name), name.display().to_string());
         match self.sources.read(&path) {
@@ -120,8 +120,8 @@ impl Loader<'_> {
         Scene::read_bytes(&name.display().to_string(), &bytes).map_err(|findings| log.take(findings)).ok()
     }
 
-    /// The documents that a scene names, seen from its folder. `None`: one of them is missing, and an
-    /// error says which.
+    /// The documents that a scene names, seen from its folder. `None`: one of them is missing, and
+    /// an error says which.
     pub fn open(&mut self, folder: &Path, scene: Scene, log: &mut Diagnostics) -> Option<Opened> {
         let robot = self.robot(folder, &scene, log);
         let mut options = RobotOptions { base: robot.as_ref().map_or(Base::Fixed, |robot| robot.2), ..RobotOptions::default() };
@@ -217,7 +217,8 @@ impl Opened {
     /// The robot as the scene leaves it.
     ///
     /// # Errors
-    /// All findings about the document, or else about the scene and the robot, by their places in the
+    /// All findings about the document, or else about the scene and the robot, by their places in
+    /// the
     /// scene; tables of control in files apart.
     pub fn build(&self) -> Result<BuiltRobot, Diagnostics> {
         self.robot().build()
@@ -225,8 +226,8 @@ impl Opened {
 }
 
 impl Scene {
-    /// Writes into the options what the scene says of its robot: all but the effects, which need it,
-    /// and the documents of the robots to append.
+    /// Writes into the options what the scene says of its robot: all but the effects, which need
+    /// it, and the documents of the robots to append.
     pub fn fill_robot(&self, options: &mut RobotOptions) {
         let (code, places) = (self.code.clone(), &self.code.places);
         options.base = self.base.unwrap_or(options.base);

@@ -1,8 +1,8 @@
 //! The robot that a scene, or a request, asks for: its document read and edited, and its model.
 //!
 //! [`Loader`] reads the files. [`RobotOptions`] (from a scene: [`crate::Scene::fill_robot`]) and a
-//! document make a [`RobotRequest`]; [`RobotRequest::build`] makes the robot and reports all findings
-//! at once.
+//! document make a [`RobotRequest`]; [`RobotRequest::build`] makes the robot and reports all
+//! findings at once.
 
 mod build;
 mod load;

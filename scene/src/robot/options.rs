@@ -17,8 +17,8 @@ pub struct RobotOptions {
     pub base: Base,
     /// Gravity in the world frame, m/s².
     pub gravity: [f64; 3],
-    /// Names of the links whose frames the functions of frames return, in this order; `None`: all of
-    /// them, in the order of the file.
+    /// Names of the links whose frames the functions of frames return, in this order; `None`: all
+    /// of them, in the order of the file.
     pub frames: Option<Vec<Spanned<String>>>,
     /// What the wrenches that functions take refer to.
     pub wrench_reference: Reference,
@@ -27,14 +27,14 @@ pub struct RobotOptions {
     /// Loads to attach; also to links of appended robots.
     pub payloads: Vec<Spanned<Payload>>,
     /// Fixed joints whose rigid offsets bend, see
-    /// [`shaft`](articulated_core::description::Description::shaft). Their springs and dampings have
-    /// to be among the effects. Those of the scene come first.
+    /// [`shaft`](articulated_core::description::Description::shaft). Their springs and dampings
+    /// have to be among the effects. Those of the scene come first.
     pub shafts: Vec<Spanned<Shaft>>,
     /// Joints to lock and their coordinates, see
     /// [`lock`](articulated_core::description::Description::lock); also joints of appended robots.
     pub lock: Vec<Spanned<(String, Vec<f64>)>>,
-    /// What the robot is subject to besides gravity and the scene's effects; also on joints and links
-    /// of appended robots.
+    /// What the robot is subject to besides gravity and the scene's effects; also on joints and
+    /// links of appended robots.
     pub effects: Vec<Applied>,
     /// Accept negative principal moments, with a warning. (Moments that violate the triangle
     /// inequality are always accepted with a warning.)
@@ -47,8 +47,8 @@ pub struct RobotOptions {
     pub formats: Formats,
 }
 
-/// Another robot, such as a gripper, to be fixed to a link. Its links and joints get a prefix before
-/// their names.
+/// Another robot, such as a gripper, to be fixed to a link. Its links and joints get a prefix
+/// before their names.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Appended {
     /// The bytes of its file.
@@ -75,8 +75,8 @@ pub struct RobotRequest<'a> {
     pub options: &'a RobotOptions,
     /// The scene with its effects, if there is one.
     pub scene: Option<&'a Scene>,
-    /// Whether the scene's start and control have to fit the robot. They need not if there are edits
-    /// beside the scene's.
+    /// Whether the scene's start and control have to fit the robot. They need not if there are
+    /// edits beside the scene's.
     pub checks_motion: bool,
 }
 

@@ -4,7 +4,8 @@ use serde::{Serialize, Serializer};
 
 use crate::table::is_obeyed;
 
-/// Units by path: `functions[].generated` is what `generated` is in each of `functions`. Seconds and bytes that say so in their names are not among them.
+/// Units by path: `functions[].generated` is what `generated` is in each of `functions`. Seconds
+/// and bytes that say so in their names are not among them.
 #[derive(Clone, Copy, Debug)]
 pub struct Units(pub &'static [(&'static str, &'static str)]);
 
@@ -14,8 +15,8 @@ impl Serialize for Units {
     }
 }
 
-/// A report as JSON, indented, with a line's end. Characters that a terminal obeys are escaped as JSON
-/// has it.
+/// A report as JSON, indented, with a line's end. Characters that a terminal obeys are escaped as
+/// JSON has it.
 pub fn json(report: &impl Serialize) -> String {
     let text = serde_json::to_string_pretty(report).map_or_else(|e| format!("{{\"error\": {:?}}}\n", e.to_string()), |text| text + "\n");
     // Outside of texts there are no other such characters than ends of lines.

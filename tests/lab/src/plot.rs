@@ -1,4 +1,5 @@
-//! Plots in SVG: lines, dots and texts on a plane, and linear and logarithmic axes with their ticks.
+//! Plots in SVG: lines, dots and texts on a plane, and linear and logarithmic axes with their
+//! ticks.
 //!
 //! Lengths are in points; x leads to the right, y down.
 
@@ -196,7 +197,8 @@ impl Drawing {
         self.marks.push(Mark::Text(text));
     }
 
-    /// Upright lines of a grid at the ticks of an axis below, from `top` to `bottom`, and its numbers.
+    /// Upright lines of a grid at the ticks of an axis below, from `top` to `bottom`, and its
+    /// numbers.
     pub fn ticks_below(&mut self, axis: &Axis, ticks: &[(f64, String)], [top, bottom]: [f64; 2]) {
         for (number, text) in ticks {
             let x = axis.at(*number);
@@ -205,7 +207,8 @@ impl Drawing {
         }
     }
 
-    /// Level lines of a grid at the ticks of an axis at the left, from `left` to `right`, and its numbers.
+    /// Level lines of a grid at the ticks of an axis at the left, from `left` to `right`, and its
+    /// numbers.
     pub fn ticks_beside(&mut self, axis: &Axis, ticks: &[(f64, String)], [left, right]: [f64; 2]) {
         for (number, text) in ticks {
             let y = axis.at(*number);
@@ -286,7 +289,8 @@ impl Axis {
         Self { range: [low, high], ends, step: Some(step((high - low) / count)) }
     }
 
-    /// Logarithmic, over all numbers that have a logarithm; `room` is left at both ends, in decades.
+    /// Logarithmic, over all numbers that have a logarithm; `room` is left at both ends, in
+    /// decades.
     pub fn logarithmic(numbers: impl Iterator<Item = f64>, ends: [f64; 2], room: f64) -> Self {
         let logs = numbers.filter(|x| *x > 0.0 && x.is_finite()).map(f64::log10);
         let [low, high] = logs.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
@@ -305,8 +309,8 @@ impl Axis {
         (self.range[0]..=self.range[1]).contains(&number)
     }
 
-    /// The numbers written at a logarithmic axis: powers of ten, and their multiples by 2 and 5 where
-    /// there are few.
+    /// The numbers written at a logarithmic axis: powers of ten, and their multiples by 2 and 5
+    /// where there are few.
     pub fn decades(&self, text: impl Fn(f64) -> String) -> Vec<(f64, String)> {
         let decades = self.range[1] - self.range[0];
         let multiples: &[f64] = if decades < 2.5 { &[1.0, 2.0, 5.0] } else { &[1.0] };
@@ -316,8 +320,8 @@ impl Axis {
         all.filter(|x| self.holds(x.log10())).map(|x| (x, text(x))).collect()
     }
 
-    /// The numbers written at a linear axis, and the power of ten that all of them are to be multiplied
-    /// with.
+    /// The numbers written at a linear axis, and the power of ten that all of them are to be
+    /// multiplied with.
     pub fn ticks(&self) -> (Vec<(f64, String)>, i32) {
         let ([low, high], step) = (self.range, self.step.unwrap_or(1.0));
         let slack = 1e-9 * step;
@@ -336,7 +340,8 @@ impl Axis {
     }
 }
 
-/// The least and the most, some way apart: numbers that differ in their last digits only are drawn as one.
+/// The least and the most, some way apart: numbers that differ in their last digits only are drawn
+/// as one.
 fn wide(numbers: impl Iterator<Item = f64>) -> [f64; 2] {
     let ends = numbers.filter(|x| x.is_finite()).fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
     let [low, high] = if ends[0] <= ends[1] { ends.map(|x| x.clamp(-1e300, 1e300)) } else { [0.0, 1.0] };

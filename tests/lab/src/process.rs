@@ -1,5 +1,5 @@
-//! Temporary folders and programs that are run: both end when the process does, also when it is interrupted
-//! (Ctrl-C, or a signal), where nothing is dropped.
+//! Temporary folders and programs that are run: both end when the process does, also when it is
+//! interrupted (Ctrl-C, or a signal), where nothing is dropped.
 
 use std::hash::{BuildHasher, RandomState};
 use std::io::{self, Read};
@@ -37,8 +37,8 @@ impl Folder {
     }
 }
 
-/// A folder with a name that is free, for this user alone. Nothing can have been put there before: a name that is
-/// taken is an error, of a link too.
+/// A folder with a name that is free, for this user alone. Nothing can have been put there before:
+/// a name that is taken is an error, of a link too.
 fn made(parent: &Path) -> io::Result<PathBuf> {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let mut builder = std::fs::DirBuilder::new();
@@ -72,7 +72,8 @@ fn folders() -> MutexGuard<'static, Vec<PathBuf>> {
     FOLDERS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Ends compilers, removes the folders and ends the process. The lists stay locked, so that no other thread makes another of either.
+/// Ends compilers, removes the folders and ends the process. The lists stay locked, so that no
+/// other thread makes another of either.
 fn interrupted(status: i32) {
     let _children = kill();
     let folders = folders();
@@ -146,14 +147,16 @@ fn read(from: Option<impl Read>) -> io::Result<String> {
     Ok(String::from_utf8_lossy(&said).into_owned())
 }
 
-/// Ends all that run. The list stays locked for as long as the guard lives, so that nobody starts another.
+/// Ends all that run. The list stays locked for as long as the guard lives, so that nobody starts
+/// another.
 pub(crate) fn kill() -> MutexGuard<'static, Vec<Child>> {
     let mut children = children();
     children.iter_mut().for_each(end);
     children
 }
 
-/// Ends a program and all that it started. One that has ended by itself cannot be killed, and need not be.
+/// Ends a program and all that it started. One that has ended by itself cannot be killed, and need
+/// not be.
 fn end(child: &mut Child) {
     end_group(child);
     let _ = child.kill().and_then(|()| child.wait());
@@ -188,9 +191,9 @@ fn children() -> MutexGuard<'static, Vec<Child>> {
     CHILDREN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Calls `end` with the exit status, in a thread of its own, once a signal ends the process. A signal that
-/// is ignored from the start, as by `nohup` or in a script's background, stays ignored. Where no signal can
-/// be watched, an interrupted process leaves its folders behind.
+/// Calls `end` with the exit status, in a thread of its own, once a signal ends the process. A
+/// signal that is ignored from the start, as by `nohup` or in a script's background, stays ignored.
+/// Where no signal can be watched, an interrupted process leaves its folders behind.
 #[cfg(unix)]
 pub(crate) fn watch_signals(end: fn(i32)) {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};

@@ -70,8 +70,8 @@ impl Robot {
         if self.floating() { "floating" } else { "fixed" }
     }
 
-    /// A file with the document, for libraries that read files: the robot's own, or one in `folder`.
-    /// Errors: the robot is edited, and no file has it.
+    /// A file with the document, for libraries that read files: the robot's own, or one in
+    /// `folder`. Errors: the robot is edited, and no file has it.
     pub fn file_in(&self, folder: &Path) -> std::io::Result<PathBuf> {
         let o = &self.options.robot;
         if !(o.append.is_empty() && o.payloads.is_empty() && o.lock.is_empty() && o.shafts.is_empty()) || self.has_effects() {

@@ -45,7 +45,8 @@ impl Stage {
         Err(Error::input([format!("{}: level: found {level}, expected one whose functions take f64, as states here are", self.scene.file)]))
     }
 
-    /// The stage of a scene that was read. `folder`: that of its file, for other files that it names.
+    /// The stage of a scene that was read. `folder`: that of its file, for other files that it
+    /// names.
     pub fn new(name: String, prepared: Prepared, folder: PathBuf) -> Result<Self, Error> {
         let Prepared { scene, mut request, robot, .. } = prepared;
         let BuiltRobot { reading, model, resolved, effects, .. } = robot;
@@ -60,8 +61,8 @@ impl Stage {
         Ok(Self { name, request, odd, stage })
     }
 
-    /// Where the motion starts, and what controls it; warnings are printed. Errors: all that do not fit the
-    /// robot, and tables that cannot be read.
+    /// Where the motion starts, and what controls it; warnings are printed. Errors: all that do not
+    /// fit the robot, and tables that cannot be read.
     pub fn start(&self) -> Result<Begin, Error> {
         let begin = self.begin()?;
         self.warnings(&begin).iter().for_each(|line| console::warn(line));
@@ -89,8 +90,8 @@ impl Stage {
         Ok((articulated_codegen::generate(&request)?, frames))
     }
 
-    /// Runs the motion, by generated code or by the generic library; `look` sees the time and the counts after
-    /// each step. The outcome, and what the scene looks for and the code has not.
+    /// Runs the motion, by generated code or by the generic library; `look` sees the time and the
+    /// counts after each step. The outcome, and what the scene looks for and the code has not.
     pub fn run(
         &self,
         begin: &Begin,

@@ -1,4 +1,5 @@
-//! Limbs that are alike, mirrored, nearly alike or of different lengths: whatever goes into lanes compiles, and is right.
+//! Limbs that are alike, mirrored, nearly alike or of different lengths: whatever goes into lanes
+//! compiles, and is right.
 
 use articulated_codegen::{Generated, Options};
 use articulated_core::description::Base;
@@ -11,7 +12,8 @@ use crate::robots::{Robot, with};
 
 const ROBOTS: u64 = 32;
 
-/// One of each way in which code is made: lanes alone, matrices in lanes, pieces, frames, and what all limbs add to.
+/// One of each way in which code is made: lanes alone, matrices in lanes, pieces, frames, and what
+/// all limbs add to.
 const FUNCTIONS: [&str; 5] =
     ["inverse_dynamics", "mass_matrix", "inverse_dynamics_derivatives", "jacobians_body", "centroidal_momentum_matrix"];
 

@@ -1,8 +1,10 @@
 //! Articulated-body algorithm.
 //!
-//! Featherstone 2008, Table 7.1, in body axes with classical accelerations, as [`super::rnea`] has them: the bias acceleration of a joint and the bias wrench of
-//! a body then need no linear velocity. Effects are in [`super::effects`]: forces of those on joints count as torques, a rotor's inertia is part of the pivot. The degrees of freedom
-//! of one joint are eliminated one after the other.
+//! Featherstone 2008, Table 7.1, in body axes with classical accelerations, as [`super::rnea`] has
+//! them: the bias acceleration of a joint and the bias wrench of a body then need no linear
+//! velocity. Effects are in [`super::effects`]: forces of those on joints count as torques, a
+//! rotor's inertia is part of the pivot. The degrees of freedom of one joint are eliminated one
+//! after the other.
 
 use super::effects::{self, LoadCase};
 use super::workspace::Column;
@@ -95,7 +97,8 @@ fn velocity<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, v: &[S
     ws.articulated[i] = ArticulatedInertia::rigid(&body.inertia);
 }
 
-/// Eliminates the joint of body `i`, and shifts the articulated inertia and the bias wrench that remain to the parent.
+/// Eliminates the joint of body `i`, and shifts the articulated inertia and the bias wrench that
+/// remain to the parent.
 fn eliminate_joint<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, i: usize, tau: &[S]) {
     let pose = ws.bodies[i].pose;
     let (mut inertia, mut bias) = (ws.articulated[i], ws.bodies[i].wrench);

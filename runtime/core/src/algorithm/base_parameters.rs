@@ -1,7 +1,9 @@
-//! Base parameters: the inertial parameters that joint torques depend on, and which of them torques determine.
+//! Base parameters: the inertial parameters that joint torques depend on, and which of them torques
+//! determine.
 //!
-//! The structure is that of Khalil & Dombre, *Modeling, Identification and Control of Robots*, 2002, §9.4; the independent parameters are those
-//! of the numeric rank of torques at random states (Gautier, *J. Robotic Systems* 8, 1991, 485–506).
+//! The structure is that of Khalil & Dombre, *Modeling, Identification and Control of Robots*,
+//! 2002, §9.4; the independent parameters are those of the numeric rank of torques at random states
+//! (Gautier, *J. Robotic Systems* 8, 1991, 485–506).
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -31,7 +33,8 @@ pub struct BaseParameter {
     pub name: &'static str,
     /// kg, kg·m or kg·m².
     pub value: f64,
-    /// What one unit of it is in m, h and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz ([`SpatialInertia::parameters`]).
+    /// What one unit of it is in m, h and I_xx, I_xy, I_xz, I_yy, I_yz, I_zz
+    /// ([`SpatialInertia::parameters`]).
     pub direction: [f64; 10],
     /// What torques tell of it.
     pub identifiability: Identifiability,
@@ -46,10 +49,13 @@ pub struct BodyParameters {
     pub parameters: Vec<BaseParameter>,
 }
 
-/// The base parameters of a model that is regrouped ([`crate::model::regroup`]), body by body from the tips inward.
+/// The base parameters of a model that is regrouped ([`crate::model::regroup`]), body by body from
+/// the tips inward.
 ///
-/// A universal or planar joint is several bodies, and regrouping leaves parameters to each of these; not all are independent of each other then.
-/// Work grows as the cube of the number of bodies. A parameter of whose torques less than 10⁻⁷ is independent of those before it counts as dependent.
+/// A universal or planar joint is several bodies, and regrouping leaves parameters to each of
+/// these; not all are independent of each other then. Work grows as the cube of the number of
+/// bodies. A parameter of whose torques less than 10⁻⁷ is independent of those before it counts as
+/// dependent.
 pub fn base_parameters(model: &Model<f64>) -> Vec<BodyParameters> {
     let mut found = ranks(&torque_columns(model, |i| left_by_regrouping(model.bodies[i].joint))).into_iter();
     let body = |i: usize| {
@@ -65,14 +71,16 @@ pub fn base_parameters(model: &Model<f64>) -> Vec<BodyParameters> {
     model.inward().map(body).collect()
 }
 
-/// How many combinations of the ten parameters of each moving link joint torques determine: the rank of [`super::torque_regressor`].
+/// How many combinations of the ten parameters of each moving link joint torques determine: the
+/// rank of [`super::torque_regressor`].
 pub fn identifiable_parameters(model: &Model<f64>) -> usize {
     let ten_of_link = |i: usize| if model.bodies[i].link.is_some() { ALL } else { &[] };
     let found = ranks(&torque_columns(model, ten_of_link));
     found.iter().filter(|one| **one == Identifiability::Alone).count()
 }
 
-/// A name, what one unit of it is in the ten, and its value in terms of the ten. A revolute body has Σ_zz = 0, which ties I_xx and I_yy to I_zz.
+/// A name, what one unit of it is in the ten, and its value in terms of the ten. A revolute body
+/// has Σ_zz = 0, which ties I_xx and I_yy to I_zz.
 type Direction = (&'static str, [f64; 10], [f64; 10]);
 
 const fn unit(k: usize) -> [f64; 10] {
@@ -118,7 +126,8 @@ fn left_by_regrouping(joint: Joint) -> &'static [Direction] {
     }
 }
 
-/// For each of these parameters of each body, from the tips inward, the torques of one unit of it alone, over a number of states: `[parameters][states · nv]`.
+/// For each of these parameters of each body, from the tips inward, the torques of one unit of it
+/// alone, over a number of states: `[parameters][states · nv]`.
 fn torque_columns(model: &Model<f64>, parameters: impl Fn(usize) -> &'static [Direction]) -> Vec<Vec<f64>> {
     let mut weightless = model.clone();
     // Forces of springs, drag and rotors do not depend on the parameters.
@@ -140,7 +149,8 @@ fn torque_columns(model: &Model<f64>, parameters: impl Fn(usize) -> &'static [Di
     columns
 }
 
-/// So many states that the parameters of the bodies on one coordinate, which may be seen in its torque alone, can be told apart.
+/// So many states that the parameters of the bodies on one coordinate, which may be seen in its
+/// torque alone, can be told apart.
 fn number_of_states(model: &Model<f64>, parameters: &impl Fn(usize) -> &'static [Direction]) -> usize {
     let mut on_coordinate = vec![0; model.nv];
     model.outward().for_each(|i| on_coordinate[model.bodies[i].coordinates.v] += parameters(i).len());
@@ -164,7 +174,8 @@ fn states(model: &Model<f64>, ws: &mut Workspace<f64>, count: usize) -> Vec<[Vec
     (0..count).map(|_| one()).collect()
 }
 
-/// Numbers in [0, 1): Steele, Lea & Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
+/// Numbers in [0, 1): Steele, Lea & Flood, "Fast splittable pseudorandom number generators", OOPSLA
+/// 2014.
 fn splitmix64(mut seed: u64) -> impl FnMut() -> f64 {
     move || {
         seed = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -178,7 +189,8 @@ fn splitmix64(mut seed: u64) -> impl FnMut() -> f64 {
 /// A column of which less than this is independent of others depends on them.
 const DEPENDENT: f64 = 1e-7;
 
-/// Which columns are independent of those before them: modified Gram–Schmidt on columns of unit length.
+/// Which columns are independent of those before them: modified Gram–Schmidt on columns of unit
+/// length.
 fn ranks(columns: &[Vec<f64>]) -> Vec<Identifiability> {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let norm = |a: &[f64]| Scalar::sqrt(dot(a, a));

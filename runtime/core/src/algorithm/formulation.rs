@@ -6,14 +6,18 @@ use crate::Scalar;
 use crate::joint::{Angle, Coordinates};
 use crate::spatial::SpatialInertia;
 
-/// Choices for the bodies of a model, by their indices; a body beyond the end of a list has the default. [`super::Workspace::with_formulation`] takes it.
+/// Choices for the bodies of a model, by their indices; a body beyond the end of a list has the
+/// default. [`super::Workspace::with_formulation`] takes it.
 ///
-/// The caller answers for it that results are the same: that rotations and inertias go with the frames and inertias of the model.
+/// The caller answers for it that results are the same: that rotations and inertias go with the
+/// frames and inertias of the model.
 #[derive(Clone, Debug)]
 pub struct Formulation<S> {
-    /// How the frames of bodies on a rotation about an axis rotate; by default as [`FrameRotation::of_joint`].
+    /// How the frames of bodies on a rotation about an axis rotate; by default as
+    /// [`FrameRotation::of_joint`].
     pub rotations: Vec<FrameRotation<S>>,
-    /// Mass properties for inverse dynamics: any that have the same torques; by default the model's.
+    /// Mass properties for inverse dynamics: any that have the same torques; by default the
+    /// model's.
     pub torque_inertias: Vec<SpatialInertia<S>>,
     /// What inverse dynamics finds rate matrices from.
     pub kinematics: Vec<AngularKinematics>,
@@ -24,7 +28,8 @@ pub struct Formulation<S> {
 pub struct FrameRotation<S> {
     /// The angle of the frame where the joint's coordinate is zero.
     pub offset: Angle<S>,
-    /// One: the frame rotates with the body. Zero: it stays; the body has to be axisymmetric then, or the constants that are given have to be those at one configuration.
+    /// One: the frame rotates with the body. Zero: it stays; the body has to be axisymmetric then,
+    /// or the constants that are given have to be those at one configuration.
     pub share: S,
 }
 
@@ -34,8 +39,10 @@ pub enum AngularKinematics {
     /// From ω and ω̇, for a joint of any kind.
     #[default]
     AngularAcceleration,
-    /// For a revolute joint, from ω, ω̇_z and the second derivative ë of the joint's axis e ([`crate::spatial::rates_about`]). The axis is fixed in both
-    /// bodies of the joint, so that ë = U_λ e is a column of what the parent has already: it is turned in place of ω̇, and what is added to ω̇ is not computed.
+    /// For a revolute joint, from ω, ω̇_z and the second derivative ë of the joint's axis e
+    /// ([`crate::spatial::rates_about`]). The axis is fixed in both bodies of the joint, so that ë
+    /// = U_λ e is a column of what the parent has already: it is turned in place of ω̇, and what is
+    /// added to ω̇ is not computed.
     AxisAcceleration,
     /// The same, and U's diagonal from ë_z = −(ω_x² + ω_y²) as well.
     AxisAccelerationAndDiagonal,

@@ -1,10 +1,11 @@
 //! Recursive Newton–Euler algorithm.
 //!
-//! Two sweeps in body axes. Instead of spatial accelerations it carries ω, ω̇ and the classical acceleration of each origin, and
-//! applies them through U = [ω̇]× + [ω]×[ω]×, so that no linear velocity is ever formed (Luh, Walker & Paul, *ASME J. Dyn. Syst. Meas.
-//! Control* 102, 1980, 69–76; the rate matrix after Balafoutis & Patel, *Dynamic Analysis of Robot Manipulators*, 1991, ch. 4).
-//! Bodies may have U by the axis of their joint, which accelerates alike in both of its bodies, in place of ω̇ ([`AngularKinematics`]).
-//! The plain matrix form is [`super::textbook`].
+//! Two sweeps in body axes. Instead of spatial accelerations it carries ω, ω̇ and the classical
+//! acceleration of each origin, and applies them through U = [ω̇]× + [ω]×[ω]×, so that no linear
+//! velocity is ever formed (Luh, Walker & Paul, *ASME J. Dyn. Syst. Meas. Control* 102, 1980,
+//! 69–76; the rate matrix after Balafoutis & Patel, *Dynamic Analysis of Robot Manipulators*, 1991,
+//! ch. 4). Bodies may have U by the axis of their joint, which accelerates alike in both of its
+//! bodies, in place of ω̇ ([`AngularKinematics`]). The plain matrix form is [`super::textbook`].
 
 use super::effects::{self, LoadCase};
 use super::{AngularKinematics, Workspace, wrenches};
@@ -153,7 +154,8 @@ pub fn gravity_torque<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S
     ws.zeros = zeros;
 }
 
-/// Motion and own wrench of each body, with the formulation's kinematics and inertias or with the default.
+/// Motion and own wrench of each body, with the formulation's kinematics and inertias or with the
+/// default.
 fn outward_sweep<S: Scalar, const FORMULATED: bool>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S]) {
     ws.set_poses(model, q);
     for i in model.outward() {

@@ -201,7 +201,8 @@ impl<S: Scalar> Workspace<S> {
         }
     }
 
-    /// Whether nothing depends on the angle of body `i`: its frame does not rotate, it is axisymmetric, and it carries no other.
+    /// Whether nothing depends on the angle of body `i`: its frame does not rotate, it is
+    /// axisymmetric, and it carries no other.
     pub(super) fn is_independent_of_angle(&self, model: &Model<S>, i: usize) -> bool {
         let stays = self.formulation.rotations.get(i).is_some_and(|rotation| rotation.share.is_zero());
         stays && model.bodies[i].inertia.is_axisymmetric() && model.outward().all(|k| model.bodies[k].parent != i)

@@ -168,8 +168,8 @@ impl Diagnostics {
         keys.into_iter().filter(|key| self.more_errors == 0 && !errors.iter().any(|e| is_of(&e.field, key))).collect()
     }
 
-    /// Sorts errors: first those of the file, in its order, then those of other files. Errors of one
-    /// line stay as they are.
+    /// Sorts errors: first those of the file, in its order, then those of other files. Errors of
+    /// one line stay as they are.
     pub fn sort(&mut self) {
         let (file, errors) = (&self.file, &mut self.errors);
         errors.sort_by_key(|e| (e.span.file != *file, e.line(), if let At::Word(word) = e.span.at { Some(word) } else { None }));

@@ -1,8 +1,8 @@
 //! Findings about files, requests and robots: one type, one collector.
 //!
-//! A check takes `&mut Diagnostics`, reports what it finds, and continues: all findings of one input
-//! come from one pass over it. The roads (macro, build script, command) differ in how they show a
-//! [`Diagnostic`], not in what they find.
+//! A check takes `&mut Diagnostics`, reports what it finds, and continues: all findings of one
+//! input come from one pass over it. The roads (macro, build script, command) differ in how they
+//! show a [`Diagnostic`], not in what they find.
 
 mod code;
 mod collector;

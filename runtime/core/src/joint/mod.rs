@@ -159,7 +159,8 @@ pub enum Freedom {
 }
 
 impl Joint {
-    /// Whether the joint is a rotation about its axis and nothing else: the child's origin stays, and S = [e_z; 0].
+    /// Whether the joint is a rotation about its axis and nothing else: the child's origin stays,
+    /// and S = [e_z; 0].
     #[inline(always)]
     pub const fn is_rotation_about_axis(self) -> bool {
         matches!((self.rotation(), self.translation()), (Freedom::Axis, Freedom::None))
@@ -171,7 +172,8 @@ impl Joint {
         matches!((self.rotation(), self.translation()), (Freedom::None, Freedom::Axis))
     }
 
-    /// Whether the joint moves the child's origin in the parent, so that a coordinate, a rate or a force of it has a length in it.
+    /// Whether the joint moves the child's origin in the parent, so that a coordinate, a rate or a
+    /// force of it has a length in it.
     #[inline(always)]
     pub const fn moves_origin(self) -> bool {
         !matches!(self.translation(), Freedom::None)
@@ -288,7 +290,8 @@ pub trait JointLaw<S: Scalar>: Copy {
     const QUATERNION: Option<usize>;
     /// The directions in which the child rotates.
     const ROTATION: Freedom;
-    /// The directions in which the child's origin moves; along the axis by the rotation where that is the only degree of freedom.
+    /// The directions in which the child's origin moves; along the axis by the rotation where that
+    /// is the only degree of freedom.
     const TRANSLATION: Freedom;
 
     /// The pose at the joint's coordinates in `q`.
@@ -328,9 +331,11 @@ pub trait JointLaw<S: Scalar>: Copy {
     /// S_kᵀ F: the joint's own torque k, N·m or N, for the wrench F on the child, in the child's frame.
     fn torque(&self, wrench: &Wrench<S>, k: usize) -> S;
 
-    /// The part of the child's inertia, in its frame, that no torque of the joint distinguishes from the parent's; `None`: nothing.
+    /// The part of the child's inertia, in its frame, that no torque of the joint distinguishes
+    /// from the parent's; `None`: nothing.
     fn regroupable(inertia: &SpatialInertia<S>) -> Option<SpatialInertia<S>>;
 
-    /// Whether the mass matrix of the joint alone is not zero in at least one of its directions, for a child of this inertia.
+    /// Whether the mass matrix of the joint alone is not zero in at least one of its directions,
+    /// for a child of this inertia.
     fn has_inertia(inertia: &SpatialInertia<S>) -> bool;
 }

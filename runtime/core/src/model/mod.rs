@@ -67,7 +67,9 @@ pub struct Body<S> {
     pub coordinates: Coordinates<S>,
     /// Mass properties in the body's frame, everything that is fixed to the body included.
     pub inertia: SpatialInertia<S>,
-    /// For the body of a joint's child link, the axes of that link in the body's, as a rotation; the origins are the same. `None` for the base, and for the bodies without mass inside a planar or universal joint.
+    /// For the body of a joint's child link, the axes of that link in the body's, as a rotation;
+    /// the origins are the same. `None` for the base, and for the bodies without mass inside a
+    /// planar or universal joint.
     pub link: Option<Matrix3<S>>,
     /// What acts on it and on its joint besides.
     pub effects: Effects<S>,

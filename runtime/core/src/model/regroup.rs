@@ -4,11 +4,14 @@ use crate::Scalar;
 use crate::model::{Body, Model};
 use crate::spatial::SpatialInertia;
 
-/// Moves the inertial parameters of each body that its joint cannot distinguish from the parent's to the parent, from the tips inward.
+/// Moves the inertial parameters of each body that its joint cannot distinguish from the parent's
+/// to the parent, from the tips inward.
 ///
-/// Mass on the axis of a revolute joint moves with the parent whatever the angle: m, h_z and Σ_zz go there, and what is left has Σ_zz = 0 and no
-/// mass. A prismatic joint does not turn its body: Σ goes to the parent. A spherical joint's centre moves with the parent: m goes there. Exact for all joint torques and for the mass
-/// matrix (Khalil & Dombre, *Modeling, Identification and Control of Robots*, 2002, §9.4); placements do not change.
+/// Mass on the axis of a revolute joint moves with the parent whatever the angle: m, h_z and Σ_zz
+/// go there, and what is left has Σ_zz = 0 and no mass. A prismatic joint does not turn its body: Σ
+/// goes to the parent. A spherical joint's centre moves with the parent: m goes there. Exact for
+/// all joint torques and for the mass matrix (Khalil & Dombre, *Modeling, Identification and
+/// Control of Robots*, 2002, §9.4); placements do not change.
 pub fn regroup<S: Scalar>(mut model: Model<S>) -> Model<S> {
     for i in model.inward() {
         regroup_body(&mut model, i);

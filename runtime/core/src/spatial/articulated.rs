@@ -5,7 +5,8 @@ use nalgebra::Matrix3;
 use super::{Placement, SpatialInertia, Twist, Wrench, rotate, rotate_back, turned_about_z};
 use crate::Scalar;
 
-/// The apparent inertia of a body with the joints beyond it free to move: the symmetric matrix [A B; Bᵀ C] on [ω̇; a] (Featherstone 2008, §7.1).
+/// The apparent inertia of a body with the joints beyond it free to move: the symmetric matrix [A
+/// B; Bᵀ C] on [ω̇; a] (Featherstone 2008, §7.1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ArticulatedInertia<S> {
     /// A, kg·m², symmetric.
@@ -41,7 +42,8 @@ impl<S: Scalar> ArticulatedInertia<S> {
         }
     }
 
-    /// The inertia after one degree of freedom is eliminated: I − U Uᵀ / D, with U = I S and 1 / D = 1 / Sᵀ I S.
+    /// The inertia after one degree of freedom is eliminated: I − U Uᵀ / D, with U = I S and 1 / D
+    /// = 1 / Sᵀ I S.
     #[inline(always)]
     #[must_use]
     pub fn eliminating(&self, u: &Wrench<S>, inverse: S) -> Self {

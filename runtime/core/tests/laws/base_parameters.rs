@@ -1,4 +1,5 @@
-//! Base parameters: as many as the regressor of torques has ranks, and values that give the robot's torques.
+//! Base parameters: as many as the regressor of torques has ranks, and values that give the robot's
+//! torques.
 
 use articulated_core::algorithm::{Identifiability, Workspace, base_parameters, identifiable_parameters, torque_regressor};
 use articulated_core::description::Base;

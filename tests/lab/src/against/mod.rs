@@ -1,4 +1,5 @@
-//! Simulations against peers: how long who needs to get to the end of a motion, at the same error there.
+//! Simulations against peers: how long who needs to get to the end of a motion, at the same error
+//! there.
 
 mod ours;
 pub(crate) mod peers;

@@ -307,7 +307,8 @@ impl Report {
         engines
     }
 
-    /// The first error or difference that is too large, as a sentence. `bound`: of errors, `other_bound`: of the differences of other code of ours.
+    /// The first error or difference that is too large, as a sentence. `bound`: of errors,
+    /// `other_bound`: of the differences of other code of ours.
     pub(super) fn beyond(&self, bound: f64, other_bound: f64) -> Option<String> {
         let beyond = |x: f64, bound: f64| x.is_nan() || x > bound;
         self.functions.iter().find_map(|f| {

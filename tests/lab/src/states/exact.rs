@@ -3,7 +3,8 @@
 /// So many random doubles per format.
 const COUNT: usize = 100_000;
 
-/// Finite doubles: every second one of any size, subnormal too; the others of sizes that robots have.
+/// Finite doubles: every second one of any size, subnormal too; the others of sizes that robots
+/// have.
 pub fn doubles() -> Vec<f64> {
     let mut state = 0x9e37_79b9_7f4a_7c15_u64;
     let mut next = || {

@@ -39,7 +39,8 @@ impl State {
     }
 }
 
-/// Reads states in JSON or CSV. Errors: all of the file's, a line each, with the state and the joint.
+/// Reads states in JSON or CSV. Errors: all of the file's, a line each, with the state and the
+/// joint.
 pub fn read(bytes: &[u8], model: &Model<f64>) -> Result<States, Vec<String>> {
     let text = std::str::from_utf8(bytes).map_err(|e| vec![format!("byte {}: found no UTF-8, expected JSON or CSV", e.valid_up_to())])?;
     let text = text.trim_start_matches('\u{feff}');

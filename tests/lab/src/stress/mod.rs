@@ -1,6 +1,7 @@
 //! Cases that break dynamics software, measured.
 //!
-//! For tests: [`corpus::CHAPTERS`], each a list of [`row::Row`]s with a limit that each has to keep.
+//! For tests: [`corpus::CHAPTERS`], each a list of [`row::Row`]s with a limit that each has to
+//! keep.
 
 mod condition;
 pub mod corpus;

@@ -89,8 +89,8 @@ fn of_robots(settings: &Settings) -> Vec<Level> {
     }
 }
 
-/// Measures a robot: on states at random, on hard ones, and on those given. `model`: with a frame for
-/// each link.
+/// Measures a robot: on states at random, on hard ones, and on those given. `model`: with a frame
+/// for each link.
 pub fn of_robot(robot: &Robot, model: &Model<f64>, given: &[State], settings: &Settings) -> Result<Report, Error> {
     let mut found = own::rows(robot, model, given, &of_robots(settings))?;
     found.notes.extend(note_of_parameters(&robot.options));
