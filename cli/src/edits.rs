@@ -103,7 +103,7 @@ fn split(text: &OsStr) -> Option<(PathBuf, String)> {
 fn origin(text: &str) -> Result<Origin, String> {
     match *numbers(text)?.as_slice() {
         [x, y, z] => Ok(Origin { xyz: [x, y, z], ..Origin::default() }),
-        [x, y, z, roll, pitch, yaw] => Ok(Origin { xyz: [x, y, z], rpy: [roll, pitch, yaw] }),
+        [x, y, z, roll, pitch, yaw] => Ok(Origin::new([x, y, z], [roll, pitch, yaw])),
         _ => Err("expected X,Y,Z in m, or X,Y,Z,ROLL,PITCH,YAW in m and rad".into()),
     }
 }
@@ -158,9 +158,9 @@ mod tests {
         let appended = |text: &str| super::appended(OsStr::new(text));
         let plain = Appended { file: "a@b/gripper.urdf".into(), at: "tool".into(), prefix: String::new(), origin: Origin::default() };
         assert_eq!(appended("a@b/gripper.urdf@tool"), Ok(plain.clone()));
-        let placed = Appended { prefix: "left_".into(), origin: Origin { xyz: [0.0, 0.0, 0.1], rpy: [0.0, 0.0, 1.5] }, ..plain.clone() };
+        let placed = Appended { prefix: "left_".into(), origin: Origin::new([0.0, 0.0, 0.1], [0.0, 0.0, 1.5]), ..plain.clone() };
         assert_eq!(appended("a@b/gripper.urdf@tool:left_:0,0,0.1,0,0,1.5"), Ok(placed.clone()));
-        let straight = Appended { prefix: String::new(), origin: Origin { rpy: [0.0; 3], ..placed.origin }, ..placed };
+        let straight = Appended { prefix: String::new(), origin: Origin::at(placed.origin.xyz), ..placed };
         assert_eq!(appended("a@b/gripper.urdf@tool::0,0,0.1"), Ok(straight));
         assert!(appended("gripper.urdf").is_err() && appended("gripper.urdf@").is_err() && appended("g@l:p:1,2").is_err());
     }

@@ -441,8 +441,12 @@ fn a_round_wheel_turns_the_float_on_its_rim() {
         axis: [0.0, 1.0, 0.0],
         ..description::Joint::default()
     };
-    let description =
-        Description { name: "wheel".into(), links: vec![link("base", None), link("wheel", Some(round))], joints: vec![joint] };
+    let description = Description {
+        name: "wheel".into(),
+        links: vec![link("base", None), link("wheel", Some(round))],
+        joints: vec![joint],
+        frames: Vec::new(),
+    };
     let wheel = Model::new(&description, Base::Fixed).expect("a wheel").with_gravity([0.0, 0.0, -9.81]);
     // Without the frames of links, which are not needed here.
     assert!(!bare(&wheel).passed().rotates(1));

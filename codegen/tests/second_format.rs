@@ -3,8 +3,10 @@
 use articulated_codegen::formats::urdf::Urdf;
 use articulated_codegen::formats::{Format, Formats, Input};
 use articulated_codegen::{Origin, Request, generate};
-use articulated_core::description::{Description, Inertial, Joint, JointKind, Link};
+use articulated_core::algorithm::{Workspace, function};
+use articulated_core::description::{Description, Frame, Inertial, Joint, JointKind, Link, Rotation};
 use articulated_core::diagnostic::{At, Code, Diagnostics, Place, Subject};
+use articulated_core::model::Model;
 use toml::{Table, Value};
 
 struct Tiny;
@@ -45,11 +47,14 @@ impl Format for Tiny {
                 diagnostics.error(place, Code::UnknownLink, "a link that does not exist", "the name of a link");
                 return None;
             };
-            let origin = Origin { xyz: numbers(joint, "xyz"), ..Origin::default() };
+            let origin = read_origin(joint);
             Some(Joint { name, kind: JointKind::Continuous, parent, child, origin, axis: numbers(joint, "axis"), ..Joint::default() })
         };
         let joints: Vec<Joint> = tables("joint").into_iter().filter_map(joint).collect();
-        Some(Description { name: text_of(&table, "name"), links, joints })
+        let frame =
+            |frame: &Table| Some(Frame { name: text_of(frame, "name"), link: index(&text_of(frame, "link"))?, origin: read_origin(frame) });
+        let frames = tables("frame").into_iter().filter_map(frame).collect();
+        Some(Description { name: text_of(&table, "name"), links, joints, frames })
     }
 }
 
@@ -62,6 +67,17 @@ fn numbers<const N: usize>(table: &Table, key: &str) -> [f64; N] {
     std::array::from_fn(|k| list.and_then(|list| list.get(k)?.as_float()).unwrap_or_default())
 }
 
+fn read_origin(table: &Table) -> Origin {
+    let rotation = match table.get("matrix") {
+        Some(_) => {
+            let rows = numbers::<9>(table, "matrix");
+            Rotation::Matrix([0, 3, 6].map(|k| [rows[k], rows[k + 1], rows[k + 2]]))
+        }
+        None => Rotation::IDENTITY,
+    };
+    Origin { xyz: numbers(table, "xyz"), rotation }
+}
+
 fn read_link(link: &Table, diagnostics: &mut Diagnostics) -> Link {
     let name = text_of(link, "name");
     let mass = link.get("mass").and_then(Value::as_float);
@@ -71,7 +87,8 @@ fn read_link(link: &Table, diagnostics: &mut Diagnostics) -> Link {
     }
     let origin = Origin { xyz: numbers(link, "com"), ..Origin::default() };
     let inertial = mass.map(|mass| Inertial { origin, mass, inertia: numbers(link, "inertia") });
-    Link { name, inertial, collision: Vec::new() }
+    let intermediate = link.get("intermediate").and_then(Value::as_bool).unwrap_or_default();
+    Link { name, inertial, intermediate, ..Link::default() }
 }
 
 const TINY: &str = r#"# tiny
@@ -140,5 +157,74 @@ fn edits_and_findings_are_those_of_every_format() {
     let told = generate(&request).unwrap_err().to_string();
     for part in ["arm.tiny: link \"upper\": mass: found a negative mass", "joint \"elbow\": parent: found a link", "`no_such`"] {
         assert_eq!(told.lines().filter(|line| line.contains(part)).count(), 1, "{part} in {told}");
+    }
+}
+
+/// What this format has and URDF has not: two joints in sequence on one body, a frame that is no
+/// link, a rotation by its matrix.
+const WIDE: &str = r#"# tiny
+name = "gimbal"
+[[link]]
+name = "base"
+[[link]]
+name = "rotor_1"
+intermediate = true
+[[link]]
+name = "rotor"
+mass = 2.0
+com = [0.0, 0.1, -0.3]
+inertia = [0.1, 0.0, 0.0, 0.2, 0.0, 0.1]
+[[joint]]
+name = "yaw"
+parent = "base"
+child = "rotor_1"
+xyz = [0.0, 0.0, 1.0]
+matrix = [0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]
+axis = [0.0, 0.0, 1.0]
+[[joint]]
+name = "pitch"
+parent = "rotor_1"
+child = "rotor"
+axis = [0.0, 1.0, 0.0]
+[[frame]]
+name = "tool"
+link = "rotor"
+xyz = [0.0, 0.0, 0.5]
+matrix = [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]
+"#;
+
+/// The same as a universal joint and a fixed link.
+const UNIVERSAL: &str = r#"<robot name="gimbal"><link name="base"/>
+<link name="rotor"><inertial><origin xyz="0 0.1 -0.3"/><mass value="2"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.2" iyz="0" izz="0.1"/></inertial></link>
+<link name="tool"/>
+<joint name="yaw_pitch" type="universal"><parent link="base"/><child link="rotor"/><origin xyz="0 0 1" rpy="0 0 1.5707963267948966"/>
+<axis xyz="0 0 1"/><axis2 xyz="0 1 0"/></joint>
+<joint name="mount" type="fixed"><parent link="rotor"/><child link="tool"/><origin xyz="0 0 0.5" rpy="1.5707963267948966 0 1.5707963267948966"/></joint></robot>"#;
+
+#[test]
+fn joints_in_sequence_on_a_body_and_free_frames_are_those_of_the_equal_robot() {
+    let model = |file: &str, document: &str| {
+        let request = request(file, document);
+        generate(&request).unwrap_or_else(|e| panic!("{e}")).model
+    };
+    let (wide, universal) = (model("gimbal.tiny", WIDE), model("gimbal.urdf", UNIVERSAL));
+    let names = |model: &Model| model.frames.iter().map(|frame| frame.name.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&wide), ["base", "rotor", "tool"]);
+    assert_eq!(names(&wide), names(&universal));
+    assert_eq!(wide.links().collect::<Vec<_>>(), [2]);
+    assert_eq!(wide.joints.iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>(), ["yaw", "pitch"]);
+    let [q, v, a] = [[0.3, -0.8], [0.7, 0.4], [-0.2, 1.1]];
+    for (name, arguments) in [("placements", &[&q[..]][..]), ("inverse_dynamics", &[&q, &v, &a]), ("joint_wrenches", &[&q, &v, &a])] {
+        let of = |model: &Model| {
+            let row = function::<f64>(name).unwrap();
+            let mut out = vec![0.0; row.len(model.shape())];
+            row.call(model, &mut Workspace::new(model), arguments, &mut out).unwrap();
+            out
+        };
+        let (found, expected) = (of(&wide), of(&universal));
+        assert!(
+            found.len() == expected.len() && found.iter().zip(&expected).all(|(x, y)| (x - y).abs() < 1e-14),
+            "{name}: {found:?} {expected:?}"
+        );
     }
 }

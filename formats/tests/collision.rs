@@ -33,9 +33,9 @@ fn shapes_are_read_with_their_places_in_the_order_of_the_file() {
         <collision><geometry><drake:capsule radius='0.2' length='4'/></geometry></collision>";
     let reading = hook(text);
     assert!(reading.warnings.is_empty(), "{:?}", reading.warnings);
-    let at = |xyz: [f64; 3]| Origin { xyz, rpy: [0.0; 3] };
+    let at = |xyz: [f64; 3]| Origin::at(xyz);
     let expected = [
-        (Origin { xyz: [1.0, 2.0, 3.0], rpy: [0.0, FRAC_PI_2, 0.0] }, CollisionShape::Sphere { radius: 0.25 }),
+        (Origin::new([1.0, 2.0, 3.0], [0.0, FRAC_PI_2, 0.0]), CollisionShape::Sphere { radius: 0.25 }),
         (at([0.0; 3]), CollisionShape::Box { size: [1.0, 2.5, 0.0] }),
         (at([0.0, 0.0, -1.0]), CollisionShape::Cylinder { radius: 0.5, length: 2.0 }),
         (at([0.0; 3]), CollisionShape::Capsule { radius: 0.1, length: 3.0 }),

@@ -59,7 +59,7 @@ fn defaults_are_those_of_the_build_script() {
 #[test]
 fn edits_are_those_of_the_build_script_and_every_file_is_mentioned() {
     let (urdf, gripper) = ("../tests/ui/urdf/three.urdf", "../tests/ui/urdf/gripper.urdf");
-    let origin = Origin { xyz: [0.0, 0.0, 0.1], rpy: [0.0, 0.5, 0.0] };
+    let origin = Origin::new([0.0, 0.0, 0.1], [0.0, 0.5, 0.0]);
     let payload = Payload { link: "grip_palm".into(), mass: 0.5, inertia: [1e-3, 0.0, 0.0, 1e-3, 0.0, 1e-3], ..Payload::default() };
     let build = Build::new(urdf)
         .append(gripper, "tool", "grip_", origin)

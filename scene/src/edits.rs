@@ -1,6 +1,6 @@
 //! What a scene does to the robot before a model is made of it: joints locked, loads attached, robots appended, links renamed.
 
-use articulated_core::description::{Origin, Payload};
+use articulated_core::description::{Origin, Payload, Rotation};
 use articulated_core::diagnostic::{At, Code, Diagnostics};
 
 use crate::table::{Row, Spot};
@@ -178,6 +178,6 @@ pub(crate) const APPEND: &[Row<Append>] = &[
         value: "3 numbers, rad",
         default: "[0, 0, 0]",
         what: "roll, pitch, yaw of its root in the link's frame",
-        read: |a, s, log| a.origin.rpy = s.numbers(log).unwrap_or_default(),
+        read: |a, s, log| a.origin.rotation = Rotation::RollPitchYaw(s.numbers(log).unwrap_or_default()),
     },
 ];

@@ -43,6 +43,7 @@ fn robot() -> Description {
             joint("slide", JointKind::Prismatic, 2, 3),
             joint("club_hosel", JointKind::Fixed, 3, 4),
         ],
+        ..Description::default()
     }
 }
 

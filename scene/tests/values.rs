@@ -71,7 +71,7 @@ fn on(text: &str) -> Vec<(EffectId, String, Vec<f64>)> {
 #[test]
 fn what_is_asked_of_ten_thousand_joints_and_links_is_soon_resolved() {
     let count = 10_000;
-    let dynamics = Some(JointDynamics { damping: 0.5, friction: 0.0 });
+    let dynamics = JointDynamics { damping: Some(0.5), friction: Some(0.0), ..JointDynamics::default() };
     let joint =
         |k| Joint { name: format!("joint_{k}"), kind: JointKind::Continuous, parent: k, child: k + 1, dynamics, ..Joint::default() };
     let description = Description {

@@ -90,13 +90,14 @@ impl Drawn {
     fn description(&self, name: &str) -> Description {
         let link = |l: &DrawnLink| Link {
             name: l.name.clone(),
-            inertial: Some(Inertial { origin: Origin { xyz: l.xyz, rpy: l.rpy }, mass: l.mass, inertia: l.inertia }),
+            inertial: Some(Inertial { origin: Origin::new(l.xyz, l.rpy), mass: l.mass, inertia: l.inertia }),
             ..Link::default()
         };
         Description {
             name: name.to_owned(),
             links: self.links.iter().map(link).collect(),
             joints: self.joints.iter().map(DrawnJoint::joint).collect(),
+            frames: Vec::new(),
         }
     }
 }
@@ -108,7 +109,7 @@ impl DrawnJoint {
             kind: *JointKind::ALL.iter().find(|k| k.name() == self.kind).expect("a kind of joint"),
             parent: self.parent,
             child: self.child,
-            origin: Origin { xyz: self.xyz, rpy: self.rpy },
+            origin: Origin::new(self.xyz, self.rpy),
             axis: self.axis,
             second_axis: self.second_axis,
             pitch: self.pitch,

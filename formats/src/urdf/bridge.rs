@@ -1,6 +1,6 @@
 //! From `urdf-rs`'s robot to a [`Description`], which has to be what this crate found itself.
 
-use articulated_core::description::{Description, Inertial, Joint, JointDynamics, JointKind, Limit, Link, Mimic, Origin};
+use articulated_core::description::{Description, Inertial, Joint, JointDynamics, JointKind, Limit, Link, Mimic, Origin, Rotation};
 use articulated_core::diagnostic::{Code, Diagnostics, Place};
 use urdf_rs::{JointType, Pose, Robot};
 
@@ -20,9 +20,18 @@ pub(crate) fn compare(found: &Description, draft: &Draft, tree: &Tree, leaders: 
             return internal("a robot of another shape read by urdf-rs".to_owned(), log);
         }
     }
-    if description != *found {
+    if with_angles(description) != with_angles(found.clone()) {
         internal("another robot read by urdf-rs".to_owned(), log);
     }
+}
+
+/// The same robot with each rotation as roll, pitch and yaw, the only form that `urdf-rs` has.
+fn with_angles(mut robot: Description) -> Description {
+    let inertials = robot.links.iter_mut().filter_map(|link| link.inertial.as_mut().map(|inertial| &mut inertial.origin));
+    for origin in inertials.chain(robot.joints.iter_mut().map(|joint| &mut joint.origin)) {
+        origin.rotation = Rotation::RollPitchYaw(origin.rotation.rpy());
+    }
+    robot
 }
 
 fn internal(found: String, log: &mut Diagnostics) {
@@ -51,7 +60,7 @@ fn read_link(link: &urdf_rs::Link, index: usize, draft: &Draft) -> Option<Link> 
     let inertial = found.inertial.is_some().then(|| read_inertial(&link.inertial));
     // The plain documents have no collision geometry.
     let collision = found.collision.clone();
-    (read_index(&link.name)? == index).then_some(Link { name, inertial, collision })
+    (read_index(&link.name)? == index).then_some(Link { name, inertial, collision, ..Link::default() })
 }
 
 fn read_joint(joint: &urdf_rs::Joint, index: usize, draft: &Draft) -> Option<Joint> {
@@ -75,7 +84,11 @@ fn read_joint(joint: &urdf_rs::Joint, index: usize, draft: &Draft) -> Option<Joi
         mimic,
         // Nor a missing limit from zeros.
         limit: found.limit.is_some().then(|| read_limit(&joint.limit)),
-        dynamics: joint.dynamics.as_ref().map(|d| JointDynamics { damping: d.damping, friction: d.friction }),
+        dynamics: joint.dynamics.as_ref().map_or_else(JointDynamics::default, |d| JointDynamics {
+            damping: Some(d.damping),
+            friction: Some(d.friction),
+            ..JointDynamics::default()
+        }),
     })
 }
 
@@ -98,7 +111,7 @@ fn read_kind(kind: &JointType, drafted: JointKind) -> JointKind {
 }
 
 fn read_origin(pose: &Pose) -> Origin {
-    Origin { xyz: *pose.xyz, rpy: *pose.rpy }
+    Origin::new(*pose.xyz, *pose.rpy)
 }
 
 fn read_inertial(inertial: &urdf_rs::Inertial) -> Inertial {

@@ -44,7 +44,7 @@ pub(crate) struct DraftJoint {
     pub(crate) pitch: f64,
     pub(crate) mimic: Option<DraftMimic>,
     pub(crate) limit: Option<Limit>,
-    pub(crate) dynamics: Option<JointDynamics>,
+    pub(crate) dynamics: JointDynamics,
 }
 
 /// The name of a link or joint where it is referred to.

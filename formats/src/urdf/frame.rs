@@ -1,9 +1,9 @@
 //! The tag `<origin>`.
 
 use articulated_core::diagnostic::{Code, Diagnostics, Place, quote};
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, TAU};
 
-use articulated_core::description::Origin;
+use articulated_core::description::{Origin, Rotation};
 
 use super::element::Tag;
 use super::number::{attribute_list, silently};
@@ -20,11 +20,11 @@ pub(crate) fn origin(parent: &Tag<'_>, context: &Context<'_>, log: &mut Diagnost
     let rpy = attribute_list(&tag, "rpy", log).unwrap_or_default();
     warn_of_turns(&tag, rpy, log);
     warn_of_lengths(&tag, xyz, log);
-    let (rpy, field) = match quaternion(&tag, context.version, log) {
-        Some(quaternion) => (rpy_of(quaternion), "origin quat_xyzw"),
-        None => (rpy, "origin rpy"),
+    let (rotation, field) = match quaternion(&tag, context.version, log) {
+        Some(quaternion) => (Rotation::Quaternion(quaternion), "origin quat_xyzw"),
+        None => (Rotation::RollPitchYaw(rpy), "origin rpy"),
     };
-    Origin { xyz, rpy: snapped(rpy, context.options.snap_angles, &tag.place(field), log) }
+    Origin { xyz, rotation: snapped(rotation, context.options.snap_angles, &tag.place(field), log) }
 }
 
 /// See [`Context::length`].
@@ -72,16 +72,6 @@ fn quaternion(tag: &Tag<'_>, version: Version, log: &mut Diagnostics) -> Option<
     Some(quaternion)
 }
 
-/// Roll, pitch and yaw of a quaternion (x, y, z, w) of any length but zero. With r, p, y for half the angles:
-/// w + y = (cos p + sin p) cos(r − y), x − z = (cos p + sin p) sin(r − y), w − y = (cos p − sin p) cos(r + y),
-/// x + z = (cos p − sin p) sin(r + y). So nothing is lost near a pitch of ±π/2.
-fn rpy_of([x, y, z, w]: [f64; 4]) -> [f64; 3] {
-    let (plus, minus) = ((w + y).hypot(x - z), (w - y).hypot(x + z));
-    let (sum, difference) = ((x + z).atan2(w - y), (x - z).atan2(w + y));
-    let within = |angle: f64| if angle.abs() > PI { angle - TAU.copysign(angle) } else { angle };
-    [within(sum + difference), 2.0 * plus.atan2(minus) - FRAC_PI_2, within(sum - difference)]
-}
-
 /// So many rad and more are written by mistake: degrees, most often.
 const TURN: f64 = 1.001 * TAU;
 
@@ -102,17 +92,20 @@ fn warn_of_lengths(tag: &Tag<'_>, xyz: [f64; 3], log: &mut Diagnostics) {
     }
 }
 
-fn snapped(rpy: [f64; 3], snap: Option<f64>, place: &Place<'_>, log: &mut Diagnostics) -> [f64; 3] {
+/// The rotation with angles near a multiple of π/2 replaced by it. A rotation without such angles keeps its form.
+fn snapped(rotation: Rotation, snap: Option<f64>, place: &Place<'_>, log: &mut Diagnostics) -> Rotation {
     let Some(tolerance) = snap else {
-        return rpy;
+        return rotation;
     };
-    rpy.map(|angle| match right_angle(angle, tolerance) {
+    let rpy = rotation.rpy();
+    let snapped = rpy.map(|angle| match right_angle(angle, tolerance) {
         Some((quarters, exact)) => {
             log.replaced(place, Code::Snapped, angle, &format!("{quarters}·π/2"));
             exact
         }
         None => angle,
-    })
+    });
+    if snapped == rpy { rotation } else { Rotation::RollPitchYaw(snapped) }
 }
 
 /// The multiple of π/2 (and its double) that is within `tolerance` of `angle` and is not `angle` itself.
@@ -125,6 +118,8 @@ pub(crate) fn right_angle(angle: f64, tolerance: f64) -> Option<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
 
     #[test]

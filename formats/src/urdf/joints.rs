@@ -1,7 +1,7 @@
 //! The tag `<joint>`.
 
 use super::markup::hint;
-use articulated_core::description::JointKind;
+use articulated_core::description::{JointDynamics, JointKind};
 use articulated_core::diagnostic::{Code, Diagnostics, Place, Subject, quote};
 use articulated_core::suggest::nearest;
 
@@ -39,7 +39,7 @@ pub(crate) fn joint(tag: &Tag<'_>, context: &Context<'_>, log: &mut Diagnostics)
         pitch: 0.0,
         mimic: if kind.is_some_and(JointKind::is_fixed) { None } else { mimic(&tag, log) },
         limit: None,
-        dynamics: None,
+        dynamics: JointDynamics::default(),
     };
     match kind {
         Some(kind) => motion(&tag, kind, context.version, &mut joint, log),

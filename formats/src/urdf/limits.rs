@@ -101,12 +101,12 @@ fn report_negative(tag: &Tag<'_>, field: &str, value: f64, log: &mut Diagnostics
     }
 }
 
-/// What the joint's `<dynamics>` says; what is left out is zero.
-pub(crate) fn dynamics(joint: &Tag<'_>, log: &mut Diagnostics) -> Option<JointDynamics> {
-    let tag = joint.only("dynamics", log)?;
+/// The coefficients of the joint's `<dynamics>`; those that the tag leaves out are zero.
+pub(crate) fn dynamics(joint: &Tag<'_>, log: &mut Diagnostics) -> JointDynamics {
+    let Some(tag) = joint.only("dynamics", log) else { return JointDynamics::default() };
     unused::rest(&tag, &[], &["damping", "friction"], log);
-    let [damping, friction] = ["damping", "friction"].map(|name| coefficient(&tag, name, log));
-    Some(JointDynamics { damping, friction })
+    let [damping, friction] = ["damping", "friction"].map(|name| Some(coefficient(&tag, name, log)));
+    JointDynamics { damping, friction, ..JointDynamics::default() }
 }
 
 fn coefficient(tag: &Tag<'_>, name: &str, log: &mut Diagnostics) -> f64 {

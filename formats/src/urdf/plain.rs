@@ -88,13 +88,13 @@ impl Out {
     }
 
     fn origin(&mut self, origin: &Origin) {
-        if is_zero(origin.xyz) && is_zero(origin.rpy) {
+        if is_zero(origin.xyz) && is_zero(origin.rotation.rpy()) {
             return;
         }
         self.put(format_args!("<origin"));
         self.vector("xyz", origin.xyz);
-        if !is_zero(origin.rpy) {
-            self.vector("rpy", origin.rpy);
+        if !is_zero(origin.rotation.rpy()) {
+            self.vector("rpy", origin.rotation.rpy());
         }
         self.put(format_args!("/>"));
     }
@@ -105,7 +105,7 @@ impl Out {
         self.put(format_args!("<parent link=\"{}\"/><child link=\"{}\"/>", tree.parent[index], tree.child[index]));
         self.axis(joint.axis);
         joint.limit.iter().for_each(|limit| self.limit(limit));
-        joint.dynamics.iter().for_each(|dynamics| self.dynamics(dynamics));
+        self.dynamics(&joint.dynamics);
         if let (Some(leader), Some(mimic)) = (leader, &joint.mimic) {
             self.put(format_args!("<mimic joint=\"{leader}\""));
             for (name, number) in [("multiplier", mimic.multiplier), ("offset", mimic.offset)] {
@@ -128,7 +128,11 @@ impl Out {
     }
 
     fn dynamics(&mut self, dynamics: &JointDynamics) {
-        let [damping, friction] = [dynamics.damping, dynamics.friction].map(Number);
+        let numbers = [dynamics.damping, dynamics.friction];
+        if numbers == [None; 2] {
+            return;
+        }
+        let [damping, friction] = numbers.map(|x| Number(x.unwrap_or_default()));
         self.put(format_args!("<dynamics damping=\"{damping}\" friction=\"{friction}\"/>"));
     }
 }

@@ -38,7 +38,7 @@ fn inertial(i: &Inertial) -> String {
 }
 
 fn origin(o: &Origin) -> String {
-    format!("<origin xyz=\"{}\" rpy=\"{}\"/>", triple(o.xyz), triple(o.rpy))
+    format!("<origin xyz=\"{}\" rpy=\"{}\"/>", triple(o.xyz), triple(o.rotation.rpy()))
 }
 
 fn triple([x, y, z]: [f64; 3]) -> String {
@@ -63,8 +63,9 @@ fn joint(out: &mut String, description: &Description, j: &Joint) {
         let all = [("lower", l.lower), ("upper", l.upper), ("effort", l.effort), ("velocity", l.velocity)];
         let _ = writeln!(out, "    <limit{}/>", all.map(attribute).concat());
     }
-    if let Some(d) = &j.dynamics {
-        let _ = writeln!(out, "    <dynamics damping=\"{:?}\" friction=\"{:?}\"/>", d.damping, d.friction);
+    if j.dynamics.damping.is_some() || j.dynamics.friction.is_some() {
+        let [damping, friction] = [j.dynamics.damping, j.dynamics.friction].map(Option::unwrap_or_default);
+        let _ = writeln!(out, "    <dynamics damping=\"{damping:?}\" friction=\"{friction:?}\"/>");
     }
     if let Some(m) = &j.mimic {
         let leader = escaped(&description.joints[m.joint].name);

@@ -19,7 +19,7 @@ mod urdf;
 
 use std::ops::Range;
 
-use articulated_core::description::Origin;
+use articulated_core::description::{Origin, Rotation};
 
 use crate::scene::Scene;
 use crate::shaft;
@@ -181,7 +181,9 @@ fn table(row: &'static Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Number
                 word => numbers.from_urdf = word.is_some(),
             },
             (None, "xyz") if row.on == On::Link => numbers.at.get_or_insert_default().xyz = value.numbers(log).unwrap_or_default(),
-            (None, "rpy") if row.on == On::Link => numbers.at.get_or_insert_default().rpy = value.numbers(log).unwrap_or_default(),
+            (None, "rpy") if row.on == On::Link => {
+                numbers.at.get_or_insert_default().rotation = Rotation::RollPitchYaw(value.numbers(log).unwrap_or_default())
+            }
             _ => value.unknown_key(log, keys(row)),
         }
     }

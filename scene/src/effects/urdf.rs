@@ -43,8 +43,8 @@ pub(super) fn before_the_gear(effect: EffectId, filled: &mut [Filled]) {
 /// The number that stands there for a joint; `None`, if there is none or it is infinite.
 pub(crate) fn number(joint: &Joint, tag: &str) -> Option<f64> {
     let number = match tag {
-        "dynamics damping" => joint.dynamics?.damping,
-        "dynamics friction" => joint.dynamics?.friction,
+        "dynamics damping" => joint.dynamics.damping?,
+        "dynamics friction" => joint.dynamics.friction?,
         "limit lower" => joint.limit?.lower,
         "limit upper" => joint.limit?.upper,
         "limit effort" => joint.limit?.effort,

@@ -151,14 +151,14 @@ impl Editing<'_> {
         let Reading { description, unused, .. } = &mut self.reading;
         let joints = indices(description.joints.iter().map(|j| j.name.as_str()));
         let tag = |e: &Applied| {
-            let dynamics = description.joints[*joints.get(e.on.as_str())?].dynamics?;
+            let dynamics = description.joints[*joints.get(e.on.as_str())?].dynamics;
             // The first number of each.
             let (tag, x) = match e.effect {
                 EffectId::damping => ("dynamics damping", dynamics.damping),
                 EffectId::friction => ("dynamics friction", dynamics.friction),
                 _ => return None,
             };
-            (e.parameters.first() == Some(&x)).then_some(tag)
+            (e.parameters.first().copied() == x).then_some(tag)
         };
         let used: HashSet<(&str, &str)> = effects.iter().filter_map(|e| Some((e.on.as_str(), tag(e)?))).collect();
         unused.retain(|u| !matches!(&u.subject, Subject::Joint(name) if used.contains(&(name.as_str(), u.tag.as_str()))));

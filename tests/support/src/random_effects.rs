@@ -18,7 +18,7 @@ pub fn random_effects(random: &mut Random, model: &Model<f64>, wanted: impl Fn(E
         for name in names {
             if !taken.contains(&name) && random.chance(0.5) {
                 taken.push(name);
-                let origin = Origin { xyz: random.three(0.3), rpy: random.three(2.0) };
+                let origin = Origin::new(random.three(0.3), random.three(2.0));
                 let at = if effect.on == On::Link { origin } else { Origin::default() };
                 applied.push(Applied { effect: effect.id, on: name.clone(), at, parameters: parameters(random, effect.id) });
             }

@@ -90,7 +90,7 @@ fn attach(robot: &mut Description, name: &str, parent: usize, joint: Joint, body
 /// The image in the plane y = 0: points lose the sign of y, turns those of x and z; the axis may point the other way.
 fn mirror(random: &mut Random, joint: &mut Joint, body: &mut Option<Inertial>) {
     let [point, turn] = [|[x, y, z]: [f64; 3]| [x, -y, z], |[x, y, z]: [f64; 3]| [-x, y, -z]];
-    let place = |o: Origin| Origin { xyz: point(o.xyz), rpy: turn(o.rpy) };
+    let place = |o: Origin| Origin::new(point(o.xyz), turn(o.rotation.rpy()));
     let direction = |axis| if joint.kind.is_linear() { point(axis) } else { turn(axis) };
     let sign = if random.chance(0.5) { 1.0 } else { -1.0 };
     (joint.axis, joint.second_axis) = (direction(joint.axis).map(|x| sign * x + 0.0), direction(joint.second_axis).map(|x| x + 0.0));

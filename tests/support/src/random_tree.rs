@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use articulated_core::description::{Description, Inertial, Joint, JointKind, Limit, Link, Mimic, Origin};
+use articulated_core::description::{Description, Inertial, Joint, JointDynamics, JointKind, Limit, Link, Mimic, Origin};
 
 use crate::random::Random;
 
@@ -76,7 +76,7 @@ pub(crate) fn joint(random: &mut Random, flavour: Flavour, parent: usize, child:
         locked: (flavour.locked && kind != Fixed && random.chance(0.12)).then(|| locked(random, kind)),
         mimic: None,
         limit: matches!(kind, Revolute | Prismatic | Helical).then_some(Limit { lower: -2.5, upper: 2.5, effort: 100.0, velocity: 10.0 }),
-        dynamics: None,
+        dynamics: JointDynamics::default(),
     }
 }
 
@@ -120,7 +120,7 @@ fn axis(random: &mut Random) -> [f64; 3] {
 fn origin(random: &mut Random, reach: f64) -> Origin {
     let sparse = random.chance(0.5);
     let xyz = random.three(reach).map(|x| if sparse && random.chance(0.6) { 0.0 } else { x });
-    Origin { xyz, rpy: rpy(random) }
+    Origin::new(xyz, rpy(random))
 }
 
 /// Right angles as people write them, and none.
@@ -211,5 +211,6 @@ fn shuffled(random: &mut Random, tree: &Description) -> Description {
         name: tree.name.clone(),
         links: links.iter().map(|&l| tree.links[l].clone()).collect(),
         joints: joints.iter().map(moved).collect(),
+        frames: Vec::new(),
     }
 }

@@ -20,9 +20,9 @@ pub fn rpy(r: &Matrix3<f64>) -> [f64; 3] {
 
 /// The frame `b`, given in `a`, seen from where `a` is placed.
 pub fn compose(a: &Origin, b: &Origin) -> Origin {
-    let r = rotation(a.rpy);
+    let r = rotation(a.rotation.rpy());
     let p = r * Vector3::from(b.xyz) + Vector3::from(a.xyz);
-    Origin { xyz: p.into(), rpy: rpy(&(r * rotation(b.rpy))) }
+    Origin::new(p.into(), rpy(&(r * rotation(b.rotation.rpy()))))
 }
 
 /// A body given in a frame that is placed at `at`.
@@ -36,10 +36,10 @@ pub fn together(a: &Inertial, b: &Inertial) -> Inertial {
     let centre = (Vector3::from(a.origin.xyz) * a.mass + Vector3::from(b.origin.xyz) * b.mass) / mass;
     let about = |body: &Inertial| {
         let [xx, xy, xz, yy, yz, zz] = body.inertia;
-        let (r, d) = (rotation(body.origin.rpy), Vector3::from(body.origin.xyz) - centre);
+        let (r, d) = (rotation(body.origin.rotation.rpy()), Vector3::from(body.origin.xyz) - centre);
         let shift = Matrix3::from_diagonal_element(d.dot(&d)) - d * d.transpose();
         r * Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) * r.transpose() + shift * body.mass
     };
     let i = about(a) + about(b);
-    Inertial { mass, origin: Origin { xyz: centre.into(), rpy: [0.0; 3] }, inertia: [i.m11, i.m12, i.m13, i.m22, i.m23, i.m33] }
+    Inertial { mass, origin: Origin::at(centre.into()), inertia: [i.m11, i.m12, i.m13, i.m22, i.m23, i.m33] }
 }

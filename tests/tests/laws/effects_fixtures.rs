@@ -50,7 +50,7 @@ fn accelerations_are_mujocos() {
         let applied = |w: &Written| Applied {
             effect: effect(&w.effect).expect("a known effect").id,
             on: w.on.clone(),
-            at: Origin { xyz: w.xyz, rpy: w.rpy },
+            at: Origin::new(w.xyz, w.rpy),
             parameters: w.parameters.clone(),
         };
         let effects: Vec<Applied> = answer.effects.iter().map(applied).collect();

@@ -159,7 +159,7 @@ fn joint(name: &str, kind: JointKind, parent: usize, child: usize) -> Joint {
 }
 
 fn tree(links: usize, joints: Vec<Joint>) -> Description {
-    Description { name: "odd".into(), links: (0..links).map(|k| link(&format!("l{k}"))).collect(), joints }
+    Description { name: "odd".into(), links: (0..links).map(|k| link(&format!("l{k}"))).collect(), joints, frames: Vec::new() }
 }
 
 #[test]
@@ -211,7 +211,7 @@ fn inertia_in_all_directions_is_no_number_where_joints_follow_others() {
         let of = |k: usize| {
             let axis = [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]][k % 3];
             let mimic = (follows && k == 3).then_some(Mimic { joint: 0, multiplier: 0.7, offset: 0.1 });
-            let origin = Origin { xyz: [0.1, 0.2, 0.3], rpy: [0.0; 3] };
+            let origin = Origin::at([0.1, 0.2, 0.3]);
             Joint { axis, mimic, origin, ..joint(&format!("j{k}"), JointKind::Revolute, k, k + 1) }
         };
         let mut robot = tree(7, (0..6).map(of).collect());
@@ -307,6 +307,7 @@ fn a_single_link_goes_through_everything() {
         name: "stone".into(),
         links: vec![Link { name: "stone".into(), inertial: Some(body), ..Link::default() }],
         joints: vec![],
+        frames: vec![],
     };
     let fixed = Case::new("stone", one.clone(), Base::Fixed);
     assert_eq!((fixed.model.nq, fixed.model.nv, fixed.model.frames.len()), (0, 0, 1));

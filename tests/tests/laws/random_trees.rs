@@ -1,6 +1,6 @@
 //! The random trees themselves: they reach what they should, and go through the reader unchanged.
 
-use articulated_core::description::JointKind;
+use articulated_core::description::{JointDynamics, JointKind};
 use articulated_tests::case::{for_each_tree, read};
 use articulated_tests::random_tree::{Flavour, random_tree};
 use articulated_tests::urdf_text;
@@ -11,7 +11,7 @@ fn a_description_written_as_a_urdf_is_read_as_it_was() {
         let text = urdf_text(&case.description);
         let mut found = read(&text);
         // An axis of a joint that has none, and limits of a joint without, are not written.
-        found.joints.iter_mut().for_each(|j| j.dynamics = None);
+        found.joints.iter_mut().for_each(|j| j.dynamics = JointDynamics::default());
         assert_eq!(found, case.description, "{text}");
     });
 }

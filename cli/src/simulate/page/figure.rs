@@ -154,7 +154,7 @@ fn relative(a: &Placement<f64>, b: &Placement<f64>) -> Placement<f64> {
 }
 
 fn placement(origin: &Origin) -> Placement<f64> {
-    let [roll, pitch, yaw] = origin.rpy;
+    let [roll, pitch, yaw] = origin.rotation.rpy();
     Placement { rotation: *Rotation3::from_euler_angles(roll, pitch, yaw).matrix(), position: Vector3::from(origin.xyz) }
 }
 

@@ -4,7 +4,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use super::Origin;
-use crate::spatial::{Vector3, from_rpy};
+use crate::spatial::Vector3;
 
 /// A piece of a link's collision geometry.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,7 +79,7 @@ impl Collision {
             CollisionShape::Capsule { radius, length } => (*radius, [-0.5, 0.5].map(|end| [0.0, 0.0, end * length]).into()),
             CollisionShape::Mesh { .. } | CollisionShape::Unread { .. } => (0.0, Vec::new()),
         };
-        let (turn, at) = (from_rpy::<f64>(self.origin.rpy), Vector3::from(self.origin.xyz));
+        let (turn, at) = (self.origin.rotation.matrix::<f64>(), Vector3::from(self.origin.xyz));
         let mut spheres: Vec<ContactSphere> = Vec::new();
         for point in points {
             let center: [f64; 3] = (at + turn * Vector3::from(point)).into();
@@ -167,7 +167,7 @@ mod tests {
     #[test]
     fn points_are_placed_with_their_shape() {
         // z of the shape is −y of the link.
-        let origin = Origin { xyz: [1.0, 2.0, 3.0], rpy: [FRAC_PI_2, 0.0, 0.0] };
+        let origin = Origin::new([1.0, 2.0, 3.0], [FRAC_PI_2, 0.0, 0.0]);
         let ends = spheres(CollisionShape::Capsule { radius: 0.1, length: 2.0 }, origin);
         let expected = [[1.0, 3.0, 3.0], [1.0, 1.0, 3.0]].map(|center| ContactSphere { center, radius: 0.1 });
         assert_eq!(ends, expected);

@@ -7,7 +7,7 @@ use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 use super::names::Names;
-use super::{Description, EditError, Inertial, Joint, JointKind, Link, Mimic, Origin, PrincipalMoments, Shaft};
+use super::{Description, EditError, Frame, Inertial, Joint, JointKind, Link, Mimic, Origin, PrincipalMoments, Shaft};
 use crate::effect::Applied;
 use crate::model::FLOATING_BASE;
 use crate::spatial::normalise_given;
@@ -123,7 +123,8 @@ impl<'a> Editor<'a> {
         let parent = self.link(at_link)?;
         let root = other.root().ok_or_else(|| EditError::NoRoot { robot: other.name.clone() })?;
         let named = |name: &String| format!("{prefix}{name}");
-        let links = other.links.iter().map(|l| named(&l.name)).filter(|name| self.names.link(name).is_some());
+        let links = other.links.iter().map(|l| &l.name).chain(other.frames.iter().map(|f| &f.name));
+        let links = links.map(named).filter(|name| self.names.has_frame(name));
         let joints = other.joints.iter().map(|j| named(&j.name)).filter(|name| self.names.joint(name).is_some());
         let names: Vec<String> = links.chain(joints).collect();
         if !names.is_empty() {
@@ -141,6 +142,11 @@ impl<'a> Editor<'a> {
                 mimic: joint.mimic.map(|m| Mimic { joint: m.joint + first_joint, ..m }),
                 ..joint.clone()
             });
+        }
+        for frame in &other.frames {
+            let frame = Frame { name: named(&frame.name), link: frame.link + first_link, ..frame.clone() };
+            self.names.add_frame(&frame.name);
+            self.robot.frames.push(frame);
         }
         let root = first_link + root;
         let name = self.names.free(&format!("{}_mount", self.robot.links[root].name));
@@ -217,7 +223,7 @@ mod tests {
     fn chain(count: usize) -> Description {
         let links = (0..=count).map(|k| Link { name: format!("link_{k}"), ..Link::default() }).collect();
         let joint = |k| Joint { name: format!("joint_{k}"), kind: JointKind::Continuous, parent: k + 1, child: k, ..Joint::default() };
-        Description { name: "chain".into(), links, joints: (0..count).map(joint).collect() }
+        Description { name: "chain".into(), links, joints: (0..count).map(joint).collect(), ..Description::default() }
     }
 
     #[test]

@@ -1,15 +1,23 @@
 //! A robot as its file describes it: plain numbers in the file's own frames, before any computation.
 //!
-//! A [`Description`] is what a reader (URDF today) hands over and what [`crate::model::Model`] is built from. Frames follow
-//! the URDF: a joint's frame is placed in its parent link's frame by `origin`, and the child link's frame coincides with
-//! the joint's frame at zero. A moving joint's `axis` is expressed in the joint's frame. It can be edited first: [`Description::lock`],
-//! [`Description::attach`], [`Description::append`], [`Description::shaft`]; many edits by one [`Editor`].
+//! A reader returns a [`Description`], and [`crate::model::Model`] is built from it.
+//!
+//! * `origin` places a joint's frame in its parent link's frame. The child link's frame coincides
+//!   with the joint's frame where the joint's coordinates are zero.
+//! * `axis` is expressed in the joint's frame.
+//! * A body with several joints in sequence has an [intermediate](Link::intermediate) link between
+//!   two of them.
+//! * A [`Frame`] is a frame that coincides with no link.
+//!
+//! [`Description::lock`], [`Description::attach`], [`Description::append`] and
+//! [`Description::shaft`] edit it; an [`Editor`] makes many edits.
 
 mod collision;
 mod edit;
 mod error;
 mod moments;
 mod names;
+mod origin;
 mod shaft;
 
 use alloc::string::String;
@@ -20,9 +28,10 @@ pub use collision::{Collision, CollisionShape, ContactSphere, RIM_POINTS};
 pub use edit::{Editor, Payload};
 pub use error::EditError;
 pub use moments::PrincipalMoments;
+pub use origin::{Origin, Rotation};
 pub use shaft::Shaft;
 
-/// A tree of links and joints. Indices into `links` and `joints` follow the order of the file.
+/// A tree of links and joints. Indices into `links`, `joints` and `frames` follow the order of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Description {
     /// The robot's name.
@@ -31,6 +40,8 @@ pub struct Description {
     pub links: Vec<Link>,
     /// Joints in the order of the file.
     pub joints: Vec<Joint>,
+    /// Frames beside those of the links, in the order of the file.
+    pub frames: Vec<Frame>,
 }
 
 /// A rigid body of the file.
@@ -43,6 +54,9 @@ pub struct Link {
     /// Collision geometry in the order of the file. The dynamics do not use it, unless effects
     /// are made of it.
     pub collision: Vec<Collision>,
+    /// Whether the link only lies between two joints in sequence on one body. Such a link has no
+    /// mass and no collision geometry, and is not a frame of the model.
+    pub intermediate: bool,
 }
 
 /// Mass, centre of mass and rotational inertia of a link.
@@ -56,14 +70,15 @@ pub struct Inertial {
     pub inertia: [f64; 6],
 }
 
-/// The placement of a frame: a translation, and a rotation by fixed-axis roll, pitch and yaw,
-/// R = Rz(yaw)·Ry(pitch)·Rx(roll).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Origin {
-    /// Translation, m.
-    pub xyz: [f64; 3],
-    /// Roll, pitch, yaw, rad.
-    pub rpy: [f64; 3],
+/// A named frame of the file that is not a link: a site, a tool centre point.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frame {
+    /// The frame's name, unique among links and frames.
+    pub name: String,
+    /// Index of the link that carries it.
+    pub link: usize,
+    /// The frame in the link's frame.
+    pub origin: Origin,
 }
 
 /// From one row for each kind of joint of a file, with its name in a URDF, the kinds and their list.
@@ -217,8 +232,9 @@ pub struct Joint {
     pub mimic: Option<Mimic>,
     /// Limits, where the file gives them.
     pub limit: Option<Limit>,
-    /// Damping and friction, where the file gives them.
-    pub dynamics: Option<JointDynamics>,
+    /// Forces that the file gives to the joint. The dynamics do not use them, unless effects are
+    /// made of them.
+    pub dynamics: JointDynamics,
 }
 
 /// q = multiplier · q_leader + offset.
@@ -250,13 +266,19 @@ impl Limit {
     pub const NONE: Self = Self { lower: f64::NEG_INFINITY, upper: f64::INFINITY, effort: f64::INFINITY, velocity: f64::INFINITY };
 }
 
-/// The `<dynamics>` tag.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Coefficients of a joint's own forces, as the file gives them; `None` where it gives none.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JointDynamics {
     /// Viscous damping, N·m·s/rad or N·s/m.
-    pub damping: f64,
+    pub damping: Option<f64>,
     /// Coulomb friction, N·m or N.
-    pub friction: f64,
+    pub friction: Option<f64>,
+    /// Inertia of the rotor, seen behind the gear, kg·m² or kg.
+    pub armature: Option<f64>,
+    /// Stiffness of a spring, N·m/rad or N/m.
+    pub stiffness: Option<f64>,
+    /// The coordinate at which the spring is slack, rad or m; `None` with a stiffness: zero.
+    pub rest: Option<f64>,
 }
 
 /// Whether the root link is the base or moves freely in it.

@@ -1,6 +1,6 @@
 //! Names that links and joints of a robot have, while it is edited.
 
-use alloc::collections::BTreeMap;
+use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::format;
 use alloc::string::{String, ToString};
 
@@ -10,6 +10,7 @@ use super::Description;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Names {
     links: BTreeMap<String, usize>,
+    frames: BTreeSet<String>,
     joints: BTreeMap<String, usize>,
     /// For names that were asked for and taken, the first number that may be free. Names are added only, so those below stay taken.
     numbers: BTreeMap<String, usize>,
@@ -20,6 +21,7 @@ impl Names {
         let mut names = Self::default();
         robot.links.iter().enumerate().for_each(|(index, link)| names.add_link(&link.name, index));
         robot.joints.iter().enumerate().for_each(|(index, joint)| names.add_joint(&joint.name, index));
+        robot.frames.iter().for_each(|frame| names.add_frame(&frame.name));
         names
     }
 
@@ -33,6 +35,16 @@ impl Names {
         self.joints.entry(name.to_string()).or_insert(index);
     }
 
+    /// A name of a frame that is not a link.
+    pub(super) fn add_frame(&mut self, name: &str) {
+        self.frames.insert(name.to_string());
+    }
+
+    /// Whether a link or another frame has this name.
+    pub(super) fn has_frame(&self, name: &str) -> bool {
+        self.links.contains_key(name) || self.frames.contains(name)
+    }
+
     pub(super) fn link(&self, name: &str) -> Option<usize> {
         self.links.get(name).copied()
     }
@@ -42,7 +54,7 @@ impl Names {
     }
 
     pub(super) fn has(&self, name: &str) -> bool {
-        self.links.contains_key(name) || self.joints.contains_key(name)
+        self.has_frame(name) || self.joints.contains_key(name)
     }
 
     /// `name`, or with the first number from 2 on that no link and no joint has.

@@ -5,13 +5,11 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt;
 
-use nalgebra::Vector3;
-
 use super::places::Places;
 use super::{Applied, BodyEffect, Effect, EffectId, Enters, JointEffect, On};
 use crate::Scalar;
 use crate::model::Model;
-use crate::spatial::{Placement, from_rpy};
+use crate::spatial::Placement;
 
 /// Why an effect cannot be had: one thing that is wrong with it, of which there may be several.
 #[derive(Clone, Debug, PartialEq)]
@@ -189,7 +187,7 @@ impl Model<f64> {
 
     fn put_on_link(&mut self, frame: usize, one: &Applied) {
         let frame = &self.frames[frame];
-        let at = Placement { rotation: from_rpy(one.at.rpy), position: Vector3::from(one.at.xyz) };
+        let at: Placement<f64> = one.at.placement();
         let (body, placement) = (frame.body, frame.placement.compose(&at));
         let parameters = with_normal(one.effect.row(), one.parameters.clone(), |normal| super::unit(normal).unwrap_or(normal));
         self.bodies[body].effects.body.push(BodyEffect { effect: one.effect, link: one.on.clone(), placement, parameters });
@@ -230,7 +228,8 @@ fn check(one: &Applied) -> Vec<Fault> {
         faults.extend(beyond.map(|x| wrong(field.name, &[*x], field.range.to_string())));
         rest = others;
     }
-    let unbounded = one.at.xyz.iter().chain(&one.at.rpy).find(|x| !x.is_finite());
+    let rpy = one.at.rotation.rpy();
+    let unbounded = one.at.xyz.iter().chain(&rpy).find(|x| !x.is_finite());
     faults.extend(unbounded.map(|x| wrong("xyz or rpy", &[*x], "finite numbers".into())));
     // What numbers must be together is asked of numbers that may be.
     let broken = row.broken(p).filter(|_| faults.is_empty()).and_then(|(field, own)| Some((field.name, own, field.rule?.expected)));
@@ -256,7 +255,7 @@ mod tests {
             joint("glue", JointKind::Fixed, 3),
         ];
         let links = ["rail", "carriage", "ball", "lamp"].map(link).to_vec();
-        Model::new(&Description { name: "robot".into(), links, joints }, Base::Fixed).unwrap()
+        Model::new(&Description { name: "robot".into(), links, joints, frames: Vec::new() }, Base::Fixed).unwrap()
     }
 
     fn on(effect: EffectId, on: &str, parameters: &[f64]) -> Applied {
@@ -276,7 +275,7 @@ mod tests {
             ..Joint::default()
         };
         let joints = (0..count).map(joint).collect();
-        let chain = Model::new(&Description { name: "chain".into(), links, joints }, Base::Fixed).unwrap();
+        let chain = Model::new(&Description { name: "chain".into(), links, joints, frames: Vec::new() }, Base::Fixed).unwrap();
         let each = |effect: EffectId, name: &str| -> Vec<Applied> {
             let parameters = vec![1.0; effect.row().len()];
             (1..count).map(|k| on(effect, &format!("{name}_{k}"), &parameters)).collect()
@@ -293,8 +292,12 @@ mod tests {
 
     #[test]
     fn a_floating_base_has_no_joint_that_effects_are_on() {
-        let description =
-            Description { name: "one".into(), links: vec![Link { name: "body".into(), ..Link::default() }], joints: Vec::new() };
+        let description = Description {
+            name: "one".into(),
+            links: vec![Link { name: "body".into(), ..Link::default() }],
+            joints: Vec::new(),
+            frames: Vec::new(),
+        };
         let floating = Model::new(&description, Base::Floating).unwrap();
         let errors = floating.with_effects(&[on(EffectId::damping, crate::model::FLOATING_BASE, &[1.0])]).unwrap_err();
         assert_eq!(errors.0[0].fault, Fault::Base);

@@ -10,11 +10,11 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::leaders::leads;
 use super::{Body, FLOATING_BASE, Frame, GRAVITY, JointInfo, Model};
-use crate::description::{self, Base, Description, Inertial, JointKind, Mimic, Origin};
+use crate::description::{self, Base, Description, Inertial, JointKind, Mimic};
 use crate::effect::Effects;
 use crate::joint::with_pose;
 use crate::joint::{Coordinates, Follow, Joint, JointLaw};
-use crate::spatial::{Placement, Reference, SpatialInertia, from_rpy, nearest_rotation, to_z_axis};
+use crate::spatial::{Placement, Reference, SpatialInertia, nearest_rotation, to_z_axis};
 
 /// Why a description is not a model. Of a description that the URDF reader accepted: numbers that are too large together ([`Self::TooLarge`]), and a joint of the name of a floating base's.
 #[derive(Clone, Debug, PartialEq)]
@@ -172,7 +172,7 @@ impl<'a> Builder<'a> {
 
     fn add_joint(&mut self, index: usize, joint: &description::Joint) -> Result<(), ModelError> {
         let (mut parent, x_parent) = self.seats[joint.parent].expect("a parent is seated before its children");
-        let mut x_joint = x_parent.compose(&placement(&joint.origin));
+        let mut x_joint = x_parent.compose(&joint.origin.placement());
         let stages = stages(joint);
         if let Some(coordinates) = self.locked_at(index)? {
             let x = stages.iter().fold(x_joint, |x, stage| stage.locked(x, &coordinates, joint));
@@ -194,7 +194,9 @@ impl<'a> Builder<'a> {
             parent = self.push_body(joint.name.clone(), parent, turned, stage.joint, coordinates);
             x_joint = turned_back(stage.turn);
         }
-        self.model.bodies[parent].link = Some(last.turn.transpose());
+        if !self.description.links[joint.child].intermediate {
+            self.model.bodies[parent].link = Some(last.turn.transpose());
+        }
         self.body_of[index] = Some(parent);
         self.seat(joint.child, parent, x_joint);
         Ok(())
@@ -247,14 +249,26 @@ impl<'a> Builder<'a> {
                 self.model.bodies[body].coordinates = follow;
             }
         }
-        let frame = |(link, seat): (&description::Link, &Option<Seat>)| {
-            let (body, placement) = seat.expect("every link was seated");
-            Frame { name: link.name.clone(), body, placement }
-        };
-        self.model.frames = self.description.links.iter().zip(&self.seats).map(frame).collect();
+        self.model.frames = self.frames();
         self.sharpen();
         let names = too_large(&self.model);
         if names.is_empty() { Ok(self.model) } else { Err(ModelError::TooLarge { names }) }
+    }
+
+    /// The frames of the links, then those that coincide with no link. A frame on a link that does
+    /// not exist is left out.
+    fn frames(&self) -> Vec<Frame<f64>> {
+        let seated = |link: usize| self.seats.get(link).copied().flatten();
+        let links = self.description.links.iter().enumerate().filter(|(_, link)| !link.intermediate);
+        let of_links = links.filter_map(|(index, link)| {
+            let (body, placement) = seated(index)?;
+            Some(Frame { name: link.name.clone(), body, placement })
+        });
+        let others = self.description.frames.iter().filter_map(|frame| {
+            let (body, placement) = seated(frame.link)?;
+            Some(Frame { name: frame.name.clone(), body, placement: placement.compose(&frame.origin.placement()) })
+        });
+        of_links.chain(others).collect()
     }
 
     /// Takes the rounding of the products that they are out of the rotations.
@@ -334,15 +348,11 @@ fn turned_back(turn: Matrix3<f64>) -> Placement<f64> {
     turned(turn.transpose())
 }
 
-fn placement(origin: &Origin) -> Placement<f64> {
-    Placement { rotation: from_rpy(origin.rpy), position: Vector3::from(origin.xyz) }
-}
-
 impl Inertial {
     /// About the origin of the link's frame, in its axes.
     pub fn spatial_inertia(&self) -> SpatialInertia<f64> {
         let [xx, xy, xz, yy, yz, zz] = self.inertia;
         let central = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-        SpatialInertia::from_central(self.mass, central, &placement(&self.origin))
+        SpatialInertia::from_central(self.mass, central, &self.origin.placement())
     }
 }

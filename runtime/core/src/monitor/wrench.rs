@@ -66,7 +66,7 @@ mod tests {
         let joint =
             |k: usize| Joint { name: k.to_string(), parent: k, child: k + 1, origin: at(if k > 0 { 8.0 } else { 0.0 }), ..hinge.clone() };
         let (links, joints): (Vec<Link>, Vec<Joint>) = ((0..4).map(link).collect(), (0..3).map(joint).collect());
-        let mut model = Model::new(&Description { name: "row".into(), links, joints }, Base::Fixed).unwrap();
+        let mut model = Model::new(&Description { name: "row".into(), links, joints, frames: Vec::new() }, Base::Fixed).unwrap();
         model.gravity = Vector3::new(0.0, 0.0, -1.0);
         let growth = wrench_growth(&model, &mut Workspace::new(&model), [&[0.0; 3][..]; 3]);
         assert_eq!(growth, [(9.0, 3.0), (4.0, 2.0), (1.0, 1.0)]);

@@ -61,7 +61,7 @@ fn payload_adds_its_own_forces(case: &Case, random: &mut Random) {
     let state = case.state(random);
     let link = random.below(case.description.links.len());
     let inertia = *random.choose(&[[0.0; 6], [0.02, 0.001, 0.0, 0.03, -0.002, 0.015]]);
-    let body = Inertial { origin: Origin { xyz: random.three(0.4), rpy: [0.0; 3] }, mass: random.within(0.1, 3.0), inertia };
+    let body = Inertial { origin: Origin::at(random.three(0.4)), mass: random.within(0.1, 3.0), inertia };
     let mut loaded = case.description.clone();
     let name = case.description.links[link].name.clone();
     let payload = Payload { link: name, mass: body.mass, center_of_mass: body.origin.xyz, inertia, name: None };
@@ -123,7 +123,7 @@ const BOTH: &str = r#"<robot name="arm">
   <joint name="left_palm_mount" type="fixed"><parent link="fore"/><child link="left_palm"/><origin xyz="0.2 0 0.05" rpy="0.1 0 0.4"/></joint>
 </robot>"#;
 
-const MOUNT: Origin = Origin { xyz: [0.2, 0.0, 0.05], rpy: [0.1, 0.0, 0.4] };
+const MOUNT: Origin = Origin::new([0.2, 0.0, 0.05], [0.1, 0.0, 0.4]);
 
 #[test]
 fn an_appended_robot_is_the_combined_file() {

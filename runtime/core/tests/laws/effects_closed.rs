@@ -17,7 +17,12 @@ fn slide() -> Model<f64> {
         ..Link::default()
     };
     let joint = Joint { name: "slide".into(), kind: JointKind::Prismatic, parent: 0, child: 1, axis: [1.0, 0.0, 0.0], ..Joint::default() };
-    let description = Description { name: "slide".into(), links: vec![link("base", None), link("cart", Some(MASS))], joints: vec![joint] };
+    let description = Description {
+        name: "slide".into(),
+        links: vec![link("base", None), link("cart", Some(MASS))],
+        joints: vec![joint],
+        frames: Vec::new(),
+    };
     Model::new(&description, Base::Fixed).expect("a slide")
 }
 
@@ -28,6 +33,7 @@ fn ball() -> Model<f64> {
         name: "ball".into(),
         links: vec![Link { name: "ball".into(), inertial: Some(inertial), ..Link::default() }],
         joints: vec![],
+        frames: Vec::new(),
     };
     Model::new(&description, Base::Floating).expect("a ball")
 }

@@ -202,6 +202,7 @@ fn a_free_body_obeys_newton_and_euler() {
         name: "body".into(),
         links: vec![Link { name: "body".into(), inertial: Some(inertial), ..Link::default() }],
         joints: vec![],
+        frames: Vec::new(),
     };
     let case = Case::new("body", tree, Base::Floating);
     let state = case.state(&mut Random::new(5));

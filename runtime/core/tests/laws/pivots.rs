@@ -12,12 +12,12 @@ fn ball(name: &str, mass: f64, moment: f64) -> Link {
 }
 
 fn hinge(name: &str, parent: usize, child: usize, x: f64) -> Joint {
-    let origin = Origin { xyz: [x, 0.0, 0.0], rpy: [0.0; 3] };
+    let origin = Origin::at([x, 0.0, 0.0]);
     Joint { name: name.into(), kind: JointKind::Continuous, parent, child, origin, axis: [0.0, 0.0, 1.0], ..Joint::default() }
 }
 
 fn smallest(links: Vec<Link>, joints: Vec<Joint>) -> f64 {
-    let description = Description { name: "robot".into(), links, joints };
+    let description = Description { name: "robot".into(), links, joints, frames: Vec::new() };
     let model: Model<f64> = Model::new(&description, Base::Fixed).expect("a tree");
     let zero = vec![0.0; model.nv];
     checked_forward_dynamics(&model, &mut Workspace::new(&model), &zero, &zero, &zero, &mut zero.clone()).expect("regular")

@@ -15,9 +15,8 @@ fn rod(along: [f64; 3], head: f64) -> Description {
         inertial: (mass > 0.0).then(|| Inertial { origin: Origin::default(), mass, inertia: [0.0; 6] }),
         ..Link::default()
     };
-    let joint =
-        Joint { name: "hosel".into(), parent: 0, child: 1, origin: Origin { xyz: along, rpy: [0.1, 0.2, 0.3] }, ..Joint::default() };
-    Description { name: "rod".into(), links: vec![link("grip", 0.25), link("head", head)], joints: vec![joint] }
+    let joint = Joint { name: "hosel".into(), parent: 0, child: 1, origin: Origin::new(along, [0.1, 0.2, 0.3]), ..Joint::default() };
+    Description { name: "rod".into(), links: vec![link("grip", 0.25), link("head", head)], joints: vec![joint], frames: Vec::new() }
 }
 
 fn shaft(segments: usize, mass: f64) -> Shaft {

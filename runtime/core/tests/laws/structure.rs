@@ -179,7 +179,12 @@ fn a_rod_in_a_ball_joint_can_turn_about_itself() {
         let rod = |inertia| Some(Inertial { origin: Origin::default(), mass: 1.0, inertia });
         let ball = |inertia| {
             let joint = Joint { name: "ball".into(), kind: JointKind::Spherical, parent: 0, child: 1, ..Joint::default() };
-            let robot = Description { name: "rod".into(), links: vec![link("base", None), link("rod", rod(inertia))], joints: vec![joint] };
+            let robot = Description {
+                name: "rod".into(),
+                links: vec![link("base", None), link("rod", rod(inertia))],
+                joints: vec![joint],
+                frames: Vec::new(),
+            };
             Model::new(&robot, Base::Fixed).unwrap()
         };
         let model = ball(inertia);

@@ -48,11 +48,11 @@ impl Chain {
         let link = |joint: &articulated_core::description::Joint| {
             let inertial = tree.links[joint.child].inertial.unwrap();
             let [xx, xy, xz, yy, yz, zz] = inertial.inertia;
-            let (r, c) = (rigid::rotation(inertial.origin.rpy), cross(Vector3::from(inertial.origin.xyz)));
+            let (r, c) = (rigid::rotation(inertial.origin.rotation.rpy()), cross(Vector3::from(inertial.origin.xyz)));
             let central = r * Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz) * r.transpose();
             let m = inertial.mass;
             let g = blocks(central + c * c.transpose() * m, c * m, c.transpose() * m, Matrix3::identity() * m);
-            let x = homogeneous(rigid::rotation(joint.origin.rpy), Vector3::from(joint.origin.xyz));
+            let x = homogeneous(rigid::rotation(joint.origin.rotation.rpy()), Vector3::from(joint.origin.xyz));
             (x, Vector3::from(joint.axis).normalize(), g)
         };
         Self { links: tree.joints.iter().map(link).collect() }

@@ -42,13 +42,13 @@ impl Builder {
     /// A robot of a base without mass.
     pub fn new(name: &str) -> Self {
         let base = Link { name: "base".into(), ..Link::default() };
-        Self(Description { name: name.into(), links: vec![base], joints: vec![] })
+        Self(Description { name: name.into(), links: vec![base], joints: vec![], frames: vec![] })
     }
 
     /// A link with its joint on the last link, or on the one of this index.
     pub fn link(mut self, on: Option<usize>, kind: JointKind, axis: [f64; 3], origin: Origin, body: Option<Body>) -> Self {
         let child = self.0.links.len();
-        let inertial = body.map(|b| Inertial { origin: Origin { xyz: b.center, rpy: b.rpy }, mass: b.mass, inertia: b.inertia });
+        let inertial = body.map(|b| Inertial { origin: Origin::new(b.center, b.rpy), mass: b.mass, inertia: b.inertia });
         self.0.links.push(Link { name: format!("link_{child}"), inertial, ..Link::default() });
         let parent = on.unwrap_or(child - 1);
         let second_axis = if kind.has_second_axis() { [axis[1], axis[2], axis[0]] } else { [0.0; 3] };
@@ -58,7 +58,7 @@ impl Builder {
 
     /// A turning joint at a place on the last link.
     pub fn turn(self, axis: [f64; 3], xyz: [f64; 3], body: Option<Body>) -> Self {
-        self.link(None, JointKind::Continuous, axis, Origin { xyz, rpy: [0.0; 3] }, body)
+        self.link(None, JointKind::Continuous, axis, Origin::at(xyz), body)
     }
 
     /// The description.
@@ -188,7 +188,7 @@ pub fn turned() -> Description {
 /// Turns and a slide, askew, so that units mix in M.
 pub fn mixed() -> Description {
     let body = |k: f64| Some(Body { rpy: [0.3 * k, -0.2, 0.9], ..Body::of_radii(1.0 + 0.3 * k, [0.1, 0.07 * k, 0.2], [0.1, 0.17, 0.13]) });
-    let at = |k: f64| Origin { xyz: [0.3, -0.1 * k, 0.25], rpy: [0.4 * k, 0.7, -0.2 * k] };
+    let at = |k: f64| Origin::new([0.3, -0.1 * k, 0.25], [0.4 * k, 0.7, -0.2 * k]);
     Builder::new("mixed")
         .link(None, JointKind::Continuous, [0.0, 0.0, 1.0], at(0.0), body(1.0))
         .link(None, JointKind::Prismatic, [0.0, 0.6, 0.8], at(1.0), body(2.0))

@@ -60,7 +60,7 @@ pub(super) fn compose<S: Scalar>(a: &Pose<S>, b: &Pose<S>) -> Pose<S> {
 pub(super) fn place<S: Scalar>(origin: &Origin) -> Pose<S> {
     let e = [Vector3::x(), Vector3::y(), Vector3::z()];
     let about = |k: usize| {
-        let (s, c) = written(origin.rpy[k]);
+        let (s, c) = written(origin.rotation.rpy()[k]);
         from_axis(e[k], Jet::still(s), Jet::still(c))
     };
     (about(2) * about(1) * about(0), Vector3::from(origin.xyz).map(Jet::from_f64))

@@ -61,7 +61,7 @@ fn edits(module: &Module<'_>) -> Vec<String> {
     let o = &module.request.options;
     let mut lines = Vec::new();
     for other in &o.robot.append {
-        let Origin { xyz, rpy } = other.origin;
+        let (xyz, rpy) = (other.origin.xyz, other.origin.rotation.rpy());
         let from = format!("{} (FNV-1a {:016x})", other.file, fnv(&other.document));
         lines.push(format!("Appended: {from} on link {:?}, prefix {:?}, xyz {xyz:?} m, rpy {rpy:?} rad.", other.at.value, other.prefix));
     }
@@ -76,7 +76,7 @@ fn edits(module: &Module<'_>) -> Vec<String> {
         lines.push(format!("Locked: joint {joint:?} at {at:?}."));
     }
     for e in module.effects {
-        let Origin { xyz, rpy } = e.at;
+        let (xyz, rpy) = (e.at.xyz, e.at.rotation.rpy());
         let at = if e.at == Origin::default() { String::new() } else { format!(" at xyz {xyz:?} m, rpy {rpy:?} rad") };
         lines.push(format!("Effect: {} on {:?}{at}: {}.", e.effect.name(), e.on, numbers(e)));
     }

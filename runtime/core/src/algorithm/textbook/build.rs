@@ -11,7 +11,7 @@ use super::{Link, Textbook};
 use crate::Scalar;
 use crate::description::{Base, Description, Inertial, Origin};
 use crate::model::{FLOATING_BASE, JointInfo, Model, ModelError};
-use crate::spatial::{Placement, Reference, from_rpy};
+use crate::spatial::{Placement, Reference};
 
 impl<S: Scalar> Textbook<S> {
     /// From a description; gravity in the world frame, m/s². Fails where [`Model::new`] fails.
@@ -101,7 +101,7 @@ fn depth_first(description: &Description) -> Vec<(usize, Option<usize>)> {
 }
 
 fn placement<S: Scalar>(origin: &Origin) -> Placement<S> {
-    Placement { rotation: from_rpy(origin.rpy), position: Vector3::from(origin.xyz).map(S::from_f64) }
+    origin.placement()
 }
 
 /// G = [I_c + m [c]×[c]×ᵀ, m [c]×; m [c]×ᵀ, m 1] with everything in the link's axes.

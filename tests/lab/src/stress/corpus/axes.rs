@@ -79,7 +79,7 @@ fn gimbal() -> Vec<Row> {
             format!("rpy with a pitch of {name}"),
             "roll and yaw are about the same axis; a rule that finds angles again from the matrix divides by nothing",
         );
-        let origin = |roll: f64, yaw: f64| Origin { xyz: [0.1, 0.2, 0.3], rpy: [roll, pitch, yaw] };
+        let origin = |roll: f64, yaw: f64| Origin::new([0.1, 0.2, 0.3], [roll, pitch, yaw]);
         let robot = Builder::new("gimbal")
             .link(None, JointKind::Continuous, [0.0, 0.0, 1.0], origin(0.4, -0.9), body())
             .link(None, JointKind::Continuous, [0.0, 1.0, 0.0], origin(-2.0, 2.5), body())

@@ -111,7 +111,7 @@ fn thin_aligned() -> Vec<Row> {
     let mut rows = Judge::<f64>::new(&case, &model).solved(&at(0.0), Ends::Singular("joint_1"), BACKWARD);
     rows.extend(Judge::<f32>::new(&case, &model).solved(&at(0.0), Ends::Singular("joint_1"), BACKWARD));
     let case = Case::new(NAME, "the same, askew in space", "turned frames leave 10⁻¹⁶ where nothing should be");
-    let askew = Origin { xyz: [0.1, 0.2, 0.3], rpy: [0.3, -0.7, 1.1] };
+    let askew = Origin::new([0.1, 0.2, 0.3], [0.3, -0.7, 1.1]);
     let tilted = Builder::new("rods").link(None, JointKind::Continuous, X, askew, rod).turn(Y, [1.0, 0.0, 0.0], rod).turn(
         [0.0, 0.6, 0.8],
         [1.0, 0.0, 0.0],
