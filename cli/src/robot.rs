@@ -135,7 +135,7 @@ impl Robot {
 
     /// As [`Robot::model`], with a frame for every link.
     pub(crate) fn whole_model(&self, robot: &BuiltRobot) -> Result<Model<f64>, Failure> {
-        has_room(&self.file, robot.model.nv)?;
+        has_room(&self.file, robot.model.nv())?;
         Ok(robot.model.clone())
     }
 

@@ -40,7 +40,7 @@ pub fn in_box(model: &Model<f64>, argument: Argument, index: usize) -> (f64, f64
     if !matches!(argument, Argument::Q | Argument::Target) {
         return if argument == Argument::SinCos { (0.0, 1.0) } else { (0.0, 2.0) };
     }
-    let joint = model.joints.iter().find(|j| (j.q.0..j.q.0 + j.q.1).contains(&index));
+    let joint = model.joints().iter().find(|j| (j.q.0..j.q.0 + j.q.1).contains(&index));
     let (lower, upper) = joint.map_or((0.0, 0.0), |j| coordinate_box(j, index - j.q.0));
     // Halves: the sum may be beyond the range of numbers.
     (0.5 * lower + 0.5 * upper, 0.5 * upper - 0.5 * lower)
@@ -50,7 +50,7 @@ pub fn in_box(model: &Model<f64>, argument: Argument, index: usize) -> (f64, f64
 mod tests {
     use std::f64::consts::PI;
 
-    use articulated_core::description::{Base, JointKind};
+    use articulated_core::description::Base;
 
     use super::*;
     use crate::Request;
@@ -64,12 +64,13 @@ mod tests {
             )
         };
         let limit = "<limit lower='-1' upper='3' effort='1' velocity='1'/>";
-        let mut request = Request::new(
-            "robot",
-            format!("<robot name='robot'><link name='trunk'/>{}{}</robot>", joint("a", "revolute", limit), joint("b", "continuous", "")),
-        );
-        request.options.robot.base = Base::Floating;
-        let mut model = request.build_robot().unwrap().model;
+        let model_with = |kind: &str| {
+            let joints = joint("a", "revolute", limit) + &joint("b", kind, "");
+            let mut request = Request::new("robot", format!("<robot name='robot'><link name='trunk'/>{joints}</robot>"));
+            request.options.robot.base = Base::Floating;
+            request.build_robot().unwrap().model
+        };
+        let mut model = model_with("continuous");
         for argument in [Argument::Q, Argument::Target] {
             let found: Vec<(f64, f64)> = (0..9).map(|k| in_box(&model, argument, k)).collect();
             assert_eq!(found, [[(0.0, 1.0); 7].as_slice(), &[(1.0, 2.0), (0.0, PI)]].concat());
@@ -82,15 +83,16 @@ mod tests {
             (-f64::MAX, f64::MAX, (0.0, f64::MAX)),
             (1.0, f64::MAX, (0.5 * f64::MAX, 0.5 * f64::MAX)),
         ] {
-            let limit = model.joints[1].limit.as_mut().unwrap();
-            (limit.lower, limit.upper) = (lower, upper);
+            model = model.changed(|parts| {
+                let limit = parts.joints[1].limit.as_mut().unwrap();
+                (limit.lower, limit.upper) = (lower, upper);
+            });
             assert_eq!(in_box(&model, Argument::Q, 7), expected);
         }
         // Lengths without limits are in ±1 m, and all angles of a joint that has several numbers in ±π.
-        model.joints[2].kind = JointKind::Prismatic;
-        assert_eq!(in_box(&model, Argument::Q, 8), (0.0, 1.0));
-        (model.joints[2].kind, model.joints[2].q.1) = (JointKind::Planar, 3);
-        assert_eq!([8, 9, 10].map(|k| in_box(&model, Argument::Q, k)), [(0.0, 1.0), (0.0, 1.0), (0.0, PI)]);
+        let (prismatic, planar) = (model_with("prismatic"), model_with("planar"));
+        assert_eq!(in_box(&prismatic, Argument::Q, 8), (0.0, 1.0));
+        assert_eq!([8, 9, 10].map(|k| in_box(&planar, Argument::Q, k)), [(0.0, 1.0), (0.0, 1.0), (0.0, PI)]);
     }
 
     #[test]

@@ -31,7 +31,7 @@ fn traced(view: &View<Sym>, follows: bool, looks: bool) -> Vec<Sym> {
     let model = &view.model;
     let shape = model.shape();
     let [q, v, tau] = [0, 1, 2].map(|place| (0..ARGUMENTS[place].len(shape)).map(|k| Sym::input(place, k)).collect::<Vec<_>>());
-    let (mut ws, mut out) = (view.workspace(), vec![Sym::zero(); model.nv]);
+    let (mut ws, mut out) = (view.workspace(), vec![Sym::zero(); model.nv()]);
     if follows {
         forward_dynamics(model, &mut ws, &q, &v, &tau, &mut out);
     } else {

@@ -33,9 +33,9 @@ pub(crate) fn plan(request: &Request, log: &mut Diagnostics) -> Option<Plan> {
     // What needs no robot comes first: it is reported also if the robot cannot be read.
     let entries = words(options, log);
     let mut robot = request.robot().build_into(log)?;
-    if robot.model.nv > MOST_FREEDOMS {
+    if robot.model.nv() > MOST_FREEDOMS {
         let expected = format!("at most {MOST_FREEDOMS} to write code for");
-        let found = format!("{} degrees of freedom", robot.model.nv);
+        let found = format!("{} degrees of freedom", robot.model.nv());
         log.push(Diagnostic::error(&request.file, Place::DOCUMENT, Code::TooLarge, found, expected));
         return None;
     }
@@ -123,7 +123,7 @@ fn own_name(function: &FunctionSpec, others: &[Entry]) -> Result<(), Diagnostic>
 
 /// The names of the joints that have no inertia of their own.
 pub fn massless(model: &Model<f64>) -> Vec<String> {
-    let mut names: Vec<String> = model.massless_joints().into_iter().map(|i| model.bodies[i].name.clone()).collect();
+    let mut names: Vec<String> = model.massless_joints().into_iter().map(|i| model.bodies()[i].name.clone()).collect();
     // A joint of several degrees of freedom is several bodies, which follow one another.
     names.dedup();
     names
@@ -152,7 +152,7 @@ pub fn defined<S: Scalar>(file: &str, model: &Model<f64>, massless: &[String], f
         (n < 6).then(|| format!("link {:?} ({n})", f.name))
     };
     let frames: Vec<String> = match function.needs {
-        Needs::FreeFrames => model.frames.iter().filter_map(bound).collect(),
+        Needs::FreeFrames => model.frames().iter().filter_map(bound).collect(),
         _ => Vec::new(),
     };
     if frames.is_empty() {

@@ -109,8 +109,8 @@ impl Request {
     /// Links of which no joint that moves has the name; none of a robot that cannot be had.
     fn links_without_a_joint(&self) -> Vec<String> {
         let Ok(BuiltRobot { model: whole, .. }) = self.build_robot() else { return Vec::new() };
-        let is_joint = |name: &String| whole.joints.iter().any(|joint| joint.name == *name);
-        whole.frames.iter().map(|frame| frame.name.clone()).filter(|name| !is_joint(name)).collect()
+        let is_joint = |name: &String| whole.joints().iter().any(|joint| joint.name == *name);
+        whole.frames().iter().map(|frame| frame.name.clone()).filter(|name| !is_joint(name)).collect()
     }
 
     /// The request with what follows from its choices: functions in the place of groups; without

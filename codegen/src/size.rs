@@ -38,9 +38,9 @@ struct Tree {
 
 impl Tree {
     fn of(model: &Model<f64>) -> Self {
-        let mut depths: Vec<f64> = Vec::with_capacity(model.bodies.len());
+        let mut depths: Vec<f64> = Vec::with_capacity(model.bodies().len());
         let (mut freedoms, mut pairs, mut squares) = (0.0, 0.0, 0.0);
-        for (i, body) in model.bodies.iter().enumerate() {
+        for (i, body) in model.bodies().iter().enumerate() {
             if i == 0 {
                 depths.push(0.0);
                 continue;
@@ -53,10 +53,10 @@ impl Tree {
             freedoms += own as f64;
             depths.push(below + own as f64);
         }
-        let of_frames = model.frames.iter().map(|frame| depths[frame.body]);
+        let of_frames = model.frames().iter().map(|frame| depths[frame.body]);
         Self {
-            bodies: model.bodies.len() as f64,
-            frames: model.frames.len() as f64,
+            bodies: model.bodies().len() as f64,
+            frames: model.frames().len() as f64,
             freedoms,
             pairs,
             squares,
@@ -122,7 +122,7 @@ pub(crate) fn within_limit(request: &Request, model: &Model<f64>, entries: &[(us
         }
         rest -= size;
         let library: Vec<&str> = function.parts.iter().map(|part| part.function.name).collect();
-        let found = format!("about {} MB of code for {} degrees of freedom", size.ceil() as u64, model.nv);
+        let found = format!("about {} MB of code for {} degrees of freedom", size.ceil() as u64, model.nv());
         let expected = format!(
             "at most {} MB for all functions together; call the library's {}, a loop over the joints, or allow more with `--max-code-size` \
              (key `max_code_size`, method `Build::max_code_size`)",

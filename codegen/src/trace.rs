@@ -21,9 +21,8 @@ pub(crate) fn trace(wanted: &FunctionSpec, choices: &[Strategy], model: &Model<f
     let arguments = wanted.arguments();
     let graph = sym::trace(|| {
         let with_inputs = (!parameters.is_empty()).then(|| {
-            let mut symbolic: Model<Sym> = model.cast();
-            parameters.iter().for_each(|p| p.put(&mut symbolic, |k| Sym::input(arguments.len(), k)));
-            symbolic
+            let input = |k| Sym::input(arguments.len(), k);
+            model.cast::<Sym>().changed(|parts| parameters.iter().for_each(|p| p.put(parts, input)))
         });
         let run = |(part, choice): (&FunctionTerm, &Strategy)| {
             // Where all is numbers, passes go over numbers, which is sooner done.
@@ -72,10 +71,7 @@ pub(crate) fn trace_in_lanes(wanted: &FunctionSpec, choices: &[Strategy], model:
 
 /// The view of the model after the passes that are chosen.
 fn passed<S: Scalar>(part: &FunctionTerm, choice: &Strategy, model: &Model<S>) -> View<S> {
-    let mut model = model.clone();
-    if !part.function.asks_for_frames() {
-        model.frames.clear();
-    }
+    let model = if part.function.asks_for_frames() { model.clone() } else { model.clone().without_frames() };
     let (passes, shifted) = if part.function.regrouped { (choice.passes, choice.shifted) } else { (0, false) };
     let carried = model.carried();
     let view = model_passes::<S>().iter().take(passes).fold(View::new(model), |view, (_, pass, _)| pass(view));
@@ -103,7 +99,7 @@ pub(crate) fn units(part: &FunctionTerm, choice: &Strategy, model: &Model<f64>) 
 /// Whether a function is the same in whatever axes and units bodies are, as neither it nor an effect asks where they are.
 fn indifferent(part: &FunctionTerm, model: &Model<f64>) -> bool {
     let free = part.function.regrouped && !part.function.asks_for_frames() && part.function.takes.contains(&Argument::Q);
-    free && model.bodies.iter().all(|b| b.effects.body.is_empty())
+    free && model.bodies().iter().all(|b| b.effects.body.is_empty())
 }
 
 /// The model after all passes.

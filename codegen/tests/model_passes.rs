@@ -32,7 +32,7 @@ const SMALL: Flavour = Flavour { links: 7, ..Flavour::REGULAR };
 
 /// A view without frames.
 fn bare<S: Scalar>(model: &Model<S>) -> View<S> {
-    View::new(Model { frames: Vec::new(), ..model.clone() })
+    View::new(model.clone().without_frames())
 }
 
 /// One function of the table, by the first way that applies.
@@ -58,7 +58,7 @@ fn near(row: &Function<Big>) -> f64 {
 /// Each function that the model has, with its arguments.
 fn each(case: &Case, model: &Model<Big>, state: &State, mut visit: impl FnMut(&'static Function<Big>, &[&[Big]])) {
     let arguments: Vec<(Argument, Vec<Big>)> = Argument::ALL.iter().map(|&a| (a, cast(state.argument(a)))).collect();
-    let bound = case.model.frames.iter().any(|f| case.model.freedoms_of(f.body).len() < 6);
+    let bound = case.model.frames().iter().any(|f| case.model.freedoms_of(f.body).len() < 6);
     let has = |f: &Function<Big>| match f.needs {
         Needs::FreeFrames => !bound,
         Needs::Mass => case.model.moving_mass() > 0.0,
@@ -69,7 +69,7 @@ fn each(case: &Case, model: &Model<Big>, state: &State, mut visit: impl FnMut(&'
         let given: Vec<&[Big]> = row.takes.iter().filter_map(given).collect();
         visit(row, &given);
     }
-    assert_eq!(model.nv, case.model.nv);
+    assert_eq!(model.nv(), case.model.nv());
 }
 
 fn run(row: &Function<Big>, way: usize, view: &View<Big>, given: &[&[Big]]) -> Vec<Big> {
@@ -116,17 +116,18 @@ fn round_bodies_need_not_turn() {
     let seen = std::cell::Cell::new(0);
     for_each_tree(12, SMALL, |case, random| {
         let state = case.state(random);
-        let mut model = case.model.clone();
+        let model = case.model.clone();
         let last = |model: &Model, i: usize| {
-            model.outward().all(|k| model.bodies[k].parent != i) && model.bodies[i].joint.is_rotation_about_axis()
+            model.outward().all(|k| model.bodies()[k].parent != i) && model.bodies()[i].joint.is_rotation_about_axis()
         };
         let round: Vec<usize> = model.outward().filter(|&i| last(&model, i)).collect();
-        for &i in &round {
-            let SpatialInertia { first, second, .. } = &mut model.bodies[i].inertia;
-            (first.x, first.y) = (0.0, 0.0);
-            *second = Matrix3::from_diagonal(&Vector3::new(second.m11, second.m11, second.m33));
-        }
-        model.frames.clear();
+        let model = model.without_frames().changed(|parts| {
+            for &i in &round {
+                let SpatialInertia { first, second, .. } = &mut parts.bodies[i].inertia;
+                (first.x, first.y) = (0.0, 0.0);
+                *second = Matrix3::from_diagonal(&Vector3::new(second.m11, second.m11, second.m33));
+            }
+        });
         seen.set(seen.get() + round.len());
         Big::scope(|| {
             let model = model.cast::<Big>();
@@ -146,16 +147,17 @@ fn constants_may_be_turned_instead_of_vectors() {
     let (seen, kinds) = (std::cell::Cell::new(0), std::cell::RefCell::new(Vec::new()));
     for_each_tree(16, Flavour { links: 9, ..SMALL }, |case, random| {
         let state = case.state(random);
-        let mut model = case.model.clone();
-        for i in model.outward() {
-            let (body, parent) = (&model.bodies[i], &model.bodies[model.bodies[i].parent]);
-            let revolute = body.joint.is_rotation_about_axis() && parent.joint.is_rotation_about_axis();
-            // What a universal joint consists of has no mass between.
-            if body.parent != 0 && revolute && parent.link.is_some() && random.below(3) > 0 {
-                model.bodies[i].placement.rotation = Matrix3::identity();
-                seen.set(seen.get() + 1);
+        let model = case.model.clone().changed(|parts| {
+            for i in 1..parts.bodies.len() {
+                let (body, parent) = (&parts.bodies[i], &parts.bodies[parts.bodies[i].parent]);
+                let revolute = body.joint.is_rotation_about_axis() && parent.joint.is_rotation_about_axis();
+                // What a universal joint consists of has no mass between.
+                if body.parent != 0 && revolute && parent.link.is_some() && random.below(3) > 0 {
+                    parts.bodies[i].placement.rotation = Matrix3::identity();
+                    seen.set(seen.get() + 1);
+                }
             }
-        }
+        });
         Big::scope(|| {
             let model = model.cast::<Big>();
             let passed = bare(&model).passed();
@@ -182,22 +184,23 @@ fn rates_may_be_found_by_the_axes_of_joints() {
     for_each_tree(24, Flavour { links: 9, ..SMALL }, |case, random| {
         let state = case.state(random);
         Big::scope(|| {
-            let mut model = case.model.cast::<Big>();
             // Mostly axes along axes, turned about themselves by any angle, and bodies with some of
             // their products of inertia.
-            for i in model.outward() {
-                // What a universal joint consists of has no mass between: its axes stay as they
-                // are.
-                if random.below(4) == 0 || model.bodies[model.bodies[i].parent].link.is_none() {
-                    continue;
+            let model = case.model.cast::<Big>().changed(|parts| {
+                for i in 1..parts.bodies.len() {
+                    // What a universal joint consists of has no mass between: its axes stay as they
+                    // are.
+                    if random.below(4) == 0 || parts.bodies[parts.bodies[i].parent].link.is_none() {
+                        continue;
+                    }
+                    let body = &mut parts.bodies[i];
+                    let (sin, cos) = Big::from_f64(random.below(3) as f64).sin_cos();
+                    body.placement.rotation = to_z_axis(AXES[random.below(6)]).map(Big::from_f64) * Angle { sin, cos }.rotation();
+                    for (row, column) in [(0, 1), (0, 2), (1, 2)].into_iter().filter(|_| random.below(2) == 0) {
+                        (body.inertia.second[(row, column)], body.inertia.second[(column, row)]) = (Big::zero(), Big::zero());
+                    }
                 }
-                let body = &mut model.bodies[i];
-                let (sin, cos) = Big::from_f64(random.below(3) as f64).sin_cos();
-                body.placement.rotation = to_z_axis(AXES[random.below(6)]).map(Big::from_f64) * Angle { sin, cos }.rotation();
-                for (row, column) in [(0, 1), (0, 2), (1, 2)].into_iter().filter(|_| random.below(2) == 0) {
-                    (body.inertia.second[(row, column)], body.inertia.second[(column, row)]) = (Big::zero(), Big::zero());
-                }
-            }
+            });
             let plain = View::new(model.clone());
             let by_axes = plain.clone().with_axis_accelerations();
             seen.borrow_mut().extend(by_axes.formulation.kinematics.iter().skip(1).copied());
@@ -221,18 +224,19 @@ fn mass_at_a_joint_may_be_shifted() {
     let lent = std::cell::Cell::new(0);
     for_each_tree(24, Flavour { links: 9, ..SMALL }, |case, random| {
         let state = case.state(random);
-        let mut model = case.model.clone();
         // Mostly a chain.
-        for i in model.outward().filter(|_| random.below(4) > 0) {
-            model.bodies[i].parent = i - 1;
-        }
+        let model = case.model.clone().changed(|parts| {
+            for i in (1..parts.bodies.len()).filter(|_| random.below(4) > 0) {
+                parts.bodies[i].parent = i - 1;
+            }
+        });
         Big::scope(|| {
             let model = model.cast::<Big>();
             let passed = bare(&model).passed();
             let shifted = passed.clone().with_shifted_masses(&model.carried());
             let has_some =
                 |(body, inertia): &(&Body<Big>, &SpatialInertia<Big>)| body.joint.is_rotation_about_axis() && inertia.mass.to_f64() != 0.0;
-            let bodies = shifted.model.bodies.iter().zip(&shifted.formulation.torque_inertias);
+            let bodies = shifted.model.bodies().iter().zip(&shifted.formulation.torque_inertias);
             lent.set(lent.get() + bodies.filter(has_some).count());
             same_without_frames(case, &state, &shifted, &model);
             if no_joint_moves_origin(&passed.model) {
@@ -253,12 +257,13 @@ fn lengths_may_be_in_any_unit() {
     let (seen, unturned) = (std::cell::Cell::new(0), std::cell::Cell::new(0));
     for_each_tree(16, Flavour { floating: false, ..SMALL }, |case, random| {
         let state = case.state(random);
-        let mut model = case.model.clone();
-        for body in &mut model.bodies {
-            if body.joint.nv() == 1 && body.joint.moves_origin() {
-                (body.joint, body.coordinates.pitch) = (Joint::Revolute, 0.0);
+        let model = case.model.clone().changed(|parts| {
+            for body in &mut parts.bodies {
+                if body.joint.nv() == 1 && body.joint.moves_origin() {
+                    (body.joint, body.coordinates.pitch) = (Joint::Revolute, 0.0);
+                }
             }
-        }
+        });
         if !no_joint_moves_origin(&model) {
             return;
         }
@@ -290,11 +295,11 @@ fn units_are_where_a_constant_is_one() {
         let view = View::new(Case::bundled(articulated_models::robot(robot).expect("bundled")).model);
         for metres in view.units() {
             let scaled = view.in_unit_of(metres).model;
-            let constants = scaled.outward().map(|i| &scaled.bodies[i]).flat_map(|body| {
+            let constants = scaled.outward().map(|i| &scaled.bodies()[i]).flat_map(|body| {
                 let (p, h) = (body.placement.position, body.inertia.first);
                 [p.x, p.y, p.z, h.x, h.y, h.z, body.inertia.mass]
             });
-            let gravity = [scaled.gravity.x, scaled.gravity.y, scaled.gravity.z];
+            let gravity = [scaled.gravity().x, scaled.gravity().y, scaled.gravity().z];
             assert!(constants.chain(gravity).any(|x| (x.abs() - 1.0).abs() < 1e-15), "{robot}: nothing is one in {metres} m");
             seen += 1;
         }
@@ -329,7 +334,7 @@ fn rotations_of_models_are_rotations_to_rounding_before_and_after_passes() {
         let mut view = View::new(case.model.clone());
         for (name, pass, _) in [("none", (|view| view) as ModelPass<f64>, "")].iter().chain(model_passes::<f64>()) {
             view = pass(view);
-            for (body, rotation) in view.model.bodies.iter().zip(&view.formulation.rotations) {
+            for (body, rotation) in view.model.bodies().iter().zip(&view.formulation.rotations) {
                 let [fixed, from] = [body.placement.rotation, rotation.offset.rotation()];
                 let off = [fixed, from].map(|r| Big::scope(|| orthonormality(&r.map(Big::from_f64)).to_f64() / U));
                 assert!(off.iter().all(|off| *off <= 3.0), "{}: {} after {name}: {off:?} units of roundoff", case.name, body.name);
@@ -343,7 +348,7 @@ fn rotations_of_models_are_rotations_to_rounding_before_and_after_passes() {
 fn regrouped_bodies_keep_only_what_their_joint_feels() {
     for_each_tree(40, Flavour::ANY, |case, _| {
         let passed = View::new(case.model.clone()).passed();
-        for body in passed.model.bodies.iter().skip(1) {
+        for body in passed.model.bodies().iter().skip(1) {
             let i = &body.inertia;
             match body.joint {
                 Joint::Revolute => assert_eq!([i.mass, i.first.z, i.second.m33], [0.0; 3], "{}", body.name),
@@ -360,7 +365,7 @@ fn regrouped_bodies_keep_only_what_their_joint_feels() {
 fn frames_slide_to_where_axes_meet() {
     let case = Case::bundled(articulated_models::robot("panda_like").expect("it is bundled"));
     let slid = View::new(case.model.clone()).passed().model;
-    let offset = |model: &articulated_core::model::Model, i: usize| model.bodies[i].placement.position.amax();
+    let offset = |model: &articulated_core::model::Model, i: usize| model.bodies()[i].placement.position.amax();
     assert_eq!([2, 3].map(|i| offset(&slid, i)), [0.0; 2]);
     assert!(offset(&case.model, 3) > 0.3);
 }
@@ -371,11 +376,11 @@ fn mass_is_shifted_where_that_is_worth_it() {
     for (robot, joints) in [("ur5_like", 1), ("panda_like", 2), ("quadruped", 8)] {
         let model = Case::bundled(articulated_models::robot(robot).expect("it is bundled")).model;
         let carried = model.carried();
-        assert!((carried[0] - model.bodies.iter().map(|b| b.inertia.mass).sum::<f64>()).abs() < 1e-12);
+        assert!((carried[0] - model.bodies().iter().map(|b| b.inertia.mass).sum::<f64>()).abs() < 1e-12);
         let passed = View::new(model.clone()).passed();
         let masses = |carried: &[f64]| -> Vec<(f64, f64)> {
             let shifted = passed.clone().with_shifted_masses(carried);
-            let bodies = shifted.model.bodies.iter().zip(&shifted.formulation.torque_inertias).zip(carried);
+            let bodies = shifted.model.bodies().iter().zip(&shifted.formulation.torque_inertias).zip(carried);
             bodies.filter(|((body, _), _)| body.parent != 0).map(|((_, inertia), carried)| (inertia.mass, *carried)).collect()
         };
         let shifted = masses(&carried);
@@ -393,7 +398,7 @@ fn angles_about_a_joints_own_axis_are_counted_with_its_own() {
     let fixed = |x: f64| x == 0.0 || x.abs() == 1.0;
     for_each_tree(40, Flavour::ANY, |case, _| {
         let passed = View::new(case.model.clone()).passed();
-        for body in passed.model.bodies.iter().skip(1).filter(|b| b.parent != 0 && b.joint.is_rotation_about_axis()) {
+        for body in passed.model.bodies().iter().skip(1).filter(|b| b.parent != 0 && b.joint.is_rotation_about_axis()) {
             let turn = &body.placement.rotation;
             let along_a_coordinate_axis = turn.column(2).iter().all(|x| fixed(*x));
             assert!(!along_a_coordinate_axis || turn.iter().all(|x| fixed(*x)), "{}: {turn}", body.name);

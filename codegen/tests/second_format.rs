@@ -150,7 +150,7 @@ fn one_robot_in_two_formats_is_one_module() {
 fn edits_and_findings_are_those_of_every_format() {
     let mut request = request("arm.tiny", TINY);
     request.options.robot.lock.push(("elbow".to_owned(), vec![0.5]).into());
-    assert_eq!(generate(&request).unwrap().model.nv, 1);
+    assert_eq!(generate(&request).unwrap().model.nv(), 1);
     let broken = TINY.replace("mass = 2.0", "mass = -2.0").replace("parent = \"upper\"", "parent = \"uper\"");
     request.document = broken.into();
     request.options.functions.push("no_such".into());
@@ -208,11 +208,11 @@ fn joints_in_sequence_on_a_body_and_free_frames_are_those_of_the_equal_robot() {
         generate(&request).unwrap_or_else(|e| panic!("{e}")).model
     };
     let (wide, universal) = (model("gimbal.tiny", WIDE), model("gimbal.urdf", UNIVERSAL));
-    let names = |model: &Model| model.frames.iter().map(|frame| frame.name.clone()).collect::<Vec<_>>();
+    let names = |model: &Model| model.frames().iter().map(|frame| frame.name.clone()).collect::<Vec<_>>();
     assert_eq!(names(&wide), ["base", "rotor", "tool"]);
     assert_eq!(names(&wide), names(&universal));
     assert_eq!(wide.links().collect::<Vec<_>>(), [2]);
-    assert_eq!(wide.joints.iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>(), ["yaw", "pitch"]);
+    assert_eq!(wide.joints().iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>(), ["yaw", "pitch"]);
     let [q, v, a] = [[0.3, -0.8], [0.7, 0.4], [-0.2, 1.1]];
     for (name, arguments) in [("placements", &[&q[..]][..]), ("inverse_dynamics", &[&q, &v, &a]), ("joint_wrenches", &[&q, &v, &a])] {
         let of = |model: &Model| {

@@ -13,13 +13,13 @@ fuzz_target!(|bytes: &[u8]| {
     let Ok(reading) = read(bytes, &Options::default()) else { return };
     for base in [Base::Fixed, Base::Floating] {
         let Ok(model) = Model::new(&reading.description, base) else { return };
-        if model.nv > 60 {
+        if model.nv() > 60 {
             return;
         }
         let passed = model_passes::<f64>().iter().fold(model.clone(), |m, (_, pass, _)| pass(m));
-        let mut q = vec![0.3; model.nq];
+        let mut q = vec![0.3; model.nq()];
         articulated_core::algorithm::neutral(&model, &mut q);
-        let (one, mut out) = (vec![0.5; model.nv], vec![0.0; model.nv]);
+        let (one, mut out) = (vec![0.5; model.nv()], vec![0.0; model.nv()]);
         let mut ws = Workspace::new(&model);
         inverse_dynamics(&passed, &mut Workspace::new(&passed), &q, &one, &one, &mut out);
         if checked_forward_dynamics(&model, &mut ws, &q, &one, &one, &mut out).is_ok() {

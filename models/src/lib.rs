@@ -174,7 +174,7 @@ mod tests {
             let prepared = open_in(scene, std::path::Path::new(""), &robots).unwrap_or_else(|e| panic!("{e}"));
             let model = prepared.robot.model;
             let (q, v) = prepared.scene.start(&model).unwrap_or_else(|e| panic!("{e}"));
-            assert_eq!((q.len(), v.len()), (model.nq, model.nv), "{}", bundled.name);
+            assert_eq!((q.len(), v.len()), (model.nq(), model.nv()), "{}", bundled.name);
             let controller =
                 prepared.scene.controller(&model, &mut |file| Err(format!("{file} is not bundled"))).unwrap_or_else(|e| panic!("{e}"));
             assert_eq!(controller == Controller::None, prepared.scene.control == Default::default(), "{}", bundled.name);

@@ -76,13 +76,13 @@ impl Stage {
         if self.effects_of(EffectId::contact).next().is_none() {
             return Vec::new();
         }
-        let mut places = vec![0.0; 12 * self.model.frames.len()];
+        let mut places = vec![0.0; 12 * self.model.frames().len()];
         if self.model.placements(&mut self.model.workspace(), q, &mut places).is_err() {
             return Vec::new();
         }
-        let weight = self.model.moving_mass() * self.model.gravity.norm();
+        let weight = self.model.moving_mass() * self.model.gravity().norm();
         let sunk = |contact: &Applied| {
-            let frame = self.model.frames.iter().position(|frame| frame.name == contact.on)?;
+            let frame = self.model.frames().iter().position(|frame| frame.name == contact.on)?;
             let (x, r, normal) = (&places[12 * frame..][..12], contact.at.xyz, unit(field(contact, "normal").try_into().ok()?)?);
             let centre = |k: usize| x[9 + k] + (0..3).map(|c| x[3 * k + c] * r[c]).sum::<f64>();
             let depth = field(contact, "height").first()? - (0..3).map(|k| normal[k] * centre(k)).sum::<f64>();

@@ -55,7 +55,7 @@ impl Stage {
             return None;
         }
         let mut creeps: Vec<Creep> = contacts.iter().map(|contact| contact.creep.clone()).collect();
-        let (mut ws, mut places) = (self.model.workspace(), vec![0.0; 12 * self.model.frames.len()]);
+        let (mut ws, mut places) = (self.model.workspace(), vec![0.0; 12 * self.model.frames().len()]);
         // The lowest point of each sphere, and whether it presses.
         let mut before: Vec<Option<[f64; 3]>> = vec![None; contacts.len()];
         for k in 0..recording.len() {
@@ -101,7 +101,7 @@ impl Contact {
     fn of(stage: &Stage, applied: &Applied) -> Option<Self> {
         let one = |name: &str| field(applied, name).first().copied();
         Some(Self {
-            frame: stage.model.frames.iter().position(|frame| frame.name == applied.on)?,
+            frame: stage.model.frames().iter().position(|frame| frame.name == applied.on)?,
             point: applied.at.xyz,
             normal: unit(field(applied, "normal").try_into().ok()?)?,
             reach: one("height")? + one("radius")?,

@@ -19,7 +19,7 @@ pub(crate) struct Freedom<'s> {
 impl Stage {
     /// All degrees of freedom, those of joints that follow others too. A quaternion's have no coordinates: they are no place of bounds.
     pub(crate) fn freedoms(&self) -> impl Iterator<Item = Freedom<'_>> {
-        self.model.bodies.iter().skip(1).flat_map(|body| {
+        self.model.bodies().iter().skip(1).flat_map(|body| {
             let (at, follow) = (&body.coordinates, body.coordinates.mimic);
             let (multiplier, offset) = follow.map_or((1.0, 0.0), |f| (f.multiplier, f.offset));
             let one = move |freedom| Freedom { body, freedom, q: at.q + freedom, v: at.v + freedom, multiplier, offset };
@@ -29,7 +29,7 @@ impl Stage {
 
     /// What events of a degree of freedom are called: its joint, with a number where that has several.
     pub(crate) fn name_of(&self, at: &Freedom<'_>) -> String {
-        let several = self.model.joints.iter().find(|joint| joint.name == at.joint() && joint.v.1 > 1);
+        let several = self.model.joints().iter().find(|joint| joint.name == at.joint() && joint.v.1 > 1);
         several.map_or_else(|| at.joint().to_owned(), |joint| format!("{}[{}]", joint.name, at.v - joint.v.0))
     }
 

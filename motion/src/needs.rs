@@ -44,7 +44,7 @@ impl Stage {
     fn required(&self, integrator: IntegratorId) -> Vec<FunctionId> {
         let mut functions = self.scene.calls_with(integrator).required;
         functions.retain(|function| match function {
-            FunctionId::integrate => self.model.nq != self.model.nv,
+            FunctionId::integrate => self.model.nq() != self.model.nv(),
             FunctionId::placements => self.framed().next().is_some(),
             _ => true,
         });

@@ -61,12 +61,12 @@ impl Stage {
         let mut planes: Vec<Plane> = Vec::new();
         touches.iter().for_each(|touch| planes.extend(Some(touch.plane).filter(|plane| !planes.contains(plane))));
         let parts = if planes.is_empty() { Vec::new() } else { self.parts() };
-        if parts.is_empty() || self.model.nq == 0 {
+        if parts.is_empty() || self.model.nq() == 0 {
             return Vec::new();
         }
         let mut found: Vec<Option<Penetration>> = parts.iter().map(|_| None).collect();
-        let (mut ws, mut places) = (self.model.workspace(), vec![0.0; 12 * self.model.frames.len()]);
-        for (t, q) in t.iter().zip(q.chunks_exact(self.model.nq)) {
+        let (mut ws, mut places) = (self.model.workspace(), vec![0.0; 12 * self.model.frames().len()]);
+        for (t, q) in t.iter().zip(q.chunks_exact(self.model.nq())) {
             if self.model.placements(&mut ws, q, &mut places).is_err() {
                 continue;
             }
@@ -74,7 +74,7 @@ impl Stage {
                 let held = self.held(&touches, plane, &places);
                 for (part, found) in parts.iter().zip(&mut found) {
                     let depth = part.spheres.iter().map(|s| depth(s, &places[12 * part.frame..][..12], plane)).fold(f64::MIN, f64::max);
-                    if depth <= held[self.model.frames[part.frame].body] + part.beside {
+                    if depth <= held[self.model.frames()[part.frame].body] + part.beside {
                         continue;
                     }
                     let new = || Penetration { link: part.link.to_owned(), from: *t, depth, at: *t };
@@ -106,7 +106,7 @@ impl Stage {
     /// `[t.len() · nq]`. Those that were there from the start on are left out unless they sank much
     /// deeper.
     pub fn warning_of_penetrations(&self, t: &[f64], q: &[f64]) -> Option<String> {
-        let (first, start) = (t.first()?, q.get(..self.model.nq)?);
+        let (first, start) = (t.first()?, q.get(..self.model.nq())?);
         let at_start = self.penetrations(&[*first], start);
         let depth_at_start = |link: &str| at_start.iter().find(|p| p.link == link).map_or(0.0, |p| p.depth);
         let mut found = self.penetrations(t, q);
@@ -126,25 +126,27 @@ impl Stage {
     /// All contacts of the scene.
     fn touches(&self) -> Vec<Touch> {
         let contacts = self.effects_of(EffectId::contact).filter_map(|contact| {
-            let frame = self.model.frames.iter().position(|frame| frame.name == contact.on)?;
+            let frame = self.model.frames().iter().position(|frame| frame.name == contact.on)?;
             let normal = unit(field(contact, "normal").try_into().ok()?)?;
             let sphere = ContactSphere { center: contact.at.xyz, radius: *field(contact, "radius").first()? };
             let plane = (normal, *field(contact, "height").first()?);
-            Some(Touch { body: self.model.frames[frame].body, frame, sphere, plane })
+            Some(Touch { body: self.model.frames()[frame].body, frame, sphere, plane })
         });
         contacts.collect()
     }
 
     /// Collision geometry of the links that move.
     fn parts(&self) -> Vec<Part<'_>> {
-        let links = self.description.links.iter().zip(&self.model.frames).enumerate();
-        let moving = links.filter(|(_, (link, frame))| frame.body != 0 && frame.name == link.name && !link.collision.is_empty());
-        moving.map(|(frame, (link, _))| Part::of(link, frame)).filter(|part| !part.spheres.is_empty()).collect()
+        let frames = self.model.frames();
+        let links = self.description.links.iter().filter(|link| !link.collision.is_empty());
+        let placed = links.filter_map(|link| Some((link, frames.iter().position(|frame| frame.name == link.name)?)));
+        let moving = placed.filter(|(_, frame)| frames[*frame].body != 0);
+        moving.map(|(link, frame)| Part::of(link, frame)).filter(|part| !part.spheres.is_empty()).collect()
     }
 
     /// How deep the deepest contact of each body is in a plane, m; 0 where none is.
     fn held(&self, touches: &[Touch], plane: &Plane, places: &[f64]) -> Vec<f64> {
-        let mut held = vec![0.0_f64; self.model.bodies.len()];
+        let mut held = vec![0.0_f64; self.model.bodies().len()];
         for touch in touches.iter().filter(|touch| touch.plane == *plane) {
             held[touch.body] = held[touch.body].max(depth(&touch.sphere, &places[12 * touch.frame..][..12], plane));
         }

@@ -18,10 +18,10 @@ impl Stage {
     /// A robot that was made with other effects, other gravity or other masses than the scene's.
     pub(crate) fn another<R: Dynamics<f64>>(&self, robot: &R, begin: &Begin) -> Result<Option<Fault>, FunctionError> {
         for away in AWAY {
-            let pattern: Vec<f64> = (0..self.model.nv).map(|k| 1.0 - 0.15 * (k % 4) as f64).collect();
+            let pattern: Vec<f64> = (0..self.model.nv()).map(|k| 1.0 - 0.15 * (k % 4) as f64).collect();
             let step: Vec<f64> = pattern.iter().map(|x| away * x).collect();
             let v: Vec<f64> = begin.v.iter().zip(&pattern).map(|(v, x)| v + 0.5 * x).collect();
-            let mut q = vec![0.0; self.model.nq];
+            let mut q = vec![0.0; self.model.nq()];
             self.model.integrate(&mut self.model.workspace(), &begin.q, &step, &mut q)?;
             let a = [accelerations(&self.model, &q, &v, &pattern)?, accelerations(robot, &q, &v, &pattern)?];
             if let Some((apart, largest)) = apart(&self.model, &q, &v, &a)?.filter(|(apart, largest)| *apart > ALIKE * largest) {

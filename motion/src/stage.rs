@@ -79,7 +79,7 @@ impl Stage {
 
     /// Names of the frames that [`Stage::model`] gives, in its order.
     pub fn frame_names(&self) -> Vec<&str> {
-        self.model.frames.iter().map(|frame| frame.name.as_str()).collect()
+        self.model.frames().iter().map(|frame| frame.name.as_str()).collect()
     }
 }
 

@@ -30,10 +30,10 @@ impl Exact {
     /// With the frames of the model, in its order, and its reference of wrenches; `None` where it has not all of these links.
     #[must_use]
     pub fn with_frames_of(self, model: &Model<f64>) -> Option<Self> {
-        let names: Vec<&str> = model.frames.iter().map(|f| f.name.as_str()).collect();
+        let names: Vec<&str> = model.frames().iter().map(|f| f.name.as_str()).collect();
         let form = match self.0 {
-            Form::Textbook(book) => Form::Textbook(Box::new(book.with_frames(&names).ok()?.with_wrenches_in(model.wrench_reference))),
-            Form::Library(own) => Form::Library(Box::new(own.with_frames(&names).ok()?.with_wrenches_in(model.wrench_reference))),
+            Form::Textbook(book) => Form::Textbook(Box::new(book.with_frames(&names).ok()?.with_wrenches_in(model.wrench_reference()))),
+            Form::Library(own) => Form::Library(Box::new(own.with_frames(&names).ok()?.with_wrenches_in(model.wrench_reference()))),
         };
         Some(Self(form))
     }
@@ -53,10 +53,10 @@ impl Exact {
     /// Accelerations by the articulated-body algorithm, where the robot has it: no joint follows another. Arguments of the robot's lengths.
     pub fn articulated_body(&self, [q, v, tau]: [&[Big]; 3]) -> Option<Vec<Big>> {
         let Form::Library(model) = &self.0 else { return None };
-        if model.bodies.iter().any(|body| body.coordinates.mimic.is_some()) {
+        if model.bodies().iter().any(|body| body.coordinates.mimic.is_some()) {
             return None;
         }
-        let mut a = vec![Big::from_f64(0.0); model.nv];
+        let mut a = vec![Big::from_f64(0.0); model.nv()];
         articulated_body(model, &mut Workspace::new(model), q, v, tau, &mut a);
         Some(a)
     }

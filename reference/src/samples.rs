@@ -22,7 +22,7 @@ pub(crate) fn arguments(model: &Model<f64>, row: &Function<f64>, number: u64) ->
         let mut numbers: Vec<f64> = (0..argument.len(model.shape())).map(|_| unit()).collect();
         if matches!(argument, Argument::Q | Argument::Target) {
             let uniform = numbers;
-            numbers = vec![0.0; model.nq];
+            numbers = vec![0.0; model.nq()];
             random_configuration(model, &mut Workspace::new(model), &uniform[..Argument::Uniform.len(model.shape())], &mut numbers);
         } else if *argument != Argument::Uniform {
             numbers.iter_mut().for_each(|x| *x = 4.0 * *x - 2.0);

@@ -347,7 +347,7 @@ impl Scene {
 
     /// `[nv]`. A gain, one number, of a joint of several degrees of freedom is for all of them; torques are asked for one by one.
     fn vector(&self, from: &PerJoint, key: &str, model: &Model<f64>, log: &mut Diagnostics) -> Vec<f64> {
-        let mut all = vec![0.0; model.nv];
+        let mut all = vec![0.0; model.nv()];
         match from {
             PerJoint::Same(x) => self.spread(*x, model, &mut all),
             PerJoint::All(values) => fill(values, key, model, Side::V, &mut all, log),
@@ -363,7 +363,7 @@ impl Scene {
     /// The number for all joints that something could drive: not those of a shaft, nor a floating base.
     fn spread(&self, x: f64, model: &Model<f64>, all: &mut [f64]) {
         let of_shaft = |name: &str| self.shafts.iter().any(|asked| (1..=asked.shaft.segments).any(|k| name == asked.shaft.bending(k)));
-        for joint in model.joints.iter().filter(|j| j.name != FLOATING_BASE && !of_shaft(&j.name)) {
+        for joint in model.joints().iter().filter(|j| j.name != FLOATING_BASE && !of_shaft(&j.name)) {
             all[joint.v.0..joint.v.0 + joint.v.1].fill(x);
         }
     }
@@ -374,7 +374,7 @@ const TORQUE: &str = "control.torque";
 
 fn put(one: &Named, (key, alike): (&str, bool), model: &Model<f64>, all: &mut [f64], log: &mut Diagnostics) {
     let key = format!("{key}.{}", crate::table::bare(&one.joint));
-    let Some(joint) = model.joints.iter().find(|j| j.name == one.joint) else {
+    let Some(joint) = model.joints().iter().find(|j| j.name == one.joint) else {
         no_joint(log, one.place, &key, &one.joint, model);
         return;
     };

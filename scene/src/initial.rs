@@ -223,7 +223,7 @@ impl Scene {
 
     pub(crate) fn started(&self, model: &Model<f64>, log: &mut Diagnostics) -> (Vec<f64>, Vec<f64>) {
         let mut q = neutral(model);
-        let mut v = vec![0.0; model.nv];
+        let mut v = vec![0.0; model.nv()];
         self.place_base(model, (&mut q, &mut v), log);
         fill(&self.initial.q, "initial.q", model, Side::Q, &mut q, log);
         fill(&self.initial.v, "initial.v", model, Side::V, &mut v, log);
@@ -233,7 +233,7 @@ impl Scene {
 
     fn place_base(&self, model: &Model<f64>, (q, v): (&mut [f64], &mut [f64]), log: &mut Diagnostics) {
         let Some(base) = &self.initial.base else { return };
-        if model.joints.first().is_none_or(|j| j.name != FLOATING_BASE) {
+        if model.joints().first().is_none_or(|j| j.name != FLOATING_BASE) {
             let fixed = if self.base == Some(Base::Floating) { "a robot without a floating base" } else { "a base that is fixed" };
             log.error((base.place, "initial.base"), Code::Robot, fixed, "base = \"floating\", or no initial.base");
             return;
@@ -254,7 +254,7 @@ pub(crate) enum Side {
 
 /// q at which nothing is moved or turned, `[nq]`.
 pub(crate) fn neutral(model: &Model<f64>) -> Vec<f64> {
-    let mut q = vec![0.0; model.nq];
+    let mut q = vec![0.0; model.nq()];
     algorithm::neutral(model, &mut q);
     q
 }
@@ -273,7 +273,7 @@ pub(crate) fn fill(from: &Coordinates, key: &str, model: &Model<f64>, side: Side
 
 fn put(one: &Named, key: &str, model: &Model<f64>, side: Side, into: &mut [f64], log: &mut Diagnostics) {
     let key = format!("{key}.{}", crate::table::bare(&one.joint));
-    let Some(joint) = model.joints.iter().find(|j| j.name == one.joint) else {
+    let Some(joint) = model.joints().iter().find(|j| j.name == one.joint) else {
         no_joint(log, one.place, &key, &one.joint, model);
         return;
     };
@@ -292,16 +292,16 @@ pub(crate) fn counted(n: usize) -> String {
 
 /// There is no such joint that has coordinates.
 pub(crate) fn no_joint(log: &mut Diagnostics, at: At, key: &str, name: &str, model: &Model<f64>) {
-    if model.bodies.iter().any(|body| body.name == name && body.coordinates.mimic.is_some()) {
+    if model.bodies().iter().any(|body| body.name == name && body.coordinates.mimic.is_some()) {
         return log.error((at, key), Code::Robot, "a joint that follows another", "the joint that it follows, whose coordinates it has");
     }
-    let names = model.joints.iter().map(|j| j.name.as_str());
+    let names = model.joints().iter().map(|j| j.name.as_str());
     log.unknown(((at, key), Code::UnknownName), ("a joint that is not there, or is locked".into(), name), "a joint that moves", names);
 }
 
 /// Quaternions to norm one; `place`: where those of a joint are given.
 pub(crate) fn normalise(model: &Model<f64>, q: &mut [f64], (key, place): (&str, &dyn Fn(&str) -> At), log: &mut Diagnostics) {
-    for (joint, quaternion) in model.joints.iter().filter_map(|j| Some((j, j.quaternion()?))) {
+    for (joint, quaternion) in model.joints().iter().filter_map(|j| Some((j, j.quaternion()?))) {
         if let Err(norm) = normalise_given(&mut q[quaternion]) {
             let found = format!("a quaternion of norm {norm:.4} for joint {:?}", joint.name);
             log.error((place(&joint.name), key), Code::Number, found, "norm one, in the order x, y, z, w");

@@ -178,7 +178,7 @@ impl Places {
 
     /// A row of the robot, `[nq]` or `[nv]`, without any column.
     pub(crate) fn neutral(&self, model: &Model<f64>, side: Side) -> Vec<f64> {
-        if side == Side::Q { neutral(model) } else { vec![0.0; model.nv] }
+        if side == Side::Q { neutral(model) } else { vec![0.0; model.nv()] }
     }
 
     /// Puts the numbers of the columns into a row of the robot.
@@ -198,12 +198,12 @@ pub(crate) fn listed(model: &Model<f64>, side: Side) -> String {
         1 => j.name.clone(),
         n => format!("{0}[0] to {0}[{1}]", j.name, n - 1),
     };
-    articulated_core::listed(model.joints.iter().map(name))
+    articulated_core::listed(model.joints().iter().map(name))
 }
 
 /// The place of `joint` or `joint[k]`.
 fn place_of(name: &str, model: &Model<f64>, side: Side, (at, key): (At, &str), log: &mut Diagnostics) -> Option<usize> {
-    let range = |joint: &str| model.joints.iter().find(|j| j.name == joint).map(|j| if side == Side::Q { j.q } else { j.v });
+    let range = |joint: &str| model.joints().iter().find(|j| j.name == joint).map(|j| if side == Side::Q { j.q } else { j.v });
     if let Some((first, 1)) = range(name) {
         return Some(first);
     }
@@ -214,7 +214,7 @@ fn place_of(name: &str, model: &Model<f64>, side: Side, (at, key): (At, &str), l
     {
         return Some(first + k);
     }
-    let names = model.joints.iter().map(|j| j.name.as_str());
+    let names = model.joints().iter().map(|j| j.name.as_str());
     let found = format!("the column {}", quote(name));
     log.unknown(((at, key), Code::UnknownName), (found, name), "a joint that moves, as elbow, or one of its numbers, as ball[0]", names);
     None

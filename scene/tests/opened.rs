@@ -42,15 +42,15 @@ fn opened(scene: &str, urdf: String) -> Opened {
 #[test]
 fn a_scenes_robot_is_edited_and_has_its_gravity_and_effects() {
     let settled = opened(EDITED, arm()).build().unwrap_or_else(|e| panic!("{e}"));
-    let joints: Vec<&str> = settled.model.joints.iter().map(|j| j.name.as_str()).collect();
+    let joints: Vec<&str> = settled.model.joints().iter().map(|j| j.name.as_str()).collect();
     assert_eq!(joints, ["shoulder", "left_bend"]);
-    assert_eq!((settled.model.nv, settled.model.gravity), (2, [0.0, 0.0, -1.625].into()));
+    assert_eq!((settled.model.nv(), settled.model.gravity()), (2, [0.0, 0.0, -1.625].into()));
     // Two links of the arm, two of the finger, and the load.
     assert_eq!(settled.model.moving_mass(), 6.5);
     let effects: Vec<(EffectId, &str, &[f64])> =
         settled.resolved.effects.iter().map(|a| (a.effect, a.on.as_str(), a.parameters.as_slice())).collect();
     assert_eq!(effects, [(EffectId::damping, "shoulder", &[0.25][..]), (EffectId::damping, "left_bend", &[0.125][..])]);
-    let on: usize = settled.model.bodies.iter().map(|b| b.effects.joint.len()).sum();
+    let on: usize = settled.model.bodies().iter().map(|b| b.effects.joint.len()).sum();
     assert_eq!(on, 2);
     assert!(settled.reading.description.joints.iter().any(|j| j.name == "elbow" && j.locked == Some(vec![0.5])));
 }
@@ -107,7 +107,7 @@ fn files_are_seen_from_the_scenes_folder_and_those_that_are_not_there_are_told_a
     std::fs::remove_dir_all(&folder).unwrap();
     let whole = whole.unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(whole.files, ["whole.toml", "arm.urdf", "finger.urdf"].map(path));
-    assert_eq!(whole.build().unwrap().model.nv, 2);
+    assert_eq!(whole.build().unwrap().model.nv(), 2);
     let told = |result: Result<Opened, Diagnostics>| result.unwrap_err().to_string();
     assert!(told(alone).starts_with(&format!("{}:2: urdf: {}: ", path("alone.toml").display(), path("no.urdf").display())));
     assert!(told(robot).contains("robot.toml:1: robot: found \"arm\", no such robot, expected urdf: no robot is known by name here"));
@@ -121,7 +121,7 @@ fn a_bundled_robot_stands_on_its_own_base_unless_the_scene_says_another_and_of_o
     let bundled = [Bundled { name: "stone", document: &urdf, base: Base::Floating }];
     let nv = |text: &str| {
         let opened = open_in(Scene::read("s.toml", text).unwrap(), Path::new(""), &bundled)?;
-        opened.build().map(|settled| settled.model.nv)
+        opened.build().map(|settled| settled.model.nv())
     };
     assert_eq!([nv("robot = 'stone'"), nv("robot = 'stone'\nbase = 'fixed'")].map(Result::unwrap), [6, 0]);
     let told = nv("\nrobot = 'stne'").unwrap_err().to_string();

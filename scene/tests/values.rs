@@ -54,7 +54,7 @@ fn gains_are_those_of_their_joints() {
     let found = scene(text).controller(&model(Base::Floating), &mut |_| Err("no files".into())).unwrap();
     let Controller::Pd { kp, kd, torque, .. } = found else { panic!("{found:?}") };
     let base = [0.0; 6];
-    assert_eq!(model(Base::Floating).joints[0].name, FLOATING_BASE);
+    assert_eq!(model(Base::Floating).joints()[0].name, FLOATING_BASE);
     assert_eq!(kp, [&base[..], &[3.0, 3.0]].concat());
     assert_eq!(kd, [&base[..], &[5.0, 7.0]].concat());
     assert_eq!(torque, [&base[..], &[-1.0, 0.0]].concat());

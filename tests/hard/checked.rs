@@ -9,7 +9,7 @@ use articulated_lab::stress::robots::{Shape, built, chain, rods, state, states};
 use articulated_tests::case::Case;
 
 fn mass_matrix(model: &Model<f64>, q: &[f64]) -> Vec<f64> {
-    let mut m = vec![0.0; model.nv * model.nv];
+    let mut m = vec![0.0; model.nv() * model.nv()];
     algorithm::mass_matrix(model, &mut Workspace::new(model), q, &mut m);
     m
 }
@@ -28,7 +28,7 @@ fn a_solver_runs_on_whatever_has_dynamics() {
     for s in states(&model, 4, 1, 20.0) {
         let given = [&s.q[..], &s.v, &s.tau];
         let ((a, left), (b, same)) = (solve(&model, given), solve(&articulated_models::panda_like::Robot, given));
-        let mut c = vec![0.0; model.nv];
+        let mut c = vec![0.0; model.nv()];
         let by_aba = algorithm::checked_forward_dynamics(&model, &mut Workspace::new(&model), &s.q, &s.v, &s.tau, &mut c).unwrap();
         let size = a.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         for k in 0..a.len() {
@@ -36,7 +36,7 @@ fn a_solver_runs_on_whatever_has_dynamics() {
         }
         let names =
             |k| (Dynamics::joint_of(&model, k).map(str::to_owned), articulated_models::panda_like::Robot.joint_of(k).map(str::to_owned));
-        (0..=model.nv).map(names).for_each(|(a, b)| assert_eq!(a, b));
+        (0..=model.nv()).map(names).for_each(|(a, b)| assert_eq!(a, b));
         assert!((left / same - 1.0).abs() < 1e-9 && left > 1e-4 && by_aba > 1e-4, "{left} {same} {by_aba}");
     }
 }
@@ -60,7 +60,7 @@ fn a_solver_solves_with_what_motors_give() {
         [found[0], expected[0]]
     }
     let bare = Case::bundled(articulated_models::robot("simple_pendulum").unwrap()).model;
-    let on = bare.joints[0].name.clone();
+    let on = bare.joints()[0].name.clone();
     let motor = Applied { effect: EffectId::motor, on, at: Origin::default(), parameters: vec![2.0, 30.0, 3.0, 1.0, 1e-3] };
     let model = bare.clone().with_effects(&[motor]).unwrap();
     assert!(Dynamics::has_motors(&model) && driven::Robot.has_motors() && !Dynamics::has_motors(&bare));
@@ -75,8 +75,8 @@ fn a_solver_solves_with_wrenches() {
     let model = Case::bundled(articulated_models::robot("panda_like").unwrap()).model;
     let mut ws = Workspace::new(&model);
     for s in states(&model, 2, 5, 20.0) {
-        let wrenches: Vec<f64> = (0..6 * model.frames.len()).map(|k| (k as f64).sin()).collect();
-        let (mut a, mut b, mut free) = (vec![0.0; model.nv], vec![0.0; model.nv], vec![0.0; model.nv]);
+        let wrenches: Vec<f64> = (0..6 * model.frames().len()).map(|k| (k as f64).sin()).collect();
+        let (mut a, mut b, mut free) = (vec![0.0; model.nv()], vec![0.0; model.nv()], vec![0.0; model.nv()]);
         algorithm::articulated_body_with_wrenches(&model, &mut ws, &s.q, &s.v, &s.tau, &wrenches, &mut a);
         let (mut solver, given) = (Solver::new(Dynamics::shape(&model)), [&s.q[..], &s.v, &s.tau]);
         solver.forward_dynamics_with_wrenches(&model, &mut ws, given, &wrenches, &mut b).unwrap();
@@ -171,7 +171,7 @@ fn the_estimate_of_the_condition_number_is_near_it() {
 fn a_factor_solves() {
     let model = Case::bundled(articulated_models::robot("humanoid").unwrap()).model;
     let s = &states(&model, 1, 3, 1.0)[0];
-    let (n, m) = (model.nv, mass_matrix(&model, &s.q));
+    let (n, m) = (model.nv(), mass_matrix(&model, &s.q));
     let mut factor = Factor::new(n);
     factor.factor(&m).unwrap();
     let mut x = s.tau.clone();

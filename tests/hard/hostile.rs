@@ -60,9 +60,9 @@ fn answers(urdf: &str, seed: u64) -> bool {
         };
         let _ = model.massless_joints();
         let passed = View::new(model.clone()).passed();
-        let (mut at, mut q) = (vec![0.0; model.nq], vec![0.0; model.nq]);
+        let (mut at, mut q) = (vec![0.0; model.nq()], vec![0.0; model.nq()]);
         neutral(&model, &mut at);
-        let (half, mut out) = (vec![0.5; model.nv], vec![0.0; model.nv]);
+        let (half, mut out) = (vec![0.5; model.nv()], vec![0.0; model.nv()]);
         integrate(&model, &mut Workspace::new(&model), &at, &half, &mut q);
         inverse_dynamics(&passed.model, &mut passed.workspace(), &q, &half, &half, &mut out);
         let solved = checked_forward_dynamics(&model, &mut Workspace::new(&model), &q, &half, &half, &mut out);

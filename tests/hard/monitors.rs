@@ -29,7 +29,7 @@ fn a_straight_chain_is_seen_by_the_matrix_and_not_by_the_placements() {
     let model = built(&chain(50, 1.0), Base::Fixed);
     let case = Case { model, ..Case::new("chain", chain(50, 1.0), Base::Fixed) };
     let places = case.call::<f64>(FunctionId::placements.name(), &[&Shape::ZigZag.angles(50)]);
-    let mut off = vec![0.0; case.model.frames.len()];
+    let mut off = vec![0.0; case.model.frames().len()];
     placement_orthonormality(&places, &mut off);
     assert!(off.iter().all(|x| *x <= 4.0 * 51.0 * f64::EPSILON / 2.0) && off.iter().any(|x| *x > 0.0), "{off:?}");
 }
@@ -46,7 +46,7 @@ fn a_lost_pivot_is_seen_and_the_matrix_is_called_singular() {
 #[test]
 fn a_quaternion_that_is_not_of_norm_one_is_seen() {
     let model = Case::bundled(articulated_models::robot("quadruped").unwrap()).model;
-    let mut q = vec![0.0; model.nq];
+    let mut q = vec![0.0; model.nq()];
     q[6] = 1.001;
     let found: Vec<(usize, f64)> = quaternion_norms(&model, &q).collect();
     assert_eq!(found.len(), 1);

@@ -17,7 +17,7 @@ fn request(name: &str) -> Request {
     let mut request = Request::new(format!("../models/urdf/{name}.urdf"), robot.urdf);
     request.options.robot.base = robot.base;
     let model = &Case::bundled(robot).model;
-    let tip = model.frames.last().expect("it has links");
+    let tip = model.frames().last().expect("it has links");
     request.options.robot.set_frames([tip.name.clone()]);
     let has = |f: &&Function<f64>| f.needs != Needs::FreeFrames || model.freedoms_of(tip.body).len() >= 6;
     request.options.functions = functions::<f64>().iter().filter(has).map(|f| f.name.into()).collect();

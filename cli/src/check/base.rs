@@ -71,11 +71,11 @@ pub(super) enum Felt {
 impl Base {
     /// Of a model as it was read; nothing for a model of very many bodies.
     pub(super) fn of(read: &Model<f64>) -> Option<Self> {
-        if read.bodies.len() > MANY {
+        if read.bodies().len() > MANY {
             return None;
         }
         let passed = View::new(read.clone()).passed().model;
-        let without_frames = Model { frames: Vec::new(), ..passed.clone() };
+        let without_frames = passed.clone().without_frames();
         let bare = drop_symmetric_rotation(View::new(without_frames));
         let round = |i: usize| !bare.rotates(i);
         let joints: Vec<BaseRow> = base_parameters(&passed).iter().map(|of| row(of, read, &passed, round(of.body))).collect();
@@ -88,12 +88,12 @@ impl Base {
 }
 
 fn row(of: &BodyParameters, read: &Model<f64>, passed: &Model<f64>, round: bool) -> BaseRow {
-    let (i, body) = (of.body, &passed.bodies[of.body]);
+    let (i, body) = (of.body, &passed.bodies()[of.body]);
     let parameters = of.parameters.iter().map(Parameter::of).collect();
-    let frame = read.frames.iter().position(|f| f.body == i);
+    let frame = read.frames().iter().position(|f| f.body == i);
     // x_read,passed of the body's frame, from where it has a link.
     let moved = frame.map_or_else(Placement::identity, |k| {
-        let (before, after) = (&read.frames[k].placement, &passed.frames[k].placement);
+        let (before, after) = (&read.frames()[k].placement, &passed.frames()[k].placement);
         let rotation = before.rotation * after.rotation.transpose();
         Placement { rotation, position: before.position - rotation * after.position }
     });

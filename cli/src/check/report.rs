@@ -151,8 +151,8 @@ impl Report {
         self.totals = Totals {
             links: description.links.len(),
             joints: description.joints.len(),
-            coordinates: model.nq,
-            degrees_of_freedom: model.nv,
+            coordinates: model.nq(),
+            degrees_of_freedom: model.nv(),
             mass: self.links.iter().fold(0.0, |sum, l| sum + l.mass),
             moving_mass: model.moving_mass(),
         };
@@ -162,7 +162,7 @@ impl Report {
 
     fn warn_of_massless_joints(&mut self, model: &Model<f64>) {
         let file = self.file.clone();
-        if model.bodies.len() > MANY {
+        if model.bodies().len() > MANY {
             return self.warn(
                 Diagnostic::from(format!(
                     "{file}: more than {MANY} bodies: whether every joint has an inertia of its own was not looked at"
@@ -171,7 +171,7 @@ impl Report {
             );
         }
         for body in model.massless_joints() {
-            let name = &model.bodies[body].name;
+            let name = &model.bodies()[body].name;
             let message = format!(
                 "{file}: joint {name:?} has no inertia of its own: nothing behind it resists its motion, or another joint moves the same mass in the same way, \
                  so the mass matrix is singular, and forward dynamics is undefined for this robot; expected an inertia behind it, an armature, or one \
@@ -183,10 +183,10 @@ impl Report {
 }
 
 fn link_row(k: usize, link: &Link, model: &Model<f64>) -> LinkRow {
-    let body = model.frames[k].body;
+    let body = model.frames()[k].body;
     LinkRow {
         link: link.name.clone(),
-        moves_with: (body != 0).then(|| model.bodies[body].name.clone()),
+        moves_with: (body != 0).then(|| model.bodies()[body].name.clone()),
         mass: link.inertial.map_or(0.0, |i| i.mass),
         centre_of_mass: link.inertial.map(|i| i.origin.xyz),
         principal_moments: link.inertial.map(|i| eigenvalues(i.inertia)),
@@ -196,7 +196,7 @@ fn link_row(k: usize, link: &Link, model: &Model<f64>) -> LinkRow {
 /// The floating base first, then the joints in the order of their coordinates, then those that have none of their own, as the file has them.
 fn joint_rows(description: &Description, model: &Model<f64>) -> Vec<JointRow> {
     let carried = carried(model);
-    let base = model.joints.iter().find(|j| j.name == FLOATING_BASE).map(|j| JointRow {
+    let base = model.joints().iter().find(|j| j.name == FLOATING_BASE).map(|j| JointRow {
         joint: j.name.clone(),
         kind: JointKind::Floating.name(),
         parent: None,
@@ -211,11 +211,11 @@ fn joint_rows(description: &Description, model: &Model<f64>) -> Vec<JointRow> {
         locked: None,
         carries: carried[0],
     });
-    let places: std::collections::BTreeMap<&str, _> = model.joints.iter().map(|j| (j.name.as_str(), (j.q, j.v))).collect();
+    let places: std::collections::BTreeMap<&str, _> = model.joints().iter().map(|j| (j.name.as_str(), (j.q, j.v))).collect();
     let rows = description.joints.iter().map(|joint| {
         let name = |link: usize| Some(description.links[link].name.clone());
         let place = places.get(joint.name.as_str()).filter(|_| joint.name != FLOATING_BASE);
-        let body = model.frames[joint.child].body;
+        let body = model.frames()[joint.child].body;
         let limit = joint.limit;
         JointRow {
             joint: joint.name.clone(),
@@ -233,7 +233,7 @@ fn joint_rows(description: &Description, model: &Model<f64>) -> Vec<JointRow> {
                 MimicRow { joint: leader, multiplier: m.multiplier, offset: m.offset }
             }),
             locked: joint.locked.clone(),
-            carries: if body == model.frames[joint.parent].body { 0.0 } else { carried[body] },
+            carries: if body == model.frames()[joint.parent].body { 0.0 } else { carried[body] },
         }
     });
     let mut all: Vec<JointRow> = base.into_iter().chain(rows).collect();
@@ -243,14 +243,14 @@ fn joint_rows(description: &Description, model: &Model<f64>) -> Vec<JointRow> {
 
 /// Joints that join links of one body.
 fn merged(description: &Description, model: &Model<f64>) -> usize {
-    description.joints.iter().filter(|j| model.frames[j.child].body == model.frames[j.parent].body).count()
+    description.joints.iter().filter(|j| model.frames()[j.child].body == model.frames()[j.parent].body).count()
 }
 
 /// kg of each body with everything that hangs on it.
 fn carried(model: &Model<f64>) -> Vec<f64> {
-    let mut mass: Vec<f64> = model.bodies.iter().map(|b| b.inertia.mass).collect();
+    let mut mass: Vec<f64> = model.bodies().iter().map(|b| b.inertia.mass).collect();
     for i in model.inward() {
-        mass[model.bodies[i].parent] += mass[i];
+        mass[model.bodies()[i].parent] += mass[i];
     }
     mass
 }

@@ -142,10 +142,10 @@ impl Report {
         });
         Self {
             scene: stage.name.clone(),
-            robot: stage.model.name.clone(),
+            robot: stage.model.name().to_owned(),
             base: if stage.base() == articulated_core::description::Base::Floating { "floating" } else { "fixed" },
-            gravity: stage.model.gravity.into(),
-            degrees_of_freedom: stage.model.nv,
+            gravity: stage.model.gravity().into(),
+            degrees_of_freedom: stage.model.nv(),
             on: on.collect(),
             off: told.off.iter().map(|e| Off { effect: e.effect, why: e.why.to_string() }).collect(),
             ignored: told

@@ -13,13 +13,13 @@ struct Names {
 
 impl Names {
     fn of(dim: Dim, model: &Model<f64>) -> Self {
-        let joints = |count: fn(&JointInfo) -> usize| model.joints.iter().map(|j| (j.name.clone(), count(j))).collect();
+        let joints = |count: fn(&JointInfo) -> usize| model.joints().iter().map(|j| (j.name.clone(), count(j))).collect();
         let parts = match dim {
             Dim::Nq => Some(joints(|j| j.q.1)),
             Dim::Nv => Some(joints(|j| j.v.1)),
-            Dim::Frames => Some(model.frames.iter().map(|f| (f.name.clone(), 1)).collect()),
+            Dim::Frames => Some(model.frames().iter().map(|f| (f.name.clone(), 1)).collect()),
             // A moving link goes by the joint that carries it.
-            Dim::Links => Some(model.links().map(|i| (model.bodies[i].name.clone(), 1)).collect()),
+            Dim::Links => Some(model.links().map(|i| (model.bodies()[i].name.clone(), 1)).collect()),
             Dim::Of(_) => None,
         };
         Self { parts, length: dim.len(model.shape()) }

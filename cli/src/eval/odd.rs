@@ -45,6 +45,6 @@ fn not_finite(out: &[f64]) -> Vec<usize> {
 
 /// Why solutions with the mass matrix at these coordinates say nothing.
 fn singular(model: &Model<f64>, ws: &mut Workspace<f64>, q: &[f64]) -> Option<String> {
-    let (zero, mut out) = (vec![0.0; model.nv], vec![0.0; model.nv]);
+    let (zero, mut out) = (vec![0.0; model.nv()], vec![0.0; model.nv()]);
     checked_forward_dynamics(model, ws, q, &zero, &zero, &mut out).err().map(|singular| singular.to_string())
 }

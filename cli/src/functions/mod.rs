@@ -71,10 +71,10 @@ fn subject(name: &Path, arguments: &FunctionsArguments) -> Result<(Subject, Robo
     let model = robot.whole_model(&built)?;
     let tips = Tips::of(&reading.description, &model);
     let row = RobotRow {
-        robot: bundled.map_or_else(|| model.name.clone(), |robot| robot.name.to_owned()),
+        robot: bundled.map_or_else(|| model.name().to_owned(), |robot| robot.name.to_owned()),
         base: robot.base(),
-        joints: model.joints.len(),
-        degrees_of_freedom: model.nv,
+        joints: model.joints().len(),
+        degrees_of_freedom: model.nv(),
         frames: tips.all().to_vec(),
     };
     Ok((Subject { robot, tips }, row))

@@ -39,7 +39,7 @@ use summary::{Summary, Unit};
 pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, Failure> {
     let Some(scene) = &arguments.scene else { return all::run(arguments, format) };
     let stage = named_scene::stage(scene)?;
-    has_room(&stage.scene.file, stage.model.nv)?;
+    has_room(&stage.scene.file, stage.model.nv())?;
     let settings = settings::of(&stage, arguments);
     let (mut settings, begin) = Failure::both(settings, stage.start().map_err(Failure::from))?;
     if let Some(file) = &arguments.against {

@@ -55,7 +55,7 @@ fn looked_for(stage: &Stage) -> Result<Vec<String>, Failure> {
     if stage.scene.simulation.is_none() {
         return Ok(Vec::new());
     }
-    has_room(&stage.scene.file, stage.model.nv)?;
+    has_room(&stage.scene.file, stage.model.nv())?;
     let motion = stage.settings().and_then(|settings| stage.motion(&stage.model, &stage.frame_names(), settings));
     let (motion, ()) = Failure::both(motion.map_err(Failure::from), solvable(stage))?;
     Ok(motion.without().iter().map(ToString::to_string).collect())

@@ -94,7 +94,7 @@ impl Recording {
     /// Names and units for a robot, and no times yet.
     pub(crate) fn of(model: &Model<f64>) -> Self {
         let mut out = Self::default();
-        for JointInfo { name, kind, .. } in &model.joints {
+        for JointInfo { name, kind, .. } in model.joints() {
             let parts = Parts::of(*kind);
             out.q_names.extend(named(name, parts.coordinates, kind.coordinates(), ["rad", "m"]));
             out.v_names.extend(named(name, parts.rates, kind.rates(), ["rad/s", "m/s"]));

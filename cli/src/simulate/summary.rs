@@ -176,9 +176,9 @@ impl Summary {
         let last_record = r.t.last().copied().unwrap_or(settings.start);
         Self {
             scene: stage.name.clone(),
-            robot: stage.model.name.clone(),
+            robot: stage.model.name().to_owned(),
             base: if stage.base() == articulated_core::description::Base::Floating { "floating" } else { "fixed" },
-            degrees_of_freedom: stage.model.nv,
+            degrees_of_freedom: stage.model.nv(),
             effects: sorts(&stage.effects),
             code,
             integrator: Method { name: row.name, order: row.order, step_s: settings.step, rtol: settings.rtol, atol: settings.atol },

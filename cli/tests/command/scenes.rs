@@ -103,7 +103,7 @@ fn an_arm_with_friction_falls_and_comes_to_rest_within_its_bounds() {
     let depth = 1.2 * (2.0 * largest(&kinetic) / 2e3).sqrt();
     let model = articulated_models::robot("panda_like").unwrap();
     let model = articulated::load_bytes("panda_like.urdf", model.urdf.as_bytes(), model.base).unwrap();
-    for joint in &model.joints {
+    for joint in model.joints() {
         let limit = joint.limit.unwrap();
         let q = motion.column(&format!("q.{}", joint.name));
         assert!(q.iter().all(|q| *q > limit.lower - depth && *q < limit.upper + depth), "{}", joint.name);

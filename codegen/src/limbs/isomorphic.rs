@@ -5,8 +5,9 @@ use std::collections::HashMap;
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Argument, Dim};
-use articulated_core::model::{Limbs, Model};
+use articulated_core::model::Model;
 
+use super::branches::{Limbs, isomorphic_branches};
 use crate::graph::{MOST, Value};
 use crate::model_pass::View;
 use crate::sym::Sym;
@@ -26,16 +27,16 @@ type Indices = HashMap<usize, Vec<usize>>;
 impl IsomorphicLimbs {
     /// The branches in so many lanes; `None` where there are none.
     pub(crate) fn of(model: &Model<f64>, width: usize) -> Option<Self> {
-        let limbs = model.limbs(width);
+        let limbs = isomorphic_branches(model, width);
         if limbs.is_empty() {
             return None;
         }
         let mut alike = Self { width, limbs, q: Indices::new(), v: Indices::new(), frames: Indices::new() };
         for bodies in alike.bodies() {
-            let first = &model.bodies[bodies[0]].joint;
+            let first = &model.bodies()[bodies[0]].joint;
             let start = |at: fn(&Model<f64>, usize) -> usize| bodies.iter().map(|&i| at(model, i)).collect::<Vec<_>>();
-            align(&mut alike.q, &start(|m, i| m.bodies[i].coordinates.q), first.nq());
-            align(&mut alike.v, &start(|m, i| m.bodies[i].coordinates.v), first.nv());
+            align(&mut alike.q, &start(|m, i| m.bodies()[i].coordinates.q), first.nq());
+            align(&mut alike.v, &start(|m, i| m.bodies()[i].coordinates.v), first.nv());
             let frames = frames_of(model, &bodies);
             for k in 0..frames[0].len() {
                 align(&mut alike.frames, &frames.iter().map(|f| f[k]).collect::<Vec<_>>(), 1);
@@ -65,29 +66,32 @@ impl IsomorphicLimbs {
 
     /// The view with a symbol for each constant that differs from limb to limb.
     pub(crate) fn symbolic(&self, view: &View<f64>, constants: &mut Constants) -> View<Sym> {
-        let (model, mut symbolic) = (&view.model, view.cast::<Sym>());
-        for bodies in self.bodies() {
-            let numbers: Vec<Vec<f64>> = bodies.iter().map(|&i| recorded(|f| drop(view.map_body(i, f)))).collect();
-            for (lane, &i) in bodies.iter().enumerate() {
-                let symbols = constants.symbols(&numbers, lane);
-                symbolic.set_body(i, view.map_body(i, |_| next(&symbols)));
-            }
-            let frames = frames_of(model, &bodies);
-            for k in 0..frames[0].len() {
-                let numbers: Vec<Vec<f64>> = frames.iter().map(|f| recorded(|g| drop(model.frames[f[k]].map(g)))).collect();
-                for (lane, f) in frames.iter().enumerate() {
+        let model = &view.model;
+        let View { model: symbolic, mut formulation } = view.cast::<Sym>();
+        let symbolic = symbolic.changed(|parts| {
+            for bodies in self.bodies() {
+                let numbers: Vec<Vec<f64>> = bodies.iter().map(|&i| recorded(|f| drop(view.map_body(i, f)))).collect();
+                for (lane, &i) in bodies.iter().enumerate() {
                     let symbols = constants.symbols(&numbers, lane);
-                    symbolic.model.frames[f[k]] = model.frames[f[k]].map(|_| next(&symbols));
+                    view.map_body(i, |_| next(&symbols)).put(i, parts, &mut formulation);
+                }
+                let frames = frames_of(model, &bodies);
+                for k in 0..frames[0].len() {
+                    let numbers: Vec<Vec<f64>> = frames.iter().map(|f| recorded(|g| drop(model.frames()[f[k]].map(g)))).collect();
+                    for (lane, f) in frames.iter().enumerate() {
+                        let symbols = constants.symbols(&numbers, lane);
+                        parts.frames[f[k]] = model.frames()[f[k]].map(|_| next(&symbols));
+                    }
                 }
             }
-        }
-        symbolic
+        });
+        View { model: symbolic, formulation }
     }
 }
 
 /// The frames of each of these bodies; none if some carry more than others: then they stand for themselves.
 fn frames_of(model: &Model<f64>, bodies: &[usize]) -> Vec<Vec<usize>> {
-    let of = |&body: &usize| (0..model.frames.len()).filter(|&k| model.frames[k].body == body).collect::<Vec<_>>();
+    let of = |&body: &usize| (0..model.frames().len()).filter(|&k| model.frames()[k].body == body).collect::<Vec<_>>();
     let frames: Vec<Vec<usize>> = bodies.iter().map(of).collect();
     let alike = frames.iter().all(|f| f.len() == frames[0].len());
     if alike { frames } else { vec![Vec::new(); bodies.len()] }

@@ -7,6 +7,7 @@
 //! The whole robot is traced, so that the algorithms know nothing of lanes. What differs between branches are then different inputs and different
 //! constants, which stay symbols while tracing, and so each branch leaves the same trace; [`pack`] lays one on the other.
 
+mod branches;
 mod isomorphic;
 mod vectorize;
 
@@ -117,9 +118,9 @@ mod tests {
 
     #[test]
     fn where_one_leg_lacks_a_frame_the_others_stand_for_themselves() {
-        let mut model = walker(4, &mut 7);
-        let third = model.limbs(4)[0].roots[2];
-        model.frames.retain(|frame| frame.body != third);
+        let model = walker(4, &mut 7);
+        let third = branches::isomorphic_branches(&model, 4)[0].roots[2];
+        let model = model.changed(|parts| parts.frames.retain(|frame| frame.body != third));
         let (alike, wanted) = (IsomorphicLimbs::of(&model, 4).unwrap(), FunctionSpec::parse("placements").unwrap());
         let choice = [Strategy::plain(ways(&wanted.parts[0], &model)[0].0, usize::MAX)];
         let [plain, lanes] = [trace(&wanted, &choice, &model, &[]), trace_in_lanes(&wanted, &choice, &model, &alike)];
@@ -133,7 +134,7 @@ mod tests {
     fn limbs_whose_terms_were_added_before_are_one_sum_over_lanes_with_the_others() {
         let model = walker(4, &mut 7);
         let alike = IsomorphicLimbs::of(&model, 4).unwrap();
-        let hips: Vec<usize> = model.limbs(4)[0].roots.iter().map(|&i| model.bodies[i].coordinates.q).collect();
+        let hips: Vec<usize> = branches::isomorphic_branches(&model, 4)[0].roots.iter().map(|&i| model.bodies()[i].coordinates.q).collect();
         for before in 0..16 {
             let plain = sym::trace(|| {
                 let terms = |lane: usize| {
@@ -156,7 +157,7 @@ mod tests {
     fn a_sum_over_the_lanes_keeps_the_sign_of_each() {
         let model = walker(4, &mut 7);
         let alike = IsomorphicLimbs::of(&model, 4).unwrap();
-        let hips: Vec<usize> = model.limbs(4)[0].roots.iter().map(|&i| model.bodies[i].coordinates.q).collect();
+        let hips: Vec<usize> = branches::isomorphic_branches(&model, 4)[0].roots.iter().map(|&i| model.bodies()[i].coordinates.q).collect();
         for signs in 0..16 {
             let plain = sym::trace(|| {
                 let term = |lane: usize| Sym::input(0, hips[lane]) * if signs >> lane & 1 == 1 { -Sym::one() } else { Sym::one() };

@@ -16,7 +16,7 @@ impl<S: Scalar> View<S> {
     #[must_use]
     pub fn with_axis_accelerations(mut self) -> Self {
         let one = |i: usize| {
-            let body = &self.model.bodies[i];
+            let body = &self.model.bodies()[i];
             let along = body.joint.is_rotation_about_axis() && lies_along_one(&body.placement.rotation.column(2).into_owned());
             let moments = &self.torque_inertia(i).second;
             let dense = [moments.m12, moments.m13, moments.m23].iter().filter(|x| !x.is_zero()).count() >= DENSE;
@@ -26,7 +26,7 @@ impl<S: Scalar> View<S> {
                 false => AngularKinematics::AngularAcceleration,
             }
         };
-        let moving = (1..self.model.bodies.len()).map(one);
+        let moving = (1..self.model.bodies().len()).map(one);
         self.formulation.kinematics = std::iter::once(AngularKinematics::AngularAcceleration).chain(moving).collect();
         self
     }

@@ -29,35 +29,36 @@ impl<S: Scalar> View<S> {
     /// If q is shorter than stated.
     #[must_use]
     pub fn fold_rotations_into_constants(&self, q: &[S], which: FoldedRotations) -> Self {
-        let mut view = self.clone();
-        view.model.frames.clear();
+        let View { model, mut formulation } = self.clone();
         let stays = self.stays(which);
-        let mut folded: Vec<Angle<S>> = vec![Angle::zero(); self.model.bodies.len()];
-        for i in self.model.outward() {
-            let (from, to) = (&self.model.bodies[i], &mut view.model.bodies[i]);
-            let carried = folded[from.parent];
-            let in_row = stays[i] && stays[from.parent] && continues(&self.model, from);
-            to.placement.position = carried.rotation() * from.placement.position;
-            to.placement.rotation = if in_row { Matrix3::identity() } else { carried.rotation() * from.placement.rotation };
-            if stays[i] {
-                let own = self.formulation.rotations[i].angle(&from.coordinates, q);
-                let (sin, cos) = if in_row { carried.plus((own.sin, own.cos)) } else { (own.sin, own.cos) };
-                folded[i] = Angle { sin, cos };
-                view.formulation.rotations[i].share = S::zero();
-                let rotation = Revolute::of(folded[i]);
-                to.inertia = rotation.inertia_to_joint(&from.inertia);
-                if let Some(inertia) = view.formulation.torque_inertias.get_mut(i) {
-                    *inertia = rotation.inertia_to_joint(inertia);
+        let mut folded: Vec<Angle<S>> = vec![Angle::zero(); self.model.bodies().len()];
+        let model = model.without_frames().changed(|parts| {
+            for (i, to) in parts.bodies.iter_mut().enumerate().skip(1) {
+                let from = &self.model.bodies()[i];
+                let carried = folded[from.parent];
+                let in_row = stays[i] && stays[from.parent] && continues(&self.model, from);
+                to.placement.position = carried.rotation() * from.placement.position;
+                to.placement.rotation = if in_row { Matrix3::identity() } else { carried.rotation() * from.placement.rotation };
+                if stays[i] {
+                    let own = self.formulation.rotations[i].angle(&from.coordinates, q);
+                    let (sin, cos) = if in_row { carried.plus((own.sin, own.cos)) } else { (own.sin, own.cos) };
+                    folded[i] = Angle { sin, cos };
+                    formulation.rotations[i].share = S::zero();
+                    let rotation = Revolute::of(folded[i]);
+                    to.inertia = rotation.inertia_to_joint(&from.inertia);
+                    if let Some(inertia) = formulation.torque_inertias.get_mut(i) {
+                        *inertia = rotation.inertia_to_joint(inertia);
+                    }
                 }
             }
-        }
-        view
+        });
+        View { model, formulation }
     }
 
     /// What [`View::fold_rotations_into_constants`] has to choose from: nothing where no body is of
     /// the kind.
     pub fn foldable_rotations(&self) -> Vec<FoldedRotations> {
-        let none = vec![false; self.model.bodies.len()];
+        let none = vec![false; self.model.bodies().len()];
         let [parallel, all] = [FoldedRotations::Parallel, FoldedRotations::ParallelAndLast].map(|which| self.stays(which));
         let mut choices = Vec::new();
         choices.extend((parallel != none).then_some(FoldedRotations::Parallel));
@@ -68,11 +69,11 @@ impl<S: Scalar> View<S> {
     /// Whether the frame of each body stays.
     fn stays(&self, which: FoldedRotations) -> Vec<bool> {
         let (model, last) = (&self.model, which == FoldedRotations::ParallelAndLast);
-        let mut stays = vec![last; model.bodies.len()];
+        let mut stays = vec![last; model.bodies().len()];
         stays[0] = false;
-        model.outward().for_each(|i| stays[model.bodies[i].parent] = false);
+        model.outward().for_each(|i| stays[model.bodies()[i].parent] = false);
         for i in model.outward() {
-            let body = &model.bodies[i];
+            let body = &model.bodies()[i];
             stays[i] &= body.joint.is_rotation_about_axis() && self.rotates(i);
             if continues(model, body) {
                 (stays[i], stays[body.parent]) = (true, true);
@@ -86,5 +87,5 @@ impl<S: Scalar> View<S> {
 /// parent's.
 fn continues<S: Scalar>(model: &Model<S>, body: &Body<S>) -> bool {
     let rotates = |body: &Body<S>| body.joint.is_rotation_about_axis();
-    body.parent != 0 && rotates(body) && rotates(&model.bodies[body.parent]) && body.placement.rotation == Matrix3::identity()
+    body.parent != 0 && rotates(body) && rotates(&model.bodies()[body.parent]) && body.placement.rotation == Matrix3::identity()
 }

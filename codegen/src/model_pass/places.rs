@@ -20,11 +20,11 @@ impl<S: Scalar> Places<S> {
     /// Where the body has a moment less, where it is level with a child, and where its offset has a number less.
     pub(super) fn of(model: &Model<S>) -> Self {
         let length = |body: &Body<S>| body.placement.position.fold(S::zero(), |sum, x| sum + x.abs());
-        let mut reach: Vec<S> = model.bodies.iter().map(length).collect();
+        let mut reach: Vec<S> = model.bodies().iter().map(length).collect();
         for i in model.inward() {
-            reach[model.bodies[i].parent] += length(&model.bodies[i]);
+            reach[model.bodies()[i].parent] += length(&model.bodies()[i]);
         }
-        let mut places = Self { all: vec![vec![Vector3::zeros()]; model.bodies.len()], reach };
+        let mut places = Self { all: vec![vec![Vector3::zeros()]; model.bodies().len()], reach };
         for i in model.outward() {
             places.without_moments(model, i);
         }
@@ -38,7 +38,7 @@ impl<S: Scalar> Places<S> {
     }
 
     fn without_moments(&mut self, model: &Model<S>, i: usize) {
-        let (o, joint, inertia) = (S::zero(), model.bodies[i].joint, &model.bodies[i].inertia);
+        let (o, joint, inertia) = (S::zero(), model.bodies()[i].joint, &model.bodies()[i].inertia);
         if joint.is_rotation_about_axis() {
             // Σ_xz − h_x d = 0, Σ_yz − h_y d = 0
             for k in (0..2).filter(|&k| inertia.first[k] != o) {
@@ -52,19 +52,19 @@ impl<S: Scalar> Places<S> {
 
     /// Shifts of the parent of body `i` to where that lies in the parent's xy-plane.
     fn level_with_child(&mut self, model: &Model<S>, i: usize) {
-        let x = &model.bodies[i].placement;
+        let x = &model.bodies()[i].placement;
         for k in 0..self.all[i].len() {
             let at = x.position + rotate(&x.rotation, self.all[i][k]);
-            self.add(model, model.bodies[i].parent, at);
+            self.add(model, model.bodies()[i].parent, at);
         }
     }
 
     fn without_offset(&mut self, model: &Model<S>, i: usize) {
-        let (o, x, parent) = (S::zero(), &model.bodies[i].placement, model.bodies[i].parent);
+        let (o, x, parent) = (S::zero(), &model.bodies()[i].placement, model.bodies()[i].parent);
         let z = x.rotation.column(2);
         for k in 0..self.all[parent].len() {
             let from = x.position - self.all[parent][k];
-            if model.bodies[i].joint.is_translation_along_axis() {
+            if model.bodies()[i].joint.is_translation_along_axis() {
                 self.add(model, i, -rotate_back(&x.rotation, from));
             } else {
                 (0..3).filter(|&c| z[c] != o).for_each(|c| self.add(model, i, Vector3::new(o, o, -from[c] / z[c])));
@@ -74,7 +74,7 @@ impl<S: Scalar> Places<S> {
 
     /// Adds a shift, or what of it the joint allows, if it is new and within reach.
     fn add(&mut self, model: &Model<S>, i: usize, shift: Vector3<S>) {
-        let (o, joint) = (S::zero(), model.bodies[i].joint);
+        let (o, joint) = (S::zero(), model.bodies()[i].joint);
         let shift = if joint.is_rotation_about_axis() && i != 0 {
             Vector3::new(o, o, shift.z)
         } else if joint.is_translation_along_axis() {

@@ -30,11 +30,11 @@ impl<S: Scalar> View<S> {
         for i in self.model.inward() {
             regroup_body(&mut model, i);
             if let Some((child, parent)) = cheapest(&model, i, &needs_force, carried[i] + carried[i]) {
-                model.bodies[i].inertia = child;
-                model.bodies[self.model.bodies[i].parent].inertia = parent;
+                model.set_inertia(i, child);
+                model.set_inertia(self.model.bodies()[i].parent, parent);
             }
         }
-        self.formulation.torque_inertias = model.bodies.iter().map(|body| body.inertia).collect();
+        self.formulation.torque_inertias = model.bodies().iter().map(|body| body.inertia).collect();
         self
     }
 }
@@ -42,9 +42,9 @@ impl<S: Scalar> View<S> {
 /// Whether inverse dynamics needs the force on each body, as there is a lever somewhere on its path
 /// to the root, or a joint that moves its origin.
 fn forces_shifted_to_parents<S: Scalar>(model: &Model<S>) -> Vec<bool> {
-    let mut needs_force = vec![false; model.bodies.len()];
+    let mut needs_force = vec![false; model.bodies().len()];
     for i in model.outward() {
-        let Body { joint, parent, .. } = model.bodies[i];
+        let Body { joint, parent, .. } = model.bodies()[i];
         needs_force[i] = !joint.is_rotation_about_axis() || parent != 0 && (needs_force[parent] || counts_an_offset(model, i));
     }
     needs_force
@@ -53,10 +53,10 @@ fn forces_shifted_to_parents<S: Scalar>(model: &Model<S>) -> Vec<bool> {
 /// Whether mass may move from the parent to body `i`: a single child only, so that isomorphic limbs
 /// stay isomorphic, and of the parent more than I_zz is felt.
 fn takes_mass<S: Scalar>(model: &Model<S>, i: usize) -> bool {
-    let parent = model.bodies[i].parent;
-    let first = model.bodies[parent].parent == 0 && model.bodies[parent].joint.is_rotation_about_axis();
-    let alone = model.outward().filter(|&k| model.bodies[k].parent == parent).take(2).count() == 1;
-    model.bodies[i].joint.is_rotation_about_axis() && parent != 0 && !first && alone
+    let parent = model.bodies()[i].parent;
+    let first = model.bodies()[parent].parent == 0 && model.bodies()[parent].joint.is_rotation_about_axis();
+    let alone = model.outward().filter(|&k| model.bodies()[k].parent == parent).take(2).count() == 1;
+    model.bodies()[i].joint.is_rotation_about_axis() && parent != 0 && !first && alone
 }
 
 /// The inertias of a body and of its parent.
@@ -65,7 +65,7 @@ type Pair<S> = (SpatialInertia<S>, SpatialInertia<S>);
 /// Those of body `i` and of its parent that take fewest instructions; `None` if these are what they
 /// have.
 fn cheapest<S: Scalar>(model: &Model<S>, i: usize, needs_force: &[bool], most: S) -> Option<Pair<S>> {
-    let (body, parent) = (&model.bodies[i], &model.bodies[model.bodies[i].parent]);
+    let (body, parent) = (&model.bodies()[i], &model.bodies()[model.bodies()[i].parent]);
     // The parent gives away what it can in turn.
     let kept = |own: &SpatialInertia<S>| parent.joint.regroupable(own).map_or(*own, |given| subtract(*own, given));
     let both = |(child, own): &Pair<S>| price(child, needs_force[i]) + price(&kept(own), needs_force[body.parent]);

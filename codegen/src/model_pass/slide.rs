@@ -16,21 +16,21 @@ use super::zeros::count;
 /// somewhere on its way to the base. Of the places where something vanishes the cheapest are taken, for all bodies together, from the tips inward. Exact for all joint
 /// torques; frames of links stay where they are in space. For a model that is regrouped, as it is then again.
 pub fn slide<S: Scalar>(view: View<S>) -> View<S> {
-    let View { mut model, formulation } = view;
+    let View { model, formulation } = view;
     let shifts = Plan::of(&model).shifts();
     if shifts.iter().all(|s| *s == Vector3::zeros()) {
         return View { model, formulation };
     }
-    for i in model.outward() {
-        let position = offset(&model.bodies[i], shifts[i], shifts[model.bodies[i].parent]);
-        let body = &mut model.bodies[i];
-        body.placement.position = position;
-        body.inertia = shifted(&body.inertia, shifts[i]);
-        body.effects.body.iter_mut().for_each(|e| e.placement.position -= shifts[i]);
-    }
-    for frame in &mut model.frames {
-        frame.placement.position -= shifts[frame.body];
-    }
+    let model = model.changed(|parts| {
+        for (i, body) in parts.bodies.iter_mut().enumerate().skip(1) {
+            body.placement.position = offset(body, shifts[i], shifts[body.parent]);
+            body.inertia = shifted(&body.inertia, shifts[i]);
+            body.effects.body.iter_mut().for_each(|e| e.placement.position -= shifts[i]);
+        }
+        for frame in &mut parts.frames {
+            frame.placement.position -= shifts[frame.body];
+        }
+    });
     // A prismatic body that was shifted has Σ again.
     View { model: regroup(model), formulation }
 }
@@ -55,11 +55,11 @@ struct Plan<'a, S> {
 impl<'a, S: Scalar> Plan<'a, S> {
     fn of(model: &'a Model<S>) -> Self {
         let places = Places::of(model);
-        let mut best = vec![Vec::new(); model.bodies.len()];
+        let mut best = vec![Vec::new(); model.bodies().len()];
         // What a body costs with all that it carries, by its place.
         let mut costs: Vec<Vec<ByForce<u32>>> = places.all.iter().map(|p| vec![[0; 2]; p.len()]).collect();
         for i in model.inward() {
-            let parent = model.bodies[i].parent;
+            let parent = model.bodies()[i].parent;
             for (cost, shift) in costs[i].iter_mut().zip(&places.all[i]) {
                 let own = standing(model, i, *shift);
                 cost.iter_mut().for_each(|c| *c += own);
@@ -67,7 +67,7 @@ impl<'a, S: Scalar> Plan<'a, S> {
             for at in 0..places.all[parent].len() {
                 let numbers: Vec<u32> = places.all[i].iter().map(|shift| offsets(model, i, *shift, places.all[parent][at])).collect();
                 let cheapest =
-                    [false, true].map(|needed| cheapest(&costs[i], &numbers, needed || !model.bodies[i].joint.is_rotation_about_axis()));
+                    [false, true].map(|needed| cheapest(&costs[i], &numbers, needed || !model.bodies()[i].joint.is_rotation_about_axis()));
                 costs[parent][at].iter_mut().zip(&cheapest).for_each(|(sum, (_, cost))| *sum += cost);
                 best[i].push(cheapest.map(|(choice, _)| choice));
             }
@@ -77,9 +77,9 @@ impl<'a, S: Scalar> Plan<'a, S> {
 
     /// The shift of each body's frame, in its axes, m.
     fn shifts(&self) -> Vec<Vector3<S>> {
-        let mut chosen = vec![(0, false); self.model.bodies.len()];
+        let mut chosen = vec![(0, false); self.model.bodies().len()];
         for i in self.model.outward() {
-            let (at, needed) = chosen[self.model.bodies[i].parent];
+            let (at, needed) = chosen[self.model.bodies()[i].parent];
             chosen[i] = self.best[i][at][usize::from(needed)];
         }
         chosen.iter().zip(&self.places.all).map(|((k, _), shifts)| shifts[*k]).collect()
@@ -99,8 +99,8 @@ fn cheapest(costs: &[ByForce<u32>], numbers: &[u32], needed: bool) -> ((usize, b
 
 /// What the moments of body `i` cost at a place.
 fn standing<S: Scalar>(model: &Model<S>, i: usize, shift: Vector3<S>) -> u32 {
-    let (joint, inertia) = (model.bodies[i].joint, shifted(&model.bodies[i].inertia, shift));
-    if model.bodies[i].parent == 0 {
+    let (joint, inertia) = (model.bodies()[i].joint, shifted(&model.bodies()[i].inertia, shift));
+    if model.bodies()[i].parent == 0 {
         0
     } else if joint.is_rotation_about_axis() {
         MOMENT * count(&[inertia.second.m13, inertia.second.m23])
@@ -113,8 +113,8 @@ fn standing<S: Scalar>(model: &Model<S>, i: usize, shift: Vector3<S>) -> u32 {
 
 /// How many numbers of the offset of body `i` count. On the base, which stands still, none does, and on a body that only turns about z none along z.
 fn offsets<S: Scalar>(model: &Model<S>, i: usize, shift: Vector3<S>, parent: Vector3<S>) -> u32 {
-    let body = &model.bodies[i];
-    let below = &model.bodies[body.parent];
+    let body = &model.bodies()[i];
+    let below = &model.bodies()[body.parent];
     let steady = below.parent == 0 && below.joint.is_rotation_about_axis();
     let counted = if body.parent == 0 { 0 } else { 3 - usize::from(steady) };
     count(&offset(body, shift, parent).as_slice()[..counted])

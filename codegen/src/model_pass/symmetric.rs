@@ -13,15 +13,17 @@ use super::zeros::or_zero;
 /// of a wheel, of a propeller, or of the last link of many arms. For a model whose frames nobody asks for: a body that carries a frame is left alone, and so is one on which effects
 /// act. Exact for all joint torques.
 pub fn drop_symmetric_rotation<S: Scalar>(view: View<S>) -> View<S> {
-    let View { mut model, mut formulation } = view;
-    let mut carries = vec![false; model.bodies.len()];
-    model.outward().for_each(|i| carries[model.bodies[i].parent] = true);
-    model.frames.iter().for_each(|frame| carries[frame.body] = true);
-    for (i, body) in model.bodies.iter_mut().enumerate().skip(1).filter(|(i, _)| !carries[*i]) {
-        if body.joint.is_rotation_about_axis() && body.effects.body.is_empty() && made_axisymmetric(body) {
-            formulation.rotations[i].share = S::zero();
+    let View { model, mut formulation } = view;
+    let mut carries = vec![false; model.bodies().len()];
+    model.outward().for_each(|i| carries[model.bodies()[i].parent] = true);
+    model.frames().iter().for_each(|frame| carries[frame.body] = true);
+    let model = model.changed(|parts| {
+        for (i, body) in parts.bodies.iter_mut().enumerate().skip(1).filter(|(i, _)| !carries[*i]) {
+            if body.joint.is_rotation_about_axis() && body.effects.body.is_empty() && made_axisymmetric(body) {
+                formulation.rotations[i].share = S::zero();
+            }
         }
-    }
+    });
     View { model, formulation }
 }
 

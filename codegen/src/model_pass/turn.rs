@@ -3,7 +3,7 @@
 use articulated_core::Scalar;
 use articulated_core::algorithm::Formulation;
 use articulated_core::joint::Angle;
-use articulated_core::model::Model;
+use articulated_core::model::{Body, ModelParts};
 use articulated_core::spatial::{Matrix3, Placement, Vector3, nearest_rotation, rotate_back};
 
 use super::view::View;
@@ -16,23 +16,26 @@ use super::zeros::{count, or_zero, within};
 /// parent, and the constant o goes into the sine and cosine of q. A body is turned for its children too where that costs less. Exact for all joint
 /// torques; frames of links stay where they are in space.
 pub fn turn<S: Scalar>(view: View<S>) -> View<S> {
-    let View { mut model, mut formulation } = view;
-    let mut hanging = vec![Hanging::default(); model.bodies.len()];
-    model.outward().for_each(|i| hanging[model.bodies[i].parent].bodies.push(i));
-    model.frames.iter().enumerate().for_each(|(k, frame)| hanging[frame.body].frames.push(k));
-    for i in model.outward() {
-        if !model.bodies[i].joint.is_rotation_about_axis() || !known(&model.bodies[i].placement.rotation) {
-            continue;
+    let View { model, mut formulation } = view;
+    let mut hanging = vec![Hanging::default(); model.bodies().len()];
+    model.outward().for_each(|i| hanging[model.bodies()[i].parent].bodies.push(i));
+    model.frames().iter().enumerate().for_each(|(k, frame)| hanging[frame.body].frames.push(k));
+    let model = model.changed(|parts| {
+        for i in 1..parts.bodies.len() {
+            let body = &parts.bodies[i];
+            if !body.joint.is_rotation_about_axis() || !known(&body.placement.rotation) {
+                continue;
+            }
+            let angle = best(&parts.bodies, i, &hanging[i].bodies);
+            if !angle.is_zero() {
+                turn_body(parts, i, &angle, &hanging[i]);
+            }
+            // On the base only gravity is turned, and that once and for all.
+            if parts.bodies[i].parent != 0 {
+                count_from_there(&mut parts.bodies[i], &mut formulation, i);
+            }
         }
-        let angle = best(&model, i, &hanging[i].bodies);
-        if !angle.is_zero() {
-            turn_body(&mut model, i, &angle, &hanging[i]);
-        }
-        // On the base only gravity is turned, and that once and for all.
-        if model.bodies[i].parent != 0 {
-            count_from_there(&mut model, &mut formulation, i);
-        }
-    }
+    });
     View { model, formulation }
 }
 
@@ -52,9 +55,9 @@ const SECOND: u32 = 4;
 const ANGLE: u32 = 4;
 
 /// How far body `i` is best turned for its children, of no turn and those that bring the axis of a child into a coordinate plane.
-fn best<S: Scalar>(model: &Model<S>, i: usize, children: &[usize]) -> Angle<S> {
+fn best<S: Scalar>(bodies: &[Body<S>], i: usize, children: &[usize]) -> Angle<S> {
     let mut best: Option<(u32, Angle<S>)> = None;
-    for child in children.iter().map(|&k| &model.bodies[k]).filter(|b| known(&b.placement.rotation)) {
+    for child in children.iter().map(|&k| &bodies[k]).filter(|b| known(&b.placement.rotation)) {
         let z = child.placement.rotation.column(2);
         if z.x == S::zero() || z.y == S::zero() {
             continue;
@@ -63,8 +66,8 @@ fn best<S: Scalar>(model: &Model<S>, i: usize, children: &[usize]) -> Angle<S> {
         let (x, y) = (z.x / length, z.y / length);
         // The new x-axis, or the new y-axis, below the child's axis.
         for angle in [Angle { sin: y, cos: x }, Angle { sin: -x, cos: y }] {
-            let none = || (cost(model, i, &Angle::zero(), children), Angle::zero());
-            let cost = cost(model, i, &angle, children);
+            let none = || (cost(bodies, i, &Angle::zero(), children), Angle::zero());
+            let cost = cost(bodies, i, &angle, children);
             let before = *best.get_or_insert_with(none);
             if cost < before.0 {
                 best = Some((cost, angle));
@@ -75,11 +78,11 @@ fn best<S: Scalar>(model: &Model<S>, i: usize, children: &[usize]) -> Angle<S> {
 }
 
 /// What body `i` and the rotations and offsets of its children cost when it is turned.
-fn cost<S: Scalar>(model: &Model<S>, i: usize, angle: &Angle<S>, children: &[usize]) -> u32 {
-    let inertia = model.bodies[i].inertia.turned(&angle.rotation().transpose());
+fn cost<S: Scalar>(bodies: &[Body<S>], i: usize, angle: &Angle<S>, children: &[usize]) -> u32 {
+    let inertia = bodies[i].inertia.turned(&angle.rotation().transpose());
     let (h, s) = (inertia.first, inertia.second);
     let own = FIRST * count(&[h.x, h.y]) + SECOND * count(&[s.m12, s.m13, s.m23]) + if is_quarter(angle) { 0 } else { ANGLE };
-    children.iter().map(|&k| &model.bodies[k]).fold(own, |sum, child| {
+    children.iter().map(|&k| &bodies[k]).fold(own, |sum, child| {
         let (rotation, position) = (turned(&child.placement.rotation, angle), back(angle, child.placement.position));
         let from_there = child.joint.is_rotation_about_axis().then(|| plain(&rotation)).flatten();
         let (rotation, angle) = from_there.unwrap_or((rotation, Angle::zero()));
@@ -94,23 +97,22 @@ fn is_quarter<S: Scalar>(angle: &Angle<S>) -> bool {
 }
 
 /// Turns the frame of body `i` about its axis, with the joint's frame.
-fn turn_body<S: Scalar>(model: &mut Model<S>, i: usize, angle: &Angle<S>, hanging: &Hanging) {
+fn turn_body<S: Scalar>(parts: &mut ModelParts<S>, i: usize, angle: &Angle<S>, hanging: &Hanging) {
     let rotation = angle.rotation();
-    let body = &mut model.bodies[i];
+    let body = &mut parts.bodies[i];
     body.placement.rotation = nearest_rotation(&(body.placement.rotation * rotation).map(tidy));
     body.inertia = body.inertia.turned(&rotation.transpose());
     body.link = body.link.map(|link| rotation.transpose() * link);
     let turn = |x: &mut Placement<S>| {
         *x = Placement { rotation: nearest_rotation(&turned(&x.rotation, angle)), position: back(angle, x.position) }
     };
-    hanging.bodies.iter().for_each(|&k| turn(&mut model.bodies[k].placement));
-    hanging.frames.iter().for_each(|&k| turn(&mut model.frames[k].placement));
-    model.bodies[i].effects.body.iter_mut().for_each(|e| turn(&mut e.placement));
+    hanging.bodies.iter().for_each(|&k| turn(&mut parts.bodies[k].placement));
+    hanging.frames.iter().for_each(|&k| turn(&mut parts.frames[k].placement));
+    parts.bodies[i].effects.body.iter_mut().for_each(|e| turn(&mut e.placement));
 }
 
 /// Replaces the fixed rotation of body `i` by the plain one about the same axis, and counts the joint's angle from there.
-fn count_from_there<S: Scalar>(model: &mut Model<S>, formulation: &mut Formulation<S>, i: usize) {
-    let body = &mut model.bodies[i];
+fn count_from_there<S: Scalar>(body: &mut Body<S>, formulation: &mut Formulation<S>, i: usize) {
     body.placement.rotation = body.placement.rotation.map(tidy);
     if let Some((rotation, angle)) = plain(&body.placement.rotation) {
         body.placement.rotation = rotation;

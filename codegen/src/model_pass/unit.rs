@@ -2,7 +2,7 @@
 
 use articulated_core::Scalar;
 use articulated_core::model::Model;
-use articulated_core::spatial::Vector3;
+use articulated_core::spatial::{SpatialInertia, Vector3};
 
 use super::view::View;
 
@@ -19,25 +19,27 @@ impl<S: Scalar> View<S> {
     /// If an effect acts on a body: it would measure in metres still.
     #[must_use]
     pub fn in_unit_of(&self, metres: S) -> Self {
-        let mut view = self.clone();
-        let model = &mut view.model;
-        model.frames.clear();
-        model.gravity = model.gravity.map(|x| x / metres);
-        for body in &mut model.bodies {
-            assert!(body.effects.body.is_empty(), "an effect on {}", body.name);
-            body.placement.position = body.placement.position.map(|x| x / metres);
-        }
-        for inertia in model.bodies.iter_mut().map(|body| &mut body.inertia).chain(&mut view.formulation.torque_inertias) {
+        let View { model, mut formulation } = self.clone();
+        let in_unit = |inertia: &mut SpatialInertia<S>| {
             inertia.mass = inertia.mass * metres * metres;
             inertia.first *= metres;
-        }
-        view
+        };
+        let model = model.without_frames().changed(|parts| {
+            parts.gravity = parts.gravity.map(|x| x / metres);
+            for body in &mut parts.bodies {
+                assert!(body.effects.body.is_empty(), "an effect on {}", body.name);
+                body.placement.position = body.placement.position.map(|x| x / metres);
+                in_unit(&mut body.inertia);
+            }
+        });
+        formulation.torque_inertias.iter_mut().for_each(in_unit);
+        View { model, formulation }
     }
 }
 
 /// Whether no coordinate, rate or force of a joint has a length in it.
 pub fn no_joint_moves_origin<S: Scalar>(model: &Model<S>) -> bool {
-    model.outward().all(|i| !model.bodies[i].joint.moves_origin())
+    model.outward().all(|i| !model.bodies()[i].joint.moves_origin())
 }
 
 impl View<f64> {
@@ -46,11 +48,11 @@ impl View<f64> {
     /// this order.
     pub fn units(&self) -> Vec<f64> {
         let model = &self.model;
-        let levers = model.outward().map(|i| &model.bodies[i]).filter(|body| body.parent != 0).map(|body| body.placement.position);
+        let levers = model.outward().map(|i| &model.bodies()[i]).filter(|body| body.parent != 0).map(|body| body.placement.position);
         let moments = model.outward().map(|i| self.torque_inertia(i).first.map(|h| 1.0 / h));
         let masses = model.outward().map(|i| Vector3::x() / self.torque_inertia(i).mass.sqrt());
         let mut units = Vec::new();
-        for unit in levers.chain([model.gravity]).chain(moments).chain(masses).flat_map(|v| [v.x, v.y, v.z]).map(f64::abs) {
+        for unit in levers.chain([model.gravity()]).chain(moments).chain(masses).flat_map(|v| [v.x, v.y, v.z]).map(f64::abs) {
             if unit > 0.0 && unit.is_finite() && !units.contains(&unit) {
                 units.push(unit);
             }

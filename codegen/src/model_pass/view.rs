@@ -2,7 +2,7 @@
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Formulation, FrameRotation, Function, FunctionError, Way, Workspace};
-use articulated_core::model::{Body, Model};
+use articulated_core::model::{Body, Model, ModelParts};
 use articulated_core::spatial::SpatialInertia;
 
 /// A robot as the generator traces it.
@@ -18,7 +18,7 @@ pub struct View<S> {
 impl<S: Scalar> View<S> {
     /// Of a model as it is.
     pub fn new(model: Model<S>) -> Self {
-        let rotations = vec![FrameRotation::of_joint(); model.bodies.len()];
+        let rotations = vec![FrameRotation::of_joint(); model.bodies().len()];
         Self { model, formulation: Formulation { rotations, ..Formulation::default() } }
     }
 
@@ -34,18 +34,9 @@ impl<S: Scalar> View<S> {
 
     /// What the view has of body `i`, with `f` of each constant, always in the same order.
     pub(crate) fn map_body<T: Scalar>(&self, i: usize, f: impl Fn(S) -> T + Copy) -> BodyView<T> {
-        let body = self.model.bodies[i].map(f);
+        let body = self.model.bodies()[i].map(f);
         let rotation = self.formulation.rotations[i].map(f);
         BodyView { body, rotation, torque_inertia: self.formulation.torque_inertias.get(i).map(|inertia| inertia.map(f)) }
-    }
-
-    /// Replaces what the view has of body `i`.
-    pub(crate) fn set_body(&mut self, i: usize, of: BodyView<S>) {
-        self.model.bodies[i] = of.body;
-        self.formulation.rotations[i] = of.rotation;
-        if let (Some(to), Some(inertia)) = (self.formulation.torque_inertias.get_mut(i), of.torque_inertia) {
-            *to = inertia;
-        }
     }
 
     /// Whether the frame of body `i` rotates with its joint.
@@ -55,7 +46,7 @@ impl<S: Scalar> View<S> {
 
     /// Mass properties of body `i` for inverse dynamics.
     pub(super) fn torque_inertia(&self, i: usize) -> &SpatialInertia<S> {
-        self.formulation.torque_inertias.get(i).unwrap_or(&self.model.bodies[i].inertia)
+        self.formulation.torque_inertias.get(i).unwrap_or(&self.model.bodies()[i].inertia)
     }
 }
 
@@ -64,6 +55,17 @@ pub(crate) struct BodyView<S> {
     body: Body<S>,
     rotation: FrameRotation<S>,
     torque_inertia: Option<SpatialInertia<S>>,
+}
+
+impl<S: Scalar> BodyView<S> {
+    /// Replaces what a view, taken apart, has of body `i`.
+    pub(crate) fn put(self, i: usize, parts: &mut ModelParts<S>, formulation: &mut Formulation<S>) {
+        parts.bodies[i] = self.body;
+        formulation.rotations[i] = self.rotation;
+        if let (Some(to), Some(inertia)) = (formulation.torque_inertias.get_mut(i), self.torque_inertia) {
+            *to = inertia;
+        }
+    }
 }
 
 impl View<f64> {

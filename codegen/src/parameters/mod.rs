@@ -19,7 +19,7 @@ use articulated_core::algorithm::PARAMETERS;
 use articulated_core::description::Description;
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 use articulated_core::effect::{Applied, Effect, EffectId, On, effect};
-use articulated_core::model::Model;
+use articulated_core::model::{Model, ModelParts};
 use articulated_core::spatial::{Placement, SpatialInertia, Vector3};
 use articulated_scene::BuiltRobot;
 
@@ -137,8 +137,8 @@ impl<'a> Robot<'a> {
     fn of(description: &'a mut Description, model: &'a Model<f64>) -> Self {
         let links = indices(description.links.iter().map(|l| &l.name));
         let joints = indices(description.joints.iter().map(|j| &j.name));
-        let frames = indices(model.frames.iter().map(|f| &f.name));
-        let mut bodies = indices(model.bodies.iter().skip(1).map(|b| &b.name));
+        let frames = indices(model.frames().iter().map(|f| &f.name));
+        let mut bodies = indices(model.bodies().iter().skip(1).map(|b| &b.name));
         bodies.values_mut().for_each(|k| *k += 1);
         Self { description, model, links, joints, frames, bodies }
     }
@@ -158,14 +158,14 @@ impl<'a> Robot<'a> {
 
     fn gravity(&self, at: usize) -> Parameter {
         let what = "gravity in the world frame, m/s²".to_owned();
-        let nominal = self.model.gravity.as_slice().to_vec();
+        let nominal = self.model.gravity().as_slice().to_vec();
         Parameter { what, name: GRAVITY.into(), at, nominal, kind: Kind::Gravity, body: 0, frame: Placement::identity(), on: String::new() }
     }
 
     fn effect(&self, row: &Effect, name: &str, at: usize) -> Result<Parameter, String> {
         let (kind, on, body) = match row.on {
             On::Joint => ("joint", self.on_joint(row, name)?, self.bodies.get(name).copied()),
-            On::Link => ("link", self.on_link(row, name)?, self.frames.get(name).map(|k| self.model.frames[*k].body)),
+            On::Link => ("link", self.on_link(row, name)?, self.frames.get(name).map(|k| self.model.frames()[*k].body)),
         };
         // An effect that is off is refused, see `off`.
         let nominal = on.map_or_else(|| vec![0.0; row.len()], <[f64]>::to_vec);
@@ -177,15 +177,15 @@ impl<'a> Robot<'a> {
 
     /// Its numbers, if it is on.
     fn on_joint(&self, row: &Effect, name: &str) -> Result<Option<&[f64]>, String> {
-        let names = || self.model.bodies.iter().skip(1).map(|body| &body.name);
+        let names = || self.model.bodies().iter().skip(1).map(|body| &body.name);
         let body = self.bodies.get(name).ok_or_else(|| format!("there is no joint {name:?} that moves{}", meant(name, names())))?;
-        Ok(self.model.bodies[*body].effects.joint.iter().find(|on| on.effect == row.id).map(|on| on.parameters.as_slice()))
+        Ok(self.model.bodies()[*body].effects.joint.iter().find(|on| on.effect == row.id).map(|on| on.parameters.as_slice()))
     }
 
     /// Its numbers, if it is on.
     fn on_link(&self, row: &Effect, name: &str) -> Result<Option<&[f64]>, String> {
-        let frame = self.frames.get(name).map(|k| &self.model.frames[*k]).ok_or_else(|| self.no_link(name))?;
-        let mut on = self.model.bodies[frame.body].effects.body.iter().filter(|on| on.effect == row.id && on.link == name);
+        let frame = self.frames.get(name).map(|k| &self.model.frames()[*k]).ok_or_else(|| self.no_link(name))?;
+        let mut on = self.model.bodies()[frame.body].effects.body.iter().filter(|on| on.effect == row.id && on.link == name);
         match (on.next(), on.count()) {
             (first, 0) => Ok(first.map(|on| on.parameters.as_slice())),
             (_, others) => Err(format!("there are {} on link {name:?}, expected one", others + 1)),
@@ -193,14 +193,14 @@ impl<'a> Robot<'a> {
     }
 
     fn no_link(&self, name: &str) -> String {
-        format!("there is no link {name:?}{}", meant(name, self.model.frames.iter().map(|f| &f.name)))
+        format!("there is no link {name:?}{}", meant(name, self.model.frames().iter().map(|f| &f.name)))
     }
 
     fn mass(&mut self, kind: Kind, name: &str, at: usize) -> Result<Parameter, String> {
         let Some(&link) = self.links.get(name) else {
             return Err(self.no_link(name));
         };
-        let frame = self.frames.get(name).map(|k| &self.model.frames[*k]).ok_or_else(|| "the link is no frame".to_owned())?;
+        let frame = self.frames.get(name).map(|k| &self.model.frames()[*k]).ok_or_else(|| "the link is no frame".to_owned())?;
         if frame.body == 0 {
             return Err(format!("link {name:?} is fixed to the base: no function depends on it"));
         }
@@ -223,7 +223,7 @@ impl<'a> Robot<'a> {
         let body = self.bodies.get(name).copied();
         let body = body.ok_or_else(|| format!("joint {name:?} does not move; only the origin of a moving joint can stay an input"))?;
         let parent = &self.description.links[joint.parent].name;
-        let frame = self.frames.get(parent).map(|k| &self.model.frames[*k]).ok_or_else(|| format!("link {parent:?} is no frame"))?;
+        let frame = self.frames.get(parent).map(|k| &self.model.frames()[*k]).ok_or_else(|| format!("link {parent:?} is no frame"))?;
         let (what, nominal) = (format!("origin of joint {name:?} in its parent link, m"), joint.origin.xyz.to_vec());
         let on = name.to_owned();
         Ok(Parameter { what, name: format!("{name}_origin"), at, nominal, kind: Kind::Origin, body, frame: frame.placement, on })
@@ -251,7 +251,7 @@ impl Parameter {
     }
 
     /// Puts the numbers that `input` gives into the model.
-    pub(crate) fn put(&self, model: &mut Model<Sym>, input: impl Fn(usize) -> Sym) {
+    pub(crate) fn put(&self, model: &mut ModelParts<Sym>, input: impl Fn(usize) -> Sym) {
         let number = |k: usize| input(self.at + k);
         let frame = cast(&self.frame);
         let vector = || Vector3::new(number(0), number(1), number(2));

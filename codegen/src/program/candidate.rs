@@ -102,7 +102,7 @@ const FOLDED_BODIES: usize = 64;
 pub(super) fn cheapest(part: &FunctionTerm, subject: &Candidate, all: usize) -> Strategy {
     let few = if subject.parameters.is_empty() { all..=all } else { 0..=all };
     let ways = ways(part, subject.model);
-    let tried = subject.parameters.is_empty() && subject.model.bodies.len() <= FOLDED_BODIES;
+    let tried = subject.parameters.is_empty() && subject.model.bodies().len() <= FOLDED_BODIES;
     let folded = if tried { foldable_rotations(part, subject.model) } else { Vec::new() };
     let folded: Vec<Option<FoldedRotations>> = once(None).chain(folded.into_iter().map(Some)).collect();
     let shifted: &[bool] = if tried && Form::ShiftedMasses.fits(part.function.id) { &[false, true] } else { &[false] };
@@ -145,7 +145,7 @@ pub(super) fn by_axes(wanted: &FunctionSpec, choices: Vec<Strategy>, subject: &C
         let ((cost, price), (other_cost, other_price)) = (subject.price(wanted, &with), subject.price(wanted, &choices));
         cost <= other_cost && price < other_price
     };
-    if subject.model.bodies.len() > FOLDED_BODIES || better() { with } else { choices }
+    if subject.model.bodies().len() > FOLDED_BODIES || better() { with } else { choices }
 }
 
 /// So many instructions are traced at most to find the best unit of length: of a long function
@@ -155,7 +155,7 @@ const TRIED: usize = 20_000;
 /// The choices with lengths in the unit that costs least: where a constant is one, what it
 /// multiplies is only added.
 pub(super) fn in_the_best_unit(wanted: &FunctionSpec, choices: Vec<Strategy>, subject: &Candidate) -> Vec<Strategy> {
-    if !subject.parameters.is_empty() || subject.model.bodies.len() > FOLDED_BODIES {
+    if !subject.parameters.is_empty() || subject.model.bodies().len() > FOLDED_BODIES {
         return choices;
     }
     let units: Vec<Vec<f64>> = wanted.parts.iter().zip(&choices).map(|(part, choice)| units(part, choice, subject.model)).collect();

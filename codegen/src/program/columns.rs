@@ -28,7 +28,7 @@ pub(super) fn columns(wanted: &FunctionSpec, model: &Model<f64>, can: Capabiliti
 /// Whether the solution of M X = B is left a loop.
 pub(crate) fn has_columns(wanted: &FunctionSpec, model: &Model<f64>, can: Capabilities) -> bool {
     let [part] = wanted.parts.as_slice() else { return false };
-    let fits = COLUMNS.contains(&model.nv) && can.vectors;
+    let fits = COLUMNS.contains(&model.nv()) && can.vectors;
     fits && part.function.unsolved.as_ref().is_some_and(|unsolved| applies(unsolved, model))
 }
 

@@ -47,7 +47,7 @@ impl Constant {
         let or = if zeros { ", or 0, which does not turn" } else { "" };
         let told =
             |(joint, norm)| format!("constant {name}: joint {joint:?}: found a quaternion of norm {norm}, expected 1 within {NORM:e}{or}");
-        let wrong = model.joints.iter().filter(|_| configuration).find_map(|joint| not_unit(joint, &numbers, zeros));
+        let wrong = model.joints().iter().filter(|_| configuration).find_map(|joint| not_unit(joint, &numbers, zeros));
         wrong.map_or(Ok(()), |found| Err(told(found)))
     }
 

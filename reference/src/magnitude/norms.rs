@@ -10,12 +10,12 @@ use articulated_core::nalgebra::Vector3;
 
 /// Of a function's results; none for those of other functions, none with effects, whose terms are not in it, and none where joints follow others, whose angles are sums themselves.
 pub fn norms(function: FunctionId, model: &Model<f64>, arguments: &[&[f64]]) -> Vec<f64> {
-    let n = model.nv;
+    let n = model.nv();
     if !is_plain(model) {
         return Vec::new();
     }
     match (function, arguments) {
-        (FunctionId::inverse_dynamics, [q, v, a]) => torque(model, q, v, a, model.gravity.norm()),
+        (FunctionId::inverse_dynamics, [q, v, a]) => torque(model, q, v, a, model.gravity().norm()),
         (FunctionId::mass_matrix, [q]) => {
             let unit = |k: usize| (0..n).map(|i| f64::from(u8::from(i == k))).collect::<Vec<f64>>();
             let columns: Vec<Vec<f64>> = (0..n).map(|k| torque(model, q, &vec![0.0; n], &unit(k), 0.0)).collect();
@@ -27,7 +27,7 @@ pub fn norms(function: FunctionId, model: &Model<f64>, arguments: &[&[f64]]) -> 
 
 /// Whether no joint follows another, and nothing acts but gravity.
 pub fn is_plain(model: &Model<f64>) -> bool {
-    model.bodies.iter().all(|body| body.coordinates.mimic.is_none() && body.effects.joint.is_empty() && body.effects.body.is_empty())
+    model.bodies().iter().all(|body| body.coordinates.mimic.is_none() && body.effects.joint.is_empty() && body.effects.body.is_empty())
 }
 
 /// Norms of what a body's motion and its wrench are summed of.
@@ -43,14 +43,14 @@ struct Norms {
 
 /// Of inverse dynamics: accelerations add up outward, wrenches and their arms inward.
 fn torque(model: &Model<f64>, q: &[f64], v: &[f64], a: &[f64], gravity: f64) -> Vec<f64> {
-    let mut norms = vec![Norms::default(); model.bodies.len()];
+    let mut norms = vec![Norms::default(); model.bodies().len()];
     norms[0].acceleration = gravity;
     for i in model.outward() {
-        norms[i] = carried(&model.bodies[i], &norms[model.bodies[i].parent], q, v, a);
+        norms[i] = carried(&model.bodies()[i], &norms[model.bodies()[i].parent], q, v, a);
     }
-    let mut tau = vec![0.0; model.nv];
+    let mut tau = vec![0.0; model.nv()];
     for i in model.inward() {
-        let (body, own) = (&model.bodies[i], norms[i]);
+        let (body, own) = (&model.bodies()[i], norms[i]);
         for k in 0..body.joint.nv() {
             tau[body.coordinates.v + k] = along(body, k, own.moment, own.force);
         }

@@ -34,7 +34,7 @@ pub fn scales_of_generated(model: &Model<f64>, name: &str, arguments: &[&[f64]])
     let largest = own.iter().copied().fold(0.0, f64::max);
     let mut scales: Vec<f64> = own.into_iter().zip(moved).map(|(own, moved)| own.max(moved.magnitude.min(largest))).collect();
     if name.starts_with("inverse_dynamics_derivatives") {
-        scales.chunks_mut(model.nv * model.nv).for_each(|matrix| rests(matrix, model.nv));
+        scales.chunks_mut(model.nv() * model.nv()).for_each(|matrix| rests(matrix, model.nv()));
     }
     Ok(scales)
 }
@@ -79,29 +79,30 @@ fn evaluated(model: &Model<Magnitude>, name: &str, arguments: &[Vec<Magnitude>])
 /// The model's constants. Each was computed from numbers of the file, so that what is small may be the rest of larger terms: its
 /// error is that of its neighbours. Nothing is exactly nothing, but for a rotation that is about none of the axes: there it may be a rest too.
 fn constants(model: &Model<f64>) -> Model<Magnitude> {
-    let mut cast: Model<Magnitude> = model.cast();
-    for body in &mut cast.bodies {
-        neighbours(body.inertia.first.as_mut_slice(), false);
-        neighbours(body.inertia.second.as_mut_slice(), false);
-    }
-    let frames = cast.frames.iter_mut().map(|f| &mut f.placement);
-    for placement in cast.bodies.iter_mut().map(|b| &mut b.placement).chain(frames) {
-        let about_an_axis = placement.rotation.iter().any(|x| x.value.abs() == 1.0);
-        neighbours(placement.rotation.as_mut_slice(), !about_an_axis);
-        neighbours(placement.position.as_mut_slice(), false);
-    }
-    cast
+    model.cast::<Magnitude>().changed(|parts| {
+        for body in &mut parts.bodies {
+            neighbours(body.inertia.first.as_mut_slice(), false);
+            neighbours(body.inertia.second.as_mut_slice(), false);
+        }
+        let frames = parts.frames.iter_mut().map(|f| &mut f.placement);
+        for placement in parts.bodies.iter_mut().map(|b| &mut b.placement).chain(frames) {
+            let about_an_axis = placement.rotation.iter().any(|x| x.value.abs() == 1.0);
+            neighbours(placement.rotation.as_mut_slice(), !about_an_axis);
+            neighbours(placement.position.as_mut_slice(), false);
+        }
+    })
 }
 
 /// Constants of frames that may have been turned and moved: every number of a body is the rest of its neighbours.
-fn turned(mut model: Model<Magnitude>) -> Model<Magnitude> {
-    for body in &mut model.bodies {
-        neighbours(body.inertia.first.as_mut_slice(), true);
-        neighbours(body.inertia.second.as_mut_slice(), true);
-        neighbours(body.placement.position.as_mut_slice(), true);
-        neighbours(body.placement.rotation.as_mut_slice(), true);
-    }
-    model
+fn turned(model: Model<Magnitude>) -> Model<Magnitude> {
+    model.changed(|parts| {
+        for body in &mut parts.bodies {
+            neighbours(body.inertia.first.as_mut_slice(), true);
+            neighbours(body.inertia.second.as_mut_slice(), true);
+            neighbours(body.placement.position.as_mut_slice(), true);
+            neighbours(body.placement.rotation.as_mut_slice(), true);
+        }
+    })
 }
 
 fn neighbours(numbers: &mut [Magnitude], all: bool) {

@@ -43,7 +43,7 @@ impl Mass {
     fn at(model: &Model<f64>, q: &[f64]) -> Result<Self, FunctionError> {
         let terms = magnitudes(model, "mass_matrix", &given(&[q]))?.iter().map(|x| x.magnitude).collect();
         let inverse = value(model, FunctionId::mass_matrix_inverse.row(), &[q])?;
-        Ok(Self { n: model.nv, terms, modulus: absolute(&inverse), inverse })
+        Ok(Self { n: model.nv(), terms, modulus: absolute(&inverse), inverse })
     }
 
     /// |M⁻¹| (‖R‖ + ‖M‖ |X|), for any number of columns.
@@ -73,7 +73,7 @@ impl State<'_> {
 
     /// M a = τ − h.
     fn forward_dynamics(&self, row: &Function<f64>) -> Result<Vec<f64>, FunctionError> {
-        let still = vec![0.0; self.model.nv];
+        let still = vec![0.0; self.model.nv()];
         let needed =
             magnitudes(self.model, inverse_of(row, "inverse_dynamics", "inverse_dynamics_with_wrenches"), &given(&self.with(&still)))?;
         let right: Vec<f64> = needed.iter().zip(self.arguments[2]).map(|(h, tau)| h.magnitude + tau.abs()).collect();
@@ -109,7 +109,7 @@ impl State<'_> {
     fn operational_space(&self, inertia: Option<&[f64]>) -> Result<Vec<f64>, FunctionError> {
         let (n, mut scale) = (self.mass.n, Vec::new());
         if n == 0 {
-            return Ok(vec![0.0; 36 * self.model.frames.len()]);
+            return Ok(vec![0.0; 36 * self.model.frames().len()]);
         }
         let jacobians = magnitudes(self.model, "jacobians_world_aligned", &given(&self.arguments[..1]))?;
         for (k, jacobian) in jacobians.chunks_exact(6 * n).enumerate() {
@@ -197,7 +197,7 @@ mod tests {
     fn no_scale_lets_everything_pass() {
         for name in ["panda_like", "quadruped"] {
             let model = bundled(name);
-            let tip = [model.frames[model.frames.len() - 1].name.clone()];
+            let tip = [model.frames()[model.frames().len() - 1].name.clone()];
             let model = model.with_frames(&tip).unwrap();
             for f in functions::<f64>().iter().filter(|f| f.inverts_mass_matrix()) {
                 for number in 0..8 {

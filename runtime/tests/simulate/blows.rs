@@ -106,7 +106,7 @@ fn an_event_that_strikes_gives_the_speed_of_the_ball() {
 #[test]
 fn all_that_is_wrong_with_a_blow_or_a_contact_is_said_at_once() {
     let robot = model("chain", Base::Fixed);
-    let frames = format!("there is no frame 99: the robot has {}, the first is 0", robot.frames.len());
+    let frames = format!("there is no frame 99: the robot has {}, the first is 0", robot.frames().len());
     let told = |error: Option<SimulateError>| error.unwrap().to_string().lines().map(str::to_owned).collect::<Vec<_>>();
     let blow = Impact::new(&robot, at(99, [0.0, f64::NAN, 0.0], [0.0; 3]), -1.0, 3.0).err();
     let normal = "length of the normal = 0 cannot be used; it should be finite, greater than 0";
@@ -122,7 +122,7 @@ fn all_that_is_wrong_with_a_blow_or_a_contact_is_said_at_once() {
     let contact = Event::contact("foot", &robot, at(99, [0.0, f64::NAN, 0.0], [0.0; 3]), f64::INFINITY, f64::NAN).err();
     let radius = "radius = inf cannot be used; it should be finite, m";
     assert_eq!(told(contact), [&frames, point, normal, radius, "height = NaN cannot be used; it should be finite, m"]);
-    let next = robot.frames.len();
+    let next = robot.frames().len();
     assert!(Impact::new(&robot, at(next - 1, [0.0; 3], [0.0, 0.0, 1.0]), 1.0, 0.5).is_ok());
     assert!(Impact::new(&robot, at(next, [0.0; 3], [0.0, 0.0, 1.0]), 1.0, 0.5).is_err());
 }

@@ -265,7 +265,7 @@ fn events_that_are_only_recorded_change_nothing() {
 #[test]
 fn what_is_looked_for_does_not_move_a_body_that_floats() {
     let robot = model("satellite", Base::Floating);
-    let (mut q, v): (Vec<f64>, Vec<f64>) = (vec![0.0; robot.nq], (0..robot.nv).map(|k| 1.0 - 0.2 * k as f64).collect());
+    let (mut q, v): (Vec<f64>, Vec<f64>) = (vec![0.0; robot.nq()], (0..robot.nv()).map(|k| 1.0 - 0.2 * k as f64).collect());
     articulated_core::algorithm::neutral(&robot, &mut q);
     for row in integrators() {
         let settings = Settings { output: Output::Steps, ..stepping(row.id, 1.0, 0.013) };

@@ -166,7 +166,7 @@ fn quaternions_have_norm_one_to_four_digits() {
 #[test]
 fn coordinates_are_told_with_their_joints() {
     let robot = model("satellite", Base::Floating);
-    for (k, joint) in robot.joints.iter().enumerate() {
+    for (k, joint) in robot.joints().iter().enumerate() {
         for index in joint.q.0..joint.q.0 + joint.q.1 {
             let mut q = [0.3, -0.2, 0.5, 0.5, -0.5, 0.5, 0.5, 0.7, 0.1, 0.7, -0.1, 0.7];
             q[index] = f64::NAN;

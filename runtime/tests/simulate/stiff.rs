@@ -195,7 +195,7 @@ fn a_stiff_motion_that_is_soon_over_is_noted_and_made() {
 fn an_arm_under_a_firm_controller_arrives() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/urdf/ur5_like.urdf");
     let robot = articulated::load(path, Base::Fixed).unwrap();
-    let (zero, nv) = (vec![0.0; robot.nv], robot.nv);
+    let (zero, nv) = (vec![0.0; robot.nv()], robot.nv());
     let run = |integrator| {
         let mut pd = Pd::new(&robot, vec![0.5; nv], vec![30.0; nv], vec![3.0; nv]).unwrap();
         let settings = Settings { integrator, end: 2.0, output: Output::Ends, ..Settings::default() };

@@ -20,7 +20,7 @@ const MOST_COORDINATE: f64 = 1e6;
 
 /// A warning for each joint of which a coordinate in `q`, rad or m, is beyond any sense: sines of such angles, and what follows from them, are rounding.
 pub fn beyond_sense(model: &Model<f64>, q: &[f64]) -> Vec<String> {
-    let joints = model.joints.iter().filter_map(|joint| {
+    let joints = model.joints().iter().filter_map(|joint| {
         let own = q.get(joint.q.0..joint.q.0 + joint.q.1)?;
         let x = own.iter().find(|x| x.abs() > MOST_COORDINATE)?;
         Some(format!(

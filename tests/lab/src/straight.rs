@@ -22,7 +22,7 @@ impl Straight {
     pub fn build(rustc: &Rustc, generated: &Generated) -> Result<Self, CompileError> {
         let compiled = Compiled::build(rustc, generated)?;
         let kernels = functions::<f64>().iter().map(|f| compiled.kernel(f.name).cloned()).collect();
-        let (name, has_motors, shape) = (generated.model.name.clone(), generated.model.has_motors(), compiled.shape());
+        let (name, has_motors, shape) = (generated.model.name().to_owned(), generated.model.has_motors(), compiled.shape());
         Ok(Self { name, has_motors, shape, kernels, _compiled: compiled })
     }
 }

@@ -22,7 +22,7 @@ impl Tips {
     pub fn of(description: &Description, model: &Model<f64>) -> Self {
         let bare = |name: &str| description.link(name).is_some_and(|l| description.joints.iter().all(|j| j.parent != l));
         let with = |least: usize| {
-            let moved = model.frames.iter().filter(|f| bare(&f.name) && model.freedoms_of(f.body).len() >= least);
+            let moved = model.frames().iter().filter(|f| bare(&f.name) && model.freedoms_of(f.body).len() >= least);
             moved.map(|f| f.name.clone()).collect::<Vec<_>>()
         };
         Self { all: with(1), free: with(6) }

@@ -125,17 +125,17 @@ impl Case {
 
     /// A state at random: angles in ±π, lengths in ±1 m, rates and accelerations in ±2, torques and wrenches in ±20, steps in ±1.
     pub fn state(&self, random: &mut Random) -> State {
-        let (nq, nv) = (self.model.nq, self.model.nv);
+        let (nq, nv) = (self.model.nq(), self.model.nv());
         let (q, v, a) = (self.configuration(random), random.vector(nv, -2.0, 2.0), random.vector(nv, -2.0, 2.0));
         let tau = random.vector(nv, -20.0, 20.0);
-        let wrenches = random.vector(6 * self.model.frames.len(), -20.0, 20.0);
+        let wrenches = random.vector(6 * self.model.frames().len(), -20.0, 20.0);
         let (step, target) = (random.vector(nv, -1.0, 1.0), self.configuration(random));
         State { q, v, a, tau, wrenches, step, target, uniform: random.vector(nq, 0.0, 1.0) }
     }
 
     fn configuration(&self, random: &mut Random) -> Vec<f64> {
-        let mut q = random.vector(self.model.nq, -std::f64::consts::PI, std::f64::consts::PI);
-        for body in self.model.bodies.iter().skip(1).filter(|b| b.coordinates.mimic.is_none()) {
+        let mut q = random.vector(self.model.nq(), -std::f64::consts::PI, std::f64::consts::PI);
+        for body in self.model.bodies().iter().skip(1).filter(|b| b.coordinates.mimic.is_none()) {
             let at = body.coordinates.q;
             match body.joint {
                 Joint::Revolute | Joint::Helical => {}
@@ -164,14 +164,14 @@ impl Case {
 
 /// τ of the generic library, for any model.
 pub fn inverse_dynamics<S: Scalar>(model: &Model<S>, q: &[S], v: &[S], a: &[S]) -> Vec<S> {
-    let mut tau = vec![S::zero(); model.nv];
+    let mut tau = vec![S::zero(); model.nv()];
     articulated_core::algorithm::inverse_dynamics(model, &mut Workspace::new(model), q, v, a, &mut tau);
     tau
 }
 
 /// Placements of the generic library, for any model.
 pub fn placements<S: Scalar>(model: &Model<S>, q: &[S]) -> Vec<S> {
-    let mut out = vec![S::zero(); 12 * model.frames.len()];
+    let mut out = vec![S::zero(); 12 * model.frames().len()];
     articulated_core::algorithm::placements(model, &mut Workspace::new(model), q, &mut out);
     out
 }
@@ -179,9 +179,9 @@ pub fn placements<S: Scalar>(model: &Model<S>, q: &[S]) -> Vec<S> {
 /// The mass matrix, column by column from inverse dynamics without gravity and rates.
 pub fn mass_matrix(model: &Model<f64>, q: &[f64]) -> nalgebra::DMatrix<f64> {
     let still = model.clone().with_gravity([0.0; 3]);
-    let zero = vec![0.0; model.nv];
-    let column = |k: usize| nalgebra::DVector::from_vec(inverse_dynamics(&still, q, &zero, &crate::measure::unit(model.nv, k)));
-    let columns: Vec<_> = (0..model.nv).map(column).collect();
+    let zero = vec![0.0; model.nv()];
+    let column = |k: usize| nalgebra::DVector::from_vec(inverse_dynamics(&still, q, &zero, &crate::measure::unit(model.nv(), k)));
+    let columns: Vec<_> = (0..model.nv()).map(column).collect();
     if columns.is_empty() { nalgebra::DMatrix::zeros(0, 0) } else { nalgebra::DMatrix::from_columns(&columns) }
 }
 

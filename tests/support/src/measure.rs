@@ -14,10 +14,10 @@ pub const U: f64 = f64::EPSILON / 2.0;
 /// [`Motions::placement_scale`], which share nothing with the library (entries of the mass matrix are torques for a unit of one acceleration); for
 /// all else the sum of the magnitudes of the terms, by the command's [`scales`].
 pub fn scale(case: &Case, name: &str, state: &State) -> Vec<f64> {
-    let zero = vec![0.0; case.model.nv];
+    let zero = vec![0.0; case.model.nv()];
     let torque = |v: &[f64], a: &[f64]| case.motions().torque_scale(&state.q, v, a);
     match name {
-        "placements" if case.model.frames.len() == case.description.links.len() => case.motions().placement_scale(&state.q),
+        "placements" if case.model.frames().len() == case.description.links.len() => case.motions().placement_scale(&state.q),
         "inverse_dynamics" => torque(&state.v, &state.a),
         "bias_forces" => torque(&state.v, &zero),
         "gravity_torque" => torque(&zero, &zero),
@@ -28,7 +28,7 @@ pub fn scale(case: &Case, name: &str, state: &State) -> Vec<f64> {
 
 /// Row by row.
 fn matrix_scale(case: &Case, q: &[f64]) -> Vec<f64> {
-    let n = case.model.nv;
+    let n = case.model.nv();
     let weightless = Motions::new(&case.description, case.base, [0.0; 3]);
     let column = |k: usize| weightless.torque_scale(q, &vec![0.0; n], &unit(n, k));
     let columns: Vec<Vec<f64>> = (0..n).map(column).collect();

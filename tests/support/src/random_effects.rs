@@ -11,8 +11,8 @@ pub fn random_effects(random: &mut Random, model: &Model<f64>, wanted: impl Fn(E
     let mut applied = Vec::new();
     for effect in effects().iter().filter(|e| wanted(e.id)) {
         let names: Vec<&String> = match effect.on {
-            On::Joint => model.outward().filter(|&i| can_have(model, effect.id, i)).map(|i| &model.bodies[i].name).collect(),
-            On::Link => model.frames.iter().filter(|f| f.body != 0).map(|f| &f.name).collect(),
+            On::Joint => model.outward().filter(|&i| can_have(model, effect.id, i)).map(|i| &model.bodies()[i].name).collect(),
+            On::Link => model.frames().iter().filter(|f| f.body != 0).map(|f| &f.name).collect(),
         };
         let mut taken = Vec::new();
         for name in names {
@@ -29,10 +29,10 @@ pub fn random_effects(random: &mut Random, model: &Model<f64>, wanted: impl Fn(E
 
 /// A spring needs a coordinate for each degree of freedom; a motor drives no joint that follows another.
 fn can_have(model: &Model<f64>, effect: EffectId, i: usize) -> bool {
-    let ball = model.bodies[i].joint.quaternion().is_some();
-    let follows = model.bodies[i].coordinates.mimic.is_some();
+    let ball = model.bodies()[i].joint.quaternion().is_some();
+    let follows = model.bodies()[i].coordinates.mimic.is_some();
     match effect {
-        _ if model.bodies[i].name == FLOATING_BASE => false,
+        _ if model.bodies()[i].name == FLOATING_BASE => false,
         _ if effect.row().needs_coordinate() => !ball && !follows,
         _ if effect.row().enters == Enters::Drive => !follows,
         _ => true,

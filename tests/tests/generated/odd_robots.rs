@@ -14,7 +14,7 @@ use crate::robots::{NATIVE, ROBOTS};
 #[test]
 fn a_robot_that_cannot_move_is_generated_and_compiles() {
     let stone = ROBOTS.iter().find(|r| r.name == "stone").unwrap();
-    assert_eq!((stone.generated.model.nq, stone.generated.model.nv), (0, 0));
+    assert_eq!((stone.generated.model.nq(), stone.generated.model.nv()), (0, 0));
     let found = NATIVE.run("stone", "inverse_dynamics", &[vec![&[], &[], &[]]]);
     assert_eq!(found, [Vec::<f64>::new()]);
     let found = NATIVE.run("stone", "placements", &[vec![&[]]]);
@@ -31,7 +31,7 @@ fn a_chain_of_a_thousand_joints_is_generated() {
     let generated = generate(&request).unwrap();
     let operations = generated.ledger.functions[0].emitted().instructions();
     println!("1000 joints: {operations} instructions generated in {:.1?}", start.elapsed());
-    assert_eq!(generated.model.nv, n);
+    assert_eq!(generated.model.nv(), n);
     // Linear in the joints: no more a joint than some three hundred instructions.
     assert!(operations < 300_000, "{operations}");
     assert!(generated.warnings.is_empty(), "{:?}", generated.warnings);
@@ -120,7 +120,7 @@ fn gravity_and_base_are_the_requests() {
     assert_eq!(weightless.ledger.functions[0].emitted().instructions(), 0, "no gravity, no operation");
     request.options.robot.base = Base::Floating;
     let floating = generate(&request).unwrap();
-    assert_eq!((standing.model.nv, floating.model.nv), (2, 8));
+    assert_eq!((standing.model.nv(), floating.model.nv()), (2, 8));
     let program = Program::build(&[("weightless", &weightless), ("standing", &standing)], &["-C", "opt-level=0"]);
     assert_eq!(program.run("weightless", "gravity_torque", &[vec![&[0.3, 0.4]]]), [[0.0, 0.0]]);
     assert_ne!(program.run("standing", "gravity_torque", &[vec![&[0.3, 0.4]]]), [[0.0, 0.0]]);

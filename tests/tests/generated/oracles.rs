@@ -37,8 +37,8 @@ fn torques_hold(name: &str, found: &[f64], reference: &Reference) {
 /// The fixture lists links in an order of its own, so they are found by name; the case has all of them as frames, or some.
 fn placements_hold(case: &Case, links: &[String], found: &[f64], reference: &Reference) {
     let Some(expected) = &reference.placements else { return };
-    assert_eq!((found.len(), links.len()), (12 * case.model.frames.len(), expected.len()));
-    for (frame, found) in case.model.frames.iter().zip(found.chunks_exact(12)) {
+    assert_eq!((found.len(), links.len()), (12 * case.model.frames().len(), expected.len()));
+    for (frame, found) in case.model.frames().iter().zip(found.chunks_exact(12)) {
         let link = links.iter().position(|l| *l == frame.name).unwrap();
         for (f, e) in found.iter().zip(&expected[link]) {
             assert!((f - e).abs() <= TOLERANCE, "{}, {}: {f} instead of {e}", case.name, frame.name);
@@ -51,11 +51,11 @@ fn every_bundled_robot_has_a_reference_of_its_own() {
     each(|case, reference| {
         assert_eq!(reference.robot, case.name);
         assert_eq!(reference.base, if case.base == Base::Fixed { "fixed" } else { "floating" });
-        assert_eq!((reference.nq, reference.nv), (case.model.nq, case.model.nv));
-        let joints: Vec<&String> = case.model.joints.iter().map(|j| &j.name).collect();
+        assert_eq!((reference.nq, reference.nv), (case.model.nq(), case.model.nv()));
+        let joints: Vec<&String> = case.model.joints().iter().map(|j| &j.name).collect();
         assert_eq!(reference.joints.iter().collect::<Vec<_>>(), joints);
         let links = |of: &mut dyn Iterator<Item = &String>| of.cloned().collect::<BTreeSet<String>>();
-        assert_eq!(links(&mut reference.links.iter()), links(&mut case.model.frames.iter().map(|f| &f.name)));
+        assert_eq!(links(&mut reference.links.iter()), links(&mut case.model.frames().iter().map(|f| &f.name)));
         assert!(reference.states.len() >= 4 && reference.states.iter().any(|s| s.placements.is_some()));
     });
 }
@@ -107,7 +107,7 @@ struct Held(Case);
 
 fn held(case: &Case) -> Held {
     let mut case = case.clone();
-    for (link, frame) in case.description.links.iter_mut().zip(&case.model.frames) {
+    for (link, frame) in case.description.links.iter_mut().zip(case.model.frames()) {
         if frame.body != 0 {
             link.inertial = None;
         }

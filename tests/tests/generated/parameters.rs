@@ -63,7 +63,7 @@ fn about_origin(m: f64, c: [f64; 3], i: [f64; 6]) -> [f64; 10] {
 
 fn holds(parameters: &[f64; tuned::PARAMETERS.len()], description: &Description) {
     let model = Model::new(description, Base::Fixed).unwrap();
-    let links = model.frames.iter().take(tuned::FRAMES).map(|f| f.name.clone()).collect::<Vec<_>>();
+    let links = model.frames().iter().take(tuned::FRAMES).map(|f| f.name.clone()).collect::<Vec<_>>();
     let model = model.with_frames(&links).unwrap();
     let generic = |id: FunctionId, arguments: &[&[f64]]| {
         let mut out = vec![0.0; id.row::<f64>().len(model.shape())];

@@ -52,7 +52,7 @@ fn only_derivatives(name: &str, urdf: &str, base: Base) -> Robot {
 
 /// With every function, save those that need what the robot does not have, on one or two frames.
 fn robot(name: String, urdf: &str, base: Base, singular: bool) -> Robot {
-    let small = Case::new(name.clone(), read(urdf), base).model.nv < 18;
+    let small = Case::new(name.clone(), read(urdf), base).model.nv() < 18;
     with(name, urdf, base, singular, Options::default(), |name| small || !LONG.contains(&name))
 }
 
@@ -86,8 +86,8 @@ pub(crate) fn single_states(robot: &Robot, count: usize) -> Vec<State> {
 
 /// The last frame, and the one in the middle.
 fn frames(model: &Model<f64>) -> Vec<String> {
-    let n = model.frames.len();
-    let mut chosen = vec![model.frames[n - 1].name.clone(), model.frames[n / 2].name.clone()];
+    let n = model.frames().len();
+    let mut chosen = vec![model.frames()[n - 1].name.clone(), model.frames()[n / 2].name.clone()];
     chosen.dedup();
     chosen
 }
@@ -97,7 +97,7 @@ const LONG: [&str; 2] = ["inverse_dynamics_derivatives", "forward_dynamics_deriv
 
 fn has(model: &Model<f64>, frames: &[String], function: &Function<f64>, singular: bool) -> bool {
     let freedoms = |f: &Frame<f64>| model.freedoms_of(f.body).len();
-    let free = model.frames.iter().filter(|f| frames.contains(&f.name)).all(|f| freedoms(f) >= 6);
+    let free = model.frames().iter().filter(|f| frames.contains(&f.name)).all(|f| freedoms(f) >= 6);
     match function.needs {
         Needs::Mass => model.moving_mass() > 0.0,
         Needs::Nothing => true,

@@ -31,15 +31,15 @@ fn subject(scene: &articulated_models::BundledScene) -> (Generated, Model<f64>) 
 #[test]
 fn generated_code_of_every_scene_is_the_generic_librarys() {
     let subjects: Vec<(&str, (Generated, Model<f64>))> = articulated_models::SCENES.iter().map(|s| (s.name, subject(s))).collect();
-    assert!(subjects.iter().filter(|(_, (_, m))| m.bodies.iter().any(|b| !b.effects.kinds().is_empty())).count() >= 5);
+    assert!(subjects.iter().filter(|(_, (_, m))| m.bodies().iter().any(|b| !b.effects.kinds().is_empty())).count() >= 5);
     let named: Vec<(&str, &Generated)> = subjects.iter().map(|(name, (generated, _))| (*name, generated)).collect();
     let program = Program::build(&named, &["-C", "opt-level=1", "-C", "target-cpu=native"]);
     println!("compiled in {:.1?}", program.time);
     let random = &mut Random::new(3);
     for (scene, (_, model)) in &subjects {
         for _ in 0..10 {
-            let q = call(model, "random_configuration", &[&random.vector(model.nq, 0.0, 1.0)]);
-            let (v, a) = (random.vector(model.nv, -2.0, 2.0), random.vector(model.nv, -2.0, 2.0));
+            let q = call(model, "random_configuration", &[&random.vector(model.nq(), 0.0, 1.0)]);
+            let (v, a) = (random.vector(model.nv(), -2.0, 2.0), random.vector(model.nv(), -2.0, 2.0));
             for name in FUNCTIONS {
                 let arguments: Vec<&[f64]> = [&q[..], &v, &a][..function::<f64>(name).expect("in the table").takes.len()].to_vec();
                 let (found, expected) = (program.run(scene, name, std::slice::from_ref(&arguments)), call(model, name, &arguments));

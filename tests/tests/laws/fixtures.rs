@@ -63,11 +63,11 @@ fn every_function_has_been_asked_of_another_engine() {
 fn engines_were_asked_about_the_same_robots() {
     for answers in answers() {
         let Case { name, model, .. } = answers.case();
-        let joints: Vec<&String> = model.joints.iter().map(|j| &j.name).collect();
-        let links: Vec<&String> = model.links().map(|i| &model.bodies[i].name).collect();
+        let joints: Vec<&String> = model.joints().iter().map(|j| &j.name).collect();
+        let links: Vec<&String> = model.links().map(|i| &model.bodies()[i].name).collect();
         assert_eq!(joints, answers.joints.iter().collect::<Vec<_>>(), "{name}");
         assert_eq!(links, answers.links.iter().collect::<Vec<_>>(), "{name}");
-        assert_eq!((model.nq, model.nv), (answers.nq, answers.nv), "{name}");
+        assert_eq!((model.nq(), model.nv()), (answers.nq, answers.nv), "{name}");
         assert!(!answers.states.is_empty(), "{name}");
     }
 }

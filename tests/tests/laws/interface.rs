@@ -96,7 +96,7 @@ fn a_workspace_of_another_robot_of_that_size_is_an_error() {
         (&chain, &universal),
     ];
     for (a, b) in others.into_iter().flat_map(|(a, b)| [(a, b), (b, a)]) {
-        let (q, mut out) = (vec![0.0; a.nq], vec![0.0; a.nv * a.nv]);
+        let (q, mut out) = (vec![0.0; a.nq()], vec![0.0; a.nv() * a.nv()]);
         assert_eq!(a.mass_matrix(&mut b.workspace(), &q, &mut out), Err(FunctionError::Workspace), "{a:?} {b:?}");
         assert_eq!(a.mass_matrix(&mut a.workspace(), &q, &mut out), Ok(()));
     }
@@ -144,7 +144,7 @@ fn no_value_makes_an_algorithm_panic() {
                 let mut out = vec![0.0; row.len(case.model.shape())];
                 assert_eq!(row.call(&case.model, ws, &arguments(row.name, &state), &mut out), Ok(()), "{}", row.name);
             }
-            let _ = checked_forward_dynamics(&case.model, ws, &state.q, &state.v, &state.tau, &mut vec![0.0; case.model.nv]);
+            let _ = checked_forward_dynamics(&case.model, ws, &state.q, &state.v, &state.tau, &mut vec![0.0; case.model.nv()]);
         }
     });
 }
@@ -189,16 +189,16 @@ fn a_frame_that_is_not_there_is_named_with_the_nearest() {
     let arm = Case::bundled(articulated_models::robot("panda_like").unwrap()).model;
     let error = arm.clone().with_frames(&["hand_tpc"]).unwrap_err();
     assert_eq!(error, EditError::UnknownLink { name: "hand_tpc".into(), nearest: Some("hand_tcp".into()) });
-    assert_eq!(arm.with_frames(&["hand_tcp", "hand_tcp"]).unwrap().frames.len(), 2);
+    assert_eq!(arm.with_frames(&["hand_tcp", "hand_tcp"]).unwrap().frames().len(), 2);
 }
 
 /// Λ of a frame that less than six degrees of freedom move is no matrix, and is not given as one.
 #[test]
 fn inertia_in_all_directions_is_no_number_where_a_frame_cannot_move_in_all() {
     let arm = Case::bundled(articulated_models::robot("ur5_like").unwrap()).model;
-    let mut out = vec![0.0; 36 * arm.frames.len()];
+    let mut out = vec![0.0; 36 * arm.frames().len()];
     arm.operational_space_inertia(&mut arm.workspace(), &[0.1, -0.9, 1.2, 0.4, 0.5, 0.6], &mut out).unwrap();
-    for (frame, lambda) in arm.frames.iter().zip(out.chunks_exact(36)) {
+    for (frame, lambda) in arm.frames().iter().zip(out.chunks_exact(36)) {
         let moved = frame.body != 0 && arm.freedoms_of(frame.body).len() == 6;
         assert!(lambda.iter().all(|x| x.is_finite() == moved && x.is_nan() != moved), "{}: {lambda:?}", frame.name);
     }
@@ -223,7 +223,7 @@ fn inertia_in_all_directions_is_no_number_where_joints_follow_others() {
     };
     for follows in [false, true] {
         let (model, mut out) = (chain(follows), vec![0.0; 36]);
-        model.operational_space_inertia(&mut model.workspace(), &[0.3, 0.4, 0.2, 0.5, 0.1, 0.6][..model.nq], &mut out).unwrap();
+        model.operational_space_inertia(&mut model.workspace(), &[0.3, 0.4, 0.2, 0.5, 0.1, 0.6][..model.nq()], &mut out).unwrap();
         assert!(out.iter().all(|x| x.is_nan() == follows), "{follows}: {out:?}");
     }
 }
@@ -310,7 +310,7 @@ fn a_single_link_goes_through_everything() {
         frames: vec![],
     };
     let fixed = Case::new("stone", one.clone(), Base::Fixed);
-    assert_eq!((fixed.model.nq, fixed.model.nv, fixed.model.frames.len()), (0, 0, 1));
+    assert_eq!((fixed.model.nq(), fixed.model.nv(), fixed.model.frames().len()), (0, 0, 1));
     assert_eq!(inverse_dynamics(&fixed.model, &[], &[], &[]), Vec::<f64>::new());
     assert_eq!(placements(&fixed.model, &[]), [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
     let floating = Case::new("stone", one, Base::Floating);

@@ -38,7 +38,7 @@ fn made(robot: &str, name: &str, target: Target) -> Made {
 
 impl Made {
     fn call(&self, state: &[Vec<f64>]) -> Vec<f64> {
-        let mut out = vec![0.0; self.generated.model.nv];
+        let mut out = vec![0.0; self.generated.model.nv()];
         let arguments: Vec<&[f64]> = state.iter().map(Vec::as_slice).collect();
         self.compiled.call(FUNCTION, &arguments, &mut out).unwrap();
         out
@@ -98,7 +98,7 @@ const PART: usize = 1000;
 fn hold(robot: &str, count: usize) {
     let levels = LEVELS.map(|name| made(robot, name, Target::Own));
     let mut worst = [0.0_f64; LEVELS.len()];
-    let mut single = vec![(0.0_f64, 0.0_f64); levels[0].generated.model.nv];
+    let mut single = vec![(0.0_f64, 0.0_f64); levels[0].generated.model.nv()];
     for (state, first) in states_in_parts(&levels[0].generated.model, count) {
         Big::scope(|| {
             // Graphs of levels differ in nothing but how a node is computed: one evaluation in 96 digits serves all.
@@ -194,7 +194,7 @@ fn there_is_a_bound_of_every_result_and_it_holds_all_over_the_box() {
     for name in ["f64", "f32"] {
         let generated = generated("ur5_like", level(name));
         let bounds = generated.bounds_in_box(0).unwrap();
-        assert_eq!(bounds.len(), generated.model.nv);
+        assert_eq!(bounds.len(), generated.model.nv());
         assert!(bounds.iter().all(|b| b.is_finite() && *b > 0.0), "{bounds:?}");
         for state in some_states("ur5_like", 20) {
             let one = bound::bounds(&generated.graphs[0], level(name), &|argument, k| (state[argument][k], 0.0)).unwrap();

@@ -104,7 +104,7 @@ impl Figure {
 
     /// Where each link is in its body; the first link of each body stands for it.
     fn links(&mut self, description: &Description, model: &Model<f64>) -> Vec<Option<Linked>> {
-        let mut drawn: Vec<Option<(usize, Placement<f64>)>> = vec![None; model.bodies.len()];
+        let mut drawn: Vec<Option<(usize, Placement<f64>)>> = vec![None; model.bodies().len()];
         drawn[0] = Some((0, Placement::identity()));
         let mut place = |frame: &Frame<f64>| {
             let (body, first) = drawn[frame.body].get_or_insert_with(|| {
@@ -113,7 +113,7 @@ impl Figure {
             });
             Linked { body: *body, place: relative(first, &frame.placement), limb: limb(model, frame.body) }
         };
-        description.links.iter().map(|link| model.frames.iter().find(|f| f.name == link.name).map(&mut place)).collect()
+        description.links.iter().map(|link| model.frames().iter().find(|f| f.name == link.name).map(&mut place)).collect()
     }
 }
 
@@ -135,12 +135,12 @@ struct Linked {
 
 /// The first body on the way to `body` that hangs on one that more than one hangs on.
 fn limb(model: &Model<f64>, mut body: usize) -> usize {
-    let children = |parent: usize| model.outward().filter(move |&i| model.bodies[i].parent == parent).count();
+    let children = |parent: usize| model.outward().filter(move |&i| model.bodies()[i].parent == parent).count();
     let mut limb = 0;
     while body != 0 {
-        let parent = model.bodies[body].parent;
+        let parent = model.bodies()[body].parent;
         if children(parent) > 1 {
-            limb = 1 + model.outward().filter(|&i| i < body && children(model.bodies[i].parent) > 1).count();
+            limb = 1 + model.outward().filter(|&i| i < body && children(model.bodies()[i].parent) > 1).count();
         }
         body = parent;
     }

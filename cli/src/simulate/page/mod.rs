@@ -156,7 +156,7 @@ struct Space {
 
 impl Space {
     fn of(figure: &Figure, placements: &[Placement<f64>], setting: &Setting<'_>) -> Self {
-        let gravity = setting.model.gravity;
+        let gravity = setting.model.gravity();
         let up = match setting.ground {
             Some((normal, _)) => unit(normal),
             None => unit((-gravity).into()),

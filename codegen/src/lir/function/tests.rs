@@ -18,7 +18,7 @@ fn model(robot: &str, base: Base) -> Model<f64> {
     let mut request = Request::new(robot, std::fs::read(format!("{folder}/{robot}.urdf")).unwrap());
     request.options.robot.base = base;
     let whole = request.build_robot().unwrap().model;
-    let tip = whole.frames.last().map(|frame| frame.name.clone());
+    let tip = whole.frames().last().map(|frame| frame.name.clone());
     whole.with_frames(&tip.into_iter().collect::<Vec<_>>()).unwrap()
 }
 

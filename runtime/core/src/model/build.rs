@@ -45,6 +45,15 @@ pub enum ModelError {
         /// Names of the joints behind which they are, and of the links that are too far away.
         names: Vec<String>,
     },
+    /// Parts that do not fit together ([`Model::from_parts`]).
+    Structure {
+        /// The body, joint or frame.
+        part: String,
+        /// What it has.
+        found: String,
+        /// What it should have.
+        expected: &'static str,
+    },
 }
 
 impl fmt::Display for ModelError {
@@ -70,6 +79,7 @@ impl fmt::Display for ModelError {
                     names.join(", ")
                 )
             }
+            Self::Structure { part, found, expected } => write!(f, "{part}: found {found}, expected {expected}"),
         }
     }
 }
@@ -85,11 +95,25 @@ impl Model<f64> {
         if description.joints.iter().any(|j| j.name == FLOATING_BASE) {
             return Err(ModelError::NamedAsBase);
         }
+        check_frames(description)?;
         let mut builder = Builder::new(description);
         let root = description.root().ok_or_else(|| builder.not_a_tree())?;
         builder.add_root(root, base);
         builder.add_tree(root)?;
         builder.finish()
+    }
+}
+
+/// A frame is on a link that exists; an intermediate link carries no mass and no geometry.
+fn check_frames(description: &Description) -> Result<(), ModelError> {
+    let refused = |part: String, found: String, expected: &'static str| Err(ModelError::Structure { part, found, expected });
+    if let Some(frame) = description.frames.iter().find(|frame| frame.link >= description.links.len()) {
+        return refused(format!("frame {:?}", frame.name), format!("link {}", frame.link), "the index of a link");
+    }
+    let full = |link: &&description::Link| link.intermediate && (link.inertial.is_some() || !link.collision.is_empty());
+    match description.links.iter().find(full) {
+        Some(link) => refused(format!("link {:?}", link.name), "mass or collision geometry".into(), "none on an intermediate link"),
+        None => Ok(()),
     }
 }
 
@@ -255,8 +279,7 @@ impl<'a> Builder<'a> {
         if names.is_empty() { Ok(self.model) } else { Err(ModelError::TooLarge { names }) }
     }
 
-    /// The frames of the links, then those that coincide with no link. A frame on a link that does
-    /// not exist is left out.
+    /// The frames of the links, then those that coincide with no link.
     fn frames(&self) -> Vec<Frame<f64>> {
         let seated = |link: usize| self.seats.get(link).copied().flatten();
         let links = self.description.links.iter().enumerate().filter(|(_, link)| !link.intermediate);

@@ -2,8 +2,8 @@
 
 mod build;
 mod leaders;
-mod limbs;
 mod massless;
+mod parts;
 mod regroup;
 
 use alloc::string::{String, ToString};
@@ -12,7 +12,7 @@ use alloc::vec::Vec;
 use nalgebra::{Matrix3, Vector3};
 
 pub use build::ModelError;
-pub use limbs::Limbs;
+pub use parts::ModelParts;
 pub use regroup::{regroup, regroup_body, subtract};
 
 use crate::Scalar;
@@ -31,25 +31,17 @@ pub const GRAVITY: [f64; 3] = [0.0, 0.0, -9.81];
 /// A tree of bodies. Body 0 is the base; every other body hangs on its parent by one moving joint, parents before children.
 ///
 /// Links behind fixed joints are part of the body they are fixed to; each link of the file remains as a frame.
-/// Build one with [`Model::new`].
+/// [`Model::new`] builds one of a description. [`Model::into_parts`] and [`Model::from_parts`] change one.
 #[derive(Clone, Debug)]
 pub struct Model<S = f64> {
-    /// The robot's name.
-    pub name: String,
-    /// Gravity in the world frame, m/s².
-    pub gravity: Vector3<S>,
-    /// What the wrenches that functions take refer to.
-    pub wrench_reference: Reference,
-    /// Bodies; the first is the base and has no joint of its own.
-    pub bodies: Vec<Body<S>>,
-    /// One frame for each link of the file, in the order of the file, or those chosen of them.
-    pub frames: Vec<Frame<S>>,
-    /// The joints that are coordinates, in the order of their coordinates. Joints that follow others are not among them.
-    pub joints: Vec<JointInfo>,
-    /// Number of coordinates.
-    pub nq: usize,
-    /// Number of degrees of freedom.
-    pub nv: usize,
+    pub(crate) name: String,
+    pub(crate) gravity: Vector3<S>,
+    pub(crate) wrench_reference: Reference,
+    pub(crate) bodies: Vec<Body<S>>,
+    pub(crate) frames: Vec<Frame<S>>,
+    pub(crate) joints: Vec<JointInfo>,
+    pub(crate) nq: usize,
+    pub(crate) nv: usize,
 }
 
 /// A body and the joint that carries it.
@@ -130,6 +122,57 @@ impl JointInfo {
 }
 
 impl<S: Scalar> Model<S> {
+    /// The robot's name.
+    #[inline(always)]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Gravity in the world frame, m/s².
+    #[inline(always)]
+    pub fn gravity(&self) -> Vector3<S> {
+        self.gravity
+    }
+
+    /// What the wrenches that functions take refer to.
+    #[inline(always)]
+    pub fn wrench_reference(&self) -> Reference {
+        self.wrench_reference
+    }
+
+    /// Bodies; the first is the base and has no joint of its own.
+    #[inline(always)]
+    pub fn bodies(&self) -> &[Body<S>] {
+        &self.bodies
+    }
+
+    /// A frame for each link of the file and for each of its other frames, in the order of the file,
+    /// or the frames that were chosen.
+    #[inline(always)]
+    pub fn frames(&self) -> &[Frame<S>] {
+        &self.frames
+    }
+
+    /// The joints that are coordinates, in the order of their coordinates. Joints that follow others are not among them.
+    #[inline(always)]
+    pub fn joints(&self) -> &[JointInfo] {
+        &self.joints
+    }
+
+    /// Number of coordinates.
+    #[inline(always)]
+    pub fn nq(&self) -> usize {
+        self.nq
+    }
+
+    /// Number of degrees of freedom.
+    #[inline(always)]
+    pub fn nv(&self) -> usize {
+        self.nv
+    }
+}
+
+impl<S: Scalar> Model<S> {
     /// Indices of the moving bodies, from the base outward.
     #[inline(always)]
     pub fn outward(&self) -> core::ops::Range<usize> {
@@ -206,6 +249,21 @@ impl<S: Scalar> Model<S> {
         Ok(self)
     }
 
+    /// Gives body `i` other mass properties, in its frame.
+    ///
+    /// # Panics
+    /// If there is no such body.
+    pub fn set_inertia(&mut self, i: usize, inertia: SpatialInertia<S>) {
+        self.bodies[i].inertia = inertia;
+    }
+
+    /// The same robot without frames.
+    #[must_use]
+    pub fn without_frames(mut self) -> Self {
+        self.frames.clear();
+        self
+    }
+
     /// The same robot, with wrenches given in another reference.
     #[must_use]
     pub fn with_wrenches_in(mut self, reference: Reference) -> Self {
@@ -221,20 +279,26 @@ impl<S: Scalar> Model<S> {
     }
 }
 
-impl Model<f64> {
-    /// The same model with its constants in another scalar.
-    pub fn cast<T: Scalar>(&self) -> Model<T> {
-        let to = T::from_f64;
+impl<S: Scalar> Model<S> {
+    /// The same model with `f` of each constant, always in the same order.
+    pub fn map<T: Scalar>(&self, f: impl Fn(S) -> T + Copy) -> Model<T> {
         Model {
             name: self.name.clone(),
-            gravity: self.gravity.map(to),
+            gravity: self.gravity.map(f),
             wrench_reference: self.wrench_reference,
-            bodies: self.bodies.iter().map(|b| b.map(to)).collect(),
-            frames: self.frames.iter().map(|f| f.map(to)).collect(),
+            bodies: self.bodies.iter().map(|b| b.map(f)).collect(),
+            frames: self.frames.iter().map(|frame| frame.map(f)).collect(),
             joints: self.joints.clone(),
             nq: self.nq,
             nv: self.nv,
         }
+    }
+}
+
+impl Model<f64> {
+    /// The same model with its constants in another scalar.
+    pub fn cast<T: Scalar>(&self) -> Model<T> {
+        self.map(T::from_f64)
     }
 }
 

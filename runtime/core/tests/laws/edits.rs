@@ -18,7 +18,7 @@ fn without(x: &[f64], (at, n): (usize, usize)) -> Vec<f64> {
 
 /// Some joint of the file that is a coordinate.
 fn some_joint(case: &Case, random: &mut Random) -> Option<JointInfo> {
-    let joints: Vec<&JointInfo> = case.model.joints.iter().filter(|j| j.name != FLOATING_BASE).collect();
+    let joints: Vec<&JointInfo> = case.model.joints().iter().filter(|j| j.name != FLOATING_BASE).collect();
     (!joints.is_empty()).then(|| (*random.choose(&joints)).clone())
 }
 
@@ -31,7 +31,7 @@ fn locked_is_at_rest(case: &Case, random: &mut Random) {
     let mut description = case.description.clone();
     description.lock(&joint.name, &state.q[joint.q.0..joint.q.0 + joint.q.1]).unwrap();
     let locked = Model::new(&description, case.base).unwrap();
-    assert_eq!((locked.nq, locked.nv), (case.model.nq - joint.q.1, case.model.nv - joint.v.1));
+    assert_eq!((locked.nq(), locked.nv()), (case.model.nq() - joint.q.1, case.model.nv() - joint.v.1));
     let q = without(&state.q, joint.q);
     let tau = inverse_dynamics(&locked, &q, &without(&state.v, joint.v), &without(&state.a, joint.v));
     let far = distance(&tau, &without(&case.inverse_dynamics(&state), joint.v), &without(&torque_scale(case, &state), joint.v));
@@ -67,7 +67,7 @@ fn payload_adds_its_own_forces(case: &Case, random: &mut Random) {
     let payload = Payload { link: name, mass: body.mass, center_of_mass: body.origin.xyz, inertia, name: None };
     let payload = loaded.attach(&payload).unwrap();
     let loaded = Case::new("loaded", loaded, case.base);
-    assert_eq!(loaded.model.frames.last().unwrap().name, payload);
+    assert_eq!(loaded.model.frames().last().unwrap().name, payload);
     let bare = only(&case.description, link, body);
     let own = Motions::new(&bare, case.base, case.gravity).inverse_dynamics(&state.q, &state.v, &state.a);
     let expected: Vec<f64> = case.inverse_dynamics(&state).iter().zip(own).map(|(tau, own)| tau + own).collect();
@@ -134,7 +134,7 @@ fn an_appended_robot_is_the_combined_file() {
     arm.append("fore", &read(GRIPPER), "right_", MOUNT).unwrap();
     arm.append("right_palm", &read(GRIPPER), "", Origin::default()).unwrap();
     let model = Model::new(&arm, Base::Floating).unwrap();
-    let names: Vec<&str> = model.joints.iter().map(|j| j.name.as_str()).collect();
+    let names: Vec<&str> = model.joints().iter().map(|j| j.name.as_str()).collect();
     assert_eq!(names, [FLOATING_BASE, "elbow", "left_close", "right_close", "close"]);
 }
 
@@ -220,7 +220,7 @@ fn who_follows_a_locked_joint_through_another_stops_where_they_put_it() {
     let free = Model::new(&robot, Base::Fixed).unwrap();
     robot.lock("a", &[0.5]).unwrap();
     let locked = Model::new(&robot, Base::Fixed).unwrap();
-    assert_eq!((free.nq, locked.nq), (1, 0));
+    assert_eq!((free.nq(), locked.nq()), (1, 0));
     let (found, expected) = (placements(&locked, &[]), placements(&free, &[0.5]));
     assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-15), "{found:?} {expected:?}");
     // The hand is turned by a + b + c = 0.5 + 1.3 + 4.6.
@@ -268,7 +268,7 @@ fn a_locked_spherical_joint_takes_four_coordinates_and_three_rates_away() {
     let whole = Case::new("whole", robot.clone(), Base::Floating);
     robot.lock("elbow", &[0.5, 0.5, -0.5, 0.5]).unwrap();
     let locked = Case::new("locked", robot, Base::Floating);
-    assert_eq!((whole.model.nq - locked.model.nq, whole.model.nv - locked.model.nv), (4, 3));
+    assert_eq!((whole.model.nq() - locked.model.nq(), whole.model.nv() - locked.model.nv()), (4, 3));
     let State { q, .. } = locked.state(&mut Random::new(1));
     let turned: Vec<f64> = [&q[..], &[0.5, 0.5, -0.5, 0.5]].concat();
     assert_eq!(placements(&locked.model, &q), placements(&whole.model, &turned));

@@ -44,7 +44,7 @@ fn forward_and_inverse_dynamics_are_each_others() {
         let (model, State { q, v, a, .. }) = subject(case, random, not_a_motor);
         let tau = call(&model, "inverse_dynamics", &[&q, &v, &a]);
         for way in dynamics::function::<f64>("forward_dynamics").expect("in the table").ways {
-            let mut out = vec![0.0; model.nv];
+            let mut out = vec![0.0; model.nv()];
             let row = dynamics::function::<f64>("forward_dynamics").expect("in the table");
             row.call_by(way, &model, &mut Workspace::new(&model), &[&q, &v, &tau], &mut out).expect("lengths");
             assert_near(&out, &a, 1e-8, way.name);
@@ -58,7 +58,7 @@ fn inverse_dynamics_is_m_a_and_bias_forces_and_followers_too() {
         let (model, State { q, v, a, .. }) = subject(case, random, not_a_motor);
         let (tau, bias) = (call(&model, "inverse_dynamics", &[&q, &v, &a]), call(&model, "bias_forces", &[&q, &v]));
         let matrix = call(&model, "mass_matrix", &[&q]);
-        let n = model.nv;
+        let n = model.nv();
         let expected: Vec<f64> = (0..n).map(|i| bias[i] + (0..n).map(|j| matrix[i * n + j] * a[j]).sum::<f64>()).collect();
         assert_near(&tau, &expected, 1e-12, &case.name);
     });
@@ -110,7 +110,7 @@ fn effect_forces_are_what_inverse_dynamics_needs_less() {
 
 /// Columns of a function's derivative by duals: of each argument in its tangent space.
 fn by_duals(model: &Model<f64>, name: &str, state: [&[f64]; 3]) -> Vec<f64> {
-    let (moving, n): (Model<Dual<f64>>, usize) = (model.cast(), model.nv);
+    let (moving, n): (Model<Dual<f64>>, usize) = (model.cast(), model.nv());
     let mut out = vec![0.0; 3 * n * n];
     for block in 0..3 {
         for k in 0..n {
@@ -141,7 +141,7 @@ fn derivatives_are_those_of_duals() {
         let (model, State { q, v, a, .. }) = subject(case, random, |_| true);
         let found = call(&model, "inverse_dynamics_derivatives", &[&q, &v, &a]);
         assert_near(&found, &by_duals(&model, "inverse_dynamics", [&q, &v, &a]), 1e-11, &case.name);
-        let (wrenches, zero) = (vec![0.0; 6 * model.frames.len()], vec![0.0; model.nv]);
+        let (wrenches, zero) = (vec![0.0; 6 * model.frames().len()], vec![0.0; model.nv()]);
         let at_rest = by_duals(&model, "inverse_dynamics", [&q, &zero, &zero]);
         let found = call(&model, "static_torque_derivative", &[&q, &wrenches]);
         assert_near(&found, &at_rest[..found.len()], 1e-11, &format!("{} at rest", case.name));
@@ -178,15 +178,16 @@ fn what_is_left_out_does_nothing_and_what_stays_does_something() {
             if field.range.strictly || place { full.clone() } else { some }
         });
         for parameters in each.chain([full.clone(), vec![0.0; full.len()]]).filter(|p| row.id != EffectId::motor || p[0] > 0.0) {
-            let mut model = arm.clone();
-            let body = &mut model.bodies[3].effects;
-            match row.on {
-                On::Joint => body.joint.push(JointEffect { effect: row.id, freedom: 0, parameters: parameters.clone() }),
-                On::Link => {
-                    let (link, placement) = (String::new(), Placement::identity());
-                    body.body.push(BodyEffect { effect: row.id, link, placement, parameters: parameters.clone() });
+            let model = arm.clone().changed(|parts| {
+                let body = &mut parts.bodies[3].effects;
+                match row.on {
+                    On::Joint => body.joint.push(JointEffect { effect: row.id, freedom: 0, parameters: parameters.clone() }),
+                    On::Link => {
+                        let (link, placement) = (String::new(), Placement::identity());
+                        body.body.push(BodyEffect { effect: row.id, link, placement, parameters: parameters.clone() });
+                    }
                 }
-            }
+            });
             let with = accelerations(&model);
             // A law divided by what is zero, friction at the speed 0, is none to ask.
             let same = with == plain || with.iter().any(|x| x.is_nan());
@@ -214,7 +215,7 @@ fn effects_that_cannot_be_had_are_refused() {
     let arm = Case::bundled(articulated_models::robot("ur5_like").expect("a bundled robot")).model;
     let joint =
         |effect, on: &str, parameters: &[f64]| Applied { effect, on: on.into(), at: Default::default(), parameters: parameters.to_vec() };
-    let first = arm.joints[0].name.clone();
+    let first = arm.joints()[0].name.clone();
     let wrong = [
         joint(EffectId::damping, "elbo_joint", &[1.0]),
         joint(EffectId::damping, &first, &[-1.0]),
@@ -223,9 +224,9 @@ fn effects_that_cannot_be_had_are_refused() {
         joint(EffectId::limit, &first, &[1.0, 1.0, 10.0, 0.0]),
         joint(EffectId::motor, &first, &[1.0, 1.0, 1.0, 1.5, 1e-3]),
         joint(EffectId::drag, "no such link at all", &[1.0]),
-        joint(EffectId::drag, &arm.frames[0].name, &[1.0]),
-        joint(EffectId::contact, &arm.frames[3].name, &[0.1, 1e4, 0.0, 0.5, 0.01, 0.0, 0.0, 0.0, 0.0]),
-        joint(EffectId::added_mass, &arm.frames[3].name, &[[1.0, 2.0, 0.0, 1.0, 0.0, 1.0].as_slice(), &[0.0; 15]].concat()),
+        joint(EffectId::drag, &arm.frames()[0].name, &[1.0]),
+        joint(EffectId::contact, &arm.frames()[3].name, &[0.1, 1e4, 0.0, 0.5, 0.01, 0.0, 0.0, 0.0, 0.0]),
+        joint(EffectId::added_mass, &arm.frames()[3].name, &[[1.0, 2.0, 0.0, 1.0, 0.0, 1.0].as_slice(), &[0.0; 15]].concat()),
     ];
     let errors = arm.clone().with_effects(&wrong).expect_err("all of them are wrong");
     let found: Vec<String> = errors.iter().map(ToString::to_string).collect();
@@ -252,7 +253,7 @@ fn effects_that_cannot_be_had_are_refused() {
 #[test]
 fn effects_that_are_half_right_are_refused_too() {
     let arm = Case::bundled(articulated_models::robot("ur5_like").expect("a bundled robot")).model;
-    let (joint, link) = (arm.joints[0].name.clone(), arm.frames[3].name.clone());
+    let (joint, link) = (arm.joints()[0].name.clone(), arm.frames()[3].name.clone());
     let on = |effect: EffectId, parameters: &[f64]| {
         let on = if effect.row().on == articulated_core::effect::On::Joint { &joint } else { &link };
         Applied { effect, on: on.clone(), at: Default::default(), parameters: parameters.to_vec() }
@@ -276,7 +277,7 @@ fn effects_that_are_half_right_are_refused_too() {
     assert!(arm.clone().with_effects(&[on(EffectId::added_mass, &coupled(2.4))]).is_ok());
     // A motor drives a joint that others follow.
     let gripper = Case::bundled(articulated_models::robot("gripper_arm").expect("a bundled robot")).model;
-    let follower = gripper.bodies.iter().find(|body| body.coordinates.mimic.is_some()).expect("one that follows").name.clone();
+    let follower = gripper.bodies().iter().find(|body| body.coordinates.mimic.is_some()).expect("one that follows").name.clone();
     let motor = Applied { on: follower, ..on(EffectId::motor, &[5.0, 2.0, 1.0, 1.0, 1e-3]) };
     let refused = gripper.with_effects(&[motor]).expect_err("a motor on one that follows")[0].to_string();
     assert!(refused.contains("the joint follows another"), "{refused}");
@@ -295,12 +296,12 @@ fn effects_that_are_half_right_are_refused_too() {
     assert!(told(Applied { on: "elbo_joint".into(), ..nothing.clone() }).contains("no joint of this name"));
     let count = |applied: &[Applied]| {
         let with = arm.clone().with_effects(applied).expect("effects that can be had");
-        with.bodies.iter().map(|b| b.effects.joint.len() + b.effects.body.len()).sum::<usize>()
+        with.bodies().iter().map(|b| b.effects.joint.len() + b.effects.body.len()).sum::<usize>()
     };
     assert_eq!(count(&[nothing, on(EffectId::drag, &[0.0]), on(EffectId::buoyancy, &[0.0, 1000.0])]), 0);
     assert_eq!(count(&[on(EffectId::armature, &[1.0, -3.0]), on(EffectId::drag, &[0.1])]), 2);
     let quadruped = Case::bundled(articulated_models::robot("quadruped").expect("a bundled robot")).model;
-    let base = Applied { on: quadruped.joints[0].name.clone(), ..on(EffectId::damping, &[1.0]) };
+    let base = Applied { on: quadruped.joints()[0].name.clone(), ..on(EffectId::damping, &[1.0]) };
     let refused = quadruped.with_effects(&[base]).expect_err("damping on the base")[0].to_string();
     assert!(refused.contains("the floating base is no joint of the robot"), "{refused}");
 }

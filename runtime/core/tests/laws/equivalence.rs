@@ -1,7 +1,7 @@
 //! Different descriptions of the same physics.
 
-use articulated_core::algorithm::FunctionId;
-use articulated_core::description::{Base, Description, Inertial, Joint, Link};
+use articulated_core::algorithm::{FunctionId, Needs, functions};
+use articulated_core::description::{Base, Description, Frame, Inertial, Joint, JointKind, Link, Origin, Rotation};
 use articulated_core::dynamics::Dynamics;
 use articulated_core::spatial::from_quaternion;
 use articulated_test_support::case::{Case, State, for_each_tree, inverse_dynamics};
@@ -59,7 +59,7 @@ fn links_on_fixed_joints_are_one_body() {
         let lump = Case::new("", lumped(&case.description), case.base);
         let order = permutation(&case.model, &lump.model);
         let moved = |x: &[f64], of: fn(&articulated_core::model::JointInfo) -> (usize, usize)| {
-            order.iter().flat_map(|&(from, _)| x[of(&case.model.joints[from]).0..][..of(&case.model.joints[from]).1].to_vec()).collect()
+            order.iter().flat_map(|&(from, _)| x[of(&case.model.joints()[from]).0..][..of(&case.model.joints()[from]).1].to_vec()).collect()
         };
         let (q, v, a): (Vec<f64>, Vec<f64>, Vec<f64>) = (moved(&state.q, |j| j.q), moved(&state.v, |j| j.v), moved(&state.a, |j| j.v));
         let expected: Vec<f64> = moved(&case.inverse_dynamics(&state), |j| j.v);
@@ -72,8 +72,8 @@ fn links_on_fixed_joints_are_one_body() {
 
 /// Lumping may change the order in which the file's joints are met: where each joint of `new` is in `old`.
 fn permutation(old: &articulated_core::model::Model, new: &articulated_core::model::Model) -> Vec<(usize, usize)> {
-    let place = |name: &str| old.joints.iter().position(|j| j.name == name).unwrap();
-    new.joints.iter().enumerate().map(|(k, j)| (place(&j.name), k)).collect()
+    let place = |name: &str| old.joints().iter().position(|j| j.name == name).unwrap();
+    new.joints().iter().enumerate().map(|(k, j)| (place(&j.name), k)).collect()
 }
 
 #[test]
@@ -99,7 +99,7 @@ fn a_reversed_axis_reverses_coordinate_rate_and_torque() {
         let mut reversed = case.description.clone();
         reversed.joints.iter_mut().for_each(|j| j.axis = j.axis.map(|x| 0.0 - x));
         let single =
-            |k: usize, of: fn(&articulated_core::model::JointInfo) -> (usize, usize)| case.model.joints.iter().any(|j| of(j) == (k, 1));
+            |k: usize, of: fn(&articulated_core::model::JointInfo) -> (usize, usize)| case.model.joints().iter().any(|j| of(j) == (k, 1));
         let flip = |x: &[f64], of| x.iter().enumerate().map(|(k, x)| if single(k, of) { -x } else { *x }).collect::<Vec<f64>>();
         let other = State::new(flip(&state.q, |j| j.q), flip(&state.v, |j| j.v), flip(&state.a, |j| j.v));
         let found = Case::new("", reversed, case.base).inverse_dynamics(&other);
@@ -167,7 +167,7 @@ fn opposite_quaternions_are_the_same_pose() {
     for_each_tree(20, Flavour::ANY, |case, random| {
         let state = case.state(random);
         let mut other = state.clone();
-        for joint in case.model.joints.iter().filter(|j| j.q.1 == 7) {
+        for joint in case.model.joints().iter().filter(|j| j.q.1 == 7) {
             other.q[joint.q.0 + 3..joint.q.0 + 7].iter_mut().for_each(|x| *x = -*x);
         }
         assert_eq!(case.inverse_dynamics(&other), case.inverse_dynamics(&state));
@@ -188,6 +188,69 @@ fn half_turns_of_a_floating_base_are_as_good_as_any() {
             assert!(far <= FEW, "quaternion {axis}: {far} units of roundoff");
         }
     });
+}
+
+/// The same tree with each universal joint as two joints in sequence on one body, rotations in
+/// another form, and a frame that is no link in place of the last link.
+fn in_sequence(tree: &Description) -> Description {
+    let mut out = tree.clone();
+    for k in 0..tree.joints.len() {
+        let joint = &mut out.joints[k];
+        let matrix = joint.origin.rotation.matrix::<f64>();
+        joint.origin.rotation = Rotation::Matrix([0, 1, 2].map(|i| [0, 1, 2].map(|j| matrix[(i, j)])));
+        if joint.kind != JointKind::Universal {
+            continue;
+        }
+        let first = Joint { name: format!("{}_1", joint.name), kind: JointKind::Continuous, child: out.links.len(), ..joint.clone() };
+        let second = Joint {
+            name: format!("{}_2", joint.name),
+            parent: out.links.len(),
+            origin: Origin::default(),
+            axis: joint.second_axis,
+            locked: joint.locked.as_ref().map(|at| vec![at[1]]),
+            kind: JointKind::Continuous,
+            ..joint.clone()
+        };
+        out.links.push(Link { name: first.name.clone(), intermediate: true, ..Link::default() });
+        out.joints[k] = Joint { locked: first.locked.as_ref().map(|at| vec![at[0]]), ..first };
+        out.joints.push(second);
+    }
+    out
+}
+
+/// Joints in sequence on a body are one joint of several degrees of freedom, for every function.
+#[test]
+fn a_universal_joint_is_two_joints_in_sequence() {
+    let split = std::cell::Cell::new(0);
+    for_each_tree(60, Flavour { mimic: false, ..Flavour::ANY }, |case, random| {
+        let state = case.state(random);
+        let mut tree = case.description.clone();
+        let mut sequence = in_sequence(&tree);
+        split.set(split.get() + sequence.joints.len() - tree.joints.len());
+        // A link without mass behind a fixed joint is the same as a frame.
+        let (link, origin) = (tree.links.len() - 1, Origin::new([0.1, -0.2, 0.3], [0.4, 1.2, -0.7]));
+        let (name, child) = (String::from("site"), tree.links.len());
+        tree.joints.push(Joint { name: name.clone(), parent: link, child, origin, ..Joint::default() });
+        tree.links.push(Link { name: name.clone(), ..Link::default() });
+        sequence.frames.push(Frame { name, link, origin });
+        let [one, other] = [tree, sequence].map(|tree| Case::new("", tree, case.base));
+        let names = |case: &Case| case.model.frames().iter().map(|frame| frame.name.clone()).collect::<Vec<_>>();
+        assert_eq!(names(&one), names(&other));
+        let wrenches = vec![0.3; 6 * one.model.frames().len()];
+        let state = State { wrenches, ..state };
+        let massless = !one.model.massless_joints().is_empty();
+        for row in functions::<f64>().iter().filter(|row| row.needs == Needs::Nothing || row.needs == Needs::MassMatrix && !massless) {
+            let given: Vec<&[f64]> = row.takes.iter().map(|argument| state.argument(*argument)).collect();
+            let (expected, found) = (one.call::<f64>(row.name, &given), other.call::<f64>(row.name, &given));
+            let book = other.textbook::<f64>().call(row.name, &given).unwrap().unwrap();
+            let largest = expected.iter().fold(1.0, |most: f64, x| most.max(x.abs()));
+            for (k, x) in expected.iter().enumerate() {
+                let near = |y: f64| (x - y).abs() <= 1e-9 * largest || x.is_nan() && y.is_nan();
+                assert!(near(found[k]) && near(book[k]), "{} [{k}]: {x} {} {}", row.name, found[k], book[k]);
+            }
+        }
+    });
+    assert!(split.get() > 5, "only {}", split.get());
 }
 
 /// One free body obeys Newton and Euler about its centre of mass.

@@ -21,7 +21,7 @@ fn quaternion_of(joint: &JointInfo) -> Option<(usize, usize)> {
 }
 
 fn quaternions(model: &Model<f64>) -> impl Iterator<Item = (usize, usize)> {
-    model.joints.iter().filter_map(quaternion_of)
+    model.joints().iter().filter_map(quaternion_of)
 }
 
 fn read<S: Scalar>(q: &[S], at: usize) -> Quaternion<S> {
@@ -51,7 +51,7 @@ fn largest(a: &[f64], b: &[f64]) -> f64 {
 
 /// What errors of translations grow with: 1 m and the longest way from one configuration to the other.
 fn reach(model: &Model<f64>, q: &[f64], target: &[f64]) -> f64 {
-    let floating = model.joints.iter().filter(|j| j.kind == JointKind::Floating).map(|j| j.q.0);
+    let floating = model.joints().iter().filter(|j| j.kind == JointKind::Floating).map(|j| j.q.0);
     1.0 + floating.map(|at| (at..at + 3).map(|k| (target[k] - q[k]).powi(2)).sum::<f64>().sqrt()).fold(0.0, f64::max)
 }
 
@@ -117,7 +117,7 @@ fn a_step_along_time_is_a_motion_with_constant_rates() {
         for time in [0.0, 1e-12, 0.7] {
             let step: Vec<Dual<f64>> = state.v.iter().map(|v| Dual::new(v * time, *v)).collect();
             let moving = case.call("integrate", &[&cast(&state.q), &step]);
-            for joint in &case.model.joints {
+            for joint in case.model.joints() {
                 let Some((at, v)) = quaternion_of(joint) else {
                     (0..joint.q.1).for_each(|k| assert_eq!(moving[joint.q.0 + k].slope, state.v[joint.v.0 + k]));
                     continue;
@@ -194,15 +194,20 @@ fn derivatives_of_steps_and_differences_in_double_precision_are_those_in_many_di
     });
 }
 
+/// Gives the prismatic joint other limits, and returns the index of its coordinate.
+fn limit_rail(case: &mut Case, limit: Limit) -> usize {
+    let rail = case.model.joints().iter().position(|j| j.kind == JointKind::Prismatic).unwrap();
+    case.model = case.model.clone().changed(|parts| parts.joints[rail].limit = Some(limit));
+    case.model.joints()[rail].q.0
+}
+
 /// A turn or two metres from the bound that there is.
 #[test]
 fn a_limit_that_is_open_on_one_side_is_kept_on_the_other() {
     let mut case = Case::bundled(articulated_models::robot("cart_pole").unwrap());
     for (lower, upper, expected) in [(0.5, f64::INFINITY, [0.5, 2.5]), (f64::NEG_INFINITY, -0.5, [-2.5, -0.5])] {
-        let rail = case.model.joints.iter_mut().find(|j| j.kind == JointKind::Prismatic).unwrap();
-        rail.limit = Some(Limit { lower, upper, effort: 1.0, velocity: 1.0 });
-        let at = rail.q.0;
-        let drawn = |u: f64| case.call("random_configuration", &[&vec![u; case.model.nq]])[at];
+        let at = limit_rail(&mut case, Limit { lower, upper, effort: 1.0, velocity: 1.0 });
+        let drawn = |u: f64| case.call("random_configuration", &[&vec![u; case.model.nq()]])[at];
         assert_eq!(drawn(0.0), expected[0]);
         assert!((drawn(1.0 - U) - expected[1]).abs() <= 4.0 * U);
     }
@@ -229,10 +234,10 @@ fn the_textbook_draws_within_the_same_limits() {
     let open = f64::INFINITY;
     for (lower, upper) in [(-1.0, open), (-open, 1.0), (-open, open), (1.0, -1.0), (-1.0, 2.0)] {
         let limit = Some(Limit { lower, upper, effort: 1.0, velocity: 1.0 });
-        case.model.joints.iter_mut().for_each(|j| j.limit = limit);
+        case.model = case.model.clone().changed(|parts| parts.joints.iter_mut().for_each(|j| j.limit = limit));
         case.description.joints.iter_mut().for_each(|j| j.limit = limit);
         case.description.joints.iter_mut().filter(|j| j.kind == JointKind::Continuous).for_each(|j| j.kind = JointKind::Revolute);
-        let uniform = vec![0.25; case.model.nq];
+        let uniform = vec![0.25; case.model.nq()];
         let (found, expected) =
             (case.call::<f64>("random_configuration", &[&uniform]), case.textbook::<f64>().random_configuration(&uniform));
         assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-15 * 8.0), "{lower} {upper}: {found:?} {expected:?}");
@@ -243,11 +248,9 @@ fn the_textbook_draws_within_the_same_limits() {
 #[test]
 fn limits_as_wide_as_numbers_are_kept() {
     let mut case = Case::bundled(articulated_models::robot("cart_pole").unwrap());
-    let rail = case.model.joints.iter_mut().find(|j| j.kind == JointKind::Prismatic).unwrap();
-    rail.limit = Some(Limit { lower: -1e308, upper: 1.7e308, effort: 1.0, velocity: 1.0 });
-    let at = rail.q.0;
+    let at = limit_rail(&mut case, Limit { lower: -1e308, upper: 1.7e308, effort: 1.0, velocity: 1.0 });
     for (u, expected) in [(0.0, -1e308), (0.5, 0.35e308), (0.25, -0.325e308)] {
-        let drawn = case.call("random_configuration", &[&vec![u; case.model.nq]])[at];
+        let drawn = case.call("random_configuration", &[&vec![u; case.model.nq()]])[at];
         assert!((drawn / expected - 1.0).abs() < 1e-15, "{u}: {drawn:e}");
     }
 }
@@ -261,17 +264,17 @@ fn a_continuous_joint_has_no_limits() {
     let mut robot = articulated_test_support::case::read(text);
     robot.joints[0].limit = Some(Limit { lower: -0.1, upper: 0.2, effort: 1.0, velocity: 1.0 });
     let model = Model::new(&robot, articulated_core::description::Base::Fixed).unwrap();
-    assert_eq!(model.joints[0].limit, None);
+    assert_eq!(model.joints()[0].limit, None);
 }
 
 #[test]
 fn random_configurations_keep_to_the_limits_and_are_rotations() {
     let greatest = 1.0 - U;
     for_each(|case, random| {
-        let n = case.model.nq;
+        let n = case.model.nq();
         for uniform in [vec![0.0; n], vec![greatest; n], vec![0.5; n], random.vector(n, 0.0, 1.0)] {
             let q = case.call("random_configuration", &[&uniform]);
-            for joint in &case.model.joints {
+            for joint in case.model.joints() {
                 let own = &q[joint.q.0..joint.q.0 + joint.q.1];
                 match (joint.kind, joint.limit) {
                     (JointKind::Floating, _) => assert!(own[..3].iter().all(|x| x.abs() <= 1.0)),
@@ -298,7 +301,7 @@ fn random_rotations_are_uniform() {
     let random = &mut Random::new(3);
     let (count, mut small, mut sum, mut squares) = (20_000, 0.0, [0.0; 4], [0.0; 4]);
     for _ in 0..count {
-        let q = case.call("random_configuration", &[&random.vector(case.model.nq, 0.0, 1.0)]);
+        let q = case.call("random_configuration", &[&random.vector(case.model.nq(), 0.0, 1.0)]);
         let q: [f64; 4] = read(&q, at).to_array();
         small += f64::from(u8::from(2.0 * q[3].abs().acos() < FRAC_PI_2)) / f64::from(count);
         for k in 0..4 {
@@ -315,10 +318,10 @@ fn random_rotations_are_uniform() {
 #[test]
 fn the_neutral_configuration_turns_nothing() {
     for_each(|case, _| {
-        let mut q = vec![f64::NAN; case.model.nq];
+        let mut q = vec![f64::NAN; case.model.nq()];
         neutral(&case.model, &mut q);
         assert_eq!(q.iter().sum::<f64>(), quaternions(&case.model).count() as f64);
         assert!(quaternions(&case.model).all(|(at, _)| q[at + 3] == 1.0));
-        assert_eq!(case.call("difference", &[&q, &q]), vec![0.0; case.model.nv]);
+        assert_eq!(case.call("difference", &[&q, &q]), vec![0.0; case.model.nv()]);
     });
 }

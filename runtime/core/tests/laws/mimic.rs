@@ -22,7 +22,7 @@ fn leader(tree: &Description, joint: usize) -> (usize, f64, f64) {
 
 /// For each joint of the free tree: its joint in the reduced one, multiplier and offset.
 fn rows(reduced: &Case, free: &Case) -> Vec<(JointInfo, JointInfo, f64, f64)> {
-    let find = |case: &Case, name: &str| case.model.joints.iter().find(|j| j.name == name).unwrap().clone();
+    let find = |case: &Case, name: &str| case.model.joints().iter().find(|j| j.name == name).unwrap().clone();
     let row = |joint: &JointInfo| {
         let Some(index) = reduced.description.joint(&joint.name) else {
             return (joint.clone(), find(reduced, &joint.name), 1.0, 0.0);
@@ -30,7 +30,7 @@ fn rows(reduced: &Case, free: &Case) -> Vec<(JointInfo, JointInfo, f64, f64)> {
         let (end, multiplier, offset) = leader(&reduced.description, index);
         (joint.clone(), find(reduced, &reduced.description.joints[end].name), multiplier, offset)
     };
-    free.model.joints.iter().map(row).collect()
+    free.model.joints().iter().map(row).collect()
 }
 
 #[test]
@@ -52,7 +52,7 @@ fn torque_on_a_leader_is_that_of_equal_power() {
         }
         // τ = Gᵀ τ_full
         let full = inverse_dynamics(&free.model, &q, &v, &a);
-        let mut expected = vec![0.0; case.model.nv];
+        let mut expected = vec![0.0; case.model.nv()];
         for (own, lead, m, _) in &rows {
             (0..own.v.1).for_each(|k| expected[lead.v.0 + k] += m * full[own.v.0 + k]);
         }
@@ -72,7 +72,7 @@ fn a_follower_that_turns_back_keeps_the_tip_level() {
         .urdf
         .replace("<child link=\"lower_rod\"/>", "<child link=\"lower_rod\"/><mimic joint=\"shoulder\" multiplier=\"-1\" offset=\"0\"/>");
     let case = Case::new("parallel", articulated_test_support::case::read(&urdf), robot.base);
-    assert_eq!(case.model.nv, 1);
+    assert_eq!(case.model.nv(), 1);
     let state = State::new(vec![0.7], vec![1.1], vec![-0.4]);
     // The lower rod swings on a circle without turning: τ = (I1 + m1 l1²/4 + m2 l1²) a + (m1 l1/2 + m2 l1) g sin q
     let expected = (0.083_433_333_333_3 + 0.25 + 0.5) * -0.4 + 9.81 * (0.5 + 0.5) * 0.7_f64.sin();

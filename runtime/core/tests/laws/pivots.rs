@@ -19,7 +19,7 @@ fn hinge(name: &str, parent: usize, child: usize, x: f64) -> Joint {
 fn smallest(links: Vec<Link>, joints: Vec<Joint>) -> f64 {
     let description = Description { name: "robot".into(), links, joints, frames: Vec::new() };
     let model: Model<f64> = Model::new(&description, Base::Fixed).expect("a tree");
-    let zero = vec![0.0; model.nv];
+    let zero = vec![0.0; model.nv()];
     checked_forward_dynamics(&model, &mut Workspace::new(&model), &zero, &zero, &zero, &mut zero.clone()).expect("regular")
 }
 

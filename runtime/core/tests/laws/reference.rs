@@ -88,7 +88,7 @@ fn the_textbook_in_double_precision_is_the_textbook_in_many_digits() {
 fn virtual_power_holds(case: &Case, random: &mut Random) {
     let state = case.state(random);
     let motions = case.motions();
-    assert_eq!(motions.size, (case.model.nq, case.model.nv));
+    assert_eq!(motions.size, (case.model.nq(), case.model.nv()));
     let scale = torque_scale(case, &state);
     let expected = motions.inverse_dynamics(&state.q, &state.v, &state.a);
     let far = distance(&case.inverse_dynamics(&state), &expected, &scale);
@@ -128,7 +128,7 @@ fn textbook_and_virtual_power_agree_to_sixty_digits() {
 
 /// A double's quaternion has a norm of one to 16 digits only, and the two forms differ in what they make of the rest.
 fn normalise(case: &Case, q: &mut [Big]) {
-    for joint in case.model.joints.iter().filter(|j| matches!(j.q.1, 4 | 7)) {
+    for joint in case.model.joints().iter().filter(|j| matches!(j.q.1, 4 | 7)) {
         let end = joint.q.0 + joint.q.1;
         let x = &mut q[end - 4..end];
         let square = x.iter().fold(Big::from_f64(0.0), |s, c| s + *c * *c);

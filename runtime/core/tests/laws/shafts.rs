@@ -36,9 +36,9 @@ fn bending(along: [f64; 3], head: f64, shaft: &Shaft) -> (Model<f64>, f64) {
 
 /// Where the head is, m.
 fn head(model: &Model<f64>, q: &[f64]) -> [f64; 3] {
-    let frame = model.frames.iter().position(|f| f.name == "head").unwrap();
+    let frame = model.frames().iter().position(|f| f.name == "head").unwrap();
     let all = placements(model, q);
-    let per = all.len() / model.frames.len();
+    let per = all.len() / model.frames().len();
     let one = &all[frame * per..(frame + 1) * per];
     // Rotation by rows, then the position.
     [one[per - 3], one[per - 2], one[per - 1]]
@@ -65,14 +65,14 @@ fn the_end_gives_way_as_that_of_a_beam_but_for_a_quarter_of_n_squared() {
         let step = 1e-6;
         let slope = |i: usize| {
             let at = |x: f64| {
-                let mut q = vec![0.0; model.nq];
+                let mut q = vec![0.0; model.nq()];
                 q[i] = x;
                 head(&model, &q)
             };
             let (a, b) = (at(step), at(-step));
             [0, 1].map(|axis| (a[axis] - b[axis]) / (2.0 * step))
         };
-        let slopes: Vec<[f64; 2]> = (0..model.nq).map(slope).collect();
+        let slopes: Vec<[f64; 2]> = (0..model.nq()).map(slope).collect();
         for axis in [0, 1] {
             // q = Jᵀ f / k, δ = J q
             let deflection: f64 = slopes.iter().map(|s| s[axis] * s[axis] / k).sum();
@@ -89,7 +89,7 @@ fn the_lowest_frequency_becomes_that_of_a_beam() {
     let beam = 1.875_104_068_711_961f64.powi(2) * (STIFFNESS / (mass * LENGTH.powi(3))).sqrt();
     let error = |n: usize| {
         let (model, k) = bending([0.0, 0.48 * 2.0, -0.36 * 2.0], 0.0, &shaft(n, mass));
-        let m = mass_matrix(&model, &vec![0.0; model.nq]);
+        let m = mass_matrix(&model, &vec![0.0; model.nq()]);
         let largest = m.symmetric_eigenvalues().max();
         (k / largest).sqrt() / beam - 1.0
     };

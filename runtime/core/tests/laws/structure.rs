@@ -60,7 +60,7 @@ fn mass_matrix_is_symmetric_and_positive_definite() {
 }
 
 fn composite_bodies(case: &Case, random: &mut Random) {
-    let (state, n) = (case.state(random), case.model.nv);
+    let (state, n) = (case.state(random), case.model.nv());
     let found = case.call::<f64>("mass_matrix", &[&state.q]);
     let columns = mass_matrix(&case.model, &state.q);
     let expected: Vec<f64> = (0..n * n).map(|k| columns[(k / n, k % n)]).collect();
@@ -111,10 +111,10 @@ fn joints_that_move_no_mass_are_found() {
         let left = smallest_scaled_eigenvalue(&m);
         assert!(found.is_empty() || left <= 1e-12, "joints {found:?} do move mass: {left:e}");
         assert!(!found.is_empty() || left > 1e-12, "M is singular, {left:e}, and no joint is found");
-        for k in 0..case.model.nv {
-            let alone = case.model.joints.iter().find(|j| j.v == (k, 1));
+        for k in 0..case.model.nv() {
+            let alone = case.model.joints().iter().find(|j| j.v == (k, 1));
             if let Some(joint) = alone.filter(|_| m.row(k).amax() == 0.0) {
-                let names: Vec<&str> = found.iter().map(|&b| case.model.bodies[b].name.as_str()).collect();
+                let names: Vec<&str> = found.iter().map(|&b| case.model.bodies()[b].name.as_str()).collect();
                 assert!(names.contains(&joint.name.as_str()), "{} moves nothing and is not among {names:?}", joint.name);
             }
         }
@@ -199,17 +199,17 @@ fn a_rod_in_a_ball_joint_can_turn_about_itself() {
 #[test]
 fn joints_are_ordered_depth_first_as_the_file_lists_them() {
     for_each_tree(100, Flavour::ANY, |case, _| {
-        let names: Vec<&str> = case.model.joints.iter().map(|j| j.name.as_str()).collect();
+        let names: Vec<&str> = case.model.joints().iter().map(|j| j.name.as_str()).collect();
         let floating = usize::from(case.base == Base::Floating);
         assert_eq!(names[floating..], case.motions().joint_names());
         let (mut q, mut v) = (0, 0);
-        for joint in &case.model.joints {
+        for joint in case.model.joints() {
             assert_eq!((joint.q.0, joint.v.0), (q, v), "{}", joint.name);
             (q, v) = (q + joint.q.1, v + joint.v.1);
         }
-        assert_eq!((q, v), (case.model.nq, case.model.nv));
+        assert_eq!((q, v), (case.model.nq(), case.model.nv()));
         let links: Vec<&str> = case.description.links.iter().map(|l| l.name.as_str()).collect();
-        let frames: Vec<&str> = case.model.frames.iter().map(|f| f.name.as_str()).collect();
+        let frames: Vec<&str> = case.model.frames().iter().map(|f| f.name.as_str()).collect();
         assert_eq!(frames, links);
     });
 }

@@ -32,7 +32,7 @@ fn difference(found: &[Big], expected: &[Big]) -> f64 {
 /// Each function that the model has, with its arguments.
 fn each(case: &Case, model: &Model<Big>, state: &State, mut visit: impl FnMut(&'static Function<Big>, &[&[Big]])) {
     let arguments: Vec<(Argument, Vec<Big>)> = Argument::ALL.iter().map(|&a| (a, cast(state.argument(a)))).collect();
-    let bound = case.model.frames.iter().any(|f| case.model.freedoms_of(f.body).len() < 6);
+    let bound = case.model.frames().iter().any(|f| case.model.freedoms_of(f.body).len() < 6);
     let has = |f: &Function<Big>| match f.needs {
         Needs::FreeFrames => !bound,
         Needs::Mass => case.model.moving_mass() > 0.0,
@@ -43,7 +43,7 @@ fn each(case: &Case, model: &Model<Big>, state: &State, mut visit: impl FnMut(&'
         let given: Vec<&[Big]> = row.takes.iter().filter_map(given).collect();
         visit(row, &given);
     }
-    assert_eq!(model.nv, case.model.nv);
+    assert_eq!(model.nv(), case.model.nv());
 }
 
 fn run(row: &Function<Big>, way: usize, model: &Model<Big>, given: &[&[Big]]) -> Vec<Big> {
@@ -84,7 +84,7 @@ fn operational_space_inertia_of_a_free_robot_is_the_textbooks() {
     let case = Case::bundled(robot);
     let state = case.state(&mut articulated_test_support::random::Random::new(5));
     Big::scope(|| {
-        let tip = [&case.model.frames.last().expect("it has links").name];
+        let tip = [&case.model.frames().last().expect("it has links").name];
         let (model, book) =
             (case.model.clone().with_frames(&tip).expect("its own"), case.textbook::<Big>().with_frames(&tip).expect("its own"));
         let (model, q) = (model.cast::<Big>(), cast::<Big>(&state.q));

@@ -57,7 +57,7 @@ fn round(state: &mut State) {
 /// Changes the coordinates of joints that have one each.
 fn angles(model: &Model<f64>, state: &mut State, change: impl Fn(&JointInfo, f64) -> f64) {
     let Some(mut q) = state.get(Argument::Q).map(<[f64]>::to_vec) else { return };
-    for joint in model.joints.iter().filter(|j| j.q.1 == 1) {
+    for joint in model.joints().iter().filter(|j| j.q.1 == 1) {
         q[joint.q.0] = change(joint, q[joint.q.0]);
     }
     state.set(Argument::Q, q);

@@ -72,7 +72,7 @@ pub fn measure(stage: &Stage, begin: &Begin, settings: &Settings, file: &Path) -
     });
     let report = Report {
         scene: stage.name.clone(),
-        robot: stage.model.name.clone(),
+        robot: stage.model.name().to_owned(),
         simulated_s: settings.end - settings.start,
         reference: format!("dop853 at a tolerance of 1e-14; at 4e-14 its last state is {:.1e} away", search::distance(&best, &second)),
         compiler: rustc.version.clone(),

@@ -170,7 +170,7 @@ pub(crate) fn backward(reference: &Exact, model: &Model<f64>, inverse: &str, sta
     let mut state = state.to_vec();
     state[2] = found;
     let motors = FunctionId::motor_torques;
-    let (mut tau, terms) = (vec![0.0; model.nv], scales(model, motors.name(), &asked).ok()?);
+    let (mut tau, terms) = (vec![0.0; model.nv()], scales(model, motors.name(), &asked).ok()?);
     motors.row().call(model, &mut Workspace::new(model), &asked, &mut tau).ok()?;
     let scale: Vec<f64> = scales(model, inverse, &state).ok()?.iter().zip(terms).map(|(s, t)| s + t).collect();
     Some(largest(&exact(reference, model, inverse, &state)?, &tau, &scale))

@@ -64,7 +64,7 @@ impl Peer {
         let name = library.name.clone().or_else(|| opened.peer_name()).ok_or("it has no function peer_name")?;
         let native = NativePeer::open(&opened, urdf, robot.floating(), robot.options.robot.gravity)?;
         let (q, v) = orders(&native, model)?;
-        let links = model.links().enumerate().all(|(k, i)| native.joint_name(k).is_some_and(|name| name == model.bodies[i].name));
+        let links = model.links().enumerate().all(|(k, i)| native.joint_name(k).is_some_and(|name| name == model.bodies()[i].name));
         let code = library.code(&robot.document, robot.floating()).cloned();
         Ok(Self { name, library, code, native, q, v, links })
     }
@@ -96,7 +96,7 @@ impl Peer {
 
     fn kernel(&self, function: &Function<f64>, model: &Model<f64>, states: usize) -> Option<PeerKernel> {
         let has = |dim: Dim| function.takes.iter().flat_map(|a| a.dims()).chain(function.gives).any(|d| *d == dim);
-        let wrenches = !function.takes.contains(&Argument::Wrenches) || model.wrench_reference == Reference::Body;
+        let wrenches = !function.takes.contains(&Argument::Wrenches) || model.wrench_reference() == Reference::Body;
         let told = (!has(Dim::Frames) || self.has_frames(model)) && (!has(Dim::Links) || self.links);
         if !wrenches || !told {
             return None;
@@ -107,7 +107,7 @@ impl Peer {
 
     /// Whether the peer's frames are the model's, in its order; they are made so if the peer lets them be chosen.
     fn has_frames(&self, model: &Model<f64>) -> bool {
-        let names: Vec<&str> = model.frames.iter().map(|f| f.name.as_str()).collect();
+        let names: Vec<&str> = model.frames().iter().map(|f| f.name.as_str()).collect();
         self.native.choose_frames(&names) || self.native.frames() == names
     }
 
@@ -203,15 +203,15 @@ pub(crate) fn orders(peer: &NativePeer, model: &Model<f64>) -> Result<(Vec<usize
     let incomplete = "it does not tell its joints";
     let (nq, nv, joints) = (peer.number("nq"), peer.number("nv"), peer.number("joint_count"));
     let (nq, nv, joints) = (nq.ok_or(incomplete)?, nv.ok_or(incomplete)?, joints.ok_or(incomplete)?);
-    if (nq, nv, joints) != (model.nq, model.nv, model.joints.len()) {
-        let [theirs, ours] = [(joints, nq), (model.joints.len(), model.nq)]
+    if (nq, nv, joints) != (model.nq(), model.nv(), model.joints().len()) {
+        let [theirs, ours] = [(joints, nq), (model.joints().len(), model.nq())]
             .map(|(joints, nq)| format!("{} with {}", counted(joints, "joint"), counted(nq, "coordinate")));
         return Err(format!("it has {theirs}, and here there are {ours} (peers take joints that follow others as free)"));
     }
     let (mut q, mut v) = (vec![usize::MAX; nq], vec![usize::MAX; nv]);
     for k in 0..joints {
         let name = peer.joint_name(k).ok_or(incomplete)?;
-        let ours = model.joints.iter().find(|j| j.name == name).ok_or_else(|| format!("its joint {name:?} is not one here"))?;
+        let ours = model.joints().iter().find(|j| j.name == name).ok_or_else(|| format!("its joint {name:?} is not one here"))?;
         let number = |what: &str| peer.joint_number(what, k).ok_or(incomplete);
         let (iq, iv, sizes) = (number("iq")?, number("iv")?, (number("nq")?, number("nv")?));
         if sizes != (ours.q.1, ours.v.1) || iq + sizes.0 > nq || iv + sizes.1 > nv {

@@ -117,7 +117,7 @@ mod tests {
     #[test]
     fn columns_may_stand_in_any_order() {
         let model = bundled_model("cart_pole");
-        let [a, b] = [&model.joints[0].name, &model.joints[1].name];
+        let [a, b] = [&model.joints()[0].name, &model.joints()[1].name];
         let text = format!("v.{b}, q.{b},q.{a}, v.{a}\n4,2,1,3\n8, 6, 5, 7\n");
         let states = read(text.as_bytes(), &model).unwrap().states;
         assert_eq!(states.len(), 2);
@@ -129,7 +129,7 @@ mod tests {
     fn a_floating_base_has_numbered_columns() {
         let model = bundled_model("quadruped");
         let titles: Vec<String> = model
-            .joints
+            .joints()
             .iter()
             .flat_map(|j| match j.q.1 {
                 1 => vec![format!("q.{}", j.name)],
@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn a_wrench_has_six_columns_and_other_links_carry_none() {
         let model = bundled_model("cart_pole");
-        let at = model.frames.iter().position(|f| f.name == "pole_rod").unwrap();
+        let at = model.frames().iter().position(|f| f.name == "pole_rod").unwrap();
         let titles: Vec<String> = (0..6).map(|k| format!("wrenches.pole_rod[{k}]")).collect();
         let states = read(format!("{}\n1,2,3,4,5,6\n", titles.join(",")).as_bytes(), &model).unwrap().states;
         let wrenches = states[0].get(Argument::Wrenches).unwrap();
@@ -156,7 +156,7 @@ mod tests {
     #[test]
     fn mistakes_are_named_with_line_and_column() {
         let model = bundled_model("cart_pole");
-        let [a, b] = [&model.joints[0].name, &model.joints[1].name];
+        let [a, b] = [&model.joints()[0].name, &model.joints()[1].name];
         let said = |text: String| read(text.as_bytes(), &model).unwrap_err().join("\n");
         assert!(said(format!("q.{a},q.{b}\n1,nan\n")).contains("line 2: q: joint"));
         assert!(said(format!("q.{a},q.{b}\n1,x\n")).contains("found \"x\""));

@@ -69,7 +69,7 @@ mod tests {
     fn csv_is_read_to_the_nearest_double() {
         let (doubles, model) = (doubles(), bundled_model("cart_pole"));
         for form in [0, 1] {
-            let mut text = format!("v.{},v.{}\n", model.joints[0].name, model.joints[1].name);
+            let mut text = format!("v.{},v.{}\n", model.joints()[0].name, model.joints()[1].name);
             doubles.chunks(2).for_each(|pair| text += &format!("{},{}\n", spellings(pair[0])[form], spellings(pair[1])[form]));
             same(&rates(&text), &doubles);
         }

@@ -136,7 +136,7 @@ mod tests {
     #[test]
     fn lists_and_names_say_the_same() {
         let model = bundled_model("cart_pole");
-        let [a, b] = [&model.joints[0].name, &model.joints[1].name];
+        let [a, b] = [&model.joints()[0].name, &model.joints()[1].name];
         let list = read(br#"[{"q": [1, 2], "v": [3, 4]}]"#, &model).unwrap().states;
         let text = format!(r#"{{"states": [{{"q": {{"{b}": 2, "{a}": [1]}}, "v": {{"{a}": 3, "{b}": 4}}}}]}}"#);
         assert_eq!(list, read(text.as_bytes(), &model).unwrap().states);

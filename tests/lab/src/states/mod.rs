@@ -67,12 +67,12 @@ pub struct Slot<'a> {
 /// The named parts of an argument, in its order.
 pub fn slots(argument: Argument, model: &Model<f64>) -> Vec<Slot<'_>> {
     let by_joint = |part: fn(&JointInfo) -> (usize, usize)| {
-        model.joints.iter().map(|j| Slot { name: &j.name, at: part(j).0, count: part(j).1 }).collect()
+        model.joints().iter().map(|j| Slot { name: &j.name, at: part(j).0, count: part(j).1 }).collect()
     };
     match argument.dims() {
         [Dim::Frames, rest @ ..] => {
             let count = rest.iter().map(|d| d.len(model.shape())).product();
-            model.frames.iter().enumerate().map(|(k, f)| Slot { name: &f.name, at: k * count, count }).collect()
+            model.frames().iter().enumerate().map(|(k, f)| Slot { name: &f.name, at: k * count, count }).collect()
         }
         [Dim::Nq] => by_joint(|j| j.q),
         _ => by_joint(|j| j.v),
@@ -86,5 +86,5 @@ pub fn owner(argument: Argument) -> &'static str {
 
 /// First indices in q of the unit quaternions, with the joints that have them.
 pub fn quaternions(model: &Model<f64>) -> impl Iterator<Item = (&JointInfo, usize)> {
-    model.joints.iter().filter_map(|j| Some((j, j.quaternion()?.start)))
+    model.joints().iter().filter_map(|j| Some((j, j.quaternion()?.start)))
 }

@@ -32,7 +32,7 @@ fn one(model: &Model<f64>, workspace: &mut Workspace<f64>, numbers: &mut SplitMi
 }
 
 fn configuration(model: &Model<f64>, workspace: &mut Workspace<f64>, uniform: &[f64]) -> Vec<f64> {
-    let mut q = vec![0.0; model.nq];
+    let mut q = vec![0.0; model.nq()];
     random_configuration(model, workspace, uniform, &mut q);
     q
 }
@@ -61,9 +61,9 @@ mod tests {
             let q = state.get(Argument::Q).unwrap();
             assert!((q[3..7].iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-15);
             assert!(state.get(Argument::Uniform).unwrap().iter().all(|x| (0.0..1.0).contains(x)));
-            assert_eq!(state.get(Argument::Wrenches).map(<[f64]>::len), Some(6 * model.frames.len()));
+            assert_eq!(state.get(Argument::Wrenches).map(<[f64]>::len), Some(6 * model.frames().len()));
             assert_ne!(state.get(Argument::Target), Some(q));
-            for joint in model.joints.iter().filter(|j| j.q.1 == 1) {
+            for joint in model.joints().iter().filter(|j| j.q.1 == 1) {
                 let limit = joint.limit.unwrap();
                 assert!((limit.lower..=limit.upper).contains(&q[joint.q.0]), "{}", joint.name);
             }

@@ -160,7 +160,7 @@ impl<'a, F: Machine> Judge<'a, F> {
     /// Accelerations, and what is left of the smallest pivot.
     pub(super) fn checked(&self, state: &State) -> Outcome<F> {
         let [q, v, tau] = [&state.q, &state.v, &state.tau].map(|x| cast::<F>(x));
-        let mut a = vec![F::zero(); self.model.nv];
+        let mut a = vec![F::zero(); self.model.nv()];
         let left = checked_forward_dynamics(&self.model, &mut Workspace::new(&self.model), &q, &v, &tau, &mut a)?;
         Ok((a, left.to_f64()))
     }
@@ -169,7 +169,7 @@ impl<'a, F: Machine> Judge<'a, F> {
     pub(super) fn refined(&self, states: &[State]) -> Option<Row> {
         let eta = |s: &State| {
             let [q, v, tau] = [&s.q, &s.v, &s.tau].map(|x| cast::<F>(x));
-            let mut a = vec![F::zero(); self.model.nv];
+            let mut a = vec![F::zero(); self.model.nv()];
             let mut solver = Solver::new(self.model.shape());
             solver.forward_dynamics(&self.model, &mut Workspace::new(&self.model), [&q, &v, &tau], &mut a).ok()?;
             Some(self.solution(&a, s)[0])
@@ -182,7 +182,7 @@ impl<'a, F: Machine> Judge<'a, F> {
     fn by_matrix(&self, state: &State) -> Option<[f64; 3]> {
         let [q, v, tau] = [&state.q, &state.v, &state.tau].map(|x| cast::<F>(x));
         let m = call(FunctionId::mass_matrix, &self.model, std::slice::from_ref(&q));
-        let mut factor = Factor::<F>::new(self.model.nv);
+        let mut factor = Factor::<F>::new(self.model.nv());
         factor.factor(&m).ok()?;
         let h = call(FunctionId::bias_forces, &self.model, &[q.clone(), v.clone()]);
         let driven = call(FunctionId::motor_torques, &self.model, &[v, tau.clone()]);

@@ -43,20 +43,6 @@ pub fn widened<F: Machine>(x: &[F]) -> Vec<f64> {
     x.iter().map(|x| x.to_f64()).collect()
 }
 
-/// The same model, constant for constant, in another scalar.
-pub fn convert<S: Scalar, T: Scalar>(model: &Model<S>, to: impl Fn(S) -> T + Copy) -> Model<T> {
-    Model {
-        name: model.name.clone(),
-        gravity: model.gravity.map(to),
-        wrench_reference: model.wrench_reference,
-        bodies: model.bodies.iter().map(|b| b.map(to)).collect(),
-        frames: model.frames.iter().map(|f| f.map(to)).collect(),
-        joints: model.joints.clone(),
-        nq: model.nq,
-        nv: model.nv,
-    }
-}
-
 /// As it is, in many digits.
 pub fn exact<F: Machine>(model: &Model<F>) -> Exact {
     Exact::library(&wide(model))
@@ -64,5 +50,5 @@ pub fn exact<F: Machine>(model: &Model<F>) -> Exact {
 
 /// As it is, in double precision.
 pub fn wide<F: Machine>(model: &Model<F>) -> Model<f64> {
-    convert(model, Machine::to_f64)
+    model.map(Machine::to_f64)
 }

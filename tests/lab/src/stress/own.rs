@@ -35,10 +35,10 @@ pub(super) fn rows(robot: &Robot, model: &Model<f64>, given: &[State], generated
     let made: Vec<Made> = generated.iter().map(|level| make(robot, model, *level)).collect::<Result<_, _>>()?;
     let mut rows = Vec::new();
     for (name, why, states) in &sets {
-        let case = Case::new(NAME, format!("{}: {name}", model.name), why).by_terms();
+        let case = Case::new(NAME, format!("{}: {name}", model.name()), why).by_terms();
         rows.extend(judged(&case, model, states));
         for made in &made {
-            let case = Case::new(NAME, format!("{}, generated, {}: {name}", model.name, made.level()), why).by_terms();
+            let case = Case::new(NAME, format!("{}, generated, {}: {name}", model.name(), made.level()), why).by_terms();
             rows.extend(levels::of_made(&case, model, made, states));
         }
     }
@@ -50,7 +50,7 @@ pub(super) fn rows(robot: &Robot, model: &Model<f64>, given: &[State], generated
 fn left_out(robot: &Robot, model: &Model<f64>, generated: &[Level]) -> Result<Vec<String>, Error> {
     let massless = articulated_codegen::massless(model);
     let mut functions = vec![FunctionId::forward_dynamics, FunctionId::solve_mass_matrix];
-    functions.extend(generated.iter().flat_map(|level| levels::functions(model.nv, *level)));
+    functions.extend(generated.iter().flat_map(|level| levels::functions(model.nv(), *level)));
     let mut notes = Vec::new();
     for f in functions {
         if let Err(error) = articulated_codegen::defined(&robot.file, model, &massless, f.row::<f64>()) {
@@ -68,13 +68,13 @@ type Set = (&'static str, &'static str, Vec<State>);
 /// Sets of states: those given, some at random, and hard ones.
 fn sets(model: &Model<f64>, given: &[State]) -> Vec<Set> {
     let alike = |x: f64| {
-        let mut q = vec![x; model.nq];
+        let mut q = vec![x; model.nq()];
         quaternions(model).for_each(|(_, at)| q[at..at + 4].copy_from_slice(&[0.0, 0.0, 0.0, 1.0]));
-        vec![state(q, model.nv, 72, TAU)]
+        vec![state(q, model.nv(), 72, TAU)]
     };
     let bound = |upper: bool| {
         let mut s = alike(0.0);
-        for joint in model.joints.iter().filter(|j| j.q.1 == 1) {
+        for joint in model.joints().iter().filter(|j| j.q.1 == 1) {
             // An open bound is no place to stand.
             s[0].q[joint.q.0] = joint.limit.map_or(0.0, |l| if upper { l.upper } else { l.lower }).clamp(-1e3, 1e3);
         }
@@ -106,7 +106,7 @@ fn sets(model: &Model<f64>, given: &[State]) -> Vec<Set> {
 
 fn judged(case: &Case, model: &Model<f64>, states: &[State]) -> Vec<Row> {
     let double = Judge::<f64>::new(case, model);
-    let mut rows = double.forward(states, model.nv <= DERIVATIVES);
+    let mut rows = double.forward(states, model.nv() <= DERIVATIVES);
     rows.extend(double.solved(states, Ends::Either, BACKWARD));
     let single = Judge::<f32>::new(case, model);
     rows.extend(single.forward(states, false));
@@ -116,7 +116,7 @@ fn judged(case: &Case, model: &Model<f64>, states: &[State]) -> Vec<Row> {
 
 /// The code of a robot at a level.
 fn make(robot: &Robot, model: &Model<f64>, level: Level) -> Result<Made, Error> {
-    let mut names = levels::functions(model.nv, level);
+    let mut names = levels::functions(model.nv(), level);
     if !model.massless_joints().is_empty() {
         names.retain(|f| !f.row::<f64>().inverts_mass_matrix());
     }
@@ -128,7 +128,7 @@ fn make(robot: &Robot, model: &Model<f64>, level: Level) -> Result<Made, Error> 
 
 /// The monitors, over all states.
 fn watched(model: &Model<f64>, sets: &[Set]) -> Vec<Row> {
-    let case = Case::new(NAME, format!("{}: monitors", model.name), "what to look at when results look wrong");
+    let case = Case::new(NAME, format!("{}: monitors", model.name()), "what to look at when results look wrong");
     let states: Vec<&State> = sets.iter().flat_map(|(_, _, s)| s).collect();
     let mut ws = Workspace::new(model);
     let roundoff = <f64 as Machine>::ROUNDOFF;
@@ -136,7 +136,7 @@ fn watched(model: &Model<f64>, sets: &[Set]) -> Vec<Row> {
     let (mut turned, mut norm, mut growth, mut condition) = (0.0, 0.0, [0.0; 2], 0.0);
     let mut least = (f64::INFINITY, 0);
     for s in states {
-        let mut off = vec![0.0; model.frames.len()];
+        let mut off = vec![0.0; model.frames().len()];
         placement_orthonormality(&call(FunctionId::placements, model, std::slice::from_ref(&s.q)), &mut off);
         turned = off.into_iter().fold(turned, worse);
         norm = quaternion_norms(model, &s.q).map(|(_, n)| n.abs()).fold(norm, worse);
@@ -144,14 +144,14 @@ fn watched(model: &Model<f64>, sets: &[Set]) -> Vec<Row> {
             growth = [worse(growth[0], m), worse(growth[1], f)];
         }
         condition = worse(condition, scaled_condition(model, &mut ws, &s.q));
-        let mut left = vec![0.0; model.nv];
+        let mut left = vec![0.0; model.nv()];
         pivot_cancellation(model, &mut ws, &s.q, &mut left);
         // What comes after a pivot that is nothing is not a number.
         least = left.into_iter().enumerate().map(|(k, x)| (x, k)).fold(least, |a, b| if b.0 < a.0 { b } else { a });
     }
     // A rotation is off by twice what the quaternion's norm² is.
     let allowed = 4.0 * (depth + 1.0) * roundoff + 2.0 * quaternions(model).count() as f64 * norm;
-    let distance = model.outward().map(|i| model.bodies[i].placement.position.norm()).fold(0.0, f64::max);
+    let distance = model.outward().map(|i| model.bodies()[i].placement.position.norm()).fold(0.0, f64::max);
     let mut rows = vec![
         case.row(format!("|RᵀR − 1| of placements, over 4Nu and what quaternions are off, N = {depth}"), turned / allowed, 1.0, ""),
         case.row("|norm² − 1| of quaternions in q", norm / roundoff, 8.0, "u"),
@@ -164,7 +164,7 @@ fn watched(model: &Model<f64>, sets: &[Set]) -> Vec<Row> {
             "",
         ),
     ];
-    if model.nv > 0 {
+    if model.nv() > 0 {
         let name = format!(
             "what is left of the smallest pivot, of joint {:?}; less than 2¹⁰u is an error of the checked form",
             model.joint_of(least.1)
@@ -177,7 +177,7 @@ fn watched(model: &Model<f64>, sets: &[Set]) -> Vec<Row> {
 
 /// The largest number of joints between a body and the base.
 fn depth(model: &Model<f64>) -> usize {
-    let mut depths = vec![0; model.bodies.len()];
-    model.outward().for_each(|i| depths[i] = depths[model.bodies[i].parent] + 1);
+    let mut depths = vec![0; model.bodies().len()];
+    model.outward().for_each(|i| depths[i] = depths[model.bodies()[i].parent] + 1);
     depths.into_iter().max().unwrap_or(0)
 }

@@ -134,9 +134,9 @@ pub fn state(q: Vec<f64>, nv: usize, seed: u64, torque: f64) -> State {
 pub fn states(model: &Model<f64>, count: usize, seed: u64, torque: f64) -> Vec<State> {
     let mut random = SplitMix64::new(seed);
     let mut one = |k: usize| {
-        let mut q: Vec<f64> = (0..model.nq).map(|_| random.uniform(-3.0, 3.0)).collect();
+        let mut q: Vec<f64> = (0..model.nq()).map(|_| random.uniform(-3.0, 3.0)).collect();
         crate::states::quaternions(model).for_each(|(_, at)| normalise(&mut q[at..at + 4]));
-        state(q, model.nv, seed + 100 + k as u64, torque)
+        state(q, model.nv(), seed + 100 + k as u64, torque)
     };
     (0..count).map(&mut one).collect()
 }

@@ -26,7 +26,7 @@ pub(crate) fn header(out: &mut String, module: &Module<'_>, rust: &RustOptions) 
         request.file,
         fnv(&request.document)
     ));
-    line(&format!("Robot {:?}, {base} base, gravity ({x:?}, {y:?}, {z:?}) m/s² in the world frame.", model.name));
+    line(&format!("Robot {:?}, {base} base, gravity ({x:?}, {y:?}, {z:?}) m/s² in the world frame.", model.name()));
     edits(module).iter().for_each(|edit| line(edit));
     first_of(&mut line, "Angles snapped to multiples of π/2:", &summary(*snapped), ".");
     line(&format!("Functions: {}. To generate another one, add it to `functions`.", values(&o.functions).join(", ")));

@@ -72,18 +72,18 @@ pub(crate) fn module(module: &Module, rust: &RustOptions) -> String {
 const NUMBERS: &str = "#[allow(clippy::all, clippy::pedantic)]";
 
 fn constants(out: &mut String, model: &Model<f64>) {
-    let joints: Vec<&str> = model.joints.iter().map(|j| j.name.as_str()).collect();
-    let frames: Vec<&str> = model.frames.iter().map(|f| f.name.as_str()).collect();
-    let _ = writeln!(out, "/// The robot's name.\npub const NAME: &str = {:?};", model.name);
-    let floats = model.joints.first().is_some_and(|joint| joint.name == FLOATING_BASE);
+    let joints: Vec<&str> = model.joints().iter().map(|j| j.name.as_str()).collect();
+    let frames: Vec<&str> = model.frames().iter().map(|f| f.name.as_str()).collect();
+    let _ = writeln!(out, "/// The robot's name.\npub const NAME: &str = {:?};", model.name());
+    let floats = model.joints().first().is_some_and(|joint| joint.name == FLOATING_BASE);
     let of_base = |text: &'static str| if floats { text } else { "" };
     let q = of_base(" First the base's position, m, and quaternion x, y, z, w.");
     let v = of_base(" First the base's six: angular, then linear, in its own axes; of τ moment, then force.");
-    let _ = writeln!(out, "/// Number of coordinates: the length of q.{q}\npub const NQ: usize = {};", model.nq);
-    let _ = writeln!(out, "/// Number of degrees of freedom: the length of v, a and τ.{v}\npub const NV: usize = {};", model.nv);
+    let _ = writeln!(out, "/// Number of coordinates: the length of q.{q}\npub const NQ: usize = {};", model.nq());
+    let _ = writeln!(out, "/// Number of degrees of freedom: the length of v, a and τ.{v}\npub const NV: usize = {};", model.nv());
     let _ = writeln!(out, "/// Number of degrees of freedom.\npub const DOF: usize = NV;");
     let _ = writeln!(out, "/// Number of joints that are coordinates.\npub const JOINTS: usize = {};", joints.len());
-    let links: Vec<&str> = model.links().map(|i| model.bodies[i].name.as_str()).collect();
+    let links: Vec<&str> = model.links().map(|i| model.bodies()[i].name.as_str()).collect();
     let _ = writeln!(out, "/// Number of frames: links of the file, or those chosen.\npub const FRAMES: usize = {};", frames.len());
     let _ = writeln!(out, "/// Number of moving links, one for each joint that moves.\npub const LINKS: usize = {};", links.len());
     for (doc, name, length, names) in [
@@ -95,9 +95,9 @@ fn constants(out: &mut String, model: &Model<f64>) {
     }
     // As many as the joint has of each, in q or in v.
     let each = |count: fn(&JointInfo) -> usize, of: fn(&Limit) -> f64, none: f64| -> Vec<f64> {
-        model.joints.iter().flat_map(|j| vec![j.limit.as_ref().map_or(none, of); count(j)]).collect()
+        model.joints().iter().flat_map(|j| vec![j.limit.as_ref().map_or(none, of); count(j)]).collect()
     };
-    let mut rest = vec![0.0; model.nq];
+    let mut rest = vec![0.0; model.nq()];
     neutral(model, &mut rest);
     let rows = [
         ("NEUTRAL", "NQ", "The neutral configuration: coordinates are zero, quaternions are the identity.", rest),
@@ -125,13 +125,13 @@ fn constant(out: &mut String, doc: &str, line: &str) {
 
 fn indices(out: &mut String, model: &Model<f64>, names: &Names) {
     let joint = |value: fn(usize, &JointInfo) -> usize| {
-        let rows = names.joints.iter().zip(&model.joints).enumerate();
+        let rows = names.joints.iter().zip(model.joints()).enumerate();
         rows.map(|(k, (ident, j))| (ident.clone(), format!("{} joint {:?}", j.kind.name(), j.name), value(k, j))).collect::<Vec<_>>()
     };
     list(out, "joint", "Indices into [`JOINT_NAMES`].", &joint(|k, _| k));
     list(out, "q_index", "Index in q of each joint's first coordinate.", &joint(|_, j| j.q.0));
     list(out, "v_index", "Index in v, a and τ of each joint's first degree of freedom.", &joint(|_, j| j.v.0));
-    let frames = names.frames.iter().zip(&model.frames).enumerate();
+    let frames = names.frames.iter().zip(model.frames()).enumerate();
     let frames: Vec<_> = frames.map(|(k, (ident, f))| (ident.clone(), format!("link {:?}", f.name), k)).collect();
     list(out, "frame", "Indices into [`FRAME_NAMES`].", &frames);
 }
@@ -222,12 +222,12 @@ fn names_by_number(out: &mut String, path: &str, model: &Model<f64>) {
     let option = "::core::option::Option";
     let _ = writeln!(out, "    fn frame_name(&self, frame: usize) -> {option}<&str> {{ FRAME_NAMES.get(frame).copied() }}");
     let _ = writeln!(out, "    fn joint(&self, index: usize) -> {option}<{path}::JointRow<'_>> {{");
-    if model.joints.is_empty() {
+    if model.joints().is_empty() {
         let _ = writeln!(out, "        let _ = index;\n        {option}::None\n    }}");
         return;
     }
     let _ = writeln!(out, "        let (kind, q, v) = match index {{");
-    for (k, joint) in model.joints.iter().enumerate() {
+    for (k, joint) in model.joints().iter().enumerate() {
         let _ = writeln!(out, "            {k} => ({path}::JointKind::{:?}, {:?}, {:?}),", joint.kind, joint.q, joint.v);
     }
     let _ = writeln!(out, "            _ => return {option}::None,\n        }};");

@@ -96,8 +96,8 @@ impl Names {
     }
 
     fn and_clashes(model: &Model<f64>, request: &Request) -> (Self, Vec<Diagnostic>) {
-        let joints = model.joints.iter().map(|j| j.name.as_str());
-        let frames = model.frames.iter().map(|f| f.name.as_str());
+        let joints = model.joints().iter().map(|j| j.name.as_str());
+        let frames = model.frames().iter().map(|f| f.name.as_str());
         let plain: Vec<String> = joints.clone().chain(frames.clone()).map(identifier).collect();
         let alike = look_alikes(plain.iter());
         let mut clashes = Vec::new();
@@ -163,7 +163,7 @@ fn clash(kind: &str, [first, second]: [&String; 2], ident: &str, request: &Reque
 
 /// Reports all renamings that cannot be, each once.
 fn wrong_renames(model: &Model<f64>, request: &Request, log: &mut Diagnostics) {
-    let names: BTreeSet<&str> = model.joints.iter().map(|j| &*j.name).chain(model.frames.iter().map(|f| &*f.name)).collect();
+    let names: BTreeSet<&str> = model.joints().iter().map(|j| &*j.name).chain(model.frames().iter().map(|f| &*f.name)).collect();
     let (mut seen, mut told) = (BTreeSet::new(), BTreeSet::new());
     for entry in &request.options.rename {
         let Spanned { value: (from, to), span } = entry;

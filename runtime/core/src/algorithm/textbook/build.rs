@@ -35,12 +35,28 @@ impl<S: Scalar> Textbook<S> {
                 carried: joint.moves() || parent.is_some_and(|p| bodies[p].carried),
                 joint,
                 inertia: description.links[link].inertial.as_ref().map_or_else(Matrix6::zeros, inertia_matrix),
+                intermediate: description.links[link].intermediate,
             });
         }
-        let links = description.links.iter().map(|l| l.name.clone()).zip(body_of_link.iter().copied()).collect();
+        let of_links = description.links.iter().zip(&body_of_link).filter(|(link, _)| !link.intermediate);
+        let mut links: Vec<(String, usize)> = of_links.map(|(link, body)| (link.name.clone(), *body)).collect();
+        // A frame that is no link is a body without mass, fixed to its link.
+        for frame in &description.frames {
+            let parent = body_of_link[frame.link];
+            links.push((frame.name.clone(), bodies.len()));
+            bodies.push(Link {
+                parent: Some(parent),
+                placement: frame.origin.placement(),
+                carried: bodies[parent].carried,
+                joint: Joint::fixed(),
+                inertia: Matrix6::zeros(),
+                intermediate: false,
+            });
+        }
+        let frames = links.iter().map(|(_, body)| *body).collect();
         let gravity = Vector3::from(gravity).map(S::from_f64);
         let Model { joints, nq, nv, .. } = model;
-        Ok(Self { bodies, links, frames: body_of_link, gravity, wrench_reference: Reference::Body, joints, nq, nv })
+        Ok(Self { bodies, links, frames, gravity, wrench_reference: Reference::Body, joints, nq, nv })
     }
 }
 

@@ -37,7 +37,7 @@ use joint::Joint;
 #[derive(Clone, Debug)]
 pub struct Textbook<S> {
     bodies: Vec<Link<S>>,
-    /// Name and body of each link of the file.
+    /// Name and body of each link and of each other frame of the file.
     links: Vec<(String, usize)>,
     /// Bodies of the frames.
     frames: Vec<usize>,
@@ -59,6 +59,8 @@ struct Link<S> {
     inertia: Matrix6<S>,
     /// Whether any joint on the way from the base moves it.
     carried: bool,
+    /// Whether it only lies between two joints in sequence on one body.
+    intermediate: bool,
 }
 
 impl<S: Scalar> Textbook<S> {
@@ -78,7 +80,7 @@ impl<S: Scalar> Textbook<S> {
 
     /// The links that move, by the bodies that are the child links of joints that move, parents first: everything fixed to one belongs to it.
     fn moving_links(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.bodies.len()).filter(|&i| self.bodies[i].joint.moves())
+        (0..self.bodies.len()).filter(|&i| self.bodies[i].joint.moves() && !self.bodies[i].intermediate)
     }
 
     /// The same robot with constants that do not vary.
@@ -90,6 +92,7 @@ impl<S: Scalar> Textbook<S> {
             joint: b.joint.lift(),
             inertia: b.inertia.map(constant),
             carried: b.carried,
+            intermediate: b.intermediate,
         };
         Textbook {
             bodies: self.bodies.iter().map(link).collect(),

@@ -43,8 +43,8 @@ fn coriolis_matrix_and_gravity_are_the_bias_and_the_rate_of_the_mass_matrix() {
 fn coriolis_matrix_is_that_of_the_christoffel_symbols() {
     let flavour = Flavour { floating: false, every_kind: false, ..SMALL };
     for_each_scene(12, flavour, |case, scene| {
-        let ([q, v, ..], n) = (scene.motion(), case.model.nv);
-        if case.model.nq != n {
+        let ([q, v, ..], n) = (scene.motion(), case.model.nv());
+        if case.model.nq() != n {
             return;
         }
         let slopes: Vec<Vec<Big>> = (0..n).map(|k| scene.slope(&unit(n, k), |q, _| scene.call("mass_matrix", &[q]))).collect();
@@ -113,7 +113,7 @@ fn power_through_the_joints_is_that_of_the_torques() {
         let mut power = Big::zero();
         for (k, body) in case.model.links().enumerate() {
             // The twist of the child against the parent, taken in world axes about the world's origin, with the wrench brought there.
-            let joint = case.description.joint(&case.model.bodies[body].name).map(|j| &case.description.joints[j]);
+            let joint = case.description.joint(&case.model.bodies()[body].name).map(|j| &case.description.joints[j]);
             let (parent, child) = joint.map_or((None, case.description.root().unwrap_or(0)), |j| (Some(j.parent), j.child));
             let of = |link: Option<usize>, i: usize| link.map_or(Big::zero(), |l| twists[6 * l + i]);
             let relative: Vec<Big> = (0..6).map(|i| of(Some(child), i) - of(parent, i)).collect();

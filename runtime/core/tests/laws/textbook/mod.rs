@@ -40,7 +40,7 @@ impl Scene {
                 normalise(case, x);
             }
         }
-        let size = [case.model.nq, case.model.nv, case.model.frames.len()];
+        let size = [case.model.nq(), case.model.nv(), case.model.frames().len()];
         Self { book: case.textbook(), arguments, size }
     }
 
@@ -79,7 +79,7 @@ fn named(name: &str, reference: Reference) -> String {
 }
 
 fn normalise(case: &Case, q: &mut [Big]) {
-    for joint in &case.model.joints {
+    for joint in case.model.joints() {
         let at = match joint.q.1 {
             4 => joint.q.0,
             7 => joint.q.0 + 3,

@@ -64,7 +64,7 @@ fn a_step_and_a_difference_undo_each_other() {
     for_each_scene(25, SMALL, |case, scene| {
         let (book, [q, target, step]) = (&scene.book, [Argument::Q, Argument::Target, Argument::Step].map(|a| scene.given(a)));
         let mut found = book.integrate(q, &book.difference(q, target));
-        for joint in case.model.joints.iter().filter(|j| matches!(j.q.1, 4 | 7)) {
+        for joint in case.model.joints().iter().filter(|j| matches!(j.q.1, 4 | 7)) {
             let at = joint.q.0 + joint.q.1 - 4..joint.q.0 + joint.q.1;
             if dot(&found[at.clone()], &target[at.clone()]).to_f64() < 0.0 {
                 found[at].iter_mut().for_each(|x| *x = -*x);
@@ -113,7 +113,7 @@ fn both(matrices: &[Big], v: &[Big]) -> [Vec<Big>; 2] {
 fn a_configuration_at_random_is_one() {
     for_each_scene(20, SMALL, |case, scene| {
         let q = scene.book.random_configuration(scene.given(Argument::Uniform));
-        for joint in &case.model.joints {
+        for joint in case.model.joints() {
             let own: Vec<f64> = q[joint.q.0..][..joint.q.1].iter().map(|x| x.to_f64()).collect();
             let (lower, upper) = joint.limit.map_or((-std::f64::consts::PI, std::f64::consts::PI), |l| (l.lower, l.upper));
             assert!(own.iter().all(|x| (lower..=upper).contains(x)), "{}: {own:?}", joint.name);

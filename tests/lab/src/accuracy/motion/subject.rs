@@ -115,7 +115,7 @@ pub(super) fn extent(subject: &Subject, end: &State) -> f64 {
 
 /// The largest difference of two states: of configurations along the manifold.
 pub(super) fn difference(subject: &Subject, a: &State, b: &State) -> f64 {
-    let mut apart = vec![0.0; subject.model.nv];
+    let mut apart = vec![0.0; subject.model.nv()];
     let told = subject.model.call(FunctionId::difference, &mut Workspace::new(&subject.model), &[&a.0, &b.0], &mut apart);
     let rates = a.1.iter().zip(&b.1).map(|(a, b)| (a - b).abs());
     let all = apart.iter().map(|x| x.abs()).chain(rates).fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) });

@@ -133,7 +133,7 @@ pub(super) fn all(scene: &str, subject: &Subject, peers: &Peers, settings: &Sett
     let mut motion = Motion {
         scene: scene.to_owned(),
         seconds: subject.seconds,
-        degrees_of_freedom: subject.model.nv,
+        degrees_of_freedom: subject.model.nv(),
         references,
         agreement,
         extent: extent(subject, &end),

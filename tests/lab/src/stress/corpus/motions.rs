@@ -50,9 +50,9 @@ fn long(effort: Effort) -> Vec<Row> {
 
 fn drift(robot: &Model<f64>, integrator: IntegratorId, end: f64) -> f64 {
     let mut random = SplitMix64::new(91);
-    let mut q: Vec<f64> = (0..robot.nq).map(|_| random.uniform(-1.0, 1.0)).collect();
+    let mut q: Vec<f64> = (0..robot.nq()).map(|_| random.uniform(-1.0, 1.0)).collect();
     crate::states::quaternions(robot).for_each(|(_, at)| normalise(&mut q[at..at + 4]));
-    let v: Vec<f64> = (0..robot.nv).map(|_| random.uniform(-1.0, 1.0)).collect();
+    let v: Vec<f64> = (0..robot.nv()).map(|_| random.uniform(-1.0, 1.0)).collect();
     let settings = Settings { integrator, end, rtol: 1e-9, atol: 1e-9, output: Output::Every(0.1), ..Settings::default() };
     let motion = Simulation::new(robot, settings).and_then(|s| s.with_energy_balance().run(&q, &v, &mut NoTorque, &mut []));
     let Ok(motion) = motion else { return f64::NAN };
@@ -136,7 +136,7 @@ fn first_frequency(n: usize) -> f64 {
     let robot = built(&chain(n, 1.0), Base::Fixed).with_gravity([9.81, 0.0, 0.0]);
     let q = vec![0.0; n];
     let m = call(FunctionId::mass_matrix, &robot, std::slice::from_ref(&q));
-    let k = call(FunctionId::static_torque_derivative, &robot, &[q, vec![0.0; 6 * robot.frames.len()]]);
+    let k = call(FunctionId::static_torque_derivative, &robot, &[q, vec![0.0; 6 * robot.frames().len()]]);
     let mut factor = Factor::<f64>::new(n);
     if factor.factor(&k).is_err() {
         return f64::NAN;

@@ -73,8 +73,8 @@ fn unnormalised() -> Vec<Row> {
         q[3..7].iter_mut().for_each(|x| *x *= 1.0 + e);
         let place = |q: &Vec<f64>| call(FunctionId::placements, &robot, std::slice::from_ref(q));
         let off = place(&q).iter().zip(place(&unit)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        let mut next = vec![0.0; robot.nq];
-        integrate(&robot, &mut Workspace::new(&robot), &q, &vec![0.0; robot.nv], &mut next);
+        let mut next = vec![0.0; robot.nq()];
+        integrate(&robot, &mut Workspace::new(&robot), &q, &vec![0.0; robot.nv()], &mut next);
         let norm = quaternion_norms(&robot, &next).map(|(_, n)| n.abs()).fold(0.0, f64::max);
         let seen = quaternion_norms(&robot, &q).map(|(_, n)| (n - 2.0 * e).abs() / e).fold(0.0, f64::max);
         [off / e, norm / U, seen]

@@ -1,0 +1,182 @@
+//! Isomorphic branches: the legs of a quadruped are one program with four sets of constants.
+
+use articulated_core::effect::EffectId;
+use articulated_core::joint::Joint;
+use articulated_core::model::Model;
+
+/// A set of branches of the same structure on the same body.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Limbs {
+    /// First body of each branch, in the order of the model.
+    pub(crate) roots: Vec<usize>,
+    /// Number of bodies of each branch: those from its root on.
+    pub(crate) bodies: usize,
+}
+
+impl Limbs {
+    /// Body `k` of each branch.
+    pub(crate) fn aligned(&self, k: usize) -> Vec<usize> {
+        self.roots.iter().map(|root| root + k).collect()
+    }
+}
+
+/// What makes two bodies alike, numbers apart.
+#[derive(PartialEq, Eq)]
+struct Kind {
+    joint: Joint,
+    /// How far the body is behind its parent, in bodies.
+    behind: usize,
+    /// How far its numbers are behind those of its branch's first body, in q and v; these tell whom it follows, if it follows.
+    at: (usize, usize),
+    follows: bool,
+    is_link: bool,
+    effects: Vec<(EffectId, usize)>,
+}
+
+/// First body of a branch and the kinds of its bodies, if it stands for itself.
+type Branch = (usize, Option<Vec<Kind>>);
+
+/// The sets of `width` isomorphic branches, from the base outward: the same joints and effects in the
+/// same order, whatever frames they carry. Constants may differ, so that mirrored limbs are
+/// isomorphic. Of more branches than `width` the first are a set, then the next; branches that are
+/// left over are searched for sets inside.
+///
+/// No branch is in two sets: fingers of isomorphic arms belong to the arms.
+pub(crate) fn isomorphic_branches(model: &Model, width: usize) -> Vec<Limbs> {
+    let sizes = branch_sizes(model);
+    let mut found = Vec::new();
+    let mut open = vec![0];
+    let mut children = vec![Vec::new(); model.bodies().len()];
+    model.outward().for_each(|i| children[model.bodies()[i].parent].push(i));
+    while let Some(body) = open.pop() {
+        let mut branches: Vec<Branch> = children[body].iter().map(|&i| (i, None)).collect();
+        if branches.len() >= width {
+            branches.iter_mut().for_each(|(i, kinds)| *kinds = branch_kinds(model, *i, sizes[*i]));
+        }
+        while let Some((first, kinds)) = branches.first() {
+            let alike = |(_, others): &&Branch| kinds.is_some() && others == kinds;
+            let roots: Vec<usize> = branches.iter().filter(alike).take(width).map(|(i, _)| *i).collect();
+            if roots.len() == width {
+                branches.retain(|(i, _)| !roots.contains(i));
+                found.push(Limbs { bodies: sizes[roots[0]], roots });
+            } else {
+                open.push(*first);
+                branches.remove(0);
+            }
+        }
+    }
+    found.sort_by_key(|limbs| limbs.roots.first().copied());
+    found
+}
+
+/// Number of bodies from each body outward, itself included.
+fn branch_sizes(model: &Model) -> Vec<usize> {
+    let mut sizes = vec![1; model.bodies().len()];
+    for i in model.inward() {
+        sizes[model.bodies()[i].parent] += sizes[i];
+    }
+    sizes
+}
+
+/// The kinds of the bodies of a branch; `None` if one follows a joint outside of it, or is followed from there.
+fn branch_kinds(model: &Model, root: usize, size: usize) -> Option<Vec<Kind>> {
+    let branch = root..root + size;
+    let (first, last) = (&model.bodies()[root].coordinates, &model.bodies()[root + size - 1]);
+    let inside = |i: usize| branch.contains(&i);
+    let own_v = |i: usize| model.bodies()[i].coordinates.v;
+    let shared = model.outward().any(|i| !inside(i) && branch.clone().any(|k| own_v(k) == own_v(i)));
+    if shared || last.coordinates.v < first.v {
+        return None;
+    }
+    let kind = |i: usize| {
+        let body = &model.bodies()[i];
+        let at = (body.coordinates.q.checked_sub(first.q)?, body.coordinates.v.checked_sub(first.v)?);
+        Some(Kind {
+            joint: body.joint,
+            behind: if i == root { 0 } else { i - body.parent },
+            at,
+            follows: body.coordinates.mimic.is_some(),
+            is_link: body.link.is_some(),
+            effects: body.effects.kinds(),
+        })
+    };
+    branch.clone().map(kind).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use articulated_core::description::{Base, Description, JointKind, Link, Mimic};
+    use articulated_core::effect::JointEffect;
+    use articulated_core::model::ModelParts;
+
+    use super::*;
+
+    /// A tree of revolute joints, given the parent of each body; some follow others.
+    fn tree(parents: &[usize], follows: &[(usize, usize)]) -> ModelParts {
+        let link = |k: usize| Link { name: format!("{k}"), ..Link::default() };
+        let joint = |(k, &parent): (usize, &usize)| {
+            let leader = follows.iter().find(|(follower, _)| *follower == k + 1);
+            let mimic = leader.map(|(_, leader)| Mimic { joint: leader - 1, multiplier: 2.0, offset: 0.5 });
+            let (name, kind, axis) = (format!("{}", k + 1), JointKind::Continuous, [0.0, 0.0, 1.0]);
+            articulated_core::description::Joint { name, kind, parent, child: k + 1, axis, mimic, ..Default::default() }
+        };
+        let links = (0..=parents.len()).map(link).collect();
+        let joints = parents.iter().enumerate().map(joint).collect();
+        let robot = Description { links, joints, ..Description::default() };
+        Model::new(&robot, Base::Fixed).unwrap().into_parts()
+    }
+
+    fn roots(parts: ModelParts, width: usize) -> Vec<(Vec<usize>, usize)> {
+        let model = Model::from_parts(parts).unwrap();
+        isomorphic_branches(&model, width).into_iter().map(|l| (l.roots, l.bodies)).collect()
+    }
+
+    /// A trunk with two legs of two joints.
+    const LEGS: [usize; 5] = [0, 1, 2, 1, 4];
+
+    #[test]
+    fn branches_of_the_same_structure_are_alike_whatever_their_numbers() {
+        // A trunk with two legs of two and two arms of one.
+        let mut parts = tree(&[0, 1, 2, 1, 4, 1, 1], &[]);
+        parts.bodies.iter_mut().enumerate().for_each(|(i, body)| body.placement.position.x = i as f64);
+        assert_eq!(roots(parts.clone(), 2), [(vec![2, 4], 2), (vec![6, 7], 1)]);
+        assert_eq!(roots(parts, 4), []);
+    }
+
+    #[test]
+    fn another_joint_or_a_follower_from_outside_makes_a_branch_stand_alone() {
+        assert_eq!(roots(tree(&LEGS, &[]), 2), [(vec![2, 4], 2)]);
+        let mut parts = tree(&LEGS, &[]);
+        parts.bodies[5].joint = Joint::Prismatic;
+        assert_eq!(roots(parts, 2), []);
+        assert_eq!(roots(tree(&LEGS, &[(5, 3)]), 2), []);
+    }
+
+    /// Whatever the others look like: what is outside may be the trunk, or another branch, to which all follow alike.
+    #[test]
+    fn a_branch_that_is_followed_from_outside_stands_alone() {
+        assert_eq!(roots(tree(&LEGS, &[(1, 3)]), 2), []);
+        assert_eq!(roots(tree(&[0, 1, 2, 1, 4, 1], &[]), 2), [(vec![2, 4], 2)]);
+        assert_eq!(roots(tree(&[0, 1, 2, 1, 4, 1], &[(3, 4), (5, 6)]), 2), []);
+    }
+
+    #[test]
+    fn another_effect_or_a_follower_within_makes_a_branch_stand_alone() {
+        let damped = |bodies: &[usize]| {
+            let mut parts = tree(&LEGS, &[]);
+            for &i in bodies {
+                parts.bodies[i].effects.joint = vec![JointEffect { effect: EffectId::damping, freedom: 0, parameters: vec![i as f64] }];
+            }
+            roots(parts, 2)
+        };
+        assert_eq!((damped(&[3]), damped(&[3, 5])), (vec![], vec![(vec![2, 4], 2)]));
+        let followed = |follows: &[(usize, usize)]| roots(tree(&LEGS, follows), 2);
+        assert_eq!((followed(&[(3, 2)]), followed(&[(3, 2), (5, 4)])), (vec![], vec![(vec![2, 4], 2)]));
+    }
+
+    #[test]
+    fn what_is_left_over_is_looked_through() {
+        // Three legs of one, and an arm with two fingers.
+        assert_eq!(roots(tree(&[0, 1, 1, 1, 1, 5, 5], &[]), 2), [(vec![2, 3], 1), (vec![6, 7], 1)]);
+    }
+}

@@ -1,0 +1,229 @@
+//! A model taken apart: plain data that may be changed, and checked when it is put together again.
+
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use nalgebra::Vector3;
+
+use super::{Body, Frame, JointInfo, Model, ModelError};
+use crate::Scalar;
+use crate::spatial::Reference;
+
+/// What a model consists of. [`Model::into_parts`] gives it, [`Model::from_parts`] takes it.
+#[derive(Clone, Debug)]
+pub struct ModelParts<S = f64> {
+    /// As [`Model::name`].
+    pub name: String,
+    /// As [`Model::gravity`], m/s².
+    pub gravity: Vector3<S>,
+    /// As [`Model::wrench_reference`].
+    pub wrench_reference: Reference,
+    /// As [`Model::bodies`].
+    pub bodies: Vec<Body<S>>,
+    /// As [`Model::frames`].
+    pub frames: Vec<Frame<S>>,
+    /// As [`Model::joints`].
+    pub joints: Vec<JointInfo>,
+}
+
+impl<S: Scalar> Model<S> {
+    /// The model's parts.
+    #[must_use]
+    pub fn into_parts(self) -> ModelParts<S> {
+        let Self { name, gravity, wrench_reference, bodies, frames, joints, .. } = self;
+        ModelParts { name, gravity, wrench_reference, bodies, frames, joints }
+    }
+
+    /// A model of these parts. Its indices are checked, its numbers may be any.
+    ///
+    /// # Errors
+    /// [`ModelError::Structure`] of the first part that breaks one of these rules:
+    ///
+    /// * Body 0 is the base. Each other body has a parent before it, in depth-first order.
+    /// * Coordinates and rates are numbered in the order of the bodies. A follower has those of a
+    ///   body that does not follow, and both have one degree of freedom.
+    /// * `joints` have the same coordinates and rates in the same order.
+    /// * Frames are on bodies that exist.
+    /// * Effects act on degrees of freedom that exist, with as many numbers as their fields have.
+    pub fn from_parts(parts: ModelParts<S>) -> Result<Self, ModelError> {
+        let (nq, nv) = parts.check()?;
+        let ModelParts { name, gravity, wrench_reference, bodies, frames, joints } = parts;
+        Ok(Self { name, gravity, wrench_reference, bodies, frames, joints, nq, nv })
+    }
+
+    /// The same model with its parts changed.
+    ///
+    /// # Panics
+    /// If `change` breaks a rule of [`Self::from_parts`].
+    #[must_use]
+    pub fn changed(self, change: impl FnOnce(&mut ModelParts<S>)) -> Self {
+        let mut parts = self.into_parts();
+        change(&mut parts);
+        Self::from_parts(parts).unwrap_or_else(|error| panic!("{error}"))
+    }
+}
+
+/// The refusal of a part.
+fn refused(part: String, found: String, expected: &'static str) -> ModelError {
+    ModelError::Structure { part, found, expected }
+}
+
+impl<S: Scalar> ModelParts<S> {
+    /// The numbers of coordinates and of degrees of freedom, if the parts fit together.
+    fn check(&self) -> Result<(usize, usize), ModelError> {
+        self.check_tree()?;
+        let sizes = self.check_coordinates()?;
+        self.check_joints(sizes)?;
+        for frame in self.frames.iter().filter(|frame| frame.body >= self.bodies.len()) {
+            let part = format!("frame {:?}", frame.name);
+            return Err(refused(part, format!("body {}", frame.body), "the index of a body"));
+        }
+        self.check_effects()?;
+        Ok(sizes)
+    }
+
+    fn check_tree(&self) -> Result<(), ModelError> {
+        if self.bodies.first().is_none_or(|base| base.parent != 0) {
+            return Err(refused("body 0".into(), "no base".into(), "a body that is its own parent"));
+        }
+        // The path from the base to the body before, which the next body has to hang on.
+        let mut path = Vec::from([0]);
+        for (i, body) in self.bodies.iter().enumerate().skip(1) {
+            while path.last().is_some_and(|last| *last != body.parent) {
+                path.pop();
+            }
+            if path.is_empty() {
+                return Err(refused(self.body(i), format!("parent {}", body.parent), "a body before it, in depth-first order"));
+            }
+            path.push(i);
+        }
+        Ok(())
+    }
+
+    fn check_coordinates(&self) -> Result<(usize, usize), ModelError> {
+        let (mut nq, mut nv) = (0, 0);
+        let mut leaders = Vec::new();
+        for (i, body) in self.bodies.iter().enumerate().skip(1).filter(|(_, body)| body.coordinates.mimic.is_none()) {
+            let (q, v) = (body.coordinates.q, body.coordinates.v);
+            if (q, v) != (nq, nv) {
+                return Err(refused(self.body(i), format!("coordinates from {q} and rates from {v}"), "those after the body before"));
+            }
+            if (body.joint.nq(), body.joint.nv()) == (1, 1) {
+                leaders.push((nq, nv));
+            }
+            nq += body.joint.nq();
+            nv += body.joint.nv();
+        }
+        for (i, body) in self.bodies.iter().enumerate().skip(1).filter(|(_, body)| body.coordinates.mimic.is_some()) {
+            let at = (body.coordinates.q, body.coordinates.v);
+            if (body.joint.nq(), body.joint.nv()) != (1, 1) || leaders.binary_search(&at).is_err() {
+                return Err(refused(
+                    self.body(i),
+                    format!("a follower of coordinate {}", at.0),
+                    "one degree of freedom, and a leader with one",
+                ));
+            }
+        }
+        Ok((nq, nv))
+    }
+
+    fn check_joints(&self, (nq, nv): (usize, usize)) -> Result<(), ModelError> {
+        let (mut q, mut v) = (0, 0);
+        for joint in &self.joints {
+            let (of_q, of_v) = joint.kind.sizes();
+            if joint.q != (q, of_q) || joint.v != (v, of_v) {
+                let found = format!("coordinates {:?} and rates {:?}", joint.q, joint.v);
+                return Err(refused(format!("joint {:?}", joint.name), found, "those after the joint before, as many as its kind has"));
+            }
+            (q, v) = (q + of_q, v + of_v);
+        }
+        if (q, v) != (nq, nv) {
+            return Err(refused("joints".into(), format!("{q} coordinates and {v} rates"), "as many as the bodies have"));
+        }
+        Ok(())
+    }
+
+    fn check_effects(&self) -> Result<(), ModelError> {
+        for (i, body) in self.bodies.iter().enumerate() {
+            let joint = body.effects.joint.iter().map(|on| (on.effect, on.parameters.len(), on.freedom < body.joint.nv()));
+            let link = body.effects.body.iter().map(|on| (on.effect, on.parameters.len(), true));
+            for (effect, found, acts) in joint.chain(link) {
+                if !acts || found != effect.row().len() {
+                    let found = format!("{} with {found} numbers", effect.row().name);
+                    return Err(refused(
+                        self.body(i),
+                        found,
+                        "an effect on a degree of freedom of its joint, with a number for each field",
+                    ));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn body(&self, i: usize) -> String {
+        format!("body {i} of joint {:?}", self.bodies[i].name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::string::ToString;
+    use alloc::vec;
+
+    use super::*;
+    use crate::description::{Base, Description, Joint, JointKind, Link, Mimic};
+    use crate::effect::{EffectId, JointEffect};
+
+    /// A base, a chain of three joints of which the last follows the first, and a branch.
+    fn robot() -> Model {
+        let links = ["base", "a", "b", "c", "d"].map(|name| Link { name: name.into(), ..Link::default() });
+        let joint = |name: &str, parent, child, mimic: Option<usize>| Joint {
+            name: name.into(),
+            kind: JointKind::Continuous,
+            parent,
+            child,
+            axis: [0.0, 0.0, 1.0],
+            mimic: mimic.map(|joint| Mimic { joint, multiplier: 2.0, offset: 0.0 }),
+            ..Joint::default()
+        };
+        let joints = vec![joint("ja", 0, 1, None), joint("jb", 1, 2, None), joint("jc", 2, 3, Some(0)), joint("jd", 1, 4, None)];
+        let description = Description { name: "robot".into(), links: links.into(), joints, ..Description::default() };
+        Model::new(&description, Base::Floating).unwrap()
+    }
+
+    #[test]
+    fn a_model_of_its_own_parts_is_the_model() {
+        let model = robot();
+        let again = Model::from_parts(model.clone().into_parts()).unwrap();
+        assert_eq!((again.nq, again.nv), (model.nq, model.nv));
+        assert_eq!(format!("{again:?}"), format!("{model:?}"));
+    }
+
+    #[test]
+    fn parts_that_do_not_fit_together_are_refused_with_their_name() {
+        type Change = fn(&mut ModelParts<f64>);
+        let cases: [(Change, &str); 12] = [
+            (|p| p.bodies.clear(), "body 0"),
+            (|p| p.bodies[3].parent = 3, "body 3 of joint \"jb\""),
+            (|p| p.bodies[3].parent = 4, "body 3"),
+            // The branch ends where a body hangs on the trunk again.
+            (|p| p.bodies.push(Body { parent: 3, ..p.bodies[4].clone() }), "body 6"),
+            (|p| p.bodies[3].coordinates.v = 6, "body 3"),
+            (|p| p.bodies[4].coordinates.q = 8 + 7, "body 4"),
+            (|p| p.bodies[4].joint = crate::joint::Joint::Spherical, "body 4"),
+            (|p| p.joints[1].q.0 = 3, "joint \"ja\""),
+            (|p| drop(p.joints.pop()), "joints"),
+            (|p| p.frames[0].body = 9, "frame \"base\""),
+            (|p| p.bodies[3].effects.joint.push(JointEffect { effect: EffectId::damping, freedom: 1, parameters: vec![1.0] }), "body 3"),
+            (|p| p.bodies[3].effects.joint.push(JointEffect { effect: EffectId::damping, freedom: 0, parameters: vec![] }), "body 3"),
+        ];
+        for (k, (change, named)) in cases.into_iter().enumerate() {
+            let mut parts = robot().into_parts();
+            change(&mut parts);
+            let error = Model::from_parts(parts).map(|_| ()).unwrap_err().to_string();
+            assert!(error.contains(named) && error.contains("expected"), "{k}: {error}");
+        }
+    }
+}
