@@ -1,0 +1,61 @@
+//! Every example runs and prints the result that its physics demands.
+
+use std::process::Command;
+
+fn printed(program: &str) -> String {
+    let done = Command::new(program).output().expect("the example starts");
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    String::from_utf8(done.stdout).expect("UTF-8")
+}
+
+/// The last number of the first line that contains `words`.
+fn number(text: &str, words: &str) -> f64 {
+    let line = text.lines().find(|line| line.contains(words)).unwrap_or_else(|| panic!("no {words:?} in {text}"));
+    let numbers = line.split(|c: char| c.is_whitespace() || "(),;".contains(c)).filter_map(|word| word.parse().ok());
+    numbers.last().unwrap_or_else(|| panic!("no number in {line:?}"))
+}
+
+#[test]
+fn the_arm_follows_its_reference_and_a_heavy_tool_disturbs_it() {
+    let text = printed(env!("CARGO_BIN_EXE_computed_torque"));
+    let errors: Vec<f64> = text.lines().skip(1).map(|line| line.split_whitespace().nth(1).unwrap().parse().unwrap()).collect();
+    assert!(errors.len() == 3 && errors[0] < 0.5 && errors[0] < errors[1] && errors[1] < errors[2], "{text}");
+}
+
+#[test]
+fn the_cart_balances_its_pole() {
+    assert!(number(&printed(env!("CARGO_BIN_EXE_lqr")), "distance from the equilibrium") < 0.01);
+}
+
+#[test]
+fn a_known_payload_is_held_still() {
+    let text = printed(env!("CARGO_BIN_EXE_gravity_compensation"));
+    for line in text.lines().skip(1) {
+        let [mass, _, known, unknown]: [f64; 4] =
+            line.split_whitespace().map(|x| x.parse().unwrap()).collect::<Vec<_>>().try_into().unwrap();
+        assert!(known < 1e-10 && (unknown > 0.1) == (mass > 0.0), "{text}");
+    }
+}
+
+#[test]
+fn the_quadruped_stands() {
+    let text = printed(env!("CARGO_BIN_EXE_quadruped"));
+    assert!(number(&text, "it stands at") < 1e-2, "{text}");
+}
+
+#[test]
+fn momentum_is_conserved() {
+    let text = printed(env!("CARGO_BIN_EXE_momentum"));
+    assert!(number(&text, "largest change") < 1e-8, "{text}");
+}
+
+#[test]
+fn batches_agree_with_single_calls() {
+    assert!(number(&printed(env!("CARGO_BIN_EXE_batches")), "largest difference") < 1e-9);
+}
+
+#[test]
+fn a_robot_is_read_at_run_time() {
+    let text = printed(env!("CARGO_BIN_EXE_read_a_robot"));
+    assert!(text.contains("gripper_arm") && text.contains("kg that move"), "{text}");
+}
