@@ -75,7 +75,7 @@ impl<S: Scalar> ModelParts<S> {
         self.check_tree()?;
         let sizes = self.check_coordinates()?;
         self.check_joints(sizes)?;
-        for frame in self.frames.iter().filter(|frame| frame.body >= self.bodies.len()) {
+        if let Some(frame) = self.frames.iter().find(|frame| frame.body >= self.bodies.len()) {
             let part = format!("frame {:?}", frame.name);
             return Err(refused(part, format!("body {}", frame.body), "the index of a body"));
         }
