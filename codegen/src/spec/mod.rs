@@ -264,7 +264,7 @@ mod tests {
             f.id != preset.id && f.general == preset.general && preset.takes.iter().all(|a| f.takes.contains(a))
         };
         let pairs: Vec<_> = pairs.filter(|(function, preset)| is_preset(function, preset)).collect();
-        assert_eq!(pairs.len(), 13, "each preset of a row and of the row's other presets");
+        assert_eq!(pairs.len(), 14, "each preset of a row and of the row's other presets");
         for (k, (function, preset)) in pairs.into_iter().enumerate() {
             let fixed = function.takes.iter().filter(|a| !preset.takes.contains(a)).map(|a| format!("{} = 0", a.name()));
             let fixed = fixed.collect::<Vec<_>>().join(", ");

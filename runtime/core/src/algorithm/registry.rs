@@ -254,6 +254,17 @@ mod tests {
     use crate::description::{Base, Description, Link};
 
     #[test]
+    fn a_preset_takes_a_part_of_what_its_row_takes_and_is_found_from_it() {
+        for f in functions::<f64>() {
+            let row = f.general.row::<f64>();
+            let kept: Vec<Argument> = row.takes.iter().copied().filter(|a| f.takes.contains(a)).collect();
+            assert_eq!((row.id, kept.as_slice()), (row.general, f.takes), "{}", f.name);
+            let zeros: Vec<Argument> = f.zeros().collect();
+            assert_eq!((zeros.is_empty(), row.at_zero(|a| zeros.contains(&a)).id), (f.id == row.id, f.id), "{}", f.name);
+        }
+    }
+
+    #[test]
     fn a_function_without_a_way_is_told_and_gives_nothing() {
         let robot = Description { links: Vec::from([Link::default()]), ..Description::default() };
         let model = Model::<f64>::new(&robot, Base::Floating).unwrap();
