@@ -70,20 +70,16 @@ impl Tree {
     fn instructions(&self, part: &FunctionTerm, columns: bool) -> f64 {
         let factors = 0.5 * self.squares;
         let inverse = self.freedoms * self.pairs;
-        let own = match part.function.name {
+        let own = match part.function.general.name() {
             "mass_matrix" => 20.0 * self.pairs,
             "coriolis_matrix" => 30.0 * self.pairs,
-            "inverse_dynamics_derivatives" | "inverse_dynamics_derivatives_with_wrenches" => 55.0 * self.pairs,
+            "inverse_dynamics_derivatives_with_wrenches" => 55.0 * self.pairs,
             "static_torque_derivative" => 15.0 * self.pairs,
             "torque_regressor" => 70.0 * self.pairs,
             "mass_matrix_inverse" => 20.0 * self.pairs + inverse,
-            "forward_dynamics_derivatives" | "forward_dynamics_derivatives_with_wrenches" => {
-                80.0 * self.pairs + if columns { factors } else { 5.0 * inverse }
-            }
-            "forward_dynamics" | "forward_dynamics_with_wrenches" | "solve_mass_matrix" if self.has_followers => {
-                20.0 * self.pairs + factors
-            }
-            "forward_dynamics" | "forward_dynamics_with_wrenches" | "solve_mass_matrix" => 150.0 * self.bodies,
+            "forward_dynamics_derivatives_with_wrenches" => 80.0 * self.pairs + if columns { factors } else { 5.0 * inverse },
+            "forward_dynamics_with_wrenches" | "solve_mass_matrix" if self.has_followers => 20.0 * self.pairs + factors,
+            "forward_dynamics_with_wrenches" | "solve_mass_matrix" => 150.0 * self.bodies,
             "operational_space_inertia" | "operational_space_inertia_inverse" => 20.0 * self.pairs + factors + 12.0 * self.frame_squares,
             "placement_derivatives" => 35.0 * self.frame_pairs,
             "jacobians_body" => 30.0 * self.frame_pairs,

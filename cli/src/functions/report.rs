@@ -35,6 +35,9 @@ pub(super) struct FunctionRow {
     pub(super) unit: &'static str,
     pub(super) summary: &'static str,
     pub(super) algorithm: &'static str,
+    /// Of a preset: the function, and which of its arguments are zero.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) preset_of: Option<Preset>,
     /// One for each robot.
     pub(super) costs: Vec<Cell>,
 }
@@ -45,6 +48,13 @@ pub(super) enum Cell {
     Cost(Cost),
     /// Why the robot does not have the function.
     Undefined(String),
+}
+
+/// A function at zeros.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct Preset {
+    function: &'static str,
+    zeros: Vec<&'static str>,
 }
 
 /// What is emitted.
@@ -74,8 +84,18 @@ impl FunctionRow {
             unit: f.unit,
             summary: f.summary,
             algorithm: f.source,
+            preset_of: (f.general != f.id).then(|| Preset { function: f.general.name(), zeros: f.zeros().map(Argument::name).collect() }),
             costs,
         }
+    }
+
+    /// The algorithm and its source; of a preset what it is a preset of, the function's name between
+    /// two of these quotes.
+    pub(super) fn computed_by(&self, quote: &str) -> String {
+        self.preset_of.as_ref().map_or_else(
+            || self.algorithm.to_owned(),
+            |preset| format!("{quote}{}{quote} at {} = 0", preset.function, preset.zeros.join(" = ")),
+        )
     }
 }
 

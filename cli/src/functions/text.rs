@@ -27,7 +27,7 @@ pub(super) fn text(report: &Report) -> String {
     let _ = write!(out, "\n{}", costs.text());
     footnotes.lines().for_each(|line| out += &(line + "\n"));
     let mut meanings = Table::new(["function", "what", "units", "algorithm"].map(|t| (t, ""))).left(4);
-    by_group(report, &mut meanings, |f| [f.summary, f.unit, f.algorithm].map(str::to_owned).to_vec());
+    by_group(report, &mut meanings, |f| vec![f.summary.to_owned(), f.unit.to_owned(), f.computed_by("")]);
     out + "\n" + &meanings.text()
 }
 
@@ -77,7 +77,7 @@ pub(super) fn markdown(report: &Report) -> String {
         for f in report.functions.iter().filter(|f| f.group == group) {
             let gives = if f.gives.is_empty() { "a number".into() } else { format!("`{}`", f.gives) };
             let costs: String = f.costs.iter().map(|c| format!(" {} |", footnotes.cell(c))).collect();
-            let (summary, unit, algorithm) = (cell(f.summary), cell(f.unit), cell(f.algorithm));
+            let (summary, unit, algorithm) = (cell(f.summary), cell(f.unit), cell(&f.computed_by("`")));
             let _ = writeln!(out, "| `{}({})` | {gives} {unit} | {summary} | {algorithm} |{costs}", f.function, f.takes.join(", "));
         }
     }

@@ -22,6 +22,8 @@ fn every_function_has_its_cost_or_the_reason_why_not() {
     let few = "fewer than six degrees of freedom carry each tip";
     assert!((0..2).all(|k| of("operational_space_inertia")["costs"][k]["undefined"] == few));
     assert!(of("inverse_dynamics")["costs"][1]["cost"].is_object());
+    let preset = serde_json::json!({ "function": "inverse_dynamics_with_wrenches", "zeros": ["a", "wrenches"] });
+    assert_eq!((&of("bias_forces")["preset_of"], &of("mass_matrix")["preset_of"]), (&preset, &serde_json::Value::Null));
     let text = run(&words);
     assert_eq!(text.status, 0, "{}", text.err);
     for part in [
@@ -29,6 +31,7 @@ fn every_function_has_its_cost_or_the_reason_why_not() {
         "not defined: no moving link with mass",
         "not defined: fewer than six",
         "– (3)",
+        "inverse_dynamics_with_wrenches at a = wrenches = 0",
     ] {
         assert!(text.out.contains(part), "{part}: {}", text.out);
     }

@@ -1,6 +1,6 @@
 //! Which functions may take which form of generated code.
 
-use articulated_core::algorithm::FunctionId;
+use articulated_core::algorithm::{Argument, FunctionId};
 
 /// A form of generated code that not every function takes. The first two keep the results and are
 /// taken where they cost less.
@@ -22,28 +22,23 @@ impl Form {
     /// Whether a function takes it.
     pub(crate) fn fits(self, function: FunctionId) -> bool {
         use FunctionId as F;
+        let row = function.row::<f64>();
+        // At rest no body rotates.
+        let moves = row.takes.contains(&Argument::V);
         match self {
-            Self::ShiftedMasses => matches!(
-                function,
-                F::inverse_dynamics
-                    | F::inverse_dynamics_with_wrenches
-                    | F::bias_forces
-                    | F::forward_dynamics
-                    | F::forward_dynamics_with_wrenches
-            ),
-            Self::AxisAccelerations => matches!(
-                function,
-                F::inverse_dynamics
-                    | F::inverse_dynamics_with_wrenches
-                    | F::joint_wrenches
-                    | F::bias_forces
-                    | F::forward_dynamics
-                    | F::forward_dynamics_with_wrenches
-                    | F::center_of_mass_acceleration
-                    | F::centroidal_momentum_rate
-                    | F::forward_dynamics_derivatives
-                    | F::forward_dynamics_derivatives_with_wrenches
-            ),
+            Self::ShiftedMasses => moves && matches!(row.general, F::inverse_dynamics_with_wrenches | F::forward_dynamics_with_wrenches),
+            Self::AxisAccelerations => {
+                moves
+                    && matches!(
+                        row.general,
+                        F::inverse_dynamics_with_wrenches
+                            | F::joint_wrenches
+                            | F::forward_dynamics_with_wrenches
+                            | F::center_of_mass_acceleration
+                            | F::centroidal_momentum_rate
+                            | F::forward_dynamics_derivatives_with_wrenches
+                    )
+            }
             Self::FromTheLast => matches!(function, F::mass_matrix | F::mass_matrix_inverse),
         }
     }

@@ -172,13 +172,9 @@ impl FunctionTerm {
     /// The term that gives the same and takes none of the arguments that are fixed at zero, as far
     /// as there is one.
     fn reduced(&self) -> Self {
-        let is_zero = |argument: &Argument| self.constant(*argument).is_some_and(Constant::is_zero);
-        let preset = PRESETS.iter().find(|(general, zeros, _)| *general == self.function.name && zeros.iter().all(is_zero));
-        let Some((function, zeros)) = preset.and_then(|(_, zeros, name)| Some((function(name).ok()?, zeros))) else {
-            return self.clone();
-        };
-        let constants = self.constants.iter().filter(|(argument, _)| !zeros.contains(argument)).cloned().collect();
-        Self { function, constants, sines: self.sines }.reduced()
+        let function = self.function.at_zero(|argument| self.constant(argument).is_some_and(Constant::is_zero));
+        let constants = self.constants.iter().filter(|(argument, _)| function.takes.contains(argument)).cloned().collect();
+        Self { function, constants, sines: self.sines }
     }
 
     /// The constant in the place of an argument.
@@ -186,23 +182,6 @@ impl FunctionTerm {
         self.constants.iter().find(|(a, _)| *a == argument).map(|(_, c)| c)
     }
 }
-
-/// Functions, arguments of theirs that are zero, and the function that they are then; of several
-/// the one with most zeros first.
-const PRESETS: &[(&str, &[Argument], &str)] = &[
-    ("inverse_dynamics_with_wrenches", &[Argument::Wrenches], "inverse_dynamics"),
-    ("inverse_dynamics_with_wrenches", &[Argument::V, Argument::A], "static_torque"),
-    ("inverse_dynamics", &[Argument::V, Argument::A], "gravity_torque"),
-    ("inverse_dynamics", &[Argument::A], "bias_forces"),
-    ("bias_forces", &[Argument::V], "gravity_torque"),
-    ("static_torque", &[Argument::Wrenches], "gravity_torque"),
-    ("forward_dynamics_with_wrenches", &[Argument::Wrenches], "forward_dynamics"),
-    ("inverse_dynamics_derivatives_with_wrenches", &[Argument::Wrenches], "inverse_dynamics_derivatives"),
-    ("forward_dynamics_derivatives_with_wrenches", &[Argument::Wrenches], "forward_dynamics_derivatives"),
-    ("accelerations_body", &[Argument::A], "bias_accelerations_body"),
-    ("accelerations_world", &[Argument::A], "bias_accelerations_world"),
-    ("accelerations_world_aligned", &[Argument::A], "bias_accelerations_world_aligned"),
-];
 
 /// `q = sin_cos`
 fn is_sines(entry: &str) -> bool {
@@ -279,15 +258,18 @@ mod tests {
     fn what_is_fixed_at_zero_costs_nothing() {
         let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/urdf/ur5_like.urdf");
         let mut request = crate::Request::new("ur5_like", std::fs::read(robot).unwrap());
-        for (k, (general, zeros, preset)) in PRESETS.iter().enumerate() {
-            let (row, other) = (function(general).unwrap(), function(preset).unwrap());
-            let left: Vec<Argument> = row.takes.iter().copied().filter(|a| !zeros.contains(a)).collect();
-            assert_eq!((row.gives, left.as_slice()), (other.gives, other.takes), "{general}");
-            let fixed: Vec<String> = zeros.iter().map(|a| format!("{} = 0", a.name())).collect();
-            request
-                .options
-                .functions
-                .extend([format!("own_{k} = {general}({})", fixed.join(", ")).into(), format!("plain_{k} = {preset}").into()]);
+        let all = functions::<Sym>();
+        let pairs = all.iter().flat_map(|preset| all.iter().map(move |function| (function, preset)));
+        let is_preset = |f: &Function<Sym>, preset: &Function<Sym>| {
+            f.id != preset.id && f.general == preset.general && preset.takes.iter().all(|a| f.takes.contains(a))
+        };
+        let pairs: Vec<_> = pairs.filter(|(function, preset)| is_preset(function, preset)).collect();
+        assert_eq!(pairs.len(), 14, "each preset of a row and of the row's other presets");
+        for (k, (function, preset)) in pairs.into_iter().enumerate() {
+            let fixed = function.takes.iter().filter(|a| !preset.takes.contains(a)).map(|a| format!("{} = 0", a.name()));
+            let fixed = fixed.collect::<Vec<_>>().join(", ");
+            let own = format!("own_{k} = {}({fixed})", function.name);
+            request.options.functions.extend([own.into(), format!("plain_{k} = {}", preset.name).into()]);
         }
         request.options.functions.push("all = inverse_dynamics_with_wrenches(v = 0, a = [0, 0, 0, 0, 0, 0], wrenches = 0)".into());
         request.options.functions.push("torque = gravity_torque".into());

@@ -18,10 +18,9 @@ use super::{Magnitude, ROUNDOFF};
 pub(super) fn scales(model: &Model<f64>, row: &Function<f64>, arguments: &[&[f64]]) -> Result<Vec<f64>, FunctionError> {
     let q = arguments.first().ok_or(FunctionError::Length { argument: "arguments", found: 0, expected: row.takes.len() })?;
     let state = State { model, mass: Mass::at(model, q)?, arguments };
-    match row.id {
-        FunctionId::forward_dynamics | FunctionId::forward_dynamics_with_wrenches => state.forward_dynamics(row),
-        FunctionId::forward_dynamics_derivatives => state.forward_slopes(row, FunctionId::forward_dynamics),
-        FunctionId::forward_dynamics_derivatives_with_wrenches => state.forward_slopes(row, FunctionId::forward_dynamics_with_wrenches),
+    match row.general {
+        FunctionId::forward_dynamics_with_wrenches => state.forward_dynamics(row),
+        FunctionId::forward_dynamics_derivatives_with_wrenches => state.forward_slopes(row),
         FunctionId::solve_mass_matrix => Ok(state.mass.solution(&absolute(arguments[1]), &state.value(row)?)),
         FunctionId::mass_matrix_inverse => Ok(state.mass.inverse_scale()),
         FunctionId::operational_space_inertia_inverse => state.operational_space(None),
@@ -74,20 +73,21 @@ impl State<'_> {
     /// M a = τ − h.
     fn forward_dynamics(&self, row: &Function<f64>) -> Result<Vec<f64>, FunctionError> {
         let still = vec![0.0; self.model.nv()];
-        let needed =
-            magnitudes(self.model, inverse_of(row, "inverse_dynamics", "inverse_dynamics_with_wrenches"), &given(&self.with(&still)))?;
+        let inverse = beside(row, FunctionId::inverse_dynamics_with_wrenches);
+        let needed = magnitudes(self.model, inverse.name, &given(&self.with(&still)))?;
         let right: Vec<f64> = needed.iter().zip(self.arguments[2]).map(|(h, tau)| h.magnitude + tau.abs()).collect();
         Ok(self.mass.solution(&right, &self.value(row)?))
     }
 
     /// M ∂a/∂x = −∂τ/∂x at a, which is itself off by its own scale; and M ∂a/∂τ = 1.
-    fn forward_slopes(&self, row: &Function<f64>, solved: FunctionId) -> Result<Vec<f64>, FunctionError> {
-        let a = self.value(solved.row())?;
+    fn forward_slopes(&self, row: &Function<f64>) -> Result<Vec<f64>, FunctionError> {
+        let solved = beside(row, FunctionId::forward_dynamics_with_wrenches);
+        let a = self.value(solved)?;
         let known: Vec<Magnitude> =
-            a.iter().zip(self.forward_dynamics(solved.row())?).map(|(a, scale)| Magnitude::computed(*a, scale.max(a.abs()))).collect();
+            a.iter().zip(self.forward_dynamics(solved)?).map(|(a, scale)| Magnitude::computed(*a, scale.max(a.abs()))).collect();
         let mut arguments = given(&self.with(&a));
         arguments[2] = known;
-        let name = inverse_of(row, "inverse_dynamics_derivatives", "inverse_dynamics_derivatives_with_wrenches");
+        let name = beside(row, FunctionId::inverse_dynamics_derivatives_with_wrenches).name;
         let right: Vec<f64> = magnitudes(self.model, name, &arguments)?.iter().map(|x| x.magnitude).collect();
         let (size, slopes) = (self.mass.n * self.mass.n, self.value(row)?);
         let block = |k: usize| self.mass.solution(&right[k * size..][..size], &slopes[k * size..][..size]);
@@ -141,9 +141,9 @@ impl State<'_> {
     }
 }
 
-/// The function that the row solves with.
-fn inverse_of(row: &Function<f64>, plain: &'static str, with_wrenches: &'static str) -> &'static str {
-    if row.takes.contains(&Argument::Wrenches) { with_wrenches } else { plain }
+/// A function with the wrenches of another one, or with none where that takes none.
+fn beside(other: &Function<f64>, function: FunctionId) -> &'static Function<f64> {
+    function.row().at_zero(|argument| argument == Argument::Wrenches && !other.takes.contains(&argument))
 }
 
 fn value(model: &Model<f64>, row: &Function<f64>, arguments: &[&[f64]]) -> Result<Vec<f64>, FunctionError> {

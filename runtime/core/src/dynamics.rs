@@ -4,36 +4,20 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::Scalar;
-use crate::algorithm::argument::for_each_argument;
+use crate::algorithm::argument::{dims, told};
 use crate::algorithm::table::for_each_function;
 use crate::algorithm::{Argument, FunctionError, FunctionId, Shape, Workspace};
 use crate::model::{JointInfo, JointRow, Model};
 
-/// A dimension, or dimensions, as they are indexed; a single number is an array of one.
-macro_rules! dims {
-    () => { "[1]" };
-    ($($dim:ident $(($n:literal))?),+) => { concat!($(dims!(one $dim $($n)?)),+) };
-    (one Nq) => { "[nq]" };
-    (one Nv) => { "[nv]" };
-    (one Frames) => { "[frames]" };
-    (one Links) => { "[links]" };
-    (one Of $n:literal) => { concat!("[", $n, "]") };
-}
-
-macro_rules! told_arguments {
-    ($($(#[$doc:meta])* $variant:ident $name:ident [$($dim:ident $(($n:literal))?),*] $unit:literal;)*) => {
-        /// An argument with its dimensions and unit.
-        macro_rules! told {
-            $(($name) => { concat!(stringify!($name), ": `", dims!($($dim $(($n))?),*), "` ", $unit) };)*
-        }
-    };
-}
-
-for_each_argument!(told_arguments);
-
 macro_rules! methods {
-    ($($name:ident($($argument:ident),*) -> [$($dim:ident $(($n:literal))?),*] $unit:literal, $group:ident, $needs:ident, $regrouped:literal,
-        $summary:literal, $source:literal $(, by $ways:tt)? $(, columns $unsolved:ident)?;)*) => {
+    ($($name:ident($($argument:ident),*) $(= $general:ident)?
+        $(-> [$($dim:ident $(($n:literal))?),*] $unit:literal, $group:ident, $needs:ident, $regrouped:literal)?,
+        $summary:literal $(, $source:literal)? $(, by $ways:tt)? $(, columns $unsolved:ident)?;)*) => {
+        /// What a function gives, with its unit: of a preset what its row gives.
+        macro_rules! gives {
+            $(($name) => { $(gives!($general))? $(concat!("`", dims!($($dim $(($n))?),*), "` ", $unit))? };)*
+        }
+
         /// A robot's dynamics. Code written over this trait runs on generated robots and on a [`Model`] alike.
         ///
         /// Every function of the table is a method, with what it takes and gives; more on each is at the function of the same name in
@@ -98,7 +82,7 @@ macro_rules! methods {
             }
 
             $(
-                #[doc = concat!($summary, ".\n\n", $("* ", told!($argument), "\n",)* "* out: `", dims!($($dim $(($n))?),*), "` ", $unit, ".")]
+                #[doc = concat!($summary, ".\n\n", $("* ", told!($argument), "\n",)* "* out: ", gives!($name), ".")]
                 #[inline]
                 fn $name(&self, ws: &mut Self::Workspace, $($argument: &[S],)* out: &mut [S]) -> Result<(), FunctionError> {
                     self.call(FunctionId::$name, ws, &[$($argument),*], out)
@@ -140,24 +124,5 @@ impl<S: Scalar> Dynamics<S> for Model<S> {
     #[inline]
     fn call(&self, function: FunctionId, ws: &mut Workspace<S>, arguments: &[&[S]], out: &mut [S]) -> Result<(), FunctionError> {
         function.row().call(self, ws, arguments, out)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use alloc::format;
-    use alloc::string::String;
-
-    use crate::algorithm::Dim;
-
-    /// As it is indexed: the names of dimensions in small letters.
-    fn shown(dims: &[Dim]) -> String {
-        dims.iter().map(|d| format!("[{}]", format!("{d}").to_lowercase())).collect()
-    }
-
-    #[test]
-    fn dimensions_are_documented_as_they_are() {
-        assert_eq!(dims!(Frames, Of(6), Nv), shown(&[Dim::Frames, Dim::Of(6), Dim::Nv]));
-        assert_eq!((dims!(Nq, Links), dims!()), ("[nq][links]", "[1]"));
     }
 }

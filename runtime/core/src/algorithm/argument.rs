@@ -52,33 +52,18 @@ pub(super) fn size(dims: &[Dim], shape: Shape) -> usize {
     dims.iter().map(|d| d.len(shape)).product()
 }
 
-/// Hands all arguments to the macro `$then`: the variant of each, its name, its dimensions, and its units for documentation.
-macro_rules! for_each_argument {
-    ($then:ident) => {
-        $then! {
-            /// q, `[nq]`: rad, m, or position and unit quaternion.
-            Q q [Nq] "rad|m|unit quaternion";
-            /// v, `[nv]`: rad/s, m/s, or body twist [ω; v].
-            V v [Nv] "rad/s|m/s";
-            /// a = dv/dt, `[nv]`.
-            A a [Nv] "rad/s²|m/s²";
-            /// τ, `[nv]`: N·m or N.
-            Tau tau [Nv] "N·m|N";
-            /// Wrenches [m; f] on the frames, `[frames][6]`, N·m and N, as [`Model::wrench_reference`] says.
-            Wrenches wrenches [Frames, Of(6)] "[m; f] on each frame, N·m and N";
-            /// A step in the tangent space, `[nv]`: rad, m, or twist times time.
-            Step step [Nv] "rad|m, a small motion in the tangent space";
-            /// A second configuration, `[nq]`.
-            Target target [Nq] "rad|m|unit quaternion";
-            /// Numbers in [0, 1), `[nq]`.
-            Uniform uniform [Nq] "each uniform in 0 to 1";
-            /// sin q and cos q of each coordinate, `[nq][2]`, for callers that have them: generated functions take it where they are asked to.
-            SinCos sines [Nq, Of(2)] "[sin q, cos q] of each coordinate that is an angle; the others are not read";
-        }
-    };
+/// A dimension, or dimensions, as they are indexed; a single number is an array of one.
+macro_rules! dims {
+    () => { "[1]" };
+    ($($dim:ident $(($n:literal))?),+) => { concat!($(dims!(one $dim $($n)?)),+) };
+    (one Nq) => { "[nq]" };
+    (one Nv) => { "[nv]" };
+    (one Frames) => { "[frames]" };
+    (one Links) => { "[links]" };
+    (one Of $n:literal) => { concat!("[", $n, "]") };
 }
 
-pub(crate) use for_each_argument;
+pub(crate) use dims;
 
 macro_rules! arguments {
     ($($(#[$doc:meta])* $variant:ident $name:ident [$($dim:ident $(($n:literal))?),*] $unit:literal;)*) => {
@@ -115,12 +100,38 @@ macro_rules! arguments {
         macro_rules! argument {
             $(($name) => { Argument::$variant };)*
         }
+
+        /// An argument with its dimensions and unit, for documentation.
+        macro_rules! told {
+            $(($name) => { concat!(stringify!($name), ": `", dims!($($dim $(($n))?),*), "` ", $unit) };)*
+        }
     };
 }
 
-for_each_argument!(arguments);
+// The variant of each argument, its name, its dimensions, and its units for documentation.
+arguments! {
+    /// q, `[nq]`: rad, m, or position and unit quaternion.
+    Q q [Nq] "rad|m|unit quaternion";
+    /// v, `[nv]`: rad/s, m/s, or body twist [ω; v].
+    V v [Nv] "rad/s|m/s";
+    /// a = dv/dt, `[nv]`.
+    A a [Nv] "rad/s²|m/s²";
+    /// τ, `[nv]`: N·m or N.
+    Tau tau [Nv] "N·m|N";
+    /// Wrenches [m; f] on the frames, `[frames][6]`, N·m and N, as [`Model::wrench_reference`] says.
+    Wrenches wrenches [Frames, Of(6)] "[m; f] on each frame, N·m and N";
+    /// A step in the tangent space, `[nv]`: rad, m, or twist times time.
+    Step step [Nv] "rad|m, a small motion in the tangent space";
+    /// A second configuration, `[nq]`.
+    Target target [Nq] "rad|m|unit quaternion";
+    /// Numbers in [0, 1), `[nq]`.
+    Uniform uniform [Nq] "each uniform in 0 to 1";
+    /// sin q and cos q of each coordinate, `[nq][2]`, for callers that have them: generated functions take it where they are asked to.
+    SinCos sines [Nq, Of(2)] "[sin q, cos q] of each coordinate that is an angle; the others are not read";
+}
 
 pub(super) use argument;
+pub(crate) use told;
 
 impl Argument {
     /// All that functions of the table take.
@@ -129,5 +140,24 @@ impl Argument {
     /// How many numbers.
     pub fn len(self, shape: Shape) -> usize {
         size(self.dims(), shape)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::format;
+    use alloc::string::String;
+
+    use super::Dim;
+
+    /// As it is indexed: the names of dimensions in small letters.
+    fn shown(dims: &[Dim]) -> String {
+        dims.iter().map(|d| format!("[{}]", format!("{d}").to_lowercase())).collect()
+    }
+
+    #[test]
+    fn dimensions_are_documented_as_they_are() {
+        assert_eq!(dims!(Frames, Of(6), Nv), shown(&[Dim::Frames, Dim::Of(6), Dim::Nv]));
+        assert_eq!((dims!(Nq, Links), dims!()), ("[nq][links]", "[1]"));
     }
 }

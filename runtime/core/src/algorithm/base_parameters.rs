@@ -8,7 +8,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::{Workspace, inverse_dynamics, random_configuration};
+use super::{Workspace, inverse_dynamics_with_wrenches, random_configuration};
 use crate::Scalar;
 use crate::effect::Effects;
 use crate::joint::Joint;
@@ -140,7 +140,7 @@ fn torque_columns(model: &Model<f64>, parameters: impl Fn(usize) -> &'static [Di
             weightless.bodies[i].inertia = SpatialInertia::from_parameters(*direction);
             let mut column = vec![0.0; states.len() * model.nv];
             for ([q, v, a], tau) in states.iter().zip(column.chunks_exact_mut(model.nv.max(1))) {
-                inverse_dynamics(&weightless, &mut ws, q, v, a, tau);
+                inverse_dynamics_with_wrenches(&weightless, &mut ws, q, v, a, &[], tau);
             }
             columns.push(column);
         }

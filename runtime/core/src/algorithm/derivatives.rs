@@ -22,23 +22,15 @@ use crate::Scalar;
 use crate::model::Model;
 use crate::spatial::{Reference, Twist, Vector3, Wrench, rotate};
 
-/// ∂τ/∂q, ∂τ/∂v and ∂τ/∂a = M of τ = inverse dynamics.
+/// ∂τ/∂q, ∂τ/∂v and ∂τ/∂a = M of τ = inverse dynamics, with external wrenches that stay as they are
+/// in their reference.
 ///
-/// q: `[nq]`; v, a: `[nv]`; out: `[3][nv][nv]`, entry (i, j) of each is ∂τ_i/∂x_j. q in the tangent space: a quaternion joint's child moves by a small motion in
-/// its own axes.
+/// q: `[nq]`; v, a: `[nv]`; wrenches: `[frames][6]`, as [`Model::wrench_reference`] says, or empty;
+/// out: `[3][nv][nv]`, entry (i, j) of each is ∂τ_i/∂x_j. q in the tangent space: a quaternion
+/// joint's child moves by a small motion in its own axes.
 ///
 /// # Panics
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
-pub fn inverse_dynamics_derivatives<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S], out: &mut [S]) {
-    inverse_dynamics_derivatives_with_wrenches(model, ws, q, v, a, &[], out);
-}
-
-/// As [`inverse_dynamics_derivatives`], with external wrenches that stay as they are in their reference.
-///
-/// wrenches: `[frames][6]`, as [`Model::wrench_reference`] says, or empty.
-///
-/// # Panics
-/// As [`inverse_dynamics_derivatives`].
 pub fn inverse_dynamics_derivatives_with_wrenches<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,
@@ -77,7 +69,7 @@ pub fn inverse_dynamics_derivatives_with_wrenches<S: Scalar>(
 /// q: `[nq]`; wrenches: `[frames][6]`; out: `[nv · nv]`, row by row.
 ///
 /// # Panics
-/// As [`inverse_dynamics_derivatives`].
+/// As [`inverse_dynamics_derivatives_with_wrenches`].
 pub fn static_torque_derivative<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], wrenches: &[S], out: &mut [S]) {
     out.fill(S::zero());
     positions(model, ws, axes(model), q);
@@ -112,22 +104,14 @@ pub fn static_torque_derivative<S: Scalar>(model: &Model<S>, ws: &mut Workspace<
     }
 }
 
-/// ∂a/∂q, ∂a/∂v and ∂a/∂τ = M⁻¹ of a = forward dynamics.
+/// ∂a/∂q, ∂a/∂v and ∂a/∂τ = M⁻¹ of a = forward dynamics, with external wrenches that stay as they
+/// are in their reference.
 ///
-/// q: `[nq]`; v, tau: `[nv]`; out: `[3][nv][nv]`, entry (i, j) of each is ∂a_i/∂x_j. q in the tangent space.
-///
-/// # Panics
-/// As [`inverse_dynamics_derivatives`].
-pub fn forward_dynamics_derivatives<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], tau: &[S], out: &mut [S]) {
-    forward_dynamics_derivatives_with_wrenches(model, ws, q, v, tau, &[], out);
-}
-
-/// As [`forward_dynamics_derivatives`], with external wrenches that stay as they are in their reference.
-///
-/// wrenches: `[frames][6]`, as [`Model::wrench_reference`] says, or empty.
+/// q: `[nq]`; v, tau: `[nv]`; wrenches: `[frames][6]`, as [`Model::wrench_reference`] says, or
+/// empty; out: `[3][nv][nv]`, entry (i, j) of each is ∂a_i/∂x_j. q in the tangent space.
 ///
 /// # Panics
-/// As [`inverse_dynamics_derivatives`].
+/// As [`inverse_dynamics_derivatives_with_wrenches`].
 pub fn forward_dynamics_derivatives_with_wrenches<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,
@@ -150,20 +134,13 @@ pub fn forward_dynamics_derivatives_with_wrenches<S: Scalar>(
     ws.matrix = matrix;
 }
 
-/// All of [`forward_dynamics_derivatives`] but the solution of M X = −B column by column, which is the same for each, so that generated code may leave it a loop: B = ∂τ/∂q and
-/// B = ∂τ/∂v, and in the third matrix M = Lᵀ D L: L below the diagonal, D⁻¹ on it, zeros above. Without motors.
+/// All of [`forward_dynamics_derivatives_with_wrenches`] but the solution of M X = −B column by column,
+/// which is the same for each, so that generated code may leave it a loop: B = ∂τ/∂q and B = ∂τ/∂v,
+/// and in the third matrix M = Lᵀ D L: L below the diagonal, D⁻¹ on it, zeros above. Without motors.
 ///
 /// # Panics
-/// As [`inverse_dynamics_derivatives`].
-pub(super) fn unsolved_derivatives<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], tau: &[S], out: &mut [S]) {
-    unsolved_derivatives_with_wrenches(model, ws, q, v, tau, &[], out);
-}
-
-/// As [`unsolved_derivatives`], with external wrenches.
-///
-/// # Panics
-/// As [`inverse_dynamics_derivatives`].
-pub(super) fn unsolved_derivatives_with_wrenches<S: Scalar>(
+/// As [`inverse_dynamics_derivatives_with_wrenches`].
+pub(super) fn unsolved_derivatives<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,
     q: &[S],
@@ -195,9 +172,7 @@ fn unsolved<S: Scalar>(
 ) -> alloc::vec::Vec<S> {
     let n = model.nv * model.nv;
     let (mut matrix, mut a) = (core::mem::take(&mut ws.matrix), core::mem::take(&mut ws.solution));
-    let zeros = core::mem::take(&mut ws.zeros);
-    inverse_dynamics_with_wrenches(model, ws, q, v, &zeros, wrenches, &mut a);
-    ws.zeros = zeros;
+    inverse_dynamics_with_wrenches(model, ws, q, v, &[], wrenches, &mut a);
     let mut driven = core::mem::take(&mut ws.driven);
     effects::motor_torque(model, v, tau, &mut driven);
     a.iter_mut().zip(&driven).for_each(|(b, tau)| *b = *tau - *b);

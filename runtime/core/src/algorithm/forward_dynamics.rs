@@ -8,24 +8,17 @@ use super::rnea::inverse_dynamics_with_wrenches;
 use crate::Scalar;
 use crate::model::Model;
 
-/// a = M(q)⁻¹·(τ − h(q, v)).
-///
-/// q: `[nq]`; v: `[nv]`; tau: `[nv]` N·m|N; out: `[nv]` rad/s²|m/s². By M = Lᵀ D L; Featherstone 2008, §6.5. Where M is singular to
-/// working precision the result is what rounding made of a pivot: infinite, not a number, or finite and of no meaning; [`super::checked_forward_dynamics`] tells. A model
-/// with [`Model::massless_joints`] is singular everywhere.
-///
-/// # Panics
-/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
-pub fn forward_dynamics<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], tau: &[S], out: &mut [S]) {
-    forward_dynamics_with_wrenches(model, ws, q, v, tau, &[], out);
-}
-
 /// a = M(q)⁻¹·(τ + Σ Jᵀw − h(q, v)), with external wrenches w on the frames.
 ///
-/// As [`forward_dynamics`]; wrenches: `[frames][6]` N·m and N, as [`Model::wrench_reference`] says, or empty.
+/// q: `[nq]`; v: `[nv]`; tau: `[nv]` N·m|N; wrenches: `[frames][6]` N·m and N, as
+/// [`Model::wrench_reference`] says, or empty; out: `[nv]` rad/s²|m/s². By M = Lᵀ D L; Featherstone
+/// 2008, §6.5. Where M is singular to working precision the result is what rounding made of a
+/// pivot: infinite, not a number, or finite and of no meaning; [`super::checked_forward_dynamics`]
+/// tells. A model with [`Model::massless_joints`] is singular everywhere.
 ///
 /// # Panics
-/// As [`forward_dynamics`].
+/// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`]
+/// check and return an error.
 pub fn forward_dynamics_with_wrenches<S: Scalar>(
     model: &Model<S>,
     ws: &mut Workspace<S>,
@@ -35,9 +28,7 @@ pub fn forward_dynamics_with_wrenches<S: Scalar>(
     wrenches: &[S],
     out: &mut [S],
 ) {
-    let zeros = core::mem::take(&mut ws.zeros);
-    inverse_dynamics_with_wrenches(model, ws, q, v, &zeros, wrenches, out);
-    ws.zeros = zeros;
+    inverse_dynamics_with_wrenches(model, ws, q, v, &[], wrenches, out);
     // b = τ − h
     let mut driven = core::mem::take(&mut ws.driven);
     effects::motor_torque(model, v, tau, &mut driven);
@@ -53,7 +44,7 @@ pub fn forward_dynamics_with_wrenches<S: Scalar>(
 /// q: `[nq]`; tau: `[nv]`; out: `[nv]`.
 ///
 /// # Panics
-/// As [`forward_dynamics`].
+/// As [`forward_dynamics_with_wrenches`].
 pub fn solve_mass_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], tau: &[S], out: &mut [S]) {
     let matrix = factored(model, ws, q);
     out.copy_from_slice(tau);
@@ -66,7 +57,7 @@ pub fn solve_mass_matrix<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: 
 /// q: `[nq]`; out: `[nv · nv]`, symmetric.
 ///
 /// # Panics
-/// As [`forward_dynamics`].
+/// As [`forward_dynamics_with_wrenches`].
 pub fn mass_matrix_inverse<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
     let matrix = factored(model, ws, q);
     inverse(&matrix, &ws.parent_dof, out);

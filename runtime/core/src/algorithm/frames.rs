@@ -47,13 +47,8 @@ in_three_references! {
     /// Time derivatives of the twists of all frames, rad/s² and m/s², gravity not added: spatial accelerations.
     /// About the frame's origin in world axes: [ω̇; p̈], the true acceleration of the origin.
     ///
-    /// q: `[nq]`; v, a: `[nv]`; out: `[frames][6]`.
+    /// q: `[nq]`; v: `[nv]`; a: `[nv]`, or empty for zeros; out: `[frames][6]`.
     frame_accelerations, accelerations_body, accelerations_world, accelerations_world_aligned, (q, v, a);
-
-    /// J̇ v: the accelerations at a = 0.
-    ///
-    /// q: `[nq]`; v: `[nv]`; out: `[frames][6]`.
-    frame_bias, bias_accelerations_body, bias_accelerations_world, bias_accelerations_world_aligned, (q, v);
 
     /// Jacobians of all frames: twist = J v, with the six rows of the twist [ω; v] of the same reference (`_body`: own axes, own origin; `_world`: world axes, the world's
     /// origin; `_world_aligned`: world axes, own origin) and a column for each degree of freedom.
@@ -105,16 +100,12 @@ fn twist_of<S: Scalar>(ws: &Workspace<S>, frame: &Frame<S>, place: &Place<S>) ->
     if frame.body == 0 { Twist::zero() } else { ws.common[frame.body].twist.at(place.offset) }
 }
 
-fn frame_bias<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, reference: Reference, q: &[S], v: &[S], out: &mut [S]) {
-    let zeros = core::mem::take(&mut ws.zeros);
-    frame_accelerations(model, ws, reference, q, v, &zeros, out);
-    ws.zeros = zeros;
-}
-
 fn frame_accelerations<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, reference: Reference, q: &[S], v: &[S], a: &[S], out: &mut [S]) {
     positions(model, ws, Axes::Base, q);
     twists(model, ws, Axes::Base, v);
-    accelerations(model, ws, v, a, Vector3::zeros());
+    let zeros = core::mem::take(&mut ws.zeros);
+    accelerations(model, ws, v, if a.is_empty() { &zeros } else { a }, Vector3::zeros());
+    ws.zeros = zeros;
     for (frame, out) in model.frames.iter().zip(out.chunks_exact_mut(6)) {
         if frame.body == 0 {
             out.fill(S::zero());

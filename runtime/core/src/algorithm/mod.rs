@@ -35,19 +35,16 @@ pub use call::{FunctionError, check_count, check_length, exactly, exactly_rows};
 pub use checked::{checked_forward_dynamics, checked_forward_dynamics_with_wrenches};
 pub use coriolis::coriolis_matrix;
 pub use crba::mass_matrix;
-pub use derivatives::{
-    forward_dynamics_derivatives, forward_dynamics_derivatives_with_wrenches, inverse_dynamics_derivatives,
-    inverse_dynamics_derivatives_with_wrenches, static_torque_derivative,
-};
-use derivatives::{unsolved_derivatives, unsolved_derivatives_with_wrenches, without_motors};
+pub use derivatives::{forward_dynamics_derivatives_with_wrenches, inverse_dynamics_derivatives_with_wrenches, static_torque_derivative};
+use derivatives::{unsolved_derivatives, without_motors};
 pub use effects::{dissipation, effect_forces, motor_torques};
 pub use energy::{kinetic_energy, potential_energy};
 pub use formulation::{AngularKinematics, Formulation, FrameRotation};
-pub use forward_dynamics::{forward_dynamics, forward_dynamics_with_wrenches, mass_matrix_inverse, solve_mass_matrix};
+pub use forward_dynamics::{forward_dynamics_with_wrenches, mass_matrix_inverse, solve_mass_matrix};
 pub use frames::{
-    accelerations_body, accelerations_world, accelerations_world_aligned, bias_accelerations_body, bias_accelerations_world,
-    bias_accelerations_world_aligned, jacobian_rates_body, jacobian_rates_world, jacobian_rates_world_aligned, jacobians_body,
-    jacobians_world, jacobians_world_aligned, placement_derivatives, twists_body, twists_world, twists_world_aligned,
+    accelerations_body, accelerations_world, accelerations_world_aligned, jacobian_rates_body, jacobian_rates_world,
+    jacobian_rates_world_aligned, jacobians_body, jacobians_world, jacobians_world_aligned, placement_derivatives, twists_body,
+    twists_world, twists_world_aligned,
 };
 pub use kinematics::placements;
 pub use manifold::{coordinate_box, difference, integrate, neutral, random_configuration};
@@ -59,6 +56,7 @@ pub use momentum::{
 pub use operational_space::{operational_space_inertia, operational_space_inertia_inverse};
 pub use registry::{Function, Group, Needs, Shape, Way};
 pub use regressor::{PARAMETERS, kinetic_energy_regressor, potential_energy_regressor, torque_regressor};
-pub use rnea::{bias_forces, gravity_torque, inverse_dynamics, inverse_dynamics_with_wrenches, joint_wrenches, static_torque};
+pub use rnea::{inverse_dynamics_with_wrenches, joint_wrenches};
+pub use table::presets::*;
 pub use table::{FunctionId, function, functions};
 pub use workspace::Workspace;

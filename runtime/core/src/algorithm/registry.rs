@@ -44,8 +44,21 @@ pub enum Needs {
     FreeFrames,
 }
 
-/// An algorithm as the table holds it: arguments in the order of `takes`, lengths checked.
-pub(super) type Run<S> = fn(&Model<S>, &mut Workspace<S>, &[&[S]], &mut [S]);
+/// What an algorithm gets, by the number of the argument; an empty slice is zeros.
+pub(super) struct Inputs<'a, S>(pub(super) [&'a [S]; Argument::ALL.len()]);
+
+impl<'a, S> Inputs<'a, S> {
+    /// These arguments, and no others.
+    #[inline]
+    pub(super) fn new<const N: usize>(given: [(Argument, &'a [S]); N]) -> Self {
+        let mut inputs = Self([&[]; Argument::ALL.len()]);
+        given.into_iter().for_each(|(argument, given)| inputs.0[argument as usize] = given);
+        inputs
+    }
+}
+
+/// An algorithm as the table holds it, lengths checked.
+pub(super) type Run<S> = fn(&Model<S>, &mut Workspace<S>, &Inputs<'_, S>, &mut [S]);
 
 /// One way to compute a function.
 pub struct Way<S: 'static> {
@@ -136,10 +149,13 @@ impl Group {
     }
 }
 
-/// One row: a function that any robot can have.
+/// One row, or a preset of one: a function that any robot can have.
 pub struct Function<S: 'static> {
     /// Its number.
     pub id: FunctionId,
+    /// The row: the function with all arguments. Of a preset, which is that function with zeros for
+    /// what it does not take, another one.
+    pub general: FunctionId,
     /// Its name everywhere: in Rust, in scenes, on the command line.
     pub name: &'static str,
     /// The equation and what it means.
@@ -167,6 +183,21 @@ pub struct Function<S: 'static> {
 }
 
 impl<S: Scalar> Function<S> {
+    /// What of the row's arguments is zero; nothing for a row.
+    pub fn zeros(&self) -> impl Iterator<Item = Argument> + '_ {
+        self.general.row::<S>().takes.iter().copied().filter(|argument| !self.takes.contains(argument))
+    }
+
+    /// The same function with some of its arguments at zero: of the presets of its row the one that
+    /// takes the fewest, or the function itself.
+    pub fn at_zero(&self, is_zero: impl Fn(Argument) -> bool) -> &'static Self {
+        let fits = |f: &&Self| {
+            let rest_is_zero = self.takes.iter().all(|a| f.takes.contains(a) || is_zero(*a));
+            f.general == self.general && f.takes.iter().all(|a| self.takes.contains(a)) && rest_is_zero
+        };
+        functions().iter().filter(fits).min_by_key(|f| f.takes.len()).unwrap_or(self.id.row())
+    }
+
     /// Whether the function divides by the mass matrix, so that a joint that moves no mass makes it undefined.
     pub fn inverts_mass_matrix(&self) -> bool {
         matches!(self.needs, Needs::MassMatrix | Needs::FreeFrames)
@@ -203,11 +234,13 @@ impl<S: Scalar> Function<S> {
         }
         let shape = ws.shape;
         check_count(self.name, arguments.len(), self.takes.len())?;
+        let mut inputs = Inputs::new([]);
         for (argument, given) in self.takes.iter().zip(arguments) {
             check_length(argument.name(), given.len(), argument.len(shape))?;
+            inputs.0[*argument as usize] = given;
         }
         check_length("out", out.len(), self.len(shape))?;
-        (way.run)(model, ws, arguments, out);
+        (way.run)(model, ws, &inputs, out);
         Ok(())
     }
 }
@@ -219,6 +252,17 @@ mod tests {
 
     use super::*;
     use crate::description::{Base, Description, Link};
+
+    #[test]
+    fn a_preset_takes_a_part_of_what_its_row_takes_and_is_found_from_it() {
+        for f in functions::<f64>() {
+            let row = f.general.row::<f64>();
+            let kept: Vec<Argument> = row.takes.iter().copied().filter(|a| f.takes.contains(a)).collect();
+            assert_eq!((row.id, kept.as_slice()), (row.general, f.takes), "{}", f.name);
+            let zeros: Vec<Argument> = f.zeros().collect();
+            assert_eq!((zeros.is_empty(), row.at_zero(|a| zeros.contains(&a)).id), (f.id == row.id, f.id), "{}", f.name);
+        }
+    }
 
     #[test]
     fn a_function_without_a_way_is_told_and_gives_nothing() {

@@ -15,22 +15,14 @@ use crate::joint::{JointLaw, Mount};
 use crate::model::{Body, Model};
 use crate::spatial::{Motion, rate_matrix, rates_about, rotate};
 
-/// τ = M(q)·a + h(q, v), gravity included.
+/// τ = M(q)·a + h(q, v) − Σ Jᵀw, with external wrenches w on the frames.
 ///
-/// q: `[nq]` rad|m|quaternion; v, a: `[nv]` rad/s|m/s and their derivatives; tau: `[nv]` N·m|N. Featherstone 2008, Table 5.1.
+/// q: `[nq]` rad|m|quaternion; v, a: `[nv]` rad/s|m/s and their derivatives, or empty for zeros;
+/// wrenches: `[frames][6]` N·m and N, as [`Model::wrench_reference`] says, or empty; tau: `[nv]`
+/// N·m|N. Gravity included. Featherstone 2008, Table 5.1.
 ///
 /// # Panics
 /// If a slice is shorter than stated; [`super::Function::call`] and [`crate::dynamics::Dynamics`] check and return an error.
-pub fn inverse_dynamics<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S], tau: &mut [S]) {
-    inverse_dynamics_with_wrenches(model, ws, q, v, a, &[], tau);
-}
-
-/// τ = M(q)·a + h(q, v) − Σ Jᵀw, with external wrenches w on the frames.
-///
-/// As [`inverse_dynamics`]; wrenches: `[frames][6]` N·m and N, as [`Model::wrench_reference`] says, or empty.
-///
-/// # Panics
-/// As [`inverse_dynamics`].
 #[inline]
 pub fn inverse_dynamics_with_wrenches<S: Scalar>(
     model: &Model<S>,
@@ -41,7 +33,10 @@ pub fn inverse_dynamics_with_wrenches<S: Scalar>(
     wrenches: &[S],
     tau: &mut [S],
 ) {
+    let zeros = core::mem::take(&mut ws.zeros);
+    let [v, a] = [v, a].map(|x| if x.is_empty() { &zeros } else { x });
     recursion(model, ws, q, v, a, &LoadCase::of(model, wrenches), tau);
+    ws.zeros = zeros;
 }
 
 /// M(q)·v, the generalised momentum: inverse dynamics of the acceleration v at rest and in an empty world.
@@ -106,52 +101,16 @@ impl ModelFeatures {
 /// between bodies changes these wrenches.
 ///
 /// # Panics
-/// As [`inverse_dynamics`].
+/// As [`inverse_dynamics_with_wrenches`].
 pub fn joint_wrenches<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], a: &[S], out: &mut [S]) {
     let mut tau = core::mem::take(&mut ws.row);
-    inverse_dynamics(model, ws, q, v, a, &mut tau);
+    inverse_dynamics_with_wrenches(model, ws, q, v, a, &[], &mut tau);
     ws.row = tau;
     for (i, out) in model.links().zip(out.chunks_exact_mut(6)) {
         if let Some(link) = &model.bodies[i].link {
             out.copy_from_slice(&ws.bodies[i].wrench.turned_back(link).to_array());
         }
     }
-}
-
-/// g(q) − Σ Jᵀw: what holds the robot still under external wrenches w on the frames.
-///
-/// q: `[nq]`; wrenches: `[frames][6]` N·m and N, as [`Model::wrench_reference`] says; out: `[nv]` N·m|N.
-///
-/// # Panics
-/// As [`inverse_dynamics`].
-pub fn static_torque<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], wrenches: &[S], out: &mut [S]) {
-    let zeros = core::mem::take(&mut ws.zeros);
-    inverse_dynamics_with_wrenches(model, ws, q, &zeros, &zeros, wrenches, out);
-    ws.zeros = zeros;
-}
-
-/// h(q, v) = τ at a = 0: Coriolis, centrifugal and gravity forces.
-///
-/// q: `[nq]`; v: `[nv]`; out: `[nv]` N·m|N.
-///
-/// # Panics
-/// As [`inverse_dynamics`].
-pub fn bias_forces<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], v: &[S], out: &mut [S]) {
-    let zeros = core::mem::take(&mut ws.zeros);
-    inverse_dynamics(model, ws, q, v, &zeros, out);
-    ws.zeros = zeros;
-}
-
-/// g(q) = τ at v = a = 0: what holds the robot still against gravity and the effects that act at rest.
-///
-/// q: `[nq]`; out: `[nv]` N·m|N.
-///
-/// # Panics
-/// As [`inverse_dynamics`].
-pub fn gravity_torque<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, q: &[S], out: &mut [S]) {
-    let zeros = core::mem::take(&mut ws.zeros);
-    inverse_dynamics(model, ws, q, &zeros, &zeros, out);
-    ws.zeros = zeros;
 }
 
 /// Motion and own wrench of each body, with the formulation's kinematics and inertias or with the

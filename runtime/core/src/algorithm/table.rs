@@ -7,10 +7,19 @@
 //! ```
 //!
 //! with `by` and a list of ways where there is more than one (its name, where it can be had, its least cost, its algorithm, and in whose axes if not the usual) and `columns` where there is a part of it before M X = B is solved.
+//!
+//! A preset is a row at zeros. It takes everything but its name, its arguments and its summary from
+//! the row. An argument of the row that it does not list is zero: the algorithm gets an empty slice
+//! for it, and leaves out what it can.
+//!
+//! ```text
+//! name(arguments) = row, "what it is";
+//! ```
 
 use core::marker::PhantomData;
 
-use super::argument::argument;
+use super::argument::{argument, dims, told};
+use super::registry::Inputs;
 use super::workspace::near_the_middle;
 #[allow(clippy::wildcard_imports)]
 // Why: the rows name every algorithm there is.
@@ -51,35 +60,28 @@ macro_rules! for_each_function {
                 "dJ/dt of jacobians_world", "columns ad V S; Featherstone 2008, §2.9";
             jacobian_rates_world_aligned(q, v) -> [Frames, Of(6), Nv] "1/s and m/s", Kinematics, Nothing, false,
                 "dJ/dt of jacobians_world_aligned", "columns ad V S; Featherstone 2008, §2.9";
-            bias_accelerations_body(q, v) -> [Frames, Of(6)] "rad/s² and m/s²", Kinematics, Nothing, false,
-                "dJ/dt·v of jacobians_body: accelerations at a = 0", "outward sweep; Featherstone 2008, §2.11";
-            bias_accelerations_world(q, v) -> [Frames, Of(6)] "rad/s² and m/s²", Kinematics, Nothing, false,
-                "dJ/dt·v of jacobians_world: accelerations at a = 0", "outward sweep; Featherstone 2008, §2.11";
-            bias_accelerations_world_aligned(q, v) -> [Frames, Of(6)] "rad/s² and m/s²", Kinematics, Nothing, false,
-                "dJ/dt·v of jacobians_world_aligned: accelerations at a = 0", "outward sweep; Featherstone 2008, §2.11";
+            bias_accelerations_body(q, v) = accelerations_body, "dJ/dt·v of jacobians_body: accelerations at a = 0";
+            bias_accelerations_world(q, v) = accelerations_world, "dJ/dt·v of jacobians_world: accelerations at a = 0";
+            bias_accelerations_world_aligned(q, v) = accelerations_world_aligned,
+                "dJ/dt·v of jacobians_world_aligned: accelerations at a = 0";
             placement_derivatives(q) -> [Frames, Of(12), Nv] "of rotation row by row, then position; 1 and m a unit step", Derivatives, Nothing, false,
                 "∂(placements)/∂q in the tangent space", "columns [s]×R and s × p; Lynch & Park 2017, §5.1";
-            inverse_dynamics(q, v, a) -> [Nv] "N·m|N", Dynamics, Nothing, true,
-                "τ = M(q)·a + h(q, v), gravity included", "RNEA; Featherstone 2008, Table 5.1";
+            inverse_dynamics(q, v, a) = inverse_dynamics_with_wrenches, "τ = M(q)·a + h(q, v), gravity included";
             inverse_dynamics_with_wrenches(q, v, a, wrenches) -> [Nv] "N·m|N", Dynamics, Nothing, true,
                 "τ = M(q)·a + h(q, v) − Σ Jᵀw, with external wrenches w on the frames", "RNEA; Featherstone 2008, Table 5.1";
             joint_wrenches(q, v, a) -> [Links, Of(6)] "[m; f], N·m and N, in axes of the link about its origin", Dynamics, Nothing, false,
                 "the wrench that each joint passes to its child link", "RNEA; Featherstone 2008, Table 5.1";
-            bias_forces(q, v) -> [Nv] "N·m|N", Dynamics, Nothing, true,
-                "h(q, v) = τ at a = 0: Coriolis, centrifugal and gravity forces", "RNEA; Featherstone 2008, Table 5.1";
-            gravity_torque(q) -> [Nv] "N·m|N", Dynamics, Nothing, true,
-                "g(q) = τ at v = a = 0: what holds the robot still", "RNEA; Featherstone 2008, Table 5.1";
-            static_torque(q, wrenches) -> [Nv] "N·m|N", Dynamics, Nothing, true,
-                "g(q) − Σ Jᵀw: what holds the robot still under external wrenches w on the frames", "RNEA; Featherstone 2008, Table 5.1";
+            bias_forces(q, v) = inverse_dynamics_with_wrenches, "h(q, v) = τ at a = 0: Coriolis, centrifugal and gravity forces";
+            gravity_torque(q) = inverse_dynamics_with_wrenches, "g(q) = τ at v = a = 0: what holds the robot still";
+            static_torque(q, wrenches) = inverse_dynamics_with_wrenches,
+                "g(q) − Σ Jᵀw: what holds the robot still under external wrenches w on the frames";
             mass_matrix(q) -> [Nv, Nv] "kg·m²|kg·m|kg, symmetric", Dynamics, Nothing, true,
                 "M(q)", "CRBA; Featherstone 2008, Table 6.2";
             coriolis_matrix(q, v) -> [Nv, Nv] "N·m·s|N·s|N·s/m", Dynamics, Nothing, true,
                 "C(q, v) of the links alone, with C v + g = h without effects, and Ṁ − 2C skew: that of the Christoffel symbols",
                 "Echeandia & Wensing, J. Comput. Nonlinear Dyn. 16, 2021",
                 by ["", always, nothing, coriolis_matrix; "the axes of the first body", near_the_middle, nothing, coriolis_matrix in axes_of_first_bodies];
-            forward_dynamics(q, v, tau) -> [Nv] "rad/s²|m/s²", Dynamics, MassMatrix, true,
-                "a = M(q)⁻¹·(τ − h(q, v))", "ABA, or RNEA, CRBA and M = Lᵀ D L; Featherstone 2008, Table 7.1 and §6.5",
-                by ["ABA", untied, nothing, articulated_body; "LTDL", always, factorization, forward_dynamics];
+            forward_dynamics(q, v, tau) = forward_dynamics_with_wrenches, "a = M(q)⁻¹·(τ − h(q, v))";
             forward_dynamics_with_wrenches(q, v, tau, wrenches) -> [Nv] "rad/s²|m/s²", Dynamics, MassMatrix, true,
                 "a = M(q)⁻¹·(τ + Σ Jᵀw − h(q, v)), with external wrenches w on the frames",
                 "ABA, or RNEA, CRBA and M = Lᵀ D L; Featherstone 2008, Table 7.1 and §6.5",
@@ -107,24 +109,20 @@ macro_rules! for_each_function {
                 "A with centroidal_momentum = A v", "composite inertias; Orin, Goswami & Lee, Auton. Robots 35, 2013";
             centroidal_momentum_rate(q, v, a) -> [Of(6)] "[k̇; l̇], N·m and N, world axes", Momentum, Mass, false,
                 "d/dt of centroidal_momentum = A a + Ȧ v", "Newton and Euler; Orin, Goswami & Lee, Auton. Robots 35, 2013";
-            inverse_dynamics_derivatives(q, v, a) -> [Of(3), Nv, Nv] "∂τ/∂q, ∂τ/∂v, ∂τ/∂a = M; rows τ", Derivatives, Nothing, true,
-                "first derivatives of inverse_dynamics; q in the tangent space",
-                "Singh, Russell & Wensing, IEEE RA-L 7, 2022; Carpentier & Mansard, RSS 2018",
-                by ["", always, nothing, inverse_dynamics_derivatives; "the axes of the first body", near_the_middle, nothing, inverse_dynamics_derivatives in axes_of_first_bodies];
+            inverse_dynamics_derivatives(q, v, a) = inverse_dynamics_derivatives_with_wrenches,
+                "first derivatives of inverse_dynamics; q in the tangent space";
             inverse_dynamics_derivatives_with_wrenches(q, v, a, wrenches) -> [Of(3), Nv, Nv]
                 "∂τ/∂q, ∂τ/∂v, ∂τ/∂a = M; rows τ", Derivatives, Nothing, true,
                 "first derivatives of inverse_dynamics_with_wrenches; q in the tangent space, wrenches constant in their reference",
-                "Singh, Russell & Wensing, IEEE RA-L 7, 2022",
+                "Singh, Russell & Wensing, IEEE RA-L 7, 2022; Carpentier & Mansard, RSS 2018",
                 by ["", always, nothing, inverse_dynamics_derivatives_with_wrenches; "the axes of the first body", near_the_middle, nothing, inverse_dynamics_derivatives_with_wrenches in axes_of_first_bodies];
-            forward_dynamics_derivatives(q, v, tau) -> [Of(3), Nv, Nv] "∂a/∂q, ∂a/∂v, ∂a/∂τ = M⁻¹; rows a", Derivatives, MassMatrix, true,
-                "first derivatives of forward_dynamics; q in the tangent space",
-                "−M⁻¹ ∂(inverse dynamics); Carpentier & Mansard, RSS 2018",
-                by ["", always, nothing, forward_dynamics_derivatives; "the axes of the first body", near_the_middle, nothing, forward_dynamics_derivatives in axes_of_first_bodies], columns unsolved_derivatives;
+            forward_dynamics_derivatives(q, v, tau) = forward_dynamics_derivatives_with_wrenches,
+                "first derivatives of forward_dynamics; q in the tangent space";
             forward_dynamics_derivatives_with_wrenches(q, v, tau, wrenches) -> [Of(3), Nv, Nv]
                 "∂a/∂q, ∂a/∂v, ∂a/∂τ = M⁻¹; rows a", Derivatives, MassMatrix, true,
                 "first derivatives of forward_dynamics_with_wrenches; q in the tangent space, wrenches constant in their reference",
                 "−M⁻¹ ∂(inverse dynamics); Carpentier & Mansard, RSS 2018",
-                by ["", always, nothing, forward_dynamics_derivatives_with_wrenches; "the axes of the first body", near_the_middle, nothing, forward_dynamics_derivatives_with_wrenches in axes_of_first_bodies], columns unsolved_derivatives_with_wrenches;
+                by ["", always, nothing, forward_dynamics_derivatives_with_wrenches; "the axes of the first body", near_the_middle, nothing, forward_dynamics_derivatives_with_wrenches in axes_of_first_bodies], columns unsolved_derivatives;
             static_torque_derivative(q, wrenches) -> [Nv, Nv] "N·m|N per unit step, rows τ", Derivatives, Nothing, true,
                 "∂(static_torque)/∂q in the tangent space, wrenches constant in their reference",
                 "Singh, Russell & Wensing, IEEE RA-L 7, 2022",
@@ -182,18 +180,10 @@ macro_rules! ways {
         Way { name: $way, applies: $applies, least: $least, run: ways!(run $run, $arguments $(, in $axes)?) }
     };
     (run $run:ident, ($($argument:ident),*)) => {
-        |model, ws, arguments, out| {
-            if let &[$($argument),*] = arguments {
-                $run(model, ws, $($argument,)* out);
-            }
-        }
+        |model, ws, inputs, out| $run(model, ws, $(inputs.0[argument!($argument) as usize],)* out)
     };
     (run $run:ident, ($($argument:ident),*), in $axes:ident) => {
-        |model, ws, arguments, out| {
-            if let &[$($argument),*] = arguments {
-                ws.$axes(|ws| $run(model, ws, $($argument,)* out));
-            }
-        }
+        |model, ws, inputs, out| ws.$axes(|ws| $run(model, ws, $(inputs.0[argument!($argument) as usize],)* out))
     };
 }
 
@@ -206,9 +196,70 @@ macro_rules! unsolved {
     };
 }
 
+/// A row or a preset of one.
+macro_rules! entry {
+    ($name:ident, ($($argument:ident),*), $summary:literal, = $general:ident) => {
+        Function {
+            id: FunctionId::$name,
+            name: stringify!($name),
+            summary: $summary,
+            takes: &[$(argument!($argument)),*],
+            ..Self::$general
+        }
+    };
+    ($name:ident, ($($argument:ident),*), $summary:literal,
+        -> [$($dim:ident $(($n:literal))?),*] $unit:literal, $group:ident, $needs:ident, $regrouped:literal,
+        $source:literal $(, by $ways:tt)? $(, columns $unsolved:ident)?) => {
+        Function {
+            id: FunctionId::$name,
+            general: FunctionId::$name,
+            name: stringify!($name),
+            summary: $summary,
+            source: $source,
+            takes: &[$(argument!($argument)),*],
+            gives: &[$(Dim::$dim $(($n))?),*],
+            unit: $unit,
+            group: Group::$group,
+            needs: Needs::$needs,
+            regrouped: $regrouped,
+            ways: ways!($name, ($($argument),*) $(, $ways)?),
+            unsolved: unsolved!(($($argument),*) $(, $unsolved)?),
+        }
+    };
+}
+
+/// The algorithm of a row by its inputs.
+macro_rules! by_inputs {
+    ($name:ident, $arguments:tt, = $general:ident) => {};
+    ($name:ident, ($($argument:ident),*), -> $row:ident) => {
+        #[inline]
+        pub(super) fn $name<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, inputs: &Inputs<'_, S>, out: &mut [S]) {
+            super::super::$name(model, ws, $(inputs.0[argument!($argument) as usize],)* out);
+        }
+    };
+}
+
+/// A preset as a function.
+macro_rules! preset {
+    ($name:ident, $arguments:tt, $summary:literal, -> $row:ident) => {};
+    ($name:ident, ($($argument:ident),*), $summary:literal, = $general:ident) => {
+        #[doc = concat!($summary, ".\n\n[`", stringify!($general), "`] with zeros for what is not taken.\n\n", $("* ", told!($argument), "\n",)*)]
+        ///
+        /// # Panics
+        /// If a slice is shorter than stated; [`Function::call`] and [`crate::dynamics::Dynamics`]
+        /// check and return an error.
+        #[inline]
+        pub fn $name<S: Scalar>(model: &Model<S>, ws: &mut Workspace<S>, $($argument: &[S],)* out: &mut [S]) {
+            let inputs = Inputs::new([$((argument!($argument), $argument)),*]);
+            by_inputs::$general(model, ws, &inputs, out);
+        }
+    };
+}
+
 macro_rules! rows {
-    ($($name:ident($($argument:ident),*) -> [$($dim:ident $(($n:literal))?),*] $unit:literal, $group:ident, $needs:ident, $regrouped:literal,
-        $summary:literal, $source:literal $(, by $ways:tt)? $(, columns $unsolved:ident)?;)*) => {
+    ($($name:ident $arguments:tt $(= $general:ident)?
+        $(-> $dims:tt $unit:literal, $group:ident, $needs:ident, $regrouped:literal)?,
+        $summary:literal $(, $source:literal)? $(, by $ways:tt)? $(, columns $unsolved:ident)?;)*) => {
         /// The functions by number: each variant is called as its function is.
         #[allow(non_camel_case_types)]
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -225,23 +276,27 @@ macro_rules! rows {
             }
         }
 
+        #[allow(non_upper_case_globals)]
         impl<S: Scalar> Table<S> {
-            const ROWS: &'static [Function<S>] = &[$(
-                Function {
-                    id: FunctionId::$name,
-                    name: stringify!($name),
-                    summary: $summary,
-                    source: $source,
-                    takes: &[$(argument!($argument)),*],
-                    gives: &[$(Dim::$dim $(($n))?),*],
-                    unit: $unit,
-                    group: Group::$group,
-                    needs: Needs::$needs,
-                    regrouped: $regrouped,
-                    ways: ways!($name, ($($argument),*) $(, $ways)?),
-                    unsolved: unsolved!(($($argument),*) $(, $unsolved)?),
-                },
-            )*];
+            $(const $name: Function<S> = entry!($name, $arguments, $summary, $(= $general)?
+                $(-> $dims $unit, $group, $needs, $regrouped,)? $($source)? $(, by $ways)? $(, columns $unsolved)?);)*
+
+            const ROWS: &'static [Function<S>] = &[$(Self::$name),*];
+        }
+
+        // Why: of the rows only those that have presets are called.
+        #[allow(dead_code)]
+        mod by_inputs {
+            use super::*;
+
+            $(by_inputs!($name, $arguments, $(= $general)? $(-> $needs)?);)*
+        }
+
+        /// The presets of the table.
+        pub(super) mod presets {
+            use super::*;
+
+            $(preset!($name, $arguments, $summary, $(= $general)? $(-> $needs)?);)*
         }
     };
 }

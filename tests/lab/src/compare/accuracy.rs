@@ -81,11 +81,9 @@ const JUDGED: usize = 16;
 
 /// The function that says what torques the result of a function needs, where it is judged by those.
 pub(crate) fn inverse_of(function: &Function<f64>) -> Option<&'static str> {
-    match function.id {
-        FunctionId::forward_dynamics => Some("inverse_dynamics"),
-        FunctionId::forward_dynamics_with_wrenches => Some("inverse_dynamics_with_wrenches"),
-        _ => None,
-    }
+    let inverse = FunctionId::inverse_dynamics_with_wrenches.row::<f64>();
+    let solves = function.general == FunctionId::forward_dynamics_with_wrenches;
+    solves.then(|| inverse.at_zero(|argument| argument == Argument::Wrenches && !function.takes.contains(&argument)).name)
 }
 
 /// The largest errors over some of the states; `None` where the reference does not have the function.
