@@ -1,30 +1,42 @@
-//! The tables of `docs/scenes.md` are those that scenes are read by. `UPDATE_DOCS=1 cargo test -p articulated-scene --test manual` writes them anew.
+//! The tables of `docs/scenes.md` and `docs/effects.md` are those that scenes are read by.
+//! `UPDATE_DOCS=1 cargo test -p articulated-scene --test manual` writes them anew.
 
 use std::fs;
 
-const FILE: &str = "../docs/scenes.md";
+const FILES: [&str; 2] = ["../docs/scenes.md", "../docs/effects.md"];
+
+fn text(file: &str) -> String {
+    fs::read_to_string(file).unwrap()
+}
 
 #[test]
 fn the_manual_has_every_key() {
-    let text = fs::read_to_string(FILE).unwrap();
-    let mut renewed = text.clone();
-    for (name, table) in articulated_scene::manual::tables() {
-        let (begin, end) = (format!("<!-- {name} -->\n"), "<!-- end -->");
-        let from = renewed.find(&begin).unwrap_or_else(|| panic!("no table {name}")) + begin.len();
-        let to = from + renewed[from..].find(end).unwrap_or_else(|| panic!("table {name} has no end"));
-        renewed.replace_range(from..to, &format!("{table}\n"));
+    let mut tables = articulated_scene::manual::tables();
+    for file in FILES {
+        let text = text(file);
+        let mut renewed = text.clone();
+        tables.retain(|(name, table)| {
+            let (begin, end) = (format!("<!-- {name} -->\n"), "<!-- end -->");
+            let Some(at) = renewed.find(&begin) else { return true };
+            let from = at + begin.len();
+            let to = from + renewed[from..].find(end).unwrap_or_else(|| panic!("table {name} has no end"));
+            renewed.replace_range(from..to, &format!("{table}\n"));
+            false
+        });
+        if std::env::var_os("UPDATE_DOCS").is_some() {
+            fs::write(file, &renewed).unwrap();
+        } else {
+            assert!(renewed == text, "{file} is out of date: UPDATE_DOCS=1 cargo test -p articulated-scene --test manual");
+        }
     }
-    if std::env::var_os("UPDATE_DOCS").is_some() {
-        fs::write(FILE, &renewed).unwrap();
-    } else {
-        assert!(renewed == text, "{FILE} is out of date: UPDATE_DOCS=1 cargo test -p articulated-scene --test manual");
-    }
+    let missing: Vec<&str> = tables.iter().map(|(name, _)| *name).collect();
+    assert!(missing.is_empty(), "no page has the tables {missing:?}");
 }
 
 /// What the manual shows reads.
 #[test]
 fn examples_of_the_manual_are_scenes() {
-    let text = fs::read_to_string(FILE).unwrap();
+    let text = FILES.map(text).concat();
     let examples: Vec<&str> = text.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
     assert!(examples.len() >= 4);
     for example in examples {
