@@ -33,6 +33,20 @@ fn the_manual_has_every_key() {
     assert!(missing.is_empty(), "no page has the tables {missing:?}");
 }
 
+/// The page of the macro's keys has all that say something of the code.
+#[test]
+fn the_page_of_the_macro_has_every_key_of_a_scene() {
+    let page = text("../docs/macro.md");
+    let of_motion = ["summary", "robot", "simulation", "initial", "control", "impact"];
+    let tables = articulated_scene::manual::tables();
+    let (_, top) = tables.iter().find(|(name, _)| *name == "top").unwrap();
+    let keys: Vec<&str> = top.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next()).collect();
+    assert!(keys.len() > 20);
+    for key in keys.into_iter().filter(|key| !of_motion.contains(key)) {
+        assert!(page.contains(&format!("\n| `{key} = ")), "docs/macro.md has no row for {key}");
+    }
+}
+
 /// What the manual shows reads.
 #[test]
 fn examples_of_the_manual_are_scenes() {
