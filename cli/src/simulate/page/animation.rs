@@ -81,11 +81,11 @@ pub(super) fn svg(figure: &Figure, placements: &[Placement<f64>], room: &Room, t
     for (_, limb, hulls) in &hulls {
         let hue = HUES[limb % HUES.len()];
         let look = format!("fill=\"hsl({hue},45%,68%)\" fill-opacity=\".7\" stroke=\"hsl({hue},45%,30%)\" stroke-opacity=\".6\"");
-        clock.path(&mut out, &look, hulls.iter().map(|hull| page.line(hull) + "Z").collect());
+        clock.path(&mut out, &look, &hulls.iter().map(|hull| page.line(hull) + "Z").collect::<Vec<_>>());
     }
     let strokes = |k: usize| sticks[k].iter().map(|stick| page.line(stick)).collect::<String>();
     let look = "fill=\"none\" stroke=\"#26323e\" stroke-width=\"5\" stroke-linecap=\"round\"";
-    clock.path(&mut out, look, frames.map(strokes).collect());
+    clock.path(&mut out, look, &frames.map(strokes).collect::<Vec<_>>());
     out + "</svg>\n"
 }
 
@@ -171,7 +171,7 @@ impl Clock {
     }
 
     /// A path with one text for each frame.
-    fn path(&self, out: &mut String, look: &str, texts: Vec<String>) {
+    fn path(&self, out: &mut String, look: &str, texts: &[String]) {
         let Some(first) = texts.first() else { return };
         let _ = write!(out, "<path {look} d=\"{first}\">");
         if texts.iter().any(|text| text != first) {
