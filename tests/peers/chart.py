@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Bars of the README's table of times: how many times as long as generated code others take.
+"""Bars of the first table of docs/speed.md: how many times as long as generated code others take.
 
     python3 tests/peers/chart.py            writes docs/speed.svg
     python3 tests/peers/chart.py --check    exit status 1 where that is not what the table gives
@@ -12,7 +12,6 @@ import sys
 import rendered
 from environment import REPOSITORY
 
-README = REPOSITORY / "README.md"
 CHART = REPOSITORY / "docs" / "speed.svg"
 HEAD = "| ns per call |"
 # What a bar is called, what it measures of a row, and its colour.
@@ -39,7 +38,7 @@ def number(cell):
 
 def rows():
     """Robot, function, and the bars of each row."""
-    lines = iter(README.read_text(encoding="utf-8").splitlines())
+    lines = iter(rendered.SPEED.read_text(encoding="utf-8").splitlines())
     heads = cells(next(line for line in lines if line.startswith(HEAD)))[1:]
     next(lines)
     robot = ""
@@ -121,7 +120,7 @@ def main():
     if not parser.parse_args().check:
         CHART.write_text(chart(), encoding="utf-8")
     elif not CHART.exists() or CHART.read_text(encoding="utf-8") != chart():
-        print(f"{CHART.relative_to(REPOSITORY)} is not that of the README's table: python3 tests/peers/chart.py", file=sys.stderr)
+        print(f"{CHART.relative_to(REPOSITORY)} is not that of the table in docs/speed.md: python3 tests/peers/chart.py", file=sys.stderr)
         return 1
     return 0
 

@@ -7,8 +7,8 @@ import statistics
 from environment import REPOSITORY
 
 PLACE = REPOSITORY / "docs" / "speed"
-README, SPEED = REPOSITORY / "README.md", REPOSITORY / "docs" / "speed.md"
-DOCUMENTS = (README, SPEED)
+README, SPEED, BATCHES_PAGE = (REPOSITORY / name for name in ("README.md", "docs/speed.md", "docs/batches.md"))
+DOCUMENTS = (README, SPEED, BATCHES_PAGE)
 BLOCK = re.compile(r"(<!-- speed: ([a-z ]+) -->)(.*?)(<!-- /speed -->)", re.DOTALL)
 FILE = re.compile(r"speed/([0-9][0-9a-z-]*\.json)")
 
@@ -203,22 +203,22 @@ def machine(record, file):
             f"count: [all numbers]({file}).")
 
 
-def alternative(record):
+def alternative(record, chart):
     """What the chart shows, in words."""
     def span(wanted):
         found = [record.over(robot, f, wanted) for robot in BUNDLED if robot in record.robots for f in FUNCTIONS]
         found = [x for x in found if not math.isnan(x)]
         return f"{min(found):.2g} to {max(found):.2g}"
     return ("![How many times as long as generated code others take: C code by CasADi "
-            f"{span(ANY_C)}, Pinocchio {span(ENGINES['Pinocchio'])}, MuJoCo {span(ENGINES['MuJoCo'])}](docs/speed.svg)")
+            f"{span(ANY_C)}, Pinocchio {span(ENGINES['Pinocchio'])}, MuJoCo {span(ENGINES['MuJoCo'])}]({chart})")
 
 
 def states(record):
-    """Of many states at once, in the README."""
+    """Of many states at once, in docs/batches.md."""
     names = [name for name in BUNDLED if name in record.robots]
     of = lambda kind: listed(shown(median(record.robots[name]["batches"]["inverse_dynamics"][kind])) for name in names)
     robots = listed(f"`{name}`" for name in names)
-    return (f"On the machine of the table a state in blocks takes {of('f64 blocks')} ns (`f32`: {of('f32 blocks')}) for inverse dynamics of {robots}, from states "
+    return (f"On the machine of [the tables](speed.md) a state in blocks takes {of('f64 blocks')} ns (`f32`: {of('f32 blocks')}) for inverse dynamics of {robots}, from states "
             f"one after the other {of('f64 states')} (`f32`: {of('f32 states')}).")
 
 
@@ -229,8 +229,9 @@ def blocks(made, file):
     real = [name for name in record.robots if name not in BUNDLED]
     return {
         "fast": fast(record) if "panda_like" in record.robots else "",
-        "machine": machine(record, f"docs/speed/{file}"), "machine of speed": machine(record, f"speed/{file}"),
-        "bundled": single(record, bundled), "real": single(record, real), "ratios": ratios(record, real), "chart": alternative(record) if bundled else "",
+        "machine of speed": machine(record, f"speed/{file}"),
+        "bundled": single(record, bundled), "real": single(record, real), "ratios": ratios(record, real),
+        "chart": alternative(record, "docs/speed.svg") if bundled else "", "chart of speed": alternative(record, "speed.svg") if bundled else "",
         "dependent": dependent(record), "more": more(record), "generic": generic(record), "many": many(record), "states": states(record) if bundled else "",
         "making": making(record), "cargo": cargo(record),
     }

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Tables of docs/speed.md and the README: measures, keeps what was measured in one file, and makes the tables of that file.
+"""Tables of docs/speed.md and numbers of other pages: measures, keeps what was measured in one file, and makes the tables of that file.
 
     python3 tests/peers/build.py --all         first: the peers
     python3 tests/peers/tables.py --runs 6     measures this machine, writes docs/speed/<date>-<processor>.json
     python3 tests/peers/tables.py --from FILE  prints the tables of such a file
     python3 tests/peers/tables.py --from FILE --write
-                                               puts them into docs/speed.md and README.md, and draws docs/speed.svg
-    python3 tests/peers/tables.py --check      exit status 1 where those two are not what their file gives
+                                               puts them into docs/speed.md, docs/batches.md and README.md, and draws docs/speed.svg
+    python3 tests/peers/tables.py --check      exit status 1 where those pages are not what their file gives
     python3 tests/peers/tables.py --runs 1 --robots ur5 quadruped --repetitions 31 --no-cargo --out /tmp/try.json
                                                a short try
 

@@ -13,14 +13,29 @@ pub mod golden;
 pub mod machine;
 pub mod program;
 
-/// The README's examples, compiled and run as documentation tests.
+/// The examples of `README.md`, compiled and run as documentation tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 pub struct Readme;
 
-/// The recipes of `docs/conventions.md`.
+/// The examples of `docs/macro.md`, compiled and run as documentation tests.
 #[cfg(doctest)]
-#[doc = include_str!("../../docs/conventions.md")]
+#[doc = include_str!("../../docs/macro.md")]
+pub struct Macro;
+
+/// The examples of `docs/library.md`, compiled and run as documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/library.md")]
+pub struct Library;
+
+/// The examples of `docs/batches.md`, compiled and run as documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/batches.md")]
+pub struct Batches;
+
+/// The examples of `docs/recipes.md`, compiled and run as documentation tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/recipes.md")]
 pub struct Recipes;
 
 pub use articulated_formats::urdf::write as urdf_text;

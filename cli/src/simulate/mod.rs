@@ -132,31 +132,36 @@ fn write(stage: &Stage, motion: &Motion, summary: &mut Summary, (folder, ends): 
     }
     if let Some(drawn) = &drawn {
         save(PAGE, drawn.page.as_bytes())?;
+        save(ANIMATION, drawn.animation.as_bytes())?;
     }
     summary.files.push("summary.json".to_owned());
     output::write(&folder.join("summary.json"), crate::json(summary))
 }
 
 const PAGE: &str = "motion.html";
+const ANIMATION: &str = "motion.svg";
 
 /// What draws a motion.
 struct Drawn {
     page: String,
+    animation: String,
     pictures: Vec<plot::Picture>,
 }
 
 impl Drawn {
     fn of(stage: &Stage, motion: &Motion, summary: &Summary) -> Result<Self, Failure> {
-        let page = page::html(&motion.recording, &setting(stage, summary)).map_err(|e| Failure::tool(&e))?;
+        let setting = setting(stage, summary);
+        let page = page::html(&motion.recording, &setting).map_err(|e| Failure::tool(&e))?;
+        let animation = page::svg(&motion.recording, &setting).map_err(|e| Failure::tool(&e))?;
         let pictures = plot::pictures(&motion.recording, &stage.name);
-        Ok(Self { page, pictures })
+        Ok(Self { page, animation, pictures })
     }
 }
 
-/// Removes pictures of an earlier motion, and its page.
+/// Removes pictures of an earlier motion, and its page and animation.
 fn clear(folder: &Path, pictures: &[&str], page: bool) -> Result<(), Failure> {
     let pictures = pictures.iter().map(|name| format!("{name}.svg"));
-    for path in pictures.chain(page.then(|| PAGE.to_owned())).map(|name| folder.join(name)) {
+    for path in pictures.chain([PAGE, ANIMATION].into_iter().filter(|_| page).map(str::to_owned)).map(|name| folder.join(name)) {
         match std::fs::remove_file(&path) {
             Err(e) if e.kind() != std::io::ErrorKind::NotFound => return Err(Failure::input([format!("{}: {e}", path.display())])),
             _ => {}

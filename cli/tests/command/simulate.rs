@@ -54,6 +54,15 @@ fn everything_is_written_and_can_be_read() {
         assert_eq!(roxmltree::Document::parse(&drawn).unwrap().root_element().tag_name().name(), "svg");
         assert!(drawn.contains("time, s"));
     }
+    let moving = text(&folder, "motion.svg");
+    assert!(
+        roxmltree::Document::parse(&moving)
+            .unwrap()
+            .descendants()
+            .filter(|n| n.has_tag_name(("http://www.w3.org/2000/svg", "animate")))
+            .count()
+            > 2
+    );
     let page = text(&folder, "motion.html");
     assert!(!page.contains("http") && page.contains("<title>cart_pole</title>"));
     let data = page.split("application/json\">").nth(1).unwrap().split("</script>").next().unwrap();
@@ -414,4 +423,26 @@ fn one_bundled_scene_outside_its_tolerance_is_the_status_of_all() {
     for code in ["generated", "generic"] {
         assert_eq!(ended.lines_with(&format!("golf_swing: {code} code: the balance of energy lacks 0.275")), 1, "{}", ended.err);
     }
+}
+
+/// `UPDATE_GOLDEN=1` writes it anew. Other processors round other numbers.
+#[test]
+fn the_picture_of_the_readme_is_what_the_command_writes() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = run(&["simulate", "quadruped_drop", "-o", folder.path().to_str().unwrap()]);
+    assert_eq!(out.status, 0, "{}", out.err);
+    let made = std::fs::read_to_string(folder.path().join("motion.svg")).unwrap();
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/motion.svg");
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        std::fs::write(&file, &made).unwrap();
+    }
+    let kept = std::fs::read_to_string(file).unwrap();
+    assert_eq!(made.matches("<animate").count(), kept.matches("<animate").count());
+    let sticks = |text: &str| -> Vec<f64> {
+        let values = text.rsplit("values=\"").next().unwrap().split('"').next().unwrap().to_owned();
+        values.split(['M', 'L', ' ', ';']).filter_map(|word| word.parse().ok()).collect()
+    };
+    let (made, kept) = (sticks(&made), sticks(&kept));
+    assert!(made.len() == kept.len() && made.len() > 1000);
+    assert!(made.iter().zip(&kept).all(|(a, b)| (a - b).abs() <= 2.0), "docs/motion.svg is out of date: run with UPDATE_GOLDEN=1");
 }

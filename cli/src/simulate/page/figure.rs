@@ -24,10 +24,10 @@ pub(super) struct Figure {
 /// A line from a point of a body to one of another, or of the same.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Stick {
-    from: usize,
-    start: [f64; 3],
-    to: usize,
-    end: [f64; 3],
+    pub(super) from: usize,
+    pub(super) start: [f64; 3],
+    pub(super) to: usize,
+    pub(super) end: [f64; 3],
 }
 
 /// A joint that moves.
@@ -41,14 +41,14 @@ pub(super) struct Mark {
 /// A link's box: its centre, its axes as columns of a rotation, and half its edges.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Box {
-    body: usize,
+    pub(super) body: usize,
     pub(super) center: [f64; 3],
     axes: [[f64; 3]; 3],
     pub(super) half: [f64; 3],
     name: String,
     mass: f64,
     /// Which of the base's limbs it belongs to, for its colour.
-    limb: usize,
+    pub(super) limb: usize,
 }
 
 /// A sphere that touches the ground.
@@ -118,7 +118,7 @@ impl Figure {
 }
 
 impl Box {
-    fn corners(&self) -> [Vector3<f64>; 8] {
+    pub(super) fn corners(&self) -> [Vector3<f64>; 8] {
         std::array::from_fn(|k| {
             let along = |axis: usize| Vector3::from(self.axes[axis]) * if k >> axis & 1 == 1 { self.half[axis] } else { -self.half[axis] };
             Vector3::from(self.center) + along(0) + along(1) + along(2)

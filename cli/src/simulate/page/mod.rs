@@ -1,5 +1,6 @@
 //! A motion as one page that plays it in three dimensions: everything is in the file, and nothing is fetched.
 
+mod animation;
 mod clock;
 mod figure;
 mod track;
@@ -15,6 +16,7 @@ use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::recording::{Happening, Recording};
+use animation::Room;
 use figure::Figure;
 use track::{Track, base64};
 
@@ -118,6 +120,19 @@ pub(super) fn html(r: &Recording, setting: &Setting<'_>) -> Result<String, Funct
     let data = serde_json::to_string(&motion).unwrap_or_default().replace('<', "\\u003c");
     let parts = [("title", escaped(setting.title)), ("style", STYLE.to_owned()), ("data", data), ("script", PLAYER.to_owned())];
     Ok(filled(PAGE, &parts))
+}
+
+/// The motion as a picture that moves.
+pub(super) fn svg(r: &Recording, setting: &Setting<'_>) -> Result<String, FunctionError> {
+    let figure = Figure::of(setting.description, setting.model, setting.base);
+    let length = r.t.first().zip(r.t.last()).map_or(0.0, |(first, last)| last - first);
+    let speed = clock::speed(length, &clock::speeds(length));
+    let chosen = animation::chosen(&r.t, speed);
+    let placements = placements(r, &chosen, setting.model, &figure.frames)?;
+    let space = Space::of(&figure, &placements, setting);
+    let times: Vec<f64> = chosen.iter().map(|&k| r.t[k]).collect();
+    let room = Room { up: space.up, ground: space.ground, center: space.center, radius: space.radius };
+    Ok(animation::svg(&figure, &placements, &room, &times, setting.title, speed))
 }
 
 /// The template with its places filled, each text as it is.
