@@ -9,6 +9,7 @@ use crate::arguments::{CheckArguments, EvalArguments, Format, FunctionsArguments
 use crate::compare::CompareArguments;
 use crate::effects::EffectsArguments;
 use crate::failure::STATUSES;
+use crate::new::NewArguments;
 use crate::scaling::ScalingArguments;
 use crate::simulate::arguments::SimulateArguments;
 use crate::stress::StressArguments;
@@ -50,6 +51,13 @@ pub(crate) enum Command {
         "articulated generate arm.urdf --append gripper.urdf@tool --append gripper.urdf@tool:second_:0,0,0.2,0,0,1.5",
     ]))]
     Generate(GenerateArguments),
+    /// Writes a new crate: a robot, a controller, a simulation and a plot
+    #[command(after_help = examples(&[
+        "articulated new arm --file arm.urdf",
+        "articulated new walker --file walker.urdf --floating --controller pd",
+        "articulated new try --file panda_like",
+    ]))]
+    New(NewArguments),
     /// Evaluates functions on a file of states, by generic and by generated code
     #[command(after_help = examples(&[
         "articulated eval simple_pendulum --function inverse_dynamics --states states.json",

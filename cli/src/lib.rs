@@ -17,6 +17,7 @@ mod functions;
 mod generate;
 mod named_scene;
 mod names;
+mod new;
 mod output;
 mod robot;
 mod scaling;
@@ -107,6 +108,7 @@ fn dispatch(arguments: &Arguments) -> Result<u8, Failure> {
         Command::Functions(a) => functions::run(a, format).map(|()| OK),
         Command::Scaling(a) => scaling::run(a, format).map(|()| OK),
         Command::Simulate(a) => simulate::run(a, format),
+        Command::New(a) => new::run(a, format).map(|()| OK),
         Command::Effects(a) => effects::run(a, format).map(|()| OK),
         Command::Stress(a) => stress::run(a, format),
     }

@@ -1,0 +1,65 @@
+//! `articulated new`.
+
+use std::path::{Path, PathBuf};
+
+use crate::run;
+
+/// A path in the temporary folder that does not exist.
+fn fresh(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("articulated-new-{}", std::process::id())).join(name);
+    let _ = std::fs::remove_dir_all(&folder);
+    folder
+}
+
+/// The program of a new crate, with the path of the robot that the examples have.
+fn program(folder: &Path, robot: &str) -> String {
+    let text = std::fs::read_to_string(folder.join("src/main.rs")).unwrap();
+    text.replace("\"robot.urdf\"", &format!("\"../models/urdf/{robot}.urdf\""))
+}
+
+/// The examples contain the programs, so that they are compiled, run and formatted there.
+#[test]
+fn programs_are_those_of_the_examples() {
+    for (example, robot) in [("new_arm", "panda_like"), ("new_walker", "quadruped")] {
+        let folder = fresh(example);
+        let made = run(&["new", folder.to_str().unwrap(), "--file", robot, "--format", "json"]);
+        assert_eq!(made.status, 0, "{}", made.err);
+        assert_eq!(made.json()["files"].as_array().unwrap().len(), 4);
+        let manifest = std::fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+        assert!(manifest.contains(&format!("[profile.dev.package.{example}]")), "{manifest}");
+        let urdf = std::fs::read(folder.join("robot.urdf")).unwrap();
+        assert_eq!(urdf, articulated_models::robot(robot).unwrap().urdf.as_bytes());
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../examples/src/bin/{example}.rs"));
+        let text = program(&folder, robot);
+        if std::env::var_os("UPDATE_GOLDEN").is_some() {
+            std::fs::write(&path, &text).unwrap();
+        }
+        assert!(std::fs::read_to_string(&path).unwrap_or_default() == text, "{}: run with UPDATE_GOLDEN=1", path.display());
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}
+
+#[test]
+fn nothing_is_written_where_something_is_wrong() {
+    let folder = fresh("refused");
+    let path = folder.to_str().unwrap();
+    let cases: [(&[&str], &str); 5] = [
+        (&["new", path, "--file", "no_such.urdf"], "no_such.urdf"),
+        (&["new", path, "--file", "quadruped", "--controller", "computed-torque"], "found a floating base"),
+        (&["new", path, "--file", "golf_swing"], "found a scene"),
+        (&["new", "/tmp/9lives", "--file", "panda_like"], "found the name \"9lives\""),
+        (&["new", path, "--file", "panda_like", "--library", "/nowhere"], "--library /nowhere: found no crate"),
+    ];
+    for (words, part) in cases {
+        let ended = run(words);
+        assert!(ended.status != 0 && ended.err.contains(part), "{words:?}: {} {}", ended.status, ended.err);
+        assert!(!folder.exists(), "{words:?}");
+    }
+    // A folder with files stays as it is.
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("mine.txt"), "mine").unwrap();
+    let ended = run(&["new", path, "--file", "panda_like"]);
+    assert!(ended.status != 0 && ended.err.contains("an empty one"), "{}", ended.err);
+    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 1);
+    std::fs::remove_dir_all(&folder).unwrap();
+}
