@@ -11,7 +11,7 @@ use crate::graph::{Graph, Op};
 use crate::limbs::{Constants, IsomorphicLimbs, pack};
 use crate::model_pass::{FoldedRotations, View, model_passes, no_joint_moves_origin};
 use crate::parameters::Parameter;
-use crate::pass::{copy, live, rebuild};
+use crate::pass::{copy, dce, rebuild};
 use crate::program::Strategy;
 use crate::spec::{FunctionSpec, FunctionTerm};
 use crate::sym::{self, Sym};
@@ -52,7 +52,7 @@ fn sines_given(graph: Graph, arguments: &[Argument]) -> Graph {
             }
         },
     );
-    given.asked_as(&graph)
+    given.requested_as(&graph)
 }
 
 /// The same with branches that are alike in lanes.
@@ -67,7 +67,7 @@ pub(crate) fn trace_in_lanes(wanted: &FunctionSpec, choices: &[Strategy], model:
         wanted.parts.iter().zip(choices).flat_map(&mut run).collect()
     });
     let graph = sines_given(graph, &arguments);
-    pack(&live(&graph), &arguments, alike, &constants).asked_as(&graph)
+    pack(&dce(&graph), &arguments, alike, &constants).requested_as(&graph)
 }
 
 /// The view of the model after the passes that are chosen.

@@ -55,7 +55,7 @@ impl Candidate<'_> {
             let limited: Vec<Strategy> = choices.iter().map(|c| Strategy::plain(c.way, c.passes.min(passes))).collect();
             graph = self.trace(wanted, &limited);
             if stages.is_empty() {
-                stages.push(("asked", graph.asked().clone()));
+                stages.push(("requested", graph.requested().clone()));
             }
             stages.push((if passes == 0 { "trace" } else { model_passes::<Sym>()[passes - 1].0 }, graph.counts()));
         }
@@ -133,7 +133,7 @@ fn cost(wanted: &FunctionSpec, choice: Strategy, subject: &Candidate) -> u32 {
     pass::cost(&subject.finished(wanted, &[choice]))
 }
 
-/// The choices with rates by axes, if that takes fewer multiplications and no more instructions; of
+/// The choices with axis rates, if that takes fewer multiplications and no more instructions; of
 /// robots with many bodies, which take long to trace, without trying.
 pub(super) fn by_axes(wanted: &FunctionSpec, choices: Vec<Strategy>, subject: &Candidate) -> Vec<Strategy> {
     let turns = |part: &FunctionTerm| Form::AxisAccelerations.fits(part.function.id);

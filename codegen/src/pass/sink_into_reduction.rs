@@ -1,7 +1,7 @@
 //! Terms beside a sum over lanes, taken into it.
 
 use super::sums::{Rebuild, Term, flatten, inner, is_sum, open};
-use super::{cost, live};
+use super::{cost, dce};
 use crate::graph::{Graph, NodeId, Op};
 
 /// What costs more than this is left as it is: it is busy with other things while it waits for a sum over lanes, and to have all the rest as early takes instructions.
@@ -11,7 +11,7 @@ const LONG: u32 = 1500;
 ///
 /// A sum over lanes takes a dozen cycles, and what follows waits for it: beside the others, in the same multiply-adds, such terms are ready before. Taken in is what is the same in all lanes, takes no instruction more (a
 /// constant times something, or alone) and is used nowhere else. Shares are powers of two, and so exact.
-pub fn inside(graph: &Graph) -> Graph {
+pub fn sink_into_reduction(graph: &Graph) -> Graph {
     if graph.lanes().width == 1 || cost(graph) > LONG {
         return graph.clone();
     }
@@ -27,7 +27,7 @@ pub fn inside(graph: &Graph) -> Graph {
             Some(sum)
         })
         .collect();
-    live(&Rebuild::graph(graph, &gone, |rebuild, k| sums[k].as_ref().map(|sum| sum.built(rebuild))))
+    dce(&Rebuild::graph(graph, &gone, |rebuild, k| sums[k].as_ref().map(|sum| sum.built(rebuild))))
 }
 
 /// Whether each node has the same value in all lanes.
@@ -97,7 +97,7 @@ mod tests {
     /// The graph with these outputs after the pass, whose values must be the same.
     fn passed(mut g: Graph, outputs: &[NodeId]) -> Graph {
         g.outputs = outputs.to_vec();
-        let new = inside(&g);
+        let new = sink_into_reduction(&g);
         new.verify().unwrap();
         for (a, b) in new.evaluate(at).into_iter().zip(g.evaluate(at)) {
             assert!((a - b).abs() < 1e-14, "{a} {b}");
