@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use articulated_codegen::Level;
+use articulated_codegen::Precision;
 use articulated_lab::{accuracy, tips::Tips};
 use clap::Args;
 
@@ -49,7 +49,7 @@ pub(crate) struct AccuracyArguments {
     pub(crate) functions: Vec<Names>,
     /// The levels to measure [default: all that differ]
     #[arg(long, alias = "level", value_name = "LEVELS", value_delimiter = ',')]
-    pub(crate) levels: Vec<Level>,
+    pub(crate) levels: Vec<Precision>,
     /// How many states at random within the limits of the joints; the hard ones come beside them
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) states: u32,

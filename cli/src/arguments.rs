@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use articulated_codegen::Level;
+use articulated_codegen::Precision;
 use articulated_core::lanes::Real;
 use articulated_formats::{SNAP_EXPECTED, can_snap};
 use clap::{Args, ValueEnum};
@@ -128,7 +128,7 @@ pub(crate) struct GenerateArguments {
     /// How accurate: f64, f32, f32_f64, compensated, double_double, with +correct, +fast_7, +fast_10, +two, +no_fma
     /// [default: f64, or what the scene says]
     #[arg(long, value_name = "LEVEL")]
-    pub(crate) level: Option<Level>,
+    pub(crate) level: Option<Precision>,
     /// The path of the runtime crate, to implement its trait `Dynamics`
     #[arg(long, value_name = "PATH", value_parser = rust_path)]
     pub(crate) runtime: Option<String>,

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use articulated_codegen::scene::Scene;
-use articulated_codegen::{Appended, Generated, MOST_FREEDOMS, Options, Request, Sines, generate, nearest};
+use articulated_codegen::{Appended, Generated, MOST_FREEDOMS, Options, Request, TrigAccuracy, generate, nearest};
 use articulated_core::description::Base;
 use articulated_core::diagnostic::{Diagnostic, Diagnostics, summary, values};
 use articulated_core::model::Model;
@@ -92,7 +92,7 @@ impl Robot {
     /// Refuses a scene's level whose results differ from the library's by more than rounding: what is held to those would fail as promised.
     pub(crate) fn has_a_level_of_rounding(&self) -> Result<(), Failure> {
         let level = self.options.level;
-        if !level.is_single() && !matches!(level.sines, Sines::Fast7 | Sines::Fast10) {
+        if !level.is_single() && !matches!(level.sines, TrigAccuracy::Fast7 | TrigAccuracy::Fast10) {
             return Ok(());
         }
         let file = self.scene.as_deref().unwrap_or(&self.file);

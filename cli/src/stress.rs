@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use articulated_codegen::Level;
+use articulated_codegen::Precision;
 use articulated_core::algorithm::Argument;
 use articulated_core::model::Model;
 use articulated_lab::states;
@@ -40,7 +40,7 @@ pub(crate) struct StressArguments {
     pub(crate) generated: bool,
     /// Levels of accuracy of generated code [default: all of the corpus, f64 of robots]
     #[arg(long, alias = "level", value_name = "LEVELS", value_delimiter = ',', requires = "generated")]
-    pub(crate) levels: Vec<Level>,
+    pub(crate) levels: Vec<Precision>,
     /// Only these chapters of the corpus
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = chapters(), conflicts_with = "robot")]
     pub(crate) chapters: Vec<String>,

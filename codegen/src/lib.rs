@@ -43,7 +43,7 @@ pub use articulated_core::description::{Base, Origin, Payload, Shaft};
 pub use articulated_core::diagnostic;
 pub use articulated_core::effect::Applied;
 pub use articulated_core::lanes::Real;
-pub use articulated_core::level::{Arithmetic, Level, LevelError, Sines};
+pub use articulated_core::precision::{Arithmetic, Precision, PrecisionError, TrigAccuracy};
 pub use articulated_core::spatial::Reference;
 pub use articulated_core::suggest::nearest;
 pub use articulated_formats as formats;
@@ -73,7 +73,7 @@ pub struct Generated {
     /// Constants of the model that stayed inputs.
     pub parameters: Vec<Parameter>,
     /// How accurate the functions are, and what numbers they take.
-    pub level: Level,
+    pub level: Precision,
     /// Costs.
     pub ledger: Ledger,
     /// The graph of each function, in the order of the ledger: what the source computes. Empty where the source leaves a loop

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use articulated_core::diagnostic::{Diagnostics, Spanned};
-use articulated_core::level::Level;
+use articulated_core::precision::Precision;
 use articulated_scene::{BuiltRobot, RobotOptions, RobotRequest, Scene};
 
 use crate::function_groups;
@@ -43,7 +43,7 @@ pub struct Options {
     pub limbs: bool,
     /// How accurate the functions are. Functions of many states at once have the accuracy of their
     /// type of numbers.
-    pub level: Level,
+    pub level: Precision,
     /// How many megabytes (10⁶ bytes) of code all functions together may become, as predicted: see
     /// [`MAX_CODE_SIZE`](crate::MAX_CODE_SIZE), which is the default.
     pub max_code_size: u64,
@@ -62,7 +62,7 @@ impl Default for Options {
             parameters: Vec::new(),
             rename: Vec::new(),
             limbs: true,
-            level: Level::default(),
+            level: Precision::default(),
             max_code_size: crate::MAX_CODE_SIZE,
             target: Target::default(),
             stages: true,

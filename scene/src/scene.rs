@@ -6,7 +6,7 @@ use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, quote};
 use articulated_core::effect::EffectId;
 use articulated_core::integrator::IntegratorId;
 use articulated_core::lanes::Real;
-use articulated_core::level::Level;
+use articulated_core::precision::Precision;
 use articulated_core::spatial::Reference;
 use articulated_formats::{SNAP_EXPECTED, can_snap};
 
@@ -90,7 +90,7 @@ pub struct CodeOptions {
     /// Types of numbers for which there are functions of many states.
     pub batch: Option<Vec<Real>>,
     /// How accurate the functions are.
-    pub level: Option<Level>,
+    pub level: Option<Precision>,
     /// No `unsafe` in the generated code.
     pub forbid_unsafe: Option<bool>,
     /// How much code the functions may become, MB.
@@ -447,9 +447,9 @@ fn batch(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Vec<Real>> {
     Some(reals)
 }
 
-fn level(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Level> {
+fn level(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Precision> {
     let expected = "a level of accuracy, as \"f64\", \"f32\", \"compensated + two\", \"double_double\" or \"f64 + fast_10 + no_fma\"";
     let text = spot.text(log, expected)?;
-    let level = text.split_whitespace().collect::<String>().parse::<Level>();
+    let level = text.split_whitespace().collect::<String>().parse::<Precision>();
     level.map_err(|error| log.error((spot.node.at, &spot.key), Code::Word, quote(text), error.expected)).ok()
 }

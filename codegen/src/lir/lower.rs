@@ -10,7 +10,7 @@ use crate::lir::{Angle, Array, Expr, Number, Operand, Rows, Stmt, Store, Temp, T
 
 /// How sines are computed.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sines {
+pub(crate) struct SinCosGrouping {
     /// How many angles go together.
     pub(crate) together: usize,
     /// Whether there are functions of one, two and four angles only, and not one of up to
@@ -24,7 +24,7 @@ pub(crate) struct Sines {
 pub(crate) struct Lowering<'a> {
     pub(crate) graph: &'a Graph,
     pub(crate) ty: Ty,
-    pub(crate) sines: Sines,
+    pub(crate) sines: SinCosGrouping,
     /// The arrays of the result.
     pub(crate) results: &'a [Array],
 }

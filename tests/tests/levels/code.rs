@@ -1,6 +1,6 @@
 //! Generated code of every level, compiled and run.
 
-use articulated_codegen::{Arithmetic, Generated, Level, Request, bound, generate};
+use articulated_codegen::{Arithmetic, Generated, Precision, Request, bound, generate};
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Argument, function};
 use articulated_core::model::Model;
@@ -10,7 +10,7 @@ use articulated_reference::Big;
 
 const FUNCTION: &str = "inverse_dynamics";
 
-fn generated(robot: &str, level: Level) -> Generated {
+fn generated(robot: &str, level: Precision) -> Generated {
     let bundled = articulated_models::robot(robot).unwrap();
     let mut request = Request::new(format!("{robot}.urdf"), bundled.urdf);
     request.options.robot.base = bundled.base;
@@ -19,12 +19,12 @@ fn generated(robot: &str, level: Level) -> Generated {
     generate(&request).unwrap()
 }
 
-fn level(name: &str) -> Level {
+fn level(name: &str) -> Precision {
     name.parse().unwrap()
 }
 
 struct Made {
-    level: Level,
+    level: Precision,
     generated: Generated,
     compiled: Compiled,
 }
@@ -71,7 +71,7 @@ impl Made {
 
 /// In numbers that `f32` has too, some with angles far out.
 fn some_states(robot: &str, count: usize) -> Vec<Vec<Vec<f64>>> {
-    states_of(&generated(robot, Level::default()).model, count, 5)
+    states_of(&generated(robot, Precision::default()).model, count, 5)
 }
 
 fn states_of(model: &Model<f64>, count: usize, seed: u64) -> Vec<Vec<Vec<f64>>> {

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use articulated_codegen::{Generated, Level};
+use articulated_codegen::{Generated, Precision};
 use articulated_core::algorithm::{Function, function};
 use articulated_core::model::Model;
 use articulated_reference::{BITS, Big};
@@ -25,7 +25,7 @@ use crate::robot::Robot;
 
 /// A level's library.
 struct Made {
-    level: Level,
+    level: Precision,
     generated: Generated,
     compiled: Compiled,
 }
@@ -36,11 +36,11 @@ pub(super) fn all(
     reference: &Reference,
     rustc: &Rustc,
     functions: &[&'static str],
-    levels: &[Level],
+    levels: &[Precision],
     settings: &Settings,
 ) -> Result<Report, Error> {
     let progress = Progress::new(levels.len() + 2 * functions.len());
-    let make = |level: &Level| {
+    let make = |level: &Precision| {
         progress.doing(format!("{level}: generation and rustc"));
         let made = made(robot, rustc, functions, *level);
         progress.step();
@@ -65,7 +65,7 @@ pub(super) fn all(
     Ok(report)
 }
 
-fn made(robot: &Robot, rustc: &Rustc, functions: &[&'static str], level: Level) -> Result<Made, Error> {
+fn made(robot: &Robot, rustc: &Rustc, functions: &[&'static str], level: Precision) -> Result<Made, Error> {
     let names: Vec<String> = functions.iter().map(|f| (*f).to_owned()).collect();
     let mut request = robot.request(&names);
     request.options.level = level;
@@ -121,7 +121,7 @@ impl One<'_> {
     fn report(&self) -> FunctionReport {
         let arguments =
             self.sets.each_ref().map(|set| set.iter().map(|c| c.state.arguments(self.f).unwrap_or_default()).collect::<Vec<_>>());
-        let set = |level: Level| usize::from(level.is_single());
+        let set = |level: Precision| usize::from(level.is_single());
         let ours: Vec<(&Made, Contender)> =
             self.made.iter().filter_map(|m| Some((m, Contender::new(&m.compiled, m.level, self.f, &arguments[set(m.level)])?))).collect();
         let theirs: Vec<(&Peer, Theirs)> =
@@ -218,7 +218,7 @@ fn judge_some(
     (model, f): (&Model<f64>, &'static Function<f64>),
     arguments: &[Vec<&[f64]>],
     results: &[Vec<Vec<f64>>],
-    graphs: &[Option<(&articulated_codegen::graph::Graph, Level)>],
+    graphs: &[Option<(&articulated_codegen::graph::Graph, Precision)>],
 ) -> Vec<(usize, Vec<Verdict>)> {
     Big::scope(|| {
         let Some(exact) = reference.exact(model) else { return Vec::new() };

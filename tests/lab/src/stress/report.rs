@@ -1,6 +1,6 @@
 //! Which rows are measured.
 
-use articulated_codegen::{Level, Options};
+use articulated_codegen::{Options, Precision};
 use articulated_core::model::Model;
 use serde::Serialize;
 
@@ -36,7 +36,7 @@ pub struct Settings {
     /// Generated code too, compiled by rustc.
     pub generated: bool,
     /// At these levels; none are all of the corpus, and the default one of robots.
-    pub levels: Vec<Level>,
+    pub levels: Vec<Precision>,
 }
 
 /// All names of chapters.
@@ -58,7 +58,7 @@ pub fn of_corpus(settings: &Settings) -> Result<Report, Error> {
     }
     if settings.generated && wanted(levels::NAME) || settings.chapters.iter().any(|c| c == levels::NAME) {
         progress.doing(format!("chapter {}", levels::NAME));
-        let all = if settings.levels.is_empty() { Level::all() } else { settings.levels.clone() };
+        let all = if settings.levels.is_empty() { Precision::all() } else { settings.levels.clone() };
         rows.extend(levels::chapter(effort, &all)?);
     }
     progress.step();
@@ -81,10 +81,10 @@ pub fn of_corpus(settings: &Settings) -> Result<Report, Error> {
 }
 
 /// The levels of robots' generated code.
-fn of_robots(settings: &Settings) -> Vec<Level> {
+fn of_robots(settings: &Settings) -> Vec<Precision> {
     match (settings.generated, settings.levels.is_empty()) {
         (false, _) => Vec::new(),
-        (true, true) => vec![Level::default()],
+        (true, true) => vec![Precision::default()],
         (true, false) => settings.levels.clone(),
     }
 }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::*;
 use crate::graph::{Graph, NodeId, Op};
 use crate::lir::interpret::interpret;
-use crate::lir::lower::{Lowering, Sines};
+use crate::lir::lower::{Lowering, SinCosGrouping};
 use crate::lir::{Array, Body, Ty, verify};
 
 /// A graph in which values are needed soon, late and never again.
@@ -27,7 +27,7 @@ fn graph() -> Graph {
 fn cut(graph: &Graph, length: usize) -> Body {
     let ty = if graph.lanes().width == 1 { Ty::F64 } else { Ty::Vector(graph.lanes().width) };
     let results = vec![Array { start: 0, lengths: vec![graph.outputs.len()] }];
-    let sines = Sines { together: 4, are_powers_of_two: false, from: 3 };
+    let sines = SinCosGrouping { together: 4, are_powers_of_two: false, from: 3 };
     let statements = Lowering { graph, ty, sines, results: &results }.stores_as_made(|_| true, false);
     let (pieces, kept) = outline(statements, length);
     Body { ty, lanes: graph.lanes().clone(), results, pieces, kept, slots: None, barrier: false, is_partial: false }

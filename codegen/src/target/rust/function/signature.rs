@@ -253,7 +253,7 @@ mod tests {
     use articulated_core::algorithm::Shape;
 
     use super::*;
-    use crate::Level;
+    use crate::Precision;
     use crate::capabilities::Capabilities;
     use crate::graph::Graph;
     use crate::ledger::Entry;
@@ -270,7 +270,7 @@ mod tests {
         let zero = graph.constant(0.0);
         graph.outputs = vec![zero; wanted.parts.iter().map(numbers).sum()];
         let program = Program { wanted, graph, plain: Graph::default(), entry, columns: None };
-        let can = Capabilities { level: Level::default(), vectors: true, raw_memory: true, states: false };
+        let can = Capabilities { level: Precision::default(), vectors: true, raw_memory: true, states: false };
         let mut function = Function::of(&program, shape, false, can);
         function.ending = ending;
         work(&Signature::of(&function, "f64"))

@@ -18,7 +18,7 @@ use crate::lir::function::Function;
 use crate::target::Module;
 use crate::target::rust::RustOptions;
 use crate::target::rust::batch::{Batch, batches};
-use crate::target::rust::function::levels::real;
+use crate::target::rust::function::precision::real;
 use crate::target::rust::function::{Context, IMPLEMENTATION, Text, function};
 use crate::target::rust::literal::literal;
 use crate::target::rust::module::header::header;

@@ -1,7 +1,7 @@
 //! Errors of a level's code, over what its contract allows.
 
 use articulated_codegen::graph::Graph;
-use articulated_codegen::{Arithmetic, Sines, bound};
+use articulated_codegen::{Arithmetic, TrigAccuracy, bound};
 use articulated_core::Scalar;
 use articulated_core::algorithm::FunctionId;
 use articulated_core::model::Model;
@@ -70,7 +70,7 @@ impl Judged<'_> {
         if let Some(reached) = self.of_bound(states) {
             rows.push(case.row(format!("{name}, generated, rounding over its guaranteed bound"), reached, 1.0, ""));
         }
-        if self.made.level().sines == Sines::Two && self.graph().is_some() {
+        if self.made.level().sines == TrigAccuracy::DoubleDouble && self.graph().is_some() {
             let second = worst(&|s| self.second_order(s));
             rows.push(case.row(format!("{name}, generated, beyond one rounding of the result"), second, SECOND_ORDER, "2⁻¹⁰⁰"));
         }
