@@ -29,7 +29,7 @@
 //! let swing = stage.run(&stage.model, &stage.frame_names())?;
 //!
 //! assert_eq!((swing.ending, swing.reached, swing.error), (Ending::AtEnd, 12.0, None));
-//! assert_eq!(swing.happenings[0].what, "hinge reaches its upper limit");
+//! assert_eq!(swing.occurrences[0].what, "hinge reaches its upper limit");
 //! let last = swing.recording.len() - 1;
 //! // It rests where kp (target − q) = m g l sin q.
 //! let q = swing.recording.q_at(last)[0];
@@ -88,7 +88,7 @@ mod begin;
 mod creep;
 mod error;
 mod freedom;
-mod happening;
+mod occurrence;
 mod motion;
 mod needs;
 mod penetration;
@@ -102,7 +102,7 @@ pub use articulated_scene::Scene;
 pub use begin::{Begin, Beyond, Sunk};
 pub use creep::Creep;
 pub use error::{Fault, MotionError, MotionErrors};
-pub use happening::{EventKind, Happening, SceneEvent};
+pub use occurrence::{EventKind, Occurrence, SceneEvent};
 pub use motion::{Ending, Motion, Outcome};
 pub use penetration::Penetration;
 pub use stage::{Stage, field};

@@ -9,7 +9,7 @@ use articulated::simulate::{Control, Counts, Drive, Ended, Recording, Settings, 
 use crate::begin::Begin;
 use crate::creep::Creep;
 use crate::error::{Fault, MotionErrors};
-use crate::happening::Happening;
+use crate::occurrence::Occurrence;
 use crate::stage::Stage;
 use crate::watch::{Watch, Without};
 
@@ -27,7 +27,7 @@ pub struct Outcome {
     /// The motion at the times of output, with what was done ([`Recording::counts`]); where an error ended it, what was up to there.
     pub recording: Recording,
     /// What happened on the way, in the order of time: one for each of [`Recording::events`].
-    pub happenings: Vec<Happening>,
+    pub occurrences: Vec<Occurrence>,
     /// What smoothed friction did not hold, and how far it crept ([`Stage::creep`]).
     pub creep: Vec<Creep>,
     /// How it ended.
@@ -170,9 +170,9 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
             Ending::AtEnd => self.simulation.settings().end,
             _ => recording.t.last().map_or(reached, |t| t.max(reached)),
         };
-        let happenings = recording.events.iter().map(|hit| self.watch.happening(hit)).collect();
+        let occurrences = recording.events.iter().map(|hit| self.watch.occurrence(hit)).collect();
         let creep = self.stage.creep(&recording);
-        Ok(Outcome { recording, happenings, creep, ending, reached, ball: self.watch.ball_energy(), error, wall })
+        Ok(Outcome { recording, occurrences, creep, ending, reached, ball: self.watch.ball_energy(), error, wall })
     }
 }
 

@@ -10,7 +10,7 @@ use articulated_scene::Watched;
 
 use crate::ball::Ball;
 use crate::error::{Fault, MotionErrors};
-use crate::happening::{EventKind, Happening, SceneEvent};
+use crate::occurrence::{EventKind, Occurrence, SceneEvent};
 use crate::stage::{Stage, field};
 
 /// Events of a scene on a robot, and how each of them reads.
@@ -61,12 +61,12 @@ impl<'a> Watch<'a> {
     }
 
     /// What happened; of an event that was put behind those of the scene, its name.
-    pub fn happening(&self, hit: &Hit) -> Happening {
+    pub fn occurrence(&self, hit: &Hit) -> Occurrence {
         let Some((kind, on)) = self.about.get(hit.event) else {
-            return Happening { t: hit.t, what: hit.name.to_string(), about: None, ball_speed: None };
+            return Occurrence { t: hit.t, what: hit.name.to_string(), about: None, ball_speed: None };
         };
         let begins = if *kind == EventKind::Ball { !self.ball.missed.get() } else { hit.direction == Direction::Falling };
-        Happening::of(hit.t, SceneEvent { kind: *kind, on: on.clone(), begins }, hit.value)
+        Occurrence::of(hit.t, SceneEvent { kind: *kind, on: on.clone(), begins }, hit.value)
     }
 
     /// What tells whether the ball was hit and the motion ends with that: who runs a simulation asks it after each step. It is apart from the watch, whose events the

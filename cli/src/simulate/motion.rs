@@ -6,9 +6,9 @@ use std::time::Duration;
 use articulated::FunctionId;
 use articulated::simulate::{Balance, Counts, Recording as Run, Settings};
 use articulated_lab::stage::{Code, Stage};
-use articulated_motion::{Begin, Creep, Ending, Happening as Happened, Outcome};
+use articulated_motion::{Begin, Creep, Ending, Occurrence, Outcome};
 
-use super::recording::{Happening, Recording};
+use super::recording::{EventRecord, Recording};
 use super::watch::Watch;
 use crate::console::{self, Progress};
 use crate::failure::Failure;
@@ -71,24 +71,24 @@ pub(super) fn solvable(stage: &Stage) -> Result<(), Failure> {
 pub(super) fn run(stage: &Stage, begin: &Begin, code: Code<'_>, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
     let mut watch = Watch::new(stage, settings, progress);
     let (outcome, without) = stage.run(begin, code, settings, &mut |t, counts| watch.look(t, counts))?;
-    let Outcome { recording, happenings, creep, ending, reached, ball, error, wall } = outcome;
+    let Outcome { recording, occurrences, creep, ending, reached, ball, error, wall } = outcome;
     let (counts, balance) = (recording.counts, recording.balance.unwrap_or_default());
     let error = error.map(|e| e.to_string());
     let penetrations = stage.warning_of_penetrations(&recording.t, &recording.q);
     penetrations.iter().for_each(|line| console::warn(line));
     let warnings = stage.warnings(begin).into_iter().chain(without).chain(penetrations).collect();
-    Ok(Motion { recording: told(stage, recording, happenings), counts, balance, creep, reached, ending, wall, ball, error, warnings })
+    Ok(Motion { recording: told(stage, recording, occurrences), counts, balance, creep, reached, ending, wall, ball, error, warnings })
 }
 
 /// The library's recording with names.
-fn told(stage: &Stage, run: Run, happenings: Vec<Happened>) -> Recording {
+fn told(stage: &Stage, run: Run, occurrences: Vec<Occurrence>) -> Recording {
     let n = run.len();
     let whole = |x: Vec<f64>| if x.len() == n { x } else { vec![0.0; n] };
     // Without mass there is no centre of it: rotors have no momentum here.
     let heavy = stage.model.moving_mass() > 0.0;
     let momentum = (0..n).map(|k| run.momentum_at(k).filter(|_| heavy).and_then(|p| p.try_into().ok()).unwrap_or_default()).collect();
     Recording {
-        events: happenings.into_iter().map(Happening::from).collect(),
+        events: occurrences.into_iter().map(EventRecord::from).collect(),
         t: run.t,
         q: run.q,
         v: run.v,

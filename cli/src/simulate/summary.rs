@@ -7,7 +7,7 @@ use articulated_motion::Creep;
 use serde::Serialize;
 
 use super::motion::Motion;
-use super::recording::{Happening, Recording};
+use super::recording::{EventRecord, Recording};
 use crate::effects::sorts;
 use articulated_lab::json::Units;
 use articulated_lab::stage::{Stage, joint_of};
@@ -39,7 +39,7 @@ pub(super) struct Summary {
     pub(super) counts: Done,
     /// What smoothed friction did not hold: of contacts and of joints the one that crept furthest.
     pub(super) creep: Vec<Crept>,
-    pub(super) events: Vec<Happening>,
+    pub(super) events: Vec<EventRecord>,
     /// Whether the ball of the scene's impact was reached and hit; `None` where there is none.
     pub(super) ball_reached: Option<bool>,
     /// Its speed along the normal once its turn came.

@@ -173,8 +173,8 @@ fn the_parts_put_together_move_as_the_whole() {
     let mut simulation = Simulation::new(robot, settings).unwrap();
     let (mut recording, over) = (simulation.recording(), watch.over());
     simulation.run_into(&begin.q, &begin.v, &mut drive, &mut watch.events, &mut recording, &mut |_, _| !over()).unwrap();
-    assert!(recording.events.iter().map(|hit| watch.happening(hit)).all(|h| h.about.is_none() == (h.what == "half way")));
-    let words: Vec<String> = recording.events.iter().map(|hit| watch.happening(hit).what).collect();
+    assert!(recording.events.iter().map(|hit| watch.occurrence(hit)).all(|h| h.about.is_none() == (h.what == "half way")));
+    let words: Vec<String> = recording.events.iter().map(|hit| watch.occurrence(hit).what).collect();
     assert!(over() && watch.ball_energy() == whole.ball && words.iter().any(|what| what == "half way"), "{words:?}");
     let scenes: Vec<&str> = words.iter().map(String::as_str).filter(|what| *what != "half way").collect();
     assert_eq!((scenes, &recording.q, &recording.v), (super::words(&whole), &whole.recording.q, &whole.recording.v));

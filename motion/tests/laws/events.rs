@@ -8,7 +8,7 @@ use super::{ARM, CART, moved, stage, words};
 
 /// What the first two events are, for programs.
 fn about(outcome: &Outcome) -> [Option<SceneEvent>; 2] {
-    [0, 1].map(|k| outcome.happenings.get(k).and_then(|h| h.about.clone()))
+    [0, 1].map(|k| outcome.occurrences.get(k).and_then(|h| h.about.clone()))
 }
 
 fn is(kind: EventKind, on: &str, begins: bool) -> Option<SceneEvent> {
@@ -35,10 +35,10 @@ fn a_blow_and_a_limit_are_found_and_told() {
     assert_eq!(words(&outcome), ["cart hits the ball, which leaves at 4.3200 m/s", "slide reaches its upper limit"]);
     assert_eq!(about(&outcome), [is(EventKind::Ball, "cart", true), is(EventKind::UpperLimit, "slide", true)]);
     let after = 3.0 - 0.5 * BALL / 2.0;
-    for (happening, t) in outcome.happenings.iter().zip([0.2, 0.2 + 0.3 / after]) {
-        assert!((happening.t - t).abs() < 1e-9, "{happening:?} {t}");
+    for (occurrence, t) in outcome.occurrences.iter().zip([0.2, 0.2 + 0.3 / after]) {
+        assert!((occurrence.t - t).abs() < 1e-9, "{occurrence:?} {t}");
     }
-    let speeds: Vec<Option<f64>> = outcome.happenings.iter().map(|h| h.ball_speed).collect();
+    let speeds: Vec<Option<f64>> = outcome.occurrences.iter().map(|h| h.ball_speed).collect();
     assert!((speeds[0].unwrap() - BALL).abs() < 1e-9 && speeds[1].is_none(), "{speeds:?}");
     let energy = 0.5 * 0.5 * BALL * BALL;
     assert!((outcome.ball.unwrap() - energy).abs() < 1e-8, "{:?} {energy}", outcome.ball);
@@ -49,7 +49,7 @@ fn a_blow_and_a_limit_are_found_and_told() {
 fn a_blow_does_not_depend_on_the_length_of_its_normal() {
     for normal in ["5e-324", "1e-200", "1.7e308"] {
         let outcome = moved(&stage(&BLOW.replace("[2.0, 0.0", &format!("[{normal}, 0.0")), CART));
-        assert!((outcome.happenings[0].t - 0.2).abs() < 1e-9, "{normal}: {:?}", outcome.happenings[0]);
+        assert!((outcome.occurrences[0].t - 0.2).abs() < 1e-9, "{normal}: {:?}", outcome.occurrences[0]);
         assert_eq!(words(&outcome)[0], "cart hits the ball, which leaves at 4.3200 m/s");
     }
 }
@@ -97,7 +97,7 @@ fn a_ball_that_nothing_moves_towards_keeps_its_speed() {
     let scene = BLOW.replace("ball = [0.6, 0.0, 0.0]", "time = 0.25\nball_speed = 7.5") + "stop = true\n";
     let outcome = moved(&stage(&scene, CART));
     assert_eq!(words(&outcome)[0], "cart is not moving towards the ball, which keeps 7.5000 m/s");
-    assert!(outcome.ball.is_none() && (outcome.happenings[0].t - 0.25).abs() < 1e-9, "{outcome:?}");
+    assert!(outcome.ball.is_none() && (outcome.occurrences[0].t - 0.25).abs() < 1e-9, "{outcome:?}");
     // That hits nothing, and so ends nothing.
     assert_eq!((outcome.ending, outcome.reached), (Ending::AtEnd, 1.0));
 }
@@ -116,10 +116,10 @@ fn who_is_as_fast_as_the_ball_does_not_hit_it() {
 #[test]
 fn what_is_where_the_ball_is_at_the_start_hits_it_there() {
     let outcome = moved(&stage(&BLOW.replace("0.6", "0.0"), CART));
-    assert_eq!((words(&outcome)[0], outcome.happenings.len()), ("cart hits the ball, which leaves at 4.3200 m/s", 2));
-    assert!(outcome.happenings[0].t < 1e-9, "{outcome:?}");
+    assert_eq!((words(&outcome)[0], outcome.occurrences.len()), ("cart hits the ball, which leaves at 4.3200 m/s", 2));
+    assert!(outcome.occurrences[0].t < 1e-9, "{outcome:?}");
     let away = moved(&stage(&BLOW.replace("0.6", "0.0").replace("slide = 3.0", "slide = -0.1"), CART));
-    assert!(away.happenings.is_empty() && away.ball.is_none(), "{away:?}");
+    assert!(away.occurrences.is_empty() && away.ball.is_none(), "{away:?}");
 }
 
 /// At its bound to the last bit at the start.
@@ -133,7 +133,7 @@ fn who_begins_at_a_limit_and_goes_beyond_reaches_it() {
     let urdf = CART.replace("upper=\"0.9\"", "upper=\"0.5\"");
     let [beyond, back] = [1.0, -1.0].map(|v| moved(&stage(&scene(v), &urdf)));
     assert_eq!(words(&beyond), ["slide reaches its upper limit"]);
-    assert!(beyond.happenings[0].t < 1e-9 && back.happenings.is_empty(), "{beyond:?} {back:?}");
+    assert!(beyond.occurrences[0].t < 1e-9 && back.occurrences.is_empty(), "{beyond:?} {back:?}");
 }
 
 /// y = 0.25 − 2 x comes to its lower bound, −1, at x = 0.625, and to its upper, 0.75, at x = −0.25.
@@ -148,7 +148,7 @@ fn a_joint_that_follows_has_bounds_of_its_own() {
         let outcome = moved(&stage(&scene, &urdf));
         assert_eq!(words(&outcome), [format!("y reaches its {which} limit")]);
         assert_eq!(about(&outcome), [is(kind, "y", true), None]);
-        assert!((outcome.happenings[0].t - at).abs() < 1e-9, "{:?}", outcome.happenings);
+        assert!((outcome.occurrences[0].t - at).abs() < 1e-9, "{:?}", outcome.occurrences);
     }
     let stage = stage("", &urdf);
     let told = |x: f64| stage.beyond(&[x]).iter().map(ToString::to_string).collect::<Vec<_>>();
@@ -180,8 +180,8 @@ fn a_joint_that_follows_slides_at_its_own_rate() {
         simulation = { end = 1.0, events = ['stick_slip'] }";
     let outcome = moved(&stage(scene, &CART.replace("</robot>", follower)));
     assert_eq!(words(&outcome), ["y stops sliding", "y starts to slide"]);
-    for (happening, t) in outcome.happenings.iter().zip([0.45, 0.55]) {
-        assert!((happening.t - t).abs() < 1e-6, "{happening:?} {t}");
+    for (occurrence, t) in outcome.occurrences.iter().zip([0.45, 0.55]) {
+        assert!((occurrence.t - t).abs() < 1e-6, "{occurrence:?} {t}");
     }
 }
 
@@ -200,7 +200,7 @@ fn contacts_and_ends_of_sliding_are_found_and_told() {
         simulation = { end = 1.0, integrator = 'rodas4', events = ['stick_slip'] }";
     let outcome = moved(&stage(slide, CART));
     assert_eq!(words(&outcome), ["slide stops sliding"]);
-    assert!((outcome.happenings[0].t - 0.5).abs() < 1e-3, "{:?}", outcome.happenings);
+    assert!((outcome.occurrences[0].t - 0.5).abs() < 1e-3, "{:?}", outcome.occurrences);
 }
 
 /// A puck of 2 kg, held back by 2 N along each axis: each of its numbers stops by itself.
@@ -234,7 +234,7 @@ fn joints_whose_bounds_nothing_is_between_are_told_and_left_out() {
     let motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
     let told: Vec<String> = motion.without().iter().map(ToString::to_string).collect();
     assert!(told.len() == 1 && told[0].contains("found joint \"slide\" without a lower bound below"), "{told:?}");
-    assert!(moved(&stage).happenings.is_empty());
+    assert!(moved(&stage).occurrences.is_empty());
 }
 
 #[test]

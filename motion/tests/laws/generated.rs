@@ -67,7 +67,7 @@ fn a_generated_robot_moves_as_the_generic_one() {
     assert_eq!((a.len(), &a.t), (25, &b.t));
     let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
     let apart_at = |k: usize| apart(a.q_at(k), b.q_at(k)).max(apart(a.v_at(k), b.v_at(k)));
-    let touch = generic.happenings.iter().find(|h| h.what == "hand touches the ground").unwrap().t;
+    let touch = generic.occurrences.iter().find(|h| h.what == "hand touches the ground").unwrap().t;
     let before = a.t.iter().take_while(|t| **t < touch).count();
     let [early, late] = [0..before, before..25].map(|rows| rows.map(apart_at).fold(0.0, f64::max));
     assert!(before > 2 && early < 1e-13 && late < 1e-6, "{before}: {early:e}, {late:e}");

@@ -35,5 +35,5 @@ fn moved(stage: &Stage) -> Outcome {
 
 /// What happened, in words.
 fn words(outcome: &Outcome) -> Vec<&str> {
-    outcome.happenings.iter().map(|h| h.what.as_str()).collect()
+    outcome.occurrences.iter().map(|h| h.what.as_str()).collect()
 }

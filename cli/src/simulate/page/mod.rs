@@ -14,7 +14,7 @@ use articulated_lab::plot::escaped;
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::recording::{Happening, Recording};
+use super::recording::{EventRecord, Recording};
 use figure::Figure;
 use track::{Track, base64};
 
@@ -67,7 +67,7 @@ struct Motion<'a> {
     times: String,
     energy_names: Vec<&'static str>,
     energies: String,
-    events: &'a [Happening],
+    events: &'a [EventRecord],
 }
 
 /// The page's text.

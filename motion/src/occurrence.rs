@@ -4,7 +4,7 @@ use std::fmt;
 
 /// Something that happened, at its time.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Happening {
+pub struct Occurrence {
     /// When, s.
     pub t: f64,
     /// What, in a few words; of an event that was put behind those of the scene, its name.
@@ -84,7 +84,7 @@ impl fmt::Display for SceneEvent {
     }
 }
 
-impl Happening {
+impl Occurrence {
     /// An event of the scene, and the ball's speed after it.
     pub(crate) fn of(t: f64, about: SceneEvent, ball_speed: Option<f64>) -> Self {
         let what = match (ball_speed, about.begins) {
