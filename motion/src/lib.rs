@@ -42,20 +42,20 @@
 //! # Ok(()) }
 //! ```
 //!
-//! Step by step: [`Stage::begin`] is the state and the control that it starts with, [`Stage::settings`] how it is simulated, [`Stage::motion`] all that put together with
+//! Step by step: [`Stage::initial_state`] is the state and the control that it starts with, [`Stage::settings`] how it is simulated, [`Stage::motion`] all that put together with
 //! a robot, and [`Motion::run`] runs it, as often as one likes. A robot that is generated for a scene needs the functions of [`Stage::functions`] and the frames of
 //! [`Stage::frames`]. For a simulation of one's own there are the parts: [`Drive`] is the scene's control, and [`Watch`] has its events and their words. Everything that
 //! keeps a scene from moving is told at once, as [`MotionErrors`].
 //!
-//! Many motions go over the cores: what they share, a [`Stage`], a robot and a [`Begin`], may be looked at by all threads, and each makes a [`Motion`] of its own, once.
+//! Many motions go over the cores: what they share, a [`Stage`], a robot and a [`InitialState`], may be looked at by all threads, and each makes a [`Motion`] of its own, once.
 //!
 //! ```
-//! # use articulated_motion::{Begin, MotionErrors, Stage};
+//! # use articulated_motion::{InitialState, MotionErrors, Stage};
 //! /// Where the first joint ends from each of these starts, rad.
-//! fn ends(stage: &Stage, starts: &[Begin], threads: usize) -> Result<Vec<f64>, MotionErrors> {
-//!     let some = |starts: &[Begin]| -> Result<Vec<f64>, MotionErrors> {
+//! fn ends(stage: &Stage, starts: &[InitialState], threads: usize) -> Result<Vec<f64>, MotionErrors> {
+//!     let some = |starts: &[InitialState]| -> Result<Vec<f64>, MotionErrors> {
 //!         let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings()?)?;
-//!         let end = |begin| motion.run(begin, &mut |_, _| true).map(|o| o.recording.q_at(o.recording.len() - 1)[0]);
+//!         let end = |initial| motion.run(initial, &mut |_, _| true).map(|o| o.recording.q_at(o.recording.len() - 1)[0]);
 //!         starts.iter().map(end).collect()
 //!     };
 //!     let share = starts.len().div_ceil(threads).max(1);
@@ -74,8 +74,8 @@
 //! # std::fs::write(folder.join("s.toml"), "urdf = 'p.urdf'\nsimulation = { end = 0.5 }")?;
 //! # let stage = Stage::open(folder.join("s.toml"))?;
 //! # std::fs::remove_dir_all(&folder)?;
-//! # let begin = stage.begin()?;
-//! # let starts: Vec<Begin> = (0..7).map(|k| Begin { q: vec![0.1 * f64::from(k)], ..begin.clone() }).collect();
+//! # let initial = stage.initial_state()?;
+//! # let starts: Vec<InitialState> = (0..7).map(|k| InitialState { q: vec![0.1 * f64::from(k)], ..initial.clone() }).collect();
 //! # assert_eq!(ends(&stage, &starts, 2)?, ends(&stage, &starts, 1)?);
 //! # assert_eq!(ends(&stage, &starts, 9)?.len(), 7);
 //! # Ok(()) }
@@ -84,13 +84,13 @@
 //! Conventions are those of [`articulated`]: SI units and radians; q and v in the order of the robot.
 
 mod ball;
-mod begin;
 mod creep;
 mod error;
 mod freedom;
-mod occurrence;
+mod initial_state;
 mod motion;
 mod needs;
+mod occurrence;
 mod penetration;
 mod same;
 mod settings;
@@ -99,11 +99,11 @@ mod watch;
 
 pub use articulated::simulate::{Controller, Counts, Drive, Recording, Settings, SimulateError};
 pub use articulated_scene::Scene;
-pub use begin::{Begin, Beyond, Sunk};
 pub use creep::Creep;
 pub use error::{Fault, MotionError, MotionErrors};
-pub use occurrence::{EventKind, Occurrence, SceneEvent};
+pub use initial_state::{Beyond, InitialState, Sunk};
 pub use motion::{Ending, Motion, Outcome};
+pub use occurrence::{EventKind, Occurrence, SceneEvent};
 pub use penetration::Penetration;
 pub use stage::{Stage, field};
 pub use watch::{Watch, Without};

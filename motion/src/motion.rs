@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 use articulated::Dynamics;
 use articulated::simulate::{Control, Counts, Drive, Ended, Recording, Settings, SimulateError, Simulation};
 
-use crate::begin::Begin;
 use crate::creep::Creep;
 use crate::error::{Fault, MotionErrors};
+use crate::initial_state::InitialState;
 use crate::occurrence::Occurrence;
 use crate::stage::Stage;
 use crate::watch::{Watch, Without};
@@ -81,11 +81,11 @@ impl Stage {
     }
 
     /// The scene on a robot from its start to its end, all as the scene says: the simplest way. Errors: as [`Stage::settings`], [`Stage::motion`] and
-    /// [`Stage::begin`], all of them; then a robot that accelerates otherwise than the scene's, as one does that was made from its URDF alone, without the scene's gravity and effects
+    /// [`Stage::initial_state`], all of them; then a robot that accelerates otherwise than the scene's, as one does that was made from its URDF alone, without the scene's gravity and effects
     /// (to move such a one on purpose there is [`Stage::motion`]). An error on the way is in [`Outcome::error`].
     pub fn run<R: Dynamics<f64>, S: AsRef<str>>(&self, robot: &R, frames: &[S]) -> Result<Outcome, MotionErrors> {
-        let (mut motion, begin) = self.ready(robot, frames)?;
-        motion.run(&begin, &mut |_, _| true)
+        let (mut motion, initial) = self.ready(robot, frames)?;
+        motion.run(&initial, &mut |_, _| true)
     }
 
     /// As [`Stage::run`], by a control of one's own in place of the scene's.
@@ -95,16 +95,20 @@ impl Stage {
         frames: &[S],
         control: &mut dyn Control,
     ) -> Result<Outcome, MotionErrors> {
-        let (mut motion, begin) = self.ready(robot, frames)?;
-        motion.run_with(&begin, control, &mut |_, _| true)
+        let (mut motion, initial) = self.ready(robot, frames)?;
+        motion.run_with(&initial, control, &mut |_, _| true)
     }
 
-    fn ready<'a, R: Dynamics<f64>, S: AsRef<str>>(&'a self, robot: &'a R, frames: &[S]) -> Result<(Motion<'a, R>, Begin), MotionErrors> {
+    fn ready<'a, R: Dynamics<f64>, S: AsRef<str>>(
+        &'a self,
+        robot: &'a R,
+        frames: &[S],
+    ) -> Result<(Motion<'a, R>, InitialState), MotionErrors> {
         let motion = self.settings().and_then(|settings| self.motion(robot, frames, settings));
-        let (motion, begin) = MotionErrors::both(motion, self.begin())?;
-        let another = self.another(robot, &begin).unwrap_or_else(|error| Some(Fault::Function(error)));
+        let (motion, initial) = MotionErrors::both(motion, self.initial_state())?;
+        let another = self.another(robot, &initial).unwrap_or_else(|error| Some(Fault::Function(error)));
         MotionErrors::none(&self.scene.file, another)?;
-        Ok((motion, begin))
+        Ok((motion, initial))
     }
 }
 
@@ -122,10 +126,10 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
     /// Makes the first step from the start and throws it away. Errors: a state, or a control, that
     /// does not fit the robot. What keeps the robot from moving is the result, as
     /// [`Outcome::error`] would be of a run.
-    pub fn first_step(&mut self, begin: &Begin) -> Result<Option<SimulateError>, MotionErrors> {
+    pub fn first_step(&mut self, initial: &InitialState) -> Result<Option<SimulateError>, MotionErrors> {
         let refused = |e: SimulateError| MotionErrors::refused(&self.stage.scene.file, e);
-        let mut drive = Drive::new(self.robot, &begin.controller, self.stage.scene.control.period).map_err(refused)?;
-        self.simulation.start(&begin.q, &begin.v).map_err(refused)?;
+        let mut drive = Drive::new(self.robot, &initial.controller, self.stage.scene.control.period).map_err(refused)?;
+        self.simulation.start(&initial.q, &initial.v).map_err(refused)?;
         match self.simulation.step(&mut drive) {
             Ok(_) => Ok(None),
             Err(e @ (SimulateError::Settings(_) | SimulateError::State(_) | SimulateError::Function(_))) => Err(refused(e)),
@@ -135,16 +139,16 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
 
     /// From the start to the end, to the blow that ends it, or to an error, which is part of what came of it. `follow` is told the time, s, and the counts after
     /// each step, and may say false to end it. Errors: a state, or a control, that does not fit the robot: nothing was done.
-    pub fn run(&mut self, begin: &Begin, follow: &mut dyn FnMut(f64, &Counts) -> bool) -> Result<Outcome, MotionErrors> {
-        let drive = Drive::new(self.robot, &begin.controller, self.stage.scene.control.period);
+    pub fn run(&mut self, initial: &InitialState, follow: &mut dyn FnMut(f64, &Counts) -> bool) -> Result<Outcome, MotionErrors> {
+        let drive = Drive::new(self.robot, &initial.controller, self.stage.scene.control.period);
         let mut drive = drive.map_err(|e| MotionErrors::refused(&self.stage.scene.file, e))?;
-        self.run_with(begin, &mut drive, follow)
+        self.run_with(initial, &mut drive, follow)
     }
 
     /// As [`Motion::run`], by a control of one's own in place of the scene's.
     pub fn run_with(
         &mut self,
-        begin: &Begin,
+        initial: &InitialState,
         control: &mut dyn Control,
         follow: &mut dyn FnMut(f64, &Counts) -> bool,
     ) -> Result<Outcome, MotionErrors> {
@@ -157,7 +161,7 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
             follow(t, counts) && !over()
         };
         let clock = Instant::now();
-        let result = self.simulation.run_into(&begin.q, &begin.v, control, &mut self.watch.events, &mut recording, &mut after_step);
+        let result = self.simulation.run_into(&initial.q, &initial.v, control, &mut self.watch.events, &mut recording, &mut after_step);
         let wall = clock.elapsed();
         let error = match result {
             Ok(()) => None,

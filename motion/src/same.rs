@@ -4,8 +4,8 @@
 
 use articulated::{Dynamics, FunctionError, FunctionId, Model};
 
-use crate::begin::Begin;
 use crate::error::Fault;
+use crate::initial_state::InitialState;
 use crate::stage::Stage;
 
 /// How far torques may be apart, relative to the largest of them: more than any level of accuracy leaves. What acts less than that is not told.
@@ -16,13 +16,13 @@ const AWAY: [f64; 3] = [0.0, 8.0, -8.0];
 
 impl Stage {
     /// A robot that was made with other effects, other gravity or other masses than the scene's.
-    pub(crate) fn another<R: Dynamics<f64>>(&self, robot: &R, begin: &Begin) -> Result<Option<Fault>, FunctionError> {
+    pub(crate) fn another<R: Dynamics<f64>>(&self, robot: &R, initial: &InitialState) -> Result<Option<Fault>, FunctionError> {
         for away in AWAY {
             let pattern: Vec<f64> = (0..self.model.nv).map(|k| 1.0 - 0.15 * (k % 4) as f64).collect();
             let step: Vec<f64> = pattern.iter().map(|x| away * x).collect();
-            let v: Vec<f64> = begin.v.iter().zip(&pattern).map(|(v, x)| v + 0.5 * x).collect();
+            let v: Vec<f64> = initial.v.iter().zip(&pattern).map(|(v, x)| v + 0.5 * x).collect();
             let mut q = vec![0.0; self.model.nq];
-            self.model.integrate(&mut self.model.workspace(), &begin.q, &step, &mut q)?;
+            self.model.integrate(&mut self.model.workspace(), &initial.q, &step, &mut q)?;
             let a = [accelerations(&self.model, &q, &v, &pattern)?, accelerations(robot, &q, &v, &pattern)?];
             if let Some((apart, largest)) = apart(&self.model, &q, &v, &a)?.filter(|(apart, largest)| *apart > ALIKE * largest) {
                 return Ok(Some(Fault::Dynamics { apart, largest }));

@@ -61,12 +61,12 @@ fn status(rows: &[Row]) -> u8 {
 fn row(name: &'static str, arguments: &SimulateArguments, rustc: &Rustc) -> Result<Row, Failure> {
     let stage = named_scene::stage(Path::new(name))?;
     let settings = settings::of(&stage, arguments)?;
-    let begin = stage.start()?;
+    let initial = stage.start()?;
     let (generated, frames) = stage.generate(settings.integrator)?;
     let robot = Straight::build(rustc, &generated).map_err(|e| Failure::tool(&e))?;
     let quiet = Progress::hidden();
-    let fast = motion::run(&stage, &begin, Code::Generated(&robot, &frames), &settings, &quiet)?;
-    let slow = motion::run(&stage, &begin, Code::Generic, &settings, &quiet)?;
+    let fast = motion::run(&stage, &initial, Code::Generated(&robot, &frames), &settings, &quiet)?;
+    let slow = motion::run(&stage, &initial, Code::Generic, &settings, &quiet)?;
     let (fast, slow) = (Summary::new(&stage, &fast, &settings, "generated"), Summary::new(&stage, &slow, &settings, "generic"));
     if let Some(error) = fast.error.as_ref().or(slow.error.as_ref()) {
         return Err(Failure::input([format!("{name}: {error}")]));

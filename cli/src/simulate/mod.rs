@@ -22,7 +22,7 @@ use articulated_lab::against;
 use articulated_lab::compiled::Rustc;
 use articulated_lab::stage::{Code, Stage};
 use articulated_lab::straight::Straight;
-use articulated_motion::{Begin, field};
+use articulated_motion::{InitialState, field};
 
 use crate::arguments::Format;
 use crate::console::{self, Progress};
@@ -41,9 +41,9 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     let stage = named_scene::stage(scene)?;
     has_room(&stage.scene.file, stage.model.nv)?;
     let settings = settings::of(&stage, arguments);
-    let (mut settings, begin) = Failure::both(settings, stage.start().map_err(Failure::from))?;
+    let (mut settings, initial) = Failure::both(settings, stage.start().map_err(Failure::from))?;
     if let Some(file) = &arguments.against {
-        let report = against::measure(&stage, &begin, &settings, file)?;
+        let report = against::measure(&stage, &initial, &settings, file)?;
         console::print(&match format {
             Format::Text => report.text(),
             Format::Json => crate::json(&report),
@@ -55,8 +55,8 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
     arguments.output.as_deref().map_or(Ok(()), folder)?;
     let progress = Progress::of_whole(format!("{}: motion", stage.name));
     let (mut motion, code) = match arguments.generated {
-        true => (by_generated_code(&stage, &begin, &settings, &progress)?, "generated"),
-        false => (by_generic_code(&stage, &begin, &settings, &progress)?, "generic"),
+        true => (by_generated_code(&stage, &initial, &settings, &progress)?, "generated"),
+        false => (by_generic_code(&stage, &initial, &settings, &progress)?, "generic"),
     };
     if let (Some(error), Some(full)) = (&mut motion.error, size.and_then(|size| size.ended(motion.recording.len()))) {
         *error += &format!("; {full}");
@@ -95,20 +95,20 @@ fn folder(path: &Path) -> Result<(), Failure> {
     )))
 }
 
-fn by_generated_code(stage: &Stage, begin: &Begin, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
+fn by_generated_code(stage: &Stage, initial: &InitialState, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
     let (generated, frames) = stage.generate(settings.integrator)?;
     progress.doing(format!("{}: rustc", stage.name));
     let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
     let robot = Straight::build(&rustc, &generated).map_err(|e| Failure::tool(&e))?;
     progress.doing(format!("{}: motion", stage.name));
-    motion::run(stage, begin, Code::Generated(&robot, &frames), settings, progress)
+    motion::run(stage, initial, Code::Generated(&robot, &frames), settings, progress)
 }
 
-fn by_generic_code(stage: &Stage, begin: &Begin, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
+fn by_generic_code(stage: &Stage, initial: &InitialState, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
     if cfg!(debug_assertions) {
         console::warn("this command was built without optimisation: its speed means little");
     }
-    motion::run(stage, begin, Code::Generic, settings, progress)
+    motion::run(stage, initial, Code::Generic, settings, progress)
 }
 
 /// All files of a motion, of its ends alone without what draws it; their names go into the summary,

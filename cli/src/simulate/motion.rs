@@ -6,7 +6,7 @@ use std::time::Duration;
 use articulated::FunctionId;
 use articulated::simulate::{Balance, Counts, Recording as Run, Settings};
 use articulated_lab::stage::{Code, Stage};
-use articulated_motion::{Begin, Creep, Ending, Occurrence, Outcome};
+use articulated_motion::{Creep, Ending, InitialState, Occurrence, Outcome};
 
 use super::recording::{EventRecord, Recording};
 use super::watch::Watch;
@@ -40,14 +40,14 @@ pub(super) struct Motion {
 /// else the error of its first step.
 pub(crate) fn look_over(scene: &Path) -> Result<Vec<String>, Failure> {
     let stage = named_scene::quiet_stage(scene)?;
-    let (begin, without) = Failure::both(stage.begin().map_err(Failure::from), looked_for(&stage))?;
+    let (initial, without) = Failure::both(stage.initial_state().map_err(Failure::from), looked_for(&stage))?;
     if stage.scene.simulation.is_some() {
         let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings()?)?;
-        if let Some(error) = motion.first_step(&begin)? {
+        if let Some(error) = motion.first_step(&initial)? {
             return Err(Failure::input([format!("{}: the motion ends with its first step: {error}", stage.scene.file)]));
         }
     }
-    Ok(stage.warnings(&begin).into_iter().chain(without).collect())
+    Ok(stage.warnings(&initial).into_iter().chain(without).collect())
 }
 
 /// What the scene looks for and has not. Errors: all that its motion would not begin for but its start; who simulates a scene without settings gives its end.
@@ -68,15 +68,21 @@ pub(super) fn solvable(stage: &Stage) -> Result<(), Failure> {
 }
 
 /// Runs it by this code.
-pub(super) fn run(stage: &Stage, begin: &Begin, code: Code<'_>, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
+pub(super) fn run(
+    stage: &Stage,
+    initial: &InitialState,
+    code: Code<'_>,
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<Motion, Failure> {
     let mut watch = Watch::new(stage, settings, progress);
-    let (outcome, without) = stage.run(begin, code, settings, &mut |t, counts| watch.look(t, counts))?;
+    let (outcome, without) = stage.run(initial, code, settings, &mut |t, counts| watch.look(t, counts))?;
     let Outcome { recording, occurrences, creep, ending, reached, ball, error, wall } = outcome;
     let (counts, balance) = (recording.counts, recording.balance.unwrap_or_default());
     let error = error.map(|e| e.to_string());
     let penetrations = stage.warning_of_penetrations(&recording.t, &recording.q);
     penetrations.iter().for_each(|line| console::warn(line));
-    let warnings = stage.warnings(begin).into_iter().chain(without).chain(penetrations).collect();
+    let warnings = stage.warnings(initial).into_iter().chain(without).chain(penetrations).collect();
     Ok(Motion { recording: told(stage, recording, occurrences), counts, balance, creep, reached, ending, wall, ball, error, warnings })
 }
 

@@ -4,7 +4,7 @@ use articulated::Dynamics;
 use articulated::simulate::{Constant, Control, Dependence, Event, IntegratorId, Output, Settings, Simulation, TorqueTable};
 use articulated_core::algorithm::Workspace;
 
-use articulated_motion::{Begin, Drive, Watch};
+use articulated_motion::{Drive, InitialState, Watch};
 use articulated_scene::{Aim, Controller, Series};
 
 use super::{ARM, CART, moved, stage};
@@ -83,8 +83,8 @@ fn a_table_out_of_order_is_refused() {
     let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
     let mut told = |times: &[f64], rows: &[f64]| {
         let series = Series { times: times.to_vec(), rows: rows.iter().map(|x| vec![*x]).collect(), hold: false };
-        let begin = Begin { controller: Controller::Table(series), ..stage.begin().unwrap() };
-        motion.run(&begin, &mut |_, _| true).map(drop).map_err(|e| e.to_string())
+        let initial = InitialState { controller: Controller::Table(series), ..stage.initial_state().unwrap() };
+        motion.run(&initial, &mut |_, _| true).map(drop).map_err(|e| e.to_string())
     };
     assert_eq!(told(&[0.0, 1.0], &[1.0, 2.0]), Ok(()));
     for (times, rows, wrong) in [
@@ -166,13 +166,13 @@ fn the_parts_put_together_move_as_the_whole() {
     let stage = stage(include_str!("arm.toml").replace("restitution", "stop = true\nrestitution").as_str(), ARM);
     let whole = moved(&stage);
     let (robot, settings) = (&stage.model, stage.settings().unwrap());
-    let begin = stage.begin().unwrap();
-    let mut drive = Drive::new(robot, &begin.controller, None).unwrap();
+    let initial = stage.initial_state().unwrap();
+    let mut drive = Drive::new(robot, &initial.controller, None).unwrap();
     let mut watch = Watch::new(&stage, robot, &stage.frame_names()).unwrap();
     watch.events.push(Event::new("half way", |_, q, _| q[0] - 0.5));
     let mut simulation = Simulation::new(robot, settings).unwrap();
     let (mut recording, over) = (simulation.recording(), watch.over());
-    simulation.run_into(&begin.q, &begin.v, &mut drive, &mut watch.events, &mut recording, &mut |_, _| !over()).unwrap();
+    simulation.run_into(&initial.q, &initial.v, &mut drive, &mut watch.events, &mut recording, &mut |_, _| !over()).unwrap();
     assert!(recording.events.iter().map(|hit| watch.occurrence(hit)).all(|h| h.about.is_none() == (h.what == "half way")));
     let words: Vec<String> = recording.events.iter().map(|hit| watch.occurrence(hit).what).collect();
     assert!(over() && watch.ball_energy() == whole.ball && words.iter().any(|what| what == "half way"), "{words:?}");

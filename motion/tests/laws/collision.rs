@@ -123,7 +123,7 @@ fn a_point_that_rests_in_the_plane_is_not_odd() {
     let plate = body("<collision><geometry><box size='0.4 0.3 0.2'/></geometry></collision>");
     let sunk = |z: f64| {
         let stage = stage(&fall(&format!("xyz = [0, 0, {z}]"), CONTACT), &plate);
-        stage.sunk(&stage.begin().unwrap().q).len()
+        stage.sunk(&stage.initial_state().unwrap().q).len()
     };
     let one = 2.0 * G / 1e4;
     assert_eq!((sunk(0.1 - 0.25 * one), sunk(0.1 - 0.99 * one), sunk(0.1 - 1.01 * one)), (0, 0, 4));
@@ -193,7 +193,7 @@ fn with_contact_of_its_geometry_nothing_falls_through() {
 }
 
 fn told_at(stage: &Stage) -> Option<String> {
-    stage.warning_of_penetrations_at_start(&stage.begin().unwrap().q)
+    stage.warning_of_penetrations_at_start(&stage.initial_state().unwrap().q)
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use articulated::simulate::{Settings, StateError, TableError};
 use articulated::{Dynamics, FunctionError};
 use articulated_models::panda_like;
-use articulated_motion::{Begin, Controller, Fault, MotionErrors, Scene, Stage};
+use articulated_motion::{Controller, Fault, InitialState, MotionErrors, Scene, Stage};
 use articulated_scene::{Aim, Series};
 
 use super::{ARM, CART, stage};
@@ -55,7 +55,7 @@ fn a_robot_without_the_effects_or_the_gravity_of_the_scene_is_another() {
         let told = refused(&stage, &plain.model, &plain.frame_names());
         assert!(matches!(told[..], [Fault::Dynamics { .. }]), "{text}: {told:?}");
         let mut motion = stage.motion(&plain.model, &plain.frame_names(), stage.settings().unwrap()).unwrap();
-        assert!(motion.run(&stage.begin().unwrap(), &mut |_, _| true).is_ok(), "{text}");
+        assert!(motion.run(&stage.initial_state().unwrap(), &mut |_, _| true).is_ok(), "{text}");
     }
 }
 
@@ -123,11 +123,11 @@ fn a_controller_that_the_robot_has_not_the_functions_for_is_refused() {
     let mut motion = stage.motion(&panda_like::Robot, &panda_like::FRAME_NAMES, stage.settings().unwrap()).unwrap();
     let zeros = || vec![0.0; 7];
     let controller = Controller::Pd { target: Aim::Still(zeros()), kp: zeros(), kd: zeros(), torque: zeros() };
-    let begin = Begin { controller, ..stage.begin().unwrap() };
-    let told = motion.run(&begin, &mut |_, _| true).unwrap_err();
+    let initial = InitialState { controller, ..stage.initial_state().unwrap() };
+    let told = motion.run(&initial, &mut |_, _| true).unwrap_err();
     assert_eq!(told.errors[0].fault, Fault::Function(FunctionError::NotGenerated { function: "difference" }));
-    let begin = Begin { controller: Controller::Torque(zeros()), ..begin };
-    assert!(motion.run(&begin, &mut |_, _| true).is_ok());
+    let initial = InitialState { controller: Controller::Torque(zeros()), ..initial };
+    assert!(motion.run(&initial, &mut |_, _| true).is_ok());
 }
 
 #[test]
@@ -163,7 +163,7 @@ fn tables_that_are_no_text_are_not_read() {
     }
     let begun = |file: &str| {
         let stage = stage(&format!("control = {{ kind = 'table', file = '{file}' }}"), CART).in_folder(folder.path());
-        stage.begin().unwrap_err().to_string()
+        stage.initial_state().unwrap_err().to_string()
     };
     assert_eq!(begun("odd.csv"), "odd.csv:2: found bytes that are not UTF-8, expected a CSV");
     let vast = begun("vast.csv");
@@ -183,7 +183,7 @@ fn tables_are_regular_files() {
     for kind in ["kind = 'table'", "kind = 'pd', kp = 1.0"] {
         for (file, found) in [("pipe.csv", "a pipe"), ("zeros.csv", "a device"), ("folder.csv", "a folder"), ("/dev/zero", "a device")] {
             let stage = stage(&format!("control = {{ {kind}, file = '{file}' }}"), CART).in_folder(folder.path());
-            let told = stage.begin().unwrap_err().to_string();
+            let told = stage.initial_state().unwrap_err().to_string();
             let expected = format!("{file}: found {found}, expected a regular file), expected a CSV");
             assert!(told.starts_with("s.toml:1: control.file: ") && told.contains(&expected), "{told}");
         }
@@ -224,12 +224,13 @@ fn a_ball_is_hit_while_the_robot_moves() {
 fn a_begin_that_does_not_fit_the_robot_is_refused() {
     let stage = stage("simulation = { end = 0.1 }", ARM);
     let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
-    let begin = stage.begin().unwrap();
-    let mut told =
-        |begin: &Begin| -> Vec<Fault> { motion.run(begin, &mut |_, _| true).unwrap_err().errors.into_iter().map(|e| e.fault).collect() };
+    let initial = stage.initial_state().unwrap();
+    let mut told = |initial: &InitialState| -> Vec<Fault> {
+        motion.run(initial, &mut |_, _| true).unwrap_err().errors.into_iter().map(|e| e.fault).collect()
+    };
     let length = |vector, found, expected| Fault::State(StateError::Length { vector, found, expected });
-    assert_eq!(told(&Begin { q: vec![0.0], v: vec![], ..begin.clone() }), [length("q", 1, 6), length("v", 0, 5)]);
-    let torque = Begin { controller: Controller::Torque(vec![]), ..begin.clone() };
+    assert_eq!(told(&InitialState { q: vec![0.0], v: vec![], ..initial.clone() }), [length("q", 1, 6), length("v", 0, 5)]);
+    let torque = InitialState { controller: Controller::Torque(vec![]), ..initial.clone() };
     assert_eq!(told(&torque), [length("control.torque", 0, 5)]);
     let table = |wrong| Fault::State(StateError::Table { table: "control.rows", wrong });
     let series = Series { times: vec![0.0, 1.0], rows: vec![vec![0.0; 2]], hold: false };
@@ -239,19 +240,19 @@ fn a_begin_that_does_not_fit_the_robot_is_refused() {
         table(TableError::Width { row: 0, found: 2, expected: 6 }),
         length("control.kp", 0, 5),
     ];
-    assert_eq!(told(&Begin { controller: pd, ..begin.clone() }), expected);
-    let nowhere = Begin { q: [0.0, f64::NAN].into_iter().chain([0.0; 3]).chain([1.0]).collect(), ..begin };
+    assert_eq!(told(&InitialState { controller: pd, ..initial.clone() }), expected);
+    let nowhere = InitialState { q: [0.0, f64::NAN].into_iter().chain([0.0; 3]).chain([1.0]).collect(), ..initial };
     assert!(matches!(&told(&nowhere)[..], [Fault::State(StateError::NotFinite { vector: "q", index: 1, .. })]));
 }
 
 #[test]
 fn a_start_beyond_its_limits_is_odd_and_used() {
     let stage = stage("initial = { q = { shoulder = 1.75, elbow = -1.0 } }\nsimulation = { end = 0.1 }", ARM);
-    let begin = stage.begin().unwrap();
-    let [beyond] = &stage.beyond(&begin.q)[..] else { panic!("one joint") };
+    let initial = stage.initial_state().unwrap();
+    let [beyond] = &stage.beyond(&initial.q)[..] else { panic!("one joint") };
     assert_eq!((beyond.joint.as_str(), beyond.found, beyond.lower, beyond.upper), ("shoulder", 1.75, -1.5, 1.5));
     let told = "s.toml: initial.q.shoulder: found 1.75, beyond its limits, expected -1.5 to 1.5; used as asked for";
-    assert_eq!((beyond.to_string().as_str(), begin.q[0]), (told, 1.75));
+    assert_eq!((beyond.to_string().as_str(), initial.q[0]), (told, 1.75));
     // At a bound nothing is.
     let beyond = |shoulder: f64, elbow: f64| stage.beyond(&[shoulder, elbow, 0.0, 0.0, 0.0, 1.0]).len();
     assert_eq!([beyond(1.5, 0.3), beyond(-1.5, -2.0), beyond(1.5, 0.301), beyond(-1.501, -2.0)], [0, 0, 1, 1]);

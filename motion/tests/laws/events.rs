@@ -68,12 +68,12 @@ fn a_motion_stops_where_a_blow_ends_it() {
 fn a_motion_runs_again_as_it_ran_before() {
     let stage = stage(&format!("{BLOW}stop = true\n"), CART);
     let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
-    let begin = stage.begin().unwrap();
-    let [mut first, mut again] = [(); 2].map(|()| motion.run(&begin, &mut |_, _| true).unwrap());
+    let initial = stage.initial_state().unwrap();
+    let [mut first, mut again] = [(); 2].map(|()| motion.run(&initial, &mut |_, _| true).unwrap());
     (first.wall, again.wall) = Default::default();
     assert_eq!(first, again);
     // Who goes the other way never meets the ball: nothing is left of the blow before.
-    let away = articulated_motion::Begin { v: vec![-1.0], ..begin };
+    let away = articulated_motion::InitialState { v: vec![-1.0], ..initial };
     let outcome = motion.run(&away, &mut |_, _| true).unwrap();
     assert_eq!((outcome.ball, outcome.ending, words(&outcome)), (None, Ending::AtEnd, vec!["slide reaches its lower limit"]));
 }
@@ -87,7 +87,7 @@ fn who_follows_it_may_end_it() {
         told.push((t, counts.steps));
         counts.steps < 25
     };
-    let outcome = motion.run(&stage.begin().unwrap(), &mut follow).unwrap();
+    let outcome = motion.run(&stage.initial_state().unwrap(), &mut follow).unwrap();
     assert_eq!((outcome.ending, outcome.recording.ended, told.len()), (Ending::ByFollower, Ended::ByWatcher, 25));
     assert!((outcome.reached - 0.25).abs() < 1e-12 && told[24].0 == outcome.reached, "{}", outcome.reached);
 }

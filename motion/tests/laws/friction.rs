@@ -117,11 +117,11 @@ fn the_first_step_shows_what_a_run_would_end_with() {
     for (step, refused) in [(1.0, true), (0.01, false)] {
         let stage = stage(&scene(step), &ball);
         let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
-        let begin = stage.begin().unwrap();
-        let first = motion.first_step(&begin).unwrap();
+        let initial = stage.initial_state().unwrap();
+        let first = motion.first_step(&initial).unwrap();
         assert_eq!(first.is_some(), refused, "{first:?}");
         // A run afterwards begins anew.
-        let outcome = motion.run(&begin, &mut |_, _| true).unwrap();
+        let outcome = motion.run(&initial, &mut |_, _| true).unwrap();
         assert_eq!(outcome.error, first);
         if refused {
             assert!(matches!(first, Some(SimulateError::Turn { t, .. }) if t == 0.0), "{first:?}");
@@ -156,9 +156,9 @@ fn what_the_first_step_accepts_is_not_refused_at_the_start() {
         );
         let stage = stage(&scene, STICTION);
         let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
-        let begin = stage.begin().unwrap();
-        let first = motion.first_step(&begin).unwrap();
-        let outcome = motion.run(&begin, &mut |_, _| true).unwrap();
+        let initial = stage.initial_state().unwrap();
+        let first = motion.first_step(&initial).unwrap();
+        let outcome = motion.run(&initial, &mut |_, _| true).unwrap();
         match first {
             Some(error) => assert_eq!(outcome.error, Some(error), "{scene}"),
             None => assert!(outcome.error.is_none() || outcome.reached > 0.0, "{:?}: {scene}", outcome.error),

@@ -9,7 +9,7 @@ use articulated_codegen::scene::Prepared;
 use articulated_codegen::{Generated, Request};
 use articulated_core::description::Base;
 use articulated_core::diagnostic::summary;
-use articulated_motion::{Begin, MotionErrors, Outcome, Sunk};
+use articulated_motion::{InitialState, MotionErrors, Outcome, Sunk};
 use articulated_scene::{BuiltRobot, Robot, beyond_sense};
 
 use crate::console;
@@ -63,19 +63,19 @@ impl Stage {
 
     /// Where the motion starts, and what controls it; warnings are printed. Errors: all that do not
     /// fit the robot, and tables that cannot be read.
-    pub fn start(&self) -> Result<Begin, Error> {
-        let begin = self.begin()?;
-        self.warnings(&begin).iter().for_each(|line| console::warn(line));
-        Ok(begin)
+    pub fn start(&self) -> Result<InitialState, Error> {
+        let initial = self.initial_state()?;
+        self.warnings(&initial).iter().for_each(|line| console::warn(line));
+        Ok(initial)
     }
 
     /// Warnings about the state at the start.
-    pub fn warnings(&self, begin: &Begin) -> Vec<String> {
-        let beyond = self.beyond(&begin.q).iter().map(ToString::to_string).collect::<Vec<_>>();
+    pub fn warnings(&self, initial: &InitialState) -> Vec<String> {
+        let beyond = self.beyond(&initial.q).iter().map(ToString::to_string).collect::<Vec<_>>();
         let file = &self.scene.file;
-        let senseless = beyond_sense(&self.model, &begin.q).into_iter().map(|line| format!("{file}: initial: {line}"));
-        let sunk = summary_of_sunk(&self.sunk(&begin.q));
-        beyond.into_iter().chain(senseless).chain(sunk).chain(self.warning_of_penetrations_at_start(&begin.q)).collect()
+        let senseless = beyond_sense(&self.model, &initial.q).into_iter().map(|line| format!("{file}: initial: {line}"));
+        let sunk = summary_of_sunk(&self.sunk(&initial.q));
+        beyond.into_iter().chain(senseless).chain(sunk).chain(self.warning_of_penetrations_at_start(&initial.q)).collect()
     }
 
     /// The code that a simulation of the scene needs, and the frames that it gives.
@@ -94,20 +94,20 @@ impl Stage {
     /// counts after each step. The outcome, and what the scene looks for and the code has not.
     pub fn run(
         &self,
-        begin: &Begin,
+        initial: &InitialState,
         code: Code<'_>,
         settings: &Settings,
         look: &mut dyn FnMut(f64, &Counts),
     ) -> Result<(Outcome, Vec<String>), MotionErrors> {
         match code {
-            Code::Generic => self.run_by(begin, (&self.model, &self.frame_names()), settings, look),
-            Code::Generated(robot, frames) => self.run_by(begin, (robot, frames), settings, look),
+            Code::Generic => self.run_by(initial, (&self.model, &self.frame_names()), settings, look),
+            Code::Generated(robot, frames) => self.run_by(initial, (robot, frames), settings, look),
         }
     }
 
     fn run_by<R: Dynamics<f64>, S: AsRef<str>>(
         &self,
-        begin: &Begin,
+        initial: &InitialState,
         (robot, frames): (&R, &[S]),
         settings: &Settings,
         look: &mut dyn FnMut(f64, &Counts),
@@ -115,7 +115,7 @@ impl Stage {
         let mut motion = self.motion(robot, frames, settings.clone())?;
         let without: Vec<String> = motion.without().iter().map(ToString::to_string).collect();
         without.iter().for_each(|line| console::warn(line));
-        let outcome = motion.run(begin, &mut |t, counts| {
+        let outcome = motion.run(initial, &mut |t, counts| {
             look(t, counts);
             true
         })?;

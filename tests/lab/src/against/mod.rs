@@ -11,7 +11,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use articulated::simulate::{IntegratorId, Settings};
-use articulated_motion::Begin;
+use articulated_motion::InitialState;
 
 use crate::compare::manifest::{self, Library};
 use crate::compare::timing::{self, Run};
@@ -46,9 +46,9 @@ trait Runner {
 }
 
 /// Measures a motion from its start. `file`: a peer library, or a list of them (JSON).
-pub fn measure(stage: &Stage, begin: &Begin, settings: &Settings, file: &Path) -> Result<Report, Error> {
+pub fn measure(stage: &Stage, initial: &InitialState, settings: &Settings, file: &Path) -> Result<Report, Error> {
     known_to_peers(stage)?;
-    let Begin { q, v, .. } = begin;
+    let InitialState { q, v, .. } = initial;
     let rustc = Rustc::find().map_err(|e| Error::tool(&e))?;
     let (generated, _) = stage.generate(IntegratorId::dop853)?;
     let robot = Straight::build(&rustc, &generated).map_err(|e| Error::tool(&e))?;

@@ -2,7 +2,7 @@
 
 use articulated::simulate::Settings;
 use articulated_core::description::Base;
-use articulated_motion::Begin;
+use articulated_motion::InitialState;
 use articulated_scene::{Aim, Controller};
 
 use super::subject::Subject;
@@ -20,7 +20,7 @@ pub(super) fn subject(stage: &Stage) -> Result<Subject, Error> {
         );
         return Err(Error::input([line]));
     }
-    let Begin { q, v, controller } = stage.start()?;
+    let InitialState { q, v, controller } = stage.start()?;
     let Settings { start, end, .. } = scene.simulation.as_ref().map_or_else(Settings::default, |s| s.settings.clone());
     let options = &stage.request.options;
     let inside = options.robot.gravity == [0.0; 3] && options.robot.effects.is_empty() && !pushes_base(&controller);

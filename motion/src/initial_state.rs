@@ -13,7 +13,7 @@ use crate::stage::{Stage, field};
 
 /// The state that a motion starts from, and what drives it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Begin {
+pub struct InitialState {
     /// Coordinates, `[nq]` rad|m|unit quaternion.
     pub q: Vec<f64>,
     /// Rates, `[nv]` rad/s|m/s.
@@ -39,11 +39,11 @@ pub struct Beyond {
 
 impl Stage {
     /// Start and control as the scene has them. Errors: all that does not fit the robot, and tables that cannot be read.
-    pub fn begin(&self) -> Result<Begin, MotionErrors> {
+    pub fn initial_state(&self) -> Result<InitialState, MotionErrors> {
         let start = self.scene.start(&self.model).map_err(MotionErrors::from);
         let controller = self.scene.controller(&self.model, &mut |file| self.file(file)).map_err(MotionErrors::from);
         let ((q, v), controller) = MotionErrors::both(start, controller)?;
-        Ok(Begin { q, v, controller })
+        Ok(InitialState { q, v, controller })
     }
 
     /// The joints of one coordinate that are beyond the limits of the file at q `[nq]`, where a motion starts; those that follow others too.
