@@ -118,7 +118,7 @@ fn functions(arguments: &AccuracyArguments, format: Format) -> Result<(), Failur
 
 /// Integrators on the motion of a scene.
 fn motions(arguments: &AccuracyArguments, format: Format) -> Result<(), Failure> {
-    let stage = named_scene::stage(&arguments.robot.robot)?;
+    let session = named_scene::session(&arguments.robot.robot)?;
     arguments.output.as_deref().map_or(Ok(()), |folder| output::folder("--output", folder))?;
     let settings = accuracy::motion::Settings {
         repetitions: arguments.repetitions,
@@ -126,7 +126,7 @@ fn motions(arguments: &AccuracyArguments, format: Format) -> Result<(), Failure>
         peers_manifest: arguments.peers_manifest.clone(),
         commit: COMMIT,
     };
-    let motion = accuracy::motion::measure(&stage, &settings)?;
+    let motion = accuracy::motion::measure(&session, &settings)?;
     let wish = arguments.error.filter(|_| arguments.advise);
     let text = match (wish, format) {
         (Some(wish), Format::Text) => motion.advice_in_text(wish),

@@ -5,7 +5,7 @@ use articulated::simulate::{Recording, SLIDING};
 use articulated_core::effect::{Applied, EffectId, unit};
 
 use crate::freedom::Freedom;
-use crate::stage::{Stage, field};
+use crate::session::{Session, field};
 
 /// What crept in a motion, and how far.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +20,7 @@ pub struct Creep {
     pub time: f64,
 }
 
-impl Stage {
+impl Session {
     /// The contact and the joint with dry friction that crept furthest in a motion of the scene, of
     /// each kind at most one.
     ///
@@ -98,10 +98,10 @@ struct Contact {
 }
 
 impl Contact {
-    fn of(stage: &Stage, applied: &Applied) -> Option<Self> {
+    fn of(session: &Session, applied: &Applied) -> Option<Self> {
         let one = |name: &str| field(applied, name).first().copied();
         Some(Self {
-            frame: stage.model.frames.iter().position(|frame| frame.name == applied.on)?,
+            frame: session.model.frames.iter().position(|frame| frame.name == applied.on)?,
             point: applied.at.xyz,
             normal: unit(field(applied, "normal").try_into().ok()?)?,
             reach: one("height")? + one("radius")?,

@@ -3,7 +3,7 @@
 use articulated_core::effect::{EffectId, JointEffect};
 use articulated_core::model::Body;
 
-use crate::stage::Stage;
+use crate::session::Session;
 
 /// A degree of freedom: which of its joint's, the coordinate and the rate that it moves with, and how: its own coordinate is multiplier · that + offset.
 pub(crate) struct Freedom<'s> {
@@ -16,7 +16,7 @@ pub(crate) struct Freedom<'s> {
     offset: f64,
 }
 
-impl Stage {
+impl Session {
     /// All degrees of freedom, those of joints that follow others too. A quaternion's have no coordinates: they are no place of bounds.
     pub(crate) fn freedoms(&self) -> impl Iterator<Item = Freedom<'_>> {
         self.model.bodies.iter().skip(1).flat_map(|body| {

@@ -9,7 +9,7 @@ use articulated_scene::Controller;
 
 use crate::error::MotionErrors;
 use crate::freedom::Freedom;
-use crate::stage::{Stage, field};
+use crate::session::{Session, field};
 
 /// The state that a motion starts from, and what drives it.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +37,7 @@ pub struct Beyond {
     pub upper: f64,
 }
 
-impl Stage {
+impl Session {
     /// Start and control as the scene has them. Errors: all that does not fit the robot, and tables that cannot be read.
     pub fn initial_state(&self) -> Result<InitialState, MotionErrors> {
         let start = self.scene.start(&self.model).map_err(MotionErrors::from);
@@ -70,7 +70,7 @@ pub struct Sunk {
     pub depth: f64,
 }
 
-impl Stage {
+impl Session {
     /// Spheres whose centres are under their planes at the coordinates q `[nq]`.
     pub fn sunk(&self, q: &[f64]) -> Vec<Sunk> {
         if self.effects_of(EffectId::contact).next().is_none() {

@@ -1,9 +1,9 @@
 //! A scene's motion in a program: its start, its control, its events, moved by any robot.
 //!
-//! A [`Stage`] is a scene with its robot. It moves on anything that has dynamics: the generic model, and generated robots.
+//! A [`Session`] is a scene with its robot. It moves on anything that has dynamics: the generic model, and generated robots.
 //!
 //! ```
-//! use articulated_motion::{Ending, Stage};
+//! use articulated_motion::{Ending, Session};
 //!
 //! const URDF: &str = r#"<robot name="pendulum"><link name="base"/>
 //!   <link name="bob"><inertial><origin xyz="0 0 -1"/><mass value="1"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>
@@ -23,10 +23,10 @@
 //! # let path = folder.join("swing.toml");
 //! # std::fs::write(folder.join("pendulum.urdf"), URDF)?;
 //! # std::fs::write(&path, SCENE)?;
-//! let stage = Stage::open(&path)?;
+//! let session = Session::open(&path)?;
 //! # std::fs::remove_dir_all(&folder)?;
-//! stage.warnings.iter().for_each(|odd| eprintln!("{odd}"));
-//! let swing = stage.run(&stage.model, &stage.frame_names())?;
+//! session.warnings.iter().for_each(|odd| eprintln!("{odd}"));
+//! let swing = session.run(&session.model, &session.frame_names())?;
 //!
 //! assert_eq!((swing.ending, swing.reached, swing.error), (Ending::AtEnd, 12.0, None));
 //! assert_eq!(swing.occurrences[0].what, "hinge reaches its upper limit");
@@ -37,24 +37,24 @@
 //!
 //! // A control of one's own in place of the scene's; in an articulated::simulate::Hold it is asked at a rate.
 //! let mut push = |t: f64, _q: &[f64], v: &[f64], tau: &mut [f64]| tau[0] = 2.0 * t.sin() - 0.5 * v[0];
-//! let pushed = stage.run_with(&stage.model, &stage.frame_names(), &mut push)?;
+//! let pushed = session.run_with(&session.model, &session.frame_names(), &mut push)?;
 //! assert_eq!((pushed.ending, pushed.error), (Ending::AtEnd, None));
 //! # Ok(()) }
 //! ```
 //!
-//! Step by step: [`Stage::initial_state`] is the state and the control that it starts with, [`Stage::settings`] how it is simulated, [`Stage::motion`] all that put together with
-//! a robot, and [`Motion::run`] runs it, as often as one likes. A robot that is generated for a scene needs the functions of [`Stage::functions`] and the frames of
-//! [`Stage::frames`]. For a simulation of one's own there are the parts: [`Drive`] is the scene's control, and [`Watch`] has its events and their words. Everything that
+//! Step by step: [`Session::initial_state`] is the state and the control that it starts with, [`Session::settings`] how it is simulated, [`Session::motion`] all that put together with
+//! a robot, and [`Motion::run`] runs it, as often as one likes. A robot that is generated for a scene needs the functions of [`Session::functions`] and the frames of
+//! [`Session::frames`]. For a simulation of one's own there are the parts: [`Drive`] is the scene's control, and [`Watch`] has its events and their words. Everything that
 //! keeps a scene from moving is told at once, as [`MotionErrors`].
 //!
-//! Many motions go over the cores: what they share, a [`Stage`], a robot and a [`InitialState`], may be looked at by all threads, and each makes a [`Motion`] of its own, once.
+//! Many motions go over the cores: what they share, a [`Session`], a robot and a [`InitialState`], may be looked at by all threads, and each makes a [`Motion`] of its own, once.
 //!
 //! ```
-//! # use articulated_motion::{InitialState, MotionErrors, Stage};
+//! # use articulated_motion::{InitialState, MotionErrors, Session};
 //! /// Where the first joint ends from each of these starts, rad.
-//! fn ends(stage: &Stage, starts: &[InitialState], threads: usize) -> Result<Vec<f64>, MotionErrors> {
+//! fn ends(session: &Session, starts: &[InitialState], threads: usize) -> Result<Vec<f64>, MotionErrors> {
 //!     let some = |starts: &[InitialState]| -> Result<Vec<f64>, MotionErrors> {
-//!         let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings()?)?;
+//!         let mut motion = session.motion(&session.model, &session.frame_names(), session.settings()?)?;
 //!         let end = |initial| motion.run(initial, &mut |_, _| true).map(|o| o.recording.q_at(o.recording.len() - 1)[0]);
 //!         starts.iter().map(end).collect()
 //!     };
@@ -72,12 +72,12 @@
 //! #   <joint name="hinge" type="continuous"><parent link="base"/><child link="bob"/><axis xyz="0 1 0"/></joint></robot>"#;
 //! # std::fs::write(folder.join("p.urdf"), urdf)?;
 //! # std::fs::write(folder.join("s.toml"), "urdf = 'p.urdf'\nsimulation = { end = 0.5 }")?;
-//! # let stage = Stage::open(folder.join("s.toml"))?;
+//! # let session = Session::open(folder.join("s.toml"))?;
 //! # std::fs::remove_dir_all(&folder)?;
-//! # let initial = stage.initial_state()?;
+//! # let initial = session.initial_state()?;
 //! # let starts: Vec<InitialState> = (0..7).map(|k| InitialState { q: vec![0.1 * f64::from(k)], ..initial.clone() }).collect();
-//! # assert_eq!(ends(&stage, &starts, 2)?, ends(&stage, &starts, 1)?);
-//! # assert_eq!(ends(&stage, &starts, 9)?.len(), 7);
+//! # assert_eq!(ends(&session, &starts, 2)?, ends(&session, &starts, 1)?);
+//! # assert_eq!(ends(&session, &starts, 9)?.len(), 7);
 //! # Ok(()) }
 //! ```
 //!
@@ -93,8 +93,8 @@ mod needs;
 mod occurrence;
 mod penetration;
 mod same;
+mod session;
 mod settings;
-mod stage;
 mod watch;
 
 pub use articulated::simulate::{Controller, Counts, Drive, Recording, Settings, SimulateError};
@@ -105,5 +105,5 @@ pub use initial_state::{Beyond, InitialState, Sunk};
 pub use motion::{Ending, Motion, Outcome};
 pub use occurrence::{EventKind, Occurrence, SceneEvent};
 pub use penetration::Penetration;
-pub use stage::{Stage, field};
+pub use session::{Session, field};
 pub use watch::{Watch, Without};

@@ -10,12 +10,12 @@ use crate::creep::Creep;
 use crate::error::{Fault, MotionErrors};
 use crate::initial_state::InitialState;
 use crate::occurrence::Occurrence;
-use crate::stage::Stage;
+use crate::session::Session;
 use crate::watch::{Watch, Without};
 
 /// A scene on a robot, with all the room that its simulation needs. It may be run again and again.
 pub struct Motion<'a, R: Dynamics<f64>> {
-    stage: &'a Stage,
+    session: &'a Session,
     robot: &'a R,
     watch: Watch<'a>,
     simulation: Simulation<'a, R>,
@@ -28,7 +28,7 @@ pub struct Outcome {
     pub recording: Recording,
     /// What happened on the way, in the order of time: one for each of [`Recording::events`].
     pub occurrences: Vec<Occurrence>,
-    /// What smoothed friction did not hold, and how far it crept ([`Stage::creep`]).
+    /// What smoothed friction did not hold, and how far it crept ([`Session::creep`]).
     pub creep: Vec<Creep>,
     /// How it ended.
     pub ending: Ending,
@@ -55,10 +55,10 @@ pub enum Ending {
     ByError,
 }
 
-impl Stage {
-    /// The scene on a robot, to be simulated so; `frames` are the names of the robot's frames in its order: `FRAME_NAMES` of a generated module, [`Stage::frame_names`] of
-    /// the model. Errors: a robot that is another than the scene's, or has not the frames and functions that the scene needs (see [`Stage::frames`],
-    /// [`Stage::functions`]); settings that cannot be used; all of it.
+impl Session {
+    /// The scene on a robot, to be simulated so; `frames` are the names of the robot's frames in its order: `FRAME_NAMES` of a generated module, [`Session::frame_names`] of
+    /// the model. Errors: a robot that is another than the scene's, or has not the frames and functions that the scene needs (see [`Session::frames`],
+    /// [`Session::functions`]); settings that cannot be used; all of it.
     pub fn motion<'a, R: Dynamics<f64>, S: AsRef<str>>(
         &'a self,
         robot: &'a R,
@@ -77,18 +77,18 @@ impl Stage {
         // A motion of a scene is judged by its balance of energy.
         let simulation = simulation.map(Simulation::with_energy_balance).map_err(|e| MotionErrors::refused(file, e));
         let (_, (watch, simulation)) = MotionErrors::both(MotionErrors::none(file, faults), MotionErrors::both(watch, simulation))?;
-        Ok(Motion { stage: self, robot, watch, simulation })
+        Ok(Motion { session: self, robot, watch, simulation })
     }
 
-    /// The scene on a robot from its start to its end, all as the scene says: the simplest way. Errors: as [`Stage::settings`], [`Stage::motion`] and
-    /// [`Stage::initial_state`], all of them; then a robot that accelerates otherwise than the scene's, as one does that was made from its URDF alone, without the scene's gravity and effects
-    /// (to move such a one on purpose there is [`Stage::motion`]). An error on the way is in [`Outcome::error`].
+    /// The scene on a robot from its start to its end, all as the scene says: the simplest way. Errors: as [`Session::settings`], [`Session::motion`] and
+    /// [`Session::initial_state`], all of them; then a robot that accelerates otherwise than the scene's, as one does that was made from its URDF alone, without the scene's gravity and effects
+    /// (to move such a one on purpose there is [`Session::motion`]). An error on the way is in [`Outcome::error`].
     pub fn run<R: Dynamics<f64>, S: AsRef<str>>(&self, robot: &R, frames: &[S]) -> Result<Outcome, MotionErrors> {
         let (mut motion, initial) = self.ready(robot, frames)?;
         motion.run(&initial, &mut |_, _| true)
     }
 
-    /// As [`Stage::run`], by a control of one's own in place of the scene's.
+    /// As [`Session::run`], by a control of one's own in place of the scene's.
     pub fn run_with<R: Dynamics<f64>, S: AsRef<str>>(
         &self,
         robot: &R,
@@ -127,8 +127,8 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
     /// does not fit the robot. What keeps the robot from moving is the result, as
     /// [`Outcome::error`] would be of a run.
     pub fn first_step(&mut self, initial: &InitialState) -> Result<Option<SimulateError>, MotionErrors> {
-        let refused = |e: SimulateError| MotionErrors::refused(&self.stage.scene.file, e);
-        let mut drive = Drive::new(self.robot, &initial.controller, self.stage.scene.control.period).map_err(refused)?;
+        let refused = |e: SimulateError| MotionErrors::refused(&self.session.scene.file, e);
+        let mut drive = Drive::new(self.robot, &initial.controller, self.session.scene.control.period).map_err(refused)?;
         self.simulation.start(&initial.q, &initial.v).map_err(refused)?;
         match self.simulation.step(&mut drive) {
             Ok(_) => Ok(None),
@@ -140,8 +140,8 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
     /// From the start to the end, to the blow that ends it, or to an error, which is part of what came of it. `follow` is told the time, s, and the counts after
     /// each step, and may say false to end it. Errors: a state, or a control, that does not fit the robot: nothing was done.
     pub fn run(&mut self, initial: &InitialState, follow: &mut dyn FnMut(f64, &Counts) -> bool) -> Result<Outcome, MotionErrors> {
-        let drive = Drive::new(self.robot, &initial.controller, self.stage.scene.control.period);
-        let mut drive = drive.map_err(|e| MotionErrors::refused(&self.stage.scene.file, e))?;
+        let drive = Drive::new(self.robot, &initial.controller, self.session.scene.control.period);
+        let mut drive = drive.map_err(|e| MotionErrors::refused(&self.session.scene.file, e))?;
         self.run_with(initial, &mut drive, follow)
     }
 
@@ -152,7 +152,7 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
         control: &mut dyn Control,
         follow: &mut dyn FnMut(f64, &Counts) -> bool,
     ) -> Result<Outcome, MotionErrors> {
-        let refused = |e: SimulateError| MotionErrors::refused(&self.stage.scene.file, e);
+        let refused = |e: SimulateError| MotionErrors::refused(&self.session.scene.file, e);
         self.watch.reset();
         let (over, mut reached) = (self.watch.over(), self.simulation.settings().start);
         let mut recording = self.simulation.recording();
@@ -175,7 +175,7 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
             _ => recording.t.last().map_or(reached, |t| t.max(reached)),
         };
         let occurrences = recording.events.iter().map(|hit| self.watch.occurrence(hit)).collect();
-        let creep = self.stage.creep(&recording);
+        let creep = self.session.creep(&recording);
         Ok(Outcome { recording, occurrences, creep, ending, reached, ball: self.watch.ball_energy(), error, wall })
     }
 }

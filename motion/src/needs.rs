@@ -6,9 +6,9 @@ use articulated_core::effect::EffectId;
 use articulated_scene::Watched;
 
 use crate::error::Fault;
-use crate::stage::Stage;
+use crate::session::Session;
 
-impl Stage {
+impl Session {
     /// The links whose frames the scene's events need, each once: all that a robot that is generated for this motion has to give.
     pub fn frames(&self) -> Vec<String> {
         let mut all: Vec<String> = self.framed().map(|(_, link)| link.to_owned()).collect();

@@ -7,7 +7,7 @@ use articulated_core::Plain;
 use articulated_core::description::{Collision, ContactSphere, Link};
 use articulated_core::effect::{EffectId, unit};
 
-use crate::stage::{Stage, field};
+use crate::session::{Session, field};
 
 /// A link whose collision geometry is deeper in a plane of contact than the contacts of its body.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,7 +50,7 @@ struct Touch {
     plane: Plane,
 }
 
-impl Stage {
+impl Session {
     /// Links with collision geometry that are below a plane of contact by more than the contacts of
     /// their body, and a twentieth of their size: nothing holds them there. `t`, s, and `q`,
     /// `[t.len() · nq]`, are the times and states to look at: of a start, or of a

@@ -6,7 +6,7 @@ use articulated::{Dynamics, FunctionError, FunctionId, Model};
 
 use crate::error::Fault;
 use crate::initial_state::InitialState;
-use crate::stage::Stage;
+use crate::session::Session;
 
 /// How far torques may be apart, relative to the largest of them: more than any level of accuracy leaves. What acts less than that is not told.
 const ALIKE: f64 = 1e-3;
@@ -14,7 +14,7 @@ const ALIKE: f64 = 1e-3;
 /// How far from the start joints are, rad and m, at most, where accelerations are compared: there, and on both sides, so that stops and the ground are felt.
 const AWAY: [f64; 3] = [0.0, 8.0, -8.0];
 
-impl Stage {
+impl Session {
     /// A robot that was made with other effects, other gravity or other masses than the scene's.
     pub(crate) fn another<R: Dynamics<f64>>(&self, robot: &R, initial: &InitialState) -> Result<Option<Fault>, FunctionError> {
         for away in AWAY {

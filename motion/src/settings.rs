@@ -6,12 +6,12 @@ use articulated_core::effect::{Applied, EffectId};
 use articulated_scene::When;
 
 use crate::error::{Fault, MotionErrors};
-use crate::stage::{Stage, field};
+use crate::session::{Session, field};
 
 /// A smoothing speed is at least this many times the absolute tolerance of velocities.
 const RESOLVED: f64 = 10.0;
 
-impl Stage {
+impl Session {
     /// The settings that the scene says. Errors: a scene without `[simulation]`.
     pub fn settings(&self) -> Result<Settings, MotionErrors> {
         let simulation = self.scene.simulation.as_ref().ok_or_else(|| MotionErrors::one(&self.scene.file, Fault::NoSimulation))?;

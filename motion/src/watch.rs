@@ -11,7 +11,7 @@ use articulated_scene::Watched;
 use crate::ball::Ball;
 use crate::error::{Fault, MotionErrors};
 use crate::occurrence::{EventKind, Occurrence, SceneEvent};
-use crate::stage::{Stage, field};
+use crate::session::{Session, field};
 
 /// Events of a scene on a robot, and how each of them reads.
 pub struct Watch<'a> {
@@ -38,25 +38,25 @@ pub struct Without {
 impl<'a> Watch<'a> {
     /// What the scene asks for on a robot; `frames` are the names of its frames in its order. Errors: frames that
     /// events need and that are not among them, functions that the robot has not, numbers that cannot be used; all of them.
-    pub fn new<R: Dynamics<f64>, S: AsRef<str>>(stage: &Stage, robot: &'a R, frames: &[S]) -> Result<Self, MotionErrors>
+    pub fn new<R: Dynamics<f64>, S: AsRef<str>>(session: &Session, robot: &'a R, frames: &[S]) -> Result<Self, MotionErrors>
     where
         R::Workspace: 'a,
     {
         let mut watch = Self { events: Vec::new(), without: Vec::new(), about: Vec::new(), ball: Rc::default() };
         let mut faults = Vec::new();
-        for what in stage.looked_for() {
+        for what in session.looked_for() {
             let before = (watch.events.len(), faults.len(), watch.without.len());
             match what {
-                Watched::Limits => watch.limits(stage),
-                Watched::Contacts => watch.contacts(stage, robot, frames, &mut faults),
-                Watched::StickSlip => watch.stick_slip(stage),
+                Watched::Limits => watch.limits(session),
+                Watched::Contacts => watch.contacts(session, robot, frames, &mut faults),
+                Watched::StickSlip => watch.stick_slip(session),
             }
             if (watch.events.len(), faults.len(), watch.without.len()) == before {
-                watch.without.push(Without { file: stage.scene.file.clone(), what: *what, joint: None });
+                watch.without.push(Without { file: session.scene.file.clone(), what: *what, joint: None });
             }
         }
-        watch.hit(stage, robot, frames, &mut faults);
-        MotionErrors::none(&stage.scene.file, faults)?;
+        watch.hit(session, robot, frames, &mut faults);
+        MotionErrors::none(&session.scene.file, faults)?;
         Ok(watch)
     }
 
@@ -92,11 +92,11 @@ impl<'a> Watch<'a> {
     }
 
     /// The bounds of the effect if a joint has it, else those of the file.
-    fn limits(&mut self, stage: &Stage) {
-        for at in stage.freedoms() {
-            let (name, Some((lower, upper))) = (stage.name_of(&at), stage.bounds(&at)) else { continue };
+    fn limits(&mut self, session: &Session) {
+        for at in session.freedoms() {
+            let (name, Some((lower, upper))) = (session.name_of(&at), session.bounds(&at)) else { continue };
             if lower >= upper {
-                self.without.push(Without { file: stage.scene.file.clone(), what: Watched::Limits, joint: Some(name) });
+                self.without.push(Without { file: session.scene.file.clone(), what: Watched::Limits, joint: Some(name) });
                 continue;
             }
             // A joint that follows another the other way round is at its own upper bound where that is at the lower.
@@ -113,11 +113,11 @@ impl<'a> Watch<'a> {
         }
     }
 
-    fn contacts<R: Dynamics<f64>, S: AsRef<str>>(&mut self, stage: &Stage, robot: &'a R, frames: &[S], faults: &mut Vec<Fault>)
+    fn contacts<R: Dynamics<f64>, S: AsRef<str>>(&mut self, session: &Session, robot: &'a R, frames: &[S], faults: &mut Vec<Fault>)
     where
         R::Workspace: 'a,
     {
-        for (kind, a) in contacts(stage) {
+        for (kind, a) in contacts(session) {
             let Some(frame) = frame_of(&a.on, frames) else {
                 faults.push(no_frame("effects.contact", &a.on, frames));
                 continue;
@@ -130,20 +130,20 @@ impl<'a> Watch<'a> {
         }
     }
 
-    fn stick_slip(&mut self, stage: &Stage) {
-        for at in stage.freedoms() {
+    fn stick_slip(&mut self, session: &Session) {
+        for at in session.freedoms() {
             let Some([_, speed, ..]) = at.effect(EffectId::friction).map(|friction| friction.parameters.as_slice()) else { continue };
-            let name = stage.name_of(&at);
+            let name = session.name_of(&at);
             let event = Event::stick_slip(name.as_str(), at.v, speed / at.multiplier.abs());
             self.push(event, EventKind::StickSlip, &name);
         }
     }
 
-    fn hit<R: Dynamics<f64>, S: AsRef<str>>(&mut self, stage: &Stage, robot: &'a R, frames: &[S], faults: &mut Vec<Fault>)
+    fn hit<R: Dynamics<f64>, S: AsRef<str>>(&mut self, session: &Session, robot: &'a R, frames: &[S], faults: &mut Vec<Fault>)
     where
         R::Workspace: 'a,
     {
-        let Some(asked) = &stage.scene.impact else { return };
+        let Some(asked) = &session.scene.impact else { return };
         let Some(frame) = frame_of(&asked.link, frames) else { return faults.push(no_frame("impact.link", &asked.link, frames)) };
         match self.ball.event(asked, robot, frame) {
             Ok(event) => self.push(event, EventKind::Ball, &asked.link),
@@ -153,8 +153,8 @@ impl<'a> Watch<'a> {
 }
 
 /// The contacts, each with its number among those of its link.
-fn contacts(stage: &Stage) -> impl Iterator<Item = (EventKind, &Applied)> {
-    let all = move || stage.effects_of(EffectId::contact);
+fn contacts(session: &Session) -> impl Iterator<Item = (EventKind, &Applied)> {
+    let all = move || session.effects_of(EffectId::contact);
     all().enumerate().map(move |(k, a)| {
         let number = 1 + all().take(k).filter(|other| other.on == a.on).count();
         (EventKind::Contact { number, of: all().filter(|other| other.on == a.on).count() }, a)

@@ -45,25 +45,25 @@ pub(crate) fn sorts(effects: &[Applied]) -> Vec<&'static str> {
 
 /// Prints what is on, off and not used, and what it costs.
 pub(crate) fn run(arguments: &EffectsArguments, format: Format) -> Result<(), Failure> {
-    let stage = named_scene::stage(&arguments.scene)?;
+    let session = named_scene::session(&arguments.scene)?;
     let mut functions = names::flat(&arguments.functions);
     if functions.is_empty() {
         functions = FUNCTIONS.map(str::to_owned).to_vec();
     }
     if arguments.time {
-        stage.is_of_doubles()?;
+        session.is_of_doubles()?;
     }
     let rustc = arguments.time.then(Rustc::find).transpose().map_err(|e| Failure::tool(&e))?;
-    let mut report = Report::of(&stage);
+    let mut report = Report::of(&session);
     report.compiler = rustc.as_ref().map(|rustc| rustc.version.clone());
-    let parts = cost::parts(&stage, &functions)?;
+    let parts = cost::parts(&session, &functions)?;
     let progress = Progress::new(parts.iter().map(|part| part.steps(arguments.time)).sum());
     for part in &parts {
-        let made = part.generate(&stage, &progress)?;
+        let made = part.generate(&session, &progress)?;
         report.limbs = made.iter().flat_map(|g| &g.ledger.functions).map(|f| f.lanes).fold(report.limbs, usize::max);
         let mut costs = part.counted(&made);
         if let Some(rustc) = &rustc {
-            cost::time(&stage, &made, rustc, arguments.repetitions as usize, &mut costs, &progress)?;
+            cost::time(&session, &made, rustc, arguments.repetitions as usize, &mut costs, &progress)?;
         }
         report.costs.extend(costs);
     }

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use articulated::FunctionId;
 use articulated::simulate::{Balance, Counts, Recording as Run, Settings};
-use articulated_lab::stage::{Code, Stage};
+use articulated_lab::session::{Code, Session};
 use articulated_motion::{Creep, Ending, InitialState, Occurrence, Outcome};
 
 use super::recording::{EventRecord, Recording};
@@ -39,59 +39,59 @@ pub(super) struct Motion {
 /// The warnings about a scene's motion. Errors: everything that keeps the motion from starting, or
 /// else the error of its first step.
 pub(crate) fn look_over(scene: &Path) -> Result<Vec<String>, Failure> {
-    let stage = named_scene::quiet_stage(scene)?;
-    let (initial, without) = Failure::both(stage.initial_state().map_err(Failure::from), looked_for(&stage))?;
-    if stage.scene.simulation.is_some() {
-        let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings()?)?;
+    let session = named_scene::quiet_session(scene)?;
+    let (initial, without) = Failure::both(session.initial_state().map_err(Failure::from), looked_for(&session))?;
+    if session.scene.simulation.is_some() {
+        let mut motion = session.motion(&session.model, &session.frame_names(), session.settings()?)?;
         if let Some(error) = motion.first_step(&initial)? {
-            return Err(Failure::input([format!("{}: the motion ends with its first step: {error}", stage.scene.file)]));
+            return Err(Failure::input([format!("{}: the motion ends with its first step: {error}", session.scene.file)]));
         }
     }
-    Ok(stage.warnings(&initial).into_iter().chain(without).collect())
+    Ok(session.warnings(&initial).into_iter().chain(without).collect())
 }
 
 /// What the scene looks for and has not. Errors: all that its motion would not begin for but its start; who simulates a scene without settings gives its end.
-fn looked_for(stage: &Stage) -> Result<Vec<String>, Failure> {
-    if stage.scene.simulation.is_none() {
+fn looked_for(session: &Session) -> Result<Vec<String>, Failure> {
+    if session.scene.simulation.is_none() {
         return Ok(Vec::new());
     }
-    has_room(&stage.scene.file, stage.model.nv)?;
-    let motion = stage.settings().and_then(|settings| stage.motion(&stage.model, &stage.frame_names(), settings));
-    let (motion, ()) = Failure::both(motion.map_err(Failure::from), solvable(stage))?;
+    has_room(&session.scene.file, session.model.nv)?;
+    let motion = session.settings().and_then(|settings| session.motion(&session.model, &session.frame_names(), settings));
+    let (motion, ()) = Failure::both(motion.map_err(Failure::from), solvable(session))?;
     Ok(motion.without().iter().map(ToString::to_string).collect())
 }
 
 /// Whether torques determine accelerations at all. What generated code would be refused for, generic code is.
-pub(super) fn solvable(stage: &Stage) -> Result<(), Failure> {
-    let (file, model) = (&stage.request.file, &stage.model);
+pub(super) fn solvable(session: &Session) -> Result<(), Failure> {
+    let (file, model) = (&session.request.file, &session.model);
     Ok(articulated_codegen::defined(file, model, &articulated_codegen::massless(model), FunctionId::forward_dynamics.row::<f64>())?)
 }
 
 /// Runs it by this code.
 pub(super) fn run(
-    stage: &Stage,
+    session: &Session,
     initial: &InitialState,
     code: Code<'_>,
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Motion, Failure> {
-    let mut watch = Watch::new(stage, settings, progress);
-    let (outcome, without) = stage.run(initial, code, settings, &mut |t, counts| watch.look(t, counts))?;
+    let mut watch = Watch::new(session, settings, progress);
+    let (outcome, without) = session.run(initial, code, settings, &mut |t, counts| watch.look(t, counts))?;
     let Outcome { recording, occurrences, creep, ending, reached, ball, error, wall } = outcome;
     let (counts, balance) = (recording.counts, recording.balance.unwrap_or_default());
     let error = error.map(|e| e.to_string());
-    let penetrations = stage.warning_of_penetrations(&recording.t, &recording.q);
+    let penetrations = session.warning_of_penetrations(&recording.t, &recording.q);
     penetrations.iter().for_each(|line| console::warn(line));
-    let warnings = stage.warnings(initial).into_iter().chain(without).chain(penetrations).collect();
-    Ok(Motion { recording: told(stage, recording, occurrences), counts, balance, creep, reached, ending, wall, ball, error, warnings })
+    let warnings = session.warnings(initial).into_iter().chain(without).chain(penetrations).collect();
+    Ok(Motion { recording: told(session, recording, occurrences), counts, balance, creep, reached, ending, wall, ball, error, warnings })
 }
 
 /// The library's recording with names.
-fn told(stage: &Stage, run: Run, occurrences: Vec<Occurrence>) -> Recording {
+fn told(session: &Session, run: Run, occurrences: Vec<Occurrence>) -> Recording {
     let n = run.len();
     let whole = |x: Vec<f64>| if x.len() == n { x } else { vec![0.0; n] };
     // Without mass there is no centre of it: rotors have no momentum here.
-    let heavy = stage.model.moving_mass() > 0.0;
+    let heavy = session.model.moving_mass() > 0.0;
     let momentum = (0..n).map(|k| run.momentum_at(k).filter(|_| heavy).and_then(|p| p.try_into().ok()).unwrap_or_default()).collect();
     Recording {
         events: occurrences.into_iter().map(EventRecord::from).collect(),
@@ -105,6 +105,6 @@ fn told(stage: &Stage, run: Run, occurrences: Vec<Occurrence>) -> Recording {
         dissipated: whole(run.dissipated),
         from_events: whole(run.from_events),
         momentum,
-        ..Recording::of(&stage.model)
+        ..Recording::of(&session.model)
     }
 }

@@ -5,15 +5,15 @@ use articulated::simulate::{Output, SettingError, Settings, integrator};
 use super::arguments::SimulateArguments;
 use crate::console;
 use crate::failure::Failure;
-use articulated_lab::stage::Stage;
+use articulated_lab::session::Session;
 
 /// The settings, or why there are none.
-pub(super) fn of(stage: &Stage, arguments: &SimulateArguments) -> Result<Settings, Failure> {
-    let (scene, file) = (stage.scene.simulation.as_ref(), &stage.scene.file);
+pub(super) fn of(session: &Session, arguments: &SimulateArguments) -> Result<Settings, Failure> {
+    let (scene, file) = (session.scene.simulation.as_ref(), &session.scene.file);
     if scene.is_none() && arguments.end.is_none() {
         return Err(Failure::input([format!("{file}: simulation: found nothing, expected [simulation] with `end`, s, or --end here")]));
     }
-    let integrator = stage.scene.default_integrator();
+    let integrator = session.scene.default_integrator();
     let mut settings = scene.map_or_else(|| Settings { integrator, ..Settings::default() }, |s| s.settings.clone());
     let a = arguments;
     settings.end = a.end.unwrap_or(settings.end);
@@ -21,7 +21,7 @@ pub(super) fn of(stage: &Stage, arguments: &SimulateArguments) -> Result<Setting
     settings.atol = a.atol.unwrap_or(settings.atol);
     choose_steps(&mut settings, a, file)?;
     settings.output = a.every.map_or(settings.output, Output::Every);
-    let problems = settings.problems(stage.model.shape());
+    let problems = settings.problems(session.model.shape());
     if !problems.is_empty() {
         return Err(Failure::input(problems.iter().map(|p| told(p, a, file))));
     }

@@ -19,7 +19,7 @@ use crate::compiled::Rustc;
 use crate::console::Progress;
 use crate::error::Error;
 use crate::process::Folder;
-use crate::stage::Stage;
+use crate::session::Session;
 use crate::straight::Straight;
 use ours::Ours;
 use peers::Peer;
@@ -46,16 +46,16 @@ trait Runner {
 }
 
 /// Measures a motion from its start. `file`: a peer library, or a list of them (JSON).
-pub fn measure(stage: &Stage, initial: &InitialState, settings: &Settings, file: &Path) -> Result<Report, Error> {
-    known_to_peers(stage)?;
+pub fn measure(session: &Session, initial: &InitialState, settings: &Settings, file: &Path) -> Result<Report, Error> {
+    known_to_peers(session)?;
     let InitialState { q, v, .. } = initial;
     let rustc = Rustc::find().map_err(|e| Error::tool(&e))?;
-    let (generated, _) = stage.generate(IntegratorId::dop853)?;
+    let (generated, _) = session.generate(IntegratorId::dop853)?;
     let robot = Straight::build(&rustc, &generated).map_err(|e| Error::tool(&e))?;
     let folder = Folder::new().map_err(|e| Error::tool(&e))?;
     let list = file.extension().is_some_and(|e| e == "json");
     let libraries = if list { manifest::read(file).map_err(|line| Error::input([line]))? } else { vec![Library::at(file)] };
-    let (peers, notes) = peers::open(stage, &libraries, folder.path(), (q, v), settings.end - settings.start)?;
+    let (peers, notes) = peers::open(session, &libraries, folder.path(), (q, v), settings.end - settings.start)?;
     let ours = |id| Ours::new(&robot, id, settings, (q, v));
     let mut reference = ours(IntegratorId::dop853);
     let best = reference.run(Effort::Tolerance(1e-14)).ok_or_else(|| astray("the reference"))?;
@@ -71,8 +71,8 @@ pub fn measure(stage: &Stage, initial: &InitialState, settings: &Settings, file:
         target
     });
     let report = Report {
-        scene: stage.name.clone(),
-        robot: stage.model.name.clone(),
+        scene: session.name.clone(),
+        robot: session.model.name.clone(),
         simulated_s: settings.end - settings.start,
         reference: format!("dop853 at a tolerance of 1e-14; at 4e-14 its last state is {:.1e} away", search::distance(&best, &second)),
         compiler: rustc.version.clone(),
@@ -91,10 +91,10 @@ impl Report {
 }
 
 /// Whether the scene has nothing that peers do not know.
-fn known_to_peers(stage: &Stage) -> Result<(), Error> {
-    let file = &stage.scene.file;
+fn known_to_peers(session: &Session) -> Result<(), Error> {
+    let file = &session.scene.file;
     let told = |what| format!("{file}: found {what}, expected none for --against: peers know the robot's file and its gravity only");
-    let lines: Vec<String> = unknown_to_peers(stage).into_iter().map(told).collect();
+    let lines: Vec<String> = unknown_to_peers(session).into_iter().map(told).collect();
     if lines.is_empty() { Ok(()) } else { Err(Error::input(lines)) }
 }
 
@@ -103,8 +103,8 @@ fn astray(who: &str) -> Error {
 }
 
 /// What a scene has that peers do not know: they are told the robot's file and gravity, and nothing else.
-pub(crate) fn unknown_to_peers(stage: &Stage) -> Vec<&'static str> {
-    let (o, scene) = (&stage.request.options, &stage.scene);
+pub(crate) fn unknown_to_peers(session: &Session) -> Vec<&'static str> {
+    let (o, scene) = (&session.request.options, &session.scene);
     let asked = [
         (!o.robot.effects.is_empty(), "effects"),
         (!o.robot.shafts.is_empty(), "effects.shaft"),

@@ -17,25 +17,25 @@ use crate::error::Error;
 use crate::straight::Straight;
 
 /// A scene with its robot, as it moves, and what the command has to know besides.
-pub struct Stage {
+pub struct Session {
     /// Of the scene, without folder and ending.
     pub name: String,
     /// What code of the robot is generated from.
     pub request: Request,
     /// What is odd about the robot.
     pub odd: Vec<String>,
-    stage: articulated_motion::Stage,
+    session: articulated_motion::Session,
 }
 
-impl Deref for Stage {
-    type Target = articulated_motion::Stage;
+impl Deref for Session {
+    type Target = articulated_motion::Session;
 
     fn deref(&self) -> &Self::Target {
-        &self.stage
+        &self.session
     }
 }
 
-impl Stage {
+impl Session {
     /// Refuses a level whose functions take `f32`, which what calls them here has not.
     pub fn is_of_doubles(&self) -> Result<(), Error> {
         let level = self.request.options.level;
@@ -56,9 +56,9 @@ impl Stage {
         // Bundled robots are odd on purpose.
         let odd = reading.warnings.iter().filter(|_| !matches!(scene.robot, Robot::Bundled(_)));
         let odd = summary(odd.chain(&reading.snapped));
-        let mut stage = articulated_motion::Stage::new(scene, reading.description, model, effects).in_folder(folder);
-        stage.report = resolved.report;
-        Ok(Self { name, request, odd, stage })
+        let mut session = articulated_motion::Session::new(scene, reading.description, model, effects).in_folder(folder);
+        session.report = resolved.report;
+        Ok(Self { name, request, odd, session })
     }
 
     /// Where the motion starts, and what controls it; warnings are printed. Errors: all that do not
@@ -145,9 +145,9 @@ fn summary_of_sunk(sunk: &[Sunk]) -> Option<String> {
 }
 
 /// The joint that a number of a step belongs to: steps of q first, then v.
-pub fn joint_of(stage: &Stage, number: usize) -> Option<String> {
-    let freedom = number % stage.model.nv.max(1);
-    Dynamics::joint_of(&stage.model, freedom).filter(|name| !name.is_empty()).map(str::to_owned)
+pub fn joint_of(session: &Session, number: usize) -> Option<String> {
+    let freedom = number % session.model.nv.max(1);
+    Dynamics::joint_of(&session.model, freedom).filter(|name| !name.is_empty()).map(str::to_owned)
 }
 
 /// The bundled robots, as scenes name them.
@@ -159,18 +159,18 @@ fn robots() -> Vec<articulated_codegen::scene::Bundled<'static>> {
 
 /// A bundled scene.
 #[cfg(test)]
-pub(crate) fn bundled(name: &str) -> Stage {
+pub(crate) fn bundled(name: &str) -> Session {
     use articulated_codegen::scene::{Scene, open_in};
     let scene = articulated_models::scene(name).expect("a bundled scene");
     let read = Scene::read(&scene.file(), scene.toml).expect("a scene that can be read");
     let prepared = open_in(read, std::path::Path::new(""), &robots()).expect("a scene that can be opened");
-    Stage::new(name.to_owned(), prepared, PathBuf::new()).unwrap_or_else(|error| panic!("{error}"))
+    Session::new(name.to_owned(), prepared, PathBuf::new()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The scene of a file.
 #[cfg(test)]
-pub(crate) fn opened(path: &std::path::Path) -> Stage {
+pub(crate) fn opened(path: &std::path::Path) -> Session {
     let prepared = articulated_codegen::scene::open(path, &robots()).expect("a scene that can be opened");
     let folder = path.parent().expect("a folder").to_owned();
-    Stage::new(path.display().to_string(), prepared, folder).unwrap_or_else(|error| panic!("{error}"))
+    Session::new(path.display().to_string(), prepared, folder).unwrap_or_else(|error| panic!("{error}"))
 }

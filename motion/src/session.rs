@@ -15,7 +15,7 @@ const MOST_OF_TABLE: u64 = 4 << 30;
 
 /// A scene with its robot as the scene leaves it.
 #[derive(Clone, Debug)]
-pub struct Stage {
+pub struct Session {
     /// The scene.
     pub scene: Scene,
     /// The robot as the scene edits it.
@@ -32,7 +32,7 @@ pub struct Stage {
 }
 
 /// How a stage is had.
-impl Stage {
+impl Session {
     /// The scene at `path` with the robot of the URDF that it names. Errors: all that is wrong with the scene, or else with the robot, or else all of the scene that does not fit it.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Diagnostics> {
         let path = path.as_ref();
@@ -40,17 +40,17 @@ impl Stage {
         Ok(Self::of(articulated_scene::open(path, &[])?)?.in_folder(folder))
     }
 
-    /// Of a scene whose files are read, or of one for which a program has the documents itself ([`Opened::new`]). Errors: as [`Stage::open`].
+    /// Of a scene whose files are read, or of one for which a program has the documents itself ([`Opened::new`]). Errors: as [`Session::open`].
     pub fn of(opened: Opened) -> Result<Self, Diagnostics> {
         let BuiltRobot { reading, model, resolved, .. } = opened.build()?;
         let Reading { description, mut warnings, snapped, .. } = reading;
         warnings.extend(snapped);
-        let stage = Self::new(opened.scene, description, model, resolved.effects);
-        Ok(Self { warnings, report: resolved.report, ..stage })
+        let session = Self::new(opened.scene, description, model, resolved.effects);
+        Ok(Self { warnings, report: resolved.report, ..session })
     }
 
     /// Of parts that belong together: `model` is that of `description` and has `effects`, which [`Scene::resolve`] gives; with nothing to report. Files that the scene names are seen from the
-    /// folder in which the program runs, see [`Stage::in_folder`].
+    /// folder in which the program runs, see [`Session::in_folder`].
     pub fn new(scene: Scene, description: Description, model: Model<f64>, effects: Vec<Applied>) -> Self {
         Self { scene, description, model, effects, report: Report::default(), warnings: Vec::new(), folder: PathBuf::new() }
     }
@@ -63,7 +63,7 @@ impl Stage {
     }
 }
 
-impl Stage {
+impl Session {
     /// A file that the scene names, a table over time, to be read line by line. Errors: one that
     /// cannot be read, is no regular file, or is larger than any table (4 GiB).
     pub fn file(&self, name: &str) -> Result<Box<dyn BufRead>, String> {
@@ -77,7 +77,7 @@ impl Stage {
         self.effects.iter().filter(move |a| a.effect == effect)
     }
 
-    /// Names of the frames that [`Stage::model`] gives, in its order.
+    /// Names of the frames that [`Session::model`] gives, in its order.
     pub fn frame_names(&self) -> Vec<&str> {
         self.model.frames.iter().map(|frame| frame.name.as_str()).collect()
     }
