@@ -44,7 +44,7 @@
 //!
 //! Step by step: [`Session::initial_state`] is the state and the control that it starts with, [`Session::settings`] how it is simulated, [`Session::motion`] all that put together with
 //! a robot, and [`Motion::run`] runs it, as often as one likes. A robot that is generated for a scene needs the functions of [`Session::functions`] and the frames of
-//! [`Session::frames`]. For a simulation of one's own there are the parts: [`Drive`] is the scene's control, and [`Watch`] has its events and their words. Everything that
+//! [`Session::frames`]. For a simulation of one's own there are the parts: [`Drive`] is the scene's control, and [`Detectors`] has its events and their words. Everything that
 //! keeps a scene from moving is told at once, as [`MotionErrors`].
 //!
 //! Many motions go over the cores: what they share, a [`Session`], a robot and a [`InitialState`], may be looked at by all threads, and each makes a [`Motion`] of its own, once.
@@ -95,7 +95,7 @@ mod penetration;
 mod same;
 mod session;
 mod settings;
-mod watch;
+mod detectors;
 
 pub use articulated::simulate::{Controller, Counts, Drive, Recording, Settings, SimulateError};
 pub use articulated_scene::Scene;
@@ -106,4 +106,4 @@ pub use motion::{Ending, Motion, Outcome};
 pub use occurrence::{EventKind, Occurrence, SceneEvent};
 pub use penetration::Penetration;
 pub use session::{Session, field};
-pub use watch::{Watch, Without};
+pub use detectors::{Detectors, Without};

@@ -11,13 +11,13 @@ use crate::error::{Fault, MotionErrors};
 use crate::initial_state::InitialState;
 use crate::occurrence::Occurrence;
 use crate::session::Session;
-use crate::watch::{Watch, Without};
+use crate::detectors::{Detectors, Without};
 
 /// A scene on a robot, with all the room that its simulation needs. It may be run again and again.
 pub struct Motion<'a, R: Dynamics<f64>> {
     session: &'a Session,
     robot: &'a R,
-    watch: Watch<'a>,
+    detectors: Detectors<'a>,
     simulation: Simulation<'a, R>,
 }
 
@@ -72,12 +72,12 @@ impl Session {
         let mut faults = self.faults_of(&settings);
         faults.extend(self.foreign(robot, frames));
         faults.extend(self.lacking(robot, settings.integrator));
-        let watch = Watch::new(self, robot, frames);
+        let detectors = Detectors::new(self, robot, frames);
         let simulation = Simulation::new(robot, settings);
         // A motion of a scene is judged by its balance of energy.
         let simulation = simulation.map(Simulation::with_energy_balance).map_err(|e| MotionErrors::refused(file, e));
-        let (_, (watch, simulation)) = MotionErrors::both(MotionErrors::none(file, faults), MotionErrors::both(watch, simulation))?;
-        Ok(Motion { session: self, robot, watch, simulation })
+        let (_, (detectors, simulation)) = MotionErrors::both(MotionErrors::none(file, faults), MotionErrors::both(detectors, simulation))?;
+        Ok(Motion { session: self, robot, detectors, simulation })
     }
 
     /// The scene on a robot from its start to its end, all as the scene says: the simplest way. Errors: as [`Session::settings`], [`Session::motion`] and
@@ -115,7 +115,7 @@ impl Session {
 impl<R: Dynamics<f64>> Motion<'_, R> {
     /// Sorts of events that the scene looks for and has nothing of.
     pub fn without(&self) -> &[Without] {
-        &self.watch.without
+        &self.detectors.without
     }
 
     /// The settings.
@@ -153,15 +153,15 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
         follow: &mut dyn FnMut(f64, &Counts) -> bool,
     ) -> Result<Outcome, MotionErrors> {
         let refused = |e: SimulateError| MotionErrors::refused(&self.session.scene.file, e);
-        self.watch.reset();
-        let (over, mut reached) = (self.watch.over(), self.simulation.settings().start);
+        self.detectors.reset();
+        let (over, mut reached) = (self.detectors.over(), self.simulation.settings().start);
         let mut recording = self.simulation.recording();
         let mut after_step = |t: f64, counts: &Counts| {
             reached = t;
             follow(t, counts) && !over()
         };
         let clock = Instant::now();
-        let result = self.simulation.run_into(&initial.q, &initial.v, control, &mut self.watch.events, &mut recording, &mut after_step);
+        let result = self.simulation.run_into(&initial.q, &initial.v, control, &mut self.detectors.events, &mut recording, &mut after_step);
         let wall = clock.elapsed();
         let error = match result {
             Ok(()) => None,
@@ -174,9 +174,9 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
             Ending::AtEnd => self.simulation.settings().end,
             _ => recording.t.last().map_or(reached, |t| t.max(reached)),
         };
-        let occurrences = recording.events.iter().map(|hit| self.watch.occurrence(hit)).collect();
+        let occurrences = recording.events.iter().map(|hit| self.detectors.occurrence(hit)).collect();
         let creep = self.session.creep(&recording);
-        Ok(Outcome { recording, occurrences, creep, ending, reached, ball: self.watch.ball_energy(), error, wall })
+        Ok(Outcome { recording, occurrences, creep, ending, reached, ball: self.detectors.ball_energy(), error, wall })
     }
 }
 

@@ -31,7 +31,7 @@ pub struct Session {
     folder: PathBuf,
 }
 
-/// How a stage is had.
+/// Constructors.
 impl Session {
     /// The scene at `path` with the robot of the URDF that it names. Errors: all that is wrong with the scene, or else with the robot, or else all of the scene that does not fit it.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Diagnostics> {

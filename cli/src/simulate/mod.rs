@@ -12,7 +12,7 @@ mod size;
 mod summary;
 mod table;
 mod text;
-mod watch;
+mod monitor;
 
 use std::path::Path;
 

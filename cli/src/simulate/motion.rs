@@ -9,7 +9,7 @@ use articulated_lab::session::{Code, Session};
 use articulated_motion::{Creep, Ending, InitialState, Occurrence, Outcome};
 
 use super::recording::{EventRecord, Recording};
-use super::watch::Watch;
+use super::monitor::RunMonitor;
 use crate::console::{self, Progress};
 use crate::failure::Failure;
 use crate::named_scene;
@@ -75,8 +75,8 @@ pub(super) fn run(
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Motion, Failure> {
-    let mut watch = Watch::new(session, settings, progress);
-    let (outcome, without) = session.run(initial, code, settings, &mut |t, counts| watch.look(t, counts))?;
+    let mut monitor = RunMonitor::new(session, settings, progress);
+    let (outcome, without) = session.run(initial, code, settings, &mut |t, counts| monitor.look(t, counts))?;
     let Outcome { recording, occurrences, creep, ending, reached, ball, error, wall } = outcome;
     let (counts, balance) = (recording.counts, recording.balance.unwrap_or_default());
     let error = error.map(|e| e.to_string());

@@ -4,7 +4,7 @@ use articulated::Dynamics;
 use articulated::simulate::{Constant, Control, Dependence, Event, IntegratorId, Output, Settings, Simulation, TorqueTable};
 use articulated_core::algorithm::Workspace;
 
-use articulated_motion::{Drive, InitialState, Watch};
+use articulated_motion::{Drive, InitialState, Detectors};
 use articulated_scene::{Aim, Controller, Series};
 
 use super::{ARM, CART, moved, session};
@@ -160,7 +160,7 @@ fn a_control_of_ones_own_moves_the_scene() {
     assert!(instead.recording.tau.iter().all(|tau| *tau == 0.0));
 }
 
-/// Drive and watch are for a simulation of one's own too, which may look for more.
+/// Drive and detectors are for a simulation of one's own too, which may look for more.
 #[test]
 fn the_parts_put_together_move_as_the_whole() {
     let session = session(include_str!("arm.toml").replace("restitution", "stop = true\nrestitution").as_str(), ARM);
@@ -168,14 +168,14 @@ fn the_parts_put_together_move_as_the_whole() {
     let (robot, settings) = (&session.model, session.settings().unwrap());
     let initial = session.initial_state().unwrap();
     let mut drive = Drive::new(robot, &initial.controller, None).unwrap();
-    let mut watch = Watch::new(&session, robot, &session.frame_names()).unwrap();
-    watch.events.push(Event::new("half way", |_, q, _| q[0] - 0.5));
+    let mut detectors = Detectors::new(&session, robot, &session.frame_names()).unwrap();
+    detectors.events.push(Event::new("half way", |_, q, _| q[0] - 0.5));
     let mut simulation = Simulation::new(robot, settings).unwrap();
-    let (mut recording, over) = (simulation.recording(), watch.over());
-    simulation.run_into(&initial.q, &initial.v, &mut drive, &mut watch.events, &mut recording, &mut |_, _| !over()).unwrap();
-    assert!(recording.events.iter().map(|hit| watch.occurrence(hit)).all(|h| h.about.is_none() == (h.what == "half way")));
-    let words: Vec<String> = recording.events.iter().map(|hit| watch.occurrence(hit).what).collect();
-    assert!(over() && watch.ball_energy() == whole.ball && words.iter().any(|what| what == "half way"), "{words:?}");
+    let (mut recording, over) = (simulation.recording(), detectors.over());
+    simulation.run_into(&initial.q, &initial.v, &mut drive, &mut detectors.events, &mut recording, &mut |_, _| !over()).unwrap();
+    assert!(recording.events.iter().map(|hit| detectors.occurrence(hit)).all(|h| h.about.is_none() == (h.what == "half way")));
+    let words: Vec<String> = recording.events.iter().map(|hit| detectors.occurrence(hit).what).collect();
+    assert!(over() && detectors.ball_energy() == whole.ball && words.iter().any(|what| what == "half way"), "{words:?}");
     let scenes: Vec<&str> = words.iter().map(String::as_str).filter(|what| *what != "half way").collect();
     assert_eq!((scenes, &recording.q, &recording.v), (super::words(&whole), &whole.recording.q, &whole.recording.v));
 }

@@ -12,7 +12,7 @@ fn lines(errors: &MotionErrors) -> Vec<String> {
     errors.to_string().lines().map(str::to_owned).collect()
 }
 
-/// Of a stage that does not move on a robot.
+/// The errors of a session that does not move on a robot.
 fn refused<R: Dynamics<f64>>(session: &Session, robot: &R, frames: &[&str]) -> Vec<Fault> {
     session
         .run(robot, frames)

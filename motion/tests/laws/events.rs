@@ -1,7 +1,7 @@
 //! What happens on the way, and how it reads.
 
 use articulated::simulate::Ended;
-use articulated_motion::{Ending, EventKind, Outcome, SceneEvent, Watch, Without};
+use articulated_motion::{Ending, EventKind, Outcome, SceneEvent, Detectors, Without};
 use articulated_scene::Watched;
 
 use super::{ARM, CART, moved, session, words};
@@ -163,9 +163,9 @@ fn a_joint_that_follows_and_stands_still_has_no_events() {
         <limit lower='-1' upper='0.25' effort='1' velocity='1'/><mimic joint='slide' multiplier='0' offset='0.5'/></joint></robot>";
     let scene = "effects = { friction = { y = { friction = 2.0, speed = 1e-4 } } }\nsimulation = { end = 0.1, events = ['stick_slip'] }";
     let session = session(scene, &CART.replace("</robot>", follower));
-    let watch = Watch::new(&session, &session.model, &session.frame_names()).unwrap();
-    assert_eq!(watch.without, [Without { file: "s.toml".into(), what: Watched::StickSlip, joint: None }]);
-    assert!(watch.events.is_empty() && session.beyond(&[0.0]).is_empty());
+    let detectors = Detectors::new(&session, &session.model, &session.frame_names()).unwrap();
+    assert_eq!(detectors.without, [Without { file: "s.toml".into(), what: Watched::StickSlip, joint: None }]);
+    assert!(detectors.events.is_empty() && session.beyond(&[0.0]).is_empty());
 }
 
 /// y = −2 x stops sliding below ten times 0.01 m/s: x = 0.5 t − ½ t² below 0.05, from 0.45 s to

@@ -88,11 +88,11 @@ fn one_who_watches_is_told_of_every_step() {
     for (at, expected) in [(2.0, 4), (0.6, 3)] {
         let mut simulation = Simulation::new(&robot, stepping(IntegratorId::rk4, 1.0, 0.25)).unwrap();
         let (mut recording, mut told) = (simulation.recording(), Vec::new());
-        let mut watch = |_: f64, counts: &articulated::simulate::Counts| {
+        let mut observer = |_: f64, counts: &articulated::simulate::Counts| {
             told.push(counts.steps);
             true
         };
-        simulation.run_into(&[0.0], &[1.0], &mut NoTorque, &mut [stop(at)], &mut recording, &mut watch).unwrap();
+        simulation.run_into(&[0.0], &[1.0], &mut NoTorque, &mut [stop(at)], &mut recording, &mut observer).unwrap();
         assert_eq!(told, (1..=expected).collect::<Vec<u64>>());
         assert_eq!(recording.counts.steps, expected);
     }
@@ -103,11 +103,11 @@ fn one_who_watches_can_end_it() {
     let robot = one_joint("prismatic", 0.0);
     let mut simulation = Simulation::new(&robot, stepping(IntegratorId::rk4, 1.0, 0.01)).unwrap();
     let (mut recording, calls) = (simulation.recording(), Cell::new(0));
-    let mut watch = |t: f64, _: &articulated::simulate::Counts| {
+    let mut observer = |t: f64, _: &articulated::simulate::Counts| {
         calls.set(calls.get() + 1);
         t < 0.495
     };
-    simulation.run_into(&[0.0], &[0.0], &mut NoTorque, &mut [], &mut recording, &mut watch).unwrap();
+    simulation.run_into(&[0.0], &[0.0], &mut NoTorque, &mut [], &mut recording, &mut observer).unwrap();
     assert_eq!((recording.ended, recording.counts.steps, calls.get()), (Ended::ByWatcher, 50, 50));
 }
 

@@ -45,7 +45,7 @@ impl Session {
         Err(Error::input([format!("{}: level: found {level}, expected one whose functions take f64, as states here are", self.scene.file)]))
     }
 
-    /// The stage of a scene that was read. `folder`: that of its file, for other files that it
+    /// The session of a scene that was read. `folder`: that of its file, for other files that it
     /// names.
     pub fn new(name: String, prepared: Prepared, folder: PathBuf) -> Result<Self, Error> {
         let Prepared { scene, mut request, robot, .. } = prepared;

@@ -1,7 +1,7 @@
 //! Events: what happens at times that nobody knows beforehand.
 
 mod impact;
-pub(crate) mod watch;
+pub(crate) mod detectors;
 
 use std::sync::Arc;
 

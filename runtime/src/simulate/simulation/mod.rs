@@ -1,6 +1,6 @@
 //! A simulation: steps, outputs and events one after the other.
 
-mod happenings;
+mod step_events;
 mod pace;
 mod records;
 mod stepping;
@@ -15,7 +15,7 @@ use self::pace::Pace;
 use self::stiffness::Held;
 use crate::simulate::control::wrong_period;
 use crate::simulate::curve::Point;
-use crate::simulate::event::watch::Watch;
+use crate::simulate::event::detectors::Detectors;
 use crate::simulate::integrator::{Method, Start, method};
 use crate::simulate::output::{Known, Times};
 use crate::simulate::stability::Stability;
@@ -31,7 +31,7 @@ pub struct Simulation<'r, R: Dynamics<f64>> {
     method: Box<dyn Method<R> + 'r>,
     norm: Norm,
     stability: Stability,
-    watch: Watch,
+    detectors: Detectors,
     known: Known,
     progress: Progress,
     /// Room that steps one by one take in place of records.
@@ -130,7 +130,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             method: method(settings.integrator, &system.manifold, settings.step.is_some() && settings.stiffness != Stiffness::Ignore),
             norm: Norm::new(&settings, nv),
             stability: Stability::new(n),
-            watch: Watch::default(),
+            detectors: Detectors::default(),
             known: Known::of(&mut system),
             progress: Progress::begin(settings.start, None, None, 0),
             unrecorded: None,
@@ -206,7 +206,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         control: &mut dyn Control,
         events: &mut [Event],
         recording: &mut Recording,
-        watch: &mut dyn FnMut(f64, &Counts) -> bool,
+        observer: &mut dyn FnMut(f64, &Counts) -> bool,
     ) -> Result<(), SimulateError> {
         self.known.begin(&self.system, recording);
         let state = self.system.manifold.wrong_state(self.system.robot, q, v);
@@ -216,7 +216,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         self.progress.times = Some(Times::begin());
         self.progress.most_steps = self.settings.max_steps;
         let mut run = Run { control, events, recording };
-        let result = self.steps(&mut run, watch);
+        let result = self.steps(&mut run, observer);
         run.recording.counts = self.system.counts;
         run.recording.ended = result.map_err(|error| self.blamed(error))?;
         Ok(())
@@ -285,7 +285,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             self.record_here(run)?;
         }
         self.follow_balance(run)?;
-        self.watch.begin(run.events.len());
+        self.detectors.begin(run.events.len());
         self.take_sides(run)?;
         if self.method.wants_rate() {
             self.rate_here(run)?;
@@ -295,11 +295,11 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         Ok(())
     }
 
-    fn steps(&mut self, run: &mut Run, watch: &mut dyn FnMut(f64, &Counts) -> bool) -> Result<Ended, SimulateError> {
+    fn steps(&mut self, run: &mut Run, observer: &mut dyn FnMut(f64, &Counts) -> bool) -> Result<Ended, SimulateError> {
         self.prepare(run)?;
         loop {
             let (outcome, mapped) = self.one_step(run)?;
-            let goes_on = watch(self.t, &self.system.counts);
+            let goes_on = observer(self.t, &self.system.counts);
             let ended = self.ended(&outcome, goes_on);
             // The end that was asked for is recorded if it was asked for.
             let early = ended.is_some_and(|ended| mapped || ended != Ended::AtEnd);

@@ -5,7 +5,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt;
 
-use super::pivots::Watch;
+use super::pivots::PivotMonitor;
 use super::{Factor, Singular};
 use crate::Scalar;
 use crate::algorithm::{FunctionError, Shape, check_length};
@@ -127,9 +127,9 @@ impl<S: Scalar<Mask = bool>> Solver<S> {
         });
         self.factor.solve(out);
         self.backward_error = self.factor.refine(&self.matrix, &self.given, out);
-        let mut watch = Watch::new();
-        self.factor.pivots().iter().enumerate().rev().for_each(|(k, left)| watch.see(k, *left));
-        watch.verdict(out, |k| robot.joint_of(k).unwrap_or_default().to_string()).map_err(Unsolved::Singular)
+        let mut monitor = PivotMonitor::new();
+        self.factor.pivots().iter().enumerate().rev().for_each(|(k, left)| monitor.see(k, *left));
+        monitor.verdict(out, |k| robot.joint_of(k).unwrap_or_default().to_string()).map_err(Unsolved::Singular)
     }
 
     /// max_i |τ − h − M a|_i / (|M||a| + |τ − h|)_i of the last call, with M and h as they were computed: a few roundings, or M is next to singular.

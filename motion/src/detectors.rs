@@ -14,7 +14,7 @@ use crate::occurrence::{EventKind, Occurrence, SceneEvent};
 use crate::session::{Session, field};
 
 /// Events of a scene on a robot, and how each of them reads.
-pub struct Watch<'a> {
+pub struct Detectors<'a> {
     /// The events, for a simulation. Others may be put behind them.
     pub events: Vec<Event<'a>>,
     /// Sorts that the scene looks for and has nothing of.
@@ -35,29 +35,29 @@ pub struct Without {
     pub joint: Option<String>,
 }
 
-impl<'a> Watch<'a> {
+impl<'a> Detectors<'a> {
     /// What the scene asks for on a robot; `frames` are the names of its frames in its order. Errors: frames that
     /// events need and that are not among them, functions that the robot has not, numbers that cannot be used; all of them.
     pub fn new<R: Dynamics<f64>, S: AsRef<str>>(session: &Session, robot: &'a R, frames: &[S]) -> Result<Self, MotionErrors>
     where
         R::Workspace: 'a,
     {
-        let mut watch = Self { events: Vec::new(), without: Vec::new(), about: Vec::new(), ball: Rc::default() };
+        let mut detectors = Self { events: Vec::new(), without: Vec::new(), about: Vec::new(), ball: Rc::default() };
         let mut faults = Vec::new();
         for what in session.looked_for() {
-            let before = (watch.events.len(), faults.len(), watch.without.len());
+            let before = (detectors.events.len(), faults.len(), detectors.without.len());
             match what {
-                Watched::Limits => watch.limits(session),
-                Watched::Contacts => watch.contacts(session, robot, frames, &mut faults),
-                Watched::StickSlip => watch.stick_slip(session),
+                Watched::Limits => detectors.limits(session),
+                Watched::Contacts => detectors.contacts(session, robot, frames, &mut faults),
+                Watched::StickSlip => detectors.stick_slip(session),
             }
-            if (watch.events.len(), faults.len(), watch.without.len()) == before {
-                watch.without.push(Without { file: session.scene.file.clone(), what: *what, joint: None });
+            if (detectors.events.len(), faults.len(), detectors.without.len()) == before {
+                detectors.without.push(Without { file: session.scene.file.clone(), what: *what, joint: None });
             }
         }
-        watch.hit(session, robot, frames, &mut faults);
+        detectors.hit(session, robot, frames, &mut faults);
         MotionErrors::none(&session.scene.file, faults)?;
-        Ok(watch)
+        Ok(detectors)
     }
 
     /// What happened; of an event that was put behind those of the scene, its name.
@@ -69,7 +69,7 @@ impl<'a> Watch<'a> {
         Occurrence::of(hit.t, SceneEvent { kind: *kind, on: on.clone(), begins }, hit.value)
     }
 
-    /// What tells whether the ball was hit and the motion ends with that: who runs a simulation asks it after each step. It is apart from the watch, whose events the
+    /// What tells whether the ball was hit and the motion ends with that: who runs a simulation asks it after each step. It is apart from the detectors, whose events the
     /// simulation has meanwhile.
     pub fn over(&self) -> impl Fn() -> bool + use<> {
         let ball = self.ball.clone();

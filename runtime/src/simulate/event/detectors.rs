@@ -20,7 +20,7 @@ pub(crate) struct Zero {
 
 /// What is remembered of events between steps, and room for one step.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Watch {
+pub(crate) struct Detectors {
     /// On which side of zero each event's function is: ±1, or 0 as long as nobody knows.
     side: Vec<f64>,
     /// What was left of each event's function where it was last found to be zero.
@@ -31,7 +31,7 @@ pub(crate) struct Watch {
     pub(crate) zeros: Vec<Zero>,
 }
 
-impl Watch {
+impl Detectors {
     /// A motion with so many events begins.
     pub(crate) fn begin(&mut self, events: usize) {
         self.side.clear();

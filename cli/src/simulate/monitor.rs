@@ -15,7 +15,7 @@ const LONG: Duration = Duration::from_secs(30);
 /// Steps between two looks at the clock.
 const EVERY: u64 = 16;
 
-pub(super) struct Watch<'a> {
+pub(super) struct RunMonitor<'a> {
     session: &'a Session,
     settings: &'a Settings,
     progress: &'a Progress,
@@ -24,7 +24,7 @@ pub(super) struct Watch<'a> {
     warned: bool,
 }
 
-impl<'a> Watch<'a> {
+impl<'a> RunMonitor<'a> {
     pub(super) fn new(session: &'a Session, settings: &'a Settings, progress: &'a Progress) -> Self {
         Self { session, settings, progress, clock: Instant::now(), looked: 0, warned: false }
     }
