@@ -6,7 +6,7 @@ use std::rc::Rc;
 use articulated::Dynamics;
 use articulated::simulate::{ContactPoint, Direction, Event, Hit};
 use articulated_core::effect::{Applied, EffectId};
-use articulated_scene::Watched;
+use articulated_scene::EventClass;
 
 use crate::ball::Ball;
 use crate::error::{Fault, MotionErrors};
@@ -18,7 +18,7 @@ pub struct Detectors<'a> {
     /// The events, for a simulation. Others may be put behind them.
     pub events: Vec<Event<'a>>,
     /// Sorts that the scene looks for and has nothing of.
-    pub without: Vec<Without>,
+    pub unavailable: Vec<UnavailableEvent>,
     /// What the first of them are, those of the scene.
     about: Vec<(EventKind, String)>,
     ball: Rc<Ball>,
@@ -26,11 +26,11 @@ pub struct Detectors<'a> {
 
 /// A sort of event that a scene looks for and that cannot happen: odd, and no mistake, since effects come and go.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Without {
+pub struct UnavailableEvent {
     /// The scene's file.
     pub file: String,
     /// What it looks for.
-    pub what: Watched,
+    pub what: EventClass,
     /// The joint of which there is nothing to look for: the file's lower bound is not below the upper one, as where `<limit>` has none. None where no joint or link has something.
     pub joint: Option<String>,
 }
@@ -42,17 +42,17 @@ impl<'a> Detectors<'a> {
     where
         R::Workspace: 'a,
     {
-        let mut detectors = Self { events: Vec::new(), without: Vec::new(), about: Vec::new(), ball: Rc::default() };
+        let mut detectors = Self { events: Vec::new(), unavailable: Vec::new(), about: Vec::new(), ball: Rc::default() };
         let mut faults = Vec::new();
-        for what in session.looked_for() {
-            let before = (detectors.events.len(), faults.len(), detectors.without.len());
+        for what in session.requested_events() {
+            let before = (detectors.events.len(), faults.len(), detectors.unavailable.len());
             match what {
-                Watched::Limits => detectors.limits(session),
-                Watched::Contacts => detectors.contacts(session, robot, frames, &mut faults),
-                Watched::StickSlip => detectors.stick_slip(session),
+                EventClass::Limits => detectors.limits(session),
+                EventClass::Contacts => detectors.contacts(session, robot, frames, &mut faults),
+                EventClass::StickSlip => detectors.stick_slip(session),
             }
-            if (detectors.events.len(), faults.len(), detectors.without.len()) == before {
-                detectors.without.push(Without { file: session.scene.file.clone(), what: *what, joint: None });
+            if (detectors.events.len(), faults.len(), detectors.unavailable.len()) == before {
+                detectors.unavailable.push(UnavailableEvent { file: session.scene.file.clone(), what: *what, joint: None });
             }
         }
         detectors.hit(session, robot, frames, &mut faults);
@@ -96,7 +96,7 @@ impl<'a> Detectors<'a> {
         for at in session.freedoms() {
             let (name, Some((lower, upper))) = (session.name_of(&at), session.bounds(&at)) else { continue };
             if lower >= upper {
-                self.without.push(Without { file: session.scene.file.clone(), what: Watched::Limits, joint: Some(name) });
+                self.unavailable.push(UnavailableEvent { file: session.scene.file.clone(), what: EventClass::Limits, joint: Some(name) });
                 continue;
             }
             // A joint that follows another the other way round is at its own upper bound where that is at the lower.
@@ -176,7 +176,7 @@ fn number(applied: &Applied, name: &str) -> f64 {
     field(applied, name).first().copied().unwrap_or(f64::NAN)
 }
 
-impl fmt::Display for Without {
+impl fmt::Display for UnavailableEvent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(joint) = &self.joint {
             let (file, name) = (&self.file, self.what.name());
@@ -186,9 +186,9 @@ impl fmt::Display for Without {
             );
         }
         let expected = match self.what {
-            Watched::Limits => "a joint with bounds",
-            Watched::Contacts => "an effect contact of the scene",
-            Watched::StickSlip => "an effect friction of the scene",
+            EventClass::Limits => "a joint with bounds",
+            EventClass::Contacts => "an effect contact of the scene",
+            EventClass::StickSlip => "an effect friction of the scene",
         };
         let (file, name) = (&self.file, self.what.name());
         write!(f, "{file}: simulation.events: found {name:?}, expected {expected}; nothing to look for")

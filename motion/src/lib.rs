@@ -106,4 +106,4 @@ pub use motion::{Ending, Motion, Outcome};
 pub use occurrence::{EventKind, Occurrence, SceneEvent};
 pub use penetration::Penetration;
 pub use session::{Session, field};
-pub use detectors::{Detectors, Without};
+pub use detectors::{Detectors, UnavailableEvent};

@@ -11,7 +11,7 @@ use crate::error::{Fault, MotionErrors};
 use crate::initial_state::InitialState;
 use crate::occurrence::Occurrence;
 use crate::session::Session;
-use crate::detectors::{Detectors, Without};
+use crate::detectors::{Detectors, UnavailableEvent};
 
 /// A scene on a robot, with all the room that its simulation needs. It may be run again and again.
 pub struct Motion<'a, R: Dynamics<f64>> {
@@ -114,8 +114,8 @@ impl Session {
 
 impl<R: Dynamics<f64>> Motion<'_, R> {
     /// Sorts of events that the scene looks for and has nothing of.
-    pub fn without(&self) -> &[Without] {
-        &self.detectors.without
+    pub fn unavailable_events(&self) -> &[UnavailableEvent] {
+        &self.detectors.unavailable
     }
 
     /// The settings.

@@ -3,7 +3,7 @@
 use articulated::simulate::IntegratorId;
 use articulated::{Dynamics, FunctionId};
 use articulated_core::effect::EffectId;
-use articulated_scene::Watched;
+use articulated_scene::EventClass;
 
 use crate::error::Fault;
 use crate::session::Session;
@@ -30,13 +30,13 @@ impl Session {
 
     /// Who needs a frame, and of which link.
     pub(crate) fn framed(&self) -> impl Iterator<Item = (&'static str, &str)> {
-        let contacts = self.effects_of(EffectId::contact).filter(|_| self.looked_for().contains(&Watched::Contacts));
+        let contacts = self.effects_of(EffectId::contact).filter(|_| self.requested_events().contains(&EventClass::Contacts));
         let contacts = contacts.map(|a| ("effects.contact", a.on.as_str()));
         contacts.chain(self.scene.impact.iter().map(|impact| ("impact.link", impact.link.as_str())))
     }
 
     /// What the scene looks for on the way.
-    pub(crate) fn looked_for(&self) -> &[Watched] {
+    pub(crate) fn requested_events(&self) -> &[EventClass] {
         self.scene.simulation.as_ref().map_or(&[], |s| &s.events)
     }
 

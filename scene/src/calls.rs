@@ -5,7 +5,7 @@ use articulated_core::integrator::IntegratorId;
 
 use crate::control::Drive;
 use crate::scene::Scene;
-use crate::simulation::Watched;
+use crate::simulation::EventClass;
 
 /// The functions that a motion calls of its robot, whichever that is.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -36,7 +36,7 @@ impl Scene {
         if matches!(self.control.drive, Drive::Pd { .. }) {
             required.push(FunctionId::difference);
         }
-        let contacts = self.simulation.as_ref().is_some_and(|simulation| simulation.events.contains(&Watched::Contacts));
+        let contacts = self.simulation.as_ref().is_some_and(|simulation| simulation.events.contains(&EventClass::Contacts));
         if contacts || self.impact.is_some() {
             required.push(FunctionId::placements);
         }

@@ -40,25 +40,25 @@ pub(super) struct Motion {
 /// else the error of its first step.
 pub(crate) fn look_over(scene: &Path) -> Result<Vec<String>, Failure> {
     let session = named_scene::quiet_session(scene)?;
-    let (initial, without) = Failure::both(session.initial_state().map_err(Failure::from), looked_for(&session))?;
+    let (initial, unavailable) = Failure::both(session.initial_state().map_err(Failure::from), requested_events(&session))?;
     if session.scene.simulation.is_some() {
         let mut motion = session.motion(&session.model, &session.frame_names(), session.settings()?)?;
         if let Some(error) = motion.first_step(&initial)? {
             return Err(Failure::input([format!("{}: the motion ends with its first step: {error}", session.scene.file)]));
         }
     }
-    Ok(session.warnings(&initial).into_iter().chain(without).collect())
+    Ok(session.warnings(&initial).into_iter().chain(unavailable).collect())
 }
 
 /// What the scene looks for and has not. Errors: all that its motion would not begin for but its start; who simulates a scene without settings gives its end.
-fn looked_for(session: &Session) -> Result<Vec<String>, Failure> {
+fn requested_events(session: &Session) -> Result<Vec<String>, Failure> {
     if session.scene.simulation.is_none() {
         return Ok(Vec::new());
     }
     has_room(&session.scene.file, session.model.nv)?;
     let motion = session.settings().and_then(|settings| session.motion(&session.model, &session.frame_names(), settings));
     let (motion, ()) = Failure::both(motion.map_err(Failure::from), solvable(session))?;
-    Ok(motion.without().iter().map(ToString::to_string).collect())
+    Ok(motion.unavailable_events().iter().map(ToString::to_string).collect())
 }
 
 /// Whether torques determine accelerations at all. What generated code would be refused for, generic code is.
@@ -76,13 +76,13 @@ pub(super) fn run(
     progress: &Progress,
 ) -> Result<Motion, Failure> {
     let mut monitor = RunMonitor::new(session, settings, progress);
-    let (outcome, without) = session.run(initial, code, settings, &mut |t, counts| monitor.look(t, counts))?;
+    let (outcome, unavailable) = session.run(initial, code, settings, &mut |t, counts| monitor.look(t, counts))?;
     let Outcome { recording, occurrences, creep, ending, reached, ball, error, wall } = outcome;
     let (counts, balance) = (recording.counts, recording.balance.unwrap_or_default());
     let error = error.map(|e| e.to_string());
     let penetrations = session.warning_of_penetrations(&recording.t, &recording.q);
     penetrations.iter().for_each(|line| console::warn(line));
-    let warnings = session.warnings(initial).into_iter().chain(without).chain(penetrations).collect();
+    let warnings = session.warnings(initial).into_iter().chain(unavailable).chain(penetrations).collect();
     Ok(Motion { recording: told(session, recording, occurrences), counts, balance, creep, reached, ending, wall, ball, error, warnings })
 }
 

@@ -1,8 +1,8 @@
 //! What happens on the way, and how it reads.
 
 use articulated::simulate::Ended;
-use articulated_motion::{Ending, EventKind, Outcome, SceneEvent, Detectors, Without};
-use articulated_scene::Watched;
+use articulated_motion::{Ending, EventKind, Outcome, SceneEvent, Detectors, UnavailableEvent};
+use articulated_scene::EventClass;
 
 use super::{ARM, CART, moved, session, words};
 
@@ -164,7 +164,7 @@ fn a_joint_that_follows_and_stands_still_has_no_events() {
     let scene = "effects = { friction = { y = { friction = 2.0, speed = 1e-4 } } }\nsimulation = { end = 0.1, events = ['stick_slip'] }";
     let session = session(scene, &CART.replace("</robot>", follower));
     let detectors = Detectors::new(&session, &session.model, &session.frame_names()).unwrap();
-    assert_eq!(detectors.without, [Without { file: "s.toml".into(), what: Watched::StickSlip, joint: None }]);
+    assert_eq!(detectors.unavailable, [UnavailableEvent { file: "s.toml".into(), what: EventClass::StickSlip, joint: None }]);
     assert!(detectors.events.is_empty() && session.beyond(&[0.0]).is_empty());
 }
 
@@ -220,10 +220,10 @@ fn numbers_of_one_joint_are_told_apart() {
 fn sorts_of_events_that_cannot_happen_are_told() {
     let session = session("simulation = { end = 0.1, events = ['contacts', 'limits', 'stick_slip'] }", CART);
     let motion = session.motion(&session.model, &session.frame_names(), session.settings().unwrap()).unwrap();
-    let expected = [Watched::Contacts, Watched::StickSlip].map(|what| Without { file: "s.toml".into(), what, joint: None });
-    assert_eq!(motion.without(), expected);
+    let expected = [EventClass::Contacts, EventClass::StickSlip].map(|what| UnavailableEvent { file: "s.toml".into(), what, joint: None });
+    assert_eq!(motion.unavailable_events(), expected);
     let told = r#"s.toml: simulation.events: found "contacts", expected an effect contact of the scene; nothing to look for"#;
-    assert_eq!(motion.without()[0].to_string(), told);
+    assert_eq!(motion.unavailable_events()[0].to_string(), told);
 }
 
 /// A `<limit>` of effort and velocity alone, which says 0 and 0.
@@ -232,7 +232,7 @@ fn joints_whose_bounds_nothing_is_between_are_told_and_left_out() {
     let urdf = CART.replace("lower=\"-0.5\" upper=\"0.9\" ", "");
     let session = session("simulation = { end = 0.1, events = ['limits'] }", &urdf);
     let motion = session.motion(&session.model, &session.frame_names(), session.settings().unwrap()).unwrap();
-    let told: Vec<String> = motion.without().iter().map(ToString::to_string).collect();
+    let told: Vec<String> = motion.unavailable_events().iter().map(ToString::to_string).collect();
     assert!(told.len() == 1 && told[0].contains("found joint \"slide\" without a lower bound below"), "{told:?}");
     assert!(moved(&session).occurrences.is_empty());
 }

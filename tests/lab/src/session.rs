@@ -113,13 +113,13 @@ impl Session {
         look: &mut dyn FnMut(f64, &Counts),
     ) -> Result<(Outcome, Vec<String>), MotionErrors> {
         let mut motion = self.motion(robot, frames, settings.clone())?;
-        let without: Vec<String> = motion.without().iter().map(ToString::to_string).collect();
-        without.iter().for_each(|line| console::warn(line));
+        let unavailable: Vec<String> = motion.unavailable_events().iter().map(ToString::to_string).collect();
+        unavailable.iter().for_each(|line| console::warn(line));
         let outcome = motion.run(initial, &mut |t, counts| {
             look(t, counts);
             true
         })?;
-        Ok((outcome, without))
+        Ok((outcome, unavailable))
     }
 
     /// Whether the base is fixed or floats.
