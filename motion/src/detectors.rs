@@ -8,9 +8,9 @@ use articulated::simulate::{ContactPoint, Direction, Event, Hit};
 use articulated_core::effect::{Applied, EffectId};
 use articulated_scene::EventClass;
 
-use crate::ball::Ball;
 use crate::error::{Fault, MotionErrors};
 use crate::occurrence::{EventKind, Occurrence, SceneEvent};
+use crate::projectile::Projectile;
 use crate::session::{Session, field};
 
 /// Events of a scene on a robot, and how each of them reads.
@@ -21,7 +21,7 @@ pub struct Detectors<'a> {
     pub unavailable: Vec<UnavailableEvent>,
     /// What the first of them are, those of the scene.
     about: Vec<(EventKind, String)>,
-    ball: Rc<Ball>,
+    ball: Rc<Projectile>,
 }
 
 /// A sort of event that a scene looks for and that cannot happen: odd, and no mistake, since effects come and go.
@@ -83,7 +83,7 @@ impl<'a> Detectors<'a> {
 
     /// As if nothing had happened, for one more motion.
     pub fn reset(&mut self) {
-        self.ball.put_back();
+        self.ball.reset();
     }
 
     fn push(&mut self, event: Event<'a>, kind: EventKind, on: &str) {
@@ -143,10 +143,10 @@ impl<'a> Detectors<'a> {
     where
         R::Workspace: 'a,
     {
-        let Some(asked) = &session.scene.impact else { return };
-        let Some(frame) = frame_of(&asked.link, frames) else { return faults.push(no_frame("impact.link", &asked.link, frames)) };
-        match self.ball.event(asked, robot, frame) {
-            Ok(event) => self.push(event, EventKind::Ball, &asked.link),
+        let Some(request) = &session.scene.impact else { return };
+        let Some(frame) = frame_of(&request.link, frames) else { return faults.push(no_frame("impact.link", &request.link, frames)) };
+        match self.ball.event(request, robot, frame) {
+            Ok(event) => self.push(event, EventKind::Ball, &request.link),
             Err(error) => faults.extend(Fault::of(error)),
         }
     }

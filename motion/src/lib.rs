@@ -83,27 +83,27 @@
 //!
 //! Conventions are those of [`articulated`]: SI units and radians; q and v in the order of the robot.
 
-mod ball;
+mod compatibility;
 mod creep;
+mod detectors;
 mod error;
 mod freedom;
 mod initial_state;
 mod motion;
-mod needs;
 mod occurrence;
 mod penetration;
-mod same;
+mod projectile;
+mod requirements;
 mod session;
 mod settings;
-mod detectors;
 
 pub use articulated::simulate::{Controller, Counts, Drive, Recording, Settings, SimulateError};
 pub use articulated_scene::Scene;
 pub use creep::Creep;
+pub use detectors::{Detectors, UnavailableEvent};
 pub use error::{Fault, MotionError, MotionErrors};
 pub use initial_state::{Beyond, InitialState, Sunk};
 pub use motion::{Ending, Motion, Outcome};
 pub use occurrence::{EventKind, Occurrence, SceneEvent};
 pub use penetration::Penetration;
 pub use session::{Session, field};
-pub use detectors::{Detectors, UnavailableEvent};

@@ -7,11 +7,11 @@ use articulated::Dynamics;
 use articulated::simulate::{Control, Counts, Drive, Ended, Recording, Settings, SimulateError, Simulation};
 
 use crate::creep::Creep;
+use crate::detectors::{Detectors, UnavailableEvent};
 use crate::error::{Fault, MotionErrors};
 use crate::initial_state::InitialState;
 use crate::occurrence::Occurrence;
 use crate::session::Session;
-use crate::detectors::{Detectors, UnavailableEvent};
 
 /// A scene on a robot, with all the room that its simulation needs. It may be run again and again.
 pub struct Motion<'a, R: Dynamics<f64>> {
@@ -70,8 +70,8 @@ impl Session {
     {
         let file = &self.scene.file;
         let mut faults = self.faults_of(&settings);
-        faults.extend(self.foreign(robot, frames));
-        faults.extend(self.lacking(robot, settings.integrator));
+        faults.extend(self.shape_mismatches(robot, frames));
+        faults.extend(self.missing_functions(robot, settings.integrator));
         let detectors = Detectors::new(self, robot, frames);
         let simulation = Simulation::new(robot, settings);
         // A motion of a scene is judged by its balance of energy.
@@ -106,7 +106,7 @@ impl Session {
     ) -> Result<(Motion<'a, R>, InitialState), MotionErrors> {
         let motion = self.settings().and_then(|settings| self.motion(robot, frames, settings));
         let (motion, initial) = MotionErrors::both(motion, self.initial_state())?;
-        let another = self.another(robot, &initial).unwrap_or_else(|error| Some(Fault::Function(error)));
+        let another = self.dynamics_mismatch(robot, &initial).unwrap_or_else(|error| Some(Fault::Function(error)));
         MotionErrors::none(&self.scene.file, another)?;
         Ok((motion, initial))
     }

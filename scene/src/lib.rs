@@ -47,5 +47,5 @@ pub use robot::{
 pub use scene::{CodeOptions, Places, Robot, Scene};
 pub use series::{Reader, Source};
 pub use shaft::ShaftAsked;
-pub use simulation::{Simulation, EventClass};
+pub use simulation::{EventClass, Simulation};
 pub use tree::{Entry, Node, Value};

@@ -40,7 +40,8 @@ impl EventClass {
     }
 }
 
-const EVENT_CLASSES: &[(&str, EventClass)] = &[("limits", EventClass::Limits), ("contacts", EventClass::Contacts), ("stick_slip", EventClass::StickSlip)];
+const EVENT_CLASSES: &[(&str, EventClass)] =
+    &[("limits", EventClass::Limits), ("contacts", EventClass::Contacts), ("stick_slip", EventClass::StickSlip)];
 const STIFFNESS: &[(&str, Stiffness)] = &[("refuse", Stiffness::Refuse), ("note", Stiffness::Note), ("ignore", Stiffness::Ignore)];
 
 pub(crate) const KEYS: &[Row<Simulation>] = &[

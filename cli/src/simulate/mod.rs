@@ -3,6 +3,7 @@
 mod all;
 pub(crate) mod arguments;
 mod label;
+mod monitor;
 pub(crate) mod motion;
 mod page;
 mod plot;
@@ -12,7 +13,6 @@ mod size;
 mod summary;
 mod table;
 mod text;
-mod monitor;
 
 use std::path::Path;
 

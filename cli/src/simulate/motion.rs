@@ -8,8 +8,8 @@ use articulated::simulate::{Balance, Counts, Recording as Run, Settings};
 use articulated_lab::session::{Code, Session};
 use articulated_motion::{Creep, Ending, InitialState, Occurrence, Outcome};
 
-use super::recording::{EventRecord, Recording};
 use super::monitor::RunMonitor;
+use super::recording::{EventRecord, Recording};
 use crate::console::{self, Progress};
 use crate::failure::Failure;
 use crate::named_scene;

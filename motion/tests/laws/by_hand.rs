@@ -4,7 +4,7 @@ use articulated::Dynamics;
 use articulated::simulate::{Constant, Control, Dependence, Event, IntegratorId, Output, Settings, Simulation, TorqueTable};
 use articulated_core::algorithm::Workspace;
 
-use articulated_motion::{Drive, InitialState, Detectors};
+use articulated_motion::{Detectors, Drive, InitialState};
 use articulated_scene::{Aim, Controller, Series};
 
 use super::{ARM, CART, moved, session};

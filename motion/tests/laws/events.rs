@@ -1,7 +1,7 @@
 //! What happens on the way, and how it reads.
 
 use articulated::simulate::Ended;
-use articulated_motion::{Ending, EventKind, Outcome, SceneEvent, Detectors, UnavailableEvent};
+use articulated_motion::{Detectors, Ending, EventKind, Outcome, SceneEvent, UnavailableEvent};
 use articulated_scene::EventClass;
 
 use super::{ARM, CART, moved, session, words};

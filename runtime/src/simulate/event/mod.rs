@@ -1,7 +1,7 @@
 //! Events: what happens at times that nobody knows beforehand.
 
-mod impact;
 pub(crate) mod detectors;
+mod impact;
 
 use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! A simulation: steps, outputs and events one after the other.
 
-mod step_events;
 mod pace;
 mod records;
+mod step_events;
 mod stepping;
 mod stiffness;
 

@@ -11,7 +11,7 @@ use crate::session::Session;
 impl Session {
     /// The links whose frames the scene's events need, each once: all that a robot that is generated for this motion has to give.
     pub fn frames(&self) -> Vec<String> {
-        let mut all: Vec<String> = self.framed().map(|(_, link)| link.to_owned()).collect();
+        let mut all: Vec<String> = self.frame_users().map(|(_, link)| link.to_owned()).collect();
         all.sort_unstable();
         all.dedup();
         all
@@ -29,7 +29,7 @@ impl Session {
     }
 
     /// Who needs a frame, and of which link.
-    pub(crate) fn framed(&self) -> impl Iterator<Item = (&'static str, &str)> {
+    pub(crate) fn frame_users(&self) -> impl Iterator<Item = (&'static str, &str)> {
         let contacts = self.effects_of(EffectId::contact).filter(|_| self.requested_events().contains(&EventClass::Contacts));
         let contacts = contacts.map(|a| ("effects.contact", a.on.as_str()));
         contacts.chain(self.scene.impact.iter().map(|impact| ("impact.link", impact.link.as_str())))
@@ -45,20 +45,20 @@ impl Session {
         let mut functions = self.scene.calls_with(integrator).required;
         functions.retain(|function| match function {
             FunctionId::integrate => self.model.nq != self.model.nv,
-            FunctionId::placements => self.framed().next().is_some(),
+            FunctionId::placements => self.frame_users().next().is_some(),
             _ => true,
         });
         functions
     }
 
     /// What this robot lacks.
-    pub(crate) fn lacking<R: Dynamics<f64>>(&self, robot: &R, integrator: IntegratorId) -> impl Iterator<Item = Fault> {
+    pub(crate) fn missing_functions<R: Dynamics<f64>>(&self, robot: &R, integrator: IntegratorId) -> impl Iterator<Item = Fault> {
         let mut ws = robot.workspace();
         self.required(integrator).into_iter().filter_map(move |function| robot.tried(&mut ws, function).err().map(Fault::Function))
     }
 
     /// What is wrong with a robot, and with the names of its frames in its order: it is another than the scene's.
-    pub(crate) fn foreign<R: Dynamics<f64>, S: AsRef<str>>(&self, robot: &R, frames: &[S]) -> Vec<Fault> {
+    pub(crate) fn shape_mismatches<R: Dynamics<f64>, S: AsRef<str>>(&self, robot: &R, frames: &[S]) -> Vec<Fault> {
         let (own, shape) = (self.model.shape(), robot.shape());
         let counts = [("coordinates", shape.nq, own.nq), ("degrees of freedom", shape.nv, own.nv)];
         let counts = counts.into_iter().filter(|(_, found, expected)| found != expected);

@@ -16,7 +16,7 @@ const AWAY: [f64; 3] = [0.0, 8.0, -8.0];
 
 impl Session {
     /// A robot that was made with other effects, other gravity or other masses than the scene's.
-    pub(crate) fn another<R: Dynamics<f64>>(&self, robot: &R, initial: &InitialState) -> Result<Option<Fault>, FunctionError> {
+    pub(crate) fn dynamics_mismatch<R: Dynamics<f64>>(&self, robot: &R, initial: &InitialState) -> Result<Option<Fault>, FunctionError> {
         for away in AWAY {
             let pattern: Vec<f64> = (0..self.model.nv).map(|k| 1.0 - 0.15 * (k % 4) as f64).collect();
             let step: Vec<f64> = pattern.iter().map(|x| away * x).collect();

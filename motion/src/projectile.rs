@@ -6,13 +6,13 @@ use std::rc::Rc;
 use articulated::Dynamics;
 use articulated::effect::unit;
 use articulated::simulate::{Action, ContactPoint, Direction, Event, Impact, SimulateError};
-use articulated_scene::{Impact as Asked, When};
+use articulated_scene::{Impact as ImpactRequest, When};
 
 /// What has become of the ball.
 #[derive(Debug, Default)]
-pub(crate) struct Ball {
+pub(crate) struct Projectile {
     /// Its turn has come.
-    gone: Cell<bool>,
+    spent: Cell<bool>,
     /// The motion ends with it.
     pub(crate) ends: Cell<bool>,
     /// Its turn came when nothing moved towards it.
@@ -21,34 +21,34 @@ pub(crate) struct Ball {
     pub(crate) energy: Cell<Option<f64>>,
 }
 
-impl Ball {
+impl Projectile {
     /// It lies where it was.
-    pub(crate) fn put_back(&self) {
-        [&self.gone, &self.ends, &self.missed].into_iter().for_each(|cell| cell.set(false));
+    pub(crate) fn reset(&self) {
+        [&self.spent, &self.ends, &self.missed].into_iter().for_each(|cell| cell.set(false));
         self.energy.set(None);
     }
 
     /// The event that it is hit, by the frame of this number. What is where the ball is at the start passes it there.
     pub(crate) fn event<'a, R: Dynamics<f64>>(
         self: &Rc<Self>,
-        asked: &Asked,
+        request: &ImpactRequest,
         robot: &'a R,
         frame: usize,
     ) -> Result<Event<'a>, SimulateError>
     where
         R::Workspace: 'a,
     {
-        let action = self.blow(asked, robot, frame)?;
-        let event = match asked.when {
-            When::Time(at) => Event::new(asked.link.clone(), move |t, _, _| t - at),
+        let action = self.blow(request, robot, frame)?;
+        let event = match request.when {
+            When::Time(at) => Event::new(request.link.clone(), move |t, _, _| t - at),
             When::Ball(place) => {
                 let (mut ws, mut out) = (robot.workspace(), vec![0.0; 12 * robot.shape().frames]);
                 // The blow was made with it, so it has a direction.
-                let (point, n, ball) = (asked.point, unit(asked.normal).unwrap_or(asked.normal), self.clone());
+                let (point, n, ball) = (request.point, unit(request.normal).unwrap_or(request.normal), self.clone());
                 // n·(p − ball) with p = x + R r
-                Event::new(asked.link.clone(), move |_, q: &[f64], _| match robot.placements(&mut ws, q, &mut out) {
+                Event::new(request.link.clone(), move |_, q: &[f64], _| match robot.placements(&mut ws, q, &mut out) {
                     // Nobody looks for a ball that is gone.
-                    _ if ball.gone.get() => -1.0,
+                    _ if ball.spent.get() => -1.0,
                     Ok(()) => {
                         let x = &out[12 * frame..][..12];
                         let p = |k: usize| x[9 + k] + (0..3).map(|c| x[3 * k + c] * point[c]).sum::<f64>();
@@ -62,15 +62,15 @@ impl Ball {
     }
 
     /// What is done when its turn has come.
-    fn blow<'a, R: Dynamics<f64>>(self: &Rc<Self>, asked: &Asked, robot: &'a R, frame: usize) -> Result<Action<'a>, SimulateError>
+    fn blow<'a, R: Dynamics<f64>>(self: &Rc<Self>, request: &ImpactRequest, robot: &'a R, frame: usize) -> Result<Action<'a>, SimulateError>
     where
         R::Workspace: 'a,
     {
-        let at = ContactPoint { frame, point: asked.point, normal: asked.normal };
-        let mut blow = Impact::new(robot, at, asked.mass, asked.restitution)?;
-        let (ball, stop, speed, mass) = (self.clone(), asked.stop, asked.ball_speed, asked.mass);
+        let at = ContactPoint { frame, point: request.point, normal: request.normal };
+        let mut blow = Impact::new(robot, at, request.mass, request.restitution)?;
+        let (ball, stop, speed, mass) = (self.clone(), request.stop, request.ball_speed, request.mass);
         Ok(Action::Map(Box::new(move |_, q, v| {
-            if ball.gone.replace(true) {
+            if ball.spent.replace(true) {
                 return Ok(None);
             }
             let struck = blow.strike(q, v, speed)?;
