@@ -34,7 +34,7 @@ pub(crate) fn open(path: &Path) -> Result<(Prepared, PathBuf), Failure> {
 /// The scene with its robot. Warnings about the robot are printed.
 pub(crate) fn session(path: &Path) -> Result<Session, Failure> {
     let session = quiet_session(path)?;
-    session.odd.iter().for_each(|line| console::warn(line));
+    session.robot_warnings.iter().for_each(|line| console::warn(line));
     Ok(session)
 }
 

@@ -64,7 +64,7 @@ pub(crate) fn run(arguments: &StressArguments, format: Format) -> Result<u8, Fai
         Some(name) => {
             let robot = robot(arguments, name)?;
             let model = robot.whole_model(&robot.read()?)?;
-            let given = arguments.states.as_deref().map_or_else(|| Ok(Vec::new()), |file| given(&model, file))?;
+            let given = arguments.states.as_deref().map_or_else(|| Ok(Vec::new()), |file| read_states(&model, file))?;
             of_robot(&robot.loaded(), &model, &given, &settings)?
         }
         None => of_corpus(&settings)?,
@@ -84,8 +84,8 @@ fn robot(arguments: &StressArguments, name: &Path) -> Result<Robot, Failure> {
     Robot::find(&robot)
 }
 
-/// The states of a file; what a state does not give is zero.
-fn given(model: &Model<f64>, path: &Path) -> Result<Vec<State>, Failure> {
+/// The states of a file; missing values are zero.
+fn read_states(model: &Model<f64>, path: &Path) -> Result<Vec<State>, Failure> {
     let file = path.display();
     let bytes = read_bytes(path).map_err(|e| Failure::input([format!("{file}: {e}")]))?;
     let read = states::read(&bytes, model).map_err(|lines| Failure::input(lines.into_iter().map(|l| format!("{file}: {l}"))))?;

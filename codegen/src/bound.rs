@@ -13,7 +13,7 @@ pub fn bounds(graph: &Graph, level: Precision, input: &dyn Fn(usize, usize) -> (
     fn of<const BITS: u32, const SINES: u32>(graph: &Graph, bits: Option<u32>, input: &dyn Fn(usize, usize) -> (f64, f64)) -> Vec<f64> {
         let given = |argument: usize, k: usize| {
             let (value, radius) = input(argument, k);
-            Running::<BITS, SINES>::given(value, radius)
+            Running::<BITS, SINES>::within(value, radius)
         };
         let results = graph.evaluate_as(given);
         results.into_iter().map(|x| bits.map_or(x.error, |bits| x.rounded_to(bits))).collect()

@@ -116,7 +116,7 @@ impl Generated {
 /// Everything that is wrong with the document and what of the request needs no robot, or else
 /// everything that is wrong with the request.
 pub fn generate(request: &Request) -> Result<Generated, Diagnostics> {
-    let request = &*request.settled();
+    let request = &*request.normalized();
     let mut log = Diagnostics::new(request.scene.as_ref().map_or(&request.file, |scene| &scene.file));
     let Some(Plan { robot, model, parameters, functions }) = plan::plan(request, &mut log) else {
         return Err(log.result(()).err().unwrap_or_default());

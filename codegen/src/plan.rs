@@ -71,12 +71,12 @@ fn words(options: &Options, log: &mut Diagnostics) -> Vec<Entry> {
 /// Reports all that is wrong with a request whatever the robot, as functions that do not exist: for
 /// requests whose robot cannot be read.
 pub fn check_words(request: &Request, log: &mut Diagnostics) {
-    words(&request.settled().options, log);
+    words(&request.normalized().options, log);
 }
 
 /// Reports the functions, parameters and names that a robot does not have.
 pub fn check_names(request: &Request, robot: &BuiltRobot, log: &mut Diagnostics) {
-    let request = &*request.settled();
+    let request = &*request.normalized();
     let entries = words(&request.options, log);
     parameters::parse(&request.options, &mut robot.clone(), log);
     // If a frame is refused, the set of frames is not known.

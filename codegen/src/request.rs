@@ -115,7 +115,7 @@ impl Request {
 
     /// The request with what follows from its choices: functions in the place of groups; without
     /// `std` a function can neither ask what the processor has nor call a multiply-add.
-    pub(crate) fn settled(&self) -> Cow<'_, Self> {
+    pub(crate) fn normalized(&self) -> Cow<'_, Self> {
         let functions = function_groups::expanded(&self.options.functions, &self.options.motion);
         if !self.options.rust().no_std && functions == self.options.functions {
             return Cow::Borrowed(self);
@@ -161,11 +161,11 @@ mod tests {
     fn without_std_there_is_nothing_that_needs_it_and_all_else_stays() {
         let mut request = Request::new("robot", "");
         request.options.rust_mut().runtime = Some("::articulated".into());
-        assert_eq!(request.settled().options, request.options);
+        assert_eq!(request.normalized().options, request.options);
         request.options.rust_mut().no_std = true;
         let mut expected = request.options.clone();
         (expected.rust_mut().forbid_unsafe, expected.level.fused, expected.rust_mut().runtime) = (true, false, None);
         assert!(request.options.level.fused);
-        assert_eq!(request.settled().options, expected);
+        assert_eq!(request.normalized().options, expected);
     }
 }

@@ -61,7 +61,7 @@ impl<'s> Freedom<'s> {
     }
 
     /// Its own coordinate, where that which it moves with is `q`.
-    pub(crate) fn own(&self, q: f64) -> f64 {
+    pub(crate) fn own_coordinate(&self, q: f64) -> f64 {
         self.multiplier * q + self.offset
     }
 

@@ -49,7 +49,7 @@ impl Session {
     /// The joints of one coordinate that are beyond the limits of the file at q `[nq]`, where a motion starts; those that follow others too.
     pub fn beyond(&self, q: &[f64]) -> Vec<Beyond> {
         let beyond = |at: Freedom<'_>| {
-            let ((lower, upper), found) = (self.of_the_file(at.body)?, at.own(*q.get(at.q)?));
+            let ((lower, upper), found) = (self.of_the_file(at.body)?, at.own_coordinate(*q.get(at.q)?));
             let beyond = || Beyond { file: self.scene.file.clone(), joint: at.joint().to_owned(), found, lower, upper };
             (found < lower || found > upper).then(beyond)
         };

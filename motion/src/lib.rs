@@ -25,7 +25,7 @@
 //! # std::fs::write(&path, SCENE)?;
 //! let session = Session::open(&path)?;
 //! # std::fs::remove_dir_all(&folder)?;
-//! session.warnings.iter().for_each(|odd| eprintln!("{odd}"));
+//! session.warnings.iter().for_each(|warning| eprintln!("{warning}"));
 //! let swing = session.run(&session.model, &session.frame_names())?;
 //!
 //! assert_eq!((swing.ending, swing.reached, swing.error), (Ending::AtEnd, 12.0, None));

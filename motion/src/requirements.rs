@@ -20,12 +20,12 @@ impl Session {
     /// Names of the functions to generate for this motion, each once, of those for which the word `motion` stands in lists of functions ([`Scene::calls`](articulated_scene::Scene::calls)): those that it needs with this integrator, and those that its recording tells of
     /// energies, losses and momentum by. A robot that has none of the latter moves as well, and [`Recording::missing`](articulated::simulate::Recording::missing) has their names.
     pub fn functions(&self, integrator: IntegratorId) -> Vec<&'static str> {
-        let told = self.scene.calls_with(integrator).told.into_iter().filter(|function| match function {
+        let reported = self.scene.calls_with(integrator).reported.into_iter().filter(|function| match function {
             FunctionId::centroidal_momentum => self.model.moving_mass() > 0.0,
             FunctionId::dissipation | FunctionId::motor_torques => !self.effects.is_empty(),
             _ => true,
         });
-        self.required(integrator).into_iter().chain(told).map(FunctionId::name).collect()
+        self.required(integrator).into_iter().chain(reported).map(FunctionId::name).collect()
     }
 
     /// Who needs a frame, and of which link.
@@ -54,7 +54,7 @@ impl Session {
     /// What this robot lacks.
     pub(crate) fn missing_functions<R: Dynamics<f64>>(&self, robot: &R, integrator: IntegratorId) -> impl Iterator<Item = Fault> {
         let mut ws = robot.workspace();
-        self.required(integrator).into_iter().filter_map(move |function| robot.tried(&mut ws, function).err().map(Fault::Function))
+        self.required(integrator).into_iter().filter_map(move |function| robot.check_function(&mut ws, function).err().map(Fault::Function))
     }
 
     /// What is wrong with a robot, and with the names of its frames in its order: it is another than the scene's.

@@ -13,13 +13,13 @@ pub struct Calls {
     /// Without these it does not begin: [`integrate`](FunctionId::integrate) of a robot with a quaternion, `placements` of one with frames to look at, all others of any.
     pub required: Vec<FunctionId>,
     /// By these its recording tells of energies and momentum, and where effects are on of losses: `centroidal_momentum` of a robot that moves mass.
-    pub told: Vec<FunctionId>,
+    pub reported: Vec<FunctionId>,
 }
 
 impl Calls {
     /// All of them, by name.
     pub fn names(&self) -> impl Iterator<Item = &'static str> {
-        self.required.iter().chain(&self.told).map(|function| function.name())
+        self.required.iter().chain(&self.reported).map(|function| function.name())
     }
 }
 
@@ -43,11 +43,11 @@ impl Scene {
         if self.impact.is_some() {
             required.extend([FunctionId::jacobians_world_aligned, FunctionId::solve_mass_matrix]);
         }
-        let mut told = vec![FunctionId::kinetic_energy, FunctionId::potential_energy, FunctionId::centroidal_momentum];
+        let mut reported = vec![FunctionId::kinetic_energy, FunctionId::potential_energy, FunctionId::centroidal_momentum];
         if self.has_effects() {
-            told.extend([FunctionId::dissipation, FunctionId::motor_torques]);
+            reported.extend([FunctionId::dissipation, FunctionId::motor_torques]);
         }
-        Calls { required, told }
+        Calls { required, reported }
     }
 }
 

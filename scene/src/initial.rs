@@ -4,7 +4,7 @@ use articulated_core::algorithm;
 use articulated_core::description::Base;
 use articulated_core::diagnostic::{At, Code, Diagnostics};
 use articulated_core::model::{FLOATING_BASE, Model};
-use articulated_core::spatial::normalise_given;
+use articulated_core::spatial::normalise_input;
 
 use crate::edits::coordinates;
 use crate::scene::Scene;
@@ -206,7 +206,7 @@ fn from_rpy(rpy: [f64; 3]) -> [f64; 4] {
 
 fn unit(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<[f64; 4]> {
     let mut quaternion: [f64; 4] = spot.numbers(log)?;
-    if let Err(norm) = normalise_given(&mut quaternion) {
+    if let Err(norm) = normalise_input(&mut quaternion) {
         spot.bad(log, format!("a quaternion of norm {norm:.4}"), "norm one, in the order x, y, z, w");
         return None;
     }
@@ -302,7 +302,7 @@ pub(crate) fn no_joint(log: &mut Diagnostics, at: At, key: &str, name: &str, mod
 /// Quaternions to norm one; `place`: where those of a joint are given.
 pub(crate) fn normalise(model: &Model<f64>, q: &mut [f64], (key, place): (&str, &dyn Fn(&str) -> At), log: &mut Diagnostics) {
     for (joint, quaternion) in model.joints.iter().filter_map(|j| Some((j, j.quaternion()?))) {
-        if let Err(norm) = normalise_given(&mut q[quaternion]) {
+        if let Err(norm) = normalise_input(&mut q[quaternion]) {
             let found = format!("a quaternion of norm {norm:.4} for joint {:?}", joint.name);
             log.error((place(&joint.name), key), Code::Number, found, "norm one, in the order x, y, z, w");
         }

@@ -13,7 +13,7 @@ use articulated_formats::{SNAP_EXPECTED, can_snap};
 use crate::control::{self, Control};
 use crate::document;
 use crate::edits::{self, APPEND, Append, LOAD, Load, Lock};
-use crate::effects::{self, Asked};
+use crate::effects::{self, EffectRequest};
 use crate::impact::{self, Impact};
 use crate::initial::{self, Initial};
 use crate::shaft::ShaftAsked;
@@ -37,7 +37,7 @@ pub struct Scene {
     /// Edits of the robot, and what code to make of it.
     pub code: CodeOptions,
     /// Effects, as they are asked for.
-    pub effects: Vec<Asked>,
+    pub effects: Vec<EffectRequest>,
     /// Shafts that bend.
     pub shafts: Vec<ShaftAsked>,
     /// How to simulate it; `None`: the scene does not say.
@@ -164,7 +164,7 @@ impl Scene {
     /// The integrator of a motion that names none: `rodas4` where smoothed friction or contact
     /// makes it stiff, else `dopri5`.
     pub fn default_integrator(&self) -> IntegratorId {
-        let stiff = |asked: &Asked| matches!(asked.effect, EffectId::friction | EffectId::contact) && asked.says.is_some();
+        let stiff = |asked: &EffectRequest| matches!(asked.effect, EffectId::friction | EffectId::contact) && asked.says.is_some();
         if self.effects.iter().any(stiff) { IntegratorId::rodas4 } else { IntegratorId::dopri5 }
     }
 

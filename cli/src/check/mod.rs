@@ -46,7 +46,7 @@ fn examine(robot: &Robot, scene: Option<&Path>, functions: &[String]) -> Report 
     }
     // Joints may be locked beside the scene: its motion is that of the scene alone.
     match scene.map(crate::simulate::motion::look_over) {
-        Some(Ok(odd)) => odd.into_iter().for_each(|line| report.warn(Diagnostic::from(line).into_warning())),
+        Some(Ok(warning)) => warning.into_iter().for_each(|line| report.warn(Diagnostic::from(line).into_warning())),
         Some(Err(failure)) => report.errors.extend(failure.errors),
         None => {}
     }

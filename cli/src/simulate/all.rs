@@ -72,8 +72,8 @@ fn row(name: &'static str, arguments: &SimulateArguments, rustc: &Rustc) -> Resu
         return Err(Failure::input([format!("{name}: {error}")]));
     }
     for (run, code) in [(&fast, "generated"), (&slow, "generic")] {
-        if let Some(odd) = run.out_of_balance() {
-            console::warn(&format!("{name}: {code} code: {odd}"));
+        if let Some(warning) = run.out_of_balance() {
+            console::warn(&format!("{name}: {code} code: {warning}"));
         }
     }
     Ok(Row {

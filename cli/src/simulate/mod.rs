@@ -71,8 +71,8 @@ pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, F
         Format::Text => text::text(&summary),
         Format::Json => crate::json(&summary),
     })?;
-    if let Some(odd) = summary.out_of_balance() {
-        console::warn(&format!("{}: {odd}", session.scene.file));
+    if let Some(warning) = summary.out_of_balance() {
+        console::warn(&format!("{}: {warning}", session.scene.file));
     }
     Ok(match &motion.error {
         None if summary.status == "ok" => OK,

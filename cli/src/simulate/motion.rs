@@ -83,11 +83,22 @@ pub(super) fn run(
     let penetrations = session.warning_of_penetrations(&recording.t, &recording.q);
     penetrations.iter().for_each(|line| console::warn(line));
     let warnings = session.warnings(initial).into_iter().chain(unavailable).chain(penetrations).collect();
-    Ok(Motion { recording: told(session, recording, occurrences), counts, balance, creep, reached, ending, wall, ball, error, warnings })
+    Ok(Motion {
+        recording: named_recording(session, recording, occurrences),
+        counts,
+        balance,
+        creep,
+        reached,
+        ending,
+        wall,
+        ball,
+        error,
+        warnings,
+    })
 }
 
 /// The library's recording with names.
-fn told(session: &Session, run: Run, occurrences: Vec<Occurrence>) -> Recording {
+fn named_recording(session: &Session, run: Run, occurrences: Vec<Occurrence>) -> Recording {
     let n = run.len();
     let whole = |x: Vec<f64>| if x.len() == n { x } else { vec![0.0; n] };
     // Without mass there is no centre of it: rotors have no momentum here.

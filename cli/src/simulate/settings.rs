@@ -23,9 +23,9 @@ pub(super) fn of(session: &Session, arguments: &SimulateArguments) -> Result<Set
     settings.output = a.every.map_or(settings.output, Output::Every);
     let problems = settings.problems(session.model.shape());
     if !problems.is_empty() {
-        return Err(Failure::input(problems.iter().map(|p| told(p, a, file))));
+        return Err(Failure::input(problems.iter().map(|p| message(p, a, file))));
     }
-    too_many_steps(&settings).iter().for_each(|odd| console::warn(&format!("{file}: {odd}")));
+    too_many_steps(&settings).iter().for_each(|warning| console::warn(&format!("{file}: {warning}")));
     Ok(settings)
 }
 
@@ -33,12 +33,12 @@ pub(super) fn of(session: &Session, arguments: &SimulateArguments) -> Result<Set
 fn too_many_steps(settings: &Settings) -> Option<String> {
     let (step, most) = (settings.step?, settings.max_steps);
     let (steps, reached) = ((settings.end - settings.start) / step, settings.start + step * most as f64);
-    let told = || {
+    let message = || {
         format!(
             "simulation.step: found {step:?} s, {steps:.1e} steps to the end, of which max_steps = {most} are made, up to t = {reached} s; expected longer steps, or a greater max_steps"
         )
     };
-    (steps > most as f64 * (1.0 + 1e-9)).then(told)
+    (steps > most as f64 * (1.0 + 1e-9)).then(message)
 }
 
 /// The integrator and what chooses its steps. Errors: an option that has no part in it, and steps that nothing chooses.
@@ -59,17 +59,17 @@ fn choose_steps(settings: &mut Settings, a: &SimulateArguments, file: &str) -> R
     let Some(step) = settings.step else { return Ok(()) };
     let tolerances = [("rtol", a.rtol), ("atol", a.atol)].into_iter().filter(|(_, given)| given.is_some());
     let by = if a.step.is_some() { "--step".to_owned() } else { format!("`step` in [simulation] of {file}") };
-    let told = |(option, _)| {
+    let message = |(option, _)| {
         format!(
             "--{option}: found a fixed step of {step:?} s ({by}), which no tolerance chooses, expected an integrator that chooses its steps, as --integrator dopri5"
         )
     };
-    let lines: Vec<String> = tolerances.map(told).collect();
+    let lines: Vec<String> = tolerances.map(message).collect();
     if lines.is_empty() { Ok(()) } else { Err(Failure::input(lines)) }
 }
 
 /// A problem, of the option where that has said it, else of the scene.
-fn told(problem: &SettingError, a: &SimulateArguments, file: &str) -> String {
+fn message(problem: &SettingError, a: &SimulateArguments, file: &str) -> String {
     let options = [
         ("end", "end", a.end.is_some()),
         ("step", "step", a.step.is_some()),

@@ -198,7 +198,7 @@ impl Summary {
             ball_speed_m_per_s: r.events.iter().find_map(|e| e.ball_speed_m_per_s),
             wall_s: wall,
             simulated_s_per_wall_s: (motion.reached - settings.start) / wall.max(1e-9),
-            warnings: session.odd.iter().chain(&motion.warnings).cloned().collect(),
+            warnings: session.robot_warnings.iter().chain(&motion.warnings).cloned().collect(),
             files: Vec::new(),
             columns: Vec::new(),
             pictures_left_out: Vec::new(),
@@ -209,7 +209,7 @@ impl Summary {
     }
 
     fn with_balance(mut self, file: &str) -> Self {
-        self.warnings.extend(self.out_of_balance().map(|odd| format!("{file}: {odd}")));
+        self.warnings.extend(self.out_of_balance().map(|warning| format!("{file}: {warning}")));
         if self.status == "ok" && !self.energy.is_kept() {
             self.status = "out_of_tolerance";
         }

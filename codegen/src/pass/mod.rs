@@ -120,7 +120,7 @@ pub fn run(name: &str, pass: GraphPass, graph: &Graph) -> Graph {
 
 /// Whether output `k` of two graphs differs by no more than rounding can make of it: where numbers of very different sizes cancel, that is all that is left.
 fn rounding(one: &Graph, other: &Graph, k: usize) -> bool {
-    let known = |g: &Graph| g.evaluate_as(|argument, index| Running::<53, 0>::given(probe(argument, index), 0.0))[k];
+    let known = |g: &Graph| g.evaluate_as(|argument, index| Running::<53, 0>::within(probe(argument, index), 0.0))[k];
     let (a, b) = (known(one), known(other));
     let (off, most) = ((a.value - b.value).abs(), a.radius + b.radius);
     off <= most || off.is_nan() || most.is_nan()

@@ -30,7 +30,7 @@ pub(super) struct Candidate<'a> {
 impl Candidate<'_> {
     /// The graph of a function by the choices that cost least, or of what comes before a loop, and
     /// what became of it on the way.
-    pub(super) fn made(&self, wanted: &FunctionSpec, unsolved: Option<&'static Way<Sym>>) -> (Graph, Entry) {
+    pub(super) fn build(&self, wanted: &FunctionSpec, unsolved: Option<&'static Way<Sym>>) -> (Graph, Entry) {
         let all = model_passes::<Sym>().len();
         let choose = |part| unsolved.map_or_else(|| cheapest(part, self, all), |way| Strategy::plain(way, all));
         let choices = by_axes(wanted, wanted.parts.iter().map(choose).collect(), self);

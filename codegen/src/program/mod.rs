@@ -36,18 +36,18 @@ pub(crate) fn program(wanted: FunctionSpec, model: &Model<f64>, parameters: &[Pa
     let subject = Candidate { model, parameters, stages: options.stages, alike: None };
     let reduced = wanted.reduced();
     let columns = columns::columns(&reduced, model, can);
-    let whole = (columns.is_none() || can.states).then(|| subject.made(&reduced, None));
+    let whole = (columns.is_none() || can.states).then(|| subject.build(&reduced, None));
     let unsolved = columns.as_ref().and(reduced.parts[0].function.unsolved.as_ref());
     let mut best = match &whole {
         Some(whole) if unsolved.is_none() => whole.clone(),
-        _ => subject.made(&reduced, unsolved),
+        _ => subject.build(&reduced, unsolved),
     };
     let plain = whole.map_or_else(Graph::default, |(graph, _)| graph);
     // Limbs need the vector instructions; constants that stay inputs differ from limb to limb.
     if options.limbs && can.vectors && parameters.is_empty() {
         for width in [4, 2] {
             let Some(alike) = IsomorphicLimbs::of(model, width) else { continue };
-            let other = Candidate { alike: Some(alike), ..subject }.made(&reduced, unsolved);
+            let other = Candidate { alike: Some(alike), ..subject }.build(&reduced, unsolved);
             if price(&other.0) * WORTH < price(&best.0) {
                 best = other;
             }

@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use articulated_core::effect::{Applied, EffectId};
 
 use super::resolve::Edited;
-use super::{Asked, Selector};
+use super::{EffectRequest, Selector};
 use crate::shaft::ShaftAsked;
 
 /// Links, joints and shafts by their names.
@@ -45,11 +45,11 @@ pub(crate) fn indices<'a>(names: impl Iterator<Item = &'a str>) -> HashMap<&'a s
 }
 
 /// What is asked of joints or links by their names, in the order of the scene.
-pub(super) struct Named<'a>(HashMap<&'a str, Vec<&'a Asked>>);
+pub(super) struct Named<'a>(HashMap<&'a str, Vec<&'a EffectRequest>>);
 
 impl<'a> Named<'a> {
-    pub(super) fn of(asked: &[&'a Asked]) -> Self {
-        let mut by_name: HashMap<&str, Vec<&Asked>> = HashMap::new();
+    pub(super) fn of(asked: &[&'a EffectRequest]) -> Self {
+        let mut by_name: HashMap<&str, Vec<&EffectRequest>> = HashMap::new();
         for &one in asked {
             if let Selector::Named(name) = &one.on {
                 by_name.entry(name).or_default().push(one);
@@ -58,7 +58,7 @@ impl<'a> Named<'a> {
         Self(by_name)
     }
 
-    pub(super) fn get(&self, name: &str) -> &[&'a Asked] {
+    pub(super) fn get(&self, name: &str) -> &[&'a EffectRequest] {
         self.0.get(name).map_or(&[], Vec::as_slice)
     }
 }

@@ -35,7 +35,7 @@ pub(crate) use urdf::{sources, tag};
 
 /// One line of effects.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Asked {
+pub struct EffectRequest {
     /// Which effect.
     pub effect: EffectId,
     /// On what.
@@ -85,15 +85,15 @@ pub(crate) fn read(scene: &mut Scene, spot: &Spot<'_>, log: &mut Diagnostics) {
         if entry.name == shaft::NAME {
             scene.shafts = shaft::read(&value, log);
         } else if let Some(row) = effect(&entry.name) {
-            scene.effects.extend(asked(row, &value, log));
+            scene.effects.extend(requests(row, &value, log));
         } else {
             value.unknown_key(log, effects().iter().map(|e| e.name).chain([shaft::NAME]));
         }
     }
 }
 
-/// All that is asked for of one effect.
-fn asked(row: &'static Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Asked> {
+/// All requests of one effect.
+fn requests(row: &'static Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<EffectRequest> {
     let Value::Table(entries) = &spot.node.value else { return on(row, &Selector::All, spot, log) };
     // A table that says where its numbers come from is that of all joints.
     if spot.get(FROM).is_some_and(|from| matches!(from.node.value, Value::Text(_))) {
@@ -104,8 +104,8 @@ fn asked(row: &'static Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<As
 }
 
 /// What is asked for on one joint or link: a number, a word, a table, or a list of tables for a link.
-fn on(row: &'static Effect, selector: &Selector, spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Asked> {
-    let asked = |says, spot: &Spot<'_>| Asked { effect: row.id, on: selector.clone(), says, key: spot.key.clone(), place: spot.at };
+fn on(row: &'static Effect, selector: &Selector, spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<EffectRequest> {
+    let asked = |says, spot: &Spot<'_>| EffectRequest { effect: row.id, on: selector.clone(), says, key: spot.key.clone(), place: spot.at };
     let before = log.count();
     let says = match &spot.node.value {
         Value::Text(word) if word == "off" => vec![asked(None, spot)],
@@ -164,7 +164,7 @@ fn expected(row: &Effect) -> String {
 
 fn wrong_word(row: &Effect, word: &str, spot: &Spot<'_>, log: &mut Diagnostics) {
     let words = ["off"].into_iter().chain(sources(row));
-    log.unknown(((spot.node.at, &spot.key), Code::Word), (told(word), word), expected(row), words);
+    log.unknown(((spot.node.at, &spot.key), Code::Word), (quoted_with_reason(word), word), expected(row), words);
 }
 
 /// The numbers of a table.
@@ -210,13 +210,13 @@ fn from(row: &Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Option<&'static
     };
     let source = sources(row).find(|source| *source == word.as_str());
     if source.is_none() {
-        log.error((spot.node.at, &spot.key), Code::Word, told(word), expected);
+        log.error((spot.node.at, &spot.key), Code::Word, quoted_with_reason(word), expected);
     }
     source
 }
 
 /// A word for a source of numbers that an effect does not have.
-fn told(word: &str) -> String {
+fn quoted_with_reason(word: &str) -> String {
     let why = match word {
         "urdf" => ", which has no numbers for it",
         collision::WORD => ", which has no geometry for it",

@@ -330,20 +330,20 @@ mod tests {
         )
     }
 
-    fn asked() -> Own {
-        let mut asked = Own { file: "arm.urdf", urdf: robot("arm"), options: RobotOptions::default() };
+    fn request() -> TestRequest {
+        let mut asked = TestRequest { file: "arm.urdf", urdf: robot("arm"), options: RobotOptions::default() };
         asked.options.snap_angles = Some(1e-6);
         asked
     }
 
     /// What is asked, with its document.
-    struct Own {
+    struct TestRequest {
         file: &'static str,
         urdf: String,
         options: RobotOptions,
     }
 
-    fn read(own: &Own) -> Result<Reading, Diagnostics> {
+    fn read(own: &TestRequest) -> Result<Reading, Diagnostics> {
         RobotRequest { file: own.file, document: own.urdf.as_bytes(), options: &own.options, scene: None, checks_motion: false }.read()
     }
 
@@ -360,7 +360,7 @@ mod tests {
     #[test]
     fn a_tolerance_of_angles_is_above_nothing() {
         for (tolerance, found) in [(0.0, "0"), (MOST_SNAPPED * 2.0, "1"), (f64::NAN, "NaN")] {
-            let mut asked = asked();
+            let mut asked = request();
             asked.options.snap_angles = Some(tolerance);
             let expected = "expected a finite number above 0, at most 0.5 rad; leave it out to snap none";
             assert_eq!(read(&asked).unwrap_err().to_string(), format!("snap_angles: found {found}, {expected}"));
@@ -368,7 +368,7 @@ mod tests {
     }
 
     /// The keys of what is refused, and what is found there.
-    fn refused(asked: &Own) -> Vec<String> {
+    fn refused(asked: &TestRequest) -> Vec<String> {
         read(asked).unwrap_err().errors.into_iter().map(|error| format!("{}: {}", error.field, error.found)).collect()
     }
 
@@ -379,8 +379,8 @@ mod tests {
 
     #[test]
     fn what_is_said_of_an_appended_robot_is_said_of_the_whole() {
-        let alone = read(&asked()).unwrap();
-        let mut asked = asked();
+        let alone = read(&request()).unwrap();
+        let mut asked = request();
         asked.options.append.push(appended("tip"));
         let both = read(&asked).unwrap();
         let hand = |problems: &[Diagnostic]| problems.iter().filter(|p| p.file() == "hand.urdf").count();
@@ -399,7 +399,7 @@ mod tests {
     #[test]
     fn a_lock_is_told_of_where_it_is_beyond_a_bound() {
         for (at, beyond) in [(-1.5, true), (-1.0, false), (0.0, false), (2.0, false), (2.5, true)] {
-            let mut asked = asked();
+            let mut asked = request();
             asked.options.lock.push(("hinge".into(), vec![at]).into());
             let warnings = read(&asked).unwrap().warnings;
             assert_eq!(warnings.iter().any(|w| w.code == Code::BeyondLimit), beyond, "{at}");
@@ -409,7 +409,7 @@ mod tests {
     #[test]
     fn a_load_is_told_of_where_the_base_holds_it() {
         let warned = |change: &dyn Fn(&mut RobotOptions)| {
-            let mut asked = asked();
+            let mut asked = request();
             change(&mut asked.options);
             read(&asked).unwrap().warnings.iter().filter(|w| w.field == "payload").count()
         };
@@ -426,7 +426,7 @@ mod tests {
     #[test]
     fn a_load_that_misses_the_triangle_inequality_is_told_of_and_used_as_a_links_inertia_is() {
         let told = |inertia: [f64; 6]| {
-            let mut asked = asked();
+            let mut asked = request();
             asked.options.payloads.push(Payload { link: "tip".into(), mass: 1.0, inertia, ..Payload::default() }.into());
             let warnings = read(&asked).unwrap().warnings.into_iter().filter(|w| w.field == "payload");
             warnings.map(|w| (w.code, w.found, w.expected)).collect::<Vec<_>>()
@@ -440,7 +440,7 @@ mod tests {
     }
 
     /// A hand and, fixed to it, a tip and a lamp.
-    fn club() -> Own {
+    fn club() -> TestRequest {
         let fixed = |link: &str| {
             format!(
                 "<link name='{link}'>{LINK}</link><joint name='to_{link}' type='fixed'><parent link='hand'/><child link='{link}'/>
@@ -448,7 +448,7 @@ mod tests {
             )
         };
         let urdf = format!("<robot name='club'><link name='hand'>{LINK}</link>{}{}</robot>", fixed("tip"), fixed("lamp"));
-        Own { file: "club.urdf", urdf, options: RobotOptions::default() }
+        TestRequest { file: "club.urdf", urdf, options: RobotOptions::default() }
     }
 
     #[test]
@@ -476,7 +476,7 @@ mod tests {
             )
         };
         let all: String = (0..count).map(link).chain((0..count).map(joint)).collect();
-        let mut asked = asked();
+        let mut asked = request();
         asked.urdf = robot("arm").replace("</robot>", &(all + "</robot>"));
         let damping = |k| Applied { effect: EffectId::damping, on: format!("j{k}"), at: Origin::default(), parameters: vec![0.5] };
         asked.options.effects = (1..count).map(damping).collect();
@@ -490,14 +490,14 @@ mod tests {
 
     #[test]
     fn each_frame_is_listed_once_and_is_a_link() {
-        let mut asked = asked();
+        let mut asked = request();
         asked.options.frames = Some(["tip", "base", "tap", "tip"].map(Into::into).to_vec());
         begin_with(&refused(&asked), &["frames: the robot has no link \"tap\"", "frames: \"tip\" is listed twice"]);
     }
 
     #[test]
     fn very_many_frames_that_there_are_not_are_told_soon_and_the_first_with_what_was_meant() {
-        let mut asked = asked();
+        let mut asked = request();
         let links: String = (0..5000).map(|k| format!("<link name='link_{k:05}'/>")).collect();
         let joint = |k| format!("<joint name='j{k}' type='fixed'><parent link='tip'/><child link='link_{k:05}'/></joint>");
         let robot = robot("arm").replace("</robot>", &(links + &(0..5000).map(joint).collect::<String>() + "</robot>"));
@@ -511,7 +511,7 @@ mod tests {
 
     #[test]
     fn where_a_robot_cannot_be_appended_its_names_are_not_unknown() {
-        let mut asked = asked();
+        let mut asked = request();
         asked.options.append.push(appended("top"));
         asked.options.payloads.push(Payload { link: "left_tip".into(), mass: 1.0, ..Payload::default() }.into());
         asked.options.payloads.push(Payload { link: "tip".into(), mass: -1.0, ..Payload::default() }.into());

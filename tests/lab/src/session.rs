@@ -22,8 +22,8 @@ pub struct Session {
     pub name: String,
     /// What code of the robot is generated from.
     pub request: Request,
-    /// What is odd about the robot.
-    pub odd: Vec<String>,
+    /// Warnings about the robot.
+    pub robot_warnings: Vec<String>,
     session: articulated_motion::Session,
 }
 
@@ -54,11 +54,11 @@ impl Session {
         (request.scene, request.options.robot.effects) = (None, effects.clone());
         request.options.robot.frames = None;
         // Bundled robots are odd on purpose.
-        let odd = reading.warnings.iter().filter(|_| !matches!(scene.robot, Robot::Bundled(_)));
-        let odd = summary(odd.chain(&reading.snapped));
+        let robot_warnings = reading.warnings.iter().filter(|_| !matches!(scene.robot, Robot::Bundled(_)));
+        let robot_warnings = summary(robot_warnings.chain(&reading.snapped));
         let mut session = articulated_motion::Session::new(scene, reading.description, model, effects).in_folder(folder);
         session.report = resolved.report;
-        Ok(Self { name, request, odd, session })
+        Ok(Self { name, request, robot_warnings, session })
     }
 
     /// Where the motion starts, and what controls it; warnings are printed. Errors: all that do not

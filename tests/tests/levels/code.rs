@@ -23,20 +23,20 @@ fn level(name: &str) -> Precision {
     name.parse().unwrap()
 }
 
-struct Made {
+struct BuiltRobot {
     level: Precision,
     generated: Generated,
     compiled: Compiled,
 }
 
-fn made(robot: &str, name: &str, target: Target) -> Made {
+fn build(robot: &str, name: &str, target: Target) -> BuiltRobot {
     let level = level(name);
     let generated = generated(robot, level);
     let compiled = Compiled::build_for(target, &Rustc::find().unwrap(), &generated).unwrap();
-    Made { level, generated, compiled }
+    BuiltRobot { level, generated, compiled }
 }
 
-impl Made {
+impl BuiltRobot {
     fn call(&self, state: &[Vec<f64>]) -> Vec<f64> {
         let mut out = vec![0.0; self.generated.model.nv];
         let arguments: Vec<&[f64]> = state.iter().map(Vec::as_slice).collect();
@@ -96,7 +96,7 @@ const PART: usize = 1000;
 
 /// Errors are within their bounds, and levels are as exact, one to another, as they promise.
 fn hold(robot: &str, count: usize) {
-    let levels = LEVELS.map(|name| made(robot, name, Target::Own));
+    let levels = LEVELS.map(|name| build(robot, name, Target::Own));
     let mut worst = [0.0_f64; LEVELS.len()];
     let mut single = vec![(0.0_f64, 0.0_f64); levels[0].generated.model.nv];
     for (state, first) in states_in_parts(&levels[0].generated.model, count) {
@@ -161,7 +161,7 @@ fn errors_are_within_their_bounds_on_a_million_states_of_a_quadruped() {
 fn far_angles_and_what_is_no_number_do_what_the_contract_says() {
     let robot = "simple_pendulum";
     for name in LEVELS {
-        let made = made(robot, name, Target::Own);
+        let made = build(robot, name, Target::Own);
         let far: Vec<Vec<Vec<f64>>> =
             [1e6_f32, 1e15, 1e22, -1e22].iter().map(|q| vec![vec![f64::from(*q)], vec![0.5], vec![-0.25]]).collect();
         assert!(made.worst(&far) < 1e-5, "{name}");
@@ -180,10 +180,10 @@ fn far_angles_and_what_is_no_number_do_what_the_contract_says() {
 #[test]
 fn without_fused_multiply_add_the_bits_are_the_same_whatever_the_processor_can_do() {
     for name in ["f64+no_fma", "f32+no_fma", "double_double+no_fma"] {
-        let [own, any] = [Target::Own, Target::Any].map(|target| made("ur5_like", name, target));
+        let [own, any] = [Target::Own, Target::Any].map(|target| build("ur5_like", name, target));
         assert!(Target::differ() || !cfg!(target_feature = "fma"));
         for state in some_states("ur5_like", 50) {
-            let bits = |m: &Made| m.call(&state).into_iter().map(f64::to_bits).collect::<Vec<_>>();
+            let bits = |m: &BuiltRobot| m.call(&state).into_iter().map(f64::to_bits).collect::<Vec<_>>();
             assert_eq!(bits(&own), bits(&any), "{name}");
         }
     }

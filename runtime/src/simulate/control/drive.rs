@@ -42,7 +42,7 @@ impl<'r, R: Dynamics<f64>> Drive<'r, R> {
         let names = ["control.target", "control.kp", "control.kd", "control.torque"];
         let mut drive = Self::called(robot, Cow::Borrowed(controller), names)?;
         if matches!(controller, Controller::Pd { .. }) {
-            robot.tried(&mut drive.pursuit.ws, FunctionId::difference)?;
+            robot.check_function(&mut drive.pursuit.ws, FunctionId::difference)?;
         }
         Ok(Self { period, ..drive })
     }
@@ -52,7 +52,7 @@ impl<'r, R: Dynamics<f64>> Drive<'r, R> {
         StateError::none(wrong(&controller, robot, names)?.into_iter())?;
         let mut pursuit = Pursuit::new(robot);
         if matches!(*controller, Controller::Pd { .. }) && !pursuit.is_flat() {
-            robot.tried(&mut pursuit.ws, FunctionId::difference)?;
+            robot.check_function(&mut pursuit.ws, FunctionId::difference)?;
         }
         Ok(Self { controller, period: None, pursuit })
     }

@@ -153,7 +153,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
     fn try_functions(&mut self) -> Result<(), SimulateError> {
         let System { robot, ws, .. } = &mut self.system;
         for function in self.settings.integrator.row().needs {
-            robot.tried(ws, *function)?;
+            robot.check_function(ws, *function)?;
         }
         Ok(())
     }

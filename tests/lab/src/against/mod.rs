@@ -36,7 +36,7 @@ trait Runner {
     fn name(&self) -> String;
     fn order(&self) -> u32;
     /// Whether it is `articulated`.
-    fn own(&self) -> bool;
+    fn is_ours(&self) -> bool;
     /// From the least to the most that makes sense.
     fn effort(&self, level: usize) -> Option<Effort>;
     /// Goes to the end; (q, v) there, or nothing if it went astray.
@@ -142,7 +142,7 @@ fn timed(runners: &mut [Box<dyn Runner + '_>], target: usize, found: &Found, set
         let Some((effort, error)) = found[target] else { continue };
         runner.run(effort);
         let (steps, evaluations) = runner.spent();
-        let (name, order, own) = (runner.name(), runner.order(), runner.own());
+        let (name, order, own) = (runner.name(), runner.order(), runner.is_ours());
         reached.push(Reached { name, order, own, effort, error, steps, evaluations, ..Reached::default() });
         runs.push(Run::new(1, move |rounds| {
             let clock = Instant::now();

@@ -101,7 +101,7 @@ impl Runner for Peer {
         self.method.order
     }
 
-    fn own(&self) -> bool {
+    fn is_ours(&self) -> bool {
         false
     }
 

@@ -65,7 +65,7 @@ mod tests {
             4
         }
 
-        fn own(&self) -> bool {
+        fn is_ours(&self) -> bool {
             false
         }
 

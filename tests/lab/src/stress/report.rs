@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use super::corpus::{CHAPTERS, Effort};
 use super::judge::State;
-use super::own::Found;
 use super::row::Row;
-use super::{levels, own};
+use super::user_robot::Found;
+use super::{levels, user_robot};
 use crate::console::Progress;
 use crate::error::Error;
 use crate::robot::{Robot, note_of_parameters};
@@ -41,7 +41,7 @@ pub struct Settings {
 
 /// All names of chapters.
 pub fn chapters() -> impl Iterator<Item = &'static str> {
-    CHAPTERS.iter().map(|(name, _)| *name).chain([levels::NAME, own::NAME])
+    CHAPTERS.iter().map(|(name, _)| *name).chain([levels::NAME, user_robot::NAME])
 }
 
 /// Measures the corpus and the bundled robots.
@@ -62,7 +62,7 @@ pub fn of_corpus(settings: &Settings) -> Result<Report, Error> {
         rows.extend(levels::chapter(effort, &all)?);
     }
     progress.step();
-    if wanted(own::NAME) {
+    if wanted(user_robot::NAME) {
         for bundled in articulated_models::ROBOTS {
             progress.doing(format!("robot {}", bundled.name));
             let mut options = Options::default();
@@ -71,7 +71,7 @@ pub fn of_corpus(settings: &Settings) -> Result<Report, Error> {
             let robot = Robot { file, scene: None, document: bundled.urdf.as_bytes().to_vec(), options, effects: None, path: None };
             let request = robot.request(&[]);
             let model = request.build_robot()?.model;
-            let found = own::rows(&robot, &model, &[], &of_robots(settings))?;
+            let found = user_robot::rows(&robot, &model, &[], &of_robots(settings))?;
             rows.extend(found.rows);
             notes.extend(found.notes.iter().map(|note| format!("{}: {note}", robot.file)));
         }
@@ -92,7 +92,7 @@ fn of_robots(settings: &Settings) -> Vec<Precision> {
 /// Measures a robot: on states at random, on hard ones, and on those given. `model`: with a frame
 /// for each link.
 pub fn of_robot(robot: &Robot, model: &Model<f64>, given: &[State], settings: &Settings) -> Result<Report, Error> {
-    let mut found = own::rows(robot, model, given, &of_robots(settings))?;
+    let mut found = user_robot::rows(robot, model, given, &of_robots(settings))?;
     found.notes.extend(note_of_parameters(&robot.options));
     Ok(Report::new(found))
 }

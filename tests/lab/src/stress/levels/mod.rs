@@ -1,8 +1,8 @@
 //! Generated code of hard robots at every level of accuracy, each by what it promises.
 
+mod built_robot;
 mod contract;
 mod judge;
-mod made;
 
 use articulated_codegen::Precision;
 use articulated_core::algorithm::FunctionId;
@@ -14,8 +14,8 @@ use super::robots::{built, hard, states};
 use super::row::{Case, Row};
 use crate::error::Error;
 use crate::parallel;
+pub use built_robot::BuiltRobot;
 pub use judge::rows as of_made;
-pub use made::Made;
 
 /// The chapter of levels.
 pub const NAME: &str = "levels";
@@ -51,7 +51,7 @@ pub fn rows(pairs: &[(&str, Description, Precision)]) -> Result<Vec<Row>, Error>
 
 fn one(name: &str, robot: &Description, level: Precision) -> Result<Vec<Row>, Error> {
     let model = built(robot, Base::Fixed);
-    let made = Made::of_description(name, robot, level, &functions(model.nv, level))?;
+    let made = BuiltRobot::of_description(name, robot, level, &functions(model.nv, level))?;
     let case = Case::new(NAME, format!("{name}, {level}"), WHY);
     Ok(of_made(&case, &model, &made, &hard_states(&model)))
 }

@@ -11,12 +11,12 @@ use crate::stress::machine::{cast, widened};
 
 /// What was generated, and what came of it.
 #[derive(Debug)]
-pub struct Made {
+pub struct BuiltRobot {
     pub(super) generated: Generated,
     compiled: Compiled,
 }
 
-impl Made {
+impl BuiltRobot {
     /// Of what was generated.
     pub(crate) fn of(generated: Generated) -> Result<Self, Error> {
         let rustc = Rustc::find().map_err(|e| Error::tool(&e))?;
