@@ -236,7 +236,7 @@ mod tests {
             let lanes = graph.outputs.clone();
             for lane in 0..width {
                 let lane_of_all = graph.constant(lane as f64);
-                graph.outputs = lanes.iter().map(|&id| graph.exactly(Op::Spread, &[id, lane_of_all])).collect();
+                graph.outputs = lanes.iter().map(|&id| graph.exactly(Op::Broadcast, &[id, lane_of_all])).collect();
                 let expected: Vec<f64> = indices.iter().map(|i| i[lane] as f64).collect();
                 assert_eq!(graph.evaluate(|argument, k| if argument == 1 { k as f64 } else { f64::NAN }), expected);
             }

@@ -148,7 +148,7 @@ mod tests {
             let lanes = pack(&plain, &[Argument::Q], &alike, &Constants::new(1));
             assert!((plain.evaluate(input)[0] - lanes.evaluate(input)[0]).abs() < 1e-15, "{before:b}");
             let counts = lanes.counts();
-            assert_eq!((counts.of(Op::Across), counts.of(Op::Spread)), (1, 0), "{before:b}");
+            assert_eq!((counts.of(Op::ReduceAdd), counts.of(Op::Broadcast)), (1, 0), "{before:b}");
         }
     }
 

@@ -132,15 +132,15 @@ impl Packer<'_> {
     /// The value of a scalar node in every lane.
     fn everywhere(&mut self, node: usize) -> NodeId {
         self.make(node);
-        self.spread(self.at[node])
+        self.broadcast(self.at[node])
     }
 
-    fn spread(&mut self, at: At) -> NodeId {
+    fn broadcast(&mut self, at: At) -> NodeId {
         match at {
             At::All(id) => id,
             At::Lane(id, lane) => {
                 let lane = self.new.constant(lane as f64);
-                self.new.apply(Op::Spread, &[id, lane])
+                self.new.apply(Op::Broadcast, &[id, lane])
             }
             At::Sum => self.new.constant(0.0),
         }
@@ -150,10 +150,10 @@ impl Packer<'_> {
     fn sum(&mut self, root: usize) -> NodeId {
         let mut terms = Vec::new();
         self.open(Term { negative: false, at: At::Sum, from: root }, &mut terms);
-        let mut across: Option<NodeId> = None;
+        let mut reduced: Option<NodeId> = None;
         loop {
             while let Some(term) = self.take_all_lanes(&mut terms) {
-                across = Some(self.add(across, term));
+                reduced = Some(self.add(reduced, term));
             }
             // What is in some lanes only may hide a term that is in all.
             if let Some(place) = terms.iter().position(|t| self.can_open(t)) {
@@ -165,9 +165,9 @@ impl Packer<'_> {
                 break;
             }
         }
-        let mut sum = across.map(|id| self.new.apply(Op::Across, &[id]));
+        let mut sum = reduced.map(|id| self.new.apply(Op::ReduceAdd, &[id]));
         for term in terms {
-            let id = self.spread(term.at);
+            let id = self.broadcast(term.at);
             sum = Some(self.add(sum, (term.negative, id)));
         }
         sum.unwrap_or_else(|| self.new.constant(0.0))

@@ -22,7 +22,7 @@ pub fn sink_into_reduction(graph: &Graph) -> Graph {
         .map(|k| {
             let terms = (is_sum(&graph.nodes()[k]) && !inner[k]).then(|| flatten(graph, &inner, k))?;
             let sum = Sum::of(graph, terms, &uses, &same)?;
-            gone[sum.across.node] = true;
+            gone[sum.reduction.node] = true;
             open(graph, &inner, k, &mut gone);
             Some(sum)
         })
@@ -36,7 +36,7 @@ fn same_in_all(graph: &Graph) -> Vec<bool> {
     for node in graph.nodes() {
         same.push(match node.op {
             Op::LaneConstant | Op::LaneInput => false,
-            Op::Across | Op::Spread => true,
+            Op::ReduceAdd | Op::Broadcast => true,
             _ => node.operands().all(|o| same[o.index()]),
         });
     }
@@ -45,7 +45,7 @@ fn same_in_all(graph: &Graph) -> Vec<bool> {
 
 /// The terms of a sum with a sum over lanes among them.
 struct Sum {
-    across: Term,
+    reduction: Term,
     inside: Vec<Term>,
     outside: Vec<Term>,
 }
@@ -54,27 +54,27 @@ impl Sum {
     /// `None` if nothing can be taken in.
     fn of(graph: &Graph, mut terms: Vec<Term>, uses: &[u32], same: &[bool]) -> Option<Self> {
         let node = |term: &Term| graph.nodes()[term.node];
-        let place = terms.iter().position(|term| node(term).op == Op::Across && uses[term.node] == 1)?;
-        let across = terms.swap_remove(place);
+        let place = terms.iter().position(|term| node(term).op == Op::ReduceAdd && uses[term.node] == 1)?;
+        let reduction = terms.swap_remove(place);
         let shared = |term: &Term| match node(term).op {
             Op::Constant => true,
             Op::Mul => uses[term.node] == 1 && same[term.node] && node(term).operands().any(|o| graph.node(o).op == Op::Constant),
             _ => false,
         };
         let (inside, outside): (Vec<Term>, Vec<Term>) = terms.into_iter().partition(shared);
-        (!inside.is_empty()).then_some(Self { across, inside, outside })
+        (!inside.is_empty()).then_some(Self { reduction, inside, outside })
     }
 
     fn built(&self, rebuild: &mut Rebuild) -> NodeId {
-        let lanes = NodeId(rebuild.graph.nodes()[self.across.node].args[0]);
+        let lanes = NodeId(rebuild.graph.nodes()[self.reduction.node].args[0]);
         let part = rebuild.new.constant(1.0 / rebuild.graph.lanes().width as f64);
-        let mut terms = vec![(self.across.negative, rebuild.ids[lanes.index()])];
+        let mut terms = vec![(self.reduction.negative, rebuild.ids[lanes.index()])];
         for term in &self.inside {
             let share = rebuild.new.apply(Op::Mul, &[part, rebuild.ids[term.node]]);
             terms.push((term.negative, share));
         }
         let sum = rebuild.add(&terms);
-        let mut terms = vec![(false, rebuild.new.apply(Op::Across, &[sum]))];
+        let mut terms = vec![(false, rebuild.new.apply(Op::ReduceAdd, &[sum]))];
         terms.extend(self.outside.iter().map(|term| (term.negative, rebuild.ids[term.node])));
         rebuild.add(&terms)
     }
@@ -107,7 +107,7 @@ mod tests {
     }
 
     fn ends_in_a_sum_over_lanes(g: &Graph) -> bool {
-        g.node(g.outputs[0]).op == Op::Across
+        g.node(g.outputs[0]).op == Op::ReduceAdd
     }
 
     #[test]
@@ -115,15 +115,15 @@ mod tests {
         for [first, second] in [[Op::Add, Op::Add], [Op::Add, Op::Sub], [Op::Sub, Op::Add]] {
             let mut g = Graph::in_lanes(4);
             let [x, _, product] = leaves(&mut g);
-            let (across, c) = (g.apply(Op::Across, &[x]), g.constant(-7.0));
-            let sum = g.apply(first, &[across, product]);
+            let (reduction, c) = (g.apply(Op::ReduceAdd, &[x]), g.constant(-7.0));
+            let sum = g.apply(first, &[reduction, product]);
             let sum = g.apply(second, &[sum, c]);
             assert!(ends_in_a_sum_over_lanes(&passed(g, &[sum])), "{first:?} {second:?}");
         }
         let mut g = Graph::in_lanes(4);
         let [x, _, product] = leaves(&mut g);
-        let across = g.apply(Op::Across, &[x]);
-        let difference = g.apply(Op::Sub, &[product, across]);
+        let reduction = g.apply(Op::ReduceAdd, &[x]);
+        let difference = g.apply(Op::Sub, &[product, reduction]);
         assert!(ends_in_a_sum_over_lanes(&passed(g, &[difference])));
     }
 
@@ -131,19 +131,19 @@ mod tests {
     fn what_would_take_more_or_is_not_the_same_in_all_lanes_stays() {
         let mut g = Graph::in_lanes(4);
         let [x, y, product] = leaves(&mut g);
-        let across = g.apply(Op::Across, &[x]);
+        let reduction = g.apply(Op::ReduceAdd, &[x]);
         let square = g.apply(Op::Mul, &[y, y]);
         let (half, lanes) = (g.constant(0.5), g.lane_constant([1.0, 2.0, 3.0, 4.0]));
         let in_lanes = g.apply(Op::Mul, &[half, x]);
         for other in [y, square, lanes, in_lanes] {
             let mut g = g.clone();
-            let sum = g.apply(Op::Add, &[across, other]);
+            let sum = g.apply(Op::Add, &[reduction, other]);
             assert!(!ends_in_a_sum_over_lanes(&passed(g, &[sum])), "node {}", other.0);
         }
         // Used elsewhere: the product, or the sum over lanes.
-        for other in [product, across] {
+        for other in [product, reduction] {
             let mut g = g.clone();
-            let sum = g.apply(Op::Add, &[across, product]);
+            let sum = g.apply(Op::Add, &[reduction, product]);
             assert!(!ends_in_a_sum_over_lanes(&passed(g, &[sum, other])), "node {}", other.0);
         }
     }

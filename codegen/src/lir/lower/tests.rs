@@ -33,7 +33,7 @@ fn rows(graph: &Graph) -> Vec<Stmt> {
 fn lanes_of(graph: &mut Graph, id: NodeId) -> [NodeId; 4] {
     std::array::from_fn(|k| {
         let lane = graph.constant(k as f64);
-        graph.exactly(Op::Spread, &[id, lane])
+        graph.exactly(Op::Broadcast, &[id, lane])
     })
 }
 
@@ -62,7 +62,7 @@ fn sums_over_lanes_are_made_four_at_a_time_where_they_are_results_alone() {
         let sums: Vec<NodeId> = (0..count)
             .map(|k| {
                 let x = graph.lane_input(0, &[k, k + 2, k + 4, k + 6]);
-                graph.exactly(Op::Across, &[x])
+                graph.exactly(Op::ReduceAdd, &[x])
             })
             .collect();
         graph.outputs = sums.clone();

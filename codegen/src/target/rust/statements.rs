@@ -152,7 +152,7 @@ impl Printer<'_> {
             Op::MulSub => format!("F::fma({a}, {b}, -{c})"),
             Op::NegMulAdd => format!("F::fma(-{a}, {b}, {c})"),
             Op::NegMulSub => format!("F::fma(-{a}, {b}, -{c})"),
-            Op::Constant | Op::Input | Op::LaneConstant | Op::LaneInput | Op::Spread | Op::Across => a,
+            Op::Constant | Op::Input | Op::LaneConstant | Op::LaneInput | Op::Broadcast | Op::ReduceAdd => a,
         }
     }
 
@@ -395,8 +395,8 @@ pub(crate) fn function(op: Op) -> &'static str {
         Op::MulSub => "fmsub",
         Op::NegMulAdd => "fnmadd",
         Op::NegMulSub => "fnmsub",
-        Op::Across => "across",
-        Op::Constant | Op::Input | Op::LaneConstant | Op::LaneInput | Op::Spread | Op::Sin | Op::Cos => "",
+        Op::ReduceAdd => "across",
+        Op::Constant | Op::Input | Op::LaneConstant | Op::LaneInput | Op::Broadcast | Op::Sin | Op::Cos => "",
     }
 }
 

@@ -92,10 +92,10 @@ fn a_lane_that_is_a_result_is_taken_where_its_vector_is_known() {
     let x = graph.lane_input(0, &[0, 1, 2, 3]);
     let y = graph.apply(Op::Mul, &[x, x]);
     let [first, third] = [0.0, 2.0].map(|lane| graph.constant(lane));
-    let [of_y, of_x, inner] = [(y, first), (x, first), (y, third)].map(|(of, lane)| graph.exactly(Op::Spread, &[of, lane]));
+    let [of_y, of_x, inner] = [(y, first), (x, first), (y, third)].map(|(of, lane)| graph.exactly(Op::Broadcast, &[of, lane]));
     let sum = graph.apply(Op::Add, &[inner, y]);
     let product = graph.apply(Op::Mul, &[sum, x]);
-    let lane = graph.exactly(Op::Spread, &[product, third]);
+    let lane = graph.exactly(Op::Broadcast, &[product, third]);
     graph.outputs = vec![of_y, of_x, inner, product, lane, of_y];
     for length in [1, 2, usize::MAX] {
         check(&graph, length);
