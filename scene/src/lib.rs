@@ -46,6 +46,6 @@ pub use robot::{
 };
 pub use scene::{CodeOptions, Places, Robot, Scene};
 pub use series::{Reader, Source};
-pub use shaft::ShaftAsked;
+pub use shaft::ShaftRequest;
 pub use simulation::{EventClass, Simulation};
 pub use tree::{Entry, Node, Value};

@@ -16,7 +16,7 @@ use crate::edits::{self, APPEND, Append, LOAD, Load, Lock};
 use crate::effects::{self, EffectRequest};
 use crate::impact::{self, Impact};
 use crate::initial::{self, Initial};
-use crate::shaft::ShaftAsked;
+use crate::shaft::ShaftRequest;
 use crate::simulation::{self, Simulation};
 use crate::table::{Row, Spot};
 use crate::tree::{Node, Value};
@@ -39,7 +39,7 @@ pub struct Scene {
     /// Effects, as they are asked for.
     pub effects: Vec<EffectRequest>,
     /// Shafts that bend.
-    pub shafts: Vec<ShaftAsked>,
+    pub shafts: Vec<ShaftRequest>,
     /// How to simulate it; `None`: the scene does not say.
     pub simulation: Option<Simulation>,
     /// The state that a simulation starts from.

@@ -6,7 +6,7 @@ use articulated_core::effect::{Applied, EffectId};
 
 use super::resolve::Edited;
 use super::{EffectRequest, Selector};
-use crate::shaft::ShaftAsked;
+use crate::shaft::ShaftRequest;
 
 /// Links, joints and shafts by their names.
 pub(super) struct Index<'a> {
@@ -15,11 +15,11 @@ pub(super) struct Index<'a> {
     /// The joints of shafts.
     pub(super) of_shafts: HashSet<&'a str>,
     /// What shafts put on their joints.
-    pub(super) by_shafts: HashMap<(EffectId, &'a str), (&'a ShaftAsked, &'a Applied)>,
+    pub(super) by_shafts: HashMap<(EffectId, &'a str), (&'a ShaftRequest, &'a Applied)>,
 }
 
 impl<'a> Index<'a> {
-    pub(super) fn of(robot: &Edited<'a>, shafts: &'a [ShaftAsked]) -> Self {
+    pub(super) fn of(robot: &Edited<'a>, shafts: &'a [ShaftRequest]) -> Self {
         let mut by_shafts = HashMap::new();
         for (asked, own) in
             shafts.iter().zip(robot.shafts).flat_map(|(asked, applied)| applied.iter().flatten().map(move |own| (asked, own)))

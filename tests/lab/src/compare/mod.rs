@@ -34,7 +34,7 @@ use lanes::Lanes;
 use making::Making;
 use manifest::Library;
 use peer::Peer;
-use prepare::{Plan, Prepared, Unready};
+use prepare::{Plan, PrepareError, Prepared};
 use report::{FunctionReport, PeerLibrary, PeerReport, VariantReport};
 pub use report::{Report, Settings};
 
@@ -111,9 +111,9 @@ fn prepare_all(plan: &Plan, settings: &Settings, report: &mut Report) -> Result<
     for (result, f) in parallel::map(&rows, |f| plan.prepare(f, &progress)).into_iter().zip(rows) {
         match result {
             Ok(ready) => prepared.push(ready),
-            Err(Unready::Undefined(why)) if chosen.is_empty() => report.notes.push(format!("{} is left out: {why}", f.name)),
-            Err(Unready::Undefined(why)) => return Err(Error::input([format!("{}: {why}", f.name)])),
-            Err(Unready::Failed(failure)) => return Err(failure),
+            Err(PrepareError::Undefined(why)) if chosen.is_empty() => report.notes.push(format!("{} is left out: {why}", f.name)),
+            Err(PrepareError::Undefined(why)) => return Err(Error::input([format!("{}: {why}", f.name)])),
+            Err(PrepareError::Failed(failure)) => return Err(failure),
         }
     }
     Ok(prepared)
