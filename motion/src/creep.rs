@@ -1,4 +1,4 @@
-//! How far a robot creeps where smoothed friction should hold it.
+//! Creep of a robot where smoothed friction should hold it.
 
 use articulated::Dynamics;
 use articulated::simulate::{Recording, SLIDING};
@@ -7,16 +7,16 @@ use articulated_core::effect::{Applied, EffectId, unit};
 use crate::freedom::Freedom;
 use crate::session::{Session, field};
 
-/// What crept in a motion, and how far.
+/// A contact or joint that crept, and how far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Creep {
     /// `contact` or `friction`.
     pub effect: EffectId,
     /// The link of the contact, or the joint.
     pub on: String,
-    /// Length of the way that it crept, m or rad.
+    /// Length of the path that it crept, m or rad.
     pub way: f64,
-    /// Time that it spent so, s.
+    /// Time spent creeping, s.
     pub time: f64,
 }
 
@@ -81,12 +81,12 @@ impl Creep {
     }
 }
 
-/// That with the longest way; none that never crept.
+/// The one with the longest path; `None` if nothing crept.
 fn furthest(all: impl Iterator<Item = Creep>) -> Option<Creep> {
     all.filter(|creep| creep.time > 0.0).max_by(|a, b| a.way.total_cmp(&b.way))
 }
 
-/// A contact, as far as creeping is concerned.
+/// A contact, for creep detection.
 struct Contact {
     frame: usize,
     point: [f64; 3],

@@ -1,4 +1,4 @@
-//! What a scene looks out for: limits, contacts, dry friction, and a ball.
+//! Detectors of a scene's events: limits, contacts, dry friction, and the ball.
 
 use std::fmt;
 use std::rc::Rc;
@@ -13,31 +13,34 @@ use crate::occurrence::{EventKind, Occurrence, SceneEvent};
 use crate::projectile::Projectile;
 use crate::session::{Session, field};
 
-/// Events of a scene on a robot, and how each of them reads.
+/// Events of a scene on a robot, and the meaning of each.
 pub struct Detectors<'a> {
-    /// The events, for a simulation. Others may be put behind them.
+    /// The events, for a simulation. A program may append others.
     pub events: Vec<Event<'a>>,
-    /// Sorts that the scene looks for and has nothing of.
+    /// Requested classes of events that cannot occur.
     pub unavailable: Vec<UnavailableEvent>,
-    /// What the first of them are, those of the scene.
+    /// Kind and subject of the scene's events, which come first.
     about: Vec<(EventKind, String)>,
     ball: Rc<Projectile>,
 }
 
-/// A sort of event that a scene looks for and that cannot happen: odd, and no mistake, since effects come and go.
+/// A requested class of events that cannot occur. It is a warning, not an error, since effects may
+/// be switched off.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnavailableEvent {
     /// The scene's file.
     pub file: String,
-    /// What it looks for.
+    /// The requested class.
     pub what: EventClass,
-    /// The joint of which there is nothing to look for: the file's lower bound is not below the upper one, as where `<limit>` has none. None where no joint or link has something.
+    /// The joint without usable bounds: the file's lower bound is not below the upper one, as where
+    /// `<limit>` has none. `None`: no joint or link has such an event.
     pub joint: Option<String>,
 }
 
 impl<'a> Detectors<'a> {
-    /// What the scene asks for on a robot; `frames` are the names of its frames in its order. Errors: frames that
-    /// events need and that are not among them, functions that the robot has not, numbers that cannot be used; all of them.
+    /// The scene's events on a robot; `frames` are the names of its frames in its order. Errors,
+    /// all at once: required frames that are missing, functions that the robot lacks, invalid
+    /// numbers.
     pub fn new<R: Dynamics<f64>, S: AsRef<str>>(session: &Session, robot: &'a R, frames: &[S]) -> Result<Self, MotionErrors>
     where
         R::Workspace: 'a,
@@ -60,7 +63,7 @@ impl<'a> Detectors<'a> {
         Ok(detectors)
     }
 
-    /// What happened; of an event that was put behind those of the scene, its name.
+    /// The occurrence of a hit; an event appended by the program has only its name.
     pub fn occurrence(&self, hit: &Hit) -> Occurrence {
         let Some((kind, on)) = self.about.get(hit.event) else {
             return Occurrence { t: hit.t, what: hit.name.to_string(), about: None, ball_speed: None };
@@ -69,19 +72,19 @@ impl<'a> Detectors<'a> {
         Occurrence::of(hit.t, SceneEvent { kind: *kind, on: on.clone(), begins }, hit.value)
     }
 
-    /// What tells whether the ball was hit and the motion ends with that: who runs a simulation asks it after each step. It is apart from the detectors, whose events the
-    /// simulation has meanwhile.
+    /// Returns a closure that says whether an impact ended the motion; call it after each step. It
+    /// does not borrow the detectors, whose events the simulation holds meanwhile.
     pub fn over(&self) -> impl Fn() -> bool + use<> {
         let ball = self.ball.clone();
         move || ball.ends.get()
     }
 
-    /// Kinetic energy that the ball got, J, once it is hit.
+    /// Kinetic energy gained by the ball, J, once it is hit.
     pub fn ball_energy(&self) -> Option<f64> {
         self.ball.energy.get()
     }
 
-    /// As if nothing had happened, for one more motion.
+    /// Resets the ball for another run.
     pub fn reset(&mut self) {
         self.ball.reset();
     }
@@ -166,12 +169,12 @@ fn frame_of<S: AsRef<str>>(link: &str, frames: &[S]) -> Option<usize> {
     frames.iter().position(|name| name.as_ref() == link)
 }
 
-/// There is no frame of a link that an event is about.
+/// The fault of an event on a link without a frame.
 fn no_frame<S: AsRef<str>>(key: &'static str, link: &str, frames: &[S]) -> Fault {
     Fault::NoFrame { key, link: link.to_owned(), frames: frames.iter().map(|name| name.as_ref().to_owned()).collect() }
 }
 
-/// A field of one number; one that is not there is none.
+/// A field of one number; NaN if it is missing.
 fn number(applied: &Applied, name: &str) -> f64 {
     field(applied, name).first().copied().unwrap_or(f64::NAN)
 }

@@ -42,12 +42,16 @@
 //! # Ok(()) }
 //! ```
 //!
-//! Step by step: [`Session::initial_state`] is the state and the control that it starts with, [`Session::settings`] how it is simulated, [`Session::motion`] all that put together with
-//! a robot, and [`Motion::run`] runs it, as often as one likes. A robot that is generated for a scene needs the functions of [`Session::functions`] and the frames of
-//! [`Session::frames`]. For a simulation of one's own there are the parts: [`Drive`] is the scene's control, and [`Detectors`] has its events and their words. Everything that
-//! keeps a scene from moving is told at once, as [`MotionErrors`].
+//! Step by step: [`Session::initial_state`] is the initial state and control, [`Session::settings`]
+//! are the simulation settings, [`Session::motion`] combines them with a robot, and [`Motion::run`]
+//! runs the motion, any number of times. A robot generated for a scene needs the functions of
+//! [`Session::functions`] and the frames of [`Session::frames`]. The parts also serve a user's own
+//! simulation: [`Drive`] is the scene's control, and [`Detectors`] has its events and their
+//! descriptions. All errors that keep a scene from moving are reported at once, as
+//! [`MotionErrors`].
 //!
-//! Many motions go over the cores: what they share, a [`Session`], a robot and a [`InitialState`], may be looked at by all threads, and each makes a [`Motion`] of its own, once.
+//! To run many motions in parallel, share the [`Session`], the robot and the [`InitialState`]
+//! between threads, and let each thread create one [`Motion`] of its own.
 //!
 //! ```
 //! # use articulated_motion::{InitialState, MotionErrors, Session};

@@ -14,25 +14,25 @@ use crate::session::{Session, field};
 pub struct Penetration {
     /// The link.
     pub link: String,
-    /// When it is first found there, s.
+    /// Time at which it is first found there, s.
     pub from: f64,
-    /// How deep it was found at most, m.
+    /// Largest depth found, m.
     pub depth: f64,
-    /// When that was, s.
+    /// Time of the largest depth, s.
     pub at: f64,
 }
 
-/// Geometry may be deeper than contact by so much of its size: points of contact are seldom exactly
-/// on it.
+/// Tolerated extra depth of geometry, relative to its size: contact points are seldom exactly on
+/// it.
 const BESIDE: f64 = 0.05;
 
-/// So many links are named.
+/// Number of links that a warning names.
 const NAMED: usize = 5;
 
 /// A plane of contact: its normal, of length one, and its height along it, m.
 type Plane = ([f64; 3], f64);
 
-/// What of a link may be below a plane.
+/// Geometry of a link that may be below a plane.
 struct Part<'s> {
     link: &'s str,
     /// The link's frame.

@@ -1,4 +1,4 @@
-//! The ball of a scene: one ball, one blow.
+//! The ball of a scene, which is hit once.
 
 use std::cell::Cell;
 use std::rc::Rc;
@@ -8,27 +8,28 @@ use articulated::effect::unit;
 use articulated::simulate::{Action, ContactPoint, Direction, Event, Impact, SimulateError};
 use articulated_scene::{Impact as ImpactRequest, When};
 
-/// What has become of the ball.
+/// State of the ball.
 #[derive(Debug, Default)]
 pub(crate) struct Projectile {
-    /// Its turn has come.
+    /// Its event has occurred.
     spent: Cell<bool>,
-    /// The motion ends with it.
+    /// The motion ends with its event.
     pub(crate) ends: Cell<bool>,
-    /// Its turn came when nothing moved towards it.
+    /// Nothing moved towards it at its event.
     pub(crate) missed: Cell<bool>,
-    /// Kinetic energy that it got, J, once it is hit.
+    /// Kinetic energy gained, J, once it is hit.
     pub(crate) energy: Cell<Option<f64>>,
 }
 
 impl Projectile {
-    /// It lies where it was.
+    /// Back to the state before the run.
     pub(crate) fn reset(&self) {
         [&self.spent, &self.ends, &self.missed].into_iter().for_each(|cell| cell.set(false));
         self.energy.set(None);
     }
 
-    /// The event that it is hit, by the frame of this number. What is where the ball is at the start passes it there.
+    /// The event of the impact, on the frame of this index. A point that starts at the ball hits it
+    /// at the start.
     pub(crate) fn event<'a, R: Dynamics<f64>>(
         self: &Rc<Self>,
         request: &ImpactRequest,
@@ -43,11 +44,11 @@ impl Projectile {
             When::Time(at) => Event::new(request.link.clone(), move |t, _, _| t - at),
             When::Ball(place) => {
                 let (mut ws, mut out) = (robot.workspace(), vec![0.0; 12 * robot.shape().frames]);
-                // The blow was made with it, so it has a direction.
+                // `Impact::new` has checked that the normal has a direction.
                 let (point, n, ball) = (request.point, unit(request.normal).unwrap_or(request.normal), self.clone());
                 // n·(p − ball) with p = x + R r
                 Event::new(request.link.clone(), move |_, q: &[f64], _| match robot.placements(&mut ws, q, &mut out) {
-                    // Nobody looks for a ball that is gone.
+                    // A spent ball triggers no further event.
                     _ if ball.spent.get() => -1.0,
                     Ok(()) => {
                         let x = &out[12 * frame..][..12];
@@ -61,7 +62,7 @@ impl Projectile {
         Ok(event.direction(Direction::Rising).arriving(Direction::Rising).action(action))
     }
 
-    /// What is done when its turn has come.
+    /// The action at its event.
     fn blow<'a, R: Dynamics<f64>>(self: &Rc<Self>, request: &ImpactRequest, robot: &'a R, frame: usize) -> Result<Action<'a>, SimulateError>
     where
         R::Workspace: 'a,

@@ -1,4 +1,4 @@
-//! What a robot must have to be moved by a scene.
+//! Requirements of a scene on the robot that it moves: frames, functions, shape.
 
 use articulated::simulate::IntegratorId;
 use articulated::{Dynamics, FunctionId};
@@ -9,7 +9,8 @@ use crate::error::Fault;
 use crate::session::Session;
 
 impl Session {
-    /// The links whose frames the scene's events need, each once: all that a robot that is generated for this motion has to give.
+    /// The links whose frames the scene's events need, each once. A robot generated for this motion
+    /// must have these frames.
     pub fn frames(&self) -> Vec<String> {
         let mut all: Vec<String> = self.frame_users().map(|(_, link)| link.to_owned()).collect();
         all.sort_unstable();
@@ -17,8 +18,11 @@ impl Session {
         all
     }
 
-    /// Names of the functions to generate for this motion, each once, of those for which the word `motion` stands in lists of functions ([`Scene::calls`](articulated_scene::Scene::calls)): those that it needs with this integrator, and those that its recording tells of
-    /// energies, losses and momentum by. A robot that has none of the latter moves as well, and [`Recording::missing`](articulated::simulate::Recording::missing) has their names.
+    /// Names of the functions to generate for this motion, each once: those that it needs with this
+    /// integrator, and those by which its recording reports energies, losses and momentum. The word
+    /// `motion` in lists of functions means these
+    /// ([`Scene::calls`](articulated_scene::Scene::calls)). A robot without the latter moves as
+    /// well; [`Recording::missing`](articulated::simulate::Recording::missing) lists them.
     pub fn functions(&self, integrator: IntegratorId) -> Vec<&'static str> {
         let reported = self.scene.calls_with(integrator).reported.into_iter().filter(|function| match function {
             FunctionId::centroidal_momentum => self.model.moving_mass() > 0.0,
@@ -28,19 +32,19 @@ impl Session {
         self.required(integrator).into_iter().chain(reported).map(FunctionId::name).collect()
     }
 
-    /// Who needs a frame, and of which link.
+    /// The keys that need a frame, and its link.
     pub(crate) fn frame_users(&self) -> impl Iterator<Item = (&'static str, &str)> {
         let contacts = self.effects_of(EffectId::contact).filter(|_| self.requested_events().contains(&EventClass::Contacts));
         let contacts = contacts.map(|a| ("effects.contact", a.on.as_str()));
         contacts.chain(self.scene.impact.iter().map(|impact| ("impact.link", impact.link.as_str())))
     }
 
-    /// What the scene looks for on the way.
+    /// The requested classes of events.
     pub(crate) fn requested_events(&self) -> &[EventClass] {
         self.scene.simulation.as_ref().map_or(&[], |s| &s.events)
     }
 
-    /// Functions without which the motion does not begin.
+    /// Functions that the motion requires.
     fn required(&self, integrator: IntegratorId) -> Vec<FunctionId> {
         let mut functions = self.scene.calls_with(integrator).required;
         functions.retain(|function| match function {
@@ -51,13 +55,13 @@ impl Session {
         functions
     }
 
-    /// What this robot lacks.
+    /// Required functions that this robot lacks.
     pub(crate) fn missing_functions<R: Dynamics<f64>>(&self, robot: &R, integrator: IntegratorId) -> impl Iterator<Item = Fault> {
         let mut ws = robot.workspace();
         self.required(integrator).into_iter().filter_map(move |function| robot.check_function(&mut ws, function).err().map(Fault::Function))
     }
 
-    /// What is wrong with a robot, and with the names of its frames in its order: it is another than the scene's.
+    /// Differences between the shape and frame names of a robot and those of the scene's robot.
     pub(crate) fn shape_mismatches<R: Dynamics<f64>, S: AsRef<str>>(&self, robot: &R, frames: &[S]) -> Vec<Fault> {
         let (own, shape) = (self.model.shape(), robot.shape());
         let counts = [("coordinates", shape.nq, own.nq), ("degrees of freedom", shape.nv, own.nv)];

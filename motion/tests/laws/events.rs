@@ -83,12 +83,12 @@ fn who_follows_it_may_end_it() {
     let session = session("initial = { v = { slide = 0.1 } }\nsimulation = { end = 1.0, step = 0.01, integrator = 'rk4' }", CART);
     let mut motion = session.motion(&session.model, &session.frame_names(), session.settings().unwrap()).unwrap();
     let mut told = Vec::new();
-    let mut follow = |t: f64, counts: &articulated_motion::Counts| {
+    let mut observer = |t: f64, counts: &articulated_motion::Counts| {
         told.push((t, counts.steps));
         counts.steps < 25
     };
-    let outcome = motion.run(&session.initial_state().unwrap(), &mut follow).unwrap();
-    assert_eq!((outcome.ending, outcome.recording.ended, told.len()), (Ending::ByFollower, Ended::ByWatcher, 25));
+    let outcome = motion.run(&session.initial_state().unwrap(), &mut observer).unwrap();
+    assert_eq!((outcome.ending, outcome.recording.ended, told.len()), (Ending::ByObserver, Ended::ByObserver, 25));
     assert!((outcome.reached - 0.25).abs() < 1e-12 && told[24].0 == outcome.reached, "{}", outcome.reached);
 }
 

@@ -79,7 +79,7 @@ pub enum Ended {
     /// By an event; its index.
     ByEvent(usize),
     /// Who watched said so.
-    ByWatcher,
+    ByObserver,
 }
 
 /// The balance of energy over all steps of a motion, whatever is recorded.

@@ -108,7 +108,7 @@ fn one_who_watches_can_end_it() {
         t < 0.495
     };
     simulation.run_into(&[0.0], &[0.0], &mut NoTorque, &mut [], &mut recording, &mut observer).unwrap();
-    assert_eq!((recording.ended, recording.counts.steps, calls.get()), (Ended::ByWatcher, 50, 50));
+    assert_eq!((recording.ended, recording.counts.steps, calls.get()), (Ended::ByObserver, 50, 50));
 }
 
 /// What happens where the motion ends has happened: the state behind it is recorded too, and one who watches is asked.
@@ -125,6 +125,6 @@ fn a_map_at_the_end_is_part_of_the_motion() {
         let mut motion = simulation.recording();
         simulation.run_into(&[0.0], &[1.0], &mut NoTorque, &mut [stop], &mut motion, &mut |t, _| goes_on || t < 0.5).unwrap();
         assert_eq!((motion.t.as_slice(), motion.v.as_slice()), (&[0.0, 0.25, 0.5, 0.5][..], &[1.0, 1.0, 1.0, 0.0][..]));
-        assert_eq!(motion.ended, if goes_on { Ended::AtEnd } else { Ended::ByWatcher });
+        assert_eq!(motion.ended, if goes_on { Ended::AtEnd } else { Ended::ByObserver });
     }
 }

@@ -349,7 +349,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         match outcome {
             Outcome::Stopped(event) => Some(Ended::ByEvent(*event)),
             Outcome::GoOn if self.t >= self.settings.end => Some(Ended::AtEnd),
-            _ if !goes_on => Some(Ended::ByWatcher),
+            _ if !goes_on => Some(Ended::ByObserver),
             _ => (self.t >= self.settings.end).then_some(Ended::AtEnd),
         }
     }
