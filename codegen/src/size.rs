@@ -99,11 +99,11 @@ impl Tree {
 }
 
 /// Megabytes of source that a function becomes.
-fn megabytes(wanted: &FunctionSpec, model: &Model<f64>, tree: &Tree, options: &Options) -> f64 {
+fn megabytes(spec: &FunctionSpec, model: &Model<f64>, tree: &Tree, options: &Options) -> f64 {
     let can = options.target.capabilities(options);
     let alone = !can.states;
-    let columns = alone && program::has_columns(wanted, model, can);
-    let instructions: f64 = wanted.parts.iter().map(|part| tree.instructions(part, columns)).sum();
+    let columns = alone && program::has_columns(spec, model, can);
+    let instructions: f64 = spec.parts.iter().map(|part| tree.instructions(part, columns)).sum();
     instructions * BYTES * if alone { 1.0 } else { WITH_BATCH } / 1e6
 }
 
@@ -173,8 +173,8 @@ mod tests {
             for function in functions::<Sym>() {
                 request.options.functions = vec![function.name.into()];
                 let Ok(generated) = generate(&request) else { continue };
-                let wanted = FunctionSpec::plain(function);
-                let predicted = megabytes(&wanted, &whole, &Tree::of(&whole), &request.options);
+                let spec = FunctionSpec::plain(function);
+                let predicted = megabytes(&spec, &whole, &Tree::of(&whole), &request.options);
                 let found = generated.source.len() as f64 / 1e6;
                 // What is small is never refused, and mostly helpers that all modules have.
                 assert!(found < predicted.max(0.5) * 2.0 && predicted < found.max(0.5) * 2.0, "{} {found} {predicted}", function.name);

@@ -17,20 +17,20 @@ use crate::spec::{FunctionSpec, FunctionTerm};
 use crate::sym::{self, Sym};
 
 /// The graph of a function on `model`: its argument k is argument k of the graph, parameters come after the last; the results of the parts one after the other.
-pub(crate) fn trace(wanted: &FunctionSpec, choices: &[Strategy], model: &Model<f64>, parameters: &[Parameter]) -> Graph {
-    let arguments = wanted.arguments();
+pub(crate) fn trace(spec: &FunctionSpec, strategies: &[Strategy], model: &Model<f64>, parameters: &[Parameter]) -> Graph {
+    let arguments = spec.arguments();
     let graph = sym::trace(|| {
         let with_inputs = (!parameters.is_empty()).then(|| {
             let mut symbolic: Model<Sym> = model.cast();
             parameters.iter().for_each(|p| p.put(&mut symbolic, |k| Sym::input(arguments.len(), k)));
             symbolic
         });
-        let run = |(part, choice): (&FunctionTerm, &Strategy)| {
+        let run = |(part, strategy): (&FunctionTerm, &Strategy)| {
             // Where all is numbers, passes go over numbers, which is sooner done.
-            let symbolic = with_inputs.as_ref().map_or_else(|| passed(part, choice, model).cast(), |m| passed(part, choice, m));
-            run(part, choice, &symbolic, &arguments)
+            let symbolic = with_inputs.as_ref().map_or_else(|| passed(part, strategy, model).cast(), |m| passed(part, strategy, m));
+            run(part, strategy, &symbolic, &arguments)
         };
-        wanted.parts.iter().zip(choices).flat_map(run).collect()
+        spec.parts.iter().zip(strategies).flat_map(run).collect()
     });
     sines_given(graph, &arguments)
 }
@@ -56,31 +56,31 @@ fn sines_given(graph: Graph, arguments: &[Argument]) -> Graph {
 }
 
 /// The same with branches that are alike in lanes.
-pub(crate) fn trace_in_lanes(wanted: &FunctionSpec, choices: &[Strategy], model: &Model<f64>, alike: &IsomorphicLimbs) -> Graph {
-    let arguments = wanted.arguments();
+pub(crate) fn trace_in_lanes(spec: &FunctionSpec, strategies: &[Strategy], model: &Model<f64>, alike: &IsomorphicLimbs) -> Graph {
+    let arguments = spec.arguments();
     let mut constants = Constants::new(arguments.len());
     let graph = sym::trace(|| {
-        let mut run = |(part, choice): (&FunctionTerm, &Strategy)| {
-            let symbolic = alike.symbolic(&passed(part, choice, model), &mut constants);
-            run(part, choice, &symbolic, &arguments)
+        let mut run = |(part, strategy): (&FunctionTerm, &Strategy)| {
+            let symbolic = alike.symbolic(&passed(part, strategy, model), &mut constants);
+            run(part, strategy, &symbolic, &arguments)
         };
-        wanted.parts.iter().zip(choices).flat_map(&mut run).collect()
+        spec.parts.iter().zip(strategies).flat_map(&mut run).collect()
     });
     let graph = sines_given(graph, &arguments);
     pack(&dce(&graph), &arguments, alike, &constants).requested_as(&graph)
 }
 
 /// The view of the model after the passes that are chosen.
-fn passed<S: Scalar>(part: &FunctionTerm, choice: &Strategy, model: &Model<S>) -> View<S> {
+fn passed<S: Scalar>(part: &FunctionTerm, strategy: &Strategy, model: &Model<S>) -> View<S> {
     let mut model = model.clone();
     if !part.function.asks_for_frames() {
         model.frames.clear();
     }
-    let (passes, shifted) = if part.function.regrouped { (choice.passes, choice.shifted) } else { (0, false) };
+    let (passes, shifted) = if part.function.regrouped { (strategy.passes, strategy.shifted) } else { (0, false) };
     let carried = model.carried();
     let view = model_passes::<S>().iter().take(passes).fold(View::new(model), |view, (_, pass, _)| pass(view));
     let view = if shifted { view.with_shifted_masses(&carried) } else { view };
-    choice.unit.map(|metres| view.in_unit_of(S::from_f64(metres))).unwrap_or(view)
+    strategy.unit.map(|metres| view.in_unit_of(S::from_f64(metres))).unwrap_or(view)
 }
 
 /// Which rotations may be folded into constants after all passes, as the function does not need
@@ -93,9 +93,9 @@ pub(crate) fn foldable_rotations(part: &FunctionTerm, model: &Model<f64>) -> Vec
 const UNITS: RangeInclusive<f64> = 1e-3..=1e3;
 
 /// Units of length that may spare multiplications, on the model that is chosen, as the function does not ask for lengths: neither frames nor joints that slide.
-pub(crate) fn units(part: &FunctionTerm, choice: &Strategy, model: &Model<f64>) -> Vec<f64> {
+pub(crate) fn units(part: &FunctionTerm, strategy: &Strategy, model: &Model<f64>) -> Vec<f64> {
     let fits = indifferent(part, model) && no_joint_moves_origin(model);
-    let mut units = if fits { passed(part, &Strategy { unit: None, ..*choice }, model).units() } else { Vec::new() };
+    let mut units = if fits { passed(part, &Strategy { unit: None, ..*strategy }, model).units() } else { Vec::new() };
     units.retain(|metres| UNITS.contains(metres) && *metres != 1.0);
     units
 }
@@ -111,7 +111,7 @@ fn finished(part: &FunctionTerm, model: &Model<f64>) -> View<f64> {
     passed(part, &Strategy::plain(&part.function.ways[0], usize::MAX), model)
 }
 
-fn run(part: &FunctionTerm, choice: &Strategy, view: &View<Sym>, arguments: &[Argument]) -> Vec<Sym> {
+fn run(part: &FunctionTerm, strategy: &Strategy, view: &View<Sym>, arguments: &[Argument]) -> Vec<Sym> {
     let shape = view.model.shape();
     let vector = |argument: &Argument| -> Vec<Sym> {
         let place = arguments.iter().position(|a| a == argument);
@@ -126,11 +126,11 @@ fn run(part: &FunctionTerm, choice: &Strategy, view: &View<Sym>, arguments: &[Ar
     let slices: Vec<&[Sym]> = vectors.iter().map(Vec::as_slice).collect();
     let mut out = vec![Sym::zero(); part.function.len(shape)];
     let q = part.function.takes.iter().position(|a| *a == Argument::Q);
-    let folded = q.zip(choice.folded).map(|(k, which)| view.fold_rotations_into_constants(slices[k], which));
+    let folded = q.zip(strategy.folded).map(|(k, which)| view.fold_rotations_into_constants(slices[k], which));
     let view = folded.as_ref().unwrap_or(view);
-    let by_axes = choice.axes.then(|| view.clone().with_axis_accelerations());
+    let by_axes = strategy.axes.then(|| view.clone().with_axis_accelerations());
     let view = by_axes.as_ref().unwrap_or(view);
-    let called = view.call_by(part.function, choice.way, &slices, &mut out);
+    let called = view.call_by(part.function, strategy.way, &slices, &mut out);
     debug_assert!(called.is_ok(), "arguments were made to measure");
     out
 }
@@ -231,30 +231,26 @@ mod tests {
         let mut seen = 0;
         for (model, turns) in [(arm("", false), false), (arm("", true), false), (arm(FOLLOWER, false), false), (turning(FOLLOWER), true)] {
             assert_eq!(no_joint_moves_origin(&model), turns);
-            for wanted in all() {
-                let part = &wanted.parts[0];
+            for spec in all() {
+                let part = &spec.parts[0];
                 let all = ways(part, &model);
-                let values = |choice| trace(&wanted, &[choice], &model, &[]).evaluate(input);
+                let values = |strategy| trace(&spec, &[strategy], &model, &[]).evaluate(input);
                 let expected = values(Strategy::plain(all[0].0, 0));
                 let folded: Vec<Option<FoldedRotations>> =
                     [None].into_iter().chain(foldable_rotations(part, &model).into_iter().map(Some)).collect();
                 for (way, _) in all {
                     for passes in 1..=model_passes::<Sym>().len() {
-                        close(
-                            &values(Strategy::plain(way, passes)),
-                            &expected,
-                            &format!("{} by {}, {passes} passes", wanted.name, way.name),
-                        );
+                        close(&values(Strategy::plain(way, passes)), &expected, &format!("{} by {}, {passes} passes", spec.name, way.name));
                     }
                     let inertias_and_rates = [(false, false), (true, false), (false, true), (true, true)];
                     for (&folded, (shifted, axes)) in folded.iter().flat_map(|folded| inertias_and_rates.map(|both| (folded, both))) {
-                        let choice = Strategy { folded, shifted, axes, ..Strategy::plain(way, usize::MAX) };
-                        for unit in once(None).chain(units(part, &choice, &model).into_iter().map(Some)) {
-                            let choice = Strategy { unit, ..choice };
+                        let strategy = Strategy { folded, shifted, axes, ..Strategy::plain(way, usize::MAX) };
+                        for unit in once(None).chain(units(part, &strategy, &model).into_iter().map(Some)) {
+                            let strategy = Strategy { unit, ..strategy };
                             close(
-                                &values(choice),
+                                &values(strategy),
                                 &expected,
-                                &format!("{} by {}, {folded:?}, {unit:?}, shifted: {shifted}, by axes: {axes}", wanted.name, way.name),
+                                &format!("{} by {}, {folded:?}, {unit:?}, shifted: {shifted}, by axes: {axes}", spec.name, way.name),
                             );
                             seen += usize::from(unit.is_some());
                         }
@@ -283,18 +279,18 @@ mod tests {
     #[test]
     fn sines_that_are_given_are_those_of_q_alone() {
         let model = arm("", false);
-        let plain = all().filter(|wanted| wanted.arguments().contains(&Argument::Q));
-        for wanted in plain {
-            let given = FunctionSpec::parse(&format!("{}(q = sin_cos)", wanted.name)).unwrap();
-            let choice = [Strategy::plain(ways(&wanted.parts[0], &model)[0].0, usize::MAX)];
+        let plain = all().filter(|spec| spec.arguments().contains(&Argument::Q));
+        for spec in plain {
+            let given = FunctionSpec::parse(&format!("{}(q = sin_cos)", spec.name)).unwrap();
+            let strategy = [Strategy::plain(ways(&spec.parts[0], &model)[0].0, usize::MAX)];
             let sines = given.arguments().len() - 1;
             let with = |argument: usize, k: usize| {
                 let (sin, cos) = input(0, k / 2).sin_cos();
                 if argument == sines { [sin, cos][k % 2] } else { input(argument, k) }
             };
             assert_eq!(given.arguments()[0], Argument::Q);
-            let graph = trace(&given, &choice, &model, &[]);
-            close(&graph.evaluate(with), &trace(&wanted, &choice, &model, &[]).evaluate(input), &wanted.name);
+            let graph = trace(&given, &strategy, &model, &[]);
+            close(&graph.evaluate(with), &trace(&spec, &strategy, &model, &[]).evaluate(input), &spec.name);
         }
     }
 }

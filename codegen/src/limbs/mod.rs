@@ -89,11 +89,11 @@ mod tests {
         let mut counts = Vec::new();
         let all = functions::<Sym>().iter().filter(|f| f.needs != Needs::FreeFrames).map(|f| (f.name, f.name));
         for (name, text) in all.chain([("inverse_dynamics", "quick = inverse_dynamics(q = sin_cos)")]) {
-            let wanted = FunctionSpec::parse(text).unwrap();
-            for (way, _) in ways(&wanted.parts[0], model) {
-                let choice = [Strategy::plain(way, usize::MAX)];
-                let plain = passed(trace(&wanted, &choice, model, &[]));
-                let lanes = passed(trace_in_lanes(&wanted, &choice, model, &alike));
+            let spec = FunctionSpec::parse(text).unwrap();
+            for (way, _) in ways(&spec.parts[0], model) {
+                let strategy = [Strategy::plain(way, usize::MAX)];
+                let plain = passed(trace(&spec, &strategy, model, &[]));
+                let lanes = passed(trace_in_lanes(&spec, &strategy, model, &alike));
                 lanes.verify().unwrap();
                 for (k, (a, b)) in plain.evaluate(input).into_iter().zip(lanes.evaluate(input)).enumerate() {
                     // Solves amplify roundings; a wrong lane or sign is off by far more.
@@ -120,9 +120,9 @@ mod tests {
         let mut model = walker(4, &mut 7);
         let third = model.limbs(4)[0].roots[2];
         model.frames.retain(|frame| frame.body != third);
-        let (alike, wanted) = (IsomorphicLimbs::of(&model, 4).unwrap(), FunctionSpec::parse("placements").unwrap());
-        let choice = [Strategy::plain(ways(&wanted.parts[0], &model)[0].0, usize::MAX)];
-        let [plain, lanes] = [trace(&wanted, &choice, &model, &[]), trace_in_lanes(&wanted, &choice, &model, &alike)];
+        let (alike, spec) = (IsomorphicLimbs::of(&model, 4).unwrap(), FunctionSpec::parse("placements").unwrap());
+        let strategy = [Strategy::plain(ways(&spec.parts[0], &model)[0].0, usize::MAX)];
+        let [plain, lanes] = [trace(&spec, &strategy, &model, &[]), trace_in_lanes(&spec, &strategy, &model, &alike)];
         for (a, b) in plain.evaluate(input).into_iter().zip(lanes.evaluate(input)) {
             assert!((a - b).abs() <= 1e-12 * (1.0 + a.abs()), "{a} {b}");
         }

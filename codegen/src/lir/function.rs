@@ -103,7 +103,7 @@ const TOGETHER_FROM: usize = 3;
 impl<'a> Function<'a> {
     /// Lowers a program.
     pub(crate) fn of(program: &'a Program, shape: Shape, has_parameters: bool, can: Capabilities) -> Self {
-        let Program { wanted: spec, graph, entry, .. } = program;
+        let Program { spec, graph, entry, .. } = program;
         let mut arguments: Vec<Argument> = spec.arguments().iter().map(|a| Argument { name: a.name(), dims: a.dims().to_vec() }).collect();
         if has_parameters {
             arguments.push(Argument { name: "parameters", dims: Vec::new() });

@@ -21,13 +21,13 @@ pub(crate) struct MultiRhsSolve {
 const COLUMNS: RangeInclusive<usize> = 7..=60;
 
 /// What of a function is left a loop, if that is faster: it needs vectors.
-pub(super) fn columns(wanted: &FunctionSpec, model: &Model<f64>, can: Capabilities) -> Option<MultiRhsSolve> {
-    has_columns(wanted, model, can).then(|| MultiRhsSolve { ways: model.paths_to_root() })
+pub(super) fn columns(spec: &FunctionSpec, model: &Model<f64>, can: Capabilities) -> Option<MultiRhsSolve> {
+    has_columns(spec, model, can).then(|| MultiRhsSolve { ways: model.paths_to_root() })
 }
 
 /// Whether the solution of M X = B is left a loop.
-pub(crate) fn has_columns(wanted: &FunctionSpec, model: &Model<f64>, can: Capabilities) -> bool {
-    let [part] = wanted.parts.as_slice() else { return false };
+pub(crate) fn has_columns(spec: &FunctionSpec, model: &Model<f64>, can: Capabilities) -> bool {
+    let [part] = spec.parts.as_slice() else { return false };
     let fits = COLUMNS.contains(&model.nv) && can.vectors;
     fits && part.function.unsolved.as_ref().is_some_and(|unsolved| applies(unsolved, model))
 }

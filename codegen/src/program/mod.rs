@@ -22,7 +22,7 @@ pub(crate) use strategy::Strategy;
 
 /// A function and what it became.
 pub(crate) struct Program {
-    pub(crate) wanted: FunctionSpec,
+    pub(crate) spec: FunctionSpec,
     pub(crate) graph: Graph,
     /// The graph with each limb for itself: what a batch runs, a state a lane.
     pub(crate) plain: Graph,
@@ -32,22 +32,22 @@ pub(crate) struct Program {
 }
 
 /// A function by the cheapest of its ways, limbs that are alike in lanes if that is cheaper.
-pub(crate) fn program(wanted: FunctionSpec, model: &Model<f64>, parameters: &[Parameter], options: &Options, can: Capabilities) -> Program {
-    let subject = Candidate { model, parameters, stages: options.stages, alike: None };
-    let reduced = wanted.reduced();
+pub(crate) fn program(spec: FunctionSpec, model: &Model<f64>, parameters: &[Parameter], options: &Options, can: Capabilities) -> Program {
+    let candidate = Candidate { model, parameters, stages: options.stages, alike: None };
+    let reduced = spec.reduced();
     let columns = columns::columns(&reduced, model, can);
-    let whole = (columns.is_none() || can.states).then(|| subject.build(&reduced, None));
+    let whole = (columns.is_none() || can.states).then(|| candidate.build(&reduced, None));
     let unsolved = columns.as_ref().and(reduced.parts[0].function.unsolved.as_ref());
     let mut best = match &whole {
         Some(whole) if unsolved.is_none() => whole.clone(),
-        _ => subject.build(&reduced, unsolved),
+        _ => candidate.build(&reduced, unsolved),
     };
     let plain = whole.map_or_else(Graph::default, |(graph, _)| graph);
     // Limbs need the vector instructions; constants that stay inputs differ from limb to limb.
     if options.limbs && can.vectors && parameters.is_empty() {
         for width in [4, 2] {
             let Some(alike) = IsomorphicLimbs::of(model, width) else { continue };
-            let other = Candidate { alike: Some(alike), ..subject }.build(&reduced, unsolved);
+            let other = Candidate { alike: Some(alike), ..candidate }.build(&reduced, unsolved);
             if price(&other.0) * WORTH < price(&best.0) {
                 best = other;
             }
@@ -57,7 +57,7 @@ pub(crate) fn program(wanted: FunctionSpec, model: &Model<f64>, parameters: &[Pa
     if let Some(columns) = &columns {
         columns.count(&mut entry);
     }
-    Program { wanted, graph, plain, entry, columns }
+    Program { spec, graph, plain, entry, columns }
 }
 
 /// Lanes cost what no count shows (values that come and go one by one): they must be cheaper by this.

@@ -219,7 +219,7 @@ impl Manifold {
         }
     }
 
-    /// What is wrong with a configuration, which whoever gave it calls `vector`.
+    /// Errors in a configuration; `vector` is the caller's name of it.
     pub(crate) fn wrong<R: Dynamics<f64>>(&self, robot: &R, vector: &'static str, q: &[f64]) -> impl Iterator<Item = StateError> {
         let quaternion = move |free: &Free| {
             let norm = input_norm(&q[free.quaternion()]).err()?;

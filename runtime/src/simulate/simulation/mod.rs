@@ -197,8 +197,9 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         Ok(recording)
     }
 
-    /// As [`Simulation::run`], into a recording that was made before; it holds what was up to an error, too. `watch` is told the time and the counts after each step,
-    /// and may say false to end it.
+    /// As [`Simulation::run`], into an existing recording, which also holds the motion up to an
+    /// error. `observer` receives the time and the counts after each step, and may say false to end
+    /// it.
     pub fn run_into(
         &mut self,
         q: &[f64],
@@ -344,7 +345,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         Err(SimulateError::TooManySteps { t: self.t, steps })
     }
 
-    /// Whether a step with this outcome was the last, which who watches has let go on or not.
+    /// Whether the run ends after a step with this outcome (`goes_on`: the observer's answer).
     fn ended(&self, outcome: &Outcome, goes_on: bool) -> Option<Ended> {
         match outcome {
             Outcome::Stopped(event) => Some(Ended::ByEvent(*event)),
@@ -454,7 +455,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         SimulateError::StepTooSmall { t: self.t, step, what, index, joint, least }
     }
 
-    /// What of the end of the step is not finite.
+    /// The non-finite entries at the end of the step.
     fn not_finite(&self) -> Option<SimulateError> {
         let (u, v) = self.end[..2 * self.shape.nv].split_at(self.shape.nv);
         self.system.not_finite(self.t, STEP, u).or_else(|| self.system.not_finite(self.t, "v", v))

@@ -1,4 +1,4 @@
-//! Outputs and events of a step, and what events do to the state.
+//! Outputs and events of a step, and the actions of events on the state.
 
 use articulated_core::dynamics::Dynamics;
 
@@ -64,7 +64,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         Ok((cut, outcome))
     }
 
-    /// Records what is asked for up to where the step to t is cut: a part of it, and a time.
+    /// Records the requested output up to the cut of the step to t, given as a fraction and a time.
     fn outputs(&mut self, run: &mut Run, t: f64, (cut, stop): (f64, f64)) -> Result<(), SimulateError> {
         let (start, h) = (self.t, t - self.t);
         let Some(times) = &mut self.progress.times else { return Ok(()) };
