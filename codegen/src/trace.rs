@@ -1,4 +1,4 @@
-//! Running algorithms on symbols.
+//! Tracing: algorithms run on symbols.
 
 use std::ops::RangeInclusive;
 
@@ -35,7 +35,7 @@ pub(crate) fn trace(spec: &FunctionSpec, strategies: &[Strategy], model: &Model<
     sines_given(graph, &arguments)
 }
 
-/// Takes the sines and cosines of q from their argument, if there is one.
+/// Takes the sines and cosines of q from their own argument, if there is one.
 fn sines_given(graph: Graph, arguments: &[Argument]) -> Graph {
     let place = |argument| arguments.iter().position(|a| *a == argument);
     let (Some(q), Some(sines)) = (place(Argument::Q), place(Argument::SinCos)) else { return graph };
@@ -55,7 +55,7 @@ fn sines_given(graph: Graph, arguments: &[Argument]) -> Graph {
     given.requested_as(&graph)
 }
 
-/// The same with branches that are alike in lanes.
+/// The same with isomorphic branches in lanes.
 pub(crate) fn trace_in_lanes(spec: &FunctionSpec, strategies: &[Strategy], model: &Model<f64>, alike: &IsomorphicLimbs) -> Graph {
     let arguments = spec.arguments();
     let mut constants = Constants::new(arguments.len());
@@ -70,7 +70,7 @@ pub(crate) fn trace_in_lanes(spec: &FunctionSpec, strategies: &[Strategy], model
     pack(&dce(&graph), &arguments, alike, &constants).requested_as(&graph)
 }
 
-/// The view of the model after the passes that are chosen.
+/// The view of the model after the passes of the strategy.
 fn passed<S: Scalar>(part: &FunctionTerm, strategy: &Strategy, model: &Model<S>) -> View<S> {
     let mut model = model.clone();
     if !part.function.asks_for_frames() {
@@ -83,8 +83,8 @@ fn passed<S: Scalar>(part: &FunctionTerm, strategy: &Strategy, model: &Model<S>)
     strategy.unit.map(|metres| view.in_unit_of(S::from_f64(metres))).unwrap_or(view)
 }
 
-/// Which rotations may be folded into constants after all passes, as the function does not need
-/// where bodies are.
+/// The rotations that may be folded into constants after all passes, for functions independent of
+/// body poses.
 pub(crate) fn foldable_rotations(part: &FunctionTerm, model: &Model<f64>) -> Vec<FoldedRotations> {
     if indifferent(part, model) { finished(part, model).foldable_rotations() } else { Vec::new() }
 }
@@ -92,7 +92,8 @@ pub(crate) fn foldable_rotations(part: &FunctionTerm, model: &Model<f64>) -> Vec
 /// Units of other sizes, m, are not tried: constants would be far from one.
 const UNITS: RangeInclusive<f64> = 1e-3..=1e3;
 
-/// Units of length that may spare multiplications, on the model that is chosen, as the function does not ask for lengths: neither frames nor joints that slide.
+/// Units of length that may save multiplications on the chosen model, for functions independent of
+/// the unit: without frames and prismatic joints.
 pub(crate) fn units(part: &FunctionTerm, strategy: &Strategy, model: &Model<f64>) -> Vec<f64> {
     let fits = indifferent(part, model) && no_joint_moves_origin(model);
     let mut units = if fits { passed(part, &Strategy { unit: None, ..*strategy }, model).units() } else { Vec::new() };
@@ -100,7 +101,8 @@ pub(crate) fn units(part: &FunctionTerm, strategy: &Strategy, model: &Model<f64>
     units
 }
 
-/// Whether a function is the same in whatever axes and units bodies are, as neither it nor an effect asks where they are.
+/// Whether a function is independent of the axes and units of bodies: neither it nor an effect
+/// depends on their poses.
 fn indifferent(part: &FunctionTerm, model: &Model<f64>) -> bool {
     let free = part.function.regrouped && !part.function.asks_for_frames() && part.function.takes.contains(&Argument::Q);
     free && model.bodies.iter().all(|b| b.effects.body.is_empty())
@@ -135,7 +137,7 @@ fn run(part: &FunctionTerm, strategy: &Strategy, view: &View<Sym>, arguments: &[
     out
 }
 
-/// Whether a way can be had for the model.
+/// Whether a way applies to the model.
 pub(crate) fn applies(way: &Way<Sym>, model: &Model<f64>) -> bool {
     let mut applies = false;
     let _ = sym::trace(|| {
@@ -145,7 +147,8 @@ pub(crate) fn applies(way: &Way<Sym>, model: &Model<f64>) -> bool {
     applies
 }
 
-/// The ways of a function that can be had for the model, and what each costs at least; the least first.
+/// The ways of a function that apply to the model, with a lower bound of each cost, the cheapest
+/// first.
 pub(crate) fn ways(part: &FunctionTerm, model: &Model<f64>) -> Vec<(&'static Way<Sym>, u64)> {
     if let [one] = part.function.ways {
         return vec![(one, 0)];

@@ -1,11 +1,13 @@
-//! Limbs in lanes: branches of a robot that are alike are one program on vectors, one branch a lane.
+//! Limbs in lanes: isomorphic branches of a robot become one program on vectors, one branch per
+//! lane.
 //!
 //! ```text
 //! Model → (alike branches) → Model of symbols, one for each constant that differs → trace → pack → Graph of vectors
 //! ```
 //!
-//! The whole robot is traced, so that the algorithms know nothing of lanes. What differs between branches are then different inputs and different
-//! constants, which stay symbols while tracing, and so each branch leaves the same trace; [`pack`] lays one on the other.
+//! The whole robot is traced, so the algorithms are unaware of lanes. Branches differ only in
+//! inputs and constants, which stay symbols while tracing, so each branch has the same trace;
+//! [`pack`] merges them.
 
 mod isomorphic;
 mod vectorize;

@@ -1,4 +1,4 @@
-//! Model passes: the generator's view of a robot, and what it does to it before tracing.
+//! Model passes: the generator's view of a robot, and its transforms before tracing.
 //!
 //! A [`View`] is a model and the [`Formulation`] that goes with it. Each pass keeps joint torques.
 //! The passes of [`model_passes`] are always taken, in order; the others where they cost less:

@@ -9,9 +9,11 @@ use crate::graph::{Graph, NodeId, Op};
 /// Sums of more terms have too many pairs to look at.
 const MOST: usize = 32;
 
-/// Computes x + y once where several sums have both: an instruction less for each but the first.
+/// Common-subexpression elimination of partial sums: computes x + y once where several sums have
+/// both, which saves an instruction in each but the first.
 ///
-/// Pairs that most sums have come first; what is left over is looked at again, with the pairs as terms. Re-association changes results by roundings only.
+/// The most frequent pairs come first; the remaining terms are searched again, with the pairs as
+/// terms. Re-association changes results by rounding only.
 pub fn cse_partial_sums(graph: &Graph) -> Graph {
     let inner = inner(graph);
     let nodes = graph.nodes();
@@ -44,7 +46,7 @@ struct Key {
     apart: bool,
 }
 
-/// The sums of a graph, of terms some of which stand for pairs: those with numbers from the graph's length on.
+/// The sums of a graph; terms with numbers from the graph's length on represent pairs.
 struct Sums {
     fused: Vec<bool>,
     sums: Vec<Vec<Term>>,

@@ -7,7 +7,8 @@ use crate::graph::{Graph, Node, NodeId, Op};
 /// Multiplications or multiply-adds that a processor begins in a cycle.
 const A_CYCLE: u32 = 2;
 
-/// The part of its time by which the last result may be late: fewer instructions are worth that, and no more, as a processor looks only so far ahead.
+/// Fraction of the total latency by which the last result may be late for the sake of fewer
+/// instructions; a processor looks only so far ahead.
 const GRACE: u32 = 16;
 
 /// Instructions from which on a program nearly fills the cache for instructions: then nothing is worth more of them.

@@ -118,7 +118,8 @@ pub fn run(name: &str, pass: GraphPass, graph: &Graph) -> Graph {
     new
 }
 
-/// Whether output `k` of two graphs differs by no more than rounding can make of it: where numbers of very different sizes cancel, that is all that is left.
+/// Whether output `k` of two graphs differs by rounding at most: where numbers of very different
+/// sizes cancel, rounding is all that remains.
 fn rounding(one: &Graph, other: &Graph, k: usize) -> bool {
     let known = |g: &Graph| g.evaluate_as(|argument, index| Running::<53, 0>::within(probe(argument, index), 0.0))[k];
     let (a, b) = (known(one), known(other));
@@ -126,7 +127,7 @@ fn rounding(one: &Graph, other: &Graph, k: usize) -> bool {
     off <= most || off.is_nan() || most.is_nan()
 }
 
-/// What all nodes of a graph cost together.
+/// Total cost of a graph.
 pub(crate) fn cost(graph: &Graph) -> u32 {
     graph.nodes().iter().map(|n| n.op.row().cost).sum()
 }

@@ -7,10 +7,13 @@ use crate::graph::{Graph, NodeId, Op};
 /// What costs more than this is left as it is: it is busy with other things while it waits for a sum over lanes, and to have all the rest as early takes instructions.
 const LONG: u32 = 1500;
 
-/// Has each lane add its share of what is added to the sum of all lanes: `across(x) + c·y` is `across(x + c/w·y)` in w lanes.
+/// Adds terms beside a sum over lanes within the lanes: `reduce_add(x) + c·y` becomes `reduce_add(x
+/// + c/w·y)` in w lanes.
 ///
-/// A sum over lanes takes a dozen cycles, and what follows waits for it: beside the others, in the same multiply-adds, such terms are ready before. Taken in is what is the same in all lanes, takes no instruction more (a
-/// constant times something, or alone) and is used nowhere else. Shares are powers of two, and so exact.
+/// A sum over lanes takes a dozen cycles, and later operations wait for it; within the lanes, such
+/// terms are added before. A term is moved if it is equal in all lanes, takes no further
+/// instruction (a constant times a value, or a value alone) and has no other use. Shares are powers
+/// of two, and so exact.
 pub fn sink_into_reduction(graph: &Graph) -> Graph {
     if graph.lanes().width == 1 || cost(graph) > LONG {
         return graph.clone();

@@ -1,4 +1,4 @@
-//! What a function is traced on, what it costs there, and the strategies that cost least.
+//! Candidates: what a function is traced on, its cost, and the search for the cheapest strategies.
 
 use std::iter::once;
 
@@ -17,19 +17,19 @@ use crate::spec::{FunctionSpec, FunctionTerm};
 use crate::sym::Sym;
 use crate::trace::{foldable_rotations, trace, trace_in_lanes, units, ways};
 
-/// What a function is traced on.
+/// A candidate: what a function is traced on.
 pub(super) struct Candidate<'a> {
     pub(super) model: &'a Model<f64>,
     pub(super) parameters: &'a [Parameter],
     /// Whether to trace after each model pass, for the ledger.
     pub(super) stages: bool,
-    /// Limbs to lay on one another.
+    /// Isomorphic limbs to vectorize.
     pub(super) alike: Option<IsomorphicLimbs>,
 }
 
 impl Candidate<'_> {
-    /// The graph of a function by the choices that cost least, or of what comes before a loop, and
-    /// what became of it on the way.
+    /// The graph of a function by its cheapest strategies, or of the part before a loop, and its
+    /// ledger entry.
     pub(super) fn build(&self, spec: &FunctionSpec, unsolved: Option<&'static Way<Sym>>) -> (Graph, Entry) {
         let all = model_passes::<Sym>().len();
         let choose = |part| unsolved.map_or_else(|| cheapest(part, self, all), |way| Strategy::plain(way, all));
@@ -46,8 +46,8 @@ impl Candidate<'_> {
         (graph, entry)
     }
 
-    /// The graph as it is traced, and its counts after each model pass, `all` of them, and each
-    /// addition that a choice has.
+    /// The traced graph, and its counts after each of the `all` model passes and each transform of
+    /// the strategies.
     fn traced(&self, spec: &FunctionSpec, strategies: &[Strategy], all: usize) -> (Graph, Vec<(&'static str, Counts)>) {
         let mut graph = Graph::default();
         let mut stages: Vec<(&'static str, Counts)> = Vec::new();
@@ -75,13 +75,13 @@ impl Candidate<'_> {
         }
     }
 
-    /// What is traced, after all graph passes.
+    /// The traced graph after all graph passes.
     pub(super) fn finished(&self, spec: &FunctionSpec, strategies: &[Strategy]) -> Graph {
         pass::run_all_unchecked(self.trace(spec, strategies))
     }
 
-    /// What choices cost, in instructions, and with each multiplication counted twice: cores have
-    /// fewer multipliers than they have places for instructions.
+    /// The cost of strategies, in instructions, and with each multiplication counted twice: cores
+    /// have fewer multipliers than issue slots.
     pub(super) fn price(&self, spec: &FunctionSpec, strategies: &[Strategy]) -> (u32, u64) {
         let graph = self.finished(spec, strategies);
         let cost = pass::cost(&graph);
@@ -89,16 +89,16 @@ impl Candidate<'_> {
     }
 }
 
-/// What costs more than this is not tried with folded rotations or shifted masses: it
-/// would gain a hundredth, and takes long to trace.
+/// Above this cost, folded rotations and shifted masses are not tried: they would gain 1 % and take
+/// long to trace.
 const FOLDED_TO: u32 = 2500;
 
-/// Nor is any function of a robot with more bodies than this, nor with another unit of length: to
-/// find out what it costs is to trace it twice.
+/// Above this number of bodies, neither they nor another unit of length are tried, since each trial
+/// traces the function again.
 const FOLDED_BODIES: usize = 64;
 
-/// The way that costs least once the graph passes are done. With parameters, model passes may cost
-/// more than they save: then they are not taken.
+/// The strategy that costs least after the graph passes. With parameters, model passes may cost
+/// more than they save; then they are left out.
 pub(super) fn cheapest(part: &FunctionTerm, candidate: &Candidate, all: usize) -> Strategy {
     let few = if candidate.parameters.is_empty() { all..=all } else { 0..=all };
     let ways = ways(part, candidate.model);
@@ -133,8 +133,8 @@ fn cost(spec: &FunctionSpec, strategy: Strategy, candidate: &Candidate) -> u32 {
     pass::cost(&candidate.finished(spec, &[strategy]))
 }
 
-/// The choices with axis rates, if that takes fewer multiplications and no more instructions; of
-/// robots with many bodies, which take long to trace, without trying.
+/// The strategies with axis rates, if that takes fewer multiplications and no further instructions.
+/// For robots with many bodies, which take long to trace, without a trial.
 pub(super) fn by_axes(spec: &FunctionSpec, strategies: Vec<Strategy>, candidate: &Candidate) -> Vec<Strategy> {
     let turns = |part: &FunctionTerm| Form::AxisAccelerations.fits(part.function.id);
     if !spec.parts.iter().any(turns) {
@@ -149,12 +149,11 @@ pub(super) fn by_axes(spec: &FunctionSpec, strategies: Vec<Strategy>, candidate:
     if candidate.model.bodies.len() > FOLDED_BODIES || better() { with } else { strategies }
 }
 
-/// So many instructions are traced at most to find the best unit of length: of a long function
-/// fewer are tried.
+/// Limit of instructions traced to find the best unit of length: fewer units are tried for long
+/// functions.
 const TRIED: usize = 20_000;
 
-/// The choices with lengths in the unit that costs least: where a constant is one, what it
-/// multiplies is only added.
+/// The strategies with lengths in the cheapest unit: a factor of one takes no multiplication.
 pub(super) fn in_the_best_unit(spec: &FunctionSpec, strategies: Vec<Strategy>, candidate: &Candidate) -> Vec<Strategy> {
     if !candidate.parameters.is_empty() || candidate.model.bodies.len() > FOLDED_BODIES {
         return strategies;

@@ -1,4 +1,4 @@
-//! How to compute a part of a function.
+//! Strategies: how to compute a term of a function.
 
 use std::borrow::Cow;
 
@@ -7,26 +7,26 @@ use articulated_core::algorithm::Way;
 use crate::model_pass::FoldedRotations;
 use crate::sym::Sym;
 
-/// How to compute a part.
+/// How to compute a term of a function.
 #[derive(Clone, Copy)]
 pub(crate) struct Strategy {
     pub(crate) way: &'static Way<Sym>,
-    /// How many model passes to take.
+    /// Number of model passes to apply.
     pub(crate) passes: usize,
     /// Bodies whose rotations are folded into constants.
     pub(crate) folded: Option<FoldedRotations>,
     /// The unit of length, m, if it is not the metre.
     pub(crate) unit: Option<f64>,
-    /// Whether bodies have other inertias for inverse dynamics
+    /// Whether inverse dynamics uses shifted masses
     /// ([`View::with_shifted_masses`](crate::model_pass::View::with_shifted_masses)).
     pub(crate) shifted: bool,
-    /// Whether bodies have their rates by the axes of their joints
+    /// Whether angular kinematics uses the accelerations of joint axes
     /// ([`View::with_axis_accelerations`](crate::model_pass::View::with_axis_accelerations)).
     pub(crate) axes: bool,
 }
 
 impl Strategy {
-    /// A way after so many model passes, with all frames turning and lengths in metres.
+    /// A way after this number of model passes, without further transforms.
     pub(crate) fn plain(way: &'static Way<Sym>, passes: usize) -> Self {
         Self { way, passes, folded: None, unit: None, shifted: false, axes: false }
     }

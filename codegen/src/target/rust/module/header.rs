@@ -11,7 +11,7 @@ use crate::Precision;
 use crate::target::Module;
 use crate::target::rust::RustOptions;
 
-/// Origin, contract, and what of the URDF is not used, as comments.
+/// Origin, contract, and unused content of the URDF, as comments.
 pub(crate) fn header(out: &mut String, module: &Module<'_>, rust: &RustOptions) {
     let Module { request, model, unused, snapped, .. } = module;
     let o = &request.options;
