@@ -1,4 +1,4 @@
-//! What the motion of a scene calls of its robot.
+//! Functions of the robot that the motion of a scene calls.
 
 use articulated_core::algorithm::FunctionId;
 use articulated_core::integrator::IntegratorId;
@@ -7,12 +7,14 @@ use crate::control::Drive;
 use crate::scene::Scene;
 use crate::simulation::EventClass;
 
-/// The functions that a motion calls of its robot, whichever that is.
+/// The functions that a motion calls, whatever the robot.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Calls {
-    /// Without these it does not begin: [`integrate`](FunctionId::integrate) of a robot with a quaternion, `placements` of one with frames to look at, all others of any.
+    /// Required functions: [`integrate`](FunctionId::integrate) for robots with a quaternion,
+    /// `placements` if events need frames, all others for every robot.
     pub required: Vec<FunctionId>,
-    /// By these its recording tells of energies and momentum, and where effects are on of losses: `centroidal_momentum` of a robot that moves mass.
+    /// Functions by which the recording reports energies and momentum, and losses where effects are
+    /// on; `centroidal_momentum` only for robots with moving mass.
     pub reported: Vec<FunctionId>,
 }
 
@@ -24,12 +26,13 @@ impl Calls {
 }
 
 impl Scene {
-    /// What the scene's motion calls, with the integrator that it names; nothing without `[simulation]`.
+    /// The functions that the scene's motion calls, with the scene's integrator; none without
+    /// `[simulation]`.
     pub fn calls(&self) -> Calls {
         self.simulation.as_ref().map(|simulation| self.calls_with(simulation.settings.integrator)).unwrap_or_default()
     }
 
-    /// What the scene's motion calls, with this integrator.
+    /// The functions that the scene's motion calls, with this integrator.
     pub fn calls_with(&self, integrator: IntegratorId) -> Calls {
         let mut required = integrator.row().needs.to_vec();
         required.push(FunctionId::integrate);

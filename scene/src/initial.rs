@@ -18,7 +18,7 @@ pub struct Initial {
     pub q: Coordinates,
     /// Rates, rad/s or m/s.
     pub v: Coordinates,
-    /// Where a floating base is, and how it moves.
+    /// Pose and velocity of a floating base.
     pub base: Option<BaseState>,
 }
 
@@ -214,7 +214,8 @@ fn unit(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<[f64; 4]> {
 }
 
 impl Scene {
-    /// The state at the start: q `[nq]`, v `[nv]`. Errors: joints that there are not, wrong numbers of coordinates, a base that does not float; all of them.
+    /// The initial state: q `[nq]`, v `[nv]`. Errors, all at once: unknown joints, wrong numbers of
+    /// coordinates, a base that does not float.
     pub fn start(&self, model: &Model<f64>) -> Result<(Vec<f64>, Vec<f64>), Diagnostics> {
         let mut log = Diagnostics::new(&self.file);
         let state = self.started(model, &mut log);
@@ -252,7 +253,7 @@ pub(crate) enum Side {
     V,
 }
 
-/// q at which nothing is moved or turned, `[nq]`.
+/// The neutral configuration, `[nq]`.
 pub(crate) fn neutral(model: &Model<f64>) -> Vec<f64> {
     let mut q = vec![0.0; model.nq];
     algorithm::neutral(model, &mut q);
@@ -290,7 +291,7 @@ pub(crate) fn counted(n: usize) -> String {
     if n == 1 { "one number".into() } else { format!("{n} numbers") }
 }
 
-/// There is no such joint that has coordinates.
+/// Reports that no joint with coordinates has the name.
 pub(crate) fn no_joint(log: &mut Diagnostics, at: At, key: &str, name: &str, model: &Model<f64>) {
     if model.bodies.iter().any(|body| body.name == name && body.coordinates.mimic.is_some()) {
         return log.error((at, key), Code::Robot, "a joint that follows another", "the joint that it follows, whose coordinates it has");

@@ -1,4 +1,4 @@
-//! Contact of the collision geometry that a URDF has.
+//! Contact of the collision geometry of a URDF.
 
 use articulated_core::description::{Collision, CollisionShape, Link, Origin};
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Subject};
@@ -32,7 +32,7 @@ pub(super) fn refuse_own_points(spot: &Spot<'_>, log: &mut Diagnostics) {
     }
 }
 
-/// Whether the geometry is asked for.
+/// Whether the geometry is requested.
 pub(super) fn is_requested(one: &EffectRequest) -> bool {
     one.says.as_ref().is_some_and(|says| says.from_collision)
 }
@@ -99,7 +99,7 @@ impl<'a> Resolving<'a> {
         self.warn(one, &Subject::Link(link.name.clone()), kind, found, expected);
     }
 
-    /// Warns where contact of the geometry of all links comes to nothing since there is none.
+    /// Warns if contact is requested for the geometry of all links and no link has any.
     pub(super) fn warn_of_no_geometry(&mut self, asked: &[&EffectRequest]) {
         let Some(one) = asked.iter().find(|one| one.on == Selector::All && is_requested(one)) else { return };
         if self.robot.description.links.iter().all(|link| link.collision.is_empty()) {

@@ -1,4 +1,4 @@
-//! What of a robot and of a scene has which name, gathered once.
+//! Index of a robot and a scene by names.
 
 use std::collections::{HashMap, HashSet};
 
@@ -14,7 +14,7 @@ pub(super) struct Index<'a> {
     pub(super) links: HashMap<&'a str, usize>,
     /// The joints of shafts.
     pub(super) of_shafts: HashSet<&'a str>,
-    /// What shafts put on their joints.
+    /// Effects of shafts on their joints.
     pub(super) by_shafts: HashMap<(EffectId, &'a str), (&'a ShaftRequest, &'a Applied)>,
 }
 
@@ -44,7 +44,7 @@ pub(crate) fn indices<'a>(names: impl Iterator<Item = &'a str>) -> HashMap<&'a s
     indices
 }
 
-/// What is asked of joints or links by their names, in the order of the scene.
+/// Requests for joints or links by name, in the order of the scene.
 pub(super) struct Named<'a>(HashMap<&'a str, Vec<&'a EffectRequest>>);
 
 impl<'a> Named<'a> {

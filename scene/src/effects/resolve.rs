@@ -33,13 +33,13 @@ pub struct Edited<'a> {
 pub struct Resolved {
     /// In the order of the list of effects, then of the robot, whatever the order of the scene.
     pub effects: Vec<Applied>,
-    /// Where the scene asks for each of them.
+    /// The place of each of them in the scene.
     pub places: Vec<At>,
     /// By which key.
     pub keys: Vec<String>,
-    /// What is on, off and not used.
+    /// Active, inactive and unused content.
     pub report: Report,
-    /// What is odd about them.
+    /// Warnings about them.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -227,7 +227,7 @@ impl<'a> Resolving<'a> {
         }
     }
 
-    /// Whether what is asked for on all joints is meant for this one too.
+    /// Whether a request for all joints includes this one.
     fn is_spread_over(&self, effect: EffectId, joint: &Joint) -> bool {
         let of_shaft = self.index.of_shafts.contains(joint.name.as_str());
         // What a joint that follows another does is not asked of it.
@@ -235,7 +235,7 @@ impl<'a> Resolving<'a> {
         !of_shaft && !follows
     }
 
-    /// What a shaft puts on one of its joints.
+    /// The effect of a shaft on one of its joints.
     fn of_shaft(&self, effect: EffectId, joint: &str) -> Option<(Applied, At, String)> {
         let (asked, own) = self.index.by_shafts.get(&(effect, joint))?;
         Some(((*own).clone(), asked.place, format!("effects.{}.{}", shaft::NAME, bare(&asked.shaft.joint))))
@@ -267,7 +267,8 @@ impl<'a> Resolving<'a> {
         self.resolved.keys.push(key);
     }
 
-    /// What of the URDF is not used: what the reader could not, less what effects do, and bounds that nothing keeps.
+    /// Unused content of the URDF: what the reader could not use, except for numbers that effects
+    /// use, and bounds without an effect that keeps them.
     fn ignored(&mut self) {
         if self.scene.shafts.is_empty() {
             self.resolved.report.off.push(EffectOff { effect: shaft::NAME, why: Why::NotAsked });
@@ -289,7 +290,7 @@ impl<'a> Resolving<'a> {
     }
 }
 
-/// What is asked of all joints or links.
+/// The request for all joints or links.
 fn for_all<'a>(asked: &[&'a EffectRequest]) -> Option<&'a EffectRequest> {
     asked.iter().find(|a| a.on == Selector::All).copied()
 }

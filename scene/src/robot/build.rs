@@ -2,7 +2,7 @@
 //! to bend, joints locked, frames chosen, then its model with all effects. The edits are made in
 //! this order, so that a payload may hang on an appended robot, and a lock may hold its joints.
 //!
-//! Whatever is refused is reported and left out, and the rest goes on.
+//! A refused edit is reported and left out; the others are made.
 
 use std::collections::HashSet;
 
@@ -19,12 +19,12 @@ use crate::effects::{Edited, Resolved};
 /// A robot as requested.
 #[derive(Clone, Debug)]
 pub struct BuiltRobot {
-    /// The robot, edited, and what there is to say about its document and the edits.
+    /// The robot, edited, with the findings about its document and the edits.
     pub reading: Reading,
     /// Its model with gravity, effects and the reference of wrenches, and with a frame for every
     /// link.
     pub model: Model<f64>,
-    /// The scene's effects, where the scene asks for them, and what is on, off and not used.
+    /// The scene's effects, their places in the scene, and active, inactive and unused content.
     pub resolved: Resolved,
     /// All effects: the scene's, then the request's.
     pub effects: Vec<Applied>,
@@ -46,8 +46,7 @@ impl BuiltRobot {
 impl RobotRequest<'_> {
     /// Reads the robot and edits it, and makes its model with all effects.
     ///
-    /// # Errors
-    /// All findings, if one of them is an error.
+    /// # Errors All findings, if one of them is an error.
     pub fn build(&self) -> Result<BuiltRobot, Diagnostics> {
         let mut log = Diagnostics::new(self.scene.map_or(self.file, |scene| &scene.file));
         let robot = self.build_into(&mut log);
@@ -317,7 +316,7 @@ mod tests {
 
     use super::*;
 
-    /// As no body is, which is a warning.
+    /// An inertia that no body has, which is a warning.
     const LINK: &str = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='3'/></inertial>";
 
     /// A link that turns on another, between these bounds, with a colour that nobody uses; its axis
@@ -336,7 +335,7 @@ mod tests {
         asked
     }
 
-    /// What is asked, with its document.
+    /// A request with its document.
     struct TestRequest {
         file: &'static str,
         urdf: String,

@@ -37,7 +37,7 @@ struct Kind {
     effects: Vec<(EffectId, usize)>,
 }
 
-/// First body of a branch and the kinds of its bodies, if it stands for itself.
+/// First body of a branch and the kinds of its bodies, if it is no isomorphic limb.
 type Branch = (usize, Option<Vec<Kind>>);
 
 impl<S: Scalar> Model<S> {
