@@ -9,7 +9,7 @@ use articulated_lab::session::Session;
 use crate::console;
 use crate::failure::Failure;
 
-/// Whether a word is one where a robot is asked for too, whose names go before.
+/// Whether a word names a scene where a robot is accepted too; names of robots take precedence.
 pub(crate) fn is_scene(path: &Path) -> bool {
     let is_bundled = |name| articulated_models::scene(name).is_some() && articulated_models::robot(name).is_none();
     path.to_str().is_some_and(is_bundled) || ends_with(path, "toml")

@@ -30,7 +30,7 @@ pub(crate) struct Robot {
     /// The scene with its effects.
     effects: Option<Scene>,
     path: Option<PathBuf>,
-    /// Bundled robots are odd on purpose.
+    /// Warnings of bundled robots are intended.
     bundled: bool,
     /// All files that it was read from.
     files: Vec<PathBuf>,
@@ -139,7 +139,8 @@ impl Robot {
         Ok(robot.model.clone())
     }
 
-    /// The request for these functions, without a runtime, for who writes their code or tells what it costs.
+    /// The request for these functions, without a runtime, for callers that write their code or
+    /// report its cost.
     pub(crate) fn whole_request(&self, functions: &[String]) -> Request {
         let mut request = Request { scene: self.effects.clone(), ..Request::new(self.file.clone(), self.document.clone()) };
         request.options = self.options.clone();
@@ -147,14 +148,15 @@ impl Robot {
         request
     }
 
-    /// As [`Robot::whole_request`], for who calls them: they take what the table says and no parameters, which are constants, see [`note_of_parameters`].
+    /// As [`Robot::whole_request`], for callers of the functions, which take the arguments of the
+    /// table; parameters are constants, see [`note_of_parameters`].
     pub(crate) fn request(&self, functions: &[String]) -> Request {
         let mut request = self.whole_request(functions);
         request.options.parameters.clear();
         request
     }
 
-    /// The code of these functions, for who calls them.
+    /// The code of these functions, for calls.
     pub(crate) fn generate(&self, functions: &[String]) -> Result<Generated, Diagnostics> {
         generate(&self.request(functions))
     }

@@ -32,10 +32,10 @@ pub(crate) struct StressArguments {
     /// Accept negative principal moments
     #[arg(long, requires = "robot")]
     pub(crate) allow_unphysical_inertia: bool,
-    /// A file of states of the robot in JSON or CSV, besides those at random and the hard ones
+    /// A JSON or CSV file of states of the robot, beside the random and hard ones
     #[arg(long, value_name = "FILE", requires = "robot")]
     pub(crate) states: Option<PathBuf>,
-    /// Generated code too, compiled by rustc
+    /// Also test generated code, compiled by rustc
     #[arg(long)]
     pub(crate) generated: bool,
     /// Levels of accuracy of generated code [default: all of the corpus, f64 of robots]
@@ -44,10 +44,10 @@ pub(crate) struct StressArguments {
     /// Only these chapters of the corpus
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = chapters(), conflicts_with = "robot")]
     pub(crate) chapters: Vec<String>,
-    /// All of it: longer chains, ten million steps, every level on every robot; takes minutes
+    /// Run everything: longer chains, ten million steps, every level on every robot; takes minutes
     #[arg(long, conflicts_with = "robot")]
     pub(crate) full: bool,
-    /// Every row, and not only the one of each case that comes nearest to its limit
+    /// Print every row, not only the row of each case that is nearest to its limit
     #[arg(long)]
     pub(crate) rows: bool,
 }

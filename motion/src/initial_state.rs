@@ -101,7 +101,7 @@ impl fmt::Display for Sunk {
         let Self { file, link, depth } = self;
         write!(
             f,
-            "{file}: effects.contact.{link}: found the centre of the sphere {depth} m under the plane at the start, expected it above (by height, normal or initial.q); used as asked for"
+            "{file}: effects.contact.{link}: found the centre of the sphere {depth} m under the plane at the start, expected it above (by height, normal or initial.q); used as given"
         )
     }
 }
@@ -110,6 +110,6 @@ impl fmt::Display for Beyond {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { file, joint, .. } = self;
         let [found, lower, upper] = [self.found, self.lower, self.upper].map(Plain);
-        write!(f, "{file}: initial.q.{joint}: found {found}, beyond its limits, expected {lower} to {upper}; used as asked for")
+        write!(f, "{file}: initial.q.{joint}: found {found}, beyond its limits, expected {lower} to {upper}; used as given")
     }
 }

@@ -98,7 +98,7 @@ impl Session {
         let file = &self.scene.file;
         Some(format!(
             "{file}: effects.contact: found {which} below a contact plane at the start where no contact holds {them}: {list}, expected {them} above the plane \
-             (by height, normal or initial.q), or {ADVICE}; used as asked for"
+             (by height, normal or initial.q), or {ADVICE}; used as given"
         ))
     }
 

@@ -25,25 +25,25 @@ pub(crate) struct EffectsArguments {
     /// The functions to report costs of, or groups of them [default: inverse_dynamics,forward_dynamics]
     #[arg(long, alias = "function", value_name = "NAMES", value_parser = known)]
     pub(crate) functions: Vec<Names>,
-    /// Nanoseconds too: everything is compiled by rustc and timed
+    /// Also measure nanoseconds: compile everything by rustc and time it
     #[arg(long)]
     pub(crate) time: bool,
-    /// How often each is timed
+    /// Repetitions of each timing
     #[arg(long, value_name = "N", default_value_t = 61, value_parser = clap::value_parser!(u32).range(5..=100_000))]
     pub(crate) repetitions: u32,
 }
 
-/// What is told where nobody asks for others.
+/// Functions reported by default.
 const FUNCTIONS: [&str; 2] = ["inverse_dynamics", "forward_dynamics"];
 
-/// The name of each sort of effect, once; effects stand by sorts.
+/// The name of each kind of effect, once; effects are sorted by kind.
 pub(crate) fn sorts(effects: &[Applied]) -> Vec<&'static str> {
     let mut names: Vec<&'static str> = effects.iter().map(|one| one.effect.name()).collect();
     names.dedup();
     names
 }
 
-/// Prints what is on, off and not used, and what it costs.
+/// Prints active, inactive and unused content, and costs.
 pub(crate) fn run(arguments: &EffectsArguments, format: Format) -> Result<(), Failure> {
     let session = named_scene::session(&arguments.scene)?;
     let mut functions = names::flat(&arguments.functions);

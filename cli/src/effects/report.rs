@@ -119,7 +119,7 @@ pub(super) struct Added {
 }
 
 impl Cost {
-    /// What is told as it is, and not as a difference.
+    /// Costs reported as totals, not as differences.
     pub(super) fn whole(&self) -> Option<&Counted> {
         self.without.as_ref().or(self.only_with.as_ref().map(|only| &only.cost))
     }

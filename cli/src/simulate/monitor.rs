@@ -1,4 +1,4 @@
-//! What a person hears of a motion while it runs: a bar, and a warning where it is slow.
+//! Progress of a running motion: a bar, and a warning if it is slow.
 
 use std::time::{Duration, Instant};
 

@@ -32,7 +32,7 @@ pub(super) struct Motion {
     pub(super) ball: Option<f64>,
     /// Why it did not go on to its end.
     pub(super) error: Option<String>,
-    /// What is odd about its start and what it looks out for.
+    /// Warnings about its initial state and its events.
     pub(super) warnings: Vec<String>,
 }
 
@@ -50,7 +50,8 @@ pub(crate) fn look_over(scene: &Path) -> Result<Vec<String>, Failure> {
     Ok(session.warnings(&initial).into_iter().chain(unavailable).collect())
 }
 
-/// What the scene looks for and has not. Errors: all that its motion would not begin for but its start; who simulates a scene without settings gives its end.
+/// Requested events that cannot occur. Errors: everything that would keep the motion from starting,
+/// except its initial state and a missing end time, which an option may set.
 fn requested_events(session: &Session) -> Result<Vec<String>, Failure> {
     if session.scene.simulation.is_none() {
         return Ok(Vec::new());

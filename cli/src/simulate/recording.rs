@@ -18,22 +18,22 @@ pub(crate) struct Named {
     pub(crate) base: bool,
 }
 
-/// Something that happened, at its time.
+/// The record of an event.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct EventRecord {
     /// s.
     pub(crate) time: f64,
-    /// What, in a few words.
+    /// Description.
     pub(crate) what: String,
-    /// The same for programs.
+    /// The same as data.
     #[serde(flatten)]
     pub(crate) about: Option<About>,
-    /// Of the ball's turn, its speed along the normal after it, m/s.
+    /// For the ball's event, its speed along the normal afterwards, m/s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) ball_speed_m_per_s: Option<f64>,
 }
 
-/// What a program asks of an event.
+/// Data of an event.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct About {
     /// `lower_limit`, `upper_limit`, `contact`, `stick_slip`, `ball`.
@@ -72,7 +72,7 @@ pub(crate) struct Recording {
     pub(crate) q: Vec<f64>,
     /// `[times][nv]`.
     pub(crate) v: Vec<f64>,
-    /// What the motors are told, `[times][nv]`.
+    /// Commanded motor torques, `[times][nv]`.
     pub(crate) tau: Vec<f64>,
     /// J.
     pub(crate) kinetic: Vec<f64>,

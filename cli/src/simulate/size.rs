@@ -41,7 +41,7 @@ impl Size {
         rows * columns as f64 * NUMBER
     }
 
-    /// So many rows, in words.
+    /// Description of a number of rows.
     fn describe(self, rows: f64) -> String {
         let size = Self::bytes(self.columns, rows) / 1e6;
         format!("{rows} rows of {} columns: up to {size:.0} MB", self.columns)
@@ -73,7 +73,7 @@ impl Size {
         )
     }
 
-    /// Why a motion ended that has made so many records.
+    /// Why a motion ended after this number of records.
     pub(super) fn ended(self, records: usize) -> Option<String> {
         let full = records as f64 >= self.most;
         full.then(|| {

@@ -26,7 +26,7 @@ pub(super) struct Summary {
     pub(super) start_s: f64,
     /// The time that was reached.
     pub(super) end_s: f64,
-    /// That which was asked for.
+    /// The requested end time.
     pub(super) asked_end_s: f64,
     /// The time of the last record: what energies and momentum are of at the end.
     pub(super) last_record_s: f64,
@@ -46,7 +46,7 @@ pub(super) struct Summary {
     pub(super) ball_speed_m_per_s: Option<f64>,
     pub(super) wall_s: f64,
     pub(super) simulated_s_per_wall_s: f64,
-    /// What is odd about the robot, the start, what is looked for, and the balance of energy.
+    /// Warnings about the robot, the initial state, the events, and the balance of energy.
     pub(super) warnings: Vec<String>,
     /// Written into the folder.
     pub(super) files: Vec<String>,

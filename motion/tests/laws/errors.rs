@@ -258,7 +258,7 @@ fn a_start_beyond_its_limits_is_odd_and_used() {
     let initial = session.initial_state().unwrap();
     let [beyond] = &session.beyond(&initial.q)[..] else { panic!("one joint") };
     assert_eq!((beyond.joint.as_str(), beyond.found, beyond.lower, beyond.upper), ("shoulder", 1.75, -1.5, 1.5));
-    let told = "s.toml: initial.q.shoulder: found 1.75, beyond its limits, expected -1.5 to 1.5; used as asked for";
+    let told = "s.toml: initial.q.shoulder: found 1.75, beyond its limits, expected -1.5 to 1.5; used as given";
     assert_eq!((beyond.to_string().as_str(), initial.q[0]), (told, 1.75));
     // At a bound nothing is.
     let beyond = |shoulder: f64, elbow: f64| session.beyond(&[shoulder, elbow, 0.0, 0.0, 0.0, 1.0]).len();

@@ -152,7 +152,7 @@ fn a_joint_that_follows_has_bounds_of_its_own() {
     }
     let session = session("", &urdf);
     let told = |x: f64| session.beyond(&[x]).iter().map(ToString::to_string).collect::<Vec<_>>();
-    assert_eq!(told(0.75), ["s.toml: initial.q.y: found -1.25, beyond its limits, expected -1 to 0.75; used as asked for"]);
+    assert_eq!(told(0.75), ["s.toml: initial.q.y: found -1.25, beyond its limits, expected -1 to 0.75; used as given"]);
     assert_eq!((told(0.25).len(), told(1.0).len()), (0, 2));
 }
 

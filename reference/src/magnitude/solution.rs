@@ -159,7 +159,8 @@ fn absolute(x: &[f64]) -> Vec<f64> {
     x.iter().map(|x| x.abs()).collect()
 }
 
-/// Of magnitudes of a Jacobian, `[6][n]`: each column is two vectors, and whoever computes them in other axes rounds all of a vector's numbers as its largest.
+/// Of magnitudes of a Jacobian, `[6][n]`: each column is two vectors, and computing them in other
+/// axes rounds all entries of a vector relative to its largest.
 fn vectors(magnitudes: &[f64], n: usize) -> Vec<f64> {
     let largest = |row: usize, column: usize| (0..3).map(|k| magnitudes[(row / 3 * 3 + k) * n + column]).fold(0.0, f64::max);
     (0..6 * n).map(|k| largest(k / n, k % n)).collect()

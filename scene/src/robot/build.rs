@@ -430,7 +430,7 @@ mod tests {
             let warnings = read(&asked).unwrap().warnings.into_iter().filter(|w| w.field == "payload");
             warnings.map(|w| (w.code, w.found, w.expected)).collect::<Vec<_>>()
         };
-        let expected = "none greater than the other two together (triangle inequality); used as asked for";
+        let expected = "none greater than the other two together (triangle inequality); used as given";
         let of = |found: &str| vec![(Code::InertiaTriangle, format!("the principal moments {found} kg·m²"), expected.to_owned())];
         assert_eq!(told([1.0, 0.0, 0.0, 1.0, 0.0, 3.0]), of("1.000e0, 1.000e0, 3.000e0"));
         // The moments 0, 1 − 0.0009 and 1 + 0.0009.

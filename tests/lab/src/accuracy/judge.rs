@@ -29,7 +29,7 @@ pub(super) struct Verdict {
     pub(super) reached: Option<f64>,
 }
 
-/// Who gave a result: a level with its graph and bounds, or another library.
+/// Source of a result: generated code of a precision with its graph and bounds, or another library.
 pub(super) struct Found<'a> {
     pub(super) result: Vec<f64>,
     pub(super) own: Option<(&'a Graph, Precision)>,

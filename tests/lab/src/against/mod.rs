@@ -1,5 +1,4 @@
-//! Simulations against peers: how long who needs to get to the end of a motion, at the same error
-//! there.
+//! Simulations against peers: wall time of each engine to reach the end at equal error there.
 
 mod ours;
 pub(crate) mod peers;
@@ -31,7 +30,7 @@ use search::{Effort, search};
 const TARGETS: [f64; 3] = [1e-3, 1e-6, 1e-9];
 const REPETITIONS: usize = 15;
 
-/// Somebody who can get to the end of the motion.
+/// An engine that simulates the motion.
 trait Runner {
     fn name(&self) -> String;
     fn order(&self) -> u32;
@@ -39,7 +38,7 @@ trait Runner {
     fn is_ours(&self) -> bool;
     /// From the least to the most that makes sense.
     fn effort(&self, level: usize) -> Option<Effort>;
-    /// Goes to the end; (q, v) there, or nothing if it went astray.
+    /// Simulates to the end; (q, v) there, or `None` if it diverged.
     fn run(&mut self, effort: Effort) -> Option<Vec<f64>>;
     /// Steps and evaluations of forward dynamics of the last run.
     fn spent(&self) -> (u64, u64);
@@ -102,7 +101,7 @@ fn astray(who: &str) -> Error {
     Error::input([format!("{who} does not get to the end of the motion")])
 }
 
-/// What a scene has that peers do not know: they are told the robot's file and gravity, and nothing else.
+/// Content of a scene that peers do not know: they receive the robot's file and gravity only.
 pub(crate) fn unknown_to_peers(session: &Session) -> Vec<&'static str> {
     let (o, scene) = (&session.request.options, &session.scene);
     let asked = [

@@ -41,7 +41,7 @@ pub use report::{Report, Settings};
 /// Other code of ours may differ from generic code by this much of the sum of the magnitudes of the terms.
 const VARIANT_BOUND: f64 = 1e-9;
 
-/// The name of code that is compiled without being told the machine.
+/// The name of code compiled without options for this machine.
 const DEFAULT_BUILD: &str = "any processor";
 
 /// Measures a robot. `whole`: its model with a frame for each link.
@@ -94,7 +94,7 @@ fn open_peers(settings: &Settings, robot: &Robot, model: &Model<f64>, folder: &P
     Ok(peers)
 }
 
-/// All functions that were asked for, or all that the robot has.
+/// The requested functions, or all that the robot has.
 fn prepare_all(plan: &Plan, settings: &Settings, report: &mut Report) -> Result<Vec<Prepared>, Error> {
     let chosen = &settings.functions;
     let mut names = if chosen.is_empty() { function_groups::all() } else { chosen.clone() };

@@ -9,7 +9,7 @@ use crate::compare::manifest::Library;
 use crate::error::Error;
 use crate::session::Session;
 
-/// Who there is, and why others are not.
+/// Available peers, and why others are missing.
 pub(super) struct Peers {
     pub(super) peers: Vec<Peer>,
     pub(super) notes: Vec<String>,
