@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use articulated_codegen::Level;
+use articulated_codegen::Precision;
 use articulated_lab::{accuracy, tips::Tips};
 use clap::Args;
 
@@ -19,7 +19,8 @@ const COMMIT: &str = match option_env!("ARTICULATED_COMMIT") {
     None => "commit not told when this was built",
 };
 
-/// What motions have no use for: how to read and edit a robot, which a scene says, and which functions to measure on which states.
+/// Options that do not apply to motions: reading and editing of a robot, which a scene determines,
+/// and functions and states to measure.
 const OF_FUNCTIONS: [&str; 15] = [
     "floating",
     "fixed",
@@ -47,16 +48,16 @@ pub(crate) struct AccuracyArguments {
     /// The functions to measure, or groups of them [default: placements,inverse_dynamics,mass_matrix,forward_dynamics]
     #[arg(long, alias = "function", value_name = "NAMES", value_parser = known)]
     pub(crate) functions: Vec<Names>,
-    /// The levels to measure [default: all that differ]
+    /// Levels of accuracy to measure [default: all distinct ones]
     #[arg(long, alias = "level", value_name = "LEVELS", value_delimiter = ',')]
-    pub(crate) levels: Vec<Level>,
-    /// How many states at random within the limits of the joints; the hard ones come beside them
+    pub(crate) levels: Vec<Precision>,
+    /// Number of random states within the joint limits; hard states are added
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) states: u32,
     /// Seed of the random states
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
-    /// How often each is timed, once at least; of motions the fastest of five at most counts
+    /// Repetitions of each timing, at least 1; for motions the fastest of at most five counts
     #[arg(long, value_name = "N", default_value_t = 31, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) repetitions: u32,
     /// A peer library to measure beside them; may be given several times. It is run: name only libraries that you trust
@@ -74,7 +75,8 @@ pub(crate) struct AccuracyArguments {
     /// Only name the cheapest level of each function whose largest error is no larger than --error (exit status 4 if one has none)
     #[arg(long, requires = "error")]
     pub(crate) advise: bool,
-    /// The largest error that is right, relative to the sum of the magnitudes of the terms; of a motion rad, m, and those a second
+    /// Largest accepted error, relative to the sum of the magnitudes of the terms; for a motion in
+    /// rad, m, rad/s, m/s
     #[arg(long, value_name = "ERROR", value_parser = wish, requires = "advise", allow_hyphen_values = true)]
     pub(crate) error: Option<f64>,
 }
@@ -118,7 +120,7 @@ fn functions(arguments: &AccuracyArguments, format: Format) -> Result<(), Failur
 
 /// Integrators on the motion of a scene.
 fn motions(arguments: &AccuracyArguments, format: Format) -> Result<(), Failure> {
-    let stage = named_scene::stage(&arguments.robot.robot)?;
+    let session = named_scene::session(&arguments.robot.robot)?;
     arguments.output.as_deref().map_or(Ok(()), |folder| output::folder("--output", folder))?;
     let settings = accuracy::motion::Settings {
         repetitions: arguments.repetitions,
@@ -126,7 +128,7 @@ fn motions(arguments: &AccuracyArguments, format: Format) -> Result<(), Failure>
         peers_manifest: arguments.peers_manifest.clone(),
         commit: COMMIT,
     };
-    let motion = accuracy::motion::measure(&stage, &settings)?;
+    let motion = accuracy::motion::measure(&session, &settings)?;
     let wish = arguments.error.filter(|_| arguments.advise);
     let text = match (wish, format) {
         (Some(wish), Format::Text) => motion.advice_in_text(wish),
@@ -137,7 +139,7 @@ fn motions(arguments: &AccuracyArguments, format: Format) -> Result<(), Failure>
     concluded(arguments, &text, || motion.files(), wish.and_then(|wish| motion.short_of(wish)))
 }
 
-/// Prints a report, writes its files, and fails if it is `short` of what was wished for.
+/// Prints a report, writes its files, and fails if `short` says that a goal is missed.
 fn concluded(
     arguments: &AccuracyArguments,
     text: &str,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use articulated_codegen::Level;
+use articulated_codegen::Precision;
 use articulated_core::lanes::Real;
 use articulated_formats::{SNAP_EXPECTED, can_snap};
 use clap::{Args, ValueEnum};
@@ -12,16 +12,16 @@ use crate::failure::Failure;
 use crate::names::{Names, known, wanted};
 use crate::table::counted;
 
-/// How to print.
+/// Output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Format {
-    /// For people
+    /// Readable text
     Text,
-    /// For programs
+    /// Machine-readable JSON
     Json,
 }
 
-/// Which robot, and how to read it.
+/// The robot, and options of reading it.
 #[derive(Args, Debug)]
 pub(crate) struct RobotArguments {
     /// A bundled robot's or scene's name (a robot's first), the path of a URDF or of a scene (.toml), or - for a URDF on the standard input
@@ -39,13 +39,15 @@ pub(crate) struct RobotArguments {
     /// Accept negative principal moments, with a warning (moments that break the triangle inequality always are)
     #[arg(long)]
     pub(crate) allow_unphysical_inertia: bool,
-    /// Take an angle of the file within TOL rad of a multiple of π/2 as that multiple: above 0, at most 0.5 [default: none is]
+    /// Snap angles of the file within TOL rad of a multiple of π/2 to that multiple: above 0, at
+    /// most 0.5 [default: off]
     #[arg(long, value_name = "TOL", value_parser = tolerance)]
     pub(crate) snap_angles: Option<f64>,
-    /// Another name in Rust for a joint or link, where two would be one there; again for each
+    /// Another name in Rust for a joint or link, where two would be equal; repeatable
     #[arg(long, value_name = "NAME=RUST_NAME", value_parser = renaming)]
     pub(crate) rename: Vec<(String, String)>,
-    /// How many MB of code all functions together may become; more is an error [default: 64, or what the scene says]
+    /// Limit of the code of all functions together, MB; more is an error [default: 64, or the
+    /// scene's]
     #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub(crate) max_code_size: Option<u64>,
     #[command(flatten)]
@@ -53,7 +55,7 @@ pub(crate) struct RobotArguments {
 }
 
 impl RobotArguments {
-    /// A robot as it is.
+    /// A robot without edits.
     pub(crate) fn plain(robot: impl Into<PathBuf>, floating: bool) -> Self {
         Self {
             robot: robot.into(),
@@ -75,7 +77,7 @@ pub(crate) struct CheckArguments {
     pub(crate) robot: RobotArguments,
     #[command(flatten)]
     pub(crate) frames: FrameArguments,
-    /// Check too that these functions can be generated
+    /// Also check that these functions can be generated
     #[arg(long, alias = "functions", value_name = "NAMES", value_parser = wanted)]
     pub(crate) function: Vec<Names>,
 }
@@ -95,13 +97,14 @@ pub(crate) struct GenerateArguments {
     pub(crate) robot: RobotArguments,
     #[command(flatten)]
     pub(crate) frames: FrameArguments,
-    /// The functions wanted, groups of them, name = first + second(a = 0), or motion: all that the motion of a scene calls [default: placements,inverse_dynamics]
+    /// The functions to generate: names, groups, name = first + second(a = 0), or motion: all
+    /// functions that the motion of a scene calls [default: placements,inverse_dynamics]
     #[arg(long, alias = "function", value_name = "NAMES", value_parser = wanted)]
     pub(crate) functions: Vec<Names>,
     /// Constants of the model that stay inputs: payload(LINK), inertia(LINK), origin(JOINT), gravity, and numbers of an effect that is on, as damping(JOINT), contact(LINK)
     #[arg(long, value_name = "ENTRIES", value_delimiter = ',')]
     pub(crate) parameters: Vec<String>,
-    /// The functions for many states at once too, in numbers of these types: f64, f32
+    /// Also generate batch functions, for many states at once, with these number types: f64, f32
     #[arg(long, value_name = "TYPES", value_delimiter = ',', value_parser = real)]
     pub(crate) batch: Vec<Real>,
     /// The language. C is C99 for numbers alone: a header and a source
@@ -116,7 +119,7 @@ pub(crate) struct GenerateArguments {
     /// Code that depends on nothing but core and std (this is the default)
     #[arg(long, conflicts_with = "runtime")]
     pub(crate) standalone: bool,
-    /// Each limb for itself: no limbs that are alike in lanes, also where that would be cheaper
+    /// Do not compute isomorphic limbs in vector lanes, even where that is cheaper
     #[arg(long)]
     pub(crate) no_limbs: bool,
     /// No `unsafe` in the generated code: on x86-64 sines take a little longer, and long functions without AVX-512 up to twice as long
@@ -125,10 +128,10 @@ pub(crate) struct GenerateArguments {
     /// For crates without std, which depend on the crate libm: no `unsafe`, no multiply-adds
     #[arg(long, conflicts_with = "runtime")]
     pub(crate) no_std: bool,
-    /// How accurate: f64, f32, f32_f64, compensated, double_double, with +correct, +fast_7, +fast_10, +two, +no_fma
-    /// [default: f64, or what the scene says]
+    /// Level of accuracy: f64, f32, f32_f64, compensated, double_double, with +correct, +fast_7,
+    /// +fast_10, +two, +no_fma [default: f64, or the scene's]
     #[arg(long, value_name = "LEVEL")]
-    pub(crate) level: Option<Level>,
+    pub(crate) level: Option<Precision>,
     /// The path of the runtime crate, to implement its trait `Dynamics`
     #[arg(long, value_name = "PATH", value_parser = rust_path)]
     pub(crate) runtime: Option<String>,
@@ -146,10 +149,10 @@ pub(crate) struct EvalArguments {
     /// A file of states in JSON or CSV; - is the standard input
     #[arg(long, value_name = "FILE")]
     pub(crate) states: PathBuf,
-    /// By generated code only, compiled by rustc
+    /// Use generated code only, compiled by rustc
     #[arg(long, conflicts_with = "generic")]
     pub(crate) generated: bool,
-    /// By generic code only
+    /// Use generic code only
     #[arg(long)]
     pub(crate) generic: bool,
 }
@@ -159,13 +162,14 @@ pub(crate) struct FunctionsArguments {
     /// Bundled robots' names, or paths of URDF files or of scenes (.toml) [default: ur5_like panda_like quadruped humanoid]
     #[arg(value_name = "ROBOT")]
     pub(crate) robots: Vec<PathBuf>,
-    /// The root links of robots that are files move freely
+    /// The root links of robots from files move freely
     #[arg(long)]
     pub(crate) floating: bool,
-    /// How many MB of code a function may become; what is more is not defined [default: 64, or what the scene says]
+    /// Limit of the code of a function, MB; larger functions are not defined [default: 64, or the
+    /// scene's]
     #[arg(long, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     pub(crate) max_code_size: Option<u64>,
-    /// As tables in Markdown, with a head and the meaning of each function
+    /// Print Markdown tables, with a heading and the meaning of each function
     #[arg(long, conflicts_with = "format")]
     pub(crate) markdown: bool,
 }
@@ -186,12 +190,12 @@ pub(crate) fn real(text: &str) -> Result<Real, String> {
     all.into_iter().find(|r| r.name() == text.trim()).ok_or_else(|| "expected f64 or f32".into())
 }
 
-/// The first of a list that stands before it too.
+/// The first repeated item of a list.
 pub(crate) fn twice<T>(all: &[T], same: impl Fn(&T, &T) -> bool) -> Option<&T> {
     all.iter().enumerate().find(|(k, one)| all[..*k].iter().any(|other| same(other, one))).map(|(_, one)| one)
 }
 
-/// Whether each type is asked for once.
+/// Whether each type is requested once.
 pub(crate) fn types_of_batch(types: &[Real]) -> Result<(), Failure> {
     let wrong = |real: &Real| Failure::usage(format!("--batch: found a type that is there twice, {}, expected each once", real.name()));
     twice(types, |a, b| a == b).map_or(Ok(()), |real| Err(wrong(real)))
@@ -215,7 +219,7 @@ fn renaming(text: &str) -> Result<(String, String), String> {
     Ok((from.to_owned(), to.trim().to_owned()))
 }
 
-/// A path as it stands in Rust: `::articulated`, `crate::dynamics`.
+/// A Rust path: `::articulated`, `crate::dynamics`.
 fn rust_path(text: &str) -> Result<String, String> {
     let word = |w: &str| !w.is_empty() && w.chars().all(|c| c.is_alphanumeric() || c == '_') && !w.starts_with(char::is_numeric);
     let path = text.strip_prefix("::").unwrap_or(text);

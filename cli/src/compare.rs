@@ -25,7 +25,7 @@ pub(crate) struct CompareArguments {
     /// No `unsafe` in the generated code: shows what the vector instructions of the sines bring
     #[arg(long)]
     pub(crate) forbid_unsafe: bool,
-    /// Many states at once too, in numbers of these types: f64, f32
+    /// Also compare batches of many states, with these number types: f64, f32
     #[arg(long, value_name = "TYPES", value_delimiter = ',', value_parser = real)]
     pub(crate) batch: Vec<Real>,
     /// A peer library to time beside them; may be given several times. It is run: name only libraries that you trust
@@ -34,19 +34,21 @@ pub(crate) struct CompareArguments {
     /// A list of peer libraries, as the peers' build script writes it
     #[arg(long, value_name = "FILE")]
     pub(crate) peers_manifest: Option<PathBuf>,
-    /// Draw the medians as dots on a logarithmic axis into this file, in SVG: of ours, and of the fastest build of each engine among the peers
+    /// Draw the medians of ours and of each engine's fastest build to this SVG file, as dots on a
+    /// logarithmic axis
     #[arg(long, value_name = "FILE")]
     pub(crate) chart: Option<PathBuf>,
-    /// How often each is timed, 31 times at least
+    /// Repetitions of each timing, at least 31
     #[arg(long, value_name = "N", default_value_t = 61, value_parser = clap::value_parser!(u32).range(31..=100_000))]
     pub(crate) repetitions: u32,
-    /// How many random states they are judged on; one call at a time they are timed on the first of them, as many as keep arguments within 16 kB
+    /// Number of random states for accuracy; single calls are timed on the first of them, as many
+    /// as keep the arguments within 16 kB
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) states: u32,
     /// Seed of the random states
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
-    /// The largest error that is right, in units of 2⁻⁵³ of the sum of the magnitudes of the terms
+    /// Largest accepted error, in units of 2⁻⁵³ of the sum of the magnitudes of the terms
     #[arg(long, value_name = "UNITS", default_value_t = 64.0, value_parser = units, allow_hyphen_values = true)]
     pub(crate) bound: f64,
 }

@@ -8,7 +8,7 @@ use articulated_formats::{MOST_BYTES, read_file};
 
 use crate::diagnostic::Diagnostic;
 
-/// So many findings are shown with their lines; others are shown without.
+/// Number of findings shown with source lines; others are shown without.
 const MOST: usize = 20;
 
 /// Excerpts of files, each of which is read once.

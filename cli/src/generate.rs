@@ -35,7 +35,7 @@ struct Function {
     depth: u32,
 }
 
-/// Writes the source to where it is wanted; as JSON the report is printed in any case.
+/// Writes the source to its destination; in JSON the report is printed in any case.
 pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), Failure> {
     types_of_batch(&arguments.batch)?;
     let robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
@@ -71,8 +71,8 @@ pub(crate) fn run(arguments: &GenerateArguments, format: Format) -> Result<(), F
     }
 }
 
-/// The language and its choices. Errors: choices of the other one, of the command line or of the
-/// scene.
+/// The target language with its options. Errors: options of the other language, from the command
+/// line or the scene.
 fn target(arguments: &GenerateArguments, options: &mut Options) -> Result<(), Failure> {
     if arguments.target == Language::Rust {
         let rust = options.rust_mut();

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use articulated_codegen::nearest;
 use articulated_codegen::scene::{self, Bundled, Prepared, Scene};
-use articulated_lab::stage::Stage;
+use articulated_lab::session::Session;
 
 use crate::console;
 use crate::failure::Failure;
 
-/// Whether a word is one where a robot is asked for too, whose names go before.
+/// Whether a word names a scene where a robot is accepted too; names of robots take precedence.
 pub(crate) fn is_scene(path: &Path) -> bool {
     let is_bundled = |name| articulated_models::scene(name).is_some() && articulated_models::robot(name).is_none();
     path.to_str().is_some_and(is_bundled) || ends_with(path, "toml")
@@ -32,17 +32,17 @@ pub(crate) fn open(path: &Path) -> Result<(Prepared, PathBuf), Failure> {
 }
 
 /// The scene with its robot. Warnings about the robot are printed.
-pub(crate) fn stage(path: &Path) -> Result<Stage, Failure> {
-    let stage = quiet_stage(path)?;
-    stage.odd.iter().for_each(|line| console::warn(line));
-    Ok(stage)
+pub(crate) fn session(path: &Path) -> Result<Session, Failure> {
+    let session = quiet_session(path)?;
+    session.robot_warnings.iter().for_each(|line| console::warn(line));
+    Ok(session)
 }
 
 /// The same without warnings.
-pub(crate) fn quiet_stage(path: &Path) -> Result<Stage, Failure> {
+pub(crate) fn quiet_session(path: &Path) -> Result<Session, Failure> {
     let (prepared, folder) = open(path)?;
     let name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
-    Ok(Stage::new(name, prepared, folder)?)
+    Ok(Session::new(name, prepared, folder)?)
 }
 
 fn ends_with(path: &Path, ending: &str) -> bool {

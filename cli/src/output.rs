@@ -1,4 +1,5 @@
-//! Files and folders that the command writes: told before anything is measured if they cannot be, and written whole or not at all.
+//! Files and folders that the command writes. Unwritable ones are reported before anything is
+//! measured; files are written atomically.
 
 use std::fs;
 use std::io::{self, Write};

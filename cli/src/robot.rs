@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use articulated_codegen::scene::Scene;
-use articulated_codegen::{Appended, Generated, MOST_FREEDOMS, Options, Request, Sines, generate, nearest};
+use articulated_codegen::{Appended, Generated, MOST_FREEDOMS, Options, Request, TrigAccuracy, generate, nearest};
 use articulated_core::description::Base;
 use articulated_core::diagnostic::{Diagnostic, Diagnostics, summary, values};
 use articulated_core::model::Model;
@@ -30,7 +30,7 @@ pub(crate) struct Robot {
     /// The scene with its effects.
     effects: Option<Scene>,
     path: Option<PathBuf>,
-    /// Bundled robots are odd on purpose.
+    /// Warnings of bundled robots are intended.
     bundled: bool,
     /// All files that it was read from.
     files: Vec<PathBuf>,
@@ -92,7 +92,7 @@ impl Robot {
     /// Refuses a scene's level whose results differ from the library's by more than rounding: what is held to those would fail as promised.
     pub(crate) fn has_a_level_of_rounding(&self) -> Result<(), Failure> {
         let level = self.options.level;
-        if !level.is_single() && !matches!(level.sines, Sines::Fast7 | Sines::Fast10) {
+        if !level.is_single() && !matches!(level.sines, TrigAccuracy::Fast7 | TrigAccuracy::Fast10) {
             return Ok(());
         }
         let file = self.scene.as_deref().unwrap_or(&self.file);
@@ -139,7 +139,8 @@ impl Robot {
         Ok(robot.model.clone())
     }
 
-    /// The request for these functions, without a runtime, for who writes their code or tells what it costs.
+    /// The request for these functions, without a runtime, for callers that write their code or
+    /// report its cost.
     pub(crate) fn whole_request(&self, functions: &[String]) -> Request {
         let mut request = Request { scene: self.effects.clone(), ..Request::new(self.file.clone(), self.document.clone()) };
         request.options = self.options.clone();
@@ -147,14 +148,15 @@ impl Robot {
         request
     }
 
-    /// As [`Robot::whole_request`], for who calls them: they take what the table says and no parameters, which are constants, see [`note_of_parameters`].
+    /// As [`Robot::whole_request`], for callers of the functions, which take the arguments of the
+    /// table; parameters are constants, see [`note_of_parameters`].
     pub(crate) fn request(&self, functions: &[String]) -> Request {
         let mut request = self.whole_request(functions);
         request.options.parameters.clear();
         request
     }
 
-    /// The code of these functions, for who calls them.
+    /// The code of these functions, for calls.
     pub(crate) fn generate(&self, functions: &[String]) -> Result<Generated, Diagnostics> {
         generate(&self.request(functions))
     }

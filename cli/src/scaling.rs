@@ -18,16 +18,16 @@ pub(crate) struct ScalingArguments {
     /// The functions to measure, or groups of them [default: inverse_dynamics,mass_matrix,forward_dynamics]
     #[arg(long, alias = "function", value_name = "NAMES", value_parser = known)]
     pub(crate) functions: Vec<Names>,
-    /// All lengths: takes some minutes and some GB of memory, most of it for rustc
+    /// Measure all lengths: takes minutes and gigabytes of memory, mostly for rustc
     #[arg(long, conflicts_with = "joints")]
     pub(crate) all: bool,
     /// The file to draw the times to, as SVG
     #[arg(long, value_name = "FILE")]
     pub(crate) chart: Option<PathBuf>,
-    /// As a document in Markdown
+    /// Print a Markdown document
     #[arg(long, conflicts_with = "format")]
     pub(crate) markdown: bool,
-    /// How often each is timed, 5 times at least
+    /// Repetitions of each timing, at least 5
     #[arg(long, value_name = "N", default_value_t = 31, value_parser = clap::value_parser!(u32).range(5..=100_000))]
     pub(crate) repetitions: u32,
 }

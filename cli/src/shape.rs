@@ -7,8 +7,8 @@ pub(crate) fn dims(dims: &[Dim]) -> String {
     dims.iter().map(|d| format!("[{}]", d.to_string().to_lowercase())).collect()
 }
 
-/// What a function gives, with its units.
-pub(crate) fn given<S>(function: &Function<S>) -> String {
+/// Shape and unit of a function's result.
+pub(crate) fn result<S>(function: &Function<S>) -> String {
     format!("{} {}", dims(function.gives), function.unit).trim_start().to_owned()
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use articulated_codegen::Level;
+use articulated_codegen::Precision;
 use articulated_core::algorithm::Argument;
 use articulated_core::model::Model;
 use articulated_lab::states;
@@ -32,22 +32,22 @@ pub(crate) struct StressArguments {
     /// Accept negative principal moments
     #[arg(long, requires = "robot")]
     pub(crate) allow_unphysical_inertia: bool,
-    /// A file of states of the robot in JSON or CSV, besides those at random and the hard ones
+    /// A JSON or CSV file of states of the robot, beside the random and hard ones
     #[arg(long, value_name = "FILE", requires = "robot")]
     pub(crate) states: Option<PathBuf>,
-    /// Generated code too, compiled by rustc
+    /// Also test generated code, compiled by rustc
     #[arg(long)]
     pub(crate) generated: bool,
     /// Levels of accuracy of generated code [default: all of the corpus, f64 of robots]
     #[arg(long, alias = "level", value_name = "LEVELS", value_delimiter = ',', requires = "generated")]
-    pub(crate) levels: Vec<Level>,
+    pub(crate) levels: Vec<Precision>,
     /// Only these chapters of the corpus
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = chapters(), conflicts_with = "robot")]
     pub(crate) chapters: Vec<String>,
-    /// All of it: longer chains, ten million steps, every level on every robot; takes minutes
+    /// Run everything: longer chains, ten million steps, every level on every robot; takes minutes
     #[arg(long, conflicts_with = "robot")]
     pub(crate) full: bool,
-    /// Every row, and not only the one of each case that comes nearest to its limit
+    /// Print every row, not only the row of each case that is nearest to its limit
     #[arg(long)]
     pub(crate) rows: bool,
 }
@@ -64,7 +64,7 @@ pub(crate) fn run(arguments: &StressArguments, format: Format) -> Result<u8, Fai
         Some(name) => {
             let robot = robot(arguments, name)?;
             let model = robot.whole_model(&robot.read()?)?;
-            let given = arguments.states.as_deref().map_or_else(|| Ok(Vec::new()), |file| given(&model, file))?;
+            let given = arguments.states.as_deref().map_or_else(|| Ok(Vec::new()), |file| read_states(&model, file))?;
             of_robot(&robot.loaded(), &model, &given, &settings)?
         }
         None => of_corpus(&settings)?,
@@ -84,8 +84,8 @@ fn robot(arguments: &StressArguments, name: &Path) -> Result<Robot, Failure> {
     Robot::find(&robot)
 }
 
-/// The states of a file; what a state does not give is zero.
-fn given(model: &Model<f64>, path: &Path) -> Result<Vec<State>, Failure> {
+/// The states of a file; missing values are zero.
+fn read_states(model: &Model<f64>, path: &Path) -> Result<Vec<State>, Failure> {
     let file = path.display();
     let bytes = read_bytes(path).map_err(|e| Failure::input([format!("{file}: {e}")]))?;
     let read = states::read(&bytes, model).map_err(|lines| Failure::input(lines.into_iter().map(|l| format!("{file}: {l}"))))?;

@@ -5,15 +5,15 @@ use articulated_core::model::Model;
 use articulated_core::running::Running;
 
 use crate::graph::Graph;
-use crate::{Arithmetic, Level, Sines};
+use crate::{Arithmetic, Precision, TrigAccuracy};
 
 /// How far each result of a graph at a level can be off from the same graph in real arithmetic, for arguments within a radius of a midpoint each: `input(argument, index)`
 /// is (midpoint, radius). Infinite where a divisor could be nothing, or a choice jump. `None` for levels whose errors are of second order: there is no bound for them.
-pub fn bounds(graph: &Graph, level: Level, input: &dyn Fn(usize, usize) -> (f64, f64)) -> Option<Vec<f64>> {
+pub fn bounds(graph: &Graph, level: Precision, input: &dyn Fn(usize, usize) -> (f64, f64)) -> Option<Vec<f64>> {
     fn of<const BITS: u32, const SINES: u32>(graph: &Graph, bits: Option<u32>, input: &dyn Fn(usize, usize) -> (f64, f64)) -> Vec<f64> {
         let given = |argument: usize, k: usize| {
             let (value, radius) = input(argument, k);
-            Running::<BITS, SINES>::given(value, radius)
+            Running::<BITS, SINES>::within(value, radius)
         };
         let results = graph.evaluate_as(given);
         results.into_iter().map(|x| bits.map_or(x.error, |bits| x.rounded_to(bits))).collect()
@@ -22,14 +22,14 @@ pub fn bounds(graph: &Graph, level: Level, input: &dyn Fn(usize, usize) -> (f64,
     Some(match (level.arithmetic, level.sines) {
         (Arithmetic::Compensated, _) => return None,
         (Arithmetic::DoubleDouble, _) => of::<102, 0>(graph, Some(53), input),
-        (Arithmetic::Double, Sines::Fast7) => of::<53, 7>(graph, None, input),
-        (Arithmetic::Double, Sines::Fast10) => of::<53, 10>(graph, None, input),
+        (Arithmetic::Double, TrigAccuracy::Fast7) => of::<53, 7>(graph, None, input),
+        (Arithmetic::Double, TrigAccuracy::Fast10) => of::<53, 10>(graph, None, input),
         (Arithmetic::Double, _) => of::<53, 0>(graph, None, input),
-        (Arithmetic::SingleByDouble, Sines::Fast7) => of::<53, 7>(graph, single, input),
-        (Arithmetic::SingleByDouble, Sines::Fast10) => of::<53, 10>(graph, single, input),
+        (Arithmetic::SingleByDouble, TrigAccuracy::Fast7) => of::<53, 7>(graph, single, input),
+        (Arithmetic::SingleByDouble, TrigAccuracy::Fast10) => of::<53, 10>(graph, single, input),
         (Arithmetic::SingleByDouble, _) => of::<53, 0>(graph, single, input),
-        (Arithmetic::Single, Sines::Fast7) => of::<24, 7>(graph, None, input),
-        (Arithmetic::Single, Sines::Fast10) => of::<24, 10>(graph, None, input),
+        (Arithmetic::Single, TrigAccuracy::Fast7) => of::<24, 7>(graph, None, input),
+        (Arithmetic::Single, TrigAccuracy::Fast10) => of::<24, 10>(graph, None, input),
         (Arithmetic::Single, _) => of::<24, 0>(graph, None, input),
     })
 }
@@ -101,22 +101,24 @@ mod tests {
         let (x, y) = (g.input(0, 0), g.input(0, 1));
         let sine = g.apply(Op::Sin, &[x]);
         g.outputs = vec![g.exactly(Op::Mul, &[sine, y])];
-        let of =
-            |arithmetic, sines| bounds(&g, Level { arithmetic, sines, ..Level::default() }, &|_, k| ([0.7, 1.3][k], 0.0)).map(|b| b[0]);
+        let of = |arithmetic, sines| {
+            bounds(&g, Precision { arithmetic, sines, ..Precision::default() }, &|_, k| ([0.7, 1.3][k], 0.0)).map(|b| b[0])
+        };
         let all = [Arithmetic::Double, Arithmetic::SingleByDouble, Arithmetic::Single];
         for arithmetic in all {
-            let [ulp, ten, seven] = [Sines::Ulp, Sines::Fast10, Sines::Fast7].map(|sines| of(arithmetic, sines).unwrap());
+            let [ulp, ten, seven] =
+                [TrigAccuracy::Ulp1, TrigAccuracy::Fast10, TrigAccuracy::Fast7].map(|sines| of(arithmetic, sines).unwrap());
             // In single precision, a sine to an ulp is no nearer than one of ten digits.
             let single = arithmetic == Arithmetic::Single;
             assert!(0.0 < ulp && ulp < seven && (single || ulp < ten) && ten < seven && seven < 1e-5, "{arithmetic:?} {ulp} {ten} {seven}");
         }
-        let [double, rounded, single] = all.map(|arithmetic| of(arithmetic, Sines::Ulp).unwrap());
-        let exact = of(Arithmetic::DoubleDouble, Sines::Two).unwrap();
+        let [double, rounded, single] = all.map(|arithmetic| of(arithmetic, TrigAccuracy::Ulp1).unwrap());
+        let exact = of(Arithmetic::DoubleDouble, TrigAccuracy::DoubleDouble).unwrap();
         // Rounded to the nearest double, and to the nearest single: half a unit in the last place.
         assert!(
             4e-17 < exact && exact < double && double < 1e-15 && 1e-8 < rounded && rounded < single,
             "{exact} {double} {rounded} {single}"
         );
-        assert_eq!(of(Arithmetic::Compensated, Sines::Two), None);
+        assert_eq!(of(Arithmetic::Compensated, TrigAccuracy::DoubleDouble), None);
     }
 }

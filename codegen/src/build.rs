@@ -227,7 +227,7 @@ impl Build {
 
     /// How accurate the functions are.
     #[must_use]
-    pub fn level(mut self, level: crate::Level) -> Self {
+    pub fn level(mut self, level: crate::Precision) -> Self {
         self.request.options.level = level;
         self
     }

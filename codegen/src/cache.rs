@@ -54,7 +54,8 @@ impl Cache {
     }
 }
 
-/// Everything that the output follows from. Lengths stand before what they are the lengths of, so that no key is the beginning of another.
+/// Key of all inputs that determine the output. Each part is preceded by its length, so no key is a
+/// prefix of another.
 fn key(request: &Request, generator: &str) -> Vec<u8> {
     let (mut options, mut documents) = (request.options.clone(), vec![request.document.clone()]);
     documents.extend(options.robot.append.iter_mut().map(|other| std::mem::take(&mut other.document)));

@@ -52,7 +52,7 @@ fn traced(view: &View<Sym>, follows: bool, looks: bool) -> Vec<Sym> {
 }
 
 fn entry(function: String, traced: Graph) -> Entry {
-    let mut stages = vec![("asked", traced.asked().clone()), ("trace", traced.counts())];
+    let mut stages = vec![("requested", traced.requested().clone()), ("trace", traced.counts())];
     let graph = pass::run_all(traced, |name, graph| stages.push((name, graph.counts())));
     Entry { function, ways: Vec::new(), stages, depth: depth(&graph), lanes: 1, arguments: ARGUMENTS.to_vec() }
 }

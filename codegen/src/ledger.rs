@@ -12,7 +12,7 @@ use crate::program::strategy::Transform;
 /// The costs of all functions of one robot.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Ledger {
-    /// One entry a function, in the order asked for.
+    /// One entry per function, in the requested order.
     pub functions: Vec<Entry>,
 }
 
@@ -23,9 +23,9 @@ pub struct Entry {
     pub function: String,
     /// The ways chosen by count, where the function can be computed in several.
     pub ways: Vec<Cow<'static, str>>,
-    /// Counts after each stage: `asked` (what the algorithm asks for), `trace` (folded and shared),
-    /// the same after each model pass, with frames that do not turn (`unturned`) and lengths in
-    /// another unit (`unit`) where that is chosen, then after each graph pass. Without
+    /// Counts after each stage: `requested` (operations of the algorithm as written), `trace`
+    /// (folded and shared), the same after each model pass and each transform of the strategy
+    /// (`shift_masses`, `axis_rates`, `fold_rotations`, `unit`), then after each graph pass. Without
     /// [`stages`](crate::Options::stages) only the last of the model passes.
     pub stages: Vec<(&'static str, Counts)>,
     /// Longest chain of operations from an input to an output.
@@ -43,10 +43,10 @@ impl Entry {
     }
 }
 
-/// Every stage that an entry may have, in their order, and what it does.
+/// Every stage that an entry may have, in order, and what it does.
 pub fn stages() -> impl Iterator<Item = (&'static str, &'static str)> {
-    let first = [("asked", "by the algorithm"), ("trace", "zeros, ones and what is the same folded in")];
-    let model = model_passes::<f64>().iter().map(|(name, _, _)| (*name, "frames and masses moved to where numbers vanish"));
+    let first = [("requested", "operations of the algorithm as written"), ("trace", "zeros, ones and equal expressions folded")];
+    let model = model_passes::<f64>().iter().map(|(name, _, _)| (*name, "frames and masses moved so that numbers vanish"));
     let graph = GRAPH_PASSES.iter().map(|row| (row.name, row.does));
     let added = Transform::ALL.map(|(_, name, does)| (name, does));
     first.into_iter().chain(model).chain(added).chain(graph)

@@ -43,7 +43,7 @@ pub use articulated_core::description::{Base, Origin, Payload, Shaft};
 pub use articulated_core::diagnostic;
 pub use articulated_core::effect::Applied;
 pub use articulated_core::lanes::Real;
-pub use articulated_core::level::{Arithmetic, Level, LevelError, Sines};
+pub use articulated_core::precision::{Arithmetic, Precision, PrecisionError, TrigAccuracy};
 pub use articulated_core::spatial::Reference;
 pub use articulated_core::suggest::nearest;
 pub use articulated_formats as formats;
@@ -60,7 +60,7 @@ pub use spec::{Constant, FunctionSpec, FunctionTerm, is_keyword};
 pub use sym::Sym;
 pub use target::{COptions, File, RustOptions, Target, identifier};
 
-/// What was generated, and what there is to say about it.
+/// Generated code, with its ledger and warnings.
 #[derive(Clone, Debug)]
 pub struct Generated {
     /// The last of the files: in Rust the contents of a module, in C the source behind the header.
@@ -72,32 +72,34 @@ pub struct Generated {
     pub model: Model<f64>,
     /// Constants of the model that stayed inputs.
     pub parameters: Vec<Parameter>,
-    /// How accurate the functions are, and what numbers they take.
-    pub level: Level,
-    /// Costs.
+    /// Precision of the functions, with the type of their numbers.
+    pub level: Precision,
+    /// Operation counts.
     pub ledger: Ledger,
-    /// The graph of each function, in the order of the ledger: what the source computes. Empty where the source leaves a loop
-    /// ([`unsolved`](articulated_core::algorithm::Function::unsolved)): the graph is not all of it then.
+    /// The graph of each function, in the order of the ledger: what the source computes. Empty
+    /// where the source has a loop ([`unsolved`](articulated_core::algorithm::Function::unsolved)),
+    /// since the graph is then incomplete.
     pub graphs: Vec<graph::Graph>,
-    /// Things in the document that are odd but used as written.
+    /// Warnings about the document.
     pub warnings: Vec<Diagnostic>,
     /// Content that is understood but not used.
     pub unused: Vec<Unused>,
-    /// Angles taken as multiples of π/2 because the request asked for it.
+    /// Angles snapped to multiples of π/2 on request.
     pub snapped: Vec<Diagnostic>,
 }
 
 impl Generated {
-    /// The source as tokens.
+    /// The source as a token stream.
     ///
-    /// # Panics
-    /// If the target is not Rust, or the source was changed into something that is not.
+    /// # Panics If the target is not Rust, or the source was changed and no longer parses.
     pub fn tokens(&self) -> proc_macro2::TokenStream {
         self.source.parse().expect("the target is Rust")
     }
 
-    /// How far each result of a function, by its place in the ledger, can be off by rounding, guaranteed, wherever the arguments are in the box of [`bound::in_box`]; infinite where a
-    /// divisor could be nothing there. `None` where there is no such function, where the source leaves a loop, and at levels that have no bound.
+    /// Guaranteed bounds of the rounding error of each result of a function, given by its index in
+    /// the ledger, for all arguments in the box of [`bound::in_box`]; infinite where a divisor may
+    /// be zero there. `None` if there is no such function, if the source has a loop, or if the
+    /// precision has no bound.
     pub fn bounds_in_box(&self, place: usize) -> Option<Vec<f64>> {
         let graph = self.graphs.get(place).filter(|graph| !graph.outputs.is_empty())?;
         let arguments = &self.ledger.functions.get(place)?.arguments;
@@ -110,13 +112,12 @@ impl Generated {
     }
 }
 
-/// Generates the code that `request` asks for. Pure: nothing is read or written.
+/// Generates the requested code. Pure: reads and writes no files.
 ///
-/// # Errors
-/// Everything that is wrong with the document and what of the request needs no robot, or else
-/// everything that is wrong with the request.
+/// # Errors All findings about the document and the robot-independent parts of the request, or else
+/// all findings about the request.
 pub fn generate(request: &Request) -> Result<Generated, Diagnostics> {
-    let request = &*request.settled();
+    let request = &*request.normalized();
     let mut log = Diagnostics::new(request.scene.as_ref().map_or(&request.file, |scene| &scene.file));
     let Some(Plan { robot, model, parameters, functions }) = plan::plan(request, &mut log) else {
         return Err(log.result(()).err().unwrap_or_default());
@@ -149,10 +150,11 @@ pub fn generate(request: &Request) -> Result<Generated, Diagnostics> {
     Ok(Generated { source, files, model, parameters, level: request.options.level, ledger, graphs, warnings, unused, snapped })
 }
 
-/// So many instructions, straight-line code beyond which is of little use: a compiler takes minutes for it, and loops over joints are faster.
+/// Instructions beyond which straight-line code is of little use: compilation takes minutes, and
+/// loops over joints are faster.
 const LONG: u64 = 400_000;
 
-/// The warning about a function that is as long.
+/// The warning about such a function.
 fn long_code(file: &str, entry: &ledger::Entry) -> Option<Diagnostic> {
     let instructions = entry.emitted().instructions();
     let found = format!("{instructions} instructions, for which a compiler takes minutes");
@@ -163,8 +165,7 @@ fn long_code(file: &str, entry: &ledger::Entry) -> Option<Diagnostic> {
 
 /// The function called `name`.
 ///
-/// # Errors
-/// One that names the nearest function.
+/// # Errors An unknown name; the error names the nearest function.
 pub fn function(name: &str) -> Result<&'static Function<Sym>, Diagnostic> {
     articulated_core::algorithm::function(name).ok_or_else(|| {
         if name == function_groups::MOTION {
@@ -181,7 +182,7 @@ pub fn function(name: &str) -> Result<&'static Function<Sym>, Diagnostic> {
     })
 }
 
-/// Which of the names is meant by one that is none of them: what other libraries call so, or the nearest.
+/// The name that an unknown name probably means: a synonym in other libraries, or the nearest.
 pub fn meant<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
     let plain: String = name.chars().filter(|c| *c != '_').collect();
     match ELSEWHERE.iter().find(|(theirs, _)| plain.eq_ignore_ascii_case(theirs)) {
@@ -190,7 +191,8 @@ pub fn meant<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option
     }
 }
 
-/// What other libraries and textbooks call functions by, whatever the capitals and without `_`, with our names; nothing where we have no such function and the nearest name is of another.
+/// Synonyms of functions in other libraries and textbooks, in lower case without `_`, with our
+/// names; `None` where we have no such function and the nearest name would mislead.
 const ELSEWHERE: &[(&str, &str)] = &[
     ("fk", "placements"),
     ("forwardkinematics", "placements"),

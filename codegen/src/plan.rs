@@ -1,5 +1,5 @@
 //! A request, checked: its robot, its parameters and its functions. All findings come from one
-//! pass, in which whatever is wrong is reported and left out.
+//! pass, which reports invalid entries and leaves them out.
 
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Function, Needs};
@@ -18,16 +18,16 @@ pub const MOST_FREEDOMS: usize = 10_000;
 /// A request without errors.
 pub(crate) struct Plan {
     pub(crate) robot: BuiltRobot,
-    /// The model with the frames of the request, without what stays an input.
+    /// The model with the requested frames, without the constants that stay inputs.
     pub(crate) model: Model<f64>,
     pub(crate) parameters: Vec<Parameter>,
     pub(crate) functions: Vec<FunctionSpec>,
 }
 
-/// An entry of the list of functions that can be read, with its place in the list.
+/// A readable entry of the list of functions, with its index.
 pub(crate) type Entry = (usize, FunctionSpec);
 
-/// Checks everything that comes before programs are made. `None`: there is an error.
+/// Checks the request before programs are built. `None`: there is an error.
 pub(crate) fn plan(request: &Request, log: &mut Diagnostics) -> Option<Plan> {
     let options = &request.options;
     // What needs no robot comes first: it is reported also if the robot cannot be read.
@@ -54,8 +54,7 @@ pub(crate) fn plan(request: &Request, log: &mut Diagnostics) -> Option<Plan> {
     log.is_ok().then_some(Plan { robot, model, parameters, functions })
 }
 
-/// The functions that can be read. Reports the words of the options that mean nothing, whatever the
-/// robot.
+/// The readable functions. Reports invalid words of the options, which do not depend on the robot.
 fn words(options: &Options, log: &mut Diagnostics) -> Vec<Entry> {
     options.target.check(options, log);
     let read = |(k, text): (usize, &Spanned<String>)| match FunctionSpec::parse(text) {
@@ -68,15 +67,15 @@ fn words(options: &Options, log: &mut Diagnostics) -> Vec<Entry> {
     options.functions.iter().enumerate().filter_map(read).collect()
 }
 
-/// Reports all that is wrong with a request whatever the robot, as functions that do not exist: for
-/// requests whose robot cannot be read.
+/// Reports errors of a request that do not depend on the robot, such as unknown functions, for
+/// requests whose robot is unreadable.
 pub fn check_words(request: &Request, log: &mut Diagnostics) {
-    words(&request.settled().options, log);
+    words(&request.normalized().options, log);
 }
 
 /// Reports the functions, parameters and names that a robot does not have.
 pub fn check_names(request: &Request, robot: &BuiltRobot, log: &mut Diagnostics) {
-    let request = &*request.settled();
+    let request = &*request.normalized();
     let entries = words(&request.options, log);
     parameters::parse(&request.options, &mut robot.clone(), log);
     // If a frame is refused, the set of frames is not known.
@@ -90,7 +89,7 @@ pub fn check_names(request: &Request, robot: &BuiltRobot, log: &mut Diagnostics)
     request.options.target.check_names(&model, request, log);
 }
 
-/// The functions that the robot has, each with a name of its own.
+/// The functions that the robot has, each with a unique name.
 fn fitting(request: &Request, model: &Model<f64>, massless: &[String], entries: Vec<Entry>, log: &mut Diagnostics) -> Vec<Entry> {
     let mut fitting: Vec<Entry> = Vec::new();
     for (k, function) in entries {
@@ -131,8 +130,7 @@ pub fn massless(model: &Model<f64>) -> Vec<String> {
 
 /// Whether the robot has what the function needs; `massless`: the result of [`massless`] for it.
 ///
-/// # Errors
-/// One that says in `found` what the robot lacks.
+/// # Errors An error whose `found` names what the robot lacks.
 pub fn defined<S: Scalar>(file: &str, model: &Model<f64>, massless: &[String], function: &Function<S>) -> Result<(), Diagnostic> {
     let name = function.name;
     let lacks = |code, found: String, expected: &str| Err(Diagnostic::error(file, (Default::default(), name), code, found, expected));
@@ -167,7 +165,7 @@ pub fn defined<S: Scalar>(file: &str, model: &Model<f64>, massless: &[String], f
     lacks(Code::BoundFrames, format!("fewer than six degrees of freedom for {}", frames.join(", ")), expected)
 }
 
-/// What a robot lacks for a function, in a few words, if that alone is wrong.
+/// What a robot lacks for a function, if that is the only error.
 #[must_use]
 pub fn undefined(findings: &Diagnostics) -> Option<&str> {
     let lacks = |d: &Diagnostic| matches!(d.code, Code::SingularMassMatrix | Code::NoMass | Code::BoundFrames | Code::TooMuchCode);

@@ -1,55 +1,57 @@
-//! What to generate.
+//! A request for generated code.
 
 use std::borrow::Cow;
 
 use articulated_core::diagnostic::{Diagnostics, Spanned};
-use articulated_core::level::Level;
+use articulated_core::precision::Precision;
 use articulated_scene::{BuiltRobot, RobotOptions, RobotRequest, Scene};
 
 use crate::function_groups;
 use crate::target::Target;
 use crate::target::rust::is_name;
 
-/// A robot's document and what to make of it. Macro, build script and command line all fill one of these.
+/// A robot's document and the options of generation. Macro, build script and command line all fill
+/// one of these.
 #[derive(Clone, Debug)]
 pub struct Request {
     /// The bytes of the robot's file.
     pub document: Vec<u8>,
     /// The file's name, for messages and for the header of the generated file; not opened.
     pub file: String,
-    /// The scene whose effects act on the robot, if there is one. The options already contain what
-    /// else it says.
+    /// The scene whose effects act on the robot, if any. The options already contain its other
+    /// entries.
     pub scene: Option<Scene>,
-    /// What to make.
+    /// The options.
     pub options: Options,
 }
 
-/// The choices that a scene, the macro's keys, or the command line's flags make.
+/// The options of a scene, the macro's keys or the command line's flags.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// The robot: its base, its edits, its frames, its effects.
     pub robot: RobotOptions,
-    /// The functions wanted, each as [`crate::FunctionSpec::parse`] reads it: a name of
+    /// The requested functions, each as [`crate::FunctionSpec::parse`] reads it: a name of
     /// [`articulated_core::algorithm::functions`], or `name = first + second(a = 0)`.
     pub functions: Vec<Spanned<String>>,
-    /// What the word `motion` stands for among them: the functions that the motion of a scene calls, and none without such a scene.
+    /// The functions that the word `motion` means among them: those that the motion of a scene
+    /// calls; none without such a scene.
     pub motion: Vec<String>,
     /// Constants of the model that stay inputs: `payload(link)`, `inertia(link)`, `origin(joint)`, `gravity`, and numbers of an effect that is on, as `damping(joint)`, `contact(link)`.
     pub parameters: Vec<Spanned<String>>,
     /// Names to use in generated code instead of those made from the robot's names: (name in the
     /// file, name in code).
     pub rename: Vec<Spanned<(String, String)>>,
-    /// Compute limbs that are alike at once, one per lane of a vector, where that is cheaper.
+    /// Compute isomorphic limbs at once, one per lane of a vector, where that is cheaper.
     pub limbs: bool,
-    /// How accurate the functions are. Functions of many states at once have the accuracy of their
-    /// type of numbers.
-    pub level: Level,
-    /// How many megabytes (10⁶ bytes) of code all functions together may become, as predicted: see
+    /// Precision of the functions. Batch functions have the precision of their number type.
+    pub level: Precision,
+    /// Limit of the predicted code size of all functions together, megabytes (10⁶ bytes): see
     /// [`MAX_CODE_SIZE`](crate::MAX_CODE_SIZE), which is the default.
     pub max_code_size: u64,
-    /// The language, with its own choices.
+    /// The target language, with its options.
     pub target: Target,
-    /// Whether the ledger has counts after each model pass: for each of them the functions are traced once more. The code is the same. Build scripts and the macro do without.
+    /// Whether the ledger has counts after each model pass, for which the functions are traced once
+    /// more per pass. The code is the same. Build scripts and the macro leave it off.
     pub stages: bool,
 }
 
@@ -62,7 +64,7 @@ impl Default for Options {
             parameters: Vec::new(),
             rename: Vec::new(),
             limbs: true,
-            level: Level::default(),
+            level: Precision::default(),
             max_code_size: crate::MAX_CODE_SIZE,
             target: Target::default(),
             stages: true,
@@ -84,13 +86,13 @@ impl Request {
         Self { document: document.into(), file: file.into(), scene: None, options: Options::default() }
     }
 
-    /// The robot that it is about.
+    /// The requested robot.
     pub fn robot(&self) -> RobotRequest<'_> {
         let scene = self.scene.as_ref();
         RobotRequest { file: &self.file, document: &self.document, options: &self.options.robot, scene, checks_motion: false }
     }
 
-    /// The robot that it is about, edited, with its model and effects.
+    /// The requested robot, edited, with its model and effects.
     ///
     /// # Errors
     /// All findings about the document, the edits and the effects, if one of them is an error.
@@ -98,7 +100,8 @@ impl Request {
         self.robot().build()
     }
 
-    /// Takes the frames that a program chose by itself. Names in Rust of links that are none of these are in order then, and not used: they are left out.
+    /// Sets frames chosen by a program. Renamings of links outside these frames are then unused,
+    /// and are removed without a finding.
     pub fn set_frames(&mut self, frames: &[String]) {
         let unused = if self.options.rename.is_empty() { Vec::new() } else { self.links_without_a_joint() };
         let is_left_out = |(from, to): &(String, String)| is_name(to) && unused.contains(from) && !frames.contains(from);
@@ -106,16 +109,16 @@ impl Request {
         self.options.robot.set_frames(frames.iter().cloned());
     }
 
-    /// Links of which no joint that moves has the name; none of a robot that cannot be had.
+    /// Links whose name no moving joint has; empty if the robot cannot be built.
     fn links_without_a_joint(&self) -> Vec<String> {
         let Ok(BuiltRobot { model: whole, .. }) = self.build_robot() else { return Vec::new() };
         let is_joint = |name: &String| whole.joints().iter().any(|joint| joint.name == *name);
         whole.frames().iter().map(|frame| frame.name.clone()).filter(|name| !is_joint(name)).collect()
     }
 
-    /// The request with what follows from its choices: functions in the place of groups; without
-    /// `std` a function can neither ask what the processor has nor call a multiply-add.
-    pub(crate) fn settled(&self) -> Cow<'_, Self> {
+    /// The request with implied options: groups replaced by their functions; without `std`, no
+    /// detection of processor features and no multiply-adds.
+    pub(crate) fn normalized(&self) -> Cow<'_, Self> {
         let functions = function_groups::expanded(&self.options.functions, &self.options.motion);
         if !self.options.rust().no_std && functions == self.options.functions {
             return Cow::Borrowed(self);
@@ -161,11 +164,11 @@ mod tests {
     fn without_std_there_is_nothing_that_needs_it_and_all_else_stays() {
         let mut request = Request::new("robot", "");
         request.options.rust_mut().runtime = Some("::articulated".into());
-        assert_eq!(request.settled().options, request.options);
+        assert_eq!(request.normalized().options, request.options);
         request.options.rust_mut().no_std = true;
         let mut expected = request.options.clone();
         (expected.rust_mut().forbid_unsafe, expected.level.fused, expected.rust_mut().runtime) = (true, false, None);
         assert!(request.options.level.fused);
-        assert_eq!(request.settled().options, expected);
+        assert_eq!(request.normalized().options, expected);
     }
 }

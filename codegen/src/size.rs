@@ -1,7 +1,8 @@
-//! Predicted size of generated code, from the tree alone: it is known before anything is traced.
+//! Predicted size of generated code, from the kinematic tree alone, before tracing.
 //!
-//! A function with one number per joint grows as the chain does. One with a number per pair of joints grows as its
-//! square, and what inverts the mass matrix as its cube. A test compares predictions with what is generated.
+//! A function with one number per joint grows linearly with the chain, one with a number per pair
+//! of joints quadratically, and one that inverts the mass matrix cubically. A test compares
+//! predictions with generated code.
 
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics};
 use articulated_core::model::Model;
@@ -9,8 +10,8 @@ use articulated_core::model::Model;
 use crate::spec::{FunctionSpec, FunctionTerm};
 use crate::{Options, Request, program};
 
-/// So many megabytes (10⁶ bytes) of Rust are generated at most, unless a request has another limit. A compiler takes
-/// minutes and gigabytes of memory for more, and loops over joints are faster.
+/// Default limit of generated Rust, megabytes (10⁶ bytes). For more, a compiler takes minutes and
+/// gigabytes of memory, and loops over joints are faster.
 pub const MAX_CODE_SIZE: u64 = 64;
 
 /// Bytes of source per instruction: 64 to 70 with one word of code each, measured on chains of 40 to 250 joints.
@@ -19,20 +20,21 @@ const BYTES: f64 = 66.0;
 /// The same function for batches comes twice, in numbers and in vectors.
 const WITH_BATCH: f64 = 3.0;
 
-/// What of a tree decides how much code a function is.
+/// Properties of a tree that determine the code size of a function.
 struct Tree {
     bodies: f64,
     frames: f64,
     freedoms: f64,
-    /// Pairs of a degree of freedom and one on its way to the base, itself included.
+    /// Pairs of a degree of freedom and one on its path to the root, itself included.
     pairs: f64,
-    /// Sum of the squares of the number of degrees of freedom on the way to the base, over all degrees of freedom.
+    /// Sum of the squares of the number of degrees of freedom on the path to the root, over all
+    /// degrees of freedom.
     squares: f64,
     /// Pairs of a frame and a degree of freedom that moves it.
     frame_pairs: f64,
     /// As `squares`, over all frames.
     frame_squares: f64,
-    /// Whether joints follow others: then forward dynamics takes the factors of the mass matrix.
+    /// Whether there are mimic joints: then forward dynamics factorises the mass matrix.
     has_followers: bool,
 }
 
@@ -94,12 +96,12 @@ impl Tree {
     }
 }
 
-/// Megabytes of source that a function becomes.
-fn megabytes(wanted: &FunctionSpec, model: &Model<f64>, tree: &Tree, options: &Options) -> f64 {
+/// Predicted source of a function, megabytes.
+fn megabytes(spec: &FunctionSpec, model: &Model<f64>, tree: &Tree, options: &Options) -> f64 {
     let can = options.target.capabilities(options);
     let alone = !can.states;
-    let columns = alone && program::has_columns(wanted, model, can);
-    let instructions: f64 = wanted.parts.iter().map(|part| tree.instructions(part, columns)).sum();
+    let columns = alone && program::has_columns(spec, model, can);
+    let instructions: f64 = spec.parts.iter().map(|part| tree.instructions(part, columns)).sum();
     instructions * BYTES * if alone { 1.0 } else { WITH_BATCH } / 1e6
 }
 
@@ -169,8 +171,8 @@ mod tests {
             for function in functions::<Sym>() {
                 request.options.functions = vec![function.name.into()];
                 let Ok(generated) = generate(&request) else { continue };
-                let wanted = FunctionSpec::plain(function);
-                let predicted = megabytes(&wanted, &whole, &Tree::of(&whole), &request.options);
+                let spec = FunctionSpec::plain(function);
+                let predicted = megabytes(&spec, &whole, &Tree::of(&whole), &request.options);
                 let found = generated.source.len() as f64 / 1e6;
                 // What is small is never refused, and mostly helpers that all modules have.
                 assert!(found < predicted.max(0.5) * 2.0 && predicted < found.max(0.5) * 2.0, "{} {found} {predicted}", function.name);

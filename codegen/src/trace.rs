@@ -1,4 +1,4 @@
-//! Running algorithms on symbols.
+//! Tracing: algorithms run on symbols.
 
 use std::ops::RangeInclusive;
 
@@ -11,30 +11,30 @@ use crate::graph::{Graph, Op};
 use crate::limbs::{Constants, IsomorphicLimbs, pack};
 use crate::model_pass::{FoldedRotations, View, model_passes, no_joint_moves_origin};
 use crate::parameters::Parameter;
-use crate::pass::{copy, live, rebuild};
+use crate::pass::{copy, dce, rebuild};
 use crate::program::Strategy;
 use crate::spec::{FunctionSpec, FunctionTerm};
 use crate::sym::{self, Sym};
 
 /// The graph of a function on `model`: its argument k is argument k of the graph, parameters come after the last; the results of the parts one after the other.
-pub(crate) fn trace(wanted: &FunctionSpec, choices: &[Strategy], model: &Model<f64>, parameters: &[Parameter]) -> Graph {
-    let arguments = wanted.arguments();
+pub(crate) fn trace(spec: &FunctionSpec, strategies: &[Strategy], model: &Model<f64>, parameters: &[Parameter]) -> Graph {
+    let arguments = spec.arguments();
     let graph = sym::trace(|| {
         let with_inputs = (!parameters.is_empty()).then(|| {
             let input = |k| Sym::input(arguments.len(), k);
             model.cast::<Sym>().changed(|parts| parameters.iter().for_each(|p| p.put(parts, input)))
         });
-        let run = |(part, choice): (&FunctionTerm, &Strategy)| {
+        let run = |(part, strategy): (&FunctionTerm, &Strategy)| {
             // Where all is numbers, passes go over numbers, which is sooner done.
-            let symbolic = with_inputs.as_ref().map_or_else(|| passed(part, choice, model).cast(), |m| passed(part, choice, m));
-            run(part, choice, &symbolic, &arguments)
+            let symbolic = with_inputs.as_ref().map_or_else(|| passed(part, strategy, model).cast(), |m| passed(part, strategy, m));
+            run(part, strategy, &symbolic, &arguments)
         };
-        wanted.parts.iter().zip(choices).flat_map(run).collect()
+        spec.parts.iter().zip(strategies).flat_map(run).collect()
     });
     sines_given(graph, &arguments)
 }
 
-/// Takes the sines and cosines of q from their argument, if there is one.
+/// Takes the sines and cosines of q from their own argument, if there is one.
 fn sines_given(graph: Graph, arguments: &[Argument]) -> Graph {
     let place = |argument| arguments.iter().position(|a| *a == argument);
     let (Some(q), Some(sines)) = (place(Argument::Q), place(Argument::SinCos)) else { return graph };
@@ -51,36 +51,39 @@ fn sines_given(graph: Graph, arguments: &[Argument]) -> Graph {
             }
         },
     );
-    given.asked_as(&graph)
+    given.requested_as(&graph)
 }
 
-/// The same with branches that are alike in lanes.
-pub(crate) fn trace_in_lanes(wanted: &FunctionSpec, choices: &[Strategy], model: &Model<f64>, alike: &IsomorphicLimbs) -> Graph {
-    let arguments = wanted.arguments();
+/// The same with isomorphic branches in lanes.
+pub(crate) fn trace_in_lanes(spec: &FunctionSpec, strategies: &[Strategy], model: &Model<f64>, alike: &IsomorphicLimbs) -> Graph {
+    let arguments = spec.arguments();
     let mut constants = Constants::new(arguments.len());
     let graph = sym::trace(|| {
-        let mut run = |(part, choice): (&FunctionTerm, &Strategy)| {
-            let symbolic = alike.symbolic(&passed(part, choice, model), &mut constants);
-            run(part, choice, &symbolic, &arguments)
+        let mut run = |(part, strategy): (&FunctionTerm, &Strategy)| {
+            let symbolic = alike.symbolic(&passed(part, strategy, model), &mut constants);
+            run(part, strategy, &symbolic, &arguments)
         };
-        wanted.parts.iter().zip(choices).flat_map(&mut run).collect()
+        spec.parts.iter().zip(strategies).flat_map(&mut run).collect()
     });
     let graph = sines_given(graph, &arguments);
-    pack(&live(&graph), &arguments, alike, &constants).asked_as(&graph)
+    pack(&dce(&graph), &arguments, alike, &constants).requested_as(&graph)
 }
 
-/// The view of the model after the passes that are chosen.
-fn passed<S: Scalar>(part: &FunctionTerm, choice: &Strategy, model: &Model<S>) -> View<S> {
-    let model = if part.function.asks_for_frames() { model.clone() } else { model.clone().without_frames() };
-    let (passes, shifted) = if part.function.regrouped { (choice.passes, choice.shifted) } else { (0, false) };
+/// The view of the model after the passes of the strategy.
+fn passed<S: Scalar>(part: &FunctionTerm, strategy: &Strategy, model: &Model<S>) -> View<S> {
+    let mut model = model.clone();
+    if !part.function.asks_for_frames() {
+        model.frames.clear();
+    }
+    let (passes, shifted) = if part.function.regrouped { (strategy.passes, strategy.shifted) } else { (0, false) };
     let carried = model.carried();
     let view = model_passes::<S>().iter().take(passes).fold(View::new(model), |view, (_, pass, _)| pass(view));
     let view = if shifted { view.with_shifted_masses(&carried) } else { view };
-    choice.unit.map(|metres| view.in_unit_of(S::from_f64(metres))).unwrap_or(view)
+    strategy.unit.map(|metres| view.in_unit_of(S::from_f64(metres))).unwrap_or(view)
 }
 
-/// Which rotations may be folded into constants after all passes, as the function does not need
-/// where bodies are.
+/// The rotations that may be folded into constants after all passes, for functions independent of
+/// body poses.
 pub(crate) fn foldable_rotations(part: &FunctionTerm, model: &Model<f64>) -> Vec<FoldedRotations> {
     if indifferent(part, model) { finished(part, model).foldable_rotations() } else { Vec::new() }
 }
@@ -88,15 +91,17 @@ pub(crate) fn foldable_rotations(part: &FunctionTerm, model: &Model<f64>) -> Vec
 /// Units of other sizes, m, are not tried: constants would be far from one.
 const UNITS: RangeInclusive<f64> = 1e-3..=1e3;
 
-/// Units of length that may spare multiplications, on the model that is chosen, as the function does not ask for lengths: neither frames nor joints that slide.
-pub(crate) fn units(part: &FunctionTerm, choice: &Strategy, model: &Model<f64>) -> Vec<f64> {
+/// Units of length that may save multiplications on the chosen model, for functions independent of
+/// the unit: without frames and prismatic joints.
+pub(crate) fn units(part: &FunctionTerm, strategy: &Strategy, model: &Model<f64>) -> Vec<f64> {
     let fits = indifferent(part, model) && no_joint_moves_origin(model);
-    let mut units = if fits { passed(part, &Strategy { unit: None, ..*choice }, model).units() } else { Vec::new() };
+    let mut units = if fits { passed(part, &Strategy { unit: None, ..*strategy }, model).units() } else { Vec::new() };
     units.retain(|metres| UNITS.contains(metres) && *metres != 1.0);
     units
 }
 
-/// Whether a function is the same in whatever axes and units bodies are, as neither it nor an effect asks where they are.
+/// Whether a function is independent of the axes and units of bodies: neither it nor an effect
+/// depends on their poses.
 fn indifferent(part: &FunctionTerm, model: &Model<f64>) -> bool {
     let free = part.function.regrouped && !part.function.asks_for_frames() && part.function.takes.contains(&Argument::Q);
     free && model.bodies().iter().all(|b| b.effects.body.is_empty())
@@ -107,7 +112,7 @@ fn finished(part: &FunctionTerm, model: &Model<f64>) -> View<f64> {
     passed(part, &Strategy::plain(&part.function.ways[0], usize::MAX), model)
 }
 
-fn run(part: &FunctionTerm, choice: &Strategy, view: &View<Sym>, arguments: &[Argument]) -> Vec<Sym> {
+fn run(part: &FunctionTerm, strategy: &Strategy, view: &View<Sym>, arguments: &[Argument]) -> Vec<Sym> {
     let shape = view.model.shape();
     let vector = |argument: &Argument| -> Vec<Sym> {
         let place = arguments.iter().position(|a| a == argument);
@@ -122,16 +127,16 @@ fn run(part: &FunctionTerm, choice: &Strategy, view: &View<Sym>, arguments: &[Ar
     let slices: Vec<&[Sym]> = vectors.iter().map(Vec::as_slice).collect();
     let mut out = vec![Sym::zero(); part.function.len(shape)];
     let q = part.function.takes.iter().position(|a| *a == Argument::Q);
-    let folded = q.zip(choice.folded).map(|(k, which)| view.fold_rotations_into_constants(slices[k], which));
+    let folded = q.zip(strategy.folded).map(|(k, which)| view.fold_rotations_into_constants(slices[k], which));
     let view = folded.as_ref().unwrap_or(view);
-    let by_axes = choice.axes.then(|| view.clone().with_axis_accelerations());
+    let by_axes = strategy.axes.then(|| view.clone().with_axis_accelerations());
     let view = by_axes.as_ref().unwrap_or(view);
-    let called = view.call_by(part.function, choice.way, &slices, &mut out);
+    let called = view.call_by(part.function, strategy.way, &slices, &mut out);
     debug_assert!(called.is_ok(), "arguments were made to measure");
     out
 }
 
-/// Whether a way can be had for the model.
+/// Whether a way applies to the model.
 pub(crate) fn applies(way: &Way<Sym>, model: &Model<f64>) -> bool {
     let mut applies = false;
     let _ = sym::trace(|| {
@@ -141,7 +146,8 @@ pub(crate) fn applies(way: &Way<Sym>, model: &Model<f64>) -> bool {
     applies
 }
 
-/// The ways of a function that can be had for the model, and what each costs at least; the least first.
+/// The ways of a function that apply to the model, with a lower bound of each cost, the cheapest
+/// first.
 pub(crate) fn ways(part: &FunctionTerm, model: &Model<f64>) -> Vec<(&'static Way<Sym>, u64)> {
     if let [one] = part.function.ways {
         return vec![(one, 0)];
@@ -227,30 +233,26 @@ mod tests {
         let mut seen = 0;
         for (model, turns) in [(arm("", false), false), (arm("", true), false), (arm(FOLLOWER, false), false), (turning(FOLLOWER), true)] {
             assert_eq!(no_joint_moves_origin(&model), turns);
-            for wanted in all() {
-                let part = &wanted.parts[0];
+            for spec in all() {
+                let part = &spec.parts[0];
                 let all = ways(part, &model);
-                let values = |choice| trace(&wanted, &[choice], &model, &[]).evaluate(input);
+                let values = |strategy| trace(&spec, &[strategy], &model, &[]).evaluate(input);
                 let expected = values(Strategy::plain(all[0].0, 0));
                 let folded: Vec<Option<FoldedRotations>> =
                     [None].into_iter().chain(foldable_rotations(part, &model).into_iter().map(Some)).collect();
                 for (way, _) in all {
                     for passes in 1..=model_passes::<Sym>().len() {
-                        close(
-                            &values(Strategy::plain(way, passes)),
-                            &expected,
-                            &format!("{} by {}, {passes} passes", wanted.name, way.name),
-                        );
+                        close(&values(Strategy::plain(way, passes)), &expected, &format!("{} by {}, {passes} passes", spec.name, way.name));
                     }
                     let inertias_and_rates = [(false, false), (true, false), (false, true), (true, true)];
                     for (&folded, (shifted, axes)) in folded.iter().flat_map(|folded| inertias_and_rates.map(|both| (folded, both))) {
-                        let choice = Strategy { folded, shifted, axes, ..Strategy::plain(way, usize::MAX) };
-                        for unit in once(None).chain(units(part, &choice, &model).into_iter().map(Some)) {
-                            let choice = Strategy { unit, ..choice };
+                        let strategy = Strategy { folded, shifted, axes, ..Strategy::plain(way, usize::MAX) };
+                        for unit in once(None).chain(units(part, &strategy, &model).into_iter().map(Some)) {
+                            let strategy = Strategy { unit, ..strategy };
                             close(
-                                &values(choice),
+                                &values(strategy),
                                 &expected,
-                                &format!("{} by {}, {folded:?}, {unit:?}, shifted: {shifted}, by axes: {axes}", wanted.name, way.name),
+                                &format!("{} by {}, {folded:?}, {unit:?}, shifted: {shifted}, by axes: {axes}", spec.name, way.name),
                             );
                             seen += usize::from(unit.is_some());
                         }
@@ -279,18 +281,18 @@ mod tests {
     #[test]
     fn sines_that_are_given_are_those_of_q_alone() {
         let model = arm("", false);
-        let plain = all().filter(|wanted| wanted.arguments().contains(&Argument::Q));
-        for wanted in plain {
-            let given = FunctionSpec::parse(&format!("{}(q = sin_cos)", wanted.name)).unwrap();
-            let choice = [Strategy::plain(ways(&wanted.parts[0], &model)[0].0, usize::MAX)];
+        let plain = all().filter(|spec| spec.arguments().contains(&Argument::Q));
+        for spec in plain {
+            let given = FunctionSpec::parse(&format!("{}(q = sin_cos)", spec.name)).unwrap();
+            let strategy = [Strategy::plain(ways(&spec.parts[0], &model)[0].0, usize::MAX)];
             let sines = given.arguments().len() - 1;
             let with = |argument: usize, k: usize| {
                 let (sin, cos) = input(0, k / 2).sin_cos();
                 if argument == sines { [sin, cos][k % 2] } else { input(argument, k) }
             };
             assert_eq!(given.arguments()[0], Argument::Q);
-            let graph = trace(&given, &choice, &model, &[]);
-            close(&graph.evaluate(with), &trace(&wanted, &choice, &model, &[]).evaluate(input), &wanted.name);
+            let graph = trace(&given, &strategy, &model, &[]);
+            close(&graph.evaluate(with), &trace(&spec, &strategy, &model, &[]).evaluate(input), &spec.name);
         }
     }
 }

@@ -16,7 +16,7 @@ pub fn can_snap(tolerance: f64) -> bool {
     tolerance > 0.0 && tolerance <= MOST_SNAPPED
 }
 
-/// The tolerance that was asked for; one that cannot be is an error of the whole document.
+/// The requested tolerance; an invalid one is an error of the whole document.
 pub(crate) fn check(asked: Option<f64>, log: &mut Diagnostics) {
     if let Some(tolerance) = asked.filter(|tolerance| !can_snap(*tolerance)) {
         let place = Place { field: "snap_angles", ..Place::DOCUMENT };

@@ -89,15 +89,15 @@ impl Reader<'_> {
     /// request. No request if a file is missing or the scene is wrong.
     fn request(&mut self) -> (Scene, Option<Request>) {
         let settings = self.settings;
-        let folder = folder_of(settings.own.scene.as_ref().map_or("", |(name, _)| name).as_ref());
-        let from_file = match &settings.own.scene {
+        let folder = folder_of(settings.macro_keys.scene.as_ref().map_or("", |(name, _)| name).as_ref());
+        let from_file = match &settings.macro_keys.scene {
             Some((name, at)) => self.loader.scene(name.as_ref(), &Span { file: name.clone(), at: *at }, &mut self.log),
             None => Some(Scene::default()),
         };
         let is_whole = from_file.is_some();
         let (scene, wrong) = from_file.unwrap_or_default().overlaid(&settings.rest, &Settings::own_names());
         self.log.extend(wrong);
-        let mut options = settings.own.options();
+        let mut options = settings.macro_keys.options();
         scene::fill(&mut options, &scene);
         if !is_whole {
             return (scene, None);
@@ -122,7 +122,7 @@ impl Reader<'_> {
         }
         // A value that is wrong is reported already.
         if !settings.has("urdf") {
-            self.log.push(match &settings.own.scene {
+            self.log.push(match &settings.macro_keys.scene {
                 Some(_) => scene.without_robot("no robot", "urdf, here or in the scene"),
                 None if settings.has("scene") => return None,
                 None => Diagnostic::error(
@@ -163,6 +163,6 @@ impl Settings {
     }
 
     fn at_scene(&self) -> At {
-        self.own.scene.as_ref().map_or(At::Nowhere, |(_, at)| *at)
+        self.macro_keys.scene.as_ref().map_or(At::Nowhere, |(_, at)| *at)
     }
 }

@@ -14,7 +14,7 @@ use crate::tree::{Places, Tree};
 
 /// The keys with their values.
 pub(crate) struct Settings {
-    pub(crate) own: Own,
+    pub(crate) macro_keys: MacroKeys,
     /// The table of those that scenes have too.
     pub(crate) rest: Node,
     pub(crate) places: Places,
@@ -24,7 +24,7 @@ pub(crate) struct Settings {
 
 /// The macro's own keys.
 #[derive(Default)]
-pub(crate) struct Own {
+pub(crate) struct MacroKeys {
     /// The scene's file, and where it is named.
     pub(crate) scene: Option<(String, At)>,
     runtime: Option<(String, At)>,
@@ -37,45 +37,45 @@ struct Key {
     name: &'static str,
     expected: &'static str,
     /// `None`: the value is none for this key.
-    read: fn(&mut Own, &Node) -> Option<()>,
+    read: fn(&mut MacroKeys, &Node) -> Option<()>,
 }
 
 const KEYS: [Key; 4] = [
     Key {
         name: "scene",
         expected: "the path of a scene from the folder of Cargo.toml, as \"scenes/arm.toml\"",
-        read: |own, node| text(node).map(|path| own.scene = Some((path.to_owned(), node.at))),
+        read: |macro_keys, node| text(node).map(|path| macro_keys.scene = Some((path.to_owned(), node.at))),
     },
-    Key { name: "no_std", expected: "true or false", read: |own, node| truth(node).map(|yes| own.no_std = yes) },
+    Key { name: "no_std", expected: "true or false", read: |macro_keys, node| truth(node).map(|yes| macro_keys.no_std = yes) },
     Key {
         name: "crate",
         expected: "the absolute path of the crate `articulated`, as ::articulated or crate::path",
-        read: |own, node| absolute(text(node)?).map(|path| own.runtime = Some((path, node.at))),
+        read: |macro_keys, node| absolute(text(node)?).map(|path| macro_keys.runtime = Some((path, node.at))),
     },
-    Key { name: "standalone", expected: "true or false", read: |own, node| truth(node).map(|yes| own.standalone = yes) },
+    Key { name: "standalone", expected: "true or false", read: |macro_keys, node| truth(node).map(|yes| macro_keys.standalone = yes) },
 ];
 
 impl Settings {
     /// What stands in the braces of the module whose name is at `module`.
     pub(crate) fn read(tokens: TokenStream, module: Span, errors: &mut Errors) -> Self {
-        let (mut places, mut own) = (Places::new(module), Own::default());
+        let (mut places, mut macro_keys) = (Places::new(module), MacroKeys::default());
         let mut tree = Tree::new(&mut places, errors);
         let mut rest = tree.read(tokens);
         let keys = tree.keys;
         if let Value::Table(entries) = &mut rest.value {
             entries.retain(|entry| {
                 let Some(key) = KEYS.iter().find(|key| key.name == entry.name) else { return true };
-                if (key.read)(&mut own, &entry.node).is_none() {
-                    let message = format!("{}: found {}, expected {}", key.name, entry.node.value.described(), key.expected);
+                if (key.read)(&mut macro_keys, &entry.node).is_none() {
+                    let message = format!("{}: found {}, expected {}", key.name, entry.node.value.describe(), key.expected);
                     errors.push(places.error(entry.node.at, message));
                 }
                 false
             });
         }
-        if let (true, Some((_, at))) = (own.standalone, &own.runtime) {
+        if let (true, Some((_, at))) = (macro_keys.standalone, &macro_keys.runtime) {
             errors.push(places.error(*at, "standalone code uses no crate: leave out `crate` or `standalone`"));
         }
-        Self { own, rest, places, keys }
+        Self { macro_keys, rest, places, keys }
     }
 
     /// The names of the macro's own keys.
@@ -89,7 +89,7 @@ impl Settings {
     }
 }
 
-impl Own {
+impl MacroKeys {
     /// Options in which nothing is said but by these keys.
     pub(crate) fn options(&self) -> Options {
         let runtime = || self.runtime.as_ref().map_or("::articulated".into(), |(path, _)| path.clone());

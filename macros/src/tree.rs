@@ -22,7 +22,7 @@ const EXPRESSIONS: [&str; 4] = ["functions", "parameters", "level", "crate"];
 /// The words that places in a tree refer to.
 pub(crate) struct Places {
     words: Vec<TokenStream>,
-    /// What has no place is told here.
+    /// Collector of errors without a place.
     elsewhere: Span,
 }
 
@@ -53,7 +53,7 @@ impl Places {
 /// A reader of tokens.
 pub(crate) struct Tree<'a> {
     pub(crate) places: &'a mut Places,
-    /// What cannot be read is told here and left out.
+    /// Collector of errors; unreadable entries are reported here and left out.
     pub(crate) errors: &'a mut Errors,
     /// The keys that were found, those whose values cannot be read too.
     pub(crate) keys: BTreeSet<String>,

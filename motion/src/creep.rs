@@ -1,26 +1,26 @@
-//! How far a robot creeps where smoothed friction should hold it.
+//! Creep of a robot where smoothed friction should hold it.
 
 use articulated::Dynamics;
 use articulated::simulate::{Recording, SLIDING};
 use articulated_core::effect::{Applied, EffectId, unit};
 
 use crate::freedom::Freedom;
-use crate::stage::{Stage, field};
+use crate::session::{Session, field};
 
-/// What crept in a motion, and how far.
+/// A contact or joint that crept, and how far.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Creep {
     /// `contact` or `friction`.
     pub effect: EffectId,
     /// The link of the contact, or the joint.
     pub on: String,
-    /// Length of the way that it crept, m or rad.
+    /// Length of the path that it crept, m or rad.
     pub way: f64,
-    /// Time that it spent so, s.
+    /// Time spent creeping, s.
     pub time: f64,
 }
 
-impl Stage {
+impl Session {
     /// The contact and the joint with dry friction that crept furthest in a motion of the scene, of
     /// each kind at most one.
     ///
@@ -81,12 +81,12 @@ impl Creep {
     }
 }
 
-/// That with the longest way; none that never crept.
+/// The one with the longest path; `None` if nothing crept.
 fn furthest(all: impl Iterator<Item = Creep>) -> Option<Creep> {
     all.filter(|creep| creep.time > 0.0).max_by(|a, b| a.way.total_cmp(&b.way))
 }
 
-/// A contact, as far as creeping is concerned.
+/// A contact, for creep detection.
 struct Contact {
     frame: usize,
     point: [f64; 3],
@@ -98,10 +98,10 @@ struct Contact {
 }
 
 impl Contact {
-    fn of(stage: &Stage, applied: &Applied) -> Option<Self> {
+    fn of(session: &Session, applied: &Applied) -> Option<Self> {
         let one = |name: &str| field(applied, name).first().copied();
         Some(Self {
-            frame: stage.model.frames().iter().position(|frame| frame.name == applied.on)?,
+            frame: session.model.frames.iter().position(|frame| frame.name == applied.on)?,
             point: applied.at.xyz,
             normal: unit(field(applied, "normal").try_into().ok()?)?,
             reach: one("height")? + one("radius")?,

@@ -1,4 +1,4 @@
-//! Why a scene does not move: data first, then a sentence.
+//! Errors that keep a scene from moving, as data and text.
 
 use std::fmt;
 
@@ -7,23 +7,23 @@ use articulated::simulate::{SettingError, SimulateError, StateError};
 use articulated_core::diagnostic::{Diagnostic, Diagnostics};
 use articulated_core::listed;
 
-/// All that keeps a scene from moving.
+/// All errors that keep a scene from moving.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionErrors {
     /// In the order in which they were found, each once; never empty.
     pub errors: Vec<MotionError>,
 }
 
-/// One thing that keeps a scene from moving.
+/// An error that keeps a scene from moving.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionError {
-    /// The scene's file, as it was called when it was read.
+    /// The scene's file, by the name under which it was read.
     pub file: String,
-    /// What is wrong.
+    /// The fault.
     pub fault: Fault,
 }
 
-/// What keeps a scene from moving.
+/// A fault that keeps a scene from moving.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Fault {
@@ -44,52 +44,53 @@ pub enum Fault {
         /// The absolute tolerance, rad/s or m/s.
         atol: f64,
     },
-    /// The robot has not as many coordinates, or degrees of freedom, as that of the scene.
+    /// The numbers of coordinates or degrees of freedom of the robot and of the scene's robot
+    /// differ.
     Shape {
         /// `coordinates` or `degrees of freedom`.
         what: &'static str,
-        /// How many the robot has.
+        /// Number of the robot.
         found: usize,
-        /// How many that of the scene has.
+        /// Number of the scene's robot.
         expected: usize,
     },
-    /// There are not as many names of frames as the robot has frames.
+    /// The number of frame names differs from the number of frames.
     Frames {
-        /// How many names there are.
+        /// Number of names.
         found: usize,
-        /// How many frames.
+        /// Number of frames.
         expected: usize,
     },
-    /// The robot calls a frame otherwise.
+    /// The robot has another name for a frame.
     FrameName {
         /// Number of the frame, from 0.
         index: usize,
         /// The name that was given for it.
         found: String,
-        /// What the robot calls it.
+        /// The robot's name.
         expected: String,
     },
-    /// The robot does not give a frame that an event is about.
+    /// The robot lacks a frame that an event needs.
     NoFrame {
-        /// What needs it: `effects.contact` or `impact.link`.
+        /// The key that needs it: `effects.contact` or `impact.link`.
         key: &'static str,
         /// The link that the frame is of.
         link: String,
-        /// The frames that the robot gives.
+        /// The frames of the robot.
         frames: Vec<String>,
     },
-    /// The robot accelerates otherwise than the scene's.
+    /// The robot's accelerations differ from those of the scene's robot.
     Dynamics {
         /// Largest difference of the torques that the accelerations take, N·m or N.
         apart: f64,
         /// The largest of these torques, N·m or N.
         largest: f64,
     },
-    /// The robot has not a function that the motion needs.
+    /// The robot lacks a function that the motion needs.
     Function(FunctionError),
     /// What is wrong with the state at the start, with control or with an event.
     State(StateError),
-    /// Another reason why a simulation could not begin.
+    /// Another error that kept the simulation from starting.
     Simulation(SimulateError),
 }
 
@@ -105,7 +106,7 @@ impl MotionErrors {
         Self { errors }
     }
 
-    /// Nothing is wrong, or all of this.
+    /// `Ok` if there are no faults, else all of them.
     pub(crate) fn none(file: &str, faults: impl IntoIterator<Item = Fault>) -> Result<(), Self> {
         let all = Self::of(faults.into_iter().map(|fault| MotionError::new(file, fault)));
         if all.errors.is_empty() { Ok(()) } else { Err(all) }
@@ -131,7 +132,7 @@ impl MotionErrors {
 }
 
 impl MotionError {
-    /// What is wrong with a scene itself may be wrong in a file that it names.
+    /// An error of a scene may be in a file that it names.
     fn new(file: &str, fault: Fault) -> Self {
         let file = if let Fault::Scene(error) = &fault { error.file() } else { file };
         Self { file: file.to_owned(), fault }
@@ -139,7 +140,7 @@ impl MotionError {
 }
 
 impl Fault {
-    /// The faults that an error of the simulation stands for, one by one; never none.
+    /// The faults of a simulation error, one by one; never empty.
     pub(crate) fn of(error: SimulateError) -> Vec<Self> {
         match error {
             SimulateError::Settings(all) if !all.is_empty() => all.into_iter().map(Self::Setting).collect(),
@@ -206,7 +207,7 @@ impl fmt::Display for Fault {
             Self::Dynamics { apart, largest } => write!(
                 f,
                 "robot: found accelerations that take torques {apart:.3e} N·m or N from those of the scene's robot, of {largest:.3e}, expected a robot with the scene's \
-                 gravity, effects and edits (made from the scene, not from its URDF); `Stage::motion` moves another all the same"
+                 gravity, effects and edits (made from the scene, not from its URDF); `Session::motion` moves another all the same"
             ),
             Self::Function(error) => error.fmt(f),
             Self::State(error) => error.fmt(f),

@@ -1,11 +1,12 @@
-//! Degrees of freedom with the bounds and the friction of their joints, those of joints that follow others too.
+//! Degrees of freedom with the bounds and the friction of their joints, mimic joints included.
 
 use articulated_core::effect::{EffectId, JointEffect};
 use articulated_core::model::Body;
 
-use crate::stage::Stage;
+use crate::session::Session;
 
-/// A degree of freedom: which of its joint's, the coordinate and the rate that it moves with, and how: its own coordinate is multiplier · that + offset.
+/// A degree of freedom: its index in its joint, and the coordinate and rate that it moves with. Its
+/// own coordinate is multiplier · coordinate + offset.
 pub(crate) struct Freedom<'s> {
     /// The body that the joint carries; it has the joint's name.
     pub(crate) body: &'s Body<f64>,
@@ -16,8 +17,9 @@ pub(crate) struct Freedom<'s> {
     offset: f64,
 }
 
-impl Stage {
-    /// All degrees of freedom, those of joints that follow others too. A quaternion's have no coordinates: they are no place of bounds.
+impl Session {
+    /// All degrees of freedom, mimic joints included. Those of a quaternion are left out: they have
+    /// no coordinates of their own, and so no bounds.
     pub(crate) fn freedoms(&self) -> impl Iterator<Item = Freedom<'_>> {
         self.model.bodies().iter().skip(1).flat_map(|body| {
             let (at, follow) = (&body.coordinates, body.coordinates.mimic);
@@ -27,7 +29,7 @@ impl Stage {
         })
     }
 
-    /// What events of a degree of freedom are called: its joint, with a number where that has several.
+    /// Name for events of a degree of freedom: its joint, with an index where that has several.
     pub(crate) fn name_of(&self, at: &Freedom<'_>) -> String {
         let several = self.model.joints().iter().find(|joint| joint.name == at.joint() && joint.v.1 > 1);
         several.map_or_else(|| at.joint().to_owned(), |joint| format!("{}[{}]", joint.name, at.v - joint.v.0))
@@ -55,17 +57,17 @@ impl<'s> Freedom<'s> {
         &self.body.name
     }
 
-    /// The effect of this kind that is on it.
+    /// Its effect of this kind.
     pub(crate) fn effect(&self, effect: EffectId) -> Option<&'s JointEffect<f64>> {
         self.body.effects.joint.iter().find(|e| e.effect == effect && e.freedom == self.freedom)
     }
 
-    /// Its own coordinate, where that which it moves with is `q`.
-    pub(crate) fn own(&self, q: f64) -> f64 {
+    /// Its own coordinate at coordinate `q` of the joint that it moves with.
+    pub(crate) fn own_coordinate(&self, q: f64) -> f64 {
         self.multiplier * q + self.offset
     }
 
-    /// Bounds of its own coordinate as those of the coordinate that it moves with.
+    /// Converts bounds of its own coordinate to bounds of the coordinate that it moves with.
     fn of_the_coordinate(&self, (lower, upper): (f64, f64)) -> (f64, f64) {
         let [a, b] = [lower, upper].map(|x| (x - self.offset) / self.multiplier);
         if self.multiplier < 0.0 { (b, a) } else { (a, b) }

@@ -1,9 +1,9 @@
 //! A scene's motion in a program: its start, its control, its events, moved by any robot.
 //!
-//! A [`Stage`] is a scene with its robot. It moves on anything that has dynamics: the generic model, and generated robots.
+//! A [`Session`] is a scene with its robot. It moves on anything that has dynamics: the generic model, and generated robots.
 //!
 //! ```
-//! use articulated_motion::{Ending, Stage};
+//! use articulated_motion::{Ending, Session};
 //!
 //! const URDF: &str = r#"<robot name="pendulum"><link name="base"/>
 //!   <link name="bob"><inertial><origin xyz="0 0 -1"/><mass value="1"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>
@@ -23,13 +23,13 @@
 //! # let path = folder.join("swing.toml");
 //! # std::fs::write(folder.join("pendulum.urdf"), URDF)?;
 //! # std::fs::write(&path, SCENE)?;
-//! let stage = Stage::open(&path)?;
+//! let session = Session::open(&path)?;
 //! # std::fs::remove_dir_all(&folder)?;
-//! stage.warnings.iter().for_each(|odd| eprintln!("{odd}"));
-//! let swing = stage.run(&stage.model, &stage.frame_names())?;
+//! session.warnings.iter().for_each(|warning| eprintln!("{warning}"));
+//! let swing = session.run(&session.model, &session.frame_names())?;
 //!
 //! assert_eq!((swing.ending, swing.reached, swing.error), (Ending::AtEnd, 12.0, None));
-//! assert_eq!(swing.happenings[0].what, "hinge reaches its upper limit");
+//! assert_eq!(swing.occurrences[0].what, "hinge reaches its upper limit");
 //! let last = swing.recording.len() - 1;
 //! // It rests where kp (target − q) = m g l sin q.
 //! let q = swing.recording.q_at(last)[0];
@@ -37,25 +37,29 @@
 //!
 //! // A control of one's own in place of the scene's; in an articulated::simulate::Hold it is asked at a rate.
 //! let mut push = |t: f64, _q: &[f64], v: &[f64], tau: &mut [f64]| tau[0] = 2.0 * t.sin() - 0.5 * v[0];
-//! let pushed = stage.run_with(&stage.model, &stage.frame_names(), &mut push)?;
+//! let pushed = session.run_with(&session.model, &session.frame_names(), &mut push)?;
 //! assert_eq!((pushed.ending, pushed.error), (Ending::AtEnd, None));
 //! # Ok(()) }
 //! ```
 //!
-//! Step by step: [`Stage::begin`] is the state and the control that it starts with, [`Stage::settings`] how it is simulated, [`Stage::motion`] all that put together with
-//! a robot, and [`Motion::run`] runs it, as often as one likes. A robot that is generated for a scene needs the functions of [`Stage::functions`] and the frames of
-//! [`Stage::frames`]. For a simulation of one's own there are the parts: [`Drive`] is the scene's control, and [`Watch`] has its events and their words. Everything that
-//! keeps a scene from moving is told at once, as [`MotionErrors`].
+//! Step by step: [`Session::initial_state`] is the initial state and control, [`Session::settings`]
+//! are the simulation settings, [`Session::motion`] combines them with a robot, and [`Motion::run`]
+//! runs the motion, any number of times. A robot generated for a scene needs the functions of
+//! [`Session::functions`] and the frames of [`Session::frames`]. The parts also serve a user's own
+//! simulation: [`Drive`] is the scene's control, and [`Detectors`] has its events and their
+//! descriptions. All errors that keep a scene from moving are reported at once, as
+//! [`MotionErrors`].
 //!
-//! Many motions go over the cores: what they share, a [`Stage`], a robot and a [`Begin`], may be looked at by all threads, and each makes a [`Motion`] of its own, once.
+//! To run many motions in parallel, share the [`Session`], the robot and the [`InitialState`]
+//! between threads, and let each thread create one [`Motion`] of its own.
 //!
 //! ```
-//! # use articulated_motion::{Begin, MotionErrors, Stage};
+//! # use articulated_motion::{InitialState, MotionErrors, Session};
 //! /// Where the first joint ends from each of these starts, rad.
-//! fn ends(stage: &Stage, starts: &[Begin], threads: usize) -> Result<Vec<f64>, MotionErrors> {
-//!     let some = |starts: &[Begin]| -> Result<Vec<f64>, MotionErrors> {
-//!         let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings()?)?;
-//!         let end = |begin| motion.run(begin, &mut |_, _| true).map(|o| o.recording.q_at(o.recording.len() - 1)[0]);
+//! fn ends(session: &Session, starts: &[InitialState], threads: usize) -> Result<Vec<f64>, MotionErrors> {
+//!     let some = |starts: &[InitialState]| -> Result<Vec<f64>, MotionErrors> {
+//!         let mut motion = session.motion(&session.model, &session.frame_names(), session.settings()?)?;
+//!         let end = |initial| motion.run(initial, &mut |_, _| true).map(|o| o.recording.q_at(o.recording.len() - 1)[0]);
 //!         starts.iter().map(end).collect()
 //!     };
 //!     let share = starts.len().div_ceil(threads).max(1);
@@ -72,38 +76,38 @@
 //! #   <joint name="hinge" type="continuous"><parent link="base"/><child link="bob"/><axis xyz="0 1 0"/></joint></robot>"#;
 //! # std::fs::write(folder.join("p.urdf"), urdf)?;
 //! # std::fs::write(folder.join("s.toml"), "urdf = 'p.urdf'\nsimulation = { end = 0.5 }")?;
-//! # let stage = Stage::open(folder.join("s.toml"))?;
+//! # let session = Session::open(folder.join("s.toml"))?;
 //! # std::fs::remove_dir_all(&folder)?;
-//! # let begin = stage.begin()?;
-//! # let starts: Vec<Begin> = (0..7).map(|k| Begin { q: vec![0.1 * f64::from(k)], ..begin.clone() }).collect();
-//! # assert_eq!(ends(&stage, &starts, 2)?, ends(&stage, &starts, 1)?);
-//! # assert_eq!(ends(&stage, &starts, 9)?.len(), 7);
+//! # let initial = session.initial_state()?;
+//! # let starts: Vec<InitialState> = (0..7).map(|k| InitialState { q: vec![0.1 * f64::from(k)], ..initial.clone() }).collect();
+//! # assert_eq!(ends(&session, &starts, 2)?, ends(&session, &starts, 1)?);
+//! # assert_eq!(ends(&session, &starts, 9)?.len(), 7);
 //! # Ok(()) }
 //! ```
 //!
 //! Conventions are those of [`articulated`]: SI units and radians; q and v in the order of the robot.
 
-mod ball;
-mod begin;
+mod compatibility;
 mod creep;
+mod detectors;
 mod error;
 mod freedom;
-mod happening;
+mod initial_state;
 mod motion;
-mod needs;
+mod occurrence;
 mod penetration;
-mod same;
+mod projectile;
+mod requirements;
+mod session;
 mod settings;
-mod stage;
-mod watch;
 
 pub use articulated::simulate::{Controller, Counts, Drive, Recording, Settings, SimulateError};
 pub use articulated_scene::Scene;
-pub use begin::{Begin, Beyond, Sunk};
 pub use creep::Creep;
+pub use detectors::{Detectors, UnavailableEvent};
 pub use error::{Fault, MotionError, MotionErrors};
-pub use happening::{EventKind, Happening, SceneEvent};
+pub use initial_state::{Beyond, InitialState, Sunk};
 pub use motion::{Ending, Motion, Outcome};
+pub use occurrence::{EventKind, Occurrence, SceneEvent};
 pub use penetration::Penetration;
-pub use stage::{Stage, field};
-pub use watch::{Watch, Without};
+pub use session::{Session, field};

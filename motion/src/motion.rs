@@ -6,59 +6,62 @@ use std::time::{Duration, Instant};
 use articulated::Dynamics;
 use articulated::simulate::{Control, Counts, Drive, Ended, Recording, Settings, SimulateError, Simulation};
 
-use crate::begin::Begin;
 use crate::creep::Creep;
+use crate::detectors::{Detectors, UnavailableEvent};
 use crate::error::{Fault, MotionErrors};
-use crate::happening::Happening;
-use crate::stage::Stage;
-use crate::watch::{Watch, Without};
+use crate::initial_state::InitialState;
+use crate::occurrence::Occurrence;
+use crate::session::Session;
 
 /// A scene on a robot, with all the room that its simulation needs. It may be run again and again.
 pub struct Motion<'a, R: Dynamics<f64>> {
-    stage: &'a Stage,
+    session: &'a Session,
     robot: &'a R,
-    watch: Watch<'a>,
+    detectors: Detectors<'a>,
     simulation: Simulation<'a, R>,
 }
 
-/// What came of a motion.
+/// The result of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
-    /// The motion at the times of output, with what was done ([`Recording::counts`]); where an error ended it, what was up to there.
+    /// The motion at the output times, with work counts ([`Recording::counts`]); up to the error if
+    /// one ended the run.
     pub recording: Recording,
-    /// What happened on the way, in the order of time: one for each of [`Recording::events`].
-    pub happenings: Vec<Happening>,
-    /// What smoothed friction did not hold, and how far it crept ([`Stage::creep`]).
+    /// Occurrences in the order of time, one for each of [`Recording::events`].
+    pub occurrences: Vec<Occurrence>,
+    /// Contacts and joints that smoothed friction did not hold, and how far they crept
+    /// ([`Session::creep`]).
     pub creep: Vec<Creep>,
     /// How it ended.
     pub ending: Ending,
     /// The time that was reached, s.
     pub reached: f64,
-    /// Kinetic energy that the ball of the scene's impact got, J, if its turn came.
+    /// Kinetic energy gained by the ball of the scene's impact, J; `None` if nothing hit it.
     pub ball: Option<f64>,
-    /// Why it did not go on to its end.
+    /// The error that ended the run early.
     pub error: Option<SimulateError>,
-    /// How long the run took, by the clock of the machine.
+    /// Wall time of the run.
     pub wall: Duration,
 }
 
 /// How a motion ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Ending {
-    /// At its last time.
+    /// The end time was reached.
     AtEnd,
-    /// By a blow with which the scene ends.
+    /// The scene's impact ended the run.
     ByBlow,
-    /// Who followed it wanted no more.
-    ByFollower,
-    /// By an error.
+    /// The observer stopped the run.
+    ByObserver,
+    /// An error ended the run.
     ByError,
 }
 
-impl Stage {
-    /// The scene on a robot, to be simulated so; `frames` are the names of the robot's frames in its order: `FRAME_NAMES` of a generated module, [`Stage::frame_names`] of
-    /// the model. Errors: a robot that is another than the scene's, or has not the frames and functions that the scene needs (see [`Stage::frames`],
-    /// [`Stage::functions`]); settings that cannot be used; all of it.
+impl Session {
+    /// The scene on a robot, with these settings. `frames` are the names of the robot's frames in
+    /// its order: `FRAME_NAMES` of a generated module, [`Session::frame_names`] for the model.
+    /// Errors, all at once: a robot that does not match the scene's or lacks required frames and
+    /// functions (see [`Session::frames`], [`Session::functions`]); invalid settings.
     pub fn motion<'a, R: Dynamics<f64>, S: AsRef<str>>(
         &'a self,
         robot: &'a R,
@@ -70,48 +73,54 @@ impl Stage {
     {
         let file = &self.scene.file;
         let mut faults = self.faults_of(&settings);
-        faults.extend(self.foreign(robot, frames));
-        faults.extend(self.lacking(robot, settings.integrator));
-        let watch = Watch::new(self, robot, frames);
+        faults.extend(self.shape_mismatches(robot, frames));
+        faults.extend(self.missing_functions(robot, settings.integrator));
+        let detectors = Detectors::new(self, robot, frames);
         let simulation = Simulation::new(robot, settings);
         // A motion of a scene is judged by its balance of energy.
         let simulation = simulation.map(Simulation::with_energy_balance).map_err(|e| MotionErrors::refused(file, e));
-        let (_, (watch, simulation)) = MotionErrors::both(MotionErrors::none(file, faults), MotionErrors::both(watch, simulation))?;
-        Ok(Motion { stage: self, robot, watch, simulation })
+        let (_, (detectors, simulation)) = MotionErrors::both(MotionErrors::none(file, faults), MotionErrors::both(detectors, simulation))?;
+        Ok(Motion { session: self, robot, detectors, simulation })
     }
 
-    /// The scene on a robot from its start to its end, all as the scene says: the simplest way. Errors: as [`Stage::settings`], [`Stage::motion`] and
-    /// [`Stage::begin`], all of them; then a robot that accelerates otherwise than the scene's, as one does that was made from its URDF alone, without the scene's gravity and effects
-    /// (to move such a one on purpose there is [`Stage::motion`]). An error on the way is in [`Outcome::error`].
+    /// Runs the scene on a robot from its start to its end, with the scene's settings and control.
+    /// Errors: those of [`Session::settings`], [`Session::motion`] and [`Session::initial_state`],
+    /// all at once; then a robot whose accelerations differ from the scene's, as those of a robot
+    /// generated from the URDF alone, without the scene's gravity and effects (use
+    /// [`Session::motion`] to run such a robot). An error during the run is in [`Outcome::error`].
     pub fn run<R: Dynamics<f64>, S: AsRef<str>>(&self, robot: &R, frames: &[S]) -> Result<Outcome, MotionErrors> {
-        let (mut motion, begin) = self.ready(robot, frames)?;
-        motion.run(&begin, &mut |_, _| true)
+        let (mut motion, initial) = self.ready(robot, frames)?;
+        motion.run(&initial, &mut |_, _| true)
     }
 
-    /// As [`Stage::run`], by a control of one's own in place of the scene's.
+    /// As [`Session::run`], with a user's control in place of the scene's.
     pub fn run_with<R: Dynamics<f64>, S: AsRef<str>>(
         &self,
         robot: &R,
         frames: &[S],
         control: &mut dyn Control,
     ) -> Result<Outcome, MotionErrors> {
-        let (mut motion, begin) = self.ready(robot, frames)?;
-        motion.run_with(&begin, control, &mut |_, _| true)
+        let (mut motion, initial) = self.ready(robot, frames)?;
+        motion.run_with(&initial, control, &mut |_, _| true)
     }
 
-    fn ready<'a, R: Dynamics<f64>, S: AsRef<str>>(&'a self, robot: &'a R, frames: &[S]) -> Result<(Motion<'a, R>, Begin), MotionErrors> {
+    fn ready<'a, R: Dynamics<f64>, S: AsRef<str>>(
+        &'a self,
+        robot: &'a R,
+        frames: &[S],
+    ) -> Result<(Motion<'a, R>, InitialState), MotionErrors> {
         let motion = self.settings().and_then(|settings| self.motion(robot, frames, settings));
-        let (motion, begin) = MotionErrors::both(motion, self.begin())?;
-        let another = self.another(robot, &begin).unwrap_or_else(|error| Some(Fault::Function(error)));
+        let (motion, initial) = MotionErrors::both(motion, self.initial_state())?;
+        let another = self.dynamics_mismatch(robot, &initial).unwrap_or_else(|error| Some(Fault::Function(error)));
         MotionErrors::none(&self.scene.file, another)?;
-        Ok((motion, begin))
+        Ok((motion, initial))
     }
 }
 
 impl<R: Dynamics<f64>> Motion<'_, R> {
-    /// Sorts of events that the scene looks for and has nothing of.
-    pub fn without(&self) -> &[Without] {
-        &self.watch.without
+    /// Requested classes of events that cannot occur.
+    pub fn unavailable_events(&self) -> &[UnavailableEvent] {
+        &self.detectors.unavailable
     }
 
     /// The settings.
@@ -119,13 +128,12 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
         self.simulation.settings()
     }
 
-    /// Makes the first step from the start and throws it away. Errors: a state, or a control, that
-    /// does not fit the robot. What keeps the robot from moving is the result, as
-    /// [`Outcome::error`] would be of a run.
-    pub fn first_step(&mut self, begin: &Begin) -> Result<Option<SimulateError>, MotionErrors> {
-        let refused = |e: SimulateError| MotionErrors::refused(&self.stage.scene.file, e);
-        let mut drive = Drive::new(self.robot, &begin.controller, self.stage.scene.control.period).map_err(refused)?;
-        self.simulation.start(&begin.q, &begin.v).map_err(refused)?;
+    /// Makes the first step and discards it. Returns the error that stops the robot there, as
+    /// [`Outcome::error`] of a run. Errors: a state or a control that does not fit the robot.
+    pub fn first_step(&mut self, initial: &InitialState) -> Result<Option<SimulateError>, MotionErrors> {
+        let refused = |e: SimulateError| MotionErrors::refused(&self.session.scene.file, e);
+        let mut drive = Drive::new(self.robot, &initial.controller, self.session.scene.control.period).map_err(refused)?;
+        self.simulation.start(&initial.q, &initial.v).map_err(refused)?;
         match self.simulation.step(&mut drive) {
             Ok(_) => Ok(None),
             Err(e @ (SimulateError::Settings(_) | SimulateError::State(_) | SimulateError::Function(_))) => Err(refused(e)),
@@ -133,31 +141,33 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
         }
     }
 
-    /// From the start to the end, to the blow that ends it, or to an error, which is part of what came of it. `follow` is told the time, s, and the counts after
-    /// each step, and may say false to end it. Errors: a state, or a control, that does not fit the robot: nothing was done.
-    pub fn run(&mut self, begin: &Begin, follow: &mut dyn FnMut(f64, &Counts) -> bool) -> Result<Outcome, MotionErrors> {
-        let drive = Drive::new(self.robot, &begin.controller, self.stage.scene.control.period);
-        let mut drive = drive.map_err(|e| MotionErrors::refused(&self.stage.scene.file, e))?;
-        self.run_with(begin, &mut drive, follow)
+    /// Runs from the start to the end, to the impact that ends the scene, or to an error, which is
+    /// part of the outcome. `observer` receives the time, s, and the counts after each step, and
+    /// returns false to stop the run. Errors, before the run: a state or a control that does not
+    /// fit the robot.
+    pub fn run(&mut self, initial: &InitialState, observer: &mut dyn FnMut(f64, &Counts) -> bool) -> Result<Outcome, MotionErrors> {
+        let drive = Drive::new(self.robot, &initial.controller, self.session.scene.control.period);
+        let mut drive = drive.map_err(|e| MotionErrors::refused(&self.session.scene.file, e))?;
+        self.run_with(initial, &mut drive, observer)
     }
 
-    /// As [`Motion::run`], by a control of one's own in place of the scene's.
+    /// As [`Motion::run`], with a user's control in place of the scene's.
     pub fn run_with(
         &mut self,
-        begin: &Begin,
+        initial: &InitialState,
         control: &mut dyn Control,
-        follow: &mut dyn FnMut(f64, &Counts) -> bool,
+        observer: &mut dyn FnMut(f64, &Counts) -> bool,
     ) -> Result<Outcome, MotionErrors> {
-        let refused = |e: SimulateError| MotionErrors::refused(&self.stage.scene.file, e);
-        self.watch.reset();
-        let (over, mut reached) = (self.watch.over(), self.simulation.settings().start);
+        let refused = |e: SimulateError| MotionErrors::refused(&self.session.scene.file, e);
+        self.detectors.reset();
+        let (over, mut reached) = (self.detectors.over(), self.simulation.settings().start);
         let mut recording = self.simulation.recording();
         let mut after_step = |t: f64, counts: &Counts| {
             reached = t;
-            follow(t, counts) && !over()
+            observer(t, counts) && !over()
         };
         let clock = Instant::now();
-        let result = self.simulation.run_into(&begin.q, &begin.v, control, &mut self.watch.events, &mut recording, &mut after_step);
+        let result = self.simulation.run_into(&initial.q, &initial.v, control, &mut self.detectors.events, &mut recording, &mut after_step);
         let wall = clock.elapsed();
         let error = match result {
             Ok(()) => None,
@@ -170,20 +180,20 @@ impl<R: Dynamics<f64>> Motion<'_, R> {
             Ending::AtEnd => self.simulation.settings().end,
             _ => recording.t.last().map_or(reached, |t| t.max(reached)),
         };
-        let happenings = recording.events.iter().map(|hit| self.watch.happening(hit)).collect();
-        let creep = self.stage.creep(&recording);
-        Ok(Outcome { recording, happenings, creep, ending, reached, ball: self.watch.ball_energy(), error, wall })
+        let occurrences = recording.events.iter().map(|hit| self.detectors.occurrence(hit)).collect();
+        let creep = self.session.creep(&recording);
+        Ok(Outcome { recording, occurrences, creep, ending, reached, ball: self.detectors.ball_energy(), error, wall })
     }
 }
 
 impl Ending {
-    /// A blow ends a motion by who watches it.
+    /// An impact ends the run through the observer callback.
     fn of(ended: Ended, blow: bool) -> Self {
         match ended {
             Ended::Not => Self::ByError,
             Ended::AtEnd => Self::AtEnd,
-            Ended::ByWatcher if !blow => Self::ByFollower,
-            Ended::ByWatcher | Ended::ByEvent(_) => Self::ByBlow,
+            Ended::ByObserver if !blow => Self::ByObserver,
+            Ended::ByObserver | Ended::ByEvent(_) => Self::ByBlow,
         }
     }
 }
@@ -193,7 +203,7 @@ impl fmt::Display for Ending {
         f.write_str(match self {
             Self::AtEnd => "at its end",
             Self::ByBlow => "by an event",
-            Self::ByFollower => "by who followed it",
+            Self::ByObserver => "by the observer",
             Self::ByError => "by an error",
         })
     }

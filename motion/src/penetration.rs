@@ -7,32 +7,32 @@ use articulated_core::Plain;
 use articulated_core::description::{Collision, ContactSphere, Link};
 use articulated_core::effect::{EffectId, unit};
 
-use crate::stage::{Stage, field};
+use crate::session::{Session, field};
 
 /// A link whose collision geometry is deeper in a plane of contact than the contacts of its body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Penetration {
     /// The link.
     pub link: String,
-    /// When it is first found there, s.
+    /// Time at which it is first found there, s.
     pub from: f64,
-    /// How deep it was found at most, m.
+    /// Largest depth found, m.
     pub depth: f64,
-    /// When that was, s.
+    /// Time of the largest depth, s.
     pub at: f64,
 }
 
-/// Geometry may be deeper than contact by so much of its size: points of contact are seldom exactly
-/// on it.
+/// Tolerated extra depth of geometry, relative to its size: contact points are seldom exactly on
+/// it.
 const BESIDE: f64 = 0.05;
 
-/// So many links are named.
+/// Number of links that a warning names.
 const NAMED: usize = 5;
 
 /// A plane of contact: its normal, of length one, and its height along it, m.
 type Plane = ([f64; 3], f64);
 
-/// What of a link may be below a plane.
+/// Geometry of a link that may be below a plane.
 struct Part<'s> {
     link: &'s str,
     /// The link's frame.
@@ -50,7 +50,7 @@ struct Touch {
     plane: Plane,
 }
 
-impl Stage {
+impl Session {
     /// Links with collision geometry that are below a plane of contact by more than the contacts of
     /// their body, and a twentieth of their size: nothing holds them there. `t`, s, and `q`,
     /// `[t.len() · nq]`, are the times and states to look at: of a start, or of a
@@ -98,7 +98,7 @@ impl Stage {
         let file = &self.scene.file;
         Some(format!(
             "{file}: effects.contact: found {which} below a contact plane at the start where no contact holds {them}: {list}, expected {them} above the plane \
-             (by height, normal or initial.q), or {ADVICE}; used as asked for"
+             (by height, normal or initial.q), or {ADVICE}; used as given"
         ))
     }
 

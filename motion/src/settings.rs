@@ -1,4 +1,4 @@
-//! How a scene is simulated, as it says itself.
+//! Simulation settings of a scene, and their checks.
 
 use articulated::simulate::Settings;
 use articulated_core::diagnostic::{Code, Diagnostic};
@@ -6,21 +6,20 @@ use articulated_core::effect::{Applied, EffectId};
 use articulated_scene::When;
 
 use crate::error::{Fault, MotionErrors};
-use crate::stage::{Stage, field};
+use crate::session::{Session, field};
 
 /// A smoothing speed is at least this many times the absolute tolerance of velocities.
 const RESOLVED: f64 = 10.0;
 
-impl Stage {
-    /// The settings that the scene says. Errors: a scene without `[simulation]`.
+impl Session {
+    /// The scene's settings. Errors: a scene without `[simulation]`.
     pub fn settings(&self) -> Result<Settings, MotionErrors> {
         let simulation = self.scene.simulation.as_ref().ok_or_else(|| MotionErrors::one(&self.scene.file, Fault::NoSimulation))?;
         Ok(simulation.settings.clone())
     }
 
-    /// Whether the scene can be simulated so. Errors: all settings that its robot cannot be
-    /// simulated by, or else a ball that is hit while nothing moves and smoothing speeds that the
-    /// tolerances do not resolve.
+    /// Checks settings for this scene. Errors: settings that do not suit its robot, or else a ball
+    /// that is hit while nothing moves and smoothing speeds that the tolerances do not resolve.
     pub fn check(&self, settings: &Settings) -> Result<(), MotionErrors> {
         MotionErrors::none(&self.scene.file, self.faults_of(settings))
     }

@@ -84,8 +84,8 @@ const LINE: usize = 64;
 
 /// Computes many states by all threads of the current `rayon` pool: `function` on parts of the slices, at the same time.
 ///
-/// A generated batch function gives each state the same bits whatever states stand beside it, so the result does not depend on the number of threads.
-/// Nothing is allocated for a state or a part.
+/// A generated batch function returns the same bits for a state whatever the other states are, so
+/// the result does not depend on the number of threads. Nothing is allocated for a state or a part.
 ///
 /// ```
 /// use articulated::in_threads;
@@ -104,8 +104,9 @@ const LINE: usize = 64;
 ///
 /// Blocks of states (`…_blocks` of a generated module) are parted between any two, and counted as blocks.
 ///
-/// `progress` is told how many states (or blocks) are done, by whichever thread has just computed a part: every number once, but numbers of different threads may
-/// come in another order than they rise. The last part makes it the number of all states.
+/// `progress` receives the number of states (or blocks) done, from the thread that has just
+/// computed a part: every number once, but numbers of different threads may come in another order
+/// than they rise. The last part makes it the number of all states.
 ///
 /// # Errors
 /// What `function` says: of all parts the first. Slices of different lengths are handed to it as they are, for it to refuse.

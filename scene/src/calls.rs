@@ -1,53 +1,56 @@
-//! What the motion of a scene calls of its robot.
+//! Functions of the robot that the motion of a scene calls.
 
 use articulated_core::algorithm::FunctionId;
 use articulated_core::integrator::IntegratorId;
 
 use crate::control::Drive;
 use crate::scene::Scene;
-use crate::simulation::Watched;
+use crate::simulation::EventClass;
 
-/// The functions that a motion calls of its robot, whichever that is.
+/// The functions that a motion calls, whatever the robot.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Calls {
-    /// Without these it does not begin: [`integrate`](FunctionId::integrate) of a robot with a quaternion, `placements` of one with frames to look at, all others of any.
+    /// Required functions: [`integrate`](FunctionId::integrate) for robots with a quaternion,
+    /// `placements` if events need frames, all others for every robot.
     pub required: Vec<FunctionId>,
-    /// By these its recording tells of energies and momentum, and where effects are on of losses: `centroidal_momentum` of a robot that moves mass.
-    pub told: Vec<FunctionId>,
+    /// Functions by which the recording reports energies and momentum, and losses where effects are
+    /// on; `centroidal_momentum` only for robots with moving mass.
+    pub reported: Vec<FunctionId>,
 }
 
 impl Calls {
     /// All of them, by name.
     pub fn names(&self) -> impl Iterator<Item = &'static str> {
-        self.required.iter().chain(&self.told).map(|function| function.name())
+        self.required.iter().chain(&self.reported).map(|function| function.name())
     }
 }
 
 impl Scene {
-    /// What the scene's motion calls, with the integrator that it names; nothing without `[simulation]`.
+    /// The functions that the scene's motion calls, with the scene's integrator; none without
+    /// `[simulation]`.
     pub fn calls(&self) -> Calls {
         self.simulation.as_ref().map(|simulation| self.calls_with(simulation.settings.integrator)).unwrap_or_default()
     }
 
-    /// What the scene's motion calls, with this integrator.
+    /// The functions that the scene's motion calls, with this integrator.
     pub fn calls_with(&self, integrator: IntegratorId) -> Calls {
         let mut required = integrator.row().needs.to_vec();
         required.push(FunctionId::integrate);
         if matches!(self.control.drive, Drive::Pd { .. }) {
             required.push(FunctionId::difference);
         }
-        let contacts = self.simulation.as_ref().is_some_and(|simulation| simulation.events.contains(&Watched::Contacts));
+        let contacts = self.simulation.as_ref().is_some_and(|simulation| simulation.events.contains(&EventClass::Contacts));
         if contacts || self.impact.is_some() {
             required.push(FunctionId::placements);
         }
         if self.impact.is_some() {
             required.extend([FunctionId::jacobians_world_aligned, FunctionId::solve_mass_matrix]);
         }
-        let mut told = vec![FunctionId::kinetic_energy, FunctionId::potential_energy, FunctionId::centroidal_momentum];
+        let mut reported = vec![FunctionId::kinetic_energy, FunctionId::potential_energy, FunctionId::centroidal_momentum];
         if self.has_effects() {
-            told.extend([FunctionId::dissipation, FunctionId::motor_torques]);
+            reported.extend([FunctionId::dissipation, FunctionId::motor_torques]);
         }
-        Calls { required, told }
+        Calls { required, reported }
     }
 }
 

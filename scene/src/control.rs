@@ -1,4 +1,4 @@
-//! `[control]`: what drives the joints.
+//! `[control]`: the controller of the joints.
 
 use articulated_core::control::{Aim, Controller};
 use articulated_core::diagnostic::{At, Code, Diagnostics};
@@ -13,28 +13,28 @@ use crate::simulation::set;
 use crate::table::{Row, Spot};
 use crate::tree::Value;
 
-/// What drives the joints.
+/// The controller of the joints.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Control {
-    /// Which sort.
+    /// Its kind.
     pub drive: Drive,
-    /// Torques are kept for so long, s; `None`: they follow the state at every instant.
+    /// Sampling period, s, over which torques are held; `None`: continuous control.
     pub period: Option<f64>,
 }
 
-/// The sorts of control.
+/// Kinds of control.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Drive {
     /// No torque.
     #[default]
     None,
-    /// The same torques all the time.
+    /// Constant torques.
     Torque(PerJoint),
     /// Torques over time.
     Table(Source),
     /// τ = kp (target ⊖ q) + kd (target' − v) + torque.
     Pd {
-        /// Where to.
+        /// The target.
         target: Target,
         /// Gain of the position, N·m/rad or N/m.
         kp: PerJoint,
@@ -45,7 +45,7 @@ pub enum Drive {
     },
 }
 
-/// What a controller aims at.
+/// The target of a controller.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Target {
     /// Coordinates that do not change.
@@ -59,9 +59,9 @@ pub enum Target {
 pub enum PerJoint {
     /// The same for all.
     Same(f64),
-    /// `*` for all that are not named, 0 where there is none; the others by name.
+    /// Values by name, and `*` for the others (0 if missing).
     Named {
-        /// For those without a name here.
+        /// The value of joints that are not named.
         rest: f64,
         /// The others, without `*`.
         named: Coordinates,
@@ -99,7 +99,7 @@ enum Sort {
 
 const SORTS: &[(&str, Sort)] = &[("none", Sort::None), ("torque", Sort::Torque), ("table", Sort::Table), ("pd", Sort::Pd)];
 
-/// Which keys each sort has beside `kind`.
+/// Keys of each kind beside `kind`.
 const OF_SORT: &[(Sort, &[&str])] = &[
     (Sort::None, &[]),
     (Sort::Torque, &["torque"]),
@@ -223,7 +223,7 @@ pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Control {
     Control { drive, period }
 }
 
-/// Whether the keys are those of the kind; of a table, what is `right` of it.
+/// Checks that the keys are those of the kind; `right`: the accepted keys of a table.
 fn check(keys: &Keys, spot: &Spot<'_>, right: &[&str], log: &mut Diagnostics) {
     let of_sort = OF_SORT.iter().find(|(sort, _)| *sort == keys.kind).map_or(&[][..], |(_, keys)| keys);
     let word = SORTS.iter().find(|(_, sort)| *sort == keys.kind).map_or("", |(word, _)| word);
@@ -282,7 +282,8 @@ fn per_joint(spot: &Spot<'_>, range: Range, log: &mut Diagnostics) -> PerJoint {
     }
 }
 
-/// The number for all joints. What else is wrong with it is told by who reads the numbers, which may be lists there.
+/// The number for all joints. Other errors are reported by the reader of the numbers, which may be
+/// lists there.
 fn same(spot: &Spot<'_>, log: &mut Diagnostics) -> f64 {
     match spot.node.value {
         Value::Number(x) => x,
@@ -291,7 +292,7 @@ fn same(spot: &Spot<'_>, log: &mut Diagnostics) -> f64 {
     }
 }
 
-/// Every finite number is in the range; what else is wrong is told by who reads the numbers.
+/// Checks the range of every finite number. Other errors are reported by the reader of the numbers.
 fn all_within(spot: &Spot<'_>, range: Range, log: &mut Diagnostics) {
     match &spot.node.value {
         Value::Number(x) if x.is_finite() => {
@@ -304,14 +305,15 @@ fn all_within(spot: &Spot<'_>, range: Range, log: &mut Diagnostics) {
 }
 
 impl Scene {
-    /// The control with names looked up and files read by `read`, which gets their names as the scene has them. Errors: all that do not fit the robot.
+    /// The control with names resolved and files read by `read`, which receives their names as in
+    /// the scene. Errors: all entries that do not fit the robot.
     pub fn controller(&self, model: &Model<f64>, read: &mut Reader<'_>) -> Result<Controller, Diagnostics> {
         let mut log = Diagnostics::new(&self.file);
         let controller = self.controlled(model, Some(read), &mut log);
         log.result(controller)
     }
 
-    /// Without `read` files are left alone.
+    /// Without `read`, files are not opened.
     fn controlled(&self, model: &Model<f64>, read: Option<&mut Reader<'_>>, log: &mut Diagnostics) -> Controller {
         let vector = |from: &PerJoint, key: &str, log: &mut Diagnostics| self.vector(from, key, model, log);
         match &self.control.drive {
@@ -337,7 +339,8 @@ impl Scene {
 }
 
 impl Scene {
-    /// Whether start and control fit the robot, as far as it can be told without opening a file. Errors: all that do not.
+    /// Checks that the initial state and control fit the robot, without opening files. Errors: all
+    /// entries that do not.
     pub fn fits(&self, model: &Model<f64>) -> Result<(), Diagnostics> {
         let mut log = Diagnostics::new(&self.file);
         self.started(model, &mut log);
@@ -345,7 +348,8 @@ impl Scene {
         log.result(())
     }
 
-    /// `[nv]`. A gain, one number, of a joint of several degrees of freedom is for all of them; torques are asked for one by one.
+    /// `[nv]`. A gain, one number, of a joint of several degrees of freedom is for all of them;
+    /// torques are required one by one.
     fn vector(&self, from: &PerJoint, key: &str, model: &Model<f64>, log: &mut Diagnostics) -> Vec<f64> {
         let mut all = vec![0.0; model.nv()];
         match from {
@@ -360,7 +364,7 @@ impl Scene {
         all
     }
 
-    /// The number for all joints that something could drive: not those of a shaft, nor a floating base.
+    /// The number for all joints that can be driven: not those of a shaft, nor a floating base.
     fn spread(&self, x: f64, model: &Model<f64>, all: &mut [f64]) {
         let of_shaft = |name: &str| self.shafts.iter().any(|asked| (1..=asked.shaft.segments).any(|k| name == asked.shaft.bending(k)));
         for joint in model.joints().iter().filter(|j| j.name != FLOATING_BASE && !of_shaft(&j.name)) {

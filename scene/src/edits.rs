@@ -13,7 +13,7 @@ pub struct Lock {
     pub joint: String,
     /// Its coordinates, rad or m; a quaternion as x, y, z, w.
     pub at: Vec<f64>,
-    /// Where the scene says so.
+    /// Its place in the scene.
     pub place: At,
 }
 
@@ -33,7 +33,7 @@ pub struct Append {
     pub file: String,
     /// The link that carries it.
     pub link: String,
-    /// What stands before its names.
+    /// The prefix of its names.
     pub prefix: String,
     /// Its root in the frame of that link.
     pub origin: Origin,

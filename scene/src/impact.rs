@@ -15,7 +15,7 @@ pub struct Impact {
     pub link: String,
     /// The point that hits, in the link's frame, m.
     pub point: [f64; 3],
-    /// The direction in which the ball goes, in the world frame; of any length but zero.
+    /// Direction in which the ball leaves, in the world frame; of any non-zero length.
     pub normal: [f64; 3],
     /// Mass of the ball, kg.
     pub mass: f64,
@@ -27,9 +27,9 @@ pub struct Impact {
     pub when: When,
     /// Whether the simulation ends with it.
     pub stop: bool,
-    /// Where the scene names the link.
+    /// Place of the link in the scene.
     pub place: At,
-    /// Where it says when.
+    /// Place of the time or position in the scene.
     pub when_place: At,
 }
 

@@ -4,7 +4,7 @@ use articulated_core::algorithm;
 use articulated_core::description::Base;
 use articulated_core::diagnostic::{At, Code, Diagnostics};
 use articulated_core::model::{FLOATING_BASE, Model};
-use articulated_core::spatial::normalise_given;
+use articulated_core::spatial::normalise_input;
 
 use crate::edits::coordinates;
 use crate::scene::Scene;
@@ -18,7 +18,7 @@ pub struct Initial {
     pub q: Coordinates,
     /// Rates, rad/s or m/s.
     pub v: Coordinates,
-    /// Where a floating base is, and how it moves.
+    /// Pose and velocity of a floating base.
     pub base: Option<BaseState>,
 }
 
@@ -206,7 +206,7 @@ fn from_rpy(rpy: [f64; 3]) -> [f64; 4] {
 
 fn unit(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<[f64; 4]> {
     let mut quaternion: [f64; 4] = spot.numbers(log)?;
-    if let Err(norm) = normalise_given(&mut quaternion) {
+    if let Err(norm) = normalise_input(&mut quaternion) {
         spot.bad(log, format!("a quaternion of norm {norm:.4}"), "norm one, in the order x, y, z, w");
         return None;
     }
@@ -214,7 +214,8 @@ fn unit(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<[f64; 4]> {
 }
 
 impl Scene {
-    /// The state at the start: q `[nq]`, v `[nv]`. Errors: joints that there are not, wrong numbers of coordinates, a base that does not float; all of them.
+    /// The initial state: q `[nq]`, v `[nv]`. Errors, all at once: unknown joints, wrong numbers of
+    /// coordinates, a base that does not float.
     pub fn start(&self, model: &Model<f64>) -> Result<(Vec<f64>, Vec<f64>), Diagnostics> {
         let mut log = Diagnostics::new(&self.file);
         let state = self.started(model, &mut log);
@@ -252,7 +253,7 @@ pub(crate) enum Side {
     V,
 }
 
-/// q at which nothing is moved or turned, `[nq]`.
+/// The neutral configuration, `[nq]`.
 pub(crate) fn neutral(model: &Model<f64>) -> Vec<f64> {
     let mut q = vec![0.0; model.nq()];
     algorithm::neutral(model, &mut q);
@@ -290,7 +291,7 @@ pub(crate) fn counted(n: usize) -> String {
     if n == 1 { "one number".into() } else { format!("{n} numbers") }
 }
 
-/// There is no such joint that has coordinates.
+/// Reports that no joint with coordinates has the name.
 pub(crate) fn no_joint(log: &mut Diagnostics, at: At, key: &str, name: &str, model: &Model<f64>) {
     if model.bodies().iter().any(|body| body.name == name && body.coordinates.mimic.is_some()) {
         return log.error((at, key), Code::Robot, "a joint that follows another", "the joint that it follows, whose coordinates it has");
@@ -301,8 +302,8 @@ pub(crate) fn no_joint(log: &mut Diagnostics, at: At, key: &str, name: &str, mod
 
 /// Quaternions to norm one; `place`: where those of a joint are given.
 pub(crate) fn normalise(model: &Model<f64>, q: &mut [f64], (key, place): (&str, &dyn Fn(&str) -> At), log: &mut Diagnostics) {
-    for (joint, quaternion) in model.joints().iter().filter_map(|j| Some((j, j.quaternion()?))) {
-        if let Err(norm) = normalise_given(&mut q[quaternion]) {
+    for (joint, quaternion) in model.joints.iter().filter_map(|j| Some((j, j.quaternion()?))) {
+        if let Err(norm) = normalise_input(&mut q[quaternion]) {
             let found = format!("a quaternion of norm {norm:.4} for joint {:?}", joint.name);
             log.error((place(&joint.name), key), Code::Number, found, "norm one, in the order x, y, z, w");
         }

@@ -37,7 +37,7 @@ pub use articulated_core::settings::{Output, Settings, Stiffness};
 pub use calls::Calls;
 pub use control::{Control, Drive, PerJoint, Target};
 pub use edits::{Append, Load, Lock};
-pub use effects::{Asked, Edited, Numbers, Resolved, Selector, still};
+pub use effects::{Edited, EffectRequest, Numbers, Resolved, Selector, still};
 pub use impact::{Impact, When};
 pub use initial::{BaseState, Coordinates, Initial, Named};
 pub use report::{EffectOff, EffectOn, Number, Report, Why};
@@ -46,6 +46,6 @@ pub use robot::{
 };
 pub use scene::{CodeOptions, Places, Robot, Scene};
 pub use series::{Reader, Source};
-pub use shaft::ShaftAsked;
-pub use simulation::{Simulation, Watched};
+pub use shaft::ShaftRequest;
+pub use simulation::{EventClass, Simulation};
 pub use tree::{Entry, Node, Value};

@@ -1,4 +1,4 @@
-//! What of a scene is on, what is off, and what of the URDF is not used.
+//! Active and inactive effects of a scene, and unused content of the URDF.
 
 use articulated_core::diagnostic::{At, Unused};
 use std::fmt;
@@ -12,7 +12,7 @@ pub struct Report {
     pub on: Vec<EffectOn>,
     /// Effects that are off, and why.
     pub off: Vec<EffectOff>,
-    /// What the URDF says and nothing uses.
+    /// Unused content of the URDF.
     pub ignored: Vec<Unused>,
 }
 
@@ -42,7 +42,7 @@ pub struct Number {
     pub from: Option<&'static str>,
 }
 
-/// An effect that acts on nothing.
+/// An inactive effect.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EffectOff {
     /// Its name.
@@ -58,9 +58,9 @@ pub enum Why {
     NotAsked,
     /// The scene says that it is off, or gives it zeros.
     SaidSo,
-    /// It was to be had from the URDF, which has no numbers for it.
+    /// Its numbers should come from the URDF, which has none.
     NotInUrdf,
-    /// It was asked for on all that it can act on, and there is nothing.
+    /// It is requested for all joints or links, and there are none that it can act on.
     Nowhere,
 }
 

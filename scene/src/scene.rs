@@ -6,17 +6,17 @@ use articulated_core::diagnostic::{At, Code, Diagnostic, Diagnostics, quote};
 use articulated_core::effect::EffectId;
 use articulated_core::integrator::IntegratorId;
 use articulated_core::lanes::Real;
-use articulated_core::level::Level;
+use articulated_core::precision::Precision;
 use articulated_core::spatial::Reference;
 use articulated_formats::{SNAP_EXPECTED, can_snap};
 
 use crate::control::{self, Control};
 use crate::document;
 use crate::edits::{self, APPEND, Append, LOAD, Load, Lock};
-use crate::effects::{self, Asked};
+use crate::effects::{self, EffectRequest};
 use crate::impact::{self, Impact};
 use crate::initial::{self, Initial};
-use crate::shaft::ShaftAsked;
+use crate::shaft::ShaftRequest;
 use crate::simulation::{self, Simulation};
 use crate::table::{Row, Spot};
 use crate::tree::{Node, Value};
@@ -37,9 +37,9 @@ pub struct Scene {
     /// Edits of the robot, and what code to make of it.
     pub code: CodeOptions,
     /// Effects, as they are asked for.
-    pub effects: Vec<Asked>,
+    pub effects: Vec<EffectRequest>,
     /// Shafts that bend.
-    pub shafts: Vec<ShaftAsked>,
+    pub shafts: Vec<ShaftRequest>,
     /// How to simulate it; `None`: the scene does not say.
     pub simulation: Option<Simulation>,
     /// The state that a simulation starts from.
@@ -90,7 +90,7 @@ pub struct CodeOptions {
     /// Types of numbers for which there are functions of many states.
     pub batch: Option<Vec<Real>>,
     /// How accurate the functions are.
-    pub level: Option<Level>,
+    pub level: Option<Precision>,
     /// No `unsafe` in the generated code.
     pub forbid_unsafe: Option<bool>,
     /// How much code the functions may become, MB.
@@ -164,7 +164,7 @@ impl Scene {
     /// The integrator of a motion that names none: `rodas4` where smoothed friction or contact
     /// makes it stiff, else `dopri5`.
     pub fn default_integrator(&self) -> IntegratorId {
-        let stiff = |asked: &Asked| matches!(asked.effect, EffectId::friction | EffectId::contact) && asked.says.is_some();
+        let stiff = |asked: &EffectRequest| matches!(asked.effect, EffectId::friction | EffectId::contact) && asked.says.is_some();
         if self.effects.iter().any(stiff) { IntegratorId::rodas4 } else { IntegratorId::dopri5 }
     }
 
@@ -447,9 +447,9 @@ fn batch(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Vec<Real>> {
     Some(reals)
 }
 
-fn level(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Level> {
+fn level(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Precision> {
     let expected = "a level of accuracy, as \"f64\", \"f32\", \"compensated + two\", \"double_double\" or \"f64 + fast_10 + no_fma\"";
     let text = spot.text(log, expected)?;
-    let level = text.split_whitespace().collect::<String>().parse::<Level>();
+    let level = text.split_whitespace().collect::<String>().parse::<Precision>();
     level.map_err(|error| log.error((spot.node.at, &spot.key), Code::Word, quote(text), error.expected)).ok()
 }

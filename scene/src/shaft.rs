@@ -11,7 +11,7 @@ pub(crate) const NAME: &str = "shaft";
 
 /// A fixed joint whose rigid offset bends.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct ShaftAsked {
+pub struct ShaftRequest {
     /// The shaft.
     pub shaft: Shaft,
     /// Where the scene says so.
@@ -21,7 +21,7 @@ pub struct ShaftAsked {
 /// More pieces are not worth their coordinates.
 const MOST_SEGMENTS: u64 = 100;
 
-pub(crate) const KEYS: &[Row<ShaftAsked>] = &[
+pub(crate) const KEYS: &[Row<ShaftRequest>] = &[
     Row {
         name: "segments",
         required: true,
@@ -73,14 +73,14 @@ pub(crate) const KEYS: &[Row<ShaftAsked>] = &[
 ];
 
 /// The shafts, one for each fixed joint.
-pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<ShaftAsked> {
+pub(crate) fn read(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<ShaftRequest> {
     let mut shafts = Vec::new();
     for entry in spot.entries(log, "a table of fixed joints") {
         let value = spot.of(entry);
         if value.node.value == crate::tree::Value::Text("off".into()) {
             continue;
         }
-        let mut shaft = ShaftAsked { shaft: Shaft { joint: entry.name.clone(), ..Shaft::default() }, place: entry.at };
+        let mut shaft = ShaftRequest { shaft: Shaft { joint: entry.name.clone(), ..Shaft::default() }, place: entry.at };
         value.read(KEYS, &mut shaft, log);
         shafts.push(shaft);
     }

@@ -16,7 +16,7 @@ pub struct Simulation {
     /// By what, from when to when, how exactly, and what is recorded.
     pub settings: Settings,
     /// What is looked for on the way.
-    pub events: Vec<Watched>,
+    pub events: Vec<EventClass>,
     /// Whether the scene names its integrator.
     /// [`Scene::default_integrator`](crate::Scene::default_integrator) is taken otherwise.
     pub names_integrator: bool,
@@ -24,7 +24,7 @@ pub struct Simulation {
 
 /// What is looked for on the way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Watched {
+pub enum EventClass {
     /// Joints that reach a bound.
     Limits,
     /// Contacts made and lost.
@@ -33,14 +33,15 @@ pub enum Watched {
     StickSlip,
 }
 
-impl Watched {
+impl EventClass {
     /// Its name in scenes.
     pub fn name(self) -> &'static str {
-        WATCHED.iter().find(|(_, w)| *w == self).map_or("", |(name, _)| name)
+        EVENT_CLASSES.iter().find(|(_, w)| *w == self).map_or("", |(name, _)| name)
     }
 }
 
-const WATCHED: &[(&str, Watched)] = &[("limits", Watched::Limits), ("contacts", Watched::Contacts), ("stick_slip", Watched::StickSlip)];
+const EVENT_CLASSES: &[(&str, EventClass)] =
+    &[("limits", EventClass::Limits), ("contacts", EventClass::Contacts), ("stick_slip", EventClass::StickSlip)];
 const STIFFNESS: &[(&str, Stiffness)] = &[("refuse", Stiffness::Refuse), ("note", Stiffness::Note), ("ignore", Stiffness::Ignore)];
 
 pub(crate) const KEYS: &[Row<Simulation>] = &[
@@ -214,14 +215,14 @@ fn output(spot: &Spot<'_>, log: &mut Diagnostics) -> Option<Output> {
     }
 }
 
-fn events(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Watched> {
+fn events(spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<EventClass> {
     let Some(list) = spot.list() else {
         spot.wrong(log, "a list of events, as [\"limits\"]");
         return Vec::new();
     };
-    let mut events: Vec<Watched> = Vec::new();
+    let mut events: Vec<EventClass> = Vec::new();
     for item in &list {
-        match item.word(log, WATCHED) {
+        match item.word(log, EVENT_CLASSES) {
             Some(event) if events.contains(&event) => item.clash(log, format!("{:?} once more", event.name()), "each of them once"),
             event => events.extend(event),
         }

@@ -58,7 +58,7 @@ impl<'a> Spot<'a> {
 
     /// It is of another type.
     pub(crate) fn wrong(&self, log: &mut Diagnostics, expected: impl Into<String>) {
-        log.error((self.node.at, &self.key), Code::Type, self.node.value.described(), expected);
+        log.error((self.node.at, &self.key), Code::Type, self.node.value.describe(), expected);
     }
 
     /// It is a number that may not stand here.

@@ -41,7 +41,7 @@ pub struct Entry {
 
 impl Value {
     /// What it is, for a message.
-    pub fn described(&self) -> String {
+    pub fn describe(&self) -> String {
         match self {
             Self::Bool(b) => b.to_string(),
             Self::Number(x) => format!("{x:?}"),

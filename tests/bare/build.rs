@@ -1,6 +1,6 @@
 //! The robots of this crate.
 
-use articulated_codegen::{Build, Level, Real};
+use articulated_codegen::{Build, Precision, Real};
 
 fn main() {
     let build = |robot: &str| Build::new(format!("../../models/urdf/{robot}.urdf")).no_std();
@@ -12,6 +12,6 @@ fn main() {
     build("quadruped").floating().functions(["inverse_dynamics", "integrate", "difference"]).write("walker");
 }
 
-fn level(name: &str) -> Level {
+fn level(name: &str) -> Precision {
     name.parse().expect("a level")
 }

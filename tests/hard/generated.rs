@@ -1,11 +1,11 @@
 //! Generated code of the hard robots: errors within what its level promises.
 
-use articulated_codegen::Level;
+use articulated_codegen::Precision;
 use articulated_core::description::Description;
 use articulated_lab::stress::levels::rows;
 use articulated_lab::stress::robots::hard;
 
-fn hold(pairs: &[(&str, Description, Level)]) {
+fn hold(pairs: &[(&str, Description, Precision)]) {
     let rows = rows(pairs).unwrap_or_else(|e| panic!("{e:?}"));
     crate::hold(&rows);
 }
@@ -13,7 +13,7 @@ fn hold(pairs: &[(&str, Description, Level)]) {
 /// No pass of the generator may cost a robot its digits: errors stay where they are for generic code.
 #[test]
 fn generated_code_of_hard_robots_keeps_the_limits() {
-    hold(&hard().into_iter().map(|(name, robot)| (name, robot, Level::default())).collect::<Vec<_>>());
+    hold(&hard().into_iter().map(|(name, robot)| (name, robot, Precision::default())).collect::<Vec<_>>());
 }
 
 /// Every level, each on a robot with another kind of trouble: small ones, since code of sums of two doubles is long.
@@ -21,6 +21,6 @@ fn generated_code_of_hard_robots_keeps_the_limits() {
 fn code_of_every_level_keeps_what_the_level_promises() {
     let small: Vec<(&str, Description)> = hard().into_iter().filter(|(_, robot)| robot.joints.len() <= 4).collect();
     let pairs: Vec<_> =
-        Level::all().into_iter().zip(small.iter().cycle()).map(|(level, (name, robot))| (*name, robot.clone(), level)).collect();
+        Precision::all().into_iter().zip(small.iter().cycle()).map(|(level, (name, robot))| (*name, robot.clone(), level)).collect();
     hold(&pairs);
 }

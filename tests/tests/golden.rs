@@ -110,8 +110,10 @@ fn no_stage_of_the_ledger_costs_more_than_the_one_before() {
     for robot in ROBOTS {
         for entry in generated(robot.name).ledger.functions {
             let costs: Vec<(&str, u64)> = entry.stages.iter().map(|(stage, c)| (*stage, c.instructions())).collect();
-            // What a model pass leaves is not swept yet: it may cost more where most of it is dead. Loops are no pass, and fewer bytes.
-            let passes = costs.windows(2).filter(|w| !["turn", "regroup", "slide", "still", "axes", "unturned", "unit"].contains(&w[1].0));
+            // After a model pass dead code is still there, so that the count may rise.
+            let passes = costs.windows(2).filter(|w| {
+                !["turn", "regroup", "slide", "drop_symmetric_rotation", "axis_rates", "fold_rotations", "unit"].contains(&w[1].0)
+            });
             assert!(passes.into_iter().all(|w| w[1].1 <= w[0].1), "{} {}: {costs:?}", robot.name, entry.function);
         }
     }

@@ -6,7 +6,8 @@ use articulated_core::model::Model;
 use articulated_core::spatial::Placement;
 use serde::Serialize;
 
-/// Beyond this many bodies nobody reads the list, and finding what can be identified takes the cube of them.
+/// Above this number of bodies the list is left out: it is unreadable, and its computation takes
+/// cubic time.
 const MANY: usize = 60;
 
 /// The inertial parameters of the moving bodies after regrouping.

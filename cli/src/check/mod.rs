@@ -17,7 +17,7 @@ use crate::failure::Failure;
 use crate::robot::Robot;
 use report::Report;
 
-/// Prints all that there is to say; an error of the input is part of that and goes where the rest goes.
+/// Prints all findings, errors of the input included.
 pub(crate) fn run(arguments: &CheckArguments, format: Format) -> Result<u8, Failure> {
     let robot = Robot::find(&arguments.robot)?.with(&arguments.frames);
     let scene = robot.scene.is_some().then_some(arguments.robot.robot.as_path());
@@ -46,7 +46,7 @@ fn examine(robot: &Robot, scene: Option<&Path>, functions: &[String]) -> Report 
     }
     // Joints may be locked beside the scene: its motion is that of the scene alone.
     match scene.map(crate::simulate::motion::look_over) {
-        Some(Ok(odd)) => odd.into_iter().for_each(|line| report.warn(Diagnostic::from(line).into_warning())),
+        Some(Ok(warning)) => warning.into_iter().for_each(|line| report.warn(Diagnostic::from(line).into_warning())),
         Some(Err(failure)) => report.errors.extend(failure.errors),
         None => {}
     }

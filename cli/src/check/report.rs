@@ -34,7 +34,7 @@ pub(super) struct Report {
     pub(super) joints: Vec<JointRow>,
     /// What joints can feel of the inertial parameters; none for a robot of very many bodies.
     pub(super) base_parameters: Option<Base>,
-    /// Functions that can be generated, of those asked for.
+    /// The requested functions that can be generated.
     pub(super) functions: Vec<String>,
     pub(super) units: Units,
 }

@@ -15,7 +15,7 @@ use articulated_lab::compare::timing::{self, Run};
 use crate::failure::Failure;
 use crate::parallel;
 use crate::states;
-use articulated_lab::stage::Stage;
+use articulated_lab::session::Session;
 
 /// The scene with some of its effects.
 struct Variant {
@@ -41,13 +41,13 @@ const FIRST: usize = 0;
 const STATES: usize = 64;
 
 /// The functions that are defined without effects, and those that are not.
-pub(super) fn parts(stage: &Stage, functions: &[String]) -> Result<Vec<Part>, Failure> {
-    let mut bare = stage.request.clone();
+pub(super) fn parts(session: &Session, functions: &[String]) -> Result<Vec<Part>, Failure> {
+    let mut bare = session.request.clone();
     bare.options.robot.effects.clear();
     let model = bare.build_robot()?.model;
     let massless = massless(&model);
     let part = |variants| Part { variants, functions: Vec::new(), why: Vec::new() };
-    let mut parts = [part(variants(stage)), part(vec![variant(stage, "", stage.effects.clone())])];
+    let mut parts = [part(variants(session)), part(vec![variant(session, "", session.effects.clone())])];
     for name in functions {
         let why = match defined(&bare.file, &model, &massless, articulated_codegen::function(name)?) {
             Err(error) if error.code == Code::SingularMassMatrix => Some(error.found),
@@ -60,15 +60,15 @@ pub(super) fn parts(stage: &Stage, functions: &[String]) -> Result<Vec<Part>, Fa
     Ok(parts.into_iter().filter(|part| !part.functions.is_empty()).collect())
 }
 
-fn variant(stage: &Stage, what: &str, effects: Vec<Applied>) -> Variant {
-    let gravity = stage.request.options.robot.gravity;
+fn variant(session: &Session, what: &str, effects: Vec<Applied>) -> Variant {
+    let gravity = session.request.options.robot.gravity;
     Variant { what: what.to_owned(), places: effects.len(), effects, gravity, against: FIRST }
 }
 
 /// The scene without effects, the same without gravity, with each effect, and with all.
-fn variants(stage: &Stage) -> Vec<Variant> {
-    let (all, gravity) = (&stage.effects, stage.request.options.robot.gravity);
-    let variant = |what: &str, effects: Vec<Applied>| variant(stage, what, effects);
+fn variants(session: &Session) -> Vec<Variant> {
+    let (all, gravity) = (&session.effects, session.request.options.robot.gravity);
+    let variant = |what: &str, effects: Vec<Applied>| variant(session, what, effects);
     let mut variants = vec![variant("", Vec::new())];
     if gravity != [0.0; 3] {
         variants.push(Variant { gravity: [0.0; 3], ..variant("gravity", Vec::new()) });
@@ -92,9 +92,9 @@ impl Part {
     }
 
     /// The code of all functions, of each variant.
-    pub(super) fn generate(&self, stage: &Stage, progress: &Progress) -> Result<Vec<Generated>, Failure> {
+    pub(super) fn generate(&self, session: &Session, progress: &Progress) -> Result<Vec<Generated>, Failure> {
         let made = parallel::map(&self.variants, |variant| {
-            let mut request = stage.request.clone();
+            let mut request = session.request.clone();
             let o = &mut request.options;
             (o.robot.effects, o.robot.gravity) = (variant.effects.clone(), variant.gravity);
             (o.functions, o.robot.frames, o.rust_mut().runtime, o.stages) =
@@ -154,7 +154,7 @@ impl Operations {
 
 /// Compiles all of it and times each function, all variants in turn.
 pub(super) fn time(
-    stage: &Stage,
+    session: &Session,
     made: &[Generated],
     rustc: &Rustc,
     repetitions: usize,
@@ -164,7 +164,7 @@ pub(super) fn time(
     progress.doing("rustc".to_owned());
     let compiled = parallel::map(made, |generated| Compiled::build(rustc, generated));
     let compiled: Vec<Compiled> = compiled.into_iter().collect::<Result<_, _>>().map_err(|e| Failure::tool(&e))?;
-    let states = states::random(&stage.model, STATES, 1);
+    let states = states::random(&session.model, STATES, 1);
     for cost in costs {
         let Some(row) = function::<f64>(&cost.function) else { continue };
         progress.doing(format!("{}: times", row.name));

@@ -25,45 +25,45 @@ pub(crate) struct EffectsArguments {
     /// The functions to report costs of, or groups of them [default: inverse_dynamics,forward_dynamics]
     #[arg(long, alias = "function", value_name = "NAMES", value_parser = known)]
     pub(crate) functions: Vec<Names>,
-    /// Nanoseconds too: everything is compiled by rustc and timed
+    /// Also measure nanoseconds: compile everything by rustc and time it
     #[arg(long)]
     pub(crate) time: bool,
-    /// How often each is timed
+    /// Repetitions of each timing
     #[arg(long, value_name = "N", default_value_t = 61, value_parser = clap::value_parser!(u32).range(5..=100_000))]
     pub(crate) repetitions: u32,
 }
 
-/// What is told where nobody asks for others.
+/// Functions reported by default.
 const FUNCTIONS: [&str; 2] = ["inverse_dynamics", "forward_dynamics"];
 
-/// The name of each sort of effect, once; effects stand by sorts.
+/// The name of each kind of effect, once; effects are sorted by kind.
 pub(crate) fn sorts(effects: &[Applied]) -> Vec<&'static str> {
     let mut names: Vec<&'static str> = effects.iter().map(|one| one.effect.name()).collect();
     names.dedup();
     names
 }
 
-/// Prints what is on, off and not used, and what it costs.
+/// Prints active, inactive and unused content, and costs.
 pub(crate) fn run(arguments: &EffectsArguments, format: Format) -> Result<(), Failure> {
-    let stage = named_scene::stage(&arguments.scene)?;
+    let session = named_scene::session(&arguments.scene)?;
     let mut functions = names::flat(&arguments.functions);
     if functions.is_empty() {
         functions = FUNCTIONS.map(str::to_owned).to_vec();
     }
     if arguments.time {
-        stage.is_of_doubles()?;
+        session.is_of_doubles()?;
     }
     let rustc = arguments.time.then(Rustc::find).transpose().map_err(|e| Failure::tool(&e))?;
-    let mut report = Report::of(&stage);
+    let mut report = Report::of(&session);
     report.compiler = rustc.as_ref().map(|rustc| rustc.version.clone());
-    let parts = cost::parts(&stage, &functions)?;
+    let parts = cost::parts(&session, &functions)?;
     let progress = Progress::new(parts.iter().map(|part| part.steps(arguments.time)).sum());
     for part in &parts {
-        let made = part.generate(&stage, &progress)?;
+        let made = part.generate(&session, &progress)?;
         report.limbs = made.iter().flat_map(|g| &g.ledger.functions).map(|f| f.lanes).fold(report.limbs, usize::max);
         let mut costs = part.counted(&made);
         if let Some(rustc) = &rustc {
-            cost::time(&stage, &made, rustc, arguments.repetitions as usize, &mut costs, &progress)?;
+            cost::time(&session, &made, rustc, arguments.repetitions as usize, &mut costs, &progress)?;
         }
         report.costs.extend(costs);
     }

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use articulated_lab::compare::timing::Summary;
 use articulated_lab::json::Units;
-use articulated_lab::stage::Stage;
+use articulated_lab::session::Session;
 
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Report {
@@ -119,7 +119,7 @@ pub(super) struct Added {
 }
 
 impl Cost {
-    /// What is told as it is, and not as a difference.
+    /// Costs reported as totals, not as differences.
     pub(super) fn whole(&self) -> Option<&Counted> {
         self.without.as_ref().or(self.only_with.as_ref().map(|only| &only.cost))
     }
@@ -130,22 +130,22 @@ impl Cost {
 }
 
 impl Report {
-    pub(super) fn of(stage: &Stage) -> Self {
-        let told = &stage.report;
+    pub(super) fn of(session: &Session) -> Self {
+        let told = &session.report;
         let law = |name: &str| effects().iter().find(|e| e.name == name).map_or("", |e| e.what);
         let on = told.on.iter().map(|e| On {
             effect: e.effect.name(),
             law: law(e.effect.name()),
             on: e.on.clone(),
-            numbers: e.numbers.iter().map(|n| number(n, kind(stage, &e.on))).collect(),
+            numbers: e.numbers.iter().map(|n| number(n, kind(session, &e.on))).collect(),
             line: e.place.line(),
         });
         Self {
-            scene: stage.name.clone(),
-            robot: stage.model.name().to_owned(),
-            base: if stage.base() == articulated_core::description::Base::Floating { "floating" } else { "fixed" },
-            gravity: stage.model.gravity().into(),
-            degrees_of_freedom: stage.model.nv(),
+            scene: session.name.clone(),
+            robot: session.model.name.clone(),
+            base: if session.base() == articulated_core::description::Base::Floating { "floating" } else { "fixed" },
+            gravity: session.model.gravity.into(),
+            degrees_of_freedom: session.model.nv,
             on: on.collect(),
             off: told.off.iter().map(|e| Off { effect: e.effect, why: e.why.to_string() }).collect(),
             ignored: told
@@ -173,6 +173,6 @@ fn number(n: &articulated_scene::Number, kind: Option<JointKind>) -> Number {
     Number { name: n.name, values: n.values.clone(), unit, from: n.from }
 }
 
-fn kind(stage: &Stage, joint: &str) -> Option<JointKind> {
-    stage.description.joint(joint).map(|j| stage.description.joints[j].kind)
+fn kind(session: &Session, joint: &str) -> Option<JointKind> {
+    session.description.joint(joint).map(|j| session.description.joints[j].kind)
 }

@@ -1,9 +1,9 @@
 //! `articulated eval`.
 
 mod layout;
-mod odd;
 mod report;
 mod text;
+mod warnings;
 
 use std::path::Path;
 
@@ -43,9 +43,9 @@ pub(crate) fn run(arguments: &EvalArguments, format: Format) -> Result<u8, Failu
     for f in &functions {
         report.functions.push(evaluate(f, &model, &states.states, compiled.as_ref(), arguments.generated));
     }
-    let odd = odd::results(&report.functions, &states.states, &model, &arguments.states.to_string_lossy());
-    odd.iter().for_each(|w| console::warn(w));
-    report.warnings.extend(odd);
+    let found = warnings::of_results(&report.functions, &states.states, &model, &arguments.states.to_string_lossy());
+    found.iter().for_each(|w| console::warn(w));
+    report.warnings.extend(found);
     console::print(&match format {
         Format::Text => text::text(&report, &model),
         Format::Json => crate::json(&report.json(&model)),

@@ -26,7 +26,7 @@ pub(super) fn text(report: &Report, model: &Model<f64>) -> String {
 }
 
 fn function(out: &mut String, f: &FunctionReport, model: &Model<f64>) {
-    let _ = writeln!(out, "\n{}: {}\n  {}", f.function.name, f.function.summary, crate::shape::given(f.function));
+    let _ = writeln!(out, "\n{}: {}\n  {}", f.function.name, f.function.summary, crate::shape::result(f.function));
     let grid = Grid::of(f.function, model);
     for (k, outcome) in f.outcomes.iter().enumerate() {
         let _ = writeln!(out, "\nstates[{k}]");

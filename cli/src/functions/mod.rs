@@ -18,7 +18,7 @@ use crate::robot::Robot;
 use crate::tips::{FEW, Tips};
 use report::{Cell, Cost, FunctionRow, Report, RobotRow};
 
-/// What the table is about where nobody says: a small arm, an arm, and two that walk.
+/// Default robots of the table: a small arm, an arm, and two legged robots.
 const ROBOTS: [&str; 4] = ["ur5_like", "panda_like", "quadruped", "humanoid"];
 
 /// A robot, and the frames that functions of frames are generated for.

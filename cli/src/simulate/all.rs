@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use articulated_lab::compiled::Rustc;
-use articulated_lab::stage::Code;
+use articulated_lab::session::Code;
 use articulated_lab::straight::Straight;
 use serde::Serialize;
 
@@ -59,21 +59,21 @@ fn status(rows: &[Row]) -> u8 {
 }
 
 fn row(name: &'static str, arguments: &SimulateArguments, rustc: &Rustc) -> Result<Row, Failure> {
-    let stage = named_scene::stage(Path::new(name))?;
-    let settings = settings::of(&stage, arguments)?;
-    let begin = stage.start()?;
-    let (generated, frames) = stage.generate(settings.integrator)?;
+    let session = named_scene::session(Path::new(name))?;
+    let settings = settings::of(&session, arguments)?;
+    let initial = session.start()?;
+    let (generated, frames) = session.generate(settings.integrator)?;
     let robot = Straight::build(rustc, &generated).map_err(|e| Failure::tool(&e))?;
     let quiet = Progress::hidden();
-    let fast = motion::run(&stage, &begin, Code::Generated(&robot, &frames), &settings, &quiet)?;
-    let slow = motion::run(&stage, &begin, Code::Generic, &settings, &quiet)?;
-    let (fast, slow) = (Summary::new(&stage, &fast, &settings, "generated"), Summary::new(&stage, &slow, &settings, "generic"));
+    let fast = motion::run(&session, &initial, Code::Generated(&robot, &frames), &settings, &quiet)?;
+    let slow = motion::run(&session, &initial, Code::Generic, &settings, &quiet)?;
+    let (fast, slow) = (Summary::new(&session, &fast, &settings, "generated"), Summary::new(&session, &slow, &settings, "generic"));
     if let Some(error) = fast.error.as_ref().or(slow.error.as_ref()) {
         return Err(Failure::input([format!("{name}: {error}")]));
     }
     for (run, code) in [(&fast, "generated"), (&slow, "generic")] {
-        if let Some(odd) = run.out_of_balance() {
-            console::warn(&format!("{name}: {code} code: {odd}"));
+        if let Some(warning) = run.out_of_balance() {
+            console::warn(&format!("{name}: {code} code: {warning}"));
         }
     }
     Ok(Row {

@@ -3,6 +3,7 @@
 mod all;
 pub(crate) mod arguments;
 mod label;
+mod monitor;
 pub(crate) mod motion;
 mod page;
 mod plot;
@@ -12,7 +13,6 @@ mod size;
 mod summary;
 mod table;
 mod text;
-mod watch;
 
 use std::path::Path;
 
@@ -20,9 +20,9 @@ use articulated::simulate::{Output, Settings};
 use articulated_core::effect::EffectId;
 use articulated_lab::against;
 use articulated_lab::compiled::Rustc;
-use articulated_lab::stage::{Code, Stage};
+use articulated_lab::session::{Code, Session};
 use articulated_lab::straight::Straight;
-use articulated_motion::{Begin, field};
+use articulated_motion::{InitialState, field};
 
 use crate::arguments::Format;
 use crate::console::{self, Progress};
@@ -38,47 +38,47 @@ use summary::{Summary, Unit};
 /// Simulates and writes.
 pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, Failure> {
     let Some(scene) = &arguments.scene else { return all::run(arguments, format) };
-    let stage = named_scene::stage(scene)?;
-    has_room(&stage.scene.file, stage.model.nv())?;
-    let settings = settings::of(&stage, arguments);
-    let (mut settings, begin) = Failure::both(settings, stage.start().map_err(Failure::from))?;
+    let session = named_scene::session(scene)?;
+    has_room(&session.scene.file, session.model.nv)?;
+    let settings = settings::of(&session, arguments);
+    let (mut settings, initial) = Failure::both(settings, session.start().map_err(Failure::from))?;
     if let Some(file) = &arguments.against {
-        let report = against::measure(&stage, &begin, &settings, file)?;
+        let report = against::measure(&session, &initial, &settings, file)?;
         console::print(&match format {
             Format::Text => report.text(),
             Format::Json => crate::json(&report),
         })?;
         return Ok(OK);
     }
-    motion::solvable(&stage)?;
-    let size = Size::look_ahead(stage.model.shape(), &mut settings, arguments)?;
+    motion::solvable(&session)?;
+    let size = Size::look_ahead(session.model.shape(), &mut settings, arguments)?;
     arguments.output.as_deref().map_or(Ok(()), folder)?;
-    let progress = Progress::of_whole(format!("{}: motion", stage.name));
+    let progress = Progress::of_whole(format!("{}: motion", session.name));
     let (mut motion, code) = match arguments.generated {
-        true => (by_generated_code(&stage, &begin, &settings, &progress)?, "generated"),
-        false => (by_generic_code(&stage, &begin, &settings, &progress)?, "generic"),
+        true => (by_generated_code(&session, &initial, &settings, &progress)?, "generated"),
+        false => (by_generic_code(&session, &initial, &settings, &progress)?, "generic"),
     };
     if let (Some(error), Some(full)) = (&mut motion.error, size.and_then(|size| size.ended(motion.recording.len()))) {
         *error += &format!("; {full}");
     }
-    let mut summary = Summary::new(&stage, &motion, &settings, code);
+    let mut summary = Summary::new(&session, &motion, &settings, code);
     if let Some(folder) = &arguments.output {
-        progress.doing(format!("{}: files", stage.name));
-        write(&stage, &motion, &mut summary, (folder, settings.output == Output::Ends))?;
+        progress.doing(format!("{}: files", session.name));
+        write(&session, &motion, &mut summary, (folder, settings.output == Output::Ends))?;
     }
     drop(progress);
     console::print(&match format {
         Format::Text => text::text(&summary),
         Format::Json => crate::json(&summary),
     })?;
-    if let Some(odd) = summary.out_of_balance() {
-        console::warn(&format!("{}: {odd}", stage.scene.file));
+    if let Some(warning) = summary.out_of_balance() {
+        console::warn(&format!("{}: {warning}", session.scene.file));
     }
     Ok(match &motion.error {
         None if summary.status == "ok" => OK,
         None => OUT_OF_TOLERANCE,
         Some(error) => {
-            console::error(&format!("{}: {error}", stage.scene.file));
+            console::error(&format!("{}: {error}", session.scene.file));
             INPUT
         }
     })
@@ -95,27 +95,27 @@ fn folder(path: &Path) -> Result<(), Failure> {
     )))
 }
 
-fn by_generated_code(stage: &Stage, begin: &Begin, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
-    let (generated, frames) = stage.generate(settings.integrator)?;
-    progress.doing(format!("{}: rustc", stage.name));
+fn by_generated_code(session: &Session, initial: &InitialState, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
+    let (generated, frames) = session.generate(settings.integrator)?;
+    progress.doing(format!("{}: rustc", session.name));
     let rustc = Rustc::find().map_err(|e| Failure::tool(&e))?;
     let robot = Straight::build(&rustc, &generated).map_err(|e| Failure::tool(&e))?;
-    progress.doing(format!("{}: motion", stage.name));
-    motion::run(stage, begin, Code::Generated(&robot, &frames), settings, progress)
+    progress.doing(format!("{}: motion", session.name));
+    motion::run(session, initial, Code::Generated(&robot, &frames), settings, progress)
 }
 
-fn by_generic_code(stage: &Stage, begin: &Begin, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
+fn by_generic_code(session: &Session, initial: &InitialState, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
     if cfg!(debug_assertions) {
         console::warn("this command was built without optimisation: its speed means little");
     }
-    motion::run(stage, begin, Code::Generic, settings, progress)
+    motion::run(session, initial, Code::Generic, settings, progress)
 }
 
 /// All files of a motion, of its ends alone without what draws it; their names go into the summary,
 /// which is the last of them.
-fn write(stage: &Stage, motion: &Motion, summary: &mut Summary, (folder, ends): (&Path, bool)) -> Result<(), Failure> {
+fn write(session: &Session, motion: &Motion, summary: &mut Summary, (folder, ends): (&Path, bool)) -> Result<(), Failure> {
     let recording = &motion.recording;
-    let drawn = if ends { None } else { Some(Drawn::of(stage, motion, summary)?) };
+    let drawn = if ends { None } else { Some(Drawn::of(session, motion, summary)?) };
     let pictures = drawn.as_ref().map_or(&[][..], |drawn| &drawn.pictures);
     summary.pictures_left_out = plot::PICTURES.into_iter().filter(|name| pictures.iter().all(|p| p.name != *name)).collect();
     summary.page_left_out = ends;
@@ -149,12 +149,10 @@ struct Drawn {
 }
 
 impl Drawn {
-    fn of(stage: &Stage, motion: &Motion, summary: &Summary) -> Result<Self, Failure> {
-        let setting = setting(stage, summary);
-        let page = page::html(&motion.recording, &setting).map_err(|e| Failure::tool(&e))?;
-        let animation = page::svg(&motion.recording, &setting).map_err(|e| Failure::tool(&e))?;
-        let pictures = plot::pictures(&motion.recording, &stage.name);
-        Ok(Self { page, animation, pictures })
+    fn of(session: &Session, motion: &Motion, summary: &Summary) -> Result<Self, Failure> {
+        let page = page::html(&motion.recording, &setting(session, summary)).map_err(|e| Failure::tool(&e))?;
+        let pictures = plot::pictures(&motion.recording, &session.name);
+        Ok(Self { page, pictures })
     }
 }
 
@@ -171,19 +169,19 @@ fn clear(folder: &Path, pictures: &[&str], page: bool) -> Result<(), Failure> {
 }
 
 /// What the page shows of a scene.
-fn setting<'a>(stage: &'a Stage, summary: &Summary) -> Setting<'a> {
-    let contacts = || stage.effects_of(EffectId::contact);
+fn setting<'a>(session: &'a Session, summary: &Summary) -> Setting<'a> {
+    let contacts = || session.effects_of(EffectId::contact);
     let ball = |a: &articulated_core::effect::Applied| (a.on.clone(), a.at.xyz, field(a, "radius").first().copied().unwrap_or(0.0));
     let plane = |a: &articulated_core::effect::Applied| {
         let normal: [f64; 3] = field(a, "normal").try_into().ok()?;
         Some((normal, *field(a, "height").first()?))
     };
     Setting {
-        title: &stage.name,
+        title: &session.name,
         note: format!("{}, {} base; {}", summary.robot, summary.base, summary.integrator.name),
-        description: &stage.description,
-        model: &stage.model,
-        base: stage.base(),
+        description: &session.description,
+        model: &session.model,
+        base: session.base(),
         balls: contacts().map(ball).collect(),
         ground: contacts().next().and_then(plane),
     }

@@ -5,11 +5,11 @@ use std::time::Duration;
 
 use articulated::FunctionId;
 use articulated::simulate::{Balance, Counts, Recording as Run, Settings};
-use articulated_lab::stage::{Code, Stage};
-use articulated_motion::{Begin, Creep, Ending, Happening as Happened, Outcome};
+use articulated_lab::session::{Code, Session};
+use articulated_motion::{Creep, Ending, InitialState, Occurrence, Outcome};
 
-use super::recording::{Happening, Recording};
-use super::watch::Watch;
+use super::monitor::RunMonitor;
+use super::recording::{EventRecord, Recording};
 use crate::console::{self, Progress};
 use crate::failure::Failure;
 use crate::named_scene;
@@ -32,63 +32,81 @@ pub(super) struct Motion {
     pub(super) ball: Option<f64>,
     /// Why it did not go on to its end.
     pub(super) error: Option<String>,
-    /// What is odd about its start and what it looks out for.
+    /// Warnings about its initial state and its events.
     pub(super) warnings: Vec<String>,
 }
 
 /// The warnings about a scene's motion. Errors: everything that keeps the motion from starting, or
 /// else the error of its first step.
 pub(crate) fn look_over(scene: &Path) -> Result<Vec<String>, Failure> {
-    let stage = named_scene::quiet_stage(scene)?;
-    let (begin, without) = Failure::both(stage.begin().map_err(Failure::from), looked_for(&stage))?;
-    if stage.scene.simulation.is_some() {
-        let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings()?)?;
-        if let Some(error) = motion.first_step(&begin)? {
-            return Err(Failure::input([format!("{}: the motion ends with its first step: {error}", stage.scene.file)]));
+    let session = named_scene::quiet_session(scene)?;
+    let (initial, unavailable) = Failure::both(session.initial_state().map_err(Failure::from), requested_events(&session))?;
+    if session.scene.simulation.is_some() {
+        let mut motion = session.motion(&session.model, &session.frame_names(), session.settings()?)?;
+        if let Some(error) = motion.first_step(&initial)? {
+            return Err(Failure::input([format!("{}: the motion ends with its first step: {error}", session.scene.file)]));
         }
     }
-    Ok(stage.warnings(&begin).into_iter().chain(without).collect())
+    Ok(session.warnings(&initial).into_iter().chain(unavailable).collect())
 }
 
-/// What the scene looks for and has not. Errors: all that its motion would not begin for but its start; who simulates a scene without settings gives its end.
-fn looked_for(stage: &Stage) -> Result<Vec<String>, Failure> {
-    if stage.scene.simulation.is_none() {
+/// Requested events that cannot occur. Errors: everything that would keep the motion from starting,
+/// except its initial state and a missing end time, which an option may set.
+fn requested_events(session: &Session) -> Result<Vec<String>, Failure> {
+    if session.scene.simulation.is_none() {
         return Ok(Vec::new());
     }
-    has_room(&stage.scene.file, stage.model.nv())?;
-    let motion = stage.settings().and_then(|settings| stage.motion(&stage.model, &stage.frame_names(), settings));
-    let (motion, ()) = Failure::both(motion.map_err(Failure::from), solvable(stage))?;
-    Ok(motion.without().iter().map(ToString::to_string).collect())
+    has_room(&session.scene.file, session.model.nv)?;
+    let motion = session.settings().and_then(|settings| session.motion(&session.model, &session.frame_names(), settings));
+    let (motion, ()) = Failure::both(motion.map_err(Failure::from), solvable(session))?;
+    Ok(motion.unavailable_events().iter().map(ToString::to_string).collect())
 }
 
 /// Whether torques determine accelerations at all. What generated code would be refused for, generic code is.
-pub(super) fn solvable(stage: &Stage) -> Result<(), Failure> {
-    let (file, model) = (&stage.request.file, &stage.model);
+pub(super) fn solvable(session: &Session) -> Result<(), Failure> {
+    let (file, model) = (&session.request.file, &session.model);
     Ok(articulated_codegen::defined(file, model, &articulated_codegen::massless(model), FunctionId::forward_dynamics.row::<f64>())?)
 }
 
 /// Runs it by this code.
-pub(super) fn run(stage: &Stage, begin: &Begin, code: Code<'_>, settings: &Settings, progress: &Progress) -> Result<Motion, Failure> {
-    let mut watch = Watch::new(stage, settings, progress);
-    let (outcome, without) = stage.run(begin, code, settings, &mut |t, counts| watch.look(t, counts))?;
-    let Outcome { recording, happenings, creep, ending, reached, ball, error, wall } = outcome;
+pub(super) fn run(
+    session: &Session,
+    initial: &InitialState,
+    code: Code<'_>,
+    settings: &Settings,
+    progress: &Progress,
+) -> Result<Motion, Failure> {
+    let mut monitor = RunMonitor::new(session, settings, progress);
+    let (outcome, unavailable) = session.run(initial, code, settings, &mut |t, counts| monitor.look(t, counts))?;
+    let Outcome { recording, occurrences, creep, ending, reached, ball, error, wall } = outcome;
     let (counts, balance) = (recording.counts, recording.balance.unwrap_or_default());
     let error = error.map(|e| e.to_string());
-    let penetrations = stage.warning_of_penetrations(&recording.t, &recording.q);
+    let penetrations = session.warning_of_penetrations(&recording.t, &recording.q);
     penetrations.iter().for_each(|line| console::warn(line));
-    let warnings = stage.warnings(begin).into_iter().chain(without).chain(penetrations).collect();
-    Ok(Motion { recording: told(stage, recording, happenings), counts, balance, creep, reached, ending, wall, ball, error, warnings })
+    let warnings = session.warnings(initial).into_iter().chain(unavailable).chain(penetrations).collect();
+    Ok(Motion {
+        recording: named_recording(session, recording, occurrences),
+        counts,
+        balance,
+        creep,
+        reached,
+        ending,
+        wall,
+        ball,
+        error,
+        warnings,
+    })
 }
 
 /// The library's recording with names.
-fn told(stage: &Stage, run: Run, happenings: Vec<Happened>) -> Recording {
+fn named_recording(session: &Session, run: Run, occurrences: Vec<Occurrence>) -> Recording {
     let n = run.len();
     let whole = |x: Vec<f64>| if x.len() == n { x } else { vec![0.0; n] };
     // Without mass there is no centre of it: rotors have no momentum here.
-    let heavy = stage.model.moving_mass() > 0.0;
+    let heavy = session.model.moving_mass() > 0.0;
     let momentum = (0..n).map(|k| run.momentum_at(k).filter(|_| heavy).and_then(|p| p.try_into().ok()).unwrap_or_default()).collect();
     Recording {
-        events: happenings.into_iter().map(Happening::from).collect(),
+        events: occurrences.into_iter().map(EventRecord::from).collect(),
         t: run.t,
         q: run.q,
         v: run.v,
@@ -99,6 +117,6 @@ fn told(stage: &Stage, run: Run, happenings: Vec<Happened>) -> Recording {
         dissipated: whole(run.dissipated),
         from_events: whole(run.from_events),
         momentum,
-        ..Recording::of(&stage.model)
+        ..Recording::of(&session.model)
     }
 }

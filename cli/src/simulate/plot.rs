@@ -38,7 +38,7 @@ fn seen(mut all: Vec<Series>) -> Vec<Series> {
     all
 }
 
-/// What a picture leaves out of so many curves, and of the events.
+/// Curves and events left out of a picture.
 fn notes(r: &Recording, panels: &[Panel], all: usize) -> String {
     let left = all.saturating_sub(panels.iter().map(|p| p.curves.len()).sum());
     let curves =
@@ -251,7 +251,7 @@ struct Curve {
 }
 
 /// Colours of curves. Readers with colour blindness can distinguish them, on screen and in print.
-/// A panel has at most so many curves.
+/// Largest number of curves of a panel.
 const COLOURS: [&str; 8] = ["#1b6ca8", "#d9822b", "#3f8f5b", "#c2453f", "#7a5195", "#b59f00", "#36a9bf", "#555555"];
 
 /// The look of a curve.

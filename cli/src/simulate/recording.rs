@@ -2,7 +2,7 @@
 
 use articulated_core::description::{JointKind, Quantity};
 use articulated_core::model::{FLOATING_BASE, JointInfo, Model};
-use articulated_motion::{EventKind, Happening as Happened};
+use articulated_motion::{EventKind, Occurrence};
 use serde::Serialize;
 
 /// A coordinate or a rate: whose it is, and in what unit.
@@ -18,22 +18,22 @@ pub(crate) struct Named {
     pub(crate) base: bool,
 }
 
-/// Something that happened, at its time.
+/// The record of an event.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub(crate) struct Happening {
+pub(crate) struct EventRecord {
     /// s.
     pub(crate) time: f64,
-    /// What, in a few words.
+    /// Description.
     pub(crate) what: String,
-    /// The same for programs.
+    /// The same as data.
     #[serde(flatten)]
     pub(crate) about: Option<About>,
-    /// Of the ball's turn, its speed along the normal after it, m/s.
+    /// For the ball's event, its speed along the normal afterwards, m/s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) ball_speed_m_per_s: Option<f64>,
 }
 
-/// What a program asks of an event.
+/// Data of an event.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct About {
     /// `lower_limit`, `upper_limit`, `contact`, `stick_slip`, `ball`.
@@ -47,8 +47,8 @@ pub(crate) struct About {
     pub(crate) contact: Option<usize>,
 }
 
-impl From<Happened> for Happening {
-    fn from(h: Happened) -> Self {
+impl From<Occurrence> for EventRecord {
+    fn from(h: Occurrence) -> Self {
         let about = h.about.map(|a| {
             let contact = if let EventKind::Contact { number, .. } = a.kind { Some(number) } else { None };
             About { kind: a.kind.name(), on: a.on, begins: a.begins, contact }
@@ -72,7 +72,7 @@ pub(crate) struct Recording {
     pub(crate) q: Vec<f64>,
     /// `[times][nv]`.
     pub(crate) v: Vec<f64>,
-    /// What the motors are told, `[times][nv]`.
+    /// Commanded motor torques, `[times][nv]`.
     pub(crate) tau: Vec<f64>,
     /// J.
     pub(crate) kinetic: Vec<f64>,
@@ -87,7 +87,7 @@ pub(crate) struct Recording {
     /// Angular momentum about the centre of mass, then linear momentum, in axes of the world frame: kg·m²/s, kg·m/s.
     pub(crate) momentum: Vec<[f64; 6]>,
     /// In the order of their times.
-    pub(crate) events: Vec<Happening>,
+    pub(crate) events: Vec<EventRecord>,
 }
 
 impl Recording {
@@ -187,7 +187,7 @@ pub(crate) fn example(model: &Model<f64>, times: usize) -> Recording {
         r.from_events.push(0.0);
         r.momentum.push([t; 6]);
     }
-    r.events = vec![Happening { time: 0.035, what: "left_foot touches the ground".into(), about: None, ball_speed_m_per_s: None }];
+    r.events = vec![EventRecord { time: 0.035, what: "left_foot touches the ground".into(), about: None, ball_speed_m_per_s: None }];
     r
 }
 

@@ -5,15 +5,15 @@ use articulated::simulate::{Output, SettingError, Settings, integrator};
 use super::arguments::SimulateArguments;
 use crate::console;
 use crate::failure::Failure;
-use articulated_lab::stage::Stage;
+use articulated_lab::session::Session;
 
 /// The settings, or why there are none.
-pub(super) fn of(stage: &Stage, arguments: &SimulateArguments) -> Result<Settings, Failure> {
-    let (scene, file) = (stage.scene.simulation.as_ref(), &stage.scene.file);
+pub(super) fn of(session: &Session, arguments: &SimulateArguments) -> Result<Settings, Failure> {
+    let (scene, file) = (session.scene.simulation.as_ref(), &session.scene.file);
     if scene.is_none() && arguments.end.is_none() {
         return Err(Failure::input([format!("{file}: simulation: found nothing, expected [simulation] with `end`, s, or --end here")]));
     }
-    let integrator = stage.scene.default_integrator();
+    let integrator = session.scene.default_integrator();
     let mut settings = scene.map_or_else(|| Settings { integrator, ..Settings::default() }, |s| s.settings.clone());
     let a = arguments;
     settings.end = a.end.unwrap_or(settings.end);
@@ -21,11 +21,11 @@ pub(super) fn of(stage: &Stage, arguments: &SimulateArguments) -> Result<Setting
     settings.atol = a.atol.unwrap_or(settings.atol);
     choose_steps(&mut settings, a, file)?;
     settings.output = a.every.map_or(settings.output, Output::Every);
-    let problems = settings.problems(stage.model.shape());
+    let problems = settings.problems(session.model.shape());
     if !problems.is_empty() {
-        return Err(Failure::input(problems.iter().map(|p| told(p, a, file))));
+        return Err(Failure::input(problems.iter().map(|p| message(p, a, file))));
     }
-    too_many_steps(&settings).iter().for_each(|odd| console::warn(&format!("{file}: {odd}")));
+    too_many_steps(&settings).iter().for_each(|warning| console::warn(&format!("{file}: {warning}")));
     Ok(settings)
 }
 
@@ -33,12 +33,12 @@ pub(super) fn of(stage: &Stage, arguments: &SimulateArguments) -> Result<Setting
 fn too_many_steps(settings: &Settings) -> Option<String> {
     let (step, most) = (settings.step?, settings.max_steps);
     let (steps, reached) = ((settings.end - settings.start) / step, settings.start + step * most as f64);
-    let told = || {
+    let message = || {
         format!(
             "simulation.step: found {step:?} s, {steps:.1e} steps to the end, of which max_steps = {most} are made, up to t = {reached} s; expected longer steps, or a greater max_steps"
         )
     };
-    (steps > most as f64 * (1.0 + 1e-9)).then(told)
+    (steps > most as f64 * (1.0 + 1e-9)).then(message)
 }
 
 /// The integrator and what chooses its steps. Errors: an option that has no part in it, and steps that nothing chooses.
@@ -59,17 +59,17 @@ fn choose_steps(settings: &mut Settings, a: &SimulateArguments, file: &str) -> R
     let Some(step) = settings.step else { return Ok(()) };
     let tolerances = [("rtol", a.rtol), ("atol", a.atol)].into_iter().filter(|(_, given)| given.is_some());
     let by = if a.step.is_some() { "--step".to_owned() } else { format!("`step` in [simulation] of {file}") };
-    let told = |(option, _)| {
+    let message = |(option, _)| {
         format!(
             "--{option}: found a fixed step of {step:?} s ({by}), which no tolerance chooses, expected an integrator that chooses its steps, as --integrator dopri5"
         )
     };
-    let lines: Vec<String> = tolerances.map(told).collect();
+    let lines: Vec<String> = tolerances.map(message).collect();
     if lines.is_empty() { Ok(()) } else { Err(Failure::input(lines)) }
 }
 
 /// A problem, of the option where that has said it, else of the scene.
-fn told(problem: &SettingError, a: &SimulateArguments, file: &str) -> String {
+fn message(problem: &SettingError, a: &SimulateArguments, file: &str) -> String {
     let options = [
         ("end", "end", a.end.is_some()),
         ("step", "step", a.step.is_some()),

@@ -41,8 +41,8 @@ impl Size {
         rows * columns as f64 * NUMBER
     }
 
-    /// So many rows, in words.
-    fn told(self, rows: f64) -> String {
+    /// Description of a number of rows.
+    fn describe(self, rows: f64) -> String {
         let size = Self::bytes(self.columns, rows) / 1e6;
         format!("{rows} rows of {} columns: up to {size:.0} MB", self.columns)
     }
@@ -56,7 +56,7 @@ impl Size {
         match rows(settings) {
             Some(rows) if rows > size.most => return Err(Failure::input([size.refusal(folder, rows)])),
             Some(rows) if Self::bytes(size.columns, rows) > MUCH => {
-                console::note(&format!("{}: {}", folder.display(), size.told(rows)));
+                console::note(&format!("{}: {}", folder.display(), size.describe(rows)));
             }
             Some(_) => {}
             None => settings.max_steps = settings.max_steps.min((size.most as u64).max(2) - 1),
@@ -68,16 +68,20 @@ impl Size {
         format!(
             "--output {}: found {}, expected at most {} MB: record less often (--every, or `output` in [simulation]), or allow more by --max-output-size",
             folder.display(),
-            self.told(rows),
+            self.describe(rows),
             self.allowed
         )
     }
 
-    /// Why a motion ended that has made so many records.
+    /// Why a motion ended after this number of records.
     pub(super) fn ended(self, records: usize) -> Option<String> {
         let full = records as f64 >= self.most;
         full.then(|| {
-            format!("{}: there may be no more, unless --max-output-size allows more than {} MB", self.told(records as f64), self.allowed)
+            format!(
+                "{}: there may be no more, unless --max-output-size allows more than {} MB",
+                self.describe(records as f64),
+                self.allowed
+            )
         })
     }
 }

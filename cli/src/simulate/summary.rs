@@ -7,10 +7,10 @@ use articulated_motion::Creep;
 use serde::Serialize;
 
 use super::motion::Motion;
-use super::recording::{Happening, Recording};
+use super::recording::{EventRecord, Recording};
 use crate::effects::sorts;
 use articulated_lab::json::Units;
-use articulated_lab::stage::{Stage, joint_of};
+use articulated_lab::session::{Session, joint_of};
 
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Summary {
@@ -26,7 +26,7 @@ pub(super) struct Summary {
     pub(super) start_s: f64,
     /// The time that was reached.
     pub(super) end_s: f64,
-    /// That which was asked for.
+    /// The requested end time.
     pub(super) asked_end_s: f64,
     /// The time of the last record: what energies and momentum are of at the end.
     pub(super) last_record_s: f64,
@@ -39,14 +39,14 @@ pub(super) struct Summary {
     pub(super) counts: Done,
     /// What smoothed friction did not hold: of contacts and of joints the one that crept furthest.
     pub(super) creep: Vec<Crept>,
-    pub(super) events: Vec<Happening>,
+    pub(super) events: Vec<EventRecord>,
     /// Whether the ball of the scene's impact was reached and hit; `None` where there is none.
     pub(super) ball_reached: Option<bool>,
     /// Its speed along the normal once its turn came.
     pub(super) ball_speed_m_per_s: Option<f64>,
     pub(super) wall_s: f64,
     pub(super) simulated_s_per_wall_s: f64,
-    /// What is odd about the robot, the start, what is looked for, and the balance of energy.
+    /// Warnings about the robot, the initial state, the events, and the balance of energy.
     pub(super) warnings: Vec<String>,
     /// Written into the folder.
     pub(super) files: Vec<String>,
@@ -138,10 +138,10 @@ pub(super) struct Crept {
 }
 
 impl Crept {
-    fn of(stage: &Stage, creep: &Creep) -> Self {
+    fn of(session: &Session, creep: &Creep) -> Self {
         // A degree of freedom of a planar joint, as `puck[2]`, has the name of its joint before the
         // bracket.
-        let joint = |name: &str| stage.description.joints.iter().find(|joint| joint.name == name).map(|joint| joint.kind);
+        let joint = |name: &str| session.description.joints.iter().find(|joint| joint.name == name).map(|joint| joint.kind);
         let name = creep.on.split_once('[').map_or(creep.on.as_str(), |(name, _)| name);
         let unit = match (creep.effect, joint(&creep.on).or_else(|| joint(name))) {
             (EffectId::contact, _) | (_, Some(JointKind::Prismatic)) => "m",
@@ -170,16 +170,16 @@ pub(super) struct Done {
 }
 
 impl Summary {
-    pub(super) fn new(stage: &Stage, motion: &Motion, settings: &Settings, code: &'static str) -> Self {
+    pub(super) fn new(session: &Session, motion: &Motion, settings: &Settings, code: &'static str) -> Self {
         let r = &motion.recording;
         let (row, wall) = (settings.integrator.row(), motion.wall.as_secs_f64());
         let last_record = r.t.last().copied().unwrap_or(settings.start);
         Self {
-            scene: stage.name.clone(),
-            robot: stage.model.name().to_owned(),
-            base: if stage.base() == articulated_core::description::Base::Floating { "floating" } else { "fixed" },
-            degrees_of_freedom: stage.model.nv(),
-            effects: sorts(&stage.effects),
+            scene: session.name.clone(),
+            robot: session.model.name.clone(),
+            base: if session.base() == articulated_core::description::Base::Floating { "floating" } else { "fixed" },
+            degrees_of_freedom: session.model.nv,
+            effects: sorts(&session.effects),
             code,
             integrator: Method { name: row.name, order: row.order, step_s: settings.step, rtol: settings.rtol, atol: settings.atol },
             start_s: settings.start,
@@ -191,25 +191,25 @@ impl Summary {
             error: motion.error.clone(),
             energy: Energy::of(r, &motion.balance, motion.ball),
             momentum: Momentum::of(r),
-            counts: Done::of(stage, &motion.counts, r.len()),
-            creep: motion.creep.iter().map(|creep| Crept::of(stage, creep)).collect(),
+            counts: Done::of(session, &motion.counts, r.len()),
+            creep: motion.creep.iter().map(|creep| Crept::of(session, creep)).collect(),
             events: r.events.clone(),
-            ball_reached: stage.scene.impact.as_ref().map(|_| motion.ball.is_some()),
+            ball_reached: session.scene.impact.as_ref().map(|_| motion.ball.is_some()),
             ball_speed_m_per_s: r.events.iter().find_map(|e| e.ball_speed_m_per_s),
             wall_s: wall,
             simulated_s_per_wall_s: (motion.reached - settings.start) / wall.max(1e-9),
-            warnings: stage.odd.iter().chain(&motion.warnings).cloned().collect(),
+            warnings: session.robot_warnings.iter().chain(&motion.warnings).cloned().collect(),
             files: Vec::new(),
             columns: Vec::new(),
             pictures_left_out: Vec::new(),
             page_left_out: false,
             units: UNITS,
         }
-        .with_balance(&stage.scene.file)
+        .with_balance(&session.scene.file)
     }
 
     fn with_balance(mut self, file: &str) -> Self {
-        self.warnings.extend(self.out_of_balance().map(|odd| format!("{file}: {odd}")));
+        self.warnings.extend(self.out_of_balance().map(|warning| format!("{file}: {warning}")));
         if self.status == "ok" && !self.energy.is_kept() {
             self.status = "out_of_tolerance";
         }
@@ -280,7 +280,7 @@ impl Momentum {
 }
 
 impl Done {
-    fn of(stage: &Stage, c: &Counts, records: usize) -> Self {
+    fn of(session: &Session, c: &Counts, records: usize) -> Self {
         Self {
             steps: c.steps,
             rejected_steps: c.rejected,
@@ -289,7 +289,7 @@ impl Done {
             smallest_step_s: Some(c.smallest_step).filter(|s| s.is_finite()),
             largest_step_s: c.largest_step,
             stiff_at_s: c.stiff_at,
-            limited_by: c.limited_by.and_then(|index| joint_of(stage, index)),
+            limited_by: c.limited_by.and_then(|index| joint_of(session, index)),
             records,
         }
     }

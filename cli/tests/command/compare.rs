@@ -18,7 +18,7 @@ fn a_report_has_everything() {
         assert!(number("/generated/median") > 0.0 && number("/generic/lower_quartile") > 0.0);
         assert!(number("/generation_seconds") > 0.0 && number("/compilation_seconds") > 0.0 && number("/depth") > 0.0);
         assert!((0.0..64.0).contains(&number("/errors/generated")) && (0.0..64.0).contains(&number("/errors/generic")));
-        assert_eq!(f["stages"][0]["stage"], "asked");
+        assert_eq!(f["stages"][0]["stage"], "requested");
         assert!(cfg!(not(target_os = "linux")) || number("/code_bytes") > 16.0);
         // Code for any processor is something else only where the command itself is built for this machine.
         if cfg!(all(target_arch = "x86_64", target_feature = "fma")) {
@@ -46,7 +46,9 @@ fn the_text_lines_up_and_ends_with_two_sentences() {
     assert_eq!(ended.status, 0, "{}", ended.err);
     let last = ended.out.rsplit("\n\n").next().unwrap();
     assert_eq!(last.matches(". ").count() + last.matches(".\n").count(), 2, "{last}");
-    for part in ["asked", "depth", "bytes", "rustc", "ns", "ratio", "units", "  depth: ", "contract: ", "  forward: ", "  generated: "] {
+    for part in
+        ["requested", "depth", "bytes", "rustc", "ns", "ratio", "units", "  depth: ", "fma_contract: ", "  forward: ", "  generated: "]
+    {
         assert!(ended.out.contains(part), "{part}: {}", ended.out);
     }
 }

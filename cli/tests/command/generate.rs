@@ -34,7 +34,7 @@ fn flags_arrive_in_the_request() {
     // A file to compile is one in any case.
     let both = run(&[&words[..], &["-o", file.name(), "--format", "json"]].concat()).json();
     assert_eq!((&both["source"], std::fs::read_to_string(file.name()).unwrap().as_str()), (&json["source"], source.as_str()));
-    assert_eq!(json["functions"][0]["stages"][0]["stage"], "asked");
+    assert_eq!(json["functions"][0]["stages"][0]["stage"], "requested");
 }
 
 #[test]

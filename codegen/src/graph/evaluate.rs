@@ -22,7 +22,7 @@ pub(crate) fn value<S: Scalar>(op: Op, [a, b, c]: [S; 3]) -> S {
         Op::MulSub => a * b - c,
         Op::NegMulAdd => c - a * b,
         Op::NegMulSub => -(a * b) - c,
-        Op::Constant | Op::Input | Op::LaneConstant | Op::LaneInput | Op::Spread | Op::Across => a,
+        Op::Constant | Op::Input | Op::LaneConstant | Op::LaneInput | Op::Broadcast | Op::ReduceAdd => a,
     }
 }
 
@@ -64,11 +64,11 @@ impl Graph {
             Op::LaneConstant => std::array::from_fn(|k| S::from_f64(self.lanes().constant(node.args[0])[k])),
             Op::Input => [input(node.args[0] as usize, node.args[1] as usize); N],
             Op::LaneInput => each(width, |k| input(node.args[0] as usize, self.lanes().input(node.args[1])[k] as usize)),
-            Op::Spread => {
+            Op::Broadcast => {
                 let lane = self.node(NodeId(node.args[1])).constant().unwrap_or_default() as usize;
                 [at(0)[lane]; N]
             }
-            Op::Across => [(1..width).fold(at(0)[0], |sum, k| sum + at(0)[k]); N],
+            Op::ReduceAdd => [(1..width).fold(at(0)[0], |sum, k| sum + at(0)[k]); N],
             op => {
                 let [a, b, c] = [at(0), at(1), at(2)];
                 each(width, |k| value(op, [a[k], b[k], c[k]]))
@@ -98,12 +98,12 @@ mod tests {
             let lane_constant = g.lane_constant(std::array::from_fn(|k| y[k % width]));
             let operands = [g.lane_input(0, &[0, 1, 2, 3][..width]), lane_constant, g.input(1, 0)];
             let mut expected = Vec::new();
-            for row in OPS.iter().filter(|row| row.arity > 0 && !matches!(row.op, Op::Spread | Op::Across)) {
+            for row in OPS.iter().filter(|row| row.arity > 0 && !matches!(row.op, Op::Broadcast | Op::ReduceAdd)) {
                 let result = g.exactly(row.op, &operands[..row.arity]);
                 for lane in 0..width {
                     let of_all = g.constant(lane as f64);
-                    let spread = g.exactly(Op::Spread, &[result, of_all]);
-                    g.outputs.push(spread);
+                    let broadcast = g.exactly(Op::Broadcast, &[result, of_all]);
+                    g.outputs.push(broadcast);
                     expected.push(value(row.op, [x[lane], y[lane], z]));
                 }
             }

@@ -58,7 +58,7 @@ pub struct Graph {
     /// The results, in order.
     pub outputs: Vec<NodeId>,
     places: table::Places,
-    asked: Counts,
+    requested: Counts,
     lanes: Lanes,
 }
 
@@ -90,15 +90,15 @@ impl Graph {
         self.nodes[id.index()]
     }
 
-    /// The operations that were asked for while the graph was built, before folding and sharing.
-    pub fn asked(&self) -> &Counts {
-        &self.asked
+    /// The operations that were requested while the graph was built, before folding and sharing.
+    pub fn requested(&self) -> &Counts {
+        &self.requested
     }
 
-    /// The same graph, said to be asked for as `other` was: that of which it is another form.
+    /// The same graph with the requested operations of `other`, of which it is another form.
     #[must_use]
-    pub fn asked_as(mut self, other: &Self) -> Self {
-        self.asked = other.asked.clone();
+    pub fn requested_as(mut self, other: &Self) -> Self {
+        self.requested = other.requested.clone();
         self
     }
 
@@ -139,7 +139,7 @@ impl Graph {
 
     /// The node for an operation on nodes, folded: it may be a simpler one, or one that is there already.
     pub fn apply(&mut self, op: Op, operands: &[NodeId]) -> NodeId {
-        self.asked.add(op, 1);
+        self.requested.add(op, 1);
         fold::fold(self, op, operands)
     }
 
@@ -236,7 +236,7 @@ mod tests {
             let lanes = graph.outputs.clone();
             for lane in 0..width {
                 let lane_of_all = graph.constant(lane as f64);
-                graph.outputs = lanes.iter().map(|&id| graph.exactly(Op::Spread, &[id, lane_of_all])).collect();
+                graph.outputs = lanes.iter().map(|&id| graph.exactly(Op::Broadcast, &[id, lane_of_all])).collect();
                 let expected: Vec<f64> = indices.iter().map(|i| i[lane] as f64).collect();
                 assert_eq!(graph.evaluate(|argument, k| if argument == 1 { k as f64 } else { f64::NAN }), expected);
             }

@@ -43,9 +43,9 @@ pub enum Op {
     /// Elements of an argument, one a lane
     LaneInput,
     /// lane number b of a, in every lane
-    Spread,
+    Broadcast,
     /// the sum of a's lanes, in every lane
-    Across,
+    ReduceAdd,
 }
 
 /// What the generator knows of an operation.
@@ -105,8 +105,8 @@ pub const OPS: [Row; 21] = [
     row(Op::NegMulSub, "fma").of_operands(3).commuting().takes(1, 4),
     row(Op::LaneConstant, "lane constants"),
     row(Op::LaneInput, "lane inputs"),
-    row(Op::Spread, "spread").of_operands(2).takes(1, 3),
-    row(Op::Across, "across").of_operands(1).takes(4, 14),
+    row(Op::Broadcast, "broadcast").of_operands(2).takes(1, 3),
+    row(Op::ReduceAdd, "reduce_add").of_operands(1).takes(4, 14),
 ];
 
 impl Op {

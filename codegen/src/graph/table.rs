@@ -1,9 +1,10 @@
-//! Where a node stands in its graph: open addressing with a fixed hash. Generators run unoptimised, where a map of the standard library costs five times as much; and
-//! the order of nothing depends on it.
+//! Index of a node in its graph: open addressing with a fixed hash. Generators run unoptimised,
+//! where a map of the standard library costs five times as much; and the order of nothing depends
+//! on it.
 
 use super::Node;
 
-/// The places of nodes in a list that somebody else holds.
+/// Hash table of node indices into a list that the graph holds.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Places {
     /// Places plus one; 0 is free. The length is a power of two, and at most half of them are taken.

@@ -1,4 +1,4 @@
-//! What of a robot is alike: its indices, and its constants as symbols.
+//! Isomorphic limbs of a robot: their indices, and their constants as symbols.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -12,7 +12,7 @@ use crate::graph::{MOST, Value};
 use crate::model_pass::View;
 use crate::sym::Sym;
 
-/// The branches of a robot that go into lanes.
+/// The isomorphic branches of a robot, one per lane.
 pub(crate) struct IsomorphicLimbs {
     pub(crate) width: usize,
     limbs: Vec<Limbs>,
@@ -21,11 +21,11 @@ pub(crate) struct IsomorphicLimbs {
     frames: Indices,
 }
 
-/// For each index of a vector that belongs to a limb, the indices that go with it, one a lane.
+/// For each index of a vector that belongs to a limb, the corresponding indices, one per lane.
 type Indices = HashMap<usize, Vec<usize>>;
 
 impl IsomorphicLimbs {
-    /// The branches in so many lanes; `None` where there are none.
+    /// The branches for this number of lanes; `None` if there are none.
     pub(crate) fn of(model: &Model<f64>, width: usize) -> Option<Self> {
         let limbs = isomorphic_branches(model, width);
         if limbs.is_empty() {
@@ -45,12 +45,12 @@ impl IsomorphicLimbs {
         Some(alike)
     }
 
-    /// The bodies that go together.
+    /// The corresponding bodies.
     fn bodies(&self) -> Vec<Vec<usize>> {
         self.limbs.iter().flat_map(|l| (0..l.bodies).map(|k| l.aligned(k))).collect()
     }
 
-    /// The indices that go with index `k` of an argument, and its own lane; `None` for what belongs to no limb.
+    /// The indices that correspond to index `k` of an argument, and its lane; `None` outside limbs.
     pub(crate) fn lanes(&self, argument: Argument, k: usize) -> Option<(Vec<usize>, usize)> {
         let (indices, width) = match argument.dims() {
             [Dim::Nq] => (&self.q, 1),
@@ -89,7 +89,8 @@ impl IsomorphicLimbs {
     }
 }
 
-/// The frames of each of these bodies; none if some carry more than others: then they stand for themselves.
+/// The frames of each of these bodies; empty if their numbers differ: then each frame is computed
+/// by itself.
 fn frames_of(model: &Model<f64>, bodies: &[usize]) -> Vec<Vec<usize>> {
     let of = |&body: &usize| (0..model.frames().len()).filter(|&k| model.frames()[k].body == body).collect::<Vec<_>>();
     let frames: Vec<Vec<usize>> = bodies.iter().map(of).collect();
@@ -104,7 +105,7 @@ fn align(indices: &mut Indices, starts: &[usize], n: usize) {
     }
 }
 
-/// The numbers that `map` hands to the function it is given.
+/// The numbers that `map` passes to its function.
 fn recorded(map: impl FnOnce(&dyn Fn(f64) -> f64)) -> Vec<f64> {
     let numbers = RefCell::new(Vec::new());
     map(&|x| {
@@ -121,7 +122,7 @@ fn next(symbols: &RefCell<std::vec::IntoIter<Sym>>) -> Sym {
 /// The constants that differ from limb to limb, each set of numbers once.
 #[derive(Debug, Default)]
 pub(crate) struct Constants {
-    /// Number of the argument that stands for them while tracing.
+    /// Index of the argument that represents them while tracing.
     pub(crate) argument: usize,
     numbers: Vec<Value>,
     places: HashMap<[u64; MOST], usize>,

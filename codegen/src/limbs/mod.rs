@@ -1,11 +1,13 @@
-//! Limbs in lanes: branches of a robot that are alike are one program on vectors, one branch a lane.
+//! Limbs in lanes: isomorphic branches of a robot become one program on vectors, one branch per
+//! lane.
 //!
 //! ```text
 //! Model → (alike branches) → Model of symbols, one for each constant that differs → trace → pack → Graph of vectors
 //! ```
 //!
-//! The whole robot is traced, so that the algorithms know nothing of lanes. What differs between branches are then different inputs and different
-//! constants, which stay symbols while tracing, and so each branch leaves the same trace; [`pack`] lays one on the other.
+//! The whole robot is traced, so the algorithms are unaware of lanes. Branches differ only in
+//! inputs and constants, which stay symbols while tracing, so each branch has the same trace;
+//! [`pack`] merges them.
 
 mod branches;
 mod isomorphic;
@@ -90,11 +92,11 @@ mod tests {
         let mut counts = Vec::new();
         let all = functions::<Sym>().iter().filter(|f| f.needs != Needs::FreeFrames).map(|f| (f.name, f.name));
         for (name, text) in all.chain([("inverse_dynamics", "quick = inverse_dynamics(q = sin_cos)")]) {
-            let wanted = FunctionSpec::parse(text).unwrap();
-            for (way, _) in ways(&wanted.parts[0], model) {
-                let choice = [Strategy::plain(way, usize::MAX)];
-                let plain = passed(trace(&wanted, &choice, model, &[]));
-                let lanes = passed(trace_in_lanes(&wanted, &choice, model, &alike));
+            let spec = FunctionSpec::parse(text).unwrap();
+            for (way, _) in ways(&spec.parts[0], model) {
+                let strategy = [Strategy::plain(way, usize::MAX)];
+                let plain = passed(trace(&spec, &strategy, model, &[]));
+                let lanes = passed(trace_in_lanes(&spec, &strategy, model, &alike));
                 lanes.verify().unwrap();
                 for (k, (a, b)) in plain.evaluate(input).into_iter().zip(lanes.evaluate(input)).enumerate() {
                     // Solves amplify roundings; a wrong lane or sign is off by far more.
@@ -118,12 +120,12 @@ mod tests {
 
     #[test]
     fn where_one_leg_lacks_a_frame_the_others_stand_for_themselves() {
-        let model = walker(4, &mut 7);
-        let third = branches::isomorphic_branches(&model, 4)[0].roots[2];
-        let model = model.changed(|parts| parts.frames.retain(|frame| frame.body != third));
-        let (alike, wanted) = (IsomorphicLimbs::of(&model, 4).unwrap(), FunctionSpec::parse("placements").unwrap());
-        let choice = [Strategy::plain(ways(&wanted.parts[0], &model)[0].0, usize::MAX)];
-        let [plain, lanes] = [trace(&wanted, &choice, &model, &[]), trace_in_lanes(&wanted, &choice, &model, &alike)];
+        let mut model = walker(4, &mut 7);
+        let third = model.limbs(4)[0].roots[2];
+        model.frames.retain(|frame| frame.body != third);
+        let (alike, spec) = (IsomorphicLimbs::of(&model, 4).unwrap(), FunctionSpec::parse("placements").unwrap());
+        let strategy = [Strategy::plain(ways(&spec.parts[0], &model)[0].0, usize::MAX)];
+        let [plain, lanes] = [trace(&spec, &strategy, &model, &[]), trace_in_lanes(&spec, &strategy, &model, &alike)];
         for (a, b) in plain.evaluate(input).into_iter().zip(lanes.evaluate(input)) {
             assert!((a - b).abs() <= 1e-12 * (1.0 + a.abs()), "{a} {b}");
         }
@@ -149,7 +151,7 @@ mod tests {
             let lanes = pack(&plain, &[Argument::Q], &alike, &Constants::new(1));
             assert!((plain.evaluate(input)[0] - lanes.evaluate(input)[0]).abs() < 1e-15, "{before:b}");
             let counts = lanes.counts();
-            assert_eq!((counts.of(Op::Across), counts.of(Op::Spread)), (1, 0), "{before:b}");
+            assert_eq!((counts.of(Op::ReduceAdd), counts.of(Op::Broadcast)), (1, 0), "{before:b}");
         }
     }
 

@@ -1,4 +1,4 @@
-//! The traces of branches that are alike, laid on one another.
+//! Merges the traces of isomorphic branches into vector operations.
 
 use std::collections::HashMap;
 
@@ -14,7 +14,7 @@ enum At {
     All(NodeId),
     /// In one lane of a node.
     Lane(NodeId, usize),
-    /// A sum over lanes that is not made yet.
+    /// A deferred sum over lanes.
     Sum,
 }
 
@@ -36,11 +36,12 @@ struct Term {
     from: usize,
 }
 
-/// Terms of one sum from which on none is opened to find others like it.
+/// Number of terms of a sum above which none is expanded to find matching ones.
 const MANY: usize = 1000;
 
-/// Lays the trace of a whole robot together: an operation on values of one lane is the same operation on all lanes, made once, wherever they come from. Sums
-/// over all lanes become one sum of vectors, added across at the end. The outputs are in lane 0.
+/// Vectorizes the trace of a whole robot: equal operations on values of single lanes become one
+/// operation on all lanes. Sums over all lanes become one sum of vectors, reduced at the end. The
+/// outputs are in lane 0.
 pub(crate) fn pack(graph: &Graph, arguments: &[Argument], alike: &IsomorphicLimbs, constants: &Constants) -> Graph {
     let mut packer = Packer { graph, new: Graph::in_lanes(alike.width), at: Vec::with_capacity(graph.nodes().len()) };
     for node in graph.nodes() {
@@ -122,7 +123,7 @@ impl Packer<'_> {
         lanes.next().is_some_and(|first| lanes.any(|lane| lane != first))
     }
 
-    /// Makes a sum that was put off.
+    /// Builds a deferred sum.
     fn make(&mut self, node: usize) {
         if self.at[node] == At::Sum {
             self.at[node] = At::All(self.sum(node));
@@ -132,28 +133,28 @@ impl Packer<'_> {
     /// The value of a scalar node in every lane.
     fn everywhere(&mut self, node: usize) -> NodeId {
         self.make(node);
-        self.spread(self.at[node])
+        self.broadcast(self.at[node])
     }
 
-    fn spread(&mut self, at: At) -> NodeId {
+    fn broadcast(&mut self, at: At) -> NodeId {
         match at {
             At::All(id) => id,
             At::Lane(id, lane) => {
                 let lane = self.new.constant(lane as f64);
-                self.new.apply(Op::Spread, &[id, lane])
+                self.new.apply(Op::Broadcast, &[id, lane])
             }
             At::Sum => self.new.constant(0.0),
         }
     }
 
-    /// Makes a sum over lanes.
+    /// Builds a sum over lanes.
     fn sum(&mut self, root: usize) -> NodeId {
         let mut terms = Vec::new();
         self.open(Term { negative: false, at: At::Sum, from: root }, &mut terms);
-        let mut across: Option<NodeId> = None;
+        let mut reduced: Option<NodeId> = None;
         loop {
             while let Some(term) = self.take_all_lanes(&mut terms) {
-                across = Some(self.add(across, term));
+                reduced = Some(self.add(reduced, term));
             }
             // What is in some lanes only may hide a term that is in all.
             if let Some(place) = terms.iter().position(|t| self.can_open(t)) {
@@ -165,9 +166,9 @@ impl Packer<'_> {
                 break;
             }
         }
-        let mut sum = across.map(|id| self.new.apply(Op::Across, &[id]));
+        let mut sum = reduced.map(|id| self.new.apply(Op::ReduceAdd, &[id]));
         for term in terms {
-            let id = self.spread(term.at);
+            let id = self.broadcast(term.at);
             sum = Some(self.add(sum, (term.negative, id)));
         }
         sum.unwrap_or_else(|| self.new.constant(0.0))
@@ -189,7 +190,7 @@ impl Packer<'_> {
         in_lane && node.operands().any(|o| matches!(self.at[o.index()], At::All(_)))
     }
 
-    /// The terms of a sum; sums among them are opened too.
+    /// The terms of a sum, with nested sums expanded.
     fn open(&self, root: Term, terms: &mut Vec<Term>) {
         let mut stack = vec![root];
         while let Some(Term { negative, from, .. }) = stack.pop() {

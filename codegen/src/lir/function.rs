@@ -6,7 +6,7 @@ use articulated_core::algorithm::{Dim, Shape};
 use crate::capabilities::Capabilities;
 use crate::graph::Graph;
 use crate::ledger::Entry;
-use crate::lir::lower::{Lowering, Sines};
+use crate::lir::lower::{Lowering, SinCosGrouping};
 use crate::lir::pass::alias_barrier;
 use crate::lir::pass::outline::outline;
 use crate::lir::pass::pair_stores::pair_stores;
@@ -15,7 +15,7 @@ use crate::lir::pass::spill::{self, spill};
 use crate::lir::{Array, Body, Stmt, Ty};
 use crate::program::{MultiRhsSolve, Program};
 use crate::spec::FunctionSpec;
-use crate::{Arithmetic, Level};
+use crate::{Arithmetic, Precision};
 
 /// What a function takes.
 #[derive(Clone, Debug)]
@@ -103,7 +103,7 @@ const TOGETHER_FROM: usize = 3;
 impl<'a> Function<'a> {
     /// Lowers a program.
     pub(crate) fn of(program: &'a Program, shape: Shape, has_parameters: bool, can: Capabilities) -> Self {
-        let Program { wanted: spec, graph, entry, .. } = program;
+        let Program { spec, graph, entry, .. } = program;
         let mut arguments: Vec<Argument> = spec.arguments().iter().map(|a| Argument { name: a.name(), dims: a.dims().to_vec() }).collect();
         if has_parameters {
             arguments.push(Argument { name: "parameters", dims: Vec::new() });
@@ -151,7 +151,7 @@ fn flat(results: &[Array]) -> Vec<Array> {
 }
 
 /// Whether a function is cut into pieces.
-fn is_long(graph: &Graph, columns: bool, level: Level) -> bool {
+fn is_long(graph: &Graph, columns: bool, level: Precision) -> bool {
     let nodes = graph.nodes().len();
     let from = if columns && graph.lanes().width == 1 { CUT_BESIDE_COLUMNS_FROM } else { CUT_FROM };
     nodes >= from || level.of_two() && nodes >= CUT_PAIRS_FROM
@@ -189,18 +189,18 @@ impl Plan<'_> {
         }
     }
 
-    fn sines(&self) -> Sines {
+    fn sines(&self) -> SinCosGrouping {
         let level = self.can.level;
         match self.graph.lanes().width {
             // Two are those of the standard library.
             1 if level.fused
-                && level.sines == crate::Sines::Ulp
+                && level.sines == crate::TrigAccuracy::Ulp1
                 && matches!(level.arithmetic, Arithmetic::Double | Arithmetic::SingleByDouble) =>
             {
-                Sines { together: 4, are_powers_of_two: false, from: TOGETHER_FROM }
+                SinCosGrouping { together: 4, are_powers_of_two: false, from: TOGETHER_FROM }
             }
-            1 => Sines { together: 4, are_powers_of_two: false, from: 0 },
-            width => Sines { together: 8 / width, are_powers_of_two: true, from: 0 },
+            1 => SinCosGrouping { together: 4, are_powers_of_two: false, from: 0 },
+            width => SinCosGrouping { together: 8 / width, are_powers_of_two: true, from: 0 },
         }
     }
 
@@ -257,7 +257,7 @@ impl Plan<'_> {
         let results = flat(&results(self.spec, self.shape));
         let nodes = graph.nodes().len();
         let length = if nodes < CUT_STATES_FROM { usize::MAX } else { LENGTH };
-        let sines = Sines { together: 1, are_powers_of_two: true, from: 0 };
+        let sines = SinCosGrouping { together: 1, are_powers_of_two: true, from: 0 };
         let statements = Lowering { graph, ty: Ty::States, sines, results: &results }.stores_as_made(|_| true, false);
         let (pieces, kept) = outline(statements, length);
         let body = |pieces: Vec<Vec<Stmt>>, slots| {

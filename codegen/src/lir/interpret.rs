@@ -102,7 +102,7 @@ impl<F: Fn(usize, usize) -> f64> Machine<'_, F> {
                 std::array::from_fn(|lane| (self.input)(*argument as usize, indices[lane % indices.len()] as usize))
             }
             Expr::Broadcast(number) => [self.number(number); MOST],
-            Expr::Op(Op::Across, [a, ..]) => [self.sum(*a); MOST],
+            Expr::Op(Op::ReduceAdd, [a, ..]) => [self.sum(*a); MOST],
             Expr::Op(op, operands) => {
                 let arity = op.row().arity;
                 let [a, b, c] = std::array::from_fn(|k| if k < arity { self.operand(operands[k]) } else { [0.0; MOST] });

@@ -10,7 +10,7 @@ use crate::lir::{Angle, Array, Expr, Number, Operand, Rows, Stmt, Store, Temp, T
 
 /// How sines are computed.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sines {
+pub(crate) struct SinCosGrouping {
     /// How many angles go together.
     pub(crate) together: usize,
     /// Whether there are functions of one, two and four angles only, and not one of up to
@@ -24,7 +24,7 @@ pub(crate) struct Sines {
 pub(crate) struct Lowering<'a> {
     pub(crate) graph: &'a Graph,
     pub(crate) ty: Ty,
-    pub(crate) sines: Sines,
+    pub(crate) sines: SinCosGrouping,
     /// The arrays of the result.
     pub(crate) results: &'a [Array],
 }
@@ -144,7 +144,7 @@ impl Lowering<'_> {
             Op::LaneConstant if matches!(self.ty, Ty::Vector(_)) => return None,
             Op::Input => Expr::Input { argument: node.args[0], index: node.args[1] },
             Op::LaneInput => Expr::LaneInput { argument: node.args[0], indices: node.args[1] },
-            Op::Spread => Expr::Broadcast(self.lane(node)),
+            Op::Broadcast => Expr::Broadcast(self.lane(node)),
             op => {
                 let mut operands = [Operand::Constant(0.0); 3];
                 operands.iter_mut().zip(node.operands()).for_each(|(slot, id)| *slot = self.operand(id));
@@ -164,14 +164,14 @@ impl Lowering<'_> {
     }
 
     /// The lane that a node spreads.
-    fn lane(&self, spread: &Node) -> Number {
-        let lane = self.graph.node(NodeId(spread.args[1])).constant().unwrap_or_default() as usize;
-        Number { of: self.operand(NodeId(spread.args[0])), lane }
+    fn lane(&self, broadcast: &Node) -> Number {
+        let lane = self.graph.node(NodeId(broadcast.args[1])).constant().unwrap_or_default() as usize;
+        Number { of: self.operand(NodeId(broadcast.args[0])), lane }
     }
 
     fn number(&self, id: NodeId) -> Number {
         let node = self.graph.node(id);
-        if node.op == Op::Spread && self.ty != Ty::States { self.lane(&node) } else { Number { of: self.operand(id), lane: 0 } }
+        if node.op == Op::Broadcast && self.ty != Ty::States { self.lane(&node) } else { Number { of: self.operand(id), lane: 0 } }
     }
 
     fn is_zero(&self, at: usize) -> bool {
@@ -214,7 +214,7 @@ fn inner(graph: &Graph) -> Vec<bool> {
     let mut inner = vec![false; graph.nodes().len()];
     graph.nodes().iter().flat_map(Node::operands).for_each(|o| inner[o.index()] = true);
     for o in &graph.outputs {
-        inner[o.index()] |= graph.node(*o).op != Op::Spread;
+        inner[o.index()] |= graph.node(*o).op != Op::Broadcast;
     }
     inner
 }
@@ -373,7 +373,7 @@ impl Sums {
         graph.nodes().iter().flat_map(|node| node.operands()).for_each(|o| used[o.index()] = true);
         let mut sums: Vec<usize> = Vec::new();
         for k in graph.outputs.iter().map(|o| o.index()) {
-            if graph.nodes()[k].op == Op::Across && !used[k] && !sums.contains(&k) {
+            if graph.nodes()[k].op == Op::ReduceAdd && !used[k] && !sums.contains(&k) {
                 sums.push(k);
             }
         }

@@ -1,4 +1,4 @@
-//! Model passes: the generator's view of a robot, and what it does to it before tracing.
+//! Model passes: the generator's view of a robot, and its transforms before tracing.
 //!
 //! A [`View`] is a model and the [`Formulation`] that goes with it. Each pass keeps joint torques.
 //! The passes of [`model_passes`] are always taken, in order; the others where they cost less:
@@ -66,7 +66,7 @@ impl<S: Scalar> Table<S> {
             "frames of revolute and prismatic bodies are where offsets and moments are fewest, along their axes; frames of links are where they were, bodies' own origins are not those of their links",
         ),
         (
-            "still",
+            "drop_symmetric_rotation",
             drop_symmetric_rotation,
             "frames of revolute bodies that are axisymmetric and carry nothing, not even a frame, do not turn",
         ),

@@ -1,4 +1,4 @@
-//! Mass on the axes of joints, given back to the bodies beyond them where fewer numbers are left.
+//! Shifts mass on joint axes from parents to children where fewer numbers remain.
 
 use articulated_core::Scalar;
 use articulated_core::model::{Body, Model, regroup_body, subtract};

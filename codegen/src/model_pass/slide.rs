@@ -8,13 +8,15 @@ use super::places::{Places, offset, shifted};
 use super::view::View;
 use super::zeros::count;
 
-/// Slides the frame of each revolute body along its axis, and shifts that of each prismatic body, so that the recursion of inverse dynamics has least
-/// to do.
+/// Slides the frame of each revolute body along its axis, and shifts that of each prismatic body,
+/// to minimise the work of the inverse-dynamics recursion.
 ///
-/// A frame may lie anywhere on the axis of its joint, and that of a slide anywhere at all: the joint does the same. Instructions go into every number of
-/// a body's offset from its parent that is not zero, into Σ_xz and Σ_yz, and into a force that has to be handed on because there is an offset
-/// somewhere on its way to the base. Of the places where something vanishes the cheapest are taken, for all bodies together, from the tips inward. Exact for all joint
-/// torques; frames of links stay where they are in space. For a model that is regrouped, as it is then again.
+/// A frame may lie anywhere on the axis of its joint, and that of a slide anywhere at all: the
+/// joint does the same. Instructions go into every non-zero number of a body's offset from its
+/// parent, into Σ_xz and Σ_yz, and into a force that must be shifted to the parent because there is
+/// an offset on its path to the root. Of the places where a number vanishes, the cheapest are taken
+/// for all bodies together, from the tips inward. Exact for all joint torques; frames of links keep
+/// their poses. The model must be regrouped, and stays so.
 pub fn slide<S: Scalar>(view: View<S>) -> View<S> {
     let View { model, formulation } = view;
     let shifts = Plan::of(&model).shifts();
@@ -35,20 +37,22 @@ pub fn slide<S: Scalar>(view: View<S>) -> View<S> {
     View { model: regroup(model), formulation }
 }
 
-/// Instructions for a number of an offset, for one of Σ_xz and Σ_yz, for one of h of a prismatic body, and for a force that is handed on.
+/// Instructions for a number of an offset, for one of Σ_xz and Σ_yz, for one of h of a prismatic
+/// body, and for a force shifted to the parent.
 const OFFSET: u32 = 5;
 const MOMENT: u32 = 4;
 const FIRST: u32 = 5;
 const FORCE: u32 = 10;
 
-/// Costs by whether the force has to be handed on.
+/// Costs without and with the force shifted to the parent.
 type ByForce<T> = [T; 2];
 
 /// The cheapest place of each body, from the tips inward.
 struct Plan<'a, S> {
     model: &'a Model<S>,
     places: Places<S>,
-    /// For each body and each place of its parent: the place and whether the force is handed on from there.
+    /// For each body and each place of its parent: its own place, and whether the force is shifted
+    /// to the parent there.
     best: Vec<Vec<ByForce<(usize, bool)>>>,
 }
 
@@ -86,8 +90,9 @@ impl<'a, S: Scalar> Plan<'a, S> {
     }
 }
 
-/// The place at which a body costs least, whether its force is handed on from there, and the cost, from what it costs at each place and the
-/// numbers of its offsets; `needed`: whether the force is handed on whatever the offset.
+/// The cheapest place of a body, whether its force is shifted to the parent there, and the cost,
+/// from the cost at each place and the numbers of its offsets. `needed`: whether the force is
+/// shifted for any offset.
 fn cheapest(costs: &[ByForce<u32>], numbers: &[u32], needed: bool) -> ((usize, bool), u32) {
     let at = |(k, (cost, numbers)): (usize, (&ByForce<u32>, &u32))| {
         let needs_force = needed || *numbers > 0;
@@ -97,7 +102,7 @@ fn cheapest(costs: &[ByForce<u32>], numbers: &[u32], needed: bool) -> ((usize, b
     costs.iter().zip(numbers).enumerate().map(at).min_by_key(|(_, cost)| *cost).unwrap_or_default()
 }
 
-/// What the moments of body `i` cost at a place.
+/// The cost of the moments of body `i` at a place.
 fn standing<S: Scalar>(model: &Model<S>, i: usize, shift: Vector3<S>) -> u32 {
     let (joint, inertia) = (model.bodies()[i].joint, shifted(&model.bodies()[i].inertia, shift));
     if model.bodies()[i].parent == 0 {
@@ -120,7 +125,7 @@ fn offsets<S: Scalar>(model: &Model<S>, i: usize, shift: Vector3<S>, parent: Vec
     count(&offset(body, shift, parent).as_slice()[..counted])
 }
 
-/// Whether inverse dynamics has to reckon with the lever of body `i`.
+/// Whether inverse dynamics needs the lever of body `i`.
 pub(super) fn counts_an_offset<S: Scalar>(model: &Model<S>, i: usize) -> bool {
     offsets(model, i, Vector3::zeros(), Vector3::zeros()) > 0
 }

@@ -1,4 +1,4 @@
-//! Frames of axisymmetric bodies that stay while their bodies rotate.
+//! Drops the rotation of the frames of axisymmetric bodies.
 
 use articulated_core::Scalar;
 use articulated_core::model::Body;
@@ -7,11 +7,13 @@ use articulated_core::spatial::{Matrix3, SpatialInertia, Vector3};
 use super::view::View;
 use super::zeros::or_zero;
 
-/// Lets the frame of a revolute body stay as its joint's frame stands, if the body is the same from all sides about that axis and carries nothing.
+/// Keeps the frame of an axisymmetric revolute body in its joint's frame, without rotation, if the
+/// body carries nothing.
 ///
-/// In a frame that does not turn with it such a body has constant moments as well, and what turns is ω alone: neither sine nor cosine of the angle is left, as
-/// of a wheel, of a propeller, or of the last link of many arms. For a model whose frames nobody asks for: a body that carries a frame is left alone, and so is one on which effects
-/// act. Exact for all joint torques.
+/// The moments of such a body are constant in a frame that does not rotate with it; only ω changes.
+/// Neither sine nor cosine of the angle remains, as for a wheel, a propeller, or the last link of
+/// many arms. Bodies that carry a frame, or on which effects act, are left alone. Exact for all
+/// joint torques.
 pub fn drop_symmetric_rotation<S: Scalar>(view: View<S>) -> View<S> {
     let View { model, mut formulation } = view;
     let mut carries = vec![false; model.bodies().len()];
@@ -27,7 +29,7 @@ pub fn drop_symmetric_rotation<S: Scalar>(view: View<S>) -> View<S> {
     View { model, formulation }
 }
 
-/// Whether a body is the same from all sides about its z-axis, but for rounding; that is then taken away.
+/// Whether a body is axisymmetric about its z-axis within rounding, which is then removed.
 fn made_axisymmetric<S: Scalar>(body: &mut Body<S>) -> bool {
     let SpatialInertia { first, second, .. } = body.inertia;
     let size = second.m11.abs() + second.m22.abs();

@@ -39,7 +39,7 @@ pub fn turn<S: Scalar>(view: View<S>) -> View<S> {
     View { model, formulation }
 }
 
-/// What hangs on a body: other bodies, and frames of links.
+/// Children of a body: other bodies, and frames of links.
 #[derive(Clone, Default)]
 struct Hanging {
     bodies: Vec<usize>,
@@ -54,8 +54,9 @@ const FIRST: u32 = 5;
 const SECOND: u32 = 4;
 const ANGLE: u32 = 4;
 
-/// How far body `i` is best turned for its children, of no turn and those that bring the axis of a child into a coordinate plane.
-fn best<S: Scalar>(bodies: &[Body<S>], i: usize, children: &[usize]) -> Angle<S> {
+/// The best angle of body `i` for its children, among zero and the angles that bring the axis of a
+/// child into a coordinate plane.
+fn best<S: Scalar>(model: &Model<S>, i: usize, children: &[usize]) -> Angle<S> {
     let mut best: Option<(u32, Angle<S>)> = None;
     for child in children.iter().map(|&k| &bodies[k]).filter(|b| known(&b.placement.rotation)) {
         let z = child.placement.rotation.column(2);
@@ -77,9 +78,9 @@ fn best<S: Scalar>(bodies: &[Body<S>], i: usize, children: &[usize]) -> Angle<S>
     best.map_or_else(Angle::zero, |(_, angle)| angle)
 }
 
-/// What body `i` and the rotations and offsets of its children cost when it is turned.
-fn cost<S: Scalar>(bodies: &[Body<S>], i: usize, angle: &Angle<S>, children: &[usize]) -> u32 {
-    let inertia = bodies[i].inertia.turned(&angle.rotation().transpose());
+/// The cost of body `i` and of the rotations and offsets of its children after a turn.
+fn cost<S: Scalar>(model: &Model<S>, i: usize, angle: &Angle<S>, children: &[usize]) -> u32 {
+    let inertia = model.bodies[i].inertia.turned(&angle.rotation().transpose());
     let (h, s) = (inertia.first, inertia.second);
     let own = FIRST * count(&[h.x, h.y]) + SECOND * count(&[s.m12, s.m13, s.m23]) + if is_quarter(angle) { 0 } else { ANGLE };
     children.iter().map(|&k| &bodies[k]).fold(own, |sum, child| {
@@ -91,7 +92,7 @@ fn cost<S: Scalar>(bodies: &[Body<S>], i: usize, angle: &Angle<S>, children: &[u
     })
 }
 
-/// Whether sine and cosine of q change places at most.
+/// Whether the turn at most exchanges sine and cosine of q.
 fn is_quarter<S: Scalar>(angle: &Angle<S>) -> bool {
     angle.sin == S::zero() || angle.cos == S::zero()
 }
@@ -146,7 +147,7 @@ fn back<S: Scalar>(angle: &Angle<S>, x: Vector3<S>) -> Vector3<S> {
     rotate_back(&angle.rotation(), x).map(|x| or_zero(x, size))
 }
 
-/// A number of a rotation: 0, 1 or −1 where it is that but for rounding.
+/// Snaps a rotation entry to 0 or ±1 within rounding error.
 fn tidy<S: Scalar>(x: S) -> S {
     let one = S::one();
     let near = |value: S| or_zero(x - value, one) == S::zero();

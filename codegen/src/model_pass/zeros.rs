@@ -2,7 +2,7 @@
 
 use articulated_core::Scalar;
 
-/// `x`, or zero where it is no more than the rounding of terms of this size.
+/// `x`, or zero where it is within the rounding error of terms of this size.
 pub(super) fn or_zero<S: Scalar>(x: S, size: S) -> S {
     // A few units of roundoff: 2^(3 − BITS).
     let few = 2.0_f64.powi(3 - S::BITS as i32);

@@ -68,12 +68,12 @@ fn input(argument: usize, k: usize) -> f64 {
 fn held<const N: usize>(functions: [&str; N], (here, list): (&Request, &[&str]), numbers: &[f64], there: &Request) {
     let (model, parameters) = read(here, list);
     for name in functions {
-        let wanted = FunctionSpec::parse(name).unwrap();
+        let spec = FunctionSpec::parse(name).unwrap();
         for passes in [0, usize::MAX] {
-            let choice = [Strategy::plain(ways(&wanted.parts[0], &model)[0].0, passes)];
-            let found = trace(&wanted, &choice, &model, &parameters);
-            let expected = trace(&wanted, &choice, &read(there, &[]).0, &[]);
-            let given = |argument: usize, k: usize| if argument == wanted.arguments().len() { numbers[k] } else { input(argument, k) };
+            let strategy = [Strategy::plain(ways(&spec.parts[0], &model)[0].0, passes)];
+            let found = trace(&spec, &strategy, &model, &parameters);
+            let expected = trace(&spec, &strategy, &read(there, &[]).0, &[]);
+            let given = |argument: usize, k: usize| if argument == spec.arguments().len() { numbers[k] } else { input(argument, k) };
             for (found, expected) in found.evaluate(given).into_iter().zip(expected.evaluate(input)) {
                 assert!((found - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{name}: {found} {expected}");
             }
@@ -123,11 +123,11 @@ fn other_gravity_and_other_effects_are_those_of_a_request_that_asks_for_them() {
 fn a_payload_is_added_to_what_the_link_has() {
     let request = robot(["0.1 0.5 -0.3", "2", "0.05 0.2 0.1", "0 0 0.4"]);
     let own = read(&request, &["inertia(tool)"]).1.remove(0).nominal;
-    let wanted = FunctionSpec::parse("inverse_dynamics").unwrap();
+    let spec = FunctionSpec::parse("inverse_dynamics").unwrap();
     let values = |list: &[&str], factor: f64| {
         let (model, parameters) = read(&request, list);
-        let choice = [Strategy::plain(ways(&wanted.parts[0], &model)[0].0, usize::MAX)];
-        trace(&wanted, &choice, &model, &parameters)
+        let strategy = [Strategy::plain(ways(&spec.parts[0], &model)[0].0, usize::MAX)];
+        trace(&spec, &strategy, &model, &parameters)
             .evaluate(|argument, k| if argument == 3 { factor * own[k] } else { input(argument, k) })
     };
     for (twice, with) in values(&["inertia(tool)"], 2.0).into_iter().zip(values(&["payload(tool)"], 1.0)) {

@@ -2,7 +2,7 @@
 
 use std::iter::once;
 
-use super::live;
+use super::dce;
 use super::sums::{Rebuild, Term, flatten, inner, is_sum, open};
 use crate::graph::{Graph, Node, NodeId, Op};
 
@@ -24,7 +24,7 @@ pub fn factor(graph: &Graph) -> Graph {
         sum.factored.iter().flat_map(|f| &f.products).for_each(|p| gone[p.node] = true);
         open(graph, &inner, root, &mut gone);
     }
-    live(&Rebuild::graph(graph, &gone, |rebuild, k| Some(sums[k].as_ref()?.built(rebuild))))
+    dce(&Rebuild::graph(graph, &gone, |rebuild, k| Some(sums[k].as_ref()?.built(rebuild))))
 }
 
 /// A sum, constants and what has a common factor apart from the rest.

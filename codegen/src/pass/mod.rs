@@ -1,20 +1,20 @@
 //! Graph passes: `Graph → Graph`, keeping the algebra. One file each, in the order of [`GRAPH_PASSES`].
 
 mod chains;
-mod contract;
+mod cse_partial_sums;
+mod dce;
 mod factor;
+mod fma_contract;
 mod from_the_last;
-mod inside;
-mod live;
-mod partial;
+mod sink_into_reduction;
 mod sums;
 
-pub use contract::contract;
+pub use cse_partial_sums::cse_partial_sums;
+pub use dce::dce;
 pub use factor::factor;
+pub use fma_contract::fma_contract;
 pub use from_the_last::from_the_last;
-pub use inside::inside;
-pub use live::live;
-pub use partial::partial;
+pub use sink_into_reduction::sink_into_reduction;
 
 use articulated_core::running::Running;
 
@@ -30,7 +30,7 @@ pub struct Row {
     pub name: &'static str,
     /// The pass.
     pub pass: GraphPass,
-    /// What it does, for people who read the ledger.
+    /// What it does, for the ledger.
     pub does: &'static str,
     /// What holds after it.
     pub holds: &'static str,
@@ -38,7 +38,7 @@ pub struct Row {
 
 /// The passes in order.
 pub const GRAPH_PASSES: &[Row] = &[
-    Row { name: "live", pass: live, does: "without what no result needs", holds: "every node is needed by an output" },
+    Row { name: "dce", pass: dce, does: "dead code removed", holds: "every node is needed by an output" },
     Row {
         name: "factor",
         pass: factor,
@@ -46,27 +46,28 @@ pub const GRAPH_PASSES: &[Row] = &[
         holds: "no two products that only one sum uses have a factor in common there",
     },
     Row {
-        name: "partial",
-        pass: partial,
-        does: "what several sums have added once",
+        name: "cse_partial_sums",
+        pass: cse_partial_sums,
+        does: "partial sums of several sums computed once",
         holds: "no two sums have two terms in common, where that saves an instruction",
     },
     Row {
-        name: "inside",
-        pass: inside,
-        does: "what is added to sums over lanes in them",
-        holds: "what is added to a sum over lanes is in it, where that takes no instruction more",
+        name: "sink_into_reduction",
+        pass: sink_into_reduction,
+        does: "terms beside a sum over lanes added within the lanes",
+        holds: "each term beside a sum over lanes is in that sum, where that takes no further instruction",
     },
     Row {
-        name: "contract",
-        pass: contract,
+        name: "fma_contract",
+        pass: fma_contract,
         does: "sums as chains of multiply-adds",
         holds: "no sum is a term of one other sum; a product that only one or two sums use is part of multiply-adds, but for one a sum at most",
     },
-    Row { name: "swept", pass: live, does: "once more without what no result needs", holds: "every node is needed by an output again" },
+    Row { name: "final_dce", pass: dce, does: "dead code removed again", holds: "every node is needed by an output again" },
 ];
 
-/// A graph after all passes in their order; `see` is shown what each leaves. In debug builds each is checked, as [`run`] does.
+/// The graph after all passes in order; `see` is called after each of them. In debug builds each pass
+/// is checked, as in [`run`].
 pub(crate) fn run_all(graph: Graph, mut see: impl FnMut(&'static str, &Graph)) -> Graph {
     GRAPH_PASSES.iter().fold(graph, |graph, row| {
         let new = run(row.name, row.pass, &graph);
@@ -117,15 +118,16 @@ pub fn run(name: &str, pass: GraphPass, graph: &Graph) -> Graph {
     new
 }
 
-/// Whether output `k` of two graphs differs by no more than rounding can make of it: where numbers of very different sizes cancel, that is all that is left.
+/// Whether output `k` of two graphs differs by rounding at most: where numbers of very different
+/// sizes cancel, rounding is all that remains.
 fn rounding(one: &Graph, other: &Graph, k: usize) -> bool {
-    let known = |g: &Graph| g.evaluate_as(|argument, index| Running::<53, 0>::given(probe(argument, index), 0.0))[k];
+    let known = |g: &Graph| g.evaluate_as(|argument, index| Running::<53, 0>::within(probe(argument, index), 0.0))[k];
     let (a, b) = (known(one), known(other));
     let (off, most) = ((a.value - b.value).abs(), a.radius + b.radius);
     off <= most || off.is_nan() || most.is_nan()
 }
 
-/// What all nodes of a graph cost together.
+/// Total cost of a graph.
 pub(crate) fn cost(graph: &Graph) -> u32 {
     graph.nodes().iter().map(|n| n.op.row().cost).sum()
 }

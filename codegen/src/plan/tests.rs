@@ -15,7 +15,7 @@ fn renamings(all: &[(&str, &str)]) -> Vec<Spanned<(String, String)>> {
     all.iter().map(|(from, to)| ((*from).to_owned(), (*to).to_owned()).into()).collect()
 }
 
-fn told(change: impl Fn(&mut Options)) -> String {
+fn error_of(change: impl Fn(&mut Options)) -> String {
     let mut request = Request::new("arm.urdf", ARM);
     request.options.rename = renamings(&[("tip-1", "A"), ("tip 1", "B"), ("tip.1", "C")]);
     change(&mut request.options);
@@ -38,7 +38,7 @@ fn every_function_that_cannot_be_is_told_once() {
         "mass_matrix = placements",
         "placements = placements(q = 0)",
     ];
-    let told = told(|o| o.functions = list.map(Into::into).to_vec());
+    let told = error_of(|o| o.functions = list.map(Into::into).to_vec());
     each_once(
         &told,
         &["function `no_such`", "b = 0", "function `no_such_2`", "what another function is called", "two are called `placements`"],
@@ -54,7 +54,7 @@ fn each_entry_s_own_mistake_is_told_once() {
         (["v = placements(q = [0, 1])", "x = bias_forces(v = [0], q = [0, 1])"], ["v", "x"]),
         (["placements(q = [0, 1])", "x = placements(q = [1, 2, 3])"], ["placements", "x"]),
     ] {
-        let told = told(|o| o.functions = list.map(Into::into).to_vec());
+        let told = error_of(|o| o.functions = list.map(Into::into).to_vec());
         each_once(&told, &[&constant(names[0]), &constant(names[1])]);
     }
 }
@@ -68,7 +68,7 @@ fn functions_that_nobody_knows_are_told_of_a_robot_that_cannot_be_read_too() {
 
 #[test]
 fn numbers_that_cannot_be_are_told_once_and_with_all_else() {
-    let told = told(|o| {
+    let told = error_of(|o| {
         o.robot.gravity = [0.0, f64::NAN, 0.0];
         o.robot.snap_angles = Some(2.0);
         o.functions = vec!["no_such".into()];
@@ -78,7 +78,7 @@ fn numbers_that_cannot_be_are_told_once_and_with_all_else() {
 
 #[test]
 fn a_type_of_numbers_that_is_there_twice_is_told_once_and_with_all_else() {
-    let told = told(|o| {
+    let told = error_of(|o| {
         o.rust_mut().batch = [crate::Real::F32, crate::Real::F64, crate::Real::F32, crate::Real::F32].to_vec();
         o.functions = vec!["no_such".into()];
     });
@@ -89,14 +89,14 @@ fn a_type_of_numbers_that_is_there_twice_is_told_once_and_with_all_else() {
 fn of_a_function_and_a_form_of_another_the_name_that_both_have_is_told() {
     let list = ["gravity_torque_into = placements", "gravity_torque"];
     for list in [list, [list[1], list[0]]] {
-        let told = told(|o| o.functions = list.map(Into::into).to_vec());
+        let told = error_of(|o| o.functions = list.map(Into::into).to_vec());
         assert!(told.contains("two are called `gravity_torque_into`"), "{told}");
     }
 }
 
 #[test]
 fn every_name_that_two_have_is_told_and_every_renaming_that_cannot_be() {
-    let told_of = |rename: &[(&str, &str)]| told(|o| o.rename = renamings(rename));
+    let told_of = |rename: &[(&str, &str)]| error_of(|o| o.rename = renamings(rename));
     assert_eq!(told_of(&[("tip 1", "B"), ("tip.1", "C")]), "");
     each_once(&told_of(&[]), &["\"tip 1\"", "\"tip.1\""]);
     each_once(&told_of(&[("tip 1", "B"), ("tip.1", "B"), ("nobody", "C"), ("hinge", "fn")]), &["nobody", "\"hinge\"", "`B`"]);
@@ -105,8 +105,8 @@ fn every_name_that_two_have_is_told_and_every_renaming_that_cannot_be() {
 
 #[test]
 fn every_parameter_and_every_edit_that_cannot_be_is_told_once() {
-    each_once(&told(|o| o.parameters = [" payload(x)", "origin(hinge)", "inertia(y) "].map(Into::into).to_vec()), &["\"x\"", "\"y\""]);
-    let edits = told(|o| {
+    each_once(&error_of(|o| o.parameters = [" payload(x)", "origin(hinge)", "inertia(y) "].map(Into::into).to_vec()), &["\"x\"", "\"y\""]);
+    let edits = error_of(|o| {
         o.robot.lock = [("a", 0.0), ("hinge", 0.0), ("b", 0.0)].map(|(name, at)| (name.to_owned(), vec![at]).into()).to_vec();
         o.robot.frames = Some(["tip-1", "c", "tip-1"].map(Into::into).to_vec());
         o.functions = vec!["no_such".into()];
@@ -125,12 +125,12 @@ fn every_effect_that_cannot_be_is_told_once_and_without_a_robot_nothing_that_nee
         at: crate::Origin::default(),
         parameters: vec![0.1],
     };
-    let effects = told(|o| {
+    let effects = error_of(|o| {
         o.robot.effects = ["hinge", "a", "hinge", "b"].map(damping).to_vec();
         o.functions = vec!["no_such".into()];
     });
     each_once(&effects, &["\"a\"", "given twice", "\"b\"", "`no_such`"]);
-    let appended = told(|o| {
+    let appended = error_of(|o| {
         let document = ARM.replace("'tip", "'top").into_bytes();
         o.robot.append.push(crate::Appended { document, file: "hand.urdf".into(), at: "nowhere".into(), ..Default::default() });
         o.robot.payloads.push(crate::Payload { link: "tip-1".into(), mass: -1.0, ..Default::default() }.into());

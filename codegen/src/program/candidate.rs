@@ -1,4 +1,4 @@
-//! What a function is traced on, what it costs there, and the strategies that cost least.
+//! Candidates: what a function is traced on, its cost, and the search for the cheapest strategies.
 
 use std::iter::once;
 
@@ -17,93 +17,93 @@ use crate::spec::{FunctionSpec, FunctionTerm};
 use crate::sym::Sym;
 use crate::trace::{foldable_rotations, trace, trace_in_lanes, units, ways};
 
-/// What a function is traced on.
+/// A candidate: what a function is traced on.
 pub(super) struct Candidate<'a> {
     pub(super) model: &'a Model<f64>,
     pub(super) parameters: &'a [Parameter],
     /// Whether to trace after each model pass, for the ledger.
     pub(super) stages: bool,
-    /// Limbs to lay on one another.
+    /// Isomorphic limbs to vectorize.
     pub(super) alike: Option<IsomorphicLimbs>,
 }
 
 impl Candidate<'_> {
-    /// The graph of a function by the choices that cost least, or of what comes before a loop, and
-    /// what became of it on the way.
-    pub(super) fn made(&self, wanted: &FunctionSpec, unsolved: Option<&'static Way<Sym>>) -> (Graph, Entry) {
+    /// The graph of a function by its cheapest strategies, or of the part before a loop, and its
+    /// ledger entry.
+    pub(super) fn build(&self, spec: &FunctionSpec, unsolved: Option<&'static Way<Sym>>) -> (Graph, Entry) {
         let all = model_passes::<Sym>().len();
         let choose = |part| unsolved.map_or_else(|| cheapest(part, self, all), |way| Strategy::plain(way, all));
-        let choices = by_axes(wanted, wanted.parts.iter().map(choose).collect(), self);
-        let choices = in_the_best_unit(wanted, choices, self);
-        let (traced, mut stages) = self.traced(wanted, &choices, all);
+        let strategies = by_axes(spec, spec.parts.iter().map(choose).collect(), self);
+        let strategies = in_the_best_unit(spec, strategies, self);
+        let (traced, mut stages) = self.traced(spec, &strategies, all);
         let mut graph = pass::run_all(traced, |name, graph| stages.push((name, graph.counts())));
-        if wanted.parts.iter().all(|part| Form::FromTheLast.fits(part.function.id)) {
+        if spec.parts.iter().all(|part| Form::FromTheLast.fits(part.function.id)) {
             graph = pass::run("from the last", pass::from_the_last, &graph);
         }
-        let ways = choices.iter().flat_map(Strategy::names).collect();
-        let arguments = wanted.arguments();
-        let entry = Entry { function: wanted.name.clone(), ways, stages, depth: depth(&graph), lanes: graph.lanes().width, arguments };
+        let ways = strategies.iter().flat_map(Strategy::names).collect();
+        let arguments = spec.arguments();
+        let entry = Entry { function: spec.name.clone(), ways, stages, depth: depth(&graph), lanes: graph.lanes().width, arguments };
         (graph, entry)
     }
 
-    /// The graph as it is traced, and its counts after each model pass, `all` of them, and each
-    /// addition that a choice has.
-    fn traced(&self, wanted: &FunctionSpec, choices: &[Strategy], all: usize) -> (Graph, Vec<(&'static str, Counts)>) {
+    /// The traced graph, and its counts after each of the `all` model passes and each transform of
+    /// the strategies.
+    fn traced(&self, spec: &FunctionSpec, strategies: &[Strategy], all: usize) -> (Graph, Vec<(&'static str, Counts)>) {
         let mut graph = Graph::default();
         let mut stages: Vec<(&'static str, Counts)> = Vec::new();
         for passes in if self.stages { 0 } else { all }..=all {
-            let limited: Vec<Strategy> = choices.iter().map(|c| Strategy::plain(c.way, c.passes.min(passes))).collect();
-            graph = self.trace(wanted, &limited);
+            let limited: Vec<Strategy> = strategies.iter().map(|c| Strategy::plain(c.way, c.passes.min(passes))).collect();
+            graph = self.trace(spec, &limited);
             if stages.is_empty() {
-                stages.push(("asked", graph.asked().clone()));
+                stages.push(("requested", graph.requested().clone()));
             }
             stages.push((if passes == 0 { "trace" } else { model_passes::<Sym>()[passes - 1].0 }, graph.counts()));
         }
-        for (addition, name, _) in Transform::ALL {
-            if choices.iter().any(|c| c.adds(addition)) {
-                graph = self.trace(wanted, &choices.iter().map(|c| c.up_to(addition)).collect::<Vec<_>>());
+        for (transform, name, _) in Transform::ALL {
+            if strategies.iter().any(|c| c.adds(transform)) {
+                graph = self.trace(spec, &strategies.iter().map(|c| c.up_to(transform)).collect::<Vec<_>>());
                 stages.push((name, graph.counts()));
             }
         }
         (graph, stages)
     }
 
-    fn trace(&self, wanted: &FunctionSpec, choices: &[Strategy]) -> Graph {
+    fn trace(&self, spec: &FunctionSpec, strategies: &[Strategy]) -> Graph {
         match &self.alike {
-            None => trace(wanted, choices, self.model, self.parameters),
-            Some(alike) => trace_in_lanes(wanted, choices, self.model, alike),
+            None => trace(spec, strategies, self.model, self.parameters),
+            Some(alike) => trace_in_lanes(spec, strategies, self.model, alike),
         }
     }
 
-    /// What is traced, after all graph passes.
-    pub(super) fn finished(&self, wanted: &FunctionSpec, choices: &[Strategy]) -> Graph {
-        pass::run_all_unchecked(self.trace(wanted, choices))
+    /// The traced graph after all graph passes.
+    pub(super) fn finished(&self, spec: &FunctionSpec, strategies: &[Strategy]) -> Graph {
+        pass::run_all_unchecked(self.trace(spec, strategies))
     }
 
-    /// What choices cost, in instructions, and with each multiplication counted twice: cores have
-    /// fewer multipliers than they have places for instructions.
-    pub(super) fn price(&self, wanted: &FunctionSpec, choices: &[Strategy]) -> (u32, u64) {
-        let graph = self.finished(wanted, choices);
+    /// The cost of strategies, in instructions, and with each multiplication counted twice: cores
+    /// have fewer multipliers than issue slots.
+    pub(super) fn price(&self, spec: &FunctionSpec, strategies: &[Strategy]) -> (u32, u64) {
+        let graph = self.finished(spec, strategies);
         let cost = pass::cost(&graph);
         (cost, u64::from(cost) + graph.counts().multiplications())
     }
 }
 
-/// What costs more than this is not tried with folded rotations or shifted masses: it
-/// would gain a hundredth, and takes long to trace.
+/// Above this cost, folded rotations and shifted masses are not tried: they would gain 1 % and take
+/// long to trace.
 const FOLDED_TO: u32 = 2500;
 
-/// Nor is any function of a robot with more bodies than this, nor with another unit of length: to
-/// find out what it costs is to trace it twice.
+/// Above this number of bodies, neither they nor another unit of length are tried, since each trial
+/// traces the function again.
 const FOLDED_BODIES: usize = 64;
 
-/// The way that costs least once the graph passes are done. With parameters, model passes may cost
-/// more than they save: then they are not taken.
-pub(super) fn cheapest(part: &FunctionTerm, subject: &Candidate, all: usize) -> Strategy {
-    let few = if subject.parameters.is_empty() { all..=all } else { 0..=all };
-    let ways = ways(part, subject.model);
-    let tried = subject.parameters.is_empty() && subject.model.bodies().len() <= FOLDED_BODIES;
-    let folded = if tried { foldable_rotations(part, subject.model) } else { Vec::new() };
+/// The strategy that costs least after the graph passes. With parameters, model passes may cost
+/// more than they save; then they are left out.
+pub(super) fn cheapest(part: &FunctionTerm, candidate: &Candidate, all: usize) -> Strategy {
+    let few = if candidate.parameters.is_empty() { all..=all } else { 0..=all };
+    let ways = ways(part, candidate.model);
+    let tried = candidate.parameters.is_empty() && candidate.model.bodies.len() <= FOLDED_BODIES;
+    let folded = if tried { foldable_rotations(part, candidate.model) } else { Vec::new() };
     let folded: Vec<Option<FoldedRotations>> = once(None).chain(folded.into_iter().map(Some)).collect();
     let shifted: &[bool] = if tried && Form::ShiftedMasses.fits(part.function.id) { &[false, true] } else { &[false] };
     let forms = || folded.iter().flat_map(|&folded| shifted.iter().map(move |&shifted| (folded, shifted)));
@@ -115,62 +115,62 @@ pub(super) fn cheapest(part: &FunctionTerm, subject: &Candidate, all: usize) -> 
     }
     let alone = FunctionSpec { name: String::new(), parts: vec![part.clone()] };
     let mut best: Option<(Strategy, u32)> = None;
-    for (choice, least) in candidates {
+    for (strategy, least) in candidates {
         // A way whose least is more than another's cost is not tried: the factorisation of a long
         // chain grows with the cube of its length.
-        if best.is_some_and(|(_, cost)| least > u64::from(cost) || (choice.folded.is_some() || choice.shifted) && cost > FOLDED_TO) {
+        if best.is_some_and(|(_, cost)| least > u64::from(cost) || (strategy.folded.is_some() || strategy.shifted) && cost > FOLDED_TO) {
             continue;
         }
-        let cost = cost(&alone, choice, subject);
+        let cost = cost(&alone, strategy, candidate);
         if best.is_none_or(|(_, other)| cost < other) {
-            best = Some((choice, cost));
+            best = Some((strategy, cost));
         }
     }
-    best.map_or(Strategy::plain(&part.function.ways[0], all), |(choice, _)| choice)
+    best.map_or(Strategy::plain(&part.function.ways[0], all), |(strategy, _)| strategy)
 }
 
-fn cost(wanted: &FunctionSpec, choice: Strategy, subject: &Candidate) -> u32 {
-    pass::cost(&subject.finished(wanted, &[choice]))
+fn cost(spec: &FunctionSpec, strategy: Strategy, candidate: &Candidate) -> u32 {
+    pass::cost(&candidate.finished(spec, &[strategy]))
 }
 
-/// The choices with rates by axes, if that takes fewer multiplications and no more instructions; of
-/// robots with many bodies, which take long to trace, without trying.
-pub(super) fn by_axes(wanted: &FunctionSpec, choices: Vec<Strategy>, subject: &Candidate) -> Vec<Strategy> {
+/// The strategies with axis rates, if that takes fewer multiplications and no further instructions.
+/// For robots with many bodies, which take long to trace, without a trial.
+pub(super) fn by_axes(spec: &FunctionSpec, strategies: Vec<Strategy>, candidate: &Candidate) -> Vec<Strategy> {
     let turns = |part: &FunctionTerm| Form::AxisAccelerations.fits(part.function.id);
-    if !wanted.parts.iter().any(turns) {
-        return choices;
+    if !spec.parts.iter().any(turns) {
+        return strategies;
     }
-    let with: Vec<Strategy> = wanted.parts.iter().zip(&choices).map(|(part, choice)| Strategy { axes: turns(part), ..*choice }).collect();
+    let with: Vec<Strategy> =
+        spec.parts.iter().zip(&strategies).map(|(part, strategy)| Strategy { axes: turns(part), ..*strategy }).collect();
     let better = || {
-        let ((cost, price), (other_cost, other_price)) = (subject.price(wanted, &with), subject.price(wanted, &choices));
+        let ((cost, price), (other_cost, other_price)) = (candidate.price(spec, &with), candidate.price(spec, &strategies));
         cost <= other_cost && price < other_price
     };
-    if subject.model.bodies().len() > FOLDED_BODIES || better() { with } else { choices }
+    if candidate.model.bodies.len() > FOLDED_BODIES || better() { with } else { strategies }
 }
 
-/// So many instructions are traced at most to find the best unit of length: of a long function
-/// fewer are tried.
+/// Limit of instructions traced to find the best unit of length: fewer units are tried for long
+/// functions.
 const TRIED: usize = 20_000;
 
-/// The choices with lengths in the unit that costs least: where a constant is one, what it
-/// multiplies is only added.
-pub(super) fn in_the_best_unit(wanted: &FunctionSpec, choices: Vec<Strategy>, subject: &Candidate) -> Vec<Strategy> {
-    if !subject.parameters.is_empty() || subject.model.bodies().len() > FOLDED_BODIES {
-        return choices;
+/// The strategies with lengths in the cheapest unit: a factor of one takes no multiplication.
+pub(super) fn in_the_best_unit(spec: &FunctionSpec, strategies: Vec<Strategy>, candidate: &Candidate) -> Vec<Strategy> {
+    if !candidate.parameters.is_empty() || candidate.model.bodies.len() > FOLDED_BODIES {
+        return strategies;
     }
-    let units: Vec<Vec<f64>> = wanted.parts.iter().zip(&choices).map(|(part, choice)| units(part, choice, subject.model)).collect();
+    let units: Vec<Vec<f64>> = spec.parts.iter().zip(&strategies).map(|(part, strategy)| units(part, strategy, candidate.model)).collect();
     let with = |metres: f64| -> Vec<Strategy> {
-        let one = |(choice, units): (&Strategy, &Vec<f64>)| Strategy { unit: units.contains(&metres).then_some(metres), ..*choice };
-        choices.iter().zip(&units).map(one).collect()
+        let one = |(strategy, units): (&Strategy, &Vec<f64>)| Strategy { unit: units.contains(&metres).then_some(metres), ..*strategy };
+        strategies.iter().zip(&units).map(one).collect()
     };
-    let Some(most) = units.iter().max_by_key(|units| units.len()).filter(|units| !units.is_empty()) else { return choices };
-    let (cost, mut least) = subject.price(wanted, &choices);
+    let Some(most) = units.iter().max_by_key(|units| units.len()).filter(|units| !units.is_empty()) else { return strategies };
+    let (cost, mut least) = candidate.price(spec, &strategies);
     if cost > FOLDED_TO {
-        return choices;
+        return strategies;
     }
-    let mut best = choices.clone();
+    let mut best = strategies.clone();
     for other in most.iter().take(TRIED / (cost as usize).max(1)).map(|&metres| with(metres)) {
-        let (_, price) = subject.price(wanted, &other);
+        let (_, price) = candidate.price(spec, &other);
         if price < least {
             (least, best) = (price, other);
         }

@@ -1,4 +1,4 @@
-//! What of a function is left a loop: the solution of M X = B column by column.
+//! Parts of a function emitted as loops: the solution of M X = B column by column.
 
 use std::ops::RangeInclusive;
 
@@ -12,28 +12,30 @@ use crate::trace::applies;
 
 /// The solution of M X = B column by column, which is the same for each.
 pub(crate) struct MultiRhsSolve {
-    /// For each row of L, where it has numbers before the diagonal.
+    /// For each row of L, the columns of its non-zero entries before the diagonal.
     pub(crate) ways: Vec<Vec<usize>>,
 }
 
-/// From so many degrees of freedom on, and up to so many, the solution column by column is a loop: with six the whole function takes a quarter longer than written out, with seven
-/// a twentieth to a fifth less, with eight and nine a seventh to a fifth less; with 18 and 36 it has a third of the code and of the time to compile it.
+/// Range of degrees of freedom in which the solution column by column is a loop. With six, the
+/// whole function takes a quarter longer than unrolled; with seven 5 % to 20 % less, with eight and
+/// nine 14 % to 20 % less; with 18 and 36 it has a third of the code and of the compile time.
 const COLUMNS: RangeInclusive<usize> = 7..=60;
 
-/// What of a function is left a loop, if that is faster: it needs vectors.
-pub(super) fn columns(wanted: &FunctionSpec, model: &Model<f64>, can: Capabilities) -> Option<MultiRhsSolve> {
-    has_columns(wanted, model, can).then(|| MultiRhsSolve { ways: model.paths_to_root() })
+/// The part of a function to emit as a loop, if that is faster; it needs vectors.
+pub(super) fn columns(spec: &FunctionSpec, model: &Model<f64>, can: Capabilities) -> Option<MultiRhsSolve> {
+    has_columns(spec, model, can).then(|| MultiRhsSolve { ways: model.paths_to_root() })
 }
 
-/// Whether the solution of M X = B is left a loop.
-pub(crate) fn has_columns(wanted: &FunctionSpec, model: &Model<f64>, can: Capabilities) -> bool {
-    let [part] = wanted.parts.as_slice() else { return false };
-    let fits = COLUMNS.contains(&model.nv()) && can.vectors;
+/// Whether the solution of M X = B is emitted as a loop.
+pub(crate) fn has_columns(spec: &FunctionSpec, model: &Model<f64>, can: Capabilities) -> bool {
+    let [part] = spec.parts.as_slice() else { return false };
+    let fits = COLUMNS.contains(&model.nv) && can.vectors;
     fits && part.function.unsolved.as_ref().is_some_and(|unsolved| applies(unsolved, model))
 }
 
 impl MultiRhsSolve {
-    /// Whether the loop reads number `k` of the three matrices: both B, and of the factors what is on the diagonal or on a way.
+    /// Whether the loop reads entry `k` of the three matrices: of both B all, of the factors the
+    /// diagonal and the entries on a path to the root.
     pub(crate) fn reads(&self, k: usize) -> bool {
         let n = self.ways.len();
         let (matrix, row, column) = (k / n / n, k / n % n, k % n);

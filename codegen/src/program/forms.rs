@@ -1,25 +1,25 @@
-//! Which functions may take which form of generated code.
+//! The functions to which each form of generated code applies.
 
 use articulated_core::algorithm::{Argument, FunctionId};
 
-/// A form of generated code that not every function takes. The first two keep the results and are
-/// taken where they cost less.
+/// A form of generated code that applies to some functions only. The first two keep the results and
+/// are taken where they cost less.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Form {
     /// Masses shifted to the body beyond a joint
-    /// ([`crate::model_pass::View::with_shifted_masses`]): for what has an inverse dynamics in it
-    /// in which bodies rotate, of which that takes numbers away.
+    /// ([`crate::model_pass::View::with_shifted_masses`]): for functions that contain an inverse
+    /// dynamics with rotating bodies.
     ShiftedMasses,
     /// Rate matrices by the axes of joints ([`crate::model_pass::View::with_axis_accelerations`]):
-    /// for what has bodies that rotate while they move.
+    /// for functions with rotating bodies.
     AxisAccelerations,
-    /// Statements from the last result on, not as they are traced: for matrices whose columns are
-    /// carried side by side.
+    /// Statements ordered backwards from the last result, not as traced: for matrices whose columns
+    /// are computed side by side.
     FromTheLast,
 }
 
 impl Form {
-    /// Whether a function takes it.
+    /// Whether it applies to a function.
     pub(crate) fn fits(self, function: FunctionId) -> bool {
         use FunctionId as F;
         let row = function.row::<f64>();

@@ -20,34 +20,35 @@ use candidate::Candidate;
 pub(crate) use columns::{MultiRhsSolve, has_columns};
 pub(crate) use strategy::Strategy;
 
-/// A function and what it became.
+/// A function with its graph.
 pub(crate) struct Program {
-    pub(crate) wanted: FunctionSpec,
+    pub(crate) spec: FunctionSpec,
     pub(crate) graph: Graph,
-    /// The graph with each limb for itself: what a batch runs, a state a lane.
+    /// The graph without vectorized limbs, for batches with one state per lane.
     pub(crate) plain: Graph,
     pub(crate) entry: Entry,
-    /// What is left a loop. Then `graph` is what comes before.
+    /// The part emitted as a loop; `graph` is the part before it.
     pub(crate) columns: Option<MultiRhsSolve>,
 }
 
-/// A function by the cheapest of its ways, limbs that are alike in lanes if that is cheaper.
-pub(crate) fn program(wanted: FunctionSpec, model: &Model<f64>, parameters: &[Parameter], options: &Options, can: Capabilities) -> Program {
-    let subject = Candidate { model, parameters, stages: options.stages, alike: None };
-    let reduced = wanted.reduced();
+/// The program of a function by its cheapest strategy, with isomorphic limbs in lanes if that is
+/// cheaper.
+pub(crate) fn program(spec: FunctionSpec, model: &Model<f64>, parameters: &[Parameter], options: &Options, can: Capabilities) -> Program {
+    let candidate = Candidate { model, parameters, stages: options.stages, alike: None };
+    let reduced = spec.reduced();
     let columns = columns::columns(&reduced, model, can);
-    let whole = (columns.is_none() || can.states).then(|| subject.made(&reduced, None));
+    let whole = (columns.is_none() || can.states).then(|| candidate.build(&reduced, None));
     let unsolved = columns.as_ref().and(reduced.parts[0].function.unsolved.as_ref());
     let mut best = match &whole {
         Some(whole) if unsolved.is_none() => whole.clone(),
-        _ => subject.made(&reduced, unsolved),
+        _ => candidate.build(&reduced, unsolved),
     };
     let plain = whole.map_or_else(Graph::default, |(graph, _)| graph);
     // Limbs need the vector instructions; constants that stay inputs differ from limb to limb.
     if options.limbs && can.vectors && parameters.is_empty() {
         for width in [4, 2] {
             let Some(alike) = IsomorphicLimbs::of(model, width) else { continue };
-            let other = Candidate { alike: Some(alike), ..subject }.made(&reduced, unsolved);
+            let other = Candidate { alike: Some(alike), ..candidate }.build(&reduced, unsolved);
             if price(&other.0) * WORTH < price(&best.0) {
                 best = other;
             }
@@ -57,16 +58,18 @@ pub(crate) fn program(wanted: FunctionSpec, model: &Model<f64>, parameters: &[Pa
     if let Some(columns) = &columns {
         columns.count(&mut entry);
     }
-    Program { wanted, graph, plain, entry, columns }
+    Program { spec, graph, plain, entry, columns }
 }
 
-/// Lanes cost what no count shows (values that come and go one by one): they must be cheaper by this.
+/// Minimal gain of lanes, which have costs that no count shows (values inserted and extracted one
+/// by one).
 const WORTH: f64 = 1.15;
 
-/// Instructions of sines and cosines of as many angles as there are lanes.
+/// Instructions of the sines and cosines of one vector of angles.
 const SINES: f64 = 28.0;
 
-/// What a program costs, in instructions, plain or in lanes: sines go four angles at a time, or the angles of all lanes; inputs of lanes come one by one.
+/// The cost of a program in instructions, plain or in lanes. Sines take four angles at a time, or
+/// those of all lanes; inputs of lanes are loaded one by one.
 fn price(graph: &Graph) -> f64 {
     let counts = graph.counts();
     let rows = f64::from(pass::cost(graph)) - 10.0 * counts.trigonometric() as f64;

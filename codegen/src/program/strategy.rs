@@ -1,4 +1,4 @@
-//! How to compute a part of a function.
+//! Strategies: how to compute a term of a function.
 
 use std::borrow::Cow;
 
@@ -7,31 +7,31 @@ use articulated_core::algorithm::Way;
 use crate::model_pass::FoldedRotations;
 use crate::sym::Sym;
 
-/// How to compute a part.
+/// How to compute a term of a function.
 #[derive(Clone, Copy)]
 pub(crate) struct Strategy {
     pub(crate) way: &'static Way<Sym>,
-    /// How many model passes to take.
+    /// Number of model passes to apply.
     pub(crate) passes: usize,
     /// Bodies whose rotations are folded into constants.
     pub(crate) folded: Option<FoldedRotations>,
     /// The unit of length, m, if it is not the metre.
     pub(crate) unit: Option<f64>,
-    /// Whether bodies have other inertias for inverse dynamics
+    /// Whether inverse dynamics uses shifted masses
     /// ([`View::with_shifted_masses`](crate::model_pass::View::with_shifted_masses)).
     pub(crate) shifted: bool,
-    /// Whether bodies have their rates by the axes of their joints
+    /// Whether angular kinematics uses the accelerations of joint axes
     /// ([`View::with_axis_accelerations`](crate::model_pass::View::with_axis_accelerations)).
     pub(crate) axes: bool,
 }
 
 impl Strategy {
-    /// A way after so many model passes, with all frames turning and lengths in metres.
+    /// A way after this number of model passes, without further transforms.
     pub(crate) fn plain(way: &'static Way<Sym>, passes: usize) -> Self {
         Self { way, passes, folded: None, unit: None, shifted: false, axes: false }
     }
 
-    /// Whether it adds this.
+    /// Whether the strategy includes the transform.
     pub(super) fn adds(&self, what: Transform) -> bool {
         match what {
             Transform::ShiftedMasses => self.shifted,
@@ -41,28 +41,28 @@ impl Strategy {
         }
     }
 
-    /// The same with no more added than up to this.
+    /// The same strategy without the transforms after `last`.
     pub(super) fn up_to(&self, last: Transform) -> Self {
         let has = |what| what <= last && self.adds(what);
         let (folded, unit) = (self.folded.filter(|_| has(Transform::FoldedRotations)), self.unit.filter(|_| has(Transform::Unit)));
         Self { shifted: has(Transform::ShiftedMasses), axes: has(Transform::AxisAccelerations), folded, unit, ..*self }
     }
 
-    /// What it is called in the ledger.
+    /// Its names in the ledger.
     pub(crate) fn names(&self) -> impl Iterator<Item = Cow<'static, str>> {
         let folded = match self.folded {
             None => "",
-            Some(FoldedRotations::Parallel) => "parallel joints unturned",
-            Some(FoldedRotations::ParallelAndLast) => "parallel and last joints unturned",
+            Some(FoldedRotations::Parallel) => "parallel rotations folded",
+            Some(FoldedRotations::ParallelAndLast) => "parallel and last rotations folded",
         };
-        let unit = self.unit.map(|metres| Cow::Owned(format!("lengths in {} m", to_four_digits(metres))));
-        let shifted = if self.shifted { "mass lent" } else { "" };
-        let axes = if self.axes { "rates by axes" } else { "" };
+        let unit = self.unit.map(|metres| Cow::Owned(format!("length unit {} m", to_four_digits(metres))));
+        let shifted = if self.shifted { "mass shifted" } else { "" };
+        let axes = if self.axes { "axis rates" } else { "" };
         [self.way.name, shifted, axes, folded].into_iter().filter(|name| !name.is_empty()).map(Cow::Borrowed).chain(unit)
     }
 }
 
-/// What a choice may add to a way and its model passes, in the order in which the ledger counts it.
+/// A transform beyond the model passes, in the order in which the ledger counts it.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Transform {
     ShiftedMasses,
@@ -72,11 +72,11 @@ pub(crate) enum Transform {
 }
 
 impl Transform {
-    /// All of them, as the ledger calls them, and what they do.
+    /// All of them with their names in the ledger and what they do.
     pub(crate) const ALL: [(Self, &'static str, &'static str); 4] = [
-        (Self::ShiftedMasses, "lent", "mass in the body beyond a joint for torques, where numbers vanish for it"),
-        (Self::AxisAccelerations, "axes", "rates by the second derivatives of joints' axes, not by ω̇"),
-        (Self::FoldedRotations, "unturned", "constants turned in place of vectors"),
+        (Self::ShiftedMasses, "shift_masses", "mass moved to the body beyond a joint, so that numbers vanish"),
+        (Self::AxisAccelerations, "axis_rates", "angular kinematics by the second derivatives of joint axes, not by ω̇"),
+        (Self::FoldedRotations, "fold_rotations", "constants rotated in place of vectors"),
         (Self::Unit, "unit", "lengths in a unit in which a constant is one"),
     ];
 }

@@ -3,7 +3,7 @@
 use articulated_core::description::JointKind;
 use articulated_core::diagnostic::Diagnostics;
 
-use super::draft::Draft;
+use super::ast::Draft;
 use super::tree::Tree;
 use crate::reading::HELD;
 

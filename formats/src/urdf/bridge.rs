@@ -4,7 +4,7 @@ use articulated_core::description::{Description, Inertial, Joint, JointDynamics,
 use articulated_core::diagnostic::{Code, Diagnostics, Place};
 use urdf_rs::{JointType, Pose, Robot};
 
-use super::draft::Draft;
+use super::ast::Draft;
 use super::plain::{self, Piece};
 use super::tree::Tree;
 

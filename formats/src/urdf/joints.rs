@@ -5,7 +5,7 @@ use articulated_core::description::{JointDynamics, JointKind};
 use articulated_core::diagnostic::{Code, Diagnostics, Place, Subject, quote};
 use articulated_core::suggest::nearest;
 
-use super::draft::{DraftJoint, DraftMimic, Reference, has_one_coordinate};
+use super::ast::{DraftJoint, DraftMimic, Reference, has_one_coordinate};
 use super::element::Tag;
 use super::number::{self, attribute, attribute_list};
 use super::robot::{Context, Version};

@@ -3,7 +3,7 @@
 use articulated_core::description::Inertial;
 use articulated_core::diagnostic::{Code, Diagnostics, Subject};
 
-use super::draft::DraftLink;
+use super::ast::DraftLink;
 use super::element::Tag;
 use super::robot::Context;
 use super::{collision, frame, inertia, number, unused};

@@ -7,9 +7,9 @@ use std::collections::HashMap;
 use articulated_core::listed;
 use articulated_core::suggest::Suggester;
 
-use super::draft::{DraftJoint, DraftMimic, has_one_coordinate};
+use super::ast::{DraftJoint, DraftMimic, has_one_coordinate};
+use super::cycles::{around, cycles};
 use super::joints::kinds_with;
-use super::ring::{around, rings};
 use super::xacro::is_expression;
 
 /// For each joint, the joint that it follows.
@@ -93,7 +93,7 @@ fn report_unknown(follower: &DraftJoint, mimic: &DraftMimic, joints: &[DraftJoin
 
 fn report_rings(joints: &[DraftJoint], leaders: &[Option<usize>], log: &mut Diagnostics) {
     let leader = |joint: usize| leaders[joint];
-    for start in rings(joints.len(), leader) {
+    for start in cycles(joints.len(), leader) {
         let Some(mimic) = &joints[start].mimic else { continue };
         let found = if leader(start) == Some(start) {
             "a joint that mimics itself".to_owned()

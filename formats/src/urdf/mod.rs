@@ -31,15 +31,15 @@
 //!
 //! A joint mimics and is mimicked if it has one coordinate: `helical` does, the other two do not.
 
+mod ast;
 mod base;
 #[cfg(feature = "second-reader")]
 mod bridge;
 mod collision;
 #[cfg(feature = "urdf-rs")]
 mod conversion;
-mod described;
+mod cycles;
 mod document;
-mod draft;
 mod element;
 mod frame;
 mod inertia;
@@ -48,12 +48,12 @@ mod limits;
 mod lines;
 mod links;
 mod lost;
+mod lower;
 mod markup;
 mod mimic;
 mod number;
 #[cfg(feature = "second-reader")]
 mod plain;
-mod ring;
 mod robot;
 mod tree;
 mod unused;
@@ -97,14 +97,14 @@ impl Format for Urdf {
         if input.options.base == Base::Fixed {
             base::report(&draft, &tree, diagnostics);
         }
-        let description = described::described(&draft, &tree, &leaders)?;
+        let description = lower::lower(&draft, &tree, &leaders)?;
         #[cfg(feature = "second-reader")]
         bridge::compare(&description, &draft, &tree, &leaders, diagnostics);
         Some(description)
     }
 }
 
-fn draft(bytes: &[u8], options: &Options, log: &mut Diagnostics) -> Option<draft::Draft> {
+fn draft(bytes: &[u8], options: &Options, log: &mut Diagnostics) -> Option<ast::Draft> {
     let text = document::text(bytes, log)?;
     let lines = lines::Lines::of(&text);
     let document = document::parse(&text, &lines, log)?;

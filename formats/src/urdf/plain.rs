@@ -9,7 +9,7 @@ use std::fmt::{self, Write};
 
 use articulated_core::description::{Inertial, JointDynamics, JointKind, Limit, Origin};
 
-use super::draft::{Draft, DraftJoint};
+use super::ast::{Draft, DraftJoint};
 use super::tree::Tree;
 
 /// Links and joints per document.

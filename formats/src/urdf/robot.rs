@@ -1,6 +1,6 @@
 //! The tag `<robot>`: only its direct children are links and joints.
 
-use super::draft::{Draft, DraftLink, PassedOver};
+use super::ast::{Draft, DraftLink, PassedOver};
 use super::element::Tag;
 use super::{frame, joints, links, lost, unused};
 use crate::Options;

@@ -7,8 +7,8 @@ use std::collections::HashMap;
 use articulated_core::listed;
 use articulated_core::suggest::Suggester;
 
-use super::draft::{Draft, DraftJoint, Reference};
-use super::ring::{around, rings};
+use super::ast::{Draft, DraftJoint, Reference};
+use super::cycles::{around, cycles};
 use super::xacro::is_expression;
 
 /// Which links each joint connects.
@@ -25,8 +25,8 @@ pub(crate) fn connect(draft: &Draft, log: &mut Diagnostics) -> Option<Tree> {
     let mut ends = Ends::of(draft, &links, log);
     ends.complete &= links.len() == draft.links.len();
     let above = joints_above(draft, &ends, log);
-    let rings = report_rings(draft, &ends, &above, log);
-    let root = root(draft, &ends, &above, rings, log);
+    let cycles = report_rings(draft, &ends, &above, log);
+    let root = root(draft, &ends, &above, cycles, log);
     Some(Tree { parent: all(&ends.parent)?, child: all(&ends.child)?, root: root? })
 }
 
@@ -130,14 +130,14 @@ fn report_two_parents(draft: &Draft, link: usize, first: usize, second: usize, l
 /// Returns how many rings there are.
 fn report_rings(draft: &Draft, ends: &Ends, above: &[Option<usize>], log: &mut Diagnostics) -> usize {
     let parent = |link: usize| above[link].and_then(|joint| ends.parent[joint]);
-    let rings = rings(above.len(), parent);
-    for link in &rings {
+    let cycles = cycles(above.len(), parent);
+    for link in &cycles {
         let joints = around(*link, parent).filter_map(|link| Some(draft.joints[above[link]?].subject()));
         let subject = draft.links[*link].subject();
         let place = Place { at: draft.links[*link].at, subject: &subject, field: "parent" };
         log.error(place, Code::Ring, format!("a ring (loop) of {}", listed(joints)), "a tree with one root");
     }
-    rings.len()
+    cycles.len()
 }
 
 /// The tags that look like joints and are not read: what hangs on them is a root.
@@ -153,10 +153,10 @@ fn passed_over(draft: &Draft) -> String {
     }
 }
 
-fn root(draft: &Draft, ends: &Ends, above: &[Option<usize>], rings: usize, log: &mut Diagnostics) -> Option<usize> {
+fn root(draft: &Draft, ends: &Ends, above: &[Option<usize>], cycles: usize, log: &mut Diagnostics) -> Option<usize> {
     let roots: Vec<usize> = (0..above.len()).filter(|link| above[*link].is_none()).collect();
     // A name that is not known, or not unique, leaves a link without a parent: that has been said.
-    if roots.len() > 1 && ends.complete && rings == 0 {
+    if roots.len() > 1 && ends.complete && cycles == 0 {
         let names = listed(roots.iter().map(|root| draft.links[*root].subject()));
         let subject = draft.links[roots[1]].subject();
         let place = Place { at: draft.links[roots[1]].at, subject: &subject, field: "parent" };

@@ -37,7 +37,7 @@ const KNOWN: &[(&str, &str, &str)] = &[
     ("limit", "jerk", "jerk is not limited"),
 ];
 
-/// So much of a text is told.
+/// Number of characters of a text that a message shows.
 const SHOWN: usize = 40;
 
 /// Reports the tags, the attributes and the text inside `tag` other than those that are used.

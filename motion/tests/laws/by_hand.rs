@@ -4,10 +4,10 @@ use articulated::Dynamics;
 use articulated::simulate::{Constant, Control, Dependence, Event, IntegratorId, Output, Settings, Simulation, TorqueTable};
 use articulated_core::algorithm::Workspace;
 
-use articulated_motion::{Begin, Drive, Watch};
+use articulated_motion::{Detectors, Drive, InitialState};
 use articulated_scene::{Aim, Controller, Series};
 
-use super::{ARM, CART, moved, stage};
+use super::{ARM, CART, moved, session};
 
 #[test]
 fn a_scene_moves_as_a_simulation_put_together_by_hand_to_the_bit() {
@@ -16,8 +16,8 @@ fn a_scene_moves_as_a_simulation_put_together_by_hand_to_the_bit() {
         initial = { q = { shoulder = 0.7, wrist = [0.0, 0.6, 0.0, 0.8] }, v = { elbow = -1.5, wrist = [0.1, 0.2, 0.3] } }
         control = { kind = 'pd', target = { shoulder = -0.2, elbow = 0.1 }, kp = { shoulder = 40.0, elbow = 15.0, wrist = 2.0 }, kd = 0.9, torque = { elbow = 0.25 } }
         simulation = { start = 0.5, end = 1.75, integrator = 'dop853', rtol = 1e-8, atol = 1e-10, max_step = 0.05, output = 0.125 }";
-    let stage = stage(scene, ARM);
-    let found = moved(&stage).recording;
+    let session = session(scene, ARM);
+    let found = moved(&session).recording;
 
     let settings = Settings {
         integrator: IntegratorId::dop853,
@@ -54,10 +54,10 @@ fn given_torques_and_tables_are_those_of_the_library() {
         let mut simulation = Simulation::new(&robot, settings()).unwrap().with_energy_balance();
         simulation.run(&[0.0], &[0.0], control, &mut []).unwrap()
     };
-    let found = moved(&stage("control = { kind = 'torque', torque = 0.75 }\nsimulation = { end = 1.5 }", CART)).recording;
+    let found = moved(&session("control = { kind = 'torque', torque = 0.75 }\nsimulation = { end = 1.5 }", CART)).recording;
     assert_eq!(found, run(&mut Constant::new(vec![0.75])));
     let rows = "columns = ['slide'], rows = [[0.0, 1.0], [0.3, -2.0], [1.0, 0.5]]";
-    let found = moved(&stage(&format!("control = {{ kind = 'table', {rows} }}\nsimulation = {{ end = 1.5 }}"), CART)).recording;
+    let found = moved(&session(&format!("control = {{ kind = 'table', {rows} }}\nsimulation = {{ end = 1.5 }}"), CART)).recording;
     let mut table = TorqueTable::new(vec![0.0, 0.3, 1.0], &[1.0, -2.0, 0.5], 1).unwrap();
     let expected = run(&mut table);
     let far = found.q.iter().zip(&expected.q).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
@@ -69,8 +69,8 @@ fn a_table_in_a_file_of_the_folder_is_one_in_the_scene() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("way.csv"), "t,slide\n0,0.1\n0.5,0.4\n1,-0.2\n").unwrap();
     let scene = |source: &str| format!("control = {{ kind = 'pd', kp = 30, kd = 4, {source} }}\nsimulation = {{ end = 1.0 }}");
-    let of_file = stage(&scene("file = 'way.csv'"), CART).in_folder(folder.path());
-    let inline = stage(&scene("columns = ['slide'], rows = [[0.0, 0.1], [0.5, 0.4], [1.0, -0.2]]"), CART);
+    let of_file = session(&scene("file = 'way.csv'"), CART).in_folder(folder.path());
+    let inline = session(&scene("columns = ['slide'], rows = [[0.0, 0.1], [0.5, 0.4], [1.0, -0.2]]"), CART);
     let (found, expected) = (moved(&of_file).recording, moved(&inline).recording);
     assert_eq!(found, expected);
     // At the first row: kp (0.1 − 0) + kd (0.3/0.5 − 0).
@@ -79,12 +79,12 @@ fn a_table_in_a_file_of_the_folder_is_one_in_the_scene() {
 
 #[test]
 fn a_table_out_of_order_is_refused() {
-    let stage = stage("simulation = { end = 1.0 }", CART);
-    let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
+    let session = session("simulation = { end = 1.0 }", CART);
+    let mut motion = session.motion(&session.model, &session.frame_names(), session.settings().unwrap()).unwrap();
     let mut told = |times: &[f64], rows: &[f64]| {
         let series = Series { times: times.to_vec(), rows: rows.iter().map(|x| vec![*x]).collect(), hold: false };
-        let begin = Begin { controller: Controller::Table(series), ..stage.begin().unwrap() };
-        motion.run(&begin, &mut |_, _| true).map(drop).map_err(|e| e.to_string())
+        let initial = InitialState { controller: Controller::Table(series), ..session.initial_state().unwrap() };
+        motion.run(&initial, &mut |_, _| true).map(drop).map_err(|e| e.to_string())
     };
     assert_eq!(told(&[0.0, 1.0], &[1.0, 2.0]), Ok(()));
     for (times, rows, wrong) in [
@@ -103,13 +103,13 @@ fn a_table_out_of_order_is_refused() {
 /// At a row the next kink is the next row, and behind the last there is none.
 #[test]
 fn every_row_of_a_table_is_a_kink() {
-    let stage = stage("", CART);
+    let session = session("", CART);
     let series = Series { times: vec![0.25, 0.5, 1.0], rows: vec![vec![0.0], vec![1.0], vec![0.5]], hold: false };
     let one = || vec![1.0];
     for controller in
         [Controller::Table(series.clone()), Controller::Pd { target: Aim::Moving(series), kp: one(), kd: one(), torque: one() }]
     {
-        let drive = Drive::new(&stage.model, &controller, None).unwrap();
+        let drive = Drive::new(&session.model, &controller, None).unwrap();
         let kinks = [-1.0, 0.0, 0.25, 0.3, 0.5, 0.75, 1.0, 2.0].map(|t| drive.next_kink(t));
         assert_eq!(kinks, [0.25, 0.25, 0.5, 0.5, 1.0, 1.0, f64::INFINITY, f64::INFINITY]);
     }
@@ -117,7 +117,7 @@ fn every_row_of_a_table_is_a_kink() {
 
 #[test]
 fn torques_depend_on_what_their_kind_says_and_on_nothing_while_they_are_held() {
-    let stage = stage("", CART);
+    let session = session("", CART);
     let (one, series) = (|| vec![1.0], || Series { times: vec![0.0, 1.0], rows: vec![vec![0.0], vec![1.0]], hold: false });
     let pd = |target| Controller::Pd { target, kp: one(), kd: one(), torque: one() };
     for (controller, time, state) in [
@@ -127,7 +127,7 @@ fn torques_depend_on_what_their_kind_says_and_on_nothing_while_they_are_held() {
         (pd(Aim::Still(one())), false, true),
         (pd(Aim::Moving(series())), true, true),
     ] {
-        let of = |period| Drive::new(&stage.model, &controller, period).unwrap().depends_on();
+        let of = |period| Drive::new(&session.model, &controller, period).unwrap().depends_on();
         assert_eq!(of(None), Dependence { time, state }, "{controller:?}");
         assert_eq!(of(Some(0.1)), Dependence { time: false, state: false }, "{controller:?}");
     }
@@ -136,7 +136,7 @@ fn torques_depend_on_what_their_kind_says_and_on_nothing_while_they_are_held() {
 #[test]
 fn a_sampled_controller_holds_its_torques() {
     let scene = "control = { kind = 'pd', target = { slide = 0.4 }, kp = 30, period = 0.1 }\nsimulation = { end = 0.3, output = 0.05 }";
-    let r = moved(&stage(scene, CART)).recording;
+    let r = moved(&session(scene, CART)).recording;
     // The record at a sample is of the torques before it.
     assert_eq!(r.tau[..3], [12.0; 3]);
     assert!(r.tau[3] < 12.0 && r.tau[3] == r.tau[4] && r.tau[5] < r.tau[4], "{:?}", r.tau);
@@ -147,8 +147,8 @@ fn a_sampled_controller_holds_its_torques() {
 fn a_control_of_ones_own_moves_the_scene() {
     let scene =
         |control: &str| format!("{control}\ninitial = {{ v = {{ slide = 0.5 }} }}\nsimulation = {{ end = 1.0, events = ['limits'] }}");
-    let of_scene = stage(&scene("control = { kind = 'pd', target = { slide = 1.5 }, kp = 30, kd = 2 }"), CART);
-    let without = stage(&scene(""), CART);
+    let of_scene = session(&scene("control = { kind = 'pd', target = { slide = 1.5 }, kp = 30, kd = 2 }"), CART);
+    let without = session(&scene(""), CART);
     let mut law = |_: f64, q: &[f64], v: &[f64], tau: &mut [f64]| tau[0] = 30.0 * (1.5 - q[0]) + 2.0 * (0.0 - v[0]);
     let own = without.run_with(&without.model, &without.frame_names(), &mut law).unwrap();
     let expected = moved(&of_scene);
@@ -160,22 +160,22 @@ fn a_control_of_ones_own_moves_the_scene() {
     assert!(instead.recording.tau.iter().all(|tau| *tau == 0.0));
 }
 
-/// Drive and watch are for a simulation of one's own too, which may look for more.
+/// Drive and detectors are for a simulation of one's own too, which may look for more.
 #[test]
 fn the_parts_put_together_move_as_the_whole() {
-    let stage = stage(include_str!("arm.toml").replace("restitution", "stop = true\nrestitution").as_str(), ARM);
-    let whole = moved(&stage);
-    let (robot, settings) = (&stage.model, stage.settings().unwrap());
-    let begin = stage.begin().unwrap();
-    let mut drive = Drive::new(robot, &begin.controller, None).unwrap();
-    let mut watch = Watch::new(&stage, robot, &stage.frame_names()).unwrap();
-    watch.events.push(Event::new("half way", |_, q, _| q[0] - 0.5));
+    let session = session(include_str!("arm.toml").replace("restitution", "stop = true\nrestitution").as_str(), ARM);
+    let whole = moved(&session);
+    let (robot, settings) = (&session.model, session.settings().unwrap());
+    let initial = session.initial_state().unwrap();
+    let mut drive = Drive::new(robot, &initial.controller, None).unwrap();
+    let mut detectors = Detectors::new(&session, robot, &session.frame_names()).unwrap();
+    detectors.events.push(Event::new("half way", |_, q, _| q[0] - 0.5));
     let mut simulation = Simulation::new(robot, settings).unwrap();
-    let (mut recording, over) = (simulation.recording(), watch.over());
-    simulation.run_into(&begin.q, &begin.v, &mut drive, &mut watch.events, &mut recording, &mut |_, _| !over()).unwrap();
-    assert!(recording.events.iter().map(|hit| watch.happening(hit)).all(|h| h.about.is_none() == (h.what == "half way")));
-    let words: Vec<String> = recording.events.iter().map(|hit| watch.happening(hit).what).collect();
-    assert!(over() && watch.ball_energy() == whole.ball && words.iter().any(|what| what == "half way"), "{words:?}");
+    let (mut recording, over) = (simulation.recording(), detectors.over());
+    simulation.run_into(&initial.q, &initial.v, &mut drive, &mut detectors.events, &mut recording, &mut |_, _| !over()).unwrap();
+    assert!(recording.events.iter().map(|hit| detectors.occurrence(hit)).all(|h| h.about.is_none() == (h.what == "half way")));
+    let words: Vec<String> = recording.events.iter().map(|hit| detectors.occurrence(hit).what).collect();
+    assert!(over() && detectors.ball_energy() == whole.ball && words.iter().any(|what| what == "half way"), "{words:?}");
     let scenes: Vec<&str> = words.iter().map(String::as_str).filter(|what| *what != "half way").collect();
     assert_eq!((scenes, &recording.q, &recording.v), (super::words(&whole), &whole.recording.q, &whole.recording.v));
 }

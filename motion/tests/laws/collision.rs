@@ -3,7 +3,7 @@
 use articulated::Dynamics;
 use articulated_core::effect::EffectId;
 
-use super::{Outcome, Stage, moved, stage};
+use super::{Outcome, Session, moved, session};
 
 const G: f64 = 9.81;
 
@@ -29,10 +29,10 @@ fn height(outcome: &Outcome) -> f64 {
 }
 
 fn rest(collision: &str, from: &str) -> f64 {
-    let stage = stage(&fall(from, CONTACT), &body(collision));
-    let outcome = moved(&stage);
-    assert_eq!(stage.warning_of_penetrations_at_start(outcome.recording.q_at(0)), None);
-    assert_eq!(stage.warning_of_penetrations(&outcome.recording.t, &outcome.recording.q), None);
+    let session = session(&fall(from, CONTACT), &body(collision));
+    let outcome = moved(&session);
+    assert_eq!(session.warning_of_penetrations_at_start(outcome.recording.q_at(0)), None);
+    assert_eq!(session.warning_of_penetrations(&outcome.recording.t, &outcome.recording.q), None);
     height(&outcome)
 }
 
@@ -70,7 +70,7 @@ fn points_of_geometry_are_those_that_could_be_written_out() {
     let by_hand =
         |z: f64| format!("[[effects.contact.body]]\nxyz = [0.1, 0, {z}]\nradius = 0.05\nstiffness = 1e4\ndamping = 1.0\nfriction = 0.5\n");
     let [shapes, points] =
-        [CONTACT.to_owned(), [by_hand(-0.25), by_hand(0.25)].concat()].map(|effects| stage(&fall(from, &effects), &body(capsule)));
+        [CONTACT.to_owned(), [by_hand(-0.25), by_hand(0.25)].concat()].map(|effects| session(&fall(from, &effects), &body(capsule)));
     assert_eq!(shapes.effects, points.effects);
     assert_eq!(moved(&shapes).recording.q, moved(&points).recording.q);
 }
@@ -95,10 +95,10 @@ articulated::robot! {
 /// corners, a capsule and a ball fixed to its link, 16 points on rims.
 #[test]
 fn a_generated_robot_touches_the_ground_as_the_generic_one_does() {
-    let stage = stage(include_str!("crawler.toml"), include_str!("crawler.urdf"));
-    let of = |link: &str| stage.effects_of(EffectId::contact).filter(|a| a.on == link).count();
+    let session = session(include_str!("crawler.toml"), include_str!("crawler.urdf"));
+    let of = |link: &str| session.effects_of(EffectId::contact).filter(|a| a.on == link).count();
     assert_eq!(["trunk", "arm", "nose", "wheel"].map(of), [8, 2, 1, 16]);
-    let (generic, generated) = (moved(&stage), stage.run(&crawler::Robot, &crawler::FRAME_NAMES).unwrap());
+    let (generic, generated) = (moved(&session), session.run(&crawler::Robot, &crawler::FRAME_NAMES).unwrap());
     let (a, b) = (&generic.recording, &generated.recording);
     assert_eq!((a.len(), &a.t), (21, &b.t));
     let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
@@ -109,8 +109,8 @@ fn a_generated_robot_touches_the_ground_as_the_generic_one_does() {
     let (q, v) = (a.q_at(20), a.v_at(20));
     let mut low = q.to_vec();
     low[2] -= 0.1;
-    let (mut of_model, mut ws) = (vec![0.0; v.len()], stage.model.workspace());
-    stage.model.forward_dynamics(&mut ws, &low, v, &vec![0.0; v.len()], &mut of_model).unwrap();
+    let (mut of_model, mut ws) = (vec![0.0; v.len()], session.model.workspace());
+    session.model.forward_dynamics(&mut ws, &low, v, &vec![0.0; v.len()], &mut of_model).unwrap();
     let taken = inline::forward_dynamics(low[..].try_into().unwrap(), v.try_into().unwrap(), &[0.0; inline::NV]);
     let scale = of_model.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     assert!(scale > 100.0 && apart(&of_model, &taken) < 1e-11 * scale, "{:e} of {scale:e}", apart(&of_model, &taken));
@@ -122,8 +122,8 @@ fn a_generated_robot_touches_the_ground_as_the_generic_one_does() {
 fn a_point_that_rests_in_the_plane_is_not_odd() {
     let plate = body("<collision><geometry><box size='0.4 0.3 0.2'/></geometry></collision>");
     let sunk = |z: f64| {
-        let stage = stage(&fall(&format!("xyz = [0, 0, {z}]"), CONTACT), &plate);
-        stage.sunk(&stage.begin().unwrap().q).len()
+        let session = session(&fall(&format!("xyz = [0, 0, {z}]"), CONTACT), &plate);
+        session.sunk(&session.initial_state().unwrap().q).len()
     };
     let one = 2.0 * G / 1e4;
     assert_eq!((sunk(0.1 - 0.25 * one), sunk(0.1 - 0.99 * one), sunk(0.1 - 1.01 * one)), (0, 0, 4));
@@ -154,11 +154,11 @@ const FEET: &str = "[[effects.contact.foot]]\nxyz = [0.1, 0, -0.04]\nradius = 0.
 fn a_link_that_falls_through_is_named_with_its_depth_and_time() {
     let scene = fall("xyz = [0, 0, 0.545], rpy = [0.2, 0, 0]", FEET).replace("end = 4.0", "end = 1.5");
     for trunk in [BOX, "<mesh filename='trunk.stl'/>"] {
-        let stage = stage(&scene, &hopper(trunk));
-        let Outcome { recording, error, .. } = moved(&stage);
+        let session = session(&scene, &hopper(trunk));
+        let Outcome { recording, error, .. } = moved(&session);
         assert_eq!(error, None);
-        assert_eq!(stage.warning_of_penetrations_at_start(recording.q_at(0)), None);
-        let found = stage.penetrations(&recording.t, &recording.q);
+        assert_eq!(session.warning_of_penetrations_at_start(recording.q_at(0)), None);
+        let found = session.penetrations(&recording.t, &recording.q);
         let trunk_is_box = trunk == BOX;
         let deep = found.iter().find(|p| p.link == "trunk").unwrap_or_else(|| panic!("{found:?}"));
         // By hand, from the recorded states.
@@ -174,7 +174,7 @@ fn a_link_that_falls_through_is_named_with_its_depth_and_time() {
         let deepest = (0..recording.len()).max_by(|a, b| corner(*a).total_cmp(&corner(*b))).unwrap();
         assert_eq!((deep.from, deep.at), (recording.t[first], recording.t[deepest]));
         assert!((deep.depth - corner(deepest)).abs() < 1e-12 && deep.depth > 0.1, "{deep:?}");
-        let told = stage.warning_of_penetrations(&recording.t, &recording.q).unwrap();
+        let told = session.warning_of_penetrations(&recording.t, &recording.q).unwrap();
         let line = format!("\"trunk\" from t = {} s on, ", recording.t[first]);
         assert!(told.starts_with("s.toml: effects.contact: found ") && told.contains(&line), "{told}");
         assert!(told.contains("below a contact plane") && told.contains("`from = \"collision\"`"), "{told}");
@@ -185,20 +185,20 @@ fn a_link_that_falls_through_is_named_with_its_depth_and_time() {
 #[test]
 fn with_contact_of_its_geometry_nothing_falls_through() {
     let scene = fall("xyz = [0, 0, 0.545], rpy = [0.2, 0, 0]", CONTACT).replace("end = 4.0", "end = 1.5");
-    let stage = stage(&scene.replace("1e4", "1e5"), &hopper(BOX));
-    assert_eq!(stage.effects_of(EffectId::contact).count(), 8 + 2 + 8);
-    let outcome = moved(&stage);
+    let session = session(&scene.replace("1e4", "1e5"), &hopper(BOX));
+    assert_eq!(session.effects_of(EffectId::contact).count(), 8 + 2 + 8);
+    let outcome = moved(&session);
     assert!(height(&outcome) > 0.05, "{}", height(&outcome));
-    assert_eq!(stage.warning_of_penetrations(&outcome.recording.t, &outcome.recording.q), None);
+    assert_eq!(session.warning_of_penetrations(&outcome.recording.t, &outcome.recording.q), None);
 }
 
-fn told_at(stage: &Stage) -> Option<String> {
-    stage.warning_of_penetrations_at_start(&stage.begin().unwrap().q)
+fn told_at(session: &Session) -> Option<String> {
+    session.warning_of_penetrations_at_start(&session.initial_state().unwrap().q)
 }
 
 #[test]
 fn a_start_below_the_plane_is_told() {
-    let at = |z: f64, effects: &str| told_at(&stage(&fall(&format!("xyz = [0, 0, {z}]"), effects), &hopper(BOX)));
+    let at = |z: f64, effects: &str| told_at(&session(&fall(&format!("xyz = [0, 0, {z}]"), effects), &hopper(BOX)));
     // The foot stands on the plane; its shin ends 0.01 m above the foot's sole.
     assert_eq!(at(0.54, FEET), None);
     assert_eq!(at(0.539, FEET), None);
@@ -220,7 +220,7 @@ fn what_does_not_move_is_not_told() {
     // The trunk is the base, which reaches 0.1 m below the world frame; the plane is above all of
     // the robot.
     let scene = format!("[simulation]\nend = 1.0\n{FEET}").replace("friction = 0.5", "friction = 0.5\nheight = 0.3");
-    assert_eq!(told_at(&stage(&scene, &hopper(BOX))), None);
+    assert_eq!(told_at(&session(&scene, &hopper(BOX))), None);
     let scene = scene.replace("effects.contact.foot", "effects.contact.shin").replace("-0.04", "-0.54");
-    assert_eq!(told_at(&stage(&scene, &hopper(BOX))), None);
+    assert_eq!(told_at(&session(&scene, &hopper(BOX))), None);
 }

@@ -3,18 +3,25 @@
 use articulated::simulate::{Settings, StateError, TableError};
 use articulated::{Dynamics, FunctionError};
 use articulated_models::panda_like;
-use articulated_motion::{Begin, Controller, Fault, MotionErrors, Scene, Stage};
+use articulated_motion::{Controller, Fault, InitialState, MotionErrors, Scene, Session};
 use articulated_scene::{Aim, Series};
 
-use super::{ARM, CART, stage};
+use super::{ARM, CART, session};
 
 fn lines(errors: &MotionErrors) -> Vec<String> {
     errors.to_string().lines().map(str::to_owned).collect()
 }
 
-/// Of a stage that does not move on a robot.
-fn refused<R: Dynamics<f64>>(stage: &Stage, robot: &R, frames: &[&str]) -> Vec<Fault> {
-    stage.run(robot, frames).err().unwrap_or_else(|| panic!("moved with {:?}", stage.effects)).errors.into_iter().map(|e| e.fault).collect()
+/// The errors of a session that does not move on a robot.
+fn refused<R: Dynamics<f64>>(session: &Session, robot: &R, frames: &[&str]) -> Vec<Fault> {
+    session
+        .run(robot, frames)
+        .err()
+        .unwrap_or_else(|| panic!("moved with {:?}", session.effects))
+        .errors
+        .into_iter()
+        .map(|e| e.fault)
+        .collect()
 }
 
 const TOUCHING: &str = "effects = { contact = { hand = { radius = 0.05, stiffness = 1e4, damping = 0.1, friction = 0.5 }, fore = { radius = 0.1, stiffness = 1e4, damping = 0.1, friction = 0.5 } } }
@@ -23,15 +30,15 @@ const TOUCHING: &str = "effects = { contact = { hand = { radius = 0.05, stiffnes
 
 #[test]
 fn frames_that_events_need_and_the_robot_has_not_are_told_together() {
-    let stage = stage(TOUCHING, ARM);
-    let robot = stage.model.clone().with_frames(&["fore"]).unwrap();
+    let session = session(TOUCHING, ARM);
+    let robot = session.model.clone().with_frames(&["fore"]).unwrap();
     let missing = |key, link: &str| Fault::NoFrame { key, link: link.into(), frames: vec!["fore".into()] };
-    assert_eq!(refused(&stage, &robot, &["fore"]), [missing("effects.contact", "hand"), missing("impact.link", "upper")]);
+    assert_eq!(refused(&session, &robot, &["fore"]), [missing("effects.contact", "hand"), missing("impact.link", "upper")]);
     let told = r#"s.toml: impact.link: found a robot that gives no frame of "upper", expected that among its frames (fore)"#;
-    assert_eq!(lines(&stage.run(&robot, &["fore"]).unwrap_err())[1], told);
-    assert_eq!(stage.frames(), ["fore", "hand", "upper"]);
-    let robot = stage.model.clone().with_frames(&["upper", "hand", "fore"]).unwrap();
-    assert!(stage.run(&robot, &["upper", "hand", "fore"]).is_ok());
+    assert_eq!(lines(&session.run(&robot, &["fore"]).unwrap_err())[1], told);
+    assert_eq!(session.frames(), ["fore", "hand", "upper"]);
+    let robot = session.model.clone().with_frames(&["upper", "hand", "fore"]).unwrap();
+    assert!(session.run(&robot, &["upper", "hand", "fore"]).is_ok());
 }
 
 /// A robot of the same joints that was made from the URDF alone, or under other gravity; who wants it so takes it in parts.
@@ -47,26 +54,26 @@ fn a_robot_without_the_effects_or_the_gravity_of_the_scene_is_another() {
         "effects = { motor = { shoulder = { torque = 0.5, speed = 100.0 } } }",
         pull,
     ];
-    let plain = stage("simulation = { end = 0.01 }", ARM);
+    let plain = session("simulation = { end = 0.01 }", ARM);
     assert!(plain.run(&plain.model, &plain.frame_names()).is_ok());
     for text in scenes {
-        let stage = stage(&format!("{text}\nsimulation = {{ end = 0.01 }}"), ARM);
-        assert!(stage.run(&stage.model, &stage.frame_names()).is_ok(), "{text}");
-        let told = refused(&stage, &plain.model, &plain.frame_names());
+        let session = session(&format!("{text}\nsimulation = {{ end = 0.01 }}"), ARM);
+        assert!(session.run(&session.model, &session.frame_names()).is_ok(), "{text}");
+        let told = refused(&session, &plain.model, &plain.frame_names());
         assert!(matches!(told[..], [Fault::Dynamics { .. }]), "{text}: {told:?}");
-        let mut motion = stage.motion(&plain.model, &plain.frame_names(), stage.settings().unwrap()).unwrap();
-        assert!(motion.run(&stage.begin().unwrap(), &mut |_, _| true).is_ok(), "{text}");
+        let mut motion = session.motion(&plain.model, &plain.frame_names(), session.settings().unwrap()).unwrap();
+        assert!(motion.run(&session.initial_state().unwrap(), &mut |_, _| true).is_ok(), "{text}");
     }
 }
 
 /// More than any level of accuracy leaves of a torque, a thousandth, is another mass; less than that is not told.
 #[test]
 fn a_robot_of_another_mass_is_another() {
-    let stage = stage("simulation = { end = 0.01 }", CART);
+    let session = session("simulation = { end = 0.01 }", CART);
     let fault = |mass: &str| {
         let urdf = CART.replace("<mass value=\"2\"/>", &format!("<mass value=\"{mass}\"/>"));
         let robot = articulated::load_bytes("cart.urdf", urdf.as_bytes(), articulated::Base::Fixed).unwrap();
-        stage.run(&robot, &stage.frame_names()).err().map(|e| e.errors[0].fault.clone())
+        session.run(&robot, &session.frame_names()).err().map(|e| e.errors[0].fault.clone())
     };
     assert_eq!([fault("2.0002"), fault("1.9998")], [None, None]);
     assert!(["2.02", "1.98"].into_iter().all(|mass| matches!(fault(mass), Some(Fault::Dynamics { .. }))));
@@ -75,7 +82,7 @@ fn a_robot_of_another_mass_is_another() {
 /// A gain may be one for all that a joint has; a torque is not the same about every axis by chance.
 #[test]
 fn torques_of_a_ball_are_three() {
-    let arm = stage("simulation = { end = 0.1 }", ARM);
+    let arm = session("simulation = { end = 0.1 }", ARM);
     let told = |torque: &str| {
         let text = format!("control = {{ kind = 'torque', torque = {{ wrist = {torque} }} }}");
         Scene::read("s.toml", &text).unwrap().controller(&arm.model, &mut |_| Err(String::new())).map_err(|e| e.to_string())
@@ -86,21 +93,21 @@ fn torques_of_a_ball_are_three() {
 
 #[test]
 fn contacts_that_nobody_looks_for_need_no_frames() {
-    let stage = stage(
+    let session = session(
         "effects = { contact = { hand = { radius = 0.05, stiffness = 1e4, damping = 0.1, friction = 0.5 } } }\nsimulation = { end = 0.1 }",
         ARM,
     );
-    let robot = stage.model.clone().with_frames::<&str>(&[]).unwrap();
-    assert!(stage.frames().is_empty() && stage.run::<_, &str>(&robot, &[]).is_ok());
+    let robot = session.model.clone().with_frames::<&str>(&[]).unwrap();
+    assert!(session.frames().is_empty() && session.run::<_, &str>(&robot, &[]).is_ok());
 }
 
 #[test]
 fn names_of_frames_are_those_of_the_robot_in_its_order() {
-    let stage = stage(TOUCHING, ARM);
-    let robot = stage.model.clone().with_frames(&["upper", "hand", "fore"]).unwrap();
+    let session = session(TOUCHING, ARM);
+    let robot = session.model.clone().with_frames(&["upper", "hand", "fore"]).unwrap();
     let name = |index, found: &str, expected: &str| Fault::FrameName { index, found: found.into(), expected: expected.into() };
-    assert_eq!(refused(&stage, &robot, &["hand", "upper", "fore"]), [name(0, "hand", "upper"), name(1, "upper", "hand")]);
-    assert_eq!(refused(&stage, &robot, &["upper", "hand"])[0], Fault::Frames { found: 2, expected: 3 });
+    assert_eq!(refused(&session, &robot, &["hand", "upper", "fore"]), [name(0, "hand", "upper"), name(1, "upper", "hand")]);
+    assert_eq!(refused(&session, &robot, &["upper", "hand"])[0], Fault::Frames { found: 2, expected: 3 });
 }
 
 #[test]
@@ -108,33 +115,33 @@ fn functions_that_the_robot_has_not_are_told_together() {
     let scene = "control = { kind = 'pd', kp = 1.0 }
         impact = { link = 'link_7', normal = [1, 0, 0], mass = 1, restitution = 1, time = 0.1 }
         simulation = { end = 1.0, integrator = 'rodas4' }";
-    let stage = stage(scene, articulated_models::robot("panda_like").unwrap().urdf);
+    let session = session(scene, articulated_models::robot("panda_like").unwrap().urdf);
     let lacks = |function| Fault::Function(FunctionError::NotGenerated { function });
     let functions = ["forward_dynamics_derivatives", "difference", "jacobians_world_aligned", "solve_mass_matrix"].map(lacks);
-    assert_eq!(refused(&stage, &panda_like::Robot, &panda_like::FRAME_NAMES), functions);
-    let told = lines(&stage.run(&panda_like::Robot, &panda_like::FRAME_NAMES).unwrap_err());
+    assert_eq!(refused(&session, &panda_like::Robot, &panda_like::FRAME_NAMES), functions);
+    let told = lines(&session.run(&panda_like::Robot, &panda_like::FRAME_NAMES).unwrap_err());
     assert_eq!(told[1], "s.toml: this robot was generated without difference: add it to `functions`");
 }
 
 /// The scene's control may be another than that which the motion is begun with.
 #[test]
 fn a_controller_that_the_robot_has_not_the_functions_for_is_refused() {
-    let stage = stage("simulation = { end = 0.1 }", articulated_models::robot("panda_like").unwrap().urdf);
-    let mut motion = stage.motion(&panda_like::Robot, &panda_like::FRAME_NAMES, stage.settings().unwrap()).unwrap();
+    let session = session("simulation = { end = 0.1 }", articulated_models::robot("panda_like").unwrap().urdf);
+    let mut motion = session.motion(&panda_like::Robot, &panda_like::FRAME_NAMES, session.settings().unwrap()).unwrap();
     let zeros = || vec![0.0; 7];
     let controller = Controller::Pd { target: Aim::Still(zeros()), kp: zeros(), kd: zeros(), torque: zeros() };
-    let begin = Begin { controller, ..stage.begin().unwrap() };
-    let told = motion.run(&begin, &mut |_, _| true).unwrap_err();
+    let initial = InitialState { controller, ..session.initial_state().unwrap() };
+    let told = motion.run(&initial, &mut |_, _| true).unwrap_err();
     assert_eq!(told.errors[0].fault, Fault::Function(FunctionError::NotGenerated { function: "difference" }));
-    let begin = Begin { controller: Controller::Torque(zeros()), ..begin };
-    assert!(motion.run(&begin, &mut |_, _| true).is_ok());
+    let initial = InitialState { controller: Controller::Torque(zeros()), ..initial };
+    assert!(motion.run(&initial, &mut |_, _| true).is_ok());
 }
 
 #[test]
 fn another_robot_than_the_scenes_is_refused() {
-    let (stage, cart) = (stage(TOUCHING, ARM), stage("", CART));
+    let (session, cart) = (session(TOUCHING, ARM), session("", CART));
     let shape = |what, expected| Fault::Shape { what, found: 1, expected };
-    let found = refused(&stage, &cart.model, &cart.frame_names());
+    let found = refused(&session, &cart.model, &cart.frame_names());
     assert!(found.contains(&shape("coordinates", 6)) && found.contains(&shape("degrees of freedom", 5)), "{found:?}");
 }
 
@@ -143,8 +150,8 @@ fn all_that_is_wrong_with_a_scene_is_told_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let scene = "initial = { q = { sholder = 1 }, v = { elbow = [1, 2] } }\ncontrol = { kind = 'table', file = 'no.csv' }";
     // Nobody has held the scene against its robot yet.
-    let Stage { description, model, .. } = stage("", ARM);
-    let unheld = Stage::new(Scene::read("s.toml", scene).unwrap(), description, model.clone(), Vec::new());
+    let Session { description, model, .. } = session("", ARM);
+    let unheld = Session::new(Scene::read("s.toml", scene).unwrap(), description, model.clone(), Vec::new());
     let told = lines(&unheld.in_folder(folder.path()).run::<_, &str>(&model, &[]).unwrap_err());
     assert_eq!(told.len(), 4, "{told:#?}");
     assert_eq!(told[0], "s.toml: simulation: found nothing, expected [simulation] with `end`, s");
@@ -162,8 +169,8 @@ fn tables_that_are_no_text_are_not_read() {
         std::fs::File::create(folder.path().join(name)).unwrap().set_len(length).unwrap();
     }
     let begun = |file: &str| {
-        let stage = stage(&format!("control = {{ kind = 'table', file = '{file}' }}"), CART).in_folder(folder.path());
-        stage.begin().unwrap_err().to_string()
+        let session = session(&format!("control = {{ kind = 'table', file = '{file}' }}"), CART).in_folder(folder.path());
+        session.initial_state().unwrap_err().to_string()
     };
     assert_eq!(begun("odd.csv"), "odd.csv:2: found bytes that are not UTF-8, expected a CSV");
     let vast = begun("vast.csv");
@@ -182,8 +189,8 @@ fn tables_are_regular_files() {
     std::fs::create_dir(folder.path().join("folder.csv")).unwrap();
     for kind in ["kind = 'table'", "kind = 'pd', kp = 1.0"] {
         for (file, found) in [("pipe.csv", "a pipe"), ("zeros.csv", "a device"), ("folder.csv", "a folder"), ("/dev/zero", "a device")] {
-            let stage = stage(&format!("control = {{ {kind}, file = '{file}' }}"), CART).in_folder(folder.path());
-            let told = stage.begin().unwrap_err().to_string();
+            let session = session(&format!("control = {{ {kind}, file = '{file}' }}"), CART).in_folder(folder.path());
+            let told = session.initial_state().unwrap_err().to_string();
             let expected = format!("{file}: found {found}, expected a regular file), expected a CSV");
             assert!(told.starts_with("s.toml:1: control.file: ") && told.contains(&expected), "{told}");
         }
@@ -192,15 +199,15 @@ fn tables_are_regular_files() {
 
 #[test]
 fn settings_that_cannot_be_used_are_told_together() {
-    let stage =
-        stage("simulation = { end = 1.0 }\nimpact = { link = 'cart', normal = [1, 0, 0], mass = 1, restitution = 1, time = 1.5 }", CART);
-    let settings = stage.settings().unwrap();
+    let session =
+        session("simulation = { end = 1.0 }\nimpact = { link = 'cart', normal = [1, 0, 0], mass = 1, restitution = 1, time = 1.5 }", CART);
+    let settings = session.settings().unwrap();
     let told = "s.toml:2: impact.time: found 1.5, expected a time from 0.0 s on and before 1.0 s";
-    assert_eq!(stage.check(&settings).unwrap_err().to_string(), told);
-    assert_eq!(stage.motion(&stage.model, &stage.frame_names(), settings.clone()).err().unwrap().to_string(), told);
-    assert!(stage.check(&Settings { end: 2.0, ..settings.clone() }).is_ok());
+    assert_eq!(session.check(&settings).unwrap_err().to_string(), told);
+    assert_eq!(session.motion(&session.model, &session.frame_names(), settings.clone()).err().unwrap().to_string(), told);
+    assert!(session.check(&Settings { end: 2.0, ..settings.clone() }).is_ok());
     let wrong = Settings { rtol: 2.0, end: -1.0, ..settings };
-    let errors = stage.motion(&stage.model, &stage.frame_names(), wrong).err().unwrap();
+    let errors = session.motion(&session.model, &session.frame_names(), wrong).err().unwrap();
     assert_eq!(errors.errors.len(), 2, "{errors}");
     assert!(lines(&errors)[1].starts_with("s.toml: end = -1: "), "{errors}");
 }
@@ -210,8 +217,8 @@ fn settings_that_cannot_be_used_are_told_together() {
 fn a_ball_is_hit_while_the_robot_moves() {
     let told = |time: &str| {
         let ball = format!("impact = {{ link = 'cart', normal = [1, 0, 0], mass = 1, restitution = 1, time = {time} }}");
-        let stage = stage(&format!("simulation = {{ start = 0.5, end = 1.0 }}\n{ball}"), CART);
-        stage.check(&stage.settings().unwrap()).map_err(|e| e.to_string())
+        let session = session(&format!("simulation = {{ start = 0.5, end = 1.0 }}\n{ball}"), CART);
+        session.check(&session.settings().unwrap()).map_err(|e| e.to_string())
     };
     assert_eq!([told("0.5"), told("0.999")], [const { Ok(()) }; 2]);
     for (time, found) in [("1", "1.0"), ("0.499", "0.499")] {
@@ -222,14 +229,15 @@ fn a_ball_is_hit_while_the_robot_moves() {
 
 #[test]
 fn a_begin_that_does_not_fit_the_robot_is_refused() {
-    let stage = stage("simulation = { end = 0.1 }", ARM);
-    let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
-    let begin = stage.begin().unwrap();
-    let mut told =
-        |begin: &Begin| -> Vec<Fault> { motion.run(begin, &mut |_, _| true).unwrap_err().errors.into_iter().map(|e| e.fault).collect() };
+    let session = session("simulation = { end = 0.1 }", ARM);
+    let mut motion = session.motion(&session.model, &session.frame_names(), session.settings().unwrap()).unwrap();
+    let initial = session.initial_state().unwrap();
+    let mut told = |initial: &InitialState| -> Vec<Fault> {
+        motion.run(initial, &mut |_, _| true).unwrap_err().errors.into_iter().map(|e| e.fault).collect()
+    };
     let length = |vector, found, expected| Fault::State(StateError::Length { vector, found, expected });
-    assert_eq!(told(&Begin { q: vec![0.0], v: vec![], ..begin.clone() }), [length("q", 1, 6), length("v", 0, 5)]);
-    let torque = Begin { controller: Controller::Torque(vec![]), ..begin.clone() };
+    assert_eq!(told(&InitialState { q: vec![0.0], v: vec![], ..initial.clone() }), [length("q", 1, 6), length("v", 0, 5)]);
+    let torque = InitialState { controller: Controller::Torque(vec![]), ..initial.clone() };
     assert_eq!(told(&torque), [length("control.torque", 0, 5)]);
     let table = |wrong| Fault::State(StateError::Table { table: "control.rows", wrong });
     let series = Series { times: vec![0.0, 1.0], rows: vec![vec![0.0; 2]], hold: false };
@@ -239,20 +247,20 @@ fn a_begin_that_does_not_fit_the_robot_is_refused() {
         table(TableError::Width { row: 0, found: 2, expected: 6 }),
         length("control.kp", 0, 5),
     ];
-    assert_eq!(told(&Begin { controller: pd, ..begin.clone() }), expected);
-    let nowhere = Begin { q: [0.0, f64::NAN].into_iter().chain([0.0; 3]).chain([1.0]).collect(), ..begin };
+    assert_eq!(told(&InitialState { controller: pd, ..initial.clone() }), expected);
+    let nowhere = InitialState { q: [0.0, f64::NAN].into_iter().chain([0.0; 3]).chain([1.0]).collect(), ..initial };
     assert!(matches!(&told(&nowhere)[..], [Fault::State(StateError::NotFinite { vector: "q", index: 1, .. })]));
 }
 
 #[test]
 fn a_start_beyond_its_limits_is_odd_and_used() {
-    let stage = stage("initial = { q = { shoulder = 1.75, elbow = -1.0 } }\nsimulation = { end = 0.1 }", ARM);
-    let begin = stage.begin().unwrap();
-    let [beyond] = &stage.beyond(&begin.q)[..] else { panic!("one joint") };
+    let session = session("initial = { q = { shoulder = 1.75, elbow = -1.0 } }\nsimulation = { end = 0.1 }", ARM);
+    let initial = session.initial_state().unwrap();
+    let [beyond] = &session.beyond(&initial.q)[..] else { panic!("one joint") };
     assert_eq!((beyond.joint.as_str(), beyond.found, beyond.lower, beyond.upper), ("shoulder", 1.75, -1.5, 1.5));
-    let told = "s.toml: initial.q.shoulder: found 1.75, beyond its limits, expected -1.5 to 1.5; used as asked for";
-    assert_eq!((beyond.to_string().as_str(), begin.q[0]), (told, 1.75));
+    let told = "s.toml: initial.q.shoulder: found 1.75, beyond its limits, expected -1.5 to 1.5; used as given";
+    assert_eq!((beyond.to_string().as_str(), initial.q[0]), (told, 1.75));
     // At a bound nothing is.
-    let beyond = |shoulder: f64, elbow: f64| stage.beyond(&[shoulder, elbow, 0.0, 0.0, 0.0, 1.0]).len();
+    let beyond = |shoulder: f64, elbow: f64| session.beyond(&[shoulder, elbow, 0.0, 0.0, 0.0, 1.0]).len();
     assert_eq!([beyond(1.5, 0.3), beyond(-1.5, -2.0), beyond(1.5, 0.301), beyond(-1.501, -2.0)], [0, 0, 1, 1]);
 }

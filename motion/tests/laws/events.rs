@@ -1,14 +1,14 @@
 //! What happens on the way, and how it reads.
 
 use articulated::simulate::Ended;
-use articulated_motion::{Ending, EventKind, Outcome, SceneEvent, Watch, Without};
-use articulated_scene::Watched;
+use articulated_motion::{Detectors, Ending, EventKind, Outcome, SceneEvent, UnavailableEvent};
+use articulated_scene::EventClass;
 
-use super::{ARM, CART, moved, stage, words};
+use super::{ARM, CART, moved, session, words};
 
 /// What the first two events are, for programs.
 fn about(outcome: &Outcome) -> [Option<SceneEvent>; 2] {
-    [0, 1].map(|k| outcome.happenings.get(k).and_then(|h| h.about.clone()))
+    [0, 1].map(|k| outcome.occurrences.get(k).and_then(|h| h.about.clone()))
 }
 
 fn is(kind: EventKind, on: &str, begins: bool) -> Option<SceneEvent> {
@@ -31,14 +31,14 @@ const BALL: f64 = 1.8 * 3.0 * 2.0 / 2.5;
 
 #[test]
 fn a_blow_and_a_limit_are_found_and_told() {
-    let outcome = moved(&stage(BLOW, CART));
+    let outcome = moved(&session(BLOW, CART));
     assert_eq!(words(&outcome), ["cart hits the ball, which leaves at 4.3200 m/s", "slide reaches its upper limit"]);
     assert_eq!(about(&outcome), [is(EventKind::Ball, "cart", true), is(EventKind::UpperLimit, "slide", true)]);
     let after = 3.0 - 0.5 * BALL / 2.0;
-    for (happening, t) in outcome.happenings.iter().zip([0.2, 0.2 + 0.3 / after]) {
-        assert!((happening.t - t).abs() < 1e-9, "{happening:?} {t}");
+    for (occurrence, t) in outcome.occurrences.iter().zip([0.2, 0.2 + 0.3 / after]) {
+        assert!((occurrence.t - t).abs() < 1e-9, "{occurrence:?} {t}");
     }
-    let speeds: Vec<Option<f64>> = outcome.happenings.iter().map(|h| h.ball_speed).collect();
+    let speeds: Vec<Option<f64>> = outcome.occurrences.iter().map(|h| h.ball_speed).collect();
     assert!((speeds[0].unwrap() - BALL).abs() < 1e-9 && speeds[1].is_none(), "{speeds:?}");
     let energy = 0.5 * 0.5 * BALL * BALL;
     assert!((outcome.ball.unwrap() - energy).abs() < 1e-8, "{:?} {energy}", outcome.ball);
@@ -48,16 +48,16 @@ fn a_blow_and_a_limit_are_found_and_told() {
 #[test]
 fn a_blow_does_not_depend_on_the_length_of_its_normal() {
     for normal in ["5e-324", "1e-200", "1.7e308"] {
-        let outcome = moved(&stage(&BLOW.replace("[2.0, 0.0", &format!("[{normal}, 0.0")), CART));
-        assert!((outcome.happenings[0].t - 0.2).abs() < 1e-9, "{normal}: {:?}", outcome.happenings[0]);
+        let outcome = moved(&session(&BLOW.replace("[2.0, 0.0", &format!("[{normal}, 0.0")), CART));
+        assert!((outcome.occurrences[0].t - 0.2).abs() < 1e-9, "{normal}: {:?}", outcome.occurrences[0]);
         assert_eq!(words(&outcome)[0], "cart hits the ball, which leaves at 4.3200 m/s");
     }
 }
 
 #[test]
 fn a_motion_stops_where_a_blow_ends_it() {
-    let stage = stage(&format!("{BLOW}stop = true\n"), CART);
-    let outcome = moved(&stage);
+    let session = session(&format!("{BLOW}stop = true\n"), CART);
+    let outcome = moved(&session);
     assert_eq!((outcome.ending, outcome.ending.to_string().as_str()), (Ending::ByBlow, "by an event"));
     assert!((outcome.reached - 0.2).abs() < 1e-9 && outcome.error.is_none(), "{}", outcome.reached);
     assert_eq!(words(&outcome), ["cart hits the ball, which leaves at 4.3200 m/s"]);
@@ -66,38 +66,38 @@ fn a_motion_stops_where_a_blow_ends_it() {
 
 #[test]
 fn a_motion_runs_again_as_it_ran_before() {
-    let stage = stage(&format!("{BLOW}stop = true\n"), CART);
-    let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
-    let begin = stage.begin().unwrap();
-    let [mut first, mut again] = [(); 2].map(|()| motion.run(&begin, &mut |_, _| true).unwrap());
+    let session = session(&format!("{BLOW}stop = true\n"), CART);
+    let mut motion = session.motion(&session.model, &session.frame_names(), session.settings().unwrap()).unwrap();
+    let initial = session.initial_state().unwrap();
+    let [mut first, mut again] = [(); 2].map(|()| motion.run(&initial, &mut |_, _| true).unwrap());
     (first.wall, again.wall) = Default::default();
     assert_eq!(first, again);
     // Who goes the other way never meets the ball: nothing is left of the blow before.
-    let away = articulated_motion::Begin { v: vec![-1.0], ..begin };
+    let away = articulated_motion::InitialState { v: vec![-1.0], ..initial };
     let outcome = motion.run(&away, &mut |_, _| true).unwrap();
     assert_eq!((outcome.ball, outcome.ending, words(&outcome)), (None, Ending::AtEnd, vec!["slide reaches its lower limit"]));
 }
 
 #[test]
 fn who_follows_it_may_end_it() {
-    let stage = stage("initial = { v = { slide = 0.1 } }\nsimulation = { end = 1.0, step = 0.01, integrator = 'rk4' }", CART);
-    let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
+    let session = session("initial = { v = { slide = 0.1 } }\nsimulation = { end = 1.0, step = 0.01, integrator = 'rk4' }", CART);
+    let mut motion = session.motion(&session.model, &session.frame_names(), session.settings().unwrap()).unwrap();
     let mut told = Vec::new();
-    let mut follow = |t: f64, counts: &articulated_motion::Counts| {
+    let mut observer = |t: f64, counts: &articulated_motion::Counts| {
         told.push((t, counts.steps));
         counts.steps < 25
     };
-    let outcome = motion.run(&stage.begin().unwrap(), &mut follow).unwrap();
-    assert_eq!((outcome.ending, outcome.recording.ended, told.len()), (Ending::ByFollower, Ended::ByWatcher, 25));
+    let outcome = motion.run(&session.initial_state().unwrap(), &mut observer).unwrap();
+    assert_eq!((outcome.ending, outcome.recording.ended, told.len()), (Ending::ByObserver, Ended::ByObserver, 25));
     assert!((outcome.reached - 0.25).abs() < 1e-12 && told[24].0 == outcome.reached, "{}", outcome.reached);
 }
 
 #[test]
 fn a_ball_that_nothing_moves_towards_keeps_its_speed() {
     let scene = BLOW.replace("ball = [0.6, 0.0, 0.0]", "time = 0.25\nball_speed = 7.5") + "stop = true\n";
-    let outcome = moved(&stage(&scene, CART));
+    let outcome = moved(&session(&scene, CART));
     assert_eq!(words(&outcome)[0], "cart is not moving towards the ball, which keeps 7.5000 m/s");
-    assert!(outcome.ball.is_none() && (outcome.happenings[0].t - 0.25).abs() < 1e-9, "{outcome:?}");
+    assert!(outcome.ball.is_none() && (outcome.occurrences[0].t - 0.25).abs() < 1e-9, "{outcome:?}");
     // That hits nothing, and so ends nothing.
     assert_eq!((outcome.ending, outcome.reached), (Ending::AtEnd, 1.0));
 }
@@ -105,7 +105,7 @@ fn a_ball_that_nothing_moves_towards_keeps_its_speed() {
 #[test]
 fn who_is_as_fast_as_the_ball_does_not_hit_it() {
     let scene = |speed: &str| BLOW.replace("ball = [0.6, 0.0, 0.0]", &format!("time = 0.25\nball_speed = {speed}"));
-    let [missed, hit] = ["3.0", "2.0"].map(|speed| moved(&stage(&scene(speed), CART)));
+    let [missed, hit] = ["3.0", "2.0"].map(|speed| moved(&session(&scene(speed), CART)));
     assert_eq!(words(&missed)[0], "cart is not moving towards the ball, which keeps 3.0000 m/s");
     // What it gets is on top of what it had: ½ m_b (v² − 2²), v = 2 + (1 + e) m/(m + m_b).
     let after: f64 = 2.0 + 1.8 * 2.0 / 2.5;
@@ -115,11 +115,11 @@ fn who_is_as_fast_as_the_ball_does_not_hit_it() {
 
 #[test]
 fn what_is_where_the_ball_is_at_the_start_hits_it_there() {
-    let outcome = moved(&stage(&BLOW.replace("0.6", "0.0"), CART));
-    assert_eq!((words(&outcome)[0], outcome.happenings.len()), ("cart hits the ball, which leaves at 4.3200 m/s", 2));
-    assert!(outcome.happenings[0].t < 1e-9, "{outcome:?}");
-    let away = moved(&stage(&BLOW.replace("0.6", "0.0").replace("slide = 3.0", "slide = -0.1"), CART));
-    assert!(away.happenings.is_empty() && away.ball.is_none(), "{away:?}");
+    let outcome = moved(&session(&BLOW.replace("0.6", "0.0"), CART));
+    assert_eq!((words(&outcome)[0], outcome.occurrences.len()), ("cart hits the ball, which leaves at 4.3200 m/s", 2));
+    assert!(outcome.occurrences[0].t < 1e-9, "{outcome:?}");
+    let away = moved(&session(&BLOW.replace("0.6", "0.0").replace("slide = 3.0", "slide = -0.1"), CART));
+    assert!(away.occurrences.is_empty() && away.ball.is_none(), "{away:?}");
 }
 
 /// At its bound to the last bit at the start.
@@ -131,9 +131,9 @@ fn who_begins_at_a_limit_and_goes_beyond_reaches_it() {
         )
     };
     let urdf = CART.replace("upper=\"0.9\"", "upper=\"0.5\"");
-    let [beyond, back] = [1.0, -1.0].map(|v| moved(&stage(&scene(v), &urdf)));
+    let [beyond, back] = [1.0, -1.0].map(|v| moved(&session(&scene(v), &urdf)));
     assert_eq!(words(&beyond), ["slide reaches its upper limit"]);
-    assert!(beyond.happenings[0].t < 1e-9 && back.happenings.is_empty(), "{beyond:?} {back:?}");
+    assert!(beyond.occurrences[0].t < 1e-9 && back.occurrences.is_empty(), "{beyond:?} {back:?}");
 }
 
 /// y = 0.25 − 2 x comes to its lower bound, −1, at x = 0.625, and to its upper, 0.75, at x = −0.25.
@@ -145,14 +145,14 @@ fn a_joint_that_follows_has_bounds_of_its_own() {
     for (v, at, which, kind) in [(1.25, 0.5, "lower", EventKind::LowerLimit), (-0.5, 0.5, "upper", EventKind::UpperLimit)] {
         let scene =
             format!("gravity = [0, 0, 0]\ninitial = {{ v = {{ slide = {v} }} }}\nsimulation = {{ end = 0.6, events = ['limits'] }}");
-        let outcome = moved(&stage(&scene, &urdf));
+        let outcome = moved(&session(&scene, &urdf));
         assert_eq!(words(&outcome), [format!("y reaches its {which} limit")]);
         assert_eq!(about(&outcome), [is(kind, "y", true), None]);
-        assert!((outcome.happenings[0].t - at).abs() < 1e-9, "{:?}", outcome.happenings);
+        assert!((outcome.occurrences[0].t - at).abs() < 1e-9, "{:?}", outcome.occurrences);
     }
-    let stage = stage("", &urdf);
-    let told = |x: f64| stage.beyond(&[x]).iter().map(ToString::to_string).collect::<Vec<_>>();
-    assert_eq!(told(0.75), ["s.toml: initial.q.y: found -1.25, beyond its limits, expected -1 to 0.75; used as asked for"]);
+    let session = session("", &urdf);
+    let told = |x: f64| session.beyond(&[x]).iter().map(ToString::to_string).collect::<Vec<_>>();
+    assert_eq!(told(0.75), ["s.toml: initial.q.y: found -1.25, beyond its limits, expected -1 to 0.75; used as given"]);
     assert_eq!((told(0.25).len(), told(1.0).len()), (0, 2));
 }
 
@@ -162,10 +162,10 @@ fn a_joint_that_follows_and_stands_still_has_no_events() {
     let follower = "<link name='b'/><joint name='y' type='prismatic'><parent link='rail'/><child link='b'/><axis xyz='1 0 0'/>
         <limit lower='-1' upper='0.25' effort='1' velocity='1'/><mimic joint='slide' multiplier='0' offset='0.5'/></joint></robot>";
     let scene = "effects = { friction = { y = { friction = 2.0, speed = 1e-4 } } }\nsimulation = { end = 0.1, events = ['stick_slip'] }";
-    let stage = stage(scene, &CART.replace("</robot>", follower));
-    let watch = Watch::new(&stage, &stage.model, &stage.frame_names()).unwrap();
-    assert_eq!(watch.without, [Without { file: "s.toml".into(), what: Watched::StickSlip, joint: None }]);
-    assert!(watch.events.is_empty() && stage.beyond(&[0.0]).is_empty());
+    let session = session(scene, &CART.replace("</robot>", follower));
+    let detectors = Detectors::new(&session, &session.model, &session.frame_names()).unwrap();
+    assert_eq!(detectors.unavailable, [UnavailableEvent { file: "s.toml".into(), what: EventClass::StickSlip, joint: None }]);
+    assert!(detectors.events.is_empty() && session.beyond(&[0.0]).is_empty());
 }
 
 /// y = −2 x stops sliding below ten times 0.01 m/s: x = 0.5 t − ½ t² below 0.05, from 0.45 s to
@@ -178,10 +178,10 @@ fn a_joint_that_follows_slides_at_its_own_rate() {
         control = { kind = 'torque', torque = { slide = -2.0 } }
         effects = { friction = { y = { friction = 1e-9, speed = 0.01 } } }
         simulation = { end = 1.0, events = ['stick_slip'] }";
-    let outcome = moved(&stage(scene, &CART.replace("</robot>", follower)));
+    let outcome = moved(&session(scene, &CART.replace("</robot>", follower)));
     assert_eq!(words(&outcome), ["y stops sliding", "y starts to slide"]);
-    for (happening, t) in outcome.happenings.iter().zip([0.45, 0.55]) {
-        assert!((happening.t - t).abs() < 1e-6, "{happening:?} {t}");
+    for (occurrence, t) in outcome.occurrences.iter().zip([0.45, 0.55]) {
+        assert!((occurrence.t - t).abs() < 1e-6, "{occurrence:?} {t}");
     }
 }
 
@@ -190,7 +190,7 @@ fn contacts_and_ends_of_sliding_are_found_and_told() {
     let fall = "initial = { q = { shoulder = 1.2 } }
         effects = { contact = { hand = { radius = 0.05, stiffness = 1e4, damping = 1.0, friction = 0.5, height = 0.12 } } }
         simulation = { end = 1.0, integrator = 'rodas4', events = ['contacts'] }";
-    let outcome = moved(&stage(fall, ARM));
+    let outcome = moved(&session(fall, ARM));
     assert_eq!(words(&outcome)[..2], ["hand touches the ground", "hand leaves the ground"]);
     let contact = |begins| is(EventKind::Contact { number: 1, of: 1 }, "hand", begins);
     assert_eq!(about(&outcome), [contact(true), contact(false)]);
@@ -198,9 +198,9 @@ fn contacts_and_ends_of_sliding_are_found_and_told() {
     let slide = "initial = { v = { slide = 0.5 } }
         effects = { friction = { slide = { friction = 2.0, speed = 1e-4 } } }
         simulation = { end = 1.0, integrator = 'rodas4', events = ['stick_slip'] }";
-    let outcome = moved(&stage(slide, CART));
+    let outcome = moved(&session(slide, CART));
     assert_eq!(words(&outcome), ["slide stops sliding"]);
-    assert!((outcome.happenings[0].t - 0.5).abs() < 1e-3, "{:?}", outcome.happenings);
+    assert!((outcome.occurrences[0].t - 0.5).abs() < 1e-3, "{:?}", outcome.occurrences);
 }
 
 /// A puck of 2 kg, held back by 2 N along each axis: each of its numbers stops by itself.
@@ -211,30 +211,30 @@ fn numbers_of_one_joint_are_told_apart() {
         initial = { v = { slide = [0.5, 0.25, 0.0] } }
         effects = { friction = { slide = { friction = 2.0, speed = 1e-4 } } }
         simulation = { end = 1.0, integrator = 'rodas4', events = ['stick_slip'] }";
-    let outcome = moved(&stage(scene, &puck));
+    let outcome = moved(&session(scene, &puck));
     assert_eq!(words(&outcome), ["slide[1] stops sliding", "slide[0] stops sliding"]);
     assert_eq!(about(&outcome), ["slide[1]", "slide[0]"].map(|on| is(EventKind::StickSlip, on, true)));
 }
 
 #[test]
 fn sorts_of_events_that_cannot_happen_are_told() {
-    let stage = stage("simulation = { end = 0.1, events = ['contacts', 'limits', 'stick_slip'] }", CART);
-    let motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
-    let expected = [Watched::Contacts, Watched::StickSlip].map(|what| Without { file: "s.toml".into(), what, joint: None });
-    assert_eq!(motion.without(), expected);
+    let session = session("simulation = { end = 0.1, events = ['contacts', 'limits', 'stick_slip'] }", CART);
+    let motion = session.motion(&session.model, &session.frame_names(), session.settings().unwrap()).unwrap();
+    let expected = [EventClass::Contacts, EventClass::StickSlip].map(|what| UnavailableEvent { file: "s.toml".into(), what, joint: None });
+    assert_eq!(motion.unavailable_events(), expected);
     let told = r#"s.toml: simulation.events: found "contacts", expected an effect contact of the scene; nothing to look for"#;
-    assert_eq!(motion.without()[0].to_string(), told);
+    assert_eq!(motion.unavailable_events()[0].to_string(), told);
 }
 
 /// A `<limit>` of effort and velocity alone, which says 0 and 0.
 #[test]
 fn joints_whose_bounds_nothing_is_between_are_told_and_left_out() {
     let urdf = CART.replace("lower=\"-0.5\" upper=\"0.9\" ", "");
-    let stage = stage("simulation = { end = 0.1, events = ['limits'] }", &urdf);
-    let motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
-    let told: Vec<String> = motion.without().iter().map(ToString::to_string).collect();
+    let session = session("simulation = { end = 0.1, events = ['limits'] }", &urdf);
+    let motion = session.motion(&session.model, &session.frame_names(), session.settings().unwrap()).unwrap();
+    let told: Vec<String> = motion.unavailable_events().iter().map(ToString::to_string).collect();
     assert!(told.len() == 1 && told[0].contains("found joint \"slide\" without a lower bound below"), "{told:?}");
-    assert!(moved(&stage).happenings.is_empty());
+    assert!(moved(&session).occurrences.is_empty());
 }
 
 #[test]
@@ -248,7 +248,7 @@ fn contacts_of_one_link_are_told_apart() {
     let bumper = "<link name='bumper'/><joint name='glue' type='fixed'><parent link='cart'/><child link='bumper'/></joint></robot>";
     let scene =
         scene.replace("effects.contact.cart", &format!("effects.contact.bumper = {{ {ball}, height = -9 }}\n        effects.contact.cart"));
-    let told = moved(&stage(&scene, &CART.replace("</robot>", bumper)));
+    let told = moved(&session(&scene, &CART.replace("</robot>", bumper)));
     assert_eq!(words(&told)[..2], ["cart (contact 1 of 2) touches the ground", "cart (contact 2 of 2) touches the ground"]);
     assert_eq!(about(&told), [1, 2].map(|number| is(EventKind::Contact { number, of: 2 }, "cart", true)));
 }
@@ -256,11 +256,11 @@ fn contacts_of_one_link_are_told_apart() {
 #[test]
 fn a_sphere_that_starts_with_its_centre_under_the_plane_is_told() {
     let of = |height: f64| {
-        let stage = stage(
+        let session = session(
             &format!("effects.contact.cart = {{ radius = 0.1, stiffness = 1e3, damping = 0.1, friction = 0.5, height = {height} }}"),
             CART,
         );
-        stage.sunk(&[0.0]).iter().map(ToString::to_string).collect::<Vec<_>>()
+        session.sunk(&[0.0]).iter().map(ToString::to_string).collect::<Vec<_>>()
     };
     assert_eq!(of(0.0), Vec::<String>::new());
     let told = of(0.25);
@@ -273,21 +273,21 @@ fn how_far_a_sphere_is_under_the_plane_does_not_depend_on_the_length_of_the_norm
     for normal in ["[0, 0, 1]", "[0, 0, 2]", "[0, 0, 0.1]", "[0, 0, 1e-200]", "[0, 0, 1e200]"] {
         let contact =
             format!("radius = 0.1, stiffness = 1e3, damping = 0.1, friction = 0.5, normal = {normal}, height = 0.1, xyz = [0, 0, 0.09]");
-        let stage = stage(&format!("effects = {{ contact = {{ cart = {{ {contact} }} }} }}"), CART);
-        let [sunk] = &stage.sunk(&[0.0])[..] else { panic!("{normal}") };
+        let session = session(&format!("effects = {{ contact = {{ cart = {{ {contact} }} }} }}"), CART);
+        let [sunk] = &session.sunk(&[0.0])[..] else { panic!("{normal}") };
         assert!((sunk.depth - 0.01).abs() < 1e-15, "{normal}: {}", sunk.depth);
     }
     // 0.1 − (0.6·0.05 + 0.8·0.02)
     let contact = "radius = 0.1, stiffness = 1e3, damping = 0.1, friction = 0.5, normal = [3, 0, 4], height = 0.1, xyz = [0.05, 0, 0.02]";
-    let stage = stage(&format!("effects = {{ contact = {{ cart = {{ {contact} }} }} }}"), CART);
-    assert!((stage.sunk(&[0.0])[0].depth - 0.054).abs() < 1e-15, "{:?}", stage.sunk(&[0.0]));
+    let session = session(&format!("effects = {{ contact = {{ cart = {{ {contact} }} }} }}"), CART);
+    assert!((session.sunk(&[0.0])[0].depth - 0.054).abs() < 1e-15, "{:?}", session.sunk(&[0.0]));
 }
 
 #[test]
 fn an_error_on_the_way_leaves_what_was_up_to_there() {
     let scene = "initial = { v = { slide = 1.0 } }
         simulation = { end = 1.0, integrator = 'rk4', step = 0.01, max_steps = 30, output = 'steps' }";
-    let outcome = moved(&stage(scene, CART));
+    let outcome = moved(&session(scene, CART));
     assert_eq!((outcome.ending, outcome.recording.len()), (Ending::ByError, 31));
     assert!(outcome.error.unwrap().to_string().starts_with("30 steps were made") && (outcome.reached - 0.3).abs() < 1e-12);
 }

@@ -3,7 +3,7 @@
 use articulated::simulate::{IntegratorId, SimulateError};
 use articulated_core::effect::EffectId;
 
-use super::{CART, moved, stage, words};
+use super::{CART, moved, session, words};
 
 /// A link of 2 kg whose centre is 0.25 m from a hinge with 6 N·m of dry friction: gravity needs
 /// 4.905 N·m.
@@ -20,8 +20,8 @@ fn creeping(speed: f64, x: f64) -> f64 {
 
 #[test]
 fn a_joint_that_friction_holds_creeps_at_its_closed_form_and_never_slides() {
-    let stage = stage("effects = { friction = { '*' = 'urdf' } }\nsimulation = { end = 10.0, events = ['stick_slip'] }", STICTION);
-    let outcome = moved(&stage);
+    let session = session("effects = { friction = { '*' = 'urdf' } }\nsimulation = { end = 10.0, events = ['stick_slip'] }", STICTION);
+    let outcome = moved(&session);
     assert_eq!((outcome.error.as_ref(), words(&outcome)), (None, vec![]));
     assert!(outcome.recording.counts.steps < 60, "{:?}", outcome.recording.counts);
     let expected = creeping(1e-5, 2.0 * 9.81 * 0.25 / 6.0);
@@ -37,7 +37,7 @@ fn a_joint_that_friction_holds_creeps_at_its_closed_form_and_never_slides() {
 #[test]
 fn a_joint_that_friction_does_not_hold_starts_to_slide() {
     let scene = "effects = { friction = { s = 4.0 } }\nsimulation = { end = 0.5, events = ['stick_slip'] }";
-    let outcome = moved(&stage(scene, STICTION));
+    let outcome = moved(&session(scene, STICTION));
     assert_eq!(words(&outcome), ["s starts to slide"]);
     // What is left at a horizontal start is 0.905 N·m of an inertia of 0.05 + 2 · 0.25² kg·m².
     let expected = 0.5 * (4.905 - 4.0) / 0.175 * 0.25;
@@ -60,7 +60,7 @@ fn a_contact_creeps_at_its_closed_form() {
         simulation = {{ end = 2.0 }}",
         0.1 - 2.0 * 9.81 / 1e5
     );
-    let outcome = moved(&stage(&scene, PUCK));
+    let outcome = moved(&session(&scene, PUCK));
     assert_eq!(outcome.error, None);
     let [creep] = &outcome.creep[..] else { panic!("{:?}", outcome.creep) };
     assert_eq!((creep.effect, creep.on.as_str()), (EffectId::contact, "puck"));
@@ -78,8 +78,8 @@ fn a_speed_that_the_tolerances_do_not_resolve_is_refused_with_its_key() {
         )
     };
     let told = |scene: &str| {
-        let stage = stage(scene, CART);
-        stage.check(&stage.settings().unwrap()).map_or_else(|e| e.to_string(), |()| String::new())
+        let session = session(scene, CART);
+        session.check(&session.settings().unwrap()).map_or_else(|e| e.to_string(), |()| String::new())
     };
     let lines = [
         "s.toml: effects.friction.slide.speed: found 1e-15, expected at least 1e-8, ten times simulation.atol = 1e-9: a larger `speed`, or a smaller `atol`",
@@ -94,13 +94,13 @@ fn a_speed_that_the_tolerances_do_not_resolve_is_refused_with_its_key() {
 
 #[test]
 fn friction_and_contact_are_stiff_and_everything_else_is_not() {
-    let integrator = |scene: &str| stage(&format!("{scene}\nsimulation = {{ end = 1.0 }}"), CART).settings().unwrap().integrator;
+    let integrator = |scene: &str| session(&format!("{scene}\nsimulation = {{ end = 1.0 }}"), CART).settings().unwrap().integrator;
     assert_eq!(integrator("effects = { friction = { slide = 1.0 } }"), IntegratorId::rodas4);
     let contact = "effects = { contact = { cart = { radius = 0.1, stiffness = 1e4, damping = 1.0, friction = 0.5 } } }";
     assert_eq!(integrator(contact), IntegratorId::rodas4);
     assert_eq!(integrator("effects = { damping = { slide = 1.0 } }"), IntegratorId::dopri5);
     assert_eq!(integrator("effects = { friction = { slide = 'off' } }"), IntegratorId::dopri5);
-    let named = stage("effects = { friction = { slide = 1.0 } }\nsimulation = { end = 1.0, integrator = 'dop853' }", CART);
+    let named = session("effects = { friction = { slide = 1.0 } }\nsimulation = { end = 1.0, integrator = 'dop853' }", CART);
     assert_eq!(named.settings().unwrap().integrator, IntegratorId::dop853);
 }
 
@@ -115,13 +115,13 @@ fn the_first_step_shows_what_a_run_would_end_with() {
         )
     };
     for (step, refused) in [(1.0, true), (0.01, false)] {
-        let stage = stage(&scene(step), &ball);
-        let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
-        let begin = stage.begin().unwrap();
-        let first = motion.first_step(&begin).unwrap();
+        let session = session(&scene(step), &ball);
+        let mut motion = session.motion(&session.model, &session.frame_names(), session.settings().unwrap()).unwrap();
+        let initial = session.initial_state().unwrap();
+        let first = motion.first_step(&initial).unwrap();
         assert_eq!(first.is_some(), refused, "{first:?}");
         // A run afterwards begins anew.
-        let outcome = motion.run(&begin, &mut |_, _| true).unwrap();
+        let outcome = motion.run(&initial, &mut |_, _| true).unwrap();
         assert_eq!(outcome.error, first);
         if refused {
             assert!(matches!(first, Some(SimulateError::Turn { t, .. }) if t == 0.0), "{first:?}");
@@ -154,11 +154,11 @@ fn what_the_first_step_accepts_is_not_refused_at_the_start() {
             size(-7.0, 0.0),
             size(-3.0, 6.0)
         );
-        let stage = stage(&scene, STICTION);
-        let mut motion = stage.motion(&stage.model, &stage.frame_names(), stage.settings().unwrap()).unwrap();
-        let begin = stage.begin().unwrap();
-        let first = motion.first_step(&begin).unwrap();
-        let outcome = motion.run(&begin, &mut |_, _| true).unwrap();
+        let session = session(&scene, STICTION);
+        let mut motion = session.motion(&session.model, &session.frame_names(), session.settings().unwrap()).unwrap();
+        let initial = session.initial_state().unwrap();
+        let first = motion.first_step(&initial).unwrap();
+        let outcome = motion.run(&initial, &mut |_, _| true).unwrap();
         match first {
             Some(error) => assert_eq!(outcome.error, Some(error), "{scene}"),
             None => assert!(outcome.error.is_none() || outcome.reached > 0.0, "{:?}: {scene}", outcome.error),

@@ -2,7 +2,7 @@
 
 use articulated::simulate::IntegratorId;
 
-use super::{ARM, CART, moved, stage, words};
+use super::{ARM, CART, moved, session, words};
 
 const SCENE: &str = include_str!("arm.toml");
 
@@ -16,8 +16,8 @@ articulated::robot! {
 
 #[test]
 fn a_robot_is_generated_with_what_the_scene_needs() {
-    let stage = stage(SCENE, ARM);
-    assert_eq!(stage.frames(), arm::FRAME_NAMES);
+    let session = session(SCENE, ARM);
+    assert_eq!(session.frames(), arm::FRAME_NAMES);
     let functions = [
         "forward_dynamics",
         "integrate",
@@ -31,14 +31,14 @@ fn a_robot_is_generated_with_what_the_scene_needs() {
         "dissipation",
         "motor_torques",
     ];
-    assert_eq!(stage.functions(IntegratorId::dopri5), functions);
+    assert_eq!(session.functions(IntegratorId::dopri5), functions);
 }
 
 /// Of what there is nothing of, nothing is told: momentum of no mass, losses of no effects. A link that two things need a frame of has one.
 #[test]
 fn a_robot_is_generated_without_what_the_scene_has_not() {
     let told = |scene: &str, urdf: &str| {
-        let functions = stage(scene, urdf).functions(IntegratorId::dopri5);
+        let functions = session(scene, urdf).functions(IntegratorId::dopri5);
         ["centroidal_momentum", "dissipation", "motor_torques"].map(|name| functions.contains(&name))
     };
     let effects = "effects = { damping = { slide = { damping = 1.0 } } }";
@@ -51,15 +51,15 @@ fn a_robot_is_generated_without_what_the_scene_has_not() {
         "effects.contact = {{ cart = {ball}, hook = {ball} }}\nsimulation = {{ end = 1.0, events = ['contacts'] }}
         impact = {{ link = 'cart', normal = [1, 0, 0], mass = 0.5, restitution = 0.8, time = 0.5 }}"
     );
-    assert_eq!(stage(&scene, &CART.replace("</robot>", hook)).frames(), ["cart", "hook"]);
+    assert_eq!(session(&scene, &CART.replace("</robot>", hook)).frames(), ["cart", "hook"]);
 }
 
 /// Bounds on coordinates and rates, rad and rad/s: 1e-13 until the hand touches the ground, by rounding; 1e-6 to the end, a thousand tolerances, as steps
 /// over a contact that begins are not smooth.
 #[test]
 fn a_generated_robot_moves_as_the_generic_one() {
-    let stage = stage(SCENE, ARM);
-    let (generic, generated) = (moved(&stage), stage.run(&arm::Robot, &arm::FRAME_NAMES).unwrap());
+    let session = session(SCENE, ARM);
+    let (generic, generated) = (moved(&session), session.run(&arm::Robot, &arm::FRAME_NAMES).unwrap());
     assert_eq!(words(&generic), words(&generated));
     let all = words(&generic).join("; ");
     assert!(["limit", "ground", "stops sliding", "hand hits the ball"].iter().all(|what| all.contains(what)), "{all}");
@@ -67,7 +67,7 @@ fn a_generated_robot_moves_as_the_generic_one() {
     assert_eq!((a.len(), &a.t), (25, &b.t));
     let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
     let apart_at = |k: usize| apart(a.q_at(k), b.q_at(k)).max(apart(a.v_at(k), b.v_at(k)));
-    let touch = generic.happenings.iter().find(|h| h.what == "hand touches the ground").unwrap().t;
+    let touch = generic.occurrences.iter().find(|h| h.what == "hand touches the ground").unwrap().t;
     let before = a.t.iter().take_while(|t| **t < touch).count();
     let [early, late] = [0..before, before..25].map(|rows| rows.map(apart_at).fold(0.0, f64::max));
     assert!(before > 2 && early < 1e-13 && late < 1e-6, "{before}: {early:e}, {late:e}");

@@ -9,7 +9,7 @@ mod generated;
 mod opened;
 
 use articulated::Base;
-use articulated_motion::{Outcome, Scene, Stage};
+use articulated_motion::{Outcome, Scene, Session};
 use articulated_scene::Opened;
 
 /// An arm of two hinges, with a hand on a ball joint.
@@ -22,18 +22,18 @@ const CART: &str = r#"<robot name="cart"><link name="rail"/>
       <limit lower="-0.5" upper="0.9" effort="9" velocity="9"/></joint></robot>"#;
 
 /// A scene, called `s.toml`, with its robot.
-fn stage(scene: &str, urdf: &str) -> Stage {
+fn session(scene: &str, urdf: &str) -> Session {
     let scene = Scene::read("s.toml", scene).unwrap_or_else(|e| panic!("{e}"));
     let opened = Opened::new(scene, "robot.urdf", urdf.into(), Base::Fixed, Vec::new());
-    Stage::of(opened).unwrap_or_else(|e| panic!("{e}"))
+    Session::of(opened).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Moved by the generic model.
-fn moved(stage: &Stage) -> Outcome {
-    stage.run(&stage.model, &stage.frame_names()).unwrap_or_else(|e| panic!("{e}"))
+fn moved(session: &Session) -> Outcome {
+    session.run(&session.model, &session.frame_names()).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// What happened, in words.
 fn words(outcome: &Outcome) -> Vec<&str> {
-    outcome.happenings.iter().map(|h| h.what.as_str()).collect()
+    outcome.occurrences.iter().map(|h| h.what.as_str()).collect()
 }

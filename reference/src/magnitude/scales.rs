@@ -17,7 +17,7 @@ pub fn scales(model: &Model<f64>, name: &str, arguments: &[&[f64]]) -> Result<Ve
     if row.inverts_mass_matrix() {
         return solution::scales(model, row, arguments);
     }
-    let mut scales: Vec<f64> = magnitudes(model, name, &given(arguments))?.into_iter().map(|x| x.magnitude).collect();
+    let mut scales: Vec<f64> = magnitudes(model, name, &exact_magnitudes(arguments))?.into_iter().map(|x| x.magnitude).collect();
     scales.iter_mut().zip(norms(row.id, model, arguments)).for_each(|(scale, norm)| *scale = scale.min(norm));
     Ok(scales)
 }
@@ -30,7 +30,7 @@ pub fn scales_of_generated(model: &Model<f64>, name: &str, arguments: &[&[f64]])
     if function::<f64>(name).is_some_and(|row| row.inverts_mass_matrix()) {
         return Ok(own);
     }
-    let moved = evaluated(&turned(constants(model)), name, &given(arguments))?;
+    let moved = evaluated(&turned(constants(model)), name, &exact_magnitudes(arguments))?;
     let largest = own.iter().copied().fold(0.0, f64::max);
     let mut scales: Vec<f64> = own.into_iter().zip(moved).map(|(own, moved)| own.max(moved.magnitude.min(largest))).collect();
     if name.starts_with("inverse_dynamics_derivatives") {
@@ -58,7 +58,7 @@ fn rests(matrix: &mut [f64], n: usize) {
 pub(super) const UNKNOWN: FunctionError = FunctionError::NotGenerated { function: "of this name" };
 
 /// Numbers without error.
-pub(super) fn given(arguments: &[&[f64]]) -> Vec<Vec<Magnitude>> {
+pub(super) fn exact_magnitudes(arguments: &[&[f64]]) -> Vec<Vec<Magnitude>> {
     arguments.iter().map(|x| x.iter().map(|x| Magnitude::from_f64(*x)).collect()).collect()
 }
 

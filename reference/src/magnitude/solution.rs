@@ -12,7 +12,7 @@
 use articulated_core::algorithm::{Argument, Function, FunctionError, FunctionId, Workspace};
 use articulated_core::model::Model;
 
-use super::scales::{UNKNOWN, given, magnitudes};
+use super::scales::{UNKNOWN, exact_magnitudes, magnitudes};
 use super::{Magnitude, ROUNDOFF};
 
 pub(super) fn scales(model: &Model<f64>, row: &Function<f64>, arguments: &[&[f64]]) -> Result<Vec<f64>, FunctionError> {
@@ -40,7 +40,7 @@ struct Mass {
 
 impl Mass {
     fn at(model: &Model<f64>, q: &[f64]) -> Result<Self, FunctionError> {
-        let terms = magnitudes(model, "mass_matrix", &given(&[q]))?.iter().map(|x| x.magnitude).collect();
+        let terms = magnitudes(model, "mass_matrix", &exact_magnitudes(&[q]))?.iter().map(|x| x.magnitude).collect();
         let inverse = value(model, FunctionId::mass_matrix_inverse.row(), &[q])?;
         Ok(Self { n: model.nv(), terms, modulus: absolute(&inverse), inverse })
     }
@@ -72,9 +72,12 @@ impl State<'_> {
 
     /// M a = τ − h.
     fn forward_dynamics(&self, row: &Function<f64>) -> Result<Vec<f64>, FunctionError> {
-        let still = vec![0.0; self.model.nv()];
-        let inverse = beside(row, FunctionId::inverse_dynamics_with_wrenches);
-        let needed = magnitudes(self.model, inverse.name, &given(&self.with(&still)))?;
+        let still = vec![0.0; self.model.nv];
+        let needed = magnitudes(
+            self.model,
+            inverse_of(row, "inverse_dynamics", "inverse_dynamics_with_wrenches"),
+            &exact_magnitudes(&self.with(&still)),
+        )?;
         let right: Vec<f64> = needed.iter().zip(self.arguments[2]).map(|(h, tau)| h.magnitude + tau.abs()).collect();
         Ok(self.mass.solution(&right, &self.value(row)?))
     }
@@ -84,8 +87,8 @@ impl State<'_> {
         let solved = beside(row, FunctionId::forward_dynamics_with_wrenches);
         let a = self.value(solved)?;
         let known: Vec<Magnitude> =
-            a.iter().zip(self.forward_dynamics(solved)?).map(|(a, scale)| Magnitude::computed(*a, scale.max(a.abs()))).collect();
-        let mut arguments = given(&self.with(&a));
+            a.iter().zip(self.forward_dynamics(solved.row())?).map(|(a, scale)| Magnitude::computed(*a, scale.max(a.abs()))).collect();
+        let mut arguments = exact_magnitudes(&self.with(&a));
         arguments[2] = known;
         let name = beside(row, FunctionId::inverse_dynamics_derivatives_with_wrenches).name;
         let right: Vec<f64> = magnitudes(self.model, name, &arguments)?.iter().map(|x| x.magnitude).collect();
@@ -111,7 +114,7 @@ impl State<'_> {
         if n == 0 {
             return Ok(vec![0.0; 36 * self.model.frames().len()]);
         }
-        let jacobians = magnitudes(self.model, "jacobians_world_aligned", &given(&self.arguments[..1]))?;
+        let jacobians = magnitudes(self.model, "jacobians_world_aligned", &exact_magnitudes(&self.arguments[..1]))?;
         for (k, jacobian) in jacobians.chunks_exact(6 * n).enumerate() {
             let terms = vectors(&jacobian.iter().map(|x| x.magnitude).collect::<Vec<_>>(), n);
             let values: Vec<f64> = jacobian.iter().map(|x| x.value).collect();
@@ -156,7 +159,8 @@ fn absolute(x: &[f64]) -> Vec<f64> {
     x.iter().map(|x| x.abs()).collect()
 }
 
-/// Of magnitudes of a Jacobian, `[6][n]`: each column is two vectors, and whoever computes them in other axes rounds all of a vector's numbers as its largest.
+/// Of magnitudes of a Jacobian, `[6][n]`: each column is two vectors, and computing them in other
+/// axes rounds all entries of a vector relative to its largest.
 fn vectors(magnitudes: &[f64], n: usize) -> Vec<f64> {
     let largest = |row: usize, column: usize| (0..3).map(|k| magnitudes[(row / 3 * 3 + k) * n + column]).fold(0.0, f64::max);
     (0..6 * n).map(|k| largest(k / n, k % n)).collect()

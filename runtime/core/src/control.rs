@@ -98,14 +98,14 @@ impl Series {
 pub enum TableError {
     /// It has no row.
     Empty,
-    /// It has not one row a time.
+    /// The numbers of rows and times differ.
     Rows {
         /// How many rows there are.
         found: usize,
         /// How many times.
         expected: usize,
     },
-    /// A row has not as many numbers as it should.
+    /// A row has the wrong length.
     Width {
         /// Which row, from 0.
         row: usize,

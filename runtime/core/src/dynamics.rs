@@ -72,8 +72,8 @@ macro_rules! methods {
             /// Any function by its number; `arguments` in its order.
             fn call(&self, function: FunctionId, ws: &mut Self::Workspace, arguments: &[&[S]], out: &mut [S]) -> Result<(), FunctionError>;
 
-            /// Whether the robot has a function, asked at a state that is none.
-            fn tried(&self, ws: &mut Self::Workspace, function: FunctionId) -> Result<(), FunctionError> {
+            /// Checks that the robot has the function, by a call at a dummy state.
+            fn check_function(&self, ws: &mut Self::Workspace, function: FunctionId) -> Result<(), FunctionError> {
                 let (row, shape) = (function.row::<S>(), self.shape());
                 let half = |argument: &Argument| vec![S::from_f64(0.5); argument.len(shape)];
                 let arguments: Vec<Vec<S>> = row.takes.iter().map(half).collect();

@@ -36,13 +36,13 @@ pub mod joint;
 #[cfg(feature = "alloc")]
 pub mod lanes;
 #[cfg(feature = "alloc")]
-pub mod level;
-#[cfg(feature = "alloc")]
 pub mod model;
 #[cfg(feature = "alloc")]
 pub mod monitor;
 #[cfg(feature = "alloc")]
 mod plain;
+#[cfg(feature = "alloc")]
+pub mod precision;
 #[cfg(feature = "alloc")]
 pub mod settings;
 #[cfg(feature = "alloc")]

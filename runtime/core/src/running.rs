@@ -41,8 +41,8 @@ fn up(x: f64) -> f64 {
 impl<const BITS: u32, const SINES: u32> Running<BITS, SINES> {
     const TINY: f64 = if BITS < 53 { 1e-44 } else { 1e-300 };
 
-    /// A number that is given without error, within a radius of a midpoint.
-    pub fn given(value: f64, radius: f64) -> Self {
+    /// An exact input within `radius` of `value`.
+    pub fn within(value: f64, radius: f64) -> Self {
         Self { value, radius, error: 0.0 }
     }
 
@@ -86,7 +86,7 @@ impl<const BITS: u32, const SINES: u32> Running<BITS, SINES> {
 
 impl<const BITS: u32, const SINES: u32> Zero for Running<BITS, SINES> {
     fn zero() -> Self {
-        Self::given(0.0, 0.0)
+        Self::within(0.0, 0.0)
     }
 
     fn is_zero(&self) -> bool {
@@ -96,7 +96,7 @@ impl<const BITS: u32, const SINES: u32> Zero for Running<BITS, SINES> {
 
 impl<const BITS: u32, const SINES: u32> One for Running<BITS, SINES> {
     fn one() -> Self {
-        Self::given(1.0, 0.0)
+        Self::within(1.0, 0.0)
     }
 }
 
@@ -252,7 +252,7 @@ mod tests {
         for k in 0..2000 {
             x = (x * 3.7 * (1.0 - x)).clamp(0.01, 0.99);
             let y = 1.0 + x * k as f32 * 0.01;
-            let (a, b) = (Single::given(f64::from(x), 0.0), Single::given(f64::from(y), 0.0));
+            let (a, b) = (Single::within(f64::from(x), 0.0), Single::within(f64::from(y), 0.0));
             let found = [(x * y - x / y) - x * x, x.sin() * y.sqrt() - y.cos(), (x - y) * (x + y)];
             let bound = [(a * b - a / b) - a * a, Scalar::sin_cos(a).0 * b.sqrt() - Scalar::sin_cos(b).1, (a - b) * (a + b)];
             for (found, bound) in found.iter().zip(bound) {
@@ -276,7 +276,7 @@ mod tests {
         exact: impl Fn(f64, f64) -> f64,
         found: impl Fn(f32, f32) -> f32,
     ) -> (f64, f64) {
-        let bound = f(Single::given(midpoints[0], radii[0]), Single::given(midpoints[1], radii[1]));
+        let bound = f(Single::within(midpoints[0], radii[0]), Single::within(midpoints[1], radii[1]));
         let mut random = numbers();
         let (mut far, mut off) = (0.0_f64, 0.0_f64);
         for _ in 0..3000 {
@@ -345,13 +345,13 @@ mod tests {
                 all(&|x, y| x / y, &|x, y| x / y, pair);
                 all(&|x, y| x - y, &|x, y| x - y, pair);
                 all(&|x, _| Scalar::abs(x).sqrt(), &|x, _| x.abs().sqrt(), pair);
-                all(&|x, _| x.atan2(Wide::given(2.0, 0.0)), &|x, _| x.atan2(2.0), pair);
+                all(&|x, _| x.atan2(Wide::within(2.0, 0.0)), &|x, _| x.atan2(2.0), pair);
             }
         }
         // A divisor that may be evaluated to nothing.
         assert_eq!((Wide::one() / Wide { value: 0.5, radius: 0.25, error: 0.25 }).error, f64::INFINITY);
         // What cannot be written is not known: a third in double precision, a tenth in single.
-        let third = Wide::one() / Wide::given(3.0, 0.0);
+        let third = Wide::one() / Wide::within(3.0, 0.0);
         assert!(third.radius >= 1.86e-17 && third.radius < 1e-15, "{third:?}");
         assert!((0.1 - f64::from(0.1_f32)).abs() <= Single::from_f64(0.1).error && Single::from_f64(0.1).error < 1e-8);
         hold(([0.0, 0.0], [0.5, 0.0]), |x, _| Scalar::sin_cos(x).0, |x, _| x.sin(), |x, _| x.sin());
@@ -367,19 +367,19 @@ mod tests {
             hold(([x, 0.5], [r, r]), step, |x, y| if x > y { x } else { -y }, |x, y| if x > y { x } else { -y });
         }
         // Where rounding alone may turn it round, the result may be off by the jump; where it may not, it is off by nothing.
-        let tenth = |x: f64| Single::given(x, 0.0) * Single::from_f64(0.1);
-        let jump = |x: f64| Single::select((tenth(x) - Single::given(0.05, 0.0)).positive(), Single::one(), Single::zero());
+        let tenth = |x: f64| Single::within(x, 0.0) * Single::from_f64(0.1);
+        let jump = |x: f64| Single::select((tenth(x) - Single::within(0.05, 0.0)).positive(), Single::one(), Single::zero());
         assert!(jump(0.5).error >= 1.0 && jump(0.5001).error < 1e-6, "{:?} {:?}", jump(0.5), jump(0.5001));
         // From one side of the cut of the angle to the other.
-        assert!(Single::given(0.0, 0.1).atan2(Single::given(-1.0, 0.0)).radius >= core::f64::consts::PI);
+        assert!(Single::within(0.0, 0.1).atan2(Single::within(-1.0, 0.0)).radius >= core::f64::consts::PI);
     }
 
     #[test]
     fn sines_of_fewer_digits_and_results_of_fewer_bits_are_allowed_for() {
-        let x = Running::<53, 7>::given(0.7, 0.0);
+        let x = Running::<53, 7>::within(0.7, 0.0);
         let error = Scalar::sin_cos(x).0.error;
         assert!((1e-7..1.001e-7).contains(&error), "{error:e}");
-        let double = Running::<53, 0>::given(1.0, 0.0) / Running::given(3.0, 0.0);
+        let double = Running::<53, 0>::within(1.0, 0.0) / Running::within(3.0, 0.0);
         let rounded = f64::from((1.0_f64 / 3.0) as f32);
         assert!((rounded - 1.0 / 3.0).abs() <= double.rounded_to(24) && double.rounded_to(24) < 2.1e-8, "{:e}", double.rounded_to(24));
         assert!((double.rounded_to(53) - double.error) <= 4e-17);
@@ -388,8 +388,8 @@ mod tests {
     #[test]
     fn what_is_done_with_the_unknown_is_infinitely_wide_and_never_no_number() {
         type Double = Running<53, 0>;
-        let unknown = Double::one() / Double::given(0.0, 0.1);
-        let [symmetric, huge, whole] = [Double::given(0.0, 0.5), Double::given(f64::INFINITY, 0.0), Double::given(2.0, 0.0)];
+        let unknown = Double::one() / Double::within(0.0, 0.1);
+        let [symmetric, huge, whole] = [Double::within(0.0, 0.5), Double::within(f64::INFINITY, 0.0), Double::within(2.0, 0.0)];
         for x in [symmetric, huge, whole, unknown, Double { error: f64::INFINITY, ..whole }, Double { radius: f64::INFINITY, ..whole }] {
             let results =
                 [unknown * x, x * unknown, huge * x, x - unknown, huge - x, x / huge, unknown / x, x.atan2(unknown), unknown.sqrt()];
@@ -403,7 +403,7 @@ mod tests {
 
     #[test]
     fn a_box_holds_what_is_in_it() {
-        let of = |x: f64, r: f64| Running::<53, 0>::given(x, r);
+        let of = |x: f64, r: f64| Running::<53, 0>::within(x, r);
         let whole = of(1.0, 0.25) * of(-2.0, 0.5) + of(0.5, 0.1) / of(3.0, 0.2);
         for (a, b, c, d) in [(0.75, -2.5, 0.6, 2.8), (1.25, -2.5, 0.4, 3.2), (1.25, -1.5, 0.6, 2.8)] {
             let one: f64 = a * b + c / d;
@@ -424,7 +424,7 @@ mod tests {
     /// Of two that are anywhere from −1 to 1, one may be meant and the other be taken.
     #[test]
     fn a_choice_that_is_not_certain_is_off_by_as_much_as_both_can_be_apart() {
-        let wide = Running::<53, 0>::given(0.0, 1.0);
+        let wide = Running::<53, 0>::within(0.0, 1.0);
         let chosen = Running::select(wide.positive(), wide, wide);
         assert!((1.0..1.001).contains(&chosen.radius) && (2.0..2.001).contains(&chosen.error), "{chosen:?}");
     }

@@ -1,4 +1,4 @@
-//! What a simulation is asked for. Scenes have the same keys, and what is checked here holds for both.
+//! Settings of a simulation. Scenes have the same keys, and the checks apply to both.
 
 use alloc::format;
 use alloc::string::{String, ToString};
@@ -10,7 +10,7 @@ use crate::algorithm::Shape;
 use crate::effect::Range;
 use crate::integrator::IntegratorId;
 
-/// What a simulation is asked for; keys are called as in scenes.
+/// Settings of a simulation, with the keys of scenes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// How to integrate.
@@ -161,7 +161,7 @@ impl Settings {
         found.0
     }
 
-    /// The least that time can be told to go on by, s: sixteen units of its rounding.
+    /// The smallest resolvable time step, s: sixteen units of rounding of the time.
     pub fn least_step(&self) -> f64 {
         16.0 * f64::EPSILON * self.start.abs().max(self.end.abs())
     }

@@ -1,4 +1,4 @@
-//! Why a simulation could not begin or did not go on.
+//! Errors of simulations.
 
 use std::fmt;
 
@@ -13,19 +13,19 @@ use super::{IntegratorId, SettingError, TableError};
 /// Why a simulation could not begin or did not go on.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SimulateError {
-    /// Settings that cannot be used; all of them.
+    /// Invalid settings; all of them.
     Settings(Vec<SettingError>),
-    /// A state to begin with that is none; everything that is wrong with it.
+    /// An invalid initial state; all its errors.
     State(Vec<StateError>),
-    /// A function that the robot does not have, or that was given something of the wrong length.
+    /// A missing function, or an argument of the wrong length.
     Function(FunctionError),
-    /// Numbers of the motion, or of what moves it, are not finite.
+    /// Numbers of the motion or of its controller are not finite.
     NotFinite {
         /// Time, s.
         t: f64,
         /// What is not finite.
         what: &'static str,
-        /// Which of them, in order.
+        /// Their indices, in order.
         index: Vec<usize>,
         /// Names of the joints that they belong to, each once, as far as the robot can tell; of an event its own.
         names: Vec<String>,
@@ -41,7 +41,7 @@ pub enum SimulateError {
     StepTooSmall {
         /// Time, s.
         t: f64,
-        /// The step that would be needed, s.
+        /// The required step, s.
         step: f64,
         /// Where the error is largest: the step of q, or v.
         what: &'static str,
@@ -65,7 +65,7 @@ pub enum SimulateError {
         t: f64,
         /// The mean step, s.
         step: f64,
-        /// How many of these there would be to the end, rejected ones among them.
+        /// Number of such steps to the end, rejected ones included.
         left: f64,
         /// The number whose error limits most steps: its vector (the step of q, or v), its index
         /// there, and the name of its joint, where the robot can tell.
@@ -84,13 +84,13 @@ pub enum SimulateError {
         /// Size of the fastest eigenvalue, 1/s.
         rate: f64,
     },
-    /// An explicit integrator that chooses its steps is held back by stability, not by accuracy.
+    /// Stability, not accuracy, limits the steps of an explicit adaptive integrator.
     Stiff {
         /// The integrator.
         integrator: IntegratorId,
         /// Time, s.
         t: f64,
-        /// The step that it is held to, s.
+        /// The limit of the step, s.
         step: f64,
         /// How many of these there would be to the end, rejected ones among them.
         left: f64,
@@ -115,14 +115,14 @@ pub enum SimulateError {
         t: f64,
         /// The step, s.
         step: f64,
-        /// By how much it would turn, rad.
+        /// Its rotation in the step, rad.
         turn: f64,
-        /// What it has to be less than, rad.
+        /// The limit of the rotation, rad.
         most: f64,
         /// Name of the joint, where the robot can tell.
         joint: Option<String>,
     },
-    /// An event that maps the state happens again and again at one time.
+    /// An event that maps the state recurs at one time without end.
     Chattering {
         /// Time, s.
         t: f64,
@@ -131,12 +131,12 @@ pub enum SimulateError {
     },
 }
 
-/// What is wrong with a state.
+/// An error in a state.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StateError {
     /// A vector of the wrong length.
     Length {
-        /// Which one: q, v or another.
+        /// Its name: q, v or another.
         vector: &'static str,
         /// The length found.
         found: usize,
@@ -156,9 +156,9 @@ pub enum StateError {
     },
     /// A table over time, as a controller has it.
     Table {
-        /// What it is called.
+        /// Its name.
         table: &'static str,
-        /// What is wrong with it.
+        /// Its error.
         wrong: TableError,
     },
     /// A quaternion whose norm is not one within [`NORM_TOLERANCE`](articulated_core::spatial::NORM_TOLERANCE).
@@ -172,14 +172,14 @@ pub enum StateError {
         /// Name of the joint that it belongs to, where the robot can tell.
         joint: Option<String>,
     },
-    /// A frame that there is not.
+    /// A frame index out of range.
     Frame {
         /// Its number.
         index: usize,
         /// How many there are.
         frames: usize,
     },
-    /// An event is about a number of a vector that has not so many.
+    /// An event refers to an index beyond the length of a vector.
     Beyond {
         /// The event's name.
         event: String,
@@ -190,7 +190,7 @@ pub enum StateError {
         /// How many it has.
         length: usize,
     },
-    /// An event has bounds that nothing can be between.
+    /// The bounds of an event exclude every value.
     Bounds {
         /// The event's name.
         event: String,
@@ -199,19 +199,20 @@ pub enum StateError {
         /// Its upper bound.
         upper: f64,
     },
-    /// A number that cannot be used.
+    /// An invalid number.
     Value {
         /// What it is.
         what: &'static str,
         /// The number.
         found: f64,
-        /// What would be right.
+        /// The accepted values.
         right: String,
     },
 }
 
 impl StateError {
-    /// What is wrong with a vector that should have so many numbers, all finite; `joint` has the names of what they belong to.
+    /// Errors in a vector that should have this length and finite numbers; `joint` has the joint
+    /// names of its entries.
     pub(crate) fn of(
         vector: &'static str,
         x: &[f64],
@@ -228,12 +229,12 @@ impl StateError {
         Self::of(vector, x, robot.shape().nv, |freedom| joint(robot, freedom))
     }
 
-    /// What is wrong with a table of so many numbers a row.
+    /// Errors in a table with this number of columns.
     pub(crate) fn of_table(table: &'static str, series: &Series, width: usize) -> impl Iterator<Item = Self> {
         series.problems(width).into_iter().map(move |wrong| Self::Table { table, wrong })
     }
 
-    /// Nothing is wrong, or all that is.
+    /// `Ok` if there are no errors, else all of them.
     pub(crate) fn none(wrong: impl Iterator<Item = Self>) -> Result<(), SimulateError> {
         let wrong: Vec<Self> = wrong.collect();
         if wrong.is_empty() { Ok(()) } else { Err(SimulateError::State(wrong)) }
@@ -293,7 +294,7 @@ impl fmt::Display for SimulateError {
 }
 
 impl SimulateError {
-    /// What happened there, if it is about how a step was made.
+    /// Description, for errors about a step.
     fn of_a_step(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::StepTooSmall { step, what, index, joint, least: Some(least), .. } => write!(
@@ -334,7 +335,7 @@ impl SimulateError {
         }
     }
 
-    /// What happened there, if it is about the state that was reached.
+    /// Description, for errors about the state that was reached.
     fn of_a_state(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotFinite { what, index, names, .. } => {

@@ -17,7 +17,7 @@ use articulated_core::algorithm::FunctionError;
 use articulated_core::dynamics::Dynamics;
 use articulated_core::nalgebra::Matrix6;
 use articulated_core::spatial::screw::{cross_matrix, exp_rotation, left_jacobian_inverse, right_jacobian_inverse};
-use articulated_core::spatial::{Twist, Vector3, given_norm};
+use articulated_core::spatial::{Twist, Vector3, input_norm};
 
 use super::StateError;
 use super::error::joint;
@@ -219,10 +219,10 @@ impl Manifold {
         }
     }
 
-    /// What is wrong with a configuration, which whoever gave it calls `vector`.
+    /// Errors in a configuration; `vector` is the caller's name of it.
     pub(crate) fn wrong<R: Dynamics<f64>>(&self, robot: &R, vector: &'static str, q: &[f64]) -> impl Iterator<Item = StateError> {
         let quaternion = move |free: &Free| {
-            let norm = given_norm(&q[free.quaternion()]).err()?;
+            let norm = input_norm(&q[free.quaternion()]).err()?;
             Some(StateError::Quaternion { vector, index: free.quaternion().start, norm, joint: joint(robot, free.v) })
         };
         let quaternions =

@@ -78,8 +78,8 @@ pub enum Ended {
     AtEnd,
     /// By an event; its index.
     ByEvent(usize),
-    /// Who watched said so.
-    ByWatcher,
+    /// The observer stopped the run.
+    ByObserver,
 }
 
 /// The balance of energy over all steps of a motion, whatever is recorded.
@@ -137,7 +137,7 @@ pub struct Recording {
     pub from_events: Vec<f64>,
     /// Momentum about the centre of mass [k; l], `[n][6]`, N·m·s and N·s, world axes; empty for a robot without the function.
     pub momentum: Vec<f64>,
-    /// Functions that the robot was generated without, so that there is nothing of them here.
+    /// Functions that the robot lacks; their records are empty.
     pub missing: Vec<&'static str>,
     /// Events, in order.
     pub events: Vec<Hit>,

@@ -20,10 +20,11 @@ const CALM: f64 = 0.5;
 /// What a step may see of fast motion, |hλ| roughly, before it is reason to look.
 pub(crate) const SUSPICIOUS: f64 = 0.6;
 
-/// Growth in a step that is not refused: a pair is not known so well that its damping could be told from none.
+/// Growth tolerated in a step: eigenvalues are not known well enough to distinguish slight damping
+/// from none.
 const SUFFERED: f64 = 1e-3;
 
-/// Growth in a step that is told to be stable: rounding.
+/// Growth accepted in a step reported as stable: rounding.
 const TOLD: f64 = 1e-5;
 
 /// Rounds at most of a look that begins anew, and of one that confirms.

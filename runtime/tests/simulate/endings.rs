@@ -88,11 +88,11 @@ fn one_who_watches_is_told_of_every_step() {
     for (at, expected) in [(2.0, 4), (0.6, 3)] {
         let mut simulation = Simulation::new(&robot, stepping(IntegratorId::rk4, 1.0, 0.25)).unwrap();
         let (mut recording, mut told) = (simulation.recording(), Vec::new());
-        let mut watch = |_: f64, counts: &articulated::simulate::Counts| {
+        let mut observer = |_: f64, counts: &articulated::simulate::Counts| {
             told.push(counts.steps);
             true
         };
-        simulation.run_into(&[0.0], &[1.0], &mut NoTorque, &mut [stop(at)], &mut recording, &mut watch).unwrap();
+        simulation.run_into(&[0.0], &[1.0], &mut NoTorque, &mut [stop(at)], &mut recording, &mut observer).unwrap();
         assert_eq!(told, (1..=expected).collect::<Vec<u64>>());
         assert_eq!(recording.counts.steps, expected);
     }
@@ -103,12 +103,12 @@ fn one_who_watches_can_end_it() {
     let robot = one_joint("prismatic", 0.0);
     let mut simulation = Simulation::new(&robot, stepping(IntegratorId::rk4, 1.0, 0.01)).unwrap();
     let (mut recording, calls) = (simulation.recording(), Cell::new(0));
-    let mut watch = |t: f64, _: &articulated::simulate::Counts| {
+    let mut observer = |t: f64, _: &articulated::simulate::Counts| {
         calls.set(calls.get() + 1);
         t < 0.495
     };
-    simulation.run_into(&[0.0], &[0.0], &mut NoTorque, &mut [], &mut recording, &mut watch).unwrap();
-    assert_eq!((recording.ended, recording.counts.steps, calls.get()), (Ended::ByWatcher, 50, 50));
+    simulation.run_into(&[0.0], &[0.0], &mut NoTorque, &mut [], &mut recording, &mut observer).unwrap();
+    assert_eq!((recording.ended, recording.counts.steps, calls.get()), (Ended::ByObserver, 50, 50));
 }
 
 /// What happens where the motion ends has happened: the state behind it is recorded too, and one who watches is asked.
@@ -125,6 +125,6 @@ fn a_map_at_the_end_is_part_of_the_motion() {
         let mut motion = simulation.recording();
         simulation.run_into(&[0.0], &[1.0], &mut NoTorque, &mut [stop], &mut motion, &mut |t, _| goes_on || t < 0.5).unwrap();
         assert_eq!((motion.t.as_slice(), motion.v.as_slice()), (&[0.0, 0.25, 0.5, 0.5][..], &[1.0, 1.0, 1.0, 0.0][..]));
-        assert_eq!(motion.ended, if goes_on { Ended::AtEnd } else { Ended::ByWatcher });
+        assert_eq!(motion.ended, if goes_on { Ended::AtEnd } else { Ended::ByObserver });
     }
 }

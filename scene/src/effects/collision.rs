@@ -1,11 +1,11 @@
-//! Contact of the collision geometry that a URDF has.
+//! Contact of the collision geometry of a URDF.
 
 use articulated_core::description::{Collision, CollisionShape, Link, Origin};
 use articulated_core::diagnostic::{Code, Diagnostic, Diagnostics, Place, Subject};
 use articulated_core::effect::{Effect, EffectId};
 
 use super::resolve::{Resolving, fill, missing};
-use super::{Asked, FRAME, Numbers, Selector};
+use super::{EffectRequest, FRAME, Numbers, Selector};
 use crate::table::Spot;
 
 /// The word for it.
@@ -32,8 +32,8 @@ pub(super) fn refuse_own_points(spot: &Spot<'_>, log: &mut Diagnostics) {
     }
 }
 
-/// Whether the geometry is asked for.
-pub(super) fn is_asked(one: &Asked) -> bool {
+/// Whether the geometry is requested.
+pub(super) fn is_requested(one: &EffectRequest) -> bool {
     one.says.as_ref().is_some_and(|says| says.from_collision)
 }
 
@@ -50,7 +50,7 @@ impl<'a> Resolving<'a> {
         &mut self,
         row: &'static Effect,
         link: &'a Link,
-        one: &Asked,
+        one: &EffectRequest,
         rest: Option<&Numbers>,
         log: &mut Diagnostics,
     ) {
@@ -94,21 +94,21 @@ impl<'a> Resolving<'a> {
         }
     }
 
-    fn warn_of_contact(&mut self, one: &Asked, link: &Link, kind: Code, found: &str) {
+    fn warn_of_contact(&mut self, one: &EffectRequest, link: &Link, kind: Code, found: &str) {
         let expected = "a box, cylinder, sphere or capsule: meshes are not read and make no contact";
         self.warn(one, &Subject::Link(link.name.clone()), kind, found, expected);
     }
 
-    /// Warns where contact of the geometry of all links comes to nothing since there is none.
-    pub(super) fn warn_of_no_geometry(&mut self, asked: &[&Asked]) {
-        let Some(one) = asked.iter().find(|one| one.on == Selector::All && is_asked(one)) else { return };
+    /// Warns if contact is requested for the geometry of all links and no link has any.
+    pub(super) fn warn_of_no_geometry(&mut self, asked: &[&EffectRequest]) {
+        let Some(one) = asked.iter().find(|one| one.on == Selector::All && is_requested(one)) else { return };
         if self.robot.description.links.iter().all(|link| link.collision.is_empty()) {
             let expected = "links with <collision>: nothing touches the ground";
             self.warn(one, &Subject::Document, Code::NoContact, "a robot without collision geometry", expected);
         }
     }
 
-    fn warn(&mut self, one: &Asked, subject: &Subject, kind: Code, found: &str, expected: &str) {
+    fn warn(&mut self, one: &EffectRequest, subject: &Subject, kind: Code, found: &str, expected: &str) {
         let place = Place { at: one.place, subject, field: &one.key };
         self.resolved.warnings.push(Diagnostic::error(&self.scene.file, place, kind, found, expected).into_warning());
     }

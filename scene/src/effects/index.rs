@@ -1,12 +1,12 @@
-//! What of a robot and of a scene has which name, gathered once.
+//! Index of a robot and a scene by names.
 
 use std::collections::{HashMap, HashSet};
 
 use articulated_core::effect::{Applied, EffectId};
 
 use super::resolve::Edited;
-use super::{Asked, Selector};
-use crate::shaft::ShaftAsked;
+use super::{EffectRequest, Selector};
+use crate::shaft::ShaftRequest;
 
 /// Links, joints and shafts by their names.
 pub(super) struct Index<'a> {
@@ -14,12 +14,12 @@ pub(super) struct Index<'a> {
     pub(super) links: HashMap<&'a str, usize>,
     /// The joints of shafts.
     pub(super) of_shafts: HashSet<&'a str>,
-    /// What shafts put on their joints.
-    pub(super) by_shafts: HashMap<(EffectId, &'a str), (&'a ShaftAsked, &'a Applied)>,
+    /// Effects of shafts on their joints.
+    pub(super) by_shafts: HashMap<(EffectId, &'a str), (&'a ShaftRequest, &'a Applied)>,
 }
 
 impl<'a> Index<'a> {
-    pub(super) fn of(robot: &Edited<'a>, shafts: &'a [ShaftAsked]) -> Self {
+    pub(super) fn of(robot: &Edited<'a>, shafts: &'a [ShaftRequest]) -> Self {
         let mut by_shafts = HashMap::new();
         for (asked, own) in
             shafts.iter().zip(robot.shafts).flat_map(|(asked, applied)| applied.iter().flatten().map(move |own| (asked, own)))
@@ -44,12 +44,12 @@ pub(crate) fn indices<'a>(names: impl Iterator<Item = &'a str>) -> HashMap<&'a s
     indices
 }
 
-/// What is asked of joints or links by their names, in the order of the scene.
-pub(super) struct Named<'a>(HashMap<&'a str, Vec<&'a Asked>>);
+/// Requests for joints or links by name, in the order of the scene.
+pub(super) struct Named<'a>(HashMap<&'a str, Vec<&'a EffectRequest>>);
 
 impl<'a> Named<'a> {
-    pub(super) fn of(asked: &[&'a Asked]) -> Self {
-        let mut by_name: HashMap<&str, Vec<&Asked>> = HashMap::new();
+    pub(super) fn of(asked: &[&'a EffectRequest]) -> Self {
+        let mut by_name: HashMap<&str, Vec<&EffectRequest>> = HashMap::new();
         for &one in asked {
             if let Selector::Named(name) = &one.on {
                 by_name.entry(name).or_default().push(one);
@@ -58,7 +58,7 @@ impl<'a> Named<'a> {
         Self(by_name)
     }
 
-    pub(super) fn get(&self, name: &str) -> &[&'a Asked] {
+    pub(super) fn get(&self, name: &str) -> &[&'a EffectRequest] {
         self.0.get(name).map_or(&[], Vec::as_slice)
     }
 }

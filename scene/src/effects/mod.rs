@@ -1,4 +1,4 @@
-//! `[effects]`: what acts beside rigid bodies and gravity, as a scene asks for it.
+//! `[effects]`: the effects that a scene requests beside rigid bodies and gravity.
 //!
 //! ```toml
 //! [effects.damping]
@@ -33,22 +33,22 @@ pub use resolve::{Edited, Resolved};
 pub use still::still;
 pub(crate) use urdf::{sources, tag};
 
-/// One line of effects.
+/// A request of an effect.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Asked {
-    /// Which effect.
+pub struct EffectRequest {
+    /// The effect.
     pub effect: EffectId,
-    /// On what.
+    /// The joints or links that it acts on.
     pub on: Selector,
     /// The numbers; `None`: it is off there.
     pub says: Option<Numbers>,
-    /// The way to it.
+    /// Its key path.
     pub key: String,
-    /// Where the scene says so.
+    /// Its place in the scene.
     pub place: At,
 }
 
-/// What an effect is asked for on.
+/// The joints or links of a request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Selector {
     /// `*`: all joints that move, or all links that move and have mass; but those that are named.
@@ -57,7 +57,7 @@ pub enum Selector {
     Named(String),
 }
 
-/// Numbers of an effect, as far as they are given.
+/// The given numbers of an effect.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Numbers {
     /// What is left out is taken from the URDF, where that has it.
@@ -74,7 +74,7 @@ pub struct Numbers {
 const FRAME: [&str; 2] = ["xyz", "rpy"];
 /// The key that says where numbers come from.
 const FROM: &str = "from";
-/// For all that are not named.
+/// The selector of everything that is not named.
 const ALL: &str = "*";
 
 /// Reads the table `effects` into the scene.
@@ -85,15 +85,15 @@ pub(crate) fn read(scene: &mut Scene, spot: &Spot<'_>, log: &mut Diagnostics) {
         if entry.name == shaft::NAME {
             scene.shafts = shaft::read(&value, log);
         } else if let Some(row) = effect(&entry.name) {
-            scene.effects.extend(asked(row, &value, log));
+            scene.effects.extend(requests(row, &value, log));
         } else {
             value.unknown_key(log, effects().iter().map(|e| e.name).chain([shaft::NAME]));
         }
     }
 }
 
-/// All that is asked for of one effect.
-fn asked(row: &'static Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Asked> {
+/// All requests of one effect.
+fn requests(row: &'static Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<EffectRequest> {
     let Value::Table(entries) = &spot.node.value else { return on(row, &Selector::All, spot, log) };
     // A table that says where its numbers come from is that of all joints.
     if spot.get(FROM).is_some_and(|from| matches!(from.node.value, Value::Text(_))) {
@@ -103,9 +103,9 @@ fn asked(row: &'static Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<As
     entries.iter().flat_map(|entry| on(row, &selector(&entry.name), &spot.of(entry), log)).collect()
 }
 
-/// What is asked for on one joint or link: a number, a word, a table, or a list of tables for a link.
-fn on(row: &'static Effect, selector: &Selector, spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<Asked> {
-    let asked = |says, spot: &Spot<'_>| Asked { effect: row.id, on: selector.clone(), says, key: spot.key.clone(), place: spot.at };
+/// The request for one joint or link: a number, a word, a table, or a list of tables for a link.
+fn on(row: &'static Effect, selector: &Selector, spot: &Spot<'_>, log: &mut Diagnostics) -> Vec<EffectRequest> {
+    let asked = |says, spot: &Spot<'_>| EffectRequest { effect: row.id, on: selector.clone(), says, key: spot.key.clone(), place: spot.at };
     let before = log.count();
     let says = match &spot.node.value {
         Value::Text(word) if word == "off" => vec![asked(None, spot)],
@@ -145,12 +145,12 @@ fn empty(row: &Effect) -> Numbers {
     Numbers { fields: vec![None; row.fields.len()], ..Numbers::default() }
 }
 
-/// Whether one number says it all: that of the first field.
+/// Whether one number is enough: that of the first field.
 pub(crate) fn shorthand(row: &Effect) -> bool {
     row.fields.first().is_some_and(|f| f.len == 1) && row.fields.iter().skip(1).all(|f| f.default.is_some())
 }
 
-/// What may stand in the place of an effect's numbers.
+/// Words accepted in place of an effect's numbers.
 fn expected(row: &Effect) -> String {
     let mut ways: Vec<String> = Vec::new();
     if shorthand(row) {
@@ -164,7 +164,7 @@ fn expected(row: &Effect) -> String {
 
 fn wrong_word(row: &Effect, word: &str, spot: &Spot<'_>, log: &mut Diagnostics) {
     let words = ["off"].into_iter().chain(sources(row));
-    log.unknown(((spot.node.at, &spot.key), Code::Word), (told(word), word), expected(row), words);
+    log.unknown(((spot.node.at, &spot.key), Code::Word), (quoted_with_reason(word), word), expected(row), words);
 }
 
 /// The numbers of a table.
@@ -203,7 +203,7 @@ fn keys(row: &'static Effect) -> impl Iterator<Item = &'static str> {
     own.chain(frame).chain(Some(FROM).filter(|_| sources(row).next().is_some()))
 }
 
-/// Where the numbers come from that are not given.
+/// The source of numbers that are not given.
 fn from(row: &Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Option<&'static str> {
     let expected = sources(row).next().map_or("numbers".into(), |word| format!("\"{word}\""));
     let Value::Text(word) = &spot.node.value else {
@@ -212,13 +212,13 @@ fn from(row: &Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Option<&'static
     };
     let source = sources(row).find(|source| *source == word.as_str());
     if source.is_none() {
-        log.error((spot.node.at, &spot.key), Code::Word, told(word), expected);
+        log.error((spot.node.at, &spot.key), Code::Word, quoted_with_reason(word), expected);
     }
     source
 }
 
 /// A word for a source of numbers that an effect does not have.
-fn told(word: &str) -> String {
+fn quoted_with_reason(word: &str) -> String {
     let why = match word {
         "urdf" => ", which has no numbers for it",
         collision::WORD => ", which has no geometry for it",
@@ -244,7 +244,8 @@ fn number(field: &Field, spot: &Spot<'_>, log: &mut Diagnostics) -> Option<f64> 
     spot.within(log, field.range)
 }
 
-/// What numbers have to be together. Where one is still to come, from the URDF or from what is said of all, the model looks at it.
+/// Checks the joint constraint of the numbers. Where one still comes from the URDF or from `*`, the
+/// model checks it.
 fn check(row: &'static Effect, numbers: &Numbers, spot: &Spot<'_>, log: &mut Diagnostics) {
     let given = |(i, field): (usize, &'static Field)| numbers.fields[i].as_deref().or(field.default);
     let Some(all) = row.fields.iter().enumerate().map(given).collect::<Option<Vec<&[f64]>>>().filter(|_| !numbers.from_urdf) else {

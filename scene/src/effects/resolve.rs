@@ -8,7 +8,7 @@ use articulated_core::description::{Base, Description, Joint, JointKind, Origin}
 
 use super::index::{Index, Named};
 use super::still::{moving, still};
-use super::{Asked, Numbers, Selector, collision, urdf};
+use super::{EffectRequest, Numbers, Selector, collision, urdf};
 use crate::report::{EffectOff, EffectOn, Number, Report, Why};
 use crate::scene::Scene;
 use crate::shaft;
@@ -33,13 +33,13 @@ pub struct Edited<'a> {
 pub struct Resolved {
     /// In the order of the list of effects, then of the robot, whatever the order of the scene.
     pub effects: Vec<Applied>,
-    /// Where the scene asks for each of them.
+    /// The place of each of them in the scene.
     pub places: Vec<At>,
     /// By which key.
     pub keys: Vec<String>,
-    /// What is on, off and not used.
+    /// Active, inactive and unused content.
     pub report: Report,
-    /// What is odd about them.
+    /// Warnings about them.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -87,7 +87,7 @@ pub(super) type Filled = (Vec<f64>, Option<&'static str>);
 impl<'a> Resolving<'a> {
     fn effect(&mut self, row: &'static Effect, log: &mut Diagnostics) {
         let scene = self.scene;
-        let asked: Vec<&Asked> = scene.effects.iter().filter(|a| a.effect == row.id).collect();
+        let asked: Vec<&EffectRequest> = scene.effects.iter().filter(|a| a.effect == row.id).collect();
         let before = self.resolved.effects.len();
         self.known_names(row, &asked, log);
         match row.on {
@@ -106,7 +106,7 @@ impl<'a> Resolving<'a> {
     }
 
     /// Whether everything that is named is there and moves.
-    fn known_names(&self, row: &Effect, asked: &[&Asked], log: &mut Diagnostics) {
+    fn known_names(&self, row: &Effect, asked: &[&EffectRequest], log: &mut Diagnostics) {
         for one in asked {
             let Selector::Named(name) = &one.on else { continue };
             match row.on {
@@ -116,7 +116,7 @@ impl<'a> Resolving<'a> {
         }
     }
 
-    fn known_joint(&self, row: &Effect, one: &Asked, name: &str, log: &mut Diagnostics) {
+    fn known_joint(&self, row: &Effect, one: &EffectRequest, name: &str, log: &mut Diagnostics) {
         let joints = &self.robot.description.joints;
         let Some(&at) = self.index.joints.get(name) else {
             if name == FLOATING_BASE && self.robot.base == Base::Floating {
@@ -144,7 +144,7 @@ impl<'a> Resolving<'a> {
         log.error((one.place, &one.key), Code::Robot, found, expected);
     }
 
-    fn known_link(&self, one: &Asked, name: &str, log: &mut Diagnostics) {
+    fn known_link(&self, one: &EffectRequest, name: &str, log: &mut Diagnostics) {
         let links = &self.robot.description.links;
         match self.index.links.get(name) {
             None => {
@@ -175,7 +175,7 @@ impl<'a> Resolving<'a> {
         }
     }
 
-    fn on_joints(&mut self, row: &'static Effect, asked: &[&'a Asked], log: &mut Diagnostics) {
+    fn on_joints(&mut self, row: &'static Effect, asked: &[&'a EffectRequest], log: &mut Diagnostics) {
         let (all, by_name) = (for_all(asked), Named::of(asked));
         for joint in self.moving_joints().filter(|j| has_room(row, j.kind)) {
             if let Some((one, place, key)) = self.of_shaft(row.id, &joint.name) {
@@ -198,7 +198,7 @@ impl<'a> Resolving<'a> {
         }
     }
 
-    fn on_links(&mut self, row: &'static Effect, asked: &[&'a Asked], log: &mut Diagnostics) {
+    fn on_links(&mut self, row: &'static Effect, asked: &[&'a EffectRequest], log: &mut Diagnostics) {
         let (all, by_name) = (for_all(asked), Named::of(asked));
         let description = self.robot.description;
         for (i, link) in description.links.iter().enumerate() {
@@ -208,7 +208,7 @@ impl<'a> Resolving<'a> {
             let mut ones = by_name.get(&link.name).to_vec();
             let named = !ones.is_empty();
             let heavy = link.inertial.is_some_and(|inertial| inertial.mass > 0.0);
-            let is_meant = |one: &Asked| if collision::is_asked(one) { !link.collision.is_empty() } else { heavy };
+            let is_meant = |one: &EffectRequest| if collision::is_requested(one) { !link.collision.is_empty() } else { heavy };
             // Of a list for all links each counts.
             ones.extend(asked.iter().filter(|one| !named && one.on == Selector::All && is_meant(one)));
             for one in ones {
@@ -227,7 +227,7 @@ impl<'a> Resolving<'a> {
         }
     }
 
-    /// Whether what is asked for on all joints is meant for this one too.
+    /// Whether a request for all joints includes this one.
     fn is_spread_over(&self, effect: EffectId, joint: &Joint) -> bool {
         let of_shaft = self.index.of_shafts.contains(joint.name.as_str());
         // What a joint that follows another does is not asked of it.
@@ -235,13 +235,13 @@ impl<'a> Resolving<'a> {
         !of_shaft && !follows
     }
 
-    /// What a shaft puts on one of its joints.
+    /// The effect of a shaft on one of its joints.
     fn of_shaft(&self, effect: EffectId, joint: &str) -> Option<(Applied, At, String)> {
         let (asked, own) = self.index.by_shafts.get(&(effect, joint))?;
         Some(((*own).clone(), asked.place, format!("effects.{}.{}", shaft::NAME, bare(&asked.shaft.joint))))
     }
 
-    pub(super) fn put_filled(&mut self, row: &'static Effect, on: &'a str, at: Origin, asked: &Asked, filled: &[Filled]) {
+    pub(super) fn put_filled(&mut self, row: &'static Effect, on: &'a str, at: Origin, asked: &EffectRequest, filled: &[Filled]) {
         let parameters: Vec<f64> = filled.iter().flat_map(|(numbers, _)| numbers.iter().copied()).collect();
         let tags: Vec<Option<&'static str>> = filled.iter().map(|(_, tag)| *tag).collect();
         self.used.extend(tags.iter().flatten().map(|tag| (on, *tag)));
@@ -267,7 +267,8 @@ impl<'a> Resolving<'a> {
         self.resolved.keys.push(key);
     }
 
-    /// What of the URDF is not used: what the reader could not, less what effects do, and bounds that nothing keeps.
+    /// Unused content of the URDF: what the reader could not use, except for numbers that effects
+    /// use, and bounds without an effect that keeps them.
     fn ignored(&mut self) {
         if self.scene.shafts.is_empty() {
             self.resolved.report.off.push(EffectOff { effect: shaft::NAME, why: Why::NotAsked });
@@ -289,8 +290,8 @@ impl<'a> Resolving<'a> {
     }
 }
 
-/// What is asked of all joints or links.
-fn for_all<'a>(asked: &[&'a Asked]) -> Option<&'a Asked> {
+/// The request for all joints or links.
+fn for_all<'a>(asked: &[&'a EffectRequest]) -> Option<&'a EffectRequest> {
     asked.iter().find(|a| a.on == Selector::All).copied()
 }
 
@@ -324,7 +325,7 @@ pub(super) fn fill(
     row.fields.iter().enumerate().map(|(i, field)| of(i, field)).collect()
 }
 
-pub(super) fn missing(row: &Effect, field: &str, one: &Asked, on: &str, log: &mut Diagnostics) {
+pub(super) fn missing(row: &Effect, field: &str, one: &EffectRequest, on: &str, log: &mut Diagnostics) {
     let unit = row.fields.iter().find(|f| f.name == field).map_or("", |f| f.unit);
     let found = match urdf::tag(row.id, field).filter(|_| one.says.as_ref().is_some_and(|s| s.from_urdf)) {
         Some(tag) => format!("no {field} for {on}, whose URDF has no <{tag}>"),
@@ -333,7 +334,7 @@ pub(super) fn missing(row: &Effect, field: &str, one: &Asked, on: &str, log: &mu
     log.error((one.place, &one.key), Code::MissingKey, found, format!("{field}, {unit}"));
 }
 
-fn why(asked: &[&Asked]) -> Why {
+fn why(asked: &[&EffectRequest]) -> Why {
     let on: Vec<&Numbers> = asked.iter().filter_map(|a| a.says.as_ref()).collect();
     let zeros = |n: &&Numbers| n.fields.iter().flatten().any(|x| x.iter().all(|x| *x == 0.0));
     match on.is_empty() {

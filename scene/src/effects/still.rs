@@ -1,4 +1,4 @@
-//! What of a robot moves.
+//! The moving joints and links of a robot.
 
 use articulated_core::description::{Base, Description, Joint};
 

@@ -2,7 +2,7 @@
 //! to bend, joints locked, frames chosen, then its model with all effects. The edits are made in
 //! this order, so that a payload may hang on an appended robot, and a lock may hold its joints.
 //!
-//! Whatever is refused is reported and left out, and the rest goes on.
+//! A refused edit is reported and left out; the others are made.
 
 use std::collections::HashSet;
 
@@ -19,12 +19,12 @@ use crate::effects::{Edited, Resolved};
 /// A robot as requested.
 #[derive(Clone, Debug)]
 pub struct BuiltRobot {
-    /// The robot, edited, and what there is to say about its document and the edits.
+    /// The robot, edited, with the findings about its document and the edits.
     pub reading: Reading,
     /// Its model with gravity, effects and the reference of wrenches, and with a frame for every
     /// link.
     pub model: Model<f64>,
-    /// The scene's effects, where the scene asks for them, and what is on, off and not used.
+    /// The scene's effects, their places in the scene, and active, inactive and unused content.
     pub resolved: Resolved,
     /// All effects: the scene's, then the request's.
     pub effects: Vec<Applied>,
@@ -46,8 +46,7 @@ impl BuiltRobot {
 impl RobotRequest<'_> {
     /// Reads the robot and edits it, and makes its model with all effects.
     ///
-    /// # Errors
-    /// All findings, if one of them is an error.
+    /// # Errors All findings, if one of them is an error.
     pub fn build(&self) -> Result<BuiltRobot, Diagnostics> {
         let mut log = Diagnostics::new(self.scene.map_or(self.file, |scene| &scene.file));
         let robot = self.build_into(&mut log);
@@ -317,7 +316,7 @@ mod tests {
 
     use super::*;
 
-    /// As no body is, which is a warning.
+    /// An inertia that no body has, which is a warning.
     const LINK: &str = "<inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='3'/></inertial>";
 
     /// A link that turns on another, between these bounds, with a colour that nobody uses; its axis
@@ -330,20 +329,20 @@ mod tests {
         )
     }
 
-    fn asked() -> Own {
-        let mut asked = Own { file: "arm.urdf", urdf: robot("arm"), options: RobotOptions::default() };
+    fn request() -> TestRequest {
+        let mut asked = TestRequest { file: "arm.urdf", urdf: robot("arm"), options: RobotOptions::default() };
         asked.options.snap_angles = Some(1e-6);
         asked
     }
 
-    /// What is asked, with its document.
-    struct Own {
+    /// A request with its document.
+    struct TestRequest {
         file: &'static str,
         urdf: String,
         options: RobotOptions,
     }
 
-    fn read(own: &Own) -> Result<Reading, Diagnostics> {
+    fn read(own: &TestRequest) -> Result<Reading, Diagnostics> {
         RobotRequest { file: own.file, document: own.urdf.as_bytes(), options: &own.options, scene: None, checks_motion: false }.read()
     }
 
@@ -360,7 +359,7 @@ mod tests {
     #[test]
     fn a_tolerance_of_angles_is_above_nothing() {
         for (tolerance, found) in [(0.0, "0"), (MOST_SNAPPED * 2.0, "1"), (f64::NAN, "NaN")] {
-            let mut asked = asked();
+            let mut asked = request();
             asked.options.snap_angles = Some(tolerance);
             let expected = "expected a finite number above 0, at most 0.5 rad; leave it out to snap none";
             assert_eq!(read(&asked).unwrap_err().to_string(), format!("snap_angles: found {found}, {expected}"));
@@ -368,7 +367,7 @@ mod tests {
     }
 
     /// The keys of what is refused, and what is found there.
-    fn refused(asked: &Own) -> Vec<String> {
+    fn refused(asked: &TestRequest) -> Vec<String> {
         read(asked).unwrap_err().errors.into_iter().map(|error| format!("{}: {}", error.field, error.found)).collect()
     }
 
@@ -379,8 +378,8 @@ mod tests {
 
     #[test]
     fn what_is_said_of_an_appended_robot_is_said_of_the_whole() {
-        let alone = read(&asked()).unwrap();
-        let mut asked = asked();
+        let alone = read(&request()).unwrap();
+        let mut asked = request();
         asked.options.append.push(appended("tip"));
         let both = read(&asked).unwrap();
         let hand = |problems: &[Diagnostic]| problems.iter().filter(|p| p.file() == "hand.urdf").count();
@@ -399,7 +398,7 @@ mod tests {
     #[test]
     fn a_lock_is_told_of_where_it_is_beyond_a_bound() {
         for (at, beyond) in [(-1.5, true), (-1.0, false), (0.0, false), (2.0, false), (2.5, true)] {
-            let mut asked = asked();
+            let mut asked = request();
             asked.options.lock.push(("hinge".into(), vec![at]).into());
             let warnings = read(&asked).unwrap().warnings;
             assert_eq!(warnings.iter().any(|w| w.code == Code::BeyondLimit), beyond, "{at}");
@@ -409,7 +408,7 @@ mod tests {
     #[test]
     fn a_load_is_told_of_where_the_base_holds_it() {
         let warned = |change: &dyn Fn(&mut RobotOptions)| {
-            let mut asked = asked();
+            let mut asked = request();
             change(&mut asked.options);
             read(&asked).unwrap().warnings.iter().filter(|w| w.field == "payload").count()
         };
@@ -426,12 +425,12 @@ mod tests {
     #[test]
     fn a_load_that_misses_the_triangle_inequality_is_told_of_and_used_as_a_links_inertia_is() {
         let told = |inertia: [f64; 6]| {
-            let mut asked = asked();
+            let mut asked = request();
             asked.options.payloads.push(Payload { link: "tip".into(), mass: 1.0, inertia, ..Payload::default() }.into());
             let warnings = read(&asked).unwrap().warnings.into_iter().filter(|w| w.field == "payload");
             warnings.map(|w| (w.code, w.found, w.expected)).collect::<Vec<_>>()
         };
-        let expected = "none greater than the other two together (triangle inequality); used as asked for";
+        let expected = "none greater than the other two together (triangle inequality); used as given";
         let of = |found: &str| vec![(Code::InertiaTriangle, format!("the principal moments {found} kg·m²"), expected.to_owned())];
         assert_eq!(told([1.0, 0.0, 0.0, 1.0, 0.0, 3.0]), of("1.000e0, 1.000e0, 3.000e0"));
         // The moments 0, 1 − 0.0009 and 1 + 0.0009.
@@ -440,7 +439,7 @@ mod tests {
     }
 
     /// A hand and, fixed to it, a tip and a lamp.
-    fn club() -> Own {
+    fn club() -> TestRequest {
         let fixed = |link: &str| {
             format!(
                 "<link name='{link}'>{LINK}</link><joint name='to_{link}' type='fixed'><parent link='hand'/><child link='{link}'/>
@@ -448,7 +447,7 @@ mod tests {
             )
         };
         let urdf = format!("<robot name='club'><link name='hand'>{LINK}</link>{}{}</robot>", fixed("tip"), fixed("lamp"));
-        Own { file: "club.urdf", urdf, options: RobotOptions::default() }
+        TestRequest { file: "club.urdf", urdf, options: RobotOptions::default() }
     }
 
     #[test]
@@ -476,7 +475,7 @@ mod tests {
             )
         };
         let all: String = (0..count).map(link).chain((0..count).map(joint)).collect();
-        let mut asked = asked();
+        let mut asked = request();
         asked.urdf = robot("arm").replace("</robot>", &(all + "</robot>"));
         let damping = |k| Applied { effect: EffectId::damping, on: format!("j{k}"), at: Origin::default(), parameters: vec![0.5] };
         asked.options.effects = (1..count).map(damping).collect();
@@ -490,14 +489,14 @@ mod tests {
 
     #[test]
     fn each_frame_is_listed_once_and_is_a_link() {
-        let mut asked = asked();
+        let mut asked = request();
         asked.options.frames = Some(["tip", "base", "tap", "tip"].map(Into::into).to_vec());
         begin_with(&refused(&asked), &["frames: the robot has no link \"tap\"", "frames: \"tip\" is listed twice"]);
     }
 
     #[test]
     fn very_many_frames_that_there_are_not_are_told_soon_and_the_first_with_what_was_meant() {
-        let mut asked = asked();
+        let mut asked = request();
         let links: String = (0..5000).map(|k| format!("<link name='link_{k:05}'/>")).collect();
         let joint = |k| format!("<joint name='j{k}' type='fixed'><parent link='tip'/><child link='link_{k:05}'/></joint>");
         let robot = robot("arm").replace("</robot>", &(links + &(0..5000).map(joint).collect::<String>() + "</robot>"));
@@ -511,7 +510,7 @@ mod tests {
 
     #[test]
     fn where_a_robot_cannot_be_appended_its_names_are_not_unknown() {
-        let mut asked = asked();
+        let mut asked = request();
         asked.options.append.push(appended("top"));
         asked.options.payloads.push(Payload { link: "left_tip".into(), mass: 1.0, ..Payload::default() }.into());
         asked.options.payloads.push(Payload { link: "tip".into(), mass: -1.0, ..Payload::default() }.into());

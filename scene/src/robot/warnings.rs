@@ -89,7 +89,7 @@ impl Editing<'_> {
                     &Place { at: At::Nowhere, subject: &Subject::Joint(name.clone()), field: "lock" },
                     Code::BeyondLimit,
                     format!("{}, beyond its limits", Plain(at)),
-                    format!("{} to {}; used as asked for", Plain(limit.lower), Plain(limit.upper)),
+                    format!("{} to {}; used as given", Plain(limit.lower), Plain(limit.upper)),
                 )
             })
         });
@@ -124,7 +124,7 @@ impl Editing<'_> {
                     &Place { at: At::Nowhere, subject: &Subject::Link(load.link.clone()), field: "payload" },
                     Code::InertiaTriangle,
                     moments.to_string(),
-                    format!("{}; used as asked for", PrincipalMoments::TRIANGLE),
+                    format!("{}; used as given", PrincipalMoments::TRIANGLE),
                 )
             })
         });

@@ -1,4 +1,4 @@
-//! What people see: lines on the two streams, and progress where somebody watches.
+//! Console output: lines on the two streams, and progress on a terminal.
 
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -6,7 +6,7 @@
 //! * [`stress`]: a corpus of hard cases, each with a limit that it keeps.
 //! * [`against`]: whole simulations beside peers.
 //!
-//! A robot comes in as a value, [`robot::Robot`], a scene as [`stage::Stage`]. A measurement gives
+//! A robot comes in as a value, [`robot::Robot`], a scene as [`session::Session`]. A measurement gives
 //! a report, which
 //! can be printed as text, as JSON ([`json::json`]), and as files. The command `articulated` reads
 //! the command line,
@@ -26,7 +26,7 @@ pub mod plot;
 pub mod process;
 pub mod robot;
 pub mod scaling;
-pub mod stage;
+pub mod session;
 pub mod states;
 pub mod straight;
 pub mod stress;

@@ -54,9 +54,9 @@ impl Native {
     }
 }
 
-/// Where an array begins that is read.
+/// Where an array all_pointers that is read.
 type P = *const c_void;
-/// Where one begins that is written.
+/// Where one all_pointers that is written.
 type O = *mut c_void;
 
 /// How long the arrays are that a function reads and the one that it writes.
@@ -75,11 +75,11 @@ impl Lengths {
 }
 
 /// Where up to four arrays begin.
-fn begin(x: &[&[f64]]) -> [P; 4] {
+fn pointers(x: &[&[f64]]) -> [P; 4] {
     std::array::from_fn(|k| x.get(k).map_or(std::ptr::null(), |x| x.as_ptr().cast()))
 }
 
 /// Where each state's arrays begin, found once, so that nothing but calls is in the loop: to look that up is not a part of a function, and a short one would wait for it.
-fn begins(states: &[Vec<&[f64]>]) -> Vec<[P; 4]> {
-    black_box(states.iter().map(|state| begin(state)).collect())
+fn all_pointers(states: &[Vec<&[f64]>]) -> Vec<[P; 4]> {
+    black_box(states.iter().map(|state| pointers(state)).collect())
 }

@@ -27,7 +27,7 @@ impl Folder {
         watch();
         // Nothing can come between a folder and its place in the list.
         let mut folders = folders();
-        let folder = made(&std::env::temp_dir())?;
+        let folder = create_folder(&std::env::temp_dir())?;
         folders.push(folder.clone());
         Ok(Self(folder))
     }
@@ -39,7 +39,7 @@ impl Folder {
 
 /// A folder with a name that is free, for this user alone. Nothing can have been put there before:
 /// a name that is taken is an error, of a link too.
-fn made(parent: &Path) -> io::Result<PathBuf> {
+fn create_folder(parent: &Path) -> io::Result<PathBuf> {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let mut builder = std::fs::DirBuilder::new();
     #[cfg(unix)]

@@ -108,12 +108,12 @@ fn wrapped_line(line: &str) -> String {
     out
 }
 
-/// So many things: `1 joint`, `2 joints`.
+/// A count with its noun: `1 joint`, `2 joints`.
 pub fn counted(n: usize, thing: &str) -> String {
     format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
 }
 
-/// So many degrees of freedom.
+/// A count of degrees of freedom.
 pub fn freedom(n: usize) -> String {
     counted(n, "degree") + " of freedom"
 }

@@ -309,10 +309,10 @@ fn forward_dynamics_goes_the_way_that_costs_least() {
         generate(&request).unwrap().ledger.functions[0].ways.clone()
     };
     // Short arms, a tree, and a robot with a joint that follows, which no recursion along a branch can invert.
-    assert_eq!(ways("panda_like"), ["LTDL", "mass lent", "rates by axes", "parallel and last joints unturned", "lengths in 0.0825 m"]);
+    assert_eq!(ways("panda_like"), ["LTDL", "mass shifted", "axis rates", "parallel and last rotations folded", "length unit 0.0825 m"]);
     assert_eq!(ways("humanoid"), ["ABA"]);
-    assert_eq!(ways("gripper_arm"), ["LTDL", "rates by axes"]);
-    assert_eq!(ways("ur5_like"), ["LTDL", "mass lent", "rates by axes", "parallel joints unturned", "lengths in 28.44 m"]);
+    assert_eq!(ways("gripper_arm"), ["LTDL", "axis rates"]);
+    assert_eq!(ways("ur5_like"), ["LTDL", "mass shifted", "axis rates", "parallel rotations folded", "length unit 28.44 m"]);
 }
 
 #[test]

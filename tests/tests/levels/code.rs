@@ -1,6 +1,6 @@
 //! Generated code of every level, compiled and run.
 
-use articulated_codegen::{Arithmetic, Generated, Level, Request, bound, generate};
+use articulated_codegen::{Arithmetic, Generated, Precision, Request, bound, generate};
 use articulated_core::Scalar;
 use articulated_core::algorithm::{Argument, function};
 use articulated_core::model::Model;
@@ -10,7 +10,7 @@ use articulated_reference::Big;
 
 const FUNCTION: &str = "inverse_dynamics";
 
-fn generated(robot: &str, level: Level) -> Generated {
+fn generated(robot: &str, level: Precision) -> Generated {
     let bundled = articulated_models::robot(robot).unwrap();
     let mut request = Request::new(format!("{robot}.urdf"), bundled.urdf);
     request.options.robot.base = bundled.base;
@@ -19,24 +19,24 @@ fn generated(robot: &str, level: Level) -> Generated {
     generate(&request).unwrap()
 }
 
-fn level(name: &str) -> Level {
+fn level(name: &str) -> Precision {
     name.parse().unwrap()
 }
 
-struct Made {
-    level: Level,
+struct BuiltRobot {
+    level: Precision,
     generated: Generated,
     compiled: Compiled,
 }
 
-fn made(robot: &str, name: &str, target: Target) -> Made {
+fn build(robot: &str, name: &str, target: Target) -> BuiltRobot {
     let level = level(name);
     let generated = generated(robot, level);
     let compiled = Compiled::build_for(target, &Rustc::find().unwrap(), &generated).unwrap();
-    Made { level, generated, compiled }
+    BuiltRobot { level, generated, compiled }
 }
 
-impl Made {
+impl BuiltRobot {
     fn call(&self, state: &[Vec<f64>]) -> Vec<f64> {
         let mut out = vec![0.0; self.generated.model.nv()];
         let arguments: Vec<&[f64]> = state.iter().map(Vec::as_slice).collect();
@@ -71,7 +71,7 @@ impl Made {
 
 /// In numbers that `f32` has too, some with angles far out.
 fn some_states(robot: &str, count: usize) -> Vec<Vec<Vec<f64>>> {
-    states_of(&generated(robot, Level::default()).model, count, 5)
+    states_of(&generated(robot, Precision::default()).model, count, 5)
 }
 
 fn states_of(model: &Model<f64>, count: usize, seed: u64) -> Vec<Vec<Vec<f64>>> {
@@ -96,7 +96,7 @@ const PART: usize = 1000;
 
 /// Errors are within their bounds, and levels are as exact, one to another, as they promise.
 fn hold(robot: &str, count: usize) {
-    let levels = LEVELS.map(|name| made(robot, name, Target::Own));
+    let levels = LEVELS.map(|name| build(robot, name, Target::Own));
     let mut worst = [0.0_f64; LEVELS.len()];
     let mut single = vec![(0.0_f64, 0.0_f64); levels[0].generated.model.nv()];
     for (state, first) in states_in_parts(&levels[0].generated.model, count) {
@@ -161,7 +161,7 @@ fn errors_are_within_their_bounds_on_a_million_states_of_a_quadruped() {
 fn far_angles_and_what_is_no_number_do_what_the_contract_says() {
     let robot = "simple_pendulum";
     for name in LEVELS {
-        let made = made(robot, name, Target::Own);
+        let made = build(robot, name, Target::Own);
         let far: Vec<Vec<Vec<f64>>> =
             [1e6_f32, 1e15, 1e22, -1e22].iter().map(|q| vec![vec![f64::from(*q)], vec![0.5], vec![-0.25]]).collect();
         assert!(made.worst(&far) < 1e-5, "{name}");
@@ -180,10 +180,10 @@ fn far_angles_and_what_is_no_number_do_what_the_contract_says() {
 #[test]
 fn without_fused_multiply_add_the_bits_are_the_same_whatever_the_processor_can_do() {
     for name in ["f64+no_fma", "f32+no_fma", "double_double+no_fma"] {
-        let [own, any] = [Target::Own, Target::Any].map(|target| made("ur5_like", name, target));
+        let [own, any] = [Target::Own, Target::Any].map(|target| build("ur5_like", name, target));
         assert!(Target::differ() || !cfg!(target_feature = "fma"));
         for state in some_states("ur5_like", 50) {
-            let bits = |m: &Made| m.call(&state).into_iter().map(f64::to_bits).collect::<Vec<_>>();
+            let bits = |m: &BuiltRobot| m.call(&state).into_iter().map(f64::to_bits).collect::<Vec<_>>();
             assert_eq!(bits(&own), bits(&any), "{name}");
         }
     }

@@ -13,7 +13,7 @@ macro_rules! texts {
     };
 }
 
-texts!(two: "level/text/exact" "level/text/both" "level/text/pair" "level/text/pair_of_two" "level/text/sines" "level/text/whole" "level/text/correct");
+texts!(two: "precision/text/exact" "precision/text/both" "precision/text/pair" "precision/text/pair_of_two" "precision/text/sines" "precision/text/whole" "precision/text/correct");
 texts!(fast_7: "lanes/text/portable/f64" "lanes/text/portable/4" "lanes/text/portable/common" "lanes/text/common" "lanes/text/sines/f64" "lanes/text/sines/f64_fast_7");
 texts!(fast_10: "lanes/text/portable/f64" "lanes/text/portable/4" "lanes/text/portable/common" "lanes/text/common" "lanes/text/sines/f64" "lanes/text/sines/f64_fast_10");
 texts!(ulp: "lanes/text/portable/f64" "lanes/text/portable/4" "lanes/text/portable/common" "lanes/text/common" "lanes/text/sines/f64" "lanes/text/sines/f64_fused" "lanes/text/sines/f64_split");

@@ -15,8 +15,7 @@ use articulated_lab::plot::escaped;
 use nalgebra::Vector3;
 use serde::Serialize;
 
-use super::recording::{Happening, Recording};
-use animation::Room;
+use super::recording::{EventRecord, Recording};
 use figure::Figure;
 use track::{Track, base64};
 
@@ -69,7 +68,7 @@ struct Motion<'a> {
     times: String,
     energy_names: Vec<&'static str>,
     energies: String,
-    events: &'a [Happening],
+    events: &'a [EventRecord],
 }
 
 /// The page's text.

@@ -48,7 +48,7 @@ fn every_body_computes_what_its_graph_does() {
                 continue;
             }
             for (limbs, level, raw_memory) in
-                [(true, Level::default(), true), (false, "f32".parse().unwrap(), true), (false, "compensated".parse().unwrap(), false)]
+                [(true, Precision::default(), true), (false, "f32".parse().unwrap(), true), (false, "compensated".parse().unwrap(), false)]
             {
                 let options = Options { limbs, level, stages: false, ..Options::default() };
                 let can = Capabilities { level, vectors: raw_memory && level.has_lanes(), raw_memory, states: true };

@@ -7,7 +7,7 @@ use crate::lir::{Body, verify};
 fn lowering<'a>(graph: &'a Graph, results: &'a [Array]) -> Lowering<'a> {
     let width = graph.lanes().width;
     let ty = if width == 1 { Ty::F64 } else { Ty::Vector(width) };
-    Lowering { graph, ty, sines: Sines { together: 8 / width, are_powers_of_two: width > 1, from: 0 }, results }
+    Lowering { graph, ty, sines: SinCosGrouping { together: 8 / width, are_powers_of_two: width > 1, from: 0 }, results }
 }
 
 /// One array for all numbers.
@@ -33,7 +33,7 @@ fn rows(graph: &Graph) -> Vec<Stmt> {
 fn lanes_of(graph: &mut Graph, id: NodeId) -> [NodeId; 4] {
     std::array::from_fn(|k| {
         let lane = graph.constant(k as f64);
-        graph.exactly(Op::Spread, &[id, lane])
+        graph.exactly(Op::Broadcast, &[id, lane])
     })
 }
 
@@ -62,7 +62,7 @@ fn sums_over_lanes_are_made_four_at_a_time_where_they_are_results_alone() {
         let sums: Vec<NodeId> = (0..count)
             .map(|k| {
                 let x = graph.lane_input(0, &[k, k + 2, k + 4, k + 6]);
-                graph.exactly(Op::Across, &[x])
+                graph.exactly(Op::ReduceAdd, &[x])
             })
             .collect();
         graph.outputs = sums.clone();
@@ -101,7 +101,7 @@ fn rows_are_stored_as_soon_as_they_are_known_and_constants_between() {
 
 #[test]
 fn sines_go_together_as_a_target_has_functions_for() {
-    let sizes = |angles: usize, sines: Sines| -> Vec<usize> {
+    let sizes = |angles: usize, sines: SinCosGrouping| -> Vec<usize> {
         let mut graph = Graph::default();
         graph.outputs = (0..angles)
             .map(|k| {
@@ -113,8 +113,8 @@ fn sines_go_together_as_a_target_has_functions_for() {
         let statements = Lowering { graph: &graph, ty: Ty::F64, sines, results: &results }.results_at_end();
         statements.iter().filter_map(|s| if let Stmt::SinCos { angles, .. } = s { Some(angles.len()) } else { None }).collect()
     };
-    let four = Sines { together: 4, are_powers_of_two: false, from: 3 };
+    let four = SinCosGrouping { together: 4, are_powers_of_two: false, from: 3 };
     assert_eq!([1, 2, 3, 4, 7].map(|n| sizes(n, four)), [vec![1], vec![1, 1], vec![3], vec![4], vec![4, 3]]);
-    let powers = Sines { together: 4, are_powers_of_two: true, from: 0 };
+    let powers = SinCosGrouping { together: 4, are_powers_of_two: true, from: 0 };
     assert_eq!([1, 2, 3, 7].map(|n| sizes(n, powers)), [vec![1], vec![2], vec![2, 1], vec![4, 2, 1]]);
 }

@@ -13,7 +13,7 @@ const SOON: usize = 8;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Step {
     /// The values that it makes and that may be spilled.
-    pub(crate) made: Vec<usize>,
+    pub(crate) defined: Vec<usize>,
     /// The values that it needs, each once.
     pub(crate) used: Vec<usize>,
     /// Those of them that may be an operand in memory, of which an instruction has one.
@@ -25,7 +25,7 @@ pub(crate) struct Uses(Vec<Vec<usize>>);
 
 impl Uses {
     pub(crate) fn of(steps: &[Step]) -> Self {
-        let values = steps.iter().flat_map(|step| step.made.iter().chain(&step.used)).map(|k| k + 1).max().unwrap_or(0);
+        let values = steps.iter().flat_map(|step| step.defined.iter().chain(&step.used)).map(|k| k + 1).max().unwrap_or(0);
         let mut uses = Self(vec![Vec::new(); values]);
         for (at, step) in steps.iter().enumerate() {
             step.used.iter().for_each(|&k| uses.0[k].push(at));
@@ -65,7 +65,7 @@ impl Plan {
     pub(crate) fn of(steps: &[Step], uses: &Uses) -> Self {
         let values = uses.0.len();
         let mut may_wait = vec![false; values];
-        steps.iter().flat_map(|step| &step.made).for_each(|&k| may_wait[k] = true);
+        steps.iter().flat_map(|step| &step.defined).for_each(|&k| may_wait[k] = true);
         let mut plan = Self { spilled: vec![false; values], loads: Vec::new(), folded: Vec::new() };
         let mut held: Vec<usize> = Vec::new();
         for (at, step) in steps.iter().enumerate() {
@@ -75,7 +75,7 @@ impl Plan {
             held.extend(&missing);
             plan.make_room(&mut held, uses, at, &step.used);
             held.retain(|&k| !uses.is_over(k, at));
-            held.extend(step.made.iter().filter(|k| !uses.is_over(**k, at)));
+            held.extend(step.defined.iter().filter(|k| !uses.is_over(**k, at)));
             plan.make_room(&mut held, uses, at, &[]);
             plan.loads.push(missing);
             plan.folded.push(folded);
@@ -114,7 +114,7 @@ mod tests {
             let mut used: Vec<usize> = if k < 20 { Vec::new() } else { (0..3).map(|_| k - 1 - random(k.min(200))).collect() };
             used.sort_unstable();
             used.dedup();
-            Step { made: vec![k], foldable: used.clone(), used }
+            Step { defined: vec![k], foldable: used.clone(), used }
         };
         (0..n).map(&mut step).collect()
     }
@@ -130,7 +130,7 @@ mod tests {
             for k in &step.used {
                 assert!(known.contains(k) || plan.folded[at] == Some(*k), "step {at}: {k} is nowhere");
             }
-            known.extend(&step.made);
+            known.extend(&step.defined);
             // What is read from memory next needs no register until then.
             let next = |k: usize| (at + 1..steps.len()).find(|&s| steps[s].used.contains(&k));
             known.retain(|&k| next(k).is_some_and(|s| !plan.loads[s].contains(&k) && plan.folded[s] != Some(k)));
@@ -158,7 +158,7 @@ mod tests {
     #[test]
     fn nothing_waits_where_registers_suffice() {
         let steps: Vec<Step> =
-            (0..100).map(|k: usize| Step { made: vec![k], used: (k.saturating_sub(3)..k).collect(), foldable: Vec::new() }).collect();
+            (0..100).map(|k: usize| Step { defined: vec![k], used: (k.saturating_sub(3)..k).collect(), foldable: Vec::new() }).collect();
         let plan = Plan::of(&steps, &Uses::of(&steps));
         assert!(!plan.spilled.contains(&true) && reads(&plan) == 0);
     }

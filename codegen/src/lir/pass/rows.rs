@@ -25,7 +25,7 @@ impl Cell {
             return Self::Constant(x);
         }
         let (of, lane) = match node.op {
-            Op::Spread => (NodeId(node.args[0]), graph.node(NodeId(node.args[1])).constant().unwrap_or_default() as usize),
+            Op::Broadcast => (NodeId(node.args[0]), graph.node(NodeId(node.args[1])).constant().unwrap_or_default() as usize),
             _ => (output, 0),
         };
         match (graph.node(of), graph.node(of).constant()) {
@@ -258,7 +258,7 @@ mod tests {
         let (input, numbers, number) = (g.lane_input(0, &[1, 2, 3, 4]), g.lane_constant([0.5, 1.5, 2.5, 3.5]), g.constant(7.0));
         for lane in 0..WIDTH {
             let k = g.constant(lane as f64);
-            let [of_input, of_numbers] = [input, numbers].map(|x| g.exactly(Op::Spread, &[x, k]));
+            let [of_input, of_numbers] = [input, numbers].map(|x| g.exactly(Op::Broadcast, &[x, k]));
             assert_eq!(Cell::of(&g, of_input), Cell::Lane(input.index(), lane));
             assert_eq!(Cell::of(&g, of_numbers), Cell::Constant(0.5 + lane as f64));
         }

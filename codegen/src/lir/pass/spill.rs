@@ -76,10 +76,10 @@ pub(crate) fn pays(statements: &[Stmt], in_lanes: bool) -> bool {
 
 /// What a statement takes and gives, for the plan of registers.
 fn step(statement: &Stmt, ty: Ty) -> Step {
-    let mut made = Vec::new();
+    let mut defined = Vec::new();
     // Masks and sums over lanes stay in registers.
     if !statement.compares() && !matches!(statement, Stmt::SumLanes(..)) {
-        statement.defines(|temp| made.push(temp.index()));
+        statement.defines(|temp| defined.push(temp.index()));
     }
     // Sines of numbers go four at a time: of fewer angles the others are constants.
     let are_fewer = |angles: &[Angle]| matches!(ty, Ty::F64 | Ty::F32) && angles.len() < 4;
@@ -97,7 +97,7 @@ fn step(statement: &Stmt, ty: Ty) -> Step {
     let is_computed = matches!(statement, Stmt::Let(_, Expr::Op(..)) | Stmt::SinCos { .. } | Stmt::SumLanes(..));
     let once = |k: &usize| all.iter().filter(|other| *other == k).count() == 1;
     let foldable = if !is_computed || all.len() < 2 || has_constant { Vec::new() } else { all.iter().copied().filter(once).collect() };
-    Step { made, used, foldable }
+    Step { defined, used, foldable }
 }
 
 /// Slots that are given away and become free again.
@@ -148,7 +148,7 @@ impl Writer<'_> {
                 None => {}
             }
         }
-        for &k in step.made.iter().filter(|k| self.plan.spilled[**k]) {
+        for &k in step.defined.iter().filter(|k| self.plan.spilled[**k]) {
             let is_far = self.uses.rarity(k, at) >= RARELY;
             let number = if is_far { self.far.take() } else { self.near.take() };
             let slot = Slot { is_far, number };

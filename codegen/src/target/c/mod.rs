@@ -14,7 +14,7 @@ use articulated_core::model::Model;
 use crate::capabilities::Capabilities;
 use crate::lir::function::{Argument, Ending, Function};
 use crate::target::{File, Module};
-use crate::{Arithmetic, Level, Options, Sines};
+use crate::{Arithmetic, Options, Precision, TrigAccuracy};
 use statements::{Printer, Reals};
 
 /// Choices for C.
@@ -33,7 +33,7 @@ pub(super) fn capabilities(options: &Options) -> Capabilities {
 pub(super) fn check(options: &Options, c: &COptions, log: &mut Diagnostics) {
     let mut error = |key, code, found, expected| log.push(Diagnostic::error("", (Default::default(), key), code, found, expected));
     let is_plain = matches!(options.level.arithmetic, Arithmetic::Double | Arithmetic::Single | Arithmetic::SingleByDouble);
-    if !is_plain || options.level.sines != Sines::Ulp {
+    if !is_plain || options.level.sines != TrigAccuracy::Ulp1 {
         let expected = "for target \"c\": f64, f32 or f32_f64, with the sines of the mathematical library";
         error("level", Code::Level, options.level.to_string(), expected);
     }
@@ -70,7 +70,7 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    fn level(&self) -> Level {
+    fn level(&self) -> Precision {
         self.module.request.options.level
     }
 

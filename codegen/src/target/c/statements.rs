@@ -110,7 +110,7 @@ impl Printer<'_> {
             Op::MulSub => format!("{a} * {b} - {c}"),
             Op::NegMulAdd => format!("{c} - {a} * {b}"),
             Op::NegMulSub => format!("-({a} * {b}) - {c}"),
-            Op::Constant | Op::Input | Op::LaneConstant | Op::LaneInput | Op::Spread | Op::Across => a,
+            Op::Constant | Op::Input | Op::LaneConstant | Op::LaneInput | Op::Broadcast | Op::ReduceAdd => a,
         }
     }
 

@@ -1,6 +1,6 @@
 //! Instruction sets: what a build has, what the processor has, and which functions profit.
 
-use crate::Level;
+use crate::Precision;
 use crate::graph::Op;
 use crate::lir::function::Function;
 use crate::lir::{Body, Expr, Stmt};
@@ -32,7 +32,7 @@ pub(crate) const MAY_LACK_AVX2: &str = "#[cfg(not(all(target_arch = \"x86_64\", 
 pub(crate) const OTHERS: &str = "#[cfg(not(any(target_arch = \"aarch64\", target_arch = \"x86_64\")))]";
 
 /// Whether the function profits from an instruction set that not every processor has.
-pub(crate) fn needs_choice(function: &Function, level: Level) -> bool {
+pub(crate) fn needs_choice(function: &Function, level: Precision) -> bool {
     let fuses = |s: &Stmt| matches!(s, Stmt::Let(_, Expr::Op(Op::MulAdd | Op::MulSub | Op::NegMulAdd | Op::NegMulSub, _)));
     !function.in_lanes() && (function.body.pieces.iter().flatten().any(fuses) || has_batch(&function.body) || level.of_two())
 }

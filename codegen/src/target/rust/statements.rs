@@ -7,7 +7,7 @@ use crate::lir::function::Argument;
 use crate::lir::{Angle, Body, Expr, Number, Operand, Rows, Slot, Stmt, Store, Temp, Ty};
 use crate::target::rust::literal::{bare, literal, operand, single};
 use crate::target::rust::several;
-use crate::{Arithmetic, Level, Sines};
+use crate::{Arithmetic, Precision, TrigAccuracy};
 
 /// As zero is written.
 pub(crate) const ZERO: &str = "0.0";
@@ -48,7 +48,7 @@ impl Display for Place {
 pub(crate) struct Printer<'a> {
     pub(crate) body: &'a Body,
     pub(crate) arguments: &'a [Argument],
-    pub(crate) level: Level,
+    pub(crate) level: Precision,
     /// Where each number of the result is.
     pub(crate) places: &'a dyn Fn(usize) -> Place,
     /// Whether there need not be numbers yet.
@@ -152,7 +152,7 @@ impl Printer<'_> {
             Op::MulSub => format!("F::fma({a}, {b}, -{c})"),
             Op::NegMulAdd => format!("F::fma(-{a}, {b}, {c})"),
             Op::NegMulSub => format!("F::fma(-{a}, {b}, -{c})"),
-            Op::Constant | Op::Input | Op::LaneConstant | Op::LaneInput | Op::Spread | Op::Across => a,
+            Op::Constant | Op::Input | Op::LaneConstant | Op::LaneInput | Op::Broadcast | Op::ReduceAdd => a,
         }
     }
 
@@ -188,10 +188,10 @@ impl Printer<'_> {
     fn sines_of_pairs(&self, out: &mut String, angles: &[Angle], define: &str) {
         let pair = |a: &Angle| format!("({}, {})", optional(a.sin), optional(a.cos));
         match self.level.sines {
-            Sines::Two => angles.iter().for_each(|a| {
+            TrigAccuracy::DoubleDouble => angles.iter().for_each(|a| {
                 let _ = writeln!(out, "    {define}{} = sin_cos::<FUSED>({});", pair(a), self.operand(&a.angle));
             }),
-            Sines::Correct => angles.iter().for_each(|a| {
+            TrigAccuracy::CorrectlyRounded => angles.iter().for_each(|a| {
                 let angle = self.operand(&a.angle);
                 let value = format!("{{ let (s, c) = sin_cos_correct::<FUSED>({angle}.0); turned::<FUSED>({angle}, s, c) }}");
                 let _ = writeln!(out, "    {define}{} = {value};", pair(a));
@@ -395,8 +395,8 @@ pub(crate) fn function(op: Op) -> &'static str {
         Op::MulSub => "fmsub",
         Op::NegMulAdd => "fnmadd",
         Op::NegMulSub => "fnmsub",
-        Op::Across => "across",
-        Op::Constant | Op::Input | Op::LaneConstant | Op::LaneInput | Op::Spread | Op::Sin | Op::Cos => "",
+        Op::ReduceAdd => "across",
+        Op::Constant | Op::Input | Op::LaneConstant | Op::LaneInput | Op::Broadcast | Op::Sin | Op::Cos => "",
     }
 }
 
@@ -417,7 +417,7 @@ mod tests {
         let arguments = [Argument { name: "q", dims: vec![articulated_core::algorithm::Dim::Nq] }];
         let places = |at: usize| Place { array: "out".into(), index: Some(at) };
         let mut out = String::new();
-        Printer { body: &body, arguments: &arguments, level: Level::default(), places: &places, is_raw: false }
+        Printer { body: &body, arguments: &arguments, level: Precision::default(), places: &places, is_raw: false }
             .statements(&mut out, statements);
         out
     }

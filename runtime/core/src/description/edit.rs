@@ -10,7 +10,7 @@ use super::names::Names;
 use super::{Description, EditError, Frame, Inertial, Joint, JointKind, Link, Mimic, Origin, PrincipalMoments, Shaft};
 use crate::effect::Applied;
 use crate::model::FLOATING_BASE;
-use crate::spatial::normalise_given;
+use crate::spatial::normalise_input;
 use crate::suggest::Suggester;
 
 /// A rigid load on a link.
@@ -190,7 +190,7 @@ impl<'a> Editor<'a> {
 fn normalised(kind: JointKind, at: &[f64]) -> Result<Vec<f64>, f64> {
     let mut at = at.to_vec();
     if let Some(first) = kind.quaternion() {
-        normalise_given(&mut at[first..])?;
+        normalise_input(&mut at[first..])?;
     }
     Ok(at)
 }

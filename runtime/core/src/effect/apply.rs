@@ -101,7 +101,7 @@ impl fmt::Display for EffectError {
 
 impl core::error::Error for EffectError {}
 
-/// All that is wrong with effects that were asked for, a line each.
+/// Errors of requested effects, one line each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EffectErrors(pub Vec<EffectError>);
 
@@ -214,7 +214,7 @@ impl Effect {
     }
 }
 
-/// What of the numbers is not what the fields want, or not what they must be together.
+/// Validates each parameter against its range, then the effect's joint constraint.
 fn check(one: &Applied) -> Vec<Fault> {
     let (row, p) = (one.effect.row(), &one.parameters);
     if p.len() != row.len() {

@@ -54,7 +54,7 @@ pub enum Enters {
     ForceOfRate,
     /// As a force on a degree of freedom, by its coordinate and its rate.
     ForceOfCoordinate,
-    /// As what becomes of the torque that is asked for.
+    /// It transforms the commanded torque.
     Drive,
     /// As a wrench on a frame.
     Wrench,
@@ -195,7 +195,7 @@ impl Effect {
         })
     }
 
-    /// Whether these numbers, as many as it has, make nothing of it: then it is left out.
+    /// Whether these parameters make the effect vanish; then it is left out.
     pub fn is_nothing(&self, parameters: &[f64]) -> bool {
         let (mut rest, mut parts) = (parameters, Vec::new());
         let mut zero = |field: &Field| {
@@ -256,7 +256,7 @@ pub(crate) enum Law<S: 'static> {
     Inertia(fn(&[S]) -> S),
     /// A force on a degree of freedom.
     Force { force: OnFreedom<S>, slope: OnFreedom<Dual<S>>, energy: fn(&[S], S) -> S, rise: fn(&[Dual<S>], Dual<S>) -> Dual<S> },
-    /// What becomes of the torque that is asked for, by the rate.
+    /// The torque at the joint for a commanded torque, depending on the rate.
     Drive { torque: OnFreedom<S>, slope: OnFreedom<Dual<S>> },
     /// A wrench on a frame.
     Wrench {

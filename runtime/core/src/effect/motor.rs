@@ -1,4 +1,4 @@
-//! A motor: what it makes of the torque that it is asked for.
+//! A motor: the torque at the joint for a commanded torque.
 
 use super::{Field, smooth_sign};
 use crate::Scalar;

@@ -260,7 +260,7 @@ impl<S: Scalar> Coordinates<S> {
         }
     }
 
-    /// Own rate over the leader's; `None` for a joint that follows nobody.
+    /// Own rate over the leader's; `None` for a joint that is no mimic.
     #[inline(always)]
     pub fn rate_of_one(&self) -> Option<S> {
         self.mimic.as_ref().map(|f| f.multiplier)

@@ -6,8 +6,9 @@ use super::JointLaw;
 use crate::Scalar;
 use crate::spatial::{ArticulatedInertia, Placement, SpatialInertia, Wrench, rotate, rotate_back};
 
-/// How the child of a joint is placed in its parent, at one pose: as one rotation, or as that of the joint's frame and that of the pose in it. The first is less for numbers, of which there is no telling
-/// whether they are zero; the second where zeros cost nothing ([`Scalar::FOLDS`]).
+/// How the child of a joint is placed in its parent, at one pose: as one rotation, or as that of
+/// the joint's frame and that of the pose in it. One composed rotation is cheaper for numeric
+/// scalars, whose zeros are unknown; the second where zeros cost nothing ([`Scalar::FOLDS`]).
 #[derive(Clone, Copy)]
 pub(crate) struct Mount<'a, S, P> {
     pose: P,

@@ -1,4 +1,5 @@
-//! Watching an evaluation: functions for those who teach or debug. No function of the table calls them, so they cost nothing where they are not asked for.
+//! Monitors of an evaluation, for teaching and debugging. No function of the table calls them, so
+//! they cost nothing unless used.
 //!
 //! | what | says | does not say |
 //! |---|---|---|

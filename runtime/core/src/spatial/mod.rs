@@ -4,8 +4,8 @@
 
 mod articulated;
 mod coriolis;
-mod given;
 mod inertia;
+mod input_quaternion;
 mod motion;
 mod placement;
 mod reference;
@@ -16,8 +16,8 @@ mod wrench;
 
 pub use articulated::ArticulatedInertia;
 pub use coriolis::CoriolisInertia;
-pub use given::{NORM_TOLERANCE, given_norm, normalise_given};
 pub use inertia::SpatialInertia;
+pub use input_quaternion::{NORM_TOLERANCE, input_norm, normalise_input};
 pub use motion::{Motion, rate_matrix, rates_about};
 pub use placement::Placement;
 pub use reference::Reference;

@@ -78,7 +78,7 @@ pub fn nearest_rotation<S: Scalar>(r: &Matrix3<S>) -> Matrix3<S> {
     r.zip_map(&change, |x, by| if x == zero || x == one || x == -one { x } else { x - by })
 }
 
-/// (sin, cos) of an angle that somebody wrote into a file.
+/// (sin, cos) of an angle from a file.
 ///
 /// The double nearest to a multiple of π/2 (up to ±2π) is taken as that multiple, so that a right angle is a right angle: this
 /// moves no entry of a rotation matrix by more than 5·10⁻¹⁶. An angle like 1.5708 is used as written.

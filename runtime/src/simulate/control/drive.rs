@@ -23,36 +23,37 @@ pub struct Drive<'r, R: Dynamics<f64>> {
     pub(super) pursuit: Pursuit<'r, R>,
 }
 
-/// How far a robot is from where it should be.
+/// The tracking error.
 pub(super) struct Pursuit<'r, R: Dynamics<f64>> {
     robot: &'r R,
     ws: R::Workspace,
     target: Vec<f64>,
     /// target ⊖ q.
     error: Vec<f64>,
-    /// target', which is left as it is where the target stands still.
+    /// target'; unchanged for a constant target.
     pub(super) rate: Vec<f64>,
     step: Vec<f64>,
 }
 
 impl<'r, R: Dynamics<f64>> Drive<'r, R> {
-    /// A controller, and the time between its samples, s, if it is sampled. Errors: all vectors that do not fit the robot, and all that is wrong with tables; or else a function that
-    /// the robot has not: control of kind `pd` needs `difference`, and for joints that turn freely `integrate`.
+    /// A controller, and its sampling period, s, if it is sampled. Errors: all vectors and tables
+    /// that do not fit the robot; or else a missing function: control of kind `pd` needs
+    /// `difference`, and for quaternion joints `integrate`.
     pub fn new(robot: &'r R, controller: &'r Controller, period: Option<f64>) -> Result<Self, SimulateError> {
         let names = ["control.target", "control.kp", "control.kd", "control.torque"];
         let mut drive = Self::called(robot, Cow::Borrowed(controller), names)?;
         if matches!(controller, Controller::Pd { .. }) {
-            robot.tried(&mut drive.pursuit.ws, FunctionId::difference)?;
+            robot.check_function(&mut drive.pursuit.ws, FunctionId::difference)?;
         }
         Ok(Self { period, ..drive })
     }
 
-    /// The same, whose target, gains and torques whoever gave them calls so.
+    /// The same, with the caller's names of target, gains and torques for messages.
     pub(super) fn called(robot: &'r R, controller: Cow<'r, Controller>, names: [&'static str; 4]) -> Result<Self, SimulateError> {
         StateError::none(wrong(&controller, robot, names)?.into_iter())?;
         let mut pursuit = Pursuit::new(robot);
         if matches!(*controller, Controller::Pd { .. }) && !pursuit.is_flat() {
-            robot.tried(&mut pursuit.ws, FunctionId::difference)?;
+            robot.check_function(&mut pursuit.ws, FunctionId::difference)?;
         }
         Ok(Self { controller, period: None, pursuit })
     }
@@ -96,7 +97,7 @@ impl<'r, R: Dynamics<f64>> Pursuit<'r, R> {
     }
 }
 
-/// target ⊖ q, for which a robot of plain coordinates needs no function.
+/// target ⊖ q; a robot of plain coordinates needs no function for it.
 fn difference<R: Dynamics<f64>>(robot: &R, ws: &mut R::Workspace, q: &[f64], target: &[f64], out: &mut [f64]) -> Result<(), FunctionError> {
     if q.len() != out.len() {
         return robot.difference(ws, q, target, out);
@@ -148,7 +149,8 @@ impl<R: Dynamics<f64>> Control for Drive<'_, R> {
     }
 }
 
-/// What does not fit the robot, of vectors that are called so. Errors: a robot whose coordinates are not known.
+/// Vectors that do not fit the robot, under these names. Errors: a robot whose coordinates are
+/// unknown.
 fn wrong<R: Dynamics<f64>>(
     controller: &Controller,
     robot: &R,

@@ -1,4 +1,4 @@
-//! What moves the robot: torques as functions of time and state.
+//! Controllers: torques as functions of time and state.
 
 mod drive;
 mod pd;
@@ -12,38 +12,39 @@ pub use drive::Drive;
 pub use pd::Pd;
 pub use torque_table::TorqueTable;
 
-/// What gives the torques, closed or open loop.
+/// A controller, closed or open loop.
 ///
-/// A closure `|t, q, v, tau| …` is a controller that acts continuously; it is asked for each evaluation of the dynamics, also in steps that are rejected later, and has to be a
-/// function of its arguments there. What remembers anything should be sampled: [`Hold`].
+/// A closure `|t, q, v, tau| …` is a continuous controller. It is called for each evaluation of the
+/// dynamics, also in steps that are rejected later, so it must be a pure function of its arguments.
+/// A controller with state should be sampled: [`Hold`].
 pub trait Control {
-    /// The torques at time t, s, of the state q, v: tau `[nv]`, N·m|N, is zero when it comes.
+    /// The torques at time t, s, and state q, v: tau `[nv]`, N·m|N, is zero on entry.
     fn torques(&mut self, t: f64, q: &[f64], v: &[f64], tau: &mut [f64]);
 
-    /// For a controller that is sampled, the time between its samples, s: at the start and every period from there it is asked once, the torques are held until the next
-    /// sample, and no step reaches over one.
+    /// The period of a sampled controller, s. It is called once at the start and once every period;
+    /// its torques are held until the next sample, and no step crosses a sample.
     fn period(&self) -> Option<f64> {
         None
     }
 
-    /// The next time after t at which the torques have a kink or a jump, s: a step ends there, and is made with the torques before it. A controller that is
-    /// sampled is not asked.
+    /// The next time after t at which the torques have a kink or a jump, s. A step ends there and
+    /// uses the torques before it. Not called for sampled controllers.
     fn next_kink(&self, _t: f64) -> f64 {
         f64::INFINITY
     }
 
-    /// How many torques it gives, where that is fixed.
+    /// The number of torques, where that is fixed.
     fn count(&self) -> Option<usize> {
         None
     }
 
-    /// What the torques depend on. Linearly implicit steps take their derivatives, by differences.
+    /// The dependence of the torques. Linearly implicit steps differentiate them numerically.
     fn depends_on(&self) -> Dependence {
         Dependence { time: true, state: true }
     }
 }
 
-/// What torques depend on.
+/// Dependence of torques.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dependence {
     /// On time.
@@ -122,16 +123,19 @@ impl Control for Constant {
     }
 }
 
-/// A period that is not what it has to be.
+/// An invalid period.
 pub(crate) fn wrong_period(period: f64, right: String) -> StateError {
     StateError::Value { what: "period", found: period, right }
 }
 
 /// A controller sampled with a period: zero-order hold.
 ///
-/// At the start of a motion and every `period` seconds from there the control is called once, in the order of time, with the state at that time. Its torques are constant up
-/// to the next sample, no step reaches over a sample, and steps that are rejected call nothing: a control with a memory (a filter, an integral, a policy) works. Its own
-/// `period` and `next_kink` are ignored. A motion that is run in several stretches ([`Simulation::set_span`](super::Simulation::set_span)) samples again at the start of each stretch.
+/// The control is called once at the start of a motion and once every `period` seconds, in the
+/// order of time, with the state at that time. Its torques are constant up to the next sample. No
+/// step crosses a sample, and rejected steps do not call it, so a control with memory (a filter, an
+/// integral, a policy) works. Its own `period` and `next_kink` are ignored. A motion that runs in
+/// several spans ([`Simulation::set_span`](super::Simulation::set_span)) samples again at the start
+/// of each span.
 ///
 /// ```
 /// use articulated::simulate::{Control, Hold};
@@ -150,7 +154,7 @@ pub struct Hold<C> {
 }
 
 impl<C: Control> Hold<C> {
-    /// Samples every `period` seconds. Errors: a period that is no length of time.
+    /// Samples every `period` seconds. Errors: a period that is not positive and finite.
     pub fn new(control: C, period: f64) -> Result<Self, SimulateError> {
         let wrong = !Range::POSITIVE.has(period);
         StateError::none(wrong.then(|| wrong_period(period, format!("{}, s", Range::POSITIVE))).into_iter())?;

@@ -8,14 +8,17 @@ use articulated_core::dynamics::Dynamics;
 use super::{Control, Dependence, Drive};
 use crate::simulate::{SimulateError, StateError};
 
-/// τ = k_p·(target ⊖ q) + k_d·(rates − v), coordinate by coordinate; for a joint that turns freely the difference is a rotation vector.
+/// τ = k_p·(target ⊖ q) + k_d·(rates − v), coordinate by coordinate; for a quaternion joint the
+/// difference is a rotation vector.
 pub struct Pd<'r, R: Dynamics<f64>> {
     robot: &'r R,
     drive: Drive<'r, R>,
 }
 
 impl<'r, R: Dynamics<f64>> Pd<'r, R> {
-    /// target: `[nq]`; gains: `[nv]`, N·m/rad|N/m and N·m·s/rad|N·s/m; all that is wrong with them is told at once. The robot needs the function `difference` if one of its coordinates is a quaternion.
+    /// target: `[nq]`; gains: `[nv]`, N·m/rad|N/m and N·m·s/rad|N·s/m; all errors in them are
+    /// reported at once. The robot needs the function `difference` if one of its coordinates is a
+    /// quaternion.
     pub fn new(robot: &'r R, target: Vec<f64>, proportional: Vec<f64>, derivative: Vec<f64>) -> Result<Self, SimulateError> {
         let torque = vec![0.0; robot.shape().nv];
         let controller = Controller::Pd { target: Aim::Still(target), kp: proportional, kd: derivative, torque };

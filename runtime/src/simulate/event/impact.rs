@@ -1,4 +1,4 @@
-//! The blow between a point of the robot and a free ball: an instantaneous map.
+//! The impact of a point of the robot on a free ball: an instantaneous map of the state.
 
 use articulated_core::algorithm::check_length;
 use articulated_core::dynamics::Dynamics;
@@ -7,7 +7,7 @@ use articulated_core::effect::unit;
 use super::{Action, ContactPoint, Points, value, wrong_place};
 use crate::simulate::{SimulateError, StateError};
 
-/// A blow along a normal, without friction:
+/// A frictionless impact along a normal:
 ///
 /// ```text
 /// p = (1 + e)·(v_n − v_b)·m_b/(m_b·nᵀ J M⁻¹ Jᵀ n + 1)      v += −M⁻¹ Jᵀ n p      v_b += p/m_b
@@ -29,21 +29,22 @@ pub struct Impact<'r, R: Dynamics<f64>> {
     response: Vec<f64>,
 }
 
-/// What a blow did.
+/// The result of an impact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Struck {
     /// The ball's speed along the normal after it, m/s.
     pub ball_speed: f64,
     /// Momentum handed over, N·s; zero if point and ball were not approaching.
     pub impulse: f64,
-    /// m_h, kg: the mass that the ball feels.
+    /// m_h, kg: the effective mass of the robot at the point.
     pub effective_mass: f64,
     /// Speed of the point towards the ball before it, m/s.
     pub approach: f64,
 }
 
 impl<'r, R: Dynamics<f64>> Impact<'r, R> {
-    /// At a point whose normal leads to the ball; the ball's mass, kg; the coefficient of restitution, from 0 to 1. Errors: all numbers that cannot be used, at once.
+    /// At a point whose normal leads to the ball; the ball's mass, kg; the coefficient of
+    /// restitution, from 0 to 1. Errors: all invalid numbers, at once.
     pub fn new(robot: &'r R, at: ContactPoint, mass: f64, restitution: f64) -> Result<Self, SimulateError> {
         let ContactPoint { frame, point, normal } = at;
         let wrong_mass = value("mass of the ball", mass, "finite, greater than 0, kg", mass > 0.0);
@@ -86,7 +87,8 @@ impl<'r, R: Dynamics<f64>> Impact<'r, R> {
         Ok(Struck { ball_speed: ball + gain, impulse, effective_mass: 1.0 / inverse, approach })
     }
 
-    /// The blow against a ball at rest, as what is done at an event; the ball's speed, m/s, is what the map gives.
+    /// The impact on a ball at rest, as the action of an event; the map returns the ball's speed,
+    /// m/s.
     pub fn action<'a>(mut self) -> Action<'a>
     where
         Self: 'a,

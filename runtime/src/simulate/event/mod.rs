@@ -1,7 +1,7 @@
-//! Events: what happens at times that nobody knows beforehand.
+//! Events: zeros of functions of time and state, at times unknown beforehand.
 
+pub(crate) mod detectors;
 mod impact;
-pub(crate) mod watch;
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use super::{SimulateError, StateError};
 /// s²) is 0.995 of sliding friction μ.
 pub const SLIDING: f64 = 10.0;
 
-/// Which way an event's function goes through zero.
+/// Direction in which an event's function crosses zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Direction {
     /// From below to above.
@@ -35,7 +35,7 @@ type Function<'a> = dyn FnMut(f64, &[f64], &[f64]) -> f64 + 'a;
 /// A map of the state at time t: q `[nq]` and v `[nv]` may be changed; it may give a number to be recorded.
 pub type Map<'a> = dyn FnMut(f64, &mut [f64], &mut [f64]) -> Result<Option<f64>, SimulateError> + 'a;
 
-/// What is done at an event; it is recorded in any case.
+/// The action at an event; the event is recorded in any case.
 #[derive(Default)]
 pub enum Action<'a> {
     /// Nothing more.
@@ -47,30 +47,31 @@ pub enum Action<'a> {
     Map(Box<Map<'a>>),
 }
 
-/// A point of the robot that touches something, and the direction in which it does.
+/// A contact point of the robot with its normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPoint {
     /// Number of its frame among the robot's.
     pub frame: usize,
-    /// Where it is in the frame, m.
+    /// Its position in the frame, m.
     pub point: [f64; 3],
-    /// Normal of what it touches, in axes of the world frame, of any length but zero.
+    /// Normal of the touched surface, in world axes, of any non-zero length.
     pub normal: [f64; 3],
 }
 
-/// Something that happens where g(t, q, v) goes through zero.
+/// An event at the zeros of g(t, q, v).
 ///
 /// g is looked at eleven times a step on the integrator's curve: at its ends, and between so closely that a zero between two of them is found where g changes its
 /// sign, and a pair of zeros where |g| has a least value among them. What is missed is a pair that comes and goes between two neighbours without |g| falling towards them:
 /// less than an eighth of a step, which `max_step` can bound.
 pub struct Event<'a> {
     pub(crate) name: Arc<str>,
-    /// Which number of q or v it is about, if of one.
+    /// The entry of q or v that it depends on, if it is one.
     about: Option<About>,
-    /// Lower and upper bound, where nothing is between them.
+    /// Lower and upper bound of an empty range.
     inverted: Option<(f64, f64)>,
     pub(crate) direction: Direction,
-    /// Which way it goes if it is at zero where a motion begins, or where another event maps the state; none: it is told from there on.
+    /// Crossing direction assumed when the guard is zero at the start or after a state reset;
+    /// `None`: determined from the next sample.
     pub(crate) arriving: Option<Direction>,
     pub(crate) action: Action<'a>,
     pub(crate) function: Box<Function<'a>>,
@@ -97,22 +98,24 @@ impl<'a> Event<'a> {
         }
     }
 
-    /// Only where g goes this way.
+    /// Only crossings in this direction.
     #[must_use]
     pub fn direction(mut self, direction: Direction) -> Self {
         self.direction = direction;
         self
     }
 
-    /// What is exactly at zero where the motion begins goes through it this way, if it goes on so: it comes from the other side. Without this such a zero is no event, whichever way it is
-    /// left: a motion may begin on a section that it is to return to. [`Event::limit`] and [`Event::contact`] arrive falling.
+    /// A guard that is exactly zero at the start counts as a crossing in this direction if it
+    /// continues so: it is taken to come from the other side. Without this, such a zero is no event
+    /// in either direction, so a motion may start on a section to which it returns.
+    /// [`Event::limit`] and [`Event::contact`] arrive falling.
     #[must_use]
     pub fn arriving(mut self, direction: Direction) -> Self {
         self.arriving = Some(direction);
         self
     }
 
-    /// What is done.
+    /// The action.
     #[must_use]
     pub fn action(mut self, action: Action<'a>) -> Self {
         self.action = action;
@@ -147,7 +150,7 @@ impl<'a> Event<'a> {
         Self { about: Some(About::Rate(i)), ..Self::new(name, move |_, _, v: &[f64]| number(v, i).abs() - SLIDING * speed) }
     }
 
-    /// What is wrong with it for a robot of this shape: it is about a number that there is not, or has bounds that nothing can be between.
+    /// Errors for a robot of this shape: an index out of range, or bounds that exclude every value.
     pub(crate) fn wrong(&self, shape: Shape) -> impl Iterator<Item = StateError> {
         let event = || self.name.to_string();
         let about = self.about.map(|about| match about {
@@ -162,7 +165,7 @@ impl<'a> Event<'a> {
 
     /// A sphere of this radius, m, about a point touches the plane nᵀx = height, m, of the world frame, n its normal made of length one: its distance falls through zero.
     ///
-    /// The robot needs the function `placements`. Errors: all numbers that cannot be used, at once.
+    /// The robot needs the function `placements`. Errors: all invalid numbers, at once.
     pub fn contact<R: Dynamics<f64>>(
         name: impl Into<String>,
         robot: &'a R,
@@ -192,7 +195,7 @@ impl<'a> Event<'a> {
     }
 }
 
-/// To say what is wrong with a normal: its length, or 1 for one with a direction, whose length may be more than a number can say.
+/// For messages about a normal: its length, or 1 if it has a direction but its length overflows.
 fn length(normal: [f64; 3]) -> f64 {
     unit(normal).map_or_else(|| normal.iter().fold(0.0_f64, |length, n| length.hypot(*n)), |_| 1.0)
 }
@@ -202,7 +205,7 @@ fn value(what: &'static str, found: f64, right: &'static str, fit: bool) -> Opti
     (!fit || !found.is_finite()).then_some(StateError::Value { what, found, right: right.into() })
 }
 
-/// What is wrong with it for this robot.
+/// Errors for this robot.
 fn wrong_place<R: Dynamics<f64>>(robot: &R, at: &ContactPoint) -> impl Iterator<Item = StateError> {
     let (frames, length) = (robot.shape().frames, length(at.normal));
     let frame = (at.frame >= frames).then_some(StateError::Frame { index: at.frame, frames });

@@ -18,7 +18,8 @@ use super::step_control::{Controller, Error, Norm};
 use super::system::System;
 use super::{Control, IntegratorId, SimulateError};
 
-/// Where a step begins, time, y with u = 0 and dy/dt (not of those that say they do not want it), and its length h.
+/// The start of a step: time, y with u = 0, dy/dt (only for methods that request it), and its
+/// length h.
 #[derive(Clone, Copy)]
 pub(crate) struct Start<'a> {
     pub(crate) t: f64,
@@ -27,9 +28,9 @@ pub(crate) struct Start<'a> {
     pub(crate) f: &'a [f64],
 }
 
-/// What an integrator does. All vectors are as long as y.
+/// The interface of an integrator. All vectors have the length of y.
 pub(crate) trait Method<R: Dynamics<f64>> {
-    /// Another motion begins.
+    /// Starts another motion.
     fn reset(&mut self) {}
 
     /// One step from `start` to `end`; its error in `norm` if the method estimates one, else zero.
@@ -47,23 +48,23 @@ pub(crate) trait Method<R: Dynamics<f64>> {
         None
     }
 
-    /// Whether a step needs dy/dt where it begins.
+    /// Whether a step needs dy/dt at its start.
     fn wants_rate(&self) -> bool {
         true
     }
 
-    /// What remains to be done of a step that is accepted.
+    /// Completes an accepted step.
     fn finish(&mut self, _: &mut System<R>, _: &mut dyn Control, _: Start, _: &mut [f64]) -> Result<(), SimulateError> {
         Ok(())
     }
 
-    /// Makes ready for [`Method::between`] on the last step.
+    /// Prepares [`Method::between`] for the last step.
     fn prepare(&mut self, system: &mut System<R>, control: &mut dyn Control, start: Start, end: &[f64]) -> Result<(), SimulateError>;
 
     /// y at t + θ·h of the last step, θ from 0 to 1.
     fn between(&self, theta: f64, start: Start, end: &[f64], out: &mut [f64]);
 
-    /// How it chooses steps, if it can.
+    /// Its step control, if it has one.
     fn controller(&self) -> Option<Controller> {
         None
     }

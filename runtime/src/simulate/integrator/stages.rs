@@ -18,7 +18,7 @@ pub(super) struct Stages {
     argument: Vec<f64>,
     before: Vec<f64>,
     fastest: Fastest,
-    /// Whether to look for fast motion: who chooses steps by tolerance has no need.
+    /// Whether to look for fast motion: steps chosen by tolerance need no such check.
     looks: bool,
 }
 

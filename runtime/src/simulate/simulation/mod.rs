@@ -1,8 +1,8 @@
 //! A simulation: steps, outputs and events one after the other.
 
-mod happenings;
 mod pace;
 mod records;
+mod step_events;
 mod stepping;
 mod stiffness;
 
@@ -15,7 +15,7 @@ use self::pace::Pace;
 use self::stiffness::Held;
 use crate::simulate::control::wrong_period;
 use crate::simulate::curve::Point;
-use crate::simulate::event::watch::Watch;
+use crate::simulate::event::detectors::Detectors;
 use crate::simulate::integrator::{Method, Start, method};
 use crate::simulate::output::{Known, Times};
 use crate::simulate::stability::Stability;
@@ -31,7 +31,7 @@ pub struct Simulation<'r, R: Dynamics<f64>> {
     method: Box<dyn Method<R> + 'r>,
     norm: Norm,
     stability: Stability,
-    watch: Watch,
+    detectors: Detectors,
     known: Known,
     progress: Progress,
     /// Room that steps one by one take in place of records.
@@ -130,7 +130,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             method: method(settings.integrator, &system.manifold, settings.step.is_some() && settings.stiffness != Stiffness::Ignore),
             norm: Norm::new(&settings, nv),
             stability: Stability::new(n),
-            watch: Watch::default(),
+            detectors: Detectors::default(),
             known: Known::of(&mut system),
             progress: Progress::begin(settings.start, None, None, 0),
             unrecorded: None,
@@ -153,7 +153,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
     fn try_functions(&mut self) -> Result<(), SimulateError> {
         let System { robot, ws, .. } = &mut self.system;
         for function in self.settings.integrator.row().needs {
-            robot.tried(ws, *function)?;
+            robot.check_function(ws, *function)?;
         }
         Ok(())
     }
@@ -197,8 +197,9 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         Ok(recording)
     }
 
-    /// As [`Simulation::run`], into a recording that was made before; it holds what was up to an error, too. `watch` is told the time and the counts after each step,
-    /// and may say false to end it.
+    /// As [`Simulation::run`], into an existing recording, which also holds the motion up to an
+    /// error. `observer` receives the time and the counts after each step, and may say false to end
+    /// it.
     pub fn run_into(
         &mut self,
         q: &[f64],
@@ -206,7 +207,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         control: &mut dyn Control,
         events: &mut [Event],
         recording: &mut Recording,
-        watch: &mut dyn FnMut(f64, &Counts) -> bool,
+        observer: &mut dyn FnMut(f64, &Counts) -> bool,
     ) -> Result<(), SimulateError> {
         self.known.begin(&self.system, recording);
         let state = self.system.manifold.wrong_state(self.system.robot, q, v);
@@ -216,7 +217,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         self.progress.times = Some(Times::begin());
         self.progress.most_steps = self.settings.max_steps;
         let mut run = Run { control, events, recording };
-        let result = self.steps(&mut run, watch);
+        let result = self.steps(&mut run, observer);
         run.recording.counts = self.system.counts;
         run.recording.ended = result.map_err(|error| self.blamed(error))?;
         Ok(())
@@ -285,7 +286,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
             self.record_here(run)?;
         }
         self.follow_balance(run)?;
-        self.watch.begin(run.events.len());
+        self.detectors.begin(run.events.len());
         self.take_sides(run)?;
         if self.method.wants_rate() {
             self.rate_here(run)?;
@@ -295,11 +296,11 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         Ok(())
     }
 
-    fn steps(&mut self, run: &mut Run, watch: &mut dyn FnMut(f64, &Counts) -> bool) -> Result<Ended, SimulateError> {
+    fn steps(&mut self, run: &mut Run, observer: &mut dyn FnMut(f64, &Counts) -> bool) -> Result<Ended, SimulateError> {
         self.prepare(run)?;
         loop {
             let (outcome, mapped) = self.one_step(run)?;
-            let goes_on = watch(self.t, &self.system.counts);
+            let goes_on = observer(self.t, &self.system.counts);
             let ended = self.ended(&outcome, goes_on);
             // The end that was asked for is recorded if it was asked for.
             let early = ended.is_some_and(|ended| mapped || ended != Ended::AtEnd);
@@ -344,12 +345,12 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         Err(SimulateError::TooManySteps { t: self.t, steps })
     }
 
-    /// Whether a step with this outcome was the last, which who watches has let go on or not.
+    /// Whether the run ends after a step with this outcome (`goes_on`: the observer's answer).
     fn ended(&self, outcome: &Outcome, goes_on: bool) -> Option<Ended> {
         match outcome {
             Outcome::Stopped(event) => Some(Ended::ByEvent(*event)),
             Outcome::GoOn if self.t >= self.settings.end => Some(Ended::AtEnd),
-            _ if !goes_on => Some(Ended::ByWatcher),
+            _ if !goes_on => Some(Ended::ByObserver),
             _ => (self.t >= self.settings.end).then_some(Ended::AtEnd),
         }
     }
@@ -454,7 +455,7 @@ impl<'r, R: Dynamics<f64>> Simulation<'r, R> {
         SimulateError::StepTooSmall { t: self.t, step, what, index, joint, least }
     }
 
-    /// What of the end of the step is not finite.
+    /// The non-finite entries at the end of the step.
     fn not_finite(&self) -> Option<SimulateError> {
         let (u, v) = self.end[..2 * self.shape.nv].split_at(self.shape.nv);
         self.system.not_finite(self.t, STEP, u).or_else(|| self.system.not_finite(self.t, "v", v))

@@ -41,7 +41,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         Ok(())
     }
 
-    /// A stretch of time that is shorter than the steps that are asked for is one step.
+    /// A span shorter than the requested step is one step.
     fn longest_step(&self, asked: f64) -> f64 {
         asked.min(self.progress.until - self.progress.stretch.0)
     }

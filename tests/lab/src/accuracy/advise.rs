@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use articulated_codegen::Level;
+use articulated_codegen::Precision;
 use serde::Serialize;
 
 use super::report::{Point, Report};
@@ -90,7 +90,7 @@ pub(super) fn text(report: &Report, wish: f64) -> String {
             }
             _ => writeln!(out, "{}: nothing was measured", a.function),
         };
-        let level = a.level.as_deref().and_then(|level| level.parse::<Level>().ok());
+        let level = a.level.as_deref().and_then(|level| level.parse::<Precision>().ok());
         level.iter().flat_map(|l| l.contract()).for_each(|line| {
             let _ = writeln!(out, "    {line}");
         });

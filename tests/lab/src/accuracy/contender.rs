@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use articulated_codegen::Level;
+use articulated_codegen::Precision;
 use articulated_core::algorithm::Function;
 
 use crate::compare::timing::Run;
@@ -20,7 +20,7 @@ pub(super) struct Contender {
 
 impl Contender {
     /// None where the library does not have the function.
-    pub(super) fn new(compiled: &Compiled, level: Level, function: &Function<f64>, states: &[Vec<&[f64]>]) -> Option<Self> {
+    pub(super) fn new(compiled: &Compiled, level: Precision, function: &Function<f64>, states: &[Vec<&[f64]>]) -> Option<Self> {
         let single = level.is_single();
         let form = |x: &&[f64]| if single { packed(x) } else { x.to_vec() };
         let arguments = states.iter().map(|state| state.iter().map(form).collect()).collect();

@@ -4,7 +4,7 @@
 //! the constants that it has. The difference to the second is rounding alone.
 
 use articulated_codegen::graph::Graph;
-use articulated_codegen::{Generated, Level, bound};
+use articulated_codegen::{Generated, Precision, bound};
 use articulated_core::Scalar;
 use articulated_core::algorithm::Function;
 use articulated_core::model::Model;
@@ -29,10 +29,10 @@ pub(super) struct Verdict {
     pub(super) reached: Option<f64>,
 }
 
-/// Who gave a result: a level with its graph and bounds, or another library.
+/// Source of a result: generated code of a precision with its graph and bounds, or another library.
 pub(super) struct Found<'a> {
     pub(super) result: Vec<f64>,
-    pub(super) own: Option<(&'a Graph, Level)>,
+    pub(super) own: Option<(&'a Graph, Precision)>,
 }
 
 /// The graph of a function, where it is all of it.

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use articulated_codegen::{Generated, Level};
+use articulated_codegen::{Generated, Precision};
 use articulated_core::algorithm::{Function, function};
 use articulated_core::model::Model;
 use articulated_reference::{BITS, Big};
@@ -24,8 +24,8 @@ use crate::process::Folder;
 use crate::robot::Robot;
 
 /// A level's library.
-struct Made {
-    level: Level,
+struct BuiltRobot {
+    level: Precision,
     generated: Generated,
     compiled: Compiled,
 }
@@ -36,17 +36,17 @@ pub(super) fn all(
     reference: &Reference,
     rustc: &Rustc,
     functions: &[&'static str],
-    levels: &[Level],
+    levels: &[Precision],
     settings: &Settings,
 ) -> Result<Report, Error> {
     let progress = Progress::new(levels.len() + 2 * functions.len());
-    let make = |level: &Level| {
+    let make = |level: &Precision| {
         progress.doing(format!("{level}: generation and rustc"));
-        let made = made(robot, rustc, functions, *level);
+        let made = build(robot, rustc, functions, *level);
         progress.step();
         made
     };
-    let made: Vec<Made> = parallel::map(levels, make).into_iter().collect::<Result<_, _>>()?;
+    let made: Vec<BuiltRobot> = parallel::map(levels, make).into_iter().collect::<Result<_, _>>()?;
     let Some(first) = made.first() else { return Err(Error::input(["no level to measure".to_owned()])) };
     let model = &first.generated.model;
     let mut report = report(robot, reference, model, rustc, settings);
@@ -65,13 +65,13 @@ pub(super) fn all(
     Ok(report)
 }
 
-fn made(robot: &Robot, rustc: &Rustc, functions: &[&'static str], level: Level) -> Result<Made, Error> {
+fn build(robot: &Robot, rustc: &Rustc, functions: &[&'static str], level: Precision) -> Result<BuiltRobot, Error> {
     let names: Vec<String> = functions.iter().map(|f| (*f).to_owned()).collect();
     let mut request = robot.request(&names);
     request.options.level = level;
     let generated = articulated_codegen::generate(&request)?;
     let compiled = Compiled::build(rustc, &generated).map_err(|e| Error::tool(&e))?;
-    Ok(Made { level, generated, compiled })
+    Ok(BuiltRobot { level, generated, compiled })
 }
 
 fn report(robot: &Robot, reference: &Reference, model: &Model<f64>, rustc: &Rustc, settings: &Settings) -> Report {
@@ -104,7 +104,7 @@ struct One<'a> {
     f: &'static Function<f64>,
     model: &'a Model<f64>,
     reference: &'a Reference,
-    made: &'a [Made],
+    made: &'a [BuiltRobot],
     peers: &'a [Peer],
     /// For `f64`, and for `f32`.
     sets: &'a [Vec<Case>; 2],
@@ -121,8 +121,8 @@ impl One<'_> {
     fn report(&self) -> FunctionReport {
         let arguments =
             self.sets.each_ref().map(|set| set.iter().map(|c| c.state.arguments(self.f).unwrap_or_default()).collect::<Vec<_>>());
-        let set = |level: Level| usize::from(level.is_single());
-        let ours: Vec<(&Made, Contender)> =
+        let set = |level: Precision| usize::from(level.is_single());
+        let ours: Vec<(&BuiltRobot, Contender)> =
             self.made.iter().filter_map(|m| Some((m, Contender::new(&m.compiled, m.level, self.f, &arguments[set(m.level)])?))).collect();
         let theirs: Vec<(&Peer, Theirs)> =
             self.peers.iter().filter_map(|p| Some((p, Theirs::of(p, self.f, self.model, &arguments[0])?))).collect();
@@ -140,7 +140,7 @@ impl One<'_> {
     }
 
     /// ns per call on the random states, of ours and then of theirs, in turns.
-    fn times(&self, ours: &[(&Made, Contender)], theirs: &[(&Peer, Theirs)]) -> Vec<Vec<f64>> {
+    fn times(&self, ours: &[(&BuiltRobot, Contender)], theirs: &[(&Peer, Theirs)]) -> Vec<Vec<f64>> {
         let random = self.sets[0].iter().filter(|c| c.hard.is_none()).count();
         let slices: Vec<Vec<Vec<&[f64]>>> = ours.iter().map(|(_, c)| c.slices(random)).collect();
         let their_slices: Vec<Vec<Vec<&[f64]>>> = theirs.iter().map(|(_, t)| t.slices(random)).collect();
@@ -149,7 +149,7 @@ impl One<'_> {
         timing::interleaved(&mut runs, self.repetitions)
     }
 
-    fn entry(&self, made: Option<&Made>, name: &str, times: &[f64]) -> Entry {
+    fn entry(&self, made: Option<&BuiltRobot>, name: &str, times: &[f64]) -> Entry {
         let ledger = made.and_then(|m| m.generated.ledger.functions.iter().find(|e| e.function == self.f.name));
         let point = Point {
             level: name.to_owned(),
@@ -176,7 +176,7 @@ impl One<'_> {
         &self,
         single: bool,
         arguments: &[Vec<&[f64]>],
-        ours: &[(&Made, Contender)],
+        ours: &[(&BuiltRobot, Contender)],
         theirs: &[(&Peer, Theirs)],
         entries: &mut [Entry],
     ) {
@@ -218,7 +218,7 @@ fn judge_some(
     (model, f): (&Model<f64>, &'static Function<f64>),
     arguments: &[Vec<&[f64]>],
     results: &[Vec<Vec<f64>>],
-    graphs: &[Option<(&articulated_codegen::graph::Graph, Level)>],
+    graphs: &[Option<(&articulated_codegen::graph::Graph, Precision)>],
 ) -> Vec<(usize, Vec<Verdict>)> {
     Big::scope(|| {
         let Some(exact) = reference.exact(model) else { return Vec::new() };

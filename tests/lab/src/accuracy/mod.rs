@@ -14,7 +14,7 @@ mod states;
 mod text;
 mod words;
 
-use articulated_codegen::Level;
+use articulated_codegen::Precision;
 use articulated_core::algorithm::function;
 use articulated_core::description::Description;
 
@@ -37,8 +37,8 @@ pub fn measure(robot: &Robot, description: &Description, settings: &Settings) ->
             functions.push(name);
         }
     }
-    let mut levels: Vec<Level> = Vec::new();
-    for level in if settings.levels.is_empty() { Level::all() } else { settings.levels.clone() } {
+    let mut levels: Vec<Precision> = Vec::new();
+    for level in if settings.levels.is_empty() { Precision::all() } else { settings.levels.clone() } {
         if !levels.contains(&level) {
             levels.push(level);
         }

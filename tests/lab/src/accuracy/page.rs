@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use articulated_codegen::Level;
+use articulated_codegen::Precision;
 
 use super::report::{FunctionReport, Point, Report};
 use super::text;
@@ -108,7 +108,7 @@ fn contracts(out: &mut String, report: &Report) {
     *out += "<h2>What each level promises</h2>\n<dl>";
     let mut seen: Vec<&str> = Vec::new();
     for p in report.functions.iter().flat_map(|f| &f.points).filter(|p| !p.peer) {
-        if let (false, Ok(level)) = (seen.contains(&p.level.as_str()), p.level.parse::<Level>()) {
+        if let (false, Ok(level)) = (seen.contains(&p.level.as_str()), p.level.parse::<Precision>()) {
             seen.push(&p.level);
             let _ = writeln!(out, "<dt><code>{level}</code></dt><dd>{}</dd>", escaped(&level.contract().join(" ")));
         }

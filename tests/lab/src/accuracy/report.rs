@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use articulated_codegen::Level;
+use articulated_codegen::Precision;
 use serde::Serialize;
 
 use crate::compare::accuracy::Against;
@@ -15,7 +15,7 @@ pub struct Settings {
     /// The functions; none are four of kinematics and dynamics.
     pub functions: Vec<String>,
     /// The levels; none are all.
-    pub levels: Vec<Level>,
+    pub levels: Vec<Precision>,
     /// How many random states.
     pub states: u32,
     /// Their seed.

@@ -1,5 +1,4 @@
-//! Simulations against peers: how long who needs to get to the end of a motion, at the same error
-//! there.
+//! Simulations against peers: wall time of each engine to reach the end at equal error there.
 
 mod ours;
 pub(crate) mod peers;
@@ -11,7 +10,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use articulated::simulate::{IntegratorId, Settings};
-use articulated_motion::Begin;
+use articulated_motion::InitialState;
 
 use crate::compare::manifest::{self, Library};
 use crate::compare::timing::{self, Run};
@@ -19,7 +18,7 @@ use crate::compiled::Rustc;
 use crate::console::Progress;
 use crate::error::Error;
 use crate::process::Folder;
-use crate::stage::Stage;
+use crate::session::Session;
 use crate::straight::Straight;
 use ours::Ours;
 use peers::Peer;
@@ -31,31 +30,31 @@ use search::{Effort, search};
 const TARGETS: [f64; 3] = [1e-3, 1e-6, 1e-9];
 const REPETITIONS: usize = 15;
 
-/// Somebody who can get to the end of the motion.
+/// An engine that simulates the motion.
 trait Runner {
     fn name(&self) -> String;
     fn order(&self) -> u32;
     /// Whether it is `articulated`.
-    fn own(&self) -> bool;
+    fn is_ours(&self) -> bool;
     /// From the least to the most that makes sense.
     fn effort(&self, level: usize) -> Option<Effort>;
-    /// Goes to the end; (q, v) there, or nothing if it went astray.
+    /// Simulates to the end; (q, v) there, or `None` if it diverged.
     fn run(&mut self, effort: Effort) -> Option<Vec<f64>>;
     /// Steps and evaluations of forward dynamics of the last run.
     fn spent(&self) -> (u64, u64);
 }
 
 /// Measures a motion from its start. `file`: a peer library, or a list of them (JSON).
-pub fn measure(stage: &Stage, begin: &Begin, settings: &Settings, file: &Path) -> Result<Report, Error> {
-    known_to_peers(stage)?;
-    let Begin { q, v, .. } = begin;
+pub fn measure(session: &Session, initial: &InitialState, settings: &Settings, file: &Path) -> Result<Report, Error> {
+    known_to_peers(session)?;
+    let InitialState { q, v, .. } = initial;
     let rustc = Rustc::find().map_err(|e| Error::tool(&e))?;
-    let (generated, _) = stage.generate(IntegratorId::dop853)?;
+    let (generated, _) = session.generate(IntegratorId::dop853)?;
     let robot = Straight::build(&rustc, &generated).map_err(|e| Error::tool(&e))?;
     let folder = Folder::new().map_err(|e| Error::tool(&e))?;
     let list = file.extension().is_some_and(|e| e == "json");
     let libraries = if list { manifest::read(file).map_err(|line| Error::input([line]))? } else { vec![Library::at(file)] };
-    let (peers, notes) = peers::open(stage, &libraries, folder.path(), (q, v), settings.end - settings.start)?;
+    let (peers, notes) = peers::open(session, &libraries, folder.path(), (q, v), settings.end - settings.start)?;
     let ours = |id| Ours::new(&robot, id, settings, (q, v));
     let mut reference = ours(IntegratorId::dop853);
     let best = reference.run(Effort::Tolerance(1e-14)).ok_or_else(|| astray("the reference"))?;
@@ -71,8 +70,8 @@ pub fn measure(stage: &Stage, begin: &Begin, settings: &Settings, file: &Path) -
         target
     });
     let report = Report {
-        scene: stage.name.clone(),
-        robot: stage.model.name().to_owned(),
+        scene: session.name.clone(),
+        robot: session.model.name.clone(),
         simulated_s: settings.end - settings.start,
         reference: format!("dop853 at a tolerance of 1e-14; at 4e-14 its last state is {:.1e} away", search::distance(&best, &second)),
         compiler: rustc.version.clone(),
@@ -91,10 +90,10 @@ impl Report {
 }
 
 /// Whether the scene has nothing that peers do not know.
-fn known_to_peers(stage: &Stage) -> Result<(), Error> {
-    let file = &stage.scene.file;
+fn known_to_peers(session: &Session) -> Result<(), Error> {
+    let file = &session.scene.file;
     let told = |what| format!("{file}: found {what}, expected none for --against: peers know the robot's file and its gravity only");
-    let lines: Vec<String> = unknown_to_peers(stage).into_iter().map(told).collect();
+    let lines: Vec<String> = unknown_to_peers(session).into_iter().map(told).collect();
     if lines.is_empty() { Ok(()) } else { Err(Error::input(lines)) }
 }
 
@@ -102,9 +101,9 @@ fn astray(who: &str) -> Error {
     Error::input([format!("{who} does not get to the end of the motion")])
 }
 
-/// What a scene has that peers do not know: they are told the robot's file and gravity, and nothing else.
-pub(crate) fn unknown_to_peers(stage: &Stage) -> Vec<&'static str> {
-    let (o, scene) = (&stage.request.options, &stage.scene);
+/// Content of a scene that peers do not know: they receive the robot's file and gravity only.
+pub(crate) fn unknown_to_peers(session: &Session) -> Vec<&'static str> {
+    let (o, scene) = (&session.request.options, &session.scene);
     let asked = [
         (!o.robot.effects.is_empty(), "effects"),
         (!o.robot.shafts.is_empty(), "effects.shaft"),
@@ -142,7 +141,7 @@ fn timed(runners: &mut [Box<dyn Runner + '_>], target: usize, found: &Found, set
         let Some((effort, error)) = found[target] else { continue };
         runner.run(effort);
         let (steps, evaluations) = runner.spent();
-        let (name, order, own) = (runner.name(), runner.order(), runner.own());
+        let (name, order, own) = (runner.name(), runner.order(), runner.is_ours());
         reached.push(Reached { name, order, own, effort, error, steps, evaluations, ..Reached::default() });
         runs.push(Run::new(1, move |rounds| {
             let clock = Instant::now();

@@ -43,7 +43,7 @@ impl Runner for Ours<'_> {
         self.settings.integrator.row().order
     }
 
-    fn own(&self) -> bool {
+    fn is_ours(&self) -> bool {
         true
     }
 

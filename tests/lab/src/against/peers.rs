@@ -10,7 +10,7 @@ use crate::compare::manifest::Library;
 use crate::compare::peer::orders;
 use crate::error::Error;
 use crate::native::{Native, NativePeer, Stepping};
-use crate::stage::Stage;
+use crate::session::Session;
 
 /// A peer at the start of the motion.
 pub(crate) struct Peer {
@@ -27,17 +27,17 @@ pub(crate) struct Peer {
 
 /// Those of the libraries that make steps and read the robot, and why others do not. They start at (q, v), in our order, and go on for so many seconds.
 pub(crate) fn open(
-    stage: &Stage,
+    session: &Session,
     libraries: &[Library],
     folder: &Path,
     start: (&[f64], &[f64]),
     seconds: f64,
 ) -> Result<(Vec<Peer>, Vec<String>), Error> {
     let urdf = folder.join("robot.urdf");
-    std::fs::write(&urdf, &stage.request.document).map_err(|e| Error::tool(&e))?;
+    std::fs::write(&urdf, &session.request.document).map_err(|e| Error::tool(&e))?;
     let (mut peers, mut notes) = (Vec::new(), Vec::new());
     for library in libraries {
-        match Peer::open(stage, library, &urdf, start, seconds) {
+        match Peer::open(session, library, &urdf, start, seconds) {
             Ok(Some(peer)) => peers.push(peer),
             Ok(None) => {}
             Err(reason) => {
@@ -54,16 +54,16 @@ pub(crate) fn open(
 
 impl Peer {
     /// `None`: it is no engine of simulation.
-    fn open(stage: &Stage, library: &Library, urdf: &Path, start: (&[f64], &[f64]), seconds: f64) -> Result<Option<Self>, String> {
+    fn open(session: &Session, library: &Library, urdf: &Path, start: (&[f64], &[f64]), seconds: f64) -> Result<Option<Self>, String> {
         let opened = Native::open(&library.path)?;
         let engine = library.engine.clone().or_else(|| opened.peer_name()).ok_or("it has no function peer_name")?;
-        let gravity = stage.request.options.robot.gravity;
+        let gravity = session.request.options.robot.gravity;
         if !opened.simulates() {
             return Ok(None);
         }
-        let native = NativePeer::open(&opened, urdf, stage.base() == Base::Floating, gravity)?;
+        let native = NativePeer::open(&opened, urdf, session.base() == Base::Floating, gravity)?;
         let method = native.methods().into_iter().next().ok_or("it names no method")?;
-        let orders = orders(&native, &stage.model)?;
+        let orders = orders(&native, &session.model)?;
         let pick = |x: &[f64], order: &[usize]| order.iter().map(|&k| x[k]).collect::<Vec<f64>>();
         let start = (pick(start.0, &orders.0), pick(start.1, &orders.1));
         Ok(Some(Self { engine, native, orders, start, length: seconds, method, steps: 0 }))
@@ -101,7 +101,7 @@ impl Runner for Peer {
         self.method.order
     }
 
-    fn own(&self) -> bool {
+    fn is_ours(&self) -> bool {
         false
     }
 

@@ -1,4 +1,4 @@
-//! Who needs how long, as data.
+//! Wall times of engines, as data.
 
 use serde::Serialize;
 

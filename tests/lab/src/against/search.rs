@@ -4,11 +4,11 @@ use serde::Serialize;
 
 use super::Runner;
 
-/// How hard somebody tries.
+/// The effort of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Effort {
-    /// So many equal steps.
+    /// A number of equal steps.
     Steps(usize),
     /// Steps by this tolerance, relative and absolute.
     Tolerance(f64),
@@ -65,7 +65,7 @@ mod tests {
             4
         }
 
-        fn own(&self) -> bool {
+        fn is_ours(&self) -> bool {
             false
         }
 

@@ -1,4 +1,4 @@
-//! Who needs how long, for people.
+//! Wall times of engines, as text.
 
 use std::fmt::Write;
 

@@ -1,4 +1,4 @@
-//! Who is measured: something that computes a function of a robot.
+//! A contender: a computation of a function of a robot.
 
 use std::cell::RefCell;
 use std::hint::black_box;
@@ -110,7 +110,8 @@ enum Calls {
     Dependent,
 }
 
-/// Bytes of arguments that a round goes through at most, half of a small first-level cache: who calls a function has just made its arguments.
+/// Bytes of arguments that a round goes through at most, half of a small first-level cache: a
+/// caller has usually just computed the arguments.
 const NEAR: usize = 16 << 10;
 
 /// The first of the states, as many as are near.

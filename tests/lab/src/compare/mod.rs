@@ -34,14 +34,14 @@ use lanes::Lanes;
 use making::Making;
 use manifest::Library;
 use peer::Peer;
-use prepare::{Plan, Prepared, Unready};
+use prepare::{Plan, PrepareError, Prepared};
 use report::{FunctionReport, PeerLibrary, PeerReport, VariantReport};
 pub use report::{Report, Settings};
 
 /// Other code of ours may differ from generic code by this much of the sum of the magnitudes of the terms.
 const VARIANT_BOUND: f64 = 1e-9;
 
-/// The name of code that is compiled without being told the machine.
+/// The name of code compiled without options for this machine.
 const DEFAULT_BUILD: &str = "any processor";
 
 /// Measures a robot. `whole`: its model with a frame for each link.
@@ -94,7 +94,7 @@ fn open_peers(settings: &Settings, robot: &Robot, model: &Model<f64>, folder: &P
     Ok(peers)
 }
 
-/// All functions that were asked for, or all that the robot has.
+/// The requested functions, or all that the robot has.
 fn prepare_all(plan: &Plan, settings: &Settings, report: &mut Report) -> Result<Vec<Prepared>, Error> {
     let chosen = &settings.functions;
     let mut names = if chosen.is_empty() { function_groups::all() } else { chosen.clone() };
@@ -111,9 +111,9 @@ fn prepare_all(plan: &Plan, settings: &Settings, report: &mut Report) -> Result<
     for (result, f) in parallel::map(&rows, |f| plan.prepare(f, &progress)).into_iter().zip(rows) {
         match result {
             Ok(ready) => prepared.push(ready),
-            Err(Unready::Undefined(why)) if chosen.is_empty() => report.notes.push(format!("{} is left out: {why}", f.name)),
-            Err(Unready::Undefined(why)) => return Err(Error::input([format!("{}: {why}", f.name)])),
-            Err(Unready::Failed(failure)) => return Err(failure),
+            Err(PrepareError::Undefined(why)) if chosen.is_empty() => report.notes.push(format!("{} is left out: {why}", f.name)),
+            Err(PrepareError::Undefined(why)) => return Err(Error::input([format!("{}: {why}", f.name)])),
+            Err(PrepareError::Failed(failure)) => return Err(failure),
         }
     }
     Ok(prepared)

@@ -53,14 +53,14 @@ pub(super) struct Prepared {
 }
 
 /// Why a function is not.
-pub(super) enum Unready {
+pub(super) enum PrepareError {
     /// It does not exist for this robot.
     Undefined(String),
     Failed(Error),
 }
 
 impl Plan {
-    pub(super) fn prepare(&self, function: &'static Function<f64>, progress: &Progress) -> Result<Prepared, Unready> {
+    pub(super) fn prepare(&self, function: &'static Function<f64>, progress: &Progress) -> Result<Prepared, PrepareError> {
         progress.doing(format!("{}: generation", function.name));
         let robot = self.robot_for(function)?;
         let start = Instant::now();
@@ -69,7 +69,7 @@ impl Plan {
         let instructions = generated.ledger.functions[0].emitted().instructions();
         if instructions > MOST && !self.named {
             let why = format!("{instructions} instructions take rustc minutes; name it in --functions to have it compared");
-            return Err(Unready::Undefined(why));
+            return Err(PrepareError::Undefined(why));
         }
         progress.doing(format!("{}: rustc", function.name));
         let build = |target| Compiled::build_for(target, &self.rustc, &generated).map_err(|e| Error::tool(&e));
@@ -87,7 +87,7 @@ impl Plan {
     }
 
     /// The function of many states.
-    fn batches(&self, robot: &Robot, function: &Function<f64>) -> Result<CompiledBatches, Unready> {
+    fn batches(&self, robot: &Robot, function: &Function<f64>) -> Result<CompiledBatches, PrepareError> {
         let mut robot = robot.clone();
         robot.options.rust_mut().batch.clone_from(&self.batch);
         let generated = robot.generate(&[function.name.to_owned()])?;
@@ -95,9 +95,9 @@ impl Plan {
     }
 
     /// The robot with the frames that the function is compared on.
-    fn robot_for(&self, function: &Function<f64>) -> Result<Robot, Unready> {
+    fn robot_for(&self, function: &Function<f64>) -> Result<Robot, PrepareError> {
         let Some(tips) = &self.tips else { return Ok(self.robot.clone()) };
-        let frames = tips.of_function(function).ok_or_else(|| Unready::Undefined(FEW.into()))?;
+        let frames = tips.of_function(function).ok_or_else(|| PrepareError::Undefined(FEW.into()))?;
         Ok(self.robot.clone().on(frames))
     }
 }
@@ -107,7 +107,7 @@ pub(super) fn arguments<'a>(states: &'a [State], function: &Function<f64>) -> Ve
     states.iter().map(|s| s.arguments(function).unwrap_or_default()).collect()
 }
 
-impl From<Diagnostics> for Unready {
+impl From<Diagnostics> for PrepareError {
     fn from(findings: Diagnostics) -> Self {
         match undefined(findings) {
             Ok(why) => Self::Undefined(why),
@@ -116,7 +116,7 @@ impl From<Diagnostics> for Unready {
     }
 }
 
-impl From<Error> for Unready {
+impl From<Error> for PrepareError {
     fn from(failure: Error) -> Self {
         Self::Failed(failure)
     }

@@ -151,7 +151,7 @@ pub(super) struct FunctionReport {
     pub(super) generic_over_generated: Summary,
     /// Other code of ours.
     pub(super) variants: Vec<VariantReport>,
-    /// Of many states at once, if that was asked for.
+    /// Results of batches, if requested.
     pub(super) batches: Vec<BatchReport>,
     pub(super) peers: Vec<PeerReport>,
     /// Times of peers that compute several states a call; empty unless batches are requested.

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-/// Somebody who is timed.
+/// A timed contender.
 pub struct Run<'a> {
     /// How many states a round goes through.
     states: usize,

@@ -1,7 +1,7 @@
 //! Functions of one state in code that the command has compiled.
 
 use super::entry::{OfState, Waiting};
-use super::{Lengths, Native, begin, begins};
+use super::{Lengths, Native, all_pointers, pointers};
 
 /// A function on arrays of doubles, with the lengths it was promised to have. Keeps its library open.
 #[derive(Clone, Debug)]
@@ -29,7 +29,7 @@ impl Kernel {
     pub(crate) fn call(&self, x: &[&[f64]], out: &mut [f64]) {
         assert!(self.fits(x, out));
         // SAFETY: the arrays have the lengths that the library reads and writes, and it is open as long as the kernel lives.
-        unsafe { self.entry.run(1, &[begin(x)], out.as_mut_ptr().cast()) }
+        unsafe { self.entry.run(1, &[pointers(x)], out.as_mut_ptr().cast()) }
     }
 
     /// Whether these are arguments and a result of the lengths promised.
@@ -45,7 +45,7 @@ impl Kernel {
     pub(crate) fn repeat(&self, rounds: usize, states: &[Vec<&[f64]>], out: &mut [f64]) {
         assert!(states.iter().all(|x| self.fits(x, out)));
         // SAFETY: as in `call`.
-        unsafe { self.entry.run(rounds, &begins(states), out.as_mut_ptr().cast()) }
+        unsafe { self.entry.run(rounds, &all_pointers(states), out.as_mut_ptr().cast()) }
     }
 
     /// The same, each call after the result of the one before.
@@ -57,6 +57,6 @@ impl Kernel {
         out.fill(0.0);
         let mut waiting = Waiting::new(self.lengths.arguments[0], out.as_ptr(), out.len());
         // SAFETY: as in `call`; the result has at least one number, or `Waiting::new` panicked.
-        unsafe { self.entry.run_waiting(rounds, &begins(states), &mut waiting, out.as_mut_ptr().cast()) }
+        unsafe { self.entry.run_waiting(rounds, &all_pointers(states), &mut waiting, out.as_mut_ptr().cast()) }
     }
 }

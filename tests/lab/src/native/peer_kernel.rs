@@ -5,7 +5,7 @@ use std::rc::Rc;
 
 use super::entry::{Keeping, Waiting, Writing};
 use super::peer::{H, NativePeer, Opened};
-use super::{Lengths, O, P, begin, begins};
+use super::{Lengths, O, P, all_pointers, pointers};
 
 /// A peer's function of its robot, with the lengths it was promised to have. Keeps its robot open.
 #[derive(Clone, Debug)]
@@ -77,7 +77,7 @@ impl PeerKernel {
         assert!(self.lengths.fit(x, out));
         let (robot, out) = (self.robot.handle, out.as_mut_ptr().cast());
         // SAFETY: the arrays have the lengths that the peer reads and writes, and the robot is open as long as the kernel lives; it is used by one thread only.
-        unsafe { self.entry.run(1, &[begin(x)], robot, out) };
+        unsafe { self.entry.run(1, &[pointers(x)], robot, out) };
         let Some(name) = &self.kept else { return true };
         type Read = unsafe extern "C" fn(H, *const c_char, O) -> c_int;
         // SAFETY: the type of the interface; it writes the result of the function, whose length was checked.
@@ -91,7 +91,7 @@ impl PeerKernel {
     pub(crate) fn repeat(&self, rounds: usize, states: &[Vec<&[f64]>], out: &mut [f64]) {
         assert!(states.iter().all(|x| self.lengths.fit(x, out)));
         // SAFETY: as in `call`.
-        unsafe { self.entry.run(rounds, &begins(states), self.robot.handle, out.as_mut_ptr().cast()) }
+        unsafe { self.entry.run(rounds, &all_pointers(states), self.robot.handle, out.as_mut_ptr().cast()) }
     }
 
     /// The same, each call after the result of the one before.
@@ -104,7 +104,7 @@ impl PeerKernel {
         out.fill(0.0);
         let mut waiting = Waiting::new(self.lengths.arguments[0], out.as_ptr(), out.len());
         // SAFETY: as in `call`; the result has at least one number, or `Waiting::new` panicked.
-        unsafe { entry.run_waiting(rounds, &begins(states), &mut waiting, self.robot.handle, out.as_mut_ptr().cast()) }
+        unsafe { entry.run_waiting(rounds, &all_pointers(states), &mut waiting, self.robot.handle, out.as_mut_ptr().cast()) }
     }
 
     /// Whether the peer writes a result that the next call can wait for.

@@ -3,7 +3,7 @@
 use articulated_codegen::nearest;
 use articulated_core::algorithm::Argument;
 use articulated_core::model::Model;
-use articulated_core::spatial::{NORM_TOLERANCE, given_norm};
+use articulated_core::spatial::{NORM_TOLERANCE, input_norm};
 use articulated_scene::beyond_sense;
 
 use super::random::normalise;
@@ -75,7 +75,7 @@ impl<'a> Found<'a> {
         let model = self.model;
         for (joint, at) in quaternions(model) {
             let (quaternion, name) = (&mut q[at..at + 4], &joint.name);
-            match given_norm(quaternion) {
+            match input_norm(quaternion) {
                 Err(norm) => {
                     self.error(place, format!("joint {name:?}: found a quaternion of norm {norm}, expected 1 within {NORM_TOLERANCE:e}"));
                 }

@@ -8,11 +8,11 @@ pub mod corpus;
 pub mod judge;
 pub mod levels;
 pub mod machine;
-pub mod own;
 mod report;
 pub mod robots;
 pub mod row;
 mod text;
+pub mod user_robot;
 
 pub use report::{Report, Settings, chapters, of_corpus, of_robot};
 

@@ -1,14 +1,14 @@
 //! Which rows are measured.
 
-use articulated_codegen::{Level, Options};
+use articulated_codegen::{Options, Precision};
 use articulated_core::model::Model;
 use serde::Serialize;
 
 use super::corpus::{CHAPTERS, Effort};
 use super::judge::State;
-use super::own::Found;
 use super::row::Row;
-use super::{levels, own};
+use super::user_robot::Found;
+use super::{levels, user_robot};
 use crate::console::Progress;
 use crate::error::Error;
 use crate::robot::{Robot, note_of_parameters};
@@ -36,12 +36,12 @@ pub struct Settings {
     /// Generated code too, compiled by rustc.
     pub generated: bool,
     /// At these levels; none are all of the corpus, and the default one of robots.
-    pub levels: Vec<Level>,
+    pub levels: Vec<Precision>,
 }
 
 /// All names of chapters.
 pub fn chapters() -> impl Iterator<Item = &'static str> {
-    CHAPTERS.iter().map(|(name, _)| *name).chain([levels::NAME, own::NAME])
+    CHAPTERS.iter().map(|(name, _)| *name).chain([levels::NAME, user_robot::NAME])
 }
 
 /// Measures the corpus and the bundled robots.
@@ -58,11 +58,11 @@ pub fn of_corpus(settings: &Settings) -> Result<Report, Error> {
     }
     if settings.generated && wanted(levels::NAME) || settings.chapters.iter().any(|c| c == levels::NAME) {
         progress.doing(format!("chapter {}", levels::NAME));
-        let all = if settings.levels.is_empty() { Level::all() } else { settings.levels.clone() };
+        let all = if settings.levels.is_empty() { Precision::all() } else { settings.levels.clone() };
         rows.extend(levels::chapter(effort, &all)?);
     }
     progress.step();
-    if wanted(own::NAME) {
+    if wanted(user_robot::NAME) {
         for bundled in articulated_models::ROBOTS {
             progress.doing(format!("robot {}", bundled.name));
             let mut options = Options::default();
@@ -71,7 +71,7 @@ pub fn of_corpus(settings: &Settings) -> Result<Report, Error> {
             let robot = Robot { file, scene: None, document: bundled.urdf.as_bytes().to_vec(), options, effects: None, path: None };
             let request = robot.request(&[]);
             let model = request.build_robot()?.model;
-            let found = own::rows(&robot, &model, &[], &of_robots(settings))?;
+            let found = user_robot::rows(&robot, &model, &[], &of_robots(settings))?;
             rows.extend(found.rows);
             notes.extend(found.notes.iter().map(|note| format!("{}: {note}", robot.file)));
         }
@@ -81,10 +81,10 @@ pub fn of_corpus(settings: &Settings) -> Result<Report, Error> {
 }
 
 /// The levels of robots' generated code.
-fn of_robots(settings: &Settings) -> Vec<Level> {
+fn of_robots(settings: &Settings) -> Vec<Precision> {
     match (settings.generated, settings.levels.is_empty()) {
         (false, _) => Vec::new(),
-        (true, true) => vec![Level::default()],
+        (true, true) => vec![Precision::default()],
         (true, false) => settings.levels.clone(),
     }
 }
@@ -92,7 +92,7 @@ fn of_robots(settings: &Settings) -> Vec<Level> {
 /// Measures a robot: on states at random, on hard ones, and on those given. `model`: with a frame
 /// for each link.
 pub fn of_robot(robot: &Robot, model: &Model<f64>, given: &[State], settings: &Settings) -> Result<Report, Error> {
-    let mut found = own::rows(robot, model, given, &of_robots(settings))?;
+    let mut found = user_robot::rows(robot, model, given, &of_robots(settings))?;
     found.notes.extend(note_of_parameters(&robot.options));
     Ok(Report::new(found))
 }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::*;
 use crate::graph::{Graph, NodeId, Op};
 use crate::lir::interpret::interpret;
-use crate::lir::lower::{Lowering, Sines};
+use crate::lir::lower::{Lowering, SinCosGrouping};
 use crate::lir::{Array, Body, Ty, verify};
 
 /// A graph in which values are needed soon, late and never again.
@@ -27,7 +27,7 @@ fn graph() -> Graph {
 fn cut(graph: &Graph, length: usize) -> Body {
     let ty = if graph.lanes().width == 1 { Ty::F64 } else { Ty::Vector(graph.lanes().width) };
     let results = vec![Array { start: 0, lengths: vec![graph.outputs.len()] }];
-    let sines = Sines { together: 4, are_powers_of_two: false, from: 3 };
+    let sines = SinCosGrouping { together: 4, are_powers_of_two: false, from: 3 };
     let statements = Lowering { graph, ty, sines, results: &results }.stores_as_made(|_| true, false);
     let (pieces, kept) = outline(statements, length);
     Body { ty, lanes: graph.lanes().clone(), results, pieces, kept, slots: None, barrier: false, is_partial: false }
@@ -92,10 +92,10 @@ fn a_lane_that_is_a_result_is_taken_where_its_vector_is_known() {
     let x = graph.lane_input(0, &[0, 1, 2, 3]);
     let y = graph.apply(Op::Mul, &[x, x]);
     let [first, third] = [0.0, 2.0].map(|lane| graph.constant(lane));
-    let [of_y, of_x, inner] = [(y, first), (x, first), (y, third)].map(|(of, lane)| graph.exactly(Op::Spread, &[of, lane]));
+    let [of_y, of_x, inner] = [(y, first), (x, first), (y, third)].map(|(of, lane)| graph.exactly(Op::Broadcast, &[of, lane]));
     let sum = graph.apply(Op::Add, &[inner, y]);
     let product = graph.apply(Op::Mul, &[sum, x]);
-    let lane = graph.exactly(Op::Spread, &[product, third]);
+    let lane = graph.exactly(Op::Broadcast, &[product, third]);
     graph.outputs = vec![of_y, of_x, inner, product, lane, of_y];
     for length in [1, 2, usize::MAX] {
         check(&graph, length);

@@ -21,7 +21,7 @@ use articulated_core::lanes::{Real, Set, source, tiles};
 use self::arrays::{Array, each, inputs, results};
 use self::text::{PUBLIC, SUPPORT};
 use self::ways::{SAFE, WAYS, Way};
-use crate::Level;
+use crate::Precision;
 use crate::lir::Body;
 use crate::lir::function::{Function, States};
 use crate::target::rust::RustOptions;
@@ -35,7 +35,7 @@ use crate::target::rust::tree_shake::tree_shake;
 pub(crate) struct Batch<'a> {
     function: &'a Function<'a>,
     states: &'a States,
-    level: Level,
+    level: Precision,
 }
 
 /// A sine or cosine takes as long as so many operations.
@@ -124,7 +124,7 @@ impl Way {
 
 impl<'a> Batch<'a> {
     /// None where there is no function of many states.
-    pub(crate) fn of(function: &'a Function<'a>, level: Level) -> Option<Self> {
+    pub(crate) fn of(function: &'a Function<'a>, level: Precision) -> Option<Self> {
         Some(Self { function, states: function.states.as_ref()?, level })
     }
 
@@ -134,7 +134,7 @@ impl<'a> Batch<'a> {
     /// symmetric matrix, which the function of one state only stores.
     fn is_faster_one_by_one(&self, real: Real) -> bool {
         let Self { function, level, .. } = self;
-        let is_straight = function.columns.is_none() && *level == Level::default();
+        let is_straight = function.columns.is_none() && *level == Precision::default();
         let is_one_array = matches!(function.results.as_slice(), [array] if !array.lengths.is_empty());
         let has_one = is_straight && is_one_array && self.inputs().iter().all(|a| !a.is_parameters);
         let (operations, sines) = function.operations;

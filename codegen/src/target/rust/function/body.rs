@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::Level;
+use crate::Precision;
 use crate::lir::function::Ending;
 use crate::lir::{Body, Stmt, Ty};
 use crate::target::rust::function::signature::Signature;
@@ -27,7 +27,7 @@ pub(crate) fn beginning(body: &Body) -> &'static str {
 }
 
 /// A body in one piece, the result last.
-pub(crate) fn body(out: &mut String, body: &Body, signature: &Signature, level: Level) {
+pub(crate) fn body(out: &mut String, body: &Body, signature: &Signature, level: Precision) {
     let [piece] = body.pieces.as_slice() else { return };
     let rooms = signature.rooms();
     let is_raw = signature.function.ending == Ending::Rows;
@@ -91,7 +91,7 @@ fn barrier_pointers(out: &mut String, numbers: usize, nests: usize) {
 /// The pieces as functions `piece_0`, …, each for the features that the macro around it is given,
 /// and `whole`, which calls them. Arrays of arrays are one array to them: to check further indices
 /// takes a compiler long.
-pub(crate) fn pieces(out: &mut String, body: &Body, signature: &Signature, level: Level) {
+pub(crate) fn pieces(out: &mut String, body: &Body, signature: &Signature, level: Precision) {
     let is_flat = signature.nests().is_some();
     let gives = if is_flat { signature.gives_flat() } else { signature.gives_inside() };
     let places = |at: usize| if is_flat { Place { array: "out".into(), index: Some(at) } } else { signature.place(at) };

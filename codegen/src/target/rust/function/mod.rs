@@ -1,13 +1,13 @@
 //! One function.
 
 pub(crate) mod body;
-pub(crate) mod levels;
+pub(crate) mod precision;
 pub(crate) mod results;
 pub(crate) mod signature;
 
 use std::fmt::Write;
 
-use crate::Level;
+use crate::Precision;
 use crate::lir::Body;
 use crate::lir::function::{Ending, Function};
 use crate::target::rust::function::body::{body, pieces};
@@ -16,14 +16,14 @@ use crate::target::rust::instructions::{self, needs_choice};
 use crate::target::rust::module::style;
 use crate::target::rust::several;
 use crate::target::rust::spills;
-use levels::real;
+use precision::real;
 
 /// What the printer must know besides the functions.
 #[derive(Clone, Copy)]
 pub(crate) struct Context {
     pub(crate) parameters: bool,
     pub(crate) forbid_unsafe: bool,
-    pub(crate) level: Level,
+    pub(crate) level: Precision,
 }
 
 impl Context {
@@ -165,14 +165,14 @@ fn calls(out: &mut String, body: &Body, signature: &Signature, context: Context)
     } else if needs_choice(signature.function, context.level) && context.chooses() {
         chosen(out, body, signature, context.level);
     } else {
-        levels::imports(out, context.level);
+        precision::imports(out, context.level);
         self::body(out, body, signature, context.level);
     }
 }
 
 /// Plain arithmetic, with fused multiply-add where the processor has it: compiled for it, or found
 /// to be so.
-fn chosen(out: &mut String, body: &Body, signature: &Signature, level: Level) {
+fn chosen(out: &mut String, body: &Body, signature: &Signature, level: Precision) {
     let (takes, names, returns) = (signature.takes(), signature.handed(), signature.returns());
     let (generic, own, fused) =
         if level.of_two() { ("const FUSED: bool", "FUSED", "true") } else { ("F: Fma", "MultiplyAdd<FUSED>", "MultiplyAdd<true>") };
@@ -180,7 +180,7 @@ fn chosen(out: &mut String, body: &Body, signature: &Signature, level: Level) {
     for argument in &signature.function.arguments {
         let _ = writeln!(out, "    let _ = {};", argument.name);
     }
-    levels::imports(out, level);
+    precision::imports(out, level);
     self::body(out, body, signature, level);
     let _ = writeln!(out, "    }}\n    {}", instructions::NOT_COMPILED_FOR_AVX2);
     let _ = writeln!(out, "    if {} {{", instructions::HAS_AVX2);
@@ -196,7 +196,7 @@ fn chosen(out: &mut String, body: &Body, signature: &Signature, level: Level) {
 }
 
 /// The body as a macro: it is compiled for several instruction sets.
-fn body_macro(out: &mut String, body: &Body, signature: &Signature, level: Level) {
+fn body_macro(out: &mut String, body: &Body, signature: &Signature, level: Precision) {
     let (takes, returns) = (signature.takes(), signature.returns());
     let _ = writeln!(out, "macro_rules! whole {{\n    ($(#[$features:meta])?) => {{");
     if signature.function.is_outlined && body.slots.is_none() {
@@ -215,7 +215,7 @@ fn body_macro(out: &mut String, body: &Body, signature: &Signature, level: Level
 /// The call of a long body of plain arithmetic.
 fn long_calls(out: &mut String, signature: &Signature, context: Context) {
     let names = signature.handed();
-    levels::imports(out, context.level);
+    precision::imports(out, context.level);
     if context.chooses() {
         let _ = writeln!(out, "    {}\n    if {} {{", instructions::NOT_COMPILED_FOR_AVX2, instructions::HAS_AVX2);
         let fused = if context.level.of_two() { "const FUSED: bool = true" } else { "type F = MultiplyAdd<true>" };

@@ -253,7 +253,7 @@ mod tests {
     use articulated_core::algorithm::Shape;
 
     use super::*;
-    use crate::Level;
+    use crate::Precision;
     use crate::capabilities::Capabilities;
     use crate::graph::Graph;
     use crate::ledger::Entry;
@@ -263,14 +263,14 @@ mod tests {
     const SHAPE: Shape = Shape { nq: 9, nv: 9, frames: 0, links: 0 };
 
     fn with<T>(text: &str, shape: Shape, ending: Ending, work: impl FnOnce(&Signature) -> T) -> T {
-        let wanted = FunctionSpec::parse(text).unwrap();
+        let spec = FunctionSpec::parse(text).unwrap();
         let entry = Entry { function: text.into(), ways: Vec::new(), stages: Vec::new(), depth: 0, lanes: 1, arguments: Vec::new() };
         let numbers = |part: &FunctionTerm| part.function.gives.iter().map(|d| d.len(shape)).product::<usize>();
         let mut graph = Graph::default();
         let zero = graph.constant(0.0);
-        graph.outputs = vec![zero; wanted.parts.iter().map(numbers).sum()];
-        let program = Program { wanted, graph, plain: Graph::default(), entry, columns: None };
-        let can = Capabilities { level: Level::default(), vectors: true, raw_memory: true, states: false };
+        graph.outputs = vec![zero; spec.parts.iter().map(numbers).sum()];
+        let program = Program { spec, graph, plain: Graph::default(), entry, columns: None };
+        let can = Capabilities { level: Precision::default(), vectors: true, raw_memory: true, states: false };
         let mut function = Function::of(&program, shape, false, can);
         function.ending = ending;
         work(&Signature::of(&function, "f64"))

@@ -7,11 +7,11 @@ use articulated_core::diagnostic::{summary, summary_of_unused, values};
 use articulated_core::effect::{Applied, Field};
 use articulated_core::spatial::Reference;
 
-use crate::Level;
+use crate::Precision;
 use crate::target::Module;
 use crate::target::rust::RustOptions;
 
-/// Origin, contract, and what of the URDF is not used, as comments.
+/// Origin, contract, and unused content of the URDF, as comments.
 pub(crate) fn header(out: &mut String, module: &Module<'_>, rust: &RustOptions) {
     let Module { request, model, unused, snapped, .. } = module;
     let o = &request.options;
@@ -30,7 +30,7 @@ pub(crate) fn header(out: &mut String, module: &Module<'_>, rust: &RustOptions) 
     edits(module).iter().for_each(|edit| line(edit));
     first_of(&mut line, "Angles snapped to multiples of π/2:", &summary(*snapped), ".");
     line(&format!("Functions: {}. To generate another one, add it to `functions`.", values(&o.functions).join(", ")));
-    if o.level == Level::default() {
+    if o.level == Precision::default() {
         line("Contract: SI units and radians; no allocation, no panic. One branch depends on data: sines of four angles are computed");
         line("together, unless one is beyond 10⁵ rad or not finite. Then the standard library computes them, as it does fewer than three.");
         line("Finite input gives what the formulas give.");

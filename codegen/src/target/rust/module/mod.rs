@@ -18,7 +18,7 @@ use crate::lir::function::Function;
 use crate::target::Module;
 use crate::target::rust::RustOptions;
 use crate::target::rust::batch::{Batch, batches};
-use crate::target::rust::function::levels::real;
+use crate::target::rust::function::precision::real;
 use crate::target::rust::function::{Context, IMPLEMENTATION, Text, function};
 use crate::target::rust::literal::literal;
 use crate::target::rust::module::header::header;
@@ -148,7 +148,7 @@ fn list(out: &mut String, module: &str, doc: &str, rows: &[(String, String, usiz
     let _ = writeln!(out, "}}\n");
 }
 
-/// What of the model stayed an input.
+/// The constants of the model that stayed inputs.
 fn inputs(out: &mut String, parameters: &[Parameter]) {
     if parameters.is_empty() {
         return;
@@ -172,7 +172,7 @@ fn inputs(out: &mut String, parameters: &[Parameter]) {
     list(out, "parameter", "Index in [`PARAMETERS`] of the first number of each.", &rows);
 }
 
-/// The type that stands for the robot where code is written over the trait `Dynamics`.
+/// The type that represents the robot for code generic over the trait `Dynamics`.
 fn robot(out: &mut String, (path, real): (&str, &str), model: &Model<f64>, functions: &[Function], parameters: bool) {
     let default = if parameters { "" } else { ", ::core::default::Default" };
     let _ = writeln!(out, "/// The robot as a value, for code over the trait `Dynamics`.");

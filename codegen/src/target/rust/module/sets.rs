@@ -3,12 +3,12 @@
 use std::fmt::Write;
 
 use articulated_core::lanes::{Real, Set, source};
-use articulated_core::level::with_sines;
+use articulated_core::precision::with_sines;
 
-use crate::Level;
+use crate::Precision;
 use crate::lir::function::Function;
 use crate::target::rust::columns::Layout;
-use crate::target::rust::function::levels;
+use crate::target::rust::function::precision;
 use crate::target::rust::instructions::{
     COMPILED_FOR_AVX512, COMPILED_FOR_AVX512_BESIDE_AVX2, MAY_LACK_AVX2, NOT_COMPILED_FOR_AVX2, OTHERS, has_batch, needs_choice,
 };
@@ -18,7 +18,7 @@ use crate::target::rust::several;
 use crate::target::rust::tree_shake::tree_shake;
 
 /// What the functions call: multiply-adds, sines, lanes.
-pub(crate) fn support(out: &mut String, functions: &[Function], (forbid_unsafe, no_std): (bool, bool), level: Level) {
+pub(crate) fn support(out: &mut String, functions: &[Function], (forbid_unsafe, no_std): (bool, bool), level: Precision) {
     let mut calls = Requirements::default();
     functions.iter().for_each(|f| {
         calls.add_body(&f.body);
@@ -28,15 +28,15 @@ pub(crate) fn support(out: &mut String, functions: &[Function], (forbid_unsafe, 
     let plain = || functions.iter().filter(|f| !f.in_lanes());
     if plain().any(|f| needs_choice(f, level)) {
         *out += if level.fused { FUSED } else { NOT_FUSED };
-        *out += &FMA.replace("f64", levels::computed(level));
+        *out += &FMA.replace("f64", precision::computed(level));
     }
     let any = plain().any(|f| has_batch(&f.body));
-    let sines = any && levels::has_vectors(level);
+    let sines = any && precision::has_vectors(level);
     let portable = forbid_unsafe || !level.fused;
     if any {
-        levels::sines(out, if portable { PORTABLE_SINES } else { SINES }, level, no_std);
+        precision::sines(out, if portable { PORTABLE_SINES } else { SINES }, level, no_std);
     }
-    levels::module(out, level, no_std);
+    precision::module(out, level, no_std);
     let mut when = When { portable: OTHERS, eight: COMPILED_FOR_AVX512_BESIDE_AVX2 };
     let mut widths: Vec<usize> = functions.iter().map(|f| f.body.ty.lanes()).filter(|w| *w > 1).collect();
     // Vectors of which there is more than one, in those of the widest registers.
@@ -72,7 +72,7 @@ struct When {
 }
 
 /// The modules of lanes in these widths: what is called in `out` of them.
-fn lanes(out: &mut String, widths: &[usize], when: &When, (forbid_unsafe, no_std): (bool, bool), level: Level, calls: &Requirements) {
+fn lanes(out: &mut String, widths: &[usize], when: &When, (forbid_unsafe, no_std): (bool, bool), level: Precision, calls: &Requirements) {
     let sets: &[(Set, &str, &str)] = if forbid_unsafe { &SETS[..1] } else { &SETS };
     let lint = if forbid_unsafe { "" } else { "unsafe_code, " };
     for width in widths {

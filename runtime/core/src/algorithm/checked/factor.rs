@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::pivots::{Watch, part};
+use super::pivots::{PivotMonitor, part};
 use super::{greater, larger};
 use crate::Scalar;
 use crate::scalar::two_to;
@@ -53,9 +53,9 @@ impl<S: Scalar<Mask = bool>> Factor<S> {
             let own = matrix[k * n + k];
             self.pivots[k] = part(pivot, own + (own - pivot));
             if lost.is_none() {
-                let mut watch = Watch::new();
-                watch.see(k, self.pivots[k]);
-                lost = watch.lost();
+                let mut monitor = PivotMonitor::new();
+                monitor.see(k, self.pivots[k]);
+                lost = monitor.lost();
             }
             self.eliminate(k, pivot);
         }

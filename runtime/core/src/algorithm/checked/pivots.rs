@@ -51,25 +51,25 @@ pub fn checked_forward_dynamics_with_wrenches<S: Scalar<Mask = bool>>(
     wrenches: &[S],
     out: &mut [S],
 ) -> Result<S, Singular<S>> {
-    let mut watch = Watch::new();
+    let mut monitor = PivotMonitor::new();
     if model.has_followers() {
         forward_dynamics_with_wrenches(model, ws, q, v, tau, wrenches, out);
-        factored_pivots(model, ws, |freedom, left| watch.see(freedom, left));
+        factored_pivots(model, ws, |freedom, left| monitor.see(freedom, left));
     } else {
         articulated_body_with_wrenches(model, ws, q, v, tau, wrenches, out);
-        articulated_body_pivots(model, ws, |freedom, left| watch.see(freedom, left));
+        articulated_body_pivots(model, ws, |freedom, left| monitor.see(freedom, left));
     }
-    watch.verdict(out, |freedom| model.joint_of(freedom).to_string())
+    monitor.verdict(out, |freedom| model.joint_of(freedom).to_string())
 }
 
 /// The smallest pivot, and the first that is too small.
-pub(super) struct Watch<S> {
+pub(super) struct PivotMonitor<S> {
     least: S,
     smallest: S,
     lost: Option<(usize, S)>,
 }
 
-impl<S: Scalar<Mask = bool>> Watch<S> {
+impl<S: Scalar<Mask = bool>> PivotMonitor<S> {
     pub(super) fn new() -> Self {
         Self { least: least_pivot(), smallest: S::one(), lost: None }
     }

@@ -5,7 +5,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt;
 
-use super::pivots::Watch;
+use super::pivots::PivotMonitor;
 use super::{Factor, Singular};
 use crate::Scalar;
 use crate::algorithm::{FunctionError, Shape, check_length};
@@ -18,7 +18,7 @@ use crate::dynamics::Dynamics;
 pub struct Solver<S = f64> {
     matrix: Vec<S>,
     /// The torques that joints get.
-    given: Vec<S>,
+    input: Vec<S>,
     factor: Factor<S>,
     /// That of the last solution.
     backward_error: S,
@@ -52,7 +52,7 @@ impl<S: Scalar<Mask = bool>> Solver<S> {
         let zeros = |n| vec![S::zero(); n];
         Self {
             matrix: zeros(shape.nv * shape.nv),
-            given: zeros(shape.nv),
+            input: zeros(shape.nv),
             factor: Factor::new(shape.nv),
             backward_error: S::zero(),
             zeros: zeros(shape.nv),
@@ -110,9 +110,9 @@ impl<S: Scalar<Mask = bool>> Solver<S> {
         let asked = || {
             check_length("solver", n, robot.shape().nv)?;
             check_length("tau", tau.len(), n)?;
-            self.given.copy_from_slice(tau);
+            self.input.copy_from_slice(tau);
             if robot.has_motors() {
-                robot.motor_torques(ws, v, tau, &mut self.given)?;
+                robot.motor_torques(ws, v, tau, &mut self.input)?;
             }
             bias(ws, out)?;
             robot.mass_matrix(ws, q, &mut self.matrix)
@@ -121,15 +121,15 @@ impl<S: Scalar<Mask = bool>> Solver<S> {
         // Singular or not, all pivots are looked at.
         let _ = self.factor.factor(&self.matrix);
         // b = τ − h
-        out.iter_mut().zip(&mut self.given).for_each(|(b, tau)| {
+        out.iter_mut().zip(&mut self.input).for_each(|(b, tau)| {
             *b = *tau - *b;
             *tau = *b;
         });
         self.factor.solve(out);
-        self.backward_error = self.factor.refine(&self.matrix, &self.given, out);
-        let mut watch = Watch::new();
-        self.factor.pivots().iter().enumerate().rev().for_each(|(k, left)| watch.see(k, *left));
-        watch.verdict(out, |k| robot.joint_of(k).unwrap_or_default().to_string()).map_err(Unsolved::Singular)
+        self.backward_error = self.factor.refine(&self.matrix, &self.input, out);
+        let mut monitor = PivotMonitor::new();
+        self.factor.pivots().iter().enumerate().rev().for_each(|(k, left)| monitor.see(k, *left));
+        monitor.verdict(out, |k| robot.joint_of(k).unwrap_or_default().to_string()).map_err(Unsolved::Singular)
     }
 
     /// max_i |τ − h − M a|_i / (|M||a| + |τ − h|)_i of the last call, with M and h as they were computed: a few roundings, or M is next to singular.

@@ -61,7 +61,7 @@ fn duals<S: Scalar>(p: &[S]) -> [Dual<S>; MOST] {
     core::array::from_fn(|k| Dual::constant(p.get(k).copied().unwrap_or_else(S::zero)))
 }
 
-/// The frame of an effect on a body that stands at `x_wb` and moves with `twist`, in the body's axes.
+/// The frame of an effect on a body with pose `x_wb` and velocity `twist`, in the body's axes.
 fn station<S: Scalar>(effect: &BodyEffect<S>, x_wb: &Placement<S>, twist: &Twist<S>, gravity: Vector3<S>) -> Station<S> {
     let Placement { rotation, position } = &effect.placement;
     Station { placement: x_wb.compose(&effect.placement), twist: twist.at(*position).turned_back(rotation), gravity }
@@ -160,7 +160,8 @@ impl<S: Scalar> Model<S> {
 
 /// The torques that motors deliver when commanded.
 ///
-/// v: `[nv]`; tau: `[nv]` N·m|N, at the joints; out: `[nv]`. Joints without a motor get what is asked for.
+/// v: `[nv]`; tau: `[nv]` N·m|N, at the joints; out: `[nv]`. Joints without a motor get the
+/// commanded torque.
 ///
 /// # Panics
 /// As [`effect_forces`].

@@ -17,17 +17,17 @@ use crate::compare::manifest;
 use crate::error::Error;
 use crate::json::json;
 use crate::process::Folder;
-use crate::stage::Stage;
+use crate::session::Session;
 use sweep::Sample;
 pub use sweep::{Motion, Settings};
 
 /// Measures all integrators on the motion of a scene.
-pub fn measure(stage: &Stage, settings: &Settings) -> Result<Motion, Error> {
-    let subject = scene::subject(stage)?;
+pub fn measure(session: &Session, settings: &Settings) -> Result<Motion, Error> {
+    let subject = scene::subject(session)?;
     let folder = Folder::new().map_err(|e| Error::tool(&e))?;
     let libraries = manifest::named(&settings.peer, settings.peers_manifest.as_deref())?;
-    let peers = peers::Peers::open(stage, &subject, &libraries, folder.path())?;
-    sweep::all(&stage.name, &subject, &peers, settings)
+    let peers = peers::Peers::open(session, &subject, &libraries, folder.path())?;
+    sweep::all(&session.name, &subject, &peers, settings)
 }
 
 impl Motion {

@@ -12,7 +12,7 @@ use super::dop853_digits::A;
 use super::scene::subject;
 use super::subject::{How, State, Subject, difference};
 use super::sweep::{Curve, Sample, curve, reference, slope};
-use crate::stage::{bundled, opened};
+use crate::session::{bundled, opened};
 
 /// A motion of the pendulum: rad, rad/s, s.
 #[derive(Clone, Copy)]

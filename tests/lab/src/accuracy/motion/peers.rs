@@ -7,9 +7,9 @@ use crate::against::peers::{Peer, open};
 use crate::against::unknown_to_peers;
 use crate::compare::manifest::Library;
 use crate::error::Error;
-use crate::stage::Stage;
+use crate::session::Session;
 
-/// Who there is, and why others are not.
+/// Available peers, and why others are missing.
 pub(super) struct Peers {
     pub(super) peers: Vec<Peer>,
     pub(super) notes: Vec<String>,
@@ -17,18 +17,18 @@ pub(super) struct Peers {
 
 impl Peers {
     /// Those of the libraries that take steps, at the start of the motion.
-    pub(super) fn open(stage: &Stage, subject: &Subject, libraries: &[Library], folder: &Path) -> Result<Self, Error> {
+    pub(super) fn open(session: &Session, subject: &Subject, libraries: &[Library], folder: &Path) -> Result<Self, Error> {
         let without = |note: String| Ok(Self { peers: Vec::new(), notes: vec![note] });
         if libraries.is_empty() {
             return without(
                 "no peers: --peers-manifest names what tests/peers/build.py made, and MuJoCo's integrators come beside these".into(),
             );
         }
-        let unknown = unknown_to_peers(stage);
+        let unknown = unknown_to_peers(session);
         if !unknown.is_empty() {
             return without(format!("no peers: they know the robot's file and its gravity only, and the scene has {}", unknown.join(", ")));
         }
-        let (peers, notes) = open(stage, libraries, folder, (&subject.q, &subject.v), subject.seconds)?;
+        let (peers, notes) = open(session, libraries, folder, (&subject.q, &subject.v), subject.seconds)?;
         Ok(Self { peers, notes })
     }
 

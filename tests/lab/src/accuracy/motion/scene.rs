@@ -2,17 +2,17 @@
 
 use articulated::simulate::Settings;
 use articulated_core::description::Base;
-use articulated_motion::Begin;
+use articulated_motion::InitialState;
 use articulated_scene::{Aim, Controller};
 
 use super::subject::Subject;
 use crate::error::Error;
-use crate::stage::Stage;
+use crate::session::Session;
 use crate::table::counted;
 
 /// What moves in a scene.
-pub(super) fn subject(stage: &Stage) -> Result<Subject, Error> {
-    let scene = &stage.scene;
+pub(super) fn subject(session: &Session) -> Result<Subject, Error> {
+    let scene = &session.scene;
     if scene.impact.is_some() {
         let line = format!(
             "{}: impact: found a blow, expected none for accuracy --simulate: when it falls is read off a curve between steps, and that has another order than the steps",
@@ -20,12 +20,12 @@ pub(super) fn subject(stage: &Stage) -> Result<Subject, Error> {
         );
         return Err(Error::input([line]));
     }
-    let Begin { q, v, controller } = stage.start()?;
+    let InitialState { q, v, controller } = session.start()?;
     let Settings { start, end, .. } = scene.simulation.as_ref().map_or_else(Settings::default, |s| s.settings.clone());
-    let options = &stage.request.options;
+    let options = &session.request.options;
     let inside = options.robot.gravity == [0.0; 3] && options.robot.effects.is_empty() && !pushes_base(&controller);
     Ok(Subject {
-        model: stage.model.clone(),
+        model: session.model.clone(),
         q,
         v,
         control: (controller, scene.control.period),
@@ -81,7 +81,7 @@ mod tests {
 
     #[test]
     fn steps_end_at_rows_within_the_motion_or_at_samples() {
-        let mut subject = super::subject(&crate::stage::bundled("pendulum")).expect("a scene without a blow");
+        let mut subject = super::subject(&crate::session::bundled("pendulum")).expect("a scene without a blow");
         (subject.start, subject.seconds) = (0.0, 2.0);
         let times = vec![-1.0, 0.0, 0.31, 0.777, 2.0];
         let table = Controller::Table(Series { rows: vec![vec![1.0]; times.len()], times, hold: true });

@@ -80,9 +80,10 @@ pub(crate) struct Curve {
     pub peer: bool,
     /// Its nominal order.
     pub order: u32,
-    /// By which power of the evaluations the error falls over the finest rows, where it can be told.
+    /// Observed order: the power of the evaluations by which the error falls over the finest rows,
+    /// if it can be determined.
     pub slope: Option<f64>,
-    /// How many of the finest rows that can be told that is from.
+    /// Number of rows from which it is determined.
     pub slope_rows: usize,
     /// From the coarsest to the finest.
     pub samples: Vec<Sample>,
@@ -101,17 +102,18 @@ pub(crate) struct Sample {
     pub wall: f64,
     /// The largest difference of a number of the last state, rad, m, rad/s, m/s.
     pub error: f64,
-    /// What energy is missing or too much at the end, relative to the largest kinetic or potential energy.
+    /// Error of the balance of energy at the end, relative to the largest kinetic or potential
+    /// energy.
     pub energy: Option<f64>,
     /// The change of the momentum, relative to it, where nothing acts from outside.
     pub momentum: Option<f64>,
-    /// Whether the reference can tell this error.
+    /// Whether the reference is accurate enough to determine this error.
     pub told: bool,
     /// Whether the error is larger than the motion itself, as that of steps that are not stable is.
     pub lost: bool,
 }
 
-/// Who the reference is from, the last state, and how far the two are from each other.
+/// Sources of the reference, its last state, and the difference of the two sources.
 type Reference = ([String; 2], State, f64);
 
 /// Tolerances and numbers of steps: half a decade apart.
@@ -124,7 +126,7 @@ pub(super) const COARSE: f64 = 3e-2;
 /// A power this near to the order is the order.
 const SHOWN: f64 = 0.3;
 
-/// Everything: each run as often as told, the fastest counts.
+/// Measures everything; of the repetitions of a run the fastest counts.
 pub(super) fn all(scene: &str, subject: &Subject, peers: &Peers, settings: &Settings) -> Result<Motion, Error> {
     let repetitions = settings.repetitions.min(5) as usize;
     let progress = Progress::new(1 + integrators().len() + peers.count());
@@ -263,7 +265,7 @@ fn finest(samples: &[Sample]) -> Vec<(f64, f64)> {
     points[points.len() - count..].to_vec()
 }
 
-/// By which power of the evaluations the error falls over all samples that can be told.
+/// Observed order over all samples whose error can be determined.
 pub(super) fn slope(samples: &[Sample]) -> Option<f64> {
     let points = points(samples);
     let wide = points.iter().map(|p| p.0).fold(f64::NEG_INFINITY, f64::max) - points.iter().map(|p| p.0).fold(f64::INFINITY, f64::min);

@@ -105,13 +105,13 @@ pub(super) fn csv(m: &Motion) -> String {
 /// The cheapest run that is accurate enough, by evaluations and by the clock, in sentences.
 pub(super) fn advice(m: &Motion, wish: f64) -> String {
     match advise::all(m, wish).runs.as_slice() {
-        [a, b] => format!("{}: fewest evaluations: {}\n{}: least time: {}\n", m.scene, told(a), m.scene, told(b)),
+        [a, b] => format!("{}: fewest evaluations: {}\n{}: least time: {}\n", m.scene, summary(a), m.scene, summary(b)),
         _ => format!("{}: no run is accurate to {wish:e}, and the finer ones of its integrator with it\n", m.scene),
     }
 }
 
 /// An integrator with its setting, and what that comes to.
-fn told(Run { integrator, sample: s, .. }: &Run<'_>) -> String {
+fn summary(Run { integrator, sample: s, .. }: &Run<'_>) -> String {
     let how = s.step.map_or_else(|| format!("tolerance {:.1e}", s.tolerance.unwrap_or_default()), |h| format!("steps of {h:.2e} s"));
     format!("{integrator} with {how}: error {}, {} evaluations, {:.2} ms", error(s), s.evaluations, s.wall * 1e3)
 }

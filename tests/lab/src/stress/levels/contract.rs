@@ -1,6 +1,6 @@
 //! What a level of accuracy promises of a number.
 
-use articulated_codegen::{Arithmetic, Level, Sines};
+use articulated_codegen::{Arithmetic, Precision, TrigAccuracy};
 
 use crate::stress::judge::BACKWARD;
 
@@ -26,7 +26,7 @@ pub(super) struct Contract {
 
 impl Contract {
     /// Of a robot of so many joints.
-    pub(super) fn of(level: Level, joints: usize) -> Self {
+    pub(super) fn of(level: Precision, joints: usize) -> Self {
         let (roundoff, result) = match level.arithmetic {
             Arithmetic::Single => (SINGLE, 0.0),
             Arithmetic::SingleByDouble => (DOUBLE, SINGLE),
@@ -34,9 +34,9 @@ impl Contract {
             Arithmetic::Double | Arithmetic::Compensated | Arithmetic::DoubleDouble => (DOUBLE, 0.0),
         };
         let sines = match level.sines {
-            Sines::Fast7 => 1e-7,
-            Sines::Fast10 => 1e-10,
-            Sines::Ulp | Sines::Correct | Sines::Two => 0.0,
+            TrigAccuracy::Fast7 => 1e-7,
+            TrigAccuracy::Fast10 => 1e-10,
+            TrigAccuracy::Ulp1 | TrigAccuracy::CorrectlyRounded | TrigAccuracy::DoubleDouble => 0.0,
         };
         Self { roundoff, result, sines, joints: joints as f64 }
     }

@@ -1,13 +1,13 @@
 //! Errors of a level's code, over what its contract allows.
 
 use articulated_codegen::graph::Graph;
-use articulated_codegen::{Arithmetic, Sines, bound};
+use articulated_codegen::{Arithmetic, TrigAccuracy, bound};
 use articulated_core::Scalar;
 use articulated_core::algorithm::FunctionId;
 use articulated_core::model::Model;
 use articulated_reference::{Big, Magnitude, norms, scales};
 
-use super::Made;
+use super::BuiltRobot;
 use super::contract::Contract;
 use crate::compare::accuracy::worse;
 use crate::stress::judge::{Judge, State, call, called, scale};
@@ -18,7 +18,7 @@ use crate::stress::row::{Case, Row};
 const SECOND_ORDER: f64 = 1.0;
 
 /// Every function that the code has, in these states.
-pub fn rows(case: &Case, model: &Model<f64>, made: &Made, states: &[State]) -> Vec<Row> {
+pub fn rows(case: &Case, model: &Model<f64>, made: &BuiltRobot, states: &[State]) -> Vec<Row> {
     let states: Vec<State> = states.iter().map(|s| made.rounded(s)).collect();
     let regular: Vec<State> = states.iter().filter(|s| is_regular(case, model, made, s)).cloned().collect();
     let contract = Contract::of(made.level(), model.outward().count());
@@ -42,7 +42,7 @@ const FUNCTIONS: [FunctionId; 5] = [
 ];
 
 /// Whether M can be inverted in the level's numbers.
-fn is_regular(case: &Case, model: &Model<f64>, made: &Made, state: &State) -> bool {
+fn is_regular(case: &Case, model: &Model<f64>, made: &BuiltRobot, state: &State) -> bool {
     match made.level().arithmetic {
         Arithmetic::Single => Judge::<f32>::new(case, model).checked(state).is_ok(),
         _ => Judge::<f64>::new(case, model).checked(state).is_ok(),
@@ -52,7 +52,7 @@ fn is_regular(case: &Case, model: &Model<f64>, made: &Made, state: &State) -> bo
 /// A function of a robot's code.
 struct Judged<'a> {
     model: &'a Model<f64>,
-    made: &'a Made,
+    made: &'a BuiltRobot,
     contract: Contract,
     function: FunctionId,
     /// As [`Case::by_terms`].
@@ -70,7 +70,7 @@ impl Judged<'_> {
         if let Some(reached) = self.of_bound(states) {
             rows.push(case.row(format!("{name}, generated, rounding over its guaranteed bound"), reached, 1.0, ""));
         }
-        if self.made.level().sines == Sines::Two && self.graph().is_some() {
+        if self.made.level().sines == TrigAccuracy::DoubleDouble && self.graph().is_some() {
             let second = worst(&|s| self.second_order(s));
             rows.push(case.row(format!("{name}, generated, beyond one rounding of the result"), second, SECOND_ORDER, "2⁻¹⁰⁰"));
         }

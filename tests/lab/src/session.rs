@@ -9,7 +9,7 @@ use articulated_codegen::scene::Prepared;
 use articulated_codegen::{Generated, Request};
 use articulated_core::description::Base;
 use articulated_core::diagnostic::summary;
-use articulated_motion::{Begin, MotionErrors, Outcome, Sunk};
+use articulated_motion::{InitialState, MotionErrors, Outcome, Sunk};
 use articulated_scene::{BuiltRobot, Robot, beyond_sense};
 
 use crate::console;
@@ -17,25 +17,25 @@ use crate::error::Error;
 use crate::straight::Straight;
 
 /// A scene with its robot, as it moves, and what the command has to know besides.
-pub struct Stage {
+pub struct Session {
     /// Of the scene, without folder and ending.
     pub name: String,
     /// What code of the robot is generated from.
     pub request: Request,
-    /// What is odd about the robot.
-    pub odd: Vec<String>,
-    stage: articulated_motion::Stage,
+    /// Warnings about the robot.
+    pub robot_warnings: Vec<String>,
+    session: articulated_motion::Session,
 }
 
-impl Deref for Stage {
-    type Target = articulated_motion::Stage;
+impl Deref for Session {
+    type Target = articulated_motion::Session;
 
     fn deref(&self) -> &Self::Target {
-        &self.stage
+        &self.session
     }
 }
 
-impl Stage {
+impl Session {
     /// Refuses a level whose functions take `f32`, which what calls them here has not.
     pub fn is_of_doubles(&self) -> Result<(), Error> {
         let level = self.request.options.level;
@@ -45,7 +45,7 @@ impl Stage {
         Err(Error::input([format!("{}: level: found {level}, expected one whose functions take f64, as states here are", self.scene.file)]))
     }
 
-    /// The stage of a scene that was read. `folder`: that of its file, for other files that it
+    /// The session of a scene that was read. `folder`: that of its file, for other files that it
     /// names.
     pub fn new(name: String, prepared: Prepared, folder: PathBuf) -> Result<Self, Error> {
         let Prepared { scene, mut request, robot, .. } = prepared;
@@ -54,28 +54,28 @@ impl Stage {
         (request.scene, request.options.robot.effects) = (None, effects.clone());
         request.options.robot.frames = None;
         // Bundled robots are odd on purpose.
-        let odd = reading.warnings.iter().filter(|_| !matches!(scene.robot, Robot::Bundled(_)));
-        let odd = summary(odd.chain(&reading.snapped));
-        let mut stage = articulated_motion::Stage::new(scene, reading.description, model, effects).in_folder(folder);
-        stage.report = resolved.report;
-        Ok(Self { name, request, odd, stage })
+        let robot_warnings = reading.warnings.iter().filter(|_| !matches!(scene.robot, Robot::Bundled(_)));
+        let robot_warnings = summary(robot_warnings.chain(&reading.snapped));
+        let mut session = articulated_motion::Session::new(scene, reading.description, model, effects).in_folder(folder);
+        session.report = resolved.report;
+        Ok(Self { name, request, robot_warnings, session })
     }
 
     /// Where the motion starts, and what controls it; warnings are printed. Errors: all that do not
     /// fit the robot, and tables that cannot be read.
-    pub fn start(&self) -> Result<Begin, Error> {
-        let begin = self.begin()?;
-        self.warnings(&begin).iter().for_each(|line| console::warn(line));
-        Ok(begin)
+    pub fn start(&self) -> Result<InitialState, Error> {
+        let initial = self.initial_state()?;
+        self.warnings(&initial).iter().for_each(|line| console::warn(line));
+        Ok(initial)
     }
 
     /// Warnings about the state at the start.
-    pub fn warnings(&self, begin: &Begin) -> Vec<String> {
-        let beyond = self.beyond(&begin.q).iter().map(ToString::to_string).collect::<Vec<_>>();
+    pub fn warnings(&self, initial: &InitialState) -> Vec<String> {
+        let beyond = self.beyond(&initial.q).iter().map(ToString::to_string).collect::<Vec<_>>();
         let file = &self.scene.file;
-        let senseless = beyond_sense(&self.model, &begin.q).into_iter().map(|line| format!("{file}: initial: {line}"));
-        let sunk = summary_of_sunk(&self.sunk(&begin.q));
-        beyond.into_iter().chain(senseless).chain(sunk).chain(self.warning_of_penetrations_at_start(&begin.q)).collect()
+        let senseless = beyond_sense(&self.model, &initial.q).into_iter().map(|line| format!("{file}: initial: {line}"));
+        let sunk = summary_of_sunk(&self.sunk(&initial.q));
+        beyond.into_iter().chain(senseless).chain(sunk).chain(self.warning_of_penetrations_at_start(&initial.q)).collect()
     }
 
     /// The code that a simulation of the scene needs, and the frames that it gives.
@@ -94,32 +94,32 @@ impl Stage {
     /// counts after each step. The outcome, and what the scene looks for and the code has not.
     pub fn run(
         &self,
-        begin: &Begin,
+        initial: &InitialState,
         code: Code<'_>,
         settings: &Settings,
         look: &mut dyn FnMut(f64, &Counts),
     ) -> Result<(Outcome, Vec<String>), MotionErrors> {
         match code {
-            Code::Generic => self.run_by(begin, (&self.model, &self.frame_names()), settings, look),
-            Code::Generated(robot, frames) => self.run_by(begin, (robot, frames), settings, look),
+            Code::Generic => self.run_by(initial, (&self.model, &self.frame_names()), settings, look),
+            Code::Generated(robot, frames) => self.run_by(initial, (robot, frames), settings, look),
         }
     }
 
     fn run_by<R: Dynamics<f64>, S: AsRef<str>>(
         &self,
-        begin: &Begin,
+        initial: &InitialState,
         (robot, frames): (&R, &[S]),
         settings: &Settings,
         look: &mut dyn FnMut(f64, &Counts),
     ) -> Result<(Outcome, Vec<String>), MotionErrors> {
         let mut motion = self.motion(robot, frames, settings.clone())?;
-        let without: Vec<String> = motion.without().iter().map(ToString::to_string).collect();
-        without.iter().for_each(|line| console::warn(line));
-        let outcome = motion.run(begin, &mut |t, counts| {
+        let unavailable: Vec<String> = motion.unavailable_events().iter().map(ToString::to_string).collect();
+        unavailable.iter().for_each(|line| console::warn(line));
+        let outcome = motion.run(initial, &mut |t, counts| {
             look(t, counts);
             true
         })?;
-        Ok((outcome, without))
+        Ok((outcome, unavailable))
     }
 
     /// Whether the base is fixed or floats.
@@ -145,9 +145,9 @@ fn summary_of_sunk(sunk: &[Sunk]) -> Option<String> {
 }
 
 /// The joint that a number of a step belongs to: steps of q first, then v.
-pub fn joint_of(stage: &Stage, number: usize) -> Option<String> {
-    let freedom = number % stage.model.nv().max(1);
-    Dynamics::joint_of(&stage.model, freedom).filter(|name| !name.is_empty()).map(str::to_owned)
+pub fn joint_of(session: &Session, number: usize) -> Option<String> {
+    let freedom = number % session.model.nv.max(1);
+    Dynamics::joint_of(&session.model, freedom).filter(|name| !name.is_empty()).map(str::to_owned)
 }
 
 /// The bundled robots, as scenes name them.
@@ -159,18 +159,18 @@ fn robots() -> Vec<articulated_codegen::scene::Bundled<'static>> {
 
 /// A bundled scene.
 #[cfg(test)]
-pub(crate) fn bundled(name: &str) -> Stage {
+pub(crate) fn bundled(name: &str) -> Session {
     use articulated_codegen::scene::{Scene, open_in};
     let scene = articulated_models::scene(name).expect("a bundled scene");
     let read = Scene::read(&scene.file(), scene.toml).expect("a scene that can be read");
     let prepared = open_in(read, std::path::Path::new(""), &robots()).expect("a scene that can be opened");
-    Stage::new(name.to_owned(), prepared, PathBuf::new()).unwrap_or_else(|error| panic!("{error}"))
+    Session::new(name.to_owned(), prepared, PathBuf::new()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// The scene of a file.
 #[cfg(test)]
-pub(crate) fn opened(path: &std::path::Path) -> Stage {
+pub(crate) fn opened(path: &std::path::Path) -> Session {
     let prepared = articulated_codegen::scene::open(path, &robots()).expect("a scene that can be opened");
     let folder = path.parent().expect("a folder").to_owned();
-    Stage::new(path.display().to_string(), prepared, folder).unwrap_or_else(|error| panic!("{error}"))
+    Session::new(path.display().to_string(), prepared, folder).unwrap_or_else(|error| panic!("{error}"))
 }

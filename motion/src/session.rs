@@ -13,49 +13,52 @@ use articulated_scene::{BuiltRobot, Opened, Report, Scene};
 /// No table of control is larger, bytes: ten million rows, of which none has more, of 400 each.
 const MOST_OF_TABLE: u64 = 4 << 30;
 
-/// A scene with its robot as the scene leaves it.
+/// A scene with its robot after the scene's edits.
 #[derive(Clone, Debug)]
-pub struct Stage {
+pub struct Session {
     /// The scene.
     pub scene: Scene,
-    /// The robot as the scene edits it.
+    /// The robot after the scene's edits.
     pub description: Description,
-    /// The model of that, under the scene's gravity, with the scene's effects and a frame for each link.
+    /// Its model, with the scene's gravity and effects and a frame for each link.
     pub model: Model<f64>,
-    /// The effects that are on: those that the model has.
+    /// The active effects, which the model has.
     pub effects: Vec<Applied>,
-    /// What of the effects is on and off, and what of the robot's document is not used.
+    /// Active and inactive effects, and unused content of the robot's document.
     pub report: Report,
-    /// What is odd about the robot, and used as it is written or as the scene asks.
+    /// Warnings about the robot.
     pub warnings: Vec<Diagnostic>,
     folder: PathBuf,
 }
 
-/// How a stage is had.
-impl Stage {
-    /// The scene at `path` with the robot of the URDF that it names. Errors: all that is wrong with the scene, or else with the robot, or else all of the scene that does not fit it.
+/// Constructors.
+impl Session {
+    /// Opens the scene at `path` and the robot that it names. Errors: all findings about the scene,
+    /// else about the robot, else about the scene on the robot.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Diagnostics> {
         let path = path.as_ref();
         let folder = path.parent().unwrap_or(Path::new(""));
         Ok(Self::of(articulated_scene::open(path, &[])?)?.in_folder(folder))
     }
 
-    /// Of a scene whose files are read, or of one for which a program has the documents itself ([`Opened::new`]). Errors: as [`Stage::open`].
+    /// From a scene whose documents are read, or are supplied by a program ([`Opened::new`]).
+    /// Errors: as [`Session::open`].
     pub fn of(opened: Opened) -> Result<Self, Diagnostics> {
         let BuiltRobot { reading, model, resolved, .. } = opened.build()?;
         let Reading { description, mut warnings, snapped, .. } = reading;
         warnings.extend(snapped);
-        let stage = Self::new(opened.scene, description, model, resolved.effects);
-        Ok(Self { warnings, report: resolved.report, ..stage })
+        let session = Self::new(opened.scene, description, model, resolved.effects);
+        Ok(Self { warnings, report: resolved.report, ..session })
     }
 
-    /// Of parts that belong together: `model` is that of `description` and has `effects`, which [`Scene::resolve`] gives; with nothing to report. Files that the scene names are seen from the
-    /// folder in which the program runs, see [`Stage::in_folder`].
+    /// From matching parts: `model` is that of `description` and has `effects`, as
+    /// [`Scene::resolve`] returns them; the report is empty. Paths in the scene are relative to the
+    /// working directory, see [`Session::in_folder`].
     pub fn new(scene: Scene, description: Description, model: Model<f64>, effects: Vec<Applied>) -> Self {
         Self { scene, description, model, effects, report: Report::default(), warnings: Vec::new(), folder: PathBuf::new() }
     }
 
-    /// Files that the scene names are seen from this folder: that of the scene's file.
+    /// Resolves paths in the scene relative to this folder, that of the scene's file.
     #[must_use]
     pub fn in_folder(mut self, folder: impl Into<PathBuf>) -> Self {
         self.folder = folder.into();
@@ -63,9 +66,9 @@ impl Stage {
     }
 }
 
-impl Stage {
-    /// A file that the scene names, a table over time, to be read line by line. Errors: one that
-    /// cannot be read, is no regular file, or is larger than any table (4 GiB).
+impl Session {
+    /// Opens a file that the scene names, a table over time, to be read line by line. Errors: a
+    /// file that is unreadable, not regular, or larger than any table (4 GiB).
     pub fn file(&self, name: &str) -> Result<Box<dyn BufRead>, String> {
         let path = self.folder.join(name);
         let file = open_file(&path, MOST_OF_TABLE).map_err(|e| format!("{}: {e}", path.display()))?;
@@ -77,7 +80,7 @@ impl Stage {
         self.effects.iter().filter(move |a| a.effect == effect)
     }
 
-    /// Names of the frames that [`Stage::model`] gives, in its order.
+    /// Names of the frames of [`Session::model`], in its order.
     pub fn frame_names(&self) -> Vec<&str> {
         self.model.frames().iter().map(|frame| frame.name.as_str()).collect()
     }

@@ -1,17 +1,20 @@
 //! Terms beside a sum over lanes, taken into it.
 
 use super::sums::{Rebuild, Term, flatten, inner, is_sum, open};
-use super::{cost, live};
+use super::{cost, dce};
 use crate::graph::{Graph, NodeId, Op};
 
 /// What costs more than this is left as it is: it is busy with other things while it waits for a sum over lanes, and to have all the rest as early takes instructions.
 const LONG: u32 = 1500;
 
-/// Has each lane add its share of what is added to the sum of all lanes: `across(x) + c·y` is `across(x + c/w·y)` in w lanes.
+/// Adds terms beside a sum over lanes within the lanes: `reduce_add(x) + c·y` becomes `reduce_add(x
+/// + c/w·y)` in w lanes.
 ///
-/// A sum over lanes takes a dozen cycles, and what follows waits for it: beside the others, in the same multiply-adds, such terms are ready before. Taken in is what is the same in all lanes, takes no instruction more (a
-/// constant times something, or alone) and is used nowhere else. Shares are powers of two, and so exact.
-pub fn inside(graph: &Graph) -> Graph {
+/// A sum over lanes takes a dozen cycles, and later operations wait for it; within the lanes, such
+/// terms are added before. A term is moved if it is equal in all lanes, takes no further
+/// instruction (a constant times a value, or a value alone) and has no other use. Shares are powers
+/// of two, and so exact.
+pub fn sink_into_reduction(graph: &Graph) -> Graph {
     if graph.lanes().width == 1 || cost(graph) > LONG {
         return graph.clone();
     }
@@ -22,12 +25,12 @@ pub fn inside(graph: &Graph) -> Graph {
         .map(|k| {
             let terms = (is_sum(&graph.nodes()[k]) && !inner[k]).then(|| flatten(graph, &inner, k))?;
             let sum = Sum::of(graph, terms, &uses, &same)?;
-            gone[sum.across.node] = true;
+            gone[sum.reduction.node] = true;
             open(graph, &inner, k, &mut gone);
             Some(sum)
         })
         .collect();
-    live(&Rebuild::graph(graph, &gone, |rebuild, k| sums[k].as_ref().map(|sum| sum.built(rebuild))))
+    dce(&Rebuild::graph(graph, &gone, |rebuild, k| sums[k].as_ref().map(|sum| sum.built(rebuild))))
 }
 
 /// Whether each node has the same value in all lanes.
@@ -36,7 +39,7 @@ fn same_in_all(graph: &Graph) -> Vec<bool> {
     for node in graph.nodes() {
         same.push(match node.op {
             Op::LaneConstant | Op::LaneInput => false,
-            Op::Across | Op::Spread => true,
+            Op::ReduceAdd | Op::Broadcast => true,
             _ => node.operands().all(|o| same[o.index()]),
         });
     }
@@ -45,7 +48,7 @@ fn same_in_all(graph: &Graph) -> Vec<bool> {
 
 /// The terms of a sum with a sum over lanes among them.
 struct Sum {
-    across: Term,
+    reduction: Term,
     inside: Vec<Term>,
     outside: Vec<Term>,
 }
@@ -54,27 +57,27 @@ impl Sum {
     /// `None` if nothing can be taken in.
     fn of(graph: &Graph, mut terms: Vec<Term>, uses: &[u32], same: &[bool]) -> Option<Self> {
         let node = |term: &Term| graph.nodes()[term.node];
-        let place = terms.iter().position(|term| node(term).op == Op::Across && uses[term.node] == 1)?;
-        let across = terms.swap_remove(place);
+        let place = terms.iter().position(|term| node(term).op == Op::ReduceAdd && uses[term.node] == 1)?;
+        let reduction = terms.swap_remove(place);
         let shared = |term: &Term| match node(term).op {
             Op::Constant => true,
             Op::Mul => uses[term.node] == 1 && same[term.node] && node(term).operands().any(|o| graph.node(o).op == Op::Constant),
             _ => false,
         };
         let (inside, outside): (Vec<Term>, Vec<Term>) = terms.into_iter().partition(shared);
-        (!inside.is_empty()).then_some(Self { across, inside, outside })
+        (!inside.is_empty()).then_some(Self { reduction, inside, outside })
     }
 
     fn built(&self, rebuild: &mut Rebuild) -> NodeId {
-        let lanes = NodeId(rebuild.graph.nodes()[self.across.node].args[0]);
+        let lanes = NodeId(rebuild.graph.nodes()[self.reduction.node].args[0]);
         let part = rebuild.new.constant(1.0 / rebuild.graph.lanes().width as f64);
-        let mut terms = vec![(self.across.negative, rebuild.ids[lanes.index()])];
+        let mut terms = vec![(self.reduction.negative, rebuild.ids[lanes.index()])];
         for term in &self.inside {
             let share = rebuild.new.apply(Op::Mul, &[part, rebuild.ids[term.node]]);
             terms.push((term.negative, share));
         }
         let sum = rebuild.add(&terms);
-        let mut terms = vec![(false, rebuild.new.apply(Op::Across, &[sum]))];
+        let mut terms = vec![(false, rebuild.new.apply(Op::ReduceAdd, &[sum]))];
         terms.extend(self.outside.iter().map(|term| (term.negative, rebuild.ids[term.node])));
         rebuild.add(&terms)
     }
@@ -97,7 +100,7 @@ mod tests {
     /// The graph with these outputs after the pass, whose values must be the same.
     fn passed(mut g: Graph, outputs: &[NodeId]) -> Graph {
         g.outputs = outputs.to_vec();
-        let new = inside(&g);
+        let new = sink_into_reduction(&g);
         new.verify().unwrap();
         for (a, b) in new.evaluate(at).into_iter().zip(g.evaluate(at)) {
             assert!((a - b).abs() < 1e-14, "{a} {b}");
@@ -107,7 +110,7 @@ mod tests {
     }
 
     fn ends_in_a_sum_over_lanes(g: &Graph) -> bool {
-        g.node(g.outputs[0]).op == Op::Across
+        g.node(g.outputs[0]).op == Op::ReduceAdd
     }
 
     #[test]
@@ -115,15 +118,15 @@ mod tests {
         for [first, second] in [[Op::Add, Op::Add], [Op::Add, Op::Sub], [Op::Sub, Op::Add]] {
             let mut g = Graph::in_lanes(4);
             let [x, _, product] = leaves(&mut g);
-            let (across, c) = (g.apply(Op::Across, &[x]), g.constant(-7.0));
-            let sum = g.apply(first, &[across, product]);
+            let (reduction, c) = (g.apply(Op::ReduceAdd, &[x]), g.constant(-7.0));
+            let sum = g.apply(first, &[reduction, product]);
             let sum = g.apply(second, &[sum, c]);
             assert!(ends_in_a_sum_over_lanes(&passed(g, &[sum])), "{first:?} {second:?}");
         }
         let mut g = Graph::in_lanes(4);
         let [x, _, product] = leaves(&mut g);
-        let across = g.apply(Op::Across, &[x]);
-        let difference = g.apply(Op::Sub, &[product, across]);
+        let reduction = g.apply(Op::ReduceAdd, &[x]);
+        let difference = g.apply(Op::Sub, &[product, reduction]);
         assert!(ends_in_a_sum_over_lanes(&passed(g, &[difference])));
     }
 
@@ -131,19 +134,19 @@ mod tests {
     fn what_would_take_more_or_is_not_the_same_in_all_lanes_stays() {
         let mut g = Graph::in_lanes(4);
         let [x, y, product] = leaves(&mut g);
-        let across = g.apply(Op::Across, &[x]);
+        let reduction = g.apply(Op::ReduceAdd, &[x]);
         let square = g.apply(Op::Mul, &[y, y]);
         let (half, lanes) = (g.constant(0.5), g.lane_constant([1.0, 2.0, 3.0, 4.0]));
         let in_lanes = g.apply(Op::Mul, &[half, x]);
         for other in [y, square, lanes, in_lanes] {
             let mut g = g.clone();
-            let sum = g.apply(Op::Add, &[across, other]);
+            let sum = g.apply(Op::Add, &[reduction, other]);
             assert!(!ends_in_a_sum_over_lanes(&passed(g, &[sum])), "node {}", other.0);
         }
         // Used elsewhere: the product, or the sum over lanes.
-        for other in [product, across] {
+        for other in [product, reduction] {
             let mut g = g.clone();
-            let sum = g.apply(Op::Add, &[across, product]);
+            let sum = g.apply(Op::Add, &[reduction, product]);
             assert!(!ends_in_a_sum_over_lanes(&passed(g, &[sum, other])), "node {}", other.0);
         }
     }

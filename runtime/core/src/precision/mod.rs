@@ -1,7 +1,8 @@
-//! Levels of accuracy of generated code, and the source of the arithmetic that they need.
+//! Precision of generated code, and the source of the arithmetic that it needs.
 //!
-//! A level is an arithmetic, a way to compute sines and cosines, and whether multiplication and addition may be one instruction. The graph of a function is the same
-//! at every level; what changes is how a node is computed.
+//! A precision is an arithmetic, an accuracy of sines and cosines, and whether a multiply-add may be
+//! one instruction. The graph of a function is the same for every precision; only the computation of
+//! each node changes. Options and scenes call it `level`.
 
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
@@ -11,7 +12,7 @@ use core::str::FromStr;
 #[cfg(test)]
 mod tests;
 
-/// In what numbers a function computes.
+/// The number type of a function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Arithmetic {
     /// `f64`.
@@ -21,61 +22,62 @@ pub enum Arithmetic {
     Single,
     /// `f64`, in and out `f32`.
     SingleByDouble,
-    /// `f64` with what each operation lost carried along to first order (Lange & Rump 2020).
+    /// `f64` with the rounding error of each operation carried along to first order (Lange & Rump
+    /// 2020).
     Compensated,
     /// Sums of two `f64` (Joldes, Muller & Popescu 2017), in and out `f64`.
     DoubleDouble,
 }
 
-/// How sines and cosines of angles are computed.
+/// Accuracy of sines and cosines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Sines {
+pub enum TrigAccuracy {
     /// Off by at most 1 ulp of `f64`.
     #[default]
-    Ulp,
+    Ulp1,
     /// The double nearest to the true value.
-    Correct,
+    CorrectlyRounded,
     /// Off by at most 10⁻⁷.
     Fast7,
     /// Off by at most 10⁻¹⁰.
     Fast10,
     /// Sums of two `f64`, off by at most 2⁻¹⁰⁰ of the value.
-    Two,
+    DoubleDouble,
 }
 
-/// How accurate a module of generated code is.
+/// Precision of a module of generated code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Level {
+pub struct Precision {
     /// The numbers.
     pub arithmetic: Arithmetic,
     /// Sines and cosines.
-    pub sines: Sines,
+    pub sines: TrigAccuracy,
     /// Whether a·b + c is one instruction, with one rounding, where the processor has it.
     pub fused: bool,
 }
 
-impl Default for Level {
+impl Default for Precision {
     fn default() -> Self {
-        Self { arithmetic: Arithmetic::Double, sines: Sines::Ulp, fused: true }
+        Self { arithmetic: Arithmetic::Double, sines: TrigAccuracy::Ulp1, fused: true }
     }
 }
 
-/// A text that is no level.
+/// The error for a text that names no precision.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct LevelError {
-    /// The word that is wrong.
+pub struct PrecisionError {
+    /// The wrong word.
     pub found: String,
-    /// What would be right.
+    /// The accepted words.
     pub expected: &'static str,
 }
 
-impl fmt::Display for LevelError {
+impl fmt::Display for PrecisionError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "level: found `{}`, expected {}", self.found, self.expected)
     }
 }
 
-impl core::error::Error for LevelError {}
+impl core::error::Error for PrecisionError {}
 
 const ARITHMETICS: [(&str, Arithmetic); 5] = [
     ("f64", Arithmetic::Double),
@@ -85,20 +87,25 @@ const ARITHMETICS: [(&str, Arithmetic); 5] = [
     ("double_double", Arithmetic::DoubleDouble),
 ];
 
-const SINES: [(&str, Sines); 5] =
-    [("ulp", Sines::Ulp), ("correct", Sines::Correct), ("fast_7", Sines::Fast7), ("fast_10", Sines::Fast10), ("two", Sines::Two)];
+const TRIG_ACCURACIES: [(&str, TrigAccuracy); 5] = [
+    ("ulp", TrigAccuracy::Ulp1),
+    ("correct", TrigAccuracy::CorrectlyRounded),
+    ("fast_7", TrigAccuracy::Fast7),
+    ("fast_10", TrigAccuracy::Fast10),
+    ("two", TrigAccuracy::DoubleDouble),
+];
 
 const EXPECTED: &str = "f64, f32, f32_f64, compensated or double_double, then what differs from the default of +correct, +fast_7, +fast_10, +two, +no_fma, \
                         as in f64+fast_10+no_fma";
 
-impl Level {
-    /// An arithmetic with the sines and the multiply-add that go with it unless one is told.
+impl Precision {
+    /// An arithmetic with its default accuracy of sines and with multiply-adds.
     pub fn of(arithmetic: Arithmetic) -> Self {
-        let sines = if arithmetic == Arithmetic::DoubleDouble { Sines::Two } else { Sines::Ulp };
+        let sines = if arithmetic == Arithmetic::DoubleDouble { TrigAccuracy::DoubleDouble } else { TrigAccuracy::Ulp1 };
         Self { arithmetic, sines, fused: true }
     }
 
-    /// Every level that `articulated accuracy` measures unless it is told.
+    /// The precisions that `articulated accuracy` measures by default.
     pub fn all() -> Vec<Self> {
         let names = "f32 f32+fast_7 f32_f64 f64 f64+no_fma f64+fast_7 f64+fast_10 f64+correct compensated compensated+correct compensated+two \
                      double_double double_double+no_fma";
@@ -115,24 +122,27 @@ impl Level {
         matches!(self.arithmetic, Arithmetic::Single | Arithmetic::SingleByDouble)
     }
 
-    /// Whether limbs that are alike can be computed in lanes.
+    /// Whether isomorphic limbs can be computed in lanes.
     pub fn has_lanes(self) -> bool {
-        self.arithmetic == Arithmetic::Double && self.fused && matches!(self.sines, Sines::Ulp | Sines::Fast7 | Sines::Fast10)
+        self.arithmetic == Arithmetic::Double
+            && self.fused
+            && matches!(self.sines, TrigAccuracy::Ulp1 | TrigAccuracy::Fast7 | TrigAccuracy::Fast10)
     }
 
-    fn check(self) -> Result<Self, LevelError> {
-        let wrong = |expected| Err(LevelError { found: self.to_string(), expected });
+    fn check(self) -> Result<Self, PrecisionError> {
+        let wrong = |expected| Err(PrecisionError { found: self.to_string(), expected });
         match (self.arithmetic, self.sines) {
-            (Arithmetic::Double | Arithmetic::Single | Arithmetic::SingleByDouble, Sines::Two) => {
+            (Arithmetic::Double | Arithmetic::Single | Arithmetic::SingleByDouble, TrigAccuracy::DoubleDouble) => {
                 wrong("+two with compensated or double_double, whose numbers are sums of two")
             }
-            (Arithmetic::DoubleDouble, Sines::Two) => Ok(self),
+            (Arithmetic::DoubleDouble, TrigAccuracy::DoubleDouble) => Ok(self),
             (Arithmetic::DoubleDouble, _) => wrong("double_double with its own sines"),
             _ => Ok(self),
         }
     }
 
-    /// What holds at this level, in lines: bound, domain, and what comes of odd arguments.
+    /// The contract of this precision, in lines: error bound, domain, and results of non-finite
+    /// arguments.
     pub fn contract(self) -> Vec<String> {
         let arithmetic = match self.arithmetic {
             Arithmetic::Double => "Numbers: f64; each operation is off by at most 2⁻⁵³ of its result.",
@@ -148,20 +158,22 @@ impl Level {
             }
         };
         let sines = match self.sines {
-            Sines::Ulp => {
+            TrigAccuracy::Ulp1 => {
                 "Sines and cosines: off by at most 1 ulp up to 1e5 rad; beyond, and so at 1e6, 1e15 and 1e22, as the standard library has them."
             }
-            Sines::Correct => "Sines and cosines: the nearest doubles, of any finite angle, 1e6, 1e15 and 1e22 among them.",
-            Sines::Fast7 => {
+            TrigAccuracy::CorrectlyRounded => "Sines and cosines: the nearest doubles, of any finite angle, 1e6, 1e15 and 1e22 among them.",
+            TrigAccuracy::Fast7 => {
                 "Sines and cosines: |error| ≤ 1e-7 up to 1e5 rad; beyond, and so at 1e6, 1e15 and 1e22, as the standard library has them."
             }
-            Sines::Fast10 => {
+            TrigAccuracy::Fast10 => {
                 "Sines and cosines: |error| ≤ 1e-10 up to 1e5 rad; beyond, and so at 1e6, 1e15 and 1e22, as the standard library has them."
             }
-            Sines::Two => "Sines and cosines: off by at most 2⁻¹⁰⁰ of the value, of any finite angle, 1e6, 1e15 and 1e22 among them.",
+            TrigAccuracy::DoubleDouble => {
+                "Sines and cosines: off by at most 2⁻¹⁰⁰ of the value, of any finite angle, 1e6, 1e15 and 1e22 among them."
+            }
         };
         let mut lines = Vec::from([arithmetic.to_string(), sines.to_string()]);
-        if self.arithmetic == Arithmetic::Single && self.sines != Sines::Correct {
+        if self.arithmetic == Arithmetic::Single && self.sines != TrigAccuracy::CorrectlyRounded {
             lines.push("They are computed in f64 and rounded.".into());
         }
         if !self.fused {
@@ -178,29 +190,29 @@ impl Level {
     }
 }
 
-impl fmt::Display for Level {
+impl fmt::Display for Precision {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = ARITHMETICS.iter().find(|(_, a)| *a == self.arithmetic).map_or("", |(name, _)| name);
         f.write_str(name)?;
         if self.sines != Self::of(self.arithmetic).sines {
-            write!(f, "+{}", SINES.iter().find(|(_, s)| *s == self.sines).map_or("", |(name, _)| name))?;
+            write!(f, "+{}", TRIG_ACCURACIES.iter().find(|(_, s)| *s == self.sines).map_or("", |(name, _)| name))?;
         }
         if self.fused { Ok(()) } else { f.write_str("+no_fma") }
     }
 }
 
-impl FromStr for Level {
-    type Err = LevelError;
+impl FromStr for Precision {
+    type Err = PrecisionError;
 
-    fn from_str(text: &str) -> Result<Self, LevelError> {
-        let wrong = |found: &str| LevelError { found: found.trim().to_string(), expected: EXPECTED };
+    fn from_str(text: &str) -> Result<Self, PrecisionError> {
+        let wrong = |found: &str| PrecisionError { found: found.trim().to_string(), expected: EXPECTED };
         let mut words = text.split('+').map(str::trim);
         let first = words.next().unwrap_or_default();
         let (_, arithmetic) = ARITHMETICS.iter().find(|(name, _)| *name == first).ok_or_else(|| wrong(first))?;
         let (mut level, mut sines_said) = (Self::of(*arithmetic), false);
         for word in words {
             // Each kind of word once: of two the last would win in silence.
-            match SINES.iter().find(|(name, _)| *name == word) {
+            match TRIG_ACCURACIES.iter().find(|(name, _)| *name == word) {
                 Some((_, sines)) if !sines_said => (level.sines, sines_said) = (*sines, true),
                 None if word == "no_fma" && level.fused => level.fused = false,
                 _ => return Err(wrong(word)),
@@ -226,25 +238,30 @@ texts! {
     CORRECT ["exact" "sines" "whole" "correct"];
 }
 
-/// Contents of the module that code of a level calls, for which `std` is enough; nothing where the level needs none. All is generic over `FUSED: bool`,
-/// whether a·b + c is one instruction. With numbers of two: `type V`, `k`, `add`, `sub`, `mul`, `div`, `neg`, `sqrt`, `fmadd` = ab + c, `fmsub`, `fnmadd`, `fnmsub`, `positive`, `select`,
-/// `atan2`, `number`, and `sin_cos` or `turned`, which makes them of those of the double. With sines to the nearest double: `sin_cos_correct`, `sin_cos_correct_f32`.
-pub fn source(level: Level) -> Option<&'static str> {
+/// Contents of the module that generated code of a precision calls; `None` where it needs none. It
+/// depends on `std` only.
+///
+/// Everything is generic over `FUSED: bool`, whether a·b + c is one instruction. For sums of two
+/// doubles: `type V`, `k`, `add`, `sub`, `mul`, `div`, `neg`, `sqrt`, `fmadd` = ab + c, `fmsub`,
+/// `fnmadd`, `fnmsub`, `positive`, `select`, `atan2`, `number`, and `sin_cos` or `turned`, which
+/// refines the sine and cosine of the leading double. For correctly rounded sines:
+/// `sin_cos_correct`, `sin_cos_correct_f32`.
+pub fn source(level: Precision) -> Option<&'static str> {
     match (level.arithmetic, level.sines) {
         (Arithmetic::DoubleDouble, _) => Some(DOUBLE_DOUBLE),
-        (Arithmetic::Compensated, Sines::Two) => Some(PAIR_OF_TWO),
-        (Arithmetic::Compensated, Sines::Correct) => Some(PAIR_CORRECT),
+        (Arithmetic::Compensated, TrigAccuracy::DoubleDouble) => Some(PAIR_OF_TWO),
+        (Arithmetic::Compensated, TrigAccuracy::CorrectlyRounded) => Some(PAIR_CORRECT),
         (Arithmetic::Compensated, _) => Some(PAIR),
-        (_, Sines::Correct) => Some(CORRECT),
+        (_, TrigAccuracy::CorrectlyRounded) => Some(CORRECT),
         _ => None,
     }
 }
 
-/// The text of a module of [`lanes`](crate::lanes) with the sines of a level.
-pub fn with_sines(lanes: &str, level: Level) -> String {
+/// The text of a module of [`lanes`](crate::lanes) with the sines of a precision.
+pub fn with_sines(lanes: &str, level: Precision) -> String {
     let fast = match level.sines {
-        Sines::Fast7 => include_str!("../lanes/text/sines/f64_fast_7.rs"),
-        Sines::Fast10 => include_str!("../lanes/text/sines/f64_fast_10.rs"),
+        TrigAccuracy::Fast7 => include_str!("../lanes/text/sines/f64_fast_7.rs"),
+        TrigAccuracy::Fast10 => include_str!("../lanes/text/sines/f64_fast_10.rs"),
         _ => "",
     };
     let text = if level.fused { lanes.to_string() } else { lanes.replace(FUSED, "const FMA: bool = false;") };

@@ -23,12 +23,12 @@ compiled! {
 
 #[test]
 fn levels_are_read_as_they_are_written() {
-    for level in Level::all() {
+    for level in Precision::all() {
         assert_eq!(level.to_string().parse(), Ok(level));
         assert!(!level.contract().is_empty());
     }
-    assert_eq!(Level::all().len(), 13);
-    assert_eq!("f64".parse(), Ok(Level::default()));
+    assert_eq!(Precision::all().len(), 13);
+    assert_eq!("f64".parse(), Ok(Precision::default()));
     for wrong in [
         "f16",
         "f64+fast",
@@ -40,7 +40,7 @@ fn levels_are_read_as_they_are_written() {
         "f64+correct+correct",
         "f64+no_fma+no_fma",
     ] {
-        assert!(wrong.parse::<Level>().is_err(), "{wrong}");
+        assert!(wrong.parse::<Precision>().is_err(), "{wrong}");
     }
 }
 

@@ -1,10 +1,10 @@
-//! Outputs and events of a step, and what events do to the state.
+//! Outputs and events of a step, and the actions of events on the state.
 
 use articulated_core::dynamics::Dynamics;
 
 use super::{Outcome, Run, Simulation};
 use crate::simulate::curve::Curve;
-use crate::simulate::event::watch::Zero;
+use crate::simulate::event::detectors::Zero;
 use crate::simulate::integrator::Start;
 use crate::simulate::step_control::rounding;
 use crate::simulate::{Action, Direction, Event, Hit, SimulateError, StateError};
@@ -40,9 +40,9 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         let tolerance = self.settings.event_tolerance.max(rounding(t) / 4.0) / h;
         let mut curve = curve!(self, t);
         curve.prepare(&mut self.system, run.control)?;
-        self.watch.scan(run.events, &mut self.system, &mut curve, (tolerance, t >= self.settings.end))?;
+        self.detectors.scan(run.events, &mut self.system, &mut curve, (tolerance, t >= self.settings.end))?;
         let (mut cut, mut outcome, first) = (1.0, Outcome::GoOn, run.recording.events.len());
-        for &Zero { theta, event, direction } in &self.watch.zeros {
+        for &Zero { theta, event, direction } in &self.detectors.zeros {
             // What happens at the same time as the first that cuts the step short happens too; the rest is found again, if it still comes.
             if !matches!(outcome, Outcome::GoOn) && theta > cut + tolerance {
                 break;
@@ -57,14 +57,14 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
             if matches!(outcome, Outcome::GoOn) {
                 cut = theta;
                 // So does what was found a moment before it.
-                self.progress.cut = first + self.watch.zeros.iter().take_while(|zero| zero.theta < cut - tolerance).count();
+                self.progress.cut = first + self.detectors.zeros.iter().take_while(|zero| zero.theta < cut - tolerance).count();
             }
             outcome = next;
         }
         Ok((cut, outcome))
     }
 
-    /// Records what is asked for up to where the step to t is cut: a part of it, and a time.
+    /// Records the requested output up to the cut of the step to t, given as a fraction and a time.
     fn outputs(&mut self, run: &mut Run, t: f64, (cut, stop): (f64, f64)) -> Result<(), SimulateError> {
         let (start, h) = (self.t, t - self.t);
         let Some(times) = &mut self.progress.times else { return Ok(()) };
@@ -95,7 +95,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
         let (mut mapped, nv) = (false, self.shape.nv);
         for hit in &run.recording.events[self.progress.cut..] {
             let left = (run.events[hit.event].function)(self.t, &self.system.origin, &self.y[nv..2 * nv]);
-            self.watch.set_left(hit.event, left);
+            self.detectors.set_left(hit.event, left);
         }
         for hit in self.progress.cut..run.recording.events.len() {
             mapped |= self.map_by(run, hit)?;
@@ -144,7 +144,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
                 self.v.iter_mut().zip(rates).for_each(|(out, (v, a))| *out = v + MOMENT * a);
                 let change = (run.events[e].function)(self.t + MOMENT, &self.point.q, &self.v) - here;
                 // More than what the search left, and more than a moment does.
-                let away = here.abs() > (2.0 * self.watch.left(e)).max(change.abs());
+                let away = here.abs() > (2.0 * self.detectors.left(e)).max(change.abs());
                 value = if away { here } else { change };
             }
             value = match (fired, arriving) {
@@ -152,7 +152,7 @@ impl<R: Dynamics<f64>> Simulation<'_, R> {
                 (None, Some(direction)) => before(direction),
                 _ => value,
             };
-            self.watch.set_side(e, value);
+            self.detectors.set_side(e, value);
         }
         Ok(())
     }

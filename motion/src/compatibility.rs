@@ -1,28 +1,31 @@
-//! Whether a robot moves as a scene's does.
+//! Compatibility of a robot's dynamics with the scene's.
 //!
-//! Accelerations of both in a few states, as the torques that they take: those of an ill-conditioned robot may differ where its torques do not.
+//! Compares accelerations in a few states by the torques that they need: accelerations of an
+//! ill-conditioned robot may differ where its torques do not.
 
 use articulated::{Dynamics, FunctionError, FunctionId, Model};
 
-use crate::begin::Begin;
 use crate::error::Fault;
-use crate::stage::Stage;
+use crate::initial_state::InitialState;
+use crate::session::Session;
 
-/// How far torques may be apart, relative to the largest of them: more than any level of accuracy leaves. What acts less than that is not told.
+/// Tolerated difference of torques, relative to the largest of them: more than any precision
+/// leaves. Smaller effects are not detected.
 const ALIKE: f64 = 1e-3;
 
-/// How far from the start joints are, rad and m, at most, where accelerations are compared: there, and on both sides, so that stops and the ground are felt.
+/// Largest distances from the start, rad and m, at which accelerations are compared: the start and
+/// both sides, so that stops and the ground act.
 const AWAY: [f64; 3] = [0.0, 8.0, -8.0];
 
-impl Stage {
-    /// A robot that was made with other effects, other gravity or other masses than the scene's.
-    pub(crate) fn another<R: Dynamics<f64>>(&self, robot: &R, begin: &Begin) -> Result<Option<Fault>, FunctionError> {
+impl Session {
+    /// The fault of a robot with other effects, gravity or masses than the scene's.
+    pub(crate) fn dynamics_mismatch<R: Dynamics<f64>>(&self, robot: &R, initial: &InitialState) -> Result<Option<Fault>, FunctionError> {
         for away in AWAY {
             let pattern: Vec<f64> = (0..self.model.nv()).map(|k| 1.0 - 0.15 * (k % 4) as f64).collect();
             let step: Vec<f64> = pattern.iter().map(|x| away * x).collect();
-            let v: Vec<f64> = begin.v.iter().zip(&pattern).map(|(v, x)| v + 0.5 * x).collect();
-            let mut q = vec![0.0; self.model.nq()];
-            self.model.integrate(&mut self.model.workspace(), &begin.q, &step, &mut q)?;
+            let v: Vec<f64> = initial.v.iter().zip(&pattern).map(|(v, x)| v + 0.5 * x).collect();
+            let mut q = vec![0.0; self.model.nq];
+            self.model.integrate(&mut self.model.workspace(), &initial.q, &step, &mut q)?;
             let a = [accelerations(&self.model, &q, &v, &pattern)?, accelerations(robot, &q, &v, &pattern)?];
             if let Some((apart, largest)) = apart(&self.model, &q, &v, &a)?.filter(|(apart, largest)| *apart > ALIKE * largest) {
                 return Ok(Some(Fault::Dynamics { apart, largest }));
@@ -37,7 +40,8 @@ fn accelerations<R: Dynamics<f64>>(robot: &R, q: &[f64], v: &[f64], tau: &[f64])
     robot.call(FunctionId::forward_dynamics, &mut robot.workspace(), &[q, v, tau], &mut a).map(|()| a)
 }
 
-/// The largest difference of the torques that two accelerations take, and the largest of these torques and of those at rest in this motion; nothing where they are no numbers.
+/// The largest difference of the torques of two accelerations, and the largest of these torques and
+/// the bias torques; `None` if any is not finite.
 fn apart(model: &Model<f64>, q: &[f64], v: &[f64], [expected, found]: &[Vec<f64>; 2]) -> Result<Option<(f64, f64)>, FunctionError> {
     let torques = |a: &[f64]| -> Result<Vec<f64>, FunctionError> {
         let mut tau = vec![0.0; v.len()];

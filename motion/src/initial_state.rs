@@ -1,4 +1,4 @@
-//! What a motion begins with: a state, and what drives the joints.
+//! The initial state and controller of a motion, with warnings about them.
 
 use std::fmt;
 
@@ -9,20 +9,20 @@ use articulated_scene::Controller;
 
 use crate::error::MotionErrors;
 use crate::freedom::Freedom;
-use crate::stage::{Stage, field};
+use crate::session::{Session, field};
 
-/// The state that a motion starts from, and what drives it.
+/// Initial state and controller.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Begin {
+pub struct InitialState {
     /// Coordinates, `[nq]` rad|m|unit quaternion.
     pub q: Vec<f64>,
     /// Rates, `[nv]` rad/s|m/s.
     pub v: Vec<f64>,
-    /// What drives the joints, with vectors in the order of the robot.
+    /// The controller, with vectors in the order of the robot.
     pub controller: Controller,
 }
 
-/// A joint that starts beyond its limits: odd, and used as asked for.
+/// A joint that starts beyond its limits: a warning; the state is used.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beyond {
     /// The scene's file.
@@ -37,19 +37,21 @@ pub struct Beyond {
     pub upper: f64,
 }
 
-impl Stage {
-    /// Start and control as the scene has them. Errors: all that does not fit the robot, and tables that cannot be read.
-    pub fn begin(&self) -> Result<Begin, MotionErrors> {
+impl Session {
+    /// Initial state and control of the scene. Errors: entries that do not fit the robot, and
+    /// unreadable tables.
+    pub fn initial_state(&self) -> Result<InitialState, MotionErrors> {
         let start = self.scene.start(&self.model).map_err(MotionErrors::from);
         let controller = self.scene.controller(&self.model, &mut |file| self.file(file)).map_err(MotionErrors::from);
         let ((q, v), controller) = MotionErrors::both(start, controller)?;
-        Ok(Begin { q, v, controller })
+        Ok(InitialState { q, v, controller })
     }
 
-    /// The joints of one coordinate that are beyond the limits of the file at q `[nq]`, where a motion starts; those that follow others too.
+    /// The joints of one coordinate, mimic joints included, that are beyond the file's limits at
+    /// the initial q `[nq]`.
     pub fn beyond(&self, q: &[f64]) -> Vec<Beyond> {
         let beyond = |at: Freedom<'_>| {
-            let ((lower, upper), found) = (self.of_the_file(at.body)?, at.own(*q.get(at.q)?));
+            let ((lower, upper), found) = (self.of_the_file(at.body)?, at.own_coordinate(*q.get(at.q)?));
             let beyond = || Beyond { file: self.scene.file.clone(), joint: at.joint().to_owned(), found, lower, upper };
             (found < lower || found > upper).then(beyond)
         };
@@ -57,20 +59,20 @@ impl Stage {
     }
 }
 
-/// A contact that starts with its sphere's centre under the plane: odd, since it springs up with
-/// all that is stored there, and used as asked for. A point, of radius 0, is one only where it
-/// pushes with more than the robot weighs: it stands below the plane.
+/// A contact whose sphere starts with its centre under the plane: a warning, since the stored
+/// energy throws the robot up. A point (radius 0) rests below its plane, so it counts only where it
+/// pushes with more than the robot's weight.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sunk {
     /// The scene's file.
     pub file: String,
     /// The link.
     pub link: String,
-    /// How far the centre is under the plane, m.
+    /// Depth of the centre under the plane, m.
     pub depth: f64,
 }
 
-impl Stage {
+impl Session {
     /// Spheres whose centres are under their planes at the coordinates q `[nq]`.
     pub fn sunk(&self, q: &[f64]) -> Vec<Sunk> {
         if self.effects_of(EffectId::contact).next().is_none() {
@@ -99,7 +101,7 @@ impl fmt::Display for Sunk {
         let Self { file, link, depth } = self;
         write!(
             f,
-            "{file}: effects.contact.{link}: found the centre of the sphere {depth} m under the plane at the start, expected it above (by height, normal or initial.q); used as asked for"
+            "{file}: effects.contact.{link}: found the centre of the sphere {depth} m under the plane at the start, expected it above (by height, normal or initial.q); used as given"
         )
     }
 }
@@ -108,6 +110,6 @@ impl fmt::Display for Beyond {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { file, joint, .. } = self;
         let [found, lower, upper] = [self.found, self.lower, self.upper].map(Plain);
-        write!(f, "{file}: initial.q.{joint}: found {found}, beyond its limits, expected {lower} to {upper}; used as asked for")
+        write!(f, "{file}: initial.q.{joint}: found {found}, beyond its limits, expected {lower} to {upper}; used as given")
     }
 }

@@ -1,4 +1,5 @@
-//! Results that are not to be trusted: beyond the largest number, or of a mass matrix that is singular where the robot stands.
+//! Warnings about unreliable results: non-finite numbers, or a mass matrix that is singular at the
+//! state.
 
 use articulated_core::algorithm::checked::checked_forward_dynamics;
 use articulated_core::algorithm::{Argument, Workspace};
@@ -10,8 +11,8 @@ use crate::states::State;
 /// More are counted, not listed.
 const MOST: usize = 10;
 
-/// What there is to say of the functions' results, one line each; `file` has the states.
-pub(super) fn results(functions: &[FunctionReport], states: &[State], model: &Model<f64>, file: &str) -> Vec<String> {
+/// Warnings about the functions' results, one line each; `file` has the states.
+pub(super) fn of_results(functions: &[FunctionReport], states: &[State], model: &Model<f64>, file: &str) -> Vec<String> {
     let inverse = functions.iter().filter(|f| f.function.inverts_mass_matrix()).map(|f| f.function.name).collect::<Vec<_>>().join(", ");
     let mut ws = Workspace::new(model);
     let mut lines = Vec::new();

@@ -1,17 +1,17 @@
-//! What happened in a motion: for programs, and in words.
+//! Event records of a motion: data and text.
 
 use std::fmt;
 
-/// Something that happened, at its time.
+/// The record of an event.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Happening {
-    /// When, s.
+pub struct Occurrence {
+    /// Time, s.
     pub t: f64,
-    /// What, in a few words; of an event that was put behind those of the scene, its name.
+    /// Description; for an event appended by the program, its name.
     pub what: String,
-    /// What of the scene it was; nothing of such an event.
+    /// The event of the scene; `None` for an appended event.
     pub about: Option<SceneEvent>,
-    /// Of the ball's turn, its speed along the normal after it, m/s.
+    /// For the ball's event, its speed along the normal afterwards, m/s.
     pub ball_speed: Option<f64>,
 }
 
@@ -20,12 +20,12 @@ pub struct Happening {
 pub struct SceneEvent {
     /// Its kind.
     pub kind: EventKind,
-    /// Whose: a joint of one degree of freedom, a degree of freedom as `base[3]`, or a link.
+    /// Subject: a joint of one degree of freedom, a degree of freedom as `base[3]`, or a link.
     pub on: String,
-    /// Whether what it is about begins: a limit is reached, the ground touched, the joint stops
-    /// sliding, the ball is hit; or ends: the joint comes back, the link leaves the ground, the
-    /// joint starts to slide ([`SLIDING`](articulated::simulate::SLIDING)). The ball's turn comes
-    /// once: not hit is nothing that moved towards it.
+    /// Whether the condition begins (a limit is reached, the ground is touched, the joint stops
+    /// sliding, the ball is hit) or ends (the joint comes back, the link leaves the ground, the
+    /// joint starts to slide, [`SLIDING`](articulated::simulate::SLIDING)). The ball's event occurs
+    /// once; false means that nothing moved towards the ball.
     pub begins: bool,
 }
 
@@ -39,9 +39,9 @@ pub enum EventKind {
     UpperLimit,
     /// A contact of a link with the ground.
     Contact {
-        /// Which of the link's, from 1, in the order of the scene.
+        /// Number among the link's contacts, from 1, in the order of the scene.
         number: usize,
-        /// How many the link has.
+        /// Number of contacts of the link.
         of: usize,
     },
     /// Dry friction that holds a joint.
@@ -84,7 +84,7 @@ impl fmt::Display for SceneEvent {
     }
 }
 
-impl Happening {
+impl Occurrence {
     /// An event of the scene, and the ball's speed after it.
     pub(crate) fn of(t: f64, about: SceneEvent, ball_speed: Option<f64>) -> Self {
         let what = match (ball_speed, about.begins) {

@@ -1,4 +1,4 @@
-//! What a person hears of a motion while it runs: a bar, and a warning where it is slow.
+//! Progress of a running motion: a bar, and a warning if it is slow.
 
 use std::time::{Duration, Instant};
 
@@ -6,7 +6,7 @@ use articulated::simulate::{Counts, Settings};
 
 use crate::console::Progress;
 use crate::table::number;
-use articulated_lab::stage::{Stage, joint_of};
+use articulated_lab::session::{Session, joint_of};
 
 /// When to say that a motion is slow, and what is left of it then at least.
 const PATIENCE: Duration = Duration::from_secs(8);
@@ -15,8 +15,8 @@ const LONG: Duration = Duration::from_secs(30);
 /// Steps between two looks at the clock.
 const EVERY: u64 = 16;
 
-pub(super) struct Watch<'a> {
-    stage: &'a Stage,
+pub(super) struct RunMonitor<'a> {
+    session: &'a Session,
     settings: &'a Settings,
     progress: &'a Progress,
     clock: Instant,
@@ -24,9 +24,9 @@ pub(super) struct Watch<'a> {
     warned: bool,
 }
 
-impl<'a> Watch<'a> {
-    pub(super) fn new(stage: &'a Stage, settings: &'a Settings, progress: &'a Progress) -> Self {
-        Self { stage, settings, progress, clock: Instant::now(), looked: 0, warned: false }
+impl<'a> RunMonitor<'a> {
+    pub(super) fn new(session: &'a Session, settings: &'a Settings, progress: &'a Progress) -> Self {
+        Self { session, settings, progress, clock: Instant::now(), looked: 0, warned: false }
     }
 
     /// After a step, to the time t, s.
@@ -51,12 +51,12 @@ impl<'a> Watch<'a> {
 
     /// How slow the motion is, and why.
     fn slow(&self, t: f64, counts: &Counts, passed: f64, left: f64) -> String {
-        let (file, end) = (&self.stage.scene.file, self.settings.end);
+        let (file, end) = (&self.session.scene.file, self.settings.end);
         let tries = (counts.steps + counts.rejected) as f64;
         let mean = (t - self.settings.start) / tries;
-        let limit = counts.limited_by.and_then(|index| Some((index, joint_of(self.stage, index)?)));
+        let limit = counts.limited_by.and_then(|index| Some((index, joint_of(self.session, index)?)));
         let limit = limit.map_or_else(String::new, |(index, joint)| {
-            let what = if index < self.stage.model.nv() { "coordinate" } else { "velocity" };
+            let what = if index < self.session.model.nv { "coordinate" } else { "velocity" };
             format!(", limited most by the {what} of joint `{joint}`")
         });
         format!(

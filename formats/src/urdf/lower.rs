@@ -2,15 +2,13 @@
 
 use articulated_core::description::{Description, Joint, Link, Mimic};
 
-use super::draft::Draft;
+use super::ast::Draft;
 use super::tree::Tree;
 
 /// The description that the draft amounts to; `None` where something of it is missing, which is an error already.
-pub(crate) fn described(draft: &Draft, tree: &Tree, leaders: &[Option<usize>]) -> Option<Description> {
-    let links = draft.links.iter().map(|link| {
-        let (name, collision) = (link.name.clone()?, link.collision.clone());
-        Some(Link { name, inertial: link.inertial, collision, ..Link::default() })
-    });
+pub(crate) fn lower(draft: &Draft, tree: &Tree, leaders: &[Option<usize>]) -> Option<Description> {
+    let links =
+        draft.links.iter().map(|link| Some(Link { name: link.name.clone()?, inertial: link.inertial, collision: link.collision.clone() }));
     let joints = draft.joints.iter().enumerate().map(|(i, joint)| {
         let mimic = joint.mimic.as_ref().zip(leaders[i]).map(|(mimic, leader)| Mimic {
             joint: leader,

@@ -1,6 +1,6 @@
 //! Generated code of a robot at a level, compiled.
 
-use articulated_codegen::{Generated, Level, Request, generate};
+use articulated_codegen::{Generated, Precision, Request, generate};
 use articulated_core::algorithm::FunctionId;
 use articulated_core::description::Description;
 
@@ -11,12 +11,12 @@ use crate::stress::machine::{cast, widened};
 
 /// What was generated, and what came of it.
 #[derive(Debug)]
-pub struct Made {
+pub struct BuiltRobot {
     pub(super) generated: Generated,
     compiled: Compiled,
 }
 
-impl Made {
+impl BuiltRobot {
     /// Of what was generated.
     pub(crate) fn of(generated: Generated) -> Result<Self, Error> {
         let rustc = Rustc::find().map_err(|e| Error::tool(&e))?;
@@ -25,7 +25,7 @@ impl Made {
     }
 
     /// Of a description, with these functions.
-    pub(super) fn of_description(name: &str, robot: &Description, level: Level, functions: &[FunctionId]) -> Result<Self, Error> {
+    pub(super) fn of_description(name: &str, robot: &Description, level: Precision, functions: &[FunctionId]) -> Result<Self, Error> {
         let mut request = Request::new(format!("{name}.urdf"), articulated_formats::urdf::write(robot));
         request.options.functions = functions.iter().map(|f| f.name().into()).collect();
         request.options.level = level;
@@ -34,7 +34,7 @@ impl Made {
     }
 
     /// How accurate it is.
-    pub fn level(&self) -> Level {
+    pub fn level(&self) -> Precision {
         self.generated.level
     }
 

@@ -7,7 +7,8 @@ use crate::graph::{Graph, Node, NodeId, Op};
 /// Multiplications or multiply-adds that a processor begins in a cycle.
 const A_CYCLE: u32 = 2;
 
-/// The part of its time by which the last result may be late: fewer instructions are worth that, and no more, as a processor looks only so far ahead.
+/// Fraction of the total latency by which the last result may be late for the sake of fewer
+/// instructions; a processor looks only so far ahead.
 const GRACE: u32 = 16;
 
 /// Instructions from which on a program nearly fills the cache for instructions: then nothing is worth more of them.
@@ -22,7 +23,7 @@ const SHARED: u32 = 3;
 /// A chain takes its terms in the order in which they become known, so that the last one waits for nothing but itself. Each sum is due when the last
 /// result still is in time; where one chain would be late, it is cut into two or three, which takes more instructions. A sum of products alone needs one that is computed on its own to start from;
 /// those are chosen so that as few as possible are. Re-association changes results by roundings only.
-pub fn contract(graph: &Graph) -> Graph {
+pub fn fma_contract(graph: &Graph) -> Graph {
     let sums = Sums::of(graph);
     let due = build(graph, &sums, &vec![0; graph.nodes().len()]).due();
     build(graph, &sums, &due).new
@@ -221,14 +222,14 @@ impl Builder<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pass::live;
+    use crate::pass::dce;
 
     fn at(_: usize, k: usize) -> f64 {
         [0.3, -0.8, 1.7, 2.9, -0.45, 0.62][k]
     }
 
     fn check(g: &Graph, instructions: u64) {
-        let new = live(&contract(g));
+        let new = dce(&fma_contract(g));
         new.verify().unwrap();
         assert_eq!(new.counts().instructions(), instructions);
         for (a, b) in new.evaluate(at).into_iter().zip(g.evaluate(at)) {
@@ -268,7 +269,7 @@ mod tests {
         let ab = g.apply(Op::Mul, &[a, b]);
         g.outputs = [c, d, e].map(|x| g.apply(Op::Add, &[ab, x])).to_vec();
         check(&g, 4);
-        assert_eq!(live(&contract(&g)).nodes().iter().filter(|n| n.op == Op::Add).count(), 3);
+        assert_eq!(dce(&fma_contract(&g)).nodes().iter().filter(|n| n.op == Op::Add).count(), 3);
     }
 
     #[test]
@@ -303,7 +304,7 @@ mod tests {
                 let (minus, root) = (g.exactly(Op::Neg, &[sum]), g.exactly(Op::Sqrt, &[sum]));
                 g.outputs.extend([minus, root, sum]);
             }
-            let new = live(&contract(&g));
+            let new = dce(&fma_contract(&g));
             let positive = |argument: usize, k: usize| at(argument, k).abs();
             for (a, b) in new.evaluate(positive).into_iter().zip(g.evaluate(positive)) {
                 assert!((a - b).abs() < 1e-15 || a.is_nan() && b.is_nan(), "{a} {b}");

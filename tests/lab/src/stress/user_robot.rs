@@ -1,6 +1,6 @@
-//! A robot of one's own: states at random and hard ones, generic and generated code, and the monitors.
+//! A user's robot: random and hard states, generic and generated code, and the monitors.
 
-use articulated_codegen::Level;
+use articulated_codegen::Precision;
 use articulated_core::algorithm::{FunctionId, Workspace};
 use articulated_core::model::Model;
 use articulated_core::monitor::{
@@ -8,7 +8,7 @@ use articulated_core::monitor::{
 };
 
 use super::judge::{BACKWARD, DERIVATIVES, Ends, Judge, State, call};
-use super::levels::{self, Made};
+use super::levels::{self, BuiltRobot};
 use super::machine::Machine;
 use super::robots::{state, states};
 use super::row::{Case, Row};
@@ -30,9 +30,9 @@ pub(super) struct Found {
 }
 
 /// All rows of a robot.
-pub(super) fn rows(robot: &Robot, model: &Model<f64>, given: &[State], generated: &[Level]) -> Result<Found, Error> {
+pub(super) fn rows(robot: &Robot, model: &Model<f64>, given: &[State], generated: &[Precision]) -> Result<Found, Error> {
     let sets = sets(model, given);
-    let made: Vec<Made> = generated.iter().map(|level| make(robot, model, *level)).collect::<Result<_, _>>()?;
+    let made: Vec<BuiltRobot> = generated.iter().map(|level| make(robot, model, *level)).collect::<Result<_, _>>()?;
     let mut rows = Vec::new();
     for (name, why, states) in &sets {
         let case = Case::new(NAME, format!("{}: {name}", model.name()), why).by_terms();
@@ -47,7 +47,7 @@ pub(super) fn rows(robot: &Robot, model: &Model<f64>, given: &[State], generated
 }
 
 /// Which functions a robot is not judged by because it does not have them, and why.
-fn left_out(robot: &Robot, model: &Model<f64>, generated: &[Level]) -> Result<Vec<String>, Error> {
+fn left_out(robot: &Robot, model: &Model<f64>, generated: &[Precision]) -> Result<Vec<String>, Error> {
     let massless = articulated_codegen::massless(model);
     let mut functions = vec![FunctionId::forward_dynamics, FunctionId::solve_mass_matrix];
     functions.extend(generated.iter().flat_map(|level| levels::functions(model.nv(), *level)));
@@ -115,15 +115,15 @@ fn judged(case: &Case, model: &Model<f64>, states: &[State]) -> Vec<Row> {
 }
 
 /// The code of a robot at a level.
-fn make(robot: &Robot, model: &Model<f64>, level: Level) -> Result<Made, Error> {
-    let mut names = levels::functions(model.nv(), level);
+fn make(robot: &Robot, model: &Model<f64>, level: Precision) -> Result<BuiltRobot, Error> {
+    let mut names = levels::functions(model.nv, level);
     if !model.massless_joints().is_empty() {
         names.retain(|f| !f.row::<f64>().inverts_mass_matrix());
     }
     let names: Vec<String> = names.into_iter().map(|f| f.name().to_owned()).collect();
     let mut request = robot.request(&names);
     request.options.level = level;
-    Made::of(articulated_codegen::generate(&request)?)
+    BuiltRobot::of(articulated_codegen::generate(&request)?)
 }
 
 /// The monitors, over all states.

@@ -1,4 +1,4 @@
-//! The ball of a scene: one ball, one blow.
+//! The ball of a scene, which is hit once.
 
 use std::cell::Cell;
 use std::rc::Rc;
@@ -6,49 +6,50 @@ use std::rc::Rc;
 use articulated::Dynamics;
 use articulated::effect::unit;
 use articulated::simulate::{Action, ContactPoint, Direction, Event, Impact, SimulateError};
-use articulated_scene::{Impact as Asked, When};
+use articulated_scene::{Impact as ImpactRequest, When};
 
-/// What has become of the ball.
+/// State of the ball.
 #[derive(Debug, Default)]
-pub(crate) struct Ball {
-    /// Its turn has come.
-    gone: Cell<bool>,
-    /// The motion ends with it.
+pub(crate) struct Projectile {
+    /// Its event has occurred.
+    spent: Cell<bool>,
+    /// The motion ends with its event.
     pub(crate) ends: Cell<bool>,
-    /// Its turn came when nothing moved towards it.
+    /// Nothing moved towards it at its event.
     pub(crate) missed: Cell<bool>,
-    /// Kinetic energy that it got, J, once it is hit.
+    /// Kinetic energy gained, J, once it is hit.
     pub(crate) energy: Cell<Option<f64>>,
 }
 
-impl Ball {
-    /// It lies where it was.
-    pub(crate) fn put_back(&self) {
-        [&self.gone, &self.ends, &self.missed].into_iter().for_each(|cell| cell.set(false));
+impl Projectile {
+    /// Back to the state before the run.
+    pub(crate) fn reset(&self) {
+        [&self.spent, &self.ends, &self.missed].into_iter().for_each(|cell| cell.set(false));
         self.energy.set(None);
     }
 
-    /// The event that it is hit, by the frame of this number. What is where the ball is at the start passes it there.
+    /// The event of the impact, on the frame of this index. A point that starts at the ball hits it
+    /// at the start.
     pub(crate) fn event<'a, R: Dynamics<f64>>(
         self: &Rc<Self>,
-        asked: &Asked,
+        request: &ImpactRequest,
         robot: &'a R,
         frame: usize,
     ) -> Result<Event<'a>, SimulateError>
     where
         R::Workspace: 'a,
     {
-        let action = self.blow(asked, robot, frame)?;
-        let event = match asked.when {
-            When::Time(at) => Event::new(asked.link.clone(), move |t, _, _| t - at),
+        let action = self.blow(request, robot, frame)?;
+        let event = match request.when {
+            When::Time(at) => Event::new(request.link.clone(), move |t, _, _| t - at),
             When::Ball(place) => {
                 let (mut ws, mut out) = (robot.workspace(), vec![0.0; 12 * robot.shape().frames]);
-                // The blow was made with it, so it has a direction.
-                let (point, n, ball) = (asked.point, unit(asked.normal).unwrap_or(asked.normal), self.clone());
+                // `Impact::new` has checked that the normal has a direction.
+                let (point, n, ball) = (request.point, unit(request.normal).unwrap_or(request.normal), self.clone());
                 // n·(p − ball) with p = x + R r
-                Event::new(asked.link.clone(), move |_, q: &[f64], _| match robot.placements(&mut ws, q, &mut out) {
-                    // Nobody looks for a ball that is gone.
-                    _ if ball.gone.get() => -1.0,
+                Event::new(request.link.clone(), move |_, q: &[f64], _| match robot.placements(&mut ws, q, &mut out) {
+                    // A spent ball triggers no further event.
+                    _ if ball.spent.get() => -1.0,
                     Ok(()) => {
                         let x = &out[12 * frame..][..12];
                         let p = |k: usize| x[9 + k] + (0..3).map(|c| x[3 * k + c] * point[c]).sum::<f64>();
@@ -61,16 +62,16 @@ impl Ball {
         Ok(event.direction(Direction::Rising).arriving(Direction::Rising).action(action))
     }
 
-    /// What is done when its turn has come.
-    fn blow<'a, R: Dynamics<f64>>(self: &Rc<Self>, asked: &Asked, robot: &'a R, frame: usize) -> Result<Action<'a>, SimulateError>
+    /// The action at its event.
+    fn blow<'a, R: Dynamics<f64>>(self: &Rc<Self>, request: &ImpactRequest, robot: &'a R, frame: usize) -> Result<Action<'a>, SimulateError>
     where
         R::Workspace: 'a,
     {
-        let at = ContactPoint { frame, point: asked.point, normal: asked.normal };
-        let mut blow = Impact::new(robot, at, asked.mass, asked.restitution)?;
-        let (ball, stop, speed, mass) = (self.clone(), asked.stop, asked.ball_speed, asked.mass);
+        let at = ContactPoint { frame, point: request.point, normal: request.normal };
+        let mut blow = Impact::new(robot, at, request.mass, request.restitution)?;
+        let (ball, stop, speed, mass) = (self.clone(), request.stop, request.ball_speed, request.mass);
         Ok(Action::Map(Box::new(move |_, q, v| {
-            if ball.gone.replace(true) {
+            if ball.spent.replace(true) {
                 return Ok(None);
             }
             let struck = blow.strike(q, v, speed)?;

@@ -2,17 +2,19 @@
 
 use std::collections::HashMap;
 
-use super::live;
+use super::dce;
 use super::sums::{Rebuild, Term, flatten, inner, is_sum, open, uses_in_sums};
 use crate::graph::{Graph, NodeId, Op};
 
 /// Sums of more terms have too many pairs to look at.
 const MOST: usize = 32;
 
-/// Computes x + y once where several sums have both: an instruction less for each but the first.
+/// Common-subexpression elimination of partial sums: computes x + y once where several sums have
+/// both, which saves an instruction in each but the first.
 ///
-/// Pairs that most sums have come first; what is left over is looked at again, with the pairs as terms. Re-association changes results by roundings only.
-pub fn partial(graph: &Graph) -> Graph {
+/// The most frequent pairs come first; the remaining terms are searched again, with the pairs as
+/// terms. Re-association changes results by rounding only.
+pub fn cse_partial_sums(graph: &Graph) -> Graph {
     let inner = inner(graph);
     let nodes = graph.nodes();
     let sums = (0..nodes.len()).map(|k| if is_sum(&nodes[k]) && !inner[k] { flatten(graph, &inner, k) } else { Vec::new() }).collect();
@@ -24,7 +26,7 @@ pub fn partial(graph: &Graph) -> Graph {
     let mut gone = vec![false; nodes.len()];
     sums.changed.iter().enumerate().filter(|(_, changed)| **changed).for_each(|(k, _)| open(graph, &inner, k, &mut gone));
     let mut built = vec![None; sums.pairs.len()];
-    live(&Rebuild::graph(graph, &gone, |rebuild, k| sums.changed[k].then(|| sums.built(&sums.sums[k], rebuild, &mut built))))
+    dce(&Rebuild::graph(graph, &gone, |rebuild, k| sums.changed[k].then(|| sums.built(&sums.sums[k], rebuild, &mut built))))
 }
 
 /// Whether each node is a product that multiply-adds take in.
@@ -44,7 +46,7 @@ struct Key {
     apart: bool,
 }
 
-/// The sums of a graph, of terms some of which stand for pairs: those with numbers from the graph's length on.
+/// The sums of a graph; terms with numbers from the graph's length on represent pairs.
 struct Sums {
     fused: Vec<bool>,
     sums: Vec<Vec<Term>>,
@@ -132,7 +134,7 @@ fn keys(terms: &[Term]) -> impl Iterator<Item = Key> + '_ {
 
 #[cfg(test)]
 mod tests {
-    use super::super::contract;
+    use super::super::fma_contract;
     use super::*;
 
     fn at(_: usize, k: usize) -> f64 {
@@ -154,9 +156,9 @@ mod tests {
     }
 
     fn check(g: &Graph, instructions: u64) {
-        let new = partial(g);
+        let new = cse_partial_sums(g);
         new.verify().unwrap();
-        let new = live(&contract(&new));
+        let new = dce(&fma_contract(&new));
         assert_eq!(new.counts().instructions(), instructions);
         for (a, b) in new.evaluate(at).into_iter().zip(g.evaluate(at)) {
             assert!((a - b).abs() < 1e-15, "{a} {b}");
@@ -210,7 +212,7 @@ mod tests {
                 g.outputs.push(three);
             }
             check(&g, instructions);
-            assert_eq!(partial(&g).nodes().len() == g.nodes().len(), sums == 2);
+            assert_eq!(cse_partial_sums(&g).nodes().len() == g.nodes().len(), sums == 2);
         }
     }
 }

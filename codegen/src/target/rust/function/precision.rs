@@ -2,48 +2,50 @@
 
 use std::fmt::Write;
 
-use articulated_core::level::source;
+use articulated_core::precision::source;
 
 use crate::target::rust::module::bare;
-use crate::{Arithmetic, Level, Sines};
+use crate::{Arithmetic, Precision, TrigAccuracy};
 
 /// The type of arguments and results.
-pub(crate) fn real(level: Level) -> &'static str {
+pub(crate) fn real(level: Precision) -> &'static str {
     if level.is_single() { "f32" } else { "f64" }
 }
 
 /// The type of the numbers that are computed with.
-pub(crate) fn computed(level: Level) -> &'static str {
+pub(crate) fn computed(level: Precision) -> &'static str {
     if level.arithmetic == Arithmetic::Single { "f32" } else { "f64" }
 }
 
 /// What the statements call by name.
-pub(crate) fn imports(out: &mut String, level: Level) {
+pub(crate) fn imports(out: &mut String, level: Precision) {
     if level.of_two() {
         *out += "    #[allow(unused_imports)]\n    use self::level::*;\n";
     }
 }
 
 /// Whether sines are those of lanes, four at a time.
-pub(crate) fn has_vectors(level: Level) -> bool {
-    !matches!(level.sines, Sines::Correct | Sines::Two)
+pub(crate) fn has_vectors(level: Precision) -> bool {
+    !matches!(level.sines, TrigAccuracy::CorrectlyRounded | TrigAccuracy::DoubleDouble)
 }
 
 /// The module that has sines of four angles: `text` of doubles to an ulp.
-pub(crate) fn sines(out: &mut String, text: &str, level: Level, no_std: bool) {
+pub(crate) fn sines(out: &mut String, text: &str, level: Precision, no_std: bool) {
     let import = bare::import(no_std);
     let text = &text.replace("mod trig {\n", &format!("mod trig {{\n{import}"));
     let what = match level.sines {
-        Sines::Fast7 => "|error| ≤ 1e-7",
-        Sines::Fast10 => "|error| ≤ 1e-10",
+        TrigAccuracy::Fast7 => "|error| ≤ 1e-7",
+        TrigAccuracy::Fast10 => "|error| ≤ 1e-10",
         _ => "Error at most 1 ulp",
     };
     let text = text.replace("Error at most 1 ulp", what);
     match (level.arithmetic, level.sines) {
-        (_, Sines::Two) => {}
-        (Arithmetic::Compensated, Sines::Correct) => {}
-        (Arithmetic::Single, Sines::Correct) => *out += &CORRECT.replace("NAME", "sin_cos_correct_f32").replace("f64", "f32"),
-        (_, Sines::Correct) => *out += &CORRECT.replace("NAME", "sin_cos_correct"),
+        (_, TrigAccuracy::DoubleDouble) => {}
+        (Arithmetic::Compensated, TrigAccuracy::CorrectlyRounded) => {}
+        (Arithmetic::Single, TrigAccuracy::CorrectlyRounded) => {
+            *out += &CORRECT.replace("NAME", "sin_cos_correct_f32").replace("f64", "f32")
+        }
+        (_, TrigAccuracy::CorrectlyRounded) => *out += &CORRECT.replace("NAME", "sin_cos_correct"),
         (Arithmetic::Single, _) => {
             *out += &text.replace("mod trig", "mod trig_of_f64");
             *out += SINGLE;
@@ -53,7 +55,7 @@ pub(crate) fn sines(out: &mut String, text: &str, level: Level, no_std: bool) {
 }
 
 /// The module of the arithmetic, where there is one.
-pub(crate) fn module(out: &mut String, level: Level, no_std: bool) {
+pub(crate) fn module(out: &mut String, level: Precision, no_std: bool) {
     let import = bare::import(no_std);
     if let Some(text) = source(level) {
         let _ = writeln!(out, "/// The arithmetic of the level {level}.");

@@ -7,7 +7,7 @@ use crate::simulate::SimulateError;
 use crate::simulate::curve::Curve;
 use crate::simulate::system::System;
 
-/// Where a step is looked at: eighths, and closer at its ends, so that a turn there is seen.
+/// Sample points of a step: eighths, and closer at its ends, to catch an extremum there.
 const PLACES: [f64; 11] = [0.0, 1.0 / 64.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 63.0 / 64.0, 1.0];
 
 /// A zero found.
@@ -18,12 +18,12 @@ pub(crate) struct Zero {
     pub(crate) direction: Direction,
 }
 
-/// What is remembered of events between steps, and room for one step.
+/// State of event detection between steps, and scratch space for one step.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Watch {
-    /// On which side of zero each event's function is: ±1, or 0 as long as nobody knows.
+pub(crate) struct Detectors {
+    /// Side of zero of each event's function: ±1, or 0 while unknown.
     side: Vec<f64>,
-    /// What was left of each event's function where it was last found to be zero.
+    /// Residual of each event's function at its last zero.
     left: Vec<f64>,
     /// Values, `[places][events]`.
     values: Vec<f64>,
@@ -31,8 +31,8 @@ pub(crate) struct Watch {
     pub(crate) zeros: Vec<Zero>,
 }
 
-impl Watch {
-    /// A motion with so many events begins.
+impl Detectors {
+    /// Starts a motion with this number of events.
     pub(crate) fn begin(&mut self, events: usize) {
         self.side.clear();
         self.side.resize(events, 0.0);
@@ -48,7 +48,7 @@ impl Watch {
         self.side[e] = sign(value);
     }
 
-    /// What is left of the function of event `e` at its zero.
+    /// Residual of the function of event `e` at its zero.
     pub(crate) fn set_left(&mut self, e: usize, value: f64) {
         self.left[e] = value.abs();
     }

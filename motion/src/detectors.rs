@@ -1,4 +1,4 @@
-//! What a scene looks out for: limits, contacts, dry friction, and a ball.
+//! Detectors of a scene's events: limits, contacts, dry friction, and the ball.
 
 use std::fmt;
 use std::rc::Rc;
@@ -6,84 +6,87 @@ use std::rc::Rc;
 use articulated::Dynamics;
 use articulated::simulate::{ContactPoint, Direction, Event, Hit};
 use articulated_core::effect::{Applied, EffectId};
-use articulated_scene::Watched;
+use articulated_scene::EventClass;
 
-use crate::ball::Ball;
 use crate::error::{Fault, MotionErrors};
-use crate::happening::{EventKind, Happening, SceneEvent};
-use crate::stage::{Stage, field};
+use crate::occurrence::{EventKind, Occurrence, SceneEvent};
+use crate::projectile::Projectile;
+use crate::session::{Session, field};
 
-/// Events of a scene on a robot, and how each of them reads.
-pub struct Watch<'a> {
-    /// The events, for a simulation. Others may be put behind them.
+/// Events of a scene on a robot, and the meaning of each.
+pub struct Detectors<'a> {
+    /// The events, for a simulation. A program may append others.
     pub events: Vec<Event<'a>>,
-    /// Sorts that the scene looks for and has nothing of.
-    pub without: Vec<Without>,
-    /// What the first of them are, those of the scene.
+    /// Requested classes of events that cannot occur.
+    pub unavailable: Vec<UnavailableEvent>,
+    /// Kind and subject of the scene's events, which come first.
     about: Vec<(EventKind, String)>,
-    ball: Rc<Ball>,
+    ball: Rc<Projectile>,
 }
 
-/// A sort of event that a scene looks for and that cannot happen: odd, and no mistake, since effects come and go.
+/// A requested class of events that cannot occur. It is a warning, not an error, since effects may
+/// be switched off.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Without {
+pub struct UnavailableEvent {
     /// The scene's file.
     pub file: String,
-    /// What it looks for.
-    pub what: Watched,
-    /// The joint of which there is nothing to look for: the file's lower bound is not below the upper one, as where `<limit>` has none. None where no joint or link has something.
+    /// The requested class.
+    pub what: EventClass,
+    /// The joint without usable bounds: the file's lower bound is not below the upper one, as where
+    /// `<limit>` has none. `None`: no joint or link has such an event.
     pub joint: Option<String>,
 }
 
-impl<'a> Watch<'a> {
-    /// What the scene asks for on a robot; `frames` are the names of its frames in its order. Errors: frames that
-    /// events need and that are not among them, functions that the robot has not, numbers that cannot be used; all of them.
-    pub fn new<R: Dynamics<f64>, S: AsRef<str>>(stage: &Stage, robot: &'a R, frames: &[S]) -> Result<Self, MotionErrors>
+impl<'a> Detectors<'a> {
+    /// The scene's events on a robot; `frames` are the names of its frames in its order. Errors,
+    /// all at once: required frames that are missing, functions that the robot lacks, invalid
+    /// numbers.
+    pub fn new<R: Dynamics<f64>, S: AsRef<str>>(session: &Session, robot: &'a R, frames: &[S]) -> Result<Self, MotionErrors>
     where
         R::Workspace: 'a,
     {
-        let mut watch = Self { events: Vec::new(), without: Vec::new(), about: Vec::new(), ball: Rc::default() };
+        let mut detectors = Self { events: Vec::new(), unavailable: Vec::new(), about: Vec::new(), ball: Rc::default() };
         let mut faults = Vec::new();
-        for what in stage.looked_for() {
-            let before = (watch.events.len(), faults.len(), watch.without.len());
+        for what in session.requested_events() {
+            let before = (detectors.events.len(), faults.len(), detectors.unavailable.len());
             match what {
-                Watched::Limits => watch.limits(stage),
-                Watched::Contacts => watch.contacts(stage, robot, frames, &mut faults),
-                Watched::StickSlip => watch.stick_slip(stage),
+                EventClass::Limits => detectors.limits(session),
+                EventClass::Contacts => detectors.contacts(session, robot, frames, &mut faults),
+                EventClass::StickSlip => detectors.stick_slip(session),
             }
-            if (watch.events.len(), faults.len(), watch.without.len()) == before {
-                watch.without.push(Without { file: stage.scene.file.clone(), what: *what, joint: None });
+            if (detectors.events.len(), faults.len(), detectors.unavailable.len()) == before {
+                detectors.unavailable.push(UnavailableEvent { file: session.scene.file.clone(), what: *what, joint: None });
             }
         }
-        watch.hit(stage, robot, frames, &mut faults);
-        MotionErrors::none(&stage.scene.file, faults)?;
-        Ok(watch)
+        detectors.hit(session, robot, frames, &mut faults);
+        MotionErrors::none(&session.scene.file, faults)?;
+        Ok(detectors)
     }
 
-    /// What happened; of an event that was put behind those of the scene, its name.
-    pub fn happening(&self, hit: &Hit) -> Happening {
+    /// The occurrence of a hit; an event appended by the program has only its name.
+    pub fn occurrence(&self, hit: &Hit) -> Occurrence {
         let Some((kind, on)) = self.about.get(hit.event) else {
-            return Happening { t: hit.t, what: hit.name.to_string(), about: None, ball_speed: None };
+            return Occurrence { t: hit.t, what: hit.name.to_string(), about: None, ball_speed: None };
         };
         let begins = if *kind == EventKind::Ball { !self.ball.missed.get() } else { hit.direction == Direction::Falling };
-        Happening::of(hit.t, SceneEvent { kind: *kind, on: on.clone(), begins }, hit.value)
+        Occurrence::of(hit.t, SceneEvent { kind: *kind, on: on.clone(), begins }, hit.value)
     }
 
-    /// What tells whether the ball was hit and the motion ends with that: who runs a simulation asks it after each step. It is apart from the watch, whose events the
-    /// simulation has meanwhile.
+    /// Returns a closure that says whether an impact ended the motion; call it after each step. It
+    /// does not borrow the detectors, whose events the simulation holds meanwhile.
     pub fn over(&self) -> impl Fn() -> bool + use<> {
         let ball = self.ball.clone();
         move || ball.ends.get()
     }
 
-    /// Kinetic energy that the ball got, J, once it is hit.
+    /// Kinetic energy gained by the ball, J, once it is hit.
     pub fn ball_energy(&self) -> Option<f64> {
         self.ball.energy.get()
     }
 
-    /// As if nothing had happened, for one more motion.
+    /// Resets the ball for another run.
     pub fn reset(&mut self) {
-        self.ball.put_back();
+        self.ball.reset();
     }
 
     fn push(&mut self, event: Event<'a>, kind: EventKind, on: &str) {
@@ -92,11 +95,11 @@ impl<'a> Watch<'a> {
     }
 
     /// The bounds of the effect if a joint has it, else those of the file.
-    fn limits(&mut self, stage: &Stage) {
-        for at in stage.freedoms() {
-            let (name, Some((lower, upper))) = (stage.name_of(&at), stage.bounds(&at)) else { continue };
+    fn limits(&mut self, session: &Session) {
+        for at in session.freedoms() {
+            let (name, Some((lower, upper))) = (session.name_of(&at), session.bounds(&at)) else { continue };
             if lower >= upper {
-                self.without.push(Without { file: stage.scene.file.clone(), what: Watched::Limits, joint: Some(name) });
+                self.unavailable.push(UnavailableEvent { file: session.scene.file.clone(), what: EventClass::Limits, joint: Some(name) });
                 continue;
             }
             // A joint that follows another the other way round is at its own upper bound where that is at the lower.
@@ -113,11 +116,11 @@ impl<'a> Watch<'a> {
         }
     }
 
-    fn contacts<R: Dynamics<f64>, S: AsRef<str>>(&mut self, stage: &Stage, robot: &'a R, frames: &[S], faults: &mut Vec<Fault>)
+    fn contacts<R: Dynamics<f64>, S: AsRef<str>>(&mut self, session: &Session, robot: &'a R, frames: &[S], faults: &mut Vec<Fault>)
     where
         R::Workspace: 'a,
     {
-        for (kind, a) in contacts(stage) {
+        for (kind, a) in contacts(session) {
             let Some(frame) = frame_of(&a.on, frames) else {
                 faults.push(no_frame("effects.contact", &a.on, frames));
                 continue;
@@ -130,31 +133,31 @@ impl<'a> Watch<'a> {
         }
     }
 
-    fn stick_slip(&mut self, stage: &Stage) {
-        for at in stage.freedoms() {
+    fn stick_slip(&mut self, session: &Session) {
+        for at in session.freedoms() {
             let Some([_, speed, ..]) = at.effect(EffectId::friction).map(|friction| friction.parameters.as_slice()) else { continue };
-            let name = stage.name_of(&at);
+            let name = session.name_of(&at);
             let event = Event::stick_slip(name.as_str(), at.v, speed / at.multiplier.abs());
             self.push(event, EventKind::StickSlip, &name);
         }
     }
 
-    fn hit<R: Dynamics<f64>, S: AsRef<str>>(&mut self, stage: &Stage, robot: &'a R, frames: &[S], faults: &mut Vec<Fault>)
+    fn hit<R: Dynamics<f64>, S: AsRef<str>>(&mut self, session: &Session, robot: &'a R, frames: &[S], faults: &mut Vec<Fault>)
     where
         R::Workspace: 'a,
     {
-        let Some(asked) = &stage.scene.impact else { return };
-        let Some(frame) = frame_of(&asked.link, frames) else { return faults.push(no_frame("impact.link", &asked.link, frames)) };
-        match self.ball.event(asked, robot, frame) {
-            Ok(event) => self.push(event, EventKind::Ball, &asked.link),
+        let Some(request) = &session.scene.impact else { return };
+        let Some(frame) = frame_of(&request.link, frames) else { return faults.push(no_frame("impact.link", &request.link, frames)) };
+        match self.ball.event(request, robot, frame) {
+            Ok(event) => self.push(event, EventKind::Ball, &request.link),
             Err(error) => faults.extend(Fault::of(error)),
         }
     }
 }
 
 /// The contacts, each with its number among those of its link.
-fn contacts(stage: &Stage) -> impl Iterator<Item = (EventKind, &Applied)> {
-    let all = move || stage.effects_of(EffectId::contact);
+fn contacts(session: &Session) -> impl Iterator<Item = (EventKind, &Applied)> {
+    let all = move || session.effects_of(EffectId::contact);
     all().enumerate().map(move |(k, a)| {
         let number = 1 + all().take(k).filter(|other| other.on == a.on).count();
         (EventKind::Contact { number, of: all().filter(|other| other.on == a.on).count() }, a)
@@ -166,17 +169,17 @@ fn frame_of<S: AsRef<str>>(link: &str, frames: &[S]) -> Option<usize> {
     frames.iter().position(|name| name.as_ref() == link)
 }
 
-/// There is no frame of a link that an event is about.
+/// The fault of an event on a link without a frame.
 fn no_frame<S: AsRef<str>>(key: &'static str, link: &str, frames: &[S]) -> Fault {
     Fault::NoFrame { key, link: link.to_owned(), frames: frames.iter().map(|name| name.as_ref().to_owned()).collect() }
 }
 
-/// A field of one number; one that is not there is none.
+/// A field of one number; NaN if it is missing.
 fn number(applied: &Applied, name: &str) -> f64 {
     field(applied, name).first().copied().unwrap_or(f64::NAN)
 }
 
-impl fmt::Display for Without {
+impl fmt::Display for UnavailableEvent {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(joint) = &self.joint {
             let (file, name) = (&self.file, self.what.name());
@@ -186,9 +189,9 @@ impl fmt::Display for Without {
             );
         }
         let expected = match self.what {
-            Watched::Limits => "a joint with bounds",
-            Watched::Contacts => "an effect contact of the scene",
-            Watched::StickSlip => "an effect friction of the scene",
+            EventClass::Limits => "a joint with bounds",
+            EventClass::Contacts => "an effect contact of the scene",
+            EventClass::StickSlip => "an effect friction of the scene",
         };
         let (file, name) = (&self.file, self.what.name());
         write!(f, "{file}: simulation.events: found {name:?}, expected {expected}; nothing to look for")

@@ -4,7 +4,7 @@ use super::{copy, rebuild};
 use crate::graph::Graph;
 
 /// Keeps the nodes that an output needs.
-pub fn live(graph: &Graph) -> Graph {
+pub fn dce(graph: &Graph) -> Graph {
     let mut needed = vec![false; graph.nodes().len()];
     graph.outputs.iter().for_each(|o| needed[o.index()] = true);
     for (k, node) in graph.nodes().iter().enumerate().rev() {
@@ -27,6 +27,6 @@ mod tests {
         let sum = g.apply(Op::Add, &[x, y]);
         g.apply(Op::Mul, &[sum, y]);
         g.outputs = vec![sum];
-        assert_eq!(live(&g).nodes().len(), 3);
+        assert_eq!(dce(&g).nodes().len(), 3);
     }
 }
