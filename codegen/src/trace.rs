@@ -71,10 +71,7 @@ pub(crate) fn trace_in_lanes(spec: &FunctionSpec, strategies: &[Strategy], model
 
 /// The view of the model after the passes of the strategy.
 fn passed<S: Scalar>(part: &FunctionTerm, strategy: &Strategy, model: &Model<S>) -> View<S> {
-    let mut model = model.clone();
-    if !part.function.asks_for_frames() {
-        model.frames.clear();
-    }
+    let model = if part.function.asks_for_frames() { model.clone() } else { model.clone().without_frames() };
     let (passes, shifted) = if part.function.regrouped { (strategy.passes, strategy.shifted) } else { (0, false) };
     let carried = model.carried();
     let view = model_passes::<S>().iter().take(passes).fold(View::new(model), |view, (_, pass, _)| pass(view));

@@ -24,7 +24,7 @@ impl Session {
             let pattern: Vec<f64> = (0..self.model.nv()).map(|k| 1.0 - 0.15 * (k % 4) as f64).collect();
             let step: Vec<f64> = pattern.iter().map(|x| away * x).collect();
             let v: Vec<f64> = initial.v.iter().zip(&pattern).map(|(v, x)| v + 0.5 * x).collect();
-            let mut q = vec![0.0; self.model.nq];
+            let mut q = vec![0.0; self.model.nq()];
             self.model.integrate(&mut self.model.workspace(), &initial.q, &step, &mut q)?;
             let a = [accelerations(&self.model, &q, &v, &pattern)?, accelerations(robot, &q, &v, &pattern)?];
             if let Some((apart, largest)) = apart(&self.model, &q, &v, &a)?.filter(|(apart, largest)| *apart > ALIKE * largest) {

@@ -101,7 +101,7 @@ impl Contact {
     fn of(session: &Session, applied: &Applied) -> Option<Self> {
         let one = |name: &str| field(applied, name).first().copied();
         Some(Self {
-            frame: session.model.frames.iter().position(|frame| frame.name == applied.on)?,
+            frame: session.model.frames().iter().position(|frame| frame.name == applied.on)?,
             point: applied.at.xyz,
             normal: unit(field(applied, "normal").try_into().ok()?)?,
             reach: one("height")? + one("radius")?,

@@ -48,7 +48,7 @@ impl Session {
     fn required(&self, integrator: IntegratorId) -> Vec<FunctionId> {
         let mut functions = self.scene.calls_with(integrator).required;
         functions.retain(|function| match function {
-            FunctionId::integrate => self.model.nq != self.model.nv,
+            FunctionId::integrate => self.model.nq() != self.model.nv(),
             FunctionId::placements => self.frame_users().next().is_some(),
             _ => true,
         });

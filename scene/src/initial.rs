@@ -302,7 +302,7 @@ pub(crate) fn no_joint(log: &mut Diagnostics, at: At, key: &str, name: &str, mod
 
 /// Quaternions to norm one; `place`: where those of a joint are given.
 pub(crate) fn normalise(model: &Model<f64>, q: &mut [f64], (key, place): (&str, &dyn Fn(&str) -> At), log: &mut Diagnostics) {
-    for (joint, quaternion) in model.joints.iter().filter_map(|j| Some((j, j.quaternion()?))) {
+    for (joint, quaternion) in model.joints().iter().filter_map(|j| Some((j, j.quaternion()?))) {
         if let Err(norm) = normalise_input(&mut q[quaternion]) {
             let found = format!("a quaternion of norm {norm:.4} for joint {:?}", joint.name);
             log.error((place(&joint.name), key), Code::Number, found, "norm one, in the order x, y, z, w");

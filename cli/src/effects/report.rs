@@ -142,10 +142,10 @@ impl Report {
         });
         Self {
             scene: session.name.clone(),
-            robot: session.model.name.clone(),
+            robot: session.model.name().to_owned(),
             base: if session.base() == articulated_core::description::Base::Floating { "floating" } else { "fixed" },
-            gravity: session.model.gravity.into(),
-            degrees_of_freedom: session.model.nv,
+            gravity: session.model.gravity().into(),
+            degrees_of_freedom: session.model.nv(),
             on: on.collect(),
             off: told.off.iter().map(|e| Off { effect: e.effect, why: e.why.to_string() }).collect(),
             ignored: told

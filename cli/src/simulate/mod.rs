@@ -39,7 +39,7 @@ use summary::{Summary, Unit};
 pub(crate) fn run(arguments: &SimulateArguments, format: Format) -> Result<u8, Failure> {
     let Some(scene) = &arguments.scene else { return all::run(arguments, format) };
     let session = named_scene::session(scene)?;
-    has_room(&session.scene.file, session.model.nv)?;
+    has_room(&session.scene.file, session.model.nv())?;
     let settings = settings::of(&session, arguments);
     let (mut settings, initial) = Failure::both(settings, session.start().map_err(Failure::from))?;
     if let Some(file) = &arguments.against {
@@ -150,9 +150,11 @@ struct Drawn {
 
 impl Drawn {
     fn of(session: &Session, motion: &Motion, summary: &Summary) -> Result<Self, Failure> {
-        let page = page::html(&motion.recording, &setting(session, summary)).map_err(|e| Failure::tool(&e))?;
+        let setting = setting(session, summary);
+        let page = page::html(&motion.recording, &setting).map_err(|e| Failure::tool(&e))?;
+        let animation = page::svg(&motion.recording, &setting).map_err(|e| Failure::tool(&e))?;
         let pictures = plot::pictures(&motion.recording, &session.name);
-        Ok(Self { page, pictures })
+        Ok(Self { page, animation, pictures })
     }
 }
 

@@ -56,7 +56,7 @@ impl<'a> RunMonitor<'a> {
         let mean = (t - self.settings.start) / tries;
         let limit = counts.limited_by.and_then(|index| Some((index, joint_of(self.session, index)?)));
         let limit = limit.map_or_else(String::new, |(index, joint)| {
-            let what = if index < self.session.model.nv { "coordinate" } else { "velocity" };
+            let what = if index < self.session.model.nv() { "coordinate" } else { "velocity" };
             format!(", limited most by the {what} of joint `{joint}`")
         });
         format!(

@@ -56,7 +56,7 @@ fn requested_events(session: &Session) -> Result<Vec<String>, Failure> {
     if session.scene.simulation.is_none() {
         return Ok(Vec::new());
     }
-    has_room(&session.scene.file, session.model.nv)?;
+    has_room(&session.scene.file, session.model.nv())?;
     let motion = session.settings().and_then(|settings| session.motion(&session.model, &session.frame_names(), settings));
     let (motion, ()) = Failure::both(motion.map_err(Failure::from), solvable(session))?;
     Ok(motion.unavailable_events().iter().map(ToString::to_string).collect())

@@ -176,9 +176,9 @@ impl Summary {
         let last_record = r.t.last().copied().unwrap_or(settings.start);
         Self {
             scene: session.name.clone(),
-            robot: session.model.name.clone(),
+            robot: session.model.name().to_owned(),
             base: if session.base() == articulated_core::description::Base::Floating { "floating" } else { "fixed" },
-            degrees_of_freedom: session.model.nv,
+            degrees_of_freedom: session.model.nv(),
             effects: sorts(&session.effects),
             code,
             integrator: Method { name: row.name, order: row.order, step_s: settings.step, rtol: settings.rtol, atol: settings.atol },

@@ -56,7 +56,7 @@ const ANGLE: u32 = 4;
 
 /// The best angle of body `i` for its children, among zero and the angles that bring the axis of a
 /// child into a coordinate plane.
-fn best<S: Scalar>(model: &Model<S>, i: usize, children: &[usize]) -> Angle<S> {
+fn best<S: Scalar>(bodies: &[Body<S>], i: usize, children: &[usize]) -> Angle<S> {
     let mut best: Option<(u32, Angle<S>)> = None;
     for child in children.iter().map(|&k| &bodies[k]).filter(|b| known(&b.placement.rotation)) {
         let z = child.placement.rotation.column(2);
@@ -79,8 +79,8 @@ fn best<S: Scalar>(model: &Model<S>, i: usize, children: &[usize]) -> Angle<S> {
 }
 
 /// The cost of body `i` and of the rotations and offsets of its children after a turn.
-fn cost<S: Scalar>(model: &Model<S>, i: usize, angle: &Angle<S>, children: &[usize]) -> u32 {
-    let inertia = model.bodies[i].inertia.turned(&angle.rotation().transpose());
+fn cost<S: Scalar>(bodies: &[Body<S>], i: usize, angle: &Angle<S>, children: &[usize]) -> u32 {
+    let inertia = bodies[i].inertia.turned(&angle.rotation().transpose());
     let (h, s) = (inertia.first, inertia.second);
     let own = FIRST * count(&[h.x, h.y]) + SECOND * count(&[s.m12, s.m13, s.m23]) + if is_quarter(angle) { 0 } else { ANGLE };
     children.iter().map(|&k| &bodies[k]).fold(own, |sum, child| {

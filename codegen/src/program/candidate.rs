@@ -102,7 +102,7 @@ const FOLDED_BODIES: usize = 64;
 pub(super) fn cheapest(part: &FunctionTerm, candidate: &Candidate, all: usize) -> Strategy {
     let few = if candidate.parameters.is_empty() { all..=all } else { 0..=all };
     let ways = ways(part, candidate.model);
-    let tried = candidate.parameters.is_empty() && candidate.model.bodies.len() <= FOLDED_BODIES;
+    let tried = candidate.parameters.is_empty() && candidate.model.bodies().len() <= FOLDED_BODIES;
     let folded = if tried { foldable_rotations(part, candidate.model) } else { Vec::new() };
     let folded: Vec<Option<FoldedRotations>> = once(None).chain(folded.into_iter().map(Some)).collect();
     let shifted: &[bool] = if tried && Form::ShiftedMasses.fits(part.function.id) { &[false, true] } else { &[false] };
@@ -146,7 +146,7 @@ pub(super) fn by_axes(spec: &FunctionSpec, strategies: Vec<Strategy>, candidate:
         let ((cost, price), (other_cost, other_price)) = (candidate.price(spec, &with), candidate.price(spec, &strategies));
         cost <= other_cost && price < other_price
     };
-    if candidate.model.bodies.len() > FOLDED_BODIES || better() { with } else { strategies }
+    if candidate.model.bodies().len() > FOLDED_BODIES || better() { with } else { strategies }
 }
 
 /// Limit of instructions traced to find the best unit of length: fewer units are tried for long
@@ -155,7 +155,7 @@ const TRIED: usize = 20_000;
 
 /// The strategies with lengths in the cheapest unit: a factor of one takes no multiplication.
 pub(super) fn in_the_best_unit(spec: &FunctionSpec, strategies: Vec<Strategy>, candidate: &Candidate) -> Vec<Strategy> {
-    if !candidate.parameters.is_empty() || candidate.model.bodies.len() > FOLDED_BODIES {
+    if !candidate.parameters.is_empty() || candidate.model.bodies().len() > FOLDED_BODIES {
         return strategies;
     }
     let units: Vec<Vec<f64>> = spec.parts.iter().zip(&strategies).map(|(part, strategy)| units(part, strategy, candidate.model)).collect();

@@ -7,8 +7,10 @@ use super::tree::Tree;
 
 /// The description that the draft amounts to; `None` where something of it is missing, which is an error already.
 pub(crate) fn lower(draft: &Draft, tree: &Tree, leaders: &[Option<usize>]) -> Option<Description> {
-    let links =
-        draft.links.iter().map(|link| Some(Link { name: link.name.clone()?, inertial: link.inertial, collision: link.collision.clone() }));
+    let links = draft.links.iter().map(|link| {
+        let (name, collision) = (link.name.clone()?, link.collision.clone());
+        Some(Link { name, inertial: link.inertial, collision, ..Link::default() })
+    });
     let joints = draft.joints.iter().enumerate().map(|(i, joint)| {
         let mimic = joint.mimic.as_ref().zip(leaders[i]).map(|(mimic, leader)| Mimic {
             joint: leader,

@@ -25,7 +25,7 @@ fn what_the_scene_edits_moves_and_what_is_odd_is_told() {
     std::fs::write(folder.path().join("edited.toml"), scene).unwrap();
     let edited = Session::open(folder.path().join("edited.toml")).unwrap_or_else(|e| panic!("{e}"));
     let plain = super::session("", super::ARM);
-    assert_eq!((edited.model.nv, plain.model.nv), (1, 5));
+    assert_eq!((edited.model.nv(), plain.model.nv()), (1, 5));
     assert!((edited.model.moving_mass() - plain.model.moving_mass() - 3.0).abs() < 1e-12);
     assert!(edited.warnings.iter().any(|warning| warning.to_string().contains("joint \"elbow\"")), "{:?}", edited.warnings);
     let r = moved(&edited).recording;

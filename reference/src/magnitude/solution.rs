@@ -72,12 +72,9 @@ impl State<'_> {
 
     /// M a = τ − h.
     fn forward_dynamics(&self, row: &Function<f64>) -> Result<Vec<f64>, FunctionError> {
-        let still = vec![0.0; self.model.nv];
-        let needed = magnitudes(
-            self.model,
-            inverse_of(row, "inverse_dynamics", "inverse_dynamics_with_wrenches"),
-            &exact_magnitudes(&self.with(&still)),
-        )?;
+        let still = vec![0.0; self.model.nv()];
+        let inverse = beside(row, FunctionId::inverse_dynamics_with_wrenches);
+        let needed = magnitudes(self.model, inverse.name, &exact_magnitudes(&self.with(&still)))?;
         let right: Vec<f64> = needed.iter().zip(self.arguments[2]).map(|(h, tau)| h.magnitude + tau.abs()).collect();
         Ok(self.mass.solution(&right, &self.value(row)?))
     }
@@ -87,7 +84,7 @@ impl State<'_> {
         let solved = beside(row, FunctionId::forward_dynamics_with_wrenches);
         let a = self.value(solved)?;
         let known: Vec<Magnitude> =
-            a.iter().zip(self.forward_dynamics(solved.row())?).map(|(a, scale)| Magnitude::computed(*a, scale.max(a.abs()))).collect();
+            a.iter().zip(self.forward_dynamics(solved)?).map(|(a, scale)| Magnitude::computed(*a, scale.max(a.abs()))).collect();
         let mut arguments = exact_magnitudes(&self.with(&a));
         arguments[2] = known;
         let name = beside(row, FunctionId::inverse_dynamics_derivatives_with_wrenches).name;

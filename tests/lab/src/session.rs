@@ -146,7 +146,7 @@ fn summary_of_sunk(sunk: &[Sunk]) -> Option<String> {
 
 /// The joint that a number of a step belongs to: steps of q first, then v.
 pub fn joint_of(session: &Session, number: usize) -> Option<String> {
-    let freedom = number % session.model.nv.max(1);
+    let freedom = number % session.model.nv().max(1);
     Dynamics::joint_of(&session.model, freedom).filter(|name| !name.is_empty()).map(str::to_owned)
 }
 

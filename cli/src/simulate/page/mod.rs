@@ -16,6 +16,7 @@ use nalgebra::Vector3;
 use serde::Serialize;
 
 use super::recording::{EventRecord, Recording};
+use animation::Room;
 use figure::Figure;
 use track::{Track, base64};
 

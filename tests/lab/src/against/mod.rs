@@ -71,7 +71,7 @@ pub fn measure(session: &Session, initial: &InitialState, settings: &Settings, f
     });
     let report = Report {
         scene: session.name.clone(),
-        robot: session.model.name.clone(),
+        robot: session.model.name().to_owned(),
         simulated_s: settings.end - settings.start,
         reference: format!("dop853 at a tolerance of 1e-14; at 4e-14 its last state is {:.1e} away", search::distance(&best, &second)),
         compiler: rustc.version.clone(),

@@ -116,7 +116,7 @@ fn judged(case: &Case, model: &Model<f64>, states: &[State]) -> Vec<Row> {
 
 /// The code of a robot at a level.
 fn make(robot: &Robot, model: &Model<f64>, level: Precision) -> Result<BuiltRobot, Error> {
-    let mut names = levels::functions(model.nv, level);
+    let mut names = levels::functions(model.nv(), level);
     if !model.massless_joints().is_empty() {
         names.retain(|f| !f.row::<f64>().inverts_mass_matrix());
     }

@@ -51,7 +51,7 @@ pub fn rows(pairs: &[(&str, Description, Precision)]) -> Result<Vec<Row>, Error>
 
 fn one(name: &str, robot: &Description, level: Precision) -> Result<Vec<Row>, Error> {
     let model = built(robot, Base::Fixed);
-    let made = BuiltRobot::of_description(name, robot, level, &functions(model.nv, level))?;
+    let made = BuiltRobot::of_description(name, robot, level, &functions(model.nv(), level))?;
     let case = Case::new(NAME, format!("{name}, {level}"), WHY);
     Ok(of_made(&case, &model, &made, &hard_states(&model)))
 }
