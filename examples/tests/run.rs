@@ -1,9 +1,14 @@
 //! Every example runs and prints the result that its physics demands.
 
+use std::path::Path;
 use std::process::Command;
 
 fn printed(program: &str) -> String {
-    let done = Command::new(program).output().expect("the example starts");
+    printed_in(program, Path::new("."))
+}
+
+fn printed_in(program: &str, folder: &Path) -> String {
+    let done = Command::new(program).current_dir(folder).output().expect("the example starts");
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     String::from_utf8(done.stdout).expect("UTF-8")
 }
@@ -52,6 +57,20 @@ fn momentum_is_conserved() {
 #[test]
 fn batches_agree_with_single_calls() {
     assert!(number(&printed(env!("CARGO_BIN_EXE_batches")), "largest difference") < 1e-9);
+}
+
+/// The programs that `articulated new` writes.
+#[test]
+fn programs_of_new_crates_reach_their_targets_and_plot_the_way() {
+    for (program, bound) in [(env!("CARGO_BIN_EXE_new_arm"), 1e-9), (env!("CARGO_BIN_EXE_new_walker"), 0.5)] {
+        let folder = std::env::temp_dir().join(format!("articulated-examples-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let text = printed_in(program, &folder);
+        assert!(number(&text.replace("rad or m", ""), "largest distance") < bound, "{program}: {text}");
+        let plot = std::fs::read_to_string(folder.join("motion.svg")).unwrap();
+        assert!(plot.contains("<polyline") && !plot.contains("NaN"), "{plot}");
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
 }
 
 #[test]
