@@ -16,8 +16,8 @@ fn printed_in(program: &str, folder: &Path) -> String {
 /// The last number of the first line that contains `words`.
 fn number(text: &str, words: &str) -> f64 {
     let line = text.lines().find(|line| line.contains(words)).unwrap_or_else(|| panic!("no {words:?} in {text}"));
-    let numbers = line.split(|c: char| c.is_whitespace() || "(),;".contains(c)).filter_map(|word| word.parse().ok());
-    numbers.last().unwrap_or_else(|| panic!("no number in {line:?}"))
+    let mut numbers = line.split(|c: char| c.is_whitespace() || "(),;".contains(c)).filter_map(|word| word.parse().ok());
+    numbers.next_back().unwrap_or_else(|| panic!("no number in {line:?}"))
 }
 
 #[test]

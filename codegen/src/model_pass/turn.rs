@@ -21,14 +21,14 @@ pub fn turn<S: Scalar>(view: View<S>) -> View<S> {
     model.outward().for_each(|i| hanging[model.bodies()[i].parent].bodies.push(i));
     model.frames().iter().enumerate().for_each(|(k, frame)| hanging[frame.body].frames.push(k));
     let model = model.changed(|parts| {
-        for i in 1..parts.bodies.len() {
+        for (i, hanging) in hanging.iter().enumerate().skip(1) {
             let body = &parts.bodies[i];
             if !body.joint.is_rotation_about_axis() || !known(&body.placement.rotation) {
                 continue;
             }
-            let angle = best(&parts.bodies, i, &hanging[i].bodies);
+            let angle = best(&parts.bodies, i, &hanging.bodies);
             if !angle.is_zero() {
-                turn_body(parts, i, &angle, &hanging[i]);
+                turn_body(parts, i, &angle, hanging);
             }
             // On the base only gravity is turned, and that once and for all.
             if parts.bodies[i].parent != 0 {

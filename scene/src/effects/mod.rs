@@ -182,7 +182,7 @@ fn table(row: &'static Effect, spot: &Spot<'_>, log: &mut Diagnostics) -> Number
             },
             (None, "xyz") if row.on == On::Link => numbers.at.get_or_insert_default().xyz = value.numbers(log).unwrap_or_default(),
             (None, "rpy") if row.on == On::Link => {
-                numbers.at.get_or_insert_default().rotation = Rotation::RollPitchYaw(value.numbers(log).unwrap_or_default())
+                numbers.at.get_or_insert_default().rotation = Rotation::RollPitchYaw(value.numbers(log).unwrap_or_default());
             }
             _ => value.unknown_key(log, keys(row)),
         }

@@ -194,7 +194,7 @@ mod tests {
 
     #[test]
     fn quarter_turns_by_quaternion_are_exact() {
-        let half = 0.707_106_78;
+        let half = 0.5;
         let about = |k: usize| {
             let mut quaternion = [0.0, 0.0, 0.0, half];
             quaternion[k] = half;

@@ -43,7 +43,7 @@ pub(crate) fn sines(out: &mut String, text: &str, level: Precision, no_std: bool
         (_, TrigAccuracy::DoubleDouble) => {}
         (Arithmetic::Compensated, TrigAccuracy::CorrectlyRounded) => {}
         (Arithmetic::Single, TrigAccuracy::CorrectlyRounded) => {
-            *out += &CORRECT.replace("NAME", "sin_cos_correct_f32").replace("f64", "f32")
+            *out += &CORRECT.replace("NAME", "sin_cos_correct_f32").replace("f64", "f32");
         }
         (_, TrigAccuracy::CorrectlyRounded) => *out += &CORRECT.replace("NAME", "sin_cos_correct"),
         (Arithmetic::Single, _) => {
