@@ -253,7 +253,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 fn plot(errors: &[(f64, [f64; robot::NV])]) -> String {
     let (width, height) = (640.0, 360.0);
     let largest = errors.iter().flat_map(|(_, e)| &e[DRIVEN]).fold(1e-9, |most: f64, e| most.max(e.abs()));
-    let mut svg = String::from("<svg xmlns='http://www.w3.org/2000/svg' viewBox='-60 -20 720 430' font-family='sans-serif' font-size='12'>");
+    let mut svg =
+        String::from("<svg xmlns='http://www.w3.org/2000/svg' viewBox='-60 -20 720 430' font-family='sans-serif' font-size='12'>");
     let _ = write!(svg, "<rect x='-60' y='-20' width='720' height='430' fill='white'/>");
     for (value, label) in [(largest, format!("{largest:.2}")), (0.0, "0".into()), (-largest, format!("{:.2}", -largest))] {
         let y = height / 2.0 * (1.0 - value / largest);
