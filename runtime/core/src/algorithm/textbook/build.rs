@@ -1,5 +1,6 @@
 //! From a description to the textbook's bodies.
 
+use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
 
