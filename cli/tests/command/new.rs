@@ -42,12 +42,13 @@ fn programs_are_those_of_the_examples() {
 #[test]
 fn nothing_is_written_where_something_is_wrong() {
     let folder = fresh("refused");
-    let path = folder.to_str().unwrap();
+    let (path, bad_name) = (folder.to_str().unwrap(), fresh("9lives"));
+    let bad_name = bad_name.to_str().unwrap();
     let cases: [(&[&str], &str); 5] = [
         (&["new", path, "--file", "no_such.urdf"], "no_such.urdf"),
         (&["new", path, "--file", "quadruped", "--controller", "computed-torque"], "found a floating base"),
         (&["new", path, "--file", "golf_swing"], "found a scene"),
-        (&["new", "/tmp/9lives", "--file", "panda_like"], "found the name \"9lives\""),
+        (&["new", bad_name, "--file", "panda_like"], "found the name \"9lives\""),
         (&["new", path, "--file", "panda_like", "--library", "/nowhere"], "--library /nowhere: found no crate"),
     ];
     for (words, part) in cases {
