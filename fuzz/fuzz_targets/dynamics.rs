@@ -1,11 +1,11 @@
 //! A robot that reads is a model, and what is computed of it is finite or an error.
 #![no_main]
 
+use articulated_codegen::model_pass::{View, model_passes};
 use articulated_codegen::{Request, generate};
-use articulated_core::algorithm::{Workspace, checked_forward_dynamics, inverse_dynamics};
+use articulated_core::algorithm::{FunctionId, Workspace, checked_forward_dynamics};
 use articulated_core::description::Base;
 use articulated_core::model::Model;
-use articulated_core::model::pass::model_passes;
 use articulated_formats::{Options, read};
 use libfuzzer_sys::fuzz_target;
 
@@ -16,12 +16,13 @@ fuzz_target!(|bytes: &[u8]| {
         if model.nv() > 60 {
             return;
         }
-        let passed = model_passes::<f64>().iter().fold(model.clone(), |m, (_, pass, _)| pass(m));
+        let passed = model_passes::<f64>().iter().fold(View::new(model.clone()), |view, (_, pass, _)| pass(view));
         let mut q = vec![0.3; model.nq()];
         articulated_core::algorithm::neutral(&model, &mut q);
         let (one, mut out) = (vec![0.5; model.nv()], vec![0.0; model.nv()]);
         let mut ws = Workspace::new(&model);
-        inverse_dynamics(&passed, &mut Workspace::new(&passed), &q, &one, &one, &mut out);
+        let row = FunctionId::inverse_dynamics.row::<f64>();
+        passed.call_by(row, &row.ways[0], &[&q, &one, &one], &mut out).unwrap();
         if checked_forward_dynamics(&model, &mut ws, &q, &one, &one, &mut out).is_ok() {
             assert!(out.iter().all(|x| x.is_finite()));
         }

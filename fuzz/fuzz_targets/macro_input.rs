@@ -10,8 +10,6 @@ mod errors;
 mod expand;
 #[path = "../../macros/src/invocation.rs"]
 mod invocation;
-#[path = "../../macros/src/place.rs"]
-mod place;
 #[path = "../../macros/src/settings.rs"]
 mod settings;
 #[path = "../../macros/src/tree.rs"]
